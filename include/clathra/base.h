@@ -1,0 +1,51 @@
+/* base: PETSc, version shim, physical constants, status codes.  Every other header stands on this one. */
+#pragma once
+
+#include <petscsnes.h>
+#include <petscdmda.h>
+#include <petscsf.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#if defined(PETSC_USE_COMPLEX)
+  #error "Clathra needs a PETSc build with real scalars"
+#endif
+#if defined(PETSC_USE_64BIT_INDICES) || !defined(PETSC_USE_REAL_DOUBLE)
+  #error "Clathra needs a PETSc build with 32-bit indices and double precision"
+#endif
+#ifdef I /* complex.h, pulled in by petsc.h, takes this name */
+  #undef I
+#endif
+#ifndef PETSC_SUCCESS /* appeared in PETSc 3.19 */
+  #define PETSC_SUCCESS 0
+#endif
+
+#define CL_DIM 2               /* space dimensions of the grid; tensors are 3-D */
+#define CL_GAS_CONSTANT 8.314  /* J/(mol K), as in the paper's tables */
+#define CL_ZERO_CELSIUS 273.15 /* K */
+
+/* Exit codes of the program. */
+enum {
+  CL_EXIT_OK     = 0,
+  CL_EXIT_BUG    = 1, /* PETSc error or failed assertion */
+  CL_EXIT_INPUT  = 2, /* the case or an option is wrong; nothing was written */
+  CL_EXIT_FAILED = 3  /* the run could not go on; the last good state was saved */
+};
+
+/* What a particle, a residual or a step can report.  Everything but OK and FATAL is mended by a smaller step. */
+typedef enum {
+  CL_OK = 0,
+  CL_DOMAIN,     /* a state left the admissible box: J <= 0, porosity outside (0,1), hydrate fills the pores */
+  CL_NONFINITE,  /* NaN or infinity */
+  CL_LEFT_GRID,  /* a particle left the background grid */
+  CL_TOO_FAR,    /* a particle moved half a cell or more */
+  CL_SOLVER,     /* SNES or KSP gave up */
+  CL_INACCURATE, /* the error estimate is above the tolerance */
+  CL_FATAL
+} ClStatus;
+
+static inline double ClCelsiusToKelvin(double T)
+{
+  return T + CL_ZERO_CELSIUS;
+}

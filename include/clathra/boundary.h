@@ -1,0 +1,42 @@
+/* boundary: where a condition acts, on which field, as which function of time.  docs/equations.md, section 6. */
+#pragma once
+
+#include "clathra/basis.h"
+#include "clathra/particles.h"
+#include "clathra/point.h"
+
+/* A surface face of a particle on the configuration at t_n. */
+typedef struct {
+  PetscInt particle;
+  int      side;
+  double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness */
+  double   r[CL_DIM]; /* from the particle's centre to the face, m */
+  double   area;
+  double   N[CL_NODES];                                       /* weights, in the order of StencilExpand */
+  PetscInt traction, pressure, heat, convection, temperature; /* index into Case.bc, -1 = none */
+} Face;
+
+/* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
+PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
+                          Face **face);
+
+/* Prescribed values of all conditions at one time. */
+typedef struct {
+  double *value, *shear; /* [Case.nbc] */
+} BcValues;
+void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
+double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
+
+/* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where the
+   Darcy fluxes are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat into the
+   body (W). */
+typedef struct {
+  double out[F_COUNT], D[F_COUNT][IN_COUNT];
+  double outflow[PHASE_COUNT], heat_in;
+} FaceOutput;
+void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
+                  const double in[IN_COUNT], double kappa, double dt, FaceOutput *o);
+
+/* Dirichlet values on grid planes: sets bit f of mask and value[f] for every prescribed unknown of grid node ij. */
+void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
+                     double value[F_COUNT]);

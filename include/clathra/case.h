@@ -1,0 +1,102 @@
+/* case: everything a scene says, in SI units (T in degC), read from cases/<name>/case.yaml and the command line. */
+#pragma once
+
+#include "clathra/base.h"
+#include "clathra/material.h"
+#include "clathra/schedule.h"
+
+typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
+
+typedef struct {
+  char     name[64];
+  double   lower[CL_DIM], upper[CL_DIM]; /* m */
+  PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
+  PetscInt material;                     /* index into Case.material */
+  /* initial state; hydrostatic: p grows with depth below `p_datum` (m, along gravity) */
+  double pressure;    /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
+  double temperature; /* degC */
+  double Sh, Sw, Sg;  /* saturations of the pore space; sum 1 */
+  double stress[6];   /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
+  bool   hydrostatic; /* add rho_w g depth to the pressure */
+  double datum;       /* m: coordinate against gravity where p = pressure */
+} Region;
+
+typedef enum {
+  BC_TRACTION = 1,     /* moving faces: total normal stress (compression-positive) and shear, Pa */
+  BC_PRESSURE,         /* moving faces: p_w and p_g, Pa, or the initial ones */
+  BC_HEAT_FLUX,        /* moving faces: W/m^2 into the body */
+  BC_CONVECTION,       /* moving faces: alpha (T_a - T), W/m^2 */
+  BC_FACE_TEMPERATURE, /* moving faces: T, degC */
+  BC_ROLLER,           /* grid plane: normal velocity of all phases zero */
+  BC_FIXED,            /* grid plane: all velocities zero */
+  BC_PLATE,            /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
+  BC_TEMPERATURE       /* grid plane: T, degC */
+} BcType;
+
+typedef struct {
+  char   name[64];
+  BcType type;
+  /* faces: a side of a region's box (all regions when region = -1), optionally only the part inside [from,to] along it
+   */
+  Side     side;
+  PetscInt region;
+  double   from, to; /* m, along the side; -inf, +inf by default */
+  /* planes: nodes with coordinate `axis` equal to `position` */
+  PetscInt axis;
+  double   position;
+  /* functions of time */
+  Schedule value;   /* normal stress | p (mean) | heat flux | T_a | T | plate velocity (positive along +axis) */
+  Schedule shear;   /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
+  bool     initial; /* pressure: hold each face at its particle's initial p_w, p_g */
+  double   alpha;   /* convection coefficient, W/(m^2 K) */
+} Bc;
+
+typedef struct {
+  char   name[64];
+  double x[CL_DIM]; /* m, in the initial configuration unless fixed */
+  bool   fixed;     /* stays at x in space; otherwise follows the nearest particle set */
+} Probe;
+
+typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
+
+typedef struct {
+  char      file[PETSC_MAX_PATH_LEN]; /* the case file */
+  char      title[256];
+  double    lower[CL_DIM], upper[CL_DIM]; /* background grid, m */
+  PetscInt  cells[CL_DIM];
+  BasisType basis;
+  double    gravity[CL_DIM]; /* m/s^2 */
+  PetscInt  nmaterial, nregion, nbc, nprobe;
+  Material *material;
+  Region   *region;
+  Bc       *bc;
+  Probe    *probe;
+  /* stabilisation */
+  double ghost_penalty;       /* g, 0 = off; default 0.1 */
+  double pressure_projection; /* alpha, 0 = off; default 1 */
+  bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
+  /* time: the command line's -stepper_* options win over these */
+  double   t_end;
+  char     stepper[16]; /* euler | sdirk2 */
+  bool     adaptive;
+  double   dt, dt_min, dt_max; /* s; dt = first (adaptive) or fixed step */
+  double   tol;                /* relative tolerance of the error estimate */
+  PetscInt max_failures;       /* cuts in a row before the run is given up */
+  /* output */
+  char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
+  PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */
+  double  *times;
+  double   every;            /* ... and every so many seconds (0 = off) */
+  double   probe_every;      /* s between probe rows, hit exactly; 0 = every step */
+  double   checkpoint_every; /* s; 0 = only at the end and on failure */
+} Case;
+
+/* Reads and checks a case (a folder or a .yaml file) together with the options database, collectively.
+   On bad input prints the error (file, key, value, unit, allowed range, nearest key) on rank 0, sets *ok = false and
+   returns success; nothing has been written. */
+PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok);
+PetscErrorCode CaseWriteResolved(const Case *c, const char *path); /* SI, itself a case that runs to the same result */
+PetscErrorCode CaseDestroy(Case *c);
+/* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
+ * -help. */
+PetscErrorCode CasePrintKeys(FILE *out);

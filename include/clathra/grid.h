@@ -1,0 +1,51 @@
+/* grid: the background grid, its distribution over ranks, and the numbering of active nodes. */
+#pragma once
+
+#include "clathra/base.h"
+
+/* Uniform grid of rectangles.  The owner of node (i,j) owns cell (i,j), the one to its right and above.
+   Local node arrays are padded by two nodes on every side, also outside the grid (never active there). */
+typedef struct {
+  MPI_Comm    comm;
+  PetscMPIInt rank, size;
+  double      lower[CL_DIM], h[CL_DIM]; /* m */
+  PetscInt    cells[CL_DIM];
+  DM          da; /* nodes; box stencil of width 2 */
+  PetscInt    nproc[CL_DIM];
+  PetscInt   *start[CL_DIM];          /* first node of each column/row of ranks, and the end */
+  PetscInt    xs[CL_DIM], xm[CL_DIM]; /* owned nodes */
+  PetscInt    gs[CL_DIM], gm[CL_DIM]; /* padded local range: gs = xs - 2, gm = xm + 4 */
+} Grid;
+
+PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g);
+PetscErrorCode GridDestroy(Grid *g);
+/* Cell of a point; false outside the grid.  Points on the upper edge belong to the last cell. */
+bool        GridCell(const Grid *g, const double x[], PetscInt cell[]);
+PetscMPIInt GridCellOwner(const Grid *g, const PetscInt cell[]);
+
+static inline PetscInt GridPadded(const Grid *g, PetscInt i, PetscInt j)
+{
+  return (j - g->gs[1]) * g->gm[0] + (i - g->gs[0]);
+}
+
+/* Active nodes: owned ones first (they are a Vec's local part), then ghosts. */
+typedef struct {
+  PetscInt  n_owned, n_local; /* active nodes: owned, owned + ghost */
+  PetscInt  n_global, first;  /* over all ranks; global number of the first owned one */
+  PetscInt *index;            /* padded node -> local active number, -1 if inactive */
+  PetscInt (*ij)[CL_DIM];     /* local active number -> grid node */
+  PetscInt    *global;        /* local active number -> global number */
+  PetscSF      sf;            /* ghosts -> owners */
+  MPI_Datatype unit[17];      /* nc doubles, made on demand */
+} NodeMap;
+
+/* Numbers the nodes whose flag (padded array) is set on any rank; *changed tells whether the map is a new one.
+   Collective. */
+PetscErrorCode NodeMapUpdate(const Grid *g, const unsigned char *flag, NodeMap *map, bool *changed);
+PetscErrorCode NodeMapDestroy(NodeMap *map);
+/* a: n_local x nc.  Adds the ghosts' values to their owners and gives every rank the sum. */
+PetscErrorCode NodeMapSum(NodeMap *map, double *a, PetscInt nc);
+/* Adds ghosts to owners only. */
+PetscErrorCode NodeMapReduce(NodeMap *map, double *a, PetscInt nc);
+/* Gives ghosts their owners' values. */
+PetscErrorCode NodeMapBroadcast(NodeMap *map, double *a, PetscInt nc);

@@ -1,0 +1,126 @@
+/* laws: the constitutive relations, one pure function each, value and analytic derivatives side by side.
+   No law sees PETSc, MPI, a particle or the grid.  SI units; temperature in degC unless a name says K; pore pressure
+   compression-positive.  Equation numbers refer to docs/equations.md.  Every derivative pointer must be given. */
+#pragma once
+
+#include <stdbool.h>
+
+/* ---------------------------------------------------------------- retention: gas share of the fluid-filled pore space
+   s_g = S_g/(1 - S_h) as a function of capillary pressure p_c = p_g - p_w (Pa); s_w = 1 - s_g. */
+typedef struct Retention Retention;
+struct Retention {
+  double p0;       /* air-entry (reference) pressure, Pa, > 0 */
+  double m;        /* van Genuchten m, (0,1) */
+  double lambda;   /* Brooks-Corey pore-size index, > 0 */
+  double Swr;      /* residual water saturation, [0,1) */
+  double Sgr;      /* residual gas saturation, [0,1) */
+  double p_smooth; /* smoothing width p_s, Pa; smooth form only; default 0.05 p0 */
+  double p_trap;   /* pressure scale p_t of trapped gas, Pa; smooth form only; default p0 */
+  double (*gas_share)(const Retention *, double pc, double *ds_dpc);
+  const char *type;
+};
+/* Sets the law by name (van_genuchten | van_genuchten_clamped | brooks_corey); false for an unknown name. */
+bool                 RetentionSetType(Retention *law, const char *type);
+const char *const   *RetentionTypes(void); /* NULL-terminated */
+static inline double RetentionGasShare(const Retention *law, double pc, double *ds_dpc)
+{
+  return law->gas_share(law, pc, ds_dpc);
+}
+/* Capillary pressure at which the gas share is s_g, by bracketing; false if the law never reaches s_g. */
+bool RetentionInvert(const Retention *law, double sg, double *pc);
+
+/* ---------------------------------------------------------------- relative permeability (modified Corey)
+   base = (s - Sr_own)/(1 - Swr - Sgr) clipped to [0,1] with a C1 toe at 0; k_r = base^n. */
+typedef struct {
+  double Swr, Sgr; /* residual saturations of k_r, may differ from those of retention */
+  double nw, ng;   /* Corey exponents, > 0 */
+} RelPerm;
+double RelPermWater(const RelPerm *law, double sw, double *dkr_dsw);
+double RelPermGas(const RelPerm *law, double sg, double *dkr_dsg);
+
+/* ---------------------------------------------------------------- intrinsic permeability k_a = k0 f_phi f_Sh, m^2 */
+typedef struct Permeability Permeability;
+struct Permeability {
+  double k0;      /* at porosity phi0 without hydrate, m^2 */
+  double phi0;    /* reference porosity */
+  double mh;      /* exponent of (1-S_h)^mh; type power */
+  double kh, Shc; /* plateau and threshold of Masuda's ramp; type masuda_ramp */
+  double (*hydrate_factor)(const Permeability *, double Sh, double *df_dSh);
+  double (*porosity_factor)(const Permeability *, double phi, double *df_dphi);
+  const char *hydrate_type, *porosity_type;
+};
+bool PermeabilitySetHydrateType(Permeability *law, const char *type);  /* power | masuda_ramp | none */
+bool PermeabilitySetPorosityType(Permeability *law, const char *type); /* kozeny_carman | square_jacobian | none */
+const char *const *PermeabilityHydrateTypes(void);
+const char *const *PermeabilityPorosityTypes(void);
+/* kozeny_carman: (phi/phi0)^1.5 ((1-phi0)/(1-phi))^3.  square_jacobian: J^2 with J = (1-phi0)/(1-phi), for the exact
+   large-strain consolidation solution of Xie and Leo (2004). */
+double PermeabilityEvaluate(const Permeability *law, double phi, double Sh, double *dk_dphi, double *dk_dSh);
+
+/* ---------------------------------------------------------------- phase equilibrium p_e(T) */
+typedef struct Equilibrium Equilibrium;
+struct Equilibrium {
+  double A1, A2, A3; /* Sloan form p_e = A1 exp(A2 - A3/T_K); A1 Pa, A2 -, A3 K */
+  double (*pressure)(const Equilibrium *, double T_degC, double *dpe_dT);
+  const char *type;
+};
+bool                 EquilibriumSetType(Equilibrium *law,
+                                        const char  *type); /* sloan | moridis (a polynomial ln p_e[MPa] in T_K, Moridis 2003) */
+const char *const   *EquilibriumTypes(void);
+static inline double EquilibriumPressure(const Equilibrium *law, double T, double *dpe_dT)
+{
+  return law->pressure(law, T, dpe_dT);
+}
+
+/* ---------------------------------------------------------------- Kim-Bishnoi kinetics
+   R = K_d(T) A_s (p_e - p), mol/(m^3 s), positive for dissociation (equations 33-37 of the paper). */
+typedef struct {
+  double      K0;            /* mol/(m^2 Pa s) */
+  double      dE;            /* activation energy J/mol; 0 = constant K_d */
+  double      A_geo;         /* hydrate surface per volume, 1/m */
+  double      M_h, M_w, M_g; /* molar masses, kg/mol, M_h = M_g + N_h M_w */
+  double      N_h;           /* hydration number */
+  Equilibrium equilibrium;
+} Kinetics;
+double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
+/* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
+double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);
+
+/* ---------------------------------------------------------------- equations of state, kg/m^3 */
+typedef struct {
+  double rho0; /* at p_ref, T_ref */
+  double K;    /* bulk modulus, Pa; INFINITY = incompressible */
+  double beta; /* volumetric thermal expansion, 1/K */
+  double p_ref, T_ref;
+} Liquid; /* rho = rho0 exp((p - p_ref)/K - beta (T - T_ref)); also solid and hydrate, with K infinite */
+double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT);
+typedef struct {
+  double M; /* kg/mol */
+} Gas;
+double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT); /* ideal: M p/(R T_K) */
+
+/* ---------------------------------------------------------------- heat */
+/* Latent heat of dissociation per kg of hydrate, C0 - C1 T_K, J/kg. */
+typedef struct {
+  double C0, C1;
+} LatentHeat;
+double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
+/* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity
+   (X = kappa) and, with X = rho c, for the heat capacity; derivatives with respect to phi, S_h and s_w. */
+double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh,
+                      double *d_dsw);
+
+/* ---------------------------------------------------------------- elasticity: E(S_h) = E0 + a_h E_h S_h^b_h, Pa */
+typedef struct {
+  double E0, Eh, ah, bh, nu;
+  bool   loss_only; /* stiffness gained later carries no stress of its own (Klar's relaxation for dissociation only) */
+} Elasticity;
+double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh); /* C1 toe where b_h < 1 at S_h = 0 */
+static inline double ElasticityShearFactor(const Elasticity *law)         /* G/E */
+{
+  return 0.5 / (1.0 + law->nu);
+}
+static inline double ElasticityLameFactor(const Elasticity *law) /* lambda/E */
+{
+  return law->nu / ((1.0 + law->nu) * (1.0 - 2.0 * law->nu));
+}

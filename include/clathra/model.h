@@ -1,0 +1,132 @@
+/* model: the monolithic residual of one stage, its Jacobian, and the commit of a step.  docs/equations.md, 5-7 and 9.
+ */
+#pragma once
+
+#include "clathra/basis.h"
+#include "clathra/boundary.h"
+#include "clathra/particles.h"
+#include "clathra/point.h"
+
+/* One implicit stage: everything an integrator says to the physics. */
+typedef struct {
+  double  t;      /* end of the stage, where boundary functions are evaluated, s */
+  double  dt;     /* dt', s */
+  double *x_star; /* [n_local][F_COUNT] starred nodal velocities, pressures, temperature */
+  double *u_star; /* [n_local][CL_DIM] starred displacement, m */
+  double *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
+} Stage;
+
+/* Result of a stage on the particles, before any commit. */
+typedef struct {
+  double *m; /* [n][3] m_h, m_w, m_g, kg */
+  double *y; /* [n][4] p_w, p_g, T, S_h */
+  double *u; /* [n][2] displacement of the step so far, m */
+  double *v; /* [n][2] skeleton velocity, m/s */
+} Trial;
+
+/* Rates over the boundary and inside at the end of a stage, global sums. */
+typedef struct {
+  double out[PHASE_COUNT];                /* kg/s */
+  double heat_in, heat_source, heat_rate; /* W: through the boundary, latent less advected, stored */
+} StageRates;
+
+/* Second difference of the ghost penalty (22): a node with its neighbours along one axis. */
+typedef struct {
+  PetscInt node[3];
+  double   a;                   /* g A/h */
+  double   M, kappa;            /* Pa, W/(m K) */
+  double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
+} GhostLine;
+
+/* Pressure projection of one cell. */
+typedef struct {
+  PetscInt node[4];
+  double   K[4][4];                          /* m^2/Pa */
+  double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
+} ProjectionCell;
+
+typedef struct {
+  const Case   *c;
+  Grid          grid;
+  Particles     P;
+  NodeMap       map;
+  PetscLogEvent event[4]; /* begin step, residual, Jacobian, wide part */
+
+  /* on the configuration at t_n, built by ModelBeginStep */
+  Stencil        *stencil; /* [n] */
+  PetscInt        stencil_cap;
+  double         *x_n;   /* [n_local][F_COUNT] projected start values */
+  double         *w;     /* [n_local][2] (phi S_pi)_I */
+  double         *V;     /* [n_local] sum of V_n S, m^3 */
+  double         *coef;  /* [n_local][NC_COUNT] nodal means: see project.c */
+  unsigned       *mask;  /* [n_local] Dirichlet bits */
+  double         *fixed; /* [n_local][F_COUNT] Dirichlet values of the stage */
+  PetscInt        nface;
+  Face           *face;
+  PetscInt        nghost, ncell;
+  GhostLine      *ghost;
+  ProjectionCell *cell;
+
+  /* of the stage, built by ModelBeginStage */
+  Stage    stage;
+  BcValues bc;
+  double  *row_scale, *col_scale; /* [n_local][F_COUNT] */
+
+  /* of the last evaluation */
+  double     *x, *f;  /* [n_local][F_COUNT] unscaled unknowns, residual */
+  double     *proj;   /* [n_local][4] projected pressure gradients Pi g, Pa/m */
+  double     *wide;   /* [n][12] particle coefficients of the wide part (27) */
+  ClStatus    status; /* why the last evaluation failed, on this rank */
+  const char *why;
+  double      where[CL_DIM];
+  PetscInt    limited; /* particles on which the hydrate positivity limiter acted in the last stage */
+
+  Mat    J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
+  Vec    X, R;        /* scaled unknowns and residual */
+  SNES   snes;
+  double tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
+} Model;
+
+/* Nodal means at t_n. */
+enum {
+  NC_M = 0,
+  NC_LAMBDA,
+  NC_RHO     = NC_LAMBDA + 2,
+  NC_STORAGE = NC_RHO + 2,
+  NC_KAPPA   = NC_STORAGE + 2,
+  NC_CAPACITY,
+  NC_DRAG,
+  NC_COUNT = NC_DRAG + 2
+};
+
+/* Grid and particles of a case at its initial state. */
+PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m);
+PetscErrorCode ModelDestroy(Model *m);
+/* Stencils, active nodes, projections, faces and stabilisation on the configuration at t_n.  Collective; *status is the
+   same on all ranks. */
+PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);
+/* Starts a stage: boundary values, scales.  The stage's arrays belong to the caller. */
+PetscErrorCode ModelBeginStage(Model *m, const Stage *s);
+/* Solves (15)-(23) for the stage; x (n_local x F_COUNT, ghosts included) holds the first guess and then the solution.
+ */
+PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status);
+/* What the solution means for the particles; checks that they stay within half a cell and inside the grid. */
+PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status);
+/* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v. */
+void ModelStartVelocity(const Model *m, double *v);
+/* Makes the trial state of the last stage the history, with rates (n x 4), moves the particles and migrates them. */
+PetscErrorCode ModelCommit(Model *m, const double *x, const double *rates);
+/* Same status on all ranks (the worst), with its reason and place on all ranks. */
+PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status);
+
+/* Sums over all particles. */
+typedef struct {
+  double water, methane, hydrate, solid; /* kg; water and methane include what the hydrate holds */
+  double V;
+  double capacity; /* J/K */
+} ModelTotals;
+PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);
+
+/* SNES callbacks, exposed for tests. */
+PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model);
+PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model);

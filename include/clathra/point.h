@@ -1,0 +1,83 @@
+/* point: one particle.  History and increments in; state, fluxes and consistent tangent out.
+   Knows the laws, nothing of nodes, ranks or solvers.  Symbols and numbers of docs/equations.md. */
+#pragma once
+
+#include "clathra/base.h"
+#include "clathra/fields.h"
+#include "clathra/jet.h"
+#include "clathra/kinematics.h"
+#include "clathra/material.h"
+
+/* What the interpolation gives a particle; the tangent is taken with respect to these numbers in this order. */
+enum {
+  IN_GRADU = 0,  /* [i][j], on the configuration at t_n */
+  IN_P     = 4,  /* p_w, p_g, Pa */
+  IN_T     = 6,  /* degC */
+  IN_GP    = 7,  /* gradient of p_w (2), of p_g (2), Pa/m */
+  IN_GT    = 11, /* gradient of T (2), K/m */
+  IN_J     = 13, /* Darcy flux of water (2), of gas (2), m/s */
+  IN_COUNT = 17
+};
+
+/* What a particle writes to its nodes. */
+enum {
+  /* tested with G_I */
+  OUT_P    = 0,  /* [i][j] V_n (sigma' - p 1) cof F, N m/m */
+  OUT_PF   = 4,  /* [pi][i][j] V_n p_pi cof F */
+  OUT_FLUX = 12, /* [pi][j] mass flux Phi, kg m/s (18) */
+  OUT_HEAT = 16, /* [j] conducted heat, W m */
+  /* tested with S_I */
+  OUT_M     = 18, /* m_s + m_h, m_w, m_g, kg */
+  OUT_MI    = 21, /* [pi] V rho_pi, kg */
+  OUT_D     = 23, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
+  OUT_DM    = 25, /* [pi] mass gained minus released by hydrate, kg */
+  OUT_C     = 27, /* heat capacity, J/K */
+  OUT_Q     = 28, /* advected minus released heat, W */
+  OUT_COUNT = 29
+};
+
+/* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
+typedef struct {
+  double V, m_s;
+  double m_star[3]; /* m_h*, m_w*, m_g*, kg */
+  double T_n, Sh_n; /* at t_n */
+  double sig[6], sig0[6];
+  double proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
+  double bracket;              /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
+  double dt;                   /* dt' of the stage */
+} PointHistory;
+
+/* State at the end of the stage. */
+typedef struct {
+  double V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
+  double sig[6], sig0[6], stretch[2];
+  double rho[PHASE_COUNT], tau[PHASE_COUNT];
+  bool   limited; /* hydrate positivity limiter acted */
+} PointState;
+
+typedef struct {
+  double out[OUT_COUNT];
+  double D[OUT_COUNT][IN_COUNT];  /* d out / d in */
+  double wide[PHASE_COUNT][2][2]; /* d flux[pi][i] / d proj[pi][j] (27) */
+  double wide_q[PHASE_COUNT][2];  /* d q / d proj[pi][j] */
+} PointOutput;
+
+/* Evaluates (8)-(21) at a particle.  tangent = false leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN /
+   CL_NONFINITE with *why pointing to a sentence. */
+ClStatus PointEvaluate(const Material *mat, const PointHistory *h, const double in[IN_COUNT], bool tangent,
+                       PointState *state, PointOutput *o, const char **why);
+
+/* Masses and saturations of a new particle from (phi, S_h, p_w, p_g, T); kg. */
+void PointInitialMasses(const Material *mat, double V, double phi, double Sh, double pw, double pg, double T,
+                        double *m_s, double *m_h, double *m_w, double *m_g);
+
+/* Properties at t_n that projections, scales and stabilisation need. */
+typedef struct {
+  double rho[PHASE_COUNT], drag[PHASE_COUNT]; /* kg/m^3, Pa s/m^2 */
+  double s[PHASE_COUNT], phi, Sh;             /* s_w, s_g, porosity, hydrate saturation */
+  double capacity, kappa;                     /* V C_m (J/K), W/(m K) */
+  double M, G;                                /* constrained and shear modulus, Pa */
+  double storage[PHASE_COUNT];                /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
+} PointProperties;
+ClStatus PointPropertiesEvaluate(const Material *mat, double V, double m_s, double m_h, double pw, double pg, double T,
+                                 PointProperties *r, const char **why);

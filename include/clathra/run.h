@@ -1,0 +1,7 @@
+/* run: a case from its initial state (or -restart FILE) to its end, with all outputs. */
+#pragma once
+
+#include "clathra/case.h"
+
+/* *exit_code: CL_EXIT_OK, CL_EXIT_INPUT (nothing written), CL_EXIT_FAILED (last good state saved). */
+PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code);

@@ -1,0 +1,83 @@
+/* stepper: time integration.  One loop, many schemes in a function table; three outcomes of a step: done, recoverable
+   (rolled back, cut and retried), fatal. */
+#pragma once
+
+#include "clathra/model.h"
+
+/* Everything besides the particles that a run carries from step to step (in the checkpoint, so that a restart is bit
+ * for bit). */
+typedef struct {
+  PetscInt step;    /* steps done */
+  double   t;       /* s */
+  double   dt;      /* next step wanted by the controller, s */
+  double   err_old; /* error of the last accepted step relative to the tolerance */
+  PetscInt hold;    /* steps during which dt may not grow */
+  PetscInt fresh;   /* 1: no rates of a previous step (start, or just past a kink of a schedule) */
+  PetscInt newton_total, failures_total, limited_total;
+  double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
+  double   heat_gain, heat_in, heat_source; /* J since t = 0 */
+  double   water0, methane0, capacity0;     /* totals at t = 0, kg, J/K */
+  double   scale_p, scale_u; /* largest pressure change (Pa) and displacement (m) so far: what errors are relative to */
+  PetscInt next_snapshot, next_probe, next_checkpoint; /* counters of the outputs */
+} StepperState;
+
+/* Numbers of the step just taken, for monitors. */
+typedef struct {
+  double   dt, err; /* s; error relative to the tolerance (fixed steps: 0) */
+  PetscInt newton;
+  PetscInt cuts; /* failures before it succeeded */
+} StepInfo;
+
+/* Work space of a step, sized for the particles and nodes of this configuration. */
+typedef struct {
+  double  *x, *x_star, *u_star;  /* [n_local][F_COUNT], [n_local][F_COUNT], [n_local][CL_DIM] */
+  double  *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
+  Trial    trial[2];
+  PetscInt cap_nodes, cap_particles;
+} StepperWork;
+
+/* What one attempt at a step found. */
+typedef struct {
+  ClStatus status;
+  PetscInt newton, limited;
+  double   err;                             /* relative to the tolerance */
+  double   out[PHASE_COUNT];                /* kg over the step */
+  double   heat_gain, heat_in, heat_source; /* J over the step */
+} Attempt;
+
+typedef struct Stepper Stepper;
+
+/* A scheme: takes one step of length dt on the configuration that ModelBeginStep prepared; leaves the solution in
+   work.x and the rates in work.rates.  Nothing is committed. */
+typedef struct {
+  const char *name;
+  int         error_order; /* q: the error estimate behaves like dt^q */
+  PetscErrorCode (*step)(Stepper *s, double dt, Attempt *a);
+} StepperScheme;
+
+extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2;
+
+struct Stepper {
+  Model               *model;
+  const StepperScheme *scheme;
+  StepperState         state;
+  StepperWork          work;
+  bool                 adaptive;
+  double               dt_min, dt_max, tol;
+  PetscInt             max_failures, max_steps;
+  /* called after every accepted step, in order; *stop ends the run early */
+  PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
+  void *monitor_ctx;
+  /* next time that a step must hit besides kinks and the end; INFINITY if none */
+  double (*next_event)(const Stepper *s, void *ctx);
+};
+
+PetscErrorCode StepperCreate(Model *m, Stepper *s); /* reads -stepper_type; the rest comes from the case */
+PetscErrorCode StepperDestroy(Stepper *s);
+/* Runs to Case.t_end (or -stepper_max_steps).  *ok = false: given up, the model holds the last good state and a
+ * sentence was printed. */
+PetscErrorCode StepperRun(Stepper *s, bool *ok);
+
+/* Shared by the schemes. */
+PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
+double         StepperErrorNorm(Stepper *s, const double *e, const double *eu); /* collective; e [n][4], eu [n][2] */

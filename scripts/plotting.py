@@ -1,0 +1,67 @@
+"""What the plot scripts share: style, names and units of the plotted quantities."""
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+# Okabe and Ito's colours, told apart by colour-blind readers too; line styles differ as well.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+STYLES = ["-", "--", "-.", ":"]
+PA, MM = 1e-6, 1e3  # to MPa, to mm
+
+
+def set_style():
+    plt.rcParams.update({
+        "figure.dpi": 110, "savefig.dpi": 160, "savefig.bbox": "tight", "figure.constrained_layout.use": True,
+        "font.size": 10, "axes.titlesize": 10.5, "axes.titlelocation": "left", "axes.grid": True, "grid.alpha": 0.3,
+        "axes.spines.top": False, "axes.spines.right": False, "lines.linewidth": 1.6, "legend.frameon": False,
+        "legend.fontsize": 9, "axes.prop_cycle": plt.cycler(color=COLOURS), "axes.formatter.useoffset": False,
+        "axes.formatter.limits": (-3, 4),
+    })  # fmt: skip
+
+
+def derived(particles):
+    """Plotted quantities of one snapshot, in the units of QUANTITIES: {name: (n,) array}."""
+    one = lambda name: particles[name][:, 0]
+    sw = np.clip(one("S_w") / np.maximum(1 - one("S_h"), 1e-12), 0, 1)  # water's share of the fluid-filled pore space
+    return {
+        "p": (sw * one("p_w") + (1 - sw) * one("p_g")) * PA, "T": one("T"), "S_h": one("S_h"), "S_w": one("S_w"),
+        "u_x": particles["displacement"][:, 0] * MM, "u_y": particles["displacement"][:, 1] * MM,
+    }  # fmt: skip
+
+
+QUANTITIES = {  # name: label
+    "p": "pore pressure p (MPa)",
+    "T": "temperature T (°C)",
+    "S_h": "hydrate saturation $S_h$ (–)",
+    "S_w": "water saturation $S_w$ (–)",
+    "u_x": "displacement $u_x$ (mm)",
+    "u_y": "displacement $u_y$ (mm)",
+}
+
+
+def is_column(position):
+    """Axis (0 or 1) along which the body is a strip, at least eight times as long as wide; None if it is not one."""
+    extent = np.ptp(position, axis=0)
+    axis = int(np.argmax(extent))
+    return axis if extent[1 - axis] < extent[axis] / 8 else None
+
+
+def steady_limits(axes, *values, least=1e-9):
+    """Keeps a nearly constant curve from being blown up: y range at least `least` wide."""
+    values = np.concatenate([np.ravel(v) for v in values])
+    values = values[np.isfinite(values)]
+    if values.size and np.ptp(values) < least:
+        axes.set_ylim(values.mean() - least, values.mean() + least)
+
+
+def save(figure, folder, name):
+    """Writes folder/name.png and says so."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    figure.savefig(folder / f"{name}.png")
+    plt.close(figure)
+    print(f"  {folder / name}.png")

@@ -1,0 +1,171 @@
+/* What the conditions add to the balances, and Dirichlet values on grid planes. */
+#include "clathra/boundary.h"
+
+#define TEMPERATURE_PENALTY 20.0 /* of kappa_m/l: a prescribed face temperature is a strong convection */
+
+void BcValuesEvaluate(const Case *c, double t, BcValues *v)
+{
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    v->value[k] = c->bc[k].value.n ? ScheduleValue(&c->bc[k].value, t) : 0.0;
+    v->shear[k] = c->bc[k].shear.n ? ScheduleValue(&c->bc[k].shear, t) : 0.0;
+  }
+}
+
+double BcNextKink(const Case *c, double t)
+{
+  double next = INFINITY;
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].value.n)
+      next = fmin(next, ScheduleNextKink(&c->bc[k].value, t));
+    if (c->bc[k].shear.n)
+      next = fmin(next, ScheduleNextKink(&c->bc[k].shear, t));
+  }
+  return next;
+}
+
+/* Total traction: -q a + s a_perp; row v_s loses it. */
+static void Traction(double q, double s, const double a[2], const double da[2][4], FaceOutput *o)
+{
+  o->out[F_VSX] = q * a[0] + s * a[1];
+  o->out[F_VSY] = q * a[1] - s * a[0];
+  for (int k = 0; k < 4; k++) {
+    o->D[F_VSX][k] = q * da[0][k] + s * da[1][k];
+    o->D[F_VSY][k] = q * da[1][k] - s * da[0][k];
+  }
+}
+
+/* Closed face: the fluid's own pressure, extrapolated to the face. */
+static void Closed(const Face *f, int phase, const double a[2], const double da[2][4], const double in[IN_COUNT],
+                   FaceOutput *o)
+{
+  const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
+
+  for (int i = 0; i < 2; i++) {
+    double *D = o->D[F_VWX + 2 * phase + i];
+
+    o->out[F_VWX + 2 * phase + i] = p * a[i];
+    D[IN_P + phase]               = a[i];
+    for (int j = 0; j < 2; j++)
+      D[IN_GP + 2 * phase + j] = a[i] * f->r[j];
+    for (int k = 0; k < 4; k++)
+      D[k] = p * da[i][k];
+  }
+}
+
+/* Open face: prescribed pressure, outflow rho J . a. */
+static void Open(const Material *mat, int phase, double p, const double a[2], const double da[2][4],
+                 const double in[IN_COUNT], double dt, FaceOutput *o)
+{
+  double        dp, dT;
+  const double  rho = phase == PHASE_W ? LiquidDensity(&mat->water, p, in[IN_T], &dp, &dT)
+                                       : GasDensity(&mat->gas, p, in[IN_T], &dp, &dT);
+  const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1];
+  double       *D = o->D[F_PW + phase];
+
+  for (int i = 0; i < 2; i++) {
+    o->out[F_VWX + 2 * phase + i] = p * a[i];
+    for (int k = 0; k < 4; k++)
+      o->D[F_VWX + 2 * phase + i][k] = p * da[i][k];
+  }
+  o->out[F_PW + phase] = dt * rho * Ja;
+  o->outflow[phase]    = rho * Ja;
+  D[IN_T]              = dt * dT * Ja;
+  for (int j = 0; j < 2; j++)
+    D[IN_J + 2 * phase + j] = dt * rho * a[j];
+  for (int k = 0; k < 4; k++)
+    D[k] = dt * rho * (J[0] * da[0][k] + J[1] * da[1][k]);
+}
+
+static void Heat(const Case *c, const Face *f, const BcValues *v, const double in[IN_COUNT], double kappa,
+                 FaceOutput *o)
+{
+  const double T       = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
+  double       in_flux = f->heat >= 0 ? v->value[f->heat] : 0.0, alpha = 0.0;
+
+  if (f->convection >= 0) {
+    alpha = c->bc[f->convection].alpha;
+    in_flux += alpha * (v->value[f->convection] - T);
+  }
+  if (f->temperature >= 0) {
+    const double strong = TEMPERATURE_PENALTY * kappa / (fabs(f->r[0]) + fabs(f->r[1]));
+
+    alpha += strong;
+    in_flux += strong * (v->value[f->temperature] - T);
+  }
+  o->out[F_T]     = -in_flux * f->area;
+  o->heat_in      = in_flux * f->area;
+  o->D[F_T][IN_T] = alpha * f->area;
+  for (int j = 0; j < 2; j++)
+    o->D[F_T][IN_GT + j] = alpha * f->area * f->r[j];
+}
+
+void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
+                  const double in[IN_COUNT], double kappa, double dt, FaceOutput *o)
+{
+  const double gradu[2][2] = {{in[0], in[1]}, {in[2], in[3]}};
+  Kinematics   k;
+  double       a[2], da[2][4];
+
+  *o = (FaceOutput){0};
+  if (!KinematicsEvaluate(gradu, &k))
+    return;                     /* the particle itself reports it */
+  for (int i = 0; i < 2; i++) { /* a = cof(F) n A, linear in grad u */
+    a[i] = k.cof[i][0] * f->n[0] + k.cof[i][1] * f->n[1];
+    for (int q = 0; q < 4; q++)
+      da[i][q] = k.dcof[i][0][q] * f->n[0] + k.dcof[i][1][q] * f->n[1];
+  }
+  if (f->traction >= 0)
+    Traction(v->value[f->traction], v->shear[f->traction], a, da, o);
+  for (int phase = 0; phase < PHASE_COUNT; phase++) {
+    if (f->pressure < 0) {
+      Closed(f, phase, a, da, in, o);
+    } else {
+      double p = p0[phase];
+
+      if (!c->bc[f->pressure].initial) { /* both phases shifted so that the mean pore pressure is the prescribed one */
+        double       ds;
+        const double sg = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);
+
+        p += v->value[f->pressure] - ((1.0 - sg) * p0[PHASE_W] + sg * p0[PHASE_G]);
+      }
+      Open(mat, phase, p, a, da, in, dt, o);
+    }
+  }
+  Heat(c, f, v, in, kappa, o);
+}
+
+static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
+{
+  const double x = g->lower[b->axis] + (double)ij[b->axis] * g->h[b->axis];
+
+  return fabs(x - b->position) < 1e-6 * g->h[b->axis];
+}
+
+void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
+                     double value[F_COUNT])
+{
+  static const int velocity[3] = {F_VSX, F_VWX, F_VGX};
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Bc *b = &c->bc[k];
+
+    if (b->type < BC_ROLLER || !OnPlane(g, b, ij))
+      continue;
+    if (b->type == BC_TEMPERATURE) {
+      *mask |= 1u << F_T;
+      value[F_T] = v->value[k];
+      continue;
+    }
+    for (int i = 0; i < 3; i++) {
+      for (int d = 0; d < CL_DIM; d++) {
+        const int f = velocity[i] + d;
+
+        if (b->type != BC_FIXED && d != b->axis)
+          continue;
+        *mask |= 1u << f;
+        value[f] = b->type == BC_PLATE ? v->value[k] : 0.0;
+      }
+    }
+  }
+}

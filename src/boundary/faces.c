@@ -1,0 +1,89 @@
+/* Surface faces: their geometry, and which conditions act on them. */
+#include "clathra/boundary.h"
+
+static const int side_axis[SIDE_COUNT] = {0, 0, 1, 1};
+static const int side_sign[SIDE_COUNT] = {-1, 1, -1, 1};
+
+/* Last condition of a type on this side; later ones in the case win. */
+static PetscInt FindCondition(const Case *c, BcType type, int side, PetscInt region, double along)
+{
+  PetscInt found = -1;
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Bc  *b    = &c->bc[k];
+    const bool here = (int)b->side == side && (b->region < 0 || b->region == region);
+
+    if (b->type == type && here && along >= b->from && along <= b->to)
+      found = k;
+  }
+  return found;
+}
+
+/* Hat function along the normal, the particle's own weights along the tangent. */
+static void Weights(const Grid *g, const Stencil *s, int axis, double position, double N[CL_NODES])
+{
+  const Axis *x = &s->axis[0], *y = &s->axis[1];
+  Axis        hat;
+  int         n = 0;
+
+  BasisHat(position, g->lower[axis], g->h[axis], &hat);
+  for (int b = 0; b < 3; b++) {
+    if (y->S[b] == 0.0 && y->dS[b] == 0.0)
+      continue;
+    for (int a = 0; a < 3; a++) {
+      if (x->S[a] == 0.0 && x->dS[a] == 0.0)
+        continue;
+      const PetscInt k = axis == 0 ? x->base + a - hat.base : y->base + b - hat.base;
+      const double   w = k >= 0 && k < 3 ? hat.S[k] : 0.0;
+
+      N[n++] = w * (axis == 0 ? y->S[b] : x->S[a]);
+    }
+  }
+}
+
+static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
+                     Face *f)
+{
+  const int      axis = side_axis[side], tangent = 1 - axis;
+  const PetscInt region = P->i[PI_REGION][p];
+  const double   along  = P->f[P_X + tangent][p] - P->f[P_U + tangent][p]; /* where the face was at the start */
+
+  f->particle    = p;
+  f->side        = side;
+  f->area        = 2.0 * P->f[P_L + tangent][p];
+  f->n[axis]     = side_sign[side] * f->area;
+  f->n[tangent]  = 0.0;
+  f->r[axis]     = side_sign[side] * P->f[P_L + axis][p];
+  f->r[tangent]  = 0.0;
+  f->traction    = FindCondition(c, BC_TRACTION, side, region, along);
+  f->pressure    = FindCondition(c, BC_PRESSURE, side, region, along);
+  f->heat        = FindCondition(c, BC_HEAT_FLUX, side, region, along);
+  f->convection  = FindCondition(c, BC_CONVECTION, side, region, along);
+  f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, side, region, along);
+  Weights(g, &stencil[p], axis, P->f[P_X + axis][p] + f->r[axis], f->N);
+}
+
+PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
+                          Face **face)
+{
+  PetscInt count = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < P->n; p++) {
+    for (int side = 0; side < SIDE_COUNT; side++)
+      count += (P->i[PI_FACES][p] >> side) & 1;
+  }
+  if (count != *n || !*face) {
+    PetscCall(PetscFree(*face));
+    PetscCall(PetscMalloc1(PetscMax(count, 1), face));
+  }
+  *n    = count;
+  count = 0;
+  for (PetscInt p = 0; p < P->n; p++) {
+    for (int side = 0; side < SIDE_COUNT; side++) {
+      if ((P->i[PI_FACES][p] >> side) & 1)
+        MakeFace(c, g, P, stencil, p, side, &(*face)[count++]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

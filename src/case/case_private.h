@@ -1,0 +1,135 @@
+/* case_private: the inside of the case reader.  One declared key table (keys.c) from which reading, checking, the
+   resolved case, the printed key list and the nearest-key search follow. */
+#pragma once
+
+#include "clathra/case.h"
+
+/* ---------------------------------------------------------------- units.c */
+enum { UNIT_KG = 0, UNIT_M, UNIT_S, UNIT_K, UNIT_MOL, UNIT_DIMS };
+typedef struct {
+  int    dim[UNIT_DIMS]; /* exponents of kg, m, s, K, mol */
+  int    pow10;          /* SI value = number * factor / divisor * 10^pow10 */
+  double factor, divisor;
+  bool   celsius; /* the unit is degC alone: an absolute temperature, not a difference */
+} Unit;
+#define CASE_WHY 256 /* length of a reason */
+/* Parses a unit such as "mol/(m^2 Pa s)"; the empty text is dimensionless. */
+bool UnitParse(const char *text, Unit *unit, char why[CASE_WHY]);
+/* Parses a finite number followed by a unit of the dimension of `si` ("degC" stands for an absolute temperature, which
+   is returned in degC); on failure `why` says what is wrong and what is allowed. */
+bool        QuantityParse(const char *text, const char *si, double *value, char why[CASE_WHY]);
+bool        NumberParse(const char *text, double *value, const char **end); /* decimal, finite; no nan, inf or hex */
+const char *QuantityName(const char *si);                                   /* "a pressure" for "Pa" */
+
+/* ---------------------------------------------------------------- scan.c, yaml.c */
+typedef struct {
+  char *name, *value; /* option name without the dash; NULL value = empty */
+  bool  used;
+} Entry;
+typedef struct {
+  char    *name;
+  PetscInt line, offset; /* offset in the text of a key that begins a line, else -1 */
+} Mark;                  /* a key of the file, inner or leaf */
+
+typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_COUNT } Group;
+
+#define CASE_ERRORS 20 /* errors shown */
+typedef struct {
+  MPI_Comm    comm;
+  PetscMPIInt rank;
+  char        file[PETSC_MAX_PATH_LEN];
+  PetscInt    nentry, nmark;
+  Entry      *entry;
+  Mark       *mark;
+  PetscInt    nerror;
+  char       *error[CASE_ERRORS];
+  bool        bad[GROUP_COUNT]; /* some key of the group could not be read */
+} Reader;
+
+/* Adds one error: "file:line: key = value: message"; `key` and `value` may be NULL. */
+void ReaderError(Reader *r, const char *key, const char *value, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* Reads the file on rank 0, shares it, and fills entries and marks; errors go to the reader. */
+PetscErrorCode ReaderLoad(Reader *r, const char *path);
+PetscErrorCode ReaderDestroy(Reader *r);
+/* Finds the value of a key: the command line wins over the file.  *from_file tells which. */
+PetscErrorCode ReaderFind(Reader *r, const char *name, const char **value, bool *found, bool *from_file);
+/* Walks the text: refuses what a case must not contain and notes the line of every key.  false: one error was added. */
+bool ReaderScan(Reader *r, const char *text);
+
+/* ---------------------------------------------------------------- keys.c */
+typedef enum { KEY_REAL, KEY_INT, KEY_BOOL, KEY_TEXT, KEY_CHOICE, KEY_LAW, KEY_NAME, KEY_SCHEDULE, KEY_REALS } KeyKind;
+
+typedef struct {
+  const char *const *(*types)(void);
+  bool (*set)(Material *, const char *);
+  const char *(*get)(const Material *);
+} Law;
+
+typedef struct {
+  const char *name; /* below the prefix of its group */
+  KeyKind     kind;
+  size_t      offset; /* of the member in the struct of its group */
+  int         count;  /* values; bytes for text */
+  const char *unit;   /* SI; "" = a plain number; degC = absolute temperature */
+  const char *range;  /* interval in SI, "" = any */
+  /* default as text, NULL = required; "0.05 @name" = that multiple of a key above it in the same group */
+  const char *def;
+  const char *when;             /* name of the condition under which it is required all the same */
+  bool (*needed)(const void *); /* ... and the condition, of the instance */
+  const char *const *choices;   /* KEY_CHOICE, KEY_TEXT; for KEY_BOOL the two words of false and true */
+  int                first;     /* KEY_CHOICE: enumerator of the first word */
+  const Law         *law;       /* KEY_LAW */
+  Group              names;     /* KEY_NAME: whose names */
+  const char        *word;      /* KEY_REAL: word that stands for infinity; "-word" for minus infinity */
+  unsigned           types;     /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
+  bool               plain;     /* a number without unit on the command line is in SI */
+  const char        *doc;
+} Key;
+
+typedef struct {
+  const char *prefix, *list, *noun, *doc;
+  size_t      size;           /* of one instance, whose first member is its name */
+  size_t      count, pointer; /* offsets in Case */
+  bool        required;       /* at least one */
+  const Key  *key;
+} GroupInfo;
+
+extern const GroupInfo   case_group[GROUP_COUNT];
+extern const char *const case_schedule_form[]; /* suffixes of a schedule key; the first, "", is a constant */
+extern const char *const case_bc_type[];       /* by BcType - 1 */
+static inline PetscInt  *GroupCount(const Case *c, Group g)
+{
+  return (PetscInt *)((char *)c + case_group[g].count);
+}
+static inline char *GroupInstance(const Case *c, Group g, PetscInt i) /* also its name */
+{
+  if (g == GROUP_CASE)
+    return (char *)c;
+  return *(char **)((char *)c + case_group[g].pointer) + (size_t)i * case_group[g].size;
+}
+bool KeyApplies(const Key *k, Group g, const void *instance); /* to the boundary's type */
+void KeyOption(char *option, size_t size, Group g, const char *instance, const char *key);
+bool RangeHolds(const char *range, double value);
+/* Nearest option name to `name` among all keys of the case; false if none is near. */
+bool KeyNearest(const Case *c, const char *name, char *nearest, size_t size);
+/* Does this option of the command line belong to the case: a prefix of its own, or a near miss of a key? */
+bool KeyOwned(const Case *c, const char *name);
+/* Is it a key of a material, region, ... that the list of names does not hold? */
+bool KeyUnlisted(const Case *c, const char *name, Group *group, char *instance, size_t size);
+bool WordNearest(const char *word, const char *const *list, char *nearest, size_t size);
+int  EditDistance(const char *a, const char *b);
+
+/* ---------------------------------------------------------------- value.c, forms.c, check.c */
+PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k);
+void           KeyMissing(Reader *r, const char *option, const Key *k);
+bool RealRead(Reader *r, const char *shown, const char *text, const char *unit, const char *range, double *value);
+PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s);
+/* Copies a comma list into items that share one allocation; free(list->text). */
+typedef struct {
+  PetscInt n;
+  char    *text, **item;
+} List;
+void ListCreate(const char *text, List *list);
+void ListDestroy(List *list);
+void CaseCheck(Reader *r, const Case *c);

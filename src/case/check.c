@@ -1,0 +1,173 @@
+/* check: what no single key can show: values that must agree with each other. */
+#include "case_private.h"
+#include <stdio.h>
+#include <string.h>
+
+/* Adds an error at <group prefix><instance>_<key>. */
+#define FAIL(g, instance, key, ...)                                                                                    \
+  do {                                                                                                                 \
+    char option_[256];                                                                                                 \
+    KeyOption(option_, sizeof option_, g, instance, key);                                                              \
+    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
+  } while (0)
+
+static void CheckCase(Reader *r, const Case *c)
+{
+  for (int d = 0; d < CL_DIM; d++)
+    if (c->upper[d] <= c->lower[d])
+      FAIL(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->upper[d],
+           c->lower[d]);
+  if ((double)c->cells[0] * c->cells[1] > 1e8)
+    FAIL(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
+  if (c->dt_min > c->dt || c->dt > c->dt_max)
+    FAIL(GROUP_CASE, "", "stepper_dt",
+         "must lie between stepper_dt_min and stepper_dt_max (%g s <= %g s <= %g s fails)", c->dt_min, c->dt,
+         c->dt_max);
+  if (c->ntimes && c->times[c->ntimes - 1] > c->t_end)
+    FAIL(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
+}
+
+static void CheckMaterial(Reader *r, const Material *m)
+{
+  const Kinetics *k       = &m->kinetics;
+  double          balance = k->M_g + k->N_h * k->M_w;
+
+  if (m->retention.Swr + m->retention.Sgr >= 1)
+    FAIL(GROUP_MATERIAL, m->name, "retention_Swr", "plus retention_Sgr must be below 1, is %g",
+         m->retention.Swr + m->retention.Sgr);
+  else if (m->relperm.Swr + m->relperm.Sgr >= 1)
+    FAIL(GROUP_MATERIAL, m->name, "relperm_Swr", "plus relperm_Sgr must be below 1, is %g",
+         m->relperm.Swr + m->relperm.Sgr);
+  if (fabs(k->M_h - balance) > 1e-6 * k->M_h)
+    FAIL(GROUP_MATERIAL, m->name, "hydrate_molar_mass",
+         "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
+}
+
+/* Hydrostatic pressure at the corners must stay positive. */
+static void CheckHydrostatic(Reader *r, const Case *c, const Region *g)
+{
+  double gravity = hypot(c->gravity[0], c->gravity[1]), lowest = INFINITY;
+
+  if (gravity == 0) {
+    FAIL(GROUP_REGION, g->name, "hydrostatic", "is yes but gravity is zero");
+    return;
+  }
+  for (int corner = 0; corner < 4; corner++) {
+    double x = corner & 1 ? g->upper[0] : g->lower[0], y = corner & 2 ? g->upper[1] : g->lower[1];
+    double height = -(x * c->gravity[0] + y * c->gravity[1]) / gravity;
+    lowest        = fmin(lowest, g->pressure + c->material[g->material].water.rho0 * gravity * (g->datum - height));
+  }
+  if (lowest <= 0)
+    FAIL(GROUP_REGION, g->name, "datum", "makes the pressure %g Pa at a corner; it must be positive", lowest);
+}
+
+static void CheckSaturations(Reader *r, const Case *c, const Region *g)
+{
+  const Material *m = &c->material[g->material];
+  double          pc, sum = g->Sh + g->Sw + g->Sg;
+
+  if (fabs(sum - 1) > 1e-9) {
+    FAIL(GROUP_REGION, g->name, "Sw", "Sh + Sw + Sg must be 1, is %.12g", sum);
+    return;
+  }
+  if (r->bad[GROUP_MATERIAL] || RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
+    return;
+  FAIL(GROUP_REGION, g->name, "Sg",
+       "the retention law %s of material %s never holds a gas share Sg/(1-Sh) of %g (water share %g, Swr %g, Sgr %g)",
+       m->retention.type, m->name, g->Sg / (1 - g->Sh), g->Sw / (1 - g->Sh), m->retention.Swr, m->retention.Sgr);
+}
+
+static void CheckRegion(Reader *r, const Case *c, PetscInt i)
+{
+  const Region *g = &c->region[i];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    double slack = 1e-12 * (fabs(c->upper[d]) + fabs(c->lower[d]));
+    if (g->upper[d] <= g->lower[d])
+      FAIL(GROUP_REGION, g->name, "upper", "must lie above lower on both axes (%g m <= %g m)", g->upper[d],
+           g->lower[d]);
+    else if (!r->bad[GROUP_CASE] && c->upper[d] > c->lower[d] &&
+             (g->lower[d] < c->lower[d] - slack || g->upper[d] > c->upper[d] + slack))
+      FAIL(GROUP_REGION, g->name, g->upper[d] > c->upper[d] ? "upper" : "lower",
+           "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xy"[d], g -> lower[d], g -> upper[d],
+           c -> lower[d], c -> upper[d]);
+  }
+  for (PetscInt j = 0; j < i; j++) {
+    const Region *o    = &c->region[j];
+    bool          over = true;
+    for (int d = 0; d < CL_DIM; d++)
+      over &= fmin(g->upper[d], o->upper[d]) - fmax(g->lower[d], o->lower[d]) > 1e-9 * (g->upper[d] - g->lower[d]);
+    if (over)
+      FAIL(GROUP_REGION, g->name, "lower", "the region overlaps region %s", o->name);
+  }
+  CheckSaturations(r, c, g);
+  if (g->hydrostatic && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
+    CheckHydrostatic(r, c, g);
+}
+
+static void CheckPlane(Reader *r, const Case *c, const Bc *b)
+{
+  double h = (c->upper[b->axis] - c->lower[b->axis]) / c->cells[b->axis], line = (b->position - c->lower[b->axis]) / h;
+
+  if (!(h > 0))
+    return;
+  if (line < -1e-6 || line > c->cells[b->axis] + 1e-6)
+    FAIL(GROUP_BC, b->name, "position", "%g m lies outside the grid, %g..%g m", b->position, c->lower[b->axis],
+         c->upper[b->axis]);
+  else if (fabs(line - round(line)) > 1e-6)
+    FAIL(GROUP_BC, b->name, "position", "%g m is not on a grid line; the nearest is at %.9g m", b->position,
+         c->lower[b->axis] + round(line) * h);
+}
+
+static void CheckSide(Reader *r, const Case *c, const Bc *b)
+{
+  int  along = b->side == SIDE_XMIN || b->side == SIDE_XMAX ? 1 : 0;
+  bool meets = false;
+
+  if (b->to <= b->from) {
+    FAIL(GROUP_BC, b->name, "to", "must lie above from (%g m <= %g m)", b->to, b->from);
+    return;
+  }
+  for (PetscInt i = 0; i < c->nregion; i++)
+    if (b->region < 0 || b->region == i)
+      meets |= b->from < c->region[i].upper[along] && b->to > c->region[i].lower[along];
+  if (!meets)
+    FAIL(GROUP_BC, b->name, "from", "and to: no part of the body's side lies between %g m and %g m", b->from, b->to);
+}
+
+static void CheckProbe(Reader *r, const Case *c, const Probe *p)
+{
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    const Region *g  = &c->region[i];
+    bool          in = true;
+    for (int d = 0; d < CL_DIM; d++) {
+      double slack = 1e-9 * (g->upper[d] - g->lower[d]);
+      in &= p->x[d] >= g->lower[d] - slack && p->x[d] <= g->upper[d] + slack;
+    }
+    if (in)
+      return;
+  }
+  FAIL(GROUP_PROBE, p->name, "at", "(%g m, %g m) lies in no region", p->x[0], p->x[1]);
+}
+
+void CaseCheck(Reader *r, const Case *c)
+{
+  const bool *bad = r->bad;
+
+  if (!bad[GROUP_CASE])
+    CheckCase(r, c);
+  for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
+    CheckMaterial(r, &c->material[i]);
+  for (PetscInt i = 0; i < c->nregion && !bad[GROUP_REGION]; i++)
+    CheckRegion(r, c, i);
+  for (PetscInt i = 0; i < c->nbc && !bad[GROUP_BC]; i++) {
+    const Bc *b = &c->bc[i];
+    if (b->type <= BC_FACE_TEMPERATURE) {
+      if (!bad[GROUP_REGION])
+        CheckSide(r, c, b);
+    } else if (!bad[GROUP_CASE])
+      CheckPlane(r, c, b);
+  }
+  for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_REGION]; i++)
+    CheckProbe(r, c, &c->probe[i]);
+}

@@ -1,0 +1,135 @@
+/* forms: the ways to write a function of time.
+     key: 3 MPa                                constant
+     key: {table: [t0, v0, t1, v1, ...]}       straight lines between the points
+     key: {ramp: [v0, v1, t0, t1]}             from v0 at t0 to v1 at t1
+     key: {rate: [v0, rate, t0, t1]}           from v0 at t0 with this rate until t1
+     key: {piecewise: [t0, v0, t1, v1, ...]}   each value holds until the next time
+   Before the first time the first value holds, after the last time the last. */
+#include "case_private.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FORM_CONSTANT = 0, FORM_TABLE, FORM_RAMP, FORM_RATE, FORM_PIECEWISE };
+
+static void SchedulePoint(Schedule *s, double t, double y)
+{
+  s->t[s->n]   = t;
+  s->y[s->n++] = y;
+}
+
+static bool ScheduleTable(Reader *r, const char *shown, const List *list, const Key *k, Schedule *s)
+{
+  double t, y;
+
+  if (list->n < 2 || list->n % 2) {
+    ReaderError(r, shown, NULL, "has %d values, needs pairs: time, value, time, value, ...", (int)list->n);
+    return false;
+  }
+  for (PetscInt i = 0; i < list->n; i += 2) {
+    if (!RealRead(r, shown, list->item[i], "s", "", &t) ||
+        !RealRead(r, shown, list->item[i + 1], k->unit, k->range, &y))
+      return false;
+    if (s->n && t <= s->t[s->n - 1]) {
+      ReaderError(r, shown, list->item[i], "the times must ascend (use piecewise for jumps)");
+      return false;
+    }
+    SchedulePoint(s, t, y);
+  }
+  return true;
+}
+
+static bool ScheduleRamp(Reader *r, const char *shown, const List *list, const Key *k, bool rate, Schedule *s)
+{
+  double v0, v1, t0, t1;
+  char   unit[64];
+
+  if (list->n != 4) {
+    ReaderError(r, shown, NULL, "has %d values, needs 4: first value, %s, begin, end", (int)list->n,
+                rate ? "rate" : "last value");
+    return false;
+  }
+  snprintf(unit, sizeof unit, "%s/s", strcmp(k->unit, "degC") ? k->unit : "K");
+  if (!RealRead(r, shown, list->item[0], k->unit, k->range, &v0))
+    return false;
+  if (!RealRead(r, shown, list->item[1], rate ? unit : k->unit, rate ? "" : k->range, &v1))
+    return false;
+  if (!RealRead(r, shown, list->item[2], "s", "", &t0) || !RealRead(r, shown, list->item[3], "s", "", &t1))
+    return false;
+  if (t1 <= t0) {
+    ReaderError(r, shown, list->item[3], "must end after it begins");
+    return false;
+  }
+  if (rate)
+    v1 = v0 + v1 * (t1 - t0);
+  if (!isfinite(v1) || !RangeHolds(k->range, v1)) {
+    ReaderError(r, shown, list->item[1], "leads to a last value of %g %s, out of range %s", v1, k->unit, k->range);
+    return false;
+  }
+  SchedulePoint(s, t0, v0);
+  SchedulePoint(s, t1, v1);
+  return true;
+}
+
+static bool ScheduleParse(Reader *r, const char *shown, const char *text, const Key *k, int form, Schedule *s)
+{
+  List   list;
+  bool   ok;
+  double y = 0;
+
+  ListCreate(text, &list);
+  s->t = calloc((size_t)list.n + 2, sizeof *s->t);
+  s->y = calloc((size_t)list.n + 2, sizeof *s->y);
+  if (form == FORM_CONSTANT) {
+    ok = RealRead(r, shown, text, k->unit, k->range, &y);
+    SchedulePoint(s, 0, y);
+  } else if (form == FORM_TABLE || form == FORM_PIECEWISE)
+    ok = ScheduleTable(r, shown, &list, k, s);
+  else
+    ok = ScheduleRamp(r, shown, &list, k, form == FORM_RATE, s);
+  s->steps = form == FORM_PIECEWISE;
+  if (s->n == 1) { /* a single point is a constant */
+    s->steps = false;
+    s->t[0]  = 0;
+  }
+  ListDestroy(&list);
+  return ok;
+}
+
+PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s)
+{
+  char        name[300], shown[301];
+  const char *text = NULL, *value;
+  int         form = -1, n[2] = {0, 0}; /* forms given on the command line, in the file */
+  bool        found, from_file;
+
+  PetscFunctionBeginUser;
+  snprintf(shown, sizeof shown, "%s", option);
+  for (int f = 0; case_schedule_form[f]; f++) {
+    snprintf(name, sizeof name, "%s%s", option, case_schedule_form[f]);
+    PetscCall(ReaderFind(r, name, &value, &found, &from_file));
+    if (!found || (from_file && n[0]))
+      continue; /* the command line replaces the file's whatever their forms */
+    n[from_file]++;
+    form = f;
+    text = value;
+    snprintf(shown, sizeof shown, "%s%s", from_file ? "" : "-", name);
+  }
+  if (form >= 0 && !KeyApplies(k, GROUP_BC, instance)) {
+    ReaderError(r, shown, text, "is not a key of a boundary of type %s",
+                case_bc_type[((const Bc *)instance)->type - 1]);
+  } else if (n[0] > 1 || (!n[0] && n[1] > 1)) {
+    ReaderError(r, shown, text, "%s is given in two forms; choose one", option);
+  } else if (form >= 0) {
+    if (text)
+      ScheduleParse(r, shown, text, k, form, s);
+    else
+      ReaderError(r, shown, NULL, "has no value");
+  } else if (KeyApplies(k, GROUP_BC, instance)) {
+    if (k->needed ? k->needed(instance) : !k->def)
+      KeyMissing(r, option, k);
+    else if (*k->def)
+      ScheduleParse(r, option, k->def, k, FORM_CONSTANT, s);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,257 @@
+/* keys: the declared key table.  A row says everything about a key: reading, range, default, resolved case, printed
+   list and typo search follow from it. */
+#include "case_private.h"
+#include <stddef.h>
+#include <string.h>
+
+/* ---------------------------------------------------------------- conditions */
+static bool NeedsM(const void *p)
+{
+  return !strncmp(((const Material *)p)->retention.type, "van_genuchten", 13);
+}
+static bool NeedsLambda(const void *p)
+{
+  return !strcmp(((const Material *)p)->retention.type, "brooks_corey");
+}
+static bool NeedsPower(const void *p)
+{
+  return !strcmp(((const Material *)p)->permeability.hydrate_type, "power");
+}
+static bool NeedsRamp(const void *p)
+{
+  return !strcmp(((const Material *)p)->permeability.hydrate_type, "masuda_ramp");
+}
+static bool NeedsRate(const void *p)
+{
+  return ((const Material *)p)->reacts;
+}
+static bool NeedsPressure(const void *p)
+{
+  return !((const Bc *)p)->initial;
+}
+
+/* ---------------------------------------------------------------- laws by name */
+#define LAW(Name, set_, types_, object, field)                                                                         \
+  static bool Set##Name(Material *m, const char *type)                                                                 \
+  {                                                                                                                    \
+    return set_(&m->object, type);                                                                                     \
+  }                                                                                                                    \
+  static const char *Get##Name(const Material *m)                                                                      \
+  {                                                                                                                    \
+    return m->object.field;                                                                                            \
+  }                                                                                                                    \
+  static const Law law_##Name = {types_, Set##Name, Get##Name};
+LAW(Retention, RetentionSetType, RetentionTypes, retention, type)
+LAW(Hydrate, PermeabilitySetHydrateType, PermeabilityHydrateTypes, permeability, hydrate_type)
+LAW(Porosity, PermeabilitySetPorosityType, PermeabilityPorosityTypes, permeability, porosity_type)
+LAW(Equilibrium, EquilibriumSetType, EquilibriumTypes, kinetics.equilibrium, type)
+
+/* ---------------------------------------------------------------- words */
+static const char *const basis_word[]     = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
+static const char *const stepper_word[]   = {"sdirk2", "euler", NULL};
+static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
+static const char *const axis_word[]      = {"x", "y", NULL};
+static const char *const stiffness_word[] = {"both", "loss_only", NULL};
+const char *const        case_bc_type[]   = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",
+                                             "roller",   "fixed",    "plate",     "temperature", NULL};
+
+/* ---------------------------------------------------------------- the table */
+/* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
+#define ROW(T, name_, kind_, member_, count_, unit_, range_, def_, doc_, ...)                                          \
+  {                                                                                                                    \
+    .name = name_, .kind = kind_, .offset = offsetof(T, member_), .count = count_, .unit = unit_, .range = range_,     \
+    .def = def_, .doc = doc_, ##__VA_ARGS__                                                                            \
+  }
+#define REALS(T, n, name, member, unit, range, def, doc, ...)                                                          \
+  ROW(T, name, KEY_REAL, member, n, unit, range, def, doc, ##__VA_ARGS__)
+#define REAL(T, name, member, unit, range, def, doc, ...)                                                              \
+  ROW(T, name, KEY_REAL, member, 1, unit, range, def, doc, ##__VA_ARGS__)
+#define INTEGERS(T, n, name, member, range, def, doc) ROW(T, name, KEY_INT, member, n, "", range, def, doc)
+#define BOOLEAN(T, name, member, def, doc, ...) ROW(T, name, KEY_BOOL, member, 1, "", "", def, doc, ##__VA_ARGS__)
+#define TEXT(T, name, member, def, doc, ...)                                                                           \
+  ROW(T, name, KEY_TEXT, member, sizeof(((T *)0)->member), "", "", def, doc, ##__VA_ARGS__)
+#define CHOICE(T, name, member, def, words, doc, ...)                                                                  \
+  ROW(T, name, KEY_CHOICE, member, 1, "", "", def, doc, .choices = words, ##__VA_ARGS__)
+#define NAME(T, name, member, def, group, doc, ...)                                                                    \
+  ROW(T, name, KEY_NAME, member, 1, "", "", def, doc, .names = group, ##__VA_ARGS__)
+/* a law is set by its function; the member is not used */
+#define LAWKEY(name, def, law_, doc) ROW(Material, name, KEY_LAW, porosity, 1, "", "", def, doc, .law = &law_)
+#define SCHEDULE(name, member, unit, range, def, types_, doc, ...)                                                     \
+  ROW(Bc, name, KEY_SCHEDULE, member, 1, unit, range, def, doc, .types = types_, ##__VA_ARGS__)
+#define WHEN(condition, words) .needed = condition, .when = words
+
+static const Key case_key[] = {
+    TEXT(Case, "title", title, "", "one line"),
+    REALS(Case, 2, "grid_lower", lower, "m", "", NULL, "lower left corner of the background grid"),
+    REALS(Case, 2, "grid_upper", upper, "m", "", NULL, "upper right corner; the body must not leave the grid"),
+    INTEGERS(Case, 2, "grid_cells", cells, "[1,100000]", NULL, "cells along x and y"),
+    CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
+    REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
+    REAL(Case, "time_end", t_end, "s", "(0,inf)", NULL, "the run starts at 0 and ends here"),
+    TEXT(Case, "stepper_type", stepper, "sdirk2", "time integrator", .choices = stepper_word),
+    BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
+    REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
+         .plain = true),
+    REAL(Case, "stepper_dt_min", dt_min, "s", "(0,inf)", "1e-9 @time_end", "a smaller step ends the run",
+         .plain = true),
+    REAL(Case, "stepper_dt_max", dt_max, "s", "(0,inf)", "1 @time_end", "longest step", .plain = true),
+    REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate"),
+    INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
+             "cuts in a row before the run is given up"),
+    REAL(Case, "stabilisation_ghost_penalty", ghost_penalty, "", "[0,100]", "0.1", "at free surfaces; 0 = off"),
+    REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
+         "undrained limit; 0 = off"),
+    BOOLEAN(Case, "stabilisation_flux_interpolation", flux_interpolation, "yes", "momentum-interpolated mass flux"),
+    TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
+    ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
+    REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
+    REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),
+    REAL(Case, "checkpoint_every", checkpoint_every, "s", "[0,inf)", "0 s", "0 s = only at the end and on failure",
+         .plain = true),
+    {.name = NULL},
+};
+
+static const Key material_key[] = {
+    REAL(Material, "porosity", porosity, "", "(0,1)", NULL, "initial porosity"),
+    REAL(Material, "solid_density", solid.rho0, "kg/m^3", "(0,1e5]", NULL, "of the grains"),
+    REAL(Material, "solid_heat_capacity", c_s, "J/(kg K)", "(0,1e6]", NULL, ""),
+    REAL(Material, "solid_conductivity", kappa_s, "W/(m K)", "[0,1e4]", NULL, "thermal conductivity"),
+    REAL(Material, "solid_expansion", solid.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion"),
+    REAL(Material, "hydrate_density", hydrate.rho0, "kg/m^3", "(0,1e5]", "900 kg/m^3", ""),
+    REAL(Material, "hydrate_heat_capacity", c_h, "J/(kg K)", "(0,1e6]", "2010 J/(kg K)", ""),
+    REAL(Material, "hydrate_conductivity", kappa_h, "W/(m K)", "[0,1e4]", "0.5 W/(m K)", "thermal conductivity"),
+    REAL(Material, "hydrate_expansion", hydrate.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion"),
+    REAL(Material, "hydrate_molar_mass", kinetics.M_h, "kg/mol", "(0,10]", "0.124 kg/mol", "must be M_g + N_h M_w"),
+    REAL(Material, "hydrate_number", kinetics.N_h, "", "(0,100]", "6", "hydration number N_h: water per gas"),
+    REAL(Material, "water_density", water.rho0, "kg/m^3", "(0,1e5]", "1000 kg/m^3",
+         "at ref_pressure and ref_temperature"),
+    REAL(Material, "water_bulk_modulus", water.K, "Pa", "(0,inf)", "2.2 GPa", "or the word incompressible",
+         .word = "incompressible"),
+    REAL(Material, "water_viscosity", mu_w, "Pa s", "(0,1e6]", "1e-3 Pa s", ""),
+    REAL(Material, "water_heat_capacity", c_w, "J/(kg K)", "(0,1e6]", "4200 J/(kg K)", ""),
+    REAL(Material, "water_conductivity", kappa_w, "W/(m K)", "[0,1e4]", "0.5 W/(m K)", "thermal conductivity"),
+    REAL(Material, "water_expansion", water.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion"),
+    REAL(Material, "water_ref_pressure", water.p_ref, "Pa", "[0,1e10]", "101325 Pa", "of the densities"),
+    REAL(Material, "water_ref_temperature", water.T_ref, "degC", "(-273.15,1000]", "20 degC",
+         "of the densities, grains and hydrate too"),
+    REAL(Material, "water_molar_mass", kinetics.M_w, "kg/mol", "(0,10]", "0.018 kg/mol", ""),
+    REAL(Material, "gas_molar_mass", gas.M, "kg/mol", "(0,10]", "0.016 kg/mol", "of the ideal gas; methane by default"),
+    REAL(Material, "gas_viscosity", mu_g, "Pa s", "(0,1e6]", "7e-6 Pa s", ""),
+    REAL(Material, "gas_heat_capacity", c_g, "J/(kg K)", "(0,1e6]", "2100 J/(kg K)", ""),
+    REAL(Material, "gas_conductivity", kappa_g, "W/(m K)", "[0,1e4]", "0.044 W/(m K)", "thermal conductivity"),
+    LAWKEY("retention_law", "van_genuchten", law_Retention, "van_genuchten is the smooth form with trapped gas"),
+    REAL(Material, "retention_p0", retention.p0, "Pa", "(0,1e10]", NULL, "air-entry (reference) pressure"),
+    REAL(Material, "retention_m", retention.m, "", "(0,1)", "0.5", "van Genuchten's m",
+         WHEN(NeedsM, "law is van_genuchten...")),
+    REAL(Material, "retention_lambda", retention.lambda, "", "(0,100]", "1", "Brooks-Corey pore-size index",
+         WHEN(NeedsLambda, "law is brooks_corey")),
+    REAL(Material, "retention_Swr", retention.Swr, "", "[0,1)", NULL, "residual water saturation"),
+    REAL(Material, "retention_Sgr", retention.Sgr, "", "[0,1)", NULL, "residual gas saturation"),
+    REAL(Material, "retention_p_smooth", retention.p_smooth, "Pa", "(0,1e10]", "0.05 @retention_p0",
+         "smoothing width of the smooth form"),
+    REAL(Material, "retention_p_trap", retention.p_trap, "Pa", "(0,1e10]", "1 @retention_p0",
+         "pressure scale of trapped gas, smooth form"),
+    REAL(Material, "relperm_Swr", relperm.Swr, "", "[0,1)", "1 @retention_Swr", "residual water saturation of k_rw"),
+    REAL(Material, "relperm_Sgr", relperm.Sgr, "", "[0,1)", "1 @retention_Sgr", "residual gas saturation of k_rg"),
+    REAL(Material, "relperm_nw", relperm.nw, "", "(0,20]", NULL, "Corey exponent of water"),
+    REAL(Material, "relperm_ng", relperm.ng, "", "(0,20]", NULL, "Corey exponent of gas"),
+    REAL(Material, "permeability_k0", permeability.k0, "m^2", "(0,1e-4]", NULL,
+         "intrinsic, at phi0 and without hydrate"),
+    REAL(Material, "permeability_phi0", permeability.phi0, "", "(0,1)", "1 @porosity", "reference porosity"),
+    LAWKEY("permeability_porosity_law", "kozeny_carman", law_Porosity, ""),
+    LAWKEY("permeability_hydrate_law", "power", law_Hydrate, "power is (1-S_h)^mh"),
+    REAL(Material, "permeability_mh", permeability.mh, "", "[0,100]", "0", "exponent of 1-S_h",
+         WHEN(NeedsPower, "hydrate_law is power")),
+    REAL(Material, "permeability_kh", permeability.kh, "", "(0,1]", "1", "plateau",
+         WHEN(NeedsRamp, "hydrate_law is masuda_ramp")),
+    REAL(Material, "permeability_Shc", permeability.Shc, "", "(0,1]", "1", "threshold",
+         WHEN(NeedsRamp, "hydrate_law is masuda_ramp")),
+    BOOLEAN(Material, "kinetics_active", reacts, "no", "hydrate forms and dissociates"),
+    REAL(Material, "kinetics_K0", kinetics.K0, "mol/(m^2 Pa s)", "[0,inf)", "0 mol/(m^2 Pa s)",
+         "K_d = K0 exp(-dE/(R T))", WHEN(NeedsRate, "active")),
+    REAL(Material, "kinetics_dE", kinetics.dE, "J/mol", "[0,1e7]", "0 J/mol", "activation energy; 0 = constant K_d"),
+    REAL(Material, "kinetics_A_geo", kinetics.A_geo, "1/m", "[0,inf)", "0 1/m", "hydrate surface per volume",
+         WHEN(NeedsRate, "active")),
+    LAWKEY("kinetics_equilibrium", "sloan", law_Equilibrium, "sloan is p_e = A1 exp(A2 - A3/T)"),
+    REAL(Material, "kinetics_A1", kinetics.equilibrium.A1, "Pa", "(0,1e10]", "1 kPa", ""),
+    REAL(Material, "kinetics_A2", kinetics.equilibrium.A2, "", "[-1000,1000]", "38.98", ""),
+    REAL(Material, "kinetics_A3", kinetics.equilibrium.A3, "K", "[0,1e6]", "8533.8 K", ""),
+    REAL(Material, "latent_heat_C0", latent.C0, "J/kg", "[0,1e8]", "473632 J/kg",
+         "heat of dissociation C0 - C1 T (T in kelvin)"),
+    REAL(Material, "latent_heat_C1", latent.C1, "J/(kg K)", "[-1e5,1e5]", "140.117 J/(kg K)", ""),
+    REAL(Material, "elasticity_E0", elasticity.E0, "Pa", "(0,1e15]", NULL, "Young's modulus without hydrate"),
+    REAL(Material, "elasticity_Eh", elasticity.Eh, "Pa", "[0,1e15]", "0 Pa", "E = E0 + ah Eh S_h^bh"),
+    REAL(Material, "elasticity_ah", elasticity.ah, "", "[0,100]", "1", ""),
+    REAL(Material, "elasticity_bh", elasticity.bh, "", "(0,20]", "1", ""),
+    REAL(Material, "elasticity_nu", elasticity.nu, "", "[0,0.5)", NULL, "Poisson's ratio"),
+    BOOLEAN(Material, "elasticity_stiffness_change", elasticity.loss_only, "both",
+            "stress follows E(S_h) both ways, or only its loss", .choices = stiffness_word),
+    {.name = NULL},
+};
+
+static const Key region_key[] = {
+    REALS(Region, 2, "lower", lower, "m", "", NULL, "lower left corner of the body's box"),
+    REALS(Region, 2, "upper", upper, "m", "", NULL, "upper right corner"),
+    INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y"),
+    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials"),
+    REAL(Region, "pressure", pressure, "Pa", "(0,1e10]", NULL, "initial mean pore pressure"),
+    REAL(Region, "temperature", temperature, "degC", "(-273.15,1000]", NULL, "initial temperature"),
+    REAL(Region, "Sh", Sh, "", "[0,1)", "0", "initial hydrate saturation"),
+    REAL(Region, "Sw", Sw, "", "[0,1]", NULL, "initial water saturation; Sh + Sw + Sg = 1"),
+    REAL(Region, "Sg", Sg, "", "[0,1]", NULL, "initial gas saturation"),
+    REALS(Region, 6, "stress", stress, "Pa", "[-1e12,1e12]", "0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa",
+          "initial effective stress xx yy zz xy yz xz, tension-positive"),
+    BOOLEAN(Region, "hydrostatic", hydrostatic, "no", "add rho_w g depth to the pressure"),
+    REAL(Region, "datum", datum, "m", "", "0 m", "coordinate against gravity where the pressure is `pressure`"),
+    {.name = NULL},
+};
+
+#define TYPE(t) (1u << (t))
+#define FACES                                                                                                          \
+  (TYPE(BC_TRACTION) | TYPE(BC_PRESSURE) | TYPE(BC_HEAT_FLUX) | TYPE(BC_CONVECTION) | TYPE(BC_FACE_TEMPERATURE))
+#define PLANES (TYPE(BC_ROLLER) | TYPE(BC_FIXED) | TYPE(BC_PLATE) | TYPE(BC_TEMPERATURE))
+
+static const Key bc_key[] = {
+    CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
+    CHOICE(Bc, "side", side, NULL, side_word, "side of the body, moves with it", .types = FACES),
+    NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all", .types = FACES),
+    REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
+         .types = FACES),
+    REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = FACES),
+    CHOICE(Bc, "axis", axis, NULL, axis_word, "axis normal to the grid plane", .types = PLANES),
+    REAL(Bc, "position", position, "m", "", NULL, "coordinate of the plane; must be a grid line", .types = PLANES),
+    BOOLEAN(Bc, "initial", initial, "no", "hold the initial p_w and p_g of each particle", .types = TYPE(BC_PRESSURE)),
+    REAL(Bc, "alpha", alpha, "W/(m^2 K)", "[0,1e9]", NULL, "heat transfer coefficient", .types = TYPE(BC_CONVECTION)),
+    SCHEDULE("normal", value, "Pa", "[-1e12,1e12]", NULL, TYPE(BC_TRACTION),
+             "total normal stress, compression-positive"),
+    SCHEDULE("shear", shear, "Pa", "[-1e12,1e12]", "0 Pa", TYPE(BC_TRACTION),
+             "along the side's normal turned by +90 degrees"),
+    SCHEDULE("pressure", value, "Pa", "(0,1e10]", "", TYPE(BC_PRESSURE), "mean pore pressure",
+             WHEN(NeedsPressure, "initial is no")),
+    SCHEDULE("flux", value, "W/m^2", "[-1e12,1e12]", NULL, TYPE(BC_HEAT_FLUX), "into the body"),
+    SCHEDULE("ambient", value, "degC", "(-273.15,1000]", NULL, TYPE(BC_CONVECTION), "temperature outside"),
+    SCHEDULE("temperature", value, "degC", "(-273.15,1000]", NULL, TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE),
+             ""),
+    SCHEDULE("velocity", value, "m/s", "[-1e3,1e3]", NULL, TYPE(BC_PLATE), "along the axis, positive in its direction"),
+    {.name = NULL},
+};
+
+static const Key probe_key[] = {
+    REALS(Probe, 2, "at", x, "m", "", NULL, "initial position, inside a region"),
+    BOOLEAN(Probe, "fixed", fixed, "no", "stays there in space; otherwise follows the body"),
+    {.name = NULL},
+};
+
+#define GROUP(T, prefix_, list_, noun_, n_, p_, required_, key_, doc_)                                                 \
+  {                                                                                                                    \
+    .prefix = prefix_, .list = list_, .noun = noun_, .doc = doc_, .size = sizeof(T), .count = offsetof(Case, n_),      \
+    .pointer = offsetof(Case, p_), .required = required_, .key = key_                                                  \
+  }
+const GroupInfo case_group[GROUP_COUNT] = {
+    {.prefix = "", .list = NULL, .noun = "case", .doc = "The scene", .size = sizeof(Case), .key = case_key},
+    GROUP(Material, "mat_", "materials", "material", nmaterial, material, true, material_key, "Laws and constants"),
+    GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
+          "Boxes of the body and their initial state"),
+    GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
+    GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
+};

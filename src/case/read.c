@@ -1,0 +1,258 @@
+/* read: the case as a whole: names, the keys of every group, what is left over, derived values, errors. */
+#include "case_private.h"
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#define NAMES_MAX 256
+
+static bool NameValid(const char *name)
+{
+  if (!isalpha((unsigned char)*name) || strlen(name) >= 64)
+    return false;
+  for (; *name; name++)
+    if (!isalnum((unsigned char)*name) && *name != '_' && *name != '-')
+      return false;
+  return true;
+}
+
+static bool NamesCheck(Reader *r, const GroupInfo *info, const char *shown, const List *list)
+{
+  if (list->n > NAMES_MAX) {
+    ReaderError(r, shown, NULL, "lists %d names, at most %d are allowed", (int)list->n, NAMES_MAX);
+    return false;
+  }
+  for (PetscInt i = 0; i < list->n; i++) {
+    if (!NameValid(list->item[i]) || !strcasecmp(list->item[i], "all")) {
+      ReaderError(r, shown, list->item[i],
+                  "is not a name: a letter, then letters, digits, _ or -, fewer than 64 (and not 'all')");
+      return false;
+    }
+    for (PetscInt j = 0; j < i; j++) {
+      if (strcasecmp(list->item[i], list->item[j]))
+        continue;
+      ReaderError(r, shown, list->item[i], "the %s is listed twice", info->noun);
+      return false;
+    }
+  }
+  return true;
+}
+
+/* Reads the list of names of a group and makes its instances. */
+static PetscErrorCode NamesRead(Reader *r, Case *c, Group g)
+{
+  const GroupInfo *info = &case_group[g];
+  const char      *text;
+  char             shown[64];
+  bool             found, from_file;
+  List             list;
+
+  PetscFunctionBeginUser;
+  PetscCall(ReaderFind(r, info->list, &text, &found, &from_file));
+  snprintf(shown, sizeof shown, "%s%s", found && !from_file ? "-" : "", info->list);
+  if (!text) {
+    r->bad[g] = info->required || found;
+    if (info->required)
+      ReaderError(r, shown, NULL, "is missing: the list of names of the case's %s, e.g. [%s1]", info->list, info->noun);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  ListCreate(text, &list);
+  if (NamesCheck(r, info, shown, &list)) {
+    char *instance;
+    PetscCall(PetscCalloc(info->size * (size_t)PetscMax(list.n, 1), &instance));
+    *(char **)((char *)c + info->pointer) = instance;
+    *GroupCount(c, g)                     = list.n;
+    for (PetscInt i = 0; i < list.n; i++)
+      strcpy(GroupInstance(c, g, i), list.item[i]);
+  } else
+    r->bad[g] = true;
+  ListDestroy(&list);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GroupRead(Reader *r, Case *c, Group g)
+{
+  PetscInt before = r->nerror, n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    Bc *bc = g == GROUP_BC ? &c->bc[i] : NULL;
+    if (bc) {
+      bc->region = -1;
+      bc->from   = -INFINITY;
+      bc->to     = INFINITY;
+    }
+    for (const Key *k = case_group[g].key; k->name; k++) {
+      PetscCall(KeyRead(r, c, g, i, k));
+      if (bc && !bc->type)
+        break; /* which keys apply is not known */
+    }
+  }
+  if (r->nerror > before)
+    r->bad[g] = true;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- keys that nobody asked for */
+static void Unknown(Reader *r, const Case *c, const char *shown, const char *name, const char *value, char last[128])
+{
+  char  nearest[256], instance[64], word[128];
+  Group g;
+
+  if (KeyUnlisted(c, name, &g, instance, sizeof instance)) {
+    if (r->bad[g] && !*GroupCount(c, g))
+      return; /* the list itself is wrong or missing, which was said */
+    snprintf(word, sizeof word, "%s %s", case_group[g].noun, instance);
+    if (strcmp(word, last))
+      ReaderError(r, shown, NULL, "%s '%s' is not listed in %s", case_group[g].noun, instance, case_group[g].list);
+    snprintf(last, 128, "%s", word); /* say it once */
+  } else if (KeyNearest(c, name, nearest, sizeof nearest))
+    ReaderError(r, shown, value, "unknown key; did you mean %s?", nearest);
+  else
+    ReaderError(r, shown, value, "unknown key (clathra -case_keys lists all)");
+}
+
+/* The instance of a boundary whose type is wrong: its keys were not asked for, that is no second error. */
+static bool OfBadBoundary(const Case *c, const char *name)
+{
+  for (PetscInt i = 0; i < c->nbc; i++) {
+    char prefix[80];
+    snprintf(prefix, sizeof prefix, "bc_%s_", c->bc[i].name);
+    if (!c->bc[i].type && !strncasecmp(name, prefix, strlen(prefix)))
+      return true;
+  }
+  return false;
+}
+
+static bool Dropped(const Reader *r, const char *name)
+{
+  if (strncasecmp(name, "nan", 3) && strncasecmp(name, "inf", 3))
+    return false;
+  for (PetscInt i = 0; i < r->nentry; i++)
+    if (!strcasecmp(r->entry[i].name, name))
+      return false;
+  return true;
+}
+
+static PetscErrorCode Leftovers(Reader *r, const Case *c)
+{
+  PetscInt n;
+  char   **names, **values, shown[256], last[128] = "";
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < r->nentry; i++) {
+    Entry *e = &r->entry[i];
+    if (!e->used && !OfBadBoundary(c, e->name))
+      Unknown(r, c, e->name, e->name, e->value, last);
+  }
+  for (PetscInt i = 0; i < r->nmark; i++) /* PETSc drops keys that read like a number */
+    if (Dropped(r, r->mark[i].name))
+      Unknown(r, c, r->mark[i].name, r->mark[i].name, NULL, last);
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; i++) {
+    snprintf(shown, sizeof shown, "-%s", names[i]);
+    if (OfBadBoundary(c, names[i]) || !KeyOwned(c, names[i]))
+      continue;
+    Unknown(r, c, shown, names[i], values[i], last);
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- values that follow from others */
+/* bp2 for cases/bp2/case.yaml, else the file's name without .yaml. */
+static void CaseName(const char *file, char *name, size_t size)
+{
+  char  full[PATH_MAX], *base, *dot;
+  char *path = realpath(file, full) ? full : NULL;
+
+  snprintf(name, size, "case");
+  if (!path)
+    return;
+  base = strrchr(path, '/');
+  if (!strcmp(base, "/case.yaml") && base > path) {
+    *base = 0;
+    base  = strrchr(path, '/');
+  } else if ((dot = strrchr(base, '.')) && dot > base + 1)
+    *dot = 0;
+  if (base[1])
+    snprintf(name, size, "%s", base + 1);
+}
+
+static PetscErrorCode Derive(Reader *r, Case *c)
+{
+  PetscFunctionBeginUser;
+  if (!strcmp(c->output_dir, "results/<case name>")) {
+    char name[256];
+    CaseName(r->file, name, sizeof name);
+    PetscCallMPI(MPI_Bcast(name, sizeof name, MPI_CHAR, 0, r->comm));
+    snprintf(c->output_dir, sizeof c->output_dir, "results/%s", name);
+  }
+  for (PetscInt i = 0; i < c->nmaterial; i++) {
+    Material *m     = &c->material[i];
+    Liquid   *l[]   = {&m->solid, &m->hydrate};
+    m->kinetics.M_g = m->gas.M;
+    for (int j = 0; j < 2; j++) {
+      l[j]->K     = INFINITY;
+      l[j]->p_ref = m->water.p_ref;
+      l[j]->T_ref = m->water.T_ref;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void PrintErrors(const Reader *r)
+{
+  PetscInt shown = PetscMin(r->nerror, CASE_ERRORS);
+
+  if (r->rank || !r->nerror)
+    return;
+  for (PetscInt i = 0; i < shown; i++)
+    fprintf(stderr, "%s\n", r->error[i]);
+  if (r->nerror > shown)
+    fprintf(stderr, "... and %d more\n", (int)(r->nerror - shown));
+  fprintf(stderr, "The case has %d error%s; nothing was run or written.\n", (int)r->nerror, r->nerror == 1 ? "" : "s");
+}
+
+PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
+{
+  Reader r = {.comm = comm};
+
+  PetscFunctionBeginUser;
+  memset(c, 0, sizeof *c);
+  PetscCall(ReaderLoad(&r, path));
+  strcpy(c->file, r.file);
+  if (!r.nerror) {
+    for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
+      PetscCall(NamesRead(&r, c, g));
+    for (Group g = GROUP_CASE; g < GROUP_COUNT; g++)
+      PetscCall(GroupRead(&r, c, g));
+    PetscCall(Derive(&r, c));
+    PetscCall(Leftovers(&r, c));
+    CaseCheck(&r, c);
+  }
+  *ok = r.nerror == 0;
+  PrintErrors(&r);
+  PetscCall(ReaderDestroy(&r));
+  if (!*ok)
+    PetscCall(CaseDestroy(c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CaseDestroy(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->nbc; i++) {
+    ScheduleDestroy(&c->bc[i].value);
+    ScheduleDestroy(&c->bc[i].shear);
+  }
+  PetscCall(PetscFree(c->material));
+  PetscCall(PetscFree(c->region));
+  PetscCall(PetscFree(c->bc));
+  PetscCall(PetscFree(c->probe));
+  PetscCall(PetscFree(c->times));
+  memset(c, 0, sizeof *c);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

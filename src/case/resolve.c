@@ -1,0 +1,241 @@
+/* resolve: writes the case in SI, every key of the table at its value, such that reading it gives the same doubles; and
+   prints the table itself. */
+#include "case_private.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void WriteText(FILE *f, const char *text)
+{
+  fputc('\'', f);
+  for (; *text; text++) {
+    if (*text == '\'')
+      fputc('\'', f);
+    fputc(*text, f);
+  }
+  fputc('\'', f);
+}
+
+/* The shortest text that reads back as the same double. */
+static void WriteNumber(FILE *f, double value)
+{
+  char text[32];
+
+  for (int digits = 15; digits <= 17; digits++) {
+    snprintf(text, sizeof text, "%.*g", digits, value);
+    if (strtod(text, NULL) == value)
+      break;
+  }
+  fputs(text, f);
+}
+
+static void WriteReal(FILE *f, const Key *k, double value)
+{
+  if (isinf(value) && k->word)
+    fputs(k->word + (*k->word == '-'), f);
+  else {
+    WriteNumber(f, value);
+    fprintf(f, "%s%s", *k->unit ? " " : "", k->unit);
+  }
+}
+
+static void WriteReals(FILE *f, const Key *k, const double *value, PetscInt n)
+{
+  if (n != 1)
+    fputc('[', f);
+  for (PetscInt i = 0; i < n; i++) {
+    if (i)
+      fputs(", ", f);
+    WriteReal(f, k, value[i]);
+  }
+  if (n != 1)
+    fputc(']', f);
+}
+
+static void WriteSchedule(FILE *f, const Key *k, const Schedule *s)
+{
+  if (s->n == 1) {
+    WriteReal(f, k, s->y[0]);
+    return;
+  }
+  fprintf(f, "{%s: [", s->steps ? "piecewise" : "table");
+  for (PetscInt i = 0; i < s->n; i++) {
+    if (i)
+      fputs(", ", f);
+    WriteNumber(f, s->t[i]);
+    fputs(" s, ", f);
+    WriteReal(f, k, s->y[i]);
+  }
+  fputs("]}", f);
+}
+
+static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instance)
+{
+  const char *place = instance + k->offset;
+
+  switch (k->kind) {
+  case KEY_REAL:
+    WriteReals(f, k, (const double *)place, k->count);
+    break;
+  case KEY_INT:
+    fprintf(f, k->count > 1 ? "[%d, %d]" : "%d", (int)((const PetscInt *)place)[0],
+            (int)((const PetscInt *)place)[k->count - 1]);
+    break;
+  case KEY_BOOL:
+    if (k->choices)
+      fputs(k->choices[*(const bool *)place], f);
+    else
+      fputs(*(const bool *)place ? "yes" : "no", f);
+    break;
+  case KEY_TEXT:
+    WriteText(f, place);
+    break;
+  case KEY_CHOICE:
+    fputs(k->choices[*(const int *)place - k->first], f);
+    break;
+  case KEY_LAW:
+    fputs(k->law->get((const Material *)instance), f);
+    break;
+  case KEY_NAME: {
+    PetscInt i = *(const PetscInt *)place;
+    fputs(i < 0 ? k->def : GroupInstance(c, k->names, i), f);
+    break;
+  }
+  case KEY_REALS:
+    WriteReals(f, k, c->times, c->ntimes);
+    break;
+  case KEY_SCHEDULE:
+    WriteSchedule(f, k, (const Schedule *)place);
+    break;
+  }
+}
+
+static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance, const char *indent)
+{
+  for (const Key *k = case_group[g].key; k->name; k++) {
+    if (!KeyApplies(k, g, instance))
+      continue;
+    if (k->kind == KEY_SCHEDULE && ((const Schedule *)(instance + k->offset))->n == 0)
+      continue;
+    fprintf(f, "%s%s: ", indent, k->name);
+    WriteValue(f, c, k, instance);
+    fputc('\n', f);
+  }
+}
+
+static void WriteGroup(FILE *f, const Case *c, Group g)
+{
+  const GroupInfo *info = &case_group[g];
+  PetscInt         n    = *GroupCount(c, g);
+
+  fprintf(f, "\n%s: [", info->list);
+  for (PetscInt i = 0; i < n; i++)
+    fprintf(f, "%s%s", i ? ", " : "", GroupInstance(c, g, i));
+  fputs("]\n", f);
+  if (n)
+    fprintf(f, "%.*s:\n", (int)strlen(info->prefix) - 1, info->prefix);
+  for (PetscInt i = 0; i < n; i++) {
+    fprintf(f, "  %s:\n", GroupInstance(c, g, i));
+    WriteInstance(f, c, g, GroupInstance(c, g, i), "    ");
+  }
+}
+
+PetscErrorCode CaseWriteResolved(const Case *c, const char *path)
+{
+  FILE *f;
+  bool  good;
+
+  PetscFunctionBeginUser;
+  f = fopen(path, "w");
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s", path);
+  fprintf(f, "# The case as it ran, in SI units with every default; itself a case.  Written by clathra from\n# %s\n",
+          c->file);
+  WriteInstance(f, c, GROUP_CASE, (const char *)c, "");
+  for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
+    WriteGroup(f, c, g);
+  good = !ferror(f);
+  good &= fclose(f) == 0;
+  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write all of %s", path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- the list of keys */
+static void PrintKind(FILE *out, const Key *k)
+{
+  static const char *const kind[] = {"number", "integer", "yes, no", "text", "word", "law", "name", "schedule", "list"};
+  const char *const       *word   = k->kind == KEY_LAW ? k->law->types() : k->choices;
+
+  if (word)
+    for (int i = 0; word[i]; i++)
+      fprintf(out, "%s%s", i ? ", " : "", word[i]);
+  else
+    fputs(kind[k->kind], out);
+  if ((k->kind == KEY_REAL || k->kind == KEY_INT) && k->count > 1)
+    fprintf(out, " x %d", k->count);
+}
+
+static void PrintTypes(FILE *out, const Key *k)
+{
+  const char *comma = "";
+
+  if (!k->types)
+    return;
+  fputs(" (types: ", out);
+  for (int t = 0; case_bc_type[t]; t++) {
+    if (!(k->types & (1u << (t + 1))))
+      continue;
+    fprintf(out, "%s%s", comma, case_bc_type[t]);
+    comma = ", ";
+  }
+  fputc(')', out);
+}
+
+static void PrintKey(FILE *out, Group g, const Key *k)
+{
+  const char *at = k->def ? strchr(k->def, '@') : NULL;
+
+  if (g == GROUP_CASE)
+    fprintf(out, "| `%s` | ", k->name);
+  else
+    fprintf(out, "| `%s<name>_%s` | ", case_group[g].prefix, k->name);
+  PrintKind(out, k);
+  fprintf(out, " | %s | %s | ", k->unit, *k->range ? k->range : "");
+  if (!k->def)
+    fputs("**required**", out);
+  else if (at)
+    fprintf(out, "%.*s times %s", (int)(at - k->def - 1), k->def, at + 1);
+  else
+    fputs(k->def, out);
+  if (k->when)
+    fprintf(out, "%s**required** when %s", k->def && *k->def ? "; " : "", k->when);
+  fprintf(out, " | %s", k->doc);
+  if (k->word)
+    fprintf(out, "%s`%s` = %sinfinite", *k->doc ? "; " : "", k->word + (*k->word == '-'),
+            *k->word == '-' ? "minus " : "");
+  PrintTypes(out, k);
+  fputs(" |\n", out);
+}
+
+PetscErrorCode CasePrintKeys(FILE *out)
+{
+  PetscFunctionBeginUser;
+  fputs("Nested maps of a case file join to one name: `mat: {sand: {porosity: 0.3}}` is the key `mat_sand_porosity`, "
+        "and\n"
+        "`-mat_sand_porosity 0.3` on the command line replaces it. A value of a quantity carries its unit, any that\n"
+        "measures the same as the SI unit below. A schedule is a value, or one of `{table: [t0, v0, t1, v1, ...]}` "
+        "(straight\n"
+        "lines), `{ramp: [v0, v1, t0, t1]}`, `{rate: [v0, rate, t0, t1]}` (from v0 at t0 until t1) and\n"
+        "`{piecewise: [t0, v0, t1, v1, ...]}` (each value holds until the next time).\n\n",
+        out);
+  for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
+    const GroupInfo *info = &case_group[g];
+    fprintf(out, "%s### %s\n\n", g ? "\n" : "", info->doc);
+    if (info->list)
+      fprintf(out, "`%s`: the list of their names%s.\n\n", info->list,
+              info->required ? ", **required**" : "; may be left out");
+    fputs("| key | kind | SI unit | range | default | meaning |\n|---|---|---|---|---|---|\n", out);
+    for (const Key *k = info->key; k->name; k++)
+      PrintKey(out, g, k);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,236 @@
+/* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
+#include "clathra/run.h"
+#include "clathra/io.h"
+#include <sys/stat.h>
+#include <time.h>
+
+typedef struct {
+  Output *out;
+  char    checkpoint[PETSC_MAX_PATH_LEN];
+  double  t_start, clock_start; /* s of the scene, s of the wall */
+  bool    quiet;
+} Run;
+
+static double Wall(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* First multiple of `every` after t. */
+static double NextMultiple(double every, double t)
+{
+  return every > 0.0 ? every * (floor(t / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
+}
+
+static double NextSnapshot(const Case *c, double t)
+{
+  double next = NextMultiple(c->every, t);
+
+  for (PetscInt k = 0; k < c->ntimes; k++) {
+    if (c->times[k] > t * (1.0 + 1e-12))
+      next = fmin(next, c->times[k]);
+  }
+  return next;
+}
+
+static bool IsTime(double event, double t)
+{
+  return fabs(event - t) <= 1e-9 * fabs(t);
+}
+
+/* Was t reached by stepping onto one of these events?  Looks back from just before t. */
+static bool AtMultiple(double every, double t)
+{
+  return every > 0.0 && IsTime(every * round(t / every), t);
+}
+
+static bool AtSnapshot(const Case *c, double t)
+{
+  bool at = AtMultiple(c->every, t);
+
+  for (PetscInt k = 0; k < c->ntimes; k++)
+    at = at || IsTime(c->times[k], t);
+  return at;
+}
+
+static double NextEvent(const Stepper *s, void *ctx)
+{
+  const Case  *c = s->model->c;
+  const double t = s->state.t;
+
+  (void)ctx;
+  return fmin(NextSnapshot(c, t), fmin(NextMultiple(c->probe_every, t), NextMultiple(c->checkpoint_every, t)));
+}
+
+static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run *run)
+{
+  const double t = s->state.t, end = s->model->c->t_end, done = (t - run->t_start) / (end - run->t_start);
+  const double left     = done > 0.0 ? (Wall() - run->clock_start) * (1.0 - done) / done : 0.0;
+  char         cuts[32] = "", error[32] = "";
+
+  PetscFunctionBeginUser;
+  if (run->quiet)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (info->cuts)
+    PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
+  if (s->adaptive)
+    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
+  PetscCall(PetscPrintf(s->model->grid.comm,
+                        "step %4" PetscInt_FMT ": t = %-10.6g s (%5.1f %%), dt = %-9.4g s, %2" PetscInt_FMT
+                        " Newton iterations%s%s, %.0f s left\n",
+                        s->state.step, t, 100.0 * done, info->dt, info->newton, error, cuts, left));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After every accepted step: ledger, probes, snapshot, checkpoint, progress. */
+static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
+{
+  Run         *run  = (Run *)ctx;
+  const Case  *c    = s->model->c;
+  const double t    = s->state.t;
+  const bool   last = t >= c->t_end * (1.0 - 1e-12);
+
+  PetscFunctionBeginUser;
+  PetscCall(OutputBalance(run->out, s->model, &s->state, info));
+  if (c->probe_every == 0.0 || AtMultiple(c->probe_every, t) || last)
+    PetscCall(OutputProbes(run->out, s->model, &s->state));
+  if (AtSnapshot(c, t) || last) {
+    PetscCall(OutputSnapshot(run->out, s->model, &s->state));
+    s->state.next_snapshot++;
+  }
+  if (AtMultiple(c->checkpoint_every, t))
+    PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
+  PetscCall(Progress(s, info, run));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeFolder(MPI_Comm comm, const char *path, bool *ok)
+{
+  char        part[PETSC_MAX_PATH_LEN];
+  PetscMPIInt rank, good = 1;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) {
+    struct stat st;
+
+    PetscCall(PetscStrncpy(part, path, sizeof(part)));
+    for (char *p = part + 1; *p; p++) {
+      if (*p != '/')
+        continue;
+      *p = '\0';
+      mkdir(part, 0777);
+      *p = '/';
+    }
+    mkdir(part, 0777);
+    good = stat(path, &st) == 0 && S_ISDIR(st.st_mode);
+    if (!good)
+      fprintf(stderr, "clathra: cannot make the output folder %s\n", path);
+  }
+  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, comm));
+  *ok = good;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Summary(const Stepper *s, const Run *run, bool ok)
+{
+  const StepperState *z = &s->state;
+  char                path[PETSC_MAX_PATH_LEN], text[2048];
+  ModelTotals         t;
+  PetscMPIInt         rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelComputeTotals(s->model, &t));
+  PetscCall(PetscSNPrintf(text, sizeof(text),
+                          "%s: %s at t = %g s\n"
+                          "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
+                          " Newton iterations, %.2f s\n"
+                          "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
+                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
+                          "  results in %s\n",
+                          s->model->c->title, ok ? "finished" : "stopped", z->t, s->scheme->name, z->step,
+                          z->failures_total, z->newton_total, Wall() - run->clock_start,
+                          (t.water + z->out[PHASE_W] - z->water0) / z->water0,
+                          (t.methane + z->out[PHASE_G] - z->methane0) / z->methane0,
+                          (z->heat_gain - z->heat_in - z->heat_source) / z->capacity0, t.hydrate, z->limited_total,
+                          s->model->c->output_dir));
+  PetscCall(PetscPrintf(s->model->grid.comm, "%s", text));
+  PetscCallMPI(MPI_Comm_rank(s->model->grid.comm, &rank));
+  if (rank == 0) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/summary.txt", s->model->c->output_dir));
+    FILE *f = fopen(path, "w");
+    if (f) {
+      fputs(text, f);
+      fclose(f);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restart, int *exit_code)
+{
+  char path[PETSC_MAX_PATH_LEN];
+  bool ok;
+
+  PetscFunctionBeginUser;
+  if (restart[0]) {
+    PetscCall(CheckpointRead(s->model, &s->state, restart, &ok));
+    if (!ok) {
+      *exit_code = CL_EXIT_INPUT;
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
+  PetscCall(MakeFolder(s->model->grid.comm, c->output_dir, &ok));
+  if (!ok) {
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/case.yaml", c->output_dir));
+  PetscCall(CaseWriteResolved(c, path));
+  PetscCall(PetscSNPrintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir));
+  PetscCall(OutputCreate(s->model, &s->state, restart[0] != '\0', &run->out));
+  if (!restart[0]) {
+    PetscCall(OutputProbes(run->out, s->model, &s->state));
+    PetscCall(OutputSnapshot(run->out, s->model, &s->state));
+    s->state.next_snapshot++;
+  }
+  run->t_start     = s->state.t;
+  run->clock_start = Wall();
+  PetscCall(StepperRun(s, &ok));
+  PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
+  if (!ok)
+    PetscCall(PetscPrintf(s->model->grid.comm, "The last good state (t = %g s) is saved in %s\n", s->state.t,
+                          run->checkpoint));
+  PetscCall(Summary(s, run, ok));
+  PetscCall(OutputDestroy(&run->out));
+  *exit_code = ok ? CL_EXIT_OK : CL_EXIT_FAILED;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
+{
+  Run       run = {0};
+  Model     model;
+  Stepper   stepper;
+  char      restart[PETSC_MAX_PATH_LEN] = "";
+  PetscBool quiet                       = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
+  run.quiet = quiet;
+  PetscCall(ModelCreate(comm, c, &model));
+  PetscCall(StepperCreate(&model, &stepper));
+  stepper.monitor     = Monitor;
+  stepper.monitor_ctx = &run;
+  stepper.next_event  = NextEvent;
+  PetscCall(PetscPrintf(comm, "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT " cells, %s, to t = %g s\n", c->title,
+                        c->cells[0], c->cells[1], c->stepper, c->t_end));
+  PetscCall(Go(c, &stepper, &run, restart, exit_code));
+  PetscCall(StepperDestroy(&stepper));
+  PetscCall(ModelDestroy(&model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,337 @@
+/* value: reads one key of the table into its place, by kind. */
+#include "case_private.h"
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+void ListCreate(const char *text, List *list)
+{
+  char *p;
+
+  list->n    = 0;
+  list->text = strdup(text);
+  list->item = calloc(strlen(text) + 1, sizeof *list->item);
+  for (p = list->text; *p;) {
+    char *end = p + strcspn(p, ","), *stop = end;
+    bool  last = !*end;
+    while (isspace((unsigned char)*p) && p < end)
+      p++;
+    while (stop > p && isspace((unsigned char)stop[-1]))
+      stop--;
+    list->item[list->n++] = p;
+    *stop                 = 0;
+    if (last)
+      break;
+    p = end + 1;
+  }
+}
+
+void ListDestroy(List *list)
+{
+  free(list->text);
+  free(list->item);
+}
+
+static void WordsJoin(const char *const *word, char *out, size_t size)
+{
+  *out = 0;
+  for (; *word; word++)
+    snprintf(out + strlen(out), size - strlen(out), "%s%s", *out ? " | " : "", *word);
+}
+
+static const char *const *KeyWords(const Key *k)
+{
+  static const char *const yes_no[] = {"yes", "no", NULL};
+
+  if (k->kind == KEY_LAW)
+    return k->law->types();
+  if (k->choices)
+    return k->choices;
+  return k->kind == KEY_BOOL ? yes_no : NULL;
+}
+
+static void WordError(Reader *r, const char *shown, const char *text, const char *const *words)
+{
+  char allowed[256], nearest[64];
+
+  WordsJoin(words, allowed, sizeof allowed);
+  if (WordNearest(text, words, nearest, sizeof nearest))
+    ReaderError(r, shown, text, "must be one of %s; did you mean %s?", allowed, nearest);
+  else
+    ReaderError(r, shown, text, "must be one of %s", allowed);
+}
+
+void KeyMissing(Reader *r, const char *option, const Key *k)
+{
+  char allowed[256] = "";
+
+  if (KeyWords(k))
+    WordsJoin(KeyWords(k), allowed, sizeof allowed);
+  ReaderError(r, option, NULL, "is missing%s%s%s%s%s%s%s%s%s%s%s", *k->doc ? " (" : "", k->doc, *k->doc ? ")" : "",
+              *k->unit ? ", in " : "", k->unit, *k->range ? ", range " : "", k->range, *allowed ? ", one of " : "",
+              allowed, k->when ? "; required when " : "", k->when ? k->when : "");
+}
+
+bool RealRead(Reader *r, const char *shown, const char *text, const char *unit, const char *range, double *value)
+{
+  char why[CASE_WHY];
+
+  if (!QuantityParse(text, unit, value, why)) {
+    ReaderError(r, shown, text, "%s", why);
+    return false;
+  }
+  if (RangeHolds(range, *value))
+    return true;
+  ReaderError(r, shown, text, "is out of range, allowed: %s%s%s", range, *unit ? " " : "", unit);
+  return false;
+}
+
+static bool KeyReal(Reader *r, const char *shown, const char *text, const Key *k, double *value)
+{
+  const char *end;
+  char        full[128];
+
+  if (k->plain && *shown == '-' && NumberParse(text, value, &end) && !*end) {
+    snprintf(full, sizeof full, "%.60s %s", text, k->unit);
+    return RealRead(r, shown, full, k->unit, k->range, value);
+  }
+  if (k->word && !strcasecmp(text, k->word + (*k->word == '-'))) {
+    *value = *k->word == '-' ? -INFINITY : INFINITY;
+    return true;
+  }
+  return RealRead(r, shown, text, k->unit, k->range, value);
+}
+
+static bool KeyInt(Reader *r, const char *shown, const char *text, const Key *k, PetscInt *value)
+{
+  char *end;
+  long  n;
+
+  errno = 0;
+  n     = strtol(text, &end, 10);
+  if (end == text || *end) {
+    ReaderError(r, shown, text, "must be a whole number without a unit");
+    return false;
+  }
+  if (errno || !RangeHolds(k->range, (double)n)) {
+    ReaderError(r, shown, text, "is out of range, allowed: %s", k->range);
+    return false;
+  }
+  *value = (PetscInt)n;
+  return true;
+}
+
+static void KeyNumbers(Reader *r, const char *shown, const char *text, const Key *k, char *place)
+{
+  List list;
+
+  ListCreate(text, &list);
+  if (list.n != k->count)
+    ReaderError(r, shown, text, "has %d value%s, needs %d%s%s", (int)list.n, list.n == 1 ? "" : "s", k->count,
+                *k->unit ? ", e.g. in " : "", k->unit);
+  else
+    for (PetscInt i = 0; i < list.n; i++) {
+      bool ok = k->kind == KEY_INT ? KeyInt(r, shown, list.item[i], k, (PetscInt *)place + i)
+                                   : KeyReal(r, shown, list.item[i], k, (double *)place + i);
+      if (!ok)
+        break;
+    }
+  ListDestroy(&list);
+}
+
+static void KeyBool(Reader *r, const char *shown, const char *text, const Key *k, bool *value)
+{
+  static const char *const word[2][4] = {{"no", "false", "off", "0"}, {"yes", "true", "on", "1"}};
+
+  for (int v = 0; v < 2; v++) {
+    if (k->choices) {
+      if (strcasecmp(text, k->choices[v]))
+        continue;
+      *value = v;
+      return;
+    }
+    for (int i = 0; i < 4; i++) {
+      if (strcasecmp(text, word[v][i]))
+        continue;
+      *value = v;
+      return;
+    }
+  }
+  WordError(r, shown, text, KeyWords(k));
+}
+
+static void KeyText(Reader *r, const char *shown, const char *text, const Key *k, char *value)
+{
+  if (k->choices) {
+    for (int i = 0; k->choices[i]; i++) {
+      if (strcasecmp(text, k->choices[i]))
+        continue;
+      snprintf(value, (size_t)k->count, "%s", k->choices[i]);
+      return;
+    }
+    WordError(r, shown, text, k->choices);
+    return;
+  }
+  for (const char *p = text; *p; p++) {
+    if ((unsigned char)*p >= 0x20)
+      continue;
+    ReaderError(r, shown, NULL, "holds a line break or a control character");
+    return;
+  }
+  if (strlen(text) >= (size_t)k->count)
+    ReaderError(r, shown, text, "is longer than %d characters", k->count - 1);
+  else
+    strcpy(value, text);
+}
+
+static void KeyChoice(Reader *r, const char *shown, const char *text, const Key *k, int *value)
+{
+  for (int i = 0; k->choices[i]; i++) {
+    if (strcasecmp(text, k->choices[i]))
+      continue;
+    *value = k->first + i;
+    return;
+  }
+  WordError(r, shown, text, k->choices);
+}
+
+static void KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value)
+{
+  const char *word[258];
+  PetscInt    n = 0;
+
+  if (k->def && !strcasecmp(text, k->def)) { /* all */
+    *value = -1;
+    return;
+  }
+  for (PetscInt i = 0; i < *GroupCount(c, k->names) && n < 256; i++) {
+    word[n++] = GroupInstance(c, k->names, i);
+    if (strcasecmp(text, word[n - 1]))
+      continue;
+    *value = i;
+    return;
+  }
+  if (k->def)
+    word[n++] = k->def;
+  word[n] = NULL;
+  if (n)
+    WordError(r, shown, text, word);
+  else
+    ReaderError(r, shown, text, "no %s is listed in %s", case_group[k->names].noun, case_group[k->names].list);
+}
+
+/* output_times: ascending */
+static PetscErrorCode KeyReals(Reader *r, const char *shown, const char *text, const Key *k, PetscInt *n,
+                               double **values)
+{
+  List list;
+
+  PetscFunctionBeginUser;
+  ListCreate(text, &list);
+  if (list.n)
+    PetscCall(PetscCalloc1(list.n, values));
+  for (*n = 0; *n < list.n; (*n)++) {
+    double *v = *values + *n;
+    if (!RealRead(r, shown, list.item[*n], k->unit, k->range, v))
+      break;
+    if (*n && v[0] <= v[-1]) {
+      ReaderError(r, shown, list.item[*n], "the times must ascend");
+      break;
+    }
+  }
+  ListDestroy(&list);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* "0.05 @retention_p0": that multiple of a key above in the same group */
+static bool DefaultReference(Group g, const char *instance, const Key *k, double *value)
+{
+  const char *at = k->def ? strchr(k->def, '@') : NULL;
+
+  if (!at)
+    return false;
+  for (const Key *other = case_group[g].key; other != k; other++) {
+    if (strcmp(other->name, at + 1))
+      continue;
+    *value = strtod(k->def, NULL) * *(const double *)(instance + other->offset);
+    return true;
+  }
+  return false;
+}
+
+static PetscErrorCode KeyStore(Reader *r, Case *c, const char *shown, const char *text, const Key *k, char *instance)
+{
+  char *place = instance + k->offset;
+
+  PetscFunctionBeginUser;
+  switch (k->kind) {
+  case KEY_REAL:
+  case KEY_INT:
+    KeyNumbers(r, shown, text, k, place);
+    break;
+  case KEY_BOOL:
+    KeyBool(r, shown, text, k, (bool *)place);
+    break;
+  case KEY_TEXT:
+    KeyText(r, shown, text, k, place);
+    break;
+  case KEY_CHOICE:
+    KeyChoice(r, shown, text, k, (int *)place);
+    break;
+  case KEY_LAW:
+    if (!k->law->set((Material *)instance, text)) {
+      WordError(r, shown, text, k->law->types());
+      k->law->set((Material *)instance, k->def); /* conditions of other keys look at it */
+    }
+    break;
+  case KEY_NAME:
+    KeyName(r, c, shown, text, k, (PetscInt *)place);
+    break;
+  case KEY_REALS:
+    PetscCall(KeyReals(r, shown, text, k, &c->ntimes, (double **)place));
+    break;
+  case KEY_SCHEDULE:
+    break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
+{
+  char       *instance = GroupInstance(c, g, i), option[256], shown[257];
+  const char *text;
+  bool        found, from_file;
+
+  PetscFunctionBeginUser;
+  KeyOption(option, sizeof option, g, instance, k->name);
+  if (k->kind == KEY_SCHEDULE) {
+    PetscCall(ScheduleRead(r, option, k, instance, (Schedule *)(instance + k->offset)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ReaderFind(r, option, &text, &found, &from_file));
+  snprintf(shown, sizeof shown, "%s%s", found && !from_file ? "-" : "", option);
+  if (!KeyApplies(k, g, instance)) {
+    if (found)
+      ReaderError(r, shown, text, "is not a key of a boundary of type %s", case_bc_type[((Bc *)instance)->type - 1]);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!found) {
+    if (k->needed ? k->needed(instance) : !k->def)
+      KeyMissing(r, option, k);
+    else if (!DefaultReference(g, instance, k, (double *)(instance + k->offset)))
+      PetscCall(KeyStore(r, c, shown, k->def, k, instance));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!text && k->kind == KEY_BOOL && !from_file && !k->choices)
+    text = "yes";
+  if (!text && k->def && !*k->def)
+    text = "";
+  if (text)
+    PetscCall(KeyStore(r, c, shown, text, k, instance));
+  else
+    ReaderError(r, shown, NULL, "has no value");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,299 @@
+/* HDF5 with checked calls, and the gathering of particles on rank 0. */
+#include "io_private.h"
+
+#define COMPRESS_FROM 65536 /* bytes; smaller datasets are written plain */
+#define CHUNK_ROWS 16384
+
+/* A viewer that holds the file open must not stop the run: no locking.  Closing a file closes everything in it. */
+static PetscErrorCode Access(hid_t *access)
+{
+  PetscFunctionBeginUser;
+  H5Check(*access = H5Pcreate(H5P_FILE_ACCESS));
+  H5Check(H5Pset_fclose_degree(*access, H5F_CLOSE_STRONG));
+  H5Check(H5Pset_file_locking(*access, 0, 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5FileCreate(const char *path, hsize_t user_block, hid_t *file)
+{
+  hid_t access, create;
+
+  PetscFunctionBeginUser;
+  PetscCall(Access(&access));
+  H5Check(create = H5Pcreate(H5P_FILE_CREATE));
+  if (user_block > 0)
+    H5Check(H5Pset_userblock(create, user_block));
+  *file = H5Fcreate(path, H5F_ACC_TRUNC, create, access);
+  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot create %s", path);
+  H5Check(H5Pclose(create));
+  H5Check(H5Pclose(access));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5FileOpen(const char *path, bool write, hid_t *file)
+{
+  hid_t access;
+
+  PetscFunctionBeginUser;
+  PetscCall(Access(&access));
+  H5E_BEGIN_TRY
+  {
+    *file = H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
+  }
+  H5E_END_TRY
+  H5Check(H5Pclose(access));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5FileClose(hid_t *file)
+{
+  PetscFunctionBeginUser;
+  H5Check(H5Fflush(*file, H5F_SCOPE_GLOBAL));
+  H5Check(H5Fclose(*file));
+  *file = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group)
+{
+  hid_t link;
+
+  PetscFunctionBeginUser;
+  H5Check(link = H5Pcreate(H5P_LINK_CREATE));
+  H5Check(H5Pset_create_intermediate_group(link, 1));
+  H5Check(*group = H5Gcreate2(file, path, link, H5P_DEFAULT, H5P_DEFAULT));
+  H5Check(H5Pclose(link));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Layout(hid_t type, int nd, const hsize_t dims[], bool compress, hid_t *create)
+{
+  hsize_t chunk[4], bytes = H5Tget_size(type);
+
+  PetscFunctionBeginUser;
+  H5Check(*create = H5Pcreate(H5P_DATASET_CREATE));
+  for (int d = 0; d < nd; d++) {
+    bytes *= dims[d];
+    chunk[d] = d == 0 && dims[d] > CHUNK_ROWS ? CHUNK_ROWS : dims[d];
+  }
+  if (compress && bytes >= COMPRESS_FROM && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
+    H5Check(H5Pset_chunk(*create, nd, chunk));
+    H5Check(H5Pset_shuffle(*create));
+    H5Check(H5Pset_deflate(*create, 4));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], const void *data,
+                       const char *unit, bool compress)
+{
+  hid_t space, create, set;
+
+  PetscFunctionBeginUser;
+  PetscCall(Layout(type, nd, dims, compress, &create));
+  H5Check(space = H5Screate_simple(nd, dims, NULL));
+  H5Check(set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT));
+  H5Check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
+  if (unit)
+    PetscCall(H5WriteText(set, "unit", unit));
+  H5Check(H5Dclose(set));
+  H5Check(H5Sclose(space));
+  H5Check(H5Pclose(create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteAttribute(hid_t where, const char *attribute, hid_t type, const void *value)
+{
+  hid_t space, a;
+
+  PetscFunctionBeginUser;
+  H5Check(space = H5Screate(H5S_SCALAR));
+  H5Check(a = H5Acreate2(where, attribute, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  H5Check(H5Awrite(a, type, value));
+  H5Check(H5Aclose(a));
+  H5Check(H5Sclose(space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5WriteReal(hid_t where, const char *attribute, double value)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WriteAttribute(where, attribute, H5T_NATIVE_DOUBLE, &value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5WriteInt(hid_t where, const char *attribute, PetscInt value)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WriteAttribute(where, attribute, H5T_NATIVE_INT, &value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5WriteText(hid_t where, const char *attribute, const char *value)
+{
+  hid_t type;
+
+  PetscFunctionBeginUser;
+  H5Check(type = H5Tcopy(H5T_C_S1));
+  H5Check(H5Tset_size(type, strlen(value) + 1));
+  H5Check(H5Tset_cset(type, H5T_CSET_UTF8));
+  PetscCall(WriteAttribute(where, attribute, type, value));
+  H5Check(H5Tclose(type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static bool ReadAttribute(hid_t where, const char *attribute, hid_t type, void *value)
+{
+  bool ok = false;
+
+  H5E_BEGIN_TRY
+  {
+    const hid_t a = H5Aopen(where, attribute, H5P_DEFAULT), space = a >= 0 ? H5Aget_space(a) : -1;
+
+    ok = space >= 0 && H5Sget_simple_extent_npoints(space) == 1 && H5Aread(a, type, value) >= 0;
+    if (space >= 0)
+      H5Sclose(space);
+    if (a >= 0)
+      H5Aclose(a);
+  }
+  H5E_END_TRY
+  return ok;
+}
+
+bool H5ReadReal(hid_t where, const char *attribute, double *value)
+{
+  return ReadAttribute(where, attribute, H5T_NATIVE_DOUBLE, value);
+}
+
+bool H5ReadInt(hid_t where, const char *attribute, PetscInt *value)
+{
+  return ReadAttribute(where, attribute, H5T_NATIVE_INT, value);
+}
+
+/* Dimensions of an open dataset; 0 if it has more than two. */
+static int Shape(hid_t set, hsize_t dims[2])
+{
+  const hid_t space = H5Dget_space(set);
+  const int   nd    = H5Sget_simple_extent_ndims(space);
+  const bool  ok    = nd >= 1 && nd <= 2 && H5Sget_simple_extent_dims(space, dims, NULL) == nd;
+
+  H5Sclose(space);
+  return ok ? nd : 0;
+}
+
+bool H5Read(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], void *data)
+{
+  bool ok = false;
+
+  H5E_BEGIN_TRY
+  {
+    const hid_t set    = H5Dopen2(where, name, H5P_DEFAULT);
+    hsize_t     has[2] = {0, 0};
+
+    if (set >= 0) {
+      const hid_t stored = H5Dget_type(set);
+
+      ok = Shape(set, has) == nd && H5Tget_class(stored) == H5Tget_class(type);
+      for (int d = 0; ok && d < nd; d++)
+        ok = has[d] == dims[d];
+      ok = ok && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+      H5Tclose(stored);
+      H5Dclose(set);
+    }
+  }
+  H5E_END_TRY
+  return ok;
+}
+
+bool H5Rows(hid_t where, const char *name, hsize_t *rows)
+{
+  bool ok = false;
+
+  H5E_BEGIN_TRY
+  {
+    const hid_t set    = H5Dopen2(where, name, H5P_DEFAULT);
+    hsize_t     has[2] = {0, 0};
+
+    if (set >= 0) {
+      ok    = Shape(set, has) > 0;
+      *rows = has[0];
+      H5Dclose(set);
+    }
+  }
+  H5E_END_TRY
+  return ok;
+}
+
+/* ---------------------------------------------------------------- gathering */
+PetscErrorCode GatherCreate(const Model *m, Gather *g)
+{
+  const Particles *P  = &m->P;
+  PetscMPIInt      n  = (PetscMPIInt)P->n;
+  PetscInt        *id = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(g, sizeof(*g)));
+  g->comm = m->grid.comm;
+  g->rank = m->grid.rank;
+  g->size = m->grid.size;
+  g->n    = P->n;
+  if (g->rank == 0)
+    PetscCall(PetscMalloc2(g->size, &g->count, g->size, &g->start));
+  PetscCallMPI(MPI_Gather(&n, 1, MPI_INT, g->count, 1, MPI_INT, 0, g->comm));
+  if (g->rank == 0) {
+    for (PetscMPIInt r = 0; r < g->size; r++) {
+      g->start[r] = (PetscMPIInt)g->total;
+      g->total += g->count[r];
+    }
+    PetscCall(PetscMalloc2(g->total, &g->order, g->total, &g->id));
+    PetscCall(PetscMalloc1(g->total, &id));
+    PetscCall(PetscMalloc(sizeof(double) * (size_t)PetscMax(g->total, 1), &g->buffer));
+  }
+  PetscCallMPI(MPI_Gatherv(P->i[PI_ID], n, MPIU_INT, id, g->count, g->start, MPIU_INT, 0, g->comm));
+  if (g->rank == 0) {
+    for (PetscInt k = 0; k < g->total; k++)
+      g->order[k] = k;
+    PetscCall(PetscSortIntWithPermutation(g->total, id, g->order));
+    for (PetscInt k = 0; k < g->total; k++)
+      g->id[k] = id[g->order[k]];
+    PetscCall(PetscFree(id));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GatherDestroy(Gather *g)
+{
+  PetscFunctionBeginUser;
+  if (g->rank == 0) {
+    PetscCall(PetscFree2(g->count, g->start));
+    PetscCall(PetscFree2(g->order, g->id));
+    PetscCall(PetscFree(g->buffer));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GatherReals(Gather *g, const double *local, PetscInt stride, double *sorted)
+{
+  double *all = g->buffer;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Gatherv(local, (PetscMPIInt)g->n, MPI_DOUBLE, all, g->count, g->start, MPI_DOUBLE, 0, g->comm));
+  if (g->rank == 0) {
+    for (PetscInt k = 0; k < g->total; k++)
+      sorted[k * stride] = all[g->order[k]];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GatherInts(Gather *g, const PetscInt *local, PetscInt *sorted)
+{
+  PetscInt *all = g->buffer;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Gatherv(local, (PetscMPIInt)g->n, MPIU_INT, all, g->count, g->start, MPIU_INT, 0, g->comm));
+  if (g->rank == 0) {
+    for (PetscInt k = 0; k < g->total; k++)
+      sorted[k] = all[g->order[k]];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

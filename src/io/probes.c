@@ -1,0 +1,202 @@
+/* probes.csv: affine least-squares values at points of the body or of space. */
+#include "io_private.h"
+
+enum { Q_P = 0, Q_PW, Q_PG, Q_T, Q_SH, Q_SW, Q_SG, Q_UX, Q_UY, Q_SXX, Q_SYY, Q_SZZ, Q_SXY, Q_X, Q_Y, Q_COUNT };
+static const char *const column[Q_COUNT] = {"p_Pa",  "p_w_Pa", "p_g_Pa", "T_degC", "S_h",    "S_w", "S_g", "u_x_m",
+                                            "u_y_m", "sxx_Pa", "syy_Pa", "szz_Pa", "sxy_Pa", "x_m", "y_m"};
+
+/* Moments of the weights about the probe: sum of w, w d_i, w d_i d_j. */
+enum { M_1 = 0, M_X, M_Y, M_XX, M_XY, M_YY, M_COUNT };
+
+/* Variance along a direction, in units of the reach squared, below which the neighbours say nothing about it. */
+#define DEGENERATE 1e-3
+#define WIDENINGS 40
+
+typedef struct {
+  double x[CL_DIM], reach[CL_DIM]; /* m */
+  bool   fixed;
+  double mean[CL_DIM], g[CL_DIM]; /* of d; C^-1 mean */
+  double total;                   /* sum of weights */
+} Fit;
+
+void ProbesHeader(const Case *c, FILE *f)
+{
+  fprintf(f, "time_s");
+  for (PetscInt k = 0; k < c->nprobe; k++) {
+    for (int q = 0; q < Q_COUNT; q++)
+      fprintf(f, ",%s.%s", c->probe[k].name, column[q]);
+  }
+  fprintf(f, "\n");
+}
+
+/* One cell, or two particle spacings where they are wider: at an edge two rows of particles are within reach. */
+static void Reach(const Case *c, const Grid *g, double widening, double reach[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++) {
+    PetscInt ppc = 2;
+
+    for (PetscInt k = 0; k < c->nregion; k++)
+      ppc = PetscMin(ppc, c->region[k].ppc[d]);
+    reach[d] = widening * g->h[d] * (ppc < 2 ? 2.0 : 1.0);
+  }
+}
+
+/* Scaled distance of a particle from the probe and its weight, in the initial configuration unless fixed. */
+static double Weight(const Fit *f, const Particles *P, PetscInt p, double d[CL_DIM])
+{
+  double w = 1.0;
+
+  for (int i = 0; i < CL_DIM; i++) {
+    const double x = f->fixed ? P->f[P_X + i][p] : P->f[P_X + i][p] - P->f[P_U + i][p];
+
+    d[i] = (x - f->x[i]) / f->reach[i];
+    w *= fmax(0.0, 1.0 - fabs(d[i]));
+  }
+  return w;
+}
+
+static void AddMoments(const Fit *f, const Particles *P, double M[M_COUNT])
+{
+  for (PetscInt p = 0; p < P->n; p++) {
+    double       d[CL_DIM];
+    const double w = Weight(f, P, p, d);
+
+    if (w == 0.0)
+      continue;
+    M[M_1] += w;
+    M[M_X] += w * d[0];
+    M[M_Y] += w * d[1];
+    M[M_XX] += w * d[0] * d[0];
+    M[M_XY] += w * d[0] * d[1];
+    M[M_YY] += w * d[1] * d[1];
+  }
+}
+
+/* Solves the normal equations by the principal axes of the neighbours' covariance; axes without extent are dropped. */
+static void Solve(Fit *f, const double M[M_COUNT])
+{
+  f->total = M[M_1];
+  f->g[0] = f->g[1] = f->mean[0] = f->mean[1] = 0.0;
+  if (f->total == 0.0)
+    return;
+  f->mean[0] = M[M_X] / M[M_1];
+  f->mean[1] = M[M_Y] / M[M_1];
+
+  const double a = M[M_XX] / M[M_1] - f->mean[0] * f->mean[0], c = M[M_YY] / M[M_1] - f->mean[1] * f->mean[1];
+  const double b = M[M_XY] / M[M_1] - f->mean[0] * f->mean[1], r = hypot(0.5 * (a - c), b);
+  const double angle = 0.5 * atan2(2.0 * b, a - c), lambda[2] = {0.5 * (a + c) + r, 0.5 * (a + c) - r};
+  const double axis[2][2] = {{cos(angle), sin(angle)}, {-sin(angle), cos(angle)}};
+
+  for (int k = 0; k < 2; k++) {
+    const double s = axis[k][0] * f->mean[0] + axis[k][1] * f->mean[1];
+
+    if (lambda[k] < DEGENERATE)
+      continue;
+    for (int i = 0; i < CL_DIM; i++)
+      f->g[i] += axis[k][i] * s / lambda[k];
+  }
+}
+
+static void Quantities(const Particles *P, PetscInt p, double q[Q_COUNT])
+{
+  q[Q_P]   = MeanPressure(P, p);
+  q[Q_PW]  = P->f[P_PW][p];
+  q[Q_PG]  = P->f[P_PG][p];
+  q[Q_T]   = P->f[P_T][p];
+  q[Q_SH]  = P->f[P_SH][p];
+  q[Q_SW]  = P->f[P_SW][p];
+  q[Q_SG]  = GasSaturation(P, p);
+  q[Q_UX]  = P->f[P_U][p];
+  q[Q_UY]  = P->f[P_U + 1][p];
+  q[Q_SXX] = P->f[P_SIG][p];
+  q[Q_SYY] = P->f[P_SIG + 1][p];
+  q[Q_SZZ] = P->f[P_SIG + 2][p];
+  q[Q_SXY] = P->f[P_SIG + 3][p];
+  q[Q_X]   = P->f[P_X][p];
+  q[Q_Y]   = P->f[P_X + 1][p];
+}
+
+static void AddValues(const Fit *f, const Particles *P, double value[Q_COUNT])
+{
+  for (PetscInt p = 0; p < P->n; p++) {
+    double       d[CL_DIM], q[Q_COUNT];
+    const double w = Weight(f, P, p, d);
+
+    if (w == 0.0)
+      continue;
+    const double share = w / f->total * (1.0 - f->g[0] * (d[0] - f->mean[0]) - f->g[1] * (d[1] - f->mean[1]));
+
+    Quantities(P, p, q);
+    for (int k = 0; k < Q_COUNT; k++)
+      value[k] += share * q[k];
+  }
+}
+
+/* A material point without a neighbour (outside the body) gets a wider reach; a fixed one is then empty space. */
+static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
+{
+  const Case *c = m->c;
+  double     *M;
+  bool        again = true;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(c->nprobe * M_COUNT, &M));
+  for (int round = 0; again && round < WIDENINGS; round++) {
+    again = false;
+    PetscCall(PetscArrayzero(M, c->nprobe * M_COUNT));
+    for (PetscInt k = 0; k < c->nprobe; k++) {
+      fit[k] = (Fit){.x = {c->probe[k].x[0], c->probe[k].x[1]}, .fixed = c->probe[k].fixed};
+      Reach(c, &m->grid, out->reach[k], fit[k].reach);
+      AddMoments(&fit[k], &m->P, M + k * M_COUNT);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, M, (PetscMPIInt)(c->nprobe * M_COUNT), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+    for (PetscInt k = 0; k < c->nprobe; k++) {
+      Solve(&fit[k], M + k * M_COUNT);
+      if (fit[k].total > 0.0 || fit[k].fixed)
+        continue;
+      out->reach[k] *= 2.0;
+      again = true;
+    }
+  }
+  PetscCall(PetscFree(M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteRow(FILE *f, double t, const Fit *fit, PetscInt n, const double *value)
+{
+  PetscFunctionBeginUser;
+  fprintf(f, "%.12e", t);
+  for (PetscInt k = 0; k < n; k++) {
+    for (int q = 0; q < Q_COUNT; q++) {
+      if (fit[k].total > 0.0)
+        fprintf(f, ",%.12e", value[k * Q_COUNT + q]);
+      else
+        fprintf(f, ",nan");
+    }
+  }
+  fprintf(f, "\n");
+  PetscCall(IoFlush(f, "probes.csv"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
+{
+  const PetscInt n    = m->c->nprobe;
+  PetscErrorCode ierr = PETSC_SUCCESS;
+  Fit           *fit;
+  double        *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &fit));
+  PetscCall(PetscCalloc1(n * Q_COUNT, &value));
+  PetscCall(FitAll(out, m, fit));
+  for (PetscInt k = 0; k < n; k++)
+    AddValues(&fit[k], &m->P, value + k * Q_COUNT);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * Q_COUNT), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  if (m->grid.rank == 0)
+    ierr = WriteRow(out->probes, s->t, fit, n, value);
+  PetscCall(IoAgree(m->grid.comm, ierr));
+  PetscCall(PetscFree(fit));
+  PetscCall(PetscFree(value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

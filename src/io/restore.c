@@ -1,0 +1,257 @@
+/* Reading a checkpoint: rank 0 checks all of it, then deals the particles out to the owners of their cells. */
+#include "io_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+  StepperState s;
+  Particles    P;            /* all, by id */
+  PetscInt     ranks;        /* of the run that wrote it */
+  PetscInt    *rank, *place; /* where each particle was */
+  char         why[256];     /* reason of a refusal */
+} Loaded;
+
+#define Refuse(L, ...)                                                                                                 \
+  do {                                                                                                                 \
+    snprintf((L)->why, sizeof((L)->why), __VA_ARGS__);                                                                 \
+    PetscFunctionReturn(PETSC_SUCCESS);                                                                                \
+  } while (0)
+
+static bool Finite(const double *v, PetscInt n)
+{
+  for (PetscInt k = 0; k < n; k++) {
+    if (!isfinite(v[k]))
+      return false;
+  }
+  return true;
+}
+
+static PetscErrorCode LoadState(hid_t file, Loaded *L)
+{
+  PetscFunctionBeginUser;
+  for (const StateField *f = io_state_field; f->name; f++) {
+    const hsize_t n  = (hsize_t)f->n;
+    void         *to = (char *)&L->s + f->offset;
+    char          name[64];
+
+    snprintf(name, sizeof(name), "/state/%s", f->name);
+    if (!H5Read(file, name, f->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, 1, &n, to))
+      Refuse(L, "%s is missing or of wrong size", name);
+    if (!f->integer && !Finite(to, f->n))
+      Refuse(L, "%s is not finite", name);
+    if (f->integer && *(PetscInt *)to < 0)
+      Refuse(L, "%s is negative", name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadReals(hid_t group, Loaded *L)
+{
+  const PetscInt n = L->P.n;
+  double        *data;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(PetscMax(n, 1) * 6, &data));
+  for (const ParticleVariable *v = cl_particle_variable; v->name && !L->why[0]; v++) {
+    const hsize_t dims[2] = {(hsize_t)n, (hsize_t)v->nc};
+
+    if (!H5Read(group, v->name, H5T_NATIVE_DOUBLE, v->nc > 1 ? 2 : 1, dims, data)) {
+      snprintf(L->why, sizeof(L->why), "/particles/%s is missing or of wrong size", v->name);
+    } else if (!Finite(data, n * v->nc)) {
+      snprintf(L->why, sizeof(L->why), "/particles/%s is not finite", v->name);
+    } else {
+      for (PetscInt p = 0; p < n; p++) {
+        for (int c = 0; c < v->nc; c++)
+          L->P.f[v->first + c][p] = data[p * v->nc + c];
+      }
+    }
+  }
+  PetscCall(PetscFree(data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadInts(hid_t group, Loaded *L)
+{
+  const hsize_t n      = (hsize_t)L->P.n;
+  const char   *name[] = {"id", "region", "faces", "rank", "place"};
+  PetscInt     *to[]   = {L->P.i[PI_ID], L->P.i[PI_REGION], L->P.i[PI_FACES], L->rank, L->place};
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 5; k++) {
+    if (!H5Read(group, name[k], H5T_NATIVE_INT, 1, &n, to[k]))
+      Refuse(L, "/particles/%s is missing or of wrong size", name[k]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What no running program can have written. */
+static PetscErrorCode CheckParticles(const Model *m, Loaded *L)
+{
+  const Particles *P = &L->P;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < P->n; p++) {
+    const PetscInt id = P->i[PI_ID][p], region = P->i[PI_REGION][p], faces = P->i[PI_FACES][p];
+    const double   x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
+    PetscInt       cell[CL_DIM];
+
+    if (id < 0 || (p > 0 && id <= P->i[PI_ID][p - 1]))
+      Refuse(L, "its particles are not in order");
+    if (region < 0 || region >= m->c->nregion)
+      Refuse(L, "particle %d belongs to no region", (int)id);
+    if (faces < 0 || faces >= 1 << SIDE_COUNT)
+      Refuse(L, "particle %d has impossible faces", (int)id);
+    if (!GridCell(&m->grid, x, cell))
+      Refuse(L, "particle %d lies outside the grid", (int)id);
+    if (!(P->f[P_V][p] > 0.0 && P->f[P_L][p] > 0.0 && P->f[P_L + 1][p] > 0.0))
+      Refuse(L, "particle %d has no volume", (int)id);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
+{
+  hsize_t n = 0;
+
+  PetscFunctionBeginUser;
+  if (!H5ReadInt(file, "ranks", &L->ranks))
+    Refuse(L, "the attribute ranks is missing");
+  if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
+    Refuse(L, "/particles/id is missing or of wrong size");
+  PetscCall(LoadState(file, L));
+  PetscCall(ParticlesResize(&L->P, (PetscInt)n));
+  PetscCall(PetscMalloc2((PetscInt)n, &L->rank, (PetscInt)n, &L->place));
+
+  const hid_t group = H5Gopen2(file, "/particles", H5P_DEFAULT);
+
+  if (!L->why[0])
+    PetscCall(LoadInts(group, L));
+  if (!L->why[0])
+    PetscCall(LoadReals(group, L));
+  if (!L->why[0])
+    PetscCall(CheckParticles(m, L));
+  H5Check(H5Gclose(group));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* On rank 0.  L->why stays empty if all is well. */
+static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
+{
+  uint64_t fingerprint;
+  hid_t    file;
+  bool     ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(SealCheck(path, &fingerprint, &ok, L->why, sizeof(L->why)));
+  if (!ok)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (fingerprint != CaseFingerprint(m->c)) {
+    Refuse(L, "it was written by another case (grid, regions, materials or boundary conditions differ)");
+  }
+  PetscCall(H5FileOpen(path, false, &file));
+  if (file < 0)
+    Refuse(L, "HDF5 cannot read it");
+  PetscCall(LoadFile(m, file, L));
+  H5Check(H5Fclose(file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- dealing out */
+typedef struct {
+  PetscMPIInt owner;
+  PetscInt    key, p; /* order on its rank; index by id */
+} Card;
+
+static int CompareCards(const void *a, const void *b)
+{
+  const Card *x = a, *y = b;
+
+  if (x->owner != y->owner)
+    return x->owner < y->owner ? -1 : 1;
+  if (x->key != y->key)
+    return x->key < y->key ? -1 : 1;
+  return x->p < y->p ? -1 : x->p > y->p;
+}
+
+static PetscErrorCode Shuffle(const Grid *g, const Loaded *L, Card *card, PetscMPIInt *count)
+{
+  const bool same = L->ranks == g->size;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < L->P.n; p++) {
+    const double x[CL_DIM] = {L->P.f[P_X][p], L->P.f[P_X + 1][p]};
+    PetscInt     cell[CL_DIM];
+
+    PetscCheck(GridCell(g, x, cell), PETSC_COMM_SELF, PETSC_ERR_PLIB, "a particle outside the grid was not noticed");
+    card[p].owner = GridCellOwner(g, cell);
+    card[p].key   = same && L->rank[p] == card[p].owner ? L->place[p] : p;
+    card[p].p     = p;
+    count[card[p].owner]++;
+  }
+  qsort(card, (size_t)L->P.n, sizeof(*card), CompareCards);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Deal(const Grid *g, const Loaded *L, Particles *P)
+{
+  PetscMPIInt   *count, *start, n;
+  Card          *card;
+  double        *real;
+  PetscInt      *integer;
+  const PetscInt total = L->P.n; /* 0 but on rank 0 */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(g->size, &count, g->size, &start));
+  PetscCall(PetscMalloc3(total, &card, total, &real, total, &integer));
+  if (g->rank == 0)
+    PetscCall(Shuffle(g, L, card, count));
+  for (PetscMPIInt r = 1; r < g->size; r++)
+    start[r] = start[r - 1] + count[r - 1];
+  PetscCallMPI(MPI_Scatter(count, 1, MPI_INT, &n, 1, MPI_INT, 0, g->comm));
+  PetscCall(ParticlesResize(P, n));
+  for (int k = 0; k < P_COUNT; k++) {
+    for (PetscInt p = 0; p < total; p++)
+      real[p] = L->P.f[k][card[p].p];
+    PetscCallMPI(MPI_Scatterv(real, count, start, MPI_DOUBLE, P->f[k], n, MPI_DOUBLE, 0, g->comm));
+  }
+  for (int k = 0; k < PI_COUNT; k++) {
+    for (PetscInt p = 0; p < total; p++)
+      integer[p] = L->P.i[k][card[p].p];
+    PetscCallMPI(MPI_Scatterv(integer, count, start, MPIU_INT, P->i[k], n, MPIU_INT, 0, g->comm));
+  }
+  PetscCall(PetscFree3(card, real, integer));
+  PetscCall(PetscFree2(count, start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, bool *ok)
+{
+  const Grid *g    = &m->grid;
+  Loaded      L    = {0};
+  int         good = 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(ParticlesCreate(&L.P));
+  if (g->rank == 0) {
+    PetscCall(Load(m, path, &L));
+    good = L.why[0] == '\0';
+    if (!good)
+      fprintf(stderr, "%s: cannot restart from this file: %s\n", path, L.why);
+  }
+  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, g->comm));
+  *ok = good != 0;
+  if (good) {
+    Particles P;
+
+    PetscCall(ParticlesCreate(&P));
+    PetscCall(Deal(g, &L, &P));
+    PetscCallMPI(MPI_Bcast(&L.s, sizeof(L.s), MPI_BYTE, 0, g->comm));
+    PetscCall(ParticlesDestroy(&m->P));
+    m->P = P;
+    *s   = L.s;
+  }
+  PetscCall(ParticlesDestroy(&L.P));
+  PetscCall(PetscFree2(L.rank, L.place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

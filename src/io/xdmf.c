@@ -1,0 +1,111 @@
+/* fields.xdmf: the time series of particles and grid over fields.h5, for ParaView's and VisIt's XDMF 3 readers.
+   The particles name their vertices, for XDMF 3 makes no points of bare coordinates; the grid is one layer of a 3-D
+   mesh, for VTK's reader lays a 2DCoRectMesh into the y-z plane. */
+#include "io_private.h"
+
+#include <errno.h>
+#include <string.h>
+
+static void Item(FILE *f, const char *dims, bool integer, const char *kind, PetscInt number, const char *name)
+{
+  fprintf(
+      f,
+      "<DataItem Dimensions=\"%s\" NumberType=\"%s\" Precision=\"%d\" Format=\"HDF\">fields.h5:/%s/%06d/%s</DataItem>",
+      dims, integer ? "Int" : "Float", integer ? 4 : 8, kind, (int)number, name);
+}
+
+/* The XDMF types of vectors and tensors are three-dimensional; two and six components go as a matrix. */
+static void Attribute(FILE *f, const char *points, int nc, bool integer, const char *kind, PetscInt number,
+                      const char *name)
+{
+  char dims[96];
+
+  snprintf(dims, sizeof(dims), nc > 1 ? "%s %d" : "%s", points, nc);
+  fprintf(f, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", name,
+          nc > 1 ? "Matrix" : "Scalar");
+  Item(f, dims, integer, kind, number, name);
+  fprintf(f, "</Attribute>\n");
+}
+
+static void ParticleGrid(FILE *f, const SnapshotEntry *e)
+{
+  char n[32], n2[48];
+
+  snprintf(n, sizeof(n), "%d", (int)e->n);
+  snprintf(n2, sizeof(n2), "%s 2", n);
+  fprintf(f, "      <Grid Name=\"particles_%06d\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n",
+          (int)e->number, e->t);
+  fprintf(f, "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%s\" NodesPerElement=\"1\">", n);
+  Item(f, n, true, "particles", e->number, "vertex");
+  fprintf(f, "</Topology>\n        <Geometry GeometryType=\"XY\">");
+  Item(f, n2, false, "particles", e->number, "position");
+  fprintf(f, "</Geometry>\n");
+  for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
+    if (v->first != P_X)
+      Attribute(f, n, v->nc, false, "particles", e->number, v->name);
+  }
+  for (const ExtraVariable *v = io_extra; v->name; v++) {
+    if (strcmp(v->name, "vertex"))
+      Attribute(f, n, 1, v->integer, "particles", e->number, v->name);
+  }
+  fprintf(f, "      </Grid>\n");
+}
+
+static void NodeGrid(FILE *f, const Grid *g, const SnapshotEntry *e)
+{
+  char n[64];
+
+  snprintf(n, sizeof(n), "1 %d %d", (int)g->cells[1] + 1, (int)g->cells[0] + 1);
+  fprintf(f, "      <Grid Name=\"grid_%06d\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n", (int)e->number,
+          e->t);
+  fprintf(f, "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"%s\"/>\n", n);
+  fprintf(f, "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">");
+  fprintf(f, "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">0 %.17g %.17g</DataItem>",
+          g->lower[1], g->lower[0]);
+  fprintf(f,
+          "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">1 %.17g "
+          "%.17g</DataItem></Geometry>\n",
+          g->h[1], g->h[0]);
+  for (const NodalVariable *v = io_nodal; v->name; v++)
+    Attribute(f, n, v->nc, false, "grid", e->number, v->name);
+  fprintf(f, "      </Grid>\n");
+}
+
+static void Collections(FILE *f, const Output *out, const Grid *g)
+{
+  bool any = false;
+
+  fprintf(f, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n");
+  fprintf(f, "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  for (PetscInt k = 0; k < out->nsnapshot; k++) {
+    ParticleGrid(f, &out->snapshot[k]);
+    any = any || out->snapshot[k].grid;
+  }
+  fprintf(f, "    </Grid>\n");
+  if (any) {
+    fprintf(f, "    <Grid Name=\"grid\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+    for (PetscInt k = 0; k < out->nsnapshot; k++) {
+      if (out->snapshot[k].grid)
+        NodeGrid(f, g, &out->snapshot[k]);
+    }
+    fprintf(f, "    </Grid>\n");
+  }
+  fprintf(f, "  </Domain>\n</Xdmf>\n");
+}
+
+PetscErrorCode XdmfWrite(const Output *out, const Grid *g)
+{
+  char  path[IO_PATH], aside[IO_PATH];
+  FILE *f;
+
+  PetscFunctionBeginUser;
+  PetscCall(IoPath(out->dir, "fields.xdmf", path));
+  PetscCall(IoPath(out->dir, "fields.xdmf.tmp", aside));
+  f = fopen(aside, "w");
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s: %s", aside, strerror(errno));
+  Collections(f, out, g);
+  PetscCall(IoFlush(f, aside));
+  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s: %s", aside, strerror(errno));
+  PetscCall(IoRename(aside, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

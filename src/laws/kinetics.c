@@ -1,0 +1,28 @@
+/* Kim-Bishnoi kinetics (1987): rate constant and formation surface, paper (35), (36). */
+#include "clathra/laws.h"
+#include "laws_private.h"
+
+/* K_d = K_0 exp(-dE/(R T_K)), mol/(m^2 Pa s), and dK_d/dT; T in degC. */
+double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT)
+{
+  *dKd_dT = 0.0;
+  if (law->dE == 0.0)
+    return law->K0;
+
+  const double TK = T + LAW_ZERO_CELSIUS, a = law->dE / LAW_GAS_CONSTANT;
+  double       de;
+  const double e = LawExp(-a / TK, &de);
+
+  *dKd_dT = law->K0 * de * a / (TK * TK);
+  return law->K0 * e;
+}
+
+/* A_s = A_geo S_w S_g (1 - S_h) = A_geo s_w s_g (1 - S_h)^3, 1/m, with s_g = 1 - s_w; and its derivatives. */
+double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh)
+{
+  const double v = 1.0 - Sh, film = law->A_geo * sw * (1.0 - sw);
+
+  *dA_dsw = law->A_geo * (1.0 - 2.0 * sw) * v * v * v;
+  *dA_dSh = -3.0 * film * v * v;
+  return film * v * v * v;
+}

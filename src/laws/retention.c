@@ -1,0 +1,122 @@
+/* Retention: gas share of the fluid-filled pore space s_g(p_c), p_c = p_g - p_w (Pa); van Genuchten (1980), Brooks and
+   Corey (1964).  (4), (6) are the paper's numbers. */
+#include "clathra/laws.h"
+#include "laws_private.h"
+
+#define PC_MAX 1e9          /* Pa, range searched by RetentionInvert */
+#define TRAPPED_MIN 1e-4    /* least trapped gas S_gr' of the smooth form, so that p_c is defined without any */
+#define DEFAULT_SMOOTH 0.05 /* p_s/p_0 */
+#define PLATEAU_EPSILON 4e-16
+
+/* log(1 + e^x), accurate in both tails, and its slope 1/(1 + e^-x). */
+static double Softplus(double x, double *dx)
+{
+  const double e = exp(-fabs(x));
+
+  *dx = (x >= 0.0 ? 1.0 : e) / (1.0 + e);
+  return fmax(x, 0.0) + log1p(e);
+}
+
+/* 1 - VG(p), VG = [1 + (p/p_0)^n]^-m = exp(-m sp(L)), n = 1/(1 - m), L = n log(p/p_0): no overflow, and no cancellation
+   where VG is near 1.  0 for p <= 0. */
+static double Drained(const Retention *law, double p, double *dp)
+{
+  *dp = 0.0;
+  if (p <= 0.0)
+    return 0.0;
+
+  double       slope;
+  const double n = 1.0 / (1.0 - law->m), s = -law->m * Softplus(n * log(p / law->p0), &slope), VG = exp(s);
+
+  *dp = law->m * n * VG * (slope / p);
+  return VG < 0.5 ? 1.0 - VG : -expm1(s);
+}
+
+/* Smooth form: s_g = S_gr' exp(p-/p_t) + (1 - S_wr - S_gr')(1 - VG(p+)), p+ = p_s sp(p_c/p_s), p- = -p_s sp(-p_c/p_s).
+   Trapped gas is compressed once p_c < 0; C-infinity and increasing, where the printed (6) is NaN for p_c < 0.
+   Zero (or unset) p_smooth, p_trap mean 0.05 p_0, p_0. */
+static double Retention_VanGenuchten(const Retention *law, double pc, double *ds_dpc)
+{
+  const double ps = law->p_smooth > 0.0 ? law->p_smooth : DEFAULT_SMOOTH * law->p0;
+  const double pt = law->p_trap > 0.0 ? law->p_trap : law->p0, Sgr = fmax(law->Sgr, TRAPPED_MIN);
+  double       up, down, drained_dp;
+  const double plus = ps * Softplus(pc / ps, &up), minus = -ps * Softplus(-pc / ps, &down);
+  const double trapped = Sgr * exp(minus / pt), room = 1.0 - law->Swr - Sgr;
+  const double drained = Drained(law, plus, &drained_dp);
+
+  *ds_dpc = trapped / pt * down + room * drained_dp * up;
+  return trapped + room * drained;
+}
+
+/* Printed law (4), (6) with p_c cut at 0: s_g = S_gr + (1 - S_wr - S_gr)(1 - VG(max(p_c, 0))); C1. */
+static double Retention_VanGenuchtenClamped(const Retention *law, double pc, double *ds_dpc)
+{
+  const double room = 1.0 - law->Swr - law->Sgr, drained = Drained(law, pc, ds_dpc);
+
+  *ds_dpc *= room;
+  return law->Sgr + room * drained;
+}
+
+/* s_g = S_gr + (1 - S_wr - S_gr)(1 - (p_c/p_0)^-lambda) for p_c > p_0, else S_gr; kink at p_0. */
+static double Retention_BrooksCorey(const Retention *law, double pc, double *ds_dpc)
+{
+  *ds_dpc = 0.0;
+  if (pc <= law->p0)
+    return law->Sgr;
+
+  const double room = 1.0 - law->Swr - law->Sgr, s = -law->lambda * log(pc / law->p0);
+
+  *ds_dpc = room * law->lambda * exp(s) / pc;
+  return law->Sgr - room * expm1(s);
+}
+
+/* The plateau s_g = S_gr of a clamped law ends at *pc; false for a law without one. */
+static bool Plateau(const Retention *law, double *pc)
+{
+  *pc = law->gas_share == Retention_BrooksCorey ? law->p0 : 0.0;
+  return law->gas_share != Retention_VanGenuchten;
+}
+
+/* p_c (Pa) with s_g(p_c) = sg, by bisection of [-1e9, 1e9] down to neighbouring doubles (about 70 evaluations; used for
+   initial states only).  On a plateau p_c is its end.  False, and *pc untouched, if the law never reaches sg. */
+bool RetentionInvert(const Retention *law, double sg, double *pc)
+{
+  double lo = -PC_MAX, hi = PC_MAX, end, d;
+
+  if (Plateau(law, &end) && fabs(sg - law->Sgr) <= PLATEAU_EPSILON) {
+    *pc = end;
+    return true;
+  }
+  if (!(sg > law->gas_share(law, lo, &d) && sg <= law->gas_share(law, hi, &d)))
+    return false;
+  for (double mid = 0.5 * (lo + hi); mid > lo && mid < hi; mid = 0.5 * (lo + hi)) {
+    if (law->gas_share(law, mid, &d) < sg)
+      lo = mid;
+    else
+      hi = mid;
+  }
+  *pc = sg - law->gas_share(law, lo, &d) < law->gas_share(law, hi, &d) - sg ? lo : hi;
+  return true;
+}
+
+typedef double (*GasShare)(const Retention *, double, double *);
+static const char *const names[] = {"van_genuchten", "van_genuchten_clamped", "brooks_corey", NULL};
+static const GasShare    laws[]  = {Retention_VanGenuchten, Retention_VanGenuchtenClamped, Retention_BrooksCorey};
+_Static_assert(sizeof names / sizeof *names == sizeof laws / sizeof *laws + 1, "a name for every law");
+
+const char *const *RetentionTypes(void)
+{
+  return names;
+}
+
+/* Sets the function and the name; parameters stay.  False, and nothing set, for an unknown name. */
+bool RetentionSetType(Retention *law, const char *type)
+{
+  const int i = LawFind(names, type);
+
+  if (i < 0)
+    return false;
+  law->gas_share = laws[i];
+  law->type      = names[i];
+  return true;
+}

@@ -1,0 +1,62 @@
+/* clathra CASE [PETSc options] */
+#include "clathra/run.h"
+
+static const char help[] =
+    "Clathra: coupled thermo-hydro-mechanical-chemical material point simulator for methane-hydrate-bearing sediment.\n"
+    "\n"
+    "  clathra CASE [options]      CASE is a folder with a case.yaml, or such a file\n"
+    "  -case_check                 read and validate the case only\n"
+    "  -case_keys                  print every key of a case file\n"
+    "  -restart FILE               go on from a checkpoint\n"
+    "  -quiet                      no line per step\n"
+    "Any key of the case can be set on the command line, e.g. -grid_cells 100,1 -stepper_type euler.\n"
+    "Solver presets: -options_file options/NAME.opts; -snes_, -ksp_, -pc_ options are PETSc's own.\n\n";
+
+static PetscErrorCode Main(int argc, char **argv, int *exit_code)
+{
+  Case        c;
+  bool        ok;
+  PetscBool   keys = PETSC_FALSE, check = PETSC_FALSE;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", &keys, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_check", &check, NULL));
+  *exit_code = CL_EXIT_OK;
+  if (keys) {
+    if (rank == 0)
+      PetscCall(CasePrintKeys(stdout));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (argc < 2 || argv[1][0] == '-') {
+    if (rank == 0)
+      fprintf(stderr, "clathra: name a case: clathra CASE [options]; -help explains\n");
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CaseRead(PETSC_COMM_WORLD, argv[1], &c, &ok));
+  if (!ok) {
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (check)
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: the case is valid\n", c.file));
+  else
+    PetscCall(CaseRun(PETSC_COMM_WORLD, &c, exit_code));
+  PetscCall(CaseDestroy(&c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+  int exit_code = CL_EXIT_BUG;
+
+  if (PetscInitialize(&argc, &argv, NULL, help))
+    return CL_EXIT_BUG;
+  if (Main(argc, argv, &exit_code))
+    exit_code = CL_EXIT_BUG;
+  if (PetscFinalize())
+    return CL_EXIT_BUG;
+  return exit_code;
+}

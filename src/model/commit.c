@@ -1,0 +1,185 @@
+/* End of a stage and of a step: the only place that writes history. */
+#include "gather.h"
+
+#define MAX_MOVE 0.5 /* cells per step */
+
+/* Evaluates particle p at the end of the stage. */
+static ClStatus Evaluate(Model *m, PetscInt p, const double *x, const Reach *r, double in[IN_COUNT], PointState *s,
+                         PointOutput *o)
+{
+  PointHistory h;
+  const char  *why = NULL;
+
+  GatherInputs(m, p, r, x, NULL, in);
+  GatherHistory(m, p, r, &h);
+  const ClStatus status = PointEvaluate(ParticleMaterial(m, p), &h, in, false, s, o, &why);
+  if (status != CL_OK)
+    NoteFailure(m, status, why, p);
+  return status;
+}
+
+static void Displacement(const Model *m, const Reach *r, const double *x, double u[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++) {
+    u[d] = 0.0;
+    for (int a = 0; a < r->n; a++) {
+      const PetscInt I = r->node[a];
+
+      u[d] += r->S[a] * (m->stage.u_star[I * CL_DIM + d] + m->stage.dt * x[I * F_COUNT + F_VSX + d]);
+    }
+  }
+}
+
+static void Velocity(const Model *m, PetscInt p, const double *x, double v[CL_DIM])
+{
+  Reach r;
+
+  ReachExpand(m, p, &r);
+  for (int d = 0; d < CL_DIM; d++) {
+    v[d] = 0.0;
+    for (int a = 0; a < r.n; a++)
+      v[d] += r.S[a] * x[r.node[a] * F_COUNT + F_VSX + d];
+  }
+}
+
+void ModelStartVelocity(const Model *m, double *v)
+{
+  for (PetscInt p = 0; p < m->P.n; p++)
+    Velocity(m, p, m->x_n, &v[2 * p]);
+}
+
+static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++) {
+    const double to = m->P.f[P_X + d][p] + u[d], upper = m->grid.lower[d] + (double)m->grid.cells[d] * m->grid.h[d];
+
+    if (fabs(u[d]) > MAX_MOVE * m->grid.h[d])
+      NoteFailure(m, CL_TOO_FAR, "a particle moves more than half a cell in one step", p);
+    else if (to < m->grid.lower[d] || to > upper)
+      NoteFailure(m, CL_LEFT_GRID, "a particle leaves the background grid", p);
+  }
+}
+
+static PetscErrorCode BoundaryRates(const Model *m, const double *x, StageRates *rates)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->nface; k++) {
+    const Face    *f               = &m->face[k];
+    const PetscInt p               = f->particle;
+    const double   p0[PHASE_COUNT] = {m->P.f[P_PW0][p], m->P.f[P_PG0][p]};
+    double         in[IN_COUNT], sum = 0.0;
+    Reach          r;
+    FaceOutput     o;
+
+    ReachExpand(m, p, &r);
+    GatherInputs(m, p, &r, x, f->N, in);
+    FaceEvaluate(m->c, f, &m->bc, ParticleMaterial(m, p), p0, in, m->coef[r.node[0] * NC_COUNT + NC_KAPPA], m->stage.dt,
+                 &o);
+    for (int a = 0; a < r.n; a++)
+      sum += f->N[a];
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      rates->out[ph] += sum * o.outflow[ph];
+    rates->heat_in += sum * o.heat_in;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
+{
+  PetscFunctionBeginUser;
+  *rates    = (StageRates){0};
+  m->status = CL_OK;
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Reach       r;
+    PointState  s;
+    PointOutput o;
+    double      in[IN_COUNT];
+
+    ReachExpand(m, p, &r);
+    if (Evaluate(m, p, x, &r, in, &s, &o) != CL_OK)
+      continue;
+    Displacement(m, &r, x, &trial->u[2 * p]);
+    Velocity(m, p, x, &trial->v[2 * p]);
+    CheckMotion(m, p, &trial->u[2 * p]);
+    for (int k = 0; k < 3; k++)
+      trial->m[3 * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
+    for (int k = 0; k < 3; k++)
+      trial->y[4 * p + k] = in[IN_P + k];
+    trial->y[4 * p + 3] = s.Sh;
+    rates->heat_source -= o.out[OUT_Q];
+    for (int a = 0; a < r.n; a++) {
+      const PetscInt k = r.node[a] * F_COUNT + F_T;
+
+      rates->heat_rate += r.S[a] * o.out[OUT_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt;
+    }
+  }
+  PetscCall(BoundaryRates(m, x, rates));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
+  PetscCall(ModelReduceStatus(m, status));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
+                         const PointState *s)
+{
+  double *const *f = m->P.f;
+  double         u[CL_DIM];
+
+  Displacement(m, r, x, u);
+  for (int d = 0; d < CL_DIM; d++) {
+    f[P_X + d][p] += u[d];
+    f[P_U + d][p] += u[d];
+    if (m->c->basis == BASIS_CPGIMP)
+      f[P_L + d][p] = fmin(f[P_L + d][p] * s->stretch[d], 0.5 * m->grid.h[d]);
+    f[P_GW + d][p] = in[IN_GP + d];
+    f[P_GG + d][p] = in[IN_GP + 2 + d];
+    f[P_GT + d][p] = in[IN_GT + d];
+  }
+  f[P_LOGJ][p] += log(s->V / f[P_V][p]);
+  f[P_V][p]   = s->V;
+  f[P_MH][p]  = s->m_h;
+  f[P_MW][p]  = s->m_w;
+  f[P_MG][p]  = s->m_g;
+  f[P_PW][p]  = in[IN_P];
+  f[P_PG][p]  = in[IN_P + 1];
+  f[P_T][p]   = in[IN_T];
+  f[P_SH][p]  = s->Sh;
+  f[P_SW][p]  = s->Sw;
+  f[P_PHI][p] = s->phi;
+  for (int c = 0; c < 6; c++) {
+    f[P_SIG + c][p]  = s->sig[c];
+    f[P_SIG0 + c][p] = s->sig0[c];
+  }
+  for (int q = 0; q < 6; q++) { /* FLIP: velocities of skeleton, water, gas */
+    for (int a = 0; a < r->n; a++) {
+      const PetscInt k = r->node[a] * F_COUNT + F_VSX + q;
+
+      f[P_VS + q][p] += r->S[a] * (x[k] - m->x_n[k]);
+    }
+  }
+}
+
+PetscErrorCode ModelCommit(Model *m, const double *x, const double *rates)
+{
+  PetscInt left;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelProjectGradients(m, x, m->proj));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Reach       r;
+    PointState  s;
+    PointOutput o;
+    double      in[IN_COUNT];
+
+    ReachExpand(m, p, &r);
+    PetscCheck(Evaluate(m, p, x, &r, in, &s, &o) == CL_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+               "an accepted state is not admissible");
+    for (int k = 0; k < 4; k++)
+      m->P.f[P_RATE + k][p] = rates[4 * p + k];
+    WriteHistory(m, p, x, &r, in, &s);
+  }
+  PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
+  PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,115 @@
+/* Life of a model. */
+#include "gather.h"
+
+PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
+{
+  static const char *const name[4] = {"ClBeginStep", "ClResidual", "ClJacobian", "ClWidePart"};
+  PetscClassId             id;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(m, sizeof(*m)));
+  m->c = c;
+  PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
+  PetscCall(ParticlesCreate(&m->P));
+  PetscCall(ParticlesSeed(c, &m->grid, &m->P));
+  PetscCall(PetscMalloc2(PetscMax(c->nbc, 1), &m->bc.value, PetscMax(c->nbc, 1), &m->bc.shear));
+  m->tol_residual = 1e-9;
+  m->tol_update   = 1e-6;
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));
+  PetscCall(PetscClassIdRegister("Clathra", &id));
+  for (int e = 0; e < 4; e++)
+    PetscCall(PetscLogEventRegister(name[e], id, &m->event[e]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroyNodal(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(m->x_n, m->w, m->V, m->coef));
+  PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
+  PetscCall(PetscFree3(m->x, m->f, m->proj));
+  PetscCall(MatDestroy(&m->J2));
+  PetscCall(MatDestroy(&m->A));
+  PetscCall(MatDestroy(&m->Pmat));
+  PetscCall(VecDestroy(&m->X));
+  PetscCall(VecDestroy(&m->R));
+  PetscCall(SNESDestroy(&m->snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelDestroy(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DestroyNodal(m));
+  PetscCall(PetscFree(m->stencil));
+  PetscCall(PetscFree(m->wide));
+  PetscCall(PetscFree(m->face));
+  PetscCall(PetscFree(m->ghost));
+  PetscCall(PetscFree(m->cell));
+  PetscCall(PetscFree2(m->bc.value, m->bc.shear));
+  PetscCall(ParticlesDestroy(&m->P));
+  PetscCall(NodeMapDestroy(&m->map));
+  PetscCall(GridDestroy(&m->grid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Everything whose size follows the active nodes; the solver is made anew when first needed. */
+PetscErrorCode ModelResizeNodal(Model *m)
+{
+  const PetscInt n = PetscMax(m->map.n_local, 1);
+
+  PetscFunctionBeginUser;
+  PetscCall(DestroyNodal(m));
+  PetscCall(PetscCalloc4(n * F_COUNT, &m->x_n, n * 2, &m->w, n, &m->V, n * NC_COUNT, &m->coef));
+  PetscCall(PetscCalloc4(n, &m->mask, n * F_COUNT, &m->fixed, n * F_COUNT, &m->row_scale, n * F_COUNT, &m->col_scale));
+  PetscCall(PetscCalloc3(n * F_COUNT, &m->x, n * F_COUNT, &m->f, n * 4, &m->proj));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status)
+{
+  struct {
+    int status, rank;
+  } local          = {(int)m->status, m->grid.rank}, worst;
+  char reason[128] = "";
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_2INT, MPI_MAXLOC, m->grid.comm));
+  *status = (ClStatus)worst.status;
+  if (worst.status != CL_OK && m->grid.size > 1) {
+    static char shared[128]; /* the reason of another rank */
+
+    if (worst.rank == m->grid.rank)
+      PetscCall(PetscStrncpy(reason, m->why ? m->why : "", sizeof(reason)));
+    PetscCallMPI(MPI_Bcast(reason, sizeof(reason), MPI_CHAR, worst.rank, m->grid.comm));
+    PetscCallMPI(MPI_Bcast(m->where, CL_DIM, MPI_DOUBLE, worst.rank, m->grid.comm));
+    PetscCall(PetscStrncpy(shared, reason, sizeof(shared)));
+    m->why = shared;
+  }
+  m->status = *status;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
+{
+  double sum[6] = {0.0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    const Material *mat = ParticleMaterial(m, p);
+    const double    mh = m->P.f[P_MH][p], mw = m->P.f[P_MW][p], mg = m->P.f[P_MG][p], ms = m->P.f[P_MS][p];
+    const Kinetics *k = &mat->kinetics;
+
+    sum[0] += mw + (mat->reacts ? mh * k->N_h * k->M_w / k->M_h : 0.0);
+    sum[1] += mg + (mat->reacts ? mh * k->M_g / k->M_h : 0.0);
+    sum[2] += mh;
+    sum[3] += ms;
+    sum[4] += m->P.f[P_V][p];
+    sum[5] += ms * mat->c_s + mh * mat->c_h + mw * mat->c_w + mg * mat->c_g;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  *t = (ModelTotals){
+      .water = sum[0], .methane = sum[1], .hydrate = sum[2], .solid = sum[3], .V = sum[4], .capacity = sum[5]};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

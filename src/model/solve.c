@@ -1,0 +1,253 @@
+/* Newton-Krylov solution of one stage with PETSc's SNES. */
+#include "gather.h"
+
+const FieldInfo cl_field[F_COUNT] = {
+    {"v_s,x", "m/s", "mixture momentum, x"},
+    {"v_s,y", "m/s", "mixture momentum, y"},
+    {"v_w,x", "m/s", "water momentum, x"},
+    {"v_w,y", "m/s", "water momentum, y"},
+    {"v_g,x", "m/s", "gas momentum, x"},
+    {"v_g,y", "m/s", "gas momentum, y"},
+    {"p_w", "Pa", "water mass"},
+    {"p_g", "Pa", "gas mass"},
+    {"T", "degC", "energy"},
+};
+
+/* Limits of one Newton update, so that no law is evaluated far outside its range. */
+#define LIMIT_T 5.0  /* K */
+#define LIMIT_PG 0.5 /* of the gas pressure */
+#define LIMIT_J 0.5  /* volumetric strain of a step */
+
+/* Block pattern: all active nodes within radius 2, so that it holds whatever the particles do. */
+static PetscErrorCode CreateJ2(Model *m)
+{
+  const NodeMap         *map = &m->map;
+  PetscInt              *dnz, *onz;
+  ISLocalToGlobalMapping l2g;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(map->n_owned, &dnz, map->n_owned, &onz));
+  for (PetscInt I = 0; I < map->n_owned; I++) {
+    for (PetscInt k = 0; k < 25; k++) {
+      const PetscInt K = map->index[GridPadded(&m->grid, map->ij[I][0] + k % 5 - 2, map->ij[I][1] + k / 5 - 2)];
+
+      if (K >= 0)
+        (K < map->n_owned ? dnz : onz)[I]++;
+    }
+  }
+  PetscCall(MatCreateBAIJ(m->grid.comm, F_COUNT, map->n_owned * F_COUNT, map->n_owned * F_COUNT, PETSC_DETERMINE,
+                          PETSC_DETERMINE, 0, dnz, 0, onz, &m->J2));
+  PetscCall(ISLocalToGlobalMappingCreate(m->grid.comm, F_COUNT, map->n_local, map->global, PETSC_COPY_VALUES, &l2g));
+  PetscCall(MatSetLocalToGlobalMapping(m->J2, l2g, l2g));
+  PetscCall(ISLocalToGlobalMappingDestroy(&l2g));
+  PetscCall(PetscFree2(dnz, onz));
+  for (PetscInt I = 0; I < map->n_owned; I++) {
+    const double zero[F_COUNT * F_COUNT] = {0.0};
+
+    for (PetscInt k = 0; k < 25; k++) {
+      const PetscInt K = map->index[GridPadded(&m->grid, map->ij[I][0] + k % 5 - 2, map->ij[I][1] + k / 5 - 2)];
+
+      if (K >= 0)
+        PetscCall(MatSetValuesBlockedLocal(m->J2, 1, &I, 1, &K, zero, INSERT_VALUES));
+    }
+  }
+  PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatSetOption(m->J2, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest scaled entry of each field over all ranks. */
+static PetscErrorCode FieldNorms(const Model *m, Vec v, double norm[F_COUNT])
+{
+  const double *a;
+
+  PetscFunctionBeginUser;
+  for (int q = 0; q < F_COUNT; q++)
+    norm[q] = 0.0;
+  PetscCall(VecGetArrayRead(v, &a));
+  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++)
+    norm[k % F_COUNT] = fmax(norm[k % F_COUNT], fabs(a[k]));
+  PetscCall(VecRestoreArrayRead(v, &a));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, F_COUNT, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static double Largest(const double norm[F_COUNT], int *field)
+{
+  *field = 0;
+  for (int q = 1; q < F_COUNT; q++) {
+    if (norm[q] > norm[*field])
+      *field = q;
+  }
+  return norm[*field];
+}
+
+/* Converged when every field's residual and update are small in units of 1 MPa and 1 K. */
+static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                SNESConvergedReason *reason, void *model)
+{
+  Model   *m = (Model *)model;
+  Vec      R, dX;
+  double   residual[F_COUNT], update[F_COUNT] = {0.0};
+  PetscInt max_it;
+  int      fr, fu;
+
+  PetscFunctionBeginUser;
+  (void)xnorm;
+  (void)gnorm;
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm)) {
+    *reason = SNES_DIVERGED_FNORM_NAN;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SNESGetFunction(snes, &R, NULL, NULL));
+  PetscCall(SNESGetSolutionUpdate(snes, &dX));
+  PetscCall(SNESGetTolerances(snes, NULL, NULL, NULL, &max_it, NULL));
+  PetscCall(FieldNorms(m, R, residual));
+  if (it > 0)
+    PetscCall(FieldNorms(m, dX, update));
+  for (int q = F_VWX; q <= F_VGY; q++)
+    update[q] = 0.0; /* slaved to the pressures by (16): their residual says it all */
+  const double r = Largest(residual, &fr), u = Largest(update, &fu);
+  PetscCall(PetscInfo(snes, "Newton %" PetscInt_FMT ": largest residual %.3e (%s), largest update %.3e (%s)\n", it, r,
+                      cl_field[fr].equation, u, cl_field[fu].name));
+  if (r <= m->tol_residual && u <= m->tol_update)
+    *reason = it == 0 ? SNES_CONVERGED_FNORM_ABS : SNES_CONVERGED_SNORM_RELATIVE;
+  else if (it >= max_it) {
+    m->why  = cl_field[fr].equation;
+    *reason = SNES_DIVERGED_MAX_IT;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Shortens an update that leaves the trusted range of the laws. */
+static PetscErrorCode LimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
+{
+  Model        *m = (Model *)model;
+  const double *x, *y;
+  double        cut = 1.0;
+
+  PetscFunctionBeginUser;
+  (void)ls;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayRead(Y, &y));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    const double *s = &m->col_scale[I * F_COUNT], *xI = &x[I * F_COUNT], *yI = &y[I * F_COUNT];
+    const double  dT = fabs(yI[F_T] * s[F_T]), dpg = fabs(yI[F_PG]), pg = fabs(xI[F_PG]);
+
+    if (dT > LIMIT_T)
+      cut = fmin(cut, LIMIT_T / dT);
+    if (dpg > LIMIT_PG * pg && pg > 0.0)
+      cut = fmin(cut, LIMIT_PG * pg / dpg);
+    for (int d = 0; d < CL_DIM; d++) {
+      const double du = fabs(yI[F_VSX + d] * s[F_VSX + d]) * m->stage.dt;
+
+      if (du > LIMIT_J * m->grid.h[d])
+        cut = fmin(cut, LIMIT_J * m->grid.h[d] / du);
+    }
+  }
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayRead(Y, &y));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_MIN, m->grid.comm));
+  *changed = cut < 1.0 ? PETSC_TRUE : PETSC_FALSE;
+  if (*changed)
+    PetscCall(VecScale(Y, cut));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Defaults: GMRES preconditioned by a direct factorisation of J2; every -snes_, -ksp_, -pc_ option wins. */
+static PetscErrorCode CreateSolver(Model *m)
+{
+  const PetscBool one_rank = m->grid.size == 1 ? PETSC_TRUE : PETSC_FALSE;
+  char            type[32];
+  SNESLineSearch  ls;
+  PetscBool       aij;
+  KSP             ksp;
+  PC              pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(CreateJ2(m));
+  PetscCall(WideCreate(m, &m->A));
+  PetscCall(MatCreateVecs(m->J2, &m->X, &m->R));
+  PetscCall(PetscStrncpy(type, one_rank ? "aij" : "baij", sizeof(type)));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", type, sizeof(type), NULL));
+  PetscCall(PetscStrcmp(type, "aij", &aij));
+  if (aij) {
+    PetscCall(MatConvert(m->J2, MATAIJ, MAT_INITIAL_MATRIX, &m->Pmat));
+  } else {
+    PetscCall(PetscObjectReference((PetscObject)m->J2));
+    m->Pmat = m->J2;
+  }
+  PetscCall(SNESCreate(m->grid.comm, &m->snes));
+  PetscCall(SNESSetFunction(m->snes, m->R, ModelResidual, m));
+  PetscCall(SNESSetJacobian(m->snes, m->A, m->Pmat, ModelJacobian, m));
+  PetscCall(SNESSetTolerances(m->snes, 0.0, 0.0, 0.0, 15, 10000));
+  PetscCall(SNESSetConvergenceTest(m->snes, Converged, m, NULL));
+  PetscCall(SNESGetLineSearch(m->snes, &ls));
+  PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
+  PetscCall(SNESLineSearchSetPreCheck(ls, LimitUpdate, m));
+  PetscCall(SNESGetKSP(m->snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPGMRES));
+  PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 200));
+  PetscCall(KSPGMRESSetRestart(ksp, 60));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, one_rank ? MATSOLVERUMFPACK : MATSOLVERMUMPS));
+  PetscCall(SNESSetFromOptions(m->snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Why SNES gave up, in words. */
+static PetscErrorCode Explain(Model *m, SNESConvergedReason reason)
+{
+  KSP                ksp;
+  KSPConvergedReason linear;
+
+  PetscFunctionBeginUser;
+  if (m->status != CL_OK)
+    PetscFunctionReturn(PETSC_SUCCESS); /* a particle said it */
+  m->status = CL_SOLVER;
+  PetscCall(SNESGetKSP(m->snes, &ksp));
+  PetscCall(KSPGetConvergedReason(ksp, &linear));
+  if (linear < 0 || reason == SNES_DIVERGED_LINEAR_SOLVE)
+    m->why = "the linear solver failed";
+  else if (reason == SNES_DIVERGED_MAX_IT) {
+    static char why[96];
+
+    PetscCall(PetscSNPrintf(why, sizeof(why), "Newton's method did not converge in the equation of %s",
+                            m->why ? m->why : "?"));
+    m->why = why;
+  } else
+    m->why = "Newton's method diverged";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status)
+{
+  SNESConvergedReason reason;
+  double             *a;
+
+  PetscFunctionBeginUser;
+  if (!m->snes)
+    PetscCall(CreateSolver(m));
+  PetscCall(VecGetArrayWrite(m->X, &a));
+  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
+    const bool fixed = (m->mask[k / F_COUNT] >> (k % F_COUNT)) & 1u;
+
+    a[k] = (fixed ? m->fixed[k] : x[k]) / m->col_scale[k];
+  }
+  PetscCall(VecRestoreArrayWrite(m->X, &a));
+  m->why = NULL;
+  PetscCall(SNESSolve(m->snes, NULL, m->X));
+  PetscCall(SNESGetConvergedReason(m->snes, &reason));
+  PetscCall(SNESGetIterationNumber(m->snes, newton));
+  if (reason < 0)
+    PetscCall(Explain(m, reason));
+  else
+    m->status = CL_OK;
+  PetscCall(ModelReduceStatus(m, status));
+  if (*status == CL_OK)
+    PetscCall(ModelUnscale(m, m->X, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,306 @@
+/* Ghost penalty (22) and pressure projection (23): both sum to zero over the nodes. */
+#include "gather.h"
+
+#define SLIVER 1e-6 /* of a cell */
+#define FULL 0.75   /* cells filled less, or with a surface inside, are cut */
+
+static PetscInt CellIndex(const Model *m, PetscInt i, PetscInt j)
+{
+  const Grid *g = &m->grid;
+
+  if (i < g->gs[0] || j < g->gs[1] || i >= g->gs[0] + g->gm[0] || j >= g->gs[1] + g->gm[1])
+    return -1;
+  return m->map.index[GridPadded(g, i, j)]; /* a cell is named after its lower left node */
+}
+
+/* Share of [x-l, x+l] in its first cell; slivers to either side of a grid line do not count. */
+static double FirstShare(const Grid *g, int d, double x, double l, PetscInt *first)
+{
+  const double from = (x - l - g->lower[d]) / g->h[d], length = 2.0 * l / g->h[d];
+  double       share;
+
+  *first = (PetscInt)floor(from + SLIVER);
+  share  = ((double)*first + 1.0 - from) / length;
+  return share > 1.0 - SLIVER ? 1.0 : share;
+}
+
+static void FillCells(const Model *m, double *fill)
+{
+  const double V_cell = m->grid.h[0] * m->grid.h[1];
+
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    PetscInt first[CL_DIM];
+    double   share[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++)
+      share[d] = FirstShare(&m->grid, d, m->P.f[P_X + d][p], m->P.f[P_L + d][p], &first[d]);
+    for (int k = 0; k < 4; k++) {
+      const double   w = (k % 2 ? 1.0 - share[0] : share[0]) * (k / 2 ? 1.0 - share[1] : share[1]);
+      const PetscInt I = w > 0.0 ? CellIndex(m, first[0] + k % 2, first[1] + k / 2) : -1;
+
+      if (I >= 0)
+        fill[2 * I] += w * m->P.f[P_V][p] / V_cell;
+    }
+  }
+}
+
+/* Cells with a surface face in their interior. */
+static void MarkSurface(const Model *m, double *fill)
+{
+  for (PetscInt k = 0; k < m->nface; k++) {
+    const Face *f    = &m->face[k];
+    const int   axis = f->side / 2;
+    double      s[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++)
+      s[d] = (m->P.f[P_X + d][f->particle] + f->r[d] - m->grid.lower[d]) / m->grid.h[d];
+    if (fabs(s[axis] - round(s[axis])) < 1e-6)
+      continue; /* on a grid line: nothing is cut */
+    const PetscInt I = CellIndex(m, (PetscInt)floor(s[0]), (PetscInt)floor(s[1]));
+    if (I >= 0)
+      fill[2 * I + 1] = 1.0;
+  }
+}
+
+/* A line belongs to a face whose two cells are active and one of which is cut or next to a cut one. */
+static bool FaceNeedsPenalty(const Model *m, const double *fill, const unsigned char *near, PetscInt i, PetscInt j,
+                             int d)
+{
+  const PetscInt I = CellIndex(m, i, j), K = CellIndex(m, i - (d == 0), j - (d == 1));
+
+  return I >= 0 && K >= 0 && fill[2 * I] > 0.0 && fill[2 * K] > 0.0 && (near[I] || near[K]);
+}
+
+static bool IsCut(const double *fill, PetscInt I)
+{
+  return I >= 0 && fill[2 * I] > 0.0 && (fill[2 * I] < FULL || fill[2 * I + 1] > 0.0);
+}
+
+static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsigned char *near)
+{
+  const double g = m->c->ghost_penalty;
+  PetscInt     n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->ghost));
+  PetscCall(PetscMalloc1(2 * PetscMax(m->map.n_owned, 1), &m->ghost));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    const PetscInt i = m->map.ij[I][0], j = m->map.ij[I][1];
+
+    for (int d = 0; d < CL_DIM; d++) {
+      const int      t  = 1 - d;
+      const PetscInt lo = CellIndex(m, i - (d == 0), j - (d == 1)), hi = CellIndex(m, i + (d == 0), j + (d == 1));
+      const int      sides =
+          FaceNeedsPenalty(m, fill, near, i, j, d) + FaceNeedsPenalty(m, fill, near, i - (d == 1), j - (d == 0), d);
+      const double *c = &m->coef[I * NC_COUNT];
+
+      if (!sides || lo < 0 || hi < 0)
+        continue;
+      m->ghost[n++] = (GhostLine){.node   = {lo, I, hi},
+                                  .a      = g * 0.5 * sides * m->grid.h[t] / m->grid.h[d],
+                                  .M      = c[NC_M],
+                                  .kappa  = c[NC_KAPPA],
+                                  .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
+    }
+  }
+  m->nghost = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BuildGhost(Model *m)
+{
+  double        *fill; /* [I][2]: filled share, surface inside */
+  unsigned char *near;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(2 * m->map.n_local, &fill, m->map.n_local, &near));
+  FillCells(m, fill);
+  MarkSurface(m, fill);
+  PetscCall(NodeMapSum(&m->map, fill, 2));
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    const PetscInt i = m->map.ij[I][0], j = m->map.ij[I][1];
+
+    near[I] = IsCut(fill, I) || IsCut(fill, CellIndex(m, i - 1, j)) || IsCut(fill, CellIndex(m, i + 1, j)) ||
+              IsCut(fill, CellIndex(m, i, j - 1)) || IsCut(fill, CellIndex(m, i, j + 1));
+  }
+  PetscCall(BuildGhostLines(m, fill, near));
+  PetscCall(PetscFree2(fill, near));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sums over the particles of one cell. */
+typedef struct {
+  double w, wN[4], wNN[4][4];
+  double V, s[PHASE_COUNT], rho[PHASE_COUNT];
+} CellSums;
+
+static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellSums *c)
+{
+  PointProperties q;
+  const char     *why;
+  double          r[CL_DIM];
+
+  if (PointPropertiesEvaluate(ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], m->P.f[P_PW][p],
+                              m->P.f[P_PG][p], m->P.f[P_T][p], &q, &why) != CL_OK)
+    return; /* ModelBeginStep reported it */
+  for (int d = 0; d < CL_DIM; d++)
+    r[d] = (m->P.f[P_X + d][p] - m->grid.lower[d]) / m->grid.h[d] - (double)cell[d];
+
+  const double V = m->P.f[P_V][p], w = V * m->c->pressure_projection / (2.0 * q.G);
+  const double N[4] = {(1 - r[0]) * (1 - r[1]), r[0] * (1 - r[1]), (1 - r[0]) * r[1], r[0] * r[1]};
+
+  c->w += w;
+  c->V += V;
+  for (int a = 0; a < 4; a++) {
+    c->wN[a] += w * N[a];
+    for (int b = 0; b < 4; b++)
+      c->wNN[a][b] += w * N[a] * N[b];
+  }
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    c->s[f] += V * q.s[f];
+    c->rho[f] += V * q.rho[f];
+  }
+}
+
+static bool FinishCell(const Model *m, const PetscInt cell[], const CellSums *c, ProjectionCell *k)
+{
+  for (int a = 0; a < 4; a++) {
+    k->node[a] = CellIndex(m, cell[0] + a % 2, cell[1] + a / 2);
+    if (k->node[a] < 0)
+      return false;
+    for (int b = 0; b < 4; b++)
+      k->K[a][b] = c->wNN[a][b] - c->wN[a] * c->wN[b] / c->w;
+  }
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    k->s[f]   = c->s[f] / c->V;
+    k->rho[f] = c->rho[f] / c->V;
+  }
+  return true;
+}
+
+static PetscErrorCode BuildProjection(Model *m)
+{
+  const Grid *g = &m->grid;
+  CellSums   *sum;
+  PetscInt    n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(g->gm[0] * g->gm[1], &sum));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    const double x[CL_DIM] = {m->P.f[P_X][p], m->P.f[P_X + 1][p]};
+    PetscInt     cell[CL_DIM];
+
+    if (GridCell(g, x, cell))
+      AddParticle(m, p, cell, &sum[GridPadded(g, cell[0], cell[1])]);
+  }
+  PetscCall(PetscFree(m->cell));
+  PetscCall(PetscMalloc1(g->xm[0] * g->xm[1], &m->cell));
+  for (PetscInt j = g->xs[1]; j < g->xs[1] + g->xm[1]; j++) {
+    for (PetscInt i = g->xs[0]; i < g->xs[0] + g->xm[0]; i++) {
+      const PetscInt  cell[CL_DIM] = {i, j};
+      const CellSums *s            = &sum[GridPadded(g, i, j)];
+
+      if (s->w > 0.0 && FinishCell(m, cell, s, &m->cell[n]))
+        n++;
+    }
+  }
+  m->ncell = n;
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StabilisationBuild(Model *m)
+{
+  PetscFunctionBeginUser;
+  m->nghost = m->ncell = 0;
+  if (m->c->ghost_penalty > 0.0)
+    PetscCall(BuildGhost(m));
+  if (m->c->pressure_projection > 0.0)
+    PetscCall(BuildProjection(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Coefficient of the penalty on each of the nine unknowns; none on the fluid velocities, which carry the boundary
+ * pressure. */
+static void GhostCoefficients(const GhostLine *g, double dt, double c[F_COUNT])
+{
+  for (int q = 0; q < F_COUNT; q++)
+    c[q] = 0.0;
+  c[F_VSX] = c[F_VSY] = g->a * g->M * dt;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    c[F_PW + f] = g->a * dt / (1.0 / g->lambda[f] + 1.0 / dt); /* dt' rho tau */
+  c[F_T] = g->a * g->kappa;
+}
+
+static const double second[3] = {1.0, -2.0, 1.0};
+
+void StabilisationResidual(const Model *m, const double *x, double *f)
+{
+  for (PetscInt k = 0; k < m->nghost; k++) {
+    const GhostLine *g = &m->ghost[k];
+    double           c[F_COUNT];
+
+    GhostCoefficients(g, m->stage.dt, c);
+    for (int q = 0; q < F_COUNT; q++) {
+      double jump = 0.0;
+
+      for (int a = 0; a < 3; a++)
+        jump += second[a] * x[g->node[a] * F_COUNT + q];
+      for (int a = 0; a < 3; a++)
+        f[g->node[a] * F_COUNT + q] += c[q] * jump * second[a];
+    }
+  }
+  for (PetscInt k = 0; k < m->ncell; k++) {
+    const ProjectionCell *c = &m->cell[k];
+    double                dp[4];
+
+    for (int b = 0; b < 4; b++) {
+      const double *xI = &x[c->node[b] * F_COUNT], *xs = &m->stage.x_star[c->node[b] * F_COUNT];
+
+      dp[b] = c->s[PHASE_W] * (xI[F_PW] - xs[F_PW]) + c->s[PHASE_G] * (xI[F_PG] - xs[F_PG]);
+    }
+    for (int a = 0; a < 4; a++) {
+      double Kdp = 0.0;
+
+      for (int b = 0; b < 4; b++)
+        Kdp += c->K[a][b] * dp[b];
+      for (int ph = 0; ph < PHASE_COUNT; ph++)
+        f[c->node[a] * F_COUNT + F_PW + ph] += c->rho[ph] * c->s[ph] * Kdp;
+    }
+  }
+}
+
+PetscErrorCode StabilisationJacobian(Model *m)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < m->nghost; k++) {
+    const GhostLine *g = &m->ghost[k];
+    double           c[F_COUNT], block[9 * F_COUNT * F_COUNT] = {0.0};
+
+    GhostCoefficients(g, m->stage.dt, c);
+    for (int a = 0; a < 3; a++) {
+      for (int b = 0; b < 3; b++) {
+        for (int q = 0; q < F_COUNT; q++)
+          block[(a * F_COUNT + q) * 3 * F_COUNT + b * F_COUNT + q] = c[q] * second[a] * second[b];
+      }
+    }
+    PetscCall(JacobianAdd(m, 3, g->node, block));
+  }
+  for (PetscInt k = 0; k < m->ncell; k++) {
+    const ProjectionCell *c                             = &m->cell[k];
+    double                block[16 * F_COUNT * F_COUNT] = {0.0};
+
+    for (int a = 0; a < 4; a++) {
+      for (int b = 0; b < 4; b++) {
+        for (int r = 0; r < PHASE_COUNT; r++) {
+          for (int q = 0; q < PHASE_COUNT; q++) {
+            block[(a * F_COUNT + F_PW + r) * 4 * F_COUNT + b * F_COUNT + F_PW + q] =
+                c->rho[r] * c->s[r] * c->s[q] * c->K[a][b];
+          }
+        }
+      }
+    }
+    PetscCall(JacobianAdd(m, 4, c->node, block));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,140 @@
+/* Initial particles: regular inside each cell of a region's box, with faces on the box's sides. */
+#include "clathra/particles.h"
+#include "clathra/point.h"
+
+/* Particles along one axis of a box, which they fill exactly. */
+typedef struct {
+  PetscInt n;
+  double   from, spacing; /* m */
+} Fill;
+
+/* The box is cut into whole spacings: ppc per cell where the box follows the grid, the nearest number elsewhere. */
+static Fill FillAxis(const Grid *g, const Region *r, int d)
+{
+  Fill         f;
+  const double length = r->upper[d] - r->lower[d];
+
+  f.n       = PetscMax((PetscInt)ceil(length / g->h[d] * (double)r->ppc[d] - 1e-6), 1);
+  f.from    = r->lower[d];
+  f.spacing = length / (double)f.n;
+  return f;
+}
+
+/* Mean pore pressure, with the weight of the water above for a hydrostatic region. */
+static double InitialPressure(const Case *c, const Region *r, const Material *mat, const double x[])
+{
+  double p = r->pressure;
+
+  if (r->hydrostatic) {
+    for (int d = 0; d < CL_DIM; d++) {
+      if (c->gravity[d] != 0.0)
+        p += mat->water.rho0 * c->gravity[d] * (x[d] - r->datum);
+    }
+  }
+  return p;
+}
+
+static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+                                   const double l[])
+{
+  const Region   *r   = &c->region[region];
+  const Material *mat = &c->material[r->material];
+  const double    V = 4.0 * l[0] * l[1], sg = r->Sg / (1.0 - r->Sh), pm = InitialPressure(c, r, mat, x);
+  double          pc, pw, pg;
+
+  PetscFunctionBeginUser;
+  PetscCheck(RetentionInvert(&mat->retention, sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "region %s: the retention law never reaches the initial gas share %g", r->name, sg);
+  pw = pm - sg * pc; /* p = s_w p_w + s_g p_g */
+  pg = pw + pc;
+  for (int k = 0; k < P_COUNT; k++)
+    P->f[k][p] = 0.0;
+  for (int d = 0; d < CL_DIM; d++) {
+    P->f[P_X + d][p] = x[d];
+    P->f[P_L + d][p] = l[d];
+    if (r->hydrostatic)
+      P->f[P_GW + d][p] = P->f[P_GG + d][p] = mat->water.rho0 * c->gravity[d];
+  }
+  P->f[P_V][p]   = V;
+  P->f[P_PHI][p] = mat->porosity;
+  P->f[P_SH][p]  = r->Sh;
+  P->f[P_SW][p]  = r->Sw;
+  P->f[P_T][p]   = r->temperature;
+  P->f[P_PW][p] = P->f[P_PW0][p] = pw;
+  P->f[P_PG][p] = P->f[P_PG0][p] = pg;
+  for (int s = 0; s < 6; s++)
+    P->f[P_SIG + s][p] = P->f[P_SIG0 + s][p] = r->stress[s];
+  PointInitialMasses(mat, V, mat->porosity, r->Sh, pw, pg, r->temperature, &P->f[P_MS][p], &P->f[P_MH][p],
+                     &P->f[P_MW][p], &P->f[P_MG][p]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sides of the box that no other region touches are surfaces. */
+static bool Touched(const Case *c, PetscInt region, const double x[])
+{
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    const Region *r = &c->region[k];
+
+    if (k != region && x[0] >= r->lower[0] && x[0] <= r->upper[0] && x[1] >= r->lower[1] && x[1] <= r->upper[1])
+      return true;
+  }
+  return false;
+}
+
+static PetscInt FaceBits(const Case *c, PetscInt region, const PetscInt ij[], const PetscInt n[], const double x[],
+                         const double l[])
+{
+  PetscInt bits = 0;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    for (int upper = 0; upper < 2; upper++) {
+      double outside[CL_DIM] = {x[0], x[1]};
+
+      if (ij[d] != (upper ? n[d] - 1 : 0))
+        continue;
+      outside[d] += (upper ? 1.0 : -1.0) * 1.001 * l[d];
+      if (!Touched(c, region, outside))
+        bits |= 1 << (2 * d + upper);
+    }
+  }
+  return bits;
+}
+
+static PetscErrorCode SeedRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, Particles *P)
+{
+  const Fill     fx = FillAxis(g, &c->region[region], 0), fy = FillAxis(g, &c->region[region], 1);
+  const PetscInt n[CL_DIM] = {fx.n, fy.n};
+  const double   l[CL_DIM] = {0.5 * fx.spacing, 0.5 * fy.spacing};
+
+  PetscFunctionBeginUser;
+  for (PetscInt j = 0; j < n[1]; j++) {
+    for (PetscInt i = 0; i < n[0]; i++, (*id)++) {
+      const PetscInt ij[CL_DIM] = {i, j};
+      const double   x[CL_DIM]  = {fx.from + ((double)i + 0.5) * fx.spacing, fy.from + ((double)j + 0.5) * fy.spacing};
+      PetscInt       cell[CL_DIM];
+
+      PetscCheck(GridCell(g, x, cell), g->comm, PETSC_ERR_ARG_OUTOFRANGE, "region %s leaves the grid",
+                 c->region[region].name);
+      if (GridCellOwner(g, cell) != g->rank)
+        continue;
+      const PetscInt p = P->n;
+      PetscCall(ParticlesResize(P, p + 1));
+      PetscCall(InitialState(c, region, P, p, x, l));
+      P->i[PI_ID][p]     = *id;
+      P->i[PI_REGION][p] = region;
+      P->i[PI_FACES][p]  = FaceBits(c, region, ij, n, x, l);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P)
+{
+  PetscInt id = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ParticlesResize(P, 0));
+  for (PetscInt r = 0; r < c->nregion; r++)
+    PetscCall(SeedRegion(c, g, r, &id, P));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

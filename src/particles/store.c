@@ -1,0 +1,51 @@
+/* The structure-of-arrays particle store. */
+#include "clathra/particles.h"
+
+#define CL_PARTICLE_ROW(id, hdf5, ncomp, units, meaning)                                                               \
+  {.name = hdf5, .unit = units, .doc = meaning, .first = id, .nc = ncomp},
+const ParticleVariable cl_particle_variable[] = {CL_PARTICLE_TABLE(CL_PARTICLE_ROW){.name = NULL}};
+
+PetscErrorCode ParticlesCreate(Particles *P)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(P, sizeof(*P)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ParticlesDestroy(Particles *P)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < P_COUNT; k++)
+    PetscCall(PetscFree(P->f[k]));
+  for (int k = 0; k < PI_COUNT; k++)
+    PetscCall(PetscFree(P->i[k]));
+  P->n = P->cap = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ParticlesResize(Particles *P, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  if (n > P->cap || !P->f[0]) {
+    const PetscInt cap = PetscMax(n + n / 8, 16);
+
+    for (int k = 0; k < P_COUNT; k++)
+      PetscCall(PetscRealloc(sizeof(double) * (size_t)cap, &P->f[k]));
+    for (int k = 0; k < PI_COUNT; k++)
+      PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)cap, &P->i[k]));
+    P->cap = cap;
+  }
+  P->n = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ParticlesCopy(const Particles *from, Particles *to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ParticlesResize(to, from->n));
+  for (int k = 0; k < P_COUNT; k++)
+    PetscCall(PetscArraycpy(to->f[k], from->f[k], from->n));
+  for (int k = 0; k < PI_COUNT; k++)
+    PetscCall(PetscArraycpy(to->i[k], from->i[k], from->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

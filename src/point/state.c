@@ -1,0 +1,223 @@
+/* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(13). */
+#include "state.h"
+
+#define MOBILITY_FLOOR 1e-9 /* of k_r, in the drag only: an immobile phase still has a velocity */
+
+static Jet LiquidJet(const Liquid *law, Jet p, Jet T)
+{
+  double       dp, dT;
+  const double rho = LiquidDensity(law, p.v, T.v, &dp, &dT);
+
+  return JetChain2(rho, dp, p, dT, T);
+}
+
+static Jet GasJet(const Gas *law, Jet p, Jet T)
+{
+  double       dp, dT;
+  const double rho = GasDensity(law, p.v, T.v, &dp, &dT);
+
+  return JetChain2(rho, dp, p, dT, T);
+}
+
+/* (12): dissociation is linear in the hydrate mass. */
+static void Dissociate(const Material *mat, const PointHistory *h, Jet Kd, Jet drive, Jet rho_h, ScalarState *s)
+{
+  const Kinetics *k    = &mat->kinetics;
+  const double    from = fmax(h->m_star[0], 0.0);
+  const Jet       rate = JetScale(h->dt * k->M_h * k->A_geo, JetDiv(JetMul(Kd, drive), rho_h));
+
+  s->limited = h->m_star[0] < 0.0;
+  s->m_h     = JetDiv(JetConstant(from), JetShift(rate, 1.0));
+}
+
+/* m_h* + growth (A_s/A_geo) - S rho_h V_p as a function of S for formation (13); decreasing in S. */
+static double FormationBalance(const Kinetics *k, double S, double sw, double m0, double growth, double pore,
+                               double *dS)
+{
+  double       dw, dA;
+  const double A = KineticsFormationArea(k, sw, S, &dw, &dA);
+
+  *dS = growth * dA - pore;
+  return m0 + growth * A - pore * S;
+}
+
+/* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
+static void Form(const Material *mat, const PointHistory *h, Jet Kd, Jet drive, Jet rho_h, ScalarState *s)
+{
+  const Kinetics *k      = &mat->kinetics;
+  const double    m0     = fmax(h->m_star[0], 0.0);
+  const Jet       growth = JetScale(-h->dt * k->M_h, JetMul(s->V, JetMul(Kd, drive)));
+  const Jet       pore   = JetMul(rho_h, s->Vp);
+  double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0, dw, dA;
+
+  s->limited = h->m_star[0] < 0.0;
+  for (int it = 0; it < 100; it++) {
+    const double f = FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
+
+    if (f > 0.0)
+      lo = S;
+    else
+      hi = S;
+    double next = S - f / dS;
+    if (!(next > lo && next < hi))
+      next = f == 0.0 ? S : 0.5 * (lo + hi);
+    if (fabs(next - S) <= 1e-16 + 4e-16 * S) {
+      S = next;
+      break;
+    }
+    S = next;
+  }
+  FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
+
+  /* dS = -(df/dq)/(df/dS) dq with f = m0 + growth A(sw, S) - pore S */
+  const double A  = KineticsFormationArea(k, s->sw.v, S, &dw, &dA);
+  const Jet    fq = JetSub(JetMul(growth, JetChain(A, dw, s->sw)), JetScale(S, pore));
+  const Jet    Sj = JetChain(S, -1.0 / dS, fq);
+
+  s->m_h = JetMul(Sj, pore);
+}
+
+static void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s)
+{
+  double dK, dpe;
+
+  s->limited = false;
+  if (!mat->reacts) {
+    s->m_h = JetConstant(h->m_star[0]);
+    return;
+  }
+  const double Kd    = KineticsRateConstant(&mat->kinetics, T.v, &dK);
+  const double pe    = EquilibriumPressure(&mat->kinetics.equilibrium, T.v, &dpe);
+  const Jet    drive = JetSub(JetChain(pe, dpe, T), s->p); /* p_e - p */
+
+  if (drive.v >= 0.0)
+    Dissociate(mat, h, JetChain(Kd, dK, T), drive, rho_h, s);
+  else
+    Form(mat, h, JetChain(Kd, dK, T), drive, rho_h, s);
+}
+
+/* mu/(k_a k_r) of both phases. */
+static void Drag(const Material *mat, ScalarState *s)
+{
+  double       dphi, dSh, dw, dg;
+  const double k   = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
+  const Jet    ka  = JetChain2(k, dphi, s->phi, dSh, s->Sh);
+  double       krw = RelPermWater(&mat->relperm, s->sw.v, &dw), krg = RelPermGas(&mat->relperm, s->sg.v, &dg);
+
+  if (krw < MOBILITY_FLOOR)
+    krw = MOBILITY_FLOOR, dw = 0.0;
+  if (krg < MOBILITY_FLOOR)
+    krg = MOBILITY_FLOOR, dg = 0.0;
+  s->drag[PHASE_W] = JetDiv(JetConstant(mat->mu_w), JetMul(ka, JetChain(krw, dw, s->sw)));
+  s->drag[PHASE_G] = JetDiv(JetConstant(mat->mu_g), JetMul(ka, JetChain(krg, dg, s->sg)));
+}
+
+static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarState *s)
+{
+  const double kappa[4] = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g};
+  double       dphi, dSh, dsw, dL;
+  const double k = MixtureAverage(s->phi.v, s->Sh.v, s->sw.v, kappa, &dphi, &dSh, &dsw);
+  const double L = LatentHeatEvaluate(&mat->latent, T.v, &dL);
+
+  s->kappa    = JetAdd(JetChain2(k, dphi, s->phi, dSh, s->Sh), JetChain(0.0, dsw, s->sw));
+  s->capacity = JetAdd(JetShift(JetScale(mat->c_h, s->m_h), h->m_s * mat->c_s),
+                       JetAdd(JetScale(mat->c_w, s->m_w), JetScale(mat->c_g, s->m_g)));
+  s->latent   = JetChain(L, dL, T);
+}
+
+/* Young's modulus and the expansivity (45) of skeleton and hydrate. */
+static void Skeleton(const Material *mat, ScalarState *s)
+{
+  double       dE;
+  const double E      = ElasticityYoung(&mat->elasticity, s->Sh.v, &dE);
+  const Jet    grains = JetSub(JetConstant(1.0), s->phi), ice = JetMul(s->phi, s->Sh);
+
+  s->E    = JetChain(E, dE, s->Sh);
+  s->beta = JetDiv(JetAdd(JetScale(mat->solid.beta, grains), JetScale(mat->hydrate.beta, ice)), JetAdd(grains, ice));
+}
+
+ClStatus ScalarStateEvaluate(const Material *mat, const PointHistory *h, double J, const double in[IN_COUNT],
+                             ScalarState *s, const char **why)
+{
+  const Jet pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
+            T     = JetVariable(in[IN_T], JET_T);
+  const Jet zero  = JetConstant(0.0);
+  const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
+  const Jet pc = JetSub(pg, pw);
+  double    ds;
+
+  if (!isfinite(pw.v) || !isfinite(pg.v) || !isfinite(T.v)) {
+    *why = "pressure or temperature is not finite";
+    return CL_NONFINITE;
+  }
+  if (pg.v <= 0.0) {
+    *why = "gas pressure fell to zero";
+    return CL_DOMAIN;
+  }
+  s->V   = JetScale(h->V, JetVariable(J, JET_J));
+  s->Vp  = JetSub(s->V, JetDiv(JetConstant(h->m_s), rho_s));
+  s->phi = JetDiv(s->Vp, s->V);
+  if (!(s->phi.v > 0.0)) {
+    *why = "porosity fell to zero";
+    return CL_DOMAIN;
+  }
+  const double sg = RetentionGasShare(&mat->retention, pc.v, &ds);
+  s->sg           = JetChain(sg, ds, pc);
+  s->sw           = JetSub(JetConstant(1.0), s->sg);
+  s->p            = JetAdd(pw, JetMul(s->sg, pc)); /* (10) */
+  s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
+  s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
+  HydrateMass(mat, h, T, rho_h, s);
+
+  const Jet Vh = JetDiv(s->m_h, rho_h), Vf = JetSub(s->Vp, Vh);
+  if (!(Vf.v > 0.0)) {
+    *why = "hydrate fills the pore space";
+    return CL_DOMAIN;
+  }
+  s->Sh  = JetDiv(Vh, s->Vp);
+  s->m_w = JetMul(Vf, JetMul(s->sw, s->rho[PHASE_W]));
+  s->m_g = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
+  Drag(mat, s);
+  Thermal(mat, h, T, s);
+  Skeleton(mat, s);
+  return CL_OK;
+}
+
+void PointInitialMasses(const Material *mat, double V, double phi, double Sh, double pw, double pg, double T,
+                        double *m_s, double *m_h, double *m_w, double *m_g)
+{
+  double       d, e;
+  const double sg = RetentionGasShare(&mat->retention, pg - pw, &d), Vf = V * phi * (1.0 - Sh);
+
+  *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
+  *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
+  *m_w = Vf * (1.0 - sg) * LiquidDensity(&mat->water, pw, T, &d, &e);
+  *m_g = Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e);
+}
+
+ClStatus PointPropertiesEvaluate(const Material *mat, double V, double m_s, double m_h, double pw, double pg, double T,
+                                 PointProperties *r, const char **why)
+{
+  const PointHistory h = {.V = V, .m_s = m_s, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
+  const double       in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
+  ScalarState        s;
+  const ClStatus     status = ScalarStateEvaluate(mat, &h, 1.0, in, &s, why);
+
+  if (status != CL_OK)
+    return status;
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    r->rho[f]  = s.rho[f].v;
+    r->drag[f] = s.drag[f].v;
+  }
+  r->s[PHASE_W] = s.sw.v;
+  r->s[PHASE_G] = s.sg.v;
+  r->phi        = s.phi.v;
+  r->Sh         = s.Sh.v;
+  r->capacity   = s.capacity.v;
+  r->kappa      = s.kappa.v;
+  r->M          = s.E.v * (2.0 * ElasticityShearFactor(&mat->elasticity) + ElasticityLameFactor(&mat->elasticity));
+  r->G          = s.E.v * ElasticityShearFactor(&mat->elasticity);
+  r->storage[PHASE_W] = s.m_w.d[JET_PW] / (V * s.rho[PHASE_W].v);
+  r->storage[PHASE_G] = s.m_g.d[JET_PG] / (V * s.rho[PHASE_G].v);
+  return CL_OK;
+}

@@ -1,0 +1,19 @@
+/* Private to point/: the scalar state of a particle with its tangent in (J, p_w, p_g, T). */
+#pragma once
+
+#include "clathra/point.h"
+
+typedef struct {
+  Jet  V, Vp, phi, Sh, sw, sg, p;
+  Jet  m_h, m_w, m_g;
+  Jet  rho[PHASE_COUNT];  /* intrinsic densities */
+  Jet  drag[PHASE_COUNT]; /* mu/(k_a k_r), Pa s/m^2 */
+  Jet  capacity, kappa;   /* V C_m (J/K); kappa_m (W/m/K) */
+  Jet  latent;            /* J/kg */
+  Jet  E;                 /* Young's modulus, Pa */
+  Jet  beta;              /* mean volumetric expansivity of the skeleton, 1/K */
+  bool limited;
+} ScalarState;
+
+ClStatus ScalarStateEvaluate(const Material *mat, const PointHistory *h, double J, const double in[IN_COUNT],
+                             ScalarState *s, const char **why);

@@ -1,0 +1,37 @@
+/* Backward Euler; docs/equations.md, section 8. */
+#include "clathra/stepper.h"
+
+static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
+{
+  Model       *m = s->model;
+  StepperWork *w = &s->work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * F_COUNT));
+  PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    for (int k = 0; k < 3; k++)
+      w->m_star[3 * p + k] = m->P.f[P_MH + k][p];
+  }
+  PetscCall(StepperStage(s, s->state.t + dt, dt, &w->trial[0], 1.0, a));
+  if (a->status != CL_OK)
+    PetscFunctionReturn(PETSC_SUCCESS);
+
+  double *e, *eu;
+  PetscCall(PetscMalloc2(4 * m->P.n, &e, 2 * m->P.n, &eu));
+  for (PetscInt p = 0; p < m->P.n; p++) { /* (25) */
+    const double y_n[4] = {m->P.f[P_PW][p], m->P.f[P_PG][p], m->P.f[P_T][p], m->P.f[P_SH][p]};
+
+    for (int k = 0; k < 4; k++) {
+      w->rates[4 * p + k] = (w->trial[0].y[4 * p + k] - y_n[k]) / dt;
+      e[4 * p + k]        = s->state.fresh ? 0.0 : 0.5 * dt * (w->rates[4 * p + k] - m->P.f[P_RATE + k][p]);
+    }
+    for (int d = 0; d < 2; d++)
+      eu[2 * p + d] = s->state.fresh ? 0.0 : 0.5 * dt * (w->trial[0].v[2 * p + d] - w->v_n[2 * p + d]);
+  }
+  a->err = StepperErrorNorm(s, e, eu);
+  PetscCall(PetscFree2(e, eu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+const StepperScheme StepperScheme_Euler = {.name = "euler", .error_order = 2, .step = Step};

@@ -1,0 +1,215 @@
+#!/usr/bin/env python3
+"""Bad cases: each kind of error must end with exit code 2, a message that names the key, and no output.
+
+usage: run.py CLATHRA   (the program; needs no arguments of its own)
+
+Each row edits the good case cases/bp2/case.yaml: (what, [(old, new), ...], words the message must hold, options)."""
+import concurrent.futures
+import os
+import random
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+BASE = open(os.path.join(HERE, "..", "..", "cases", "bp2", "case.yaml")).read()
+M = "mat_sediment_"
+
+CASES = [
+    # --- keys
+    ("typo in a top key", [("basis: cpgimp", "bassis: cpgimp")], ["bassis", "did you mean basis"], []),
+    ("typo in a nested key", [("porosity: 0.15", "porosty: 0.15")], [M + "porosty", "did you mean " + M + "porosity"], []),
+    ("typo in an inner map", [("retention: {", "retenton: {")], [M + "retenton_p0", M + "retention_p0"], []),
+    ("typo in a schedule form", [("normal: {table:", "normal: {tabel:")], ["bc_load_normal_tabel", "bc_load_normal_table"], []),
+    ("typo in a list of names", [("\nregions:", "\nregoins:")], ["regoins", "regions", "is missing"], []),
+    ("unknown key, nothing near", [("basis: cpgimp", "wavelength: 3")], ["wavelength", "unknown key"], []),
+    ("missing key", [("    porosity: 0.15\n", "")], [M + "porosity", "is missing"], []),
+    ("missing grid", [("  cells: [52, 1]\n", "")], ["grid_cells", "is missing"], []),
+    ("missing end time", [("time: {end: 2000 s}", "")], ["time_end", "is missing"], []),
+    ("missing when active", [("K0: 2.5e-10 mol/(m^2 Pa s), ", "")], [M + "kinetics_K0", "required when active"], []),
+    ("missing van Genuchten m", [(" m: 0.3,", "")], [M + "retention_m", "is missing"], []),
+    ("missing boundary value", [("    normal: {table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}\n", "")],
+     ["bc_load_normal", "is missing"], []),
+    ("pressure neither given nor initial", [(", initial: yes", "")], ["bc_drain_pressure", "is missing"], []),
+    ("doubled key", [("basis: cpgimp", "basis: cpgimp\nbasis: linear")], ["basis", "given twice"], []),
+    ("doubled map", [("time: {end: 2000 s}", "time: {end: 2000 s}\ntime: {end: 1 s}")], ["time", "given twice"], []),
+    ("no value", [("porosity: 0.15", "porosity:")], [M + "porosity", "no value"], []),
+    ("a list of maps", [("probes: [p06, surface]", "probes:\n  - {name: p06}\n  - {name: surface}")], ["probes"], []),
+    # --- units
+    ("no unit", [("pressure: 3.25 MPa\n", "pressure: 3.25e6\n")], ["region_column_pressure", "unit of a pressure", "3.25e6 Pa"], []),
+    ("wrong unit", [("temperature: 4 degC\n", "temperature: 4 Pa\n")], ["region_column_temperature", "a temperature", "degC"], []),
+    ("unknown unit", [("E0: 90 MPa", "E0: 90 MPsi")], [M + "elasticity_E0", "MPsi"], []),
+    ("unit of the wrong power", [("k0: 1.53e-15 m^2", "k0: 1.53e-15 m")], [M + "permeability_k0", "m^2"], []),
+    ("ambiguous division", [("conductivity: 3 W/(m K)", "conductivity: 3 W/m K")], [M + "solid_conductivity", "W/(m K)"], []),
+    ("unit of a plain number", [("porosity: 0.15", "porosity: 0.15 m")], [M + "porosity", "takes no unit"], []),
+    ("Celsius where kelvin is meant", [("A3: 8533.8 K", "A3: 8533.8 degC")], [M + "kinetics_A3", "in K"], []),
+    ("unbalanced unit", [("800 J/(kg K)", "800 J/(kg K")], [M + "solid_heat_capacity", "')' is missing"], []),
+    ("not a number", [("porosity: 0.15", "porosity: high")], [M + "porosity", "finite number"], []),
+    ("nan", [("porosity: 0.15", "porosity: nan")], [M + "porosity", "finite number"], []),
+    ("infinite", [("E0: 90 MPa", "E0: inf Pa")], [M + "elasticity_E0", "finite number"], []),
+    ("overflow", [("E0: 90 MPa", "E0: 1e999 Pa")], [M + "elasticity_E0", "finite number"], []),
+    ("hexadecimal", [("porosity: 0.15", "porosity: 0x1p-2")], [M + "porosity", "finite number"], []),
+    # --- ranges and lists
+    ("out of range", [("porosity: 0.15", "porosity: 1.5")], [M + "porosity", "out of range", "(0,1)"], []),
+    ("negative permeability", [("k0: 1.53e-15 m^2", "k0: -1.53e-15 m^2")], [M + "permeability_k0", "out of range"], []),
+    ("Poisson's ratio", [("nu: 0.3", "nu: 0.5")], [M + "elasticity_nu", "[0,0.5)"], []),
+    ("colder than zero kelvin", [("temperature: 4 degC\n", "temperature: -1 K\n")], ["region_column_temperature", "out of range"], []),
+    ("cells not whole", [("cells: [52, 1]", "cells: [52.5, 1]")], ["grid_cells", "whole number"], []),
+    ("cells zero", [("cells: [52, 1]", "cells: [0, 1]")], ["grid_cells", "out of range"], []),
+    ("particles per cell", [("particles_per_cell: [2, 2]", "particles_per_cell: [2, 11]")], ["region_column_particles_per_cell", "[1,10]"], []),
+    ("list too short", [("cells: [52, 1]", "cells: [52]")], ["grid_cells", "needs 2"], []),
+    ("list too long", [("at: [0.6 m, 0.01 m]", "at: [0.6 m, 0.01 m, 0 m]")], ["probe_p06_at", "needs 2"], []),
+    ("bad word", [("active: yes", "active: perhaps")], [M + "kinetics_active", "yes | no"], []),
+    ("bad law", [("law: van_genuchten", "law: van_genuchen")], [M + "retention_law", "did you mean van_genuchten"], []),
+    ("bad basis", [("basis: cpgimp", "basis: cubic")], ["basis", "ugimp"], []),
+    ("bad stepper", [("type: sdirk2", "type: sdirk3")], ["stepper_type", "euler"], []),
+    # --- names
+    ("name listed twice", [("probes: [p06, surface]", "probes: [p06, p06]")], ["probes", "listed twice"], []),
+    ("name with a blank", [("regions: [column]", "regions: [my column]")], ["regions", "not a name"], []),
+    ("listed, not defined", [("probes: [p06, surface]", "probes: [p06, surface, deep]")], ["probe_deep_at", "is missing"], []),
+    ("defined, not listed", [("probes: [p06, surface]", "probes: [p06]")], ["surface", "not listed in probes"], []),
+    ("unknown material", [("material: sediment", "material: sedment")], ["region_column_material", "did you mean sediment"], []),
+    ("unknown region of a boundary", [("drain: {type: pressure,", "drain: {type: pressure, region: core,")], ["bc_drain_region", "column"], []),
+    ("no materials", [("materials: [sediment]\n", "")], ["materials", "is missing"], []),
+    # --- agreement
+    ("saturations", [("Sg: 0.4\n", "Sg: 0.3\n")], ["region_column_Sw", "must be 1"], []),
+    ("residual saturations", [("Swr: 0.2, Sgr: 0.4", "Swr: 0.6, Sgr: 0.4")], [M + "retention_Swr", "below 1"], []),
+    ("retention out of reach", [("Sw: 0.6\n    Sg: 0.4\n", "Sw: 0.1\n    Sg: 0.9\n")], ["region_column_Sg", "retention law"], []),
+    ("grid upside down", [("upper: [1.04 m, 0.02 m]", "upper: [1.04 m, -0.02 m]")], ["grid_upper", "above"], []),
+    ("region upside down", [("upper: [1 m, 0.02 m]", "upper: [-1 m, 0.02 m]")], ["region_column_upper", "above"], []),
+    ("region leaves the grid", [("upper: [1 m, 0.02 m]", "upper: [1.1 m, 0.02 m]")], ["region_column_upper", "leaves the grid"], []),
+    ("regions overlap", [("regions: [column]\nregion:\n", "regions: [column, plug]\nregion:\n  plug: {lower: [0.5 m, 0 m], upper: [0.6 m, 0.02 m],"
+      " material: sediment, pressure: 3 MPa, temperature: 4 degC, Sw: 0.6, Sg: 0.4}\n")], ["region_plug_lower", "overlaps"], []),
+    ("molar masses", [("molar_mass: 0.124 kg/mol", "molar_mass: 0.120 kg/mol")], [M + "hydrate_molar_mass", "0.124"], []),
+    ("hydrostatic without gravity", [("    Sh: 0\n", "    Sh: 0\n    hydrostatic: yes\n")], ["region_column_hydrostatic", "gravity"], []),
+    ("negative hydrostatic pressure", [("    Sh: 0\n", "    Sh: 0\n    hydrostatic: yes\n    datum: -1 km\n"),
+      ("basis: cpgimp", "gravity: [0 m/s^2, -9.81 m/s^2]")], ["region_column_datum", "positive"], []),
+    ("probe outside", [("at: [0.6 m, 0.01 m]", "at: [1.02 m, 0.01 m]")], ["probe_p06_at", "no region"], []),
+    ("steps out of order", [("dt: 1 s,", "dt: 100 s,")], ["stepper_dt", "stepper_dt_max"], []),
+    ("output after the end", [("1500 s, 2000 s]", "1500 s, 2001 s]")], ["output_times", "time_end"], []),
+    ("output times not ascending", [("1500 s, 2000 s]", "2000 s, 1500 s]")], ["output_times", "ascend"], []),
+    # --- boundaries and schedules
+    ("unknown boundary type", [("type: traction", "type: tracton")], ["bc_load_type", "did you mean traction"], []),
+    ("unknown side", [("type: pressure, side: right", "type: pressure, side: east")], ["bc_drain_side", "left | right"], []),
+    ("key of another type", [("base: {type: fixed, axis: x,", "base: {type: fixed, axis: x, normal: 1 MPa,")],
+     ["bc_base_normal", "type fixed"], []),
+    ("plane off the grid lines", [("base: {type: fixed, axis: x, position: 0 m}", "base: {type: fixed, axis: x, position: 0.01 m}")],
+     ["bc_base_position", "grid line"], []),
+    ("plane outside", [("upper_wall: {type: roller, axis: y, position: 0.02 m}", "upper_wall: {type: roller, axis: y, position: 0.04 m}")],
+     ["bc_upper_wall_position", "outside"], []),
+    ("part of a side upside down", [("initial: yes}", "initial: yes, from: 0.02 m, to: 0 m}")], ["bc_drain_to", "above from"], []),
+    ("part of a side off the body", [("initial: yes}", "initial: yes, from: 1 m}")], ["bc_drain_from", "no part"], []),
+    ("schedule times", [("1000 s, 13.25 MPa, 2000 s, 3.25 MPa", "2000 s, 13.25 MPa, 1000 s, 3.25 MPa")], ["bc_load_normal_table", "ascend"], []),
+    ("schedule without pairs", [("2000 s, 3.25 MPa]}", "2000 s]}")], ["bc_load_normal_table", "pairs"], []),
+    ("schedule with units swapped", [("[0 s, 3.25 MPa, 1000 s", "[3.25 MPa, 0 s, 1000 s")], ["bc_load_normal_table", "a time"], []),
+    ("two forms", [("normal: {table:", "normal: {ramp: [0 Pa, 1 Pa, 0 s, 1 s], table:")], ["bc_load_normal", "two forms"], []),
+    ("ramp backwards", [("{table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}", "{ramp: [0 Pa, 1 MPa, 10 s, 0 s]}")],
+     ["bc_load_normal_ramp", "end after"], []),
+    ("rate unit", [("{table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}", "{rate: [0 Pa, 1 MPa, 0 s, 10 s]}")],
+     ["bc_load_normal_rate", "Pa/s"], []),
+    # --- command line
+    ("option without unit", [], ["-region_column_pressure", "needs the unit"], ["-region_column_pressure", "3e6"]),
+    ("option out of range", [], ["-" + M + "porosity", "out of range"], ["-" + M + "porosity", "2"]),
+    ("option misspelt", [], ["-" + M + "porosty", "did you mean " + M + "porosity"], ["-" + M + "porosty", "0.2"]),
+    ("option of an unlisted region", [], ["-region_core_Sh", "not listed"], ["-region_core_Sh", "0.2"]),
+    ("grid option misspelt", [], ["-grid_cell", "did you mean grid_cells"], ["-grid_cell", "52,1"]),
+    # --- files
+    ("unclosed bracket", [("cells: [52, 1]", "cells: [52, 1")], ["case.yaml:", "bracket"], []),
+    ("unclosed quote", [("title: BP2", "title: 'BP2")], ["case.yaml:3", "quote"], []),
+    ("tab", [("  cells:", "\tcells:")], ["case.yaml:", "tab"], []),
+    ("wrong indentation", [("  cells: [52, 1]", "   cells: [52, 1]")], ["case.yaml"], []),
+    ("anchor", [("basis: cpgimp", "basis: &a cpgimp")], ["anchors"], []),
+    ("endless recursion", [("basis: cpgimp", "basis: &a {<<: *a}")], ["not allowed"], []),
+    ("include", [("basis: cpgimp", "$$x: !include case.yaml")], ["not allowed"], []),
+    ("a key PETSc would drop", [("basis: cpgimp", "nan_key: 3")], ["nan_key", "unknown key"], []),
+    ("not a map", None, ["case.yaml"], [], b"hello\n"),
+    ("empty", None, ["empty"], [], b" \n"),
+    ("zero bytes", None, ["zero byte"], [], b"title: a\0b\n"),
+    ("deep nesting", None, ["deeply"], [], b"a: " + b"[" * 5000),
+    ("not UTF-8", None, ["case.yaml"], [], b"title: \xff\xfe\xfd\n"),
+    ("huge", None, ["at most"], [], b"# x\n" * 300000),
+]
+
+
+def run(program, folder, options):
+    env = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", ASAN_OPTIONS="detect_leaks=0", PETSC_OPTIONS="")
+    done = subprocess.run([program, folder, "-case_check"] + options, cwd=folder, env=env, capture_output=True, timeout=120)
+    return done.returncode, (done.stdout + done.stderr).decode("utf-8", "replace")
+
+
+def attempt(program, data, options):
+    """Runs the case text; returns exit code, message and what was written."""
+    with tempfile.TemporaryDirectory() as folder:
+        with open(os.path.join(folder, "case.yaml"), "wb") as f:
+            f.write(data)
+        code, text = run(program, folder, options)
+        return code, text, sorted(set(os.listdir(folder)) - {"case.yaml"})
+
+
+def bad_case(program, row):
+    what, edits, words, options = row[:4]
+    if edits is None:
+        data = row[4]
+    else:
+        text = BASE
+        for old, new in edits:
+            if text.count(old) != 1:
+                return f"{what}: the base case holds '{old}' {text.count(old)} times; mend this test"
+            text = text.replace(old, new)
+        data = text.encode()
+    code, message, written = attempt(program, data, options)
+    if code != 2:
+        return f"{what}: exit code {code}, not 2\n{message}"
+    missing = [w for w in words if w not in message]
+    if missing:
+        return f"{what}: the message does not hold {missing}:\n{message}"
+    if written:
+        return f"{what}: wrote {written}"
+    if os.environ.get("BAD_VERBOSE"):
+        print(f"--- {what}\n{message}", end="")
+    return None
+
+
+def fuzzed(n, seed=1):
+    """Truncations, flipped bytes and shuffled pieces of the good case."""
+    rng = random.Random(seed)
+    base = BASE.encode()
+    for i in range(n):
+        data = bytearray(base)
+        if i % 3 == 0:
+            del data[rng.randrange(len(data)):]
+        elif i % 3 == 1:
+            for _ in range(rng.randrange(1, 30)):
+                data[rng.randrange(len(data))] = rng.randrange(256)
+        else:
+            for _ in range(rng.randrange(1, 6)):
+                a, b, n_ = rng.randrange(len(data)), rng.randrange(len(data)), rng.randrange(1, 40)
+                data[a:a + n_] = data[b:b + n_]
+        yield i, bytes(data)
+
+
+def fuzz_case(program, item):
+    i, data = item
+    code, message, written = attempt(program, data, [])
+    if code not in (0, 2) or written or "Sanitizer" in message or "runtime error" in message:
+        return f"fuzz {i}: exit code {code}, wrote {written}\n{message}"
+    return None
+
+
+def main():
+    program = os.path.abspath(sys.argv[1])
+    n_fuzz = int(os.environ.get("BAD_FUZZ", "30"))
+    code, message, _ = attempt(program, BASE.encode(), [])
+    failures = [] if code == 0 else [f"the good case: exit code {code}\n{message}"]
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        results = list(pool.map(lambda row: bad_case(program, row), CASES))
+        results += list(pool.map(lambda item: fuzz_case(program, item), fuzzed(n_fuzz)))
+    failures += [r for r in results if r]
+    for f in failures:
+        print("FAILED", f)
+    print(f"{1 + len(results) - len(failures)} passed, {len(failures)} failed")
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()

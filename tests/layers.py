@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""The one-way rule: a file includes only headers of layers above its own.  Usage: layers.py [root of the tree].
+
+It also judges a table of made-up files, some with planted violations, and fails if it misses one.
+"""
+import re
+import sys
+from pathlib import Path
+
+# From the top down.  Each row: layer, headers of include/clathra/ (without .h) that belong to it, folders of src/.
+LAYERS = [
+    ("base", ["base"], ["base"]),
+    ("tensor", ["tensor", "jet", "fields"], ["tensor", "fields"]),
+    ("laws", ["laws"], ["laws"]),
+    ("material", ["material"], ["material"]),
+    # Exceptions: plain data that many layers read.  case.h is what a scene says (regions, boundary conditions, probes),
+    # with schedule.h, the function of time it holds; the reader of case files, src/case, stays at the bottom.
+    ("schedule", ["schedule"], ["schedule"]),
+    ("case data", ["case"], []),
+    ("point", ["point", "kinematics"], ["point"]),
+    ("grid", ["grid"], ["grid"]),
+    ("basis", ["basis"], ["basis"]),
+    ("particles", ["particles"], ["particles"]),
+    ("boundary", ["boundary"], ["boundary"]),
+    ("model", ["model"], ["model"]),
+    ("stepper", ["stepper"], ["stepper"]),
+    ("io", ["io"], ["io"]),
+    ("case", [], ["case"]),
+    ("main", [], ["."]),
+]
+# The physics sees no solver, grid or message passing: laws include nothing of PETSc, point names none of its objects.
+NO_PETSC = {"tensor", "laws"}
+NO_SOLVER = {"tensor", "laws", "material", "point"}
+
+RANK_OF_HEADER = {h: i for i, (_, headers, _) in enumerate(LAYERS) for h in headers}
+RANK_OF_FOLDER = {f: i for i, (_, _, folders) in enumerate(LAYERS) for f in folders}
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
+SOLVER = re.compile(r"\b(Vec|Mat|DM|KSP|SNES|MPI_\w+)\b")
+COMMENT = re.compile(r'/\*.*?\*/|//[^\n]*|("(?:\\.|[^"\\\n])*")', re.S)
+
+
+def name_of(rank):
+    return LAYERS[rank][0]
+
+
+def rank_of(path):
+    """Rank of a file by its path from the root; None when the table does not know it.  boundary_face.h is boundary's."""
+    parts = Path(path).parts
+    if parts[0] == "include":
+        stem = Path(path).stem
+        return RANK_OF_HEADER.get(stem, RANK_OF_HEADER.get(stem.split("_")[0]))
+    return RANK_OF_FOLDER.get(parts[1] if len(parts) > 2 else ".")
+
+
+def violations_of(path, text):
+    """Sentences on what a file includes or names against the rule."""
+    rank = rank_of(path)
+    if rank is None:
+        return [f"{path}: no layer of the table holds this file"]
+    code = COMMENT.sub(lambda m: m.group(1) or " ", text)
+    found = []
+    for kind, target in INCLUDE.findall(code):
+        if target.startswith("clathra/"):
+            other = rank_of("include/" + target)
+            if other is None:
+                found.append(f"{path}: includes {target}, which no layer of the table holds")
+            elif other > rank:
+                found.append(f"{path}: layer {name_of(rank)} includes {target} of {name_of(other)}, a layer below it")
+            elif other == RANK_OF_HEADER["base"] and name_of(rank) in NO_PETSC:
+                found.append(f"{path}: layer {name_of(rank)} includes {target}, which brings in PETSc")
+        elif kind == '"' and ("/" in target or target.startswith(".")):
+            found.append(f"{path}: includes {target}, a private header of another folder")
+        elif re.match(r"(petsc|mpi|hdf5|H5)", target) and name_of(rank) in NO_PETSC:
+            found.append(f"{path}: layer {name_of(rank)} includes {target}")
+    if name_of(rank) in NO_SOLVER:
+        found += [f"{path}: layer {name_of(rank)} names {w}" for w in sorted(set(SOLVER.findall(INCLUDE.sub("", code))))]
+    return found
+
+
+PLANTED = {  # path: text, whether it is wrong
+    ("include/clathra/point.h", '#include "clathra/grid.h"\n'): True,
+    ("include/clathra/laws.h", '#include "clathra/base.h"\n'): True,
+    ("include/clathra/laws.h", "#include <petscvec.h>\n"): True,
+    ("src/laws/relperm.c", '  #  include "clathra/material.h"\n'): True,
+    ("src/point/point.c", '#include "clathra/point.h"\nstatic Vec x;\n'): True,
+    ("src/grid/grid.c", '#include "clathra/particles.h"\n'): True,
+    ("src/grid/grid.c", '#include "../point/state.h"\n'): True,
+    ("src/model/residual.c", '#include "clathra/stepper.h"\n'): True,
+    ("src/model/residual.c", '#include "clathra/unheard.h"\n'): True,
+    ("src/unheard/a.c", ""): True,
+    ("src/point/point.c", '#include "clathra/point.h"\n#include "state.h"\n/* Vec */ // MPI_Comm\n'): False,
+    ("src/case/read.c", '#include "clathra/case.h"\n#include "clathra/io.h"\n'): False,
+    ("include/clathra/particles.h", '#include "clathra/case.h"\n'): False,
+    ("src/grid/grid.c", '/*\n#include "clathra/model.h"\n*/\n#include "clathra/grid.h"\n'): False,
+    ("src/main.c", '#include "clathra/stepper.h"\n#include "clathra/case.h"\n'): False,
+}
+
+
+def self_test():
+    wrong = [path for (path, text), bad in PLANTED.items() if bool(violations_of(path, text)) != bad]
+    for path in wrong:
+        print(f"self-test: a planted case was judged wrongly: {path}")
+    return len(wrong)
+
+
+def main():
+    root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).resolve().parents[1])
+    files = sorted(p for folder in ("src", "include") for p in (root / folder).rglob("*.[ch]"))
+    found = [v for p in files for v in violations_of(p.relative_to(root).as_posix(), p.read_text())]
+    print("\n".join(found + [f"{len(files)} files, {len(found)} violations, {len(PLANTED)} planted cases tried"]))
+    return 1 if self_test() or found or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,376 @@
+/* The case reader: units, schedules, typo search, reading cases/bp2, and the resolved case bit for bit. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include "../../src/case/case_private.h"
+
+static char bp2[PETSC_MAX_PATH_LEN]; /* cases/bp2 of this tree */
+
+#define GOOD(call) assert_int_equal((call), 0)
+
+/* ---------------------------------------------------------------- units */
+static void units_to_si(void **state)
+{
+  static const struct {
+    const char *text, *si;
+    double      value;
+  } row[] = {
+      {"3.25 MPa", "Pa", 3.25e6},
+      {"3.25MPa", "Pa", 3.25e6},
+      {"0.01 MPa/s", "Pa/s", 1e4},
+      {"4 degC", "degC", 4},
+      {"4 \xc2\xb0"
+       "C",
+       "degC", 4},
+      {"277.15 K", "degC", 277.15 - 273.15},
+      {"8533.8 K", "K", 8533.8},
+      {"20 min", "s", 1200},
+      {"2 h", "s", 7200},
+      {"1.5 d", "s", 129600},
+      {"1 a", "s", 31557600},
+      {"1.53e-15 m^2", "m^2", 1.53e-15},
+      {"2 mD", "m^2", 2 * 9869233e-22},
+      {"1 Darcy", "m^2", 9.869233e-13},
+      {"50 kPa", "Pa", 5e4},
+      {"2.2 GPa", "Pa", 2.2e9},
+      {"1 bar", "Pa", 1e5},
+      {"1 atm", "Pa", 101325},
+      {"20 mm", "m", 0.02},
+      {"1.1 cm", "m", 0.011},
+      {"7 uPa s", "Pa s", 7e-6},
+      {"1 cP", "Pa s", 1e-3},
+      {"40 %", "", 0.4},
+      {"800 J/(kg K)", "J/(kg K)", 800},
+      {"800 J/(kg degC)", "J/(kg K)", 800},
+      {"0.8 kJ kg^-1 K^-1", "J/(kg K)", 800},
+      {"800 J/kg/K", "J/(kg K)", 800},
+      {"2.5e-10 mol/(m^2 Pa s)", "mol/(m^2 Pa s)", 2.5e-10},
+      {"2.6 t/m^3", "kg/m^3", 2600},
+      {"1 g/cm^3", "kg/m^3", 1000},
+      {"16 g/mol", "kg/mol", 0.016},
+      {"-9.81 m/s\xc2\xb2", "m/s^2", -9.81},
+      {"1e-4 1/K", "1/K", 1e-4},
+      {"3 W/(m\xc2\xb7K)", "W/(m K)", 3},
+      {"60 m/min", "m/s", 1},
+      {"25", "", 25},
+  };
+  char why[CASE_WHY];
+
+  (void)state;
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    double value = NAN;
+    if (!QuantityParse(row[i].text, row[i].si, &value, why))
+      fail_msg("%s: %s", row[i].text, why);
+    if (fabs(value - row[i].value) > 2e-16 * fabs(row[i].value))
+      fail_msg("%s is %.17g", row[i].text, value);
+  }
+}
+
+static void units_refused(void **state)
+{
+  static const char *const row[][2] = {
+      {"3.25e6", "Pa"},    {"3 m", "Pa"},     {"3 MPa/s", "Pa"},
+      {"0.5 m", ""},       {"nan", ""},       {"inf Pa", "Pa"},
+      {"1e999 Pa", "Pa"},  {"0x10 Pa", "Pa"}, {"", "Pa"},
+      {"Pa", "Pa"},        {"1 pa", "Pa"},    {"1 MPsi", "Pa"},
+      {"1 kg/", "kg"},     {"1 (kg", "kg"},   {"1 kg)", "kg"},
+      {"1 m^", "m"},       {"1 m^99", "m"},   {"4 degC", "K"},
+      {"1 m^1.5", "m"},    {"1 m m", "m"},    {"1 kmin", "s"},
+      {"1,2", ""},         {"1 2", ""},       {"--1 m", "m"},
+      {". m", "m"},        {"1e304 Mm", "m"}, {"1 ((((((m))))))", "m"},
+      {"1e308 GPa", "Pa"}, {"1 //m", "1/m"},  {"1 \xff", "m"},
+  };
+  char   why[CASE_WHY];
+  double value;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    *why = 0;
+    if (QuantityParse(row[i][0], row[i][1], &value, why))
+      fail_msg("'%s' was taken for %s", row[i][0], row[i][1]);
+    assert_true(*why);
+  }
+}
+
+/* ---------------------------------------------------------------- schedules */
+static void schedule_values(void **state)
+{
+  double   t[] = {10, 20, 40}, y[] = {1, 3, -1};
+  Schedule line = {3, t, y, false}, jump = {3, t, y, true}, constant = {1, t, y, false};
+
+  (void)state;
+  assert_true(ScheduleValue(&line, 0) == 1 && ScheduleValue(&line, 10) == 1 && ScheduleValue(&line, 15) == 2);
+  assert_true(ScheduleValue(&line, 20) == 3 && ScheduleValue(&line, 30) == 1 && ScheduleValue(&line, 40) == -1);
+  assert_true(ScheduleValue(&line, 1e9) == -1);
+  assert_true(ScheduleValue(&jump, 0) == 1 && ScheduleValue(&jump, 19.9) == 1 && ScheduleValue(&jump, 20) == 3);
+  assert_true(ScheduleValue(&jump, 20 * (1 - 1e-13)) == 3 && ScheduleValue(&jump, 41) == -1);
+  assert_true(ScheduleValue(&constant, -5) == 1 && ScheduleValue(&constant, 5e9) == 1);
+  assert_true(ScheduleNextKink(&line, 0) == 10 && ScheduleNextKink(&line, 10) == 20 &&
+              ScheduleNextKink(&line, 39) == 40);
+  assert_true(ScheduleNextKink(&line, 20 * (1 - 1e-13)) == 40 && ScheduleNextKink(&line, 20 * (1 - 1e-11)) == 20);
+  assert_true(isinf(ScheduleNextKink(&line, 40)) && isinf(ScheduleNextKink(&constant, 0)));
+  assert_true(ScheduleNextKink(&jump, 10) == 20);
+}
+
+/* ---------------------------------------------------------------- cases */
+static void set_option(const char *name, const char *value)
+{
+  GOOD(PetscOptionsSetValue(NULL, name, value));
+}
+
+static void read_bp2(void **state)
+{
+  Case            c;
+  bool            ok;
+  const Material *m;
+
+  (void)state;
+  GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
+  assert_true(ok);
+  assert_true(c.nmaterial == 1 && c.nregion == 1 && c.nbc == 5 && c.nprobe == 2);
+  assert_true(c.cells[0] == 52 && c.cells[1] == 1 && c.upper[0] == 1.04 && c.basis == BASIS_CPGIMP);
+  assert_true(c.t_end == 2000 && c.probe_every == 20 && c.ntimes == 5 && c.times[2] == 1000);
+  assert_string_equal(c.output_dir, "results/bp2");
+  m = &c.material[0];
+  assert_true(m->porosity == 0.15 && m->solid.rho0 == 2600 && isinf(m->solid.K) && m->water.K == 2.2e9);
+  assert_true(m->retention.p_smooth == 2500 && m->retention.p_trap == 5e4 && m->relperm.Sgr == 0.4);
+  assert_true(m->permeability.phi0 == 0.15 && m->permeability.k0 == 1.53e-15 && m->permeability.mh == 3);
+  assert_true(m->reacts && m->kinetics.K0 == 2.5e-10 && m->kinetics.equilibrium.A1 == 1000 && m->kinetics.M_g == 0.016);
+  assert_true(m->elasticity.E0 == 9e7 && !m->elasticity.loss_only);
+  assert_true(c.region[0].pressure == 3.25e6 && c.region[0].temperature == 4 && c.region[0].ppc[1] == 2);
+  assert_true(c.bc[0].type == BC_FIXED && c.bc[0].axis == 0 && c.bc[1].type == BC_ROLLER && c.bc[2].position == 0.02);
+  assert_true(c.bc[3].type == BC_TRACTION && c.bc[3].side == SIDE_XMAX && c.bc[3].region == -1);
+  assert_true(ScheduleValue(&c.bc[3].value, 500) == 8.25e6 && ScheduleValue(&c.bc[3].value, 3000) == 3.25e6);
+  assert_true(c.bc[4].type == BC_PRESSURE && c.bc[4].initial && c.bc[4].value.n == 0);
+  GOOD(CaseDestroy(&c));
+}
+
+static void command_line_wins(void **state)
+{
+  static const char *const option[][2] = {
+      {"-mat_sediment_porosity", "0.2"}, {"-mat_sediment_kinetics_active", "no"},
+      {"-grid_cells", "104,2"},          {"-region_column_pressure", "3 MPa"},
+      {"-bc_load_normal", "5 MPa"},      {"-stepper_dt", "0.5"},
+      {"-output_dir", "elsewhere"},      {"-stepper_type", "euler"},
+  };
+  Case c;
+  bool ok;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+    set_option(option[i][0], option[i][1]);
+  GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+    GOOD(PetscOptionsClearValue(NULL, option[i][0]));
+  assert_true(ok);
+  assert_true(c.material[0].porosity == 0.2 && c.material[0].permeability.phi0 == 0.2 && !c.material[0].reacts);
+  assert_true(c.cells[0] == 104 && c.cells[1] == 2 && c.region[0].pressure == 3e6 && c.dt == 0.5);
+  assert_true(c.bc[3].value.n == 1 && c.bc[3].value.y[0] == 5e6);
+  assert_string_equal(c.output_dir, "elsewhere");
+  assert_string_equal(c.stepper, "euler");
+  GOOD(CaseDestroy(&c));
+}
+
+static void refused(void **state)
+{
+  static const char *const option[][2] = {{"-mat_sediment_porosty", "0.2"}, {"-region_column_Sw", "0.7"}};
+  Case                     c;
+  bool                     ok;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++) {
+    set_option(option[i][0], option[i][1]);
+    GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
+    GOOD(PetscOptionsClearValue(NULL, option[i][0]));
+    assert_false(ok);
+    assert_true(c.nmaterial == 0 && !c.material);
+  }
+  GOOD(CaseRead(PETSC_COMM_WORLD, "/no/such/case", &c, &ok));
+  assert_false(ok);
+}
+
+static void nearest_key(void **state)
+{
+  Case c;
+  bool ok;
+  char nearest[256];
+
+  (void)state;
+  assert_int_equal(EditDistance("kitten", "sitting"), 3);
+  assert_int_equal(EditDistance("Porosity", "porosity"), 0);
+  GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
+  assert_true(KeyNearest(&c, "mat_sedimnt_porosity", nearest, sizeof nearest));
+  assert_string_equal(nearest, "mat_sediment_porosity");
+  assert_true(KeyNearest(&c, "bc_load_normal_tabel", nearest, sizeof nearest));
+  assert_string_equal(nearest, "bc_load_normal_table");
+  assert_true(KeyNearest(&c, "materails", nearest, sizeof nearest));
+  assert_string_equal(nearest, "materials");
+  assert_false(KeyNearest(&c, "wavelength", nearest, sizeof nearest));
+  assert_true(KeyOwned(&c, "mat_sediment_colour") && KeyOwned(&c, "grid_size") && KeyOwned(&c, "regoin_column_Sh"));
+  assert_false(KeyOwned(&c, "mat_mumps_icntl_14") || KeyOwned(&c, "stepper_newton_max") || KeyOwned(&c, "ksp_type"));
+  GOOD(CaseDestroy(&c));
+}
+
+/* ---------------------------------------------------------------- resolved case */
+static void same_schedule(const Key *k, const Schedule *a, const Schedule *b)
+{
+  size_t bytes = (size_t)a->n * sizeof(double);
+
+  if (a->n != b->n || a->steps != b->steps || (bytes && (memcmp(a->t, b->t, bytes) || memcmp(a->y, b->y, bytes))))
+    fail_msg("schedule %s differs", k->name);
+}
+
+static void same_key(const Case *a, const Case *b, Group g, PetscInt i, const Key *k)
+{
+  const char *pa = GroupInstance(a, g, i) + k->offset, *pb = GroupInstance(b, g, i) + k->offset;
+  bool        same = true;
+
+  if (k->kind == KEY_REAL)
+    same = !memcmp(pa, pb, (size_t)k->count * sizeof(double));
+  else if (k->kind == KEY_INT)
+    same = !memcmp(pa, pb, (size_t)k->count * sizeof(PetscInt));
+  else if (k->kind == KEY_CHOICE || k->kind == KEY_NAME)
+    same = *(const int *)pa == *(const int *)pb;
+  else if (k->kind == KEY_BOOL)
+    same = *(const bool *)pa == *(const bool *)pb;
+  else if (k->kind == KEY_TEXT)
+    same = !strcmp(pa, pb);
+  else if (k->kind == KEY_LAW)
+    same = k->law->get((const Material *)(pa - k->offset)) == k->law->get((const Material *)(pb - k->offset));
+  else if (k->kind == KEY_SCHEDULE)
+    same_schedule(k, (const Schedule *)pa, (const Schedule *)pb);
+  else
+    same = a->ntimes == b->ntimes && (!a->ntimes || !memcmp(a->times, b->times, (size_t)a->ntimes * sizeof(double)));
+  if (!same)
+    fail_msg("%s differs", k->name);
+}
+
+static void round_trip(const char *path, const char *resolved)
+{
+  Case        a, b;
+  bool        ok;
+  PetscMPIInt rank;
+
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  GOOD(CaseRead(PETSC_COMM_WORLD, path, &a, &ok));
+  assert_true(ok);
+  if (rank == 0)
+    GOOD(CaseWriteResolved(&a, resolved));
+  GOOD(MPI_Barrier(PETSC_COMM_WORLD));
+  GOOD(CaseRead(PETSC_COMM_WORLD, resolved, &b, &ok));
+  assert_true(ok);
+  for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
+    PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(&a, g);
+    if (g != GROUP_CASE)
+      assert_int_equal(n, *GroupCount(&b, g));
+    for (PetscInt i = 0; i < n; i++) {
+      if (g != GROUP_CASE)
+        assert_string_equal(GroupInstance(&a, g, i), GroupInstance(&b, g, i));
+      for (const Key *k = case_group[g].key; k->name; k++)
+        same_key(&a, &b, g, i, k);
+    }
+  }
+  for (PetscInt i = 0; i < a.nmaterial; i++) {
+    const Material *m = &a.material[i], *n = &b.material[i];
+    assert_memory_equal(&m->solid, &n->solid, sizeof m->solid);
+    assert_memory_equal(&m->hydrate, &n->hydrate, sizeof m->hydrate);
+    assert_memory_equal(&m->retention, &n->retention, sizeof m->retention);
+    assert_memory_equal(&m->kinetics, &n->kinetics, sizeof m->kinetics);
+  }
+  GOOD(CaseDestroy(&a));
+  GOOD(CaseDestroy(&b));
+}
+
+/* Awkward numbers in awkward units, every form of a schedule, two of each thing. */
+static void write_awkward(const char *path)
+{
+  static const char *const material =
+      "    porosity: 33.3 %\n"
+      "    solid: {density: 2.65 g/cm^3, heat_capacity: 0.8 kJ/(kg degC), conductivity: 3.3 W/(m K), expansion: 1e-5 "
+      "1/K}\n"
+      "    water: {bulk_modulus: incompressible, viscosity: 1.1 cP, ref_temperature: 288.3 K, ref_pressure: 1 atm}\n"
+      "    relperm: {nw: 0.7, ng: 3.1, Swr: 0.1}\n"
+      "    permeability: {k0: 3.3 mD, hydrate_law: masuda_ramp, porosity_law: none, kh: 0.01, Shc: 0.7}\n"
+      "    elasticity: {E0: 0.123456789012345678 GPa, nu: 0.1, stiffness_change: loss_only}\n";
+  FILE *f = fopen(path, "w");
+
+  assert_non_null(f);
+  fputs("title: 'it''s, \"a\" title: # with everything'\n"
+        "grid: {lower: [-10 cm, 0 m], upper: [70 cm, 0.3 m], cells: [8, 3]}\n"
+        "gravity: [0 m/s^2, -9.81 m/s^2]\nmaterials: [sand, Clay_2]\nmat:\n",
+        f);
+  for (int i = 0; i < 2; i++) {
+    fprintf(f, "  %s:\n%s", i ? "Clay_2" : "sand", material);
+    fputs(i ? "    retention: {law: brooks_corey, p0: 7.7 kPa, lambda: 1.7, Swr: 0.1, Sgr: 0}\n"
+            : "    retention: {p0: 3.3333333333333333 kPa, m: 0.77, Swr: 0.05, Sgr: 0.01, p_smooth: 11 Pa}\n",
+          f);
+  }
+  fputs(
+      "regions: [low, high]\nregion:\n"
+      "  low: {lower: [0 m, 0 m], upper: [0.6 m, 0.1 m], material: clay_2, pressure: 1.1 bar, temperature: 280.1 K,\n"
+      "    Sw: 0.7, Sg: 30 %, hydrostatic: yes, datum: 0.31 m, stress: [-1 kPa, -2 kPa, -1.1 kPa, 0 Pa, 0 Pa, 0 Pa]}\n"
+      "  high: {lower: [0 m, 0.1 m], upper: [0.6 m, 0.25 m], material: sand, pressure: 0.3 MPa, temperature: 3.7 "
+      "degC,\n"
+      "    particles_per_cell: [3, 1], Sh: 0.1, Sw: 0.7, Sg: 0.2}\n"
+      "boundaries: [a, b, c, d, e, f, g]\nbc:\n"
+      "  a: {type: traction, side: top, region: high, from: 0.1 m, to: 0.2 m, normal: {ramp: [0 Pa, 1.1 MPa, 1 s, 7 "
+      "min]},\n"
+      "    shear: {rate: [1 Pa, 0.1 kPa/h, 0 s, 3.3 h]}}\n"
+      "  b: {type: convection, side: left, alpha: 25 W/(m^2 K), ambient: {piecewise: [0 s, 280 K, 10 s, 281.3 K]}}\n"
+      "  c: {type: pressure, side: right, from: 0.01 m, pressure: {table: [0 s, 1 bar, 0.1 d, 2 bar, 1 d, 1.5 bar]}}\n"
+      "  d: {type: plate, axis: y, position: 10 cm, velocity: -1.1 mm/min}\n"
+      "  e: {type: temperature, axis: x, position: -0.1 m, temperature: {piecewise: [3 s, 1.1 degC]}}\n"
+      "  f: {type: heat_flux, side: bottom, flux: 1 mW/cm^2}\n"
+      "  g: {type: face_temperature, side: bottom, to: 0.3 m, temperature: 275.4 K}\n"
+      "time: {end: 0.7 d}\noutput: {times: [0.1 h, 1.7 h], every: 1.1 h, dir: 'a \"strange\" dir'}\n"
+      "checkpoint: {every: 0.3 h}\nstepper: {tol: 1.1e-4}\n",
+      f);
+  fclose(f);
+}
+
+static void resolved_is_the_same_case(void **state)
+{
+  char folder[PETSC_MAX_PATH_LEN] = "/tmp/clathra_test_XXXXXX", in[PETSC_MAX_PATH_LEN + 32],
+       out[PETSC_MAX_PATH_LEN + 32];
+  PetscMPIInt rank;
+
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  if (rank == 0)
+    assert_non_null(mkdtemp(folder));
+  GOOD(MPI_Bcast(folder, sizeof folder, MPI_CHAR, 0, PETSC_COMM_WORLD));
+  snprintf(in, sizeof in, "%s/case.yaml", folder);
+  snprintf(out, sizeof out, "%s/resolved.yaml", folder);
+  round_trip(bp2, out);
+  if (rank == 0)
+    write_awkward(in);
+  GOOD(MPI_Barrier(PETSC_COMM_WORLD));
+  round_trip(folder, out);
+  if (rank == 0) {
+    unlink(in);
+    unlink(out);
+    rmdir(folder);
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(units_to_si),       cmocka_unit_test(units_refused),
+      cmocka_unit_test(schedule_values),   cmocka_unit_test(read_bp2),
+      cmocka_unit_test(refused),           cmocka_unit_test(nearest_key),
+      cmocka_unit_test(command_line_wins), cmocka_unit_test(resolved_is_the_same_case),
+  };
+  const char *up = strstr(__FILE__, "tests/unit/");
+  int         failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL))
+    return 1;
+  snprintf(bp2, sizeof bp2, "%.*scases/bp2", (int)(up - __FILE__), __FILE__);
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}

@@ -1,0 +1,188 @@
+/* Values of the laws against independent numbers: 40 to 60 digits (mpmath), hand calculation, docs and scenes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <math.h>
+#include <cmocka.h>
+#include "clathra/laws.h"
+
+#define COUNT(a) (sizeof(a) / sizeof *(a))
+
+static void Near(double got, double want, double rel)
+{
+  if (!(fabs(got - want) <= rel * fabs(want)))
+    fail_msg("%.17g, expected %.17g within %g", got, want, rel);
+}
+
+static const Retention BP2 = {.p0 = 5e4, .m = 0.3, .lambda = 0.5, .Swr = 0.2, .Sgr = 0.4};
+
+static void RetentionValues(void **state)
+{
+  /* BP2's smooth curve in 60 digits (mpmath): p_c, s_g, slope */
+  static const double exact[][3] = {
+      {-1e6, 8.2446144897542313e-10, 1.64892289795e-14}, {-5e4, 0.14715177645341246, 2.943035523e-6},
+      {-100, 0.38692417063323864, 4.325797334e-6},       {0, 0.38735372246897245, 4.26522970315e-6},
+      {1, 0.3873579873957162, 4.26462378387e-6},         {2500, 0.39620417123391229, 2.87803538649e-6},
+      {5e4, 0.47509904142345776, 1.39243269302e-6},      {1e6, 0.68967247941097068, 4.66373905101e-8},
+      {1e9, 0.79426198963633819, 2.45914553489e-12},
+  };
+  Retention law = BP2;
+  double    d;
+
+  RetentionSetType(&law, "van_genuchten");
+  for (size_t i = 0; i < COUNT(exact); i++) {
+    Near(RetentionGasShare(&law, exact[i][0], &d), exact[i][1], 2e-15);
+    Near(d, exact[i][2], 1e-11);
+  }
+  law = (Retention){.p0 = 1e5, .m = 0.45, .Swr = 0.3, .Sgr = 0}; /* S_gr' = 1e-4 */
+  RetentionSetType(&law, "van_genuchten");
+  Near(RetentionGasShare(&law, -3e6, &d), 9.3576229688401746e-18, 2e-15);
+  assert_true(RetentionGasShare(&law, -1e9, &d) == 0 && d == 0);
+
+  law = BP2;
+  RetentionSetType(&law, "van_genuchten_clamped");
+  Near(RetentionGasShare(&law, 5e4, &d), 0.4 + 0.4 * (1 - pow(2, -0.3)), 1e-15);
+  assert_true(RetentionGasShare(&law, -1, &d) == 0.4 && d == 0);
+  assert_true(RetentionGasShare(&law, 0, &d) == 0.4 && d == 0);
+  RetentionSetType(&law, "brooks_corey");
+  Near(RetentionGasShare(&law, 2e5, &d), 0.4 + 0.4 * 0.5, 1e-15);
+  Near(d, 0.4 * 0.5 * 0.5 / 2e5, 1e-15);
+  assert_true(RetentionGasShare(&law, 4.9e4, &d) == 0.4 && d == 0);
+}
+
+static void RelPermValues(void **state)
+{
+  const RelPerm bp2 = {0.2, 0.4, 4, 2}, masuda = {0.1, 0, 0.82, 2.11};
+  double        d;
+
+  Near(RelPermWater(&bp2, 0.4, &d), 0.0625, 1e-14); /* b = 1/2 */
+  Near(d, 4 * 0.125 / 0.4, 1e-14);
+  Near(RelPermGas(&bp2, 0.5, &d), 0.0625, 1e-14); /* b = 1/4 */
+  Near(RelPermWater(&masuda, 0.55, &d), pow(0.5, 0.82), 1e-14);
+  Near(RelPermWater(&masuda, 0.1 + 0.9 * 2e-3, &d), pow(2e-3, 0.82), 1e-11); /* just above the toe */
+  assert_true(RelPermWater(&bp2, 0.2, &d) == 0 && d == 0);
+  assert_true(RelPermWater(&bp2, 0.1, &d) == 0 && d == 0);
+  assert_true(RelPermWater(&bp2, 0.7, &d) == 1 && d == 0);
+  assert_true(RelPermWater(&masuda, 0.05, &d) == 0 && d == 0);
+}
+
+static void PermeabilityValues(void **state)
+{
+  Permeability law = {.k0 = 1e-15, .phi0 = 0.5, .mh = 3, .kh = 0.01, .Shc = 1e-4};
+  double       dp, ds;
+
+  assert_true(PermeabilitySetHydrateType(&law, "power") && PermeabilitySetPorosityType(&law, "kozeny_carman"));
+  Near(PermeabilityEvaluate(&law, 0.5, 0, &dp, &ds), 1e-15, 1e-15);
+  Near(PermeabilityEvaluate(&law, 0.25, 0.5, &dp, &ds), 1e-15 * pow(0.5, 1.5) * 8.0 / 27.0 * 0.125, 1e-14);
+  assert_true(PermeabilityEvaluate(&law, 0.5, 1, &dp, &ds) == 0 && ds == 0);
+  PermeabilitySetPorosityType(&law, "square_jacobian");
+  Near(PermeabilityEvaluate(&law, 0.25, 0, &dp, &ds), 1e-15 * 4.0 / 9.0, 1e-14);
+  PermeabilitySetPorosityType(&law, "none");
+  PermeabilitySetHydrateType(&law, "masuda_ramp");
+  Near(PermeabilityEvaluate(&law, 0.1, 0, &dp, &ds), 1e-15, 1e-14);
+  Near(PermeabilityEvaluate(&law, 0.1, 5e-5, &dp, &ds), 0.505e-15, 1e-13);
+  Near(PermeabilityEvaluate(&law, 0.1, 0.4, &dp, &ds), 1e-17, 1e-14);
+}
+
+static double Printed(const double c[6], double TK)
+{
+  double y = 0;
+
+  for (int i = 5; i >= 0; i--)
+    y = y * TK + c[i];
+  return 1e6 * exp(y);
+}
+
+static void EquilibriumValues(void **state)
+{
+  /* as printed by Moridis (2003), in powers of kelvin */
+  static const double water[6] = {-1.94138504464560e5, 3.31018213397926e3,   -2.25540264493806e1,
+                                  7.67559117787059e-2, -1.30465829788791e-4, 8.86065316687571e-8};
+  static const double ice[6]   = {-4.38921173434628e1, 7.76302133739303e-1,  -7.27291427030502e-3,
+                                  3.85413985900724e-5, -1.03669656828834e-7, 1.09882180475307e-10};
+  Equilibrium         law      = {.A1 = 1000, .A2 = 38.98, .A3 = 8533.8};
+  double              d, last = 0;
+
+  EquilibriumSetType(&law, "sloan");
+  Near(EquilibriumPressure(&law, 4, &d), 3600153.39665444, 1e-13);
+  EquilibriumSetType(&law, "moridis");
+  Near(EquilibriumPressure(&law, 4, &d), 3899838.8411577, 1e-13); /* 40 digits */
+  Near(EquilibriumPressure(&law, 20, &d), 23868483.325021, 1e-13);
+  Near(EquilibriumPressure(&law, 0, &d), 2624422.2182147, 1e-13);
+  Near(EquilibriumPressure(&law, 46.85 + 50, &d), 400900240919.61, 1e-12);
+  for (double TK = 149; TK < 320; TK += 0.37) {
+    if (TK <= 273.2 || TK >= 273.74)
+      Near(EquilibriumPressure(&law, TK - 273.15, &d), Printed(TK > 273.2 ? water : ice, TK), 1e-9);
+  }
+  for (double T = -0.5; T < 1.5; T += 1e-3) { /* the join */
+    const double p = EquilibriumPressure(&law, T, &d), lo = fmin(Printed(water, T + 273.15), Printed(ice, T + 273.15));
+
+    assert_true(p > last && d > 0 && p >= lo * (1 - 1e-9));
+    last = p;
+  }
+}
+
+static void KineticsValues(void **state)
+{
+  Kinetics masuda = {.K0 = 3.6e4, .dE = 78151, .A_geo = 7.5e5, .M_h = 0.124};
+  Kinetics bp2    = {.K0 = 2.5e-10, .dE = 0, .A_geo = 1e6};
+  double   d, e;
+
+  masuda.equilibrium = (Equilibrium){.A1 = 1.15, .A2 = 49.3185, .A3 = 9459};
+  EquilibriumSetType(&masuda.equilibrium, "sloan");
+  const double Kd = KineticsRateConstant(&masuda, 2.3, &d), pe = EquilibriumPressure(&masuda.equilibrium, 2.3, &e);
+
+  Near(Kd, 5.44118333753e-11, 1e-11);
+  Near(Kd * masuda.A_geo * (pe - 2.84e6) * masuda.M_h / 900, 4.7161e-3, 1e-5);
+  Near(EquilibriumPressure(&masuda.equilibrium, 2.081, &e), 3.5798e6, 1e-4); /* closed adiabatic cell */
+  assert_true(KineticsRateConstant(&bp2, -50, &d) == 2.5e-10 && d == 0);
+  Near(KineticsFormationArea(&bp2, 0.6, 0.5, &d, &e), 1e6 * 0.3 * 0.2 * 0.5, 1e-14);
+  assert_true(KineticsFormationArea(&bp2, 0.6, 1, &d, &e) == 0 && d == 0);
+  assert_true(KineticsFormationArea(&bp2, 1, 0.3, &d, &e) == 0 && KineticsFormationArea(&bp2, 0, 0.3, &d, &e) == 0);
+}
+
+static void StateAndHeatValues(void **state)
+{
+  const Liquid water = {1000, 2.2e9, 3e-4, 3.25e6, 4}, grain = {2600, INFINITY, 0, 0, 0}, soft = {1000, 1e3, 0, 0, 0};
+  const Gas    methane    = {0.016};
+  const LatentHeat latent = {473632, 140.117};
+  const double     X[4]   = {1, 2, 4, 8};
+  double           dp, dT, d;
+
+  Near(LiquidDensity(&water, 3.25e6, 4, &dp, &dT), 1000, 1e-15);
+  Near(LiquidDensity(&water, 3.25e6 + 2.2e7, 14, &dp, &dT), 1000 * exp(0.01 - 0.003), 1e-14);
+  assert_true(LiquidDensity(&grain, 1e9, 100, &dp, &dT) == 2600 && dp == 0 && dT == 0);
+  assert_true(isfinite(LiquidDensity(&soft, 1e9, 4, &dp, &dT)) && isfinite(dp) && dp > 0);
+  Near(GasDensity(&methane, 3.25e6, 4, &dp, &dT), 0.016 * 3.25e6 / (8.314 * 277.15), 1e-14);
+  Near(LatentHeatEvaluate(&latent, 4, &d), 434.8e3, 1e-4);
+  Near(MixtureAverage(0.5, 0.5, 0.25, X, &dp, &dT, &d), 0.5 * 1 + 0.25 * 2 + 0.0625 * 4 + 0.1875 * 8, 1e-15);
+  assert_true(MixtureAverage(0, 0.3, 0.3, X, &dp, &dT, &d) == 1 && MixtureAverage(1, 1, 0.3, X, &dp, &dT, &d) == 2);
+}
+
+static void ElasticityValues(void **state)
+{
+  Elasticity law = {9e7, 2e9, 0.5, 1, 0.25, false};
+  double     d;
+
+  Near(ElasticityYoung(&law, 0.3, &d), 9e7 + 3e8, 1e-15);
+  assert_true(d == 1e9 && ElasticityYoung(&law, 0, &d) == 9e7);
+  for (law.bh = 0.2; law.bh < 4; law.bh += 0.2) {
+    assert_true(ElasticityYoung(&law, 0, &d) == 9e7 && isfinite(d) && d >= 0);
+    assert_true(isfinite(ElasticityYoung(&law, -1e-16, &d)) && isfinite(d)); /* round-off */
+    Near(ElasticityYoung(&law, 0.5, &d), 9e7 + 1e9 * pow(0.5, law.bh), 1e-14);
+    Near(ElasticityYoung(&law, 1, &d), 9e7 + 1e9, 1e-14);
+  }
+  Near(ElasticityShearFactor(&law), 0.4, 1e-15);
+  Near(ElasticityLameFactor(&law), 0.4, 1e-15);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(RetentionValues),    cmocka_unit_test(RelPermValues),
+                                     cmocka_unit_test(PermeabilityValues), cmocka_unit_test(EquilibriumValues),
+                                     cmocka_unit_test(KineticsValues),     cmocka_unit_test(StateAndHeatValues),
+                                     cmocka_unit_test(ElasticityValues)};
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

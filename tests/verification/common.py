@@ -1,0 +1,192 @@
+"""Running the program and judging its results, for the Python tests.
+
+A test is a program: its first argument is the path of clathra.
+
+    from common import Run, check, finish, table
+    run = Run.of_case("bp2", "-grid_cells", "50,1")
+    check("p at 1000 s", abs(run.probe("inner")["p_Pa"][-1] / 3.25e6 - 1), 0.01)
+    finish()
+
+Tests outside this folder first put it on their path:
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+"""
+import atexit
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+from results import probe_names, read_csv, read_snapshots  # noqa: E402
+
+CASES = ROOT / "cases"
+ENVIRONMENT = {
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+}
+
+
+def binary():
+    """Path of the program: the test's first argument, else the release build."""
+    return sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "clathra")
+
+
+def scratch():
+    """A new empty folder, removed when the test ends; kept in $CLATHRA_KEEP if that is set."""
+    keep = os.environ.get("CLATHRA_KEEP")
+    if keep:
+        Path(keep).mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(prefix="clathra-", dir=keep))
+    if not keep:
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+def launch(program, case, *options, ranks=1, out=None, timeout=800):
+    """Runs the program without judging it; returns subprocess.CompletedProcess (stdout holds both streams)."""
+    command = [str(program), str(case), *map(str, options)]
+    if out is not None:
+        command += ["-output_dir", str(out)]
+    if ranks > 1:
+        command = ["mpiexec", "-n", str(ranks), *command]
+    return subprocess.run(
+        command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, timeout=timeout, text=True, errors="replace",
+    )  # fmt: skip
+
+
+class Run:
+    """What a finished run left behind.  Files are read when first asked for.
+
+    out      Path of the output folder
+    code     exit code
+    output   what the program printed
+    probes   {column of probes.csv: (rows,) array}
+    balance  {column of balance.csv: (steps,) array}
+    """
+
+    def __init__(self, out, code=0, output=""):
+        self.out, self.code, self.output = Path(out), code, output
+        self._csv = {}
+
+    @staticmethod
+    def of_case(case, *options, ranks=1, out=None, exit_code=0):
+        """Runs cases/<case> (or a path) with the program under test."""
+        folder = CASES / str(case)
+        return run(binary(), folder if folder.is_dir() else case, *options, ranks=ranks, out=out, exit_code=exit_code)
+
+    def csv(self, name):
+        if name not in self._csv:
+            self._csv[name] = read_csv(self.out / name)
+        return self._csv[name]
+
+    @property
+    def probes(self):
+        return self.csv("probes.csv")
+
+    @property
+    def balance(self):
+        return self.csv("balance.csv")
+
+    @property
+    def time(self):
+        """(rows,) times of the probe rows, s."""
+        return self.probes["time_s"]
+
+    @property
+    def probe_names(self):
+        return probe_names(self.probes)
+
+    def probe(self, name):
+        """{quantity: (rows,) array} of one probe: p_Pa, T_degC, S_h, u_x_m, ..."""
+        head = name + "."
+        columns = {c[len(head) :]: v for c, v in self.probes.items() if c.startswith(head)}
+        if not columns:
+            raise KeyError(f"no probe {name}; there are {', '.join(self.probe_names)}")
+        return columns
+
+    def at(self, name, quantity, times):
+        """Values of a probe's quantity at times (s), linear between rows."""
+        return np.interp(times, self.time, self.probe(name)[quantity])
+
+    def snapshots(self, kind="particles"):
+        """[(time (s), {variable: (n, components) array})] in order of time; kind particles (sorted by id) or grid."""
+        return read_snapshots(self.out, kind)
+
+    def snapshot(self, time, kind="particles"):
+        """Variables of the snapshot at `time` (s), which must exist."""
+        for t, variables in self.snapshots(kind):
+            if math.isclose(t, time, rel_tol=1e-9, abs_tol=1e-9):
+                return variables
+        raise KeyError(f"no {kind} snapshot at {time} s in {self.out}")
+
+
+def run(program, case, *options, ranks=1, out=None, exit_code=0, timeout=800):
+    """Runs a case to its end and returns its Run; a different exit code ends the test with what the program said."""
+    out = scratch() / "out" if out is None else out
+    done = launch(program, case, *options, ranks=ranks, out=out, timeout=timeout)
+    if done.returncode != exit_code:
+        print(" ".join(map(str, done.args)))
+        print("\n".join(done.stdout.splitlines()[-40:]))
+        sys.exit(f"exit code {done.returncode} instead of {exit_code}")
+    return Run(out, done.returncode, done.stdout)
+
+
+# ---------------------------------------------------------------------------------------- judging and reporting
+_results = []
+
+
+def check(name, value, bar):
+    """Records whether value <= bar, or lower <= value <= upper when bar is a pair; NaN fails.  Returns the verdict."""
+    low, high = bar if isinstance(bar, (tuple, list)) else (-math.inf, bar)
+    value = float(value)
+    ok = low <= value <= high
+    limit = f"in [{low:g}, {high:g}]" if math.isfinite(low) else f"<= {high:g}"
+    print(f"{'ok  ' if ok else 'FAIL'} {name:60s} {value:12.5g}  {limit}", flush=True)
+    _results.append(ok)
+    return ok
+
+
+def check_true(name, condition, note=""):
+    """Records a yes or no."""
+    print(f"{'ok  ' if condition else 'FAIL'} {name}{'  ' + str(note) if note else ''}", flush=True)
+    _results.append(bool(condition))
+    return bool(condition)
+
+
+def table(headers, rows):
+    """Prints rows of text and numbers (six digits) under headers, columns aligned."""
+    text = [[c if isinstance(c, str) else f"{c:.6g}" for c in row] for row in rows]
+    widths = [max(len(r[k]) for r in [list(headers), *text]) for k in range(len(headers))]
+    for row in [list(headers), ["-" * w for w in widths], *text]:
+        print("  ".join(c.rjust(w) for c, w in zip(row, widths)), flush=True)
+
+
+def order(steps, errors):
+    """Observed orders of convergence between neighbours: log(e1/e2)/log(h1/h2), (n-1,) array."""
+    steps, errors = np.asarray(steps, float), np.asarray(errors, float)
+    return np.log(errors[:-1] / errors[1:]) / np.log(steps[:-1] / steps[1:])
+
+
+def largest_difference(values, reference, scale=None):
+    """Largest |values - reference|, over `scale` (default: the largest |reference|)."""
+    values, reference = np.asarray(values, float), np.asarray(reference, float)
+    return np.max(np.abs(values - reference)) / (np.max(np.abs(reference)) if scale is None else scale)
+
+
+def finish():
+    """Prints the count and ends the test; nothing checked is a failure."""
+    failed = _results.count(False)
+    print(f"{_results.count(True)} passed, {failed} failed")
+    sys.exit(1 if failed or not _results else 0)
