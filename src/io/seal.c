@@ -180,6 +180,10 @@ static PetscErrorCode CheckStream(FILE *f, uint64_t bytes, Seal *seal, bool *ok,
     snprintf(why, size, "it is cut off after %" PRIu64 " bytes", bytes);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (sscanf(block, MAGIC "version %d", &seal->version) == 1 && seal->version != CHECKPOINT_VERSION) {
+    snprintf(why, size, "it has format version %d; this program reads version %d", seal->version, CHECKPOINT_VERSION);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   *ok = Parse(block, seal);
   if (*ok)
     Format(seal, true, expected);
@@ -192,11 +196,8 @@ static PetscErrorCode CheckStream(FILE *f, uint64_t bytes, Seal *seal, bool *ok,
     PetscCall(Checksum(f, seal, &hash));
     if (hash != seal->checksum)
       snprintf(why, size, "it is damaged: its checksum is wrong");
-    else if (seal->version != CHECKPOINT_VERSION) {
-      snprintf(why, size, "it has format version %d; this program reads version %d", seal->version, CHECKPOINT_VERSION);
-    }
   }
-  *ok = *ok && bytes == seal->bytes && hash == seal->checksum && seal->version == CHECKPOINT_VERSION;
+  *ok = *ok && bytes == seal->bytes && hash == seal->checksum;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -220,32 +220,32 @@ static PetscErrorCode WriteExtra(Writer *w, const Model *m, Gather *g)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Owned nodes of all ranks: their place in the full grid and values. */
+/* Owned nodes of all ranks, on rank 0: their place in the full grid and values. */
 static PetscErrorCode GatherNodes(const Model *m, PetscInt *n, PetscInt **place, double **x)
 {
-  const Grid    *g     = &m->grid;
-  const PetscInt owned = m->x_n ? m->map.n_owned : 0;
-  PetscMPIInt   *count, *start, total = 0, local = (PetscMPIInt)owned;
-  PetscInt      *mine;
+  const Grid       *g     = &m->grid;
+  const PetscMPIInt owned = m->x_n ? (PetscMPIInt)m->map.n_owned : 0;
+  PetscMPIInt      *count, *start;
+  PetscInt         *mine;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(g->size, &count, g->size, &start, owned, &mine));
   for (PetscInt k = 0; k < owned; k++)
     mine[k] = m->map.ij[k][1] * (g->cells[0] + 1) + m->map.ij[k][0];
-  PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, count, 1, MPI_INT, g->comm));
+  PetscCallMPI(MPI_Allgather(&owned, 1, MPI_INT, count, 1, MPI_INT, g->comm));
+  *n = 0;
   for (PetscMPIInt r = 0; r < g->size; r++) {
-    start[r] = total;
-    total += count[r];
+    start[r] = (PetscMPIInt)*n;
+    *n += count[r];
   }
-  *n = total;
-  PetscCall(PetscMalloc1(g->rank == 0 ? total : 0, place));
-  PetscCall(PetscMalloc1(g->rank == 0 ? total * F_COUNT : 0, x));
-  PetscCallMPI(MPI_Gatherv(mine, local, MPIU_INT, *place, count, start, MPIU_INT, 0, g->comm));
+  PetscCall(PetscMalloc1(g->rank == 0 ? *n : 0, place));
+  PetscCall(PetscMalloc1(g->rank == 0 ? *n * F_COUNT : 0, x));
+  PetscCallMPI(MPI_Gatherv(mine, owned, MPIU_INT, *place, count, start, MPIU_INT, 0, g->comm));
   for (PetscMPIInt r = 0; r < g->size; r++) {
     start[r] *= F_COUNT;
     count[r] *= F_COUNT;
   }
-  PetscCallMPI(MPI_Gatherv(m->x_n, local * F_COUNT, MPI_DOUBLE, *x, count, start, MPI_DOUBLE, 0, g->comm));
+  PetscCallMPI(MPI_Gatherv(m->x_n, owned * F_COUNT, MPI_DOUBLE, *x, count, start, MPI_DOUBLE, 0, g->comm));
   PetscCall(PetscFree3(count, start, mine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -209,12 +209,30 @@ static PetscErrorCode DirichletDiagonal(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The factors of one step serve all its Newton iterations as long as GMRES stays quick with them. */
+static PetscErrorCode ChoosePreconditioner(Model *m, SNES snes, Mat P)
+{
+  PetscInt its = 0;
+  KSP      ksp = NULL;
+
+  PetscFunctionBeginUser;
+  if (snes) {
+    PetscCall(SNESGetKSP(snes, &ksp));
+    PetscCall(KSPGetIterationNumber(ksp, &its));
+  }
+  if (its > m->poor || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt) m->refactor = true;
+  if (ksp) PetscCall(KSPSetReusePreconditioner(ksp, m->refactor ? PETSC_FALSE : PETSC_TRUE));
+  if (m->refactor && P != m->J2) PetscCall(MatConvert(m->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
+  m->refactor    = false;
+  m->factored_dt = m->stage.dt;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
 {
   Model *m = (Model *)model;
 
   PetscFunctionBeginUser;
-  (void)snes;
   PetscCall(PetscLogEventBegin(m->event[2], 0, 0, 0, 0));
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
@@ -225,8 +243,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(DirichletDiagonal(m));
   PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
-  if (P != m->J2)
-    PetscCall(MatConvert(m->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
+  PetscCall(ChoosePreconditioner(m, snes, P));
   if (A != P) {
     PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));

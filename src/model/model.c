@@ -14,6 +14,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(ParticlesSeed(c, &m->grid, &m->P));
   PetscCall(PetscMalloc2(PetscMax(c->nbc, 1), &m->bc.value, PetscMax(c->nbc, 1), &m->bc.shear));
   m->tol_residual = 1e-9;
+  m->poor         = 20;
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
   m->tol_update   = 1e-6;
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));

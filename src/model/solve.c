@@ -167,6 +167,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PC              pc;
 
   PetscFunctionBeginUser;
+  m->refactor = true;
   PetscCall(CreateJ2(m));
   PetscCall(WideCreate(m, &m->A));
   PetscCall(MatCreateVecs(m->J2, &m->X, &m->R));
@@ -189,7 +190,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESLineSearchSetPreCheck(ls, LimitUpdate, m));
   PetscCall(SNESGetKSP(m->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPGMRES));
-  PetscCall(KSPSetTolerances(ksp, 1e-8, PETSC_DEFAULT, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, 200));
   PetscCall(KSPGMRESSetRestart(ksp, 60));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCLU));

@@ -147,7 +147,8 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->event[0], 0, 0, 0, 0));
-  m->status = CL_OK;
+  m->status   = CL_OK;
+  m->refactor = true;
   PetscCall(PetscCalloc1(m->grid.gm[0] * m->grid.gm[1], &flag));
   PetscCall(BuildStencils(m, flag));
   PetscCall(ModelReduceStatus(m, status));

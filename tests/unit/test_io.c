@@ -529,10 +529,19 @@ static void DamagedFilesAreRefused(void **state)
   if (world_rank == 0)
     WriteBytes(bad, "# not a checkpoint\n", 19);
   ExpectRefused(&s, bad, "not a checkpoint");
+  if (world_rank == 0) {
+    *strstr(data, "version 1") = 'V'; /* the line is gone */
+    WriteBytes(bad, data, n);
+  }
+  ExpectRefused(&s, bad, "damaged");
+  if (world_rank == 0) {
+    memcpy(strstr(data, "Version 1"), "version 2", 9);
+    WriteBytes(bad, data, n);
+  }
+  ExpectRefused(&s, bad, "format version 2");
   PathOf(bad, "nowhere.h5");
   ExpectRefused(&s, bad, "No such file");
   ExpectRefused(&s, folder, "not a file");
-  PathOf(bad, "version.h5");
   free(data);
   SceneDestroy(&s);
 }
@@ -696,33 +705,49 @@ static void TakeSteps(Output *out, const Model *m, StepperState *z, int n)
   }
 }
 
+/* A run of five steps with a state in its middle. */
+static void WriteRun(Scene *s, ModelTotals *total, StepperState *middle)
+{
+  StepperState z = {.capacity0 = 2.0, .heat_gain = 6.0, .heat_in = 2.0};
+  Output      *out;
+
+  SceneCreate(s, PETSC_COMM_WORLD, 4);
+  Call(ModelComputeTotals(&s->m, total));
+  z.water0   = total->water * 2.0;
+  z.methane0 = total->methane;
+  Call(OutputCreate(&s->m, &z, false, &out));
+  Call(OutputProbes(out, &s->m, &z));
+  Call(OutputSnapshot(out, &s->m, &z)); /* before the first step: no nodes */
+  z.next_snapshot++;
+  AddNodes(s);
+  TakeSteps(out, &s->m, &z, 2);
+  *middle = z;
+  TakeSteps(out, &s->m, &z, 3);
+  Call(OutputDestroy(&out));
+  ExpectSnapshots(6, 5);
+}
+
+static void ExpectBalance(const char *path, const ModelTotals *total)
+{
+  int rows;
+
+  Check(Cell(path, "time_s", &rows) == 20.0 && rows == 2);
+  Check(Cell(path, "newton", &rows) == 3.0);
+  Check(fabs(Cell(path, "water_error", &rows) + 0.5) < 1e-12);
+  Check(Cell(path, "water_kg", &rows) == total->water);
+  Check(fabs(Cell(path, "heat_error", &rows) - 2.0) < 1e-12);
+}
+
 static void FilesAreCutBackAtARestart(void **state)
 {
   Scene        s;
-  StepperState z = {0}, middle;
+  StepperState middle;
   ModelTotals  total;
   Output      *out;
   char         probes[512], balance[512];
   int          rows;
 
-  SceneCreate(&s, PETSC_COMM_WORLD, 4);
-  Call(ModelComputeTotals(&s.m, &total));
-  z.water0    = total.water * 2.0;
-  z.methane0  = total.methane;
-  z.capacity0 = 2.0;
-  z.heat_gain = 6.0;
-  z.heat_in   = 2.0;
-  Call(OutputCreate(&s.m, &z, false, &out));
-  Call(OutputProbes(out, &s.m, &z));
-  Call(OutputSnapshot(out, &s.m, &z)); /* before the first step: no nodes */
-  z.next_snapshot++;
-  AddNodes(&s);
-  TakeSteps(out, &s.m, &z, 2);
-  middle = z;
-  TakeSteps(out, &s.m, &z, 3);
-  Call(OutputDestroy(&out));
-  ExpectSnapshots(6, 5);
-
+  WriteRun(&s, &total, &middle);
   PathOf(probes, "deep/run/probes.csv");
   PathOf(balance, "deep/run/balance.csv");
   if (world_rank == 0) { /* killed while writing a row */
@@ -734,31 +759,41 @@ static void FilesAreCutBackAtARestart(void **state)
   ExpectSnapshots(3, 2);
   if (world_rank == 0) {
     Check(Cell(probes, "time_s", &rows) == 20.0 && rows == 3);
-    Check(Cell(balance, "time_s", &rows) == 20.0 && rows == 2);
-    Check(Cell(balance, "newton", &rows) == 3.0);
-    Check(fabs(Cell(balance, "water_error", &rows) + 0.5) < 1e-12);
-    Check(Cell(balance, "water_kg", &rows) == total.water);
-    Check(fabs(Cell(balance, "heat_error", &rows) - 2.0) < 1e-12);
+    ExpectBalance(balance, &total);
   }
   TakeSteps(out, &s.m, &middle, 1);
   Call(OutputDestroy(&out));
   ExpectSnapshots(4, 3);
   if (world_rank == 0)
     Check(Cell(probes, "time_s", &rows) == 30.0 && rows == 4);
+  SceneDestroy(&s);
+}
 
-  s.c.nprobe = 2; /* other columns and an unreadable fields.h5: kept aside, begun anew */
-  if (world_rank == 0) {
-    PathOf(balance, "deep/run/fields.h5");
-    WriteBytes(balance, "rubbish", 7);
-  }
-  Call(OutputCreate(&s.m, &middle, true, &out));
-  TakeSteps(out, &s.m, &middle, 1);
+/* Other probes and an unreadable fields.h5: kept aside and begun anew. */
+static void FilesThatDoNotFitAreKeptAside(void **state)
+{
+  Scene        s;
+  StepperState z;
+  ModelTotals  total;
+  Output      *out;
+  char         path[512];
+  int          rows;
+
+  WriteRun(&s, &total, &z);
+  s.c.nprobe = 2;
+  PathOf(path, "deep/run/fields.h5");
+  if (world_rank == 0)
+    WriteBytes(path, "rubbish", 7);
+  Call(OutputCreate(&s.m, &z, true, &out));
+  TakeSteps(out, &s.m, &z, 1);
   Call(OutputDestroy(&out));
   if (world_rank == 0) {
-    Check(Cell(probes, "end.p_Pa", &rows) > 0.0 && rows == 1);
-    PathOf(probes, "deep/run/probes.csv.old");
-    PathOf(balance, "deep/run/fields.h5.old");
-    Check(access(probes, F_OK) == 0 && access(balance, F_OK) == 0);
+    PathOf(path, "deep/run/probes.csv");
+    Check(Cell(path, "end.p_Pa", &rows) > 0.0 && rows == 1);
+    PathOf(path, "deep/run/probes.csv.old");
+    Check(access(path, F_OK) == 0);
+    PathOf(path, "deep/run/fields.h5.old");
+    Check(access(path, F_OK) == 0);
   }
   SceneDestroy(&s);
 }
@@ -778,7 +813,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(ProbesReproduceLinearFields),  cmocka_unit_test(ProbesDropADirectionWithoutExtent),
       cmocka_unit_test(CheckpointComesBackBitForBit), cmocka_unit_test(CheckpointGoesToOtherRanks),
       cmocka_unit_test(DamagedFilesAreRefused),       cmocka_unit_test(ForeignFilesAreRefused),
-      cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(FilesAreCutBackAtARestart)};
+      cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(FilesAreCutBackAtARestart),
+      cmocka_unit_test(FilesThatDoNotFitAreKeptAside)};
   int failed;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));

@@ -11,6 +11,7 @@ Tests outside this folder first put it on their path:
     sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 """
 import atexit
+import json
 import math
 import os
 import shutil
@@ -185,8 +186,35 @@ def largest_difference(values, reference, scale=None):
     return np.max(np.abs(values - reference)) / (np.max(np.abs(reference)) if scale is None else scale)
 
 
+_records = []
+
+
+def record(row, what, bar, measured, ok):
+    """Notes one line of docs/verification.md: row of the table, what is measured, its bar, the value (text or numbers).
+
+    Kept in $CLATHRA_RESULTS/<test>.json if that is set, and read by scripts/verification.py.  It prints nothing and is
+    no check of its own, but a test that records a failure does not end well.
+    """
+    text = [v if isinstance(v, str) else f"{v:.3g}" for v in (bar, measured)]
+    test = Path(sys.argv[0]).stem
+    _records.append({"row": row, "what": what, "bar": text[0], "measured": text[1], "ok": bool(ok), "test": test})
+    folder = os.environ.get("CLATHRA_RESULTS")
+    if folder:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        (Path(folder) / f"{test}.json").write_text(json.dumps(_records, indent=1) + "\n")
+
+
+def judge(row, what, value, bar, scale=1.0, unit=""):
+    """check() and record() in one: shown and recorded in units of `scale`, e.g. 0.01 and "%"."""
+    ok = check(what, value, bar)
+    pair = bar if isinstance(bar, (tuple, list)) else (bar,)
+    show = lambda v: f"{v / scale:.3g}" + (f" {unit}" if unit else "")
+    record(row, what, " to ".join(map(show, pair)) if len(pair) > 1 else f"< {show(bar)}", show(value), ok)
+    return ok
+
+
 def finish():
     """Prints the count and ends the test; nothing checked is a failure."""
     failed = _results.count(False)
     print(f"{_results.count(True)} passed, {failed} failed")
-    sys.exit(1 if failed or not _results else 0)
+    sys.exit(1 if failed or not _results or not all(r["ok"] for r in _records) else 0)
