@@ -16,15 +16,16 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
 {
   Case        c;
   bool        ok;
-  PetscBool   keys = PETSC_FALSE, check = PETSC_FALSE;
+  PetscBool   keys = PETSC_FALSE, check = PETSC_FALSE, help_asked = PETSC_FALSE;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCall(PetscOptionsHasHelp(NULL, &help_asked));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", &keys, NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_check", &check, NULL));
   *exit_code = CL_EXIT_OK;
-  if (keys) {
+  if (keys || (help_asked && argc < 3)) {
     if (rank == 0)
       PetscCall(CasePrintKeys(stdout));
     PetscFunctionReturn(PETSC_SUCCESS);

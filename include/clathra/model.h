@@ -73,21 +73,22 @@ typedef struct {
   double  *row_scale, *col_scale; /* [n_local][F_COUNT] */
 
   /* of the last evaluation */
-  double     *x, *f;  /* [n_local][F_COUNT] unscaled unknowns, residual */
-  double     *proj;   /* [n_local][4] projected pressure gradients Pi g, Pa/m */
-  double     *wide;   /* [n][12] particle coefficients of the wide part (27) */
-  ClStatus    status; /* why the last evaluation failed, on this rank */
-  const char *why;
+  double     *x, *f;     /* [n_local][F_COUNT] unscaled unknowns, residual */
+  double     *proj;      /* [n_local][4] projected pressure gradients Pi g, Pa/m */
+  double     *wide;      /* [n][12] particle coefficients of the wide part (27) */
+  ClStatus    status;    /* why the last evaluation failed, on this rank */
+  const char *why;       /* ... in words */
+  char        text[128]; /* storage for such words */
   double      where[CL_DIM];
   PetscInt    limited; /* particles on which the hydrate positivity limiter acted in the last stage */
 
   Mat    J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
   Vec    X, R;        /* scaled unknowns and residual */
   SNES   snes;
-  bool   refactor;    /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
-  double factored_dt; /* dt' it was made for, s */
-  PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor) */
-  double tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
+  bool   refactor; /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
+  double factored_dt;                /* dt' it was made for, s */
+  PetscInt poor;                     /* Krylov iterations that make it poor (option -newton_refactor) */
+  double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
 } Model;
 
 /* Nodal means at t_n. */

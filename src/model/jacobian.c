@@ -220,9 +220,12 @@ static PetscErrorCode ChoosePreconditioner(Model *m, SNES snes, Mat P)
     PetscCall(SNESGetKSP(snes, &ksp));
     PetscCall(KSPGetIterationNumber(ksp, &its));
   }
-  if (its > m->poor || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt) m->refactor = true;
-  if (ksp) PetscCall(KSPSetReusePreconditioner(ksp, m->refactor ? PETSC_FALSE : PETSC_TRUE));
-  if (m->refactor && P != m->J2) PetscCall(MatConvert(m->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
+  if (its > m->poor || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt)
+    m->refactor = true;
+  if (snes)
+    PetscCall(SNESSetLagPreconditioner(snes, m->refactor ? -2 : -1)); /* -2: once, now; -1: never again */
+  if (m->refactor && P != m->J2)
+    PetscCall(MatConvert(m->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
   m->refactor    = false;
   m->factored_dt = m->stage.dt;
   PetscFunctionReturn(PETSC_SUCCESS);

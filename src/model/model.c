@@ -16,7 +16,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   m->tol_residual = 1e-9;
   m->poor         = 20;
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
-  m->tol_update   = 1e-6;
+  m->tol_update = 1e-6;
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));
   PetscCall(PetscClassIdRegister("Clathra", &id));
@@ -73,21 +73,17 @@ PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status)
 {
   struct {
     int status, rank;
-  } local          = {(int)m->status, m->grid.rank}, worst;
-  char reason[128] = "";
+  } local = {(int)m->status, m->grid.rank}, worst;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_2INT, MPI_MAXLOC, m->grid.comm));
   *status = (ClStatus)worst.status;
   if (worst.status != CL_OK && m->grid.size > 1) {
-    static char shared[128]; /* the reason of another rank */
-
-    if (worst.rank == m->grid.rank)
-      PetscCall(PetscStrncpy(reason, m->why ? m->why : "", sizeof(reason)));
-    PetscCallMPI(MPI_Bcast(reason, sizeof(reason), MPI_CHAR, worst.rank, m->grid.comm));
+    if (worst.rank == m->grid.rank && m->why != m->text)
+      PetscCall(PetscStrncpy(m->text, m->why ? m->why : "", sizeof(m->text)));
+    PetscCallMPI(MPI_Bcast(m->text, sizeof(m->text), MPI_CHAR, worst.rank, m->grid.comm));
     PetscCallMPI(MPI_Bcast(m->where, CL_DIM, MPI_DOUBLE, worst.rank, m->grid.comm));
-    PetscCall(PetscStrncpy(shared, reason, sizeof(shared)));
-    m->why = shared;
+    m->why = m->text;
   }
   m->status = *status;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -273,6 +273,7 @@ static PetscErrorCode Step(Stepper *s, bool *ok)
     }
     const bool small = dt <= s->dt_min * (1.0 + 1e-9);
     if (a.status == CL_INACCURATE) {
+      m->why         = "the error estimate stays above the tolerance";
       dt_inaccurate  = dt;
       err_inaccurate = a.err;
       s->state.dt    = fmax(dt * fmax(0.2, 0.9 * pow(a.err, -1.0 / s->scheme->error_order)), s->dt_min);
