@@ -86,6 +86,7 @@ typedef struct {
   Vec    X, R;        /* scaled unknowns and residual */
   SNES   snes;
   bool   refactor; /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
+  bool   always_refactor;
   double factored_dt;                /* dt' it was made for, s */
   PetscInt poor;                     /* Krylov iterations that make it poor (option -newton_refactor) */
   double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */

@@ -220,7 +220,7 @@ static PetscErrorCode ChoosePreconditioner(Model *m, SNES snes, Mat P)
     PetscCall(SNESGetKSP(snes, &ksp));
     PetscCall(KSPGetIterationNumber(ksp, &its));
   }
-  if (its > m->poor || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt)
+  if (m->always_refactor || its > m->poor || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt)
     m->refactor = true;
   if (snes)
     PetscCall(SNESSetLagPreconditioner(snes, m->refactor ? -2 : -1)); /* -2: once, now; -1: never again */

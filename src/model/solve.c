@@ -192,7 +192,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESLineSearchSetPreCheck(ls, LimitUpdate, m));
   PetscCall(SNESGetKSP(m->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPGMRES));
-  PetscCall(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, 200));
+  PetscCall(KSPSetTolerances(ksp, 1e-6, PETSC_DEFAULT, PETSC_DEFAULT, 60));
   PetscCall(KSPGMRESSetRestart(ksp, 60));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCLU));
@@ -252,14 +252,11 @@ static PetscErrorCode Explain(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status)
+static PetscErrorCode FirstGuess(Model *m, const double *x)
 {
-  SNESConvergedReason reason;
-  double             *a;
+  double *a;
 
   PetscFunctionBeginUser;
-  if (!m->snes)
-    PetscCall(CreateSolver(m));
   PetscCall(VecGetArrayWrite(m->X, &a));
   for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
     const bool fixed = (m->mask[k / F_COUNT] >> (k % F_COUNT)) & 1u;
@@ -267,13 +264,33 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
     a[k] = (fixed ? m->fixed[k] : x[k]) / m->col_scale[k];
   }
   PetscCall(VecRestoreArrayWrite(m->X, &a));
-  m->why = NULL;
-  PetscCall(SNESSolve(m->snes, NULL, m->X));
-  PetscCall(SNESGetConvergedReason(m->snes, &reason));
-  PetscCall(SNESGetIterationNumber(m->snes, newton));
-  if (reason < 0)
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status)
+{
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscInt            its;
+
+  PetscFunctionBeginUser;
+  if (!m->snes)
+    PetscCall(CreateSolver(m));
+  *newton = 0;
+  for (int attempt = 0; attempt < 2;
+       attempt++) { /* with old factors where they serve, else with new ones at every iteration */
+    m->always_refactor = attempt > 0;
+    PetscCall(FirstGuess(m, x));
+    PetscCall(SNESSolve(m->snes, NULL, m->X));
+    PetscCall(SNESGetConvergedReason(m->snes, &reason));
+    PetscCall(SNESGetIterationNumber(m->snes, &its));
+    *newton += its;
+    if (reason > 0 || reason == SNES_DIVERGED_FUNCTION_DOMAIN)
+      break;
+  }
+  if (reason < 0) {
     PetscCall(Explain(m));
-  else
+    m->refactor = true;
+  } else
     m->status = CL_OK;
   PetscCall(ModelReduceStatus(m, status));
   if (*status == CL_OK)
