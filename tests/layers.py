@@ -26,6 +26,7 @@ LAYERS = [
     ("stepper", ["stepper"], ["stepper"]),
     ("io", ["io"], ["io"]),
     ("case", [], ["case"]),
+    ("run", ["run"], ["run"]),
     ("main", [], ["."]),
 ]
 # The physics sees no solver, grid or message passing: laws include nothing of PETSc, point names none of its objects.

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Makes docs/options.md: options_doc.py CLATHRA [--check]
+
+The keys of a case come from `CLATHRA -case_keys`; the options of the program itself are kept by hand below, and
+tests/docs.py holds them against what src/ reads.  --check writes nothing and fails when the page is out of date.
+"""
+import difflib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "options.md"
+
+PROGRAM = [  # option, value, default, meaning
+    ("-case_check", "", "", "read and check the case, write nothing"),
+    ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
+    ("-restart", "FILE", "", "go on from a checkpoint of the same case (grid, regions, materials, boundary conditions); "
+     "times, integrator, outputs and solver may differ"),
+    ("-quiet", "", "", "no line per step; refused steps and the summary are still printed"),
+    ("-stepper_max_steps", "N", "no limit", "stop after N more steps, with a checkpoint and exit code 0"),
+    ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this"),
+    ("-newton_tol_update", "x", "1e-6", "... and every scaled update too, in units of 1 MPa and 1 K"),
+    ("-newton_refactor", "N", "20", "the preconditioner is made once a step, and anew after a linear solve of more than "
+     "N iterations"),
+    ("-model_pmat_type", "aij, baij", "aij on one rank, baij on more", "storage of the assembled matrix that the "
+     "preconditioner sees; UMFPACK needs aij; ILU in blocks of nine needs baij"),
+]  # fmt: skip
+
+PETSC = [  # the ones worth knowing, with this program's defaults
+    ("-snes_max_it", "15", "Newton iterations of a stage before the step is cut"),
+    ("-ksp_type", "gmres", "Krylov method on the exact Jacobian"),
+    ("-ksp_rtol", "1e-6", "its relative tolerance"),
+    ("-ksp_gmres_restart", "60", "vectors kept by GMRES"),
+    ("-pc_type", "lu", "preconditioner: lu, ilu, asm, bjacobi ..."),
+    ("-pc_factor_mat_solver_type", "umfpack on one rank, mumps on more", "who factorises"),
+    ("-options_file", "", "reads options from a file, for example a preset of options/"),
+    ("-snes_monitor, -ksp_converged_reason", "", "watch Newton's method and the linear solver"),
+    ("-options_left", "", "at the end, lists options that nobody read: finds misspelt ones"),
+    ("-log_view", "", "where the time went; this program's own events are ClBeginStep, ClResidual, ClJacobian, "
+     "ClWidePart"),
+]  # fmt: skip
+
+HEAD = """\
+# Options
+
+Made by `scripts/options_doc.py`; do not edit by hand.
+
+An option is given on the command line (`-name value`), in a file named by `-options_file`, or in the case file, where
+it is a key. The command line wins over an options file, and both win over the case.
+
+## Options of the program
+
+| option | value | default | meaning |
+|---|---|---|---|
+{program}
+
+## Options of PETSc that are worth knowing
+
+Every `-snes_`, `-ksp_` and `-pc_` option of PETSc works. The program's own defaults are:
+
+| option | default here | meaning |
+|---|---|---|
+{petsc}
+
+A misspelt option of PETSc or of the table above is not an error; `-options_left` shows it.
+
+## Keys of a case
+
+Numbers carry units, on the command line too (`-time_end "500 s"`, quoted for the shell); only {plain}
+may be bare there, and are then in seconds.
+
+{keys}"""
+
+
+def case_keys(binary):
+    """What the program says about the keys of a case, as Markdown."""
+    return subprocess.run([binary, "-case_keys"], check=True, capture_output=True, text=True).stdout
+
+
+def plain_keys():
+    """Keys whose number may do without a unit on the command line, from the key table's source."""
+    text = (ROOT / "src" / "case" / "keys.c").read_text()
+    rows = re.split(r"\n    (?=[A-Z]+\()", text)
+    return [re.search(r'"(\w+)"', row).group(1) for row in rows if re.search(r"\.plain\s*=\s*true", row)]
+
+
+def row(*cells):
+    return "| " + " | ".join(cells) + " |"
+
+
+def spare(line):
+    """<name> outside backticks would be taken for HTML."""
+    parts = line.split("`")
+    return "`".join(re.sub(r"<([^>|]*)>", r"\\<\1\\>", part) if k % 2 == 0 else part for k, part in enumerate(parts))
+
+
+def page(binary):
+    program = [row(f"`{o}`", v, d, m) for o, v, d, m in PROGRAM]
+    petsc = [row(", ".join(f"`{name}`" for name in o.split(", ")), d, m) for o, d, m in PETSC]
+    plain = ", ".join(f"`-{name}`" for name in plain_keys())
+    keys = "\n".join(spare(line) for line in case_keys(binary).splitlines())
+    return HEAD.format(program="\n".join(program), petsc="\n".join(petsc), plain=plain, keys=keys) + "\n"
+
+
+def main(arguments):
+    check = "--check" in arguments
+    arguments = [a for a in arguments if a != "--check"]
+    if len(arguments) != 1:
+        sys.exit(__doc__)
+    new = page(arguments[0])
+    if not check:
+        PAGE.write_text(new)
+        return 0
+    old = PAGE.read_text() if PAGE.is_file() else ""
+    difference = list(difflib.unified_diff(old.splitlines(), new.splitlines(), str(PAGE), "as it should be", lineterm=""))
+    print("\n".join(difference) if difference else f"{PAGE} is up to date")
+    return 1 if difference else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
