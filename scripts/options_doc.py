@@ -23,18 +23,19 @@ PROGRAM = [  # option, value, default, meaning
     ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this"),
     ("-newton_tol_update", "x", "1e-6", "... and every scaled update too, in units of 1 MPa and 1 K"),
     ("-newton_refactor", "N", "20", "the preconditioner is made once a step, and anew after a linear solve of more than "
-     "N iterations"),
-    ("-model_pmat_type", "aij, baij", "aij on one rank, baij on more", "storage of the assembled matrix that the "
-     "preconditioner sees; UMFPACK needs aij; ILU in blocks of nine needs baij"),
+     "N iterations; a stage that fails is tried again with a new one at every Newton iteration"),
+    ("-model_pmat_type", "aij, baij", "aij with UMFPACK, else baij", "storage of the matrix that the preconditioner "
+     "sees; UMFPACK needs aij, ILU by blocks of nine needs baij; goes with the solver of the same preset"),
 ]  # fmt: skip
 
 PETSC = [  # the ones worth knowing, with this program's defaults
     ("-snes_max_it", "15", "Newton iterations of a stage before the step is cut"),
     ("-ksp_type", "gmres", "Krylov method on the exact Jacobian"),
     ("-ksp_rtol", "1e-6", "its relative tolerance"),
+    ("-ksp_max_it", "60", "iterations before the linear solve has failed"),
     ("-ksp_gmres_restart", "60", "vectors kept by GMRES"),
     ("-pc_type", "lu", "preconditioner: lu, ilu, asm, bjacobi ..."),
-    ("-pc_factor_mat_solver_type", "umfpack on one rank, mumps on more", "who factorises"),
+    ("-pc_factor_mat_solver_type", "umfpack up to 4000 unknowns on one rank, else mumps", "who factorises"),
     ("-options_file", "", "reads options from a file, for example a preset of options/"),
     ("-snes_monitor, -ksp_converged_reason", "", "watch Newton's method and the linear solver"),
     ("-options_left", "", "at the end, lists options that nobody read: finds misspelt ones"),
@@ -48,7 +49,8 @@ HEAD = """\
 Made by `scripts/options_doc.py`; do not edit by hand.
 
 An option is given on the command line (`-name value`), in a file named by `-options_file`, or in the case file, where
-it is a key. The command line wins over an options file, and both win over the case.
+it is a key. The command line and options files win over the case; among themselves the later one wins, so name the file
+first.
 
 ## Options of the program
 
@@ -68,8 +70,8 @@ A misspelt option of PETSc or of the table above is not an error; `-options_left
 
 ## Keys of a case
 
-Numbers carry units, on the command line too (`-time_end "500 s"`, quoted for the shell); only {plain}
-may be bare there, and are then in seconds.
+Quantities carry units on the command line too, quoted for the shell: `-time_end "500 s"`. These may be bare there, and
+are then in seconds: {plain}.
 
 {keys}"""
 

@@ -68,6 +68,11 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
     h->sig[s]  = m->P.f[P_SIG + s][p];
     h->sig0[s] = m->P.f[P_SIG0 + s][p];
   }
+  for (int k = 0; k < 3; k++) {
+    h->shift[k] = -m->P.f[P_PW + k][p];
+    for (int a = 0; a < r->n; a++)
+      h->shift[k] += r->S[a] * m->x_n[r->node[a] * F_COUNT + F_PW + k];
+  }
   for (int f = 0; f < PHASE_COUNT; f++) {
     for (int i = 0; i < 2; i++) {
       h->proj[f][i] = 0.0;

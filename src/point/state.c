@@ -77,23 +77,27 @@ static void Form(const Material *mat, const PointHistory *h, Jet Kd, Jet drive, 
   s->m_h = JetMul(Sj, pore);
 }
 
+/* The reaction sees p and T of the nodal fields, not the particle's own: those differ by what nodes cannot see (and so
+   never correct), which a fast reaction would turn into hydrate. */
 static void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s)
 {
-  double dK, dpe;
+  const Jet T_r = JetShift(T, h->shift[2]);
+  const Jet p_r = JetAdd(s->p, JetAdd(JetScale(h->shift[0], s->sw), JetScale(h->shift[1], s->sg)));
+  double    dK, dpe;
 
   s->limited = false;
   if (!mat->reacts) {
     s->m_h = JetConstant(h->m_star[0]);
     return;
   }
-  const double Kd    = KineticsRateConstant(&mat->kinetics, T.v, &dK);
-  const double pe    = EquilibriumPressure(&mat->kinetics.equilibrium, T.v, &dpe);
-  const Jet    drive = JetSub(JetChain(pe, dpe, T), s->p); /* p_e - p */
+  const double Kd    = KineticsRateConstant(&mat->kinetics, T_r.v, &dK);
+  const double pe    = EquilibriumPressure(&mat->kinetics.equilibrium, T_r.v, &dpe);
+  const Jet    drive = JetSub(JetChain(pe, dpe, T_r), p_r); /* p_e - p */
 
   if (drive.v >= 0.0)
-    Dissociate(mat, h, JetChain(Kd, dK, T), drive, rho_h, s);
+    Dissociate(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
   else
-    Form(mat, h, JetChain(Kd, dK, T), drive, rho_h, s);
+    Form(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
 }
 
 /* mu/(k_a k_r) of both phases. */

@@ -71,7 +71,7 @@ static Material RandomMaterial(Rng *r, Regime regime)
   m.solid.beta           = RngBetween(r, -1e-4, 3e-4);
   m.hydrate.beta         = RngBetween(r, 1e-5, 5e-4);
   m.water.beta           = RngBetween(r, 0.0, 5e-4);
-  m.kinetics.K0          = RngLog(r, 1e-12, 1e-8);
+  m.kinetics.K0          = RngLog(r, 1e-11, 1e-8);
   m.kinetics.dE          = RngPick(r, 2) ? 0.0 : 20.0;
   m.elasticity.bh        = RngPick(r, 2) ? 1.0 : RngBetween(r, 0.5, 3.0);
   m.elasticity.loss_only = RngPick(r, 2);
@@ -111,7 +111,7 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
 
   q->mat          = RandomMaterial(r, regime);
   q->in[IN_T]     = RngBetween(r, 2.0, 15.0);
-  q->h            = (PointHistory){.V = V, .dt = RngLog(r, 1e-2, 1e4), .bracket = RngPick(r, 4) ? 1.0 : 0.0};
+  q->h            = (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .bracket = RngPick(r, 4) ? 1.0 : 0.0};
   q->h.T_n        = q->in[IN_T] + RngBetween(r, -2.0, 2.0);
   q->h.Sh_n       = Sh * RngBetween(r, 0.8, 1.2);
   const double tw = RngBetween(r, -0.3, 0.3);
@@ -309,7 +309,7 @@ static bool Differences(TangentContext *c, double x, double step, double D[OUT_C
   double near[RIDDERS_ROWS], err[RIDDERS_ROWS];
 
   if (!Ridders(OutputRows, c, x, step, OUT_COUNT, dy, err) ||
-      !Ridders(OutputRows, c, x, step / 256.0, OUT_COUNT, near, err))
+      !Ridders(OutputRows, c, x, step / 32.0, OUT_COUNT, near, err))
     return false;
   for (int i = 0; i < OUT_COUNT; i++) {
     if (fabs(near[i] - D[i][column]) < fabs(dy[i] - D[i][column]))

@@ -23,7 +23,7 @@ FLUIDS = {  # saturations, options
 }
 LOADS = {
     "triangular": [],
-    "constant": ["-bc_load_normal_table", "", "-bc_load_normal", P0 + PEAK],
+    "constant": ["-bc_load_normal_table", f"0 s, {P0 + PEAK} Pa, 2000 s, {P0 + PEAK} Pa"],
 }
 
 

@@ -1,0 +1,162 @@
+#!/usr/bin/env python3
+"""README and docs against the program: docs.py CLATHRA
+
+- docs/options.md is what scripts/options_doc.py makes of this program
+- the options read in src/ and the options of that page are the same
+- files and functions that README and docs name exist
+- commands in README and docs, and presets, use options that exist; presets hold no physics and nothing unread
+- the case in README is valid
+"""
+import importlib.util
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
+PRESETS = sorted((ROOT / "options").glob("*.opts"))
+FOLDERS = ("cases", "docs", "include", "options", "scripts", "src", "tests")
+
+# PETSc's, without an object of ours in front.
+PETSC = re.compile(r"-(snes|ksp|pc|sub_pc|sub_ksp|sub|mat_mumps|mat_umfpack|log|vec)_\w+|-(help|options_file|options_left|info)")
+# Presets may choose solver and integrator.
+NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat)_\w+")
+
+spec = importlib.util.spec_from_file_location("options_doc", ROOT / "scripts" / "options_doc.py")
+options_doc = importlib.util.module_from_spec(spec)
+sys.dont_write_bytecode = True
+spec.loader.exec_module(options_doc)
+
+
+def fences(page):
+    """(language, text) of the fenced blocks."""
+    return re.findall(r"^```(\w*)\n(.*?)^```", page.read_text(), re.M | re.S)
+
+
+def options_in_source():
+    call = re.compile(r'PetscOptions(?:Get\w+|HasName)\s*\([^;"]*"(-\w+)"')
+    return {o for p in (ROOT / "src").rglob("*.c") for o in call.findall(p.read_text())}
+
+
+def check_table():
+    documented, read = {o for o, *_ in options_doc.PROGRAM}, options_in_source()
+    yield from (f"src reads {o}, which scripts/options_doc.py does not describe" for o in sorted(read - documented))
+    yield from (f"scripts/options_doc.py describes {o}, which src does not read" for o in sorted(documented - read))
+    if not read:
+        yield "no option was found in src: the search is broken"
+
+
+def check_page(binary):
+    old = options_doc.PAGE.read_text() if options_doc.PAGE.is_file() else ""
+    if old != options_doc.page(binary):
+        yield "docs/options.md is out of date: run scripts/options_doc.py CLATHRA"
+
+
+def named_files(page):
+    """(what the page says, path, function or None)."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.M | re.S)
+    for target in re.findall(r"\]\(([^)#\s]+)\)", text):
+        if "://" not in target:
+            yield target, page.parent / target, None
+    for word in re.findall(r"`([^`\n]+)`", text):
+        path, _, function = word.partition(":")
+        if path.split("/")[0] in FOLDERS and "/" in path and re.fullmatch(r"[\w./*-]+", path):
+            yield word, ROOT / path, function or None
+
+
+def exists(path):
+    return any(path.parent.glob(path.name)) if "*" in path.name else path.exists()
+
+
+def check_files(page):
+    for word, path, function in named_files(page):
+        if not exists(path):
+            yield f"{page.relative_to(ROOT)}: there is no {word}"
+        elif function and not re.search(rf"\b{function}\(", path.read_text()):
+            yield f"{page.relative_to(ROOT)}: {path.relative_to(ROOT)} has no function {function}"
+
+
+def case_patterns(binary):
+    keys = re.findall(r"^\| `(\w*(?:<name>)?\w*)` \|", options_doc.case_keys(binary), re.M)
+    lists = re.findall(r"^`(\w+)`: the list", options_doc.case_keys(binary), re.M)
+    form = r"(_table|_ramp|_rate|_piecewise)?"
+    return re.compile("-(" + "|".join(k.replace("<name>", r"[\w-]+?") + form for k in keys + lists) + ")")
+
+
+def commands(page):
+    """Commands of this program in the fenced blocks and in inline code, as words."""
+    text = page.read_text()
+    lines = [line for _, block in fences(page) for line in block.splitlines()] + re.findall(r"`([^`\n]+)`", text)
+    for line in lines:
+        if re.match(r"(RANKS=\d+ |mpiexec -n \d+ )?(build/clathra|\./run)\b", line):
+            words = shlex.split(line, comments=True)
+            at = next(k for k, w in enumerate(words) if w in ("build/clathra", "./run"))
+            yield line, words[at + 1 :]
+
+
+def is_option(word):
+    return re.match(r"-[A-Za-z]", word)
+
+
+def check_commands(page, known):
+    for line, words in commands(page):
+        for k, word in enumerate(words):
+            if is_option(word) and not known(word):
+                yield f"{page.relative_to(ROOT)}: unknown option {word} in: {line}"
+            if k and words[k - 1] == "-options_file" and not (ROOT / word).is_file():
+                yield f"{page.relative_to(ROOT)}: no file {word} in: {line}"
+
+
+def check_preset(binary, preset, known):
+    name = preset.relative_to(ROOT)
+    words = [w for line in preset.read_text().splitlines() for w in shlex.split(line, comments=True)]
+    for word in filter(is_option, words):
+        if not known(word):
+            yield f"{name}: unknown option {word}"
+        elif not (PETSC.fullmatch(word) or NO_PHYSICS.fullmatch(word)):
+            yield f"{name}: {word} is no business of a preset"
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run(
+            [binary, ROOT / "cases" / "bp2", "-options_file", preset, "-stepper_max_steps", "1", "-output_dir", folder,
+             "-quiet", "-options_left"], capture_output=True, text=True, timeout=120)  # fmt: skip
+    if run.returncode != 0:
+        yield f"{name}: one step of cases/bp2 ends with code {run.returncode}: {run.stdout[-300:]}{run.stderr[-300:]}"
+    left = re.findall(r"^Option left: name:(-\w+)", run.stdout, re.M)
+    yield from (f"{name}: nobody reads {o}" for o in left)
+
+
+def check_example(binary):
+    blocks = [text for language, text in fences(ROOT / "README.md") if language == "yaml"]
+    if not blocks:
+        yield "README.md has no case"
+    for text in blocks:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "case.yaml"
+            path.write_text(text)
+            run = subprocess.run([binary, path, "-case_check"], capture_output=True, text=True, timeout=60)
+            if run.returncode != 0:
+                yield f"README.md: the case is not valid: {run.stderr}"
+
+
+def main(binary):
+    binary = str(Path(binary).resolve())
+    case, program = case_patterns(binary), {o for o, *_ in options_doc.PROGRAM}
+    known = lambda word: word in program or PETSC.fullmatch(word) or case.fullmatch(word)
+    planted = ["-stepper_typ", "-mat_sand_porosty", "-newton_tol", "-grid", "-ksptype"]
+    found = [f"self-test: {word} was taken for an option" for word in planted if known(word)]
+    found += [*check_table(), *check_page(binary), *check_example(binary)]
+    for page in PAGES:
+        found += [*check_files(page), *check_commands(page, known)]
+    for preset in PRESETS:
+        found += check_preset(binary, preset, known)
+    count = sum(1 for page in PAGES for _ in named_files(page)), sum(1 for page in PAGES for _ in commands(page))
+    print("\n".join(found + [f"{len(PAGES)} pages, {count[0]} files and {count[1]} commands named, {len(PRESETS)} presets, "
+                             f"{len(found)} faults"]))  # fmt: skip
+    return 1 if found or not min(count) or not PRESETS else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))
