@@ -20,7 +20,8 @@ PROGRAM = [  # option, value, default, meaning
      "times, integrator, outputs and solver may differ"),
     ("-quiet", "", "", "no line per step; refused steps and the summary are still printed"),
     ("-stepper_max_steps", "N", "no limit", "stop after N more steps, with a checkpoint and exit code 0"),
-    ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this"),
+    ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this, rows of "
+     "mass and energy 20 times lower"),
     ("-newton_tol_update", "x", "1e-6", "... and every scaled update too, in units of 1 MPa and 1 K"),
     ("-newton_refactor", "N", "20", "the preconditioner is made once a step, and anew after a linear solve of more than "
      "N iterations; a stage that fails is tried again with a new one at every Newton iteration"),
@@ -31,7 +32,9 @@ PROGRAM = [  # option, value, default, meaning
 PETSC = [  # the ones worth knowing, with this program's defaults
     ("-snes_max_it", "15", "Newton iterations of a stage before the step is cut"),
     ("-ksp_type", "gmres", "Krylov method on the exact Jacobian"),
+    ("-ksp_pc_side", "right", "so that it stops on the residual of the rows themselves"),
     ("-ksp_rtol", "1e-6", "its relative tolerance"),
+    ("-ksp_atol", "0.02 newton_tol_residual", "its absolute tolerance, on scaled rows"),
     ("-ksp_max_it", "60", "iterations before the linear solve has failed"),
     ("-ksp_gmres_restart", "60", "vectors kept by GMRES"),
     ("-pc_type", "lu", "preconditioner: lu, ilu, asm, bjacobi ..."),

@@ -21,7 +21,8 @@ PRESETS = sorted((ROOT / "options").glob("*.opts"))
 FOLDERS = ("cases", "docs", "include", "options", "scripts", "src", "tests")
 
 # PETSc's, without an object of ours in front.
-PETSC = re.compile(r"-(snes|ksp|pc|sub_pc|sub_ksp|sub|mat_mumps|mat_umfpack|log|vec)_\w+|-(help|options_file|options_left|info)")
+PETSC = re.compile(r"-(snes|ksp|pc|sub_pc|sub_ksp|sub|mat_mumps|mat_umfpack|log|vec)_\w+|"
+                   r"-(help|options_file|options_left|info)")
 # Presets may choose solver and integrator.
 NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat)_\w+")
 

@@ -43,9 +43,9 @@ typedef struct {
   double T_n, Sh_n; /* at t_n */
   double sig[6], sig0[6];
   double proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
-  double shift[3];      /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
-  double bracket;              /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
-  double dt;                   /* dt' of the stage */
+  double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
+  double bracket;  /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
+  double dt;       /* dt' of the stage */
 } PointHistory;
 
 /* State at the end of the stage. */

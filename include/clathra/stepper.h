@@ -79,5 +79,6 @@ PetscErrorCode StepperDestroy(Stepper *s);
 PetscErrorCode StepperRun(Stepper *s, bool *ok);
 
 /* Shared by the schemes. */
+PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
 double         StepperErrorNorm(Stepper *s, const double *e, const double *eu); /* collective; e [n][4], eu [n][2] */

@@ -3,21 +3,6 @@
 
 #define MAX_MOVE 0.5 /* cells per step */
 
-/* Evaluates particle p at the end of the stage. */
-static ClStatus Evaluate(Model *m, PetscInt p, const double *x, const Reach *r, double in[IN_COUNT], PointState *s,
-                         PointOutput *o)
-{
-  PointHistory h;
-  const char  *why = NULL;
-
-  GatherInputs(m, p, r, x, NULL, in);
-  GatherHistory(m, p, r, &h);
-  const ClStatus status = PointEvaluate(ParticleMaterial(m, p), &h, in, false, s, o, &why);
-  if (status != CL_OK)
-    NoteFailure(m, status, why, p);
-  return status;
-}
-
 static void Displacement(const Model *m, const Reach *r, const double *x, double u[CL_DIM])
 {
   for (int d = 0; d < CL_DIM; d++) {
@@ -60,28 +45,20 @@ static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
   }
 }
 
-static PetscErrorCode BoundaryRates(const Model *m, const double *x, StageRates *rates)
+static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
 {
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->nface; k++) {
-    const Face    *f               = &m->face[k];
-    const PetscInt p               = f->particle;
-    const double   p0[PHASE_COUNT] = {m->P.f[P_PW0][p], m->P.f[P_PG0][p]};
-    double         in[IN_COUNT], sum = 0.0;
-    Reach          r;
-    FaceOutput     o;
+    double     sum = 0.0;
+    Reach      r;
+    FaceOutput o;
 
-    ReachExpand(m, p, &r);
-    GatherInputs(m, p, &r, x, f->N, in);
-    FaceEvaluate(m->c, f, &m->bc, ParticleMaterial(m, p), p0, in, m->coef[r.node[0] * NC_COUNT + NC_KAPPA], m->stage.dt,
-                 &o);
+    FaceAt(m, &m->face[k], x, &r, &o);
     for (int a = 0; a < r.n; a++)
-      sum += f->N[a];
+      sum += m->face[k].N[a];
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       rates->out[ph] += sum * o.outflow[ph];
     rates->heat_in += sum * o.heat_in;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
@@ -95,8 +72,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
     PointOutput o;
     double      in[IN_COUNT];
 
-    ReachExpand(m, p, &r);
-    if (Evaluate(m, p, x, &r, in, &s, &o) != CL_OK)
+    if (ParticleEvaluate(m, p, x, false, &r, in, &s, &o) != CL_OK)
       continue;
     Displacement(m, &r, x, &trial->u[2 * p]);
     Velocity(m, p, x, &trial->v[2 * p]);
@@ -113,7 +89,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       rates->heat_rate += r.S[a] * o.out[OUT_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt;
     }
   }
-  PetscCall(BoundaryRates(m, x, rates));
+  BoundaryRates(m, x, rates);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
   PetscCall(ModelReduceStatus(m, status));
@@ -172,8 +148,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const double *rates)
     PointOutput o;
     double      in[IN_COUNT];
 
-    ReachExpand(m, p, &r);
-    PetscCheck(Evaluate(m, p, x, &r, in, &s, &o) == CL_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+    PetscCheck(ParticleEvaluate(m, p, x, false, &r, in, &s, &o) == CL_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "an accepted state is not admissible");
     for (int k = 0; k < 4; k++)
       m->P.f[P_RATE + k][p] = rates[4 * p + k];

@@ -92,6 +92,12 @@ static inline void NoteFailure(Model *m, ClStatus status, const char *why, Petsc
   m->where[1] = m->P.f[P_X + 1][p];
 }
 
+/* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
+ * model. */
+ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
+                          PointState *s, PointOutput *o);
+/* The same for a surface face. */
+void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o);
 /* Projected pressure gradients (20) of the nodal pressures x into proj (n_local x 4), all ranks. */
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */

@@ -140,17 +140,12 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach        r;
-    PointHistory h;
-    PointState   state;
-    PointOutput  o;
-    double       in[IN_COUNT];
-    const char  *why;
+    Reach       r;
+    PointState  state;
+    PointOutput o;
+    double      in[IN_COUNT];
 
-    ReachExpand(m, p, &r);
-    GatherInputs(m, p, &r, x, NULL, in);
-    GatherHistory(m, p, &r, &h);
-    if (PointEvaluate(ParticleMaterial(m, p), &h, in, true, &state, &o, &why) != CL_OK)
+    if (ParticleEvaluate(m, p, x, true, &r, in, &state, &o) != CL_OK)
       continue; /* the residual said so */
     KeepWide(&o, &m->wide[12 * p]);
     ParticleBlock(m, &r, x, &o, block);
@@ -159,35 +154,35 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nine rows of a face's nodes: all are weighted with N. */
+static void FaceBlock(const Model *m, const Face *face, const Reach *r, const FaceOutput *o, double *block)
+{
+  const int ld = r->n * F_COUNT;
+
+  for (int b = 0; b < r->n; b++) {
+    for (int q = 0; q < F_COUNT; q++) {
+      double col[F_COUNT];
+
+      Columns(o->D[q], m->stage.dt, r->S[b], face->N[b], r->G[b], &m->w[2 * r->node[b]], col);
+      for (int a = 0; a < r->n; a++) {
+        for (int c = 0; c < F_COUNT; c++)
+          block[(a * F_COUNT + q) * ld + b * F_COUNT + c] = face->N[a] * col[c];
+      }
+    }
+  }
+}
+
 static PetscErrorCode FaceLoop(Model *m, const double *x)
 {
   double block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->nface; k++) {
-    const Face    *face            = &m->face[k];
-    const PetscInt p               = face->particle;
-    const double   p0[PHASE_COUNT] = {m->P.f[P_PW0][p], m->P.f[P_PG0][p]};
-    double         in[IN_COUNT];
-    Reach          r;
-    FaceOutput     o;
+    Reach      r;
+    FaceOutput o;
 
-    ReachExpand(m, p, &r);
-    GatherInputs(m, p, &r, x, face->N, in);
-    FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, m->coef[r.node[0] * NC_COUNT + NC_KAPPA],
-                 m->stage.dt, &o);
-    const int ld = r.n * F_COUNT;
-    for (int b = 0; b < r.n; b++) {
-      for (int q = 0; q < F_COUNT; q++) {
-        double col[F_COUNT];
-
-        Columns(o.D[q], m->stage.dt, r.S[b], face->N[b], r.G[b], &m->w[2 * r.node[b]], col);
-        for (int a = 0; a < r.n; a++) {
-          for (int c = 0; c < F_COUNT; c++)
-            block[(a * F_COUNT + q) * ld + b * F_COUNT + c] = face->N[a] * col[c];
-        }
-      }
-    }
+    FaceAt(m, &m->face[k], x, &r, &o);
+    FaceBlock(m, &m->face[k], &r, &o, block);
     PetscCall(JacobianAdd(m, r.n, r.node, block));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

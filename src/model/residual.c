@@ -82,40 +82,26 @@ static void Scatter(const Model *m, const Reach *r, const double *x, const doubl
 static void ParticleLoop(Model *m, const double *x, double *f)
 {
   for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach        r;
-    PointHistory h;
-    PointState   state;
-    PointOutput  o;
-    double       in[IN_COUNT];
-    const char  *why;
+    Reach       r;
+    PointState  state;
+    PointOutput o;
+    double      in[IN_COUNT];
 
-    ReachExpand(m, p, &r);
-    GatherInputs(m, p, &r, x, NULL, in);
-    GatherHistory(m, p, &r, &h);
-    const ClStatus status = PointEvaluate(ParticleMaterial(m, p), &h, in, false, &state, &o, &why);
-    if (status != CL_OK) {
-      NoteFailure(m, status, why, p);
+    if (ParticleEvaluate(m, p, x, false, &r, in, &state, &o) != CL_OK)
       return;
-    }
     m->limited += state.limited;
     Scatter(m, &r, x, o.out, f);
   }
 }
 
-static void FaceLoop(Model *m, const double *x, double *f)
+static void FaceLoop(const Model *m, const double *x, double *f)
 {
   for (PetscInt k = 0; k < m->nface; k++) {
-    const Face    *face            = &m->face[k];
-    const PetscInt p               = face->particle;
-    const double   p0[PHASE_COUNT] = {m->P.f[P_PW0][p], m->P.f[P_PG0][p]};
-    double         in[IN_COUNT];
-    Reach          r;
-    FaceOutput     o;
+    const Face *face = &m->face[k];
+    Reach       r;
+    FaceOutput  o;
 
-    ReachExpand(m, p, &r);
-    GatherInputs(m, p, &r, x, face->N, in);
-    FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, m->coef[r.node[0] * NC_COUNT + NC_KAPPA],
-                 m->stage.dt, &o);
+    FaceAt(m, face, x, &r, &o);
     for (int a = 0; a < r.n; a++) {
       for (int q = 0; q < F_COUNT; q++)
         f[r.node[a] * F_COUNT + q] += face->N[a] * o.out[q];

@@ -7,12 +7,7 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
   StepperWork *w = &s->work;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * F_COUNT));
-  PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    for (int k = 0; k < 3; k++)
-      w->m_star[3 * p + k] = m->P.f[P_MH + k][p];
-  }
+  PetscCall(StepperStartFromHistory(s));
   PetscCall(StepperStage(s, s->state.t + dt, dt, &w->trial[0], 1.0, a));
   if (a->status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS);

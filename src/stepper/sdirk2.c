@@ -70,17 +70,11 @@ static PetscErrorCode Error(Stepper *s, double dt, Attempt *a)
 
 static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
 {
-  Model       *m = s->model;
   StepperWork *w = &s->work;
   const double t = s->state.t;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * F_COUNT));
-  PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    for (int k = 0; k < 3; k++)
-      w->m_star[3 * p + k] = m->P.f[P_MH + k][p];
-  }
+  PetscCall(StepperStartFromHistory(s));
   PetscCall(StepperStage(s, t + GAMMA * dt, GAMMA * dt, &w->trial[0], (1.0 - GAMMA) / GAMMA, a));
   if (a->status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -82,6 +82,21 @@ static PetscErrorCode SizeWork(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode StepperStartFromHistory(Stepper *s)
+{
+  const Model *m = s->model;
+  StepperWork *w = &s->work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * F_COUNT));
+  PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    for (int k = 0; k < 3; k++)
+      w->m_star[3 * p + k] = m->P.f[P_MH + k][p];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One backward-Euler stage from the starred values in the work space; weight x dt' is its share of the step's
  * integrals. */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a)

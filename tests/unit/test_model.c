@@ -572,7 +572,7 @@ static double RestVelocity(Scene *s, double *scale)
   for (PetscInt k = 0; k < m->map.n_local * F_COUNT; k++)
     x[k] = m->x_n[k] +
            1e-3 * m->col_scale[k] * Noise(60, m->map.ij[k / F_COUNT][0] + 100 * m->map.ij[k / F_COUNT][1], k % F_COUNT);
-  m->tol_residual = 1e-13;
+  m->tol_residual = 2e-12; /* and a twentieth of it in mass and energy */
   Call(ModelSolve(m, x, &newton, &status));
   if (status != CL_OK)
     Say("  %s\n", m->why);
@@ -813,7 +813,6 @@ static void TestNewtonOrder(void **state)
   ClStatus     status;
 
   (void)state;
-  Call(PetscOptionsSetValue(NULL, "-ksp_rtol", "1e-13"));
   SceneInit(s, BASIS_CPGIMP, lower, upper);
   s->mat[0].reacts          = true;
   s->mat[0].permeability.k0 = 1.53e-15;
@@ -826,7 +825,7 @@ static void TestNewtonOrder(void **state)
   StageStart(s, 50.0);
   Call(ModelBeginStage(&s->m, &s->stage));
   MakeSolver(s);
-  s->m.tol_residual = 1e-12;
+  s->m.tol_residual = 1e-11;
   Call(SNESSetConvergenceHistory(s->m.snes, history, NULL, 50, PETSC_TRUE));
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   Call(PetscArraycpy(x, s->m.x_n, s->m.map.n_local * F_COUNT));
@@ -841,10 +840,19 @@ static void TestNewtonOrder(void **state)
       best = fmax(best, order);
   }
   Check(status == CL_OK && best > 1.8);
-  Call(PetscOptionsClearValue(NULL, "-ksp_rtol"));
   Call(PetscFree(x));
   SceneDestroy(s);
   free(s);
+}
+
+/* Linear systems solved as well as can be, with factors of each iteration's own matrix: Newton's method undisturbed. */
+static PetscErrorCode SetOptions(void)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsSetValue(NULL, "-ksp_rtol", "1e-10"));
+  PetscCall(PetscOptionsSetValue(NULL, "-ksp_atol", "1e-14"));
+  PetscCall(PetscOptionsSetValue(NULL, "-newton_refactor", "0"));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 int main(int argc, char **argv)
@@ -857,7 +865,7 @@ int main(int argc, char **argv)
   int failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
+      MPI_Comm_size(PETSC_COMM_WORLD, &world_size) || SetOptions())
     return 1;
   failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (PetscFinalize())

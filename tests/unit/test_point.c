@@ -98,10 +98,12 @@ static void SetPressureOfRegime(Rng *r, Particle *q, Regime regime)
   static const double lo[REGIMES] = {0.5, 0.3, 1.05, 0.9989, 1.0009, 0.5, 0.5};
   static const double hi[REGIMES] = {2.0, 0.95, 2.0, 0.9991, 1.0011, 2.0, 2.0};
   double              d;
-  const double        pe = EquilibriumPressure(&q->mat.kinetics.equilibrium, q->in[IN_T], &d);
+  const double        pe = EquilibriumPressure(&q->mat.kinetics.equilibrium, q->in[IN_T] + q->h.shift[2], &d);
   const double        pc = RngPick(r, 4) ? RngLog(r, 0.1, 10.0) * q->mat.retention.p0 : -0.5 * q->mat.retention.p0;
 
   SetPressures(q, RngBetween(r, lo[regime], hi[regime]) * pe, pc);
+  for (int f = 0; f < PHASE_COUNT; f++) /* what the reaction sees is the same */
+    q->in[IN_P + f] -= q->h.shift[0];
 }
 
 /* A state and a history from which it could have come. */
@@ -109,11 +111,15 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
 {
   const double V = RngLog(r, 1e-6, 1.0), phi = RngBetween(r, 0.25, 0.6), Sh = RngBetween(r, 0.02, 0.5);
 
-  q->mat          = RandomMaterial(r, regime);
-  q->in[IN_T]     = RngBetween(r, 2.0, 15.0);
-  q->h            = (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .bracket = RngPick(r, 4) ? 1.0 : 0.0};
-  q->h.T_n        = q->in[IN_T] + RngBetween(r, -2.0, 2.0);
-  q->h.Sh_n       = Sh * RngBetween(r, 0.8, 1.2);
+  q->mat        = RandomMaterial(r, regime);
+  q->in[IN_T]   = RngBetween(r, 2.0, 15.0);
+  q->h          = (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .bracket = RngPick(r, 4) ? 1.0 : 0.0};
+  q->h.T_n      = q->in[IN_T] + RngBetween(r, -2.0, 2.0);
+  q->h.Sh_n     = Sh * RngBetween(r, 0.8, 1.2);
+  q->h.shift[0] = q->h.shift[1] = RngBetween(r, -5e4, 5e4);
+  if (regime != JUST_BELOW && regime != JUST_ABOVE)
+    q->h.shift[1] += RngBetween(r, -2e4, 2e4);
+  q->h.shift[2]   = RngBetween(r, -0.5, 0.5);
   const double tw = RngBetween(r, -0.3, 0.3);
   for (int k = 0; k < 4; k++)
     q->in[IN_GRADU + k] = RngBetween(r, -0.03, 0.03);
@@ -598,13 +604,14 @@ static void TestHydrateEquation(void **state)
 
     RandomParticle(&r, regime[n % 3], &q);
     assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
-    const Kinetics *k   = &q.mat.kinetics;
-    const double    pe  = EquilibriumPressure(&k->equilibrium, q.in[IN_T], &d1);
+    const Kinetics *k = &q.mat.kinetics;
+    const double    T = q.in[IN_T] + q.h.shift[2], pe = EquilibriumPressure(&k->equilibrium, T, &d1);
     const double    rho = LiquidDensity(&q.mat.hydrate, 0.0, q.in[IN_T], &d1, &d2), pore = s.phi * s.V * rho;
     const double    sg = RetentionGasShare(&q.mat.retention, q.in[IN_P + 1] - q.in[IN_P], &d1);
-    const double    c  = q.h.dt * s.V * k->M_h * KineticsRateConstant(k, q.in[IN_T], &d1) * k->A_geo * (pe - s.p);
+    const double    p  = s.p + (1.0 - sg) * q.h.shift[0] + sg * q.h.shift[1]; /* the nodal fields drive the reaction */
+    const double    c  = q.h.dt * s.V * k->M_h * KineticsRateConstant(k, T, &d1) * k->A_geo * (pe - p);
     for (int it = 0; it < 200; it++) {
-      const double S = 0.5 * (lo + hi), A = s.p <= pe ? s.phi * S : (1.0 - sg) * sg * pow(1.0 - S, 3.0);
+      const double S = 0.5 * (lo + hi), A = p <= pe ? s.phi * S : (1.0 - sg) * sg * pow(1.0 - S, 3.0);
 
       if (pore * S - q.h.m_star[0] + c * A > 0.0)
         hi = S;

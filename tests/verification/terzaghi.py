@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Row 4: linear consolidation (Terzaghi) of a column filled with water, and with water and immobile gas.
 
-The closed form knows one pressure.  The case realises it with p_c below 100 Pa (p0 = 100 Pa), so that gas and water are
+The closed form knows one pressure.  The case realises it with a tiny capillary pressure (p0 = 300 Pa), so that gas and water are
 squeezed together and the pore fluid stores S = phi (Sw/Kw + Sg/p) per Pa; with k_rw = 1 and k_rg = 0 at any saturation,
-so that only water flows; and with a load of 1e4 Pa.  Water alone is a gas share of 1e-6, whose storage is counted too.
+so that only water flows; and with a load of 1e3 Pa.  Water alone is a gas share of 1e-6, whose storage is counted too.
 """
 from pathlib import Path
 
@@ -13,7 +13,7 @@ import exact
 from common import Run, check, finish, judge, order, table
 
 CASE = Path(__file__).parent / "cases" / "terzaghi.yaml"
-P0, PEAK, H, X = 3.25e6, 1e4, 1.0, 0.6  # Pa, Pa, m, m
+P0, PEAK, H, X = 3.25e6, 1e3, 1.0, 0.6  # Pa, Pa, m, m
 M = exact.constrained_modulus(9e7, 0.2)
 TIMES = np.array([500.0, 1000.0, 1500.0, 2000.0])
 
