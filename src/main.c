@@ -5,12 +5,16 @@ static const char help[] =
     "Clathra: coupled thermo-hydro-mechanical-chemical material point simulator for methane-hydrate-bearing sediment.\n"
     "\n"
     "  clathra CASE [options]      CASE is a folder with a case.yaml, or such a file\n"
-    "  -case_check                 read and validate the case only\n"
-    "  -case_keys                  print every key of a case file\n"
-    "  -restart FILE               go on from a checkpoint\n"
+    "  -case_check                 read and check the case, write nothing\n"
+    "  -case_keys                  print every key of a case file (needs no CASE)\n"
+    "  -restart FILE               go on from a checkpoint of the same case\n"
+    "  -stepper_max_steps N        stop after N more steps, with a checkpoint\n"
     "  -quiet                      no line per step\n"
-    "Any key of the case can be set on the command line, e.g. -grid_cells 100,1 -stepper_type euler.\n"
-    "Solver presets: -options_file options/NAME.opts; -snes_, -ksp_, -pc_ options are PETSc's own.\n\n";
+    "  -newton_tol_residual 1e-9, -newton_tol_update 1e-6, -newton_refactor 20, -model_pmat_type aij|baij\n"
+    "Any key of the case can be set here, with its unit: -grid_cells 104,1 -stepper_type euler -time_end \"500 s\".\n"
+    "Presets: -options_file options/NAME.opts (later options win); -snes_, -ksp_, -pc_ are PETSc's; docs/options.md "
+    "has all.\n"
+    "Exit codes: 0 done, 1 bug, 2 wrong case or option, 3 gave up (last good state in checkpoint.h5).\n\n";
 
 static PetscErrorCode Main(int argc, char **argv, int *exit_code)
 {

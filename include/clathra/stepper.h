@@ -7,18 +7,19 @@
 /* Everything besides the particles that a run carries from step to step (in the checkpoint, so that a restart is bit
  * for bit). */
 typedef struct {
-  PetscInt step;    /* steps done */
-  double   t;       /* s */
-  double   dt;      /* next step wanted by the controller, s */
-  double   err_old; /* error of the last accepted step relative to the tolerance */
-  PetscInt hold;    /* steps during which dt may not grow */
-  PetscInt fresh;   /* 1: no rates of a previous step (start, or just past a kink of a schedule) */
+  PetscInt step;          /* steps done */
+  PetscInt hold;          /* steps during which dt may not grow */
+  PetscInt fresh;         /* 1: no rates of a previous step (start, or just past a kink of a schedule) */
+  PetscInt next_snapshot; /* its number */
   PetscInt newton_total, failures_total, limited_total;
+  double   t;                               /* s */
+  double   dt;                              /* next step wanted by the controller, s */
+  double   err_old;                         /* error of the last accepted step relative to the tolerance */
   double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source; /* J since t = 0 */
   double   water0, methane0, capacity0;     /* totals at t = 0, kg, J/K */
-  double   scale_p, scale_u; /* largest pressure change (Pa) and displacement (m) so far: what errors are relative to */
-  PetscInt next_snapshot, next_probe, next_checkpoint; /* counters of the outputs */
+  double   scale_p,
+      scale_u; /* largest change of pressure or stress (Pa) and displacement (m) so far: what errors are relative to */
 } StepperState;
 
 /* Numbers of the step just taken, for monitors. */
@@ -65,14 +66,14 @@ struct Stepper {
   bool                 adaptive;
   double               dt_min, dt_max, tol;
   PetscInt             max_failures, max_steps;
-  /* called after every accepted step, in order; *stop ends the run early */
+  /* called after every accepted step */
   PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
   void *monitor_ctx;
   /* next time that a step must hit besides kinks and the end; INFINITY if none */
   double (*next_event)(const Stepper *s, void *ctx);
 };
 
-PetscErrorCode StepperCreate(Model *m, Stepper *s); /* reads -stepper_type; the rest comes from the case */
+PetscErrorCode StepperCreate(Model *m, Stepper *s); /* as the case says */
 PetscErrorCode StepperDestroy(Stepper *s);
 /* Runs to Case.t_end (or -stepper_max_steps).  *ok = false: given up, the model holds the last good state and a
  * sentence was printed. */

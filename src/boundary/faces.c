@@ -19,14 +19,18 @@ static PetscInt FindCondition(const Case *c, BcType type, int side, PetscInt reg
   return found;
 }
 
-/* Hat function along the normal, the particle's own weights along the tangent. */
-static void Weights(const Grid *g, const Stencil *s, int axis, double position, double N[CL_NODES])
+/* Hat function along the normal, the particle's own weights along the tangent.  A linear particle does not reach the
+   nodes of its face, which then acts at the particle. */
+static void Weights(const Grid *g, BasisType basis, const Stencil *s, int axis, double position, double N[CL_NODES])
 {
   const Axis *x = &s->axis[0], *y = &s->axis[1];
   Axis        hat;
   int         n = 0;
 
-  BasisHat(position, g->lower[axis], g->h[axis], &hat);
+  if (basis == BASIS_LINEAR)
+    hat = s->axis[axis];
+  else
+    BasisHat(position, g->lower[axis], g->h[axis], &hat);
   for (int b = 0; b < 3; b++) {
     if (y->S[b] == 0.0 && y->dS[b] == 0.0)
       continue;
@@ -60,7 +64,7 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
   f->heat        = FindCondition(c, BC_HEAT_FLUX, side, region, along);
   f->convection  = FindCondition(c, BC_CONVECTION, side, region, along);
   f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, side, region, along);
-  Weights(g, &stencil[p], axis, P->f[P_X + axis][p] + f->r[axis], f->N);
+  Weights(g, c->basis, &stencil[p], axis, P->f[P_X + axis][p] + f->r[axis], f->N);
 }
 
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,

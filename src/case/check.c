@@ -92,6 +92,9 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
            "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xy"[d], g -> lower[d], g -> upper[d],
            c -> lower[d], c -> upper[d]);
   }
+  if (g->ppc[0] * g->ppc[1] < 2)
+    FAIL(GROUP_REGION, g->name, "particles_per_cell",
+         "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
   for (PetscInt j = 0; j < i; j++) {
     const Region *o    = &c->region[j];
     bool          over = true;

@@ -21,30 +21,14 @@
   {                                                                                                                    \
     #field, offsetof(StepperState, field), 1, true                                                                     \
   }
-const StateField io_state_field[] = {INT(step),
-                                     REAL(t),
-                                     REAL(dt),
-                                     REAL(err_old),
-                                     INT(hold),
-                                     INT(fresh),
-                                     INT(newton_total),
-                                     INT(failures_total),
-                                     INT(limited_total),
-                                     REAL(out),
-                                     REAL(heat_gain),
-                                     REAL(heat_in),
-                                     REAL(heat_source),
-                                     REAL(water0),
-                                     REAL(methane0),
-                                     REAL(capacity0),
-                                     REAL(scale_p),
-                                     REAL(scale_u),
-                                     INT(next_snapshot),
-                                     INT(next_probe),
-                                     INT(next_checkpoint),
-                                     {NULL, 0, 0, false}};
-/* Nine integers, 12 bytes of padding, thirteen reals. */
-_Static_assert(sizeof(StepperState) == 152, "a new field of StepperState must join io_state_field");
+const StateField io_state_field[] = {INT(step),          REAL(t),       REAL(dt),           REAL(err_old),
+                                     INT(hold),          INT(fresh),    INT(newton_total),  INT(failures_total),
+                                     INT(limited_total), REAL(out),     REAL(heat_gain),    REAL(heat_in),
+                                     REAL(heat_source),  REAL(water0),  REAL(methane0),     REAL(capacity0),
+                                     REAL(scale_p),      REAL(scale_u), INT(next_snapshot), {NULL, 0, 0, false}};
+/* Seven integers, four bytes of padding, thirteen reals. */
+_Static_assert(sizeof(StepperState) == 8 * sizeof(PetscInt) + 13 * sizeof(double),
+               "a new field of StepperState must join io_state_field");
 
 typedef struct {
   hid_t          file, group; /* rank 0 */

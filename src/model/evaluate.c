@@ -16,14 +16,30 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   return status;
 }
 
+/* Initial p_w and p_g at the face: the particle's own, and the weight of the water between it and the face. */
+static void InitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT])
+{
+  const PetscInt p      = face->particle;
+  const Region  *r      = &m->c->region[m->P.i[PI_REGION][p]];
+  double         weight = 0.0;
+
+  for (int d = 0; r->hydrostatic && d < CL_DIM; d++)
+    weight += ParticleMaterial(m, p)->water.rho0 * m->c->gravity[d] * face->r[d];
+  p0[PHASE_W] = m->P.f[P_PW0][p] + weight;
+  p0[PHASE_G] = m->P.f[P_PG0][p] + weight;
+}
+
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o)
 {
-  const PetscInt p               = face->particle;
-  const double   p0[PHASE_COUNT] = {m->P.f[P_PW0][p], m->P.f[P_PG0][p]};
-  double         in[IN_COUNT];
+  const PetscInt p = face->particle;
+  double         in[IN_COUNT], p0[PHASE_COUNT], kappa = 0.0, sum = 0.0;
 
   ReachExpand(m, p, r);
   GatherInputs(m, p, r, x, face->N, in);
-  FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, m->coef[r->node[0] * NC_COUNT + NC_KAPPA],
-               m->stage.dt, o);
+  InitialAtFace(m, face, p0);
+  for (int a = 0; a < r->n; a++) {
+    kappa += face->N[a] * m->coef[r->node[a] * NC_COUNT + NC_KAPPA];
+    sum += face->N[a];
+  }
+  FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, kappa / sum, m->stage.dt, o);
 }

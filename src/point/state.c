@@ -154,6 +154,10 @@ ClStatus ScalarStateEvaluate(const Material *mat, const PointHistory *h, double 
     *why = "pressure or temperature is not finite";
     return CL_NONFINITE;
   }
+  if (T.v <= -CL_ZERO_CELSIUS) {
+    *why = "temperature fell to absolute zero";
+    return CL_DOMAIN;
+  }
   if (pg.v <= 0.0) {
     *why = "gas pressure fell to zero";
     return CL_DOMAIN;

@@ -135,7 +135,7 @@ static PetscErrorCode MakeFolder(MPI_Comm comm, const char *path, bool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Summary(const Stepper *s, const Run *run, bool ok)
+static PetscErrorCode Summary(const Stepper *s, const Run *run)
 {
   const StepperState *z = &s->state;
   char                path[PETSC_MAX_PATH_LEN], text[2048];
@@ -151,8 +151,8 @@ static PetscErrorCode Summary(const Stepper *s, const Run *run, bool ok)
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
                           "  results in %s\n",
-                          s->model->c->title, ok ? "finished" : "stopped", z->t, s->scheme->name, z->step,
-                          z->failures_total, z->newton_total, Wall() - run->clock_start,
+                          s->model->c->title, z->t >= s->model->c->t_end * (1.0 - 1e-12) ? "finished" : "stopped", z->t,
+                          s->scheme->name, z->step, z->failures_total, z->newton_total, Wall() - run->clock_start,
                           (t.water + z->out[PHASE_W] - z->water0) / z->water0,
                           (t.methane + z->out[PHASE_G] - z->methane0) / z->methane0,
                           (z->heat_gain - z->heat_in - z->heat_source) / z->capacity0, t.hydrate, z->limited_total,
@@ -204,9 +204,37 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   if (!ok)
     PetscCall(PetscPrintf(s->model->grid.comm, "The last good state (t = %g s) is saved in %s\n", s->state.t,
                           run->checkpoint));
-  PetscCall(Summary(s, run, ok));
+  PetscCall(Summary(s, run));
   PetscCall(OutputDestroy(&run->out));
   *exit_code = ok ? CL_EXIT_OK : CL_EXIT_FAILED;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options of ours that nobody read are misspelt; the solver reads its own later, so those are only warned about at the
+ * end. */
+static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
+{
+  static const char *const prefix[] = {"stepper_", "newton_", "model_", "output_", "checkpoint_", "case_"};
+  char                   **name, **value;
+  PetscInt                 n;
+
+  PetscFunctionBeginUser;
+  *unknown = 0;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &name, &value));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscBool mine = PETSC_FALSE;
+
+    for (size_t q = 0; !mine && q < sizeof(prefix) / sizeof(*prefix); q++)
+      PetscCall(PetscStrbeginswith(name[k], prefix[q], &mine));
+    if (mine != (PetscBool)ours)
+      continue;
+    (*unknown)++;
+    PetscCall(PetscFPrintf(comm, stderr,
+                           ours ? "clathra: there is no option -%s; see -help\n"
+                                : "clathra: warning: option -%s was not used\n",
+                           name[k]));
+  }
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &name, &value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,6 +245,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   Stepper   stepper;
   char      restart[PETSC_MAX_PATH_LEN] = "";
   PetscBool quiet                       = PETSC_FALSE;
+  PetscInt  unknown;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
@@ -227,9 +256,15 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   stepper.monitor     = Monitor;
   stepper.monitor_ctx = &run;
   stepper.next_event  = NextEvent;
-  PetscCall(PetscPrintf(comm, "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT " cells, %s, to t = %g s\n", c->title,
-                        c->cells[0], c->cells[1], c->stepper, c->t_end));
-  PetscCall(Go(c, &stepper, &run, restart, exit_code));
+  PetscCall(CheckOptions(comm, true, &unknown));
+  if (unknown) {
+    *exit_code = CL_EXIT_INPUT;
+  } else {
+    PetscCall(PetscPrintf(comm, "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT " cells, %s, to t = %g s\n", c->title,
+                          c->cells[0], c->cells[1], c->stepper, c->t_end));
+    PetscCall(Go(c, &stepper, &run, restart, exit_code));
+    PetscCall(CheckOptions(comm, false, &unknown));
+  }
   PetscCall(StepperDestroy(&stepper));
   PetscCall(ModelDestroy(&model));
   PetscFunctionReturn(PETSC_SUCCESS);

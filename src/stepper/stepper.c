@@ -163,19 +163,19 @@ static PetscErrorCode UpdateScales(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gustafsson's PI controller. */
+/* Gustafsson's PI controller: the step that would just meet the tolerance, as far as the wanted step may grow at once.
+ */
 static double Controller(const Stepper *s, double dt, const Attempt *a)
 {
   const double q = s->scheme->error_order, err = fmax(a->err, 1e-4), old = fmax(s->state.err_old, 1e-4);
-  double       f = 0.9 * pow(err, -0.7 / q) * pow(old, 0.4 / q);
+  const bool   blind     = s->state.fresh && s->scheme == &StepperScheme_Euler; /* no estimate yet */
+  const bool   hard      = a->newton > EASY_NEWTON * (s->scheme->error_order - 1) || s->state.hold > 0;
+  const bool   cut_short = dt < 0.999 * s->state.dt; /* by an event: err_old says nothing about growth */
+  const double gain      = cut_short ? pow(err, -1.0 / q) : pow(err, -0.7 / q) * pow(old, 0.4 / q);
+  const double fit       = blind ? INFINITY : 0.9 * dt * gain;
+  const double most      = hard ? fmax(dt, s->state.dt) : 2.0 * fmax(dt, s->state.dt);
 
-  if (s->state.fresh && s->scheme == &StepperScheme_Euler)
-    f = 2.0; /* no estimate yet */
-  if (a->newton > EASY_NEWTON * (s->scheme->error_order - 1))
-    f = fmin(f, 1.0);
-  if (s->state.hold > 0)
-    f = fmin(f, 1.0);
-  return dt * fmax(0.2, fmin(2.0, f));
+  return fmax(0.2 * dt, fmin(fit, most));
 }
 
 /* The step to take: dt as wanted, but never across a kink, an event or the end; what is left before those is shared out
@@ -201,8 +201,6 @@ static double WantedStep(const Stepper *s, double dt, bool kink, const Attempt *
   if (!s->adaptive)
     return z->hold > 0 ? z->dt : fmin(2.0 * z->dt, s->model->c->dt); /* back to the fixed step after a cut */
   next = Controller(s, dt, a);
-  if (dt < 0.999 * z->dt && next >= dt)
-    next = fmax(next, z->dt); /* an event, not the error, made the step short */
   if (kink)
     next *= CUT_AT_KINK;
   return fmin(fmax(next, s->dt_min), s->dt_max);

@@ -198,7 +198,6 @@ static StepperState SomeState(void)
   s.methane0      = 2.0;
   s.capacity0     = 1e6;
   s.scale_u       = 0.01;
-  s.next_probe    = 9;
   s.next_snapshot = 0;
   return s;
 }

@@ -400,7 +400,7 @@ static void TestTangent(void **state)
     printf("  %-13s %.1e (out %d, in %d) | %.1e (out %d)\n", regime_name[regime], row.worst, row.row, row.column,
            wide.worst, wide.row);
     assert_true(row.worst < 1e-6);
-    assert_true(wide.worst < 1e-9);
+    assert_true(wide.worst < 1e-8);
   }
 }
 
@@ -621,7 +621,7 @@ static void TestHydrateEquation(void **state)
     worst = fmax(worst, fabs(s.Sh - lo));
   }
   printf("hydrate equation (11)-(13) against bisection: S_h within %.1e\n", worst);
-  assert_true(worst < 1e-14);
+  assert_true(worst < 1e-13); /* p_e - p cancels to a thousandth: 1e-16/1e-3 */
 }
 
 /* Newton for p_w, p_g of a closed isothermal cell: OUT_DM = 0. */

@@ -8,7 +8,7 @@ import exact
 from common import Run, check, finish, judge, order, table
 
 CASE = Path(__file__).parent / "cases" / "xie_leo.yaml"
-Q, M, K0, MU, H, P0 = 1e7, 1e8, 1.53e-15, 1e-3, 1.0, 1e6
+Q, M, K0, MU, H, P0 = 1e7, 1e8, 1.53e-15, 1e-3, 1.0, 1e8
 TIMES = np.array([1000.0, 2000.0, 4000.0])
 CELLS = (12, 25, 50)
 

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""Runs the verification tests and writes docs/verification.md from what they measured.
+
+verification.py [CLATHRA] [--jobs N] [--only NAME ...] [--no-figures]
+
+CLATHRA     the program, default build/clathra
+--jobs N    tests at a time, default 2
+--only      run only these tests (stems of files in tests/), and take the others' numbers from results/verification
+--no-figures  leave docs/figures as it is
+
+Each test notes its numbers with common.record() in results/verification/<test>.json.  Figures 9 to 11 of the paper, with
+the reference's curves, are drawn by plot_bp2.py into docs/figures.  Ends with 1 if a test failed.
+"""
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "results" / "verification"
+PAGE, FIGURES = ROOT / "docs" / "verification.md", ROOT / "docs" / "figures"
+sys.path.insert(0, str(ROOT / "tests" / "verification"))
+
+ROWS = {  # of the table: what is shown
+    1: "BP2, cases 1 and 2, against the reference curves at every 20 s: 50 cells, 4 particles a cell, default options",
+    2: "The same with 100 cells and a tight tolerance: half of each bar",
+    3: "Order in time on smooth BP2 loading, by self-convergence",
+    4: "Terzaghi's consolidation, linear limit: water, and gas-water mixture; triangular and constant load",
+    5: "Exact large-strain consolidation (Xie and Leo 2004)",
+    6: "Undrained closed forms, with and without kinetics; load and full unload",
+    7: "Water and methane balance, at every step",
+    8: "Rest: two layers of different saturation under one pressure; hydrostatic column",
+    9: "Jacobian against differences at random states, each boundary type",
+    10: "The same column along x and along y; mirrored; shifted by a fraction of a cell",
+    11: "Mandel's problem in the plane",
+    12: "Strip load on saturated clay, k = 1e-16 m^2: no checkerboard",
+    13: "Closed adiabatic cell; dissociation at constant p and T; S_h from 0.5 to 0",
+    14: "Rigid rotation of a stressed body; Jaumann simple shear",
+    15: "A run cut in two by a restart equals the straight run",
+    16: "Bad cases, truncated and random files are refused with a reason",
+    17: "Big steps: BP2 case 2 at fixed dt = 50 s and 100 s",
+}
+SECTION = {"8.": "1, 2 and 4 ranks agree (rtol 1e-9)"}  # of the issue's text, beside its table
+NOT_A_TEST = {"common", "exact"}
+INTEGRATION = ("ranks", "restart")  # of tests/integration: those that record lines of the table
+
+
+def tests():
+    found = [p for p in sorted((ROOT / "tests" / "verification").glob("*.py")) if p.stem not in NOT_A_TEST]
+    found = [p for p in found if not p.stem.startswith("_")]
+    return found + [p for n in INTEGRATION if (p := ROOT / "tests" / "integration" / f"{n}.py").is_file()]
+
+
+def run_test(path, program):
+    """(verdict, last line, seconds, everything it printed)."""
+    (RESULTS / f"{path.stem}.json").unlink(missing_ok=True)
+    start = time.monotonic()
+    done = subprocess.run([sys.executable, str(path), str(program)], env={**os.environ, "CLATHRA_RESULTS": str(RESULTS)},
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, errors="replace")  # fmt: skip
+    (RESULTS / f"{path.stem}.txt").write_text(done.stdout)
+    counts = re.findall(r"^\d+ passed, \d+ failed$", done.stdout, re.M)
+    said = counts[-1] if counts else f"ended with exit code {done.returncode}"
+    print(f"{'ok  ' if done.returncode == 0 else 'FAIL'} {path.stem:24s} {said}, {time.monotonic() - start:.0f} s", flush=True)
+    return done.returncode == 0
+
+
+def figures(program):
+    """Both cases of BP2 as they stand, then the figures."""
+    from common import ENVIRONMENT
+
+    for case, options in ((2, []), (1, ["-mat_sediment_kinetics_active", "no"])):
+        command = [str(program), str(ROOT / "cases" / "bp2"), "-quiet", *options, "-output_dir", str(RESULTS / f"bp2_case{case}")]
+        subprocess.run(command, env={**os.environ, **ENVIRONMENT}, check=True, stdin=subprocess.DEVNULL,
+                       stdout=subprocess.DEVNULL)  # fmt: skip
+    subprocess.run([sys.executable, str(ROOT / "scripts" / "plot_bp2.py"), str(RESULTS / "bp2_case1"),
+                    str(RESULTS / "bp2_case2"), str(FIGURES)], check=True)  # fmt: skip
+
+
+def link(test):
+    for folder in ("verification", "integration"):
+        if (ROOT / "tests" / folder / f"{test}.py").is_file():
+            return f"[{test}.py](../tests/{folder}/{test}.py)"
+    return test
+
+
+def escape(text):
+    return str(text).replace("|", "\\|")
+
+
+def rows_of(records, row):
+    mine = [r for r in records if str(r["row"]) == str(row)]
+    lines = ["| what | bar | measured | test |", "|---|---|---|---|"]
+    for r in mine:
+        mark = "" if r["ok"] else " **missed**"
+        lines.append(f"| {escape(r['what'])} | {escape(r['bar'])} | {escape(r['measured'])}{mark} | {link(r['test'])} |")
+    return lines if mine else []
+
+
+def elsewhere(row):
+    return {
+        9: "Shown by the unit tests of the laws, the point and the residual (tests/unit); they print the largest differences.",
+        16: "Shown by [tests/bad/run.py](../tests/bad/run.py), which also runs under the address sanitizer.",
+    }.get(row, "No numbers yet.")
+
+
+def page(records):
+    missed = sum(not r["ok"] for r in records)
+    text = ["# Verification", "",
+            "Written by `scripts/verification.py`, which runs the tests named here; change them, not this page.", "",
+            f"{len(records)} numbers, {missed} outside their bars. A bar is a limit of the test: `./check` fails outside it.",
+            "Reference curves and exact solutions: cases/bp2/reference and tests/verification/exact.py.", ""]  # fmt: skip
+    for row, title in {**ROWS, **SECTION}.items():
+        number = f"{row}. " if isinstance(row, int) else ""
+        text += [f"## {number}{title}", "", *(rows_of(records, row) or [elsewhere(row)]), ""]
+    names = {"fig09_case1": "BP2 case 1 (kinetics off): Figure 9 of the paper",
+             "fig10_case2": "BP2 case 2 (kinetics on): Figure 10",
+             "fig11_profiles": "BP2 case 2, profiles at 500 s and 1000 s: Figure 11"}  # fmt: skip
+    text += ["## Figures", ""]
+    for name, title in names.items():
+        if (FIGURES / f"{name}.png").is_file():
+            text += [f"![{title}](figures/{name}.png)", "", f"{title}.", ""]
+    return "\n".join(text).rstrip() + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(usage=__doc__.split("\n\n", 1)[1])
+    parser.add_argument("program", nargs="?", default=str(ROOT / "build" / "clathra"))
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--only", nargs="*")
+    parser.add_argument("--no-figures", action="store_true")
+    given = parser.parse_args()
+    RESULTS.mkdir(parents=True, exist_ok=True)
+    program = Path(given.program).resolve()
+    wanted = [t for t in tests() if given.only is None or t.stem in given.only]
+    with ThreadPoolExecutor(given.jobs) as pool:
+        passed = list(pool.map(lambda t: run_test(t, program), wanted))
+    if not given.no_figures:
+        figures(program)
+    known = {t.stem for t in tests()}
+    files = [p for p in sorted(RESULTS.glob("*.json")) if p.stem in known]
+    records = [r for p in files for r in json.loads(p.read_text())]
+    PAGE.write_text(page(records))
+    print(f"{PAGE}: {len(records)} numbers from {len(files)} tests")
+    return 0 if all(passed) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""What a run leaves and says: fields.h5 and fields.xdmf, probes.csv, balance.csv, the resolved case, messages, exit codes.
+
+The scene is the first minute of BP2 case 2 on 13 cells.
+"""
+import os
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import CASES, Run, binary, check_true, finish, launch, run, scratch  # noqa: E402
+
+OPTIONS = ("-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-output_probe_every", "10 s")
+QUANTITIES = ["p_Pa", "p_w_Pa", "p_g_Pa", "T_degC", "S_h", "S_w", "S_g", "u_x_m", "u_y_m", "sxx_Pa", "syy_Pa", "szz_Pa",
+              "sxy_Pa", "x_m", "y_m"]  # fmt: skip
+TIMES = [0.0, 30.0, 60.0]
+BP2 = CASES / "bp2"
+good = Run.of_case("bp2", *OPTIONS)
+
+
+def says(name, done, code, *words):
+    """The program ended with this exit code and said all these words."""
+    missing = [w for w in words if w not in done.stdout]
+    note = f"exit code {done.returncode}" + (f", it did not say {missing}: ...{done.stdout[-300:]}" if missing else "")
+    check_true(name, done.returncode == code and not missing, note)
+
+
+# ------------------------------------------------------------------------------------------ fields.h5, fields.xdmf
+def check_fields():
+    with h5py.File(good.out / "fields.h5", "r") as file:
+        for kind, rows in (("particles", 50), ("grid", None)):
+            groups = [file[kind][k] for k in sorted(file[kind])]
+            times = [float(g.attrs["time"].ravel()[0]) for g in groups]
+            check_true(f"fields.h5: times of /{kind}", np.allclose(times, TIMES[-len(times):]) and len(times) >= 2, times)
+            values = [g[k] for g in groups for k in g]
+            check_true(f"fields.h5: every dataset of /{kind} has a unit", all("unit" in v.attrs for v in values))
+            if rows:
+                check_true("fields.h5: 50 particles, all values finite",
+                           all(len(v) == rows and np.all(np.isfinite(v[()])) for v in values))  # fmt: skip
+                check_true("fields.h5: sorted by id", all(np.array_equal(g["id"][()], range(rows)) for g in groups))
+            else:
+                check_true("fields.h5: nodal fields on 2 x 14 nodes", all(v.shape[:2] == (2, 14) for v in values))
+
+
+def check_xdmf():
+    root, items, times = xml.parse(good.out / "fields.xdmf").getroot(), 0, set()
+    bad = []
+    with h5py.File(good.out / "fields.h5", "r") as file:
+        for item in root.iter("DataItem"):
+            if item.get("Format") != "HDF":
+                continue
+            name, _, path = item.text.strip().partition(":")
+            shape = tuple(int(n) for n in item.get("Dimensions").split())
+            items += 1
+            if name != "fields.h5" or path not in file or np.prod(file[path].shape) != np.prod(shape):
+                bad.append(item.text)
+            elif file[path].dtype.itemsize != int(item.get("Precision")):
+                bad.append(item.text)
+    for collection in root.find("Domain").findall("Grid"):
+        times.add(tuple(float(t.get("Value")) for t in collection.iter("Time")))
+    check_true("fields.xdmf: well-formed XDMF", root.tag == "Xdmf" and items > 0, f"{items} datasets")
+    check_true("fields.xdmf: refers to what is in fields.h5, of its size and precision", not bad, ", ".join(bad[:3]))
+    check_true("fields.xdmf: two time series", len(times) in (1, 2) and tuple(TIMES) in times, times)
+
+
+# ------------------------------------------------------------------------------------------ text files
+def check_tables():
+    columns = ["time_s"] + [f"{probe}.{q}" for probe in ("p06", "surface") for q in QUANTITIES]
+    check_true("probes.csv: columns", list(good.probes) == columns)
+    check_true("probes.csv: a row every 10 s", np.allclose(good.time, np.arange(0, 61, 10), rtol=0, atol=1e-9))
+    check_true("probes.csv: all finite", all(np.all(np.isfinite(v)) for v in good.probes.values()))
+    p, share = good.probe("p06"), None
+    share = p["S_w"] / (p["S_w"] + p["S_g"])
+    check_true("probes.csv: S_w + S_g + S_h = 1", np.allclose(p["S_w"] + p["S_g"] + p["S_h"], 1, atol=1e-9))
+    check_true("probes.csv: p is the mean of p_w and p_g", np.allclose(p["p_Pa"], share * p["p_w_Pa"] +
+               (1 - share) * p["p_g_Pa"], rtol=1e-5))  # fmt: skip
+    check_true("probes.csv: a probe follows the body", np.allclose(p["x_m"], 0.6 + p["u_x_m"], atol=1e-9))
+    b = good.balance
+    check_true("balance.csv: a row a step, dt adds up", np.array_equal(b["step"], range(1, len(b["step"]) + 1))
+               and np.allclose(np.cumsum(b["dt_s"]), b["time_s"]) and abs(b["time_s"][-1] - 60) < 1e-9)  # fmt: skip
+    check_true("summary.txt: the end of what was printed", (good.out / "summary.txt").read_text() in good.output)
+    steps = [s for s in good.output.splitlines() if s.startswith("step")]
+    check_true("a line a step with percentage and time left", len(steps) == len(b["step"]) and "(100.0 %)" in steps[-1]
+               and steps[-1].endswith("0 s left"), steps[-1])  # fmt: skip
+
+
+def check_resolved():
+    again = run(binary(), good.out / "case.yaml")
+    same = [f for f in ("probes.csv", "balance.csv") if (again.out / f).read_bytes() == (good.out / f).read_bytes()]
+    check_true("the resolved case runs to the same probes and ledgers, bit for bit", len(same) == 2, same)
+    a, b = good.snapshots(), again.snapshots()
+    check_true("... and to the same particles", len(a) == len(b) == 3 and all(
+        t == u and set(x) == set(y) and all(x[k].tobytes() == y[k].tobytes() for k in x)
+        for (t, x), (u, y) in zip(a, b)))  # fmt: skip
+    rest = lambda r: [s for s in (r.out / "case.yaml").read_text().splitlines() if not s.startswith(("#", "output_dir"))]
+    check_true("... and resolves to itself", rest(good) == rest(again))
+
+
+# ------------------------------------------------------------------------------------------ runs that end badly
+def check_failure():
+    out = scratch() / "out"
+    absurd = ("-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-stepper_dt_min", "1e-3 s",
+              "-bc_load_normal_table", "0 s,3.25 MPa,20 s,3.45 MPa,21 s,1e5 MPa")  # fmt: skip
+    done = launch(binary(), BP2, *absurd, out=out)
+    says("a load of 100 GPa: exit code 3, what failed and where, where the state is", done, 3, "Given up at t = ",
+         "near (", " m", "last good state", str(out / "checkpoint.h5"), "stopped at t")  # fmt: skip
+    given_up = next((s for s in done.stdout.splitlines() if s.startswith("Given up")), "")
+    fields = ("momentum", "mass", "energy", "pressure", "volume", "porosity", "temperature", "strain", "cell", "grid")
+    check_true("... which field", any(f in given_up for f in fields), given_up)
+    check_true("... the files are there", all((out / f).is_file() for f in ("probes.csv", "fields.h5", "summary.txt")))
+    with h5py.File(out / "checkpoint.h5", "r") as file:
+        t, step = (file["state"][k][()].ravel()[0] for k in ("t", "step"))
+    check_true("... the state is from the kink or later", 20 <= t < 21, f"t = {t:.6g} s after {step} steps")
+    again = launch(binary(), BP2, *absurd, "-restart", out / "checkpoint.h5", out=out)
+    says("... and restarts, to the same end", again, 3, "Given up at t = ")
+    rows = Run(out).balance["step"]
+    check_true("... with the ledger of all its steps", np.array_equal(rows, range(1, len(rows) + 1)) and len(rows) >= step)
+    go_on = launch(binary(), BP2, *absurd, "-time_end", f"{t + 1e-6} s", "-output_times", "0 s", "-restart",
+                   out / "checkpoint.h5", "-stepper_dt_min", "1e-9 s", out=out)  # fmt: skip
+    says("... and runs with a smaller step", go_on, 0, "finished")
+
+
+def check_refusals():
+    out = scratch() / "out"
+    says("-case_check: valid", launch(binary(), BP2, "-case_check", out=out), 0, "the case is valid")
+    says("an unknown option", launch(binary(), BP2, "-grid_cell", "3,1", out=out), 2, "-grid_cell", "grid_cells")
+    says("-case_check of a wrong case", launch(binary(), BP2, "-case_check", "-mat_sediment_porosity", "1.5", out=out), 2,
+         "mat_sediment_porosity", "1.5")  # fmt: skip
+    says("a snapshot after the end", launch(binary(), BP2, "-time_end", "60 s", out=out), 2, "output_times", "time_end")
+    says("no such case", launch(binary(), "/nowhere/case.yaml", out=out), 2, "/nowhere/case.yaml")
+    says("no case", launch(binary(), "-quiet"), 2, "name a case")
+    check_true("none of them wrote anything", not out.exists())
+    blocked = scratch() / "file"
+    blocked.write_text("in the way")
+    for name, folder in (("is a file", blocked), ("lies below a file", blocked / "out")):
+        says(f"an output folder that {name}", launch(binary(), BP2, *OPTIONS, out=folder), 2, str(folder))
+    closed = Path("/proc") if os.geteuid() == 0 else scratch()  # root may write everywhere but there
+    if os.geteuid() != 0:
+        closed.chmod(0o555)
+    says("an output folder without permission", launch(binary(), BP2, *OPTIONS, out=closed), 2, str(closed))
+    check_true("... without a PETSc trace", "PETSC ERROR" not in launch(binary(), BP2, *OPTIONS, out=closed).stdout)
+
+
+check_fields()
+check_xdmf()
+check_tables()
+check_resolved()
+check_failure()
+check_refusals()
+finish()
