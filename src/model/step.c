@@ -168,6 +168,16 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Mass that a change of 1 MPa stores or moves, but no more than there is (what is left in the row counts against the
+   balances), unless that is below the round-off of what moves. */
+static double MassScale(const double c[NC_COUNT], int phase, double w, double dt, double h)
+{
+  const double moved =
+      1e6 * (c[NC_RHO + phase] * (c[NC_STORAGE + phase] + w / c[NC_M]) + dt * c[NC_LAMBDA + phase] / (h * h));
+
+  return fmax(fmin(moved, c[NC_RHO + phase] * w), 1e-3 * moved);
+}
+
 /* Columns: 1 MPa, 1 K, and the velocities that belong to 1 MPa over a cell.  Rows: what such a change makes of each
    balance, so that scaled residuals and updates compare across fields. */
 static void Scales(Model *m)
@@ -188,8 +198,7 @@ static void Scales(Model *m)
     }
     for (int k = 0; k < PHASE_COUNT; k++) {
       col[F_PW + k] = P;
-      row[F_PW + k] =
-          V * P * (c[NC_RHO + k] * (c[NC_STORAGE + k] + m->w[2 * I + k] / c[NC_M]) + dt * c[NC_LAMBDA + k] / (h * h));
+      row[F_PW + k] = V * MassScale(c, k, m->w[2 * I + k], dt, h);
     }
     col[F_T] = 1.0;
     row[F_T] = V * (c[NC_CAPACITY] / dt + c[NC_KAPPA] / (h * h));

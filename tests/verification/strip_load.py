@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Row 12: no checkerboard in the pressure under a strip load on clay, with k = 1e-16 m^2 (undrained) and 1e-10 m^2.
+
+The high-pass part of the particles' pressure is its deviation from the field smoothed with the weights (1 2 1)/4 along both
+axes, over particles one cell apart: a checkerboard of nodal pressures stays in, a harmonic field (the undrained p) falls
+out.  What remains with stabilisation sits at the drained surface and the strip's edge; the second measure leaves out the
+uppermost four cells.
+"""
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from common import Run, check, finish, judge, record, table
+
+CASE = Path(__file__).parent / "cases" / "strip_load.yaml"
+P0, Q, N, H = 1e6, 1e4, 20, 0.05  # Pa, Pa, cells, m
+OFF = {"projection": ["-stabilisation_pressure_projection", 0], "flux": ["-stabilisation_flux_interpolation", "no"]}
+VARIANTS = {"both": [], "no projection": OFF["projection"], "no flux interpolation": OFF["flux"],
+            "neither": OFF["projection"] + OFF["flux"]}  # fmt: skip
+
+
+def lattice(run):
+    """(rows, columns) excess pressure of the particles by their place at the start, Pa."""
+    v = run.snapshot(1.0)
+    start = v["position"] - v["displacement"]
+    index = np.floor(start / (H / 2)).astype(int)
+    p = np.full((2 * N - 1, 2 * N), np.nan)
+    p[index[:, 1], index[:, 0]] = v["p"][:, 0] - P0
+    return p
+
+
+def high_pass(p):
+    """Deviation of the inner particles from the field smoothed over neighbours one cell (two particles) away, Pa."""
+    smooth = (p[:-4] + 2 * p[2:-2] + p[4:]) / 4
+    return p[2:-2, 2:-2] - (smooth[:, :-4] + 2 * smooth[:, 2:-2] + smooth[:, 4:]) / 4
+
+
+def picture(fields, path):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, len(fields), figsize=(4.2 * len(fields), 3.8), squeeze=False)
+    for ax, (title, p) in zip(axes[0], fields.items()):
+        shown = ax.imshow(p / Q, origin="lower", extent=(0, 1, 0, 1), cmap="viridis")
+        ax.set(title=title, xlabel="x (m)", ylabel="y (m)")
+        figure.colorbar(shown, ax=ax, label="excess p / q", shrink=0.8)
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+
+
+def main():
+    rows, deviation, fields = [], {}, {}
+    for k in ("1e-16", "1e-10"):
+        for name, options in VARIANTS.items():
+            p = lattice(Run.of_case(CASE, "-mat_clay_permeability_k0", f"{k} m^2", *options))
+            rms = lambda a: np.sqrt(np.mean(a**2)) / Q
+            deviation[k, name], below = rms(high_pass(p)), rms(high_pass(p)[:-6])
+            fields[f"k = {k} m$^2$, {name}"] = p
+            rows.append((k, name, deviation[k, name], below, np.min(p) / Q, np.max(p) / Q))
+    table(("k (m2)", "stabilisation", "rms high-pass p/q", "below 4 cells", "smallest p/q", "largest p/q"), rows)
+    for k, missing in (("1e-16", "no projection"), ("1e-10", "no flux interpolation")):
+        judge(12, f"strip load, k = {k} m2: high-pass rms of p over q, stabilised", deviation[k, "both"], 5e-3)
+        ratio = deviation[k, missing] / deviation[k, "both"]
+        record(12, f"strip load, k = {k} m2: the same with {missing}", "-", deviation[k, missing], True)
+        # at 1e-10 m2 the drag alone holds the pressure: leaving out the interpolation only doubles what is left
+        check(f"k = {k} m2: both over {missing}", 1 / ratio, 0.1 if k == "1e-16" else 1.0)
+    if len(sys.argv) > 2:  # a file name for the picture
+        wanted = [f"k = 1e-16 m$^2$, {n}" for n in ("no projection", "both")]
+        wanted += [f"k = 1e-10 m$^2$, {n}" for n in ("no flux interpolation", "both")]
+        picture({w: fields[w] for w in wanted}, sys.argv[2])
+    finish()
+
+
+if __name__ == "__main__":
+    main()
