@@ -87,8 +87,11 @@ typedef struct {
   SNES   snes;
   bool   refactor; /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
   bool   always_refactor;
-  double factored_dt;                /* dt' it was made for, s */
-  PetscInt poor;                     /* Krylov iterations that make it poor (option -newton_refactor) */
+  double factored_dt; /* dt' it was made for, s */
+  char pmat_type[16]; /* aij | baij of the preconditioner's matrix (option -model_pmat_type); empty: as the solver likes
+                         it */
+  PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor) */
+  double   defect;    /* of the balances at the last Newton iterate */
   double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
 } Model;
 

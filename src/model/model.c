@@ -15,6 +15,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(PetscMalloc2(PetscMax(c->nbc, 1), &m->bc.value, PetscMax(c->nbc, 1), &m->bc.shear));
   m->tol_residual = 1e-9;
   m->poor         = 20;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
   m->tol_update = 1e-6;
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));

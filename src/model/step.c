@@ -178,6 +178,8 @@ static double MassScale(const double c[NC_COUNT], int phase, double w, double dt
   return fmax(fmin(moved, c[NC_RHO + phase] * w), 1e-3 * moved);
 }
 
+#define SLIVER 0.05 /* of a cell: emptier nodes are held by the ghost penalty, whose rows do not shrink with them */
+
 /* Columns: 1 MPa, 1 K, and the velocities that belong to 1 MPa over a cell.  Rows: what such a change makes of each
    balance, so that scaled residuals and updates compare across fields. */
 static void Scales(Model *m)
@@ -185,12 +187,12 @@ static void Scales(Model *m)
   const double h = fmin(m->grid.h[0], m->grid.h[1]), dt = m->stage.dt, P = 1e6;
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const double *c = &m->coef[I * NC_COUNT], V = m->V[I];
+    const double *c = &m->coef[I * NC_COUNT], V = m->V[I], V_row = fmax(V, SLIVER * m->grid.h[0] * m->grid.h[1]);
     double       *row = &m->row_scale[I * F_COUNT], *col = &m->col_scale[I * F_COUNT];
 
     for (int d = 0; d < 2; d++) {
       col[F_VSX + d] = P * h / (c[NC_M] * dt);
-      row[F_VSX + d] = V * P / h;
+      row[F_VSX + d] = V_row * P / h;
       for (int k = 0; k < PHASE_COUNT; k++) {
         col[F_VWX + 2 * k + d] = P / h / (c[NC_RHO + k] / dt + c[NC_DRAG + k] * m->w[2 * I + k]);
         row[F_VWX + 2 * k + d] = V * P / h;
@@ -198,10 +200,10 @@ static void Scales(Model *m)
     }
     for (int k = 0; k < PHASE_COUNT; k++) {
       col[F_PW + k] = P;
-      row[F_PW + k] = V * MassScale(c, k, m->w[2 * I + k], dt, h);
+      row[F_PW + k] = V_row * MassScale(c, k, m->w[2 * I + k], dt, h);
     }
     col[F_T] = 1.0;
-    row[F_T] = V * (c[NC_CAPACITY] / dt + c[NC_KAPPA] / (h * h));
+    row[F_T] = V_row * (c[NC_CAPACITY] / dt + c[NC_KAPPA] / (h * h));
   }
 }
 

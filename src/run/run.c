@@ -3,6 +3,7 @@
 #include "clathra/io.h"
 #include <sys/stat.h>
 #include <time.h>
+#include <unistd.h>
 
 typedef struct {
   Output *out;
@@ -126,9 +127,16 @@ static PetscErrorCode MakeFolder(MPI_Comm comm, const char *path, bool *ok)
       *p = '/';
     }
     mkdir(part, 0777);
-    good = stat(path, &st) == 0 && S_ISDIR(st.st_mode);
+    good = stat(path, &st) == 0 && S_ISDIR(st.st_mode) && access(path, W_OK | X_OK) == 0;
+    if (good) { /* root may be allowed what the file system is not */
+      PetscCall(PetscSNPrintf(part, sizeof(part), "%s/case.yaml", path));
+      FILE *f = fopen(part, "a");
+      good    = f != NULL;
+      if (f)
+        fclose(f);
+    }
     if (!good)
-      fprintf(stderr, "clathra: cannot make the output folder %s\n", path);
+      fprintf(stderr, "clathra: cannot write into the output folder %s\n", path);
   }
   PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, comm));
   *ok = good;
@@ -183,6 +191,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
+  if (!s->adaptive && s->state.hold == 0)
+    s->state.dt = c->dt; /* a fixed step is the case's, also after a restart */
   PetscCall(MakeFolder(s->model->grid.comm, c->output_dir, &ok));
   if (!ok) {
     *exit_code = CL_EXIT_INPUT;
@@ -200,7 +210,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   run->t_start     = s->state.t;
   run->clock_start = Wall();
   PetscCall(StepperRun(s, &ok));
-  PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
+  if (!AtMultiple(c->checkpoint_every, s->state.t))
+    PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
   if (!ok)
     PetscCall(PetscPrintf(s->model->grid.comm, "The last good state (t = %g s) is saved in %s\n", s->state.t,
                           run->checkpoint));

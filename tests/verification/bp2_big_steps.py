@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""BP2 case 2 with fixed steps of 50 s and 100 s, fifty and twenty times the first step of the default run (row 17).
+"""BP2 case 2 with fixed steps of 50 s and 100 s (row 17), by both integrators.
 
 Probe rows are written at every step, so that no output cuts a step.  A fixed step that cannot be taken is cut and
 grows back; how often that happened is reported.

@@ -13,8 +13,8 @@ import exact
 from common import Run, check, finish, judge, table
 
 CASE = Path(__file__).parent / "cases" / "mandel.yaml"
-P0, SG = 3.25e6, 1e-5
-M = exact.Mandel(a=1.0, b=0.5, q=1e4, E=9e7, nu=0.2, storage=0.15 * ((1 - SG) / 2.2e9 + SG / P0), mobility=1e-12)
+P0, SG = 1e6, 1e-7
+M = exact.Mandel(a=1.0, b=0.5, q=1e4, E=9e9, nu=0.2, storage=0.15 * ((1 - SG) / 2.2e11 + SG / P0), mobility=1e-14)
 SCALE = M.a**2 / M.c  # s
 
 
