@@ -18,7 +18,7 @@ typedef struct {
 
 /* Result of a stage on the particles, before any commit. */
 typedef struct {
-  double *m; /* [n][3] m_h, m_w, m_g, kg */
+  double *m; /* [n][3] m_h; m_w, m_g less what Newton left in the rows (28), kg */
   double *y; /* [n][4] p_w, p_g, T, S_h */
   double *u; /* [n][2] displacement of the step so far, m */
   double *v; /* [n][2] skeleton velocity, m/s */
@@ -91,7 +91,6 @@ typedef struct {
   char pmat_type[16]; /* aij | baij of the preconditioner's matrix (option -model_pmat_type); empty: as the solver likes
                          it */
   PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor) */
-  double   defect;    /* of the balances at the last Newton iterate */
   double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
 } Model;
 
@@ -123,7 +122,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
 /* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v. */
 void ModelStartVelocity(const Model *m, double *v);
 /* Makes the trial state of the last stage the history, with rates (n x 4), moves the particles and migrates them. */
-PetscErrorCode ModelCommit(Model *m, const double *x, const double *rates);
+PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates);
 /* Same status on all ranks (the worst), with its reason and place on all ranks. */
 PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status);
 

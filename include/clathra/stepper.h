@@ -53,6 +53,7 @@ typedef struct Stepper Stepper;
 typedef struct {
   const char *name;
   int         error_order; /* q: the error estimate behaves like dt^q */
+  int         stages;
   PetscErrorCode (*step)(Stepper *s, double dt, Attempt *a);
 } StepperScheme;
 

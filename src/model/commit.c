@@ -61,6 +61,25 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
   }
 }
 
+/* (28): what is left in the mass rows goes back to the particles, to be found again in the next step. */
+static PetscErrorCode KeepBalance(Model *m, double *masses)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapBroadcast(&m->map, m->f, F_COUNT));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Reach r;
+
+    ReachExpand(m, p, &r);
+    for (int a = 0; a < r.n; a++) {
+      const double share = r.S[a] * m->P.f[P_V][p] / m->V[r.node[a]];
+
+      for (int ph = 0; ph < PHASE_COUNT; ph++)
+        masses[3 * p + 1 + ph] -= share * m->f[r.node[a] * F_COUNT + F_PW + ph];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
 {
   PetscFunctionBeginUser;
@@ -89,6 +108,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       rates->heat_rate += r.S[a] * o.out[OUT_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt;
     }
   }
+  PetscCall(KeepBalance(m, trial->m));
   BoundaryRates(m, x, rates);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
@@ -136,7 +156,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
   }
 }
 
-PetscErrorCode ModelCommit(Model *m, const double *x, const double *rates)
+PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates)
 {
   PetscInt left;
 
@@ -152,6 +172,8 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const double *rates)
                "an accepted state is not admissible");
     for (int k = 0; k < 4; k++)
       m->P.f[P_RATE + k][p] = rates[4 * p + k];
+    s.m_w = trial->m[3 * p + 1];
+    s.m_g = trial->m[3 * p + 2];
     WriteHistory(m, p, x, &r, in, &s);
   }
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));

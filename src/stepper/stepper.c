@@ -169,7 +169,7 @@ static double Controller(const Stepper *s, double dt, const Attempt *a)
 {
   const double q = s->scheme->error_order, err = fmax(a->err, 1e-4), old = fmax(s->state.err_old, 1e-4);
   const bool   blind     = s->state.fresh && s->scheme == &StepperScheme_Euler; /* no estimate yet */
-  const bool   hard      = a->newton > EASY_NEWTON * (s->scheme->error_order - 1) || s->state.hold > 0;
+  const bool   hard      = a->newton > EASY_NEWTON * s->scheme->stages || s->state.hold > 0;
   const bool   cut_short = dt < 0.999 * s->state.dt; /* by an event: err_old says nothing about growth */
   const double gain      = cut_short ? pow(err, -1.0 / q) : pow(err, -0.7 / q) * pow(old, 0.4 / q);
   const double fit       = blind ? INFINITY : 0.9 * dt * gain;
@@ -212,7 +212,7 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
   const StepInfo info = {.dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts};
 
   PetscFunctionBeginUser;
-  PetscCall(ModelCommit(s->model, s->work.x, s->work.rates));
+  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates));
   PetscCall(UpdateScales(s));
   z->step++;
   z->t += dt;

@@ -486,20 +486,21 @@ static void TestJacobian(void **state)
 }
 
 /* ---------------------------------------------------------------- (d) conservation */
-/* The rows of water and of gas, summed over the nodes, are the change of mass plus what flowed out. */
+/* What the particles keep, (28), is what they had less what flowed out, even for unknowns that solve nothing: the rows
+   of water and of gas, summed over the nodes, are the change of mass plus the outflow. */
 static void TestMassRows(void **state)
 {
   double worst = 0.0;
 
   (void)state;
   for (int k = 0; k < 12; k++) {
-    Scene        *s = malloc(sizeof(*s));
-    Model        *m = &s->m;
-    double       *x, row[2] = {0.0}, mass[2] = {0.0}, gain[2] = {0.0};
-    const double *a, nu[2] = {6.0 * 0.018 / 0.124, 0.016 / 0.124};
-    Trial         t;
-    StageRates    rates;
-    ClStatus      status;
+    Scene       *s = malloc(sizeof(*s));
+    Model       *m = &s->m;
+    double      *x, mass[2] = {0.0}, gain[2] = {0.0};
+    const double nu[2] = {6.0 * 0.018 / 0.124, 0.016 / 0.124};
+    Trial        t;
+    StageRates   rates;
+    ClStatus     status;
 
     JacobianScene(s, (BasisType)(k % 3), k % 4 >= 2, k % 2);
     Call(PetscMalloc1(m->map.n_local * F_COUNT, &x));
@@ -508,12 +509,6 @@ static void TestMassRows(void **state)
     SetX(m, x);
     Call(ModelResidual(NULL, m->X, m->R, m));
     Check(m->status == CL_OK);
-    Call(VecGetArrayRead(m->R, &a));
-    for (PetscInt i = 0; i < m->map.n_owned * F_COUNT; i++) {
-      if (i % F_COUNT == F_PW || i % F_COUNT == F_PG)
-        row[i % F_COUNT - F_PW] += a[i] * m->row_scale[i];
-    }
-    Call(VecRestoreArrayRead(m->R, &a));
     Call(ModelEndStage(m, x, &t, &rates, &status));
     Check(status == CL_OK);
     for (PetscInt p = 0; p < m->P.n; p++) {
@@ -525,13 +520,13 @@ static void TestMassRows(void **state)
       }
     }
     for (int f = 0; f < 2; f++)
-      worst = fmax(worst, fabs(Sum(row[f]) - Sum(gain[f]) - s->stage.dt * rates.out[f]) / Sum(mass[f]));
+      worst = fmax(worst, fabs(Sum(gain[f]) + s->stage.dt * rates.out[f]) / Sum(mass[f]));
     Call(PetscFree(x));
     Call(PetscFree4(t.m, t.y, t.u, t.v));
     SceneDestroy(s);
     free(s);
   }
-  Say("sum of the mass rows less change and outflow, of the mass inside: %.1e (12 random states)\n", worst);
+  Say("water and gas gained and gone, of the mass inside: %.1e (12 random states)\n", worst);
   Check(worst < 1e-13);
 }
 
@@ -754,7 +749,11 @@ static void TestDarcy(void **state)
     s->m.x_n[I * F_COUNT + F_VWX] = s->stage.x_star[I * F_COUNT + F_VWX] = v;
   Call(PetscArraycpy(x, s->m.x_n, s->m.map.n_local * F_COUNT));
   Call(ModelBeginStage(&s->m, &s->stage));
-  const double force = ResidualAt(s, x, F_VWX, F_VGX), mass = ResidualAt(s, x, F_PW, F_PG);
+  const double force = ResidualAt(s, x, F_VWX, F_VGX);
+  double       scale = 0.0; /* kg; what flows through a square metre in the step is 1e3 s x 1e3 kg/m^3 x J */
+  for (PetscInt I = 0; I < s->m.map.n_local; I++)
+    scale = fmax(scale, s->m.row_scale[I * F_COUNT + F_PW]);
+  const double mass = ResidualAt(s, x, F_PW, F_PG) * scale / (1e6 * fabs(v) * 0.3 * sw * s->m.grid.h[1]);
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
     x[I * F_COUNT + F_VWX] *= 1.001; /* the rows do see the velocity */
   const double seen = ResidualAt(s, x, F_VWX, F_VGX);
