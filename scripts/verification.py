@@ -80,6 +80,8 @@ def figures(program):
                        stdout=subprocess.DEVNULL)  # fmt: skip
     subprocess.run([sys.executable, str(ROOT / "scripts" / "plot_bp2.py"), str(RESULTS / "bp2_case1"),
                     str(RESULTS / "bp2_case2"), str(FIGURES)], check=True)  # fmt: skip
+    subprocess.run([sys.executable, str(ROOT / "tests" / "verification" / "strip_load.py"), str(program),
+                    str(FIGURES / "strip_load.png")], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
 
 
 def link(test):
@@ -104,7 +106,9 @@ def rows_of(records, row):
 
 def elsewhere(row):
     return {
-        9: "Shown by the unit tests of the laws, the point and the residual (tests/unit); they print the largest differences.",
+        9: "Shown by [tests/unit/test_point.c](../tests/unit/test_point.c) (a particle's tangent) and "
+           "[tests/unit/test_model.c](../tests/unit/test_model.c) (the exact Jacobian, every entry); they print the largest differences.",
+        14: "Shown by [tests/unit/test_point.c](../tests/unit/test_point.c), which prints the table of errors and orders.",
         16: "Shown by [tests/bad/run.py](../tests/bad/run.py), which also runs under the address sanitizer.",
     }.get(row, "No numbers yet.")
 
@@ -120,7 +124,8 @@ def page(records):
         text += [f"## {number}{title}", "", *(rows_of(records, row) or [elsewhere(row)]), ""]
     names = {"fig09_case1": "BP2 case 1 (kinetics off): Figure 9 of the paper",
              "fig10_case2": "BP2 case 2 (kinetics on): Figure 10",
-             "fig11_profiles": "BP2 case 2, profiles at 500 s and 1000 s: Figure 11"}  # fmt: skip
+             "fig11_profiles": "BP2 case 2, profiles at 500 s and 1000 s: Figure 11",
+             "strip_load": "Strip load after one step of 1 s: excess pressure over the load, with and without stabilisation"}  # fmt: skip
     text += ["## Figures", ""]
     for name, title in names.items():
         if (FIGURES / f"{name}.png").is_file():

@@ -167,7 +167,7 @@ PetscErrorCode SealWrite(const char *path, uint64_t fingerprint)
 
 static PetscErrorCode CheckStream(FILE *f, uint64_t bytes, Seal *seal, bool *ok, char *why, size_t size)
 {
-  char     block[SEAL_BYTES], expected[SEAL_BYTES];
+  char     block[SEAL_BYTES], expected[SEAL_BYTES] = {0};
   uint64_t hash = 0;
 
   PetscFunctionBeginUser;

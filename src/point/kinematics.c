@@ -52,7 +52,8 @@ static void LogStrain(Kinematics *k)
 bool KinematicsEvaluate(const double gradu[2][2], Kinematics *k)
 {
   static const double dcof[2][2][4] = {{{0, 0, 0, 1}, {0, 0, -1, 0}}, {{0, -1, 0, 0}, {1, 0, 0, 0}}};
-  double(*F)[2]                     = k->F;
+  // cppcheck-suppress ctuuninitvar ; the address only: k is filled here
+  double(*F)[2] = k->F;
 
   for (int i = 0; i < 2; i++) {
     for (int j = 0; j < 2; j++)
