@@ -86,8 +86,8 @@ typedef struct {
   Vec    X, R;        /* scaled unknowns and residual */
   SNES   snes;
   bool   refactor; /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
-  bool   always_refactor;
-  double factored_dt; /* dt' it was made for, s */
+  bool   always_refactor; /* ... at every Jacobian: second attempt at a stage */
+  double factored_dt;     /* dt' it was made for, s */
   char pmat_type[16]; /* aij | baij of the preconditioner's matrix (option -model_pmat_type); empty: as the solver likes
                          it */
   PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor) */

@@ -13,8 +13,7 @@ const FieldInfo cl_field[F_COUNT] = {
     {"T", "degC", "energy"},
 };
 
-#define CONSERVATION                                                                                                   \
-  20.0 /* how much tighter mass and energy are solved than momentum: errors in them add up over steps */
+#define CONSERVATION 20.0 /* mass and energy are solved that much tighter than momentum */
 
 /* Limits of one Newton update, so that no law is evaluated far outside its range. */
 #define LIMIT_T 5.0  /* K */
@@ -281,11 +280,11 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
   if (!m->snes)
     PetscCall(CreateSolver(m));
   *newton = 0;
-  for (int attempt = 0; attempt < 2;
-       attempt++) { /* with old factors where they serve, else with new ones at every iteration */
+  /* With old factors where they serve, else with new ones at every iteration; then a linear solve that stops early
+     still gives a good direction. */
+  for (int attempt = 0; attempt < 2; attempt++) {
     m->always_refactor = attempt > 0;
-    PetscCall(SNESSetMaxLinearSolveFailures(m->snes,
-                                            attempt > 0 ? 4 : 1)); /* new factors: the direction is good all the same */
+    PetscCall(SNESSetMaxLinearSolveFailures(m->snes, attempt > 0 ? 4 : 1));
     PetscCall(FirstGuess(m, x));
     PetscCall(SNESSolve(m->snes, NULL, m->X));
     PetscCall(SNESGetConvergedReason(m->snes, &reason));

@@ -168,8 +168,8 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mass that a change of 1 MPa stores or moves, but no more than there is (what is left in the row counts against the
-   balances), unless that is below the round-off of what moves. */
+/* Mass that a change of 1 MPa stores or moves, but no more than there is, unless that is below the round-off of what
+   moves. */
 static double MassScale(const double c[NC_COUNT], int phase, double w, double dt, double h)
 {
   const double moved =

@@ -42,7 +42,7 @@ static bool IsTime(double event, double t)
   return fabs(event - t) <= 1e-9 * fabs(t);
 }
 
-/* Was t reached by stepping onto one of these events?  Looks back from just before t. */
+/* Steps end exactly on events, so t is one of them or is not. */
 static bool AtMultiple(double every, double t)
 {
   return every > 0.0 && IsTime(every * round(t / every), t);

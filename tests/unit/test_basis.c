@@ -9,20 +9,8 @@
 #include "clathra/particles.h"
 #include "clathra/point.h"
 #include "random.h"
+#include "ranks.h"
 
-static PetscMPIInt world_rank, world_size;
-
-/* A rank that fails must not leave the others waiting. */
-#define Check(condition)                                                                                               \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: rank %d: failed: %s\n", __FILE__, __LINE__, world_rank, #condition);                     \
-      if (world_size > 1)                                                                                              \
-        MPI_Abort(MPI_COMM_WORLD, 1);                                                                                  \
-      fail();                                                                                                          \
-    }                                                                                                                  \
-  } while (0)
-#define Call(expr) Check((expr) == 0)
 #define Say(...) Call(PetscPrintf(PETSC_COMM_WORLD, __VA_ARGS__))
 
 /* ---------------------------------------------------------------- one axis */

@@ -11,23 +11,11 @@
 #include <unistd.h>
 #include <cmocka.h>
 #include "io/io_private.h"
+#include "ranks.h"
 
 #define PYTHON "/usr/bin/python3"
 
-static PetscMPIInt world_rank, world_size;
-static char        folder[256];
-
-/* A rank that fails must not leave the others waiting. */
-#define Check(condition)                                                                                               \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: rank %d: failed: %s\n", __FILE__, __LINE__, world_rank, #condition);                     \
-      if (world_size > 1)                                                                                              \
-        MPI_Abort(MPI_COMM_WORLD, 1);                                                                                  \
-      fail();                                                                                                          \
-    }                                                                                                                  \
-  } while (0)
-#define Call(expr) Check((expr) == 0)
+static char folder[256];
 
 static uint64_t rng = 88172645463325252ULL;
 

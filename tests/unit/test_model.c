@@ -11,20 +11,9 @@
 #include "clathra/model.h"
 #include "clathra/tensor.h"
 #include "random.h"
+#include "ranks.h"
+#include "sediment.h"
 
-static PetscMPIInt world_rank, world_size;
-
-/* A rank that fails must not leave the others waiting. */
-#define Check(condition)                                                                                               \
-  do {                                                                                                                 \
-    if (!(condition)) {                                                                                                \
-      fprintf(stderr, "%s:%d: rank %d: failed: %s\n", __FILE__, __LINE__, world_rank, #condition);                     \
-      if (world_size > 1)                                                                                              \
-        MPI_Abort(MPI_COMM_WORLD, 1);                                                                                  \
-      fail();                                                                                                          \
-    }                                                                                                                  \
-  } while (0)
-#define Call(expr) Check((expr) == 0)
 #define Say(...) Call(PetscPrintf(PETSC_COMM_WORLD, __VA_ARGS__))
 
 /* In [-1, 1), the same on every rank. */
@@ -65,32 +54,10 @@ typedef struct {
 
 static Material MakeMaterial(void)
 {
-  Material m = {.porosity     = 0.3,
-                .solid        = {2600.0, INFINITY, 3e-5, 0.0, 4.0},
-                .hydrate      = {900.0, INFINITY, 2e-4, 0.0, 4.0},
-                .water        = {1000.0, 2.2e9, 2.1e-4, 3.25e6, 4.0},
-                .gas          = {0.016},
-                .mu_w         = 1e-3,
-                .mu_g         = 7e-6,
-                .c_s          = 800.0,
-                .c_h          = 2010.0,
-                .c_w          = 4200.0,
-                .c_g          = 2100.0,
-                .kappa_s      = 3.0,
-                .kappa_h      = 0.5,
-                .kappa_w      = 0.6,
-                .kappa_g      = 0.044,
-                .retention    = {.p0 = 5e4, .m = 0.3, .lambda = 1.5, .Swr = 0.2, .Sgr = 0.1},
-                .relperm      = {0.2, 0.1, 4.0, 2.0},
-                .permeability = {.k0 = 1.53e-13, .phi0 = 0.3, .mh = 3.0, .kh = 0.1, .Shc = 0.4},
-                .kinetics     = {2.5e-10, 0.0, 1e6, 0.124, 0.018, 0.016, 6.0, {1000.0, 38.98, 8533.8, NULL, NULL}},
-                .latent       = {473632.0, 140.117},
-                .elasticity   = {90e6, 2e9, 1.0, 1.0, 0.3, false}};
+  Material m = SedimentMaterial();
 
-  Check(RetentionSetType(&m.retention, "van_genuchten"));
-  Check(PermeabilitySetHydrateType(&m.permeability, "power"));
-  Check(PermeabilitySetPorosityType(&m.permeability, "kozeny_carman"));
-  Check(EquilibriumSetType(&m.kinetics.equilibrium, "sloan"));
+  m.kappa_w         = 0.6;
+  m.permeability.k0 = 1.53e-13;
   return m;
 }
 
