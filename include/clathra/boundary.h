@@ -9,8 +9,8 @@
 typedef struct {
   PetscInt particle;
   int      side;
-  double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness */
-  double   r[CL_DIM]; /* from the particle's centre to the face, m */
+  double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring */
+  double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   double   area;
   double   N[CL_NODES];                                       /* weights, in the order of StencilExpand */
   PetscInt traction, pressure, heat, convection, temperature; /* index into Case.bc, -1 = none */
@@ -37,6 +37,7 @@ typedef struct {
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], double kappa, double dt, FaceOutput *o);
 
-/* Dirichlet values on grid planes: sets bit f of mask and value[f] for every prescribed unknown of grid node ij. */
+/* Dirichlet values on grid planes and on the axis: sets bit k of mask and value[k] for every prescribed unknown, k its
+   place in the field set, of grid node ij. */
 void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
-                     double value[F_COUNT]);
+                     double *value);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "clathra/base.h"
+#include "clathra/fields.h"
 #include "clathra/material.h"
 #include "clathra/schedule.h"
 
@@ -65,6 +66,10 @@ typedef struct {
   double    lower[CL_DIM], upper[CL_DIM]; /* background grid, m */
   PetscInt  cells[CL_DIM];
   BasisType basis;
+  bool      axisymmetric;      /* x is the radius, y runs along the axis; all per full ring */
+  char      fields_wanted[64]; /* auto, or the words of cl_field_word, or the name of a set */
+  bool      inertia;
+  FieldSet  fields;          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM]; /* m/s^2 */
   PetscInt  nmaterial, nregion, nbc, nprobe;
   Material *material;

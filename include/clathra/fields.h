@@ -1,5 +1,8 @@
-/* fields: the six fields of the model, their nine nodal unknowns in the plane, and their equations. */
+/* fields: the six fields of the model, their nine nodal unknowns in the plane, their equations, and the subset of them
+   that a scene needs.  docs/equations.md, section 10. */
 #pragma once
+
+#include <stdbool.h>
 
 enum { F_VSX = 0, F_VSY, F_VWX, F_VWY, F_VGX, F_VGY, F_PW, F_PG, F_T, F_COUNT };
 enum { PHASE_W = 0, PHASE_G = 1, PHASE_COUNT };
@@ -9,3 +12,42 @@ typedef struct {
 } FieldInfo;
 
 extern const FieldInfo cl_field[F_COUNT];
+
+/* What has fields of its own: bits that also say what a particle variable, a key or a condition needs. */
+enum { HAS_SOLID = 1, HAS_WATER = 2, HAS_GAS = 4, HAS_HEAT = 8, HAS_ALL = 15 };
+extern const char *const cl_field_word[]; /* solid, water, gas, heat; NULL ends it */
+
+/* A field set.  A field that is not in it has no unknown, no row, no storage; its place is -1. */
+typedef struct {
+  unsigned has;                /* bits HAS_... */
+  bool     solid, heat, fluid; /* moves; carries T; has a fluid at all */
+  bool     phase[PHASE_COUNT]; /* fluids that are there */
+  bool     inertia;            /* accelerations; false: quasi-static */
+  int      n;                  /* unknowns of a node */
+  int      at[F_COUNT];        /* place of each unknown in a node's block */
+  int      field[F_COUNT];     /* unknown at each place */
+} FieldSet;
+
+/* From the bits; false for a set that cannot be (gas without water, nothing at all). */
+bool FieldSetMake(unsigned has, bool inertia, FieldSet *fs);
+/* "solid, water, gas, heat (thmc)"; the name of the set where the field has one. */
+void FieldSetPrint(const FieldSet *fs, char *text, int size);
+/* A set by its name (thmc, thc, hm, thm, m, ...); 0 for an unknown one. */
+unsigned FieldSetByName(const char *name);
+
+static inline int PlaceVs(const FieldSet *fs)
+{
+  return fs->at[F_VSX];
+}
+static inline int PlaceV(const FieldSet *fs, int phase) /* velocity of a fluid */
+{
+  return fs->at[F_VWX + 2 * phase];
+}
+static inline int PlaceP(const FieldSet *fs, int phase)
+{
+  return fs->at[F_PW + phase];
+}
+static inline int PlaceT(const FieldSet *fs)
+{
+  return fs->at[F_T];
+}

@@ -1,16 +1,21 @@
-/* kinematics: rotation, logarithmic strain and cofactor of a plane increment; docs/equations.md (5)-(7). */
+/* kinematics: rotation, logarithmic strain and cofactor of an increment in the plane or about an axis;
+ * docs/equations.md (5)-(7). */
 #pragma once
 
 #include <stdbool.h>
 
+/* Independent numbers of the motion: grad u row by row, and the hoop strain u_r/r (zero in plane strain). */
+enum { MOTION_HOOP = 4, MOTION_COUNT = 5 };
+
 typedef struct {
-  double F[2][2], cof[2][2], J; /* F = 1 + grad u; cof = J F^-T */
-  double dcof[2][2][4];         /* d cof_ij / d(grad u)_k, k = 2*row + column */
-  double dJ[4];
-  double theta, dtheta[4]; /* rotation of the polar decomposition, rad */
-  double e[3], de[3][4];   /* logarithmic strain xx, yy, xy */
-  double stretch[2];       /* diagonal of the right stretch tensor U */
+  double F[2][2], lambda, J;        /* F = 1 + grad u, lambda = 1 + u_r/r, J = det F lambda */
+  double cof[2][2], cof_hoop;       /* J F^-T = lambda cof F_2; hoop: det F_2 */
+  double dcof[2][2][MOTION_COUNT];  /* d cof_ij / d motion */
+  double dJ[MOTION_COUNT];          /* dcof_hoop = dJ/lambda but for the hoop strain, where it is zero */
+  double theta, dtheta[4];          /* rotation of the polar decomposition, rad */
+  double e[4], de[4][MOTION_COUNT]; /* logarithmic strain xx, yy, xy, zz */
+  double stretch[2];                /* diagonal of the right stretch tensor U */
 } Kinematics;
 
-/* gradu: [i][j] = d u_i / d X_j on the configuration at t_n.  False if J <= 0 or not finite. */
-bool KinematicsEvaluate(const double gradu[2][2], Kinematics *k);
+/* motion: d u_i / d X_j on the configuration at t_n, then u_r/r.  False if J <= 0 or not finite. */
+bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k);

@@ -11,7 +11,7 @@
 typedef struct {
   double  t;      /* end of the stage, where boundary functions are evaluated, s */
   double  dt;     /* dt', s */
-  double *x_star; /* [n_local][F_COUNT] starred nodal velocities, pressures, temperature */
+  double *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
   double *u_star; /* [n_local][CL_DIM] starred displacement, m */
   double *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
 } Stage;
@@ -55,12 +55,12 @@ typedef struct {
   /* on the configuration at t_n, built by ModelBeginStep */
   Stencil        *stencil; /* [n] */
   PetscInt        stencil_cap;
-  double         *x_n;   /* [n_local][F_COUNT] projected start values */
+  double         *x_n;   /* [n_local][fields.n] projected start values */
   double         *w;     /* [n_local][2] (phi S_pi)_I */
   double         *V;     /* [n_local] sum of V_n S, m^3 */
   double         *coef;  /* [n_local][NC_COUNT] nodal means: see project.c */
   unsigned       *mask;  /* [n_local] Dirichlet bits */
-  double         *fixed; /* [n_local][F_COUNT] Dirichlet values of the stage */
+  double         *fixed; /* [n_local][fields.n] Dirichlet values of the stage */
   PetscInt        nface;
   Face           *face;
   PetscInt        nghost, ncell;
@@ -70,10 +70,10 @@ typedef struct {
   /* of the stage, built by ModelBeginStage */
   Stage    stage;
   BcValues bc;
-  double  *row_scale, *col_scale; /* [n_local][F_COUNT] */
+  double  *row_scale, *col_scale; /* [n_local][fields.n] */
 
   /* of the last evaluation */
-  double     *x, *f;     /* [n_local][F_COUNT] unscaled unknowns, residual */
+  double     *x, *f;     /* [n_local][fields.n] unscaled unknowns, residual */
   double     *proj;      /* [n_local][4] projected pressure gradients Pi g, Pa/m */
   double     *wide;      /* [n][12] particle coefficients of the wide part (27) */
   ClStatus    status;    /* why the last evaluation failed, on this rank */
@@ -114,7 +114,7 @@ PetscErrorCode ModelDestroy(Model *m);
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);
 /* Starts a stage: boundary values, scales.  The stage's arrays belong to the caller. */
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s);
-/* Solves (15)-(23) for the stage; x (n_local x F_COUNT, ghosts included) holds the first guess and then the solution.
+/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution.
  */
 PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status);
 /* What the solution means for the particles; checks that they stay within half a cell and inside the grid. */

@@ -4,43 +4,44 @@
 
 #include "clathra/case.h"
 
-/* X(enum, HDF5 name, components, unit, meaning) */
+/* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
 #define CL_PARTICLE_TABLE(X)                                                                                           \
-  X(P_X, "position", 2, "m", "centre")                                                                                 \
-  X(P_U, "displacement", 2, "m", "from the initial position")                                                          \
-  X(P_L, "half_length", 2, "m", "of the GIMP domain")                                                                  \
-  X(P_V, "volume", 1, "m^3", "current, per metre of thickness")                                                        \
-  X(P_LOGJ, "log_J", 1, "-", "logarithm of the volume ratio V/V_0")                                                    \
-  X(P_MS, "mass_solid", 1, "kg", "grains")                                                                             \
-  X(P_MH, "mass_hydrate", 1, "kg", "")                                                                                 \
-  X(P_MW, "mass_water", 1, "kg", "")                                                                                   \
-  X(P_MG, "mass_gas", 1, "kg", "")                                                                                     \
-  X(P_PW, "p_w", 1, "Pa", "water pressure")                                                                            \
-  X(P_PG, "p_g", 1, "Pa", "gas pressure")                                                                              \
-  X(P_T, "T", 1, "degC", "temperature")                                                                                \
-  X(P_GW, "grad_p_w", 2, "Pa/m", "at the end of the last step")                                                        \
-  X(P_GG, "grad_p_g", 2, "Pa/m", "")                                                                                   \
-  X(P_GT, "grad_T", 2, "K/m", "")                                                                                      \
-  X(P_VS, "v_s", 2, "m/s", "skeleton velocity")                                                                        \
-  X(P_VW, "v_w", 2, "m/s", "water velocity")                                                                           \
-  X(P_VG, "v_g", 2, "m/s", "gas velocity")                                                                             \
-  X(P_SIG, "stress", 6, "Pa", "effective, tension-positive: xx yy zz xy yz xz")                                        \
-  X(P_SIG0, "stress_initial", 6, "Pa", "initial effective stress, rotated with the body")                              \
-  X(P_PW0, "p_w_initial", 1, "Pa", "initial water pressure")                                                           \
-  X(P_PG0, "p_g_initial", 1, "Pa", "initial gas pressure")                                                             \
-  X(P_RATE, "rate", 4, "1/s", "of p_w, p_g (Pa/s), T (K/s) and S_h at the end of the last step")                       \
-  X(P_SH, "S_h", 1, "-", "hydrate saturation")                                                                         \
-  X(P_SW, "S_w", 1, "-", "water saturation")                                                                           \
-  X(P_PHI, "porosity", 1, "-", "")
+  X(P_X, HAS_ALL, "position", 2, "m", "centre")                                                                        \
+  X(P_U, HAS_SOLID, "displacement", 2, "m", "from the initial position")                                               \
+  X(P_L, HAS_ALL, "half_length", 2, "m", "of the GIMP domain")                                                         \
+  X(P_V, HAS_ALL, "volume", 1, "m^3", "current, per metre of thickness or of the full ring")                           \
+  X(P_LOGJ, HAS_SOLID, "log_J", 1, "-", "logarithm of the volume ratio V/V_0")                                         \
+  X(P_MS, HAS_ALL, "mass_solid", 1, "kg", "grains")                                                                    \
+  X(P_MH, HAS_ALL, "mass_hydrate", 1, "kg", "")                                                                        \
+  X(P_MW, HAS_WATER, "mass_water", 1, "kg", "")                                                                        \
+  X(P_MG, HAS_GAS, "mass_gas", 1, "kg", "")                                                                            \
+  X(P_PW, HAS_WATER, "p_w", 1, "Pa", "water pressure")                                                                 \
+  X(P_PG, HAS_GAS, "p_g", 1, "Pa", "gas pressure")                                                                     \
+  X(P_T, HAS_HEAT, "T", 1, "degC", "temperature")                                                                      \
+  X(P_GW, HAS_WATER, "grad_p_w", 2, "Pa/m", "at the end of the last step")                                             \
+  X(P_GG, HAS_GAS, "grad_p_g", 2, "Pa/m", "")                                                                          \
+  X(P_GT, HAS_HEAT, "grad_T", 2, "K/m", "")                                                                            \
+  X(P_VS, HAS_SOLID, "v_s", 2, "m/s", "skeleton velocity")                                                             \
+  X(P_VW, HAS_WATER, "v_w", 2, "m/s", "water velocity")                                                                \
+  X(P_VG, HAS_GAS, "v_g", 2, "m/s", "gas velocity")                                                                    \
+  X(P_SIG, HAS_SOLID, "stress", 6, "Pa", "effective, tension-positive: xx yy zz xy yz xz")                             \
+  X(P_SIG0, HAS_SOLID, "stress_initial", 6, "Pa", "initial effective stress, rotated with the body")                   \
+  X(P_PW0, HAS_WATER, "p_w_initial", 1, "Pa", "initial water pressure")                                                \
+  X(P_PG0, HAS_GAS, "p_g_initial", 1, "Pa", "initial gas pressure")                                                    \
+  X(P_RATE, HAS_WATER | HAS_HEAT, "rate", 4, "1/s", "of p_w, p_g (Pa/s), T (K/s) and S_h at the end of the last step") \
+  X(P_SH, HAS_ALL, "S_h", 1, "-", "hydrate saturation")                                                                \
+  X(P_SW, HAS_WATER, "S_w", 1, "-", "water saturation")                                                                \
+  X(P_PHI, HAS_ALL, "porosity", 1, "-", "")
 
 /* One enumerator per component: P_X is the first, P_X + 1 the second, ... ; P_COUNT is their number. */
-#define CL_PARTICLE_ENUM(id, name, nc, unit, doc) id, id##_LAST_ = id + (nc)-1,
+#define CL_PARTICLE_ENUM(id, has, name, nc, unit, doc) id, id##_LAST_ = id + (nc)-1,
 enum { CL_PARTICLE_TABLE(CL_PARTICLE_ENUM) P_COUNT };
 #undef CL_PARTICLE_ENUM
 
 typedef struct {
   const char *name, *unit, *doc;
   int         first, nc;
+  unsigned    has; /* fields any of which it goes with */
 } ParticleVariable;
 extern const ParticleVariable cl_particle_variable[]; /* NULL name ends it */
 
@@ -54,11 +55,23 @@ enum {
 
 typedef struct {
   PetscInt  n, cap;     /* particles on this rank, allocated */
-  double   *f[P_COUNT]; /* f[component][particle] */
+  unsigned  has;        /* fields of the scene */
+  double   *f[P_COUNT]; /* f[component][particle]; NULL for a variable of a field that the scene has not */
   PetscInt *i[PI_COUNT];
 } Particles;
 
-PetscErrorCode ParticlesCreate(Particles *P);
+static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
+{
+  return P->has & v->has;
+}
+
+/* Coordinate of a particle in the initial configuration, m. */
+static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
+{
+  return P->f[P_X + d][p] - (P->f[P_U] ? P->f[P_U + d][p] : 0.0);
+}
+
+PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */
 PetscErrorCode ParticlesDestroy(Particles *P);
 PetscErrorCode ParticlesResize(Particles *P, PetscInt n); /* keeps the first min(n, old n) */
 PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);

@@ -11,12 +11,13 @@
 /* What the interpolation gives a particle; the tangent is taken with respect to these numbers in this order. */
 enum {
   IN_GRADU = 0,  /* [i][j], on the configuration at t_n */
-  IN_P     = 4,  /* p_w, p_g, Pa */
-  IN_T     = 6,  /* degC */
-  IN_GP    = 7,  /* gradient of p_w (2), of p_g (2), Pa/m */
-  IN_GT    = 11, /* gradient of T (2), K/m */
-  IN_J     = 13, /* Darcy flux of water (2), of gas (2), m/s */
-  IN_COUNT = 17
+  IN_HOOP  = 4,  /* u_r/r; zero in the plane */
+  IN_P     = 5,  /* p_w, p_g, Pa */
+  IN_T     = 7,  /* degC */
+  IN_GP    = 8,  /* gradient of p_w (2), of p_g (2), Pa/m */
+  IN_GT    = 12, /* gradient of T (2), K/m */
+  IN_J     = 14, /* Darcy flux of water (2), of gas (2), m/s */
+  IN_COUNT = 18
 };
 
 /* What a particle writes to its nodes. */
@@ -26,14 +27,17 @@ enum {
   OUT_PF   = 4,  /* [pi][i][j] V_n p_pi cof F */
   OUT_FLUX = 12, /* [pi][j] mass flux Phi, kg m/s (18) */
   OUT_HEAT = 16, /* [j] conducted heat, W m */
+  /* tested with H_I, in the radial rows */
+  OUT_HOOP  = 18, /* V_n (sigma'_tt - p) det F_2, N m */
+  OUT_HOOPF = 19, /* [pi] V_n p_pi det F_2 */
   /* tested with S_I */
-  OUT_M     = 18, /* m_s + m_h, m_w, m_g, kg */
-  OUT_MI    = 21, /* [pi] V rho_pi, kg */
-  OUT_D     = 23, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
-  OUT_DM    = 25, /* [pi] mass gained minus released by hydrate, kg */
-  OUT_C     = 27, /* heat capacity, J/K */
-  OUT_Q     = 28, /* advected minus released heat, W */
-  OUT_COUNT = 29
+  OUT_M     = 21, /* m_s + m_h, m_w, m_g, kg */
+  OUT_MI    = 24, /* [pi] V rho_pi, kg */
+  OUT_D     = 26, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
+  OUT_DM    = 28, /* [pi] mass gained minus released by hydrate, kg */
+  OUT_C     = 30, /* heat capacity, J/K */
+  OUT_Q     = 31, /* advected minus released heat, W */
+  OUT_COUNT = 32
 };
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
@@ -63,14 +67,15 @@ typedef struct {
   double wide_q[PHASE_COUNT][2];  /* d q / d proj[pi][j] */
 } PointOutput;
 
-/* Evaluates (8)-(21) at a particle.  tangent = false leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN /
-   CL_NONFINITE with *why pointing to a sentence. */
-ClStatus PointEvaluate(const Material *mat, const PointHistory *h, const double in[IN_COUNT], bool tangent,
-                       PointState *state, PointOutput *o, const char **why);
+/* Evaluates (8)-(21) at a particle for the fields of the set; inputs of other fields are not read (but p_g = p_w and T
+   as given where gas and heat have no field), outputs and columns of other fields are not written.  tangent = false
+   leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing to a sentence. */
+ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
+                       bool tangent, PointState *state, PointOutput *o, const char **why);
 
 /* Masses and saturations of a new particle from (phi, S_h, p_w, p_g, T); kg. */
-void PointInitialMasses(const Material *mat, double V, double phi, double Sh, double pw, double pg, double T,
-                        double *m_s, double *m_h, double *m_w, double *m_g);
+void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double pw, double pg,
+                        double T, double *m_s, double *m_h, double *m_w, double *m_g);
 
 /* Properties at t_n that projections, scales and stabilisation need. */
 typedef struct {
@@ -80,5 +85,5 @@ typedef struct {
   double M, G;                                /* constrained and shear modulus, Pa */
   double storage[PHASE_COUNT];                /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
 } PointProperties;
-ClStatus PointPropertiesEvaluate(const Material *mat, double V, double m_s, double m_h, double pw, double pg, double T,
-                                 PointProperties *r, const char **why);
+ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
+                                 double pg, double T, PointProperties *r, const char **why);

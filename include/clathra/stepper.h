@@ -31,7 +31,7 @@ typedef struct {
 
 /* Work space of a step, sized for the particles and nodes of this configuration. */
 typedef struct {
-  double  *x, *x_star, *u_star;  /* [n_local][F_COUNT], [n_local][F_COUNT], [n_local][CL_DIM] */
+  double  *x, *x_star, *u_star;  /* [n_local][fields.n], [n_local][fields.n], [n_local][CL_DIM] */
   double  *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
   Trial    trial[2];
   PetscInt cap_nodes, cap_particles;
@@ -82,5 +82,8 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok);
 
 /* Shared by the schemes. */
 PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */
+/* p_w, p_g, T, S_h of particle p at t_n and their rates in the last step; zero where there is no such field. */
+void           StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4]);
+double         StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
 double         StepperErrorNorm(Stepper *s, const double *e, const double *eu); /* collective; e [n][4], eu [n][2] */

@@ -36,26 +36,76 @@ void BasisHat(double x, double lower, double h, Axis *a)
   }
 }
 
-void BasisAxis(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a)
+/* The domain in cells: [lo, hi], clipped at the grid's edge, and the length that gradients are divided by. */
+typedef struct {
+  double lo, hi, length;
+} Domain;
+
+static Domain DomainOf(double x, double l, double lower, double h, PetscInt cells)
 {
   const double s = (x - lower) / h, r = l / h, from = Snap(s - r), to = Snap(s + r), end = (double)cells;
   const bool   clipped = s >= 0.0 && s <= end && (from < 0.0 || to > end);
-  const double lo = clipped ? fmax(from, 0.0) : from, hi = clipped ? fmin(to, end) : to, base = floor(lo);
-  const double length = clipped ? hi - lo : 2.0 * r;
+  const double lo = clipped ? fmax(from, 0.0) : from, hi = clipped ? fmin(to, end) : to;
 
+  return (Domain){lo, hi, clipped ? hi - lo : 2.0 * r};
+}
+
+void BasisAxis(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a)
+{
   if (type == BASIS_LINEAR) {
     BasisHat(x, lower, h, a);
     return;
   }
+  const Domain d    = DomainOf(x, l, lower, h, cells);
+  const double base = floor(d.lo);
+
   a->base = (PetscInt)base;
   for (int k = 0; k < 3; k++) { /* (3); the average uses the snapped length so that the weights sum to one */
-    a->S[k]  = (HatIntegral(hi - base - k) - HatIntegral(lo - base - k)) / (hi - lo);
-    a->dS[k] = (Hat(hi - base - k) - Hat(lo - base - k)) / (length * h);
+    a->S[k]  = (HatIntegral(d.hi - base - k) - HatIntegral(d.lo - base - k)) / (d.hi - d.lo);
+    a->dS[k] = (Hat(d.hi - base - k) - Hat(d.lo - base - k)) / (d.length * h);
   }
 }
 
+/* Integral of s N(s) from -infinity, N the hat function of unit width. */
+static double HatMoment(double s)
+{
+  const double t = fmin(fmax(s, -1.0), 1.0), even = t * t / 2.0, odd = t * t * t / 3.0;
+
+  return t < 0.0 ? even + odd - 1.0 / 6.0 : even - odd - 1.0 / 6.0;
+}
+
+void BasisRadius(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a, double hoop[3],
+                 double *r)
+{
+  BasisAxis(type, x, l, lower, h, cells, a);
+  if (type == BASIS_LINEAR) {
+    *r = x;
+    for (int k = 0; k < 3; k++)
+      hoop[k] = a->S[k] / x;
+    return;
+  }
+  const Domain d    = DomainOf(x, l, lower, h, cells);
+  const double axis = -lower / h, mid = 0.5 * (d.lo + d.hi), radius = mid - axis, length = d.hi - d.lo; /* in cells */
+
+  *r = radius * h;
+  for (int k = 0; k < 3; k++) { /* (29); r = r_k + s about node k */
+    const double node = (double)(a->base + k), rk = node - axis, lo = d.lo - node, hi = d.hi - node;
+    const double moment = HatMoment(hi) - HatMoment(lo), integral = HatIntegral(hi) - HatIntegral(lo);
+    const double edge = (hi + rk) * Hat(hi) - (lo + rk) * Hat(lo); /* [r N] = int (r N' + N) dr */
+
+    hoop[k]  = a->S[k] / *r;
+    a->S[k]  = (rk * integral + moment) / (radius * length);
+    a->dS[k] = (edge - integral) / (radius * length * h);
+  }
+}
+
+double AxisCentroid(const Axis *a, double lower, double h)
+{
+  return lower + h * ((double)a->base * (a->S[0] + a->S[1] + a->S[2]) + a->S[1] + 2.0 * a->S[2]);
+}
+
 int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt node[CL_NODES], double S[CL_NODES],
-                  double G[CL_NODES][CL_DIM])
+                  double G[CL_NODES][CL_DIM], double H[CL_NODES])
 {
   const Axis *x = &s->axis[0], *y = &s->axis[1];
   int         n = 0;
@@ -70,6 +120,8 @@ int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt 
       S[n]    = x->S[a] * y->S[b];
       G[n][0] = x->dS[a] * y->S[b];
       G[n][1] = x->S[a] * y->dS[b];
+      if (s->r > 0.0)
+        H[n] = s->hoop[a] * y->S[b];
       n++;
     }
   }

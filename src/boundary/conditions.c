@@ -25,19 +25,19 @@ double BcNextKink(const Case *c, double t)
 }
 
 /* Total traction: -q a + s a_perp; row v_s loses it. */
-static void Traction(double q, double s, const double a[2], const double da[2][4], FaceOutput *o)
+static void Traction(double q, double s, const double a[2], const double da[2][MOTION_COUNT], FaceOutput *o)
 {
   o->out[F_VSX] = q * a[0] + s * a[1];
   o->out[F_VSY] = q * a[1] - s * a[0];
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < MOTION_COUNT; k++) {
     o->D[F_VSX][k] = q * da[0][k] + s * da[1][k];
     o->D[F_VSY][k] = q * da[1][k] - s * da[0][k];
   }
 }
 
 /* Closed face: the fluid's own pressure, extrapolated to the face. */
-static void Closed(const Face *f, int phase, const double a[2], const double da[2][4], const double in[IN_COUNT],
-                   FaceOutput *o)
+static void Closed(const Face *f, int phase, const double a[2], const double da[2][MOTION_COUNT],
+                   const double in[IN_COUNT], FaceOutput *o)
 {
   const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
 
@@ -48,13 +48,13 @@ static void Closed(const Face *f, int phase, const double a[2], const double da[
     D[IN_P + phase]               = a[i];
     for (int j = 0; j < 2; j++)
       D[IN_GP + 2 * phase + j] = a[i] * f->r[j];
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < MOTION_COUNT; k++)
       D[k] = p * da[i][k];
   }
 }
 
 /* Open face: prescribed pressure, outflow rho J . a. */
-static void Open(const Material *mat, int phase, double p, const double a[2], const double da[2][4],
+static void Open(const Material *mat, int phase, double p, const double a[2], const double da[2][MOTION_COUNT],
                  const double in[IN_COUNT], double dt, FaceOutput *o)
 {
   double        dp, dT;
@@ -65,7 +65,7 @@ static void Open(const Material *mat, int phase, double p, const double a[2], co
 
   for (int i = 0; i < 2; i++) {
     o->out[F_VWX + 2 * phase + i] = p * a[i];
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < MOTION_COUNT; k++)
       o->D[F_VWX + 2 * phase + i][k] = p * da[i][k];
   }
   o->out[F_PW + phase] = dt * rho * Ja;
@@ -73,7 +73,7 @@ static void Open(const Material *mat, int phase, double p, const double a[2], co
   D[IN_T]              = dt * dT * Ja;
   for (int j = 0; j < 2; j++)
     D[IN_J + 2 * phase + j] = dt * rho * a[j];
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < MOTION_COUNT; k++)
     D[k] = dt * rho * (J[0] * da[0][k] + J[1] * da[1][k]);
 }
 
@@ -100,39 +100,51 @@ static void Heat(const Case *c, const Face *f, const BcValues *v, const double i
     o->D[F_T][IN_GT + j] = alpha * f->area * f->r[j];
 }
 
+/* Pressure of a fluid outside: the face's initial one, or both phases shifted so that the mean is the prescribed one.
+ */
+static double Outside(const Case *c, const Bc *b, double value, const Material *mat, const double p0[PHASE_COUNT],
+                      int phase)
+{
+  double ds;
+
+  if (b->initial)
+    return p0[phase];
+  if (!c->fields.phase[PHASE_G])
+    return value;
+  const double sg = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);
+
+  return p0[phase] + value - ((1.0 - sg) * p0[PHASE_W] + sg * p0[PHASE_G]);
+}
+
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], double kappa, double dt, FaceOutput *o)
 {
-  const double gradu[2][2] = {{in[0], in[1]}, {in[2], in[3]}};
-  Kinematics   k;
-  double       a[2], da[2][4];
+  double a[2] = {f->n[0], f->n[1]}, da[2][MOTION_COUNT] = {{0.0}};
 
   *o = (FaceOutput){0};
-  if (!KinematicsEvaluate(gradu, &k))
-    return;                     /* the particle itself reports it */
-  for (int i = 0; i < 2; i++) { /* a = cof(F) n A, linear in grad u */
-    a[i] = k.cof[i][0] * f->n[0] + k.cof[i][1] * f->n[1];
-    for (int q = 0; q < 4; q++)
-      da[i][q] = k.dcof[i][0][q] * f->n[0] + k.dcof[i][1][q] * f->n[1];
-  }
-  if (f->traction >= 0)
-    Traction(v->value[f->traction], v->shear[f->traction], a, da, o);
-  for (int phase = 0; phase < PHASE_COUNT; phase++) {
-    if (f->pressure < 0) {
-      Closed(f, phase, a, da, in, o);
-    } else {
-      double p = p0[phase];
+  if (c->fields.solid) { /* a = cof(F) n A */
+    Kinematics k;
 
-      if (!c->bc[f->pressure].initial) { /* both phases shifted so that the mean pore pressure is the prescribed one */
-        double       ds;
-        const double sg = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);
-
-        p += v->value[f->pressure] - ((1.0 - sg) * p0[PHASE_W] + sg * p0[PHASE_G]);
-      }
-      Open(mat, phase, p, a, da, in, dt, o);
+    if (!KinematicsEvaluate(&in[IN_GRADU], &k))
+      return; /* the particle itself reports it */
+    for (int i = 0; i < 2; i++) {
+      a[i] = k.cof[i][0] * f->n[0] + k.cof[i][1] * f->n[1];
+      for (int q = 0; q < MOTION_COUNT; q++)
+        da[i][q] = k.dcof[i][0][q] * f->n[0] + k.dcof[i][1][q] * f->n[1];
     }
+    if (f->traction >= 0)
+      Traction(v->value[f->traction], v->shear[f->traction], a, da, o);
   }
-  Heat(c, f, v, in, kappa, o);
+  for (int phase = 0; phase < PHASE_COUNT; phase++) {
+    if (!c->fields.phase[phase])
+      continue;
+    if (f->pressure < 0)
+      Closed(f, phase, a, da, in, o);
+    else
+      Open(mat, phase, Outside(c, &c->bc[f->pressure], v->value[f->pressure], mat, p0, phase), a, da, in, dt, o);
+  }
+  if (c->fields.heat)
+    Heat(c, f, v, in, kappa, o);
 }
 
 static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
@@ -142,30 +154,41 @@ static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
   return fabs(x - b->position) < 1e-6 * g->h[b->axis];
 }
 
-void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
-                     double value[F_COUNT])
+/* Prescribes the velocities of all phases along axis d. */
+static void Hold(const FieldSet *fs, int d, double velocity, unsigned *mask, double *value)
 {
-  static const int velocity[3] = {F_VSX, F_VWX, F_VGX};
+  static const int first[3] = {F_VSX, F_VWX, F_VGX};
 
+  for (int i = 0; i < 3; i++) {
+    const int k = fs->at[first[i] + d];
+
+    if (k < 0)
+      continue;
+    *mask |= 1u << k;
+    value[k] = velocity;
+  }
+}
+
+void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
+                     double *value)
+{
+  const FieldSet *fs = &c->fields;
+
+  if (c->axisymmetric && g->lower[0] + (double)ij[0] * g->h[0] < 1e-6 * g->h[0])
+    Hold(fs, 0, 0.0, mask, value); /* nothing crosses the axis */
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc *b = &c->bc[k];
 
     if (b->type < BC_ROLLER || !OnPlane(g, b, ij))
       continue;
     if (b->type == BC_TEMPERATURE) {
-      *mask |= 1u << F_T;
-      value[F_T] = v->value[k];
+      *mask |= 1u << PlaceT(fs);
+      value[PlaceT(fs)] = v->value[k];
       continue;
     }
-    for (int i = 0; i < 3; i++) {
-      for (int d = 0; d < CL_DIM; d++) {
-        const int f = velocity[i] + d;
-
-        if (b->type != BC_FIXED && d != b->axis)
-          continue;
-        *mask |= 1u << f;
-        value[f] = b->type == BC_PLATE ? v->value[k] : 0.0;
-      }
+    for (int d = 0; d < CL_DIM; d++) {
+      if (b->type == BC_FIXED || d == b->axis)
+        Hold(fs, d, b->type == BC_PLATE ? v->value[k] : 0.0, mask, value);
     }
   }
 }

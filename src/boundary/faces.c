@@ -50,21 +50,24 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
 {
   const int      axis = side_axis[side], tangent = 1 - axis;
   const PetscInt region = P->i[PI_REGION][p];
-  const double   along  = P->f[P_X + tangent][p] - P->f[P_U + tangent][p]; /* where the face was at the start */
+  const double   along  = ParticleInitialX(P, p, tangent);
+
+  const double arm = side_sign[side] * P->f[P_L + axis][p], position = P->f[P_X + axis][p] + arm;
+  const double radius = P->f[P_X][p] + (axis == 0 ? arm : 0.0);
 
   f->particle    = p;
   f->side        = side;
-  f->area        = 2.0 * P->f[P_L + tangent][p];
+  f->r[axis]     = position - AxisCentroid(&stencil[p].axis[axis], g->lower[axis], g->h[axis]);
+  f->r[tangent]  = 0.0;
+  f->area        = 2.0 * P->f[P_L + tangent][p] * (c->axisymmetric ? 2.0 * M_PI * radius : 1.0);
   f->n[axis]     = side_sign[side] * f->area;
   f->n[tangent]  = 0.0;
-  f->r[axis]     = side_sign[side] * P->f[P_L + axis][p];
-  f->r[tangent]  = 0.0;
   f->traction    = FindCondition(c, BC_TRACTION, side, region, along);
   f->pressure    = FindCondition(c, BC_PRESSURE, side, region, along);
   f->heat        = FindCondition(c, BC_HEAT_FLUX, side, region, along);
   f->convection  = FindCondition(c, BC_CONVECTION, side, region, along);
   f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, side, region, along);
-  Weights(g, c->basis, &stencil[p], axis, P->f[P_X + axis][p] + f->r[axis], f->N);
+  Weights(g, c->basis, &stencil[p], axis, position, f->N);
 }
 
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,

@@ -83,6 +83,7 @@ typedef struct {
   Group              names;     /* KEY_NAME: whose names */
   const char        *word;      /* KEY_REAL: word that stands for infinity; "-word" for minus infinity */
   unsigned           types;     /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
+  unsigned           has;       /* fields (HAS_...) any of which needs the key; 0 = always needed */
   bool               plain;     /* a number without unit on the command line is in SI */
   const char        *doc;
 } Key;
@@ -130,6 +131,16 @@ typedef struct {
   PetscInt n;
   char    *text, **item;
 } List;
-void ListCreate(const char *text, List *list);
-void ListDestroy(List *list);
-void CaseCheck(Reader *r, const Case *c);
+void               ListCreate(const char *text, List *list);
+void               ListDestroy(List *list);
+void               CaseCheck(Reader *r, const Case *c);
+static inline bool KeyNeeded(const Key *k, const Case *c)
+{
+  return !k->has || (c->fields.has & k->has);
+}
+
+/* ---------------------------------------------------------------- fieldset.c */
+/* Fills Case.fields from fields_wanted, or derives it from the file; before materials and regions are read. */
+PetscErrorCode CaseFieldSet(Reader *r, Case *c);
+/* What the set leaves open in the regions, and whether the case asks for more than it holds; after all is read. */
+void CaseFieldSetFinish(Reader *r, Case *c);

@@ -11,12 +11,25 @@
     ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
   } while (0)
 
+/* About an axis. */
+static void CheckRadius(Reader *r, const Case *c)
+{
+  if (c->lower[0] < 0.0)
+    FAIL(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
+         c->lower[0]);
+  if (c->gravity[0] != 0.0)
+    FAIL(GROUP_CASE, "", "gravity", "must point along the axis, y, when geometry is axisymmetric (%g m/s^2 along x)",
+         c->gravity[0]);
+}
+
 static void CheckCase(Reader *r, const Case *c)
 {
   for (int d = 0; d < CL_DIM; d++)
     if (c->upper[d] <= c->lower[d])
       FAIL(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->upper[d],
            c->lower[d]);
+  if (c->axisymmetric)
+    CheckRadius(r, c);
   if ((double)c->cells[0] * c->cells[1] > 1e8)
     FAIL(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
   if (c->dt_min > c->dt || c->dt > c->dt_max)
@@ -66,11 +79,13 @@ static void CheckSaturations(Reader *r, const Case *c, const Region *g)
   const Material *m = &c->material[g->material];
   double          pc, sum = g->Sh + g->Sw + g->Sg;
 
+  if (!c->fields.fluid)
+    return;
   if (fabs(sum - 1) > 1e-9) {
     FAIL(GROUP_REGION, g->name, "Sw", "Sh + Sw + Sg must be 1, is %.12g", sum);
     return;
   }
-  if (r->bad[GROUP_MATERIAL] || RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
+  if (r->bad[GROUP_MATERIAL] || !c->fields.phase[PHASE_G] || RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
     return;
   FAIL(GROUP_REGION, g->name, "Sg",
        "the retention law %s of material %s never holds a gas share Sg/(1-Sh) of %g (water share %g, Swr %g, Sgr %g)",
@@ -104,7 +119,7 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
       FAIL(GROUP_REGION, g->name, "lower", "the region overlaps region %s", o->name);
   }
   CheckSaturations(r, c, g);
-  if (g->hydrostatic && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
+  if (g->hydrostatic && c->fields.fluid && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
     CheckHydrostatic(r, c, g);
 }
 

@@ -227,9 +227,12 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
   if (!r.nerror) {
     for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(NamesRead(&r, c, g));
-    for (Group g = GROUP_CASE; g < GROUP_COUNT; g++)
+    PetscCall(GroupRead(&r, c, GROUP_CASE));
+    PetscCall(CaseFieldSet(&r, c));
+    for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(GroupRead(&r, c, g));
     PetscCall(Derive(&r, c));
+    CaseFieldSetFinish(&r, c);
     PetscCall(Leftovers(&r, c));
     CaseCheck(&r, c);
   }

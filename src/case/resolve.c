@@ -113,7 +113,7 @@ static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instanc
 static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance, const char *indent)
 {
   for (const Key *k = case_group[g].key; k->name; k++) {
-    if (!KeyApplies(k, g, instance))
+    if (!KeyApplies(k, g, instance) || !KeyNeeded(k, c))
       continue;
     if (k->kind == KEY_SCHEDULE && ((const Schedule *)(instance + k->offset))->n == 0)
       continue;

@@ -68,6 +68,8 @@ static PetscErrorCode WriteReals(Writer *w, const Particles *P, Gather *g)
   for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
     const hsize_t dims[2] = {(hsize_t)g->total, (hsize_t)v->nc};
 
+    if (!ParticlesHold(P, v))
+      continue;
     for (int c = 0; c < v->nc; c++)
       PetscCall(GatherReals(g, P->f[v->first + c], v->nc, w->data + (g->rank == 0 ? c : 0)));
     if (g->rank == 0 && !w->ierr) {

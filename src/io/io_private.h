@@ -23,6 +23,7 @@ struct Output {
   double        *reach;            /* [nprobe] widening of each probe's neighbourhood */
   PetscInt       nsnapshot, cap;   /* rank 0: what fields.h5 holds */
   SnapshotEntry *snapshot;
+  FieldSet       fields;
 };
 
 /* Nodal fields of a snapshot. */
@@ -36,12 +37,15 @@ extern const NodalVariable io_nodal[]; /* NULL name ends it */
 typedef struct {
   const char *name, *unit;
   bool        integer;
+  unsigned    has; /* fields any of which it goes with */
 } ExtraVariable;
 extern const ExtraVariable io_extra[]; /* NULL name ends it */
 
 /* p = s_w p_w + s_g p_g with s = S/(1 - S_h), Pa. */
 static inline double MeanPressure(const Particles *P, PetscInt p)
 {
+  if (!P->f[P_PG])
+    return P->f[P_PW][p];
   const double sw = P->f[P_SW][p] / (1.0 - P->f[P_SH][p]);
 
   return sw * P->f[P_PW][p] + (1.0 - sw) * P->f[P_PG][p];

@@ -171,6 +171,7 @@ PetscErrorCode OutputCreate(const Model *m, const StepperState *s, bool append, 
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&out));
+  out->fields = m->c->fields;
   PetscCall(PetscStrncpy(out->dir, m->c->output_dir, sizeof(out->dir)));
   PetscCall(PetscMalloc1(m->c->nprobe, &out->reach));
   for (PetscInt k = 0; k < m->c->nprobe; k++)

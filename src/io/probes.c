@@ -1,9 +1,20 @@
 /* probes.csv: affine least-squares values at points of the body or of space. */
 #include "io_private.h"
 
-enum { Q_P = 0, Q_PW, Q_PG, Q_T, Q_SH, Q_SW, Q_SG, Q_UX, Q_UY, Q_SXX, Q_SYY, Q_SZZ, Q_SXY, Q_X, Q_Y, Q_COUNT };
-static const char *const column[Q_COUNT] = {"p_Pa",  "p_w_Pa", "p_g_Pa", "T_degC", "S_h",    "S_w", "S_g", "u_x_m",
-                                            "u_y_m", "sxx_Pa", "syy_Pa", "szz_Pa", "sxy_Pa", "x_m", "y_m"};
+/* A quantity, the fields it goes with, and the component of the store that holds it (-1: computed). */
+enum { Q_P = 0, Q_SG = 6, Q_COUNT = 15 };
+static const struct {
+  const char *name;
+  unsigned    has;
+  int         component;
+} quantity[Q_COUNT] = {[Q_P] = {"p_Pa", HAS_WATER, -1},  {"p_w_Pa", HAS_WATER, P_PW},
+                       {"p_g_Pa", HAS_GAS, P_PG},        {"T_degC", HAS_HEAT, P_T},
+                       {"S_h", HAS_ALL, P_SH},           {"S_w", HAS_WATER, P_SW},
+                       [Q_SG] = {"S_g", HAS_GAS, -1},    {"u_x_m", HAS_SOLID, P_U},
+                       {"u_y_m", HAS_SOLID, P_U + 1},    {"sxx_Pa", HAS_SOLID, P_SIG},
+                       {"syy_Pa", HAS_SOLID, P_SIG + 1}, {"szz_Pa", HAS_SOLID, P_SIG + 2},
+                       {"sxy_Pa", HAS_SOLID, P_SIG + 3}, {"x_m", HAS_ALL, P_X},
+                       {"y_m", HAS_ALL, P_X + 1}};
 
 /* Moments of the weights about the probe: sum of w, w d_i, w d_i d_j. */
 enum { M_1 = 0, M_X, M_Y, M_XX, M_XY, M_YY, M_COUNT };
@@ -23,8 +34,10 @@ void ProbesHeader(const Case *c, FILE *f)
 {
   fprintf(f, "time_s");
   for (PetscInt k = 0; k < c->nprobe; k++) {
-    for (int q = 0; q < Q_COUNT; q++)
-      fprintf(f, ",%s.%s", c->probe[k].name, column[q]);
+    for (int q = 0; q < Q_COUNT; q++) {
+      if (c->fields.has & quantity[q].has)
+        fprintf(f, ",%s.%s", c->probe[k].name, quantity[q].name);
+    }
   }
   fprintf(f, "\n");
 }
@@ -47,7 +60,7 @@ static double Weight(const Fit *f, const Particles *P, PetscInt p, double d[CL_D
   double w = 1.0;
 
   for (int i = 0; i < CL_DIM; i++) {
-    const double x = f->fixed ? P->f[P_X + i][p] : P->f[P_X + i][p] - P->f[P_U + i][p];
+    const double x = f->fixed ? P->f[P_X + i][p] : ParticleInitialX(P, p, i);
 
     d[i] = (x - f->x[i]) / f->reach[i];
     w *= fmax(0.0, 1.0 - fabs(d[i]));
@@ -97,38 +110,27 @@ static void Solve(Fit *f, const double M[M_COUNT])
   }
 }
 
-static void Quantities(const Particles *P, PetscInt p, double q[Q_COUNT])
+static double Quantity(const Particles *P, PetscInt p, int q)
 {
-  q[Q_P]   = MeanPressure(P, p);
-  q[Q_PW]  = P->f[P_PW][p];
-  q[Q_PG]  = P->f[P_PG][p];
-  q[Q_T]   = P->f[P_T][p];
-  q[Q_SH]  = P->f[P_SH][p];
-  q[Q_SW]  = P->f[P_SW][p];
-  q[Q_SG]  = GasSaturation(P, p);
-  q[Q_UX]  = P->f[P_U][p];
-  q[Q_UY]  = P->f[P_U + 1][p];
-  q[Q_SXX] = P->f[P_SIG][p];
-  q[Q_SYY] = P->f[P_SIG + 1][p];
-  q[Q_SZZ] = P->f[P_SIG + 2][p];
-  q[Q_SXY] = P->f[P_SIG + 3][p];
-  q[Q_X]   = P->f[P_X][p];
-  q[Q_Y]   = P->f[P_X + 1][p];
+  if (quantity[q].component >= 0)
+    return P->f[quantity[q].component][p];
+  return q == Q_P ? MeanPressure(P, p) : GasSaturation(P, p);
 }
 
 static void AddValues(const Fit *f, const Particles *P, double value[Q_COUNT])
 {
   for (PetscInt p = 0; p < P->n; p++) {
-    double       d[CL_DIM], q[Q_COUNT];
+    double       d[CL_DIM];
     const double w = Weight(f, P, p, d);
 
     if (w == 0.0)
       continue;
     const double share = w / f->total * (1.0 - f->g[0] * (d[0] - f->mean[0]) - f->g[1] * (d[1] - f->mean[1]));
 
-    Quantities(P, p, q);
-    for (int k = 0; k < Q_COUNT; k++)
-      value[k] += share * q[k];
+    for (int q = 0; q < Q_COUNT; q++) {
+      if (P->has & quantity[q].has)
+        value[q] += share * Quantity(P, p, q);
+    }
   }
 }
 
@@ -162,12 +164,14 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteRow(FILE *f, double t, const Fit *fit, PetscInt n, const double *value)
+static PetscErrorCode WriteRow(FILE *f, unsigned has, double t, const Fit *fit, PetscInt n, const double *value)
 {
   PetscFunctionBeginUser;
   fprintf(f, "%.12e", t);
   for (PetscInt k = 0; k < n; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
+      if (!(has & quantity[q].has))
+        continue;
       if (fit[k].total > 0.0)
         fprintf(f, ",%.12e", value[k * Q_COUNT + q]);
       else
@@ -194,7 +198,7 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
     AddValues(&fit[k], &m->P, value + k * Q_COUNT);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * Q_COUNT), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out->probes, s->t, fit, n, value);
+    ierr = WriteRow(out->probes, m->P.has, s->t, fit, n, value);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscCall(PetscFree(fit));
   PetscCall(PetscFree(value));

@@ -56,6 +56,8 @@ static PetscErrorCode LoadReals(hid_t group, Loaded *L)
   for (const ParticleVariable *v = cl_particle_variable; v->name && !L->why[0]; v++) {
     const hsize_t dims[2] = {(hsize_t)n, (hsize_t)v->nc};
 
+    if (!ParticlesHold(&L->P, v))
+      continue;
     if (!H5Read(group, v->name, H5T_NATIVE_DOUBLE, v->nc > 1 ? 2 : 1, dims, data)) {
       snprintf(L->why, sizeof(L->why), "/particles/%s is missing or of wrong size", v->name);
     } else if (!Finite(data, n * v->nc)) {
@@ -211,6 +213,8 @@ static PetscErrorCode Deal(const Grid *g, const Loaded *L, Particles *P)
   PetscCallMPI(MPI_Scatter(count, 1, MPI_INT, &n, 1, MPI_INT, 0, g->comm));
   PetscCall(ParticlesResize(P, n));
   for (int k = 0; k < P_COUNT; k++) {
+    if (!P->f[k])
+      continue;
     for (PetscInt p = 0; p < total; p++)
       real[p] = L->P.f[k][card[p].p];
     PetscCallMPI(MPI_Scatterv(real, count, start, MPI_DOUBLE, P->f[k], n, MPI_DOUBLE, 0, g->comm));
@@ -232,7 +236,7 @@ PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, bool 
   int         good = 1;
 
   PetscFunctionBeginUser;
-  PetscCall(ParticlesCreate(&L.P));
+  PetscCall(ParticlesCreate(m->c->fields.has, &L.P));
   if (g->rank == 0) {
     PetscCall(Load(m, path, &L));
     good = L.why[0] == '\0';
@@ -244,7 +248,7 @@ PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, bool 
   if (good) {
     Particles P;
 
-    PetscCall(ParticlesCreate(&P));
+    PetscCall(ParticlesCreate(m->c->fields.has, &P));
     PetscCall(Deal(g, &L, &P));
     PetscCallMPI(MPI_Bcast(&L.s, sizeof(L.s), MPI_BYTE, 0, g->comm));
     PetscCall(ParticlesDestroy(&m->P));

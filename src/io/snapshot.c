@@ -16,9 +16,9 @@ const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VSX, 2}, {"v_w", "m/s", F_VWX
                                   {NULL, NULL, 0, 0}};
 
 enum { X_P = 0, X_SG, X_REGION, X_ID, X_VERTEX };
-const ExtraVariable io_extra[] = {
-    [X_P] = {"p", "Pa", false}, [X_SG] = {"S_g", "-", false},       [X_REGION] = {"region", "-", true},
-    [X_ID] = {"id", "-", true}, [X_VERTEX] = {"vertex", "-", true}, {NULL, NULL, false}};
+const ExtraVariable io_extra[] = {[X_P] = {"p", "Pa", false, HAS_WATER},       [X_SG] = {"S_g", "-", false, HAS_GAS},
+                                  [X_REGION] = {"region", "-", true, HAS_ALL}, [X_ID] = {"id", "-", true, HAS_ALL},
+                                  [X_VERTEX] = {"vertex", "-", true, HAS_ALL}, {NULL, NULL, false, 0}};
 
 /* ---------------------------------------------------------------- start and restart, rank 0 */
 static PetscErrorCode Remember(Output *out, const SnapshotEntry *entry)
@@ -182,6 +182,8 @@ static PetscErrorCode WriteVariables(Writer *w, const Model *m, Gather *g)
   for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
     const hsize_t dims[2] = {(hsize_t)g->total, (hsize_t)v->nc};
 
+    if (!ParticlesHold(P, v))
+      continue;
     for (int c = 0; c < v->nc; c++)
       PetscCall(GatherReals(g, P->f[v->first + c], v->nc, w->data + (g->rank == 0 ? c : 0)));
     if (g->rank == 0 && !w->ierr) {
@@ -203,6 +205,8 @@ static PetscErrorCode WriteExtra(Writer *w, const Model *m, Gather *g)
   for (int k = 0; io_extra[k].name; k++) {
     const ExtraVariable *v = &io_extra[k];
 
+    if (!(P->has & v->has))
+      continue;
     for (PetscInt p = 0; p < P->n && !v->integer; p++)
       local[p] = k == X_P ? MeanPressure(P, p) : GasSaturation(P, p);
     if (!v->integer)
@@ -224,6 +228,7 @@ static PetscErrorCode WriteExtra(Writer *w, const Model *m, Gather *g)
 static PetscErrorCode GatherNodes(const Model *m, PetscInt *n, PetscInt **place, double **x)
 {
   const Grid       *g     = &m->grid;
+  const PetscMPIInt nf    = m->c->fields.n;
   const PetscMPIInt owned = m->x_n ? (PetscMPIInt)m->map.n_owned : 0;
   PetscMPIInt      *count, *start;
   PetscInt         *mine;
@@ -239,19 +244,19 @@ static PetscErrorCode GatherNodes(const Model *m, PetscInt *n, PetscInt **place,
     *n += count[r];
   }
   PetscCall(PetscMalloc1(g->rank == 0 ? *n : 0, place));
-  PetscCall(PetscMalloc1(g->rank == 0 ? *n * F_COUNT : 0, x));
+  PetscCall(PetscMalloc1(g->rank == 0 ? *n * nf : 0, x));
   PetscCallMPI(MPI_Gatherv(mine, owned, MPIU_INT, *place, count, start, MPIU_INT, 0, g->comm));
   for (PetscMPIInt r = 0; r < g->size; r++) {
-    start[r] *= F_COUNT;
-    count[r] *= F_COUNT;
+    start[r] *= nf;
+    count[r] *= nf;
   }
-  PetscCallMPI(MPI_Gatherv(m->x_n, owned * F_COUNT, MPI_DOUBLE, *x, count, start, MPI_DOUBLE, 0, g->comm));
+  PetscCallMPI(MPI_Gatherv(m->x_n, owned * nf, MPI_DOUBLE, *x, count, start, MPI_DOUBLE, 0, g->comm));
   PetscCall(PetscFree3(count, start, mine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteNodes(Writer *w, const Grid *g, const StepperState *s, PetscInt n, const PetscInt *place,
-                                 const double *x)
+static PetscErrorCode WriteNodes(Writer *w, const Grid *g, const FieldSet *fs, const StepperState *s, PetscInt n,
+                                 const PetscInt *place, const double *x)
 {
   const hsize_t  rows = (hsize_t)g->cells[1] + 1, columns = (hsize_t)g->cells[0] + 1;
   const PetscInt nodes = (PetscInt)(rows * columns);
@@ -264,11 +269,13 @@ static PetscErrorCode WriteNodes(Writer *w, const Grid *g, const StepperState *s
   for (const NodalVariable *v = io_nodal; v->name; v++) {
     const hsize_t dims[3] = {rows, columns, (hsize_t)v->nc};
 
+    if (fs->at[v->first] < 0)
+      continue;
     for (PetscInt k = 0; k < nodes * v->nc; k++)
       full[k] = NAN;
     for (PetscInt k = 0; k < n; k++) {
       for (int c = 0; c < v->nc; c++)
-        full[place[k] * v->nc + c] = x[k * F_COUNT + v->first + c];
+        full[place[k] * v->nc + c] = x[k * fs->n + fs->at[v->first] + c];
     }
     PetscCall(H5Write(w->group, v->name, H5T_NATIVE_DOUBLE, v->nc > 1 ? 3 : 2, dims, full, v->unit, true));
   }
@@ -309,7 +316,7 @@ PetscErrorCode OutputSnapshot(Output *out, const Model *m, const StepperState *s
     const SnapshotEntry entry = {.number = s->next_snapshot, .n = g.total, .t = s->t, .grid = nodes > 0};
 
     if (!w.ierr && nodes > 0)
-      w.ierr = WriteNodes(&w, grid, s, nodes, place, x);
+      w.ierr = WriteNodes(&w, grid, &m->c->fields, s, nodes, place, x);
     if (!w.ierr)
       w.ierr = Finish(&w, out, grid, &entry);
   }

@@ -27,7 +27,7 @@ static void Attribute(FILE *f, const char *points, int nc, bool integer, const c
   fprintf(f, "</Attribute>\n");
 }
 
-static void ParticleGrid(FILE *f, const SnapshotEntry *e)
+static void ParticleGrid(FILE *f, const FieldSet *fs, const SnapshotEntry *e)
 {
   char n[32], n2[48];
 
@@ -41,17 +41,17 @@ static void ParticleGrid(FILE *f, const SnapshotEntry *e)
   Item(f, n2, false, "particles", e->number, "position");
   fprintf(f, "</Geometry>\n");
   for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
-    if (v->first != P_X)
+    if (v->first != P_X && (fs->has & v->has))
       Attribute(f, n, v->nc, false, "particles", e->number, v->name);
   }
   for (const ExtraVariable *v = io_extra; v->name; v++) {
-    if (strcmp(v->name, "vertex"))
+    if (strcmp(v->name, "vertex") && (fs->has & v->has))
       Attribute(f, n, 1, v->integer, "particles", e->number, v->name);
   }
   fprintf(f, "      </Grid>\n");
 }
 
-static void NodeGrid(FILE *f, const Grid *g, const SnapshotEntry *e)
+static void NodeGrid(FILE *f, const FieldSet *fs, const Grid *g, const SnapshotEntry *e)
 {
   char n[64];
 
@@ -66,8 +66,10 @@ static void NodeGrid(FILE *f, const Grid *g, const SnapshotEntry *e)
           "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">1 %.17g "
           "%.17g</DataItem></Geometry>\n",
           g->h[1], g->h[0]);
-  for (const NodalVariable *v = io_nodal; v->name; v++)
-    Attribute(f, n, v->nc, false, "grid", e->number, v->name);
+  for (const NodalVariable *v = io_nodal; v->name; v++) {
+    if (fs->at[v->first] >= 0)
+      Attribute(f, n, v->nc, false, "grid", e->number, v->name);
+  }
   fprintf(f, "      </Grid>\n");
 }
 
@@ -78,7 +80,7 @@ static void Collections(FILE *f, const Output *out, const Grid *g)
   fprintf(f, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n");
   fprintf(f, "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
   for (PetscInt k = 0; k < out->nsnapshot; k++) {
-    ParticleGrid(f, &out->snapshot[k]);
+    ParticleGrid(f, &out->fields, &out->snapshot[k]);
     any = any || out->snapshot[k].grid;
   }
   fprintf(f, "    </Grid>\n");
@@ -86,7 +88,7 @@ static void Collections(FILE *f, const Output *out, const Grid *g)
     fprintf(f, "    <Grid Name=\"grid\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
     for (PetscInt k = 0; k < out->nsnapshot; k++) {
       if (out->snapshot[k].grid)
-        NodeGrid(f, g, &out->snapshot[k]);
+        NodeGrid(f, &out->fields, g, &out->snapshot[k]);
     }
     fprintf(f, "    </Grid>\n");
   }

@@ -3,27 +3,33 @@
 
 #define MAX_MOVE 0.5 /* cells per step */
 
-static void Displacement(const Model *m, const Reach *r, const double *x, double u[CL_DIM])
+static void Displacement(const Model *m, PetscInt p, const Reach *r, const double *x, double u[CL_DIM])
 {
+  const FieldSet *fs = &m->c->fields;
+
   for (int d = 0; d < CL_DIM; d++) {
     u[d] = 0.0;
-    for (int a = 0; a < r->n; a++) {
+    for (int a = 0; fs->solid && a < r->n; a++) {
       const PetscInt I = r->node[a];
 
-      u[d] += r->S[a] * (m->stage.u_star[I * CL_DIM + d] + m->stage.dt * x[I * F_COUNT + F_VSX + d]);
+      u[d] +=
+          MotionWeight(m, p, r, a) * (m->stage.u_star[I * CL_DIM + d] + m->stage.dt * x[I * fs->n + PlaceVs(fs) + d]);
     }
   }
 }
 
 static void Velocity(const Model *m, PetscInt p, const double *x, double v[CL_DIM])
 {
-  Reach r;
+  const FieldSet *fs = &m->c->fields;
+  Reach           r;
 
+  v[0] = v[1] = 0.0;
+  if (!fs->solid)
+    return;
   ReachExpand(m, p, &r);
-  for (int d = 0; d < CL_DIM; d++) {
-    v[d] = 0.0;
-    for (int a = 0; a < r.n; a++)
-      v[d] += r.S[a] * x[r.node[a] * F_COUNT + F_VSX + d];
+  for (int a = 0; a < r.n; a++) {
+    for (int d = 0; d < CL_DIM; d++)
+      v[d] += r.S[a] * x[r.node[a] * fs->n + PlaceVs(fs) + d];
   }
 }
 
@@ -64,8 +70,12 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
 /* (28): what is left in the mass rows goes back to the particles, to be found again in the next step. */
 static PetscErrorCode KeepBalance(Model *m, double *masses)
 {
+  const FieldSet *fs = &m->c->fields;
+
   PetscFunctionBeginUser;
-  PetscCall(NodeMapBroadcast(&m->map, m->f, F_COUNT));
+  if (!fs->fluid)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NodeMapBroadcast(&m->map, m->f, fs->n));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach r;
 
@@ -73,11 +83,25 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
     for (int a = 0; a < r.n; a++) {
       const double share = r.S[a] * m->P.f[P_V][p] / m->V[r.node[a]];
 
-      for (int ph = 0; ph < PHASE_COUNT; ph++)
-        masses[3 * p + 1 + ph] -= share * m->f[r.node[a] * F_COUNT + F_PW + ph];
+      for (int ph = 0; ph < PHASE_COUNT; ph++) {
+        if (fs->phase[ph])
+          masses[3 * p + 1 + ph] -= share * m->f[r.node[a] * fs->n + PlaceP(fs, ph)];
+      }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void HeatRates(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], StageRates *rates)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  rates->heat_source -= out[OUT_Q];
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
+
+    rates->heat_rate += r->S[a] * out[OUT_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt;
+  }
 }
 
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
@@ -93,20 +117,16 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
 
     if (ParticleEvaluate(m, p, x, false, &r, in, &s, &o) != CL_OK)
       continue;
-    Displacement(m, &r, x, &trial->u[2 * p]);
+    Displacement(m, p, &r, x, &trial->u[2 * p]);
     Velocity(m, p, x, &trial->v[2 * p]);
     CheckMotion(m, p, &trial->u[2 * p]);
     for (int k = 0; k < 3; k++)
       trial->m[3 * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
     for (int k = 0; k < 3; k++)
-      trial->y[4 * p + k] = in[IN_P + k];
+      trial->y[4 * p + k] = m->c->fields.at[F_PW + k] < 0 ? 0.0 : in[IN_P + k];
     trial->y[4 * p + 3] = s.Sh;
-    rates->heat_source -= o.out[OUT_Q];
-    for (int a = 0; a < r.n; a++) {
-      const PetscInt k = r.node[a] * F_COUNT + F_T;
-
-      rates->heat_rate += r.S[a] * o.out[OUT_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt;
-    }
+    if (m->c->fields.heat)
+      HeatRates(m, &r, x, o.out, rates);
   }
   PetscCall(KeepBalance(m, trial->m));
   BoundaryRates(m, x, rates);
@@ -116,44 +136,67 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
-                         const PointState *s)
+/* Position, size, stress. */
+static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, const PointState *s)
 {
   double *const *f = m->P.f;
   double         u[CL_DIM];
 
-  Displacement(m, r, x, u);
+  Displacement(m, p, r, x, u);
   for (int d = 0; d < CL_DIM; d++) {
     f[P_X + d][p] += u[d];
     f[P_U + d][p] += u[d];
     if (m->c->basis == BASIS_CPGIMP)
       f[P_L + d][p] = fmin(f[P_L + d][p] * s->stretch[d], 0.5 * m->grid.h[d]);
-    f[P_GW + d][p] = in[IN_GP + d];
-    f[P_GG + d][p] = in[IN_GP + 2 + d];
-    f[P_GT + d][p] = in[IN_GT + d];
   }
   f[P_LOGJ][p] += log(s->V / f[P_V][p]);
-  f[P_V][p]   = s->V;
-  f[P_MH][p]  = s->m_h;
-  f[P_MW][p]  = s->m_w;
-  f[P_MG][p]  = s->m_g;
-  f[P_PW][p]  = in[IN_P];
-  f[P_PG][p]  = in[IN_P + 1];
-  f[P_T][p]   = in[IN_T];
-  f[P_SH][p]  = s->Sh;
-  f[P_SW][p]  = s->Sw;
-  f[P_PHI][p] = s->phi;
+  f[P_V][p] = s->V;
   for (int c = 0; c < 6; c++) {
     f[P_SIG + c][p]  = s->sig[c];
     f[P_SIG0 + c][p] = s->sig0[c];
   }
-  for (int q = 0; q < 6; q++) { /* FLIP: velocities of skeleton, water, gas */
-    for (int a = 0; a < r->n; a++) {
-      const PetscInt k = r->node[a] * F_COUNT + F_VSX + q;
+}
 
-      f[P_VS + q][p] += r->S[a] * (x[k] - m->x_n[k]);
+/* FLIP: velocities of skeleton, water, gas. */
+static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int q = F_VSX; q < F_PW; q++) {
+    for (int a = 0; fs->at[q] >= 0 && a < r->n; a++) {
+      const PetscInt k = r->node[a] * fs->n + fs->at[q];
+
+      m->P.f[P_VS + q][p] += r->S[a] * (x[k] - m->x_n[k]);
     }
   }
+}
+
+static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
+                         const PointState *s)
+{
+  static const int gradient[3] = {P_GW, P_GG, P_GT};
+  const FieldSet  *fs          = &m->c->fields;
+  double *const   *f           = m->P.f;
+
+  if (fs->solid)
+    WriteMotion(m, p, x, r, s);
+  WriteVelocities(m, p, x, r);
+  for (int k = 0; k < 3; k++) { /* p_w, p_g, T */
+    if (fs->at[F_PW + k] < 0)
+      continue;
+    f[P_PW + k][p] = in[IN_P + k];
+    for (int d = 0; d < CL_DIM; d++)
+      f[gradient[k] + d][p] = in[(k < 2 ? IN_GP + 2 * k : IN_GT) + d];
+  }
+  f[P_MH][p]  = s->m_h;
+  f[P_SH][p]  = s->Sh;
+  f[P_PHI][p] = s->phi;
+  if (fs->phase[PHASE_W]) {
+    f[P_MW][p] = s->m_w;
+    f[P_SW][p] = s->Sw;
+  }
+  if (fs->phase[PHASE_G])
+    f[P_MG][p] = s->m_g;
 }
 
 PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates)
@@ -170,7 +213,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
 
     PetscCheck(ParticleEvaluate(m, p, x, false, &r, in, &s, &o) == CL_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB,
                "an accepted state is not admissible");
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; m->P.f[P_RATE] && k < 4; k++)
       m->P.f[P_RATE + k][p] = rates[4 * p + k];
     s.m_w = trial->m[3 * p + 1];
     s.m_g = trial->m[3 * p + 2];

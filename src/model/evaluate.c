@@ -10,7 +10,7 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   ReachExpand(m, p, r);
   GatherInputs(m, p, r, x, NULL, in);
   GatherHistory(m, p, r, &h);
-  const ClStatus status = PointEvaluate(ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
+  const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
   if (status != CL_OK)
     NoteFailure(m, status, why, p);
   return status;
@@ -25,8 +25,8 @@ static void InitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUN
 
   for (int d = 0; r->hydrostatic && d < CL_DIM; d++)
     weight += ParticleMaterial(m, p)->water.rho0 * m->c->gravity[d] * face->r[d];
-  p0[PHASE_W] = m->P.f[P_PW0][p] + weight;
-  p0[PHASE_G] = m->P.f[P_PG0][p] + weight;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    p0[f] = m->c->fields.phase[f] ? m->P.f[P_PW0 + f][p] + weight : 0.0;
 }
 
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o)

@@ -3,16 +3,22 @@
 
 #include "clathra/model.h"
 
-/* A particle's nodes with their values. */
+/* A particle's nodes with their values; H only about an axis. */
 typedef struct {
   int      n;
   PetscInt node[CL_NODES];
-  double   S[CL_NODES], G[CL_NODES][CL_DIM];
+  double   S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
 } Reach;
 
 static inline void ReachExpand(const Model *m, PetscInt p, Reach *r)
 {
-  r->n = StencilExpand(&m->stencil[p], &m->grid, &m->map, r->node, r->S, r->G);
+  r->n = StencilExpand(&m->stencil[p], &m->grid, &m->map, r->node, r->S, r->G, r->H);
+}
+
+/* Weights that carry the particle's middle along: S in the plane, the plain average about an axis. */
+static inline double MotionWeight(const Model *m, PetscInt p, const Reach *r, int a)
+{
+  return m->c->axisymmetric ? r->H[a] * m->stencil[p].r : r->S[a];
 }
 
 static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
@@ -20,61 +26,147 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
   return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
 }
 
+/* Temperature of a particle at t_n; without a field of its own it is the region's. */
+static inline double ParticleT(const Model *m, PetscInt p)
+{
+  return m->c->fields.heat ? m->P.f[P_T][p] : m->c->region[m->P.i[PI_REGION][p]].temperature;
+}
+
+/* Properties of a particle at t_n. */
+static inline ClStatus ParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0, pg = fs->phase[PHASE_G] ? m->P.f[P_PG][p] : 0.0;
+
+  return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
+                                 ParticleT(m, p), q, why);
+}
+
+/* Volume of a full cell about a node, m^3. */
+static inline double NodeVolume(const Model *m, PetscInt I)
+{
+  const double h0 = m->grid.h[0], r = m->grid.lower[0] + (double)m->map.ij[I][0] * h0;
+
+  return h0 * m->grid.h[1] * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
+}
+
+static inline void GatherSolid(const Model *m, const Reach *r, const double *x, double in[IN_COUNT])
+{
+  const int n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
+
+  for (int a = 0; a < r->n; a++) {
+    const double *v = &x[r->node[a] * n + vs], *us = &m->stage.u_star[r->node[a] * CL_DIM], *G = r->G[a];
+    const double  u[2] = {us[0] + m->stage.dt * v[0], us[1] + m->stage.dt * v[1]};
+
+    for (int i = 0; i < 2; i++) {
+      in[IN_GRADU + 2 * i] += u[i] * G[0];
+      in[IN_GRADU + 2 * i + 1] += u[i] * G[1];
+    }
+    if (m->c->axisymmetric)
+      in[IN_HOOP] += u[0] * r->H[a];
+  }
+}
+
+/* Darcy flux of a fluid at a node (19). */
+static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI, double J[2])
+{
+  const FieldSet *fs = &m->c->fields;
+  const double    w = m->w[2 * I + f], *v = &xI[PlaceV(fs, f)];
+
+  for (int i = 0; i < 2; i++)
+    J[i] = w * (fs->solid ? v[i] - xI[PlaceVs(fs) + i] : v[i]);
+}
+
+/* Acceleration less gravity of the velocity at place k of a node's block; quasi-static: only gravity. */
+static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double acc[2])
+{
+  const PetscInt q = I * m->c->fields.n + k;
+
+  for (int i = 0; i < 2; i++)
+    acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->c->gravity[i];
+}
+
+static inline void GatherFluid(const Model *m, int f, const Reach *r, const double *x, const double *N,
+                               double in[IN_COUNT])
+{
+  const int n = m->c->fields.n, at = PlaceP(&m->c->fields, f);
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt I = r->node[a];
+    const double   p = x[I * n + at], SJ = N ? N[a] : r->S[a];
+    double         J[2];
+
+    DarcyFlux(m, I, f, &x[I * n], J);
+    in[IN_P + f] += r->S[a] * (p - m->x_n[I * n + at]);
+    for (int i = 0; i < 2; i++) {
+      in[IN_GP + 2 * f + i] += r->G[a][i] * p;
+      in[IN_J + 2 * f + i] += SJ * J[i];
+    }
+  }
+}
+
 /* Inputs (1), (5), (19) of particle p from the nodal values x; N replaces S for the Darcy fluxes (NULL: S). */
 static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, const double *x, const double *N,
                                 double in[IN_COUNT])
 {
+  const FieldSet *fs = &m->c->fields;
+
   for (int q = 0; q < IN_COUNT; q++)
     in[q] = 0.0;
-  in[IN_P]     = m->P.f[P_PW][p];
-  in[IN_P + 1] = m->P.f[P_PG][p];
-  in[IN_T]     = m->P.f[P_T][p];
-  for (int a = 0; a < r->n; a++) {
-    const PetscInt I  = r->node[a];
-    const double  *xI = &x[I * F_COUNT], *xn = &m->x_n[I * F_COUNT], *us = &m->stage.u_star[I * CL_DIM],
-                 *w = &m->w[I * 2];
-    const double S = r->S[a], SJ = N ? N[a] : S, *G = r->G[a];
-
-    for (int i = 0; i < 2; i++) {
-      const double u = us[i] + m->stage.dt * xI[F_VSX + i];
-
-      in[IN_GRADU + 2 * i] += u * G[0];
-      in[IN_GRADU + 2 * i + 1] += u * G[1];
-      in[IN_J + i] += SJ * w[PHASE_W] * (xI[F_VWX + i] - xI[F_VSX + i]);
-      in[IN_J + 2 + i] += SJ * w[PHASE_G] * (xI[F_VGX + i] - xI[F_VSX + i]);
-    }
-    for (int f = 0; f < PHASE_COUNT; f++) {
-      in[IN_P + f] += S * (xI[F_PW + f] - xn[F_PW + f]);
-      in[IN_GP + 2 * f] += G[0] * xI[F_PW + f];
-      in[IN_GP + 2 * f + 1] += G[1] * xI[F_PW + f];
-    }
-    in[IN_T] += S * (xI[F_T] - xn[F_T]);
-    in[IN_GT] += G[0] * xI[F_T];
-    in[IN_GT + 1] += G[1] * xI[F_T];
+  in[IN_T] = ParticleT(m, p);
+  if (fs->solid)
+    GatherSolid(m, r, x, in);
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    in[IN_P + f] = m->P.f[P_PW + f][p];
+    GatherFluid(m, f, r, x, N, in);
   }
+  if (!fs->heat)
+    return;
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
+
+    in[IN_T] += r->S[a] * (x[k] - m->x_n[k]);
+    in[IN_GT] += r->G[a][0] * x[k];
+    in[IN_GT + 1] += r->G[a][1] * x[k];
+  }
+}
+
+/* Nodal less own value at t_n of unknown q = F_PW, F_PG, F_T, held in component P_PW + q - F_PW. */
+static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
+{
+  const FieldSet *fs = &m->c->fields;
+  double          shift;
+
+  if (fs->at[q] < 0)
+    return 0.0;
+  shift = -m->P.f[P_PW + q - F_PW][p];
+  for (int a = 0; a < r->n; a++)
+    shift += r->S[a] * m->x_n[r->node[a] * fs->n + fs->at[q]];
+  return shift;
 }
 
 static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, PointHistory *h)
 {
+  const FieldSet *fs = &m->c->fields;
+
   h->V       = m->P.f[P_V][p];
   h->m_s     = m->P.f[P_MS][p];
-  h->T_n     = m->P.f[P_T][p];
+  h->T_n     = ParticleT(m, p);
   h->Sh_n    = m->P.f[P_SH][p];
   h->dt      = m->stage.dt;
   h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 3; k++) {
     h->m_star[k] = m->stage.m_star[3 * p + k];
-  for (int s = 0; s < 6; s++) {
+    h->shift[k]  = Shift(m, p, r, F_PW + k);
+  }
+  for (int s = 0; fs->solid && s < 6; s++) {
     h->sig[s]  = m->P.f[P_SIG + s][p];
     h->sig0[s] = m->P.f[P_SIG0 + s][p];
   }
-  for (int k = 0; k < 3; k++) {
-    h->shift[k] = -m->P.f[P_PW + k][p];
-    for (int a = 0; a < r->n; a++)
-      h->shift[k] += r->S[a] * m->x_n[r->node[a] * F_COUNT + F_PW + k];
-  }
   for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; fs->phase[f] && i < 2; i++) {
       h->proj[f][i] = 0.0;
       for (int a = 0; a < r->n; a++)
         h->proj[f][i] += r->S[a] * m->proj[4 * r->node[a] + 2 * f + i];
@@ -106,7 +198,8 @@ PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);
 PetscErrorCode StabilisationJacobian(Model *m);
-/* Adds an n-node block (n F_COUNT square, row major, unscaled) to J2, with scales and Dirichlet rows. */
+/* Adds an n-node block (n times the set's unknowns square, row major, unscaled) to J2, with scales and Dirichlet rows.
+ */
 PetscErrorCode JacobianAdd(Model *m, int n, const PetscInt *node, double *block);
 PetscErrorCode WideCreate(Model *m, Mat *A);
 PetscErrorCode ModelResizeNodal(Model *m);

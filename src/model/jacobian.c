@@ -1,22 +1,40 @@
 /* The assembled part J2 of the Jacobian: block of one particle, block of one face. */
 #include "gather.h"
 
-/* d out/d(nine unknowns of one node): column K of D B_in; NS replaces S for the Darcy fluxes. */
-static void Columns(const double *D, double dt, double S, double NS, const double *G, const double *w,
-                    double col[F_COUNT])
+/* One node as a particle or face sees it; NS replaces S for the Darcy fluxes. */
+typedef struct {
+  double        S, NS, H;
+  const double *G, *w;
+} NodeWeights;
+
+/* d out/d(unknowns of one node): one row of D times d in/d x. */
+static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, const double *D, const NodeWeights *b,
+                           double *col)
 {
-  const double g0 = dt * G[0], g1 = dt * G[1], cw = NS * w[PHASE_W], cg = NS * w[PHASE_G];
+  const double *G = b->G;
 
-  for (int i = 0; i < 2; i++) {
-    const double jw = D[IN_J + i] * cw, jg = D[IN_J + 2 + i] * cg;
+  if (fs->solid) {
+    const int vs = PlaceVs(fs);
 
-    col[F_VSX + i] = D[2 * i] * g0 + D[2 * i + 1] * g1 - jw - jg;
-    col[F_VWX + i] = jw;
-    col[F_VGX + i] = jg;
+    for (int i = 0; i < 2; i++)
+      col[vs + i] = dt * (D[IN_GRADU + 2 * i] * G[0] + D[IN_GRADU + 2 * i + 1] * G[1]);
+    if (axisymmetric)
+      col[vs] += dt * D[IN_HOOP] * b->H;
   }
-  for (int f = 0; f < PHASE_COUNT; f++)
-    col[F_PW + f] = D[IN_P + f] * S + D[IN_GP + 2 * f] * G[0] + D[IN_GP + 2 * f + 1] * G[1];
-  col[F_T] = D[IN_T] * S + D[IN_GT] * G[0] + D[IN_GT + 1] * G[1];
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    for (int i = 0; i < 2; i++) {
+      const double J = D[IN_J + 2 * f + i] * b->NS * b->w[f];
+
+      col[PlaceV(fs, f) + i] = J;
+      if (fs->solid)
+        col[PlaceVs(fs) + i] -= J;
+    }
+    col[PlaceP(fs, f)] = D[IN_P + f] * b->S + D[IN_GP + 2 * f] * G[0] + D[IN_GP + 2 * f + 1] * G[1];
+  }
+  if (fs->heat)
+    col[PlaceT(fs)] = D[IN_T] * b->S + D[IN_GT] * G[0] + D[IN_GT + 1] * G[1];
 }
 
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate. */
@@ -26,119 +44,210 @@ typedef struct {
 
 static void Factors(const Model *m, PetscInt I, const double *x, NodeFactors *n)
 {
-  const double *xI = &x[I * F_COUNT], *xs = &m->stage.x_star[I * F_COUNT];
+  const FieldSet *fs = &m->c->fields;
 
-  for (int i = 0; i < 2; i++) {
-    for (int k = 0; k < 3; k++)
-      n->acc[k][i] = (xI[F_VSX + 2 * k + i] - xs[F_VSX + 2 * k + i]) / m->stage.dt - m->c->gravity[i];
-    for (int f = 0; f < PHASE_COUNT; f++)
-      n->J[f][i] = m->w[2 * I + f] * (xI[F_VWX + 2 * f + i] - xI[F_VSX + i]);
+  if (fs->solid)
+    Acceleration(m, I, x, PlaceVs(fs), n->acc[0]);
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    Acceleration(m, I, x, PlaceV(fs, f), n->acc[1 + f]);
+    DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
   }
-  n->Tdot = (xI[F_T] - xs[F_T]) / m->stage.dt;
+  if (fs->heat) {
+    const PetscInt k = I * fs->n + PlaceT(fs);
+
+    n->Tdot = (x[k] - m->stage.x_star[k]) / m->stage.dt;
+  }
 }
 
-/* Nine rows of node a against the columns DB of node b (b's block starts at *out, row length ld). */
-static void Rows(const NodeFactors *n, double dt, double S, const double *G, double DB[OUT_COUNT][F_COUNT], double *out,
-                 int ld)
+/* Rows of node a against the columns DB of node b (b's block starts at *out, row length ld). */
+static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const NodeFactors *k, double dt, double S,
+                        const double *G, double H, double DB[OUT_COUNT][F_COUNT], double *out, int ld)
 {
-  for (int q = 0; q < F_COUNT; q++) {
-    for (int i = 0; i < 2; i++) {
-      out[(F_VSX + i) * ld + q] =
-          G[0] * DB[OUT_P + 2 * i][q] + G[1] * DB[OUT_P + 2 * i + 1][q] +
-          S * (n->acc[0][i] * DB[OUT_M][q] + n->acc[1][i] * DB[OUT_M + 1][q] + n->acc[2][i] * DB[OUT_M + 2][q]);
-      for (int f = 0; f < PHASE_COUNT; f++) {
-        out[(F_VWX + 2 * f + i) * ld + q] = S * (n->acc[1 + f][i] * DB[OUT_MI + f][q] + n->J[f][i] * DB[OUT_D + f][q]) -
-                                            G[0] * DB[OUT_PF + 4 * f + 2 * i][q] -
-                                            G[1] * DB[OUT_PF + 4 * f + 2 * i + 1][q];
-      }
-    }
+  for (int i = 0; fs->solid && i < 2; i++) {
+    double *row = &out[(PlaceVs(fs) + i) * ld];
+
+    for (int q = 0; q < n; q++)
+      row[q] = G[0] * DB[OUT_P + 2 * i][q] + G[1] * DB[OUT_P + 2 * i + 1][q] + S * k->acc[0][i] * DB[OUT_M][q];
     for (int f = 0; f < PHASE_COUNT; f++) {
-      out[(F_PW + f) * ld + q] =
-          S * DB[OUT_DM + f][q] - dt * (G[0] * DB[OUT_FLUX + 2 * f][q] + G[1] * DB[OUT_FLUX + 2 * f + 1][q]);
+      for (int q = 0; fs->phase[f] && q < n; q++)
+        row[q] += S * k->acc[1 + f][i] * DB[OUT_M + 1 + f][q];
     }
-    out[F_T * ld + q] =
-        S * (n->Tdot * DB[OUT_C][q] + DB[OUT_Q][q]) + G[0] * DB[OUT_HEAT][q] + G[1] * DB[OUT_HEAT + 1][q];
+    for (int q = 0; axisymmetric && i == 0 && q < n; q++)
+      row[q] += H * DB[OUT_HOOP][q];
+  }
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    for (int i = 0; i < 2; i++) {
+      double *row = &out[(PlaceV(fs, f) + i) * ld];
+
+      for (int q = 0; q < n; q++)
+        row[q] = S * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + k->J[f][i] * DB[OUT_D + f][q]) -
+                 G[0] * DB[OUT_PF + 4 * f + 2 * i][q] - G[1] * DB[OUT_PF + 4 * f + 2 * i + 1][q];
+      for (int q = 0; axisymmetric && i == 0 && q < n; q++)
+        row[q] -= H * DB[OUT_HOOPF + f][q];
+    }
+    double *row = &out[PlaceP(fs, f) * ld];
+    for (int q = 0; q < n; q++)
+      row[q] = S * DB[OUT_DM + f][q] - dt * (G[0] * DB[OUT_FLUX + 2 * f][q] + G[1] * DB[OUT_FLUX + 2 * f + 1][q]);
+  }
+  if (fs->heat) {
+    double *row = &out[PlaceT(fs) * ld];
+
+    for (int q = 0; q < n; q++)
+      row[q] = S * (k->Tdot * DB[OUT_C][q] + DB[OUT_Q][q]) + G[0] * DB[OUT_HEAT][q] + G[1] * DB[OUT_HEAT + 1][q];
   }
 }
 
 /* The lumped terms couple a node only with itself. */
-static void Diagonal(const double out[OUT_COUNT], double dt, double S, const double *w, double *block, int ld)
+static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], double dt, double S, const double *w,
+                     double *block, int ld)
 {
+  const double inertia = fs->inertia ? S / dt : 0.0;
+
   for (int i = 0; i < 2; i++) {
-    for (int k = 0; k < 3; k++)
-      block[(F_VSX + i) * ld + F_VSX + 2 * k + i] += S * out[OUT_M + k] / dt;
+    const int vs = PlaceVs(fs) + i;
+
+    if (fs->solid)
+      block[vs * ld + vs] += inertia * out[OUT_M];
     for (int f = 0; f < PHASE_COUNT; f++) {
-      const int    row  = F_VWX + 2 * f + i;
+      const int    v    = PlaceV(fs, f) + i;
       const double drag = S * out[OUT_D + f] * w[f];
 
-      block[row * ld + row] += S * out[OUT_MI + f] / dt + drag;
-      block[row * ld + F_VSX + i] -= drag;
+      if (!fs->phase[f])
+        continue;
+      block[v * ld + v] += inertia * out[OUT_MI + f] + drag;
+      if (!fs->solid)
+        continue;
+      block[v * ld + vs] -= drag;
+      block[vs * ld + v] += inertia * out[OUT_M + 1 + f];
     }
   }
-  block[F_T * ld + F_T] += S * out[OUT_C] / dt;
+  if (fs->heat)
+    block[PlaceT(fs) * ld + PlaceT(fs)] += S * out[OUT_C] / dt;
 }
 
-static void ParticleBlock(const Model *m, const Reach *r, const double *x, const PointOutput *o, double *block)
+/* Outputs that the rows of a field set read. */
+typedef struct {
+  int n, out[OUT_COUNT];
+} Outputs;
+
+static void Add(Outputs *list, int first, int count)
 {
-  const int    ld = r->n * F_COUNT;
-  const double dt = m->stage.dt;
+  for (int k = 0; k < count; k++)
+    list->out[list->n++] = first + k;
+}
+
+static void OutputsOf(const FieldSet *fs, bool axisymmetric, Outputs *list)
+{
+  list->n = 0;
+  if (fs->solid) {
+    Add(list, OUT_P, 4);
+    Add(list, OUT_M, 1);
+    if (axisymmetric)
+      Add(list, OUT_HOOP, 1);
+  }
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    Add(list, OUT_PF + 4 * f, 4);
+    Add(list, OUT_FLUX + 2 * f, 2);
+    if (axisymmetric)
+      Add(list, OUT_HOOPF + f, 1);
+    if (fs->solid)
+      Add(list, OUT_M + 1 + f, 1);
+    Add(list, OUT_MI + f, 1);
+    Add(list, OUT_D + f, 1);
+    Add(list, OUT_DM + f, 1);
+  }
+  if (fs->heat) {
+    Add(list, OUT_HEAT, 2);
+    Add(list, OUT_C, 2); /* and OUT_Q */
+  }
+}
+
+/* `fs` with a constant number of unknowns lets the compiler unroll the rows of the largest set. */
+static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m, const FieldSet *fs, int n,
+                                                                  const Outputs *list, const Reach *r, const double *x,
+                                                                  const PointOutput *o, double *block)
+{
+  const int    ld           = r->n * n;
+  const bool   axisymmetric = m->c->axisymmetric;
+  const double dt           = m->stage.dt;
   NodeFactors  factor[CL_NODES];
 
   for (int a = 0; a < r->n; a++)
     Factors(m, r->node[a], x, &factor[a]);
   for (int b = 0; b < r->n; b++) {
-    const double *w = &m->w[2 * r->node[b]];
-    double        DB[OUT_COUNT][F_COUNT];
+    const NodeWeights at = {
+        .S = r->S[b], .NS = r->S[b], .H = axisymmetric ? r->H[b] : 0.0, .G = r->G[b], .w = &m->w[2 * r->node[b]]};
+    double DB[OUT_COUNT][F_COUNT];
 
-    for (int k = 0; k < OUT_COUNT; k++)
-      Columns(o->D[k], dt, r->S[b], r->S[b], r->G[b], w, DB[k]);
+    for (int k = 0; k < list->n; k++)
+      Columns(fs, axisymmetric, dt, o->D[list->out[k]], &at, DB[list->out[k]]);
     for (int a = 0; a < r->n; a++) {
-      double *out = &block[(a * ld + b) * F_COUNT];
+      double *out = &block[(a * ld + b) * n];
 
-      Rows(&factor[a], dt, r->S[a], r->G[a], DB, out, ld);
+      Rows(fs, axisymmetric, n, &factor[a], dt, r->S[a], r->G[a], axisymmetric ? r->H[a] : 0.0, DB, out, ld);
       if (a == b)
-        Diagonal(o->out, dt, r->S[a], w, out, ld);
+        Diagonal(fs, o->out, dt, r->S[a], at.w, out, ld);
     }
   }
 }
 
+static void ParticleBlock(const Model *m, const Outputs *list, const Reach *r, const double *x, const PointOutput *o,
+                          double *block)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  if (fs->n == F_COUNT)
+    ParticleBlockOf(m, fs, F_COUNT, list, r, x, o, block);
+  else
+    ParticleBlockOf(m, fs, fs->n, list, r, x, o, block);
+}
+
 PetscErrorCode JacobianAdd(Model *m, int n, const PetscInt *node, double *block)
 {
-  const int ld = n * F_COUNT;
+  const int nf = m->c->fields.n, ld = n * nf;
 
   PetscFunctionBeginUser;
   for (int row = 0; row < ld; row++) {
-    const PetscInt k     = node[row / F_COUNT] * F_COUNT + row % F_COUNT;
-    const bool     fixed = (m->mask[node[row / F_COUNT]] >> (row % F_COUNT)) & 1u;
+    const PetscInt I     = node[row / nf];
+    const PetscInt k     = I * nf + row % nf;
+    const bool     fixed = (m->mask[I] >> (row % nf)) & 1u;
     const double   scale = fixed ? 0.0 : 1.0 / m->row_scale[k];
     double        *out   = &block[row * ld];
 
     for (int b = 0; b < n; b++) {
-      const double *col = &m->col_scale[node[b] * F_COUNT];
+      const double *col = &m->col_scale[node[b] * nf];
 
-      for (int q = 0; q < F_COUNT; q++)
-        out[b * F_COUNT + q] *= scale * col[q];
+      for (int q = 0; q < nf; q++)
+        out[b * nf + q] *= scale * col[q];
     }
   }
   PetscCall(MatSetValuesBlockedLocal(m->J2, n, node, n, node, block, ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void KeepWide(const PointOutput *o, double *wide)
+static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
 {
   for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; fs->phase[f] && k < 4; k++)
       wide[4 * f + k] = o->wide[f][k / 2][k % 2];
-    for (int j = 0; j < 2; j++)
+    for (int j = 0; fs->phase[f] && fs->heat && j < 2; j++)
       wide[8 + 2 * f + j] = o->wide_q[f][j];
   }
 }
 
 static PetscErrorCode ParticleLoop(Model *m, const double *x)
 {
-  double block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
+  double  block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
+  Outputs list;
 
   PetscFunctionBeginUser;
+  OutputsOf(&m->c->fields, m->c->axisymmetric, &list);
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  state;
@@ -147,26 +256,34 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x)
 
     if (ParticleEvaluate(m, p, x, true, &r, in, &state, &o) != CL_OK)
       continue; /* the residual said so */
-    KeepWide(&o, &m->wide[12 * p]);
-    ParticleBlock(m, &r, x, &o, block);
+    if (m->wide)
+      KeepWide(&m->c->fields, &o, &m->wide[12 * p]);
+    ParticleBlock(m, &list, &r, x, &o, block);
     PetscCall(JacobianAdd(m, r.n, r.node, block));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nine rows of a face's nodes: all are weighted with N. */
+/* Rows of a face's nodes: all are weighted with N. */
 static void FaceBlock(const Model *m, const Face *face, const Reach *r, const FaceOutput *o, double *block)
 {
-  const int ld = r->n * F_COUNT;
+  const FieldSet *fs = &m->c->fields;
+  const int       ld = r->n * fs->n;
 
   for (int b = 0; b < r->n; b++) {
-    for (int q = 0; q < F_COUNT; q++) {
+    const NodeWeights at = {.S  = r->S[b],
+                            .NS = face->N[b],
+                            .H  = m->c->axisymmetric ? r->H[b] : 0.0,
+                            .G  = r->G[b],
+                            .w  = &m->w[2 * r->node[b]]};
+
+    for (int k = 0; k < fs->n; k++) {
       double col[F_COUNT];
 
-      Columns(o->D[q], m->stage.dt, r->S[b], face->N[b], r->G[b], &m->w[2 * r->node[b]], col);
+      Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[fs->field[k]], &at, col);
       for (int a = 0; a < r->n; a++) {
-        for (int c = 0; c < F_COUNT; c++)
-          block[(a * F_COUNT + q) * ld + b * F_COUNT + c] = face->N[a] * col[c];
+        for (int q = 0; q < fs->n; q++)
+          block[(a * fs->n + k) * ld + b * fs->n + q] = face->N[a] * col[q];
       }
     }
   }
@@ -191,14 +308,15 @@ static PetscErrorCode FaceLoop(Model *m, const double *x)
 /* Rows of prescribed unknowns: 1 on the diagonal (the scales cancel). */
 static PetscErrorCode DirichletDiagonal(Model *m)
 {
-  double unit[F_COUNT * F_COUNT];
+  const int n = m->c->fields.n;
+  double    unit[F_COUNT * F_COUNT];
 
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int q = 0; q < F_COUNT * F_COUNT; q++)
+    for (int q = 0; q < n * n; q++)
       unit[q] = 0.0;
-    for (int q = 0; q < F_COUNT; q++)
-      unit[q * F_COUNT + q] = (m->mask[I] >> q) & 1u ? 1.0 : 0.0;
+    for (int q = 0; q < n; q++)
+      unit[q * n + q] = (m->mask[I] >> q) & 1u ? 1.0 : 0.0;
     PetscCall(MatSetValuesBlockedLocal(m->J2, 1, &I, 1, &I, unit, ADD_VALUES));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

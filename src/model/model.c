@@ -10,7 +10,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(PetscMemzero(m, sizeof(*m)));
   m->c = c;
   PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
-  PetscCall(ParticlesCreate(&m->P));
+  PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(c, &m->grid, &m->P));
   PetscCall(PetscMalloc2(PetscMax(c->nbc, 1), &m->bc.value, PetscMax(c->nbc, 1), &m->bc.shear));
   m->tol_residual = 1e-9;
@@ -60,13 +60,13 @@ PetscErrorCode ModelDestroy(Model *m)
 /* Everything whose size follows the active nodes; the solver is made anew when first needed. */
 PetscErrorCode ModelResizeNodal(Model *m)
 {
-  const PetscInt n = PetscMax(m->map.n_local, 1);
+  const PetscInt n = PetscMax(m->map.n_local, 1), nf = m->c->fields.n;
 
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
-  PetscCall(PetscCalloc4(n * F_COUNT, &m->x_n, n * 2, &m->w, n, &m->V, n * NC_COUNT, &m->coef));
-  PetscCall(PetscCalloc4(n, &m->mask, n * F_COUNT, &m->fixed, n * F_COUNT, &m->row_scale, n * F_COUNT, &m->col_scale));
-  PetscCall(PetscCalloc3(n * F_COUNT, &m->x, n * F_COUNT, &m->f, n * 4, &m->proj));
+  PetscCall(PetscCalloc4(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n * NC_COUNT, &m->coef));
+  PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
+  PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,8 +97,10 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->P.n; p++) {
     const Material *mat = ParticleMaterial(m, p);
-    const double    mh = m->P.f[P_MH][p], mw = m->P.f[P_MW][p], mg = m->P.f[P_MG][p], ms = m->P.f[P_MS][p];
-    const Kinetics *k = &mat->kinetics;
+    const Kinetics *k   = &mat->kinetics;
+    const double    ms = m->P.f[P_MS][p], mh = m->P.f[P_MH][p];
+    const double    mw = m->c->fields.phase[PHASE_W] ? m->P.f[P_MW][p] : 0.0;
+    const double    mg = m->c->fields.phase[PHASE_G] ? m->P.f[P_MG][p] : 0.0;
 
     sum[0] += mw + (mat->reacts ? mh * k->N_h * k->M_w / k->M_h : 0.0);
     sum[1] += mg + (mat->reacts ? mh * k->M_g / k->M_h : 0.0);

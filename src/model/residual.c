@@ -3,31 +3,38 @@
 
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x)
 {
-  const double *a;
+  const PetscInt n = m->c->fields.n;
+  const double  *a;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(X, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++)
+  for (PetscInt k = 0; k < m->map.n_owned * n; k++)
     x[k] = a[k] * m->col_scale[k];
   PetscCall(VecRestoreArrayRead(X, &a));
-  PetscCall(NodeMapBroadcast(&m->map, x, F_COUNT));
+  PetscCall(NodeMapBroadcast(&m->map, x, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
 {
+  const FieldSet *fs = &m->c->fields;
+
   PetscFunctionBeginUser;
+  if (!fs->fluid || !m->c->flux_interpolation)
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(proj, 4 * m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {
     double g[4] = {0.0};
     Reach  r;
 
     ReachExpand(m, p, &r);
-    for (int a = 0; a < r.n; a++) {
-      const double *xI = &x[r.node[a] * F_COUNT];
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      for (int a = 0; fs->phase[f] && a < r.n; a++) {
+        const double pI = x[r.node[a] * fs->n + PlaceP(fs, f)];
 
-      for (int k = 0; k < 4; k++)
-        g[k] += r.G[a][k % 2] * xI[F_PW + k / 2];
+        g[2 * f] += r.G[a][0] * pI;
+        g[2 * f + 1] += r.G[a][1] * pI;
+      }
     }
     for (int a = 0; a < r.n; a++) {
       const double VS = m->P.f[P_V][p] * r.S[a];
@@ -44,39 +51,80 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of one node from one particle. */
-static void Scatter(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
+/* Rows (15) of the mixture from one particle; those of the fluids lend it their inertia. */
+static void ScatterSolid(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
 {
-  const double dt = m->stage.dt, *b = m->c->gravity;
+  const FieldSet *fs = &m->c->fields;
 
   for (int a = 0; a < r->n; a++) {
-    const PetscInt I  = r->node[a];
-    const double  *xI = &x[I * F_COUNT], *xs = &m->stage.x_star[I * F_COUNT], S = r->S[a], *G = r->G[a];
-    double        *fI = &f[I * F_COUNT];
+    const double *G  = r->G[a];
+    double       *fI = &f[r->node[a] * fs->n + PlaceVs(fs)], acc[2], inertia[2];
 
-    for (int i = 0; i < 2; i++) {
-      double inertia = 0.0;
-
-      for (int k = 0; k < 3; k++) {
-        const double acc = (xI[F_VSX + 2 * k + i] - xs[F_VSX + 2 * k + i]) / dt - b[i];
-
-        inertia += out[OUT_M + k] * acc;
-        if (k == 0)
-          continue;
-        const int    ph = k - 1;
-        const double J  = m->w[2 * I + ph] * (xI[F_VSX + 2 * k + i] - xI[F_VSX + i]);
-
-        fI[F_VSX + 2 * k + i] += S * (out[OUT_MI + ph] * acc + out[OUT_D + ph] * J) -
-                                 G[0] * out[OUT_PF + 4 * ph + 2 * i] - G[1] * out[OUT_PF + 4 * ph + 2 * i + 1];
-      }
-      fI[F_VSX + i] += S * inertia + G[0] * out[OUT_P + 2 * i] + G[1] * out[OUT_P + 2 * i + 1];
-    }
+    Acceleration(m, r->node[a], x, PlaceVs(fs), acc);
+    for (int i = 0; i < 2; i++)
+      inertia[i] = out[OUT_M] * acc[i];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
-      fI[F_PW + ph] += S * out[OUT_DM + ph] - dt * (G[0] * out[OUT_FLUX + 2 * ph] + G[1] * out[OUT_FLUX + 2 * ph + 1]);
+      if (!fs->phase[ph])
+        continue;
+      Acceleration(m, r->node[a], x, PlaceV(fs, ph), acc);
+      for (int i = 0; i < 2; i++)
+        inertia[i] += out[OUT_M + 1 + ph] * acc[i];
     }
-    fI[F_T] +=
-        S * (out[OUT_C] * (xI[F_T] - xs[F_T]) / dt + out[OUT_Q]) + G[0] * out[OUT_HEAT] + G[1] * out[OUT_HEAT + 1];
+    for (int i = 0; i < 2; i++)
+      fI[i] += r->S[a] * inertia[i] + G[0] * out[OUT_P + 2 * i] + G[1] * out[OUT_P + 2 * i + 1];
+    if (m->c->axisymmetric)
+      fI[0] += r->H[a] * out[OUT_HOOP];
   }
+}
+
+/* Rows (16) and (17) of one fluid from one particle. */
+static void ScatterFluid(const Model *m, int ph, const Reach *r, const double *x, const double out[OUT_COUNT],
+                         double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt I = r->node[a];
+    const double   S = r->S[a], *G = r->G[a];
+    double        *fI = &f[I * fs->n], *row = &fI[PlaceV(fs, ph)], acc[2], J[2];
+
+    Acceleration(m, I, x, PlaceV(fs, ph), acc);
+    DarcyFlux(m, I, ph, &x[I * fs->n], J);
+    for (int i = 0; i < 2; i++)
+      row[i] += S * (out[OUT_MI + ph] * acc[i] + out[OUT_D + ph] * J[i]) - G[0] * out[OUT_PF + 4 * ph + 2 * i] -
+                G[1] * out[OUT_PF + 4 * ph + 2 * i + 1];
+    if (m->c->axisymmetric)
+      row[0] -= r->H[a] * out[OUT_HOOPF + ph];
+    fI[PlaceP(fs, ph)] +=
+        S * out[OUT_DM + ph] - m->stage.dt * (G[0] * out[OUT_FLUX + 2 * ph] + G[1] * out[OUT_FLUX + 2 * ph + 1]);
+  }
+}
+
+/* Rows (21). */
+static void ScatterHeat(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
+
+    f[k] += r->S[a] * (out[OUT_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt + out[OUT_Q]) +
+            r->G[a][0] * out[OUT_HEAT] + r->G[a][1] * out[OUT_HEAT + 1];
+  }
+}
+
+static void Scatter(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  if (fs->solid)
+    ScatterSolid(m, r, x, out, f);
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    if (fs->phase[ph])
+      ScatterFluid(m, ph, r, x, out, f);
+  }
+  if (fs->heat)
+    ScatterHeat(m, r, x, out, f);
 }
 
 static void ParticleLoop(Model *m, const double *x, double *f)
@@ -96,6 +144,8 @@ static void ParticleLoop(Model *m, const double *x, double *f)
 
 static void FaceLoop(const Model *m, const double *x, double *f)
 {
+  const FieldSet *fs = &m->c->fields;
+
   for (PetscInt k = 0; k < m->nface; k++) {
     const Face *face = &m->face[k];
     Reach       r;
@@ -103,8 +153,8 @@ static void FaceLoop(const Model *m, const double *x, double *f)
 
     FaceAt(m, face, x, &r, &o);
     for (int a = 0; a < r.n; a++) {
-      for (int q = 0; q < F_COUNT; q++)
-        f[r.node[a] * F_COUNT + q] += face->N[a] * o.out[q];
+      for (int q = 0; q < fs->n; q++)
+        f[r.node[a] * fs->n + q] += face->N[a] * o.out[fs->field[q]];
     }
   }
 }
@@ -112,12 +162,13 @@ static void FaceLoop(const Model *m, const double *x, double *f)
 /* Scaled rows; a prescribed unknown's row is x - x_hat. */
 static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
 {
-  double *a;
+  const PetscInt n = m->c->fields.n;
+  double        *a;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(R, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
-    const bool fixed = (m->mask[k / F_COUNT] >> (k % F_COUNT)) & 1u;
+  for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
+    const bool fixed = (m->mask[k / n] >> (k % n)) & 1u;
 
     a[k] = fixed ? (x[k] - m->fixed[k]) / m->col_scale[k] : f[k] / m->row_scale[k];
     if (m->status != CL_OK)
@@ -136,12 +187,12 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
   m->status  = CL_OK;
   m->limited = 0;
   PetscCall(ModelUnscale(m, X, m->x));
-  PetscCall(PetscArrayzero(m->f, m->map.n_local * F_COUNT));
+  PetscCall(PetscArrayzero(m->f, m->map.n_local * m->c->fields.n));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
   ParticleLoop(m, m->x, m->f);
   FaceLoop(m, m->x, m->f);
   StabilisationResidual(m, m->x, m->f);
-  PetscCall(NodeMapReduce(&m->map, m->f, F_COUNT));
+  PetscCall(NodeMapReduce(&m->map, m->f, m->c->fields.n));
   PetscCall(Finish(m, m->x, m->f, R));
   if (m->status != CL_OK && snes)
     PetscCall(SNESSetFunctionDomainError(snes));

@@ -1,18 +1,6 @@
 /* Newton-Krylov solution of one stage with PETSc's SNES. */
 #include "gather.h"
 
-const FieldInfo cl_field[F_COUNT] = {
-    {"v_s,x", "m/s", "mixture momentum, x"},
-    {"v_s,y", "m/s", "mixture momentum, y"},
-    {"v_w,x", "m/s", "water momentum, x"},
-    {"v_w,y", "m/s", "water momentum, y"},
-    {"v_g,x", "m/s", "gas momentum, x"},
-    {"v_g,y", "m/s", "gas momentum, y"},
-    {"p_w", "Pa", "water mass"},
-    {"p_g", "Pa", "gas mass"},
-    {"T", "degC", "energy"},
-};
-
 #define CONSERVATION 20.0 /* mass and energy are solved that much tighter than momentum */
 
 /* Limits of one Newton update, so that no law is evaluated far outside its range. */
@@ -24,6 +12,7 @@ const FieldInfo cl_field[F_COUNT] = {
 static PetscErrorCode CreateJ2(Model *m)
 {
   const NodeMap         *map = &m->map;
+  const PetscInt         n   = m->c->fields.n;
   PetscInt              *dnz, *onz;
   ISLocalToGlobalMapping l2g;
 
@@ -37,14 +26,14 @@ static PetscErrorCode CreateJ2(Model *m)
         (K < map->n_owned ? dnz : onz)[I]++;
     }
   }
-  PetscCall(MatCreateBAIJ(m->grid.comm, F_COUNT, map->n_owned * F_COUNT, map->n_owned * F_COUNT, PETSC_DETERMINE,
-                          PETSC_DETERMINE, 0, dnz, 0, onz, &m->J2));
-  PetscCall(ISLocalToGlobalMappingCreate(m->grid.comm, F_COUNT, map->n_local, map->global, PETSC_COPY_VALUES, &l2g));
+  PetscCall(MatCreateBAIJ(m->grid.comm, n, map->n_owned * n, map->n_owned * n, PETSC_DETERMINE, PETSC_DETERMINE, 0, dnz,
+                          0, onz, &m->J2));
+  PetscCall(ISLocalToGlobalMappingCreate(m->grid.comm, n, map->n_local, map->global, PETSC_COPY_VALUES, &l2g));
   PetscCall(MatSetLocalToGlobalMapping(m->J2, l2g, l2g));
   PetscCall(ISLocalToGlobalMappingDestroy(&l2g));
   PetscCall(PetscFree2(dnz, onz));
   for (PetscInt I = 0; I < map->n_owned; I++) {
-    const double zero[F_COUNT * F_COUNT] = {0.0};
+    const double zero[F_COUNT * F_COUNT] = {0.0}; /* n x n of it */
 
     for (PetscInt k = 0; k < 25; k++) {
       const PetscInt K = map->index[GridPadded(&m->grid, map->ij[I][0] + k % 5 - 2, map->ij[I][1] + k / 5 - 2)];
@@ -62,14 +51,15 @@ static PetscErrorCode CreateJ2(Model *m)
 /* Largest scaled entry of each field over all ranks. */
 static PetscErrorCode FieldNorms(const Model *m, Vec v, double norm[F_COUNT])
 {
-  const double *a;
+  const FieldSet *fs = &m->c->fields;
+  const double   *a;
 
   PetscFunctionBeginUser;
   for (int q = 0; q < F_COUNT; q++)
     norm[q] = 0.0;
   PetscCall(VecGetArrayRead(v, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++)
-    norm[k % F_COUNT] = fmax(norm[k % F_COUNT], fabs(a[k]));
+  for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++)
+    norm[fs->field[k % fs->n]] = fmax(norm[fs->field[k % fs->n]], fabs(a[k]));
   PetscCall(VecRestoreArrayRead(v, &a));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, F_COUNT, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -125,32 +115,48 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Share of a node's update that stays in the trusted range. */
+static double NodeLimit(const Model *m, PetscInt I, const double *x, const double *y)
+{
+  const FieldSet *fs  = &m->c->fields;
+  const double   *s   = &m->col_scale[I * fs->n];
+  double          cut = 1.0;
+
+  if (fs->heat) {
+    const double dT = fabs(y[PlaceT(fs)] * s[PlaceT(fs)]);
+
+    if (dT > LIMIT_T)
+      cut = fmin(cut, LIMIT_T / dT);
+  }
+  if (fs->phase[PHASE_G]) {
+    const double dpg = fabs(y[PlaceP(fs, PHASE_G)]), pg = fabs(x[PlaceP(fs, PHASE_G)]);
+
+    if (dpg > LIMIT_PG * pg && pg > 0.0)
+      cut = fmin(cut, LIMIT_PG * pg / dpg);
+  }
+  for (int d = 0; fs->solid && d < CL_DIM; d++) {
+    const double du = fabs(y[PlaceVs(fs) + d] * s[PlaceVs(fs) + d]) * m->stage.dt;
+
+    if (du > LIMIT_J * m->grid.h[d])
+      cut = fmin(cut, LIMIT_J * m->grid.h[d] / du);
+  }
+  return cut;
+}
+
 /* Shortens an update that leaves the trusted range of the laws. */
 static PetscErrorCode LimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
 {
-  Model        *m = (Model *)model;
-  const double *x, *y;
-  double        cut = 1.0;
+  Model          *m  = (Model *)model;
+  const FieldSet *fs = &m->c->fields;
+  const double   *x, *y;
+  double          cut = 1.0;
 
   PetscFunctionBeginUser;
   (void)ls;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayRead(Y, &y));
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    const double *s = &m->col_scale[I * F_COUNT], *xI = &x[I * F_COUNT], *yI = &y[I * F_COUNT];
-    const double  dT = fabs(yI[F_T] * s[F_T]), dpg = fabs(yI[F_PG]), pg = fabs(xI[F_PG]);
-
-    if (dT > LIMIT_T)
-      cut = fmin(cut, LIMIT_T / dT);
-    if (dpg > LIMIT_PG * pg && pg > 0.0)
-      cut = fmin(cut, LIMIT_PG * pg / dpg);
-    for (int d = 0; d < CL_DIM; d++) {
-      const double du = fabs(yI[F_VSX + d] * s[F_VSX + d]) * m->stage.dt;
-
-      if (du > LIMIT_J * m->grid.h[d])
-        cut = fmin(cut, LIMIT_J * m->grid.h[d] / du);
-    }
-  }
+  for (PetscInt I = 0; I < m->map.n_owned; I++)
+    cut = fmin(cut, NodeLimit(m, I, &x[I * fs->n], &y[I * fs->n]));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(VecRestoreArrayRead(Y, &y));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_MIN, m->grid.comm));
@@ -167,7 +173,7 @@ static PetscErrorCode LimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *ch
 /* Defaults: GMRES preconditioned by a direct factorisation of J2; every -snes_, -ksp_, -pc_ option wins. */
 static PetscErrorCode CreateSolver(Model *m)
 {
-  const bool     small = m->grid.size == 1 && m->map.n_global * F_COUNT <= UMFPACK_MOST;
+  const bool     small = m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
   SNESLineSearch ls;
   PetscBool      aij;
   KSP            ksp;
@@ -211,19 +217,20 @@ static PetscErrorCode FindWorst(Model *m, int *field)
   struct {
     double value;
     int    rank;
-  } local = {-1.0, m->grid.rank}, worst;
-  const double *a;
-  double        at[3] = {0.0};
+  } local          = {-1.0, m->grid.rank}, worst;
+  const PetscInt n = m->c->fields.n;
+  const double  *a;
+  double         at[3] = {0.0};
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(m->R, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
+  for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
     if (!(fabs(a[k]) > local.value))
       continue;
     local.value = fabs(a[k]);
     for (int d = 0; d < CL_DIM; d++)
-      at[d] = m->grid.lower[d] + (double)m->map.ij[k / F_COUNT][d] * m->grid.h[d];
-    at[2] = (double)(k % F_COUNT);
+      at[d] = m->grid.lower[d] + (double)m->map.ij[k / n][d] * m->grid.h[d];
+    at[2] = (double)m->c->fields.field[k % n];
   }
   PetscCall(VecRestoreArrayRead(m->R, &a));
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->grid.comm));
@@ -258,12 +265,13 @@ static PetscErrorCode Explain(Model *m)
 
 static PetscErrorCode FirstGuess(Model *m, const double *x)
 {
-  double *a;
+  const PetscInt n = m->c->fields.n;
+  double        *a;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayWrite(m->X, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
-    const bool fixed = (m->mask[k / F_COUNT] >> (k % F_COUNT)) & 1u;
+  for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
+    const bool fixed = (m->mask[k / n] >> (k % n)) & 1u;
 
     a[k] = (fixed ? m->fixed[k] : x[k]) / m->col_scale[k];
   }

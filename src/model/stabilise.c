@@ -26,11 +26,12 @@ static double FirstShare(const Grid *g, int d, double x, double l, PetscInt *fir
 
 static void FillCells(const Model *m, double *fill)
 {
-  const double V_cell = m->grid.h[0] * m->grid.h[1];
+  const double A_cell = m->grid.h[0] * m->grid.h[1];
 
   for (PetscInt p = 0; p < m->P.n; p++) {
-    PetscInt first[CL_DIM];
-    double   share[CL_DIM];
+    const double ring = m->c->axisymmetric ? 2.0 * M_PI * m->P.f[P_X][p] : 1.0;
+    PetscInt     first[CL_DIM];
+    double       share[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
       share[d] = FirstShare(&m->grid, d, m->P.f[P_X + d][p], m->P.f[P_L + d][p], &first[d]);
@@ -39,7 +40,7 @@ static void FillCells(const Model *m, double *fill)
       const PetscInt I = w > 0.0 ? CellIndex(m, first[0] + k % 2, first[1] + k / 2) : -1;
 
       if (I >= 0)
-        fill[2 * I] += w * m->P.f[P_V][p] / V_cell;
+        fill[2 * I] += w * m->P.f[P_V][p] / (ring * A_cell);
     }
   }
 }
@@ -96,11 +97,12 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
 
       if (!sides || lo < 0 || hi < 0)
         continue;
-      m->ghost[n++] = (GhostLine){.node   = {lo, I, hi},
-                                  .a      = g * 0.5 * sides * m->grid.h[t] / m->grid.h[d],
-                                  .M      = c[NC_M],
-                                  .kappa  = c[NC_KAPPA],
-                                  .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
+      const double depth = NodeVolume(m, I) / (m->grid.h[0] * m->grid.h[1]); /* 1, or around the axis */
+      m->ghost[n++]      = (GhostLine){.node   = {lo, I, hi},
+                                       .a      = g * 0.5 * sides * depth * m->grid.h[t] / m->grid.h[d],
+                                       .M      = c[NC_M],
+                                       .kappa  = c[NC_KAPPA],
+                                       .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
     }
   }
   m->nghost = n;
@@ -140,8 +142,7 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
   const char     *why;
   double          r[CL_DIM];
 
-  if (PointPropertiesEvaluate(ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], m->P.f[P_PW][p],
-                              m->P.f[P_PG][p], m->P.f[P_T][p], &q, &why) != CL_OK)
+  if (ParticleProperties(m, p, &q, &why) != CL_OK)
     return; /* ModelBeginStep reported it */
   for (int d = 0; d < CL_DIM; d++)
     r[d] = (m->P.f[P_X + d][p] - m->grid.lower[d]) / m->grid.h[d] - (double)cell[d];
@@ -215,57 +216,108 @@ PetscErrorCode StabilisationBuild(Model *m)
   m->nghost = m->ncell = 0;
   if (m->c->ghost_penalty > 0.0)
     PetscCall(BuildGhost(m));
-  if (m->c->pressure_projection > 0.0)
+  if (m->c->pressure_projection > 0.0 && m->c->fields.solid && m->c->fields.fluid)
     PetscCall(BuildProjection(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coefficient of the penalty on each of the nine unknowns; none on the fluid velocities, which carry the boundary
- * pressure. */
-static void GhostCoefficients(const GhostLine *g, double dt, double c[F_COUNT])
+/* Coefficient of the penalty on each unknown of the set; none on the fluid velocities, which carry the boundary
+   pressure. */
+static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, double c[F_COUNT])
 {
-  for (int q = 0; q < F_COUNT; q++)
-    c[q] = 0.0;
-  c[F_VSX] = c[F_VSY] = g->a * g->M * dt;
-  for (int f = 0; f < PHASE_COUNT; f++)
-    c[F_PW + f] = g->a * dt / (1.0 / g->lambda[f] + 1.0 / dt); /* dt' rho tau */
-  c[F_T] = g->a * g->kappa;
+  const FieldSet *fs = &m->c->fields;
+
+  for (int k = 0; k < fs->n; k++)
+    c[k] = 0.0;
+  if (fs->solid)
+    c[PlaceVs(fs)] = c[PlaceVs(fs) + 1] = g->a * g->M * dt;
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (fs->phase[f])
+      c[PlaceP(fs, f)] = g->a * dt / (1.0 / g->lambda[f] + (fs->inertia ? 1.0 / dt : 0.0)); /* dt' rho tau */
+  }
+  if (fs->heat)
+    c[PlaceT(fs)] = g->a * g->kappa;
 }
 
 static const double second[3] = {1.0, -2.0, 1.0};
 
-void StabilisationResidual(const Model *m, const double *x, double *f)
+static void GhostResidual(const Model *m, const GhostLine *g, const double *x, double *f)
 {
-  for (PetscInt k = 0; k < m->nghost; k++) {
-    const GhostLine *g = &m->ghost[k];
-    double           c[F_COUNT];
+  const int n = m->c->fields.n;
+  double    c[F_COUNT];
 
-    GhostCoefficients(g, m->stage.dt, c);
-    for (int q = 0; q < F_COUNT; q++) {
-      double jump = 0.0;
+  GhostCoefficients(m, g, m->stage.dt, c);
+  for (int q = 0; q < n; q++) {
+    double jump = 0.0;
 
-      for (int a = 0; a < 3; a++)
-        jump += second[a] * x[g->node[a] * F_COUNT + q];
-      for (int a = 0; a < 3; a++)
-        f[g->node[a] * F_COUNT + q] += c[q] * jump * second[a];
+    for (int a = 0; a < 3; a++)
+      jump += second[a] * x[g->node[a] * n + q];
+    for (int a = 0; a < 3; a++)
+      f[g->node[a] * n + q] += c[q] * jump * second[a];
+  }
+}
+
+static void ProjectionResidual(const Model *m, const ProjectionCell *c, const double *x, double *f)
+{
+  const FieldSet *fs    = &m->c->fields;
+  double          dp[4] = {0.0};
+
+  for (int b = 0; b < 4; b++) {
+    for (int ph = 0; ph < PHASE_COUNT; ph++) {
+      const PetscInt k = c->node[b] * fs->n + PlaceP(fs, ph);
+
+      if (fs->phase[ph])
+        dp[b] += c->s[ph] * (x[k] - m->stage.x_star[k]);
     }
   }
-  for (PetscInt k = 0; k < m->ncell; k++) {
-    const ProjectionCell *c = &m->cell[k];
-    double                dp[4];
+  for (int a = 0; a < 4; a++) {
+    double Kdp = 0.0;
 
-    for (int b = 0; b < 4; b++) {
-      const double *xI = &x[c->node[b] * F_COUNT], *xs = &m->stage.x_star[c->node[b] * F_COUNT];
-
-      dp[b] = c->s[PHASE_W] * (xI[F_PW] - xs[F_PW]) + c->s[PHASE_G] * (xI[F_PG] - xs[F_PG]);
+    for (int b = 0; b < 4; b++)
+      Kdp += c->K[a][b] * dp[b];
+    for (int ph = 0; ph < PHASE_COUNT; ph++) {
+      if (fs->phase[ph])
+        f[c->node[a] * fs->n + PlaceP(fs, ph)] += c->rho[ph] * c->s[ph] * Kdp;
     }
-    for (int a = 0; a < 4; a++) {
-      double Kdp = 0.0;
+  }
+}
 
-      for (int b = 0; b < 4; b++)
-        Kdp += c->K[a][b] * dp[b];
-      for (int ph = 0; ph < PHASE_COUNT; ph++)
-        f[c->node[a] * F_COUNT + F_PW + ph] += c->rho[ph] * c->s[ph] * Kdp;
+void StabilisationResidual(const Model *m, const double *x, double *f)
+{
+  for (PetscInt k = 0; k < m->nghost; k++)
+    GhostResidual(m, &m->ghost[k], x, f);
+  for (PetscInt k = 0; k < m->ncell; k++)
+    ProjectionResidual(m, &m->cell[k], x, f);
+}
+
+static void GhostBlock(const Model *m, const GhostLine *g, double *block)
+{
+  const int n = m->c->fields.n;
+  double    c[F_COUNT];
+
+  GhostCoefficients(m, g, m->stage.dt, c);
+  for (int a = 0; a < 3; a++) {
+    for (int b = 0; b < 3; b++) {
+      for (int q = 0; q < n; q++)
+        block[(a * n + q) * 3 * n + b * n + q] = c[q] * second[a] * second[b];
+    }
+  }
+}
+
+static void ProjectionBlock(const FieldSet *fs, const ProjectionCell *c, double *block)
+{
+  const int n = fs->n;
+
+  for (int a = 0; a < 4; a++) {
+    for (int r = 0; r < PHASE_COUNT; r++) {
+      double *row = &block[(a * n + PlaceP(fs, r)) * 4 * n];
+
+      for (int b = 0; fs->phase[r] && b < 4; b++) {
+        for (int q = 0; q < PHASE_COUNT; q++) {
+          if (fs->phase[q])
+            row[b * n + PlaceP(fs, q)] = c->rho[r] * c->s[r] * c->s[q] * c->K[a][b];
+        }
+      }
     }
   }
 }
@@ -274,33 +326,16 @@ PetscErrorCode StabilisationJacobian(Model *m)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->nghost; k++) {
-    const GhostLine *g = &m->ghost[k];
-    double           c[F_COUNT], block[9 * F_COUNT * F_COUNT] = {0.0};
+    double block[9 * F_COUNT * F_COUNT] = {0.0};
 
-    GhostCoefficients(g, m->stage.dt, c);
-    for (int a = 0; a < 3; a++) {
-      for (int b = 0; b < 3; b++) {
-        for (int q = 0; q < F_COUNT; q++)
-          block[(a * F_COUNT + q) * 3 * F_COUNT + b * F_COUNT + q] = c[q] * second[a] * second[b];
-      }
-    }
-    PetscCall(JacobianAdd(m, 3, g->node, block));
+    GhostBlock(m, &m->ghost[k], block);
+    PetscCall(JacobianAdd(m, 3, m->ghost[k].node, block));
   }
   for (PetscInt k = 0; k < m->ncell; k++) {
-    const ProjectionCell *c                             = &m->cell[k];
-    double                block[16 * F_COUNT * F_COUNT] = {0.0};
+    double block[16 * F_COUNT * F_COUNT] = {0.0};
 
-    for (int a = 0; a < 4; a++) {
-      for (int b = 0; b < 4; b++) {
-        for (int r = 0; r < PHASE_COUNT; r++) {
-          for (int q = 0; q < PHASE_COUNT; q++) {
-            block[(a * F_COUNT + F_PW + r) * 4 * F_COUNT + b * F_COUNT + F_PW + q] =
-                c->rho[r] * c->s[r] * c->s[q] * c->K[a][b];
-          }
-        }
-      }
-    }
-    PetscCall(JacobianAdd(m, 4, c->node, block));
+    ProjectionBlock(&m->c->fields, &m->cell[k], block);
+    PetscCall(JacobianAdd(m, 4, m->cell[k].node, block));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

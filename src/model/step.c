@@ -25,13 +25,21 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->wide));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
-    PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
+    if (m->c->fields.fluid && m->c->flux_interpolation)
+      PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
   }
   for (PetscInt p = 0; p < m->P.n; p++) {
     Stencil *s = &m->stencil[p];
 
-    for (int d = 0; d < CL_DIM; d++)
-      BasisAxis(m->c->basis, m->P.f[P_X + d][p], m->P.f[P_L + d][p], g->lower[d], g->h[d], g->cells[d], &s->axis[d]);
+    s->r = 0.0;
+    for (int d = 0; d < CL_DIM; d++) {
+      const double x = m->P.f[P_X + d][p], l = m->P.f[P_L + d][p];
+
+      if (d == 0 && m->c->axisymmetric)
+        BasisRadius(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s->axis[d], s->hoop, &s->r);
+      else
+        BasisAxis(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s->axis[d]);
+    }
     if (!InsideGrid(g, s)) {
       NoteFailure(m, CL_LEFT_GRID, "a particle's domain leaves the background grid", p);
       continue;
@@ -49,36 +57,69 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sums of one particle into its nodes: (2), masses, and the nodal means of its properties. */
-enum { SUM_MS = 0, SUM_MW, SUM_MG, SUM_X, SUM_W = SUM_X + F_COUNT, SUM_COUNT = SUM_W + 2 };
+/* Sums of one particle into its nodes: masses, (2) for the unknowns of the set, phi S_pi. */
+enum { SUM_M = 0, SUM_W = SUM_M + 3, SUM_X = SUM_W + 2, SUM_COUNT = SUM_X + F_COUNT };
+
+/* Weight V S (or capacity S) times the particle's value, carried to the node by its gradient. */
+static inline double Carried(const Model *m, PetscInt p, int value, int gradient, const double d[CL_DIM])
+{
+  double *const *f = (double *const *)m->P.f;
+
+  return f[value][p] + f[gradient][p] * d[0] + f[gradient + 1][p] * d[1];
+}
+
+static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_DIM], const PointProperties *q,
+                        double *s)
+{
+  static const int velocity[3] = {P_VS, P_VW, P_VG}, pressure[2] = {P_PW, P_PG}, gradient[2] = {P_GW, P_GG};
+  const FieldSet  *fs       = &m->c->fields;
+  double *const   *f        = (double *const *)m->P.f;
+  const double     VS       = f[P_V][p] * S;
+  const bool       there[3] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
+
+  for (int k = 0; k < 3; k++) {
+    if (!there[k])
+      continue;
+    const double mass = k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p];
+
+    s[SUM_M + k] += S * mass;
+    for (int i = 0; i < 2; i++)
+      s[SUM_X + fs->at[F_VSX + 2 * k] + i] += S * mass * f[velocity[k] + i][p];
+  }
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    if (!fs->phase[k])
+      continue;
+    s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, pressure[k], gradient[k], d);
+    s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
+  }
+  if (fs->heat)
+    s[SUM_X + PlaceT(fs)] += S * q->capacity * Carried(m, p, P_T, P_GT, d);
+}
 
 static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointProperties *q, double *sum)
 {
-  double *const *f = (double *const *)m->P.f;
-  const double   V = f[P_V][p], mass[3] = {f[P_MS][p] + f[P_MH][p], f[P_MW][p], f[P_MG][p]};
-  const double   fluid = q->phi * (1.0 - q->Sh);
+  const Grid  *g     = &m->grid;
+  const int    width = SUM_X + m->c->fields.n;
+  const double V     = m->P.f[P_V][p];
+  double       at[CL_DIM]; /* where the particle's values belong */
 
+  for (int d = 0; d < CL_DIM; d++)
+    at[d] = AxisCentroid(&m->stencil[p].axis[d], g->lower[d], g->h[d]);
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
     const double   S = r->S[a], VS = V * S;
-    const double   dx = m->grid.lower[0] + (double)m->map.ij[I][0] * m->grid.h[0] - f[P_X][p];
-    const double   dy = m->grid.lower[1] + (double)m->map.ij[I][1] * m->grid.h[1] - f[P_X + 1][p];
-    double        *s = &sum[I * SUM_COUNT], *c = &m->coef[I * NC_COUNT];
+    const double   d[2] = {g->lower[0] + (double)m->map.ij[I][0] * g->h[0] - at[0],
+                           g->lower[1] + (double)m->map.ij[I][1] * g->h[1] - at[1]};
+    double        *c    = &m->coef[I * NC_COUNT];
 
-    for (int k = 0; k < 3; k++) {
-      s[SUM_MS + k] += S * mass[k];
-      for (int d = 0; d < 2; d++)
-        s[SUM_X + F_VSX + 2 * k + d] += S * mass[k] * f[P_VS + 2 * k + d][p];
-    }
-    s[SUM_X + F_PW] += VS * (f[P_PW][p] + f[P_GW][p] * dx + f[P_GW + 1][p] * dy);
-    s[SUM_X + F_PG] += VS * (f[P_PG][p] + f[P_GG][p] * dx + f[P_GG + 1][p] * dy);
-    s[SUM_X + F_T] += S * q->capacity * (f[P_T][p] + f[P_GT][p] * dx + f[P_GT + 1][p] * dy);
+    DepositNode(m, p, S, d, q, &sum[I * width]);
     m->V[I] += VS;
     c[NC_M] += VS * q->M;
     c[NC_KAPPA] += VS * q->kappa;
     c[NC_CAPACITY] += S * q->capacity;
     for (int k = 0; k < PHASE_COUNT; k++) {
-      s[SUM_W + k] += VS * fluid * q->s[k];
+      if (!m->c->fields.phase[k])
+        continue;
       c[NC_LAMBDA + k] += VS * q->rho[k] / q->drag[k];
       c[NC_RHO + k] += VS * q->rho[k];
       c[NC_STORAGE + k] += VS * q->storage[k];
@@ -89,19 +130,18 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
 
 static void Average(Model *m, const double *sum)
 {
+  const FieldSet *fs = &m->c->fields;
+
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const double *s = &sum[I * SUM_COUNT], V = m->V[I];
-    double       *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * F_COUNT];
+    const double *s = &sum[I * (SUM_X + fs->n)], V = m->V[I];
+    double       *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * fs->n];
 
-    for (int k = 0; k < 3; k++) {
-      const double mass = s[SUM_MS + k];
+    for (int k = 0; k < fs->n; k++) {
+      const int    q      = fs->field[k];
+      const double weight = q < F_PW ? s[SUM_M + q / 2] : q < F_T ? V : c[NC_CAPACITY];
 
-      for (int d = 0; d < 2; d++)
-        x[F_VSX + 2 * k + d] = mass > 0.0 ? s[SUM_X + F_VSX + 2 * k + d] / mass : 0.0;
+      x[k] = weight > 0.0 ? s[SUM_X + k] / weight : 0.0;
     }
-    x[F_PW] = s[SUM_X + F_PW] / V;
-    x[F_PG] = s[SUM_X + F_PG] / V;
-    x[F_T]  = s[SUM_X + F_T] / c[NC_CAPACITY];
     for (int k = 0; k < PHASE_COUNT; k++)
       m->w[2 * I + k] = s[SUM_W + k] / V;
     for (int k = 0; k < NC_COUNT; k++)
@@ -111,19 +151,18 @@ static void Average(Model *m, const double *sum)
 
 static PetscErrorCode Project(Model *m)
 {
+  const int   width = SUM_X + m->c->fields.n;
   double     *sum;
   const char *why;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->map.n_local * SUM_COUNT, &sum));
+  PetscCall(PetscCalloc1(m->map.n_local * width, &sum));
   PetscCall(PetscArrayzero(m->V, m->map.n_local));
   PetscCall(PetscArrayzero(m->coef, m->map.n_local * NC_COUNT));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    double *const  *f = (double *const *)m->P.f;
     PointProperties q;
     Reach           r;
-    const ClStatus  status = PointPropertiesEvaluate(ParticleMaterial(m, p), f[P_V][p], f[P_MS][p], f[P_MH][p],
-                                                     f[P_PW][p], f[P_PG][p], f[P_T][p], &q, &why);
+    const ClStatus  status = ParticleProperties(m, p, &q, &why);
 
     if (status != CL_OK) {
       NoteFailure(m, status, why, p);
@@ -132,7 +171,7 @@ static PetscErrorCode Project(Model *m)
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
   }
-  PetscCall(NodeMapSum(&m->map, sum, SUM_COUNT));
+  PetscCall(NodeMapSum(&m->map, sum, width));
   PetscCall(NodeMapSum(&m->map, m->V, 1));
   PetscCall(NodeMapSum(&m->map, m->coef, NC_COUNT));
   Average(m, sum);
@@ -170,10 +209,11 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 
 /* Mass that a change of 1 MPa stores or moves, but no more than there is, unless that is below the round-off of what
    moves. */
-static double MassScale(const double c[NC_COUNT], int phase, double w, double dt, double h)
+static double MassScale(const FieldSet *fs, const double c[NC_COUNT], int phase, double w, double dt, double h)
 {
+  const double squeezed = fs->solid ? w / c[NC_M] : 0.0;
   const double moved =
-      1e6 * (c[NC_RHO + phase] * (c[NC_STORAGE + phase] + w / c[NC_M]) + dt * c[NC_LAMBDA + phase] / (h * h));
+      1e6 * (c[NC_RHO + phase] * (c[NC_STORAGE + phase] + squeezed) + dt * c[NC_LAMBDA + phase] / (h * h));
 
   return fmax(fmin(moved, c[NC_RHO + phase] * w), 1e-3 * moved);
 }
@@ -182,29 +222,45 @@ static double MassScale(const double c[NC_COUNT], int phase, double w, double dt
 
 /* Columns: 1 MPa, 1 K, and the velocities that belong to 1 MPa over a cell.  Rows: what such a change makes of each
    balance, so that scaled residuals and updates compare across fields. */
-static void Scales(Model *m)
+static void NodeScales(const Model *m, PetscInt I, double h, double *row, double *col)
 {
-  const double h = fmin(m->grid.h[0], m->grid.h[1]), dt = m->stage.dt, P = 1e6;
+  const FieldSet *fs = &m->c->fields;
+  const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6, V = m->V[I];
+  const double    V_row = fmax(V, SLIVER * NodeVolume(m, I));
 
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const double *c = &m->coef[I * NC_COUNT], V = m->V[I], V_row = fmax(V, SLIVER * m->grid.h[0] * m->grid.h[1]);
-    double       *row = &m->row_scale[I * F_COUNT], *col = &m->col_scale[I * F_COUNT];
-
-    for (int d = 0; d < 2; d++) {
-      col[F_VSX + d] = P * h / (c[NC_M] * dt);
-      row[F_VSX + d] = V_row * P / h;
-      for (int k = 0; k < PHASE_COUNT; k++) {
-        col[F_VWX + 2 * k + d] = P / h / (c[NC_RHO + k] / dt + c[NC_DRAG + k] * m->w[2 * I + k]);
-        row[F_VWX + 2 * k + d] = V * P / h;
-      }
+  for (int d = 0; d < 2; d++) {
+    if (fs->solid) {
+      col[PlaceVs(fs) + d] = P * h / (c[NC_M] * dt);
+      row[PlaceVs(fs) + d] = V_row * P / h;
     }
     for (int k = 0; k < PHASE_COUNT; k++) {
-      col[F_PW + k] = P;
-      row[F_PW + k] = V_row * MassScale(c, k, m->w[2 * I + k], dt, h);
+      if (!fs->phase[k])
+        continue;
+      const double inertia = fs->inertia ? c[NC_RHO + k] / dt : 0.0;
+
+      col[PlaceV(fs, k) + d] = P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
+      row[PlaceV(fs, k) + d] = V * P / h;
     }
-    col[F_T] = 1.0;
-    row[F_T] = V_row * (c[NC_CAPACITY] / dt + c[NC_KAPPA] / (h * h));
   }
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    if (!fs->phase[k])
+      continue;
+    col[PlaceP(fs, k)] = P;
+    row[PlaceP(fs, k)] = V_row * MassScale(fs, c, k, m->w[2 * I + k], dt, h);
+  }
+  if (fs->heat) {
+    col[PlaceT(fs)] = 1.0;
+    row[PlaceT(fs)] = V_row * (c[NC_CAPACITY] / dt + c[NC_KAPPA] / (h * h));
+  }
+}
+
+static void Scales(Model *m)
+{
+  const double h = fmin(m->grid.h[0], m->grid.h[1]);
+  const int    n = m->c->fields.n;
+
+  for (PetscInt I = 0; I < m->map.n_local; I++)
+    NodeScales(m, I, h, &m->row_scale[I * n], &m->col_scale[I * n]);
 }
 
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s)
@@ -214,7 +270,7 @@ PetscErrorCode ModelBeginStage(Model *m, const Stage *s)
   BcValuesEvaluate(m->c, s->t, &m->bc);
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     m->mask[I] = 0;
-    PlaneConditions(m->c, &m->grid, &m->bc, m->map.ij[I], &m->mask[I], &m->fixed[I * F_COUNT]);
+    PlaneConditions(m->c, &m->grid, &m->bc, m->map.ij[I], &m->mask[I], &m->fixed[I * m->c->fields.n]);
   }
   Scales(m);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,45 +1,53 @@
 /* The part of the Jacobian that runs through the projected gradients (27): particle by particle, never assembled. */
 #include "gather.h"
 
+/* What one particle's rows see of the projected gradients. */
+static void WideParticle(const Model *m, PetscInt p, const double *proj, double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double   *W = &m->wide[12 * p], dt = m->stage.dt;
+  Reach           r;
+
+  ReachExpand(m, p, &r);
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    double g[2] = {0.0};
+
+    if (!fs->phase[ph])
+      continue;
+    for (int a = 0; a < r.n; a++) {
+      g[0] += r.S[a] * proj[4 * r.node[a] + 2 * ph];
+      g[1] += r.S[a] * proj[4 * r.node[a] + 2 * ph + 1];
+    }
+    const double flux[2] = {W[4 * ph] * g[0] + W[4 * ph + 1] * g[1], W[4 * ph + 2] * g[0] + W[4 * ph + 3] * g[1]};
+    const double q       = fs->heat ? W[8 + 2 * ph] * g[0] + W[8 + 2 * ph + 1] * g[1] : 0.0;
+
+    for (int a = 0; a < r.n; a++) {
+      double *fI = &f[r.node[a] * fs->n];
+
+      fI[PlaceP(fs, ph)] -= dt * (r.G[a][0] * flux[0] + r.G[a][1] * flux[1]);
+      if (fs->heat)
+        fI[PlaceT(fs)] += r.S[a] * q;
+    }
+  }
+}
+
 /* y += C diag(1/V) B x on scaled, owned vectors. */
 static PetscErrorCode WideApply(Model *m, Vec X, Vec Y)
 {
-  const double dt = m->stage.dt;
-  double      *y, *x, *f, *proj;
-  PetscInt     n = m->map.n_local;
+  const PetscInt nf = m->c->fields.n, n = m->map.n_local;
+  double        *y, *x, *f, *proj;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n * F_COUNT, &x, n * F_COUNT, &f, n * 4, &proj));
+  PetscCall(PetscMalloc3(n * nf, &x, n * nf, &f, n * 4, &proj));
   PetscCall(ModelUnscale(m, X, x));
   PetscCall(ModelProjectGradients(m, x, proj));
-  PetscCall(PetscArrayzero(f, n * F_COUNT));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    const double *W    = &m->wide[12 * p];
-    double        g[4] = {0.0}, flux[4], q = 0.0;
-    Reach         r;
-
-    ReachExpand(m, p, &r);
-    for (int a = 0; a < r.n; a++) {
-      for (int k = 0; k < 4; k++)
-        g[k] += r.S[a] * proj[4 * r.node[a] + k];
-    }
-    for (int ph = 0; ph < PHASE_COUNT; ph++) {
-      for (int i = 0; i < 2; i++)
-        flux[2 * ph + i] = W[4 * ph + 2 * i] * g[2 * ph] + W[4 * ph + 2 * i + 1] * g[2 * ph + 1];
-      q += W[8 + 2 * ph] * g[2 * ph] + W[8 + 2 * ph + 1] * g[2 * ph + 1];
-    }
-    for (int a = 0; a < r.n; a++) {
-      double *fI = &f[r.node[a] * F_COUNT];
-
-      for (int ph = 0; ph < PHASE_COUNT; ph++)
-        fI[F_PW + ph] -= dt * (r.G[a][0] * flux[2 * ph] + r.G[a][1] * flux[2 * ph + 1]);
-      fI[F_T] += r.S[a] * q;
-    }
-  }
-  PetscCall(NodeMapReduce(&m->map, f, F_COUNT));
+  PetscCall(PetscArrayzero(f, n * nf));
+  for (PetscInt p = 0; p < m->P.n; p++)
+    WideParticle(m, p, proj, f);
+  PetscCall(NodeMapReduce(&m->map, f, nf));
   PetscCall(VecGetArray(Y, &y));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
-    if (!((m->mask[k / F_COUNT] >> (k % F_COUNT)) & 1u))
+  for (PetscInt k = 0; k < m->map.n_owned * nf; k++) {
+    if (!((m->mask[k / nf] >> (k % nf)) & 1u))
       y[k] += f[k] / m->row_scale[k];
   }
   PetscCall(VecRestoreArray(Y, &y));
@@ -54,7 +62,7 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
   PetscCall(MatMult(m->J2, X, Y));
-  if (m->c->flux_interpolation) {
+  if (m->c->flux_interpolation && m->c->fields.fluid) {
     PetscCall(PetscLogEventBegin(m->event[3], 0, 0, 0, 0));
     PetscCall(WideApply(m, X, Y));
     PetscCall(PetscLogEventEnd(m->event[3], 0, 0, 0, 0));
@@ -64,7 +72,7 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
 
 PetscErrorCode WideCreate(Model *m, Mat *A)
 {
-  const PetscInt n = m->map.n_owned * F_COUNT, N = m->map.n_global * F_COUNT;
+  const PetscInt n = m->map.n_owned * m->c->fields.n, N = m->map.n_global * m->c->fields.n;
 
   PetscFunctionBeginUser;
   PetscCall(MatCreateShell(m->grid.comm, n, n, N, N, m, A));

@@ -4,23 +4,27 @@
 static void Pack(const Particles *P, PetscInt p, double *to)
 {
   for (int k = 0; k < P_COUNT; k++)
-    to[k] = P->f[k][p];
+    to[k] = P->f[k] ? P->f[k][p] : 0.0;
   for (int k = 0; k < PI_COUNT; k++)
     to[P_COUNT + k] = (double)P->i[k][p]; /* exact below 2^53 */
 }
 
 static void Unpack(const double *from, Particles *P, PetscInt p)
 {
-  for (int k = 0; k < P_COUNT; k++)
-    P->f[k][p] = from[k];
+  for (int k = 0; k < P_COUNT; k++) {
+    if (P->f[k])
+      P->f[k][p] = from[k];
+  }
   for (int k = 0; k < PI_COUNT; k++)
     P->i[k][p] = (PetscInt)from[P_COUNT + k];
 }
 
 static void Move(Particles *P, PetscInt from, PetscInt to)
 {
-  for (int k = 0; k < P_COUNT; k++)
-    P->f[k][to] = P->f[k][from];
+  for (int k = 0; k < P_COUNT; k++) {
+    if (P->f[k])
+      P->f[k][to] = P->f[k][from];
+  }
   for (int k = 0; k < PI_COUNT; k++)
     P->i[k][to] = P->i[k][from];
 }

@@ -34,38 +34,63 @@ static double InitialPressure(const Case *c, const Region *r, const Material *ma
   return p;
 }
 
+static void Set(Particles *P, PetscInt p, int component, double value)
+{
+  if (P->f[component])
+    P->f[component][p] = value;
+}
+
+/* Pressures of the phases from their mean (10). */
+static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Material *mat, const double x[],
+                                       double *pw, double *pg)
+{
+  const double pm = InitialPressure(c, r, mat, x), sg = r->Sg / (1.0 - r->Sh);
+  double       pc = 0.0;
+
+  PetscFunctionBeginUser;
+  if (c->fields.phase[PHASE_G])
+    PetscCheck(RetentionInvert(&mat->retention, sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "region %s: the retention law never reaches the initial gas share %g", r->name, sg);
+  *pw = pm - sg * pc;
+  *pg = *pw + pc;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
                                    const double l[])
 {
   const Region   *r   = &c->region[region];
   const Material *mat = &c->material[r->material];
-  const double    V = 4.0 * l[0] * l[1], sg = r->Sg / (1.0 - r->Sh), pm = InitialPressure(c, r, mat, x);
-  double          pc, pw, pg;
+  const double    V   = 4.0 * l[0] * l[1] * (c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0);
+  double          pw = 0.0, pg = 0.0, m[4];
 
   PetscFunctionBeginUser;
-  PetscCheck(RetentionInvert(&mat->retention, sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "region %s: the retention law never reaches the initial gas share %g", r->name, sg);
-  pw = pm - sg * pc; /* p = s_w p_w + s_g p_g */
-  pg = pw + pc;
+  if (c->fields.fluid)
+    PetscCall(InitialPressures(c, r, mat, x, &pw, &pg));
+  PointInitialMasses(&c->fields, mat, V, mat->porosity, r->Sh, pw, pg, r->temperature, &m[0], &m[1], &m[2], &m[3]);
   for (int k = 0; k < P_COUNT; k++)
-    P->f[k][p] = 0.0;
+    Set(P, p, k, 0.0);
   for (int d = 0; d < CL_DIM; d++) {
     P->f[P_X + d][p] = x[d];
     P->f[P_L + d][p] = l[d];
-    if (r->hydrostatic)
-      P->f[P_GW + d][p] = P->f[P_GG + d][p] = mat->water.rho0 * c->gravity[d];
+    if (r->hydrostatic) {
+      Set(P, p, P_GW + d, mat->water.rho0 * c->gravity[d]);
+      Set(P, p, P_GG + d, mat->water.rho0 * c->gravity[d]);
+    }
   }
   P->f[P_V][p]   = V;
   P->f[P_PHI][p] = mat->porosity;
   P->f[P_SH][p]  = r->Sh;
-  P->f[P_SW][p]  = r->Sw;
-  P->f[P_T][p]   = r->temperature;
-  P->f[P_PW][p] = P->f[P_PW0][p] = pw;
-  P->f[P_PG][p] = P->f[P_PG0][p] = pg;
-  for (int s = 0; s < 6; s++)
-    P->f[P_SIG + s][p] = P->f[P_SIG0 + s][p] = r->stress[s];
-  PointInitialMasses(mat, V, mat->porosity, r->Sh, pw, pg, r->temperature, &P->f[P_MS][p], &P->f[P_MH][p],
-                     &P->f[P_MW][p], &P->f[P_MG][p]);
+  Set(P, p, P_SW, r->Sw);
+  Set(P, p, P_T, r->temperature);
+  for (int k = 0; k < 2; k++) {
+    Set(P, p, k ? P_PW0 : P_PW, pw);
+    Set(P, p, k ? P_PG0 : P_PG, pg);
+    for (int s = 0; s < 6; s++)
+      Set(P, p, (k ? P_SIG0 : P_SIG) + s, r->stress[s]);
+  }
+  for (int k = 0; k < 4; k++)
+    Set(P, p, P_MS + k, m[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

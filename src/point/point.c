@@ -5,7 +5,7 @@
 /* Row of the tangent for a scalar output c * jet: J spreads over grad u. */
 static void AddJet(double D[IN_COUNT], double c, const Jet *a, const Kinematics *k)
 {
-  for (int i = 0; i < 4; i++)
+  for (int i = 0; i < MOTION_COUNT; i++)
     D[IN_GRADU + i] += c * a->d[JET_J] * k->dJ[i];
   D[IN_P] += c * a->d[JET_PW];
   D[IN_P + 1] += c * a->d[JET_PG];
@@ -16,15 +16,16 @@ typedef struct {
   double s[6], ds[6][IN_COUNT];
 } Stress;
 
-/* (14): sigma' and its tangent.  Plane strain: e_zz = 0. */
+/* (14): sigma' and its tangent; e_zz is the hoop strain, zero in plane strain. */
 static void EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
                             double T, bool tangent, double sig0_rotated[6], Stress *out)
 {
-  const Elasticity *el = &mat->elasticity;
+  static const int  component[6] = {0, 1, 3, 2, -1, -1}; /* of Kinematics.e */
+  const Elasticity *el           = &mat->elasticity;
   const double      G = ElasticityShearFactor(el), lame = ElasticityLameFactor(el), dT = T - h->T_n;
   double            dE, over[6], rot[6], drot[6], drot0[6], unit[6];
   const double      En = ElasticityYoung(el, h->Sh_n, &dE), thermal = s->beta.v * dT / 3.0;
-  const double      e[6]    = {k->e[0] - thermal, k->e[1] - thermal, -thermal, k->e[2], 0.0, 0.0};
+  const double      e[6]    = {k->e[0] - thermal, k->e[1] - thermal, k->e[3] - thermal, k->e[2], 0.0, 0.0};
   double            r       = s->E.v / En;
   bool              relaxes = true;
 
@@ -49,12 +50,12 @@ static void EffectiveStress(const Material *mat, const PointHistory *h, const Ki
 
     for (int i = 0; i < IN_COUNT; i++)
       d[i] = 0.0;
-    for (int i = 0; i < 4; i++) {
-      const double trace = k->de[0][i] + k->de[1][i];
-      const double de    = c == XX ? k->de[0][i] : c == YY ? k->de[1][i] : c == XY ? k->de[2][i] : 0.0;
+    for (int i = 0; i < MOTION_COUNT; i++) {
+      const double trace = k->de[0][i] + k->de[1][i] + k->de[3][i];
+      const double de    = component[c] < 0 ? 0.0 : k->de[component[c]][i];
 
-      d[IN_GRADU + i] =
-          (drot0[c] + r * drot[c]) * k->dtheta[i] + s->E.v * (2.0 * G * de + (c < 3 ? lame * trace : 0.0));
+      d[IN_GRADU + i] = (i < 4 ? (drot0[c] + r * drot[c]) * k->dtheta[i] : 0.0) +
+                        s->E.v * (2.0 * G * de + (c < 3 ? lame * trace : 0.0));
     }
     AddJet(d, unit[c] + (relaxes ? rot[c] / En : 0.0), &s->E, k);
     if (c < 3)
@@ -62,133 +63,172 @@ static void EffectiveStress(const Material *mat, const PointHistory *h, const Ki
   }
 }
 
-/* out = V_n sigma cof F (momentum) and V_n p_pi cof F (fluids). */
-static void Forces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
-                   const double in[IN_COUNT], bool tangent, PointOutput *o)
+/* out = V_n (sigma' - p 1) cof F, in the plane and around the axis (momentum of the mixture). */
+static void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
+                          bool tangent, PointOutput *o)
 {
   const double     total[2][2] = {{st->s[XX] - s->p.v, st->s[XY]}, {st->s[XY], st->s[YY] - s->p.v}};
+  const double     hoop        = st->s[ZZ] - s->p.v;
   static const int voigt[2][2] = {{XX, XY}, {XY, YY}};
 
+  o->out[OUT_HOOP] = h->V * hoop * k->cof_hoop;
   for (int i = 0; i < 2; i++) {
     for (int j = 0; j < 2; j++) {
       const int row = OUT_P + 2 * i + j;
 
       o->out[row] = h->V * (total[i][0] * k->cof[0][j] + total[i][1] * k->cof[1][j]);
-      for (int f = 0; f < PHASE_COUNT; f++)
-        o->out[OUT_PF + 4 * f + 2 * i + j] = h->V * in[IN_P + f] * k->cof[i][j];
-      if (!tangent)
-        continue;
-      for (int m = 0; m < 2; m++) {
+      for (int m = 0; tangent && m < 2; m++) {
         const double *ds = st->ds[voigt[i][m]], c = h->V * k->cof[m][j];
 
         for (int q = 0; q < IN_J; q++)
           o->D[row][q] += c * ds[q];
         if (m == i)
           AddJet(o->D[row], -c, &s->p, k);
-        for (int q = 0; q < 4; q++)
+        for (int q = 0; q < MOTION_COUNT; q++)
           o->D[row][q] += h->V * total[i][m] * k->dcof[m][j][q];
       }
-      for (int f = 0; f < PHASE_COUNT; f++) {
-        double *D = o->D[OUT_PF + 4 * f + 2 * i + j];
+    }
+  }
+  if (!tangent)
+    return;
+  for (int q = 0; q < IN_J; q++)
+    o->D[OUT_HOOP][q] += h->V * k->cof_hoop * st->ds[ZZ][q];
+  AddJet(o->D[OUT_HOOP], -h->V * k->cof_hoop, &s->p, k);
+  for (int q = 0; q < MOTION_HOOP; q++)
+    o->D[OUT_HOOP][q] += h->V * hoop * k->dJ[q] / k->lambda;
+}
 
-        D[IN_P + f] += h->V * k->cof[i][j];
-        for (int q = 0; q < 4; q++)
-          D[q] += h->V * in[IN_P + f] * k->dcof[i][j][q];
+/* out = V_n p_pi cof F (momentum of a fluid). */
+static void FluidForces(const PointHistory *h, const Kinematics *k, int f, const double in[IN_COUNT], bool tangent,
+                        PointOutput *o)
+{
+  const double Vp = h->V * in[IN_P + f];
+
+  o->out[OUT_HOOPF + f] = Vp * k->cof_hoop;
+  for (int c = 0; c < 4; c++)
+    o->out[OUT_PF + 4 * f + c] = Vp * k->cof[c / 2][c % 2];
+  if (!tangent)
+    return;
+  for (int c = 0; c < 4; c++) {
+    double *D = o->D[OUT_PF + 4 * f + c];
+
+    D[IN_P + f] += h->V * k->cof[c / 2][c % 2];
+    for (int q = 0; q < MOTION_COUNT; q++)
+      D[q] += Vp * k->dcof[c / 2][c % 2][q];
+  }
+  o->D[OUT_HOOPF + f][IN_P + f] += h->V * k->cof_hoop;
+  for (int q = 0; q < MOTION_HOOP; q++)
+    o->D[OUT_HOOPF + f][q] += Vp * k->dJ[q] / k->lambda;
+}
+
+/* K = cof^T cof / J (symmetric, from V F^-1 F^-T) and its derivatives. */
+typedef struct {
+  double K[2][2], d[2][2][MOTION_COUNT];
+} Metric;
+
+static void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
+{
+  for (int i = 0; i < 2; i++) {
+    for (int j = 0; j < 2; j++) {
+      g->K[i][j] = (k->cof[0][i] * k->cof[0][j] + k->cof[1][i] * k->cof[1][j]) / k->J;
+      for (int q = 0; tangent && q < MOTION_COUNT; q++) {
+        const double dc = k->dcof[0][i][q] * k->cof[0][j] + k->cof[0][i] * k->dcof[0][j][q] +
+                          k->dcof[1][i][q] * k->cof[1][j] + k->cof[1][i] * k->dcof[1][j][q];
+        g->d[i][j][q] = (dc - g->K[i][j] * k->dJ[q]) / k->J;
       }
     }
   }
 }
 
-/* (18)-(20): Phi = V_n rho [ cof^T J + tau K (Pi g - g) ] with K = cof^T cof / J (symmetric, from V F^-1 F^-T). */
-static void Fluxes(const PointHistory *h, const Kinematics *k, const ScalarState *s, const double in[IN_COUNT],
-                   bool tangent, PointOutput *o, double tau_out[PHASE_COUNT])
+/* (18)-(20): Phi = V_n rho [ cof^T J + tau K (Pi g - g) ]. */
+static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
+                 const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
 {
-  double K[2][2], dK[2][2][4];
+  const double(*K)[2] = metric->K;
+  const Jet rho       = s->rho[f];
+  const Jet tau   = JetDiv(JetConstant(1.0), fs->inertia ? JetAdd(s->drag[f], JetScale(1.0 / h->dt, rho)) : s->drag[f]);
+  const Jet rt    = JetScale(h->bracket, JetMul(rho, tau));
+  const double *J = &in[IN_J + 2 * f], *g = &in[IN_GP + 2 * f];
+  const double  b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
 
+  *tau_out = tau.v;
   for (int i = 0; i < 2; i++) {
+    const int    row = OUT_FLUX + 2 * f + i;
+    const double cJ = k->cof[0][i] * J[0] + k->cof[1][i] * J[1], Kb = K[i][0] * b[0] + K[i][1] * b[1];
+
+    o->out[row] = h->V * (rho.v * cJ + rt.v * Kb);
+    if (!tangent)
+      continue;
+    double *D = o->D[row];
+    AddJet(D, h->V * cJ, &rho, k);
+    AddJet(D, h->V * Kb, &rt, k);
+    for (int q = 0; q < MOTION_COUNT; q++) {
+      D[q] += h->V * rho.v * (k->dcof[0][i][q] * J[0] + k->dcof[1][i][q] * J[1]);
+      D[q] += h->V * rt.v * (metric->d[i][0][q] * b[0] + metric->d[i][1][q] * b[1]);
+    }
     for (int j = 0; j < 2; j++) {
-      const double c = k->cof[0][i] * k->cof[0][j] + k->cof[1][i] * k->cof[1][j];
-
-      K[i][j] = c / k->J;
-      for (int q = 0; tangent && q < 4; q++) {
-        const double dc = k->dcof[0][i][q] * k->cof[0][j] + k->cof[0][i] * k->dcof[0][j][q] +
-                          k->dcof[1][i][q] * k->cof[1][j] + k->cof[1][i] * k->dcof[1][j][q];
-        dK[i][j][q] = (dc - K[i][j] * k->dJ[q]) / k->J;
-      }
+      D[IN_J + 2 * f + j] += h->V * rho.v * k->cof[j][i];
+      D[IN_GP + 2 * f + j] -= h->V * rt.v * K[i][j];
+      o->wide[f][i][j] = h->V * rt.v * K[i][j];
     }
   }
-  for (int f = 0; f < PHASE_COUNT; f++) {
-    const Jet     rho = s->rho[f], tau = JetDiv(JetConstant(1.0), JetAdd(s->drag[f], JetScale(1.0 / h->dt, rho)));
-    const Jet     rt = JetScale(h->bracket, JetMul(rho, tau));
-    const double *J = &in[IN_J + 2 * f], *g = &in[IN_GP + 2 * f];
-    const double  b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
+}
 
-    tau_out[f] = tau.v;
-    for (int i = 0; i < 2; i++) {
-      const int    row = OUT_FLUX + 2 * f + i;
-      const double cJ = k->cof[0][i] * J[0] + k->cof[1][i] * J[1], Kb = K[i][0] * b[0] + K[i][1] * b[1];
-
-      o->out[row] = h->V * (rho.v * cJ + rt.v * Kb);
-      if (!tangent)
-        continue;
-      double *D = o->D[row];
-      AddJet(D, h->V * cJ, &rho, k);
-      AddJet(D, h->V * Kb, &rt, k);
-      for (int q = 0; q < 4; q++) {
-        D[q] += h->V * rho.v * (k->dcof[0][i][q] * J[0] + k->dcof[1][i][q] * J[1]);
-        D[q] += h->V * rt.v * (dK[i][0][q] * b[0] + dK[i][1][q] * b[1]);
-      }
-      for (int j = 0; j < 2; j++) {
-        D[IN_J + 2 * f + j] += h->V * rho.v * k->cof[j][i];
-        D[IN_GP + 2 * f + j] -= h->V * rt.v * K[i][j];
-        o->wide[f][i][j] = h->V * rt.v * K[i][j];
-      }
-    }
-  }
-  /* conduction: V kappa F^-1 F^-T g_T */
+/* Conduction: V kappa F^-1 F^-T g_T. */
+static void Conduction(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s,
+                       const double in[IN_COUNT], bool tangent, PointOutput *o)
+{
   for (int i = 0; i < 2; i++) {
-    const double Kg = K[i][0] * in[IN_GT] + K[i][1] * in[IN_GT + 1];
+    const double Kg = metric->K[i][0] * in[IN_GT] + metric->K[i][1] * in[IN_GT + 1];
 
     o->out[OUT_HEAT + i] = h->V * s->kappa.v * Kg;
     if (!tangent)
       continue;
     double *D = o->D[OUT_HEAT + i];
     AddJet(D, h->V * Kg, &s->kappa, k);
-    for (int q = 0; q < 4; q++)
-      D[q] += h->V * s->kappa.v * (dK[i][0][q] * in[IN_GT] + dK[i][1][q] * in[IN_GT + 1]);
+    for (int q = 0; q < MOTION_COUNT; q++)
+      D[q] += h->V * s->kappa.v * (metric->d[i][0][q] * in[IN_GT] + metric->d[i][1][q] * in[IN_GT + 1]);
     for (int j = 0; j < 2; j++)
-      D[IN_GT + j] += h->V * s->kappa.v * K[i][j];
+      D[IN_GT + j] += h->V * s->kappa.v * metric->K[i][j];
   }
 }
 
-/* Scalars tested with S_I: inertia, drag, masses, heat. */
-static void Scalars(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
-                    const double in[IN_COUNT], bool tangent, PointOutput *o)
+static void PutScalar(int r, Jet value, const Kinematics *k, bool tangent, PointOutput *o)
 {
-  const double nu[PHASE_COUNT]   = {mat->kinetics.N_h * mat->kinetics.M_w / mat->kinetics.M_h,
-                                    mat->kinetics.M_g / mat->kinetics.M_h};
-  const double c_f[PHASE_COUNT]  = {mat->c_w, mat->c_g};
-  const Jet    mass[PHASE_COUNT] = {s->m_w, s->m_g};
-  const Jet    gain              = JetShift(s->m_h, -h->m_star[0]);
-  Jet          row[OUT_COUNT - OUT_M];
+  o->out[r] = value.v;
+  if (tangent)
+    AddJet(o->D[r], 1.0, &value, k);
+}
 
-  row[0] = JetShift(s->m_h, h->m_s);
+/* Scalars of one fluid tested with S_I: mass, inertia, drag, what hydrate gives. */
+static void FluidScalars(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
+                         bool tangent, PointOutput *o)
+{
+  const Jet    mass = f == PHASE_W ? s->m_w : s->m_g;
+  const double nu =
+      f == PHASE_W ? mat->kinetics.N_h * mat->kinetics.M_w / mat->kinetics.M_h : mat->kinetics.M_g / mat->kinetics.M_h;
+  Jet dm = JetShift(mass, -h->m_star[1 + f]);
+
+  if (mat->reacts)
+    dm = JetAdd(dm, JetScale(nu, JetShift(s->m_h, -h->m_star[0])));
+  PutScalar(OUT_M + 1 + f, mass, k, tangent, o);
+  PutScalar(OUT_MI + f, JetMul(s->V, s->rho[f]), k, tangent, o);
+  PutScalar(OUT_D + f, JetMul(s->V, s->drag[f]), k, tangent, o);
+  PutScalar(OUT_DM + f, dm, k, tangent, o);
+}
+
+/* Heat stored, released and advected, c Phi . g_T; needs the fluxes. */
+static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
+                 const ScalarState *s, const double in[IN_COUNT], bool tangent, PointOutput *o)
+{
+  const double c_f[PHASE_COUNT] = {mat->c_w, mat->c_g};
+  const Jet    gain             = JetShift(s->m_h, -h->m_star[0]);
+
+  PutScalar(OUT_C, s->capacity, k, tangent, o);
+  PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, gain)) : JetConstant(0.0), k, tangent, o);
   for (int f = 0; f < PHASE_COUNT; f++) {
-    row[1 + f]              = mass[f];
-    row[OUT_MI - OUT_M + f] = JetMul(s->V, s->rho[f]);
-    row[OUT_D - OUT_M + f]  = JetMul(s->V, s->drag[f]);
-    row[OUT_DM - OUT_M + f] = JetShift(mass[f], -h->m_star[1 + f]);
-    if (mat->reacts)
-      row[OUT_DM - OUT_M + f] = JetAdd(row[OUT_DM - OUT_M + f], JetScale(nu[f], gain));
-  }
-  row[OUT_C - OUT_M] = s->capacity;
-  row[OUT_Q - OUT_M] = mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, gain)) : JetConstant(0.0);
-  for (int r = 0; r < OUT_COUNT - OUT_M; r++) {
-    o->out[OUT_M + r] = row[r].v;
-    if (tangent)
-      AddJet(o->D[OUT_M + r], 1.0, &row[r], k);
-  }
-  for (int f = 0; f < PHASE_COUNT; f++) { /* advected heat c Phi . g_T; needs the fluxes */
+    if (!fs->phase[f])
+      continue;
     for (int i = 0; i < 2; i++) {
       const int r = OUT_FLUX + 2 * f + i;
 
@@ -199,13 +239,12 @@ static void Scalars(const Material *mat, const PointHistory *h, const Kinematics
         o->D[OUT_Q][q] += c_f[f] * in[IN_GT + i] * o->D[r][q];
       o->D[OUT_Q][IN_GT + i] += c_f[f] * o->out[r];
     }
-    for (int j = 0; tangent && j < 2; j++) {
+    for (int j = 0; tangent && j < 2; j++)
       o->wide_q[f][j] = c_f[f] * (o->wide[f][0][j] * in[IN_GT] + o->wide[f][1][j] * in[IN_GT + 1]);
-    }
   }
 }
 
-static void FillState(const ScalarState *s, const Kinematics *k, const Stress *st, PointState *state)
+static void FillState(const FieldSet *fs, const ScalarState *s, PointState *state)
 {
   state->V       = s->V.v;
   state->phi     = s->phi.v;
@@ -218,26 +257,51 @@ static void FillState(const ScalarState *s, const Kinematics *k, const Stress *s
   state->p       = s->p.v;
   state->limited = s->limited;
   for (int f = 0; f < PHASE_COUNT; f++)
-    state->rho[f] = s->rho[f].v;
-  for (int d = 0; d < 2; d++)
-    state->stretch[d] = k->stretch[d];
-  for (int c = 0; c < 6; c++)
-    state->sig[c] = st->s[c];
+    state->rho[f] = fs->phase[f] ? s->rho[f].v : 0.0;
 }
 
-ClStatus PointEvaluate(const Material *mat, const PointHistory *h, const double in[IN_COUNT], bool tangent,
-                       PointState *state, PointOutput *o, const char **why)
+static ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char **why)
 {
-  const double gradu[2][2] = {{in[0], in[1]}, {in[2], in[3]}};
-  Kinematics   k;
-  ScalarState  s;
-  Stress       st;
+  double sum = 0.0; /* of the rows that every set's outputs lead into */
 
-  if (!KinematicsEvaluate(gradu, &k)) {
+  for (int r = OUT_FLUX; fs->fluid && r < OUT_HEAT; r++)
+    sum += fs->phase[(r - OUT_FLUX) / 2] ? o->out[r] : 0.0;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    sum += fs->phase[f] ? o->out[OUT_PF + 4 * f] + o->out[OUT_PF + 4 * f + 3] + o->out[OUT_D + f] + o->out[OUT_DM + f]
+                        : 0.0;
+  for (int r = OUT_P; fs->solid && r < OUT_P + 4; r++)
+    sum += o->out[r];
+  if (fs->heat)
+    sum += o->out[OUT_HEAT] + o->out[OUT_HEAT + 1] + o->out[OUT_C] + o->out[OUT_Q];
+  if (isfinite(sum))
+    return CL_OK;
+  *why = "a flux or force is not finite";
+  return CL_NONFINITE;
+}
+
+/* The motion of a particle that does not move. */
+static const Kinematics at_rest = {
+    .F        = {{1.0, 0.0}, {0.0, 1.0}},
+    .lambda   = 1.0,
+    .J        = 1.0,
+    .cof      = {{1.0, 0.0}, {0.0, 1.0}},
+    .cof_hoop = 1.0,
+    .stretch  = {1.0, 1.0},
+};
+
+ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
+                       bool tangent, PointState *state, PointOutput *o, const char **why)
+{
+  Kinematics        moved;
+  const Kinematics *k = fs->solid ? &moved : &at_rest;
+  ScalarState       s;
+  Metric            metric;
+
+  if (fs->solid && !KinematicsEvaluate(&in[IN_GRADU], &moved)) {
     *why = "volume ratio of the step is not positive";
     return CL_DOMAIN;
   }
-  const ClStatus status = ScalarStateEvaluate(mat, h, k.J, in, &s, why);
+  const ClStatus status = ScalarStateEvaluate(fs, mat, h, k->J, in, &s, why);
   if (status != CL_OK)
     return status;
   if (tangent) {
@@ -246,16 +310,30 @@ ClStatus PointEvaluate(const Material *mat, const PointHistory *h, const double 
         o->D[r][q] = 0.0;
     }
   }
-  EffectiveStress(mat, h, &k, &s, in[IN_T], tangent, state->sig0, &st);
-  Forces(h, &k, &s, &st, in, tangent, o);
-  Fluxes(h, &k, &s, in, tangent, o, state->tau);
-  Scalars(mat, h, &k, &s, in, tangent, o);
-  FillState(&s, &k, &st, state);
-  for (int r = 0; r < OUT_COUNT; r++) {
-    if (!isfinite(o->out[r])) {
-      *why = "a flux or force is not finite";
-      return CL_NONFINITE;
-    }
+  FillState(fs, &s, state);
+  PutScalar(OUT_M, JetShift(s.m_h, h->m_s), k, tangent, o);
+  if (fs->solid) {
+    Stress st;
+
+    EffectiveStress(mat, h, k, &s, in[IN_T], tangent, state->sig0, &st);
+    MixtureForces(h, k, &s, &st, tangent, o);
+    for (int c = 0; c < 6; c++)
+      state->sig[c] = st.s[c];
+    for (int d = 0; d < 2; d++)
+      state->stretch[d] = k->stretch[d];
   }
-  return CL_OK;
+  if (fs->fluid || fs->heat)
+    MetricEvaluate(k, tangent, &metric);
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    FluidForces(h, k, f, in, tangent, o);
+    Flux(fs, h, k, &metric, &s, f, in, tangent, o, &state->tau[f]);
+    FluidScalars(mat, h, k, &s, f, tangent, o);
+  }
+  if (fs->heat) {
+    Conduction(h, k, &metric, &s, in, tangent, o);
+    Heat(fs, mat, h, k, &s, in, tangent, o);
+  }
+  return CheckFinite(fs, o, why);
 }

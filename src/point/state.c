@@ -100,20 +100,26 @@ static void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet r
     Form(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
 }
 
-/* mu/(k_a k_r) of both phases. */
-static void Drag(const Material *mat, ScalarState *s)
+/* mu/(k_a k_r) of the phases that flow. */
+static void Drag(const FieldSet *fs, const Material *mat, ScalarState *s)
 {
-  double       dphi, dSh, dw, dg;
-  const double k   = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
-  const Jet    ka  = JetChain2(k, dphi, s->phi, dSh, s->Sh);
-  double       krw = RelPermWater(&mat->relperm, s->sw.v, &dw), krg = RelPermGas(&mat->relperm, s->sg.v, &dg);
+  double       dphi, dSh, ds;
+  const double k  = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
+  const Jet    ka = JetChain2(k, dphi, s->phi, dSh, s->Sh);
 
-  if (krw < MOBILITY_FLOOR)
-    krw = MOBILITY_FLOOR, dw = 0.0;
-  if (krg < MOBILITY_FLOOR)
-    krg = MOBILITY_FLOOR, dg = 0.0;
-  s->drag[PHASE_W] = JetDiv(JetConstant(mat->mu_w), JetMul(ka, JetChain(krw, dw, s->sw)));
-  s->drag[PHASE_G] = JetDiv(JetConstant(mat->mu_g), JetMul(ka, JetChain(krg, dg, s->sg)));
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    double kr = 1.0;
+
+    if (!fs->phase[f])
+      continue;
+    ds = 0.0;
+    if (fs->phase[PHASE_G]) /* a lone fluid fills the pores: k_r = 1 */
+      kr = f == PHASE_W ? RelPermWater(&mat->relperm, s->sw.v, &ds) : RelPermGas(&mat->relperm, s->sg.v, &ds);
+    if (kr < MOBILITY_FLOOR)
+      kr = MOBILITY_FLOOR, ds = 0.0;
+    s->drag[f] = JetDiv(JetConstant(f == PHASE_W ? mat->mu_w : mat->mu_g),
+                        JetMul(ka, JetChain(kr, ds, f == PHASE_W ? s->sw : s->sg)));
+  }
 }
 
 static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarState *s)
@@ -140,28 +146,54 @@ static void Skeleton(const Material *mat, ScalarState *s)
   s->beta = JetDiv(JetAdd(JetScale(mat->solid.beta, grains), JetScale(mat->hydrate.beta, ice)), JetAdd(grains, ice));
 }
 
-ClStatus ScalarStateEvaluate(const Material *mat, const PointHistory *h, double J, const double in[IN_COUNT],
-                             ScalarState *s, const char **why)
+/* Shares of the fluids in the open pores and their mean pressure (10). */
+static void Saturations(const FieldSet *fs, const Material *mat, Jet pw, Jet pg, ScalarState *s)
+{
+  const Jet pc = JetSub(pg, pw);
+  double    ds;
+
+  s->sw = JetConstant(fs->phase[PHASE_W] ? 1.0 : 0.0);
+  s->sg = JetConstant(0.0);
+  s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
+  if (!fs->phase[PHASE_G])
+    return;
+  const double sg = RetentionGasShare(&mat->retention, pc.v, &ds);
+  s->sg           = JetChain(sg, ds, pc);
+  s->sw           = JetSub(s->sw, s->sg);
+  s->p            = JetAdd(pw, JetMul(s->sg, pc));
+}
+
+static ClStatus CheckInputs(const FieldSet *fs, const double in[IN_COUNT], const char **why)
+{
+  const bool finite = isfinite(in[IN_T]) && (!fs->phase[PHASE_W] || isfinite(in[IN_P])) &&
+                      (!fs->phase[PHASE_G] || isfinite(in[IN_P + 1]));
+
+  if (!finite) {
+    *why = "pressure or temperature is not finite";
+    return CL_NONFINITE;
+  }
+  if (in[IN_T] <= -CL_ZERO_CELSIUS) {
+    *why = "temperature fell to absolute zero";
+    return CL_DOMAIN;
+  }
+  if (fs->phase[PHASE_G] && in[IN_P + 1] <= 0.0) {
+    *why = "gas pressure fell to zero";
+    return CL_DOMAIN;
+  }
+  return CL_OK;
+}
+
+ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, double J,
+                             const double in[IN_COUNT], ScalarState *s, const char **why)
 {
   const Jet pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
             T     = JetVariable(in[IN_T], JET_T);
   const Jet zero  = JetConstant(0.0);
   const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
-  const Jet pc = JetSub(pg, pw);
-  double    ds;
 
-  if (!isfinite(pw.v) || !isfinite(pg.v) || !isfinite(T.v)) {
-    *why = "pressure or temperature is not finite";
-    return CL_NONFINITE;
-  }
-  if (T.v <= -CL_ZERO_CELSIUS) {
-    *why = "temperature fell to absolute zero";
-    return CL_DOMAIN;
-  }
-  if (pg.v <= 0.0) {
-    *why = "gas pressure fell to zero";
-    return CL_DOMAIN;
-  }
+  const ClStatus status = CheckInputs(fs, in, why);
+  if (status != CL_OK)
+    return status;
   s->V   = JetScale(h->V, JetVariable(J, JET_J));
   s->Vp  = JetSub(s->V, JetDiv(JetConstant(h->m_s), rho_s));
   s->phi = JetDiv(s->Vp, s->V);
@@ -169,12 +201,7 @@ ClStatus ScalarStateEvaluate(const Material *mat, const PointHistory *h, double 
     *why = "porosity fell to zero";
     return CL_DOMAIN;
   }
-  const double sg = RetentionGasShare(&mat->retention, pc.v, &ds);
-  s->sg           = JetChain(sg, ds, pc);
-  s->sw           = JetSub(JetConstant(1.0), s->sg);
-  s->p            = JetAdd(pw, JetMul(s->sg, pc)); /* (10) */
-  s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
-  s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
+  Saturations(fs, mat, pw, pg, s);
   HydrateMass(mat, h, T, rho_h, s);
 
   const Jet Vh = JetDiv(s->m_h, rho_h), Vf = JetSub(s->Vp, Vh);
@@ -183,49 +210,64 @@ ClStatus ScalarStateEvaluate(const Material *mat, const PointHistory *h, double 
     return CL_DOMAIN;
   }
   s->Sh  = JetDiv(Vh, s->Vp);
-  s->m_w = JetMul(Vf, JetMul(s->sw, s->rho[PHASE_W]));
-  s->m_g = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
-  Drag(mat, s);
-  Thermal(mat, h, T, s);
-  Skeleton(mat, s);
+  s->m_w = s->m_g = zero;
+  if (fs->phase[PHASE_W]) {
+    s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
+    s->m_w          = JetMul(Vf, JetMul(s->sw, s->rho[PHASE_W]));
+  }
+  if (fs->phase[PHASE_G]) {
+    s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
+    s->m_g          = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
+  }
+  if (fs->fluid)
+    Drag(fs, mat, s);
+  if (fs->heat)
+    Thermal(mat, h, T, s);
+  if (fs->solid)
+    Skeleton(mat, s);
   return CL_OK;
 }
 
-void PointInitialMasses(const Material *mat, double V, double phi, double Sh, double pw, double pg, double T,
-                        double *m_s, double *m_h, double *m_w, double *m_g)
+void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double pw, double pg,
+                        double T, double *m_s, double *m_h, double *m_w, double *m_g)
 {
   double       d, e;
-  const double sg = RetentionGasShare(&mat->retention, pg - pw, &d), Vf = V * phi * (1.0 - Sh);
+  const bool   gas = fs->phase[PHASE_G];
+  const double sg = gas ? RetentionGasShare(&mat->retention, pg - pw, &d) : 0.0, Vf = V * phi * (1.0 - Sh);
 
   *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
-  *m_w = Vf * (1.0 - sg) * LiquidDensity(&mat->water, pw, T, &d, &e);
-  *m_g = Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e);
+  *m_w = fs->phase[PHASE_W] ? Vf * (1.0 - sg) * LiquidDensity(&mat->water, pw, T, &d, &e) : 0.0;
+  *m_g = gas ? Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e) : 0.0;
 }
 
-ClStatus PointPropertiesEvaluate(const Material *mat, double V, double m_s, double m_h, double pw, double pg, double T,
-                                 PointProperties *r, const char **why)
+ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
+                                 double pg, double T, PointProperties *r, const char **why)
 {
   const PointHistory h = {.V = V, .m_s = m_s, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
   const double       in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
   ScalarState        s;
-  const ClStatus     status = ScalarStateEvaluate(mat, &h, 1.0, in, &s, why);
+  const ClStatus     status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
 
   if (status != CL_OK)
     return status;
+  *r = (PointProperties){.s = {s.sw.v, s.sg.v}, .phi = s.phi.v, .Sh = s.Sh.v};
   for (int f = 0; f < PHASE_COUNT; f++) {
-    r->rho[f]  = s.rho[f].v;
-    r->drag[f] = s.drag[f].v;
+    const Jet *m = f == PHASE_W ? &s.m_w : &s.m_g;
+
+    if (!fs->phase[f])
+      continue;
+    r->rho[f]     = s.rho[f].v;
+    r->drag[f]    = s.drag[f].v;
+    r->storage[f] = m->d[f == PHASE_W ? JET_PW : JET_PG] / (V * s.rho[f].v);
   }
-  r->s[PHASE_W] = s.sw.v;
-  r->s[PHASE_G] = s.sg.v;
-  r->phi        = s.phi.v;
-  r->Sh         = s.Sh.v;
-  r->capacity   = s.capacity.v;
-  r->kappa      = s.kappa.v;
-  r->M          = s.E.v * (2.0 * ElasticityShearFactor(&mat->elasticity) + ElasticityLameFactor(&mat->elasticity));
-  r->G          = s.E.v * ElasticityShearFactor(&mat->elasticity);
-  r->storage[PHASE_W] = s.m_w.d[JET_PW] / (V * s.rho[PHASE_W].v);
-  r->storage[PHASE_G] = s.m_g.d[JET_PG] / (V * s.rho[PHASE_G].v);
+  if (fs->heat) {
+    r->capacity = s.capacity.v;
+    r->kappa    = s.kappa.v;
+  }
+  if (fs->solid) {
+    r->M = s.E.v * (2.0 * ElasticityShearFactor(&mat->elasticity) + ElasticityLameFactor(&mat->elasticity));
+    r->G = s.E.v * ElasticityShearFactor(&mat->elasticity);
+  }
   return CL_OK;
 }

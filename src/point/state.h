@@ -15,5 +15,6 @@ typedef struct {
   bool limited;
 } ScalarState;
 
-ClStatus ScalarStateEvaluate(const Material *mat, const PointHistory *h, double J, const double in[IN_COUNT],
-                             ScalarState *s, const char **why);
+/* Only what the fields of the set need is filled. */
+ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, double J,
+                             const double in[IN_COUNT], ScalarState *s, const char **why);

@@ -143,6 +143,12 @@ static PetscErrorCode MakeFolder(MPI_Comm comm, const char *path, bool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Relative to the initial store; absolute where there was none. */
+static double Relative(double missing, double store)
+{
+  return store > 0.0 ? missing / store : missing;
+}
+
 static PetscErrorCode Summary(const Stepper *s, const Run *run)
 {
   const StepperState *z = &s->state;
@@ -161,10 +167,10 @@ static PetscErrorCode Summary(const Stepper *s, const Run *run)
                           "  results in %s\n",
                           s->model->c->title, z->t >= s->model->c->t_end * (1.0 - 1e-12) ? "finished" : "stopped", z->t,
                           s->scheme->name, z->step, z->failures_total, z->newton_total, Wall() - run->clock_start,
-                          (t.water + z->out[PHASE_W] - z->water0) / z->water0,
-                          (t.methane + z->out[PHASE_G] - z->methane0) / z->methane0,
-                          (z->heat_gain - z->heat_in - z->heat_source) / z->capacity0, t.hydrate, z->limited_total,
-                          s->model->c->output_dir));
+                          Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
+                          Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
+                          Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
+                          z->limited_total, s->model->c->output_dir));
   PetscCall(PetscPrintf(s->model->grid.comm, "%s", text));
   PetscCallMPI(MPI_Comm_rank(s->model->grid.comm, &rank));
   if (rank == 0) {
@@ -271,8 +277,15 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   if (unknown) {
     *exit_code = CL_EXIT_INPUT;
   } else {
-    PetscCall(PetscPrintf(comm, "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT " cells, %s, to t = %g s\n", c->title,
-                          c->cells[0], c->cells[1], c->stepper, c->t_end));
+    char fields[128];
+
+    FieldSetPrint(&c->fields, fields, sizeof(fields));
+    PetscCall(PetscPrintf(comm,
+                          "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT
+                          " cells%s, %s, to t = %g s\n  fields: %s; %d unknowns "
+                          "a node\n",
+                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "", c->stepper,
+                          c->t_end, fields, c->fields.n));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }

@@ -15,11 +15,12 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
   double *e, *eu;
   PetscCall(PetscMalloc2(4 * m->P.n, &e, 2 * m->P.n, &eu));
   for (PetscInt p = 0; p < m->P.n; p++) { /* (25) */
-    const double y_n[4] = {m->P.f[P_PW][p], m->P.f[P_PG][p], m->P.f[P_T][p], m->P.f[P_SH][p]};
+    double y_n[4], k_n[4];
 
+    StepperHistory(m, p, y_n, k_n);
     for (int k = 0; k < 4; k++) {
       w->rates[4 * p + k] = (w->trial[0].y[4 * p + k] - y_n[k]) / dt;
-      e[4 * p + k]        = s->state.fresh ? 0.0 : 0.5 * dt * (w->rates[4 * p + k] - m->P.f[P_RATE + k][p]);
+      e[4 * p + k]        = s->state.fresh ? 0.0 : 0.5 * dt * (w->rates[4 * p + k] - k_n[k]);
     }
     for (int d = 0; d < 2; d++)
       eu[2 * p + d] = s->state.fresh ? 0.0 : 0.5 * dt * (w->trial[0].v[2 * p + d] - w->v_n[2 * p + d]);

@@ -6,22 +6,23 @@
 /* Start values of the second stage (24). */
 static void Star(Stepper *s, double dt)
 {
-  const Model *m = s->model;
-  StepperWork *w = &s->work;
-  const double c = (1.0 - GAMMA) / GAMMA;
+  const Model    *m  = s->model;
+  const FieldSet *fs = &m->c->fields;
+  StepperWork    *w  = &s->work;
+  const double    c  = (1.0 - GAMMA) / GAMMA;
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    for (int q = 0; q < F_COUNT; q++) {
-      const PetscInt k = I * F_COUNT + q;
+    for (int q = 0; q < fs->n; q++) {
+      const PetscInt k = I * fs->n + q;
 
       w->x_star[k] = m->x_n[k] + c * (w->x[k] - m->x_n[k]);
     }
-    for (int d = 0; d < CL_DIM; d++)
-      w->u_star[I * CL_DIM + d] = (1.0 - GAMMA) * dt * w->x[I * F_COUNT + F_VSX + d];
+    for (int d = 0; fs->solid && d < CL_DIM; d++)
+      w->u_star[I * CL_DIM + d] = (1.0 - GAMMA) * dt * w->x[I * fs->n + PlaceVs(fs) + d];
   }
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 3; k++) {
-      const double m_n = m->P.f[P_MH + k][p];
+      const double m_n = StepperMass(m, p, k);
 
       w->m_star[3 * p + k] = m_n + c * (w->trial[0].m[3 * p + k] - m_n);
     }
@@ -48,14 +49,15 @@ static PetscErrorCode Error(Stepper *s, double dt, Attempt *a)
   ErrorWeights(s->state.fresh, weight);
   PetscCall(PetscMalloc2(4 * m->P.n, &e, 2 * m->P.n, &eu));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double y_n[4] = {m->P.f[P_PW][p], m->P.f[P_PG][p], m->P.f[P_T][p], m->P.f[P_SH][p]};
+    double y_n[4], k_n[4];
 
+    StepperHistory(m, p, y_n, k_n);
     for (int k = 0; k < 4; k++) {
       const double k1 = (w->trial[0].y[4 * p + k] - y_n[k]) / (GAMMA * dt);
       const double k2 = (w->trial[1].y[4 * p + k] - y_n[k] - (1.0 - GAMMA) * dt * k1) / (GAMMA * dt);
 
       w->rates[4 * p + k] = k2;
-      e[4 * p + k]        = dt * (weight[0] * m->P.f[P_RATE + k][p] + weight[1] * k1 + weight[2] * k2);
+      e[4 * p + k]        = dt * (weight[0] * k_n[k] + weight[1] * k1 + weight[2] * k2);
     }
     for (int d = 0; d < 2; d++) {
       const PetscInt q = 2 * p + d;

@@ -73,7 +73,8 @@ static PetscErrorCode SizeWork(Stepper *s)
   if (n <= w->cap_particles && N <= w->cap_nodes)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FreeWork(w));
-  PetscCall(PetscCalloc3(N * F_COUNT, &w->x, N * F_COUNT, &w->x_star, N * CL_DIM, &w->u_star));
+  PetscCall(
+      PetscCalloc3(N * s->model->c->fields.n, &w->x, N * s->model->c->fields.n, &w->x_star, N * CL_DIM, &w->u_star));
   PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, 2 * n, &w->v_n));
   for (int k = 0; k < 2; k++)
     PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, 2 * n, &w->trial[k].u, 2 * n, &w->trial[k].v));
@@ -82,17 +83,32 @@ static PetscErrorCode SizeWork(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4])
+{
+  static const int held[4] = {P_PW, P_PG, P_T, P_SH};
+
+  for (int k = 0; k < 4; k++) {
+    y[k]    = m->P.f[held[k]] ? m->P.f[held[k]][p] : 0.0;
+    rate[k] = m->P.f[P_RATE] ? m->P.f[P_RATE + k][p] : 0.0;
+  }
+}
+
+double StepperMass(const Model *m, PetscInt p, int k)
+{
+  return m->P.f[P_MH + k] ? m->P.f[P_MH + k][p] : 0.0;
+}
+
 PetscErrorCode StepperStartFromHistory(Stepper *s)
 {
   const Model *m = s->model;
   StepperWork *w = &s->work;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * F_COUNT));
+  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * m->c->fields.n));
   PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 3; k++)
-      w->m_star[3 * p + k] = m->P.f[P_MH + k][p];
+      w->m_star[3 * p + k] = StepperMass(m, p, k);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -150,11 +166,15 @@ static PetscErrorCode UpdateScales(Stepper *s)
   double       top[2] = {s->state.scale_p, s->state.scale_u};
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    top[0] = fmax(top[0], fmax(fabs(m->P.f[P_PW][p] - m->P.f[P_PW0][p]), fabs(m->P.f[P_PG][p] - m->P.f[P_PG0][p])));
-    for (int k = 0; k < 3; k++)
-      top[0] = fmax(top[0], fabs(m->P.f[P_SIG + k][p] - m->P.f[P_SIG0 + k][p]));
-    for (int d = 0; d < CL_DIM; d++)
+  for (int k = 0; k < 5; k++) { /* p_w, p_g, sigma'_xx, _yy, _zz against their initial values */
+    const int     now = k < 2 ? P_PW + k : P_SIG + k - 2, start = k < 2 ? P_PW0 + k : P_SIG0 + k - 2;
+    const double *a = m->P.f[now], *b = m->P.f[start];
+
+    for (PetscInt p = 0; a && p < m->P.n; p++)
+      top[0] = fmax(top[0], fabs(a[p] - b[p]));
+  }
+  for (int d = 0; m->P.f[P_U] && d < CL_DIM; d++) {
+    for (PetscInt p = 0; p < m->P.n; p++)
       top[1] = fmax(top[1], fabs(m->P.f[P_U + d][p]));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 2, MPI_DOUBLE, MPI_MAX, m->grid.comm));
@@ -272,7 +292,7 @@ static PetscErrorCode Step(Stepper *s, bool *ok)
     const double dt = NextStep(s, &kink);
     Attempt      a  = {.status = CL_OK};
 
-    PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * F_COUNT));
+    PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * m->c->fields.n));
     PetscCall(s->scheme->step(s, dt, &a));
     if (a.status == CL_OK && s->adaptive && a.err > 1.0 && dt > s->dt_min) {
       if (IsNoise(s, dt, a.err, dt_inaccurate, err_inaccurate))

@@ -1,0 +1,234 @@
+/* fieldset: which fields a scene needs, as its case names them, or as follows from what is identically zero in it. */
+#include "case_private.h"
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#define FIELDS_ALLOWED "auto, a list of solid, water, gas, heat, or one of thmc thc hmc hc thm hm th h tm m t"
+
+/* Text of a key as it stands in the case, NULL if it is not given. */
+static PetscErrorCode Peek(Reader *r, Group g, const char *instance, const char *key, const char **text)
+{
+  char option[256];
+  bool found, from_file;
+
+  PetscFunctionBeginUser;
+  KeyOption(option, sizeof option, g, instance, key);
+  *text = NULL;
+  PetscCall(ReaderFind(r, option, text, &found, &from_file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static bool Yes(const char *text)
+{
+  return text &&
+         (!strcasecmp(text, "yes") || !strcasecmp(text, "true") || !strcasecmp(text, "on") || !strcmp(text, "1"));
+}
+
+/* What the materials say: some hydrate reacts; every skeleton is rigid. */
+static PetscErrorCode PeekMaterials(Reader *r, const Case *c, bool *reacts, bool *rigid)
+{
+  const char *text;
+
+  PetscFunctionBeginUser;
+  *reacts = false;
+  *rigid  = c->nmaterial > 0;
+  for (PetscInt i = 0; i < c->nmaterial; i++) {
+    PetscCall(Peek(r, GROUP_MATERIAL, c->material[i].name, "kinetics_active", &text));
+    *reacts = *reacts || Yes(text);
+    PetscCall(Peek(r, GROUP_MATERIAL, c->material[i].name, "elasticity_E0", &text));
+    *rigid = *rigid && text && !strcasecmp(text, "rigid");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the regions say: some hold gas; all have the same temperature. */
+static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uniform)
+{
+  const char *text, *first = NULL;
+
+  PetscFunctionBeginUser;
+  *gas     = false;
+  *uniform = true;
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    const char *sw;
+
+    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "Sw", &sw));
+    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "Sg", &text));
+    *gas = *gas || (text ? strtod(text, NULL) != 0.0 : sw != NULL);
+    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "temperature", &text));
+    if (i == 0)
+      first = text;
+    *uniform = *uniform && (first && text ? !strcmp(first, text) : first == text);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
+{
+  static const char *const type[] = {"heat_flux", "convection", "face_temperature", "temperature", NULL};
+  const char              *text;
+
+  PetscFunctionBeginUser;
+  *heated = false;
+  for (PetscInt i = 0; i < c->nbc; i++) {
+    PetscCall(Peek(r, GROUP_BC, c->bc[i].name, "type", &text));
+    for (int k = 0; text && type[k]; k++)
+      *heated = *heated || !strcasecmp(text, type[k]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsDerive(Reader *r, const Case *c, unsigned *has)
+{
+  bool reacts, rigid, gas, uniform, heated;
+
+  PetscFunctionBeginUser;
+  PetscCall(PeekMaterials(r, c, &reacts, &rigid));
+  PetscCall(PeekRegions(r, c, &gas, &uniform));
+  PetscCall(PeekHeated(r, c, &heated));
+  *has = HAS_ALL;
+  if (rigid)
+    *has &= ~(unsigned)HAS_SOLID;
+  if (!gas && !reacts)
+    *has &= ~(unsigned)HAS_GAS;
+  if (!reacts && uniform && !heated)
+    *has &= ~(unsigned)HAS_HEAT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static unsigned FieldsParse(Reader *r, const char *text)
+{
+  unsigned has = FieldSetByName(text);
+  List     list;
+
+  if (has)
+    return has;
+  ListCreate(text, &list);
+  for (PetscInt i = 0; i < list.n; i++) {
+    unsigned bit = 0;
+
+    for (int k = 0; cl_field_word[k]; k++) {
+      if (!strcasecmp(cl_field_word[k], list.item[i]))
+        bit = 1u << k;
+    }
+    if (!bit) {
+      ReaderError(r, "fields", list.item[i], "must be %s", FIELDS_ALLOWED);
+      has = 0;
+      break;
+    }
+    has |= bit;
+  }
+  ListDestroy(&list);
+  return has;
+}
+
+PetscErrorCode CaseFieldSet(Reader *r, Case *c)
+{
+  const bool derive = !strcasecmp(c->fields_wanted, "auto");
+  PetscInt   before = r->nerror;
+  unsigned   has    = HAS_ALL;
+
+  PetscFunctionBeginUser;
+  if (derive)
+    PetscCall(FieldsDerive(r, c, &has));
+  else
+    has = FieldsParse(r, c->fields_wanted);
+  if (!FieldSetMake(has, c->inertia, &c->fields)) {
+    if (r->nerror == before)
+      ReaderError(r, "fields", c->fields_wanted, "has gas without water, which no scene here can have; must be %s",
+                  FIELDS_ALLOWED);
+    FieldSetMake(HAS_ALL, c->inertia, &c->fields); /* so that the rest of the case is read */
+  }
+  c->fields_wanted[0] = '\0'; /* the resolved case names what was found */
+  for (int k = 0; cl_field_word[k]; k++) {
+    if (!(c->fields.has & (1u << k)))
+      continue;
+    PetscCall(PetscStrlcat(c->fields_wanted, c->fields_wanted[0] ? "," : "", sizeof c->fields_wanted));
+    PetscCall(PetscStrlcat(c->fields_wanted, cl_field_word[k], sizeof c->fields_wanted));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fields a condition prescribes something of. */
+static unsigned ConditionNeeds(BcType type)
+{
+  switch (type) {
+  case BC_TRACTION:
+  case BC_PLATE:
+    return HAS_SOLID;
+  case BC_PRESSURE:
+    return HAS_WATER;
+  case BC_HEAT_FLUX:
+  case BC_CONVECTION:
+  case BC_FACE_TEMPERATURE:
+  case BC_TEMPERATURE:
+    return HAS_HEAT;
+  default:
+    return HAS_SOLID | HAS_WATER; /* rollers and fixed planes hold the velocities there are */
+  }
+}
+
+static void Words(unsigned has, char text[64])
+{
+  text[0] = '\0';
+  for (int k = 0; cl_field_word[k]; k++) {
+    if (!(has & (1u << k)))
+      continue;
+    if (text[0])
+      strcat(text, " or ");
+    strcat(text, cl_field_word[k]);
+  }
+}
+
+static void FinishRegion(Reader *r, const Case *c, Region *g)
+{
+  const FieldSet *fs = &c->fields;
+  char            option[256];
+
+  if (fs->phase[PHASE_G])
+    return;
+  if (g->Sw == 0.0 && g->Sg == 0.0 && fs->phase[PHASE_W])
+    g->Sw = 1.0 - g->Sh; /* a lone fluid fills the pores */
+  if (g->Sg != 0.0) {
+    KeyOption(option, sizeof option, GROUP_REGION, g->name, "Sg");
+    ReaderError(r, option, NULL, "is %g but gas is not among the fields of the scene (%s)", g->Sg, c->fields_wanted);
+  } else if (g->Sw != 0.0 && !fs->fluid) {
+    KeyOption(option, sizeof option, GROUP_REGION, g->name, "Sw");
+    ReaderError(r, option, NULL, "is %g but water is not among the fields of the scene (%s)", g->Sw, c->fields_wanted);
+  }
+}
+
+void CaseFieldSetFinish(Reader *r, Case *c)
+{
+  const FieldSet *fs = &c->fields;
+  char            option[256], words[64];
+
+  for (PetscInt i = 0; i < c->nregion && !r->bad[GROUP_REGION]; i++)
+    FinishRegion(r, c, &c->region[i]);
+  for (PetscInt i = 0; i < c->nbc && !r->bad[GROUP_BC]; i++) {
+    const unsigned needs = ConditionNeeds(c->bc[i].type);
+
+    if (fs->has & needs)
+      continue;
+    Words(needs, words);
+    KeyOption(option, sizeof option, GROUP_BC, c->bc[i].name, "type");
+    ReaderError(r, option, case_bc_type[c->bc[i].type - 1], "needs %s, which is not among the fields of the scene (%s)",
+                words, c->fields_wanted);
+  }
+  for (PetscInt i = 0; i < c->nmaterial && !r->bad[GROUP_MATERIAL]; i++) {
+    const Material *m = &c->material[i];
+
+    if (m->reacts && !fs->phase[PHASE_G]) {
+      KeyOption(option, sizeof option, GROUP_MATERIAL, m->name, "kinetics_active");
+      ReaderError(r, option, "yes", "needs water and gas among the fields of the scene (%s)", c->fields_wanted);
+    }
+    if (fs->solid && isinf(m->elasticity.E0)) {
+      KeyOption(option, sizeof option, GROUP_MATERIAL, m->name, "elasticity_E0");
+      ReaderError(r, option, "rigid",
+                  "but solid is among the fields of the scene (%s): give every material's E0, or leave "
+                  "solid out",
+                  c->fields_wanted);
+    }
+  }
+}
