@@ -30,6 +30,12 @@ static inline double Largest(double v)
   return v;
 }
 
+static inline double Sum(double v)
+{
+  Call(MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
+  return v;
+}
+
 /* ---------------------------------------------------------------- scenes */
 #define MAX_BC 16
 

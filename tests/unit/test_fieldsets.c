@@ -163,8 +163,11 @@ static double TangentError(Point *q, bool axisymmetric)
     }
   }
   for (int r = 0; r < OUT_COUNT; r++) {
+    const double value =
+        o.out[r < OUT_DM || r > OUT_DM + 1 ? r : OUT_M + 1 + r - OUT_DM]; /* masses gained: of the mass */
+
     if (size[r] > 0.0) /* differences hold 1e-12 of the value itself */
-      worst = fmax(worst, error[r] / fmax(size[r], 1e-3 * fabs(o.out[r])));
+      worst = fmax(worst, error[r] / fmax(size[r], 1e-3 * fabs(value)));
   }
   return worst;
 }
