@@ -2,6 +2,7 @@
 #pragma once
 
 #include <math.h>
+#include "clathra/fields.h"
 #include "clathra/material.h"
 
 /* Sediment of BP2 with a little of everything switched on. */
@@ -34,4 +35,14 @@ static inline Material SedimentMaterial(void)
   assert_true(PermeabilitySetPorosityType(&m.permeability, "kozeny_carman"));
   assert_true(EquilibriumSetType(&m.kinetics.equilibrium, "sloan"));
   return m;
+}
+
+/* The full set of fields. */
+static inline const FieldSet *AllFields(void)
+{
+  static FieldSet all;
+
+  if (all.n == 0)
+    FieldSetMake(HAS_ALL, true, &all);
+  return &all;
 }
