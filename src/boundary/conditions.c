@@ -109,7 +109,7 @@ static double Outside(const Case *c, const Bc *b, double value, const Material *
 
   if (b->initial)
     return p0[phase];
-  if (!c->fields.phase[PHASE_G])
+  if (!(c->fields.has & HAS_GAS_PRESSURE))
     return value;
   const double sg = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);
 

@@ -48,6 +48,7 @@ LAW(Equilibrium, EquilibriumSetType, EquilibriumTypes, kinetics.equilibrium, typ
 
 /* ---------------------------------------------------------------- words */
 static const char *const basis_word[]     = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
+static const char *const pressures_word[] = {"two", "one", NULL};
 static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]   = {"sdirk2", "euler", NULL};
 static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
@@ -92,6 +93,8 @@ static const Key case_key[] = {
          "what the scene needs: a list of solid, water, gas, heat, or a set's name (thmc, thc, hmc, thm, hm, m, ...); "
          "auto drops what is identically zero"),
     BOOLEAN(Case, "inertia", inertia, "yes", "accelerations; no is quasi-static"),
+    BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
+            .choices = pressures_word),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", NULL, "the run starts at 0 and ends here"),

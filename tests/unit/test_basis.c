@@ -323,7 +323,7 @@ static void MakeCase(Case *c, Material *mat, Region *region)
                      .region    = region,
                      .nmaterial = 1,
                      .nregion   = 2};
-  Check(FieldSetMake(HAS_ALL, true, &c->fields));
+  Check(FieldSetMake(HAS_ALL, true, false, &c->fields));
 }
 
 /* Ids 0..n-1 once each, on the right ranks, at places that the id alone decides; volumes and masses of the boxes. */
@@ -341,7 +341,7 @@ static void TestSeed(void **state)
   (void)state;
   MakeGrid(&g);
   MakeCase(&c, &mat, region);
-  Call(ParticlesCreate(HAS_ALL, &P));
+  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE, &P));
   Call(ParticlesSeed(&c, &g, &P));
   for (PetscInt p = 0; p < P.n; p++) {
     const PetscInt id = P.i[PI_ID][p], r = id >= 19 * 9, k = r ? id - 19 * 9 : id, i = k % nx[r], j = k / nx[r];
@@ -384,7 +384,7 @@ static double Stamp(PetscInt id, int k)
 
 static void Fill(const Grid *g, Particles *P, PetscInt n)
 {
-  Call(ParticlesCreate(HAS_ALL, P));
+  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE, P));
   Call(ParticlesResize(P, n));
   for (PetscInt p = 0; p < n; p++) {
     const PetscInt id = p * g->size + g->rank;

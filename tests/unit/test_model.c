@@ -127,8 +127,8 @@ static void Refill(Scene *s, PetscInt p, double Sh)
   const double   V = f[P_V][p], T = f[P_T][p];
   double         d;
 
-  PointInitialMasses(AllFields(), MaterialOf(s, p), V, MaterialOf(s, p)->porosity, Sh, f[P_PW][p], f[P_PG][p], T,
-                     &f[P_MS][p], &f[P_MH][p], &f[P_MW][p], &f[P_MG][p]);
+  InitialMasses(MaterialOf(s, p), V, MaterialOf(s, p)->porosity, Sh, f[P_PW][p], f[P_PG][p], T, &f[P_MS][p],
+                &f[P_MH][p], &f[P_MW][p], &f[P_MG][p]);
   f[P_SH][p] = Sh;
   f[P_SW][p] = (1.0 - Sh) * (1.0 - RetentionGasShare(&MaterialOf(s, p)->retention, f[P_PG][p] - f[P_PW][p], &d));
 }

@@ -95,8 +95,8 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
   q->in[IN_GRADU + 1] -= tw;
   q->in[IN_GRADU + 2] += tw;
   SetPressureOfRegime(r, q, regime);
-  PointInitialMasses(AllFields(), &q->mat, V, phi, Sh, q->in[IN_P], q->in[IN_P + 1], q->in[IN_T], &q->h.m_s,
-                     &q->h.m_star[0], &q->h.m_star[1], &q->h.m_star[2]);
+  InitialMasses(&q->mat, V, phi, Sh, q->in[IN_P], q->in[IN_P + 1], q->in[IN_T], &q->h.m_s, &q->h.m_star[0],
+                &q->h.m_star[1], &q->h.m_star[2]);
   for (int k = 0; k < 3; k++)
     q->h.m_star[k] *= RngBetween(r, 0.97, 1.03);
   if (regime == NO_HYDRATE || regime == LIMITED)
@@ -636,8 +636,8 @@ static void ClosedCell(double p0, const char *what)
   q.mat.reacts = true;
   q.in[IN_T]   = 4.0;
   SetPressures(&q, p0, 5e4);
-  PointInitialMasses(AllFields(), &q.mat, q.h.V, 0.3, 0.1, q.in[IN_P], q.in[IN_P + 1], 4.0, &q.h.m_s, &q.h.m_star[0],
-                     &q.h.m_star[1], &q.h.m_star[2]);
+  InitialMasses(&q.mat, q.h.V, 0.3, 0.1, q.in[IN_P], q.in[IN_P + 1], 4.0, &q.h.m_s, &q.h.m_star[0], &q.h.m_star[1],
+                &q.h.m_star[2]);
   q.h.Sh_n        = 0.1;
   const double pe = EquilibriumPressure(&q.mat.kinetics.equilibrium, 4.0, &d), K0 = q.mat.kinetics.K0;
   for (double f = 1.0; f <= 1e12; f *= 100.0) {
@@ -709,8 +709,8 @@ static void TestNeverNan(void **state)
     RandomParticle(&r, (Regime)(n % REGIMES), &q);
     q.in[IN_T] = RngBetween(&r, -40.0, 150.0);
     SetPressures(&q, RngLog(&r, 1e3, 1e9), (RngPick(&r, 2) ? -1.0 : 1.0) * RngLog(&r, 1e-3, 500.0));
-    PointInitialMasses(AllFields(), &q.mat, q.h.V, phi, Sh, q.in[IN_P], q.in[IN_P + 1], q.in[IN_T], &q.h.m_s,
-                       &q.h.m_star[0], &q.h.m_star[1], &q.h.m_star[2]);
+    InitialMasses(&q.mat, q.h.V, phi, Sh, q.in[IN_P], q.in[IN_P + 1], q.in[IN_T], &q.h.m_s, &q.h.m_star[0],
+                  &q.h.m_star[1], &q.h.m_star[2]);
     q.h.dt          = RngLog(&r, 1e-6, 1e9);
     const double up = RngLog(&r, 1.0, 3.0); /* widening keeps the pores open */
     RotateBy(&q, RngBetween(&r, -PI, PI));
