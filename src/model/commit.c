@@ -96,7 +96,7 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (31) */
+/* (33) */
 static double ShareOfWater(const PointState *s)
 {
   const double w = s->m_w / s->rho[PHASE_W], g = s->m_g / s->rho[PHASE_G];
