@@ -88,9 +88,10 @@ static uint64_t HashSchedule(uint64_t h, const Schedule *s)
 
 static uint64_t HashBc(uint64_t h, const Bc *b)
 {
-  h = INTS(h, b->type, b->side, b->region, b->axis, b->initial);
+  h = INTS(h, b->type, b->side, b->region, b->axis, b->initial, b->natural, b->open);
   h = REALS(h, b->from, b->to, b->position, b->alpha);
-  return HashSchedule(HashSchedule(h, &b->value), &b->shear);
+  h = HashSchedule(HashSchedule(h, &b->value), &b->shear);
+  return HashSchedule(HashSchedule(h, &b->phase[PHASE_W]), &b->phase[PHASE_G]);
 }
 
 uint64_t CaseFingerprint(const Case *c)
@@ -98,7 +99,8 @@ uint64_t CaseFingerprint(const Case *c)
   uint64_t h = FNV_START;
 
   h = Reals(Reals(Reals(h, c->lower, CL_DIM), c->upper, CL_DIM), c->gravity, CL_DIM);
-  h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, c->fields.has, c->nmaterial, c->nregion, c->nbc);
+  h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, (int64_t)c->fields.has, c->nmaterial, c->nregion,
+           c->nbc);
   for (PetscInt k = 0; k < c->nmaterial; k++)
     h = HashMaterial(h, &c->material[k]);
   for (PetscInt k = 0; k < c->nregion; k++)

@@ -12,7 +12,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(c, &m->grid, &m->P));
-  PetscCall(PetscMalloc2(PetscMax(c->nbc, 1), &m->bc.value, PetscMax(c->nbc, 1), &m->bc.shear));
+  PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   m->tol_residual = 1e-9;
   m->poor         = 20;
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
@@ -32,6 +32,7 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree4(m->x_n, m->w, m->V, m->coef));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
+  PetscCall(PetscFree(m->mass_row));
   PetscCall(MatDestroy(&m->J2));
   PetscCall(MatDestroy(&m->A));
   PetscCall(MatDestroy(&m->Pmat));
@@ -50,7 +51,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->face));
   PetscCall(PetscFree(m->ghost));
   PetscCall(PetscFree(m->cell));
-  PetscCall(PetscFree2(m->bc.value, m->bc.shear));
+  PetscCall(PetscFree4(m->bc.value, m->bc.shear, m->bc.phase[0], m->bc.phase[1]));
   PetscCall(ParticlesDestroy(&m->P));
   PetscCall(NodeMapDestroy(&m->map));
   PetscCall(GridDestroy(&m->grid));
@@ -67,6 +68,8 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(PetscCalloc4(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n * NC_COUNT, &m->coef));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
+  if (m->c->fields.one_pressure)
+    PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->mass_row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
