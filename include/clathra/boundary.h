@@ -12,13 +12,18 @@ typedef struct {
   double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   double   area;
-  double   N[CL_NODES];                                               /* weights, in the order of StencilExpand */
+  PetscInt region;
+  double   along;       /* initial coordinate of the particle along the side, m */
+  double   N[CL_NODES]; /* weights, in the order of StencilExpand */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
 } Face;
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
                           Face **face);
+
+/* Is the face one of those that a meter counts? */
+bool MeterCovers(const Meter *m, const Face *f);
 
 /* Prescribed values of all conditions at one time. */
 typedef struct {

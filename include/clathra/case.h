@@ -50,8 +50,7 @@ typedef struct {
   PetscInt axis;
   double   position;
   /* functions of time */
-  Schedule value;   /* normal stress | p (mean) | heat flux | T_a | T | T of what flows in | plate velocity (positive
-                       along   +axis) */
+  Schedule   value; /* normal stress | p (mean) | heat flux | T_a | T (also of inflow) | plate velocity (along +axis) */
   Schedule   shear; /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
   Schedule   phase[PHASE_COUNT]; /* pressure: p_w, p_g, Pa; inflow: volume flux of water, gas, m/s */
   bool       initial;            /* pressure: hold each face at its particle's initial p_w, p_g */
@@ -66,6 +65,16 @@ typedef struct {
   bool   fixed;     /* stays at x in space; otherwise follows the nearest particle set */
 } Probe;
 
+#define CL_METERS 16 /* at most */
+
+/* Counts what crosses a part of the body's surface, whatever the conditions there. */
+typedef struct {
+  char     name[64];
+  Side     side;
+  PetscInt region;   /* -1: all */
+  double   from, to; /* m, along the side */
+} Meter;
+
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
 typedef struct {
@@ -79,11 +88,14 @@ typedef struct {
   bool      inertia;
   FieldSet  fields;          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM]; /* m/s^2 */
-  PetscInt  nmaterial, nregion, nbc, nprobe;
+  PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
   Material *material;
   Region   *region;
   Bc       *bc;
   Probe    *probe;
+  Meter    *meter;
+  double    standard_pressure, standard_temperature; /* Pa, degC: what standard volumes are said to be at */
+  double    standard_gas_density;                    /* kg/m^3 there: what they are computed with */
   /* stabilisation */
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
   double pressure_projection; /* alpha, 0 = off; default 1 */

@@ -31,7 +31,7 @@ typedef struct {
   PetscInt line, offset; /* offset in the text of a key that begins a line, else -1 */
 } Mark;                  /* a key of the file, inner or leaf */
 
-typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_COUNT } Group;
+typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_METER, GROUP_COUNT } Group;
 
 #define CASE_ERRORS 20 /* errors shown */
 typedef struct {

@@ -122,6 +122,12 @@ static const Key case_key[] = {
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
     REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),
+    REAL(Case, "standard_pressure", standard_pressure, "Pa", "(0,1e9]", "101.4 kPa",
+         "of standard volumes of gas; a note, not used"),
+    REAL(Case, "standard_temperature", standard_temperature, "degC", "(-273.15,1000]", "15.56 degC",
+         "of standard volumes of gas; a note, not used"),
+    REAL(Case, "standard_gas_density", standard_gas_density, "kg/m^3", "(0,1e3]", "0.6789 kg/m^3",
+         "of gas at standard_pressure and standard_temperature: what standard volumes are computed with"),
     REAL(Case, "checkpoint_every", checkpoint_every, "s", "[0,inf)", "0 s", "0 s = only at the end and on failure",
          .plain = true),
     {.name = NULL},
@@ -277,6 +283,14 @@ static const Key probe_key[] = {
     {.name = NULL},
 };
 
+static const Key meter_key[] = {
+    CHOICE(Meter, "side", side, NULL, side_word, "side of the body, moves with it"),
+    NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
+    REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),
+    REAL(Meter, "to", to, "m", "", "end", "... to here", .word = "end"),
+    {.name = NULL},
+};
+
 #define GROUP(T, prefix_, list_, noun_, n_, p_, required_, key_, doc_)                                                 \
   {                                                                                                                    \
     .prefix = prefix_, .list = list_, .noun = noun_, .doc = doc_, .size = sizeof(T), .count = offsetof(Case, n_),      \
@@ -289,4 +303,6 @@ const GroupInfo case_group[GROUP_COUNT] = {
           "Boxes of the body and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
     GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
+    GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
+          "Parts of the surface that count what crosses them"),
 };

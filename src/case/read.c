@@ -257,6 +257,7 @@ PetscErrorCode CaseDestroy(Case *c)
   PetscCall(PetscFree(c->region));
   PetscCall(PetscFree(c->bc));
   PetscCall(PetscFree(c->probe));
+  PetscCall(PetscFree(c->meter));
   PetscCall(PetscFree(c->times));
   memset(c, 0, sizeof *c);
   PetscFunctionReturn(PETSC_SUCCESS);
