@@ -42,7 +42,7 @@ typedef struct {
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], double kappa, double dt, FaceOutput *o);
 
-/* Dirichlet values on grid planes and on the axis: sets bit k of mask and value[k] for every prescribed unknown, k its
-   place in the field set, of grid node ij. */
+/* Dirichlet values on grid planes, in regions and on the axis: sets bit k of mask and value[k] for every prescribed
+   unknown, k its place in the field set, of grid node ij. */
 void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
                      double *value);

@@ -23,17 +23,33 @@ typedef struct {
 } Region;
 
 typedef enum {
-  BC_TRACTION = 1,     /* moving faces: total normal stress (compression-positive) and shear, Pa */
-  BC_PRESSURE,         /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
-  BC_HEAT_FLUX,        /* moving faces: W/m^2 into the body */
-  BC_CONVECTION,       /* moving faces: alpha (T_a - T), W/m^2 */
-  BC_FACE_TEMPERATURE, /* moving faces: T, degC */
-  BC_INFLOW,           /* moving faces: volume of water and gas into the body, m/s */
-  BC_ROLLER,           /* grid plane: normal velocity of all phases zero */
-  BC_FIXED,            /* grid plane: all velocities zero */
-  BC_PLATE,            /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
-  BC_TEMPERATURE       /* grid plane: T, degC */
+  BC_TRACTION = 1,      /* moving faces: total normal stress (compression-positive) and shear, Pa */
+  BC_PRESSURE,          /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
+  BC_HEAT_FLUX,         /* moving faces: W/m^2 into the body */
+  BC_CONVECTION,        /* moving faces: alpha (T_a - T), W/m^2 */
+  BC_FACE_TEMPERATURE,  /* moving faces: T, degC */
+  BC_INFLOW,            /* moving faces: volume of water and gas into the body, m/s */
+  BC_ROLLER,            /* grid plane: normal velocity of all phases zero */
+  BC_FIXED,             /* grid plane: all velocities zero */
+  BC_PLATE,             /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
+  BC_TEMPERATURE,       /* grid plane: T, degC */
+  BC_REGION_TEMPERATURE /* nodes in a region's initial box: T, degC */
 } BcType;
+
+/* What a probe writes; words in case_quantity. */
+enum {
+  QUANTITY_P = 0,
+  QUANTITY_PW,
+  QUANTITY_PG,
+  QUANTITY_T,
+  QUANTITY_SH,
+  QUANTITY_SW,
+  QUANTITY_SG,
+  QUANTITY_U,
+  QUANTITY_STRESS,
+  QUANTITY_X,
+  QUANTITY_COUNT
+};
 
 /* For which fluids a pressure opens a face; it stays closed for the other. */
 typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
@@ -111,9 +127,11 @@ typedef struct {
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */
   double  *times;
-  double   every;            /* ... and every so many seconds (0 = off) */
-  double   probe_every;      /* s between probe rows, hit exactly; 0 = every step */
-  double   checkpoint_every; /* s; 0 = only at the end and on failure */
+  char     quantities_wanted[128]; /* all, or words */
+  unsigned quantities;             /* bits 1 << QUANTITY_... that probes write; 0 = all of the scene's fields */
+  double   every;                  /* ... and every so many seconds (0 = off) */
+  double   probe_every;            /* s between probe rows, hit exactly; 0 = every step */
+  double   checkpoint_every;       /* s; 0 = only at the end and on failure */
 } Case;
 
 /* Reads and checks a case (a folder or a .yaml file) together with the options database, collectively.

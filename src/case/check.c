@@ -153,6 +153,25 @@ static void CheckSide(Reader *r, const Case *c, Group g, const char *name, const
     FAIL(g, name, "from", "and to: no part of the body's side lies between %g m and %g m", b->from, b->to);
 }
 
+/* A region whose temperature is held must hold a node. */
+static void CheckHeld(Reader *r, const Case *c, const Bc *b)
+{
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    const Region *g    = &c->region[i];
+    bool          node = b->region < 0 || b->region == i;
+
+    for (int d = 0; d < CL_DIM; d++) {
+      const double h = (c->upper[d] - c->lower[d]) / c->cells[d];
+
+      node = node && floor((g->upper[d] - c->lower[d]) / h + 1e-6) >= ceil((g->lower[d] - c->lower[d]) / h - 1e-6);
+    }
+    if (node)
+      return;
+  }
+  FAIL(GROUP_BC, b->name, "region",
+       "has no node of the grid in its box: refine the grid, or let the box follow its lines");
+}
+
 static void CheckProbe(Reader *r, const Case *c, const Probe *p)
 {
   for (PetscInt i = 0; i < c->nregion; i++) {
@@ -185,6 +204,9 @@ void CaseCheck(Reader *r, const Case *c)
         CheckSide(r, c, GROUP_BC, b->name,
                   &(Meter){.side = b->side, .region = b->region, .from = b->from, .to = b->to});
       CheckFlow(r, c, b);
+    } else if (b->type == BC_REGION_TEMPERATURE) {
+      if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
+        CheckHeld(r, c, b);
     } else if (!bad[GROUP_CASE])
       CheckPlane(r, c, b);
   }
