@@ -56,6 +56,9 @@ def closed_box():
     mass = PHI * LENGTH * HEIGHT * RHO * np.expm1(q * t / (PHI * LENGTH))
     judge(ROW, "inflow into a closed rigid box: rise of pressure, relative", largest_difference(at_end(run, "p_Pa") - P0, [rise] * 3), 1e-4)
     judge(ROW, "inflow into a closed rigid box: mass let in, relative", abs(-run.csv("meters.csv")["left.water_kg"][-1] / mass - 1), 1e-5)
+    ring = strip({"inlet": {**inlet["inlet"], "side": "right"}}, "-geometry", "axisymmetric", "-mat_sand_permeability_k0", "1e-8 m^2")
+    judge(ROW, "inflow into a closed cylinder (twice the surface to volume): rise of pressure, relative",
+          largest_difference(at_end(ring, "p_Pa") - P0, [2 * rise] * 3), 1e-4)  # fmt: skip
     judge(ROW, "inflow into a closed rigid box: water balance", np.max(np.abs(run.balance["water_error"])), ROUND_OFF)
 
 
