@@ -64,18 +64,38 @@ static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uni
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Fields a condition prescribes something of. */
+static unsigned ConditionNeeds(BcType type)
+{
+  switch (type) {
+  case BC_TRACTION:
+  case BC_PLATE:
+    return HAS_SOLID;
+  case BC_PRESSURE:
+  case BC_INFLOW:
+    return HAS_WATER;
+  case BC_HEAT_FLUX:
+  case BC_CONVECTION:
+  case BC_FACE_TEMPERATURE:
+  case BC_TEMPERATURE:
+  case BC_REGION_TEMPERATURE:
+    return HAS_HEAT;
+  default:
+    return HAS_SOLID | HAS_WATER; /* rollers and fixed planes hold the velocities there are */
+  }
+}
+
+/* Does a condition prescribe heat? */
 static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
 {
-  static const char *const type[] = {"heat_flux",   "convection",         "face_temperature",
-                                     "temperature", "region_temperature", NULL};
-  const char              *text;
+  const char *text;
 
   PetscFunctionBeginUser;
   *heated = false;
   for (PetscInt i = 0; i < c->nbc; i++) {
     PetscCall(Peek(r, GROUP_BC, c->bc[i].name, "type", &text));
-    for (int k = 0; text && type[k]; k++)
-      *heated = *heated || !strcasecmp(text, type[k]);
+    for (int k = 0; text && case_bc_type[k]; k++)
+      *heated = *heated || (!strcasecmp(text, case_bc_type[k]) && ConditionNeeds((BcType)(k + 1)) == HAS_HEAT);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,27 +203,6 @@ PetscErrorCode CaseFieldSet(Reader *r, Case *c)
     PetscCall(PetscStrlcat(c->fields_wanted, cl_field_word[k], sizeof c->fields_wanted));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Fields a condition prescribes something of. */
-static unsigned ConditionNeeds(BcType type)
-{
-  switch (type) {
-  case BC_TRACTION:
-  case BC_PLATE:
-    return HAS_SOLID;
-  case BC_PRESSURE:
-  case BC_INFLOW:
-    return HAS_WATER;
-  case BC_HEAT_FLUX:
-  case BC_CONVECTION:
-  case BC_FACE_TEMPERATURE:
-  case BC_TEMPERATURE:
-  case BC_REGION_TEMPERATURE:
-    return HAS_HEAT;
-  default:
-    return HAS_SOLID | HAS_WATER; /* rollers and fixed planes hold the velocities there are */
-  }
 }
 
 void FieldsWords(unsigned has, char text[64])

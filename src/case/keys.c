@@ -240,8 +240,8 @@ static const Key region_key[] = {
 };
 
 #define TYPE(t) (1u << (t))
-#define FACES (TYPE(BC_ROLLER) - TYPE(BC_TRACTION)) /* every type before BC_ROLLER acts on faces, */
-#define PLANES (~0u << BC_ROLLER)                   /* the others on grid planes */
+#define FACES (TYPE(BC_ROLLER) - TYPE(BC_TRACTION))            /* every type before BC_ROLLER acts on faces, */
+#define PLANES (TYPE(BC_REGION_TEMPERATURE) - TYPE(BC_ROLLER)) /* those from there on grid planes */
 
 static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
