@@ -142,11 +142,15 @@ def heat():
 
 # ---------------------------------------------------------------------------------------- conservation, rest, ranks, far away
 def conservation():
-    for basis in BASES[:2]:  # the linear basis gives up in the closed body
+    for basis in BASES:
         for name, keep in (("closed", ("warmed",)), ("draining", ("drained", "warmed"))):
             for inertia in ("yes", "no") if basis == "cpgimp" else ("yes",):
+                # the linear basis does not balance the pressure on its faces and so finds no way through the other scenes
+                more = ("-region_block_particles_per_cell", "3,3") if basis == "linear" else ()
+                if basis == "linear" and name == "draining":
+                    continue
                 run = Run.of_case(scene("thmc", *keep), "-quiet", "-geometry", "axisymmetric", "-basis", basis, "-inertia", inertia,
-                                  "-mat_sand_kinetics_active", "yes")  # fmt: skip
+                                  "-mat_sand_kinetics_active", "yes", *more)  # fmt: skip
                 b = run.balance
                 worst = max(np.max(np.abs(b[f"{w}_error"])) for w in ("water", "methane"))
                 judge("4.2", f"{name} reacting body about an axis, {basis}, inertia {inertia}: water and methane, any step", worst, 1e-10)
@@ -171,6 +175,22 @@ def ranks():
                             "yes", ranks=n) for n in (1, 2))  # fmt: skip
     value, where, names = difference(one, two)
     judge("4.2", f"reacting body about an axis, 2 ranks against 1: {names} variables ({where})", value, 1e-9)
+
+
+def again():
+    """The resolved case of a run gives the same run; so does a run cut in two."""
+    about = ("-quiet", "-geometry", "axisymmetric", "-inertia", "no", "-stepper_adapt", "no")
+    for fields, keep in (("thmc", ("drained", "warmed")), ("hm", ("drained",)), ("thc", ("drained", "warmed")), ("th", ("drained", "warmed"))):
+        case = scene(fields, *keep)
+        check_true(f"auto finds {fields}", f"({fields})" in Run.of_case(case, *about[1:]).output)
+        options = (*about, "-fields", fields)
+        whole = Run.of_case(case, *options)
+        resolved = Run.of_case(whole.out / "case.yaml", "-quiet")
+        check(f"resolved case, {fields} about an axis: difference", difference(whole, resolved)[0], 0.0)
+        out = scratch() / "out"
+        Run.of_case(case, *options, "-stepper_max_steps", 4, out=out)
+        cut = Run.of_case(case, *options, "-restart", out / "checkpoint.h5", out=out)
+        judge("4.2", f"restart, {fields} about an axis, quasi-static: largest difference", difference(whole, cut)[0], 0.0)
 
 
 def far():
@@ -200,5 +220,6 @@ if __name__ == "__main__":
     conservation()
     rest()
     ranks()
+    again()
     far()
     finish()
