@@ -48,6 +48,7 @@ ROWS = {  # of the table: what is shown
 SECTION = {  # of the text, beside its table
     "4.1": "Field sets: a superfluous field changes nothing (rtol 1e-8), and what leaving it out saves",
     "4.2": "Geometry about an axis: exact solutions, balances, rest, ranks, and the plane far from the axis",
+    "4.3": "Boundary conditions and meters",
     "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
 }
 NOT_A_TEST = {"common", "exact"}
