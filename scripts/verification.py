@@ -45,7 +45,12 @@ ROWS = {  # of the table: what is shown
     16: "Bad cases, truncated and random files are refused with a reason",
     17: "Big steps: BP2 case 2 at fixed dt = 50 s and 100 s",
 }
-SECTION = {"8.": "1, 2 and 4 ranks agree (rtol 1e-9)", "4.3": "Boundary conditions and meters"}  # of the text, beside its table
+SECTION = {  # of the text, beside its table
+    "4.1": "Field sets: a superfluous field changes nothing (rtol 1e-8), and what leaving it out saves",
+    "4.2": "Geometry about an axis: exact solutions, balances, rest, ranks, and the plane far from the axis",
+    "4.3": "Boundary conditions and meters",
+    "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
+}
 NOT_A_TEST = {"common", "exact"}
 INTEGRATION = ("ranks", "restart")  # of tests/integration: those that record lines of the table
 
@@ -118,7 +123,7 @@ def page(records):
     text = ["# Verification", "",
             "Written by `scripts/verification.py`, which runs the tests named here; change them, not this page.", "",
             f"{len(records)} numbers, {missed} outside their bars. A bar is a limit of the test: `./check` fails outside it.",
-            "Reference curves and exact solutions: cases/bp2/reference and tests/verification/exact.py.", ""]  # fmt: skip
+            "Reference curves and exact solutions: cases/bp2/reference and tests/verification/exact*.py.", ""]  # fmt: skip
     for row, title in {**ROWS, **SECTION}.items():
         number = f"{row}. " if isinstance(row, int) else ""
         text += [f"## {number}{title}", "", *(rows_of(records, row) or [elsewhere(row)]), ""]

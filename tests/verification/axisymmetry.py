@@ -45,7 +45,9 @@ def thick_cylinder():
             off, h = np.array(off), [upper / n for n in cells]
             for k, what in enumerate(("u_r", "stress")):
                 rows.append((basis, place, what, *off[:, k], *order(h, off[:, k])))
-            if basis != "linear":
+            if basis == "linear":
+                judge("4.2", f"thick cylinder, {basis}, {place}: order of u_r in h", order(h, off[:, 0])[-1], (0.9, 3.0))
+            else:
                 judge("4.2", f"thick cylinder, {basis}, {place}, 40 cells: u_r, rms over its largest", off[-1, 0], 2e-3)
                 judge("4.2", f"thick cylinder, {basis}, {place}, 40 cells: stress, rms over the load", off[-1, 1], 2e-2)
                 judge("4.2", f"thick cylinder, {basis}, {place}: order of u_r in h", order(h, off[:, 0])[-1], (1.5, 3.0))
@@ -78,12 +80,11 @@ def consolidation():
     exact = exact_flow.PoroCylinder(R, P, 9e7, 0.2, 0.3 / 2.2e9, 1e-12)
     times = np.array([0.02, 0.05, 0.1, 0.3]) * R**2 / exact.c
     rows, start = [], exact.initial_pressure()
-    for basis in BASES:
+    for basis in BASES[:2]:  # a linear particle's face acts at the particle: not in balance with p0, in the plane neither
         cells, off = (10, 20, 40) if basis == "cpgimp" else (20,), []
         for n in cells:
-            upper = 0.53 if basis != "linear" else 0.5
             run = Run.of_case(CASES / "cylinder_drained.yaml", "-quiet", "-basis", basis, "-grid_cells", f"{n},1", "-grid_upper",
-                              f"{upper} m,0.1 m", "-output_times", ",".join(f"{t!r} s" for t in times), "-time_end", f"{times[-1]!r} s")  # fmt: skip
+                              "0.53 m,0.1 m", "-output_times", ",".join(f"{t!r} s" for t in times), "-time_end", f"{times[-1]!r} s")  # fmt: skip
             found = []
             for t in times:
                 v = run.snapshot(t)
@@ -100,9 +101,8 @@ def consolidation():
                 t = np.linspace(0.001, 0.2, 400) * R**2 / exact.c
                 judge("4.2", "radial consolidation: overshoot of p on the axis over the exact one",
                       peak / (np.max(exact.pressure(0.0, t)) / start - 1), (0.9, 1.1))  # fmt: skip
-        if basis != "linear":
-            judge("4.2", f"radial consolidation, {basis}, {cells[-1]} cells: p, rms over p(0+)", off[-1][0], 0.02, 0.01, "%")
-            judge("4.2", f"radial consolidation, {basis}, {cells[-1]} cells: u_r, rms over its largest", off[-1][1], 0.02, 0.01, "%")
+        judge("4.2", f"radial consolidation, {basis}, {cells[-1]} cells: p, rms over p(0+)", off[-1][0], 5e-3, 0.01, "%")
+        judge("4.2", f"radial consolidation, {basis}, {cells[-1]} cells: u_r, rms over its largest", off[-1][1], 5e-3, 0.01, "%")
         if len(cells) > 1:
             check("radial consolidation: p, error of 40 over 10 cells", off[-1][0] / off[0][0], 0.5)
             check("radial consolidation: u, error of 40 over 10 cells", off[-1][1] / off[0][1], 0.5)
@@ -131,8 +131,8 @@ def heat():
                 _, ring = rings(v) if basis != "linear" else (0, v["position"][:, 0])
                 found.append(np.sqrt(np.mean((v["T"][:, 0] - exact[which](ring, t)) ** 2)) / (T0 - Ta))
             off.append(np.max(found))
-            check(f"heat, {names[which]}, {basis}, {n} cells: heat balance (K)", np.max(np.abs(run.balance["heat_error"])),
-                  np.inf if which == "line" else 1e-8)  # fmt: skip
+            if which != "line":  # what a prescribed temperature on a grid line takes is not in the balance
+                check(f"heat, {names[which]}, {basis}, {n} cells: heat balance (K)", np.max(np.abs(run.balance["heat_error"])), 1e-8)
         h = [R / n for n in cells]
         rows.append((names[which], basis, *off, *order(h, off)))
         judge("4.2", f"cooling cylinder, {names[which]}, {basis}, 32 cells: T, rms over T0 - Ta", off[-1], 0.01, 0.01, "%")
@@ -142,11 +142,15 @@ def heat():
 
 # ---------------------------------------------------------------------------------------- conservation, rest, ranks, far away
 def conservation():
-    for basis in BASES[:2]:  # the linear basis does not hold this load on a side that cuts cells, in the plane neither
+    for basis in BASES:
         for name, keep in (("closed", ("warmed",)), ("draining", ("drained", "warmed"))):
             for inertia in ("yes", "no") if basis == "cpgimp" else ("yes",):
+                # the linear basis does not balance the pressure on its faces and so finds no way through the other scenes
+                more = ("-region_block_particles_per_cell", "3,3") if basis == "linear" else ()
+                if basis == "linear" and name == "draining":
+                    continue
                 run = Run.of_case(scene("thmc", *keep), "-quiet", "-geometry", "axisymmetric", "-basis", basis, "-inertia", inertia,
-                                  "-mat_sand_kinetics_active", "yes")  # fmt: skip
+                                  "-mat_sand_kinetics_active", "yes", *more)  # fmt: skip
                 b = run.balance
                 worst = max(np.max(np.abs(b[f"{w}_error"])) for w in ("water", "methane"))
                 judge("4.2", f"{name} reacting body about an axis, {basis}, inertia {inertia}: water and methane, any step", worst, 1e-10)
@@ -171,6 +175,22 @@ def ranks():
                             "yes", ranks=n) for n in (1, 2))  # fmt: skip
     value, where, names = difference(one, two)
     judge("4.2", f"reacting body about an axis, 2 ranks against 1: {names} variables ({where})", value, 1e-9)
+
+
+def again():
+    """The resolved case of a run gives the same run; so does a run cut in two."""
+    about = ("-quiet", "-geometry", "axisymmetric", "-inertia", "no", "-stepper_adapt", "no")
+    for fields, keep in (("thmc", ("drained", "warmed")), ("hm", ("drained",)), ("thc", ("drained", "warmed")), ("th", ("drained", "warmed"))):
+        case = scene(fields, *keep)
+        check_true(f"auto finds {fields}", f"({fields})" in Run.of_case(case, *about[1:]).output)
+        options = (*about, "-fields", fields)
+        whole = Run.of_case(case, *options)
+        resolved = Run.of_case(whole.out / "case.yaml", "-quiet")
+        check(f"resolved case, {fields} about an axis: difference", difference(whole, resolved)[0], 0.0)
+        out = scratch() / "out"
+        Run.of_case(case, *options, "-stepper_max_steps", 4, out=out)
+        cut = Run.of_case(case, *options, "-restart", out / "checkpoint.h5", out=out)
+        judge("4.2", f"restart, {fields} about an axis, quasi-static: largest difference", difference(whole, cut)[0], 0.0)
 
 
 def far():
@@ -200,5 +220,6 @@ if __name__ == "__main__":
     conservation()
     rest()
     ranks()
+    again()
     far()
     finish()

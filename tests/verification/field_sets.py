@@ -148,7 +148,7 @@ def cost():
         view = bp2_case1(fields, "52,1", 1, "-ksp_view")[0]
         n = int(re.search(r"(\d+) unknowns a node", view)[1])
         matrix = re.search(r"rows=(\d+), cols=\d+, bs=\d+\s+total: nonzeros=(\d+)", view)
-        few, many = (min(bp2_case1(fields, "52,1", n, "-quiet")[1] for _ in range(3)) for n in (5, 45))
+        few, many = (min(bp2_case1(fields, "52,1", n, "-quiet")[1] for _ in range(2)) for n in (5, 45))
         seconds = (many - few) / 40
         empty, full = (bp2_case1(fields, cells, 1, "-quiet")[2] for cells in ("13,1", "208,10"))
         found[fields] = (n, int(matrix[1]), int(matrix[2]), 1e3 * seconds, full - empty)
