@@ -20,9 +20,10 @@ typedef struct {
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
                           Face **face);
 
-/* Prescribed values of all conditions at one time. */
+/* Prescribed values of all conditions at one time, and gravity then. */
 typedef struct {
   double *value, *shear; /* [Case.nbc] */
+  double  gravity[CL_DIM];
 } BcValues;
 void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */

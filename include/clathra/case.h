@@ -71,6 +71,7 @@ typedef struct {
   bool      inertia;
   FieldSet  fields;          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM]; /* m/s^2 */
+  double    gravity_ramp;    /* s: it grows from zero over this time; 0 = at once */
   PetscInt  nmaterial, nregion, nbc, nprobe;
   Material *material;
   Region   *region;

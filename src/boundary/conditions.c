@@ -9,11 +9,13 @@ void BcValuesEvaluate(const Case *c, double t, BcValues *v)
     v->value[k] = c->bc[k].value.n ? ScheduleValue(&c->bc[k].value, t) : 0.0;
     v->shear[k] = c->bc[k].shear.n ? ScheduleValue(&c->bc[k].shear, t) : 0.0;
   }
+  for (int d = 0; d < CL_DIM; d++)
+    v->gravity[d] = t < c->gravity_ramp ? c->gravity[d] * t / c->gravity_ramp : c->gravity[d];
 }
 
 double BcNextKink(const Case *c, double t)
 {
-  double next = INFINITY;
+  double next = t < c->gravity_ramp * (1.0 - 1e-12) ? c->gravity_ramp : INFINITY;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
     if (c->bc[k].value.n)

@@ -94,6 +94,7 @@ static const Key case_key[] = {
     BOOLEAN(Case, "inertia", inertia, "yes", "accelerations; no is quasi-static"),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
+    REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s", "gravity grows from zero to its value over this time"),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", NULL, "the run starts at 0 and ends here"),
     TEXT(Case, "stepper_type", stepper, "sdirk2", "time integrator", .choices = stepper_word),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),

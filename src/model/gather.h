@@ -83,7 +83,7 @@ static inline void Acceleration(const Model *m, PetscInt I, const double *x, int
   const PetscInt q = I * m->c->fields.n + k;
 
   for (int i = 0; i < 2; i++)
-    acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->c->gravity[i];
+    acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
 }
 
 static inline void GatherFluid(const Model *m, int f, const Reach *r, const double *x, const double *N,
