@@ -89,6 +89,7 @@ typedef struct {
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
   double pressure_projection; /* alpha, 0 = off; default 1 */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
+  bool   upstream;            /* drag of the fluids from upstream; default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
   char     stepper[16]; /* euler | sdirk2 */

@@ -119,6 +119,8 @@ static const Key case_key[] = {
     REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
     BOOLEAN(Case, "stabilisation_flux_interpolation", flux_interpolation, "yes", "momentum-interpolated mass flux"),
+    BOOLEAN(Case, "stabilisation_upstream", upstream, "no",
+            "relative permeabilities from upstream, for sharp fronts of saturation"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
