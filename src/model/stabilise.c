@@ -51,10 +51,14 @@ static void MarkSurface(const Model *m, double *fill)
   for (PetscInt k = 0; k < m->nface; k++) {
     const Face *f    = &m->face[k];
     const int   axis = f->side / 2;
+    const int   sign = f->side % 2 ? 1 : -1;
     double      s[CL_DIM];
 
-    for (int d = 0; d < CL_DIM; d++)
-      s[d] = (m->P.f[P_X + d][f->particle] + f->r[d] - m->grid.lower[d]) / m->grid.h[d];
+    for (int d = 0; d < CL_DIM; d++) {
+      const double arm = d == axis ? sign * m->P.f[P_L + d][f->particle] : 0.0;
+
+      s[d] = (m->P.f[P_X + d][f->particle] + arm - m->grid.lower[d]) / m->grid.h[d];
+    }
     if (fabs(s[axis] - round(s[axis])) < 1e-6)
       continue; /* on a grid line: nothing is cut */
     const PetscInt I = CellIndex(m, (PetscInt)floor(s[0]), (PetscInt)floor(s[1]));
