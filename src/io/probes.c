@@ -7,13 +7,20 @@ static const struct {
   const char *name;
   unsigned    has;
   int         component;
-} quantity[Q_COUNT] = {[Q_P] = {"p_Pa", HAS_WATER, -1},  {"p_w_Pa", HAS_WATER, P_PW},
-                       {"p_g_Pa", HAS_GAS, P_PG},        {"T_degC", HAS_HEAT, P_T},
-                       {"S_h", HAS_ALL, P_SH},           {"S_w", HAS_WATER, P_SW},
-                       [Q_SG] = {"S_g", HAS_GAS, -1},    {"u_x_m", HAS_SOLID, P_U},
-                       {"u_y_m", HAS_SOLID, P_U + 1},    {"sxx_Pa", HAS_SOLID, P_SIG},
-                       {"syy_Pa", HAS_SOLID, P_SIG + 1}, {"szz_Pa", HAS_SOLID, P_SIG + 2},
-                       {"sxy_Pa", HAS_SOLID, P_SIG + 3}, {"x_m", HAS_ALL, P_X},
+} quantity[Q_COUNT] = {[Q_P] = {"p_Pa", HAS_WATER, -1},
+                       {"p_w_Pa", HAS_WATER, P_PW},
+                       {"p_g_Pa", HAS_GAS_PRESSURE, P_PG},
+                       {"T_degC", HAS_HEAT, P_T},
+                       {"S_h", HAS_ALL, P_SH},
+                       {"S_w", HAS_WATER, P_SW},
+                       [Q_SG] = {"S_g", HAS_GAS, -1},
+                       {"u_x_m", HAS_SOLID, P_U},
+                       {"u_y_m", HAS_SOLID, P_U + 1},
+                       {"sxx_Pa", HAS_SOLID, P_SIG},
+                       {"syy_Pa", HAS_SOLID, P_SIG + 1},
+                       {"szz_Pa", HAS_SOLID, P_SIG + 2},
+                       {"sxy_Pa", HAS_SOLID, P_SIG + 3},
+                       {"x_m", HAS_ALL, P_X},
                        {"y_m", HAS_ALL, P_X + 1}};
 
 /* Moments of the weights about the probe: sum of w, w d_i, w d_i d_j. */

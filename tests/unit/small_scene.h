@@ -49,6 +49,8 @@ typedef struct {
   Stage    stage;
 } Scene;
 
+static bool one_pressure; /* of the scenes to come */
+
 /* Grid of 6 x 4 cells of 0.1 m x 0.08 m from x = `start`, with one region; conditions are added afterwards. */
 static inline void SceneInit(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
                              const double lower[2], const double upper[2])
@@ -68,7 +70,7 @@ static inline void SceneInit(Scene *s, unsigned has, bool inertia, bool axisymme
                 .ghost_penalty       = 0.1,
                 .pressure_projection = 1.0,
                 .flux_interpolation  = true};
-  Check(FieldSetMake(has, inertia, &s->c.fields));
+  Check(FieldSetMake(has, inertia, one_pressure, &s->c.fields));
   s->mat                 = SedimentMaterial();
   s->mat.kappa_w         = 0.6;
   s->mat.permeability.k0 = 1.53e-13;
@@ -113,15 +115,19 @@ static inline void Refill(Scene *s, PetscInt p, double Sh)
   const FieldSet *fs = &s->c.fields;
   double *const  *f  = s->m.P.f;
   const double    T = fs->heat ? f[P_T][p] : s->region.temperature, pw = fs->phase[PHASE_W] ? f[P_PW][p] : 0.0;
-  const double    pg = fs->phase[PHASE_G] ? f[P_PG][p] : 0.0;
-  double          m[4];
+  const double    pg = f[P_PG] ? f[P_PG][p] : pw;
+  double          m[4], ds, sg = fs->phase[PHASE_G] ? s->region.Sg : 0.0;
 
-  PointInitialMasses(fs, &s->mat, f[P_V][p], s->mat.porosity, Sh, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
+  if (f[P_PG])
+    sg = RetentionGasShare(&s->mat.retention, pg - pw, &ds);
+  PointInitialMasses(fs, &s->mat, f[P_V][p], s->mat.porosity, Sh, sg, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
   for (int k = 0; k < 4; k++) {
     if (f[P_MS + k])
       f[P_MS + k][p] = m[k];
   }
   f[P_SH][p] = Sh;
+  if (f[P_SW])
+    f[P_SW][p] = (1.0 - Sh) * (1.0 - sg);
 }
 
 /* Nodal and particle arrays of a stage that starts from the state at t_n. */

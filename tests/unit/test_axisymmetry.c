@@ -334,8 +334,8 @@ static void TestAxialHeat(void **state)
     StageStart(s, 1e3);
     PointProperties q;
     const char     *why;
-    Call(PointPropertiesEvaluate(&s->c.fields, &s->mat, 1.0, 0.7 * s->mat.solid.rho0, 0.0, 0.0, 0.0, 4.0, &q, &why) !=
-         CL_OK);
+    Call(PointPropertiesEvaluate(&s->c.fields, &s->mat, 1.0, 0.7 * s->mat.solid.rho0, 0.0, 0.0, 0.0, 4.0, 0.0, &q,
+                                 &why) != CL_OK);
     s->number[0] = -q.kappa * slope;
     s->number[2] = q.kappa * slope;
     Call(ModelBeginStage(&s->m, &s->stage));
