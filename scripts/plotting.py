@@ -24,13 +24,17 @@ def set_style():
 
 
 def derived(particles):
-    """Plotted quantities of one snapshot, in the units of QUANTITIES: {name: (n,) array}."""
+    """Plotted quantities of one snapshot that its scene has, in the units of QUANTITIES: {name: (n,) array}."""
     one = lambda name: particles[name][:, 0]
-    sw = np.clip(one("S_w") / np.maximum(1 - one("S_h"), 1e-12), 0, 1)  # water's share of the fluid-filled pore space
-    return {
-        "p": (sw * one("p_w") + (1 - sw) * one("p_g")) * PA, "T": one("T"), "S_h": one("S_h"), "S_w": one("S_w"),
-        "u_x": particles["displacement"][:, 0] * MM, "u_y": particles["displacement"][:, 1] * MM,
-    }  # fmt: skip
+    found = {name: one(name) for name in ("T", "S_h", "S_w") if name in particles}
+    if "p_g" in particles:
+        sw = np.clip(one("S_w") / np.maximum(1 - one("S_h"), 1e-12), 0, 1)  # water's share of the fluid-filled pore space
+        found["p"] = (sw * one("p_w") + (1 - sw) * one("p_g")) * PA
+    elif "p_w" in particles:
+        found["p"] = one("p_w") * PA
+    if "displacement" in particles:
+        found.update({f"u_{axis}": particles["displacement"][:, k] * MM for k, axis in enumerate("xy")})
+    return found
 
 
 QUANTITIES = {  # name: label

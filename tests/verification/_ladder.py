@@ -45,6 +45,23 @@ class ElasticWave:
         """u, v, sigma."""
         return exact_solid.wave_load(x, t, cls.L, cls.M, cls.rho, cls.q)
 
+    @classmethod
+    def first_mode(cls, particles):
+        """Amplitude (m) of sin(pi x/2L) in the displacement about the static state -q x/M."""
+        u, V = particles["displacement"][:, 0], particles["volume"][:, 0]
+        X = particles["position"][:, 0] - u
+        return 2 * np.sum(V * (u + cls.q * X / cls.M) * np.sin(np.pi * X / (2 * cls.L))) / np.sum(V)
+
+    first_mode_start = 8 * q * L / (np.pi**2 * M)
+
+    @classmethod
+    def energy(cls, particles):
+        """Kinetic energy and strain energy about the static state, over that at t = 0; exactly 1."""
+        strain = (particles["stress"][:, 0] + cls.q) / cls.M
+        V = particles["volume"][:, 0]
+        kinetic = particles["mass_solid"][:, 0] * particles["v_s"][:, 0] ** 2
+        return np.sum(kinetic + V * cls.M * strain**2) * cls.M / (cls.q**2 * np.sum(V))
+
 
 # ---------------------------------------------------------------------------------------- gravity_column
 class GravityColumn:
@@ -74,7 +91,7 @@ class Terzaghi:
 
 # ---------------------------------------------------------------------------------------- stefan_front
 class StefanFront:
-    phi, Sh, Sw, T_wall, T_e = 0.4, 0.5, 0.2, 25.0, 10.0
+    phi, Sh, Sw, T_wall, T_e, length = 0.4, 0.5, 0.2, 25.0, 10.0, 0.5
     share = 6 * 0.018 / 0.124  # water per hydrate, kg/kg
 
     @classmethod
@@ -95,4 +112,36 @@ class StefanFront:
     def front(cls, particles):
         """Position (m) of the front that has taken as much hydrate as is gone."""
         gone = 1 - np.sum(particles["mass_hydrate"]) / (cls.phi * cls.Sh * 900 * np.sum(particles["volume"]))
-        return gone * np.ptp(particles["position"][:, 0] + particles["half_length"][:, 0] * 0) * 0 + gone * 0.5
+        return gone * cls.length
+
+
+# ---------------------------------------------------------------------------------------- buckley_leverett
+class BuckleyLeverett:
+    q, phi = 1e-5, 0.3
+    exact = exact_flow.BuckleyLeverett(exact_flow.Corey(0.1, 0.1, 2, 2), 1e-3, 1e-3, phi, q, 0.9, 0.1)
+
+    @staticmethod
+    def profile(particles):
+        """x (m) and S of the lower row of particles, x rising."""
+        x, y = particles["position"].T
+        row = np.flatnonzero(y < np.mean(y))
+        row = row[np.argsort(x[row])]
+        return x[row], particles["S_w"][row, 0]
+
+    @classmethod
+    def front(cls, x, S):
+        """Last place (m) where S passes half of the front's jump."""
+        half = 0.5 * (cls.exact.S_initial + cls.exact.S_front)
+        i = np.flatnonzero(S > half)[-1]
+        return x[i] + (S[i] - half) / (S[i] - S[i + 1]) * (x[i + 1] - x[i])
+
+
+# ---------------------------------------------------------------------------------------- mcwhorter_sunada
+class McWhorterSunada:
+    retention = exact.Retention(10e3, 0.65, 0.0, 0.0)
+
+    @classmethod
+    def solution(cls):
+        laws = exact_flow.Corey(0.1, 0.0, 2, 2)
+        slope = exact_flow.retention_slope(cls.retention)
+        return exact_flow.McWhorterSunada(0.3, 1e-13, 1e-3, 1e-3, laws.krw, laws.krg, slope, 0.9, 0.3)
