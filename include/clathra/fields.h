@@ -34,7 +34,7 @@ typedef struct {
 } FieldSet;
 
 /* From the bits; false for a set that cannot be (gas without water, nothing at all).  one_pressure: p_g = p_w,
- * docs/equations.md (33). */
+ * docs/equations.md (34). */
 bool FieldSetMake(unsigned has, bool inertia, bool one_pressure, FieldSet *fs);
 /* "solid, water, gas, heat (thmc)"; the name of the set where the field has one. */
 void FieldSetPrint(const FieldSet *fs, char *text, int size);

@@ -45,7 +45,7 @@ typedef struct {
   double V, m_s;
   double m_star[3]; /* m_h*, m_w*, m_g*, kg */
   double T_n, Sh_n; /* at t_n */
-  double sw_n;      /* share of water at t_n: held over the step where there is one pressure (33) */
+  double sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   double sig[6], sig0[6];
   double proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */

@@ -56,7 +56,7 @@ static inline ClStatus ParticleProperties(const Model *m, PetscInt p, PointPrope
 }
 
 /* Weight of a fluid's mass balance in its row: 1, or with one pressure 1/rho_pi, so that the sum is the balance of
-   volume (33). */
+   volume (34). */
 static inline double RowWeight(const Model *m, PetscInt I, int phase)
 {
   return m->c->fields.one_pressure ? 1.0 / m->coef[I * NC_COUNT + NC_RHO + phase] : 1.0;

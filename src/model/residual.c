@@ -168,7 +168,7 @@ static void FaceLoop(const Model *m, const double *x, double *f)
   }
 }
 
-/* (33): the balances of both fluids make one of volume. */
+/* (34): the balances of both fluids make one of volume. */
 static PetscErrorCode SumMassRows(Model *m)
 {
   const FieldSet *fs = &m->c->fields;

@@ -246,7 +246,7 @@ static void TestJacobianAxis(void **state)
   Jacobians(true, false);
 }
 
-/* (33): both mass balances in one row. */
+/* (34): both mass balances in one row. */
 static void TestJacobianOnePressure(void **state)
 {
   (void)state;

@@ -21,19 +21,22 @@ GEOMETRY = {"plane": (), "about an axis": ("-geometry", "axisymmetric")}
 BAR = 1e-8
 
 
-def scene(fields, *keep):
-    """Path of the scene's case for a set's name, with the lines of `keep`."""
-    tags = {w for letter in fields for w in WORDS[letter]} | set(keep)
-    if "solid" not in tags:
-        tags.add("rigid")
+def select(case, *keep):
+    """Path of a copy of a case without the lines marked "only x" for any x not in `keep`."""
     lines = []
-    for line in SCENE.read_text().splitlines():
+    for line in Path(case).read_text().splitlines():
         tag = re.search(r"# only (\w+)$", line)
-        if tag is None or tag[1] in tags:
+        if tag is None or tag[1] in keep:
             lines.append(line)
     path = scratch() / "case.yaml"
     path.write_text("\n".join(lines) + "\n")
     return path
+
+
+def scene(fields, *keep):
+    """Path of the scene's case for a set's name, with the lines of `keep`."""
+    words = {w for letter in fields for w in WORDS[letter]}
+    return select(SCENE, *keep, *words, *(() if "solid" in words else ("rigid",)))
 
 
 def difference(a, b, leave_out=()):
