@@ -53,15 +53,17 @@ def plot_probes(out):
     names = probe_names(probes)
     if not names or not len(probes["time_s"]):
         return
-    panels = [(label, [c for c in columns if f"{names[0]}.{c[0]}" in probes], least) for label, columns, least in PANELS]
-    panels = [p for p in panels if p[1] and not (p[1][0][0] == "S_h" and not any(probes[f"{n}.S_h"].any() for n in names))]
-    across = min(len(panels), 3)
-    down = -(-len(panels) // across)
-    figure, grid = plt.subplots(down, across, figsize=(13 / 3 * max(across, 2), 3.5 * down), squeeze=False)
+    written = lambda columns: [c for c in columns if f"{names[0]}.{c[0]}" in probes]
+    panels = [(label, written(columns), least) for label, columns, least in PANELS if written(columns)]
+    if not any(probes.get(f"{n}.S_h", np.zeros(1)).any() for n in names):
+        panels = [p for p in panels if p[1][0][0] != "S_h"]
+    wide = min(len(panels), 3 if len(panels) > 4 else 2)
+    figure, grid = plt.subplots(-(-len(panels) // wide), wide, figsize=(4.33 * wide, 3.5 * -(-len(panels) // wide)),
+                                squeeze=False)  # fmt: skip
+    for axes in grid.flat[len(panels) :]:
+        axes.remove()
     for axes, panel in zip(grid.flat, panels):
         history_panel(axes, probes, names, *panel)
-    for axes in list(grid.flat)[len(panels) :]:
-        axes.set_visible(False)
     handles = [plt.Line2D([], [], color=c, lw=2.5, label=f"probe {n}") for c, n in zip(COLOURS * len(names), names)]
     figure.legend(handles=handles, loc="upper right", bbox_to_anchor=(1, 1.015), ncol=6)
     figure.suptitle(f"{out.name}: histories at the probes", x=0.01, ha="left")
@@ -90,7 +92,7 @@ def plot_balance(out):
 
 
 def present(snapshots, names):
-    """Those of the quantities that the scene has: hydrate and saturations only where they are not the same everywhere."""
+    """Those of the quantities that the scene has; hydrate and saturations only where they are not the same everywhere."""
     held = [derived(particles) for _, particles in snapshots]
     varies = lambda name: np.ptp(np.concatenate([h[name] for h in held])) > 0
     return [n for n in names if n in held[0] and (n not in ("S_h", "S_w") or varies(n))]
@@ -99,7 +101,8 @@ def present(snapshots, names):
 def plot_profiles(out, snapshots, axis):
     """Profiles along the strip against the current position, one colour a snapshot."""
     chosen = [snapshots[k] for k in spread(len(snapshots), 6)]
-    names = present(chosen, ["p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y"])
+    names = ["p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y"]
+    names = present(chosen, names)
     figure, grid = plt.subplots(1, len(names), figsize=(3.4 * len(names) + 1, 3.8), squeeze=False)
     grid = grid[0]
     colours = plt.cm.viridis(np.linspace(0, 0.88, len(chosen)))
@@ -122,8 +125,8 @@ def plot_scatter(out, snapshots):
     chosen = [snapshots[k] for k in spread(len(snapshots), 4)]
     names = present(chosen, ["p", "T", "S_h", "S_w", "u_x", "u_y"])[:4]
     extent = np.ptp(chosen[0][1]["position"], axis=0)
-    width = np.clip(4.5 * extent[0] / extent[1], 1.5, 3.4)
-    height = np.clip(width * extent[1] / extent[0], 0.8, 4.5) + 0.35
+    width = np.clip(4.5 * extent[0] / extent[1], 1.0, 3.4)
+    height = np.clip(width * extent[1] / extent[0], 0.8, 3.2) + 0.35
     figure, grid = plt.subplots(len(names), len(chosen), figsize=(width * len(chosen) + 1.5, height * len(names) + 0.5),
                                 squeeze=False, sharex=True, sharey=True)  # fmt: skip
     for row, name in zip(grid, names):
@@ -143,6 +146,8 @@ def plot_scatter(out, snapshots):
         figure.colorbar(dots, ax=list(row), label=SHORT[name], pad=0.01, aspect=15)
     for axes in grid[-1]:
         axes.set_xlabel("x (m)")
+        if height * extent[0] < 0.6 * extent[1]:  # narrow
+            axes.tick_params(axis="x", labelrotation=90)
     figure.suptitle(f"{out.name}: particles", x=0.01, ha="left")
     save(figure, out / "figures", "particles")
 
