@@ -115,7 +115,7 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
   return s;
 }
 
-/* Weight of a particle's drag at a node in (16): S, or what looks upstream (34). */
+/* Weight of a particle's drag at a node in (16): S, or what looks upstream (35). */
 static inline double DragWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
   const double *u = &m->up[6 * I + 3 * f];

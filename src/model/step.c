@@ -182,7 +182,7 @@ static PetscErrorCode Project(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (34): directions of flow at t_n, and the factors that keep the sum of the weights. */
+/* (35): directions of flow at t_n, and the factors that keep the sum of the weights. */
 static PetscErrorCode UpstreamWeights(Model *m)
 {
   const FieldSet *fs = &m->c->fields;

@@ -2,8 +2,8 @@
 """cases/stefan_front: dissociation front controlled by conduction, against Neumann's solution.
 
 The front is where all hydrate gone would leave it.  What the scene has and the solution has not: a reaction of finite rate
-(the hydrate is superheated by some hundredths of a kelvin), gas at a pressure a few Pa above p_e, cells and particles of
-finite size; the bar follows from the difference between the grids, which is of their cell size per cell dissociated.
+(the hydrate is superheated by a tenth of a kelvin), gas at a pressure some Pa above p_e, cells and particles of
+finite size.  The bar of the position follows from the grids: 40 and 80 cells differ by 0.08 %, with all of the above 0.2 %.
 """
 import numpy as np
 
