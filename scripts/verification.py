@@ -45,7 +45,8 @@ ROWS = {  # of the table: what is shown
     16: "Bad cases, truncated and random files are refused with a reason",
     17: "Big steps: BP2 case 2 at fixed dt = 50 s and 100 s",
 }
-SECTION = {"8.": "1, 2 and 4 ranks agree (rtol 1e-9)", "4.3": "Boundary conditions and meters"}  # of the text, beside its table
+SECTION = {"8.": "1, 2 and 4 ranks agree (rtol 1e-9)", "4.3": "Boundary conditions and meters",
+           "4.5": "The ladder of cases, against exact solutions (docs/cases.md)"}  # of the text, beside its table
 NOT_A_TEST = {"common", "exact"}
 INTEGRATION = ("ranks", "restart")  # of tests/integration: those that record lines of the table
 
