@@ -12,8 +12,8 @@ typedef struct {
   double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   double   area;
-  double   N[CL_NODES];                                       /* weights, in the order of StencilExpand */
-  PetscInt traction, pressure, heat, convection, temperature; /* index into Case.bc, -1 = none */
+  double   N[CL_NODES];                                               /* weights, in the order of StencilExpand */
+  PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
 } Face;
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
@@ -22,7 +22,7 @@ PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, cons
 
 /* Prescribed values of all conditions at one time. */
 typedef struct {
-  double *value, *shear; /* [Case.nbc] */
+  double *value, *shear, *phase[PHASE_COUNT]; /* [Case.nbc] */
 } BcValues;
 void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */

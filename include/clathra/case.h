@@ -24,15 +24,19 @@ typedef struct {
 
 typedef enum {
   BC_TRACTION = 1,     /* moving faces: total normal stress (compression-positive) and shear, Pa */
-  BC_PRESSURE,         /* moving faces: p_w and p_g, Pa, or the initial ones */
+  BC_PRESSURE,         /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
   BC_HEAT_FLUX,        /* moving faces: W/m^2 into the body */
   BC_CONVECTION,       /* moving faces: alpha (T_a - T), W/m^2 */
   BC_FACE_TEMPERATURE, /* moving faces: T, degC */
+  BC_INFLOW,           /* moving faces: volume of water and gas into the body, m/s */
   BC_ROLLER,           /* grid plane: normal velocity of all phases zero */
   BC_FIXED,            /* grid plane: all velocities zero */
   BC_PLATE,            /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
   BC_TEMPERATURE       /* grid plane: T, degC */
 } BcType;
+
+/* For which fluids a pressure opens a face; it stays closed for the other. */
+typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
 
 typedef struct {
   char   name[64];
@@ -46,10 +50,14 @@ typedef struct {
   PetscInt axis;
   double   position;
   /* functions of time */
-  Schedule value;   /* normal stress | p (mean) | heat flux | T_a | T | plate velocity (positive along +axis) */
-  Schedule shear;   /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
-  bool     initial; /* pressure: hold each face at its particle's initial p_w, p_g */
-  double   alpha;   /* convection coefficient, W/(m^2 K) */
+  Schedule value;   /* normal stress | p (mean) | heat flux | T_a | T | T of what flows in | plate velocity (positive
+                       along   +axis) */
+  Schedule   shear; /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
+  Schedule   phase[PHASE_COUNT]; /* pressure: p_w, p_g, Pa; inflow: volume flux of water, gas, m/s */
+  bool       initial;            /* pressure: hold each face at its particle's initial p_w, p_g */
+  bool       natural; /* pressure: the particle's own capillary pressure instead of the face's initial one (31) */
+  OpenPhases open;    /* pressure */
+  double     alpha;   /* convection coefficient, W/(m^2 K) */
 } Bc;
 
 typedef struct {

@@ -6,8 +6,10 @@
 void BcValuesEvaluate(const Case *c, double t, BcValues *v)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
-    v->value[k] = c->bc[k].value.n ? ScheduleValue(&c->bc[k].value, t) : 0.0;
-    v->shear[k] = c->bc[k].shear.n ? ScheduleValue(&c->bc[k].shear, t) : 0.0;
+    v->value[k] = ScheduleValue(&c->bc[k].value, t);
+    v->shear[k] = ScheduleValue(&c->bc[k].shear, t);
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], t);
   }
 }
 
@@ -16,10 +18,10 @@ double BcNextKink(const Case *c, double t)
   double next = INFINITY;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].value.n)
-      next = fmin(next, ScheduleNextKink(&c->bc[k].value, t));
-    if (c->bc[k].shear.n)
-      next = fmin(next, ScheduleNextKink(&c->bc[k].shear, t));
+    next = fmin(next, ScheduleNextKink(&c->bc[k].value, t));
+    next = fmin(next, ScheduleNextKink(&c->bc[k].shear, t));
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      next = fmin(next, ScheduleNextKink(&c->bc[k].phase[ph], t));
   }
   return next;
 }
@@ -53,13 +55,22 @@ static void Closed(const Face *f, int phase, const double a[2], const double da[
   }
 }
 
+static double Density(const Material *mat, int phase, double p, double T, double *dp, double *dT)
+{
+  return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, dp, dT) : GasDensity(&mat->gas, p, T, dp, dT);
+}
+
+/* Pressures outside, and their derivatives with respect to the particle's capillary pressure. */
+typedef struct {
+  double p[PHASE_COUNT], dpc[PHASE_COUNT];
+} Outside;
+
 /* Open face: prescribed pressure, outflow rho J . a. */
-static void Open(const Material *mat, int phase, double p, const double a[2], const double da[2][MOTION_COUNT],
-                 const double in[IN_COUNT], double dt, FaceOutput *o)
+static void Open(const Material *mat, int phase, const Outside *outside, const double a[2],
+                 const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
   double        dp, dT;
-  const double  rho = phase == PHASE_W ? LiquidDensity(&mat->water, p, in[IN_T], &dp, &dT)
-                                       : GasDensity(&mat->gas, p, in[IN_T], &dp, &dT);
+  const double  p = outside->p[phase], rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
   const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1];
   double       *D = o->D[F_PW + phase];
 
@@ -75,6 +86,13 @@ static void Open(const Material *mat, int phase, double p, const double a[2], co
     D[IN_J + 2 * phase + j] = dt * rho * a[j];
   for (int k = 0; k < MOTION_COUNT; k++)
     D[k] = dt * rho * (J[0] * da[0][k] + J[1] * da[1][k]);
+  for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
+    const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
+
+    D[IN_P + k] = dt * dp * dpk * Ja;
+    for (int i = 0; i < 2; i++)
+      o->D[F_VWX + 2 * phase + i][IN_P + k] = dpk * a[i];
+  }
 }
 
 static void Heat(const Case *c, const Face *f, const BcValues *v, const double in[IN_COUNT], double kappa,
@@ -100,20 +118,99 @@ static void Heat(const Case *c, const Face *f, const BcValues *v, const double i
     o->D[F_T][IN_GT + j] = alpha * f->area * f->r[j];
 }
 
-/* Pressure of a fluid outside: the face's initial one, or both phases shifted so that the mean is the prescribed one.
- */
-static double Outside(const Case *c, const Bc *b, double value, const Material *mat, const double p0[PHASE_COUNT],
-                      int phase)
+/* (31): p_w and p_g as prescribed, the face's initial ones, or from the mean with a capillary pressure: that of the
+   face's initial state, or the particle's own (natural outflow). */
+static void OutsidePressures(const Case *c, PetscInt k, const BcValues *v, const Material *mat,
+                             const double p0[PHASE_COUNT], const double in[IN_COUNT], Outside *o)
 {
-  double ds;
+  const Bc *b = &c->bc[k];
+  double    ds;
 
-  if (b->initial)
-    return p0[phase];
-  if (!c->fields.phase[PHASE_G])
-    return value;
-  const double sg = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);
+  *o = (Outside){{p0[PHASE_W], p0[PHASE_G]}, {0.0, 0.0}};
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    if (b->phase[ph].n)
+      o->p[ph] = v->phase[ph][k];
+  }
+  if (b->phase[PHASE_W].n || b->phase[PHASE_G].n || (b->initial && !b->natural))
+    return;
+  if (!c->fields.phase[PHASE_G]) {
+    o->p[PHASE_W] = v->value[k];
+    return;
+  }
+  const double sg0   = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);
+  const double mean0 = (1.0 - sg0) * p0[PHASE_W] + sg0 * p0[PHASE_G], mean = b->initial ? mean0 : v->value[k];
 
-  return p0[phase] + value - ((1.0 - sg) * p0[PHASE_W] + sg * p0[PHASE_G]);
+  if (b->natural) {
+    const double pc = in[IN_P + PHASE_G] - in[IN_P + PHASE_W], sg = RetentionGasShare(&mat->retention, pc, &ds);
+
+    o->p[PHASE_W]   = mean - sg * pc;
+    o->p[PHASE_G]   = o->p[PHASE_W] + pc;
+    o->dpc[PHASE_W] = -sg - ds * pc;
+    o->dpc[PHASE_G] = 1.0 + o->dpc[PHASE_W];
+    return;
+  }
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    o->p[ph] = p0[ph] + mean - mean0;
+}
+
+static bool Opens(const Bc *b, int phase)
+{
+  return b->open == OPEN_BOTH || (b->open == OPEN_WATER) == (phase == PHASE_W);
+}
+
+/* Rows of the fluids: open where a pressure is prescribed, else closed. */
+static void Fluids(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
+                   const double a[2], const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt,
+                   FaceOutput *o)
+{
+  Outside outside;
+
+  if (f->pressure >= 0)
+    OutsidePressures(c, f->pressure, v, mat, p0, in, &outside);
+  for (int phase = 0; phase < PHASE_COUNT; phase++) {
+    if (!c->fields.phase[phase])
+      continue;
+    if (f->pressure >= 0 && Opens(&c->bc[f->pressure], phase))
+      Open(mat, phase, &outside, a, da, in, dt, o);
+    else
+      Closed(f, phase, a, da, in, o);
+  }
+}
+
+/* (32): mass and, where it comes with a temperature of its own, heat of what is let in.  Its density is the body's own
+   at the face. */
+static void Inflow(const Case *c, const Face *f, const BcValues *v, const Material *mat, int phase, const double a[2],
+                   const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
+{
+  const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
+  const double  T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
+  const double  q = v->phase[phase][f->inflow], area = hypot(a[0], a[1]);
+  const bool    heats = c->fields.heat && c->bc[f->inflow].value.n && q > 0.0;
+  const double  c_f = phase == PHASE_W ? mat->c_w : mat->c_g, dT_in = heats ? v->value[f->inflow] - T : 0.0;
+  double        dp, dT, drate[IN_COUNT] = {0.0};
+  const double  rho = Density(mat, phase, p, T, &dp, &dT), rate = rho * q * area;
+
+  drate[IN_P + phase] = dp * q * area;
+  drate[IN_T]         = dT * q * area;
+  for (int j = 0; j < 2; j++) {
+    drate[IN_GP + 2 * phase + j] = dp * q * area * f->r[j];
+    drate[IN_GT + j]             = dT * q * area * f->r[j];
+  }
+  for (int k = 0; k < MOTION_COUNT; k++)
+    drate[k] = rho * q * (a[0] * da[0][k] + a[1] * da[1][k]) / area;
+  o->out[F_PW + phase] -= dt * rate;
+  o->outflow[phase] -= rate;
+  o->out[F_T] -= c_f * rate * dT_in;
+  o->heat_in += c_f * rate * dT_in;
+  for (int k = 0; k < IN_COUNT; k++) {
+    o->D[F_PW + phase][k] -= dt * drate[k];
+    o->D[F_T][k] -= c_f * drate[k] * dT_in;
+  }
+  if (!heats)
+    return;
+  o->D[F_T][IN_T] += c_f * rate;
+  for (int j = 0; j < 2; j++)
+    o->D[F_T][IN_GT + j] += c_f * rate * f->r[j];
 }
 
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
@@ -135,16 +232,13 @@ void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Materia
     if (f->traction >= 0)
       Traction(v->value[f->traction], v->shear[f->traction], a, da, o);
   }
-  for (int phase = 0; phase < PHASE_COUNT; phase++) {
-    if (!c->fields.phase[phase])
-      continue;
-    if (f->pressure < 0)
-      Closed(f, phase, a, da, in, o);
-    else
-      Open(mat, phase, Outside(c, &c->bc[f->pressure], v->value[f->pressure], mat, p0, phase), a, da, in, dt, o);
-  }
+  Fluids(c, f, v, mat, p0, a, da, in, dt, o);
   if (c->fields.heat)
     Heat(c, f, v, in, kappa, o);
+  for (int phase = 0; f->inflow >= 0 && phase < PHASE_COUNT; phase++) {
+    if (c->fields.phase[phase])
+      Inflow(c, f, v, mat, phase, a, da, in, dt, o);
+  }
 }
 
 static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])

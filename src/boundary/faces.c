@@ -67,6 +67,7 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
   f->heat        = FindCondition(c, BC_HEAT_FLUX, side, region, along);
   f->convection  = FindCondition(c, BC_CONVECTION, side, region, along);
   f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, side, region, along);
+  f->inflow      = FindCondition(c, BC_INFLOW, side, region, along);
   Weights(g, c->basis, &stencil[p], axis, position, f->N);
 }
 

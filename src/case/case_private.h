@@ -134,12 +134,14 @@ typedef struct {
 void               ListCreate(const char *text, List *list);
 void               ListDestroy(List *list);
 void               CaseCheck(Reader *r, const Case *c);
+void               CheckFlow(Reader *r, const Case *c, const Bc *b); /* flow.c: pressure and inflow */
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);
 }
 
 /* ---------------------------------------------------------------- fieldset.c */
+void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
 /* Fills Case.fields from fields_wanted, or derives it from the file; before materials and regions are read. */
 PetscErrorCode CaseFieldSet(Reader *r, Case *c);
 /* What the set leaves open in the regions, and whether the case asks for more than it holds; after all is read. */

@@ -180,9 +180,10 @@ void CaseCheck(Reader *r, const Case *c)
     CheckRegion(r, c, i);
   for (PetscInt i = 0; i < c->nbc && !bad[GROUP_BC]; i++) {
     const Bc *b = &c->bc[i];
-    if (b->type <= BC_FACE_TEMPERATURE) {
+    if (b->type < BC_ROLLER) {
       if (!bad[GROUP_REGION])
         CheckSide(r, c, b);
+      CheckFlow(r, c, b);
     } else if (!bad[GROUP_CASE])
       CheckPlane(r, c, b);
   }

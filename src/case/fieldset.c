@@ -79,6 +79,39 @@ static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is a function of time given, in any form (and, unless zero counts, is it not the constant zero)? */
+static PetscErrorCode PeekSchedule(Reader *r, const char *instance, const char *key, bool zero, bool *given)
+{
+  PetscFunctionBeginUser;
+  for (int f = 0; case_schedule_form[f]; f++) {
+    const char *text;
+    char        name[64];
+
+    PetscCall(PetscSNPrintf(name, sizeof name, "%s%s", key, case_schedule_form[f]));
+    PetscCall(Peek(r, GROUP_BC, instance, name, &text));
+    *given = *given || (text && (f > 0 || zero || strtod(text, NULL) != 0.0));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What crosses the boundary: gas; water or gas with a temperature of its own. */
+static PetscErrorCode PeekFlows(Reader *r, const Case *c, bool *gas, bool *heated)
+{
+  const char *text;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->nbc; i++) {
+    PetscCall(Peek(r, GROUP_BC, c->bc[i].name, "type", &text));
+    if (text && !strcasecmp(text, "pressure"))
+      PetscCall(PeekSchedule(r, c->bc[i].name, "p_g", false, gas));
+    if (!text || strcasecmp(text, "inflow"))
+      continue;
+    PetscCall(PeekSchedule(r, c->bc[i].name, "gas", false, gas));
+    PetscCall(PeekSchedule(r, c->bc[i].name, "temperature", true, heated));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode FieldsDerive(Reader *r, const Case *c, unsigned *has)
 {
   bool reacts, rigid, gas, uniform, heated;
@@ -87,6 +120,7 @@ static PetscErrorCode FieldsDerive(Reader *r, const Case *c, unsigned *has)
   PetscCall(PeekMaterials(r, c, &reacts, &rigid));
   PetscCall(PeekRegions(r, c, &gas, &uniform));
   PetscCall(PeekHeated(r, c, &heated));
+  PetscCall(PeekFlows(r, c, &gas, &heated));
   *has = HAS_ALL;
   if (rigid)
     *has &= ~(unsigned)HAS_SOLID;
@@ -158,6 +192,7 @@ static unsigned ConditionNeeds(BcType type)
   case BC_PLATE:
     return HAS_SOLID;
   case BC_PRESSURE:
+  case BC_INFLOW:
     return HAS_WATER;
   case BC_HEAT_FLUX:
   case BC_CONVECTION:
@@ -169,7 +204,7 @@ static unsigned ConditionNeeds(BcType type)
   }
 }
 
-static void Words(unsigned has, char text[64])
+void FieldsWords(unsigned has, char text[64])
 {
   text[0] = '\0';
   for (int k = 0; cl_field_word[k]; k++) {
@@ -211,7 +246,7 @@ void CaseFieldSetFinish(Reader *r, Case *c)
 
     if (fs->has & needs)
       continue;
-    Words(needs, words);
+    FieldsWords(needs, words);
     KeyOption(option, sizeof option, GROUP_BC, c->bc[i].name, "type");
     ReaderError(r, option, case_bc_type[c->bc[i].type - 1], "needs %s, which is not among the fields of the scene (%s)",
                 words, c->fields_wanted);

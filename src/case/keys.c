@@ -27,7 +27,13 @@ static bool NeedsRate(const void *p)
 }
 static bool NeedsPressure(const void *p)
 {
-  return !((const Bc *)p)->initial;
+  const Bc *b = (const Bc *)p;
+
+  return !b->initial && !b->phase[PHASE_W].n && !b->phase[PHASE_G].n;
+}
+static bool NeedsTemperature(const void *p)
+{
+  return ((const Bc *)p)->type != BC_INFLOW;
 }
 
 /* ---------------------------------------------------------------- laws by name */
@@ -54,8 +60,11 @@ static const char *const side_word[]      = {"left", "right", "bottom", "top", N
 static const char *const axis_word[]      = {"x", "y", NULL};
 static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
-const char *const        case_bc_type[]   = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",
-                                             "roller",   "fixed",    "plate",     "temperature", NULL};
+static const char *const capillary_word[] = {"held", "free", NULL};
+static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* OpenPhases */
+const char *const        case_bc_type[]   = {"traction", "pressure", "heat_flux", "convection", "face_temperature",
+                                             "inflow",   "roller",   "fixed",     "plate",      "temperature",
+                                             NULL};
 
 /* ---------------------------------------------------------------- the table */
 /* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
@@ -224,7 +233,8 @@ static const Key region_key[] = {
 
 #define TYPE(t) (1u << (t))
 #define FACES                                                                                                          \
-  (TYPE(BC_TRACTION) | TYPE(BC_PRESSURE) | TYPE(BC_HEAT_FLUX) | TYPE(BC_CONVECTION) | TYPE(BC_FACE_TEMPERATURE))
+  (TYPE(BC_TRACTION) | TYPE(BC_PRESSURE) | TYPE(BC_HEAT_FLUX) | TYPE(BC_CONVECTION) | TYPE(BC_FACE_TEMPERATURE) |      \
+   TYPE(BC_INFLOW))
 #define PLANES (TYPE(BC_ROLLER) | TYPE(BC_FIXED) | TYPE(BC_PLATE) | TYPE(BC_TEMPERATURE))
 
 static const Key bc_key[] = {
@@ -242,12 +252,24 @@ static const Key bc_key[] = {
              "total normal stress, compression-positive"),
     SCHEDULE("shear", shear, "Pa", "[-1e12,1e12]", "0 Pa", TYPE(BC_TRACTION),
              "along the side's normal turned by +90 degrees"),
+    SCHEDULE("p_w", phase[PHASE_W], "Pa", "(0,1e10]", "", TYPE(BC_PRESSURE), "water pressure, together with p_g"),
+    SCHEDULE("p_g", phase[PHASE_G], "Pa", "(0,1e10]", "", TYPE(BC_PRESSURE), "gas pressure, together with p_w"),
     SCHEDULE("pressure", value, "Pa", "(0,1e10]", "", TYPE(BC_PRESSURE), "mean pore pressure",
-             WHEN(NeedsPressure, "initial is no")),
+             WHEN(NeedsPressure, "initial is no and p_w, p_g are not given")),
+    BOOLEAN(Bc, "saturation", natural, "held",
+            "capillary pressure outside, with pressure or initial: held is the face's initial one, free the body's own "
+            "(natural outflow)",
+            .choices = capillary_word, .types = TYPE(BC_PRESSURE)),
+    CHOICE(Bc, "phases", open, "both", phases_word, "fluids for which the face is open; closed for the other",
+           .types = TYPE(BC_PRESSURE)),
+    SCHEDULE("water", phase[PHASE_W], "m/s", "[-1e3,1e3]", "0 m/s", TYPE(BC_INFLOW),
+             "volume into the body per time and area, at the face's pressure and temperature; negative = out"),
+    SCHEDULE("gas", phase[PHASE_G], "m/s", "[-1e3,1e3]", "0 m/s", TYPE(BC_INFLOW), "the same for gas"),
     SCHEDULE("flux", value, "W/m^2", "[-1e12,1e12]", NULL, TYPE(BC_HEAT_FLUX), "into the body"),
     SCHEDULE("ambient", value, "degC", "(-273.15,1000]", NULL, TYPE(BC_CONVECTION), "temperature outside"),
-    SCHEDULE("temperature", value, "degC", "(-273.15,1000]", NULL, TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE),
-             ""),
+    SCHEDULE("temperature", value, "degC", "(-273.15,1000]", "",
+             TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE) | TYPE(BC_INFLOW),
+             "inflow: of what flows in, by default the body's own", WHEN(NeedsTemperature, "type is not inflow")),
     SCHEDULE("velocity", value, "m/s", "[-1e3,1e3]", NULL, TYPE(BC_PLATE), "along the axis, positive in its direction"),
     {.name = NULL},
 };

@@ -250,6 +250,8 @@ PetscErrorCode CaseDestroy(Case *c)
   for (PetscInt i = 0; i < c->nbc; i++) {
     ScheduleDestroy(&c->bc[i].value);
     ScheduleDestroy(&c->bc[i].shear);
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      ScheduleDestroy(&c->bc[i].phase[ph]);
   }
   PetscCall(PetscFree(c->material));
   PetscCall(PetscFree(c->region));

@@ -12,7 +12,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(c, &m->grid, &m->P));
-  PetscCall(PetscMalloc2(PetscMax(c->nbc, 1), &m->bc.value, PetscMax(c->nbc, 1), &m->bc.shear));
+  PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   m->tol_residual = 1e-9;
   m->poor         = 20;
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
@@ -50,7 +50,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->face));
   PetscCall(PetscFree(m->ghost));
   PetscCall(PetscFree(m->cell));
-  PetscCall(PetscFree2(m->bc.value, m->bc.shear));
+  PetscCall(PetscFree4(m->bc.value, m->bc.shear, m->bc.phase[0], m->bc.phase[1]));
   PetscCall(ParticlesDestroy(&m->P));
   PetscCall(NodeMapDestroy(&m->map));
   PetscCall(GridDestroy(&m->grid));

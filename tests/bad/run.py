@@ -14,6 +14,7 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 BASE = open(os.path.join(HERE, "..", "..", "cases", "bp2", "case.yaml")).read()
 M = "mat_sediment_"
+NO_GAS = [("basis: cpgimp", "basis: cpgimp\nfields: thm"), ("active: yes", "active: no"), ("    Sw: 0.6\n    Sg: 0.4\n", "")]
 
 CASES = [
     # --- keys
@@ -107,6 +108,25 @@ CASES = [
      ["bc_load_normal_ramp", "end after"], []),
     ("rate unit", [("{table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}", "{rate: [0 Pa, 1 MPa, 0 s, 10 s]}")],
      ["bc_load_normal_rate", "Pa/s"], []),
+    ("p_w without p_g", [("initial: yes}", "p_w: 3 MPa}")], ["bc_drain_p_g", "p_w is given"], []),
+    ("p_w beside the mean", [("initial: yes}", "p_w: 3 MPa, p_g: 3 MPa, pressure: 3 MPa}")], ["bc_drain_p_w", "pressure"], []),
+    ("p_w beside initial", [("initial: yes}", "p_w: 3 MPa, p_g: 3 MPa, initial: yes}")], ["bc_drain_p_w", "initial"], []),
+    ("free saturation with p_w and p_g", [("initial: yes}", "p_w: 3 MPa, p_g: 3 MPa, saturation: free}")],
+     ["bc_drain_saturation", "p_w and p_g"], []),
+    ("bad saturation", [("initial: yes}", "pressure: 3 MPa, saturation: fixed}")], ["bc_drain_saturation", "held | free"], []),
+    ("bad phases", [("initial: yes}", "pressure: 3 MPa, phases: oil}")], ["bc_drain_phases", "both | water | gas"], []),
+    ("p_g without a gas field", [("initial: yes}", "p_w: 3 MPa, p_g: 3 MPa}"), *NO_GAS], ["bc_drain_p_g", "needs gas"], []),
+    ("open for a gas that is not there", [("initial: yes}", "pressure: 3 MPa, phases: gas}"), *NO_GAS], ["bc_drain_phases", "needs gas"], []),
+    ("free saturation without gas", [("initial: yes}", "pressure: 3 MPa, saturation: free}"), *NO_GAS],
+     ["bc_drain_saturation", "needs gas"], []),
+    ("inflow of gas without a gas field", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, gas: 1e-6 m/s}"), *NO_GAS],
+     ["bc_drain_gas", "needs gas"], []),
+    ("inflow with a temperature, without heat", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, temperature: 3 degC}"),
+      ("basis: cpgimp", "basis: cpgimp\nfields: hm"), *NO_GAS[1:]], ["bc_drain_temperature", "needs heat"], []),
+    ("inflow without unit", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, water: 1e-6}")],
+     ["bc_drain_water", "m/s"], []),
+    ("inflow with a pressure", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, pressure: 3 MPa}")],
+     ["bc_drain_pressure", "type inflow"], []),
     # --- command line
     ("option without unit", [], ["-region_column_pressure", "needs the unit"], ["-region_column_pressure", "3e6"]),
     ("option out of range", [], ["-" + M + "porosity", "out of range"], ["-" + M + "porosity", "2"]),

@@ -1,0 +1,284 @@
+/* Unit tests of the surface faces: what each condition adds to the rows, and its tangent against differences. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <math.h>
+#include <string.h>
+#include <cmocka.h>
+#include "clathra/boundary.h"
+#include "random.h"
+#include "sediment.h"
+
+#define STATES 40
+#define DT 30.0
+#define KAPPA 2.0
+
+typedef struct {
+  Case     c;
+  Bc       bc[3];
+  Material mat;
+  Face     face;
+  BcValues v;
+  double   value[3], shear[3], phase[PHASE_COUNT][3];
+  double   p0[PHASE_COUNT];
+  Schedule given; /* stands for any function of time: its value is in v */
+} Scene;
+
+static double one[1];
+
+static void SceneInit(Scene *s, Rng *r)
+{
+  memset(s, 0, sizeof(*s));
+  s->mat   = SedimentMaterial();
+  s->given = (Schedule){1, one, one, false};
+  assert_true(FieldSetMake(HAS_ALL, true, &s->c.fields));
+  s->c.bc             = s->bc;
+  s->c.nbc            = 3;
+  s->v.value          = s->value;
+  s->v.shear          = s->shear;
+  s->v.phase[PHASE_W] = s->phase[PHASE_W];
+  s->v.phase[PHASE_G] = s->phase[PHASE_G];
+  s->p0[PHASE_W]      = 3e6;
+  s->p0[PHASE_G]      = 3e6 + RngBetween(r, 1e4, 2e5);
+  s->face             = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .r = {0.01, 0.002}, .area = 2.0};
+  s->face.traction    = -1;
+  s->face.pressure    = -1;
+  s->face.heat        = -1;
+  s->face.convection  = -1;
+  s->face.temperature = -1;
+  s->face.inflow      = -1;
+}
+
+/* Inputs of a particle: a motion of some percent, pressures, gradients, fluxes. */
+static void Inputs(Rng *r, double in[IN_COUNT])
+{
+  for (int k = 0; k < MOTION_COUNT; k++)
+    in[IN_GRADU + k] = RngBetween(r, -0.05, 0.05);
+  in[IN_P]     = RngBetween(r, 2e6, 4e6);
+  in[IN_P + 1] = in[IN_P] + RngBetween(r, 1e4, 2e5);
+  in[IN_T]     = RngBetween(r, 1.0, 20.0);
+  for (int k = 0; k < 4; k++) {
+    in[IN_GP + k] = RngBetween(r, -1e6, 1e6);
+    in[IN_J + k]  = RngBetween(r, -1e-5, 1e-5);
+  }
+  for (int k = 0; k < 2; k++)
+    in[IN_GT + k] = RngBetween(r, -10.0, 10.0);
+}
+
+typedef struct {
+  const Scene *s;
+  double       in[IN_COUNT];
+  int          column;
+} Line;
+
+static void Evaluate(const Scene *s, const double in[IN_COUNT], FaceOutput *o)
+{
+  FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, in, KAPPA, DT, o);
+}
+
+static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
+{
+  Line      *p = (Line *)ctx;
+  FaceOutput o;
+
+  p->in[p->column] = x;
+  Evaluate(p->s, p->in, &o);
+  for (int k = 0; k < F_COUNT; k++)
+    y[k] = o.out[k];
+  return true;
+}
+
+/* Every entry of the tangent against differences; relative to the largest entry of its row times the column's scale. */
+static double WorstTangent(const Scene *s, const double in[IN_COUNT])
+{
+  static const double step[IN_COUNT] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e4,  1e4,  1e-1, 1e4,
+                                        1e4,  1e4,  1e4,  1e-1, 1e-1, 1e-6, 1e-6, 1e-6, 1e-6};
+  double              fd[IN_COUNT][RIDDERS_ROWS], err[RIDDERS_ROWS], worst = 0.0;
+  FaceOutput          o;
+
+  Evaluate(s, in, &o);
+  for (int q = 0; q < IN_COUNT; q++) {
+    Line p = {.s = s, .column = q};
+
+    memcpy(p.in, in, sizeof(p.in));
+    assert_true(Ridders(Rows, &p, in[q], step[q], F_COUNT, fd[q], err));
+  }
+  for (int k = 0; k < F_COUNT; k++) {
+    double scale = 0.0;
+
+    for (int q = 0; q < IN_COUNT; q++)
+      scale = fmax(scale, fabs(o.D[k][q]) * step[q]);
+    for (int q = 0; q < IN_COUNT; q++) {
+      const double off = fabs(fd[q][k] - o.D[k][q]) * step[q];
+
+      if (scale == 0.0)
+        assert_true(off == 0.0);
+      else
+        worst = fmax(worst, off / scale);
+    }
+  }
+  return worst;
+}
+
+/* ---------------------------------------------------------------- the conditions */
+static void Closed(Scene *s, Rng *r)
+{
+}
+
+static void Prescribe(Scene *s, Rng *r, bool natural, OpenPhases open)
+{
+  s->face.pressure = 0;
+  s->bc[0].type    = BC_PRESSURE;
+  s->bc[0].value   = s->given;
+  s->value[0]      = RngBetween(r, 2e6, 4e6);
+  s->bc[0].natural = natural;
+  s->bc[0].open    = open;
+}
+
+static void Held(Scene *s, Rng *r)
+{
+  Prescribe(s, r, false, OPEN_BOTH);
+}
+
+static void Free(Scene *s, Rng *r)
+{
+  Prescribe(s, r, true, OPEN_BOTH);
+}
+
+static void WaterOnly(Scene *s, Rng *r)
+{
+  Prescribe(s, r, true, OPEN_WATER);
+}
+
+static void GasOnly(Scene *s, Rng *r)
+{
+  Prescribe(s, r, true, OPEN_GAS);
+}
+
+static void Separate(Scene *s, Rng *r)
+{
+  Prescribe(s, r, false, OPEN_BOTH);
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    s->bc[0].phase[ph] = s->given;
+    s->phase[ph][0]    = RngBetween(r, 2e6, 4e6);
+  }
+}
+
+static void Inflow(Scene *s, Rng *r)
+{
+  s->face.inflow = 1;
+  s->bc[1].type  = BC_INFLOW;
+  s->phase[0][1] = RngBetween(r, -1e-5, 1e-5);
+  s->phase[1][1] = RngBetween(r, -1e-5, 1e-5);
+}
+
+static void WarmInflow(Scene *s, Rng *r)
+{
+  Inflow(s, r);
+  s->bc[1].value = s->given;
+  s->value[1]    = RngBetween(r, 1.0, 60.0);
+}
+
+static void Everything(Scene *s, Rng *r)
+{
+  Free(s, r);
+  WarmInflow(s, r);
+  s->face.traction = s->face.convection = s->face.temperature = 2;
+  s->bc[2].alpha                                              = 15.0;
+  s->value[2]                                                 = 12.0;
+  s->shear[2]                                                 = 1e5;
+}
+
+static const struct {
+  const char *name;
+  void (*set)(Scene *, Rng *);
+} condition[] = {
+    {"closed", Closed},         {"pressure, held", Held},  {"pressure, free", Free}, {"pressure, water", WaterOnly},
+    {"pressure, gas", GasOnly}, {"p_w and p_g", Separate}, {"inflow", Inflow},       {"warm inflow", WarmInflow},
+    {"all at once", Everything}};
+
+static void Tangents(void **state)
+{
+  Rng r = {.s = 20240501};
+
+  for (size_t k = 0; k < sizeof(condition) / sizeof(*condition); k++) {
+    double worst = 0.0;
+
+    for (int n = 0; n < STATES; n++) {
+      Scene  s;
+      double in[IN_COUNT];
+
+      SceneInit(&s, &r);
+      condition[k].set(&s, &r);
+      Inputs(&r, in);
+      worst = fmax(worst, WorstTangent(&s, in));
+    }
+    printf("%-18s largest relative difference %.2e\n", condition[k].name, worst);
+    assert_true(worst < 1e-8);
+  }
+}
+
+/* (31): whatever p_c is, the mean outside is the prescribed one; free takes the particle's p_c, held the initial one.
+ */
+static void MeanPressure(void **state)
+{
+  Rng r = {.s = 7};
+
+  for (int n = 0; n < STATES; n++) {
+    for (int natural = 0; natural < 2; natural++) {
+      Scene      s;
+      FaceOutput o;
+      double     in[IN_COUNT], ds, p[PHASE_COUNT];
+
+      SceneInit(&s, &r);
+      Prescribe(&s, &r, natural, OPEN_BOTH);
+      Inputs(&r, in);
+      memset(in, 0, MOTION_COUNT * sizeof(*in)); /* a = n */
+      Evaluate(&s, in, &o);
+      for (int ph = 0; ph < PHASE_COUNT; ph++)
+        p[ph] = o.out[F_VWX + 2 * ph] / s.face.n[0];
+      const double pc = natural ? in[IN_P + 1] - in[IN_P] : s.p0[1] - s.p0[0];
+      const double sg = RetentionGasShare(&s.mat.retention, pc, &ds);
+
+      assert_true(fabs(p[1] - p[0] - pc) < 1e-12 * p[1]);
+      assert_true(fabs((1.0 - sg) * p[0] + sg * p[1] - s.value[0]) < 1e-12 * s.value[0]);
+    }
+  }
+}
+
+/* Mass rows are what the meters count, with the other sign of time; closed phases let nothing through. */
+static void MassRows(void **state)
+{
+  Rng r = {.s = 11};
+
+  for (size_t k = 0; k < sizeof(condition) / sizeof(*condition); k++) {
+    for (int n = 0; n < STATES; n++) {
+      Scene      s;
+      FaceOutput o;
+      double     in[IN_COUNT];
+
+      SceneInit(&s, &r);
+      condition[k].set(&s, &r);
+      Inputs(&r, in);
+      Evaluate(&s, in, &o);
+      for (int ph = 0; ph < PHASE_COUNT; ph++)
+        assert_true(fabs(o.out[F_PW + ph] - DT * o.outflow[ph]) <= 1e-14 * fabs(o.out[F_PW + ph]));
+      assert_true(fabs(o.out[F_T] + o.heat_in) <= 1e-14 * fabs(o.heat_in));
+      if (condition[k].set == Closed || condition[k].set == GasOnly)
+        assert_true(o.outflow[PHASE_W] == 0.0);
+      if (condition[k].set == Closed || condition[k].set == WaterOnly)
+        assert_true(o.outflow[PHASE_G] == 0.0);
+    }
+  }
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents), cmocka_unit_test(MeanPressure),
+                                     cmocka_unit_test(MassRows)};
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
