@@ -12,13 +12,18 @@ typedef struct {
   double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   double   area;
-  double   N[CL_NODES];                                               /* weights, in the order of StencilExpand */
+  PetscInt region;
+  double   along;       /* initial coordinate of the particle along the side, m */
+  double   N[CL_NODES]; /* weights, in the order of StencilExpand */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
 } Face;
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
                           Face **face);
+
+/* Is the face one of those that a meter counts? */
+bool MeterCovers(const Meter *m, const Face *f);
 
 /* Prescribed values of all conditions at one time. */
 typedef struct {
@@ -37,7 +42,7 @@ typedef struct {
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], double kappa, double dt, FaceOutput *o);
 
-/* Dirichlet values on grid planes and on the axis: sets bit k of mask and value[k] for every prescribed unknown, k its
-   place in the field set, of grid node ij. */
+/* Dirichlet values on grid planes, in regions and on the axis: sets bit k of mask and value[k] for every prescribed
+   unknown, k its place in the field set, of grid node ij. */
 void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
                      double *value);

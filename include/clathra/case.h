@@ -23,17 +23,33 @@ typedef struct {
 } Region;
 
 typedef enum {
-  BC_TRACTION = 1,     /* moving faces: total normal stress (compression-positive) and shear, Pa */
-  BC_PRESSURE,         /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
-  BC_HEAT_FLUX,        /* moving faces: W/m^2 into the body */
-  BC_CONVECTION,       /* moving faces: alpha (T_a - T), W/m^2 */
-  BC_FACE_TEMPERATURE, /* moving faces: T, degC */
-  BC_INFLOW,           /* moving faces: volume of water and gas into the body, m/s */
-  BC_ROLLER,           /* grid plane: normal velocity of all phases zero */
-  BC_FIXED,            /* grid plane: all velocities zero */
-  BC_PLATE,            /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
-  BC_TEMPERATURE       /* grid plane: T, degC */
+  BC_TRACTION = 1,      /* moving faces: total normal stress (compression-positive) and shear, Pa */
+  BC_PRESSURE,          /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
+  BC_HEAT_FLUX,         /* moving faces: W/m^2 into the body */
+  BC_CONVECTION,        /* moving faces: alpha (T_a - T), W/m^2 */
+  BC_FACE_TEMPERATURE,  /* moving faces: T, degC */
+  BC_INFLOW,            /* moving faces: volume of water and gas into the body, m/s */
+  BC_ROLLER,            /* grid plane: normal velocity of all phases zero */
+  BC_FIXED,             /* grid plane: all velocities zero */
+  BC_PLATE,             /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
+  BC_TEMPERATURE,       /* grid plane: T, degC */
+  BC_REGION_TEMPERATURE /* nodes in a region's initial box: T, degC */
 } BcType;
+
+/* What a probe writes; words in case_quantity. */
+enum {
+  QUANTITY_P = 0,
+  QUANTITY_PW,
+  QUANTITY_PG,
+  QUANTITY_T,
+  QUANTITY_SH,
+  QUANTITY_SW,
+  QUANTITY_SG,
+  QUANTITY_U,
+  QUANTITY_STRESS,
+  QUANTITY_X,
+  QUANTITY_COUNT
+};
 
 /* For which fluids a pressure opens a face; it stays closed for the other. */
 typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
@@ -50,8 +66,7 @@ typedef struct {
   PetscInt axis;
   double   position;
   /* functions of time */
-  Schedule value;   /* normal stress | p (mean) | heat flux | T_a | T | T of what flows in | plate velocity (positive
-                       along   +axis) */
+  Schedule   value; /* normal stress | p (mean) | heat flux | T_a | T (also of inflow) | plate velocity (along +axis) */
   Schedule   shear; /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
   Schedule   phase[PHASE_COUNT]; /* pressure: p_w, p_g, Pa; inflow: volume flux of water, gas, m/s */
   bool       initial;            /* pressure: hold each face at its particle's initial p_w, p_g */
@@ -66,6 +81,16 @@ typedef struct {
   bool   fixed;     /* stays at x in space; otherwise follows the nearest particle set */
 } Probe;
 
+#define CL_METERS 16 /* at most */
+
+/* Counts what crosses a part of the body's surface, whatever the conditions there. */
+typedef struct {
+  char     name[64];
+  Side     side;
+  PetscInt region;   /* -1: all */
+  double   from, to; /* m, along the side */
+} Meter;
+
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
 typedef struct {
@@ -79,11 +104,14 @@ typedef struct {
   bool      inertia;
   FieldSet  fields;          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM]; /* m/s^2 */
-  PetscInt  nmaterial, nregion, nbc, nprobe;
+  PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
   Material *material;
   Region   *region;
   Bc       *bc;
   Probe    *probe;
+  Meter    *meter;
+  double    standard_pressure, standard_temperature; /* Pa, degC: what standard volumes are said to be at */
+  double    standard_gas_density;                    /* kg/m^3 there: what they are computed with */
   /* stabilisation */
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
   double pressure_projection; /* alpha, 0 = off; default 1 */
@@ -99,9 +127,11 @@ typedef struct {
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */
   double  *times;
-  double   every;            /* ... and every so many seconds (0 = off) */
-  double   probe_every;      /* s between probe rows, hit exactly; 0 = every step */
-  double   checkpoint_every; /* s; 0 = only at the end and on failure */
+  char     quantities_wanted[128]; /* all, or words */
+  unsigned quantities;             /* bits 1 << QUANTITY_... that probes write; 0 = all of the scene's fields */
+  double   every;                  /* ... and every so many seconds (0 = off) */
+  double   probe_every;            /* s between probe rows, hit exactly; 0 = every step */
+  double   checkpoint_every;       /* s; 0 = only at the end and on failure */
 } Case;
 
 /* Reads and checks a case (a folder or a .yaml file) together with the options database, collectively.

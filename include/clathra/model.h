@@ -24,10 +24,14 @@ typedef struct {
   double *v; /* [n][2] skeleton velocity, m/s */
 } Trial;
 
+/* What a meter counts, outwards: kg/s of water and gas, W. */
+enum { METER_WATER = PHASE_W, METER_GAS = PHASE_G, METER_HEAT, METER_COUNT };
+
 /* Rates over the boundary and inside at the end of a stage, global sums. */
 typedef struct {
   double out[PHASE_COUNT];                /* kg/s */
   double heat_in, heat_source, heat_rate; /* W: through the boundary, latent less advected, stored */
+  double meter[CL_METERS][METER_COUNT];
 } StageRates;
 
 /* Second difference of the ghost penalty (22): a node with its neighbours along one axis. */
@@ -80,6 +84,7 @@ typedef struct {
   const char *why;       /* ... in words */
   char        text[128]; /* storage for such words */
   double      where[CL_DIM];
+  StageRates  rates;   /* of the last stage */
   PetscInt    limited; /* particles on which the hydrate positivity limiter acted in the last stage */
 
   Mat    J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
@@ -129,6 +134,7 @@ PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status);
 /* Sums over all particles. */
 typedef struct {
   double water, methane, hydrate, solid; /* kg; water and methane include what the hydrate holds */
+  double gas;                            /* free gas, kg */
   double V;
   double capacity; /* J/K */
 } ModelTotals;

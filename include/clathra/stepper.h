@@ -17,6 +17,7 @@ typedef struct {
   double   err_old;                         /* error of the last accepted step relative to the tolerance */
   double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source; /* J since t = 0 */
+  double   meter[CL_METERS][METER_COUNT];   /* (33): kg of water and gas, J, outwards since t = 0 */
   double   water0, methane0, capacity0;     /* totals at t = 0, kg, J/K */
   double   scale_p,
       scale_u; /* largest change of pressure or stress (Pa) and displacement (m) so far: what errors are relative to */
@@ -44,6 +45,7 @@ typedef struct {
   double   err;                             /* relative to the tolerance */
   double   out[PHASE_COUNT];                /* kg over the step */
   double   heat_gain, heat_in, heat_source; /* J over the step */
+  double   meter[CL_METERS][METER_COUNT];   /* kg, J over the step */
 } Attempt;
 
 typedef struct Stepper Stepper;

@@ -248,6 +248,23 @@ static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
   return fabs(x - b->position) < 1e-6 * g->h[b->axis];
 }
 
+/* Does the node lie in the initial box of the condition's region? */
+static bool InRegion(const Case *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
+{
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    bool in = b->region < 0 || b->region == k;
+
+    for (int d = 0; d < CL_DIM; d++) {
+      const double x = g->lower[d] + (double)ij[d] * g->h[d], slack = 1e-6 * g->h[d];
+
+      in = in && x > c->region[k].lower[d] - slack && x < c->region[k].upper[d] + slack;
+    }
+    if (in)
+      return true;
+  }
+  return false;
+}
+
 /* Prescribes the velocities of all phases along axis d. */
 static void Hold(const FieldSet *fs, int d, double velocity, unsigned *mask, double *value)
 {
@@ -273,9 +290,9 @@ void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const Pets
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc *b = &c->bc[k];
 
-    if (b->type < BC_ROLLER || !OnPlane(g, b, ij))
+    if (b->type < BC_ROLLER || !(b->type == BC_REGION_TEMPERATURE ? InRegion(c, g, b, ij) : OnPlane(g, b, ij)))
       continue;
-    if (b->type == BC_TEMPERATURE) {
+    if (b->type == BC_TEMPERATURE || b->type == BC_REGION_TEMPERATURE) {
       *mask |= 1u << PlaceT(fs);
       value[PlaceT(fs)] = v->value[k];
       continue;

@@ -4,19 +4,25 @@
 static const int side_axis[SIDE_COUNT] = {0, 0, 1, 1};
 static const int side_sign[SIDE_COUNT] = {-1, 1, -1, 1};
 
-/* Last condition of a type on this side; later ones in the case win. */
-static PetscInt FindCondition(const Case *c, BcType type, int side, PetscInt region, double along)
+/* Last condition of a type on this face; later ones in the case win. */
+static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
 {
   PetscInt found = -1;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc  *b    = &c->bc[k];
-    const bool here = (int)b->side == side && (b->region < 0 || b->region == region);
+    const bool here = (int)b->side == f->side && (b->region < 0 || b->region == f->region);
 
-    if (b->type == type && here && along >= b->from && along <= b->to)
+    if (b->type == type && here && f->along >= b->from && f->along <= b->to)
       found = k;
   }
   return found;
+}
+
+bool MeterCovers(const Meter *m, const Face *f)
+{
+  return (int)m->side == f->side && (m->region < 0 || m->region == f->region) && f->along >= m->from &&
+         f->along <= m->to;
 }
 
 /* Hat function along the normal, the particle's own weights along the tangent.  A linear particle does not reach the
@@ -48,26 +54,25 @@ static void Weights(const Grid *g, BasisType basis, const Stencil *s, int axis, 
 static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
                      Face *f)
 {
-  const int      axis = side_axis[side], tangent = 1 - axis;
-  const PetscInt region = P->i[PI_REGION][p];
-  const double   along  = ParticleInitialX(P, p, tangent);
-
+  const int    axis = side_axis[side], tangent = 1 - axis;
   const double arm = side_sign[side] * P->f[P_L + axis][p], position = P->f[P_X + axis][p] + arm;
   const double radius = P->f[P_X][p] + (axis == 0 ? arm : 0.0);
 
   f->particle    = p;
   f->side        = side;
+  f->region      = P->i[PI_REGION][p];
+  f->along       = ParticleInitialX(P, p, tangent);
   f->r[axis]     = position - AxisCentroid(&stencil[p].axis[axis], g->lower[axis], g->h[axis]);
   f->r[tangent]  = 0.0;
   f->area        = 2.0 * P->f[P_L + tangent][p] * (c->axisymmetric ? 2.0 * M_PI * radius : 1.0);
   f->n[axis]     = side_sign[side] * f->area;
   f->n[tangent]  = 0.0;
-  f->traction    = FindCondition(c, BC_TRACTION, side, region, along);
-  f->pressure    = FindCondition(c, BC_PRESSURE, side, region, along);
-  f->heat        = FindCondition(c, BC_HEAT_FLUX, side, region, along);
-  f->convection  = FindCondition(c, BC_CONVECTION, side, region, along);
-  f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, side, region, along);
-  f->inflow      = FindCondition(c, BC_INFLOW, side, region, along);
+  f->traction    = FindCondition(c, BC_TRACTION, f);
+  f->pressure    = FindCondition(c, BC_PRESSURE, f);
+  f->heat        = FindCondition(c, BC_HEAT_FLUX, f);
+  f->convection  = FindCondition(c, BC_CONVECTION, f);
+  f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, f);
+  f->inflow      = FindCondition(c, BC_INFLOW, f);
   Weights(g, c->basis, &stencil[p], axis, position, f->N);
 }
 

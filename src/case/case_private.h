@@ -31,7 +31,7 @@ typedef struct {
   PetscInt line, offset; /* offset in the text of a key that begins a line, else -1 */
 } Mark;                  /* a key of the file, inner or leaf */
 
-typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_COUNT } Group;
+typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_METER, GROUP_COUNT } Group;
 
 #define CASE_ERRORS 20 /* errors shown */
 typedef struct {
@@ -144,5 +144,7 @@ static inline bool KeyNeeded(const Key *k, const Case *c)
 void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
 /* Fills Case.fields from fields_wanted, or derives it from the file; before materials and regions are read. */
 PetscErrorCode CaseFieldSet(Reader *r, Case *c);
+/* Which quantities probes write; after CaseFieldSet. */
+void CaseQuantities(Reader *r, Case *c);
 /* What the set leaves open in the regions, and whether the case asks for more than it holds; after all is read. */
 void CaseFieldSetFinish(Reader *r, Case *c);

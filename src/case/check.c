@@ -137,20 +137,39 @@ static void CheckPlane(Reader *r, const Case *c, const Bc *b)
          c->lower[b->axis] + round(line) * h);
 }
 
-static void CheckSide(Reader *r, const Case *c, const Bc *b)
+static void CheckSide(Reader *r, const Case *c, Group g, const char *name, const Meter *b)
 {
   int  along = b->side == SIDE_XMIN || b->side == SIDE_XMAX ? 1 : 0;
   bool meets = false;
 
   if (b->to <= b->from) {
-    FAIL(GROUP_BC, b->name, "to", "must lie above from (%g m <= %g m)", b->to, b->from);
+    FAIL(g, name, "to", "must lie above from (%g m <= %g m)", b->to, b->from);
     return;
   }
   for (PetscInt i = 0; i < c->nregion; i++)
     if (b->region < 0 || b->region == i)
       meets |= b->from < c->region[i].upper[along] && b->to > c->region[i].lower[along];
   if (!meets)
-    FAIL(GROUP_BC, b->name, "from", "and to: no part of the body's side lies between %g m and %g m", b->from, b->to);
+    FAIL(g, name, "from", "and to: no part of the body's side lies between %g m and %g m", b->from, b->to);
+}
+
+/* A region whose temperature is held must hold a node. */
+static void CheckHeld(Reader *r, const Case *c, const Bc *b)
+{
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    const Region *g    = &c->region[i];
+    bool          node = b->region < 0 || b->region == i;
+
+    for (int d = 0; d < CL_DIM; d++) {
+      const double h = (c->upper[d] - c->lower[d]) / c->cells[d];
+
+      node = node && floor((g->upper[d] - c->lower[d]) / h + 1e-6) >= ceil((g->lower[d] - c->lower[d]) / h - 1e-6);
+    }
+    if (node)
+      return;
+  }
+  FAIL(GROUP_BC, b->name, "region",
+       "has no node of the grid in its box: refine the grid, or let the box follow its lines");
 }
 
 static void CheckProbe(Reader *r, const Case *c, const Probe *p)
@@ -182,11 +201,19 @@ void CaseCheck(Reader *r, const Case *c)
     const Bc *b = &c->bc[i];
     if (b->type < BC_ROLLER) {
       if (!bad[GROUP_REGION])
-        CheckSide(r, c, b);
+        CheckSide(r, c, GROUP_BC, b->name,
+                  &(Meter){.side = b->side, .region = b->region, .from = b->from, .to = b->to});
       CheckFlow(r, c, b);
+    } else if (b->type == BC_REGION_TEMPERATURE) {
+      if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
+        CheckHeld(r, c, b);
     } else if (!bad[GROUP_CASE])
       CheckPlane(r, c, b);
   }
   for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_REGION]; i++)
     CheckProbe(r, c, &c->probe[i]);
+  for (PetscInt i = 0; i < c->nmeter && !bad[GROUP_METER] && !bad[GROUP_REGION]; i++)
+    CheckSide(r, c, GROUP_METER, c->meter[i].name, &c->meter[i]);
+  if (c->nmeter > CL_METERS)
+    FAIL(GROUP_CASE, "", "meters", "lists %d names, at most %d are allowed", (int)c->nmeter, CL_METERS);
 }

@@ -66,7 +66,8 @@ static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uni
 
 static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
 {
-  static const char *const type[] = {"heat_flux", "convection", "face_temperature", "temperature", NULL};
+  static const char *const type[] = {"heat_flux",   "convection",         "face_temperature",
+                                     "temperature", "region_temperature", NULL};
   const char              *text;
 
   PetscFunctionBeginUser;
@@ -198,6 +199,7 @@ static unsigned ConditionNeeds(BcType type)
   case BC_CONVECTION:
   case BC_FACE_TEMPERATURE:
   case BC_TEMPERATURE:
+  case BC_REGION_TEMPERATURE:
     return HAS_HEAT;
   default:
     return HAS_SOLID | HAS_WATER; /* rollers and fixed planes hold the velocities there are */

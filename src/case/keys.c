@@ -62,9 +62,8 @@ static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
 static const char *const capillary_word[] = {"held", "free", NULL};
 static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* OpenPhases */
-const char *const        case_bc_type[]   = {"traction", "pressure", "heat_flux", "convection", "face_temperature",
-                                             "inflow",   "roller",   "fixed",     "plate",      "temperature",
-                                             NULL};
+const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
+                                    "roller",   "fixed",    "plate",     "temperature", "region_temperature", NULL};
 
 /* ---------------------------------------------------------------- the table */
 /* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
@@ -122,7 +121,16 @@ static const Key case_key[] = {
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
+    TEXT(Case, "output_quantities", quantities_wanted, "all",
+         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x; all is what the scene has fields "
+         "for"),
     REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),
+    REAL(Case, "standard_pressure", standard_pressure, "Pa", "(0,1e9]", "101.4 kPa",
+         "of standard volumes of gas; a note, not used"),
+    REAL(Case, "standard_temperature", standard_temperature, "degC", "(-273.15,1000]", "15.56 degC",
+         "of standard volumes of gas; a note, not used"),
+    REAL(Case, "standard_gas_density", standard_gas_density, "kg/m^3", "(0,1e3]", "0.6789 kg/m^3",
+         "of gas at standard_pressure and standard_temperature: what standard volumes are computed with"),
     REAL(Case, "checkpoint_every", checkpoint_every, "s", "[0,inf)", "0 s", "0 s = only at the end and on failure",
          .plain = true),
     {.name = NULL},
@@ -240,7 +248,8 @@ static const Key region_key[] = {
 static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
     CHOICE(Bc, "side", side, NULL, side_word, "side of the body, moves with it", .types = FACES),
-    NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all", .types = FACES),
+    NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
+         .types = FACES | TYPE(BC_REGION_TEMPERATURE)),
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
          .types = FACES),
     REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = FACES),
@@ -268,7 +277,7 @@ static const Key bc_key[] = {
     SCHEDULE("flux", value, "W/m^2", "[-1e12,1e12]", NULL, TYPE(BC_HEAT_FLUX), "into the body"),
     SCHEDULE("ambient", value, "degC", "(-273.15,1000]", NULL, TYPE(BC_CONVECTION), "temperature outside"),
     SCHEDULE("temperature", value, "degC", "(-273.15,1000]", "",
-             TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE) | TYPE(BC_INFLOW),
+             TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE) | TYPE(BC_REGION_TEMPERATURE) | TYPE(BC_INFLOW),
              "inflow: of what flows in, by default the body's own", WHEN(NeedsTemperature, "type is not inflow")),
     SCHEDULE("velocity", value, "m/s", "[-1e3,1e3]", NULL, TYPE(BC_PLATE), "along the axis, positive in its direction"),
     {.name = NULL},
@@ -277,6 +286,14 @@ static const Key bc_key[] = {
 static const Key probe_key[] = {
     REALS(Probe, 2, "at", x, "m", "", NULL, "initial position, inside a region"),
     BOOLEAN(Probe, "fixed", fixed, "no", "stays there in space; otherwise follows the body"),
+    {.name = NULL},
+};
+
+static const Key meter_key[] = {
+    CHOICE(Meter, "side", side, NULL, side_word, "side of the body, moves with it"),
+    NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
+    REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),
+    REAL(Meter, "to", to, "m", "", "end", "... to here", .word = "end"),
     {.name = NULL},
 };
 
@@ -292,4 +309,6 @@ const GroupInfo case_group[GROUP_COUNT] = {
           "Boxes of the body and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
     GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
+    GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
+          "Parts of the surface that count what crosses them"),
 };

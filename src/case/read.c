@@ -229,6 +229,7 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
       PetscCall(NamesRead(&r, c, g));
     PetscCall(GroupRead(&r, c, GROUP_CASE));
     PetscCall(CaseFieldSet(&r, c));
+    CaseQuantities(&r, c);
     for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(GroupRead(&r, c, g));
     PetscCall(Derive(&r, c));
@@ -257,6 +258,7 @@ PetscErrorCode CaseDestroy(Case *c)
   PetscCall(PetscFree(c->region));
   PetscCall(PetscFree(c->bc));
   PetscCall(PetscFree(c->probe));
+  PetscCall(PetscFree(c->meter));
   PetscCall(PetscFree(c->times));
   memset(c, 0, sizeof *c);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,8 +1,9 @@
 /* balance.csv: what the body holds, what went through its boundary, and what is missing. */
 #include "io_private.h"
 
-void BalanceHeader(FILE *f)
+void BalanceHeader(const Case *c, FILE *f)
 {
+  (void)c;
   fprintf(f, "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
              "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error\n");
 }

@@ -19,9 +19,9 @@ typedef struct {
 
 struct Output {
   char           dir[PETSC_MAX_PATH_LEN];
-  FILE          *probes, *balance; /* rank 0 */
-  double        *reach;            /* [nprobe] widening of each probe's neighbourhood */
-  PetscInt       nsnapshot, cap;   /* rank 0: what fields.h5 holds */
+  FILE          *probes, *balance, *meters; /* rank 0; meters NULL if there are none */
+  double        *reach;                     /* [nprobe] widening of each probe's neighbourhood */
+  PetscInt       nsnapshot, cap;            /* rank 0: what fields.h5 holds */
   SnapshotEntry *snapshot;
   FieldSet       fields;
 };
@@ -63,9 +63,11 @@ PetscErrorCode IoAgree(MPI_Comm comm, PetscErrorCode ierr);
 PetscErrorCode IoFlush(FILE *f, const char *name);
 PetscErrorCode IoRename(const char *from, const char *to);
 
-/* ---------------------------------------------------------------- probes.c, balance.c: header lines, rank 0 */
+/* ---------------------------------------------------------------- probes.c, balance.c, meters.c: header lines, rank 0
+ */
 void ProbesHeader(const Case *c, FILE *f);
-void BalanceHeader(FILE *f);
+void BalanceHeader(const Case *c, FILE *f);
+void MetersHeader(const Case *c, FILE *f);
 
 /* ---------------------------------------------------------------- snapshot.c, xdmf.c: rank 0 */
 PetscErrorCode SnapshotsStart(Output *out, bool append, PetscInt next);
@@ -107,11 +109,11 @@ PetscErrorCode GatherInts(Gather *g, const PetscInt *local, PetscInt *sorted);
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
-#define CHECKPOINT_VERSION 1
+#define CHECKPOINT_VERSION 2
 #define FNV_START UINT64_C(14695981039346656037)
 uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes); /* FNV-1a, 64 bits */
-/* Physics of a case: grid, gravity, basis, regions, materials, boundary conditions.  Names, outputs, numerics of the
-   solver and of time are left out. */
+/* Physics of a case: grid, gravity, basis, regions, materials, boundary conditions, and its meters.  Names, outputs,
+   numerics of the solver and of time are left out. */
 uint64_t CaseFingerprint(const Case *c);
 /* Writes version, case, length and checksum of the whole file into the user block, and syncs it to the disk. */
 PetscErrorCode SealWrite(const char *path, uint64_t fingerprint);

@@ -67,6 +67,7 @@ static PetscErrorCode MakeFolder(const char *dir)
 typedef struct {
   const char *name;
   int         time; /* column of the time */
+  void (*header)(const Case *, FILE *);
 } Table;
 
 static PetscErrorCode Header(const Model *m, const Table *table, char **text, size_t *size)
@@ -75,10 +76,7 @@ static PetscErrorCode Header(const Model *m, const Table *table, char **text, si
 
   PetscFunctionBeginUser;
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  if (table->time == 0)
-    ProbesHeader(m->c, f);
-  else
-    BalanceHeader(f);
+  table->header(m->c, f);
   PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -153,12 +151,15 @@ static PetscErrorCode OpenTable(const Model *m, const char *dir, const Table *ta
 
 static PetscErrorCode OpenFiles(Output *out, const Model *m, const StepperState *s, bool append)
 {
-  const Table probes = {"probes.csv", 0}, balance = {"balance.csv", 1};
+  const Table probes = {"probes.csv", 0, ProbesHeader}, balance = {"balance.csv", 1, BalanceHeader};
+  const Table meters = {"meters.csv", 0, MetersHeader};
 
   PetscFunctionBeginUser;
   PetscCall(MakeFolder(out->dir));
   PetscCall(OpenTable(m, out->dir, &probes, append, s->t, &out->probes));
   PetscCall(OpenTable(m, out->dir, &balance, append, s->t, &out->balance));
+  if (m->c->nmeter > 0)
+    PetscCall(OpenTable(m, out->dir, &meters, append, s->t, &out->meters));
   PetscCall(SnapshotsStart(out, append, s->next_snapshot));
   PetscCall(XdmfWrite(out, &m->grid));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -194,6 +195,8 @@ PetscErrorCode OutputDestroy(Output **result)
     fclose(out->probes);
   if (out->balance)
     fclose(out->balance);
+  if (out->meters)
+    fclose(out->meters);
   PetscCall(PetscFree(out->reach));
   PetscCall(PetscFree(out->snapshot));
   PetscCall(PetscFree(*result));

@@ -1,20 +1,32 @@
 /* probes.csv: affine least-squares values at points of the body or of space. */
 #include "io_private.h"
 
-/* A quantity, the fields it goes with, and the component of the store that holds it (-1: computed). */
+/* A column, the quantity it belongs to, and the component of the store that holds it (-1: computed). */
 enum { Q_P = 0, Q_SG = 6, Q_COUNT = 15 };
 static const struct {
   const char *name;
-  unsigned    has;
-  int         component;
-} quantity[Q_COUNT] = {[Q_P] = {"p_Pa", HAS_WATER, -1},  {"p_w_Pa", HAS_WATER, P_PW},
-                       {"p_g_Pa", HAS_GAS, P_PG},        {"T_degC", HAS_HEAT, P_T},
-                       {"S_h", HAS_ALL, P_SH},           {"S_w", HAS_WATER, P_SW},
-                       [Q_SG] = {"S_g", HAS_GAS, -1},    {"u_x_m", HAS_SOLID, P_U},
-                       {"u_y_m", HAS_SOLID, P_U + 1},    {"sxx_Pa", HAS_SOLID, P_SIG},
-                       {"syy_Pa", HAS_SOLID, P_SIG + 1}, {"szz_Pa", HAS_SOLID, P_SIG + 2},
-                       {"sxy_Pa", HAS_SOLID, P_SIG + 3}, {"x_m", HAS_ALL, P_X},
-                       {"y_m", HAS_ALL, P_X + 1}};
+  unsigned    has; /* fields it goes with */
+  int         quantity, component;
+} column[Q_COUNT] = {[Q_P] = {"p_Pa", HAS_WATER, QUANTITY_P, -1},
+                     {"p_w_Pa", HAS_WATER, QUANTITY_PW, P_PW},
+                     {"p_g_Pa", HAS_GAS, QUANTITY_PG, P_PG},
+                     {"T_degC", HAS_HEAT, QUANTITY_T, P_T},
+                     {"S_h", HAS_ALL, QUANTITY_SH, P_SH},
+                     {"S_w", HAS_WATER, QUANTITY_SW, P_SW},
+                     [Q_SG] = {"S_g", HAS_GAS, QUANTITY_SG, -1},
+                     {"u_x_m", HAS_SOLID, QUANTITY_U, P_U},
+                     {"u_y_m", HAS_SOLID, QUANTITY_U, P_U + 1},
+                     {"sxx_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG},
+                     {"syy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 1},
+                     {"szz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 2},
+                     {"sxy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 3},
+                     {"x_m", HAS_ALL, QUANTITY_X, P_X},
+                     {"y_m", HAS_ALL, QUANTITY_X, P_X + 1}};
+
+static bool Wanted(const Case *c, int q)
+{
+  return (c->fields.has & column[q].has) && (c->quantities == 0 || ((c->quantities >> column[q].quantity) & 1u));
+}
 
 /* Moments of the weights about the probe: sum of w, w d_i, w d_i d_j. */
 enum { M_1 = 0, M_X, M_Y, M_XX, M_XY, M_YY, M_COUNT };
@@ -35,8 +47,8 @@ void ProbesHeader(const Case *c, FILE *f)
   fprintf(f, "time_s");
   for (PetscInt k = 0; k < c->nprobe; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
-      if (c->fields.has & quantity[q].has)
-        fprintf(f, ",%s.%s", c->probe[k].name, quantity[q].name);
+      if (Wanted(c, q))
+        fprintf(f, ",%s.%s", c->probe[k].name, column[q].name);
     }
   }
   fprintf(f, "\n");
@@ -112,12 +124,12 @@ static void Solve(Fit *f, const double M[M_COUNT])
 
 static double Quantity(const Particles *P, PetscInt p, int q)
 {
-  if (quantity[q].component >= 0)
-    return P->f[quantity[q].component][p];
+  if (column[q].component >= 0)
+    return P->f[column[q].component][p];
   return q == Q_P ? MeanPressure(P, p) : GasSaturation(P, p);
 }
 
-static void AddValues(const Fit *f, const Particles *P, double value[Q_COUNT])
+static void AddValues(const Case *c, const Fit *f, const Particles *P, double value[Q_COUNT])
 {
   for (PetscInt p = 0; p < P->n; p++) {
     double       d[CL_DIM];
@@ -128,7 +140,7 @@ static void AddValues(const Fit *f, const Particles *P, double value[Q_COUNT])
     const double share = w / f->total * (1.0 - f->g[0] * (d[0] - f->mean[0]) - f->g[1] * (d[1] - f->mean[1]));
 
     for (int q = 0; q < Q_COUNT; q++) {
-      if (P->has & quantity[q].has)
+      if (Wanted(c, q))
         value[q] += share * Quantity(P, p, q);
     }
   }
@@ -164,13 +176,13 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteRow(FILE *f, unsigned has, double t, const Fit *fit, PetscInt n, const double *value)
+static PetscErrorCode WriteRow(FILE *f, const Case *c, double t, const Fit *fit, PetscInt n, const double *value)
 {
   PetscFunctionBeginUser;
   fprintf(f, "%.12e", t);
   for (PetscInt k = 0; k < n; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
-      if (!(has & quantity[q].has))
+      if (!Wanted(c, q))
         continue;
       if (fit[k].total > 0.0)
         fprintf(f, ",%.12e", value[k * Q_COUNT + q]);
@@ -195,10 +207,10 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
   PetscCall(PetscCalloc1(n * Q_COUNT, &value));
   PetscCall(FitAll(out, m, fit));
   for (PetscInt k = 0; k < n; k++)
-    AddValues(&fit[k], &m->P, value + k * Q_COUNT);
+    AddValues(m->c, &fit[k], &m->P, value + k * Q_COUNT);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * Q_COUNT), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out->probes, m->P.has, s->t, fit, n, value);
+    ierr = WriteRow(out->probes, m->c, s->t, fit, n, value);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscCall(PetscFree(fit));
   PetscCall(PetscFree(value));

@@ -149,7 +149,7 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (fingerprint != CaseFingerprint(m->c)) {
-    Refuse(L, "it was written by another case (grid, regions, materials or boundary conditions differ)");
+    Refuse(L, "it was written by another case (grid, regions, materials, boundary conditions or meters differ)");
   }
   PetscCall(H5FileOpen(path, false, &file));
   if (file < 0)

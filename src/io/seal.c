@@ -94,6 +94,11 @@ static uint64_t HashBc(uint64_t h, const Bc *b)
   return HashSchedule(HashSchedule(h, &b->phase[PHASE_W]), &b->phase[PHASE_G]);
 }
 
+static uint64_t HashMeter(uint64_t h, const Meter *m)
+{
+  return REALS(INTS(h, m->side, m->region), m->from, m->to);
+}
+
 uint64_t CaseFingerprint(const Case *c)
 {
   uint64_t h = FNV_START;
@@ -106,6 +111,8 @@ uint64_t CaseFingerprint(const Case *c)
     h = HashRegion(h, &c->region[k]);
   for (PetscInt k = 0; k < c->nbc; k++)
     h = HashBc(h, &c->bc[k]);
+  for (PetscInt k = 0; k < c->nmeter; k++)
+    h = HashMeter(h, &c->meter[k]);
   return h;
 }
 

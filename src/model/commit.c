@@ -51,8 +51,34 @@ static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
   }
 }
 
+/* Adds a face's rates, weighted with `sum`, to the meters that cover it. */
+static void Meters(const Case *c, const Face *face, double sum, const FaceOutput *o, StageRates *rates)
+{
+  for (PetscInt k = 0; k < c->nmeter; k++) {
+    if (!MeterCovers(&c->meter[k], face))
+      continue;
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      rates->meter[k][METER_WATER + ph] += sum * o->outflow[ph];
+    rates->meter[k][METER_HEAT] -= sum * o->heat_in;
+  }
+}
+
+/* Heat that held temperatures give: what is left in their rows (21). */
+static double HeldHeat(const Model *m)
+{
+  const FieldSet *fs  = &m->c->fields;
+  double          sum = 0.0;
+
+  for (PetscInt I = 0; fs->heat && I < m->map.n_owned; I++) {
+    if ((m->mask[I] >> PlaceT(fs)) & 1u)
+      sum += m->f[I * fs->n + PlaceT(fs)];
+  }
+  return sum;
+}
+
 static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
 {
+  rates->heat_in += HeldHeat(m);
   for (PetscInt k = 0; k < m->nface; k++) {
     double     sum = 0.0;
     Reach      r;
@@ -64,6 +90,7 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       rates->out[ph] += sum * o.outflow[ph];
     rates->heat_in += sum * o.heat_in;
+    Meters(m->c, &m->face[k], sum, &o, rates);
   }
 }
 
@@ -131,6 +158,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   PetscCall(KeepBalance(m, trial->m));
   BoundaryRates(m, x, rates);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  m->rates = *rates;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
   PetscCall(ModelReduceStatus(m, status));
   PetscFunctionReturn(PETSC_SUCCESS);

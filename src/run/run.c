@@ -86,7 +86,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After every accepted step: ledger, probes, snapshot, checkpoint, progress. */
+/* After every accepted step: ledger, probes, meters, snapshot, checkpoint, progress. */
 static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
 {
   Run         *run  = (Run *)ctx;
@@ -96,8 +96,10 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
 
   PetscFunctionBeginUser;
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
-  if (c->probe_every == 0.0 || AtMultiple(c->probe_every, t) || last)
+  if (c->probe_every == 0.0 || AtMultiple(c->probe_every, t) || last) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));
+    PetscCall(OutputMeters(run->out, s->model, &s->state));
+  }
   if (AtSnapshot(c, t) || last) {
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
@@ -210,6 +212,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   PetscCall(OutputCreate(s->model, &s->state, restart[0] != '\0', &run->out));
   if (!restart[0]) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));
+    PetscCall(OutputMeters(run->out, s->model, &s->state));
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
   }

@@ -137,6 +137,10 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
   a->heat_gain += weight * dt * rates.heat_rate;
   a->heat_in += weight * dt * rates.heat_in;
   a->heat_source += weight * dt * rates.heat_source;
+  for (PetscInt k = 0; k < m->c->nmeter; k++) {
+    for (int q = 0; q < METER_COUNT; q++)
+      a->meter[k][q] += weight * dt * rates.meter[k][q];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -249,6 +253,10 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
   z->heat_gain += a->heat_gain;
   z->heat_in += a->heat_in;
   z->heat_source += a->heat_source;
+  for (PetscInt k = 0; k < s->model->c->nmeter; k++) {
+    for (int q = 0; q < METER_COUNT; q++)
+      z->meter[k][q] += a->meter[k][q];
+  }
   if (s->monitor)
     PetscCall(s->monitor(s, &info, s->monitor_ctx));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -14,6 +14,7 @@ import tempfile
 HERE = os.path.dirname(os.path.abspath(__file__))
 BASE = open(os.path.join(HERE, "..", "..", "cases", "bp2", "case.yaml")).read()
 M = "mat_sediment_"
+METER = lambda keys: ("basis: cpgimp", f"basis: cpgimp\nmeters: [outlet]\nmeter: {{outlet: {{{keys}}}}}")
 NO_GAS = [("basis: cpgimp", "basis: cpgimp\nfields: thm"), ("active: yes", "active: no"), ("    Sw: 0.6\n    Sg: 0.4\n", "")]
 
 CASES = [
@@ -127,6 +128,27 @@ CASES = [
      ["bc_drain_water", "m/s"], []),
     ("inflow with a pressure", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, pressure: 3 MPa}")],
      ["bc_drain_pressure", "type inflow"], []),
+    # --- meters
+    ("meter without a side", [METER("from: 0 m")], ["meter_outlet_side", "is missing"], []),
+    ("meter on no side", [METER("side: east")], ["meter_outlet_side", "left | right"], []),
+    ("meter of an unknown region", [METER("side: right, region: core")], ["meter_outlet_region", "column"], []),
+    ("meter off the body", [METER("side: right, from: 1 m")], ["meter_outlet_from", "no part"], []),
+    ("meter upside down", [METER("side: right, from: 0.02 m, to: 0 m")], ["meter_outlet_to", "above from"], []),
+    ("meter not listed", [("basis: cpgimp", "basis: cpgimp\nmeter: {outlet: {side: right}}")], ["outlet", "not listed in meters"], []),
+    ("too many meters", [("basis: cpgimp", "basis: cpgimp\nmeters: [" + ", ".join(f"m{k}" for k in range(17)) + "]\nmeter: {"
+      + ", ".join(f"m{k}: {{side: right}}" for k in range(17)) + "}")], ["meters", "at most 16"], []),
+    ("standard density", [("basis: cpgimp", "basis: cpgimp\nstandard: {gas_density: 0 kg/m^3}")], ["standard_gas_density", "out of range"], []),
+    ("unknown quantity", [("  probe_every:", "  quantities: [p, viscosity]\n  probe_every:")], ["output_quantities", "viscosity", "S_h"], []),
+    ("quantity of a field that is not there", [("  probe_every:", "  quantities: [p, T]\n  probe_every:"), ("basis: cpgimp", "basis: cpgimp\nfields: hm"),
+      *NO_GAS[1:]], ["output_quantities", "'T'", "needs heat, which is not among the fields of the scene"], []),
+    ("gas saturation without gas", [("  probe_every:", "  quantities: [S_g]\n  probe_every:"), *NO_GAS], ["output_quantities", "needs gas"], []),
+    ("region held between the nodes", [("type: pressure, side: right, initial: yes}", "type: region_temperature, region: plug, temperature: 3 degC}"),
+      ("regions: [column]\nregion:\n", "regions: [column, plug]\nregion:\n  plug: {lower: [1.022 m, 0 m], upper: [1.038 m, 0.02 m],"
+       " material: sediment, pressure: 3 MPa, temperature: 4 degC, Sw: 0.6, Sg: 0.4}\n")], ["bc_drain_region", "no node"], []),
+    ("region temperature without heat", [("type: pressure, side: right, initial: yes}", "type: region_temperature, temperature: 3 degC}"),
+      ("basis: cpgimp", "basis: cpgimp\nfields: hm"), *NO_GAS[1:]], ["bc_drain_type", "needs heat"], []),
+    ("region temperature on a side", [("type: pressure, side: right, initial: yes}", "type: region_temperature, side: right, temperature: 3 degC}")],
+     ["bc_drain_side", "type region_temperature"], []),
     # --- command line
     ("option without unit", [], ["-region_column_pressure", "needs the unit"], ["-region_column_pressure", "3e6"]),
     ("option out of range", [], ["-" + M + "porosity", "out of range"], ["-" + M + "porosity", "2"]),

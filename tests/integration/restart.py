@@ -25,8 +25,9 @@ from common import CASES, ROOT, Run, binary, check_true, finish, judge, launch, 
 
 OPTIONS = ("-quiet", "-grid_cells", "26,1", "-time_end", "300 s", "-stepper_dt_max", "15 s",
            "-bc_load_normal_table", "0 s,3.25 MPa,150 s,7.25 MPa,300 s,3.25 MPa",
-           "-output_times", "0 s,100 s,200 s,300 s", "-checkpoint_every", "120 s")  # fmt: skip
-FILES = ("probes.csv", "balance.csv")
+           "-output_times", "0 s,100 s,200 s,300 s", "-checkpoint_every", "120 s",
+           "-meters", "outlet,base", "-meter_outlet_side", "right", "-meter_base_side", "left")  # fmt: skip
+FILES = ("probes.csv", "meters.csv", "balance.csv")
 REPRODUCIBLE = {1: (), 2: ("-options_file", str(ROOT / "options" / "krylov.opts"))}
 lines = []
 
@@ -90,6 +91,10 @@ def kink_step(run):
 
 
 straight = {ranks: same_bits(ranks=ranks) for ranks in (1, 2)}
+for ranks, run in straight.items():
+    meters, out = run.csv("meters.csv"), run.balance["water_out_kg"][-1]
+    check_true(f"the meters count what leaves, {ranks} rank(s)",
+               abs(meters["outlet.water_kg"][-1] - out) < 1e-14 * abs(out) and np.all(meters["base.water_kg"] == 0))  # fmt: skip
 for ranks, run in straight.items():
     last = int(run.balance["step"][-1])
     for steps in (3, kink_step(run), last - 4) if ranks == 1 else (last // 3,):
@@ -158,5 +163,6 @@ for name, content, reason in (
     refused(name, path, reason)
 refused("a missing file", bad / "nowhere.h5", "No such file")
 refused("of another grid", checkpoint, "another case", "-grid_cells", "52,1")
+refused("of another meter", checkpoint, "another case", "-meter_outlet_side", "left")
 refused("of another material", checkpoint, "another case", "-mat_sediment_elasticity_E0", "91 MPa")
 finish()

@@ -1,0 +1,56 @@
+/* quantities: what the case wants probes to write. */
+#include "case_private.h"
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+static const struct {
+  const char *word;
+  unsigned    has; /* fields any of which it needs */
+} quantity[QUANTITY_COUNT] = {
+    [QUANTITY_P] = {"p", HAS_WATER},  [QUANTITY_PW] = {"p_w", HAS_WATER}, [QUANTITY_PG] = {"p_g", HAS_GAS},
+    [QUANTITY_T] = {"T", HAS_HEAT},   [QUANTITY_SH] = {"S_h", HAS_ALL},   [QUANTITY_SW] = {"S_w", HAS_WATER},
+    [QUANTITY_SG] = {"S_g", HAS_GAS}, [QUANTITY_U] = {"u", HAS_SOLID},    [QUANTITY_STRESS] = {"stress", HAS_SOLID},
+    [QUANTITY_X] = {"x", HAS_ALL},
+};
+
+/* The quantity of this name, QUANTITY_COUNT if there is none. */
+static int Find(const char *word)
+{
+  int q = 0;
+
+  while (q < QUANTITY_COUNT && strcasecmp(quantity[q].word, word))
+    q++;
+  return q;
+}
+
+static void Add(Reader *r, Case *c, const char *word)
+{
+  const int q = Find(word);
+  char      words[64];
+
+  if (q == QUANTITY_COUNT) {
+    ReaderError(r, "output_quantities", word, "must be all or a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x");
+    return;
+  }
+  if (!(c->fields.has & quantity[q].has)) {
+    FieldsWords(quantity[q].has, words);
+    ReaderError(r, "output_quantities", quantity[q].word, "needs %s, which is not among the fields of the scene (%s)",
+                words, c->fields_wanted);
+    return;
+  }
+  c->quantities |= 1u << q;
+}
+
+void CaseQuantities(Reader *r, Case *c)
+{
+  List list;
+
+  c->quantities = 0;
+  if (!strcasecmp(c->quantities_wanted, "all"))
+    return;
+  ListCreate(c->quantities_wanted, &list);
+  for (PetscInt i = 0; i < list.n; i++)
+    Add(r, c, list.item[i]);
+  ListDestroy(&list);
+}
