@@ -51,8 +51,14 @@ def plot_probes(out):
     names = probe_names(probes)
     if not names or not len(probes["time_s"]):
         return
-    figure, grid = plt.subplots(2, 3, figsize=(13, 7))
-    for axes, panel in zip(grid.flat, PANELS):
+    written = lambda columns: [c for c in columns if f"{names[0]}.{c[0]}" in probes]
+    panels = [(label, written(columns), least) for label, columns, least in PANELS if written(columns)]
+    wide = min(len(panels), 3 if len(panels) > 4 else 2)
+    figure, grid = plt.subplots(-(-len(panels) // wide), wide, figsize=(4.33 * wide, 3.5 * -(-len(panels) // wide)),
+                                squeeze=False)  # fmt: skip
+    for axes in grid.flat[len(panels) :]:
+        axes.remove()
+    for axes, panel in zip(grid.flat, panels):
         history_panel(axes, probes, names, *panel)
     handles = [plt.Line2D([], [], color=c, lw=2.5, label=f"probe {n}") for c, n in zip(COLOURS * len(names), names)]
     figure.legend(handles=handles, loc="upper right", bbox_to_anchor=(1, 1.015), ncol=6)
@@ -82,6 +88,7 @@ def plot_profiles(out, snapshots, axis):
     """Profiles along the strip against the current position, one colour a snapshot."""
     chosen = [snapshots[k] for k in spread(len(snapshots), 6)]
     names = ["p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y"]
+    names = [n for n in names if n in derived(chosen[0][1])]
     figure, grid = plt.subplots(1, len(names), figsize=(3.4 * len(names), 3.8))
     colours = plt.cm.viridis(np.linspace(0, 0.88, len(chosen)))
     for axes, name in zip(grid, names):
@@ -101,10 +108,10 @@ def plot_profiles(out, snapshots, axis):
 def plot_scatter(out, snapshots):
     """One row a quantity, one column a snapshot, one colour scale a row."""
     chosen = [snapshots[k] for k in spread(len(snapshots), 4)]
-    names = ["p", "T", "S_h", "S_w"]
+    names = [n for n in ("p", "T", "S_h", "S_w") if n in derived(chosen[0][1])]
     extent = np.ptp(chosen[0][1]["position"], axis=0)
-    width = np.clip(4.5 * extent[0] / extent[1], 1.5, 3.4)
-    height = np.clip(width * extent[1] / extent[0], 0.8, 4.5) + 0.35
+    width = np.clip(4.5 * extent[0] / extent[1], 1.0, 3.4)
+    height = np.clip(width * extent[1] / extent[0], 0.8, 3.2) + 0.35
     figure, grid = plt.subplots(len(names), len(chosen), figsize=(width * len(chosen) + 1.5, height * len(names) + 0.5),
                                 squeeze=False, sharex=True, sharey=True)  # fmt: skip
     for row, name in zip(grid, names):
@@ -124,6 +131,8 @@ def plot_scatter(out, snapshots):
         figure.colorbar(dots, ax=list(row), label=SHORT[name], pad=0.01, aspect=15)
     for axes in grid[-1]:
         axes.set_xlabel("x (m)")
+        if height * extent[0] < 0.6 * extent[1]:  # narrow
+            axes.tick_params(axis="x", labelrotation=90)
     figure.suptitle(f"{out.name}: particles", x=0.01, ha="left")
     save(figure, out / "figures", "particles")
 
