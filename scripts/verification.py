@@ -45,8 +45,10 @@ ROWS = {  # of the table: what is shown
     16: "Bad cases, truncated and random files are refused with a reason",
     17: "Big steps: BP2 case 2 at fixed dt = 50 s and 100 s",
 }
+# sections of the text, beside its table
 SECTION = {"8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
-           "4.4": "Masuda's core, cases/masuda, against the reference curves at every 15 min to 4 h"}  # of the text, beside its table
+           "4.3": "Boundary conditions and meters",
+           "4.4": "Masuda's core, cases/masuda, against the reference curves at every 15 min to 4 h"}  # fmt: skip
 NOT_A_TEST = {"common", "exact"}
 INTEGRATION = ("ranks", "restart")  # of tests/integration: those that record lines of the table
 

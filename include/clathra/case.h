@@ -101,7 +101,7 @@ typedef struct {
   BasisType basis;
   bool      axisymmetric;      /* x is the radius, y runs along the axis; all per full ring */
   char      fields_wanted[64]; /* auto, or the words of cl_field_word, or the name of a set */
-  bool      inertia;
+  bool      inertia, one_pressure;
   FieldSet  fields;          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM]; /* m/s^2 */
   PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;

@@ -16,6 +16,10 @@ extern const FieldInfo cl_field[F_COUNT];
 /* What has fields of its own: bits that also say what a particle variable, a key or a condition needs. */
 enum { HAS_SOLID = 1, HAS_WATER = 2, HAS_GAS = 4, HAS_HEAT = 8, HAS_ALL = 15 };
 extern const char *const cl_field_word[]; /* solid, water, gas, heat; NULL ends it */
+/* What a particle variable may need besides: a gas pressure of its own (set with gas unless the scene has one
+ * pressure).
+ */
+enum { HAS_GAS_PRESSURE = 16 };
 
 /* A field set.  A field that is not in it has no unknown, no row, no storage; its place is -1. */
 typedef struct {
@@ -23,13 +27,15 @@ typedef struct {
   bool     solid, heat, fluid; /* moves; carries T; has a fluid at all */
   bool     phase[PHASE_COUNT]; /* fluids that are there */
   bool     inertia;            /* accelerations; false: quasi-static */
+  bool     one_pressure;       /* both fluids share the unknown p_w */
   int      n;                  /* unknowns of a node */
   int      at[F_COUNT];        /* place of each unknown in a node's block */
   int      field[F_COUNT];     /* unknown at each place */
 } FieldSet;
 
-/* From the bits; false for a set that cannot be (gas without water, nothing at all). */
-bool FieldSetMake(unsigned has, bool inertia, FieldSet *fs);
+/* From the bits; false for a set that cannot be (gas without water, nothing at all).  one_pressure: p_g = p_w,
+ * docs/equations.md (34). */
+bool FieldSetMake(unsigned has, bool inertia, bool one_pressure, FieldSet *fs);
 /* "solid, water, gas, heat (thmc)"; the name of the set where the field has one. */
 void FieldSetPrint(const FieldSet *fs, char *text, int size);
 /* A set by its name (thmc, thc, hm, thm, m, ...); 0 for an unknown one. */

@@ -78,6 +78,7 @@ typedef struct {
 
   /* of the last evaluation */
   double     *x, *f;     /* [n_local][fields.n] unscaled unknowns, residual */
+  double     *mass_row;  /* [n_local][2] mass balances of water and gas, one pressure only; kg */
   double     *proj;      /* [n_local][4] projected pressure gradients Pi g, Pa/m */
   double     *wide;      /* [n][12] particle coefficients of the wide part (27) */
   ClStatus    status;    /* why the last evaluation failed, on this rank */

@@ -45,6 +45,7 @@ typedef struct {
   double V, m_s;
   double m_star[3]; /* m_h*, m_w*, m_g*, kg */
   double T_n, Sh_n; /* at t_n */
+  double sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   double sig[6], sig0[6];
   double proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
@@ -73,9 +74,9 @@ typedef struct {
 ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
                        bool tangent, PointState *state, PointOutput *o, const char **why);
 
-/* Masses and saturations of a new particle from (phi, S_h, p_w, p_g, T); kg. */
-void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double pw, double pg,
-                        double T, double *m_s, double *m_h, double *m_w, double *m_g);
+/* Masses of a new particle from (phi, S_h, s_g, p_w, p_g, T); kg. */
+void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double sg, double pw,
+                        double pg, double T, double *m_s, double *m_h, double *m_w, double *m_g);
 
 /* Properties at t_n that projections, scales and stabilisation need. */
 typedef struct {
@@ -86,4 +87,4 @@ typedef struct {
   double storage[PHASE_COUNT];                /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
 } PointProperties;
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
-                                 double pg, double T, PointProperties *r, const char **why);
+                                 double pg, double T, double sw_n, PointProperties *r, const char **why);

@@ -133,8 +133,8 @@ static void OutsidePressures(const Case *c, PetscInt k, const BcValues *v, const
   }
   if (b->phase[PHASE_W].n || b->phase[PHASE_G].n || (b->initial && !b->natural))
     return;
-  if (!c->fields.phase[PHASE_G]) {
-    o->p[PHASE_W] = v->value[k];
+  if (!(c->fields.has & HAS_GAS_PRESSURE)) {
+    o->p[PHASE_W] = o->p[PHASE_G] = b->initial ? p0[PHASE_W] : v->value[k];
     return;
   }
   const double sg0   = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);

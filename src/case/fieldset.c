@@ -169,11 +169,11 @@ PetscErrorCode CaseFieldSet(Reader *r, Case *c)
     PetscCall(FieldsDerive(r, c, &has));
   else
     has = FieldsParse(r, c->fields_wanted);
-  if (!FieldSetMake(has, c->inertia, &c->fields)) {
+  if (!FieldSetMake(has, c->inertia, c->one_pressure, &c->fields)) {
     if (r->nerror == before)
       ReaderError(r, "fields", c->fields_wanted, "has gas without water, which no scene here can have; must be %s",
                   FIELDS_ALLOWED);
-    FieldSetMake(HAS_ALL, c->inertia, &c->fields); /* so that the rest of the case is read */
+    FieldSetMake(HAS_ALL, c->inertia, c->one_pressure, &c->fields); /* so that the rest of the case is read */
   }
   c->fields_wanted[0] = '\0'; /* the resolved case names what was found */
   for (int k = 0; cl_field_word[k]; k++) {

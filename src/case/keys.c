@@ -54,6 +54,7 @@ LAW(Equilibrium, EquilibriumSetType, EquilibriumTypes, kinetics.equilibrium, typ
 
 /* ---------------------------------------------------------------- words */
 static const char *const basis_word[]     = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
+static const char *const pressures_word[] = {"two", "one", NULL};
 static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]   = {"sdirk2", "euler", NULL};
 static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
@@ -101,6 +102,8 @@ static const Key case_key[] = {
          "what the scene needs: a list of solid, water, gas, heat, or a set's name (thmc, thc, hmc, thm, hm, m, ...); "
          "auto drops what is identically zero"),
     BOOLEAN(Case, "inertia", inertia, "yes", "accelerations; no is quasi-static"),
+    BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
+            .choices = pressures_word),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", NULL, "the run starts at 0 and ends here"),
@@ -191,11 +194,11 @@ static const Key material_key[] = {
     LAWKEY("permeability_porosity_law", "kozeny_carman", law_Porosity, ""),
     LAWKEY("permeability_hydrate_law", "power", law_Hydrate, "power is (1-S_h)^mh"),
     REAL(Material, "permeability_mh", permeability.mh, "", "[0,100]", "0", "exponent of 1-S_h",
-         WHEN(NeedsPower, "hydrate_law is power")),
+         WHEN(NeedsPower, "hydrate_law is power"), .has = HAS_WATER),
     REAL(Material, "permeability_kh", permeability.kh, "", "(0,1]", "1", "plateau",
-         WHEN(NeedsRamp, "hydrate_law is masuda_ramp")),
+         WHEN(NeedsRamp, "hydrate_law is masuda_ramp"), .has = HAS_WATER),
     REAL(Material, "permeability_Shc", permeability.Shc, "", "(0,1]", "1", "threshold",
-         WHEN(NeedsRamp, "hydrate_law is masuda_ramp")),
+         WHEN(NeedsRamp, "hydrate_law is masuda_ramp"), .has = HAS_WATER),
     BOOLEAN(Material, "kinetics_active", reacts, "no", "hydrate forms and dissociates"),
     REAL(Material, "kinetics_K0", kinetics.K0, "mol/(m^2 Pa s)", "[0,inf)", "0 mol/(m^2 Pa s)",
          "K_d = K0 exp(-dE/(R T))", WHEN(NeedsRate, "active")),
@@ -240,10 +243,8 @@ static const Key region_key[] = {
 };
 
 #define TYPE(t) (1u << (t))
-#define FACES                                                                                                          \
-  (TYPE(BC_TRACTION) | TYPE(BC_PRESSURE) | TYPE(BC_HEAT_FLUX) | TYPE(BC_CONVECTION) | TYPE(BC_FACE_TEMPERATURE) |      \
-   TYPE(BC_INFLOW))
-#define PLANES (TYPE(BC_ROLLER) | TYPE(BC_FIXED) | TYPE(BC_PLATE) | TYPE(BC_TEMPERATURE))
+#define FACES (TYPE(BC_ROLLER) - TYPE(BC_TRACTION)) /* every type before BC_ROLLER acts on faces, */
+#define PLANES (~0u << BC_ROLLER)                   /* the others on grid planes */
 
 static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),

@@ -37,21 +37,28 @@ static const struct {
 };
 #define SETS ((int)(sizeof(set_name) / sizeof(*set_name)))
 
-bool FieldSetMake(unsigned has, bool inertia, FieldSet *fs)
+bool FieldSetMake(unsigned has, bool inertia, bool one_pressure, FieldSet *fs)
 {
   static const unsigned needs[F_COUNT] = {HAS_SOLID, HAS_SOLID, HAS_WATER, HAS_WATER, HAS_GAS,
                                           HAS_GAS,   HAS_WATER, HAS_GAS,   HAS_HEAT};
 
-  *fs = (FieldSet){.has     = has,
-                   .solid   = has & HAS_SOLID,
-                   .heat    = has & HAS_HEAT,
-                   .fluid   = has & (HAS_WATER | HAS_GAS),
-                   .phase   = {has & HAS_WATER, has & HAS_GAS},
-                   .inertia = inertia};
+  *fs              = (FieldSet){.has     = has,
+                                .solid   = has & HAS_SOLID,
+                                .heat    = has & HAS_HEAT,
+                                .fluid   = has & (HAS_WATER | HAS_GAS),
+                                .phase   = {has & HAS_WATER, has & HAS_GAS},
+                                .inertia = inertia};
+  fs->one_pressure = one_pressure && fs->phase[PHASE_G];
+  if (fs->phase[PHASE_G] && !fs->one_pressure)
+    fs->has |= HAS_GAS_PRESSURE;
   for (int q = 0; q < F_COUNT; q++) {
     fs->at[q] = -1;
     if (!(has & needs[q]))
       continue;
+    if (q == F_PG && fs->one_pressure) {
+      fs->at[q] = fs->at[F_PW];
+      continue;
+    }
     fs->at[q]          = fs->n;
     fs->field[fs->n++] = q;
   }
@@ -68,9 +75,11 @@ void FieldSetPrint(const FieldSet *fs, char *text, int size)
       n += snprintf(text + n, (size_t)(size - n), "%s%s", n ? ", " : "", cl_field_word[k]);
   }
   for (int k = 0; k < SETS; k++) {
-    if (set_name[k].has == fs->has && n < size)
+    if (set_name[k].has == (fs->has & HAS_ALL) && n < size)
       n += snprintf(text + n, (size_t)(size - n), " (%s)", set_name[k].name);
   }
+  if (fs->one_pressure && n < size)
+    n += snprintf(text + n, (size_t)(size - n), ", one pressure");
   if (!fs->inertia && n < size)
     snprintf(text + n, (size_t)(size - n), ", quasi-static");
 }

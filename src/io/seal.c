@@ -104,7 +104,8 @@ uint64_t CaseFingerprint(const Case *c)
   uint64_t h = FNV_START;
 
   h = Reals(Reals(Reals(h, c->lower, CL_DIM), c->upper, CL_DIM), c->gravity, CL_DIM);
-  h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, c->fields.has, c->nmaterial, c->nregion, c->nbc);
+  h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, (int64_t)c->fields.has, c->nmaterial, c->nregion,
+           c->nbc);
   for (PetscInt k = 0; k < c->nmaterial; k++)
     h = HashMaterial(h, &c->material[k]);
   for (PetscInt k = 0; k < c->nregion; k++)

@@ -1,7 +1,8 @@
 /* End of a stage and of a step: the only place that writes history. */
 #include "gather.h"
 
-#define MAX_MOVE 0.5 /* cells per step */
+#define MAX_MOVE 0.5   /* cells per step */
+#define MAX_SHARE 0.05 /* change of the share of water per step, one pressure */
 
 static void Displacement(const Model *m, PetscInt p, const Reach *r, const double *x, double u[CL_DIM])
 {
@@ -102,7 +103,10 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
   PetscFunctionBeginUser;
   if (!fs->fluid)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(NodeMapBroadcast(&m->map, m->f, fs->n));
+  if (m->mass_row)
+    PetscCall(NodeMapBroadcast(&m->map, m->mass_row, PHASE_COUNT));
+  else
+    PetscCall(NodeMapBroadcast(&m->map, m->f, fs->n));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach r;
 
@@ -112,11 +116,41 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
 
       for (int ph = 0; ph < PHASE_COUNT; ph++) {
         if (fs->phase[ph])
-          masses[3 * p + 1 + ph] -= share * m->f[r.node[a] * fs->n + PlaceP(fs, ph)];
+          masses[3 * p + 1 + ph] -= share * *MassRow(m, m->f, r.node[a], ph);
       }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (34) */
+static double ShareOfWater(const PointState *s)
+{
+  const double w = s->m_w / s->rho[PHASE_W], g = s->m_g / s->rho[PHASE_G];
+
+  return w / (w + g);
+}
+
+/* With one pressure the saturations are explicit: they may not leave [0,1] nor change much in a step. */
+static void CheckShares(Model *m, const double *x, const double *masses)
+{
+  for (PetscInt p = 0; p < m->P.n && m->status == CL_OK; p++) {
+    Reach       r;
+    PointState  s;
+    PointOutput o;
+    double      in[IN_COUNT];
+
+    if (ParticleEvaluate(m, p, x, false, &r, in, &s, &o) != CL_OK)
+      return;
+    s.m_w           = masses[3 * p + 1];
+    s.m_g           = masses[3 * p + 2];
+    const double sw = ShareOfWater(&s);
+    if (!(sw >= 0.0 && sw <= 1.0))
+      NoteFailure(m, CL_DOMAIN, "a saturation leaves [0,1]; with one pressure saturations are explicit", p);
+    else if (fabs(sw - ParticleSw(m, p)) > MAX_SHARE)
+      NoteFailure(m, CL_DOMAIN, "a saturation changes by more than 0.05 in a step; with one pressure they are explicit",
+                  p);
+  }
 }
 
 static void HeatRates(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], StageRates *rates)
@@ -150,12 +184,14 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
     for (int k = 0; k < 3; k++)
       trial->m[3 * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
     for (int k = 0; k < 3; k++)
-      trial->y[4 * p + k] = m->c->fields.at[F_PW + k] < 0 ? 0.0 : in[IN_P + k];
+      trial->y[4 * p + k] = m->P.f[P_PW + k] ? in[IN_P + k] : 0.0;
     trial->y[4 * p + 3] = s.Sh;
     if (m->c->fields.heat)
       HeatRates(m, &r, x, o.out, rates);
   }
   PetscCall(KeepBalance(m, trial->m));
+  if (m->c->fields.one_pressure)
+    CheckShares(m, x, trial->m);
   BoundaryRates(m, x, rates);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   m->rates = *rates;
@@ -210,7 +246,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
     WriteMotion(m, p, x, r, s);
   WriteVelocities(m, p, x, r);
   for (int k = 0; k < 3; k++) { /* p_w, p_g, T */
-    if (fs->at[F_PW + k] < 0)
+    if (!f[P_PW + k])
       continue;
     f[P_PW + k][p] = in[IN_P + k];
     for (int d = 0; d < CL_DIM; d++)
@@ -221,7 +257,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
   f[P_PHI][p] = s->phi;
   if (fs->phase[PHASE_W]) {
     f[P_MW][p] = s->m_w;
-    f[P_SW][p] = s->Sw;
+    f[P_SW][p] = fs->one_pressure ? (1.0 - s->Sh) * ShareOfWater(s) : s->Sw;
   }
   if (fs->phase[PHASE_G])
     f[P_MG][p] = s->m_g;

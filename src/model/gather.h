@@ -32,14 +32,42 @@ static inline double ParticleT(const Model *m, PetscInt p)
   return m->c->fields.heat ? m->P.f[P_T][p] : m->c->region[m->P.i[PI_REGION][p]].temperature;
 }
 
+/* Component of the store that holds the pressure of a fluid. */
+static inline int HeldPressure(const FieldSet *fs, int f)
+{
+  return fs->one_pressure ? P_PW : P_PW + f;
+}
+
+/* Share of water in the open pores at t_n. */
+static inline double ParticleSw(const Model *m, PetscInt p)
+{
+  return m->P.f[P_SW] ? m->P.f[P_SW][p] / (1.0 - m->P.f[P_SH][p]) : 0.0;
+}
+
 /* Properties of a particle at t_n. */
 static inline ClStatus ParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why)
 {
   const FieldSet *fs = &m->c->fields;
-  const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0, pg = fs->phase[PHASE_G] ? m->P.f[P_PG][p] : 0.0;
+  const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0;
+  const double    pg = fs->phase[PHASE_G] ? m->P.f[HeldPressure(fs, PHASE_G)][p] : 0.0;
 
   return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
-                                 ParticleT(m, p), q, why);
+                                 ParticleT(m, p), ParticleSw(m, p), q, why);
+}
+
+/* Weight of a fluid's mass balance in its row: 1, or with one pressure 1/rho_pi, so that the sum is the balance of
+   volume (34). */
+static inline double RowWeight(const Model *m, PetscInt I, int phase)
+{
+  return m->c->fields.one_pressure ? 1.0 / m->coef[I * NC_COUNT + NC_RHO + phase] : 1.0;
+}
+
+/* Where the mass balance of a fluid at a node is gathered. */
+static inline double *MassRow(const Model *m, double *f, PetscInt I, int phase)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  return fs->one_pressure ? &m->mass_row[PHASE_COUNT * I + phase] : &f[I * fs->n + PlaceP(fs, phase)];
 }
 
 /* Volume of a full cell about a node, m^3. */
@@ -119,7 +147,7 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    in[IN_P + f] = m->P.f[P_PW + f][p];
+    in[IN_P + f] = m->P.f[HeldPressure(fs, f)][p];
     GatherFluid(m, f, r, x, N, in);
   }
   if (!fs->heat)
@@ -133,7 +161,7 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
   }
 }
 
-/* Nodal less own value at t_n of unknown q = F_PW, F_PG, F_T, held in component P_PW + q - F_PW. */
+/* Nodal less own value at t_n of unknown q = F_PW, F_PG, F_T. */
 static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
 {
   const FieldSet *fs = &m->c->fields;
@@ -141,7 +169,7 @@ static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
 
   if (fs->at[q] < 0)
     return 0.0;
-  shift = -m->P.f[P_PW + q - F_PW][p];
+  shift = -m->P.f[q == F_T ? P_T : HeldPressure(fs, q - F_PW)][p];
   for (int a = 0; a < r->n; a++)
     shift += r->S[a] * m->x_n[r->node[a] * fs->n + fs->at[q]];
   return shift;
@@ -155,6 +183,7 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->m_s     = m->P.f[P_MS][p];
   h->T_n     = ParticleT(m, p);
   h->Sh_n    = m->P.f[P_SH][p];
+  h->sw_n    = ParticleSw(m, p);
   h->dt      = m->stage.dt;
   h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
   for (int k = 0; k < 3; k++) {

@@ -31,7 +31,8 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
       if (fs->solid)
         col[PlaceVs(fs) + i] -= J;
     }
-    col[PlaceP(fs, f)] = D[IN_P + f] * b->S + D[IN_GP + 2 * f] * G[0] + D[IN_GP + 2 * f + 1] * G[1];
+    const double dp    = D[IN_P + f] * b->S + D[IN_GP + 2 * f] * G[0] + D[IN_GP + 2 * f + 1] * G[1];
+    col[PlaceP(fs, f)] = f == PHASE_G && fs->one_pressure ? col[PlaceP(fs, f)] + dp : dp;
   }
   if (fs->heat)
     col[PlaceT(fs)] = D[IN_T] * b->S + D[IN_GT] * G[0] + D[IN_GT + 1] * G[1];
@@ -40,6 +41,7 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate. */
 typedef struct {
   double acc[3][2], J[PHASE_COUNT][2], Tdot;
+  double weight[PHASE_COUNT]; /* RowWeight */
 } NodeFactors;
 
 static void Factors(const Model *m, PetscInt I, const double *x, NodeFactors *n)
@@ -53,6 +55,7 @@ static void Factors(const Model *m, PetscInt I, const double *x, NodeFactors *n)
       continue;
     Acceleration(m, I, x, PlaceV(fs, f), n->acc[1 + f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
+    n->weight[f] = RowWeight(m, I, f);
   }
   if (fs->heat) {
     const PetscInt k = I * fs->n + PlaceT(fs);
@@ -89,9 +92,11 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const Node
       for (int q = 0; axisymmetric && i == 0 && q < n; q++)
         row[q] -= H * DB[OUT_HOOPF + f][q];
     }
-    double *row = &out[PlaceP(fs, f) * ld];
+    double      *row  = &out[PlaceP(fs, f) * ld];
+    const double keep = f == PHASE_G && fs->one_pressure ? 1.0 : 0.0, w = k->weight[f];
     for (int q = 0; q < n; q++)
-      row[q] = S * DB[OUT_DM + f][q] - dt * (G[0] * DB[OUT_FLUX + 2 * f][q] + G[1] * DB[OUT_FLUX + 2 * f + 1][q]);
+      row[q] = (keep > 0.0 ? row[q] : 0.0) +
+               w * (S * DB[OUT_DM + f][q] - dt * (G[0] * DB[OUT_FLUX + 2 * f][q] + G[1] * DB[OUT_FLUX + 2 * f + 1][q]));
   }
   if (fs->heat) {
     double *row = &out[PlaceT(fs) * ld];
@@ -277,13 +282,18 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
                             .G  = r->G[b],
                             .w  = &m->w[2 * r->node[b]]};
 
-    for (int k = 0; k < fs->n; k++) {
+    for (int k = 0; k < F_COUNT; k++) {
       double col[F_COUNT];
 
-      Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[fs->field[k]], &at, col);
+      if (fs->at[k] < 0)
+        continue;
+      Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[k], &at, col);
       for (int a = 0; a < r->n; a++) {
+        const bool   mass = k == F_PW || k == F_PG;
+        const double N    = face->N[a] * (mass ? RowWeight(m, r->node[a], k - F_PW) : 1.0);
+
         for (int q = 0; q < fs->n; q++)
-          block[(a * fs->n + k) * ld + b * fs->n + q] = face->N[a] * col[q];
+          block[(a * fs->n + fs->at[k]) * ld + b * fs->n + q] += N * col[q];
       }
     }
   }
@@ -299,6 +309,8 @@ static PetscErrorCode FaceLoop(Model *m, const double *x)
     FaceOutput o;
 
     FaceAt(m, &m->face[k], x, &r, &o);
+    for (int q = 0; q < r.n * m->c->fields.n * r.n * m->c->fields.n; q++)
+      block[q] = 0.0;
     FaceBlock(m, &m->face[k], &r, &o, block);
     PetscCall(JacobianAdd(m, r.n, r.node, block));
   }

@@ -32,6 +32,7 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree4(m->x_n, m->w, m->V, m->coef));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
+  PetscCall(PetscFree(m->mass_row));
   PetscCall(MatDestroy(&m->J2));
   PetscCall(MatDestroy(&m->A));
   PetscCall(MatDestroy(&m->Pmat));
@@ -67,6 +68,8 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(PetscCalloc4(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n * NC_COUNT, &m->coef));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
+  if (m->c->fields.one_pressure)
+    PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->mass_row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

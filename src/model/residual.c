@@ -95,7 +95,7 @@ static void ScatterFluid(const Model *m, int ph, const Reach *r, const double *x
                 G[1] * out[OUT_PF + 4 * ph + 2 * i + 1];
     if (m->c->axisymmetric)
       row[0] -= r->H[a] * out[OUT_HOOPF + ph];
-    fI[PlaceP(fs, ph)] +=
+    *MassRow(m, f, I, ph) +=
         S * out[OUT_DM + ph] - m->stage.dt * (G[0] * out[OUT_FLUX + 2 * ph] + G[1] * out[OUT_FLUX + 2 * ph + 1]);
   }
 }
@@ -153,10 +153,32 @@ static void FaceLoop(const Model *m, const double *x, double *f)
 
     FaceAt(m, face, x, &r, &o);
     for (int a = 0; a < r.n; a++) {
-      for (int q = 0; q < fs->n; q++)
-        f[r.node[a] * fs->n + q] += face->N[a] * o.out[fs->field[q]];
+      for (int q = 0; q < F_COUNT; q++) {
+        if (q == F_PW || q == F_PG)
+          continue;
+        if (fs->at[q] >= 0)
+          f[r.node[a] * fs->n + fs->at[q]] += face->N[a] * o.out[q];
+      }
+      for (int ph = 0; ph < PHASE_COUNT; ph++) {
+        if (fs->phase[ph])
+          *MassRow(m, f, r.node[a], ph) += face->N[a] * o.out[F_PW + ph];
+      }
     }
   }
+}
+
+/* (34): the balances of both fluids make one of volume. */
+static PetscErrorCode SumMassRows(Model *m)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapReduce(&m->map, m->mass_row, PHASE_COUNT));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      m->f[I * fs->n + PlaceP(fs, ph)] += RowWeight(m, I, ph) * m->mass_row[PHASE_COUNT * I + ph];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Scaled rows; a prescribed unknown's row is x - x_hat. */
@@ -188,11 +210,15 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
   m->limited = 0;
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(PetscArrayzero(m->f, m->map.n_local * m->c->fields.n));
+  if (m->mass_row)
+    PetscCall(PetscArrayzero(m->mass_row, m->map.n_local * PHASE_COUNT));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
   ParticleLoop(m, m->x, m->f);
   FaceLoop(m, m->x, m->f);
   StabilisationResidual(m, m->x, m->f);
   PetscCall(NodeMapReduce(&m->map, m->f, m->c->fields.n));
+  if (m->mass_row)
+    PetscCall(SumMassRows(m));
   PetscCall(Finish(m, m->x, m->f, R));
   if (m->status != CL_OK && snes)
     PetscCall(SNESSetFunctionDomainError(snes));

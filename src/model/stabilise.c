@@ -51,10 +51,14 @@ static void MarkSurface(const Model *m, double *fill)
   for (PetscInt k = 0; k < m->nface; k++) {
     const Face *f    = &m->face[k];
     const int   axis = f->side / 2;
+    const int   sign = f->side % 2 ? 1 : -1;
     double      s[CL_DIM];
 
-    for (int d = 0; d < CL_DIM; d++)
-      s[d] = (m->P.f[P_X + d][f->particle] + f->r[d] - m->grid.lower[d]) / m->grid.h[d];
+    for (int d = 0; d < CL_DIM; d++) {
+      const double arm = d == axis ? sign * m->P.f[P_L + d][f->particle] : 0.0;
+
+      s[d] = (m->P.f[P_X + d][f->particle] + arm - m->grid.lower[d]) / m->grid.h[d];
+    }
     if (fabs(s[axis] - round(s[axis])) < 1e-6)
       continue; /* on a grid line: nothing is cut */
     const PetscInt I = CellIndex(m, (PetscInt)floor(s[0]), (PetscInt)floor(s[1]));
@@ -221,25 +225,32 @@ PetscErrorCode StabilisationBuild(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coefficient of the penalty on each unknown of the set; none on the fluid velocities, which carry the boundary
-   pressure. */
+/* Coefficient of the penalty on each of the nine unknowns, zero where the set has none; none on the fluid velocities,
+   which carry the boundary pressure. */
 static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, double c[F_COUNT])
 {
   const FieldSet *fs = &m->c->fields;
 
-  for (int k = 0; k < fs->n; k++)
+  for (int k = 0; k < F_COUNT; k++)
     c[k] = 0.0;
   if (fs->solid)
-    c[PlaceVs(fs)] = c[PlaceVs(fs) + 1] = g->a * g->M * dt;
+    c[F_VSX] = c[F_VSY] = g->a * g->M * dt;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f])
-      c[PlaceP(fs, f)] = g->a * dt / (1.0 / g->lambda[f] + (fs->inertia ? 1.0 / dt : 0.0)); /* dt' rho tau */
+      c[F_PW + f] = g->a * dt / (1.0 / g->lambda[f] + (fs->inertia ? 1.0 / dt : 0.0)); /* dt' rho tau */
   }
   if (fs->heat)
-    c[PlaceT(fs)] = g->a * g->kappa;
+    c[F_T] = g->a * g->kappa;
 }
 
 static const double second[3] = {1.0, -2.0, 1.0};
+
+static double *GhostRow(const Model *m, double *f, PetscInt I, int k)
+{
+  const bool mass = k == F_PW || k == F_PG;
+
+  return mass ? MassRow(m, f, I, k - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[k]];
+}
 
 static void GhostResidual(const Model *m, const GhostLine *g, const double *x, double *f)
 {
@@ -247,13 +258,15 @@ static void GhostResidual(const Model *m, const GhostLine *g, const double *x, d
   double    c[F_COUNT];
 
   GhostCoefficients(m, g, m->stage.dt, c);
-  for (int q = 0; q < n; q++) {
+  for (int k = 0; k < F_COUNT; k++) {
     double jump = 0.0;
 
+    if (c[k] == 0.0)
+      continue;
     for (int a = 0; a < 3; a++)
-      jump += second[a] * x[g->node[a] * n + q];
+      jump += second[a] * x[g->node[a] * n + m->c->fields.at[k]];
     for (int a = 0; a < 3; a++)
-      f[g->node[a] * n + q] += c[q] * jump * second[a];
+      *GhostRow(m, f, g->node[a], k) += c[k] * jump * second[a];
   }
 }
 
@@ -277,7 +290,7 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
       Kdp += c->K[a][b] * dp[b];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       if (fs->phase[ph])
-        f[c->node[a] * fs->n + PlaceP(fs, ph)] += c->rho[ph] * c->s[ph] * Kdp;
+        *MassRow(m, f, c->node[a], ph) += c->rho[ph] * c->s[ph] * Kdp;
     }
   }
 }
@@ -292,30 +305,39 @@ void StabilisationResidual(const Model *m, const double *x, double *f)
 
 static void GhostBlock(const Model *m, const GhostLine *g, double *block)
 {
-  const int n = m->c->fields.n;
-  double    c[F_COUNT];
+  const int  n  = m->c->fields.n;
+  const int *at = m->c->fields.at;
+  double     c[F_COUNT];
 
   GhostCoefficients(m, g, m->stage.dt, c);
-  for (int a = 0; a < 3; a++) {
-    for (int b = 0; b < 3; b++) {
-      for (int q = 0; q < n; q++)
-        block[(a * n + q) * 3 * n + b * n + q] = c[q] * second[a] * second[b];
+  for (int k = 0; k < F_COUNT; k++) {
+    const bool mass = k == F_PW || k == F_PG;
+
+    for (int a = 0; a < 3 && c[k] != 0.0; a++) {
+      const double w = c[k] * second[a] * (mass ? RowWeight(m, g->node[a], k - F_PW) : 1.0);
+
+      for (int b = 0; b < 3; b++)
+        block[(a * n + at[k]) * 3 * n + b * n + at[k]] += w * second[b];
     }
   }
 }
 
-static void ProjectionBlock(const FieldSet *fs, const ProjectionCell *c, double *block)
+static void ProjectionBlock(const Model *m, const ProjectionCell *c, double *block)
 {
-  const int n = fs->n;
+  const FieldSet *fs = &m->c->fields;
+  const int       n  = fs->n;
 
   for (int a = 0; a < 4; a++) {
     for (int r = 0; r < PHASE_COUNT; r++) {
-      double *row = &block[(a * n + PlaceP(fs, r)) * 4 * n];
+      if (!fs->phase[r])
+        continue;
+      double      *row = &block[(a * n + PlaceP(fs, r)) * 4 * n];
+      const double w   = RowWeight(m, c->node[a], r) * c->rho[r] * c->s[r];
 
-      for (int b = 0; fs->phase[r] && b < 4; b++) {
+      for (int b = 0; b < 4; b++) {
         for (int q = 0; q < PHASE_COUNT; q++) {
           if (fs->phase[q])
-            row[b * n + PlaceP(fs, q)] = c->rho[r] * c->s[r] * c->s[q] * c->K[a][b];
+            row[b * n + PlaceP(fs, q)] += w * c->s[q] * c->K[a][b];
         }
       }
     }
@@ -334,7 +356,7 @@ PetscErrorCode StabilisationJacobian(Model *m)
   for (PetscInt k = 0; k < m->ncell; k++) {
     double block[16 * F_COUNT * F_COUNT] = {0.0};
 
-    ProjectionBlock(&m->c->fields, &m->cell[k], block);
+    ProjectionBlock(m, &m->cell[k], block);
     PetscCall(JacobianAdd(m, 4, m->cell[k].node, block));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

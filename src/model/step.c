@@ -71,7 +71,7 @@ static inline double Carried(const Model *m, PetscInt p, int value, int gradient
 static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_DIM], const PointProperties *q,
                         double *s)
 {
-  static const int velocity[3] = {P_VS, P_VW, P_VG}, pressure[2] = {P_PW, P_PG}, gradient[2] = {P_GW, P_GG};
+  static const int velocity[3] = {P_VS, P_VW, P_VG}, gradient[2] = {P_GW, P_GG};
   const FieldSet  *fs       = &m->c->fields;
   double *const   *f        = (double *const *)m->P.f;
   const double     VS       = f[P_V][p] * S;
@@ -89,7 +89,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
-    s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, pressure[k], gradient[k], d);
+    if (k == PHASE_W || !fs->one_pressure)
+      s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, HeldPressure(fs, k), gradient[k], d);
     s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
   }
   if (fs->heat)
@@ -245,8 +246,9 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
+    const double mass  = RowWeight(m, I, k) * V_row * MassScale(fs, c, k, m->w[2 * I + k], dt, h);
     col[PlaceP(fs, k)] = P;
-    row[PlaceP(fs, k)] = V_row * MassScale(fs, c, k, m->w[2 * I + k], dt, h);
+    row[PlaceP(fs, k)] = k == PHASE_G && fs->one_pressure ? row[PlaceP(fs, k)] + mass : mass;
   }
   if (fs->heat) {
     col[PlaceT(fs)] = 1.0;

@@ -24,7 +24,7 @@ static void WideParticle(const Model *m, PetscInt p, const double *proj, double 
     for (int a = 0; a < r.n; a++) {
       double *fI = &f[r.node[a] * fs->n];
 
-      fI[PlaceP(fs, ph)] -= dt * (r.G[a][0] * flux[0] + r.G[a][1] * flux[1]);
+      fI[PlaceP(fs, ph)] -= RowWeight(m, r.node[a], ph) * dt * (r.G[a][0] * flux[0] + r.G[a][1] * flux[1]);
       if (fs->heat)
         fI[PlaceT(fs)] += r.S[a] * q;
     }

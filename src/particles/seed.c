@@ -42,17 +42,20 @@ static void Set(Particles *P, PetscInt p, int component, double value)
 
 /* Pressures of the phases from their mean (10). */
 static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Material *mat, const double x[],
-                                       double *pw, double *pg)
+                                       double *pw, double *pg, double *sg)
 {
-  const double pm = InitialPressure(c, r, mat, x), sg = r->Sg / (1.0 - r->Sh);
-  double       pc = 0.0;
+  const double pm = InitialPressure(c, r, mat, x);
+  double       pc = 0.0, ds;
 
   PetscFunctionBeginUser;
-  if (c->fields.phase[PHASE_G])
-    PetscCheck(RetentionInvert(&mat->retention, sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "region %s: the retention law never reaches the initial gas share %g", r->name, sg);
-  *pw = pm - sg * pc;
+  *sg = r->Sg / (1.0 - r->Sh);
+  if (c->fields.has & HAS_GAS_PRESSURE)
+    PetscCheck(RetentionInvert(&mat->retention, *sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "region %s: the retention law never reaches the initial gas share %g", r->name, *sg);
+  *pw = pm - *sg * pc;
   *pg = *pw + pc;
+  if (c->fields.has & HAS_GAS_PRESSURE) /* to the last digit what the law makes of these pressures */
+    *sg = RetentionGasShare(&mat->retention, *pg - *pw, &ds);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,12 +65,12 @@ static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P,
   const Region   *r   = &c->region[region];
   const Material *mat = &c->material[r->material];
   const double    V   = 4.0 * l[0] * l[1] * (c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0);
-  double          pw = 0.0, pg = 0.0, m[4];
+  double          pw = 0.0, pg = 0.0, sg = 0.0, m[4];
 
   PetscFunctionBeginUser;
   if (c->fields.fluid)
-    PetscCall(InitialPressures(c, r, mat, x, &pw, &pg));
-  PointInitialMasses(&c->fields, mat, V, mat->porosity, r->Sh, pw, pg, r->temperature, &m[0], &m[1], &m[2], &m[3]);
+    PetscCall(InitialPressures(c, r, mat, x, &pw, &pg, &sg));
+  PointInitialMasses(&c->fields, mat, V, mat->porosity, r->Sh, sg, pw, pg, r->temperature, &m[0], &m[1], &m[2], &m[3]);
   for (int k = 0; k < P_COUNT; k++)
     Set(P, p, k, 0.0);
   for (int d = 0; d < CL_DIM; d++) {

@@ -293,13 +293,16 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
                        bool tangent, PointState *state, PointOutput *o, const char **why)
 {
   Kinematics        moved;
-  const Kinematics *k = fs->solid ? &moved : &at_rest;
+  const Kinematics *k = &at_rest;
   ScalarState       s;
   Metric            metric;
 
-  if (fs->solid && !KinematicsEvaluate(&in[IN_GRADU], &moved)) {
-    *why = "volume ratio of the step is not positive";
-    return CL_DOMAIN;
+  if (fs->solid) {
+    if (!KinematicsEvaluate(&in[IN_GRADU], &moved)) {
+      *why = "volume ratio of the step is not positive";
+      return CL_DOMAIN;
+    }
+    k = &moved;
   }
   const ClStatus status = ScalarStateEvaluate(fs, mat, h, k->J, in, &s, why);
   if (status != CL_OK)

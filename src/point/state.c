@@ -152,7 +152,7 @@ static void Skeleton(const Material *mat, ScalarState *s)
 }
 
 /* Shares of the fluids in the open pores and their mean pressure (10). */
-static void Saturations(const FieldSet *fs, const Material *mat, Jet pw, Jet pg, ScalarState *s)
+static void Saturations(const FieldSet *fs, const Material *mat, double sw_n, Jet pw, Jet pg, ScalarState *s)
 {
   const Jet pc = JetSub(pg, pw);
   double    ds;
@@ -162,10 +162,15 @@ static void Saturations(const FieldSet *fs, const Material *mat, Jet pw, Jet pg,
   s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
   if (!fs->phase[PHASE_G])
     return;
-  const double sg = RetentionGasShare(&mat->retention, pc.v, &ds);
-  s->sg           = JetChain(sg, ds, pc);
-  s->sw           = JetSub(s->sw, s->sg);
-  s->p            = JetAdd(pw, JetMul(s->sg, pc));
+  if (fs->one_pressure) {
+    s->sg = JetConstant(1.0 - sw_n);
+  } else {
+    const double sg = RetentionGasShare(&mat->retention, pc.v, &ds);
+
+    s->sg = JetChain(sg, ds, pc);
+  }
+  s->sw = JetSub(s->sw, s->sg);
+  s->p  = JetAdd(pw, JetMul(s->sg, pc));
 }
 
 static ClStatus CheckInputs(const FieldSet *fs, const double in[IN_COUNT], const char **why)
@@ -206,7 +211,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     *why = "porosity fell to zero";
     return CL_DOMAIN;
   }
-  Saturations(fs, mat, pw, pg, s);
+  Saturations(fs, mat, h->sw_n, pw, pg, s);
   HydrateMass(mat, h, T, rho_h, s);
 
   const Jet Vh = JetDiv(s->m_h, rho_h), Vf = JetSub(s->Vp, Vh);
@@ -233,12 +238,12 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   return CL_OK;
 }
 
-void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double pw, double pg,
-                        double T, double *m_s, double *m_h, double *m_w, double *m_g)
+void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double sg, double pw,
+                        double pg, double T, double *m_s, double *m_h, double *m_w, double *m_g)
 {
   double       d, e;
   const bool   gas = fs->phase[PHASE_G];
-  const double sg = gas ? RetentionGasShare(&mat->retention, pg - pw, &d) : 0.0, Vf = V * phi * (1.0 - Sh);
+  const double Vf  = V * phi * (1.0 - Sh);
 
   *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
@@ -247,12 +252,13 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 }
 
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
-                                 double pg, double T, PointProperties *r, const char **why)
+                                 double pg, double T, double sw_n, PointProperties *r, const char **why)
 {
-  const PointHistory h = {.V = V, .m_s = m_s, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
-  const double       in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
-  ScalarState        s;
-  const ClStatus     status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
+  const PointHistory h = {
+      .V = V, .m_s = m_s, .sw_n = sw_n, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
+  const double   in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
+  ScalarState    s;
+  const ClStatus status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
 
   if (status != CL_OK)
     return status;

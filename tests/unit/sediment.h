@@ -2,7 +2,7 @@
 #pragma once
 
 #include <math.h>
-#include "clathra/material.h"
+#include "clathra/point.h"
 
 /* Sediment of BP2 with a little of everything switched on. */
 static inline Material SedimentMaterial(void)
@@ -34,4 +34,24 @@ static inline Material SedimentMaterial(void)
   assert_true(PermeabilitySetPorosityType(&m.permeability, "kozeny_carman"));
   assert_true(EquilibriumSetType(&m.kinetics.equilibrium, "sloan"));
   return m;
+}
+
+/* The full set of fields. */
+static inline const FieldSet *AllFields(void)
+{
+  static FieldSet all;
+
+  if (all.n == 0)
+    FieldSetMake(HAS_ALL, true, false, &all);
+  return &all;
+}
+
+/* Masses of a particle that its pressures ask for. */
+static inline void InitialMasses(const Material *mat, double V, double phi, double Sh, double pw, double pg, double T,
+                                 double *m_s, double *m_h, double *m_w, double *m_g)
+{
+  double ds;
+
+  PointInitialMasses(AllFields(), mat, V, phi, Sh, RetentionGasShare(&mat->retention, pg - pw, &ds), pw, pg, T, m_s,
+                     m_h, m_w, m_g);
 }

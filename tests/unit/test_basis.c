@@ -273,9 +273,9 @@ static void TestStencilExpand(void **state)
   memset(flag, 1, (size_t)(g.gm[0] * g.gm[1]));
   Call(NodeMapUpdate(&g, flag, &map, &changed));
   for (int n = 0; n < 20000; n++) {
-    Stencil  s;
+    Stencil  s = {.r = 0.0};
     PetscInt node[CL_NODES], cell[2];
-    double   S[CL_NODES], G[CL_NODES][CL_DIM], x[2], l[2];
+    double   S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES], x[2], l[2];
 
     for (int d = 0; d < 2; d++) {
       RandomDomain(&r, g.lower[d], g.h[d], (int)g.cells[d], &x[d], &l[d]);
@@ -284,7 +284,7 @@ static void TestStencilExpand(void **state)
     Check(GridCell(&g, x, cell));
     if (GridCellOwner(&g, cell) != g.rank)
       continue;
-    const int count = StencilExpand(&s, &g, &map, node, S, G);
+    const int count = StencilExpand(&s, &g, &map, node, S, G, H);
     double    sum   = 0.0;
     for (int a = 0; a < count; a++) {
       Check(node[a] >= 0 && node[a] < map.n_local);
@@ -323,6 +323,7 @@ static void MakeCase(Case *c, Material *mat, Region *region)
                      .region    = region,
                      .nmaterial = 1,
                      .nregion   = 2};
+  Check(FieldSetMake(HAS_ALL, true, false, &c->fields));
 }
 
 /* Ids 0..n-1 once each, on the right ranks, at places that the id alone decides; volumes and masses of the boxes. */
@@ -340,7 +341,7 @@ static void TestSeed(void **state)
   (void)state;
   MakeGrid(&g);
   MakeCase(&c, &mat, region);
-  Call(ParticlesCreate(&P));
+  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE, &P));
   Call(ParticlesSeed(&c, &g, &P));
   for (PetscInt p = 0; p < P.n; p++) {
     const PetscInt id = P.i[PI_ID][p], r = id >= 19 * 9, k = r ? id - 19 * 9 : id, i = k % nx[r], j = k / nx[r];
@@ -383,7 +384,7 @@ static double Stamp(PetscInt id, int k)
 
 static void Fill(const Grid *g, Particles *P, PetscInt n)
 {
-  Call(ParticlesCreate(P));
+  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE, P));
   Call(ParticlesResize(P, n));
   for (PetscInt p = 0; p < n; p++) {
     const PetscInt id = p * g->size + g->rank;

@@ -34,7 +34,7 @@ static void SceneInit(Scene *s, Rng *r)
   memset(s, 0, sizeof(*s));
   s->mat   = SedimentMaterial();
   s->given = (Schedule){1, one, one, false};
-  assert_true(FieldSetMake(HAS_ALL, true, &s->c.fields));
+  assert_true(FieldSetMake(HAS_ALL, true, false, &s->c.fields));
   s->c.bc             = s->bc;
   s->c.nbc            = 3;
   s->v.value          = s->value;

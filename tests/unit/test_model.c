@@ -76,7 +76,9 @@ static void SceneInit(Scene *s, BasisType basis, const double lower[2], const do
                      .bc                  = s->bc,
                      .ghost_penalty       = 0.1,
                      .pressure_projection = 1.0,
-                     .flux_interpolation  = true};
+                     .flux_interpolation  = true,
+                     .inertia             = true,
+                     .fields              = *AllFields()};
   s->mat[0] = s->mat[1] = MakeMaterial();
   for (int r = 0; r < 2; r++) {
     s->region[r] = (Region){.ppc = {2, 2}, .pressure = 3.25e6, .temperature = 4.0, .Sw = 0.6, .Sg = 0.4, .material = r};
@@ -125,8 +127,8 @@ static void Refill(Scene *s, PetscInt p, double Sh)
   const double   V = f[P_V][p], T = f[P_T][p];
   double         d;
 
-  PointInitialMasses(MaterialOf(s, p), V, MaterialOf(s, p)->porosity, Sh, f[P_PW][p], f[P_PG][p], T, &f[P_MS][p],
-                     &f[P_MH][p], &f[P_MW][p], &f[P_MG][p]);
+  InitialMasses(MaterialOf(s, p), V, MaterialOf(s, p)->porosity, Sh, f[P_PW][p], f[P_PG][p], T, &f[P_MS][p],
+                &f[P_MH][p], &f[P_MW][p], &f[P_MG][p]);
   f[P_SH][p] = Sh;
   f[P_SW][p] = (1.0 - Sh) * (1.0 - RetentionGasShare(&MaterialOf(s, p)->retention, f[P_PG][p] - f[P_PW][p], &d));
 }

@@ -36,6 +36,7 @@ static Material RandomMaterial(Rng *r, Regime regime)
   m.retention.lambda     = RngBetween(r, 0.5, 3.0);
   m.relperm.nw           = RngBetween(r, 1.0, 6.0);
   m.relperm.ng           = RngBetween(r, 1.0, 4.0);
+  m.relperm.of_pores     = RngBetween(r, 0.0, 1.0) < 0.5;
   m.permeability.k0      = RngLog(r, 1e-18, 1e-10);
   m.solid.beta           = RngBetween(r, -1e-4, 3e-4);
   m.hydrate.beta         = RngBetween(r, 1e-5, 5e-4);
@@ -90,13 +91,13 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
     q->h.shift[1] += RngBetween(r, -2e4, 2e4);
   q->h.shift[2]   = RngBetween(r, -0.5, 0.5);
   const double tw = RngBetween(r, -0.3, 0.3);
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < MOTION_COUNT; k++)
     q->in[IN_GRADU + k] = RngBetween(r, -0.03, 0.03);
   q->in[IN_GRADU + 1] -= tw;
   q->in[IN_GRADU + 2] += tw;
   SetPressureOfRegime(r, q, regime);
-  PointInitialMasses(&q->mat, V, phi, Sh, q->in[IN_P], q->in[IN_P + 1], q->in[IN_T], &q->h.m_s, &q->h.m_star[0],
-                     &q->h.m_star[1], &q->h.m_star[2]);
+  InitialMasses(&q->mat, V, phi, Sh, q->in[IN_P], q->in[IN_P + 1], q->in[IN_T], &q->h.m_s, &q->h.m_star[0],
+                &q->h.m_star[1], &q->h.m_star[2]);
   for (int k = 0; k < 3; k++)
     q->h.m_star[k] *= RngBetween(r, 0.97, 1.03);
   if (regime == NO_HYDRATE || regime == LIMITED)
@@ -118,7 +119,7 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
 static ClStatus Evaluate(const Particle *q, bool tangent, PointState *s, PointOutput *o)
 {
   const char    *why    = NULL;
-  const ClStatus status = PointEvaluate(&q->mat, &q->h, q->in, tangent, s, o, &why);
+  const ClStatus status = PointEvaluate(AllFields(), &q->mat, &q->h, q->in, tangent, s, o, &why);
 
   assert_true((status == CL_OK) == (why == NULL));
   return status;
@@ -126,26 +127,27 @@ static ClStatus Evaluate(const Particle *q, bool tangent, PointState *s, PointOu
 
 /* ---------------------------------------------------------------- kinematics */
 typedef struct {
-  double g[2][2];
+  double g[MOTION_COUNT];
   int    which;
 } KinematicsContext;
 
 static bool KinematicsRows(void *ctx, double x, double y[RIDDERS_ROWS])
 {
   KinematicsContext *c = (KinematicsContext *)ctx;
-  double             g[2][2];
+  double             g[MOTION_COUNT];
   Kinematics         k;
 
   memcpy(g, c->g, sizeof(g));
-  g[c->which / 2][c->which % 2] = x;
+  g[c->which] = x;
   if (!KinematicsEvaluate(g, &k))
     return false;
   y[0] = k.theta;
   y[1] = k.J;
-  for (int i = 0; i < 3; i++)
+  for (int i = 0; i < 4; i++) {
     y[2 + i] = k.e[i];
-  for (int i = 0; i < 4; i++)
-    y[5 + i] = k.cof[i / 2][i % 2];
+    y[6 + i] = k.cof[i / 2][i % 2];
+  }
+  y[10] = k.cof_hoop;
   return true;
 }
 
@@ -160,21 +162,23 @@ static void TestKinematicsDerivatives(void **state)
     KinematicsContext c;
     Kinematics        k;
 
-    for (int i = 0; i < 4; i++)
-      c.g[i / 2][i % 2] = RngBetween(&r, -size, size);
-    c.g[0][1] -= tw * (n % 2);
-    c.g[1][0] += tw * (n % 2);
+    for (int i = 0; i < MOTION_COUNT; i++)
+      c.g[i] = RngBetween(&r, -size, size);
+    c.g[1] -= tw * (n % 2);
+    c.g[2] += tw * (n % 2);
     if (!KinematicsEvaluate(c.g, &k) || k.J < 0.2)
       continue;
-    for (c.which = 0; c.which < 4; c.which++) {
-      double dy[RIDDERS_ROWS], err[RIDDERS_ROWS], exact[9] = {k.dtheta[c.which], k.dJ[c.which]};
+    for (c.which = 0; c.which < MOTION_COUNT; c.which++) {
+      const bool hoop = c.which == MOTION_HOOP;
+      double     dy[RIDDERS_ROWS], err[RIDDERS_ROWS], exact[11] = {hoop ? 0.0 : k.dtheta[c.which], k.dJ[c.which]};
 
-      for (int i = 0; i < 3; i++)
+      for (int i = 0; i < 4; i++) {
         exact[2 + i] = k.de[i][c.which];
-      for (int i = 0; i < 4; i++)
-        exact[5 + i] = k.dcof[i / 2][i % 2][c.which];
-      assert_true(Ridders(KinematicsRows, &c, c.g[c.which / 2][c.which % 2], 0.02, 9, dy, err));
-      for (int i = 0; i < 9; i++)
+        exact[6 + i] = k.dcof[i / 2][i % 2][c.which];
+      }
+      exact[10] = hoop ? 0.0 : k.dJ[c.which] / k.lambda;
+      assert_true(Ridders(KinematicsRows, &c, c.g[c.which], 0.02, 11, dy, err));
+      for (int i = 0; i < 11; i++)
         worst = fmax(worst, fabs(dy[i] - exact[i]));
     }
   }
@@ -196,21 +200,21 @@ static void TestKinematicsValues(void **state)
     const double V[2][2] = {{c * c * e1 + s * s * e2, c * s * (e1 - e2)}, {c * s * (e1 - e2), s * s * e1 + c * c * e2}};
     const double R[2][2] = {{cos(t), -sin(t)}, {sin(t), cos(t)}};
     const double e[3]    = {c * c * s1 + s * s * s2, s * s * s1 + c * c * s2, c * s * (s1 - s2)};
-    double       g[2][2], angle;
+    double       g[MOTION_COUNT] = {0.0}, angle;
     Kinematics   k;
 
     for (int i = 0; i < 4; i++)
-      g[i / 2][i % 2] = V[i / 2][0] * R[0][i % 2] + V[i / 2][1] * R[1][i % 2] - (i == 0 || i == 3);
+      g[i] = V[i / 2][0] * R[0][i % 2] + V[i / 2][1] * R[1][i % 2] - (i == 0 || i == 3);
     assert_true(KinematicsEvaluate(g, &k));
     angle = remainder(k.theta - t, 2.0 * PI);
     for (int i = 0; i < 3; i++)
       worst = fmax(worst, fabs(k.e[i] - e[i]));
     worst = fmax(fmax(worst, fabs(angle)), fabs(k.J - e1 * e2));
 
-    const double u[2][2] = {{e1 - 1.0, 0.0}, {0.0, 0.0}};
+    const double u[MOTION_COUNT] = {e1 - 1.0};
     assert_true(KinematicsEvaluate(u, &k));
-    uniaxial             = fmax(fmax(uniaxial, fabs(k.e[0] - log(k.J))), fmax(fabs(k.e[1]), fabs(k.e[2])));
-    const double w[2][2] = {{R[0][0] - 1.0, R[0][1]}, {R[1][0], R[1][1] - 1.0}};
+    uniaxial                     = fmax(fmax(uniaxial, fabs(k.e[0] - log(k.J))), fmax(fabs(k.e[1]), fabs(k.e[2])));
+    const double w[MOTION_COUNT] = {R[0][0] - 1.0, R[0][1], R[1][0], R[1][1] - 1.0};
     assert_true(KinematicsEvaluate(w, &k));
     for (int i = 0; i < 3; i++)
       rigid = fmax(rigid, fabs(k.e[i]));
@@ -382,7 +386,7 @@ static void RestingParticle(Rng *r, Particle *q)
 
   RandomParticle(r, NO_KINETICS, q);
   q->h.T_n = q->in[IN_T];
-  memset(&q->in[IN_GRADU], 0, 4 * sizeof(double));
+  memset(&q->in[IN_GRADU], 0, MOTION_COUNT * sizeof(double));
   assert_int_equal(Evaluate(q, false, &s, &o), CL_OK);
   q->h.Sh_n = s.Sh;
 }
@@ -537,7 +541,7 @@ static void TestHydrateBounds(void **state)
     PointOutput         o;
 
     RandomParticle(&r, regime[n % 3], &q);
-    memset(&q.in[IN_GRADU], 0, 4 * sizeof(double));
+    memset(&q.in[IN_GRADU], 0, MOTION_COUNT * sizeof(double));
     q.h.m_star[0] = fmax(0.0, q.h.m_star[0]);
     q.h.dt        = RngLog(&r, 1e-3, 1e9);
     if (n % 2)
@@ -615,7 +619,7 @@ static bool SolveClosedCell(Particle *q, PointState *s)
       for (int k = 0; k < 2; k++)
         q->in[IN_P + k] = p[k] + cut * dx[k];
       const char *why;
-      if (PointEvaluate(&q->mat, &q->h, q->in, false, &st, &t, &why) == CL_OK &&
+      if (PointEvaluate(AllFields(), &q->mat, &q->h, q->in, false, &st, &t, &why) == CL_OK &&
           fabs(t.out[OUT_DM]) / q->h.m_star[1] + fabs(t.out[OUT_DM + 1]) / q->h.m_star[2] < size)
         break;
     }
@@ -633,8 +637,8 @@ static void ClosedCell(double p0, const char *what)
   q.mat.reacts = true;
   q.in[IN_T]   = 4.0;
   SetPressures(&q, p0, 5e4);
-  PointInitialMasses(&q.mat, q.h.V, 0.3, 0.1, q.in[IN_P], q.in[IN_P + 1], 4.0, &q.h.m_s, &q.h.m_star[0], &q.h.m_star[1],
-                     &q.h.m_star[2]);
+  InitialMasses(&q.mat, q.h.V, 0.3, 0.1, q.in[IN_P], q.in[IN_P + 1], 4.0, &q.h.m_s, &q.h.m_star[0], &q.h.m_star[1],
+                &q.h.m_star[2]);
   q.h.Sh_n        = 0.1;
   const double pe = EquilibriumPressure(&q.mat.kinetics.equilibrium, 4.0, &d), K0 = q.mat.kinetics.K0;
   for (double f = 1.0; f <= 1e12; f *= 100.0) {
@@ -706,13 +710,14 @@ static void TestNeverNan(void **state)
     RandomParticle(&r, (Regime)(n % REGIMES), &q);
     q.in[IN_T] = RngBetween(&r, -40.0, 150.0);
     SetPressures(&q, RngLog(&r, 1e3, 1e9), (RngPick(&r, 2) ? -1.0 : 1.0) * RngLog(&r, 1e-3, 500.0));
-    PointInitialMasses(&q.mat, q.h.V, phi, Sh, q.in[IN_P], q.in[IN_P + 1], q.in[IN_T], &q.h.m_s, &q.h.m_star[0],
-                       &q.h.m_star[1], &q.h.m_star[2]);
+    InitialMasses(&q.mat, q.h.V, phi, Sh, q.in[IN_P], q.in[IN_P + 1], q.in[IN_T], &q.h.m_s, &q.h.m_star[0],
+                  &q.h.m_star[1], &q.h.m_star[2]);
     q.h.dt          = RngLog(&r, 1e-6, 1e9);
     const double up = RngLog(&r, 1.0, 3.0); /* widening keeps the pores open */
     RotateBy(&q, RngBetween(&r, -PI, PI));
     for (int k = 0; k < 4; k++)
       q.in[IN_GRADU + k] = up * (q.in[IN_GRADU + k] + (k == 0 || k == 3)) - (k == 0 || k == 3);
+    q.in[IN_HOOP] = up - 1.0;
     assert_int_equal(Evaluate(&q, true, &s, &o), CL_OK);
     for (int k = 0; k < OUT_COUNT; k++)
       assert_true(isfinite(o.out[k]));
@@ -776,7 +781,7 @@ static void TestRefusals(void **state)
 
   (void)state;
   RandomParticle(&r, FORMING, &q);
-  memset(&q.in[IN_GRADU], 0, 4 * sizeof(double));
+  memset(&q.in[IN_GRADU], 0, MOTION_COUNT * sizeof(double));
   p              = q;
   p.in[IN_GRADU] = -1.5;
   Refused(&p, CL_DOMAIN, "J below zero");

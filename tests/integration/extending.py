@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""docs/extending.md, followed: its blocks applied to a copy of the tree, built, and what they add put to work.
+
+Usage: extending.py CLATHRA   (the program as it is, to compare with)
+"""
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import ROOT, binary, check, check_true, finish, run, scratch  # noqa: E402
+
+PAGE = ROOT / "docs" / "extending.md"
+SCENE = """
+title: a plate that radiates
+fields: [heat]
+grid: {lower: [0 m, 0 m], upper: [0.1 m, 0.01 m], cells: [10, 1]}
+materials: [metal]
+mat: {metal: {porosity: 0.01, solid: {density: 7800 kg/m^3, heat_capacity: 500 J/(kg K), conductivity: 5000 W/(m K)}}}
+regions: [plate]
+region: {plate: {lower: [0 m, 0 m], upper: [0.1 m, 0.01 m], material: metal, temperature: 500 degC}}
+boundaries: [sky]
+bc: {sky: {type: radiation, side: right, emissivity: 0.8, ambient: -273 degC}}
+time: {end: 20000 s}
+stepper: {tol: 1e-5}
+probes: [middle]
+probe: {middle: {at: [0.05 m, 0.005 m]}}
+"""
+
+
+def blocks():
+    """[(file, [(old lines, new lines)])] of the page's diff blocks."""
+    found = []
+    for text in re.findall(r"^```diff\n(.*?)^```", PAGE.read_text(), re.M | re.S):
+        head, *hunks = re.split(r"^@@\n", text, flags=re.M)
+        pairs = []
+        for hunk in hunks:
+            lines = [line[:1] + line[1:] if line else " " for line in hunk.splitlines()]
+            pairs.append(([l[1:] for l in lines if l[0] in " -"], [l[1:] for l in lines if l[0] in " +"], lines))
+        found.append((head.split()[1], pairs))
+    return found
+
+
+def same(line, pattern):
+    """A line of the page may be the beginning of the line in the tree, and spaces do not count."""
+    squeeze = lambda s: re.sub(r"\s+", "", s).rstrip("\\")
+    return squeeze(line).startswith(squeeze(pattern)) if pattern.strip() else not line.strip()
+
+
+def find(lines, old, where):
+    at = [k for k in range(len(lines) - len(old) + 1) if all(same(lines[k + j], old[j]) for j in range(len(old)))]
+    if len(at) != 1:
+        sys.exit(f"{where}: {len(at)} places look like\n" + "\n".join(old))
+    return at[0]
+
+
+def apply(tree):
+    """Puts every block in its place; the lines of a hunk that only show where stay as they are in the tree."""
+    count = 0
+    for name, pairs in blocks():
+        path = tree / name
+        lines = path.read_text().splitlines() if path.exists() else []
+        for old, new, hunk in pairs:
+            at = find(lines, old, name) if old else len(lines)
+            result, k = [], at
+            for line in hunk:
+                if line[0] == "+":
+                    macro = "\\" if result and result[-1].endswith("\\") or lines[at : at + 1] and lines[at].endswith("\\") else ""
+                    result.append(line[1:] + (" " + macro if macro else ""))
+                    continue
+                if line[0] == " ":
+                    result.append(lines[k])
+                k += 1
+            lines[at : at + len(old)] = result
+            count += 1
+        path.write_text("\n".join(lines) + "\n")
+    return count
+
+
+def build(tree):
+    folder = tree / "build"
+    for command in (["cmake", "-S", tree, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DCLATHRA_TESTS=OFF"],
+                    ["cmake", "--build", folder, "--target", "clathra"]):  # fmt: skip
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if done.returncode:
+            sys.exit("\n".join(done.stdout.splitlines()[-30:]))
+    return folder / "clathra"
+
+
+tree = scratch() / "clathra"
+tree.mkdir()
+for folder in ("src", "include"):
+    shutil.copytree(ROOT / folder, tree / folder)
+shutil.copy(ROOT / "CMakeLists.txt", tree)
+check_true("every block finds its place", apply(tree) > 15)
+extended = build(tree)
+
+BP2 = [ROOT / "cases" / "bp2", "-mat_sediment_kinetics_active", "no", "-time_end", "100 s", "-output_times", "100 s", "-stepper_adapt", "no"]
+STEPS = {"euler2": "10 s", "euler": "5 s"}
+
+# a law: k falls faster than with Kozeny and Carman's (phi^1.5 at first order), so less water leaves
+plain = run(binary(), *BP2, "-stepper_type", "euler", "-stepper_dt", "5 s")
+cubic = run(extended, *BP2, "-stepper_type", "euler", "-stepper_dt", "5 s", "-mat_sediment_permeability_porosity_law", "cubic")
+ratio = cubic.balance["water_out_kg"][-1] / plain.balance["water_out_kg"][-1]
+check("law: water that left, cubic over Kozeny-Carman", ratio, (0.9, 1.1))
+check_true("law: it makes a difference", abs(ratio - 1) > 1e-6, f"{ratio - 1:.2e}")
+
+# a history variable: the load only grows, so the highest pressure is the pressure
+last = cubic.snapshot(100.0)
+check("variable: p_peak against p, relative", np.max(np.abs(last["p_peak"] / last["p"] - 1)), 1e-6)
+
+# an integrator: the same stages as backward Euler with half the step, but for the basis frozen over both
+two = run(extended, *BP2, "-stepper_type", "euler2", "-stepper_dt", "10 s")
+p = {name: r.probe(r.probe_names[0])["p_Pa"][-1] for name, r in (("euler2", two), ("euler", plain))}
+check("integrator: p against euler with half the step, relative", abs(p["euler2"] / p["euler"] - 1), 1e-4)
+
+# a boundary condition: a thin black body cools as dT/dt = -eps sigma T^4/(rho c L), which has a closed form
+case = tree / "plate.yaml"
+case.write_text(SCENE)
+plate = run(extended, case)
+t, T = plate.time, plate.probe("middle")["T_degC"] + 273.15
+rate = 0.8 * 5.670374e-8 / (0.99 * 7800 * 500 * 0.1)
+exact = (773.15**-3 + 3 * rate * t) ** (-1 / 3)
+check("condition: T of a plate that radiates into space (K)", np.max(np.abs(T - exact)), 0.5)
+finish()

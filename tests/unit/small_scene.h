@@ -1,0 +1,493 @@
+/* Shared by the unit tests of field sets and of axisymmetry: scenes built in memory for any field set and geometry,
+   with random states that are the same on any number of ranks, and the Jacobian against differences.  Include after
+   cmocka.h. */
+#pragma once
+
+#include <stdlib.h>
+#include "clathra/model.h"
+#include "random.h"
+#include "ranks.h"
+#include "sediment.h"
+
+#define Say(...) Call(PetscPrintf(PETSC_COMM_WORLD, __VA_ARGS__))
+
+static const char *const basis_name[3] = {"cpgimp", "ugimp", "linear"};
+
+/* In [-1, 1), the same on every rank. */
+static inline double Noise(int seed, PetscInt a, PetscInt b)
+{
+  Rng r = {0x9E3779B97F4A7C15ULL * (uint64_t)(seed + 1) + 0xBF58476D1CE4E5B9ULL * (uint64_t)(a + 7) +
+           0x94D049BB133111EBULL * (uint64_t)(b + 11)};
+
+  for (int k = 0; k < 4; k++)
+    (void)RngUnit(&r);
+  return 2.0 * RngUnit(&r) - 1.0;
+}
+
+static inline double Largest(double v)
+{
+  Call(MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD));
+  return v;
+}
+
+static inline double Sum(double v)
+{
+  Call(MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
+  return v;
+}
+
+/* ---------------------------------------------------------------- scenes */
+#define MAX_BC 16
+
+typedef struct {
+  Case     c;
+  Material mat;
+  Region   region;
+  Bc       bc[MAX_BC];
+  double   number[2 * MAX_BC], zero; /* values of constant schedules */
+  Model    m;
+  Stage    stage;
+} Scene;
+
+static bool one_pressure; /* of the scenes to come */
+
+/* Grid of 6 x 4 cells of 0.1 m x 0.08 m from x = `start`, with one region; conditions are added afterwards. */
+static inline void SceneInit(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
+                             const double lower[2], const double upper[2])
+{
+  memset(s, 0, sizeof(*s));
+  s->c = (Case){.lower               = {start, 0.0},
+                .upper               = {start + 0.6, 0.32},
+                .cells               = {6, 4},
+                .basis               = basis,
+                .axisymmetric        = axisymmetric,
+                .inertia             = inertia,
+                .nmaterial           = 1,
+                .nregion             = 1,
+                .material            = &s->mat,
+                .region              = &s->region,
+                .bc                  = s->bc,
+                .ghost_penalty       = 0.1,
+                .pressure_projection = 1.0,
+                .flux_interpolation  = true};
+  Check(FieldSetMake(has, inertia, one_pressure, &s->c.fields));
+  s->mat                 = SedimentMaterial();
+  s->mat.kappa_w         = 0.6;
+  s->mat.permeability.k0 = 1.53e-13;
+  s->region              = (Region){.ppc         = {2, 2},
+                                    .lower       = {start + lower[0], lower[1]},
+                                    .upper       = {start + upper[0], upper[1]},
+                                    .pressure    = 3.25e6,
+                                    .temperature = 4.0};
+  s->region.Sw           = s->c.fields.phase[PHASE_G] ? 0.6 : s->c.fields.fluid ? 1.0 : 0.0;
+  s->region.Sg           = s->c.fields.phase[PHASE_G] ? 0.4 : 0.0;
+}
+
+static inline Schedule Constant(Scene *s, int which, double v)
+{
+  double *y = &s->number[2 * s->c.nbc + which];
+
+  *y = v;
+  return (Schedule){1, &s->zero, y, false};
+}
+
+static inline Bc *AddFace(Scene *s, BcType type, Side side, double value, double shear)
+{
+  Bc *b = &s->bc[s->c.nbc];
+
+  *b       = (Bc){.type = type, .side = side, .region = -1, .from = -INFINITY, .to = INFINITY, .alpha = 40.0};
+  b->value = Constant(s, 0, value);
+  b->shear = Constant(s, 1, shear);
+  s->c.nbc++;
+  return b;
+}
+
+static inline void AddPlane(Scene *s, BcType type, PetscInt axis, double position, double value)
+{
+  s->bc[s->c.nbc]       = (Bc){.type = type, .axis = axis, .position = position, .region = -1};
+  s->bc[s->c.nbc].value = Constant(s, 0, value);
+  s->c.nbc++;
+}
+
+/* Masses and saturations that belong to a particle's pressures. */
+static inline void Refill(Scene *s, PetscInt p, double Sh)
+{
+  const FieldSet *fs = &s->c.fields;
+  double *const  *f  = s->m.P.f;
+  const double    T = fs->heat ? f[P_T][p] : s->region.temperature, pw = fs->phase[PHASE_W] ? f[P_PW][p] : 0.0;
+  const double    pg = f[P_PG] ? f[P_PG][p] : pw;
+  double          m[4], ds, sg = fs->phase[PHASE_G] ? s->region.Sg : 0.0;
+
+  if (f[P_PG])
+    sg = RetentionGasShare(&s->mat.retention, pg - pw, &ds);
+  PointInitialMasses(fs, &s->mat, f[P_V][p], s->mat.porosity, Sh, sg, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
+  for (int k = 0; k < 4; k++) {
+    if (f[P_MS + k])
+      f[P_MS + k][p] = m[k];
+  }
+  f[P_SH][p] = Sh;
+  if (f[P_SW])
+    f[P_SW][p] = (1.0 - Sh) * (1.0 - sg);
+}
+
+/* Nodal and particle arrays of a stage that starts from the state at t_n. */
+static inline void StageStart(Scene *s, double dt)
+{
+  Model         *m = &s->m;
+  const PetscInt n = m->c->fields.n;
+  ClStatus       status;
+
+  Call(ModelBeginStep(m, &status));
+  if (status != CL_OK)
+    Say("  %s\n", m->why);
+  Check(status == CL_OK);
+  s->stage = (Stage){.t = dt, .dt = dt};
+  Call(PetscMalloc3(m->map.n_local * n, &s->stage.x_star, m->map.n_local * CL_DIM, &s->stage.u_star, 3 * m->P.n,
+                    &s->stage.m_star));
+  Call(PetscArraycpy(s->stage.x_star, m->x_n, m->map.n_local * n));
+  Call(PetscArrayzero(s->stage.u_star, m->map.n_local * CL_DIM));
+  for (PetscInt k = 0; k < 3 * m->P.n; k++)
+    s->stage.m_star[k] = m->P.f[P_MH + k % 3] ? m->P.f[P_MH + k % 3][k / 3] : 0.0;
+}
+
+static inline void SceneDestroy(Scene *s)
+{
+  Call(PetscFree3(s->stage.x_star, s->stage.u_star, s->stage.m_star));
+  Call(ModelDestroy(&s->m));
+}
+
+/* The solver is made by the first ModelSolve: one iteration, whatever comes of it. */
+static inline void MakeSolver(Scene *s)
+{
+  const PetscInt n = s->m.map.n_local * s->c.fields.n;
+  double        *x;
+  PetscInt       newton;
+  ClStatus       status;
+
+  Call(PetscOptionsSetValue(NULL, "-snes_max_it", "1"));
+  Call(PetscMalloc1(n, &x));
+  Call(PetscArraycpy(x, s->m.x_n, n));
+  Call(ModelSolve(&s->m, x, &newton, &status));
+  Call(PetscOptionsClearValue(NULL, "-snes_max_it"));
+  Call(SNESSetTolerances(s->m.snes, 0.0, 0.0, 0.0, 15, 10000));
+  Call(PetscFree(x));
+}
+
+static inline void SetX(Model *m, const double *x)
+{
+  double *a;
+
+  Call(VecGetArrayWrite(m->X, &a));
+  for (PetscInt k = 0; k < m->map.n_owned * m->c->fields.n; k++)
+    a[k] = x[k] / m->col_scale[k];
+  Call(VecRestoreArrayWrite(m->X, &a));
+}
+
+/* Largest scaled residual of the equations of unknowns q in [from, to): momentum in units of 1 MPa over a cell, mass
+   and heat in what 1 MPa and 1 K store. */
+static inline double ResidualAt(Scene *s, const double *x, int from, int to)
+{
+  Model          *m  = &s->m;
+  const FieldSet *fs = &m->c->fields;
+  const double   *a;
+  double          worst = 0.0;
+
+  if (!m->X)
+    MakeSolver(s);
+  SetX(m, x);
+  Call(ModelResidual(NULL, m->X, m->R, m));
+  Check(m->status == CL_OK);
+  Call(VecGetArrayRead(m->R, &a));
+  for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
+    if (fs->field[k % fs->n] >= from && fs->field[k % fs->n] < to)
+      worst = fmax(worst, fabs(a[k]));
+  }
+  Call(VecRestoreArrayRead(m->R, &a));
+  return Largest(worst);
+}
+
+/* ---------------------------------------------------------------- random states */
+static inline void AddNoise(double *a, PetscInt p, double size, double noise)
+{
+  if (a)
+    a[p] += size * noise;
+}
+
+/* Random history: everything that a run could have left on a particle. */
+static inline void RandomHistory(Scene *s, double Sh)
+{
+  double *const *f = s->m.P.f;
+
+  for (PetscInt p = 0; p < s->m.P.n; p++) {
+    const PetscInt id = s->m.P.i[PI_ID][p];
+
+    for (int d = 0; d < 2; d++) {
+      f[P_X + d][p] += 0.2 * f[P_L + d][p] * Noise(1, id, d);
+      f[P_L + d][p] *= 1.0 + 0.05 * Noise(2, id, d);
+      AddNoise(f[P_GW + d], p, 2e5, Noise(3, id, d));
+      AddNoise(f[P_GG + d], p, 2e5, Noise(4, id, d));
+      AddNoise(f[P_GT + d], p, 5.0, Noise(5, id, d));
+    }
+    for (int k = 0; k < 6; k++) {
+      AddNoise(f[P_VS + k], p, 1e-4, Noise(6, id, k));
+      AddNoise(f[P_SIG + k], p, 2e6, Noise(7, id, k));
+      AddNoise(f[P_SIG0 + k], p, 1e6, Noise(8, id, k));
+    }
+    AddNoise(f[P_PW], p, 2e5, Noise(9, id, 0));
+    if (f[P_PG])
+      f[P_PG][p] = f[P_PW][p] + 8e4 * (1.5 + Noise(9, id, 1));
+    AddNoise(f[P_T], p, 1.0, Noise(9, id, 2));
+    Refill(s, p, Sh * (1.0 + 0.5 * Noise(9, id, 3)));
+  }
+}
+
+/* Unknowns around the start values: strains of a percent or so, 0.2 MPa, 1 K; the capillary pressure moves by 20 kPa,
+   which keeps it away from the threshold of gas mobility (a kink). */
+static inline void RandomUnknowns(const Model *m, double dt, int seed, double *x)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    const PetscInt node = m->map.ij[I][0] + 100 * m->map.ij[I][1];
+
+    for (int k = 0; k < fs->n; k++) {
+      const int    q    = fs->field[k];
+      const double size = q < F_VWX ? 2e-4 / dt : q < F_PW ? 1e-4 : q == F_PW ? 2e5 : q == F_PG ? 2e4 : 1.0;
+
+      x[I * fs->n + k] = m->x_n[I * fs->n + k] + size * Noise(seed, node, q);
+      if (q == F_PG)
+        x[I * fs->n + k] += 2e5 * Noise(seed, node, F_PW);
+    }
+  }
+}
+
+static inline void RandomStage(Scene *s, double dt)
+{
+  Model *m = &s->m;
+
+  StageStart(s, dt);
+  RandomUnknowns(m, dt, 20, s->stage.x_star);
+  for (PetscInt I = 0; I < m->map.n_local && s->c.fields.solid; I++) {
+    for (int d = 0; d < CL_DIM; d++)
+      s->stage.u_star[I * CL_DIM + d] = 2e-4 * Noise(21 + d, m->map.ij[I][0], m->map.ij[I][1]);
+  }
+  for (PetscInt k = 0; k < 3 * m->P.n; k++)
+    s->stage.m_star[k] *= 1.0 + 0.02 * Noise(23, m->P.i[PI_ID][k / 3], k % 3);
+  Call(ModelBeginStage(m, &s->stage));
+}
+
+/* Every kind of condition that the field set knows occurs in one of the two sets. */
+static inline void AddConditions(Scene *s, int set)
+{
+  const FieldSet *fs    = &s->c.fields;
+  const bool      moves = fs->solid || fs->fluid;
+  const double    x0 = s->c.lower[0], axis = s->c.axisymmetric && x0 == 0.0;
+
+  if (set == 0) {
+    if (moves && !axis)
+      AddPlane(s, BC_ROLLER, 0, x0, 0.0);
+    if (moves)
+      AddPlane(s, BC_FIXED, 1, 0.0, 0.0);
+    if (fs->solid)
+      AddFace(s, BC_TRACTION, SIDE_XMAX, 3e6, 5e5);
+    if (fs->fluid)
+      AddFace(s, BC_PRESSURE, SIDE_XMAX, 3e6, 0.0)->initial = true;
+    if (fs->heat) {
+      AddFace(s, BC_CONVECTION, SIDE_XMAX, 10.0, 0.0);
+      AddFace(s, BC_HEAT_FLUX, SIDE_YMAX, 300.0, 0.0)->to = x0 + 0.25;
+    }
+    return;
+  }
+  if (fs->solid && !axis)
+    AddPlane(s, BC_PLATE, 0, x0, 2e-5);
+  if (moves)
+    AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
+  if (fs->solid) {
+    AddFace(s, BC_TRACTION, SIDE_YMAX, 4e6, -7e5)->from = x0 + 0.2;
+    AddFace(s, BC_TRACTION, SIDE_XMIN, 2e6, 3e5);
+  }
+  if (fs->fluid)
+    AddFace(s, BC_PRESSURE, SIDE_YMAX, 3.6e6, 0.0);
+  if (fs->heat) {
+    AddPlane(s, BC_TEMPERATURE, 0, x0, 5.0);
+    AddFace(s, BC_FACE_TEMPERATURE, SIDE_YMAX, 6.0, 0.0);
+    AddFace(s, BC_HEAT_FLUX, SIDE_XMAX, -200.0, 0.0);
+    AddFace(s, BC_CONVECTION, SIDE_XMAX, 8.0, 0.0);
+  }
+}
+
+/* A random state whose free sides cut cells; start: x of the grid's left side, the body begins `gap` right of it. */
+static inline void JacobianScene(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
+                                 double gap, bool reacts, int set)
+{
+  const double lower[2] = {gap, 0.0}, upper[2] = {0.47, 0.18};
+
+  SceneInit(s, has, inertia, axisymmetric, basis, start, lower, upper);
+  s->mat.reacts               = reacts;
+  s->mat.elasticity.loss_only = set;
+  s->c.gravity[0]             = axisymmetric ? 0.0 : 2.0;
+  s->c.gravity[1]             = -9.81;
+  s->c.flux_interpolation     = !(set == 1 && !reacts);
+  s->region.pressure          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
+  AddConditions(s, set);
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+  RandomHistory(s, 0.2);
+  RandomStage(s, 20.0);
+  MakeSolver(s);
+}
+
+/* ---------------------------------------------------------------- differences */
+/* (R(X + t D) - R(X - t D))/2t, extrapolated from steps t, t/2, t/4, ...: each row keeps its best value. */
+#define LEVELS 7
+static inline void Difference(Model *m, Vec X, Vec D, double t, double *dy)
+{
+  const PetscInt n = m->map.n_owned * m->c->fields.n;
+  double        *a[LEVELS][LEVELS], *err;
+  const double  *up, *down;
+  Vec            Xt, Ru, Rd;
+
+  Call(PetscMalloc1(n, &err));
+  Call(VecDuplicate(X, &Xt));
+  Call(VecDuplicate(X, &Ru));
+  Call(VecDuplicate(X, &Rd));
+  for (PetscInt i = 0; i < n; i++)
+    err[i] = INFINITY;
+  for (int l = 0; l < LEVELS; l++, t *= 0.5) {
+    Call(VecWAXPY(Xt, t, D, X));
+    Call(ModelResidual(NULL, Xt, Ru, m));
+    Check(m->status == CL_OK);
+    Call(VecWAXPY(Xt, -t, D, X));
+    Call(ModelResidual(NULL, Xt, Rd, m));
+    Check(m->status == CL_OK);
+    for (int k = 0; k <= l; k++)
+      Call(PetscMalloc1(n, &a[l][k]));
+    Call(VecGetArrayRead(Ru, &up));
+    Call(VecGetArrayRead(Rd, &down));
+    for (PetscInt i = 0; i < n; i++) {
+      double factor = 4.0;
+
+      a[l][0][i] = (up[i] - down[i]) / (2.0 * t);
+      for (int k = 1; k <= l; k++, factor *= 4.0) {
+        a[l][k][i]     = (factor * a[l][k - 1][i] - a[l - 1][k - 1][i]) / (factor - 1.0);
+        const double e = fmax(fabs(a[l][k][i] - a[l][k - 1][i]), fabs(a[l][k][i] - a[l - 1][k - 1][i]));
+
+        if (e < err[i]) {
+          err[i] = e;
+          dy[i]  = a[l][k][i];
+        }
+      }
+    }
+    Call(VecRestoreArrayRead(Ru, &up));
+    Call(VecRestoreArrayRead(Rd, &down));
+  }
+  for (int l = 0; l < LEVELS; l++) {
+    for (int k = 0; k <= l; k++)
+      Call(PetscFree(a[l][k]));
+  }
+  Call(PetscFree(err));
+  Call(VecDestroy(&Xt));
+  Call(VecDestroy(&Ru));
+  Call(VecDestroy(&Rd));
+}
+
+/* J at X = a random state. */
+static inline void PrepareJacobian(Scene *s, Vec *X, Vec *D, Vec *JD)
+{
+  Model  *m = &s->m;
+  double *x;
+
+  Call(PetscMalloc1(m->map.n_local * m->c->fields.n, &x));
+  RandomUnknowns(m, s->stage.dt, 30, x);
+  SetX(m, x);
+  Call(PetscFree(x));
+  Call(VecDuplicate(m->X, X));
+  Call(VecDuplicate(m->X, D));
+  Call(VecDuplicate(m->X, JD));
+  Call(VecCopy(m->X, *X));
+  Call(ModelResidual(NULL, *X, m->R, m));
+  if (m->status != CL_OK)
+    Say("  inadmissible: %s\n", m->why);
+  Check(m->status == CL_OK);
+  Call(ModelJacobian(m->snes, *X, m->A, m->Pmat, m));
+}
+
+/* Largest |J D - difference| of each equation over the largest difference of that equation, in random directions. */
+static inline double DirectionError(Scene *s, int directions)
+{
+  Model         *m  = &s->m;
+  const PetscInt nf = m->c->fields.n, n = m->map.n_owned * nf;
+  const double  *a;
+  double         worst = 0.0, *dy, *d;
+  Vec            X, D, JD;
+
+  PrepareJacobian(s, &X, &D, &JD);
+  Call(PetscMalloc1(n, &dy));
+  for (int k = 0; k < directions; k++) {
+    double error[F_COUNT] = {0.0}, size[F_COUNT] = {0.0};
+
+    Call(VecGetArrayWrite(D, &d));
+    for (PetscInt i = 0; i < n; i++)
+      d[i] = Noise(40 + k, m->map.ij[i / nf][0] + 100 * m->map.ij[i / nf][1], m->c->fields.field[i % nf]);
+    Call(VecRestoreArrayWrite(D, &d));
+    Call(MatMult(m->A, D, JD));
+    Difference(m, X, D, 4e-3, dy);
+    Call(VecGetArrayRead(JD, &a));
+    for (PetscInt i = 0; i < n; i++) {
+      error[i % nf] = fmax(error[i % nf], fabs(a[i] - dy[i]));
+      size[i % nf]  = fmax(size[i % nf], fabs(dy[i]));
+    }
+    Call(VecRestoreArrayRead(JD, &a));
+    for (int q = 0; q < nf; q++)
+      worst = fmax(worst, Largest(error[q]) / Largest(size[q]));
+  }
+  Call(PetscFree(dy));
+  Call(VecDestroy(&X));
+  Call(VecDestroy(&D));
+  Call(VecDestroy(&JD));
+  return worst;
+}
+
+/* Every entry, relative to the largest of its row. */
+static inline double ColumnError(Scene *s)
+{
+  Model         *m  = &s->m;
+  const PetscInt nf = m->c->fields.n, n = m->map.n_owned * nf, N = m->map.n_global * nf;
+  double        *dy, *error, *top, worst = 0.0;
+  const double  *a;
+  Vec            X, D, JD;
+
+  PrepareJacobian(s, &X, &D, &JD);
+  Call(PetscMalloc1(n, &dy));
+  Call(PetscCalloc2(n, &error, n, &top));
+  for (PetscInt c = 0; c < N; c++) {
+    Call(VecSet(D, 0.0));
+    if (c >= m->map.first * nf && c < m->map.first * nf + n)
+      Call(VecSetValue(D, c, 1.0, INSERT_VALUES));
+    Call(VecAssemblyBegin(D));
+    Call(VecAssemblyEnd(D));
+    Call(MatMult(m->A, D, JD));
+    Difference(m, X, D, m->c->fields.field[c % nf] < F_PW ? 1e-1 : 2e-2, dy);
+    Call(VecGetArrayRead(JD, &a));
+    for (PetscInt k = 0; k < n; k++) {
+      error[k] = fmax(error[k], fabs(a[k] - dy[k]));
+      top[k]   = fmax(top[k], fabs(dy[k]));
+    }
+    Call(VecRestoreArrayRead(JD, &a));
+  }
+  for (PetscInt k = 0; k < n; k++)
+    worst = fmax(worst, error[k] / top[k]);
+  Call(PetscFree(dy));
+  Call(PetscFree2(error, top));
+  Call(VecDestroy(&X));
+  Call(VecDestroy(&D));
+  Call(VecDestroy(&JD));
+  return Largest(worst);
+}
+
+/* Linear systems solved as well as can be, with factors of each iteration's own matrix. */
+static inline int StartTests(int *argc, char ***argv)
+{
+  return PetscInitialize(argc, argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
+         MPI_Comm_size(PETSC_COMM_WORLD, &world_size) || PetscOptionsSetValue(NULL, "-ksp_rtol", "1e-10") ||
+         PetscOptionsSetValue(NULL, "-ksp_atol", "1e-14") || PetscOptionsSetValue(NULL, "-newton_refactor", "0");
+}

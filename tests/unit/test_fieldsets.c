@@ -1,0 +1,275 @@
+/* Tests of field sets: what each holds, the tangent of a particle and the exact Jacobian for every named set, with and
+   without inertia, in the plane and about an axis. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <cmocka.h>
+#include "small_scene.h"
+
+static const char *const set_names[] = {"thmc", "thc", "hmc", "hc", "thm", "hm", "th", "h", "tm", "m", "t"};
+#define SETS ((int)(sizeof(set_names) / sizeof(*set_names)))
+
+static void TestSets(void **state)
+{
+  static const int unknowns[SETS] = {9, 7, 8, 6, 6, 5, 4, 3, 3, 2, 1};
+  int              can            = 0;
+  FieldSet         fs;
+
+  (void)state;
+  for (int k = 0; k < SETS; k++) {
+    const unsigned has = FieldSetByName(set_names[k]);
+    int            n   = 0;
+
+    Check(has && FieldSetMake(has, true, false, &fs) && fs.n == unknowns[k]);
+    for (int q = 0; q < F_COUNT; q++) {
+      if (fs.at[q] < 0)
+        continue;
+      Check(fs.at[q] == n && fs.field[n] == q); /* in the order of the full set, without gaps */
+      n++;
+    }
+    Check(n == fs.n);
+  }
+  for (unsigned has = 0; has <= HAS_ALL; has++) /* gas needs water; something must be there: the eleven named ones */
+    can += FieldSetMake(has, true, false, &fs);
+  Check(can == SETS);
+}
+
+/* Nothing is stored for a field that is not there. */
+static void TestStorage(void **state)
+{
+  (void)state;
+  for (int k = 0; k < SETS; k++) {
+    FieldSet  fs;
+    Particles P;
+
+    Check(FieldSetMake(FieldSetByName(set_names[k]), true, false, &fs));
+    Call(ParticlesCreate(fs.has, &P));
+    Call(ParticlesResize(&P, 3));
+    for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
+      for (int c = 0; c < v->nc; c++)
+        Check((P.f[v->first + c] != NULL) == ((v->has & fs.has) != 0));
+    }
+    Check(P.f[P_X] && P.f[P_V] && P.f[P_MS]);
+    Call(ParticlesDestroy(&P));
+  }
+}
+
+/* ---------------------------------------------------------------- a particle's tangent */
+typedef struct {
+  const FieldSet *fs;
+  Material        mat;
+  PointHistory    h;
+  double          in[IN_COUNT];
+  int             column;
+} Point;
+
+static bool IsInput(const FieldSet *fs, bool axisymmetric, int q)
+{
+  const int fluid = q < IN_P ? -1 : q < IN_T ? q - IN_P : q < IN_GP ? -1 : q < IN_GT ? (q - IN_GP) / 2 : (q - IN_J) / 2;
+
+  if (q < IN_P)
+    return fs->solid && (q < IN_HOOP || axisymmetric);
+  if (q == IN_T || q == IN_GT || q == IN_GT + 1)
+    return fs->heat;
+  return fs->phase[fluid];
+}
+
+static bool IsOutput(const FieldSet *fs, int r)
+{
+  if (r < OUT_PF || r == OUT_HOOP)
+    return fs->solid;
+  if (r == OUT_M)
+    return true;
+  if (r == OUT_HEAT || r == OUT_HEAT + 1 || r == OUT_C || r == OUT_Q)
+    return fs->heat;
+  if (r < OUT_FLUX)
+    return fs->phase[(r - OUT_PF) / 4];
+  if (r < OUT_HEAT)
+    return fs->phase[(r - OUT_FLUX) / 2];
+  return fs->phase[r < OUT_M ? r - OUT_HOOPF : r < OUT_MI ? r - OUT_M - 1 : (r - OUT_MI) % 2];
+}
+
+static bool Outputs(void *ctx, double x, double y[RIDDERS_ROWS])
+{
+  const Point *q = ctx;
+  PointState   state;
+  PointOutput  o = {0};
+  const char  *why;
+  double       in[IN_COUNT];
+
+  memcpy(in, q->in, sizeof in);
+  in[q->column] = x;
+  if (PointEvaluate(q->fs, &q->mat, &q->h, in, false, &state, &o, &why) != CL_OK)
+    return false;
+  memcpy(y, o.out, sizeof o.out);
+  return true;
+}
+
+static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
+{
+  const double pw = RngBetween(r, 2e6, 6e6), pg = pw + RngBetween(r, 6e4, 2e5), T = RngBetween(r, 2.0, 8.0);
+
+  *q               = (Point){.fs = fs, .mat = SedimentMaterial()};
+  q->mat.reacts    = fs->phase[PHASE_G] && RngPick(r, 3);
+  q->h.V           = 2e-4;
+  q->h.T_n         = T + RngBetween(r, -1.0, 1.0) * fs->heat;
+  q->h.Sh_n        = RngBetween(r, 0.05, 0.3);
+  q->h.dt          = RngLog(r, 5.0, 500.0);
+  q->h.bracket     = 1.0;
+  const double Sh0 = q->h.Sh_n * RngBetween(r, 0.9, 1.1);
+  double       ds;
+  const double sg = fs->phase[PHASE_G] ? RetentionGasShare(&q->mat.retention, pg - pw, &ds) : 0.0;
+  PointInitialMasses(fs, &q->mat, q->h.V, 0.3, Sh0, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
+                     &q->h.m_star[2]);
+  for (int k = 0; k < 6; k++) {
+    q->h.sig[k]  = RngBetween(r, -3e6, 3e6);
+    q->h.sig0[k] = RngBetween(r, -3e6, 3e6);
+  }
+  for (int k = 0; k < 4; k++)
+    q->h.proj[k / 2][k % 2] = RngBetween(r, -2e5, 2e5);
+  q->h.shift[0] = RngBetween(r, -1e4, 1e4) * fs->phase[PHASE_W];
+  q->h.shift[1] = RngBetween(r, -1e4, 1e4) * fs->phase[PHASE_G];
+  q->h.shift[2] = RngBetween(r, -0.1, 0.1) * fs->heat;
+  for (int k = 0; k < IN_COUNT; k++) {
+    if (IsInput(fs, axisymmetric, k))
+      q->in[k] = RngBetween(r, -1.0, 1.0) * (k < IN_P ? 0.1 : k < IN_GT ? 2e5 : k < IN_J ? 20.0 : 1e-6);
+  }
+  q->in[IN_P]     = fs->phase[PHASE_W] ? pw : 0.0;
+  q->in[IN_P + 1] = fs->phase[PHASE_G] ? pg : 0.0;
+  q->in[IN_T]     = T;
+}
+
+/* Largest error of the tangent, each row relative to what typical inputs make of it. */
+static double TangentError(Point *q, bool axisymmetric)
+{
+  PointState  state;
+  PointOutput o;
+  const char *why;
+  double      error[OUT_COUNT] = {0.0}, size[OUT_COUNT] = {0.0}, worst = 0.0;
+
+  if (PointEvaluate(q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) != CL_OK)
+    return 0.0;
+  for (int c = 0; c < IN_COUNT; c++) {
+    const double unit = c < IN_P ? 0.1 : c < IN_T ? 1e5 : c == IN_T ? 1.0 : c < IN_GT ? 2e5 : c < IN_J ? 20.0 : 1e-6;
+    double       dy[RIDDERS_ROWS], err[RIDDERS_ROWS];
+
+    q->column = c;
+    if (!IsInput(q->fs, axisymmetric, c) || !Ridders(Outputs, q, q->in[c], 0.1 * unit, OUT_COUNT, dy, err))
+      continue;
+    for (int r = 0; r < OUT_COUNT; r++) {
+      if (!IsOutput(q->fs, r))
+        continue;
+      size[r]  = fmax(size[r], unit * fmax(fabs(dy[r]), fabs(o.D[r][c])));
+      error[r] = fmax(error[r], unit * fmax(fabs(o.D[r][c] - dy[r]) - 3.0 * err[r], 0.0));
+    }
+  }
+  for (int r = 0; r < OUT_COUNT; r++) {
+    const double value =
+        o.out[r < OUT_DM || r > OUT_DM + 1 ? r : OUT_M + 1 + r - OUT_DM]; /* masses gained: of the mass */
+
+    if (size[r] > 0.0) /* differences hold 1e-12 of the value itself */
+      worst = fmax(worst, error[r] / fmax(size[r], 1e-3 * fabs(value)));
+  }
+  return worst;
+}
+
+static void TestTangent(void **state)
+{
+  (void)state;
+  Say("tangent of a particle against differences: largest error of an entry over its row, 100 random states\n");
+  for (int k = 0; k < SETS; k++) {
+    double worst[2][2];
+
+    for (int v = 0; v < 4; v++) {
+      Rng      r = {400 + (uint64_t)(10 * k + v)};
+      FieldSet fs;
+
+      Check(FieldSetMake(FieldSetByName(set_names[k]), v % 2, false, &fs));
+      worst[v / 2][v % 2] = 0.0;
+      for (int n = 0; n < 100; n++) {
+        Point q;
+
+        RandomPoint(&r, &fs, v / 2, &q);
+        worst[v / 2][v % 2] = fmax(worst[v / 2][v % 2], TangentError(&q, v / 2));
+      }
+      Check(worst[v / 2][v % 2] < 1e-8);
+    }
+    Say("  %-4s plane %.1e, quasi-static %.1e; about an axis %.1e, quasi-static %.1e\n", set_names[k], worst[0][1],
+        worst[0][0], worst[1][1], worst[1][0]);
+  }
+}
+
+/* ---------------------------------------------------------------- the assembled Jacobian */
+/* `entries`: every entry for the first basis, too. */
+static void Jacobians(bool axisymmetric, bool entries)
+{
+  for (int k = 0; k < SETS; k++) {
+    const unsigned has      = FieldSetByName(set_names[k]);
+    double         worst[2] = {0.0}, entry = 0.0;
+
+    if (one_pressure && !(has & HAS_GAS))
+      continue;
+    for (int v = 0; v < 8; v++) { /* basis changes with the set, so that all of them occur */
+      Scene    *s       = malloc(sizeof(*s));
+      const int inertia = v % 2, set = v / 2 % 2, reacts = v / 4 && (has & HAS_GAS);
+
+      if (v / 4 && !(has & HAS_GAS)) {
+        free(s);
+        continue;
+      }
+      JacobianScene(s, has, inertia, axisymmetric, (BasisType)((k + v / 2) % 3), 0.0, 0.0, reacts, set);
+      worst[inertia] = fmax(worst[inertia], DirectionError(s, 2));
+      if (entries && set == 1 && reacts == ((has & HAS_GAS) != 0) && inertia)
+        entry = fmax(entry, ColumnError(s));
+      SceneDestroy(s);
+      free(s);
+    }
+    Say("  %-4s with inertia %.1e, quasi-static %.1e", set_names[k], worst[1], worst[0]);
+    Say(entries ? ", entries %.1e\n" : "\n", entry);
+    Check(worst[0] < 1e-6 && worst[1] < 1e-6 && entry < 1e-6);
+  }
+}
+
+static void TestJacobianPlane(void **state)
+{
+  (void)state;
+  Say("exact Jacobian against differences, plane: random directions; every entry relative to the largest of its row\n");
+  Jacobians(false, true);
+}
+
+static void TestJacobianAxis(void **state)
+{
+  (void)state;
+  Say("exact Jacobian against differences, about an axis: random directions\n");
+  Jacobians(true, false);
+}
+
+/* (34): both mass balances in one row. */
+static void TestJacobianOnePressure(void **state)
+{
+  (void)state;
+  Say("exact Jacobian against differences, one pressure\n");
+  one_pressure = true;
+  Jacobians(false, true);
+  Jacobians(true, false);
+  one_pressure = false;
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(TestSets),         cmocka_unit_test(TestStorage),
+      cmocka_unit_test(TestTangent),      cmocka_unit_test(TestJacobianPlane),
+      cmocka_unit_test(TestJacobianAxis), cmocka_unit_test(TestJacobianOnePressure),
+  };
+  int failed;
+
+  if (StartTests(&argc, &argv))
+    return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  if (PetscFinalize())
+    return 1;
+  return failed;
+}
