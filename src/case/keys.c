@@ -59,6 +59,7 @@ static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]   = {"sdirk2", "euler", NULL};
 static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
 static const char *const axis_word[]      = {"x", "y", NULL};
+static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
 static const char *const capillary_word[] = {"held", "free", NULL};
 static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* OpenPhases */
@@ -187,6 +188,8 @@ static const Key material_key[] = {
          .has = HAS_GAS),
     REAL(Material, "relperm_Sgr", relperm.Sgr, "", "[0,1)", "1 @retention_Sgr", "residual gas saturation of k_rg",
          .has = HAS_GAS),
+    BOOLEAN(Material, "relperm_share_of", relperm.of_pores, "fluids",
+            "k_r from the share of the fluid-filled pores, S/(1 - Sh), or of all pores, S", .choices = space_word),
     REAL(Material, "relperm_nw", relperm.nw, "", "(0,20]", NULL, "Corey exponent of water", .has = HAS_GAS),
     REAL(Material, "relperm_ng", relperm.ng, "", "(0,20]", NULL, "Corey exponent of gas", .has = HAS_GAS),
     REAL(Material, "permeability_k0", permeability.k0, "m^2", "(0,1e-4]", NULL,
