@@ -14,7 +14,8 @@ import numpy as np
 from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, derived, is_column, plt, save, set_style, steady_limits
 from results import probe_names, read_csv, read_snapshots
 
-# Panels of probes.png: label, [(column, factor, name in the legend)], least width of the y axis
+# Panels of probes.png: label, [(column, factor, name in the legend)], least width of the y axis.  A scene without a field
+# has no columns for it, and no panel or curve.
 PANELS = [
     ("pore pressure (MPa)", [("p_Pa", PA, ""), ("p_w_Pa", PA, "water"), ("p_g_Pa", PA, "gas")], 0.01),
     (QUANTITIES["T"], [("T_degC", 1, "")], 0.1),
@@ -24,7 +25,8 @@ PANELS = [
     ("effective stress (MPa, tension +)", [("sxx_Pa", PA, "xx"), ("syy_Pa", PA, "yy"), ("sxy_Pa", PA, "xy")], 0.01),
 ]
 
-SHORT = {"p": "p (MPa)", "T": "T (°C)", "S_h": "$S_h$ (–)", "S_w": "$S_w$ (–)"}  # beside colour bars
+SHORT = {"p": "p (MPa)", "T": "T (°C)", "S_h": "$S_h$ (–)", "S_w": "$S_w$ (–)",
+         "u_x": "$u_x$ (mm)", "u_y": "$u_y$ (mm)"}  # beside colour bars  # fmt: skip
 
 
 def spread(count, most):
@@ -51,8 +53,16 @@ def plot_probes(out):
     names = probe_names(probes)
     if not names or not len(probes["time_s"]):
         return
-    figure, grid = plt.subplots(2, 3, figsize=(13, 7))
-    for axes, panel in zip(grid.flat, PANELS):
+    written = lambda columns: [c for c in columns if f"{names[0]}.{c[0]}" in probes]
+    panels = [(label, written(columns), least) for label, columns, least in PANELS if written(columns)]
+    if not any(probes.get(f"{n}.S_h", np.zeros(1)).any() for n in names):
+        panels = [p for p in panels if p[1][0][0] != "S_h"]
+    wide = min(len(panels), 3 if len(panels) > 4 else 2)
+    figure, grid = plt.subplots(-(-len(panels) // wide), wide, figsize=(4.33 * wide, 3.5 * -(-len(panels) // wide)),
+                                squeeze=False)  # fmt: skip
+    for axes in grid.flat[len(panels) :]:
+        axes.remove()
+    for axes, panel in zip(grid.flat, panels):
         history_panel(axes, probes, names, *panel)
     handles = [plt.Line2D([], [], color=c, lw=2.5, label=f"probe {n}") for c, n in zip(COLOURS * len(names), names)]
     figure.legend(handles=handles, loc="upper right", bbox_to_anchor=(1, 1.015), ncol=6)
@@ -69,20 +79,32 @@ def plot_balance(out):
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8))
     for (name, label), style in zip((("water", "water"), ("methane", "methane"), ("heat", "energy")), STYLES):
         error = np.abs(balance[f"{name}_error"])
+        if not error.any():
+            continue  # not in the scene
         left.semilogy(balance["time_s"], np.maximum(error, 1e-18), style, label=label)
     left.set(xlabel="time (s)", ylabel="balance error / initial store (–)", title="conservation")
-    left.legend()
+    if left.lines:
+        left.legend()
     right.step(balance["time_s"], balance["dt_s"], where="pre", color=COLOURS[0])
     right.set(xlabel="time (s)", ylabel="step (s)", yscale="log", title=f"{len(balance['time_s'])} steps, "
               f"{int(balance['newton'].sum())} Newton iterations")  # fmt: skip
     save(figure, out / "figures", "balance")
 
 
+def present(snapshots, names):
+    """Those of the quantities that the scene has; hydrate and saturations only where they are not the same everywhere."""
+    held = [derived(particles) for _, particles in snapshots]
+    varies = lambda name: np.ptp(np.concatenate([h[name] for h in held])) > 0
+    return [n for n in names if n in held[0] and (n not in ("S_h", "S_w") or varies(n))]
+
+
 def plot_profiles(out, snapshots, axis):
     """Profiles along the strip against the current position, one colour a snapshot."""
     chosen = [snapshots[k] for k in spread(len(snapshots), 6)]
     names = ["p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y"]
-    figure, grid = plt.subplots(1, len(names), figsize=(3.4 * len(names), 3.8))
+    names = present(chosen, names)
+    figure, grid = plt.subplots(1, len(names), figsize=(3.4 * len(names) + 1, 3.8), squeeze=False)
+    grid = grid[0]
     colours = plt.cm.viridis(np.linspace(0, 0.88, len(chosen)))
     for axes, name in zip(grid, names):
         shown = []
@@ -101,10 +123,10 @@ def plot_profiles(out, snapshots, axis):
 def plot_scatter(out, snapshots):
     """One row a quantity, one column a snapshot, one colour scale a row."""
     chosen = [snapshots[k] for k in spread(len(snapshots), 4)]
-    names = ["p", "T", "S_h", "S_w"]
+    names = present(chosen, ["p", "T", "S_h", "S_w", "u_x", "u_y"])[:4]
     extent = np.ptp(chosen[0][1]["position"], axis=0)
-    width = np.clip(4.5 * extent[0] / extent[1], 1.5, 3.4)
-    height = np.clip(width * extent[1] / extent[0], 0.8, 4.5) + 0.35
+    width = np.clip(4.5 * extent[0] / extent[1], 1.0, 3.4)
+    height = np.clip(width * extent[1] / extent[0], 0.8, 3.2) + 0.35
     figure, grid = plt.subplots(len(names), len(chosen), figsize=(width * len(chosen) + 1.5, height * len(names) + 0.5),
                                 squeeze=False, sharex=True, sharey=True)  # fmt: skip
     for row, name in zip(grid, names):
@@ -124,6 +146,8 @@ def plot_scatter(out, snapshots):
         figure.colorbar(dots, ax=list(row), label=SHORT[name], pad=0.01, aspect=15)
     for axes in grid[-1]:
         axes.set_xlabel("x (m)")
+        if height * extent[0] < 0.6 * extent[1]:  # narrow
+            axes.tick_params(axis="x", labelrotation=90)
     figure.suptitle(f"{out.name}: particles", x=0.01, ha="left")
     save(figure, out / "figures", "particles")
 

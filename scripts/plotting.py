@@ -24,13 +24,10 @@ def set_style():
 
 
 def derived(particles):
-    """Plotted quantities of one snapshot, in the units of QUANTITIES: {name: (n,) array}."""
-    one = lambda name: particles[name][:, 0]
-    sw = np.clip(one("S_w") / np.maximum(1 - one("S_h"), 1e-12), 0, 1)  # water's share of the fluid-filled pore space
-    return {
-        "p": (sw * one("p_w") + (1 - sw) * one("p_g")) * PA, "T": one("T"), "S_h": one("S_h"), "S_w": one("S_w"),
-        "u_x": particles["displacement"][:, 0] * MM, "u_y": particles["displacement"][:, 1] * MM,
-    }  # fmt: skip
+    """Plotted quantities of one snapshot, in the units of QUANTITIES, that its scene has: {name: (n,) array}."""
+    found = {"p": ("p", 0, PA), "T": ("T", 0, 1), "S_h": ("S_h", 0, 1), "S_w": ("S_w", 0, 1),
+             "u_x": ("displacement", 0, MM), "u_y": ("displacement", 1, MM)}  # fmt: skip
+    return {name: particles[v][:, k] * factor for name, (v, k, factor) in found.items() if v in particles}
 
 
 QUANTITIES = {  # name: label
@@ -44,10 +41,12 @@ QUANTITIES = {  # name: label
 
 
 def is_column(position):
-    """Axis (0 or 1) along which the body is a strip, at least eight times as long as wide; None if it is not one."""
+    """Axis (0 or 1) along which the body is a strip, at least eight times as long as wide and with no more than four rows of
+    particles across; None if it is not one."""
     extent = np.ptp(position, axis=0)
     axis = int(np.argmax(extent))
-    return axis if extent[1 - axis] < extent[axis] / 8 else None
+    rows = np.unique(np.round(position[:, 1 - axis] / extent[axis], 6))
+    return axis if extent[1 - axis] < extent[axis] / 8 and len(rows) <= 4 else None
 
 
 def steady_limits(axes, *values, least=1e-9):

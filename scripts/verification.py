@@ -8,8 +8,8 @@ CLATHRA     the program, default build/clathra
 --only      run only these tests (stems of files in tests/), and take the others' numbers from results/verification
 --no-figures  leave docs/figures as it is
 
-Each test notes its numbers with common.record() in results/verification/<test>.json.  Figures 9 to 11 of the paper, with
-the reference's curves, are drawn by plot_bp2.py into docs/figures.  Ends with 1 if a test failed.
+Each test notes its numbers with common.record() in results/verification/<test>.json.  Figures 6, 7 and 9 to 11 of the paper, with
+the reference's curves, are drawn by plot_bp2.py and plot_masuda.py into docs/figures.  Ends with 1 if a test failed.
 """
 import argparse
 import json
@@ -45,10 +45,12 @@ ROWS = {  # of the table: what is shown
     16: "Bad cases, truncated and random files are refused with a reason",
     17: "Big steps: BP2 case 2 at fixed dt = 50 s and 100 s",
 }
-SECTION = {  # of the issue's text, beside its table
+SECTION = {  # beside that table
     "4.1": "Field sets: a superfluous field changes nothing (rtol 1e-8), and what leaving it out saves",
     "4.2": "Geometry about an axis: exact solutions, balances, rest, ranks, and the plane far from the axis",
     "4.3": "Boundary conditions and meters",
+    "4.4": "Masuda's core, cases/masuda, against the reference curves at every 15 min to 4 h",
+    "4.5": "The ladder of cases, against exact solutions (docs/cases.md)",
     "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
 }
 NOT_A_TEST = {"common", "exact"}
@@ -76,15 +78,17 @@ def run_test(path, program):
 
 
 def figures(program):
-    """Both cases of BP2 as they stand, then the figures."""
+    """Both cases of BP2 and Masuda's core as they stand, then the figures."""
     from common import ENVIRONMENT
 
-    for case, options in ((2, []), (1, ["-mat_sediment_kinetics_active", "no"])):
-        command = [str(program), str(ROOT / "cases" / "bp2"), "-quiet", *options, "-output_dir", str(RESULTS / f"bp2_case{case}")]
+    runs = {"bp2_case2": ("bp2",), "bp2_case1": ("bp2", "-mat_sediment_kinetics_active", "no"), "masuda": ("masuda",)}
+    for name, (case, *options) in runs.items():
+        command = [str(program), str(ROOT / "cases" / case), "-quiet", *options, "-output_dir", str(RESULTS / name)]
         subprocess.run(command, env={**os.environ, **ENVIRONMENT}, check=True, stdin=subprocess.DEVNULL,
                        stdout=subprocess.DEVNULL)  # fmt: skip
     subprocess.run([sys.executable, str(ROOT / "scripts" / "plot_bp2.py"), str(RESULTS / "bp2_case1"),
                     str(RESULTS / "bp2_case2"), str(FIGURES)], check=True)  # fmt: skip
+    subprocess.run([sys.executable, str(ROOT / "scripts" / "plot_masuda.py"), str(RESULTS / "masuda"), str(FIGURES)], check=True)
     subprocess.run([sys.executable, str(ROOT / "tests" / "verification" / "strip_load.py"), str(program),
                     str(FIGURES / "strip_load.png")], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
 
@@ -130,6 +134,8 @@ def page(records):
     names = {"fig09_case1": "BP2 case 1 (kinetics off): Figure 9 of the paper",
              "fig10_case2": "BP2 case 2 (kinetics on): Figure 10",
              "fig11_profiles": "BP2 case 2, profiles at 500 s and 1000 s: Figure 11",
+             "masuda_contours": "Masuda's core, 60 x 10 cells: Figure 6",
+             "masuda_curves": "Masuda's core: Figure 7",
              "strip_load": "Strip load after one step of 1 s: excess pressure over the load, with and without stabilisation"}  # fmt: skip
     text += ["## Figures", ""]
     for name, title in names.items():

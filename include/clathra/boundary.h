@@ -25,9 +25,10 @@ PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, cons
 /* Is the face one of those that a meter counts? */
 bool MeterCovers(const Meter *m, const Face *f);
 
-/* Prescribed values of all conditions at one time. */
+/* Prescribed values of all conditions at one time, and gravity then. */
 typedef struct {
   double *value, *shear, *phase[PHASE_COUNT]; /* [Case.nbc] */
+  double  gravity[CL_DIM];
 } BcValues;
 void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */

@@ -104,6 +104,7 @@ typedef struct {
   bool      inertia, one_pressure;
   FieldSet  fields;          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM]; /* m/s^2 */
+  double    gravity_ramp;    /* s: it grows from zero over this time; 0 = at once */
   PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
   Material *material;
   Region   *region;
@@ -116,6 +117,7 @@ typedef struct {
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
   double pressure_projection; /* alpha, 0 = off; default 1 */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
+  bool   upstream;            /* drag of the fluids from upstream; default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
   char     stepper[16]; /* euler | sdirk2 */

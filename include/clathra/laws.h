@@ -30,10 +30,12 @@ static inline double RetentionGasShare(const Retention *law, double pc, double *
 bool RetentionInvert(const Retention *law, double sg, double *pc);
 
 /* ---------------------------------------------------------------- relative permeability (modified Corey)
-   base = (s - Sr_own)/(1 - Swr - Sgr) clipped to [0,1] with a C1 toe at 0; k_r = base^n. */
+   base = (s - Sr_own)/(1 - Swr - Sgr) clipped to [0,1] with a C1 toe at 0; k_r = base^n.
+   s is the share of the fluid-filled pore space, or with of_pores the saturation S = (1 - S_h) s of the whole. */
 typedef struct {
   double Swr, Sgr; /* residual saturations of k_r, may differ from those of retention */
   double nw, ng;   /* Corey exponents, > 0 */
+  bool   of_pores;
 } RelPerm;
 double RelPermWater(const RelPerm *law, double sw, double *dkr_dsw);
 double RelPermGas(const RelPerm *law, double sg, double *dkr_dsg);

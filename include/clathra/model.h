@@ -62,6 +62,7 @@ typedef struct {
   double         *x_n;   /* [n_local][fields.n] projected start values */
   double         *w;     /* [n_local][2] (phi S_pi)_I */
   double         *V;     /* [n_local] sum of V_n S, m^3 */
+  double         *up;    /* [n_local][2][3] upstream weights of drag: direction of flow, factor; zero: none */
   double         *coef;  /* [n_local][NC_COUNT] nodal means: see project.c */
   unsigned       *mask;  /* [n_local] Dirichlet bits */
   double         *fixed; /* [n_local][fields.n] Dirichlet values of the stage */

@@ -11,11 +11,13 @@ void BcValuesEvaluate(const Case *c, double t, BcValues *v)
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], t);
   }
+  for (int d = 0; d < CL_DIM; d++)
+    v->gravity[d] = t < c->gravity_ramp ? c->gravity[d] * t / c->gravity_ramp : c->gravity[d];
 }
 
 double BcNextKink(const Case *c, double t)
 {
-  double next = INFINITY;
+  double next = t < c->gravity_ramp * (1.0 - 1e-12) ? c->gravity_ramp : INFINITY;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
     next = fmin(next, ScheduleNextKink(&c->bc[k].value, t));

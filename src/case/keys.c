@@ -59,6 +59,7 @@ static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]   = {"sdirk2", "euler", NULL};
 static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
 static const char *const axis_word[]      = {"x", "y", NULL};
+static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
 static const char *const capillary_word[] = {"held", "free", NULL};
 static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* OpenPhases */
@@ -105,6 +106,8 @@ static const Key case_key[] = {
             .choices = pressures_word),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
+    REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
+         "gravity grows from zero to its value over this time"),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", NULL, "the run starts at 0 and ends here"),
     TEXT(Case, "stepper_type", stepper, "sdirk2", "time integrator", .choices = stepper_word),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
@@ -120,6 +123,8 @@ static const Key case_key[] = {
     REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
     BOOLEAN(Case, "stabilisation_flux_interpolation", flux_interpolation, "yes", "momentum-interpolated mass flux"),
+    BOOLEAN(Case, "stabilisation_upstream", upstream, "no",
+            "relative permeabilities from upstream, for sharp fronts of saturation"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
@@ -183,6 +188,8 @@ static const Key material_key[] = {
          .has = HAS_GAS),
     REAL(Material, "relperm_Sgr", relperm.Sgr, "", "[0,1)", "1 @retention_Sgr", "residual gas saturation of k_rg",
          .has = HAS_GAS),
+    BOOLEAN(Material, "relperm_share_of", relperm.of_pores, "fluids",
+            "k_r from the share of the fluid-filled pores, S/(1 - Sh), or of all pores, S", .choices = space_word),
     REAL(Material, "relperm_nw", relperm.nw, "", "(0,20]", NULL, "Corey exponent of water", .has = HAS_GAS),
     REAL(Material, "relperm_ng", relperm.ng, "", "(0,20]", NULL, "Corey exponent of gas", .has = HAS_GAS),
     REAL(Material, "permeability_k0", permeability.k0, "m^2", "(0,1e-4]", NULL,

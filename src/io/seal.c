@@ -65,7 +65,7 @@ static uint64_t HashMaterial(uint64_t h, const Material *m)
   h = REALS(h, m->kappa_s, m->kappa_h, m->kappa_w, m->kappa_g, m->latent.C0, m->latent.C1);
   h = HashLiquid(HashLiquid(HashLiquid(h, &m->solid), &m->hydrate), &m->water);
   h = REALS(Text(h, r->type), r->p0, r->m, r->lambda, r->Swr, r->Sgr, r->p_smooth, r->p_trap);
-  h = REALS(h, k->Swr, k->Sgr, k->nw, k->ng);
+  h = INTS(REALS(h, k->Swr, k->Sgr, k->nw, k->ng), k->of_pores);
   h = REALS(Text(Text(h, a->hydrate_type), a->porosity_type), a->k0, a->phi0, a->mh, a->kh, a->Shc);
   h = REALS(h, q->K0, q->dE, q->A_geo, q->M_h, q->M_w, q->M_g, q->N_h);
   h = REALS(Text(h, q->equilibrium.type), q->equilibrium.A1, q->equilibrium.A2, q->equilibrium.A3);
@@ -104,6 +104,7 @@ uint64_t CaseFingerprint(const Case *c)
   uint64_t h = FNV_START;
 
   h = Reals(Reals(Reals(h, c->lower, CL_DIM), c->upper, CL_DIM), c->gravity, CL_DIM);
+  h = REALS(h, c->gravity_ramp);
   h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, (int64_t)c->fields.has, c->nmaterial, c->nregion,
            c->nbc);
   for (PetscInt k = 0; k < c->nmaterial; k++)

@@ -17,7 +17,7 @@ static double Corey(double s, double own, double range, double n, double *dkr)
   return kr;
 }
 
-/* k_rw (-) of the water share s_w of the fluid-filled pore space, and dk_rw/ds_w. */
+/* k_rw (-) of the water share s_w of the fluid-filled pore space (or of the whole: of_pores), and dk_rw/ds_w. */
 double RelPermWater(const RelPerm *law, double sw, double *dkr_dsw)
 {
   return Corey(sw, law->Swr, 1.0 - law->Swr - law->Sgr, law->nw, dkr_dsw);

@@ -105,13 +105,31 @@ static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI
     J[i] = w * (fs->solid ? v[i] - xI[PlaceVs(fs) + i] : v[i]);
 }
 
+/* How far a particle lies upstream of a node, against the direction of flow there, m; negative downstream. */
+static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const double direction[CL_DIM])
+{
+  double s = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    s += direction[d] * (m->grid.lower[d] + (double)m->map.ij[I][d] * m->grid.h[d] - m->P.f[P_X + d][p]);
+  return s;
+}
+
+/* Weight of a particle's drag at a node in (16): S, or what looks upstream (35). */
+static inline double DragWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
+{
+  const double *u = &m->up[6 * I + 3 * f];
+
+  return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
+}
+
 /* Acceleration less gravity of the velocity at place k of a node's block; quasi-static: only gravity. */
 static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double acc[2])
 {
   const PetscInt q = I * m->c->fields.n + k;
 
   for (int i = 0; i < 2; i++)
-    acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->c->gravity[i];
+    acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
 }
 
 static inline void GatherFluid(const Model *m, int f, const Reach *r, const double *x, const double *N,

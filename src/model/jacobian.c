@@ -38,13 +38,14 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
     col[PlaceT(fs)] = D[IN_T] * b->S + D[IN_GT] * G[0] + D[IN_GT + 1] * G[1];
 }
 
-/* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate. */
+/* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
   double acc[3][2], J[PHASE_COUNT][2], Tdot;
   double weight[PHASE_COUNT]; /* RowWeight */
+  double drag[PHASE_COUNT];   /* DragWeight */
 } NodeFactors;
 
-static void Factors(const Model *m, PetscInt I, const double *x, NodeFactors *n)
+static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, double S, NodeFactors *n)
 {
   const FieldSet *fs = &m->c->fields;
 
@@ -55,6 +56,7 @@ static void Factors(const Model *m, PetscInt I, const double *x, NodeFactors *n)
       continue;
     Acceleration(m, I, x, PlaceV(fs, f), n->acc[1 + f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
+    n->drag[f]   = DragWeight(m, p, I, f, S);
     n->weight[f] = RowWeight(m, I, f);
   }
   if (fs->heat) {
@@ -87,7 +89,7 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const Node
       double *row = &out[(PlaceV(fs, f) + i) * ld];
 
       for (int q = 0; q < n; q++)
-        row[q] = S * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + k->J[f][i] * DB[OUT_D + f][q]) -
+        row[q] = S * k->acc[1 + f][i] * DB[OUT_MI + f][q] + k->drag[f] * k->J[f][i] * DB[OUT_D + f][q] -
                  G[0] * DB[OUT_PF + 4 * f + 2 * i][q] - G[1] * DB[OUT_PF + 4 * f + 2 * i + 1][q];
       for (int q = 0; axisymmetric && i == 0 && q < n; q++)
         row[q] -= H * DB[OUT_HOOPF + f][q];
@@ -107,8 +109,8 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const Node
 }
 
 /* The lumped terms couple a node only with itself. */
-static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], double dt, double S, const double *w,
-                     double *block, int ld)
+static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const NodeFactors *k, double dt, double S,
+                     const double *w, double *block, int ld)
 {
   const double inertia = fs->inertia ? S / dt : 0.0;
 
@@ -119,7 +121,7 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], double dt,
       block[vs * ld + vs] += inertia * out[OUT_M];
     for (int f = 0; f < PHASE_COUNT; f++) {
       const int    v    = PlaceV(fs, f) + i;
-      const double drag = S * out[OUT_D + f] * w[f];
+      const double drag = k->drag[f] * out[OUT_D + f] * w[f];
 
       if (!fs->phase[f])
         continue;
@@ -175,8 +177,8 @@ static void OutputsOf(const FieldSet *fs, bool axisymmetric, Outputs *list)
 
 /* `fs` with a constant number of unknowns lets the compiler unroll the rows of the largest set. */
 static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m, const FieldSet *fs, int n,
-                                                                  const Outputs *list, const Reach *r, const double *x,
-                                                                  const PointOutput *o, double *block)
+                                                                  const Outputs *list, PetscInt p, const Reach *r,
+                                                                  const double *x, const PointOutput *o, double *block)
 {
   const int    ld           = r->n * n;
   const bool   axisymmetric = m->c->axisymmetric;
@@ -184,7 +186,7 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
   NodeFactors  factor[CL_NODES];
 
   for (int a = 0; a < r->n; a++)
-    Factors(m, r->node[a], x, &factor[a]);
+    Factors(m, p, r->node[a], x, r->S[a], &factor[a]);
   for (int b = 0; b < r->n; b++) {
     const NodeWeights at = {
         .S = r->S[b], .NS = r->S[b], .H = axisymmetric ? r->H[b] : 0.0, .G = r->G[b], .w = &m->w[2 * r->node[b]]};
@@ -197,20 +199,20 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
 
       Rows(fs, axisymmetric, n, &factor[a], dt, r->S[a], r->G[a], axisymmetric ? r->H[a] : 0.0, DB, out, ld);
       if (a == b)
-        Diagonal(fs, o->out, dt, r->S[a], at.w, out, ld);
+        Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, out, ld);
     }
   }
 }
 
-static void ParticleBlock(const Model *m, const Outputs *list, const Reach *r, const double *x, const PointOutput *o,
-                          double *block)
+static void ParticleBlock(const Model *m, const Outputs *list, PetscInt p, const Reach *r, const double *x,
+                          const PointOutput *o, double *block)
 {
   const FieldSet *fs = &m->c->fields;
 
   if (fs->n == F_COUNT)
-    ParticleBlockOf(m, fs, F_COUNT, list, r, x, o, block);
+    ParticleBlockOf(m, fs, F_COUNT, list, p, r, x, o, block);
   else
-    ParticleBlockOf(m, fs, fs->n, list, r, x, o, block);
+    ParticleBlockOf(m, fs, fs->n, list, p, r, x, o, block);
 }
 
 PetscErrorCode JacobianAdd(Model *m, int n, const PetscInt *node, double *block)
@@ -263,7 +265,7 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x)
       continue; /* the residual said so */
     if (m->wide)
       KeepWide(&m->c->fields, &o, &m->wide[12 * p]);
-    ParticleBlock(m, &list, &r, x, &o, block);
+    ParticleBlock(m, &list, p, &r, x, &o, block);
     PetscCall(JacobianAdd(m, r.n, r.node, block));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -78,8 +78,8 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
 }
 
 /* Rows (16) and (17) of one fluid from one particle. */
-static void ScatterFluid(const Model *m, int ph, const Reach *r, const double *x, const double out[OUT_COUNT],
-                         double *f)
+static void ScatterFluid(const Model *m, PetscInt p, int ph, const Reach *r, const double *x,
+                         const double out[OUT_COUNT], double *f)
 {
   const FieldSet *fs = &m->c->fields;
 
@@ -90,8 +90,9 @@ static void ScatterFluid(const Model *m, int ph, const Reach *r, const double *x
 
     Acceleration(m, I, x, PlaceV(fs, ph), acc);
     DarcyFlux(m, I, ph, &x[I * fs->n], J);
+    const double drag = DragWeight(m, p, I, ph, S) * out[OUT_D + ph];
     for (int i = 0; i < 2; i++)
-      row[i] += S * (out[OUT_MI + ph] * acc[i] + out[OUT_D + ph] * J[i]) - G[0] * out[OUT_PF + 4 * ph + 2 * i] -
+      row[i] += S * out[OUT_MI + ph] * acc[i] + drag * J[i] - G[0] * out[OUT_PF + 4 * ph + 2 * i] -
                 G[1] * out[OUT_PF + 4 * ph + 2 * i + 1];
     if (m->c->axisymmetric)
       row[0] -= r->H[a] * out[OUT_HOOPF + ph];
@@ -113,7 +114,7 @@ static void ScatterHeat(const Model *m, const Reach *r, const double *x, const d
   }
 }
 
-static void Scatter(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
+static void Scatter(const Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
 {
   const FieldSet *fs = &m->c->fields;
 
@@ -121,7 +122,7 @@ static void Scatter(const Model *m, const Reach *r, const double *x, const doubl
     ScatterSolid(m, r, x, out, f);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     if (fs->phase[ph])
-      ScatterFluid(m, ph, r, x, out, f);
+      ScatterFluid(m, p, ph, r, x, out, f);
   }
   if (fs->heat)
     ScatterHeat(m, r, x, out, f);
@@ -138,7 +139,7 @@ static void ParticleLoop(Model *m, const double *x, double *f)
     if (ParticleEvaluate(m, p, x, false, &r, in, &state, &o) != CL_OK)
       return;
     m->limited += state.limited;
-    Scatter(m, &r, x, o.out, f);
+    Scatter(m, p, &r, x, o.out, f);
   }
 }
 

@@ -1,6 +1,8 @@
 /* Start of a step: stencils, active nodes and nodal start values on the configuration at t_n. */
 #include "gather.h"
 
+#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its drag stays central */
+
 static bool InsideGrid(const Grid *g, const Stencil *s)
 {
   for (int d = 0; d < CL_DIM; d++) {
@@ -180,6 +182,47 @@ static PetscErrorCode Project(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* (35): directions of flow at t_n, and the factors that keep the sum of the weights. */
+static PetscErrorCode UpstreamWeights(Model *m)
+{
+  const FieldSet *fs = &m->c->fields;
+  double         *sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(m->up, 6 * m->map.n_local));
+  if (!m->c->upstream)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      double J[2] = {0.0, 0.0};
+
+      if (fs->phase[f])
+        DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
+      const double size = hypot(J[0], J[1]);
+      for (int d = 0; d < CL_DIM && size > 0.0; d++)
+        m->up[6 * I + 3 * f + d] = J[d] / size;
+    }
+  }
+  PetscCall(PetscCalloc1(2 * m->map.n_local, &sum));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Reach r;
+
+    ReachExpand(m, p, &r);
+    for (int a = 0; a < r.n; a++) {
+      for (int f = 0; f < PHASE_COUNT; f++)
+        sum[2 * r.node[a] + f] +=
+            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], &m->up[6 * r.node[a] + 3 * f]), 0.0);
+    }
+  }
+  PetscCall(NodeMapSum(&m->map, sum, 2));
+  for (PetscInt k = 0; k < 2 * m->map.n_local; k++) {
+    if (sum[k] > UPSTREAM_LEAST * fmin(m->grid.h[0], m->grid.h[1]) * m->V[k / 2])
+      m->up[3 * k + 2] = m->V[k / 2] / sum[k];
+  }
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 {
   unsigned char *flag;
@@ -202,6 +245,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   if (*status == CL_OK) {
     PetscCall(FacesBuild(m->c, &m->grid, &m->P, m->stencil, &m->nface, &m->face));
     PetscCall(StabilisationBuild(m));
+    PetscCall(UpstreamWeights(m));
   }
   PetscCall(PetscFree(flag));
   PetscCall(PetscLogEventEnd(m->event[0], 0, 0, 0, 0));

@@ -100,25 +100,30 @@ static void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet r
     Form(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
 }
 
+/* k_r of a fluid among two, of its share of the open pores or of all of them. */
+static Jet RelPermJet(const RelPerm *law, int phase, const ScalarState *s)
+{
+  const Jet    share = phase == PHASE_W ? s->sw : s->sg;
+  const Jet    x     = law->of_pores ? JetMul(JetSub(JetConstant(1.0), s->Sh), share) : share;
+  double       d;
+  const double kr = phase == PHASE_W ? RelPermWater(law, x.v, &d) : RelPermGas(law, x.v, &d);
+
+  return kr < MOBILITY_FLOOR ? JetConstant(MOBILITY_FLOOR) : JetChain(kr, d, x);
+}
+
 /* mu/(k_a k_r) of the phases that flow. */
 static void Drag(const FieldSet *fs, const Material *mat, ScalarState *s)
 {
-  double       dphi, dSh, ds;
+  double       dphi, dSh;
   const double k  = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
   const Jet    ka = JetChain2(k, dphi, s->phi, dSh, s->Sh);
 
   for (int f = 0; f < PHASE_COUNT; f++) {
-    double kr = 1.0;
-
     if (!fs->phase[f])
-      continue;
-    ds = 0.0;
-    if (fs->phase[PHASE_G]) /* a lone fluid fills the pores: k_r = 1 */
-      kr = f == PHASE_W ? RelPermWater(&mat->relperm, s->sw.v, &ds) : RelPermGas(&mat->relperm, s->sg.v, &ds);
-    if (kr < MOBILITY_FLOOR)
-      kr = MOBILITY_FLOOR, ds = 0.0;
-    s->drag[f] = JetDiv(JetConstant(f == PHASE_W ? mat->mu_w : mat->mu_g),
-                        JetMul(ka, JetChain(kr, ds, f == PHASE_W ? s->sw : s->sg)));
+      continue; /* a lone fluid fills the pores: k_r = 1 */
+    const Jet kr = fs->phase[PHASE_G] ? RelPermJet(&mat->relperm, f, s) : JetConstant(1.0);
+
+    s->drag[f] = JetDiv(JetConstant(f == PHASE_W ? mat->mu_w : mat->mu_g), JetMul(ka, kr));
   }
 }
 

@@ -60,7 +60,7 @@ static Set Draw(void)
   s.ret = (Retention){.p0 = p0, .m = Uniform(0.05, 0.97), .lambda = LogUniform(0.05, 10), .Swr = Swr, .Sgr = Sgr};
   if (Chance(0.5))
     s.ret.p_smooth = p0 * LogUniform(1e-2, 1), s.ret.p_trap = p0 * LogUniform(1e-1, 10);
-  s.kr        = (RelPerm){Uniform(0, 0.45), Uniform(0, 0.45), LogUniform(0.1, 8), LogUniform(0.1, 8)};
+  s.kr        = (RelPerm){Uniform(0, 0.45), Uniform(0, 0.45), LogUniform(0.1, 8), LogUniform(0.1, 8), false};
   s.perm      = (Permeability){.k0 = LogUniform(1e-22, 1e-9), .phi0 = Uniform(0.05, 0.9), .mh = LogUniform(0.3, 15)};
   s.perm.kh   = Uniform(0, 1);
   s.perm.Shc  = LogUniform(1e-5, 0.9);

@@ -53,7 +53,7 @@ static void RetentionValues(void **state)
 
 static void RelPermValues(void **state)
 {
-  const RelPerm bp2 = {0.2, 0.4, 4, 2}, masuda = {0.1, 0, 0.82, 2.11};
+  const RelPerm bp2 = {0.2, 0.4, 4, 2, false}, masuda = {0.1, 0, 0.82, 2.11, true};
   double        d;
 
   Near(RelPermWater(&bp2, 0.4, &d), 0.0625, 1e-14); /* b = 1/2 */

@@ -273,12 +273,17 @@ static void JacobianScene(Scene *s, BasisType basis, bool reacts, int set)
   s->c.gravity[0]                = 2.0;
   s->c.gravity[1]                = -9.81;
   s->c.flux_interpolation        = !(set == 1 && !reacts);
+  s->c.upstream                  = reacts;
   s->region[0].pressure          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
   AddConditions(s, set);
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
   RandomHistory(s, 0.2);
   RandomStage(s, 20.0);
   Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
+  double upstream = 0.0;
+  for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
+    upstream += s->m.up[3 * k + 2] > 0.0;
+  Check((Sum(upstream) > 0.0) == reacts);
   MakeSolver(s);
 }
 

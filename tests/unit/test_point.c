@@ -36,6 +36,7 @@ static Material RandomMaterial(Rng *r, Regime regime)
   m.retention.lambda     = RngBetween(r, 0.5, 3.0);
   m.relperm.nw           = RngBetween(r, 1.0, 6.0);
   m.relperm.ng           = RngBetween(r, 1.0, 4.0);
+  m.relperm.of_pores     = m.relperm.nw > 3.5;
   m.permeability.k0      = RngLog(r, 1e-18, 1e-10);
   m.solid.beta           = RngBetween(r, -1e-4, 3e-4);
   m.hydrate.beta         = RngBetween(r, 1e-5, 5e-4);

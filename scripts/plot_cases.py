@@ -1,0 +1,157 @@
+#!/usr/bin/python3
+"""Pictures of the ladder of cases, numeric against exact: plot_cases.py [CLATHRA [NAME ...]] writes docs/figures/case_<name>.png.
+
+It runs the cases with the program (default build/clathra) in a temporary folder.  Lines are exact, dots are particles.
+"""
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from plotting import COLOURS, MM, PA, plt, save, set_style
+from results import read_csv, read_snapshots
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tests" / "verification"))
+import _ladder as ladder  # noqa: E402
+
+DOTS = {"ls": "", "marker": ".", "ms": 4}
+EXACT = {"color": "k", "lw": 1.0, "zorder": 0}
+
+
+class Case:
+    """A run of cases/<name> with options: out is its folder."""
+
+    def __init__(self, program, folder, name, *options):
+        self.out = Path(folder) / "-".join([name, *(o.strip("-") for o in options)]).replace(" ", "_")
+        subprocess.run([program, ROOT / "cases" / name, "-quiet", "-output_dir", self.out, *options],
+                       check=True, stdout=subprocess.DEVNULL)  # fmt: skip
+        self.snapshots = read_snapshots(self.out)[1:]
+
+    def csv(self, name):
+        return read_csv(self.out / f"{name}.csv")
+
+
+def profiles(axes, case, axis, value, exact, unit="s", scale=1.0, reference=False):
+    """One colour a snapshot: value(particles) as dots, exact(x, t) as a line."""
+    for colour, (t, v) in zip(COLOURS, case.snapshots):
+        x = v["position"][:, axis] - (v["displacement"][:, axis] if reference else 0)
+        axes.plot(x, value(v), color=colour, label=f"{t / scale:.4g} {unit}", **DOTS)
+        line = np.linspace(x.min(), x.max(), 800)
+        axes.plot(line, exact(line, t), **EXACT)
+    axes.legend(title="dots: Clathra; lines: exact", title_fontsize=8)
+
+
+def heat_slab(run, left, right):
+    case, S = run(), ladder.HeatSlab
+    profiles(left, case, 0, lambda v: v["T"][:, 0], S.temperature, "h", 3600)
+    left.set(xlabel="x (m)", ylabel="temperature (°C)")
+    p = case.csv("probes")
+    for name, x, colour in (("wall", 0.0, COLOURS[0]), ("middle", 0.5, COLOURS[1])):
+        right.plot(p["time_s"] / 3600, p[f"{name}.T_degC"], color=colour, label=f"x = {x} m", **DOTS)
+        right.plot(p["time_s"] / 3600, S.temperature(x, p["time_s"]), **EXACT)
+    right.legend()
+    right.set(xlabel="time (h)", ylabel="temperature (°C)")
+
+
+def heat_advection(run, left, right):
+    case, S = run(), ladder.HeatAdvection
+    profiles(left, case, 0, lambda v: v["T"][:, 0], S.temperature, "h", 3600)
+    left.set(xlabel="x (m)", ylabel="temperature (°C)")
+    p = case.csv("probes")
+    for name, x, colour in (("half", 0.5, COLOURS[0]), ("one", 1.0, COLOURS[1])):
+        right.plot(p["time_s"] / 3600, p[f"{name}.T_degC"], color=colour, label=f"x = {x} m", **DOTS)
+        right.plot(p["time_s"] / 3600, S.temperature(x, p["time_s"]), **EXACT)
+    right.legend()
+    right.set(xlabel="time (h)", ylabel="temperature (°C)")
+
+
+def elastic_wave(run, left, right):
+    case, W = run(), ladder.ElasticWave
+    case.snapshots = case.snapshots[:3]
+    profiles(left, case, 0, lambda v: v["stress"][:, 0] / 1e3, lambda x, t: W.solution(x, t)[2] / 1e3, "ms", 1e-3, True)
+    left.set(xlabel="x (m)", ylabel="stress (kPa)")
+    for stepper, colour in (("sdirk2", COLOURS[0]), ("euler", COLOURS[1])):
+        p = run("-stepper_type", stepper).csv("probes")
+        right.plot(p["time_s"] * 1e3, p["end.u_x_m"] * MM, color=colour, label=stepper)
+    t = np.linspace(0, p["time_s"][-1], 2000)
+    right.plot(t * 1e3, W.solution(W.L, t)[0] * MM, "k:", label="exact")
+    right.legend(ncol=3, loc="upper right")
+    right.set(xlabel="time (ms)", ylabel="displacement of the end (mm)", ylim=(None, 0.3))
+
+
+def gravity_column(run, left, right):
+    v, G = run().snapshots[-1][1], ladder.GravityColumn
+    Y = v["position"][:, 1] - v["displacement"][:, 1]
+    line = np.linspace(0, G.H, 200)
+    u, J, _ = G.solution(line)
+    left.plot(v["displacement"][:, 1], Y, color=COLOURS[0], label="Clathra", **DOTS)
+    left.plot(u, line, **EXACT, label="exact")
+    left.plot(G.rho0 * G.g / G.M * (line**2 / 2 - G.H * line), line, "--", color="0.6", label="small strain")
+    left.set(xlabel="displacement (m)", ylabel="height before (m)")
+    right.plot(0.5 / (1 - v["porosity"][:, 0]), Y, color=COLOURS[0], **DOTS)
+    right.plot(J, line, **EXACT)
+    right.plot(1 - G.rho0 * G.g * (G.H - line) / G.M, line, "--", color="0.6")
+    right.set(xlabel="volume ratio J (–)", ylabel="height before (m)")
+    left.legend()
+
+
+def terzaghi(run, left, right):
+    case, Z = run(), ladder.Terzaghi
+    profiles(left, case, 0, lambda v: (v["p"][:, 0] - Z.p0) / 1e3, lambda x, t: Z.pressure(x, t) / 1e3, "h", 3600)
+    left.set(xlabel="x (m)", ylabel="excess pore pressure (kPa)")
+    p = case.csv("probes")
+    right.plot(p["time_s"] / 3600, p["end.u_x_m"] * MM, color=COLOURS[0], **DOTS)
+    right.plot(p["time_s"] / 3600, Z.settlement(p["time_s"]) * MM, **EXACT)
+    right.set(xlabel="time (h)", ylabel="displacement of the end (mm)")
+
+
+def buckley_leverett(run, left, right):
+    B = ladder.BuckleyLeverett
+    for axes, option, title in ((left, "yes", "drag from upstream"), (right, "no", "central drag")):
+        profiles(axes, run("-stabilisation_upstream", option), 0, lambda v: v["S_w"][:, 0], B.exact.saturation)
+        axes.set(xlabel="x (m)", ylabel="water saturation (–)", title=title)
+
+
+def mcwhorter_sunada(run, left, right):
+    case, M = run(), ladder.McWhorterSunada.solution()
+    profiles(left, case, 0, lambda v: v["S_w"][:, 0], M.saturation, "h", 3600)
+    left.set(xlabel="x (m)", ylabel="water saturation (–)")
+    b = case.csv("balance")
+    root = np.sqrt(b["time_s"] / 3600)
+    right.plot(root, -b["water_out_kg"] / 1000 / 0.02 * MM, color=COLOURS[0], **DOTS)
+    right.plot(root, M.imbibed(b["time_s"]) * MM, **EXACT)
+    right.set(xlabel="square root of time (√h)", ylabel="water taken up (mm)")
+
+
+def stefan_front(run, left, right):
+    case, F = run("-output_every", "2 h", "-output_times", "0 s"), ladder.StefanFront
+    exact, every = F.solution(), case.snapshots
+    case.snapshots = [s for s in every if round(s[0] / 3600) in (2, 12, 24, 48)]
+    profiles(left, case, 0, lambda v: v["T"][:, 0], exact.temperature, "h", 3600)
+    left.set(xlabel="x (m)", ylabel="temperature (°C)")
+    t = np.array([0.0] + [t for t, _ in every])
+    right.plot(np.sqrt(t[1:] / 3600), [F.front(v) for _, v in every], color=COLOURS[0], **DOTS)
+    right.plot(np.sqrt(t / 3600), exact.front(t), **EXACT)
+    right.set(xlabel="square root of time (√h)", ylabel="front (m)")
+
+
+FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front]
+
+
+def main(program=str(ROOT / "build" / "clathra"), *names):
+    set_style()
+    for draw in FIGURES:
+        name = draw.__name__
+        if names and name not in names:
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.4))
+            draw(lambda *options: Case(program, folder, name, *options), left, right)
+            save(figure, ROOT / "docs" / "figures", f"case_{name}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
