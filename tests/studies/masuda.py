@@ -59,6 +59,8 @@ ALONG = {f"{a}x2": mesh(a, 2) + FIXED(150) for a in (15, 30, 60, 120, 240)}
 ACROSS = {f"15x{r}": mesh(15, r) + FIXED(150) for r in (2, 4, 8, 16, 32)}
 STEPS = {(kind, dt): mesh(30, 4) + FIXED(dt) + ["-stepper_type", kind]
          for kind in ("sdirk2", "euler") for dt in (300, 150, 75, 37.5, 18.75)}  # fmt: skip
+RAMP = ["-bc_outlet_pressure_ramp", "3.75 MPa, 2.84 MPa, 0 s, 30 min"]
+STEPS.update({("sdirk2, ramp", dt): STEPS["sdirk2", dt] + RAMP for dt in (300, 150, 75, 37.5, 18.75)})
 C1_IN_C = 446120 - 132.638 * 273.15
 SENSITIVITY = (  # what, options
     ("**the case**", []),
@@ -147,7 +149,8 @@ def table(head, rows):
 
 def against_reference(done):
     reference, rows = read_csv(REFERENCE), []
-    for name in ("60x10", "30x4", "120x20", "60x10, no p_c", "lumped", "lumped, no p_c"):
+    for name in ("60x10", "30x4", "120x20", "60x10, no p_c", "lumped", "lumped, no p_c",
+                 "k_r of the fluids (42), S_wr 0.1, S_gr 0", "k_r of the fluids (42), S_wr 0.2, S_gr 0.3"):
         worst = []
         for column, (_, how, bar) in BARS.items():
             error = np.max(np.abs(differences(done[name].curves, reference, column)))
@@ -295,8 +298,10 @@ def page(done, program):
         "Largest differences at every 15 min to 4 h. *Lumped* is the reference's own model of the radius: a core a tenth as thick and a "
         "bath that gives a tenth of the heat, so that a volume gets the same heat and the radius has no say. *No p_c* has p_0 = 10 Pa.", "",
         *against_reference(done),
+        "The last two, on 30 x 5 cells, take k_r as (42) is printed; the reference takes the saturations of all pores, and so does the "
+        "case.", "",
         "The 1 % of gas and the 0.07 K are thus the radius: the surface is warmer than the mean, the bath gives less heat, and hydrate near "
-        "the axis goes last. With the radius lumped the two codes agree to what their meshes leave.", "",
+        "the axis goes last. With the radius lumped the two codes agree to 0.2 % and 0.01 K.", "",
         "## What the paper says in words, and this program", "",
         *table(["section 4.1 of the paper", "60 x 10 cells"], words(done)),
         "## Cells", "",
@@ -305,12 +310,15 @@ def page(done, program):
         "Along the axis:", "", *self_convergence(done, ALONG, list(ALONG)),
         "Across the radius:", "", *self_convergence(done, ACROSS, list(ACROSS)),
         "## Steps", "",
-        "The same with fixed steps on 30 x 4 cells. The jump of the outlet's pressure at t = 0 falls into the first step.", "",
-        *(line for kind in ("sdirk2", "euler")
-          for line in (f"`{kind}`:", "", *self_convergence(done, [k for k in STEPS if k[0] == kind],
+        "The same with fixed steps on 30 x 4 cells. The jump of the outlet's pressure at t = 0 falls into the first step: "
+        "`sdirk2` shows no order once the differences are down to some 1e-6 of the values, and the far-end pressure and T3 then do not "
+        "fall at every halving. With the pressure lowered over 30 min gas and hydrate do, at an order between one and two; temperatures, "
+        "which differ by microkelvins, show none there either. `euler` is of first order throughout.", "",
+        *(line for kind in ("sdirk2", "sdirk2, ramp", "euler")
+          for line in (f"`{kind}`:" if "," not in kind else "`sdirk2`, outlet lowered over 30 min:", "", *self_convergence(done, [k for k in STEPS if k[0] == kind],
                                                            [f"{k[1]:g} s" for k in STEPS if k[0] == kind]))),
         "## What a field costs", "",
-        "60 x 10 cells to 6 h, default options, one rank, each run alone. There is no condition that holds v_s and lets the fluids go, so "
+        "60 x 10 cells to 6 h, default options, one rank; CPU time, as the machine was shared. There is no condition that holds v_s and lets the fluids go, so "
         "the full set holds the skeleton by its stiffness (strain 1e-6).", "",
         *cost(done, program),
         "## Refused steps", "",
@@ -344,7 +352,7 @@ def main():
     todo = {(head + n if isinstance(n, str) else n): o for head, group in groups for n, o in group.items()}
     timed = [n for n in todo if n in ("60x10", "60x10, thmc")]
     name = lambda n: n if isinstance(n, str) else " ".join(map(str, n))
-    done = {n: run(program, name(n), todo[n], given.fresh) for n in timed}  # alone, for their time
+    done = {n: run(program, name(n), todo[n], given.fresh) for n in timed}  # one at a time
     with ThreadPoolExecutor(given.jobs) as pool:
         rest = [n for n in sorted(todo, key=lambda n: "120x20" not in name(n)) if n not in done]
         done.update(zip(rest, pool.map(lambda n: run(program, name(n), todo[n], given.fresh), rest)))
