@@ -1,6 +1,6 @@
-/* Shared by the unit tests of field sets and of axisymmetry: scenes built in memory for any field set and geometry,
-   with random states that are the same on any number of ranks, and the Jacobian against differences.  Include after
-   cmocka.h. */
+/* Shared by the unit tests of the model, of field sets and of axisymmetry: scenes built in memory for any field set and
+   geometry, with random states that are the same on any number of ranks, and the Jacobian against differences.  Include
+   after cmocka.h. */
 #pragma once
 
 #include <stdlib.h>
@@ -109,18 +109,31 @@ static inline void AddPlane(Scene *s, BcType type, PetscInt axis, double positio
   s->c.nbc++;
 }
 
+/* A test with more than one layer points s->c.region and s->c.material at its own. */
+static inline const Region *RegionOf(const Scene *s, PetscInt p)
+{
+  return &s->c.region[s->m.P.i[PI_REGION][p]];
+}
+
+static inline const Material *MaterialOf(const Scene *s, PetscInt p)
+{
+  return &s->c.material[RegionOf(s, p)->material];
+}
+
 /* Masses and saturations that belong to a particle's pressures. */
 static inline void Refill(Scene *s, PetscInt p, double Sh)
 {
-  const FieldSet *fs = &s->c.fields;
-  double *const  *f  = s->m.P.f;
-  const double    T = fs->heat ? f[P_T][p] : s->region.temperature, pw = fs->phase[PHASE_W] ? f[P_PW][p] : 0.0;
+  const FieldSet *fs  = &s->c.fields;
+  const Region   *r   = RegionOf(s, p);
+  const Material *mat = MaterialOf(s, p);
+  double *const  *f   = s->m.P.f;
+  const double    T = fs->heat ? f[P_T][p] : r->temperature, pw = fs->phase[PHASE_W] ? f[P_PW][p] : 0.0;
   const double    pg = f[P_PG] ? f[P_PG][p] : pw;
-  double          m[4], ds, sg = fs->phase[PHASE_G] ? s->region.Sg : 0.0;
+  double          m[4], ds, sg = fs->phase[PHASE_G] ? r->Sg : 0.0;
 
   if (f[P_PG])
-    sg = RetentionGasShare(&s->mat.retention, pg - pw, &ds);
-  PointInitialMasses(fs, &s->mat, f[P_V][p], s->mat.porosity, Sh, sg, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
+    sg = RetentionGasShare(&mat->retention, pg - pw, &ds);
+  PointInitialMasses(fs, mat, f[P_V][p], mat->porosity, Sh, sg, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
   for (int k = 0; k < 4; k++) {
     if (f[P_MS + k])
       f[P_MS + k][p] = m[k];
@@ -316,9 +329,9 @@ static inline void AddConditions(Scene *s, int set)
   }
 }
 
-/* A random state whose free sides cut cells; start: x of the grid's left side, the body begins `gap` right of it. */
-static inline void JacobianScene(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
-                                 double gap, bool reacts, int set)
+/* A body whose free sides cut cells; start: x of the grid's left side, the body begins `gap` right of it. */
+static inline void JacobianCase(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
+                                double gap, bool reacts, int set)
 {
   const double lower[2] = {gap, 0.0}, upper[2] = {0.47, 0.18};
 
@@ -330,10 +343,22 @@ static inline void JacobianScene(Scene *s, unsigned has, bool inertia, bool axis
   s->c.flux_interpolation     = !(set == 1 && !reacts);
   s->region.pressure          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
   AddConditions(s, set);
+}
+
+/* A random state of it. */
+static inline void JacobianState(Scene *s)
+{
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
   RandomHistory(s, 0.2);
   RandomStage(s, 20.0);
   MakeSolver(s);
+}
+
+static inline void JacobianScene(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
+                                 double gap, bool reacts, int set)
+{
+  JacobianCase(s, has, inertia, axisymmetric, basis, start, gap, reacts, set);
+  JacobianState(s);
 }
 
 /* ---------------------------------------------------------------- differences */

@@ -6,439 +6,24 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <cmocka.h>
-#include "clathra/model.h"
 #include "clathra/tensor.h"
-#include "random.h"
-#include "ranks.h"
-#include "sediment.h"
-
-#define Say(...) Call(PetscPrintf(PETSC_COMM_WORLD, __VA_ARGS__))
-
-/* In [-1, 1), the same on every rank. */
-static double Noise(int seed, PetscInt a, PetscInt b)
-{
-  Rng r = {0x9E3779B97F4A7C15ULL * (uint64_t)(seed + 1) + 0xBF58476D1CE4E5B9ULL * (uint64_t)(a + 7) +
-           0x94D049BB133111EBULL * (uint64_t)(b + 11)};
-
-  for (int k = 0; k < 4; k++)
-    (void)RngUnit(&r);
-  return 2.0 * RngUnit(&r) - 1.0;
-}
-
-static double Largest(double v)
-{
-  Call(MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD));
-  return v;
-}
-
-static double Sum(double v)
-{
-  Call(MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
-  return v;
-}
-
-/* ---------------------------------------------------------------- scenes */
-#define MAX_BC 16
-
-typedef struct {
-  Case     c;
-  Material mat[2];
-  Region   region[2];
-  Bc       bc[MAX_BC];
-  double   number[2 * MAX_BC], zero; /* values of constant schedules */
-  Model    m;
-  Stage    stage;
-} Scene;
-
-static Material MakeMaterial(void)
-{
-  Material m = SedimentMaterial();
-
-  m.kappa_w         = 0.6;
-  m.permeability.k0 = 1.53e-13;
-  return m;
-}
-
-/* Grid of 6 x 4 cells of 0.1 m x 0.08 m with one region; conditions are added afterwards. */
-static void SceneInit(Scene *s, BasisType basis, const double lower[2], const double upper[2])
-{
-  memset(s, 0, sizeof(*s));
-  s->c      = (Case){.lower               = {0.0, 0.0},
-                     .upper               = {0.6, 0.32},
-                     .cells               = {6, 4},
-                     .basis               = basis,
-                     .nmaterial           = 2,
-                     .nregion             = 1,
-                     .material            = s->mat,
-                     .region              = s->region,
-                     .bc                  = s->bc,
-                     .ghost_penalty       = 0.1,
-                     .pressure_projection = 1.0,
-                     .flux_interpolation  = true,
-                     .inertia             = true,
-                     .fields              = *AllFields()};
-  s->mat[0] = s->mat[1] = MakeMaterial();
-  for (int r = 0; r < 2; r++) {
-    s->region[r] = (Region){.ppc = {2, 2}, .pressure = 3.25e6, .temperature = 4.0, .Sw = 0.6, .Sg = 0.4, .material = r};
-    for (int d = 0; d < 2; d++) {
-      s->region[r].lower[d] = lower[d];
-      s->region[r].upper[d] = upper[d];
-    }
-  }
-}
-
-static Schedule Constant(Scene *s, int which, double v)
-{
-  double *y = &s->number[2 * s->c.nbc + which];
-
-  *y = v;
-  return (Schedule){1, &s->zero, y, false};
-}
-
-static Bc *AddFace(Scene *s, BcType type, Side side, double value, double shear)
-{
-  Bc *b = &s->bc[s->c.nbc];
-
-  *b       = (Bc){.type = type, .side = side, .region = -1, .from = -INFINITY, .to = INFINITY, .alpha = 40.0};
-  b->value = Constant(s, 0, value);
-  b->shear = Constant(s, 1, shear);
-  s->c.nbc++;
-  return b;
-}
-
-static void AddPlane(Scene *s, BcType type, PetscInt axis, double position, double value)
-{
-  s->bc[s->c.nbc]       = (Bc){.type = type, .axis = axis, .position = position, .region = -1};
-  s->bc[s->c.nbc].value = Constant(s, 0, value);
-  s->c.nbc++;
-}
-
-static const Material *MaterialOf(const Scene *s, PetscInt p)
-{
-  return &s->mat[s->region[s->m.P.i[PI_REGION][p]].material];
-}
-
-/* Masses and saturations that belong to a particle's pressures. */
-static void Refill(Scene *s, PetscInt p, double Sh)
-{
-  double *const *f = s->m.P.f;
-  const double   V = f[P_V][p], T = f[P_T][p];
-  double         d;
-
-  InitialMasses(MaterialOf(s, p), V, MaterialOf(s, p)->porosity, Sh, f[P_PW][p], f[P_PG][p], T, &f[P_MS][p],
-                &f[P_MH][p], &f[P_MW][p], &f[P_MG][p]);
-  f[P_SH][p] = Sh;
-  f[P_SW][p] = (1.0 - Sh) * (1.0 - RetentionGasShare(&MaterialOf(s, p)->retention, f[P_PG][p] - f[P_PW][p], &d));
-}
-
-/* Nodal and particle arrays of a stage that starts from the state at t_n at rest. */
-static void StageStart(Scene *s, double dt)
-{
-  Model   *m = &s->m;
-  ClStatus status;
-
-  Call(ModelBeginStep(m, &status));
-  Check(status == CL_OK);
-  s->stage = (Stage){.t = dt, .dt = dt};
-  Call(PetscMalloc3(m->map.n_local * F_COUNT, &s->stage.x_star, m->map.n_local * CL_DIM, &s->stage.u_star, 3 * m->P.n,
-                    &s->stage.m_star));
-  Call(PetscArraycpy(s->stage.x_star, m->x_n, m->map.n_local * F_COUNT));
-  Call(PetscArrayzero(s->stage.u_star, m->map.n_local * CL_DIM));
-  for (PetscInt k = 0; k < 3 * m->P.n; k++)
-    s->stage.m_star[k] = m->P.f[P_MH + k % 3][k / 3];
-}
-
-static void SceneDestroy(Scene *s)
-{
-  Call(PetscFree3(s->stage.x_star, s->stage.u_star, s->stage.m_star));
-  Call(ModelDestroy(&s->m));
-}
-
-/* The solver is made by the first ModelSolve: one iteration, whatever comes of it. */
-static void MakeSolver(Scene *s)
-{
-  double  *x;
-  PetscInt newton;
-  ClStatus status;
-
-  Call(PetscOptionsSetValue(NULL, "-snes_max_it", "1"));
-  Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
-  Call(PetscArraycpy(x, s->m.x_n, s->m.map.n_local * F_COUNT));
-  Call(ModelSolve(&s->m, x, &newton, &status));
-  Call(PetscOptionsClearValue(NULL, "-snes_max_it"));
-  Call(SNESSetTolerances(s->m.snes, 0.0, 0.0, 0.0, 15, 10000));
-  Call(PetscFree(x));
-}
-
-static void SetX(Model *m, const double *x)
-{
-  double *a;
-
-  Call(VecGetArrayWrite(m->X, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++)
-    a[k] = x[k] / m->col_scale[k];
-  Call(VecRestoreArrayWrite(m->X, &a));
-}
+#include "small_scene.h"
 
 /* ---------------------------------------------------------------- (a) Jacobian */
-/* Random history: everything that a run could have left on a particle. */
-static void RandomHistory(Scene *s, double Sh)
+/* A random state, with relative permeabilities from upstream where hydrate reacts. */
+static void UpstreamScene(Scene *s, BasisType basis, bool reacts, int set)
 {
-  double *const *f = s->m.P.f;
-
-  for (PetscInt p = 0; p < s->m.P.n; p++) {
-    const PetscInt id = s->m.P.i[PI_ID][p];
-
-    for (int d = 0; d < 2; d++) {
-      f[P_X + d][p] += 0.2 * f[P_L + d][p] * Noise(1, id, d);
-      f[P_L + d][p] *= 1.0 + 0.05 * Noise(2, id, d);
-      f[P_GW + d][p] = 2e5 * Noise(3, id, d);
-      f[P_GG + d][p] = 2e5 * Noise(4, id, d);
-      f[P_GT + d][p] = 5.0 * Noise(5, id, d);
-    }
-    for (int k = 0; k < 6; k++) {
-      f[P_VS + k][p]   = 1e-4 * Noise(6, id, k);
-      f[P_SIG + k][p]  = 2e6 * Noise(7, id, k);
-      f[P_SIG0 + k][p] = 1e6 * Noise(8, id, k);
-    }
-    f[P_PW][p] += 2e5 * Noise(9, id, 0);
-    f[P_PG][p] = f[P_PW][p] + 8e4 * (1.5 + Noise(9, id, 1));
-    f[P_T][p] += Noise(9, id, 2);
-    Refill(s, p, Sh * (1.0 + 0.5 * Noise(9, id, 3)));
-  }
-}
-
-/* Unknowns around the start values: strains of a percent or so, 0.2 MPa, 1 K; the capillary pressure moves by 20 kPa,
-   which keeps it away from the threshold of gas mobility (a kink). */
-static void RandomUnknowns(const Model *m, double dt, int seed, double *x)
-{
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const PetscInt node = m->map.ij[I][0] + 100 * m->map.ij[I][1];
-
-    for (int q = 0; q < F_COUNT; q++) {
-      const double size = q < F_VWX ? 2e-4 / dt : q < F_PW ? 1e-4 : q == F_PW ? 2e5 : q == F_PG ? 2e4 : 1.0;
-
-      x[I * F_COUNT + q] = m->x_n[I * F_COUNT + q] + size * Noise(seed, node, q);
-    }
-    x[I * F_COUNT + F_PG] += 2e5 * Noise(seed, node, F_PW);
-  }
-}
-
-static void RandomStage(Scene *s, double dt)
-{
-  Model *m = &s->m;
-
-  StageStart(s, dt);
-  RandomUnknowns(m, dt, 20, s->stage.x_star);
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
-    for (int d = 0; d < CL_DIM; d++)
-      s->stage.u_star[I * CL_DIM + d] = 2e-4 * Noise(21 + d, m->map.ij[I][0], m->map.ij[I][1]);
-  }
-  for (PetscInt k = 0; k < 3 * m->P.n; k++)
-    s->stage.m_star[k] *= 1.0 + 0.02 * Noise(23, m->P.i[PI_ID][k / 3], k % 3);
-  Call(ModelBeginStage(m, &s->stage));
-}
-
-/* Every kind of condition occurs in one of the two sets. */
-static void AddConditions(Scene *s, int set)
-{
-  if (set == 0) {
-    AddPlane(s, BC_ROLLER, 0, 0.0, 0.0);
-    AddPlane(s, BC_FIXED, 1, 0.0, 0.0);
-    AddFace(s, BC_TRACTION, SIDE_XMAX, 3e6, 5e5);
-    AddFace(s, BC_PRESSURE, SIDE_XMAX, 3e6, 0.0)->initial = true;
-    AddFace(s, BC_CONVECTION, SIDE_XMAX, 10.0, 0.0);
-    AddFace(s, BC_HEAT_FLUX, SIDE_YMAX, 300.0, 0.0)->to = 0.25;
-  } else {
-    AddPlane(s, BC_PLATE, 0, 0.0, 2e-5);
-    AddPlane(s, BC_TEMPERATURE, 0, 0.0, 5.0);
-    AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
-    AddFace(s, BC_TRACTION, SIDE_YMAX, 4e6, -7e5)->from = 0.2;
-    AddFace(s, BC_PRESSURE, SIDE_YMAX, 3.6e6, 0.0);
-    AddFace(s, BC_FACE_TEMPERATURE, SIDE_YMAX, 6.0, 0.0);
-    AddFace(s, BC_HEAT_FLUX, SIDE_XMAX, -200.0, 0.0);
-    AddFace(s, BC_CONVECTION, SIDE_XMAX, 8.0, 0.0);
-  }
-}
-
-static void JacobianScene(Scene *s, BasisType basis, bool reacts, int set)
-{
-  const double lower[2] = {0.0, 0.0}, upper[2] = {0.47, 0.18}; /* the free sides cut cells */
-
-  SceneInit(s, basis, lower, upper);
-  s->mat[0].reacts               = reacts;
-  s->mat[0].elasticity.loss_only = set;
-  s->c.gravity[0]                = 2.0;
-  s->c.gravity[1]                = -9.81;
-  s->c.flux_interpolation        = !(set == 1 && !reacts);
-  s->c.upstream                  = reacts;
-  s->region[0].pressure          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
-  AddConditions(s, set);
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
-  RandomHistory(s, 0.2);
-  RandomStage(s, 20.0);
-  Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
   double upstream = 0.0;
+
+  JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
+  s->c.upstream = reacts;
+  JacobianState(s);
+  Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
     upstream += s->m.up[3 * k + 2] > 0.0;
   Check((Sum(upstream) > 0.0) == reacts);
-  MakeSolver(s);
 }
-
-/* (R(X + t D) - R(X - t D))/2t, extrapolated from steps t, t/2, t/4, ...: each row keeps its best value. */
-#define LEVELS 7
-static void Difference(Model *m, Vec X, Vec D, double t, double *dy)
-{
-  const PetscInt n = m->map.n_owned * F_COUNT;
-  double        *a[LEVELS][LEVELS], *err;
-  const double  *up, *down;
-  Vec            Xt, Ru, Rd;
-
-  Call(PetscMalloc1(n, &err));
-  Call(VecDuplicate(X, &Xt));
-  Call(VecDuplicate(X, &Ru));
-  Call(VecDuplicate(X, &Rd));
-  for (PetscInt i = 0; i < n; i++)
-    err[i] = INFINITY;
-  for (int l = 0; l < LEVELS; l++, t *= 0.5) {
-    Call(VecWAXPY(Xt, t, D, X));
-    Call(ModelResidual(NULL, Xt, Ru, m));
-    Call(VecWAXPY(Xt, -t, D, X));
-    Call(ModelResidual(NULL, Xt, Rd, m));
-    Check(m->status == CL_OK);
-    for (int k = 0; k <= l; k++)
-      Call(PetscMalloc1(n, &a[l][k]));
-    Call(VecGetArrayRead(Ru, &up));
-    Call(VecGetArrayRead(Rd, &down));
-    for (PetscInt i = 0; i < n; i++) {
-      double factor = 4.0;
-
-      a[l][0][i] = (up[i] - down[i]) / (2.0 * t);
-      for (int k = 1; k <= l; k++, factor *= 4.0) {
-        a[l][k][i]     = (factor * a[l][k - 1][i] - a[l - 1][k - 1][i]) / (factor - 1.0);
-        const double e = fmax(fabs(a[l][k][i] - a[l][k - 1][i]), fabs(a[l][k][i] - a[l - 1][k - 1][i]));
-
-        if (e < err[i]) {
-          err[i] = e;
-          dy[i]  = a[l][k][i];
-        }
-      }
-    }
-    Call(VecRestoreArrayRead(Ru, &up));
-    Call(VecRestoreArrayRead(Rd, &down));
-  }
-  for (int l = 0; l < LEVELS; l++) {
-    for (int k = 0; k <= l; k++)
-      Call(PetscFree(a[l][k]));
-  }
-  Call(PetscFree(err));
-  Call(VecDestroy(&Xt));
-  Call(VecDestroy(&Ru));
-  Call(VecDestroy(&Rd));
-}
-
-/* J at X = a random state. */
-static void PrepareJacobian(Scene *s, Vec *X, Vec *D, Vec *JD)
-{
-  Model  *m = &s->m;
-  double *x;
-
-  Call(PetscMalloc1(m->map.n_local * F_COUNT, &x));
-  RandomUnknowns(m, s->stage.dt, 30, x);
-  SetX(m, x);
-  Call(PetscFree(x));
-  Call(VecDuplicate(m->X, X));
-  Call(VecDuplicate(m->X, D));
-  Call(VecDuplicate(m->X, JD));
-  Call(VecCopy(m->X, *X));
-  Call(ModelResidual(NULL, *X, m->R, m));
-  if (m->status != CL_OK)
-    Say("  inadmissible: %s\n", m->why);
-  Check(m->status == CL_OK);
-  Call(ModelJacobian(m->snes, *X, m->A, m->Pmat, m));
-}
-
-/* Largest |a - b| of each equation over the largest |b| of that equation. */
-static double FieldError(const Model *m, Vec JD, const double *dy)
-{
-  double        error[F_COUNT] = {0.0}, size[F_COUNT] = {0.0}, worst = 0.0;
-  const double *a;
-
-  Call(VecGetArrayRead(JD, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
-    error[k % F_COUNT] = fmax(error[k % F_COUNT], fabs(a[k] - dy[k]));
-    size[k % F_COUNT]  = fmax(size[k % F_COUNT], fabs(dy[k]));
-  }
-  Call(VecRestoreArrayRead(JD, &a));
-  for (int q = 0; q < F_COUNT; q++)
-    worst = fmax(worst, Largest(error[q]) / Largest(size[q]));
-  return worst;
-}
-
-static double DirectionError(Scene *s, int directions)
-{
-  Model *m     = &s->m;
-  double worst = 0.0, *dy, *d;
-  Vec    X, D, JD;
-
-  PrepareJacobian(s, &X, &D, &JD);
-  Call(PetscMalloc1(m->map.n_owned * F_COUNT, &dy));
-  for (int n = 0; n < directions; n++) {
-    Call(VecGetArrayWrite(D, &d));
-    for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++)
-      d[k] = Noise(40 + n, m->map.ij[k / F_COUNT][0] + 100 * m->map.ij[k / F_COUNT][1], k % F_COUNT);
-    Call(VecRestoreArrayWrite(D, &d));
-    Call(MatMult(m->A, D, JD));
-    Difference(m, X, D, 4e-3, dy);
-    worst = fmax(worst, FieldError(m, JD, dy));
-  }
-  Call(PetscFree(dy));
-  Call(VecDestroy(&X));
-  Call(VecDestroy(&D));
-  Call(VecDestroy(&JD));
-  return worst;
-}
-
-/* Every entry, relative to the largest of its row. */
-static double ColumnError(Scene *s)
-{
-  Model         *m = &s->m;
-  const PetscInt n = m->map.n_owned * F_COUNT, N = m->map.n_global * F_COUNT;
-  double        *dy, *error, *top, worst = 0.0;
-  const double  *a;
-  Vec            X, D, JD;
-
-  PrepareJacobian(s, &X, &D, &JD);
-  Call(PetscMalloc1(n, &dy));
-  Call(PetscCalloc2(n, &error, n, &top));
-  for (PetscInt c = 0; c < N; c++) {
-    Call(VecSet(D, 0.0));
-    if (c >= m->map.first * F_COUNT && c < m->map.first * F_COUNT + n)
-      Call(VecSetValue(D, c, 1.0, INSERT_VALUES));
-    Call(VecAssemblyBegin(D));
-    Call(VecAssemblyEnd(D));
-    Call(MatMult(m->A, D, JD));
-    Difference(m, X, D, c % F_COUNT < F_PW ? 1e-1 : 2e-2, dy);
-    Call(VecGetArrayRead(JD, &a));
-    for (PetscInt k = 0; k < n; k++) {
-      error[k] = fmax(error[k], fabs(a[k] - dy[k]));
-      top[k]   = fmax(top[k], fabs(dy[k]));
-    }
-    Call(VecRestoreArrayRead(JD, &a));
-  }
-  for (PetscInt k = 0; k < n; k++)
-    worst = fmax(worst, error[k] / top[k]);
-  Call(PetscFree(dy));
-  Call(PetscFree2(error, top));
-  Call(VecDestroy(&X));
-  Call(VecDestroy(&D));
-  Call(VecDestroy(&JD));
-  return Largest(worst);
-}
-
-static const char *const basis_name[3] = {"cpgimp", "ugimp", "linear"};
 
 static void TestJacobian(void **state)
 {
@@ -448,7 +33,7 @@ static void TestJacobian(void **state)
     for (int k = 0; k < 4; k++) {
       Scene *s = malloc(sizeof(*s));
 
-      JacobianScene(s, (BasisType)basis, k / 2, k % 2);
+      UpstreamScene(s, (BasisType)basis, k / 2, k % 2);
       const double worst = DirectionError(s, 3), entry = k == 2 + basis % 2 ? ColumnError(s) : 0.0;
       Say("  %-6s kinetics %-3s conditions %d: directions %.1e", basis_name[basis], k / 2 ? "on" : "off", k % 2, worst);
       Say(entry > 0.0 ? ", entries %.1e\n" : "\n", entry);
@@ -476,7 +61,7 @@ static void TestMassRows(void **state)
     StageRates   rates;
     ClStatus     status;
 
-    JacobianScene(s, (BasisType)(k % 3), k % 4 >= 2, k % 2);
+    UpstreamScene(s, (BasisType)(k % 3), k % 4 >= 2, k % 2);
     Call(PetscMalloc1(m->map.n_local * F_COUNT, &x));
     Call(PetscMalloc4(3 * m->P.n, &t.m, 4 * m->P.n, &t.y, 2 * m->P.n, &t.u, 2 * m->P.n, &t.v));
     RandomUnknowns(m, s->stage.dt, 50 + k, x);
@@ -486,7 +71,7 @@ static void TestMassRows(void **state)
     Call(ModelEndStage(m, x, &t, &rates, &status));
     Check(status == CL_OK);
     for (PetscInt p = 0; p < m->P.n; p++) {
-      const double h = s->mat[0].reacts ? t.m[3 * p] - s->stage.m_star[3 * p] : 0.0;
+      const double h = s->mat.reacts ? t.m[3 * p] - s->stage.m_star[3 * p] : 0.0;
 
       for (int f = 0; f < 2; f++) {
         mass[f] += t.m[3 * p + 1 + f];
@@ -505,28 +90,6 @@ static void TestMassRows(void **state)
 }
 
 /* ---------------------------------------------------------------- states of rest, patch tests */
-/* Largest scaled residual of the equations in [from, to): momentum in units of 1 MPa over a cell, mass and heat in what
-   1 MPa and 1 K store. */
-static double ResidualAt(Scene *s, const double *x, int from, int to)
-{
-  Model        *m = &s->m;
-  const double *a;
-  double        worst = 0.0;
-
-  if (!m->X)
-    MakeSolver(s);
-  SetX(m, x);
-  Call(ModelResidual(NULL, m->X, m->R, m));
-  Check(m->status == CL_OK);
-  Call(VecGetArrayRead(m->R, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
-    if (k % F_COUNT >= from && k % F_COUNT < to)
-      worst = fmax(worst, fabs(a[k]));
-  }
-  Call(VecRestoreArrayRead(m->R, &a));
-  return Largest(worst);
-}
-
 /* Newton from a perturbed first guess must come back to rest: the largest velocity in units of its column scale, the
    velocity that makes 1 MPa in the step (immobile gas moves with the skeleton, whose scale then counts). */
 static double RestVelocity(Scene *s, double *scale)
@@ -568,13 +131,18 @@ static void TestTwoLayers(void **state)
     Scene *s = malloc(sizeof(*s));
     double scale;
 
-    SceneInit(s, (BasisType)basis, lower, upper);
-    s->c.nregion           = 2;
-    s->region[1].lower[1]  = 0.13;
-    s->region[1].upper[1]  = 0.25;
-    s->mat[1].retention.m  = 0.6;
-    s->mat[1].retention.p0 = 2e5;
-    s->mat[1].porosity     = 0.45;
+    SceneInit(s, HAS_ALL, true, false, (BasisType)basis, 0.0, lower, upper);
+    Material mat[2]     = {s->mat, s->mat};
+    Region   region[2]  = {s->region, s->region};
+    mat[1].retention.m  = 0.6;
+    mat[1].retention.p0 = 2e5;
+    mat[1].porosity     = 0.45;
+    region[1].lower[1]  = 0.13;
+    region[1].upper[1]  = 0.25;
+    region[1].material  = 1;
+    s->c.nmaterial = s->c.nregion = 2;
+    s->c.material                 = mat;
+    s->c.region                   = region;
     AddPlane(s, BC_ROLLER, 0, 0.0, 0.0);
     AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
     AddFace(s, BC_TRACTION, SIDE_XMAX, q, 0.0);
@@ -606,16 +174,16 @@ static void TestTwoLayers(void **state)
 static void HydrostaticScene(Scene *s, BasisType basis)
 {
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.5, 0.24}, g = 9.81;
-  Material    *mat = &s->mat[0];
+  Material    *mat = &s->mat;
 
-  SceneInit(s, basis, lower, upper);
+  SceneInit(s, HAS_ALL, true, false, basis, 0.0, lower, upper);
   Check(RetentionSetType(&mat->retention, "van_genuchten_clamped"));
   mat->retention.Sgr = 0.05;
   mat->water.K       = INFINITY;
   mat->gas.M         = 1e-18;
   s->c.gravity[1]    = -g;
-  s->region[0].Sg    = 0.05;
-  s->region[0].Sw    = 0.95;
+  s->region.Sg       = 0.05;
+  s->region.Sw       = 0.95;
   AddPlane(s, BC_ROLLER, 0, 0.0, 0.0);
   AddPlane(s, BC_ROLLER, 0, 0.5, 0.0);
   AddPlane(s, BC_FIXED, 1, 0.0, 0.0);
@@ -668,7 +236,7 @@ static void TestUniformStress(void **state)
   for (int k = 0; k < 4; k++) {
     Scene *s = malloc(sizeof(*s));
 
-    SceneInit(s, k / 2 ? BASIS_UGIMP : BASIS_CPGIMP, box[k % 2], box[k % 2] + 2);
+    SceneInit(s, HAS_ALL, true, false, k / 2 ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, box[k % 2], box[k % 2] + 2);
     /* normal stress is compression-positive; the shear acts along the normal turned by +90 degrees */
     AddFace(s, BC_TRACTION, SIDE_XMIN, p - sxx, sxy);
     AddFace(s, BC_TRACTION, SIDE_XMAX, p - sxx, sxy);
@@ -696,11 +264,11 @@ static void TestDarcy(void **state)
 {
   const double lower[2] = {0.1, 0.08}, upper[2] = {0.5, 0.24}, slope = 2e6;
   Scene       *s   = malloc(sizeof(*s));
-  Material    *mat = &s->mat[0];
+  Material    *mat = &s->mat;
   double      *x, d, e;
 
   (void)state;
-  SceneInit(s, BASIS_CPGIMP, lower, upper);
+  SceneInit(s, HAS_ALL, true, false, BASIS_CPGIMP, 0.0, lower, upper);
   Check(RetentionSetType(&mat->retention, "van_genuchten_clamped"));
   mat->water.K = INFINITY;
   AddFace(s, BC_PRESSURE, SIDE_XMIN, 3e6 + slope * 0.1, 0.0);
@@ -749,8 +317,8 @@ static void TestHeatFlux(void **state)
     Scene *s = malloc(sizeof(*s));
     double d[3];
 
-    SceneInit(s, BASIS_CPGIMP, lower, upper);
-    Material *mat   = &s->mat[0];
+    SceneInit(s, HAS_ALL, true, false, BASIS_CPGIMP, 0.0, lower, upper);
+    Material *mat   = &s->mat;
     mat->solid.beta = mat->hydrate.beta = mat->water.beta = 0.0;
     const double X[4]                                     = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g};
     const double kappa                                    = MixtureAverage(0.3, 0.0, 0.6, X, &d[0], &d[1], &d[2]);
@@ -786,9 +354,9 @@ static void TestNewtonOrder(void **state)
   ClStatus     status;
 
   (void)state;
-  SceneInit(s, BASIS_CPGIMP, lower, upper);
-  s->mat[0].reacts          = true;
-  s->mat[0].permeability.k0 = 1.53e-15;
+  SceneInit(s, HAS_ALL, true, false, BASIS_CPGIMP, 0.0, lower, upper);
+  s->mat.reacts          = true;
+  s->mat.permeability.k0 = 1.53e-15;
   AddPlane(s, BC_FIXED, 0, 0.0, 0.0);
   AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
   AddPlane(s, BC_ROLLER, 1, 0.16, 0.0);
@@ -818,16 +386,6 @@ static void TestNewtonOrder(void **state)
   free(s);
 }
 
-/* Linear systems solved as well as can be, with factors of each iteration's own matrix: Newton's method undisturbed. */
-static PetscErrorCode SetOptions(void)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsSetValue(NULL, "-ksp_rtol", "1e-10"));
-  PetscCall(PetscOptionsSetValue(NULL, "-ksp_atol", "1e-14"));
-  PetscCall(PetscOptionsSetValue(NULL, "-newton_refactor", "0"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -837,8 +395,7 @@ int main(int argc, char **argv)
   };
   int failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size) || SetOptions())
+  if (StartTests(&argc, &argv))
     return 1;
   failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (PetscFinalize())
