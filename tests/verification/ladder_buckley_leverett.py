@@ -10,7 +10,7 @@ END = 1e4
 
 def errors(cells, *options):
     """Front's error (m), mean error of S, largest and smallest S at the end, and the balance error of water."""
-    run = Run.of_case(CASES / "buckley_leverett", "-grid_cells", f"{cells},1", "-stepper_dt", 5000 / cells, *options)
+    run = Run.of_case(CASES / "buckley_leverett", "-grid_cells", f"{cells},1", "-stepper_dt", 1500 / cells, *options)
     x, S = B.profile(run.snapshot(END))
     mean = np.mean(np.abs(S - B.exact.saturation(x, END)))
     return B.front(x, S) - float(B.exact.front(END)), mean, S.max(), S.min(), np.max(np.abs(run.balance["water_error"]))
