@@ -72,6 +72,7 @@ typedef struct {
   bool       initial;            /* pressure: hold each face at its particle's initial p_w, p_g */
   bool       natural; /* pressure: the particle's own capillary pressure instead of the face's initial one (31) */
   OpenPhases open;    /* pressure */
+  bool       drained; /* roller, fixed, plate: holds the skeleton alone, fluids cross the plane */
   double     alpha;   /* convection coefficient, W/(m^2 K) */
 } Bc;
 

@@ -267,12 +267,12 @@ static bool InRegion(const Case *c, const Grid *g, const Bc *b, const PetscInt i
   return false;
 }
 
-/* Prescribes the velocities of all phases along axis d. */
-static void Hold(const FieldSet *fs, int d, double velocity, unsigned *mask, double *value)
+/* Prescribes the velocities along axis d: of the skeleton, and of the fluids unless they are free to cross. */
+static void Hold(const FieldSet *fs, int d, double velocity, bool drained, unsigned *mask, double *value)
 {
   static const int first[3] = {F_VSX, F_VWX, F_VGX};
 
-  for (int i = 0; i < 3; i++) {
+  for (int i = 0; i < (drained ? 1 : 3); i++) {
     const int k = fs->at[first[i] + d];
 
     if (k < 0)
@@ -288,7 +288,7 @@ void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const Pets
   const FieldSet *fs = &c->fields;
 
   if (c->axisymmetric && g->lower[0] + (double)ij[0] * g->h[0] < 1e-6 * g->h[0])
-    Hold(fs, 0, 0.0, mask, value); /* nothing crosses the axis */
+    Hold(fs, 0, 0.0, false, mask, value); /* nothing crosses the axis */
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc *b = &c->bc[k];
 
@@ -301,7 +301,7 @@ void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const Pets
     }
     for (int d = 0; d < CL_DIM; d++) {
       if (b->type == BC_FIXED || d == b->axis)
-        Hold(fs, d, b->type == BC_PLATE ? v->value[k] : 0.0, mask, value);
+        Hold(fs, d, b->type == BC_PLATE ? v->value[k] : 0.0, b->drained, mask, value);
     }
   }
 }

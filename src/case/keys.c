@@ -62,6 +62,7 @@ static const char *const axis_word[]      = {"x", "y", NULL};
 static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
 static const char *const capillary_word[] = {"held", "free", NULL};
+static const char *const holds_word[]     = {"all", "skeleton", NULL};
 static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* OpenPhases */
 const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
                                     "roller",   "fixed",    "plate",     "temperature", "region_temperature", NULL};
@@ -260,6 +261,8 @@ static const Key bc_key[] = {
     REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = FACES),
     CHOICE(Bc, "axis", axis, NULL, axis_word, "axis normal to the grid plane", .types = PLANES),
     REAL(Bc, "position", position, "m", "", NULL, "coordinate of the plane; must be a grid line", .types = PLANES),
+    BOOLEAN(Bc, "holds", drained, "all", "all phases, or the skeleton alone: a porous plate",
+            .types = TYPE(BC_ROLLER) | TYPE(BC_FIXED) | TYPE(BC_PLATE), .choices = holds_word),
     BOOLEAN(Bc, "initial", initial, "no", "hold the initial p_w and p_g of each particle", .types = TYPE(BC_PRESSURE)),
     REAL(Bc, "alpha", alpha, "W/(m^2 K)", "[0,1e9]", NULL, "heat transfer coefficient", .types = TYPE(BC_CONVECTION)),
     SCHEDULE("normal", value, "Pa", "[-1e12,1e12]", NULL, TYPE(BC_TRACTION),

@@ -88,7 +88,7 @@ static uint64_t HashSchedule(uint64_t h, const Schedule *s)
 
 static uint64_t HashBc(uint64_t h, const Bc *b)
 {
-  h = INTS(h, b->type, b->side, b->region, b->axis, b->initial, b->natural, b->open);
+  h = INTS(h, b->type, b->side, b->region, b->axis, b->initial, b->natural, b->open, b->drained);
   h = REALS(h, b->from, b->to, b->position, b->alpha);
   h = HashSchedule(HashSchedule(h, &b->value), &b->shear);
   return HashSchedule(HashSchedule(h, &b->phase[PHASE_W]), &b->phase[PHASE_G]);

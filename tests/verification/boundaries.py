@@ -93,6 +93,25 @@ def column():
         check(f"steady {what}: rate rho q A", abs(abs(m["left.water_kg_s"][-1]) / (RHO * abs(q) * HEIGHT) - 1), 1e-4)
 
 
+def porous_plates():
+    """Both ends held by porous plates: Darcy's pressure, and a skeleton that it pushes, M u'' = p'."""
+    drop, E, nu = 1e5, 1e8, 0.3
+    M = E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
+    planes = {n: {"type": "roller", "axis": a, "position": f"{x} m"} for n, a, x in (("bottom", "y", 0.0), ("top", "y", HEIGHT))}
+    for n, x in (("a", 0.0), ("b", LENGTH)):
+        planes[n] = {"type": "roller", "axis": "x", "position": f"{x} m", "holds": "skeleton"}
+    sides = {"in": {"type": "pressure", "side": "left", "pressure": f"{P0 + drop} Pa"},
+             "out": {"type": "pressure", "side": "right", "pressure": f"{P0} Pa"}}  # fmt: skip
+    run = strip({**planes, **sides}, "-fields", "solid,water", "-mat_sand_elasticity_E0", "100 MPa", "-mat_sand_permeability_k0", "1e-12 m^2",
+                "-time_end", "1e5 s", "-stepper_dt", "1e4 s", "-grid_cells", "40,1", meters=["left", "right"])  # fmt: skip
+    x = np.array(list(PROBES.values()))
+    judge(ROW, "porous plates: Darcy's linear pressure, of the drop", largest_difference(at_end(run, "p_Pa") - P0, drop * (1 - x / LENGTH), drop), 1e-3)
+    u = drop * x * (LENGTH - x) / (2 * M * LENGTH)
+    judge(ROW, "porous plates: displacement of the skeleton, relative", largest_difference(at_end(run, "u_x_m"), u), 5e-3)
+    m = run.csv("meters.csv")
+    check("porous plates: what enters leaves", abs(m["left.water_kg_s"][-1] / m["right.water_kg_s"][-1] + 1), 1e-6)
+
+
 GAS = ("-region_strip_Sw", "0.8", "-region_strip_Sg", "0.2", "-fields", "water,gas")
 
 
@@ -214,7 +233,7 @@ def ledger():
         check_true(f"meters: steps were refused, {ranks} rank(s)", refused > 0, refused)
 
 
-for part in (closed_box, soft_box, column, apart, one_phase, natural_outflow, warm_inflow, thin_plate, insulated, region, ledger):
+for part in (closed_box, soft_box, column, porous_plates, apart, one_phase, natural_outflow, warm_inflow, thin_plate, insulated, region, ledger):
     print(f"\n{part.__doc__}")
     part()
 finish()
