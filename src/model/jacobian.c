@@ -94,11 +94,14 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const Node
       for (int q = 0; axisymmetric && i == 0 && q < n; q++)
         row[q] -= H * DB[OUT_HOOPF + f][q];
     }
-    double      *row  = &out[PlaceP(fs, f) * ld];
-    const double keep = f == PHASE_G && fs->one_pressure ? 1.0 : 0.0, w = k->weight[f];
-    for (int q = 0; q < n; q++)
-      row[q] = (keep > 0.0 ? row[q] : 0.0) +
-               w * (S * DB[OUT_DM + f][q] - dt * (G[0] * DB[OUT_FLUX + 2 * f][q] + G[1] * DB[OUT_FLUX + 2 * f + 1][q]));
+    const bool shared = f == PHASE_G && fs->one_pressure; /* the row that the water has begun */
+    double    *row    = &out[PlaceP(fs, f) * ld];
+    for (int q = 0; q < n; q++) {
+      const double flux = G[0] * DB[OUT_FLUX + 2 * f][q] + G[1] * DB[OUT_FLUX + 2 * f + 1][q];
+      const double mass = k->weight[f] * (S * DB[OUT_DM + f][q] - dt * flux);
+
+      row[q] = shared ? row[q] + mass : mass;
+    }
   }
   if (fs->heat) {
     double *row = &out[PlaceT(fs) * ld];
