@@ -138,7 +138,23 @@ def stefan_front(run, left, right):
     right.set(xlabel="square root of time (√h)", ylabel="front (m)")
 
 
-FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front]
+def century(run, left, right):
+    case, C = run(), ladder.Century
+    a = np.linspace(0, 40, 400)
+    for colour, (t, v) in zip(COLOURS, [s for s in case.snapshots if s[0] > 0]):
+        depth = C.H - (v["position"][:, 1] - v["displacement"][:, 1])
+        left.plot((v["p"][:, 0] - C.p0) / 1e6, depth, color=colour, label=f"{t / C.year:.0f} years", **DOTS)
+        left.plot(C.pressure(a, t)[0] / 1e6, a, **EXACT)
+    left.set(xlabel="excess pore pressure (MPa)", ylabel="depth at the start (m)", ylim=(40, 0))
+    left.legend(loc="lower left")
+    p = case.csv("probes")
+    t = p["time_s"][1:]
+    right.plot(t / C.year, -p["top.u_y_m"][1:], color=COLOURS[0], **DOTS)
+    right.plot(t / C.year, C.settlement(t), **EXACT)
+    right.set(xlabel="time (years)", ylabel="settlement (m)")
+
+
+FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century]
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):

@@ -145,3 +145,40 @@ class McWhorterSunada:
         laws = exact_flow.Corey(0.1, 0.0, 2, 2)
         slope = exact_flow.retention_slope(cls.retention)
         return exact_flow.McWhorterSunada(0.3, 1e-13, 1e-3, 1e-3, laws.krw, laws.krg, slope, 0.9, 0.3)
+
+
+# ---------------------------------------------------------------------------------------- century
+class Century:
+    """With k = k0 J^2 and sigma' = -M ln J the volume ratio J obeys linear diffusion in material coordinates (Xie and Leo 2004), whatever
+    the load: J_t = c J_aa, c = k0 M/mu, J = exp(-q(t)/M) at the drain (depth a = 0), J_a = 0 at the base; q grows to Q until T1."""
+
+    H, M, c, p0 = 100.0, 10e6, 1e-18 * 10e6 / 1e-3, 1e6
+    Q, T1, end, year = 3e6, 9.467e9, 1.5778e10, 3.15576e7
+    depths = {"below_2m": 2.0, "below_5m": 5.0, "below_10m": 10.0, "below_20m": 20.0}  # of the probes, m
+
+    @classmethod
+    def load(cls, t):
+        return cls.Q * np.minimum(t, cls.T1) / cls.T1
+
+    @classmethod
+    def _modes(cls, t, terms=4000):
+        Mn = (np.arange(terms) + 0.5) * np.pi
+        rate, beta = Mn**2 * cls.c / cls.H**2, cls.Q / cls.T1 / cls.M
+        s = np.minimum(t, cls.T1)[:, None]
+        grown = beta * (np.exp(-beta * s) - np.exp(-rate * s)) / (rate - beta)
+        return Mn, grown * np.exp(-rate * np.maximum(t - cls.T1, 0.0)[:, None]), np.exp(-cls.load(t) / cls.M)
+
+    @classmethod
+    def pressure(cls, a, t):
+        """Excess pore pressure (Pa) at depths a (m) and times t (s): (times, depths)."""
+        t = np.atleast_1d(np.asarray(t, float))
+        Mn, T, top = cls._modes(t)
+        J = top[:, None] + (T * 2 / Mn) @ np.sin(np.outer(Mn, np.atleast_1d(a) / cls.H))
+        return cls.load(t)[:, None] + cls.M * np.log(J)
+
+    @classmethod
+    def settlement(cls, t):
+        """m, at times t (s)."""
+        t = np.atleast_1d(np.asarray(t, float))
+        Mn, T, top = cls._modes(t)
+        return cls.H * (1 - top - T @ (2 / Mn**2))
