@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, derived, is_column, plt, save, set_style, steady_limits
+from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, derived, is_column, plt, save, set_style, steady_limits, time_unit
 from results import probe_names, read_csv, read_snapshots
 
 # Panels of probes.png: label, [(column, factor, name in the legend)], least width of the y axis.  A scene without a field
@@ -35,14 +35,14 @@ def spread(count, most):
 
 
 def history_panel(axes, probes, names, label, columns, least):
-    shown = []
+    shown, (unit, seconds) = [], time_unit(probes["time_s"][-1])
     for colour, name in zip(COLOURS * len(names), names):
         for style, (column, factor, _) in zip(STYLES, columns):
             values = probes[f"{name}.{column}"] * factor
-            axes.plot(probes["time_s"], values, style, color=colour)
+            axes.plot(probes["time_s"] / seconds, values, style, color=colour)
             shown.append(values)
     steady_limits(axes, *shown, least=least)
-    axes.set(xlabel="time (s)", ylabel=label)
+    axes.set(xlabel=f"time ({unit})", ylabel=label)
     if len(columns) > 1:
         handles = [plt.Line2D([], [], color="0.3", ls=s, label=c[2] or "mean") for s, c in zip(STYLES, columns)]
         axes.legend(handles=handles, loc="best")
@@ -57,6 +57,8 @@ def plot_probes(out):
     panels = [(label, written(columns), least) for label, columns, least in PANELS if written(columns)]
     if not any(probes.get(f"{n}.S_h", np.zeros(1)).any() for n in names):
         panels = [p for p in panels if p[1][0][0] != "S_h"]
+    constant = lambda c: all(np.ptp(probes[f"{n}.{c}"]) == 0 for n in names)
+    panels = [p for p in panels if p[1][0][0] != "S_w" or not all(constant(c[0]) for c in p[1])]
     wide = min(len(panels), 3 if len(panels) > 4 else 2)
     figure, grid = plt.subplots(-(-len(panels) // wide), wide, figsize=(4.33 * wide, 3.5 * -(-len(panels) // wide)),
                                 squeeze=False)  # fmt: skip
@@ -65,7 +67,7 @@ def plot_probes(out):
     for axes, panel in zip(grid.flat, panels):
         history_panel(axes, probes, names, *panel)
     handles = [plt.Line2D([], [], color=c, lw=2.5, label=f"probe {n}") for c, n in zip(COLOURS * len(names), names)]
-    figure.legend(handles=handles, loc="upper right", bbox_to_anchor=(1, 1.015), ncol=6)
+    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.01, 0.0), ncol=2 * wide)
     figure.suptitle(f"{out.name}: histories at the probes", x=0.01, ha="left")
     save(figure, out / "figures", "probes")
 
@@ -76,17 +78,18 @@ def plot_balance(out):
     balance = read_csv(out / "balance.csv")
     if not len(balance["time_s"]):
         return
+    unit, seconds = time_unit(balance["time_s"][-1])
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8))
     for (name, label), style in zip((("water", "water"), ("methane", "methane"), ("heat", "energy")), STYLES):
         error = np.abs(balance[f"{name}_error"])
         if not error.any():
             continue  # not in the scene
-        left.semilogy(balance["time_s"], np.maximum(error, 1e-18), style, label=label)
-    left.set(xlabel="time (s)", ylabel="balance error / initial store (–)", title="conservation")
+        left.semilogy(balance["time_s"] / seconds, np.maximum(error, 1e-18), style, label=label)
+    left.set(xlabel=f"time ({unit})", ylabel="balance error / initial store (–)", title="conservation")
     if left.lines:
         left.legend()
-    right.step(balance["time_s"], balance["dt_s"], where="pre", color=COLOURS[0])
-    right.set(xlabel="time (s)", ylabel="step (s)", yscale="log", title=f"{len(balance['time_s'])} steps, "
+    right.step(balance["time_s"] / seconds, balance["dt_s"], where="pre", color=COLOURS[0])
+    right.set(xlabel=f"time ({unit})", ylabel="step (s)", yscale="log", title=f"{len(balance['time_s'])} steps, "
               f"{int(balance['newton'].sum())} Newton iterations")  # fmt: skip
     save(figure, out / "figures", "balance")
 
@@ -106,12 +109,13 @@ def plot_profiles(out, snapshots, axis):
     figure, grid = plt.subplots(1, len(names), figsize=(3.4 * len(names) + 1, 3.8), squeeze=False)
     grid = grid[0]
     colours = plt.cm.viridis(np.linspace(0, 0.88, len(chosen)))
+    unit, seconds = time_unit(chosen[-1][0])
     for axes, name in zip(grid, names):
         shown = []
         for (time, particles), colour in zip(chosen, colours):
             order = np.argsort(particles["position"][:, axis], kind="stable")
             values = derived(particles)[name][order]
-            axes.plot(particles["position"][order, axis], values, ".-", ms=2.5, lw=1.1, color=colour, label=f"{time:g} s")
+            axes.plot(particles["position"][order, axis], values, ".-", ms=2.5, lw=1.1, color=colour, label=f"{time / seconds:.4g} {unit}")
             shown.append(values)
         steady_limits(axes, *shown, least=0.01)
         axes.set(xlabel=f"{'xy'[axis]} (m)", ylabel=QUANTITIES[name])
@@ -123,6 +127,7 @@ def plot_profiles(out, snapshots, axis):
 def plot_scatter(out, snapshots):
     """One row a quantity, one column a snapshot, one colour scale a row."""
     chosen = [snapshots[k] for k in spread(len(snapshots), 4)]
+    unit, seconds = time_unit(chosen[-1][0])
     names = present(chosen, ["p", "T", "S_h", "S_w", "u_x", "u_y"])[:4]
     extent = np.ptp(chosen[0][1]["position"], axis=0)
     width = np.clip(4.5 * extent[0] / extent[1], 1.0, 3.4)
@@ -141,7 +146,7 @@ def plot_scatter(out, snapshots):
                                 marker="s")  # fmt: skip
             axes.set_aspect("equal")
             axes.grid(False)
-            axes.set_title(f"{time:g} s" if name == names[0] else "")
+            axes.set_title(f"{time / seconds:.4g} {unit}" if name == names[0] else "")
         row[0].set_ylabel("y (m)")
         figure.colorbar(dots, ax=list(row), label=SHORT[name], pad=0.01, aspect=15)
     for axes in grid[-1]:
