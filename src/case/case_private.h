@@ -123,6 +123,7 @@ int  EditDistance(const char *a, const char *b);
 
 /* ---------------------------------------------------------------- value.c, forms.c, check.c */
 PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k);
+bool           YesNoRead(const char *text, bool *value); /* yes, no, true, ...; false for another word */
 void           KeyMissing(Reader *r, const char *option, const Key *k);
 bool RealRead(Reader *r, const char *shown, const char *text, const char *unit, const char *range, double *value);
 PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s);

@@ -19,10 +19,21 @@ static PetscErrorCode Peek(Reader *r, Group g, const char *instance, const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static bool Yes(const char *text)
+/* Sets *reacts if the material does; a bare option on the command line is a yes. */
+static PetscErrorCode PeekReacts(Reader *r, const char *material, bool *reacts)
 {
-  return text &&
-         (!strcasecmp(text, "yes") || !strcasecmp(text, "true") || !strcasecmp(text, "on") || !strcmp(text, "1"));
+  char        option[256];
+  const char *text;
+  bool        found, from_file, yes;
+
+  PetscFunctionBeginUser;
+  KeyOption(option, sizeof option, GROUP_MATERIAL, material, "kinetics_active");
+  PetscCall(ReaderFind(r, option, &text, &found, &from_file));
+  if (text)
+    *reacts = *reacts || (YesNoRead(text, &yes) && yes);
+  else
+    *reacts = *reacts || (found && !from_file);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What the materials say: some hydrate reacts; every skeleton is rigid. */
@@ -34,8 +45,7 @@ static PetscErrorCode PeekMaterials(Reader *r, const Case *c, bool *reacts, bool
   *reacts = false;
   *rigid  = c->nmaterial > 0;
   for (PetscInt i = 0; i < c->nmaterial; i++) {
-    PetscCall(Peek(r, GROUP_MATERIAL, c->material[i].name, "kinetics_active", &text));
-    *reacts = *reacts || Yes(text);
+    PetscCall(PeekReacts(r, c->material[i].name, reacts));
     PetscCall(Peek(r, GROUP_MATERIAL, c->material[i].name, "elasticity_E0", &text));
     *rigid = *rigid && text && !strcasecmp(text, "rigid");
   }

@@ -142,23 +142,30 @@ static void KeyNumbers(Reader *r, const char *shown, const char *text, const Key
   ListDestroy(&list);
 }
 
-static void KeyBool(Reader *r, const char *shown, const char *text, const Key *k, bool *value)
+bool YesNoRead(const char *text, bool *value)
 {
   static const char *const word[2][4] = {{"no", "false", "off", "0"}, {"yes", "true", "on", "1"}};
 
   for (int v = 0; v < 2; v++) {
-    if (k->choices) {
-      if (strcasecmp(text, k->choices[v]))
-        continue;
-      *value = v;
-      return;
-    }
     for (int i = 0; i < 4; i++) {
       if (strcasecmp(text, word[v][i]))
         continue;
       *value = v;
-      return;
+      return true;
     }
+  }
+  return false;
+}
+
+static void KeyBool(Reader *r, const char *shown, const char *text, const Key *k, bool *value)
+{
+  if (!k->choices && YesNoRead(text, value))
+    return;
+  for (int v = 0; k->choices && v < 2; v++) {
+    if (strcasecmp(text, k->choices[v]))
+      continue;
+    *value = v;
+    return;
   }
   WordError(r, shown, text, KeyWords(k));
 }

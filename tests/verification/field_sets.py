@@ -161,8 +161,17 @@ def cost():
     judge("4.1", "BP2 case 1, 208 x 10 cells, memory above the program's own: hmc over thmc", memory, 0.95)
 
 
+def derived():
+    """A reaction keeps heat in the set in whatever form it is switched on; a bare option is a yes."""
+    for given, unknowns in ((["yes"], 9), (["on"], 9), ([], 9), (["no"], 8)):
+        run = Run.of_case("bp2", "-quiet", "-stepper_max_steps", "1", "-mat_sediment_kinetics_active", *given)
+        check(f"unknowns of BP2, kinetics_active {' '.join(given) or 'without a word'}", int(re.search(r"(\d+) unknowns a node", run.output)[1]),
+              (unknowns, unknowns))  # fmt: skip
+
+
 if __name__ == "__main__":
     bp2()
+    derived()
     equality()
     rigid_limit()
     cost()
