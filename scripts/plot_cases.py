@@ -44,28 +44,25 @@ def profiles(axes, case, axis, value, exact, unit="s", scale=1.0, reference=Fals
     axes.legend(title="dots: Clathra; lines: exact", title_fontsize=8)
 
 
-def heat_slab(run, left, right):
-    case, S = run(), ladder.HeatSlab
-    profiles(left, case, 0, lambda v: v["T"][:, 0], S.temperature, "h", 3600)
+def heat(run, left, right, scene, probes):
+    """Profiles and histories of temperature; probes: {name: x (m)}."""
+    case = run()
+    profiles(left, case, 0, lambda v: v["T"][:, 0], scene.temperature, "h", 3600)
     left.set(xlabel="x (m)", ylabel="temperature (°C)")
     p = case.csv("probes")
-    for name, x, colour in (("wall", 0.0, COLOURS[0]), ("middle", 0.5, COLOURS[1])):
+    for colour, (name, x) in zip(COLOURS, probes.items()):
         right.plot(p["time_s"] / 3600, p[f"{name}.T_degC"], color=colour, label=f"x = {x} m", **DOTS)
-        right.plot(p["time_s"] / 3600, S.temperature(x, p["time_s"]), **EXACT)
+        right.plot(p["time_s"] / 3600, scene.temperature(x, p["time_s"]), **EXACT)
     right.legend()
     right.set(xlabel="time (h)", ylabel="temperature (°C)")
+
+
+def heat_slab(run, left, right):
+    heat(run, left, right, ladder.HeatSlab, {"wall": 0.0, "middle": 0.5})
 
 
 def heat_advection(run, left, right):
-    case, S = run(), ladder.HeatAdvection
-    profiles(left, case, 0, lambda v: v["T"][:, 0], S.temperature, "h", 3600)
-    left.set(xlabel="x (m)", ylabel="temperature (°C)")
-    p = case.csv("probes")
-    for name, x, colour in (("half", 0.5, COLOURS[0]), ("one", 1.0, COLOURS[1])):
-        right.plot(p["time_s"] / 3600, p[f"{name}.T_degC"], color=colour, label=f"x = {x} m", **DOTS)
-        right.plot(p["time_s"] / 3600, S.temperature(x, p["time_s"]), **EXACT)
-    right.legend()
-    right.set(xlabel="time (h)", ylabel="temperature (°C)")
+    heat(run, left, right, ladder.HeatAdvection, {"half": 0.5, "one": 1.0})
 
 
 def elastic_wave(run, left, right):
