@@ -59,10 +59,10 @@ typedef struct {
   /* on the configuration at t_n, built by ModelBeginStep */
   Stencil        *stencil; /* [n] */
   PetscInt        stencil_cap;
-  double         *x_n;   /* [n_local][fields.n] projected start values */
-  double         *w;     /* [n_local][2] (phi S_pi)_I */
-  double         *V;     /* [n_local] sum of V_n S, m^3 */
-  double         *up;    /* [n_local][2][3] upstream weights of drag: direction of flow, factor; zero: none */
+  double         *x_n; /* [n_local][fields.n] projected start values */
+  double         *w;   /* [n_local][2] (phi S_pi)_I */
+  double         *V;   /* [n_local] sum of V_n S, m^3 */
+  double         *up; /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
   double         *coef;  /* [n_local][NC_COUNT] nodal means: see project.c */
   unsigned       *mask;  /* [n_local] Dirichlet bits */
   double         *fixed; /* [n_local][fields.n] Dirichlet values of the stage */

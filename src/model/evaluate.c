@@ -26,7 +26,7 @@ static void InitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUN
   for (int d = 0; r->hydrostatic && d < CL_DIM; d++)
     weight += ParticleMaterial(m, p)->water.rho0 * m->c->gravity[d] * face->r[d];
   for (int f = 0; f < PHASE_COUNT; f++)
-    p0[f] = m->c->fields.phase[f] ? m->P.f[m->c->fields.one_pressure ? P_PW0 : P_PW0 + f][p] + weight : 0.0;
+    p0[f] = m->c->fields.phase[f] ? m->P.f[HeldPressure(&m->c->fields, P_PW0, f)][p] + weight : 0.0;
 }
 
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o)

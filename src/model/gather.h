@@ -32,10 +32,10 @@ static inline double ParticleT(const Model *m, PetscInt p)
   return m->c->fields.heat ? m->P.f[P_T][p] : m->c->region[m->P.i[PI_REGION][p]].temperature;
 }
 
-/* Component of the store that holds the pressure of a fluid. */
-static inline int HeldPressure(const FieldSet *fs, int f)
+/* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */
+static inline int HeldPressure(const FieldSet *fs, int first, int f)
 {
-  return fs->one_pressure ? P_PW : P_PW + f;
+  return fs->one_pressure ? first : first + f;
 }
 
 /* Share of water in the open pores at t_n. */
@@ -49,7 +49,7 @@ static inline ClStatus ParticleProperties(const Model *m, PetscInt p, PointPrope
 {
   const FieldSet *fs = &m->c->fields;
   const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0;
-  const double    pg = fs->phase[PHASE_G] ? m->P.f[HeldPressure(fs, PHASE_G)][p] : 0.0;
+  const double    pg = fs->phase[PHASE_G] ? m->P.f[HeldPressure(fs, P_PW, PHASE_G)][p] : 0.0;
 
   return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
                                  ParticleT(m, p), ParticleSw(m, p), q, why);
@@ -68,6 +68,19 @@ static inline double *MassRow(const Model *m, double *f, PetscInt I, int phase)
   const FieldSet *fs = &m->c->fields;
 
   return fs->one_pressure ? &m->mass_row[PHASE_COUNT * I + phase] : &f[I * fs->n + PlaceP(fs, phase)];
+}
+
+/* The same for the row of any unknown. */
+static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
+{
+  const bool mass = q == F_PW || q == F_PG;
+
+  return mass ? MassRow(m, f, I, q - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[q]];
+}
+
+static inline double RowWeightOf(const Model *m, PetscInt I, int q)
+{
+  return q == F_PW || q == F_PG ? RowWeight(m, I, q - F_PW) : 1.0;
 }
 
 /* Volume of a full cell about a node, m^3. */
@@ -118,6 +131,8 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
 /* Weight of a particle's drag at a node in (16): S, or what looks upstream (35). */
 static inline double DragWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
+  if (!m->c->upstream)
+    return S;
   const double *u = &m->up[6 * I + 3 * f];
 
   return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
@@ -165,7 +180,7 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    in[IN_P + f] = m->P.f[HeldPressure(fs, f)][p];
+    in[IN_P + f] = m->P.f[HeldPressure(fs, P_PW, f)][p];
     GatherFluid(m, f, r, x, N, in);
   }
   if (!fs->heat)
@@ -187,7 +202,7 @@ static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
 
   if (fs->at[q] < 0)
     return 0.0;
-  shift = -m->P.f[q == F_T ? P_T : HeldPressure(fs, q - F_PW)][p];
+  shift = -m->P.f[q == F_T ? P_T : HeldPressure(fs, P_PW, q - F_PW)][p];
   for (int a = 0; a < r->n; a++)
     shift += r->S[a] * m->x_n[r->node[a] * fs->n + fs->at[q]];
   return shift;

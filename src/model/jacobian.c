@@ -294,8 +294,7 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
         continue;
       Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[k], &at, col);
       for (int a = 0; a < r->n; a++) {
-        const bool   mass = k == F_PW || k == F_PG;
-        const double N    = face->N[a] * (mass ? RowWeight(m, r->node[a], k - F_PW) : 1.0);
+        const double N = face->N[a] * RowWeightOf(m, r->node[a], k);
 
         for (int q = 0; q < fs->n; q++)
           block[(a * fs->n + fs->at[k]) * ld + b * fs->n + q] += N * col[q];

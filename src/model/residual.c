@@ -155,14 +155,8 @@ static void FaceLoop(const Model *m, const double *x, double *f)
     FaceAt(m, face, x, &r, &o);
     for (int a = 0; a < r.n; a++) {
       for (int q = 0; q < F_COUNT; q++) {
-        if (q == F_PW || q == F_PG)
-          continue;
         if (fs->at[q] >= 0)
-          f[r.node[a] * fs->n + fs->at[q]] += face->N[a] * o.out[q];
-      }
-      for (int ph = 0; ph < PHASE_COUNT; ph++) {
-        if (fs->phase[ph])
-          *MassRow(m, f, r.node[a], ph) += face->N[a] * o.out[F_PW + ph];
+          *RowOf(m, f, r.node[a], q) += face->N[a] * o.out[q];
       }
     }
   }

@@ -245,13 +245,6 @@ static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, dou
 
 static const double second[3] = {1.0, -2.0, 1.0};
 
-static double *GhostRow(const Model *m, double *f, PetscInt I, int k)
-{
-  const bool mass = k == F_PW || k == F_PG;
-
-  return mass ? MassRow(m, f, I, k - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[k]];
-}
-
 static void GhostResidual(const Model *m, const GhostLine *g, const double *x, double *f)
 {
   const int n = m->c->fields.n;
@@ -266,7 +259,7 @@ static void GhostResidual(const Model *m, const GhostLine *g, const double *x, d
     for (int a = 0; a < 3; a++)
       jump += second[a] * x[g->node[a] * n + m->c->fields.at[k]];
     for (int a = 0; a < 3; a++)
-      *GhostRow(m, f, g->node[a], k) += c[k] * jump * second[a];
+      *RowOf(m, f, g->node[a], k) += c[k] * jump * second[a];
   }
 }
 
@@ -311,10 +304,8 @@ static void GhostBlock(const Model *m, const GhostLine *g, double *block)
 
   GhostCoefficients(m, g, m->stage.dt, c);
   for (int k = 0; k < F_COUNT; k++) {
-    const bool mass = k == F_PW || k == F_PG;
-
     for (int a = 0; a < 3 && c[k] != 0.0; a++) {
-      const double w = c[k] * second[a] * (mass ? RowWeight(m, g->node[a], k - F_PW) : 1.0);
+      const double w = c[k] * second[a] * RowWeightOf(m, g->node[a], k);
 
       for (int b = 0; b < 3; b++)
         block[(a * n + at[k]) * 3 * n + b * n + at[k]] += w * second[b];

@@ -92,7 +92,7 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
     if (!fs->phase[k])
       continue;
     if (k == PHASE_W || !fs->one_pressure)
-      s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, HeldPressure(fs, k), gradient[k], d);
+      s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, HeldPressure(fs, P_PW, k), gradient[k], d);
     s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
   }
   if (fs->heat)
@@ -189,9 +189,9 @@ static PetscErrorCode UpstreamWeights(Model *m)
   double         *sum;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(m->up, 6 * m->map.n_local));
   if (!m->c->upstream)
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(m->up, 6 * m->map.n_local));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int f = 0; f < PHASE_COUNT; f++) {
       double J[2] = {0.0, 0.0};
