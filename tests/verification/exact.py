@@ -89,7 +89,7 @@ def _ramp_sum(rate_weights, c, H, a, t, weight):
     return H**2 / c * total
 
 
-def _slope_changes(times, loads):
+def slope_changes(times, loads):
     """(time, change of slope) of the piecewise-linear load through (times, loads), constant after the last point."""
     slopes = np.concatenate(([0.0], np.diff(loads) / np.diff(times), [0.0]))
     return list(zip(times, np.diff(slopes)))
@@ -100,12 +100,12 @@ def terzaghi_ramps(times, loads, B, c, H, a, t):
 
     Superposition of ramps: unit slope from t = 0 gives p = B H^2/c sum 2/Mn^3 sin(Mn a/H)(1 - exp(-Mn^2 c t/H^2)).
     """
-    return B * _ramp_sum(_slope_changes(times, loads), c, H, a, t, lambda Mn, x: 2 / Mn**3 * np.sin(Mn * x / H))
+    return B * _ramp_sum(slope_changes(times, loads), c, H, a, t, lambda Mn, x: 2 / Mn**3 * np.sin(Mn * x / H))
 
 
 def terzaghi_ramps_settlement(times, loads, M, B, c, H, t):
     """Displacement of the loaded end (m) under the load of terzaghi_ramps, small strain."""
-    mean = B * _ramp_sum(_slope_changes(times, loads), c, H, 0.0, t, lambda Mn, _: 2 / Mn**4)
+    mean = B * _ramp_sum(slope_changes(times, loads), c, H, 0.0, t, lambda Mn, _: 2 / Mn**4)
     return (mean - np.interp(t, times, loads)) * H / M
 
 

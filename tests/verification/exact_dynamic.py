@@ -6,10 +6,11 @@ Conventions as in exact_solid.py.  Run as a program it checks the solution again
 import math
 import sys
 from dataclasses import dataclass
+from typing import Optional
 
 import numpy as np
 
-from exact import constrained_modulus, mixture_coefficients, terzaghi_constant, terzaghi_constant_settlement
+from exact import slope_changes, constrained_modulus, mixture_coefficients, terzaghi_constant, terzaghi_constant_settlement
 from exact_solid import SaturatedColumn, step_load
 
 
@@ -39,7 +40,7 @@ class DynamicColumn:
         n_s rho_s u_tt = M u_xx + n_s e_x - n_f^2/mobility (u - w)_t,     rho_w w_tt = e_x + n_f/mobility (u - w)_t.
 
     Each transform is a sum of two waves sinh(l x) along the eigenvectors of that system.  q grows from 0 to `q` over `rise`
-    (s), 0 for at once.
+    (s), 0 for at once; or it is piecewise linear, `table` = (times, loads), 0 at the first and constant after the last.
     """
 
     H: float
@@ -51,8 +52,11 @@ class DynamicColumn:
     mobility: float
     q: float
     rise: float = 0.0
+    table: Optional[tuple] = None
 
     def _load(self, s):
+        if self.table is not None:
+            return sum(change * np.exp(-s * start) for start, change in slope_changes(*self.table)) / s**2
         return self.q / s if self.rise == 0 else self.q * (1 - np.exp(-s * self.rise)) / (s**2 * self.rise)
 
     def _waves(self, s):
@@ -137,6 +141,8 @@ def self_check():
     u, p = finite_volumes(sand, 200, 2e-5, 0.06)
     check("Kw = 2.2 GPa: u(H) off central differences", abs(sand.solution(10.0, [0.06])["u"][0] / u - 1), 2e-3)
     check("Kw = 2.2 GPa: p(0) off central differences, over q", abs(sand.solution(0.0, [0.06])["p"][0] - p) / sand.q, 2e-3)
+    ramp = DynamicColumn(H=10.0, Kw=2.2e9, table=([0.0, 0.05], [0.0, sand.q]), **SAND).solution(5.0, [0.1])["p"]
+    check("a ramp as a table: p", abs(ramp[0] / sand.solution(5.0, [0.1])["p"][0] - 1), 1e-10)
     more = invert(lambda s: sand.transforms(s, 5.0), np.array([0.05, 0.2]), 80000)
     off = np.abs(np.stack(list(sand.solution(5.0, [0.05, 0.2]).values())) - more) / np.max(np.abs(more), axis=1)[:, None]
     check("Kw = 2.2 GPa: off four times as many terms", np.max(off), 1e-5)

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""The two kinds of integrator check each other: one scene by each of them tends to one answer as dt -> 0 and h -> 0.
+
+(a) a wave in a saturated column, with water from gassy to incompressible; (b) fast consolidation: both exact
+(exact_dynamic.py); (c) a closed reacting column; (d) BP2 a thousand times faster, cases 1 and 2.
+
+An explicit integrator is compared at its own step.  It keeps pressures on particles, the implicit ones at nodes, and so its
+answer differs by the space discretisation too: that part falls with h.
+"""
+import numpy as np
+
+from _integrators import EULER, REACTING, SDIRK2, adaptive, apart, bp2, consolidation, explicit_ones, fixed, steps_of, wave, worst
+from common import check, check_true, finish, judge, order, record, table
+
+ROW = "integrators"
+TIGHT = ("-newton_tol_residual", 1e-10, "-newton_tol_update", 1e-8, "-ksp_rtol", 1e-8)
+IMPLICIT = (EULER, SDIRK2)
+FEWEST = 13  # cells of the coarsest column, with the spare ones
+
+
+def head(text):
+    print(f"\n{text}", flush=True)
+
+
+# ---------------------------------------------------------------------------------------------- against exact curves
+def exact_columns():
+    """Error of the worst curve over its range, with cells and steps halved together."""
+    for scene, where in ((wave(), "gassy water, 22 MPa"), (wave(2.2e9), "water, 2.2 GPa"), (wave(np.inf), "incompressible water"),
+                         (consolidation(), "")):  # fmt: skip
+        name, exact, rows, steps = scene.name + (f", {where}" if where else ""), scene.exact(), [], scene.every / np.array([5, 10, 20])
+        for kind in IMPLICIT:
+            off = [worst(scene.curves(scene.run(*fixed(kind, dt), cells=(FEWEST * 2**k, 1))), exact) for k, dt in enumerate(steps)]
+            orders = order(steps, off)
+            rows += [(kind, FEWEST * 2**k, dt, e, "-" if k == 0 else f"{orders[k - 1]:.2f}") for k, (dt, e) in enumerate(zip(steps, off))]
+            judge(ROW, f"{name}, {kind}, 52 cells: worst curve off the exact one", off[-1], 0.05 if kind == EULER else 0.03, 0.01, "%")
+            check(f"{name}, {kind}: error falls with h and dt", off[-1] / off[0], 0.6 if kind == EULER else 0.4)
+        head(f"{name}: worst of {', '.join(exact)} off the exact curve, over its range")
+        table(("integrator", "cells", "dt (s)", "error", "order"), rows)
+
+
+# ---------------------------------------------------------------------------------------------------- dt -> 0 at fixed h
+def shrinking_steps(scene, steps, euler, sdirk2, *options):
+    """Differences at fixed h from sdirk2 with half the least step; bars of the orders, which are those of the worst curve (of sdirk2
+    from differences of neighbours).
+
+    With inertia sdirk2 is of second order only where h is fine: tau of (20) depends on the step, and a step starts from velocities
+    that are projected anew.  What that leaves is of first order in dt, small, and falls with h.
+    """
+    name, options = scene.name + (", quasi-static" if "-inertia" in options else ""), (*TIGHT, *options)
+    fine, rows, found = scene.curves(scene.run(*fixed(SDIRK2, steps[-1] / 2), *options)), [], {}
+    for kind in IMPLICIT:
+        runs = [scene.curves(scene.run(*fixed(kind, dt), *options)) for dt in steps]
+        each = [apart(r, fine) for r in runs]
+        neighbours = [worst(a, b) for a, b in zip(runs, [*runs[1:], fine])]  # of sdirk2: the last is dt/2 too
+        orders = order(steps, neighbours if kind == SDIRK2 else [max(e.values()) for e in each])
+        found[kind] = max(each[-1].values()), orders[-1]
+        rows += [(kind, dt, *e.values(), "-" if k == 0 else f"{orders[k - 1]:.2f}") for k, (dt, e) in enumerate(zip(steps, each))]
+    head(f"{name}, {scene.cells[0]} cells: largest difference from sdirk2 with dt = {steps[-1] / 2:g} s, over the range of the curve")
+    table(("integrator", "dt (s)", *scene.watched, "order"), rows)
+    for kind, bars in ((EULER, euler), (SDIRK2, sdirk2)):
+        judge(ROW, f"{name}: order of {kind} as dt falls", found[kind][1], bars)
+    judge(ROW, f"{name}: sdirk2 over euler at dt = {steps[-1]:g} s", found[SDIRK2][0] / found[EULER][0], 0.35)
+
+
+# ----------------------------------------------------------------------------------------------------- faster BP2
+def compressed():
+    """Quasi-static, the same steps: the numbers must be the same.  Inertia makes the difference that is left."""
+    cells, n = (26, 1), 200
+    rows = []
+    for case in (1, 2):
+        slow, fast = bp2(case, cells=cells), bp2(case, 1000, cells=cells)
+        still = [s.run(*fixed(SDIRK2, s.end / n), "-inertia", "no") for s in (slow, fast)]
+        same = worst(slow.curves(still[0]), fast.curves(still[1]))
+        judge(ROW, f"BP2 case {case}, 1000 times faster, quasi-static, {n} equal steps: off the slow one", same, 1e-6)
+        moving = [s.curves(s.run(*adaptive(SDIRK2), "-inertia", "yes")) for s in (slow, fast)]
+        off = apart(moving[1], moving[0])
+        judge(ROW, f"BP2 case {case}, 1000 times faster, with inertia, adaptive: off the slow one", max(off.values()), 0.01, 0.01, "%")
+        rows.append((str(case), same, " ".join(f"{k} {v:.1e}" for k, v in off.items())))
+    head("BP2 in 2 s against BP2 in 2000 s, 25 cells, sdirk2: largest difference over the range of the curve")
+    table(("case", "quasi-static", "with inertia, adaptive"), rows)
+
+
+# ------------------------------------------------------------------------------------------------- the explicit kind
+def explicit_in_time(scene, kind, dt):
+    """At fixed h: differences from its own shorter step."""
+    steps = [dt, dt / 2, dt / 4]
+    runs = [scene.curves(scene.run(*fixed(kind, s))) for s in steps]
+    off = [worst(a, b) for a, b in zip(runs, runs[1:])]
+    head(f"{scene.name}, {kind}, {scene.cells[0]} cells")
+    table(("dt (s)", "difference from dt/2", "order"), [(s, o, "-") for s, o in zip(steps, off)])
+    judge(ROW, f"{scene.name}, {kind}: dt halved, the difference is at most", off[1] / off[0], 0.75)
+
+
+def explicit_in_space(scene, kind, cells, bar):
+    """At its own step: difference from sdirk2 with tight tolerance, on finer and finer grids."""
+    rows, off = [], []
+    for n in cells:
+        other = scene.curves(scene.run(*adaptive(SDIRK2, 1e-4), cells=(n, 1)))
+        run = scene.run(*adaptive(kind), cells=(n, 1))
+        each = apart(scene.curves(run), other)
+        off.append(max(each.values()))
+        rows.append((n, steps_of(run), run.cpu, *each.values()))
+    head(f"{scene.name}, {kind} against sdirk2 on the same grid: largest difference over the range of the curve")
+    table(("cells", "steps", "processor time (s)", *scene.watched), rows)
+    judge(ROW, f"{scene.name}, {kind} against sdirk2, {cells[-1]} cells: worst curve", off[-1], bar, 0.01, "%")
+    check_true(f"{scene.name}, {kind}: falls with h", off[-1] < off[0], f"{off[0]:.2e} to {off[-1]:.2e}")
+
+
+if __name__ == "__main__":
+    exact_columns()
+    shrinking_steps(wave(cells=(FEWEST, 1)), (1e-3, 5e-4, 2.5e-4), (0.85, 1.2), (0.8, 2.3))
+    shrinking_steps(consolidation(cells=(FEWEST, 1)), (0.05, 0.025, 0.0125), (0.5, 1.2), (0.8, 2.3))
+    shrinking_steps(consolidation(cells=(FEWEST, 1)), (0.05, 0.025, 0.0125), (0.85, 1.2), (1.7, 2.3), "-inertia", "no")
+    shrinking_steps(REACTING, (0.01, 0.005, 0.0025), (0.85, 1.2), (1.7, 2.3))
+    compressed()
+    finish()
