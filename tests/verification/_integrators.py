@@ -134,6 +134,8 @@ def consolidation(**changes):
     return Saturated("fast consolidation", **{**given, **changes})
 
 
+BLOCK = Scene("dissociating block", FOLDER / "block.yaml", end=1.0, every=0.05, cells=(11, 10), watched={
+    "p": ("near", "p_Pa"), "T": ("near", "T_degC"), "S_h": ("near", "S_h"), "p, far": ("far", "p_Pa"), "u": ("near", "u_x_m")})  # fmt: skip
 REACTING = Scene("closed reacting column", FOLDER / "reacting_column.yaml", end=1.0, every=0.05, watched={
     "p": ("hydrate", "p_Pa"), "T": ("hydrate", "T_degC"), "S_h": ("hydrate", "S_h"), "p, far": ("free", "p_Pa"), "u": ("free", "u_x_m")})  # fmt: skip
 
