@@ -15,6 +15,7 @@ from exact_dynamic import DynamicColumn
 FOLDER = Path(__file__).parent / "cases"
 EXPLICIT = ("explicit", "hybrid")  # stepper types whose step is bounded by stability
 SDIRK2, EULER = "sdirk2", "euler"
+DAMPED = ("-stepper_damping", 0.1)  # without it the hybrid's waves grow into hydrate in BP2 case 2
 
 
 def integrators():

@@ -9,7 +9,7 @@ answer differs by the space discretisation too: that part falls with h.
 """
 import numpy as np
 
-from _integrators import EULER, EXPLICIT, REACTING, SDIRK2, adaptive, apart, bp2, consolidation, explicit_ones, fixed, steps_of, wave, worst
+from _integrators import DAMPED, EULER, EXPLICIT, REACTING, SDIRK2, adaptive, apart, bp2, consolidation, explicit_ones, fixed, steps_of, wave, worst
 from common import check, finish, judge, order, table
 
 ROW = "integrators"
@@ -101,12 +101,12 @@ def explicit_in_time(scene, kind, dt):
     judge(ROW, f"{scene.name}, {kind}: dt halved, the difference is at most", off[1] / off[0], 0.8)
 
 
-def explicit_in_space(scene, kind, cells, bar):
+def explicit_in_space(scene, kind, cells, bar, *options):
     """At its own step: difference from sdirk2 with tight tolerance, on finer and finer grids."""
     rows, off = [], []
     for n in cells:
-        other = scene.curves(scene.run(*adaptive(SDIRK2, 1e-4), cells=(n, 1)))
-        run = scene.run(*adaptive(kind), cells=(n, 1))
+        other = scene.curves(scene.run(*adaptive(SDIRK2, 3e-4), cells=(n, 1)))
+        run = scene.run(*adaptive(kind), *options, cells=(n, 1))
         each = apart(scene.curves(run), other)
         off.append((max(each.values()), np.mean(list(each.values()))))
         rows.append((n, steps_of(run), run.cpu, *each.values()))
@@ -124,14 +124,15 @@ def explicit_kind():
         explicit_in_time(consolidation(cells=(FEWEST, 1)), kind, 5e-4)
     if "hybrid" in explicit_ones():
         explicit_in_space(REACTING, "hybrid", cells, 0.03)
-        explicit_in_space(bp2(1, 1000), "hybrid", cells, 0.04)
+        for case, bar in ((1, 0.04), (2, 0.02)):
+            explicit_in_space(bp2(case, 1000), "hybrid", cells, bar, *DAMPED)
 
 
 if __name__ == "__main__":
     exact_columns()
-    shrinking_steps(wave(cells=(FEWEST, 1)), (1e-3, 5e-4, 2.5e-4), (0.85, 1.2), None)
-    shrinking_steps(consolidation(cells=(FEWEST, 1)), (0.05, 0.025, 0.0125), (0.5, 1.2), None)
-    shrinking_steps(consolidation(cells=(FEWEST, 1)), (0.05, 0.025, 0.0125), (0.85, 1.2), (1.7, 2.3), "-inertia", "no")
+    shrinking_steps(wave(cells=(FEWEST, 1)), (2e-3, 1e-3, 5e-4), (0.8, 1.2), None)
+    shrinking_steps(consolidation(cells=(FEWEST, 1)), (0.1, 0.05, 0.025), (0.5, 1.2), None)
+    shrinking_steps(consolidation(cells=(FEWEST, 1)), (0.1, 0.05, 0.025), (0.85, 1.2), (1.7, 2.3), "-inertia", "no")
     shrinking_steps(REACTING, (0.01, 0.005, 0.0025), (0.85, 1.2), (1.5, 2.3))
     compressed()
     explicit_kind()
