@@ -234,7 +234,7 @@ HEAD = "-mat_sand_"
 TERMS = (  # what is left out, options; on the dissociating block
     ("nothing", ()),
     ("inertia (`inertia: no`)", ("-inertia", "no")),
-    ("solid (`fields: thc`)", ("-fields", "thc", "-boundaries", "well", "-inertia", "no")),
+    ("solid (`fields: thc`)", ("-fields", "thc", "-inertia", "no", f"{HEAD}elasticity_E0", "rigid", "-boundaries", "base,left,top,well,above")),
     ("reaction (`kinetics_active: no`)", (f"{HEAD}kinetics_active", "no")),
     ("reaction and heat (`fields: hmc`)", (f"{HEAD}kinetics_active", "no", "-fields", "hmc")),
     ("gas (`fields: thm`)", ("-fields", "thm", f"{HEAD}kinetics_active", "no", "-region_block_Sw", 0.7, "-region_block_Sg", 0)),
