@@ -120,6 +120,9 @@ typedef struct {
   bool leads; /* others belong to its group */
 } NodeInfo;
 
+/* Parts of a step in -log_view. */
+enum { STEP_DEPOSIT = 0, STEP_VELOCITIES, STEP_RATES, STEP_SCALARS, STEP_UPDATE, STEP_ORDER, STEP_PARTS };
+
 struct Explicit {
   Model          *m;
   ExplicitOptions o;
@@ -146,6 +149,7 @@ struct Explicit {
   double          latent, advected; /* J over the step */
   double          added, acting; /* norms of what mass scaling adds to inertia and of the forces that act, this step */
   double          worst_scaling;
+  PetscLogEvent   event[STEP_PARTS];
 };
 
 /* Weights of a block of particles. */
@@ -195,7 +199,7 @@ void         ForRuns(Explicit *e, const LoopTable table, double dt);
 /* Node side. */
 PetscErrorCode NodesRebuild(Explicit *e);                           /* numbering, when particles reach other nodes */
 PetscErrorCode NodesVelocities(Explicit *e, double dt);             /* A -> B */
-PetscErrorCode NodesScalars(Explicit *e, double dt, StageRates *r); /* R -> C */
+PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 PetscErrorCode FacesBegin(Explicit *e);

@@ -378,12 +378,11 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
     c[C_Vs(s) + d] = e->B[I * LANES * Rows(B_Count(s)) + d];
 }
 
-PetscErrorCode NodesScalars(Explicit *e, double dt, StageRates *rates)
+PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
 {
   const int width = LANES * Rows(R_Count(e->set));
 
   PetscFunctionBeginUser;
-  (void)dt;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     if (e->node[I].root != (int)I)
       AddRow(&e->R[e->node[I].root * width], &e->R[I * width], width);
