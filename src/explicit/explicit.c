@@ -1,7 +1,8 @@
 /* Life of the explicit integrator, order of the particles, and one step as a table of contents. */
 #include "lanes.h"
 
-static const char *const part[STEP_PARTS] = {"ClExDeposit", "ClExVelocities", "ClExRates", "ClExScalars", "ClExUpdate", "ClExOrder"};
+static const char *const part[STEP_PARTS] = {"ClExDeposit", "ClExVelocities", "ClExRates",
+                                             "ClExScalars", "ClExUpdate",     "ClExOrder"};
 
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out)
 {
@@ -86,10 +87,10 @@ static void Look(Explicit *e)
   const Model *m = e->m;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const Grid  *g     = &m->grid;
+    const Grid  *g = &m->grid;
     const double h = g->h[d], lower = g->lower[d], cells = (double)g->cells[d], first = (double)g->xs[d];
-    const double end = (double)(g->xs[d] + g->xm[d]) + (g->xs[d] + g->xm[d] > g->cells[d] ? 1.0 : 0.0);
-    const bool   linear = m->c->basis == BASIS_LINEAR;
+    const double end         = (double)(g->xs[d] + g->xm[d]) + (g->xs[d] + g->xm[d] > g->cells[d] ? 1.0 : 0.0);
+    const bool   linear      = m->c->basis == BASIS_LINEAR;
     const double *restrict x = m->P.f[P_X + d], *restrict l = m->P.f[P_L + d];
     int *restrict base = e->base[d];
     int changed = 0, strays = 0;
@@ -134,8 +135,8 @@ static PetscErrorCode Permute(Explicit *e)
 
 static PetscErrorCode Sort(Explicit *e)
 {
-  const Grid *g = &e->m->grid;
-  Particles  *P = &e->m->P;
+  const Grid *g      = &e->m->grid;
+  Particles  *P      = &e->m->P;
   bool        sorted = true;
 
   PetscFunctionBeginUser;
@@ -147,7 +148,8 @@ static PetscErrorCode Sort(Explicit *e)
       cell[0] = cell[1] = 0;
     e->order[p] = P->i[PI_ID][p];
     e->key[p]   = (cell[1] - g->gs[1]) * g->gm[0] + cell[0] - g->gs[0];
-    sorted      = sorted && (p == 0 || e->key[p] > e->key[p - 1] || (e->key[p] == e->key[p - 1] && e->order[p] > e->order[p - 1]));
+    sorted      = sorted &&
+             (p == 0 || e->key[p] > e->key[p - 1] || (e->key[p] == e->key[p - 1] && e->order[p] > e->order[p - 1]));
   }
   if (sorted)
     PetscFunctionReturn(PETSC_SUCCESS);
