@@ -33,8 +33,8 @@ def study(title, tols, equal, *options):
     return found
 
 
-# the estimate is of the third order per step, so the error of a run follows the tolerance to the power 2/3 or better once the tolerance
-# and not the growth from the first step rules the steps: over four decades by 10^(8/3) = 460
+# the estimate is of the third order per step, so the error of a run goes with the tolerance to the power 2/3 where the tolerance, and not
+# the growth from the first step or the rows of the probes, rules the steps: over four decades 10^(8/3) = 460
 tols = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
 soft = study("large strain, cells of 5 m", tols, 2000, *ROWS_5M)
 judge(ROW, "cells of 5 m: error in time at 1e-5 over that at 1e-1", soft[-1] / soft[0], 1e-2)
@@ -43,7 +43,7 @@ stiff = study("small strain, cells of 5 m", tols, 2000, *ROWS_5M, *STIFF)
 judge(ROW, "a thousandth of the strain, cells of 5 m: error in time at 1e-5 over that at 1e-1", stiff[-1] / stiff[0], 0.2)
 
 # on cells of 1 m the surface crosses three of them; while it leaves a cell that is filled to less than 0.4, the answer depends on the number
-# of steps by some 1e-3, as the logarithm of dt, which is not in the estimate: the difference falls, but not in proportion
+# of steps by some 1e-3, nearly as the logarithm of dt, which is not in the estimate: the difference falls, but not in proportion
 fine = study("large strain, cells of 1 m", (1e-1, 1e-2, 1e-3, 1e-4), 800, "-output_probe_every", f"{C.end / 20:.17g} s")
 judge(ROW, "cells of 1 m, tolerance 1e-1: difference of settlement and pressures from 800 equal steps", fine[0], 3e-3)
 judge(ROW, "cells of 1 m, tolerance 1e-4: difference of settlement and pressures from 800 equal steps", fine[-1], 1e-3)
