@@ -265,6 +265,25 @@ static double MassScale(const FieldSet *fs, const double c[NC_COUNT], int phase,
 
 #define SLIVER 0.05 /* of a cell: emptier nodes are held by the ghost penalty, whose rows do not shrink with them */
 
+#define ROUND_OFF 1e-5 /* times Newton's tolerance: what is lost when the drag's two large velocities are subtracted   \
+                        */
+
+/* Row of a fluid's momentum: 1 MPa over a cell; where permeability is so low that the drag of the skeleton's own
+   velocity is far larger, that drag's round-off. */
+static double DragScale(const Model *m, PetscInt I, int phase, double h)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6;
+  double          v;
+
+  if (!fs->solid)
+    return P / h;
+  v = P / h / ((fs->inertia ? c[NC_RHO + phase] / dt : 0.0) + c[NC_M] * dt / (h * h)); /* what 1 MPa brings about */
+  for (int d = 0; d < CL_DIM; d++)
+    v = fmax(v, fabs(m->stage.x_star[I * fs->n + PlaceVs(fs) + d]));
+  return fmax(P / h, ROUND_OFF * c[NC_DRAG + phase] * m->w[2 * I + phase] * v);
+}
+
 /* Columns: 1 MPa, 1 K, and the velocities that belong to 1 MPa over a cell.  Rows: what such a change makes of each
    balance, so that scaled residuals and updates compare across fields. */
 static void NodeScales(const Model *m, PetscInt I, double h, double *row, double *col)
@@ -284,7 +303,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
       const double inertia = fs->inertia ? c[NC_RHO + k] / dt : 0.0;
 
       col[PlaceV(fs, k) + d] = P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
-      row[PlaceV(fs, k) + d] = V * P / h;
+      row[PlaceV(fs, k) + d] = V * DragScale(m, I, k, h);
     }
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
