@@ -120,6 +120,8 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     c[NC_M] += VS * q->M;
     c[NC_KAPPA] += VS * q->kappa;
     c[NC_CAPACITY] += S * q->capacity;
+    c[NC_REACTION] += VS * q->reaction;
+    c[NC_REACTION_HEAT] += VS * q->reaction_heat;
     for (int k = 0; k < PHASE_COUNT; k++) {
       if (!m->c->fields.phase[k])
         continue;
@@ -252,21 +254,24 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mass that a change of 1 MPa stores or moves, but no more than there is, unless that is below the round-off of what
-   moves. */
+#define ROUND_OFF_P 1e-3 /* of 1 MPa, times Newton's tolerance: round-off of a pressure, with a margin */
+
+/* Mass that a change of 1 MPa stores, moves or turns into hydrate, but no more than there is, unless that is below the
+   round-off of what moves or reacts. */
 static double MassScale(const FieldSet *fs, const double c[NC_COUNT], int phase, double w, double dt, double h)
 {
   const double squeezed = fs->solid ? w / c[NC_M] : 0.0;
-  const double moved =
-      1e6 * (c[NC_RHO + phase] * (c[NC_STORAGE + phase] + squeezed) + dt * c[NC_LAMBDA + phase] / (h * h));
+  const double moved    = 1e6 * (c[NC_RHO + phase] * (c[NC_STORAGE + phase] + squeezed) +
+                              dt * c[NC_LAMBDA + phase] / (h * h) + dt * c[NC_REACTION]);
 
-  return fmax(fmin(moved, c[NC_RHO + phase] * w), 1e-3 * moved);
+  return fmax(fmin(moved, c[NC_RHO + phase] * w), ROUND_OFF_P * moved);
 }
 
 #define SLIVER 0.05 /* of a cell: emptier nodes are held by the ghost penalty, whose rows do not shrink with them */
 
-#define ROUND_OFF 1e-5 /* times Newton's tolerance: what is lost when the drag's two large velocities are subtracted   \
-                        */
+#define ROUND_OFF                                                                                                      \
+  1e-5 /* times Newton's tolerance: what is lost when the drag's two large velocities are subtracted                   \
+        */
 
 /* Row of a fluid's momentum: 1 MPa over a cell; where permeability is so low that the drag of the skeleton's own
    velocity is far larger, that drag's round-off. */
@@ -315,7 +320,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
   }
   if (fs->heat) {
     col[PlaceT(fs)] = 1.0;
-    row[PlaceT(fs)] = V_row * (c[NC_CAPACITY] / dt + c[NC_KAPPA] / (h * h));
+    row[PlaceT(fs)] = V_row * fmax(c[NC_CAPACITY] / dt + c[NC_KAPPA] / (h * h), ROUND_OFF_P * P * c[NC_REACTION_HEAT]);
   }
 }
 
