@@ -1,7 +1,8 @@
 /* uGIMP, cpGIMP and linear functions along one axis, and their tensor product. */
 #include "clathra/basis.h"
 
-#define EDGE_SNAP 1e-9 /* of a cell: a domain edge so close to a grid line lies on it */
+#define EDGE_SNAP                                                                                                      \
+  1e-6 /* of a cell: a domain edge so close to a grid line lies on it, since a thinner sliver drowns in round-off */
 
 /* Hat function of unit width and its integral from -infinity. */
 static double Hat(double s)

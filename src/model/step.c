@@ -269,24 +269,24 @@ static double MassScale(const FieldSet *fs, const double c[NC_COUNT], int phase,
 
 #define SLIVER 0.05 /* of a cell: emptier nodes are held by the ghost penalty, whose rows do not shrink with them */
 
-#define ROUND_OFF                                                                                                      \
-  1e-5 /* times Newton's tolerance: what is lost when the drag's two large velocities are subtracted                   \
-        */
+#define ROUND_OFF 1e-5 /* of the terms of a fluid's momentum, times Newton's tolerance, with a margin */
 
-/* Row of a fluid's momentum: 1 MPa over a cell; where permeability is so low that the drag of the skeleton's own
-   velocity is far larger, that drag's round-off. */
-static double DragScale(const Model *m, PetscInt I, int phase, double h)
+/* Row of a fluid's momentum per volume: 1 MPa over a cell, unless that is below the round-off of its terms: of the drag
+   of the skeleton's own velocity where permeability is low; of pressures on a node that sees but a sliver, where
+   forces shrink with its depth and the volume with the square of that. */
+static double FluidScale(const Model *m, PetscInt I, int phase, double h)
 {
   const FieldSet *fs = &m->c->fields;
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6;
-  double          v;
+  const double    sliver = sqrt(2.0 * NodeVolume(m, I) / m->V[I]);
+  double          row    = P / h * fmax(1.0, ROUND_OFF * sliver), v;
 
   if (!fs->solid)
-    return P / h;
+    return row;
   v = P / h / ((fs->inertia ? c[NC_RHO + phase] / dt : 0.0) + c[NC_M] * dt / (h * h)); /* what 1 MPa brings about */
   for (int d = 0; d < CL_DIM; d++)
     v = fmax(v, fabs(m->stage.x_star[I * fs->n + PlaceVs(fs) + d]));
-  return fmax(P / h, ROUND_OFF * c[NC_DRAG + phase] * m->w[2 * I + phase] * v);
+  return fmax(row, ROUND_OFF * c[NC_DRAG + phase] * m->w[2 * I + phase] * v);
 }
 
 /* Columns: 1 MPa, 1 K, and the velocities that belong to 1 MPa over a cell.  Rows: what such a change makes of each
@@ -308,7 +308,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
       const double inertia = fs->inertia ? c[NC_RHO + k] / dt : 0.0;
 
       col[PlaceV(fs, k) + d] = P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
-      row[PlaceV(fs, k) + d] = V * DragScale(m, I, k, h);
+      row[PlaceV(fs, k) + d] = V * FluidScale(m, I, k, h);
     }
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
