@@ -6,6 +6,45 @@
 
 #define CL_NODES 9 /* nodes a particle can reach: 3 per axis */
 
+/* Of a cell: a domain edge so close to a grid line lies on it; a thinner sliver drowns in round-off. */
+#define BASIS_SNAP 1e-6
+
+static inline double BasisSnap(double s)
+{
+  const double line = rint(s);
+
+  return fabs(s - line) < BASIS_SNAP ? line : s;
+}
+
+/* The domain along one axis in cells: [lo, hi], clipped at the grid's edge, and the length that gradients are divided by. */
+typedef struct {
+  double lo, hi, length;
+} BasisDomain;
+
+static inline BasisDomain BasisDomainOf(double x, double l, double lower, double h, double cells)
+{
+  const double s = (x - lower) / h, r = l / h, from = BasisSnap(s - r), to = BasisSnap(s + r);
+  const bool   clipped = (s >= 0.0) & (s <= cells) & ((from < 0.0) | (to > cells));
+  const double lo = clipped & (from < 0.0) ? 0.0 : from, hi = clipped & (to > cells) ? cells : to;
+
+  return (BasisDomain){lo, hi, clipped ? hi - lo : 2.0 * r};
+}
+
+/* (3) for a domain of at most one cell from its first node on, without branches: the kernels of src/explicit take it for
+   many particles at once.  a, b: edges of the domain from the first node on, in cells, 0 <= a < 1, a < b <= a + 1. */
+static inline void BasisAverage(double a, double b, double gradient_length, double S[3], double dS[3])
+{
+  const bool   third = b > 1.0;
+  const double a1 = 1.0 - a, b1 = third ? 0.0 : 1.0 - b, b2 = 2.0 - b, over = third ? b - 1.0 : 0.0;
+
+  S[0]  = ((1.0 - 0.5 * b1 * b1) - (1.0 - 0.5 * a1 * a1)) / (b - a);
+  S[1]  = ((third ? 1.0 - 0.5 * b2 * b2 : 0.5 * b * b) - 0.5 * a * a) / (b - a);
+  S[2]  = 0.5 * over * over / (b - a);
+  dS[0] = (b1 - a1) / gradient_length;
+  dS[1] = (1.0 - fabs(b - 1.0) - (1.0 - a1)) / gradient_length;
+  dS[2] = (third ? 1.0 - b2 : 0.0) / gradient_length;
+}
+
 /* One axis: nodes base, base+1, base+2; docs/equations.md (3), (4). */
 typedef struct {
   PetscInt base;

@@ -22,6 +22,9 @@ typedef struct {
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
                           Face **face);
 
+/* Where the face is and how it distributes, for its particle's present position and weights. */
+void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
+
 /* Is the face one of those that a meter counts? */
 bool MeterCovers(const Meter *m, const Face *f);
 

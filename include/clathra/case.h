@@ -121,11 +121,18 @@ typedef struct {
   bool   upstream;            /* drag of the fluids from upstream; default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
-  char     stepper[16]; /* euler | sdirk2 */
+  char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | auto */
   bool     adaptive;
   double   dt, dt_min, dt_max; /* s; dt = first (adaptive) or fixed step */
   double   tol;                /* relative tolerance of the error estimate */
   PetscInt max_failures;       /* cuts in a row before the run is given up */
+  /* hybrid and explicit */
+  double cfl;          /* step as a share of the stable one */
+  bool   force_dt;     /* take a fixed step above the stable one all the same */
+  double flip;         /* 1: FLIP, 0: PIC */
+  double damping;      /* local damping */
+  double mass_scaling; /* factor on inertia */
+  bool   tied;         /* nearly empty nodes follow their inner neighbour */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */

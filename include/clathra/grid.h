@@ -28,6 +28,8 @@ static inline PetscInt GridPadded(const Grid *g, PetscInt i, PetscInt j)
   return (j - g->gs[1]) * g->gm[0] + (i - g->gs[0]);
 }
 
+#define CL_NODE_DOUBLES 32 /* at most, of a node in one exchange */
+
 /* Active nodes: owned ones first (they are a Vec's local part), then ghosts. */
 typedef struct {
   PetscInt  n_owned, n_local; /* active nodes: owned, owned + ghost */
@@ -36,7 +38,7 @@ typedef struct {
   PetscInt (*ij)[CL_DIM];     /* local active number -> grid node */
   PetscInt    *global;        /* local active number -> global number */
   PetscSF      sf;            /* ghosts -> owners */
-  MPI_Datatype unit[17];      /* nc doubles, made on demand */
+  MPI_Datatype unit[CL_NODE_DOUBLES + 1]; /* nc doubles, made on demand */
 } NodeMap;
 
 /* Numbers the nodes whose flag (padded array) is set on any rank; *changed tells whether the map is a new one.

@@ -132,6 +132,12 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
 void ModelStartVelocity(const Model *m, double *v);
 /* Makes the trial state of the last stage the history, with rates (n x 4), moves the particles and migrates them. */
 PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates);
+/* Notes why particle p cannot go on; the first reason of this rank stays. */
+void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p);
+/* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
+void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
+/* Adds a face's rates, weighted with `weight`, to those of the whole boundary and of the meters that cover it. */
+void ModelCountFace(const Case *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates);
 /* Same status on all ranks (the worst), with its reason and place on all ranks. */
 PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status);
 

@@ -2,7 +2,7 @@
    (rolled back, cut and retried), fatal. */
 #pragma once
 
-#include "clathra/model.h"
+#include "clathra/explicit.h"
 
 /* Everything besides the particles that a run carries from step to step (in the checkpoint, so that a restart is bit
  * for bit). */
@@ -50,16 +50,22 @@ typedef struct {
 
 typedef struct Stepper Stepper;
 
-/* A scheme: takes one step of length dt on the configuration that ModelBeginStep prepared; leaves the solution in
-   work.x and the rates in work.rates.  Nothing is committed. */
+/* A scheme.  advance takes the state to a later time, or says that it cannot (*ok = false); it never commits a step that failed.
+   The implicit schemes share StepperImplicitStep and give it `step`: one attempt of length dt on the configuration that
+   ModelBeginStep prepared, which leaves the solution in work.x and the rates in work.rates and commits nothing. */
 typedef struct {
   const char *name;
   int         error_order; /* q: the error estimate behaves like dt^q */
   int         stages;
+  PetscErrorCode (*advance)(Stepper *s, bool *ok);
   PetscErrorCode (*step)(Stepper *s, double dt, Attempt *a);
+  /* what else a scheme needs (may be NULL): its own storage; a check before anything is written, *ok = false refuses */
+  PetscErrorCode (*create)(Stepper *s);
+  PetscErrorCode (*destroy)(Stepper *s);
+  PetscErrorCode (*ready)(Stepper *s, bool *ok);
 } StepperScheme;
 
-extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2;
+extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit;
 
 struct Stepper {
   Model               *model;
@@ -69,6 +75,9 @@ struct Stepper {
   bool                 adaptive;
   double               dt_min, dt_max, tol;
   PetscInt             max_failures, max_steps;
+  Explicit            *explicit;     /* hybrid, explicit: the integrator and the last good state */
+  Particles            good;
+  StableStep           limit; /* at the last look */
   /* called after every accepted step */
   PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
   void *monitor_ctx;
@@ -78,11 +87,20 @@ struct Stepper {
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s); /* as the case says */
 PetscErrorCode StepperDestroy(Stepper *s);
+/* Before anything is written: what the scheme says about the scene and its steps; *ok = false: refused, a sentence was printed. */
+PetscErrorCode StepperReady(Stepper *s, bool *ok);
 /* Runs to Case.t_end (or -stepper_max_steps).  *ok = false: given up, the model holds the last good state and a
  * sentence was printed. */
 PetscErrorCode StepperRun(Stepper *s, bool *ok);
 
 /* Shared by the schemes. */
+/* The next time that a step must hit: a kink of a schedule, an event, the end. */
+double         StepperNextStop(const Stepper *s, bool *kink);
+/* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
+PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
+PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok);
+PetscErrorCode StepperFreeWork(StepperWork *w);
+const char    *StepperStatusName(ClStatus st);
 PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */
 /* p_w, p_g, T, S_h of particle p at t_n and their rates in the last step; zero where there is no such field. */
 void           StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4]);

@@ -1,9 +1,6 @@
 /* uGIMP, cpGIMP and linear functions along one axis, and their tensor product. */
 #include "clathra/basis.h"
 
-#define EDGE_SNAP                                                                                                      \
-  1e-6 /* of a cell: a domain edge so close to a grid line lies on it, since a thinner sliver drowns in round-off */
-
 /* Hat function of unit width and its integral from -infinity. */
 static double Hat(double s)
 {
@@ -19,16 +16,9 @@ static double HatIntegral(double s)
   return s < 0.0 ? 0.5 * (1.0 + s) * (1.0 + s) : 1.0 - 0.5 * (1.0 - s) * (1.0 - s);
 }
 
-static double Snap(double s)
-{
-  const double line = round(s);
-
-  return fabs(s - line) < EDGE_SNAP ? line : s;
-}
-
 void BasisHat(double x, double lower, double h, Axis *a)
 {
-  const double s = Snap((x - lower) / h), base = floor(s);
+  const double s = BasisSnap((x - lower) / h), base = floor(s);
 
   a->base = (PetscInt)base;
   for (int k = 0; k < 3; k++) {
@@ -37,34 +27,17 @@ void BasisHat(double x, double lower, double h, Axis *a)
   }
 }
 
-/* The domain in cells: [lo, hi], clipped at the grid's edge, and the length that gradients are divided by. */
-typedef struct {
-  double lo, hi, length;
-} Domain;
-
-static Domain DomainOf(double x, double l, double lower, double h, PetscInt cells)
-{
-  const double s = (x - lower) / h, r = l / h, from = Snap(s - r), to = Snap(s + r), end = (double)cells;
-  const bool   clipped = s >= 0.0 && s <= end && (from < 0.0 || to > end);
-  const double lo = clipped ? fmax(from, 0.0) : from, hi = clipped ? fmin(to, end) : to;
-
-  return (Domain){lo, hi, clipped ? hi - lo : 2.0 * r};
-}
-
 void BasisAxis(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a)
 {
   if (type == BASIS_LINEAR) {
     BasisHat(x, lower, h, a);
     return;
   }
-  const Domain d    = DomainOf(x, l, lower, h, cells);
-  const double base = floor(d.lo);
+  const BasisDomain d    = BasisDomainOf(x, l, lower, h, (double)cells);
+  const double      base = floor(d.lo);
 
   a->base = (PetscInt)base;
-  for (int k = 0; k < 3; k++) { /* (3); the average uses the snapped length so that the weights sum to one */
-    a->S[k]  = (HatIntegral(d.hi - base - k) - HatIntegral(d.lo - base - k)) / (d.hi - d.lo);
-    a->dS[k] = (Hat(d.hi - base - k) - Hat(d.lo - base - k)) / (d.length * h);
-  }
+  BasisAverage(d.lo - base, d.hi - base, d.length * h, a->S, a->dS);
 }
 
 /* Integral of s N(s) from -infinity, N the hat function of unit width. */
@@ -85,7 +58,7 @@ void BasisRadius(BasisType type, double x, double l, double lower, double h, Pet
       hoop[k] = a->S[k] / x;
     return;
   }
-  const Domain d    = DomainOf(x, l, lower, h, cells);
+  const BasisDomain d = BasisDomainOf(x, l, lower, h, (double)cells);
   const double axis = -lower / h, mid = 0.5 * (d.lo + d.hi), radius = mid - axis, length = d.hi - d.lo; /* in cells */
 
   *r = radius * h;

@@ -51,29 +51,35 @@ static void Weights(const Grid *g, BasisType basis, const Stencil *s, int axis, 
   }
 }
 
+void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
+{
+  const PetscInt p    = f->particle;
+  const int      axis = side_axis[f->side], tangent = 1 - axis;
+  const double   arm = side_sign[f->side] * P->f[P_L + axis][p], position = P->f[P_X + axis][p] + arm;
+  const double   radius = P->f[P_X][p] + (axis == 0 ? arm : 0.0);
+
+  f->r[axis]    = position - AxisCentroid(&stencil->axis[axis], g->lower[axis], g->h[axis]);
+  f->r[tangent] = 0.0;
+  f->area       = 2.0 * P->f[P_L + tangent][p] * (c->axisymmetric ? 2.0 * M_PI * radius : 1.0);
+  f->n[axis]    = side_sign[f->side] * f->area;
+  f->n[tangent] = 0.0;
+  Weights(g, c->basis, stencil, axis, position, f->N);
+}
+
 static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
                      Face *f)
 {
-  const int    axis = side_axis[side], tangent = 1 - axis;
-  const double arm = side_sign[side] * P->f[P_L + axis][p], position = P->f[P_X + axis][p] + arm;
-  const double radius = P->f[P_X][p] + (axis == 0 ? arm : 0.0);
-
   f->particle    = p;
   f->side        = side;
   f->region      = P->i[PI_REGION][p];
-  f->along       = ParticleInitialX(P, p, tangent);
-  f->r[axis]     = position - AxisCentroid(&stencil[p].axis[axis], g->lower[axis], g->h[axis]);
-  f->r[tangent]  = 0.0;
-  f->area        = 2.0 * P->f[P_L + tangent][p] * (c->axisymmetric ? 2.0 * M_PI * radius : 1.0);
-  f->n[axis]     = side_sign[side] * f->area;
-  f->n[tangent]  = 0.0;
+  f->along       = ParticleInitialX(P, p, 1 - side_axis[side]);
   f->traction    = FindCondition(c, BC_TRACTION, f);
   f->pressure    = FindCondition(c, BC_PRESSURE, f);
   f->heat        = FindCondition(c, BC_HEAT_FLUX, f);
   f->convection  = FindCondition(c, BC_CONVECTION, f);
   f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, f);
   f->inflow      = FindCondition(c, BC_INFLOW, f);
-  Weights(g, c->basis, &stencil[p], axis, position, f->N);
+  FacePlace(c, g, P, &stencil[p], f);
 }
 
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,

@@ -56,7 +56,8 @@ LAW(Equilibrium, EquilibriumSetType, EquilibriumTypes, kinetics.equilibrium, typ
 static const char *const basis_word[]     = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
 static const char *const pressures_word[] = {"two", "one", NULL};
 static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
-static const char *const stepper_word[]   = {"sdirk2", "euler", NULL};
+static const char *const stepper_word[]   = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
+static const char *const surface_word[]   = {"free", "tied", NULL};
 static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
 static const char *const axis_word[]      = {"x", "y", NULL};
 static const char *const space_word[]     = {"fluids", "pores", NULL};
@@ -120,6 +121,19 @@ static const Key case_key[] = {
     REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate"),
     INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
              "cuts in a row before the run is given up"),
+    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.5", "hybrid, explicit: step as a share of the stable one"),
+    BOOLEAN(Case, "stepper_force_dt", force_dt, "no",
+            "hybrid, explicit: take a fixed step above the stable one all the same"),
+    REAL(Case, "stepper_flip", flip, "", "[0,1]", "1",
+         "hybrid, explicit: particles take increments of nodal velocity (1, FLIP), the velocity itself (0, PIC), or a "
+         "mixture"),
+    REAL(Case, "stepper_damping", damping, "", "[0,1)", "0",
+         "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
+         "ends"),
+    REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
+         "hybrid, explicit: factor on all inertia; the error it makes is reported"),
+    BOOLEAN(Case, "stepper_surface", tied, "tied", "hybrid, explicit: nearly empty nodes follow their inner neighbour",
+            .choices = surface_word),
     REAL(Case, "stabilisation_ghost_penalty", ghost_penalty, "", "[0,100]", "0.1", "at free surfaces; 0 = off"),
     REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),

@@ -142,7 +142,7 @@ PetscErrorCode NodeMapDestroy(NodeMap *map)
   PetscCall(PetscFree(map->ij));
   PetscCall(PetscFree(map->global));
   PetscCall(PetscSFDestroy(&map->sf));
-  for (int nc = 0; nc < 17; nc++) {
+  for (int nc = 0; nc <= CL_NODE_DOUBLES; nc++) {
     if (map->unit[nc])
       PetscCallMPI(MPI_Type_free(&map->unit[nc]));
   }

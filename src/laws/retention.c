@@ -4,8 +4,6 @@
 #include "laws_private.h"
 
 #define PC_MAX 1e9          /* Pa, range searched by RetentionInvert */
-#define TRAPPED_MIN 1e-4    /* least trapped gas S_gr' of the smooth form, so that p_c is defined without any */
-#define DEFAULT_SMOOTH 0.05 /* p_s/p_0 */
 #define PLATEAU_EPSILON 4e-16
 
 /* log(1 + e^x), accurate in both tails, and its slope 1/(1 + e^-x). */
@@ -37,8 +35,8 @@ static double Drained(const Retention *law, double p, double *dp)
    Zero (or unset) p_smooth, p_trap mean 0.05 p_0, p_0. */
 static double Retention_VanGenuchten(const Retention *law, double pc, double *ds_dpc)
 {
-  const double ps = law->p_smooth > 0.0 ? law->p_smooth : DEFAULT_SMOOTH * law->p0;
-  const double pt = law->p_trap > 0.0 ? law->p_trap : law->p0, Sgr = fmax(law->Sgr, TRAPPED_MIN);
+  const double ps = law->p_smooth > 0.0 ? law->p_smooth : LAW_SMOOTH * law->p0;
+  const double pt = law->p_trap > 0.0 ? law->p_trap : law->p0, Sgr = fmax(law->Sgr, LAW_TRAPPED_MIN);
   double       up, down, drained_dp;
   const double plus = ps * Softplus(pc / ps, &up), minus = -ps * Softplus(-pc / ps, &down);
   const double trapped = Sgr * exp(minus / pt), room = 1.0 - law->Swr - Sgr;

@@ -46,21 +46,23 @@ static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
     const double to = m->P.f[P_X + d][p] + u[d], upper = m->grid.lower[d] + (double)m->grid.cells[d] * m->grid.h[d];
 
     if (fabs(u[d]) > MAX_MOVE * m->grid.h[d])
-      NoteFailure(m, CL_TOO_FAR, "a particle moves more than half a cell in one step", p);
+      ModelNoteFailure(m, CL_TOO_FAR, "a particle moves more than half a cell in one step", p);
     else if (to < m->grid.lower[d] || to > upper)
-      NoteFailure(m, CL_LEFT_GRID, "a particle leaves the background grid", p);
+      ModelNoteFailure(m, CL_LEFT_GRID, "a particle leaves the background grid", p);
   }
 }
 
-/* Adds a face's rates, weighted with `sum`, to the meters that cover it. */
-static void Meters(const Case *c, const Face *face, double sum, const FaceOutput *o, StageRates *rates)
+void ModelCountFace(const Case *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates)
 {
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    rates->out[ph] += weight * o->outflow[ph];
+  rates->heat_in += weight * o->heat_in;
   for (PetscInt k = 0; k < c->nmeter; k++) {
     if (!MeterCovers(&c->meter[k], face))
       continue;
     for (int ph = 0; ph < PHASE_COUNT; ph++)
-      rates->meter[k][METER_WATER + ph] += sum * o->outflow[ph];
-    rates->meter[k][METER_HEAT] -= sum * o->heat_in;
+      rates->meter[k][METER_WATER + ph] += weight * o->outflow[ph];
+    rates->meter[k][METER_HEAT] -= weight * o->heat_in;
   }
 }
 
@@ -88,10 +90,7 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
     FaceAt(m, &m->face[k], x, &r, &o);
     for (int a = 0; a < r.n; a++)
       sum += m->face[k].N[a];
-    for (int ph = 0; ph < PHASE_COUNT; ph++)
-      rates->out[ph] += sum * o.outflow[ph];
-    rates->heat_in += sum * o.heat_in;
-    Meters(m->c, &m->face[k], sum, &o, rates);
+    ModelCountFace(m->c, &m->face[k], sum, &o, rates);
   }
 }
 
@@ -146,9 +145,9 @@ static void CheckShares(Model *m, const double *x, const double *masses)
     s.m_g           = masses[3 * p + 2];
     const double sw = ShareOfWater(&s);
     if (!(sw >= 0.0 && sw <= 1.0))
-      NoteFailure(m, CL_DOMAIN, "a saturation leaves [0,1]; with one pressure saturations are explicit", p);
+      ModelNoteFailure(m, CL_DOMAIN, "a saturation leaves [0,1]; with one pressure saturations are explicit", p);
     else if (fabs(sw - ParticleSw(m, p)) > MAX_SHARE)
-      NoteFailure(m, CL_DOMAIN, "a saturation changes by more than 0.05 in a step; with one pressure they are explicit",
+      ModelNoteFailure(m, CL_DOMAIN, "a saturation changes by more than 0.05 in a step; with one pressure they are explicit",
                   p);
   }
 }

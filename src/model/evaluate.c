@@ -12,12 +12,11 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   GatherHistory(m, p, r, &h);
   const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
   if (status != CL_OK)
-    NoteFailure(m, status, why, p);
+    ModelNoteFailure(m, status, why, p);
   return status;
 }
 
-/* Initial p_w and p_g at the face: the particle's own, and the weight of the water between it and the face. */
-static void InitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT])
+void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT])
 {
   const PetscInt p      = face->particle;
   const Region  *r      = &m->c->region[m->P.i[PI_REGION][p]];
@@ -36,7 +35,7 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
 
   ReachExpand(m, p, r);
   GatherInputs(m, p, r, x, face->N, in);
-  InitialAtFace(m, face, p0);
+  ModelInitialAtFace(m, face, p0);
   for (int a = 0; a < r->n; a++) {
     kappa += face->N[a] * m->coef[r->node[a] * NC_COUNT + NC_KAPPA];
     sum += face->N[a];

@@ -236,16 +236,6 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   }
 }
 
-static inline void NoteFailure(Model *m, ClStatus status, const char *why, PetscInt p)
-{
-  if (m->status != CL_OK)
-    return;
-  m->status   = status;
-  m->why      = why;
-  m->where[0] = m->P.f[P_X][p];
-  m->where[1] = m->P.f[P_X + 1][p];
-}
-
 /* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
  * model. */
 ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],

@@ -76,6 +76,16 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p)
+{
+  if (m->status != CL_OK)
+    return;
+  m->status   = status;
+  m->why      = why;
+  m->where[0] = m->P.f[P_X][p];
+  m->where[1] = m->P.f[P_X + 1][p];
+}
+
 PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status)
 {
   struct {

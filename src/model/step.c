@@ -43,7 +43,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
         BasisAxis(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s->axis[d]);
     }
     if (!InsideGrid(g, s)) {
-      NoteFailure(m, CL_LEFT_GRID, "a particle's domain leaves the background grid", p);
+      ModelNoteFailure(m, CL_LEFT_GRID, "a particle's domain leaves the background grid", p);
       continue;
     }
     for (int b = 0; b < 3; b++) {
@@ -170,7 +170,7 @@ static PetscErrorCode Project(Model *m)
     const ClStatus  status = ParticleProperties(m, p, &q, &why);
 
     if (status != CL_OK) {
-      NoteFailure(m, status, why, p);
+      ModelNoteFailure(m, status, why, p);
       continue;
     }
     ReachExpand(m, p, &r);

@@ -201,6 +201,11 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   }
   if (!s->adaptive && s->state.hold == 0)
     s->state.dt = c->dt; /* a fixed step is the case's, also after a restart */
+  PetscCall(StepperReady(s, &ok));
+  if (!ok) {
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(MakeFolder(s->model->grid.comm, c->output_dir, &ok));
   if (!ok) {
     *exit_code = CL_EXIT_INPUT;

@@ -1,15 +1,10 @@
-/* The time loop: choose dt, attempt, accept or roll back and cut. */
+/* The time loop, whatever the scheme: what it starts from, where steps must end, what an accepted step adds up. */
 #include "clathra/stepper.h"
 
-#define CUT_FAILED 0.25 /* after a step that could not be taken */
-#define HOLD 5          /* steps without growth after that */
-#define CUT_AT_KINK 0.1 /* first step behind a kink of a schedule */
-#define EASY_NEWTON 6   /* growth only while Newton needs no more iterations a stage */
-#define FLOOR_P 1e4     /* Pa: pressure changes below it are not resolved more finely */
-#define SCALE_T 1.0     /* K */
-#define SCALE_SH 0.1
+#define FLOOR_P 1e4 /* Pa: pressure changes below it are not resolved more finely */
 
-static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperScheme_Sdirk2, NULL};
+static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperScheme_Sdirk2, &StepperScheme_Hybrid,
+                                                &StepperScheme_Explicit, NULL};
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s)
 {
@@ -43,124 +38,27 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
   s->state.water0    = t.water;
   s->state.methane0  = t.methane;
   s->state.capacity0 = t.capacity;
+  if (s->scheme->create)
+    PetscCall(s->scheme->create(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FreeWork(StepperWork *w)
+PetscErrorCode StepperReady(Stepper *s, bool *ok)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(w->x, w->x_star, w->u_star));
-  PetscCall(PetscFree3(w->m_star, w->rates, w->v_n));
-  for (int k = 0; k < 2; k++)
-    PetscCall(PetscFree4(w->trial[k].m, w->trial[k].y, w->trial[k].u, w->trial[k].v));
-  w->cap_nodes = w->cap_particles = 0;
+  *ok = true;
+  if (s->scheme->ready)
+    PetscCall(s->scheme->ready(s, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StepperDestroy(Stepper *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(FreeWork(&s->work));
+  PetscCall(StepperFreeWork(&s->work));
+  if (s->scheme->destroy)
+    PetscCall(s->scheme->destroy(s));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode SizeWork(Stepper *s)
-{
-  StepperWork   *w = &s->work;
-  const PetscInt n = s->model->P.cap, N = s->model->map.n_local;
-
-  PetscFunctionBeginUser;
-  if (n <= w->cap_particles && N <= w->cap_nodes)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FreeWork(w));
-  PetscCall(
-      PetscCalloc3(N * s->model->c->fields.n, &w->x, N * s->model->c->fields.n, &w->x_star, N * CL_DIM, &w->u_star));
-  PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, 2 * n, &w->v_n));
-  for (int k = 0; k < 2; k++)
-    PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, 2 * n, &w->trial[k].u, 2 * n, &w->trial[k].v));
-  w->cap_nodes     = N;
-  w->cap_particles = n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-void StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4])
-{
-  static const int held[4] = {P_PW, P_PG, P_T, P_SH};
-
-  for (int k = 0; k < 4; k++) {
-    y[k]    = m->P.f[held[k]] ? m->P.f[held[k]][p] : 0.0;
-    rate[k] = m->P.f[P_RATE] ? m->P.f[P_RATE + k][p] : 0.0;
-  }
-}
-
-double StepperMass(const Model *m, PetscInt p, int k)
-{
-  return m->P.f[P_MH + k] ? m->P.f[P_MH + k][p] : 0.0;
-}
-
-PetscErrorCode StepperStartFromHistory(Stepper *s)
-{
-  const Model *m = s->model;
-  StepperWork *w = &s->work;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * m->c->fields.n));
-  PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    for (int k = 0; k < 3; k++)
-      w->m_star[3 * p + k] = StepperMass(m, p, k);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* One backward-Euler stage from the starred values in the work space; weight x dt' is its share of the step's
- * integrals. */
-PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a)
-{
-  Model       *m     = s->model;
-  StepperWork *w     = &s->work;
-  const Stage  stage = {.t = t, .dt = dt, .x_star = w->x_star, .u_star = w->u_star, .m_star = w->m_star};
-  StageRates   rates;
-  PetscInt     newton = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelBeginStage(m, &stage));
-  PetscCall(ModelSolve(m, w->x, &newton, &a->status));
-  a->newton += newton;
-  if (a->status == CL_OK)
-    PetscCall(ModelEndStage(m, w->x, trial, &rates, &a->status));
-  if (a->status != CL_OK)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  a->limited += m->limited;
-  for (int ph = 0; ph < PHASE_COUNT; ph++)
-    a->out[ph] += weight * dt * rates.out[ph];
-  a->heat_gain += weight * dt * rates.heat_rate;
-  a->heat_in += weight * dt * rates.heat_in;
-  a->heat_source += weight * dt * rates.heat_source;
-  for (PetscInt k = 0; k < m->c->nmeter; k++) {
-    for (int q = 0; q < METER_COUNT; q++)
-      a->meter[k][q] += weight * dt * rates.meter[k][q];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-double StepperErrorNorm(Stepper *s, const double *e, const double *eu)
-{
-  const Model *m        = s->model;
-  const double scale[5] = {s->state.scale_p, s->state.scale_p, SCALE_T, SCALE_SH, s->state.scale_u};
-  double       sum[6] = {0.0}, worst = 0.0;
-
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    for (int k = 0; k < 4; k++)
-      sum[k] += PetscSqr(e[4 * p + k]);
-    sum[4] += PetscSqr(eu[2 * p]) + PetscSqr(eu[2 * p + 1]);
-  }
-  sum[5] = (double)m->P.n;
-  if (MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPI_DOUBLE, MPI_SUM, m->grid.comm))
-    return NAN;
-  for (int k = 0; k < 5; k++)
-    worst = fmax(worst, sqrt(sum[k] / sum[5]) / (s->tol * scale[k]));
-  return worst;
 }
 
 /* What errors are relative to: the largest change since the start; of pore pressure or stress, and of position. */
@@ -187,66 +85,24 @@ static PetscErrorCode UpdateScales(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gustafsson's PI controller: the step that would just meet the tolerance, as far as the wanted step may grow at once.
- */
-static double Controller(const Stepper *s, double dt, const Attempt *a)
+double StepperNextStop(const Stepper *s, bool *kink)
 {
-  const double q = s->scheme->error_order, err = fmax(a->err, 1e-4), old = fmax(s->state.err_old, 1e-4);
-  const bool   blind     = s->state.fresh && s->scheme == &StepperScheme_Euler; /* no estimate yet */
-  const bool   hard      = a->newton > EASY_NEWTON * s->scheme->stages || s->state.hold > 0;
-  const bool   cut_short = dt < 0.999 * s->state.dt; /* by an event: err_old says nothing about growth */
-  const double gain      = cut_short ? pow(err, -1.0 / q) : pow(err, -0.7 / q) * pow(old, 0.4 / q);
-  const double fit       = blind ? INFINITY : 0.9 * dt * gain;
-  const double most      = hard ? fmax(dt, s->state.dt) : 2.0 * fmax(dt, s->state.dt);
-
-  return fmax(0.2 * dt, fmin(fit, most));
-}
-
-/* The step to take: dt as wanted, but never across a kink, an event or the end; what is left before those is shared out
-   evenly over the last three steps so that no sliver remains. */
-static double NextStep(const Stepper *s, bool *kink)
-{
-  const double t = s->state.t, wanted = s->state.dt, at_kink = BcNextKink(s->model->c, t);
+  const double t = s->state.t, at_kink = BcNextKink(s->model->c, t);
   const double event = s->next_event ? s->next_event(s, s->monitor_ctx) : INFINITY;
-  const double stop = fmin(s->model->c->t_end, fmin(at_kink, event)), left = stop - t, n = ceil(left / wanted - 1e-9);
+  const double stop  = fmin(s->model->c->t_end, fmin(at_kink, event));
 
-  *kink = n <= 1.0 && stop == at_kink;
-  if (n <= 1.0)
-    return left;
-  return s->adaptive && n <= 3.0 ? left / n : wanted;
+  *kink = stop == at_kink;
+  return stop;
 }
 
-/* dt for the next step, after a step of length dt was accepted. */
-static double WantedStep(const Stepper *s, double dt, bool kink, const Attempt *a)
+PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
 {
-  const StepperState *z = &s->state;
-  double              next;
-
-  if (!s->adaptive)
-    return z->hold > 0 ? z->dt : fmin(2.0 * z->dt, s->model->c->dt); /* back to the fixed step after a cut */
-  next = Controller(s, dt, a);
-  if (kink)
-    next *= CUT_AT_KINK;
-  return fmin(fmax(next, s->dt_min), s->dt_max);
-}
-
-static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a, PetscInt cuts)
-{
-  StepperState  *z    = &s->state;
-  const StepInfo info = {.dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts};
+  StepperState *z = &s->state;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates));
   PetscCall(UpdateScales(s));
-  z->step++;
-  z->t += dt;
-  z->dt      = WantedStep(s, dt, kink, a);
-  z->err_old = a->err;
-  z->fresh   = kink;
-  if (z->hold > 0)
-    z->hold--;
   z->newton_total += a->newton;
-  z->failures_total += cuts;
+  z->failures_total += info->cuts;
   z->limited_total += a->limited;
   for (int ph = 0; ph < PHASE_COUNT; ph++)
     z->out[ph] += a->out[ph];
@@ -258,82 +114,16 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
       z->meter[k][q] += a->meter[k][q];
   }
   if (s->monitor)
-    PetscCall(s->monitor(s, &info, s->monitor_ctx));
+    PetscCall(s->monitor(s, info, s->monitor_ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static const char *StatusName(ClStatus st)
+const char *StepperStatusName(ClStatus st)
 {
   static const char *const name[] = {"fine",          "inadmissible state", "not finite", "left the grid",
                                      "moved too far", "no solution",        "inaccurate", "fatal"};
 
   return name[st];
-}
-
-/* A cut that hardly lowers the error: it is noise of the space discretisation (particles that changed cells since the
-   last step), which no dt mends. */
-static bool IsNoise(const Stepper *s, double dt, double err, double dt_old, double err_old)
-{
-  return err_old > 0.0 && dt < dt_old && err > err_old * pow(dt / dt_old, 0.25 * s->scheme->error_order);
-}
-
-/* One step: attempts with ever smaller dt until one is accepted or the budget is spent. */
-static PetscErrorCode Step(Stepper *s, bool *ok)
-{
-  Model   *m = s->model;
-  ClStatus status;
-  double   dt_inaccurate = 0.0, err_inaccurate = 0.0;
-  bool     kink;
-
-  PetscFunctionBeginUser;
-  *ok = true;
-  PetscCall(ModelBeginStep(m, &status));
-  if (status != CL_OK) {
-    *ok = false;
-    PetscCall(PetscPrintf(m->grid.comm, "t = %.10g s: %s near (%.12g, %.12g) m; no smaller step can help\n", s->state.t,
-                          m->why, m->where[0], m->where[1]));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(SizeWork(s));
-  ModelStartVelocity(m, s->work.v_n);
-  for (PetscInt cuts = 0;; cuts++) {
-    const double dt = NextStep(s, &kink);
-    Attempt      a  = {.status = CL_OK};
-
-    PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * m->c->fields.n));
-    PetscCall(s->scheme->step(s, dt, &a));
-    if (a.status == CL_OK && s->adaptive && a.err > 1.0 && dt > s->dt_min) {
-      if (IsNoise(s, dt, a.err, dt_inaccurate, err_inaccurate))
-        a.err = 1.0;
-      else
-        a.status = CL_INACCURATE;
-    }
-    if (a.status == CL_OK) {
-      PetscCall(Accept(s, dt, kink, &a, cuts));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    const bool small = dt <= s->dt_min * (1.0 + 1e-9);
-    if (a.status == CL_INACCURATE) {
-      m->why         = "the error estimate stays above the tolerance";
-      dt_inaccurate  = dt;
-      err_inaccurate = a.err;
-      s->state.dt    = fmax(dt * fmax(0.2, 0.9 * pow(a.err, -1.0 / s->scheme->error_order)), s->dt_min);
-    } else {
-      s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
-      s->state.hold = HOLD;
-      PetscCall(PetscPrintf(m->grid.comm, "t = %g s: step of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-                            s->state.t, dt, StatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1],
-                            s->state.dt));
-    }
-    if (cuts >= s->max_failures || small) {
-      *ok = false;
-      PetscCall(
-          PetscPrintf(m->grid.comm,
-                      "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
-                      s->state.t, cuts + 1, m->why ? m->why : "?", StatusName(a.status), m->where[0], m->where[1]));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-  }
 }
 
 PetscErrorCode StepperRun(Stepper *s, bool *ok)
@@ -343,6 +133,6 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok)
   PetscFunctionBeginUser;
   *ok = true;
   for (PetscInt n = 0; *ok && n < s->max_steps && s->state.t < end * (1.0 - 1e-12); n++)
-    PetscCall(Step(s, ok));
+    PetscCall(s->scheme->advance(s, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

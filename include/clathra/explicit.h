@@ -1,0 +1,52 @@
+/* explicit: the paper's explicit-implicit scheme (section 3.4): nodal velocities with drag implicit, nodal rates of
+   temperature and pressure with the reaction implicit, all by small local solves, no matrix.  docs/equations.md,
+   section 12.  Same particles, laws and boundary conditions as the implicit model, whose grid, store and case it uses. */
+#pragma once
+
+#include "clathra/model.h"
+
+typedef struct {
+  bool   drag_implicit;      /* hybrid; explicit otherwise */
+  bool   tied;               /* nearly empty nodes follow their inner neighbour (41) */
+  bool   particle_pressures; /* the paper's bare form (72): rates of pressure by the particle, not shared over nodes */
+  double flip;               /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
+  double damping;            /* local damping of the mixture's out-of-balance force, [0,1) */
+  double mass_scaling;       /* factor on every inertia, >= 1 */
+} ExplicitOptions;
+
+/* What bounds a step. */
+typedef enum {
+  LIMIT_NONE = 0,
+  LIMIT_WAVE,      /* waves in the mixture */
+  LIMIT_WATER,     /* waves in the water */
+  LIMIT_GAS,       /* waves in the gas */
+  LIMIT_DIFFUSION, /* diffusion of pressure */
+  LIMIT_HEAT,      /* conduction of heat */
+  LIMIT_DRAG,      /* drag, taken explicitly */
+  LIMIT_COUNT
+} LimitKind;
+extern const char *const cl_limit_word[LIMIT_COUNT];
+
+typedef struct {
+  double    each[LIMIT_COUNT]; /* s: bound of each kind alone, INFINITY where there is none */
+  double    dt;                /* s: bound of all together */
+  LimitKind rules;
+} StableStep;
+
+typedef struct Explicit Explicit;
+
+PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **e);
+PetscErrorCode ExplicitDestroy(Explicit **e);
+/* Sorts the particles by cell and readies nodes and faces for a run of steps.  Collective. */
+PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status);
+/* Largest stable step on the present state (36)-(39).  Collective. */
+PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit);
+/* One step from t to t + dt on the committed state; adds what crossed the boundary and what heat changed (integrals over
+   the step: kg, J) to *sum.  A failed step leaves particles half-moved: the caller keeps a copy.  Collective. */
+PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status);
+/* Derived variables of the particles (porosity, saturation of water) for whoever reads them next. */
+PetscErrorCode ExplicitEnd(Explicit *e);
+/* Largest ratio, over the steps since the start, of the inertia that mass scaling added to the forces that act. */
+double ExplicitMassScalingError(const Explicit *e);
+/* Bytes a particle takes: store and work space. */
+double ExplicitBytesPerParticle(const Explicit *e);

@@ -1,0 +1,218 @@
+/* First pass: masses, momenta, forces, pressures and temperature of the particles to their nodes; docs/equations.md, section 12. */
+#include "lanes.h"
+#include "clathra/laws_batch.h"
+#include "clathra/tensor.h"
+
+#define MOBILITY_FLOOR 1e-9 /* of k_r, as in the implicit scheme */
+
+typedef struct {
+  double phi[BLOCK], Sh[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], drag[PHASE_COUNT][BLOCK], p[BLOCK];
+} Fluids;
+
+/* Shares, densities and drags at t_n (8)-(10), (16). */
+INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Fluids *w)
+{
+  const Material *mat = r.mat;
+  double *const  *f   = e->m->P.f;
+  const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, ka[BLOCK], kr[BLOCK];
+
+  LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
+  LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
+  for (int q = 0; q < r.n; q++) {
+    const double pore = V[q] - ms[q] / rho_s[q];
+
+    w->phi[q] = pore / V[q];
+    w->Sh[q]  = mh[q] / (rho_h[q] * pore);
+    w->sw[q]  = s.fluids ? 1.0 : 0.0;
+    w->p[q]   = 0.0;
+  }
+  if (!s.fluids)
+    return;
+  const double *restrict pw = f[P_PW] + r.p;
+  double *restrict sg = e->t[T_SG] + r.p, *restrict ds = e->t[T_DS] + r.p;
+
+  LiquidDensityBatch(&mat->water, r.n, pw, T, w->rho[PHASE_W]);
+  PermeabilityBatch(&mat->permeability, r.n, w->phi, w->Sh, ka);
+  for (int q = 0; q < r.n; q++) {
+    w->p[q]             = pw[q];
+    w->drag[PHASE_W][q] = mat->mu_w / ka[q];
+  }
+  if (s.fluids == 2) {
+    const double *restrict pg = f[P_PG] + r.p;
+    double pc[BLOCK], x[PHASE_COUNT][BLOCK];
+
+    for (int q = 0; q < r.n; q++)
+      pc[q] = pg[q] - pw[q];
+    RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
+    for (int q = 0; q < r.n; q++) {
+      const double of = mat->relperm.of_pores ? 1.0 - w->Sh[q] : 1.0;
+
+      w->sw[q]           = 1.0 - sg[q];
+      w->p[q]            = pw[q] + sg[q] * pc[q];
+      w->rho[PHASE_G][q] = mat->gas.M * pg[q] / (CL_GAS_CONSTANT * (T[q] + CL_ZERO_CELSIUS));
+      x[PHASE_W][q]      = of * w->sw[q];
+      x[PHASE_G][q]      = of * sg[q];
+    }
+    RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], kr);
+    for (int q = 0; q < r.n; q++)
+      w->drag[PHASE_W][q] /= Largest(kr[q], MOBILITY_FLOOR);
+    RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], kr);
+    for (int q = 0; q < r.n; q++)
+      w->drag[PHASE_G][q] = mat->mu_g / (ka[q] * Largest(kr[q], MOBILITY_FLOOR));
+  }
+  for (int k = 0; k < s.fluids; k++) {
+    for (int q = 0; q < r.n; q++) {
+      e->t[T_RHO + k][r.p + q]  = w->rho[k][q];
+      e->t[T_DRAG + k][r.p + q] = w->drag[k][q];
+    }
+  }
+}
+
+/* A block's values, one row of numbers for each particle; x, y: what is multiplied with the node's place in the 3 x 3 patch (carried values)
+   and with the gradients (forces). */
+typedef struct {
+  double value[BLOCK][4 * LANES], carry[CL_DIM][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
+} Values;
+
+/* V (p + g . (x_I - x_p)) at the lowest left node of the patch, and its growth from node to node (2). */
+INLINE void Carried(const Explicit *e, Run r, int lane, const double *restrict weight, const double *restrict y,
+                    const double *const g[CL_DIM], const Weights *w, Values *v)
+{
+  const Grid *grid = &e->m->grid;
+
+  for (int q = 0; q < r.n; q++) {
+    double at = y[q];
+
+    for (int d = 0; d < CL_DIM; d++) { /* x_p from the first node: S_1 + 2 S_2 cells on (weights reproduce the middle) */
+      at -= g[d][q] * (w->S[d][1][q] + 2.0 * w->S[d][2][q]) * grid->h[d];
+      v->carry[d][q][lane] = weight[q] * g[d][q] * grid->h[d];
+    }
+    v->value[q][lane] = weight[q] * at;
+  }
+}
+
+INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w, Values *v)
+{
+  double *const *f  = e->m->P.f;
+  const int      at = A_Mix(s);
+  const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
+  const double *restrict vx = f[P_VS] + r.p, *restrict vy = f[P_VS + 1] + r.p;
+  const double *restrict xx = f[P_SIG + XX] + r.p, *restrict yy = f[P_SIG + YY] + r.p, *restrict xy = f[P_SIG + XY] + r.p;
+
+  for (int q = 0; q < r.n; q++) {
+    const double m = ms[q] + mh[q];
+
+    v->value[q][at + MIX_FX] = v->value[q][at + MIX_FY] = 0.0;
+    v->value[q][at + MIX_M]                             = m;
+    v->value[q][at + MIX_VX]                            = m * vx[q];
+    v->value[q][at + MIX_VY]                            = m * vy[q];
+    v->force[0][q][at + MIX_FX]                         = -V[q] * (xx[q] - w->p[q]);
+    v->force[1][q][at + MIX_FX] = v->force[0][q][at + MIX_FY] = -V[q] * xy[q];
+    v->force[1][q][at + MIX_FY]                               = -V[q] * (yy[q] - w->p[q]);
+  }
+}
+
+INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Fluids *w, Values *v)
+{
+  double *const *f  = e->m->P.f;
+  const int      at = A_Fluid(s, k), vel = k ? P_VG : P_VW, grad = k ? P_GG : P_GW;
+  const double *restrict V = f[P_V] + r.p, *restrict m = f[P_MW + k] + r.p;
+  const double *restrict vx = f[vel] + r.p, *restrict vy = f[vel + 1] + r.p;
+  const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
+
+  for (int q = 0; q < r.n; q++) {
+    const double share = k ? 1.0 - w->sw[q] : w->sw[q];
+
+    v->value[q][at + FL_M]    = m[q];
+    v->value[q][at + FL_VX]   = m[q] * vx[q];
+    v->value[q][at + FL_VY]   = m[q] * vy[q];
+    v->value[q][at + FL_GX]   = -V[q] * gx[q];
+    v->value[q][at + FL_GY]   = -V[q] * gy[q];
+    v->value[q][at + FL_MI]   = V[q] * w->rho[k][q];
+    v->value[q][at + FL_DRAG] = V[q] * w->drag[k][q];
+    v->value[q][at + FL_W]    = V[q] * w->phi[q] * (1.0 - w->Sh[q]) * share;
+  }
+}
+
+INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Values *v)
+{
+  const int rows = Rows(A_Count(s)), stride = (int)e->m->grid.gm[0];
+
+  for (int q = 0; q < r.n; q++) {
+    const int   *slot = &e->slot[w->first[q]];
+    const Lanes *value = (const Lanes *)v->value[q];
+    const Lanes  cx = *(const Lanes *)v->carry[0][q], cy = *(const Lanes *)v->carry[1][q];
+    const Lanes  fx = *(const Lanes *)v->force[0][q], fy = *(const Lanes *)v->force[1][q];
+
+    for (int b = 0; b < 3; b++) {
+      const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
+
+      for (int a = 0; a < 3; a++) {
+        const double S = w->S[0][a][q] * Sy, Gx = w->D[0][a][q] * Sy, Gy = w->S[0][a][q] * Dy;
+        Lanes       *row = (Lanes *)e->A + (size_t)slot[b * stride + a] * (size_t)rows;
+        Lanes        first = value[0];
+
+        if (Scalars(s))
+          first += cx * (double)a + cy * (double)b;
+        row[0] += s.solid ? first * S + fx * Gx + fy * Gy : first * S;
+        for (int z = 1; z < rows; z++)
+          row[z] += value[z] * S;
+      }
+    }
+  }
+}
+
+INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
+{
+  _Alignas(64) Values v;
+  Weights             w;
+  Fluids              state;
+  double *const      *f = e->m->P.f;
+  const double       *T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p, *restrict V = f[P_V] + r.p;
+  double              C[BLOCK];
+
+  (void)dt;
+  WeightsOf(e, r, &w);
+  for (int q = 0; q < r.n; q++) {
+    for (int k = 0; k < LANES; k++)
+      v.carry[0][q][k] = v.carry[1][q][k] = v.force[0][q][k] = v.force[1][q][k] = 0.0;
+    for (int k = A_Count(s); k < LANES * Rows(A_Count(s)); k++)
+      v.value[q][k] = 0.0;
+    v.value[q][A_V(s)] = V[q];
+  }
+  State(e, s, r, T, &state);
+  for (int k = 0; k < s.fluids; k++) {
+    const double *g[CL_DIM] = {f[k ? P_GG : P_GW] + r.p, f[(k ? P_GG : P_GW) + 1] + r.p};
+
+    Carried(e, r, k, V, f[P_PW + k] + r.p, g, &w, &v);
+    FluidValues(e, s, r, k, &state, &v);
+  }
+  if (s.heat) {
+    const double *g[CL_DIM] = {f[P_GT] + r.p, f[P_GT + 1] + r.p};
+
+    for (int q = 0; q < r.n; q++) {
+      const PetscInt p = r.p + q;
+
+      C[q] = f[P_MS][p] * r.mat->c_s + f[P_MH][p] * r.mat->c_h;
+      if (s.fluids)
+        C[q] += f[P_MW][p] * r.mat->c_w;
+      if (s.fluids == 2)
+        C[q] += f[P_MG][p] * r.mat->c_g;
+      v.value[q][A_C(s)] = C[q];
+    }
+    Carried(e, r, s.fluids, C, T, g, &w, &v);
+  }
+  if (s.solid)
+    MixtureValues(e, s, r, &state, &v);
+  Scatter(e, s, r, &w, &v);
+}
+
+MAKE_LOOPS(DepositRun)
+
+void Deposit(Explicit *e)
+{
+  static const LoopTable table = LOOPS(DepositRun);
+
+  ForRuns(e, table, 0.0);
+}

@@ -1,0 +1,307 @@
+/* Life of the explicit integrator, order of the particles, and one step as a table of contents. */
+#include "lanes.h"
+
+PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out)
+{
+  const FieldSet *fs = &m->c->fields;
+  Explicit       *e;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&e));
+  e->m   = m;
+  e->o   = *o;
+  e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat};
+  *out   = e;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FreeParticles(Explicit *e)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < T_COUNT; k++)
+    PetscCall(PetscFree(e->t[k]));
+  PetscCall(PetscFree2(e->base[0], e->base[1]));
+  PetscCall(PetscFree2(e->order, e->key));
+  e->cap = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ExplicitDestroy(Explicit **out)
+{
+  Explicit *e = *out;
+
+  PetscFunctionBeginUser;
+  if (!e)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeParticles(e));
+  PetscCall(NodeMapDestroy(&e->map));
+  PetscCall(PetscFree(e->raw));
+  PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
+  PetscCall(PetscFree3(e->held, e->mask, e->fixed));
+  PetscCall(PetscFree(e->face));
+  PetscCall(PetscFree(e));
+  *out = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is this work array of use to the set? */
+static bool Needs(Set s, int k)
+{
+  if (k == T_T)
+    return !s.heat;
+  if (k == T_V)
+    return Scalars(s) > 0;
+  if (k == T_SG || k == T_DS || k >= T_GAIN)
+    return s.fluids == 2;
+  return s.fluids > 0; /* those of the gas, too: few, and the pointers stay simple */
+}
+
+static PetscErrorCode SizeParticles(Explicit *e)
+{
+  const PetscInt n = e->m->P.cap;
+
+  PetscFunctionBeginUser;
+  if (n <= e->cap)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeParticles(e));
+  for (int k = 0; k < T_COUNT; k++) {
+    if (Needs(e->set, k))
+      PetscCall(PetscCalloc1(n, &e->t[k]));
+  }
+  PetscCall(PetscMalloc2(n, &e->base[0], n, &e->base[1]));
+  PetscCall(PetscMalloc2(n, &e->order, n, &e->key));
+  e->cap = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* First nodes of all particles; notes whether one is new, or belongs to another rank's cell. */
+static void Look(Explicit *e)
+{
+  const Model *m = e->m;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    const Grid  *g     = &m->grid;
+    const double h = g->h[d], lower = g->lower[d], cells = (double)g->cells[d], first = (double)g->xs[d];
+    const double end = (double)(g->xs[d] + g->xm[d]) + (g->xs[d] + g->xm[d] > g->cells[d] ? 1.0 : 0.0);
+    const bool   linear = m->c->basis == BASIS_LINEAR;
+    const double *restrict x = m->P.f[P_X + d], *restrict l = m->P.f[P_L + d];
+    int *restrict base = e->base[d];
+    int changed = 0, strays = 0;
+
+    for (PetscInt p = 0; p < m->P.n; p++) {
+      const double s   = (x[p] - lower) / h;
+      const int    now = (int)floor(linear ? BasisSnap(s) : BasisDomainOf(x[p], l[p], lower, h, cells).lo);
+
+      changed |= now != base[p];
+      strays |= (s < first) | (s >= end);
+      base[p] = now;
+    }
+    e->stale  = e->stale || changed;
+    e->strays = e->strays || strays;
+  }
+}
+
+/* ---------------------------------------------------------------- order of the particles: by cell, then by id */
+static PetscErrorCode Permute(Explicit *e)
+{
+  Particles *P = &e->m->P;
+  double    *copy;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(P->n, &copy));
+  for (int k = 0; k < P_COUNT; k++) {
+    if (!P->f[k])
+      continue;
+    for (PetscInt p = 0; p < P->n; p++)
+      copy[p] = P->f[k][e->order[p]];
+    PetscCall(PetscArraycpy(P->f[k], copy, P->n));
+  }
+  PetscInt *whole = (PetscInt *)copy;
+  for (int k = 0; k < PI_COUNT; k++) {
+    for (PetscInt p = 0; p < P->n; p++)
+      whole[p] = P->i[k][e->order[p]];
+    PetscCall(PetscArraycpy(P->i[k], whole, P->n));
+  }
+  PetscCall(PetscFree(copy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Sort(Explicit *e)
+{
+  const Grid *g = &e->m->grid;
+  Particles  *P = &e->m->P;
+  bool        sorted = true;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < P->n; p++) {
+    const double x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
+    PetscInt     cell[CL_DIM];
+
+    if (!GridCell(g, x, cell))
+      cell[0] = cell[1] = 0;
+    e->order[p] = P->i[PI_ID][p];
+    e->key[p]   = (cell[1] - g->gs[1]) * g->gm[0] + cell[0] - g->gs[0];
+    sorted      = sorted && (p == 0 || e->key[p] > e->key[p - 1] || (e->key[p] == e->key[p - 1] && e->order[p] > e->order[p - 1]));
+  }
+  if (sorted)
+    PetscFunctionReturn(PETSC_SUCCESS);
+
+  PetscInt *rank; /* particles by id, then stably by cell */
+  PetscCall(PetscMalloc1(P->n, &rank));
+  for (PetscInt p = 0; p < P->n; p++)
+    rank[p] = p;
+  PetscCall(PetscSortIntWithArray(P->n, e->order, rank));
+  PetscInt *at, cells = g->gm[0] * g->gm[1];
+  PetscCall(PetscCalloc1(cells + 1, &at));
+  for (PetscInt p = 0; p < P->n; p++)
+    at[e->key[p] + 1]++;
+  for (PetscInt k = 0; k < cells; k++)
+    at[k + 1] += at[k];
+  for (PetscInt p = 0; p < P->n; p++)
+    e->order[at[e->key[rank[p]]]++] = rank[p];
+  PetscCall(PetscFree(at));
+  PetscCall(PetscFree(rank));
+  PetscCall(Permute(e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ForRuns(Explicit *e, const LoopTable table, double dt)
+{
+  const Loop      loop   = table[e->set.solid][e->set.fluids][e->set.heat];
+  const Case     *c      = e->m->c;
+  const PetscInt *region = e->m->P.i[PI_REGION];
+
+  for (PetscInt p = 0; p < e->m->P.n;) {
+    const PetscInt material = c->region[region[p]].material;
+    int            n        = 1;
+
+    while (n < BLOCK && p + n < e->m->P.n && c->region[region[p + n]].material == material)
+      n++;
+    loop(e, (Run){p, n, &c->material[material]}, dt);
+    p += n;
+  }
+}
+
+void ExplicitFail(Explicit *e, ClStatus status, const char *why, PetscInt p)
+{
+  ModelNoteFailure(e->m, status, why, p);
+}
+
+/* ---------------------------------------------------------------- steps */
+static PetscErrorCode Ready(Explicit *e)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Sort(e));
+  PetscCall(SizeParticles(e));
+  for (PetscInt p = 0; e->t[T_T] && p < e->m->P.n; p++)
+    e->t[T_T][p] = e->m->c->region[e->m->P.i[PI_REGION][p]].temperature;
+  e->strays = false;
+  Look(e);
+  e->stale = true;
+  PetscCall(FacesBegin(e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
+{
+  PetscFunctionBeginUser;
+  e->m->status = CL_OK;
+  PetscCall(SizeParticles(e));
+  PetscCall(Ready(e));
+  PetscCall(ModelReduceStatus(e->m, status));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Agreement of all ranks on how the step went, and what follows from where the particles are now. */
+static PetscErrorCode Agree(Explicit *e, ClStatus *status)
+{
+  Model   *m       = e->m;
+  int      flag[3] = {m->status != CL_OK, e->stale, e->strays};
+  PetscInt left;
+
+  PetscFunctionBeginUser;
+  *status = m->status;
+  if (m->grid.size > 1) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 3, MPI_INT, MPI_MAX, m->grid.comm));
+    if (flag[0])
+      PetscCall(ModelReduceStatus(m, status));
+  }
+  e->stale  = flag[1];
+  e->strays = flag[2];
+  if (*status != CL_OK || !e->strays || m->grid.size == 1)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
+  PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
+  PetscCall(SizeParticles(e));
+  PetscCall(Ready(e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status)
+{
+  Model    *m = e->m;
+  const Set s = e->set;
+
+  PetscFunctionBeginUser;
+  m->status  = CL_OK;
+  e->latent = e->advected = 0.0;
+  BcValuesEvaluate(m->c, t + dt, &m->bc);
+  if (e->stale)
+    PetscCall(NodesRebuild(e));
+  e->stale = e->strays = false;
+  PetscCall(PetscArrayzero(e->A, e->rows * LANES * Rows(A_Count(s))));
+  Deposit(e);
+  FacesForces(e, dt);
+  PetscCall(NodeMapSum(&e->map, e->A, LANES * Rows(A_Count(s))));
+  PetscCall(NodesVelocities(e, dt));
+  if (Scalars(s)) {
+    PetscCall(PetscArrayzero(e->R, e->rows * LANES * Rows(R_Count(s))));
+    Rates(e, dt);
+    FacesRates(e, dt, sum);
+    PetscCall(NodeMapSum(&e->map, e->R, LANES * Rows(R_Count(s))));
+    PetscCall(NodesScalars(e, dt, sum));
+  }
+  Update(e, dt);
+  sum->heat_source += e->latent - e->advected;
+  Look(e);
+  PetscCall(Agree(e, status));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ExplicitEnd(Explicit *e)
+{
+  Particles *P = &e->m->P;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < P->n; p++) {
+    const Material *mat = &e->m->c->material[e->m->c->region[P->i[PI_REGION][p]].material];
+    double          d[2], sg = 0.0;
+    const double    T    = e->set.heat ? P->f[P_T][p] : e->t[T_T][p];
+    const double    pore = P->f[P_V][p] - P->f[P_MS][p] / LiquidDensity(&mat->solid, 0.0, T, &d[0], &d[1]);
+    const double    Sh   = P->f[P_MH][p] / (pore * LiquidDensity(&mat->hydrate, 0.0, T, &d[0], &d[1]));
+
+    if (e->set.fluids == 2)
+      sg = RetentionGasShare(&mat->retention, P->f[P_PG][p] - P->f[P_PW][p], &d[0]);
+    P->f[P_PHI][p] = pore / P->f[P_V][p];
+    P->f[P_SH][p]  = Sh;
+    if (e->set.fluids)
+      P->f[P_SW][p] = (1.0 - Sh) * (1.0 - sg);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+double ExplicitMassScalingError(const Explicit *e)
+{
+  return e->worst_scaling;
+}
+
+double ExplicitBytesPerParticle(const Explicit *e)
+{
+  double bytes = PI_COUNT * sizeof(PetscInt) + 4 * sizeof(int);
+
+  for (int k = 0; k < P_COUNT; k++)
+    bytes += e->m->P.f[k] ? sizeof(double) : 0;
+  for (int k = 0; k < T_COUNT; k++)
+    bytes += e->t[k] ? sizeof(double) : 0;
+  return bytes;
+}

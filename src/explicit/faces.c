@@ -1,0 +1,178 @@
+/* Surface faces: forces in the first pass, what crosses them in the second; docs/equations.md, sections 6 and 12. */
+#include "lanes.h"
+
+static bool Acts(const Case *c, const Face *f)
+{
+  bool counted = false;
+
+  for (PetscInt k = 0; k < c->nmeter; k++)
+    counted = counted || MeterCovers(&c->meter[k], f);
+  return counted || f->traction >= 0 || f->pressure >= 0 || f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 || f->inflow >= 0;
+}
+
+/* Weights of a face's particle where it is now. */
+static void Place(const Explicit *e, PetscInt p, Stencil *s)
+{
+  const Grid *g = &e->m->grid;
+
+  s->r = 0.0;
+  for (int d = 0; d < CL_DIM; d++)
+    BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][p], e->m->P.f[P_L + d][p], g->lower[d], g->h[d], g->cells[d], &s->axis[d]);
+}
+
+/* The faces on which something is prescribed or counted; the rest are closed, adiabatic and free by themselves. */
+PetscErrorCode FacesBegin(Explicit *e)
+{
+  Stencil *stencil;
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(e->m->P.n, &stencil));
+  for (PetscInt p = 0; p < e->m->P.n; p++) {
+    if (e->m->P.i[PI_FACES][p])
+      Place(e, p, &stencil[p]);
+  }
+  PetscCall(FacesBuild(e->m->c, &e->m->grid, &e->m->P, stencil, &e->nface, &e->face));
+  for (PetscInt k = 0; k < e->nface; k++) {
+    if (Acts(e->m->c, &e->face[k]))
+      e->face[n++] = e->face[k];
+  }
+  e->nface = n;
+  PetscCall(PetscFree(stencil));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  int      n;
+  PetscInt node[CL_NODES];
+} Nodes;
+
+/* A face with its nodes, in the order of its weights. */
+static void Reach(const Explicit *e, Face *f, bool place, Nodes *r)
+{
+  Stencil s;
+  double  S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
+
+  Place(e, f->particle, &s);
+  if (place)
+    FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
+  r->n = StencilExpand(&s, &e->m->grid, &e->map, r->node, S, G, H);
+}
+
+/* Inputs of a face at t_n: the particle's own values and gradients. */
+static void Inputs(const Explicit *e, const Face *f, double in[IN_COUNT])
+{
+  double *const *P = e->m->P.f;
+  const PetscInt p = f->particle;
+  const Set      s = e->set;
+
+  for (int q = 0; q < IN_COUNT; q++)
+    in[q] = 0.0;
+  in[IN_T] = s.heat ? P[P_T][p] : e->t[T_T][p];
+  for (int k = 0; k < s.fluids; k++) {
+    in[IN_P + k] = P[P_PW + k][p];
+    for (int d = 0; d < CL_DIM; d++)
+      in[IN_GP + 2 * k + d] = P[(k ? P_GG : P_GW) + d][p];
+  }
+  for (int d = 0; s.heat && d < CL_DIM; d++)
+    in[IN_GT + d] = P[P_GT + d][p];
+}
+
+static double Conductivity(const Explicit *e, PetscInt p)
+{
+  double *const  *P    = e->m->P.f;
+  const Set       s    = e->set;
+  const Material *mat  = &e->m->c->material[e->m->c->region[e->m->P.i[PI_REGION][p]].material];
+  const double    X[4] = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g};
+  double          d[3], dT, dp, T = s.heat ? P[P_T][p] : e->t[T_T][p];
+  const double    pore = P[P_V][p] - P[P_MS][p] / LiquidDensity(&mat->solid, 0.0, T, &dp, &dT);
+  const double    Sh = P[P_MH][p] / (pore * LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT));
+  const double    sw = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
+
+  return MixtureAverage(pore / P[P_V][p], Sh, sw, X, &d[0], &d[1], &d[2]);
+}
+
+static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT], double dt, FaceOutput *o)
+{
+  const Material *mat = &e->m->c->material[e->m->c->region[f->region].material];
+  double          p0[PHASE_COUNT];
+
+  ModelInitialAtFace(e->m, f, p0);
+  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, e->set.heat ? Conductivity(e, f->particle) : 0.0, dt, o);
+}
+
+/* Tractions, and for the fluids what a prescribed pressure differs from the body's own at the face. */
+void FacesForces(Explicit *e, double dt)
+{
+  const Set s     = e->set;
+  const int width = LANES * Rows(A_Count(s));
+
+  for (PetscInt k = 0; k < e->nface; k++) {
+    Face      *f = &e->face[k];
+    Nodes      r;
+    FaceOutput o;
+    double     in[IN_COUNT], force[PHASE_COUNT][CL_DIM] = {{0.0}};
+
+    Reach(e, f, true, &r);
+    Inputs(e, f, in);
+    Evaluate(e, f, in, dt, &o);
+    for (int ph = 0; ph < s.fluids; ph++) {
+      const double p = in[IN_P + ph] + in[IN_GP + 2 * ph] * f->r[0] + in[IN_GP + 2 * ph + 1] * f->r[1];
+
+      for (int d = 0; d < CL_DIM; d++)
+        force[ph][d] = p * f->n[d] - o.out[F_VWX + 2 * ph + d];
+    }
+    for (int a = 0; a < r.n; a++) {
+      double *row = &e->A[r.node[a] * width];
+
+      for (int d = 0; d < CL_DIM; d++) {
+        if (s.solid)
+          row[A_Mix(s) + MIX_FX + d] -= f->N[a] * o.out[F_VSX + d];
+        for (int ph = 0; ph < s.fluids; ph++)
+          row[A_Fluid(s, ph) + FL_GX + d] += f->N[a] * force[ph][d];
+      }
+    }
+  }
+}
+
+/* Darcy fluxes at the face (19), with its own weights. */
+static void Fluxes(const Explicit *e, const Face *f, const Nodes *r, double in[IN_COUNT])
+{
+  const Set s     = e->set;
+  const int width = LANES * Rows(B_Count(s));
+
+  for (int a = 0; a < r->n; a++) {
+    for (int ph = 0; ph < s.fluids; ph++) {
+      for (int d = 0; d < CL_DIM; d++)
+        in[IN_J + 2 * ph + d] += f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
+    }
+  }
+}
+
+void FacesRates(Explicit *e, double dt, StageRates *rates)
+{
+  const Set s     = e->set;
+  const int width = LANES * Rows(R_Count(s));
+
+  for (PetscInt k = 0; k < e->nface; k++) {
+    Face      *f = &e->face[k];
+    Nodes      r;
+    FaceOutput o;
+    double     in[IN_COUNT], weight = 0.0;
+
+    Reach(e, f, false, &r);
+    Inputs(e, f, in);
+    Fluxes(e, f, &r, in);
+    Evaluate(e, f, in, dt, &o);
+    for (int a = 0; a < r.n; a++) {
+      double *row = &e->R[r.node[a] * width];
+
+      weight += f->N[a];
+      for (int ph = 0; ph < s.fluids; ph++)
+        row[ph] -= f->N[a] * o.out[F_PW + ph];
+      if (s.heat)
+        row[s.fluids] -= dt * f->N[a] * o.out[F_T];
+    }
+    ModelCountFace(e->m->c, f, dt * weight, &o, rates);
+  }
+}

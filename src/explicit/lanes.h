@@ -1,0 +1,207 @@
+/* Private to explicit/: how particles and nodes are laid out for the loops.
+   Particles are taken BLOCK at a time, sorted by cell, all of one material: what happens at a particle runs over arrays of a block.
+   What a particle gives to or takes from a node is a row of numbers next to each other, so that one vector instruction moves eight of
+   them.  Every loop is made once for each set of fields: a field that is not there leaves no trace. */
+#pragma once
+
+#include "clathra/explicit.h"
+
+#define BLOCK 32
+#define LANES 8
+#define INLINE static inline __attribute__((always_inline))
+
+typedef double Lanes __attribute__((vector_size(LANES * sizeof(double))));
+
+/* A set of fields as the loops know it; a constant in each of them. */
+typedef struct {
+  int solid, fluids, heat; /* 0/1; water, water and gas; 0/1 */
+} Set;
+
+INLINE int Scalars(Set s) /* unknowns of mass and heat: p_w, p_g, T */
+{
+  return s.fluids + s.heat;
+}
+INLINE int Rows(int n)
+{
+  return (n + LANES - 1) / LANES;
+}
+
+/* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture and each fluid. */
+enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
+enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_COUNT };
+INLINE int A_V(Set s)
+{
+  return Scalars(s);
+}
+INLINE int A_C(Set s)
+{
+  return Scalars(s) + 1;
+}
+INLINE int A_Mix(Set s)
+{
+  return Scalars(s) + 1 + s.heat;
+}
+INLINE int A_Fluid(Set s, int f)
+{
+  return A_Mix(s) + MIX_COUNT * s.solid + FL_COUNT * f;
+}
+INLINE int A_Count(Set s)
+{
+  return A_Fluid(s, s.fluids);
+}
+
+/* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment and velocity; increment
+   of v_s. */
+enum { B_J = 0, B_PROJ = 2, B_DV = 4, B_VEL = 6, B_PER_FLUID = 8 };
+INLINE int B_T(Set s)
+{
+  return 2 * s.solid;
+}
+INLINE int B_P(Set s, int f)
+{
+  return 2 * s.solid + s.heat + f;
+}
+INLINE int B_Fluid(Set s, int f)
+{
+  return 2 * s.solid + s.heat + s.fluids + B_PER_FLUID * f;
+}
+INLINE int B_DVs(Set s)
+{
+  return B_Fluid(s, s.fluids);
+}
+INLINE int B_Count(Set s)
+{
+  return B_DVs(s) + 2 * s.solid;
+}
+
+/* ... and to nodes: what is missing of each scalar, then the matrix that says what a change of the scalars makes of it. */
+INLINE int R_Matrix(Set s)
+{
+  return Scalars(s);
+}
+INLINE int R_Count(Set s)
+{
+  return Scalars(s) * (Scalars(s) + 1);
+}
+
+/* Third pass, from nodes: increments of the scalars, their end values (gradients), v_s; a dry body has its increment of v_s here. */
+INLINE int C_End(Set s)
+{
+  return Scalars(s);
+}
+INLINE int C_Vs(Set s)
+{
+  return 2 * Scalars(s);
+}
+INLINE int C_DVs(Set s)
+{
+  return C_Vs(s) + 2;
+}
+
+/* What a step keeps per particle between its passes. */
+enum {
+  T_T = 0,          /* degC, where heat has no field */
+  T_SG,             /* share of gas and its slope */
+  T_DS,
+  T_RHO,            /* [2] densities of the fluids */
+  T_DRAG = T_RHO + 2, /* [2] mu/(k_a k_r) */
+  T_V    = T_DRAG + 2, /* volume at the end of the step */
+  T_EOS,            /* [2] masses at that volume and the old pressures */
+  T_SLOPE = T_EOS + 2, /* [2][3] their slopes in p_w, p_g, T */
+  T_GAIN  = T_SLOPE + 6, /* hydrate: gain at the old p and T, slopes in p and T */
+  T_GAIN_P,
+  T_GAIN_T,
+  T_COUNT
+};
+
+typedef struct {
+  int  root;  /* node whose group this one belongs to; its own number if it stands for itself */
+  int  held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
+  bool leads; /* others belong to its group */
+} NodeInfo;
+
+struct Explicit {
+  Model          *m;
+  ExplicitOptions o;
+  Set             set;
+  PetscInt        cap; /* of the arrays over particles */
+  double         *t[T_COUNT];
+  int            *base[CL_DIM];      /* first node along each axis, as at the last look */
+  PetscInt       *order, *key;       /* work space of the sort */
+  NodeMap         map;
+  int            *slot;              /* padded grid node -> row */
+  PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
+  double         *raw;               /* memory of the arrays below */
+  double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of whole groups */
+  double         *inc;               /* [rows][6] increments of the velocities of a group */
+  double         *gain;              /* [rows][3] increments of the scalars of a group */
+  double         *link;              /* [rows] which neighbour a nearly empty node follows, as it travels between ranks */
+  NodeInfo       *node;              /* [rows] */
+  PetscInt        nheld, *held;      /* local nodes with prescribed unknowns */
+  unsigned       *mask;              /* ... which */
+  double         *fixed;             /* ... and their values, [nheld][fields.n] */
+  PetscInt        nface;
+  Face           *face;
+  bool            stale, strays; /* a particle reaches other nodes; a particle left this rank's cells */
+  double          latent, advected; /* J over the step */
+  double          added, acting; /* norms of what mass scaling adds to inertia and of the forces that act, this step */
+  double          worst_scaling;
+};
+
+/* Weights of a block of particles. */
+typedef struct {
+  double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
+  int    first[BLOCK]; /* padded number of the lowest left node */
+} Weights;
+
+/* A run of particles of one material. */
+typedef struct {
+  PetscInt        p;
+  int             n;
+  const Material *mat;
+} Run;
+
+void WeightsOf(const Explicit *e, Run r, Weights *w);
+/* Notes that particle p cannot go on. */
+void ExplicitFail(Explicit *e, ClStatus status, const char *why, PetscInt p);
+
+void Deposit(Explicit *e);
+void Rates(Explicit *e, double dt);
+void Update(Explicit *e, double dt);
+/* Calls the loop made for the set of the scene on every run of particles. */
+typedef void (*Loop)(Explicit *e, Run r, double dt);
+typedef Loop LoopTable[2][3][2]; /* [solid][fluids][heat] */
+void         ForRuns(Explicit *e, const LoopTable table, double dt);
+#define LOOPS(f)                                                                                                       \
+  {{{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}}, {{f##_100, f##_101}, {f##_110, f##_111}, {f##_120, f##_121}}}
+#define MAKE_LOOP(f, solid, fluids, heat)                                                                              \
+  static void f##_##solid##fluids##heat(Explicit *e, Run r, double dt)                                                 \
+  {                                                                                                                    \
+    f(e, (Set){solid, fluids, heat}, r, dt);                                                                           \
+  }
+#define MAKE_LOOPS(f)                                                                                                  \
+  MAKE_LOOP(f, 0, 0, 1)                                                                                                \
+  MAKE_LOOP(f, 0, 1, 0)                                                                                                \
+  MAKE_LOOP(f, 0, 1, 1)                                                                                                \
+  MAKE_LOOP(f, 0, 2, 0)                                                                                                \
+  MAKE_LOOP(f, 0, 2, 1)                                                                                                \
+  MAKE_LOOP(f, 1, 0, 0)                                                                                                \
+  MAKE_LOOP(f, 1, 0, 1)                                                                                                \
+  MAKE_LOOP(f, 1, 1, 0)                                                                                                \
+  MAKE_LOOP(f, 1, 1, 1)                                                                                                \
+  MAKE_LOOP(f, 1, 2, 0)                                                                                                \
+  MAKE_LOOP(f, 1, 2, 1)
+
+/* Node side. */
+PetscErrorCode NodesRebuild(Explicit *e);                           /* numbering, when particles reach other nodes */
+PetscErrorCode NodesVelocities(Explicit *e, double dt);             /* A -> B */
+PetscErrorCode NodesScalars(Explicit *e, double dt, StageRates *r); /* R -> C */
+void           FacesForces(Explicit *e, double dt);
+void           FacesRates(Explicit *e, double dt, StageRates *r);
+PetscErrorCode FacesBegin(Explicit *e);
+void           FacesPlace(Explicit *e);
+
+INLINE double Largest(double a, double b)
+{
+  return a > b ? a : b;
+}

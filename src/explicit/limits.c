@@ -1,0 +1,151 @@
+/* The largest stable step (36)-(39). */
+#include "lanes.h"
+
+const char *const cl_limit_word[LIMIT_COUNT] = {"none",           "waves in the mixture",  "waves in the water", "waves in the gas",
+                                                "diffusion of pressure", "conduction of heat", "explicit drag"};
+
+/* What one particle contributes: squares of the highest frequencies (1/s^2), rates of decay of relative motion (1/s). */
+typedef struct {
+  double wave, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT], heat; /* both: drag felt by fluid and skeleton */
+  int    fluids;
+} Spectrum;
+
+/* Change of pressure per change of the volume of each fluid, C^-1 (1/Pa)^-1. */
+static void Stiffness(const Set s, const Material *mat, const PointProperties *q, double pc, double C[2][2])
+{
+  if (s.fluids == 1) {
+    C[0][0] = 1.0 / q->storage[PHASE_W];
+    return;
+  }
+  double       ds;
+  const double open = q->phi * (1.0 - q->Sh);
+
+  RetentionGasShare(&mat->retention, pc, &ds);
+  const double c = open * ds, det = q->storage[PHASE_W] * q->storage[PHASE_G] - c * c;
+
+  C[0][0] = q->storage[PHASE_G] / det;
+  C[1][1] = q->storage[PHASE_W] / det;
+  C[0][1] = C[1][0] = c / det;
+}
+
+static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
+{
+  const Model    *m = e->m;
+  const Set       s = e->set;
+  const Case     *c = m->c;
+  const Material *mat = &c->material[c->region[m->P.i[PI_REGION][p]].material];
+  double *const  *f   = (double *const *)m->P.f;
+  const double    T = s.heat ? f[P_T][p] : e->t[T_T][p], pw = s.fluids ? f[P_PW][p] : 0.0, pg = s.fluids == 2 ? f[P_PG][p] : 0.0;
+  const char     *why;
+  PointProperties q;
+  double          C[2][2] = {{0.0}}, k2 = 0.0, bulk = 0.0, skeleton, rho;
+
+  const ClStatus status = PointPropertiesEvaluate(&c->fields, mat, f[P_V][p], f[P_MS][p], f[P_MH][p], pw, pg, T, 1.0, &q, &why);
+  if (status != CL_OK)
+    return status;
+  for (int d = 0; d < CL_DIM; d++)
+    k2 += 4.0 / PetscSqr(m->grid.h[d]);
+  *w  = (Spectrum){.fluids = s.fluids};
+  rho = (f[P_MS][p] + f[P_MH][p]) / f[P_V][p];
+  if (s.fluids)
+    Stiffness(s, mat, &q, pg - pw, C);
+  skeleton = q.M;
+  double total = rho;
+  for (int i = 0; i < s.fluids; i++) {
+    const double share = q.phi * (1.0 - q.Sh) * q.s[i];
+
+    total += share * q.rho[i];
+    w->fluid[i] = k2 * share * C[i][i] / (q.rho[i] * e->o.mass_scaling);
+    w->drag[i]  = q.drag[i] * share / (q.rho[i] * e->o.mass_scaling);
+    w->both[i]  = q.drag[i] * share * (1.0 / q.rho[i] + share / rho) / e->o.mass_scaling;
+    for (int j = 0; j < s.fluids; j++) {
+      const double other = q.phi * (1.0 - q.Sh) * q.s[j];
+
+      bulk += q.s[i] * C[i][j] * q.s[j];
+      skeleton += (q.s[i] - share) * C[i][j] * (q.s[j] - other);
+    }
+  }
+  if (s.solid)
+    w->wave = k2 * Largest(skeleton / rho, (q.M + bulk) / total) / e->o.mass_scaling;
+  if (s.heat)
+    w->heat = k2 * q.kappa * f[P_V][p] / q.capacity;
+  return CL_OK;
+}
+
+/* Left side of (38); a step is stable while it is below 4. */
+static double Growth(const Spectrum *w, bool implicit, double dt)
+{
+  double sum = dt * dt * w->wave;
+
+  for (int i = 0; i < w->fluids; i++)
+    sum += implicit ? 2.0 * dt * dt * w->fluid[i] / (1.0 + dt * w->drag[i]) : 2.0 * dt * dt * w->fluid[i] + 2.0 * dt * w->both[i];
+  return sum;
+}
+
+/* Largest step with Growth <= 4, by bisection of its logarithm. */
+static double Together(const Spectrum *w, bool implicit)
+{
+  double lo = 1e-30, hi = 1e30;
+
+  if (Growth(w, implicit, hi) <= 4.0)
+    return INFINITY;
+  while (hi > lo * (1.0 + 1e-9)) {
+    const double mid = sqrt(lo * hi);
+
+    if (Growth(w, implicit, mid) > 4.0)
+      hi = mid;
+    else
+      lo = mid;
+  }
+  return lo;
+}
+
+static void Lower(double *bound, double by)
+{
+  *bound = by < *bound ? by : *bound; /* also where by is infinite; NaN never lowers */
+}
+
+/* Each kind alone, for the reader; a fluid whose drag damps the wave within a step diffuses. */
+static void Each(const Spectrum *w, bool implicit, double each[LIMIT_COUNT])
+{
+  Lower(&each[LIMIT_WAVE], 2.0 / sqrt(w->wave));
+  Lower(&each[LIMIT_HEAT], 2.0 / w->heat);
+  for (int i = 0; i < w->fluids; i++) {
+    const double lambda = w->drag[i], square = w->fluid[i];
+
+    if (!implicit) {
+      Lower(&each[LIMIT_WATER + i], sqrt(2.0 / square));
+      Lower(&each[LIMIT_DRAG], 2.0 / w->both[i]);
+      continue;
+    }
+    const double dt = (lambda + sqrt(lambda * lambda + 2.0 * square)) / square; /* dt^2 Omega^2 = 2 (1 + lambda dt) */
+    Lower(&each[lambda * dt > 1.0 ? (int)LIMIT_DIFFUSION : LIMIT_WATER + i], dt);
+  }
+}
+
+PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit)
+{
+  double bound[LIMIT_COUNT + 1];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k <= LIMIT_COUNT; k++)
+    bound[k] = INFINITY;
+  for (PetscInt p = 0; p < e->m->P.n; p++) {
+    Spectrum w;
+
+    if (SpectrumOf(e, p, &w) != CL_OK)
+      continue; /* the step itself will say why */
+    Each(&w, e->o.drag_implicit, bound);
+    Lower(&bound[LIMIT_COUNT], Together(&w, e->o.drag_implicit));
+    Lower(&bound[LIMIT_COUNT], 2.0 / w.heat);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, LIMIT_COUNT + 1, MPI_DOUBLE, MPI_MIN, e->m->grid.comm));
+  limit->dt    = bound[LIMIT_COUNT];
+  limit->rules = LIMIT_NONE;
+  for (int k = LIMIT_NONE; k < LIMIT_COUNT; k++) {
+    limit->each[k] = bound[k];
+    if (bound[k] < limit->each[limit->rules])
+      limit->rules = (LimitKind)k;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

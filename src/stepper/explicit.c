@@ -1,0 +1,186 @@
+/* hybrid and explicit: many small steps without a matrix between two looks at the clock; docs/equations.md, section 12. */
+#include "clathra/stepper.h"
+
+#define BURST 256 /* steps between two estimates of the stable step, and at most lost by a failure */
+#define CUT 0.5   /* of the step after a burst that failed */
+#define HOLD 8    /* bursts at the smaller step after that */
+
+static PetscErrorCode Create(Stepper *s)
+{
+  const Case           *c = s->model->c;
+  const ExplicitOptions o = {.drag_implicit = s->scheme == &StepperScheme_Hybrid,
+                             .tied          = c->tied,
+                             .flip          = c->flip,
+                             .damping       = c->damping,
+                             .mass_scaling  = c->mass_scaling};
+
+  PetscFunctionBeginUser;
+  PetscCall(ExplicitCreate(s->model, &o, &s->explicit));
+  PetscCall(ParticlesCreate(c->fields.has, &s->good));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Stepper *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ExplicitDestroy(&s->explicit));
+  PetscCall(ParticlesDestroy(&s->good));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A fixed step above the stable one is refused. */
+static PetscErrorCode CheckFixed(Stepper *s, bool *ok)
+{
+  const double dt = s->model->c->dt;
+
+  PetscFunctionBeginUser;
+  if (s->adaptive || s->model->c->force_dt || dt <= s->limit.dt)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  *ok = false;
+  PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
+                         "clathra: %s: stepper_dt = %g s is above the stable step of %g s (%s rules); allowed (0 s,%g s], or -stepper_force_dt "
+                         "yes, or -stepper_adapt yes\n",
+                         s->model->c->file, dt, s->limit.dt, cl_limit_word[s->limit.rules], s->limit.dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Ready(Stepper *s, bool *ok)
+{
+  char     text[512];
+  size_t   n = 0;
+  ClStatus status;
+
+  PetscFunctionBeginUser;
+  PetscCall(ExplicitBegin(s->explicit, &status));
+  PetscCall(ExplicitStableStep(s->explicit, &s->limit));
+  for (int k = LIMIT_NONE + 1; k < LIMIT_COUNT; k++) {
+    if (s->limit.each[k] < INFINITY && n < sizeof(text))
+      n += (size_t)snprintf(text + n, sizeof(text) - n, "%s %s %.3g s", n ? "," : "", cl_limit_word[k], s->limit.each[k]);
+  }
+  PetscCall(PetscPrintf(s->model->grid.comm, "  stable step %.4g s:%s; %s rules; the reaction is implicit and sets no bound\n", s->limit.dt,
+                        text, cl_limit_word[s->limit.rules]));
+  if (!(s->limit.dt > 0.0)) {
+    *ok = false;
+    PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
+                           "clathra: %s: stepper_type: %s has no stable step here (water without compressibility carries waves at any "
+                           "speed); use sdirk2 or euler\n",
+                           s->model->c->file, s->scheme->name));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CheckFixed(s, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Steps to take until the next stop, and their length. */
+static PetscInt Plan(const Stepper *s, double stop, double *dt)
+{
+  const StepperState *z     = &s->state;
+  const double        left  = stop - z->t, share = s->model->c->cfl * s->limit.dt;
+  const double        free_ = s->adaptive ? fmin(share, s->dt_max) : s->model->c->dt, wanted = z->hold > 0 ? fmin(z->dt, free_) : free_;
+  const double        n     = fmax(ceil(left / wanted - 1e-9), 1.0);
+
+  *dt = n <= BURST || s->adaptive ? left / n : wanted;
+  return (PetscInt)fmin(n, BURST);
+}
+
+static void Collect(const StageRates *sum, PetscInt limited, Attempt *a)
+{
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    a->out[ph] = sum->out[ph];
+  a->heat_gain   = sum->heat_rate;
+  a->heat_in     = sum->heat_in;
+  a->heat_source = sum->heat_source;
+  a->limited     = limited;
+  for (int k = 0; k < CL_METERS; k++) {
+    for (int q = 0; q < METER_COUNT; q++)
+      a->meter[k][q] = sum->meter[k][q];
+  }
+}
+
+/* A burst of n steps; the sums are those of all ranks. */
+static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
+{
+  Model     *m   = s->model;
+  StageRates sum = {0};
+
+  PetscFunctionBeginUser;
+  m->limited = 0;
+  for (PetscInt k = 0; k < n && a->status == CL_OK; k++)
+    PetscCall(ExplicitStep(s->explicit, s->state.t + (double)k * dt, dt, &sum, &a->status));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof(sum) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
+  Collect(&sum, m->limited, a);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GiveUp(Stepper *s, const char *why, bool *ok)
+{
+  PetscFunctionBeginUser;
+  *ok = false;
+  PetscCall(PetscPrintf(s->model->grid.comm, "Given up at t = %g s: %s\n", s->state.t, why));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The accepted burst becomes history; nodal values of the new state are there for whoever writes them. */
+static PetscErrorCode Accept(Stepper *s, PetscInt n, double dt, double stop, bool reached, const Attempt *a, PetscInt cuts)
+{
+  StepperState  *z    = &s->state;
+  const StepInfo info = {.dt = dt, .cuts = cuts};
+  ClStatus       status;
+
+  PetscFunctionBeginUser;
+  z->step += n;
+  z->t     = reached ? stop : z->t + (double)n * dt;
+  z->dt    = dt;
+  z->fresh = 1;
+  if (z->hold > 0)
+    z->hold--;
+  PetscCall(ExplicitEnd(s->explicit));
+  if (reached)
+    PetscCall(ModelBeginStep(s->model, &status));
+  PetscCall(StepperAccept(s, a, &info));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Advance(Stepper *s, bool *ok)
+{
+  Model       *m = s->model;
+  bool         kink;
+  const double stop = StepperNextStop(s, &kink);
+
+  PetscFunctionBeginUser;
+  *ok = true;
+  PetscCall(ParticlesCopy(&m->P, &s->good));
+  for (PetscInt cuts = 0;; cuts++) {
+    Attempt  a = {.status = CL_OK};
+    double   dt;
+
+    PetscCall(ExplicitBegin(s->explicit, &a.status));
+    PetscCall(ExplicitStableStep(s->explicit, &s->limit));
+    bool stable = true;
+    PetscCall(CheckFixed(s, &stable));
+    if (!stable) {
+      PetscCall(GiveUp(s, "the fixed step is above the stable one by now", ok));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    const PetscInt n = Plan(s, stop, &dt);
+    if (a.status == CL_OK)
+      PetscCall(Burst(s, n, dt, &a));
+    if (a.status == CL_OK) {
+      PetscCall(Accept(s, n, dt, stop, s->state.t + (double)n * dt >= stop - 0.5 * dt, &a, cuts));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(ParticlesCopy(&s->good, &m->P));
+    s->state.dt   = CUT * dt;
+    s->state.hold = HOLD;
+    PetscCall(PetscPrintf(m->grid.comm, "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
+                          s->state.t, n, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1], s->state.dt));
+    if (cuts >= s->max_failures) {
+      PetscCall(GiveUp(s, m->why ? m->why : "?", ok));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
+}
+
+const StepperScheme StepperScheme_Hybrid   = {.name = "hybrid", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};
+const StepperScheme StepperScheme_Explicit = {.name = "explicit", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};
