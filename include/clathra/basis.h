@@ -6,7 +6,8 @@
 
 #define CL_NODES 9 /* nodes a particle can reach: 3 per axis */
 
-#define BASIS_SNAP 1e-9 /* of a cell: a domain edge so close to a grid line lies on it */
+/* Of a cell: a domain edge so close to a grid line lies on it; a thinner sliver drowns in round-off. */
+#define BASIS_SNAP 1e-6
 
 static inline double BasisSnap(double s)
 {
