@@ -151,7 +151,29 @@ def century(run, left, right):
     right.set(xlabel="time (years)", ylabel="settlement (m)")
 
 
-FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century]
+def century_hydrate(run, left, middle, right):
+    case = run()
+    for colour, (t, v) in zip(COLOURS, [s for s in case.snapshots if s[0] > 0]):
+        height, there = v["position"][:, 1] - v["displacement"][:, 1], v["S_h"][:, 0] > 0.05
+        p_e = 1e3 * np.exp(38.98 - 8533.8 / (v["T"][:, 0] + 273.15))
+        left.plot((v["p"][:, 0] - 5e6) / 1e6, 100 - height, color=colour, label=f"{t / ladder.Century.year:.0f} years", **DOTS)
+        left.plot(np.where(there, (p_e - 5e6) / 1e6, np.nan), 100 - height, **EXACT)
+        middle.plot(v["S_h"][:, 0], 100 - height, color=colour, **DOTS)
+    left.plot([], [], **EXACT, label="$p_e(T)$ at hydrate")
+    left.set(xlabel="excess pore pressure (MPa)", ylabel="depth at the start (m)", ylim=(100, 0))
+    middle.legend(*left.get_legend_handles_labels(), loc="upper center")
+    middle.set(xlabel="hydrate saturation (–)", ylim=(100, 0))
+    p, b = case.csv("probes"), case.csv("balance")
+    right.plot(p["time_s"] / ladder.Century.year, p["top.u_y_m"], color=COLOURS[0], marker=".", ms=4)
+    right.set(xlabel="time (years)", ylabel="sea floor (m)")
+    other = right.twinx()
+    other.plot(b["time_s"] / ladder.Century.year, b["hydrate_kg"] / b["hydrate_kg"][0], color=COLOURS[1])
+    other.set_ylabel("hydrate, of the start", color=COLOURS[1])
+
+
+PANELS = {"century_hydrate": 3}  # two without a word
+FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century,
+           century_hydrate]  # fmt: skip
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):
@@ -161,8 +183,8 @@ def main(program=str(ROOT / "build" / "clathra"), *names):
         if names and name not in names:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            figure, (left, right) = plt.subplots(1, 2, figsize=(9.2, 3.4))
-            draw(lambda *options: Case(program, folder, name, *options), left, right)
+            figure, axes = plt.subplots(1, PANELS.get(name, 2), figsize=(9.2, 3.4))
+            draw(lambda *options: Case(program, folder, name, *options), *axes)
             save(figure, ROOT / "docs" / "figures", f"case_{name}")
 
 

@@ -52,7 +52,8 @@ SECTION = {  # beside that table
     "4.4": "Masuda's core, cases/masuda, against the reference curves at every 15 min to 4 h",
     "4.5": "The ladder of cases, against exact solutions (docs/cases.md)",
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
-    "century": "A long run: cases/century, 500 years of consolidation at large strain",
+    "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",
+    "stability": "Stability at the extremes: a representative part of docs/stability.md",
     "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
 }
 NOT_A_TEST = {"common", "exact"}

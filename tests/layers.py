@@ -23,6 +23,7 @@ LAYERS = [
     ("particles", ["particles"], ["particles"]),
     ("boundary", ["boundary"], ["boundary"]),
     ("model", ["model"], ["model"]),
+    ("explicit", ["explicit"], ["explicit"]),
     ("stepper", ["stepper"], ["stepper"]),
     ("io", ["io"], ["io"]),
     ("case", [], ["case"]),

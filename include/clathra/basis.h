@@ -6,7 +6,8 @@
 
 #define CL_NODES 9 /* nodes a particle can reach: 3 per axis */
 
-#define BASIS_SNAP 1e-9 /* of a cell: a domain edge so close to a grid line lies on it */
+/* Of a cell: a domain edge so close to a grid line lies on it; a thinner sliver drowns in round-off. */
+#define BASIS_SNAP 1e-6
 
 static inline double BasisSnap(double s)
 {
@@ -15,7 +16,8 @@ static inline double BasisSnap(double s)
   return fabs(s - line) < BASIS_SNAP ? line : s;
 }
 
-/* The domain along one axis in cells: [lo, hi], clipped at the grid's edge, and the length that gradients are divided by. */
+/* The domain along one axis in cells: [lo, hi], clipped at the grid's edge, and the length that gradients are divided
+ * by. */
 typedef struct {
   double lo, hi, length;
 } BasisDomain;
@@ -29,8 +31,9 @@ static inline BasisDomain BasisDomainOf(double x, double l, double lower, double
   return (BasisDomain){lo, hi, clipped ? hi - lo : 2.0 * r};
 }
 
-/* (3) for a domain of at most one cell from its first node on, without branches: the kernels of src/explicit take it for
-   many particles at once.  a, b: edges of the domain from the first node on, in cells, 0 <= a < 1, a < b <= a + 1. */
+/* (3) for a domain of at most one cell from its first node on, without branches: the kernels of src/explicit take it
+   for many particles at once.  a, b: edges of the domain from the first node on, in cells, 0 <= a < 1, a < b <= a + 1.
+ */
 static inline void BasisAverage(double a, double b, double gradient_length, double S[3], double dS[3])
 {
   const bool   third = b > 1.0;

@@ -144,6 +144,16 @@ typedef struct {
   double   checkpoint_every;       /* s; 0 = only at the end and on failure */
 } Case;
 
+/* What keeps a scene from the integrators without a matrix, as the case says it; NULL if nothing does. */
+static inline const char *CaseNeedsImplicit(const Case *c)
+{
+  return c->axisymmetric   ? "geometry: axisymmetric"
+         : c->one_pressure ? "pressures: one"
+         : c->upstream     ? "stabilisation_upstream"
+         : !c->inertia     ? "inertia: no"
+                           : NULL;
+}
+
 /* Reads and checks a case (a folder or a .yaml file) together with the options database, collectively.
    On bad input prints the error (file, key, value, unit, allowed range, nearest key) on rank 0, sets *ok = false and
    returns success; nothing has been written. */

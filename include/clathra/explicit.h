@@ -1,6 +1,7 @@
 /* explicit: the paper's explicit-implicit scheme (section 3.4): nodal velocities with drag implicit, nodal rates of
    temperature and pressure with the reaction implicit, all by small local solves, no matrix.  docs/equations.md,
-   section 12.  Same particles, laws and boundary conditions as the implicit model, whose grid, store and case it uses. */
+   section 12.  Same particles, laws and boundary conditions as the implicit model, whose grid, store and case it uses.
+ */
 #pragma once
 
 #include "clathra/model.h"
@@ -39,10 +40,10 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **e);
 PetscErrorCode ExplicitDestroy(Explicit **e);
 /* Sorts the particles by cell and readies nodes and faces for a run of steps.  Collective. */
 PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status);
-/* Largest stable step on the present state (36)-(39).  Collective. */
+/* Largest stable step on the present state (38), (39).  Collective. */
 PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit);
-/* One step from t to t + dt on the committed state; adds what crossed the boundary and what heat changed (integrals over
-   the step: kg, J) to *sum.  A failed step leaves particles half-moved: the caller keeps a copy.  Collective. */
+/* One step from t to t + dt on the committed state; adds what crossed the boundary and what heat changed (integrals
+   over the step: kg, J) to *sum.  A failed step leaves particles half-moved: the caller keeps a copy.  Collective. */
 PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status);
 /* Derived variables of the particles (porosity, saturation of water) for whoever reads them next. */
 PetscErrorCode ExplicitEnd(Explicit *e);

@@ -32,12 +32,12 @@ static inline PetscInt GridPadded(const Grid *g, PetscInt i, PetscInt j)
 
 /* Active nodes: owned ones first (they are a Vec's local part), then ghosts. */
 typedef struct {
-  PetscInt  n_owned, n_local; /* active nodes: owned, owned + ghost */
-  PetscInt  n_global, first;  /* over all ranks; global number of the first owned one */
-  PetscInt *index;            /* padded node -> local active number, -1 if inactive */
-  PetscInt (*ij)[CL_DIM];     /* local active number -> grid node */
-  PetscInt    *global;        /* local active number -> global number */
-  PetscSF      sf;            /* ghosts -> owners */
+  PetscInt  n_owned, n_local;             /* active nodes: owned, owned + ghost */
+  PetscInt  n_global, first;              /* over all ranks; global number of the first owned one */
+  PetscInt *index;                        /* padded node -> local active number, -1 if inactive */
+  PetscInt (*ij)[CL_DIM];                 /* local active number -> grid node */
+  PetscInt    *global;                    /* local active number -> global number */
+  PetscSF      sf;                        /* ghosts -> owners */
   MPI_Datatype unit[CL_NODE_DOUBLES + 1]; /* nc doubles, made on demand */
 } NodeMap;
 

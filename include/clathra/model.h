@@ -109,6 +109,8 @@ enum {
   NC_STORAGE = NC_RHO + 2,
   NC_KAPPA   = NC_STORAGE + 2,
   NC_CAPACITY,
+  NC_REACTION,
+  NC_REACTION_HEAT,
   NC_DRAG,
   NC_COUNT = NC_DRAG + 2
 };
@@ -145,6 +147,7 @@ typedef struct {
   double gas;                            /* free gas, kg */
   double V;
   double capacity; /* J/K */
+  double kinetic;  /* energy of all phases, J */
 } ModelTotals;
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);
 

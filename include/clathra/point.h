@@ -85,6 +85,7 @@ typedef struct {
   double capacity, kappa;                     /* V C_m (J/K), W/(m K) */
   double M, G;                                /* constrained and shear modulus, Pa */
   double storage[PHASE_COUNT];                /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
+  double reaction, reaction_heat;             /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
 } PointProperties;
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
                                  double pg, double T, double sw_n, PointProperties *r, const char **why);

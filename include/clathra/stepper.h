@@ -50,9 +50,10 @@ typedef struct {
 
 typedef struct Stepper Stepper;
 
-/* A scheme.  advance takes the state to a later time, or says that it cannot (*ok = false); it never commits a step that failed.
-   The implicit schemes share StepperImplicitStep and give it `step`: one attempt of length dt on the configuration that
-   ModelBeginStep prepared, which leaves the solution in work.x and the rates in work.rates and commits nothing. */
+/* A scheme.  advance takes the state to a later time, or says that it cannot (*ok = false); it never commits a step
+   that failed. The implicit schemes share StepperImplicitStep and give it `step`: one attempt of length dt on the
+   configuration that ModelBeginStep prepared, which leaves the solution in work.x and the rates in work.rates and
+   commits nothing. */
 typedef struct {
   const char *name;
   int         error_order; /* q: the error estimate behaves like dt^q */
@@ -67,6 +68,14 @@ typedef struct {
 
 extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit;
 
+/* What the rest of the run would cost, roughly: steps, and seconds of the slowest rank. */
+typedef struct {
+  StableStep limit;
+  double     hybrid_steps, hybrid_seconds; /* INFINITY where the scene is none for it */
+  double     implicit_steps, implicit_seconds;
+  bool       hybrid; /* is the cheaper one */
+} Forecast;
+
 struct Stepper {
   Model               *model;
   const StepperScheme *scheme;
@@ -75,9 +84,10 @@ struct Stepper {
   bool                 adaptive;
   double               dt_min, dt_max, tol;
   PetscInt             max_failures, max_steps;
-  Explicit            *explicit;     /* hybrid, explicit: the integrator and the last good state */
-  Particles            good;
-  StableStep           limit; /* at the last look */
+  Explicit *explicit; /* hybrid, explicit: the integrator and the last good state */
+  Particles  good;
+  StableStep limit; /* at the last look */
+  Forecast   forecast;
   /* called after every accepted step */
   PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
   void *monitor_ctx;
@@ -87,15 +97,19 @@ struct Stepper {
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s); /* as the case says */
 PetscErrorCode StepperDestroy(Stepper *s);
-/* Before anything is written: what the scheme says about the scene and its steps; *ok = false: refused, a sentence was printed. */
+/* Before anything is written: what the scheme says about the scene and its steps; *ok = false: refused, a sentence was
+ * printed. */
 PetscErrorCode StepperReady(Stepper *s, bool *ok);
 /* Runs to Case.t_end (or -stepper_max_steps).  *ok = false: given up, the model holds the last good state and a
  * sentence was printed. */
 PetscErrorCode StepperRun(Stepper *s, bool *ok);
 
+PetscErrorCode StepperForecast(Stepper *s);
+PetscErrorCode StepperPrintForecast(const Stepper *s);
+
 /* Shared by the schemes. */
 /* The next time that a step must hit: a kink of a schedule, an event, the end. */
-double         StepperNextStop(const Stepper *s, bool *kink);
+double StepperNextStop(const Stepper *s, bool *kink);
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok);

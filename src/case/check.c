@@ -31,8 +31,7 @@ static bool Local(const Case *c)
 /* What those cannot do. */
 static void CheckLocal(Reader *r, const Case *c)
 {
-  const char *what = c->axisymmetric ? "geometry: axisymmetric" : c->one_pressure ? "pressures: one" : c->upstream ? "stabilisation_upstream"
-                     : !c->inertia ? "inertia: no" : NULL;
+  const char *what = CaseNeedsImplicit(c);
 
   if (what)
     FAIL(GROUP_CASE, "", "stepper_type", "%s does not know %s; use sdirk2 or euler", c->stepper, what);

@@ -127,9 +127,10 @@ static const Key case_key[] = {
     REAL(Case, "stepper_flip", flip, "", "[0,1]", "1",
          "hybrid, explicit: particles take increments of nodal velocity (1, FLIP), the velocity itself (0, PIC), or a "
          "mixture"),
-    REAL(Case, "stepper_damping", damping, "", "[0,1)", "0",
-         "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
-         "ends"),
+    REAL(
+        Case, "stepper_damping", damping, "", "[0,1)", "0",
+        "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
+        "ends"),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
     BOOLEAN(Case, "stepper_surface", tied, "tied", "hybrid, explicit: nearly empty nodes follow their inner neighbour",

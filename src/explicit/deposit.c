@@ -1,4 +1,5 @@
-/* First pass: masses, momenta, forces, pressures and temperature of the particles to their nodes; docs/equations.md, section 12. */
+/* First pass: masses, momenta, forces, pressures and temperature of the particles to their nodes; docs/equations.md,
+ * section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
 #include "clathra/tensor.h"
@@ -12,10 +13,10 @@ typedef struct {
 /* Shares, densities and drags at t_n (8)-(10), (16). */
 INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Fluids *w)
 {
-  const Material *mat = r.mat;
-  double *const  *f   = e->m->P.f;
+  const Material *mat      = r.mat;
+  double *const  *f        = e->m->P.f;
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, ka[BLOCK], kr[BLOCK];
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK]                                      = {0.0}, ka[BLOCK], kr[BLOCK];
 
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
@@ -69,8 +70,8 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
 }
 
-/* A block's values, one row of numbers for each particle; x, y: what is multiplied with the node's place in the 3 x 3 patch (carried values)
-   and with the gradients (forces). */
+/* A block's values, one row of numbers for each particle; x, y: what is multiplied with the node's place in the 3 x 3
+   patch (carried values) and with the gradients (forces). */
 typedef struct {
   double value[BLOCK][4 * LANES], carry[CL_DIM][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
 } Values;
@@ -84,7 +85,8 @@ INLINE void Carried(const Explicit *e, Run r, int lane, const double *restrict w
   for (int q = 0; q < r.n; q++) {
     double at = y[q];
 
-    for (int d = 0; d < CL_DIM; d++) { /* x_p from the first node: S_1 + 2 S_2 cells on (weights reproduce the middle) */
+    for (int d = 0; d < CL_DIM;
+         d++) { /* x_p from the first node: S_1 + 2 S_2 cells on (weights reproduce the middle) */
       at -= g[d][q] * (w->S[d][1][q] + 2.0 * w->S[d][2][q]) * grid->h[d];
       v->carry[d][q][lane] = weight[q] * g[d][q] * grid->h[d];
     }
@@ -94,11 +96,12 @@ INLINE void Carried(const Explicit *e, Run r, int lane, const double *restrict w
 
 INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w, Values *v)
 {
-  double *const *f  = e->m->P.f;
-  const int      at = A_Mix(s);
+  double *const *f         = e->m->P.f;
+  const int      at        = A_Mix(s);
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
   const double *restrict vx = f[P_VS] + r.p, *restrict vy = f[P_VS + 1] + r.p;
-  const double *restrict xx = f[P_SIG + XX] + r.p, *restrict yy = f[P_SIG + YY] + r.p, *restrict xy = f[P_SIG + XY] + r.p;
+  const double *restrict xx = f[P_SIG + XX] + r.p, *restrict yy = f[P_SIG + YY] + r.p,
+                         *restrict xy = f[P_SIG + XY] + r.p;
 
   for (int q = 0; q < r.n; q++) {
     const double m = ms[q] + mh[q];
@@ -140,7 +143,7 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
   const int rows = Rows(A_Count(s)), stride = (int)e->m->grid.gm[0];
 
   for (int q = 0; q < r.n; q++) {
-    const int   *slot = &e->slot[w->first[q]];
+    const int   *slot  = &e->slot[w->first[q]];
     const Lanes *value = (const Lanes *)v->value[q];
     const Lanes  cx = *(const Lanes *)v->carry[0][q], cy = *(const Lanes *)v->carry[1][q];
     const Lanes  fx = *(const Lanes *)v->force[0][q], fy = *(const Lanes *)v->force[1][q];
@@ -150,7 +153,7 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
 
       for (int a = 0; a < 3; a++) {
         const double S = w->S[0][a][q] * Sy, Gx = w->D[0][a][q] * Sy, Gy = w->S[0][a][q] * Dy;
-        Lanes       *row = (Lanes *)e->A + (size_t)slot[b * stride + a] * (size_t)rows;
+        Lanes       *row   = (Lanes *)e->A + (size_t)slot[b * stride + a] * (size_t)rows;
         Lanes        first = value[0];
 
         if (Scalars(s))

@@ -1,10 +1,14 @@
 /* Life of the explicit integrator, order of the particles, and one step as a table of contents. */
 #include "lanes.h"
 
+static const char *const part[STEP_PARTS] = {"ClExDeposit", "ClExVelocities", "ClExRates",
+                                             "ClExScalars", "ClExUpdate",     "ClExOrder"};
+
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out)
 {
   const FieldSet *fs = &m->c->fields;
   Explicit       *e;
+  PetscClassId    id;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&e));
@@ -12,6 +16,9 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   e->o   = *o;
   e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat};
   *out   = e;
+  PetscCall(PetscClassIdRegister("Clathra explicit", &id));
+  for (int k = 0; k < STEP_PARTS; k++)
+    PetscCall(PetscLogEventRegister(part[k], id, &e->event[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,10 +87,10 @@ static void Look(Explicit *e)
   const Model *m = e->m;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const Grid  *g     = &m->grid;
+    const Grid  *g = &m->grid;
     const double h = g->h[d], lower = g->lower[d], cells = (double)g->cells[d], first = (double)g->xs[d];
-    const double end = (double)(g->xs[d] + g->xm[d]) + (g->xs[d] + g->xm[d] > g->cells[d] ? 1.0 : 0.0);
-    const bool   linear = m->c->basis == BASIS_LINEAR;
+    const double end         = (double)(g->xs[d] + g->xm[d]) + (g->xs[d] + g->xm[d] > g->cells[d] ? 1.0 : 0.0);
+    const bool   linear      = m->c->basis == BASIS_LINEAR;
     const double *restrict x = m->P.f[P_X + d], *restrict l = m->P.f[P_L + d];
     int *restrict base = e->base[d];
     int changed = 0, strays = 0;
@@ -128,8 +135,8 @@ static PetscErrorCode Permute(Explicit *e)
 
 static PetscErrorCode Sort(Explicit *e)
 {
-  const Grid *g = &e->m->grid;
-  Particles  *P = &e->m->P;
+  const Grid *g      = &e->m->grid;
+  Particles  *P      = &e->m->P;
   bool        sorted = true;
 
   PetscFunctionBeginUser;
@@ -141,7 +148,8 @@ static PetscErrorCode Sort(Explicit *e)
       cell[0] = cell[1] = 0;
     e->order[p] = P->i[PI_ID][p];
     e->key[p]   = (cell[1] - g->gs[1]) * g->gm[0] + cell[0] - g->gs[0];
-    sorted      = sorted && (p == 0 || e->key[p] > e->key[p - 1] || (e->key[p] == e->key[p - 1] && e->order[p] > e->order[p - 1]));
+    sorted      = sorted &&
+             (p == 0 || e->key[p] > e->key[p - 1] || (e->key[p] == e->key[p - 1] && e->order[p] > e->order[p - 1]));
   }
   if (sorted)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -237,34 +245,65 @@ static PetscErrorCode Agree(Explicit *e, ClStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status)
+/* Sums of the particles at their nodes, and the velocities that follow. */
+static PetscErrorCode Momentum(Explicit *e, double dt)
 {
-  Model    *m = e->m;
-  const Set s = e->set;
+  const int width = LANES * Rows(A_Count(e->set));
 
   PetscFunctionBeginUser;
-  m->status  = CL_OK;
+  PetscCall(PetscLogEventBegin(e->event[STEP_DEPOSIT], 0, 0, 0, 0));
+  PetscCall(PetscArrayzero(e->A, e->rows * width));
+  Deposit(e);
+  PetscCall(PetscLogEventEnd(e->event[STEP_DEPOSIT], 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
+  FacesForces(e, dt);
+  PetscCall(NodeMapSum(&e->map, e->A, width));
+  PetscCall(NodesVelocities(e, dt));
+  PetscCall(PetscLogEventEnd(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Masses and heat with those velocities, and the pressures and temperature that follow. */
+static PetscErrorCode MassAndHeat(Explicit *e, double dt, StageRates *sum)
+{
+  const int width = LANES * Rows(R_Count(e->set));
+
+  PetscFunctionBeginUser;
+  if (!Scalars(e->set))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(e->event[STEP_RATES], 0, 0, 0, 0));
+  PetscCall(PetscArrayzero(e->R, e->rows * width));
+  Rates(e, dt);
+  PetscCall(PetscLogEventEnd(e->event[STEP_RATES], 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(e->event[STEP_SCALARS], 0, 0, 0, 0));
+  FacesRates(e, dt, sum);
+  PetscCall(NodeMapSum(&e->map, e->R, width));
+  PetscCall(NodesScalars(e, sum));
+  PetscCall(PetscLogEventEnd(e->event[STEP_SCALARS], 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status)
+{
+  Model *m = e->m;
+
+  PetscFunctionBeginUser;
+  m->status = CL_OK;
   e->latent = e->advected = 0.0;
   BcValuesEvaluate(m->c, t + dt, &m->bc);
   if (e->stale)
     PetscCall(NodesRebuild(e));
   e->stale = e->strays = false;
-  PetscCall(PetscArrayzero(e->A, e->rows * LANES * Rows(A_Count(s))));
-  Deposit(e);
-  FacesForces(e, dt);
-  PetscCall(NodeMapSum(&e->map, e->A, LANES * Rows(A_Count(s))));
-  PetscCall(NodesVelocities(e, dt));
-  if (Scalars(s)) {
-    PetscCall(PetscArrayzero(e->R, e->rows * LANES * Rows(R_Count(s))));
-    Rates(e, dt);
-    FacesRates(e, dt, sum);
-    PetscCall(NodeMapSum(&e->map, e->R, LANES * Rows(R_Count(s))));
-    PetscCall(NodesScalars(e, dt, sum));
-  }
+  PetscCall(Momentum(e, dt));
+  PetscCall(MassAndHeat(e, dt, sum));
+  PetscCall(PetscLogEventBegin(e->event[STEP_UPDATE], 0, 0, 0, 0));
   Update(e, dt);
+  PetscCall(PetscLogEventEnd(e->event[STEP_UPDATE], 0, 0, 0, 0));
   sum->heat_source += e->latent - e->advected;
+  PetscCall(PetscLogEventBegin(e->event[STEP_ORDER], 0, 0, 0, 0));
   Look(e);
   PetscCall(Agree(e, status));
+  PetscCall(PetscLogEventEnd(e->event[STEP_ORDER], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,7 +7,8 @@ static bool Acts(const Case *c, const Face *f)
 
   for (PetscInt k = 0; k < c->nmeter; k++)
     counted = counted || MeterCovers(&c->meter[k], f);
-  return counted || f->traction >= 0 || f->pressure >= 0 || f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 || f->inflow >= 0;
+  return counted || f->traction >= 0 || f->pressure >= 0 || f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 ||
+         f->inflow >= 0;
 }
 
 /* Weights of a face's particle where it is now. */
@@ -17,7 +18,8 @@ static void Place(const Explicit *e, PetscInt p, Stencil *s)
 
   s->r = 0.0;
   for (int d = 0; d < CL_DIM; d++)
-    BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][p], e->m->P.f[P_L + d][p], g->lower[d], g->h[d], g->cells[d], &s->axis[d]);
+    BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][p], e->m->P.f[P_L + d][p], g->lower[d], g->h[d], g->cells[d],
+              &s->axis[d]);
 }
 
 /* The faces on which something is prescribed or counted; the rest are closed, adiabatic and free by themselves. */
@@ -86,8 +88,8 @@ static double Conductivity(const Explicit *e, PetscInt p)
   const double    X[4] = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g};
   double          d[3], dT, dp, T = s.heat ? P[P_T][p] : e->t[T_T][p];
   const double    pore = P[P_V][p] - P[P_MS][p] / LiquidDensity(&mat->solid, 0.0, T, &dp, &dT);
-  const double    Sh = P[P_MH][p] / (pore * LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT));
-  const double    sw = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
+  const double    Sh   = P[P_MH][p] / (pore * LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT));
+  const double    sw   = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
 
   return MixtureAverage(pore / P[P_V][p], Sh, sw, X, &d[0], &d[1], &d[2]);
 }

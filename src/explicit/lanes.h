@@ -1,7 +1,8 @@
 /* Private to explicit/: how particles and nodes are laid out for the loops.
-   Particles are taken BLOCK at a time, sorted by cell, all of one material: what happens at a particle runs over arrays of a block.
-   What a particle gives to or takes from a node is a row of numbers next to each other, so that one vector instruction moves eight of
-   them.  Every loop is made once for each set of fields: a field that is not there leaves no trace. */
+   Particles are taken BLOCK at a time, sorted by cell, all of one material: what happens at a particle runs over arrays
+   of a block. What a particle gives to or takes from a node is a row of numbers next to each other, so that one vector
+   instruction moves eight of them.  Every loop is made once for each set of fields: a field that is not there leaves no
+   trace. */
 #pragma once
 
 #include "clathra/explicit.h"
@@ -26,7 +27,8 @@ INLINE int Rows(int n)
   return (n + LANES - 1) / LANES;
 }
 
-/* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture and each fluid. */
+/* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
+ * and each fluid. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
 enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_COUNT };
 INLINE int A_V(Set s)
@@ -50,8 +52,8 @@ INLINE int A_Count(Set s)
   return A_Fluid(s, s.fluids);
 }
 
-/* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment and velocity; increment
-   of v_s. */
+/* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
+   and velocity; increment of v_s. */
 enum { B_J = 0, B_PROJ = 2, B_DV = 4, B_VEL = 6, B_PER_FLUID = 8 };
 INLINE int B_T(Set s)
 {
@@ -74,7 +76,8 @@ INLINE int B_Count(Set s)
   return B_DVs(s) + 2 * s.solid;
 }
 
-/* ... and to nodes: what is missing of each scalar, then the matrix that says what a change of the scalars makes of it. */
+/* ... and to nodes: what is missing of each scalar, then the matrix that says what a change of the scalars makes of it.
+ */
 INLINE int R_Matrix(Set s)
 {
   return Scalars(s);
@@ -84,7 +87,8 @@ INLINE int R_Count(Set s)
   return Scalars(s) * (Scalars(s) + 1);
 }
 
-/* Third pass, from nodes: increments of the scalars, their end values (gradients), v_s; a dry body has its increment of v_s here. */
+/* Third pass, from nodes: increments of the scalars, their end values (gradients), v_s; a dry body has its increment of
+ * v_s here. */
 INLINE int C_End(Set s)
 {
   return Scalars(s);
@@ -100,14 +104,14 @@ INLINE int C_DVs(Set s)
 
 /* What a step keeps per particle between its passes. */
 enum {
-  T_T = 0,          /* degC, where heat has no field */
-  T_SG,             /* share of gas and its slope */
+  T_T = 0, /* degC, where heat has no field */
+  T_SG,    /* share of gas and its slope */
   T_DS,
-  T_RHO,            /* [2] densities of the fluids */
-  T_DRAG = T_RHO + 2, /* [2] mu/(k_a k_r) */
-  T_V    = T_DRAG + 2, /* volume at the end of the step */
-  T_EOS,            /* [2] masses at that volume and the old pressures */
-  T_SLOPE = T_EOS + 2, /* [2][3] their slopes in p_w, p_g, T */
+  T_RHO,                 /* [2] densities of the fluids */
+  T_DRAG = T_RHO + 2,    /* [2] mu/(k_a k_r) */
+  T_V    = T_DRAG + 2,   /* volume at the end of the step */
+  T_EOS,                 /* [2] masses at that volume and the old pressures */
+  T_SLOPE = T_EOS + 2,   /* [2][3] their slopes in p_w, p_g, T */
   T_GAIN  = T_SLOPE + 6, /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
@@ -120,14 +124,17 @@ typedef struct {
   bool leads; /* others belong to its group */
 } NodeInfo;
 
+/* Parts of a step in -log_view. */
+enum { STEP_DEPOSIT = 0, STEP_VELOCITIES, STEP_RATES, STEP_SCALARS, STEP_UPDATE, STEP_ORDER, STEP_PARTS };
+
 struct Explicit {
   Model          *m;
   ExplicitOptions o;
   Set             set;
   PetscInt        cap; /* of the arrays over particles */
   double         *t[T_COUNT];
-  int            *base[CL_DIM];      /* first node along each axis, as at the last look */
-  PetscInt       *order, *key;       /* work space of the sort */
+  int            *base[CL_DIM]; /* first node along each axis, as at the last look */
+  PetscInt       *order, *key;  /* work space of the sort */
   NodeMap         map;
   int            *slot;              /* padded grid node -> row */
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
@@ -135,17 +142,18 @@ struct Explicit {
   double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of whole groups */
   double         *inc;               /* [rows][6] increments of the velocities of a group */
   double         *gain;              /* [rows][3] increments of the scalars of a group */
-  double         *link;              /* [rows] which neighbour a nearly empty node follows, as it travels between ranks */
-  NodeInfo       *node;              /* [rows] */
-  PetscInt        nheld, *held;      /* local nodes with prescribed unknowns */
-  unsigned       *mask;              /* ... which */
-  double         *fixed;             /* ... and their values, [nheld][fields.n] */
+  double         *link;         /* [rows] which neighbour a nearly empty node follows, as it travels between ranks */
+  NodeInfo       *node;         /* [rows] */
+  PetscInt        nheld, *held; /* local nodes with prescribed unknowns */
+  unsigned       *mask;         /* ... which */
+  double         *fixed;        /* ... and their values, [nheld][fields.n] */
   PetscInt        nface;
   Face           *face;
-  bool            stale, strays; /* a particle reaches other nodes; a particle left this rank's cells */
+  bool            stale, strays;    /* a particle reaches other nodes; a particle left this rank's cells */
   double          latent, advected; /* J over the step */
   double          added, acting; /* norms of what mass scaling adds to inertia and of the forces that act, this step */
   double          worst_scaling;
+  PetscLogEvent   event[STEP_PARTS];
 };
 
 /* Weights of a block of particles. */
@@ -173,7 +181,15 @@ typedef void (*Loop)(Explicit *e, Run r, double dt);
 typedef Loop LoopTable[2][3][2]; /* [solid][fluids][heat] */
 void         ForRuns(Explicit *e, const LoopTable table, double dt);
 #define LOOPS(f)                                                                                                       \
-  {{{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}}, {{f##_100, f##_101}, {f##_110, f##_111}, {f##_120, f##_121}}}
+  {                                                                                                                    \
+    {{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}},                                                         \
+    {                                                                                                                  \
+      {f##_100, f##_101}, {f##_110, f##_111},                                                                          \
+      {                                                                                                                \
+        f##_120, f##_121                                                                                               \
+      }                                                                                                                \
+    }                                                                                                                  \
+  }
 #define MAKE_LOOP(f, solid, fluids, heat)                                                                              \
   static void f##_##solid##fluids##heat(Explicit *e, Run r, double dt)                                                 \
   {                                                                                                                    \
@@ -193,9 +209,9 @@ void         ForRuns(Explicit *e, const LoopTable table, double dt);
   MAKE_LOOP(f, 1, 2, 1)
 
 /* Node side. */
-PetscErrorCode NodesRebuild(Explicit *e);                           /* numbering, when particles reach other nodes */
-PetscErrorCode NodesVelocities(Explicit *e, double dt);             /* A -> B */
-PetscErrorCode NodesScalars(Explicit *e, double dt, StageRates *r); /* R -> C */
+PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */
+PetscErrorCode NodesVelocities(Explicit *e, double dt);  /* A -> B */
+PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 PetscErrorCode FacesBegin(Explicit *e);

@@ -1,13 +1,20 @@
-/* The largest stable step (36)-(39). */
+/* The largest stable step (38), (39). */
 #include "lanes.h"
 
-const char *const cl_limit_word[LIMIT_COUNT] = {"none",           "waves in the mixture",  "waves in the water", "waves in the gas",
-                                                "diffusion of pressure", "conduction of heat", "explicit drag"};
+const char *const cl_limit_word[LIMIT_COUNT] = {"none",
+                                                "waves in the mixture",
+                                                "waves in the water",
+                                                "waves in the gas",
+                                                "diffusion of pressure",
+                                                "conduction of heat",
+                                                "explicit drag"};
 
-/* What one particle contributes: squares of the highest frequencies (1/s^2), rates of decay of relative motion (1/s). */
+/* What one particle contributes: squares of the highest frequencies (1/s^2), rates of decay of relative motion (1/s).
+ */
 typedef struct {
-  double wave, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT], heat; /* both: drag felt by fluid and skeleton */
-  int    fluids;
+  double wave, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT],
+      heat; /* both: drag felt by fluid and skeleton */
+  int fluids;
 } Spectrum;
 
 /* Change of pressure per change of the volume of each fluid, C^-1 (1/Pa)^-1. */
@@ -30,17 +37,19 @@ static void Stiffness(const Set s, const Material *mat, const PointProperties *q
 
 static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
 {
-  const Model    *m = e->m;
-  const Set       s = e->set;
-  const Case     *c = m->c;
+  const Model    *m   = e->m;
+  const Set       s   = e->set;
+  const Case     *c   = m->c;
   const Material *mat = &c->material[c->region[m->P.i[PI_REGION][p]].material];
   double *const  *f   = (double *const *)m->P.f;
-  const double    T = s.heat ? f[P_T][p] : e->t[T_T][p], pw = s.fluids ? f[P_PW][p] : 0.0, pg = s.fluids == 2 ? f[P_PG][p] : 0.0;
+  const double T = s.heat ? f[P_T][p] : c->region[m->P.i[PI_REGION][p]].temperature, pw = s.fluids ? f[P_PW][p] : 0.0,
+               pg = s.fluids == 2 ? f[P_PG][p] : 0.0;
   const char     *why;
   PointProperties q;
   double          C[2][2] = {{0.0}}, k2 = 0.0, bulk = 0.0, skeleton, rho;
 
-  const ClStatus status = PointPropertiesEvaluate(&c->fields, mat, f[P_V][p], f[P_MS][p], f[P_MH][p], pw, pg, T, 1.0, &q, &why);
+  const ClStatus status =
+      PointPropertiesEvaluate(&c->fields, mat, f[P_V][p], f[P_MS][p], f[P_MH][p], pw, pg, T, 1.0, &q, &why);
   if (status != CL_OK)
     return status;
   for (int d = 0; d < CL_DIM; d++)
@@ -49,7 +58,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
   rho = (f[P_MS][p] + f[P_MH][p]) / f[P_V][p];
   if (s.fluids)
     Stiffness(s, mat, &q, pg - pw, C);
-  skeleton = q.M;
+  skeleton     = q.M;
   double total = rho;
   for (int i = 0; i < s.fluids; i++) {
     const double share = q.phi * (1.0 - q.Sh) * q.s[i];
@@ -78,7 +87,8 @@ static double Growth(const Spectrum *w, bool implicit, double dt)
   double sum = dt * dt * w->wave;
 
   for (int i = 0; i < w->fluids; i++)
-    sum += implicit ? 2.0 * dt * dt * w->fluid[i] / (1.0 + dt * w->drag[i]) : 2.0 * dt * dt * w->fluid[i] + 2.0 * dt * w->both[i];
+    sum += implicit ? 2.0 * dt * dt * w->fluid[i] / (1.0 + dt * w->drag[i])
+                    : 2.0 * dt * dt * w->fluid[i] + 2.0 * dt * w->both[i];
   return sum;
 }
 

@@ -10,10 +10,11 @@ static const int step_to[4][CL_DIM] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
 /* ---------------------------------------------------------------- numbering */
 static PetscErrorCode Allocate(Explicit *e)
 {
-  const Set      s    = e->set;
-  const PetscInt n    = e->map.n_local + 1;
-  const PetscInt A    = LANES * Rows(A_Count(s)), B = LANES * Rows(B_Count(s)), R = LANES * Rows(PetscMax(R_Count(s), 1)), C = LANES;
-  double        *at;
+  const Set      s = e->set;
+  const PetscInt n = e->map.n_local + 1;
+  const PetscInt A = LANES * Rows(A_Count(s)), B = LANES * Rows(B_Count(s)), R = LANES * Rows(PetscMax(R_Count(s), 1)),
+                 C = LANES;
+  double *at;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(e->raw));
@@ -26,7 +27,8 @@ static PetscErrorCode Allocate(Explicit *e)
   e->B = e->G + n * A;
   e->R = e->B + n * B;
   e->C = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
-  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, n, &e->link, n, &e->node, e->m->grid.gm[0] * e->m->grid.gm[1], &e->slot));
+  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, n, &e->link, n, &e->node, e->m->grid.gm[0] * e->m->grid.gm[1],
+                         &e->slot));
   for (PetscInt q = 0; q < e->m->grid.gm[0] * e->m->grid.gm[1]; q++)
     e->slot[q] = (int)(e->map.index[q] >= 0 ? e->map.index[q] : e->map.n_local);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,7 +89,8 @@ PetscErrorCode NodesRebuild(Explicit *e)
 static int Neighbour(const Explicit *e, PetscInt I, int direction)
 {
   const Grid    *g = &e->m->grid;
-  const PetscInt i = e->map.ij[I][0] + step_to[direction][0] - g->gs[0], j = e->map.ij[I][1] + step_to[direction][1] - g->gs[1];
+  const PetscInt i = e->map.ij[I][0] + step_to[direction][0] - g->gs[0],
+                 j = e->map.ij[I][1] + step_to[direction][1] - g->gs[1];
 
   return i < 0 || j < 0 || i >= g->gm[0] || j >= g->gm[1] ? (int)e->rows - 1 : e->slot[j * g->gm[0] + i];
 }
@@ -100,7 +103,7 @@ static double Volume(const Explicit *e, PetscInt I)
 /* 1 + direction of the neighbour that node I follows, 0 if it stands for itself. */
 static int Follows(const Explicit *e, PetscInt I)
 {
-  double best = 0.0;
+  double best  = 0.0;
   int    found = 0;
 
   for (int k = 0; k < 4; k++) {
@@ -163,8 +166,8 @@ static bool Held(const Explicit *e, PetscInt I, int unknown, double *value)
 
 /* One direction of one node: masses, start velocities, forces; fluids per unit of their volume. */
 typedef struct {
-  double M, v, f;                                     /* skeleton; f of the mixture */
-  double m[2], vf[2], r[2], Mi[2], B[2];              /* fluids: mass, velocity, force, mass per unit of volume fraction, drag */
+  double M, v, f;                        /* skeleton; f of the mixture */
+  double m[2], vf[2], r[2], Mi[2], B[2]; /* fluids: mass, velocity, force, mass per unit of volume fraction, drag */
 } Balance;
 
 static double Velocity(double momentum, double mass, double otherwise)
@@ -174,8 +177,8 @@ static double Velocity(double momentum, double mass, double otherwise)
 
 static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
 {
-  const Set    s    = e->set;
-  const double V    = a[A_V(s)], *mix = &a[A_Mix(s)], gravity = e->m->bc.gravity[d];
+  const Set    s = e->set;
+  const double V = a[A_V(s)], *mix = &a[A_Mix(s)], gravity = e->m->bc.gravity[d];
   double       mass = 0.0;
 
   b->M = s.solid ? mix[MIX_M] : 0.0;
@@ -193,10 +196,10 @@ static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
   b->f = s.solid ? mix[MIX_FX + d] + (b->M + mass) * gravity : 0.0;
 }
 
-/* Velocities at the end of the step (63), with the drag explicit (61), (62) or implicit; a held skeleton moves as it must. */
+/* Velocities at the end of the step (36), drag implicit or explicit; a held skeleton moves as it must. */
 static void Solve(const Explicit *e, const Balance *b, double dt, bool held, double value, double v[3])
 {
-  const Set    s = e->set;
+  const Set    s     = e->set;
   const double scale = e->o.mass_scaling / dt;
   double       lhs = scale * b->M, rhs = b->f + scale * b->M * b->v;
 
@@ -244,9 +247,9 @@ static void GroupVelocities(Explicit *e, PetscInt I, double dt)
 /* Row that the particles read: own start velocity, the group's increment, then what is prescribed. */
 static void WriteVelocities(Explicit *e, PetscInt I)
 {
-  const Set      s    = e->set;
-  const double  *a    = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *inc = &e->inc[6 * e->node[I].root];
-  double        *b    = &e->B[I * LANES * Rows(B_Count(s))];
+  const Set     s = e->set;
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *inc = &e->inc[6 * e->node[I].root];
+  double       *b = &e->B[I * LANES * Rows(B_Count(s))];
 
   for (int d = 0; d < CL_DIM; d++) {
     Balance w;
@@ -286,7 +289,8 @@ PetscErrorCode NodesVelocities(Explicit *e, double dt)
   PetscFunctionBeginUser;
   for (PetscInt h = 0; h < e->nheld; h++) {
     e->mask[h] = 0;
-    PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[e->held[h]], &e->mask[h], &e->fixed[h * e->m->c->fields.n]);
+    PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[e->held[h]], &e->mask[h],
+                    &e->fixed[h * e->m->c->fields.n]);
   }
   e->added = e->acting = 0.0;
   PetscCall(Group(e));
@@ -308,7 +312,8 @@ PetscErrorCode NodesVelocities(Explicit *e, double dt)
 }
 
 /* ---------------------------------------------------------------- scalars */
-/* x of the n x n system A x = b by elimination with the diagonal as pivots: storage and capacity outweigh what couples them. */
+/* x of the n x n system A x = b by elimination with the diagonal as pivots: storage and capacity outweigh what couples
+ * them. */
 static void SolveSmall(int n, double *A, double *b, double *x)
 {
   for (int k = 0; k < n; k++) {
@@ -355,38 +360,57 @@ static void GroupScalars(Explicit *e, PetscInt I, StageRates *rates)
   rates->heat_in += heat;
 }
 
+/* Adds the rows of a node to its group's.  A temperature prescribed there is its own: what it does to the masses is
+   known, and its row of heat says what it needs. */
+static void Join(Explicit *e, PetscInt I)
+{
+  const Set     s = e->set;
+  const int     n = Scalars(s), width = LANES * Rows(R_Count(s));
+  const double *from = &e->R[I * width], *a = &e->A[I * LANES * Rows(A_Count(s))];
+  double       *to = &e->R[e->node[I].root * width], T;
+
+  if (!s.heat || !Held(e, I, F_T, &T)) {
+    AddRow(to, from, width);
+    return;
+  }
+  const double dT = T - a[s.fluids] / a[A_C(s)];
+  for (int k = 0; k < s.fluids; k++) {
+    to[k] += from[k] - from[R_Matrix(s) + k * n + s.fluids] * dT;
+    for (int j = 0; j < s.fluids; j++)
+      to[R_Matrix(s) + k * n + j] += from[R_Matrix(s) + k * n + j];
+  }
+}
+
+/* Row that the particles read: increments, end values, velocity of the skeleton. */
 static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
 {
   const Set     s = e->set;
   const int     n = Scalars(s);
-  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *gain = &e->gain[3 * e->node[I].root];
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *r = &e->R[I * LANES * Rows(R_Count(s))];
   double       *c = &e->C[I * LANES], T;
 
-  for (int k = 0; k < n; k++) {
-    const double y = k < s.fluids ? a[k] / V : a[k] / a[A_C(s)];
-
-    c[k] = gain[k];
-    if (k == s.fluids && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
-      c[k] = T - y;
-      rates->heat_in += a[A_C(s)] * (c[k] - gain[k]);
-    }
-    c[C_End(s) + k] = y + c[k];
+  for (int k = 0; k < n; k++)
+    c[k] = e->gain[3 * e->node[I].root + k];
+  if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
+    c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
+    rates->heat_in -= r[s.fluids];
+    for (int j = 0; j < n; j++)
+      rates->heat_in += r[R_Matrix(s) + s.fluids * n + j] * c[j];
   }
+  for (int k = 0; k < n; k++)
+    c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
   if (s.heat)
     rates->heat_rate += a[A_C(s)] * c[s.fluids];
   for (int d = 0; s.solid && d < CL_DIM; d++)
     c[C_Vs(s) + d] = e->B[I * LANES * Rows(B_Count(s)) + d];
 }
 
-PetscErrorCode NodesScalars(Explicit *e, double dt, StageRates *rates)
+PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
 {
-  const int width = LANES * Rows(R_Count(e->set));
-
   PetscFunctionBeginUser;
-  (void)dt;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     if (e->node[I].root != (int)I)
-      AddRow(&e->R[e->node[I].root * width], &e->R[I * width], width);
+      Join(e, I);
   }
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     if (e->node[I].root == (int)I && Volume(e, I) > 0.0)

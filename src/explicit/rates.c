@@ -1,5 +1,5 @@
-/* Second pass: from the new nodal velocities the rates of mass and heat at every particle, and what a change of pressure and temperature makes
-   of them; docs/equations.md, section 12. */
+/* Second pass: from the new nodal velocities the rates of mass and heat at every particle, and what a change of
+   pressure and temperature makes of them; docs/equations.md, section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
 
@@ -36,7 +36,8 @@ INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gath
 }
 
 /* FLIP, mixed with PIC. */
-INLINE void Blend(double flip, int n, double *restrict v, const double *restrict dv, const double *restrict nodal, int width)
+INLINE void Blend(double flip, int n, double *restrict v, const double *restrict dv, const double *restrict nodal,
+                  int width)
 {
   for (int q = 0; q < n; q++)
     v[q] = flip * (v[q] + dv[q * width]) + (1.0 - flip) * nodal[q * width];
@@ -60,11 +61,11 @@ typedef struct {
 } Given;
 
 /* New volume, and the masses the laws give there at the old pressures, with their slopes (9). */
-INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, const Gathered *g, double dt, double *restrict pore,
-                   double *restrict open)
+INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, const Gathered *g, double dt,
+                   double *restrict pore, double *restrict open)
 {
-  const Material *mat = r.mat;
-  double *const  *f   = e->m->P.f;
+  const Material *mat      = r.mat;
+  double *const  *f        = e->m->P.f;
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
   double *restrict V_new = e->t[T_V] + r.p;
   double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
@@ -85,11 +86,12 @@ INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, co
   const double *restrict rho_w = e->t[T_RHO] + r.p;
   double *restrict eos = e->t[T_EOS] + r.p, *restrict ww = e->t[T_SLOPE] + r.p, *restrict wg = e->t[T_SLOPE + 1] + r.p,
                    *restrict wT = e->t[T_SLOPE + 2] + r.p;
-  const double per_K = 1.0 / mat->water.K;
+  const double per_K            = 1.0 / mat->water.K;
 
   for (int q = 0; q < r.n; q++) {
     const double sg = s.fluids == 2 ? e->t[T_SG][r.p + q] : 0.0, ds = s.fluids == 2 ? e->t[T_DS][r.p + q] : 0.0;
-    const double V_T = -mat->solid.beta * ms[q] / rho_s[q] - mat->hydrate.beta * mh[q] / rho_h[q]; /* open pores, warmed */
+    const double V_T =
+        -mat->solid.beta * ms[q] / rho_s[q] - mat->hydrate.beta * mh[q] / rho_h[q]; /* open pores, warmed */
 
     eos[q] = open[q] * (1.0 - sg) * rho_w[q];
     ww[q]  = open[q] * rho_w[q] * ((1.0 - sg) * per_K + ds);
@@ -106,13 +108,14 @@ INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, co
   }
 }
 
-/* Gain of hydrate over the step at the nodal p and T, and its slopes (11)-(13): dissociation implicit in S_h, formation on the surface at
-   t_n. */
-INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict T, const double *restrict pore,
-                     const double *restrict open)
+/* Gain of hydrate over the step at the nodal p and T, and its slopes (11)-(13): dissociation implicit in S_h, formation
+   on the surface at t_n. */
+INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict T,
+                     const double *restrict pore, const double *restrict open)
 {
-  const Kinetics *k = &r.mat->kinetics;
-  double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
+  const Kinetics *k     = &r.mat->kinetics;
+  double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p,
+                   *restrict gain_T = e->t[T_GAIN_T] + r.p;
 
   for (int q = 0; q < r.n; q++) {
     const PetscInt p  = r.p + q;
@@ -120,7 +123,8 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
     const double   p_r = (1.0 - sg) * g->value[q][B_P(s, 0)] + sg * g->value[q][B_P(s, 1)];
     const double   T_r = s.heat ? g->value[q][B_T(s)] : T[q];
     double         dK, dpe, dw, dA;
-    const double   Kd = KineticsRateConstant(k, T_r, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r, &dpe), drive = pe - p_r;
+    const double   Kd = KineticsRateConstant(k, T_r, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r, &dpe),
+                 drive = pe - p_r;
 
     if (drive >= 0.0) {
       const double rho_h = mh > 0.0 ? mh / (pore[q] * Sh) : 1.0, c = dt * k->M_h * k->A_geo / rho_h, a = c * Kd * drive;
@@ -144,7 +148,8 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
   double *const *f  = e->m->P.f;
   const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
   const double   bracket = e->m->c->flux_interpolation ? 1.0 : 0.0, scale = e->o.mass_scaling / dt;
-  const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p, *restrict drag = e->t[T_DRAG + k] + r.p;
+  const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
+                         *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
@@ -172,7 +177,7 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
   for (int q = 0; q < r.n; q++) {
     const PetscInt p   = r.p + q;
     const double   phi = pore[q] / e->t[T_V][p], Sh = 1.0 - open[q] / pore[q];
-    const double   sw = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
+    const double   sw    = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
     const double   fluid = sw * mat->kappa_w + (1.0 - sw) * mat->kappa_g;
     const double   kappa = (1.0 - phi) * mat->kappa_s + phi * (Sh * mat->kappa_h + (1.0 - Sh) * fluid), V = f[P_V][p];
     double         C = f[P_MS][p] * mat->c_s + f[P_MH][p] * mat->c_h, advected = 0.0;
@@ -183,7 +188,7 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
       C += c * f[P_MW + k][p];
       advected += c * (o->force[0][q][k] * g->dx[q][at] + o->force[1][q][k] * g->dy[q][at]);
     }
-    o->value[q][row]    = -advected;
+    o->value[q][row] = -advected;
     e->advected += advected;
     o->force[0][q][row] = -dt * V * kappa * g->dx[q][at];
     o->force[1][q][row] = -dt * V * kappa * g->dy[q][at];
@@ -196,20 +201,21 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
 /* What the reaction adds to all rows: gain = gain_0 + gain_p (s . dp) + gain_T dT. */
 INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, Given *o)
 {
-  const Kinetics *k = &r.mat->kinetics;
-  const int       n = Scalars(s);
+  const Kinetics *k               = &r.mat->kinetics;
+  const int       n               = Scalars(s);
   const double    nu[PHASE_COUNT] = {k->N_h * k->M_w / k->M_h, k->M_g / k->M_h};
-  double          zero[BLOCK] = {0.0}, rho_h[BLOCK];
+  double          zero[BLOCK]     = {0.0}, rho_h[BLOCK];
 
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const PetscInt p      = r.p + q;
-    const double   sg     = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg};
+    const PetscInt p  = r.p + q;
+    const double   sg = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg};
     const double   gain = e->t[T_GAIN][p], gain_p = e->t[T_GAIN_P][p], gain_T = e->t[T_GAIN_T][p];
     double         dL;
 
     for (int row = 0; row < n; row++) {
-      const double c = row < s.fluids ? nu[row] - share[row] * e->t[T_RHO + row][p] / rho_h[q] : -LatentHeatEvaluate(&r.mat->latent, T[q], &dL);
+      const double c = row < s.fluids ? nu[row] - share[row] * e->t[T_RHO + row][p] / rho_h[q]
+                                      : -LatentHeatEvaluate(&r.mat->latent, T[q], &dL);
 
       o->value[q][row] -= c * gain;
       for (int i = 0; i < s.fluids; i++)
@@ -226,7 +232,8 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Giv
 
   for (int q = 0; q < r.n; q++) {
     const int   *slot  = &e->slot[w->first[q]];
-    const Lanes *value = (const Lanes *)o->value[q], fx = *(const Lanes *)o->force[0][q], fy = *(const Lanes *)o->force[1][q];
+    const Lanes *value = (const Lanes *)o->value[q], fx = *(const Lanes *)o->force[0][q],
+                fy = *(const Lanes *)o->force[1][q];
 
     for (int b = 0; b < 3; b++) {
       const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];

@@ -1,5 +1,5 @@
-/* Third pass: increments of pressure and temperature back to the particles; strain, stress, hydrate, masses, motion; docs/equations.md,
-   section 12. */
+/* Third pass: increments of pressure and temperature back to the particles; strain, stress, hydrate, masses, motion;
+   docs/equations.md, section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
 #include "clathra/tensor.h"
@@ -39,20 +39,24 @@ typedef struct {
   double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK];
 } Strain;
 
-/* (7) without branches: rotation c, s and logarithmic strain 1/2 ln F F^T by series in small increments; false if one is not small. */
+/* (7) without branches: rotation c, s and logarithmic strain 1/2 ln F F^T by series in small increments; false if one
+ * is not small. */
 INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o)
 {
-  const int at = C_Vs(s);
+  const int at    = C_Vs(s);
   bool      small = true;
 
   for (int q = 0; q < n; q++) {
-    const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1], Fyy = 1.0 + dt * g->dy[q][at + 1];
+    const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
+                 Fyy = 1.0 + dt * g->dy[q][at + 1];
     const double a = Fxx + Fyy, b = Fyx - Fxy, per = 1.0 / sqrt(a * a + b * b), c = a * per, si = b * per;
     const double bxx = Fxx * Fxx + Fxy * Fxy, byy = Fyx * Fyx + Fyy * Fyy, off = Fxx * Fyx + Fxy * Fyy;
     const double m = 0.5 * (bxx + byy), d = 0.5 * (bxx - byy), y = (d * d + off * off) / (m * m);
     const double J = Fxx * Fyy - Fxy * Fyx, z = (J - 1.0) / (J + 1.0), z2 = z * z;
-    const double lnJ = 2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 / 11.0)))));
-    const double ratio = 1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
+    const double lnJ =
+        2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 / 11.0)))));
+    const double ratio =
+        1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
 
     small &= (fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0); /* false for NaN */
     o->c[q]          = c;
@@ -75,10 +79,10 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
   bool             fine    = true;
 
   for (int k = 0; k < Scalars(s); k++) {
-    const int field = k < s.fluids ? k : 2;
+    const int field    = k < s.fluids ? k : 2;
     double *restrict y = e->m->P.f[P_PW + field] + r.p, *restrict gx = e->m->P.f[grad[field]] + r.p,
                      *restrict gy = e->m->P.f[grad[field] + 1] + r.p;
-    const double least = field == 0 ? -1e15 : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
+    const double least            = field == 0 ? -1e15 : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
 
     for (int q = 0; q < r.n; q++) {
       y[q] += g->value[q][k];
@@ -90,8 +94,9 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
   return fine;
 }
 
-/* Masses of the fluids: what the laws' slopes make of the increments, so that the sum over particles is what the nodal balances say; the gain
-   of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the fluids and from the heat. */
+/* Masses of the fluids: what the laws' slopes make of the increments, so that the sum over particles is what the nodal
+   balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the fluids
+   and from the heat. */
 INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, PetscInt *limited)
 {
   const Material *mat = r.mat;
@@ -110,22 +115,25 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, PetscIn
   }
   if (s.fluids < 2 || !mat->reacts)
     return;
-  const Kinetics *kin = &mat->kinetics;
+  const Kinetics *kin             = &mat->kinetics;
   const double    nu[PHASE_COUNT] = {kin->N_h * kin->M_w / kin->M_h, kin->M_g / kin->M_h};
 
   for (int q = 0; q < r.n; q++) {
-    const PetscInt p = r.p + q;
-    const double   sg = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg}, T = s.heat ? f[P_T][p] : e->t[T_T][p];
+    const PetscInt p  = r.p + q;
+    const double   sg = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg};
+    const double   T = s.heat ? f[P_T][p] - g->value[q][2] : e->t[T_T][p]; /* at t_n */
     double         dp, dT, dL;
-    const double   rho_h = LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT);
-    const double   wanted = e->t[T_GAIN][p] + e->t[T_GAIN_P][p] * (share[0] * g->value[q][0] + share[1] * g->value[q][1]) +
+    const double   rho_h  = LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT);
+    const double   wanted = e->t[T_GAIN][p] +
+                          e->t[T_GAIN_P][p] * (share[0] * g->value[q][0] + share[1] * g->value[q][1]) +
                           (s.heat ? e->t[T_GAIN_T][p] * g->value[q][2] : 0.0);
     const double gain = Largest(wanted, -f[P_MH][p]);
 
     for (int k = 0; k < 2; k++)
-      f[P_MW + k][p] += (share[k] == 0.0 ? 0.0 : -share[k] * e->t[T_RHO + k][p] / rho_h * wanted) + nu[k] * (wanted - gain);
+      f[P_MW + k][p] +=
+          (share[k] == 0.0 ? 0.0 : -share[k] * e->t[T_RHO + k][p] / rho_h * wanted) + nu[k] * (wanted - gain);
     if (s.heat) {
-      const double L = LatentHeatEvaluate(&mat->latent, T - g->value[q][2], &dL);
+      const double L = LatentHeatEvaluate(&mat->latent, T, &dL);
       const double C = f[P_MS][p] * mat->c_s + f[P_MH][p] * mat->c_h + f[P_MW][p] * mat->c_w + f[P_MG][p] * mat->c_g;
 
       f[P_T][p] += L * (gain - wanted) / C;
@@ -144,7 +152,7 @@ INLINE bool StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
   double *const    *f   = e->m->P.f;
   const double      G2 = 2.0 * ElasticityShearFactor(el), lame = ElasticityLameFactor(el);
   const double *restrict V = s.fluids || s.heat ? e->t[T_V] + r.p : NULL;
-  double *restrict Sh = f[P_SH] + r.p;
+  double *restrict Sh      = f[P_SH] + r.p;
   double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, E_old[BLOCK], E[BLOCK], phi[BLOCK];
   bool   fine = true;
 
@@ -152,25 +160,27 @@ INLINE bool StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const PetscInt p = r.p + q;
-    const double   volume = V ? V[q] : f[P_V][p] * n->J[q], pore = volume - f[P_MS][p] / rho_s[q], open = pore - f[P_MH][p] / rho_h[q];
+    const PetscInt p      = r.p + q;
+    const double   volume = V ? V[q] : f[P_V][p] * n->J[q], pore = volume - f[P_MS][p] / rho_s[q],
+                 open = pore - f[P_MH][p] / rho_h[q];
 
     fine &= (open > 0.0);
-    phi[q]     = pore / volume;
-    Sh[q]      = 1.0 - open / pore;
-    f[P_V][p]  = volume;
+    phi[q]    = pore / volume;
+    Sh[q]     = 1.0 - open / pore;
+    f[P_V][p] = volume;
   }
   ElasticityYoungBatch(el, r.n, Sh, E);
   double *restrict xx = f[P_SIG + XX] + r.p, *restrict yy = f[P_SIG + YY] + r.p, *restrict zz = f[P_SIG + ZZ] + r.p,
-                   *restrict xy = f[P_SIG + XY] + r.p, *restrict xx0 = f[P_SIG0 + XX] + r.p, *restrict yy0 = f[P_SIG0 + YY] + r.p,
-                   *restrict zz0 = f[P_SIG0 + ZZ] + r.p, *restrict xy0 = f[P_SIG0 + XY] + r.p;
+                   *restrict xy = f[P_SIG + XY] + r.p, *restrict xx0 = f[P_SIG0 + XX] + r.p,
+                   *restrict yy0 = f[P_SIG0 + YY] + r.p, *restrict zz0 = f[P_SIG0 + ZZ] + r.p,
+                   *restrict xy0 = f[P_SIG0 + XY] + r.p;
   for (int q = 0; q < r.n; q++) {
     const double c = n->c[q], si = n->s[q], cc = c * c, ss = si * si, cs = c * si;
     const double ratio = E[q] / E_old[q], k = el->loss_only && ratio > 1.0 ? 1.0 : ratio;
     const double ax = xx[q] - xx0[q], ay = yy[q] - yy0[q], axy = xy[q] - xy0[q], az = zz[q] - zz0[q];
     const double ice = phi[q] * Sh[q], grains = 1.0 - phi[q];
     const double beta = (grains * mat->solid.beta + ice * mat->hydrate.beta) / (grains + ice);
-    const double hot = s.heat ? beta * g->value[q][s.fluids] / 3.0 : 0.0;
+    const double hot  = s.heat ? beta * g->value[q][s.fluids] / 3.0 : 0.0;
     const double ex = n->xx[q] - hot, ey = n->yy[q] - hot, ez = -hot, tr = lame * (ex + ey + ez);
     const double x0 = cc * xx0[q] - 2.0 * cs * xy0[q] + ss * yy0[q], y0 = ss * xx0[q] + 2.0 * cs * xy0[q] + cc * yy0[q];
     const double xy_0 = cs * (xx0[q] - yy0[q]) + (cc - ss) * xy0[q];
@@ -190,7 +200,9 @@ INLINE bool StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
 INLINE void OutOfPlane(Explicit *e, Run r, const Strain *n)
 {
   for (int first = 0; first < 2; first++) {
-    double *restrict xz = e->m->P.f[(first ? P_SIG0 : P_SIG) + XZ] + r.p, *restrict yz = e->m->P.f[(first ? P_SIG0 : P_SIG) + YZ] + r.p;
+    double *restrict xz = e->m->P.f[(first ? P_SIG0 : P_SIG) + XZ] + r.p, *restrict yz =
+                                                                              e->m->P.f[(first ? P_SIG0 : P_SIG) + YZ] +
+                                                                              r.p;
 
     for (int q = 0; q < r.n; q++) {
       const double x = n->c[q] * xz[q] - n->s[q] * yz[q];
@@ -208,7 +220,8 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
   bool        fine = true;
 
   for (int d = 0; d < CL_DIM; d++) {
-    double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict u = e->m->P.f[P_U + d] + r.p, *restrict l = e->m->P.f[P_L + d] + r.p;
+    double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict u = e->m->P.f[P_U + d] + r.p,
+                     *restrict l = e->m->P.f[P_L + d] + r.p;
     const double h = grid->h[d], lower = grid->lower[d], upper = lower + (double)grid->cells[d] * h;
 
     for (int q = 0; q < r.n; q++) {

@@ -5,7 +5,7 @@ void BalanceHeader(const Case *c, FILE *f)
 {
   (void)c;
   fprintf(f, "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
-             "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error\n");
+             "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J\n");
 }
 
 /* Relative to the initial store; absolute where there was none. */
@@ -25,7 +25,8 @@ static PetscErrorCode WriteRow(FILE *f, const StepperState *s, const StepInfo *i
           info ? info->newton : 0);
   fprintf(f, ",%.17g,%.17g,%.12e", now->water, s->out[PHASE_W], water);
   fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
-  fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e\n", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
+  fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
+  fprintf(f, ",%.17g\n", now->kinetic);
   PetscCall(IoFlush(f, "balance.csv"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,5 @@
-/* The laws over arrays.  The loops below repeat the formulae of their files without branches; tests/unit/test_laws_batch.c
-   holds them together. */
+/* The laws over arrays.  The loops below repeat the formulae of their files without branches;
+   tests/unit/test_laws_batch.c holds them together. */
 #include "clathra/laws_batch.h"
 #include "laws_private.h"
 
@@ -38,7 +38,8 @@ static void SmoothVanGenuchten(const Retention *law, int n, const double *pc, do
     const double x = pc[q] * per_ps, e = exp(-fabs(x)), l = log1p(e), up = (x >= 0.0 ? 1.0 : e) / (1.0 + e);
     const double plus = Larger(ps * (Larger(x, 0.0) + l), LEAST), minus = -ps * (Larger(-x, 0.0) + l);
     const double trapped = Sgr * exp(minus / pt), L = power * (log(plus) - log_p0), eL = exp(-fabs(L));
-    const double exponent = -m * (Larger(L, 0.0) + log1p(eL)), VG = exp(exponent), slope = (L >= 0.0 ? 1.0 : eL) / (1.0 + eL);
+    const double exponent = -m * (Larger(L, 0.0) + log1p(eL)), VG = exp(exponent),
+                 slope = (L >= 0.0 ? 1.0 : eL) / (1.0 + eL);
 
     s[q]  = trapped - room * expm1(exponent);
     ds[q] = trapped / pt * (1.0 - up) + room * m * power * VG * (slope / plus) * up;

@@ -9,8 +9,8 @@
 #define LAW_ZERO_CELSIUS 273.15 /* K */
 #define LAW_EXP_MAX 200.0       /* no exponent of a sensible parameter set comes near */
 #define LAW_TOE 1e-3            /* width of the C1 toes */
-#define LAW_TRAPPED_MIN 1e-4    /* least trapped gas S_gr' of the smooth retention, so that p_c is defined without any */
-#define LAW_SMOOTH 0.05         /* default p_s/p_0 of the smooth retention */
+#define LAW_TRAPPED_MIN 1e-4 /* least trapped gas S_gr' of the smooth retention, so that p_c is defined without any */
+#define LAW_SMOOTH 0.05      /* default p_s/p_0 of the smooth retention */
 
 /* Position of a name in a NULL-terminated list, -1 if it is not there. */
 static inline int LawFind(const char *const names[], const char *name)

@@ -3,7 +3,7 @@
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-#define PC_MAX 1e9          /* Pa, range searched by RetentionInvert */
+#define PC_MAX 1e9 /* Pa, range searched by RetentionInvert */
 #define PLATEAU_EPSILON 4e-16
 
 /* log(1 + e^x), accurate in both tails, and its slope 1/(1 + e^-x). */

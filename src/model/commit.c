@@ -147,8 +147,8 @@ static void CheckShares(Model *m, const double *x, const double *masses)
     if (!(sw >= 0.0 && sw <= 1.0))
       ModelNoteFailure(m, CL_DOMAIN, "a saturation leaves [0,1]; with one pressure saturations are explicit", p);
     else if (fabs(sw - ParticleSw(m, p)) > MAX_SHARE)
-      ModelNoteFailure(m, CL_DOMAIN, "a saturation changes by more than 0.05 in a step; with one pressure they are explicit",
-                  p);
+      ModelNoteFailure(m, CL_DOMAIN,
+                       "a saturation changes by more than 0.05 in a step; with one pressure they are explicit", p);
   }
 }
 

@@ -106,9 +106,23 @@ PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of the phases of a particle; m: skeleton with hydrate, water, gas. */
+static double KineticEnergy(const Particles *P, PetscInt p, const double m[3])
+{
+  double sum = 0.0;
+
+  for (int k = 0; k < 3; k++) {
+    const int v = P_VS + k * CL_DIM;
+
+    if (P->f[v])
+      sum += 0.5 * m[k] * (PetscSqr(P->f[v][p]) + PetscSqr(P->f[v + 1][p]));
+  }
+  return sum;
+}
+
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
 {
-  double sum[7] = {0.0};
+  double sum[8] = {0.0};
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->P.n; p++) {
@@ -125,14 +139,16 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
     sum[4] += m->P.f[P_V][p];
     sum[6] += mg;
     sum[5] += ms * mat->c_s + mh * mat->c_h + mw * mat->c_w + mg * mat->c_g;
+    sum[7] += KineticEnergy(&m->P, p, (const double[3]){ms + mh, mw, mg});
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   *t = (ModelTotals){.water    = sum[0],
                      .methane  = sum[1],
                      .hydrate  = sum[2],
                      .solid    = sum[3],
                      .gas      = sum[6],
                      .V        = sum[4],
-                     .capacity = sum[5]};
+                     .capacity = sum[5],
+                     .kinetic  = sum[7]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

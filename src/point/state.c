@@ -251,6 +251,18 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
   *m_g = gas ? Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e) : 0.0;
 }
 
+/* Rate of the reaction for 1 Pa off equilibrium, whichever way it goes. */
+static void ReactionProperties(const Material *mat, const ScalarState *s, double T, PointProperties *r)
+{
+  const Kinetics *k = &mat->kinetics;
+  double          d[2];
+  const double    forms = KineticsFormationArea(k, s->sw.v, s->Sh.v, &d[0], &d[1]);
+  const double    area  = fmax(forms, k->A_geo * s->phi.v * s->Sh.v);
+
+  r->reaction      = k->M_h * KineticsRateConstant(k, T, &d[0]) * area;
+  r->reaction_heat = r->reaction * LatentHeatEvaluate(&mat->latent, T, &d[0]);
+}
+
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
                                  double pg, double T, double sw_n, PointProperties *r, const char **why)
 {
@@ -280,5 +292,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->M = s.E.v * (2.0 * ElasticityShearFactor(&mat->elasticity) + ElasticityLameFactor(&mat->elasticity));
     r->G = s.E.v * ElasticityShearFactor(&mat->elasticity);
   }
+  if (mat->reacts)
+    ReactionProperties(mat, &s, T, r);
   return CL_OK;
 }

@@ -30,4 +30,5 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-const StepperScheme StepperScheme_Euler = {.name = "euler", .error_order = 2, .stages = 1, .advance = StepperImplicitStep, .step = Step};
+const StepperScheme StepperScheme_Euler = {
+    .name = "euler", .error_order = 2, .stages = 1, .advance = StepperImplicitStep, .step = Step};

@@ -1,4 +1,5 @@
-/* hybrid and explicit: many small steps without a matrix between two looks at the clock; docs/equations.md, section 12. */
+/* hybrid and explicit: many small steps without a matrix between two looks at the clock; docs/equations.md, section 12.
+ */
 #include "clathra/stepper.h"
 
 #define BURST 256 /* steps between two estimates of the stable step, and at most lost by a failure */
@@ -38,7 +39,8 @@ static PetscErrorCode CheckFixed(Stepper *s, bool *ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   *ok = false;
   PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
-                         "clathra: %s: stepper_dt = %g s is above the stable step of %g s (%s rules); allowed (0 s,%g s], or -stepper_force_dt "
+                         "clathra: %s: stepper_dt = %g s is above the stable step of %g s (%s rules); allowed (0 s,%g "
+                         "s], or -stepper_force_dt "
                          "yes, or -stepper_adapt yes\n",
                          s->model->c->file, dt, s->limit.dt, cl_limit_word[s->limit.rules], s->limit.dt));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -55,16 +57,19 @@ static PetscErrorCode Ready(Stepper *s, bool *ok)
   PetscCall(ExplicitStableStep(s->explicit, &s->limit));
   for (int k = LIMIT_NONE + 1; k < LIMIT_COUNT; k++) {
     if (s->limit.each[k] < INFINITY && n < sizeof(text))
-      n += (size_t)snprintf(text + n, sizeof(text) - n, "%s %s %.3g s", n ? "," : "", cl_limit_word[k], s->limit.each[k]);
+      n += (size_t)snprintf(text + n, sizeof(text) - n, "%s %s %.3g s", n ? "," : "", cl_limit_word[k],
+                            s->limit.each[k]);
   }
-  PetscCall(PetscPrintf(s->model->grid.comm, "  stable step %.4g s:%s; %s rules; the reaction is implicit and sets no bound\n", s->limit.dt,
+  PetscCall(PetscPrintf(s->model->grid.comm,
+                        "  stable step %.4g s:%s; %s rules; the reaction is implicit and sets no bound\n", s->limit.dt,
                         text, cl_limit_word[s->limit.rules]));
   if (!(s->limit.dt > 0.0)) {
     *ok = false;
-    PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
-                           "clathra: %s: stepper_type: %s has no stable step here (water without compressibility carries waves at any "
-                           "speed); use sdirk2 or euler\n",
-                           s->model->c->file, s->scheme->name));
+    PetscCall(PetscFPrintf(
+        s->model->grid.comm, stderr,
+        "clathra: %s: stepper_type: %s has no stable step here (water without compressibility carries waves at any "
+        "speed); use sdirk2 or euler\n",
+        s->model->c->file, s->scheme->name));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(CheckFixed(s, ok));
@@ -74,10 +79,11 @@ static PetscErrorCode Ready(Stepper *s, bool *ok)
 /* Steps to take until the next stop, and their length. */
 static PetscInt Plan(const Stepper *s, double stop, double *dt)
 {
-  const StepperState *z     = &s->state;
-  const double        left  = stop - z->t, share = s->model->c->cfl * s->limit.dt;
-  const double        free_ = s->adaptive ? fmin(share, s->dt_max) : s->model->c->dt, wanted = z->hold > 0 ? fmin(z->dt, free_) : free_;
-  const double        n     = fmax(ceil(left / wanted - 1e-9), 1.0);
+  const StepperState *z    = &s->state;
+  const double        left = stop - z->t, share = s->model->c->cfl * s->limit.dt;
+  const double        free_ = s->adaptive ? fmin(share, s->dt_max) : s->model->c->dt,
+               wanted       = z->hold > 0 ? fmin(z->dt, free_) : free_;
+  const double n            = fmax(ceil(left / wanted - 1e-9), 1.0);
 
   *dt = n <= BURST || s->adaptive ? left / n : wanted;
   return (PetscInt)fmin(n, BURST);
@@ -122,7 +128,8 @@ static PetscErrorCode GiveUp(Stepper *s, const char *why, bool *ok)
 }
 
 /* The accepted burst becomes history; nodal values of the new state are there for whoever writes them. */
-static PetscErrorCode Accept(Stepper *s, PetscInt n, double dt, double stop, bool reached, const Attempt *a, PetscInt cuts)
+static PetscErrorCode Accept(Stepper *s, PetscInt n, double dt, double stop, bool reached, const Attempt *a,
+                             PetscInt cuts)
 {
   StepperState  *z    = &s->state;
   const StepInfo info = {.dt = dt, .cuts = cuts};
@@ -152,8 +159,8 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
   *ok = true;
   PetscCall(ParticlesCopy(&m->P, &s->good));
   for (PetscInt cuts = 0;; cuts++) {
-    Attempt  a = {.status = CL_OK};
-    double   dt;
+    Attempt a = {.status = CL_OK};
+    double  dt;
 
     PetscCall(ExplicitBegin(s->explicit, &a.status));
     PetscCall(ExplicitStableStep(s->explicit, &s->limit));
@@ -173,8 +180,9 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     PetscCall(ParticlesCopy(&s->good, &m->P));
     s->state.dt   = CUT * dt;
     s->state.hold = HOLD;
-    PetscCall(PetscPrintf(m->grid.comm, "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-                          s->state.t, n, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1], s->state.dt));
+    PetscCall(PetscPrintf(
+        m->grid.comm, "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
+        s->state.t, n, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1], s->state.dt));
     if (cuts >= s->max_failures) {
       PetscCall(GiveUp(s, m->why ? m->why : "?", ok));
       PetscFunctionReturn(PETSC_SUCCESS);
@@ -182,5 +190,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
   }
 }
 
-const StepperScheme StepperScheme_Hybrid   = {.name = "hybrid", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};
-const StepperScheme StepperScheme_Explicit = {.name = "explicit", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};
+const StepperScheme StepperScheme_Hybrid = {
+    .name = "hybrid", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};
+const StepperScheme StepperScheme_Explicit = {
+    .name = "explicit", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};

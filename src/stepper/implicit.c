@@ -229,15 +229,15 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
       s->state.hold = HOLD;
       PetscCall(PetscPrintf(m->grid.comm, "t = %g s: step of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-                            s->state.t, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1],
-                            s->state.dt));
+                            s->state.t, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0],
+                            m->where[1], s->state.dt));
     }
     if (cuts >= s->max_failures || small) {
       *ok = false;
-      PetscCall(
-          PetscPrintf(m->grid.comm,
-                      "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
-                      s->state.t, cuts + 1, m->why ? m->why : "?", StepperStatusName(a.status), m->where[0], m->where[1]));
+      PetscCall(PetscPrintf(
+          m->grid.comm,
+          "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n", s->state.t,
+          cuts + 1, m->why ? m->why : "?", StepperStatusName(a.status), m->where[0], m->where[1]));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

@@ -87,4 +87,5 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-const StepperScheme StepperScheme_Sdirk2 = {.name = "sdirk2", .error_order = 3, .stages = 2, .advance = StepperImplicitStep, .step = Step};
+const StepperScheme StepperScheme_Sdirk2 = {
+    .name = "sdirk2", .error_order = 3, .stages = 2, .advance = StepperImplicitStep, .step = Step};

@@ -1,10 +1,11 @@
 /* The time loop, whatever the scheme: what it starts from, where steps must end, what an accepted step adds up. */
 #include "clathra/stepper.h"
 
+#define AUTO "auto" /* word of stepper_type: as the forecast says */
 #define FLOOR_P 1e4 /* Pa: pressure changes below it are not resolved more finely */
 
 static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperScheme_Sdirk2, &StepperScheme_Hybrid,
-                                                &StepperScheme_Explicit, NULL};
+                                               &StepperScheme_Explicit, NULL};
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s)
 {
@@ -19,6 +20,9 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
     if (same)
       s->scheme = schemes[k];
   }
+  PetscCall(PetscStrcmp(AUTO, c->stepper, &same));
+  if (same)
+    s->scheme = &StepperScheme_Sdirk2; /* until the forecast is known */
   PetscCheck(s->scheme, m->grid.comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "no time integrator %s", c->stepper);
   s->adaptive      = c->adaptive;
   s->dt_min        = c->dt_min;
@@ -38,15 +42,24 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
   s->state.water0    = t.water;
   s->state.methane0  = t.methane;
   s->state.capacity0 = t.capacity;
-  if (s->scheme->create)
-    PetscCall(s->scheme->create(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StepperReady(Stepper *s, bool *ok)
 {
+  PetscBool choose;
+
   PetscFunctionBeginUser;
   *ok = true;
+  PetscCall(StepperForecast(s));
+  PetscCall(StepperPrintForecast(s));
+  PetscCall(PetscStrcmp(AUTO, s->model->c->stepper, &choose));
+  if (choose && s->forecast.hybrid)
+    s->scheme = &StepperScheme_Hybrid;
+  if (choose)
+    PetscCall(PetscPrintf(s->model->grid.comm, "  integrator chosen: %s\n", s->scheme->name));
+  if (s->scheme->create)
+    PetscCall(s->scheme->create(s));
   if (s->scheme->ready)
     PetscCall(s->scheme->ready(s, ok));
   PetscFunctionReturn(PETSC_SUCCESS);

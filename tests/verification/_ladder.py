@@ -157,6 +157,12 @@ class Century:
     depths = {"below_2m": 2.0, "below_5m": 5.0, "below_10m": 10.0, "below_20m": 20.0}  # of the probes, m
 
     @classmethod
+    def of(cls, k):
+        """The same with permeability k (m^2), and probes as deep as the pressure's layer wants."""
+        scale = k / 1e-18
+        return type(cls.__name__, (cls,), {"c": cls.c * scale, "depths": {n: a * scale**0.5 for n, a in cls.depths.items()}})
+
+    @classmethod
     def load(cls, t):
         return cls.Q * np.minimum(t, cls.T1) / cls.T1
 

@@ -39,4 +39,7 @@ run = Run.of_case(CASES / "elastic_wave", "-stepper_dt", f"{W.period / 400:.12g}
 u = W.solution(10.0, run.time)[0]
 judge("4.5", "Elastic wave, sdirk2, 400 steps a period: end of the column, of its largest displacement",
       np.max(np.abs(run.probe("end")["u_x_m"] - u)) / np.max(np.abs(u)), 0.04, 0.01, "%")  # fmt: skip
+v = run.snapshots()[-1][1]
+kinetic = 0.5 * np.sum(v["mass_solid"][:, 0] * np.sum(v["v_s"] ** 2, axis=1))
+check("kinetic energy in balance.csv, relative to that of the snapshot", abs(run.balance["kinetic_energy_J"][-1] / kinetic - 1), 1e-12)
 finish()

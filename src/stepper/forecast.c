@@ -1,0 +1,120 @@
+/* What the run would cost by either kind of integrator; docs/tradeoff.md shows where the numbers come from. */
+#include "clathra/stepper.h"
+
+/* Measured on one core of a 2024 server (docs/benchmark.md); what counts is their ratio. */
+#define HYBRID_BASE 0.10e-6   /* s a particle and step: motion and stress */
+#define HYBRID_SCALAR 0.10e-6 /* ... each of p_w, p_g, T */
+#define HYBRID_COUPLED 0.02e-6
+#define NEWTON 4.0      /* iterations a stage */
+#define PARTICLE 1.1e-6 /* s: residual */
+#define TANGENT 0.9e-6  /* s a particle and unknown of a node: Jacobian */
+#define FACTOR 5.5e-7   /* s: factorisation of N unknowns, n to a node, takes FACTOR n N^1.3 */
+#define FACTOR_POWER 1.3
+#define SMOOTH_STEPS 150.0 /* an adaptive run whose loads are slow */
+#define TRANSITS 100.0     /* waves matter in a run that is no longer than so many of their transits ... */
+#define PER_TRANSIT 40.0   /* ... and want so many steps each */
+
+static double Extent(const Case *c)
+{
+  double extent = 0.0;
+
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    for (int d = 0; d < CL_DIM; d++)
+      extent = fmax(extent, c->region[k].upper[d] - c->region[k].lower[d]);
+  }
+  return extent;
+}
+
+static double HybridSeconds(const Model *m, double steps)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double    s  = fs->phase[PHASE_W] + fs->phase[PHASE_G] + fs->heat;
+
+  return steps * (double)m->P.n * (HYBRID_BASE + HYBRID_SCALAR * s + HYBRID_COUPLED * s * s);
+}
+
+/* Steps of an implicit run: as fixed, or few unless waves have to be resolved. */
+static double ImplicitSteps(const Stepper *s, double left)
+{
+  const Model *m  = s->model;
+  double       k2 = 0.0;
+
+  if (!s->adaptive)
+    return left / m->c->dt;
+  for (int d = 0; d < CL_DIM; d++)
+    k2 += 4.0 / PetscSqr(m->grid.h[d]);
+  const double speed = 2.0 / (sqrt(k2) * s->forecast.limit.each[LIMIT_WAVE]);
+  const double transits =
+      m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
+
+  return transits < TRANSITS ? fmax(SMOOTH_STEPS, PER_TRANSIT * transits) : SMOOTH_STEPS;
+}
+
+static double ImplicitSeconds(const Model *m, double steps, int stages)
+{
+  const double n = m->c->fields.n, nodes = (double)m->P.n / 4.0, N = n * nodes;
+
+  return steps * stages * NEWTON * (double)m->P.n * (PARTICLE + TANGENT * n) +
+         steps * FACTOR * n * pow(N, FACTOR_POWER);
+}
+
+PetscErrorCode StepperForecast(Stepper *s)
+{
+  const Model          *m    = s->model;
+  const Case           *c    = m->c;
+  const ExplicitOptions o    = {.drag_implicit = true, .flip = 1.0, .mass_scaling = c->mass_scaling};
+  const double          left = c->t_end - s->state.t;
+  Forecast             *f    = &s->forecast;
+  Explicit             *e;
+
+  PetscFunctionBeginUser;
+  *f = (Forecast){.hybrid_steps = INFINITY, .hybrid_seconds = INFINITY};
+  PetscCall(ExplicitCreate(s->model, &o, &e));
+  PetscCall(ExplicitStableStep(e, &f->limit));
+  PetscCall(ExplicitDestroy(&e));
+  if (!CaseNeedsImplicit(c) && f->limit.dt > 0.0) {
+    f->hybrid_steps   = fmax(ceil(left / fmin(c->cfl * f->limit.dt, c->dt_max)), 1.0);
+    f->hybrid_seconds = HybridSeconds(m, f->hybrid_steps);
+  }
+  f->implicit_steps   = ImplicitSteps(s, left);
+  f->implicit_seconds = ImplicitSeconds(m, f->implicit_steps, s->scheme->stages);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->hybrid_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->implicit_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  f->hybrid = f->hybrid_seconds < f->implicit_seconds;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* "12 s", "3.4 h", "20 years". */
+static void Duration(double seconds, char text[32])
+{
+  static const struct {
+    double      s;
+    const char *unit;
+  } unit[] = {{3.156e7, "years"}, {86400.0, "days"}, {3600.0, "h"}, {60.0, "min"}, {0.0, "s"}};
+  int k    = 0;
+
+  while (seconds < 2.0 * unit[k].s)
+    k++;
+  snprintf(text, 32, "%.2g %s", seconds / (unit[k].s > 0.0 ? unit[k].s : 1.0), unit[k].unit);
+}
+
+PetscErrorCode StepperPrintForecast(const Stepper *s)
+{
+  const Forecast *f   = &s->forecast;
+  const char     *why = CaseNeedsImplicit(s->model->c);
+  char            hybrid[128], time[32];
+
+  PetscFunctionBeginUser;
+  if (why) {
+    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid does not know %s", why));
+  } else if (!(f->limit.dt > 0.0)) {
+    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid has no stable step"));
+  } else {
+    Duration(f->hybrid_seconds, time);
+    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %.2g steps, %s", f->hybrid_steps, time));
+  }
+  Duration(f->implicit_seconds, time);
+  PetscCall(PetscPrintf(s->model->grid.comm, "  forecast: %s; implicit about %.2g steps, %s; %s is the cheaper one\n",
+                        hybrid, f->implicit_steps, time, f->hybrid ? "hybrid" : "implicit"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

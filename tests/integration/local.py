@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""hybrid and explicit: 1, 2 and 4 ranks agree, a restart goes on bit for bit, a step too long is refused, a failure ends with the last good state.
+
+The block of two materials of ranks.py, squeezed by a tenth within 0.2 s: particles pass from cell to cell and from rank to rank.
+"""
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import Run, binary, check, check_true, finish, launch, scratch  # noqa: E402
+
+CASE = Path(__file__).resolve().parent / "cases" / "block.yaml"
+LOAD = ("-mat_soft_permeability_k0", "1e-10 m^2", "-mat_firm_permeability_k0", "1e-10 m^2",
+        "-bc_load_normal_ramp", "3.4 MPa,4.6 MPa,0 s,0.2 s", "-time_end", "0.24 s", "-output_times", "0 s,0.12 s,0.24 s",
+        "-output_probe_every", "0.02 s", "-quiet")  # fmt: skip
+FIXED = ("-stepper_adapt", "no", "-checkpoint_every", "0.12 s")
+# kind: step, end; explicit drag ends where gas becomes immobile: its stable step falls with k_r
+TYPES = {"hybrid": (4e-5, 0.24), "explicit": (4e-5, 0.08)}
+
+
+def run(kind, *options, **keywords):
+    return Run.of_case(CASE, *LOAD, "-stepper_type", kind, *options, **keywords)
+
+
+def worst(a, b):
+    """Largest difference over the size of its variable, over histories and particles."""
+    found = max(np.max(np.abs(a.probes[c] - b.probes[c])) / (np.max(np.abs(a.probes[c])) or 1.0) for c in a.probes if not c.endswith("u_x_m"))
+    for (_, x), (_, y) in zip(a.snapshots(), b.snapshots(), strict=True):
+        for name in ("p_w", "p_g", "T", "S_h", "position", "displacement", "stress", "v_s", "mass_water", "mass_hydrate"):
+            found = max(found, np.max(np.abs(x[name] - y[name])) / np.max(np.abs(x[name])) if np.any(x[name]) else 0.0)
+    return found
+
+
+def owners(path):
+    with h5py.File(path, "r") as file:
+        return file["particles/rank"][()]
+
+
+for kind, (step, end) in TYPES.items():
+    fixed = (*FIXED, "-stepper_dt", f"{step} s", "-time_end", f"{end} s", "-output_times", f"0 s,{end} s")
+    runs = {n: run(kind, *fixed, ranks=n) for n in (1, 2, 4)}
+    u = runs[1].probe("top")["u_y_m"]
+    print(f"{kind}: the top comes down by {-100 * u.min() / 0.8:.1f} % of the height; water balance {np.max(np.abs(runs[1].balance['water_error'])):.1e}")
+    check_true(f"{kind}: the block is squeezed", -0.2 < u.min() / 0.8 < -0.02)
+    check(f"{kind}: water and methane balance", np.max(np.abs([runs[1].balance[f"{w}_error"] for w in ("water", "methane")])), 1e-12)
+    dt = runs[1].balance['dt_s']
+    check_true(f"{kind}: the step is the fixed one", np.allclose(dt, step, rtol=1e-9), f"{dt.min():.12g} to {dt.max():.12g} s")
+    for n in (2, 4):
+        check(f"{kind}: {n} ranks against 1", worst(runs[1], runs[n]), 1e-8)
+        first = run(kind, *fixed, "-time_end", f"{step} s", "-output_times", "0 s", ranks=n)
+        moved = int(np.sum(owners(first.out / "checkpoint.h5") != owners(runs[n].out / "checkpoint.h5")))
+        check_true(f"{kind}: particles changed ranks", moved > 0, f"{moved} on {n} ranks")
+
+for ranks in (1, 2):
+    straight, out = run("hybrid", ranks=ranks), scratch() / "cut"
+    half = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_max_steps", "5", ranks=ranks, out=out)
+    check_true("first part ends", half.returncode == 0)
+    cut = run("hybrid", "-restart", out / "checkpoint.h5", ranks=ranks, out=out)
+    same = all(np.array_equal(straight.probes[c], cut.probes[c]) for c in straight.probes)
+    check_true(f"cut in two on {ranks} rank(s): the same bit for bit", same and len(straight.time) == len(cut.time))
+
+# refused before anything is written
+out = scratch() / "refused"
+r = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "1e-2 s", out=out)
+said = r.stdout + r.stderr
+check_true("a step above the stable one is refused", r.returncode == 2 and "stable step" in said and "waves in the mixture" in said and not out.exists(), said[-200:])
+for option, value, word in (("-inertia", "no", "inertia: no"), ("-pressures", "one", "pressures: one")):
+    r = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", option, value, out=out)
+    check_true(f"{word} is refused", r.returncode == 2 and word in r.stdout + r.stderr and not out.exists(), (r.stdout + r.stderr)[-200:])
+
+# forced, it fails, is rolled back and cut, and at last ends with a state that is good
+r = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "1e-2 s", "-stepper_force_dt", "yes",
+           "-stepper_max_failures", "2", out=out)  # fmt: skip
+check_true("forced: ends with exit code 3 and says why", r.returncode == 3 and "Given up" in r.stdout and "refused" in r.stdout, r.stdout[-300:])
+with h5py.File(out / "checkpoint.h5", "r") as file:
+    check_true("forced: the saved state is finite", all(np.all(np.isfinite(v[()])) for v in file["particles"].values()))
+finish()
