@@ -234,6 +234,8 @@ def about_terms(points):
         mine = [p for p in points if p["kind"] == kind]
         base, rows = mine[0], []
         for p in mine:
+            if p is not base and not any(p.get("change", {"": 1}).values()):
+                continue  # this kind has no such term
             if "change" in p:
                 rows.append([p["left out"], p["steps"], seconds(p["cpu"]), f"{p['cpu'] / base['cpu']:.2f}", *(percent(p["change"][k]) if k in p["change"] else "-" for k in base["change"])])  # fmt: skip
             else:
@@ -246,6 +248,33 @@ def about_basis(points):
     rows = [[f"`{p['kind']}`", p["basis"], p["particles"], *((percent(p["error"]), f"{p['noise']:.1e}", seconds(p["cpu"])) if "error" in p
              else (f"gave up: {p['why'][:70]}", "-", "-"))] for p in points]  # fmt: skip
     return table(["integrator", "basis", "particles per cell", "error", "ringing over the load", "processor time"], rows)
+
+
+def measured(data, part, which):
+    """{hybrid, implicit: seconds within 1 %} of a scene; what is missing did not reach it."""
+    points = [p for p in data[part] if all(p.get(k) == v for k, v in which.items())]
+    found = {}
+    for name, kinds in (("hybrid", ("hybrid",)), ("implicit", ("euler", "sdirk2"))):
+        if part == "permeability":
+            times_ = [p["cpu"] for p in points if p["kind"] in kinds and kept(p)]
+        else:
+            times_ = [q["cpu"] for kind in kinds if (q := best(points, kind, 0.01))]
+        if times_:
+            found[name] = min(times_)
+    return found
+
+
+def about_choice(data):
+    rows, right = [], []
+    for c in data["choice"]:
+        found, took = measured(data, c["part"], c["which"]), "hybrid" if c["chosen"] == "hybrid" else "implicit"
+        scene = c["scene"] + "".join(f", {k} = {v:.1e}" for k, v in c["which"].items() if k != "case")
+        if len(found) == 2:
+            right.append(found[took] <= 1.25 * min(found.values()))
+        rows.append([scene, f"`{c['chosen']}`", c["forecast"].rsplit(";", 1)[0], *(seconds(found[k]) if k in found else "not reached" for k in ("hybrid", "implicit")),
+                     ("yes" if right[-1] else "**no**") if len(found) == 2 else "-"])  # fmt: skip
+    said = f"`auto` takes the cheaper kind (or one within a quarter of it) in {sum(right)} of {len(right)} scenes that both kinds bring within 1 %."
+    return said, table(["scene", "`auto` takes", "its forecast", "measured, `hybrid`", "measured, best implicit", "right"], rows)
 
 
 def advice(data):
@@ -275,6 +304,8 @@ def advice(data):
     if {4, 16} <= set(more):
         a, b = more[4], more[16]
         lines.append(f"Sixteen particles a cell instead of four, cpgimp: error {percent(a['error'])} to {percent(b['error'])}, time x {times(b['cpu'] / a['cpu'])}.")
+    if "choice" in data:
+        lines.append(about_choice(data)[0])
     return [f"- {line}" for line in lines] + [""]
 
 
@@ -303,6 +334,7 @@ def page(data):
         "## Permeability", "", "![permeability](figures/tradeoff_permeability.png)", "",
         "Time to three quarters of consolidation of the same column, settlement within 1 % of its end all the way: the longest fixed step that keeps it. Open marks are extrapolated.", "",
         *about_permeability(data["permeability"]),
+        *(["## What `auto` chooses", "", "Measured times are of the cheapest run within 1 %.", "", *about_choice(data)[1]] if "choice" in data else []),
         "## What each field and term costs and buys", "", "The dissociating block without one of them. Change: of the curve over its range.", "", *about_terms(data["terms"]),
         "## Basis and particles per cell", "", "![basis](figures/tradeoff_basis.png)", "",
         "Consolidation under 1 MPa, 5 % of strain, so that particles cross cells. Error: against four times as many cells with cpgimp. Ringing: root mean square of the difference between a "

@@ -4,7 +4,7 @@
 tradeoff.py [CLATHRA] [--only PART ...] [--page]
 
 CLATHRA  the program, default build/clathra
---only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis), take the others from docs/tradeoff.json
+--only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice), take the others from docs/tradeoff.json
 --page   write the page and the figures from docs/tradeoff.json
 
 Every number of the page is of one of its runs.  It is a study, no test: on one core it takes about twenty minutes.  Processor time is
@@ -187,18 +187,23 @@ def settlement(scene, k, Kw):
     return exact.terzaghi_ramps_settlement(*scene.table(), M, B, c, 10.0, scene.times())
 
 
+def sweep_scene(Kw, k):
+    """The column to a time factor of 1/2, loaded over a quarter of that."""
+    c = exact.mixture_coefficients(exact.constrained_modulus(14.516e6, 0.3), k / 1e-3, 0.33, Kw)[1]
+    end = 0.5 * 100 / c
+    return scenes.consolidation(Kw=Kw, k=k, end=end, every=end / 10, rise=end / 4)
+
+
 def permeability(bar=0.01):
     """Time to reach 3/4 of consolidation with the settlement within 1 % of its end all the way."""
-    found, M = [], exact.constrained_modulus(14.516e6, 0.3)
+    found = []
     for Kw in (22e6, 2.2e9):
         for power in range(7, 19):
             k = 10.0**-power
-            c = exact.mixture_coefficients(M, k / 1e-3, 0.33, Kw)[1]
-            end = 0.5 * 100 / c
-            scene = scenes.consolidation(Kw=Kw, k=k, end=end, every=end / 10, rise=end / 4)
+            scene = sweep_scene(Kw, k)
             want = {"u(H)": settlement(scene, k, Kw)}
             for kind in integrators():
-                found.append(cheapest(scene, kind, want, bar) | {"k": k, "Kw": Kw, "end": end})
+                found.append(cheapest(scene, kind, want, bar) | {"k": k, "Kw": Kw, "end": scene.end})
                 print("  ", found[-1], flush=True)
     return found
 
@@ -253,7 +258,7 @@ def terms():
     scene, found, base = scenes.BLOCK, [], {}
     for kind in (SDIRK2, "hybrid") if "hybrid" in integrators() else (SDIRK2,):
         for name, options in TERMS:
-            if kind == "hybrid" and ("inertia" in name or "no" in options[1:2] and "-inertia" in options or name in ("ghost penalty", "pressure projection")):
+            if kind == "hybrid" and ("-inertia" in options or name in ("ghost penalty", "pressure projection")):
                 continue  # it lives by inertia, and has neither of these
             run, cpu = Clock.of(scene, *adaptive(kind), *options)
             record = {"kind": kind, "left out": name, "cpu": cpu, "code": run.code, "why": why(run) if run.code else ""}
@@ -295,7 +300,21 @@ def basis():
     return found
 
 
-PARTS = {f.__name__: f for f in (wave, consolidation, bp2, block, permeability, terms, basis)}
+def choice():
+    """What `auto` forecasts and takes, from one step of each scene."""
+    rows = [("wave", {"Kw": Kw}, scenes.wave(Kw)) for Kw in (22e6, 2.2e9)] + [("consolidation", {}, scenes.consolidation())]
+    rows += [("bp2", {"case": case}, scenes.bp2(case, every=100.0)) for case in (1, 2)] + [("block", {}, scenes.BLOCK)]
+    rows += [("permeability", {"Kw": Kw, "k": 10.0**-power}, sweep_scene(Kw, 10.0**-power)) for Kw in (22e6, 2.2e9) for power in range(7, 19)]
+    found = []
+    for part, which, scene in rows:
+        run = scene.run(*adaptive("auto"), "-stepper_max_steps", 1, exit_code=GIVEN_UP)
+        said = re.search(r"forecast: (.*)\n\s*integrator chosen: (\w+)", run.output)
+        found.append({"part": part, "which": which, "scene": scene.name, "forecast": said[1] if said else "", "chosen": said[2] if said else why(run)})
+        print("  ", found[-1], flush=True)
+    return found
+
+
+PARTS = {f.__name__: f for f in (wave, consolidation, bp2, block, permeability, terms, basis, choice)}
 
 
 def measure(names):

@@ -116,7 +116,7 @@ class Saturated(Scene):
         rows = ",".join(f"{t!r} s,{1e6 + q!r} Pa" for t, q in zip(*self.table()))
         return super().run("-mat_sand_water_bulk_modulus", f"{self.Kw!r} Pa" if np.isfinite(self.Kw) else "incompressible",
                            "-mat_sand_permeability_k0", f"{self.k!r} m^2", "-bc_load_normal_table", rows,
-                           *options, cells=cells, exit_code=exit_code)  # fmt: skip
+                           "-stepper_dt", f"{self.end / 1000!r} s", *options, cells=cells, exit_code=exit_code)  # fmt: skip
 
     def exact(self):
         """The curves of the exact solution."""
