@@ -127,7 +127,7 @@ class Saturated(Scene):
 
 
 def wave(Kw=22e6, **changes):
-    return Saturated("wave in a saturated column", end=0.2, every=0.01, Kw=Kw, **changes)
+    return Saturated("wave in a saturated column", **{"end": 0.2, "every": 0.01, "Kw": Kw, **changes})
 
 
 def consolidation(**changes):
