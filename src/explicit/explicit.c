@@ -210,12 +210,32 @@ static PetscErrorCode Ready(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sum of squares of the forces that the stresses exert over a cell. */
+static PetscErrorCode ActingForces(Explicit *e)
+{
+  const Model *m   = e->m;
+  const double h   = fmin(m->grid.h[0], m->grid.h[1]);
+  double       sum = 0.0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; e->set.solid && p < m->P.n; p++) {
+    const double pore = e->set.fluids ? m->P.f[P_PW][p] : 0.0;
+
+    for (int d = 0; d < CL_DIM; d++)
+      sum += PetscSqr(m->P.f[P_V][p] / h * (m->P.f[P_SIG + d][p] - pore));
+  }
+  PetscCallMPI(MPI_Allreduce(&sum, &e->acting, 1, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
 {
   PetscFunctionBeginUser;
   e->m->status = CL_OK;
   PetscCall(SizeParticles(e));
   PetscCall(Ready(e));
+  if (e->o.mass_scaling > 1.0)
+    PetscCall(ActingForces(e));
   PetscCall(ModelReduceStatus(e->m, status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,7 +11,7 @@
 #define LANES 8
 #define INLINE static inline __attribute__((always_inline))
 
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double))));
+typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
 
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {
@@ -151,9 +151,9 @@ struct Explicit {
   Face           *face;
   bool            stale, strays;    /* a particle reaches other nodes; a particle left this rank's cells */
   double          latent, advected; /* J over the step */
-  double          added, acting; /* norms of what mass scaling adds to inertia and of the forces that act, this step */
-  double          worst_scaling;
-  PetscLogEvent   event[STEP_PARTS];
+  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  double worst_scaling;
+  PetscLogEvent event[STEP_PARTS];
 };
 
 /* Weights of a block of particles. */

@@ -153,7 +153,7 @@ INLINE bool StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
   const double      G2 = 2.0 * ElasticityShearFactor(el), lame = ElasticityLameFactor(el);
   const double *restrict V = s.fluids || s.heat ? e->t[T_V] + r.p : NULL;
   double *restrict Sh      = f[P_SH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, E_old[BLOCK], E[BLOCK], phi[BLOCK];
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, E_old[BLOCK], E[BLOCK], phi[BLOCK] = {0.0};
   bool   fine = true;
 
   ElasticityYoungBatch(el, r.n, Sh, E_old);
