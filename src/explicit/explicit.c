@@ -51,13 +51,17 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is this work array of use to the set? */
-static bool Needs(Set s, int k)
+/* Is this work array of use? */
+static bool Needs(const Explicit *e, int k)
 {
+  const Set s = e->set;
+
   if (k == T_T)
     return !s.heat;
   if (k == T_V)
     return Scalars(s) > 0;
+  if (k >= T_MISS)
+    return e->o.particle_pressures && s.fluids > 0;
   if (k == T_SG || k == T_DS || k >= T_GAIN)
     return s.fluids == 2;
   return s.fluids > 0; /* those of the gas, too: few, and the pointers stay simple */
@@ -72,7 +76,7 @@ static PetscErrorCode SizeParticles(Explicit *e)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FreeParticles(e));
   for (int k = 0; k < T_COUNT; k++) {
-    if (Needs(e->set, k))
+    if (Needs(e, k))
       PetscCall(PetscCalloc1(n, &e->t[k]));
   }
   PetscCall(PetscMalloc2(n, &e->base[0], n, &e->base[1]));

@@ -115,7 +115,9 @@ enum {
   T_GAIN  = T_SLOPE + 6, /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
-  T_COUNT
+  T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
+  T_LOCAL = T_MISS + 2,
+  T_COUNT = T_LOCAL + 6
 };
 
 typedef struct {
