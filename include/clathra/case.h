@@ -133,6 +133,7 @@ typedef struct {
   double damping;      /* local damping */
   double mass_scaling; /* factor on inertia */
   bool   tied;         /* nearly empty nodes follow their inner neighbour */
+  bool   bare;         /* rates of pressure by the particle (the paper's form), not shared over nodes */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */

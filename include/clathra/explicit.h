@@ -47,7 +47,8 @@ PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit);
 PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status);
 /* Derived variables of the particles (porosity, saturation of water) for whoever reads them next. */
 PetscErrorCode ExplicitEnd(Explicit *e);
-/* Largest ratio, over the steps since the start, of the inertia that mass scaling added to the forces that act. */
+/* Largest ratio, over the steps so far, of the inertia that mass scaling added to the forces of the stresses over a
+   cell (2-norms over the nodes). */
 double ExplicitMassScalingError(const Explicit *e);
 /* Bytes a particle takes: store and work space. */
 double ExplicitBytesPerParticle(const Explicit *e);

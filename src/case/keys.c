@@ -58,6 +58,7 @@ static const char *const pressures_word[] = {"two", "one", NULL};
 static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]   = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
 static const char *const surface_word[]   = {"free", "tied", NULL};
+static const char *const share_word[]     = {"nodes", "particles", NULL};
 static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
 static const char *const axis_word[]      = {"x", "y", NULL};
 static const char *const space_word[]     = {"fluids", "pores", NULL};
@@ -135,6 +136,10 @@ static const Key case_key[] = {
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
     BOOLEAN(Case, "stepper_surface", tied, "tied", "hybrid, explicit: nearly empty nodes follow their inner neighbour",
             .choices = surface_word),
+    BOOLEAN(Case, "stepper_pressures", bare, "nodes",
+            "hybrid, explicit: rates of pressure shared over nodes, or by each particle alone (the paper's form, which "
+            "rings)",
+            .choices = share_word),
     REAL(Case, "stabilisation_ghost_penalty", ghost_penalty, "", "[0,100]", "0.1", "at free surfaces; 0 = off"),
     REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),

@@ -166,6 +166,30 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
   }
 }
 
+/* The paper's (60e) per unit of the fluid's volume: V p_p G, by parts; the bare form only. */
+INLINE void WeakForces(Explicit *e, const Set s, Run r, const Weights *w)
+{
+  const int width = LANES * Rows(A_Count(s)), stride = (int)e->m->grid.gm[0];
+
+  for (int q = 0; q < r.n; q++) {
+    const int *slot = &e->slot[w->first[q]];
+
+    for (int b = 0; b < 3; b++) {
+      for (int a = 0; a < 3; a++) {
+        const double G[CL_DIM] = {w->D[0][a][q] * w->S[1][b][q], w->S[0][a][q] * w->D[1][b][q]};
+        double      *row       = &e->A[slot[b * stride + a] * width];
+
+        for (int k = 0; k < s.fluids; k++) {
+          const double Vp = e->m->P.f[P_V][r.p + q] * e->m->P.f[P_PW + k][r.p + q];
+
+          for (int d = 0; d < CL_DIM; d++)
+            row[A_Fluid(s, k) + FL_GX + d] += Vp * G[d];
+        }
+      }
+    }
+  }
+}
+
 INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
 {
   _Alignas(64) Values v;
@@ -208,6 +232,13 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
+  if (s.fluids && e->o.particle_pressures) {
+    for (int q = 0; q < r.n; q++) {
+      for (int k = 0; k < s.fluids; k++)
+        v.value[q][A_Fluid(s, k) + FL_GX] = v.value[q][A_Fluid(s, k) + FL_GY] = 0.0;
+    }
+    WeakForces(e, s, r, &w);
+  }
   Scatter(e, s, r, &w, &v);
 }
 

@@ -51,13 +51,17 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is this work array of use to the set? */
-static bool Needs(Set s, int k)
+/* Is this work array of use? */
+static bool Needs(const Explicit *e, int k)
 {
+  const Set s = e->set;
+
   if (k == T_T)
     return !s.heat;
   if (k == T_V)
     return Scalars(s) > 0;
+  if (k >= T_MISS)
+    return e->o.particle_pressures && s.fluids > 0;
   if (k == T_SG || k == T_DS || k >= T_GAIN)
     return s.fluids == 2;
   return s.fluids > 0; /* those of the gas, too: few, and the pointers stay simple */
@@ -72,7 +76,7 @@ static PetscErrorCode SizeParticles(Explicit *e)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FreeParticles(e));
   for (int k = 0; k < T_COUNT; k++) {
-    if (Needs(e->set, k))
+    if (Needs(e, k))
       PetscCall(PetscCalloc1(n, &e->t[k]));
   }
   PetscCall(PetscMalloc2(n, &e->base[0], n, &e->base[1]));
@@ -210,12 +214,32 @@ static PetscErrorCode Ready(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sum of squares of the forces that the stresses exert over a cell. */
+static PetscErrorCode ActingForces(Explicit *e)
+{
+  const Model *m   = e->m;
+  const double h   = fmin(m->grid.h[0], m->grid.h[1]);
+  double       sum = 0.0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; e->set.solid && p < m->P.n; p++) {
+    const double pore = e->set.fluids ? m->P.f[P_PW][p] : 0.0;
+
+    for (int d = 0; d < CL_DIM; d++)
+      sum += PetscSqr(m->P.f[P_V][p] / h * (m->P.f[P_SIG + d][p] - pore));
+  }
+  PetscCallMPI(MPI_Allreduce(&sum, &e->acting, 1, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
 {
   PetscFunctionBeginUser;
   e->m->status = CL_OK;
   PetscCall(SizeParticles(e));
   PetscCall(Ready(e));
+  if (e->o.mass_scaling > 1.0)
+    PetscCall(ActingForces(e));
   PetscCall(ModelReduceStatus(e->m, status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,7 +22,8 @@ static void Place(const Explicit *e, PetscInt p, Stencil *s)
               &s->axis[d]);
 }
 
-/* The faces on which something is prescribed or counted; the rest are closed, adiabatic and free by themselves. */
+/* The faces on which something is prescribed or counted; the rest are closed, adiabatic and free by themselves, but in
+   the bare form, whose forces by parts end there. */
 PetscErrorCode FacesBegin(Explicit *e)
 {
   Stencil *stencil;
@@ -36,7 +37,7 @@ PetscErrorCode FacesBegin(Explicit *e)
   }
   PetscCall(FacesBuild(e->m->c, &e->m->grid, &e->m->P, stencil, &e->nface, &e->face));
   for (PetscInt k = 0; k < e->nface; k++) {
-    if (Acts(e->m->c, &e->face[k]))
+    if (e->o.particle_pressures || Acts(e->m->c, &e->face[k]))
       e->face[n++] = e->face[k];
   }
   e->nface = n;
@@ -122,7 +123,7 @@ void FacesForces(Explicit *e, double dt)
       const double p = in[IN_P + ph] + in[IN_GP + 2 * ph] * f->r[0] + in[IN_GP + 2 * ph + 1] * f->r[1];
 
       for (int d = 0; d < CL_DIM; d++)
-        force[ph][d] = p * f->n[d] - o.out[F_VWX + 2 * ph + d];
+        force[ph][d] = (e->o.particle_pressures ? 0.0 : p * f->n[d]) - o.out[F_VWX + 2 * ph + d];
     }
     for (int a = 0; a < r.n; a++) {
       double *row = &e->A[r.node[a] * width];

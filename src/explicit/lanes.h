@@ -11,7 +11,7 @@
 #define LANES 8
 #define INLINE static inline __attribute__((always_inline))
 
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double))));
+typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
 
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {
@@ -115,7 +115,9 @@ enum {
   T_GAIN  = T_SLOPE + 6, /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
-  T_COUNT
+  T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
+  T_LOCAL = T_MISS + 2,
+  T_COUNT = T_LOCAL + 6
 };
 
 typedef struct {
@@ -151,9 +153,9 @@ struct Explicit {
   Face           *face;
   bool            stale, strays;    /* a particle reaches other nodes; a particle left this rank's cells */
   double          latent, advected; /* J over the step */
-  double          added, acting; /* norms of what mass scaling adds to inertia and of the forces that act, this step */
-  double          worst_scaling;
-  PetscLogEvent   event[STEP_PARTS];
+  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  double worst_scaling;
+  PetscLogEvent event[STEP_PARTS];
 };
 
 /* Weights of a block of particles. */

@@ -235,12 +235,8 @@ static void GroupVelocities(Explicit *e, PetscInt I, double dt)
     e->inc[6 * I + d] = v[0] - b.v;
     for (int k = 0; k < e->set.fluids; k++)
       e->inc[6 * I + 2 * (1 + k) + d] = v[1 + k] - b.vf[k];
-    if (!held) {
-      const double a_s = (v[0] - b.v) / dt;
-
-      e->added += PetscSqr((e->o.mass_scaling - 1.0) * b.M * a_s);
-      e->acting += PetscSqr(b.M * a_s) + PetscSqr(b.f);
-    }
+    if (!held) /* of the mixture, which moves with the skeleton but for seepage */
+      e->added += PetscSqr((e->o.mass_scaling - 1.0) * b.M * (v[0] - b.v) / dt);
   }
 }
 
@@ -292,14 +288,16 @@ PetscErrorCode NodesVelocities(Explicit *e, double dt)
     PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[e->held[h]], &e->mask[h],
                     &e->fixed[h * e->m->c->fields.n]);
   }
-  e->added = e->acting = 0.0;
+  e->added = 0.0;
   PetscCall(Group(e));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     if (e->node[I].root == (int)I && Volume(e, I) > 0.0)
       GroupVelocities(e, I, dt);
   }
-  if (e->acting > 0.0)
-    e->worst_scaling = Largest(e->worst_scaling, sqrt(e->added / e->acting));
+  if (e->o.mass_scaling > 1.0) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
+    e->worst_scaling = Largest(e->worst_scaling, e->acting > 0.0 ? sqrt(e->added / e->acting) : 0.0);
+  }
   PetscCall(NodeMapBroadcast(&e->map, e->inc, 6));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     if (Volume(e, I) > 0.0)

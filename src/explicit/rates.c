@@ -120,10 +120,12 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
   for (int q = 0; q < r.n; q++) {
     const PetscInt p  = r.p + q;
     const double   sg = e->t[T_SG][p], V = e->t[T_V][p], mh = e->m->P.f[P_MH][p], Sh = 1.0 - open[q] / pore[q];
-    const double   p_r = (1.0 - sg) * g->value[q][B_P(s, 0)] + sg * g->value[q][B_P(s, 1)];
-    const double   T_r = s.heat ? g->value[q][B_T(s)] : T[q];
-    double         dK, dpe, dw, dA;
-    const double   Kd = KineticsRateConstant(k, T_r, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r, &dpe),
+    const bool     own = e->o.particle_pressures;
+    const double   pw  = own ? e->m->P.f[P_PW][p] : g->value[q][B_P(s, 0)],
+                 pg    = own ? e->m->P.f[P_PG][p] : g->value[q][B_P(s, 1)];
+    const double p_r = (1.0 - sg) * pw + sg * pg, T_r = s.heat ? g->value[q][B_T(s)] : T[q];
+    double       dK, dpe, dw, dA;
+    const double Kd = KineticsRateConstant(k, T_r, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r, &dpe),
                  drive = pe - p_r;
 
     if (drive >= 0.0) {
@@ -147,7 +149,8 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 {
   double *const *f  = e->m->P.f;
   const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
-  const double   bracket = e->m->c->flux_interpolation ? 1.0 : 0.0, scale = e->o.mass_scaling / dt;
+  const double   bracket   = e->m->c->flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
+               scale       = e->o.mass_scaling / dt;
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
                          *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
@@ -250,6 +253,47 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Giv
   }
 }
 
+/* Divergence of a fluid's Darcy flux at the particle, 1/s. */
+INLINE double Divergence(const Explicit *e, const Set s, const Weights *w, int q, int k)
+{
+  const int  width = LANES * Rows(B_Count(s)), stride = (int)e->m->grid.gm[0], at = B_Fluid(s, k) + B_J;
+  const int *slot = &e->slot[w->first[q]];
+  double     div  = 0.0;
+
+  for (int b = 0; b < 3; b++) {
+    for (int a = 0; a < 3; a++) {
+      const double *J = &e->B[slot[b * stride + a] * width + at];
+
+      div += w->D[0][a][q] * w->S[1][b][q] * J[0] + w->S[0][a][q] * w->D[1][b][q] * J[1];
+    }
+  }
+  return div;
+}
+
+/* The paper's bare form (72): the balances of mass stay at the particle, with the divergence of the flux there; nodes
+ * see the heat alone. */
+INLINE void Keep(Explicit *e, const Set s, Run r, double dt, const Weights *w, Given *o)
+{
+  const int n = Scalars(s);
+
+  for (int q = 0; q < r.n; q++) {
+    const PetscInt p = r.p + q;
+
+    for (int k = 0; k < s.fluids; k++) {
+      double *row = &o->value[q][R_Matrix(s) + k * n];
+
+      e->t[T_MISS + k][p] = o->value[q][k] - dt * e->m->P.f[P_V][p] * e->t[T_RHO + k][p] * Divergence(e, s, w, q, k);
+      for (int i = 0; i < n; i++) {
+        e->t[T_LOCAL + 3 * k + (i < s.fluids ? i : 2)][p] = row[i];
+        row[i]                                            = i == k ? 1.0 : 0.0;
+      }
+      o->value[q][k] = o->force[0][q][k] = o->force[1][q][k] = 0.0;
+      if (s.heat)
+        o->value[q][R_Matrix(s) + s.fluids * n + k] = 0.0;
+    }
+  }
+}
+
 INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
 {
   _Alignas(64) Gathered g;
@@ -276,6 +320,8 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     Reaction(e, s, r, &g, dt, T, pore, open);
     ReactionRows(e, s, r, T, &o);
   }
+  if (s.fluids && e->o.particle_pressures)
+    Keep(e, s, r, dt, &w, &o);
   Scatter(e, s, r, &w, &o);
 }
 

@@ -35,6 +35,24 @@ INLINE void Gather(const Explicit *e, Run r, const Weights *w, Gathered *g)
   }
 }
 
+/* Bare form (72): increments of pressure from the particle's own balances, with the new temperature. */
+INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
+{
+  for (int q = 0; q < r.n; q++) {
+    const PetscInt p  = r.p + q;
+    double *const *L  = (double *const *)&e->t[T_LOCAL];
+    const double   dT = s.heat ? g->value[q][s.fluids] : 0.0, w = e->t[T_MISS][p] - L[2][p] * dT;
+
+    if (s.fluids == 1) {
+      g->value[q][0] = w / L[0][p];
+      continue;
+    }
+    const double gas = e->t[T_MISS + 1][p] - L[5][p] * dT, det = L[0][p] * L[4][p] - L[1][p] * L[3][p];
+    g->value[q][0] = (w * L[4][p] - gas * L[1][p]) / det;
+    g->value[q][1] = (gas * L[0][p] - w * L[3][p]) / det;
+  }
+}
+
 typedef struct {
   double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK];
 } Strain;
@@ -153,7 +171,7 @@ INLINE bool StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
   const double      G2 = 2.0 * ElasticityShearFactor(el), lame = ElasticityLameFactor(el);
   const double *restrict V = s.fluids || s.heat ? e->t[T_V] + r.p : NULL;
   double *restrict Sh      = f[P_SH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, E_old[BLOCK], E[BLOCK], phi[BLOCK];
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, E_old[BLOCK], E[BLOCK], phi[BLOCK] = {0.0};
   bool   fine = true;
 
   ElasticityYoungBatch(el, r.n, Sh, E_old);
@@ -252,6 +270,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
 
   WeightsOf(e, r, &w);
   Gather(e, r, &w, &g);
+  if (s.fluids && e->o.particle_pressures)
+    OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))
     ExplicitFail(e, CL_NONFINITE, "a pressure or temperature left its range", r.p);
   MassesOf(e, s, r, &g, &e->m->limited);

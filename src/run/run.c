@@ -151,25 +151,44 @@ static double Relative(double missing, double store)
   return store > 0.0 ? missing / store : missing;
 }
 
+/* What an integrator without matrices has to say at the end. */
+static PetscErrorCode LocalSummary(const Stepper *s, char text[512])
+{
+  const double scaling     = s->model->c->mass_scaling;
+  char         scaled[128] = "";
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!s->explicit)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (scaling > 1.0)
+    PetscCall(PetscSNPrintf(scaled, sizeof(scaled), "; mass scaling %g added inertia of up to %.2g of the forces",
+                            scaling, ExplicitMassScalingError(s->explicit)));
+  PetscCall(PetscSNPrintf(text, 512, "  stable step %.4g s at the end (%s rules); %.0f B a particle%s\n", s->limit.dt,
+                          cl_limit_word[s->limit.rules], ExplicitBytesPerParticle(s->explicit), scaled));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Summary(const Stepper *s, const Run *run)
 {
   const StepperState *z = &s->state;
-  char                path[PETSC_MAX_PATH_LEN], text[2048];
+  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512];
   ModelTotals         t;
   PetscMPIInt         rank;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
+  PetscCall(LocalSummary(s, local));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-                          " Newton iterations, %.2f s\n"
+                          " Newton iterations, %.2f s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
                           "  results in %s\n",
                           s->model->c->title, z->t >= s->model->c->t_end * (1.0 - 1e-12) ? "finished" : "stopped", z->t,
                           s->scheme->name, z->step, z->failures_total, z->newton_total, Wall() - run->clock_start,
-                          Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
+                          local, Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
                           z->limited_total, s->model->c->output_dir));

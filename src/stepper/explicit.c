@@ -9,11 +9,12 @@
 static PetscErrorCode Create(Stepper *s)
 {
   const Case           *c = s->model->c;
-  const ExplicitOptions o = {.drag_implicit = s->scheme == &StepperScheme_Hybrid,
-                             .tied          = c->tied,
-                             .flip          = c->flip,
-                             .damping       = c->damping,
-                             .mass_scaling  = c->mass_scaling};
+  const ExplicitOptions o = {.drag_implicit      = s->scheme == &StepperScheme_Hybrid,
+                             .tied               = c->tied,
+                             .particle_pressures = c->bare,
+                             .flip               = c->flip,
+                             .damping            = c->damping,
+                             .mass_scaling       = c->mass_scaling};
 
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &s->explicit));
