@@ -159,7 +159,8 @@ def about_bp2(data):
     for case in (1, 2):
         points = [p for p in data["bp2"] if p["case"] == case]
         text += [f"Case {case}:", "", *cheapest_table(points, (0.05, 0.02, 0.01))]
-        rows = [[f"`{p['kind']}`, {p['setting'].split(',')[0]}", str(p["cells"][0]), seconds(p["measured_time"]), f"{p['measured_steps']}", seconds(p["measured_cpu"]), f"{p['steps']:.2g}",
+        rows = [[f"`{p['kind']}`, {p['setting'].split(',')[0]}", str(p["cells"][0]), seconds(p["measured_time"]),
+                 f"{p['measured_steps']}", seconds(p["measured_cpu"]), f"{p['steps']:.2g}",
                  seconds(p["cpu"]), percent(p["error"]) if "error" in p else f"none: stopped at {p['reached']:.3g} of 2 s"]
                 for p in points if p["kind"] in EXPLICIT]  # fmt: skip
         text += table(["integrator", "cells", "measured part of 2000 s", "its steps", "its processor time", "steps in all", "extrapolated time",
@@ -178,18 +179,20 @@ def bp2_bar(data):
     same = next(p for p in mine if p["cells"] == a["cells"])
     said = f"BP2 case 2 within 1 %: `{a['kind']}` ({a['cells'][0]} cells, {a['setting']}) takes {seconds(a['cpu'])}"
     if b:
-        return f"{said}, `hybrid` ({b['cells'][0]} cells) {seconds(b['cpu'])}, extrapolated: {times(b['cpu'] / a['cpu'])} times as much. The bar is 1000."
+        more = times(b["cpu"] / a["cpu"])
+        return f"{said}, `hybrid` ({b['cells'][0]} cells) {seconds(b['cpu'])}, extrapolated: {more} times as much. The bar is 1000."
     end = "does not come to the end of the case" if "error" not in same else f"is {percent(same['error'])} off there"
     verdict = "more" if same["cpu"] / a["cpu"] >= 1000 else "less"
-    return (f"{said}. `hybrid` on the same grid takes {seconds(same['cpu'])}, extrapolated, {times(same['cpu'] / a['cpu'])} times as much and {verdict} than the bar "
-            f"of 1000, and {end}; within 1 % it comes on none of these grids.")  # fmt: skip
+    return (f"{said}. `hybrid` on the same grid takes {seconds(same['cpu'])}, extrapolated, {times(same['cpu'] / a['cpu'])} times as much "
+            f"and {verdict} than the bar of 1000, and {end}; within 1 % it comes on none of these grids.")  # fmt: skip
 
 
 def about_block(data):
     points = [p for p in data["block"] if "setting" in p]
     rows = [[f"`{p['kind']}`", p["setting"], p["steps"], seconds(p["cpu"]), percent(p["error"])] for p in good(points)]
     other = [p for p in data["block"] if "setting" not in p]
-    said = [f"Resolved in time, `hybrid` and `sdirk2` differ on this grid by {', '.join(f'{k} {percent(v)}' for k, v in o['each'].items())}: that is space." for o in other]
+    each = [", ".join(f"{k} {percent(v)}" for k, v in o["each"].items()) for o in other]
+    said = [f"Resolved in time, `hybrid` and `sdirk2` differ on this grid by {e}: that is space." for e in each]
     return [*table(["integrator", "step", "steps", "processor time", "error of the step"], rows), *said, ""]
 
 
@@ -224,13 +227,15 @@ def about_permeability(points):
         low = f"{slope(points, Kw, 'hybrid', 0, 1e-9):+.2f}"
         flat = f"{slope(points, Kw, 'sdirk2', 0, 1e-9):+.2f}"
         steep = f"{slope(points, Kw, 'explicit', 0, 1e-9):+.2f}"
-        text.append(f"Water of {name}: " + (f"hybrid and implicit cost the same at k = {k:.1e} m²; below it the implicit ones win. " if k else "the curves do not cross in this range. ")
-                    + f"Below 1e-9 m² the time goes as k to the power {low} (`hybrid`), {steep} (`explicit`) and {flat} (`sdirk2`).")
+        meet = f"hybrid and implicit cost the same at k = {k:.1e} m²; below it the implicit ones win. " if k else "the curves do not cross in this range. "
+        text.append(f"Water of {name}: {meet}"
+                    f"Below 1e-9 m² the time goes as k to the power {low} (`hybrid`), {steep} (`explicit`) and {flat} (`sdirk2`).")
         for p in points:
             if p["Kw"] == Kw and "cpu" in p and round(np.log10(p["k"])) in (-7, -8, -9, -12, -15, -18):
                 rows.append([name, f"{p['k']:.0e}", f"`{p['kind']}`", seconds(p["end"]), f"{p['steps']:.3g}", seconds(p["cpu"]),
                              "extrapolated" if p["extrapolated"] else percent(p["off"]) + ("" if kept(p) else ", bar missed")])  # fmt: skip
-    return [*(line for t in text for line in (t, "")), *table(["water", "k (m²)", "integrator", "simulated", "steps", "processor time", "error"], rows)]
+    header = ["water", "k (m²)", "integrator", "simulated", "steps", "processor time", "error"]
+    return [*(line for t in text for line in (t, "")), *table(header, rows)]
 
 
 def about_terms(points):
@@ -242,10 +247,12 @@ def about_terms(points):
             if p is not base and not any(p.get("change", {"": 1}).values()):
                 continue  # this kind has no such term
             if "change" in p:
-                rows.append([p["left out"], p["steps"], seconds(p["cpu"]), f"{p['cpu'] / base['cpu']:.2f}", *(percent(p["change"][k]) if k in p["change"] else "-" for k in base["change"])])  # fmt: skip
+                change = [percent(p["change"][k]) if k in p["change"] else "-" for k in base["change"]]
+                rows.append([p["left out"], p["steps"], seconds(p["cpu"]), f"{p['cpu'] / base['cpu']:.2f}", *change])
             else:
                 rows.append([p["left out"], "-", "-", "-", f"refused: {p['why'][:90]}", *["-"] * (len(base["change"]) - 1)])
-        text += [f"`{kind}`:", "", *table(["left out", "steps", "processor time", "of that with all", *(f"change of {k}" for k in base["change"])], rows)]
+        header = ["left out", "steps", "processor time", "of that with all", *(f"change of {k}" for k in base["change"])]
+        text += [f"`{kind}`:", "", *table(header, rows)]
     return text
 
 
@@ -273,10 +280,11 @@ def about_choice(data):
     rows, right = [], []
     for c in data["choice"]:
         found, took = measured(data, c["part"], c["which"]), "hybrid" if c["chosen"] == "hybrid" else "implicit"
-        scene = c["scene"] + "".join(f", {k} = {v:.1e}" for k, v in c["which"].items() if k in ("Kw", "k")) + (f", {c['which']['name']}" if "name" in c["which"] else "")
+        scene = ", ".join([c["scene"], *(f"{k} = {v:.1e}" for k, v in c["which"].items() if k in ("Kw", "k")), *([c["which"]["name"]] if "name" in c["which"] else [])])
         if len(found) == 2:
             right.append(found[took] <= 1.25 * min(found.values()))
-        rows.append([scene, f"`{c['chosen']}`", c["forecast"].rsplit(";", 1)[0], *(seconds(found[k]) if k in found else "not reached" for k in ("hybrid", "implicit")),
+        shown = [seconds(found[k]) if k in found else "not reached" for k in ("hybrid", "implicit")]
+        rows.append([scene, f"`{c['chosen']}`", c["forecast"].rsplit(";", 1)[0], *shown,
                      ("yes" if right[-1] else "**no**") if len(found) == 2 else "-"])  # fmt: skip
     said = f"`auto` takes the cheaper kind (or one within a quarter of it) in {sum(right)} of {len(right)} scenes that both kinds bring within 1 %."
     return said, table(["scene", "`auto` takes", "its forecast", "measured, `hybrid`", "measured, best implicit", "right"], rows)
@@ -309,18 +317,20 @@ def advice(data):
     cheaper = sorted((p["cpu"] / implicit[0]["cpu"], max(p["change"].values()), p["left out"]) for p in implicit[1:])
     free = [c for c in cheaper if c[1] < 0.01]
     saves = [c for c in free if c[0] < 0.8]
-    lines.append("What can go on the dissociating block for less than 1 % of any curve: " + "; ".join(f"{n} ({percent(c)})" for t, c, n in free) + ". It saves: "
+    lines.append("What can go on the dissociating block for less than 1 % of any curve: "
+                 + "; ".join(f"{n} ({percent(c)})" for t, c, n in free) + ". It saves: "
                  + ("; ".join(f"{n}, time x {t:.2f}" for t, c, n in saves) or "nothing worth it") + ".")  # fmt: skip
     dear = [c for c in cheaper if c[1] > 0.05]
     lines.append("What must stay (more than 5 % of a curve): " + "; ".join(f"{n} ({percent(c)})" for t, c, n in dear) + ".")
     four = {p["basis"]: p for p in good(data["basis"]) if p["kind"] == "sdirk2" and p["particles"] == 4}
-    lines.append("Basis with `sdirk2`, 4 particles a cell: " + "; ".join(f"{n} {percent(p['error'])} off, ringing {p['noise']:.0e} of the load" for n, p in four.items()) + ".")
+    lines.append("Basis with `sdirk2`, 4 particles a cell: "
+                 + "; ".join(f"{n} {percent(p['error'])} off, ringing {p['noise']:.0e} of the load" for n, p in four.items()) + ".")  # fmt: skip
     more = {p["particles"]: p for p in good(data["basis"]) if p["kind"] == "sdirk2" and p["basis"] == "cpgimp"}
     if {4, 16} <= set(more):
         a, b = more[4], more[16]
-        lines.append(f"Sixteen particles a cell instead of four, cpgimp: error {percent(a['error'])} to {percent(b['error'])}, time x {times(b['cpu'] / a['cpu'])}.")
-    if "choice" in data:
-        lines.append(about_choice(data)[0])
+        lines.append(f"Sixteen particles a cell instead of four, cpgimp: error {percent(a['error'])} to {percent(b['error'])}, "
+                     f"time x {times(b['cpu'] / a['cpu'])}.")  # fmt: skip
+    lines.append(about_choice(data)[0])
     return [f"- {line}" for line in lines] + [""]
 
 
@@ -329,31 +339,35 @@ def page(data):
         "# What accuracy costs", "",
         "Written by `tests/studies/tradeoff.py` from its runs; change it, not this page. `docs/tradeoff.json` holds every run.", "",
         "Error: the largest difference of any watched curve from the exact or reference one, over the range of that curve. Time: user and system "
-        f"time of one process on one core, less {seconds(data['startup'])} of starting it, at least 10 ms. The machine was shared: differences below a fifth mean nothing. Columns have "
-        "2 particles a cell along their axis (BP2 and the block 2 x 2).", "",
+        f"time of one process on one core, less {seconds(data['startup'])} of starting it, at least 10 ms. The machine was shared: differences below a fifth mean "
+        "nothing. Cells are those of the grid, spare ones included (one in 26). Columns have 2 particles a cell along their axis (BP2 and the block 2 x 2).", "",
         "## Advice", "", *advice(data),
-        "Rules that follow: take an explicit kind where the time of interest is a few passages of a wave; an implicit one for everything that flows, warms or "
-        "reacts over longer than that. `sdirk2` for all but crude answers; where inertia hardly matters, `inertia: no` gives it its second order back "
-        "(`tests/verification/integrators.py`).", "",
+        "Rules that follow: take an explicit kind where the time of interest is a few passages of a wave; an implicit one for everything "
+        "that flows, warms or reacts over longer than that. `sdirk2` for all but crude answers; where inertia hardly matters, `inertia: no` gives it its "
+        "second order back (`tests/verification/integrators.py`).", "",
         "## Work and precision", "", "![work and precision](figures/tradeoff_work.png)", "",
         "Larger marks are finer grids; open marks are extrapolated in time.", "",
         "### A wave in a saturated column", "", "Against the exact wave (`tests/verification/exact_dynamic.py`).", "", *about_waves(data),
         "### Fast consolidation", "", "Against the same exact solution, four seconds of consolidation, 10 m, k = 1e-9 m².", "",
         *cheapest_table(data["consolidation"], (0.02, 0.01, 0.005, 0.002)),
         "### BP2", "",
-        "Against the curves of the independent finite-volume code: p over its own value, u and S_h over their peaks, T over its change. The implicit integrators run the case as it "
-        "is. The step of the explicit ones is bound by waves, so their whole run is extrapolated from a measured part of it; their error is that of the run "
-        "that is 1000 times faster (permeability, reaction, conductivities and load), taken to its end.", "", *about_bp2(data), bp2_bar(data), "",
+        "Against the curves of the independent finite-volume code: p over its own value, u and S_h over their peaks, T over its change. "
+        "The implicit integrators run the case as it is. The step of the explicit ones is bound by waves, so their whole run is extrapolated from a measured "
+        "part of it; their error is that of the run that is 1000 times faster (permeability, reaction, conductivities and load), taken to its end.", "", *about_bp2(data), bp2_bar(data), "",
         "### A dissociating block", "",
-        "10 x 10 cells, all fields. Error of the step: against the same kind with a tolerance of 1e-5, or a tenth of the stable step.", "", *about_block(data),
+        "10 x 10 cells, all fields. Error of the step: against the same kind with a tolerance of 1e-5, or a tenth of the stable step.", "",
+        *about_block(data),
         "## Permeability", "", "![permeability](figures/tradeoff_permeability.png)", "",
-        "Time to three quarters of consolidation of the same column, settlement within 1 % of its end all the way: the longest fixed step that keeps it. Open marks are extrapolated.", "",
+        "Time to a time factor of 1/2 of the same column, settlement within 1 % of its end all the way: the longest fixed step that keeps it. Open marks "
+        "are extrapolated.", "",
         *about_permeability(data["permeability"]),
-        *(["## What `auto` chooses", "", "Measured times are of the cheapest run within 1 %.", "", *about_choice(data)[1]] if "choice" in data else []),
-        "## What each field and term costs and buys", "", "The dissociating block without one of them. Change: of the curve over its range.", "", *about_terms(data["terms"]),
+        "## What `auto` chooses", "", "Measured times are of the cheapest run within 1 %.", "", *about_choice(data)[1],
+        "## What each field and term costs and buys", "", "The dissociating block without one of them. Change: of the curve over its range.", "",
+        *about_terms(data["terms"]),
         "## Basis and particles per cell", "", "![basis](figures/tradeoff_basis.png)", "",
-        "Consolidation under 1 MPa, 5 % of strain, so that particles cross cells. Error: against four times as many cells with cpgimp. Ringing: root mean square of the difference between a "
-        "particle's pressure and the mean of its neighbours, at the end. With `linear` a closed face under pressure is not in balance (1 MPa here), as README says.", "", *about_basis(data["basis"]),
+        "Consolidation under 1 MPa, 5 % of strain, so that particles cross cells. Error: against four times as many cells with cpgimp. Ringing: "
+        "root mean square of the difference between a particle's pressure and the mean of its neighbours, at the end. With `linear` a closed face under "
+        "pressure is not in balance (1 MPa here), as README says.", "", *about_basis(data["basis"]),
     ]  # fmt: skip
 
 

@@ -7,7 +7,7 @@ CLATHRA  the program, default build/clathra
 --only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice), take the others from docs/tradeoff.json
 --page   write the page and the figures from docs/tradeoff.json
 
-Every number of the page is of one of its runs.  It is a study, no test: on one core it takes about twenty minutes.  Processor time is
+Every number of the page is of one of its runs.  It is a study, no test: it takes about ten minutes of processor time.  Processor time is
 user and system time of the process less that of starting it.
 """
 import argparse
@@ -254,8 +254,8 @@ TERMS = (  # what is left out, options; on the dissociating block
     ("reaction and heat (`fields: hmc`)", (f"{HEAD}kinetics_active", "no", "-fields", "hmc")),
     ("gas (`fields: thm`)", ("-fields", "thm", f"{HEAD}kinetics_active", "no", "-region_block_Sw", 0.7, "-region_block_Sg", 0)),
     ("hydrate's share of stiffness (`Eh: 0`)", (f"{HEAD}elasticity_Eh", "0 Pa")),
-    ("permeability's change (`hydrate_law`, `porosity_law: none`)", (f"{HEAD}permeability_hydrate_law", "none", f"{HEAD}permeability_porosity_law", "none",
-                                                                     f"{HEAD}permeability_k0", "3.43e-12 m^2")),
+    ("permeability's change (`hydrate_law`, `porosity_law: none`)", (
+        f"{HEAD}permeability_hydrate_law", "none", f"{HEAD}permeability_porosity_law", "none", f"{HEAD}permeability_k0", "3.43e-12 m^2")),
     ("conduction of heat", tuple(w for p in ("solid", "hydrate", "water", "gas") for w in (f"{HEAD}{p}_conductivity", "0 W/(m K)"))),
     ("capillary pressure (`p0: 10 Pa`)", (f"{HEAD}retention_p0", "10 Pa")),
     ("ghost penalty", ("-stabilisation_ghost_penalty", 0)),
@@ -320,7 +320,8 @@ def choice():
     for part, which, scene in rows:
         run = scene.run(*adaptive("auto"), "-stepper_max_steps", 1, exit_code=GIVEN_UP)
         said = re.search(r"forecast: (.*)\n\s*integrator chosen: (\w+)", run.output)
-        found.append({"part": part, "which": which, "scene": scene.name, "forecast": said[1] if said else "", "chosen": said[2] if said else why(run)})
+        forecast, chosen = said.groups() if said else ("", why(run))
+        found.append({"part": part, "which": which, "scene": scene.name, "forecast": forecast, "chosen": chosen})
         print("  ", found[-1], flush=True)
     return found
 
