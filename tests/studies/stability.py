@@ -394,9 +394,9 @@ def page(study, found):
         text += table([axis, *columns()], rows_of(rows, note))
     every = [r for rows in found["properties"].values() for r in rows]
     grown = [(f"{a} {label}, {n}", d.growth) for a, rows in found["properties"].items() for label, row in rows for n, (d, _) in row.items()
-             if d.kind == "finished" and d.growth > 1.0]  # fmt: skip
+             if n != "explicit" and d.kind == "finished" and d.growth > 1.0]  # fmt: skip
     text += [f"*Energy.* All that drives these scenes acts at t = 0, so the kinetic energy of the second half of a run must not exceed that of the first. It does in "
-             f"{len(grown)} of {sum(len(r) for _, r in every)} runs" + (": " + "; ".join(f"{n} ({g:.2g})" for n, g in grown) if grown else "") + ".", ""]
+             f"{len(grown)} of {sum(len(r) - 1 for _, r in every)} runs (`explicit` left out: its steps are so short that the first wave is still being fed)" + (": " + "; ".join(f"{n} ({g:.2g})" for n, g in grown) if grown else "") + ".", ""]
     text += ["## Step", "",
              f"{STEPS} fixed steps of a multiple of the hybrid's stable step, against `sdirk2` with an eighth of the step; errors as above.", "",
              "![Error against step](figures/stability_steps.png)", ""]  # fmt: skip
@@ -440,6 +440,12 @@ def ripple(folder):
     return float(np.max(np.abs(v["p"][:, 0] - means[np.searchsorted(np.unique(index), index)])))
 
 
+def off(study, name, field):
+    """Largest difference of one field from the reference run of the same scene."""
+    reference = study.all[", ".join(name.split(", ")[:-1]) + ", reference"]
+    return difference(study.all[name].folder, reference.folder, 1e6, (field,))[field]
+
+
 def overshoot(folder):
     """Largest pressure (Pa) at the end of the column."""
     return float(np.max(read_csv(folder / "probes.csv")["end.p_Pa"]))
@@ -475,8 +481,14 @@ def breaks(study, found):
         "- *The outlet at a tenth of the pressure at once.* The pressure falls within less than a cell; on the particles of the last cell it overshoots, up to "
         f"{overshoot(study.all['outlet to 0.5 MPa at once, k = 1e-14 m², sdirk2'].folder) / 1e6:.3g} MPa where it was 7, and Newton's method fails in the momentum of the gas, whatever the first step, "
         "with and without reaction, ghost penalty or flux interpolation. The run stops and says so. A fall within 1 s runs (the table of events).",
-        f"- *Particles' own pressures after violent dissociation* (T = 40 °C): two particles of one cell near the outlet differ from their mean by up to {ripple(hot.folder) / 1e3:.2g} kPa in "
-        "the run with short steps. Nodes cannot see it, so nothing removes it; means over a cell are right.",
+        "- *What nodes cannot see.* A pressure that alternates from particle to particle or from cell to cell has no part in the nodal fields, so neither flow nor Newton's method "
+        "removes it. Waves and violent dissociation that are followed with short steps leave it behind, strong damping (`euler`, long steps) does not: after a sudden load of 10 MPa, k = 1e-14 m², "
+        f"adaptive `sdirk2` is off by {100 * off(study, 'sudden load of 10 MPa, k = 1e-14 m², sdirk2', 'p'):.2g} % of the scale in p at 100 s, `euler` by "
+        f"{100 * off(study, 'sudden load of 10 MPa, k = 1e-14 m², euler', 'p'):.2g} %; at T = 40 °C particles of one cell differ from their mean by up to {ripple(hot.folder) / 1e3:.2g} kPa. For "
+        "sudden loads whose waves are of no interest take `inertia: no`.",
+        "- *Hydrate of a very fast reaction.* The reaction integrates such small differences into hydrate that stays: at 1e8 times the rate "
+        + ", ".join(f"`{n}` is off by {100 * off(study, f'reaction constant x 1e+08, {n}', 'S_h'):.2g} % in S_h and {100 * off(study, f'reaction constant x 1e+08, {n}', 'p'):.1g} % in p"
+                    for n in ("sdirk2", "euler")) + ". Where every cell is at equilibrium, how hydrate is shared out among them is nearly undetermined.",
         "- *A sliver just above 1e-6 of a cell under a sudden fall of the outlet* takes about twice the outflow in the first step: the face feeds one node more. What "
         "is left at the end is in the table of events.",
         "- *A fixed step at the stable limit itself* ends when the limit falls a little during the run, with the message that says so; `-stepper_adapt yes` follows it."]  # fmt: skip
