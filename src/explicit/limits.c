@@ -99,6 +99,8 @@ static double Together(const Spectrum *w, bool implicit)
 
   if (Growth(w, implicit, hi) <= 4.0)
     return INFINITY;
+  if (!(Growth(w, implicit, lo) <= 4.0)) /* waves of any speed */
+    return 0.0;
   while (hi > lo * (1.0 + 1e-9)) {
     const double mid = sqrt(lo * hi);
 

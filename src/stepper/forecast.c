@@ -69,10 +69,14 @@ PetscErrorCode StepperForecast(Stepper *s)
 
   PetscFunctionBeginUser;
   *f = (Forecast){.hybrid_steps = INFINITY, .hybrid_seconds = INFINITY};
-  PetscCall(ExplicitCreate(s->model, &o, &e));
-  PetscCall(ExplicitStableStep(e, &f->limit));
-  PetscCall(ExplicitDestroy(&e));
-  if (!CaseNeedsImplicit(c) && f->limit.dt > 0.0) {
+  for (int k = 0; k < LIMIT_COUNT; k++)
+    f->limit.each[k] = INFINITY;
+  if (!CaseNeedsImplicit(c)) {
+    PetscCall(ExplicitCreate(s->model, &o, &e));
+    PetscCall(ExplicitStableStep(e, &f->limit));
+    PetscCall(ExplicitDestroy(&e));
+  }
+  if (f->limit.dt > 0.0) {
     f->hybrid_steps   = fmax(ceil(left / fmin(c->cfl * f->limit.dt, c->dt_max)), 1.0);
     f->hybrid_seconds = HybridSeconds(m, f->hybrid_steps);
   }

@@ -71,6 +71,9 @@ for option, value, word in (("-inertia", "no", "inertia: no"), ("-pressures", "o
     r = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", option, value, out=out)
     check_true(f"{word} is refused", r.returncode == 2 and word in r.stdout and not out.exists(), r.stdout[-200:])
 
+r = launch(binary(), CASE.parents[2] / "verification" / "cases" / "xie_leo.yaml", "-quiet", "-stepper_type", "hybrid", "-inertia", "yes", out=out)
+check_true("water without compressibility is refused", r.returncode == 2 and "no stable step" in r.stdout and not out.exists(), r.stdout[-200:])
+
 # forced, it fails, is rolled back and cut, and at last ends with a state that is good
 r = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "1e-2 s", "-stepper_force_dt", "yes",
            "-stepper_max_failures", "2", out=out)  # fmt: skip

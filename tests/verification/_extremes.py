@@ -65,7 +65,7 @@ def late_growth(b):
     """Largest kinetic energy after the middle of the run over the largest before."""
     t, e = b["time_s"], b["kinetic_energy_J"]
     late = t > 0.5 * t[-1]
-    if len(t) < 4 or not np.any(late) or np.max(e[~late]) <= 0.0:
+    if len(t) < 4 or np.all(late) or not np.any(late) or np.max(e[~late]) <= 0.0:
         return np.nan
     return np.max(e[late]) / np.max(e[~late])
 
