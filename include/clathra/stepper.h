@@ -84,7 +84,8 @@ struct Stepper {
   bool                 adaptive;
   double               dt_min, dt_max, tol;
   PetscInt             max_failures, max_steps;
-  Explicit *explicit; /* hybrid, explicit: the integrator and the last good state */
+  int                  crawl; /* steps in a row at whose length the run would not end */
+  Explicit *explicit;         /* hybrid, explicit: the integrator and the last good state */
   Particles  good;
   StableStep limit; /* at the last look */
   Forecast   forecast;

@@ -5,6 +5,8 @@
 #define HOLD 5          /* steps without growth after that */
 #define CUT_AT_KINK 0.1 /* first step behind a kink of a schedule */
 #define EASY_NEWTON 6   /* growth only while Newton needs no more iterations a stage */
+#define CRAWL 1e7       /* a run that needs so many more steps at its present length ... */
+#define CRAWL_STEPS 100 /* ... and that for so many in a row, will not end */
 #define SCALE_T 1.0     /* K */
 #define SCALE_SH 0.1
 
@@ -184,6 +186,23 @@ static bool IsNoise(const Stepper *s, double dt, double err, double dt_old, doub
   return err_old > 0.0 && dt < dt_old && err > err_old * pow(dt / dt_old, 0.25 * s->scheme->error_order);
 }
 
+/* An adaptive run whose steps have shrunk to nothing is ended, for it would not end by itself. */
+static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
+{
+  const double left = s->model->c->t_end - s->state.t;
+
+  PetscFunctionBeginUser;
+  s->crawl = s->adaptive && left > CRAWL * dt ? s->crawl + 1 : 0;
+  if (s->crawl < CRAWL_STEPS)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  *ok = false;
+  PetscCall(PetscPrintf(
+      s->model->grid.comm,
+      "Given up at t = %g s: for %d steps dt has been about %.2g s, at which the rest would take %.1g steps\n",
+      s->state.t, CRAWL_STEPS, dt, left / dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One step: attempts with ever smaller dt until one is accepted or the budget is spent. */
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
 {
@@ -217,6 +236,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     }
     if (a.status == CL_OK) {
       PetscCall(Accept(s, dt, kink, &a, cuts));
+      PetscCall(CheckCrawl(s, dt, ok));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     const bool small = dt <= s->dt_min * (1.0 + 1e-9);

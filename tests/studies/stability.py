@@ -476,8 +476,8 @@ def breaks(study, found):
         "- *Reaction 1e8 times as fast.* The same round-off reaches the mixture's momentum through the stiffness of the hydrate, and steps are cut: "
         + ", ".join(f"`{n}` took {d.steps} steps with {d.cut} refused" for n, (d, _) in fast.items() if n in ("euler, 1 s", "sdirk2, 1 s")) + " for 100 s.",
         f"- *Hydrate far from equilibrium at 0.1 MPa.* It dissociates at once, the body swells into the next cell, and Newton's method fails in the momentum of the "
-        f"fluids on the nodes behind the drained end: " + "; ".join(f"`{n}` {said}" for n, said in crawl.items()) + ". A step that small is still above `stepper_dt_min`, "
-        "so the run goes on, and only the refused steps that it prints say why it is slow.",
+        f"fluids on the nodes behind the drained end: " + "; ".join(f"`{n}` {said}" for n, said in crawl.items()) + ". A run whose steps shrink until "
+        "the rest would take more than 1e7 of them is given up after 100 of those, and says so.",
         "- *The outlet at a tenth of the pressure at once.* The pressure falls within less than a cell; on the particles of the last cell it overshoots, up to "
         f"{overshoot(study.all['outlet to 0.5 MPa at once, k = 1e-14 m², sdirk2'].folder) / 1e6:.3g} MPa where it was 7, and Newton's method fails in the momentum of the gas, whatever the first step, "
         "with and without reaction, ghost penalty or flux interpolation. The run stops and says so. A fall within 1 s runs (the table of events).",

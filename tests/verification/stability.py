@@ -95,6 +95,12 @@ def falling():
         judge(ROW, f"falling block, {kind}: displacement", error, bar)
 
 
+def crawl():
+    """Steps that shrink to nothing end the run, and it says why."""
+    done = ends("0.1 MPa", attempt(scene(p=0.1e6)), "stopped")
+    check_true("0.1 MPa: given up because of its steps", "the rest would take" in done.said, done.said)
+
+
 if __name__ == "__main__":
     properties()
     fast_reaction()
@@ -102,5 +108,6 @@ if __name__ == "__main__":
     refusals()
     energy()
     falling()
+    crawl()
     table(("run", "ended", "steps", "kinetic energy late/early", "balance"), rows)
     finish()
