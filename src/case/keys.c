@@ -122,7 +122,7 @@ static const Key case_key[] = {
     REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate"),
     INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
              "cuts in a row before the run is given up"),
-    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.5", "hybrid, explicit: step as a share of the stable one"),
+    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "hybrid, explicit: step as a share of the stable one"),
     BOOLEAN(Case, "stepper_force_dt", force_dt, "no",
             "hybrid, explicit: take a fixed step above the stable one all the same"),
     REAL(Case, "stepper_flip", flip, "", "[0,1]", "1",

@@ -214,7 +214,7 @@ static PetscErrorCode Ready(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sum of squares of the forces that the stresses exert over a cell. */
+/* Sum of squares of the forces that act: of the stresses over a cell, and of weight. */
 static PetscErrorCode ActingForces(Explicit *e)
 {
   const Model *m   = e->m;
@@ -223,10 +223,10 @@ static PetscErrorCode ActingForces(Explicit *e)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; e->set.solid && p < m->P.n; p++) {
-    const double pore = e->set.fluids ? m->P.f[P_PW][p] : 0.0;
+    const double pore = e->set.fluids ? m->P.f[P_PW][p] : 0.0, mass = m->P.f[P_MS][p] + m->P.f[P_MH][p];
 
     for (int d = 0; d < CL_DIM; d++)
-      sum += PetscSqr(m->P.f[P_V][p] / h * (m->P.f[P_SIG + d][p] - pore));
+      sum += PetscSqr(m->P.f[P_V][p] / h * (m->P.f[P_SIG + d][p] - pore)) + PetscSqr(mass * m->c->gravity[d]);
   }
   PetscCallMPI(MPI_Allreduce(&sum, &e->acting, 1, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
