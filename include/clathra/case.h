@@ -132,7 +132,7 @@ typedef struct {
   double flip;         /* 1: FLIP, 0: PIC */
   double damping;      /* local damping */
   double mass_scaling; /* factor on inertia */
-  bool   tied;         /* nearly empty nodes follow their inner neighbour */
+  bool   tied;         /* nearly empty nodes follow their fullest neighbour in part */
   bool   bare;         /* rates of pressure by the particle (the paper's form), not shared over nodes */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */

@@ -121,9 +121,10 @@ enum {
 };
 
 typedef struct {
-  int  root;  /* node whose group this one belongs to; its own number if it stands for itself */
-  int  held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
-  bool leads; /* others belong to its group */
+  int    root;  /* fuller node that this one follows; its own number if it stands for itself */
+  double own;   /* share that it keeps of its own balances; 1 if it follows nobody */
+  int    held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
+  bool   leads; /* others belong to its group */
 } NodeInfo;
 
 /* Parts of a step in -log_view. */

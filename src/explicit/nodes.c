@@ -1,7 +1,7 @@
 /* Between the passes: what nodes make of their sums; docs/equations.md, section 12. */
 #include "lanes.h"
 
-#define TIE 0.25    /* of the volume of a neighbour: an emptier node follows it (41) */
+#define TIE 0.25    /* of the volume of a neighbour: an emptier node follows it in part (41) */
 #define MARGIN 1.01 /* among neighbours about as full the first stays, whatever the order of sums */
 #define HOPS 3      /* from a nearly empty node to one that is not */
 
@@ -27,8 +27,8 @@ static PetscErrorCode Allocate(Explicit *e)
   e->B = e->G + n * A;
   e->R = e->B + n * B;
   e->C = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
-  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, n, &e->link, n, &e->node, e->m->grid.gm[0] * e->m->grid.gm[1],
-                         &e->slot));
+  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node,
+                         e->m->grid.gm[0] * e->m->grid.gm[1], &e->slot));
   for (PetscInt q = 0; q < e->m->grid.gm[0] * e->m->grid.gm[1]; q++)
     e->slot[q] = (int)(e->map.index[q] >= 0 ? e->map.index[q] : e->map.n_local);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -100,8 +100,9 @@ static double Volume(const Explicit *e, PetscInt I)
   return e->A[I * LANES * Rows(A_Count(e->set)) + A_V(e->set)];
 }
 
-/* 1 + direction of the neighbour that node I follows, 0 if it stands for itself. */
-static int Follows(const Explicit *e, PetscInt I)
+/* 1 + direction of the neighbour that node I follows, 0 if it stands for itself; own: the share of its own balances
+ * that it keeps. */
+static int Follows(const Explicit *e, PetscInt I, double *own)
 {
   double best  = 0.0;
   int    found = 0;
@@ -114,16 +115,17 @@ static int Follows(const Explicit *e, PetscInt I)
       found = 1 + k;
     }
   }
-  return Volume(e, I) < TIE * best ? found : 0;
+  *own = fmin(Volume(e, I) / (TIE * best), 1.0);
+  return *own < 1.0 ? found : 0;
 }
 
-static void AddRow(double *to, const double *from, int n)
+static void AddRow(double *to, double share, const double *from, int n)
 {
   for (int k = 0; k < n; k++)
-    to[k] += from[k];
+    to[k] += share * from[k];
 }
 
-/* Finds the groups and sums A over each. */
+/* Finds who follows whom, and adds to A of a leading node what its followers give up. */
 static PetscErrorCode Group(Explicit *e)
 {
   const int width = LANES * Rows(A_Count(e->set));
@@ -131,24 +133,28 @@ static PetscErrorCode Group(Explicit *e)
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     e->node[I].root  = (int)I;
+    e->node[I].own   = 1.0;
     e->node[I].leads = false;
-    e->link[I]       = e->o.tied && I < e->map.n_owned && Volume(e, I) > 0.0 ? Follows(e, I) : 0.0;
+    e->link[2 * I] = e->link[2 * I + 1] = 0.0;
+    if (e->o.tied && I < e->map.n_owned && Volume(e, I) > 0.0)
+      e->link[2 * I] = Follows(e, I, &e->link[2 * I + 1]);
   }
   if (!e->o.tied)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(NodeMapBroadcast(&e->map, e->link, 1));
+  PetscCall(NodeMapBroadcast(&e->map, e->link, 2));
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     int root = (int)I;
 
-    for (int hop = 0; hop < HOPS && root < (int)e->map.n_local && e->link[root] > 0.0; hop++)
-      root = Neighbour(e, root, (int)e->link[root] - 1);
+    for (int hop = 0; hop < HOPS && root < (int)e->map.n_local && e->link[2 * root] > 0.0; hop++)
+      root = Neighbour(e, root, (int)e->link[2 * root] - 1);
     if (root == (int)I || root >= (int)e->map.n_local)
       continue;
     e->node[I].root = root;
+    e->node[I].own  = e->link[2 * I + 1];
     if (!e->node[root].leads)
       PetscCall(PetscArraycpy(&e->G[root * width], &e->A[root * width], width));
     e->node[root].leads = true;
-    AddRow(&e->G[root * width], &e->A[I * width], width);
+    AddRow(&e->G[root * width], 1.0 - e->node[I].own, &e->A[I * width], width);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,7 +226,7 @@ static void Solve(const Explicit *e, const Balance *b, double dt, bool held, dou
   }
 }
 
-static void GroupVelocities(Explicit *e, PetscInt I, double dt)
+static void NodeVelocities(Explicit *e, PetscInt I, double dt)
 {
   const int     width = LANES * Rows(A_Count(e->set));
   const double *a     = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
@@ -240,11 +246,19 @@ static void GroupVelocities(Explicit *e, PetscInt I, double dt)
   }
 }
 
-/* Row that the particles read: own start velocity, the group's increment, then what is prescribed. */
+/* (41): increment k of a node, of which it keeps its own share and takes the rest from the node it follows. */
+static double Blended(const Explicit *e, PetscInt I, int width, const double *inc, int k)
+{
+  const NodeInfo *n = &e->node[I];
+
+  return n->own * inc[width * I + k] + (1.0 - n->own) * inc[width * n->root + k];
+}
+
+/* Row that the particles read: own start velocity, the increment, then what is prescribed. */
 static void WriteVelocities(Explicit *e, PetscInt I)
 {
   const Set     s = e->set;
-  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *inc = &e->inc[6 * e->node[I].root];
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
   double       *b = &e->B[I * LANES * Rows(B_Count(s))];
 
   for (int d = 0; d < CL_DIM; d++) {
@@ -252,7 +266,7 @@ static void WriteVelocities(Explicit *e, PetscInt I)
     double  v[3] = {0.0}, value;
 
     ReadBalance(e, a, d, &w);
-    v[0] = s.solid ? w.v + inc[d] : 0.0;
+    v[0] = s.solid ? w.v + Blended(e, I, 6, e->inc, d) : 0.0;
     if (s.solid && Held(e, I, F_VSX + d, &value))
       v[0] = value;
     if (s.solid) {
@@ -263,7 +277,7 @@ static void WriteVelocities(Explicit *e, PetscInt I)
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
-      v[1 + k] = w.vf[k] + inc[2 * (1 + k) + d];
+      v[1 + k] = w.vf[k] + Blended(e, I, 6, e->inc, 2 * (1 + k) + d);
       if (Held(e, I, F_VWX + 2 * k + d, &value))
         v[1 + k] = value;
       bf[B_J + d]    = f[FL_W] / V * (v[1 + k] - v[0]);
@@ -291,8 +305,8 @@ PetscErrorCode NodesVelocities(Explicit *e, double dt)
   e->added = 0.0;
   PetscCall(Group(e));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
-    if (e->node[I].root == (int)I && Volume(e, I) > 0.0)
-      GroupVelocities(e, I, dt);
+    if (Volume(e, I) > 0.0)
+      NodeVelocities(e, I, dt);
   }
   if (e->o.mass_scaling > 1.0) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
@@ -331,8 +345,8 @@ static void SolveSmall(int n, double *A, double *b, double *x)
   }
 }
 
-/* Increments of p_w, p_g, T of a group; a held temperature takes the heat it needs. */
-static void GroupScalars(Explicit *e, PetscInt I, StageRates *rates)
+/* Increments of p_w, p_g, T of a node, with what its followers gave it; a held temperature takes the heat it needs. */
+static void NodeScalars(Explicit *e, PetscInt I, StageRates *rates)
 {
   const Set     s = e->set;
   const int     n = Scalars(s);
@@ -350,7 +364,7 @@ static void GroupScalars(Explicit *e, PetscInt I, StageRates *rates)
     b[n - 1] = T - a[s.fluids] / a[A_C(s)];
   }
   SolveSmall(n, A, b, &e->gain[3 * I]);
-  if (!held)
+  if (!held || e->node[I].root != (int)I)
     return;
   double heat = -r[n - 1];
   for (int j = 0; j < n; j++)
@@ -358,24 +372,25 @@ static void GroupScalars(Explicit *e, PetscInt I, StageRates *rates)
   rates->heat_in += heat;
 }
 
-/* Adds the rows of a node to its group's.  A temperature prescribed there is its own: what it does to the masses is
-   known, and its row of heat says what it needs. */
+/* Adds what a node gives up of its rows to those of the node it follows.  A temperature prescribed there is its own:
+   what it does to the masses is known, and its row of heat says what it needs. */
 static void Join(Explicit *e, PetscInt I)
 {
-  const Set     s = e->set;
+  const Set     s     = e->set;
+  const double  share = 1.0 - e->node[I].own;
   const int     n = Scalars(s), width = LANES * Rows(R_Count(s));
   const double *from = &e->R[I * width], *a = &e->A[I * LANES * Rows(A_Count(s))];
   double       *to = &e->R[e->node[I].root * width], T;
 
   if (!s.heat || !Held(e, I, F_T, &T)) {
-    AddRow(to, from, width);
+    AddRow(to, share, from, width);
     return;
   }
   const double dT = T - a[s.fluids] / a[A_C(s)];
   for (int k = 0; k < s.fluids; k++) {
-    to[k] += from[k] - from[R_Matrix(s) + k * n + s.fluids] * dT;
+    to[k] += share * (from[k] - from[R_Matrix(s) + k * n + s.fluids] * dT);
     for (int j = 0; j < s.fluids; j++)
-      to[R_Matrix(s) + k * n + j] += from[R_Matrix(s) + k * n + j];
+      to[R_Matrix(s) + k * n + j] += share * from[R_Matrix(s) + k * n + j];
   }
 }
 
@@ -388,7 +403,7 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
   double       *c = &e->C[I * LANES], T;
 
   for (int k = 0; k < n; k++)
-    c[k] = e->gain[3 * e->node[I].root + k];
+    c[k] = Blended(e, I, 3, e->gain, k);
   if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
     c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
     rates->heat_in -= r[s.fluids];
@@ -411,8 +426,8 @@ PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
       Join(e, I);
   }
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
-    if (e->node[I].root == (int)I && Volume(e, I) > 0.0)
-      GroupScalars(e, I, rates);
+    if (Volume(e, I) > 0.0)
+      NodeScalars(e, I, rates);
   }
   PetscCall(NodeMapBroadcast(&e->map, e->gain, 3));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
