@@ -8,7 +8,7 @@ static const char help[] =
     "  -case_check                 read and check the case, write nothing\n"
     "  -case_keys                  print every key of a case file (needs no CASE)\n"
     "  -restart FILE               go on from a checkpoint of the same case\n"
-    "  -stepper_max_steps N        stop after N more steps, with a checkpoint\n"
+    "  -stepper_max_steps N        stop after N more steps (hybrid: bursts of up to 256), with a checkpoint\n"
     "  -quiet                      no line per step\n"
     "  -newton_tol_residual 1e-9, -newton_tol_update 1e-6, -newton_refactor 20, -model_pmat_type aij|baij\n"
     "Any key of the case can be set here, with its unit: -grid_cells 104,1 -stepper_type euler -time_end \"500 s\".\n"

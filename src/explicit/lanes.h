@@ -124,7 +124,7 @@ typedef struct {
   int    root;  /* fuller node that this one follows; its own number if it stands for itself */
   double own;   /* share that it keeps of its own balances; 1 if it follows nobody */
   int    held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
-  bool   leads; /* others belong to its group */
+  bool   leads; /* others follow it */
 } NodeInfo;
 
 /* Parts of a step in -log_view. */
@@ -142,20 +142,21 @@ struct Explicit {
   int            *slot;              /* padded grid node -> row */
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */
-  double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of whole groups */
-  double         *inc;               /* [rows][6] increments of the velocities of a group */
-  double         *gain;              /* [rows][3] increments of the scalars of a group */
-  double         *link;         /* [rows] which neighbour a nearly empty node follows, as it travels between ranks */
-  NodeInfo       *node;         /* [rows] */
-  PetscInt        nheld, *held; /* local nodes with prescribed unknowns */
-  unsigned       *mask;         /* ... which */
-  double         *fixed;        /* ... and their values, [nheld][fields.n] */
-  PetscInt        nface;
-  Face           *face;
-  bool            stale, strays;    /* a particle reaches other nodes; a particle left this rank's cells */
-  double          latent, advected; /* J over the step */
-  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
-  double worst_scaling;
+  double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
+  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it */
+  double *gain;   /* [rows][3] the same of the scalars */
+  double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
+                     ranks */
+  NodeInfo *node; /* [rows] */
+  PetscInt  nheld, *held; /* local nodes with prescribed unknowns */
+  unsigned *mask;         /* ... which */
+  double   *fixed;        /* ... and their values, [nheld][fields.n] */
+  PetscInt  nface;
+  Face     *face;
+  bool      stale, strays;    /* a particle reaches other nodes; a particle left this rank's cells */
+  double    latent, advected; /* J over the step */
+  double    added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  double    worst_scaling;
   PetscLogEvent event[STEP_PARTS];
 };
 
