@@ -124,7 +124,7 @@ def explicit_section(binary):
     return f"""
 ## Hybrid
 
-Square blocks with 2 x 2 particles a cell, uGIMP, one core. Time in the steps alone (between two bursts of 256 the stable step is estimated and the particles are sorted, 2-5 % more).
+Square blocks with 2 x 2 particles a cell, uGIMP, one core. Time in the steps alone (between two bursts of 256 the stable step is estimated and the particles are sorted: 2 % more with six fields, 10 % dry).
 The last column compares the arrays that a step must read and write, each once a pass, with a stream copy in the same run ({copy / 1e9:.0f} GB/s).
 
 {markdown(head, rows)}

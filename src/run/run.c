@@ -70,19 +70,22 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
 {
   const double t = s->state.t, end = s->model->c->t_end, done = (t - run->t_start) / (end - run->t_start);
   const double left     = done > 0.0 ? (Wall() - run->clock_start) * (1.0 - done) / done : 0.0;
-  char         cuts[32] = "", error[32] = "";
+  char         cuts[32] = "", error[32] = "", solved[48];
 
   PetscFunctionBeginUser;
   if (run->quiet)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
-  if (s->adaptive)
+  if (s->explicit)
+    PetscCall(PetscSNPrintf(solved, sizeof(solved), "%s rules", cl_limit_word[s->limit.rules]));
+  else
+    PetscCall(PetscSNPrintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton));
+  if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "step %4" PetscInt_FMT ": t = %-10.6g s (%5.1f %%), dt = %-9.4g s, %2" PetscInt_FMT
-                        " Newton iterations%s%s, %.0f s left\n",
-                        s->state.step, t, 100.0 * done, info->dt, info->newton, error, cuts, left));
+                        "step %4" PetscInt_FMT ": t = %-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s, %.0f s left\n",
+                        s->state.step, t, 100.0 * done, info->dt, solved, error, cuts, left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
