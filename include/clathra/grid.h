@@ -23,6 +23,16 @@ PetscErrorCode GridDestroy(Grid *g);
 bool        GridCell(const Grid *g, const double x[], PetscInt cell[]);
 PetscMPIInt GridCellOwner(const Grid *g, const PetscInt cell[]);
 
+/* Square of the largest wave number that the grid carries, 1/m^2. */
+static inline double GridHighest2(const Grid *g)
+{
+  double k2 = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    k2 += 4.0 / PetscSqr(g->h[d]);
+  return k2;
+}
+
 static inline PetscInt GridPadded(const Grid *g, PetscInt i, PetscInt j)
 {
   return (j - g->gs[1]) * g->gm[0] + (i - g->gs[0]);

@@ -134,6 +134,8 @@ void ModelStartVelocity(const Model *m, double *v);
 PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates);
 /* Notes why particle p cannot go on; the first reason of this rank stays. */
 void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p);
+/* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
+ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
 /* Adds a face's rates, weighted with `weight`, to those of the whole boundary and of the meters that cover it. */

@@ -8,6 +8,8 @@
 #include "clathra/kinematics.h"
 #include "clathra/material.h"
 
+#define CL_MOBILITY_FLOOR 1e-9 /* of k_r, in the drag only: an immobile phase still has a velocity */
+
 /* What the interpolation gives a particle; the tangent is taken with respect to these numbers in this order. */
 enum {
   IN_GRADU = 0,  /* [i][j], on the configuration at t_n */

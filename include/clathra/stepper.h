@@ -111,6 +111,8 @@ PetscErrorCode StepperPrintForecast(const Stepper *s);
 /* Shared by the schemes. */
 /* The next time that a step must hit: a kink of a schedule, an event, the end. */
 double StepperNextStop(const Stepper *s, bool *kink);
+/* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
+void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt *a);
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok);

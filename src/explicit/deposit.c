@@ -4,8 +4,6 @@
 #include "clathra/laws_batch.h"
 #include "clathra/tensor.h"
 
-#define MOBILITY_FLOOR 1e-9 /* of k_r, as in the implicit scheme */
-
 typedef struct {
   double phi[BLOCK], Sh[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], drag[PHASE_COUNT][BLOCK], p[BLOCK];
 } Fluids;
@@ -57,10 +55,10 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
     }
     RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], kr);
     for (int q = 0; q < r.n; q++)
-      w->drag[PHASE_W][q] /= Largest(kr[q], MOBILITY_FLOOR);
+      w->drag[PHASE_W][q] /= Largest(kr[q], CL_MOBILITY_FLOOR);
     RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], kr);
     for (int q = 0; q < r.n; q++)
-      w->drag[PHASE_G][q] = mat->mu_g / (ka[q] * Largest(kr[q], MOBILITY_FLOOR));
+      w->drag[PHASE_G][q] = mat->mu_g / (ka[q] * Largest(kr[q], CL_MOBILITY_FLOOR));
   }
   for (int k = 0; k < s.fluids; k++) {
     for (int q = 0; q < r.n; q++) {
@@ -221,11 +219,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     for (int q = 0; q < r.n; q++) {
       const PetscInt p = r.p + q;
 
-      C[q] = f[P_MS][p] * r.mat->c_s + f[P_MH][p] * r.mat->c_h;
-      if (s.fluids)
-        C[q] += f[P_MW][p] * r.mat->c_w;
-      if (s.fluids == 2)
-        C[q] += f[P_MG][p] * r.mat->c_g;
+      C[q]               = Capacity(e, s, r.mat, p);
       v.value[q][A_C(s)] = C[q];
     }
     Carried(e, r, s.fluids, C, T, g, &w, &v);

@@ -194,17 +194,12 @@ void ForRuns(Explicit *e, const LoopTable table, double dt)
   }
 }
 
-void ExplicitFail(Explicit *e, ClStatus status, const char *why, PetscInt p)
-{
-  ModelNoteFailure(e->m, status, why, p);
-}
-
 /* ---------------------------------------------------------------- steps */
 static PetscErrorCode Ready(Explicit *e)
 {
   PetscFunctionBeginUser;
-  PetscCall(Sort(e));
   PetscCall(SizeParticles(e));
+  PetscCall(Sort(e));
   for (PetscInt p = 0; e->t[T_T] && p < e->m->P.n; p++)
     e->t[T_T][p] = e->m->c->region[e->m->P.i[PI_REGION][p]].temperature;
   e->strays = false;
@@ -236,7 +231,6 @@ PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
 {
   PetscFunctionBeginUser;
   e->m->status = CL_OK;
-  PetscCall(SizeParticles(e));
   PetscCall(Ready(e));
   if (e->o.mass_scaling > 1.0)
     PetscCall(ActingForces(e));
@@ -264,7 +258,6 @@ static PetscErrorCode Agree(Explicit *e, ClStatus *status)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
   PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
-  PetscCall(SizeParticles(e));
   PetscCall(Ready(e));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -337,18 +330,15 @@ PetscErrorCode ExplicitEnd(Explicit *e)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
-    const Material *mat = &e->m->c->material[e->m->c->region[P->i[PI_REGION][p]].material];
-    double          d[2], sg = 0.0;
-    const double    T    = e->set.heat ? P->f[P_T][p] : e->t[T_T][p];
-    const double    pore = P->f[P_V][p] - P->f[P_MS][p] / LiquidDensity(&mat->solid, 0.0, T, &d[0], &d[1]);
-    const double    Sh   = P->f[P_MH][p] / (pore * LiquidDensity(&mat->hydrate, 0.0, T, &d[0], &d[1]));
+    PointProperties q;
+    const char     *why;
 
-    if (e->set.fluids == 2)
-      sg = RetentionGasShare(&mat->retention, P->f[P_PG][p] - P->f[P_PW][p], &d[0]);
-    P->f[P_PHI][p] = pore / P->f[P_V][p];
-    P->f[P_SH][p]  = Sh;
+    if (ModelParticleProperties(e->m, p, &q, &why) != CL_OK)
+      continue; /* the next step will say why */
+    P->f[P_PHI][p] = q.phi;
+    P->f[P_SH][p]  = q.Sh;
     if (e->set.fluids)
-      P->f[P_SW][p] = (1.0 - Sh) * (1.0 - sg);
+      P->f[P_SW][p] = (1.0 - q.Sh) * q.s[PHASE_W];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

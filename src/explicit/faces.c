@@ -81,27 +81,17 @@ static void Inputs(const Explicit *e, const Face *f, double in[IN_COUNT])
     in[IN_GT + d] = P[P_GT + d][p];
 }
 
-static double Conductivity(const Explicit *e, PetscInt p)
-{
-  double *const  *P    = e->m->P.f;
-  const Set       s    = e->set;
-  const Material *mat  = &e->m->c->material[e->m->c->region[e->m->P.i[PI_REGION][p]].material];
-  const double    X[4] = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g};
-  double          d[3], dT, dp, T = s.heat ? P[P_T][p] : e->t[T_T][p];
-  const double    pore = P[P_V][p] - P[P_MS][p] / LiquidDensity(&mat->solid, 0.0, T, &dp, &dT);
-  const double    Sh   = P[P_MH][p] / (pore * LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT));
-  const double    sw   = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
-
-  return MixtureAverage(pore / P[P_V][p], Sh, sw, X, &d[0], &d[1], &d[2]);
-}
-
 static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT], double dt, FaceOutput *o)
 {
   const Material *mat = &e->m->c->material[e->m->c->region[f->region].material];
+  PointProperties q   = {0};
+  const char     *why;
   double          p0[PHASE_COUNT];
 
   ModelInitialAtFace(e->m, f, p0);
-  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, e->set.heat ? Conductivity(e, f->particle) : 0.0, dt, o);
+  if (f->temperature >= 0) /* the only condition that asks for a conductivity */
+    ModelParticleProperties(e->m, f->particle, &q, &why);
+  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, q.kappa, dt, o);
 }
 
 /* Tractions, and for the fluids what a prescribed pressure differs from the body's own at the face. */

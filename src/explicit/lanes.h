@@ -174,8 +174,6 @@ typedef struct {
 } Run;
 
 void WeightsOf(const Explicit *e, Run r, Weights *w);
-/* Notes that particle p cannot go on. */
-void ExplicitFail(Explicit *e, ClStatus status, const char *why, PetscInt p);
 
 void Deposit(Explicit *e);
 void Rates(Explicit *e, double dt);
@@ -224,4 +222,23 @@ void           FacesPlace(Explicit *e);
 INLINE double Largest(double a, double b)
 {
   return a > b ? a : b;
+}
+
+/* Heat capacity of a particle, J/K. */
+INLINE double Capacity(const Explicit *e, Set s, const Material *mat, PetscInt p)
+{
+  double *const *f = e->m->P.f;
+  double         C = f[P_MS][p] * mat->c_s + f[P_MH][p] * mat->c_h;
+
+  for (int k = 0; k < s.fluids; k++)
+    C += f[P_MW + k][p] * (k ? mat->c_g : mat->c_w);
+  return C;
+}
+
+/* FLIP, mixed with PIC: velocities of n particles from increments and nodal values that stand `width` numbers apart. */
+INLINE void Blend(double flip, int n, double *restrict v, const double *restrict dv, const double *restrict nodal,
+                  int width)
+{
+  for (int q = 0; q < n; q++)
+    v[q] = flip * (v[q] + dv[q * width]) + (1.0 - flip) * nodal[q * width];
 }

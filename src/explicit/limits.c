@@ -37,27 +37,22 @@ static void Stiffness(const Set s, const Material *mat, const PointProperties *q
 
 static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
 {
-  const Model    *m   = e->m;
-  const Set       s   = e->set;
-  const Case     *c   = m->c;
-  const Material *mat = &c->material[c->region[m->P.i[PI_REGION][p]].material];
-  double *const  *f   = (double *const *)m->P.f;
-  const double T = s.heat ? f[P_T][p] : c->region[m->P.i[PI_REGION][p]].temperature, pw = s.fluids ? f[P_PW][p] : 0.0,
-               pg = s.fluids == 2 ? f[P_PG][p] : 0.0;
+  const Model    *m = e->m;
+  const Set       s = e->set;
+  double *const  *f = (double *const *)m->P.f;
   const char     *why;
   PointProperties q;
-  double          C[2][2] = {{0.0}}, k2 = 0.0, bulk = 0.0, skeleton, rho;
+  const double    k2      = GridHighest2(&m->grid);
+  double          C[2][2] = {{0.0}}, bulk = 0.0, skeleton, rho;
 
-  const ClStatus status =
-      PointPropertiesEvaluate(&c->fields, mat, f[P_V][p], f[P_MS][p], f[P_MH][p], pw, pg, T, 1.0, &q, &why);
+  const ClStatus status = ModelParticleProperties(m, p, &q, &why);
   if (status != CL_OK)
     return status;
-  for (int d = 0; d < CL_DIM; d++)
-    k2 += 4.0 / PetscSqr(m->grid.h[d]);
   *w  = (Spectrum){.fluids = s.fluids};
   rho = (f[P_MS][p] + f[P_MH][p]) / f[P_V][p];
   if (s.fluids)
-    Stiffness(s, mat, &q, pg - pw, C);
+    Stiffness(s, &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material], &q,
+              s.fluids == 2 ? f[P_PG][p] - f[P_PW][p] : 0.0, C);
   skeleton     = q.M;
   double total = rho;
   for (int i = 0; i < s.fluids; i++) {

@@ -35,14 +35,6 @@ INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gath
   }
 }
 
-/* FLIP, mixed with PIC. */
-INLINE void Blend(double flip, int n, double *restrict v, const double *restrict dv, const double *restrict nodal,
-                  int width)
-{
-  for (int q = 0; q < n; q++)
-    v[q] = flip * (v[q] + dv[q * width]) + (1.0 - flip) * nodal[q * width];
-}
-
 INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
 {
   const int width = 3 * LANES;
@@ -183,21 +175,17 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
     const double   sw    = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
     const double   fluid = sw * mat->kappa_w + (1.0 - sw) * mat->kappa_g;
     const double   kappa = (1.0 - phi) * mat->kappa_s + phi * (Sh * mat->kappa_h + (1.0 - Sh) * fluid), V = f[P_V][p];
-    double         C = f[P_MS][p] * mat->c_s + f[P_MH][p] * mat->c_h, advected = 0.0;
+    double         advected = 0.0;
 
-    for (int k = 0; k < s.fluids; k++) {
-      const double c = k ? mat->c_g : mat->c_w;
-
-      C += c * f[P_MW + k][p];
-      advected += c * (o->force[0][q][k] * g->dx[q][at] + o->force[1][q][k] * g->dy[q][at]);
-    }
+    for (int k = 0; k < s.fluids; k++)
+      advected += (k ? mat->c_g : mat->c_w) * (o->force[0][q][k] * g->dx[q][at] + o->force[1][q][k] * g->dy[q][at]);
     o->value[q][row] = -advected;
     e->advected += advected;
     o->force[0][q][row] = -dt * V * kappa * g->dx[q][at];
     o->force[1][q][row] = -dt * V * kappa * g->dy[q][at];
     for (int i = 0; i < s.fluids; i++)
       o->value[q][R_Matrix(s) + row * n + i] = 0.0;
-    o->value[q][R_Matrix(s) + row * n + row] = C;
+    o->value[q][R_Matrix(s) + row * n + row] = Capacity(e, s, mat, p);
   }
 }
 

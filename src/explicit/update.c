@@ -152,9 +152,8 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, PetscIn
           (share[k] == 0.0 ? 0.0 : -share[k] * e->t[T_RHO + k][p] / rho_h * wanted) + nu[k] * (wanted - gain);
     if (s.heat) {
       const double L = LatentHeatEvaluate(&mat->latent, T, &dL);
-      const double C = f[P_MS][p] * mat->c_s + f[P_MH][p] * mat->c_h + f[P_MW][p] * mat->c_w + f[P_MG][p] * mat->c_g;
 
-      f[P_T][p] += L * (gain - wanted) / C;
+      f[P_T][p] += L * (gain - wanted) / Capacity(e, s, mat, p);
       e->latent += L * wanted;
     }
     *limited += gain != wanted;
@@ -273,28 +272,24 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))
-    ExplicitFail(e, CL_NONFINITE, "a pressure or temperature left its range", r.p);
+    ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", r.p);
   MassesOf(e, s, r, &g, &e->m->limited);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   if (!s.solid)
     return;
   if (!StrainOf(s, r.n, &g, dt, &n))
-    ExplicitFail(e, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
   if (!StressOf(e, s, r, &g, &n, T))
-    ExplicitFail(e, CL_DOMAIN, "no open pores are left", r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
   OutOfPlane(e, r, &n);
   for (int q = 0; q < r.n; q++)
     f[P_LOGJ][r.p + q] += n.log_J[q];
   if (!Scalars(s)) {
-    for (int d = 0; d < CL_DIM; d++) {
-      double *restrict v = f[P_VS + d] + r.p;
-
-      for (int q = 0; q < r.n; q++)
-        v[q] = e->o.flip * (v[q] + g.value[q][C_DVs(s) + d]) + (1.0 - e->o.flip) * g.value[q][C_Vs(s) + d];
-    }
+    for (int d = 0; d < CL_DIM; d++)
+      Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], LANES);
   }
   if (!Move(e, s, r, &g, &n, dt))
-    ExplicitFail(e, CL_TOO_FAR, "a particle moves more than half a cell in one step, or leaves the grid", r.p);
+    ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step, or leaves the grid", r.p);
 }
 
 MAKE_LOOPS(UpdateRun)

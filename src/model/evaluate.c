@@ -16,6 +16,16 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   return status;
 }
 
+ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0;
+  const double    pg = fs->phase[PHASE_G] ? m->P.f[HeldPressure(fs, P_PW, PHASE_G)][p] : 0.0;
+
+  return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
+                                 ParticleT(m, p), ParticleSw(m, p), q, why);
+}
+
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT])
 {
   const PetscInt p      = face->particle;

@@ -44,17 +44,6 @@ static inline double ParticleSw(const Model *m, PetscInt p)
   return m->P.f[P_SW] ? m->P.f[P_SW][p] / (1.0 - m->P.f[P_SH][p]) : 0.0;
 }
 
-/* Properties of a particle at t_n. */
-static inline ClStatus ParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why)
-{
-  const FieldSet *fs = &m->c->fields;
-  const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0;
-  const double    pg = fs->phase[PHASE_G] ? m->P.f[HeldPressure(fs, P_PW, PHASE_G)][p] : 0.0;
-
-  return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
-                                 ParticleT(m, p), ParticleSw(m, p), q, why);
-}
-
 /* Weight of a fluid's mass balance in its row: 1, or with one pressure 1/rho_pi, so that the sum is the balance of
    volume (34). */
 static inline double RowWeight(const Model *m, PetscInt I, int phase)

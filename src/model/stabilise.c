@@ -146,7 +146,7 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
   const char     *why;
   double          r[CL_DIM];
 
-  if (ParticleProperties(m, p, &q, &why) != CL_OK)
+  if (ModelParticleProperties(m, p, &q, &why) != CL_OK)
     return; /* ModelBeginStep reported it */
   for (int d = 0; d < CL_DIM; d++)
     r[d] = (m->P.f[P_X + d][p] - m->grid.lower[d]) / m->grid.h[d] - (double)cell[d];

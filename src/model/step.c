@@ -167,7 +167,7 @@ static PetscErrorCode Project(Model *m)
   for (PetscInt p = 0; p < m->P.n; p++) {
     PointProperties q;
     Reach           r;
-    const ClStatus  status = ParticleProperties(m, p, &q, &why);
+    const ClStatus  status = ModelParticleProperties(m, p, &q, &why);
 
     if (status != CL_OK) {
       ModelNoteFailure(m, status, why, p);

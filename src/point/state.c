@@ -1,8 +1,6 @@
 /* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(13). */
 #include "state.h"
 
-#define MOBILITY_FLOOR 1e-9 /* of k_r, in the drag only: an immobile phase still has a velocity */
-
 static Jet LiquidJet(const Liquid *law, Jet p, Jet T)
 {
   double       dp, dT;
@@ -108,7 +106,7 @@ static Jet RelPermJet(const RelPerm *law, int phase, const ScalarState *s)
   double       d;
   const double kr = phase == PHASE_W ? RelPermWater(law, x.v, &d) : RelPermGas(law, x.v, &d);
 
-  return kr < MOBILITY_FLOOR ? JetConstant(MOBILITY_FLOOR) : JetChain(kr, d, x);
+  return kr < CL_MOBILITY_FLOOR ? JetConstant(CL_MOBILITY_FLOOR) : JetChain(kr, d, x);
 }
 
 /* mu/(k_a k_r) of the phases that flow. */

@@ -90,20 +90,6 @@ static PetscInt Plan(const Stepper *s, double stop, double *dt)
   return (PetscInt)fmin(n, BURST);
 }
 
-static void Collect(const StageRates *sum, PetscInt limited, Attempt *a)
-{
-  for (int ph = 0; ph < PHASE_COUNT; ph++)
-    a->out[ph] = sum->out[ph];
-  a->heat_gain   = sum->heat_rate;
-  a->heat_in     = sum->heat_in;
-  a->heat_source = sum->heat_source;
-  a->limited     = limited;
-  for (int k = 0; k < CL_METERS; k++) {
-    for (int q = 0; q < METER_COUNT; q++)
-      a->meter[k][q] = sum->meter[k][q];
-  }
-}
-
 /* A burst of n steps; the sums are those of all ranks. */
 static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
 {
@@ -116,7 +102,8 @@ static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
     PetscCall(ExplicitStep(s->explicit, s->state.t + (double)k * dt, dt, &sum, &a->status));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof(sum) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
-  Collect(&sum, m->limited, a);
+  StepperCount(m->c, &sum, 1.0, a);
+  a->limited = m->limited;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

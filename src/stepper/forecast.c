@@ -36,14 +36,11 @@ static double HybridSeconds(const Model *m, double steps)
 /* Steps of an implicit run: as fixed, or few unless waves have to be resolved. */
 static double ImplicitSteps(const Stepper *s, double left)
 {
-  const Model *m  = s->model;
-  double       k2 = 0.0;
+  const Model *m = s->model;
 
   if (!s->adaptive)
     return left / m->c->dt;
-  for (int d = 0; d < CL_DIM; d++)
-    k2 += 4.0 / PetscSqr(m->grid.h[d]);
-  const double speed = 2.0 / (sqrt(k2) * s->forecast.limit.each[LIMIT_WAVE]);
+  const double speed = 2.0 / (sqrt(GridHighest2(&m->grid)) * s->forecast.limit.each[LIMIT_WAVE]);
   const double transits =
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
 

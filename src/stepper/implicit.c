@@ -89,15 +89,7 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
   if (a->status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS);
   a->limited += m->limited;
-  for (int ph = 0; ph < PHASE_COUNT; ph++)
-    a->out[ph] += weight * dt * rates.out[ph];
-  a->heat_gain += weight * dt * rates.heat_rate;
-  a->heat_in += weight * dt * rates.heat_in;
-  a->heat_source += weight * dt * rates.heat_source;
-  for (PetscInt k = 0; k < m->c->nmeter; k++) {
-    for (int q = 0; q < METER_COUNT; q++)
-      a->meter[k][q] += weight * dt * rates.meter[k][q];
-  }
+  StepperCount(m->c, &rates, weight * dt, a);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

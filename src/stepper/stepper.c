@@ -108,6 +108,19 @@ double StepperNextStop(const Stepper *s, bool *kink)
   return stop;
 }
 
+void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt *a)
+{
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    a->out[ph] += weight * rates->out[ph];
+  a->heat_gain += weight * rates->heat_rate;
+  a->heat_in += weight * rates->heat_in;
+  a->heat_source += weight * rates->heat_source;
+  for (PetscInt k = 0; k < c->nmeter; k++) {
+    for (int q = 0; q < METER_COUNT; q++)
+      a->meter[k][q] += weight * rates->meter[k][q];
+  }
+}
+
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
 {
   StepperState *z = &s->state;
