@@ -1,0 +1,39 @@
+/* Private to the node side of explicit/: what numbering, velocities and scalars share. */
+#pragma once
+
+#include "lanes.h"
+
+/* Volume of the particles about a node; 0 where there are none. */
+static inline double Volume(const Explicit *e, PetscInt I)
+{
+  return e->A[I * LANES * Rows(A_Count(e->set)) + A_V(e->set)];
+}
+
+/* Adds a share of n numbers. */
+static inline void AddRow(double *to, double share, const double *from, int n)
+{
+  for (int k = 0; k < n; k++)
+    to[k] += share * from[k];
+}
+
+/* Is this unknown of node I prescribed, and to which value? */
+static inline bool Held(const Explicit *e, PetscInt I, int unknown, double *value)
+{
+  const int h = e->node[I].held, at = e->m->c->fields.at[unknown];
+
+  if (h < 0 || !((e->mask[h] >> at) & 1u))
+    return false;
+  *value = e->fixed[h * e->m->c->fields.n + at];
+  return true;
+}
+
+/* (41): increment k of a node, of which it keeps its own share and takes the rest from the node it follows. */
+static inline double Blended(const Explicit *e, PetscInt I, int width, const double *inc, int k)
+{
+  const NodeInfo *n = &e->node[I];
+
+  return n->own * inc[width * I + k] + (1.0 - n->own) * inc[width * n->root + k];
+}
+
+/* Finds who follows whom (41), and adds to A of a leading node what its followers give up.  Collective. */
+PetscErrorCode NodesFollow(Explicit *e);

@@ -1,0 +1,118 @@
+/* Between the second and the third pass: increments of p_w, p_g, T at the nodes (37). */
+#include "nodes.h"
+
+/* x of the n x n system A x = b by elimination with the diagonal as pivots: storage and capacity outweigh what couples
+ * them. */
+static void SolveSmall(int n, double *A, double *b, double *x)
+{
+  for (int k = 0; k < n; k++) {
+    for (int i = k + 1; i < n; i++) {
+      const double c = A[i * n + k] / A[k * n + k];
+
+      for (int j = k; j < n; j++)
+        A[i * n + j] -= c * A[k * n + j];
+      b[i] -= c * b[k];
+    }
+  }
+  for (int k = n - 1; k >= 0; k--) {
+    x[k] = b[k];
+    for (int j = k + 1; j < n; j++)
+      x[k] -= A[k * n + j] * x[j];
+    x[k] /= A[k * n + k];
+  }
+}
+
+/* Increments of p_w, p_g, T of a node, with what its followers gave it; a held temperature takes the heat it needs. */
+static void NodeScalars(Explicit *e, PetscInt I, StageRates *rates)
+{
+  const Set     s = e->set;
+  const int     n = Scalars(s);
+  const double *r = &e->R[I * LANES * Rows(R_Count(s))], *a = &e->A[I * LANES * Rows(A_Count(s))];
+  double        A[9], b[3], T;
+
+  for (int k = 0; k < n; k++)
+    b[k] = r[k];
+  for (int k = 0; k < n * n; k++)
+    A[k] = r[R_Matrix(s) + k];
+  const bool held = s.heat && Held(e, I, F_T, &T);
+  if (held) {
+    for (int j = 0; j < n; j++)
+      A[(n - 1) * n + j] = j == n - 1;
+    b[n - 1] = T - a[s.fluids] / a[A_C(s)];
+  }
+  SolveSmall(n, A, b, &e->gain[3 * I]);
+  if (!held || e->node[I].root != (int)I)
+    return;
+  double heat = -r[n - 1];
+  for (int j = 0; j < n; j++)
+    heat += r[R_Matrix(s) + (n - 1) * n + j] * e->gain[3 * I + j];
+  rates->heat_in += heat;
+}
+
+/* Adds what a node gives up of its rows to those of the node it follows.  A temperature prescribed there is its own:
+   what it does to the masses is known, and its row of heat says what it needs. */
+static void Join(Explicit *e, PetscInt I)
+{
+  const Set     s     = e->set;
+  const double  share = 1.0 - e->node[I].own;
+  const int     n = Scalars(s), width = LANES * Rows(R_Count(s));
+  const double *from = &e->R[I * width], *a = &e->A[I * LANES * Rows(A_Count(s))];
+  double       *to = &e->R[e->node[I].root * width], T;
+
+  if (!s.heat || !Held(e, I, F_T, &T)) {
+    AddRow(to, share, from, width);
+    return;
+  }
+  const double dT = T - a[s.fluids] / a[A_C(s)];
+  for (int k = 0; k < s.fluids; k++) {
+    to[k] += share * (from[k] - from[R_Matrix(s) + k * n + s.fluids] * dT);
+    for (int j = 0; j < s.fluids; j++)
+      to[R_Matrix(s) + k * n + j] += share * from[R_Matrix(s) + k * n + j];
+  }
+}
+
+/* Row that the particles read: increments, end values, velocity of the skeleton. */
+static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
+{
+  const Set     s = e->set;
+  const int     n = Scalars(s);
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *r = &e->R[I * LANES * Rows(R_Count(s))];
+  double       *c = &e->C[I * LANES], T;
+
+  for (int k = 0; k < n; k++)
+    c[k] = Blended(e, I, 3, e->gain, k);
+  if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
+    c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
+    rates->heat_in -= r[s.fluids];
+    for (int j = 0; j < n; j++)
+      rates->heat_in += r[R_Matrix(s) + s.fluids * n + j] * c[j];
+  }
+  for (int k = 0; k < n; k++)
+    c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
+  if (s.heat)
+    rates->heat_rate += a[A_C(s)] * c[s.fluids];
+  for (int d = 0; s.solid && d < CL_DIM; d++)
+    c[C_Vs(s) + d] = e->B[I * LANES * Rows(B_Count(s)) + d];
+}
+
+PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt I = 0; I < e->map.n_local; I++) {
+    if (e->node[I].root != (int)I)
+      Join(e, I);
+  }
+  for (PetscInt I = 0; I < e->map.n_owned; I++) {
+    if (Volume(e, I) > 0.0)
+      NodeScalars(e, I, rates);
+  }
+  PetscCall(NodeMapBroadcast(&e->map, e->gain, 3));
+  for (PetscInt I = 0; I < e->map.n_owned; I++) {
+    if (Volume(e, I) > 0.0)
+      WriteScalars(e, I, rates);
+    else
+      PetscCall(PetscArrayzero(&e->C[I * LANES], LANES));
+  }
+  PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,147 @@
+/* Between the first and the second pass: velocities of the nodes (36). */
+#include "nodes.h"
+
+/* One direction of one node: masses, start velocities, forces; fluids per unit of their volume. */
+typedef struct {
+  double M, v, f;                        /* skeleton; f of the mixture */
+  double m[2], vf[2], r[2], Mi[2], B[2]; /* fluids: mass, velocity, force, mass per unit of volume fraction, drag */
+} Balance;
+
+static double Velocity(double momentum, double mass, double otherwise)
+{
+  return mass > 0.0 ? momentum / mass : otherwise;
+}
+
+static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
+{
+  const Set    s = e->set;
+  const double V = a[A_V(s)], *mix = &a[A_Mix(s)], gravity = e->m->bc.gravity[d];
+  double       mass = 0.0;
+
+  b->M = s.solid ? mix[MIX_M] : 0.0;
+  b->v = s.solid ? Velocity(mix[MIX_VX + d], b->M, 0.0) : 0.0;
+  for (int k = 0; k < s.fluids; k++) {
+    const double *f = &a[A_Fluid(s, k)];
+
+    b->m[k]  = f[FL_M];
+    b->vf[k] = Velocity(f[FL_VX + d], f[FL_M], b->v);
+    b->Mi[k] = f[FL_MI];
+    b->r[k]  = f[FL_GX + d] + f[FL_MI] * gravity;
+    b->B[k]  = f[FL_DRAG] * f[FL_W] / V;
+    mass += f[FL_M];
+  }
+  b->f = s.solid ? mix[MIX_FX + d] + (b->M + mass) * gravity : 0.0;
+}
+
+/* Velocities at the end of the step (36), drag implicit or explicit; a held skeleton moves as it must. */
+static void Solve(const Explicit *e, const Balance *b, double dt, bool held, double value, double v[3])
+{
+  const Set    s     = e->set;
+  const double scale = e->o.mass_scaling / dt;
+  double       lhs = scale * b->M, rhs = b->f + scale * b->M * b->v;
+
+  rhs -= e->o.damping * fabs(b->f) * (b->v > 0.0 ? 1.0 : b->v < 0.0 ? -1.0 : 0.0);
+  for (int k = 0; k < s.fluids; k++) {
+    const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
+    const double drag = e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
+
+    lhs += scale * b->m[k] * B / (A + B);
+    rhs -= scale * b->m[k] * (b->r[k] - drag - B * b->vf[k]) / (A + B);
+  }
+  v[0] = held ? value : s.solid ? rhs / lhs : 0.0;
+  for (int k = 0; k < s.fluids; k++) {
+    const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
+    const double drag = e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
+
+    v[1 + k] = (A * b->vf[k] + b->r[k] - drag + B * v[0]) / (A + B);
+  }
+}
+
+static void NodeVelocities(Explicit *e, PetscInt I, double dt)
+{
+  const int     width = LANES * Rows(A_Count(e->set));
+  const double *a     = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    Balance b;
+    double  v[3], value = 0.0;
+
+    ReadBalance(e, a, d, &b);
+    const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
+    Solve(e, &b, dt, held, value, v);
+    e->inc[6 * I + d] = v[0] - b.v;
+    for (int k = 0; k < e->set.fluids; k++)
+      e->inc[6 * I + 2 * (1 + k) + d] = v[1 + k] - b.vf[k];
+    if (!held) /* of the mixture, which moves with the skeleton but for seepage */
+      e->added += PetscSqr((e->o.mass_scaling - 1.0) * b.M * (v[0] - b.v) / dt);
+  }
+}
+
+/* Row that the particles read: own start velocity, the increment, then what is prescribed. */
+static void WriteVelocities(Explicit *e, PetscInt I)
+{
+  const Set     s = e->set;
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
+  double       *b = &e->B[I * LANES * Rows(B_Count(s))];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    Balance w;
+    double  v[3] = {0.0}, value;
+
+    ReadBalance(e, a, d, &w);
+    v[0] = s.solid ? w.v + Blended(e, I, 6, e->inc, d) : 0.0;
+    if (s.solid && Held(e, I, F_VSX + d, &value))
+      v[0] = value;
+    if (s.solid) {
+      b[d]            = v[0];
+      b[B_DVs(s) + d] = v[0] - w.v;
+    }
+    for (int k = 0; k < s.fluids; k++) {
+      const double *f  = &a[A_Fluid(s, k)];
+      double       *bf = &b[B_Fluid(s, k)];
+
+      v[1 + k] = w.vf[k] + Blended(e, I, 6, e->inc, 2 * (1 + k) + d);
+      if (Held(e, I, F_VWX + 2 * k + d, &value))
+        v[1 + k] = value;
+      bf[B_J + d]    = f[FL_W] / V * (v[1 + k] - v[0]);
+      bf[B_PROJ + d] = -f[FL_GX + d] / V;
+      bf[B_DV + d]   = v[1 + k] - w.vf[k];
+      bf[B_VEL + d]  = v[1 + k];
+    }
+  }
+  for (int k = 0; k < s.fluids; k++)
+    b[B_P(s, k)] = a[k] / V;
+  if (s.heat)
+    b[B_T(s)] = a[s.fluids] / a[A_C(s)];
+}
+
+PetscErrorCode NodesVelocities(Explicit *e, double dt)
+{
+  const int width = LANES * Rows(B_Count(e->set));
+
+  PetscFunctionBeginUser;
+  for (PetscInt h = 0; h < e->nheld; h++) {
+    e->mask[h] = 0;
+    PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[e->held[h]], &e->mask[h],
+                    &e->fixed[h * e->m->c->fields.n]);
+  }
+  e->added = 0.0;
+  PetscCall(NodesFollow(e));
+  for (PetscInt I = 0; I < e->map.n_owned; I++) {
+    if (Volume(e, I) > 0.0)
+      NodeVelocities(e, I, dt);
+  }
+  if (e->o.mass_scaling > 1.0) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
+    e->worst_scaling = Largest(e->worst_scaling, e->acting > 0.0 ? sqrt(e->added / e->acting) : 0.0);
+  }
+  PetscCall(NodeMapBroadcast(&e->map, e->inc, 6));
+  for (PetscInt I = 0; I < e->map.n_owned; I++) {
+    if (Volume(e, I) > 0.0)
+      WriteVelocities(e, I);
+    else
+      PetscCall(PetscArrayzero(&e->B[I * width], width));
+  }
+  PetscCall(NodeMapBroadcast(&e->map, e->B, width));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
