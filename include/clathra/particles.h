@@ -81,6 +81,9 @@ PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);
 /* Fills the regions of the case with particles, each on the rank that owns its cell, numbered the same whatever the
    number of ranks.  Collective. */
 PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P);
+/* Everything of particle p of a region but its numbers: at x (m), with half-lengths l (m). */
+PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+                                    const double l[]);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);

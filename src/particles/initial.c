@@ -1,0 +1,80 @@
+/* The state that a particle starts from. */
+#include "clathra/particles.h"
+#include "clathra/point.h"
+
+/* Mean pore pressure, with the weight of the water above for a hydrostatic region. */
+static double InitialPressure(const Case *c, const Region *r, const Material *mat, const double x[])
+{
+  double p = r->pressure;
+
+  if (r->hydrostatic) {
+    for (int d = 0; d < CL_DIM; d++) {
+      if (c->gravity[d] != 0.0)
+        p += mat->water.rho0 * c->gravity[d] * (x[d] - r->datum);
+    }
+  }
+  return p;
+}
+
+static void Set(Particles *P, PetscInt p, int component, double value)
+{
+  if (P->f[component])
+    P->f[component][p] = value;
+}
+
+/* Pressures of the phases from their mean (10). */
+static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Material *mat, const double x[],
+                                       double *pw, double *pg, double *sg)
+{
+  const double pm = InitialPressure(c, r, mat, x);
+  double       pc = 0.0, ds;
+
+  PetscFunctionBeginUser;
+  *sg = r->Sg / (1.0 - r->Sh);
+  if (c->fields.has & HAS_GAS_PRESSURE)
+    PetscCheck(RetentionInvert(&mat->retention, *sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "region %s: the retention law never reaches the initial gas share %g", r->name, *sg);
+  *pw = pm - *sg * pc;
+  *pg = *pw + pc;
+  if (c->fields.has & HAS_GAS_PRESSURE) /* to the last digit what the law makes of these pressures */
+    *sg = RetentionGasShare(&mat->retention, *pg - *pw, &ds);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+                                    const double l[])
+{
+  const Region   *r   = &c->region[region];
+  const Material *mat = &c->material[r->material];
+  const double    V   = 4.0 * l[0] * l[1] * (c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0);
+  double          pw = 0.0, pg = 0.0, sg = 0.0, m[4];
+
+  PetscFunctionBeginUser;
+  if (c->fields.fluid)
+    PetscCall(InitialPressures(c, r, mat, x, &pw, &pg, &sg));
+  PointInitialMasses(&c->fields, mat, V, mat->porosity, r->Sh, sg, pw, pg, r->temperature, &m[0], &m[1], &m[2], &m[3]);
+  for (int k = 0; k < P_COUNT; k++)
+    Set(P, p, k, 0.0);
+  for (int d = 0; d < CL_DIM; d++) {
+    P->f[P_X + d][p] = x[d];
+    P->f[P_L + d][p] = l[d];
+    if (r->hydrostatic) {
+      Set(P, p, P_GW + d, mat->water.rho0 * c->gravity[d]);
+      Set(P, p, P_GG + d, mat->water.rho0 * c->gravity[d]);
+    }
+  }
+  P->f[P_V][p]   = V;
+  P->f[P_PHI][p] = mat->porosity;
+  P->f[P_SH][p]  = r->Sh;
+  Set(P, p, P_SW, r->Sw);
+  Set(P, p, P_T, r->temperature);
+  for (int k = 0; k < 2; k++) {
+    Set(P, p, k ? P_PW0 : P_PW, pw);
+    Set(P, p, k ? P_PG0 : P_PG, pg);
+    for (int s = 0; s < 6; s++)
+      Set(P, p, (k ? P_SIG0 : P_SIG) + s, r->stress[s]);
+  }
+  for (int k = 0; k < 4; k++)
+    Set(P, p, P_MS + k, m[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
