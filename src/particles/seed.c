@@ -50,7 +50,8 @@ static PetscInt FaceBits(const Case *c, PetscInt region, const PetscInt ij[], co
   return bits;
 }
 
-static PetscErrorCode SeedRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, Particles *P)
+static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, SiteVisit visit,
+                                  void *ctx)
 {
   const Fill     fx = FillAxis(g, &c->region[region], 0), fy = FillAxis(g, &c->region[region], 1);
   const PetscInt n[CL_DIM] = {fx.n, fy.n};
@@ -58,33 +59,55 @@ static PetscErrorCode SeedRegion(const Case *c, const Grid *g, PetscInt region, 
 
   PetscFunctionBeginUser;
   for (PetscInt j = 0; j < n[1]; j++) {
-    for (PetscInt i = 0; i < n[0]; i++, (*id)++) {
+    for (PetscInt i = 0; i < n[0]; i++) {
       const PetscInt ij[CL_DIM] = {i, j};
       const double   x[CL_DIM]  = {fx.from + ((double)i + 0.5) * fx.spacing, fy.from + ((double)j + 0.5) * fy.spacing};
-      PetscInt       cell[CL_DIM];
+      const Site     site       = {.id     = (*id)++,
+                                   .region = region,
+                                   .faces  = FaceBits(c, region, ij, n, x, l),
+                                   .x      = {x[0], x[1]},
+                                   .l      = {l[0], l[1]}};
 
-      PetscCheck(GridCell(g, x, cell), g->comm, PETSC_ERR_ARG_OUTOFRANGE, "region %s leaves the grid",
-                 c->region[region].name);
-      if (GridCellOwner(g, cell) != g->rank)
-        continue;
-      const PetscInt p = P->n;
-      PetscCall(ParticlesResize(P, p + 1));
-      PetscCall(ParticleInitialState(c, region, P, p, x, l));
-      P->i[PI_ID][p]     = *id;
-      P->i[PI_REGION][p] = region;
-      P->i[PI_FACES][p]  = FaceBits(c, region, ij, n, x, l);
+      PetscCall(visit(c, g, &site, ctx));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P)
+PetscErrorCode SitesVisit(const Case *c, const Grid *g, SiteVisit visit, void *ctx)
 {
   PetscInt id = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ParticlesResize(P, 0));
   for (PetscInt r = 0; r < c->nregion; r++)
-    PetscCall(SeedRegion(c, g, r, &id, P));
+    PetscCall(VisitRegion(c, g, r, &id, visit, ctx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A particle where the cell is this rank's. */
+static PetscErrorCode Seed(const Case *c, const Grid *g, const Site *s, void *particles)
+{
+  Particles *P = (Particles *)particles;
+  PetscInt   cell[CL_DIM];
+
+  PetscFunctionBeginUser;
+  PetscCheck(GridCell(g, s->x, cell), g->comm, PETSC_ERR_ARG_OUTOFRANGE, "region %s leaves the grid",
+             c->region[s->region].name);
+  if (GridCellOwner(g, cell) != g->rank)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscInt p = P->n;
+  PetscCall(ParticlesResize(P, p + 1));
+  PetscCall(ParticleInitialState(c, s->region, P, p, s->x, s->l));
+  P->i[PI_ID][p]     = s->id;
+  P->i[PI_REGION][p] = s->region;
+  P->i[PI_FACES][p]  = s->faces;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ParticlesResize(P, 0));
+  PetscCall(SitesVisit(c, g, Seed, P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
