@@ -68,7 +68,7 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
   if (tension > NEGLIGIBLE * scale)
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: warning: the geostatic stress is a tension of up to %.4g Pa: the load on the "
-                           "body's top at the start is less than the pore pressure there\n",
+                           "body's top is less than the pore pressure there, or the top cuts a cell of the grid\n",
                            tension));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
