@@ -33,16 +33,6 @@ typedef struct {
   bool    *seen;                    /* [regions] */
 } Column;
 
-/* Pressure of the surroundings at x and its gradient along an axis. */
-static double Ambient(const Case *c, const double x[], int axis, double *gradient)
-{
-  (void)c;
-  (void)x;
-  (void)axis;
-  *gradient = 0.0;
-  return 0.0;
-}
-
 static PetscErrorCode FillCell(const Case *c, const Grid *g, const Site *site, Sites *s, Cell *a)
 {
   const Region  *r = &c->region[site->region];
@@ -50,15 +40,16 @@ static PetscErrorCode FillCell(const Case *c, const Grid *g, const Site *site, S
   const double   l = site->l[v];
   InitialScalars q;
   Axis           axis, hat;
-  double         gradient;
+  const Ambient  around = AmbientOf(c, 0.0, c->gravity);
+  double         gradient[CL_DIM];
 
   PetscFunctionBeginUser;
   PetscCall(InitialScalarsAt(c, r, site->x, &q));
   BasisAxis(c->basis, site->x[v], l, g->lower[v], g->h[v], g->cells[v], &axis);
   BasisHat(site->x[v] + s->up * l, g->lower[v], g->h[v], &hat);
   *a         = (Cell){.site = *site, .height = CaseHeight(c, site->x), .p = q.p, .base = axis.base, .hat = hat.base};
-  a->ambient = Ambient(c, site->x, v, &gradient);
-  a->weight  = 2.0 * l * (q.density * CaseGravity(c) + s->up * gradient);
+  a->ambient = AmbientPressure(&around, site->x, gradient);
+  a->weight  = 2.0 * l * (q.density * CaseGravity(c) + s->up * gradient[v]);
   if ((site->faces >> side) & 1)
     a->load = FaceLoad(c, (Side)side, site->region, site->x[1 - v], 0.0);
   for (int k = 0; k < 3; k++) {

@@ -50,14 +50,21 @@ static PetscInt FaceBits(const Case *c, PetscInt region, const PetscInt ij[], co
   return bits;
 }
 
+void ParticlesInitialHalfLength(const Case *c, const Grid *g, PetscInt region, double l[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    l[d] = 0.5 * FillAxis(g, &c->region[region], d).spacing;
+}
+
 static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, SiteVisit visit,
                                   void *ctx)
 {
   const Fill     fx = FillAxis(g, &c->region[region], 0), fy = FillAxis(g, &c->region[region], 1);
   const PetscInt n[CL_DIM] = {fx.n, fy.n};
-  const double   l[CL_DIM] = {0.5 * fx.spacing, 0.5 * fy.spacing};
+  double         l[CL_DIM];
 
   PetscFunctionBeginUser;
+  ParticlesInitialHalfLength(c, g, region, l);
   for (PetscInt j = 0; j < n[1]; j++) {
     for (PetscInt i = 0; i < n[0]; i++) {
       const PetscInt ij[CL_DIM] = {i, j};

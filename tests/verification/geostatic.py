@@ -85,6 +85,13 @@ at_rest("layers and surface inside cells, ugimp about an axis", off, "-basis", "
 at_rest("linear functions", variant("dry", *DRY), "-boundaries", "base,left,right,sea", "-bc_sea_normal", "0 Pa", "-basis", "linear")
 wet = variant("wet", *NO_HEAT, ("fields: thm", "fields: hm"), *OFF, ("297525 Pa", "306354 Pa"))
 at_rest("saturated, layers and surface inside cells", wet)
+SEA_AROUND = ((", sea", ""), ("  sea: {type: traction, side: top, normal: 297525 Pa}\n", ""),
+              ("basis: cpgimp", "basis: cpgimp\nambient: {pressure: 101325 Pa, density: 1000 kg/m^3, level: 40 m}"))  # fmt: skip
+at_rest("ambient sea", variant("ambient", *SEA_AROUND))
+at_rest("ambient sea, about an axis", variant("ambient", *SEA_AROUND), "-geometry", "axisymmetric")
+at_rest("ambient sea, hybrid", variant("ambient", *SEA_AROUND), *BURST)
+flooded = variant("flooded", *NO_HEAT, ("fields: thm", "fields: hm"), *OFF, *SEA_AROUND)
+at_rest("ambient sea, layers and surface inside cells", flooded)
 at_rest("3 x 3 under 2 x 2 a cell", off, "-region_deep_particles_per_cell", "3,3")
 at_rest("layers and surface inside cells, hybrid", off, *SLOW)
 table(("state", "velocity (m/s)", "stress", "T (K)"), rows)
