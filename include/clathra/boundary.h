@@ -13,9 +13,11 @@ typedef struct {
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   double   area;
   PetscInt region;
-  double   along;       /* initial coordinate of the particle along the side, m */
+  double   x0[CL_DIM];  /* initial position of the particle, m */
+  double   share;       /* true area that the face stands for, over its own (FaceShare) */
   double   N[CL_NODES]; /* weights, in the order of StencilExpand */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
+  unsigned meters;                                                    /* bit k: Case.meter[k] counts it */
 } Face;
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
@@ -24,9 +26,6 @@ PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, cons
 
 /* Where the face is and how it distributes, for its particle's present position and weights. */
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
-
-/* Is the face one of those that a meter counts? */
-bool MeterCovers(const Meter *m, const Face *f);
 
 /* Prescribed values of all conditions at one time, and gravity then. */
 typedef struct {

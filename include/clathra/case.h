@@ -9,17 +9,33 @@
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
 typedef struct {
+  PetscInt n;
+  double  *x; /* n x 2, m */
+} Points;
+
+typedef struct {
+  PetscInt n, *i; /* indices into a list of the case */
+} Names;
+
+typedef enum { SHAPE_BOX = 0, SHAPE_POLYGON, SHAPE_BELOW, SHAPE_CIRCLE } ShapeKind;
+
+typedef struct {
   char     name[64];
-  double   lower[CL_DIM], upper[CL_DIM]; /* m */
+  double   lower[CL_DIM], upper[CL_DIM]; /* m: the box, or bounds of another shape */
   PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
-  PetscInt material;                     /* index into Case.material */
+  PetscInt material;                     /* index into Case.material; -1: no particles, only cut out of others */
   /* initial state; hydrostatic: p grows with depth below `p_datum` (m, along gravity) */
-  double pressure;    /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
-  double temperature; /* degC */
-  double Sh, Sw, Sg;  /* saturations of the pore space; sum 1 */
-  double stress[6];   /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
-  bool   hydrostatic; /* add rho_w g depth to the pressure */
-  double datum;       /* m: coordinate against gravity where p = pressure */
+  double    pressure;    /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
+  double    temperature; /* degC */
+  double    Sh, Sw, Sg;  /* saturations of the pore space; sum 1 */
+  double    stress[6];   /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
+  bool      hydrostatic; /* add rho_w g depth to the pressure */
+  double    datum;       /* m: coordinate against gravity where p = pressure */
+  ShapeKind shape;
+  Points    polygon;   /* closed by itself */
+  Points    below;     /* all under this line, down to `lower` */
+  double    circle[3]; /* centre and radius, m */
+  Names     minus;     /* regions whose shapes are cut out */
 } Region;
 
 typedef enum {
@@ -33,7 +49,7 @@ typedef enum {
   BC_FIXED,             /* grid plane: all velocities zero */
   BC_PLATE,             /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
   BC_TEMPERATURE,       /* grid plane: T, degC */
-  BC_REGION_TEMPERATURE /* nodes in a region's initial box: T, degC */
+  BC_REGION_TEMPERATURE /* nodes in a region's initial shape: T, degC */
 } BcType;
 
 /* What a probe writes; words in case_quantity. */
@@ -57,11 +73,12 @@ typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
 typedef struct {
   char   name[64];
   BcType type;
-  /* faces: a side of a region's box (all regions when region = -1), optionally only the part inside [from,to] along it
-   */
+  /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
+     those on a line (side = SIDE_COUNT) */
   Side     side;
   PetscInt region;
   double   from, to; /* m, along the side; -inf, +inf by default */
+  Points   along;
   /* planes: nodes with coordinate `axis` equal to `position` */
   PetscInt axis;
   double   position;
@@ -90,6 +107,7 @@ typedef struct {
   Side     side;
   PetscInt region;   /* -1: all */
   double   from, to; /* m, along the side */
+  Points   along;    /* or those on this line */
 } Meter;
 
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;

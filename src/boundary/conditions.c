@@ -1,5 +1,6 @@
 /* What the conditions add to the balances, and Dirichlet values on grid planes. */
 #include "clathra/boundary.h"
+#include "clathra/shape.h"
 
 #define TEMPERATURE_PENALTY 20.0 /* of kappa_m/l: a prescribed face temperature is a strong convection */
 
@@ -250,18 +251,14 @@ static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
   return fabs(x - b->position) < 1e-6 * g->h[b->axis];
 }
 
-/* Does the node lie in the initial box of the condition's region? */
+/* Does the node lie in the initial shape of the condition's region? */
 static bool InRegion(const Case *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 {
+  const double slack[CL_DIM] = {1e-6 * g->h[0], 1e-6 * g->h[1]};
+  const double x[CL_DIM]     = {g->lower[0] + (double)ij[0] * g->h[0], g->lower[1] + (double)ij[1] * g->h[1]};
+
   for (PetscInt k = 0; k < c->nregion; k++) {
-    bool in = b->region < 0 || b->region == k;
-
-    for (int d = 0; d < CL_DIM; d++) {
-      const double x = g->lower[d] + (double)ij[d] * g->h[d], slack = 1e-6 * g->h[d];
-
-      in = in && x > c->region[k].lower[d] - slack && x < c->region[k].upper[d] + slack;
-    }
-    if (in)
+    if ((b->region < 0 || b->region == k) && RegionReaches(c, k, x, slack))
       return true;
   }
   return false;

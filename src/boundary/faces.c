@@ -1,5 +1,6 @@
 /* Surface faces: their geometry, and which conditions act on them. */
 #include "clathra/boundary.h"
+#include "clathra/shape.h"
 
 static const int side_axis[SIDE_COUNT] = {0, 0, 1, 1};
 static const int side_sign[SIDE_COUNT] = {-1, 1, -1, 1};
@@ -10,19 +11,21 @@ static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
   PetscInt found = -1;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
-    const Bc  *b    = &c->bc[k];
-    const bool here = (int)b->side == f->side && (b->region < 0 || b->region == f->region);
+    const Bc *b = &c->bc[k];
 
-    if (b->type == type && here && f->along >= b->from && f->along <= b->to)
+    if (b->type == type && FaceNamed(c, &BcFaces(b), f->region, f->x0, f->side))
       found = k;
   }
   return found;
 }
 
-bool MeterCovers(const Meter *m, const Face *f)
+static unsigned FindMeters(const Case *c, const Face *f)
 {
-  return (int)m->side == f->side && (m->region < 0 || m->region == f->region) && f->along >= m->from &&
-         f->along <= m->to;
+  unsigned meters = 0;
+
+  for (PetscInt k = 0; k < c->nmeter; k++)
+    meters |= (unsigned)FaceNamed(c, &c->meter[k], f->region, f->x0, f->side) << k;
+  return meters;
 }
 
 /* Hat function along the normal, the particle's own weights along the tangent.  A linear particle does not reach the
@@ -72,13 +75,16 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
   f->particle    = p;
   f->side        = side;
   f->region      = P->i[PI_REGION][p];
-  f->along       = ParticleInitialX(P, p, 1 - side_axis[side]);
+  f->x0[0]       = ParticleInitialX(P, p, 0);
+  f->x0[1]       = ParticleInitialX(P, p, 1);
+  f->share       = FaceShare(c, f->region, f->x0, side);
   f->traction    = FindCondition(c, BC_TRACTION, f);
   f->pressure    = FindCondition(c, BC_PRESSURE, f);
   f->heat        = FindCondition(c, BC_HEAT_FLUX, f);
   f->convection  = FindCondition(c, BC_CONVECTION, f);
   f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, f);
   f->inflow      = FindCondition(c, BC_INFLOW, f);
+  f->meters      = FindMeters(c, f);
   FacePlace(c, g, P, &stencil[p], f);
 }
 

@@ -205,29 +205,105 @@ static void KeyChoice(Reader *r, const char *shown, const char *text, const Key 
   WordError(r, shown, text, k->choices);
 }
 
-static void KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value)
+static bool KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value)
 {
-  const char *word[258];
-  PetscInt    n = 0;
+  const char *all = k->word ? k->word : k->kind == KEY_NAME ? k->def : NULL, *word[258]; /* all, none */
+  PetscInt    n   = 0;
 
-  if (k->def && !strcasecmp(text, k->def)) { /* all */
+  if (all && !strcasecmp(text, all)) {
     *value = -1;
-    return;
+    return true;
   }
   for (PetscInt i = 0; i < *GroupCount(c, k->names) && n < 256; i++) {
     word[n++] = GroupInstance(c, k->names, i);
     if (strcasecmp(text, word[n - 1]))
       continue;
     *value = i;
-    return;
+    return true;
   }
-  if (k->def)
-    word[n++] = k->def;
+  if (all)
+    word[n++] = all;
   word[n] = NULL;
   if (n)
     WordError(r, shown, text, word);
   else
     ReaderError(r, shown, text, "no %s is listed in %s", case_group[k->names].noun, case_group[k->names].list);
+  return false;
+}
+
+static PetscErrorCode KeyNames(Reader *r, const Case *c, const char *shown, const char *text, const Key *k,
+                               Names *names)
+{
+  List list;
+
+  PetscFunctionBeginUser;
+  ListCreate(text, &list);
+  if (list.n)
+    PetscCall(PetscCalloc1(list.n, &names->i));
+  while (names->n < list.n && KeyName(r, c, shown, list.item[names->n], k, &names->i[names->n]))
+    names->n++;
+  ListDestroy(&list);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Inner lists as ReaderScan writes them: [[a, b], [c, d]] to a; b, c; d.  false: it is no list of lists. */
+static bool FlattenLists(char *text)
+{
+  int depth = 0;
+
+  for (char *p = text; *p; p++) {
+    depth += *p == '[';
+    depth -= *p == ']';
+    if (depth < 0 || depth > 2)
+      return false;
+    if (*p == ',' && depth == 2)
+      *p = ';';
+    if (strchr("[]", *p))
+      *p = ' ';
+  }
+  return depth == 0;
+}
+
+static char *Trim(char *text)
+{
+  char *end = text + strlen(text);
+
+  while (end > text && isspace((unsigned char)end[-1]))
+    *--end = 0;
+  return text + strspn(text, " \t\r\n");
+}
+
+static bool PointRead(Reader *r, const char *shown, char *text, const Key *k, double x[])
+{
+  char *second = strchr(text, ';');
+
+  if (!second || strchr(second + 1, ';')) {
+    ReaderError(r, shown, text, "is not a point [x, y]; a list of points is [[x, y], [x, y], ...]");
+    return false;
+  }
+  *second++ = 0;
+  return RealRead(r, shown, Trim(text), k->unit, k->range, &x[0]) &&
+         RealRead(r, shown, Trim(second), k->unit, k->range, &x[1]);
+}
+
+static PetscErrorCode KeyPoints(Reader *r, const char *shown, const char *text, const Key *k, Points *points)
+{
+  List  list;
+  char *flat = strdup(text);
+  bool  good;
+
+  PetscFunctionBeginUser;
+  good = FlattenLists(flat);
+  if (!good)
+    ReaderError(r, shown, text, "its brackets do not match; a list of points is [[x, y], [x, y], ...]");
+  ListCreate(flat, &list);
+  points->n = list.n;
+  PetscCall(PetscCalloc1(2 * list.n, &points->x));
+  for (PetscInt i = 0; i < list.n && good; i++)
+    good = PointRead(r, shown, list.item[i], k, points->x + 2 * i);
+  ListDestroy(&list);
+  free(flat);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* output_times: ascending */
@@ -295,7 +371,13 @@ static PetscErrorCode KeyStore(Reader *r, Case *c, const char *shown, const char
     }
     break;
   case KEY_NAME:
-    KeyName(r, c, shown, text, k, (PetscInt *)place);
+    (void)KeyName(r, c, shown, text, k, (PetscInt *)place);
+    break;
+  case KEY_NAMES:
+    PetscCall(KeyNames(r, c, shown, text, k, (Names *)place));
+    break;
+  case KEY_POINTS:
+    PetscCall(KeyPoints(r, shown, text, k, (Points *)place));
     break;
   case KEY_REALS:
     PetscCall(KeyReals(r, shown, text, k, &c->ntimes, (double **)place));
@@ -321,7 +403,9 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
   PetscCall(ReaderFind(r, option, &text, &found, &from_file));
   snprintf(shown, sizeof shown, "%s%s", found && !from_file ? "-" : "", option);
   if (!KeyApplies(k, g, instance)) {
-    if (found)
+    if (found && g == GROUP_REGION)
+      ReaderError(r, shown, text, "is not a key of a region without particles (material: none)");
+    else if (found)
       ReaderError(r, shown, text, "is not a key of a boundary of type %s", case_bc_type[((Bc *)instance)->type - 1]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -1,24 +1,7 @@
-/* Initial particles: regular inside each cell of a region's box, with faces on the box's sides. */
+/* Initial particles: one at every place of a region's shape. */
 #include "clathra/particles.h"
 #include "clathra/point.h"
-
-/* Particles along one axis of a box, which they fill exactly. */
-typedef struct {
-  PetscInt n;
-  double   from, spacing; /* m */
-} Fill;
-
-/* The box is cut into whole spacings: ppc per cell where the box follows the grid, the nearest number elsewhere. */
-static Fill FillAxis(const Grid *g, const Region *r, int d)
-{
-  Fill         f;
-  const double length = r->upper[d] - r->lower[d];
-
-  f.n       = PetscMax((PetscInt)ceil(length / g->h[d] * (double)r->ppc[d] - 1e-6), 1);
-  f.from    = r->lower[d];
-  f.spacing = length / (double)f.n;
-  return f;
-}
+#include "clathra/shape.h"
 
 /* Mean pore pressure, with the weight of the water above for a hydrostatic region. */
 static double InitialPressure(const Case *c, const Region *r, const Material *mat, const double x[])
@@ -97,60 +80,32 @@ static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sides of the box that no other region touches are surfaces. */
-static bool Touched(const Case *c, PetscInt region, const double x[])
-{
-  for (PetscInt k = 0; k < c->nregion; k++) {
-    const Region *r = &c->region[k];
-
-    if (k != region && x[0] >= r->lower[0] && x[0] <= r->upper[0] && x[1] >= r->lower[1] && x[1] <= r->upper[1])
-      return true;
-  }
-  return false;
-}
-
-static PetscInt FaceBits(const Case *c, PetscInt region, const PetscInt ij[], const PetscInt n[], const double x[],
-                         const double l[])
-{
-  PetscInt bits = 0;
-
-  for (int d = 0; d < CL_DIM; d++) {
-    for (int upper = 0; upper < 2; upper++) {
-      double outside[CL_DIM] = {x[0], x[1]};
-
-      if (ij[d] != (upper ? n[d] - 1 : 0))
-        continue;
-      outside[d] += (upper ? 1.0 : -1.0) * 1.001 * l[d];
-      if (!Touched(c, region, outside))
-        bits |= 1 << (2 * d + upper);
-    }
-  }
-  return bits;
-}
-
 static PetscErrorCode SeedRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, Particles *P)
 {
-  const Fill     fx = FillAxis(g, &c->region[region], 0), fy = FillAxis(g, &c->region[region], 1);
-  const PetscInt n[CL_DIM] = {fx.n, fy.n};
-  const double   l[CL_DIM] = {0.5 * fx.spacing, 0.5 * fy.spacing};
+  Lattice  lattice;
+  PetscInt ij[CL_DIM], cell[CL_DIM];
+  double   x[CL_DIM];
 
   PetscFunctionBeginUser;
-  for (PetscInt j = 0; j < n[1]; j++) {
-    for (PetscInt i = 0; i < n[0]; i++, (*id)++) {
-      const PetscInt ij[CL_DIM] = {i, j};
-      const double   x[CL_DIM]  = {fx.from + ((double)i + 0.5) * fx.spacing, fy.from + ((double)j + 0.5) * fy.spacing};
-      PetscInt       cell[CL_DIM];
+  if (RegionEmpty(&c->region[region]))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  RegionLattice(c, region, &lattice);
+  const double l[CL_DIM] = {0.5 * lattice.spacing[0], 0.5 * lattice.spacing[1]};
+  for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
+    for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
+      if (!RegionPlace(c, region, &lattice, ij, x))
+        continue;
+      const PetscInt number = (*id)++, p = P->n;
 
       PetscCheck(GridCell(g, x, cell), g->comm, PETSC_ERR_ARG_OUTOFRANGE, "region %s leaves the grid",
                  c->region[region].name);
       if (GridCellOwner(g, cell) != g->rank)
         continue;
-      const PetscInt p = P->n;
       PetscCall(ParticlesResize(P, p + 1));
       PetscCall(InitialState(c, region, P, p, x, l));
-      P->i[PI_ID][p]     = *id;
+      P->i[PI_ID][p]     = number;
       P->i[PI_REGION][p] = region;
-      P->i[PI_FACES][p]  = FaceBits(c, region, ij, n, x, l);
+      P->i[PI_FACES][p]  = RegionFaces(c, region, &lattice, ij);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
