@@ -112,8 +112,9 @@ static bool Cuts(const Case *c, PetscInt region)
 
 void CheckShape(Reader *r, const Case *c, PetscInt region)
 {
-  const Region *g = &c->region[region];
-  ShapeKind     shape;
+  const Region  *g      = &c->region[region];
+  const PetscInt before = r->nerror;
+  ShapeKind      shape;
 
   if (ShapeOf(g, &shape) > 1)
     FAIL(GROUP_REGION, g->name, shape_key[shape],
@@ -124,7 +125,8 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
     CheckBelow(r, g);
   else if (shape == SHAPE_CIRCLE)
     CheckCircle(r, g);
-  CheckBounds(r, c, g);
+  if (r->nerror == before)
+    CheckBounds(r, c, g);
   for (PetscInt k = 0; k < g->minus.n; k++) {
     if (g->minus.i[k] == region)
       FAIL(GROUP_REGION, g->name, "minus", "the region cannot be cut out of itself");

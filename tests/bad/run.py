@@ -15,6 +15,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 BASE = open(os.path.join(HERE, "..", "..", "cases", "bp2", "case.yaml")).read()
 M = "mat_sediment_"
 METER = lambda keys: ("basis: cpgimp", f"basis: cpgimp\nmeters: [outlet]\nmeter: {{outlet: {{{keys}}}}}")
+SHAPE = lambda keys: ("    lower: [0 m, 0 m]\n    upper: [1 m, 0.02 m]\n", f"    {keys}\n")
+POLYGON = lambda *points: SHAPE(f"polygon: [{', '.join(f'[{x} m, {y} m]' for x, y in points)}]")
+CORNERS = [(0, 0), (1, 0), (1, 0.02), (0, 0.02)]
+BESIDE = lambda keys: ("regions: [column]\nregion:\n", "regions: [column, plug]\nregion:\n  plug: {" + keys
+  + ", material: sediment, pressure: 3 MPa, temperature: 4 degC, Sw: 0.6, Sg: 0.4}\n")
 NO_GAS = [("basis: cpgimp", "basis: cpgimp\nfields: thm"), ("active: yes", "active: no"), ("    Sw: 0.6\n    Sg: 0.4\n", "")]
 
 CASES = [
@@ -116,6 +121,65 @@ CASES = [
      ["bc_load_normal_ramp", "end after"], []),
     ("rate unit", [("{table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}", "{rate: [0 Pa, 1 MPa, 0 s, 10 s]}")],
      ["bc_load_normal_rate", "Pa/s"], []),
+    # --- shapes
+    ("no shape", [SHAPE("")], ["region_column_lower", "is missing", "polygon, below and circle are not given"], []),
+    ("two shapes", [SHAPE("polygon: [[0 m, 0 m], [1 m, 0 m], [1 m, 0.02 m]]\n    circle: [0.5 m, 0.01 m, 0.01 m]")],
+     ["region_column_circle", "one shape too many"], []),
+    ("polygon of two points", [POLYGON((0, 0), (1, 0.02))], ["case.yaml:32: region_column_polygon", "at least 3"], []),
+    ("polygon that crosses itself", [POLYGON((0, 0), (1, 0), (0, 0.02), (1, 0.02))], ["region_column_polygon", "crosses itself",
+     "(1 m, 0 m) and (1 m, 0.02 m)"], []),
+    ("polygon that repeats its first point", [POLYGON(*CORNERS, (0, 0))], ["region_column_polygon", "crosses itself"], []),
+    ("polygon outside the grid", [POLYGON((0, 0), (1, 0), (1, 0.03))], ["region_column_polygon", "leaves the grid along y"], []),
+    ("polygon outside its bounds", [POLYGON(*CORNERS), ("    particles_per_cell", "    lower: [1 m, none]\n    particles_per_cell")],
+     ["region_column_polygon", "nothing of it lies between lower and upper along x"], []),
+    ("polygon as a flat list", [SHAPE("polygon: [0 m, 0 m, 1 m, 0 m, 1 m, 0.02 m]")], ["region_column_polygon", "'0 m'", "not a point"], []),
+    ("point of three numbers", [SHAPE("polygon: [[0 m, 0 m], [1 m, 0 m, 0 m], [1 m, 0.02 m]]")], ["region_column_polygon", "not a point"], []),
+    ("point of one number", [SHAPE("polygon: [[0 m, 0 m], [1 m], [1 m, 0.02 m]]")], ["region_column_polygon", "not a point"], []),
+    ("point without unit", [SHAPE("polygon: [[0 m, 0 m], [1 m, 0], [1 m, 0.02 m]]")], ["region_column_polygon", "unit of a length"], []),
+    ("points in quotes", [SHAPE("polygon: [['0 m', 0 m], [1 m, 0 m], [1 m, 0.02 m]]")], ["case.yaml:32", "without quotes"], []),
+    ("list of points one deeper", [SHAPE("polygon: [[[0 m, 0 m], [1 m, 0 m], [1 m, 0.02 m]]]")], ["region_column_polygon", "not a point"], []),
+    ("list of points, brackets", [], ["-region_column_polygon", "brackets"], ["-region_column_polygon", "[[0 m, 0 m], [1 m, 0 m]"]),
+    ("box as a list of lists", [SHAPE("lower: [[0 m, 0 m]]\n    upper: [1 m, 0.02 m]")], ["region_column_lower", "needs 2"], []),
+    ("circle on the command line", [], ["region_column_circle", "positive radius"], ["-region_column_circle", "0.5 m,0.01 m,0 m"]),
+    ("line of one point", [SHAPE("below: [[0 m, 0.01 m]]")], ["region_column_below", "at least 2"], []),
+    ("line that does not ascend", [SHAPE("below: [[0 m, 0.01 m], [0.5 m, 0.01 m], [0.5 m, 0.02 m]]")], ["region_column_below",
+     "ascend in x (0.5 m after 0.5 m)"], []),
+    ("line above the grid", [SHAPE("below: [[0 m, 0.01 m], [0.5 m, 0.03 m]]")], ["region_column_below", "leaves the grid along y"], []),
+    ("line below the grid", [SHAPE("below: [[0 m, -0.01 m], [0.5 m, -0.02 m]]")], ["region_column_below", "nothing of it"], []),
+    ("circle of radius zero", [SHAPE("circle: [0.5 m, 0.01 m, 0 m]")], ["region_column_circle", "positive radius"], []),
+    ("circle without centre", [SHAPE("circle: [none, none, 0.01 m]")], ["region_column_circle", "needs a centre"], []),
+    ("circle outside the grid", [SHAPE("circle: [0.5 m, 0.01 m, 0.02 m]")], ["region_column_circle", "leaves the grid along y"], []),
+    ("no particle", [SHAPE("circle: [0.5 m, 0.01 m, 1 mm]")], ["region_column_circle", "keeps no particle"], []),
+    ("nothing left", [BESIDE("lower: [0 m, 0 m], upper: [0.5 m, 0.01 m], minus: [column]")], ["region_plug_minus", "keeps no particle"], []),
+    ("polygon over a box", [BESIDE("polygon: [[0.5 m, 0 m], [0.6 m, 0 m], [0.55 m, 0.02 m]]")], ["region_plug_polygon", "overlaps region column"], []),
+    ("circle over a line", [SHAPE("below: [[0 m, 0.01 m], [1 m, 0.02 m]]"), BESIDE("circle: [0.9 m, 0.01 m, 0.01 m]")],
+     ["region_plug_circle", "overlaps region column"], []),
+    ("box over a polygon", [POLYGON(*CORNERS), BESIDE("lower: [0.5 m, 0 m], upper: [0.6 m, 0.02 m]")],
+     ["region_plug_lower", "overlaps region column"], []),
+    ("minus itself", [SHAPE("lower: [0 m, 0 m]\n    upper: [1 m, 0.02 m]\n    minus: [column]")], ["region_column_minus", "out of itself"], []),
+    ("minus an unknown region", [SHAPE("lower: [0 m, 0 m]\n    upper: [1 m, 0.02 m]\n    minus: [hole]")], ["region_column_minus", "hole", "column"], []),
+    ("a hole in nothing", [("regions: [column]\nregion:\n", "regions: [column, hole]\nregion:\n  hole: {circle: [0.5 m, 0.01 m, 0.01 m], material: none}\n")],
+     ["region_hole_material", "no region has hole in its minus"], []),
+    ("a hole with a state", [("material: sediment", "material: none")], ["region_column_pressure", "without particles"], []),
+    ("a material called none", [("materials: [sediment]", "materials: [none]")], ["materials", "not a name"], []),
+    ("probe in a hole", [("regions: [column]\nregion:\n", "regions: [column, hole]\nregion:\n  hole: {circle: [0.6 m, 0.01 m, 0.01 m], material: none}\n"),
+      ("    particles_per_cell", "    minus: [hole]\n    particles_per_cell")], ["probe_p06_at", "no region"], []),
+    ("a line and a side", [("side: right, initial: yes}", "side: right, along: [[1 m, 0 m], [1 m, 0.02 m]], initial: yes}")],
+     ["bc_drain_side", "give one"], []),
+    ("neither line nor side", [("side: right, initial: yes}", "initial: yes}")], ["bc_drain_side", "required when along is not given"], []),
+    ("side none", [("side: right, initial: yes}", "side: none, initial: yes}")], ["bc_drain_side", "along is not given"], []),
+    ("a line and from", [("side: right, initial: yes}", "along: [[1 m, 0 m], [1 m, 0.02 m]], from: 0 m, initial: yes}")],
+     ["bc_drain_from", "goes with side"], []),
+    ("line beside the body", [("side: right, initial: yes}", "along: [[1.02 m, 0 m], [1.02 m, 0.02 m]], initial: yes}")],
+     ["bc_drain_along", "no face"], []),
+    ("line across the surface", [("side: right, initial: yes}", "along: [[0.3 m, 0 m], [0.7 m, 0 m]], region: plug, initial: yes}"),
+      BESIDE("lower: [1 m, 0 m], upper: [1.02 m, 0.02 m]")], ["bc_drain_along", "no face"], []),
+    ("line of one point for faces", [("side: right, initial: yes}", "along: [[1 m, 0 m]], initial: yes}")], ["bc_drain_along", "at least 2"], []),
+    ("meter on a line beside the body", [METER("along: [[0.3 m, 0.01 m], [0.4 m, 0.01 m]]")], ["meter_outlet_along", "no face"], []),
+    ("side of a polygon that is covered", [POLYGON((0, 0), (0.5, 0), (0.5, 0.02), (0, 0.02)), BESIDE("lower: [0.5 m, 0 m], upper: [1 m, 0.02 m]"),
+      ("side: right, initial: yes}", "side: right, region: column, initial: yes}")], ["bc_drain_from", "no part"], []),
+    ("line on a grid plane's condition", [("base: {type: fixed,", "base: {type: fixed, along: [[0 m, 0 m], [0 m, 0.02 m]],")],
+     ["bc_base_along", "type fixed"], []),
     # --- fields and geometry
     ("unknown set of fields", [("basis: cpgimp", "fields: thx")], ["fields", "thx", "must be auto"], []),
     ("unknown field", [("basis: cpgimp", "fields: [solid, watr]")], ["fields", "watr", "must be auto"], []),
