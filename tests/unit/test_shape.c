@@ -59,6 +59,7 @@ static void TestCrossing(void **state)
       {3, {0, 0, 1, 0, 2, 0}, true},                             /* flat */
       {5, {0, 0, 1, 0, 1, 1, 0, 1, 0, 0}, true},                 /* the first point again */
       {7, {0, 0, 2, 0, 2, 2, 1, 0, 0.5, 1, 0.2, 2, 0, 2}, true}, /* a corner touches a side */
+      {7, {2, 2, 1, 0, 0.5, 1, 0.2, 2, 0, 2, 0, 0, 2, 0}, true}, /* the same, listed from there */
   };
   PetscInt pair[2];
 
