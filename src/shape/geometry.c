@@ -56,14 +56,15 @@ static bool Between(const double a[], const double b[], const double x[])
   return true;
 }
 
+/* Two sides of a polygon that are no neighbours; what is said of their first points covers the second ones, which
+   begin the next sides. */
 static bool Touch(const double a[], const double b[], const double c[], const double d[])
 {
   const int s[4] = {Sign(Turn(a, b, c)), Sign(Turn(a, b, d)), Sign(Turn(c, d, a)), Sign(Turn(c, d, b))};
 
   if (s[0] * s[1] < 0 && s[2] * s[3] < 0)
     return true;
-  return (!s[0] && Between(a, b, c)) || (!s[1] && Between(a, b, d)) || (!s[2] && Between(c, d, a)) ||
-         (!s[3] && Between(c, d, b));
+  return (!s[0] && Between(a, b, c)) || (!s[2] && Between(c, d, a));
 }
 
 /* Neighbouring sides ab, bc share b, and more only where the second runs back over the first. */
