@@ -11,7 +11,7 @@ typedef struct {
   int      side;
   double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
-  double   area;
+  double   area;      /* |n| */
   PetscInt region;
   double   x0[CL_DIM];  /* initial position of the particle, m */
   double   share;       /* true area that the face stands for, over its own (FaceShare) */

@@ -90,7 +90,7 @@ static void Open(const Material *mat, const Face *f, int phase, const Outside *o
 static void Heat(const Case *c, const Face *f, const BcValues *v, const double in[IN_COUNT], double kappa,
                  FaceOutput *o)
 {
-  const double T       = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
+  const double T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1], area = f->share * f->area; /* (42) */
   double       in_flux = f->heat >= 0 ? v->value[f->heat] : 0.0, alpha = 0.0;
 
   if (f->convection >= 0) {
@@ -103,11 +103,11 @@ static void Heat(const Case *c, const Face *f, const BcValues *v, const double i
     alpha += strong;
     in_flux += strong * (v->value[f->temperature] - T);
   }
-  o->out[F_T]     = -in_flux * f->area;
-  o->heat_in      = in_flux * f->area;
-  o->D[F_T][IN_T] = alpha * f->area;
+  o->out[F_T]     = -in_flux * area;
+  o->heat_in      = in_flux * area;
+  o->D[F_T][IN_T] = alpha * area;
   for (int j = 0; j < 2; j++)
-    o->D[F_T][IN_GT + j] = alpha * f->area * f->r[j];
+    o->D[F_T][IN_GT + j] = alpha * area * f->r[j];
 }
 
 /* (31): p_w and p_g as prescribed, the face's initial ones, or from the mean with a capillary pressure: that of the
@@ -173,7 +173,7 @@ static void Inflow(const Case *c, const Face *f, const BcValues *v, const Materi
 {
   const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
   const double  T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
-  const double  q = v->phase[phase][f->inflow], area = hypot(a[0], a[1]);
+  const double  q = v->phase[phase][f->inflow], own = hypot(a[0], a[1]), area = f->share * own;
   const bool    heats = c->fields.heat && c->bc[f->inflow].value.n && q > 0.0;
   const double  c_f = phase == PHASE_W ? mat->c_w : mat->c_g, dT_in = heats ? v->value[f->inflow] - T : 0.0;
   double        dp, dT, drate[IN_COUNT] = {0.0};
@@ -186,7 +186,7 @@ static void Inflow(const Case *c, const Face *f, const BcValues *v, const Materi
     drate[IN_GT + j]             = dT * q * area * f->r[j];
   }
   for (int k = 0; k < MOTION_COUNT; k++)
-    drate[k] = rho * q * (a[0] * da[0][k] + a[1] * da[1][k]) / area;
+    drate[k] = rho * q * f->share * (a[0] * da[0][k] + a[1] * da[1][k]) / own;
   o->out[F_PW + phase] -= dt * rate;
   o->outflow[phase] -= rate;
   o->out[F_T] -= c_f * rate * dT_in;

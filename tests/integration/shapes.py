@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import Run, binary, check, check_true, finish, launch, scratch  # noqa: E402
+from common import Run, binary, check, check_true, finish, launch, scratch, table  # noqa: E402
 
 HILL = Path(__file__).resolve().parent / "cases" / "hill.yaml"
 TIGHT = ("-quiet", "-newton_tol_residual", "1e-10", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-10")
@@ -79,4 +79,59 @@ for key, value in (("-region_lining_circle", "12 m,4 m,1.61 m"), ("-region_soil_
                    ("-bc_sun_along", "[[1 m, 4.5 m], [8 m, 8 m]]")):  # fmt: skip
     refused = launch(binary(), HILL, *TIGHT, "-restart", out / "checkpoint.h5", key, value, out=scratch() / "other")
     check_true(f"another {key[1:]} is refused", refused.returncode == 2 and "another case" in refused.stdout, refused.stdout.splitlines()[-1:])
+
+# --- what a surface lets in is what the true one would: flux and inflow times its size, however the staircase runs
+SCENE = """
+grid: {{lower: [{left} m, -1.2 m], upper: [1.4 m, 1.4 m], cells: [{n}, {n}]}}
+{more}
+materials: [sand]
+mat: {{sand: {{porosity: 0.3, solid: {{density: 2650 kg/m^3, heat_capacity: 800 J/(kg K), conductivity: 3 W/(m K)}},
+  permeability: {{k0: 1e-11 m^2, mh: 0}}, elasticity: {{E0: rigid}}}}}}
+fields: [water, heat]
+inertia: no
+regions: [body]
+region: {{body: {{material: sand, {shape}, temperature: 10 degC, pressure: 1 MPa}}}}
+boundaries: [{names}, {names}_in]
+bc:
+{conditions}
+time: {{end: 1 s}}
+stepper: {{adapt: no, dt: 1 s}}
+output: {{dir: out}}
+meters: [{names}]
+meter:
+{meters}
+"""
+SIDES = ("left", "right", "bottom", "top")
+WEDGE = [(-0.8, -0.7), (0.9, -0.4), (1.1, 0.5), (0.2, 0.1), (-0.3, 1.2)]
+EDGES = list(zip(WEDGE, WEDGE[1:] + WEDGE[:1]))
+points = lambda p: "[" + ", ".join(f"[{x} m, {y} m]" for x, y in p) + "]"
+BODIES = {  # shape, more, names of the faces, true size of the surface
+    "circle": ("circle: [0.06 m, 0.13 m, 0.9 m]", "", {s: f"side: {s}" for s in SIDES}, 2 * np.pi * 0.9),
+    "polygon": (f"polygon: {points(WEDGE)}", "", {f"edge{k}": f"along: {points(e)}" for k, e in enumerate(EDGES)},
+                sum(np.hypot(b[0] - a[0], b[1] - a[1]) for a, b in EDGES)),
+    "ball": ("circle: [0 m, 0.1 m, 1 m], lower: [0 m, none]", "geometry: axisymmetric", {s: f"side: {s}" for s in SIDES[1:]}, 4 * np.pi),
+}  # fmt: skip
+
+
+def let_in(body, cells):
+    """(heat, water) that came in over what the true surface would let in for 100 W/m^2 and 1e-6 m/s."""
+    shape, more, faces, size = BODIES[body]
+    lines = [f"  {name}: {{type: heat_flux, {where}, flux: 100 W/m^2}}\n  {name}_in: {{type: inflow, {where}, water: 1e-6 m/s}}" for name, where in faces.items()]
+    case = scratch() / "case.yaml"
+    case.write_text(SCENE.format(n=cells, left=0 if more else -1.2, more=more, shape=shape, names=", ".join(faces), conditions="\n".join(lines),
+                                 meters="\n".join(f"  {name}: {{{where}}}" for name, where in faces.items()))
+                    .replace(f"{', '.join(faces)}_in]", f"{'_in, '.join(faces)}_in]"))  # fmt: skip
+    meters = Run.of_case(case, "-quiet").csv("meters.csv")
+    heat, water = (-sum(meters[f"{m}.{what}"][-1] for m in faces) for what in ("heat_J", "water_kg"))
+    return heat / (100 * size), water / (1e-6 * 1000 * size)
+
+
+lines = []
+for body in BODIES:
+    for cells in (13, 26, 52):
+        heat, water = let_in(body, cells)
+        lines.append([body, cells, heat - 1, water - 1])
+        check(f"{body}, {cells} cells: heat let in", abs(heat - 1), 0.45 / cells)
+        check(f"{body}, {cells} cells: water let in", abs(water - heat), 1e-3)
+table(["body", "cells", "heat: error", "water: error"], lines)
 finish()

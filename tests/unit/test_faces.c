@@ -43,7 +43,7 @@ static void SceneInit(Scene *s, Rng *r)
   s->v.phase[PHASE_G] = s->phase[PHASE_G];
   s->p0[PHASE_W]      = 3e6;
   s->p0[PHASE_G]      = 3e6 + RngBetween(r, 1e4, 2e5);
-  s->face             = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .r = {0.01, 0.002}, .area = 2.0};
+  s->face             = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .r = {0.01, 0.002}, .area = 2.0, .share = 0.8};
   s->face.traction    = -1;
   s->face.pressure    = -1;
   s->face.heat        = -1;
@@ -278,10 +278,38 @@ static void MassRows(void **state)
   }
 }
 
+/* What is given per area goes with the area that a step of a staircase stands for; vectors go with its own. */
+static void Share(void **state)
+{
+  Rng r = {.s = 13};
+
+  for (int n = 0; n < STATES; n++) {
+    Scene      s;
+    FaceOutput whole, part;
+    double     in[IN_COUNT];
+
+    SceneInit(&s, &r);
+    WarmInflow(&s, &r);
+    s.face.traction = s.face.convection = s.face.temperature = s.face.heat = 2;
+    s.bc[2].alpha                                                          = 15.0;
+    s.value[2]                                                             = 12.0;
+    Inputs(&r, in);
+    s.face.share = 1.0;
+    Evaluate(&s, in, &whole);
+    s.face.share = 0.7;
+    Evaluate(&s, in, &part);
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      assert_true(fabs(part.outflow[ph] - 0.7 * whole.outflow[ph]) <= 1e-14 * fabs(whole.outflow[ph]));
+    assert_true(fabs(part.heat_in - 0.7 * whole.heat_in) <= 1e-14 * fabs(whole.heat_in));
+    assert_true(part.out[F_VSX] == whole.out[F_VSX] && part.out[F_VSX + 1] == whole.out[F_VSX + 1] &&
+                whole.out[F_VSX] != 0.0);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents), cmocka_unit_test(MeanPressure),
-                                     cmocka_unit_test(MassRows)};
+                                     cmocka_unit_test(MassRows), cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
