@@ -1,6 +1,7 @@
 /* boundary: where a condition acts, on which field, as which function of time.  docs/equations.md, section 6. */
 #pragma once
 
+#include "clathra/ambient.h"
 #include "clathra/basis.h"
 #include "clathra/particles.h"
 #include "clathra/point.h"
@@ -9,13 +10,14 @@
 typedef struct {
   PetscInt particle;
   int      side;
-  double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring */
+  double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring; goes with the body */
+  double   s[CL_DIM]; /* the same of the true surface that the face stands for (42) */
+  double   x[CL_DIM]; /* middle of the face, m */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
-  double   area;      /* |n| */
   PetscInt region;
-  double   x0[CL_DIM];  /* initial position of the particle, m */
-  double   share;       /* true area that the face stands for, over its own (FaceShare) */
-  double   N[CL_NODES]; /* weights, in the order of StencilExpand */
+  double   x0[CL_DIM];                                                /* initial position of the particle, m */
+  double   n0[CL_DIM];                                                /* FaceNormal there */
+  double   N[CL_NODES];                                               /* weights, in the order of StencilExpand */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
   unsigned meters;                                                    /* bit k: Case.meter[k] counts it */
 } Face;
@@ -31,13 +33,14 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
 typedef struct {
   double *value, *shear, *phase[PHASE_COUNT]; /* [Case.nbc] */
   double  gravity[CL_DIM];
+  Ambient ambient;
 } BcValues;
 void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
 
-/* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where the
-   Darcy fluxes are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat into the
-   body (W). */
+/* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where Darcy
+   fluxes and displacement are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat
+   into the body (W). */
 typedef struct {
   double out[F_COUNT], D[F_COUNT][IN_COUNT];
   double outflow[PHASE_COUNT], heat_in;

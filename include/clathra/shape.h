@@ -40,9 +40,9 @@ bool RegionPlace(const Case *c, PetscInt region, const Lattice *lattice, const P
 /* Bits 1 << Side of those sides of the particle at place ij beyond which no region has a particle. */
 PetscInt RegionFaces(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[]);
 
-/* True area that a face stands for, over its own: 1/(|n_x| + |n_y|) with the normal n of the boundary between its
-   particle, initially at x, and the next place; 1 on boxes. */
-double FaceShare(const Case *c, PetscInt region, const double x[], int side);
+/* Area vector of the true surface that a face stands for, per area of its own: n/(|n_x| + |n_y|) with the outward
+   normal n of the boundary between its particle, initially at x, and the next place; on boxes that of the side. */
+void FaceNormal(const Case *c, PetscInt region, const double x[], int side, double n[]);
 /* Is the face one of those that a meter, or a condition written as one, names?  A line takes the faces whose normal,
    drawn LINE_REACH particle spacings out and in from the centre of the initial face, meets it. */
 #define LINE_REACH 0.6

@@ -64,6 +64,8 @@ static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P,
       Set(P, p, P_GG + d, mat->water.rho0 * c->gravity[d]);
     }
   }
+  Set(P, p, P_F, 1.0);
+  Set(P, p, P_F + 3, 1.0);
   P->f[P_V][p]   = V;
   P->f[P_PHI][p] = mat->porosity;
   P->f[P_SH][p]  = r->Sh;
@@ -80,17 +82,26 @@ static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM])
+{
+  Lattice lattice;
+
+  RegionLattice(c, region, &lattice);
+  for (int d = 0; d < CL_DIM; d++)
+    l[d] = 0.5 * lattice.spacing[d];
+}
+
 static PetscErrorCode SeedRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, Particles *P)
 {
   Lattice  lattice;
   PetscInt ij[CL_DIM], cell[CL_DIM];
-  double   x[CL_DIM];
+  double   x[CL_DIM], l[CL_DIM];
 
   PetscFunctionBeginUser;
   if (RegionEmpty(&c->region[region]))
     PetscFunctionReturn(PETSC_SUCCESS);
   RegionLattice(c, region, &lattice);
-  const double l[CL_DIM] = {0.5 * lattice.spacing[0], 0.5 * lattice.spacing[1]};
+  ParticlesInitialHalfLength(c, region, l);
   for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
     for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
       if (!RegionPlace(c, region, &lattice, ij, x))

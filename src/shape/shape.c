@@ -262,20 +262,25 @@ static void TryShape(WayOut *w, const Region *r)
     TryEdge(w, box + 2 * k, box + 2 * (k + 1));
 }
 
-double FaceShare(const Case *c, PetscInt region, const double x[], int side)
+void FaceNormal(const Case *c, PetscInt region, const double x[], int side, double n[])
 {
   const Region *r = &c->region[region];
-  WayOut        w = {.c = c, .region = region, .a = {x[0], x[1]}, .b = {x[0], x[1]}, .t = INFINITY, .n = {1.0, 0.0}};
+  const int     d = side / 2, sign = side % 2 ? 1 : -1;
+  WayOut        w = {.c = c, .region = region, .a = {x[0], x[1]}, .b = {x[0], x[1]}, .t = INFINITY};
   Lattice       lattice;
 
-  if (RegionWhole(r))
-    return 1.0;
-  RegionLattice(c, region, &lattice);
-  w.b[side / 2] += (side % 2 ? 1.0 : -1.0) * lattice.spacing[side / 2];
-  TryShape(&w, r);
-  for (PetscInt k = 0; k < r->minus.n; k++)
-    TryShape(&w, &c->region[r->minus.i[k]]);
-  return 1.0 / (fabs(w.n[0]) + fabs(w.n[1]));
+  w.n[d] = sign;
+  if (!RegionWhole(r)) {
+    RegionLattice(c, region, &lattice);
+    w.b[d] += sign * lattice.spacing[d];
+    TryShape(&w, r);
+    for (PetscInt k = 0; k < r->minus.n; k++)
+      TryShape(&w, &c->region[r->minus.i[k]]);
+  }
+  const double steps = copysign(fabs(w.n[0]) + fabs(w.n[1]), sign * w.n[d]);
+
+  for (int i = 0; i < CL_DIM; i++)
+    n[i] = w.n[i] / steps;
 }
 
 static bool OnLine(const Case *c, const Points *line, PetscInt region, const double x[], int side)

@@ -169,7 +169,7 @@ typedef struct {
 /* Volume, vector sum and size of the surface of what is seeded, over all ranks. */
 static void Measure(Scene *s, Body *body)
 {
-  double    sum[6] = {0};
+  double    sum[6] = {0}, n[CL_DIM];
   Particles P;
 
   Call(GridCreate(PETSC_COMM_WORLD, s->c.lower, s->c.upper, s->c.cells, &s->g));
@@ -186,7 +186,9 @@ static void Measure(Scene *s, Body *body)
         continue;
       sum[1 + d] += sign * area;
       sum[3] += area;
-      sum[4] += area * FaceShare(&s->c, P.i[PI_REGION][p], x, side);
+      FaceNormal(&s->c, P.i[PI_REGION][p], x, side, n);
+      Check(sign * n[d] > 0.0);
+      sum[4] += area * hypot(n[0], n[1]);
     }
   }
   sum[5] = (double)P.n;
@@ -274,7 +276,7 @@ static void TestMeasures(void **state)
       error[level][1] = b.true_area / body[k].surface - 1.0;
       Say("%-9s %5d  %12.2e  %13.2e  %28.4f\n", body[k].name, (int)cells[level], error[level][0], error[level][1],
           b.own / body[k].surface);
-      Check(b.own > 1.02 * body[k].surface);          /* what the share is for */
+      Check(b.own > 1.02 * body[k].surface);          /* what FaceNormal is for */
       for (int d = s.c.axisymmetric; d < CL_DIM; d++) /* particles of two sizes do not tile where they meet */
         Check(fabs(b.closed[d]) < (s.region[1].ppc[0] == 3 ? 2.0 / (double)cells[level] : 1e-12 * b.own));
       for (int q = 0; q < 2; q++) /* of first order */
@@ -337,7 +339,7 @@ static void TestBoxFaces(void **state)
   Scene       s;
   Lattice     lattice;
   PetscInt    ij[CL_DIM], taken[SIDE_COUNT] = {0}, right = 0, faces = 0;
-  double      x[CL_DIM];
+  double      x[CL_DIM], n[CL_DIM];
 
   (void)state;
   SceneMake(&s, 24, 1);
@@ -352,7 +354,8 @@ static void TestBoxFaces(void **state)
       for (int side = 0; side < SIDE_COUNT; side++) {
         if (!(RegionFaces(&s.c, 0, &lattice, ij) >> side & 1))
           continue;
-        Check(FaceShare(&s.c, 0, x, side) == 1.0);
+        FaceNormal(&s.c, 0, x, side, n);
+        Check(n[side / 2] == (side % 2 ? 1.0 : -1.0) && n[1 - side / 2] == 0.0);
         taken[side] += FaceNamed(&s.c, &line, 0, x, side);
         right += FaceNamed(&s.c, &part, 0, x, side);
         faces++;
