@@ -96,11 +96,11 @@ typedef struct {
   Group              names;     /* KEY_NAME, KEY_NAMES: whose names */
   /* KEY_REAL: word that stands for infinity, "-word" for minus infinity; KEY_NAME: word that stands for -1 */
   const char *word;
-  bool        shape;            /* GROUP_REGION: also of a region without particles */
-  unsigned           types;     /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
-  unsigned           has;       /* fields (HAS_...) any of which needs the key; 0 = always needed */
-  bool               plain;     /* a number without unit on the command line is in SI */
-  const char        *doc;
+  bool        shape; /* GROUP_REGION: also of a region without particles */
+  unsigned    types; /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
+  unsigned    has;   /* fields (HAS_...) any of which needs the key; 0 = always needed */
+  bool        plain; /* a number without unit on the command line is in SI */
+  const char *doc;
 } Key;
 
 typedef struct {
@@ -142,22 +142,27 @@ bool           YesNoRead(const char *text, bool *value); /* yes, no, true, ...; 
 void           KeyMissing(Reader *r, const char *option, const Key *k);
 bool RealRead(Reader *r, const char *shown, const char *text, const char *unit, const char *range, double *value);
 PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s);
+/* One of the names of group k->names as its index; the word for all or none as -1; false: one error was added. */
+bool KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value);
+/* lists.c */
+PetscErrorCode KeyNames(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, Names *names);
+PetscErrorCode KeyPoints(Reader *r, const char *shown, const char *text, const Key *k, Points *points);
 /* Copies a comma list into items that share one allocation; free(list->text). */
 typedef struct {
   PetscInt n;
   char    *text, **item;
 } List;
-void               ListCreate(const char *text, List *list);
-void               ListDestroy(List *list);
-void               CaseCheck(Reader *r, const Case *c);
-void               CheckFlow(Reader *r, const Case *c, const Bc *b); /* flow.c: pressure and inflow */
+void ListCreate(const char *text, List *list);
+void ListDestroy(List *list);
+void CaseCheck(Reader *r, const Case *c);
+void CheckFlow(Reader *r, const Case *c, const Bc *b); /* flow.c: pressure and inflow */
 /* regions.c: shapes, faces named by a side or a line, probes */
-void RegionsFinish(Case *c); /* once all keys are read */
-void CheckShape(Reader *r, const Case *c, PetscInt region);
-void CheckOverlap(Reader *r, const Case *c); /* of good shapes; none of them without particles */
-void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
-void CheckHeld(Reader *r, const Case *c, const Bc *b);
-void CheckProbe(Reader *r, const Case *c, const Probe *p);
+void               RegionsFinish(Case *c); /* once all keys are read */
+void               CheckShape(Reader *r, const Case *c, PetscInt region);
+void               CheckOverlap(Reader *r, const Case *c); /* of good shapes; none of them without particles */
+void               CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
+void               CheckHeld(Reader *r, const Case *c, const Bc *b);
+void               CheckProbe(Reader *r, const Case *c, const Probe *p);
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);
