@@ -313,6 +313,31 @@ static void MassRows(void **state)
   }
 }
 
+/* The true area goes with the motion: |cof(F) s|. */
+static void TrueArea(void **state)
+{
+  Rng r = {.s = 17};
+
+  for (int n = 0; n < STATES; n++) {
+    Scene      s;
+    FaceOutput o;
+    double     in[IN_COUNT];
+
+    SceneInit(&s, &r);
+    s.face.heat = 2;
+    s.value[2]  = 50.0;
+    Inputs(&r, in);
+    Evaluate(&s, in, &o);
+
+    const double F[2][2] = {{1.0 + in[IN_GRADU], in[IN_GRADU + 1]}, {in[IN_GRADU + 2], 1.0 + in[IN_GRADU + 3]}};
+    const double hoop    = 1.0 + in[IN_GRADU + 4];
+    const double area =
+        hypot(F[1][1] * s.face.s[0] - F[1][0] * s.face.s[1], F[0][0] * s.face.s[1] - F[0][1] * s.face.s[0]);
+
+    assert_true(fabs(o.heat_in - 50.0 * area * hoop) < 1e-12 * o.heat_in);
+  }
+}
+
 /* What is given per area goes with the area that a step of a staircase stands for; vectors go with its own. */
 static void Share(void **state)
 {
@@ -344,7 +369,7 @@ static void Share(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents), cmocka_unit_test(MeanPressure),
-                                     cmocka_unit_test(MassRows), cmocka_unit_test(Share)};
+                                     cmocka_unit_test(MassRows), cmocka_unit_test(TrueArea), cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -161,6 +161,43 @@ static void TestPartition(void **state)
   }
 }
 
+/* Points of the boundary are reached, of any shape, and what is off it by more than the slack only from inside; the
+   highest point along a direction. */
+static void TestReach(void **state)
+{
+  static double wedge_line[] = {-0.8, -0.7, 0.9, -0.4, 1.1, 0.5}, triangle[] = {-0.8, -0.7, 0.9, -0.4, 0.2, 1.1};
+  const double  slack[] = {1e-6, 1e-6}, up[] = {0.0, 1.0}, tilted[] = {0.6, 0.8};
+  Scene         s;
+
+  (void)state;
+  SceneMake(&s, 24, 3);
+  SetPoints(&s, 0, SHAPE_POLYGON, 3, triangle);
+  SetPoints(&s, 1, SHAPE_BELOW, 3, wedge_line);
+  SetCircle(&s, 2, 0.1, 0.2, 0.7);
+  for (int k = 0; k < 3; k++) {
+    const double *a = triangle + 2 * k, *b = triangle + 2 * ((k + 1) % 3), angle = 0.3 + k;
+
+    for (int i = 0; i <= 10; i++) {
+      const double t = i / 10.0, x[] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
+      const double out[] = {x[0] + 1e-3 * (b[1] - a[1]), x[1] - 1e-3 * (b[0] - a[0])};
+
+      Check(RegionReaches(&s.c, 0, x, slack) && !RegionReaches(&s.c, 0, out, slack));
+      Check(k || RegionReaches(&s.c, 1, x, slack)); /* the first side is also on the line */
+    }
+    const double on[]  = {0.1 + 0.7 * cos(angle), 0.2 + 0.7 * sin(angle)};
+    const double off[] = {0.1 + 0.7001 * cos(angle), 0.2 + 0.7001 * sin(angle)};
+
+    Check(RegionReaches(&s.c, 2, on, slack) && !RegionReaches(&s.c, 2, off, slack));
+  }
+  Check(fabs(RegionHighest(&s.region[0], up) - 1.1) < 1e-14 && fabs(RegionHighest(&s.region[0], tilted) - 1.0) < 1e-14);
+  Check(fabs(RegionHighest(&s.region[1], up) - 0.5) < 1e-14 &&
+        fabs(RegionHighest(&s.region[1], tilted) - 1.06) < 1e-14);
+  Check(fabs(RegionHighest(&s.region[2], up) - 0.9) < 1e-14 &&
+        fabs(RegionHighest(&s.region[2], tilted) - 0.92) < 1e-14);
+  s.region[2].upper[1] = 0.5;
+  Check(RegionHighest(&s.region[2], up) == 0.5);
+}
+
 typedef struct {
   double   volume, closed[CL_DIM], own, true_area;
   PetscInt n;
@@ -371,7 +408,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(TestPointInPolygon), cmocka_unit_test(TestCrossing), cmocka_unit_test(TestSegments),
       cmocka_unit_test(TestPartition),      cmocka_unit_test(TestMeasures), cmocka_unit_test(TestAlong),
-      cmocka_unit_test(TestBoxFaces),
+      cmocka_unit_test(TestBoxFaces),       cmocka_unit_test(TestReach),
   };
   int failed;
 
