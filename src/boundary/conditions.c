@@ -4,8 +4,7 @@
 
 #define TEMPERATURE_PENALTY 20.0 /* of kappa_m/l: a prescribed face temperature is a strong convection */
 
-/* (42): the fluid around the body at time t. */
-static Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
+Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
 {
   Ambient a = {.pressure = ScheduleValue(&c->ambient_pressure, t)};
 
@@ -106,7 +105,7 @@ static void Open(const Material *mat, const Face *f, int phase, const Outside *o
   }
 }
 
-/* Area over which fluxes per area act, of the true surface (42) (vector s), and its derivatives. */
+/* Area over which fluxes per area act, of the true surface (70) (vector s), and its derivatives. */
 static double Area(const double s[2], const double ds[2][MOTION_COUNT], double darea[MOTION_COUNT])
 {
   const double area = hypot(s[0], s[1]);

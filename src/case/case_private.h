@@ -155,7 +155,8 @@ typedef struct {
 void ListCreate(const char *text, List *list);
 void ListDestroy(List *list);
 void CaseCheck(Reader *r, const Case *c);
-void CheckFlow(Reader *r, const Case *c, const Bc *b); /* flow.c: pressure and inflow */
+void CheckFlow(Reader *r, const Case *c, const Bc *b);        /* flow.c: pressure and inflow */
+void CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
 void               RegionsFinish(Case *c); /* once all keys are read */
 void               CheckShape(Reader *r, const Case *c, PetscInt region);

@@ -78,21 +78,6 @@ static void CheckMaterial(Reader *r, const Material *m)
          "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
 }
 
-/* Hydrostatic pressure at the top must stay positive. */
-static void CheckHydrostatic(Reader *r, const Case *c, const Region *g)
-{
-  double gravity = hypot(c->gravity[0], c->gravity[1]), height, lowest;
-
-  if (gravity == 0) {
-    FAIL(GROUP_REGION, g->name, "hydrostatic", "is yes but gravity is zero");
-    return;
-  }
-  height = RegionHighest(g, (const double[]){-c->gravity[0] / gravity, -c->gravity[1] / gravity});
-  lowest = g->pressure + c->material[g->material].water.rho0 * gravity * (g->datum - height);
-  if (lowest <= 0)
-    FAIL(GROUP_REGION, g->name, "datum", "makes the pressure %g Pa at the top; it must be positive", lowest);
-}
-
 static void CheckSaturations(Reader *r, const Case *c, const Region *g)
 {
   const Material *m = &c->material[g->material];
@@ -125,8 +110,8 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
     FAIL(GROUP_REGION, g->name, "particles_per_cell",
          "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
   CheckSaturations(r, c, g);
-  if (g->hydrostatic && c->fields.fluid && r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
-    CheckHydrostatic(r, c, g);
+  if (r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
+    CheckInitial(r, c, g);
 }
 
 static void CheckPlane(Reader *r, const Case *c, const Bc *b)

@@ -81,12 +81,12 @@ static uint64_t HashPoints(uint64_t h, const Points *points)
 static uint64_t HashRegion(uint64_t h, const Region *r)
 {
   h = Reals(Reals(Reals(h, r->lower, CL_DIM), r->upper, CL_DIM), r->stress, 6);
-  h = REALS(h, r->pressure, r->temperature, r->Sh, r->Sw, r->Sg, r->datum);
+  h = REALS(h, r->pressure, r->temperature, r->Sh, r->Sw, r->Sg, r->datum, r->K0, r->geothermal, r->geothermal_datum);
   h = HashPoints(HashPoints(INTS(h, r->shape, r->minus.n), &r->polygon), &r->below);
   h = Reals(h, r->circle, 3);
   for (PetscInt k = 0; k < r->minus.n; k++)
     h = INTS(h, r->minus.i[k]);
-  return INTS(h, r->ppc[0], r->ppc[1], r->material, r->hydrostatic);
+  return INTS(h, r->ppc[0], r->ppc[1], r->material, r->hydrostatic, r->consolidated);
 }
 
 static uint64_t HashSchedule(uint64_t h, const Schedule *s)
