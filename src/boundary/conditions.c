@@ -105,7 +105,7 @@ static void Open(const Material *mat, const Face *f, int phase, const Outside *o
   }
 }
 
-/* Area over which fluxes per area act, of the true surface (85) (vector s), and its derivatives. */
+/* Area over which fluxes per area act, of the true surface (70) (vector s), and its derivatives. */
 static double Area(const double s[2], const double ds[2][MOTION_COUNT], double darea[MOTION_COUNT])
 {
   const double area = hypot(s[0], s[1]);

@@ -109,7 +109,7 @@ CASES = [
      ["region_column_stress_normally_consolidated", "friction angle", "sediment"], []),
     ("geothermal without gravity", [("    Sh: 0\n", "    Sh: 0\n    geothermal: 30 K/km\n")], ["region_column_geothermal", "gravity"], []),
     ("geothermal below absolute zero", [("basis: cpgimp", "gravity: [9.81 m/s^2, 0 m/s^2]"), ("    Sh: 0\n", "    Sh: 0\n    geothermal: -1e3 K/m\n")],
-     ["region_column_geothermal", "degC in the region"], []),
+     ["region_column_geothermal", "degC at its top or foot"], []),
     ("geothermal without heat", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30 K/km\n"), *NO_GAS, ("fields: thm", "fields: hm")],
      ["region_column_geothermal", "needs heat"], []),
     ("geothermal without unit", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30\n")], ["region_column_geothermal", "K/m"], []),
