@@ -76,6 +76,7 @@ static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P,
   for (int d = 0; d < CL_DIM; d++) {
     P->f[P_X + d][p] = x[d];
     P->f[P_L + d][p] = l[d];
+    Set(P, p, P_X0 + d, x[d]);
     if (r->hydrostatic) {
       Set(P, p, P_GW + d, mat->water.rho0 * c->gravity[d]);
       Set(P, p, P_GG + d, mat->water.rho0 * c->gravity[d]);
