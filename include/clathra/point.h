@@ -25,21 +25,20 @@ enum {
 /* What a particle writes to its nodes. */
 enum {
   /* tested with G_I */
-  OUT_P    = 0,  /* [i][j] V_n (sigma' - p 1) cof F, N m/m */
-  OUT_PF   = 4,  /* [pi][i][j] V_n p_pi cof F */
-  OUT_FLUX = 12, /* [pi][j] mass flux Phi, kg m/s (18) */
-  OUT_HEAT = 16, /* [j] conducted heat, W m */
-  /* tested with H_I, in the radial rows */
-  OUT_HOOP  = 18, /* V_n (sigma'_tt - p) det F_2, N m */
-  OUT_HOOPF = 19, /* [pi] V_n p_pi det F_2 */
+  OUT_P    = 0, /* [i][j] V_n (sigma' - p 1) cof F, N m/m */
+  OUT_FLUX = 4, /* [pi][j] mass flux Phi, kg m/s (18) */
+  OUT_HEAT = 8, /* [j] conducted heat, W m */
+  /* tested with H_I, in the radial row */
+  OUT_HOOP = 10, /* V_n (sigma'_tt - p) det F_2, N m */
   /* tested with S_I */
-  OUT_M     = 21, /* m_s + m_h, m_w, m_g, kg */
-  OUT_MI    = 24, /* [pi] V rho_pi, kg */
-  OUT_D     = 26, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
-  OUT_DM    = 28, /* [pi] mass gained minus released by hydrate, kg */
-  OUT_C     = 30, /* heat capacity, J/K */
-  OUT_Q     = 31, /* advected minus released heat, W */
-  OUT_COUNT = 32
+  OUT_G     = 11, /* [pi][i] V_n cof F g_pi, N: force of a fluid's pressure gradient */
+  OUT_M     = 15, /* m_s + m_h, m_w, m_g, kg */
+  OUT_MI    = 18, /* [pi] V rho_pi, kg */
+  OUT_D     = 20, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
+  OUT_DM    = 22, /* [pi] mass gained minus released by hydrate, kg */
+  OUT_C     = 24, /* heat capacity, J/K */
+  OUT_Q     = 25, /* advected minus released heat, W */
+  OUT_COUNT = 26
 };
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
@@ -59,6 +58,7 @@ typedef struct {
 typedef struct {
   double V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
   double sig[6], sig0[6], stretch[2];
+  double F[2][2]; /* of the step, in the plane */
   double rho[PHASE_COUNT], tau[PHASE_COUNT];
   bool   limited; /* hydrate positivity limiter acted */
 } PointState;

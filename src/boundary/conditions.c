@@ -52,24 +52,6 @@ static void Traction(double q, double s, const double a[2], const double da[2][M
   }
 }
 
-/* Closed face: the fluid's own pressure, extrapolated to the face. */
-static void Closed(const Face *f, int phase, const double a[2], const double da[2][MOTION_COUNT],
-                   const double in[IN_COUNT], FaceOutput *o)
-{
-  const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
-
-  for (int i = 0; i < 2; i++) {
-    double *D = o->D[F_VWX + 2 * phase + i];
-
-    o->out[F_VWX + 2 * phase + i] = p * a[i];
-    D[IN_P + phase]               = a[i];
-    for (int j = 0; j < 2; j++)
-      D[IN_GP + 2 * phase + j] = a[i] * f->r[j];
-    for (int k = 0; k < MOTION_COUNT; k++)
-      D[k] = p * da[i][k];
-  }
-}
-
 static double Density(const Material *mat, int phase, double p, double T, double *dp, double *dT)
 {
   return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, dp, dT) : GasDensity(&mat->gas, p, T, dp, dT);
@@ -80,20 +62,17 @@ typedef struct {
   double p[PHASE_COUNT], dpc[PHASE_COUNT];
 } Outside;
 
-/* Open face: prescribed pressure, outflow rho J . a. */
-static void Open(const Material *mat, int phase, const Outside *outside, const double a[2],
+/* Open face: outflow rho J . a, and in the fluid's momentum what the pressure outside differs from the fluid's own
+   there, which is extrapolated from the particle.  A closed face adds nothing. */
+static void Open(const Material *mat, const Face *f, int phase, const Outside *outside, const double a[2],
                  const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
   double        dp, dT;
-  const double  p = outside->p[phase], rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
+  const double *g = &in[IN_GP + 2 * phase], own = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
+  const double  p = outside->p[phase], jump = p - own, rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
   const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1];
   double       *D = o->D[F_PW + phase];
 
-  for (int i = 0; i < 2; i++) {
-    o->out[F_VWX + 2 * phase + i] = p * a[i];
-    for (int k = 0; k < MOTION_COUNT; k++)
-      o->D[F_VWX + 2 * phase + i][k] = p * da[i][k];
-  }
   o->out[F_PW + phase] = dt * rho * Ja;
   o->outflow[phase]    = rho * Ja;
   D[IN_T]              = dt * dT * Ja;
@@ -101,12 +80,22 @@ static void Open(const Material *mat, int phase, const Outside *outside, const d
     D[IN_J + 2 * phase + j] = dt * rho * a[j];
   for (int k = 0; k < MOTION_COUNT; k++)
     D[k] = dt * rho * (J[0] * da[0][k] + J[1] * da[1][k]);
+  for (int i = 0; i < 2; i++) {
+    double *row = o->D[F_VWX + 2 * phase + i];
+
+    o->out[F_VWX + 2 * phase + i] = jump * a[i];
+    row[IN_P + phase]             = -a[i];
+    for (int j = 0; j < 2; j++)
+      row[IN_GP + 2 * phase + j] = -a[i] * f->r[j];
+    for (int k = 0; k < MOTION_COUNT; k++)
+      row[k] = jump * da[i][k];
+  }
   for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
     const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
 
     D[IN_P + k] = dt * dp * dpk * Ja;
     for (int i = 0; i < 2; i++)
-      o->D[F_VWX + 2 * phase + i][IN_P + k] = dpk * a[i];
+      o->D[F_VWX + 2 * phase + i][IN_P + k] += dpk * a[i];
   }
 }
 
@@ -173,22 +162,19 @@ static bool Opens(const Bc *b, int phase)
   return b->open == OPEN_BOTH || (b->open == OPEN_WATER) == (phase == PHASE_W);
 }
 
-/* Rows of the fluids: open where a pressure is prescribed, else closed. */
+/* Rows of the fluids, where a pressure is prescribed. */
 static void Fluids(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                    const double a[2], const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt,
                    FaceOutput *o)
 {
   Outside outside;
 
-  if (f->pressure >= 0)
-    OutsidePressures(c, f->pressure, v, mat, p0, in, &outside);
+  if (f->pressure < 0)
+    return;
+  OutsidePressures(c, f->pressure, v, mat, p0, in, &outside);
   for (int phase = 0; phase < PHASE_COUNT; phase++) {
-    if (!c->fields.phase[phase])
-      continue;
-    if (f->pressure >= 0 && Opens(&c->bc[f->pressure], phase))
-      Open(mat, phase, &outside, a, da, in, dt, o);
-    else
-      Closed(f, phase, a, da, in, o);
+    if (c->fields.phase[phase] && Opens(&c->bc[f->pressure], phase))
+      Open(mat, f, phase, &outside, a, da, in, dt, o);
   }
 }
 

@@ -112,6 +112,27 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
   return fine;
 }
 
+/* Gradients go along with the motion, F^-T g. */
+INLINE void CarryGradients(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
+{
+  static const int grad[3] = {P_GW, P_GG, P_GT};
+  const int        at      = C_Vs(s);
+
+  for (int k = 0; k < Scalars(s); k++) {
+    double *restrict gx = e->m->P.f[grad[k < s.fluids ? k : 2]] + r.p,
+                     *restrict gy = e->m->P.f[grad[k < s.fluids ? k : 2] + 1] + r.p;
+
+    for (int q = 0; q < r.n; q++) {
+      const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
+                   Fyy = 1.0 + dt * g->dy[q][at + 1];
+      const double x = gx[q], y = gy[q];
+
+      gx[q] = (Fyy * x - Fyx * y) / n->J[q];
+      gy[q] = (Fxx * y - Fxy * x) / n->J[q];
+    }
+  }
+}
+
 /* Masses of the fluids: what the laws' slopes make of the increments, so that the sum over particles is what the nodal
    balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the fluids
    and from the heat. */
@@ -279,6 +300,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     return;
   if (!StrainOf(s, r.n, &g, dt, &n))
     ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
+  CarryGradients(e, s, r, &g, &n, dt);
   if (!StressOf(e, s, r, &g, &n, T))
     ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
   OutOfPlane(e, r, &n);

@@ -89,10 +89,8 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const Node
       double *row = &out[(PlaceV(fs, f) + i) * ld];
 
       for (int q = 0; q < n; q++)
-        row[q] = S * k->acc[1 + f][i] * DB[OUT_MI + f][q] + k->drag[f] * k->J[f][i] * DB[OUT_D + f][q] -
-                 G[0] * DB[OUT_PF + 4 * f + 2 * i][q] - G[1] * DB[OUT_PF + 4 * f + 2 * i + 1][q];
-      for (int q = 0; axisymmetric && i == 0 && q < n; q++)
-        row[q] -= H * DB[OUT_HOOPF + f][q];
+        row[q] = S * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
+                 k->drag[f] * k->J[f][i] * DB[OUT_D + f][q];
     }
     const bool shared = f == PHASE_G && fs->one_pressure; /* the row that the water has begun */
     double    *row    = &out[PlaceP(fs, f) * ld];
@@ -162,10 +160,8 @@ static void OutputsOf(const FieldSet *fs, bool axisymmetric, Outputs *list)
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    Add(list, OUT_PF + 4 * f, 4);
+    Add(list, OUT_G + 2 * f, 2);
     Add(list, OUT_FLUX + 2 * f, 2);
-    if (axisymmetric)
-      Add(list, OUT_HOOPF + f, 1);
     if (fs->solid)
       Add(list, OUT_M + 1 + f, 1);
     Add(list, OUT_MI + f, 1);

@@ -98,27 +98,23 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
     o->D[OUT_HOOP][q] += h->V * hoop * k->dJ[q] / k->lambda;
 }
 
-/* out = V_n p_pi cof F (momentum of a fluid). */
+/* out = V_n cof F g_pi (momentum of a fluid). */
 static void FluidForces(const PointHistory *h, const Kinematics *k, int f, const double in[IN_COUNT], bool tangent,
                         PointOutput *o)
 {
-  const double Vp = h->V * in[IN_P + f];
+  const double *g = &in[IN_GP + 2 * f];
 
-  o->out[OUT_HOOPF + f] = Vp * k->cof_hoop;
-  for (int c = 0; c < 4; c++)
-    o->out[OUT_PF + 4 * f + c] = Vp * k->cof[c / 2][c % 2];
-  if (!tangent)
-    return;
-  for (int c = 0; c < 4; c++) {
-    double *D = o->D[OUT_PF + 4 * f + c];
+  for (int i = 0; i < 2; i++) {
+    const int row = OUT_G + 2 * f + i;
 
-    D[IN_P + f] += h->V * k->cof[c / 2][c % 2];
+    o->out[row] = h->V * (k->cof[i][0] * g[0] + k->cof[i][1] * g[1]);
+    if (!tangent)
+      continue;
+    for (int j = 0; j < 2; j++)
+      o->D[row][IN_GP + 2 * f + j] += h->V * k->cof[i][j];
     for (int q = 0; q < MOTION_COUNT; q++)
-      D[q] += Vp * k->dcof[c / 2][c % 2][q];
+      o->D[row][q] += h->V * (k->dcof[i][0][q] * g[0] + k->dcof[i][1][q] * g[1]);
   }
-  o->D[OUT_HOOPF + f][IN_P + f] += h->V * k->cof_hoop;
-  for (int q = 0; q < MOTION_HOOP; q++)
-    o->D[OUT_HOOPF + f][q] += Vp * k->dJ[q] / k->lambda;
 }
 
 /* K = cof^T cof / J (symmetric, from V F^-1 F^-T) and its derivatives. */
@@ -267,8 +263,8 @@ static ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char
   for (int r = OUT_FLUX; fs->fluid && r < OUT_HEAT; r++)
     sum += fs->phase[(r - OUT_FLUX) / 2] ? o->out[r] : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
-    sum += fs->phase[f] ? o->out[OUT_PF + 4 * f] + o->out[OUT_PF + 4 * f + 3] + o->out[OUT_D + f] + o->out[OUT_DM + f]
-                        : 0.0;
+    sum +=
+        fs->phase[f] ? o->out[OUT_G + 2 * f] + o->out[OUT_G + 2 * f + 1] + o->out[OUT_D + f] + o->out[OUT_DM + f] : 0.0;
   for (int r = OUT_P; fs->solid && r < OUT_P + 4; r++)
     sum += o->out[r];
   if (fs->heat)
@@ -325,6 +321,8 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
     for (int d = 0; d < 2; d++)
       state->stretch[d] = k->stretch[d];
   }
+  for (int i = 0; i < 4; i++)
+    state->F[i / 2][i % 2] = k->F[i / 2][i % 2];
   if (fs->fluid || fs->heat)
     MetricEvaluate(k, tangent, &metric);
   for (int f = 0; f < PHASE_COUNT; f++) {

@@ -78,17 +78,15 @@ static bool IsInput(const FieldSet *fs, bool axisymmetric, int q)
 
 static bool IsOutput(const FieldSet *fs, int r)
 {
-  if (r < OUT_PF || r == OUT_HOOP)
+  if (r < OUT_FLUX || r == OUT_HOOP)
     return fs->solid;
   if (r == OUT_M)
     return true;
   if (r == OUT_HEAT || r == OUT_HEAT + 1 || r == OUT_C || r == OUT_Q)
     return fs->heat;
-  if (r < OUT_FLUX)
-    return fs->phase[(r - OUT_PF) / 4];
-  if (r < OUT_HEAT)
-    return fs->phase[(r - OUT_FLUX) / 2];
-  return fs->phase[r < OUT_M ? r - OUT_HOOPF : r < OUT_MI ? r - OUT_M - 1 : (r - OUT_MI) % 2];
+  if (r < OUT_M)
+    return fs->phase[(r - (r < OUT_HEAT ? OUT_FLUX : OUT_G)) / 2];
+  return fs->phase[r < OUT_MI ? r - OUT_M - 1 : (r - OUT_MI) % 2];
 }
 
 static bool Outputs(void *ctx, double x, double y[RIDDERS_ROWS])
