@@ -77,16 +77,26 @@ soft, firm = (column(*SLOW, *o).probe("top") for o in (("-stage_strike_materials
 check("half the stiffness from the second stage on: twice the motion", abs(soft["u_y_m"][-1] / firm["u_y_m"][-1] - 2), 1e-3)
 still = column(*SLOW, "-stage_strike_materials", "column,soft", "-stage_strike_boundaries_off", "blow").probe("top")
 check("a change of material alone moves nothing, its stress stays", np.max(np.abs(still["u_y_m"][-1])) / static, 1e-6)
-tilt = column(*SLOW, "-stage_strike_boundaries_off", "blow", "-stage_strike_gravity", "0 m/s^2,-19.62 m/s^2", "-stage_strike_gravity_ramp", "5 s").probe("top")
-check("twice the gravity: as much again", abs(tilt["u_y_m"][-1] / -static - 1), 2e-3)
+more = column(*SLOW, "-stage_strike_boundaries_off", "blow", "-stage_strike_gravity", "0 m/s^2,-19.62 m/s^2", "-stage_strike_gravity_ramp", "5 s",
+              "-stage_strike_output_probe_every", "2.5 s").probe("top")["u_y_m"]  # fmt: skip
+check("gravity goes from that of the stage before ...", abs(more[-4] / -static - 0.5), 2e-3)
+check("... to twice that: it sinks as much again", abs(more[-1] / -static - 1), 2e-3)
+chosen = Run.of_case(COLUMN, "-stage_strike_stepper_type", "auto")
+check_true("a stage may choose its integrator", re.search(r"strike: forecast: .*\n  integrator chosen: hybrid", chosen.output) and not different(run, chosen))
 
-# -------------------------------------------------------------------------- one stage that names nothing is no stage
-for kind in ("sdirk2", "hybrid"):
-    options = ("-quiet", "-stepper_type", kind, "-time_end", "0.02 s" if kind == "hybrid" else "60 s", "-output_times", "0 s", "-output_probe_every", "0 s")
-    none, one = Run.of_case(BLOCK, *options), Run.of_case(BLOCK, *options, "-stages", "all_of_it", "-stage_all_of_it_end", options[4])
-    same = different(none, one, ())
-    rows = all(np.array_equal(none.probes[c], one.probes[c]) for c in none.probes if c != "time_s")
-    check_true(f"{kind}: one stage that names nothing is the case without stages, bit for bit", rows and not same, ", ".join(same[:5]))
+# --------------------------------------------------- stages that name nothing are no stages: all is handed on, bit for bit
+for kind, end, step in (("sdirk2", 60, 10), ("hybrid", 0.03, 4e-5)):
+    options = ("-quiet", "-stepper_type", kind, "-time_end", f"{end} s", "-output_times", "0 s", "-output_probe_every", f"{end / 3} s")
+    fixed = ("-stepper_adapt", "no", "-stepper_dt", f"{step} s")
+    stages = [x for k in range(3) for x in (f"-stage_s{k}_end", f"{(k + 1) * end / 3!r} s")]
+    for what, n, more in (("one stage", 1, ()), ("three stages", 3, fixed)):
+        none = Run.of_case(BLOCK, *options, *more)
+        some = Run.of_case(BLOCK, *options, *more, "-stages", ",".join(f"s{k}" for k in range(3 - n, 3)), *stages[-2 * n :])
+        names = [c for c in none.probes if c != "time_s" and not np.array_equal(none.probes[c], some.probes[c])]
+        names += [c for c in none.balance if c != "time_s" and not np.array_equal(none.balance[c], some.balance[c])]
+        anew = "state/(stage|fresh|err_old|hold|t|next_snapshot)$|fields" if n > 1 else "^$"
+        names += [c for c in different(none, some, ()) if not re.search(anew, c)]
+        check_true(f"{kind}: {what} naming nothing: the case without", not names, ", ".join(names[:5]))
 
 # ----------------------------------------------------------------------------------------- sdirk2 -> hybrid -> sdirk2
 TIGHT = ("-newton_tol_residual", "1e-10", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-9")
