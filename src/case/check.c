@@ -31,7 +31,7 @@ static void CheckCase(Reader *r, const Case *c)
     CheckRadius(r, c);
   if ((double)c->cells[0] * c->cells[1] > 1e8)
     FAIL(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
-  if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !r->bad[GROUP_STAGE])
+  if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !(c->nstage && r->bad[GROUP_STAGE]))
     FAIL(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
 }
 

@@ -343,7 +343,7 @@ static const Key stage_key[] = {
         "displacement and log_J count from the begin of the stage; sides, from and to stay those of the initial body"),
     BOOLEAN(CaseStage, "kinetics_active", reaction, "yes",
             "no: hydrate neither forms nor dissociates, in materials whose kinetics are active"),
-    TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; or all"),
+    TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; all, or none"),
     TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act"),
     TEXT(CaseStage, "materials", materials, "",
          "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay"),

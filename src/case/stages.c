@@ -165,14 +165,14 @@ static void MarkNames(Reader *r, const Case *c, const CaseStage *s, const char *
 /* The stage's own list of conditions, in the case's order. */
 static PetscErrorCode StageBoundaries(Reader *r, const Case *c, CaseStage *s)
 {
-  const bool all         = !strcasecmp(s->boundaries, "all");
+  const bool all = !strcasecmp(s->boundaries, "all"), none = !strcasecmp(s->boundaries, "none");
   bool       marked[256] = {false};
   PetscInt   n           = 0;
 
   PetscFunctionBeginUser;
   if (!all && s->off[0])
     FAIL(s, "boundaries_off", "is given beside boundaries; choose one");
-  MarkNames(r, c, s, all ? "boundaries_off" : "boundaries", all ? s->off : s->boundaries, marked);
+  MarkNames(r, c, s, all ? "boundaries_off" : "boundaries", all ? s->off : none ? "" : s->boundaries, marked);
   PetscCall(PetscMalloc1(PetscMax(c->nbc, 1), &s->c.bc));
   for (PetscInt k = 0; k < c->nbc; k++) {
     if (marked[k] == all)
@@ -251,7 +251,7 @@ static PetscErrorCode StageMaterials(Reader *r, const Case *c, CaseStage *s)
 }
 
 /* ---------------------------------------------------------------- all of it */
-static void StageGravity(Reader *r, const Case *before, CaseStage *s)
+static void StageGravity(Reader *r, const Case *before, bool last, CaseStage *s)
 {
   bool changes = false;
 
@@ -259,8 +259,9 @@ static void StageGravity(Reader *r, const Case *before, CaseStage *s)
     s->c.gravity_before[d] = before ? before->gravity[d] : 0.0;
     changes                = changes || s->c.gravity_before[d] != s->c.gravity[d];
   }
-  if (changes && s->c.gravity_ramp > s->c.t_end - s->c.t_begin)
-    Fail(r, s->name, "gravity_ramp", "must not be longer than the stage in which gravity changes");
+  if (changes && !last && s->c.gravity_ramp > s->c.t_end - s->c.t_begin)
+    Fail(r, s->name, "gravity_ramp",
+         "must not be longer than the stage, in which gravity changes, where another one follows");
 }
 
 PetscErrorCode CaseStages(Reader *r, Case *c)
@@ -272,7 +273,8 @@ PetscErrorCode CaseStages(Reader *r, Case *c)
     ReaderError(r, "time_end", NULL, "is %g s but the last stage, %s, ends at %g s; leave it out", c->t_end,
                 c->stage[c->nstage - 1].name, c->stage[c->nstage - 1].end);
   for (PetscInt i = 0; i < c->nstage; i++) {
-    CaseStage *s = &c->stage[i];
+    CaseStage     *s      = &c->stage[i];
+    const PetscInt errors = r->nerror;
 
     s->c         = *c;
     s->c.t_begin = i ? c->stage[i - 1].end : 0.0;
@@ -281,9 +283,9 @@ PetscErrorCode CaseStages(Reader *r, Case *c)
     s->c.fields.inertia = s->c.inertia;
     PetscCall(StageMaterials(r, c, s));
     PetscCall(StageBoundaries(r, c, s));
-    if (r->nerror > before || r->bad[GROUP_CASE] || r->bad[GROUP_STAGE])
+    if (r->nerror > errors || r->bad[GROUP_CASE] || r->bad[GROUP_STAGE])
       continue;
-    StageGravity(r, i ? &c->stage[i - 1].c : NULL, s);
+    StageGravity(r, i ? &c->stage[i - 1].c : NULL, i + 1 == c->nstage, s);
     CheckTimes(r, &s->c, s->name);
   }
   r->bad[GROUP_STAGE] = r->bad[GROUP_STAGE] || r->nerror > before;

@@ -197,8 +197,9 @@ static PetscErrorCode Summary(const Stepper *s, const Run *run)
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
                           "  results in %s\n",
-                          s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t, s->scheme->name, z->step,
-                          z->failures_total, z->newton_total, Wall() - run->clock_start, local,
+                          s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
+                          s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
+                          z->newton_total, Wall() - run->clock_start, local,
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
@@ -324,8 +325,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT
                           " cells%s, %s, to t = %g s\n  fields: %s; %d unknowns "
                           "a node\n",
-                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "", c->stepper,
-                          c->t_end, fields, c->fields.n));
+                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "",
+                          c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }
