@@ -251,6 +251,8 @@ PetscErrorCode CaseDestroy(Case *c)
 {
   PetscFunctionBeginUser;
   PetscCall(CaseStagesDestroy(c));
+  ScheduleDestroy(&c->ambient_pressure);
+  ScheduleDestroy(&c->ambient_level);
   for (PetscInt i = 0; i < c->nbc; i++) {
     ScheduleDestroy(&c->bc[i].value);
     ScheduleDestroy(&c->bc[i].shear);

@@ -119,8 +119,9 @@ INLINE void CarryGradients(Explicit *e, const Set s, Run r, const Gathered *g, c
   const int        at      = C_Vs(s);
 
   for (int k = 0; k < Scalars(s); k++) {
-    double *restrict gx = e->m->P.f[grad[k < s.fluids ? k : 2]] + r.p,
-                     *restrict gy = e->m->P.f[grad[k < s.fluids ? k : 2] + 1] + r.p;
+    double *restrict gx = e->m->P.f[grad[k < s.fluids ? k : 2]] + r.p, *restrict gy =
+                                                                           e->m->P.f[grad[k < s.fluids ? k : 2] + 1] +
+                                                                           r.p;
 
     for (int q = 0; q < r.n; q++) {
       const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
@@ -251,6 +252,24 @@ INLINE void OutOfPlane(Explicit *e, Run r, const Strain *n)
   }
 }
 
+/* F <- (1 + dt grad v) F. */
+INLINE void Deform(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  const int at = C_Vs(s);
+
+  for (int j = 0; j < 2; j++) {
+    double *restrict x = e->m->P.f[P_F + j] + r.p, *restrict y = e->m->P.f[P_F + 2 + j] + r.p;
+
+    for (int q = 0; q < r.n; q++) {
+      const double a = dt * (g->dx[q][at] * x[q] + g->dy[q][at] * y[q]),
+                   b = dt * (g->dx[q][at + 1] * x[q] + g->dy[q][at + 1] * y[q]);
+
+      x[q] += a;
+      y[q] += b;
+    }
+  }
+}
+
 /* Positions and domains; false if a particle crosses half a cell or leaves the grid. */
 INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
 {
@@ -270,11 +289,8 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
       fine &= (fabs(step) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper);
     }
     if (e->m->c->basis == BASIS_CPGIMP) {
-      for (int q = 0; q < r.n; q++) {
-        const double size = l[q] * n->stretch[d][q];
-
-        l[q] = size < 0.5 * h ? size : 0.5 * h;
-      }
+      for (int q = 0; q < r.n; q++)
+        l[q] *= n->stretch[d][q];
     }
   }
   return fine;
@@ -304,6 +320,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (!StressOf(e, s, r, &g, &n, T))
     ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
   OutOfPlane(e, r, &n);
+  Deform(e, s, r, &g, dt);
   for (int q = 0; q < r.n; q++)
     f[P_LOGJ][r.p + q] += n.log_J[q];
   if (!Scalars(s)) {

@@ -210,7 +210,13 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
     f[P_X + d][p] += u[d];
     f[P_U + d][p] += u[d];
     if (m->c->basis == BASIS_CPGIMP)
-      f[P_L + d][p] = fmin(f[P_L + d][p] * s->stretch[d], 0.5 * m->grid.h[d]);
+      f[P_L + d][p] *= s->stretch[d];
+  }
+  for (int j = 0; j < 2; j++) { /* F <- (F of the step) F */
+    const double c[2] = {f[P_F + j][p], f[P_F + 2 + j][p]};
+
+    for (int i = 0; i < 2; i++)
+      f[P_F + 2 * i + j][p] = s->F[i][0] * c[0] + s->F[i][1] * c[1];
   }
   f[P_LOGJ][p] += log(s->V / f[P_V][p]);
   f[P_V][p] = s->V;

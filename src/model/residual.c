@@ -72,6 +72,8 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
     }
     for (int i = 0; i < 2; i++)
       fI[i] += r->S[a] * inertia[i] + G[0] * out[OUT_P + 2 * i] + G[1] * out[OUT_P + 2 * i + 1];
+    for (int i = 0; m->bc.ambient.on && i < 2; i++)
+      fI[i] += r->S[a] * out[OUT_A + i];
     if (m->c->axisymmetric)
       fI[0] += r->H[a] * out[OUT_HOOP];
   }

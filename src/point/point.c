@@ -63,12 +63,34 @@ static void EffectiveStress(const Material *mat, const PointHistory *h, const Ki
   }
 }
 
-/* out = V_n (sigma' - p 1) cof F, in the plane and around the axis (momentum of the mixture). */
-static void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
-                          bool tangent, PointOutput *o)
+/* Ambient pressure at the particle, with the force V grad p_a that its weight is (42). */
+typedef struct {
+  double p, g[2];
+} AmbientState;
+
+static AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const ScalarState *s,
+                              const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double     total[2][2] = {{st->s[XX] - s->p.v, st->s[XY]}, {st->s[XY], st->s[YY] - s->p.v}};
-  const double     hoop        = st->s[ZZ] - s->p.v;
+  const double x[2] = {h->x[0] + in[IN_U], h->x[1] + in[IN_U + 1]};
+  AmbientState a    = {0.0, {0.0, 0.0}};
+
+  if (!h->ambient)
+    return a;
+  a.p = AmbientPressure(h->ambient, x, a.g);
+  for (int i = 0; i < 2; i++) {
+    o->out[OUT_A + i] = s->V.v * a.g[i];
+    if (tangent)
+      AddJet(o->D[OUT_A + i], a.g[i], &s->V, k);
+  }
+  return a;
+}
+
+/* out = V_n (sigma' - (p - p_a) 1) cof F, in the plane and around the axis (momentum of the mixture). */
+static void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
+                          const AmbientState *a, bool tangent, PointOutput *o)
+{
+  const double     p = s->p.v - a->p, hoop = st->s[ZZ] - p;
+  const double     total[2][2] = {{st->s[XX] - p, st->s[XY]}, {st->s[XY], st->s[YY] - p}};
   static const int voigt[2][2] = {{XX, XY}, {XY, YY}};
 
   o->out[OUT_HOOP] = h->V * hoop * k->cof_hoop;
@@ -84,6 +106,8 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
           o->D[row][q] += c * ds[q];
         if (m == i)
           AddJet(o->D[row], -c, &s->p, k);
+        for (int d = 0; m == i && d < 2; d++)
+          o->D[row][IN_U + d] += c * a->g[d];
         for (int q = 0; q < MOTION_COUNT; q++)
           o->D[row][q] += h->V * total[i][m] * k->dcof[m][j][q];
       }
@@ -94,6 +118,8 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
   for (int q = 0; q < IN_J; q++)
     o->D[OUT_HOOP][q] += h->V * k->cof_hoop * st->ds[ZZ][q];
   AddJet(o->D[OUT_HOOP], -h->V * k->cof_hoop, &s->p, k);
+  for (int d = 0; d < 2; d++)
+    o->D[OUT_HOOP][IN_U + d] += h->V * k->cof_hoop * a->g[d];
   for (int q = 0; q < MOTION_HOOP; q++)
     o->D[OUT_HOOP][q] += h->V * hoop * k->dJ[q] / k->lambda;
 }
@@ -315,7 +341,8 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
     Stress st;
 
     EffectiveStress(mat, h, k, &s, in[IN_T], tangent, state->sig0, &st);
-    MixtureForces(h, k, &s, &st, tangent, o);
+    const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);
+    MixtureForces(h, k, &s, &st, &a, tangent, o);
     for (int c = 0; c < 6; c++)
       state->sig[c] = st.s[c];
     for (int d = 0; d < 2; d++)

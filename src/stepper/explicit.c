@@ -104,6 +104,18 @@ static PetscInt Plan(const Stepper *s, double stop, double *dt)
   return (PetscInt)fmin(n, BURST);
 }
 
+/* Means over a burst of n steps, for meters.csv. */
+static StageRates Rates(const StageRates *sum, double time)
+{
+  const double *in = (const double *)sum;
+  StageRates    mean;
+  double       *out = (double *)&mean;
+
+  for (size_t k = 0; k < sizeof(mean) / sizeof(double); k++)
+    out[k] = in[k] / time;
+  return mean;
+}
+
 /* A burst of n steps; the sums are those of all ranks. */
 static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
 {
@@ -117,6 +129,7 @@ static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof(sum) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
   StepperCount(m->c, &sum, 1.0, a);
+  m->rates   = Rates(&sum, (double)n * dt);
   a->limited = m->limited;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
