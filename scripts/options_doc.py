@@ -74,7 +74,7 @@ A misspelt option of PETSc or of the table above is not an error; `-options_left
 ## Keys of a case
 
 Quantities carry units on the command line too, quoted for the shell: `-time_end "500 s"`. These may be bare there, and
-are then in seconds: {plain}.
+are then in seconds: {plain}, and the same of a stage.
 
 {keys}"""
 
@@ -88,7 +88,7 @@ def plain_keys():
     """Keys whose number may do without a unit on the command line, from the key table's source."""
     text = (ROOT / "src" / "case" / "keys.c").read_text()
     rows = re.split(r"\n    (?=[A-Z]+\()", text)
-    return [re.search(r'"(\w+)"', row).group(1) for row in rows if re.search(r"\.plain\s*=\s*true", row)]
+    return list(dict.fromkeys(re.search(r'"(\w+)"', row).group(1) for row in rows if re.search(r"\.plain\s*=\s*true", row)))
 
 
 def row(*cells):

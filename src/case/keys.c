@@ -341,7 +341,7 @@ static const Key meter_key[] = {
 
 /* Keys that stages share with the case: not given, the case's value stays. */
 #define CASES "the case's"
-#define CASES_LENGTH "the case's, or as there with the length of the stage"
+#define CASES_LENGTH "the case's if it is given, else the same share of the stage's length"
 static const Key stage_key[] = {
     REAL(CaseStage, "end", end, "s", "(0,inf)", NULL, "it begins where the stage before ends"),
     BOOLEAN(
@@ -353,7 +353,7 @@ static const Key stage_key[] = {
     TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act"),
     TEXT(CaseStage, "materials", materials, "",
          "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay"),
-    REALS(CaseStage, 2, "gravity", c.gravity, "m/s^2", "[-1e4,1e4]", CASES, "", .kept = true),
+    REALS(CaseStage, 2, "gravity", c.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
     REAL(CaseStage, "gravity_ramp", c.gravity_ramp, "s", "[0,inf)", CASES,
          "gravity goes from that of the stage before to that of this one over this time", .kept = true),
     BOOLEAN(CaseStage, "inertia", c.inertia, CASES, "accelerations; no is quasi-static", .kept = true),

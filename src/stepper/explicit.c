@@ -107,12 +107,11 @@ static PetscInt Plan(const Stepper *s, double stop, double *dt)
 /* Means over a burst of n steps, for meters.csv. */
 static StageRates Rates(const StageRates *sum, double time)
 {
-  const double *in = (const double *)sum;
-  StageRates    mean;
-  double       *out = (double *)&mean;
+  StageRates mean = *sum;
+  double    *v    = (double *)&mean;
 
   for (size_t k = 0; k < sizeof(mean) / sizeof(double); k++)
-    out[k] = in[k] / time;
+    v[k] /= time;
   return mean;
 }
 

@@ -47,12 +47,17 @@ t, u, y = run.time, run.probe("top")["u_y_m"], run.probe("top")["y_m"]
 settled = int(np.argmin(np.abs(t - CENTURY)))
 static = RHO_G * H**2 / (2 * MODULUS)
 check("settles by rho g H^2/(2 M)", abs(u[settled] / -static - 1), 1e-3)
+check_true("a step ends on the end of the stage", t[settled] == CENTURY, t[settled] - CENTURY)
 check_true("rows every 5 ms after a century", np.allclose(t[settled + 1 :] - CENTURY, 0.005 * np.arange(1, 21), atol=1e-6) and len(t) == settled + 21, len(t))
 check_true("the displacement counts from the blow, the position goes on",
            np.allclose(y[settled + 1 :] - y[settled], u[settled + 1 :], atol=1e-12) and abs(u[settled]) > 1e-4)  # fmt: skip
 alone = column("-stage_settle_end", "1 s", "-stage_strike_end", "1.1 s", "-gravity", "0 m/s^2,0 m/s^2")
 moves = alone.probe("top")["u_y_m"][-20:]
 check("the blow moves it as if there were no weight", np.max(np.abs(u[settled + 1 :] - moves)) / np.max(np.abs(moves)), 2e-3)
+damped = column("-stage_settle_end", "1 s", "-stage_strike_end", "1.1 s", "-stage_settle_inertia", "yes", "-stage_settle_stepper_type", "hybrid",
+                "-stage_settle_stepper_damping", "0.3", "-stage_settle_output_probe_every", "1 s").probe("top")["u_y_m"]  # fmt: skip
+check("damped, hybrid settles to the same", abs(damped[1] / -static - 1), 1e-3)
+check("... and undamped it swings as before", np.max(np.abs(damped[-20:] - moves)) / np.max(np.abs(moves)), 1e-2)
 quiet = column("-stage_strike_boundaries_off", "blow").probe("top")["u_y_m"]
 check("without the blow it stays where it settled", np.max(np.abs(quiet[settled + 1 :])) / static, 1e-3)
 stage = run.balance["stage"]
@@ -109,7 +114,7 @@ THREE = ("-quiet", "-mat_soft_permeability_k0", "1e-10 m^2", "-mat_firm_permeabi
          "-mat_soft_kinetics_K0", "2.5e-8 mol/(m^2 Pa s)", "-mat_firm_kinetics_K0", "2.5e-8 mol/(m^2 Pa s)",
          "-bc_load_normal_ramp", "3.4 MPa,4.6 MPa,0 s,0.06 s", "-time_end", "0.09 s", "-output_times", "0 s,0.03 s,0.06 s,0.09 s",
          "-output_probe_every", "0.01 s", "-stepper_adapt", "no", "-stepper_dt", "2 ms", "-checkpoint_every", "0.01 s",
-         "-meters", "part", "-meter_part_side", "top", "-meter_part_from", "0 m", "-meter_part_to", "0.32 m",
+         "-meters", "part", "-meter_part_side", "top", "-meter_part_from", "0 m", "-meter_part_to", "0.322 m",
          "-stages", "press,wave,rest", "-stage_press_end", "0.03 s", "-stage_wave_end", "0.06 s", "-stage_rest_end", "0.09 s",
          "-stage_wave_stepper_type", "hybrid", "-stage_wave_stepper_dt", "40 us", "-stage_rest_kinetics_active", "no",
          "-stage_rest_materials", "left,firm", *TIGHT)  # fmt: skip
