@@ -26,6 +26,16 @@ PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, cons
 /* Where the face is and how it distributes, for its particle's present position and weights. */
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
 
+/* Normal stress (Pa, compression-positive) prescribed at time t on a side of a region, at `along` (m) on it; 0 where
+   none is. */
+double FaceLoad(const Case *c, Side side, PetscInt region, double along, double t);
+
+/* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
+   of ranks; no communication. */
+PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
+/* Warnings about a start out of balance with gravity, on rank 0.  Collective. */
+PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
+
 /* Is the face one of those that a meter counts? */
 bool MeterCovers(const Meter *m, const Face *f);
 
@@ -35,8 +45,10 @@ typedef struct {
   double  gravity[CL_DIM];
   Ambient ambient;
 } BcValues;
-void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
-double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
+/* (42): the fluid around the body at time t, gravity being what it is then. */
+Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM]);
+void    BcValuesEvaluate(const Case *c, double t, BcValues *v);
+double  BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
 
 /* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where Darcy
    fluxes and displacement are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat

@@ -14,12 +14,16 @@ typedef struct {
   PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
   PetscInt material;                     /* index into Case.material */
   /* initial state; hydrostatic: p grows with depth below `p_datum` (m, along gravity) */
-  double pressure;    /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
-  double temperature; /* degC */
-  double Sh, Sw, Sg;  /* saturations of the pore space; sum 1 */
-  double stress[6];   /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
-  bool   hydrostatic; /* add rho_w g depth to the pressure */
-  double datum;       /* m: coordinate against gravity where p = pressure */
+  double pressure;     /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
+  double temperature;  /* degC */
+  double Sh, Sw, Sg;   /* saturations of the pore space; sum 1 */
+  double stress[6];    /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
+  double K0;           /* stress: vertical from the weight above, horizontal K0 times it; infinite: from `stress` */
+  bool   consolidated; /* the same, with K0 = 1 - sin(friction angle) */
+  bool   hydrostatic;  /* water in balance with gravity */
+  double datum;        /* m: coordinate against gravity where p = pressure */
+  double geothermal,
+      geothermal_datum; /* K/m below it, m (infinite: top of the body); T = temperature there and above */
 } Region;
 
 typedef enum {
@@ -179,6 +183,46 @@ static inline double CaseTimeSlack(const Case *c, double t)
 static inline bool CaseAtEnd(const Case *c, double t)
 {
   return t >= c->t_end - CaseTimeSlack(c, c->t_end);
+}
+
+static inline double CaseGravity(const Case *c) /* m/s^2 */
+{
+  return hypot(c->gravity[0], c->gravity[1]);
+}
+
+/* Coordinate against gravity, m; 0 without gravity. */
+static inline double CaseHeight(const Case *c, const double x[])
+{
+  const double g = CaseGravity(c);
+
+  return g > 0.0 ? -(x[0] * c->gravity[0] + x[1] * c->gravity[1]) / g : 0.0;
+}
+
+/* Axis that gravity points along, -1 if it is oblique or zero. */
+static inline int CaseVertical(const Case *c)
+{
+  return (c->gravity[0] != 0.0) == (c->gravity[1] != 0.0) ? -1 : c->gravity[0] != 0.0 ? 0 : 1;
+}
+
+/* Height of the highest point of the regions, m. */
+double CaseTop(const Case *c);
+
+static inline bool RegionGeostatic(const Region *r)
+{
+  return r->consolidated || (r->K0 > 0.0 && !isinf(r->K0));
+}
+
+/* Friction angle of a material, rad; NAN for one that has none. */
+static inline double MaterialFrictionAngle(const Material *m)
+{
+  (void)m;
+  return NAN;
+}
+
+/* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */
+static inline double RegionK0(const Case *c, const Region *r)
+{
+  return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
 }
 
 /* What keeps a scene from the integrators without a matrix, as the case says it; NULL if nothing does. */

@@ -3,8 +3,7 @@
 
 #define TEMPERATURE_PENALTY 20.0 /* of kappa_m/l: a prescribed face temperature is a strong convection */
 
-/* (42): the fluid around the body at time t. */
-static Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
+Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
 {
   Ambient a = {.pressure = ScheduleValue(&c->ambient_pressure, t)};
 

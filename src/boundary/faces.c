@@ -19,6 +19,14 @@ static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
   return found;
 }
 
+double FaceLoad(const Case *c, Side side, PetscInt region, double along, double t)
+{
+  const Face     f = {.side = (int)side, .region = region, .along = along};
+  const PetscInt k = FindCondition(c, BC_TRACTION, &f);
+
+  return k < 0 ? 0.0 : ScheduleValue(&c->bc[k].value, t);
+}
+
 bool MeterCovers(const Meter *m, const Face *f)
 {
   return (int)m->side == f->side && (m->region < 0 || m->region == f->region) && f->along >= m->from &&

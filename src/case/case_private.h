@@ -142,10 +142,11 @@ typedef struct {
   PetscInt n;
   char    *text, **item;
 } List;
-void               ListCreate(const char *text, List *list);
-void               ListDestroy(List *list);
-void               CaseCheck(Reader *r, const Case *c);
-void               CheckFlow(Reader *r, const Case *c, const Bc *b); /* flow.c: pressure and inflow */
+void ListCreate(const char *text, List *list);
+void ListDestroy(List *list);
+void CaseCheck(Reader *r, const Case *c);
+void CheckFlow(Reader *r, const Case *c, const Bc *b);        /* flow.c: pressure and inflow */
+void CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);

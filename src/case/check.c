@@ -53,24 +53,6 @@ static void CheckMaterial(Reader *r, const Material *m)
          "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
 }
 
-/* Hydrostatic pressure at the corners must stay positive. */
-static void CheckHydrostatic(Reader *r, const Case *c, const Region *g)
-{
-  double gravity = hypot(c->gravity[0], c->gravity[1]), lowest = INFINITY;
-
-  if (gravity == 0) {
-    FAIL(GROUP_REGION, g->name, "hydrostatic", "is yes but gravity is zero");
-    return;
-  }
-  for (int corner = 0; corner < 4; corner++) {
-    double x = corner & 1 ? g->upper[0] : g->lower[0], y = corner & 2 ? g->upper[1] : g->lower[1];
-    double height = -(x * c->gravity[0] + y * c->gravity[1]) / gravity;
-    lowest        = fmin(lowest, g->pressure + c->material[g->material].water.rho0 * gravity * (g->datum - height));
-  }
-  if (lowest <= 0)
-    FAIL(GROUP_REGION, g->name, "datum", "makes the pressure %g Pa at a corner; it must be positive", lowest);
-}
-
 static void CheckSaturations(Reader *r, const Case *c, const Region *g)
 {
   const Material *m = &c->material[g->material];
@@ -116,8 +98,9 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
       FAIL(GROUP_REGION, g->name, "lower", "the region overlaps region %s", o->name);
   }
   CheckSaturations(r, c, g);
-  if (g->hydrostatic && c->fields.fluid && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
-    CheckHydrostatic(r, c, g);
+  const Case *first = r->bad[GROUP_STAGE] ? c : CaseInStage(c, 0);
+  if (!r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
+    CheckInitial(r, first, &first->region[i]);
 }
 
 static void CheckPlane(Reader *r, const Case *c, const Bc *b)

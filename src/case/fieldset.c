@@ -52,7 +52,7 @@ static PetscErrorCode PeekMaterials(Reader *r, const Case *c, bool *reacts, bool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the regions say: some hold gas; all have the same temperature. */
+/* What the regions say: some hold gas; all have the same temperature everywhere. */
 static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uniform)
 {
   const char *text, *first = NULL;
@@ -70,6 +70,8 @@ static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uni
     if (i == 0)
       first = text;
     *uniform = *uniform && (first && text ? !strcmp(first, text) : first == text);
+    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "geothermal", &text));
+    *uniform = *uniform && !(text && strtod(text, NULL) != 0.0);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -76,8 +76,8 @@ static uint64_t HashMaterial(uint64_t h, const Material *m)
 static uint64_t HashRegion(uint64_t h, const Region *r)
 {
   h = Reals(Reals(Reals(h, r->lower, CL_DIM), r->upper, CL_DIM), r->stress, 6);
-  h = REALS(h, r->pressure, r->temperature, r->Sh, r->Sw, r->Sg, r->datum);
-  return INTS(h, r->ppc[0], r->ppc[1], r->material, r->hydrostatic);
+  h = REALS(h, r->pressure, r->temperature, r->Sh, r->Sw, r->Sg, r->datum, r->K0, r->geothermal, r->geothermal_datum);
+  return INTS(h, r->ppc[0], r->ppc[1], r->material, r->hydrostatic, r->consolidated);
 }
 
 static uint64_t HashSchedule(uint64_t h, const Schedule *s)

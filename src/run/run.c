@@ -248,6 +248,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   PetscCall(PetscSNPrintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir));
   PetscCall(OutputCreate(s->model, &s->state, restart[0] != '\0', &run->out));
   if (!restart[0]) {
+    PetscCall(InitialWarnings(s->model->grid.comm, s->model->c, &s->model->P));
     PetscCall(OutputProbes(run->out, s->model, &s->state));
     PetscCall(OutputMeters(run->out, s->model, &s->state));
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));

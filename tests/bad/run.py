@@ -21,6 +21,8 @@ SEDIMENT = {"porosity": "0.15", "solid_density": "2600 kg/m^3", "solid_heat_capa
             "retention_Sgr": "0.4", "relperm_nw": "4", "relperm_ng": "2", "permeability_k0": "1e-14 m^2", "permeability_mh": "3", "kinetics_active": "yes",
             "kinetics_K0": "1e-10 mol/(m^2 Pa s)", "kinetics_A_geo": "1e6 1/m", "elasticity_E0": "9 MPa", "elasticity_nu": "0.3"}
 NO_GAS = [("basis: cpgimp", "basis: cpgimp\nfields: thm"), ("active: yes", "active: no"), ("    Sw: 0.6\n    Sg: 0.4\n", "")]
+GRAVITY = ("title: BP2", "gravity: [0 m/s^2, -9.81 m/s^2]\ntitle: BP2")
+STRESS = lambda value: ("    Sh: 0\n", f"    Sh: 0\n    stress: {value}\n")
 
 CASES = [
     # --- keys
@@ -91,6 +93,26 @@ CASES = [
     ("hydrostatic without gravity", [("    Sh: 0\n", "    Sh: 0\n    hydrostatic: yes\n")], ["region_column_hydrostatic", "gravity"], []),
     ("negative hydrostatic pressure", [("    Sh: 0\n", "    Sh: 0\n    hydrostatic: yes\n    datum: -1 km\n"),
       ("basis: cpgimp", "gravity: [0 m/s^2, -9.81 m/s^2]")], ["region_column_datum", "positive"], []),
+    ("K0 negative", [GRAVITY, STRESS("{geostatic: -0.5}")], ["region_column_stress_geostatic", "out of range", "(0,10]"], []),
+    ("geostatic and a list", [GRAVITY, STRESS("[-1 kPa, 0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa]\n    stress_geostatic: 0.5")],
+     ["region_column_stress_geostatic", "choose one"], []),
+    ("geostatic and normally consolidated", [GRAVITY, STRESS("{geostatic: 0.5, normally_consolidated: yes}")],
+     ["region_column_stress_normally_consolidated", "choose one"], []),
+    ("geostatic without gravity", [STRESS("{geostatic: 0.5}")], ["region_column_stress_geostatic", "gravity is zero"], []),
+    ("geostatic under oblique gravity", [("basis: cpgimp", "gravity: [1 m/s^2, -9.81 m/s^2]"), STRESS("{geostatic: 0.5}")],
+     ["region_column_stress_geostatic", "oblique"], []),
+    ("geostatic with a ramp of gravity", [("basis: cpgimp", "gravity: [0 m/s^2, -9.81 m/s^2]\ngravity_ramp: 1 s"), STRESS("{geostatic: 0.5}")],
+     ["region_column_stress_geostatic", "gravity_ramp"], []),
+    ("geostatic stress of a rigid body", [GRAVITY, ("E0: 90 MPa", "E0: rigid"), STRESS("{geostatic: 0.5}")],
+     ["region_column_stress_geostatic", "needs solid"], []),
+    ("normally consolidated without a friction angle", [GRAVITY, STRESS("{normally_consolidated: yes}")],
+     ["region_column_stress_normally_consolidated", "friction angle", "sediment"], []),
+    ("geothermal without gravity", [("    Sh: 0\n", "    Sh: 0\n    geothermal: 30 K/km\n")], ["region_column_geothermal", "gravity"], []),
+    ("geothermal below absolute zero", [("basis: cpgimp", "gravity: [9.81 m/s^2, 0 m/s^2]"), ("    Sh: 0\n", "    Sh: 0\n    geothermal: -1e3 K/m\n")],
+     ["region_column_geothermal", "degC at a corner"], []),
+    ("geothermal without heat", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30 K/km\n"), *NO_GAS, ("fields: thm", "fields: hm")],
+     ["region_column_geothermal", "needs heat"], []),
+    ("geothermal without unit", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30\n")], ["region_column_geothermal", "K/m"], []),
     ("probe outside", [("at: [0.6 m, 0.01 m]", "at: [1.02 m, 0.01 m]")], ["probe_p06_at", "no region"], []),
     ("cfl above 1", [("type: sdirk2", "type: hybrid, cfl: 1.5")], ["stepper_cfl", "(0,1]"], []),
     ("flip above 1", [("type: sdirk2", "type: hybrid, flip: 2")], ["stepper_flip", "[0,1]"], []),

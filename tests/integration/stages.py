@@ -83,6 +83,8 @@ static_blow = -20e3 * H / MODULUS * np.minimum(0.005 * np.arange(1, 21) / 0.02, 
 check("without inertia it follows the blow at once, from the begin of the stage on", np.max(np.abs(held / static_blow - 1)), 1e-3)
 let_go, fallen = (column("-stage_strike_" + o, v) for o, v in (("boundaries", "none"), ("boundaries_off", "base,left,right,wall,blow")))
 check_true("no boundaries at all, said in two ways: it falls", not different(let_go, fallen) and let_go.probe("top")["u_y_m"][-1] < -0.02)
+rest = column("-region_column_stress_geostatic", f"{NU / (1 - NU)}", "-bc_blow_normal_ramp", "20 kPa,21 kPa,0 s,1 s")
+check("a geostatic start is in balance with what acts in the first stage", np.max(np.abs(rest.probe("top")["u_y_m"][rest.time <= CENTURY])) / static, 1e-6)
 soft, firm = (column(*SLOW, *o).probe("top") for o in (("-stage_strike_materials", "column,soft"), ()))
 check("half the stiffness from the second stage on: twice the motion", abs(soft["u_y_m"][-1] / firm["u_y_m"][-1] - 2), 1e-3)
 still = column(*SLOW, "-stage_strike_materials", "column,soft", "-stage_strike_boundaries_off", "blow").probe("top")
