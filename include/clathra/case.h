@@ -9,10 +9,21 @@
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
 typedef struct {
+  PetscInt n;
+  double  *x; /* n x 2, m */
+} Points;
+
+typedef struct {
+  PetscInt n, *i; /* indices into a list of the case */
+} Names;
+
+typedef enum { SHAPE_BOX = 0, SHAPE_POLYGON, SHAPE_BELOW, SHAPE_CIRCLE } ShapeKind;
+
+typedef struct {
   char     name[64];
-  double   lower[CL_DIM], upper[CL_DIM]; /* m */
+  double   lower[CL_DIM], upper[CL_DIM]; /* m: the box, or bounds of another shape */
   PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
-  PetscInt material;                     /* index into Case.material */
+  PetscInt material;                     /* index into Case.material; -1: no particles, only cut out of others */
   /* initial state; hydrostatic: p grows with depth below `p_datum` (m, along gravity) */
   double pressure;     /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
   double temperature;  /* degC */
@@ -24,6 +35,11 @@ typedef struct {
   double datum;        /* m: coordinate against gravity where p = pressure */
   double geothermal,
       geothermal_datum; /* K/m below it, m (infinite: top of the body); T = temperature there and above */
+  ShapeKind shape;
+  Points    polygon;   /* closed by itself */
+  Points    below;     /* all under this line, down to `lower` */
+  double    circle[3]; /* centre and radius, m */
+  Names     minus;     /* regions whose shapes are cut out */
 } Region;
 
 typedef enum {
@@ -37,7 +53,7 @@ typedef enum {
   BC_FIXED,             /* grid plane: all velocities zero */
   BC_PLATE,             /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
   BC_TEMPERATURE,       /* grid plane: T, degC */
-  BC_REGION_TEMPERATURE /* nodes in a region's initial box: T, degC */
+  BC_REGION_TEMPERATURE /* nodes in a region's initial shape: T, degC */
 } BcType;
 
 /* What a probe writes; words in case_quantity. */
@@ -63,11 +79,12 @@ typedef struct {
   BcType type;
   bool   of_stage; /* times of the functions below count from the begin of the stage, not of the run */
   double zero;     /* s: where they count from */
-  /* faces: a side of a region's box (all regions when region = -1), optionally only the part inside [from,to] along it
-   */
+  /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
+     those on a line (side = SIDE_COUNT) */
   Side     side;
   PetscInt region;
   double   from, to; /* m, along the side; -inf, +inf by default */
+  Points   along;
   /* planes: nodes with coordinate `axis` equal to `position` */
   PetscInt axis;
   double   position;
@@ -96,6 +113,7 @@ typedef struct {
   Side     side;
   PetscInt region;   /* -1: all */
   double   from, to; /* m, along the side */
+  Points   along;    /* or those on this line */
 } Meter;
 
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;

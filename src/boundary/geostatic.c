@@ -51,7 +51,7 @@ static PetscErrorCode FillCell(const Case *c, const Grid *g, const Site *site, S
   a->ambient = AmbientPressure(&around, site->x, gradient);
   a->weight  = 2.0 * l * (q.density * CaseGravity(c) + s->up * gradient[v]);
   if ((site->faces >> side) & 1)
-    a->load = FaceLoad(c, (Side)side, site->region, site->x[1 - v], 0.0);
+    a->load = FaceLoad(c, (Side)side, site->region, site->x, 0.0);
   for (int k = 0; k < 3; k++) {
     a->S[k]     = axis.S[k];
     a->force[k] = 2.0 * l * axis.dS[k];

@@ -1,5 +1,6 @@
 /* What a user should know of a start that is out of balance with gravity; docs/equations.md, section 13. */
 #include "clathra/boundary.h"
+#include "clathra/shape.h"
 #include "clathra/tensor.h"
 
 #define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
@@ -53,6 +54,8 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {
     bool unstressed;
 
+    if (RegionEmpty(&c->region[k]))
+      continue;
     PetscCall(Unstressed(c, &c->region[k], &unstressed));
     if (!unstressed)
       continue;

@@ -1,6 +1,7 @@
 /* initial: initial states that are to be in balance with gravity. */
 #include "case_private.h"
 #include "clathra/particles.h"
+#include "clathra/shape.h"
 
 #define FAIL(region, key, ...)                                                                                         \
   do {                                                                                                                 \
@@ -9,10 +10,15 @@
     ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
   } while (0)
 
-static void Corner(const Region *g, int corner, double x[CL_DIM])
+/* A point at the greatest or the least height of a region. */
+static void Extreme(const Case *c, const Region *g, bool highest, double x[CL_DIM])
 {
-  x[0] = corner & 1 ? g->upper[0] : g->lower[0];
-  x[1] = corner & 2 ? g->upper[1] : g->lower[1];
+  const double sign = highest ? -1.0 : 1.0, gravity = CaseGravity(c),
+               along[CL_DIM] = {sign * c->gravity[0] / gravity, sign * c->gravity[1] / gravity};
+  const double far           = RegionHighest(g, along);
+
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = far * along[d];
 }
 
 double CaseTop(const Case *c)
@@ -20,31 +26,27 @@ double CaseTop(const Case *c)
   double top = -INFINITY, x[CL_DIM];
 
   for (PetscInt i = 0; i < c->nregion; i++) {
-    for (int corner = 0; corner < 4; corner++) {
-      Corner(&c->region[i], corner, x);
-      top = fmax(top, CaseHeight(c, x));
-    }
+    if (RegionEmpty(&c->region[i]))
+      continue;
+    Extreme(c, &c->region[i], true, x);
+    top = fmax(top, CaseHeight(c, x));
   }
   return top;
 }
 
-/* Pressure at the corners must stay positive. */
+/* Pressure at the top must stay positive. */
 static void CheckHydrostatic(Reader *r, const Case *c, const Region *g)
 {
-  double lowest = INFINITY, x[CL_DIM];
+  double x[CL_DIM];
 
   if (CaseGravity(c) == 0.0) {
     FAIL(g->name, "hydrostatic", "is yes but gravity is zero");
     return;
   }
-  for (int corner = 0; corner < 4; corner++) {
-    Corner(g, corner, x);
-    const double p = InitialWaterPressure(c, g, g->pressure, x);
-
-    lowest = isfinite(p) ? fmin(lowest, p) : -INFINITY;
-  }
-  if (lowest <= 0.0)
-    FAIL(g->name, "datum", "makes the pressure %g Pa at a corner; it must be positive", lowest);
+  Extreme(c, g, true, x);
+  const double p = InitialWaterPressure(c, g, g->pressure, x);
+  if (!isfinite(p) || p <= 0.0)
+    FAIL(g->name, "datum", "makes the pressure %g Pa at the top; it must be positive", p);
 }
 
 static void CheckGeothermal(Reader *r, const Case *c, const Region *g)
@@ -59,14 +61,14 @@ static void CheckGeothermal(Reader *r, const Case *c, const Region *g)
     FAIL(g->name, "geothermal", "is given but gravity, which says where depth is, is zero");
     return;
   }
-  for (int corner = 0; corner < 4; corner++) {
+  for (int highest = 0; highest < 2; highest++) {
     const double datum = isinf(g->geothermal_datum) ? CaseTop(c) : g->geothermal_datum;
 
-    Corner(g, corner, x);
+    Extreme(c, g, highest, x);
     coldest = fmin(coldest, g->temperature + g->geothermal * fmax(datum - CaseHeight(c, x), 0.0));
   }
   if (coldest <= -CL_ZERO_CELSIUS)
-    FAIL(g->name, "geothermal", "makes the temperature %g degC at a corner", coldest);
+    FAIL(g->name, "geothermal", "makes the temperature %g degC in the region", coldest);
 }
 
 static void CheckGeostatic(Reader *r, const Case *c, const Region *g)

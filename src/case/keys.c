@@ -40,6 +40,21 @@ static bool NeedsTemperature(const void *p)
   return ((const Bc *)p)->type != BC_INFLOW;
 }
 
+static bool NeedsBox(const void *p)
+{
+  const Region *r = (const Region *)p;
+
+  return !r->polygon.n && !r->below.n && isinf(r->circle[2]);
+}
+static bool BcNeedsSide(const void *p)
+{
+  return !((const Bc *)p)->along.n;
+}
+static bool MeterNeedsSide(const void *p)
+{
+  return !((const Meter *)p)->along.n;
+}
+
 /* ---------------------------------------------------------------- laws by name */
 #define LAW(Name, set_, types_, object, field)                                                                         \
   static bool Set##Name(Material *m, const char *type)                                                                 \
@@ -63,7 +78,7 @@ static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]   = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
 static const char *const surface_word[]   = {"free", "tied", NULL};
 static const char *const share_word[]     = {"nodes", "particles", NULL};
-static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
+static const char *const side_word[]      = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
 static const char *const axis_word[]      = {"x", "y", NULL};
 static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
@@ -93,6 +108,9 @@ const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convec
   ROW(T, name, KEY_CHOICE, member, 1, "", "", def, doc, .choices = words, ##__VA_ARGS__)
 #define NAME(T, name, member, def, group, doc, ...)                                                                    \
   ROW(T, name, KEY_NAME, member, 1, "", "", def, doc, .names = group, ##__VA_ARGS__)
+#define NAMES(T, name, member, group, doc, ...)                                                                        \
+  ROW(T, name, KEY_NAMES, member, 0, "", "", "", doc, .names = group, ##__VA_ARGS__)
+#define POINTS(T, name, member, doc, ...) ROW(T, name, KEY_POINTS, member, 0, "m", "", "", doc, ##__VA_ARGS__)
 /* a law is set by its function; the member is not used */
 #define LAWKEY(name, def, law_, doc) ROW(Material, name, KEY_LAW, porosity, 1, "", "", def, doc, .law = &law_)
 #define SCHEDULE(name, member, unit, range, def, types_, doc, ...)                                                     \
@@ -260,10 +278,17 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
-    REALS(Region, 2, "lower", lower, "m", "", NULL, "lower left corner of the body's box"),
-    REALS(Region, 2, "upper", upper, "m", "", NULL, "upper right corner"),
+    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials, or none: only to be cut out of others",
+         .word = "none", .shape = true),
+    POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
+    POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
+    REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true),
+    REALS(Region, 2, "lower", lower, "m", "", "none, none", "lower left corner of a box, or bounds of another shape",
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true),
+    REALS(Region, 2, "upper", upper, "m", "", "none, none", "upper right corner",
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true),
+    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one"),
     INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y"),
-    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials"),
     REAL(Region, "pressure", pressure, "Pa", "(0,1e10]", NULL, "initial mean pore pressure", .has = HAS_WATER),
     REAL(Region, "temperature", temperature, "degC", "(-273.15,1000]", NULL, "initial temperature",
          .has = HAS_HEAT | HAS_GAS),
@@ -296,7 +321,10 @@ static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
     BOOLEAN(Bc, "clock", of_stage, "run", "what times of its values count from: the begin of the run, or of each stage",
             .choices = clock_word),
-    CHOICE(Bc, "side", side, NULL, side_word, "side of the body, moves with it", .types = FACES),
+    POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",
+           .types = FACES),
+    CHOICE(Bc, "side", side, "none", side_word, "side of the body, moves with it",
+           WHEN(BcNeedsSide, "along is not given"), .types = FACES),
     NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
          .types = FACES | TYPE(BC_REGION_TEMPERATURE)),
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
@@ -342,7 +370,9 @@ static const Key probe_key[] = {
 };
 
 static const Key meter_key[] = {
-    CHOICE(Meter, "side", side, NULL, side_word, "side of the body, moves with it"),
+    POINTS(Meter, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side"),
+    CHOICE(Meter, "side", side, "none", side_word, "side of the body, moves with it",
+           WHEN(MeterNeedsSide, "along is not given")),
     NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
     REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),
     REAL(Meter, "to", to, "m", "", "end", "... to here", .word = "end"),
@@ -402,7 +432,7 @@ const GroupInfo case_group[GROUP_COUNT] = {
     {.prefix = "", .list = NULL, .noun = "case", .doc = "The scene", .size = sizeof(Case), .key = case_key},
     GROUP(Material, "mat_", "materials", "material", nmaterial, material, true, material_key, "Laws and constants"),
     GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
-          "Boxes of the body and their initial state"),
+          "Parts of the body, each of one shape, and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
     GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
     GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,

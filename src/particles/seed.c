@@ -1,80 +1,34 @@
-/* Initial particles: regular inside each cell of a region's box, with faces on the box's sides. */
+/* Initial particles: one at every place of a region's shape. */
 #include "clathra/particles.h"
+#include "clathra/shape.h"
 
-/* Particles along one axis of a box, which they fill exactly. */
-typedef struct {
-  PetscInt n;
-  double   from, spacing; /* m */
-} Fill;
-
-/* The box is cut into whole spacings: ppc per cell where the box follows the grid, the nearest number elsewhere. */
-static Fill FillAxis(const Grid *g, const Region *r, int d)
+void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM])
 {
-  Fill         f;
-  const double length = r->upper[d] - r->lower[d];
+  Lattice lattice;
 
-  f.n       = PetscMax((PetscInt)ceil(length / g->h[d] * (double)r->ppc[d] - 1e-6), 1);
-  f.from    = r->lower[d];
-  f.spacing = length / (double)f.n;
-  return f;
-}
-
-/* Sides of the box that no other region touches are surfaces. */
-static bool Touched(const Case *c, PetscInt region, const double x[])
-{
-  for (PetscInt k = 0; k < c->nregion; k++) {
-    const Region *r = &c->region[k];
-
-    if (k != region && x[0] >= r->lower[0] && x[0] <= r->upper[0] && x[1] >= r->lower[1] && x[1] <= r->upper[1])
-      return true;
-  }
-  return false;
-}
-
-static PetscInt FaceBits(const Case *c, PetscInt region, const PetscInt ij[], const PetscInt n[], const double x[],
-                         const double l[])
-{
-  PetscInt bits = 0;
-
-  for (int d = 0; d < CL_DIM; d++) {
-    for (int upper = 0; upper < 2; upper++) {
-      double outside[CL_DIM] = {x[0], x[1]};
-
-      if (ij[d] != (upper ? n[d] - 1 : 0))
-        continue;
-      outside[d] += (upper ? 1.0 : -1.0) * 1.001 * l[d];
-      if (!Touched(c, region, outside))
-        bits |= 1 << (2 * d + upper);
-    }
-  }
-  return bits;
-}
-
-void ParticlesInitialHalfLength(const Case *c, const Grid *g, PetscInt region, double l[CL_DIM])
-{
+  RegionLattice(c, region, &lattice);
   for (int d = 0; d < CL_DIM; d++)
-    l[d] = 0.5 * FillAxis(g, &c->region[region], d).spacing;
+    l[d] = 0.5 * lattice.spacing[d];
 }
 
 static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, SiteVisit visit,
                                   void *ctx)
 {
-  const Fill     fx = FillAxis(g, &c->region[region], 0), fy = FillAxis(g, &c->region[region], 1);
-  const PetscInt n[CL_DIM] = {fx.n, fy.n};
-  double         l[CL_DIM];
+  Lattice  lattice;
+  PetscInt ij[CL_DIM];
+  Site     site = {.region = region};
 
   PetscFunctionBeginUser;
-  ParticlesInitialHalfLength(c, g, region, l);
-  for (PetscInt j = 0; j < n[1]; j++) {
-    for (PetscInt i = 0; i < n[0]; i++) {
-      const PetscInt ij[CL_DIM] = {i, j};
-      const double   x[CL_DIM]  = {fx.from + ((double)i + 0.5) * fx.spacing, fy.from + ((double)j + 0.5) * fy.spacing};
-      const Site     site       = {.id     = (*id)++,
-                                   .region = region,
-                                   .faces  = FaceBits(c, region, ij, n, x, l),
-                                   .x      = {x[0], x[1]},
-                                   .l      = {l[0], l[1]}};
-
+  if (RegionEmpty(&c->region[region]))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  RegionLattice(c, region, &lattice);
+  ParticlesInitialHalfLength(c, region, site.l);
+  for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
+    for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
+      if (!RegionPlace(c, region, &lattice, ij, site.x))
+        continue;
+      site.id    = (*id)++;
+      site.faces = RegionFaces(c, region, &lattice, ij);
       PetscCall(visit(c, g, &site, ctx));
     }
   }
