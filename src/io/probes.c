@@ -179,7 +179,7 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
 static PetscErrorCode WriteRow(FILE *f, const Case *c, double t, const Fit *fit, PetscInt n, const double *value)
 {
   PetscFunctionBeginUser;
-  fprintf(f, "%.12e", t);
+  IoTime(c, f, t);
   for (PetscInt k = 0; k < n; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
       if (!Wanted(c, q))

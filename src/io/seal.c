@@ -98,7 +98,7 @@ static uint64_t HashSchedule(uint64_t h, const Schedule *s)
 static uint64_t HashBc(uint64_t h, const Bc *b)
 {
   h = INTS(h, b->type, b->side, b->region, b->axis, b->initial, b->natural, b->open, b->drained);
-  h = HashPoints(REALS(h, b->from, b->to, b->position, b->alpha), &b->along);
+  h = HashPoints(REALS(h, b->from, b->to, b->position, b->alpha, b->zero), &b->along);
   h = HashSchedule(HashSchedule(h, &b->value), &b->shear);
   return HashSchedule(HashSchedule(h, &b->phase[PHASE_W]), &b->phase[PHASE_G]);
 }
@@ -108,10 +108,8 @@ static uint64_t HashMeter(uint64_t h, const Meter *m)
   return HashPoints(REALS(INTS(h, m->side, m->region), m->from, m->to), &m->along);
 }
 
-uint64_t CaseFingerprint(const Case *c)
+static uint64_t HashScene(uint64_t h, const Case *c)
 {
-  uint64_t h = FNV_START;
-
   h = Reals(Reals(Reals(h, c->lower, CL_DIM), c->upper, CL_DIM), c->gravity, CL_DIM);
   h = REALS(h, c->gravity_ramp);
   h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, (int64_t)c->fields.has, c->nmaterial, c->nregion,
@@ -125,6 +123,21 @@ uint64_t CaseFingerprint(const Case *c)
     h = HashBc(h, &c->bc[k]);
   for (PetscInt k = 0; k < c->nmeter; k++)
     h = HashMeter(h, &c->meter[k]);
+  return h;
+}
+
+/* Of a case with stages: the scene of each, and when it begins. */
+uint64_t CaseFingerprint(const Case *c)
+{
+  uint64_t h = FNV_START;
+
+  if (!c->nstage)
+    return HashScene(h, c);
+  for (PetscInt k = 0; k < c->nstage; k++) {
+    const CaseStage *s = &c->stage[k];
+
+    h = INTS(HashScene(REALS(h, s->c.t_begin), &s->c), s->reset, s->c.inertia);
+  }
   return h;
 }
 
