@@ -3,6 +3,7 @@
 #pragma once
 
 #include "clathra/case.h"
+#include "clathra/skeleton.h"
 
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
 #define CL_PARTICLE_TABLE(X)                                                                                           \
@@ -69,6 +70,18 @@ static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
 static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 {
   return P->f[P_X + d][p] - (P->f[P_U] ? P->f[P_U + d][p] : 0.0);
+}
+
+/* History of the skeleton of the particles from `first` on; the set must have a solid. */
+static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first)
+{
+  SkeletonStore s;
+
+  for (int k = 0; k < 6; k++) {
+    s.sig[k]  = P->f[P_SIG + k] + first;
+    s.sig0[k] = P->f[P_SIG0 + k] + first;
+  }
+  return s;
 }
 
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */

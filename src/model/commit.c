@@ -214,10 +214,9 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   }
   f[P_LOGJ][p] += log(s->V / f[P_V][p]);
   f[P_V][p] = s->V;
-  for (int c = 0; c < 6; c++) {
-    f[P_SIG + c][p]  = s->sig[c];
-    f[P_SIG0 + c][p] = s->sig0[c];
-  }
+
+  const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+  SkeletonKeep(&store, p, &s->skeleton);
 }
 
 /* FLIP: velocities of skeleton, water, gas. */

@@ -212,9 +212,10 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
     h->m_star[k] = m->stage.m_star[3 * p + k];
     h->shift[k]  = Shift(m, p, r, F_PW + k);
   }
-  for (int s = 0; fs->solid && s < 6; s++) {
-    h->sig[s]  = m->P.f[P_SIG + s][p];
-    h->sig0[s] = m->P.f[P_SIG0 + s][p];
+  if (fs->solid) {
+    const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+
+    SkeletonTake(&store, p, &h->skeleton);
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     for (int i = 0; fs->phase[f] && i < 2; i++) {

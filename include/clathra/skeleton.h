@@ -1,0 +1,93 @@
+/* skeleton: the stress of one particle's skeleton behind one interface: strain increment and history in; stress,
+   history, tangent and dissipated work out.  Pure functions; every integrator calls the same ones, one particle at a
+   time (with the tangent) or over blocks.  docs/equations.md (14) and section 13. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include "clathra/material.h"
+#include "clathra/tensor.h"
+
+/* What a step does to the skeleton; the tangent is taken with respect to these numbers in this order. */
+enum {
+  SKELETON_THETA = 0,                     /* rotation of the step, rad */
+  SKELETON_STRAIN,                        /* logarithmic strain of the step (7): xx yy zz xy */
+  SKELETON_THERMAL = SKELETON_STRAIN + 4, /* linear thermal strain beta_sh (T - T_n)/3 */
+  SKELETON_E,                             /* Young's modulus now, Pa */
+  SKELETON_SH,                            /* hydrate saturation now */
+  SKELETON_IN
+};
+typedef struct {
+  double c, s;    /* cosine and sine of the rotation */
+  double e[4];    /* logarithmic strain xx yy zz xy (tensor component) */
+  double thermal; /* beta_sh (T - T_n)/3 */
+  double E_n, E;  /* Young's modulus at t_n and now, Pa */
+  double Sh;      /* hydrate saturation now */
+} SkeletonStep;
+
+typedef struct {
+  double sig[6], sig0[6]; /* effective stress and the initial one that turns with the body, Pa */
+} SkeletonHistory;
+
+typedef struct {
+  double sig[6], sig0[6];
+  double work; /* dissipated in the step, J per m^3 */
+} SkeletonState;
+
+/* Rows of the tangent: the six stresses (Pa), then the dissipated work. */
+enum { SKELETON_WORK = 6, SKELETON_OUT };
+typedef struct {
+  double d[SKELETON_OUT][SKELETON_IN];
+} SkeletonTangent;
+
+/* Where the history of particles stands: arrays over particles, null where a law does not hold it. */
+typedef struct {
+  double *sig[6], *sig0[6];
+} SkeletonStore;
+
+/* n particles of one material; the history is replaced.  Strain and rotation as in SkeletonStep, e_zz = 0. */
+typedef struct {
+  int           n;
+  const double *c, *s, *xx, *yy, *xy, *thermal, *E_n, *E, *Sh;
+  double       *work; /* [n], J/m^3; null: nobody asks */
+  SkeletonStore store;
+} SkeletonBlock;
+
+/* A law: its functions return false with *why pointing to a sentence; a shorter step mends that. */
+typedef struct {
+  const char *name;
+  bool (*update)(const Material *, const SkeletonHistory *, const SkeletonStep *, SkeletonState *, SkeletonTangent *,
+                 const char **why);
+  bool (*block)(const Material *, const SkeletonBlock *, const char **why);
+} SkeletonLaw;
+const SkeletonLaw *SkeletonLawOf(const Material *mat);
+
+/* t may be null. */
+static inline bool SkeletonUpdate(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d,
+                                  SkeletonState *s, SkeletonTangent *t, const char **why)
+{
+  return SkeletonLawOf(mat)->update(mat, h, d, s, t, why);
+}
+static inline bool SkeletonUpdateBlock(const Material *mat, const SkeletonBlock *b, const char **why)
+{
+  return SkeletonLawOf(mat)->block(mat, b, why);
+}
+
+/* The only functions that read and write the history of particle q. */
+static inline __attribute__((always_inline)) void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
+{
+#pragma GCC unroll 6
+  for (int k = 0; k < 6; k++) {
+    h->sig[k]  = f->sig[k][q];
+    h->sig0[k] = f->sig0[k][q];
+  }
+}
+static inline __attribute__((always_inline)) void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q,
+                                                               const SkeletonState *s)
+{
+#pragma GCC unroll 6
+  for (int k = 0; k < 6; k++) {
+    f->sig[k][q]  = s->sig[k];
+    f->sig0[k][q] = s->sig0[k];
+  }
+}
