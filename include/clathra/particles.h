@@ -75,7 +75,7 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 /* History of the skeleton of the particles from `first` on; the set must have a solid. */
 static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first)
 {
-  SkeletonStore s;
+  SkeletonStore s = {.eps = NULL};
 
   for (int k = 0; k < 6; k++) {
     s.sig[k]  = P->f[P_SIG + k] + first;

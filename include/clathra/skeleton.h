@@ -26,12 +26,25 @@ typedef struct {
 } SkeletonStep;
 
 typedef struct {
-  double sig[6], sig0[6]; /* effective stress and the initial one that turns with the body, Pa */
+  double sig[6], sig0[6]; /* effective stress at t_n and the initial one that turns with the body, Pa */
+  double eps;             /* deviatoric plastic strain that the stage starts from */
+  double plastic[4];      /* plastic strain since t_n that it starts from, xx yy zz xy, as the body lay at t_n (24) */
 } SkeletonHistory;
 
+/* Where on the yield surface a state was returned to. */
+typedef enum {
+  RETURN_ELASTIC = 0, /* it was not */
+  RETURN_FACE,
+  RETURN_EDGE,
+  RETURN_APEX,
+  RETURN_TENSION /* at the cut-off */
+} ReturnRegion;
+
 typedef struct {
-  double sig[6], sig0[6];
-  double work; /* dissipated in the step, J per m^3 */
+  double       sig[6], sig0[6];
+  double       eps, plastic[4]; /* as in the history, at the end of the stage */
+  double       work;            /* dissipated in the stage, J per m^3 */
+  ReturnRegion region;
 } SkeletonState;
 
 /* Rows of the tangent: the six stresses (Pa), then the dissipated work. */
@@ -42,7 +55,7 @@ typedef struct {
 
 /* Where the history of particles stands: arrays over particles, null where a law does not hold it. */
 typedef struct {
-  double *sig[6], *sig0[6];
+  double *sig[6], *sig0[6], *eps;
 } SkeletonStore;
 
 /* n particles of one material; the history is replaced.  Strain and rotation as in SkeletonStep, e_zz = 0. */
@@ -73,8 +86,9 @@ static inline bool SkeletonUpdateBlock(const Material *mat, const SkeletonBlock 
   return SkeletonLawOf(mat)->block(mat, b, why);
 }
 
-/* The only functions that read and write the history of particle q. */
-static inline __attribute__((always_inline)) void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
+/* The only functions that read and write the history of particle q; the stress alone is what every law holds. */
+static inline __attribute__((always_inline)) void SkeletonTakeStress(const SkeletonStore *f, ptrdiff_t q,
+                                                                     SkeletonHistory *h)
 {
 #pragma GCC unroll 6
   for (int k = 0; k < 6; k++) {
@@ -82,12 +96,25 @@ static inline __attribute__((always_inline)) void SkeletonTake(const SkeletonSto
     h->sig0[k] = f->sig0[k][q];
   }
 }
-static inline __attribute__((always_inline)) void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q,
-                                                               const SkeletonState *s)
+static inline __attribute__((always_inline)) void SkeletonKeepStress(const SkeletonStore *f, ptrdiff_t q,
+                                                                     const SkeletonState *s)
 {
 #pragma GCC unroll 6
   for (int k = 0; k < 6; k++) {
     f->sig[k][q]  = s->sig[k];
     f->sig0[k][q] = s->sig0[k];
   }
+}
+static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
+{
+  SkeletonTakeStress(f, q, h);
+  h->eps = f->eps ? f->eps[q] : 0.0;
+  for (int k = 0; k < 4; k++)
+    h->plastic[k] = 0.0;
+}
+static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)
+{
+  SkeletonKeepStress(f, q, s);
+  if (f->eps)
+    f->eps[q] = s->eps;
 }

@@ -41,7 +41,16 @@ INLINE void ElasticStress(const Elasticity *el, const SkeletonHistory *h, const 
 #pragma GCC unroll 6
   for (int k = 0; k < 6; k++)
     o->sig[k] = o->sig0[k] + r * rot[k] + (k < 4 ? d->E * unit[k < 4 ? k : 0] : 0.0);
-  o->work = 0.0;
+}
+
+/* What else belongs to a state that stayed elastic. */
+INLINE void ElasticEnd(const SkeletonHistory *h, SkeletonState *o)
+{
+  o->eps    = h->eps;
+  o->work   = 0.0;
+  o->region = RETURN_ELASTIC;
+  for (int k = 0; k < 4; k++)
+    o->plastic[k] = h->plastic[k];
 }
 
 void ElasticTangent(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonTangent *t);

@@ -1,5 +1,6 @@
 /* The laws of the skeleton by name, and the first of them, linear elasticity (14). */
 #include "elastic.h"
+#include "plastic.h"
 
 /* Derivatives of (14). */
 void ElasticTangent(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonTangent *t)
@@ -36,6 +37,7 @@ static bool Update_Elastic(const Material *mat, const SkeletonHistory *h, const 
 {
   (void)why;
   ElasticStress(&mat->elasticity, h, d, s);
+  ElasticEnd(h, s);
   if (t)
     ElasticTangent(&mat->elasticity, h, d, t);
   return true;
@@ -59,19 +61,20 @@ static bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const cha
     SkeletonHistory    h;
     SkeletonState      s;
 
-    SkeletonTake(&B.store, q, &h);
+    SkeletonTakeStress(&B.store, q, &h);
     ElasticStress(&el, &h, &d, &s);
-    SkeletonKeep(&B.store, q, &s);
+    SkeletonKeepStress(&B.store, q, &s);
   }
   for (int q = 0; B.work && q < B.n; q++)
     B.work[q] = 0.0;
   return true;
 }
 
-static const SkeletonLaw laws[] = {{"none", Update_Elastic, Block_Elastic}};
+/* By PLASTICITY_... */
+static const SkeletonLaw laws[] = {{"none", Update_Elastic, Block_Elastic},
+                                   {"mohr_coulomb", Update_MohrCoulomb, Block_MohrCoulomb}};
 
 const SkeletonLaw *SkeletonLawOf(const Material *mat)
 {
-  (void)mat;
-  return &laws[0];
+  return &laws[mat->plasticity.type];
 }
