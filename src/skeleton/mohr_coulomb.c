@@ -2,6 +2,7 @@
    with the tangent; docs/equations.md, section 13. */
 #include "plastic.h"
 
+#define ROUND_OFF 1e-12 /* share of the cohesion: a state returned before is not returned again */
 #define NEAR_EQUAL 1e-8 /* principal stresses closer than this share of their size: limit of the spin part */
 
 /* In-plane principal stresses and direction of a stress xx yy zz xy; order[i]: 0, 1 in the plane, 2 out of it. */
@@ -102,7 +103,8 @@ static bool Yields(const Plasticity *law, double Sh, double eps, const double y[
   double   dy[3], dphi;
 
   StrengthEvaluate(law, Sh, eps, &k);
-  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > 0.0 || y[0] > law->cutoff;
+  const double round_off = ROUND_OFF * k.c + 1e-2 * ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
+  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > law->cutoff + round_off;
 }
 
 static bool ReturnToYield(const Trial3 *t, bool slopes, Returned *r)

@@ -173,7 +173,7 @@ static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *itera
     for (int i = 0; i < UNKNOWNS; i++)
       x[i] = to[i];
     if (close)
-      return size <= CLOSE * scale && x[X_L] >= 0.0;
+      return size <= CLOSE * scale && x[X_L] >= -CLOSE * scale;
   }
   return false;
 }
