@@ -128,18 +128,20 @@ static inline double ElasticityLameFactor(const Elasticity *law) /* lambda/E */
 }
 
 /* ---------------------------------------------------------------- strength: Mohr-Coulomb with hydrate and softening
-   Principal effective stresses y[0] >= y[1] >= y[2], tension-positive, Pa; angles in rad. */
+   Principal effective stresses y[0] >= y[1] >= y[2], tension-positive, Pa; angles in rad but for those that a case
+   gives. */
 enum { PLASTICITY_NONE = 0, PLASTICITY_MOHR_COULOMB };
 enum { FLOW_MENETREY_WILLAM = 0, FLOW_MOHR_COULOMB };
 typedef struct {
   int    type, flow;          /* PLASTICITY_..., FLOW_... */
   double c_max, c_min, c_res; /* cohesion: peak at Sh_max, its lower limit without hydrate, residual; Pa */
-  double phi_peak, phi_res;   /* friction, [0, pi/2) */
-  double psi_max, psi_min;    /* dilation at Sh_max and its lower limit; softens to zero */
+  double phi_peak, phi_res;   /* friction, deg, [0, 90) */
+  double psi_max, psi_min;    /* dilation at Sh_max and its lower limit, deg; softens to zero */
   double eta_h, Sh_max;       /* how strength falls with hydrate */
   double eta_s;               /* ... and with plastic strain */
   double eccentricity;        /* of the smooth potential in the meridian plane, of c_max */
   double cutoff;              /* largest tension, Pa; INFINITY: none */
+  double heat;                /* share of the plastic work that becomes heat, [0,1] */
 } Plasticity;
 
 /* Strength at a hydrate saturation and a deviatoric plastic strain, with slopes in both. */
@@ -149,8 +151,8 @@ typedef struct {
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s);
 
 /* F_eps/F_eps,allowed of a plastic state on the yield surface at mean stress sm, the largest over Lode angles, with
-   Young's modulus E and Poisson's ratio nu: at 1 or above the strength falls faster with plastic strain than the elastic
-   stress can follow (the denominator of the paper's (A.7) is not positive), and the point snaps back. */
+   Young's modulus E and Poisson's ratio nu: at 1 or above the strength falls faster with plastic strain than the
+   elastic stress can follow (the denominator of the paper's (A.7) is not positive), and the point snaps back. */
 double SofteningRatio(const Plasticity *law, double E, double nu, double Sh, double eps, double sm);
 
 /* F, Pa; slopes in y, phi (slope in c: -1). */

@@ -31,6 +31,7 @@
   X(P_PG0, HAS_GAS_PRESSURE, "p_g_initial", 1, "Pa", "initial gas pressure")                                           \
   X(P_RATE, HAS_WATER | HAS_HEAT, "rate", 4, "1/s", "of p_w, p_g (Pa/s), T (K/s) and S_h at the end of the last step") \
   X(P_SH, HAS_ALL, "S_h", 1, "-", "hydrate saturation")                                                                \
+  CL_SKELETON_TABLE(X)                                                                                                 \
   X(P_SW, HAS_WATER, "S_w", 1, "-", "water saturation")                                                                \
   X(P_PHI, HAS_ALL, "porosity", 1, "-", "")
 
@@ -75,7 +76,8 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 /* History of the skeleton of the particles from `first` on; the set must have a solid. */
 static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first)
 {
-  SkeletonStore s = {.eps = NULL};
+  SkeletonStore s = {.eps   = P->f[P_EPS] ? P->f[P_EPS] + first : NULL,
+                     .yield = P->f[P_YIELD] ? P->f[P_YIELD] + first : NULL};
 
   for (int k = 0; k < 6; k++) {
     s.sig[k]  = P->f[P_SIG + k] + first;

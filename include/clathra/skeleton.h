@@ -53,9 +53,18 @@ typedef struct {
   double d[SKELETON_OUT][SKELETON_IN];
 } SkeletonTangent;
 
+/* History that the laws hold besides the stress, all zero at the start: X(enum, fields, HDF5 name, components, unit,
+   meaning), rows of the particles' table. */
+#define CL_SKELETON_TABLE(X)                                                                                           \
+  X(P_EPS, HAS_PLASTIC, "eps_d_p", 1, "-", "deviatoric plastic strain so far")                                         \
+  X(P_YIELD, HAS_PLASTIC, "yield", 1, "-", "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension")       \
+  X(P_WP, HAS_PLASTIC, "plastic_work", 1, "J", "dissipated by the particle so far")                                    \
+  X(P_HEAT, HAS_PLASTIC, "plastic_heat", 1, "J", "hybrid: of the last step, which the next one gives to the nodes")    \
+  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")
+
 /* Where the history of particles stands: arrays over particles, null where a law does not hold it. */
 typedef struct {
-  double *sig[6], *sig0[6], *eps;
+  double *sig[6], *sig0[6], *eps, *yield;
 } SkeletonStore;
 
 /* n particles of one material; the history is replaced.  Strain and rotation as in SkeletonStep, e_zz = 0. */
@@ -115,6 +124,8 @@ static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHis
 static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)
 {
   SkeletonKeepStress(f, q, s);
-  if (f->eps)
-    f->eps[q] = s->eps;
+  if (f->eps) {
+    f->eps[q]   = s->eps;
+    f->yield[q] = (double)s->region;
+  }
 }

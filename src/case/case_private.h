@@ -5,9 +5,9 @@
 #include "clathra/case.h"
 
 /* ---------------------------------------------------------------- units.c */
-enum { UNIT_KG = 0, UNIT_M, UNIT_S, UNIT_K, UNIT_MOL, UNIT_DIMS };
+enum { UNIT_KG = 0, UNIT_M, UNIT_S, UNIT_K, UNIT_MOL, UNIT_DEG, UNIT_DIMS };
 typedef struct {
-  int    dim[UNIT_DIMS]; /* exponents of kg, m, s, K, mol */
+  int    dim[UNIT_DIMS]; /* exponents of kg, m, s, K, mol, deg */
   int    pow10;          /* SI value = number * factor / divisor * 10^pow10 */
   double factor, divisor;
   bool   celsius; /* the unit is degC alone: an absolute temperature, not a difference */
@@ -135,7 +135,8 @@ typedef struct {
 void               ListCreate(const char *text, List *list);
 void               ListDestroy(List *list);
 void               CaseCheck(Reader *r, const Case *c);
-void               CheckFlow(Reader *r, const Case *c, const Bc *b); /* flow.c: pressure and inflow */
+void               CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
+void               CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);

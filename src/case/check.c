@@ -138,6 +138,10 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
       FAIL(GROUP_REGION, g->name, "lower", "the region overlaps region %s", o->name);
   }
   CheckSaturations(r, c, g);
+  if (!r->bad[GROUP_MATERIAL] && c->material[g->material].plasticity.type != PLASTICITY_NONE &&
+      (g->stress[4] != 0.0 || g->stress[5] != 0.0))
+    FAIL(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
+         g->stress[5], "plasticity_law does not know");
   if (g->hydrostatic && c->fields.fluid && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
     CheckHydrostatic(r, c, g);
 }
@@ -214,6 +218,8 @@ void CaseCheck(Reader *r, const Case *c)
     CheckCase(r, c);
   for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckMaterial(r, &c->material[i]);
+  for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
+    CheckPlasticity(r, c, &c->material[i]);
   for (PetscInt i = 0; i < c->nregion && !bad[GROUP_REGION]; i++)
     CheckRegion(r, c, i);
   for (PetscInt i = 0; i < c->nbc && !bad[GROUP_BC]; i++) {

@@ -198,12 +198,26 @@ INLINE void ThermalStrain(const Explicit *e, const Set s, Run r, const Gathered 
   }
 }
 
+/* What plastic flow dissipated, J, and the share of it that the next step gives to the nodes as heat. */
+static void PlasticWork(Explicit *e, Run r, const double *work)
+{
+  double *const *f = e->m->P.f;
+
+  for (int q = 0; q < r.n; q++) {
+    const PetscInt p = r.p + q;
+
+    f[P_WP][p] += f[P_V][p] * work[q];
+    f[P_HEAT][p] = r.mat->plasticity.heat * f[P_V][p] * work[q];
+  }
+}
+
 /* New effective stress and history of the skeleton. */
 INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, const double *restrict T)
 {
-  const Elasticity *el = &r.mat->elasticity;
-  const double     *Sh = e->m->P.f[P_SH] + r.p;
-  double            E_old[BLOCK], E[BLOCK], phi[BLOCK] = {0.0}, thermal[BLOCK];
+  const Elasticity *el     = &r.mat->elasticity;
+  const double     *Sh     = e->m->P.f[P_SH] + r.p;
+  const bool        yields = r.mat->plasticity.type != PLASTICITY_NONE;
+  double            E_old[BLOCK], E[BLOCK], phi[BLOCK] = {0.0}, thermal[BLOCK], work[BLOCK];
   const char       *why = NULL;
 
   ElasticityYoungBatch(el, r.n, Sh, E_old);
@@ -221,9 +235,12 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .E_n     = E_old,
                                .E       = E,
                                .Sh      = Sh,
+                               .work    = yields ? work : NULL,
                                .store   = ParticlesSkeleton(&e->m->P, r.p)};
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
     ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
+  if (yields)
+    PlasticWork(e, r, work);
 }
 
 /* Positions and domains; false if a particle crosses half a cell or leaves the grid. */

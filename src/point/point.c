@@ -14,6 +14,7 @@ static void AddJet(double D[IN_COUNT], double c, const Jet *a, const Kinematics 
 
 typedef struct {
   double s[6], ds[6][IN_COUNT];
+  double work, dwork[IN_COUNT]; /* dissipated in the stage, J/m^3 */
 } Stress;
 
 /* Tangent of a number of the skeleton with its derivatives d, in the inputs of the particle. */
@@ -56,6 +57,9 @@ static ClStatus EffectiveStress(const Material *mat, const PointHistory *h, cons
     if (tangent)
       SkeletonRow(t.d[c], k, s, &thermal, out->ds[c]);
   }
+  out->work = state->work;
+  if (tangent)
+    SkeletonRow(t.d[SKELETON_WORK], k, s, &thermal, out->dwork);
   return CL_OK;
 }
 
@@ -240,6 +244,22 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
   }
 }
 
+/* Heat of plastic work (51): -theta V w/dt'. */
+static void PlasticHeat(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
+                        const Stress *st, bool tangent, PointOutput *o)
+{
+  const double share = -mat->plasticity.heat / h->dt;
+
+  if (mat->plasticity.type == PLASTICITY_NONE || share == 0.0)
+    return;
+  o->out[OUT_Q] += share * s->V.v * st->work;
+  if (!tangent)
+    return;
+  AddJet(o->D[OUT_Q], share * st->work, &s->V, k);
+  for (int q = 0; q < IN_COUNT; q++)
+    o->D[OUT_Q][q] += share * s->V.v * st->dwork[q];
+}
+
 static void FillState(const FieldSet *fs, const ScalarState *s, PointState *state)
 {
   state->V       = s->V.v;
@@ -292,6 +312,7 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   const Kinematics *k = &at_rest;
   ScalarState       s;
   Metric            metric;
+  Stress            st;
 
   if (fs->solid) {
     if (!KinematicsEvaluate(&in[IN_GRADU], &moved)) {
@@ -312,8 +333,6 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   FillState(fs, &s, state);
   PutScalar(OUT_M, JetShift(s.m_h, h->m_s), k, tangent, o);
   if (fs->solid) {
-    Stress st;
-
     const ClStatus strained = EffectiveStress(mat, h, k, &s, in[IN_T], tangent, &state->skeleton, &st, why);
     if (strained != CL_OK)
       return strained;
@@ -333,6 +352,8 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
     Heat(fs, mat, h, k, &s, in, tangent, o);
+    if (fs->solid)
+      PlasticHeat(mat, h, k, &s, &st, tangent, o);
   }
   return CheckFinite(fs, o, why);
 }

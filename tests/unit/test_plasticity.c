@@ -120,10 +120,10 @@ static Sample Point(double E, double nu, double c, double phi, double psi, const
                                  .c_max    = c,
                                  .c_min    = c,
                                  .c_res    = c,
-                                 .phi_peak = phi * DEG,
-                                 .phi_res  = phi * DEG,
-                                 .psi_max  = psi * DEG,
-                                 .psi_min  = psi * DEG,
+                                 .phi_peak = phi,
+                                 .phi_res  = phi,
+                                 .psi_max  = psi,
+                                 .psi_min  = psi,
                                  .cutoff   = INFINITY},
               .E_n            = E,
               .in[SKELETON_E] = E};
@@ -192,10 +192,10 @@ static Sample RandomSample(Rng *r, int flow, bool cutoff)
                           .flow         = flow,
                           .c_max        = c,
                           .c_min        = c * RngBetween(r, 0.1, 1.0),
-                          .phi_peak     = RngBetween(r, 20.0, 48.0) * DEG,
-                          .phi_res      = RngBetween(r, 10.0, 20.0) * DEG,
-                          .psi_max      = RngBetween(r, 5.0, 15.0) * DEG,
-                          .psi_min      = RngBetween(r, 1.0, 5.0) * DEG,
+                          .phi_peak     = RngBetween(r, 20.0, 48.0),
+                          .phi_res      = RngBetween(r, 10.0, 20.0),
+                          .psi_max      = RngBetween(r, 5.0, 15.0),
+                          .psi_min      = RngBetween(r, 1.0, 5.0),
                           .eta_h        = RngBetween(r, 0.0, 5.0),
                           .Sh_max       = 0.5,
                           .eta_s        = RngPick(r, 3) ? RngLog(r, 0.5, 10.0) : 0.0,
@@ -205,7 +205,7 @@ static Sample RandomSample(Rng *r, int flow, bool cutoff)
   if (RngPick(r, 10) == 0)
     k->psi_max = k->psi_min = 0.0;
   if (cutoff)
-    k->cutoff = RngBetween(r, 0.0, 0.9) * k->c_res / tan(k->phi_peak);
+    k->cutoff = RngBetween(r, 0.0, 0.9) * k->c_res / tan(k->phi_peak * DEG);
   q.h.eps              = RngPick(r, 2) ? RngLog(r, 1e-4, 1.0) : 0.0;
   q.in[SKELETON_THETA] = RngBetween(r, -1.0, 1.0);
   q.in[SKELETON_E]     = E;
@@ -540,8 +540,8 @@ static void TestBiaxialPath(void **state)
     k->flow         = FLOW_MENETREY_WILLAM;
     k->eccentricity = 0.1;
     k->c_min = k->c_res = 1e5;
-    k->phi_res          = 30.0 * DEG;
-    k->psi_min          = 5.0 * DEG;
+    k->phi_res          = 30.0;
+    k->psi_min          = 5.0;
     k->eta_s = k->eta_h = 5.0;
     k->Sh_max           = 0.443;
     q.in[SKELETON_SH]   = 0.4;
