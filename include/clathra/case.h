@@ -48,6 +48,9 @@ enum {
   QUANTITY_U,
   QUANTITY_STRESS,
   QUANTITY_X,
+  QUANTITY_EPS,  /* deviatoric plastic strain */
+  QUANTITY_MEAN, /* mean effective stress, compression-positive */
+  QUANTITY_Q,    /* deviatoric stress sqrt(3 J2) */
   QUANTITY_COUNT
 };
 

@@ -10,6 +10,14 @@ static inline double Trace6(const double s[6])
   return s[XX] + s[YY] + s[ZZ];
 }
 
+/* sqrt(3 J2) */
+static inline double Mises6(const double s[6])
+{
+  const double a = s[XX] - s[YY], b = s[YY] - s[ZZ], c = s[ZZ] - s[XX];
+
+  return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[XY] * s[XY] + s[YZ] * s[YZ] + s[XZ] * s[XZ]));
+}
+
 /* r = R s R^T for the rotation in the x-y plane with cosine c and sine n. */
 static inline __attribute__((always_inline)) void Turn6(const double s[6], double c, double n, double r[6])
 {

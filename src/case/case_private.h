@@ -146,7 +146,7 @@ static inline bool KeyNeeded(const Key *k, const Case *c)
 void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
 /* Fills Case.fields from fields_wanted, or derives it from the file; before materials and regions are read. */
 PetscErrorCode CaseFieldSet(Reader *r, Case *c);
-/* Which quantities probes write; after CaseFieldSet. */
+/* Which quantities probes write; after CaseFieldSetFinish. */
 void CaseQuantities(Reader *r, Case *c);
 /* What the set leaves open in the regions, and whether the case asks for more than it holds; after all is read. */
 void CaseFieldSetFinish(Reader *r, Case *c);

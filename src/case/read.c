@@ -229,11 +229,11 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
       PetscCall(NamesRead(&r, c, g));
     PetscCall(GroupRead(&r, c, GROUP_CASE));
     PetscCall(CaseFieldSet(&r, c));
-    CaseQuantities(&r, c);
     for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(GroupRead(&r, c, g));
     PetscCall(Derive(&r, c));
     CaseFieldSetFinish(&r, c);
+    CaseQuantities(&r, c);
     PetscCall(Leftovers(&r, c));
     CaseCheck(&r, c);
   }

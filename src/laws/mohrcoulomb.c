@@ -3,7 +3,7 @@
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* Peak at S_h (51), then softening (52). */
+/* (61), (62) */
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s)
 {
   double       dh, ds;
@@ -21,7 +21,7 @@ void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s)
   s->psi_S = LAW_DEG * law->eta_h * dh * (law->psi_max - law->psi_min) * left;
 }
 
-/* (48) for sorted stresses. */
+/* (63) */
 double MohrCoulombYield(double phi, double c, const double y[3], double dy[3], double *dphi)
 {
   const double si = sin(phi), co = cos(phi), half = 0.5 * (y[0] - y[2]), mean = 0.5 * (y[0] + y[2]);
@@ -33,7 +33,7 @@ double MohrCoulombYield(double phi, double c, const double y[3], double dy[3], d
   return (half + mean * si) / co - c;
 }
 
-/* Elliptic section (50b) without its factor R_mc(pi/3, phi): f(t, e), t = cos(theta), and slopes. */
+/* Elliptic section R_mw (64) without its factor R_mc(pi/3, phi): f(t, e), t = cos(theta), and slopes. */
 typedef struct {
   double f, t, tt, e, te;
 } Section;
@@ -57,7 +57,7 @@ static Section SectionOf(double t, double e)
   return s;
 }
 
-/* P = sqrt(m^2 + rho^2) + s_m tan(psi) with m = apex tan(psi), rho = R_mw q (49).  Stresses in any order: the potential
+/* P (64) with m = apex tan(psi).  Stresses in any order: the potential
    is isotropic.  Where q = 0 the deviatoric slope is that of a triaxial state, and its product with rho zero. */
 void MenetreyWillamGradient(double phi, double psi, double apex, const double y[3], FlowGradient *P)
 {

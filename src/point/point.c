@@ -244,7 +244,7 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
   }
 }
 
-/* Heat of plastic work (51): -theta V w/dt'. */
+/* (69) */
 static void PlasticHeat(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
                         const Stress *st, bool tangent, PointOutput *o)
 {

@@ -1,6 +1,7 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
 #include "clathra/run.h"
 #include "clathra/io.h"
+#include "plastic.h"
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -70,11 +71,12 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
 {
   const double t = s->state.t, end = s->model->c->t_end, done = (t - run->t_start) / (end - run->t_start);
   const double left     = done > 0.0 ? (Wall() - run->clock_start) * (1.0 - done) / done : 0.0;
-  char         cuts[32] = "", error[32] = "", solved[48];
+  char         cuts[32] = "", error[32] = "", solved[48], yields[128];
 
   PetscFunctionBeginUser;
   if (run->quiet)
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
   if (s->explicit)
@@ -84,8 +86,8 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "step %4" PetscInt_FMT ": t = %-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s, %.0f s left\n",
-                        s->state.step, t, 100.0 * done, info->dt, solved, error, cuts, left));
+                        "step %4" PetscInt_FMT ": t = %-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
+                        s->state.step, t, 100.0 * done, info->dt, solved, error, cuts, yields, left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,26 +177,27 @@ static PetscErrorCode LocalSummary(const Stepper *s, char text[512])
 static PetscErrorCode Summary(const Stepper *s, const Run *run)
 {
   const StepperState *z = &s->state;
-  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512];
+  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512], yields[256];
   ModelTotals         t;
   PetscMPIInt         rank;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   PetscCall(LocalSummary(s, local));
+  PetscCall(YieldSummary(s->model, yields));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
                           " Newton iterations, %.2f s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
-                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
+                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n%s"
                           "  results in %s\n",
                           s->model->c->title, z->t >= s->model->c->t_end * (1.0 - 1e-12) ? "finished" : "stopped", z->t,
                           s->scheme->name, z->step, z->failures_total, z->newton_total, Wall() - run->clock_start,
                           local, Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
-                          z->limited_total, s->model->c->output_dir));
+                          z->limited_total, yields, s->model->c->output_dir));
   PetscCall(PetscPrintf(s->model->grid.comm, "%s", text));
   PetscCallMPI(MPI_Comm_rank(s->model->grid.comm, &rank));
   if (rank == 0) {
@@ -316,6 +319,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           "a node\n",
                           c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "", c->stepper,
                           c->t_end, fields, c->fields.n));
+    PetscCall(PrintStrength(c, comm));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }

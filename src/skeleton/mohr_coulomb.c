@@ -164,7 +164,7 @@ static void Turn4(const double a[4], double c, double s, double r[4])
     r[k] = r6[k];
 }
 
-/* Takes the plastic strain `start` (as the body lies now) that the stage starts from off the trial stress. */
+/* (68): takes the plastic strain `start` (as the body lies now) that the stage starts from off the trial stress. */
 static void TakeOff(const Elasticity *el, double E, const double start[4], SkeletonState *s, SkeletonTangent *t)
 {
   const double start6[6] = {start[0], start[1], start[2], start[3], 0.0, 0.0};

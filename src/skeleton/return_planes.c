@@ -90,7 +90,7 @@ static bool Invert(int n, double M[PLANES][PLANES], double inv[PLANES][PLANES])
   return true;
 }
 
-/* y = y_tr - sum mu D b, a.y = h on the active planes. */
+/* (67) */
 static bool ClosestState(const Trial3 *t, const Strength *k, const Active *s, Closest *o)
 {
   double a[PLANES][3], da[PLANES][3], Db[PLANES][3], dDb[PLANES][3], M[PLANES][PLANES], inv[PLANES][PLANES];
@@ -147,7 +147,7 @@ static bool ClosestState(const Trial3 *t, const Strength *k, const Active *s, Cl
   return true;
 }
 
-/* The apex of equal stresses. */
+/* (66) */
 static void Apex(const Strength *k, Closest *o)
 {
   const double at = k->c / tan(k->phi), si = sin(k->phi);

@@ -20,7 +20,7 @@ double DeviatoricNorm(const double x[3], double dx[3])
   return n;
 }
 
-/* The equations at x = (y, multiplier in Pa, plastic strain), all in Pa: rows as unknowns, then matrices. */
+/* (65) at x = (y, multiplier in Pa, plastic strain), all in Pa: rows as unknowns, then matrices. */
 typedef struct {
   double r[UNKNOWNS], A[UNKNOWNS][UNKNOWNS], by[UNKNOWNS][BY_COUNT];
 } System;
