@@ -111,6 +111,7 @@ uint64_t CaseFingerprint(const Case *c)
   h = REALS(h, c->gravity_ramp);
   h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, (int64_t)c->fields.has, c->nmaterial, c->nregion,
            c->nbc);
+  h = REALS(HashSchedule(HashSchedule(h, &c->ambient_pressure), &c->ambient_level), c->ambient_density);
   for (PetscInt k = 0; k < c->nmaterial; k++)
     h = HashMaterial(h, &c->material[k]);
   for (PetscInt k = 0; k < c->nregion; k++)
