@@ -139,6 +139,7 @@ typedef struct {
   double psi_max, psi_min;    /* dilation at Sh_max and its lower limit, deg; softens to zero */
   double eta_h, Sh_max;       /* how strength falls with hydrate */
   double eta_s;               /* ... and with plastic strain */
+  double length, cell;        /* softening_length (0: none) and size of a cell, m: eta_s is scaled by cell/length */
   double eccentricity;        /* of the smooth potential in the meridian plane, of c_max */
   double cutoff;              /* largest tension, Pa; INFINITY: none */
   double heat;                /* share of the plastic work that becomes heat, [0,1] */
@@ -148,6 +149,10 @@ typedef struct {
 typedef struct {
   double c, phi, psi, c_e, phi_e, psi_e, c_S, psi_S;
 } Strength;
+static inline double SofteningRate(const Plasticity *law)
+{
+  return law->length > 0.0 ? law->eta_s * law->cell / law->length : law->eta_s;
+}
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s);
 
 /* F_eps/F_eps,allowed of a plastic state on the yield surface at mean stress sm, the largest over Lode angles, with

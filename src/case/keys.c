@@ -280,6 +280,10 @@ static const Key material_key[] = {
     REAL(Material, "plasticity_Sh_max", plasticity.Sh_max, "", "[0,1]", "1", "hydrate saturation of the ..._max"),
     REAL(Material, "plasticity_eta_s", plasticity.eta_s, "", "[0,1e6]", "0",
          "how fast strength falls with deviatoric plastic strain; 0 = never"),
+    REAL(Material, "plasticity_softening_length", plasticity.length, "m", "[0,1e6]", "0 m",
+         "width of a shear band that eta_s is meant for: eta_s is scaled by the size of a cell over it, so that what a "
+         "band "
+         "dissipates per area does not depend on the grid; 0 m = not scaled"),
     REAL(Material, "plasticity_eccentricity", plasticity.eccentricity, "", "(0,10]", "0.1",
          "of the smooth potential: how round its end is, of cohesion_max"),
     REAL(Material, "plasticity_tension_cutoff", plasticity.cutoff, "Pa", "[0,1e12]", "none",

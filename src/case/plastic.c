@@ -14,20 +14,22 @@ static void CheckSnapBack(Reader *r, const Material *m)
 {
   const Plasticity *p = &m->plasticity;
 
+  const double eta = SofteningRate(p);
+
   for (int k = 0; k <= 10; k++) {
     double       dE, worst = 0.0;
     const double Sh = 0.1 * k * p->Sh_max, E = ElasticityYoung(&m->elasticity, Sh, &dE);
     Strength     s;
 
-    for (double eps = 0.0; p->eta_s > 0.0 && eps <= 2.0 / p->eta_s; eps += 0.2 / p->eta_s)
+    for (double eps = 0.0; eta > 0.0 && eps <= 2.0 / eta; eps += 0.2 / eta)
       worst = fmax(worst, SofteningRatio(p, E, m->elasticity.nu, Sh, eps, 0.0));
     if (worst < 1.0)
       continue;
     StrengthEvaluate(p, Sh, 0.0, &s);
     FAIL("plasticity_eta_s",
          "= %g softens faster than the elastic stress can follow (a point snaps back) at S_h = %g, where E = %g Pa and "
-         "c_max - c_res = %g Pa: %.3g times too fast; lower eta_s, lower c_max - c_res, or raise E",
-         p->eta_s, Sh, E, s.c - p->c_res, worst);
+         "c_max - c_res = %g Pa: %.3g times too fast%s; lower eta_s, lower c_max - c_res, or raise E",
+         p->eta_s, Sh, E, s.c - p->c_res, worst, p->length > 0.0 ? " on these cells (softening_length)" : "");
     return;
   }
 }

@@ -73,7 +73,7 @@ static uint64_t HashMaterial(uint64_t h, const Material *m)
   h = REALS(h, e->E0, e->Eh, e->ah, e->bh, e->nu);
   if (p->type != PLASTICITY_NONE)
     h = REALS(INTS(h, p->type, p->flow), p->c_max, p->c_min, p->c_res, p->phi_peak, p->phi_res, p->psi_max, p->psi_min,
-              p->eta_h, p->Sh_max, p->eta_s, p->eccentricity, p->cutoff, p->heat);
+              p->eta_h, p->Sh_max, p->eta_s, p->length, p->eccentricity, p->cutoff, p->heat);
   return INTS(h, m->reacts, e->loss_only);
 }
 

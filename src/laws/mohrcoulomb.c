@@ -7,16 +7,17 @@
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s)
 {
   double       dh, ds;
-  const double hydrate = LawExp(law->eta_h * (Sh - law->Sh_max), &dh), left = LawExp(-law->eta_s * eps, &ds);
+  const double eta     = SofteningRate(law);
+  const double hydrate = LawExp(law->eta_h * (Sh - law->Sh_max), &dh), left = LawExp(-eta * eps, &ds);
   const double c_peak   = law->c_min + (law->c_max - law->c_min) * hydrate,
                psi_peak = law->psi_min + (law->psi_max - law->psi_min) * hydrate;
 
   s->c     = law->c_res + (c_peak - law->c_res) * left;
   s->phi   = LAW_DEG * (law->phi_res + (law->phi_peak - law->phi_res) * left);
   s->psi   = LAW_DEG * psi_peak * left;
-  s->c_e   = -law->eta_s * ds * (c_peak - law->c_res);
-  s->phi_e = -LAW_DEG * law->eta_s * ds * (law->phi_peak - law->phi_res);
-  s->psi_e = -LAW_DEG * law->eta_s * ds * psi_peak;
+  s->c_e   = -eta * ds * (c_peak - law->c_res);
+  s->phi_e = -LAW_DEG * eta * ds * (law->phi_peak - law->phi_res);
+  s->psi_e = -LAW_DEG * eta * ds * psi_peak;
   s->c_S   = law->eta_h * dh * (law->c_max - law->c_min) * left;
   s->psi_S = LAW_DEG * law->eta_h * dh * (law->psi_max - law->psi_min) * left;
 }

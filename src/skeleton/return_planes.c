@@ -288,8 +288,8 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r)
     double next            = slope > 0.0 ? eps - f / slope : lo - 1.0;
     if (!(next >= lo && next <= hi))
       next = 0.5 * (lo + hi);
-    if (fabs(next - eps) <= close || hi - lo <= 4.0 * close || t->law->eta_s == 0.0) {
-      r->eps = t->law->eta_s == 0.0 ? eps - f : eps;
+    if (fabs(next - eps) <= close || hi - lo <= 4.0 * close || SofteningRate(t->law) == 0.0) {
+      r->eps = SofteningRate(t->law) == 0.0 ? eps - f : eps;
       Finish(t, &o, &k, slope, by, y_eps, slopes, r);
       return slope > 0.0;
     }

@@ -568,11 +568,53 @@ static void TestBiaxialPath(void **state)
   assert_true(worst[0] < 2e-4 && worst[1] < 2e-5 && law < 1e-12);
 }
 
+/* ---------------------------------------------------------------- softening_length */
+/* Work per area that a band one cell wide dissipates in shear beyond what its residual strength takes, J/m^2; the band
+   slides 0.1 m. */
+static double BandWork(double cell, double length)
+{
+  const double zero[3] = {0.0};
+  Sample       q       = Point(1e8, 0.3, 1e5, 0.0, 0.0, zero);
+  double       work    = 0.0;
+
+  q.mat.plasticity.c_res  = 2e4;
+  q.mat.plasticity.c_min  = 2e4;
+  q.mat.plasticity.Sh_max = 0.0;
+  q.mat.plasticity.eta_s  = 10.0;
+  q.mat.plasticity.length = length;
+  q.mat.plasticity.cell   = cell;
+  for (int k = 0; k < 4000; k++) {
+    const double  slip = 0.1 / cell / 4000.0; /* shear strain gamma of the step */
+    SkeletonState s;
+
+    q.in[SKELETON_STRAIN + 3] = 0.5 * slip;
+    assert_true(Go(&q, q.in, &s, NULL));
+    work += cell * (s.work - (s.eps > q.h.eps ? 2e4 * slip : 0.0));
+    memcpy(q.h.sig, s.sig, sizeof(s.sig));
+    q.h.eps = s.eps;
+  }
+  return work;
+}
+
+static void TestSofteningLength(void **state)
+{
+  const double coarse = BandWork(0.02, 0.01), fine = BandWork(0.01, 0.01), finer = BandWork(0.005, 0.01);
+  const double plain[2] = {BandWork(0.01, 0.0), BandWork(0.005, 0.0)};
+
+  (void)state;
+  printf("softening of a band: %.4g, %.4g, %.4g J/m^2 on cells of 20, 10, 5 mm with a length of 10 mm; without %.4g, "
+         "%.4g\n",
+         coarse, fine, finer, plain[0], plain[1]);
+  assert_true(fabs(coarse / fine - 1.0) < 0.02 && fabs(finer / fine - 1.0) < 0.02);
+  assert_true(fabs(plain[0] / fine - 1.0) < 1e-12 && fabs(plain[1] / plain[0] - 0.5) < 0.05);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestPotential),    cmocka_unit_test(TestKnownPoints),
-                                     cmocka_unit_test(TestYieldSurface), cmocka_unit_test(TestTangent),
-                                     cmocka_unit_test(TestTurned),       cmocka_unit_test(TestBiaxialPath)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestPotential),      cmocka_unit_test(TestKnownPoints),
+                                     cmocka_unit_test(TestYieldSurface),   cmocka_unit_test(TestTangent),
+                                     cmocka_unit_test(TestTurned),         cmocka_unit_test(TestBiaxialPath),
+                                     cmocka_unit_test(TestSofteningLength)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -82,7 +82,7 @@ for name, (options, bar) in RUNS.items():
     want, got = np.array(reference(strain(run), 400)), state(run)
     error = np.abs(got / want - 1)
     rows.append([name, *got, error[:3].max(), error[3]])
-    judge("P1", f"oedometer with softening, {name}: stress and plastic strain at the same strain", error.max(), bar)
+    judge("strength", f"oedometer with softening, {name}: stress and plastic strain at the same strain", error.max(), bar)
 table(["integrator", "syy", "sxx", "szz", "eps_d_p", "error of stress", "of plastic strain"], rows)
 
 def settlement(kind, n):
@@ -96,6 +96,6 @@ for kind, low, high in (("euler", 0.9, 1.1), ("sdirk2", 1.85, 2.15)):
     lines += [[kind, int(n), e] for n, e in zip(steps, error)]
     for value in found:
         check(f"order of {kind} on a plastic path", value, (low, high))
-    judge("P2", f"order of {kind} on a plastic path", found[-1], (low, high))
+    judge("strength", f"order of {kind} on a plastic path", found[-1], (low, high))
 table(["integrator", "steps", "error of the settlement (m)"], lines)
 finish()
