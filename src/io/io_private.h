@@ -115,7 +115,7 @@ PetscErrorCode GatherInts(Gather *g, const PetscInt *local, PetscInt *sorted);
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
-#define CHECKPOINT_VERSION 4
+#define CHECKPOINT_VERSION 5
 #define FNV_START UINT64_C(14695981039346656037)
 uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes); /* FNV-1a, 64 bits */
 /* Physics of a case: grid, gravity, basis, regions, materials, boundary conditions, meters, and what stages

@@ -60,6 +60,7 @@ static uint64_t HashMaterial(uint64_t h, const Material *m)
   const Permeability *a = &m->permeability;
   const Kinetics     *q = &m->kinetics;
   const Elasticity   *e = &m->elasticity;
+  const Plasticity   *p = &m->plasticity;
 
   h = REALS(h, m->porosity, m->gas.M, m->mu_w, m->mu_g, m->c_s, m->c_h, m->c_w, m->c_g);
   h = REALS(h, m->kappa_s, m->kappa_h, m->kappa_w, m->kappa_g, m->latent.C0, m->latent.C1);
@@ -70,6 +71,9 @@ static uint64_t HashMaterial(uint64_t h, const Material *m)
   h = REALS(h, q->K0, q->dE, q->A_geo, q->M_h, q->M_w, q->M_g, q->N_h);
   h = REALS(Text(h, q->equilibrium.type), q->equilibrium.A1, q->equilibrium.A2, q->equilibrium.A3);
   h = REALS(h, e->E0, e->Eh, e->ah, e->bh, e->nu);
+  if (p->type != PLASTICITY_NONE)
+    h = REALS(INTS(h, p->type, p->flow), p->c_max, p->c_min, p->c_res, p->phi_peak, p->phi_res, p->psi_max, p->psi_min,
+              p->eta_h, p->Sh_max, p->eta_s, p->length, p->eccentricity, p->cutoff, p->heat);
   return INTS(h, m->reacts, e->loss_only);
 }
 

@@ -1,5 +1,6 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
 #include "run_private.h"
+#include "plastic.h"
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -72,7 +73,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
 {
   const double t_begin = s->model->c->t_begin;
   double       done, left;
-  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "";
+  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "", yields[128];
 
   PetscFunctionBeginUser;
   if (run->quiet)
@@ -81,6 +82,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   StepperStageWords(s, stage);
   if (t_begin > 0.0)
     PetscCall(PetscSNPrintf(begin, sizeof(begin), "%g s + ", t_begin));
+  PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
   if (s->explicit)
@@ -90,9 +92,9 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s, %.0f s left\n",
+                        "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
                         stage, s->state.step, begin, s->state.t - t_begin, 100.0 * done, info->dt, solved, error, cuts,
-                        left));
+                        yields, left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,19 +185,20 @@ static PetscErrorCode LocalSummary(const Stepper *s, char text[512])
 static PetscErrorCode Summary(const Stepper *s, const Run *run)
 {
   const StepperState *z = &s->state;
-  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512], *stages;
+  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512], yields[256], *stages;
   ModelTotals         t;
   PetscMPIInt         rank;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   PetscCall(LocalSummary(s, local));
+  PetscCall(YieldSummary(s->model, yields));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
                           " Newton iterations, %.2f s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
-                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
+                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n%s"
                           "  results in %s\n",
                           s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
                           s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
@@ -203,7 +206,7 @@ static PetscErrorCode Summary(const Stepper *s, const Run *run)
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
-                          z->limited_total, s->model->c->output_dir));
+                          z->limited_total, yields, s->model->c->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", text, stages));
   PetscCallMPI(MPI_Comm_rank(s->model->grid.comm, &rank));
@@ -328,6 +331,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           "a node\n",
                           c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "",
                           c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
+    PetscCall(PrintStrength(c, comm));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }
