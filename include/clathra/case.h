@@ -159,7 +159,9 @@ static inline const char *CaseNeedsImplicit(const Case *c)
    On bad input prints the error (file, key, value, unit, allowed range, nearest key) on rank 0, sets *ok = false and
    returns success; nothing has been written. */
 PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok);
-PetscErrorCode CaseWriteResolved(const Case *c, const char *path); /* SI, itself a case that runs to the same result */
+PetscErrorCode CaseWriteResolved(const Case *c, FILE *out); /* SI, itself a case that runs to the same result */
+/* What a restart must find unchanged: all keys but names, outputs, and the numerics of time and of the solver. */
+uint64_t       CaseFingerprint(const Case *c);
 PetscErrorCode CaseDestroy(Case *c);
 /* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
  * -help. */

@@ -37,6 +37,10 @@
 #define CL_PARTICLE_ENUM(id, has, name, nc, unit, doc) id, id##_LAST_ = id + (nc)-1,
 enum { CL_PARTICLE_TABLE(CL_PARTICLE_ENUM) P_COUNT };
 #undef CL_PARTICLE_ENUM
+/* Components of the largest variable. */
+#define CL_PARTICLE_SIZE(id, has, name, nc, unit, doc) char id[nc];
+enum { P_MOST = sizeof(union {CL_PARTICLE_TABLE(CL_PARTICLE_SIZE)}) };
+#undef CL_PARTICLE_SIZE
 
 typedef struct {
   const char *name, *unit, *doc;

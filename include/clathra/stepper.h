@@ -92,6 +92,9 @@ struct Stepper {
   /* called after every accepted step */
   PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
   void *monitor_ctx;
+  bool  stop;               /* ends the run after this step; the monitor may set it */
+  int (*interrupted)(void); /* signal that asks for the end, 0 for none; may be NULL */
+  int signal;               /* ... on any rank, which set stop */
   /* next time that a step must hit besides kinks and the end; INFINITY if none */
   double (*next_event)(const Stepper *s, void *ctx);
 };

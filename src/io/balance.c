@@ -14,20 +14,22 @@ static double Relative(double missing, double store)
   return store > 0.0 ? missing / store : missing;
 }
 
-static PetscErrorCode WriteRow(FILE *f, const StepperState *s, const StepInfo *info, const ModelTotals *now)
+static PetscErrorCode WriteRow(Output *out, const StepperState *s, const StepInfo *info, const ModelTotals *now)
 {
   const double water   = Relative(now->water + s->out[PHASE_W] - s->water0, s->water0);
   const double methane = Relative(now->methane + s->out[PHASE_G] - s->methane0, s->methane0);
   const double heat    = Relative(s->heat_gain - s->heat_in - s->heat_source, s->capacity0 * 1.0); /* of 1 K */
+  FILE        *f;
 
   PetscFunctionBeginUser;
+  PetscCall(RowBegin(out, &f));
   fprintf(f, "%" PetscInt_FMT ",%.12e,%.12e,%" PetscInt_FMT, s->step, s->t, info ? info->dt : 0.0,
           info ? info->newton : 0);
   fprintf(f, ",%.17g,%.17g,%.12e", now->water, s->out[PHASE_W], water);
   fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
   fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
   fprintf(f, ",%.17g\n", now->kinetic);
-  PetscCall(IoFlush(f, "balance.csv"));
+  PetscCall(RowEnd(out, TABLE_BALANCE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -39,7 +41,7 @@ PetscErrorCode OutputBalance(Output *out, const Model *m, const StepperState *s,
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(m, &now));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out->balance, s, info, &now);
+    ierr = WriteRow(out, s, info, &now);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

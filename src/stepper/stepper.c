@@ -74,11 +74,12 @@ PetscErrorCode StepperDestroy(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What errors are relative to: the largest change since the start; of pore pressure or stress, and of position. */
+/* What errors are relative to: the largest change since the start; of pore pressure or stress, and of position.  With
+   them ranks agree on a signal. */
 static PetscErrorCode UpdateScales(Stepper *s)
 {
   const Model *m      = s->model;
-  double       top[2] = {s->state.scale_p, s->state.scale_u};
+  double       top[3] = {s->state.scale_p, s->state.scale_u, s->interrupted ? s->interrupted() : 0};
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) { /* p_w, p_g, sigma'_xx, _yy, _zz against their initial values */
@@ -92,9 +93,11 @@ static PetscErrorCode UpdateScales(Stepper *s)
     for (PetscInt p = 0; p < m->P.n; p++)
       top[1] = fmax(top[1], fabs(m->P.f[P_U + d][p]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 2, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 3, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   s->state.scale_p = top[0];
   s->state.scale_u = top[1];
+  s->signal        = (int)top[2];
+  s->stop          = s->stop || s->signal;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,7 +161,7 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok)
 
   PetscFunctionBeginUser;
   *ok = true;
-  for (PetscInt n = 0; *ok && n < s->max_steps && s->state.t < end * (1.0 - 1e-12); n++)
+  for (PetscInt n = 0; *ok && !s->stop && n < s->max_steps && s->state.t < end * (1.0 - 1e-12); n++)
     PetscCall(s->scheme->advance(s, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,87 @@
+/* fingerprint: a number that two cases share when a checkpoint of one can be continued by the other.  It runs over the
+   key table, so that a new key belongs to it unless it is named here. */
+#include "case_private.h"
+#include <string.h>
+
+/* Keys of the case that a restart may change: names, what is written, the numerics of time and of the solver. */
+static const char *const may_change[] = {"title",   "fields",    "time_",       "stepper_", "stabilisation_",
+                                         "output_", "standard_", "checkpoint_", NULL};
+
+static bool MayChange(const Key *k)
+{
+  for (int i = 0; may_change[i]; i++) {
+    if (!strncmp(k->name, may_change[i], strlen(may_change[i])))
+      return true;
+  }
+  return false;
+}
+
+static uint64_t HashReals(uint64_t h, const double *v, size_t n)
+{
+  for (size_t i = 0; i < n; i++) {
+    const double x = v[i] + 0.0; /* -0 is 0 */
+
+    h = HashBytes(h, &x, sizeof x);
+  }
+  return h;
+}
+
+static uint64_t HashText(uint64_t h, const char *text)
+{
+  return text ? HashBytes(h, text, strlen(text) + 1) : HashBytes(h, "", 1);
+}
+
+static uint64_t HashSchedule(uint64_t h, const Schedule *s)
+{
+  const int n = (int)s->n, steps = s->steps;
+
+  h = HashBytes(HashBytes(h, &n, sizeof n), &steps, sizeof steps);
+  return HashReals(HashReals(h, s->t, (size_t)s->n), s->y, (size_t)s->n);
+}
+
+static uint64_t HashKey(uint64_t h, const Key *k, const char *instance)
+{
+  const char *place = instance + k->offset;
+  const int   yes   = k->kind == KEY_BOOL && *(const bool *)place;
+
+  switch (k->kind) {
+  case KEY_REAL:
+    return HashReals(h, (const double *)place, (size_t)k->count);
+  case KEY_INT:
+  case KEY_NAME:
+    return HashBytes(h, place, (size_t)k->count * sizeof(PetscInt));
+  case KEY_CHOICE:
+    return HashBytes(h, place, sizeof(int));
+  case KEY_BOOL:
+    return HashBytes(h, &yes, sizeof yes);
+  case KEY_TEXT:
+    return HashText(h, place);
+  case KEY_LAW:
+    return HashText(h, k->law->get((const Material *)instance));
+  case KEY_SCHEDULE:
+    return HashSchedule(h, (const Schedule *)place);
+  case KEY_REALS: /* output_times alone, which may change */
+    return h;
+  }
+  return h;
+}
+
+uint64_t CaseFingerprint(const Case *c)
+{
+  uint64_t h = HashBytes(FNV_START, &c->fields.has, sizeof c->fields.has);
+
+  for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
+    const PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
+
+    if (g == GROUP_PROBE)
+      continue;
+    h = HashBytes(h, &n, sizeof n);
+    for (PetscInt i = 0; i < n; i++) {
+      for (const Key *k = case_group[g].key; k->name; k++) {
+        if (g != GROUP_CASE || !MayChange(k))
+          h = HashKey(h, k, GroupInstance(c, g, i));
+      }
+    }
+  }
+  return h;
+}
