@@ -29,6 +29,7 @@ typedef struct {
 typedef struct {
   char    *name;
   PetscInt line, offset; /* offset in the text of a key that begins a line, else -1 */
+  bool     map;          /* other keys stand below it */
 } Mark;                  /* a key of the file, inner or leaf */
 
 typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_METER, GROUP_COUNT } Group;
