@@ -15,7 +15,7 @@ LAYERS = [
     ("material", ["material"], ["material"]),
     # Exceptions: plain data that many layers read.  case.h is what a scene says (regions, boundary conditions, probes),
     # with schedule.h, the function of time it holds; the reader of case files, src/case, stays at the bottom.
-    ("schedule", ["schedule"], ["schedule"]),
+    ("schedule", ["schedule", "ambient"], ["schedule"]),
     ("case data", ["case"], []),
     ("point", ["point", "kinematics"], ["point"]),
     ("grid", ["grid"], ["grid"]),

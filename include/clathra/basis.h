@@ -22,9 +22,15 @@ typedef struct {
   double lo, hi, length;
 } BasisDomain;
 
+/* Half-length that a domain acts with: a longer one would reach four nodes. */
+static inline double BasisHalfLength(double l, double h)
+{
+  return l < 0.5 * h ? l : 0.5 * h;
+}
+
 static inline BasisDomain BasisDomainOf(double x, double l, double lower, double h, double cells)
 {
-  const double s = (x - lower) / h, r = l / h, from = BasisSnap(s - r), to = BasisSnap(s + r);
+  const double s = (x - lower) / h, r = BasisHalfLength(l, h) / h, from = BasisSnap(s - r), to = BasisSnap(s + r);
   const bool   clipped = (s >= 0.0) & (s <= cells) & ((from < 0.0) | (to > cells));
   const double lo = clipped & (from < 0.0) ? 0.0 : from, hi = clipped & (to > cells) ? cells : to;
 

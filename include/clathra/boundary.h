@@ -1,6 +1,7 @@
 /* boundary: where a condition acts, on which field, as which function of time.  docs/equations.md, section 6. */
 #pragma once
 
+#include "clathra/ambient.h"
 #include "clathra/basis.h"
 #include "clathra/particles.h"
 #include "clathra/point.h"
@@ -9,9 +10,9 @@
 typedef struct {
   PetscInt particle;
   int      side;
-  double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring */
+  double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring; goes with the body */
+  double   x[CL_DIM]; /* middle of the face, m */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
-  double   area;
   PetscInt region;
   double   along;       /* initial coordinate of the particle along the side, m */
   double   N[CL_NODES]; /* weights, in the order of StencilExpand */
@@ -32,13 +33,14 @@ bool MeterCovers(const Meter *m, const Face *f);
 typedef struct {
   double *value, *shear, *phase[PHASE_COUNT]; /* [Case.nbc] */
   double  gravity[CL_DIM];
+  Ambient ambient;
 } BcValues;
 void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
 
-/* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where the
-   Darcy fluxes are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat into the
-   body (W). */
+/* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where Darcy
+   fluxes and displacement are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat
+   into the body (W). */
 typedef struct {
   double out[F_COUNT], D[F_COUNT][IN_COUNT];
   double outflow[PHASE_COUNT], heat_in;

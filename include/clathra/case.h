@@ -103,9 +103,11 @@ typedef struct {
   bool      axisymmetric;      /* x is the radius, y runs along the axis; all per full ring */
   char      fields_wanted[64]; /* auto, or the words of cl_field_word, or the name of a set */
   bool      inertia, one_pressure;
-  FieldSet  fields;          /* what the scene needs, as named or derived */
-  double    gravity[CL_DIM]; /* m/s^2 */
-  double    gravity_ramp;    /* s: it grows from zero over this time; 0 = at once */
+  FieldSet  fields;                          /* what the scene needs, as named or derived */
+  double    gravity[CL_DIM];                 /* m/s^2 */
+  double    gravity_ramp;                    /* s: it grows from zero over this time; 0 = at once */
+  Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
+  double    ambient_density;                 /* kg/m^3 */
   PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
   Material *material;
   Region   *region;

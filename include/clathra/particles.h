@@ -9,6 +9,7 @@
   X(P_X, HAS_ALL, "position", 2, "m", "centre")                                                                        \
   X(P_U, HAS_SOLID, "displacement", 2, "m", "from the initial position")                                               \
   X(P_L, HAS_ALL, "half_length", 2, "m", "of the GIMP domain")                                                         \
+  X(P_F, HAS_SOLID, "deformation_gradient", 4, "-", "in the plane, since the start: xx xy yx yy")                      \
   X(P_V, HAS_ALL, "volume", 1, "m^3", "current, per metre of thickness or of the full ring")                           \
   X(P_LOGJ, HAS_SOLID, "log_J", 1, "-", "logarithm of the volume ratio V/V_0")                                         \
   X(P_MS, HAS_ALL, "mass_solid", 1, "kg", "grains")                                                                    \
@@ -85,6 +86,8 @@ PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);
 /* Fills the regions of the case with particles, each on the rank that owns its cell, numbered the same whatever the
    number of ranks.  Collective. */
 PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P);
+/* Half-lengths of a region's particles at the start, m. */
+void ParticlesInitialHalfLength(const Case *c, const Grid *g, PetscInt region, double l[CL_DIM]);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);

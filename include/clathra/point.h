@@ -2,6 +2,7 @@
    Knows the laws, nothing of nodes, ranks or solvers.  Symbols and numbers of docs/equations.md. */
 #pragma once
 
+#include "clathra/ambient.h"
 #include "clathra/base.h"
 #include "clathra/fields.h"
 #include "clathra/jet.h"
@@ -19,27 +20,28 @@ enum {
   IN_GP    = 8,  /* gradient of p_w (2), of p_g (2), Pa/m */
   IN_GT    = 12, /* gradient of T (2), K/m */
   IN_J     = 14, /* Darcy flux of water (2), of gas (2), m/s */
-  IN_COUNT = 18
+  IN_U     = 18, /* displacement of the step (2), m */
+  IN_COUNT = 20
 };
 
 /* What a particle writes to its nodes. */
 enum {
   /* tested with G_I */
-  OUT_P    = 0,  /* [i][j] V_n (sigma' - p 1) cof F, N m/m */
-  OUT_PF   = 4,  /* [pi][i][j] V_n p_pi cof F */
-  OUT_FLUX = 12, /* [pi][j] mass flux Phi, kg m/s (18) */
-  OUT_HEAT = 16, /* [j] conducted heat, W m */
-  /* tested with H_I, in the radial rows */
-  OUT_HOOP  = 18, /* V_n (sigma'_tt - p) det F_2, N m */
-  OUT_HOOPF = 19, /* [pi] V_n p_pi det F_2 */
+  OUT_P    = 0, /* [i][j] V_n (sigma' - (p - p_a) 1) cof F, N m/m */
+  OUT_FLUX = 4, /* [pi][j] mass flux Phi, kg m/s (18) */
+  OUT_HEAT = 8, /* [j] conducted heat, W m */
+  /* tested with H_I, in the radial row */
+  OUT_HOOP = 10, /* V_n (sigma'_tt - (p - p_a)) det F_2, N m */
   /* tested with S_I */
-  OUT_M     = 21, /* m_s + m_h, m_w, m_g, kg */
-  OUT_MI    = 24, /* [pi] V rho_pi, kg */
-  OUT_D     = 26, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
-  OUT_DM    = 28, /* [pi] mass gained minus released by hydrate, kg */
-  OUT_C     = 30, /* heat capacity, J/K */
-  OUT_Q     = 31, /* advected minus released heat, W */
-  OUT_COUNT = 32
+  OUT_G     = 11, /* [pi][i] V_n cof F g_pi, N: force of a fluid's pressure gradient */
+  OUT_M     = 15, /* m_s + m_h, m_w, m_g, kg */
+  OUT_MI    = 18, /* [pi] V rho_pi, kg */
+  OUT_D     = 20, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
+  OUT_DM    = 22, /* [pi] mass gained minus released by hydrate, kg */
+  OUT_C     = 24, /* heat capacity, J/K */
+  OUT_Q     = 25, /* advected minus released heat, W */
+  OUT_A     = 26, /* [i] V grad p_a, N; where there is an ambient pressure */
+  OUT_COUNT = 28
 };
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
@@ -53,12 +55,15 @@ typedef struct {
   double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double bracket;  /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   double dt;       /* dt' of the stage */
+  const Ambient *ambient; /* at the end of the stage; NULL: no pressure around the body */
+  double         x[2];    /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
 /* State at the end of the stage. */
 typedef struct {
   double V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
   double sig[6], sig0[6], stretch[2];
+  double F[2][2]; /* of the step, in the plane */
   double rho[PHASE_COUNT], tau[PHASE_COUNT];
   bool   limited; /* hydrate positivity limiter acted */
 } PointState;

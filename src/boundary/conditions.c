@@ -3,6 +3,18 @@
 
 #define TEMPERATURE_PENALTY 20.0 /* of kappa_m/l: a prescribed face temperature is a strong convection */
 
+/* (42): the fluid around the body at time t. */
+static Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
+{
+  Ambient a = {.pressure = ScheduleValue(&c->ambient_pressure, t)};
+
+  for (int d = 0; d < CL_DIM; d++)
+    a.weight[d] = c->ambient_density * gravity[d];
+  a.head = -hypot(a.weight[0], a.weight[1]) * ScheduleValue(&c->ambient_level, t);
+  a.on   = a.pressure != 0.0 || c->ambient_density > 0.0;
+  return a;
+}
+
 void BcValuesEvaluate(const Case *c, double t, BcValues *v)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
@@ -13,12 +25,14 @@ void BcValuesEvaluate(const Case *c, double t, BcValues *v)
   }
   for (int d = 0; d < CL_DIM; d++)
     v->gravity[d] = t < c->gravity_ramp ? c->gravity[d] * t / c->gravity_ramp : c->gravity[d];
+  v->ambient = AmbientOf(c, t, v->gravity);
 }
 
 double BcNextKink(const Case *c, double t)
 {
   double next = t < c->gravity_ramp * (1.0 - 1e-12) ? c->gravity_ramp : INFINITY;
 
+  next = fmin(next, fmin(ScheduleNextKink(&c->ambient_pressure, t), ScheduleNextKink(&c->ambient_level, t)));
   for (PetscInt k = 0; k < c->nbc; k++) {
     next = fmin(next, ScheduleNextKink(&c->bc[k].value, t));
     next = fmin(next, ScheduleNextKink(&c->bc[k].shear, t));
@@ -39,48 +53,28 @@ static void Traction(double q, double s, const double a[2], const double da[2][M
   }
 }
 
-/* Closed face: the fluid's own pressure, extrapolated to the face. */
-static void Closed(const Face *f, int phase, const double a[2], const double da[2][MOTION_COUNT],
-                   const double in[IN_COUNT], FaceOutput *o)
-{
-  const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
-
-  for (int i = 0; i < 2; i++) {
-    double *D = o->D[F_VWX + 2 * phase + i];
-
-    o->out[F_VWX + 2 * phase + i] = p * a[i];
-    D[IN_P + phase]               = a[i];
-    for (int j = 0; j < 2; j++)
-      D[IN_GP + 2 * phase + j] = a[i] * f->r[j];
-    for (int k = 0; k < MOTION_COUNT; k++)
-      D[k] = p * da[i][k];
-  }
-}
-
 static double Density(const Material *mat, int phase, double p, double T, double *dp, double *dT)
 {
   return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, dp, dT) : GasDensity(&mat->gas, p, T, dp, dT);
 }
 
-/* Pressures outside, and their derivatives with respect to the particle's capillary pressure. */
+/* Pressures outside, and their derivatives with respect to the particle's capillary pressure and to the displacement of
+   the face (the same for both fluids). */
 typedef struct {
-  double p[PHASE_COUNT], dpc[PHASE_COUNT];
+  double p[PHASE_COUNT], dpc[PHASE_COUNT], du[CL_DIM];
 } Outside;
 
-/* Open face: prescribed pressure, outflow rho J . a. */
-static void Open(const Material *mat, int phase, const Outside *outside, const double a[2],
+/* Open face: outflow rho J . a, and in the fluid's momentum what the pressure outside differs from the fluid's own
+   there, which is extrapolated from the particle.  A closed face adds nothing. */
+static void Open(const Material *mat, const Face *f, int phase, const Outside *outside, const double a[2],
                  const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
   double        dp, dT;
-  const double  p = outside->p[phase], rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
+  const double *g = &in[IN_GP + 2 * phase], own = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
+  const double  p = outside->p[phase], jump = p - own, rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
   const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1];
   double       *D = o->D[F_PW + phase];
 
-  for (int i = 0; i < 2; i++) {
-    o->out[F_VWX + 2 * phase + i] = p * a[i];
-    for (int k = 0; k < MOTION_COUNT; k++)
-      o->D[F_VWX + 2 * phase + i][k] = p * da[i][k];
-  }
   o->out[F_PW + phase] = dt * rho * Ja;
   o->outflow[phase]    = rho * Ja;
   D[IN_T]              = dt * dT * Ja;
@@ -88,59 +82,95 @@ static void Open(const Material *mat, int phase, const Outside *outside, const d
     D[IN_J + 2 * phase + j] = dt * rho * a[j];
   for (int k = 0; k < MOTION_COUNT; k++)
     D[k] = dt * rho * (J[0] * da[0][k] + J[1] * da[1][k]);
+  for (int d = 0; d < CL_DIM; d++)
+    D[IN_U + d] = dt * dp * outside->du[d] * Ja;
+  for (int i = 0; i < 2; i++) {
+    double *row = o->D[F_VWX + 2 * phase + i];
+
+    o->out[F_VWX + 2 * phase + i] = jump * a[i];
+    row[IN_P + phase]             = -a[i];
+    for (int d = 0; d < CL_DIM; d++)
+      row[IN_U + d] = outside->du[d] * a[i];
+    for (int j = 0; j < 2; j++)
+      row[IN_GP + 2 * phase + j] = -a[i] * f->r[j];
+    for (int k = 0; k < MOTION_COUNT; k++)
+      row[k] = jump * da[i][k];
+  }
   for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
     const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
 
     D[IN_P + k] = dt * dp * dpk * Ja;
     for (int i = 0; i < 2; i++)
-      o->D[F_VWX + 2 * phase + i][IN_P + k] = dpk * a[i];
+      o->D[F_VWX + 2 * phase + i][IN_P + k] += dpk * a[i];
   }
 }
 
-static void Heat(const Case *c, const Face *f, const BcValues *v, const double in[IN_COUNT], double kappa,
-                 FaceOutput *o)
+/* Area of a face (vector a) over which fluxes per area act, and its derivatives. */
+static double Area(const double a[2], const double da[2][MOTION_COUNT], double darea[MOTION_COUNT])
+{
+  const double area = hypot(a[0], a[1]);
+
+  for (int k = 0; k < MOTION_COUNT; k++)
+    darea[k] = (a[0] * da[0][k] + a[1] * da[1][k]) / area;
+  return area;
+}
+
+static void Heat(const Case *c, const Face *f, const BcValues *v, const double a[2], const double da[2][MOTION_COUNT],
+                 const double in[IN_COUNT], double kappa, FaceOutput *o)
 {
   const double T       = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
-  double       in_flux = f->heat >= 0 ? v->value[f->heat] : 0.0, alpha = 0.0;
+  double       in_flux = f->heat >= 0 ? v->value[f->heat] : 0.0, alpha = 0.0, darea[MOTION_COUNT];
+  const double area = Area(a, da, darea);
 
   if (f->convection >= 0) {
     alpha = c->bc[f->convection].alpha;
     in_flux += alpha * (v->value[f->convection] - T);
   }
   if (f->temperature >= 0) {
-    const double strong = TEMPERATURE_PENALTY * kappa / (fabs(f->r[0]) + fabs(f->r[1]));
+    const double strong = TEMPERATURE_PENALTY * kappa / hypot(f->r[0], f->r[1]);
 
     alpha += strong;
     in_flux += strong * (v->value[f->temperature] - T);
   }
-  o->out[F_T]     = -in_flux * f->area;
-  o->heat_in      = in_flux * f->area;
-  o->D[F_T][IN_T] = alpha * f->area;
+  o->out[F_T]     = -in_flux * area;
+  o->heat_in      = in_flux * area;
+  o->D[F_T][IN_T] = alpha * area;
   for (int j = 0; j < 2; j++)
-    o->D[F_T][IN_GT + j] = alpha * f->area * f->r[j];
+    o->D[F_T][IN_GT + j] = alpha * area * f->r[j];
+  for (int k = 0; k < MOTION_COUNT; k++)
+    o->D[F_T][k] = -in_flux * darea[k];
+}
+
+/* Prescribed mean pressure of a face; that of the ambient fluid depends on where the face is. */
+static double MeanOutside(const Face *f, const BcValues *v, const double in[IN_COUNT], double du[CL_DIM])
+{
+  const double value = v->value[f->pressure], x[CL_DIM] = {f->x[0] + in[IN_U], f->x[1] + in[IN_U + 1]};
+
+  return isinf(value) ? AmbientPressure(&v->ambient, x, du) : value;
 }
 
 /* (31): p_w and p_g as prescribed, the face's initial ones, or from the mean with a capillary pressure: that of the
    face's initial state, or the particle's own (natural outflow). */
-static void OutsidePressures(const Case *c, PetscInt k, const BcValues *v, const Material *mat,
+static void OutsidePressures(const Case *c, const Face *f, const BcValues *v, const Material *mat,
                              const double p0[PHASE_COUNT], const double in[IN_COUNT], Outside *o)
 {
-  const Bc *b = &c->bc[k];
+  const Bc *b = &c->bc[f->pressure];
   double    ds;
 
-  *o = (Outside){{p0[PHASE_W], p0[PHASE_G]}, {0.0, 0.0}};
+  *o = (Outside){.p = {p0[PHASE_W], p0[PHASE_G]}};
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     if (b->phase[ph].n)
-      o->p[ph] = v->phase[ph][k];
+      o->p[ph] = v->phase[ph][f->pressure];
   }
   if (b->phase[PHASE_W].n || b->phase[PHASE_G].n || (b->initial && !b->natural))
     return;
   if (!(c->fields.has & HAS_GAS_PRESSURE)) {
-    o->p[PHASE_W] = o->p[PHASE_G] = b->initial ? p0[PHASE_W] : v->value[k];
+    o->p[PHASE_W] = o->p[PHASE_G] = b->initial ? p0[PHASE_W] : MeanOutside(f, v, in, o->du);
     return;
   }
   const double sg0   = RetentionGasShare(&mat->retention, p0[PHASE_G] - p0[PHASE_W], &ds);
-  const double mean0 = (1.0 - sg0) * p0[PHASE_W] + sg0 * p0[PHASE_G], mean = b->initial ? mean0 : v->value[k];
+  const double mean0 = (1.0 - sg0) * p0[PHASE_W] + sg0 * p0[PHASE_G];
+  const double mean  = b->initial ? mean0 : MeanOutside(f, v, in, o->du);
 
   if (b->natural) {
     const double pc = in[IN_P + PHASE_G] - in[IN_P + PHASE_W], sg = RetentionGasShare(&mat->retention, pc, &ds);
@@ -160,22 +190,19 @@ static bool Opens(const Bc *b, int phase)
   return b->open == OPEN_BOTH || (b->open == OPEN_WATER) == (phase == PHASE_W);
 }
 
-/* Rows of the fluids: open where a pressure is prescribed, else closed. */
+/* Rows of the fluids, where a pressure is prescribed. */
 static void Fluids(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                    const double a[2], const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt,
                    FaceOutput *o)
 {
   Outside outside;
 
-  if (f->pressure >= 0)
-    OutsidePressures(c, f->pressure, v, mat, p0, in, &outside);
+  if (f->pressure < 0)
+    return;
+  OutsidePressures(c, f, v, mat, p0, in, &outside);
   for (int phase = 0; phase < PHASE_COUNT; phase++) {
-    if (!c->fields.phase[phase])
-      continue;
-    if (f->pressure >= 0 && Opens(&c->bc[f->pressure], phase))
-      Open(mat, phase, &outside, a, da, in, dt, o);
-    else
-      Closed(f, phase, a, da, in, o);
+    if (c->fields.phase[phase] && Opens(&c->bc[f->pressure], phase))
+      Open(mat, f, phase, &outside, a, da, in, dt, o);
   }
 }
 
@@ -186,7 +213,8 @@ static void Inflow(const Case *c, const Face *f, const BcValues *v, const Materi
 {
   const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
   const double  T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
-  const double  q = v->phase[phase][f->inflow], area = hypot(a[0], a[1]);
+  double        darea[MOTION_COUNT];
+  const double  q = v->phase[phase][f->inflow], area = Area(a, da, darea);
   const bool    heats = c->fields.heat && c->bc[f->inflow].value.n && q > 0.0;
   const double  c_f = phase == PHASE_W ? mat->c_w : mat->c_g, dT_in = heats ? v->value[f->inflow] - T : 0.0;
   double        dp, dT, drate[IN_COUNT] = {0.0};
@@ -199,7 +227,7 @@ static void Inflow(const Case *c, const Face *f, const BcValues *v, const Materi
     drate[IN_GT + j]             = dT * q * area * f->r[j];
   }
   for (int k = 0; k < MOTION_COUNT; k++)
-    drate[k] = rho * q * (a[0] * da[0][k] + a[1] * da[1][k]) / area;
+    drate[k] = rho * q * darea[k];
   o->out[F_PW + phase] -= dt * rate;
   o->outflow[phase] -= rate;
   o->out[F_T] -= c_f * rate * dT_in;
@@ -221,6 +249,8 @@ void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Materia
   double a[2] = {f->n[0], f->n[1]}, da[2][MOTION_COUNT] = {{0.0}};
 
   *o = (FaceOutput){0};
+  if (a[0] == 0.0 && a[1] == 0.0)
+    return;              /* on the axis */
   if (c->fields.solid) { /* a = cof(F) n A */
     Kinematics k;
 
@@ -236,7 +266,7 @@ void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Materia
   }
   Fluids(c, f, v, mat, p0, a, da, in, dt, o);
   if (c->fields.heat)
-    Heat(c, f, v, in, kappa, o);
+    Heat(c, f, v, a, da, in, kappa, o);
   for (int phase = 0; f->inflow >= 0 && phase < PHASE_COUNT; phase++) {
     if (c->fields.phase[phase])
       Inflow(c, f, v, mat, phase, a, da, in, dt, o);

@@ -25,28 +25,53 @@ bool MeterCovers(const Meter *m, const Face *f)
          f->along <= m->to;
 }
 
-/* Hat function along the normal, the particle's own weights along the tangent.  A linear particle does not reach the
-   nodes of its face, which then acts at the particle. */
-static void Weights(const Grid *g, BasisType basis, const Stencil *s, int axis, double position, double N[CL_NODES])
+#define POINT 1e-5 /* of a cell: shorter than that along an axis a face counts as a point there */
+
+/* Weights along one axis of a face that spans 2 t about s (cells): of the interval inside the particle's domain, whose
+   nodes are the only ones it may use; a hat function where that is a point. */
+static void AxisWeights(const Case *c, const Grid *g, int d, double s, double t, const BasisDomain *dom, Axis *a)
 {
-  const Axis *x = &s->axis[0], *y = &s->axis[1];
-  Axis        hat;
+  const double lo = fmin(fmax(s - t, dom->lo), dom->hi), hi = fmin(fmax(s + t, dom->lo), dom->hi), h = g->h[d];
+  const double x = g->lower[d] + 0.5 * (lo + hi) * h, l = 0.5 * (hi - lo) * h;
+  double       hoop[3], r;
+
+  if (hi - lo < POINT)
+    BasisHat(x, g->lower[d], h, a);
+  else if (d == 0 && c->axisymmetric)
+    BasisRadius(BASIS_UGIMP, x, l, g->lower[d], h, g->cells[d], a, hoop, &r);
+  else
+    BasisAxis(BASIS_UGIMP, x, l, g->lower[d], h, g->cells[d], a);
+}
+
+/* Products of the axes' weights, in the order of StencilExpand.  A linear particle does not reach the nodes of its
+   face, which then acts at the particle. */
+static void Weights(const Case *c, const Grid *g, const Particles *P, const Stencil *st, const double half[CL_DIM],
+                    Face *f)
+{
+  const Axis *x = &st->axis[0], *y = &st->axis[1];
+  double      w[CL_DIM][3];
   int         n = 0;
 
-  if (basis == BASIS_LINEAR)
-    hat = s->axis[axis];
-  else
-    BasisHat(position, g->lower[axis], g->h[axis], &hat);
-  for (int b = 0; b < 3; b++) {
-    if (y->S[b] == 0.0 && y->dS[b] == 0.0)
-      continue;
-    for (int a = 0; a < 3; a++) {
-      if (x->S[a] == 0.0 && x->dS[a] == 0.0)
-        continue;
-      const PetscInt k = axis == 0 ? x->base + a - hat.base : y->base + b - hat.base;
-      const double   w = k >= 0 && k < 3 ? hat.S[k] : 0.0;
+  for (int d = 0; d < CL_DIM; d++) {
+    const double h = g->h[d], lower = g->lower[d];
+    Axis         a = st->axis[d];
 
-      N[n++] = w * (axis == 0 ? y->S[b] : x->S[a]);
+    if (c->basis != BASIS_LINEAR) {
+      const BasisDomain dom =
+          BasisDomainOf(P->f[P_X + d][f->particle], P->f[P_L + d][f->particle], lower, h, (double)g->cells[d]);
+
+      AxisWeights(c, g, d, (f->x[d] - lower) / h, half[d] / h, &dom, &a);
+    }
+    for (int k = 0; k < 3; k++) {
+      const PetscInt at = st->axis[d].base + k - a.base;
+
+      w[d][k] = at >= 0 && at < 3 ? a.S[at] : 0.0;
+    }
+  }
+  for (int b = 0; b < 3; b++) {
+    for (int a = 0; a < 3; a++) {
+      if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0))
+        f->N[n++] = w[0][a] * w[1][b];
     }
   }
 }
@@ -55,15 +80,21 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
 {
   const PetscInt p    = f->particle;
   const int      axis = side_axis[f->side], tangent = 1 - axis;
-  const double   arm = side_sign[f->side] * P->f[P_L + axis][p], position = P->f[P_X + axis][p] + arm;
-  const double   radius = P->f[P_X][p] + (axis == 0 ? arm : 0.0);
+  double         F[2][2] = {{1.0, 0.0}, {0.0, 1.0}}, l[CL_DIM], half[CL_DIM];
 
-  f->r[axis]    = position - AxisCentroid(&stencil->axis[axis], g->lower[axis], g->h[axis]);
-  f->r[tangent] = 0.0;
-  f->area       = 2.0 * P->f[P_L + tangent][p] * (c->axisymmetric ? 2.0 * M_PI * radius : 1.0);
-  f->n[axis]    = side_sign[f->side] * f->area;
-  f->n[tangent] = 0.0;
-  Weights(g, c->basis, stencil, axis, position, f->N);
+  ParticlesInitialHalfLength(c, g, f->region, l);
+  for (int k = 0; P->f[P_F] && k < 4; k++)
+    F[k / 2][k % 2] = P->f[P_F + k][p];
+  for (int d = 0; d < CL_DIM; d++) {
+    f->x[d] = P->f[P_X + d][p] + side_sign[f->side] * F[d][axis] * l[axis];
+    f->r[d] = f->x[d] - AxisCentroid(&stencil->axis[d], g->lower[d], g->h[d]);
+    half[d] = fabs(F[d][tangent]) * l[tangent];
+  }
+  /* a <- cof(F) a: the normal of the side goes along as F^-T, its length as the tangent */
+  const double A = 2.0 * l[tangent] * side_sign[f->side] * (c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0);
+  f->n[axis]     = A * F[tangent][tangent];
+  f->n[tangent]  = -A * F[axis][tangent];
+  Weights(c, g, P, stencil, half, f);
 }
 
 static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,

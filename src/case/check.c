@@ -47,6 +47,8 @@ static void CheckCase(Reader *r, const Case *c)
            c->lower[d]);
   if (c->axisymmetric)
     CheckRadius(r, c);
+  if (c->ambient_density > 0.0 && c->gravity[0] == 0.0 && c->gravity[1] == 0.0)
+    FAIL(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);
   if ((double)c->cells[0] * c->cells[1] > 1e8)
     FAIL(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
   if (Local(c) && c->dt > c->dt_max)

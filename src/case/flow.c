@@ -52,9 +52,17 @@ static void CheckPhases(Reader *r, const Case *c, const Bc *b)
   }
 }
 
+/* The word ambient wants a fluid around the body. */
+static void CheckAmbient(Reader *r, const Case *c, const Bc *b)
+{
+  if (b->value.n == 1 && isinf(b->value.y[0]) && IsZero(&c->ambient_pressure) && c->ambient_density == 0.0)
+    FAIL(b, "pressure", "is ambient, but the case has neither ambient_pressure nor ambient_density");
+}
+
 void CheckFlow(Reader *r, const Case *c, const Bc *b)
 {
   if (b->type == BC_PRESSURE) {
+    CheckAmbient(r, c, b);
     CheckField(r, c, b, "p_g", HAS_GAS, b->phase[PHASE_G].n);
     CheckField(r, c, b, "saturation", HAS_GAS, b->natural);
     CheckField(r, c, b, "phases", HAS_GAS, b->open == OPEN_GAS);

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { FORM_CONSTANT = 0, FORM_TABLE, FORM_RAMP, FORM_RATE, FORM_PIECEWISE };
 
@@ -81,7 +82,11 @@ static bool ScheduleParse(Reader *r, const char *shown, const char *text, const 
   s->t = calloc((size_t)list.n + 2, sizeof *s->t);
   s->y = calloc((size_t)list.n + 2, sizeof *s->y);
   if (form == FORM_CONSTANT) {
-    ok = RealRead(r, shown, text, k->unit, k->range, &y);
+    ok = true;
+    if (k->word && !strcasecmp(text, k->word))
+      y = INFINITY; /* as for numbers: what the word stands for */
+    else
+      ok = RealRead(r, shown, text, k->unit, k->range, &y);
     SchedulePoint(s, 0, y);
   } else if (form == FORM_TABLE || form == FORM_PIECEWISE)
     ok = ScheduleTable(r, shown, &list, k, s);

@@ -254,6 +254,8 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
 PetscErrorCode CaseDestroy(Case *c)
 {
   PetscFunctionBeginUser;
+  ScheduleDestroy(&c->ambient_pressure);
+  ScheduleDestroy(&c->ambient_level);
   for (PetscInt i = 0; i < c->nbc; i++) {
     ScheduleDestroy(&c->bc[i].value);
     ScheduleDestroy(&c->bc[i].shear);

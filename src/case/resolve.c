@@ -201,7 +201,7 @@ static void PrintKey(FILE *out, Group g, const Key *k)
   if (k->when)
     fprintf(out, "%s**required** when %s", k->def && *k->def ? "; " : "", k->when);
   fprintf(out, " | %s", k->doc);
-  if (k->word)
+  if (k->word && k->kind == KEY_REAL)
     fprintf(out, "%s`%s` = %sinfinite", *k->doc ? "; " : "", k->word + (*k->word == '-'),
             *k->word == '-' ? "minus " : "");
   PrintTypes(out, k);

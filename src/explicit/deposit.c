@@ -92,25 +92,50 @@ INLINE void Carried(const Explicit *e, Run r, int lane, const double *restrict w
   }
 }
 
+/* (42): ambient pressure and V times its gradient at the particles of a block. */
+typedef struct {
+  double p[BLOCK], weight[CL_DIM][BLOCK];
+} Around;
+
+INLINE void AmbientAt(const Explicit *e, Run r, Around *a)
+{
+  const Ambient *ambient = &e->m->bc.ambient;
+  double *const *f       = e->m->P.f;
+
+  for (int q = 0; q < r.n; q++)
+    a->p[q] = a->weight[0][q] = a->weight[1][q] = 0.0;
+  for (int q = 0; ambient->on && q < r.n; q++) {
+    const double x[CL_DIM] = {f[P_X][r.p + q], f[P_X + 1][r.p + q]};
+    double       g[CL_DIM];
+
+    a->p[q] = AmbientPressure(ambient, x, g);
+    for (int d = 0; d < CL_DIM; d++)
+      a->weight[d][q] = f[P_V][r.p + q] * g[d];
+  }
+}
+
 INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w, Values *v)
 {
-  double *const *f         = e->m->P.f;
+  double *const *f = e->m->P.f;
+  Around         a;
   const int      at        = A_Mix(s);
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
   const double *restrict vx = f[P_VS] + r.p, *restrict vy = f[P_VS + 1] + r.p;
   const double *restrict xx = f[P_SIG + XX] + r.p, *restrict yy = f[P_SIG + YY] + r.p,
                          *restrict xy = f[P_SIG + XY] + r.p;
 
+  AmbientAt(e, r, &a);
   for (int q = 0; q < r.n; q++) {
-    const double m = ms[q] + mh[q];
+    const double m = ms[q] + mh[q], p = w->p[q] - a.p[q];
 
-    v->value[q][at + MIX_FX] = v->value[q][at + MIX_FY] = 0.0;
-    v->value[q][at + MIX_M]                             = m;
-    v->value[q][at + MIX_VX]                            = m * vx[q];
-    v->value[q][at + MIX_VY]                            = m * vy[q];
-    v->force[0][q][at + MIX_FX]                         = -V[q] * (xx[q] - w->p[q]);
+    v->value[q][at + MIX_FX]    = -a.weight[0][q];
+    v->value[q][at + MIX_FY]    = -a.weight[1][q];
+    v->value[q][at + MIX_M]     = m;
+    v->value[q][at + MIX_VX]    = m * vx[q];
+    v->value[q][at + MIX_VY]    = m * vy[q];
+    v->force[0][q][at + MIX_FX] = -V[q] * (xx[q] - p);
     v->force[1][q][at + MIX_FX] = v->force[0][q][at + MIX_FY] = -V[q] * xy[q];
-    v->force[1][q][at + MIX_FY]                               = -V[q] * (yy[q] - w->p[q]);
+    v->force[1][q][at + MIX_FY]                               = -V[q] * (yy[q] - p);
   }
 }
 

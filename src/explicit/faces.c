@@ -109,11 +109,11 @@ void FacesForces(Explicit *e, double dt)
     Reach(e, f, true, &r);
     Inputs(e, f, in);
     Evaluate(e, f, in, dt, &o);
-    for (int ph = 0; ph < s.fluids; ph++) {
+    for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
       const double p = in[IN_P + ph] + in[IN_GP + 2 * ph] * f->r[0] + in[IN_GP + 2 * ph + 1] * f->r[1];
 
       for (int d = 0; d < CL_DIM; d++)
-        force[ph][d] = (e->o.particle_pressures ? 0.0 : p * f->n[d]) - o.out[F_VWX + 2 * ph + d];
+        force[ph][d] = -o.out[F_VWX + 2 * ph + d] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
     }
     for (int a = 0; a < r.n; a++) {
       double *row = &e->A[r.node[a] * width];

@@ -112,6 +112,28 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
   return fine;
 }
 
+/* Gradients go along with the motion, F^-T g. */
+INLINE void CarryGradients(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
+{
+  static const int grad[3] = {P_GW, P_GG, P_GT};
+  const int        at      = C_Vs(s);
+
+  for (int k = 0; k < Scalars(s); k++) {
+    double *restrict gx = e->m->P.f[grad[k < s.fluids ? k : 2]] + r.p, *restrict gy =
+                                                                           e->m->P.f[grad[k < s.fluids ? k : 2] + 1] +
+                                                                           r.p;
+
+    for (int q = 0; q < r.n; q++) {
+      const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
+                   Fyy = 1.0 + dt * g->dy[q][at + 1];
+      const double x = gx[q], y = gy[q];
+
+      gx[q] = (Fyy * x - Fyx * y) / n->J[q];
+      gy[q] = (Fxx * y - Fxy * x) / n->J[q];
+    }
+  }
+}
+
 /* Masses of the fluids: what the laws' slopes make of the increments, so that the sum over particles is what the nodal
    balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the fluids
    and from the heat. */
@@ -230,6 +252,24 @@ INLINE void OutOfPlane(Explicit *e, Run r, const Strain *n)
   }
 }
 
+/* F <- (1 + dt grad v) F. */
+INLINE void Deform(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  const int at = C_Vs(s);
+
+  for (int j = 0; j < 2; j++) {
+    double *restrict x = e->m->P.f[P_F + j] + r.p, *restrict y = e->m->P.f[P_F + 2 + j] + r.p;
+
+    for (int q = 0; q < r.n; q++) {
+      const double a = dt * (g->dx[q][at] * x[q] + g->dy[q][at] * y[q]),
+                   b = dt * (g->dx[q][at + 1] * x[q] + g->dy[q][at + 1] * y[q]);
+
+      x[q] += a;
+      y[q] += b;
+    }
+  }
+}
+
 /* Positions and domains; false if a particle crosses half a cell or leaves the grid. */
 INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
 {
@@ -249,11 +289,8 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
       fine &= (fabs(step) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper);
     }
     if (e->m->c->basis == BASIS_CPGIMP) {
-      for (int q = 0; q < r.n; q++) {
-        const double size = l[q] * n->stretch[d][q];
-
-        l[q] = size < 0.5 * h ? size : 0.5 * h;
-      }
+      for (int q = 0; q < r.n; q++)
+        l[q] *= n->stretch[d][q];
     }
   }
   return fine;
@@ -279,9 +316,11 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     return;
   if (!StrainOf(s, r.n, &g, dt, &n))
     ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
+  CarryGradients(e, s, r, &g, &n, dt);
   if (!StressOf(e, s, r, &g, &n, T))
     ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
   OutOfPlane(e, r, &n);
+  Deform(e, s, r, &g, dt);
   for (int q = 0; q < r.n; q++)
     f[P_LOGJ][r.p + q] += n.log_J[q];
   if (!Scalars(s)) {

@@ -210,7 +210,13 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
     f[P_X + d][p] += u[d];
     f[P_U + d][p] += u[d];
     if (m->c->basis == BASIS_CPGIMP)
-      f[P_L + d][p] = fmin(f[P_L + d][p] * s->stretch[d], 0.5 * m->grid.h[d]);
+      f[P_L + d][p] *= s->stretch[d];
+  }
+  for (int j = 0; j < 2; j++) { /* F <- (F of the step) F */
+    const double c[2] = {f[P_F + j][p], f[P_F + 2 + j][p]};
+
+    for (int i = 0; i < 2; i++)
+      f[P_F + 2 * i + j][p] = s->F[i][0] * c[0] + s->F[i][1] * c[1];
   }
   f[P_LOGJ][p] += log(s->V / f[P_V][p]);
   f[P_V][p] = s->V;
@@ -234,12 +240,22 @@ static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *
   }
 }
 
+/* A gradient on the configuration at the end of the step, F^-T G. */
+static void Forward(const PointState *s, const double G[CL_DIM], double g[CL_DIM])
+{
+  const double(*F)[2] = s->F, det = F[0][0] * F[1][1] - F[0][1] * F[1][0];
+
+  g[0] = (F[1][1] * G[0] - F[1][0] * G[1]) / det;
+  g[1] = (F[0][0] * G[1] - F[0][1] * G[0]) / det;
+}
+
 static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
                          const PointState *s)
 {
   static const int gradient[3] = {P_GW, P_GG, P_GT};
   const FieldSet  *fs          = &m->c->fields;
   double *const   *f           = m->P.f;
+  double           g[CL_DIM];
 
   if (fs->solid)
     WriteMotion(m, p, x, r, s);
@@ -248,8 +264,9 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
     if (!f[P_PW + k])
       continue;
     f[P_PW + k][p] = in[IN_P + k];
+    Forward(s, &in[k < 2 ? IN_GP + 2 * k : IN_GT], g);
     for (int d = 0; d < CL_DIM; d++)
-      f[gradient[k] + d][p] = in[(k < 2 ? IN_GP + 2 * k : IN_GT) + d];
+      f[gradient[k] + d][p] = g[d];
   }
   f[P_MH][p]  = s->m_h;
   f[P_SH][p]  = s->Sh;

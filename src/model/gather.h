@@ -80,7 +80,8 @@ static inline double NodeVolume(const Model *m, PetscInt I)
   return h0 * m->grid.h[1] * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
 }
 
-static inline void GatherSolid(const Model *m, const Reach *r, const double *x, double in[IN_COUNT])
+static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const double *x, const double *N,
+                               double in[IN_COUNT])
 {
   const int n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
 
@@ -94,6 +95,8 @@ static inline void GatherSolid(const Model *m, const Reach *r, const double *x, 
     }
     if (m->c->axisymmetric)
       in[IN_HOOP] += u[0] * r->H[a];
+    for (int i = 0; i < 2; i++)
+      in[IN_U + i] += (N ? N[a] : MotionWeight(m, p, r, a)) * u[i];
   }
 }
 
@@ -155,7 +158,8 @@ static inline void GatherFluid(const Model *m, int f, const Reach *r, const doub
   }
 }
 
-/* Inputs (1), (5), (19) of particle p from the nodal values x; N replaces S for the Darcy fluxes (NULL: S). */
+/* Inputs (1), (5), (19) of particle p from the nodal values x; N replaces S for the Darcy fluxes and the displacement
+   (NULL: the particle's own). */
 static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, const double *x, const double *N,
                                 double in[IN_COUNT])
 {
@@ -165,7 +169,7 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
     in[q] = 0.0;
   in[IN_T] = ParticleT(m, p);
   if (fs->solid)
-    GatherSolid(m, r, x, in);
+    GatherSolid(m, p, r, x, N, in);
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
@@ -208,6 +212,9 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->sw_n    = ParticleSw(m, p);
   h->dt      = m->stage.dt;
   h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
+  h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
+  for (int d = 0; h->ambient && d < CL_DIM; d++)
+    h->x[d] = AxisCentroid(&m->stencil[p].axis[d], m->grid.lower[d], m->grid.h[d]);
   for (int k = 0; k < 3; k++) {
     h->m_star[k] = m->stage.m_star[3 * p + k];
     h->shift[k]  = Shift(m, p, r, F_PW + k);

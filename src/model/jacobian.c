@@ -1,9 +1,9 @@
 /* The assembled part J2 of the Jacobian: block of one particle, block of one face. */
 #include "gather.h"
 
-/* One node as a particle or face sees it; NS replaces S for the Darcy fluxes. */
+/* One node as a particle or face sees it; NS and NU stand for S in the Darcy fluxes and in the displacement. */
 typedef struct {
-  double        S, NS, H;
+  double        S, NS, NU, H;
   const double *G, *w;
 } NodeWeights;
 
@@ -17,7 +17,7 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
     const int vs = PlaceVs(fs);
 
     for (int i = 0; i < 2; i++)
-      col[vs + i] = dt * (D[IN_GRADU + 2 * i] * G[0] + D[IN_GRADU + 2 * i + 1] * G[1]);
+      col[vs + i] = dt * (D[IN_GRADU + 2 * i] * G[0] + D[IN_GRADU + 2 * i + 1] * G[1] + D[IN_U + i] * b->NU);
     if (axisymmetric)
       col[vs] += dt * D[IN_HOOP] * b->H;
   }
@@ -67,8 +67,8 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
 }
 
 /* Rows of node a against the columns DB of node b (b's block starts at *out, row length ld). */
-static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const NodeFactors *k, double dt, double S,
-                        const double *G, double H, double DB[OUT_COUNT][F_COUNT], double *out, int ld)
+static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int n, const NodeFactors *k, double dt,
+                        double S, const double *G, double H, double DB[OUT_COUNT][F_COUNT], double *out, int ld)
 {
   for (int i = 0; fs->solid && i < 2; i++) {
     double *row = &out[(PlaceVs(fs) + i) * ld];
@@ -79,6 +79,8 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const Node
       for (int q = 0; fs->phase[f] && q < n; q++)
         row[q] += S * k->acc[1 + f][i] * DB[OUT_M + 1 + f][q];
     }
+    for (int q = 0; ambient && q < n; q++)
+      row[q] += S * DB[OUT_A + i][q];
     for (int q = 0; axisymmetric && i == 0 && q < n; q++)
       row[q] += H * DB[OUT_HOOP][q];
   }
@@ -89,10 +91,8 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, int n, const Node
       double *row = &out[(PlaceV(fs, f) + i) * ld];
 
       for (int q = 0; q < n; q++)
-        row[q] = S * k->acc[1 + f][i] * DB[OUT_MI + f][q] + k->drag[f] * k->J[f][i] * DB[OUT_D + f][q] -
-                 G[0] * DB[OUT_PF + 4 * f + 2 * i][q] - G[1] * DB[OUT_PF + 4 * f + 2 * i + 1][q];
-      for (int q = 0; axisymmetric && i == 0 && q < n; q++)
-        row[q] -= H * DB[OUT_HOOPF + f][q];
+        row[q] = S * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
+                 k->drag[f] * k->J[f][i] * DB[OUT_D + f][q];
     }
     const bool shared = f == PHASE_G && fs->one_pressure; /* the row that the water has begun */
     double    *row    = &out[PlaceP(fs, f) * ld];
@@ -150,7 +150,7 @@ static void Add(Outputs *list, int first, int count)
     list->out[list->n++] = first + k;
 }
 
-static void OutputsOf(const FieldSet *fs, bool axisymmetric, Outputs *list)
+static void OutputsOf(const FieldSet *fs, bool axisymmetric, bool ambient, Outputs *list)
 {
   list->n = 0;
   if (fs->solid) {
@@ -158,14 +158,14 @@ static void OutputsOf(const FieldSet *fs, bool axisymmetric, Outputs *list)
     Add(list, OUT_M, 1);
     if (axisymmetric)
       Add(list, OUT_HOOP, 1);
+    if (ambient)
+      Add(list, OUT_A, 2);
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    Add(list, OUT_PF + 4 * f, 4);
+    Add(list, OUT_G + 2 * f, 2);
     Add(list, OUT_FLUX + 2 * f, 2);
-    if (axisymmetric)
-      Add(list, OUT_HOOPF + f, 1);
     if (fs->solid)
       Add(list, OUT_M + 1 + f, 1);
     Add(list, OUT_MI + f, 1);
@@ -184,23 +184,27 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
                                                                   const double *x, const PointOutput *o, double *block)
 {
   const int    ld           = r->n * n;
-  const bool   axisymmetric = m->c->axisymmetric;
-  const double dt           = m->stage.dt;
+  const bool   axisymmetric = m->c->axisymmetric, ambient = m->bc.ambient.on;
+  const double dt = m->stage.dt;
   NodeFactors  factor[CL_NODES];
 
   for (int a = 0; a < r->n; a++)
     Factors(m, p, r->node[a], x, r->S[a], &factor[a]);
   for (int b = 0; b < r->n; b++) {
-    const NodeWeights at = {
-        .S = r->S[b], .NS = r->S[b], .H = axisymmetric ? r->H[b] : 0.0, .G = r->G[b], .w = &m->w[2 * r->node[b]]};
-    double DB[OUT_COUNT][F_COUNT];
+    const NodeWeights at = {.S  = r->S[b],
+                            .NS = r->S[b],
+                            .NU = MotionWeight(m, p, r, b),
+                            .H  = axisymmetric ? r->H[b] : 0.0,
+                            .G  = r->G[b],
+                            .w  = &m->w[2 * r->node[b]]};
+    double            DB[OUT_COUNT][F_COUNT];
 
     for (int k = 0; k < list->n; k++)
       Columns(fs, axisymmetric, dt, o->D[list->out[k]], &at, DB[list->out[k]]);
     for (int a = 0; a < r->n; a++) {
       double *out = &block[(a * ld + b) * n];
 
-      Rows(fs, axisymmetric, n, &factor[a], dt, r->S[a], r->G[a], axisymmetric ? r->H[a] : 0.0, DB, out, ld);
+      Rows(fs, axisymmetric, ambient, n, &factor[a], dt, r->S[a], r->G[a], axisymmetric ? r->H[a] : 0.0, DB, out, ld);
       if (a == b)
         Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, out, ld);
     }
@@ -257,7 +261,7 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x)
   Outputs list;
 
   PetscFunctionBeginUser;
-  OutputsOf(&m->c->fields, m->c->axisymmetric, &list);
+  OutputsOf(&m->c->fields, m->c->axisymmetric, m->bc.ambient.on, &list);
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  state;
@@ -283,6 +287,7 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
   for (int b = 0; b < r->n; b++) {
     const NodeWeights at = {.S  = r->S[b],
                             .NS = face->N[b],
+                            .NU = face->N[b],
                             .H  = m->c->axisymmetric ? r->H[b] : 0.0,
                             .G  = r->G[b],
                             .w  = &m->w[2 * r->node[b]]};

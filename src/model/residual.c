@@ -72,6 +72,8 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
     }
     for (int i = 0; i < 2; i++)
       fI[i] += r->S[a] * inertia[i] + G[0] * out[OUT_P + 2 * i] + G[1] * out[OUT_P + 2 * i + 1];
+    for (int i = 0; m->bc.ambient.on && i < 2; i++)
+      fI[i] += r->S[a] * out[OUT_A + i];
     if (m->c->axisymmetric)
       fI[0] += r->H[a] * out[OUT_HOOP];
   }
@@ -92,10 +94,7 @@ static void ScatterFluid(const Model *m, PetscInt p, int ph, const Reach *r, con
     DarcyFlux(m, I, ph, &x[I * fs->n], J);
     const double drag = DragWeight(m, p, I, ph, S) * out[OUT_D + ph];
     for (int i = 0; i < 2; i++)
-      row[i] += S * out[OUT_MI + ph] * acc[i] + drag * J[i] - G[0] * out[OUT_PF + 4 * ph + 2 * i] -
-                G[1] * out[OUT_PF + 4 * ph + 2 * i + 1];
-    if (m->c->axisymmetric)
-      row[0] -= r->H[a] * out[OUT_HOOPF + ph];
+      row[i] += S * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]) + drag * J[i];
     *MassRow(m, f, I, ph) +=
         S * out[OUT_DM + ph] - m->stage.dt * (G[0] * out[OUT_FLUX + 2 * ph] + G[1] * out[OUT_FLUX + 2 * ph + 1]);
   }

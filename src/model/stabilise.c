@@ -34,7 +34,8 @@ static void FillCells(const Model *m, double *fill)
     double       share[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
-      share[d] = FirstShare(&m->grid, d, m->P.f[P_X + d][p], m->P.f[P_L + d][p], &first[d]);
+      share[d] =
+          FirstShare(&m->grid, d, m->P.f[P_X + d][p], BasisHalfLength(m->P.f[P_L + d][p], m->grid.h[d]), &first[d]);
     for (int k = 0; k < 4; k++) {
       const double   w = (k % 2 ? 1.0 - share[0] : share[0]) * (k / 2 ? 1.0 - share[1] : share[1]);
       const PetscInt I = w > 0.0 ? CellIndex(m, first[0] + k % 2, first[1] + k / 2) : -1;
@@ -50,17 +51,13 @@ static void MarkSurface(const Model *m, double *fill)
 {
   for (PetscInt k = 0; k < m->nface; k++) {
     const Face *f    = &m->face[k];
-    const int   axis = f->side / 2;
-    const int   sign = f->side % 2 ? 1 : -1;
+    const int   axis = fabs(f->n[0]) > fabs(f->n[1]) ? 0 : 1;
     double      s[CL_DIM];
 
-    for (int d = 0; d < CL_DIM; d++) {
-      const double arm = d == axis ? sign * m->P.f[P_L + d][f->particle] : 0.0;
-
-      s[d] = (m->P.f[P_X + d][f->particle] + arm - m->grid.lower[d]) / m->grid.h[d];
-    }
-    if (fabs(s[axis] - round(s[axis])) < 1e-6)
-      continue; /* on a grid line: nothing is cut */
+    for (int d = 0; d < CL_DIM; d++)
+      s[d] = (f->x[d] - m->grid.lower[d]) / m->grid.h[d];
+    if (fabs(s[axis] - round(s[axis])) < 1e-6 || (f->n[0] == 0.0 && f->n[1] == 0.0))
+      continue; /* on a grid line, or the axis: nothing is cut */
     const PetscInt I = CellIndex(m, (PetscInt)floor(s[0]), (PetscInt)floor(s[1]));
     if (I >= 0)
       fill[2 * I + 1] = 1.0;

@@ -81,6 +81,8 @@ static PetscErrorCode InitialState(const Case *c, PetscInt region, Particles *P,
       Set(P, p, P_GG + d, mat->water.rho0 * c->gravity[d]);
     }
   }
+  Set(P, p, P_F, 1.0);
+  Set(P, p, P_F + 3, 1.0);
   P->f[P_V][p]   = V;
   P->f[P_PHI][p] = mat->porosity;
   P->f[P_SH][p]  = r->Sh;
@@ -128,13 +130,20 @@ static PetscInt FaceBits(const Case *c, PetscInt region, const PetscInt ij[], co
   return bits;
 }
 
+void ParticlesInitialHalfLength(const Case *c, const Grid *g, PetscInt region, double l[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    l[d] = 0.5 * FillAxis(g, &c->region[region], d).spacing;
+}
+
 static PetscErrorCode SeedRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, Particles *P)
 {
   const Fill     fx = FillAxis(g, &c->region[region], 0), fy = FillAxis(g, &c->region[region], 1);
   const PetscInt n[CL_DIM] = {fx.n, fy.n};
-  const double   l[CL_DIM] = {0.5 * fx.spacing, 0.5 * fy.spacing};
+  double         l[CL_DIM];
 
   PetscFunctionBeginUser;
+  ParticlesInitialHalfLength(c, g, region, l);
   for (PetscInt j = 0; j < n[1]; j++) {
     for (PetscInt i = 0; i < n[0]; i++, (*id)++) {
       const PetscInt ij[CL_DIM] = {i, j};

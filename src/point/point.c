@@ -63,12 +63,34 @@ static void EffectiveStress(const Material *mat, const PointHistory *h, const Ki
   }
 }
 
-/* out = V_n (sigma' - p 1) cof F, in the plane and around the axis (momentum of the mixture). */
-static void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
-                          bool tangent, PointOutput *o)
+/* Ambient pressure at the particle, with the force V grad p_a that its weight is (42). */
+typedef struct {
+  double p, g[2];
+} AmbientState;
+
+static AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const ScalarState *s,
+                              const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double     total[2][2] = {{st->s[XX] - s->p.v, st->s[XY]}, {st->s[XY], st->s[YY] - s->p.v}};
-  const double     hoop        = st->s[ZZ] - s->p.v;
+  const double x[2] = {h->x[0] + in[IN_U], h->x[1] + in[IN_U + 1]};
+  AmbientState a    = {0.0, {0.0, 0.0}};
+
+  if (!h->ambient)
+    return a;
+  a.p = AmbientPressure(h->ambient, x, a.g);
+  for (int i = 0; i < 2; i++) {
+    o->out[OUT_A + i] = s->V.v * a.g[i];
+    if (tangent)
+      AddJet(o->D[OUT_A + i], a.g[i], &s->V, k);
+  }
+  return a;
+}
+
+/* out = V_n (sigma' - (p - p_a) 1) cof F, in the plane and around the axis (momentum of the mixture). */
+static void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
+                          const AmbientState *a, bool tangent, PointOutput *o)
+{
+  const double     p = s->p.v - a->p, hoop = st->s[ZZ] - p;
+  const double     total[2][2] = {{st->s[XX] - p, st->s[XY]}, {st->s[XY], st->s[YY] - p}};
   static const int voigt[2][2] = {{XX, XY}, {XY, YY}};
 
   o->out[OUT_HOOP] = h->V * hoop * k->cof_hoop;
@@ -84,6 +106,8 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
           o->D[row][q] += c * ds[q];
         if (m == i)
           AddJet(o->D[row], -c, &s->p, k);
+        for (int d = 0; m == i && d < 2; d++)
+          o->D[row][IN_U + d] += c * a->g[d];
         for (int q = 0; q < MOTION_COUNT; q++)
           o->D[row][q] += h->V * total[i][m] * k->dcof[m][j][q];
       }
@@ -94,31 +118,29 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
   for (int q = 0; q < IN_J; q++)
     o->D[OUT_HOOP][q] += h->V * k->cof_hoop * st->ds[ZZ][q];
   AddJet(o->D[OUT_HOOP], -h->V * k->cof_hoop, &s->p, k);
+  for (int d = 0; d < 2; d++)
+    o->D[OUT_HOOP][IN_U + d] += h->V * k->cof_hoop * a->g[d];
   for (int q = 0; q < MOTION_HOOP; q++)
     o->D[OUT_HOOP][q] += h->V * hoop * k->dJ[q] / k->lambda;
 }
 
-/* out = V_n p_pi cof F (momentum of a fluid). */
+/* out = V_n cof F g_pi (momentum of a fluid). */
 static void FluidForces(const PointHistory *h, const Kinematics *k, int f, const double in[IN_COUNT], bool tangent,
                         PointOutput *o)
 {
-  const double Vp = h->V * in[IN_P + f];
+  const double *g = &in[IN_GP + 2 * f];
 
-  o->out[OUT_HOOPF + f] = Vp * k->cof_hoop;
-  for (int c = 0; c < 4; c++)
-    o->out[OUT_PF + 4 * f + c] = Vp * k->cof[c / 2][c % 2];
-  if (!tangent)
-    return;
-  for (int c = 0; c < 4; c++) {
-    double *D = o->D[OUT_PF + 4 * f + c];
+  for (int i = 0; i < 2; i++) {
+    const int row = OUT_G + 2 * f + i;
 
-    D[IN_P + f] += h->V * k->cof[c / 2][c % 2];
+    o->out[row] = h->V * (k->cof[i][0] * g[0] + k->cof[i][1] * g[1]);
+    if (!tangent)
+      continue;
+    for (int j = 0; j < 2; j++)
+      o->D[row][IN_GP + 2 * f + j] += h->V * k->cof[i][j];
     for (int q = 0; q < MOTION_COUNT; q++)
-      D[q] += Vp * k->dcof[c / 2][c % 2][q];
+      o->D[row][q] += h->V * (k->dcof[i][0][q] * g[0] + k->dcof[i][1][q] * g[1]);
   }
-  o->D[OUT_HOOPF + f][IN_P + f] += h->V * k->cof_hoop;
-  for (int q = 0; q < MOTION_HOOP; q++)
-    o->D[OUT_HOOPF + f][q] += Vp * k->dJ[q] / k->lambda;
 }
 
 /* K = cof^T cof / J (symmetric, from V F^-1 F^-T) and its derivatives. */
@@ -267,8 +289,8 @@ static ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char
   for (int r = OUT_FLUX; fs->fluid && r < OUT_HEAT; r++)
     sum += fs->phase[(r - OUT_FLUX) / 2] ? o->out[r] : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
-    sum += fs->phase[f] ? o->out[OUT_PF + 4 * f] + o->out[OUT_PF + 4 * f + 3] + o->out[OUT_D + f] + o->out[OUT_DM + f]
-                        : 0.0;
+    sum +=
+        fs->phase[f] ? o->out[OUT_G + 2 * f] + o->out[OUT_G + 2 * f + 1] + o->out[OUT_D + f] + o->out[OUT_DM + f] : 0.0;
   for (int r = OUT_P; fs->solid && r < OUT_P + 4; r++)
     sum += o->out[r];
   if (fs->heat)
@@ -319,12 +341,15 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
     Stress st;
 
     EffectiveStress(mat, h, k, &s, in[IN_T], tangent, state->sig0, &st);
-    MixtureForces(h, k, &s, &st, tangent, o);
+    const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);
+    MixtureForces(h, k, &s, &st, &a, tangent, o);
     for (int c = 0; c < 6; c++)
       state->sig[c] = st.s[c];
     for (int d = 0; d < 2; d++)
       state->stretch[d] = k->stretch[d];
   }
+  for (int i = 0; i < 4; i++)
+    state->F[i / 2][i % 2] = k->F[i / 2][i % 2];
   if (fs->fluid || fs->heat)
     MetricEvaluate(k, tangent, &metric);
   for (int f = 0; f < PHASE_COUNT; f++) {

@@ -180,6 +180,10 @@ static ClStatus CheckInputs(const FieldSet *fs, const double in[IN_COUNT], const
     *why = "pressure or temperature is not finite";
     return CL_NONFINITE;
   }
+  if (fs->solid && !isfinite(in[IN_U] + in[IN_U + 1])) {
+    *why = "a displacement is not finite";
+    return CL_NONFINITE;
+  }
   if (in[IN_T] <= -CL_ZERO_CELSIUS) {
     *why = "temperature fell to absolute zero";
     return CL_DOMAIN;

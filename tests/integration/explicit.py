@@ -18,7 +18,7 @@ LOAD = ("-mat_soft_permeability_k0", "1e-10 m^2", "-mat_firm_permeability_k0", "
         "-output_probe_every", "0.02 s", "-quiet")  # fmt: skip
 FIXED = ("-stepper_adapt", "no", "-checkpoint_every", "0.12 s")
 # kind: step, end; explicit drag ends where gas becomes immobile: its stable step falls with k_r
-TYPES = {"hybrid": (4e-5, 0.24), "explicit": (4e-5, 0.08)}
+TYPES = {"hybrid": (4e-5, 0.24), "explicit": (4e-5, 0.1)}
 
 
 def run(kind, *options, **keywords):

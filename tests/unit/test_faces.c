@@ -43,7 +43,7 @@ static void SceneInit(Scene *s, Rng *r)
   s->v.phase[PHASE_G] = s->phase[PHASE_G];
   s->p0[PHASE_W]      = 3e6;
   s->p0[PHASE_G]      = 3e6 + RngBetween(r, 1e4, 2e5);
-  s->face             = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .r = {0.01, 0.002}, .area = 2.0};
+  s->face             = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .x = {1.0, 2.0}, .r = {0.01, 0.002}};
   s->face.traction    = -1;
   s->face.pressure    = -1;
   s->face.heat        = -1;
@@ -66,6 +66,8 @@ static void Inputs(Rng *r, double in[IN_COUNT])
   }
   for (int k = 0; k < 2; k++)
     in[IN_GT + k] = RngBetween(r, -10.0, 10.0);
+  for (int k = 0; k < 2; k++)
+    in[IN_U + k] = RngBetween(r, -1e-3, 1e-3);
 }
 
 typedef struct {
@@ -94,8 +96,8 @@ static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
 /* Every entry of the tangent against differences; relative to the largest entry of its row times the column's scale. */
 static double WorstTangent(const Scene *s, const double in[IN_COUNT])
 {
-  static const double step[IN_COUNT] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e4,  1e4,  1e-1, 1e4,
-                                        1e4,  1e4,  1e4,  1e-1, 1e-1, 1e-6, 1e-6, 1e-6, 1e-6};
+  static const double step[IN_COUNT] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e4,  1e4,  1e-1, 1e4,  1e4,
+                                        1e4,  1e4,  1e-1, 1e-1, 1e-6, 1e-6, 1e-6, 1e-6, 1e-4, 1e-4};
   double              fd[IN_COUNT][RIDDERS_ROWS], err[RIDDERS_ROWS], worst = 0.0;
   FaceOutput          o;
 
@@ -148,6 +150,31 @@ static void Free(Scene *s, Rng *r)
   Prescribe(s, r, true, OPEN_BOTH);
 }
 
+/* What stands around the body: 1 GPa/m, so that differences see it. */
+static void AmbientFluid(Scene *s, Rng *r, bool natural)
+{
+  Prescribe(s, r, natural, OPEN_BOTH);
+  s->value[0] = INFINITY;
+  s->v.ambient =
+      (Ambient){.on = true, .pressure = 2e6, .weight = {3e8, -1e9}, .head = -1.7e9 - RngBetween(r, 5e6, 1e7)};
+}
+
+static void AmbientHeld(Scene *s, Rng *r)
+{
+  AmbientFluid(s, r, false);
+}
+
+static void AmbientFree(Scene *s, Rng *r)
+{
+  AmbientFluid(s, r, true);
+}
+
+static void HeatFlux(Scene *s, Rng *r)
+{
+  s->face.heat = 0;
+  s->value[0]  = RngBetween(r, -50.0, 50.0);
+}
+
 static void WaterOnly(Scene *s, Rng *r)
 {
   Prescribe(s, r, true, OPEN_WATER);
@@ -195,10 +222,18 @@ static void Everything(Scene *s, Rng *r)
 static const struct {
   const char *name;
   void (*set)(Scene *, Rng *);
-} condition[] = {
-    {"closed", Closed},         {"pressure, held", Held},  {"pressure, free", Free}, {"pressure, water", WaterOnly},
-    {"pressure, gas", GasOnly}, {"p_w and p_g", Separate}, {"inflow", Inflow},       {"warm inflow", WarmInflow},
-    {"all at once", Everything}};
+} condition[] = {{"closed", Closed},
+                 {"pressure, held", Held},
+                 {"pressure, free", Free},
+                 {"pressure, water", WaterOnly},
+                 {"pressure, gas", GasOnly},
+                 {"p_w and p_g", Separate},
+                 {"inflow", Inflow},
+                 {"warm inflow", WarmInflow},
+                 {"pressure, ambient", AmbientHeld},
+                 {"ambient, free", AmbientFree},
+                 {"heat flux", HeatFlux},
+                 {"all at once", Everything}};
 
 static void Tangents(void **state)
 {
@@ -239,7 +274,8 @@ static void MeanPressure(void **state)
       memset(in, 0, MOTION_COUNT * sizeof(*in)); /* a = n */
       Evaluate(&s, in, &o);
       for (int ph = 0; ph < PHASE_COUNT; ph++)
-        p[ph] = o.out[F_VWX + 2 * ph] / s.face.n[0];
+        p[ph] = o.out[F_VWX + 2 * ph] / s.face.n[0] + in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
+                in[IN_GP + 2 * ph + 1] * s.face.r[1]; /* the row has what it differs from the body's own */
       const double pc = natural ? in[IN_P + 1] - in[IN_P] : s.p0[1] - s.p0[0];
       const double sg = RetentionGasShare(&s.mat.retention, pc, &ds);
 
@@ -267,6 +303,8 @@ static void MassRows(void **state)
       for (int ph = 0; ph < PHASE_COUNT; ph++)
         assert_true(fabs(o.out[F_PW + ph] - DT * o.outflow[ph]) <= 1e-14 * fabs(o.out[F_PW + ph]));
       assert_true(fabs(o.out[F_T] + o.heat_in) <= 1e-14 * fabs(o.heat_in));
+      for (int q = 0; condition[k].set == Closed && q < F_COUNT; q++)
+        assert_true(o.out[q] == 0.0);
       if (condition[k].set == Closed || condition[k].set == GasOnly)
         assert_true(o.outflow[PHASE_W] == 0.0);
       if (condition[k].set == Closed || condition[k].set == WaterOnly)

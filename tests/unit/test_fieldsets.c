@@ -71,6 +71,8 @@ static bool IsInput(const FieldSet *fs, bool axisymmetric, int q)
 
   if (q < IN_P)
     return fs->solid && (q < IN_HOOP || axisymmetric);
+  if (q >= IN_U)
+    return fs->solid;
   if (q == IN_T || q == IN_GT || q == IN_GT + 1)
     return fs->heat;
   return fs->phase[fluid];
@@ -78,17 +80,15 @@ static bool IsInput(const FieldSet *fs, bool axisymmetric, int q)
 
 static bool IsOutput(const FieldSet *fs, int r)
 {
-  if (r < OUT_PF || r == OUT_HOOP)
+  if (r < OUT_FLUX || r == OUT_HOOP || r >= OUT_A)
     return fs->solid;
   if (r == OUT_M)
     return true;
   if (r == OUT_HEAT || r == OUT_HEAT + 1 || r == OUT_C || r == OUT_Q)
     return fs->heat;
-  if (r < OUT_FLUX)
-    return fs->phase[(r - OUT_PF) / 4];
-  if (r < OUT_HEAT)
-    return fs->phase[(r - OUT_FLUX) / 2];
-  return fs->phase[r < OUT_M ? r - OUT_HOOPF : r < OUT_MI ? r - OUT_M - 1 : (r - OUT_MI) % 2];
+  if (r < OUT_M)
+    return fs->phase[(r - (r < OUT_HEAT ? OUT_FLUX : OUT_G)) / 2];
+  return fs->phase[r < OUT_MI ? r - OUT_M - 1 : (r - OUT_MI) % 2];
 }
 
 static bool Outputs(void *ctx, double x, double y[RIDDERS_ROWS])
@@ -107,11 +107,15 @@ static bool Outputs(void *ctx, double x, double y[RIDDERS_ROWS])
   return true;
 }
 
+/* Its pressure changes within millimetres, so that differences see it. */
+static const Ambient sea = {.on = true, .pressure = 2e6, .weight = {3e8, -7e8}, .head = -5e6};
+
 static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
 {
   const double pw = RngBetween(r, 2e6, 6e6), pg = pw + RngBetween(r, 6e4, 2e5), T = RngBetween(r, 2.0, 8.0);
 
   *q               = (Point){.fs = fs, .mat = SedimentMaterial()};
+  q->h.ambient     = &sea;
   q->mat.reacts    = fs->phase[PHASE_G] && RngPick(r, 3);
   q->h.V           = 2e-4;
   q->h.T_n         = T + RngBetween(r, -1.0, 1.0) * fs->heat;
@@ -133,9 +137,11 @@ static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
   q->h.shift[1] = RngBetween(r, -1e4, 1e4) * fs->phase[PHASE_G];
   q->h.shift[2] = RngBetween(r, -0.1, 0.1) * fs->heat;
   for (int k = 0; k < IN_COUNT; k++) {
-    if (IsInput(fs, axisymmetric, k))
+    if (IsInput(fs, axisymmetric, k) && k < IN_U)
       q->in[k] = RngBetween(r, -1.0, 1.0) * (k < IN_P ? 0.1 : k < IN_GT ? 2e5 : k < IN_J ? 20.0 : 1e-6);
   }
+  for (int d = 0; fs->solid && d < CL_DIM; d++)
+    q->in[IN_U + d] = 4e-4 - 1e-3 * d;
   q->in[IN_P]     = fs->phase[PHASE_W] ? pw : 0.0;
   q->in[IN_P + 1] = fs->phase[PHASE_G] ? pg : 0.0;
   q->in[IN_T]     = T;
@@ -152,7 +158,13 @@ static double TangentError(Point *q, bool axisymmetric)
   if (PointEvaluate(q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) != CL_OK)
     return 0.0;
   for (int c = 0; c < IN_COUNT; c++) {
-    const double unit = c < IN_P ? 0.1 : c < IN_T ? 1e5 : c == IN_T ? 1.0 : c < IN_GT ? 2e5 : c < IN_J ? 20.0 : 1e-6;
+    const double unit = c < IN_P    ? 0.1
+                        : c < IN_T  ? 1e5
+                        : c == IN_T ? 1.0
+                        : c < IN_GT ? 2e5
+                        : c < IN_J  ? 20.0
+                        : c < IN_U  ? 1e-6
+                                    : 1e-3;
     double       dy[RIDDERS_ROWS], err[RIDDERS_ROWS];
 
     q->column = c;

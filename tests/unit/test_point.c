@@ -76,6 +76,9 @@ static void SetPressureOfRegime(Rng *r, Particle *q, Regime regime)
     q->in[IN_P + f] -= q->h.shift[0];
 }
 
+/* A fluid around the body whose pressure changes within millimetres, so that differences see it. */
+static const Ambient sea = {.on = true, .pressure = 2e6, .weight = {3e8, -7e8}, .head = -5e6};
+
 /* A state and a history from which it could have come. */
 static void RandomParticle(Rng *r, Regime regime, Particle *q)
 {
@@ -113,7 +116,9 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
     q->h.proj[k / 2][k % 2] = RngBetween(r, -1e6, 1e6);
     q->in[IN_J + k]         = RngBetween(r, -1.0, 1.0) * 1e-5;
     q->in[IN_GT + (k & 1)]  = RngBetween(r, -50.0, 50.0);
+    q->in[IN_U + (k & 1)]   = RngBetween(r, -1e-3, 1e-3);
   }
+  q->h.ambient = &sea;
 }
 
 static ClStatus Evaluate(const Particle *q, bool tangent, PointState *s, PointOutput *o)
@@ -253,7 +258,13 @@ static bool OutputRows(void *ctx, double x, double y[RIDDERS_ROWS])
 static void InputScales(double scale[IN_COUNT])
 {
   for (int k = 0; k < IN_COUNT; k++)
-    scale[k] = k < IN_P ? 1.0 : k < IN_T ? 1e6 : k == IN_T ? 10.0 : k < IN_GT ? 1e6 : k < IN_J ? 50.0 : 1e-5;
+    scale[k] = k < IN_P    ? 1.0
+               : k < IN_T  ? 1e6
+               : k == IN_T ? 10.0
+               : k < IN_GT ? 1e6
+               : k < IN_J  ? 50.0
+               : k < IN_U  ? 1e-5
+                           : 1e-3;
 }
 
 typedef struct {
