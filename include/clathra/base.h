@@ -46,6 +46,12 @@ typedef enum {
   CL_FATAL
 } ClStatus;
 
+/* |x| for maxima: NaN counts as infinite, for fmax and MPI_MAX pass NaN by. */
+static inline double ClSize(double x)
+{
+  return isnan(x) ? INFINITY : fabs(x);
+}
+
 /* FNV-1a, 64 bits: begins with FNV_START. */
 #define FNV_START UINT64_C(14695981039346656037)
 static inline uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes)

@@ -36,6 +36,12 @@ typedef enum {
   BC_REGION_TEMPERATURE /* nodes in a region's initial box: T, degC */
 } BcType;
 
+/* Those that the integrators without a matrix know, too; they refuse any other by name. */
+#define BC_LOCAL                                                                                                       \
+  (1u << BC_TRACTION | 1u << BC_PRESSURE | 1u << BC_HEAT_FLUX | 1u << BC_CONVECTION | 1u << BC_FACE_TEMPERATURE |      \
+   1u << BC_INFLOW | 1u << BC_ROLLER | 1u << BC_FIXED | 1u << BC_PLATE | 1u << BC_TEMPERATURE |                        \
+   1u << BC_REGION_TEMPERATURE)
+
 /* What a probe writes; words in case_quantity. */
 enum {
   QUANTITY_P = 0,
@@ -147,9 +153,14 @@ typedef struct {
   double   checkpoint_every;       /* s; 0 = only at the end and on failure */
 } Case;
 
-/* What keeps a scene from the integrators without a matrix, as the case says it; NULL if nothing does. */
+/* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
+   nothing does. */
 static inline const char *CaseNeedsImplicit(const Case *c)
 {
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u))
+      return c->bc[k].name;
+  }
   return c->axisymmetric   ? "geometry: axisymmetric"
          : c->one_pressure ? "pressures: one"
          : c->upstream     ? "stabilisation_upstream"

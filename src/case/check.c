@@ -31,6 +31,14 @@ static bool Local(const Case *c)
 /* What those cannot do. */
 static void CheckLocal(Reader *r, const Case *c)
 {
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u)) {
+      FAIL(GROUP_BC, c->bc[k].name, "type", "%s does not know the condition %s; use sdirk2 or euler", c->stepper,
+           case_bc_type[c->bc[k].type - 1]);
+      return;
+    }
+  }
+
   const char *what = CaseNeedsImplicit(c);
 
   if (what)

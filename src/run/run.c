@@ -163,29 +163,46 @@ static PetscErrorCode LocalSummary(const Stepper *s, char text[512])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Errors that were put up with. */
+static PetscErrorCode LooseSummary(const Stepper *s, char text[256])
+{
+  const StepperState *z = &s->state;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (z->loose_total)
+    PetscCall(PetscSNPrintf(text, 256,
+                            "  %" PetscInt_FMT
+                            " steps were accepted above the tolerance, with an estimated error of up "
+                            "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",
+                            z->loose_total, z->err_worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const StepperState *z = &s->state;
-  char                text[2048], local[512];
+  char                text[2048], local[512], loose[256];
   ModelTotals         t;
   bool                ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   PetscCall(LocalSummary(s, local));
+  PetscCall(LooseSummary(s, loose));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
                           " Newton iterations, %.2f s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-                          "  results in %s\n",
+                          "%s  results in %s\n",
                           s->model->c->title, z->t >= s->model->c->t_end * (1.0 - 1e-12) ? "finished" : "stopped", z->t,
                           s->scheme->name, z->step, z->failures_total, z->newton_total, Wall() - run->clock_start,
                           local, Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
-                          z->limited_total, s->model->c->output_dir));
+                          z->limited_total, loose, s->model->c->output_dir));
   PetscCall(PetscPrintf(s->model->grid.comm, "%s", text));
   PetscCall(FolderWriteText(s->model->grid.comm, s->model->c->output_dir, "summary.txt", text, strlen(text), &ok));
   run->lost = run->lost || !ok;
@@ -236,18 +253,18 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
 {
   const MPI_Comm comm = s->model->grid.comm;
   const double   t    = s->state.t;
+  const char    *why  = run->lost ? "not all could be written; see to it" : "the state is not finite";
 
   PetscFunctionBeginUser;
-  if (run->lost && run->saved[0]) {
+  if ((run->lost || s->broken) && run->saved[0]) {
     PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: stopped at t = %g s: not all could be written.  The last checkpoint, of t = %g s, "
-                           "is whole: make room and go on with -restart %s\n",
-                           t, run->t_saved, run->saved));
-  } else if (run->lost) {
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: stopped at t = %g s: not all could be written, and there is no checkpoint of this "
-                           "run yet: make room and start it anew\n",
-                           t));
+                           "clathra: stopped at t = %g s: %s.  The last checkpoint, of t = %g s, is whole: go on with "
+                           "-restart %s\n",
+                           t, why, run->t_saved, run->saved));
+  } else if (run->lost || s->broken) {
+    PetscCall(PetscFPrintf(
+        comm, stderr, "clathra: stopped at t = %g s: %s, and there is no checkpoint of this run yet: start it anew\n",
+        t, why));
   } else if (s->signal && t < s->model->c->t_end * (1.0 - 1e-12)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
                           strsignal(s->signal), t, run->saved));

@@ -87,13 +87,19 @@ static PetscErrorCode UpdateScales(Stepper *s)
     const double *a = m->P.f[now], *b = m->P.f[start];
 
     for (PetscInt p = 0; a && p < m->P.n; p++)
-      top[0] = fmax(top[0], fabs(a[p] - b[p]));
+      top[0] = fmax(top[0], ClSize(a[p] - b[p]));
   }
   for (int d = 0; m->P.f[P_U] && d < CL_DIM; d++) {
     for (PetscInt p = 0; p < m->P.n; p++)
-      top[1] = fmax(top[1], fabs(m->P.f[P_U + d][p]));
+      top[1] = fmax(top[1], ClSize(m->P.f[P_U + d][p]));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 3, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  s->broken = !isfinite(top[0] + top[1]);
+  if (s->broken) {
+    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: a pressure, stress or displacement is not a number\n",
+                          s->state.t));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   s->state.scale_p = top[0];
   s->state.scale_u = top[1];
   s->signal        = (int)top[2];
@@ -130,6 +136,10 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
 
   PetscFunctionBeginUser;
   PetscCall(UpdateScales(s));
+  if (s->broken)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  z->loose_total += a->loose > 0.0;
+  z->err_worst = fmax(z->err_worst, a->loose);
   z->newton_total += a->newton;
   z->failures_total += info->cuts;
   z->limited_total += a->limited;
@@ -161,7 +171,8 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok)
 
   PetscFunctionBeginUser;
   *ok = true;
-  for (PetscInt n = 0; *ok && !s->stop && n < s->max_steps && s->state.t < end * (1.0 - 1e-12); n++)
+  for (PetscInt n = 0; *ok && !s->stop && !s->broken && n < s->max_steps && s->state.t < end * (1.0 - 1e-12); n++)
     PetscCall(s->scheme->advance(s, ok));
+  *ok = *ok && !s->broken;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -126,6 +126,15 @@ def check_failure():
     says("... and runs with a smaller step", go_on, 0, "finished")
 
 
+def check_loose():
+    """What is accepted above the tolerance is counted."""
+    loose = Run.of_case("bp2", *OPTIONS, "-stepper_tol", "1e-7", "-stepper_dt", "5 s", "-stepper_dt_min", "5 s", "-stepper_dt_max", "5 s")
+    summary, steps = (loose.out / "summary.txt").read_text(), len(loose.balance["step"])
+    check_true("steps above the tolerance are counted in summary.txt", f"{steps} steps were accepted above the tolerance" in
+               summary and " 0 refused" in summary, summary)  # fmt: skip
+    check_true("... a run within it says nothing", "accepted above" not in (good.out / "summary.txt").read_text())
+
+
 def check_refusals():
     out = scratch() / "out"
     says("-case_check: valid", launch(binary(), BP2, "-case_check", out=out), 0, "the case is valid")
@@ -152,5 +161,6 @@ check_xdmf()
 check_tables()
 check_resolved()
 check_failure()
+check_loose()
 check_refusals()
 finish()
