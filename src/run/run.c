@@ -357,17 +357,27 @@ static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
 
 PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
 {
-  Run       run = {0};
-  Model     model;
-  Stepper   stepper;
-  char      restart[PETSC_MAX_PATH_LEN] = "";
-  PetscBool quiet                       = PETSC_FALSE;
-  PetscInt  unknown;
+  Run         run = {0};
+  Model       model;
+  Stepper     stepper;
+  char        restart[PETSC_MAX_PATH_LEN] = "";
+  PetscBool   quiet                       = PETSC_FALSE;
+  PetscInt    unknown;
+  PetscMPIInt size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
   run.quiet = quiet;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (!GridFits(size, c->cells)) {
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: %s: grid_cells = %" PetscInt_FMT ", %" PetscInt_FMT
+                           ": too few for %d ranks (each needs a part of at least 3 x 3 nodes); use fewer ranks\n",
+                           c->file, c->cells[0], c->cells[1], (int)size));
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;

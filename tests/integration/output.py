@@ -142,6 +142,8 @@ def check_refusals():
     says("-case_check of a wrong case", launch(binary(), BP2, "-case_check", "-mat_sediment_porosity", "1.5", out=out), 2,
          "mat_sediment_porosity", "1.5")  # fmt: skip
     says("a snapshot after the end", launch(binary(), BP2, "-time_end", "60 s", out=out), 2, "output_times", "time_end")
+    says("more ranks than the grid has room for", launch(binary(), BP2, "-grid_cells", "3,1", ranks=4, out=out), 2,
+         "grid_cells = 3, 1", "use fewer ranks")  # fmt: skip
     says("no such case", launch(binary(), "/nowhere/case.yaml", out=out), 2, "/nowhere/case.yaml")
     says("no case", launch(binary(), "-quiet"), 2, "name a case")
     check_true("none of them wrote anything", not out.exists())
