@@ -9,17 +9,37 @@
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
 typedef struct {
+  PetscInt n;
+  double  *x; /* n x 2, m */
+} Points;
+
+typedef struct {
+  PetscInt n, *i; /* indices into a list of the case */
+} Names;
+
+typedef enum { SHAPE_BOX = 0, SHAPE_POLYGON, SHAPE_BELOW, SHAPE_CIRCLE } ShapeKind;
+
+typedef struct {
   char     name[64];
-  double   lower[CL_DIM], upper[CL_DIM]; /* m */
+  double   lower[CL_DIM], upper[CL_DIM]; /* m: the box, or bounds of another shape */
   PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
-  PetscInt material;                     /* index into Case.material */
+  PetscInt material;                     /* index into Case.material; -1: no particles, only cut out of others */
   /* initial state; hydrostatic: p grows with depth below `p_datum` (m, along gravity) */
-  double pressure;    /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
-  double temperature; /* degC */
-  double Sh, Sw, Sg;  /* saturations of the pore space; sum 1 */
-  double stress[6];   /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
-  bool   hydrostatic; /* add rho_w g depth to the pressure */
-  double datum;       /* m: coordinate against gravity where p = pressure */
+  double pressure;     /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
+  double temperature;  /* degC */
+  double Sh, Sw, Sg;   /* saturations of the pore space; sum 1 */
+  double stress[6];    /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
+  double K0;           /* stress: vertical from the weight above, horizontal K0 times it; infinite: from `stress` */
+  bool   consolidated; /* the same, with K0 = 1 - sin(friction angle) */
+  bool   hydrostatic;  /* water in balance with gravity */
+  double datum;        /* m: coordinate against gravity where p = pressure */
+  double geothermal,
+      geothermal_datum; /* K/m below it, m (infinite: top of the body); T = temperature there and above */
+  ShapeKind shape;
+  Points    polygon;   /* closed by itself */
+  Points    below;     /* all under this line, down to `lower` */
+  double    circle[3]; /* centre and radius, m */
+  Names     minus;     /* regions whose shapes are cut out */
 } Region;
 
 typedef enum {
@@ -33,7 +53,7 @@ typedef enum {
   BC_FIXED,             /* grid plane: all velocities zero */
   BC_PLATE,             /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
   BC_TEMPERATURE,       /* grid plane: T, degC */
-  BC_REGION_TEMPERATURE /* nodes in a region's initial box: T, degC */
+  BC_REGION_TEMPERATURE /* nodes in a region's initial shape: T, degC */
 } BcType;
 
 /* Those that the integrators without a matrix know, too; they refuse any other by name. */
@@ -63,11 +83,12 @@ typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
 typedef struct {
   char   name[64];
   BcType type;
-  /* faces: a side of a region's box (all regions when region = -1), optionally only the part inside [from,to] along it
-   */
+  /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
+     those on a line (side = SIDE_COUNT) */
   Side     side;
   PetscInt region;
   double   from, to; /* m, along the side; -inf, +inf by default */
+  Points   along;
   /* planes: nodes with coordinate `axis` equal to `position` */
   PetscInt axis;
   double   position;
@@ -96,6 +117,7 @@ typedef struct {
   Side     side;
   PetscInt region;   /* -1: all */
   double   from, to; /* m, along the side */
+  Points   along;    /* or those on this line */
 } Meter;
 
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
@@ -152,6 +174,46 @@ typedef struct {
   double   probe_every;            /* s between probe rows, hit exactly; 0 = every step */
   double   checkpoint_every;       /* s; 0 = only at the end and on failure */
 } Case;
+
+static inline double CaseGravity(const Case *c) /* m/s^2 */
+{
+  return hypot(c->gravity[0], c->gravity[1]);
+}
+
+/* Coordinate against gravity, m; 0 without gravity. */
+static inline double CaseHeight(const Case *c, const double x[])
+{
+  const double g = CaseGravity(c);
+
+  return g > 0.0 ? -(x[0] * c->gravity[0] + x[1] * c->gravity[1]) / g : 0.0;
+}
+
+/* Axis that gravity points along, -1 if it is oblique or zero. */
+static inline int CaseVertical(const Case *c)
+{
+  return (c->gravity[0] != 0.0) == (c->gravity[1] != 0.0) ? -1 : c->gravity[0] != 0.0 ? 0 : 1;
+}
+
+/* Height of the highest point of the regions, m. */
+double CaseTop(const Case *c);
+
+static inline bool RegionGeostatic(const Region *r)
+{
+  return r->consolidated || (r->K0 > 0.0 && !isinf(r->K0));
+}
+
+/* Friction angle of a material, rad; NAN for one that has none. */
+static inline double MaterialFrictionAngle(const Material *m)
+{
+  (void)m;
+  return NAN;
+}
+
+/* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */
+static inline double RegionK0(const Case *c, const Region *r)
+{
+  return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
+}
 
 /* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
    nothing does. */

@@ -92,8 +92,31 @@ PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);
 /* Fills the regions of the case with particles, each on the rank that owns its cell, numbered the same whatever the
    number of ranks.  Collective. */
 PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P);
+/* A place that gets a particle. */
+typedef struct {
+  PetscInt id, region, faces;    /* faces: bits of PI_FACES */
+  double   x[CL_DIM], l[CL_DIM]; /* centre, half-lengths, m */
+} Site;
+typedef PetscErrorCode (*SiteVisit)(const Case *c, const Grid *g, const Site *site, void *ctx);
+/* Calls visit for every site of the body, on every rank and in the same order. */
+PetscErrorCode SitesVisit(const Case *c, const Grid *g, SiteVisit visit, void *ctx);
+
+/* What a region starts from at one place. */
+typedef struct {
+  double pw, pg, sg, p, T;               /* Pa, share of the fluids, mean (10), degC */
+  double density;                        /* of the mixture, kg/m^3 */
+  double grad_p[CL_DIM], grad_T[CL_DIM]; /* Pa/m (of p_w and of p_g), K/m */
+} InitialScalars;
+/* x in m.  Error where the retention law never reaches the initial gas share. */
+PetscErrorCode InitialScalarsAt(const Case *c, const Region *r, const double x[], InitialScalars *s);
+/* Pressure (Pa) at x of the water that has `pressure` at the region's datum (82). */
+double InitialWaterPressure(const Case *c, const Region *r, double pressure, const double x[]);
+
+/* Everything of particle p of a region but its numbers: at x (m), with half-lengths l (m). */
+PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+                                    const double l[]);
 /* Half-lengths of a region's particles at the start, m. */
-void ParticlesInitialHalfLength(const Case *c, const Grid *g, PetscInt region, double l[CL_DIM]);
+void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM]);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);

@@ -39,6 +39,16 @@ static uint64_t HashSchedule(uint64_t h, const Schedule *s)
   return HashReals(HashReals(h, s->t, (size_t)s->n), s->y, (size_t)s->n);
 }
 
+static uint64_t HashPoints(uint64_t h, const Points *p)
+{
+  return HashReals(HashBytes(h, &p->n, sizeof p->n), p->x, (size_t)(2 * p->n));
+}
+
+static uint64_t HashNames(uint64_t h, const Names *l)
+{
+  return HashBytes(HashBytes(h, &l->n, sizeof l->n), l->i, (size_t)l->n * sizeof *l->i);
+}
+
 static uint64_t HashKey(uint64_t h, const Key *k, const char *instance)
 {
   const char *place = instance + k->offset;
@@ -60,6 +70,10 @@ static uint64_t HashKey(uint64_t h, const Key *k, const char *instance)
     return HashText(h, k->law->get((const Material *)instance));
   case KEY_SCHEDULE:
     return HashSchedule(h, (const Schedule *)place);
+  case KEY_POINTS:
+    return HashPoints(h, (const Points *)place);
+  case KEY_NAMES:
+    return HashNames(h, (const Names *)place);
   case KEY_REALS: /* output_times alone, which may change */
     return h;
   }

@@ -36,6 +36,21 @@ static bool NeedsTemperature(const void *p)
   return ((const Bc *)p)->type != BC_INFLOW;
 }
 
+static bool NeedsBox(const void *p)
+{
+  const Region *r = (const Region *)p;
+
+  return !r->polygon.n && !r->below.n && isinf(r->circle[2]);
+}
+static bool BcNeedsSide(const void *p)
+{
+  return !((const Bc *)p)->along.n;
+}
+static bool MeterNeedsSide(const void *p)
+{
+  return !((const Meter *)p)->along.n;
+}
+
 /* ---------------------------------------------------------------- laws by name */
 #define LAW(Name, set_, types_, object, field)                                                                         \
   static bool Set##Name(Material *m, const char *type)                                                                 \
@@ -59,7 +74,7 @@ static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]   = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
 static const char *const surface_word[]   = {"free", "tied", NULL};
 static const char *const share_word[]     = {"nodes", "particles", NULL};
-static const char *const side_word[]      = {"left", "right", "bottom", "top", NULL}; /* Side */
+static const char *const side_word[]      = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
 static const char *const axis_word[]      = {"x", "y", NULL};
 static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
@@ -88,6 +103,9 @@ const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convec
   ROW(T, name, KEY_CHOICE, member, 1, "", "", def, doc, .choices = words, ##__VA_ARGS__)
 #define NAME(T, name, member, def, group, doc, ...)                                                                    \
   ROW(T, name, KEY_NAME, member, 1, "", "", def, doc, .names = group, ##__VA_ARGS__)
+#define NAMES(T, name, member, group, doc, ...)                                                                        \
+  ROW(T, name, KEY_NAMES, member, 0, "", "", "", doc, .names = group, ##__VA_ARGS__)
+#define POINTS(T, name, member, doc, ...) ROW(T, name, KEY_POINTS, member, 0, "m", "", "", doc, ##__VA_ARGS__)
 /* a law is set by its function; the member is not used */
 #define LAWKEY(name, def, law_, doc) ROW(Material, name, KEY_LAW, porosity, 1, "", "", def, doc, .law = &law_)
 #define SCHEDULE(name, member, unit, range, def, types_, doc, ...)                                                     \
@@ -254,10 +272,17 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
-    REALS(Region, 2, "lower", lower, "m", "", NULL, "lower left corner of the body's box"),
-    REALS(Region, 2, "upper", upper, "m", "", NULL, "upper right corner"),
+    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials, or none: only to be cut out of others",
+         .word = "none", .shape = true),
+    POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
+    POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
+    REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true),
+    REALS(Region, 2, "lower", lower, "m", "", "none, none", "lower left corner of a box, or bounds of another shape",
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true),
+    REALS(Region, 2, "upper", upper, "m", "", "none, none", "upper right corner",
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true),
+    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one"),
     INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y"),
-    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials"),
     REAL(Region, "pressure", pressure, "Pa", "(0,1e10]", NULL, "initial mean pore pressure", .has = HAS_WATER),
     REAL(Region, "temperature", temperature, "degC", "(-273.15,1000]", NULL, "initial temperature",
          .has = HAS_HEAT | HAS_GAS),
@@ -267,8 +292,18 @@ static const Key region_key[] = {
     REAL(Region, "Sg", Sg, "", "[0,1]", NULL, "initial gas saturation", .has = HAS_GAS),
     REALS(Region, 6, "stress", stress, "Pa", "[-1e12,1e12]", "0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa",
           "initial effective stress xx yy zz xy yz xz, tension-positive"),
-    BOOLEAN(Region, "hydrostatic", hydrostatic, "no", "add rho_w g depth to the pressure"),
-    REAL(Region, "datum", datum, "m", "", "0 m", "coordinate against gravity where the pressure is `pressure`"),
+    REAL(Region, "stress_geostatic", K0, "", "(0,10]", "no",
+         "K0: vertical effective stress from the weight above less the pore pressure, horizontal K0 times it",
+         .word = "no"),
+    BOOLEAN(Region, "stress_normally_consolidated", consolidated, "no",
+            "the same with K0 = 1 - sin(friction angle of the material)"),
+    BOOLEAN(Region, "hydrostatic", hydrostatic, "no", "water in balance with gravity"),
+    REAL(Region, "datum", datum, "m", "", "0 m",
+         "coordinate against gravity where the pressure is `pressure`; may lie above the body"),
+    REAL(Region, "geothermal", geothermal, "K/m", "[-1e4,1e4]", "0 K/m", "growth of temperature with depth"),
+    REAL(Region, "geothermal_datum", geothermal_datum, "m", "", "top",
+         "coordinate against gravity below which it grows and above which it is `temperature`; top of the body",
+         .word = "top"),
     {.name = NULL},
 };
 
@@ -278,7 +313,10 @@ static const Key region_key[] = {
 
 static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
-    CHOICE(Bc, "side", side, NULL, side_word, "side of the body, moves with it", .types = FACES),
+    POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",
+           .types = FACES),
+    CHOICE(Bc, "side", side, "none", side_word, "side of the body, moves with it",
+           WHEN(BcNeedsSide, "along is not given"), .types = FACES),
     NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
          .types = FACES | TYPE(BC_REGION_TEMPERATURE)),
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
@@ -324,7 +362,9 @@ static const Key probe_key[] = {
 };
 
 static const Key meter_key[] = {
-    CHOICE(Meter, "side", side, NULL, side_word, "side of the body, moves with it"),
+    POINTS(Meter, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side"),
+    CHOICE(Meter, "side", side, "none", side_word, "side of the body, moves with it",
+           WHEN(MeterNeedsSide, "along is not given")),
     NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
     REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),
     REAL(Meter, "to", to, "m", "", "end", "... to here", .word = "end"),
@@ -340,7 +380,7 @@ const GroupInfo case_group[GROUP_COUNT] = {
     {.prefix = "", .list = NULL, .noun = "case", .doc = "The scene", .size = sizeof(Case), .key = case_key},
     GROUP(Material, "mat_", "materials", "material", nmaterial, material, true, material_key, "Laws and constants"),
     GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
-          "Boxes of the body and their initial state"),
+          "Parts of the body, each of one shape, and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
     GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
     GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,

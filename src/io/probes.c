@@ -61,7 +61,7 @@ static void Reach(const Case *c, const Grid *g, double widening, double reach[CL
     PetscInt ppc = 2;
 
     for (PetscInt k = 0; k < c->nregion; k++)
-      ppc = PetscMin(ppc, c->region[k].ppc[d]);
+      ppc = c->region[k].material < 0 ? ppc : PetscMin(ppc, c->region[k].ppc[d]);
     reach[d] = widening * g->h[d] * (ppc < 2 ? 2.0 : 1.0);
   }
 }

@@ -12,6 +12,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(c, &m->grid, &m->P));
+  PetscCall(GeostaticStress(c, &m->grid, &m->P));
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   m->tol_residual = 1e-9;
   m->poor         = 20;

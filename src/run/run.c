@@ -236,6 +236,7 @@ static PetscErrorCode Begin(Stepper *s, Run *run, bool restart)
   PetscCall(WriteCase(m, run));
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
+    PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));

@@ -270,6 +270,14 @@ static bool Change(const Key *k, char *instance)
     if (((Schedule *)place)->n)
       ((Schedule *)place)->y[0] = 12345;
     return ((Schedule *)place)->n;
+  case KEY_POINTS:
+    if (((Points *)place)->n)
+      ((Points *)place)->x[0] += 1;
+    return ((Points *)place)->n;
+  case KEY_NAMES:
+    if (((Names *)place)->n)
+      ++((Names *)place)->i[0];
+    return ((Names *)place)->n;
   case KEY_REALS:
     return false;
   }
