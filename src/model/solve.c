@@ -314,7 +314,9 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
     PetscCall(SNESGetConvergedReason(m->snes, &reason));
     PetscCall(SNESGetIterationNumber(m->snes, &its));
     *newton += its;
-    if (reason > 0 || reason == SNES_DIVERGED_FUNCTION_DOMAIN)
+    if (reason == SNES_DIVERGED_FNORM_NAN)
+      PetscCall(ModelReduceStatus(m, &m->status));
+    if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->status != CL_OK))
       break;
   }
   if (reason < 0) {
