@@ -24,45 +24,6 @@ double Wall(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* First multiple of `every` after t, counted from the begin of the stage. */
-static double NextMultiple(const Case *c, double every, double t)
-{
-  const double at = t - c->t_begin + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
-
-  return every > 0.0 ? c->t_begin + every * (floor(at / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
-}
-
-static double NextSnapshot(const Case *c, double t)
-{
-  double next = NextMultiple(c, c->every, t);
-
-  for (PetscInt k = 0; k < c->ntimes; k++) {
-    if (c->times[k] > t + CaseTimeSlack(c, t))
-      next = fmin(next, c->times[k]);
-  }
-  return next;
-}
-
-static bool IsTime(const Case *c, double event, double t)
-{
-  return fabs(event - t) <= 1e-9 * fabs(t - c->t_begin) + CaseTimeSlack(c, t);
-}
-
-/* Steps end exactly on events, so t is one of them or is not. */
-static bool AtMultiple(const Case *c, double every, double t)
-{
-  return every > 0.0 && IsTime(c, c->t_begin + every * round((t - c->t_begin) / every), t);
-}
-
-static bool AtSnapshot(const Case *c, double t)
-{
-  bool at = AtMultiple(c, c->every, t);
-
-  for (PetscInt k = 0; k < c->ntimes; k++)
-    at = at || IsTime(c, c->times[k], t);
-  return at;
-}
-
 static double NextEvent(const Stepper *s, void *ctx)
 {
   const Case  *c = s->model->c;
