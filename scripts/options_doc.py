@@ -17,7 +17,8 @@ PROGRAM = [  # option, value, default, meaning
     ("-case_check", "", "", "read and check the case, write nothing"),
     ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
     ("-restart", "FILE", "", "go on from a checkpoint of the same case (grid, regions, materials, boundary conditions, "
-     "meters, stages); times, integrator, outputs and solver may differ"),
+     "meters, stages); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a "
+     "new one"),
     ("-quiet", "", "", "no line per step; refused steps and the summary are still printed"),
     ("-stepper_max_steps", "N", "no limit", "stop after N more steps, with a checkpoint and exit code 0"),
     ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this, rows of "

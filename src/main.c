@@ -14,7 +14,8 @@ static const char help[] =
     "Any key of the case can be set here, with its unit: -grid_cells 104,1 -stepper_type euler -time_end \"500 s\".\n"
     "Presets: -options_file options/NAME.opts (later options win); -snes_, -ksp_, -pc_ are PETSc's; docs/options.md "
     "has all.\n"
-    "Exit codes: 0 done, 1 bug, 2 wrong case or option, 3 gave up (last good state in checkpoint.h5).\n\n";
+    "Exit codes: 0 done, 1 bug, 2 wrong case or option, 3 gave up or could not write (last good state in\n"
+    "checkpoint.h5), 4 ended by a signal (state in checkpoint.h5).\n\n";
 
 static PetscErrorCode Main(int argc, char **argv, int *exit_code)
 {
@@ -57,8 +58,10 @@ int main(int argc, char **argv)
 {
   int exit_code = CL_EXIT_BUG;
 
+  ProcessPrepare();
   if (PetscInitialize(&argc, &argv, NULL, help))
     return CL_EXIT_BUG;
+  ProcessListen();
   if (Main(argc, argv, &exit_code))
     exit_code = CL_EXIT_BUG;
   if (PetscFinalize())

@@ -30,7 +30,8 @@ enum {
   CL_EXIT_OK     = 0,
   CL_EXIT_BUG    = 1, /* PETSc error or failed assertion */
   CL_EXIT_INPUT  = 2, /* the case or an option is wrong; nothing was written */
-  CL_EXIT_FAILED = 3  /* the run could not go on; the last good state was saved */
+  CL_EXIT_FAILED = 3, /* the run could not go on, or its files could not be written; the last good state was saved */
+  CL_EXIT_SIGNAL = 4  /* a signal asked for the end; the state was saved */
 };
 
 /* What a particle, a residual or a step can report.  Everything but OK and FATAL is mended by a smaller step. */
@@ -44,6 +45,23 @@ typedef enum {
   CL_INACCURATE, /* the error estimate is above the tolerance */
   CL_FATAL
 } ClStatus;
+
+/* |x| for maxima: NaN counts as infinite, for fmax and MPI_MAX pass NaN by. */
+static inline double ClSize(double x)
+{
+  return isnan(x) ? INFINITY : fabs(x);
+}
+
+/* FNV-1a, 64 bits: begins with FNV_START. */
+#define FNV_START UINT64_C(14695981039346656037)
+static inline uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes)
+{
+  const unsigned char *c = (const unsigned char *)data;
+
+  for (size_t k = 0; k < bytes; k++)
+    hash = (hash ^ c[k]) * UINT64_C(1099511628211);
+  return hash;
+}
 
 static inline double ClCelsiusToKelvin(double T)
 {

@@ -56,6 +56,12 @@ typedef enum {
   BC_REGION_TEMPERATURE /* nodes in a region's initial shape: T, degC */
 } BcType;
 
+/* Those that the integrators without a matrix know, too; they refuse any other by name. */
+#define BC_LOCAL                                                                                                       \
+  (1u << BC_TRACTION | 1u << BC_PRESSURE | 1u << BC_HEAT_FLUX | 1u << BC_CONVECTION | 1u << BC_FACE_TEMPERATURE |      \
+   1u << BC_INFLOW | 1u << BC_ROLLER | 1u << BC_FIXED | 1u << BC_PLATE | 1u << BC_TEMPERATURE |                        \
+   1u << BC_REGION_TEMPERATURE)
+
 /* What a probe writes; words in case_quantity. */
 enum {
   QUANTITY_P = 0,
@@ -245,9 +251,14 @@ static inline double RegionK0(const Case *c, const Region *r)
   return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
 }
 
-/* What keeps a scene from the integrators without a matrix, as the case says it; NULL if nothing does. */
+/* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
+   nothing does. */
 static inline const char *CaseNeedsImplicit(const Case *c)
 {
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u))
+      return c->bc[k].name;
+  }
   return c->axisymmetric   ? "geometry: axisymmetric"
          : c->one_pressure ? "pressures: one"
          : c->upstream     ? "stabilisation_upstream"
@@ -259,7 +270,9 @@ static inline const char *CaseNeedsImplicit(const Case *c)
    On bad input prints the error (file, key, value, unit, allowed range, nearest key) on rank 0, sets *ok = false and
    returns success; nothing has been written. */
 PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok);
-PetscErrorCode CaseWriteResolved(const Case *c, const char *path); /* SI, itself a case that runs to the same result */
+PetscErrorCode CaseWriteResolved(const Case *c, FILE *out); /* SI, itself a case that runs to the same result */
+/* What a restart must find unchanged: all keys but names, outputs, and the numerics of time and of the solver. */
+uint64_t       CaseFingerprint(const Case *c);
 PetscErrorCode CaseDestroy(Case *c);
 /* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
  * -help. */

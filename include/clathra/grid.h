@@ -17,6 +17,8 @@ typedef struct {
   PetscInt    gs[CL_DIM], gm[CL_DIM]; /* padded local range: gs = xs - 2, gm = xm + 4 */
 } Grid;
 
+/* Can a grid of so many cells be shared among so many ranks?  GridCreate fails if not. */
+bool           GridFits(PetscMPIInt size, const PetscInt cells[]);
 PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g);
 PetscErrorCode GridDestroy(Grid *g);
 /* Cell of a point; false outside the grid.  Points on the upper edge belong to the last cell. */

@@ -41,6 +41,16 @@
 #define CL_PARTICLE_ENUM(id, has, name, nc, unit, doc) id, id##_LAST_ = id + (nc)-1,
 enum { CL_PARTICLE_TABLE(CL_PARTICLE_ENUM) P_COUNT };
 #undef CL_PARTICLE_ENUM
+/* Components of the largest variable. */
+#define CL_PARTICLE_SIZE(id, has, name, nc, unit, doc) char id[nc];
+enum { P_MOST = sizeof(union {CL_PARTICLE_TABLE(CL_PARTICLE_SIZE)}) };
+#undef CL_PARTICLE_SIZE
+/* Orders of rows that the code counts on: masses by substance, pressures and temperature as in the unknowns, initial
+   pressures and velocities by phase. */
+_Static_assert(P_MH == P_MS + 1 && P_MW == P_MH + 1 && P_MG == P_MW + 1, "masses: solid, hydrate, water, gas");
+_Static_assert(P_PG == P_PW + 1 && P_T == P_PG + 1, "p_w, p_g, T");
+_Static_assert(P_PG0 == P_PW0 + 1, "initial p_w, p_g");
+_Static_assert(P_VW == P_VS + CL_DIM && P_VG == P_VW + CL_DIM, "velocities: skeleton, water, gas");
 
 typedef struct {
   const char *name, *unit, *doc;

@@ -3,5 +3,10 @@
 
 #include "clathra/case.h"
 
-/* *exit_code: CL_EXIT_OK, CL_EXIT_INPUT (nothing written), CL_EXIT_FAILED (last good state saved). */
+/* *exit_code: CL_EXIT_OK, CL_EXIT_INPUT (nothing written), CL_EXIT_FAILED or CL_EXIT_SIGNAL (last good state saved). */
 PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code);
+
+/* Before PETSc is initialised, and after: see src/run/process.c. */
+void ProcessPrepare(void);
+void ProcessListen(void);
+int  ProcessSignal(void); /* the signal that asked this rank to end; 0: none */

@@ -13,9 +13,12 @@ typedef struct {
   PetscInt next_snapshot; /* its number */
   PetscInt stage;         /* of the case; t may have reached its end */
   PetscInt newton_total, failures_total, limited_total;
-  double   t;                               /* s */
-  double   dt;                              /* next step wanted by the controller, s */
-  double   err_old;                         /* error of the last accepted step relative to the tolerance */
+  PetscInt loose_total; /* steps accepted with an error above the tolerance: at dt_min, or noise of the particles */
+  PetscInt filler;      /* always 0: the reals begin at whole words, and every byte has a name */
+  double   t;           /* s */
+  double   dt;          /* next step wanted by the controller, s */
+  double   err_old;     /* error of the last accepted step relative to the tolerance */
+  double   err_worst;   /* largest error of the steps in loose_total */
   double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source; /* J since t = 0 */
   double   meter[CL_METERS][METER_COUNT];   /* (33): kg of water and gas, J, outwards since t = 0 */
@@ -45,6 +48,7 @@ typedef struct {
   ClStatus status;
   PetscInt newton, limited;
   double   err;                             /* relative to the tolerance */
+  double   loose;                           /* ... when it is accepted above 1; else 0 */
   double   out[PHASE_COUNT];                /* kg over the step */
   double   heat_gain, heat_in, heat_source; /* J over the step */
   double   meter[CL_METERS][METER_COUNT];   /* kg, J over the step */
@@ -98,6 +102,10 @@ struct Stepper {
   /* called after every accepted step */
   PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
   void *monitor_ctx;
+  bool  broken;             /* the state is not finite any more: not to be kept */
+  bool  stop;               /* ends the run after this step; the monitor may set it */
+  int (*interrupted)(void); /* signal that asks for the end, 0 for none; may be NULL */
+  int signal;               /* ... on any rank, which set stop */
   /* next time that a step must hit besides kinks and the end; INFINITY if none */
   double (*next_event)(const Stepper *s, void *ctx);
 };

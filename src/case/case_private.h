@@ -29,6 +29,7 @@ typedef struct {
 typedef struct {
   char    *name;
   PetscInt line, offset; /* offset in the text of a key that begins a line, else -1 */
+  bool     map;          /* other keys stand below it */
 } Mark;                  /* a key of the file, inner or leaf */
 
 typedef enum {

@@ -126,14 +126,13 @@ static bool OfBadBoundary(const Case *c, const char *name)
   return false;
 }
 
-static bool Dropped(const Reader *r, const char *name)
+/* A value of the file of which PETSc kept nothing: an empty map or list, or a name that reads like a number. */
+static bool Dropped(const Reader *r, const Mark *m)
 {
-  if (strncasecmp(name, "nan", 3) && strncasecmp(name, "inf", 3))
-    return false;
-  for (PetscInt i = 0; i < r->nentry; i++)
-    if (!strcasecmp(r->entry[i].name, name))
+  for (PetscInt i = 0; !m->map && i < r->nentry; i++)
+    if (!strcasecmp(r->entry[i].name, m->name))
       return false;
-  return true;
+  return !m->map;
 }
 
 static PetscErrorCode Leftovers(Reader *r, const Case *c)
@@ -147,9 +146,16 @@ static PetscErrorCode Leftovers(Reader *r, const Case *c)
     if (!e->used && !OfBadBoundary(c, e->name))
       Unknown(r, c, e->name, e->name, e->value, last);
   }
-  for (PetscInt i = 0; i < r->nmark; i++) /* PETSc drops keys that read like a number */
-    if (Dropped(r, r->mark[i].name))
-      Unknown(r, c, r->mark[i].name, r->mark[i].name, NULL, last);
+  for (PetscInt i = 0; i < r->nmark; i++) {
+    const char *name = r->mark[i].name;
+
+    if (!Dropped(r, &r->mark[i]))
+      continue;
+    if (!strncasecmp(name, "nan", 3) || !strncasecmp(name, "inf", 3))
+      Unknown(r, c, name, name, NULL, last);
+    else
+      ReaderError(r, name, NULL, "has no value");
+  }
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++) {
     snprintf(shown, sizeof shown, "-%s", names[i]);

@@ -181,22 +181,14 @@ static void WriteGroup(FILE *f, const Case *c, Group g)
   }
 }
 
-PetscErrorCode CaseWriteResolved(const Case *c, const char *path)
+PetscErrorCode CaseWriteResolved(const Case *c, FILE *f)
 {
-  FILE *f;
-  bool  good;
-
   PetscFunctionBeginUser;
-  f = fopen(path, "w");
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s", path);
   fprintf(f, "# The case as it ran, in SI units with every default; itself a case.  Written by clathra from\n# %s\n",
           c->file);
   WriteInstance(f, c, GROUP_CASE, (const char *)c, "");
   for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
     WriteGroup(f, c, g);
-  good = !ferror(f);
-  good &= fclose(f) == 0;
-  PetscCheck(good, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write all of %s", path);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

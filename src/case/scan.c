@@ -88,7 +88,11 @@ static bool ScanKey(Scan *s, const char *begin, size_t len, int column)
   memcpy(s->path + parent, begin, len);
   s->path[parent + len] = 0;
   for (PetscInt i = 0; i < r->nmark; i++) {
-    if (strcasecmp(r->mark[i].name, s->path))
+    const char *name = r->mark[i].name;
+
+    if (parent && !strncasecmp(name, s->path, parent - 1) && !name[parent - 1])
+      r->mark[i].map = true;
+    if (strcasecmp(name, s->path))
       continue;
     ReaderError(r, s->path, NULL, "is given twice, on lines %d and %d", (int)r->mark[i].line, (int)s->line);
     return s->ok = false;
@@ -100,6 +104,7 @@ static bool ScanKey(Scan *s, const char *begin, size_t len, int column)
   mark         = r->mark + r->nmark++;
   mark->name   = strdup(s->path);
   mark->line   = s->line;
+  mark->map    = false;
   mark->offset = !s->nflow && column == 0 ? (PetscInt)(s->bol - s->text) : -1;
   return true;
 }

@@ -48,15 +48,35 @@ static void Fail(Reader *r, const char *stage, const char *key, const char *what
     ReaderError(r, key, NULL, "in stage %s: %s", stage, what);
 }
 
-void CheckTimes(Reader *r, const Case *c, const char *stage)
+/* What an integrator without matrices cannot do. */
+static void CheckLocal(Reader *r, const Case *c, const char *stage)
 {
   const char *unknown = CaseNeedsImplicit(c);
   char        what[CASE_WHY];
 
-  if (Local(c) && unknown) {
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u)) {
+      char option[256];
+
+      KeyOption(option, sizeof option, GROUP_BC, c->bc[k].name, "type");
+      ReaderError(r, option, NULL, "%s%s%s%s does not know the condition %s; use sdirk2 or euler",
+                  stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", c->stepper,
+                  case_bc_type[c->bc[k].type - 1]);
+      return;
+    }
+  }
+  if (unknown) {
     snprintf(what, sizeof what, "%s does not know %s; use sdirk2 or euler", c->stepper, unknown);
     Fail(r, stage, "stepper_type", what);
   }
+}
+
+void CheckTimes(Reader *r, const Case *c, const char *stage)
+{
+  char what[CASE_WHY];
+
+  if (Local(c))
+    CheckLocal(r, c, stage);
   if (Local(c) && c->dt > c->dt_max) {
     snprintf(what, sizeof what, "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
     Fail(r, stage, "stepper_dt", what);

@@ -188,7 +188,9 @@ static void KeyText(Reader *r, const char *shown, const char *text, const Key *k
     ReaderError(r, shown, NULL, "holds a line break or a control character");
     return;
   }
-  if (strlen(text) >= (size_t)k->count)
+  if (k->def && *k->def && (!strcmp(text, "~") || !strcmp(text, "null")))
+    ReaderError(r, shown, text, "is no value");
+  else if (strlen(text) >= (size_t)k->count)
     ReaderError(r, shown, text, "is longer than %d characters", k->count - 1);
   else
     strcpy(value, text);
@@ -290,10 +292,8 @@ static PetscErrorCode KeyStore(Reader *r, Case *c, const char *shown, const char
     KeyChoice(r, shown, text, k, (int *)place);
     break;
   case KEY_LAW:
-    if (!k->law->set((Material *)instance, text)) {
+    if (!k->law->set((Material *)instance, text))
       WordError(r, shown, text, k->law->types());
-      k->law->set((Material *)instance, k->def); /* conditions of other keys look at it */
-    }
     break;
   case KEY_NAME:
     (void)KeyName(r, c, shown, text, k, (PetscInt *)place);
@@ -325,6 +325,8 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
     PetscCall(ScheduleRead(r, option, k, instance, (Schedule *)(instance + k->offset)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (k->kind == KEY_LAW) /* conditions of other keys look at it, whatever becomes of this one */
+    k->law->set((Material *)instance, k->def ? k->def : k->law->types()[0]);
   PetscCall(ReaderFind(r, option, &text, &found, &from_file));
   snprintf(shown, sizeof shown, "%s%s", found && !from_file ? "-" : "", option);
   if (!KeyApplies(k, g, instance)) {

@@ -20,6 +20,14 @@ static bool ChooseLayout(PetscMPIInt size, const PetscInt nodes[], PetscInt npro
   return best < INFINITY;
 }
 
+bool GridFits(PetscMPIInt size, const PetscInt cells[])
+{
+  const PetscInt nodes[CL_DIM] = {cells[0] + 1, cells[1] + 1};
+  PetscInt       nproc[CL_DIM];
+
+  return ChooseLayout(size, nodes, nproc);
+}
+
 PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g)
 {
   PetscInt nodes[CL_DIM] = {cells[0] + 1, cells[1] + 1}, *count[CL_DIM], coord[CL_DIM];

@@ -15,14 +15,16 @@ static double Relative(double missing, double store)
   return store > 0.0 ? missing / store : missing;
 }
 
-static PetscErrorCode WriteRow(FILE *f, const Case *c, const StepperState *s, const StepInfo *info,
+static PetscErrorCode WriteRow(Output *out, const Case *c, const StepperState *s, const StepInfo *info,
                                const ModelTotals *now)
 {
   const double water   = Relative(now->water + s->out[PHASE_W] - s->water0, s->water0);
   const double methane = Relative(now->methane + s->out[PHASE_G] - s->methane0, s->methane0);
   const double heat    = Relative(s->heat_gain - s->heat_in - s->heat_source, s->capacity0 * 1.0); /* of 1 K */
+  FILE        *f;
 
   PetscFunctionBeginUser;
+  PetscCall(RowBegin(out, &f));
   fprintf(f, "%" PetscInt_FMT ",", s->step);
   IoTime(c, f, s->t);
   fprintf(f, ",%.12e,%" PetscInt_FMT, info ? info->dt : 0.0, info ? info->newton : 0);
@@ -33,7 +35,7 @@ static PetscErrorCode WriteRow(FILE *f, const Case *c, const StepperState *s, co
   if (c->nstage)
     fprintf(f, ",%" PetscInt_FMT, s->stage + 1);
   fprintf(f, "\n");
-  PetscCall(IoFlush(f, "balance.csv"));
+  PetscCall(RowEnd(out, TABLE_BALANCE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -45,7 +47,7 @@ PetscErrorCode OutputBalance(Output *out, const Model *m, const StepperState *s,
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(m, &now));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out->balance, m->c, s, info, &now);
+    ierr = WriteRow(out, m->c, s, info, &now);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,8 +1,11 @@
-/* HDF5 with checked calls, and the gathering of particles on rank 0. */
+/* HDF5 with checked calls.  What is written is made in memory, so that HDF5 never sees a failing disk: it does not
+   outlive one. */
 #include "io_private.h"
 
 #define COMPRESS_FROM 65536 /* bytes; smaller datasets are written plain */
 #define CHUNK_ROWS 16384
+
+#define GROW ((size_t)1 << 22) /* bytes by which an image grows */
 
 /* A viewer that holds the file open must not stop the run: no locking.  Closing a file closes everything in it. */
 static PetscErrorCode Access(hid_t *access)
@@ -14,23 +17,37 @@ static PetscErrorCode Access(hid_t *access)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5FileCreate(const char *path, hsize_t user_block, hid_t *file)
+PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file)
 {
   hid_t access, create;
 
   PetscFunctionBeginUser;
   PetscCall(Access(&access));
+  H5Check(H5Pset_fapl_core(access, GROW, 0));
   H5Check(create = H5Pcreate(H5P_FILE_CREATE));
   if (user_block > 0)
     H5Check(H5Pset_userblock(create, user_block));
-  *file = H5Fcreate(path, H5F_ACC_TRUNC, create, access);
-  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot create %s", path);
+  H5Check(*file = H5Fcreate("image", H5F_ACC_TRUNC, create, access));
   H5Check(H5Pclose(create));
   H5Check(H5Pclose(access));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5FileOpen(const char *path, bool write, hid_t *file)
+PetscErrorCode H5ImageBytes(hid_t image, IoPiece *piece)
+{
+  void   *handle;
+  hsize_t bytes;
+
+  PetscFunctionBeginUser;
+  H5Check(H5Fflush(image, H5F_SCOPE_GLOBAL));
+  H5Check(H5Fget_filesize(image, &bytes));
+  H5Check(H5Fget_vfd_handle(image, H5P_DEFAULT, &handle));
+  piece->data  = *(void **)handle;
+  piece->bytes = (size_t)bytes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5FileOpen(const char *path, hid_t *file)
 {
   hid_t access;
 
@@ -38,7 +55,7 @@ PetscErrorCode H5FileOpen(const char *path, bool write, hid_t *file)
   PetscCall(Access(&access));
   H5E_BEGIN_TRY
   {
-    *file = H5Fopen(path, write ? H5F_ACC_RDWR : H5F_ACC_RDONLY, access);
+    *file = H5Fopen(path, H5F_ACC_RDONLY, access);
   }
   H5E_END_TRY
   H5Check(H5Pclose(access));
@@ -48,8 +65,8 @@ PetscErrorCode H5FileOpen(const char *path, bool write, hid_t *file)
 PetscErrorCode H5FileClose(hid_t *file)
 {
   PetscFunctionBeginUser;
-  H5Check(H5Fflush(*file, H5F_SCOPE_GLOBAL));
-  H5Check(H5Fclose(*file));
+  if (*file >= 0)
+    H5Check(H5Fclose(*file));
   *file = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -222,78 +239,4 @@ bool H5Rows(hid_t where, const char *name, hsize_t *rows)
   }
   H5E_END_TRY
   return ok;
-}
-
-/* ---------------------------------------------------------------- gathering */
-PetscErrorCode GatherCreate(const Model *m, Gather *g)
-{
-  const Particles *P  = &m->P;
-  PetscMPIInt      n  = (PetscMPIInt)P->n;
-  PetscInt        *id = NULL;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMemzero(g, sizeof(*g)));
-  g->comm = m->grid.comm;
-  g->rank = m->grid.rank;
-  g->size = m->grid.size;
-  g->n    = P->n;
-  if (g->rank == 0)
-    PetscCall(PetscMalloc2(g->size, &g->count, g->size, &g->start));
-  PetscCallMPI(MPI_Gather(&n, 1, MPI_INT, g->count, 1, MPI_INT, 0, g->comm));
-  if (g->rank == 0) {
-    for (PetscMPIInt r = 0; r < g->size; r++) {
-      g->start[r] = (PetscMPIInt)g->total;
-      g->total += g->count[r];
-    }
-    PetscCall(PetscMalloc2(g->total, &g->order, g->total, &g->id));
-    PetscCall(PetscMalloc1(g->total, &id));
-    PetscCall(PetscMalloc(sizeof(double) * (size_t)PetscMax(g->total, 1), &g->buffer));
-  }
-  PetscCallMPI(MPI_Gatherv(P->i[PI_ID], n, MPIU_INT, id, g->count, g->start, MPIU_INT, 0, g->comm));
-  if (g->rank == 0) {
-    for (PetscInt k = 0; k < g->total; k++)
-      g->order[k] = k;
-    PetscCall(PetscSortIntWithPermutation(g->total, id, g->order));
-    for (PetscInt k = 0; k < g->total; k++)
-      g->id[k] = id[g->order[k]];
-    PetscCall(PetscFree(id));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode GatherDestroy(Gather *g)
-{
-  PetscFunctionBeginUser;
-  if (g->rank == 0) {
-    PetscCall(PetscFree2(g->count, g->start));
-    PetscCall(PetscFree2(g->order, g->id));
-    PetscCall(PetscFree(g->buffer));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode GatherReals(Gather *g, const double *local, PetscInt stride, double *sorted)
-{
-  double *all = g->buffer;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Gatherv(local, (PetscMPIInt)g->n, MPI_DOUBLE, all, g->count, g->start, MPI_DOUBLE, 0, g->comm));
-  if (g->rank == 0) {
-    for (PetscInt k = 0; k < g->total; k++)
-      sorted[k * stride] = all[g->order[k]];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode GatherInts(Gather *g, const PetscInt *local, PetscInt *sorted)
-{
-  PetscInt *all = g->buffer;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Gatherv(local, (PetscMPIInt)g->n, MPIU_INT, all, g->count, g->start, MPIU_INT, 0, g->comm));
-  if (g->rank == 0) {
-    for (PetscInt k = 0; k < g->total; k++)
-      sorted[k] = all[g->order[k]];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,6 @@
 /* io_private: shared by the files of src/io.  HDF5 runs on rank 0 alone: data are gathered there, in the order of the
    particles' ids, one variable at a time, so that files do not depend on the number of ranks.  Limit: rank 0 must hold
-   one variable of all particles (snapshot, checkpoint) or all of them (reading a checkpoint, 0.4 kB a particle). */
+   all of them (0.4 kB a particle): a file is made in memory before any of it is written. */
 #pragma once
 
 #include "clathra/io.h"
@@ -17,11 +17,17 @@ typedef struct {
   bool     grid;      /* holds nodal fields */
 } SnapshotEntry;
 
+typedef enum { TABLE_PROBES = 0, TABLE_BALANCE, TABLE_METERS, TABLE_COUNT } TableId;
+
 struct Output {
   char           dir[PETSC_MAX_PATH_LEN];
-  FILE          *probes, *balance, *meters; /* rank 0; meters NULL if there are none */
-  double        *reach;                     /* [nprobe] widening of each probe's neighbourhood */
-  PetscInt       nsnapshot, cap;            /* rank 0: what fields.h5 holds */
+  bool           failed;          /* rank 0: something could not be written, which was said */
+  int            fd[TABLE_COUNT]; /* rank 0; < 0 if there is no such table */
+  FILE          *row;             /* rank 0: of the table to be written next */
+  char          *text;
+  size_t         size;
+  double        *reach;          /* [nprobe] widening of each probe's neighbourhood */
+  PetscInt       nsnapshot, cap; /* rank 0: what fields.h5 lists */
   SnapshotEntry *snapshot;
   FieldSet       fields;
 };
@@ -56,12 +62,33 @@ static inline double GasSaturation(const Particles *P, PetscInt p)
   return 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
 }
 
-/* ---------------------------------------------------------------- output.c */
+/* ---------------------------------------------------------------- file.c: rank 0.  false: it was said to stderr why
+ * not
+ */
+typedef struct {
+  const void *data;
+  size_t      bytes;
+} IoPiece;
 PetscErrorCode IoPath(const char *dir, const char *name, char path[IO_PATH]);
 /* Shares the error of what rank 0 did alone; collective. */
 PetscErrorCode IoAgree(MPI_Comm comm, PetscErrorCode ierr);
-PetscErrorCode IoFlush(FILE *f, const char *name);
-PetscErrorCode IoRename(const char *from, const char *to);
+bool           IoFailed(const char *path, size_t bytes); /* says what errno means; false */
+/* A whole new file in the place of PATH, or PATH as it was; keep_old: the one before becomes PATH.old. */
+bool IoReplace(const char *path, bool keep_old, int n, const IoPiece piece[]);
+bool IoRename(const char *from, const char *to);
+bool IoMakeFolder(const char *dir); /* with all above it */
+int  IoOpenEnd(const char *path);   /* < 0: it was said why not */
+bool IoAppend(int fd, const char *path, const char *text, size_t bytes);
+bool IoSync(int fd, const char *path); /* to the disk */
+bool IoClose(int fd, const char *path);
+
+/* ---------------------------------------------------------------- tables.c: rank 0 */
+PetscErrorCode TablesOpen(Output *out, const Model *m, bool append, double t);
+/* A row is printed into memory, then written; nothing more is written after a failure. */
+PetscErrorCode RowBegin(Output *out, FILE **f);
+PetscErrorCode RowEnd(Output *out, TableId id);
+void           TablesSync(Output *out);
+void           TablesClose(Output *out);
 
 /* ---------------------------------------------------------------- probes.c, balance.c, meters.c: header lines, rank 0
  */
@@ -75,16 +102,20 @@ static inline void IoTime(const Case *c, FILE *f, double t)
   fprintf(f, c->nstage ? "%.16e" : "%.12e", t);
 }
 
-/* ---------------------------------------------------------------- snapshot.c, xdmf.c: rank 0 */
-PetscErrorCode SnapshotsStart(Output *out, bool append, PetscInt next);
-PetscErrorCode XdmfWrite(const Output *out, const Grid *g);
+/* ---------------------------------------------------------------- snapshot.c, series.c, xdmf.c: rank 0 */
+#define SNAPSHOT_NAME "fields/%06d.h5"
+PetscErrorCode SeriesStart(Output *out, bool append, PetscInt next);
+PetscErrorCode SeriesAdd(Output *out, const SnapshotEntry *entry);
+PetscErrorCode SeriesWrite(Output *out, const Grid *g); /* fields.h5 and fields.xdmf */
+void           XdmfPrint(FILE *f, const Output *out, const Grid *g);
 
 /* ---------------------------------------------------------------- h5util.c */
 #define H5Check(expr) PetscCheck((expr) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s", #expr)
 
-PetscErrorCode H5FileCreate(const char *path, hsize_t user_block, hid_t *file);
-PetscErrorCode H5FileOpen(const char *path, bool write, hid_t *file); /* *file < 0: it cannot be opened */
-PetscErrorCode H5FileClose(hid_t *file);
+PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file);      /* a file in memory */
+PetscErrorCode H5ImageBytes(hid_t image, IoPiece *piece);           /* valid until it is closed; user block and all */
+PetscErrorCode H5FileOpen(const char *path, hid_t *file);           /* to read; *file < 0: it cannot be opened */
+PetscErrorCode H5FileClose(hid_t *file);                            /* also an image, also one that is not open */
 PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group); /* with all above it */
 /* dims has nd entries; unit NULL = none; compressed when large and `compress`. */
 PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], const void *data,
@@ -99,33 +130,32 @@ bool H5Read(hid_t where, const char *name, hid_t type, int nd, const hsize_t dim
 /* Number of rows of a dataset; false if there is no such dataset. */
 bool H5Rows(hid_t where, const char *name, hsize_t *rows);
 
+/* ---------------------------------------------------------------- gather.c */
 /* Particles of all ranks on rank 0, sorted by id. */
 typedef struct {
   MPI_Comm    comm;
   PetscMPIInt rank, size, *count, *start; /* rank 0: of each rank */
   PetscInt    n, total;                   /* local; all (rank 0) */
   PetscInt   *order, *id;                 /* rank 0: order of arrival of the k-th by id; its id */
-  void       *buffer;                     /* rank 0 */
+  void       *buffer;                     /* rank 0: one component */
+  double     *data;                       /* rank 0: one variable of up to P_MOST components */
 } Gather;
 PetscErrorCode GatherCreate(const Model *m, Gather *g);
 PetscErrorCode GatherDestroy(Gather *g);
 /* sorted[k * stride] on rank 0; elsewhere sorted may be NULL. */
 PetscErrorCode GatherReals(Gather *g, const double *local, PetscInt stride, double *sorted);
 PetscErrorCode GatherInts(Gather *g, const PetscInt *local, PetscInt *sorted);
+/* All variables of the particles into an HDF5 group of rank 0; *ierr: first error there, the gathering goes on. */
+PetscErrorCode GatherVariables(Gather *g, const Particles *P, bool compress, hid_t group, PetscErrorCode *ierr);
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
 #define CHECKPOINT_VERSION 5
-#define FNV_START UINT64_C(14695981039346656037)
-uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes); /* FNV-1a, 64 bits */
-/* Physics of a case: grid, gravity, basis, regions, materials, boundary conditions, meters, and what stages
-   change of it.  Names, outputs,
-   numerics of the solver and of time are left out. */
-uint64_t CaseFingerprint(const Case *c);
-/* Writes version, case, length and checksum of the whole file into the user block, and syncs it to the disk. */
-PetscErrorCode SealWrite(const char *path, uint64_t fingerprint);
+/* The user block: version, case, run, length of the file and a checksum of it; data[bytes] is what follows the block.
+ */
+void SealMake(char block[SEAL_BYTES], uint64_t fingerprint, uint64_t run, const void *data, size_t bytes);
 /* Is the file a whole, undamaged checkpoint of this version?  Else the reason. */
-PetscErrorCode SealCheck(const char *path, uint64_t *fingerprint, bool *ok, char *why, size_t size);
+PetscErrorCode SealCheck(const char *path, uint64_t *fingerprint, uint64_t *run, bool *ok, char *why, size_t size);
 
 /* ---------------------------------------------------------------- checkpoint.c: fields of StepperState */
 typedef struct {

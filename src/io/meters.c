@@ -21,12 +21,14 @@ void MetersHeader(const Case *c, FILE *f)
   fprintf(f, "\n");
 }
 
-static PetscErrorCode WriteRow(FILE *f, const Model *m, const StepperState *s, double gas)
+static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, double gas)
 {
   const Case     *c  = m->c;
   const FieldSet *fs = &c->fields;
+  FILE           *f;
 
   PetscFunctionBeginUser;
+  PetscCall(RowBegin(out, &f));
   IoTime(c, f, s->t);
   for (PetscInt k = 0; k < c->nmeter; k++) {
     const double *rate = m->rates.meter[k], *sum = s->meter[k];
@@ -41,7 +43,7 @@ static PetscErrorCode WriteRow(FILE *f, const Model *m, const StepperState *s, d
   if (fs->phase[PHASE_G])
     fprintf(f, ",%.17g,%.12e", gas, gas / c->standard_gas_density);
   fprintf(f, "\n");
-  PetscCall(IoFlush(f, "meters.csv"));
+  PetscCall(RowEnd(out, TABLE_METERS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,7 +57,7 @@ PetscErrorCode OutputMeters(Output *out, const Model *m, const StepperState *s)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelComputeTotals(m, &now));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out->meters, m, s, now.gas);
+    ierr = WriteRow(out, m, s, now.gas);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -186,9 +186,12 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteRow(FILE *f, const Case *c, double t, const Fit *fit, PetscInt n, const double *value)
+static PetscErrorCode WriteRow(Output *out, const Case *c, double t, const Fit *fit, PetscInt n, const double *value)
 {
+  FILE *f;
+
   PetscFunctionBeginUser;
+  PetscCall(RowBegin(out, &f));
   IoTime(c, f, t);
   for (PetscInt k = 0; k < n; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
@@ -201,7 +204,7 @@ static PetscErrorCode WriteRow(FILE *f, const Case *c, double t, const Fit *fit,
     }
   }
   fprintf(f, "\n");
-  PetscCall(IoFlush(f, "probes.csv"));
+  PetscCall(RowEnd(out, TABLE_PROBES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -220,7 +223,7 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
     AddValues(m->c, &fit[k], &m->P, value + k * Q_COUNT);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * Q_COUNT), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out->probes, m->c, s->t, fit, n, value);
+    ierr = WriteRow(out, m->c, s->t, fit, n, value);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscCall(PetscFree(fit));
   PetscCall(PetscFree(value));

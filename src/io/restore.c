@@ -9,6 +9,7 @@ typedef struct {
   Particles    P;            /* all, by id */
   PetscInt     ranks;        /* of the run that wrote it */
   PetscInt    *rank, *place; /* where each particle was */
+  uint64_t     run;          /* that wrote it */
   char         why[256];     /* reason of a refusal */
 } Loaded;
 
@@ -52,7 +53,7 @@ static PetscErrorCode LoadReals(hid_t group, Loaded *L)
   double        *data;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(PetscMax(n, 1) * 6, &data));
+  PetscCall(PetscMalloc1(PetscMax(n, 1) * P_MOST, &data));
   for (const ParticleVariable *v = cl_particle_variable; v->name && !L->why[0]; v++) {
     const hsize_t dims[2] = {(hsize_t)n, (hsize_t)v->nc};
 
@@ -147,18 +148,18 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   bool     ok;
 
   PetscFunctionBeginUser;
-  PetscCall(SealCheck(path, &fingerprint, &ok, L->why, sizeof(L->why)));
+  PetscCall(SealCheck(path, &fingerprint, &L->run, &ok, L->why, sizeof(L->why)));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (fingerprint != CaseFingerprint(m->c)) {
     Refuse(L,
            "it was written by another case (grid, regions, materials, boundary conditions, meters or stages differ)");
   }
-  PetscCall(H5FileOpen(path, false, &file));
+  PetscCall(H5FileOpen(path, &file));
   if (file < 0)
     Refuse(L, "HDF5 cannot read it");
   PetscCall(LoadFile(m, file, L));
-  H5Check(H5Fclose(file));
+  PetscCall(H5FileClose(&file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -232,7 +233,7 @@ static PetscErrorCode Deal(const Grid *g, const Loaded *L, Particles *P)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, bool *ok)
+PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok)
 {
   const Grid *g    = &m->grid;
   Loaded      L    = {0};
@@ -254,9 +255,11 @@ PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, bool 
     PetscCall(ParticlesCreate(m->c->fields.has, &P));
     PetscCall(Deal(g, &L, &P));
     PetscCallMPI(MPI_Bcast(&L.s, sizeof(L.s), MPI_BYTE, 0, g->comm));
+    PetscCallMPI(MPI_Bcast(&L.run, 1, MPI_UINT64_T, 0, g->comm));
     PetscCall(ParticlesDestroy(&m->P));
-    m->P = P;
-    *s   = L.s;
+    m->P    = P;
+    *s      = L.s;
+    *origin = (Origin){.run = L.run, .t = L.s.t};
   }
   PetscCall(ParticlesDestroy(&L.P));
   PetscCall(PetscFree2(L.rank, L.place));

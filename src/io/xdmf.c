@@ -1,17 +1,16 @@
-/* fields.xdmf: the time series of particles and grid over fields.h5, for ParaView's and VisIt's XDMF 3 readers.
-   The particles name their vertices, for XDMF 3 makes no points of bare coordinates; the grid is one layer of a 3-D
-   mesh, for VTK's reader lays a 2DCoRectMesh into the y-z plane. */
+/* fields.xdmf: the time series of particles and grid over the files of the snapshots, for ParaView's and VisIt's XDMF 3
+   readers. The particles name their vertices, for XDMF 3 makes no points of bare coordinates; the grid is one layer of
+   a 3-D mesh, for VTK's reader lays a 2DCoRectMesh into the y-z plane. */
 #include "io_private.h"
 
-#include <errno.h>
 #include <string.h>
 
 static void Item(FILE *f, const char *dims, bool integer, const char *kind, PetscInt number, const char *name)
 {
-  fprintf(
-      f,
-      "<DataItem Dimensions=\"%s\" NumberType=\"%s\" Precision=\"%d\" Format=\"HDF\">fields.h5:/%s/%06d/%s</DataItem>",
-      dims, integer ? "Int" : "Float", integer ? 4 : 8, kind, (int)number, name);
+  fprintf(f,
+          "<DataItem Dimensions=\"%s\" NumberType=\"%s\" Precision=\"%d\" Format=\"HDF\">" SNAPSHOT_NAME
+          ":/%s/%s</DataItem>",
+          dims, integer ? "Int" : "Float", integer ? 4 : 8, (int)number, kind, name);
 }
 
 /* The XDMF types of vectors and tensors are three-dimensional; two and six components go as a matrix. */
@@ -73,7 +72,7 @@ static void NodeGrid(FILE *f, const FieldSet *fs, const Grid *g, const SnapshotE
   fprintf(f, "      </Grid>\n");
 }
 
-static void Collections(FILE *f, const Output *out, const Grid *g)
+void XdmfPrint(FILE *f, const Output *out, const Grid *g)
 {
   bool any = false;
 
@@ -93,21 +92,4 @@ static void Collections(FILE *f, const Output *out, const Grid *g)
     fprintf(f, "    </Grid>\n");
   }
   fprintf(f, "  </Domain>\n</Xdmf>\n");
-}
-
-PetscErrorCode XdmfWrite(const Output *out, const Grid *g)
-{
-  char  path[IO_PATH], aside[IO_PATH];
-  FILE *f;
-
-  PetscFunctionBeginUser;
-  PetscCall(IoPath(out->dir, "fields.xdmf", path));
-  PetscCall(IoPath(out->dir, "fields.xdmf.tmp", aside));
-  f = fopen(aside, "w");
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s: %s", aside, strerror(errno));
-  Collections(f, out, g);
-  PetscCall(IoFlush(f, aside));
-  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s: %s", aside, strerror(errno));
-  PetscCall(IoRename(aside, path));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

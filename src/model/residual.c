@@ -188,7 +188,7 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
 
     a[k] = fixed ? (x[k] - m->fixed[k]) / m->col_scale[k] : f[k] / m->row_scale[k];
     if (m->status != CL_OK)
-      a[k] = NAN; /* every rank and the line search must see the failure */
+      a[k] = NAN; /* every rank sees it in the norm; SNESSetFunctionDomainError would tell this rank alone */
   }
   PetscCall(VecRestoreArrayWrite(R, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -199,6 +199,7 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
   Model *m = (Model *)model;
 
   PetscFunctionBeginUser;
+  (void)snes;
   PetscCall(PetscLogEventBegin(m->event[1], 0, 0, 0, 0));
   m->status  = CL_OK;
   m->limited = 0;
@@ -214,8 +215,6 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
   if (m->mass_row)
     PetscCall(SumMassRows(m));
   PetscCall(Finish(m, m->x, m->f, R));
-  if (m->status != CL_OK && snes)
-    PetscCall(SNESSetFunctionDomainError(snes));
   PetscCall(PetscLogEventEnd(m->event[1], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,7 +59,7 @@ static PetscErrorCode FieldNorms(const Model *m, Vec v, double norm[F_COUNT])
     norm[q] = 0.0;
   PetscCall(VecGetArrayRead(v, &a));
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++)
-    norm[fs->field[k % fs->n]] = fmax(norm[fs->field[k % fs->n]], fabs(a[k]));
+    norm[fs->field[k % fs->n]] = fmax(norm[fs->field[k % fs->n]], ClSize(a[k]));
   PetscCall(VecRestoreArrayRead(v, &a));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, F_COUNT, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -314,7 +314,9 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
     PetscCall(SNESGetConvergedReason(m->snes, &reason));
     PetscCall(SNESGetIterationNumber(m->snes, &its));
     *newton += its;
-    if (reason > 0 || reason == SNES_DIVERGED_FUNCTION_DOMAIN)
+    if (reason == SNES_DIVERGED_FNORM_NAN)
+      PetscCall(ModelReduceStatus(m, &m->status));
+    if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->status != CL_OK))
       break;
   }
   if (reason < 0) {

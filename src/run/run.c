@@ -1,16 +1,20 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
 #include "run_private.h"
 #include "plastic.h"
-#include <sys/stat.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 typedef struct {
   Output   *out;
-  char      checkpoint[PETSC_MAX_PATH_LEN];
-  double    clock_start; /* s of the wall */
+  Folder    folder;
   StageLog *log;
+  char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
+  double    t_saved;                                                   /* of that */
+  double    clock_start;                                               /* s of the wall */
   bool      quiet;
+  bool      written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
 double Wall(void)
@@ -19,45 +23,6 @@ double Wall(void)
 
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-/* First multiple of `every` after t, counted from the begin of the stage. */
-static double NextMultiple(const Case *c, double every, double t)
-{
-  const double at = t - c->t_begin + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
-
-  return every > 0.0 ? c->t_begin + every * (floor(at / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
-}
-
-static double NextSnapshot(const Case *c, double t)
-{
-  double next = NextMultiple(c, c->every, t);
-
-  for (PetscInt k = 0; k < c->ntimes; k++) {
-    if (c->times[k] > t + CaseTimeSlack(c, t))
-      next = fmin(next, c->times[k]);
-  }
-  return next;
-}
-
-static bool IsTime(const Case *c, double event, double t)
-{
-  return fabs(event - t) <= 1e-9 * fabs(t - c->t_begin) + CaseTimeSlack(c, t);
-}
-
-/* Steps end exactly on events, so t is one of them or is not. */
-static bool AtMultiple(const Case *c, double every, double t)
-{
-  return every > 0.0 && IsTime(c, c->t_begin + every * round((t - c->t_begin) / every), t);
-}
-
-static bool AtSnapshot(const Case *c, double t)
-{
-  bool at = AtMultiple(c, c->every, t);
-
-  for (PetscInt k = 0; k < c->ntimes; k++)
-    at = at || IsTime(c, c->times[k], t);
-  return at;
 }
 
 static double NextEvent(const Stepper *s, void *ctx)
@@ -98,6 +63,24 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The rows first: a restart from this checkpoint takes them for granted. */
+static PetscErrorCode Save(Stepper *s, Run *run)
+{
+  bool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(OutputSync(run->out, s->model->grid.comm, &ok));
+  if (ok)
+    PetscCall(CheckpointWrite(s->model, &s->state, run->folder.run, run->checkpoint, &ok));
+  if (ok) {
+    PetscCall(PetscStrncpy(run->saved, run->checkpoint, sizeof(run->saved)));
+    run->t_saved = s->state.t;
+    run->written = true;
+  }
+  run->lost = run->lost || !ok;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* After every accepted step: ledger, probes, meters, snapshot, checkpoint, progress. */
 static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
 {
@@ -105,6 +88,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   const Case  *c    = s->model->c;
   const double t    = s->state.t;
   const bool   last = CaseAtEnd(c, t); /* of the run, or of a stage */
+  bool         ok;
 
   PetscFunctionBeginUser;
   StageLogStep(run->log, s, info);
@@ -117,44 +101,12 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
   }
-  if (AtMultiple(c, c->checkpoint_every, t))
-    PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
+  PetscCall(OutputGood(run->out, s->model->grid.comm, &ok));
+  run->lost = !ok;
+  if (ok && AtMultiple(c, c->checkpoint_every, t))
+    PetscCall(Save(s, run));
+  s->stop = s->stop || run->lost;
   PetscCall(Progress(s, info, run));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MakeFolder(MPI_Comm comm, const char *path, bool *ok)
-{
-  char        part[PETSC_MAX_PATH_LEN];
-  PetscMPIInt rank, good = 1;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (rank == 0) {
-    struct stat st;
-
-    PetscCall(PetscStrncpy(part, path, sizeof(part)));
-    for (char *p = part + 1; *p; p++) {
-      if (*p != '/')
-        continue;
-      *p = '\0';
-      mkdir(part, 0777);
-      *p = '/';
-    }
-    mkdir(part, 0777);
-    good = stat(path, &st) == 0 && S_ISDIR(st.st_mode) && access(path, W_OK | X_OK) == 0;
-    if (good) { /* root may be allowed what the file system is not */
-      PetscCall(PetscSNPrintf(part, sizeof(part), "%s/case.yaml", path));
-      FILE *f = fopen(part, "a");
-      good    = f != NULL;
-      if (f)
-        fclose(f);
-    }
-    if (!good)
-      fprintf(stderr, "clathra: cannot write into the output folder %s\n", path);
-  }
-  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, comm));
-  *ok = good;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,93 +134,174 @@ static PetscErrorCode LocalSummary(const Stepper *s, char text[512])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Summary(const Stepper *s, const Run *run)
+/* Errors that were put up with. */
+static PetscErrorCode LooseSummary(const Stepper *s, char text[256])
 {
   const StepperState *z = &s->state;
-  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512], yields[256], *stages;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (z->loose_total)
+    PetscCall(PetscSNPrintf(text, 256,
+                            "  %" PetscInt_FMT
+                            " steps were accepted above the tolerance, with an estimated error of up "
+                            "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",
+                            z->loose_total, z->err_worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Summary(const Stepper *s, Run *run)
+{
+  const MPI_Comm      comm = s->model->grid.comm;
+  const StepperState *z    = &s->state;
+  char                text[2048], local[512], loose[256], yields[256], *stages, *all;
   ModelTotals         t;
-  PetscMPIInt         rank;
+  bool                ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   PetscCall(LocalSummary(s, local));
   PetscCall(YieldSummary(s->model, yields));
+  PetscCall(LooseSummary(s, loose));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
                           " Newton iterations, %.2f s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
-                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n%s"
-                          "  results in %s\n",
+                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
+                          "%s%s  results in %s\n",
                           s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
                           s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
                           z->newton_total, Wall() - run->clock_start, local,
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
-                          z->limited_total, yields, s->model->c->output_dir));
+                          z->limited_total, yields, loose, s->model->c->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
-  PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", text, stages));
-  PetscCallMPI(MPI_Comm_rank(s->model->grid.comm, &rank));
-  if (rank == 0) {
-    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/summary.txt", s->model->c->output_dir));
-    FILE *f = fopen(path, "w");
-    if (f) {
-      fputs(text, f);
-      fputs(stages, f);
-      fclose(f);
-    }
-  }
+  PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
+  strcpy(stpcpy(all, text), stages);
+  PetscCall(PetscPrintf(comm, "%s%s", text, stages));
+  PetscCall(FolderWriteText(comm, s->model->c->output_dir, "summary.txt", all, strlen(all), &ok));
+  run->lost = run->lost || !ok;
   PetscCall(PetscFree(stages));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- from the first row to the last */
+static PetscErrorCode WriteCase(MPI_Comm comm, const Case *c, Run *run)
+{
+  char  *text;
+  size_t size;
+  bool   ok;
+  FILE  *f = open_memstream(&text, &size);
+
+  PetscFunctionBeginUser;
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscCall(CaseWriteResolved(c, f));
+  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscCall(FolderWriteText(comm, c->output_dir, "case.yaml", text, size, &ok));
+  free(text);
+  run->lost = run->lost || !ok;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
+{
+  const Model *m = s->model;
+  bool         ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(WriteCase(m->grid.comm, c, run));
+  PetscCall(OutputCreate(m, &s->state, restart, &run->out));
+  if (!restart) {
+    PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    PetscCall(OutputProbes(run->out, m, &s->state));
+    PetscCall(OutputMeters(run->out, m, &s->state));
+    PetscCall(OutputSnapshot(run->out, m, &s->state));
+    s->state.next_snapshot++;
+  }
+  PetscCall(OutputGood(run->out, m->grid.comm, &ok));
+  run->lost        = run->lost || !ok;
+  run->clock_start = Wall();
+  PetscCall(StageLogCreate(s, &run->log));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Why the run ends here, and what there is to go on from. */
+static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
+{
+  const MPI_Comm comm = s->model->grid.comm;
+  const double   t    = s->state.t;
+  const char    *why  = run->lost ? "not all could be written; see to it" : "the state is not finite";
+
+  PetscFunctionBeginUser;
+  if ((run->lost || s->broken) && run->saved[0]) {
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: stopped at t = %g s: %s.  The last checkpoint, of t = %g s, is whole: go on with "
+                           "-restart %s\n",
+                           t, why, run->t_saved, run->saved));
+  } else if (run->lost || s->broken) {
+    PetscCall(PetscFPrintf(
+        comm, stderr, "clathra: stopped at t = %g s: %s, and there is no checkpoint of this run yet: start it anew\n",
+        t, why));
+  } else if (s->signal && !StepperDone(s)) {
+    PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
+                          strsignal(s->signal), t, run->saved));
+  } else if (!ok)
+    PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
+{
+  bool ok = true, closed;
+
+  PetscFunctionBeginUser;
+  if (!run->lost)
+    PetscCall(StepperRun(s, &ok));
+  if (!run->lost &&
+      !(run->written && run->t_saved == s->state.t)) /* after a loss it would promise rows that are not there */
+    PetscCall(Save(s, run));
+  PetscCall(Summary(s, run));
+  PetscCall(StageLogDestroy(&run->log));
+  PetscCall(OutputDestroy(&run->out, s->model->grid.comm, &closed));
+  run->lost = run->lost || !closed;
+  PetscCall(SayEnd(s, run, ok));
+  if (run->lost || !ok)
+    *exit_code = CL_EXIT_FAILED;
+  else if (s->signal && !StepperDone(s))
+    *exit_code = CL_EXIT_SIGNAL;
+  else
+    *exit_code = CL_EXIT_OK;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restart, int *exit_code)
 {
-  char path[PETSC_MAX_PATH_LEN];
-  bool ok;
+  Origin origin;
+  bool   ok = true;
 
   PetscFunctionBeginUser;
+  *exit_code = CL_EXIT_INPUT;
   if (restart[0]) {
-    PetscCall(CheckpointRead(s->model, &s->state, restart, &ok));
-    if (!ok) {
-      *exit_code = CL_EXIT_INPUT;
+    PetscCall(CheckpointRead(s->model, &s->state, restart, &origin, &ok));
+    if (!ok)
       PetscFunctionReturn(PETSC_SUCCESS);
-    }
-  }
+    PetscCall(PetscStrncpy(run->saved, restart, sizeof(run->saved)));
+    run->t_saved = s->state.t;
+  } else
+    run->t_saved = NAN;
   PetscCall(StepperReady(s, &ok));
-  if (!ok) {
-    *exit_code = CL_EXIT_INPUT;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(MakeFolder(s->model->grid.comm, c->output_dir, &ok));
-  if (!ok) {
-    *exit_code = CL_EXIT_INPUT;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/case.yaml", c->output_dir));
-  PetscCall(CaseWriteResolved(c, path));
-  PetscCall(PetscSNPrintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir));
-  PetscCall(OutputCreate(s->model, &s->state, restart[0] != '\0', &run->out));
-  if (!restart[0]) {
-    PetscCall(InitialWarnings(s->model->grid.comm, s->model->c, &s->model->P));
-    PetscCall(OutputProbes(run->out, s->model, &s->state));
-    PetscCall(OutputMeters(run->out, s->model, &s->state));
-    PetscCall(OutputSnapshot(run->out, s->model, &s->state));
-    s->state.next_snapshot++;
-  }
-  run->clock_start = Wall();
-  PetscCall(StageLogCreate(s, &run->log));
-  PetscCall(StepperRun(s, &ok));
-  if (!AtMultiple(s->model->c, s->model->c->checkpoint_every, s->state.t))
-    PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
   if (!ok)
-    PetscCall(PetscPrintf(s->model->grid.comm, "The last good state (t = %g s) is saved in %s\n", s->state.t,
-                          run->checkpoint));
-  PetscCall(Summary(s, run));
-  PetscCall(StageLogDestroy(&run->log));
-  PetscCall(OutputDestroy(&run->out));
-  *exit_code = ok ? CL_EXIT_OK : CL_EXIT_FAILED;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FolderTake(s->model->grid.comm, c->output_dir, restart[0] ? &origin : NULL, &run->folder, exit_code));
+  if (*exit_code != CL_EXIT_OK)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir));
+  PetscCall(Begin(c, s, run, restart[0] != '\0'));
+  PetscCall(Advance(s, run, exit_code));
+  PetscCall(FolderRelease(&run->folder));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -302,22 +335,33 @@ static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
 
 PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
 {
-  Run       run = {0};
-  Model     model;
-  Stepper   stepper;
-  char      restart[PETSC_MAX_PATH_LEN] = "";
-  PetscBool quiet                       = PETSC_FALSE;
-  PetscInt  unknown;
+  Run         run = {0};
+  Model       model;
+  Stepper     stepper;
+  char        restart[PETSC_MAX_PATH_LEN] = "";
+  PetscBool   quiet                       = PETSC_FALSE;
+  PetscInt    unknown;
+  PetscMPIInt size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
   run.quiet = quiet;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (!GridFits(size, c->cells)) {
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: %s: grid_cells = %" PetscInt_FMT ", %" PetscInt_FMT
+                           ": too few for %d ranks (each needs a part of at least 3 x 3 nodes); use fewer ranks\n",
+                           c->file, c->cells[0], c->cells[1], (int)size));
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
   stepper.monitor_ctx = &run;
   stepper.next_event  = NextEvent;
+  stepper.interrupted = ProcessSignal;
   PetscCall(CheckOptions(comm, true, &unknown));
   if (unknown) {
     *exit_code = CL_EXIT_INPUT;

@@ -6,6 +6,14 @@
 
 double Wall(void); /* s */
 
+/* ---------------------------------------------------------------- times.c */
+/* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
+double NextMultiple(const Case *c, double every, double t);
+double NextSnapshot(const Case *c, double t);
+bool   AtMultiple(const Case *c, double every, double t);
+bool   AtSnapshot(const Case *c, double t);
+
+/* ---------------------------------------------------------------- stages.c */
 /* What each stage took in this process. */
 typedef struct StageLog StageLog;
 PetscErrorCode          StageLogCreate(const Stepper *s, StageLog **log);

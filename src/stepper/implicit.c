@@ -122,7 +122,7 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu)
   if (MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm))
     return NAN;
   for (int k = 0; k < 7; k++)
-    worst = fmax(worst, sqrt(sum[k] / sum[7]) / (s->tol * scale[k]));
+    worst = fmax(worst, ClSize(sqrt(sum[k] / sum[7]) / (s->tol * scale[k])));
   return worst;
 }
 
@@ -192,6 +192,21 @@ static bool IsNoise(const Stepper *s, double dt, double err, double dt_old, doub
   return err_old > 0.0 && dt < dt_old && err > err_old * pow(dt / dt_old, 0.25 * s->scheme->error_order);
 }
 
+/* Is the error of an attempt small enough, noise, or, at dt_min, to be put up with? */
+static void Judge(Stepper *s, double dt, double dt_old, double err_old, Attempt *a)
+{
+  if (!isfinite(a->err)) {
+    a->status     = CL_NONFINITE;
+    s->model->why = "the error estimate is not a number";
+  } else if (a->err > 1.0 && dt > s->dt_min && !IsNoise(s, dt, a->err, dt_old, err_old)) {
+    a->status = CL_INACCURATE;
+  } else if (a->err > 1.0) {
+    a->loose = a->err;
+    if (dt > s->dt_min)
+      a->err = 1.0; /* noise */
+  }
+}
+
 /* An adaptive run whose steps have shrunk to nothing is ended, for it would not end by itself. */
 static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
 {
@@ -234,12 +249,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
 
     PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * m->c->fields.n));
     PetscCall(s->scheme->step(s, dt, &a));
-    if (a.status == CL_OK && s->adaptive && a.err > 1.0 && dt > s->dt_min) {
-      if (IsNoise(s, dt, a.err, dt_inaccurate, err_inaccurate))
-        a.err = 1.0;
-      else
-        a.status = CL_INACCURATE;
-    }
+    if (a.status == CL_OK && s->adaptive)
+      Judge(s, dt, dt_inaccurate, err_inaccurate, &a);
     if (a.status == CL_OK) {
       PetscCall(Accept(s, dt, kink, &a, cuts));
       PetscCall(CheckCrawl(s, dt, ok));

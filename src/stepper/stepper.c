@@ -95,11 +95,12 @@ PetscErrorCode StepperDestroy(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What errors are relative to: the largest change since the start; of pore pressure or stress, and of position. */
+/* What errors are relative to: the largest change since the start; of pore pressure or stress, and of position.  With
+   them ranks agree on a signal. */
 static PetscErrorCode UpdateScales(Stepper *s)
 {
   const Model *m      = s->model;
-  double       top[2] = {s->state.scale_p, s->state.scale_u};
+  double       top[3] = {s->state.scale_p, s->state.scale_u, s->interrupted ? s->interrupted() : 0};
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) { /* p_w, p_g, sigma'_xx, _yy, _zz against their initial values */
@@ -107,15 +108,23 @@ static PetscErrorCode UpdateScales(Stepper *s)
     const double *a = m->P.f[now], *b = m->P.f[start];
 
     for (PetscInt p = 0; a && p < m->P.n; p++)
-      top[0] = fmax(top[0], fabs(a[p] - b[p]));
+      top[0] = fmax(top[0], ClSize(a[p] - b[p]));
   }
   for (int d = 0; m->P.f[P_U] && d < CL_DIM; d++) {
     for (PetscInt p = 0; p < m->P.n; p++)
-      top[1] = fmax(top[1], fabs(m->P.f[P_U + d][p]));
+      top[1] = fmax(top[1], ClSize(m->P.f[P_U + d][p]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 2, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 3, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  s->broken = !isfinite(top[0] + top[1]);
+  if (s->broken) {
+    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: a pressure, stress or displacement is not a number\n",
+                          s->state.t));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   s->state.scale_p = top[0];
   s->state.scale_u = top[1];
+  s->signal        = (int)top[2];
+  s->stop          = s->stop || s->signal;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,6 +157,10 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
 
   PetscFunctionBeginUser;
   PetscCall(UpdateScales(s));
+  if (s->broken)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  z->loose_total += a->loose > 0.0;
+  z->err_worst = fmax(z->err_worst, a->loose);
   z->newton_total += a->newton;
   z->failures_total += info->cuts;
   z->limited_total += a->limited;
@@ -189,11 +202,12 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok)
 {
   PetscFunctionBeginUser;
   *ok = true;
-  for (PetscInt n = 0; *ok && n < s->max_steps && !StepperDone(s); n++) {
+  for (PetscInt n = 0; *ok && !s->stop && !s->broken && n < s->max_steps && !StepperDone(s); n++) {
     if (StepperStageDone(s))
       PetscCall(Change(s, ok));
     if (*ok)
       PetscCall(s->scheme->advance(s, ok));
   }
+  *ok = *ok && !s->broken;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

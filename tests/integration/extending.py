@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import ROOT, binary, check, check_true, finish, run, scratch  # noqa: E402
+from common import ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
 
 PAGE = ROOT / "docs" / "extending.md"
 SCENE = """
@@ -126,4 +126,13 @@ t, T = plate.time, plate.probe("middle")["T_degC"] + 273.15
 rate = 0.8 * 5.670374e-8 / (0.99 * 7800 * 500 * 0.1)
 exact = (773.15**-3 + 3 * rate * t) ** (-1 / 3)
 check("condition: T of a plate that radiates into space (K)", np.max(np.abs(T - exact)), 0.5)
+local = launch(extended, case, "-stepper_type", "hybrid", out=tree / "local")
+check_true("condition: an integrator that does not list it refuses it by name", local.returncode == 2 and
+           "bc_sky_type" in local.stdout and "radiation" in local.stdout, local.stdout[-200:])  # fmt: skip
+late = ("-stages", "slow,fast", "-stage_slow_end", "1 s", "-stage_fast_end", "2 s", "-time_end", "2 s", "-stage_fast_stepper_type", "hybrid")
+local = launch(extended, case, *late, out=tree / "local")
+check_true("condition: also when only a later stage has such an integrator", local.returncode == 2 and "bc_sky_type" in local.stdout
+           and "in stage fast: hybrid does not know the condition radiation" in local.stdout, local.stdout[-200:])  # fmt: skip
+local = launch(extended, case, *late, "-case_check", "-stage_fast_boundaries", "none", out=tree / "local")
+check_true("condition: but not where it does not act", local.returncode == 0, local.stdout[-200:])
 finish()

@@ -35,6 +35,8 @@ def check_fields():
         for kind, rows in (("particles", 50), ("grid", None)):
             groups = [file[kind][k] for k in sorted(file[kind])]
             times = [float(g.attrs["time"].ravel()[0]) for g in groups]
+            check_true(f"fields.h5: one file a snapshot of /{kind}",
+                       sorted(p.name for p in (good.out / "fields").iterdir()) == [f"{k:06d}.h5" for k in range(3)])  # fmt: skip
             check_true(f"fields.h5: times of /{kind}", np.allclose(times, TIMES[-len(times):]) and len(times) >= 2, times)
             values = [g[k] for g in groups for k in g]
             check_true(f"fields.h5: every dataset of /{kind} has a unit", all("unit" in v.attrs for v in values))
@@ -49,21 +51,21 @@ def check_fields():
 def check_xdmf():
     root, items, times = xml.parse(good.out / "fields.xdmf").getroot(), 0, set()
     bad = []
-    with h5py.File(good.out / "fields.h5", "r") as file:
-        for item in root.iter("DataItem"):
-            if item.get("Format") != "HDF":
-                continue
-            name, _, path = item.text.strip().partition(":")
-            shape = tuple(int(n) for n in item.get("Dimensions").split())
-            items += 1
-            if name != "fields.h5" or path not in file or np.prod(file[path].shape) != np.prod(shape):
+    for item in root.iter("DataItem"):
+        if item.get("Format") != "HDF":
+            continue
+        name, _, path = item.text.strip().partition(":")
+        shape = tuple(int(n) for n in item.get("Dimensions").split())
+        items += 1
+        with h5py.File(good.out / name, "r") as file:
+            if path not in file or np.prod(file[path].shape) != np.prod(shape):
                 bad.append(item.text)
             elif file[path].dtype.itemsize != int(item.get("Precision")):
                 bad.append(item.text)
     for collection in root.find("Domain").findall("Grid"):
         times.add(tuple(float(t.get("Value")) for t in collection.iter("Time")))
     check_true("fields.xdmf: well-formed XDMF", root.tag == "Xdmf" and items > 0, f"{items} datasets")
-    check_true("fields.xdmf: refers to what is in fields.h5, of its size and precision", not bad, ", ".join(bad[:3]))
+    check_true("fields.xdmf: refers to what is in the snapshots, of its size and precision", not bad, ", ".join(bad[:3]))
     check_true("fields.xdmf: two time series", len(times) in (1, 2) and tuple(TIMES) in times, times)
 
 
@@ -124,6 +126,15 @@ def check_failure():
     says("... and runs with a smaller step", go_on, 0, "finished")
 
 
+def check_loose():
+    """What is accepted above the tolerance is counted."""
+    loose = Run.of_case("bp2", *OPTIONS, "-stepper_tol", "1e-7", "-stepper_dt", "5 s", "-stepper_dt_min", "5 s", "-stepper_dt_max", "5 s")
+    summary, steps = (loose.out / "summary.txt").read_text(), len(loose.balance["step"])
+    check_true("steps above the tolerance are counted in summary.txt", f"{steps} steps were accepted above the tolerance" in
+               summary and " 0 refused" in summary, summary)  # fmt: skip
+    check_true("... a run within it says nothing", "accepted above" not in (good.out / "summary.txt").read_text())
+
+
 def check_refusals():
     out = scratch() / "out"
     says("-case_check: valid", launch(binary(), BP2, "-case_check", out=out), 0, "the case is valid")
@@ -131,6 +142,8 @@ def check_refusals():
     says("-case_check of a wrong case", launch(binary(), BP2, "-case_check", "-mat_sediment_porosity", "1.5", out=out), 2,
          "mat_sediment_porosity", "1.5")  # fmt: skip
     says("a snapshot after the end", launch(binary(), BP2, "-time_end", "60 s", out=out), 2, "output_times", "time_end")
+    says("more ranks than the grid has room for", launch(binary(), BP2, "-grid_cells", "3,1", ranks=4, out=out), 2,
+         "grid_cells = 3, 1", "use fewer ranks")  # fmt: skip
     says("no such case", launch(binary(), "/nowhere/case.yaml", out=out), 2, "/nowhere/case.yaml")
     says("no case", launch(binary(), "-quiet"), 2, "name a case")
     check_true("none of them wrote anything", not out.exists())
@@ -150,5 +163,6 @@ check_xdmf()
 check_tables()
 check_resolved()
 check_failure()
+check_loose()
 check_refusals()
 finish()

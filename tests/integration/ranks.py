@@ -9,6 +9,7 @@ stays below the bar.
 
 Values are compared with the largest of their kind: all displacements together, all stresses together, and so on.
 """
+import subprocess
 import sys
 from pathlib import Path
 
@@ -16,7 +17,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import Run, check, check_true, finish, judge, table  # noqa: E402
+from common import Run, binary, check, check_true, finish, judge, launch, scratch, table  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 TIGHT = ("-quiet", "-newton_tol_residual", "1e-10", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-9",
@@ -95,4 +96,13 @@ table(["scene", "ranks", "what", "difference from 1 rank", "largest in"], lines)
 for n in (2, 4):
     worst = max(line[3] for line in lines if line[1] == n)
     judge("8.", f"{n} ranks against 1: histories, particles, ledgers", worst, BAR)
+
+# What one rank alone finds inadmissible makes all of them refuse the step: they would wait for each other for ever.
+try:
+    done = launch(binary(), HERE / "cases" / "one_rank_refuses.yaml", "-quiet", "-stepper_max_steps", "14", "-newton_tol_update", "1e-9",
+                  "-ksp_rtol", "1e-9", ranks=2, out=scratch() / "out", timeout=100)  # fmt: skip
+    said = done.stdout if done.returncode == 0 else f"exit code {done.returncode}: {done.stdout[-300:]}"
+except subprocess.TimeoutExpired:
+    said = "the ranks wait for each other"
+check_true("a state that one rank finds inadmissible is refused by both", "refused (inadmissible state" in said, said[-200:])
 finish()

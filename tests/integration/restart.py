@@ -12,7 +12,6 @@ cut where -stepper_max_steps ends it: at any step, on none of the times that the
 -time_end could cut it as well, but only at a time that is an event of the straight run, since the run steps onto its
 end; the defaults of stepper_dt, stepper_dt_min and stepper_dt_max follow time_end too.
 """
-import hashlib
 import shutil
 import sys
 from pathlib import Path
@@ -21,13 +20,13 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from _files import different, hashes  # noqa: E402
 from common import CASES, ROOT, Run, binary, check_true, finish, judge, launch, record, scratch, table  # noqa: E402
 
 OPTIONS = ("-quiet", "-grid_cells", "26,1", "-time_end", "300 s", "-stepper_dt_max", "15 s",
            "-bc_load_normal_table", "0 s,3.25 MPa,150 s,7.25 MPa,300 s,3.25 MPa",
            "-output_times", "0 s,100 s,200 s,300 s", "-checkpoint_every", "120 s",
            "-meters", "outlet,base", "-meter_outlet_side", "right", "-meter_base_side", "left")  # fmt: skip
-FILES = ("probes.csv", "meters.csv", "balance.csv")
 REPRODUCIBLE = {1: (), 2: ("-options_file", str(ROOT / "options" / "krylov.opts"))}
 lines = []
 
@@ -40,37 +39,9 @@ def same_bits(*options, ranks=1, **keywords):
     return bp2(*REPRODUCIBLE[ranks], *options, ranks=ranks, **keywords)
 
 
-def contents(path):
-    """{name: bytes} of everything in an HDF5 file, attributes too."""
-    found = {}
-
-    def visit(name, item):
-        for key, value in item.attrs.items():
-            found[f"{name}@{key}"] = np.asarray(value).tobytes()
-        if isinstance(item, h5py.Dataset):
-            found[name] = str((item.dtype, item.shape)).encode() + np.asarray(item[()]).tobytes()
-
-    with h5py.File(path, "r") as file:
-        file.visititems(visit)
-    return found
-
-
-def different(a, b):
-    """Names of the files, or parts of them, that differ between two folders."""
-    names = [f for f in FILES if (a / f).read_bytes() != (b / f).read_bytes()]
-    for f in ("fields.h5", "checkpoint.h5"):
-        x, y = contents(a / f), contents(b / f)
-        names += [f"{f}:{k}" for k in sorted(x.keys() | y.keys()) if x.get(k) != y.get(k)]
-    return names
-
-
 def state(path, name):
     with h5py.File(path, "r") as file:
         return file["state"][name][()].ravel()[0]
-
-
-def hashes(folder):
-    return {p.name: hashlib.sha256(p.read_bytes()).hexdigest() for p in sorted(folder.iterdir())}
 
 
 def cut_in_two(straight, ranks, steps):

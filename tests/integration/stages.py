@@ -13,6 +13,8 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+import _files  # noqa: E402
+from _files import TABLES  # noqa: E402
 from common import Run, binary, check, check_true, finish, launch, scratch  # noqa: E402
 
 CASES = Path(__file__).resolve().parent / "cases"
@@ -25,20 +27,8 @@ def column(*options, **keywords):
     return Run.of_case(COLUMN, "-quiet", *options, **keywords)
 
 
-def contents(path):
-    found = {}
-    with h5py.File(path, "r") as file:
-        file.visititems(lambda name, item: found.update({name: np.asarray(item[()]).tobytes()}) if isinstance(item, h5py.Dataset) else None)
-    return found
-
-
-def different(a, b, files=("probes.csv", "meters.csv", "balance.csv")):
-    """Names of files, or of parts of them, that differ between two runs."""
-    names = [f for f in files if (a.out / f).exists() and (a.out / f).read_bytes() != (b.out / f).read_bytes()]
-    for f in ("fields.h5", "checkpoint.h5"):
-        x, y = contents(a.out / f), contents(b.out / f)
-        names += [f"{f}:{k}" for k in sorted(x.keys() | y.keys()) if x.get(k) != y.get(k)]
-    return names
+def different(a, b, tables=TABLES):
+    return _files.different(a.out, b.out, tables)
 
 
 # ------------------------------------------------------------------------------------------- gravity, then the event

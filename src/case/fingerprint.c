@@ -1,0 +1,124 @@
+/* fingerprint: a number that two cases share when a checkpoint of one can be continued by the other.  It runs over the
+   key table, so that a new key belongs to it unless it is named here. */
+#include "case_private.h"
+#include <string.h>
+
+/* Keys of the case and of stages that a restart may change: names, what is written, the numerics of time and of the
+ * solver. */
+static const char *const may_change[] = {"title",   "fields",    "time_",       "stepper_", "stabilisation_",
+                                         "output_", "standard_", "checkpoint_", NULL};
+
+/* Keys of a stage that are already in the scene as it holds there, or in the begin of the next stage. */
+static const char *const in_scene[] = {"end", "boundaries", "materials", NULL};
+
+static bool BeginsWithOneOf(const char *name, const char *const *word)
+{
+  for (int i = 0; word[i]; i++) {
+    if (!strncmp(name, word[i], strlen(word[i])))
+      return true;
+  }
+  return false;
+}
+
+static uint64_t HashReals(uint64_t h, const double *v, size_t n)
+{
+  for (size_t i = 0; i < n; i++) {
+    const double x = v[i] + 0.0; /* -0 is 0 */
+
+    h = HashBytes(h, &x, sizeof x);
+  }
+  return h;
+}
+
+static uint64_t HashText(uint64_t h, const char *text)
+{
+  return text ? HashBytes(h, text, strlen(text) + 1) : HashBytes(h, "", 1);
+}
+
+static uint64_t HashSchedule(uint64_t h, const Schedule *s)
+{
+  const int n = (int)s->n, steps = s->steps;
+
+  h = HashBytes(HashBytes(h, &n, sizeof n), &steps, sizeof steps);
+  return HashReals(HashReals(h, s->t, (size_t)s->n), s->y, (size_t)s->n);
+}
+
+static uint64_t HashPoints(uint64_t h, const Points *p)
+{
+  return HashReals(HashBytes(h, &p->n, sizeof p->n), p->x, (size_t)(2 * p->n));
+}
+
+static uint64_t HashNames(uint64_t h, const Names *l)
+{
+  return HashBytes(HashBytes(h, &l->n, sizeof l->n), l->i, (size_t)l->n * sizeof *l->i);
+}
+
+static uint64_t HashKey(uint64_t h, const Key *k, const char *instance)
+{
+  const char *place = instance + k->offset;
+  const int   yes   = k->kind == KEY_BOOL && *(const bool *)place;
+
+  switch (k->kind) {
+  case KEY_REAL:
+    return HashReals(h, (const double *)place, (size_t)k->count);
+  case KEY_INT:
+  case KEY_NAME:
+    return HashBytes(h, place, (size_t)k->count * sizeof(PetscInt));
+  case KEY_CHOICE:
+    return HashBytes(h, place, sizeof(int));
+  case KEY_BOOL:
+    return HashBytes(h, &yes, sizeof yes);
+  case KEY_TEXT:
+    return HashText(h, place);
+  case KEY_LAW:
+    return HashText(h, k->law->get((const Material *)instance));
+  case KEY_SCHEDULE:
+    return HashSchedule(h, (const Schedule *)place);
+  case KEY_POINTS:
+    return HashPoints(h, (const Points *)place);
+  case KEY_NAMES:
+    return HashNames(h, (const Names *)place);
+  case KEY_REALS: /* output_times alone, which may change */
+    return h;
+  }
+  return h;
+}
+
+static uint64_t HashScene(uint64_t h, const Case *c)
+{
+  h = HashBytes(h, &c->fields.has, sizeof c->fields.has);
+  for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
+    const PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
+
+    if (g == GROUP_PROBE || g == GROUP_STAGE)
+      continue;
+    h = HashBytes(h, &n, sizeof n);
+    for (PetscInt i = 0; i < n; i++) {
+      for (const Key *k = case_group[g].key; k->name; k++) {
+        if (g != GROUP_CASE || !BeginsWithOneOf(k->name, may_change))
+          h = HashKey(h, k, GroupInstance(c, g, i));
+      }
+    }
+  }
+  return h;
+}
+
+/* Of a case with stages: the scene as it holds in each, and when it begins; so it is the same whatever stage c is the
+   case of. */
+uint64_t CaseFingerprint(const Case *c)
+{
+  uint64_t h = FNV_START;
+
+  if (!c->nstage)
+    return HashScene(h, c);
+  for (PetscInt i = 0; i < c->nstage; i++) {
+    const CaseStage *s = &c->stage[i];
+
+    h = HashScene(HashReals(h, &s->c.t_begin, 1), &s->c);
+    for (const Key *k = case_group[GROUP_STAGE].key; k->name; k++) {
+      if (!BeginsWithOneOf(k->name, may_change) && !BeginsWithOneOf(k->name, in_scene))
+        h = HashKey(h, k, (const char *)s);
+    }
+  }
+  return h;
+}

@@ -1,0 +1,208 @@
+/* The output folder: one run at a time, and files of one history.
+
+   run.lock is locked (flock) while a run lives; the kernel gives it back when the process dies, however it dies.
+
+   run.id lists the runs whose rows and snapshots the folder holds, one a line: identity and first time.  A restart at
+   time t from a checkpoint of run k keeps the lines up to k and adds its own with t, as the tables are cut back to t.
+   So a checkpoint of run k at t belongs to the folder when k is listed and the run after it, if any, began at t or
+   later.
+ */
+#include "io_private.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
+
+typedef struct {
+  int    n;
+  Origin run[64]; /* the last ones */
+} History;
+
+static uint64_t NewIdentity(void)
+{
+  uint64_t id = 0;
+
+  if (getrandom(&id, sizeof(id), GRND_NONBLOCK) != sizeof(id)) {
+    struct timespec now;
+    const pid_t     pid = getpid();
+
+    clock_gettime(CLOCK_REALTIME, &now);
+    id = HashBytes(HashBytes(FNV_START, &now, sizeof(now)), &pid, sizeof(pid));
+  }
+  return id;
+}
+
+/* ---------------------------------------------------------------- the lock */
+static void SayTaken(const char *dir, int fd)
+{
+  char          who[128] = "";
+  const ssize_t n        = pread(fd, who, sizeof(who) - 1, 0);
+
+  who[n > 0 ? n : 0]      = '\0';
+  who[strcspn(who, "\n")] = '\0';
+  fprintf(stderr,
+          "clathra: another run%s%s%s is writing into the output folder %s; wait for it or give another "
+          "-output_dir\n",
+          who[0] ? " (" : "", who, who[0] ? ")" : "", dir);
+}
+
+/* A disk that has no room is no mistake of the user's. */
+static int NoFolder(void)
+{
+  return errno == ENOSPC || errno == EDQUOT || errno == EIO ? CL_EXIT_FAILED : CL_EXIT_INPUT;
+}
+
+/* Exit code. */
+static int Lock(const char *dir, int *lock)
+{
+  char path[PETSC_MAX_PATH_LEN + 16], host[64] = "", who[128];
+
+  snprintf(path, sizeof(path), "%s/run.lock", dir);
+  if (!IoMakeFolder(dir))
+    return NoFolder();
+  *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (*lock < 0) {
+    const int code = NoFolder();
+
+    IoFailed(path, 0);
+    return code;
+  }
+  if (flock(*lock, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK) {
+      SayTaken(dir, *lock);
+      return CL_EXIT_INPUT;
+    }
+    fprintf(stderr, "clathra: warning: %s cannot be locked (%s): see to it that no other run writes there\n", path,
+            strerror(errno));
+  }
+  gethostname(host, sizeof(host) - 1);
+  snprintf(who, sizeof(who), "process %ld on %s\n", (long)getpid(), host);
+  (void)(!ftruncate(*lock, 0) && pwrite(*lock, who, strlen(who), 0)); /* a note for people only */
+  return CL_EXIT_OK;
+}
+
+/* ---------------------------------------------------------------- the history */
+/* false: there is none, or none that can be read. */
+static bool ReadHistory(const char *path, History *h)
+{
+  char  line[128];
+  FILE *f = fopen(path, "r");
+
+  h->n = 0;
+  if (!f)
+    return false;
+  while (fgets(line, sizeof(line), f)) {
+    Origin o;
+
+    if (sscanf(line, "%16" SCNx64 " %lf", &o.run, &o.t) != 2)
+      continue;
+    if (h->n == 64)
+      memmove(h->run, h->run + 1, sizeof(*h->run) * (size_t)--h->n);
+    h->run[h->n++] = o;
+  }
+  fclose(f);
+  return h->n > 0;
+}
+
+static bool WriteHistory(const char *path, const History *h)
+{
+  char text[64 * 64 + 128];
+  int  n = snprintf(text, sizeof(text), "# runs whose results are here: identity, from when on (s)\n");
+
+  for (int k = 0; k < h->n; k++)
+    n += snprintf(text + n, sizeof(text) - (size_t)n, "%016" PRIx64 " %.17g\n", h->run[k].run, h->run[k].t);
+  return IoReplace(path, false, 1, &(IoPiece){text, (size_t)n});
+}
+
+/* Cuts the history back to where the checkpoint is from; false: it is of something else. */
+static bool Join(const char *dir, const Origin *from, History *h)
+{
+  for (int k = h->n - 1; k >= 0; k--) {
+    if (h->run[k].run != from->run)
+      continue;
+    if (k + 1 < h->n && h->run[k + 1].t < from->t) {
+      fprintf(
+          stderr,
+          "clathra: the checkpoint, of t = %g s, does not belong to the files in %s any more: a later run has gone on "
+          "there from t = %g s; restart from a checkpoint of that one, or give another -output_dir\n",
+          from->t, dir, h->run[k + 1].t);
+      return false;
+    }
+    h->n = k + 1;
+    return true;
+  }
+  fprintf(stderr,
+          "clathra: the checkpoint was not written by the run whose files are in %s; give another -output_dir to go on "
+          "from it\n",
+          dir);
+  return false;
+}
+
+static int Enter(const char *dir, const Origin *from, uint64_t run)
+{
+  char    path[PETSC_MAX_PATH_LEN + 16], rows[PETSC_MAX_PATH_LEN + 16];
+  History h;
+
+  snprintf(path, sizeof(path), "%s/run.id", dir);
+  snprintf(rows, sizeof(rows), "%s/balance.csv", dir);
+  if (from && (ReadHistory(path, &h) || access(rows, F_OK) == 0)) {
+    if (!Join(dir, from, &h))
+      return CL_EXIT_INPUT;
+  } else
+    h.n = 0;
+  if (h.n == 64)
+    memmove(h.run, h.run + 1, sizeof(*h.run) * (size_t)--h.n);
+  h.run[h.n++] = (Origin){.run = run, .t = from ? from->t : 0.0};
+  return WriteHistory(path, &h) ? CL_EXIT_OK : CL_EXIT_FAILED;
+}
+
+PetscErrorCode FolderTake(MPI_Comm comm, const char *dir, const Origin *from, Folder *folder, int *exit_code)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  *folder = (Folder){.lock = -1};
+  if (rank == 0) {
+    folder->run = NewIdentity();
+    *exit_code  = Lock(dir, &folder->lock);
+    if (*exit_code == CL_EXIT_OK)
+      *exit_code = Enter(dir, from, folder->run);
+    if (*exit_code != CL_EXIT_OK)
+      PetscCall(FolderRelease(folder));
+  }
+  PetscCallMPI(MPI_Bcast(exit_code, 1, MPI_INT, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FolderRelease(Folder *folder)
+{
+  PetscFunctionBeginUser;
+  if (folder->lock >= 0)
+    close(folder->lock);
+  folder->lock = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FolderWriteText(MPI_Comm comm, const char *dir, const char *name, const char *text, size_t bytes,
+                               bool *ok)
+{
+  char        path[IO_PATH];
+  PetscMPIInt rank;
+  int         good = 1;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(IoPath(dir, name, path));
+  if (rank == 0)
+    good = IoReplace(path, false, 1, &(IoPiece){text, bytes});
+  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, comm));
+  *ok = good;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

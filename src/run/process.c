@@ -1,0 +1,53 @@
+/* What the process hears from outside.  SIGINT, SIGTERM, SIGHUP and SIGUSR1 (which mpiexec hands on) ask for the end of
+   the run after its step; a second one ends it at once.  A reader of the output that goes away, or a limit on the size
+   of files, is for the write that fails to say. */
+#include "clathra/run.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+static const int             asks[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+static bool                  deaf[sizeof(asks) / sizeof(*asks)]; /* ignored when the program was started: nohup, & */
+static volatile sig_atomic_t caught;
+
+static void Hear(int number)
+{
+  if (caught) {
+    signal(number, SIG_DFL);
+    raise(number);
+  }
+  caught = number;
+}
+
+void ProcessPrepare(void)
+{
+  struct sigaction before;
+
+  for (int fd = 0; fd < 3; fd++) { /* a closed one would be given to the next file that is opened */
+    if (fcntl(fd, F_GETFD) < 0)
+      (void)!open("/dev/null", O_RDWR);
+  }
+  for (size_t k = 0; k < sizeof(asks) / sizeof(*asks); k++)
+    deaf[k] = sigaction(asks[k], NULL, &before) == 0 && before.sa_handler == SIG_IGN;
+}
+
+void ProcessListen(void)
+{
+  struct sigaction act = {.sa_handler = Hear, .sa_flags = SA_RESTART};
+
+  sigemptyset(&act.sa_mask);
+  for (size_t k = 0; k < sizeof(asks) / sizeof(*asks); k++) {
+    if (deaf[k])
+      signal(asks[k], SIG_IGN);
+    else
+      sigaction(asks[k], &act, NULL);
+  }
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
+}
+
+int ProcessSignal(void)
+{
+  return (int)caught;
+}

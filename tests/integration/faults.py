@@ -1,0 +1,208 @@
+#!/usr/bin/python3
+"""Nothing is lost when a run is killed, the disk is full or goes away, a write fails, or a folder is shared.
+
+A run of the first minute of BP2 case 2 on 13 cells is disturbed at one of the system calls that change its folder (see
+fault.c) and then gone on with, from its last checkpoint or anew: what is left must be that of the undisturbed run, bit
+for bit, and the disturbed run must have said in one sentence what could not be written (exit code 3).  A few calls of
+each kind are taken; CLATHRA_FAULTS=all takes all.
+"""
+import concurrent.futures
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from _files import different, hashes  # noqa: E402
+from common import CASES, ENVIRONMENT, Run, binary, check_true, finish, launch, scratch  # noqa: E402
+
+OPTIONS = ("-quiet", "-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-checkpoint_every",
+           "20 s", "-stepper_dt_max", "5 s", "-meters", "outlet", "-meter_outlet_side", "right")  # fmt: skip
+FINE = ("-stepper_dt", "0.1 s", "-stepper_dt_max", "0.2 s")
+BP2 = CASES / "bp2"
+ALL = os.environ.get("CLATHRA_FAULTS") == "all"
+
+
+def command(out, *options):
+    return [str(binary()), str(BP2), *OPTIONS, *options, "-output_dir", str(out)]
+
+
+def start(out, *options, extra=None, **keywords):
+    return subprocess.Popen(command(out, *options), env={**os.environ, **ENVIRONMENT, **(extra or {})}, text=True,
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **keywords)  # fmt: skip
+
+
+def shim():
+    library = scratch() / "fault.so"
+    source = Path(__file__).with_name("fault.c")
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", library, source, "-ldl"], check=True)
+    return library
+
+
+LIBRARY = shim()
+straight = Run(scratch() / "out")
+
+
+def disturbed(how, at, out, *options):
+    count = out.parent / f"{out.name}.count"
+    job = start(out, *options, extra={"LD_PRELOAD": str(LIBRARY), "FAULT_DIR": str(out), "FAULT_HOW": how,
+                                      "FAULT_AT": str(at), "FAULT_COUNT": str(count)})  # fmt: skip
+    text = job.communicate(timeout=300)[0]
+    return job.returncode, text, int(count.read_text()) if count.is_file() else 0
+
+
+def sentence_missing(how, code, text, out):
+    """What is wrong with the end of a disturbed run; "" if nothing."""
+    if "PETSC ERROR" in text or "HDF5-DIAG" in text:
+        return "a trace"
+    if how == "kill":
+        return "" if code == -signal.SIGKILL else f"exit code {code}"
+    if code == 0:  # a call whose failure changes nothing
+        return ", ".join(different(straight.out, out)[:3])
+    if code != 3 and not (code == 2 and how == "gone" and not (out / "case.yaml").exists()):
+        return f"exit code {code}"
+    return "" if f"cannot write {out}" in text else f"says: {text[-200:]}"
+
+
+def survive(job):
+    """Disturbs a run, goes on with it, and compares; the complaint, or ""."""
+    how, at = job
+    out = scratch() / "out"
+    try:
+        code, text, _ = disturbed(how, at, out)
+        wrong = sentence_missing(how, code, text, out)
+        if wrong:
+            return f"{how} at call {at}: {wrong}"
+        if code == 0:
+            return ""
+        checkpoint = out / "checkpoint.h5"
+        done = launch(binary(), BP2, *OPTIONS, *(("-restart", checkpoint) if checkpoint.exists() else ()), out=out)
+        if done.returncode:
+            return f"{how} at call {at}: gone on with exit code {done.returncode}: {done.stdout[-300:]}"
+        names = different(straight.out, out)
+        return f"{how} at call {at}: others {names[:3]}" if names else ""
+    finally:
+        if not os.environ.get("CLATHRA_KEEP"):
+            shutil.rmtree(out.parent, ignore_errors=True)
+
+
+def check_calls():
+    code, text, calls = disturbed("none", 0, straight.out)
+    check_true("the undisturbed run", code == 0 and calls > 60, f"{calls} calls: {text[-200:] if code else ''}")
+    every = 1 if ALL else max(1, calls // 6)
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        for k, how in enumerate(("kill", "full", "once", "gone")):
+            places = range(1 + (0 if ALL else k), calls + 1, every)
+            wrong = [w for w in pool.map(survive, [(how, at) for at in places]) if w]
+            check_true(f"{how}: said, and gone on with to the same bits, at {len(places)} of {calls} calls", not wrong,
+                       "; ".join(wrong[:5]))  # fmt: skip
+
+
+def wait_for(path, job):
+    for _ in range(3000):
+        if path.exists() or job.poll() is not None:
+            return
+        time.sleep(0.01)
+
+
+def check_limit():
+    """A real limit of the system instead of the preloaded one: no file above 24 kB, set once MPI has made its own."""
+    out = scratch() / "out"
+    job = start(out, *FINE, "-checkpoint_every", "1 s")
+    wait_for(out / "run.id", job)
+    resource.prlimit(job.pid, resource.RLIMIT_FSIZE, (24000, 24000))
+    text = job.communicate(timeout=300)[0]
+    check_true("files limited to 24 kB: exit code 3 and a sentence", job.returncode == 3 and "PETSC ERROR" not in text
+               and f"cannot write {out}" in text and "File too large" in text, text[-200:])  # fmt: skip
+
+
+def rows(out):
+    return len((out / "balance.csv").read_text().splitlines())
+
+
+def check_identity():
+    """A checkpoint of another run in the same folder is no place to go on from, nor is one that the files have left behind."""
+    out, other = scratch() / "out", scratch() / "other"
+    old = out / "checkpoint.h5"
+    first = launch(binary(), BP2, *OPTIONS, out=out)
+    was = (out / "run.id").read_text()
+    job = start(out, *FINE, "-checkpoint_every", "0 s")  # the same case anew, killed before its first
+    while job.poll() is None and ((out / "run.id").read_text() == was or rows(out) not in range(2, 20)):
+        time.sleep(0.01)
+    job.kill()
+    job.communicate()
+    before = hashes(out, but="run.lock")
+    done = launch(binary(), BP2, *OPTIONS, "-restart", old, out=out)
+    check_true("a checkpoint of the run before: refused, nothing changed", first.returncode == 0 and done.returncode == 2
+               and "was not written by the run whose files are in" in done.stdout and hashes(out, but="run.lock") == before, done.stdout[-200:])  # fmt: skip
+    done = launch(binary(), BP2, *OPTIONS, "-time_end", "80 s", "-restart", old, out=other)
+    check_true("... taken in another folder", done.returncode == 0 and "finished at t = 80" in done.stdout,
+               done.stdout[-200:])  # fmt: skip
+    older = launch(binary(), BP2, *OPTIONS, "-time_end", "50 s", "-output_times", "0 s,30 s", "-checkpoint_every", "0 s",
+                   "-restart", f"{straight.out / 'checkpoint.h5'}.old", out=straight.out)  # fmt: skip
+    lost = launch(binary(), BP2, *OPTIONS, "-restart", f"{straight.out / 'checkpoint.h5'}.old", out=straight.out)
+    check_true("back to an older checkpoint, and on; the later one of the first run is refused", older.returncode == 0 and
+               lost.returncode == 2 and "does not belong to the files" in lost.stdout, lost.stdout[-200:])  # fmt: skip
+
+
+def check_lock():
+    out = scratch() / "out"
+    first = start(out, *FINE)
+    wait_for(out / "run.id", first)
+    second = launch(binary(), BP2, *OPTIONS, out=out)
+    check_true("a second run in the folder of a living one: refused", second.returncode == 2 and
+               f"process {first.pid}" in second.stdout and "another run" in second.stdout, second.stdout[-200:])  # fmt: skip
+    first.kill()
+    first.communicate()
+    third = launch(binary(), BP2, *OPTIONS, out=out)
+    check_true("... a dead one leaves no lock", third.returncode == 0, third.stdout[-200:])
+
+
+def check_signals():
+    fine = (*FINE, "-checkpoint_every", "0 s")
+    whole = launch(binary(), BP2, *OPTIONS, *fine, out=scratch() / "out")
+    for name, number in (("SIGTERM", signal.SIGTERM), ("SIGINT", signal.SIGINT)):
+        out = scratch() / "out"
+        job = start(out, *fine)
+        while job.poll() is None and not ((out / "balance.csv").exists() and (out / "balance.csv").stat().st_size > 2000):
+            time.sleep(0.01)
+        job.send_signal(number)
+        text = job.communicate(timeout=60)[0]
+        rest = launch(binary(), BP2, *OPTIONS, *fine, "-restart", out / "checkpoint.h5", out=out)
+        reference = Path(whole.args[-1])
+        same = rest.returncode == 0 and not different(reference, out)
+        check_true(f"{name}: exit code 4, a checkpoint, gone on with to the same bits", job.returncode == 4 and same and
+                   "go on with -restart" in text, f"exit code {job.returncode}: {text[-200:]}")  # fmt: skip
+    out = scratch() / "out"
+    job = start(out, *fine, extra={"LD_PRELOAD": str(LIBRARY), "FAULT_DIR": str(out), "FAULT_HOW": "wait", "FAULT_AT": "60"})
+    wait_for(out / "balance.csv", job)
+    time.sleep(0.5)  # it sleeps in a write now
+    job.send_signal(signal.SIGTERM)
+    time.sleep(0.2)
+    job.send_signal(signal.SIGTERM)
+    job.communicate(timeout=60)
+    check_true("a second signal ends it at once", job.returncode == -signal.SIGTERM, f"exit code {job.returncode}")
+
+
+def check_streams():
+    verbose = [c for c in command("") if c != "-quiet"]
+    for name, redirection in (("closed", ">&-"), ("a pipe whose reader is gone", "| true"), ("full", "> /dev/full")):
+        out = scratch() / "out"
+        verbose[-1] = str(out)
+        done = subprocess.run(["bash", "-c", f'"$@" {redirection}; exit ${{PIPESTATUS[0]}}', "-", *verbose], text=True,
+                              capture_output=True, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL)  # fmt: skip
+        names = different(straight.out, out) if done.returncode == 0 else ["all"]
+        check_true(f"standard output {name}: the run goes on", not names, f"exit code {done.returncode}: {names[:3]}")
+
+
+check_calls()
+check_limit()
+check_lock()
+check_signals()
+check_streams()
+check_identity()
+finish()
