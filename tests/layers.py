@@ -18,6 +18,7 @@ LAYERS = [
     # with schedule.h, the function of time it holds; the reader of case files, src/case, stays at the bottom.
     ("schedule", ["schedule", "ambient"], ["schedule"]),
     ("case data", ["case"], []),
+    ("shape", ["geometry", "shape"], ["shape"]),
     ("point", ["point", "kinematics"], ["point"]),
     ("grid", ["grid"], ["grid"]),
     ("basis", ["basis"], ["basis"]),

@@ -14,7 +14,7 @@ typedef struct {
 static inline double AmbientPressure(const Ambient *a, const double x[2], double gradient[2])
 {
   const double depth = a->weight[0] * x[0] + a->weight[1] * x[1] - a->head; /* as a pressure */
-  const bool   below = !(depth <= 0.0); /* NaN stays NaN */
+  const bool   below = !(depth <= 0.0);                                     /* NaN stays NaN */
 
   for (int d = 0; d < 2; d++)
     gradient[d] = below ? a->weight[d] : 0.0;

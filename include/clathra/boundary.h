@@ -11,12 +11,15 @@ typedef struct {
   PetscInt particle;
   int      side;
   double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring; goes with the body */
+  double   s[CL_DIM]; /* the same of the true surface that the face stands for (70) */
   double   x[CL_DIM]; /* middle of the face, m */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   PetscInt region;
-  double   along;       /* initial coordinate of the particle along the side, m */
-  double   N[CL_NODES]; /* weights, in the order of StencilExpand */
+  double   x0[CL_DIM];                                                /* initial position of the particle, m */
+  double   n0[CL_DIM];                                                /* FaceNormal there */
+  double   N[CL_NODES];                                               /* weights, in the order of StencilExpand */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
+  unsigned meters;                                                    /* bit k: Case.meter[k] counts it */
 } Face;
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
@@ -26,8 +29,15 @@ PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, cons
 /* Where the face is and how it distributes, for its particle's present position and weights. */
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
 
-/* Is the face one of those that a meter counts? */
-bool MeterCovers(const Meter *m, const Face *f);
+/* Normal stress (Pa, compression-positive) prescribed at time t on a side of the particle of a region that was first
+   at x (m); 0 where none is. */
+double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t);
+
+/* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
+   of ranks; no communication. */
+PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
+/* Warnings about a start out of balance with gravity, on rank 0.  Collective. */
+PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
 
 /* Prescribed values of all conditions at one time, and gravity then. */
 typedef struct {
@@ -35,8 +45,10 @@ typedef struct {
   double  gravity[CL_DIM];
   Ambient ambient;
 } BcValues;
-void   BcValuesEvaluate(const Case *c, double t, BcValues *v);
-double BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
+/* (42): the fluid around the body at time t, gravity being what it is then. */
+Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM]);
+void    BcValuesEvaluate(const Case *c, double t, BcValues *v);
+double  BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
 
 /* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where Darcy
    fluxes and displacement are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat

@@ -9,17 +9,37 @@
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
 typedef struct {
+  PetscInt n;
+  double  *x; /* n x 2, m */
+} Points;
+
+typedef struct {
+  PetscInt n, *i; /* indices into a list of the case */
+} Names;
+
+typedef enum { SHAPE_BOX = 0, SHAPE_POLYGON, SHAPE_BELOW, SHAPE_CIRCLE } ShapeKind;
+
+typedef struct {
   char     name[64];
-  double   lower[CL_DIM], upper[CL_DIM]; /* m */
+  double   lower[CL_DIM], upper[CL_DIM]; /* m: the box, or bounds of another shape */
   PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
-  PetscInt material;                     /* index into Case.material */
+  PetscInt material;                     /* index into Case.material; -1: no particles, only cut out of others */
   /* initial state; hydrostatic: p grows with depth below `p_datum` (m, along gravity) */
-  double pressure;    /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
-  double temperature; /* degC */
-  double Sh, Sw, Sg;  /* saturations of the pore space; sum 1 */
-  double stress[6];   /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
-  bool   hydrostatic; /* add rho_w g depth to the pressure */
-  double datum;       /* m: coordinate against gravity where p = pressure */
+  double pressure;     /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
+  double temperature;  /* degC */
+  double Sh, Sw, Sg;   /* saturations of the pore space; sum 1 */
+  double stress[6];    /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
+  double K0;           /* stress: vertical from the weight above, horizontal K0 times it; infinite: from `stress` */
+  bool   consolidated; /* the same, with K0 = 1 - sin(friction angle) */
+  bool   hydrostatic;  /* water in balance with gravity */
+  double datum;        /* m: coordinate against gravity where p = pressure */
+  double geothermal,
+      geothermal_datum; /* K/m below it, m (infinite: top of the body); T = temperature there and above */
+  ShapeKind shape;
+  Points    polygon;   /* closed by itself */
+  Points    below;     /* all under this line, down to `lower` */
+  double    circle[3]; /* centre and radius, m */
+  Names     minus;     /* regions whose shapes are cut out */
 } Region;
 
 typedef enum {
@@ -33,7 +53,7 @@ typedef enum {
   BC_FIXED,             /* grid plane: all velocities zero */
   BC_PLATE,             /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
   BC_TEMPERATURE,       /* grid plane: T, degC */
-  BC_REGION_TEMPERATURE /* nodes in a region's initial box: T, degC */
+  BC_REGION_TEMPERATURE /* nodes in a region's initial shape: T, degC */
 } BcType;
 
 /* What a probe writes; words in case_quantity. */
@@ -60,11 +80,14 @@ typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
 typedef struct {
   char   name[64];
   BcType type;
-  /* faces: a side of a region's box (all regions when region = -1), optionally only the part inside [from,to] along it
-   */
+  bool   of_stage; /* times of the functions below count from the begin of the stage, not of the run */
+  double zero;     /* s: where they count from */
+  /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
+     those on a line (side = SIDE_COUNT) */
   Side     side;
   PetscInt region;
   double   from, to; /* m, along the side; -inf, +inf by default */
+  Points   along;
   /* planes: nodes with coordinate `axis` equal to `position` */
   PetscInt axis;
   double   position;
@@ -93,11 +116,12 @@ typedef struct {
   Side     side;
   PetscInt region;   /* -1: all */
   double   from, to; /* m, along the side */
+  Points   along;    /* or those on this line */
 } Meter;
 
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
-typedef struct {
+typedef struct Case {
   char      file[PETSC_MAX_PATH_LEN]; /* the case file */
   char      title[256];
   double    lower[CL_DIM], upper[CL_DIM]; /* background grid, m */
@@ -108,7 +132,7 @@ typedef struct {
   bool      inertia, one_pressure;
   FieldSet  fields;                          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM];                 /* m/s^2 */
-  double    gravity_ramp;                    /* s: it grows from zero over this time; 0 = at once */
+  double    gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */
   PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
@@ -148,7 +172,78 @@ typedef struct {
   double   every;                  /* ... and every so many seconds (0 = off) */
   double   probe_every;            /* s between probe rows, hit exactly; 0 = every step */
   double   checkpoint_every;       /* s; 0 = only at the end and on failure */
+  /* stages, the same in the case and in all of them; where this one starts from (of the case: zeros) */
+  PetscInt          nstage;
+  struct CaseStage *stage;
+  double            t_begin, gravity_before[CL_DIM]; /* s, m/s^2 */
 } Case;
+
+/* One of the stages of a run, which follow each other in time. */
+typedef struct CaseStage {
+  char   name[64];
+  double end;                         /* s; it begins where the one before ends */
+  bool   reset;                       /* displacements count from its begin */
+  bool   reaction;                    /* hydrate forms and dissociates, where a material reacts */
+  char   boundaries[2048], off[2048]; /* those that act: all, or names; or all but these names */
+  char   materials[2048];             /* region, material, region, material, ... */
+  Case   c; /* the case as it holds in this stage: conditions and materials of its own, the rest shared */
+} CaseStage;
+
+/* The case as it holds in stage k; the case itself if it has no stages. */
+static inline const Case *CaseInStage(const Case *c, PetscInt k)
+{
+  return c->nstage ? &c->stage[k].c : c;
+}
+
+/* Times closer than this are the same, s. */
+static inline double CaseTimeSlack(const Case *c, double t)
+{
+  return 1e-12 * fabs(t - c->t_begin) + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+}
+
+static inline bool CaseAtEnd(const Case *c, double t)
+{
+  return t >= c->t_end - CaseTimeSlack(c, c->t_end);
+}
+
+static inline double CaseGravity(const Case *c) /* m/s^2 */
+{
+  return hypot(c->gravity[0], c->gravity[1]);
+}
+
+/* Coordinate against gravity, m; 0 without gravity. */
+static inline double CaseHeight(const Case *c, const double x[])
+{
+  const double g = CaseGravity(c);
+
+  return g > 0.0 ? -(x[0] * c->gravity[0] + x[1] * c->gravity[1]) / g : 0.0;
+}
+
+/* Axis that gravity points along, -1 if it is oblique or zero. */
+static inline int CaseVertical(const Case *c)
+{
+  return (c->gravity[0] != 0.0) == (c->gravity[1] != 0.0) ? -1 : c->gravity[0] != 0.0 ? 0 : 1;
+}
+
+/* Height of the highest point of the regions, m. */
+double CaseTop(const Case *c);
+
+static inline bool RegionGeostatic(const Region *r)
+{
+  return r->consolidated || (r->K0 > 0.0 && !isinf(r->K0));
+}
+
+/* Friction angle of a material, rad; NAN for one that has none. */
+static inline double MaterialFrictionAngle(const Material *m)
+{
+  return m->plasticity.type == PLASTICITY_NONE ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
+}
+
+/* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */
+static inline double RegionK0(const Case *c, const Region *r)
+{
+  return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
+}
 
 /* What keeps a scene from the integrators without a matrix, as the case says it; NULL if nothing does. */
 static inline const char *CaseNeedsImplicit(const Case *c)

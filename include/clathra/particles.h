@@ -8,7 +8,7 @@
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
 #define CL_PARTICLE_TABLE(X)                                                                                           \
   X(P_X, HAS_ALL, "position", 2, "m", "centre")                                                                        \
-  X(P_U, HAS_SOLID, "displacement", 2, "m", "from the initial position")                                               \
+  X(P_U, HAS_SOLID, "displacement", 2, "m", "from the initial position, or since a stage reset it")                    \
   X(P_L, HAS_ALL, "half_length", 2, "m", "of the GIMP domain")                                                         \
   X(P_F, HAS_SOLID, "deformation_gradient", 4, "-", "in the plane, since the start: xx xy yx yy")                      \
   X(P_V, HAS_ALL, "volume", 1, "m^3", "current, per metre of thickness or of the full ring")                           \
@@ -31,6 +31,7 @@
   X(P_PW0, HAS_WATER, "p_w_initial", 1, "Pa", "initial water pressure")                                                \
   X(P_PG0, HAS_GAS_PRESSURE, "p_g_initial", 1, "Pa", "initial gas pressure")                                           \
   X(P_RATE, HAS_WATER | HAS_HEAT, "rate", 4, "1/s", "of p_w, p_g (Pa/s), T (K/s) and S_h at the end of the last step") \
+  X(P_X0, HAS_SOLID, "initial_position", 2, "m", "where it was seeded")                                                \
   X(P_SH, HAS_ALL, "S_h", 1, "-", "hydrate saturation")                                                                \
   CL_SKELETON_TABLE(X)                                                                                                 \
   X(P_SW, HAS_WATER, "S_w", 1, "-", "water saturation")                                                                \
@@ -71,7 +72,7 @@ static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
 /* Coordinate of a particle in the initial configuration, m. */
 static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 {
-  return P->f[P_X + d][p] - (P->f[P_U] ? P->f[P_U + d][p] : 0.0);
+  return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
 }
 
 /* History of the skeleton of the particles from `first` on; the set must have a solid. */
@@ -97,8 +98,31 @@ PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);
 /* Fills the regions of the case with particles, each on the rank that owns its cell, numbered the same whatever the
    number of ranks.  Collective. */
 PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P);
+/* A place that gets a particle. */
+typedef struct {
+  PetscInt id, region, faces;    /* faces: bits of PI_FACES */
+  double   x[CL_DIM], l[CL_DIM]; /* centre, half-lengths, m */
+} Site;
+typedef PetscErrorCode (*SiteVisit)(const Case *c, const Grid *g, const Site *site, void *ctx);
+/* Calls visit for every site of the body, on every rank and in the same order. */
+PetscErrorCode SitesVisit(const Case *c, const Grid *g, SiteVisit visit, void *ctx);
+
+/* What a region starts from at one place. */
+typedef struct {
+  double pw, pg, sg, p, T;               /* Pa, share of the fluids, mean (10), degC */
+  double density;                        /* of the mixture, kg/m^3 */
+  double grad_p[CL_DIM], grad_T[CL_DIM]; /* Pa/m (of p_w and of p_g), K/m */
+} InitialScalars;
+/* x in m.  Error where the retention law never reaches the initial gas share. */
+PetscErrorCode InitialScalarsAt(const Case *c, const Region *r, const double x[], InitialScalars *s);
+/* Pressure (Pa) at x of the water that has `pressure` at the region's datum (82). */
+double InitialWaterPressure(const Case *c, const Region *r, double pressure, const double x[]);
+
+/* Everything of particle p of a region but its numbers: at x (m), with half-lengths l (m). */
+PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+                                    const double l[]);
 /* Half-lengths of a region's particles at the start, m. */
-void ParticlesInitialHalfLength(const Case *c, const Grid *g, PetscInt region, double l[CL_DIM]);
+void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM]);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);

@@ -1,10 +1,10 @@
 /* What the conditions add to the balances, and Dirichlet values on grid planes. */
 #include "clathra/boundary.h"
+#include "clathra/shape.h"
 
 #define TEMPERATURE_PENALTY 20.0 /* of kappa_m/l: a prescribed face temperature is a strong convection */
 
-/* (42): the fluid around the body at time t. */
-static Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
+Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
 {
   Ambient a = {.pressure = ScheduleValue(&c->ambient_pressure, t)};
 
@@ -18,27 +18,40 @@ static Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
 void BcValuesEvaluate(const Case *c, double t, BcValues *v)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
-    v->value[k] = ScheduleValue(&c->bc[k].value, t);
-    v->shear[k] = ScheduleValue(&c->bc[k].shear, t);
+    const double at = t - c->bc[k].zero;
+
+    v->value[k] = ScheduleValue(&c->bc[k].value, at);
+    v->shear[k] = ScheduleValue(&c->bc[k].shear, at);
     for (int ph = 0; ph < PHASE_COUNT; ph++)
-      v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], t);
+      v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], at);
   }
-  for (int d = 0; d < CL_DIM; d++)
-    v->gravity[d] = t < c->gravity_ramp ? c->gravity[d] * t / c->gravity_ramp : c->gravity[d];
+  for (int d = 0; d < CL_DIM; d++) {
+    const double ramp = c->gravity_ramp, from = c->gravity_before[d], at = t - c->t_begin;
+
+    v->gravity[d] = at < ramp ? from + (c->gravity[d] - from) * at / ramp : c->gravity[d];
+  }
   v->ambient = AmbientOf(c, t, v->gravity);
+}
+
+/* First kink of the condition after t, which round-off may have left short of one. */
+static double NextKink(const Bc *b, double t)
+{
+  const double at   = t - b->zero + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+  double       next = fmin(ScheduleNextKink(&b->value, at), ScheduleNextKink(&b->shear, at));
+
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    next = fmin(next, ScheduleNextKink(&b->phase[ph], at));
+  return b->zero + next;
 }
 
 double BcNextKink(const Case *c, double t)
 {
-  double next = t < c->gravity_ramp * (1.0 - 1e-12) ? c->gravity_ramp : INFINITY;
+  const double ramped = c->t_begin + c->gravity_ramp;
+  double       next   = t < ramped - CaseTimeSlack(c, ramped) ? ramped : INFINITY;
 
   next = fmin(next, fmin(ScheduleNextKink(&c->ambient_pressure, t), ScheduleNextKink(&c->ambient_level, t)));
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    next = fmin(next, ScheduleNextKink(&c->bc[k].value, t));
-    next = fmin(next, ScheduleNextKink(&c->bc[k].shear, t));
-    for (int ph = 0; ph < PHASE_COUNT; ph++)
-      next = fmin(next, ScheduleNextKink(&c->bc[k].phase[ph], t));
-  }
+  for (PetscInt k = 0; k < c->nbc; k++)
+    next = fmin(next, NextKink(&c->bc[k], t));
   return next;
 }
 
@@ -105,22 +118,22 @@ static void Open(const Material *mat, const Face *f, int phase, const Outside *o
   }
 }
 
-/* Area of a face (vector a) over which fluxes per area act, and its derivatives. */
-static double Area(const double a[2], const double da[2][MOTION_COUNT], double darea[MOTION_COUNT])
+/* Area over which fluxes per area act, of the true surface (70) (vector s), and its derivatives. */
+static double Area(const double s[2], const double ds[2][MOTION_COUNT], double darea[MOTION_COUNT])
 {
-  const double area = hypot(a[0], a[1]);
+  const double area = hypot(s[0], s[1]);
 
   for (int k = 0; k < MOTION_COUNT; k++)
-    darea[k] = (a[0] * da[0][k] + a[1] * da[1][k]) / area;
+    darea[k] = (s[0] * ds[0][k] + s[1] * ds[1][k]) / area;
   return area;
 }
 
-static void Heat(const Case *c, const Face *f, const BcValues *v, const double a[2], const double da[2][MOTION_COUNT],
+static void Heat(const Case *c, const Face *f, const BcValues *v, const double s[2], const double ds[2][MOTION_COUNT],
                  const double in[IN_COUNT], double kappa, FaceOutput *o)
 {
   const double T       = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
   double       in_flux = f->heat >= 0 ? v->value[f->heat] : 0.0, alpha = 0.0, darea[MOTION_COUNT];
-  const double area = Area(a, da, darea);
+  const double area = Area(s, ds, darea);
 
   if (f->convection >= 0) {
     alpha = c->bc[f->convection].alpha;
@@ -208,13 +221,13 @@ static void Fluids(const Case *c, const Face *f, const BcValues *v, const Materi
 
 /* (32): mass and, where it comes with a temperature of its own, heat of what is let in.  Its density is the body's own
    at the face. */
-static void Inflow(const Case *c, const Face *f, const BcValues *v, const Material *mat, int phase, const double a[2],
-                   const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
+static void Inflow(const Case *c, const Face *f, const BcValues *v, const Material *mat, int phase, const double s[2],
+                   const double ds[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
   const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
   const double  T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
   double        darea[MOTION_COUNT];
-  const double  q = v->phase[phase][f->inflow], area = Area(a, da, darea);
+  const double  q = v->phase[phase][f->inflow], area = Area(s, ds, darea);
   const bool    heats = c->fields.heat && c->bc[f->inflow].value.n && q > 0.0;
   const double  c_f = phase == PHASE_W ? mat->c_w : mat->c_g, dT_in = heats ? v->value[f->inflow] - T : 0.0;
   double        dp, dT, drate[IN_COUNT] = {0.0};
@@ -243,33 +256,40 @@ static void Inflow(const Case *c, const Face *f, const BcValues *v, const Materi
     o->D[F_T][IN_GT + j] += c_f * rate * f->r[j];
 }
 
+/* An area vector goes with the motion: a = cof(F) n. */
+static void Carry(const Kinematics *k, const double n[2], double a[2], double da[2][MOTION_COUNT])
+{
+  for (int i = 0; i < 2; i++) {
+    a[i] = k->cof[i][0] * n[0] + k->cof[i][1] * n[1];
+    for (int q = 0; q < MOTION_COUNT; q++)
+      da[i][q] = k->dcof[i][0][q] * n[0] + k->dcof[i][1][q] * n[1];
+  }
+}
+
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], double kappa, double dt, FaceOutput *o)
 {
-  double a[2] = {f->n[0], f->n[1]}, da[2][MOTION_COUNT] = {{0.0}};
+  double     a[2] = {f->n[0], f->n[1]}, da[2][MOTION_COUNT] = {{0.0}};
+  double     s[2] = {f->s[0], f->s[1]}, ds[2][MOTION_COUNT] = {{0.0}};
+  Kinematics k;
 
   *o = (FaceOutput){0};
   if (a[0] == 0.0 && a[1] == 0.0)
-    return;              /* on the axis */
-  if (c->fields.solid) { /* a = cof(F) n A */
-    Kinematics k;
-
+    return; /* on the axis */
+  if (c->fields.solid) {
     if (!KinematicsEvaluate(&in[IN_GRADU], &k))
       return; /* the particle itself reports it */
-    for (int i = 0; i < 2; i++) {
-      a[i] = k.cof[i][0] * f->n[0] + k.cof[i][1] * f->n[1];
-      for (int q = 0; q < MOTION_COUNT; q++)
-        da[i][q] = k.dcof[i][0][q] * f->n[0] + k.dcof[i][1][q] * f->n[1];
-    }
+    Carry(&k, f->n, a, da);
+    Carry(&k, f->s, s, ds);
     if (f->traction >= 0)
       Traction(v->value[f->traction], v->shear[f->traction], a, da, o);
   }
   Fluids(c, f, v, mat, p0, a, da, in, dt, o);
   if (c->fields.heat)
-    Heat(c, f, v, a, da, in, kappa, o);
+    Heat(c, f, v, s, ds, in, kappa, o);
   for (int phase = 0; f->inflow >= 0 && phase < PHASE_COUNT; phase++) {
     if (c->fields.phase[phase])
-      Inflow(c, f, v, mat, phase, a, da, in, dt, o);
+      Inflow(c, f, v, mat, phase, s, ds, in, dt, o);
   }
 }
 
@@ -280,18 +300,14 @@ static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
   return fabs(x - b->position) < 1e-6 * g->h[b->axis];
 }
 
-/* Does the node lie in the initial box of the condition's region? */
+/* Does the node lie in the initial shape of the condition's region? */
 static bool InRegion(const Case *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 {
+  const double slack[CL_DIM] = {1e-6 * g->h[0], 1e-6 * g->h[1]};
+  const double x[CL_DIM]     = {g->lower[0] + (double)ij[0] * g->h[0], g->lower[1] + (double)ij[1] * g->h[1]};
+
   for (PetscInt k = 0; k < c->nregion; k++) {
-    bool in = b->region < 0 || b->region == k;
-
-    for (int d = 0; d < CL_DIM; d++) {
-      const double x = g->lower[d] + (double)ij[d] * g->h[d], slack = 1e-6 * g->h[d];
-
-      in = in && x > c->region[k].lower[d] - slack && x < c->region[k].upper[d] + slack;
-    }
-    if (in)
+    if ((b->region < 0 || b->region == k) && RegionReaches(c, k, x, slack))
       return true;
   }
   return false;

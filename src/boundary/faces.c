@@ -1,5 +1,6 @@
 /* Surface faces: their geometry, and which conditions act on them. */
 #include "clathra/boundary.h"
+#include "clathra/shape.h"
 
 static const int side_axis[SIDE_COUNT] = {0, 0, 1, 1};
 static const int side_sign[SIDE_COUNT] = {-1, 1, -1, 1};
@@ -10,19 +11,29 @@ static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
   PetscInt found = -1;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
-    const Bc  *b    = &c->bc[k];
-    const bool here = (int)b->side == f->side && (b->region < 0 || b->region == f->region);
+    const Bc *b = &c->bc[k];
 
-    if (b->type == type && here && f->along >= b->from && f->along <= b->to)
+    if (b->type == type && FaceNamed(c, &BcFaces(b), f->region, f->x0, f->side))
       found = k;
   }
   return found;
 }
 
-bool MeterCovers(const Meter *m, const Face *f)
+double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t)
 {
-  return (int)m->side == f->side && (m->region < 0 || m->region == f->region) && f->along >= m->from &&
-         f->along <= m->to;
+  const Face     f = {.side = (int)side, .region = region, .x0 = {x[0], x[1]}};
+  const PetscInt k = FindCondition(c, BC_TRACTION, &f);
+
+  return k < 0 ? 0.0 : ScheduleValue(&c->bc[k].value, t);
+}
+
+static unsigned FindMeters(const Case *c, const Face *f)
+{
+  unsigned meters = 0;
+
+  for (PetscInt k = 0; k < c->nmeter; k++)
+    meters |= (unsigned)FaceNamed(c, &c->meter[k], f->region, f->x0, f->side) << k;
+  return meters;
 }
 
 #define POINT 1e-5 /* of a cell: shorter than that along an axis a face counts as a point there */
@@ -82,7 +93,7 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
   const int      axis = side_axis[f->side], tangent = 1 - axis;
   double         F[2][2] = {{1.0, 0.0}, {0.0, 1.0}}, l[CL_DIM], half[CL_DIM];
 
-  ParticlesInitialHalfLength(c, g, f->region, l);
+  ParticlesInitialHalfLength(c, f->region, l);
   for (int k = 0; P->f[P_F] && k < 4; k++)
     F[k / 2][k % 2] = P->f[P_F + k][p];
   for (int d = 0; d < CL_DIM; d++) {
@@ -94,6 +105,8 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
   const double A = 2.0 * l[tangent] * side_sign[f->side] * (c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0);
   f->n[axis]     = A * F[tangent][tangent];
   f->n[tangent]  = -A * F[axis][tangent];
+  f->s[0]        = fabs(A) * (F[1][1] * f->n0[0] - F[1][0] * f->n0[1]);
+  f->s[1]        = fabs(A) * (F[0][0] * f->n0[1] - F[0][1] * f->n0[0]);
   Weights(c, g, P, stencil, half, f);
 }
 
@@ -103,13 +116,16 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
   f->particle    = p;
   f->side        = side;
   f->region      = P->i[PI_REGION][p];
-  f->along       = ParticleInitialX(P, p, 1 - side_axis[side]);
+  f->x0[0]       = ParticleInitialX(P, p, 0);
+  f->x0[1]       = ParticleInitialX(P, p, 1);
   f->traction    = FindCondition(c, BC_TRACTION, f);
   f->pressure    = FindCondition(c, BC_PRESSURE, f);
   f->heat        = FindCondition(c, BC_HEAT_FLUX, f);
   f->convection  = FindCondition(c, BC_CONVECTION, f);
   f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, f);
   f->inflow      = FindCondition(c, BC_INFLOW, f);
+  f->meters      = FindMeters(c, f);
+  FaceNormal(c, f->region, f->x0, side, f->n0);
   FacePlace(c, g, P, &stencil[p], f);
 }
 

@@ -31,7 +31,16 @@ typedef struct {
   PetscInt line, offset; /* offset in the text of a key that begins a line, else -1 */
 } Mark;                  /* a key of the file, inner or leaf */
 
-typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_METER, GROUP_COUNT } Group;
+typedef enum {
+  GROUP_CASE = 0,
+  GROUP_MATERIAL,
+  GROUP_REGION,
+  GROUP_BC,
+  GROUP_PROBE,
+  GROUP_METER,
+  GROUP_STAGE,
+  GROUP_COUNT
+} Group;
 
 #define CASE_ERRORS 20 /* errors shown */
 typedef struct {
@@ -54,11 +63,24 @@ PetscErrorCode ReaderLoad(Reader *r, const char *path);
 PetscErrorCode ReaderDestroy(Reader *r);
 /* Finds the value of a key: the command line wins over the file.  *from_file tells which. */
 PetscErrorCode ReaderFind(Reader *r, const char *name, const char **value, bool *found, bool *from_file);
-/* Walks the text: refuses what a case must not contain and notes the line of every key.  false: one error was added. */
-bool ReaderScan(Reader *r, const char *text);
+/* Walks the text: refuses what a case must not contain and notes the line of every key; false: one error was added.
+   A list in a list, [[a, b], [c, d]], which PETSc does not read, becomes [ a; b ,  c; d ]. */
+bool ReaderScan(Reader *r, char *text);
 
 /* ---------------------------------------------------------------- keys.c */
-typedef enum { KEY_REAL, KEY_INT, KEY_BOOL, KEY_TEXT, KEY_CHOICE, KEY_LAW, KEY_NAME, KEY_SCHEDULE, KEY_REALS } KeyKind;
+typedef enum {
+  KEY_REAL,
+  KEY_INT,
+  KEY_BOOL,
+  KEY_TEXT,
+  KEY_CHOICE,
+  KEY_LAW,
+  KEY_NAME,
+  KEY_SCHEDULE,
+  KEY_REALS,
+  KEY_POINTS,
+  KEY_NAMES
+} KeyKind;
 
 typedef struct {
   const char *const *(*types)(void);
@@ -80,12 +102,15 @@ typedef struct {
   const char *const *choices;   /* KEY_CHOICE, KEY_TEXT; for KEY_BOOL the two words of false and true */
   int                first;     /* KEY_CHOICE: enumerator of the first word */
   const Law         *law;       /* KEY_LAW */
-  Group              names;     /* KEY_NAME: whose names */
-  const char        *word;      /* KEY_REAL: word that stands for infinity; "-word" for minus infinity */
-  unsigned           types;     /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
-  unsigned           has;       /* fields (HAS_...) any of which needs the key; 0 = always needed */
-  bool               plain;     /* a number without unit on the command line is in SI */
-  const char        *doc;
+  Group              names;     /* KEY_NAME, KEY_NAMES: whose names */
+  /* KEY_REAL: word that stands for infinity, "-word" for minus infinity; KEY_NAME: word that stands for -1 */
+  const char *word;
+  bool        shape; /* GROUP_REGION: also of a region without particles */
+  unsigned    types; /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
+  unsigned    has;   /* fields (HAS_...) any of which needs the key; 0 = always needed */
+  bool        plain; /* a number without unit on the command line is in SI */
+  bool        kept;  /* not given, what is there stays; `def` says in words what that is */
+  const char *doc;
 } Key;
 
 typedef struct {
@@ -109,7 +134,7 @@ static inline char *GroupInstance(const Case *c, Group g, PetscInt i) /* also it
     return (char *)c;
   return *(char **)((char *)c + case_group[g].pointer) + (size_t)i * case_group[g].size;
 }
-bool KeyApplies(const Key *k, Group g, const void *instance); /* to the boundary's type */
+bool KeyApplies(const Key *k, Group g, const void *instance); /* to the boundary's type, to a region that is empty */
 void KeyOption(char *option, size_t size, Group g, const char *instance, const char *key);
 bool RangeHolds(const char *range, double value);
 /* Nearest option name to `name` among all keys of the case; false if none is near. */
@@ -127,20 +152,41 @@ bool           YesNoRead(const char *text, bool *value); /* yes, no, true, ...; 
 void           KeyMissing(Reader *r, const char *option, const Key *k);
 bool RealRead(Reader *r, const char *shown, const char *text, const char *unit, const char *range, double *value);
 PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s);
+/* One of the names of group k->names as its index; the word for all or none as -1; false: one error was added. */
+bool KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value);
+/* lists.c */
+PetscErrorCode KeyNames(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, Names *names);
+PetscErrorCode KeyPoints(Reader *r, const char *shown, const char *text, const Key *k, Points *points);
 /* Copies a comma list into items that share one allocation; free(list->text). */
 typedef struct {
   PetscInt n;
   char    *text, **item;
 } List;
-void               ListCreate(const char *text, List *list);
-void               ListDestroy(List *list);
-void               CaseCheck(Reader *r, const Case *c);
-void               CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
-void               CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
+void ListCreate(const char *text, List *list);
+void ListDestroy(List *list);
+void CaseCheck(Reader *r, const Case *c);
+void CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
+void CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
+void CheckInitial(Reader *r, const Case *c, const Region *g);      /* initial.c: states in balance with gravity */
+/* regions.c: shapes, faces named by a side or a line, probes */
+void               RegionsFinish(Case *c); /* once all keys are read */
+void               CheckShape(Reader *r, const Case *c, PetscInt region);
+void               CheckOverlap(Reader *r, const Case *c); /* of good shapes; none of them without particles */
+void               CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
+void               CheckHeld(Reader *r, const Case *c, const Bc *b);
+void               CheckProbe(Reader *r, const Case *c, const Probe *p);
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);
 }
+
+/* ---------------------------------------------------------------- stages.c */
+/* When the stages end, and with the last of them the run; before the keys of the case are read. */
+PetscErrorCode CaseStageEnds(Reader *r, Case *c);
+/* The case as it holds in each stage, and what cannot be; after the case is read and derived. */
+PetscErrorCode CaseStages(Reader *r, Case *c);
+PetscErrorCode CaseStagesDestroy(Case *c);
+void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and steps; of a stage unless NULL */
 
 /* ---------------------------------------------------------------- fieldset.c */
 void FieldsWords(unsigned has, char text[64]); /* "water or gas" */

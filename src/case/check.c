@@ -1,5 +1,6 @@
 /* check: what no single key can show: values that must agree with each other. */
 #include "case_private.h"
+#include "clathra/shape.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -17,30 +18,12 @@ static void CheckRadius(Reader *r, const Case *c)
   if (c->lower[0] < 0.0)
     FAIL(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
          c->lower[0]);
-  if (c->gravity[0] != 0.0)
-    FAIL(GROUP_CASE, "", "gravity", "must point along the axis, y, when geometry is axisymmetric (%g m/s^2 along x)",
-         c->gravity[0]);
-}
-
-/* An integrator without matrices? */
-static bool Local(const Case *c)
-{
-  return !strcmp(c->stepper, "hybrid") || !strcmp(c->stepper, "explicit");
-}
-
-/* What those cannot do. */
-static void CheckLocal(Reader *r, const Case *c)
-{
-  const char *what = CaseNeedsImplicit(c);
-
-  if (what)
-    FAIL(GROUP_CASE, "", "stepper_type", "%s does not know %s; use sdirk2 or euler", c->stepper, what);
 }
 
 static void CheckCase(Reader *r, const Case *c)
 {
-  if (Local(c))
-    CheckLocal(r, c);
+  if (!c->nstage)
+    CheckTimes(r, c, NULL);
   for (int d = 0; d < CL_DIM; d++)
     if (c->upper[d] <= c->lower[d])
       FAIL(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->upper[d],
@@ -51,13 +34,7 @@ static void CheckCase(Reader *r, const Case *c)
     FAIL(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);
   if ((double)c->cells[0] * c->cells[1] > 1e8)
     FAIL(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
-  if (Local(c) && c->dt > c->dt_max)
-    FAIL(GROUP_CASE, "", "stepper_dt", "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
-  if (!Local(c) && (c->dt_min > c->dt || c->dt > c->dt_max))
-    FAIL(GROUP_CASE, "", "stepper_dt",
-         "must lie between stepper_dt_min and stepper_dt_max (%g s <= %g s <= %g s fails)", c->dt_min, c->dt,
-         c->dt_max);
-  if (c->ntimes && c->times[c->ntimes - 1] > c->t_end)
+  if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !(c->nstage && r->bad[GROUP_STAGE]))
     FAIL(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
 }
 
@@ -75,24 +52,6 @@ static void CheckMaterial(Reader *r, const Material *m)
   if (fabs(k->M_h - balance) > 1e-6 * k->M_h)
     FAIL(GROUP_MATERIAL, m->name, "hydrate_molar_mass",
          "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
-}
-
-/* Hydrostatic pressure at the corners must stay positive. */
-static void CheckHydrostatic(Reader *r, const Case *c, const Region *g)
-{
-  double gravity = hypot(c->gravity[0], c->gravity[1]), lowest = INFINITY;
-
-  if (gravity == 0) {
-    FAIL(GROUP_REGION, g->name, "hydrostatic", "is yes but gravity is zero");
-    return;
-  }
-  for (int corner = 0; corner < 4; corner++) {
-    double x = corner & 1 ? g->upper[0] : g->lower[0], y = corner & 2 ? g->upper[1] : g->lower[1];
-    double height = -(x * c->gravity[0] + y * c->gravity[1]) / gravity;
-    lowest        = fmin(lowest, g->pressure + c->material[g->material].water.rho0 * gravity * (g->datum - height));
-  }
-  if (lowest <= 0)
-    FAIL(GROUP_REGION, g->name, "datum", "makes the pressure %g Pa at a corner; it must be positive", lowest);
 }
 
 static void CheckSaturations(Reader *r, const Case *c, const Region *g)
@@ -115,37 +74,25 @@ static void CheckSaturations(Reader *r, const Case *c, const Region *g)
 
 static void CheckRegion(Reader *r, const Case *c, PetscInt i)
 {
-  const Region *g = &c->region[i];
+  const Region  *g      = &c->region[i];
+  const PetscInt before = r->nerror;
 
-  for (int d = 0; d < CL_DIM; d++) {
-    double slack = 1e-12 * (fabs(c->upper[d]) + fabs(c->lower[d]));
-    if (g->upper[d] <= g->lower[d])
-      FAIL(GROUP_REGION, g->name, "upper", "must lie above lower on both axes (%g m <= %g m)", g->upper[d],
-           g->lower[d]);
-    else if (!r->bad[GROUP_CASE] && c->upper[d] > c->lower[d] &&
-             (g->lower[d] < c->lower[d] - slack || g->upper[d] > c->upper[d] + slack))
-      FAIL(GROUP_REGION, g->name, g->upper[d] > c->upper[d] ? "upper" : "lower",
-           "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xy"[d], g -> lower[d], g -> upper[d],
-           c -> lower[d], c -> upper[d]);
-  }
+  CheckShape(r, c, i);
+  if (r->nerror > before)
+    r->bad[GROUP_REGION] = true; /* nothing more can be said about places */
+  if (RegionEmpty(g))
+    return;
   if (g->ppc[0] * g->ppc[1] < 2)
     FAIL(GROUP_REGION, g->name, "particles_per_cell",
          "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
-  for (PetscInt j = 0; j < i; j++) {
-    const Region *o    = &c->region[j];
-    bool          over = true;
-    for (int d = 0; d < CL_DIM; d++)
-      over &= fmin(g->upper[d], o->upper[d]) - fmax(g->lower[d], o->lower[d]) > 1e-9 * (g->upper[d] - g->lower[d]);
-    if (over)
-      FAIL(GROUP_REGION, g->name, "lower", "the region overlaps region %s", o->name);
-  }
   CheckSaturations(r, c, g);
   if (!r->bad[GROUP_MATERIAL] && c->material[g->material].plasticity.type != PLASTICITY_NONE &&
       (g->stress[4] != 0.0 || g->stress[5] != 0.0))
     FAIL(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
          g->stress[5], "plasticity_law does not know");
-  if (g->hydrostatic && c->fields.fluid && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
-    CheckHydrostatic(r, c, g);
+  const Case *first = r->bad[GROUP_STAGE] ? c : CaseInStage(c, 0);
+  if (r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
+    CheckInitial(r, first, &first->region[i]);
 }
 
 static void CheckPlane(Reader *r, const Case *c, const Bc *b)
@@ -162,56 +109,6 @@ static void CheckPlane(Reader *r, const Case *c, const Bc *b)
          c->lower[b->axis] + round(line) * h);
 }
 
-static void CheckSide(Reader *r, const Case *c, Group g, const char *name, const Meter *b)
-{
-  int  along = b->side == SIDE_XMIN || b->side == SIDE_XMAX ? 1 : 0;
-  bool meets = false;
-
-  if (b->to <= b->from) {
-    FAIL(g, name, "to", "must lie above from (%g m <= %g m)", b->to, b->from);
-    return;
-  }
-  for (PetscInt i = 0; i < c->nregion; i++)
-    if (b->region < 0 || b->region == i)
-      meets |= b->from < c->region[i].upper[along] && b->to > c->region[i].lower[along];
-  if (!meets)
-    FAIL(g, name, "from", "and to: no part of the body's side lies between %g m and %g m", b->from, b->to);
-}
-
-/* A region whose temperature is held must hold a node. */
-static void CheckHeld(Reader *r, const Case *c, const Bc *b)
-{
-  for (PetscInt i = 0; i < c->nregion; i++) {
-    const Region *g    = &c->region[i];
-    bool          node = b->region < 0 || b->region == i;
-
-    for (int d = 0; d < CL_DIM; d++) {
-      const double h = (c->upper[d] - c->lower[d]) / c->cells[d];
-
-      node = node && floor((g->upper[d] - c->lower[d]) / h + 1e-6) >= ceil((g->lower[d] - c->lower[d]) / h - 1e-6);
-    }
-    if (node)
-      return;
-  }
-  FAIL(GROUP_BC, b->name, "region",
-       "has no node of the grid in its box: refine the grid, or let the box follow its lines");
-}
-
-static void CheckProbe(Reader *r, const Case *c, const Probe *p)
-{
-  for (PetscInt i = 0; i < c->nregion; i++) {
-    const Region *g  = &c->region[i];
-    bool          in = true;
-    for (int d = 0; d < CL_DIM; d++) {
-      double slack = 1e-9 * (g->upper[d] - g->lower[d]);
-      in &= p->x[d] >= g->lower[d] - slack && p->x[d] <= g->upper[d] + slack;
-    }
-    if (in)
-      return;
-  }
-  FAIL(GROUP_PROBE, p->name, "at", "(%g m, %g m) lies in no region", p->x[0], p->x[1]);
-}
-
 void CaseCheck(Reader *r, const Case *c)
 {
   const bool *bad = r->bad;
@@ -222,14 +119,16 @@ void CaseCheck(Reader *r, const Case *c)
     CheckMaterial(r, &c->material[i]);
   for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckPlasticity(r, c, &c->material[i]);
-  for (PetscInt i = 0; i < c->nregion && !bad[GROUP_REGION]; i++)
+  r->bad[GROUP_CASE] |= c->upper[0] <= c->lower[0] || c->upper[1] <= c->lower[1];
+  for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->nregion && all; i++)
     CheckRegion(r, c, i);
+  if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
+    CheckOverlap(r, c);
   for (PetscInt i = 0; i < c->nbc && !bad[GROUP_BC]; i++) {
     const Bc *b = &c->bc[i];
     if (b->type < BC_ROLLER) {
-      if (!bad[GROUP_REGION])
-        CheckSide(r, c, GROUP_BC, b->name,
-                  &(Meter){.side = b->side, .region = b->region, .from = b->from, .to = b->to});
+      if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
+        CheckFaces(r, c, GROUP_BC, b->name, &BcFaces(b));
       CheckFlow(r, c, b);
     } else if (b->type == BC_REGION_TEMPERATURE) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
@@ -237,10 +136,10 @@ void CaseCheck(Reader *r, const Case *c)
     } else if (!bad[GROUP_CASE])
       CheckPlane(r, c, b);
   }
-  for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_REGION]; i++)
+  for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
     CheckProbe(r, c, &c->probe[i]);
-  for (PetscInt i = 0; i < c->nmeter && !bad[GROUP_METER] && !bad[GROUP_REGION]; i++)
-    CheckSide(r, c, GROUP_METER, c->meter[i].name, &c->meter[i]);
+  for (PetscInt i = 0; i < c->nmeter && !bad[GROUP_METER] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
+    CheckFaces(r, c, GROUP_METER, c->meter[i].name, &c->meter[i]);
   if (c->nmeter > CL_METERS)
     FAIL(GROUP_CASE, "", "meters", "lists %d names, at most %d are allowed", (int)c->nmeter, CL_METERS);
 }

@@ -52,10 +52,11 @@ static PetscErrorCode PeekMaterials(Reader *r, const Case *c, bool *reacts, bool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the regions say: some hold gas; all have the same temperature. */
+/* What the regions say: some hold gas; all have the same temperature everywhere. */
 static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uniform)
 {
   const char *text, *first = NULL;
+  bool        any = false;
 
   PetscFunctionBeginUser;
   *gas     = false;
@@ -63,13 +64,19 @@ static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uni
   for (PetscInt i = 0; i < c->nregion; i++) {
     const char *sw;
 
+    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "material", &text));
+    if (text && !strcasecmp(text, "none"))
+      continue; /* without particles */
     PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "Sw", &sw));
     PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "Sg", &text));
     *gas = *gas || (text ? strtod(text, NULL) != 0.0 : sw != NULL);
     PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "temperature", &text));
-    if (i == 0)
+    if (!any)
       first = text;
+    any      = true;
     *uniform = *uniform && (first && text ? !strcmp(first, text) : first == text);
+    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "geothermal", &text));
+    *uniform = *uniform && !(text && strtod(text, NULL) != 0.0);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -232,7 +239,7 @@ static void FinishRegion(Reader *r, const Case *c, Region *g)
   const FieldSet *fs = &c->fields;
   char            option[256];
 
-  if (fs->phase[PHASE_G])
+  if (fs->phase[PHASE_G] || g->material < 0)
     return;
   if (g->Sw == 0.0 && g->Sg == 0.0 && fs->phase[PHASE_W])
     g->Sw = 1.0 - g->Sh; /* a lone fluid fills the pores */

@@ -35,9 +35,28 @@ static bool NeedsPressure(const void *p)
 
   return !b->initial && !b->phase[PHASE_W].n && !b->phase[PHASE_G].n;
 }
+static bool NeedsEnd(const void *p)
+{
+  return ((const Case *)p)->nstage == 0;
+}
 static bool NeedsTemperature(const void *p)
 {
   return ((const Bc *)p)->type != BC_INFLOW;
+}
+
+static bool NeedsBox(const void *p)
+{
+  const Region *r = (const Region *)p;
+
+  return !r->polygon.n && !r->below.n && isinf(r->circle[2]);
+}
+static bool BcNeedsSide(const void *p)
+{
+  return !((const Bc *)p)->along.n;
+}
+static bool MeterNeedsSide(const void *p)
+{
+  return !((const Meter *)p)->along.n;
 }
 
 /* ---------------------------------------------------------------- laws by name */
@@ -63,7 +82,7 @@ static const char *const geometry_word[]   = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]    = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
 static const char *const surface_word[]    = {"free", "tied", NULL};
 static const char *const share_word[]      = {"nodes", "particles", NULL};
-static const char *const side_word[]       = {"left", "right", "bottom", "top", NULL}; /* Side */
+static const char *const side_word[]       = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
 static const char *const axis_word[]       = {"x", "y", NULL};
 static const char *const space_word[]      = {"fluids", "pores", NULL};
 static const char *const stiffness_word[]  = {"both", "loss_only", NULL};
@@ -71,6 +90,7 @@ static const char *const plasticity_word[] = {"none", "mohr_coulomb", NULL};    
 static const char *const flow_word[]       = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
 static const char *const capillary_word[]  = {"held", "free", NULL};
 static const char *const holds_word[]      = {"all", "skeleton", NULL};
+static const char *const clock_word[]      = {"run", "stage", NULL};
 static const char *const phases_word[]     = {"both", "water", "gas", NULL}; /* OpenPhases */
 const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
                                     "roller",   "fixed",    "plate",     "temperature", "region_temperature", NULL};
@@ -94,6 +114,9 @@ const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convec
   ROW(T, name, KEY_CHOICE, member, 1, "", "", def, doc, .choices = words, ##__VA_ARGS__)
 #define NAME(T, name, member, def, group, doc, ...)                                                                    \
   ROW(T, name, KEY_NAME, member, 1, "", "", def, doc, .names = group, ##__VA_ARGS__)
+#define NAMES(T, name, member, group, doc, ...)                                                                        \
+  ROW(T, name, KEY_NAMES, member, 0, "", "", "", doc, .names = group, ##__VA_ARGS__)
+#define POINTS(T, name, member, doc, ...) ROW(T, name, KEY_POINTS, member, 0, "m", "", "", doc, ##__VA_ARGS__)
 /* a law is set by its function; the member is not used */
 #define LAWKEY(name, def, law_, doc) ROW(Material, name, KEY_LAW, porosity, 1, "", "", def, doc, .law = &law_)
 #define SCHEDULE(name, member, unit, range, def, types_, doc, ...)                                                     \
@@ -122,7 +145,8 @@ static const Key case_key[] = {
     REAL(Case, "ambient_density", ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
          "of that fluid: below ambient_level its pressure grows with depth"),
     ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
-    REAL(Case, "time_end", t_end, "s", "(0,inf)", NULL, "the run starts at 0 and ends here"),
+    REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
+         WHEN(NeedsEnd, "there are no stages"), .kept = true),
     TEXT(Case, "stepper_type", stepper, "sdirk2", "time integrator", .choices = stepper_word),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
     REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
@@ -293,10 +317,17 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
-    REALS(Region, 2, "lower", lower, "m", "", NULL, "lower left corner of the body's box"),
-    REALS(Region, 2, "upper", upper, "m", "", NULL, "upper right corner"),
+    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials, or none: only to be cut out of others",
+         .word = "none", .shape = true),
+    POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
+    POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
+    REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true),
+    REALS(Region, 2, "lower", lower, "m", "", "none, none", "lower left corner of a box, or bounds of another shape",
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true),
+    REALS(Region, 2, "upper", upper, "m", "", "none, none", "upper right corner",
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true),
+    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one"),
     INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y"),
-    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials"),
     REAL(Region, "pressure", pressure, "Pa", "(0,1e10]", NULL, "initial mean pore pressure", .has = HAS_WATER),
     REAL(Region, "temperature", temperature, "degC", "(-273.15,1000]", NULL, "initial temperature",
          .has = HAS_HEAT | HAS_GAS),
@@ -306,8 +337,18 @@ static const Key region_key[] = {
     REAL(Region, "Sg", Sg, "", "[0,1]", NULL, "initial gas saturation", .has = HAS_GAS),
     REALS(Region, 6, "stress", stress, "Pa", "[-1e12,1e12]", "0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa",
           "initial effective stress xx yy zz xy yz xz, tension-positive"),
-    BOOLEAN(Region, "hydrostatic", hydrostatic, "no", "add rho_w g depth to the pressure"),
-    REAL(Region, "datum", datum, "m", "", "0 m", "coordinate against gravity where the pressure is `pressure`"),
+    REAL(Region, "stress_geostatic", K0, "", "(0,10]", "no",
+         "K0: vertical effective stress from the weight above less the pore pressure, horizontal K0 times it",
+         .word = "no"),
+    BOOLEAN(Region, "stress_normally_consolidated", consolidated, "no",
+            "the same with K0 = 1 - sin(friction angle of the material)"),
+    BOOLEAN(Region, "hydrostatic", hydrostatic, "no", "water in balance with gravity"),
+    REAL(Region, "datum", datum, "m", "", "0 m",
+         "coordinate against gravity where the pressure is `pressure`; may lie above the body"),
+    REAL(Region, "geothermal", geothermal, "K/m", "[-1e4,1e4]", "0 K/m", "growth of temperature with depth"),
+    REAL(Region, "geothermal_datum", geothermal_datum, "m", "", "top",
+         "coordinate against gravity below which it grows and above which it is `temperature`; top of the body",
+         .word = "top"),
     {.name = NULL},
 };
 
@@ -317,7 +358,12 @@ static const Key region_key[] = {
 
 static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
-    CHOICE(Bc, "side", side, NULL, side_word, "side of the body, moves with it", .types = FACES),
+    BOOLEAN(Bc, "clock", of_stage, "run", "what times of its values count from: the begin of the run, or of each stage",
+            .choices = clock_word),
+    POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",
+           .types = FACES),
+    CHOICE(Bc, "side", side, "none", side_word, "side of the body, moves with it",
+           WHEN(BcNeedsSide, "along is not given"), .types = FACES),
     NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
          .types = FACES | TYPE(BC_REGION_TEMPERATURE)),
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
@@ -363,10 +409,56 @@ static const Key probe_key[] = {
 };
 
 static const Key meter_key[] = {
-    CHOICE(Meter, "side", side, NULL, side_word, "side of the body, moves with it"),
+    POINTS(Meter, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side"),
+    CHOICE(Meter, "side", side, "none", side_word, "side of the body, moves with it",
+           WHEN(MeterNeedsSide, "along is not given")),
     NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
     REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),
     REAL(Meter, "to", to, "m", "", "end", "... to here", .word = "end"),
+    {.name = NULL},
+};
+
+/* Keys that stages share with the case: not given, the case's value stays. */
+#define CASES "the case's"
+#define CASES_LENGTH "the case's if it is given, else the same share of the stage's length"
+static const Key stage_key[] = {
+    REAL(CaseStage, "end", end, "s", "(0,inf)", NULL, "it begins where the stage before ends"),
+    BOOLEAN(
+        CaseStage, "reset_displacement", reset, "no",
+        "displacement and log_J count from the begin of the stage; sides, from and to stay those of the initial body"),
+    BOOLEAN(CaseStage, "kinetics_active", reaction, "yes",
+            "no: hydrate neither forms nor dissociates, in materials whose kinetics are active"),
+    TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; all, or none"),
+    TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act"),
+    TEXT(CaseStage, "materials", materials, "",
+         "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay"),
+    REALS(CaseStage, 2, "gravity", c.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
+    REAL(CaseStage, "gravity_ramp", c.gravity_ramp, "s", "[0,inf)", CASES,
+         "gravity goes from that of the stage before to that of this one over this time", .kept = true),
+    BOOLEAN(CaseStage, "inertia", c.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
+    TEXT(CaseStage, "stepper_type", c.stepper, CASES, "time integrator", .choices = stepper_word, .kept = true),
+    BOOLEAN(CaseStage, "stepper_adapt", c.adaptive, CASES, "choose the step by the error estimate", .kept = true),
+    REAL(CaseStage, "stepper_dt", c.dt, "s", "(0,inf)", CASES_LENGTH, "first step (adaptive) or fixed step",
+         .plain = true, .kept = true),
+    REAL(CaseStage, "stepper_dt_min", c.dt_min, "s", "(0,inf)", CASES_LENGTH, "a smaller step ends the run",
+         .plain = true, .kept = true),
+    REAL(CaseStage, "stepper_dt_max", c.dt_max, "s", "(0,inf)", CASES_LENGTH, "longest step", .plain = true,
+         .kept = true),
+    REAL(CaseStage, "stepper_tol", c.tol, "", "(0,1)", CASES, "relative tolerance of the error estimate", .kept = true),
+    REAL(CaseStage, "stepper_cfl", c.cfl, "", "(0,1]", CASES, "hybrid, explicit: step as a share of the stable one",
+         .kept = true),
+    BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES,
+            "hybrid, explicit: take a fixed step above the stable one all the same", .kept = true),
+    REAL(CaseStage, "stepper_flip", c.flip, "", "[0,1]", CASES, "hybrid, explicit: FLIP (1) to PIC (0)", .kept = true),
+    REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),
+    REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES,
+         "hybrid, explicit: factor on all inertia", .kept = true),
+    REAL(CaseStage, "output_every", c.every, "s", "[0,inf)", CASES, "snapshots, counted from the begin of the stage",
+         .kept = true),
+    REAL(CaseStage, "output_probe_every", c.probe_every, "s", "[0,inf)", CASES,
+         "probe rows, counted from the begin of the stage", .kept = true),
+    REAL(CaseStage, "checkpoint_every", c.checkpoint_every, "s", "[0,inf)", CASES,
+         "counted from the begin of the stage", .plain = true, .kept = true),
     {.name = NULL},
 };
 
@@ -379,9 +471,11 @@ const GroupInfo case_group[GROUP_COUNT] = {
     {.prefix = "", .list = NULL, .noun = "case", .doc = "The scene", .size = sizeof(Case), .key = case_key},
     GROUP(Material, "mat_", "materials", "material", nmaterial, material, true, material_key, "Laws and constants"),
     GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
-          "Boxes of the body and their initial state"),
+          "Parts of the body, each of one shape, and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
     GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
     GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
           "Parts of the surface that count what crosses them"),
+    GROUP(CaseStage, "stage_", "stages", "stage", nstage, stage, false, stage_key,
+          "Stages that follow each other in time; a key that is not given is the case's"),
 };

@@ -9,6 +9,8 @@ const char *const case_schedule_form[] = {"", "_table", "_ramp", "_rate", "_piec
 
 bool KeyApplies(const Key *k, Group g, const void *instance)
 {
+  if (g == GROUP_REGION)
+    return k->shape || ((const Region *)instance)->material >= 0;
   return g != GROUP_BC || !k->types || (k->types & (1u << ((const Bc *)instance)->type));
 }
 

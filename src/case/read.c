@@ -25,9 +25,9 @@ static bool NamesCheck(Reader *r, const GroupInfo *info, const char *shown, cons
     return false;
   }
   for (PetscInt i = 0; i < list->n; i++) {
-    if (!NameValid(list->item[i]) || !strcasecmp(list->item[i], "all")) {
+    if (!NameValid(list->item[i]) || !strcasecmp(list->item[i], "all") || !strcasecmp(list->item[i], "none")) {
       ReaderError(r, shown, list->item[i],
-                  "is not a name: a letter, then letters, digits, _ or -, fewer than 64 (and not 'all')");
+                  "is not a name: a letter, then letters, digits, _ or -, fewer than 64 (and not 'all' or 'none')");
       return false;
     }
     for (PetscInt j = 0; j < i; j++) {
@@ -190,6 +190,7 @@ static PetscErrorCode Derive(Reader *r, Case *c)
     PetscCallMPI(MPI_Bcast(name, sizeof name, MPI_CHAR, 0, r->comm));
     snprintf(c->output_dir, sizeof c->output_dir, "results/%s", name);
   }
+  RegionsFinish(c);
   for (PetscInt i = 0; i < c->nmaterial; i++) {
     Material *m        = &c->material[i];
     Liquid   *l[]      = {&m->solid, &m->hydrate};
@@ -228,13 +229,15 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
   if (!r.nerror) {
     for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(NamesRead(&r, c, g));
+    PetscCall(CaseStageEnds(&r, c));
     PetscCall(GroupRead(&r, c, GROUP_CASE));
     PetscCall(CaseFieldSet(&r, c));
-    for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
+    for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
       PetscCall(GroupRead(&r, c, g));
     PetscCall(Derive(&r, c));
     CaseFieldSetFinish(&r, c);
     CaseQuantities(&r, c);
+    PetscCall(CaseStages(&r, c));
     PetscCall(Leftovers(&r, c));
     CaseCheck(&r, c);
   }
@@ -249,6 +252,7 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
 PetscErrorCode CaseDestroy(Case *c)
 {
   PetscFunctionBeginUser;
+  PetscCall(CaseStagesDestroy(c));
   ScheduleDestroy(&c->ambient_pressure);
   ScheduleDestroy(&c->ambient_level);
   for (PetscInt i = 0; i < c->nbc; i++) {
@@ -256,6 +260,14 @@ PetscErrorCode CaseDestroy(Case *c)
     ScheduleDestroy(&c->bc[i].shear);
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       ScheduleDestroy(&c->bc[i].phase[ph]);
+    PetscCall(PetscFree(c->bc[i].along.x));
+  }
+  for (PetscInt i = 0; i < c->nmeter; i++)
+    PetscCall(PetscFree(c->meter[i].along.x));
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    PetscCall(PetscFree(c->region[i].polygon.x));
+    PetscCall(PetscFree(c->region[i].below.x));
+    PetscCall(PetscFree(c->region[i].minus.i));
   }
   PetscCall(PetscFree(c->material));
   PetscCall(PetscFree(c->region));

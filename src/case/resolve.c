@@ -69,6 +69,41 @@ static void WriteSchedule(FILE *f, const Key *k, const Schedule *s)
   fputs("]}", f);
 }
 
+static void WritePoints(FILE *f, const Key *k, const Points *points)
+{
+  fputc('[', f);
+  for (PetscInt i = 0; i < points->n; i++) {
+    fputs(i ? ", " : "", f);
+    WriteReals(f, k, points->x + 2 * i, 2);
+  }
+  fputc(']', f);
+}
+
+static void WriteNames(FILE *f, const Case *c, const Key *k, const Names *names)
+{
+  fputc('[', f);
+  for (PetscInt i = 0; i < names->n; i++)
+    fprintf(f, "%s%s", i ? ", " : "", GroupInstance(c, k->names, names->i[i]));
+  fputc(']', f);
+}
+
+/* Keys that say nothing when they are empty. */
+static bool Empty(const Key *k, const char *place)
+{
+  switch (k->kind) {
+  case KEY_SCHEDULE:
+    return ((const Schedule *)place)->n == 0;
+  case KEY_POINTS:
+    return ((const Points *)place)->n == 0;
+  case KEY_NAMES:
+    return ((const Names *)place)->n == 0;
+  case KEY_REAL:
+    return k->shape && isinf(*(const double *)place);
+  default:
+    return false;
+  }
+}
+
 static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instance)
 {
   const char *place = instance + k->offset;
@@ -98,9 +133,15 @@ static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instanc
     break;
   case KEY_NAME: {
     PetscInt i = *(const PetscInt *)place;
-    fputs(i < 0 ? k->def : GroupInstance(c, k->names, i), f);
+    fputs(i >= 0 ? GroupInstance(c, k->names, i) : k->word ? k->word : k->def, f);
     break;
   }
+  case KEY_NAMES:
+    WriteNames(f, c, k, (const Names *)place);
+    break;
+  case KEY_POINTS:
+    WritePoints(f, k, (const Points *)place);
+    break;
   case KEY_REALS:
     WriteReals(f, k, c->times, c->ntimes);
     break;
@@ -115,7 +156,7 @@ static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance,
   for (const Key *k = case_group[g].key; k->name; k++) {
     if (!KeyApplies(k, g, instance) || !KeyNeeded(k, c))
       continue;
-    if (k->kind == KEY_SCHEDULE && ((const Schedule *)(instance + k->offset))->n == 0)
+    if (Empty(k, instance + k->offset))
       continue;
     fprintf(f, "%s%s: ", indent, k->name);
     WriteValue(f, c, k, instance);
@@ -162,7 +203,8 @@ PetscErrorCode CaseWriteResolved(const Case *c, const char *path)
 /* ---------------------------------------------------------------- the list of keys */
 static void PrintKind(FILE *out, const Key *k)
 {
-  static const char *const kind[] = {"number", "integer", "yes, no", "text", "word", "law", "name", "schedule", "list"};
+  static const char *const kind[] = {"number", "integer",  "yes, no", "text",   "word", "law",
+                                     "name",   "schedule", "list",    "points", "names"};
   const char *const       *word   = k->kind == KEY_LAW ? k->law->types() : k->choices;
 
   if (word)
@@ -209,7 +251,7 @@ static void PrintKey(FILE *out, Group g, const Key *k)
   if (k->when)
     fprintf(out, "%s**required** when %s", k->def && *k->def ? "; " : "", k->when);
   fprintf(out, " | %s", k->doc);
-  if (k->word && k->kind == KEY_REAL)
+  if (k->word && k->kind == KEY_REAL && !k->shape)
     fprintf(out, "%s`%s` = %sinfinite", *k->doc ? "; " : "", k->word + (*k->word == '-'),
             *k->word == '-' ? "minus " : "");
   PrintTypes(out, k);

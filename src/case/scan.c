@@ -14,17 +14,19 @@
 typedef struct {
   int      column; /* of the keys of a block map; for flow: '[' or '{' */
   PetscInt line;
-  size_t   path; /* length of the parent's path, with its '_' */
+  size_t   path;  /* length of the parent's path, with its '_' */
+  bool     inner; /* flow: a list in a list */
 } Level;
 
 typedef struct {
-  Reader     *r;
-  const char *text, *p, *bol; /* all, here, begin of this line */
-  PetscInt    line, last_key; /* last_key: line of the last key that may still take a value */
-  Level       block[DEPTH_MAX], flow[DEPTH_MAX];
-  int         nblock, nflow;
-  char        path[PATH_LENGTH]; /* of the last key */
-  bool        ok;
+  Reader  *r;
+  char    *text, *p, *bol; /* all, here, begin of this line */
+  PetscInt line, last_key; /* last_key: line of the last key that may still take a value */
+  Level    block[DEPTH_MAX], flow[DEPTH_MAX];
+  int      nblock, nflow;
+  char     path[PATH_LENGTH]; /* of the last key */
+  bool     item;              /* just after the '-' of a list */
+  bool     ok;
 } Scan;
 
 static bool ScanError(Scan *s, PetscInt line, const char *what)
@@ -155,9 +157,16 @@ static bool ScanPlain(Scan *s)
   return ScanKey(s, begin, (size_t)(end - begin), column);
 }
 
+/* In a list in a list? */
+static bool Inner(const Scan *s)
+{
+  return s->nflow && s->flow[s->nflow - 1].inner;
+}
+
 static bool ScanBracket(Scan *s)
 {
-  char open;
+  const bool in_list = s->nflow ? s->flow[s->nflow - 1].column == '[' : s->item;
+  char       open;
 
   switch (*s->p) {
   case '[':
@@ -167,12 +176,17 @@ static bool ScanBracket(Scan *s)
     s->flow[s->nflow].path   = strlen(s->path) ? strlen(s->path) + 1 : 0;
     s->flow[s->nflow].line   = s->line;
     s->flow[s->nflow].column = *s->p;
+    s->flow[s->nflow].inner  = in_list && *s->p == '[';
     s->nflow++;
+    if (Inner(s))
+      *s->p = ' ';
     break;
   default:
     open = *s->p == ']' ? '[' : '{';
     if (!s->nflow || s->flow[s->nflow - 1].column != open)
       return ScanError(s, s->line, "a closing bracket has no partner");
+    if (Inner(s))
+      *s->p = ' ';
     s->nflow--;
     if (s->flow[s->nflow].path)
       s->path[s->flow[s->nflow].path - 1] = 0; /* back to the parent */
@@ -206,9 +220,14 @@ static bool ScanLineStart(Scan *s)
 
 static bool ScanToken(Scan *s)
 {
+  const bool item = s->item && *s->p == '[';
+
+  s->item = item || (*s->p == '-' && !s->nflow && IsBlank(s->p[1]));
   switch (*s->p) {
   case '\'':
   case '"':
+    if (Inner(s))
+      return ScanError(s, s->line, "a list in a list holds quantities without quotes");
     return ScanQuoted(s);
   case '[':
   case ']':
@@ -216,6 +235,8 @@ static bool ScanToken(Scan *s)
   case '}':
     return ScanBracket(s);
   case ',':
+    if (Inner(s))
+      *s->p = ';';
     s->p++;
     return true;
   case '&':
@@ -243,7 +264,7 @@ static bool ScanToken(Scan *s)
   }
 }
 
-bool ReaderScan(Reader *r, const char *text)
+bool ReaderScan(Reader *r, char *text)
 {
   Scan s = {.r = r, .text = text, .p = text, .bol = text, .line = 1, .ok = true};
 
@@ -262,8 +283,8 @@ bool ReaderScan(Reader *r, const char *text)
     } else if (IsBlank(*s.p))
       s.p++;
     else if (*s.p == '#' && (s.p == text || IsBlank(s.p[-1])))
-      while (!IsBreak(*s.p))
-        s.p++;
+      for (; !IsBreak(*s.p); s.p++)
+        *s.p = Inner(&s) ? ' ' : *s.p;
     else
       ScanToken(&s);
   }

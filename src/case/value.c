@@ -205,29 +205,30 @@ static void KeyChoice(Reader *r, const char *shown, const char *text, const Key 
   WordError(r, shown, text, k->choices);
 }
 
-static void KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value)
+bool KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value)
 {
-  const char *word[258];
-  PetscInt    n = 0;
+  const char *all = k->word ? k->word : k->kind == KEY_NAME ? k->def : NULL, *word[258]; /* all, none */
+  PetscInt    n   = 0;
 
-  if (k->def && !strcasecmp(text, k->def)) { /* all */
+  if (all && !strcasecmp(text, all)) {
     *value = -1;
-    return;
+    return true;
   }
   for (PetscInt i = 0; i < *GroupCount(c, k->names) && n < 256; i++) {
     word[n++] = GroupInstance(c, k->names, i);
     if (strcasecmp(text, word[n - 1]))
       continue;
     *value = i;
-    return;
+    return true;
   }
-  if (k->def)
-    word[n++] = k->def;
+  if (all)
+    word[n++] = all;
   word[n] = NULL;
   if (n)
     WordError(r, shown, text, word);
   else
     ReaderError(r, shown, text, "no %s is listed in %s", case_group[k->names].noun, case_group[k->names].list);
+  return false;
 }
 
 /* output_times: ascending */
@@ -295,7 +296,13 @@ static PetscErrorCode KeyStore(Reader *r, Case *c, const char *shown, const char
     }
     break;
   case KEY_NAME:
-    KeyName(r, c, shown, text, k, (PetscInt *)place);
+    (void)KeyName(r, c, shown, text, k, (PetscInt *)place);
+    break;
+  case KEY_NAMES:
+    PetscCall(KeyNames(r, c, shown, text, k, (Names *)place));
+    break;
+  case KEY_POINTS:
+    PetscCall(KeyPoints(r, shown, text, k, (Points *)place));
     break;
   case KEY_REALS:
     PetscCall(KeyReals(r, shown, text, k, &c->ntimes, (double **)place));
@@ -321,7 +328,9 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
   PetscCall(ReaderFind(r, option, &text, &found, &from_file));
   snprintf(shown, sizeof shown, "%s%s", found && !from_file ? "-" : "", option);
   if (!KeyApplies(k, g, instance)) {
-    if (found)
+    if (found && g == GROUP_REGION)
+      ReaderError(r, shown, text, "is not a key of a region without particles (material: none)");
+    else if (found)
       ReaderError(r, shown, text, "is not a key of a boundary of type %s", case_bc_type[((Bc *)instance)->type - 1]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -330,7 +339,7 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
       PetscFunctionReturn(PETSC_SUCCESS);
     if (KeyNeeded(k, c) && (k->needed ? k->needed(instance) : !k->def))
       KeyMissing(r, option, k);
-    else if (!DefaultReference(g, instance, k, (double *)(instance + k->offset)))
+    else if (!k->kept && !DefaultReference(g, instance, k, (double *)(instance + k->offset)))
       PetscCall(KeyStore(r, c, shown, k->def, k, instance));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

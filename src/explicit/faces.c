@@ -6,7 +6,7 @@ static bool Acts(const Case *c, const Face *f)
   bool counted = false;
 
   for (PetscInt k = 0; k < c->nmeter; k++)
-    counted = counted || MeterCovers(&c->meter[k], f);
+    counted = counted || (f->meters >> k & 1);
   return counted || f->traction >= 0 || f->pressure >= 0 || f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 ||
          f->inflow >= 0;
 }

@@ -21,13 +21,18 @@
   {                                                                                                                    \
     #field, offsetof(StepperState, field), 1, true                                                                     \
   }
-const StateField io_state_field[] = {INT(step),          REAL(t),       REAL(dt),           REAL(err_old),
-                                     INT(hold),          INT(fresh),    INT(newton_total),  INT(failures_total),
-                                     INT(limited_total), REAL(out),     REAL(heat_gain),    REAL(heat_in),
-                                     REAL(heat_source),  REAL(water0),  REAL(methane0),     REAL(capacity0),
-                                     REAL(scale_p),      REAL(scale_u), INT(next_snapshot), REAL(meter),
-                                     {NULL, 0, 0, false}};
-/* Seven integers, four bytes of padding, thirteen reals, the meters. */
+const StateField io_state_field[] = {INT(step),          REAL(t),
+                                     REAL(dt),           REAL(err_old),
+                                     INT(hold),          INT(fresh),
+                                     INT(newton_total),  INT(failures_total),
+                                     INT(limited_total), REAL(out),
+                                     REAL(heat_gain),    REAL(heat_in),
+                                     REAL(heat_source),  REAL(water0),
+                                     REAL(methane0),     REAL(capacity0),
+                                     REAL(scale_p),      REAL(scale_u),
+                                     INT(next_snapshot), INT(stage),
+                                     REAL(meter),        {NULL, 0, 0, false}};
+/* Eight integers, thirteen reals, the meters. */
 _Static_assert(sizeof(StepperState) == 8 * sizeof(PetscInt) + (13 + CL_METERS * METER_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 

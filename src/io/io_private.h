@@ -69,6 +69,12 @@ void ProbesHeader(const Case *c, FILE *f);
 void BalanceHeader(const Case *c, FILE *f);
 void MetersHeader(const Case *c, FILE *f);
 
+/* Stages may take seconds after years: their times are told apart to the last digit. */
+static inline void IoTime(const Case *c, FILE *f, double t)
+{
+  fprintf(f, c->nstage ? "%.16e" : "%.12e", t);
+}
+
 /* ---------------------------------------------------------------- snapshot.c, xdmf.c: rank 0 */
 PetscErrorCode SnapshotsStart(Output *out, bool append, PetscInt next);
 PetscErrorCode XdmfWrite(const Output *out, const Grid *g);
@@ -109,10 +115,11 @@ PetscErrorCode GatherInts(Gather *g, const PetscInt *local, PetscInt *sorted);
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
-#define CHECKPOINT_VERSION 4
+#define CHECKPOINT_VERSION 5
 #define FNV_START UINT64_C(14695981039346656037)
 uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes); /* FNV-1a, 64 bits */
-/* Physics of a case: grid, gravity, basis, regions, materials, boundary conditions, and its meters.  Names, outputs,
+/* Physics of a case: grid, gravity, basis, regions, materials, boundary conditions, meters, and what stages
+   change of it.  Names, outputs,
    numerics of the solver and of time are left out. */
 uint64_t CaseFingerprint(const Case *c);
 /* Writes version, case, length and checksum of the whole file into the user block, and syncs it to the disk. */

@@ -27,7 +27,7 @@ static PetscErrorCode WriteRow(FILE *f, const Model *m, const StepperState *s, d
   const FieldSet *fs = &c->fields;
 
   PetscFunctionBeginUser;
-  fprintf(f, "%.12e", s->t);
+  IoTime(c, f, s->t);
   for (PetscInt k = 0; k < c->nmeter; k++) {
     const double *rate = m->rates.meter[k], *sum = s->meter[k];
 

@@ -81,8 +81,8 @@ static PetscErrorCode Header(const Model *m, const Table *table, char **text, si
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A whole line with a time not later than t. */
-static bool Keep(const char *line, int column, double t)
+/* A whole line with a time not later than t; slack: of times as they are written. */
+static bool Keep(const char *line, int column, double t, double slack)
 {
   char  *end;
   double value;
@@ -96,11 +96,12 @@ static bool Keep(const char *line, int column, double t)
     line++;
   }
   value = strtod(line, &end);
-  return end != line && (*end == ',' || *end == '\n') && value <= t + 1e-12 * fabs(t);
+  return end != line && (*end == ',' || *end == '\n') && value <= t + slack * fabs(t);
 }
 
 /* Copies the rows of `old` that a restart at time t keeps; *same = false if its columns are others. */
-static PetscErrorCode CopyRows(FILE *old, const Table *table, const char *header, double t, FILE *f, bool *same)
+static PetscErrorCode CopyRows(FILE *old, const Table *table, const char *header, double t, double slack, FILE *f,
+                               bool *same)
 {
   char  *line = NULL;
   size_t cap  = 0;
@@ -108,7 +109,7 @@ static PetscErrorCode CopyRows(FILE *old, const Table *table, const char *header
   PetscFunctionBeginUser;
   *same = getline(&line, &cap, old) > 0 && strcmp(line, header) == 0;
   while (*same && getline(&line, &cap, old) > 0) {
-    if (Keep(line, table->time, t))
+    if (Keep(line, table->time, t, slack))
       fputs(line, f);
   }
   free(line);
@@ -134,7 +135,7 @@ static PetscErrorCode OpenTable(const Model *m, const char *dir, const Table *ta
   if (append)
     old = fopen(path, "r");
   if (old) {
-    PetscCall(CopyRows(old, table, header, t, *f, &same));
+    PetscCall(CopyRows(old, table, header, t, m->c->nstage ? 4.0 * PETSC_MACHINE_EPSILON : 1e-12, *f, &same));
     fclose(old);
   }
   PetscCall(IoFlush(*f, table->name));

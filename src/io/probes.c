@@ -64,7 +64,7 @@ static void Reach(const Case *c, const Grid *g, double widening, double reach[CL
     PetscInt ppc = 2;
 
     for (PetscInt k = 0; k < c->nregion; k++)
-      ppc = PetscMin(ppc, c->region[k].ppc[d]);
+      ppc = c->region[k].material < 0 ? ppc : PetscMin(ppc, c->region[k].ppc[d]);
     reach[d] = widening * g->h[d] * (ppc < 2 ? 2.0 : 1.0);
   }
 }
@@ -189,7 +189,7 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
 static PetscErrorCode WriteRow(FILE *f, const Case *c, double t, const Fit *fit, PetscInt n, const double *value)
 {
   PetscFunctionBeginUser;
-  fprintf(f, "%.12e", t);
+  IoTime(c, f, t);
   for (PetscInt k = 0; k < n; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
       if (!Wanted(c, q))

@@ -77,11 +77,20 @@ static uint64_t HashMaterial(uint64_t h, const Material *m)
   return INTS(h, m->reacts, e->loss_only);
 }
 
+static uint64_t HashPoints(uint64_t h, const Points *points)
+{
+  return Reals(INTS(h, points->n), points->x, (size_t)(2 * points->n));
+}
+
 static uint64_t HashRegion(uint64_t h, const Region *r)
 {
   h = Reals(Reals(Reals(h, r->lower, CL_DIM), r->upper, CL_DIM), r->stress, 6);
-  h = REALS(h, r->pressure, r->temperature, r->Sh, r->Sw, r->Sg, r->datum);
-  return INTS(h, r->ppc[0], r->ppc[1], r->material, r->hydrostatic);
+  h = REALS(h, r->pressure, r->temperature, r->Sh, r->Sw, r->Sg, r->datum, r->K0, r->geothermal, r->geothermal_datum);
+  h = HashPoints(HashPoints(INTS(h, r->shape, r->minus.n), &r->polygon), &r->below);
+  h = Reals(h, r->circle, 3);
+  for (PetscInt k = 0; k < r->minus.n; k++)
+    h = INTS(h, r->minus.i[k]);
+  return INTS(h, r->ppc[0], r->ppc[1], r->material, r->hydrostatic, r->consolidated);
 }
 
 static uint64_t HashSchedule(uint64_t h, const Schedule *s)
@@ -93,20 +102,18 @@ static uint64_t HashSchedule(uint64_t h, const Schedule *s)
 static uint64_t HashBc(uint64_t h, const Bc *b)
 {
   h = INTS(h, b->type, b->side, b->region, b->axis, b->initial, b->natural, b->open, b->drained);
-  h = REALS(h, b->from, b->to, b->position, b->alpha);
+  h = HashPoints(REALS(h, b->from, b->to, b->position, b->alpha, b->zero), &b->along);
   h = HashSchedule(HashSchedule(h, &b->value), &b->shear);
   return HashSchedule(HashSchedule(h, &b->phase[PHASE_W]), &b->phase[PHASE_G]);
 }
 
 static uint64_t HashMeter(uint64_t h, const Meter *m)
 {
-  return REALS(INTS(h, m->side, m->region), m->from, m->to);
+  return HashPoints(REALS(INTS(h, m->side, m->region), m->from, m->to), &m->along);
 }
 
-uint64_t CaseFingerprint(const Case *c)
+static uint64_t HashScene(uint64_t h, const Case *c)
 {
-  uint64_t h = FNV_START;
-
   h = Reals(Reals(Reals(h, c->lower, CL_DIM), c->upper, CL_DIM), c->gravity, CL_DIM);
   h = REALS(h, c->gravity_ramp);
   h = INTS(h, c->cells[0], c->cells[1], c->basis, c->axisymmetric, (int64_t)c->fields.has, c->nmaterial, c->nregion,
@@ -120,6 +127,21 @@ uint64_t CaseFingerprint(const Case *c)
     h = HashBc(h, &c->bc[k]);
   for (PetscInt k = 0; k < c->nmeter; k++)
     h = HashMeter(h, &c->meter[k]);
+  return h;
+}
+
+/* Of a case with stages: the scene of each, and when it begins. */
+uint64_t CaseFingerprint(const Case *c)
+{
+  uint64_t h = FNV_START;
+
+  if (!c->nstage)
+    return HashScene(h, c);
+  for (PetscInt k = 0; k < c->nstage; k++) {
+    const CaseStage *s = &c->stage[k];
+
+    h = INTS(HashScene(REALS(h, s->c.t_begin), &s->c), s->reset, s->c.inertia);
+  }
   return h;
 }
 

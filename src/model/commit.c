@@ -58,7 +58,7 @@ void ModelCountFace(const Case *c, const Face *face, double weight, const FaceOu
     rates->out[ph] += weight * o->outflow[ph];
   rates->heat_in += weight * o->heat_in;
   for (PetscInt k = 0; k < c->nmeter; k++) {
-    if (!MeterCovers(&c->meter[k], face))
+    if (!(face->meters >> k & 1))
       continue;
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       rates->meter[k][METER_WATER + ph] += weight * o->outflow[ph];

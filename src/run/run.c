@@ -1,19 +1,19 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
-#include "clathra/run.h"
-#include "clathra/io.h"
+#include "run_private.h"
 #include "plastic.h"
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 typedef struct {
-  Output *out;
-  char    checkpoint[PETSC_MAX_PATH_LEN];
-  double  t_start, clock_start; /* s of the scene, s of the wall */
-  bool    quiet;
+  Output   *out;
+  char      checkpoint[PETSC_MAX_PATH_LEN];
+  double    clock_start; /* s of the wall */
+  StageLog *log;
+  bool      quiet;
 } Run;
 
-static double Wall(void)
+double Wall(void)
 {
   struct timespec t;
 
@@ -21,40 +21,42 @@ static double Wall(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* First multiple of `every` after t. */
-static double NextMultiple(double every, double t)
+/* First multiple of `every` after t, counted from the begin of the stage. */
+static double NextMultiple(const Case *c, double every, double t)
 {
-  return every > 0.0 ? every * (floor(t / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
+  const double at = t - c->t_begin + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+
+  return every > 0.0 ? c->t_begin + every * (floor(at / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
 }
 
 static double NextSnapshot(const Case *c, double t)
 {
-  double next = NextMultiple(c->every, t);
+  double next = NextMultiple(c, c->every, t);
 
   for (PetscInt k = 0; k < c->ntimes; k++) {
-    if (c->times[k] > t * (1.0 + 1e-12))
+    if (c->times[k] > t + CaseTimeSlack(c, t))
       next = fmin(next, c->times[k]);
   }
   return next;
 }
 
-static bool IsTime(double event, double t)
+static bool IsTime(const Case *c, double event, double t)
 {
-  return fabs(event - t) <= 1e-9 * fabs(t);
+  return fabs(event - t) <= 1e-9 * fabs(t - c->t_begin) + CaseTimeSlack(c, t);
 }
 
 /* Steps end exactly on events, so t is one of them or is not. */
-static bool AtMultiple(double every, double t)
+static bool AtMultiple(const Case *c, double every, double t)
 {
-  return every > 0.0 && IsTime(every * round(t / every), t);
+  return every > 0.0 && IsTime(c, c->t_begin + every * round((t - c->t_begin) / every), t);
 }
 
 static bool AtSnapshot(const Case *c, double t)
 {
-  bool at = AtMultiple(c->every, t);
+  bool at = AtMultiple(c, c->every, t);
 
   for (PetscInt k = 0; k < c->ntimes; k++)
-    at = at || IsTime(c->times[k], t);
+    at = at || IsTime(c, c->times[k], t);
   return at;
 }
 
@@ -64,18 +66,22 @@ static double NextEvent(const Stepper *s, void *ctx)
   const double t = s->state.t;
 
   (void)ctx;
-  return fmin(NextSnapshot(c, t), fmin(NextMultiple(c->probe_every, t), NextMultiple(c->checkpoint_every, t)));
+  return fmin(NextSnapshot(c, t), fmin(NextMultiple(c, c->probe_every, t), NextMultiple(c, c->checkpoint_every, t)));
 }
 
 static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run *run)
 {
-  const double t = s->state.t, end = s->model->c->t_end, done = (t - run->t_start) / (end - run->t_start);
-  const double left     = done > 0.0 ? (Wall() - run->clock_start) * (1.0 - done) / done : 0.0;
-  char         cuts[32] = "", error[32] = "", solved[48], yields[128];
+  const double t_begin = s->model->c->t_begin;
+  double       done, left;
+  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "", yields[128];
 
   PetscFunctionBeginUser;
   if (run->quiet)
     PetscFunctionReturn(PETSC_SUCCESS);
+  StageLogProgress(run->log, s, &done, &left);
+  StepperStageWords(s, stage);
+  if (t_begin > 0.0)
+    PetscCall(PetscSNPrintf(begin, sizeof(begin), "%g s + ", t_begin));
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
@@ -86,8 +92,9 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "step %4" PetscInt_FMT ": t = %-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
-                        s->state.step, t, 100.0 * done, info->dt, solved, error, cuts, yields, left));
+                        "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
+                        stage, s->state.step, begin, s->state.t - t_begin, 100.0 * done, info->dt, solved, error, cuts,
+                        yields, left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,11 +104,12 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   Run         *run  = (Run *)ctx;
   const Case  *c    = s->model->c;
   const double t    = s->state.t;
-  const bool   last = t >= c->t_end * (1.0 - 1e-12);
+  const bool   last = CaseAtEnd(c, t); /* of the run, or of a stage */
 
   PetscFunctionBeginUser;
+  StageLogStep(run->log, s, info);
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
-  if (c->probe_every == 0.0 || AtMultiple(c->probe_every, t) || last) {
+  if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));
     PetscCall(OutputMeters(run->out, s->model, &s->state));
   }
@@ -109,7 +117,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
   }
-  if (AtMultiple(c->checkpoint_every, t))
+  if (AtMultiple(c, c->checkpoint_every, t))
     PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
   PetscCall(Progress(s, info, run));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -177,7 +185,7 @@ static PetscErrorCode LocalSummary(const Stepper *s, char text[512])
 static PetscErrorCode Summary(const Stepper *s, const Run *run)
 {
   const StepperState *z = &s->state;
-  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512], yields[256];
+  char                path[PETSC_MAX_PATH_LEN], text[2048], local[512], yields[256], *stages;
   ModelTotals         t;
   PetscMPIInt         rank;
 
@@ -192,22 +200,26 @@ static PetscErrorCode Summary(const Stepper *s, const Run *run)
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n%s"
                           "  results in %s\n",
-                          s->model->c->title, z->t >= s->model->c->t_end * (1.0 - 1e-12) ? "finished" : "stopped", z->t,
-                          s->scheme->name, z->step, z->failures_total, z->newton_total, Wall() - run->clock_start,
-                          local, Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
+                          s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
+                          s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
+                          z->newton_total, Wall() - run->clock_start, local,
+                          Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
                           z->limited_total, yields, s->model->c->output_dir));
-  PetscCall(PetscPrintf(s->model->grid.comm, "%s", text));
+  PetscCall(StageLogSummary(run->log, s, &stages));
+  PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", text, stages));
   PetscCallMPI(MPI_Comm_rank(s->model->grid.comm, &rank));
   if (rank == 0) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "%s/summary.txt", s->model->c->output_dir));
     FILE *f = fopen(path, "w");
     if (f) {
       fputs(text, f);
+      fputs(stages, f);
       fclose(f);
     }
   }
+  PetscCall(PetscFree(stages));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,8 +236,6 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
-  if (!s->adaptive && s->state.hold == 0)
-    s->state.dt = c->dt; /* a fixed step is the case's, also after a restart */
   PetscCall(StepperReady(s, &ok));
   if (!ok) {
     *exit_code = CL_EXIT_INPUT;
@@ -241,20 +251,22 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   PetscCall(PetscSNPrintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir));
   PetscCall(OutputCreate(s->model, &s->state, restart[0] != '\0', &run->out));
   if (!restart[0]) {
+    PetscCall(InitialWarnings(s->model->grid.comm, s->model->c, &s->model->P));
     PetscCall(OutputProbes(run->out, s->model, &s->state));
     PetscCall(OutputMeters(run->out, s->model, &s->state));
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
   }
-  run->t_start     = s->state.t;
   run->clock_start = Wall();
+  PetscCall(StageLogCreate(s, &run->log));
   PetscCall(StepperRun(s, &ok));
-  if (!AtMultiple(c->checkpoint_every, s->state.t))
+  if (!AtMultiple(s->model->c, s->model->c->checkpoint_every, s->state.t))
     PetscCall(CheckpointWrite(s->model, &s->state, run->checkpoint));
   if (!ok)
     PetscCall(PetscPrintf(s->model->grid.comm, "The last good state (t = %g s) is saved in %s\n", s->state.t,
                           run->checkpoint));
   PetscCall(Summary(s, run));
+  PetscCall(StageLogDestroy(&run->log));
   PetscCall(OutputDestroy(&run->out));
   *exit_code = ok ? CL_EXIT_OK : CL_EXIT_FAILED;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -317,8 +329,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT
                           " cells%s, %s, to t = %g s\n  fields: %s; %d unknowns "
                           "a node\n",
-                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "", c->stepper,
-                          c->t_end, fields, c->fields.n));
+                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "",
+                          c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
     PetscCall(PrintStrength(c, comm));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));

@@ -314,8 +314,23 @@ static void MakeCase(Case *c, Material *mat, Region *region)
                     .gas       = {0.016},
                     .retention = {.p0 = 5e4, .m = 0.3, .lambda = 1.5, .Swr = 0.2, .Sgr = 0.1}};
   Check(RetentionSetType(&mat->retention, "van_genuchten"));
-  region[0] = (Region){"a", {-0.1, 0.2}, {0.83, 0.47}, {2, 3}, 0, 3e6, 4.0, 0.2, 0.4, 0.4, {0}, false, 0.0};
-  region[1] = (Region){"b", {-0.1, 0.47}, {0.4, 0.7}, {1, 2}, 0, 3e6, 4.0, 0.0, 0.6, 0.4, {0}, false, 0.0};
+  region[0] = (Region){.name        = "a",
+                       .lower       = {-0.1, 0.2},
+                       .upper       = {0.83, 0.47},
+                       .ppc         = {2, 3},
+                       .pressure    = 3e6,
+                       .temperature = 4.0,
+                       .Sh          = 0.2,
+                       .Sw          = 0.4,
+                       .Sg          = 0.4};
+  region[1] = (Region){.name        = "b",
+                       .lower       = {-0.1, 0.47},
+                       .upper       = {0.4, 0.7},
+                       .ppc         = {1, 2},
+                       .pressure    = 3e6,
+                       .temperature = 4.0,
+                       .Sw          = 0.6,
+                       .Sg          = 0.4};
   *c        = (Case){.lower     = {-0.2, 0.1},
                      .upper     = {0.9, 0.8},
                      .cells     = {CELLS_X, CELLS_Y},

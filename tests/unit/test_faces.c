@@ -43,11 +43,11 @@ static void SceneInit(Scene *s, Rng *r)
   s->v.phase[PHASE_G] = s->phase[PHASE_G];
   s->p0[PHASE_W]      = 3e6;
   s->p0[PHASE_G]      = 3e6 + RngBetween(r, 1e4, 2e5);
-  s->face             = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .x = {1.0, 2.0}, .r = {0.01, 0.002}};
-  s->face.traction    = -1;
-  s->face.pressure    = -1;
-  s->face.heat        = -1;
-  s->face.convection  = -1;
+  s->face            = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .s = {1.4, 0.6}, .x = {1.0, 2.0}, .r = {0.01, 0.002}};
+  s->face.traction   = -1;
+  s->face.pressure   = -1;
+  s->face.heat       = -1;
+  s->face.convection = -1;
   s->face.temperature = -1;
   s->face.inflow      = -1;
 }
@@ -313,10 +313,63 @@ static void MassRows(void **state)
   }
 }
 
+/* The true area goes with the motion: |cof(F) s|. */
+static void TrueArea(void **state)
+{
+  Rng r = {.s = 17};
+
+  for (int n = 0; n < STATES; n++) {
+    Scene      s;
+    FaceOutput o;
+    double     in[IN_COUNT];
+
+    SceneInit(&s, &r);
+    s.face.heat = 2;
+    s.value[2]  = 50.0;
+    Inputs(&r, in);
+    Evaluate(&s, in, &o);
+
+    const double F[2][2] = {{1.0 + in[IN_GRADU], in[IN_GRADU + 1]}, {in[IN_GRADU + 2], 1.0 + in[IN_GRADU + 3]}};
+    const double hoop    = 1.0 + in[IN_GRADU + 4];
+    const double area =
+        hypot(F[1][1] * s.face.s[0] - F[1][0] * s.face.s[1], F[0][0] * s.face.s[1] - F[0][1] * s.face.s[0]);
+
+    assert_true(fabs(o.heat_in - 50.0 * area * hoop) < 1e-12 * o.heat_in);
+  }
+}
+
+/* What is given per area goes with the area that a step of a staircase stands for; vectors go with its own. */
+static void Share(void **state)
+{
+  Rng r = {.s = 13};
+
+  for (int n = 0; n < STATES; n++) {
+    Scene      s;
+    FaceOutput whole, part;
+    double     in[IN_COUNT];
+
+    SceneInit(&s, &r);
+    WarmInflow(&s, &r);
+    s.face.traction = s.face.convection = s.face.temperature = s.face.heat = 2;
+    s.bc[2].alpha                                                          = 15.0;
+    s.value[2]                                                             = 12.0;
+    Inputs(&r, in);
+    Evaluate(&s, in, &whole);
+    for (int d = 0; d < CL_DIM; d++)
+      s.face.s[d] *= 0.7;
+    Evaluate(&s, in, &part);
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      assert_true(fabs(part.outflow[ph] - 0.7 * whole.outflow[ph]) <= 1e-14 * fabs(whole.outflow[ph]));
+    assert_true(fabs(part.heat_in - 0.7 * whole.heat_in) <= 1e-14 * fabs(whole.heat_in));
+    assert_true(part.out[F_VSX] == whole.out[F_VSX] && part.out[F_VSX + 1] == whole.out[F_VSX + 1] &&
+                whole.out[F_VSX] != 0.0);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents), cmocka_unit_test(MeanPressure),
-                                     cmocka_unit_test(MassRows)};
+                                     cmocka_unit_test(MassRows), cmocka_unit_test(TrueArea), cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

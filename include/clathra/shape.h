@@ -1,0 +1,51 @@
+/* shape: which points a region of the case holds, where its particles are, and the surface they make.  Pure functions
+   of the case; every rank gets the same. */
+#pragma once
+
+#include "clathra/case.h"
+
+/* Places for the particles of a region: centres at from + (first + i + 1/2) spacing, i < n. */
+typedef struct {
+  PetscInt first[CL_DIM], n[CL_DIM];
+  double   from[CL_DIM], spacing[CL_DIM]; /* m */
+} Lattice;
+
+/* A region that is to be cut out of others and holds no particles? */
+static inline bool RegionEmpty(const Region *r)
+{
+  return r->material < 0;
+}
+
+/* A box that nothing is cut out of, and which its particles fill exactly? */
+static inline bool RegionWhole(const Region *r)
+{
+  return r->shape == SHAPE_BOX && r->minus.n == 0;
+}
+
+/* Bounds of the shape inside `lower` and `upper` as given (infinite where not), which they replace. */
+void RegionBound(const Case *c, Region *r);
+/* Does the region hold x, without what `minus` takes away?  A point on an edge that two regions share belongs to one
+   of them. */
+bool RegionHolds(const Case *c, PetscInt region, const double x[]);
+/* ... or does its boundary pass within `slack` (m, along each axis)? */
+bool RegionReaches(const Case *c, PetscInt region, const double x[], const double slack[]);
+/* Greatest coordinate along a direction in the region, or a little more. */
+double RegionHighest(const Region *r, const double direction[]);
+
+/* A box is cut into whole spacings: ppc per cell where it follows the grid, the nearest number elsewhere; other shapes
+   take the places of a regular filling of the grid's cells. */
+void RegionLattice(const Case *c, PetscInt region, Lattice *lattice);
+/* Centre of place ij; is there a particle? */
+bool RegionPlace(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[], double x[]);
+/* Bits 1 << Side of those sides of the particle at place ij beyond which no region has a particle. */
+PetscInt RegionFaces(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[]);
+
+/* Area vector of the true surface that a face stands for, per area of its own: n/(|n_x| + |n_y|) with the outward
+   normal n of the boundary between its particle, initially at x, and the next place; on boxes that of the side. */
+void FaceNormal(const Case *c, PetscInt region, const double x[], int side, double n[]);
+/* Is the face one of those that a meter, or a condition written as one, names?  A line takes the faces whose normal,
+   drawn LINE_REACH particle spacings out and in from the centre of the initial face, meets it. */
+#define LINE_REACH 0.6
+#define BcFaces(b)                                                                                                     \
+  ((Meter){.side = (b)->side, .region = (b)->region, .from = (b)->from, .to = (b)->to, .along = (b)->along})
+bool FaceNamed(const Case *c, const Meter *m, PetscInt region, const double x[], int side);

@@ -1,0 +1,77 @@
+/* What a user should know of a start that is out of balance with gravity; docs/equations.md, section 13. */
+#include "clathra/boundary.h"
+#include "clathra/shape.h"
+#include "clathra/tensor.h"
+
+#define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
+
+/* Does the skeleton of a region have a weight to carry, and no stress that does? */
+static PetscErrorCode Unstressed(const Case *c, const Region *r, bool *unstressed)
+{
+  const double   middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
+  double         water          = 0.0, dp, dT;
+  InitialScalars s;
+
+  PetscFunctionBeginUser;
+  *unstressed = !RegionGeostatic(r);
+  for (int i = 0; i < 6; i++)
+    *unstressed = *unstressed && r->stress[i] == 0.0;
+  if (!*unstressed)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(InitialScalarsAt(c, r, middle, &s));
+  if (c->fields.fluid && r->hydrostatic)
+    water = LiquidDensity(&c->material[r->material].water, s.pw, s.T, &dp, &dT);
+  *unstressed = fabs(s.density - water) > NEGLIGIBLE * s.density;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest tension of a geostatic start, Pa, and the stress it is measured by; globally. */
+static PetscErrorCode LargestTension(MPI_Comm comm, const Case *c, const Particles *P, double *tension, double *scale)
+{
+  const int v       = CaseVertical(c);
+  double    most[2] = {0.0, 0.0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < P->n; p++) {
+    if (!RegionGeostatic(&c->region[P->i[PI_REGION][p]]))
+      continue;
+    most[0] = fmax(most[0], P->f[P_SIG + v][p]);
+    most[1] = fmax(most[1], fabs(P->f[P_SIG + v][p]) + (P->f[P_PW] ? fabs(P->f[P_PW][p]) : 0.0));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, comm));
+  *tension = most[0];
+  *scale   = most[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
+{
+  double tension = 0.0, scale = 0.0;
+
+  PetscFunctionBeginUser;
+  if (!c->fields.solid || CaseGravity(c) == 0.0)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {
+    bool unstressed;
+
+    if (RegionEmpty(&c->region[k]))
+      continue;
+    PetscCall(Unstressed(c, &c->region[k], &unstressed));
+    if (!unstressed)
+      continue;
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: warning: gravity acts on an unstressed body: region %s starts without the stress "
+                           "that carries its weight and will move (stress: {geostatic: K0} gives it one, gravity_ramp "
+                           "lets the weight grow)\n",
+                           c->region[k].name));
+    break;
+  }
+  if (CaseVertical(c) >= 0)
+    PetscCall(LargestTension(comm, c, P, &tension, &scale));
+  if (tension > NEGLIGIBLE * scale)
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: warning: the geostatic stress is a tension of up to %.4g Pa: the load on the "
+                           "body's top is less than the pore pressure there, or the top cuts a cell of the grid\n",
+                           tension));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,297 @@
+/* regions: the shapes of the body and what refers to places on it: their faces, heaters, probes. */
+#include "case_private.h"
+#include "clathra/geometry.h"
+#include "clathra/shape.h"
+#include <string.h>
+
+#define FAIL(g, instance, key, ...)                                                                                    \
+  do {                                                                                                                 \
+    char option_[256];                                                                                                 \
+    KeyOption(option_, sizeof option_, g, instance, key);                                                              \
+    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
+  } while (0)
+
+static const char *const shape_key[] = {"lower", "polygon", "below", "circle"};
+
+/* The last shape that is given; how many are. */
+static int ShapeOf(const Region *g, ShapeKind *shape)
+{
+  const bool given[] = {false, g->polygon.n > 0, g->below.n > 0, !isinf(g->circle[2])};
+  int        n       = 0;
+
+  *shape = SHAPE_BOX;
+  for (int s = SHAPE_POLYGON; s <= SHAPE_CIRCLE; s++) {
+    n += given[s];
+    if (given[s])
+      *shape = (ShapeKind)s;
+  }
+  return n;
+}
+
+void RegionsFinish(Case *c)
+{
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    (void)ShapeOf(&c->region[k], &c->region[k].shape);
+    RegionBound(c, &c->region[k]);
+  }
+}
+
+/* ---------------------------------------------------------------- one shape */
+static void CheckPolygon(Reader *r, const Region *g)
+{
+  const double *x = g->polygon.x;
+  PetscInt      pair[2];
+
+  if (g->polygon.n < 3)
+    FAIL(GROUP_REGION, g->name, "polygon", "has %d points, needs at least 3", (int)g->polygon.n);
+  else if (PolygonCrosses(g->polygon.n, x, pair))
+    FAIL(GROUP_REGION, g->name, "polygon",
+         "crosses itself: the sides that begin at (%g m, %g m) and (%g m, %g m) meet (it closes by itself)",
+         x[2 * pair[0]], x[2 * pair[0] + 1], x[2 * pair[1]], x[2 * pair[1] + 1]);
+}
+
+/* A line of at least two points. */
+static bool CheckPoints(Reader *r, Group group, const char *name, const char *key, const Points *line)
+{
+  if (line->n < 2)
+    FAIL(group, name, key, "has %d point, needs at least 2", (int)line->n);
+  return line->n >= 2;
+}
+
+static void CheckBelow(Reader *r, const Region *g)
+{
+  if (!CheckPoints(r, GROUP_REGION, g->name, "below", &g->below))
+    return;
+  for (PetscInt k = 2; k < 2 * g->below.n; k += 2) {
+    if (g->below.x[k] > g->below.x[k - 2])
+      continue;
+    FAIL(GROUP_REGION, g->name, "below", "must ascend in x (%g m after %g m)", g->below.x[k], g->below.x[k - 2]);
+    return;
+  }
+}
+
+static void CheckCircle(Reader *r, const Region *g)
+{
+  if (!isfinite(g->circle[0]) || !isfinite(g->circle[1]) || !(g->circle[2] > 0.0))
+    FAIL(GROUP_REGION, g->name, "circle", "needs a centre and a positive radius, is (%g m, %g m), %g m", g->circle[0],
+         g->circle[1], g->circle[2]);
+}
+
+/* The region lies in the grid. */
+static void CheckBounds(Reader *r, const Case *c, const Region *g)
+{
+  const char *key = shape_key[g->shape];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    const double slack = 1e-12 * (fabs(c->upper[d]) + fabs(c->lower[d]));
+
+    if (g->upper[d] <= g->lower[d] && g->shape == SHAPE_BOX)
+      FAIL(GROUP_REGION, g->name, "upper", "must lie above lower on both axes (%g m <= %g m)", g->upper[d],
+           g->lower[d]);
+    else if (g->upper[d] <= g->lower[d])
+      FAIL(GROUP_REGION, g->name, key, "nothing of it lies between lower and upper along %c", "xy"[d]);
+    else if (!r->bad[GROUP_CASE] && c->upper[d] > c->lower[d] &&
+             (g->lower[d] < c->lower[d] - slack || g->upper[d] > c->upper[d] + slack))
+      FAIL(GROUP_REGION, g->name, g->shape == SHAPE_BOX && g->upper[d] > c->upper[d] ? "upper" : key,
+           "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xy"[d], g -> lower[d], g -> upper[d],
+           c -> lower[d], c -> upper[d]);
+  }
+}
+
+/* A shape that only cuts must cut something. */
+static bool Cuts(const Case *c, PetscInt region)
+{
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    for (PetscInt m = 0; m < c->region[k].minus.n; m++) {
+      if (c->region[k].minus.i[m] == region)
+        return true;
+    }
+  }
+  return false;
+}
+
+void CheckShape(Reader *r, const Case *c, PetscInt region)
+{
+  const Region  *g      = &c->region[region];
+  const PetscInt before = r->nerror;
+  ShapeKind      shape;
+
+  if (ShapeOf(g, &shape) > 1)
+    FAIL(GROUP_REGION, g->name, shape_key[shape],
+         "is one shape too many: a region has a polygon, below, circle or box");
+  else if (shape == SHAPE_POLYGON)
+    CheckPolygon(r, g);
+  else if (shape == SHAPE_BELOW)
+    CheckBelow(r, g);
+  else if (shape == SHAPE_CIRCLE)
+    CheckCircle(r, g);
+  if (r->nerror == before)
+    CheckBounds(r, c, g);
+  for (PetscInt k = 0; k < g->minus.n; k++) {
+    if (g->minus.i[k] == region)
+      FAIL(GROUP_REGION, g->name, "minus", "the region cannot be cut out of itself");
+  }
+  if (RegionEmpty(g) && !Cuts(c, region))
+    FAIL(GROUP_REGION, g->name, "material", "is none, but no region has %s in its minus", g->name);
+}
+
+/* ---------------------------------------------------------------- their particles */
+typedef struct {
+  const Case     *c;
+  PetscInt        region;
+  const Lattice  *lattice;
+  const PetscInt *ij;
+  const double   *x;
+} Place;
+
+/* Is there a particle that `is` says yes to?  NULL: any. */
+static bool AnyPlace(const Case *c, PetscInt region, bool (*is)(const Place *, const void *), const void *context)
+{
+  Lattice     lattice;
+  PetscInt    ij[CL_DIM];
+  double      x[CL_DIM];
+  const Place place = {c, region, &lattice, ij, x};
+
+  if (RegionEmpty(&c->region[region]))
+    return false;
+  RegionLattice(c, region, &lattice);
+  for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
+    for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
+      if (RegionPlace(c, region, &lattice, ij, x) && (!is || is(&place, context)))
+        return true;
+    }
+  }
+  return false;
+}
+
+static bool IsInside(const Place *place, const void *other)
+{
+  return RegionHolds(place->c, *(const PetscInt *)other, place->x);
+}
+
+/* Boxes by their sides, other shapes by the centres of particles. */
+static bool Overlap(const Case *c, PetscInt i, PetscInt j)
+{
+  const Region *g = &c->region[i], *o = &c->region[j];
+
+  if (RegionEmpty(g) || RegionEmpty(o))
+    return false;
+  for (int d = 0; d < CL_DIM; d++) {
+    if (!(fmin(g->upper[d], o->upper[d]) - fmax(g->lower[d], o->lower[d]) > 1e-9 * (g->upper[d] - g->lower[d])))
+      return false;
+  }
+  if (RegionWhole(g) && RegionWhole(o))
+    return true;
+  return AnyPlace(c, i, IsInside, &j) || AnyPlace(c, j, IsInside, &i);
+}
+
+void CheckOverlap(Reader *r, const Case *c)
+{
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    const Region *g = &c->region[i];
+
+    if (!RegionEmpty(g) && !AnyPlace(c, i, NULL, NULL)) {
+      FAIL(GROUP_REGION, g->name, g->minus.n ? "minus" : shape_key[g->shape],
+           "the region keeps no particle: no centre of one lies inside");
+      r->bad[GROUP_REGION] = true;
+    }
+    for (PetscInt j = 0; j < i; j++) {
+      if (Overlap(c, i, j))
+        FAIL(GROUP_REGION, g->name, shape_key[g->shape], "the region overlaps region %s", c->region[j].name);
+    }
+  }
+}
+
+/* ---------------------------------------------------------------- faces */
+static bool HasNamed(const Place *p, const void *meter)
+{
+  const PetscInt bits = RegionFaces(p->c, p->region, p->lattice, p->ij);
+
+  for (int side = 0; side < SIDE_COUNT; side++) {
+    if ((bits >> side & 1) && FaceNamed(p->c, (const Meter *)meter, p->region, p->x, side))
+      return true;
+  }
+  return false;
+}
+
+/* What the regions' boxes say, where all are whole. */
+static bool SideMeets(const Case *c, const Meter *m)
+{
+  const int along = m->side == SIDE_XMIN || m->side == SIDE_XMAX ? 1 : 0;
+  bool      meets = false, whole = !m->along.n;
+
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    whole = whole && RegionWhole(&c->region[i]) && !RegionEmpty(&c->region[i]);
+    if (m->region < 0 || m->region == i)
+      meets |= m->from < c->region[i].upper[along] && m->to > c->region[i].lower[along];
+  }
+  if (whole)
+    return meets;
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    if (AnyPlace(c, i, HasNamed, m))
+      return true;
+  }
+  return false;
+}
+
+void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m)
+{
+  if (m->along.n) {
+    if (m->side != SIDE_COUNT)
+      FAIL(g, name, "side", "and along are two ways to name faces: give one");
+    else if (isfinite(m->from) || isfinite(m->to))
+      FAIL(g, name, isfinite(m->from) ? "from" : "to", "goes with side, not with along");
+    else if (CheckPoints(r, g, name, "along", &m->along) && !SideMeets(c, m))
+      FAIL(g, name, "along", "no face of the body lies on this line, within %g particle spacings", LINE_REACH);
+    return;
+  }
+  if (m->side == SIDE_COUNT)
+    FAIL(g, name, "side", "is none, and along is not given");
+  else if (m->to <= m->from)
+    FAIL(g, name, "to", "must lie above from (%g m <= %g m)", m->to, m->from);
+  else if (!SideMeets(c, m))
+    FAIL(g, name, "from", "and to: no part of the body's side lies between %g m and %g m", m->from, m->to);
+}
+
+/* ---------------------------------------------------------------- points */
+/* A region whose temperature is held must hold a node. */
+void CheckHeld(Reader *r, const Case *c, const Bc *b)
+{
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    const Region *g = &c->region[i];
+    double        h[CL_DIM], slack[CL_DIM], x[CL_DIM];
+    PetscInt      from[CL_DIM], to[CL_DIM];
+
+    if (b->region >= 0 && b->region != i)
+      continue;
+    for (int d = 0; d < CL_DIM; d++) {
+      h[d]     = (c->upper[d] - c->lower[d]) / c->cells[d];
+      slack[d] = 1e-6 * h[d];
+      from[d]  = (PetscInt)ceil((g->lower[d] - c->lower[d]) / h[d] - 1e-6);
+      to[d]    = (PetscInt)floor((g->upper[d] - c->lower[d]) / h[d] + 1e-6);
+    }
+    for (PetscInt n = from[1]; n <= to[1]; n++) {
+      for (PetscInt m = from[0]; m <= to[0]; m++) {
+        x[0] = c->lower[0] + (double)m * h[0];
+        x[1] = c->lower[1] + (double)n * h[1];
+        if (RegionReaches(c, i, x, slack))
+          return;
+      }
+    }
+  }
+  FAIL(GROUP_BC, b->name, "region",
+       "has no node of the grid in its shape: refine the grid, or let the shape follow its lines");
+}
+
+void CheckProbe(Reader *r, const Case *c, const Probe *p)
+{
+  double slack[CL_DIM];
+
+  for (int d = 0; d < CL_DIM; d++)
+    slack[d] = 1e-6 * (c->upper[d] - c->lower[d]) / c->cells[d];
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    if (!RegionEmpty(&c->region[i]) && RegionReaches(c, i, p->x, slack))
+      return;
+  }
+  FAIL(GROUP_PROBE, p->name, "at", "(%g m, %g m) lies in no region", p->x[0], p->x[1]);
+}

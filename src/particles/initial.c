@@ -1,0 +1,138 @@
+/* The state that a particle starts from; docs/equations.md, section 13. */
+#include "clathra/particles.h"
+#include "clathra/point.h"
+
+static double GeothermalDatum(const Case *c, const Region *r)
+{
+  return isinf(r->geothermal_datum) ? CaseTop(c) : r->geothermal_datum;
+}
+
+/* (81): grad is null where the temperature does not grow with depth. */
+static double InitialTemperature(const Case *c, const Region *r, const double x[], double grad[CL_DIM])
+{
+  const double depth = GeothermalDatum(c, r) - CaseHeight(c, x);
+
+  for (int d = 0; d < CL_DIM; d++)
+    grad[d] = 0.0;
+  if (r->geothermal == 0.0 || depth <= 0.0)
+    return r->temperature;
+  for (int d = 0; d < CL_DIM; d++)
+    grad[d] = r->geothermal * c->gravity[d] / CaseGravity(c);
+  return r->temperature + r->geothermal * depth;
+}
+
+/* Integral of exp(-beta (T - T_ref)) over the height from the geothermal datum to z, m. */
+static double ThermalHeight(const Case *c, const Region *r, double z)
+{
+  const Liquid *water = &c->material[r->material].water;
+  const double  above = z - GeothermalDatum(c, r), rate = water->beta * r->geothermal;
+  const double  e = exp(-water->beta * (r->temperature - water->T_ref));
+
+  return above >= 0.0 || rate == 0.0 ? e * above : -e * -expm1(rate * above) / rate;
+}
+
+double InitialWaterPressure(const Case *c, const Region *r, double pressure, const double x[])
+{
+  const Liquid *water  = &c->material[r->material].water;
+  const double  height = ThermalHeight(c, r, CaseHeight(c, x)) - ThermalHeight(c, r, r->datum);
+  const double  weight = water->rho0 * CaseGravity(c) * height; /* of a column at the reference pressure */
+
+  if (isinf(water->K))
+    return pressure - weight;
+  return pressure - water->K * log1p(weight / water->K * exp((pressure - water->p_ref) / water->K)); /* (82) */
+}
+
+/* Pressures of the phases from their mean (10). */
+static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Material *mat, const double x[],
+                                       InitialScalars *s)
+{
+  const bool two = c->fields.has & HAS_GAS_PRESSURE;
+  double     pc  = 0.0, ds;
+
+  PetscFunctionBeginUser;
+  s->sg = r->Sg / (1.0 - r->Sh);
+  if (two)
+    PetscCheck(RetentionInvert(&mat->retention, s->sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "region %s: the retention law never reaches the initial gas share %g", r->name, s->sg);
+  s->pw = r->pressure - s->sg * pc;
+  if (r->hydrostatic)
+    s->pw = InitialWaterPressure(c, r, s->pw, x);
+  s->pg = s->pw + pc;
+  s->p  = s->pw + s->sg * pc;
+  if (two) { /* to the last digit what the law makes of these pressures */
+    s->sg = RetentionGasShare(&mat->retention, s->pg - s->pw, &ds);
+    s->p  = s->pw + s->sg * (s->pg - s->pw);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Masses of hydrate, water, gas and grains in a volume. */
+static void Masses(const Case *c, const Region *r, const InitialScalars *s, double V, double m[4])
+{
+  const Material *mat = &c->material[r->material];
+
+  PointInitialMasses(&c->fields, mat, V, mat->porosity, r->Sh, s->sg, s->pw, s->pg, s->T, &m[0], &m[1], &m[2], &m[3]);
+}
+
+PetscErrorCode InitialScalarsAt(const Case *c, const Region *r, const double x[], InitialScalars *s)
+{
+  const Material *mat = &c->material[r->material];
+  double          m[4], dp, dT;
+
+  PetscFunctionBeginUser;
+  *s   = (InitialScalars){0};
+  s->T = InitialTemperature(c, r, x, s->grad_T);
+  if (c->fields.fluid)
+    PetscCall(InitialPressures(c, r, mat, x, s));
+  for (int d = 0; r->hydrostatic && d < CL_DIM; d++)
+    s->grad_p[d] = LiquidDensity(&mat->water, s->pw, s->T, &dp, &dT) * c->gravity[d];
+  Masses(c, r, s, 1.0, m);
+  s->density = m[0] + m[1] + m[2] + m[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void Set(Particles *P, PetscInt p, int component, double value)
+{
+  if (P->f[component])
+    P->f[component][p] = value;
+}
+
+PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+                                    const double l[])
+{
+  const Region   *r   = &c->region[region];
+  const Material *mat = &c->material[r->material];
+  const double    V   = 4.0 * l[0] * l[1] * (c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0);
+  InitialScalars  s;
+  double          m[4];
+
+  PetscFunctionBeginUser;
+  PetscCall(InitialScalarsAt(c, r, x, &s));
+  Masses(c, r, &s, V, m);
+  for (int k = 0; k < P_COUNT; k++)
+    Set(P, p, k, 0.0);
+  for (int d = 0; d < CL_DIM; d++) {
+    P->f[P_X + d][p] = x[d];
+    P->f[P_L + d][p] = l[d];
+    Set(P, p, P_X0 + d, x[d]);
+    Set(P, p, P_GW + d, s.grad_p[d]);
+    Set(P, p, P_GG + d, s.grad_p[d]);
+    Set(P, p, P_GT + d, s.grad_T[d]);
+  }
+  Set(P, p, P_F, 1.0);
+  Set(P, p, P_F + 3, 1.0);
+  P->f[P_V][p]   = V;
+  P->f[P_PHI][p] = mat->porosity;
+  P->f[P_SH][p]  = r->Sh;
+  Set(P, p, P_SW, r->Sw);
+  Set(P, p, P_T, s.T);
+  for (int k = 0; k < 2; k++) {
+    Set(P, p, k ? P_PW0 : P_PW, s.pw);
+    Set(P, p, k ? P_PG0 : P_PG, s.pg);
+    for (int i = 0; i < 6; i++)
+      Set(P, p, (k ? P_SIG0 : P_SIG) + i, r->stress[i]);
+  }
+  for (int k = 0; k < 4; k++)
+    Set(P, p, P_MS + k, m[k]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,312 @@
+/* What a region holds: a box, a polygon, what lies below a line, or a circle, inside its bounds, without others. */
+#include "clathra/shape.h"
+#include "clathra/geometry.h"
+
+/* Points are judged a little off their place (of a cell), so that round-off decides nothing: a point on an edge goes
+   to the region above or to the right of it. */
+#define NUDGE 1e-7
+#define ON_CIRCLE 1e-9 /* of the radius: on it is outside */
+
+static double Cell(const Case *c, int d)
+{
+  return (c->upper[d] - c->lower[d]) / (double)c->cells[d];
+}
+
+static void Bounds(const Points *points, double lower[], double upper[])
+{
+  for (int d = 0; d < CL_DIM; d++) {
+    lower[d] = INFINITY;
+    upper[d] = -INFINITY;
+    for (PetscInt k = 0; k < points->n; k++) {
+      lower[d] = fmin(lower[d], points->x[2 * k + d]);
+      upper[d] = fmax(upper[d], points->x[2 * k + d]);
+    }
+  }
+}
+
+void RegionBound(const Case *c, Region *r)
+{
+  double lower[CL_DIM] = {c->lower[0], c->lower[1]}, upper[CL_DIM] = {c->upper[0], c->upper[1]};
+
+  if (r->shape == SHAPE_POLYGON)
+    Bounds(&r->polygon, lower, upper);
+  if (r->shape == SHAPE_BELOW) {
+    Bounds(&r->below, lower, upper);
+    lower[1] = c->lower[1];
+  }
+  for (int d = 0; d < CL_DIM; d++) {
+    if (r->shape == SHAPE_CIRCLE) {
+      lower[d] = r->circle[d] - r->circle[2];
+      upper[d] = r->circle[d] + r->circle[2];
+    }
+    if (r->shape != SHAPE_BOX || !isfinite(r->lower[d]))
+      r->lower[d] = fmax(r->lower[d], lower[d]);
+    if (r->shape != SHAPE_BOX || !isfinite(r->upper[d]))
+      r->upper[d] = fmin(r->upper[d], upper[d]);
+  }
+}
+
+/* The region's own shape, before `minus`. */
+static bool Holds(const Case *c, const Region *r, const double x[])
+{
+  const double y[CL_DIM] = {x[0] + NUDGE * Cell(c, 0), x[1] + 0.618 * NUDGE * Cell(c, 1)};
+
+  for (int d = 0; d < CL_DIM; d++) {
+    if (!(y[d] >= r->lower[d] && y[d] < r->upper[d]))
+      return false;
+  }
+  switch (r->shape) {
+  case SHAPE_POLYGON:
+    return PolygonHolds(r->polygon.n, r->polygon.x, y);
+  case SHAPE_BELOW:
+    return LineCovers(r->below.n, r->below.x, y);
+  case SHAPE_CIRCLE:
+    return hypot(x[0] - r->circle[0], x[1] - r->circle[1]) < (1.0 - ON_CIRCLE) * r->circle[2];
+  default:
+    return true;
+  }
+}
+
+bool RegionHolds(const Case *c, PetscInt region, const double x[])
+{
+  const Region *r = &c->region[region];
+
+  if (!Holds(c, r, x))
+    return false;
+  for (PetscInt k = 0; k < r->minus.n; k++) {
+    if (Holds(c, &c->region[r->minus.i[k]], x))
+      return false;
+  }
+  return true;
+}
+
+bool RegionReaches(const Case *c, PetscInt region, const double x[], const double slack[])
+{
+  const Region *r = &c->region[region];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    if (!(x[d] > r->lower[d] - slack[d] && x[d] < r->upper[d] + slack[d]))
+      return false;
+  }
+  if (RegionWhole(r) || RegionHolds(c, region, x))
+    return true;
+  for (int k = 0; k < 16; k++) { /* in all directions, as a boundary has no side to prefer */
+    const double y[CL_DIM] = {x[0] + slack[0] * cos(k * M_PI / 8.0), x[1] + slack[1] * sin(k * M_PI / 8.0)};
+
+    if (RegionHolds(c, region, y))
+      return true;
+  }
+  return false;
+}
+
+double RegionHighest(const Region *r, const double direction[])
+{
+  const Points *points = r->shape == SHAPE_POLYGON ? &r->polygon : &r->below;
+  const double  foot   = fmax(direction[0] * r->lower[0], direction[0] * r->upper[0]) + direction[1] * r->lower[1];
+  double        box = 0.0, shape = r->shape == SHAPE_BELOW ? foot : -INFINITY;
+
+  for (int d = 0; d < CL_DIM; d++)
+    box += fmax(direction[d] * r->lower[d], direction[d] * r->upper[d]);
+  if (r->shape == SHAPE_BOX)
+    return box;
+  for (PetscInt k = 0; k < points->n; k++)
+    shape = fmax(shape, points->x[2 * k] * direction[0] + points->x[2 * k + 1] * direction[1]);
+  if (r->shape == SHAPE_CIRCLE)
+    shape =
+        r->circle[0] * direction[0] + r->circle[1] * direction[1] + r->circle[2] * hypot(direction[0], direction[1]);
+  return fmin(box, shape);
+}
+
+/* ---------------------------------------------------------------- places */
+void RegionLattice(const Case *c, PetscInt region, Lattice *lattice)
+{
+  const Region *r = &c->region[region];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    const double length = r->upper[d] - r->lower[d], h = Cell(c, d), ppc = (double)r->ppc[d];
+
+    if (r->shape == SHAPE_BOX) {
+      lattice->first[d]   = 0;
+      lattice->n[d]       = PetscMax((PetscInt)ceil(length / h * ppc - 1e-6), 1);
+      lattice->from[d]    = r->lower[d];
+      lattice->spacing[d] = length / (double)lattice->n[d];
+      continue;
+    }
+    lattice->from[d]    = c->lower[d];
+    lattice->spacing[d] = h / ppc;
+    lattice->first[d]   = PetscMax((PetscInt)floor((r->lower[d] - c->lower[d]) / h * ppc), 0);
+    lattice->n[d]       = PetscMin((PetscInt)ceil((r->upper[d] - c->lower[d]) / h * ppc), c->cells[d] * r->ppc[d]);
+    lattice->n[d]       = PetscMax(lattice->n[d] - lattice->first[d], 0);
+  }
+}
+
+bool RegionPlace(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[], double x[])
+{
+  bool in = true;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    x[d] = lattice->from[d] + ((double)(lattice->first[d] + ij[d]) + 0.5) * lattice->spacing[d];
+    in   = in && ij[d] >= 0 && ij[d] < lattice->n[d];
+  }
+  return in && (RegionWhole(&c->region[region]) || RegionHolds(c, region, x));
+}
+
+/* Does the region have a particle at x, just outside a side, or one whose place is the next, centred at `next`? */
+static bool Covers(const Case *c, PetscInt region, const double x[], const double next[], bool of_box)
+{
+  const Region *r = &c->region[region];
+  Lattice       lattice;
+  PetscInt      ij[CL_DIM];
+  double        centre[CL_DIM];
+
+  if (RegionEmpty(r))
+    return false;
+  if (RegionWhole(r) && (x[0] >= r->lower[0] && x[0] <= r->upper[0] && x[1] >= r->lower[1] && x[1] <= r->upper[1]))
+    return true;
+  if (RegionWhole(r) && of_box)
+    return false;
+  if (RegionHolds(c, region, next))
+    return true;
+  RegionLattice(c, region, &lattice);
+  for (int d = 0; d < CL_DIM; d++)
+    ij[d] = (PetscInt)floor((x[d] - lattice.from[d]) / lattice.spacing[d]) - lattice.first[d];
+  return RegionPlace(c, region, &lattice, ij, centre);
+}
+
+PetscInt RegionFaces(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[])
+{
+  PetscInt bits = 0;
+  double   x[CL_DIM];
+
+  (void)RegionPlace(c, region, lattice, ij, x);
+  for (int side = 0; side < SIDE_COUNT; side++) {
+    const int      d = side / 2, sign = side % 2 ? 1 : -1;
+    const PetscInt beside[CL_DIM] = {ij[0] + (d == 0 ? sign : 0), ij[1] + (d == 1 ? sign : 0)};
+    double         next[CL_DIM], outside[CL_DIM] = {x[0], x[1]};
+    bool           covered = RegionPlace(c, region, lattice, beside, next);
+
+    outside[d] += sign * 1.001 * (0.5 * lattice->spacing[d]);
+    for (PetscInt k = 0; k < c->nregion && !covered; k++)
+      covered = k != region && Covers(c, k, outside, next, RegionWhole(&c->region[region]));
+    if (!covered)
+      bits |= 1 << side;
+  }
+  return bits;
+}
+
+/* ---------------------------------------------------------------- faces */
+/* A way out of the region, from a to b, and the first boundary it crosses. */
+typedef struct {
+  const Case *c;
+  PetscInt    region;
+  double      a[CL_DIM], b[CL_DIM], t, n[CL_DIM];
+} WayOut;
+
+/* A crossing counts when the region ends there. */
+static void Try(WayOut *w, double t, double nx, double ny)
+{
+  const double step = 1e-3, length = hypot(nx, ny);
+  double       in[CL_DIM], out[CL_DIM];
+
+  if (!(t < w->t) || length == 0.0)
+    return;
+  for (int d = 0; d < CL_DIM; d++) {
+    in[d]  = w->a[d] + (t - step) * (w->b[d] - w->a[d]);
+    out[d] = w->a[d] + (t + step) * (w->b[d] - w->a[d]);
+  }
+  if (!RegionHolds(w->c, w->region, in) || RegionHolds(w->c, w->region, out))
+    return;
+  w->t    = t;
+  w->n[0] = nx / length;
+  w->n[1] = ny / length;
+}
+
+static void TryEdge(WayOut *w, const double p[], const double q[])
+{
+  double t;
+
+  if (SegmentsMeet(w->a, w->b, p, q, &t))
+    Try(w, t, q[1] - p[1], p[0] - q[0]);
+}
+
+/* |a + t (b - a) - centre| = radius */
+static void TryCircle(WayOut *w, const double circle[])
+{
+  const double u[CL_DIM] = {w->b[0] - w->a[0], w->b[1] - w->a[1]},
+               v[CL_DIM] = {w->a[0] - circle[0], w->a[1] - circle[1]};
+  const double uu = u[0] * u[0] + u[1] * u[1], uv = u[0] * v[0] + u[1] * v[1];
+  const double root = uv * uv - uu * (v[0] * v[0] + v[1] * v[1] - circle[2] * circle[2]);
+
+  if (root < 0.0)
+    return;
+  for (int sign = -1; sign <= 1; sign += 2) {
+    const double t = (-uv + sign * sqrt(root)) / uu;
+
+    if (t >= 0.0 && t <= 1.0)
+      Try(w, t, v[0] + t * u[0], v[1] + t * u[1]);
+  }
+}
+
+static void TryShape(WayOut *w, const Region *r)
+{
+  const double box[10] = {r->lower[0], r->lower[1], r->upper[0], r->lower[1], r->upper[0],
+                          r->upper[1], r->lower[0], r->upper[1], r->lower[0], r->lower[1]};
+
+  for (PetscInt k = 0; r->shape == SHAPE_POLYGON && k < r->polygon.n; k++)
+    TryEdge(w, r->polygon.x + 2 * k, r->polygon.x + 2 * ((k + 1) % r->polygon.n));
+  for (PetscInt k = 0; r->shape == SHAPE_BELOW && k + 1 < r->below.n; k++)
+    TryEdge(w, r->below.x + 2 * k, r->below.x + 2 * (k + 1));
+  if (r->shape == SHAPE_CIRCLE)
+    TryCircle(w, r->circle);
+  for (int k = 0; k < 4; k++)
+    TryEdge(w, box + 2 * k, box + 2 * (k + 1));
+}
+
+void FaceNormal(const Case *c, PetscInt region, const double x[], int side, double n[])
+{
+  const Region *r = &c->region[region];
+  const int     d = side / 2, sign = side % 2 ? 1 : -1;
+  WayOut        w = {.c = c, .region = region, .a = {x[0], x[1]}, .b = {x[0], x[1]}, .t = INFINITY};
+  Lattice       lattice;
+
+  w.n[d] = sign;
+  if (!RegionWhole(r)) {
+    RegionLattice(c, region, &lattice);
+    w.b[d] += sign * lattice.spacing[d];
+    TryShape(&w, r);
+    for (PetscInt k = 0; k < r->minus.n; k++)
+      TryShape(&w, &c->region[r->minus.i[k]]);
+  }
+  const double steps = copysign(fabs(w.n[0]) + fabs(w.n[1]), sign * w.n[d]);
+
+  for (int i = 0; i < CL_DIM; i++)
+    n[i] = w.n[i] / steps;
+}
+
+static bool OnLine(const Case *c, const Points *line, PetscInt region, const double x[], int side)
+{
+  const int d         = side / 2;
+  double    a[CL_DIM] = {x[0], x[1]}, b[CL_DIM] = {x[0], x[1]}, t;
+  Lattice   lattice;
+
+  RegionLattice(c, region, &lattice);
+  a[d] += (side % 2 ? 0.5 : -0.5) * lattice.spacing[d];
+  b[d] = a[d] + LINE_REACH * lattice.spacing[d];
+  a[d] -= LINE_REACH * lattice.spacing[d];
+  for (PetscInt k = 0; k + 1 < line->n; k++) {
+    if (SegmentsMeet(a, b, line->x + 2 * k, line->x + 2 * (k + 1), &t))
+      return true;
+  }
+  return false;
+}
+
+bool FaceNamed(const Case *c, const Meter *m, PetscInt region, const double x[], int side)
+{
+  const double along = x[1 - side / 2];
+
+  if (m->region >= 0 && m->region != region)
+    return false;
+  if (m->along.n)
+    return OnLine(c, &m->along, region, x, side);
+  return (int)m->side == side && along >= m->from && along <= m->to;
+}
