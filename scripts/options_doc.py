@@ -17,7 +17,7 @@ PROGRAM = [  # option, value, default, meaning
     ("-case_check", "", "", "read and check the case, write nothing"),
     ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
     ("-restart", "FILE", "", "go on from a checkpoint of the same case (grid, regions, materials, boundary conditions, "
-     "meters); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a new one"),
+     "meters, stages); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a new one"),
     ("-quiet", "", "", "no line per step; refused steps and the summary are still printed"),
     ("-stepper_max_steps", "N", "no limit", "stop after N more steps, with a checkpoint and exit code 0"),
     ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this, rows of "
@@ -74,7 +74,7 @@ A misspelt option of PETSc or of the table above is not an error; `-options_left
 ## Keys of a case
 
 Quantities carry units on the command line too, quoted for the shell: `-time_end "500 s"`. These may be bare there, and
-are then in seconds: {plain}.
+are then in seconds: {plain}, and the same of a stage.
 
 {keys}"""
 
@@ -88,7 +88,7 @@ def plain_keys():
     """Keys whose number may do without a unit on the command line, from the key table's source."""
     text = (ROOT / "src" / "case" / "keys.c").read_text()
     rows = re.split(r"\n    (?=[A-Z]+\()", text)
-    return [re.search(r'"(\w+)"', row).group(1) for row in rows if re.search(r"\.plain\s*=\s*true", row)]
+    return list(dict.fromkeys(re.search(r'"(\w+)"', row).group(1) for row in rows if re.search(r"\.plain\s*=\s*true", row)))
 
 
 def row(*cells):

@@ -11,7 +11,7 @@ typedef struct {
   PetscInt particle;
   int      side;
   double   n[CL_DIM]; /* outward normal x area, m^2 per metre of thickness or of the full ring; goes with the body */
-  double   s[CL_DIM]; /* the same of the true surface that the face stands for (85) */
+  double   s[CL_DIM]; /* the same of the true surface that the face stands for (70) */
   double   x[CL_DIM]; /* middle of the face, m */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   PetscInt region;
@@ -29,9 +29,9 @@ PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, cons
 /* Where the face is and how it distributes, for its particle's present position and weights. */
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
 
-/* Normal stress (Pa, compression-positive) prescribed at time t on a side of a region's particle that was seeded at x
-   (m); 0 where none is. */
-double FaceLoad(const Case *c, Side side, PetscInt region, const double x[], double t);
+/* Normal stress (Pa, compression-positive) prescribed at time t on a side of the particle of a region that was first
+   at x (m); 0 where none is. */
+double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t);
 
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */

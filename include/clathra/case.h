@@ -83,6 +83,8 @@ typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
 typedef struct {
   char   name[64];
   BcType type;
+  bool   of_stage; /* times of the functions below count from the begin of the stage, not of the run */
+  double zero;     /* s: where they count from */
   /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
      those on a line (side = SIDE_COUNT) */
   Side     side;
@@ -122,7 +124,7 @@ typedef struct {
 
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
-typedef struct {
+typedef struct Case {
   char      file[PETSC_MAX_PATH_LEN]; /* the case file */
   char      title[256];
   double    lower[CL_DIM], upper[CL_DIM]; /* background grid, m */
@@ -133,7 +135,7 @@ typedef struct {
   bool      inertia, one_pressure;
   FieldSet  fields;                          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM];                 /* m/s^2 */
-  double    gravity_ramp;                    /* s: it grows from zero over this time; 0 = at once */
+  double    gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */
   PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
@@ -173,7 +175,39 @@ typedef struct {
   double   every;                  /* ... and every so many seconds (0 = off) */
   double   probe_every;            /* s between probe rows, hit exactly; 0 = every step */
   double   checkpoint_every;       /* s; 0 = only at the end and on failure */
+  /* stages, the same in the case and in all of them; where this one starts from (of the case: zeros) */
+  PetscInt          nstage;
+  struct CaseStage *stage;
+  double            t_begin, gravity_before[CL_DIM]; /* s, m/s^2 */
 } Case;
+
+/* One of the stages of a run, which follow each other in time. */
+typedef struct CaseStage {
+  char   name[64];
+  double end;                         /* s; it begins where the one before ends */
+  bool   reset;                       /* displacements count from its begin */
+  bool   reaction;                    /* hydrate forms and dissociates, where a material reacts */
+  char   boundaries[2048], off[2048]; /* those that act: all, or names; or all but these names */
+  char   materials[2048];             /* region, material, region, material, ... */
+  Case   c; /* the case as it holds in this stage: conditions and materials of its own, the rest shared */
+} CaseStage;
+
+/* The case as it holds in stage k; the case itself if it has no stages. */
+static inline const Case *CaseInStage(const Case *c, PetscInt k)
+{
+  return c->nstage ? &c->stage[k].c : c;
+}
+
+/* Times closer than this are the same, s. */
+static inline double CaseTimeSlack(const Case *c, double t)
+{
+  return 1e-12 * fabs(t - c->t_begin) + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+}
+
+static inline bool CaseAtEnd(const Case *c, double t)
+{
+  return t >= c->t_end - CaseTimeSlack(c, c->t_end);
+}
 
 static inline double CaseGravity(const Case *c) /* m/s^2 */
 {

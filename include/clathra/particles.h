@@ -7,7 +7,7 @@
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
 #define CL_PARTICLE_TABLE(X)                                                                                           \
   X(P_X, HAS_ALL, "position", 2, "m", "centre")                                                                        \
-  X(P_U, HAS_SOLID, "displacement", 2, "m", "from the initial position")                                               \
+  X(P_U, HAS_SOLID, "displacement", 2, "m", "from the initial position, or since a stage reset it")                    \
   X(P_L, HAS_ALL, "half_length", 2, "m", "of the GIMP domain")                                                         \
   X(P_F, HAS_SOLID, "deformation_gradient", 4, "-", "in the plane, since the start: xx xy yx yy")                      \
   X(P_V, HAS_ALL, "volume", 1, "m^3", "current, per metre of thickness or of the full ring")                           \
@@ -30,6 +30,7 @@
   X(P_PW0, HAS_WATER, "p_w_initial", 1, "Pa", "initial water pressure")                                                \
   X(P_PG0, HAS_GAS_PRESSURE, "p_g_initial", 1, "Pa", "initial gas pressure")                                           \
   X(P_RATE, HAS_WATER | HAS_HEAT, "rate", 4, "1/s", "of p_w, p_g (Pa/s), T (K/s) and S_h at the end of the last step") \
+  X(P_X0, HAS_SOLID, "initial_position", 2, "m", "where it was seeded")                                                \
   X(P_SH, HAS_ALL, "S_h", 1, "-", "hydrate saturation")                                                                \
   X(P_SW, HAS_WATER, "S_w", 1, "-", "water saturation")                                                                \
   X(P_PHI, HAS_ALL, "porosity", 1, "-", "")
@@ -79,7 +80,7 @@ static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
 /* Coordinate of a particle in the initial configuration, m. */
 static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 {
-  return P->f[P_X + d][p] - (P->f[P_U] ? P->f[P_U + d][p] : 0.0);
+  return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
 }
 
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */

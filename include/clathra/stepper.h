@@ -11,6 +11,7 @@ typedef struct {
   PetscInt hold;          /* steps during which dt may not grow */
   PetscInt fresh;         /* 1: no rates of a previous step (start, or just past a kink of a schedule) */
   PetscInt next_snapshot; /* its number */
+  PetscInt stage;         /* of the case; t may have reached its end */
   PetscInt newton_total, failures_total, limited_total;
   PetscInt loose_total; /* steps accepted with an error above the tolerance: at dt_min, or noise of the particles */
   double   t;           /* s */
@@ -51,6 +52,8 @@ typedef struct {
   double   meter[CL_METERS][METER_COUNT];   /* kg, J over the step */
 } Attempt;
 
+#define STEPPER_AUTO "auto" /* word of stepper_type: as the forecast says */
+
 typedef struct Stepper Stepper;
 
 /* A scheme.  advance takes the state to a later time, or says that it cannot (*ok = false); it never commits a step
@@ -67,6 +70,8 @@ typedef struct {
   PetscErrorCode (*create)(Stepper *s);
   PetscErrorCode (*destroy)(Stepper *s);
   PetscErrorCode (*ready)(Stepper *s, bool *ok);
+  /* does it know a way from here, with the stable step in Stepper.limit?  Of a stage that is still to come, too */
+  PetscErrorCode (*check)(const Stepper *s, bool *ok);
 } StepperScheme;
 
 extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit;
@@ -105,12 +110,24 @@ struct Stepper {
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s); /* as the case says */
 PetscErrorCode StepperDestroy(Stepper *s);
-/* Before anything is written: what the scheme says about the scene and its steps; *ok = false: refused, a sentence was
- * printed. */
+/* Before anything is written, at the start or after a restart: what the schemes say about this stage and those to come;
+ *ok = false: refused, a sentence was printed. */
 PetscErrorCode StepperReady(Stepper *s, bool *ok);
-/* Runs to Case.t_end (or -stepper_max_steps).  *ok = false: given up, the model holds the last good state and a
- * sentence was printed. */
+/* Runs to the end of the last stage (or -stepper_max_steps).  *ok = false: given up, the model holds the last good
+ * state and a sentence was printed. */
 PetscErrorCode StepperRun(Stepper *s, bool *ok);
+
+/* ---- stages.c: docs/architecture.md, "Stages" */
+/* Takes stage k's case, integrator and step control; the state stays as it is. */
+PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k);
+/* At the end of a stage that is not the last: the next one begins. */
+PetscErrorCode StepperNextStage(Stepper *s);
+bool           StepperStageDone(const Stepper *s);
+bool           StepperDone(const Stepper *s);
+/* Displacement below which errors are not resolved more finely, m. */
+double StepperFloorU(const Stepper *s);
+/* "stage NAME: ", empty without stages. */
+void StepperStageWords(const Stepper *s, char words[80]);
 
 PetscErrorCode StepperForecast(Stepper *s);
 PetscErrorCode StepperPrintForecast(const Stepper *s);

@@ -18,27 +18,40 @@ Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
 void BcValuesEvaluate(const Case *c, double t, BcValues *v)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
-    v->value[k] = ScheduleValue(&c->bc[k].value, t);
-    v->shear[k] = ScheduleValue(&c->bc[k].shear, t);
+    const double at = t - c->bc[k].zero;
+
+    v->value[k] = ScheduleValue(&c->bc[k].value, at);
+    v->shear[k] = ScheduleValue(&c->bc[k].shear, at);
     for (int ph = 0; ph < PHASE_COUNT; ph++)
-      v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], t);
+      v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], at);
   }
-  for (int d = 0; d < CL_DIM; d++)
-    v->gravity[d] = t < c->gravity_ramp ? c->gravity[d] * t / c->gravity_ramp : c->gravity[d];
+  for (int d = 0; d < CL_DIM; d++) {
+    const double ramp = c->gravity_ramp, from = c->gravity_before[d], at = t - c->t_begin;
+
+    v->gravity[d] = at < ramp ? from + (c->gravity[d] - from) * at / ramp : c->gravity[d];
+  }
   v->ambient = AmbientOf(c, t, v->gravity);
+}
+
+/* First kink of the condition after t, which round-off may have left short of one. */
+static double NextKink(const Bc *b, double t)
+{
+  const double at   = t - b->zero + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+  double       next = fmin(ScheduleNextKink(&b->value, at), ScheduleNextKink(&b->shear, at));
+
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    next = fmin(next, ScheduleNextKink(&b->phase[ph], at));
+  return b->zero + next;
 }
 
 double BcNextKink(const Case *c, double t)
 {
-  double next = t < c->gravity_ramp * (1.0 - 1e-12) ? c->gravity_ramp : INFINITY;
+  const double ramped = c->t_begin + c->gravity_ramp;
+  double       next   = t < ramped - CaseTimeSlack(c, ramped) ? ramped : INFINITY;
 
   next = fmin(next, fmin(ScheduleNextKink(&c->ambient_pressure, t), ScheduleNextKink(&c->ambient_level, t)));
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    next = fmin(next, ScheduleNextKink(&c->bc[k].value, t));
-    next = fmin(next, ScheduleNextKink(&c->bc[k].shear, t));
-    for (int ph = 0; ph < PHASE_COUNT; ph++)
-      next = fmin(next, ScheduleNextKink(&c->bc[k].phase[ph], t));
-  }
+  for (PetscInt k = 0; k < c->nbc; k++)
+    next = fmin(next, NextKink(&c->bc[k], t));
   return next;
 }
 
@@ -105,7 +118,7 @@ static void Open(const Material *mat, const Face *f, int phase, const Outside *o
   }
 }
 
-/* Area over which fluxes per area act, of the true surface (85) (vector s), and its derivatives. */
+/* Area over which fluxes per area act, of the true surface (70) (vector s), and its derivatives. */
 static double Area(const double s[2], const double ds[2][MOTION_COUNT], double darea[MOTION_COUNT])
 {
   const double area = hypot(s[0], s[1]);

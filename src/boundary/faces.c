@@ -19,7 +19,7 @@ static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
   return found;
 }
 
-double FaceLoad(const Case *c, Side side, PetscInt region, const double x[], double t)
+double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t)
 {
   const Face     f = {.side = (int)side, .region = region, .x0 = {x[0], x[1]}};
   const PetscInt k = FindCondition(c, BC_TRACTION, &f);

@@ -32,7 +32,16 @@ typedef struct {
   bool     map;          /* other keys stand below it */
 } Mark;                  /* a key of the file, inner or leaf */
 
-typedef enum { GROUP_CASE = 0, GROUP_MATERIAL, GROUP_REGION, GROUP_BC, GROUP_PROBE, GROUP_METER, GROUP_COUNT } Group;
+typedef enum {
+  GROUP_CASE = 0,
+  GROUP_MATERIAL,
+  GROUP_REGION,
+  GROUP_BC,
+  GROUP_PROBE,
+  GROUP_METER,
+  GROUP_STAGE,
+  GROUP_COUNT
+} Group;
 
 #define CASE_ERRORS 20 /* errors shown */
 typedef struct {
@@ -101,6 +110,7 @@ typedef struct {
   unsigned    types; /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
   unsigned    has;   /* fields (HAS_...) any of which needs the key; 0 = always needed */
   bool        plain; /* a number without unit on the command line is in SI */
+  bool        kept;  /* not given, what is there stays; `def` says in words what that is */
   const char *doc;
 } Key;
 
@@ -169,6 +179,14 @@ static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);
 }
+
+/* ---------------------------------------------------------------- stages.c */
+/* When the stages end, and with the last of them the run; before the keys of the case are read. */
+PetscErrorCode CaseStageEnds(Reader *r, Case *c);
+/* The case as it holds in each stage, and what cannot be; after the case is read and derived. */
+PetscErrorCode CaseStages(Reader *r, Case *c);
+PetscErrorCode CaseStagesDestroy(Case *c);
+void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and steps; of a stage unless NULL */
 
 /* ---------------------------------------------------------------- fieldset.c */
 void FieldsWords(unsigned has, char text[64]); /* "water or gas" */

@@ -18,38 +18,12 @@ static void CheckRadius(Reader *r, const Case *c)
   if (c->lower[0] < 0.0)
     FAIL(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
          c->lower[0]);
-  if (c->gravity[0] != 0.0)
-    FAIL(GROUP_CASE, "", "gravity", "must point along the axis, y, when geometry is axisymmetric (%g m/s^2 along x)",
-         c->gravity[0]);
-}
-
-/* An integrator without matrices? */
-static bool Local(const Case *c)
-{
-  return !strcmp(c->stepper, "hybrid") || !strcmp(c->stepper, "explicit");
-}
-
-/* What those cannot do. */
-static void CheckLocal(Reader *r, const Case *c)
-{
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u)) {
-      FAIL(GROUP_BC, c->bc[k].name, "type", "%s does not know the condition %s; use sdirk2 or euler", c->stepper,
-           case_bc_type[c->bc[k].type - 1]);
-      return;
-    }
-  }
-
-  const char *what = CaseNeedsImplicit(c);
-
-  if (what)
-    FAIL(GROUP_CASE, "", "stepper_type", "%s does not know %s; use sdirk2 or euler", c->stepper, what);
 }
 
 static void CheckCase(Reader *r, const Case *c)
 {
-  if (Local(c))
-    CheckLocal(r, c);
+  if (!c->nstage)
+    CheckTimes(r, c, NULL);
   for (int d = 0; d < CL_DIM; d++)
     if (c->upper[d] <= c->lower[d])
       FAIL(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->upper[d],
@@ -60,13 +34,7 @@ static void CheckCase(Reader *r, const Case *c)
     FAIL(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);
   if ((double)c->cells[0] * c->cells[1] > 1e8)
     FAIL(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
-  if (Local(c) && c->dt > c->dt_max)
-    FAIL(GROUP_CASE, "", "stepper_dt", "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
-  if (!Local(c) && (c->dt_min > c->dt || c->dt > c->dt_max))
-    FAIL(GROUP_CASE, "", "stepper_dt",
-         "must lie between stepper_dt_min and stepper_dt_max (%g s <= %g s <= %g s fails)", c->dt_min, c->dt,
-         c->dt_max);
-  if (c->ntimes && c->times[c->ntimes - 1] > c->t_end)
+  if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !(c->nstage && r->bad[GROUP_STAGE]))
     FAIL(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
 }
 
@@ -118,8 +86,9 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
     FAIL(GROUP_REGION, g->name, "particles_per_cell",
          "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
   CheckSaturations(r, c, g);
+  const Case *first = r->bad[GROUP_STAGE] ? c : CaseInStage(c, 0);
   if (r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
-    CheckInitial(r, c, g);
+    CheckInitial(r, first, &first->region[i]);
 }
 
 static void CheckPlane(Reader *r, const Case *c, const Bc *b)

@@ -80,14 +80,13 @@ static uint64_t HashKey(uint64_t h, const Key *k, const char *instance)
   return h;
 }
 
-uint64_t CaseFingerprint(const Case *c)
+static uint64_t HashScene(uint64_t h, const Case *c)
 {
-  uint64_t h = HashBytes(FNV_START, &c->fields.has, sizeof c->fields.has);
-
+  h = HashBytes(h, &c->fields.has, sizeof c->fields.has);
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     const PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
 
-    if (g == GROUP_PROBE)
+    if (g == GROUP_PROBE || g == GROUP_STAGE)
       continue;
     h = HashBytes(h, &n, sizeof n);
     for (PetscInt i = 0; i < n; i++) {
@@ -96,6 +95,22 @@ uint64_t CaseFingerprint(const Case *c)
           h = HashKey(h, k, GroupInstance(c, g, i));
       }
     }
+  }
+  return h;
+}
+
+/* Of a case with stages: the scene of each, when it begins, and what it resets. */
+uint64_t CaseFingerprint(const Case *c)
+{
+  uint64_t h = FNV_START;
+
+  if (!c->nstage)
+    return HashScene(h, c);
+  for (PetscInt k = 0; k < c->nstage; k++) {
+    const CaseStage *s     = &c->stage[k];
+    const int        reset = s->reset;
+
+    h = HashScene(HashReals(HashBytes(h, &reset, sizeof reset), &s->c.t_begin, 1), &s->c);
   }
   return h;
 }

@@ -10,25 +10,27 @@
     ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
   } while (0)
 
-/* A point at the greatest or the least height of a region. */
-static void Extreme(const Case *c, const Region *g, bool highest, double x[CL_DIM])
+/* The highest (sign 1) or lowest (-1) point of a region, on the vertical through the origin. */
+static void Extreme(const Case *c, const Region *g, double sign, double x[CL_DIM])
 {
-  const double sign = highest ? -1.0 : 1.0, gravity = CaseGravity(c),
-               along[CL_DIM] = {sign * c->gravity[0] / gravity, sign * c->gravity[1] / gravity};
-  const double far           = RegionHighest(g, along);
+  const double gravity    = CaseGravity(c),
+               up[CL_DIM] = {-sign * c->gravity[0] / gravity, -sign * c->gravity[1] / gravity};
+  const double reach      = RegionHighest(g, up);
 
   for (int d = 0; d < CL_DIM; d++)
-    x[d] = far * along[d];
+    x[d] = up[d] * reach;
 }
 
 double CaseTop(const Case *c)
 {
   double top = -INFINITY, x[CL_DIM];
 
+  if (CaseGravity(c) == 0.0)
+    return 0.0;
   for (PetscInt i = 0; i < c->nregion; i++) {
     if (RegionEmpty(&c->region[i]))
       continue;
-    Extreme(c, &c->region[i], true, x);
+    Extreme(c, &c->region[i], 1.0, x);
     top = fmax(top, CaseHeight(c, x));
   }
   return top;
@@ -37,16 +39,16 @@ double CaseTop(const Case *c)
 /* Pressure at the top must stay positive. */
 static void CheckHydrostatic(Reader *r, const Case *c, const Region *g)
 {
-  double x[CL_DIM];
+  double lowest, x[CL_DIM];
 
   if (CaseGravity(c) == 0.0) {
     FAIL(g->name, "hydrostatic", "is yes but gravity is zero");
     return;
   }
-  Extreme(c, g, true, x);
-  const double p = InitialWaterPressure(c, g, g->pressure, x);
-  if (!isfinite(p) || p <= 0.0)
-    FAIL(g->name, "datum", "makes the pressure %g Pa at the top; it must be positive", p);
+  Extreme(c, g, 1.0, x);
+  lowest = InitialWaterPressure(c, g, g->pressure, x);
+  if (!(lowest > 0.0))
+    FAIL(g->name, "datum", "makes the pressure %g Pa at the top; it must be positive", lowest);
 }
 
 static void CheckGeothermal(Reader *r, const Case *c, const Region *g)
@@ -61,14 +63,14 @@ static void CheckGeothermal(Reader *r, const Case *c, const Region *g)
     FAIL(g->name, "geothermal", "is given but gravity, which says where depth is, is zero");
     return;
   }
-  for (int highest = 0; highest < 2; highest++) {
+  for (int sign = -1; sign <= 1; sign += 2) {
     const double datum = isinf(g->geothermal_datum) ? CaseTop(c) : g->geothermal_datum;
 
-    Extreme(c, g, highest, x);
+    Extreme(c, g, sign, x);
     coldest = fmin(coldest, g->temperature + g->geothermal * fmax(datum - CaseHeight(c, x), 0.0));
   }
   if (coldest <= -CL_ZERO_CELSIUS)
-    FAIL(g->name, "geothermal", "makes the temperature %g degC in the region", coldest);
+    FAIL(g->name, "geothermal", "makes the temperature %g degC at its top or foot", coldest);
 }
 
 static void CheckGeostatic(Reader *r, const Case *c, const Region *g)

@@ -31,6 +31,10 @@ static bool NeedsPressure(const void *p)
 
   return !b->initial && !b->phase[PHASE_W].n && !b->phase[PHASE_G].n;
 }
+static bool NeedsEnd(const void *p)
+{
+  return ((const Case *)p)->nstage == 0;
+}
 static bool NeedsTemperature(const void *p)
 {
   return ((const Bc *)p)->type != BC_INFLOW;
@@ -80,6 +84,7 @@ static const char *const space_word[]     = {"fluids", "pores", NULL};
 static const char *const stiffness_word[] = {"both", "loss_only", NULL};
 static const char *const capillary_word[] = {"held", "free", NULL};
 static const char *const holds_word[]     = {"all", "skeleton", NULL};
+static const char *const clock_word[]     = {"run", "stage", NULL};
 static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* OpenPhases */
 const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
                                     "roller",   "fixed",    "plate",     "temperature", "region_temperature", NULL};
@@ -134,7 +139,8 @@ static const Key case_key[] = {
     REAL(Case, "ambient_density", ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
          "of that fluid: below ambient_level its pressure grows with depth"),
     ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
-    REAL(Case, "time_end", t_end, "s", "(0,inf)", NULL, "the run starts at 0 and ends here"),
+    REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
+         WHEN(NeedsEnd, "there are no stages"), .kept = true),
     TEXT(Case, "stepper_type", stepper, "sdirk2", "time integrator", .choices = stepper_word),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
     REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
@@ -313,6 +319,8 @@ static const Key region_key[] = {
 
 static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
+    BOOLEAN(Bc, "clock", of_stage, "run", "what times of its values count from: the begin of the run, or of each stage",
+            .choices = clock_word),
     POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",
            .types = FACES),
     CHOICE(Bc, "side", side, "none", side_word, "side of the body, moves with it",
@@ -371,6 +379,50 @@ static const Key meter_key[] = {
     {.name = NULL},
 };
 
+/* Keys that stages share with the case: not given, the case's value stays. */
+#define CASES "the case's"
+#define CASES_LENGTH "the case's if it is given, else the same share of the stage's length"
+static const Key stage_key[] = {
+    REAL(CaseStage, "end", end, "s", "(0,inf)", NULL, "it begins where the stage before ends"),
+    BOOLEAN(
+        CaseStage, "reset_displacement", reset, "no",
+        "displacement and log_J count from the begin of the stage; sides, from and to stay those of the initial body"),
+    BOOLEAN(CaseStage, "kinetics_active", reaction, "yes",
+            "no: hydrate neither forms nor dissociates, in materials whose kinetics are active"),
+    TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; all, or none"),
+    TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act"),
+    TEXT(CaseStage, "materials", materials, "",
+         "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay"),
+    REALS(CaseStage, 2, "gravity", c.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
+    REAL(CaseStage, "gravity_ramp", c.gravity_ramp, "s", "[0,inf)", CASES,
+         "gravity goes from that of the stage before to that of this one over this time", .kept = true),
+    BOOLEAN(CaseStage, "inertia", c.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
+    TEXT(CaseStage, "stepper_type", c.stepper, CASES, "time integrator", .choices = stepper_word, .kept = true),
+    BOOLEAN(CaseStage, "stepper_adapt", c.adaptive, CASES, "choose the step by the error estimate", .kept = true),
+    REAL(CaseStage, "stepper_dt", c.dt, "s", "(0,inf)", CASES_LENGTH, "first step (adaptive) or fixed step",
+         .plain = true, .kept = true),
+    REAL(CaseStage, "stepper_dt_min", c.dt_min, "s", "(0,inf)", CASES_LENGTH, "a smaller step ends the run",
+         .plain = true, .kept = true),
+    REAL(CaseStage, "stepper_dt_max", c.dt_max, "s", "(0,inf)", CASES_LENGTH, "longest step", .plain = true,
+         .kept = true),
+    REAL(CaseStage, "stepper_tol", c.tol, "", "(0,1)", CASES, "relative tolerance of the error estimate", .kept = true),
+    REAL(CaseStage, "stepper_cfl", c.cfl, "", "(0,1]", CASES, "hybrid, explicit: step as a share of the stable one",
+         .kept = true),
+    BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES,
+            "hybrid, explicit: take a fixed step above the stable one all the same", .kept = true),
+    REAL(CaseStage, "stepper_flip", c.flip, "", "[0,1]", CASES, "hybrid, explicit: FLIP (1) to PIC (0)", .kept = true),
+    REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),
+    REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES,
+         "hybrid, explicit: factor on all inertia", .kept = true),
+    REAL(CaseStage, "output_every", c.every, "s", "[0,inf)", CASES, "snapshots, counted from the begin of the stage",
+         .kept = true),
+    REAL(CaseStage, "output_probe_every", c.probe_every, "s", "[0,inf)", CASES,
+         "probe rows, counted from the begin of the stage", .kept = true),
+    REAL(CaseStage, "checkpoint_every", c.checkpoint_every, "s", "[0,inf)", CASES,
+         "counted from the begin of the stage", .plain = true, .kept = true),
+    {.name = NULL},
+};
+
 #define GROUP(T, prefix_, list_, noun_, n_, p_, required_, key_, doc_)                                                 \
   {                                                                                                                    \
     .prefix = prefix_, .list = list_, .noun = noun_, .doc = doc_, .size = sizeof(T), .count = offsetof(Case, n_),      \
@@ -385,4 +437,6 @@ const GroupInfo case_group[GROUP_COUNT] = {
     GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
     GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
           "Parts of the surface that count what crosses them"),
+    GROUP(CaseStage, "stage_", "stages", "stage", nstage, stage, false, stage_key,
+          "Stages that follow each other in time; a key that is not given is the case's"),
 };

@@ -234,13 +234,15 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
   if (!r.nerror) {
     for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(NamesRead(&r, c, g));
+    PetscCall(CaseStageEnds(&r, c));
     PetscCall(GroupRead(&r, c, GROUP_CASE));
     PetscCall(CaseFieldSet(&r, c));
     CaseQuantities(&r, c);
-    for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
+    for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
       PetscCall(GroupRead(&r, c, g));
     PetscCall(Derive(&r, c));
     CaseFieldSetFinish(&r, c);
+    PetscCall(CaseStages(&r, c));
     PetscCall(Leftovers(&r, c));
     CaseCheck(&r, c);
   }
@@ -255,6 +257,7 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
 PetscErrorCode CaseDestroy(Case *c)
 {
   PetscFunctionBeginUser;
+  PetscCall(CaseStagesDestroy(c));
   ScheduleDestroy(&c->ambient_pressure);
   ScheduleDestroy(&c->ambient_level);
   for (PetscInt i = 0; i < c->nbc; i++) {

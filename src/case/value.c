@@ -341,7 +341,7 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
       PetscFunctionReturn(PETSC_SUCCESS);
     if (KeyNeeded(k, c) && (k->needed ? k->needed(instance) : !k->def))
       KeyMissing(r, option, k);
-    else if (!DefaultReference(g, instance, k, (double *)(instance + k->offset)))
+    else if (!k->kept && !DefaultReference(g, instance, k, (double *)(instance + k->offset)))
       PetscCall(KeyStore(r, c, shown, k->def, k, instance));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

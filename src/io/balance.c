@@ -3,9 +3,10 @@
 
 void BalanceHeader(const Case *c, FILE *f)
 {
-  (void)c;
-  fprintf(f, "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
-             "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J\n");
+  fprintf(f,
+          "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
+          "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J%s\n",
+          c->nstage ? ",stage" : "");
 }
 
 /* Relative to the initial store; absolute where there was none. */
@@ -14,7 +15,8 @@ static double Relative(double missing, double store)
   return store > 0.0 ? missing / store : missing;
 }
 
-static PetscErrorCode WriteRow(Output *out, const StepperState *s, const StepInfo *info, const ModelTotals *now)
+static PetscErrorCode WriteRow(Output *out, const Case *c, const StepperState *s, const StepInfo *info,
+                               const ModelTotals *now)
 {
   const double water   = Relative(now->water + s->out[PHASE_W] - s->water0, s->water0);
   const double methane = Relative(now->methane + s->out[PHASE_G] - s->methane0, s->methane0);
@@ -23,12 +25,16 @@ static PetscErrorCode WriteRow(Output *out, const StepperState *s, const StepInf
 
   PetscFunctionBeginUser;
   PetscCall(RowBegin(out, &f));
-  fprintf(f, "%" PetscInt_FMT ",%.12e,%.12e,%" PetscInt_FMT, s->step, s->t, info ? info->dt : 0.0,
-          info ? info->newton : 0);
+  fprintf(f, "%" PetscInt_FMT ",", s->step);
+  IoTime(c, f, s->t);
+  fprintf(f, ",%.12e,%" PetscInt_FMT, info ? info->dt : 0.0, info ? info->newton : 0);
   fprintf(f, ",%.17g,%.17g,%.12e", now->water, s->out[PHASE_W], water);
   fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
   fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
-  fprintf(f, ",%.17g\n", now->kinetic);
+  fprintf(f, ",%.17g", now->kinetic);
+  if (c->nstage)
+    fprintf(f, ",%" PetscInt_FMT, s->stage + 1);
+  fprintf(f, "\n");
   PetscCall(RowEnd(out, TABLE_BALANCE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -41,7 +47,7 @@ PetscErrorCode OutputBalance(Output *out, const Model *m, const StepperState *s,
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(m, &now));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out, s, info, &now);
+    ierr = WriteRow(out, m->c, s, info, &now);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,14 +17,14 @@
   {                                                                                                                    \
     #field, offsetof(StepperState, field), 1, true                                                                     \
   }
-const StateField io_state_field[] = {INT(step),          REAL(t),          REAL(dt),           REAL(err_old),
-                                     INT(hold),          INT(fresh),       INT(newton_total),  INT(failures_total),
-                                     INT(limited_total), INT(loose_total), REAL(err_worst),    REAL(out),
-                                     REAL(heat_gain),    REAL(heat_in),    REAL(heat_source),  REAL(water0),
-                                     REAL(methane0),     REAL(capacity0),  REAL(scale_p),      REAL(scale_u),
-                                     INT(next_snapshot), REAL(meter),      {NULL, 0, 0, false}};
-/* Eight integers, fourteen reals, the meters. */
-_Static_assert(sizeof(StepperState) == 8 * sizeof(PetscInt) + (14 + CL_METERS * METER_COUNT) * sizeof(double),
+const StateField io_state_field[] = {INT(step),          REAL(t),          REAL(dt),          REAL(err_old),
+                                     INT(hold),          INT(fresh),       INT(newton_total), INT(failures_total),
+                                     INT(limited_total), INT(loose_total), REAL(err_worst),   REAL(out),
+                                     REAL(heat_gain),    REAL(heat_in),    REAL(heat_source), REAL(water0),
+                                     REAL(methane0),     REAL(capacity0),  REAL(scale_p),     REAL(scale_u),
+                                     INT(next_snapshot), INT(stage),       REAL(meter),       {NULL, 0, 0, false}};
+/* Nine integers, four bytes of padding, fourteen reals, the meters. */
+_Static_assert(sizeof(StepperState) == 10 * sizeof(PetscInt) + (14 + CL_METERS * METER_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 typedef struct {

@@ -101,6 +101,12 @@ PetscErrorCode SeriesStart(Output *out, bool append, PetscInt next);
 PetscErrorCode SeriesAdd(Output *out, const SnapshotEntry *entry);
 PetscErrorCode SeriesWrite(Output *out, const Grid *g); /* fields.h5 and fields.xdmf */
 void           XdmfPrint(FILE *f, const Output *out, const Grid *g);
+/* Stages may take seconds after years: their times are told apart to the last digit. */
+static inline void IoTime(const Case *c, FILE *f, double t)
+{
+  fprintf(f, c->nstage ? "%.16e" : "%.12e", t);
+}
+
 
 /* ---------------------------------------------------------------- h5util.c */
 #define H5Check(expr) PetscCheck((expr) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s", #expr)

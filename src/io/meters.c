@@ -29,7 +29,7 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
 
   PetscFunctionBeginUser;
   PetscCall(RowBegin(out, &f));
-  fprintf(f, "%.12e", s->t);
+  IoTime(c, f, s->t);
   for (PetscInt k = 0; k < c->nmeter; k++) {
     const double *rate = m->rates.meter[k], *sum = s->meter[k];
 

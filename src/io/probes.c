@@ -182,7 +182,7 @@ static PetscErrorCode WriteRow(Output *out, const Case *c, double t, const Fit *
 
   PetscFunctionBeginUser;
   PetscCall(RowBegin(out, &f));
-  fprintf(f, "%.12e", t);
+  IoTime(c, f, t);
   for (PetscInt k = 0; k < n; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
       if (!Wanted(c, q))

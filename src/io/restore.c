@@ -123,6 +123,8 @@ static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
   if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
     Refuse(L, "/particles/id is missing or of wrong size");
   PetscCall(LoadState(file, L));
+  if (!L->why[0] && L->s.stage >= PetscMax(m->c->nstage, 1))
+    Refuse(L, "the case has no stage %d", (int)L->s.stage + 1);
   PetscCall(ParticlesResize(&L->P, (PetscInt)n));
   PetscCall(PetscMalloc2((PetscInt)n, &L->rank, (PetscInt)n, &L->place));
 
@@ -150,7 +152,8 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (fingerprint != CaseFingerprint(m->c)) {
-    Refuse(L, "it was written by another case (grid, regions, materials, boundary conditions or meters differ)");
+    Refuse(L,
+           "it was written by another case (grid, regions, materials, boundary conditions, meters or stages differ)");
   }
   PetscCall(H5FileOpen(path, &file));
   if (file < 0)

@@ -41,8 +41,8 @@ PetscErrorCode RowEnd(Output *out, TableId id)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A whole line with a time not later than t. */
-static bool Keep(const char *line, int column, double t)
+/* A whole line with a time not later than t; slack: of times as they are written. */
+static bool Keep(const char *line, int column, double t, double slack)
 {
   char  *end;
   double value;
@@ -56,12 +56,12 @@ static bool Keep(const char *line, int column, double t)
     line++;
   }
   value = strtod(line, &end);
-  return end != line && (*end == ',' || *end == '\n') && value <= t + 1e-12 * fabs(t);
+  return end != line && (*end == ',' || *end == '\n') && value <= t + slack * fabs(t);
 }
 
 /* Copies the rows of PATH that a restart at time t keeps.  A table with other columns is kept as PATH.old; false: it
    could not be read or renamed. */
-static bool CopyRows(const char *path, int column, const char *header, double t, FILE *to)
+static bool CopyRows(const char *path, int column, const char *header, double t, double slack, FILE *to)
 {
   char  *line = NULL, kept[IO_PATH + 8];
   size_t cap  = 0;
@@ -72,7 +72,7 @@ static bool CopyRows(const char *path, int column, const char *header, double t,
     return errno == ENOENT || IoFailed(path, 0);
   same = getline(&line, &cap, old) > 0 && strcmp(line, header) == 0;
   while (same && getline(&line, &cap, old) > 0) {
-    if (Keep(line, column, t))
+    if (Keep(line, column, t, slack))
       fputs(line, to);
   }
   good = !ferror(old) || IoFailed(path, 0);
@@ -97,7 +97,7 @@ static PetscErrorCode Open(Output *out, const Model *m, TableId id, bool append,
   PetscCall(RowBegin(out, &f));
   fputs(header, f);
   if (append)
-    out->failed = !CopyRows(path, table[id].time, header, t, f);
+    out->failed = !CopyRows(path, table[id].time, header, t, m->c->nstage ? 4.0 * PETSC_MACHINE_EPSILON : 1e-12, f);
   PetscCall(TextEnd(out));
   if (!out->failed)
     out->failed = !IoReplace(path, false, 1, &(IoPiece){out->text, out->size});

@@ -4,6 +4,7 @@
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
 {
   static const char *const name[4] = {"ClBeginStep", "ClResidual", "ClJacobian", "ClWidePart"};
+  const Case              *first   = CaseInStage(c, 0); /* whose loads the initial state is in balance with */
   PetscClassId             id;
 
   PetscFunctionBeginUser;
@@ -11,8 +12,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   m->c = c;
   PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
-  PetscCall(ParticlesSeed(c, &m->grid, &m->P));
-  PetscCall(GeostaticStress(c, &m->grid, &m->P));
+  PetscCall(ParticlesSeed(first, &m->grid, &m->P));
+  PetscCall(GeostaticStress(first, &m->grid, &m->P));
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   m->tol_residual = 1e-9;
   m->poor         = 20;

@@ -114,6 +114,7 @@ PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P
   for (int d = 0; d < CL_DIM; d++) {
     P->f[P_X + d][p] = x[d];
     P->f[P_L + d][p] = l[d];
+    Set(P, p, P_X0 + d, x[d]);
     Set(P, p, P_GW + d, s.grad_p[d]);
     Set(P, p, P_GG + d, s.grad_p[d]);
     Set(P, p, P_GT + d, s.grad_T[d]);

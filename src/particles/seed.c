@@ -16,19 +16,23 @@ static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region,
 {
   Lattice  lattice;
   PetscInt ij[CL_DIM];
-  Site     site = {.region = region};
+  double   x[CL_DIM], l[CL_DIM];
 
   PetscFunctionBeginUser;
   if (RegionEmpty(&c->region[region]))
     PetscFunctionReturn(PETSC_SUCCESS);
   RegionLattice(c, region, &lattice);
-  ParticlesInitialHalfLength(c, region, site.l);
+  ParticlesInitialHalfLength(c, region, l);
   for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
     for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
-      if (!RegionPlace(c, region, &lattice, ij, site.x))
+      if (!RegionPlace(c, region, &lattice, ij, x))
         continue;
-      site.id    = (*id)++;
-      site.faces = RegionFaces(c, region, &lattice, ij);
+      const Site site = {.id     = (*id)++,
+                         .region = region,
+                         .faces  = RegionFaces(c, region, &lattice, ij),
+                         .x      = {x[0], x[1]},
+                         .l      = {l[0], l[1]}};
+
       PetscCall(visit(c, g, &site, ctx));
     }
   }

@@ -1,22 +1,22 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
-#include "clathra/run.h"
-#include "clathra/io.h"
+#include "run_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 typedef struct {
-  Output *out;
-  Folder  folder;
-  char    checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
-  double  t_saved;                                                   /* of that */
-  double  t_start, clock_start;                                      /* s of the scene, s of the wall */
-  bool    quiet;
-  bool    written, lost; /* a checkpoint by this run; not all could be written */
+  Output   *out;
+  Folder    folder;
+  char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
+  double    t_saved;                                                   /* of that */
+  double    clock_start;                                               /* s of the wall */
+  StageLog *log;
+  bool      quiet;
+  bool      written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
-static double Wall(void)
+double Wall(void)
 {
   struct timespec t;
 
@@ -24,40 +24,42 @@ static double Wall(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* First multiple of `every` after t. */
-static double NextMultiple(double every, double t)
+/* First multiple of `every` after t, counted from the begin of the stage. */
+static double NextMultiple(const Case *c, double every, double t)
 {
-  return every > 0.0 ? every * (floor(t / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
+  const double at = t - c->t_begin + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+
+  return every > 0.0 ? c->t_begin + every * (floor(at / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
 }
 
 static double NextSnapshot(const Case *c, double t)
 {
-  double next = NextMultiple(c->every, t);
+  double next = NextMultiple(c, c->every, t);
 
   for (PetscInt k = 0; k < c->ntimes; k++) {
-    if (c->times[k] > t * (1.0 + 1e-12))
+    if (c->times[k] > t + CaseTimeSlack(c, t))
       next = fmin(next, c->times[k]);
   }
   return next;
 }
 
-static bool IsTime(double event, double t)
+static bool IsTime(const Case *c, double event, double t)
 {
-  return fabs(event - t) <= 1e-9 * fabs(t);
+  return fabs(event - t) <= 1e-9 * fabs(t - c->t_begin) + CaseTimeSlack(c, t);
 }
 
 /* Steps end exactly on events, so t is one of them or is not. */
-static bool AtMultiple(double every, double t)
+static bool AtMultiple(const Case *c, double every, double t)
 {
-  return every > 0.0 && IsTime(every * round(t / every), t);
+  return every > 0.0 && IsTime(c, c->t_begin + every * round((t - c->t_begin) / every), t);
 }
 
 static bool AtSnapshot(const Case *c, double t)
 {
-  bool at = AtMultiple(c->every, t);
+  bool at = AtMultiple(c, c->every, t);
 
   for (PetscInt k = 0; k < c->ntimes; k++)
-    at = at || IsTime(c->times[k], t);
+    at = at || IsTime(c, c->times[k], t);
   return at;
 }
 
@@ -67,18 +69,22 @@ static double NextEvent(const Stepper *s, void *ctx)
   const double t = s->state.t;
 
   (void)ctx;
-  return fmin(NextSnapshot(c, t), fmin(NextMultiple(c->probe_every, t), NextMultiple(c->checkpoint_every, t)));
+  return fmin(NextSnapshot(c, t), fmin(NextMultiple(c, c->probe_every, t), NextMultiple(c, c->checkpoint_every, t)));
 }
 
 static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run *run)
 {
-  const double t = s->state.t, end = s->model->c->t_end, done = (t - run->t_start) / (end - run->t_start);
-  const double left     = done > 0.0 ? (Wall() - run->clock_start) * (1.0 - done) / done : 0.0;
-  char         cuts[32] = "", error[32] = "", solved[48];
+  const double t_begin = s->model->c->t_begin;
+  double       done, left;
+  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "";
 
   PetscFunctionBeginUser;
   if (run->quiet)
     PetscFunctionReturn(PETSC_SUCCESS);
+  StageLogProgress(run->log, s, &done, &left);
+  StepperStageWords(s, stage);
+  if (t_begin > 0.0)
+    PetscCall(PetscSNPrintf(begin, sizeof(begin), "%g s + ", t_begin));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
   if (s->explicit)
@@ -88,8 +94,9 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "step %4" PetscInt_FMT ": t = %-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s, %.0f s left\n",
-                        s->state.step, t, 100.0 * done, info->dt, solved, error, cuts, left));
+                        "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s, %.0f s left\n",
+                        stage, s->state.step, begin, s->state.t - t_begin, 100.0 * done, info->dt, solved, error, cuts,
+                        left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,12 +124,13 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   Run         *run  = (Run *)ctx;
   const Case  *c    = s->model->c;
   const double t    = s->state.t;
-  const bool   last = t >= c->t_end * (1.0 - 1e-12);
+  const bool   last = CaseAtEnd(c, t); /* of the run, or of a stage */
   bool         ok;
 
   PetscFunctionBeginUser;
+  StageLogStep(run->log, s, info);
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
-  if (c->probe_every == 0.0 || AtMultiple(c->probe_every, t) || last) {
+  if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));
     PetscCall(OutputMeters(run->out, s->model, &s->state));
   }
@@ -132,7 +140,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   }
   PetscCall(OutputGood(run->out, s->model->grid.comm, &ok));
   run->lost = !ok;
-  if (ok && AtMultiple(c->checkpoint_every, t))
+  if (ok && AtMultiple(c, c->checkpoint_every, t))
     PetscCall(Save(s, run));
   s->stop = s->stop || run->lost;
   PetscCall(Progress(s, info, run));
@@ -182,7 +190,7 @@ static PetscErrorCode LooseSummary(const Stepper *s, char text[256])
 static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const StepperState *z = &s->state;
-  char                text[2048], local[512], loose[256];
+  char                text[2048], local[512], loose[256], *stages, *all;
   ModelTotals         t;
   bool                ok;
 
@@ -197,20 +205,26 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
                           "%s  results in %s\n",
-                          s->model->c->title, z->t >= s->model->c->t_end * (1.0 - 1e-12) ? "finished" : "stopped", z->t,
-                          s->scheme->name, z->step, z->failures_total, z->newton_total, Wall() - run->clock_start,
-                          local, Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
+                          s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
+                          s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
+                          z->newton_total, Wall() - run->clock_start, local,
+                          Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
                           z->limited_total, loose, s->model->c->output_dir));
-  PetscCall(PetscPrintf(s->model->grid.comm, "%s", text));
-  PetscCall(FolderWriteText(s->model->grid.comm, s->model->c->output_dir, "summary.txt", text, strlen(text), &ok));
+  PetscCall(StageLogSummary(run->log, s, &stages));
+  PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
+  sprintf(all, "%s%s", text, stages);
+  PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", text, stages));
+  PetscCall(FolderWriteText(s->model->grid.comm, s->model->c->output_dir, "summary.txt", all, strlen(all), &ok));
   run->lost = run->lost || !ok;
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree(stages));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------------------------------------------------------------- from the first row to the last */
-static PetscErrorCode WriteCase(const Model *m, Run *run)
+static PetscErrorCode WriteCase(const Case *c, MPI_Comm comm, Run *run)
 {
   char  *text;
   size_t size;
@@ -219,21 +233,21 @@ static PetscErrorCode WriteCase(const Model *m, Run *run)
 
   PetscFunctionBeginUser;
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscCall(CaseWriteResolved(m->c, f));
+  PetscCall(CaseWriteResolved(c, f));
   PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscCall(FolderWriteText(m->grid.comm, m->c->output_dir, "case.yaml", text, size, &ok));
+  PetscCall(FolderWriteText(comm, c->output_dir, "case.yaml", text, size, &ok));
   free(text);
   run->lost = run->lost || !ok;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Begin(Stepper *s, Run *run, bool restart)
+static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
 {
   const Model *m = s->model;
   bool         ok;
 
   PetscFunctionBeginUser;
-  PetscCall(WriteCase(m, run));
+  PetscCall(WriteCase(c, m->grid.comm, run));
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
@@ -244,8 +258,8 @@ static PetscErrorCode Begin(Stepper *s, Run *run, bool restart)
   }
   PetscCall(OutputGood(run->out, m->grid.comm, &ok));
   run->lost        = run->lost || !ok;
-  run->t_start     = s->state.t;
   run->clock_start = Wall();
+  PetscCall(StageLogCreate(s, &run->log));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -266,7 +280,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
     PetscCall(PetscFPrintf(
         comm, stderr, "clathra: stopped at t = %g s: %s, and there is no checkpoint of this run yet: start it anew\n",
         t, why));
-  } else if (s->signal && t < s->model->c->t_end * (1.0 - 1e-12)) {
+  } else if (s->signal && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
                           strsignal(s->signal), t, run->saved));
   } else if (!ok)
@@ -276,8 +290,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
 
 static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
 {
-  const Case *c  = s->model->c;
-  bool        ok = true, closed;
+  bool ok = true, closed;
 
   PetscFunctionBeginUser;
   if (!run->lost)
@@ -286,12 +299,13 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
       !(run->written && run->t_saved == s->state.t)) /* after a loss it would promise rows that are not there */
     PetscCall(Save(s, run));
   PetscCall(Summary(s, run));
+  PetscCall(StageLogDestroy(&run->log));
   PetscCall(OutputDestroy(&run->out, s->model->grid.comm, &closed));
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
   if (run->lost || !ok)
     *exit_code = CL_EXIT_FAILED;
-  else if (s->signal && s->state.t < c->t_end * (1.0 - 1e-12))
+  else if (s->signal && !StepperDone(s))
     *exit_code = CL_EXIT_SIGNAL;
   else
     *exit_code = CL_EXIT_OK;
@@ -313,8 +327,6 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
     run->t_saved = s->state.t;
   } else
     run->t_saved = NAN;
-  if (!s->adaptive && s->state.hold == 0)
-    s->state.dt = c->dt; /* a fixed step is the case's, also after a restart */
   PetscCall(StepperReady(s, &ok));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -322,7 +334,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   if (*exit_code != CL_EXIT_OK)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir));
-  PetscCall(Begin(s, run, restart[0] != '\0'));
+  PetscCall(Begin(c, s, run, restart[0] != '\0'));
   PetscCall(Advance(s, run, exit_code));
   PetscCall(FolderRelease(&run->folder));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -396,8 +408,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT
                           " cells%s, %s, to t = %g s\n  fields: %s; %d unknowns "
                           "a node\n",
-                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "", c->stepper,
-                          c->t_end, fields, c->fields.n));
+                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "",
+                          c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }

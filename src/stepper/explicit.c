@@ -31,19 +31,42 @@ static PetscErrorCode Destroy(Stepper *s)
 }
 
 /* A fixed step above the stable one is refused. */
-static PetscErrorCode CheckFixed(Stepper *s, bool *ok)
+static PetscErrorCode CheckFixed(const Stepper *s, bool *ok)
 {
   const double dt = s->model->c->dt;
+  char         stage[80];
 
   PetscFunctionBeginUser;
   if (s->adaptive || s->model->c->force_dt || dt <= s->limit.dt)
     PetscFunctionReturn(PETSC_SUCCESS);
   *ok = false;
-  PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
-                         "clathra: %s: stepper_dt = %g s is above the stable step of %g s (%s rules); allowed (0 s,%g "
-                         "s], or -stepper_force_dt "
-                         "yes, or -stepper_adapt yes\n",
-                         s->model->c->file, dt, s->limit.dt, cl_limit_word[s->limit.rules], s->limit.dt));
+  StepperStageWords(s, stage);
+  PetscCall(
+      PetscFPrintf(s->model->grid.comm, stderr,
+                   "clathra: %s: %sstepper_dt = %g s is above the stable step of %g s (%s rules); allowed (0 s,%g "
+                   "s], or -stepper_force_dt "
+                   "yes, or -stepper_adapt yes\n",
+                   s->model->c->file, stage, dt, s->limit.dt, cl_limit_word[s->limit.rules], s->limit.dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* No stable step, or a fixed one above it. */
+static PetscErrorCode Check(const Stepper *s, bool *ok)
+{
+  char stage[80];
+
+  PetscFunctionBeginUser;
+  if (!(s->limit.dt > 0.0)) {
+    *ok = false;
+    StepperStageWords(s, stage);
+    PetscCall(PetscFPrintf(
+        s->model->grid.comm, stderr,
+        "clathra: %s: %sstepper_type: %s has no stable step here (water without compressibility carries waves at any "
+        "speed); use sdirk2 or euler\n",
+        s->model->c->file, stage, s->scheme->name));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(CheckFixed(s, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,16 +87,7 @@ static PetscErrorCode Ready(Stepper *s, bool *ok)
   PetscCall(PetscPrintf(s->model->grid.comm,
                         "  stable step %.4g s:%s; %s rules; the reaction is implicit and sets no bound\n", s->limit.dt,
                         text, cl_limit_word[s->limit.rules]));
-  if (!(s->limit.dt > 0.0)) {
-    *ok = false;
-    PetscCall(PetscFPrintf(
-        s->model->grid.comm, stderr,
-        "clathra: %s: stepper_type: %s has no stable step here (water without compressibility carries waves at any "
-        "speed); use sdirk2 or euler\n",
-        s->model->c->file, s->scheme->name));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(CheckFixed(s, ok));
+  PetscCall(Check(s, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,6 +104,17 @@ static PetscInt Plan(const Stepper *s, double stop, double *dt)
   return (PetscInt)fmin(n, BURST);
 }
 
+/* Means over a burst of n steps, for meters.csv. */
+static StageRates Rates(const StageRates *sum, double time)
+{
+  StageRates mean = *sum;
+  double    *v    = (double *)&mean;
+
+  for (size_t k = 0; k < sizeof(mean) / sizeof(double); k++)
+    v[k] /= time;
+  return mean;
+}
+
 /* A burst of n steps; the sums are those of all ranks. */
 static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
 {
@@ -103,6 +128,7 @@ static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof(sum) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));
   StepperCount(m->c, &sum, 1.0, a);
+  m->rates   = Rates(&sum, (double)n * dt);
   a->limited = m->limited;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -178,7 +204,17 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
   }
 }
 
-const StepperScheme StepperScheme_Hybrid = {
-    .name = "hybrid", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};
-const StepperScheme StepperScheme_Explicit = {
-    .name = "explicit", .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready};
+const StepperScheme StepperScheme_Hybrid   = {.name    = "hybrid",
+                                              .stages  = 1,
+                                              .advance = Advance,
+                                              .create  = Create,
+                                              .destroy = Destroy,
+                                              .ready   = Ready,
+                                              .check   = Check};
+const StepperScheme StepperScheme_Explicit = {.name    = "explicit",
+                                              .stages  = 1,
+                                              .advance = Advance,
+                                              .create  = Create,
+                                              .destroy = Destroy,
+                                              .ready   = Ready,
+                                              .check   = Check};

@@ -60,7 +60,7 @@ PetscErrorCode StepperForecast(Stepper *s)
   const Model          *m    = s->model;
   const Case           *c    = m->c;
   const ExplicitOptions o    = {.drag_implicit = true, .flip = 1.0, .mass_scaling = c->mass_scaling};
-  const double          left = c->t_end - s->state.t;
+  const double          left = c->t_end - fmax(s->state.t, c->t_begin);
   Forecast             *f    = &s->forecast;
   Explicit             *e;
 
@@ -103,7 +103,7 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
   const char     *why = CaseNeedsImplicit(s->model->c);
-  char            hybrid[128], time[32];
+  char            hybrid[128], time[32], stage[80];
 
   PetscFunctionBeginUser;
   if (why) {
@@ -115,7 +115,8 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
     PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %.2g steps, %s", f->hybrid_steps, time));
   }
   Duration(f->implicit_seconds, time);
-  PetscCall(PetscPrintf(s->model->grid.comm, "  forecast: %s; implicit about %.2g steps, %s; %s is the cheaper one\n",
-                        hybrid, f->implicit_steps, time, f->hybrid ? "hybrid" : "implicit"));
+  StepperStageWords(s, stage);
+  PetscCall(PetscPrintf(s->model->grid.comm, "  %sforecast: %s; implicit about %.2g steps, %s; %s is the cheaper one\n",
+                        stage, hybrid, f->implicit_steps, time, f->hybrid ? "hybrid" : "implicit"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

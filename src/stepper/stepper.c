@@ -1,43 +1,23 @@
 /* The time loop, whatever the scheme: what it starts from, where steps must end, what an accepted step adds up. */
 #include "clathra/stepper.h"
 
-#define AUTO "auto" /* word of stepper_type: as the forecast says */
 #define FLOOR_P 1e4 /* Pa: pressure changes below it are not resolved more finely */
-
-static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperScheme_Sdirk2, &StepperScheme_Hybrid,
-                                               &StepperScheme_Explicit, NULL};
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s)
 {
-  const Case *c = m->c;
-  PetscBool   same;
+  ModelTotals t;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(s, sizeof(*s)));
   s->model = m;
-  for (int k = 0; schemes[k]; k++) {
-    PetscCall(PetscStrcmp(schemes[k]->name, c->stepper, &same));
-    if (same)
-      s->scheme = schemes[k];
-  }
-  PetscCall(PetscStrcmp(AUTO, c->stepper, &same));
-  if (same)
-    s->scheme = &StepperScheme_Sdirk2; /* until the forecast is known */
-  PetscCheck(s->scheme, m->grid.comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "no time integrator %s", c->stepper);
-  s->adaptive      = c->adaptive;
-  s->dt_min        = c->dt_min;
-  s->dt_max        = c->dt_max;
-  s->tol           = c->tol;
-  s->max_failures  = c->max_failures;
+  PetscCall(StepperTakeStage(s, 0));
   s->max_steps     = PETSC_MAX_INT;
-  s->state.dt      = c->dt;
+  s->state.dt      = m->c->dt;
   s->state.err_old = 1.0;
   s->state.fresh   = 1;
   s->state.scale_p = FLOOR_P;
-  s->state.scale_u = 1e-3 * fmin(m->grid.h[0], m->grid.h[1]);
+  s->state.scale_u = StepperFloorU(s);
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-stepper_max_steps", &s->max_steps, NULL));
-
-  ModelTotals t;
   PetscCall(ModelComputeTotals(m, &t));
   s->state.water0    = t.water;
   s->state.methane0  = t.methane;
@@ -45,15 +25,40 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StepperReady(Stepper *s, bool *ok)
+static PetscErrorCode Look(Stepper *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(StepperForecast(s));
+  PetscCall(StepperPrintForecast(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forecasts of the stages to come, from the state as it is. */
+static PetscErrorCode LookAhead(Stepper *s, bool *ok)
+{
+  const PetscInt now      = s->state.stage;
+  const Forecast forecast = s->forecast;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = now + 1; k < s->model->c->nstage && *ok; k++) {
+    PetscCall(StepperTakeStage(s, k));
+    PetscCall(Look(s));
+    s->limit = s->forecast.limit;
+    if (s->scheme->check)
+      PetscCall(s->scheme->check(s, ok));
+  }
+  PetscCall(StepperTakeStage(s, now));
+  s->forecast = forecast;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The scheme of this stage, with its storage. */
+static PetscErrorCode Prepare(Stepper *s, bool *ok)
 {
   PetscBool choose;
 
   PetscFunctionBeginUser;
-  *ok = true;
-  PetscCall(StepperForecast(s));
-  PetscCall(StepperPrintForecast(s));
-  PetscCall(PetscStrcmp(AUTO, s->model->c->stepper, &choose));
+  PetscCall(PetscStrcmp(STEPPER_AUTO, s->model->c->stepper, &choose));
   if (choose && s->forecast.hybrid)
     s->scheme = &StepperScheme_Hybrid;
   if (choose)
@@ -62,6 +67,22 @@ PetscErrorCode StepperReady(Stepper *s, bool *ok)
     PetscCall(s->scheme->create(s));
   if (s->scheme->ready)
     PetscCall(s->scheme->ready(s, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StepperReady(Stepper *s, bool *ok)
+{
+  PetscFunctionBeginUser;
+  *ok = true;
+  PetscCall(StepperTakeStage(s, s->state.stage));
+  if (!s->adaptive && s->state.hold == 0)
+    s->state.dt = s->model->c->dt; /* a fixed step is the case's, also after a restart */
+  if (StepperStageDone(s) && !StepperDone(s))
+    PetscCall(StepperNextStage(s));
+  PetscCall(Look(s));
+  PetscCall(LookAhead(s, ok));
+  if (*ok)
+    PetscCall(Prepare(s, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,14 +186,28 @@ const char *StepperStatusName(ClStatus st)
   return name[st];
 }
 
+/* Leaves the stage that is done for the next one. */
+static PetscErrorCode Change(Stepper *s, bool *ok)
+{
+  PetscFunctionBeginUser;
+  if (s->scheme->destroy)
+    PetscCall(s->scheme->destroy(s));
+  PetscCall(StepperNextStage(s));
+  PetscCall(Look(s));
+  PetscCall(Prepare(s, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StepperRun(Stepper *s, bool *ok)
 {
-  const double end = s->model->c->t_end;
-
   PetscFunctionBeginUser;
   *ok = true;
-  for (PetscInt n = 0; *ok && !s->stop && !s->broken && n < s->max_steps && s->state.t < end * (1.0 - 1e-12); n++)
-    PetscCall(s->scheme->advance(s, ok));
+  for (PetscInt n = 0; *ok && !s->stop && !s->broken && n < s->max_steps && !StepperDone(s); n++) {
+    if (StepperStageDone(s))
+      PetscCall(Change(s, ok));
+    if (*ok)
+      PetscCall(s->scheme->advance(s, ok));
+  }
   *ok = *ok && !s->broken;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,6 +15,11 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 BASE = open(os.path.join(HERE, "..", "..", "cases", "bp2", "case.yaml")).read()
 M = "mat_sediment_"
 METER = lambda keys: ("basis: cpgimp", f"basis: cpgimp\nmeters: [outlet]\nmeter: {{outlet: {{{keys}}}}}")
+STAGES = lambda a, b: ("time: {end: 2000 s}", f"stages: [a, b]\nstage:\n  a: {{{a}}}\n  b: {{{b}}}")
+SEDIMENT = {"porosity": "0.15", "solid_density": "2600 kg/m^3", "solid_heat_capacity": "800 J/(kg K)", "solid_conductivity": "3 W/(m K)",
+            "water_ref_pressure": "3.25 MPa", "water_ref_temperature": "4 degC", "retention_p0": "50 kPa", "retention_m": "0.3", "retention_Swr": "0.2",
+            "retention_Sgr": "0.4", "relperm_nw": "4", "relperm_ng": "2", "permeability_k0": "1e-14 m^2", "permeability_mh": "3", "kinetics_active": "yes",
+            "kinetics_K0": "1e-10 mol/(m^2 Pa s)", "kinetics_A_geo": "1e6 1/m", "elasticity_E0": "9 MPa", "elasticity_nu": "0.3"}
 SHAPE = lambda keys: ("    lower: [0 m, 0 m]\n    upper: [1 m, 0.02 m]\n", f"    {keys}\n")
 POLYGON = lambda *points: SHAPE(f"polygon: [{', '.join(f'[{x} m, {y} m]' for x, y in points)}]")
 CORNERS = [(0, 0), (1, 0), (1, 0.02), (0, 0.02)]
@@ -109,7 +114,7 @@ CASES = [
      ["region_column_stress_normally_consolidated", "friction angle", "sediment"], []),
     ("geothermal without gravity", [("    Sh: 0\n", "    Sh: 0\n    geothermal: 30 K/km\n")], ["region_column_geothermal", "gravity"], []),
     ("geothermal below absolute zero", [("basis: cpgimp", "gravity: [9.81 m/s^2, 0 m/s^2]"), ("    Sh: 0\n", "    Sh: 0\n    geothermal: -1e3 K/m\n")],
-     ["region_column_geothermal", "degC in the region"], []),
+     ["region_column_geothermal", "degC at its top or foot"], []),
     ("geothermal without heat", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30 K/km\n"), *NO_GAS, ("fields: thm", "fields: hm")],
      ["region_column_geothermal", "needs heat"], []),
     ("geothermal without unit", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30\n")], ["region_column_geothermal", "K/m"], []),
@@ -264,6 +269,40 @@ CASES = [
       ("basis: cpgimp", "basis: cpgimp\nfields: hm"), *NO_GAS[1:]], ["bc_drain_type", "needs heat"], []),
     ("region temperature on a side", [("type: pressure, side: right, initial: yes}", "type: region_temperature, side: right, temperature: 3 degC}")],
      ["bc_drain_side", "type region_temperature"], []),
+    # --- stages
+    ("stage without an end", [STAGES("end: 10 s", "inertia: no")], ["stage_b_end", "is missing"], []),
+    ("stage that ends before time begins", [STAGES("end: 0 s", "end: 2000 s")], ["stage_a_end", "out of range"], []),
+    ("empty stage", [STAGES("end: 2000 s", "end: 2000 s")], ["case.yaml:", "stage_b_end", "the stage is empty"], []),
+    ("stages out of order", [STAGES("end: 2000 s", "end: 10 s")], ["stage_b_end", "order of their ends"], []),
+    ("time_end beside stages", [STAGES("end: 10 s", "end: 2000 s"), ("basis: cpgimp", "basis: cpgimp\ntime: {end: 1 h}")],
+     ["time_end", "the last stage, b, ends at 2000 s"], []),
+    ("output after the last stage", [STAGES("end: 10 s", "end: 1900 s")], ["output_times", "2000 s after time_end, 1900 s"], []),
+    ("stage of an unknown boundary", [STAGES("end: 10 s, boundaries: [bas, load]", "end: 2000 s")],
+     ["stage_a_boundaries", "no boundary 'bas'; did you mean base?"], []),
+    ("stage without an unknown boundary", [STAGES("end: 10 s, boundaries_off: [wind]", "end: 2000 s")], ["stage_a_boundaries_off", "no boundary 'wind'"], []),
+    ("stage with boundaries on and off", [STAGES("end: 10 s, boundaries: [base], boundaries_off: [load]", "end: 2000 s")],
+     ["stage_a_boundaries_off", "choose one"], []),
+    ("boundary listed twice in a stage", [STAGES("end: 10 s, boundaries_off: [load, load]", "end: 2000 s")], ["stage_a_boundaries_off", "listed twice"], []),
+    ("stage of an unknown material", [STAGES("end: 10 s", "end: 2000 s, materials: [column, sedment]")],
+     ["stage_b_materials", "no material 'sedment'; did you mean sediment?"], []),
+    ("stage of an unknown region", [STAGES("end: 10 s", "end: 2000 s, materials: [colum, sediment]")], ["stage_b_materials", "no region 'colum'"], []),
+    ("materials of a stage without pairs", [STAGES("end: 10 s", "end: 2000 s, materials: [column]")], ["stage_b_materials", "pairs"], []),
+    *((f"stage that would change {what}", [STAGES("end: 10 s", "end: 2000 s, materials: [column, other]"), ("materials: [sediment]", "materials: [sediment, other]")],
+       ["stage_b_materials", "region column cannot change from sediment to other", word],
+       [x for key, value in {**SEDIMENT, **changed}.items() for x in (f"-mat_other_{key}", value)])
+      for what, word, changed in (("porosity", "porosity", {"porosity": "0.2"}), ("the grains", "grains", {"solid_density": "2500 kg/m^3"}),
+                                  ("retention", "retention", {"retention_p0": "60 kPa"}), ("what reacts", "hydrate", {"kinetics_active": "no"}))),
+    ("hybrid stage without inertia", [STAGES("end: 10 s", "end: 2000 s, inertia: no, stepper: {type: hybrid}")],
+     ["stage_b_stepper_type", "hybrid does not know inertia: no"], []),
+    ("stage without inertia under the case's hybrid", [STAGES("end: 10 s", "end: 2000 s, inertia: no"), ("type: sdirk2", "type: hybrid")],
+     ["stepper_type", "in stage b: hybrid does not know inertia: no"], []),
+    ("steps of a stage out of order", [STAGES("end: 10 s", "end: 2000 s, stepper: {dt: 60 s}")], ["stage_b_stepper_dt", "stepper_dt_max"], []),
+    ("gravity ramp longer than its stage", [STAGES("end: 10 s, gravity: [0 m/s^2, -1 m/s^2], gravity_ramp: 11 s", "end: 2000 s")],
+     ["stage_a_gravity_ramp", "longer than the stage"], []),
+    ("typo in a stage", [STAGES("end: 10 s", "end: 2000 s, inrtia: no")], ["stage_b_inrtia", "did you mean stage_b_inertia"], []),
+    ("stage not listed", [STAGES("end: 10 s", "end: 2000 s}\n  d: {end: 3000 s")], ["stage 'd' is not listed in stages"], []),
+    ("stage's tolerance out of range", [STAGES("end: 10 s", "end: 2000 s")], ["-stage_b_stepper_tol", "out of range"], ["-stage_b_stepper_tol", "2"]),
+    ("bad clock", [("initial: yes}", "initial: yes, clock: wall}")], ["bc_drain_clock", "run | stage"], []),
     # --- command line
     ("option without unit", [], ["-region_column_pressure", "needs the unit"], ["-region_column_pressure", "3e6"]),
     ("option out of range", [], ["-" + M + "porosity", "out of range"], ["-" + M + "porosity", "2"]),

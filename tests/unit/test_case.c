@@ -175,6 +175,49 @@ static void command_line_wins(void **state)
   GOOD(CaseDestroy(&c));
 }
 
+/* What a stage names, else what the case names, else the default with the stage's own length. */
+static void stages(void **state)
+{
+  static const char *const option[][2] = {
+      {"-stages", "settle,slide"},
+      {"-stage_settle_end", "500 s"},
+      {"-stage_slide_end", "2000 s"},
+      {"-stage_slide_stepper_type", "hybrid"},
+      {"-stage_settle_inertia", "no"},
+      {"-stage_settle_stepper_tol", "0.1"},
+      {"-stage_slide_boundaries_off", "load"},
+      {"-stage_settle_kinetics_active", "no"},
+      {"-bc_drain_clock", "stage"},
+      {"-gravity", "0 m/s^2,-9.81 m/s^2"},
+      {"-stage_slide_gravity", "0 m/s^2,-1 m/s^2"},
+      {"-stepper_tol", "0.02"},
+  };
+  Case        c;
+  bool        ok;
+  const Case *a, *b;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+    set_option(option[i][0], option[i][1]);
+  GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+    GOOD(PetscOptionsClearValue(NULL, option[i][0]));
+  assert_true(ok && c.nstage == 2);
+  a = CaseInStage(&c, 0);
+  b = CaseInStage(a, 1);
+  assert_true(a->t_begin == 0 && a->t_end == 500 && b->t_begin == 500 && b->t_end == 2000 && c.t_end == 2000);
+  assert_true(!a->inertia && !a->fields.inertia && b->inertia && b->fields.inertia && b->fields.n == a->fields.n);
+  assert_string_equal(a->stepper, "sdirk2");
+  assert_string_equal(b->stepper, "hybrid");
+  assert_true(a->tol == 0.1 && b->tol == 0.02 && a->dt == 1 && b->dt == 1 && b->dt_max == 50);
+  assert_true(a->dt_min == 1e-9 * 500 && b->dt_min == 1e-9 * 1500);
+  assert_true(a->nbc == 5 && b->nbc == 4 && b->bc[3].type == BC_PRESSURE && c.nbc == 5);
+  assert_true(a->bc[4].zero == 0 && b->bc[3].zero == 500 && b->bc[0].zero == 0);
+  assert_true(a->material[0].kinetics.K0 == 0 && a->material[0].reacts && b->material[0].kinetics.K0 == 2.5e-10);
+  assert_true(a->gravity_before[1] == 0 && b->gravity_before[1] == -9.81 && b->gravity[1] == -1);
+  GOOD(CaseDestroy(&c));
+}
+
 static void refused(void **state)
 {
   static const char *const option[][2] = {{"-mat_sediment_porosty", "0.2"}, {"-region_column_Sw", "0.7"}};
@@ -365,10 +408,15 @@ static void resolved_is_the_same_case(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(units_to_si),       cmocka_unit_test(units_refused),
-      cmocka_unit_test(schedule_values),   cmocka_unit_test(read_bp2),
-      cmocka_unit_test(refused),           cmocka_unit_test(nearest_key),
-      cmocka_unit_test(command_line_wins), cmocka_unit_test(resolved_is_the_same_case),
+      cmocka_unit_test(units_to_si),
+      cmocka_unit_test(units_refused),
+      cmocka_unit_test(schedule_values),
+      cmocka_unit_test(read_bp2),
+      cmocka_unit_test(stages),
+      cmocka_unit_test(refused),
+      cmocka_unit_test(nearest_key),
+      cmocka_unit_test(command_line_wins),
+      cmocka_unit_test(resolved_is_the_same_case),
   };
   const char *up = strstr(__FILE__, "tests/unit/");
   int         failed;

@@ -92,8 +92,9 @@ static void FillParticle(Particles *P, PetscInt p, PetscInt id, const double X[2
   for (int k = 0; k < P_COUNT; k++)
     P->f[k][p] = k < P_SIG ? 0.5 + Noise(id, k) : Linear(k, X) * 1e5;
   for (int d = 0; d < 2; d++) {
-    P->f[P_X + d][p] = X[d] + u[d];
-    P->f[P_U + d][p] = u[d];
+    P->f[P_X + d][p]  = X[d] + u[d];
+    P->f[P_U + d][p]  = u[d];
+    P->f[P_X0 + d][p] = X[d];
   }
   P->f[P_PW][p]      = Linear(0, X) * 1e6;
   P->f[P_PG][p]      = P->f[P_PW][p]; /* no capillary pressure: p is linear, too */

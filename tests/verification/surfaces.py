@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, check, finish, judge, order, table
+from common import Run, finish, judge, order, table
 
 CASE = Path(__file__).parent / "cases" / "shear_block.yaml"
 ROW = "surfaces"

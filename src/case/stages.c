@@ -1,0 +1,321 @@
+/* stages: the case as it holds in each stage of a run.  All of it is made when the case is read; a run only looks. */
+#include "case_private.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#define FAIL(stage, key, ...)                                                                                          \
+  do {                                                                                                                 \
+    char option_[256];                                                                                                 \
+    KeyOption(option_, sizeof option_, GROUP_STAGE, (stage)->name, key);                                               \
+    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
+  } while (0)
+
+/* An integrator without matrices? */
+static bool Local(const Case *c)
+{
+  return !strcmp(c->stepper, "hybrid") || !strcmp(c->stepper, "explicit");
+}
+
+/* Is there such a key in the file or on the command line? */
+static PetscErrorCode Given(Reader *r, Group g, const char *instance, const char *key, bool *given)
+{
+  char        option[256];
+  const char *text;
+  bool        from_file;
+
+  PetscFunctionBeginUser;
+  KeyOption(option, sizeof option, g, instance, key);
+  PetscCall(ReaderFind(r, option, &text, given, &from_file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds an error at the stage's key, or at the case's where the stage took its value. */
+static void Fail(Reader *r, const char *stage, const char *key, const char *what)
+{
+  char option[256];
+  bool given = false;
+
+  if (!stage) {
+    ReaderError(r, key, NULL, "%s", what);
+    return;
+  }
+  KeyOption(option, sizeof option, GROUP_STAGE, stage, key);
+  if (Given(r, GROUP_CASE, "", key, &given) || !given || Given(r, GROUP_STAGE, stage, key, &given) || given)
+    ReaderError(r, option, NULL, "%s", what);
+  else
+    ReaderError(r, key, NULL, "in stage %s: %s", stage, what);
+}
+
+/* A condition that the integrators without a matrix do not know; false: there is none. */
+static bool UnknownCondition(Reader *r, const Case *c)
+{
+  char option[256];
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (!c->bc[k].type || (BC_LOCAL >> c->bc[k].type & 1u))
+      continue;
+    KeyOption(option, sizeof option, GROUP_BC, c->bc[k].name, "type");
+    ReaderError(r, option, NULL, "%s does not know the condition %s; use sdirk2 or euler", c->stepper,
+                case_bc_type[c->bc[k].type - 1]);
+    return true;
+  }
+  return false;
+}
+
+void CheckTimes(Reader *r, const Case *c, const char *stage)
+{
+  const char *unknown = CaseNeedsImplicit(c);
+  char        what[CASE_WHY];
+
+  if (Local(c) && unknown && !UnknownCondition(r, c)) {
+    snprintf(what, sizeof what, "%s does not know %s; use sdirk2 or euler", c->stepper, unknown);
+    Fail(r, stage, "stepper_type", what);
+  }
+  if (Local(c) && c->dt > c->dt_max) {
+    snprintf(what, sizeof what, "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
+    Fail(r, stage, "stepper_dt", what);
+  }
+  if (!Local(c) && (c->dt_min > c->dt || c->dt > c->dt_max)) {
+    snprintf(what, sizeof what, "must lie between stepper_dt_min and stepper_dt_max (%g s <= %g s <= %g s fails)",
+             c->dt_min, c->dt, c->dt_max);
+    Fail(r, stage, "stepper_dt", what);
+  }
+  if (c->axisymmetric && c->gravity[0] != 0.0) {
+    snprintf(what, sizeof what, "must point along the axis, y, when geometry is axisymmetric (%g m/s^2 along x)",
+             c->gravity[0]);
+    Fail(r, stage, "gravity", what);
+  }
+}
+
+PetscErrorCode CaseStageEnds(Reader *r, Case *c)
+{
+  double before = 0.0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->nstage; i++) {
+    CaseStage     *s      = &c->stage[i];
+    const PetscInt errors = r->nerror;
+
+    PetscCall(KeyRead(r, c, GROUP_STAGE, i, case_group[GROUP_STAGE].key)); /* the first key: end */
+    r->bad[GROUP_STAGE] = r->bad[GROUP_STAGE] || r->nerror > errors;
+    if (r->bad[GROUP_STAGE])
+      continue;
+    if (s->end <= before) {
+      FAIL(s, "end", "is %g s but %s at %g s: %s", s->end, i ? "the stage before ends" : "the run begins", before,
+           s->end == before ? "the stage is empty" : "stages must be listed in the order of their ends");
+      r->bad[GROUP_STAGE] = true;
+    }
+    before = s->end;
+  }
+  if (c->nstage)
+    c->t_end = before > 0.0 ? before : 1.0; /* 1: so that the rest of a bad case is read */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- keys */
+/* "1e-3 @time_end" of the case's key means that share of the stage's length. */
+static void OfLength(const char *name, const Case *c, void *place)
+{
+  for (const Key *k = case_group[GROUP_CASE].key; k->name; k++) {
+    if (!strcmp(k->name, name) && k->def && strstr(k->def, "@time_end"))
+      *(double *)place = strtod(k->def, NULL) * (c->t_end - c->t_begin);
+  }
+}
+
+static PetscErrorCode StageKeys(Reader *r, Case *c, PetscInt i)
+{
+  CaseStage *s = &c->stage[i];
+
+  PetscFunctionBeginUser;
+  for (const Key *k = case_group[GROUP_STAGE].key + 1; k->name; k++) {
+    bool given = true;
+
+    if (k->kept)
+      PetscCall(Given(r, GROUP_CASE, "", k->name, &given));
+    if (!given)
+      OfLength(k->name, &s->c, (char *)s + k->offset);
+    PetscCall(KeyRead(r, c, GROUP_STAGE, i, k));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- boundaries */
+/* Index of a name among those of a group, -1 and an error if it is not there. */
+static PetscInt Find(Reader *r, const Case *c, const CaseStage *s, const char *key, Group g, const char *name)
+{
+  const char *word[258], *best;
+  char        nearest[64];
+  PetscInt    n = 0;
+
+  for (; n < *GroupCount(c, g) && n < 256; n++) {
+    word[n] = GroupInstance(c, g, n);
+    if (!strcasecmp(name, word[n]))
+      return n;
+  }
+  word[n] = NULL;
+  best    = WordNearest(name, word, nearest, sizeof nearest) ? nearest : NULL;
+  FAIL(s, key, "there is no %s '%s'%s%s%s", case_group[g].noun, name, best ? "; did you mean " : "", best ? best : "",
+       best ? "?" : "");
+  return -1;
+}
+
+static void MarkNames(Reader *r, const Case *c, const CaseStage *s, const char *key, const char *names, bool *marked)
+{
+  List list;
+
+  ListCreate(names, &list);
+  for (PetscInt i = 0; i < list.n; i++) {
+    const PetscInt k = Find(r, c, s, key, GROUP_BC, list.item[i]);
+
+    if (k < 0)
+      continue;
+    if (marked[k])
+      FAIL(s, key, "the boundary %s is listed twice", c->bc[k].name);
+    marked[k] = true;
+  }
+  ListDestroy(&list);
+}
+
+/* The stage's own list of conditions, in the case's order. */
+static PetscErrorCode StageBoundaries(Reader *r, const Case *c, CaseStage *s)
+{
+  const bool all = !strcasecmp(s->boundaries, "all"), none = !strcasecmp(s->boundaries, "none");
+  bool       marked[256] = {false};
+  PetscInt   n           = 0;
+
+  PetscFunctionBeginUser;
+  if (!all && s->off[0])
+    FAIL(s, "boundaries_off", "is given beside boundaries; choose one");
+  MarkNames(r, c, s, all ? "boundaries_off" : "boundaries", all ? s->off : none ? "" : s->boundaries, marked);
+  PetscCall(PetscMalloc1(PetscMax(c->nbc, 1), &s->c.bc));
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (marked[k] == all)
+      continue;
+    s->c.bc[n]      = c->bc[k];
+    s->c.bc[n].zero = c->bc[k].of_stage ? s->c.t_begin : 0.0;
+    n++;
+  }
+  s->c.nbc = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- materials */
+static bool SameLiquid(const Liquid *a, const Liquid *b)
+{
+  return a->rho0 == b->rho0 && a->K == b->K && a->beta == b->beta && a->p_ref == b->p_ref && a->T_ref == b->T_ref;
+}
+
+/* What ties masses to pressures and volumes, or hydrate to water and gas, and so cannot change while all of them stay.
+ */
+static const char *Differs(const FieldSet *fs, const Material *a, const Material *b)
+{
+  const Retention *x = &a->retention, *y = &b->retention;
+  const Kinetics  *p = &a->kinetics, *q = &b->kinetics;
+
+  if (a->porosity != b->porosity)
+    return "porosity";
+  if (!SameLiquid(&a->solid, &b->solid))
+    return "density or expansion of the grains";
+  if (!SameLiquid(&a->hydrate, &b->hydrate))
+    return "density or expansion of hydrate";
+  if (fs->phase[PHASE_W] && !SameLiquid(&a->water, &b->water))
+    return "density, compressibility or expansion of water";
+  if (fs->phase[PHASE_G] && a->gas.M != b->gas.M)
+    return "molar mass of gas";
+  if (fs->phase[PHASE_G] &&
+      (strcmp(x->type, y->type) || x->p0 != y->p0 || x->m != y->m || x->lambda != y->lambda || x->Swr != y->Swr ||
+       x->Sgr != y->Sgr || x->p_smooth != y->p_smooth || x->p_trap != y->p_trap))
+    return "retention";
+  if (a->reacts != b->reacts || p->M_h != q->M_h || p->M_w != q->M_w || p->M_g != q->M_g || p->N_h != q->N_h)
+    return "hydrate (kinetics active or not, molar masses, hydrate number)";
+  return NULL;
+}
+
+static PetscErrorCode StageMaterials(Reader *r, const Case *c, CaseStage *s)
+{
+  List list;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(PetscMax(c->nregion, 1), &s->c.region));
+  PetscCall(PetscArraycpy(s->c.region, c->region, c->nregion));
+  PetscCall(PetscMalloc1(PetscMax(c->nmaterial, 1), &s->c.material));
+  PetscCall(PetscArraycpy(s->c.material, c->material, c->nmaterial));
+  ListCreate(s->materials, &list);
+  if (list.n % 2)
+    FAIL(s, "materials", "has %d names, needs pairs: region, material, ...", (int)list.n);
+  for (PetscInt i = 0; i + 1 < list.n; i += 2) {
+    const PetscInt g = Find(r, c, s, "materials", GROUP_REGION, list.item[i]);
+    const PetscInt m = Find(r, c, s, "materials", GROUP_MATERIAL, list.item[i + 1]);
+
+    if (g < 0 || m < 0)
+      continue;
+    const Material *old = &c->material[c->region[g].material];
+    const char     *why = Differs(&c->fields, old, &c->material[m]);
+
+    if (why)
+      FAIL(s, "materials",
+           "region %s cannot change from %s to %s, whose %s differs: its masses could not stay as they are",
+           c->region[g].name, old->name, c->material[m].name, why);
+    s->c.region[g].material = m;
+  }
+  ListDestroy(&list);
+  for (PetscInt m = 0; m < c->nmaterial && !s->reaction; m++)
+    s->c.material[m].kinetics.K0 = 0.0; /* hydrate stays, and goes on to count as water and gas in the balances */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- all of it */
+static void StageGravity(Reader *r, const Case *before, bool last, CaseStage *s)
+{
+  bool changes = false;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    s->c.gravity_before[d] = before ? before->gravity[d] : 0.0;
+    changes                = changes || s->c.gravity_before[d] != s->c.gravity[d];
+  }
+  if (changes && !last && s->c.gravity_ramp > s->c.t_end - s->c.t_begin)
+    Fail(r, s->name, "gravity_ramp",
+         "must not be longer than the stage, in which gravity changes, where another one follows");
+}
+
+PetscErrorCode CaseStages(Reader *r, Case *c)
+{
+  const PetscInt before = r->nerror;
+
+  PetscFunctionBeginUser;
+  if (c->nstage && c->t_end != c->stage[c->nstage - 1].end && !r->bad[GROUP_STAGE] && !r->bad[GROUP_CASE])
+    ReaderError(r, "time_end", NULL, "is %g s but the last stage, %s, ends at %g s; leave it out", c->t_end,
+                c->stage[c->nstage - 1].name, c->stage[c->nstage - 1].end);
+  for (PetscInt i = 0; i < c->nstage; i++) {
+    CaseStage     *s      = &c->stage[i];
+    const PetscInt errors = r->nerror;
+
+    s->c         = *c;
+    s->c.t_begin = i ? c->stage[i - 1].end : 0.0;
+    s->c.t_end   = s->end;
+    PetscCall(StageKeys(r, c, i));
+    s->c.fields.inertia = s->c.inertia;
+    PetscCall(StageMaterials(r, c, s));
+    PetscCall(StageBoundaries(r, c, s));
+    if (r->nerror > errors || r->bad[GROUP_CASE] || r->bad[GROUP_STAGE])
+      continue;
+    StageGravity(r, i ? &c->stage[i - 1].c : NULL, i + 1 == c->nstage, s);
+    CheckTimes(r, &s->c, s->name);
+  }
+  r->bad[GROUP_STAGE] = r->bad[GROUP_STAGE] || r->nerror > before;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CaseStagesDestroy(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->nstage; i++) {
+    PetscCall(PetscFree(c->stage[i].c.bc));
+    PetscCall(PetscFree(c->stage[i].c.region));
+    PetscCall(PetscFree(c->stage[i].c.material));
+  }
+  PetscCall(PetscFree(c->stage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,88 @@
+/* The stages of a run: which case, integrator and step control hold, and what one stage hands to the next. */
+#include "clathra/stepper.h"
+
+static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperScheme_Sdirk2, &StepperScheme_Hybrid,
+                                               &StepperScheme_Explicit, NULL};
+
+double StepperFloorU(const Stepper *s)
+{
+  return 1e-3 * fmin(s->model->grid.h[0], s->model->grid.h[1]);
+}
+
+void StepperStageWords(const Stepper *s, char words[80])
+{
+  const Case *c = s->model->c;
+
+  words[0] = '\0';
+  for (PetscInt k = 0; k < c->nstage; k++) {
+    if (c == &c->stage[k].c)
+      snprintf(words, 80, "stage %s: ", c->stage[k].name);
+  }
+}
+
+bool StepperStageDone(const Stepper *s)
+{
+  return CaseAtEnd(s->model->c, s->state.t);
+}
+
+bool StepperDone(const Stepper *s)
+{
+  return StepperStageDone(s) && s->state.stage + 1 >= s->model->c->nstage;
+}
+
+PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
+{
+  const Case *c = CaseInStage(s->model->c, k);
+  PetscBool   same;
+
+  PetscFunctionBeginUser;
+  s->model->c = c;
+  s->scheme   = NULL;
+  for (int i = 0; schemes[i]; i++) {
+    PetscCall(PetscStrcmp(schemes[i]->name, c->stepper, &same));
+    if (same)
+      s->scheme = schemes[i];
+  }
+  PetscCall(PetscStrcmp(STEPPER_AUTO, c->stepper, &same));
+  if (same)
+    s->scheme = &StepperScheme_Sdirk2; /* until the forecast is known */
+  PetscCheck(s->scheme, s->model->grid.comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "no time integrator %s", c->stepper);
+  s->adaptive     = c->adaptive;
+  s->dt_min       = c->dt_min;
+  s->dt_max       = c->dt_max;
+  s->tol          = c->tol;
+  s->max_failures = c->max_failures;
+  s->crawl        = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From here on displacements count; where a particle was seeded stays known. */
+static void ResetDisplacement(Stepper *s)
+{
+  Particles *P = &s->model->P;
+
+  for (PetscInt p = 0; P->f[P_U] && p < P->n; p++) {
+    for (int d = 0; d < CL_DIM; d++)
+      P->f[P_U + d][p] = 0.0;
+    P->f[P_LOGJ][p] = 0.0;
+  }
+  s->state.scale_u = StepperFloorU(s);
+}
+
+/* Particles stay as they are; only the rates of the last step are no rates of this stage. */
+PetscErrorCode StepperNextStage(Stepper *s)
+{
+  StepperState *z = &s->state;
+
+  PetscFunctionBeginUser;
+  z->t = s->model->c->t_end; /* to the last digit */
+  z->stage++;
+  PetscCall(StepperTakeStage(s, z->stage));
+  z->dt      = s->model->c->dt;
+  z->hold    = 0;
+  z->fresh   = 1;
+  z->err_old = 1.0;
+  if (s->model->c->stage[z->stage].reset)
+    ResetDisplacement(s);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
