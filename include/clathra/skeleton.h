@@ -71,7 +71,7 @@ typedef struct {
 typedef struct {
   int           n;
   const double *c, *s, *xx, *yy, *xy, *thermal, *E_n, *E, *Sh;
-  double       *work; /* [n], J/m^3; null: nobody asks */
+  double       *work; /* [n], J/m^3; may be null for a law that dissipates nothing */
   SkeletonStore store;
 } SkeletonBlock;
 
@@ -95,7 +95,8 @@ static inline bool SkeletonUpdateBlock(const Material *mat, const SkeletonBlock 
   return SkeletonLawOf(mat)->block(mat, b, why);
 }
 
-/* The only functions that read and write the history of particle q; the stress alone is what every law holds. */
+/* Outside the block forms of the laws the only functions that read and write the history of particle q; the stress
+   alone is what every law holds. */
 static inline __attribute__((always_inline)) void SkeletonTakeStress(const SkeletonStore *f, ptrdiff_t q,
                                                                      SkeletonHistory *h)
 {

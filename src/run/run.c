@@ -161,8 +161,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   PetscCall(LocalSummary(s, local));
-  PetscCall(LooseSummary(s, loose));
   PetscCall(YieldSummary(s->model, yields));
+  PetscCall(LooseSummary(s, loose));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT

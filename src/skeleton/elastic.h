@@ -53,4 +53,5 @@ INLINE void ElasticEnd(const SkeletonHistory *h, SkeletonState *o)
     o->plastic[k] = h->plastic[k];
 }
 
+bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why);
 void ElasticTangent(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonTangent *t);

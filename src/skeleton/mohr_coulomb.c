@@ -192,6 +192,8 @@ static bool Return(const Material *mat, const SkeletonStep *d, SkeletonState *s,
 
   for (int k = 0; k < 4; k++)
     e[k] = 0.0;
+  s->work   = 0.0;
+  s->region = RETURN_ELASTIC;
   PrincipalOf(s->sig, &p);
   if (!Yields(&mat->plasticity, d->Sh, s->eps, p.y))
     return true;
@@ -234,29 +236,25 @@ bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const Ske
   return true;
 }
 
+/* Trial stresses of all first, in vector code, then those that yield one by one. */
 bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why)
 {
-  bool found = true;
+  const SkeletonStore *f     = &b->store;
+  bool                 found = Block_Elastic(mat, b, why);
 
   for (int q = 0; q < b->n; q++) {
-    const SkeletonStep d = {.c       = b->c[q],
-                            .s       = b->s[q],
-                            .e       = {b->xx[q], b->yy[q], 0.0, b->xy[q]},
-                            .thermal = b->thermal[q],
-                            .E_n     = b->E_n[q],
-                            .E       = b->E[q],
-                            .Sh      = b->Sh[q]};
-    SkeletonHistory    h;
-    SkeletonState      s;
+    const SkeletonStep d = {.E = b->E[q], .Sh = b->Sh[q]};
+    SkeletonState      s = {.sig = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]}, .eps = f->eps[q]};
     double             e[4];
 
-    SkeletonTake(&b->store, q, &h);
-    ElasticStress(&mat->elasticity, &h, &d, &s);
-    ElasticEnd(&h, &s);
-    found = Return(mat, &d, &s, NULL, e, why) && found;
-    SkeletonKeep(&b->store, q, &s);
-    if (b->work)
-      b->work[q] = s.work;
+    found       = Return(mat, &d, &s, NULL, e, why) && found;
+    b->work[q]  = s.work;
+    f->yield[q] = (double)s.region;
+    if (s.region == RETURN_ELASTIC)
+      continue;
+    f->eps[q] = s.eps;
+    for (int k = 0; k < 4; k++)
+      f->sig[k][q] = s.sig[k];
   }
   return found;
 }

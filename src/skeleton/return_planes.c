@@ -90,60 +90,76 @@ static bool Invert(int n, double M[PLANES][PLANES], double inv[PLANES][PLANES])
   return true;
 }
 
-/* (67) */
-static bool ClosestState(const Trial3 *t, const Strength *k, const Active *s, Closest *o)
+/* Active planes with their normals and flows, slopes of these in the sines of the angles, and the inverse of A^T D B.
+ */
+typedef struct {
+  double a[PLANES][3], Db[PLANES][3], dDb[PLANES][3], inv[PLANES][PLANES];
+} Levers;
+
+static bool LeversOf(const Trial3 *t, const Strength *k, const Active *s, Levers *l)
 {
-  double a[PLANES][3], da[PLANES][3], Db[PLANES][3], dDb[PLANES][3], M[PLANES][PLANES], inv[PLANES][PLANES];
+  double M[PLANES][PLANES];
 
   for (int m = 0; m < s->n; m++) {
-    double b[3], db[3];
+    double b[3], db[3], unused[3];
 
-    Normal(s->plane[m], sin(k->phi), a[m], da[m]);
+    Normal(s->plane[m], sin(k->phi), l->a[m], unused);
     Normal(s->plane[m], sin(k->psi), b, db);
-    Hooke(t, b, Db[m]);
-    Hooke(t, db, dDb[m]);
+    Hooke(t, b, l->Db[m]);
+    Hooke(t, db, l->dDb[m]);
   }
   for (int m = 0; m < s->n; m++) {
     for (int n = 0; n < s->n; n++)
-      M[m][n] = a[m][0] * Db[n][0] + a[m][1] * Db[n][1] + a[m][2] * Db[n][2];
+      M[m][n] = l->a[m][0] * l->Db[n][0] + l->a[m][1] * l->Db[n][1] + l->a[m][2] * l->Db[n][2];
   }
-  if (!Invert(s->n, M, inv))
+  return Invert(s->n, M, l->inv);
+}
+
+/* What keeps the equation of active plane m when y_tr, c, phi, psi change. */
+static void PlaneSlopes(const Strength *k, const Active *s, const Levers *l, int m, Closest *o)
+{
+  const int    plane = s->plane[m];
+  const bool   mc    = plane < TENSION_1;
+  const double sum   = mc ? o->y[pair[plane][0]] + o->y[pair[plane][1]] : 0.0;
+  const double by_c  = mc ? -2.0 * cos(k->phi) : 0.0;
+  const double by_f  = mc ? sum * cos(k->phi) + 2.0 * k->c * sin(k->phi) : 0.0;
+  double       by_p  = 0.0;
+
+  for (int n = 0; n < s->n; n++)
+    by_p -=
+        o->mu[n] * cos(k->psi) * (l->a[m][0] * l->dDb[n][0] + l->a[m][1] * l->dDb[n][1] + l->a[m][2] * l->dDb[n][2]);
+  for (int i = 0; i < 3; i++) {
+    double lever = 0.0; /* of plane m on y_i */
+
+    for (int n = 0; n < s->n; n++)
+      lever += l->Db[n][i] * l->inv[n][m];
+    o->c[i] -= lever * by_c;
+    o->phi[i] -= lever * by_f;
+    o->psi[i] -= lever * by_p + o->mu[m] * cos(k->psi) * l->dDb[m][i];
+    for (int j = 0; j < 3; j++)
+      o->dy[i][j] -= lever * l->a[m][j];
+  }
+}
+
+/* (67) */
+static bool ClosestState(const Trial3 *t, const Strength *k, const Active *s, Closest *o)
+{
+  Levers l;
+
+  if (!LeversOf(t, k, s, &l))
     return false;
   *o = (Closest){.y = {t->y[0], t->y[1], t->y[2]}};
   for (int m = 0; m < s->n; m++) {
     for (int n = 0; n < s->n; n++)
-      o->mu[m] += inv[m][n] * Value(t, k, s->plane[n], t->y);
+      o->mu[m] += l.inv[m][n] * Value(t, k, s->plane[n], t->y);
   }
   for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++)
-      o->dy[i][j] = i == j;
+    o->dy[i][i] = 1.0;
     for (int m = 0; m < s->n; m++)
-      o->y[i] -= o->mu[m] * Db[m][i];
+      o->y[i] -= o->mu[m] * l.Db[m][i];
   }
-  for (int m = 0; m < s->n; m++) { /* what keeps each plane's equation when y_tr, c, phi, psi change */
-    const int    plane = s->plane[m];
-    const bool   mc    = plane < TENSION_1;
-    const double sum   = mc ? o->y[pair[plane][0]] + o->y[pair[plane][1]] : 0.0;
-    const double by_c  = mc ? -2.0 * cos(k->phi) : 0.0;
-    const double by_f  = mc ? sum * cos(k->phi) + 2.0 * k->c * sin(k->phi) : 0.0;
-    double       by_p  = 0.0;
-
-    for (int n = 0; n < s->n; n++)
-      by_p -= o->mu[n] * cos(k->psi) * (a[m][0] * dDb[n][0] + a[m][1] * dDb[n][1] + a[m][2] * dDb[n][2]);
-    for (int i = 0; i < 3; i++) {
-      double lever = 0.0; /* of plane m on y_i */
-
-      for (int n = 0; n < s->n; n++)
-        lever += Db[n][i] * inv[n][m];
-      o->c[i] -= lever * by_c;
-      o->phi[i] -= lever * by_f;
-      o->psi[i] -= lever * by_p;
-      for (int j = 0; j < 3; j++)
-        o->dy[i][j] -= lever * a[m][j];
-    }
-    for (int i = 0; i < 3; i++)
-      o->psi[i] -= o->mu[m] * cos(k->psi) * dDb[m][i];
-  }
+  for (int m = 0; m < s->n; m++)
+    PlaneSlopes(k, s, &l, m, o);
   return true;
 }
 

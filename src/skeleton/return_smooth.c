@@ -4,8 +4,9 @@
 #include "plastic.h"
 
 #define UNKNOWNS 5
-#define ITERATIONS 60
-#define HALVINGS 30
+#define ITERATIONS 30
+#define HALVINGS 12
+#define SHARP 1e-6 /* roundness of the potential's end, of the stress, below which it is a point */
 #define FLAT 1e-7  /* dilation below which the potential has no end to speak of: to the apex at once */
 #define CLOSE 1e-9 /* scaled residual from which one more full step ends at round-off */
 enum { X_L = 3, X_EPS };
@@ -20,7 +21,7 @@ double DeviatoricNorm(const double x[3], double dx[3])
   return n;
 }
 
-/* (65) at x = (y, multiplier in Pa, plastic strain), all in Pa: rows as unknowns, then matrices. */
+/* (65) at x = (y, multiplier in Pa, growth of the plastic strain), all in Pa: rows as unknowns, then matrices. */
 typedef struct {
   double r[UNKNOWNS], A[UNKNOWNS][UNKNOWNS], by[UNKNOWNS][BY_COUNT];
 } System;
@@ -31,7 +32,7 @@ static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, Sy
   FlowGradient P;
   double       dF[3], dn[3], F_phi, n_y[3] = {0.0}, n_eps = 0.0, n_S = 0.0;
 
-  StrengthEvaluate(t->law, t->Sh, x[X_EPS], &k);
+  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
   MenetreyWillamGradient(k.phi, k.psi, t->law->eccentricity * t->law->c_max, x, &P);
   const double n = DeviatoricNorm(P.dev, dn), L = x[X_L];
 
@@ -61,7 +62,7 @@ static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, Sy
     s->by[X_L][i] = s->by[X_EPS][i] = 0.0;
   }
   s->r[X_L]   = MohrCoulombYield(k.phi, k.c, x, dF, &F_phi);
-  s->r[X_EPS] = t->E * (x[X_EPS] - t->eps) - L * n;
+  s->r[X_EPS] = t->E * x[X_EPS] - L * n;
   for (int j = 0; j < 3; j++) {
     s->A[X_L][j]   = dF[j];
     s->A[X_EPS][j] = -L * n_y[j];
@@ -72,7 +73,7 @@ static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, Sy
   s->A[X_EPS][X_EPS]  = t->E - L * n_eps;
   s->by[X_L][BY_E]    = 0.0;
   s->by[X_L][BY_SH]   = -k.c_S;
-  s->by[X_EPS][BY_E]  = x[X_EPS] - t->eps;
+  s->by[X_EPS][BY_E]  = x[X_EPS];
   s->by[X_EPS][BY_SH] = -L * n_S;
 }
 
@@ -204,8 +205,8 @@ static void GuessBeyond(const Trial3 *t, double x[UNKNOWNS])
   double       ds[3];
   const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, norm = DeviatoricNorm(t->y, ds);
 
-  x[X_EPS] = t->eps + norm / (t->G2 * t->E);
-  StrengthEvaluate(t->law, t->Sh, x[X_EPS], &k);
+  x[X_EPS] = norm / (t->G2 * t->E);
+  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
   const double tp = tan(k.psi), m = t->law->eccentricity * t->law->c_max * tp, at = k.c / tan(k.phi),
                R    = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi));
   x[X_L]            = (sm - at) / ((t->G2 + 3.0 * t->lame) * tp / 3.0);
@@ -225,7 +226,7 @@ static bool Continuation(const Trial3 *t, double scale, double x[UNKNOWNS], int 
   StrengthEvaluate(t->law, t->Sh, t->eps, &k);
   inside = fmin((t->y[0] + t->y[1] + t->y[2]) / 3.0, k.phi > 0.0 ? 0.5 * k.c / tan(k.phi) : INFINITY);
   for (int i = 0; i < UNKNOWNS; i++)
-    from[i] = i < 3 ? inside : i == X_L ? 0.0 : t->eps;
+    from[i] = i < 3 ? inside : 0.0;
   while (done < 1.0 && step > 1e-4) {
     const double to = fmin(done + step, 1.0);
 
@@ -246,9 +247,28 @@ static bool Continuation(const Trial3 *t, double scale, double x[UNKNOWNS], int 
   return done >= 1.0;
 }
 
+/* Does a potential that ends in a point (no cohesion, or hardly any dilation left) keep a trial state beyond the apex
+   there?  Its flow must reach the trial deviator: |s_tr| <= 2 G/E L rho(s_tr)/|s_tr|, L what the mean stress asks for.
+ */
+static bool StaysAtApex(const Trial3 *t, double scale, const Returned *apex)
+{
+  const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, s[3] = {t->y[0] - sm, t->y[1] - sm, t->y[2] - sm};
+  Strength     k;
+  FlowGradient P;
+
+  StrengthEvaluate(t->law, t->Sh, apex->eps, &k);
+  if (k.psi < FLAT)
+    return true;
+  if (t->law->eccentricity * t->law->c_max * tan(k.psi) > SHARP * scale)
+    return false;
+  MenetreyWillamGradient(k.phi, k.psi, 0.0, s, &P);
+  const double L = (sm - apex->y[0]) / ((t->G2 + 3.0 * t->lame) * tan(k.psi) / 3.0);
+  return s[0] * s[0] + s[1] * s[1] + s[2] * s[2] <= t->G2 * L * (s[0] * P.dev[0] + s[1] * P.dev[1] + s[2] * P.dev[2]);
+}
+
 bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
 {
-  double     x[UNKNOWNS] = {t->y[0], t->y[1], t->y[2], 0.0, t->eps}, size = 0.0;
+  double     x[UNKNOWNS] = {t->y[0], t->y[1], t->y[2], 0.0, 0.0}, size = 0.0;
   Returned   apex;
   const bool beyond = ReturnApex(t, slopes, &apex);
 
@@ -258,10 +278,7 @@ bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
     size = fmax(size, fabs(t->y[i]));
   bool found = false;
   if (beyond) {
-    Strength k;
-
-    StrengthEvaluate(t->law, t->Sh, apex.eps, &k);
-    if (k.psi < FLAT) {
+    if (StaysAtApex(t, size, &apex)) {
       apex.iterations = 0;
       *r              = apex;
       return true;
@@ -271,7 +288,7 @@ bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
   }
   if (!found) {
     for (int i = 0; i < UNKNOWNS; i++)
-      x[i] = i < 3 ? t->y[i] : i == X_L ? 0.0 : t->eps;
+      x[i] = i < 3 ? t->y[i] : 0.0;
     found = Newton(t, size, x, &r->iterations);
   }
   found = found || (!beyond && Continuation(t, size, x, &r->iterations));
@@ -282,7 +299,7 @@ bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
   }
   for (int i = 0; i < 3; i++)
     r->y[i] = x[i];
-  r->eps = x[X_EPS];
+  r->eps = t->eps + x[X_EPS];
   if (slopes)
     Slopes(t, x, r);
   return true;

@@ -43,7 +43,7 @@ static bool Update_Elastic(const Material *mat, const SkeletonHistory *h, const 
   return true;
 }
 
-static bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why)
+bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why)
 {
   const Elasticity    el = mat->elasticity;
   const SkeletonBlock B  = *b;

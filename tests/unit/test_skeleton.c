@@ -1,4 +1,5 @@
-/* Unit tests of src/skeleton, elastic: the block form is the single form, and the tangent is that of differences. */
+/* Unit tests of src/skeleton: the block form of every law is the single form; the elastic tangent is that of
+   differences (the plastic one: test_plasticity.c). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -47,31 +48,56 @@ static Sample RandomSample(Rng *r)
   return q;
 }
 
+/* Plane stresses, and a material that some of them make yield. */
+static void MakePlastic(Rng *r, Sample *q)
+{
+  q->mat.plasticity = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
+                                   .c_max        = 2e6,
+                                   .c_min        = 2e6,
+                                   .c_res        = 1e6,
+                                   .phi_peak     = 30.0,
+                                   .phi_res      = 25.0,
+                                   .psi_max      = 10.0,
+                                   .psi_min      = 5.0,
+                                   .eta_s        = 1.0,
+                                   .eccentricity = 0.1,
+                                   .cutoff       = INFINITY};
+  q->h.eps          = RngBetween(r, 0.0, 0.5);
+  for (int i = 4; i < 6; i++)
+    q->h.sig[i] = q->h.sig0[i] = 0.0;
+}
+
 static void TestBlock(void **state)
 {
-  Rng    r     = {301};
-  double worst = 0.0;
+  Rng    r      = {301};
+  double worst  = 0.0;
+  int    yields = 0;
 
   (void)state;
   for (int run = 0; run < 200; run++) {
     Sample        q[N];
-    double        a[9][N], sig[12][N], work[N];
-    const char   *why = NULL;
-    SkeletonBlock b   = {.n       = 1 + RngPick(&r, N),
-                         .c       = a[0],
-                         .s       = a[1],
-                         .xx      = a[2],
-                         .yy      = a[3],
-                         .xy      = a[4],
-                         .thermal = a[5],
-                         .E_n     = a[6],
-                         .E       = a[7],
-                         .Sh      = a[8],
-                         .work    = run % 2 ? work : NULL};
+    double        a[9][N], sig[12][N], work[N], eps[N], yield[N];
+    const bool    plastic = run % 2;
+    const char   *why     = NULL;
+    SkeletonBlock b       = {.n       = 1 + RngPick(&r, N),
+                             .c       = a[0],
+                             .s       = a[1],
+                             .xx      = a[2],
+                             .yy      = a[3],
+                             .xy      = a[4],
+                             .thermal = a[5],
+                             .E_n     = a[6],
+                             .E       = a[7],
+                             .Sh      = a[8],
+                             .work    = plastic ? work : NULL,
+                             .store   = {.eps = eps, .yield = yield}};
 
     for (int k = 0; k < N; k++) {
-      q[k]                         = RandomSample(&r);
-      q[k].mat                     = q[0].mat;
+      q[k]     = RandomSample(&r);
+      q[k].mat = q[0].mat;
+      if (plastic)
+        MakePlastic(&r, &q[k]);
+      eps[k]                       = q[k].h.eps;
       q[k].in[SKELETON_STRAIN + 2] = 0.0;
       const SkeletonStep d         = StepOf(q[k].in, q[k].E_n);
       const double       row[9]    = {d.c, d.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
@@ -97,10 +123,15 @@ static void TestBlock(void **state)
         worst = fmax(worst, fabs(sig[i][k] - (k < b.n ? s.sig[i] : q[k].h.sig[i])));
         worst = fmax(worst, fabs(sig[6 + i][k] - (k < b.n ? s.sig0[i] : q[k].h.sig0[i])));
       }
+      if (plastic && k < b.n) {
+        worst = fmax(worst, 1e7 * fmax(fabs(eps[k] - s.eps), fabs(work[k] - s.work) / 1e5));
+        assert_true((int)yield[k] == (int)s.region);
+        yields += s.region != RETURN_ELASTIC;
+      }
     }
   }
-  printf("block against single form: worst %.1e Pa of 1e7\n", worst);
-  assert_true(worst < 1e-7);
+  printf("block against single form: worst %.1e Pa of 1e7; %d yield\n", worst, yields);
+  assert_true(worst < 1e-7 && yields > 500);
 }
 
 static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
