@@ -62,7 +62,8 @@ static inline double GasSaturation(const Particles *P, PetscInt p)
   return 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
 }
 
-/* ---------------------------------------------------------------- file.c: rank 0.  false: it was said to stderr why not
+/* ---------------------------------------------------------------- file.c: rank 0.  false: it was said to stderr why
+ * not
  */
 typedef struct {
   const void *data;
@@ -107,14 +108,13 @@ static inline void IoTime(const Case *c, FILE *f, double t)
   fprintf(f, c->nstage ? "%.16e" : "%.12e", t);
 }
 
-
 /* ---------------------------------------------------------------- h5util.c */
 #define H5Check(expr) PetscCheck((expr) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s", #expr)
 
-PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file);       /* a file in memory */
-PetscErrorCode H5ImageBytes(hid_t image, IoPiece *piece);            /* valid until it is closed; user block and all */
-PetscErrorCode H5FileOpen(const char *path, hid_t *file);            /* to read; *file < 0: it cannot be opened */
-PetscErrorCode H5FileClose(hid_t *file);                             /* also an image, also one that is not open */
+PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file);      /* a file in memory */
+PetscErrorCode H5ImageBytes(hid_t image, IoPiece *piece);           /* valid until it is closed; user block and all */
+PetscErrorCode H5FileOpen(const char *path, hid_t *file);           /* to read; *file < 0: it cannot be opened */
+PetscErrorCode H5FileClose(hid_t *file);                            /* also an image, also one that is not open */
 PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group); /* with all above it */
 /* dims has nd entries; unit NULL = none; compressed when large and `compress`. */
 PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], const void *data,
@@ -150,7 +150,8 @@ PetscErrorCode GatherVariables(Gather *g, const Particles *P, bool compress, hid
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
 #define CHECKPOINT_VERSION 4
-/* The user block: version, case, run, length of the file and a checksum of it; data[bytes] is what follows the block. */
+/* The user block: version, case, run, length of the file and a checksum of it; data[bytes] is what follows the block.
+ */
 void SealMake(char block[SEAL_BYTES], uint64_t fingerprint, uint64_t run, const void *data, size_t bytes);
 /* Is the file a whole, undamaged checkpoint of this version?  Else the reason. */
 PetscErrorCode SealCheck(const char *path, uint64_t *fingerprint, uint64_t *run, bool *ok, char *why, size_t size);

@@ -1,4 +1,4 @@
-/* Reads and checks the cases whose paths come on standard input, one a line, in one process: for scripts/soak.py.  After
+/* Reads and checks the cases whose paths come on standard input, one a line, in one process: for scripts/soak.py. After
    what a case has to say follows a line \001CODE on standard error: 0 valid, 2 refused, 1 an error of PETSc. */
 #include "clathra/case.h"
 #include <stdio.h>
