@@ -1,5 +1,6 @@
 /* stages: the case as it holds in each stage of a run.  All of it is made when the case is read; a run only looks. */
 #include "case_private.h"
+#include "clathra/shape.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -255,6 +256,10 @@ static PetscErrorCode StageMaterials(Reader *r, const Case *c, CaseStage *s)
 
     if (g < 0 || m < 0)
       continue;
+    if (RegionEmpty(&c->region[g])) {
+      FAIL(s, "materials", "region %s has no particles (material: none)", c->region[g].name);
+      continue;
+    }
     const Material *old = &c->material[c->region[g].material];
     const char     *why = Differs(&c->fields, old, &c->material[m]);
 

@@ -62,9 +62,7 @@ static inline double GasSaturation(const Particles *P, PetscInt p)
   return 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
 }
 
-/* ---------------------------------------------------------------- file.c: rank 0.  false: it was said to stderr why
- * not
- */
+/* ---------------------------------------------------------------- file.c: rank 0.  false: stderr has the reason */
 typedef struct {
   const void *data;
   size_t      bytes;
@@ -150,7 +148,7 @@ PetscErrorCode GatherVariables(Gather *g, const Particles *P, bool compress, hid
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
-#define CHECKPOINT_VERSION 5
+#define CHECKPOINT_VERSION 6
 /* The user block: version, case, run, length of the file and a checksum of it; data[bytes] is what follows the block.
  */
 void SealMake(char block[SEAL_BYTES], uint64_t fingerprint, uint64_t run, const void *data, size_t bytes);

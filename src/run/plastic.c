@@ -7,13 +7,13 @@ PetscErrorCode PrintStrength(const Case *c, MPI_Comm comm)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->nregion; k++) {
-    const Region   *r = &c->region[k];
-    const Material *m = &c->material[r->material];
-    Strength        s;
+    const Region     *r = &c->region[k];
+    const Plasticity *p = r->material < 0 ? NULL : &c->material[r->material].plasticity;
+    Strength          s;
 
-    if (m->plasticity.type == PLASTICITY_NONE || !c->fields.solid)
+    if (!p || p->type == PLASTICITY_NONE || !c->fields.solid)
       continue;
-    StrengthEvaluate(&m->plasticity, r->Sh, 0.0, &s);
+    StrengthEvaluate(p, r->Sh, 0.0, &s);
     PetscCall(PetscPrintf(comm,
                           "  region %s starts with cohesion %.6g Pa, friction %.4g deg, dilation %.4g deg (S_h = %g)\n",
                           r->name, s.c, s.phi * 180.0 / M_PI, s.psi * 180.0 / M_PI, r->Sh));

@@ -427,6 +427,7 @@ def page(study, found):
              *table(["scene", "step / stable step", *INTEGRATORS],
                     [[n, f"{f:g}", *(cell(row[i], note, lambda e: f"{e:.3g}") for i in INTEGRATORS)] for n, f, row in found["waves"]])]  # fmt: skip
     text += ["## What breaks", "", *breaks(study, found), ""]
+    text += ["## Random scenes and mutated cases", "", (Path(__file__).with_name("soak.md")).read_text()]
     text += ["## What runs said", "", *(f"{k + 1}. {s}" for k, s in enumerate(note.text)), ""]
     return "\n".join(text)
 
