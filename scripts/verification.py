@@ -55,6 +55,7 @@ SECTION = {  # beside that table
     "geostatic": "Initial states in balance with gravity: nothing moves when the run starts (docs/equations.md, section 13)",
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",
+    "strength": "Mohr-Coulomb: softening along a plastic path, orders of the integrators, Salencon's hole",
     "stability": "Stability at the extremes: a representative part of docs/stability.md",
     "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
 }

@@ -13,6 +13,7 @@ LAYERS = [
     ("tensor", ["tensor", "jet", "fields"], ["tensor", "fields"]),
     ("laws", ["laws"], ["laws"]),
     ("material", ["material"], ["material"]),
+    ("skeleton", ["skeleton"], ["skeleton"]),
     # Exceptions: plain data that many layers read.  case.h is what a scene says (regions, boundary conditions, probes),
     # with schedule.h, the function of time it holds; the reader of case files, src/case, stays at the bottom.
     ("schedule", ["schedule", "ambient"], ["schedule"]),
@@ -32,8 +33,8 @@ LAYERS = [
     ("main", [], ["."]),
 ]
 # The physics sees no solver, grid or message passing: laws include nothing of PETSc, point names none of its objects.
-NO_PETSC = {"tensor", "laws"}
-NO_SOLVER = {"tensor", "laws", "material", "point"}
+NO_PETSC = {"tensor", "laws", "skeleton"}
+NO_SOLVER = {"tensor", "laws", "material", "skeleton", "point"}
 
 RANK_OF_HEADER = {h: i for i, (_, headers, _) in enumerate(LAYERS) for h in headers}
 RANK_OF_FOLDER = {f: i for i, (_, _, folders) in enumerate(LAYERS) for f in folders}

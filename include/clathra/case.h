@@ -74,6 +74,9 @@ enum {
   QUANTITY_U,
   QUANTITY_STRESS,
   QUANTITY_X,
+  QUANTITY_EPS,  /* deviatoric plastic strain */
+  QUANTITY_MEAN, /* mean effective stress, compression-positive */
+  QUANTITY_Q,    /* deviatoric stress sqrt(3 J2) */
   QUANTITY_COUNT
 };
 
@@ -239,8 +242,7 @@ static inline bool RegionGeostatic(const Region *r)
 /* Friction angle of a material, rad; NAN for one that has none. */
 static inline double MaterialFrictionAngle(const Material *m)
 {
-  (void)m;
-  return NAN;
+  return m->plasticity.type == PLASTICITY_NONE ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
 }
 
 /* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */

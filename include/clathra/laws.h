@@ -126,3 +126,47 @@ static inline double ElasticityLameFactor(const Elasticity *law) /* lambda/E */
 {
   return law->nu / ((1.0 + law->nu) * (1.0 - 2.0 * law->nu));
 }
+
+/* ---------------------------------------------------------------- strength: Mohr-Coulomb with hydrate and softening
+   Principal effective stresses y[0] >= y[1] >= y[2], tension-positive, Pa; angles in rad but for those that a case
+   gives. */
+enum { PLASTICITY_NONE = 0, PLASTICITY_MOHR_COULOMB };
+enum { FLOW_MENETREY_WILLAM = 0, FLOW_MOHR_COULOMB };
+typedef struct {
+  int    type, flow;          /* PLASTICITY_..., FLOW_... */
+  double c_max, c_min, c_res; /* cohesion: peak at Sh_max, its lower limit without hydrate, residual; Pa */
+  double phi_peak, phi_res;   /* friction, deg, [0, 90) */
+  double psi_max, psi_min;    /* dilation at Sh_max and its lower limit, deg; softens to zero */
+  double eta_h, Sh_max;       /* how strength falls with hydrate */
+  double eta_s;               /* ... and with plastic strain */
+  double length, cell;        /* softening_length (0: none) and size of a cell, m: eta_s is scaled by cell/length */
+  double eccentricity;        /* of the smooth potential in the meridian plane, of c_max */
+  double cutoff;              /* largest tension, Pa; INFINITY: none */
+  double heat;                /* share of the plastic work that becomes heat, [0,1] */
+} Plasticity;
+
+/* Strength at a hydrate saturation and a deviatoric plastic strain, with slopes in both. */
+typedef struct {
+  double c, phi, psi, c_e, phi_e, psi_e, c_S, psi_S;
+} Strength;
+static inline double SofteningRate(const Plasticity *law)
+{
+  return law->length > 0.0 ? law->eta_s * law->cell / law->length : law->eta_s;
+}
+void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s);
+
+/* F_eps/F_eps,allowed of a plastic state on the yield surface at mean stress sm, the largest over Lode angles, with
+   Young's modulus E and Poisson's ratio nu: at 1 or above the strength falls faster with plastic strain than the
+   elastic stress can follow (70), and the point snaps back. */
+double SofteningRatio(const Plasticity *law, double E, double nu, double Sh, double eps, double sm);
+
+/* F, Pa; slopes in y, phi (slope in c: -1). */
+double MohrCoulombYield(double phi, double c, const double y[3], double dy[3], double *dphi);
+
+/* Gradient P_y of the smooth potential of Menetrey and Willam with its slopes. */
+typedef struct {
+  double y[3], dev[3];   /* P_y; its deviator */
+  double yy[3][3];       /* deviatoric as well */
+  double phi[3], psi[3]; /* slopes of P_y; that in phi is deviatoric */
+} FlowGradient;
+void MenetreyWillamGradient(double phi, double psi, double apex, const double y[3], FlowGradient *P);

@@ -18,4 +18,5 @@ typedef struct {
   Kinetics     kinetics;
   LatentHeat   latent;
   Elasticity   elasticity;
+  Plasticity   plasticity;
 } Material;

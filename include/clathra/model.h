@@ -14,7 +14,16 @@ typedef struct {
   double *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
   double *u_star; /* [n_local][CL_DIM] starred displacement, m */
   double *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
+  double *p_star; /* [n][PLASTIC_COUNT] starred plastic state; null: that of t_n */
 } Stage;
+
+/* What a stage leaves of plasticity at a particle. */
+enum {
+  PLASTIC_EPS = 0,                   /* deviatoric plastic strain */
+  PLASTIC_STRAIN,                    /* [4] plastic strain since t_n, as the body lay at t_n (24) */
+  PLASTIC_WORK = PLASTIC_STRAIN + 4, /* dissipated since t_n, J */
+  PLASTIC_COUNT
+};
 
 /* Result of a stage on the particles, before any commit. */
 typedef struct {
@@ -22,6 +31,9 @@ typedef struct {
   double *y; /* [n][4] p_w, p_g, T, S_h */
   double *u; /* [n][2] displacement of the step so far, m */
   double *v; /* [n][2] skeleton velocity, m/s */
+  double *p; /* [n][PLASTIC_COUNT]; null without plasticity */
+  double *s; /* [n][5] eps_d_p and stress xx yy zz xy; likewise */
+  double *k; /* [n][5] their rates at the end of the step, the scheme's to fill; likewise */
 } Trial;
 
 /* What a meter counts, outwards: kg/s of water and gas, W. */

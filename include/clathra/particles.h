@@ -3,6 +3,7 @@
 #pragma once
 
 #include "clathra/case.h"
+#include "clathra/skeleton.h"
 
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
 #define CL_PARTICLE_TABLE(X)                                                                                           \
@@ -32,6 +33,7 @@
   X(P_RATE, HAS_WATER | HAS_HEAT, "rate", 4, "1/s", "of p_w, p_g (Pa/s), T (K/s) and S_h at the end of the last step") \
   X(P_X0, HAS_SOLID, "initial_position", 2, "m", "where it was seeded")                                                \
   X(P_SH, HAS_ALL, "S_h", 1, "-", "hydrate saturation")                                                                \
+  CL_SKELETON_TABLE(X)                                                                                                 \
   X(P_SW, HAS_WATER, "S_w", 1, "-", "water saturation")                                                                \
   X(P_PHI, HAS_ALL, "porosity", 1, "-", "")
 
@@ -81,6 +83,19 @@ static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
 static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 {
   return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
+}
+
+/* History of the skeleton of the particles from `first` on; the set must have a solid. */
+static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first)
+{
+  SkeletonStore s = {.eps   = P->f[P_EPS] ? P->f[P_EPS] + first : NULL,
+                     .yield = P->f[P_YIELD] ? P->f[P_YIELD] + first : NULL};
+
+  for (int k = 0; k < 6; k++) {
+    s.sig[k]  = P->f[P_SIG + k] + first;
+    s.sig0[k] = P->f[P_SIG0 + k] + first;
+  }
+  return s;
 }
 
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */

@@ -7,7 +7,7 @@
 #include "clathra/fields.h"
 #include "clathra/jet.h"
 #include "clathra/kinematics.h"
-#include "clathra/material.h"
+#include "clathra/skeleton.h"
 
 #define CL_MOBILITY_FLOOR 1e-9 /* of k_r, in the drag only: an immobile phase still has a velocity */
 
@@ -46,12 +46,12 @@ enum {
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
 typedef struct {
-  double V, m_s;
-  double m_star[3]; /* m_h*, m_w*, m_g*, kg */
-  double T_n, Sh_n; /* at t_n */
-  double sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
-  double sig[6], sig0[6];
-  double proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
+  double          V, m_s;
+  double          m_star[3]; /* m_h*, m_w*, m_g*, kg */
+  double          T_n, Sh_n; /* at t_n */
+  double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
+  SkeletonHistory skeleton;
+  double          proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double bracket;  /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   double dt;       /* dt' of the stage */
@@ -61,11 +61,12 @@ typedef struct {
 
 /* State at the end of the stage. */
 typedef struct {
-  double V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
-  double sig[6], sig0[6], stretch[2];
-  double F[2][2]; /* of the step, in the plane */
-  double rho[PHASE_COUNT], tau[PHASE_COUNT];
-  bool   limited; /* hydrate positivity limiter acted */
+  double        V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
+  SkeletonState skeleton;
+  double        stretch[2];
+  double        F[2][2]; /* of the step, in the plane */
+  double        rho[PHASE_COUNT], tau[PHASE_COUNT];
+  bool          limited; /* hydrate positivity limiter acted */
 } PointState;
 
 typedef struct {

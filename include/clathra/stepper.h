@@ -37,6 +37,7 @@ typedef struct {
 typedef struct {
   double  *x, *x_star, *u_star;  /* [n_local][fields.n], [n_local][fields.n], [n_local][CL_DIM] */
   double  *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
+  double  *p_star, *e_plastic;   /* [n][PLASTIC_COUNT], [n][5] errors of Trial.s; null without plasticity */
   Trial    trial[2];
   PetscInt cap_nodes, cap_particles;
 } StepperWork;
@@ -147,4 +148,9 @@ PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values a
 void           StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4]);
 double         StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
-double         StepperErrorNorm(Stepper *s, const double *e, const double *eu); /* collective; e [n][4], eu [n][2] */
+/* Starred plastic state of the second stage (24), from that of the first with c = (1 - gamma)/gamma. */
+void StepperStarPlastic(Stepper *s, double c);
+/* Rates of plastic strain and stress at the end of a step of length dt whose stages have length gamma dt, and their
+   errors from the weights of k_n, k_1, k_2 (25), (26). */
+void   StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);
+double StepperErrorNorm(Stepper *s, const double *e, const double *eu); /* collective; e [n][4], eu [n][2] */

@@ -10,23 +10,34 @@ static inline double Trace6(const double s[6])
   return s[XX] + s[YY] + s[ZZ];
 }
 
-/* r = R s R^T for the rotation by theta in the x-y plane; dr = dr/dtheta (may be NULL). */
-static inline void Rotate6(const double s[6], double theta, double r[6], double dr[6])
+/* sqrt(3 J2) */
+static inline double Mises6(const double s[6])
 {
-  const double c = cos(theta), n = sin(theta);
+  const double a = s[XX] - s[YY], b = s[YY] - s[ZZ], c = s[ZZ] - s[XX];
 
-  r[XX] = c * c * s[XX] - 2.0 * c * n * s[XY] + n * n * s[YY];
-  r[YY] = n * n * s[XX] + 2.0 * c * n * s[XY] + c * c * s[YY];
-  r[XY] = c * n * (s[XX] - s[YY]) + (c * c - n * n) * s[XY];
+  return sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[XY] * s[XY] + s[YZ] * s[YZ] + s[XZ] * s[XZ]));
+}
+
+/* r = R s R^T for the rotation in the x-y plane with cosine c and sine n. */
+static inline __attribute__((always_inline)) void Turn6(const double s[6], double c, double n, double r[6])
+{
+  const double xx = s[XX], yy = s[YY], xy = s[XY], xz = s[XZ], yz = s[YZ];
+
+  r[XX] = c * c * xx - 2.0 * c * n * xy + n * n * yy;
+  r[YY] = n * n * xx + 2.0 * c * n * xy + c * c * yy;
+  r[XY] = c * n * (xx - yy) + (c * c - n * n) * xy;
   r[ZZ] = s[ZZ];
-  r[XZ] = c * s[XZ] - n * s[YZ];
-  r[YZ] = n * s[XZ] + c * s[YZ];
-  if (dr) { /* d(R s R^T) = W r - r W with W = [0 -1; 1 0] */
-    dr[XX] = -2.0 * r[XY];
-    dr[YY] = 2.0 * r[XY];
-    dr[XY] = r[XX] - r[YY];
-    dr[ZZ] = 0.0;
-    dr[XZ] = -r[YZ];
-    dr[YZ] = r[XZ];
-  }
+  r[XZ] = c * xz - n * yz;
+  r[YZ] = n * xz + c * yz;
+}
+
+/* d(R s R^T)/dtheta = W r - r W with W = [0 -1; 1 0], of the turned tensor r. */
+static inline void Spin6(const double r[6], double dr[6])
+{
+  dr[XX] = -2.0 * r[XY];
+  dr[YY] = 2.0 * r[XY];
+  dr[XY] = r[XX] - r[YY];
+  dr[ZZ] = 0.0;
+  dr[XZ] = -r[YZ];
+  dr[YZ] = r[XZ];
 }

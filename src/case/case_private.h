@@ -5,9 +5,9 @@
 #include "clathra/case.h"
 
 /* ---------------------------------------------------------------- units.c */
-enum { UNIT_KG = 0, UNIT_M, UNIT_S, UNIT_K, UNIT_MOL, UNIT_DIMS };
+enum { UNIT_KG = 0, UNIT_M, UNIT_S, UNIT_K, UNIT_MOL, UNIT_DEG, UNIT_DIMS };
 typedef struct {
-  int    dim[UNIT_DIMS]; /* exponents of kg, m, s, K, mol */
+  int    dim[UNIT_DIMS]; /* exponents of kg, m, s, K, mol, deg */
   int    pow10;          /* SI value = number * factor / divisor * 10^pow10 */
   double factor, divisor;
   bool   celsius; /* the unit is degC alone: an absolute temperature, not a difference */
@@ -166,8 +166,9 @@ typedef struct {
 void ListCreate(const char *text, List *list);
 void ListDestroy(List *list);
 void CaseCheck(Reader *r, const Case *c);
-void CheckFlow(Reader *r, const Case *c, const Bc *b);        /* flow.c: pressure and inflow */
-void CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
+void CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
+void CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
+void CheckInitial(Reader *r, const Case *c, const Region *g);      /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
 void               RegionsFinish(Case *c); /* once all keys are read */
 void               CheckShape(Reader *r, const Case *c, PetscInt region);
@@ -192,7 +193,7 @@ void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and 
 void FieldsWords(unsigned has, char text[64]); /* "water or gas" */
 /* Fills Case.fields from fields_wanted, or derives it from the file; before materials and regions are read. */
 PetscErrorCode CaseFieldSet(Reader *r, Case *c);
-/* Which quantities probes write; after CaseFieldSet. */
+/* Which quantities probes write; after CaseFieldSetFinish. */
 void CaseQuantities(Reader *r, Case *c);
 /* What the set leaves open in the regions, and whether the case asks for more than it holds; after all is read. */
 void CaseFieldSetFinish(Reader *r, Case *c);

@@ -86,6 +86,10 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
     FAIL(GROUP_REGION, g->name, "particles_per_cell",
          "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
   CheckSaturations(r, c, g);
+  if (!r->bad[GROUP_MATERIAL] && c->material[g->material].plasticity.type != PLASTICITY_NONE &&
+      (g->stress[4] != 0.0 || g->stress[5] != 0.0))
+    FAIL(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
+         g->stress[5], "plasticity_law does not know");
   const Case *first = r->bad[GROUP_STAGE] ? c : CaseInStage(c, 0);
   if (r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
     CheckInitial(r, first, &first->region[i]);
@@ -113,6 +117,8 @@ void CaseCheck(Reader *r, const Case *c)
     CheckCase(r, c);
   for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckMaterial(r, &c->material[i]);
+  for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
+    CheckPlasticity(r, c, &c->material[i]);
   r->bad[GROUP_CASE] |= c->upper[0] <= c->lower[0] || c->upper[1] <= c->lower[1];
   for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->nregion && all; i++)
     CheckRegion(r, c, i);

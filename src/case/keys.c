@@ -25,6 +25,10 @@ static bool NeedsRate(const void *p)
 {
   return ((const Material *)p)->reacts;
 }
+static bool NeedsStrength(const void *p)
+{
+  return ((const Material *)p)->plasticity.type == PLASTICITY_MOHR_COULOMB;
+}
 static bool NeedsPressure(const void *p)
 {
   const Bc *b = (const Bc *)p;
@@ -72,20 +76,22 @@ LAW(Porosity, PermeabilitySetPorosityType, PermeabilityPorosityTypes, permeabili
 LAW(Equilibrium, EquilibriumSetType, EquilibriumTypes, kinetics.equilibrium, type)
 
 /* ---------------------------------------------------------------- words */
-static const char *const basis_word[]     = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
-static const char *const pressures_word[] = {"two", "one", NULL};
-static const char *const geometry_word[]  = {"plane", "axisymmetric", NULL};
-static const char *const stepper_word[]   = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
-static const char *const surface_word[]   = {"free", "tied", NULL};
-static const char *const share_word[]     = {"nodes", "particles", NULL};
-static const char *const side_word[]      = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
-static const char *const axis_word[]      = {"x", "y", NULL};
-static const char *const space_word[]     = {"fluids", "pores", NULL};
-static const char *const stiffness_word[] = {"both", "loss_only", NULL};
-static const char *const capillary_word[] = {"held", "free", NULL};
-static const char *const holds_word[]     = {"all", "skeleton", NULL};
-static const char *const clock_word[]     = {"run", "stage", NULL};
-static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* OpenPhases */
+static const char *const basis_word[]      = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
+static const char *const pressures_word[]  = {"two", "one", NULL};
+static const char *const geometry_word[]   = {"plane", "axisymmetric", NULL};
+static const char *const stepper_word[]    = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
+static const char *const surface_word[]    = {"free", "tied", NULL};
+static const char *const share_word[]      = {"nodes", "particles", NULL};
+static const char *const side_word[]       = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
+static const char *const axis_word[]       = {"x", "y", NULL};
+static const char *const space_word[]      = {"fluids", "pores", NULL};
+static const char *const stiffness_word[]  = {"both", "loss_only", NULL};
+static const char *const plasticity_word[] = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
+static const char *const flow_word[]       = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
+static const char *const capillary_word[]  = {"held", "free", NULL};
+static const char *const holds_word[]      = {"all", "skeleton", NULL};
+static const char *const clock_word[]      = {"run", "stage", NULL};
+static const char *const phases_word[]     = {"both", "water", "gas", NULL}; /* OpenPhases */
 const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
                                     "roller",   "fixed",    "plate",     "temperature", "region_temperature", NULL};
 
@@ -179,7 +185,8 @@ static const Key case_key[] = {
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
     TEXT(Case, "output_quantities", quantities_wanted, "all",
-         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x; all is what the scene has fields "
+         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q; all is what the "
+         "scene has fields "
          "for"),
     REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),
     REAL(Case, "standard_pressure", standard_pressure, "Pa", "(0,1e9]", "101.4 kPa",
@@ -274,6 +281,38 @@ static const Key material_key[] = {
     REAL(Material, "elasticity_nu", elasticity.nu, "", "[0,0.5)", NULL, "Poisson's ratio", .has = HAS_SOLID),
     BOOLEAN(Material, "elasticity_stiffness_change", elasticity.loss_only, "both",
             "stress follows E(S_h) both ways, or only its loss", .choices = stiffness_word),
+    CHOICE(Material, "plasticity_law", plasticity.type, "none", plasticity_word, "strength of the skeleton",
+           .has = HAS_SOLID),
+    CHOICE(Material, "plasticity_flow", plasticity.flow, "menetrey_willam", flow_word,
+           "potential: smooth, or the planes of the dilation angle"),
+    REAL(Material, "plasticity_cohesion_max", plasticity.c_max, "Pa", "[0,1e12]", "0 Pa",
+         "peak cohesion at Sh_max; it falls as exp(eta_h (S_h - Sh_max)) towards cohesion_min",
+         WHEN(NeedsStrength, "law is mohr_coulomb"), .has = HAS_SOLID),
+    REAL(Material, "plasticity_cohesion_min", plasticity.c_min, "Pa", "[0,1e12]", "1 @plasticity_cohesion_max",
+         "its lower limit for little hydrate"),
+    REAL(Material, "plasticity_cohesion_residual", plasticity.c_res, "Pa", "[0,1e12]", "1 @plasticity_cohesion_min",
+         "what plastic strain leaves of it: c_res + (c_peak - c_res) exp(-eta_s eps_d_p)"),
+    REAL(Material, "plasticity_friction_peak", plasticity.phi_peak, "deg", "[0,90)", "0 deg", "friction angle",
+         WHEN(NeedsStrength, "law is mohr_coulomb"), .has = HAS_SOLID),
+    REAL(Material, "plasticity_friction_residual", plasticity.phi_res, "deg", "[0,90)", "1 @plasticity_friction_peak",
+         "what plastic strain leaves of it"),
+    REAL(Material, "plasticity_dilation_max", plasticity.psi_max, "deg", "[0,90)", "0 deg",
+         "dilation angle at Sh_max; plastic strain leaves nothing of it"),
+    REAL(Material, "plasticity_dilation_min", plasticity.psi_min, "deg", "[0,90)", "1 @plasticity_dilation_max",
+         "its lower limit for little hydrate"),
+    REAL(Material, "plasticity_eta_h", plasticity.eta_h, "", "[0,1e3]", "0", "how fast strength grows with hydrate"),
+    REAL(Material, "plasticity_Sh_max", plasticity.Sh_max, "", "[0,1]", "1", "hydrate saturation of the ..._max"),
+    REAL(Material, "plasticity_eta_s", plasticity.eta_s, "", "[0,1e6]", "0",
+         "how fast strength falls with deviatoric plastic strain; 0 = never"),
+    REAL(Material, "plasticity_softening_length", plasticity.length, "m", "[0,1e6]", "0 m",
+         "width of a shear band that eta_s is meant for: eta_s is scaled by the size of a cell over it, so that what a "
+         "band "
+         "dissipates per area does not depend on the grid; 0 m = not scaled"),
+    REAL(Material, "plasticity_eccentricity", plasticity.eccentricity, "", "(0,10]", "0.1",
+         "of the smooth potential: how round its end is, of cohesion_max"),
+    REAL(Material, "plasticity_tension_cutoff", plasticity.cutoff, "Pa", "[0,1e12]", "none",
+         "largest tension, flow mohr_coulomb only; or the word none", .word = "none"),
+    REAL(Material, "plasticity_heat", plasticity.heat, "", "[0,1]", "0", "share of the plastic work that becomes heat"),
     {.name = NULL},
 };
 

@@ -8,10 +8,13 @@ static const struct {
   const char *word;
   unsigned    has; /* fields any of which it needs */
 } quantity[QUANTITY_COUNT] = {
-    [QUANTITY_P] = {"p", HAS_WATER},  [QUANTITY_PW] = {"p_w", HAS_WATER}, [QUANTITY_PG] = {"p_g", HAS_GAS},
-    [QUANTITY_T] = {"T", HAS_HEAT},   [QUANTITY_SH] = {"S_h", HAS_ALL},   [QUANTITY_SW] = {"S_w", HAS_WATER},
-    [QUANTITY_SG] = {"S_g", HAS_GAS}, [QUANTITY_U] = {"u", HAS_SOLID},    [QUANTITY_STRESS] = {"stress", HAS_SOLID},
-    [QUANTITY_X] = {"x", HAS_ALL},
+    [QUANTITY_P] = {"p", HAS_WATER},           [QUANTITY_PW] = {"p_w", HAS_WATER},
+    [QUANTITY_PG] = {"p_g", HAS_GAS},          [QUANTITY_T] = {"T", HAS_HEAT},
+    [QUANTITY_SH] = {"S_h", HAS_ALL},          [QUANTITY_SW] = {"S_w", HAS_WATER},
+    [QUANTITY_SG] = {"S_g", HAS_GAS},          [QUANTITY_U] = {"u", HAS_SOLID},
+    [QUANTITY_STRESS] = {"stress", HAS_SOLID}, [QUANTITY_X] = {"x", HAS_ALL},
+    [QUANTITY_EPS] = {"eps_d_p", HAS_PLASTIC}, [QUANTITY_MEAN] = {"p_eff", HAS_PLASTIC},
+    [QUANTITY_Q] = {"q", HAS_PLASTIC},
 };
 
 /* The quantity of this name, QUANTITY_COUNT if there is none. */
@@ -30,10 +33,15 @@ static void Add(Reader *r, Case *c, const char *word)
   char      words[64];
 
   if (q == QUANTITY_COUNT) {
-    ReaderError(r, "output_quantities", word, "must be all or a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x");
+    ReaderError(r, "output_quantities", word,
+                "must be all or a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q");
     return;
   }
   if (!(c->fields.has & quantity[q].has)) {
+    if (quantity[q].has == HAS_PLASTIC) {
+      ReaderError(r, "output_quantities", quantity[q].word, "needs a material with a plasticity_law");
+      return;
+    }
     FieldsWords(quantity[q].has, words);
     ReaderError(r, "output_quantities", quantity[q].word, "needs %s, which is not among the fields of the scene (%s)",
                 words, c->fields_wanted);

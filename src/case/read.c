@@ -198,9 +198,10 @@ static PetscErrorCode Derive(Reader *r, Case *c)
   }
   RegionsFinish(c);
   for (PetscInt i = 0; i < c->nmaterial; i++) {
-    Material *m     = &c->material[i];
-    Liquid   *l[]   = {&m->solid, &m->hydrate};
-    m->kinetics.M_g = m->gas.M;
+    Material *m        = &c->material[i];
+    Liquid   *l[]      = {&m->solid, &m->hydrate};
+    m->kinetics.M_g    = m->gas.M;
+    m->plasticity.cell = sqrt((c->upper[0] - c->lower[0]) / c->cells[0] * (c->upper[1] - c->lower[1]) / c->cells[1]);
     for (int j = 0; j < 2; j++) {
       l[j]->K     = INFINITY;
       l[j]->p_ref = m->water.p_ref;
@@ -237,11 +238,11 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
     PetscCall(CaseStageEnds(&r, c));
     PetscCall(GroupRead(&r, c, GROUP_CASE));
     PetscCall(CaseFieldSet(&r, c));
-    CaseQuantities(&r, c);
     for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
       PetscCall(GroupRead(&r, c, g));
     PetscCall(Derive(&r, c));
     CaseFieldSetFinish(&r, c);
+    CaseQuantities(&r, c);
     PetscCall(CaseStages(&r, c));
     PetscCall(Leftovers(&r, c));
     CaseCheck(&r, c);

@@ -8,7 +8,7 @@
 
 typedef struct {
   const char *name;
-  int         dim[UNIT_DIMS]; /* kg m s K mol */
+  int         dim[UNIT_DIMS]; /* kg m s K mol deg */
   int         pow10;
   double      factor;
   bool        prefixed; /* takes k, M, m, ... */
@@ -41,6 +41,8 @@ static const BaseUnit base_unit[] = {
     {"L", {0, 3, 0, 0, 0}, -3, 1, true},
     {"t", {1, 0, 0, 0, 0}, 3, 1, false},
     {"%", {0, 0, 0, 0, 0}, -2, 1, false},
+    {"deg", {0, 0, 0, 0, 0, 1}, 0, 1, false},
+    {"rad", {0, 0, 0, 0, 0, 1}, 0, 57.29577951308232, false},
     {NULL, {0, 0, 0, 0, 0}, 0, 0, false},
 };
 
@@ -76,6 +78,7 @@ static const struct {
     {"W/(m^2 K)", "a heat transfer coefficient"},
     {"Pa/s", "a pressure per time"},
     {"K/s", "a temperature per time"},
+    {"deg", "an angle"},
     {"1/K", "a thermal expansion"},
     {"1/m", "a surface per volume"},
     {"mol/(m^2 Pa s)", "a rate constant"},

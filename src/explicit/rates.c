@@ -189,6 +189,17 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
   }
 }
 
+/* Heat of the plastic work of the step before. */
+INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
+{
+  for (int q = 0; q < r.n; q++) {
+    const double heat = e->m->P.f[P_HEAT][r.p + q];
+
+    o->value[q][s.fluids] += heat;
+    e->latent += heat;
+  }
+}
+
 /* What the reaction adds to all rows: gain = gain_0 + gain_p (s . dp) + gain_T dT. */
 INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, Given *o)
 {
@@ -304,6 +315,8 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     FluidRow(e, s, r, k, &g, dt, &o);
   if (s.heat)
     HeatRow(e, s, r, &g, dt, pore, open, &o);
+  if (s.heat && s.solid && r.mat->plasticity.heat > 0.0)
+    PlasticHeat(e, s, r, &o);
   if (s.fluids == 2 && r.mat->reacts) {
     Reaction(e, s, r, &g, dt, T, pore, open);
     ReactionRows(e, s, r, T, &o);

@@ -2,7 +2,6 @@
    docs/equations.md, section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
-#include "clathra/tensor.h"
 
 #define LARGEST_STRAIN 0.1 /* of one step: beyond it the series below lose digits, and the step is no small one */
 
@@ -183,21 +182,17 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, PetscIn
   }
 }
 
-/* (14), and the stress that a rotation carries along; false if no open pores are left. */
-INLINE bool StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, const double *restrict T)
+/* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
+INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
-  const Material   *mat = r.mat;
-  const Elasticity *el  = &mat->elasticity;
-  double *const    *f   = e->m->P.f;
-  const double      G2 = 2.0 * ElasticityShearFactor(el), lame = ElasticityLameFactor(el);
+  double *const *f         = e->m->P.f;
   const double *restrict V = s.fluids || s.heat ? e->t[T_V] + r.p : NULL;
   double *restrict Sh      = f[P_SH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, E_old[BLOCK], E[BLOCK], phi[BLOCK] = {0.0};
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
   bool   fine = true;
 
-  ElasticityYoungBatch(el, r.n, Sh, E_old);
-  LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
-  LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
+  LiquidDensityBatch(&r.mat->solid, r.n, zero, T, rho_s);
+  LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
     const PetscInt p      = r.p + q;
     const double   volume = V ? V[q] : f[P_V][p] * n->J[q], pore = volume - f[P_MS][p] / rho_s[q],
@@ -208,48 +203,66 @@ INLINE bool StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
     Sh[q]     = 1.0 - open / pore;
     f[P_V][p] = volume;
   }
-  ElasticityYoungBatch(el, r.n, Sh, E);
-  double *restrict xx = f[P_SIG + XX] + r.p, *restrict yy = f[P_SIG + YY] + r.p, *restrict zz = f[P_SIG + ZZ] + r.p,
-                   *restrict xy = f[P_SIG + XY] + r.p, *restrict xx0 = f[P_SIG0 + XX] + r.p,
-                   *restrict yy0 = f[P_SIG0 + YY] + r.p, *restrict zz0 = f[P_SIG0 + ZZ] + r.p,
-                   *restrict xy0 = f[P_SIG0 + XY] + r.p;
-  for (int q = 0; q < r.n; q++) {
-    const double c = n->c[q], si = n->s[q], cc = c * c, ss = si * si, cs = c * si;
-    const double ratio = E[q] / E_old[q], k = el->loss_only && ratio > 1.0 ? 1.0 : ratio;
-    const double ax = xx[q] - xx0[q], ay = yy[q] - yy0[q], axy = xy[q] - xy0[q], az = zz[q] - zz0[q];
-    const double ice = phi[q] * Sh[q], grains = 1.0 - phi[q];
-    const double beta = (grains * mat->solid.beta + ice * mat->hydrate.beta) / (grains + ice);
-    const double hot  = s.heat ? beta * g->value[q][s.fluids] / 3.0 : 0.0;
-    const double ex = n->xx[q] - hot, ey = n->yy[q] - hot, ez = -hot, tr = lame * (ex + ey + ez);
-    const double x0 = cc * xx0[q] - 2.0 * cs * xy0[q] + ss * yy0[q], y0 = ss * xx0[q] + 2.0 * cs * xy0[q] + cc * yy0[q];
-    const double xy_0 = cs * (xx0[q] - yy0[q]) + (cc - ss) * xy0[q];
-
-    xx[q]  = x0 + k * (cc * ax - 2.0 * cs * axy + ss * ay) + E[q] * (G2 * ex + tr);
-    yy[q]  = y0 + k * (ss * ax + 2.0 * cs * axy + cc * ay) + E[q] * (G2 * ey + tr);
-    zz[q]  = zz0[q] + k * az + E[q] * (G2 * ez + tr);
-    xy[q]  = xy_0 + k * (cs * (ax - ay) + (cc - ss) * axy) + E[q] * G2 * n->xy[q];
-    xx0[q] = x0;
-    yy0[q] = y0;
-    xy0[q] = xy_0;
-  }
   return fine;
 }
 
-/* Stress components out of the plane turn with it. */
-INLINE void OutOfPlane(Explicit *e, Run r, const Strain *n)
+/* Mean thermal strain of skeleton and hydrate. */
+INLINE void ThermalStrain(const Explicit *e, const Set s, Run r, const Gathered *g, const double *restrict phi,
+                          double *restrict thermal)
 {
-  for (int first = 0; first < 2; first++) {
-    double *restrict xz = e->m->P.f[(first ? P_SIG0 : P_SIG) + XZ] + r.p, *restrict yz =
-                                                                              e->m->P.f[(first ? P_SIG0 : P_SIG) + YZ] +
-                                                                              r.p;
+  const double *restrict Sh = e->m->P.f[P_SH] + r.p;
+  const double grain = r.mat->solid.beta, ice = r.mat->hydrate.beta;
 
-    for (int q = 0; q < r.n; q++) {
-      const double x = n->c[q] * xz[q] - n->s[q] * yz[q];
+  for (int q = 0; q < r.n; q++) {
+    const double h = phi[q] * Sh[q], c = 1.0 - phi[q];
 
-      yz[q] = n->s[q] * xz[q] + n->c[q] * yz[q];
-      xz[q] = x;
-    }
+    thermal[q] = s.heat ? (c * grain + h * ice) / (c + h) * g->value[q][s.fluids] / 3.0 : 0.0;
   }
+}
+
+/* What plastic flow dissipated, J, and the share of it that the next step gives to the nodes as heat. */
+static void PlasticWork(Explicit *e, Run r, const double *work)
+{
+  double *const *f = e->m->P.f;
+
+  for (int q = 0; q < r.n; q++) {
+    const PetscInt p = r.p + q;
+
+    f[P_WP][p] += f[P_V][p] * work[q];
+    f[P_HEAT][p] = r.mat->plasticity.heat * f[P_V][p] * work[q];
+  }
+}
+
+/* New effective stress and history of the skeleton. */
+INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, const double *restrict T)
+{
+  const Elasticity *el     = &r.mat->elasticity;
+  const double     *Sh     = e->m->P.f[P_SH] + r.p;
+  const bool        yields = r.mat->plasticity.type != PLASTICITY_NONE;
+  double            E_old[BLOCK], E[BLOCK], phi[BLOCK] = {0.0}, thermal[BLOCK], work[BLOCK];
+  const char       *why = NULL;
+
+  ElasticityYoungBatch(el, r.n, Sh, E_old);
+  if (!PoresOf(e, s, r, n, T, phi))
+    ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
+  ElasticityYoungBatch(el, r.n, Sh, E);
+  ThermalStrain(e, s, r, g, phi, thermal);
+  const SkeletonBlock block = {.n       = r.n,
+                               .c       = n->c,
+                               .s       = n->s,
+                               .xx      = n->xx,
+                               .yy      = n->yy,
+                               .xy      = n->xy,
+                               .thermal = thermal,
+                               .E_n     = E_old,
+                               .E       = E,
+                               .Sh      = Sh,
+                               .work    = yields ? work : NULL,
+                               .store   = ParticlesSkeleton(&e->m->P, r.p)};
+  if (!SkeletonUpdateBlock(r.mat, &block, &why))
+    ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
+  if (yields)
+    PlasticWork(e, r, work);
 }
 
 /* F <- (1 + dt grad v) F. */
@@ -317,9 +330,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (!StrainOf(s, r.n, &g, dt, &n))
     ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
   CarryGradients(e, s, r, &g, &n, dt);
-  if (!StressOf(e, s, r, &g, &n, T))
-    ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
-  OutOfPlane(e, r, &n);
+  StressOf(e, s, r, &g, &n, T);
   Deform(e, s, r, &g, dt);
   for (int q = 0; q < r.n; q++)
     f[P_LOGJ][r.p + q] += n.log_J[q];

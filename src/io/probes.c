@@ -2,7 +2,7 @@
 #include "io_private.h"
 
 /* A column, the quantity it belongs to, and the component of the store that holds it (-1: computed). */
-enum { Q_P = 0, Q_SG = 6, Q_COUNT = 15 };
+enum { Q_P = 0, Q_SG = 6, Q_MEAN = 16, Q_Q, Q_COUNT };
 static const struct {
   const char *name;
   unsigned    has; /* fields it goes with */
@@ -21,7 +21,10 @@ static const struct {
                      {"szz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 2},
                      {"sxy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 3},
                      {"x_m", HAS_ALL, QUANTITY_X, P_X},
-                     {"y_m", HAS_ALL, QUANTITY_X, P_X + 1}};
+                     {"y_m", HAS_ALL, QUANTITY_X, P_X + 1},
+                     {"eps_d_p", HAS_PLASTIC, QUANTITY_EPS, P_EPS},
+                     [Q_MEAN] = {"p_eff_Pa", HAS_PLASTIC, QUANTITY_MEAN, -1},
+                     [Q_Q]    = {"q_Pa", HAS_PLASTIC, QUANTITY_Q, -1}};
 
 static bool Wanted(const Case *c, int q)
 {
@@ -126,6 +129,13 @@ static double Quantity(const Particles *P, PetscInt p, int q)
 {
   if (column[q].component >= 0)
     return P->f[column[q].component][p];
+  if (q == Q_MEAN || q == Q_Q) {
+    double s[6];
+
+    for (int k = 0; k < 6; k++)
+      s[k] = P->f[P_SIG + k][p];
+    return q == Q_Q ? Mises6(s) : -Trace6(s) / 3.0;
+  }
   return q == Q_P ? MeanPressure(P, p) : GasSaturation(P, p);
 }
 

@@ -164,6 +164,24 @@ static void HeatRates(const Model *m, const Reach *r, const double *x, const dou
   }
 }
 
+static double StartOf(const Model *m, PetscInt p, int k)
+{
+  return m->stage.p_star ? m->stage.p_star[PLASTIC_COUNT * p + k] : k == PLASTIC_EPS ? m->P.f[P_EPS][p] : 0.0;
+}
+
+static void PlasticState(const Model *m, PetscInt p, const PointState *s, Trial *trial)
+{
+  const SkeletonState *k = &s->skeleton;
+
+  trial->p[PLASTIC_COUNT * p + PLASTIC_EPS]  = k->eps;
+  trial->p[PLASTIC_COUNT * p + PLASTIC_WORK] = StartOf(m, p, PLASTIC_WORK) + s->V * k->work;
+  trial->s[5 * p]                            = k->eps;
+  for (int c = 0; c < 4; c++) {
+    trial->p[PLASTIC_COUNT * p + PLASTIC_STRAIN + c] = k->plastic[c];
+    trial->s[5 * p + 1 + c]                          = k->sig[c];
+  }
+}
+
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
 {
   PetscFunctionBeginUser;
@@ -185,6 +203,8 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
     for (int k = 0; k < 3; k++)
       trial->y[4 * p + k] = m->P.f[P_PW + k] ? in[IN_P + k] : 0.0;
     trial->y[4 * p + 3] = s.Sh;
+    if (trial->p)
+      PlasticState(m, p, &s, trial);
     if (m->c->fields.heat)
       HeatRates(m, &r, x, o.out, rates);
   }
@@ -220,10 +240,9 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   }
   f[P_LOGJ][p] += log(s->V / f[P_V][p]);
   f[P_V][p] = s->V;
-  for (int c = 0; c < 6; c++) {
-    f[P_SIG + c][p]  = s->sig[c];
-    f[P_SIG0 + c][p] = s->sig0[c];
-  }
+
+  const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+  SkeletonKeep(&store, p, &s->skeleton);
 }
 
 /* FLIP: velocities of skeleton, water, gas. */
@@ -297,6 +316,11 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
       m->P.f[P_RATE + k][p] = rates[4 * p + k];
     s.m_w = trial->m[3 * p + 1];
     s.m_g = trial->m[3 * p + 2];
+    if (trial->p) {
+      m->P.f[P_WP][p] += trial->p[PLASTIC_COUNT * p + PLASTIC_WORK];
+      for (int k = 0; k < 5; k++)
+        m->P.f[P_KP + k][p] = trial->k[5 * p + k];
+    }
     WriteHistory(m, p, x, &r, in, &s);
   }
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));

@@ -219,9 +219,17 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
     h->m_star[k] = m->stage.m_star[3 * p + k];
     h->shift[k]  = Shift(m, p, r, F_PW + k);
   }
-  for (int s = 0; fs->solid && s < 6; s++) {
-    h->sig[s]  = m->P.f[P_SIG + s][p];
-    h->sig0[s] = m->P.f[P_SIG0 + s][p];
+  if (fs->solid) {
+    const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+
+    SkeletonTake(&store, p, &h->skeleton);
+    if (m->stage.p_star) {
+      const double *star = &m->stage.p_star[PLASTIC_COUNT * p];
+
+      h->skeleton.eps = star[PLASTIC_EPS];
+      for (int k = 0; k < 4; k++)
+        h->skeleton.plastic[k] = star[PLASTIC_STRAIN + k];
+    }
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     for (int i = 0; fs->phase[f] && i < 2; i++) {

@@ -14,53 +14,53 @@ static void AddJet(double D[IN_COUNT], double c, const Jet *a, const Kinematics 
 
 typedef struct {
   double s[6], ds[6][IN_COUNT];
+  double work, dwork[IN_COUNT]; /* dissipated in the stage, J/m^3 */
 } Stress;
 
-/* (14): sigma' and its tangent; e_zz is the hoop strain, zero in plane strain. */
-static void EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
-                            double T, bool tangent, double sig0_rotated[6], Stress *out)
+/* Tangent of a number of the skeleton with its derivatives d, in the inputs of the particle. */
+static void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const ScalarState *s, const Jet *thermal,
+                        double row[IN_COUNT])
 {
-  static const int  component[6] = {0, 1, 3, 2, -1, -1}; /* of Kinematics.e */
-  const Elasticity *el           = &mat->elasticity;
-  const double      G = ElasticityShearFactor(el), lame = ElasticityLameFactor(el), dT = T - h->T_n;
-  double            dE, over[6], rot[6], drot[6], drot0[6], unit[6];
-  const double      En = ElasticityYoung(el, h->Sh_n, &dE), thermal = s->beta.v * dT / 3.0;
-  const double      e[6]    = {k->e[0] - thermal, k->e[1] - thermal, k->e[3] - thermal, k->e[2], 0.0, 0.0};
-  double            r       = s->E.v / En;
-  bool              relaxes = true;
+  static const int component[4] = {0, 1, 3, 2}; /* of Kinematics.e */
 
-  if (el->loss_only && r > 1.0) {
-    r       = 1.0;
-    relaxes = false;
+  for (int i = 0; i < IN_COUNT; i++)
+    row[i] = 0.0;
+  for (int i = 0; i < MOTION_COUNT; i++) {
+    row[IN_GRADU + i] = i < MOTION_HOOP ? d[SKELETON_THETA] * k->dtheta[i] : 0.0;
+    for (int c = 0; c < 4; c++)
+      row[IN_GRADU + i] += d[SKELETON_STRAIN + c] * k->de[component[c]][i];
   }
-  for (int c = 0; c < 6; c++)
-    over[c] = h->sig[c] - h->sig0[c];
-  Rotate6(over, k->theta, rot, drot);
-  Rotate6(h->sig0, k->theta, sig0_rotated, drot0);
-  for (int c = 0; c < 6; c++) { /* stress per unit of E */
-    unit[c]   = 2.0 * G * e[c] + (c < 3 ? lame * Trace6(e) : 0.0);
-    out->s[c] = sig0_rotated[c] + r * rot[c] + s->E.v * unit[c];
-  }
-  if (!tangent)
-    return;
+  AddJet(row, d[SKELETON_E], &s->E, k);
+  AddJet(row, d[SKELETON_SH], &s->Sh, k);
+  AddJet(row, d[SKELETON_THERMAL], thermal, k);
+}
 
-  const Jet dTj = JetVariable(dT, JET_T), eT = JetScale(1.0 / 3.0, JetMul(s->beta, dTj));
+/* Effective stress and its tangent; e_zz is the hoop strain, zero in plane strain. */
+static ClStatus EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
+                                double T, bool tangent, SkeletonState *state, Stress *out, const char **why)
+{
+  const Jet       thermal = JetScale(1.0 / 3.0, JetMul(s->beta, JetVariable(T - h->T_n, JET_T)));
+  double          dE;
+  SkeletonStep    d = {.c       = cos(k->theta),
+                       .s       = sin(k->theta),
+                       .e       = {k->e[0], k->e[1], k->e[3], k->e[2]},
+                       .thermal = thermal.v,
+                       .E       = s->E.v,
+                       .Sh      = s->Sh.v};
+  SkeletonTangent t;
+
+  d.E_n = ElasticityYoung(&mat->elasticity, h->Sh_n, &dE);
+  if (!SkeletonUpdate(mat, &h->skeleton, &d, state, tangent ? &t : NULL, why))
+    return CL_DOMAIN;
   for (int c = 0; c < 6; c++) {
-    double *d = out->ds[c];
-
-    for (int i = 0; i < IN_COUNT; i++)
-      d[i] = 0.0;
-    for (int i = 0; i < MOTION_COUNT; i++) {
-      const double trace = k->de[0][i] + k->de[1][i] + k->de[3][i];
-      const double de    = component[c] < 0 ? 0.0 : k->de[component[c]][i];
-
-      d[IN_GRADU + i] = (i < 4 ? (drot0[c] + r * drot[c]) * k->dtheta[i] : 0.0) +
-                        s->E.v * (2.0 * G * de + (c < 3 ? lame * trace : 0.0));
-    }
-    AddJet(d, unit[c] + (relaxes ? rot[c] / En : 0.0), &s->E, k);
-    if (c < 3)
-      AddJet(d, -s->E.v * (2.0 * G + 3.0 * lame), &eT, k);
+    out->s[c] = state->sig[c];
+    if (tangent)
+      SkeletonRow(t.d[c], k, s, &thermal, out->ds[c]);
   }
+  out->work = state->work;
+  if (tangent)
+    SkeletonRow(t.d[SKELETON_WORK], k, s, &thermal, out->dwork);
+  return CL_OK;
 }
 
 /* Ambient pressure at the particle, with the force V grad p_a that its weight is (42). */
@@ -266,6 +266,22 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
   }
 }
 
+/* (69) */
+static void PlasticHeat(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
+                        const Stress *st, bool tangent, PointOutput *o)
+{
+  const double share = -mat->plasticity.heat / h->dt;
+
+  if (mat->plasticity.type == PLASTICITY_NONE || share == 0.0)
+    return;
+  o->out[OUT_Q] += share * s->V.v * st->work;
+  if (!tangent)
+    return;
+  AddJet(o->D[OUT_Q], share * st->work, &s->V, k);
+  for (int q = 0; q < IN_COUNT; q++)
+    o->D[OUT_Q][q] += share * s->V.v * st->dwork[q];
+}
+
 static void FillState(const FieldSet *fs, const ScalarState *s, PointState *state)
 {
   state->V       = s->V.v;
@@ -318,6 +334,7 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   const Kinematics *k = &at_rest;
   ScalarState       s;
   Metric            metric;
+  Stress            st;
 
   if (fs->solid) {
     if (!KinematicsEvaluate(&in[IN_GRADU], &moved)) {
@@ -338,13 +355,11 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   FillState(fs, &s, state);
   PutScalar(OUT_M, JetShift(s.m_h, h->m_s), k, tangent, o);
   if (fs->solid) {
-    Stress st;
-
-    EffectiveStress(mat, h, k, &s, in[IN_T], tangent, state->sig0, &st);
+    const ClStatus strained = EffectiveStress(mat, h, k, &s, in[IN_T], tangent, &state->skeleton, &st, why);
+    if (strained != CL_OK)
+      return strained;
     const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);
     MixtureForces(h, k, &s, &st, &a, tangent, o);
-    for (int c = 0; c < 6; c++)
-      state->sig[c] = st.s[c];
     for (int d = 0; d < 2; d++)
       state->stretch[d] = k->stretch[d];
   }
@@ -362,6 +377,8 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
     Heat(fs, mat, h, k, &s, in, tangent, o);
+    if (fs->solid)
+      PlasticHeat(mat, h, k, &s, &st, tangent, o);
   }
   return CheckFinite(fs, o, why);
 }

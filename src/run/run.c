@@ -1,5 +1,6 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
 #include "run_private.h"
+#include "plastic.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,7 +77,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
 {
   const double t_begin = s->model->c->t_begin;
   double       done, left;
-  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "";
+  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "", yields[128];
 
   PetscFunctionBeginUser;
   if (run->quiet)
@@ -85,6 +86,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   StepperStageWords(s, stage);
   if (t_begin > 0.0)
     PetscCall(PetscSNPrintf(begin, sizeof(begin), "%g s + ", t_begin));
+  PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
   if (s->explicit)
@@ -94,9 +96,9 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s, %.0f s left\n",
+                        "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
                         stage, s->state.step, begin, s->state.t - t_begin, 100.0 * done, info->dt, solved, error, cuts,
-                        left));
+                        yields, left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,7 +192,7 @@ static PetscErrorCode LooseSummary(const Stepper *s, char text[256])
 static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const StepperState *z = &s->state;
-  char                text[2048], local[512], loose[256], *stages, *all;
+  char                text[2048], local[512], loose[256], yields[256], *stages, *all;
   ModelTotals         t;
   bool                ok;
 
@@ -198,12 +200,13 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscCall(ModelComputeTotals(s->model, &t));
   PetscCall(LocalSummary(s, local));
   PetscCall(LooseSummary(s, loose));
+  PetscCall(YieldSummary(s->model, yields));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
                           " Newton iterations, %.2f s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
-                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
+                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n%s"
                           "%s  results in %s\n",
                           s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
                           s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
@@ -211,7 +214,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
-                          z->limited_total, loose, s->model->c->output_dir));
+                          z->limited_total, yields, loose, s->model->c->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   sprintf(all, "%s%s", text, stages);
@@ -410,6 +413,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           "a node\n",
                           c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "",
                           c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
+    PetscCall(PrintStrength(c, comm));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }

@@ -12,7 +12,10 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
   if (a->status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS);
 
-  double *e, *eu;
+  const double half = s->state.fresh ? 0.0 : 0.5, weight[3] = {-half, half, 0.0};
+  double      *e, *eu;
+
+  StepperPlasticErrors(s, dt, 1.0, weight);
   PetscCall(PetscMalloc2(4 * m->P.n, &e, 2 * m->P.n, &eu));
   for (PetscInt p = 0; p < m->P.n; p++) { /* (25) */
     double y_n[4], k_n[4];

@@ -9,14 +9,18 @@
 #define CRAWL_STEPS 100 /* ... and that for so many in a row, will not end */
 #define SCALE_T 1.0     /* K */
 #define SCALE_SH 0.1
+#define SCALE_EPS 0.1 /* of plastic strain */
 
 PetscErrorCode StepperFreeWork(StepperWork *w)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(w->x, w->x_star, w->u_star));
   PetscCall(PetscFree3(w->m_star, w->rates, w->v_n));
-  for (int k = 0; k < 2; k++)
+  for (int k = 0; k < 2; k++) {
     PetscCall(PetscFree4(w->trial[k].m, w->trial[k].y, w->trial[k].u, w->trial[k].v));
+    PetscCall(PetscFree3(w->trial[k].p, w->trial[k].s, w->trial[k].k));
+  }
+  PetscCall(PetscFree2(w->p_star, w->e_plastic));
   w->cap_nodes = w->cap_particles = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -35,6 +39,10 @@ static PetscErrorCode SizeWork(Stepper *s)
   PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, 2 * n, &w->v_n));
   for (int k = 0; k < 2; k++)
     PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, 2 * n, &w->trial[k].u, 2 * n, &w->trial[k].v));
+  for (int k = 0; k < 2 && (s->model->c->fields.has & HAS_PLASTIC); k++)
+    PetscCall(PetscCalloc3(PLASTIC_COUNT * n, &w->trial[k].p, 5 * n, &w->trial[k].s, 5 * n, &w->trial[k].k));
+  if (s->model->c->fields.has & HAS_PLASTIC)
+    PetscCall(PetscCalloc2(PLASTIC_COUNT * n, &w->p_star, 5 * n, &w->e_plastic));
   w->cap_nodes     = N;
   w->cap_particles = n;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,6 +74,8 @@ PetscErrorCode StepperStartFromHistory(Stepper *s)
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 3; k++)
       w->m_star[3 * p + k] = StepperMass(m, p, k);
+    for (int k = 0; w->p_star && k < PLASTIC_COUNT; k++)
+      w->p_star[PLASTIC_COUNT * p + k] = k == PLASTIC_EPS ? m->P.f[P_EPS][p] : 0.0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -76,9 +86,10 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 {
   Model       *m     = s->model;
   StepperWork *w     = &s->work;
-  const Stage  stage = {.t = t, .dt = dt, .x_star = w->x_star, .u_star = w->u_star, .m_star = w->m_star};
-  StageRates   rates;
-  PetscInt     newton = 0;
+  const Stage  stage = {
+       .t = t, .dt = dt, .x_star = w->x_star, .u_star = w->u_star, .m_star = w->m_star, .p_star = w->p_star};
+  StageRates rates;
+  PetscInt   newton = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelBeginStage(m, &stage));
@@ -96,19 +107,22 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu)
 {
   const Model *m        = s->model;
-  const double scale[5] = {s->state.scale_p, s->state.scale_p, SCALE_T, SCALE_SH, s->state.scale_u};
-  double       sum[6] = {0.0}, worst = 0.0;
+  const double scale[7] = {s->state.scale_p, s->state.scale_p, SCALE_T,         SCALE_SH,
+                           s->state.scale_u, SCALE_EPS,        s->state.scale_p};
+  double       sum[8] = {0.0}, worst = 0.0;
 
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 4; k++)
       sum[k] += PetscSqr(e[4 * p + k]);
     sum[4] += PetscSqr(eu[2 * p]) + PetscSqr(eu[2 * p + 1]);
+    for (int k = 0; s->work.p_star && k < 5; k++)
+      sum[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
   }
-  sum[5] = (double)m->P.n;
-  if (MPI_Allreduce(MPI_IN_PLACE, sum, 6, MPI_DOUBLE, MPI_SUM, m->grid.comm))
+  sum[7] = (double)m->P.n;
+  if (MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm))
     return NAN;
-  for (int k = 0; k < 5; k++)
-    worst = fmax(worst, ClSize(sqrt(sum[k] / sum[5]) / (s->tol * scale[k])));
+  for (int k = 0; k < 7; k++)
+    worst = fmax(worst, ClSize(sqrt(sum[k] / sum[7]) / (s->tol * scale[k])));
   return worst;
 }
 

@@ -27,6 +27,7 @@ static void Star(Stepper *s, double dt)
       w->m_star[3 * p + k] = m_n + c * (w->trial[0].m[3 * p + k] - m_n);
     }
   }
+  StepperStarPlastic(s, c);
 }
 
 /* (26): weights of k_n, k_1, k_2; without k_n (fresh) the embedded first-order formula. */
@@ -47,6 +48,7 @@ static PetscErrorCode Error(Stepper *s, double dt, Attempt *a)
 
   PetscFunctionBeginUser;
   ErrorWeights(s->state.fresh, weight);
+  StepperPlasticErrors(s, dt, GAMMA, weight);
   PetscCall(PetscMalloc2(4 * m->P.n, &e, 2 * m->P.n, &eu));
   for (PetscInt p = 0; p < m->P.n; p++) {
     double y_n[4], k_n[4];

@@ -29,7 +29,33 @@ NO_GAS = [("basis: cpgimp", "basis: cpgimp\nfields: thm"), ("active: yes", "acti
 GRAVITY = ("title: BP2", "gravity: [0 m/s^2, -9.81 m/s^2]\ntitle: BP2")
 STRESS = lambda value: ("    Sh: 0\n", f"    Sh: 0\n    stress: {value}\n")
 
+STRENGTH = lambda keys: [("    elasticity:", "    plasticity: {law: mohr_coulomb, " + keys + "}\n    elasticity:")]
+
 CASES = [
+    # --- strength
+    ("no such law of strength", [("    elasticity:", "    plasticity: {law: cam_clay}\n    elasticity:")], [M + "plasticity_law", "mohr_coulomb"], []),
+    ("strength without cohesion", STRENGTH("friction_peak: 30 deg"), [M + "plasticity_cohesion_max", "required when law is mohr_coulomb"], []),
+    ("no strength at all", STRENGTH("cohesion_max: 0 Pa, friction_peak: 0 deg"), [M + "plasticity_cohesion_max", "no strength"], []),
+    ("friction of 90 deg", STRENGTH("cohesion_max: 1 MPa, friction_peak: 90 deg"), [M + "plasticity_friction_peak", "[0,90)"], []),
+    ("angle without unit", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30"), [M + "plasticity_friction_peak", "30 deg"], []),
+    ("angle in the wrong unit", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 %"), [M + "plasticity_friction_peak", "an angle"], []),
+    ("angle for a plain number", [("porosity: 0.15", "porosity: 0.15 deg")], [M + "porosity", "takes no unit"], []),
+    ("residual cohesion above the peak", STRENGTH("cohesion_max: 1 MPa, cohesion_residual: 2 MPa, friction_peak: 30 deg"),
+     [M + "plasticity_cohesion_residual", "2e+06 Pa > 1e+06 Pa"], []),
+    ("residual friction above the peak", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg, friction_residual: 40 deg"),
+     [M + "plasticity_friction_residual", "40 deg > 30 deg"], []),
+    ("cohesion that falls with hydrate", STRENGTH("cohesion_max: 1 MPa, cohesion_min: 2 MPa, friction_peak: 30 deg"), [M + "plasticity_cohesion_min"], []),
+    ("dilation that falls with hydrate", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg, dilation_min: 5 deg"), [M + "plasticity_dilation_min"], []),
+    ("softening that snaps back", STRENGTH("cohesion_max: 1 MPa, cohesion_residual: 0 Pa, friction_peak: 30 deg, eta_s: 1000, Sh_max: 0.5"),
+     [M + "plasticity_eta_s", "snaps back", "E = 9e+07 Pa", "c_max - c_res = 1e+06 Pa"], []),
+    ("tension cut-off of the smooth flow", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg, tension_cutoff: 1 kPa"),
+     [M + "plasticity_tension_cutoff", "flow: mohr_coulomb"], []),
+    ("plastic heat without heat", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg, heat: 0.5") + [("basis: cpgimp", "basis: cpgimp\nfields: hmc")],
+     [M + "plasticity_heat", "heat is not among"], []),
+    ("shear out of the plane of a plastic material", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg") +
+     [("    pressure: 3.25 MPa\n", "    pressure: 3.25 MPa\n    stress: [0 Pa, 0 Pa, 0 Pa, 0 Pa, 1 kPa, 0 Pa]\n")],
+     ["region_column_stress", "out of the plane"], []),
+    ("plastic strain of an elastic scene", [], ["output_quantities", "plasticity_law"], ["-output_quantities", "eps_d_p"]),
     # --- keys
     ("typo in a top key", [("basis: cpgimp", "bassis: cpgimp")], ["bassis", "did you mean basis"], []),
     ("typo in a nested key", [("porosity: 0.15", "porosty: 0.15")], [M + "porosty", "did you mean " + M + "porosity"], []),
@@ -45,6 +71,11 @@ CASES = [
     ("missing boundary value", [("    normal: {table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}\n", "")],
      ["bc_load_normal", "is missing"], []),
     ("pressure neither given nor initial", [(", initial: yes", "")], ["bc_drain_pressure", "is missing"], []),
+    ("ambient on a face without a fluid around", [(", initial: yes", ", pressure: ambient")], ["bc_drain_pressure", "neither ambient_pressure"], []),
+    ("ambient in a misspelt word", [(", initial: yes", ", pressure: ambiant"), ("basis: cpgimp", "ambient: {pressure: 1 MPa}")],
+     ["bc_drain_pressure", "ambiant"], []),
+    ("ambient density without gravity", [("basis: cpgimp", "ambient: {density: 1025 kg/m^3}")], ["ambient_density", "without gravity"], []),
+    ("negative ambient pressure", [("basis: cpgimp", "ambient: {pressure: -1 MPa}")], ["ambient_pressure", "[0,1e10]"], []),
     ("doubled key", [("basis: cpgimp", "basis: cpgimp\nbasis: linear")], ["basis", "given twice"], []),
     ("doubled map", [("time: {end: 2000 s}", "time: {end: 2000 s}\ntime: {end: 1 s}")], ["time", "given twice"], []),
     ("no value", [("porosity: 0.15", "porosity:")], [M + "porosity", "no value"], []),

@@ -257,7 +257,7 @@ static void TestHomogeneous(void **state)
   for (int basis = 0; basis < 3; basis++) {
     Scene     *s = malloc(sizeof(*s));
     double    *x, off = 0.0, volume = 0.0, place = 0.0;
-    Trial      t;
+    Trial      t = {0};
     StageRates rates;
     ClStatus   status;
 

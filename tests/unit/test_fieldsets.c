@@ -128,8 +128,8 @@ static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
   PointInitialMasses(fs, &q->mat, q->h.V, 0.3, Sh0, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
                      &q->h.m_star[2]);
   for (int k = 0; k < 6; k++) {
-    q->h.sig[k]  = RngBetween(r, -3e6, 3e6);
-    q->h.sig0[k] = RngBetween(r, -3e6, 3e6);
+    q->h.skeleton.sig[k]  = RngBetween(r, -3e6, 3e6);
+    q->h.skeleton.sig0[k] = RngBetween(r, -3e6, 3e6);
   }
   for (int k = 0; k < 4; k++)
     q->h.proj[k / 2][k % 2] = RngBetween(r, -2e5, 2e5);

@@ -57,7 +57,7 @@ static void TestMassRows(void **state)
     Model       *m = &s->m;
     double      *x, mass[2] = {0.0}, gain[2] = {0.0};
     const double nu[2] = {6.0 * 0.018 / 0.124, 0.016 / 0.124};
-    Trial        t;
+    Trial        t     = {0};
     StageRates   rates;
     ClStatus     status;
 

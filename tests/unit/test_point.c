@@ -108,8 +108,8 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
   if (regime == NO_HYDRATE && RngPick(r, 2))
     q->h.Sh_n = 0.0;
   for (int k = 0; k < 6; k++) {
-    q->h.sig[k]  = RngBetween(r, -5e6, 5e6);
-    q->h.sig0[k] = RngBetween(r, -2e6, 2e6);
+    q->h.skeleton.sig[k]  = RngBetween(r, -5e6, 5e6);
+    q->h.skeleton.sig0[k] = RngBetween(r, -2e6, 2e6);
   }
   for (int k = 0; k < 4; k++) {
     q->in[IN_GP + k]        = RngBetween(r, -1e6, 1e6);
@@ -445,9 +445,9 @@ static void TestRigidRotation(void **state)
     RotateBy(&q, theta);
     assert_int_equal(Evaluate(&q, false, &b, &ob), CL_OK);
     const double E = ElasticityYoung(&q.mat.elasticity, q.h.Sh_n, &dE); /* 1 ulp in J is a strain, and so a stress */
-    RotateTensor(q.h.sig, theta, turned);
+    RotateTensor(q.h.skeleton.sig, theta, turned);
     for (int k = 0; k < 6; k++)
-      stress = fmax(stress, fabs(b.sig[k] - turned[k]) / (5e6 + 0.2 * E));
+      stress = fmax(stress, fabs(b.skeleton.sig[k] - turned[k]) / (5e6 + 0.2 * E));
     for (int k = 0; k < 2; k++) { /* P' = R P: the force on a node turns with the body; its gradients G do not */
       const double x = oa.out[OUT_P + k], y = oa.out[OUT_P + 2 + k], size = q.h.V * (1e7 + 0.2 * E);
 
@@ -478,19 +478,19 @@ static void TestManyTurns(void **state)
 
   (void)state;
   RestingParticle(&r, &q);
-  memcpy(first, q.h.sig, sizeof(first));
-  memcpy(first0, q.h.sig0, sizeof(first0));
+  memcpy(first, q.h.skeleton.sig, sizeof(first));
+  memcpy(first0, q.h.skeleton.sig0, sizeof(first0));
   for (int n = 1; n <= 1000; n++) {
     RotateBy(&q, 73.0 * PI / 180.0);
     assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
-    memcpy(q.h.sig, s.sig, sizeof(s.sig));
-    memcpy(q.h.sig0, s.sig0, sizeof(s.sig0));
+    memcpy(q.h.skeleton.sig, s.skeleton.sig, sizeof(s.skeleton.sig));
+    memcpy(q.h.skeleton.sig0, s.skeleton.sig0, sizeof(s.skeleton.sig0));
     q.h.V = s.V;
   }
   RotateTensor(first, 1000.0 * 73.0 * PI / 180.0, turned);
   RotateTensor(first0, 1000.0 * 73.0 * PI / 180.0, turned0);
   for (int k = 0; k < 6; k++)
-    worst = fmax(worst, fmax(fabs(s.sig[k] - turned[k]), fabs(s.sig0[k] - turned0[k])) / 5e6);
+    worst = fmax(worst, fmax(fabs(s.skeleton.sig[k] - turned[k]), fabs(s.skeleton.sig0[k] - turned0[k])) / 5e6);
   printf("1000 turns of 73 degrees: stress %.1e of 5 MPa\n", worst);
   assert_true(worst < 1e-12);
 }
@@ -506,17 +506,18 @@ static double ShearError(double gamma, int n)
 
   RestingParticle(&r, &q);
   q.mat.elasticity.Eh = 0.0;
-  memset(q.h.sig, 0, sizeof(q.h.sig));
-  memset(q.h.sig0, 0, sizeof(q.h.sig0));
+  memset(q.h.skeleton.sig, 0, sizeof(q.h.skeleton.sig));
+  memset(q.h.skeleton.sig0, 0, sizeof(q.h.skeleton.sig0));
   q.in[IN_GRADU + 1] = gamma / n;
   for (int k = 0; k < n; k++) {
     assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
-    memcpy(q.h.sig, s.sig, sizeof(s.sig));
+    memcpy(q.h.skeleton.sig, s.skeleton.sig, sizeof(s.skeleton.sig));
   }
   const double G = q.mat.elasticity.E0 * ElasticityShearFactor(&q.mat.elasticity), normal = 1.0 - cos(gamma);
 
-  return fmax(fabs(s.sig[XY] / G - sin(gamma)),
-              fmax(fabs(s.sig[XX] / G - normal), fmax(fabs(s.sig[YY] / G + normal), fabs(s.sig[ZZ] / G))));
+  return fmax(fabs(s.skeleton.sig[XY] / G - sin(gamma)),
+              fmax(fabs(s.skeleton.sig[XX] / G - normal),
+                   fmax(fabs(s.skeleton.sig[YY] / G + normal), fabs(s.skeleton.sig[ZZ] / G))));
 }
 
 static void TestSimpleShear(void **state)
@@ -735,7 +736,8 @@ static void TestNeverNan(void **state)
     for (int k = 0; k < OUT_COUNT * IN_COUNT; k++)
       assert_true(isfinite((&o.D[0][0])[k]));
     assert_true(s.phi > 0.0 && s.phi < 1.0 && s.Sh >= 0.0 && s.Sh < 1.0 && s.Sw >= 0.0 && s.Sg >= 0.0);
-    assert_true(isfinite(s.sig[XX] + s.sig[YY] + s.sig[ZZ] + s.sig[XY] + s.sig[YZ] + s.sig[XZ]));
+    assert_true(isfinite(s.skeleton.sig[XX] + s.skeleton.sig[YY] + s.skeleton.sig[ZZ] + s.skeleton.sig[XY] +
+                         s.skeleton.sig[YZ] + s.skeleton.sig[XZ]));
     for (int f = 0; f < PHASE_COUNT; f++) {
       assert_true(s.rho[f] > 0.0 && s.tau[f] > 0.0 && isfinite(s.rho[f]) && isfinite(s.tau[f]));
       for (int k = 0; k < 4; k++)

@@ -32,8 +32,8 @@ def walls(length):
 TIGHT = ("-newton_tol_residual", "1e-10", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-10")
 
 
-def body(*options):
-    return Run.of_case(CASES / "sea_body.yaml", "-quiet", *options)
+def body(*options, ranks=1):
+    return Run.of_case(CASES / "sea_body.yaml", "-quiet", *options, ranks=ranks)
 
 
 def last(run):
@@ -55,9 +55,14 @@ def rest():
 def deeper():
     """A heavier body settles on its base by as much under 50 m of water as under 150 m; pressure and total stress grow, nothing else."""
     for shape, where in MOUNDS.items():
-        run = lambda level: last(body(*where, "-boundaries", ",".join(("base", *SIDES)), *BASE, *OPEN, *TIGHT, "-ambient_level", f"{level} m", "-region_body_pressure", f"{level / 100} MPa",
-                                      "-mat_mud_solid_density", "2600 kg/m^3"))  # fmt: skip
+        run = lambda level, ranks=1: last(body(*where, "-boundaries", ",".join(("base", *SIDES)), *BASE, *OPEN, *TIGHT, "-ambient_level", f"{level} m", "-region_body_pressure", f"{level / 100} MPa",
+                                      "-mat_mud_solid_density", "2600 kg/m^3", ranks=ranks))  # fmt: skip
         shallow, deep = run(50), run(150)
+        if shape == "hill":
+            for ranks in (2, 4):
+                got = run(50, ranks=ranks)
+                worst = max(np.max(np.abs(got[k] - shallow[k])) / np.max(np.abs(shallow[k])) for k in ("position", "displacement", "stress", "p"))
+                judge(ROW, f"{shape} in the sea: {ranks} ranks against 1", worst, 1e-9)
         size = lambda k: np.max(np.abs(shallow[k]))
         off = max(np.max(np.abs(deep[k] - shallow[k])) / size(k) for k in ("displacement", "stress"))
         judge(ROW, f"{shape} under 100 m more of sea: displacement and effective stress", off, 1e-6)

@@ -1,0 +1,262 @@
+/* Mohr-Coulomb behind the interface of the skeleton: elastic trial, principal stresses in the plane, return, and back
+   with the tangent; docs/equations.md, section 13. */
+#include "plastic.h"
+
+#define ROUND_OFF 1e-12 /* share of the cohesion: a state returned before is not returned again */
+#define NEAR_EQUAL 1e-8 /* principal stresses closer than this share of their size: limit of the spin part */
+
+/* In-plane principal stresses and direction of a stress xx yy zz xy; order[i]: 0, 1 in the plane, 2 out of it. */
+typedef struct {
+  double mean, radius, c2, s2; /* of Mohr's circle: xx - yy = 2 radius c2, xy = radius s2 */
+  int    order[3];             /* which principal stress is the largest, middle, smallest */
+  double y[3];                 /* falling */
+} Principal;
+
+static void PrincipalOf(const double sig[6], Principal *p)
+{
+  const double d = 0.5 * (sig[XX] - sig[YY]), o = sig[XY], r = sqrt(d * d + o * o), m = 0.5 * (sig[XX] + sig[YY]);
+  const double z = sig[ZZ], v[3] = {m + r, m - r, z};
+
+  p->mean     = m;
+  p->radius   = r;
+  p->c2       = r > 0.0 ? d / r : 1.0;
+  p->s2       = r > 0.0 ? o / r : 0.0;
+  p->order[0] = z > v[0] ? 2 : 0;
+  p->order[1] = z > v[0] ? 0 : z >= v[1] ? 2 : 1;
+  p->order[2] = z >= v[1] ? 1 : 2;
+  for (int i = 0; i < 3; i++)
+    p->y[i] = v[p->order[i]];
+}
+
+/* Stress from principal values v (in-plane upper, lower, out of plane) in the trial directions. */
+static void FromPrincipal(const Principal *p, const double v[3], double sig[6])
+{
+  const double m = 0.5 * (v[0] + v[1]), r = 0.5 * (v[0] - v[1]);
+
+  sig[XX] = m + r * p->c2;
+  sig[YY] = m - r * p->c2;
+  sig[ZZ] = v[2];
+  sig[XY] = r * p->s2;
+}
+
+static void Unsort(const Principal *p, const double y[3], double v[3])
+{
+  for (int i = 0; i < 3; i++)
+    v[p->order[i]] = y[i];
+}
+
+/* d(stress)/d(trial stress) of xx yy zz xy from the slopes of principal values, and the columns of E and S_h. */
+static void StressSlopes(const Principal *p, const Returned *r, double C[4][4], double by_E[4], double by_S[4])
+{
+  double v[3], D[3][3], e[3], h[3];
+
+  Unsort(p, r->y, v);
+  for (int i = 0; i < 3; i++) {
+    e[p->order[i]] = r->dy[i][BY_E];
+    h[p->order[i]] = r->dy[i][BY_SH];
+    for (int j = 0; j < 3; j++)
+      D[p->order[i]][p->order[j]] = r->dy[i][j];
+  }
+  const double size = fabs(p->mean) + p->radius;
+  const double spin =
+      p->radius > NEAR_EQUAL * size ? 0.5 * (v[0] - v[1]) / p->radius : 0.5 * (D[0][0] - D[0][1] - D[1][0] + D[1][1]);
+  const double dir[3][4] = {{0.5 * (1.0 + p->c2), 0.5 * (1.0 - p->c2), 0.0, p->s2},
+                            {0.5 * (1.0 - p->c2), 0.5 * (1.0 + p->c2), 0.0, -p->s2},
+                            {0.0, 0.0, 1.0, 0.0}}; /* dv/d(xx yy zz xy) */
+  const double out[3][4] = {{dir[0][0], dir[0][1], 0.0, 0.5 * p->s2},
+                            {dir[1][0], dir[1][1], 0.0, -0.5 * p->s2},
+                            {0.0, 0.0, 1.0, 0.0}};      /* d(xx yy zz xy)/dv */
+  const double turn[4]   = {-p->s2, p->s2, 0.0, p->c2}; /* d(c2, s2) as the circle turns: (xx - yy)/2 and xy */
+
+  for (int a = 0; a < 4; a++) {
+    by_E[a] = by_S[a] = 0.0;
+    for (int i = 0; i < 3; i++) {
+      by_E[a] += out[i][a] * e[i];
+      by_S[a] += out[i][a] * h[i];
+    }
+    for (int b = 0; b < 4; b++) {
+      C[a][b] = spin * turn[a] * (b == 3 ? turn[b] : 0.5 * turn[b]);
+      for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+          C[a][b] += out[i][a] * D[i][j] * dir[j][b];
+      }
+    }
+  }
+}
+
+static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, const Principal *p)
+{
+  const Elasticity *el = &mat->elasticity;
+
+  return (Trial3){.law  = &mat->plasticity,
+                  .G2   = 2.0 * ElasticityShearFactor(el),
+                  .lame = ElasticityLameFactor(el),
+                  .E    = d->E,
+                  .Sh   = d->Sh,
+                  .eps  = eps,
+                  .y    = {p->y[0], p->y[1], p->y[2]}};
+}
+
+static bool Yields(const Plasticity *law, double Sh, double eps, const double y[3])
+{
+  Strength k;
+  double   dy[3], dphi;
+
+  StrengthEvaluate(law, Sh, eps, &k);
+  const double round_off = ROUND_OFF * k.c + 1e-2 * ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
+  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > law->cutoff + round_off;
+}
+
+static bool ReturnToYield(const Trial3 *t, bool slopes, Returned *r)
+{
+  return t->law->flow == FLOW_MOHR_COULOMB ? ReturnPlanes(t, slopes, r) : ReturnSmooth(t, slopes, r);
+}
+
+/* Plastic strain of the step from stress to trial stress, xx yy zz xy, by Hooke's law. */
+static void PlasticStrain(const Elasticity *el, double E, const double over[4], double e[4])
+{
+  const double tr = el->nu * (over[0] + over[1] + over[2]);
+
+  for (int k = 0; k < 4; k++)
+    e[k] = ((1.0 + el->nu) * over[k] - (k < 3 ? tr : 0.0)) / E;
+}
+
+/* sigma : e, with the shear on both sides of the diagonal. */
+static double Double(const double a[4], const double b[4])
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3];
+}
+
+/* Tangent of the trial state turned into that of the returned one; the work is sigma : D^-1 (trial - sigma). */
+static void PlasticTangent(const Elasticity *el, const SkeletonStep *d, const Principal *p, const Returned *r,
+                           const double sig[4], const double e[4], SkeletonTangent *t)
+{
+  double C[4][4], by_E[4], by_S[4], trial[4][SKELETON_IN];
+
+  StressSlopes(p, r, C, by_E, by_S);
+  for (int a = 0; a < 4; a++) {
+    for (int q = 0; q < SKELETON_IN; q++)
+      trial[a][q] = t->d[a][q];
+  }
+  for (int q = 0; q < SKELETON_IN; q++) {
+    double over[4], de[4], ds[4];
+
+    for (int a = 0; a < 4; a++) {
+      ds[a] = q == SKELETON_E ? by_E[a] : q == SKELETON_SH ? by_S[a] : 0.0;
+      for (int b = 0; b < 4; b++)
+        ds[a] += C[a][b] * trial[b][q];
+      t->d[a][q] = ds[a];
+      over[a]    = trial[a][q] - ds[a];
+    }
+    PlasticStrain(el, d->E, over, de);
+    t->d[SKELETON_WORK][q] = Double(ds, e) + Double(sig, de) - (q == SKELETON_E ? Double(sig, e) / d->E : 0.0);
+  }
+}
+
+/* Turns the plane part of a tensor xx yy zz xy. */
+static void Turn4(const double a[4], double c, double s, double r[4])
+{
+  const double a6[6] = {a[0], a[1], a[2], a[3], 0.0, 0.0};
+  double       r6[6];
+
+  Turn6(a6, c, s, r6);
+  for (int k = 0; k < 4; k++)
+    r[k] = r6[k];
+}
+
+/* (68): takes the plastic strain `start` (as the body lies now) that the stage starts from off the trial stress. */
+static void TakeOff(const Elasticity *el, double E, const double start[4], SkeletonState *s, SkeletonTangent *t)
+{
+  const double start6[6] = {start[0], start[1], start[2], start[3], 0.0, 0.0};
+  double       unit[4], spin[6], dunit[4];
+
+  UnitStress(el, start, unit);
+  Spin6(start6, spin);
+  UnitStress(el, spin, dunit);
+  for (int k = 0; k < 4; k++) {
+    s->sig[k] -= E * unit[k];
+    if (!t)
+      continue;
+    t->d[k][SKELETON_E] -= unit[k];
+    t->d[k][SKELETON_THETA] -= E * dunit[k];
+  }
+}
+
+/* From the trial stress in s to the yield surface; plastic strain of the stage in e. */
+static bool Return(const Material *mat, const SkeletonStep *d, SkeletonState *s, SkeletonTangent *t, double e[4],
+                   const char **why)
+{
+  Principal p;
+  Returned  r;
+  double    v[3], over[4], trial[4];
+
+  for (int k = 0; k < 4; k++)
+    e[k] = 0.0;
+  PrincipalOf(s->sig, &p);
+  if (!Yields(&mat->plasticity, d->Sh, s->eps, p.y))
+    return true;
+  const Trial3 at = TrialOf(mat, d, s->eps, &p);
+  if (!ReturnToYield(&at, t != NULL, &r)) {
+    *why = "no stress on the yield surface was found for the strain of this step";
+    return false;
+  }
+  for (int k = 0; k < 4; k++)
+    trial[k] = s->sig[k];
+  Unsort(&p, r.y, v);
+  FromPrincipal(&p, v, s->sig);
+  for (int k = 0; k < 4; k++)
+    over[k] = trial[k] - s->sig[k];
+  PlasticStrain(&mat->elasticity, d->E, over, e);
+  s->eps    = r.eps;
+  s->region = r.region;
+  s->work   = Double(s->sig, e);
+  if (t)
+    PlasticTangent(&mat->elasticity, d, &p, &r, s->sig, e, t);
+  return true;
+}
+
+bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
+                        SkeletonTangent *t, const char **why)
+{
+  double start[4], e[4];
+
+  ElasticStress(&mat->elasticity, h, d, s);
+  ElasticEnd(h, s);
+  if (t)
+    ElasticTangent(&mat->elasticity, h, d, t);
+  Turn4(h->plastic, d->c, d->s, start);
+  TakeOff(&mat->elasticity, d->E, start, s, t);
+  if (!Return(mat, d, s, t, e, why))
+    return false;
+  for (int k = 0; k < 4; k++)
+    start[k] += e[k];
+  Turn4(start, d->c, -d->s, s->plastic);
+  return true;
+}
+
+bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why)
+{
+  bool found = true;
+
+  for (int q = 0; q < b->n; q++) {
+    const SkeletonStep d = {.c       = b->c[q],
+                            .s       = b->s[q],
+                            .e       = {b->xx[q], b->yy[q], 0.0, b->xy[q]},
+                            .thermal = b->thermal[q],
+                            .E_n     = b->E_n[q],
+                            .E       = b->E[q],
+                            .Sh      = b->Sh[q]};
+    SkeletonHistory    h;
+    SkeletonState      s;
+    double             e[4];
+
+    SkeletonTake(&b->store, q, &h);
+    ElasticStress(&mat->elasticity, &h, &d, &s);
+    ElasticEnd(&h, &s);
+    found = Return(mat, &d, &s, NULL, e, why) && found;
+    SkeletonKeep(&b->store, q, &s);
+    if (b->work)
+      b->work[q] = s.work;
+  }
+  return found;
+}

@@ -1,0 +1,35 @@
+/* Private to skeleton/: returns to the yield surface in principal stresses. */
+#pragma once
+
+#include "elastic.h"
+
+/* Trial state of a return and what it may use. */
+typedef struct {
+  const Plasticity *law;
+  double            G2, lame; /* of Hooke's law per Young's modulus: 2G/E, lambda/E */
+  double            E, Sh;
+  double            eps;  /* deviatoric plastic strain at the start */
+  double            y[3]; /* trial stresses, falling, Pa */
+} Trial3;
+
+/* Columns of the slopes: the trial stresses, E, S_h. */
+enum { BY_E = 3, BY_SH, BY_COUNT };
+typedef struct {
+  double       y[3], eps;
+  double       dy[3][BY_COUNT];
+  ReturnRegion region;
+  int          iterations;
+} Returned;
+
+/* False if no state was found.  Slopes are filled if asked for. */
+bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r); /* flow: menetrey_willam */
+bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r); /* flow: mohr_coulomb */
+/* Both: to the apex c/tan(phi); false if the trial state does not lie beyond it. */
+bool ReturnApex(const Trial3 *t, bool slopes, Returned *r);
+
+bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
+                        SkeletonTangent *t, const char **why);
+bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why);
+
+/* sqrt(2/3 dev x : dev x) of principal values, and its slopes. */
+double DeviatoricNorm(const double x[3], double dx[3]);

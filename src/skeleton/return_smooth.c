@@ -1,0 +1,289 @@
+/* Return along the smooth potential: five equations for three stresses, multiplier and plastic strain
+   (docs/equations.md, section 13).  The potential is isotropic and convex, so the order of the stresses stays and one
+   multiplier is enough: edges of the yield surface need no case of their own. */
+#include "plastic.h"
+
+#define UNKNOWNS 5
+#define ITERATIONS 60
+#define HALVINGS 30
+#define FLAT 1e-7  /* dilation below which the potential has no end to speak of: to the apex at once */
+#define CLOSE 1e-9 /* scaled residual from which one more full step ends at round-off */
+enum { X_L = 3, X_EPS };
+
+double DeviatoricNorm(const double x[3], double dx[3])
+{
+  const double m = (x[0] + x[1] + x[2]) / 3.0, s[3] = {x[0] - m, x[1] - m, x[2] - m};
+  const double n = sqrt(2.0 / 3.0 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
+
+  for (int i = 0; i < 3; i++)
+    dx[i] = n > 0.0 ? 2.0 / 3.0 * s[i] / n : 0.0;
+  return n;
+}
+
+/* (65) at x = (y, multiplier in Pa, plastic strain), all in Pa: rows as unknowns, then matrices. */
+typedef struct {
+  double r[UNKNOWNS], A[UNKNOWNS][UNKNOWNS], by[UNKNOWNS][BY_COUNT];
+} System;
+
+static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, System *s)
+{
+  Strength     k;
+  FlowGradient P;
+  double       dF[3], dn[3], F_phi, n_y[3] = {0.0}, n_eps = 0.0, n_S = 0.0;
+
+  StrengthEvaluate(t->law, t->Sh, x[X_EPS], &k);
+  MenetreyWillamGradient(k.phi, k.psi, t->law->eccentricity * t->law->c_max, x, &P);
+  const double n = DeviatoricNorm(P.dev, dn), L = x[X_L];
+
+  for (int i = 0; i < 3; i++) {
+    const double P_eps = P.phi[i] * k.phi_e + P.psi[i] * k.psi_e, P_S = P.psi[i] * k.psi_S;
+
+    n_eps += dn[i] * P_eps;
+    n_S += dn[i] * P_S;
+    for (int j = 0; j < 3; j++)
+      n_y[j] += dn[i] * P.yy[i][j];
+  }
+  const double tr = P.y[0] + P.y[1] + P.y[2], tr_psi = P.psi[0] + P.psi[1] + P.psi[2];
+  const double tr_eps = tr_psi * k.psi_e, tr_S = tr_psi * k.psi_S;
+  for (int i = 0; i < 3; i++) {
+    const double P_eps = P.phi[i] * k.phi_e + P.psi[i] * k.psi_e, DP = t->G2 * P.y[i] + t->lame * tr;
+
+    s->r[i] = x[i] - t->y[i] + L * DP;
+    for (int j = 0; j < 3; j++) {
+      s->A[i][j] = (i == j ? 1.0 : 0.0) + L * t->G2 * P.yy[i][j];
+      if (slopes)
+        s->by[i][j] = i == j ? -1.0 : 0.0;
+    }
+    s->A[i][X_L]    = DP;
+    s->A[i][X_EPS]  = L * (t->G2 * P_eps + t->lame * tr_eps);
+    s->by[i][BY_E]  = 0.0;
+    s->by[i][BY_SH] = L * (t->G2 * P.psi[i] * k.psi_S + t->lame * tr_S);
+    s->by[X_L][i] = s->by[X_EPS][i] = 0.0;
+  }
+  s->r[X_L]   = MohrCoulombYield(k.phi, k.c, x, dF, &F_phi);
+  s->r[X_EPS] = t->E * (x[X_EPS] - t->eps) - L * n;
+  for (int j = 0; j < 3; j++) {
+    s->A[X_L][j]   = dF[j];
+    s->A[X_EPS][j] = -L * n_y[j];
+  }
+  s->A[X_L][X_L]      = 0.0;
+  s->A[X_L][X_EPS]    = F_phi * k.phi_e - k.c_e;
+  s->A[X_EPS][X_L]    = -n;
+  s->A[X_EPS][X_EPS]  = t->E - L * n_eps;
+  s->by[X_L][BY_E]    = 0.0;
+  s->by[X_L][BY_SH]   = -k.c_S;
+  s->by[X_EPS][BY_E]  = x[X_EPS] - t->eps;
+  s->by[X_EPS][BY_SH] = -L * n_S;
+}
+
+/* A z = b for m right sides, with pivots; both are overwritten.  False if A is singular. */
+static bool Solve(double A[UNKNOWNS][UNKNOWNS], int m, double b[UNKNOWNS][BY_COUNT])
+{
+  for (int k = 0; k < UNKNOWNS; k++) {
+    int top = k;
+
+    for (int i = k + 1; i < UNKNOWNS; i++)
+      top = fabs(A[i][k]) > fabs(A[top][k]) ? i : top;
+    if (!(fabs(A[top][k]) > 0.0))
+      return false;
+    for (int j = 0; top != k && j < UNKNOWNS; j++) {
+      const double a = A[k][j];
+
+      A[k][j]   = A[top][j];
+      A[top][j] = a;
+    }
+    for (int j = 0; top != k && j < m; j++) {
+      const double a = b[k][j];
+
+      b[k][j]   = b[top][j];
+      b[top][j] = a;
+    }
+    for (int i = k + 1; i < UNKNOWNS; i++) {
+      const double f = A[i][k] / A[k][k];
+
+      for (int j = k + 1; j < UNKNOWNS; j++)
+        A[i][j] -= f * A[k][j];
+      for (int j = 0; j < m; j++)
+        b[i][j] -= f * b[k][j];
+    }
+  }
+  for (int k = UNKNOWNS - 1; k >= 0; k--) {
+    for (int j = 0; j < m; j++) {
+      for (int i = k + 1; i < UNKNOWNS; i++)
+        b[k][j] -= A[k][i] * b[i][j];
+      b[k][j] /= A[k][k];
+    }
+  }
+  return true;
+}
+
+/* Matrix with the column of the plastic strain per Pa, so that its pivots are of one size. */
+static bool NewtonStep(const Trial3 *t, System *s, double dx[UNKNOWNS])
+{
+  double b[UNKNOWNS][BY_COUNT];
+
+  for (int i = 0; i < UNKNOWNS; i++) {
+    b[i][0] = -s->r[i];
+    s->A[i][X_EPS] /= t->E;
+  }
+  if (!Solve(s->A, 1, b))
+    return false;
+  for (int i = 0; i < UNKNOWNS; i++)
+    dx[i] = b[i][0];
+  dx[X_EPS] /= t->E;
+  return true;
+}
+
+static double Size(const System *s)
+{
+  double sum = 0.0;
+
+  for (int i = 0; i < UNKNOWNS; i++)
+    sum += s->r[i] * s->r[i];
+  return sqrt(sum);
+}
+
+/* Newton with halved steps from x; true if it arrived. */
+static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *iterations)
+{
+  System s;
+  double size, dx[UNKNOWNS];
+
+  Equations(t, x, false, &s);
+  size = Size(&s);
+  for (int it = 0; it < ITERATIONS; it++) {
+    const bool close = size <= CLOSE * scale;
+    double     step  = 1.0, to[UNKNOWNS];
+
+    ++*iterations;
+    if (!isfinite(size) || !NewtonStep(t, &s, dx))
+      return false;
+    for (int h = 0;; h++, step *= 0.5) {
+      for (int i = 0; i < UNKNOWNS; i++)
+        to[i] = x[i] + step * dx[i];
+      Equations(t, to, false, &s);
+      const double now = Size(&s);
+      if (close || now < (1.0 - 1e-4 * step) * size) {
+        size = now;
+        break;
+      }
+      if (h == HALVINGS)
+        return false;
+    }
+    for (int i = 0; i < UNKNOWNS; i++)
+      x[i] = to[i];
+    if (close)
+      return size <= CLOSE * scale && x[X_L] >= -CLOSE * scale;
+  }
+  return false;
+}
+
+static void Slopes(const Trial3 *t, const double x[UNKNOWNS], Returned *r)
+{
+  System s;
+
+  Equations(t, x, true, &s);
+  for (int i = 0; i < UNKNOWNS; i++) {
+    s.A[i][X_EPS] /= t->E;
+    for (int j = 0; j < BY_COUNT; j++)
+      s.by[i][j] = -s.by[i][j];
+  }
+  if (!Solve(s.A, BY_COUNT, s.by))
+    return;
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < BY_COUNT; j++)
+      r->dy[i][j] = s.by[i][j];
+  }
+}
+
+/* First guess beyond the apex: the mean stress of the apex, the deviator as the nearly flat end of the potential leaves
+   it. */
+static void GuessBeyond(const Trial3 *t, double x[UNKNOWNS])
+{
+  Strength     k;
+  double       ds[3];
+  const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, norm = DeviatoricNorm(t->y, ds);
+
+  x[X_EPS] = t->eps + norm / (t->G2 * t->E);
+  StrengthEvaluate(t->law, t->Sh, x[X_EPS], &k);
+  const double tp = tan(k.psi), m = t->law->eccentricity * t->law->c_max * tp, at = k.c / tan(k.phi),
+               R    = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi));
+  x[X_L]            = (sm - at) / ((t->G2 + 3.0 * t->lame) * tp / 3.0);
+  const double keep = 1.0 / (1.0 + t->G2 * x[X_L] * 1.5 * R * R / m);
+  for (int i = 0; i < 3; i++)
+    x[i] = at + keep * (t->y[i] - sm);
+}
+
+/* For trial states from which Newton does not arrive: along the way from a state of equal stresses inside the yield
+   surface to the trial state, each solution the guess of the next. */
+static bool Continuation(const Trial3 *t, double scale, double x[UNKNOWNS], int *iterations)
+{
+  Trial3   at = *t;
+  Strength k;
+  double   done = 0.0, step = 0.25, from[UNKNOWNS], inside, dF[3], dphi;
+
+  StrengthEvaluate(t->law, t->Sh, t->eps, &k);
+  inside = fmin((t->y[0] + t->y[1] + t->y[2]) / 3.0, k.phi > 0.0 ? 0.5 * k.c / tan(k.phi) : INFINITY);
+  for (int i = 0; i < UNKNOWNS; i++)
+    from[i] = i < 3 ? inside : i == X_L ? 0.0 : t->eps;
+  while (done < 1.0 && step > 1e-4) {
+    const double to = fmin(done + step, 1.0);
+
+    for (int i = 0; i < 3; i++)
+      at.y[i] = inside + to * (t->y[i] - inside);
+    const bool elastic = MohrCoulombYield(k.phi, k.c, at.y, dF, &dphi) <= 0.0;
+    for (int i = 0; i < UNKNOWNS; i++)
+      x[i] = i < 3 && (elastic || from[X_L] == 0.0) ? at.y[i] : from[i];
+    if (!elastic && !Newton(&at, scale, x, iterations)) {
+      step *= 0.5;
+      continue;
+    }
+    for (int i = 0; i < UNKNOWNS; i++)
+      from[i] = x[i];
+    done = to;
+    step *= 2.0;
+  }
+  return done >= 1.0;
+}
+
+bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
+{
+  double     x[UNKNOWNS] = {t->y[0], t->y[1], t->y[2], 0.0, t->eps}, size = 0.0;
+  Returned   apex;
+  const bool beyond = ReturnApex(t, slopes, &apex);
+
+  r->iterations = 0;
+  r->region     = RETURN_FACE;
+  for (int i = 0; i < 3; i++)
+    size = fmax(size, fabs(t->y[i]));
+  bool found = false;
+  if (beyond) {
+    Strength k;
+
+    StrengthEvaluate(t->law, t->Sh, apex.eps, &k);
+    if (k.psi < FLAT) {
+      apex.iterations = 0;
+      *r              = apex;
+      return true;
+    }
+    GuessBeyond(t, x);
+    found = isfinite(x[0] + x[X_L]) && Newton(t, size, x, &r->iterations);
+  }
+  if (!found) {
+    for (int i = 0; i < UNKNOWNS; i++)
+      x[i] = i < 3 ? t->y[i] : i == X_L ? 0.0 : t->eps;
+    found = Newton(t, size, x, &r->iterations);
+  }
+  found = found || (!beyond && Continuation(t, size, x, &r->iterations));
+  if (!found) {
+    apex.iterations = r->iterations;
+    *r              = apex;
+    return beyond;
+  }
+  for (int i = 0; i < 3; i++)
+    r->y[i] = x[i];
+  r->eps = x[X_EPS];
+  if (slopes)
+    Slopes(t, x, r);
+  return true;
+}

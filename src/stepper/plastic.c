@@ -1,0 +1,36 @@
+/* What the implicit schemes know of plasticity: where a second stage starts, and the error of plastic strain and
+   stress; docs/equations.md, section 8. */
+#include "clathra/stepper.h"
+
+void StepperStarPlastic(Stepper *s, double c)
+{
+  const Model  *m     = s->model;
+  StepperWork  *w     = &s->work;
+  const double *first = w->trial[0].p;
+
+  for (PetscInt p = 0; w->p_star && p < m->P.n; p++) {
+    for (int k = 0; k < PLASTIC_COUNT; k++) {
+      const double y_n = k == PLASTIC_EPS ? m->P.f[P_EPS][p] : 0.0;
+
+      w->p_star[PLASTIC_COUNT * p + k] = y_n + c * (first[PLASTIC_COUNT * p + k] - y_n);
+    }
+  }
+}
+
+void StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3])
+{
+  const Particles *P    = &s->model->P;
+  StepperWork     *w    = &s->work;
+  const int        last = s->scheme->stages - 1;
+
+  for (PetscInt p = 0; w->p_star && p < P->n; p++) {
+    for (int q = 0; q < 5; q++) { /* eps_d_p, stress xx yy zz xy */
+      const double y_n = P->f[q ? P_SIG + q - 1 : P_EPS][p], k_n = P->f[P_KP + q][p];
+      const double k_1 = (w->trial[0].s[5 * p + q] - y_n) / (gamma * dt);
+      const double k_2 = last ? (w->trial[1].s[5 * p + q] - y_n - (1.0 - gamma) * dt * k_1) / (gamma * dt) : 0.0;
+
+      w->e_plastic[5 * p + q]     = dt * (weight[0] * k_n + weight[1] * k_1 + weight[2] * k_2);
+      w->trial[last].k[5 * p + q] = last ? k_2 : k_1;
+    }
+  }
+}

@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""A footing on a softening Mohr-Coulomb block, with sdirk2 and hybrid: the same on 1, 2 and 4 ranks, a restart in the
+middle of the plastic flow bit for bit, the heat of plastic work in the balance of heat, and both integrators against
+each other.
+"""
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import Run, check, check_true, finish, scratch, table  # noqa: E402
+
+CASE = Path(__file__).resolve().parent / "cases" / "footing.yaml"
+KINDS = {
+    "sdirk2": ("-newton_tol_residual", "1e-11", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-10"),
+    "hybrid": ("-stepper_type", "hybrid", "-stepper_adapt", "yes"),
+}
+CUT = {"sdirk2": "11", "hybrid": "1"}  # steps, bursts of 256 steps
+
+
+def footing(kind, *options, **keywords):
+    return Run.of_case(CASE, "-quiet", *KINDS[kind], *options, **keywords)
+
+
+def difference(a, b):
+    """Largest difference of the last snapshots over the size of each variable, and which."""
+    x, y = a.snapshots()[-1][1], b.snapshots()[-1][1]
+    worst = {name: np.max(np.abs(x[name] - y[name])) / (np.max(np.abs(x[name])) or 1.0) for name in x if name != "yield"}
+    name = max(worst, key=worst.get)
+    return worst[name], name
+
+
+rows, runs = [], {}
+for kind in KINDS:
+    one = runs[kind] = footing(kind)
+    last = one.snapshots()[-1][1]
+    for n in (2, 4):
+        value, where = difference(one, footing(kind, ranks=n))
+        check(f"{kind}: {n} ranks against 1, {where}", value, 1e-7)
+    out = scratch() / "out"
+    footing(kind, "-stepper_max_steps", CUT[kind], out=out)
+    two = footing(kind, "-restart", out / "checkpoint.h5", out=out)
+    same = all(np.array_equal(v, two.snapshots()[-1][1][name]) for name, v in last.items())
+    check_true(f"{kind}: a restart in plastic flow, bit for bit", same and (one.out / "probes.csv").read_bytes() == (out / "probes.csv").read_bytes())
+    work, pending = last["plastic_work"].sum(), last["plastic_heat"].sum()
+    gain = one.balance["heat_J"][-1]
+    check(f"{kind}: heat gained against the share of the plastic work", abs(gain + pending - 0.7 * work) / work, 1e-10)
+    check(f"{kind}: share of particles that yield at the end", np.mean(last["yield"] > 0), (0.1, 1.0))
+    check(f"{kind}: plastic work is never negative", -last["plastic_work"].min(), 0.0)
+    rows.append([kind, last["eps_d_p"].max(), work, gain, one.probe("p")["u_y_m"][-1]])
+table(["integrator", "largest eps_d_p", "plastic work (J)", "heat (J)", "settlement (m)"], rows)
+a, b = (runs[k].probe("p")["u_y_m"][-1] for k in KINDS)
+check("hybrid against sdirk2: settlement", abs(b / a - 1), 0.05)
+check("hybrid against sdirk2: plastic work", abs(rows[1][2] / rows[0][2] - 1), 0.1)
+finish()

@@ -1,0 +1,200 @@
+/* A plastic skeleton inside a particle and a scene: the particle's tangent and the exact Jacobian against differences
+   in plastic states, heat of plastic work included. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include "model/gather.h"
+#include "small_scene.h"
+
+static const struct {
+  const char *name;
+  unsigned    has;
+} sets[] = {{"m", HAS_SOLID}, {"tm", HAS_SOLID | HAS_HEAT}, {"hm", HAS_SOLID | HAS_WATER}, {"thmc", HAS_ALL}};
+#define SETS ((int)(sizeof(sets) / sizeof(*sets)))
+
+/* Weak against the stresses of the random states, so that nearly all of them are plastic. */
+static Plasticity Weak(int flow)
+{
+  return (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
+                      .flow         = flow,
+                      .c_max        = 2e5,
+                      .c_min        = 1e5,
+                      .c_res        = 5e4,
+                      .phi_peak     = 25.0,
+                      .phi_res      = 20.0,
+                      .psi_max      = 12.0,
+                      .psi_min      = 8.0,
+                      .eta_h        = 3.0,
+                      .Sh_max       = 0.4,
+                      .eta_s        = 1.0,
+                      .eccentricity = 0.1,
+                      .cutoff       = INFINITY,
+                      .heat         = 0.7};
+}
+
+/* ---------------------------------------------------------------- a particle */
+typedef struct {
+  FieldSet     fs;
+  Material     mat;
+  PointHistory h;
+  double       in[IN_COUNT];
+  int          column;
+  bool         axis;
+} Point;
+
+static bool Outputs(void *ctx, double x, double y[RIDDERS_ROWS])
+{
+  const Point *q = ctx;
+  PointState   state;
+  PointOutput  o = {0};
+  const char  *why;
+  double       in[IN_COUNT];
+
+  memcpy(in, q->in, sizeof in);
+  in[q->column] = x;
+  if (PointEvaluate(&q->fs, &q->mat, &q->h, in, false, &state, &o, &why) != CL_OK)
+    return false;
+  memcpy(y, o.out, sizeof o.out);
+  return true;
+}
+
+static void RandomPoint(Rng *r, Point *q)
+{
+  const bool   gas = q->fs.phase[PHASE_G];
+  const double pw = 4e6, pg = pw + 1e5, T = RngBetween(r, 2.0, 8.0);
+  double       ds;
+
+  q->mat            = SedimentMaterial();
+  q->mat.plasticity = Weak(RngPick(r, 2));
+  q->mat.reacts     = gas && RngPick(r, 2);
+  q->h              = (PointHistory){.V = 2e-4, .T_n = T, .Sh_n = 0.2, .dt = RngLog(r, 0.1, 10.0), .bracket = 1.0};
+  const double sg   = gas ? RetentionGasShare(&q->mat.retention, pg - pw, &ds) : 0.0;
+  PointInitialMasses(&q->fs, &q->mat, q->h.V, 0.3, 0.21, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
+                     &q->h.m_star[2]);
+  for (int k = 0; k < 4; k++) {
+    q->h.skeleton.sig[k]     = RngBetween(r, -3e6, 1e6);
+    q->h.skeleton.plastic[k] = RngBetween(r, -1e-3, 1e-3);
+  }
+  q->h.skeleton.eps = RngBetween(r, 0.0, 0.2);
+  for (int k = 0; k < IN_COUNT; k++)
+    q->in[k] = RngBetween(r, -1.0, 1.0) * (k < IN_HOOP ? 0.02 : k == IN_HOOP ? 0.02 * q->axis : k < IN_GT ? 1e4 : 0.0);
+  q->in[IN_P]     = q->fs.phase[PHASE_W] ? pw : 0.0;
+  q->in[IN_P + 1] = gas ? pg : 0.0;
+  q->in[IN_T]     = T;
+}
+
+/* Worst entry of the tangent over its row; rows of the stress and of the heat alone: what plasticity touches. */
+static double TangentError(Point *q, ReturnRegion *region)
+{
+  static const int rows[] = {OUT_P, OUT_P + 1, OUT_P + 2, OUT_P + 3, OUT_HOOP, OUT_Q};
+  PointState       state;
+  PointOutput      o;
+  const char      *why;
+  double           worst = 0.0;
+
+  Check(PointEvaluate(&q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) == CL_OK);
+  *region = state.skeleton.region;
+  for (int k = 0; k < 6 && *region != RETURN_ELASTIC; k++) {
+    double error = 0.0, size = 0.0;
+
+    if (rows[k] == OUT_Q && !q->fs.heat)
+      continue;
+    for (int c = 0; c < IN_J; c++) {
+      const double unit = c < IN_P ? 1e-4 : c < IN_T ? 1e3 : c == IN_T ? 0.05 : c < IN_GT ? 1e3 : 1.0;
+      double       dy[RIDDERS_ROWS], err[RIDDERS_ROWS];
+
+      q->column = c;
+      if ((c == IN_HOOP && !q->axis) || (c >= IN_P && c < IN_T && !q->fs.phase[c - IN_P]) || c > IN_T ||
+          (c == IN_T && !q->fs.heat) || !Ridders(Outputs, q, q->in[c], unit, OUT_COUNT, dy, err))
+        continue;
+      size  = fmax(size, unit * fmax(fabs(dy[rows[k]]), fabs(o.D[rows[k]][c])));
+      error = fmax(error, unit * (fabs(o.D[rows[k]][c] - dy[rows[k]]) - 10.0 * err[rows[k]]));
+    }
+    if (size > 0.0)
+      worst = fmax(worst, error / size);
+  }
+  return worst;
+}
+
+static void TestParticle(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 2 * SETS; k++) {
+    Rng    r         = {500 + (uint64_t)k};
+    double worst     = 0.0;
+    int    region[5] = {0};
+
+    for (int n = 0; n < 150; n++) {
+      Point        q = {.axis = k >= SETS};
+      ReturnRegion where;
+
+      Check(FieldSetMake(sets[k % SETS].has, true, false, &q.fs));
+      RandomPoint(&r, &q);
+      worst = fmax(worst, TangentError(&q, &where));
+      region[where]++;
+    }
+    Say("particle, %-4s %s: tangent %.1e; %d elastic, %d face, %d edge, %d apex\n", sets[k % SETS].name,
+        k < SETS ? "plane" : "axis ", worst, region[0], region[1], region[2], region[3]);
+    Check(worst < 1e-7 && region[RETURN_FACE] > 50);
+  }
+}
+
+/* ---------------------------------------------------------------- the assembled Jacobian */
+/* Particles that yield at the state of PrepareJacobian. */
+static double Yielding(Scene *s)
+{
+  double *x, n = 0.0;
+
+  Call(PetscMalloc1(s->m.map.n_local * s->c.fields.n, &x));
+  RandomUnknowns(&s->m, s->stage.dt, 30, x);
+  for (PetscInt p = 0; p < s->m.P.n; p++) {
+    Reach       r;
+    PointState  state;
+    PointOutput o;
+    double      in[IN_COUNT];
+
+    Check(ParticleEvaluate(&s->m, p, x, false, &r, in, &state, &o) == CL_OK);
+    n += state.skeleton.region != RETURN_ELASTIC;
+  }
+  Call(PetscFree(x));
+  return n;
+}
+
+static void TestJacobian(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 2 * SETS; k++) {
+    Scene *s     = malloc(sizeof(*s));
+    double yield = 0.0, all;
+
+    JacobianCase(s, sets[k % SETS].has, true, k >= SETS, BASIS_CPGIMP, 0.0, 0.0, false, 0);
+    s->mat.plasticity = Weak(k % 2);
+    s->c.fields.has |= HAS_PLASTIC;
+    JacobianState(s);
+    for (PetscInt p = 0; p < s->m.P.n; p++)
+      s->m.P.f[P_EPS][p] = 0.1 * (1.0 + Noise(70, s->m.P.i[PI_ID][p], 0));
+    const double worst = DirectionError(s, 2), entry = k % SETS == 1 ? ColumnError(s) : 0.0;
+    yield = Sum(Yielding(s));
+    all   = Sum((double)s->m.P.n);
+    Say("Jacobian, %-4s %s: directions %.1e, entries %.1e; %g of %g particles yield\n", sets[k % SETS].name,
+        k < SETS ? "plane" : "axis ", worst, entry, yield, all);
+    Check(worst < 1e-6 && entry < 1e-6 && yield > 0.7 * all);
+    SceneDestroy(s);
+    free(s);
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestParticle), cmocka_unit_test(TestJacobian)};
+  int                     failed;
+
+  if (StartTests(&argc, &argv))
+    return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  if (PetscFinalize())
+    return 1;
+  return failed;
+}

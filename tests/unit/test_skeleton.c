@@ -1,0 +1,154 @@
+/* Unit tests of src/skeleton, elastic: the block form is the single form, and the tangent is that of differences. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <cmocka.h>
+#include "clathra/skeleton.h"
+#include "random.h"
+
+#define N 32
+
+typedef struct {
+  Material        mat;
+  SkeletonHistory h;
+  double          in[SKELETON_IN], E_n;
+  int             which;
+} Sample;
+
+static SkeletonStep StepOf(const double in[SKELETON_IN], double E_n)
+{
+  return (SkeletonStep){
+      .c       = cos(in[SKELETON_THETA]),
+      .s       = sin(in[SKELETON_THETA]),
+      .e       = {in[SKELETON_STRAIN], in[SKELETON_STRAIN + 1], in[SKELETON_STRAIN + 2], in[SKELETON_STRAIN + 3]},
+      .thermal = in[SKELETON_THERMAL],
+      .E_n     = E_n,
+      .E       = in[SKELETON_E],
+      .Sh      = in[SKELETON_SH]};
+}
+
+static Sample RandomSample(Rng *r)
+{
+  Sample q = {.mat.elasticity = {9e7, 2e9, 1.0, 1.0, RngBetween(r, 0.0, 0.45), RngPick(r, 2)}};
+
+  q.in[SKELETON_THETA] = RngBetween(r, -1.0, 1.0);
+  for (int k = 0; k < 4; k++)
+    q.in[SKELETON_STRAIN + k] = RngBetween(r, -0.01, 0.01);
+  q.in[SKELETON_THERMAL] = RngBetween(r, -1e-3, 1e-3);
+  q.in[SKELETON_E]       = RngLog(r, 1e8, 1e9);
+  q.in[SKELETON_SH]      = RngBetween(r, 0.0, 0.5);
+  q.E_n                  = q.in[SKELETON_E] * RngBetween(r, 0.8, 1.2);
+  for (int k = 0; k < 6; k++) {
+    q.h.sig[k]  = RngBetween(r, -5e6, 5e6);
+    q.h.sig0[k] = RngBetween(r, -2e6, 2e6);
+  }
+  return q;
+}
+
+static void TestBlock(void **state)
+{
+  Rng    r     = {301};
+  double worst = 0.0;
+
+  (void)state;
+  for (int run = 0; run < 200; run++) {
+    Sample        q[N];
+    double        a[9][N], sig[12][N], work[N];
+    const char   *why = NULL;
+    SkeletonBlock b   = {.n       = 1 + RngPick(&r, N),
+                         .c       = a[0],
+                         .s       = a[1],
+                         .xx      = a[2],
+                         .yy      = a[3],
+                         .xy      = a[4],
+                         .thermal = a[5],
+                         .E_n     = a[6],
+                         .E       = a[7],
+                         .Sh      = a[8],
+                         .work    = run % 2 ? work : NULL};
+
+    for (int k = 0; k < N; k++) {
+      q[k]                         = RandomSample(&r);
+      q[k].mat                     = q[0].mat;
+      q[k].in[SKELETON_STRAIN + 2] = 0.0;
+      const SkeletonStep d         = StepOf(q[k].in, q[k].E_n);
+      const double       row[9]    = {d.c, d.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
+
+      for (int i = 0; i < 9; i++)
+        a[i][k] = row[i];
+      for (int i = 0; i < 6; i++) {
+        sig[i][k]     = q[k].h.sig[i];
+        sig[6 + i][k] = q[k].h.sig0[i];
+      }
+    }
+    for (int i = 0; i < 6; i++) {
+      b.store.sig[i]  = sig[i];
+      b.store.sig0[i] = sig[6 + i];
+    }
+    assert_true(SkeletonUpdateBlock(&q[0].mat, &b, &why));
+    for (int k = 0; k < N; k++) {
+      const SkeletonStep d = StepOf(q[k].in, q[k].E_n);
+      SkeletonState      s;
+
+      assert_true(SkeletonUpdate(&q[k].mat, &q[k].h, &d, &s, NULL, &why));
+      for (int i = 0; i < 6; i++) { /* beyond n nothing is touched */
+        worst = fmax(worst, fabs(sig[i][k] - (k < b.n ? s.sig[i] : q[k].h.sig[i])));
+        worst = fmax(worst, fabs(sig[6 + i][k] - (k < b.n ? s.sig0[i] : q[k].h.sig0[i])));
+      }
+    }
+  }
+  printf("block against single form: worst %.1e Pa of 1e7\n", worst);
+  assert_true(worst < 1e-7);
+}
+
+static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
+{
+  Sample       *q = ctx;
+  double        in[SKELETON_IN];
+  SkeletonState s;
+  const char   *why;
+
+  memcpy(in, q->in, sizeof(in));
+  in[q->which]         = x;
+  const SkeletonStep d = StepOf(in, q->E_n);
+  if (!SkeletonUpdate(&q->mat, &q->h, &d, &s, NULL, &why))
+    return false;
+  memcpy(y, s.sig, sizeof(s.sig));
+  y[6] = s.work;
+  return true;
+}
+
+static void TestTangent(void **state)
+{
+  static const double size[SKELETON_IN] = {1e-2, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e6, 1e-2};
+  Rng                 r                 = {302};
+  double              worst             = 0.0;
+
+  (void)state;
+  for (int n = 0; n < 500; n++) {
+    Sample          q = RandomSample(&r);
+    SkeletonTangent t;
+    SkeletonState   s;
+    const char     *why;
+    double          dy[RIDDERS_ROWS], err[RIDDERS_ROWS];
+
+    const SkeletonStep d = StepOf(q.in, q.E_n);
+    assert_true(SkeletonUpdate(&q.mat, &q.h, &d, &s, &t, &why));
+    for (q.which = 0; q.which < SKELETON_IN; q.which++) {
+      assert_true(Ridders(Rows, &q, q.in[q.which], size[q.which], SKELETON_OUT, dy, err));
+      for (int i = 0; i < SKELETON_OUT; i++)
+        worst = fmax(worst, fabs(dy[i] - t.d[i][q.which]) * size[q.which] / 1e6);
+    }
+  }
+  printf("tangent against differences: worst %.1e\n", worst);
+  assert_true(worst < 1e-8);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestBlock), cmocka_unit_test(TestTangent)};
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
