@@ -198,7 +198,8 @@ static void EveryKeyWithEveryValue(void **state)
           if (turn++ % size != rank)
             continue;
           for (size_t v = 0; v < sizeof value / sizeof *value; v++)
-            Try(resolved, g, g == GROUP_CASE ? "" : instance, k, value[v]);
+            if (IsNothing(value[v]) || (v + (size_t)j) % 3 == 0) /* of the others a third, another one for each key */
+              Try(resolved, g, g == GROUP_CASE ? "" : instance, k, value[v]);
         }
       }
     }
@@ -207,7 +208,7 @@ static void EveryKeyWithEveryValue(void **state)
   }
   globfree(&found);
   print_message("%d cases, %d refused\n", tried, refused);
-  assert_true(tried > 4000 / size && refused > tried / 2);
+  assert_true(tried > 2000 / size && refused > tried / 2);
 }
 
 /* The same on the command line, where a value may be missing. */
