@@ -171,9 +171,29 @@ def century_hydrate(run, left, middle, right):
     other.set_ylabel("hydrate, of the start", color=COLOURS[1])
 
 
+def footing(run, left, right):
+    """Settlement of the ground's surface and contact stress; lines: a smooth disc on a half space."""
+    case, radius = run(), 1.0
+    m = case.csv("meters")
+    w, force = -m["footing.position_m"][-1], m["footing.force_N"][-1]
+    v = case.snapshots[-1][1]
+    x, u = v["position"] - v["displacement"], v["displacement"]
+    top = x[:, 1] > x[:, 1].max() - 1e-6
+    left.plot(x[top, 0], -u[top, 1] * MM, color=COLOURS[0], **DOTS)
+    r = np.linspace(0.0, x[:, 0].max(), 800)
+    left.plot(r, 2 / np.pi * w * np.arcsin(np.minimum(radius / np.maximum(r, radius), 1.0)) * MM, **EXACT)
+    left.set(xlabel="radius (m)", ylabel="settlement of the surface (mm)")
+    left.invert_yaxis()
+    under = top & (x[:, 0] < 1.5 * radius)
+    right.plot(x[under, 0], -v["stress"][under, 1] / 1e3, color=COLOURS[0], **DOTS)
+    r = np.linspace(0.0, 0.995 * radius, 400)
+    right.plot(r, force / (2 * np.pi * radius * np.sqrt(radius**2 - r**2)) / 1e3, **EXACT)
+    right.set(xlabel="radius (m)", ylabel="vertical stress under the surface (kPa)", ylim=(-20, 500))
+
+
 PANELS = {"century_hydrate": 3}  # two without a word
 FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century,
-           century_hydrate]  # fmt: skip
+           century_hydrate, footing]  # fmt: skip
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):

@@ -52,6 +52,7 @@ SECTION = {  # beside that table
     "4.4": "Masuda's core, cases/masuda, against the reference curves at every 15 min to 4 h",
     "4.5": "The ladder of cases, against exact solutions (docs/cases.md)",
     "surfaces": "Surfaces that shear and turn: an all-round pressure changes nothing",
+    "plates": "Rigid plates that move with the body: confined compression, forces, rough and loose plates, a footing",
     "geostatic": "Initial states in balance with gravity: nothing moves when the run starts (docs/equations.md, section 13)",
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",

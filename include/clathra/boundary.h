@@ -19,7 +19,12 @@ typedef struct {
   double   n0[CL_DIM];                                                /* FaceNormal there */
   double   N[CL_NODES];                                               /* weights, in the order of StencilExpand */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
-  unsigned meters;                                                    /* bit k: Case.meter[k] counts it */
+  PetscInt plate;                                                     /* the same */
+  double   moved[CL_DIM];                                             /* displacement since the start, m */
+  double   a0;                                                        /* area at the start, m^2 */
+  double   K;       /* stiffness of its plate's spring, N/m; see PlateStiffness */
+  bool     touches; /* its plate takes part in the last tangent: always, or where one that separates touches */
+  unsigned meters;  /* bit k: Case.meter[k] counts it */
 } Face;
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
@@ -39,7 +44,8 @@ PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
 /* Warnings about a start out of balance with gravity, on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
 
-/* Prescribed values of all conditions at one time, and gravity then. */
+/* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
+   start, which its owner fills in where the force is prescribed. */
 typedef struct {
   double *value, *shear, *phase[PHASE_COUNT]; /* [Case.nbc] */
   double  gravity[CL_DIM];
@@ -50,15 +56,47 @@ Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM]);
 void    BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double  BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
 
+/* What is said of a plate: position since the start along its axis (m); force on the body, compression-positive, and
+   along the side in the direction of the axis (N); area under it (m^2). */
+enum { PLATE_POSITION = 0, PLATE_FORCE, PLATE_SHEAR, PLATE_AREA, PLATE_COUNT };
+
 /* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where Darcy
    fluxes and displacement are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat
    into the body (W). */
 typedef struct {
   double out[F_COUNT], D[F_COUNT][IN_COUNT];
   double outflow[PHASE_COUNT], heat_in;
+  double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
 } FaceOutput;
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], double kappa, double dt, FaceOutput *o);
+
+/* Axis and sign of a side's outward normal. */
+static inline int SideAxis(int side)
+{
+  return side / 2;
+}
+static inline double SideSign(int side)
+{
+  return side % 2 ? 1.0 : -1.0;
+}
+
+/* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
+double PlatePosition(const Bc *b, double t);
+double PlateForce(const Bc *b, double t);
+/* Stiffness of a face's spring, N/m: q are the properties of its particle, h the cell along the plate's axis. */
+double PlateStiffness(const Bc *b, const Face *f, const PointProperties *q, double h);
+/* How far the face is beyond its plate, outwards, when it has moved by u since t_n, m. */
+static inline double PlateGap(const Face *f, double position, const double u[CL_DIM])
+{
+  const int d = SideAxis(f->side);
+
+  return SideSign(f->side) * (f->moved[d] - position + u[d]);
+}
+/* Adds the plate's spring to what a face adds to its nodes, with the tangent. */
+void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o);
+/* CL_OK, or why the plate cannot go to `position` in this step; the sentence goes to text. */
+ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position, char *text, size_t size);
 
 /* Dirichlet values on grid planes, in regions and on the axis: sets bit k of mask and value[k] for every prescribed
    unknown, k its place in the field set, of grid node ij. */

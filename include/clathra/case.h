@@ -43,17 +43,19 @@ typedef struct {
 } Region;
 
 typedef enum {
-  BC_TRACTION = 1,      /* moving faces: total normal stress (compression-positive) and shear, Pa */
-  BC_PRESSURE,          /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
-  BC_HEAT_FLUX,         /* moving faces: W/m^2 into the body */
-  BC_CONVECTION,        /* moving faces: alpha (T_a - T), W/m^2 */
-  BC_FACE_TEMPERATURE,  /* moving faces: T, degC */
-  BC_INFLOW,            /* moving faces: volume of water and gas into the body, m/s */
-  BC_ROLLER,            /* grid plane: normal velocity of all phases zero */
-  BC_FIXED,             /* grid plane: all velocities zero */
-  BC_PLATE,             /* grid plane: normal velocity of all phases prescribed (rigid plate), m/s */
-  BC_TEMPERATURE,       /* grid plane: T, degC */
-  BC_REGION_TEMPERATURE /* nodes in a region's initial shape: T, degC */
+  BC_TRACTION = 1,       /* moving faces: total normal stress (compression-positive) and shear, Pa */
+  BC_PRESSURE,           /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
+  BC_HEAT_FLUX,          /* moving faces: W/m^2 into the body */
+  BC_CONVECTION,         /* moving faces: alpha (T_a - T), W/m^2 */
+  BC_FACE_TEMPERATURE,   /* moving faces: T, degC */
+  BC_INFLOW,             /* moving faces: volume of water and gas into the body, m/s */
+  BC_PLATE,              /* moving faces: a rigid plate, by its velocity, displacement or force */
+  BC_ROLLER,             /* grid plane: normal velocity of all phases zero */
+  BC_FIXED,              /* grid plane: all velocities zero */
+  BC_TEMPERATURE,        /* grid plane: T, degC */
+  BC_REGION_TEMPERATURE, /* nodes in a region's initial shape: T, degC */
+  BC_WORDS,              /* the types before this have words of their own */
+  BC_PLATE_LINE          /* grid plane, `plate` without a side: its normal velocity, m/s; for small motions */
 } BcType;
 
 /* Those that the integrators without a matrix know, too; they refuse any other by name. */
@@ -84,10 +86,11 @@ enum {
 typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
 
 typedef struct {
-  char   name[64];
-  BcType type;
-  bool   of_stage; /* times of the functions below count from the begin of the stage, not of the run */
-  double zero;     /* s: where they count from */
+  char     name[64];
+  BcType   type;
+  PetscInt number;   /* its place in the list of the case, whatever acts in a stage */
+  bool     of_stage; /* times of the functions below count from the begin of the stage, not of the run */
+  double   zero;     /* s: where they count from */
   /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
      those on a line (side = SIDE_COUNT) */
   Side     side;
@@ -99,13 +102,16 @@ typedef struct {
   double   position;
   /* functions of time */
   Schedule   value; /* normal stress | p (mean) | heat flux | T_a | T (also of inflow) | plate velocity (along +axis) */
-  Schedule   shear; /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
-  Schedule   phase[PHASE_COUNT]; /* pressure: p_w, p_g, Pa; inflow: volume flux of water, gas, m/s */
-  bool       initial;            /* pressure: hold each face at its particle's initial p_w, p_g */
+  Schedule   displacement, force; /* plate: along +axis since the start, m; on the body, compression-positive, N */
+  Schedule   shear;               /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
+  Schedule   phase[PHASE_COUNT];  /* pressure: p_w, p_g, Pa; inflow: volume flux of water, gas, m/s */
+  bool       initial;             /* pressure: hold each face at its particle's initial p_w, p_g */
   bool       natural; /* pressure: the particle's own capillary pressure instead of the face's initial one (31) */
   OpenPhases open;    /* pressure */
   bool       drained; /* roller, fixed, plate: holds the skeleton alone, fluids cross the plane */
-  double     alpha;   /* convection coefficient, W/(m^2 K) */
+  bool       rough, separates; /* plate: holds the tangential displacement; takes no tension */
+  double     stiffness;        /* plate: of its springs, in units of the constrained modulus over a cell */
+  double     alpha;            /* convection coefficient, W/(m^2 K) */
 } Bc;
 
 typedef struct {
@@ -182,6 +188,8 @@ typedef struct Case {
   PetscInt          nstage;
   struct CaseStage *stage;
   double            t_begin, gravity_before[CL_DIM]; /* s, m/s^2 */
+  PetscInt          nlisted;
+  const Bc         *listed; /* all boundaries of the case */
 } Case;
 
 /* One of the stages of a run, which follow each other in time. */

@@ -98,8 +98,11 @@ typedef struct {
   const char *why;       /* ... in words */
   char        text[128]; /* storage for such words */
   double      where[CL_DIM];
-  StageRates  rates;   /* of the last stage */
-  PetscInt    limited; /* particles on which the hydrate positivity limiter acted in the last stage */
+  StageRates  rates;            /* of the last stage */
+  PetscInt    plates;           /* their number */
+  double (*plate)[PLATE_COUNT]; /* [Case.nlisted] at the end of the last stage; zero where it is no plate */
+  double  *plate_K;             /* [Case.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
+  PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
   Mat    J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
   Vec    X, R;        /* scaled unknowns and residual */
@@ -140,6 +143,10 @@ PetscErrorCode ModelBeginStage(Model *m, const Stage *s);
 PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status);
 /* What the solution means for the particles; checks that they stay within half a cell and inside the grid. */
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status);
+/* Can the plates go where they must in this stage? */
+PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status);
+/* Sets Face.K from the particle's present properties. */
+void ModelPlateStiffness(const Model *m, Face *f);
 /* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v. */
 void ModelStartVelocity(const Model *m, double *v);
 /* Makes the trial state of the last stage the history, with rates (n x 4), moves the particles and migrates them. */

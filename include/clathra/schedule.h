@@ -12,6 +12,8 @@ typedef struct {
 
 /* Value at time t; held constant outside [t_0, t_n).  With jumps the value belongs to the interval that starts at t. */
 double ScheduleValue(const Schedule *s, double t);
+/* Integral from 0 to t. */
+double ScheduleIntegral(const Schedule *s, double t);
 /* First kink strictly later than t (by more than a relative 1e-12), INFINITY if none: no step crosses one. */
 double ScheduleNextKink(const Schedule *s, double t);
 void   ScheduleDestroy(Schedule *s);

@@ -22,6 +22,8 @@ void BcValuesEvaluate(const Case *c, double t, BcValues *v)
 
     v->value[k] = ScheduleValue(&c->bc[k].value, at);
     v->shear[k] = ScheduleValue(&c->bc[k].shear, at);
+    if (c->bc[k].type == BC_PLATE)
+      v->value[k] = PlatePosition(&c->bc[k], t);
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], at);
   }
@@ -39,6 +41,7 @@ static double NextKink(const Bc *b, double t)
   const double at   = t - b->zero + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
   double       next = fmin(ScheduleNextKink(&b->value, at), ScheduleNextKink(&b->shear, at));
 
+  next = fmin(next, fmin(ScheduleNextKink(&b->displacement, at), ScheduleNextKink(&b->force, at)));
   for (int ph = 0; ph < PHASE_COUNT; ph++)
     next = fmin(next, ScheduleNextKink(&b->phase[ph], at));
   return b->zero + next;
@@ -347,7 +350,7 @@ void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const Pets
     }
     for (int d = 0; d < CL_DIM; d++) {
       if (b->type == BC_FIXED || d == b->axis)
-        Hold(fs, d, b->type == BC_PLATE ? v->value[k] : 0.0, b->drained, mask, value);
+        Hold(fs, d, b->type == BC_PLATE_LINE ? v->value[k] : 0.0, b->drained, mask, value);
     }
   }
 }

@@ -97,14 +97,16 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
   for (int k = 0; P->f[P_F] && k < 4; k++)
     F[k / 2][k % 2] = P->f[P_F + k][p];
   for (int d = 0; d < CL_DIM; d++) {
-    f->x[d] = P->f[P_X + d][p] + side_sign[f->side] * F[d][axis] * l[axis];
-    f->r[d] = f->x[d] - AxisCentroid(&stencil->axis[d], g->lower[d], g->h[d]);
-    half[d] = fabs(F[d][tangent]) * l[tangent];
+    f->x[d]     = P->f[P_X + d][p] + side_sign[f->side] * F[d][axis] * l[axis];
+    f->r[d]     = f->x[d] - AxisCentroid(&stencil->axis[d], g->lower[d], g->h[d]);
+    half[d]     = fabs(F[d][tangent]) * l[tangent];
+    f->moved[d] = f->x[d] - f->x0[d] - (d == axis ? side_sign[f->side] * l[axis] : 0.0);
   }
   /* a <- cof(F) a: the normal of the side goes along as F^-T, its length as the tangent */
   const double A = 2.0 * l[tangent] * side_sign[f->side] * (c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0);
   f->n[axis]     = A * F[tangent][tangent];
   f->n[tangent]  = -A * F[axis][tangent];
+  f->a0          = 2.0 * l[tangent] * (c->axisymmetric ? 2.0 * M_PI * (f->x[0] - f->moved[0]) : 1.0);
   f->s[0]        = fabs(A) * (F[1][1] * f->n0[0] - F[1][0] * f->n0[1]);
   f->s[1]        = fabs(A) * (F[0][0] * f->n0[1] - F[0][1] * f->n0[0]);
   Weights(c, g, P, stencil, half, f);
@@ -124,6 +126,7 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
   f->convection  = FindCondition(c, BC_CONVECTION, f);
   f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, f);
   f->inflow      = FindCondition(c, BC_INFLOW, f);
+  f->plate       = FindCondition(c, BC_PLATE, f);
   f->meters      = FindMeters(c, f);
   FaceNormal(c, f->region, f->x0, side, f->n0);
   FacePlace(c, g, P, &stencil[p], f);

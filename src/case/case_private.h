@@ -166,13 +166,17 @@ typedef struct {
 void ListCreate(const char *text, List *list);
 void ListDestroy(List *list);
 void CaseCheck(Reader *r, const Case *c);
-void CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
-void CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
-void CheckInitial(Reader *r, const Case *c, const Region *g);      /* initial.c: states in balance with gravity */
+/* plates.c: a plate without a side is one on a grid line; what its keys must agree in. */
+PetscErrorCode PlateForm(Reader *r, Bc *b);
+void           CheckPlate(Reader *r, const Case *c, const Bc *b);
+void           CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
+void           CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
+void           CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
 void               RegionsFinish(Case *c); /* once all keys are read */
 void               CheckShape(Reader *r, const Case *c, PetscInt region);
-void               CheckOverlap(Reader *r, const Case *c); /* of good shapes; none of them without particles */
+void               CheckOverlap(Reader *r, const Case *c);    /* of good shapes; none of them without particles */
+bool               FacesExist(const Case *c, const Meter *m); /* has the body any of them? */
 void               CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
 void               CheckHeld(Reader *r, const Case *c, const Bc *b);
 void               CheckProbe(Reader *r, const Case *c, const Probe *p);

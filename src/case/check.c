@@ -130,11 +130,16 @@ void CaseCheck(Reader *r, const Case *c)
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
         CheckFaces(r, c, GROUP_BC, b->name, &BcFaces(b));
       CheckFlow(r, c, b);
+      if (b->type == BC_PLATE)
+        CheckPlate(r, c, b);
     } else if (b->type == BC_REGION_TEMPERATURE) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
         CheckHeld(r, c, b);
-    } else if (!bad[GROUP_CASE])
+    } else if (!bad[GROUP_CASE]) {
       CheckPlane(r, c, b);
+      if (b->type == BC_PLATE_LINE)
+        CheckPlate(r, c, b);
+    }
   }
   for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
     CheckProbe(r, c, &c->probe[i]);

@@ -87,6 +87,7 @@ static unsigned ConditionNeeds(BcType type)
   switch (type) {
   case BC_TRACTION:
   case BC_PLATE:
+  case BC_PLATE_LINE:
     return HAS_SOLID;
   case BC_PRESSURE:
   case BC_INFLOW:

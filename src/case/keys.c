@@ -35,6 +35,12 @@ static bool NeedsPressure(const void *p)
 
   return !b->initial && !b->phase[PHASE_W].n && !b->phase[PHASE_G].n;
 }
+static bool NeedsVelocity(const void *p)
+{
+  const Bc *b = (const Bc *)p;
+
+  return b->type == BC_PLATE_LINE || (!b->displacement.n && !b->force.n);
+}
 static bool NeedsEnd(const void *p)
 {
   return ((const Case *)p)->nstage == 0;
@@ -92,8 +98,10 @@ static const char *const capillary_word[]  = {"held", "free", NULL};
 static const char *const holds_word[]      = {"all", "skeleton", NULL};
 static const char *const clock_word[]      = {"run", "stage", NULL};
 static const char *const phases_word[]     = {"both", "water", "gas", NULL}; /* OpenPhases */
+/* behind the end of the words: what BC_PLATE_LINE is called */
 const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
-                                    "roller",   "fixed",    "plate",     "temperature", "region_temperature", NULL};
+                                    "plate",    "roller",   "fixed",     "temperature", "region_temperature", NULL,
+                                    "plate"};
 
 /* ---------------------------------------------------------------- the table */
 /* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
@@ -353,15 +361,16 @@ static const Key region_key[] = {
 };
 
 #define TYPE(t) (1u << (t))
-#define FACES (TYPE(BC_ROLLER) - TYPE(BC_TRACTION))            /* every type before BC_ROLLER acts on faces, */
-#define PLANES (TYPE(BC_REGION_TEMPERATURE) - TYPE(BC_ROLLER)) /* those from there on grid planes */
+#define FACES (TYPE(BC_ROLLER) - TYPE(BC_TRACTION)) /* every type before BC_ROLLER acts on faces, */
+#define PLANES                                                                                                         \
+  (TYPE(BC_REGION_TEMPERATURE) - TYPE(BC_ROLLER) + TYPE(BC_PLATE_LINE)) /* those from there on grid planes */
 
 static const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
     BOOLEAN(Bc, "clock", of_stage, "run", "what times of its values count from: the begin of the run, or of each stage",
             .choices = clock_word),
     POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",
-           .types = FACES),
+           .types = FACES & ~TYPE(BC_PLATE)),
     CHOICE(Bc, "side", side, "none", side_word, "side of the body, moves with it",
            WHEN(BcNeedsSide, "along is not given"), .types = FACES),
     NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
@@ -372,7 +381,13 @@ static const Key bc_key[] = {
     CHOICE(Bc, "axis", axis, NULL, axis_word, "axis normal to the grid plane", .types = PLANES),
     REAL(Bc, "position", position, "m", "", NULL, "coordinate of the plane; must be a grid line", .types = PLANES),
     BOOLEAN(Bc, "holds", drained, "all", "all phases, or the skeleton alone: a porous plate",
-            .types = TYPE(BC_ROLLER) | TYPE(BC_FIXED) | TYPE(BC_PLATE), .choices = holds_word),
+            .types = TYPE(BC_ROLLER) | TYPE(BC_FIXED) | TYPE(BC_PLATE) | TYPE(BC_PLATE_LINE), .choices = holds_word),
+    BOOLEAN(Bc, "rough", rough, "no", "holds the tangential displacement too", .types = TYPE(BC_PLATE)),
+    BOOLEAN(Bc, "separates", separates, "no", "the body may lift off: the plate takes no tension",
+            .types = TYPE(BC_PLATE)),
+    REAL(Bc, "stiffness", stiffness, "", "[1,1e6]", "100",
+         "of the springs between plate and body, in units of the constrained modulus (with its fluids) over a cell",
+         .types = TYPE(BC_PLATE)),
     BOOLEAN(Bc, "initial", initial, "no", "hold the initial p_w and p_g of each particle", .types = TYPE(BC_PRESSURE)),
     REAL(Bc, "alpha", alpha, "W/(m^2 K)", "[0,1e9]", NULL, "heat transfer coefficient", .types = TYPE(BC_CONVECTION)),
     SCHEDULE("normal", value, "Pa", "[-1e12,1e12]", NULL, TYPE(BC_TRACTION),
@@ -398,7 +413,14 @@ static const Key bc_key[] = {
     SCHEDULE("temperature", value, "degC", "(-273.15,1000]", "",
              TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE) | TYPE(BC_REGION_TEMPERATURE) | TYPE(BC_INFLOW),
              "inflow: of what flows in, by default the body's own", WHEN(NeedsTemperature, "type is not inflow")),
-    SCHEDULE("velocity", value, "m/s", "[-1e3,1e3]", NULL, TYPE(BC_PLATE), "along the axis, positive in its direction"),
+    SCHEDULE("displacement", displacement, "m", "[-1e6,1e6]", "", TYPE(BC_PLATE),
+             "since the start, along the axis normal to the side, positive in its direction"),
+    SCHEDULE(
+        "force", force, "N", "[-1e18,1e18]", "", TYPE(BC_PLATE),
+        "on the body beyond the ambient pressure, compression-positive; per metre of thickness or of the full ring"),
+    SCHEDULE("velocity", value, "m/s", "[-1e3,1e3]", "", TYPE(BC_PLATE) | TYPE(BC_PLATE_LINE),
+             "along the axis, positive in its direction",
+             WHEN(NeedsVelocity, "neither displacement nor force is given")),
     {.name = NULL},
 };
 

@@ -1,6 +1,7 @@
 /* read: the case as a whole: names, the keys of every group, what is left over, derived values, errors. */
 #include "case_private.h"
 #include <ctype.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,6 +81,7 @@ static PetscErrorCode GroupRead(Reader *r, Case *c, Group g)
   for (PetscInt i = 0; i < n; i++) {
     Bc *bc = g == GROUP_BC ? &c->bc[i] : NULL;
     if (bc) {
+      bc->number = i;
       bc->region = -1;
       bc->from   = -INFINITY;
       bc->to     = INFINITY;
@@ -88,6 +90,8 @@ static PetscErrorCode GroupRead(Reader *r, Case *c, Group g)
       PetscCall(KeyRead(r, c, g, i, k));
       if (bc && !bc->type)
         break; /* which keys apply is not known */
+      if (bc && k->offset == offsetof(Bc, type))
+        PetscCall(PlateForm(r, bc));
     }
   }
   if (r->nerror > before)
@@ -190,6 +194,8 @@ static void CaseName(const char *file, char *name, size_t size)
 static PetscErrorCode Derive(Reader *r, Case *c)
 {
   PetscFunctionBeginUser;
+  c->nlisted = c->nbc;
+  c->listed  = c->bc;
   if (!strcmp(c->output_dir, "results/<case name>")) {
     char name[256];
     CaseName(r->file, name, sizeof name);
@@ -264,6 +270,8 @@ PetscErrorCode CaseDestroy(Case *c)
   for (PetscInt i = 0; i < c->nbc; i++) {
     ScheduleDestroy(&c->bc[i].value);
     ScheduleDestroy(&c->bc[i].shear);
+    ScheduleDestroy(&c->bc[i].displacement);
+    ScheduleDestroy(&c->bc[i].force);
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       ScheduleDestroy(&c->bc[i].phase[ph]);
     PetscCall(PetscFree(c->bc[i].along.x));

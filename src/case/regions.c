@@ -215,6 +215,15 @@ static bool HasNamed(const Place *p, const void *meter)
 }
 
 /* What the regions' boxes say, where all are whole. */
+bool FacesExist(const Case *c, const Meter *m)
+{
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    if (AnyPlace(c, i, HasNamed, m))
+      return true;
+  }
+  return false;
+}
+
 static bool SideMeets(const Case *c, const Meter *m)
 {
   const int along = m->side == SIDE_XMIN || m->side == SIDE_XMAX ? 1 : 0;
@@ -227,11 +236,7 @@ static bool SideMeets(const Case *c, const Meter *m)
   }
   if (whole)
     return meets;
-  for (PetscInt i = 0; i < c->nregion; i++) {
-    if (AnyPlace(c, i, HasNamed, m))
-      return true;
-  }
-  return false;
+  return FacesExist(c, m);
 }
 
 void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m)

@@ -221,6 +221,8 @@ static void PrintTypes(FILE *out, const Key *k)
     fprintf(out, "%s%s", comma, case_bc_type[t]);
     comma = ", ";
   }
+  if (k->types & (1u << BC_PLATE_LINE))
+    fprintf(out, "%splate without a side", comma);
   fputc(')', out);
 }
 

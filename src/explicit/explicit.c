@@ -16,6 +16,7 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   e->o   = *o;
   e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat};
   *out   = e;
+  PetscCall(PlatesCreate(e));
   PetscCall(PetscClassIdRegister("Clathra explicit", &id));
   for (int k = 0; k < STEP_PARTS; k++)
     PetscCall(PetscLogEventRegister(part[k], id, &e->event[k]));
@@ -46,6 +47,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
+  PetscCall(PlatesDestroy(e));
   PetscCall(PetscFree(e));
   *out = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -263,7 +265,7 @@ static PetscErrorCode Agree(Explicit *e, ClStatus *status)
 }
 
 /* Sums of the particles at their nodes, and the velocities that follow. */
-static PetscErrorCode Momentum(Explicit *e, double dt)
+static PetscErrorCode Momentum(Explicit *e, double t, double dt)
 {
   const int width = LANES * Rows(A_Count(e->set));
 
@@ -273,9 +275,10 @@ static PetscErrorCode Momentum(Explicit *e, double dt)
   Deposit(e);
   PetscCall(PetscLogEventEnd(e->event[STEP_DEPOSIT], 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
+  PetscCall(PlatesStart(e));
   FacesForces(e, dt);
   PetscCall(NodeMapSum(&e->map, e->A, width));
-  PetscCall(NodesVelocities(e, dt));
+  PetscCall(NodesVelocities(e, t, dt));
   PetscCall(PetscLogEventEnd(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -311,7 +314,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   if (e->stale)
     PetscCall(NodesRebuild(e));
   e->stale = e->strays = false;
-  PetscCall(Momentum(e, dt));
+  PetscCall(Momentum(e, t + dt, dt));
   PetscCall(MassAndHeat(e, dt, sum));
   PetscCall(PetscLogEventBegin(e->event[STEP_UPDATE], 0, 0, 0, 0));
   Update(e, dt);
@@ -329,6 +332,7 @@ PetscErrorCode ExplicitEnd(Explicit *e)
   Particles *P = &e->m->P;
 
   PetscFunctionBeginUser;
+  PetscCall(PlatesEnd(e));
   for (PetscInt p = 0; p < P->n; p++) {
     PointProperties q;
     const char     *why;

@@ -8,7 +8,7 @@ static bool Acts(const Case *c, const Face *f)
   for (PetscInt k = 0; k < c->nmeter; k++)
     counted = counted || (f->meters >> k & 1);
   return counted || f->traction >= 0 || f->pressure >= 0 || f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 ||
-         f->inflow >= 0;
+         f->inflow >= 0 || f->plate >= 0;
 }
 
 /* Weights of a face's particle where it is now. */
@@ -20,6 +20,23 @@ static void Place(const Explicit *e, PetscInt p, Stencil *s)
   for (int d = 0; d < CL_DIM; d++)
     BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][p], e->m->P.f[P_L + d][p], g->lower[d], g->h[d], g->cells[d],
               &s->axis[d]);
+}
+
+void FacesPlace(const Explicit *e, Face *f)
+{
+  Stencil s;
+
+  Place(e, f->particle, &s);
+  FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
+}
+
+int FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES])
+{
+  Stencil s;
+  double  S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
+
+  Place(e, f->particle, &s);
+  return StencilExpand(&s, &e->m->grid, &e->map, node, S, G, H);
 }
 
 /* The faces on which something is prescribed or counted; the rest are closed, adiabatic and free by themselves, but in
@@ -109,6 +126,8 @@ void FacesForces(Explicit *e, double dt)
     Reach(e, f, true, &r);
     Inputs(e, f, in);
     Evaluate(e, f, in, dt, &o);
+    if (f->plate >= 0)
+      PlatesDeposit(e, f, r.n, r.node);
     for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
       const double p = in[IN_P + ph] + in[IN_GP + 2 * ph] * f->r[0] + in[IN_GP + 2 * ph + 1] * f->r[1];
 

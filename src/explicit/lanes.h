@@ -153,10 +153,15 @@ struct Explicit {
   double   *fixed;        /* ... and their values, [nheld][fields.n] */
   PetscInt  nface;
   Face     *face;
-  bool      stale, strays;    /* a particle reaches other nodes; a particle left this rank's cells */
-  double    latent, advected; /* J over the step */
-  double    added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
-  double    worst_scaling;
+  PetscInt  nplate;
+  double (*plate_sum)[PLATE_COUNT]; /* [Case.nlisted] what this rank's faces bear at the end of the step */
+  double (*spring)[CL_DIM];         /* [rows] stiffness of the springs at a node, N/m */
+  double (*answer)[2 * CL_DIM];     /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
+  double (*push)[CL_DIM];           /* [rows] force of the plates, N */
+  bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
+  double latent, advected;          /* J over the step */
+  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
 };
 
@@ -211,13 +216,22 @@ void         ForRuns(Explicit *e, const LoopTable table, double dt);
   MAKE_LOOP(f, 1, 2, 1)
 
 /* Node side. */
-PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */
-PetscErrorCode NodesVelocities(Explicit *e, double dt);  /* A -> B */
-PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
+PetscErrorCode NodesRebuild(Explicit *e);                         /* numbering, when particles reach other nodes */
+PetscErrorCode NodesVelocities(Explicit *e, double t, double dt); /* A -> B; t at the end of the step */
+PetscErrorCode NodesScalars(Explicit *e, StageRates *r);          /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 PetscErrorCode FacesBegin(Explicit *e);
-void           FacesPlace(Explicit *e);
+void           FacesPlace(const Explicit *e, Face *f);                               /* where it is now */
+int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */
+
+/* Plates (plates.c). */
+PetscErrorCode PlatesCreate(Explicit *e);
+PetscErrorCode PlatesAllocate(Explicit *e);
+PetscErrorCode PlatesDestroy(Explicit *e);
+PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
+void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
+PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
 
 INLINE double Largest(double a, double b)
 {

@@ -20,6 +20,7 @@ static PetscErrorCode Allocate(Explicit *e)
   PetscCall(PetscFree(e->raw));
   PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
   e->rows = n;
+  PetscCall(PlatesAllocate(e));
   PetscCall(PetscCalloc1(n * (2 * A + B + R + C) + LANES, &e->raw));
   at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
   e->A = at;

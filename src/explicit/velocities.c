@@ -33,14 +33,14 @@ static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
   b->f = s.solid ? mix[MIX_FX + d] + (b->M + mass) * gravity : 0.0;
 }
 
-/* Velocities at the end of the step (36), drag implicit or explicit; a held skeleton moves as it must. */
-static void Solve(const Explicit *e, const Balance *b, double dt, bool held, double value, double v[3])
+/* Balance of the mixture (36) with the fluids' velocities eliminated: lhs v_s = rhs. */
+static void Mixture(const Explicit *e, const Balance *b, double dt, double damping, double *left, double *right)
 {
   const Set    s     = e->set;
   const double scale = e->o.mass_scaling / dt;
   double       lhs = scale * b->M, rhs = b->f + scale * b->M * b->v;
 
-  rhs -= e->o.damping * fabs(b->f) * (b->v > 0.0 ? 1.0 : b->v < 0.0 ? -1.0 : 0.0);
+  rhs -= damping * fabs(b->f) * (b->v > 0.0 ? 1.0 : b->v < 0.0 ? -1.0 : 0.0);
   for (int k = 0; k < s.fluids; k++) {
     const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
     const double drag = e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
@@ -48,6 +48,29 @@ static void Solve(const Explicit *e, const Balance *b, double dt, bool held, dou
     lhs += scale * b->m[k] * B / (A + B);
     rhs -= scale * b->m[k] * (b->r[k] - drag - B * b->vf[k]) / (A + B);
   }
+  *left  = lhs;
+  *right = rhs;
+}
+
+double NodeFree(const Explicit *e, PetscInt I, int d, double dt, double *lhs)
+{
+  const int width = LANES * Rows(A_Count(e->set));
+  Balance   b;
+  double    rhs;
+
+  ReadBalance(e, e->node[I].leads ? &e->G[I * width] : &e->A[I * width], d, &b);
+  Mixture(e, &b, dt, 0.0, lhs, &rhs);
+  return rhs / *lhs - b.v;
+}
+
+/* Velocities at the end of the step (36), drag implicit or explicit; a held skeleton moves as it must. */
+static void Solve(const Explicit *e, const Balance *b, double dt, bool held, double value, double v[3])
+{
+  const Set    s     = e->set;
+  const double scale = e->o.mass_scaling / dt;
+  double       lhs, rhs;
+
+  Mixture(e, b, dt, e->o.damping, &lhs, &rhs);
   v[0] = held ? value : s.solid ? rhs / lhs : 0.0;
   for (int k = 0; k < s.fluids; k++) {
     const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
@@ -115,7 +138,7 @@ static void WriteVelocities(Explicit *e, PetscInt I)
     b[B_T(s)] = a[s.fluids] / a[A_C(s)];
 }
 
-PetscErrorCode NodesVelocities(Explicit *e, double dt)
+PetscErrorCode NodesVelocities(Explicit *e, double t, double dt)
 {
   const int width = LANES * Rows(B_Count(e->set));
 
@@ -127,6 +150,8 @@ PetscErrorCode NodesVelocities(Explicit *e, double dt)
   }
   e->added = 0.0;
   PetscCall(NodesFollow(e));
+  if (e->nplate)
+    PetscCall(PlatesForces(e, t, dt));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     if (Volume(e, I) > 0.0)
       NodeVelocities(e, I, dt);

@@ -93,6 +93,7 @@ void           TablesClose(Output *out);
 void ProbesHeader(const Case *c, FILE *f);
 void BalanceHeader(const Case *c, FILE *f);
 void MetersHeader(const Case *c, FILE *f);
+bool MetersWanted(const Model *m); /* is there anything to write? */
 
 /* Stages may take seconds after years: their times are told apart to the last digit. */
 static inline void IoTime(const Case *c, FILE *f, double t)

@@ -1,5 +1,27 @@
-/* meters.csv: what crosses parts of the surface, rates and sums (33), and the free gas that is left. */
+/* meters.csv: what crosses parts of the surface, rates and sums (33), where plates are and what they bear, and the free
+   gas that is left. */
 #include "io_private.h"
+
+bool MetersWanted(const Model *m)
+{
+  return m->c->nmeter > 0 || m->plates > 0;
+}
+
+static void PlateHeader(const Bc *b, FILE *f)
+{
+  fprintf(f, ",%s.position_m,%s.force_N,%s.stress_Pa", b->name, b->name, b->name);
+  if (b->rough)
+    fprintf(f, ",%s.shear_N", b->name);
+}
+
+static void PlateRow(const Bc *b, const double plate[PLATE_COUNT], FILE *f)
+{
+  const double force = plate[PLATE_FORCE], area = plate[PLATE_AREA];
+
+  fprintf(f, ",%.17g,%.17g,%.12e", plate[PLATE_POSITION], force, area > 0.0 ? force / area : 0.0);
+  if (b->rough)
+    fprintf(f, ",%.17g", plate[PLATE_SHEAR]);
+}
 
 void MetersHeader(const Case *c, FILE *f)
 {
@@ -15,6 +37,10 @@ void MetersHeader(const Case *c, FILE *f)
       fprintf(f, ",%s.gas_kg_s,%s.gas_kg,%s.gas_std_m3", name, name, name);
     if (fs->heat)
       fprintf(f, ",%s.heat_W,%s.heat_J", name, name);
+  }
+  for (PetscInt k = 0; k < c->nlisted; k++) {
+    if (c->listed[k].type == BC_PLATE)
+      PlateHeader(&c->listed[k], f);
   }
   if (fs->phase[PHASE_G])
     fprintf(f, ",free_gas_kg,free_gas_std_m3");
@@ -40,6 +66,10 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
     if (fs->heat)
       fprintf(f, ",%.12e,%.17g", rate[METER_HEAT], sum[METER_HEAT]);
   }
+  for (PetscInt k = 0; k < c->nlisted; k++) {
+    if (c->listed[k].type == BC_PLATE)
+      PlateRow(&c->listed[k], m->plate[k], f);
+  }
   if (fs->phase[PHASE_G])
     fprintf(f, ",%.17g,%.12e", gas, gas / c->standard_gas_density);
   fprintf(f, "\n");
@@ -53,7 +83,7 @@ PetscErrorCode OutputMeters(Output *out, const Model *m, const StepperState *s)
   ModelTotals    now;
 
   PetscFunctionBeginUser;
-  if (m->c->nmeter == 0)
+  if (!MetersWanted(m))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelComputeTotals(m, &now));
   if (m->grid.rank == 0)

@@ -113,7 +113,7 @@ PetscErrorCode TablesOpen(Output *out, const Model *m, bool append, double t)
 {
   PetscFunctionBeginUser;
   for (TableId id = 0; id < TABLE_COUNT && !out->failed; id++) {
-    if (id != TABLE_METERS || m->c->nmeter > 0)
+    if (id != TABLE_METERS || MetersWanted(m))
       PetscCall(Open(out, m, id, append, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

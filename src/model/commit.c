@@ -212,6 +212,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   if (m->c->fields.one_pressure)
     CheckShares(m, x, trial->m);
   BoundaryRates(m, x, rates);
+  PetscCall(PlatesReport(m, x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   m->rates = *rates;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &m->limited, 1, MPIU_INT, MPI_SUM, m->grid.comm));

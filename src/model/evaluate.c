@@ -51,4 +51,6 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
     sum += face->N[a];
   }
   FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, kappa / sum, m->stage.dt, o);
+  if (face->plate >= 0)
+    PlateEvaluate(&m->c->bc[face->plate], face, m->bc.value[face->plate], in, o);
 }

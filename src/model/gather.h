@@ -257,5 +257,13 @@ PetscErrorCode StabilisationJacobian(Model *m);
 /* Adds an n-node block (n times the set's unknowns square, row major, unscaled) to J2, with scales and Dirichlet rows.
  */
 PetscErrorCode JacobianAdd(Model *m, int n, const PetscInt *node, double *block);
+/* Plates (plates.c): their number and state; (73) position of those with a prescribed force at the nodal values x, all
+   ranks; which faces touch, for the tangent; its dense part, f -= ... x; what the meters report. */
+PetscErrorCode ModelPlatesCreate(Model *m);
+PetscErrorCode PlatesPosition(Model *m, const double *x);
+void           PlatesMark(Model *m, const double *x);
+bool           PlatesCouple(const Model *m);
+PetscErrorCode PlatesMult(const Model *m, const double *x, double *f);
+PetscErrorCode PlatesReport(Model *m, const double *x);
 PetscErrorCode WideCreate(Model *m, Mat *A);
 PetscErrorCode ModelResizeNodal(Model *m);

@@ -374,6 +374,8 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
   PetscCall(MatZeroEntries(m->J2));
+  PetscCall(PlatesPosition(m, m->x));
+  PlatesMark(m, m->x);
   PetscCall(ParticleLoop(m, m->x));
   PetscCall(FaceLoop(m, m->x));
   PetscCall(StabilisationJacobian(m));

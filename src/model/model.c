@@ -15,6 +15,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(ParticlesSeed(first, &m->grid, &m->P));
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
+  PetscCall(ModelPlatesCreate(m));
   m->tol_residual = 1e-9;
   m->poor         = 20;
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
@@ -55,6 +56,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->ghost));
   PetscCall(PetscFree(m->cell));
   PetscCall(PetscFree4(m->bc.value, m->bc.shear, m->bc.phase[0], m->bc.phase[1]));
+  PetscCall(PetscFree2(m->plate, m->plate_K));
   PetscCall(ParticlesDestroy(&m->P));
   PetscCall(NodeMapDestroy(&m->map));
   PetscCall(GridDestroy(&m->grid));

@@ -208,6 +208,7 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
   if (m->mass_row)
     PetscCall(PetscArrayzero(m->mass_row, m->map.n_local * PHASE_COUNT));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
+  PetscCall(PlatesPosition(m, m->x));
   ParticleLoop(m, m->x, m->f);
   FaceLoop(m, m->x, m->f);
   StabilisationResidual(m, m->x, m->f);

@@ -246,6 +246,10 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   }
   if (*status == CL_OK) {
     PetscCall(FacesBuild(m->c, &m->grid, &m->P, m->stencil, &m->nface, &m->face));
+    for (PetscInt k = 0; m->plates && k < m->nface; k++) {
+      if (m->face[k].plate >= 0)
+        ModelPlateStiffness(m, &m->face[k]);
+    }
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamWeights(m));
   }

@@ -31,8 +31,8 @@ static void WideParticle(const Model *m, PetscInt p, const double *proj, double 
   }
 }
 
-/* y += C diag(1/V) B x on scaled, owned vectors. */
-static PetscErrorCode WideApply(Model *m, Vec X, Vec Y)
+/* y += C diag(1/V) B x on scaled, owned vectors, and the dense part of plates with a prescribed force. */
+static PetscErrorCode WideApply(Model *m, bool wide, Vec X, Vec Y)
 {
   const PetscInt nf = m->c->fields.n, n = m->map.n_local;
   double        *y, *x, *f, *proj;
@@ -40,10 +40,13 @@ static PetscErrorCode WideApply(Model *m, Vec X, Vec Y)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n * nf, &x, n * nf, &f, n * 4, &proj));
   PetscCall(ModelUnscale(m, X, x));
-  PetscCall(ModelProjectGradients(m, x, proj));
   PetscCall(PetscArrayzero(f, n * nf));
-  for (PetscInt p = 0; p < m->P.n; p++)
+  if (wide)
+    PetscCall(ModelProjectGradients(m, x, proj));
+  for (PetscInt p = 0; wide && p < m->P.n; p++)
     WideParticle(m, p, proj, f);
+  if (PlatesCouple(m))
+    PetscCall(PlatesMult(m, x, f));
   PetscCall(NodeMapReduce(&m->map, f, nf));
   PetscCall(VecGetArray(Y, &y));
   for (PetscInt k = 0; k < m->map.n_owned * nf; k++) {
@@ -62,9 +65,10 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
   PetscCall(MatMult(m->J2, X, Y));
-  if (m->c->flux_interpolation && m->c->fields.fluid) {
+  const bool wide = m->c->flux_interpolation && m->c->fields.fluid;
+  if (wide || PlatesCouple(m)) {
     PetscCall(PetscLogEventBegin(m->event[3], 0, 0, 0, 0));
-    PetscCall(WideApply(m, X, Y));
+    PetscCall(WideApply(m, wide, X, Y));
     PetscCall(PetscLogEventEnd(m->event[3], 0, 0, 0, 0));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -47,6 +47,17 @@ double ScheduleNextKink(const Schedule *s, double t)
   return INFINITY;
 }
 
+double ScheduleIntegral(const Schedule *s, double t)
+{
+  double sum = 0.0;
+
+  for (double from = 0.0, to; from < t; from = to) {
+    to = PetscMin(ScheduleNextKink(s, from), t);
+    sum += (to - from) * (s->steps ? ScheduleValue(s, from) : 0.5 * (ScheduleValue(s, from) + ScheduleValue(s, to)));
+  }
+  return sum;
+}
+
 void ScheduleDestroy(Schedule *s)
 {
   free(s->t);

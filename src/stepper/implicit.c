@@ -93,7 +93,9 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 
   PetscFunctionBeginUser;
   PetscCall(ModelBeginStage(m, &stage));
-  PetscCall(ModelSolve(m, w->x, &newton, &a->status));
+  PetscCall(ModelPlatesCheck(m, &a->status));
+  if (a->status == CL_OK)
+    PetscCall(ModelSolve(m, w->x, &newton, &a->status));
   a->newton += newton;
   if (a->status == CL_OK)
     PetscCall(ModelEndStage(m, w->x, trial, &rates, &a->status));

@@ -15,6 +15,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 BASE = open(os.path.join(HERE, "..", "..", "cases", "bp2", "case.yaml")).read()
 M = "mat_sediment_"
 METER = lambda keys: ("basis: cpgimp", f"basis: cpgimp\nmeters: [outlet]\nmeter: {{outlet: {{{keys}}}}}")
+PLATE = lambda keys: ("base: {type: fixed, axis: x, position: 0 m", "base: {type: plate, " + keys)
 STAGES = lambda a, b: ("time: {end: 2000 s}", f"stages: [a, b]\nstage:\n  a: {{{a}}}\n  b: {{{b}}}")
 SEDIMENT = {"porosity": "0.15", "solid_density": "2600 kg/m^3", "solid_heat_capacity": "800 J/(kg K)", "solid_conductivity": "3 W/(m K)",
             "water_ref_pressure": "3.25 MPa", "water_ref_temperature": "4 degC", "retention_p0": "50 kPa", "retention_m": "0.3", "retention_Swr": "0.2",
@@ -165,6 +166,24 @@ CASES = [
     ("unknown side", [("type: pressure, side: right", "type: pressure, side: east")], ["bc_drain_side", "left | right"], []),
     ("key of another type", [("base: {type: fixed, axis: x,", "base: {type: fixed, axis: x, normal: 1 MPa,")],
      ["bc_base_normal", "type fixed"], []),
+    ("plate: velocity and displacement", [PLATE("side: left, velocity: 1 um/s, displacement: 1 mm")], ["bc_base_displacement", "velocity", "one of"], []),
+    ("plate: displacement and force", [PLATE("side: left, force: 1 N, displacement: 1 mm")], ["bc_base_force", "displacement", "one of"], []),
+    ("plate: nothing prescribed", [PLATE("side: left")], ["bc_base_velocity", "is missing", "neither displacement nor force"], []),
+    ("plate: rough and separates", [PLATE("side: left, velocity: 1 um/s, rough: yes, separates: yes")], ["bc_base_separates", "rough"], []),
+    ("plate: pulls what separates", [PLATE("side: left, force: {table: [0 s, 1 N, 1 s, -1 N]}, separates: yes")], ["bc_base_force", "-1 N", "pull"], []),
+    ("plate: side and axis", [PLATE("side: left, axis: x, velocity: 1 um/s")], ["bc_base_axis", "type plate"], []),
+    ("plate: soft", [PLATE("side: left, stiffness: 0.1, velocity: 1 um/s")], ["bc_base_stiffness", "[1,1e6]"], []),
+    ("plate: force in another unit", [PLATE("side: left, force: 1 kPa")], ["bc_base_force", "N"], []),
+    ("plate: closed, on a drained side", [PLATE("side: right, velocity: 1 um/s")], ["bc_base_holds", "drain", "holds: skeleton"], []),
+    ("plate: on a grid line, far", [PLATE("axis: x, position: 0 m, velocity: {table: [0 s, 1 um/s, 1000 s, -1 um/s]}")],
+     ["bc_base_velocity", "0.001 m", "side: left"], []),
+    ("plate: in a scene without solid", [PLATE("side: left, velocity: 1 um/s"), ("basis: cpgimp", "fields: thc")], ["bc_base_type", "needs solid"], []),
+    ("plate: on a side closed in by another region", [PLATE("side: right, region: column, velocity: 1 um/s, holds: skeleton"),
+      ("upper: [1 m, 0.02 m]", "upper: [0.5 m, 0.02 m]"), BESIDE("lower: [0.5 m, 0 m], upper: [1 m, 0.02 m]")], ["bc_base_side", "no free surface"], []),
+    ("plate: from a line", [PLATE("along: [[0 m, 0 m], [0 m, 0.02 m]], velocity: 1 um/s")], ["bc_base_along", "type plate"], []),
+    ("plate: moves from the second stage on", [PLATE("side: left, velocity: 1 um/s"), STAGES("end: 1 s, boundaries_off: [base]", "end: 2 s")],
+     ["bc_base_velocity", "first stage"], []),
+    ("plate: moves by the clock of a stage", [PLATE("side: left, displacement: 1 um, clock: stage"), STAGES("end: 1 s", "end: 2 s")], ["bc_base_clock", "start of the run"], []),
     ("plane off the grid lines", [("base: {type: fixed, axis: x, position: 0 m}", "base: {type: fixed, axis: x, position: 0.01 m}")],
      ["bc_base_position", "grid line"], []),
     ("plane outside", [("upper_wall: {type: roller, axis: y, position: 0.02 m}", "upper_wall: {type: roller, axis: y, position: 0.04 m}")],

@@ -95,10 +95,12 @@ static inline Bc *AddFace(Scene *s, BcType type, Side side, double value, double
 {
   Bc *b = &s->bc[s->c.nbc];
 
-  *b       = (Bc){.type = type, .side = side, .region = -1, .from = -INFINITY, .to = INFINITY, .alpha = 40.0};
-  b->value = Constant(s, 0, value);
-  b->shear = Constant(s, 1, shear);
-  s->c.nbc++;
+  *b           = (Bc){.type = type, .side = side, .region = -1, .from = -INFINITY, .to = INFINITY, .alpha = 40.0};
+  b->value     = Constant(s, 0, value);
+  b->shear     = Constant(s, 1, shear);
+  b->number    = s->c.nbc++;
+  s->c.listed  = s->bc;
+  s->c.nlisted = s->c.nbc;
   return b;
 }
 
@@ -312,7 +314,7 @@ static inline void AddConditions(Scene *s, int set)
     return;
   }
   if (fs->solid && !axis)
-    AddPlane(s, BC_PLATE, 0, x0, 2e-5);
+    AddPlane(s, BC_PLATE_LINE, 0, x0, 2e-5);
   if (moves)
     AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
   if (fs->solid) {

@@ -113,6 +113,9 @@ static void schedule_values(void **state)
               ScheduleNextKink(&line, 39) == 40);
   assert_true(ScheduleNextKink(&line, 20 * (1 - 1e-13)) == 40 && ScheduleNextKink(&line, 20 * (1 - 1e-11)) == 20);
   assert_true(isinf(ScheduleNextKink(&line, 40)) && isinf(ScheduleNextKink(&constant, 0)));
+  assert_true(fabs(ScheduleIntegral(&line, 5) - 5) < 1e-14 && fabs(ScheduleIntegral(&line, 15) - 17.5) < 1e-13);
+  assert_true(fabs(ScheduleIntegral(&line, 40) - 50) < 1e-13 && fabs(ScheduleIntegral(&line, 50) - 40) < 1e-13);
+  assert_true(fabs(ScheduleIntegral(&jump, 25) - 35) < 1e-13 && ScheduleIntegral(&constant, 7) == 7);
   assert_true(ScheduleNextKink(&jump, 10) == 20);
 }
 
@@ -364,16 +367,19 @@ static void write_awkward(const char *path)
       "  high: {lower: [0 m, 0.1 m], upper: [0.6 m, 0.25 m], material: sand, pressure: 0.3 MPa, temperature: 3.7 "
       "degC,\n"
       "    particles_per_cell: [3, 1], Sh: 0.1, Sw: 0.7, Sg: 0.2}\n"
-      "boundaries: [a, b, c, d, e, f, g]\nbc:\n"
+      "boundaries: [a, b, c, d, e, f, g, h, i]\nbc:\n"
       "  a: {type: traction, side: top, region: high, from: 0.1 m, to: 0.2 m, normal: {ramp: [0 Pa, 1.1 MPa, 1 s, 7 "
       "min]},\n"
       "    shear: {rate: [1 Pa, 0.1 kPa/h, 0 s, 3.3 h]}}\n"
       "  b: {type: convection, side: left, alpha: 25 W/(m^2 K), ambient: {piecewise: [0 s, 280 K, 10 s, 281.3 K]}}\n"
       "  c: {type: pressure, side: right, from: 0.01 m, pressure: {table: [0 s, 1 bar, 0.1 d, 2 bar, 1 d, 1.5 bar]}}\n"
-      "  d: {type: plate, axis: y, position: 10 cm, velocity: -1.1 mm/min}\n"
+      "  d: {type: plate, axis: y, position: 10 cm, velocity: -1.1e-4 mm/min}\n"
       "  e: {type: temperature, axis: x, position: -0.1 m, temperature: {piecewise: [3 s, 1.1 degC]}}\n"
       "  f: {type: heat_flux, side: bottom, flux: 1 mW/cm^2}\n"
       "  g: {type: face_temperature, side: bottom, to: 0.3 m, temperature: 275.4 K}\n"
+      "  h: {type: plate, side: right, force: {table: [0 s, 1 kN, 0.2 d, 3.3 kN]}, rough: yes, holds: skeleton}\n"
+      "  i: {type: plate, side: left, region: low, displacement: {ramp: [0 m, -1.1 mm, 0 s, 1 h]}, separates: yes,\n"
+      "    stiffness: 330}\n"
       "time: {end: 0.7 d}\noutput: {times: [0.1 h, 1.7 h], every: 1.1 h, dir: 'a \"strange\" dir'}\n"
       "checkpoint: {every: 0.3 h}\nstepper: {tol: 1.1e-4}\n",
       f);

@@ -50,6 +50,10 @@ static void SceneInit(Scene *s, Rng *r)
   s->face.convection = -1;
   s->face.temperature = -1;
   s->face.inflow      = -1;
+  s->face.plate       = -1;
+  s->face.K           = 1e9;
+  s->face.moved[0]    = 3e-3;
+  s->face.moved[1]    = -2e-3;
 }
 
 /* Inputs of a particle: a motion of some percent, pressures, gradients, fluxes. */
@@ -79,6 +83,8 @@ typedef struct {
 static void Evaluate(const Scene *s, const double in[IN_COUNT], FaceOutput *o)
 {
   FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, in, KAPPA, DT, o);
+  if (s->face.plate >= 0)
+    PlateEvaluate(&s->bc[s->face.plate], &s->face, s->value[s->face.plate], in, o);
 }
 
 static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
@@ -209,6 +215,26 @@ static void WarmInflow(Scene *s, Rng *r)
   s->value[1]    = RngBetween(r, 1.0, 60.0);
 }
 
+static void Plate(Scene *s, Rng *r)
+{
+  s->face.plate = 0;
+  s->face.side  = RngBetween(r, 0.0, 1.0) < 0.5 ? SIDE_YMIN : SIDE_XMAX;
+  s->bc[0].type = BC_PLATE;
+  s->value[0]   = RngBetween(r, -1e-2, 1e-2);
+}
+
+static void RoughPlate(Scene *s, Rng *r)
+{
+  Plate(s, r);
+  s->bc[0].rough = true;
+}
+
+static void LoosePlate(Scene *s, Rng *r)
+{
+  Plate(s, r);
+  s->bc[0].separates = true;
+}
+
 static void Everything(Scene *s, Rng *r)
 {
   Free(s, r);
@@ -233,7 +259,11 @@ static const struct {
                  {"pressure, ambient", AmbientHeld},
                  {"ambient, free", AmbientFree},
                  {"heat flux", HeatFlux},
-                 {"all at once", Everything}};
+
+                 {"all at once", Everything},
+                 {"plate", Plate},
+                 {"plate, rough", RoughPlate},
+                 {"plate, separates", LoosePlate}};
 
 static void Tangents(void **state)
 {
@@ -313,6 +343,44 @@ static void MassRows(void **state)
   }
 }
 
+/* (72): the spring's force and where it acts; none where a plate that separates has lifted off; area under it. */
+static void PlateForces(void **state)
+{
+  Rng r      = {.s = 13};
+  int lifted = 0;
+
+  for (int n = 0; n < STATES; n++) {
+    for (int kind = 0; kind < 3; kind++) {
+      Scene      s;
+      FaceOutput o;
+      double     in[IN_COUNT];
+
+      SceneInit(&s, &r);
+      (kind == 0 ? Plate : kind == 1 ? RoughPlate : LoosePlate)(&s, &r);
+      Inputs(&r, in);
+      Evaluate(&s, in, &o);
+      const int    d = s.face.side == SIDE_XMAX ? 0 : 1;
+      const double along =
+          s.face.K * (s.face.moved[d] + in[IN_U + d] - s.value[0]); /* outwards is + at xmax, - at ymin */
+      const double gap  = d == 0 ? along : -along;
+      const bool   off  = kind == 2 && gap <= 0.0;
+      const double a[2] = {s.face.n[0], s.face.n[1]};
+      const double cof  = d == 0 ? (1.0 + in[IN_GRADU + 3]) * a[0] - in[IN_GRADU + 2] * a[1]
+                                 : (1.0 + in[IN_GRADU]) * a[1] - in[IN_GRADU + 1] * a[0];
+
+      lifted += off;
+      assert_true(fabs(o.plate[PLATE_FORCE] - (off ? 0.0 : gap)) <= 1e-6);
+      assert_true(fabs(o.out[F_VSX + d] - (off ? 0.0 : along)) <= 1e-6);
+      assert_true(fabs(o.out[F_VSY - d] - (kind == 1 ? s.face.K * (s.face.moved[1 - d] + in[IN_U + 1 - d]) : 0.0)) <=
+                  1e-6);
+      assert_true(o.plate[PLATE_SHEAR] == -o.out[F_VSY - d]);
+      assert_true(fabs(o.plate[PLATE_AREA] - (off ? 0.0 : (d == 0 ? 1.0 : -1.0) * (1.0 + in[IN_GRADU + 4]) * cof)) <=
+                  1e-12);
+    }
+  }
+  assert_true(lifted > 5 && lifted < STATES - 5);
+}
+
 /* The true area goes with the motion: |cof(F) s|. */
 static void TrueArea(void **state)
 {
@@ -368,8 +436,9 @@ static void Share(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents), cmocka_unit_test(MeanPressure),
-                                     cmocka_unit_test(MassRows), cmocka_unit_test(TrueArea), cmocka_unit_test(Share)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents),    cmocka_unit_test(MeanPressure),
+                                     cmocka_unit_test(PlateForces), cmocka_unit_test(MassRows),
+                                     cmocka_unit_test(TrueArea),    cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -44,6 +44,63 @@ static void TestJacobian(void **state)
   }
 }
 
+/* Plates: one that moves, rough; one with a prescribed force, whose springs couple all nodes under it (74), held to the
+   body or free to separate, in which case a part of it touches. */
+static void PlateScene(Scene *s, bool axisymmetric, int kind)
+{
+  Bc *b;
+
+  JacobianCase(s, kind == 1 ? HAS_SOLID : HAS_SOLID | HAS_WATER, true, axisymmetric, BASIS_CPGIMP, 0.1, 0.0, false, 0);
+  b            = AddFace(s, BC_PLATE, SIDE_XMAX, 1e-5, 0.0);
+  b->stiffness = 100.0;
+  b->rough     = true;
+  b            = AddFace(s, BC_PLATE, SIDE_YMAX, 0.0, 0.0);
+  b->force     = Constant(s, -2, kind == 2 ? 1e9 : 4e6); /* the number of the value that it has not */
+  b->value.n   = 0;
+  b->stiffness = 100.0;
+  b->separates = kind == 2;
+  JacobianState(s);
+}
+
+/* Exact Jacobian, the force as prescribed, and no plate that does not touch. */
+static void TestPlates(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 6; k++) {
+    Scene *s = malloc(sizeof(*s));
+    Model *m = &s->m;
+    Trial  t;
+
+    PlateScene(s, k % 2, k / 2);
+    const PetscInt top   = s->c.nbc - 1;
+    const double   worst = DirectionError(s, 3), entry = ColumnError(s);
+    double        *x;
+    StageRates     rates;
+    ClStatus       status;
+    double         touching = 0.0, faces = 0.0;
+
+    for (PetscInt i = 0; i < m->nface; i++) {
+      touching += m->face[i].plate == top && m->face[i].touches;
+      faces += m->face[i].plate == top;
+    }
+    Call(PetscMalloc1(m->map.n_local * m->c->fields.n, &x));
+    Call(PetscMalloc4(3 * m->P.n, &t.m, 4 * m->P.n, &t.y, 2 * m->P.n, &t.u, 2 * m->P.n, &t.v));
+    RandomUnknowns(m, s->stage.dt, 30, x);
+    SetX(m, x);
+    Call(ModelResidual(NULL, m->X, m->R, m));
+    Call(ModelEndStage(m, x, &t, &rates, &status));
+    const double F = s->bc[top].force.y[0], error = fabs(m->plate[top][PLATE_FORCE] / F - 1.0);
+    Say("plates, %s, kind %d: directions %.1e, entries %.1e, force %.1e; %g of %g faces touch\n",
+        k % 2 ? "about an axis" : "plane", k / 2, worst, entry, error, Sum(touching), Sum(faces));
+    Check(worst < 1e-6 && entry < 1e-6 && error < 1e-12);
+    Check(k / 2 == 2 ? Sum(touching) < Sum(faces) && Sum(touching) > 0.0 : Sum(touching) == Sum(faces));
+    Call(PetscFree(x));
+    Call(PetscFree4(t.m, t.y, t.u, t.v));
+    SceneDestroy(s);
+    free(s);
+  }
+}
+
 /* ---------------------------------------------------------------- (d) conservation */
 /* What the particles keep, (28), is what they had less what flowed out, even for unknowns that solve nothing: the rows
    of water and of gas, summed over the nodes, are the change of mass plus the outflow. */
@@ -389,9 +446,9 @@ static void TestNewtonOrder(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestJacobian),    cmocka_unit_test(TestMassRows),      cmocka_unit_test(TestTwoLayers),
-      cmocka_unit_test(TestHydrostatic), cmocka_unit_test(TestUniformStress), cmocka_unit_test(TestDarcy),
-      cmocka_unit_test(TestHeatFlux),    cmocka_unit_test(TestNewtonOrder),
+      cmocka_unit_test(TestJacobian),  cmocka_unit_test(TestPlates),      cmocka_unit_test(TestMassRows),
+      cmocka_unit_test(TestTwoLayers), cmocka_unit_test(TestHydrostatic), cmocka_unit_test(TestUniformStress),
+      cmocka_unit_test(TestDarcy),     cmocka_unit_test(TestHeatFlux),    cmocka_unit_test(TestNewtonOrder),
   };
   int failed;
 

@@ -1,0 +1,94 @@
+/* Rigid plates on a side of the body: a spring between every face and the plate.  docs/equations.md, section 6. */
+#include "clathra/boundary.h"
+
+#define FLUID_MOST 1e3 /* of the skeleton's modulus: what an incompressible fluid in the pores may add */
+#define FARTHEST 0.5   /* cells in one step */
+#define THINNEST 0.5   /* cells between a plate and a plane that holds the body */
+
+double PlatePosition(const Bc *b, double t)
+{
+  return b->force.n ? 0.0 : b->displacement.n ? ScheduleValue(&b->displacement, t) : ScheduleIntegral(&b->value, t);
+}
+
+double PlateForce(const Bc *b, double t)
+{
+  return ScheduleValue(&b->force, t - b->zero);
+}
+
+double PlateStiffness(const Bc *b, const Face *f, const PointProperties *q, double h)
+{
+  double storage = 0.0, M = q->M;
+
+  for (int k = 0; k < PHASE_COUNT; k++)
+    storage += q->storage[k];
+  if (storage > 0.0)
+    M += fmin(1.0 / storage, FLUID_MOST * q->M);
+  else if (q->rho[PHASE_W] > 0.0)
+    M += FLUID_MOST * q->M;
+  return b->stiffness * M / h * f->a0;
+}
+
+/* (72) */
+void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o)
+{
+  const int    d = SideAxis(f->side), t = 1 - d;
+  const double n = SideSign(f->side), gap = PlateGap(f, position, &in[IN_U]);
+  Kinematics   k;
+
+  if (b->separates && gap <= 0.0)
+    return;
+  o->plate[PLATE_FORCE] = f->K * gap;
+  o->out[F_VSX + d] += n * f->K * gap;
+  o->D[F_VSX + d][IN_U + d] += f->K;
+  if (b->rough) {
+    o->plate[PLATE_SHEAR] = -f->K * (f->moved[t] + in[IN_U + t]);
+    o->out[F_VSX + t] -= o->plate[PLATE_SHEAR];
+    o->D[F_VSX + t][IN_U + t] += f->K;
+  }
+  if (KinematicsEvaluate(&in[IN_GRADU], &k))
+    o->plate[PLATE_AREA] = n * (k.cof[d][0] * f->n[0] + k.cof[d][1] * f->n[1]);
+}
+
+/* Has the plate met a plane that holds the body along its axis, or the plane a plate? */
+static const Bc *Met(const Case *c, const Grid *g, const Face *f, double position)
+{
+  const int    d     = SideAxis(f->side);
+  const double start = f->x[d] - f->moved[d], least = THINNEST * g->h[d];
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Bc    *b    = &c->bc[k];
+    const double from = start - b->position, to = from + position;
+
+    if (b->type != BC_ROLLER && b->type != BC_FIXED && b->type != BC_PLATE_LINE)
+      continue;
+    if (b->axis == d && position != 0.0 && (from * to <= 0.0 || (fabs(to) < least && fabs(to) < fabs(from))))
+      return b;
+  }
+  return NULL;
+}
+
+ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position, char *text, size_t size)
+{
+  const Bc    *b  = &c->bc[f->plate], *plane;
+  const int    d  = SideAxis(f->side);
+  const double at = f->x[d] - f->moved[d] + position, upper = g->lower[d] + (double)g->cells[d] * g->h[d];
+  const double zero[CL_DIM] = {0.0}, gap = PlateGap(f, position, zero), slack = 1e-9 * g->h[d];
+  const bool   touches = !b->separates || gap > 0.0;
+
+  if (!touches)
+    return CL_OK;
+  if (at < g->lower[d] - slack || at > upper + slack) {
+    snprintf(text, size, "plate %s leaves the background grid", b->name);
+    return CL_LEFT_GRID;
+  }
+  plane = Met(c, g, f, position);
+  if (plane) {
+    snprintf(text, size, "plate %s comes within half a cell of %s, which holds the body", b->name, plane->name);
+    return CL_LEFT_GRID;
+  }
+  if (fabs(gap) > FARTHEST * g->h[d]) {
+    snprintf(text, size, "plate %s moves more than half a cell in one step", b->name);
+    return CL_TOO_FAR;
+  }
+  return CL_OK;
+}
