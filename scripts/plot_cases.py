@@ -211,8 +211,8 @@ def sea_floor(run, *axes):
         left.plot(e[0] / 1e3, down, **EXACT)
     left.set(xlabel="excess pressure (kPa)", ylabel="depth (m)", ylim=(40, 0), title="a column in the middle; lines: exact")
     left.legend()
-    for name, k, other, colour in (("undrained clay, 1e-18 m$^2$", 1e-18, case, COLOURS[0]),
-                                   ("drained clay, 1e-12 m$^2$", 1e-12, run("-mat_clay_permeability_k0", "1e-12 m^2"), COLOURS[1])):  # fmt: skip
+    for name, k, other, colour in (("clay of 1e-18 m$^2$", 1e-18, case, COLOURS[0]),
+                                   ("of 1e-12 m$^2$", 1e-12, run("-mat_clay_permeability_k0", "1e-12 m^2"), COLOURS[1])):  # fmt: skip
         q = other.csv("probes")
         at = q["time_s"] > t0 + 3600
         years = (q["time_s"][at] - t0) / floor.YEAR
@@ -221,7 +221,7 @@ def sea_floor(run, *axes):
         down, e, _ = floor.column(years * floor.YEAR, k)
         right.semilogx(years, [np.interp(17.5, down, line) / 1e3 for line in e], **EXACT)
     right.set(xlabel="years since the fall began", ylabel="excess pressure (kPa)", title="probe clay, 17.5 m deep; lines: exact")
-    right.legend()
+    right.legend(loc="center")
 
 
 PANELS = {"century_hydrate": (1, 3), "sea_floor": (3, 2)}  # rows and columns; one row of two without a word

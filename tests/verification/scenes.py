@@ -24,7 +24,7 @@ def shear_box():
 
 
 def contact():
-    """Growing pressures at the contact: water at 2e-4 m/s after a day, if the projection in (20) does not weigh with k_0."""
+    """Growing pressures at the contact: water at 1e-5 m/s after a day, if the projection in (20) does not weigh with k_0."""
     run = Run.of_case("sea_floor", "-quiet", "-grid_cells", "20,28", "-stage_settle_stepper_type", "sdirk2", "-stage_settle_stepper_dt", "5000 s",
                       "-stepper_max_steps", "20", "-output_times", "100000 s")  # fmt: skip
     judge("scenes", "sea_floor: flow of water at rest (m/s)", np.abs(run.snapshot(1e5)["v_w"]).max(), 1e-7)
