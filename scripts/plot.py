@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, derived, is_column, plt, save, set_style, steady_limits, time_unit
+from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, boxes, derived, is_column, plt, save, set_style, stage_axis, steady_limits, time_unit
 from results import probe_names, read_csv, read_snapshots
 
 # Panels of probes.png: label, [(column, factor, name in the legend)], least width of the y axis.  A scene without a field
@@ -34,15 +34,23 @@ def spread(count, most):
     return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int)))
 
 
-def history_panel(axes, probes, names, label, columns, least):
+def history_panel(axes, probes, stages, names, label, columns, least):
     shown, (unit, seconds) = [], time_unit(probes["time_s"][-1])
+    x = stages[0](probes["time_s"]) if stages else probes["time_s"] / seconds
     for colour, name in zip(COLOURS * len(names), names):
         for style, (column, factor, _) in zip(STYLES, columns):
             values = probes[f"{name}.{column}"] * factor
-            axes.plot(probes["time_s"] / seconds, values, style, color=colour)
+            axes.plot(x, values, style, color=colour)
             shown.append(values)
     steady_limits(axes, *shown, least=least)
     axes.set(xlabel=f"time ({unit})", ylabel=label)
+    if stages:
+        lengths = np.diff([0.0, *stages[1]])
+        axes.set(xticks=np.arange(len(lengths)) + 0.5, xticklabels=["{:.4g} {}".format(n / u[1], u[0]) for n in lengths for u in [time_unit(5 * n)]],
+                 xlabel="time in each stage, of this length", xlim=(0, len(lengths)))  # fmt: skip
+        axes.grid(False, axis="x")
+        for k in range(1, len(lengths)):
+            axes.axvline(k, color="0.6", lw=0.8)
     if len(columns) > 1:
         handles = [plt.Line2D([], [], color="0.3", ls=s, label=c[2] or "mean") for s, c in zip(STYLES, columns)]
         axes.legend(handles=handles, loc="best")
@@ -51,6 +59,7 @@ def history_panel(axes, probes, names, label, columns, least):
 def plot_probes(out):
     probes = read_csv(out / "probes.csv")
     names = probe_names(probes)
+    stages = stage_axis(read_csv(out / "balance.csv")) if (out / "balance.csv").is_file() else None
     if not names or not len(probes["time_s"]):
         return
     written = lambda columns: [c for c in columns if f"{names[0]}.{c[0]}" in probes]
@@ -65,7 +74,7 @@ def plot_probes(out):
     for axes in grid.flat[len(panels) :]:
         axes.remove()
     for axes, panel in zip(grid.flat, panels):
-        history_panel(axes, probes, names, *panel)
+        history_panel(axes, probes, stages, names, *panel)
     handles = [plt.Line2D([], [], color=c, lw=2.5, label=f"probe {n}") for c, n in zip(COLOURS * len(names), names)]
     figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.01, 0.0), ncol=2 * wide)
     figure.suptitle(f"{out.name}: histories at the probes", x=0.01, ha="left")
@@ -140,12 +149,8 @@ def plot_scatter(out, snapshots):
         if high - low < 1e-9:
             low, high = low - 1e-3, high + 1e-3
         for axes, (time, particles), v in zip(row, chosen, values):
-            x, y = particles["position"].T
-            size = (72 * width) ** 2 * extent[1] / extent[0] / len(x)  # squares that just touch, points^2
-            dots = axes.scatter(x, y, c=v, s=np.clip(size, 0.3, 80), cmap="viridis", vmin=low, vmax=high, lw=0,
-                                marker="s")  # fmt: skip
+            dots = boxes(axes, particles, v, low, high)
             axes.set_aspect("equal")
-            axes.grid(False)
             axes.set_title(f"{time / seconds:.4g} {unit}" if name == names[0] else "")
         row[0].set_ylabel("y (m)")
         figure.colorbar(dots, ax=list(row), label=SHORT[name], pad=0.01, aspect=15)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from plotting import COLOURS, MM, PA, plt, save, set_style
+from plotting import COLOURS, MM, PA, boxes, plt, save, set_style
 from results import read_csv, read_snapshots
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -191,9 +191,62 @@ def footing(run, left, right):
     right.set(xlabel="radius (m)", ylabel="vertical stress under the surface (kPa)", ylim=(-20, 500))
 
 
-PANELS = {"century_hydrate": 3}  # two without a word
+def body(axes, values, particles, label, aspect=1):
+    axes.figure.colorbar(boxes(axes, particles, values), ax=axes, label=label, shrink=0.9)
+    axes.set_aspect(aspect)
+    axes.set(xlabel="x (m)", ylabel="y (m)")
+
+
+def shear_box(run, left, right):
+    case = run()
+    end = case.snapshots[-1][1]
+    body(left, end["displacement"][:, 0] * MM, end, "displacement $u_x$ (mm)")
+    left.plot([0.5, 1.5, 1.5, 0.5, 0.5], [0, 0, 1, 1, 0], "k--", lw=0.8)
+    left.set(xlim=(0.4, 1.75), title="after 10 s; dashed: before")
+    for p, mark, colour in (("10 MPa", "-", COLOURS[0]), ("0.1 MPa", ":", COLOURS[1])):
+        q = run("-ambient_pressure", p, "-region_block_pressure", p, "-mat_soft_water_ref_pressure", p).csv("probes")
+        for what in "xy":
+            right.plot(q["time_s"], q[f"corner.u_{what}_m"] * MM, mark, color=colour, lw=1.6 if p == "10 MPa" else 3, label=f"under {p}" if what == "x" else None)
+    right.set(xlabel="time (s)", ylabel="displacement of the corner (mm)", title="upper curve $u_x$, lower $u_y$")
+    right.legend()
+
+
+def sea_floor(run, *axes):
+    import _sea_floor as floor
+
+    case = run()
+    (t0, start), *later = case.snapshots
+    for row, (t, v) in zip((axes[:2], axes[2:4]), later):
+        when = "at the end of the fall" if t - t0 <= floor.DAY else f"{(t - t0) / floor.YEAR:.0f} years after"
+        body(row[0], ((v["p"] - start["p"])[:, 0] + floor.FALL) / 1e3, v, "excess pressure (kPa)", 1.6)
+        body(row[1], v["displacement"][:, 1] * MM, v, "displacement $u_y$ (mm)", 1.6)
+        row[0].set_title(when)
+    left, right = axes[4:]
+    x = start["initial_position"]
+    middle = np.abs(x[:, 0] - 100) < 2.1
+    depth = 50 - floor.DIP * x[middle, 0] - x[middle, 1]
+    for colour, (t, v) in zip(COLOURS, later):
+        left.plot(((v["p"] - start["p"])[middle, 0] + floor.FALL) / 1e3, depth, color=colour, label=f"{(t - t0) / floor.YEAR:.3g} years", **DOTS)
+        down, e, _ = floor.column(t - t0)
+        left.plot(e[0] / 1e3, down, **EXACT)
+    left.set(xlabel="excess pressure (kPa)", ylabel="depth (m)", ylim=(40, 0), title="a column in the middle; lines: exact")
+    left.legend()
+    for name, k, other, colour in (("clay of 1e-18 m$^2$", 1e-18, case, COLOURS[0]),
+                                   ("of 1e-12 m$^2$", 1e-12, run("-mat_clay_permeability_k0", "1e-12 m^2"), COLOURS[1])):  # fmt: skip
+        q = other.csv("probes")
+        at = q["time_s"] > t0 + 3600
+        years = (q["time_s"][at] - t0) / floor.YEAR
+        excess = q["clay.p_Pa"][at] - np.interp(t0, q["time_s"], q["clay.p_Pa"]) + floor.FALL * np.minimum(years * 365, 1)
+        right.semilogx(years, excess / 1e3, ".", color=colour, label=name)
+        down, e, _ = floor.column(years * floor.YEAR, k)
+        right.semilogx(years, [np.interp(17.5, down, line) / 1e3 for line in e], **EXACT)
+    right.set(xlabel="years since the fall began", ylabel="excess pressure (kPa)", title="probe clay, 17.5 m deep; lines: exact")
+    right.legend(loc="center")
+
+
+PANELS = {"century_hydrate": (1, 3), "sea_floor": (3, 2)}  # rows and columns; one row of two without a word
 FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century,
-           century_hydrate, footing]  # fmt: skip
+           century_hydrate, footing, shear_box, sea_floor]  # fmt: skip
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):
@@ -203,8 +256,9 @@ def main(program=str(ROOT / "build" / "clathra"), *names):
         if names and name not in names:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            figure, axes = plt.subplots(1, PANELS.get(name, 2), figsize=(9.2, 3.4))
-            draw(lambda *options: Case(program, folder, name, *options), *axes)
+            rows, columns = PANELS.get(name, (1, 2))
+            figure, axes = plt.subplots(rows, columns, figsize=(9.2, 3.4 if rows == 1 else 2.6 * rows))
+            draw(lambda *options: Case(program, folder, name, *options), *axes.flat)
             save(figure, ROOT / "docs" / "figures", f"case_{name}")
 
 

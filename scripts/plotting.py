@@ -6,6 +6,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.collections import PolyCollection
 
 # Okabe and Ito's colours, told apart by colour-blind readers too; line styles differ as well.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -61,6 +62,27 @@ def steady_limits(axes, *values, least=1e-9):
     values = values[np.isfinite(values)]
     if values.size and np.ptp(values) < least:
         axes.set_ylim(values.mean() - least, values.mean() + least)
+
+
+def boxes(axes, particles, values, low=None, high=None):
+    """Particles as the boxes that they fill, where they are, coloured by values (n,) from low to high; returns the collection."""
+    x, l = particles["position"], particles["half_length"]
+    corners = np.stack([x + l * s for s in ((-1, -1), (1, -1), (1, 1), (-1, 1))], axis=1)
+    found = PolyCollection(corners, array=values, cmap="viridis", lw=0.15, edgecolor="face")
+    found.set_clim(low, high)
+    axes.add_collection(found)
+    axes.autoscale_view()
+    axes.grid(False)
+    return found
+
+
+def stage_axis(balance):
+    """(map of times (s) to an axis on which each stage is one wide, ends of the stages (s)); None without stages."""
+    stage = balance.get("stage", np.zeros(len(balance["time_s"])))
+    ends = [balance["time_s"][stage == k][-1] for k in np.unique(stage)]
+    if len(ends) < 2 or np.any(np.diff(ends) <= 0):
+        return None
+    return (lambda t: np.interp(t, [0.0, *ends], range(len(ends) + 1))), ends
 
 
 def save(figure, folder, name):

@@ -54,6 +54,7 @@ SECTION = {  # beside that table
     "surfaces": "Surfaces that shear and turn: an all-round pressure changes nothing",
     "plates": "Rigid plates that move with the body: confined compression, forces, rough and loose plates, a footing",
     "geostatic": "Initial states in balance with gravity: nothing moves when the run starts (docs/equations.md, section 13)",
+    "scenes": "cases/shear_box and cases/sea_floor on coarse grids: motion under any pressure; a falling sea against consolidation in one dimension",
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",
     "strength": "Mohr-Coulomb: softening along a plastic path, orders of the integrators, Salencon's hole",

@@ -26,6 +26,12 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
   return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
 }
 
+/* Weight of the projection (20): volume times permeability, in units of the first material's. */
+static inline double ConductingVolume(const Model *m, PetscInt p)
+{
+  return m->P.f[P_V][p] * (ParticleMaterial(m, p)->permeability.k0 / m->c->material[0].permeability.k0);
+}
+
 /* Temperature of a particle at t_n; without a field of its own it is the region's. */
 static inline double ParticleT(const Model *m, PetscInt p)
 {

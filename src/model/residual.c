@@ -24,8 +24,9 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(proj, 4 * m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    double g[4] = {0.0};
-    Reach  r;
+    const double Vk   = ConductingVolume(m, p);
+    double       g[4] = {0.0};
+    Reach        r;
 
     ReachExpand(m, p, &r);
     for (int f = 0; f < PHASE_COUNT; f++) {
@@ -37,7 +38,7 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
       }
     }
     for (int a = 0; a < r.n; a++) {
-      const double VS = m->P.f[P_V][p] * r.S[a];
+      const double VS = Vk * r.S[a];
 
       for (int k = 0; k < 4; k++)
         proj[4 * r.node[a] + k] += VS * g[k];
@@ -46,7 +47,7 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
   PetscCall(NodeMapSum(&m->map, proj, 4));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int k = 0; k < 4; k++)
-      proj[4 * I + k] /= m->V[I];
+      proj[4 * I + k] /= m->Vk[I];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -117,6 +117,8 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
 
     DepositNode(m, p, S, d, q, &sum[I * width]);
     m->V[I] += VS;
+    if (m->c->fields.fluid)
+      m->Vk[I] += ConductingVolume(m, p) * S;
     c[NC_M] += VS * q->M;
     c[NC_KAPPA] += VS * q->kappa;
     c[NC_CAPACITY] += S * q->capacity;
@@ -163,6 +165,7 @@ static PetscErrorCode Project(Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(m->map.n_local * width, &sum));
   PetscCall(PetscArrayzero(m->V, m->map.n_local));
+  PetscCall(PetscArrayzero(m->Vk, m->map.n_local));
   PetscCall(PetscArrayzero(m->coef, m->map.n_local * NC_COUNT));
   for (PetscInt p = 0; p < m->P.n; p++) {
     PointProperties q;
@@ -178,6 +181,7 @@ static PetscErrorCode Project(Model *m)
   }
   PetscCall(NodeMapSum(&m->map, sum, width));
   PetscCall(NodeMapSum(&m->map, m->V, 1));
+  PetscCall(NodeMapSum(&m->map, m->Vk, 1));
   PetscCall(NodeMapSum(&m->map, m->coef, NC_COUNT));
   Average(m, sum);
   PetscCall(PetscFree(sum));
