@@ -1,6 +1,6 @@
 /* skeleton: the stress of one particle's skeleton behind one interface: strain increment and history in; stress,
    history, tangent and dissipated work out.  Pure functions; every integrator calls the same ones, one particle at a
-   time (with the tangent) or over blocks.  docs/equations.md (14) and section 13. */
+   time (with the tangent) or over blocks.  docs/equations.md (14) and section 14. */
 #pragma once
 
 #include <stdbool.h>

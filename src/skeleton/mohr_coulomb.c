@@ -1,5 +1,5 @@
 /* Mohr-Coulomb behind the interface of the skeleton: elastic trial, principal stresses in the plane, return, and back
-   with the tangent; docs/equations.md, section 13. */
+   with the tangent; docs/equations.md, section 14. */
 #include "plastic.h"
 
 #define ROUND_OFF 1e-12 /* share of the cohesion: a state returned before is not returned again */

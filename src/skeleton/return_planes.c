@@ -1,6 +1,6 @@
 /* Return to the planes of Mohr and Coulomb with the classical potential (planes of the dilation angle): faces, edges,
    apex, tension cut-off.  At given strength the state is closed; strength follows from one equation in the plastic
-   strain (docs/equations.md, section 13). */
+   strain (docs/equations.md, section 14). */
 #include "plastic.h"
 
 #define ITERATIONS 200

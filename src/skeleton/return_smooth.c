@@ -1,5 +1,5 @@
 /* Return along the smooth potential: five equations for three stresses, multiplier and plastic strain
-   (docs/equations.md, section 13).  The potential is isotropic and convex, so the order of the stresses stays and one
+   (docs/equations.md, section 14).  The potential is isotropic and convex, so the order of the stresses stays and one
    multiplier is enough: edges of the yield surface need no case of their own. */
 #include "plastic.h"
 
