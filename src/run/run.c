@@ -116,45 +116,11 @@ static double Relative(double missing, double store)
   return store > 0.0 ? missing / store : missing;
 }
 
-/* What an integrator without matrices has to say at the end. */
-static PetscErrorCode LocalSummary(const Stepper *s, char text[512])
-{
-  const double scaling     = s->model->c->mass_scaling;
-  char         scaled[128] = "";
-
-  PetscFunctionBeginUser;
-  text[0] = '\0';
-  if (!s->explicit)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (scaling > 1.0)
-    PetscCall(PetscSNPrintf(scaled, sizeof(scaled), "; mass scaling %g added inertia of up to %.2g of the forces",
-                            scaling, ExplicitMassScalingError(s->explicit)));
-  PetscCall(PetscSNPrintf(text, 512, "  stable step %.4g s at the end (%s rules); %.0f B a particle%s\n", s->limit.dt,
-                          cl_limit_word[s->limit.rules], ExplicitBytesPerParticle(s->explicit), scaled));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Errors that were put up with. */
-static PetscErrorCode LooseSummary(const Stepper *s, char text[256])
-{
-  const StepperState *z = &s->state;
-
-  PetscFunctionBeginUser;
-  text[0] = '\0';
-  if (z->loose_total)
-    PetscCall(PetscSNPrintf(text, 256,
-                            "  %" PetscInt_FMT
-                            " steps were accepted above the tolerance, with an estimated error of up "
-                            "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",
-                            z->loose_total, z->err_worst));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char                text[2048], local[512], loose[256], yields[256], *stages, *all;
+  char                text[2048], local[512], loose[256], yields[256], gaps[256], *stages, *all;
   ModelTotals         t;
   bool                ok;
 
@@ -163,20 +129,21 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscCall(LocalSummary(s, local));
   PetscCall(YieldSummary(s->model, yields));
   PetscCall(LooseSummary(s, loose));
+  PetscCall(LongSummary(s->model, gaps));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
                           " Newton iterations, %.2f s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-                          "%s%s  results in %s\n",
+                          "%s%s%s  results in %s\n",
                           s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
                           s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
                           z->newton_total, Wall() - run->clock_start, local,
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
-                          z->limited_total, yields, loose, s->model->c->output_dir));
+                          z->limited_total, yields, loose, gaps, s->model->c->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);

@@ -23,3 +23,9 @@ void                    StageLogStep(StageLog *log, const Stepper *s, const Step
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left);
 /* A line for every stage that was entered; empty without stages.  PetscFree it. */
 PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **text);
+
+/* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
+   is nothing to say */
+PetscErrorCode LocalSummary(const Stepper *s, char text[512]); /* of an integrator without matrices */
+PetscErrorCode LooseSummary(const Stepper *s, char text[256]); /* errors that were put up with */
+PetscErrorCode LongSummary(const Model *m, char text[256]);    /* domains longer than a cell; collective */

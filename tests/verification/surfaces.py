@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, finish, judge, order, table
+from common import Run, check_true, finish, judge, order, table
 
 CASE = Path(__file__).parent / "cases" / "shear_block.yaml"
 ROW = "surfaces"
@@ -101,7 +101,27 @@ def tractions():
     judge(ROW, "tractions on the faces: order in h", order(1.0 / np.array(cells), errors)[-1], (0.5, 2.5))
 
 
+def longer():
+    """A bar of one particle a cell along its length, pulled to 1.02 times that and let go: domains get longer than a cell, act with its length, and
+    come back; with two a cell nothing is longer than a cell.  (Far from its cell one particle does not see the cell's hourglass modes: 1.1 times tears.)"""
+    M, strain = 1e7 * 0.7 / (1.3 * 0.4), np.log(1.02)
+    for along, long in ((1, True), (2, False)):
+        run = Run.of_case(CASE, "-quiet", *TIGHT, "-region_block_particles_per_cell", f"{along},2", "-region_block_lower", "0 m,0 m", "-region_block_upper", "1 m,1 m",
+                          "-boundaries", "base,top,wall,shear", "-bc_base_type", "roller", "-bc_top_type", "roller", "-bc_top_axis", "y", "-bc_top_position", "1 m",
+                          "-bc_wall_type", "roller", "-bc_wall_axis", "x", "-bc_wall_position", "0 m", "-bc_shear_side", "right", "-bc_shear_shear_ramp", "0 Pa,0 Pa,0 s,1 s",
+                          "-bc_shear_normal_table", f"0 s,0 Pa,5 s,{-M * strain} Pa,10 s,0 Pa", "-probe_corner_at", "1 m,1 m", "-stepper_dt", "0.5 s",
+                          "-output_times", "0 s,5 s,10 s")  # fmt: skip
+        pulled = Run.of_case(run.out / "case.yaml", "-quiet", *TIGHT, "-time_end", "5 s", "-output_times", "0 s,5 s")
+        said = "longer than a cell" in pulled.output
+        check_true(f"{along} x 2 particles a cell, pulled to 1.02 times the length: said that domains are longer than a cell: {long}", said == long)
+        start, far, end = (run.snapshot(t) for t in (0, 5, 10))
+        judge(ROW, f"{along} x 2 particles a cell, pulled: half lengths against 1.02 times the first", np.max(np.abs(far["half_length"][:, 0] / start["half_length"][:, 0] / 1.02 - 1)), 5e-3)
+        judge(ROW, f"{along} x 2 particles a cell, let go: half lengths against the first", np.max(np.abs(end["half_length"] / start["half_length"] - 1)), 1e-3)
+        judge(ROW, f"{along} x 2 particles a cell, let go: displacement that stays (m)", np.max(np.abs(end["displacement"])), 1e-3)
+
+
 ambient()
 variants()
+longer()
 tractions()
 finish()

@@ -1,0 +1,58 @@
+/* Lines of the summary that not every run has. */
+#include "run_private.h"
+
+/* What an integrator without matrices has to say at the end. */
+PetscErrorCode LocalSummary(const Stepper *s, char text[512])
+{
+  const double scaling     = s->model->c->mass_scaling;
+  char         scaled[128] = "";
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!s->explicit)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (scaling > 1.0)
+    PetscCall(PetscSNPrintf(scaled, sizeof(scaled), "; mass scaling %g added inertia of up to %.2g of the forces",
+                            scaling, ExplicitMassScalingError(s->explicit)));
+  PetscCall(PetscSNPrintf(text, 512, "  stable step %.4g s at the end (%s rules); %.0f B a particle%s\n", s->limit.dt,
+                          cl_limit_word[s->limit.rules], ExplicitBytesPerParticle(s->explicit), scaled));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Errors that were put up with. */
+PetscErrorCode LooseSummary(const Stepper *s, char text[256])
+{
+  const StepperState *z = &s->state;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (z->loose_total)
+    PetscCall(PetscSNPrintf(text, 256,
+                            "  %" PetscInt_FMT
+                            " steps were accepted above the tolerance, with an estimated error of up "
+                            "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",
+                            z->loose_total, z->err_worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Domains that act shorter than they are (BasisHalfLength). */
+PetscErrorCode LongSummary(const Model *m, char text[256])
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (PetscInt p = 0; m->c->basis == BASIS_CPGIMP && p < m->P.n; p++) {
+    bool cut = false;
+
+    for (int d = 0; d < CL_DIM; d++)
+      cut = cut || 0.5 * m->grid.h[d] * (1.0 + BASIS_SNAP) < m->P.f[P_L + d][p];
+    n += cut;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, m->grid.comm));
+  if (n)
+    PetscCall(PetscSNPrintf(
+        text, 256, "  %" PetscInt_FMT " particles are longer than a cell and leave gaps: take more of them in a cell\n",
+        n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
