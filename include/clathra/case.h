@@ -8,6 +8,16 @@
 
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
+/* Axis and sign of a side's outward normal. */
+static inline int SideAxis(int side)
+{
+  return side / 2;
+}
+static inline double SideSign(int side)
+{
+  return side % 2 ? 1.0 : -1.0;
+}
+
 typedef struct {
   PetscInt n;
   double  *x; /* n x 2, m */

@@ -6,12 +6,7 @@
   0.01 /* of a cell: so far a plate on a grid line may move; the spurious force it makes is the total stress           \
           times the motion over a cell */
 
-#define FAIL(b, key, ...)                                                                                              \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, GROUP_BC, (b)->name, key);                                                      \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
+#define FAIL(b, key, ...) FAIL_AT(GROUP_BC, (b)->name, key, __VA_ARGS__)
 
 PetscErrorCode PlateForm(Reader *r, Bc *b)
 {
