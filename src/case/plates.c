@@ -2,9 +2,9 @@
 #include "case_private.h"
 #include "clathra/shape.h"
 
-#define SMALL                                                                                                          \
-  0.01 /* of a cell: so far a plate on a grid line may move; the spurious force it makes is the total stress           \
-          times the motion over a cell */
+/* of a cell: so far a plate on a grid line may move; the spurious force it makes is the total stress times the motion
+   over a cell */
+#define SMALL 0.01
 
 #define FAIL(b, key, ...) FAIL_AT(GROUP_BC, (b)->name, key, __VA_ARGS__)
 
