@@ -71,16 +71,6 @@ typedef struct {
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], double kappa, double dt, FaceOutput *o);
 
-/* Axis and sign of a side's outward normal. */
-static inline int SideAxis(int side)
-{
-  return side / 2;
-}
-static inline double SideSign(int side)
-{
-  return side % 2 ? 1.0 : -1.0;
-}
-
 /* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
 double PlatePosition(const Bc *b, double t);
 double PlateForce(const Bc *b, double t);

@@ -8,6 +8,16 @@
 
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
+/* Axis and sign of a side's outward normal. */
+static inline int SideAxis(int side)
+{
+  return side / 2;
+}
+static inline double SideSign(int side)
+{
+  return side % 2 ? 1.0 : -1.0;
+}
+
 typedef struct {
   PetscInt n;
   double  *x; /* n x 2, m */
@@ -24,8 +34,8 @@ typedef struct {
   double   lower[CL_DIM], upper[CL_DIM]; /* m: the box, or bounds of another shape */
   PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
   PetscInt material;                     /* index into Case.material; -1: no particles, only cut out of others */
-  /* initial state; hydrostatic: p grows with depth below `p_datum` (m, along gravity) */
-  double pressure;     /* mean pore pressure chi_w p_w + chi_g p_g, Pa */
+  /* initial state */
+  double pressure;     /* mean pore pressure (10), Pa */
   double temperature;  /* degC */
   double Sh, Sw, Sg;   /* saturations of the pore space; sum 1 */
   double stress[6];    /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
@@ -64,7 +74,7 @@ typedef enum {
    1u << BC_INFLOW | 1u << BC_ROLLER | 1u << BC_FIXED | 1u << BC_PLATE | 1u << BC_TEMPERATURE |                        \
    1u << BC_REGION_TEMPERATURE)
 
-/* What a probe writes; words in case_quantity. */
+/* What a probe writes; words in src/case/quantities.c. */
 enum {
   QUANTITY_P = 0,
   QUANTITY_PW,

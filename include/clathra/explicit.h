@@ -7,12 +7,13 @@
 #include "clathra/model.h"
 
 typedef struct {
-  bool   drag_implicit;      /* hybrid; explicit otherwise */
-  bool   tied;               /* nearly empty nodes follow their fullest neighbour in part (41) */
-  bool   particle_pressures; /* the paper's bare form (72): rates of pressure by the particle, not shared over nodes */
-  double flip;               /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
-  double damping;            /* local damping of the mixture's out-of-balance force, [0,1) */
-  double mass_scaling;       /* factor on every inertia, >= 1 */
+  bool drag_implicit;      /* hybrid; explicit otherwise */
+  bool tied;               /* nearly empty nodes follow their fullest neighbour in part (41) */
+  bool particle_pressures; /* the paper's bare form, its (72): rates of pressure by the particle, not shared over nodes
+                            */
+  double flip;             /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
+  double damping;          /* local damping of the mixture's out-of-balance force, [0,1) */
+  double mass_scaling;     /* factor on every inertia, >= 1 */
 } ExplicitOptions;
 
 /* What bounds a step. */

@@ -157,7 +157,7 @@ void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s)
 
 /* F_eps/F_eps,allowed of a plastic state on the yield surface at mean stress sm, the largest over Lode angles, with
    Young's modulus E and Poisson's ratio nu: at 1 or above the strength falls faster with plastic strain than the
-   elastic stress can follow (70), and the point snaps back. */
+   elastic stress can follow (71), and the point snaps back. */
 double SofteningRatio(const Plasticity *law, double E, double nu, double Sh, double eps, double sm);
 
 /* F, Pa; slopes in y, phi (slope in c: -1). */

@@ -5,7 +5,6 @@
 #include "clathra/ambient.h"
 #include "clathra/base.h"
 #include "clathra/fields.h"
-#include "clathra/jet.h"
 #include "clathra/kinematics.h"
 #include "clathra/skeleton.h"
 

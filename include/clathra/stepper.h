@@ -119,7 +119,7 @@ PetscErrorCode StepperReady(Stepper *s, bool *ok);
  * state and a sentence was printed. */
 PetscErrorCode StepperRun(Stepper *s, bool *ok);
 
-/* ---- stages.c: docs/architecture.md, "Stages" */
+/* ---- stages.c: docs/architecture.md, "Stages of a case" */
 /* Takes stage k's case, integrator and step control; the state stays as it is. */
 PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k);
 /* At the end of a stage that is not the last: the next one begins. */

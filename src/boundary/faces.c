@@ -2,9 +2,6 @@
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
 
-static const int side_axis[SIDE_COUNT] = {0, 0, 1, 1};
-static const int side_sign[SIDE_COUNT] = {-1, 1, -1, 1};
-
 /* Last condition of a type on this face; later ones in the case win. */
 static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
 {
@@ -90,20 +87,21 @@ static void Weights(const Case *c, const Grid *g, const Particles *P, const Sten
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
 {
   const PetscInt p    = f->particle;
-  const int      axis = side_axis[f->side], tangent = 1 - axis;
+  const int      axis = SideAxis(f->side), tangent = 1 - axis;
+  const double   sign    = SideSign(f->side);
   double         F[2][2] = {{1.0, 0.0}, {0.0, 1.0}}, l[CL_DIM], half[CL_DIM];
 
   ParticlesInitialHalfLength(c, f->region, l);
   for (int k = 0; P->f[P_F] && k < 4; k++)
     F[k / 2][k % 2] = P->f[P_F + k][p];
   for (int d = 0; d < CL_DIM; d++) {
-    f->x[d]     = P->f[P_X + d][p] + side_sign[f->side] * F[d][axis] * l[axis];
+    f->x[d]     = P->f[P_X + d][p] + sign * F[d][axis] * l[axis];
     f->r[d]     = f->x[d] - AxisCentroid(&stencil->axis[d], g->lower[d], g->h[d]);
     half[d]     = fabs(F[d][tangent]) * l[tangent];
-    f->moved[d] = f->x[d] - f->x0[d] - (d == axis ? side_sign[f->side] * l[axis] : 0.0);
+    f->moved[d] = f->x[d] - f->x0[d] - (d == axis ? sign * l[axis] : 0.0);
   }
   /* a <- cof(F) a: the normal of the side goes along as F^-T, its length as the tangent */
-  const double A = 2.0 * l[tangent] * side_sign[f->side] * (c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0);
+  const double A = 2.0 * l[tangent] * sign * (c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0);
   f->n[axis]     = A * F[tangent][tangent];
   f->n[tangent]  = -A * F[axis][tangent];
   f->a0          = 2.0 * l[tangent] * (c->axisymmetric ? 2.0 * M_PI * (f->x[0] - f->moved[0]) : 1.0);

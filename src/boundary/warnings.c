@@ -1,7 +1,6 @@
 /* What a user should know of a start that is out of balance with gravity; docs/equations.md, section 13. */
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
-#include "clathra/tensor.h"
 
 #define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
 

@@ -147,6 +147,14 @@ bool KeyUnlisted(const Case *c, const char *name, Group *group, char *instance, 
 bool WordNearest(const char *word, const char *const *list, char *nearest, size_t size);
 int  EditDistance(const char *a, const char *b);
 
+/* Adds an error at a key of an instance; needs the reader r. */
+#define FAIL_AT(g, instance, key, ...)                                                                                 \
+  do {                                                                                                                 \
+    char option_[256];                                                                                                 \
+    KeyOption(option_, sizeof option_, g, instance, key);                                                              \
+    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
+  } while (0)
+
 /* ---------------------------------------------------------------- value.c, forms.c, check.c */
 PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k);
 bool           YesNoRead(const char *text, bool *value); /* yes, no, true, ...; false for another word */

@@ -4,20 +4,12 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Adds an error at <group prefix><instance>_<key>. */
-#define FAIL(g, instance, key, ...)                                                                                    \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, g, instance, key);                                                              \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
-
 /* About an axis. */
 static void CheckRadius(Reader *r, const Case *c)
 {
   if (c->lower[0] < 0.0)
-    FAIL(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
-         c->lower[0]);
+    FAIL_AT(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
+            c->lower[0]);
 }
 
 static void CheckCase(Reader *r, const Case *c)
@@ -26,16 +18,16 @@ static void CheckCase(Reader *r, const Case *c)
     CheckTimes(r, c, NULL);
   for (int d = 0; d < CL_DIM; d++)
     if (c->upper[d] <= c->lower[d])
-      FAIL(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->upper[d],
-           c->lower[d]);
+      FAIL_AT(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->upper[d],
+              c->lower[d]);
   if (c->axisymmetric)
     CheckRadius(r, c);
   if (c->ambient_density > 0.0 && c->gravity[0] == 0.0 && c->gravity[1] == 0.0)
-    FAIL(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);
+    FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);
   if ((double)c->cells[0] * c->cells[1] > 1e8)
-    FAIL(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
+    FAIL_AT(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
   if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !(c->nstage && r->bad[GROUP_STAGE]))
-    FAIL(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
+    FAIL_AT(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
 }
 
 static void CheckMaterial(Reader *r, const Material *m)
@@ -44,14 +36,14 @@ static void CheckMaterial(Reader *r, const Material *m)
   double          balance = k->M_g + k->N_h * k->M_w;
 
   if (m->retention.Swr + m->retention.Sgr >= 1)
-    FAIL(GROUP_MATERIAL, m->name, "retention_Swr", "plus retention_Sgr must be below 1, is %g",
-         m->retention.Swr + m->retention.Sgr);
+    FAIL_AT(GROUP_MATERIAL, m->name, "retention_Swr", "plus retention_Sgr must be below 1, is %g",
+            m->retention.Swr + m->retention.Sgr);
   else if (m->relperm.Swr + m->relperm.Sgr >= 1)
-    FAIL(GROUP_MATERIAL, m->name, "relperm_Swr", "plus relperm_Sgr must be below 1, is %g",
-         m->relperm.Swr + m->relperm.Sgr);
+    FAIL_AT(GROUP_MATERIAL, m->name, "relperm_Swr", "plus relperm_Sgr must be below 1, is %g",
+            m->relperm.Swr + m->relperm.Sgr);
   if (fabs(k->M_h - balance) > 1e-6 * k->M_h)
-    FAIL(GROUP_MATERIAL, m->name, "hydrate_molar_mass",
-         "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
+    FAIL_AT(GROUP_MATERIAL, m->name, "hydrate_molar_mass",
+            "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
 }
 
 static void CheckSaturations(Reader *r, const Case *c, const Region *g)
@@ -62,14 +54,15 @@ static void CheckSaturations(Reader *r, const Case *c, const Region *g)
   if (!c->fields.fluid)
     return;
   if (fabs(sum - 1) > 1e-9) {
-    FAIL(GROUP_REGION, g->name, "Sw", "Sh + Sw + Sg must be 1, is %.12g", sum);
+    FAIL_AT(GROUP_REGION, g->name, "Sw", "Sh + Sw + Sg must be 1, is %.12g", sum);
     return;
   }
   if (r->bad[GROUP_MATERIAL] || !c->fields.phase[PHASE_G] || RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
     return;
-  FAIL(GROUP_REGION, g->name, "Sg",
-       "the retention law %s of material %s never holds a gas share Sg/(1-Sh) of %g (water share %g, Swr %g, Sgr %g)",
-       m->retention.type, m->name, g->Sg / (1 - g->Sh), g->Sw / (1 - g->Sh), m->retention.Swr, m->retention.Sgr);
+  FAIL_AT(
+      GROUP_REGION, g->name, "Sg",
+      "the retention law %s of material %s never holds a gas share Sg/(1-Sh) of %g (water share %g, Swr %g, Sgr %g)",
+      m->retention.type, m->name, g->Sg / (1 - g->Sh), g->Sw / (1 - g->Sh), m->retention.Swr, m->retention.Sgr);
 }
 
 static void CheckRegion(Reader *r, const Case *c, PetscInt i)
@@ -83,13 +76,13 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
   if (RegionEmpty(g))
     return;
   if (g->ppc[0] * g->ppc[1] < 2)
-    FAIL(GROUP_REGION, g->name, "particles_per_cell",
-         "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
+    FAIL_AT(GROUP_REGION, g->name, "particles_per_cell",
+            "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
   CheckSaturations(r, c, g);
   if (!r->bad[GROUP_MATERIAL] && c->material[g->material].plasticity.type != PLASTICITY_NONE &&
       (g->stress[4] != 0.0 || g->stress[5] != 0.0))
-    FAIL(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
-         g->stress[5], "plasticity_law does not know");
+    FAIL_AT(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
+            g->stress[5], "plasticity_law does not know");
   const Case *first = r->bad[GROUP_STAGE] ? c : CaseInStage(c, 0);
   if (r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
     CheckInitial(r, first, &first->region[i]);
@@ -102,11 +95,11 @@ static void CheckPlane(Reader *r, const Case *c, const Bc *b)
   if (!(h > 0))
     return;
   if (line < -1e-6 || line > c->cells[b->axis] + 1e-6)
-    FAIL(GROUP_BC, b->name, "position", "%g m lies outside the grid, %g..%g m", b->position, c->lower[b->axis],
-         c->upper[b->axis]);
+    FAIL_AT(GROUP_BC, b->name, "position", "%g m lies outside the grid, %g..%g m", b->position, c->lower[b->axis],
+            c->upper[b->axis]);
   else if (fabs(line - round(line)) > 1e-6)
-    FAIL(GROUP_BC, b->name, "position", "%g m is not on a grid line; the nearest is at %.9g m", b->position,
-         c->lower[b->axis] + round(line) * h);
+    FAIL_AT(GROUP_BC, b->name, "position", "%g m is not on a grid line; the nearest is at %.9g m", b->position,
+            c->lower[b->axis] + round(line) * h);
 }
 
 void CaseCheck(Reader *r, const Case *c)
@@ -146,5 +139,5 @@ void CaseCheck(Reader *r, const Case *c)
   for (PetscInt i = 0; i < c->nmeter && !bad[GROUP_METER] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
     CheckFaces(r, c, GROUP_METER, c->meter[i].name, &c->meter[i]);
   if (c->nmeter > CL_METERS)
-    FAIL(GROUP_CASE, "", "meters", "lists %d names, at most %d are allowed", (int)c->nmeter, CL_METERS);
+    FAIL_AT(GROUP_CASE, "", "meters", "lists %d names, at most %d are allowed", (int)c->nmeter, CL_METERS);
 }

@@ -1,12 +1,7 @@
 /* flow: keys of the conditions on fluids that must agree with each other and with the fields of the scene. */
 #include "case_private.h"
 
-#define FAIL(b, key, ...)                                                                                              \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, GROUP_BC, (b)->name, key);                                                      \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
+#define FAIL(b, key, ...) FAIL_AT(GROUP_BC, (b)->name, key, __VA_ARGS__)
 
 /* A key of a field that the scene has not. */
 static void CheckField(Reader *r, const Case *c, const Bc *b, const char *key, unsigned needs, bool given)

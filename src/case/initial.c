@@ -3,12 +3,7 @@
 #include "clathra/particles.h"
 #include "clathra/shape.h"
 
-#define FAIL(region, key, ...)                                                                                         \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, GROUP_REGION, region, key);                                                     \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
+#define FAIL(region, key, ...) FAIL_AT(GROUP_REGION, region, key, __VA_ARGS__)
 
 /* The highest (sign 1) or lowest (-1) point of a region, on the vertical through the origin. */
 static void Extreme(const Case *c, const Region *g, double sign, double x[CL_DIM])

@@ -2,12 +2,7 @@
 #include "case_private.h"
 #include <stdio.h>
 
-#define FAIL(key, ...)                                                                                                 \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, GROUP_MATERIAL, m->name, key);                                                  \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
+#define FAIL(key, ...) FAIL_AT(GROUP_MATERIAL, m->name, key, __VA_ARGS__)
 
 /* The stress of a point must be able to follow its strength down, at every hydrate saturation. */
 static void CheckSnapBack(Reader *r, const Material *m)

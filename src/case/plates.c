@@ -2,16 +2,11 @@
 #include "case_private.h"
 #include "clathra/shape.h"
 
-#define SMALL                                                                                                          \
-  0.01 /* of a cell: so far a plate on a grid line may move; the spurious force it makes is the total stress           \
-          times the motion over a cell */
+/* of a cell: so far a plate on a grid line may move; the spurious force it makes is the total stress times the motion
+   over a cell */
+#define SMALL 0.01
 
-#define FAIL(b, key, ...)                                                                                              \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, GROUP_BC, (b)->name, key);                                                      \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
+#define FAIL(b, key, ...) FAIL_AT(GROUP_BC, (b)->name, key, __VA_ARGS__)
 
 PetscErrorCode PlateForm(Reader *r, Bc *b)
 {

@@ -4,13 +4,6 @@
 #include "clathra/shape.h"
 #include <string.h>
 
-#define FAIL(g, instance, key, ...)                                                                                    \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, g, instance, key);                                                              \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
-
 static const char *const shape_key[] = {"lower", "polygon", "below", "circle"};
 
 /* The last shape that is given; how many are. */
@@ -43,18 +36,18 @@ static void CheckPolygon(Reader *r, const Region *g)
   PetscInt      pair[2];
 
   if (g->polygon.n < 3)
-    FAIL(GROUP_REGION, g->name, "polygon", "has %d points, needs at least 3", (int)g->polygon.n);
+    FAIL_AT(GROUP_REGION, g->name, "polygon", "has %d points, needs at least 3", (int)g->polygon.n);
   else if (PolygonCrosses(g->polygon.n, x, pair))
-    FAIL(GROUP_REGION, g->name, "polygon",
-         "crosses itself: the sides that begin at (%g m, %g m) and (%g m, %g m) meet (it closes by itself)",
-         x[2 * pair[0]], x[2 * pair[0] + 1], x[2 * pair[1]], x[2 * pair[1] + 1]);
+    FAIL_AT(GROUP_REGION, g->name, "polygon",
+            "crosses itself: the sides that begin at (%g m, %g m) and (%g m, %g m) meet (it closes by itself)",
+            x[2 * pair[0]], x[2 * pair[0] + 1], x[2 * pair[1]], x[2 * pair[1] + 1]);
 }
 
 /* A line of at least two points. */
 static bool CheckPoints(Reader *r, Group group, const char *name, const char *key, const Points *line)
 {
   if (line->n < 2)
-    FAIL(group, name, key, "has %d point, needs at least 2", (int)line->n);
+    FAIL_AT(group, name, key, "has %d point, needs at least 2", (int)line->n);
   return line->n >= 2;
 }
 
@@ -65,7 +58,7 @@ static void CheckBelow(Reader *r, const Region *g)
   for (PetscInt k = 2; k < 2 * g->below.n; k += 2) {
     if (g->below.x[k] > g->below.x[k - 2])
       continue;
-    FAIL(GROUP_REGION, g->name, "below", "must ascend in x (%g m after %g m)", g->below.x[k], g->below.x[k - 2]);
+    FAIL_AT(GROUP_REGION, g->name, "below", "must ascend in x (%g m after %g m)", g->below.x[k], g->below.x[k - 2]);
     return;
   }
 }
@@ -73,8 +66,8 @@ static void CheckBelow(Reader *r, const Region *g)
 static void CheckCircle(Reader *r, const Region *g)
 {
   if (!isfinite(g->circle[0]) || !isfinite(g->circle[1]) || !(g->circle[2] > 0.0))
-    FAIL(GROUP_REGION, g->name, "circle", "needs a centre and a positive radius, is (%g m, %g m), %g m", g->circle[0],
-         g->circle[1], g->circle[2]);
+    FAIL_AT(GROUP_REGION, g->name, "circle", "needs a centre and a positive radius, is (%g m, %g m), %g m",
+            g->circle[0], g->circle[1], g->circle[2]);
 }
 
 /* The region lies in the grid. */
@@ -86,15 +79,15 @@ static void CheckBounds(Reader *r, const Case *c, const Region *g)
     const double slack = 1e-12 * (fabs(c->upper[d]) + fabs(c->lower[d]));
 
     if (g->upper[d] <= g->lower[d] && g->shape == SHAPE_BOX)
-      FAIL(GROUP_REGION, g->name, "upper", "must lie above lower on both axes (%g m <= %g m)", g->upper[d],
-           g->lower[d]);
+      FAIL_AT(GROUP_REGION, g->name, "upper", "must lie above lower on both axes (%g m <= %g m)", g->upper[d],
+              g->lower[d]);
     else if (g->upper[d] <= g->lower[d])
-      FAIL(GROUP_REGION, g->name, key, "nothing of it lies between lower and upper along %c", "xy"[d]);
+      FAIL_AT(GROUP_REGION, g->name, key, "nothing of it lies between lower and upper along %c", "xy"[d]);
     else if (!r->bad[GROUP_CASE] && c->upper[d] > c->lower[d] &&
              (g->lower[d] < c->lower[d] - slack || g->upper[d] > c->upper[d] + slack))
-      FAIL(GROUP_REGION, g->name, g->shape == SHAPE_BOX && g->upper[d] > c->upper[d] ? "upper" : key,
-           "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xy"[d], g -> lower[d], g -> upper[d],
-           c -> lower[d], c -> upper[d]);
+      FAIL_AT(GROUP_REGION, g->name, g->shape == SHAPE_BOX && g->upper[d] > c->upper[d] ? "upper" : key,
+              "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xy"[d], g -> lower[d], g -> upper[d],
+              c -> lower[d], c -> upper[d]);
   }
 }
 
@@ -117,8 +110,8 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
   ShapeKind      shape;
 
   if (ShapeOf(g, &shape) > 1)
-    FAIL(GROUP_REGION, g->name, shape_key[shape],
-         "is one shape too many: a region has a polygon, below, circle or box");
+    FAIL_AT(GROUP_REGION, g->name, shape_key[shape],
+            "is one shape too many: a region has a polygon, below, circle or box");
   else if (shape == SHAPE_POLYGON)
     CheckPolygon(r, g);
   else if (shape == SHAPE_BELOW)
@@ -129,10 +122,10 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
     CheckBounds(r, c, g);
   for (PetscInt k = 0; k < g->minus.n; k++) {
     if (g->minus.i[k] == region)
-      FAIL(GROUP_REGION, g->name, "minus", "the region cannot be cut out of itself");
+      FAIL_AT(GROUP_REGION, g->name, "minus", "the region cannot be cut out of itself");
   }
   if (RegionEmpty(g) && !Cuts(c, region))
-    FAIL(GROUP_REGION, g->name, "material", "is none, but no region has %s in its minus", g->name);
+    FAIL_AT(GROUP_REGION, g->name, "material", "is none, but no region has %s in its minus", g->name);
 }
 
 /* ---------------------------------------------------------------- their particles */
@@ -191,13 +184,13 @@ void CheckOverlap(Reader *r, const Case *c)
     const Region *g = &c->region[i];
 
     if (!RegionEmpty(g) && !AnyPlace(c, i, NULL, NULL)) {
-      FAIL(GROUP_REGION, g->name, g->minus.n ? "minus" : shape_key[g->shape],
-           "the region keeps no particle: no centre of one lies inside");
+      FAIL_AT(GROUP_REGION, g->name, g->minus.n ? "minus" : shape_key[g->shape],
+              "the region keeps no particle: no centre of one lies inside");
       r->bad[GROUP_REGION] = true;
     }
     for (PetscInt j = 0; j < i; j++) {
       if (Overlap(c, i, j))
-        FAIL(GROUP_REGION, g->name, shape_key[g->shape], "the region overlaps region %s", c->region[j].name);
+        FAIL_AT(GROUP_REGION, g->name, shape_key[g->shape], "the region overlaps region %s", c->region[j].name);
     }
   }
 }
@@ -243,19 +236,19 @@ void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter
 {
   if (m->along.n) {
     if (m->side != SIDE_COUNT)
-      FAIL(g, name, "side", "and along are two ways to name faces: give one");
+      FAIL_AT(g, name, "side", "and along are two ways to name faces: give one");
     else if (isfinite(m->from) || isfinite(m->to))
-      FAIL(g, name, isfinite(m->from) ? "from" : "to", "goes with side, not with along");
+      FAIL_AT(g, name, isfinite(m->from) ? "from" : "to", "goes with side, not with along");
     else if (CheckPoints(r, g, name, "along", &m->along) && !SideMeets(c, m))
-      FAIL(g, name, "along", "no face of the body lies on this line, within %g particle spacings", LINE_REACH);
+      FAIL_AT(g, name, "along", "no face of the body lies on this line, within %g particle spacings", LINE_REACH);
     return;
   }
   if (m->side == SIDE_COUNT)
-    FAIL(g, name, "side", "is none, and along is not given");
+    FAIL_AT(g, name, "side", "is none, and along is not given");
   else if (m->to <= m->from)
-    FAIL(g, name, "to", "must lie above from (%g m <= %g m)", m->to, m->from);
+    FAIL_AT(g, name, "to", "must lie above from (%g m <= %g m)", m->to, m->from);
   else if (!SideMeets(c, m))
-    FAIL(g, name, "from", "and to: no part of the body's side lies between %g m and %g m", m->from, m->to);
+    FAIL_AT(g, name, "from", "and to: no part of the body's side lies between %g m and %g m", m->from, m->to);
 }
 
 /* ---------------------------------------------------------------- points */
@@ -284,8 +277,8 @@ void CheckHeld(Reader *r, const Case *c, const Bc *b)
       }
     }
   }
-  FAIL(GROUP_BC, b->name, "region",
-       "has no node of the grid in its shape: refine the grid, or let the shape follow its lines");
+  FAIL_AT(GROUP_BC, b->name, "region",
+          "has no node of the grid in its shape: refine the grid, or let the shape follow its lines");
 }
 
 void CheckProbe(Reader *r, const Case *c, const Probe *p)
@@ -298,5 +291,5 @@ void CheckProbe(Reader *r, const Case *c, const Probe *p)
     if (!RegionEmpty(&c->region[i]) && RegionReaches(c, i, p->x, slack))
       return;
   }
-  FAIL(GROUP_PROBE, p->name, "at", "(%g m, %g m) lies in no region", p->x[0], p->x[1]);
+  FAIL_AT(GROUP_PROBE, p->name, "at", "(%g m, %g m) lies in no region", p->x[0], p->x[1]);
 }

@@ -6,12 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-#define FAIL(stage, key, ...)                                                                                          \
-  do {                                                                                                                 \
-    char option_[256];                                                                                                 \
-    KeyOption(option_, sizeof option_, GROUP_STAGE, (stage)->name, key);                                               \
-    ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
-  } while (0)
+#define FAIL(stage, key, ...) FAIL_AT(GROUP_STAGE, (stage)->name, key, __VA_ARGS__)
 
 /* An integrator without matrices? */
 static bool Local(const Case *c)

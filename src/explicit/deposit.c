@@ -83,8 +83,8 @@ INLINE void Carried(const Explicit *e, Run r, int lane, const double *restrict w
   for (int q = 0; q < r.n; q++) {
     double at = y[q];
 
-    for (int d = 0; d < CL_DIM;
-         d++) { /* x_p from the first node: S_1 + 2 S_2 cells on (weights reproduce the middle) */
+    /* x_p from the first node: S_1 + 2 S_2 cells on (weights reproduce the middle) */
+    for (int d = 0; d < CL_DIM; d++) {
       at -= g[d][q] * (w->S[d][1][q] + 2.0 * w->S[d][2][q]) * grid->h[d];
       v->carry[d][q][lane] = weight[q] * g[d][q] * grid->h[d];
     }

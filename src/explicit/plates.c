@@ -2,9 +2,9 @@
    sections 6 and 12. */
 #include "nodes.h"
 
-#define NEAR                                                                                                           \
-  0.1 /* of a cell: what is farther from a plate that separates cannot reach it in a step; a node with next to no mass \
-         might */
+/* of a cell: what is farther from a plate that separates cannot reach it in a step (a node with next to no mass
+   might) */
+#define NEAR 0.1
 
 PetscErrorCode PlatesCreate(Explicit *e)
 {

@@ -34,7 +34,7 @@ INLINE void Gather(const Explicit *e, Run r, const Weights *w, Gathered *g)
   }
 }
 
-/* Bare form (72): increments of pressure from the particle's own balances, with the new temperature. */
+/* Bare form, the paper's (72): increments of pressure from the particle's own balances, with the new temperature. */
 INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
 {
   for (int q = 0; q < r.n; q++) {
@@ -133,9 +133,9 @@ INLINE void CarryGradients(Explicit *e, const Set s, Run r, const Gathered *g, c
   }
 }
 
-/* Masses of the fluids: what the laws' slopes make of the increments, so that the sum over particles is what the nodal
-   balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the fluids
-   and from the heat. */
+/* (40): masses of the fluids, what the laws' slopes make of the increments, so that the sum over particles is what the
+   nodal balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the
+   fluids and from the heat. */
 INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, PetscInt *limited)
 {
   const Material *mat = r.mat;

@@ -85,7 +85,7 @@ static AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const 
   return a;
 }
 
-/* out = V_n (sigma' - (p - p_a) 1) cof F, in the plane and around the axis (momentum of the mixture). */
+/* out = V_n (sigma' - (p - p_a) 1) cof F, in the plane and around the axis (30) (momentum of the mixture). */
 static void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
                           const AmbientState *a, bool tangent, PointOutput *o)
 {

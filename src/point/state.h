@@ -1,6 +1,7 @@
 /* Private to point/: the scalar state of a particle with its tangent in (J, p_w, p_g, T). */
 #pragma once
 
+#include "clathra/jet.h"
 #include "clathra/point.h"
 
 typedef struct {

@@ -180,7 +180,7 @@ PetscInt RegionFaces(const Case *c, PetscInt region, const Lattice *lattice, con
 
   (void)RegionPlace(c, region, lattice, ij, x);
   for (int side = 0; side < SIDE_COUNT; side++) {
-    const int      d = side / 2, sign = side % 2 ? 1 : -1;
+    const int      d = SideAxis(side), sign = (int)SideSign(side);
     const PetscInt beside[CL_DIM] = {ij[0] + (d == 0 ? sign : 0), ij[1] + (d == 1 ? sign : 0)};
     double         next[CL_DIM], outside[CL_DIM] = {x[0], x[1]};
     bool           covered = RegionPlace(c, region, lattice, beside, next);
@@ -264,9 +264,10 @@ static void TryShape(WayOut *w, const Region *r)
 
 void FaceNormal(const Case *c, PetscInt region, const double x[], int side, double n[])
 {
-  const Region *r = &c->region[region];
-  const int     d = side / 2, sign = side % 2 ? 1 : -1;
-  WayOut        w = {.c = c, .region = region, .a = {x[0], x[1]}, .b = {x[0], x[1]}, .t = INFINITY};
+  const Region *r    = &c->region[region];
+  const int     d    = SideAxis(side);
+  const double  sign = SideSign(side);
+  WayOut        w    = {.c = c, .region = region, .a = {x[0], x[1]}, .b = {x[0], x[1]}, .t = INFINITY};
   Lattice       lattice;
 
   w.n[d] = sign;
@@ -285,12 +286,12 @@ void FaceNormal(const Case *c, PetscInt region, const double x[], int side, doub
 
 static bool OnLine(const Case *c, const Points *line, PetscInt region, const double x[], int side)
 {
-  const int d         = side / 2;
+  const int d         = SideAxis(side);
   double    a[CL_DIM] = {x[0], x[1]}, b[CL_DIM] = {x[0], x[1]}, t;
   Lattice   lattice;
 
   RegionLattice(c, region, &lattice);
-  a[d] += (side % 2 ? 0.5 : -0.5) * lattice.spacing[d];
+  a[d] += 0.5 * SideSign(side) * lattice.spacing[d];
   b[d] = a[d] + LINE_REACH * lattice.spacing[d];
   a[d] -= LINE_REACH * lattice.spacing[d];
   for (PetscInt k = 0; k + 1 < line->n; k++) {
@@ -302,7 +303,7 @@ static bool OnLine(const Case *c, const Points *line, PetscInt region, const dou
 
 bool FaceNamed(const Case *c, const Meter *m, PetscInt region, const double x[], int side)
 {
-  const double along = x[1 - side / 2];
+  const double along = x[1 - SideAxis(side)];
 
   if (m->region >= 0 && m->region != region)
     return false;
