@@ -187,4 +187,10 @@ check_true("none when gravity grows", "unstressed" not in say("-gravity_ramp", "
 check_true("none when all is stressed", "unstressed" not in say("-region_deep_stress", "0 Pa,-1 kPa,0 Pa,0 Pa,0 Pa,0 Pa", "-region_shallow_stress", "0 Pa,-1 kPa,0 Pa,0 Pa,0 Pa,0 Pa"))
 loadless = Run.of_case(CASE, "-quiet", *CALM, "-bc_sea_normal", "0 Pa")
 check_true("pore pressure without a load on top: a warning", "the geostatic stress is a tension of up to 2.9" in loadless.output)
+# ---------------------------------------------------------------- normally consolidated: K0 = 1 - sin 30 deg where there is strength
+STRONG = ("    elasticity:", "    plasticity: {law: mohr_coulomb, cohesion_max: 1 MPa, friction_peak: 30 deg}\n    elasticity:")
+loose = variant("loose", STRONG, ("geostatic: 0.5", "normally_consolidated: yes"), ("geostatic: 0.8", "normally_consolidated: yes"))
+first = at_rest("normally consolidated ground with strength", loose)
+judge("geostatic", "normally consolidated, friction of 30 deg: horizontal over vertical effective stress", np.abs(first["stress"][:, 0] / first["stress"][:, 1] - 0.5).max(), 1e-12)
+
 finish()
