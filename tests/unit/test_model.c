@@ -69,7 +69,7 @@ static void TestPlates(void **state)
   for (int k = 0; k < 6; k++) {
     Scene *s = malloc(sizeof(*s));
     Model *m = &s->m;
-    Trial  t;
+    Trial  t = {0};
 
     PlateScene(s, k % 2, k / 2);
     const PetscInt top   = s->c.nbc - 1;
