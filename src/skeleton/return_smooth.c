@@ -6,6 +6,7 @@
 #define UNKNOWNS 5
 #define ITERATIONS 30
 #define HALVINGS 12
+#define BISECTIONS 60
 #define SHARP 1e-6 /* roundness of the potential's end, of the stress, below which it is a point */
 #define FLAT 1e-7  /* dilation below which the potential has no end to speak of: to the apex at once */
 #define CLOSE 1e-9 /* scaled residual from which one more full step ends at round-off */
@@ -215,6 +216,32 @@ static void GuessBeyond(const Trial3 *t, double x[UNKNOWNS])
     x[i] = at + keep * (t->y[i] - sm);
 }
 
+/* First guess near the end of a potential with hardly any dilation: R_mw of triaxial compression at every theta leaves
+   one equation for the share of the deviator that stays, F = 0, which rises with it. */
+static void GuessShare(const Trial3 *t, double x[UNKNOWNS])
+{
+  Strength     k;
+  double       ds[3], dF[3], F_phi, low = 0.0, high = 1.0, keep = 1.0;
+  const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, norm = DeviatoricNorm(t->y, ds);
+
+  x[X_EPS] = norm / (t->G2 * t->E);
+  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
+  const double tp = tan(k.psi), m = t->law->eccentricity * t->law->c_max * tp, K = (t->G2 + 3.0 * t->lame) * tp / 3.0,
+               R = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi)), rho = 1.5 * R * norm,
+               F = MohrCoulombYield(k.phi, k.c, t->y, dF, &F_phi), shear = F + k.c - sm * tan(k.phi);
+  for (int i = 0; i < BISECTIONS; i++) {
+    keep   = 0.5 * (low + high);
+    x[X_L] = (1.0 / keep - 1.0) * hypot(m, keep * rho) / (1.5 * R * R * t->G2);
+    if (keep * shear + (sm - K * x[X_L]) * tan(k.phi) > k.c)
+      high = keep;
+    else
+      low = keep;
+  }
+  for (int i = 0; i < 3; i++)
+    x[i] = sm - K * x[X_L] + keep * (t->y[i] - sm);
+  x[X_EPS] *= 1.0 - keep;
+}
+
 /* For trial states from which Newton does not arrive: along the way from a state of equal stresses inside the yield
    surface to the trial state, each solution the guess of the next. */
 static bool Continuation(const Trial3 *t, double scale, double x[UNKNOWNS], int *iterations)
@@ -290,6 +317,10 @@ bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
     for (int i = 0; i < UNKNOWNS; i++)
       x[i] = i < 3 ? t->y[i] : 0.0;
     found = Newton(t, size, x, &r->iterations);
+  }
+  if (!found) {
+    GuessShare(t, x);
+    found = isfinite(x[0] + x[X_L]) && Newton(t, size, x, &r->iterations);
   }
   found = found || (!beyond && Continuation(t, size, x, &r->iterations));
   if (!found) {
