@@ -60,6 +60,14 @@ double  BcNextKink(const Case *c, double t); /* first kink of any schedule after
    along the side in the direction of the axis (N); area under it (m^2). */
 enum { PLATE_POSITION = 0, PLATE_FORCE, PLATE_SHEAR, PLATE_AREA, PLATE_COUNT };
 
+/* A fluid's own pressure at a face, extrapolated from its particle, Pa. */
+static inline double FacePressure(const Face *f, int phase, const double in[IN_COUNT])
+{
+  const double *g = &in[IN_GP + 2 * phase];
+
+  return in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
+}
+
 /* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where Darcy
    fluxes and displacement are those at the face (weights N_I).  outflow: mass rates of water and gas (kg/s) and heat
    into the body (W). */

@@ -85,9 +85,9 @@ typedef struct {
 static void Open(const Material *mat, const Face *f, int phase, const Outside *outside, const double a[2],
                  const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
-  double        dp, dT;
-  const double *g = &in[IN_GP + 2 * phase], own = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
-  const double  p = outside->p[phase], jump = p - own, rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
+  double       dp, dT;
+  const double p = outside->p[phase], jump = p - FacePressure(f, phase, in),
+               rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
   const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1];
   double       *D = o->D[F_PW + phase];
 
@@ -227,14 +227,14 @@ static void Fluids(const Case *c, const Face *f, const BcValues *v, const Materi
 static void Inflow(const Case *c, const Face *f, const BcValues *v, const Material *mat, int phase, const double s[2],
                    const double ds[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
-  const double *g = &in[IN_GP + 2 * phase], p = in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
-  const double  T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
-  double        darea[MOTION_COUNT];
-  const double  q = v->phase[phase][f->inflow], area = Area(s, ds, darea);
-  const bool    heats = c->fields.heat && c->bc[f->inflow].value.n && q > 0.0;
-  const double  c_f = phase == PHASE_W ? mat->c_w : mat->c_g, dT_in = heats ? v->value[f->inflow] - T : 0.0;
-  double        dp, dT, drate[IN_COUNT] = {0.0};
-  const double  rho = Density(mat, phase, p, T, &dp, &dT), rate = rho * q * area;
+  const double p = FacePressure(f, phase, in);
+  const double T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
+  double       darea[MOTION_COUNT];
+  const double q = v->phase[phase][f->inflow], area = Area(s, ds, darea);
+  const bool   heats = c->fields.heat && c->bc[f->inflow].value.n && q > 0.0;
+  const double c_f = phase == PHASE_W ? mat->c_w : mat->c_g, dT_in = heats ? v->value[f->inflow] - T : 0.0;
+  double       dp, dT, drate[IN_COUNT] = {0.0};
+  const double rho = Density(mat, phase, p, T, &dp, &dT), rate = rho * q * area;
 
   drate[IN_P + phase] = dp * q * area;
   drate[IN_T]         = dT * q * area;

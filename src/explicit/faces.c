@@ -129,7 +129,7 @@ void FacesForces(Explicit *e, double dt)
     if (f->plate >= 0)
       PlatesDeposit(e, f, r.n, r.node);
     for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
-      const double p = in[IN_P + ph] + in[IN_GP + 2 * ph] * f->r[0] + in[IN_GP + 2 * ph + 1] * f->r[1];
+      const double p = FacePressure(f, ph, in);
 
       for (int d = 0; d < CL_DIM; d++)
         force[ph][d] = -o.out[F_VWX + 2 * ph + d] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
