@@ -7,9 +7,6 @@
 #define EASY_NEWTON 6   /* growth only while Newton needs no more iterations a stage */
 #define CRAWL 1e7       /* a run that needs so many more steps at its present length ... */
 #define CRAWL_STEPS 100 /* ... and that for so many in a row, will not end */
-#define SCALE_T 1.0     /* K */
-#define SCALE_SH 0.1
-#define SCALE_EPS 0.1 /* of plastic strain */
 
 PetscErrorCode StepperFreeWork(StepperWork *w)
 {
@@ -109,8 +106,8 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu)
 {
   const Model *m        = s->model;
-  const double scale[7] = {s->state.scale_p, s->state.scale_p, SCALE_T,         SCALE_SH,
-                           s->state.scale_u, SCALE_EPS,        s->state.scale_p};
+  const double scale[7] = {s->state.scale_p, s->state.scale_p,  STEPPER_SCALE_T, STEPPER_SCALE_SH,
+                           s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
   double       sum[8] = {0.0}, worst = 0.0;
 
   for (PetscInt p = 0; p < m->P.n; p++) {
@@ -245,12 +242,15 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   }
   PetscCall(SizeWork(s));
   ModelStartVelocity(m, s->work.v_n);
+  s->auto_.newton = 0;
   for (PetscInt cuts = 0;; cuts++) {
     const double dt = NextStep(s, &kink);
     Attempt      a  = {.status = CL_OK};
 
     PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * m->c->fields.n));
     PetscCall(s->scheme->step(s, dt, &a));
+    s->auto_.newton += a.newton;
+    s->auto_.dt = dt;
     if (a.status == CL_OK && s->adaptive)
       Judge(s, dt, dt_inaccurate, err_inaccurate, &a);
     if (a.status == CL_OK) {
@@ -271,7 +271,11 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
                             s->state.t, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0],
                             m->where[1], s->state.dt));
     }
-    if (cuts >= s->max_failures || small) {
+    const bool last = cuts >= s->max_failures || small;
+    PetscCall(StepperAutoGivesWay(s, a.status, dt, last, &s->auto_.give_way));
+    if (s->auto_.give_way)
+      PetscFunctionReturn(PETSC_SUCCESS);
+    if (last) {
       *ok = false;
       PetscCall(PetscPrintf(
           m->grid.comm,
