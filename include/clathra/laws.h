@@ -143,6 +143,7 @@ typedef struct {
   double eccentricity;        /* of the smooth potential in the meridian plane, of c_max */
   double cutoff;              /* largest tension, Pa; INFINITY: none */
   double heat;                /* share of the plastic work that becomes heat, [0,1] */
+  double factor;              /* of the strength reduction (87), > 0; 0 stands for 1 */
 } Plasticity;
 
 /* Strength at a hydrate saturation and a deviatoric plastic strain, with slopes in both. */
@@ -152,6 +153,20 @@ typedef struct {
 static inline double SofteningRate(const Plasticity *law)
 {
   return law->length > 0.0 ? law->eta_s * law->cell / law->length : law->eta_s;
+}
+/* (87): what the factor leaves of a strength in Pa. */
+static inline double StrengthReduced(const Plasticity *law, double strength)
+{
+  return law->factor > 0.0 ? strength / law->factor : strength;
+}
+static inline double StrengthCutoff(const Plasticity *law)
+{
+  return StrengthReduced(law, law->cutoff);
+}
+/* eccentricity c_max of the smooth potential (64), Pa. */
+static inline double FlowRoundness(const Plasticity *law)
+{
+  return law->eccentricity * StrengthReduced(law, law->c_max);
 }
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s);
 

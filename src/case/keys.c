@@ -148,6 +148,11 @@ static const Key case_key[] = {
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
+    REAL(
+        Case, "strength_factor", strength_factor, "", "(0,1e3]", "1",
+        "cohesion, tension cut-off and the tangents of friction and dilation angle of all materials are divided by it: "
+        "the "
+        "largest one that a slope bears is its factor of safety"),
     ROW(Case, "ambient_pressure", KEY_SCHEDULE, ambient_pressure, 1, "Pa", "[0,1e10]", "0 Pa",
         "of the fluid that the scene stands in: acts on the whole surface of the body; at and above ambient_level"),
     REAL(Case, "ambient_density", ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
@@ -458,6 +463,8 @@ static const Key stage_key[] = {
     REALS(CaseStage, 2, "gravity", c.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
     REAL(CaseStage, "gravity_ramp", c.gravity_ramp, "s", "[0,inf)", CASES,
          "gravity goes from that of the stage before to that of this one over this time", .kept = true),
+    REAL(CaseStage, "strength_factor", c.strength_factor, "", "(0,1e3]", CASES,
+         "strength is divided by it, from the begin of the stage on", .kept = true),
     BOOLEAN(CaseStage, "inertia", c.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
     TEXT(CaseStage, "stepper_type", c.stepper, CASES, "time integrator", .choices = stepper_word, .kept = true),
     BOOLEAN(CaseStage, "stepper_adapt", c.adaptive, CASES, "choose the step by the error estimate", .kept = true),

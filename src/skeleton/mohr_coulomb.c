@@ -104,7 +104,7 @@ static bool Yields(const Plasticity *law, double Sh, double eps, const double y[
 
   StrengthEvaluate(law, Sh, eps, &k);
   const double round_off = ROUND_OFF * k.c + 1e-2 * ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
-  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > law->cutoff + round_off;
+  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > StrengthCutoff(law) + round_off;
 }
 
 static bool ReturnToYield(const Trial3 *t, bool slopes, Returned *r)

@@ -223,7 +223,44 @@ static Sample RandomSample(Rng *r, int flow, bool cutoff)
   if (RngPick(r, 4) == 0)
     MakeEqual(r, &q, RngPick(r, 2));
   q.in[SKELETON_THERMAL] = 0.05 * size / E * RngBetween(r, -1.0, 1.0);
+  k->factor              = RngPick(r, 3) ? 1.0 : RngBetween(r, 0.8, 2.0);
   return q;
+}
+
+/* A factor does what dividing the strengths by hand does (no softening: that of tan(phi) is not tan of that of phi). */
+static void TestStrengthFactor(void **state)
+{
+  Rng    r          = {412};
+  double worst      = 0.0;
+  int    plastic[3] = {0};
+
+  (void)state;
+  for (int n = 0; n < 6000; n++) {
+    Sample      q = RandomSample(&r, n % 3 ? FLOW_MOHR_COULOMB : FLOW_MENETREY_WILLAM, n % 3 == 2), by_hand;
+    Plasticity *k = &q.mat.plasticity, *l = &by_hand.mat.plasticity;
+
+    k->eta_s = k->eta_h = 0.0; /* strength is that of the ..._max */
+    k->c_min = k->c_res = k->c_max;
+    k->psi_min          = k->psi_max;
+    k->phi_res          = k->phi_peak;
+    k->factor           = RngBetween(&r, 0.5, 3.0);
+    by_hand             = q;
+    l->factor           = 1.0;
+    l->c_max = l->c_min = l->c_res = k->c_max / k->factor;
+    l->cutoff                      = k->cutoff / k->factor;
+    l->phi_peak = l->phi_res = atan(tan(k->phi_peak * DEG) / k->factor) / DEG;
+    l->psi_max = l->psi_min = atan(tan(k->psi_max * DEG) / k->factor) / DEG;
+    SkeletonState s, t;
+    const bool    found = Go(&q, q.in, &s, NULL), same = Go(&by_hand, by_hand.in, &t, NULL);
+
+    assert_true(found == same);
+    plastic[n % 3] += found && s.region != RETURN_ELASTIC;
+    for (int i = 0; i < 4 && found; i++)
+      worst = fmax(worst, fabs(s.sig[i] - t.sig[i]) / (fabs(t.sig[XX]) + fabs(t.sig[YY]) + fabs(t.sig[ZZ])));
+  }
+  printf("strength factor: off by %.1e from strengths divided by hand (%d, %d, %d plastic points)\n", worst, plastic[0],
+         plastic[1], plastic[2]);
+  assert_true(worst < 1e-10 && plastic[0] > 500 && plastic[1] > 500 && plastic[2] > 500);
 }
 
 /* Principal stresses, falling. */
@@ -264,7 +301,7 @@ static void TestYieldSurface(void **state)
     }
     StrengthEvaluate(&q.mat.plasticity, q.in[SKELETON_SH], s.eps, &now);
     Sorted(s.sig, y);
-    const double F = MohrCoulombYield(now.phi, now.c, y, dy, &dphi), over = y[0] - q.mat.plasticity.cutoff;
+    const double F = MohrCoulombYield(now.phi, now.c, y, dy, &dphi), over = y[0] - StrengthCutoff(&q.mat.plasticity);
     const double unit =
         now.c > 0.0 ? now.c
                     : 1e-3 * (fabs(q.h.sig[XX]) + fabs(q.h.sig[YY]) + q.in[SKELETON_E] * fabs(q.in[SKELETON_STRAIN]) +
@@ -666,10 +703,10 @@ static void TestSofteningLength(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestPotential),       cmocka_unit_test(TestKnownPoints),
-                                     cmocka_unit_test(TestYieldSurface),    cmocka_unit_test(TestTangent),
-                                     cmocka_unit_test(TestTurned),          cmocka_unit_test(TestBiaxialPath),
-                                     cmocka_unit_test(TestSofteningLength), cmocka_unit_test(TestNearApex)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(TestPotential),       cmocka_unit_test(TestKnownPoints), cmocka_unit_test(TestYieldSurface),
+      cmocka_unit_test(TestTangent),         cmocka_unit_test(TestTurned),      cmocka_unit_test(TestBiaxialPath),
+      cmocka_unit_test(TestSofteningLength), cmocka_unit_test(TestNearApex),    cmocka_unit_test(TestStrengthFactor)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
