@@ -39,11 +39,12 @@ typedef struct {
 
 /* Work space of a step, sized for the particles and nodes of this configuration. */
 typedef struct {
-  double  *x, *x_star, *u_star;  /* [n_local][fields.n], [n_local][fields.n], [n_local][CL_DIM] */
-  double  *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
-  double  *p_star, *e_plastic;   /* [n][PLASTIC_COUNT], [n][5] errors of Trial.s; null without plasticity */
-  Trial    trial[2];
-  PetscInt cap_nodes, cap_particles;
+  double        *x, *x_star, *u_star;  /* [n_local][fields.n], [n_local][fields.n], [n_local][CL_DIM] */
+  double        *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
+  SkeletonStage *k_star;               /* [n]; null where the skeleton holds no history */
+  double        *e_plastic;            /* [n][5] errors of Trial.s; null without plasticity */
+  Trial          trial[2];
+  PetscInt       cap_nodes, cap_particles;
 } StepperWork;
 
 /* What one attempt at a step found. */
@@ -181,7 +182,7 @@ void           StepperHistory(const Model *m, PetscInt p, double y[4], double ra
 double         StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
 /* Starred plastic state of the second stage (24), from that of the first with c = (1 - gamma)/gamma. */
-void StepperStarPlastic(Stepper *s, double c);
+void StepperStarSkeleton(Stepper *s, double c);
 /* Rates of plastic strain and stress at the end of a step of length dt whose stages have length gamma dt, and their
    errors from the weights of k_n, k_1, k_2 (25), (26). */
 void   StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);

@@ -91,7 +91,7 @@ static const char *const share_word[]      = {"nodes", "particles", NULL};
 static const char *const side_word[]       = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
 static const char *const axis_word[]       = {"x", "y", NULL};
 static const char *const space_word[]      = {"fluids", "pores", NULL};
-static const char *const stiffness_word[]  = {"both", "loss_only", NULL};
+static const char *const stiffness_word[]  = {"both", "loss_only", "bonds", NULL};
 static const char *const plasticity_word[] = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
 static const char *const flow_word[]       = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
 static const char *const capillary_word[]  = {"held", "free", NULL};
@@ -293,8 +293,8 @@ static const Key material_key[] = {
     REAL(Material, "elasticity_ah", elasticity.ah, "", "[0,100]", "1", ""),
     REAL(Material, "elasticity_bh", elasticity.bh, "", "(0,20]", "1", ""),
     REAL(Material, "elasticity_nu", elasticity.nu, "", "[0,0.5)", NULL, "Poisson's ratio", .has = HAS_SOLID),
-    BOOLEAN(Material, "elasticity_stiffness_change", elasticity.loss_only, "both",
-            "stress follows E(S_h) both ways, or only its loss", .choices = stiffness_word),
+    CHOICE(Material, "elasticity_stiffness_change", elasticity.change, "both", stiffness_word,
+           "stress follows E(S_h) both ways, only its loss, or hydrate bears a stress of its own that goes with it"),
     CHOICE(Material, "plasticity_law", plasticity.type, "none", plasticity_word, "strength of the skeleton",
            .has = HAS_SOLID),
     CHOICE(Material, "plasticity_flow", plasticity.flow, "menetrey_willam", flow_word,
