@@ -331,7 +331,7 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
-    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials, or none: only to be cut out of others",
+    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials, or none: only to be cut out of others, or to hold a region_temperature",
          .word = "none", .shape = true),
     POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
     POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
