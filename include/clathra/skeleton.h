@@ -28,6 +28,7 @@ typedef struct {
 typedef struct {
   double sig[6], sig0[6]; /* effective stress at t_n and the initial one that turns with the body, Pa */
   double eps;             /* deviatoric plastic strain that the stage starts from */
+  double nonlocal;        /* that which sets the strength, end of the stage (86); only with nonlocal_length */
   double plastic[4];      /* plastic strain since t_n that it starts from, xx yy zz xy, as the body lay at t_n (24) */
 } SkeletonHistory;
 
@@ -60,11 +61,15 @@ typedef struct {
   X(P_YIELD, HAS_PLASTIC, "yield", 1, "-", "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension")       \
   X(P_WP, HAS_PLASTIC, "plastic_work", 1, "J", "dissipated by the particle so far")                                    \
   X(P_HEAT, HAS_PLASTIC, "plastic_heat", 1, "J", "hybrid: of the last step, which the next one gives to the nodes")    \
-  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")
+  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")     \
+  X(P_NONLOCAL, HAS_NONLOCAL, "eps_d_p_nonlocal", 1, "-", "sum of its averages over neighbours, what softens")         \
+  X(P_NONLOCAL_RATE, HAS_NONLOCAL, "rate_nonlocal", 1, "1/s", "of eps_d_p_nonlocal, mean of the last step")            \
+  X(P_AVERAGED, HAS_NONLOCAL, "eps_d_p_averaged", 1, "-", "eps_d_p at the last average")
 
 /* Where the history of particles stands: arrays over particles, null where a law does not hold it. */
 typedef struct {
-  double *sig[6], *sig0[6], *eps, *yield;
+  double *sig[6], *sig0[6], *eps, *yield, *nonlocal, *rate;
+  double  ahead; /* of the end of the stage, since the last average of neighbours, s */
 } SkeletonStore;
 
 /* n particles of one material; the history is replaced.  Strain and rotation as in SkeletonStep, e_zz = 0. */
@@ -115,10 +120,16 @@ static inline __attribute__((always_inline)) void SkeletonKeepStress(const Skele
     f->sig0[k][q] = s->sig0[k];
   }
 }
+/* (86) */
+static inline double SkeletonNonlocal(const SkeletonStore *f, ptrdiff_t q)
+{
+  return f->nonlocal ? f->nonlocal[q] + f->ahead * f->rate[q] : 0.0;
+}
 static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
 {
   SkeletonTakeStress(f, q, h);
-  h->eps = f->eps ? f->eps[q] : 0.0;
+  h->eps      = f->eps ? f->eps[q] : 0.0;
+  h->nonlocal = SkeletonNonlocal(f, q);
   for (int k = 0; k < 4; k++)
     h->plastic[k] = 0.0;
 }

@@ -258,8 +258,12 @@ void CaseFieldSetFinish(Reader *r, Case *c)
   const FieldSet *fs = &c->fields;
   char            option[256], words[64];
 
-  for (PetscInt i = 0; i < c->nmaterial && fs->solid; i++)
-    c->fields.has |= c->material[i].plasticity.type != PLASTICITY_NONE ? HAS_PLASTIC : 0u;
+  for (PetscInt i = 0; i < c->nmaterial && fs->solid; i++) {
+    const Plasticity *p = &c->material[i].plasticity;
+
+    if (p->type != PLASTICITY_NONE)
+      c->fields.has |= HAS_PLASTIC | (p->nonlocal > 0.0 ? HAS_NONLOCAL : 0u);
+  }
 
   for (PetscInt i = 0; i < c->nregion && !r->bad[GROUP_REGION]; i++)
     FinishRegion(r, c, &c->region[i]);

@@ -258,7 +258,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .E       = E,
                                .Sh      = Sh,
                                .work    = yields ? work : NULL,
-                               .store   = ParticlesSkeleton(&e->m->P, r.p)};
+                               .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
     ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
   if (yields)

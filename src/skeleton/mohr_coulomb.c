@@ -84,25 +84,26 @@ static void StressSlopes(const Principal *p, const Returned *r, double C[4][4], 
   }
 }
 
-static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, const Principal *p)
+static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, double nonlocal, const Principal *p)
 {
   const Elasticity *el = &mat->elasticity;
 
-  return (Trial3){.law  = &mat->plasticity,
-                  .G2   = 2.0 * ElasticityShearFactor(el),
-                  .lame = ElasticityLameFactor(el),
-                  .E    = d->E,
-                  .Sh   = d->Sh,
-                  .eps  = eps,
-                  .y    = {p->y[0], p->y[1], p->y[2]}};
+  return (Trial3){.law      = &mat->plasticity,
+                  .G2       = 2.0 * ElasticityShearFactor(el),
+                  .lame     = ElasticityLameFactor(el),
+                  .E        = d->E,
+                  .Sh       = d->Sh,
+                  .eps      = eps,
+                  .nonlocal = nonlocal,
+                  .y        = {p->y[0], p->y[1], p->y[2]}};
 }
 
-static bool Yields(const Plasticity *law, double Sh, double eps, const double y[3])
+static bool Yields(const Plasticity *law, double Sh, double eps, double nonlocal, const double y[3])
 {
   Strength k;
   double   dy[3], dphi;
 
-  StrengthEvaluate(law, Sh, eps, &k);
+  StrengthOf(law, Sh, eps, nonlocal, &k);
   const double round_off = ROUND_OFF * k.c + 1e-2 * ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
   return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > law->cutoff + round_off;
 }
@@ -183,8 +184,8 @@ static void TakeOff(const Elasticity *el, double E, const double start[4], Skele
 }
 
 /* From the trial stress in s to the yield surface; plastic strain of the stage in e. */
-static bool Return(const Material *mat, const SkeletonStep *d, SkeletonState *s, SkeletonTangent *t, double e[4],
-                   const char **why)
+static bool Return(const Material *mat, const SkeletonStep *d, double nonlocal, SkeletonState *s, SkeletonTangent *t,
+                   double e[4], const char **why)
 {
   Principal p;
   Returned  r;
@@ -195,9 +196,9 @@ static bool Return(const Material *mat, const SkeletonStep *d, SkeletonState *s,
   s->work   = 0.0;
   s->region = RETURN_ELASTIC;
   PrincipalOf(s->sig, &p);
-  if (!Yields(&mat->plasticity, d->Sh, s->eps, p.y))
+  if (!Yields(&mat->plasticity, d->Sh, s->eps, nonlocal, p.y))
     return true;
-  const Trial3 at = TrialOf(mat, d, s->eps, &p);
+  const Trial3 at = TrialOf(mat, d, s->eps, nonlocal, &p);
   if (!ReturnToYield(&at, t != NULL, &r)) {
     *why = "no stress on the yield surface was found for the strain of this step";
     return false;
@@ -228,7 +229,7 @@ bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const Ske
     ElasticTangent(&mat->elasticity, h, d, t);
   Turn4(h->plastic, d->c, d->s, start);
   TakeOff(&mat->elasticity, d->E, start, s, t);
-  if (!Return(mat, d, s, t, e, why))
+  if (!Return(mat, d, h->nonlocal, s, t, e, why))
     return false;
   for (int k = 0; k < 4; k++)
     start[k] += e[k];
@@ -247,7 +248,7 @@ bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char *
     SkeletonState      s = {.sig = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]}, .eps = f->eps[q]};
     double             e[4];
 
-    found       = Return(mat, &d, &s, NULL, e, why) && found;
+    found       = Return(mat, &d, SkeletonNonlocal(f, q), &s, NULL, e, why) && found;
     b->work[q]  = s.work;
     f->yield[q] = (double)s.region;
     if (s.region == RETURN_ELASTIC)
