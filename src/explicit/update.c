@@ -261,7 +261,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .Sh      = Sh,
                                .kept    = kept,
                                .work    = yields ? work : NULL,
-                               .store   = ParticlesSkeleton(&e->m->P, r.p)};
+                               .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
     ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
   if (yields)

@@ -226,7 +226,7 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
     h->shift[k]  = Shift(m, p, r, F_PW + k);
   }
   if (fs->solid) {
-    const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+    const SkeletonStore store = ParticlesSkeleton(&m->P, 0, m->stage.ahead);
 
     SkeletonTake(&store, p, &h->skeleton);
     if (m->stage.k_star)
