@@ -165,12 +165,14 @@ static double Yielding(Scene *s)
 static void TestJacobian(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2 * SETS; k++) {
-    Scene *s     = malloc(sizeof(*s));
-    double yield = 0.0, all;
+  for (int k = 0; k < 4 * SETS; k++) {
+    const bool axis = k / SETS % 2, mean = k >= 2 * SETS;
+    Scene     *s     = malloc(sizeof(*s));
+    double     yield = 0.0, all;
 
-    JacobianCase(s, sets[k % SETS].has, true, k >= SETS, BASIS_CPGIMP, 0.0, 0.0, false, 0);
-    s->mat.plasticity = Weak(k % 2);
+    JacobianCase(s, sets[k % SETS].has, true, axis, k % 2 && mean ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, 0.0, false, 0);
+    s->c.mean_dilatation = mean;
+    s->mat.plasticity    = Weak(k % 2);
     s->c.fields.has |= HAS_PLASTIC;
     JacobianState(s);
     for (PetscInt p = 0; p < s->m.P.n; p++)
@@ -178,8 +180,8 @@ static void TestJacobian(void **state)
     const double worst = DirectionError(s, 2), entry = k % SETS == 1 ? ColumnError(s) : 0.0;
     yield = Sum(Yielding(s));
     all   = Sum((double)s->m.P.n);
-    Say("Jacobian, %-4s %s: directions %.1e, entries %.1e; %g of %g particles yield\n", sets[k % SETS].name,
-        k < SETS ? "plane" : "axis ", worst, entry, yield, all);
+    Say("Jacobian, %-4s %s%s: directions %.1e, entries %.1e; %g of %g particles yield\n", sets[k % SETS].name,
+        axis ? "axis " : "plane", mean ? ", mean dilatation" : "", worst, entry, yield, all);
     Check(worst < 1e-6 && entry < 1e-6 && yield > 0.7 * all);
     SceneDestroy(s);
     free(s);
