@@ -84,6 +84,37 @@ typedef struct {
 } SkeletonLaw;
 const SkeletonLaw *SkeletonLawOf(const Material *mat);
 
+/* (89): elastic energy per volume over that of the initial stress, J/m^3, with Young's modulus E. */
+static inline double SkeletonEnergy(const Elasticity *el, double E, const double sig[6], const double sig0[6])
+{
+  double both[6], over[6];
+
+  for (int k = 0; k < 6; k++) {
+    both[k] = sig[k] + sig0[k];
+    over[k] = sig[k] - sig0[k];
+  }
+  const double product = both[XX] * over[XX] + both[YY] * over[YY] + both[ZZ] * over[ZZ] +
+                         2.0 * (both[XY] * over[XY] + both[YZ] * over[YZ] + both[XZ] * over[XZ]);
+
+  return ((1.0 + el->nu) * product - el->nu * Trace6(both) * Trace6(over)) / (2.0 * E);
+}
+/* Share r of the stress above the initial one that a change of stiffness from E_n to E leaves (14). */
+static inline double SkeletonRelaxation(const Elasticity *el, double E_n, double E)
+{
+  return el->loss_only && E > E_n ? 1.0 : E / E_n;
+}
+/* Elastic energy per volume that is lost as the stiffness changes from E_n to E at held strain, J/m^3. */
+static inline double SkeletonReleased(const Elasticity *el, double E_n, double E, const double sig[6],
+                                      const double sig0[6])
+{
+  const double r = SkeletonRelaxation(el, E_n, E);
+  double       left[6];
+
+  for (int k = 0; k < 6; k++)
+    left[k] = sig0[k] + r * (sig[k] - sig0[k]);
+  return SkeletonEnergy(el, E_n, sig, sig0) - SkeletonEnergy(el, E, left, sig0);
+}
+
 /* t may be null. */
 static inline bool SkeletonUpdate(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d,
                                   SkeletonState *s, SkeletonTangent *t, const char **why)

@@ -8,10 +8,8 @@
 /* Share of the stress above the initial one that a change of E leaves, r of (14); true where it follows E. */
 INLINE bool Relaxation(const Elasticity *el, double E, double E_n, double *r)
 {
-  const bool follows = !(el->loss_only && E > E_n);
-
-  *r = follows ? E / E_n : 1.0;
-  return follows;
+  *r = SkeletonRelaxation(el, E_n, E);
+  return !(el->loss_only && E > E_n);
 }
 
 /* Stress per Young's modulus of a strain xx yy zz xy. */

@@ -84,5 +84,6 @@ PetscErrorCode StepperNextStage(Stepper *s)
   z->err_old = 1.0;
   if (s->model->c->stage[z->stage].reset)
     ResetDisplacement(s);
+  PetscCall(StepperEnergyChange(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
