@@ -9,18 +9,16 @@ PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT])
   PetscCall(PetscArrayzero(energy, ENERGY_COUNT));
   if (!m->c->fields.solid)
     PetscFunctionReturn(PETSC_SUCCESS);
+  const SkeletonStore store = ParticlesSkeleton(P, 0);
   for (PetscInt p = 0; p < P->n; p++) {
     const Material *mat = ParticleMaterial(m, p);
-    double          sig[6], sig0[6], dE;
+    SkeletonHistory h;
+    double          dE;
 
-    for (int k = 0; k < 6; k++) {
-      sig[k]  = P->f[P_SIG + k][p];
-      sig0[k] = P->f[P_SIG0 + k][p];
-    }
+    SkeletonTake(&store, p, &h);
     energy[ENERGY_KINETIC] += ModelKineticEnergy(P, p);
     energy[ENERGY_ELASTIC] +=
-        P->f[P_V][p] *
-        SkeletonEnergy(&mat->elasticity, ElasticityYoung(&mat->elasticity, P->f[P_SH][p], &dE), sig, sig0);
+        P->f[P_V][p] * SkeletonEnergy(&mat->elasticity, ElasticityYoung(&mat->elasticity, P->f[P_SH][p], &dE), &h);
     if (P->f[P_WP]) {
       energy[ENERGY_PLASTIC] += P->f[P_WP][p];
       energy[ENERGY_HEAT] += mat->plasticity.heat * P->f[P_WP][p];
