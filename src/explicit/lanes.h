@@ -161,6 +161,8 @@ struct Explicit {
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
   double latent, advected;          /* J over the step */
   double ahead;                     /* of the end of the step, since ExplicitBegin, s */
+  double work[WORK_RATES];          /* J over the step (92), this rank */
+  double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
   double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
@@ -236,6 +238,7 @@ PetscErrorCode NodesVelocities(Explicit *e, double t, double dt); /* A -> B; t a
 PetscErrorCode NodesScalars(Explicit *e, StageRates *r);          /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
+void           FacesWork(Explicit *e, double dt); /* of the tractions, with the new velocities */
 PetscErrorCode FacesBegin(Explicit *e);
 void           FacesPlace(const Explicit *e, Face *f);                               /* where it is now */
 int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */

@@ -294,5 +294,13 @@ void           PlatesMark(Model *m, const double *x);
 bool           PlatesCouple(const Model *m);
 PetscErrorCode PlatesMult(const Model *m, const double *x, double *f);
 PetscErrorCode PlatesReport(Model *m, const double *x);
+/* Powers (91) of a particle, of a face with what it adds to its nodes, of prescribed motion (this rank's nodes), W; a
+   scene with a solid. */
+void           ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
+                             const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES]);
+void           FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
+                         double power[WORK_RATES]);
+double         HeldPower(const Model *m);
+double         GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
 PetscErrorCode WideCreate(Model *m, Mat *A);
 PetscErrorCode ModelResizeNodal(Model *m);
