@@ -1,5 +1,6 @@
 /* fieldset: which fields a scene needs, as its case names them, or as follows from what is identically zero in it. */
 #include "case_private.h"
+#include "clathra/skeleton.h"
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -258,12 +259,8 @@ void CaseFieldSetFinish(Reader *r, Case *c)
   const FieldSet *fs = &c->fields;
   char            option[256], words[64];
 
-  for (PetscInt i = 0; i < c->nmaterial && fs->solid; i++) {
-    const Plasticity *p = &c->material[i].plasticity;
-
-    if (p->type != PLASTICITY_NONE)
-      c->fields.has |= HAS_PLASTIC | (p->nonlocal > 0.0 ? HAS_NONLOCAL : 0u);
-  }
+  for (PetscInt i = 0; i < c->nmaterial && fs->solid; i++)
+    c->fields.has |= SkeletonHas(&c->material[i]);
 
   for (PetscInt i = 0; i < c->nregion && !r->bad[GROUP_REGION]; i++)
     FinishRegion(r, c, &c->region[i]);

@@ -91,9 +91,13 @@ static void CheckBounds(Reader *r, const Case *c, const Region *g)
   }
 }
 
-/* A shape that only cuts must cut something. */
-static bool Cuts(const Case *c, PetscInt region)
+/* A shape without particles must be cut out of another region or hold temperatures. */
+static bool Serves(const Case *c, PetscInt region)
 {
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type == BC_REGION_TEMPERATURE && c->bc[k].region == region)
+      return true;
+  }
   for (PetscInt k = 0; k < c->nregion; k++) {
     for (PetscInt m = 0; m < c->region[k].minus.n; m++) {
       if (c->region[k].minus.i[m] == region)
@@ -124,8 +128,9 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
     if (g->minus.i[k] == region)
       FAIL_AT(GROUP_REGION, g->name, "minus", "the region cannot be cut out of itself");
   }
-  if (RegionEmpty(g) && !Cuts(c, region))
-    FAIL_AT(GROUP_REGION, g->name, "material", "is none, but no region has %s in its minus", g->name);
+  if (RegionEmpty(g) && !Serves(c, region))
+    FAIL_AT(GROUP_REGION, g->name, "material",
+            "is none, but no region has %s in its minus and no region_temperature names it", g->name);
 }
 
 /* ---------------------------------------------------------------- their particles */

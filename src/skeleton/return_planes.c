@@ -23,7 +23,7 @@ typedef struct {
 static double Value(const Trial3 *t, const Strength *k, int plane, const double y[3])
 {
   if (plane >= TENSION_1)
-    return y[plane - TENSION_1] - t->law->cutoff;
+    return y[plane - TENSION_1] - StrengthCutoff(t->law);
   const double hi = y[pair[plane][0]], lo = y[pair[plane][1]];
 
   return hi - lo + (hi + lo) * sin(k->phi) - 2.0 * k->c * cos(k->phi);
@@ -239,7 +239,7 @@ static bool WithCutoff(const Trial3 *t, const Strength *k, Closest *o, ReturnReg
 
 static bool AtStrength(const Trial3 *t, const Strength *k, Closest *o, ReturnRegion *region)
 {
-  const bool apex_first = !(sin(k->phi) * t->law->cutoff < k->c * cos(k->phi));
+  const bool apex_first = !(sin(k->phi) * StrengthCutoff(t->law) < k->c * cos(k->phi));
 
   return apex_first ? NoCutoff(t, k, o, region) : WithCutoff(t, k, o, region);
 }

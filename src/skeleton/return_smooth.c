@@ -34,7 +34,7 @@ static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, Sy
   double       dF[3], dn[3], F_phi, n_y[3] = {0.0}, n_eps = 0.0, n_S = 0.0;
 
   StrengthAt(t, t->eps + x[X_EPS], &k);
-  MenetreyWillamGradient(k.phi, k.psi, t->law->eccentricity * t->law->c_max, x, &P);
+  MenetreyWillamGradient(k.phi, k.psi, FlowRoundness(t->law), x, &P);
   const double n = DeviatoricNorm(P.dev, dn), L = x[X_L];
 
   for (int i = 0; i < 3; i++) {
@@ -208,7 +208,7 @@ static void GuessBeyond(const Trial3 *t, double x[UNKNOWNS])
 
   x[X_EPS] = norm / (t->G2 * t->E);
   StrengthAt(t, t->eps + x[X_EPS], &k);
-  const double tp = tan(k.psi), m = t->law->eccentricity * t->law->c_max * tp, at = k.c / tan(k.phi),
+  const double tp = tan(k.psi), m = FlowRoundness(t->law) * tp, at = k.c / tan(k.phi),
                R    = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi));
   x[X_L]            = (sm - at) / ((t->G2 + 3.0 * t->lame) * tp / 3.0);
   const double keep = 1.0 / (1.0 + t->G2 * x[X_L] * 1.5 * R * R / m);
@@ -226,7 +226,7 @@ static void GuessShare(const Trial3 *t, double x[UNKNOWNS])
 
   x[X_EPS] = norm / (t->G2 * t->E);
   StrengthAt(t, t->eps + x[X_EPS], &k);
-  const double tp = tan(k.psi), m = t->law->eccentricity * t->law->c_max * tp, K = (t->G2 + 3.0 * t->lame) * tp / 3.0,
+  const double tp = tan(k.psi), m = FlowRoundness(t->law) * tp, K = (t->G2 + 3.0 * t->lame) * tp / 3.0,
                R = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi)), rho = 1.5 * R * norm,
                F = MohrCoulombYield(k.phi, k.c, t->y, dF, &F_phi), shear = F + k.c - sm * tan(k.phi);
   for (int i = 0; i < BISECTIONS; i++) {
@@ -286,7 +286,7 @@ static bool StaysAtApex(const Trial3 *t, double scale, const Returned *apex)
   StrengthAt(t, apex->eps, &k);
   if (k.psi < FLAT)
     return true;
-  if (t->law->eccentricity * t->law->c_max * tan(k.psi) > SHARP * scale)
+  if (FlowRoundness(t->law) * tan(k.psi) > SHARP * scale)
     return false;
   MenetreyWillamGradient(k.phi, k.psi, 0.0, s, &P);
   const double L = (sm - apex->y[0]) / ((t->G2 + 3.0 * t->lame) * tan(k.psi) / 3.0);

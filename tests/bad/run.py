@@ -64,6 +64,13 @@ CASES = [
     ("shear out of the plane of a plastic material", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg") +
      [("    pressure: 3.25 MPa\n", "    pressure: 3.25 MPa\n    stress: [0 Pa, 0 Pa, 0 Pa, 0 Pa, 1 kPa, 0 Pa]\n")],
      ["region_column_stress", "out of the plane"], []),
+    ("strength factor of 0", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg"), ["strength_factor", "(0,1e3]"], ["-strength_factor", "0"]),
+    ("negative strength factor", STRENGTH("cohesion_max: 1 MPa, friction_peak: 30 deg"), ["strength_factor", "-1.4", "(0,1e3]"], ["-strength_factor", "-1.4"]),
+    ("strength factor of what has no strength", [], ["strength_factor", "plasticity_law"], ["-strength_factor", "1.2"]),
+    ("strength factor that makes a point snap back", STRENGTH("cohesion_max: 1 MPa, cohesion_residual: 0 Pa, friction_peak: 30 deg, eta_s: 20, Sh_max: 0.5"),
+     [M + "plasticity_eta_s", "snaps back"], ["-strength_factor", "0.01"]),
+    ("strength factor of a stage that makes a point snap back", [*STRENGTH("cohesion_max: 1 MPa, cohesion_residual: 0 Pa, friction_peak: 30 deg, eta_s: 20, Sh_max: 0.5"),
+     STAGES("end: 10 s", "end: 2000 s, strength_factor: 0.01")], [M + "plasticity_eta_s", "snaps back"], []),
     ("plastic strain of an elastic scene", [], ["output_quantities", "plasticity_law"], ["-output_quantities", "eps_d_p"]),
     # --- keys
     ("typo in a top key", [("basis: cpgimp", "bassis: cpgimp")], ["bassis", "did you mean basis"], []),
