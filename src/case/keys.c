@@ -145,6 +145,10 @@ static const Key case_key[] = {
     BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
             .choices = pressures_word),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
+    BOOLEAN(
+        Case, "mean_dilatation", mean_dilatation, "no",
+        "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
+        "does not lock"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
