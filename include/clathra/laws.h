@@ -113,12 +113,19 @@ double MixtureAverage(double phi, double Sh, double sw, const double X[4], doubl
                       double *d_dsw);
 
 /* ---------------------------------------------------------------- elasticity: E(S_h) = E0 + a_h E_h S_h^b_h, Pa */
+/* What a change of hydrate makes of the stress: it follows E(S_h) both ways (the paper), follows its loss only, or
+   hydrate bears a stress of its own, which goes with it. */
+enum { STIFFNESS_BOTH = 0, STIFFNESS_LOSS_ONLY, STIFFNESS_BONDS };
 typedef struct {
   double E0, Eh, ah, bh, nu;
-  bool   loss_only; /* stiffness gained later carries no stress of its own (Klar's relaxation for dissociation only) */
+  int    change; /* STIFFNESS_... */
 } Elasticity;
 double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh); /* C1 toe where b_h < 1 at S_h = 0 */
-static inline double ElasticityShearFactor(const Elasticity *law)         /* G/E */
+static inline bool ElasticityHasBonds(const Elasticity *law)
+{
+  return law->change == STIFFNESS_BONDS && law->ah * law->Eh > 0.0;
+}
+static inline double ElasticityShearFactor(const Elasticity *law) /* G/E */
 {
   return 0.5 / (1.0 + law->nu);
 }
@@ -140,9 +147,11 @@ typedef struct {
   double eta_h, Sh_max;       /* how strength falls with hydrate */
   double eta_s;               /* ... and with plastic strain */
   double length, cell;        /* softening_length (0: none) and size of a cell, m: eta_s is scaled by cell/length */
+  double nonlocal;            /* nonlocal_length, m (0: none): neighbours whose plastic strain softens a particle */
   double eccentricity;        /* of the smooth potential in the meridian plane, of c_max */
   double cutoff;              /* largest tension, Pa; INFINITY: none */
   double heat;                /* share of the plastic work that becomes heat, [0,1] */
+  double factor;              /* of the strength reduction (87), > 0; 0 stands for 1 */
 } Plasticity;
 
 /* Strength at a hydrate saturation and a deviatoric plastic strain, with slopes in both. */
@@ -152,6 +161,20 @@ typedef struct {
 static inline double SofteningRate(const Plasticity *law)
 {
   return law->length > 0.0 ? law->eta_s * law->cell / law->length : law->eta_s;
+}
+/* (87): what the factor leaves of a strength in Pa. */
+static inline double StrengthReduced(const Plasticity *law, double strength)
+{
+  return law->factor > 0.0 ? strength / law->factor : strength;
+}
+static inline double StrengthCutoff(const Plasticity *law)
+{
+  return StrengthReduced(law, law->cutoff);
+}
+/* eccentricity c_max of the smooth potential (64), Pa. */
+static inline double FlowRoundness(const Plasticity *law)
+{
+  return law->eccentricity * StrengthReduced(law, law->c_max);
 }
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s);
 

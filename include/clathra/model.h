@@ -9,31 +9,24 @@
 
 /* One implicit stage: everything an integrator says to the physics. */
 typedef struct {
-  double  t;      /* end of the stage, where boundary functions are evaluated, s */
-  double  dt;     /* dt', s */
-  double *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
-  double *u_star; /* [n_local][CL_DIM] starred displacement, m */
-  double *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
-  double *p_star; /* [n][PLASTIC_COUNT] starred plastic state; null: that of t_n */
+  double         t;      /* end of the stage, where boundary functions are evaluated, s */
+  double         dt;     /* dt', s */
+  double         ahead;  /* of the end of the stage since t_n, s */
+  double        *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
+  double        *u_star; /* [n_local][CL_DIM] starred displacement, m */
+  double        *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
+  SkeletonStage *k_star; /* [n] starred state of the skeleton; null: that of t_n */
 } Stage;
-
-/* What a stage leaves of plasticity at a particle. */
-enum {
-  PLASTIC_EPS = 0,                   /* deviatoric plastic strain */
-  PLASTIC_STRAIN,                    /* [4] plastic strain since t_n, as the body lay at t_n (24) */
-  PLASTIC_WORK = PLASTIC_STRAIN + 4, /* dissipated since t_n, J */
-  PLASTIC_COUNT
-};
 
 /* Result of a stage on the particles, before any commit. */
 typedef struct {
-  double *m; /* [n][3] m_h; m_w, m_g less what Newton left in the rows (28), kg */
-  double *y; /* [n][4] p_w, p_g, T, S_h */
-  double *u; /* [n][2] displacement of the step so far, m */
-  double *v; /* [n][2] skeleton velocity, m/s */
-  double *p; /* [n][PLASTIC_COUNT]; null without plasticity */
-  double *s; /* [n][5] eps_d_p and stress xx yy zz xy; likewise */
-  double *k; /* [n][5] their rates at the end of the step, the scheme's to fill; likewise */
+  double        *m;   /* [n][3] m_h; m_w, m_g less what Newton left in the rows (28), kg */
+  double        *y;   /* [n][4] p_w, p_g, T, S_h */
+  double        *u;   /* [n][2] displacement of the step so far, m */
+  double        *v;   /* [n][2] skeleton velocity, m/s */
+  SkeletonStage *end; /* [n] of the skeleton; null where it holds no history */
+  double        *s;   /* [n][5] eps_d_p and stress xx yy zz xy; null without plasticity */
+  double        *k;   /* [n][5] their rates at the end of the step, the scheme's to fill; likewise */
 } Trial;
 
 /* What a meter counts, outwards: kg/s of water and gas, W. */
@@ -148,6 +141,15 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
 PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status);
 /* Sets Face.K from the particle's present properties. */
 void ModelPlateStiffness(const Model *m, Face *f);
+/* The skeleton of particle p at t_n, where a first stage starts. */
+static inline SkeletonStage ModelSkeletonStart(const Model *m, PetscInt p)
+{
+  const SkeletonStore store = ParticlesSkeleton(&m->P, p, 0.0);
+  SkeletonHistory     h;
+
+  SkeletonTake(&store, 0, &h);
+  return h.from;
+}
 /* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v. */
 void ModelStartVelocity(const Model *m, double *v);
 /* Makes the trial state of the last stage the history, with rates (n x 4), moves the particles and migrates them. */

@@ -49,6 +49,11 @@ enum { P_MOST = sizeof(union {CL_PARTICLE_TABLE(CL_PARTICLE_SIZE)}) };
    pressures and velocities by phase. */
 _Static_assert(P_MH == P_MS + 1 && P_MW == P_MH + 1 && P_MG == P_MW + 1, "masses: solid, hydrate, water, gas");
 _Static_assert(P_PG == P_PW + 1 && P_T == P_PG + 1, "p_w, p_g, T");
+/* The history of the skeleton stands together, in the order of OWN_... */
+enum { P_HISTORY = P_EPS };
+#define CL_OWN_CHECK(id, has, name, nc, unit, doc) _Static_assert((int)(id)-P_HISTORY == (int)OWN_##id, name);
+CL_SKELETON_HISTORY(CL_OWN_CHECK)
+#undef CL_OWN_CHECK
 _Static_assert(P_PG0 == P_PW0 + 1, "initial p_w, p_g");
 _Static_assert(P_VW == P_VS + CL_DIM && P_VG == P_VW + CL_DIM, "velocities: skeleton, water, gas");
 
@@ -85,12 +90,17 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
   return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
 }
 
-/* History of the skeleton of the particles from `first` on; the set must have a solid. */
-static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first)
+/* History of the skeleton of the particles from `first` on, for a stage that ends `ahead` (s) of the last average of
+   neighbours; the set must have a solid. */
+static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first, double ahead)
 {
-  SkeletonStore s = {.eps   = P->f[P_EPS] ? P->f[P_EPS] + first : NULL,
-                     .yield = P->f[P_YIELD] ? P->f[P_YIELD] + first : NULL};
+  SkeletonStore s = {.yield    = P->f[P_YIELD] ? P->f[P_YIELD] + first : NULL,
+                     .nonlocal = P->f[P_NONLOCAL] ? P->f[P_NONLOCAL] + first : NULL,
+                     .rate     = P->f[P_NONLOCAL] ? P->f[P_NONLOCAL_RATE] + first : NULL,
+                     .ahead    = ahead};
 
+  for (int k = 0; k < OWN_COUNT; k++)
+    s.own[k] = P->f[P_HISTORY + k] ? P->f[P_HISTORY + k] + first : NULL;
   for (int k = 0; k < 6; k++) {
     s.sig[k]  = P->f[P_SIG + k] + first;
     s.sig0[k] = P->f[P_SIG0 + k] + first;
@@ -136,3 +146,7 @@ void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM]
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);
+/* At the end of a step (or burst of steps) of length `time` (s): what grew of the plastic strain since the last call,
+   averaged over neighbours, joins P_NONLOCAL, for materials with a nonlocal_length; particles of the others go on with
+   their own.  docs/equations.md (85).  Collective. */
+PetscErrorCode ParticlesNonlocal(const Case *c, const Grid *g, double time, Particles *P);

@@ -62,6 +62,7 @@ typedef struct {
 typedef struct {
   double        V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
   SkeletonState skeleton;
+  SkeletonStage end; /* ... as the body lay at t_n */
   double        stretch[2];
   double        F[2][2]; /* of the step, in the plane */
   double        rho[PHASE_COUNT], tau[PHASE_COUNT];

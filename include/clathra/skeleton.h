@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include "clathra/fields.h"
 #include "clathra/material.h"
 #include "clathra/tensor.h"
 
@@ -15,6 +16,7 @@ enum {
   SKELETON_THERMAL = SKELETON_STRAIN + 4, /* linear thermal strain beta_sh (T - T_n)/3 */
   SKELETON_E,                             /* Young's modulus now, Pa */
   SKELETON_SH,                            /* hydrate saturation now */
+  SKELETON_KEPT,                          /* share of the stage's first hydrate that is still there */
   SKELETON_IN
 };
 typedef struct {
@@ -23,12 +25,45 @@ typedef struct {
   double thermal; /* beta_sh (T - T_n)/3 */
   double E_n, E;  /* Young's modulus at t_n and now, Pa */
   double Sh;      /* hydrate saturation now */
+  double kept;    /* min(1, m_h/m_h*); only with bonds (93) */
 } SkeletonStep;
 
+/* History that the laws hold besides the stress: X(enum, what a material must have, HDF5 name, components, unit,
+   meaning), rows of the particles' table.  Zero at the start unless the law has a `start`; four components are a tensor
+   xx yy zz xy, which turns with the body. */
+#define CL_SKELETON_HISTORY(X)                                                                                         \
+  X(P_EPS, HAS_PLASTIC, "eps_d_p", 1, "-", "deviatoric plastic strain so far")                                         \
+  X(P_BOND, HAS_BONDS, "stress_hydrate", 4, "Pa", "what hydrate bears of the effective stress: xx yy zz xy")
+
+/* All that a skeleton keeps: its history, and what is known of the last step. */
+#define CL_SKELETON_TABLE(X)                                                                                           \
+  CL_SKELETON_HISTORY(X)                                                                                               \
+  X(P_YIELD, HAS_PLASTIC, "yield", 1, "-", "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension")       \
+  X(P_WP, HAS_PLASTIC, "plastic_work", 1, "J", "dissipated by the particle so far")                                    \
+  X(P_HEAT, HAS_PLASTIC, "plastic_heat", 1, "J", "hybrid: of the last step, which the next one gives to the nodes")    \
+  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")     \
+  X(P_NONLOCAL, HAS_NONLOCAL, "eps_d_p_nonlocal", 1, "-", "sum of its averages over neighbours, what softens")         \
+  X(P_NONLOCAL_RATE, HAS_NONLOCAL, "rate_nonlocal", 1, "1/s", "of eps_d_p_nonlocal, mean of the last step")            \
+  X(P_AVERAGED, HAS_NONLOCAL, "eps_d_p_averaged", 1, "-", "eps_d_p at the last average")
+
+/* OWN_P_EPS, ...: place of a history variable in the arrays below. */
+#define CL_OWN_ENUM(id, has, name, nc, unit, doc) OWN_##id, OWN_##id##_LAST_ = OWN_##id + (nc)-1,
+enum { CL_SKELETON_HISTORY(CL_OWN_ENUM) OWN_COUNT };
+#undef CL_OWN_ENUM
+
+/* What a stage starts from, or ends with: as the body lay at t_n, starred in a second stage (24). */
 typedef struct {
-  double sig[6], sig0[6]; /* effective stress at t_n and the initial one that turns with the body, Pa */
-  double eps;             /* deviatoric plastic strain that the stage starts from */
-  double plastic[4];      /* plastic strain since t_n that it starts from, xx yy zz xy, as the body lay at t_n (24) */
+  double own[OWN_COUNT];
+  double plastic[4]; /* plastic strain since t_n, xx yy zz xy */
+  double strain[4];  /* strain since t_n less the thermal one */
+  double sig[4];     /* effective stress xx yy zz xy, Pa */
+  double work;       /* dissipated since t_n, J */
+} SkeletonStage;
+
+typedef struct {
+  double        sig[6], sig0[6]; /* effective stress at t_n and the initial one that turns with the body, Pa */
+  SkeletonStage from;
+  double        nonlocal; /* plastic strain that sets the strength, end of the stage (86); only with nonlocal_length */
 } SkeletonHistory;
 
 /* Where on the yield surface a state was returned to. */
@@ -42,8 +77,9 @@ typedef enum {
 
 typedef struct {
   double       sig[6], sig0[6];
-  double       eps, plastic[4]; /* as in the history, at the end of the stage */
-  double       work;            /* dissipated in the stage, J per m^3 */
+  double       own[OWN_COUNT]; /* history at the end of the stage, as the body lies then */
+  double       plastic[4];     /* as in SkeletonStage */
+  double       work;           /* dissipated in the stage, J per m^3 */
   ReturnRegion region;
 } SkeletonState;
 
@@ -53,24 +89,17 @@ typedef struct {
   double d[SKELETON_OUT][SKELETON_IN];
 } SkeletonTangent;
 
-/* History that the laws hold besides the stress, all zero at the start: X(enum, fields, HDF5 name, components, unit,
-   meaning), rows of the particles' table. */
-#define CL_SKELETON_TABLE(X)                                                                                           \
-  X(P_EPS, HAS_PLASTIC, "eps_d_p", 1, "-", "deviatoric plastic strain so far")                                         \
-  X(P_YIELD, HAS_PLASTIC, "yield", 1, "-", "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension")       \
-  X(P_WP, HAS_PLASTIC, "plastic_work", 1, "J", "dissipated by the particle so far")                                    \
-  X(P_HEAT, HAS_PLASTIC, "plastic_heat", 1, "J", "hybrid: of the last step, which the next one gives to the nodes")    \
-  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")
-
-/* Where the history of particles stands: arrays over particles, null where a law does not hold it. */
+/* Where the history of particles stands: arrays over particles, null where a scene does not hold it. */
 typedef struct {
-  double *sig[6], *sig0[6], *eps, *yield;
+  double *sig[6], *sig0[6], *own[OWN_COUNT], *yield, *nonlocal, *rate;
+  double  ahead; /* of the end of the stage, since the last average of neighbours, s */
 } SkeletonStore;
 
 /* n particles of one material; the history is replaced.  Strain and rotation as in SkeletonStep, e_zz = 0. */
 typedef struct {
   int           n;
   const double *c, *s, *xx, *yy, *xy, *thermal, *E_n, *E, *Sh;
+  const double *kept; /* [n]; may be null without bonds */
   double       *work; /* [n], J/m^3; may be null for a law that dissipates nothing */
   SkeletonStore store;
 } SkeletonBlock;
@@ -78,11 +107,22 @@ typedef struct {
 /* A law: its functions return false with *why pointing to a sentence; a shorter step mends that. */
 typedef struct {
   const char *name;
+  unsigned    has; /* HAS_...: whose rows of the tables it needs */
   bool (*update)(const Material *, const SkeletonHistory *, const SkeletonStep *, SkeletonState *, SkeletonTangent *,
                  const char **why);
   bool (*block)(const Material *, const SkeletonBlock *, const char **why);
+  void (*start)(const Material *, double own[OWN_COUNT]); /* history of a new particle; null: zero */
 } SkeletonLaw;
 const SkeletonLaw *SkeletonLawOf(const Material *mat);
+
+/* Rows of the tables that a material needs. */
+static inline unsigned SkeletonHas(const Material *mat)
+{
+  const bool nonlocal = mat->plasticity.type != PLASTICITY_NONE && mat->plasticity.nonlocal > 0.0;
+
+  return SkeletonLawOf(mat)->has | (ElasticityHasBonds(&mat->elasticity) ? HAS_BONDS : 0u) |
+         (nonlocal ? HAS_NONLOCAL : 0u);
+}
 
 /* t may be null. */
 static inline bool SkeletonUpdate(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d,
@@ -93,6 +133,18 @@ static inline bool SkeletonUpdate(const Material *mat, const SkeletonHistory *h,
 static inline bool SkeletonUpdateBlock(const Material *mat, const SkeletonBlock *b, const char **why)
 {
   return SkeletonLawOf(mat)->block(mat, b, why);
+}
+
+/* The end of a stage as the body lay at t_n; volume V, m^3. */
+void SkeletonEndStage(const SkeletonHistory *h, const SkeletonStep *d, const SkeletonState *s, double V,
+                      SkeletonStage *end);
+/* y_n + c (y_1 - y_n). */
+static inline void SkeletonStar(const SkeletonStage *y_n, const SkeletonStage *y_1, double c, SkeletonStage *star)
+{
+  const double *n = (const double *)y_n, *one = (const double *)y_1;
+
+  for (size_t k = 0; k < sizeof(*star) / sizeof(double); k++)
+    ((double *)star)[k] = n[k] + c * (one[k] - n[k]);
 }
 
 /* Outside the block forms of the laws the only functions that read and write the history of particle q; the stress
@@ -115,18 +167,26 @@ static inline __attribute__((always_inline)) void SkeletonKeepStress(const Skele
     f->sig0[k][q] = s->sig0[k];
   }
 }
+/* (86) */
+static inline double SkeletonNonlocal(const SkeletonStore *f, ptrdiff_t q)
+{
+  return f->nonlocal ? f->nonlocal[q] + f->ahead * f->rate[q] : 0.0;
+}
 static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
 {
   SkeletonTakeStress(f, q, h);
-  h->eps = f->eps ? f->eps[q] : 0.0;
-  for (int k = 0; k < 4; k++)
-    h->plastic[k] = 0.0;
+  h->from = (SkeletonStage){.sig = {h->sig[0], h->sig[1], h->sig[2], h->sig[3]}};
+  for (int k = 0; k < OWN_COUNT; k++)
+    h->from.own[k] = f->own[k] ? f->own[k][q] : 0.0;
+  h->nonlocal = SkeletonNonlocal(f, q);
 }
 static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)
 {
   SkeletonKeepStress(f, q, s);
-  if (f->eps) {
-    f->eps[q]   = s->eps;
-    f->yield[q] = (double)s->region;
+  for (int k = 0; k < OWN_COUNT; k++) {
+    if (f->own[k])
+      f->own[k][q] = s->own[k];
   }
+  if (f->yield)
+    f->yield[q] = (double)s->region;
 }

@@ -14,7 +14,9 @@ typedef struct {
   PetscInt stage;         /* of the case; t may have reached its end */
   PetscInt newton_total, failures_total, limited_total;
   PetscInt loose_total; /* steps accepted with an error above the tolerance: at dt_min, or noise of the particles */
-  PetscInt filler;      /* always 0: the reals begin at whole words, and every byte has a name */
+  PetscInt kind;        /* auto: 0 not chosen yet, 1 implicit, 2 hybrid */
+  PetscInt votes;       /* auto: looks in a row that asked for the other one */
+  PetscInt patience;    /* auto: doubles with every visit of the implicit integrator that did not pay */
   double   t;           /* s */
   double   dt;          /* next step wanted by the controller, s */
   double   err_old;     /* error of the last accepted step relative to the tolerance */
@@ -23,6 +25,7 @@ typedef struct {
   double   heat_gain, heat_in, heat_source; /* J since t = 0 */
   double   meter[CL_METERS][METER_COUNT];   /* (33): kg of water and gas, J, outwards since t = 0 */
   double   water0, methane0, capacity0;     /* totals at t = 0, kg, J/K */
+  double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
   double   scale_p,
       scale_u; /* largest change of pressure or stress (Pa) and displacement (m) so far: what errors are relative to */
 } StepperState;
@@ -36,11 +39,12 @@ typedef struct {
 
 /* Work space of a step, sized for the particles and nodes of this configuration. */
 typedef struct {
-  double  *x, *x_star, *u_star;  /* [n_local][fields.n], [n_local][fields.n], [n_local][CL_DIM] */
-  double  *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
-  double  *p_star, *e_plastic;   /* [n][PLASTIC_COUNT], [n][5] errors of Trial.s; null without plasticity */
-  Trial    trial[2];
-  PetscInt cap_nodes, cap_particles;
+  double        *x, *x_star, *u_star;  /* [n_local][fields.n], [n_local][fields.n], [n_local][CL_DIM] */
+  double        *m_star, *rates, *v_n; /* [n][3], [n][4], [n][2] */
+  SkeletonStage *k_star;               /* [n]; null where the skeleton holds no history */
+  double        *e_plastic;            /* [n][5] errors of Trial.s; null without plasticity */
+  Trial          trial[2];
+  PetscInt       cap_nodes, cap_particles;
 } StepperWork;
 
 /* What one attempt at a step found. */
@@ -54,7 +58,12 @@ typedef struct {
   double   meter[CL_METERS][METER_COUNT];   /* kg, J over the step */
 } Attempt;
 
-#define STEPPER_AUTO "auto" /* word of stepper_type: as the forecast says */
+#define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
+#define STEPPER_NEWTON 4.0  /* iterations a stage that a forecast counts on */
+/* Changes that count as one in a step's error besides those of pressure and displacement. */
+#define STEPPER_SCALE_T 1.0 /* K */
+#define STEPPER_SCALE_SH 0.1
+#define STEPPER_SCALE_EPS 0.1 /* of plastic strain */
 
 typedef struct Stepper Stepper;
 
@@ -75,6 +84,15 @@ typedef struct {
   /* does it know a way from here, with the stable step in Stepper.limit?  Of a stage that is still to come, too */
   PetscErrorCode (*check)(const Stepper *s, bool *ok);
 } StepperScheme;
+
+/* What auto looks at; auto.c. */
+typedef struct {
+  bool     on;       /* stepper_type: auto, with adaptive steps, in a scene that hybrid knows */
+  bool     give_way; /* the implicit step failed where hybrid would be the cheaper one */
+  PetscInt newton;   /* iterations of all attempts at the last implicit step */
+  double   dt;       /* of the last implicit step, s */
+  double   good_t;   /* time of Stepper.good, s */
+} Auto;
 
 extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit;
 
@@ -98,6 +116,7 @@ struct Stepper {
   Explicit *explicit;         /* hybrid, explicit: the integrator and the last good state */
   Particles  good;
   StableStep limit; /* at the last look */
+  Auto       auto_;
   Forecast   forecast;
   /* called after every accepted step */
   PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
@@ -132,7 +151,20 @@ double StepperFloorU(const Stepper *s);
 void StepperStageWords(const Stepper *s, char words[80]);
 
 PetscErrorCode StepperForecast(Stepper *s);
+/* Seconds of the forecast's machine, of this rank: hybrid steps; Newton iterations and factorisations. */
+double StepperHybridWork(const Model *m, double steps);
+double StepperImplicitWork(const Model *m, double newton, double factors);
+/* Stable step of hybrid on the present state.  Collective. */
+PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit);
 PetscErrorCode StepperPrintForecast(const Stepper *s);
+
+/* ---- auto.c: docs/equations.md, section 15 */
+/* The integrator a stage begins with, or a restart goes on with. */
+PetscErrorCode StepperAutoBegin(Stepper *s);
+/* After an attempt of length dt failed so, the last one allowed or not: is it time for hybrid? */
+PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool last, bool *yes);
+/* After every step: goes over to the other integrator where that pays. */
+PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok);
 
 /* Shared by the schemes. */
 /* The next time that a step must hit: a kink of a schedule, an event, the end. */
@@ -150,7 +182,7 @@ void           StepperHistory(const Model *m, PetscInt p, double y[4], double ra
 double         StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
 /* Starred plastic state of the second stage (24), from that of the first with c = (1 - gamma)/gamma. */
-void StepperStarPlastic(Stepper *s, double c);
+void StepperStarSkeleton(Stepper *s, double c);
 /* Rates of plastic strain and stress at the end of a step of length dt whose stages have length gamma dt, and their
    errors from the weights of k_n, k_1, k_2 (25), (26). */
 void   StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);

@@ -178,6 +178,7 @@ void CaseCheck(Reader *r, const Case *c);
 PetscErrorCode PlateForm(Reader *r, Bc *b);
 void           CheckPlate(Reader *r, const Case *c, const Bc *b);
 void           CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
+void           CheckReduction(Reader *r, const Case *c);                     /* strength_factor */
 void           CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
 void           CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */

@@ -112,6 +112,8 @@ void CaseCheck(Reader *r, const Case *c)
     CheckMaterial(r, &c->material[i]);
   for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckPlasticity(r, c, &c->material[i]);
+  if (!bad[GROUP_CASE] && !bad[GROUP_MATERIAL])
+    CheckReduction(r, c);
   r->bad[GROUP_CASE] |= c->upper[0] <= c->lower[0] || c->upper[1] <= c->lower[1];
   for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->nregion && all; i++)
     CheckRegion(r, c, i);

@@ -1,5 +1,6 @@
 /* fieldset: which fields a scene needs, as its case names them, or as follows from what is identically zero in it. */
 #include "case_private.h"
+#include "clathra/skeleton.h"
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -259,7 +260,7 @@ void CaseFieldSetFinish(Reader *r, Case *c)
   char            option[256], words[64];
 
   for (PetscInt i = 0; i < c->nmaterial && fs->solid; i++)
-    c->fields.has |= c->material[i].plasticity.type != PLASTICITY_NONE ? HAS_PLASTIC : 0u;
+    c->fields.has |= SkeletonHas(&c->material[i]);
 
   for (PetscInt i = 0; i < c->nregion && !r->bad[GROUP_REGION]; i++)
     FinishRegion(r, c, &c->region[i]);

@@ -91,7 +91,7 @@ static const char *const share_word[]      = {"nodes", "particles", NULL};
 static const char *const side_word[]       = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
 static const char *const axis_word[]       = {"x", "y", NULL};
 static const char *const space_word[]      = {"fluids", "pores", NULL};
-static const char *const stiffness_word[]  = {"both", "loss_only", NULL};
+static const char *const stiffness_word[]  = {"both", "loss_only", "bonds", NULL};
 static const char *const plasticity_word[] = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
 static const char *const flow_word[]       = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
 static const char *const capillary_word[]  = {"held", "free", NULL};
@@ -148,6 +148,11 @@ static const Key case_key[] = {
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
+    REAL(
+        Case, "strength_factor", strength_factor, "", "(0,1e3]", "1",
+        "cohesion, tension cut-off and the tangents of friction and dilation angle of all materials are divided by it: "
+        "the "
+        "largest one that a slope bears is its factor of safety"),
     ROW(Case, "ambient_pressure", KEY_SCHEDULE, ambient_pressure, 1, "Pa", "[0,1e10]", "0 Pa",
         "of the fluid that the scene stands in: acts on the whole surface of the body; at and above ambient_level"),
     REAL(Case, "ambient_density", ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
@@ -155,7 +160,8 @@ static const Key case_key[] = {
     ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
          WHEN(NeedsEnd, "there are no stages"), .kept = true),
-    TEXT(Case, "stepper_type", stepper, "sdirk2", "time integrator", .choices = stepper_word),
+    TEXT(Case, "stepper_type", stepper, "sdirk2",
+         "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time", .choices = stepper_word),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
     REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
          .plain = true),
@@ -287,8 +293,8 @@ static const Key material_key[] = {
     REAL(Material, "elasticity_ah", elasticity.ah, "", "[0,100]", "1", ""),
     REAL(Material, "elasticity_bh", elasticity.bh, "", "(0,20]", "1", ""),
     REAL(Material, "elasticity_nu", elasticity.nu, "", "[0,0.5)", NULL, "Poisson's ratio", .has = HAS_SOLID),
-    BOOLEAN(Material, "elasticity_stiffness_change", elasticity.loss_only, "both",
-            "stress follows E(S_h) both ways, or only its loss", .choices = stiffness_word),
+    CHOICE(Material, "elasticity_stiffness_change", elasticity.change, "both", stiffness_word,
+           "stress follows E(S_h) both ways, only its loss, or hydrate bears a stress of its own that goes with it"),
     CHOICE(Material, "plasticity_law", plasticity.type, "none", plasticity_word, "strength of the skeleton",
            .has = HAS_SOLID),
     CHOICE(Material, "plasticity_flow", plasticity.flow, "menetrey_willam", flow_word,
@@ -316,6 +322,11 @@ static const Key material_key[] = {
          "width of a shear band that eta_s is meant for: eta_s is scaled by the size of a cell over it, so that what a "
          "band "
          "dissipates per area does not depend on the grid; 0 m = not scaled"),
+    REAL(Material, "plasticity_nonlocal_length", plasticity.nonlocal, "m", "[0,1e6]", "0 m",
+         "strength follows the plastic strain of neighbours, averaged with weights (d/l) exp(-(d/l)^2) of their "
+         "distance "
+         "d, l this length: the width of a band then does not depend on the grid; at least two cells; 0 m = the "
+         "particle's own"),
     REAL(Material, "plasticity_eccentricity", plasticity.eccentricity, "", "(0,10]", "0.1",
          "of the smooth potential: how round its end is, of cohesion_max"),
     REAL(Material, "plasticity_tension_cutoff", plasticity.cutoff, "Pa", "[0,1e12]", "none",
@@ -457,6 +468,8 @@ static const Key stage_key[] = {
     REALS(CaseStage, 2, "gravity", c.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
     REAL(CaseStage, "gravity_ramp", c.gravity_ramp, "s", "[0,inf)", CASES,
          "gravity goes from that of the stage before to that of this one over this time", .kept = true),
+    REAL(CaseStage, "strength_factor", c.strength_factor, "", "(0,1e3]", CASES,
+         "strength is divided by it, from the begin of the stage on", .kept = true),
     BOOLEAN(CaseStage, "inertia", c.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
     TEXT(CaseStage, "stepper_type", c.stepper, CASES, "time integrator", .choices = stepper_word, .kept = true),
     BOOLEAN(CaseStage, "stepper_adapt", c.adaptive, CASES, "choose the step by the error estimate", .kept = true),

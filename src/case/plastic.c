@@ -29,6 +29,28 @@ static void CheckSnapBack(Reader *r, const Material *m)
   }
 }
 
+#define LEAST_CELLS 2.0 /* in a nonlocal_length: with less it is the grid again that decides */
+
+/* A length over which plastic strain is averaged needs cells finer than itself, and strength that falls with strain. */
+static void CheckNonlocal(Reader *r, const Case *c, const Material *m)
+{
+  const Plasticity *p = &m->plasticity;
+  double            h = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    h = fmax(h, (c->upper[d] - c->lower[d]) / (double)c->cells[d]);
+  if (p->nonlocal < LEAST_CELLS * h * (1.0 - 1e-9))
+    FAIL("plasticity_nonlocal_length", "= %g m is less than two cells; allowed [%g m,1e+06 m], or 0 m for none",
+         p->nonlocal, LEAST_CELLS * h);
+  if (p->length > 0.0)
+    FAIL("plasticity_nonlocal_length", "and plasticity_softening_length correct for the same thing: give one of them");
+  if (p->eta_s == 0.0 || (p->c_res == p->c_max && p->phi_res == p->phi_peak && p->psi_max == 0.0))
+    FAIL("plasticity_nonlocal_length",
+         "needs strength that falls with plastic strain: eta_s is %g, cohesion, friction "
+         "and dilation fall by %g Pa, %g deg, %g deg",
+         p->eta_s, p->c_max - p->c_res, p->phi_peak - p->phi_res, p->psi_max);
+}
+
 void CheckPlasticity(Reader *r, const Case *c, const Material *m)
 {
   const Plasticity *p = &m->plasticity;
@@ -52,10 +74,49 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
     FAIL("plasticity_tension_cutoff", "needs plasticity_flow: mohr_coulomb");
   if (p->heat > 0.0 && !c->fields.heat)
     FAIL("plasticity_heat", "is %g but heat is not among the fields of the scene (%s)", p->heat, c->fields_wanted);
-  if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
-    CheckSnapBack(r, m);
+  if (p->nonlocal > 0.0)
+    CheckNonlocal(r, c, m);
+  else if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
+    CheckSnapBack(r, m); /* a strength given for the step cannot fall within it */
   if (p->psi_max > p->phi_peak && r->rank == 0)
     fprintf(stderr,
             "clathra: warning: material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)\n",
             m->name, p->psi_max, p->phi_peak);
+}
+
+/* With a factor of their own stages soften by other amounts. */
+static void CheckStages(Reader *r, const Case *c)
+{
+  for (PetscInt i = 0; i < c->nstage && !r->bad[GROUP_STAGE]; i++) {
+    const Case *s = CaseInStage(c, i);
+
+    for (PetscInt k = 0; k < s->nmaterial && s->strength_factor != c->strength_factor; k++) {
+      if (s->material[k].plasticity.type != PLASTICITY_NONE && isfinite(s->material[k].elasticity.E0))
+        CheckSnapBack(r, &s->material[k]);
+    }
+  }
+}
+
+void CheckReduction(Reader *r, const Case *c)
+{
+  bool reduced = c->strength_factor != 1.0, strong = false;
+
+  for (PetscInt i = 0; i < c->nstage; i++)
+    reduced = reduced || CaseInStage(c, i)->strength_factor != 1.0;
+  for (PetscInt k = 0; k < c->nmaterial; k++)
+    strong = strong || (c->material[k].plasticity.type != PLASTICITY_NONE && c->fields.solid);
+  if (!reduced)
+    return;
+  if (!strong)
+    FAIL_AT(GROUP_CASE, "", "strength_factor", "needs a material with a plasticity_law: nothing here has a strength");
+  CheckStages(r, c);
+  for (PetscInt k = 0; k < c->nmaterial && r->rank == 0; k++) {
+    const Plasticity *p = &c->material[k].plasticity;
+
+    if (p->type != PLASTICITY_NONE && p->psi_max == 0.0 && p->phi_peak > 0.0)
+      fprintf(stderr,
+              "clathra: warning: strength_factor with a dilation of 0 deg (material %s): the factor at which a body "
+              "fails then depends on the grid, even without softening; compare grids\n",
+              c->material[k].name);
+  }
 }

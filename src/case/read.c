@@ -204,10 +204,11 @@ static PetscErrorCode Derive(Reader *r, Case *c)
   }
   RegionsFinish(c);
   for (PetscInt i = 0; i < c->nmaterial; i++) {
-    Material *m        = &c->material[i];
-    Liquid   *l[]      = {&m->solid, &m->hydrate};
-    m->kinetics.M_g    = m->gas.M;
-    m->plasticity.cell = sqrt((c->upper[0] - c->lower[0]) / c->cells[0] * (c->upper[1] - c->lower[1]) / c->cells[1]);
+    Material *m          = &c->material[i];
+    Liquid   *l[]        = {&m->solid, &m->hydrate};
+    m->kinetics.M_g      = m->gas.M;
+    m->plasticity.factor = c->strength_factor;
+    m->plasticity.cell   = sqrt((c->upper[0] - c->lower[0]) / c->cells[0] * (c->upper[1] - c->lower[1]) / c->cells[1]);
     for (int j = 0; j < 2; j++) {
       l[j]->K     = INFINITY;
       l[j]->p_ref = m->water.p_ref;

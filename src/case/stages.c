@@ -265,6 +265,8 @@ static PetscErrorCode StageMaterials(Reader *r, const Case *c, CaseStage *s)
     s->c.region[g].material = m;
   }
   ListDestroy(&list);
+  for (PetscInt m = 0; m < c->nmaterial; m++)
+    s->c.material[m].plasticity.factor = s->c.strength_factor;
   for (PetscInt m = 0; m < c->nmaterial && !s->reaction; m++)
     s->c.material[m].kinetics.K0 = 0.0; /* hydrate stays, and goes on to count as water and gas in the balances */
   PetscFunctionReturn(PETSC_SUCCESS);

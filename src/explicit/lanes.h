@@ -160,6 +160,7 @@ struct Explicit {
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
   double latent, advected;          /* J over the step */
+  double ahead;                     /* of the end of the step, since ExplicitBegin, s */
   double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];

@@ -136,7 +136,7 @@ INLINE void CarryGradients(Explicit *e, const Set s, Run r, const Gathered *g, c
 /* (40): masses of the fluids, what the laws' slopes make of the increments, so that the sum over particles is what the
    nodal balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the
    fluids and from the heat. */
-INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, PetscInt *limited)
+INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, double *restrict kept, PetscInt *limited)
 {
   const Material *mat = r.mat;
   double *const  *f   = e->m->P.f;
@@ -178,6 +178,7 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, PetscIn
       e->latent += L * wanted;
     }
     *limited += gain != wanted;
+    kept[q] = gain < 0.0 ? 1.0 + gain / f[P_MH][p] : 1.0;
     f[P_MH][p] += gain;
   }
 }
@@ -233,8 +234,9 @@ static void PlasticWork(Explicit *e, Run r, const double *work)
   }
 }
 
-/* New effective stress and history of the skeleton. */
-INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, const double *restrict T)
+/* New effective stress and history of the skeleton; kept: share of hydrate that is still there (93). */
+INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, const double *restrict T,
+                     const double *kept)
 {
   const Elasticity *el     = &r.mat->elasticity;
   const double     *Sh     = e->m->P.f[P_SH] + r.p;
@@ -257,8 +259,9 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .E_n     = E_old,
                                .E       = E,
                                .Sh      = Sh,
+                               .kept    = kept,
                                .work    = yields ? work : NULL,
-                               .store   = ParticlesSkeleton(&e->m->P, r.p)};
+                               .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
     ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
   if (yields)
@@ -315,22 +318,25 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   Weights               w;
   Strain                n;
   double *const        *f = e->m->P.f;
+  double                kept[BLOCK];
   const double         *T;
 
+  for (int q = 0; q < BLOCK; q++)
+    kept[q] = 1.0;
   WeightsOf(e, r, &w);
   Gather(e, r, &w, &g);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", r.p);
-  MassesOf(e, s, r, &g, &e->m->limited);
+  MassesOf(e, s, r, &g, kept, &e->m->limited);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   if (!s.solid)
     return;
   if (!StrainOf(s, r.n, &g, dt, &n))
     ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
   CarryGradients(e, s, r, &g, &n, dt);
-  StressOf(e, s, r, &g, &n, T);
+  StressOf(e, s, r, &g, &n, T, kept);
   Deform(e, s, r, &g, dt);
   for (int q = 0; q < r.n; q++)
     f[P_LOGJ][r.p + q] += n.log_J[q];

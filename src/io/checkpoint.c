@@ -22,9 +22,11 @@ const StateField io_state_field[] = {INT(step),          REAL(t),          REAL(
                                      INT(limited_total), INT(loose_total), REAL(err_worst),   REAL(out),
                                      REAL(heat_gain),    REAL(heat_in),    REAL(heat_source), REAL(water0),
                                      REAL(methane0),     REAL(capacity0),  REAL(scale_p),     REAL(scale_u),
-                                     INT(next_snapshot), INT(stage),       REAL(meter),       {NULL, 0, 0, false}};
-/* Nine integers and one that fills up, fourteen reals, the meters. */
-_Static_assert(sizeof(StepperState) == 10 * sizeof(PetscInt) + (14 + CL_METERS * METER_COUNT) * sizeof(double),
+                                     INT(next_snapshot), INT(stage),       REAL(meter),       INT(kind),
+                                     INT(votes),         INT(patience),    REAL(since),       REAL(spent),
+                                     {NULL, 0, 0, false}};
+/* Twelve integers, sixteen reals, the meters. */
+_Static_assert(sizeof(StepperState) == 12 * sizeof(PetscInt) + (16 + CL_METERS * METER_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 typedef struct {

@@ -3,7 +3,28 @@
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* (61), (62) */
+/* (87): atan(tan(angle)/F) with what its slopes are multiplied by. */
+static double ReduceAngle(double factor, double *angle)
+{
+  const double t = tan(*angle), r = t / factor;
+
+  *angle = atan(r);
+  return (1.0 + t * t) / (factor * (1.0 + r * r));
+}
+
+static void Reduce(double factor, Strength *s)
+{
+  const double phi = ReduceAngle(factor, &s->phi), psi = ReduceAngle(factor, &s->psi);
+
+  s->c /= factor;
+  s->c_e /= factor;
+  s->c_S /= factor;
+  s->phi_e *= phi;
+  s->psi_e *= psi;
+  s->psi_S *= psi;
+}
+
+/* (61), (62), (87) */
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s)
 {
   double       dh, ds;
@@ -20,6 +41,8 @@ void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s)
   s->psi_e = -LAW_DEG * eta * ds * psi_peak;
   s->c_S   = law->eta_h * dh * (law->c_max - law->c_min) * left;
   s->psi_S = LAW_DEG * law->eta_h * dh * (law->psi_max - law->psi_min) * left;
+  if (law->factor > 0.0 && law->factor != 1.0)
+    Reduce(law->factor, s);
 }
 
 /* (63) */
@@ -115,7 +138,7 @@ double SofteningRatio(const Plasticity *law, double E, double nu, double Sh, dou
     for (int j = 0; j < 3; j++)
       y[j] = sm + size * s[j];
     MohrCoulombYield(k.phi, k.c, y, dF, &dphi);
-    MenetreyWillamGradient(k.phi, k.psi, law->eccentricity * law->c_max, y, &P);
+    MenetreyWillamGradient(k.phi, k.psi, FlowRoundness(law), y, &P);
     if (law->flow == FLOW_MOHR_COULOMB) {
       const double tp[3] = {1.0 + sin(k.psi), 0.0, sin(k.psi) - 1.0};
 

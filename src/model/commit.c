@@ -164,22 +164,11 @@ static void HeatRates(const Model *m, const Reach *r, const double *x, const dou
   }
 }
 
-static double StartOf(const Model *m, PetscInt p, int k)
+static void PlasticState(PetscInt p, const SkeletonState *k, Trial *trial)
 {
-  return m->stage.p_star ? m->stage.p_star[PLASTIC_COUNT * p + k] : k == PLASTIC_EPS ? m->P.f[P_EPS][p] : 0.0;
-}
-
-static void PlasticState(const Model *m, PetscInt p, const PointState *s, Trial *trial)
-{
-  const SkeletonState *k = &s->skeleton;
-
-  trial->p[PLASTIC_COUNT * p + PLASTIC_EPS]  = k->eps;
-  trial->p[PLASTIC_COUNT * p + PLASTIC_WORK] = StartOf(m, p, PLASTIC_WORK) + s->V * k->work;
-  trial->s[5 * p]                            = k->eps;
-  for (int c = 0; c < 4; c++) {
-    trial->p[PLASTIC_COUNT * p + PLASTIC_STRAIN + c] = k->plastic[c];
-    trial->s[5 * p + 1 + c]                          = k->sig[c];
-  }
+  trial->s[5 * p] = k->own[OWN_P_EPS];
+  for (int c = 0; c < 4; c++)
+    trial->s[5 * p + 1 + c] = k->sig[c];
 }
 
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
@@ -203,8 +192,10 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
     for (int k = 0; k < 3; k++)
       trial->y[4 * p + k] = m->P.f[P_PW + k] ? in[IN_P + k] : 0.0;
     trial->y[4 * p + 3] = s.Sh;
-    if (trial->p)
-      PlasticState(m, p, &s, trial);
+    if (trial->end)
+      trial->end[p] = s.end;
+    if (trial->s)
+      PlasticState(p, &s.skeleton, trial);
     if (m->c->fields.heat)
       HeatRates(m, &r, x, o.out, rates);
   }
@@ -242,7 +233,7 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   f[P_LOGJ][p] += log(s->V / f[P_V][p]);
   f[P_V][p] = s->V;
 
-  const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+  const SkeletonStore store = ParticlesSkeleton(&m->P, 0, 0.0);
   SkeletonKeep(&store, p, &s->skeleton);
 }
 
@@ -317,8 +308,8 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
       m->P.f[P_RATE + k][p] = rates[4 * p + k];
     s.m_w = trial->m[3 * p + 1];
     s.m_g = trial->m[3 * p + 2];
-    if (trial->p) {
-      m->P.f[P_WP][p] += trial->p[PLASTIC_COUNT * p + PLASTIC_WORK];
+    if (trial->s) {
+      m->P.f[P_WP][p] += trial->end[p].work;
       for (int k = 0; k < 5; k++)
         m->P.f[P_KP + k][p] = trial->k[5 * p + k];
     }
@@ -326,5 +317,6 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
   }
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
   PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
+  PetscCall(ParticlesNonlocal(m->c, &m->grid, m->stage.ahead, &m->P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

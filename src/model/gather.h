@@ -226,16 +226,11 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
     h->shift[k]  = Shift(m, p, r, F_PW + k);
   }
   if (fs->solid) {
-    const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+    const SkeletonStore store = ParticlesSkeleton(&m->P, 0, m->stage.ahead);
 
     SkeletonTake(&store, p, &h->skeleton);
-    if (m->stage.p_star) {
-      const double *star = &m->stage.p_star[PLASTIC_COUNT * p];
-
-      h->skeleton.eps = star[PLASTIC_EPS];
-      for (int k = 0; k < 4; k++)
-        h->skeleton.plastic[k] = star[PLASTIC_STRAIN + k];
-    }
+    if (m->stage.k_star)
+      h->skeleton.from = m->stage.k_star[p];
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     for (int i = 0; fs->phase[f] && i < 2; i++) {

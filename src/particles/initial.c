@@ -134,5 +134,12 @@ PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P
   }
   for (int k = 0; k < 4; k++)
     Set(P, p, P_MS + k, m[k]);
+  if (SkeletonLawOf(mat)->start) {
+    double own[OWN_COUNT] = {0.0};
+
+    SkeletonLawOf(mat)->start(mat, own);
+    for (int k = 0; k < OWN_COUNT; k++)
+      Set(P, p, P_HISTORY + k, own[k]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,7 +19,7 @@ typedef struct {
 
 /* Tangent of a number of the skeleton with its derivatives d, in the inputs of the particle. */
 static void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const ScalarState *s, const Jet *thermal,
-                        double row[IN_COUNT])
+                        const Jet *kept, double row[IN_COUNT])
 {
   static const int component[4] = {0, 1, 3, 2}; /* of Kinematics.e */
 
@@ -33,33 +33,46 @@ static void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const 
   AddJet(row, d[SKELETON_E], &s->E, k);
   AddJet(row, d[SKELETON_SH], &s->Sh, k);
   AddJet(row, d[SKELETON_THERMAL], thermal, k);
+  AddJet(row, d[SKELETON_KEPT], kept, k);
+}
+
+/* (93): share of the hydrate that the stage starts from that is still there. */
+static Jet KeptHydrate(const PointHistory *h, const Jet *m_h)
+{
+  const double from = h->m_star[0];
+
+  return m_h->v < from ? JetScale(1.0 / from, *m_h) : JetConstant(m_h->v > 0.0 ? 1.0 : 0.0);
 }
 
 /* Effective stress and its tangent; e_zz is the hoop strain, zero in plane strain. */
 static ClStatus EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
-                                double T, bool tangent, SkeletonState *state, Stress *out, const char **why)
+                                double T, bool tangent, SkeletonState *state, SkeletonStage *end, Stress *out,
+                                const char **why)
 {
   const Jet       thermal = JetScale(1.0 / 3.0, JetMul(s->beta, JetVariable(T - h->T_n, JET_T)));
   double          dE;
-  SkeletonStep    d = {.c       = cos(k->theta),
-                       .s       = sin(k->theta),
-                       .e       = {k->e[0], k->e[1], k->e[3], k->e[2]},
-                       .thermal = thermal.v,
-                       .E       = s->E.v,
-                       .Sh      = s->Sh.v};
+  SkeletonStep    d    = {.c       = cos(k->theta),
+                          .s       = sin(k->theta),
+                          .e       = {k->e[0], k->e[1], k->e[3], k->e[2]},
+                          .thermal = thermal.v,
+                          .E       = s->E.v,
+                          .Sh      = s->Sh.v};
+  const Jet       kept = ElasticityHasBonds(&mat->elasticity) ? KeptHydrate(h, &s->m_h) : JetConstant(1.0);
   SkeletonTangent t;
 
-  d.E_n = ElasticityYoung(&mat->elasticity, h->Sh_n, &dE);
+  d.E_n  = ElasticityYoung(&mat->elasticity, h->Sh_n, &dE);
+  d.kept = kept.v;
   if (!SkeletonUpdate(mat, &h->skeleton, &d, state, tangent ? &t : NULL, why))
     return CL_DOMAIN;
   for (int c = 0; c < 6; c++) {
     out->s[c] = state->sig[c];
     if (tangent)
-      SkeletonRow(t.d[c], k, s, &thermal, out->ds[c]);
+      SkeletonRow(t.d[c], k, s, &thermal, &kept, out->ds[c]);
   }
+  SkeletonEndStage(&h->skeleton, &d, state, s->V.v, end);
   out->work = state->work;
   if (tangent)
-    SkeletonRow(t.d[SKELETON_WORK], k, s, &thermal, out->dwork);
+    SkeletonRow(t.d[SKELETON_WORK], k, s, &thermal, &kept, out->dwork);
   return CL_OK;
 }
 
@@ -355,7 +368,8 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   FillState(fs, &s, state);
   PutScalar(OUT_M, JetShift(s.m_h, h->m_s), k, tangent, o);
   if (fs->solid) {
-    const ClStatus strained = EffectiveStress(mat, h, k, &s, in[IN_T], tangent, &state->skeleton, &st, why);
+    const ClStatus strained =
+        EffectiveStress(mat, h, k, &s, in[IN_T], tangent, &state->skeleton, &state->end, &st, why);
     if (strained != CL_OK)
       return strained;
     const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);

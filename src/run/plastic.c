@@ -7,16 +7,19 @@ PetscErrorCode PrintStrength(const Case *c, MPI_Comm comm)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->nregion; k++) {
-    const Region     *r = &c->region[k];
-    const Plasticity *p = r->material < 0 ? NULL : &c->material[r->material].plasticity;
+    const Region     *r           = &c->region[k];
+    const Plasticity *p           = r->material < 0 ? NULL : &c->material[r->material].plasticity;
+    char              reduced[48] = "";
     Strength          s;
 
     if (!p || p->type == PLASTICITY_NONE || !c->fields.solid)
       continue;
+    if (c->strength_factor != 1.0)
+      PetscCall(PetscSNPrintf(reduced, sizeof(reduced), ", strength_factor %g", c->strength_factor));
     StrengthEvaluate(p, r->Sh, 0.0, &s);
-    PetscCall(PetscPrintf(comm,
-                          "  region %s starts with cohesion %.6g Pa, friction %.4g deg, dilation %.4g deg (S_h = %g)\n",
-                          r->name, s.c, s.phi * 180.0 / M_PI, s.psi * 180.0 / M_PI, r->Sh));
+    PetscCall(PetscPrintf(
+        comm, "  region %s starts with cohesion %.6g Pa, friction %.4g deg, dilation %.4g deg (S_h = %g%s)\n", r->name,
+        s.c, s.phi * 180.0 / M_PI, s.psi * 180.0 / M_PI, r->Sh, reduced));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

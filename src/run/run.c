@@ -91,7 +91,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   bool         ok;
 
   PetscFunctionBeginUser;
-  StageLogStep(run->log, s, info);
+  PetscCall(StageLogStep(run->log, s, info));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
   if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));
@@ -138,8 +138,10 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
                           "%s%s%s  results in %s\n",
                           s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
-                          s->model->c->nstage ? "by stage" : s->scheme->name, z->step, z->failures_total,
-                          z->newton_total, Wall() - run->clock_start, local,
+                          s->model->c->nstage ? "by stage"
+                          : s->auto_.on       ? STEPPER_AUTO
+                                              : s->scheme->name,
+                          z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, local,
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,

@@ -18,10 +18,11 @@ bool   AtSnapshot(const Case *c, double t);
 typedef struct StageLog StageLog;
 PetscErrorCode          StageLogCreate(const Stepper *s, StageLog **log);
 PetscErrorCode          StageLogDestroy(StageLog **log);
-void                    StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info); /* an accepted step */
+PetscErrorCode          StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info); /* an accepted step */
 /* Share of the stage that is done, and the seconds the rest of it will take. */
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left);
-/* A line for every stage that was entered; empty without stages.  PetscFree it. */
+/* A line for every stage that was entered and every integrator that worked in it; empty where there was one only.
+   PetscFree it. */
 PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **text);
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there

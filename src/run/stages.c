@@ -1,8 +1,9 @@
-/* What each stage of a run took: for the progress and the summary. */
+/* What each stage of a run took, and in it each integrator that auto chose: for the progress and the summary. */
 #include "run_private.h"
 
 typedef struct {
   const char *integrator;
+  PetscInt    stage;
   double      from, to;           /* s of the scene, in this process */
   double      clock, spent;       /* s of the wall: when it began, so far */
   double      scaling;            /* error of mass scaling so far */
@@ -12,24 +13,33 @@ typedef struct {
 } Entry;
 
 struct StageLog {
-  PetscInt n, now, step; /* stages, the present one, steps at the last look */
+  PetscInt n, cap, step; /* entries, allocated, steps at the last look */
+  double   from, clock;  /* when the stage began: s of the scene in this process, of the wall */
   Entry   *entry;
 };
 
-static void Begin(StageLog *log, PetscInt k, double t)
+static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
 {
-  log->now      = k;
-  log->entry[k] = (Entry){.from = t, .to = t, .clock = Wall()};
+  PetscFunctionBeginUser;
+  if (log->n == log->cap) {
+    log->cap = 2 * log->cap + 8;
+    PetscCall(PetscRealloc(sizeof(Entry) * (size_t)log->cap, &log->entry));
+  }
+  if (log->n == 0 || log->entry[log->n - 1].stage != s->state.stage) {
+    log->from  = from;
+    log->clock = Wall();
+  }
+  log->entry[log->n++] =
+      (Entry){.integrator = s->scheme->name, .stage = s->state.stage, .from = from, .to = from, .clock = Wall()};
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StageLogCreate(const Stepper *s, StageLog **log)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(log));
-  (*log)->n    = PetscMax(s->model->c->nstage, 1);
   (*log)->step = s->state.step;
-  PetscCall(PetscCalloc1((*log)->n, &(*log)->entry));
-  Begin(*log, s->state.stage, s->state.t);
+  PetscCall(Append(*log, s, s->state.t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,30 +61,30 @@ static void NoteLimit(Entry *e, const Stepper *s)
   e->ruled[limit->rules] += s->state.t - e->to;
 }
 
-void StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info)
+PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info)
 {
-  if (s->state.stage != log->now)
-    Begin(log, s->state.stage, s->model->c->t_begin);
+  Entry *e = &log->entry[log->n - 1];
 
-  Entry *e = &log->entry[log->now];
+  PetscFunctionBeginUser;
+  if (s->state.stage != e->stage || s->scheme->name != e->integrator)
+    PetscCall(Append(log, s, s->state.stage != e->stage ? s->model->c->t_begin : e->to));
+  e = &log->entry[log->n - 1];
   if (s->explicit)
     NoteLimit(e, s);
-  e->integrator = s->scheme->name;
-  e->to         = s->state.t;
-  e->spent      = Wall() - e->clock;
-  e->scaling    = s->explicit ? ExplicitMassScalingError(s->explicit) : 0.0;
+  e->to      = s->state.t;
+  e->spent   = Wall() - e->clock;
+  e->scaling = s->explicit ? ExplicitMassScalingError(s->explicit) : 0.0;
   e->steps += s->state.step - log->step;
   e->refused += info->cuts;
   e->newton += info->newton;
   log->step = s->state.step;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left)
 {
-  const Entry *e = &log->entry[log->now];
-
-  *done = (e->to - e->from) / (s->model->c->t_end - e->from);
-  *left = *done > 0.0 ? e->spent * (1.0 - *done) / *done : 0.0;
+  *done = (s->state.t - log->from) / (s->model->c->t_end - log->from);
+  *left = *done > 0.0 ? (Wall() - log->clock) * (1.0 - *done) / *done : 0.0;
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */
@@ -103,20 +113,22 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(line * (size_t)log->n, text));
-  for (PetscInt k = 0; k < c->nstage; k++) {
+  for (PetscInt k = 0; k < log->n; k++) {
     const Entry *e  = &log->entry[k];
-    char        *at = *text + strlen(*text), scaled[80] = "", limit[200];
+    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[200];
 
-    if (e->steps == 0)
+    if (e->steps == 0 || (c->nstage == 0 && log->n == 1))
       continue;
-    if (c->stage[k].c.mass_scaling > 1.0 && e->scaling > 0.0)
+    if (CaseInStage(c, e->stage)->mass_scaling > 1.0 && e->scaling > 0.0)
       PetscCall(PetscSNPrintf(scaled, sizeof(scaled), ", mass scaling added up to %.2g of the forces", e->scaling));
     PetscCall(LimitWords(e, limit));
+    if (c->nstage)
+      PetscCall(PetscSNPrintf(stage, sizeof(stage), "stage %s: ", c->stage[e->stage].name));
     PetscCall(PetscSNPrintf(at, line,
-                            "  stage %s: %s from %g s to %g s, %" PetscInt_FMT " steps, %" PetscInt_FMT
+                            "  %s%s from %g s to %g s, %" PetscInt_FMT " steps, %" PetscInt_FMT
                             " refused, %" PetscInt_FMT " Newton iterations, %.2f s%s%s\n",
-                            c->stage[k].name, e->integrator, e->from, e->to, e->steps, e->refused, e->newton, e->spent,
-                            limit, scaled));
+                            stage, e->integrator, e->from, e->to, e->steps, e->refused, e->newton, e->spent, limit,
+                            scaled));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

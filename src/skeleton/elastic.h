@@ -8,7 +8,7 @@
 /* Share of the stress above the initial one that a change of E leaves, r of (14); true where it follows E. */
 INLINE bool Relaxation(const Elasticity *el, double E, double E_n, double *r)
 {
-  const bool follows = !(el->loss_only && E > E_n);
+  const bool follows = !(el->change == STIFFNESS_LOSS_ONLY && E > E_n);
 
   *r = follows ? E / E_n : 1.0;
   return follows;
@@ -23,6 +23,18 @@ INLINE void UnitStress(const Elasticity *el, const double e[4], double s[4])
   s[1] = G2 * e[1] + tr;
   s[2] = G2 * e[2] + tr;
   s[3] = G2 * e[3];
+}
+
+/* Turns the plane part of a tensor xx yy zz xy. */
+INLINE void Turn4(const double a[4], double c, double s, double r[4])
+{
+  const double a6[6] = {a[0], a[1], a[2], a[3], 0.0, 0.0};
+  double       r6[6];
+
+  Turn6(a6, c, s, r6);
+#pragma GCC unroll 4
+  for (int k = 0; k < 4; k++)
+    r[k] = r6[k];
 }
 
 /* (14).  No branches and no loops that remain: compiles to vector code inside a loop over particles. */
@@ -43,15 +55,67 @@ INLINE void ElasticStress(const Elasticity *el, const SkeletonHistory *h, const 
     o->sig[k] = o->sig0[k] + r * rot[k] + (k < 4 ? d->E * unit[k < 4 ? k : 0] : 0.0);
 }
 
+/* (93): hydrate's part in o->own.  Vector code, too. */
+INLINE void BondedStress(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *o)
+{
+  const double *from = h->from.own + OWN_P_BOND, E_h = d->E - el->E0;
+  double        e[4], start[4], bond[4], bare[4], unit[4];
+
+  Turn4(h->from.strain, d->c, d->s, start);
+  Turn4(from, d->c, d->s, bond);
+#pragma GCC unroll 4
+  for (int k = 0; k < 4; k++) {
+    e[k]    = d->e[k] - (k < 3 ? d->thermal : 0.0) - start[k];
+    bare[k] = h->from.sig[k] - from[k];
+  }
+  UnitStress(el, e, unit);
+  Turn4(bare, d->c, d->s, start);
+  Turn6(h->sig, d->c, d->s, o->sig);
+  Turn6(h->sig0, d->c, d->s, o->sig0);
+#pragma GCC unroll 4
+  for (int k = 0; k < 4; k++) {
+    o->own[OWN_P_BOND + k] = d->kept * (bond[k] + E_h * unit[k]);
+    o->sig[k]              = start[k] + el->E0 * unit[k] + o->own[OWN_P_BOND + k];
+  }
+}
+
 /* What else belongs to a state that stayed elastic. */
 INLINE void ElasticEnd(const SkeletonHistory *h, SkeletonState *o)
 {
-  o->eps    = h->eps;
   o->work   = 0.0;
   o->region = RETURN_ELASTIC;
+  for (int k = 0; k < OWN_COUNT; k++)
+    o->own[k] = h->from.own[k];
   for (int k = 0; k < 4; k++)
-    o->plastic[k] = h->plastic[k];
+    o->plastic[k] = h->from.plastic[k];
+}
+
+/* Young's modulus by which a strain of the stage shows in the stress: E, or with bonds (93). */
+INLINE double StageModulus(const Elasticity *el, const SkeletonStep *d)
+{
+  return ElasticityHasBonds(el) ? el->E0 + d->kept * (d->E - el->E0) : d->E;
+}
+
+/* Its slope in number q of SkeletonStep. */
+static inline double StageModulusSlope(const Elasticity *el, const SkeletonStep *d, int q)
+{
+  if (!ElasticityHasBonds(el))
+    return q == SKELETON_E ? 1.0 : 0.0;
+  return q == SKELETON_E ? d->kept : q == SKELETON_KEPT ? d->E - el->E0 : 0.0;
+}
+
+/* Stress without plastic flow in the stage, the hydrate's part with bonds, and the tangent (may be null). */
+void TrialState(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
+                SkeletonTangent *t);
+/* Plastic strain xx yy zz xy that takes a stress off by `over`. */
+void PlasticStrain(const Elasticity *el, double E, const double over[4], double e[4]);
+/* Takes a return's `over` off the hydrate's part too (94); e: plastic strain of the stage, as the body lies now. */
+void ReturnEnd(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, const double over[4],
+               const double e[4], SkeletonState *s);
+/* Share of a return's `over` that is the hydrate's (94); zero without bonds. */
+INLINE double BondShare(const Elasticity *el, const SkeletonStep *d)
+{
+  return ElasticityHasBonds(el) ? d->kept * (d->E - el->E0) / StageModulus(el, d) : 0.0;
 }
 
 bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why);
-void ElasticTangent(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonTangent *t);

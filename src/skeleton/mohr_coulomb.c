@@ -84,41 +84,33 @@ static void StressSlopes(const Principal *p, const Returned *r, double C[4][4], 
   }
 }
 
-static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, const Principal *p)
+static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, double nonlocal, const Principal *p)
 {
   const Elasticity *el = &mat->elasticity;
 
-  return (Trial3){.law  = &mat->plasticity,
-                  .G2   = 2.0 * ElasticityShearFactor(el),
-                  .lame = ElasticityLameFactor(el),
-                  .E    = d->E,
-                  .Sh   = d->Sh,
-                  .eps  = eps,
-                  .y    = {p->y[0], p->y[1], p->y[2]}};
+  return (Trial3){.law      = &mat->plasticity,
+                  .G2       = 2.0 * ElasticityShearFactor(el),
+                  .lame     = ElasticityLameFactor(el),
+                  .E        = StageModulus(el, d),
+                  .Sh       = d->Sh,
+                  .eps      = eps,
+                  .nonlocal = nonlocal,
+                  .y        = {p->y[0], p->y[1], p->y[2]}};
 }
 
-static bool Yields(const Plasticity *law, double Sh, double eps, const double y[3])
+static bool Yields(const Plasticity *law, double Sh, double eps, double nonlocal, const double y[3])
 {
   Strength k;
   double   dy[3], dphi;
 
-  StrengthEvaluate(law, Sh, eps, &k);
+  StrengthOf(law, Sh, eps, nonlocal, &k);
   const double round_off = ROUND_OFF * k.c + 1e-2 * ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
-  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > law->cutoff + round_off;
+  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > StrengthCutoff(law) + round_off;
 }
 
 static bool ReturnToYield(const Trial3 *t, bool slopes, Returned *r)
 {
   return t->law->flow == FLOW_MOHR_COULOMB ? ReturnPlanes(t, slopes, r) : ReturnSmooth(t, slopes, r);
-}
-
-/* Plastic strain of the step from stress to trial stress, xx yy zz xy, by Hooke's law. */
-static void PlasticStrain(const Elasticity *el, double E, const double over[4], double e[4])
-{
-  const double tr = el->nu * (over[0] + over[1] + over[2]);
-
-  for (int k = 0; k < 4; k++)
-    e[k] = ((1.0 + el->nu) * over[k] - (k < 3 ? tr : 0.0)) / E;
 }
 
 /* sigma : e, with the shear on both sides of the diagonal. */
@@ -127,11 +119,13 @@ static double Double(const double a[4], const double b[4])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3];
 }
 
-/* Tangent of the trial state turned into that of the returned one; the work is sigma : D^-1 (trial - sigma). */
+/* Tangent of the trial state turned into that of the returned one; the work is sigma : D^-1 (trial - sigma), with
+   StageModulus in D. */
 static void PlasticTangent(const Elasticity *el, const SkeletonStep *d, const Principal *p, const Returned *r,
                            const double sig[4], const double e[4], SkeletonTangent *t)
 {
-  double C[4][4], by_E[4], by_S[4], trial[4][SKELETON_IN];
+  const double E = StageModulus(el, d);
+  double       C[4][4], by_E[4], by_S[4], trial[4][SKELETON_IN];
 
   StressSlopes(p, r, C, by_E, by_S);
   for (int a = 0; a < 4; a++) {
@@ -139,79 +133,47 @@ static void PlasticTangent(const Elasticity *el, const SkeletonStep *d, const Pr
       trial[a][q] = t->d[a][q];
   }
   for (int q = 0; q < SKELETON_IN; q++) {
-    double over[4], de[4], ds[4];
+    const double dE = StageModulusSlope(el, d, q);
+    double       over[4], de[4], ds[4];
 
     for (int a = 0; a < 4; a++) {
-      ds[a] = q == SKELETON_E ? by_E[a] : q == SKELETON_SH ? by_S[a] : 0.0;
+      ds[a] = by_E[a] * dE + (q == SKELETON_SH ? by_S[a] : 0.0);
       for (int b = 0; b < 4; b++)
         ds[a] += C[a][b] * trial[b][q];
       t->d[a][q] = ds[a];
       over[a]    = trial[a][q] - ds[a];
     }
-    PlasticStrain(el, d->E, over, de);
-    t->d[SKELETON_WORK][q] = Double(ds, e) + Double(sig, de) - (q == SKELETON_E ? Double(sig, e) / d->E : 0.0);
+    PlasticStrain(el, E, over, de);
+    t->d[SKELETON_WORK][q] = Double(ds, e) + Double(sig, de) - Double(sig, e) * dE / E;
   }
 }
 
-/* Turns the plane part of a tensor xx yy zz xy. */
-static void Turn4(const double a[4], double c, double s, double r[4])
-{
-  const double a6[6] = {a[0], a[1], a[2], a[3], 0.0, 0.0};
-  double       r6[6];
-
-  Turn6(a6, c, s, r6);
-  for (int k = 0; k < 4; k++)
-    r[k] = r6[k];
-}
-
-/* (68): takes the plastic strain `start` (as the body lies now) that the stage starts from off the trial stress. */
-static void TakeOff(const Elasticity *el, double E, const double start[4], SkeletonState *s, SkeletonTangent *t)
-{
-  const double start6[6] = {start[0], start[1], start[2], start[3], 0.0, 0.0};
-  double       unit[4], spin[6], dunit[4];
-
-  UnitStress(el, start, unit);
-  Spin6(start6, spin);
-  UnitStress(el, spin, dunit);
-  for (int k = 0; k < 4; k++) {
-    s->sig[k] -= E * unit[k];
-    if (!t)
-      continue;
-    t->d[k][SKELETON_E] -= unit[k];
-    t->d[k][SKELETON_THETA] -= E * dunit[k];
-  }
-}
-
-/* From the trial stress in s to the yield surface; plastic strain of the stage in e. */
-static bool Return(const Material *mat, const SkeletonStep *d, SkeletonState *s, SkeletonTangent *t, double e[4],
-                   const char **why)
+/* From the trial stress in s to the yield surface; what that takes off it in `over`, with the plastic strain e. */
+static bool Return(const Material *mat, const SkeletonStep *d, double nonlocal, SkeletonState *s, SkeletonTangent *t,
+                   double over[4], double e[4], const char **why)
 {
   Principal p;
   Returned  r;
-  double    v[3], over[4], trial[4];
+  double    v[3];
 
-  for (int k = 0; k < 4; k++)
-    e[k] = 0.0;
-  s->work   = 0.0;
-  s->region = RETURN_ELASTIC;
   PrincipalOf(s->sig, &p);
-  if (!Yields(&mat->plasticity, d->Sh, s->eps, p.y))
+  if (!Yields(&mat->plasticity, d->Sh, s->own[OWN_P_EPS], nonlocal, p.y))
     return true;
-  const Trial3 at = TrialOf(mat, d, s->eps, &p);
+  const Trial3 at = TrialOf(mat, d, s->own[OWN_P_EPS], nonlocal, &p);
   if (!ReturnToYield(&at, t != NULL, &r)) {
     *why = "no stress on the yield surface was found for the strain of this step";
     return false;
   }
   for (int k = 0; k < 4; k++)
-    trial[k] = s->sig[k];
+    over[k] = s->sig[k];
   Unsort(&p, r.y, v);
   FromPrincipal(&p, v, s->sig);
   for (int k = 0; k < 4; k++)
-    over[k] = trial[k] - s->sig[k];
-  PlasticStrain(&mat->elasticity, d->E, over, e);
-  s->eps    = r.eps;
-  s->region = r.region;
-  s->work   = Double(s->sig, e);
+    over[k] -= s->sig[k];
+  PlasticStrain(&mat->elasticity, at.E, over, e);
+  s->own[OWN_P_EPS] = r.eps;
+  s->region         = r.region;
+  s->work           = Double(s->sig, e);
   if (t)
     PlasticTangent(&mat->elasticity, d, &p, &r, s->sig, e, t);
   return true;
@@ -220,20 +182,25 @@ static bool Return(const Material *mat, const SkeletonStep *d, SkeletonState *s,
 bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                         SkeletonTangent *t, const char **why)
 {
-  double start[4], e[4];
+  double over[4], e[4];
 
-  ElasticStress(&mat->elasticity, h, d, s);
-  ElasticEnd(h, s);
-  if (t)
-    ElasticTangent(&mat->elasticity, h, d, t);
-  Turn4(h->plastic, d->c, d->s, start);
-  TakeOff(&mat->elasticity, d->E, start, s, t);
-  if (!Return(mat, d, s, t, e, why))
+  TrialState(&mat->elasticity, h, d, s, t);
+  if (!Return(mat, d, h->nonlocal, s, t, over, e, why))
     return false;
-  for (int k = 0; k < 4; k++)
-    start[k] += e[k];
-  Turn4(start, d->c, -d->s, s->plastic);
+  if (s->region != RETURN_ELASTIC)
+    ReturnEnd(&mat->elasticity, h, d, over, e, s);
   return true;
+}
+
+/* What the block keeps of particle q that yields. */
+static void KeepReturned(const SkeletonStore *f, int q, const SkeletonState *s, double share, const double over[4])
+{
+  f->own[OWN_P_EPS][q] = s->own[OWN_P_EPS];
+  for (int k = 0; k < 4; k++) {
+    f->sig[k][q] = s->sig[k];
+    if (share != 0.0)
+      f->own[OWN_P_BOND + k][q] -= share * over[k];
+  }
 }
 
 /* Trial stresses of all first, in vector code, then those that yield one by one. */
@@ -243,18 +210,16 @@ bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char *
   bool                 found = Block_Elastic(mat, b, why);
 
   for (int q = 0; q < b->n; q++) {
-    const SkeletonStep d = {.E = b->E[q], .Sh = b->Sh[q]};
-    SkeletonState      s = {.sig = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]}, .eps = f->eps[q]};
-    double             e[4];
+    const SkeletonStep d = {.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
+    SkeletonState      s = {.sig            = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]},
+                            .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
+    double             over[4], e[4];
 
-    found       = Return(mat, &d, &s, NULL, e, why) && found;
+    found       = Return(mat, &d, SkeletonNonlocal(f, q), &s, NULL, over, e, why) && found;
     b->work[q]  = s.work;
     f->yield[q] = (double)s.region;
-    if (s.region == RETURN_ELASTIC)
-      continue;
-    f->eps[q] = s.eps;
-    for (int k = 0; k < 4; k++)
-      f->sig[k][q] = s.sig[k];
+    if (s.region != RETURN_ELASTIC)
+      KeepReturned(f, q, &s, BondShare(&mat->elasticity, &d), over);
   }
   return found;
 }

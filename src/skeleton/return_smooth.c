@@ -33,8 +33,8 @@ static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, Sy
   FlowGradient P;
   double       dF[3], dn[3], F_phi, n_y[3] = {0.0}, n_eps = 0.0, n_S = 0.0;
 
-  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
-  MenetreyWillamGradient(k.phi, k.psi, t->law->eccentricity * t->law->c_max, x, &P);
+  StrengthAt(t, t->eps + x[X_EPS], &k);
+  MenetreyWillamGradient(k.phi, k.psi, FlowRoundness(t->law), x, &P);
   const double n = DeviatoricNorm(P.dev, dn), L = x[X_L];
 
   for (int i = 0; i < 3; i++) {
@@ -218,8 +218,8 @@ static void GuessBeyond(const Trial3 *t, double x[UNKNOWNS])
   const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, norm = DeviatoricNorm(t->y, ds);
 
   x[X_EPS] = norm / (t->G2 * t->E);
-  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
-  const double tp = tan(k.psi), m = t->law->eccentricity * t->law->c_max * tp, at = k.c / tan(k.phi),
+  StrengthAt(t, t->eps + x[X_EPS], &k);
+  const double tp = tan(k.psi), m = FlowRoundness(t->law) * tp, at = k.c / tan(k.phi),
                R    = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi));
   x[X_L]            = (sm - at) / ((t->G2 + 3.0 * t->lame) * tp / 3.0);
   const double keep = 1.0 / (1.0 + t->G2 * x[X_L] * 1.5 * R * R / m);
@@ -236,8 +236,8 @@ static void GuessShare(const Trial3 *t, double x[UNKNOWNS])
   const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, norm = DeviatoricNorm(t->y, ds);
 
   x[X_EPS] = norm / (t->G2 * t->E);
-  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
-  const double tp = tan(k.psi), m = t->law->eccentricity * t->law->c_max * tp, K = (t->G2 + 3.0 * t->lame) * tp / 3.0,
+  StrengthAt(t, t->eps + x[X_EPS], &k);
+  const double tp = tan(k.psi), m = FlowRoundness(t->law) * tp, K = (t->G2 + 3.0 * t->lame) * tp / 3.0,
                R = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi)), rho = 1.5 * R * norm,
                F = MohrCoulombYield(k.phi, k.c, t->y, dF, &F_phi), shear = F + k.c - sm * tan(k.phi);
   for (int i = 0; i < BISECTIONS; i++) {
@@ -261,7 +261,7 @@ static bool Continuation(const Trial3 *t, double scale, double x[UNKNOWNS], int 
   Strength k;
   double   done = 0.0, step = 0.25, from[UNKNOWNS], inside, dF[3], dphi;
 
-  StrengthEvaluate(t->law, t->Sh, t->eps, &k);
+  StrengthAt(t, t->eps, &k);
   inside = fmin((t->y[0] + t->y[1] + t->y[2]) / 3.0, k.phi > 0.0 ? 0.5 * k.c / tan(k.phi) : INFINITY);
   for (int i = 0; i < UNKNOWNS; i++)
     from[i] = i < 3 ? inside : 0.0;
@@ -294,10 +294,10 @@ static bool StaysAtApex(const Trial3 *t, double scale, const Returned *apex)
   Strength     k;
   FlowGradient P;
 
-  StrengthEvaluate(t->law, t->Sh, apex->eps, &k);
+  StrengthAt(t, apex->eps, &k);
   if (k.psi < FLAT)
     return true;
-  if (t->law->eccentricity * t->law->c_max * tan(k.psi) > SHARP * scale)
+  if (FlowRoundness(t->law) * tan(k.psi) > SHARP * scale)
     return false;
   MenetreyWillamGradient(k.phi, k.psi, 0.0, s, &P);
   const double L = (sm - apex->y[0]) / ((t->G2 + 3.0 * t->lame) * tan(k.psi) / 3.0);

@@ -2,45 +2,50 @@
 #include "elastic.h"
 #include "plastic.h"
 
-/* Derivatives of (14). */
-void ElasticTangent(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonTangent *t)
-{
-  const double e[4] = {d->e[0] - d->thermal, d->e[1] - d->thermal, d->e[2] - d->thermal, d->e[3]};
-  const double G = ElasticityShearFactor(el), lame = ElasticityLameFactor(el);
-  double       r, over[6], rot[6], rot0[6], drot[6], drot0[6], unit[4];
-  const bool   follows = Relaxation(el, d->E, d->E_n, &r);
-
-  UnitStress(el, e, unit);
-  for (int k = 0; k < 6; k++)
-    over[k] = h->sig[k] - h->sig0[k];
-  Turn6(over, d->c, d->s, rot);
-  Turn6(h->sig0, d->c, d->s, rot0);
-  Spin6(rot, drot);
-  Spin6(rot0, drot0);
-  *t = (SkeletonTangent){0};
-  for (int k = 0; k < 6; k++) {
-    double *row = t->d[k];
-
-    row[SKELETON_THETA] = drot0[k] + r * drot[k];
-    row[SKELETON_E]     = (k < 4 ? unit[k] : 0.0) + (follows ? rot[k] / d->E_n : 0.0);
-    if (k < 4)
-      row[SKELETON_STRAIN + k] = d->E * 2.0 * G;
-    for (int j = 0; k < 3 && j < 3; j++)
-      row[SKELETON_STRAIN + j] += d->E * lame;
-    if (k < 3)
-      row[SKELETON_THERMAL] = -d->E * (2.0 * G + 3.0 * lame);
-  }
-}
-
 static bool Update_Elastic(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                            SkeletonTangent *t, const char **why)
 {
   (void)why;
-  ElasticStress(&mat->elasticity, h, d, s);
-  ElasticEnd(h, s);
-  if (t)
-    ElasticTangent(&mat->elasticity, h, d, t);
+  TrialState(&mat->elasticity, h, d, s, t);
   return true;
+}
+
+INLINE SkeletonStep StepOf(const SkeletonBlock *B, int q)
+{
+  return (SkeletonStep){.c       = B->c[q],
+                        .s       = B->s[q],
+                        .e       = {B->xx[q], B->yy[q], 0.0, B->xy[q]},
+                        .thermal = B->thermal[q],
+                        .E_n     = B->E_n[q],
+                        .E       = B->E[q],
+                        .Sh      = B->Sh[q]};
+}
+
+static void Block_Bonds(const Material *mat, const SkeletonBlock *b)
+{
+  const Elasticity    el = mat->elasticity;
+  const SkeletonBlock B  = *b;
+
+#pragma GCC ivdep
+  for (int q = 0; q < B.n; q++) {
+    SkeletonStep    d = StepOf(&B, q);
+    SkeletonHistory h;
+    SkeletonState   s;
+
+    d.kept = B.kept[q];
+    SkeletonTakeStress(&B.store, q, &h);
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++) {
+      h.from.sig[k]              = h.sig[k];
+      h.from.strain[k]           = 0.0;
+      h.from.own[OWN_P_BOND + k] = B.store.own[OWN_P_BOND + k][q];
+    }
+    BondedStress(&el, &h, &d, &s);
+    SkeletonKeepStress(&B.store, q, &s);
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++)
+      B.store.own[OWN_P_BOND + k][q] = s.own[OWN_P_BOND + k];
+  }
 }
 
 bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why)
@@ -49,15 +54,15 @@ bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why
   const SkeletonBlock B  = *b;
 
   (void)why;
+  for (int q = 0; B.work && q < B.n; q++)
+    B.work[q] = 0.0;
+  if (ElasticityHasBonds(&el)) {
+    Block_Bonds(mat, b);
+    return true;
+  }
 #pragma GCC ivdep
   for (int q = 0; q < B.n; q++) {
-    const SkeletonStep d = {.c       = B.c[q],
-                            .s       = B.s[q],
-                            .e       = {B.xx[q], B.yy[q], 0.0, B.xy[q]},
-                            .thermal = B.thermal[q],
-                            .E_n     = B.E_n[q],
-                            .E       = B.E[q],
-                            .Sh      = B.Sh[q]};
+    const SkeletonStep d = StepOf(&B, q);
     SkeletonHistory    h;
     SkeletonState      s;
 
@@ -65,16 +70,41 @@ bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why
     ElasticStress(&el, &h, &d, &s);
     SkeletonKeepStress(&B.store, q, &s);
   }
-  for (int q = 0; B.work && q < B.n; q++)
-    B.work[q] = 0.0;
   return true;
 }
 
 /* By PLASTICITY_... */
-static const SkeletonLaw laws[] = {{"none", Update_Elastic, Block_Elastic},
-                                   {"mohr_coulomb", Update_MohrCoulomb, Block_MohrCoulomb}};
+static const SkeletonLaw laws[] = {
+    {.name = "none", .update = Update_Elastic, .block = Block_Elastic},
+    {.name = "mohr_coulomb", .has = HAS_PLASTIC, .update = Update_MohrCoulomb, .block = Block_MohrCoulomb}};
 
 const SkeletonLaw *SkeletonLawOf(const Material *mat)
 {
   return &laws[mat->plasticity.type];
+}
+
+#define OWN_ROW(id, has, name, nc, unit, doc) {OWN_##id, nc},
+static const struct {
+  int first, nc;
+} own[] = {CL_SKELETON_HISTORY(OWN_ROW)};
+
+void SkeletonEndStage(const SkeletonHistory *h, const SkeletonStep *d, const SkeletonState *s, double V,
+                      SkeletonStage *end)
+{
+  const double e[4] = {d->e[0] - d->thermal, d->e[1] - d->thermal, d->e[2] - d->thermal, d->e[3]};
+
+  for (size_t i = 0; i < sizeof(own) / sizeof(*own); i++) {
+    const double *from = s->own + own[i].first;
+    double       *to   = end->own + own[i].first;
+
+    if (own[i].nc == 4)
+      Turn4(from, d->c, -d->s, to);
+    for (int k = 0; own[i].nc != 4 && k < own[i].nc; k++)
+      to[k] = from[k];
+  }
+  Turn4(e, d->c, -d->s, end->strain);
+  Turn4(s->sig, d->c, -d->s, end->sig);
+  for (int k = 0; k < 4; k++)
+    end->plastic[k] = s->plastic[k];
+  end->work = h->from.work + V * s->work;
 }

@@ -185,6 +185,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
   PetscFunctionBeginUser;
   *ok = true;
   PetscCall(ParticlesCopy(&m->P, &s->good));
+  s->auto_.good_t = s->state.t;
   for (PetscInt cuts = 0;; cuts++) {
     Attempt a = {.status = CL_OK};
     double  dt;

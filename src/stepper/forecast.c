@@ -5,7 +5,6 @@
 #define HYBRID_BASE 0.10e-6   /* s a particle and step: motion and stress */
 #define HYBRID_SCALAR 0.10e-6 /* ... each of p_w, p_g, T */
 #define HYBRID_COUPLED 0.02e-6
-#define NEWTON 4.0      /* iterations a stage */
 #define PARTICLE 1.1e-6 /* s: residual */
 #define TANGENT 0.9e-6  /* s a particle and unknown of a node: Jacobian */
 #define FACTOR 5.5e-7   /* s: factorisation of N unknowns, n to a node, takes FACTOR n N^1.3 */
@@ -25,7 +24,7 @@ static double Extent(const Case *c)
   return extent;
 }
 
-static double HybridSeconds(const Model *m, double steps)
+double StepperHybridWork(const Model *m, double steps)
 {
   const FieldSet *fs = &m->c->fields;
   const double    s  = fs->phase[PHASE_W] + fs->phase[PHASE_G] + fs->heat;
@@ -47,38 +46,45 @@ static double ImplicitSteps(const Stepper *s, double left)
   return transits < TRANSITS ? fmax(SMOOTH_STEPS, PER_TRANSIT * transits) : SMOOTH_STEPS;
 }
 
-static double ImplicitSeconds(const Model *m, double steps, int stages)
+double StepperImplicitWork(const Model *m, double newton, double factors)
 {
   const double n = m->c->fields.n, nodes = (double)m->P.n / 4.0, N = n * nodes;
 
-  return steps * stages * NEWTON * (double)m->P.n * (PARTICLE + TANGENT * n) +
-         steps * FACTOR * n * pow(N, FACTOR_POWER);
+  return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + factors * FACTOR * n * pow(N, FACTOR_POWER);
+}
+
+PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)
+{
+  const ExplicitOptions o = {.drag_implicit = true, .flip = 1.0, .mass_scaling = s->model->c->mass_scaling};
+  Explicit             *e;
+
+  PetscFunctionBeginUser;
+  PetscCall(ExplicitCreate(s->model, &o, &e));
+  PetscCall(ExplicitStableStep(e, limit));
+  PetscCall(ExplicitDestroy(&e));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StepperForecast(Stepper *s)
 {
-  const Model          *m    = s->model;
-  const Case           *c    = m->c;
-  const ExplicitOptions o    = {.drag_implicit = true, .flip = 1.0, .mass_scaling = c->mass_scaling};
-  const double          left = c->t_end - fmax(s->state.t, c->t_begin);
-  Forecast             *f    = &s->forecast;
-  Explicit             *e;
+  const Model *m    = s->model;
+  const Case  *c    = m->c;
+  const double left = c->t_end - fmax(s->state.t, c->t_begin);
+  Forecast    *f    = &s->forecast;
 
   PetscFunctionBeginUser;
   *f = (Forecast){.hybrid_steps = INFINITY, .hybrid_seconds = INFINITY};
   for (int k = 0; k < LIMIT_COUNT; k++)
     f->limit.each[k] = INFINITY;
-  if (!CaseNeedsImplicit(c)) {
-    PetscCall(ExplicitCreate(s->model, &o, &e));
-    PetscCall(ExplicitStableStep(e, &f->limit));
-    PetscCall(ExplicitDestroy(&e));
-  }
+  if (!CaseNeedsImplicit(c))
+    PetscCall(StepperHybridLimit(s, &f->limit));
   if (f->limit.dt > 0.0) {
     f->hybrid_steps   = fmax(ceil(left / fmin(c->cfl * f->limit.dt, c->dt_max)), 1.0);
-    f->hybrid_seconds = HybridSeconds(m, f->hybrid_steps);
+    f->hybrid_seconds = StepperHybridWork(m, f->hybrid_steps);
   }
-  f->implicit_steps   = ImplicitSteps(s, left);
-  f->implicit_seconds = ImplicitSeconds(m, f->implicit_steps, s->scheme->stages);
+  f->implicit_steps = ImplicitSteps(s, left);
+  f->implicit_seconds =
+      StepperImplicitWork(m, f->implicit_steps * s->scheme->stages * STEPPER_NEWTON, f->implicit_steps);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->hybrid_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->implicit_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   f->hybrid = f->hybrid_seconds < f->implicit_seconds;

@@ -7,9 +7,6 @@
 #define EASY_NEWTON 6   /* growth only while Newton needs no more iterations a stage */
 #define CRAWL 1e7       /* a run that needs so many more steps at its present length ... */
 #define CRAWL_STEPS 100 /* ... and that for so many in a row, will not end */
-#define SCALE_T 1.0     /* K */
-#define SCALE_SH 0.1
-#define SCALE_EPS 0.1 /* of plastic strain */
 
 PetscErrorCode StepperFreeWork(StepperWork *w)
 {
@@ -18,9 +15,11 @@ PetscErrorCode StepperFreeWork(StepperWork *w)
   PetscCall(PetscFree3(w->m_star, w->rates, w->v_n));
   for (int k = 0; k < 2; k++) {
     PetscCall(PetscFree4(w->trial[k].m, w->trial[k].y, w->trial[k].u, w->trial[k].v));
-    PetscCall(PetscFree3(w->trial[k].p, w->trial[k].s, w->trial[k].k));
+    PetscCall(PetscFree(w->trial[k].end));
+    PetscCall(PetscFree2(w->trial[k].s, w->trial[k].k));
   }
-  PetscCall(PetscFree2(w->p_star, w->e_plastic));
+  PetscCall(PetscFree(w->k_star));
+  PetscCall(PetscFree(w->e_plastic));
   w->cap_nodes = w->cap_particles = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -39,10 +38,15 @@ static PetscErrorCode SizeWork(Stepper *s)
   PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, 2 * n, &w->v_n));
   for (int k = 0; k < 2; k++)
     PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, 2 * n, &w->trial[k].u, 2 * n, &w->trial[k].v));
-  for (int k = 0; k < 2 && (s->model->c->fields.has & HAS_PLASTIC); k++)
-    PetscCall(PetscCalloc3(PLASTIC_COUNT * n, &w->trial[k].p, 5 * n, &w->trial[k].s, 5 * n, &w->trial[k].k));
-  if (s->model->c->fields.has & HAS_PLASTIC)
-    PetscCall(PetscCalloc2(PLASTIC_COUNT * n, &w->p_star, 5 * n, &w->e_plastic));
+  const unsigned has = s->model->c->fields.has;
+  for (int k = 0; k < 2 && (has & HAS_HISTORY); k++)
+    PetscCall(PetscCalloc1(n, &w->trial[k].end));
+  for (int k = 0; k < 2 && (has & HAS_PLASTIC); k++)
+    PetscCall(PetscCalloc2(5 * n, &w->trial[k].s, 5 * n, &w->trial[k].k));
+  if (has & HAS_HISTORY)
+    PetscCall(PetscCalloc1(n, &w->k_star));
+  if (has & HAS_PLASTIC)
+    PetscCall(PetscCalloc1(5 * n, &w->e_plastic));
   w->cap_nodes     = N;
   w->cap_particles = n;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -74,8 +78,8 @@ PetscErrorCode StepperStartFromHistory(Stepper *s)
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 3; k++)
       w->m_star[3 * p + k] = StepperMass(m, p, k);
-    for (int k = 0; w->p_star && k < PLASTIC_COUNT; k++)
-      w->p_star[PLASTIC_COUNT * p + k] = k == PLASTIC_EPS ? m->P.f[P_EPS][p] : 0.0;
+    if (w->k_star)
+      w->k_star[p] = ModelSkeletonStart(m, p);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -86,10 +90,15 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 {
   Model       *m     = s->model;
   StepperWork *w     = &s->work;
-  const Stage  stage = {
-       .t = t, .dt = dt, .x_star = w->x_star, .u_star = w->u_star, .m_star = w->m_star, .p_star = w->p_star};
-  StageRates rates;
-  PetscInt   newton = 0;
+  const Stage  stage = {.t      = t,
+                        .dt     = dt,
+                        .ahead  = t - s->state.t,
+                        .x_star = w->x_star,
+                        .u_star = w->u_star,
+                        .m_star = w->m_star,
+                        .k_star = w->k_star};
+  StageRates   rates;
+  PetscInt     newton = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelBeginStage(m, &stage));
@@ -109,15 +118,15 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu)
 {
   const Model *m        = s->model;
-  const double scale[7] = {s->state.scale_p, s->state.scale_p, SCALE_T,         SCALE_SH,
-                           s->state.scale_u, SCALE_EPS,        s->state.scale_p};
+  const double scale[7] = {s->state.scale_p, s->state.scale_p,  STEPPER_SCALE_T, STEPPER_SCALE_SH,
+                           s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
   double       sum[8] = {0.0}, worst = 0.0;
 
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 4; k++)
       sum[k] += PetscSqr(e[4 * p + k]);
     sum[4] += PetscSqr(eu[2 * p]) + PetscSqr(eu[2 * p + 1]);
-    for (int k = 0; s->work.p_star && k < 5; k++)
+    for (int k = 0; s->work.e_plastic && k < 5; k++)
       sum[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
   }
   sum[7] = (double)m->P.n;
@@ -245,12 +254,15 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   }
   PetscCall(SizeWork(s));
   ModelStartVelocity(m, s->work.v_n);
+  s->auto_.newton = 0;
   for (PetscInt cuts = 0;; cuts++) {
     const double dt = NextStep(s, &kink);
     Attempt      a  = {.status = CL_OK};
 
     PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * m->c->fields.n));
     PetscCall(s->scheme->step(s, dt, &a));
+    s->auto_.newton += a.newton;
+    s->auto_.dt = dt;
     if (a.status == CL_OK && s->adaptive)
       Judge(s, dt, dt_inaccurate, err_inaccurate, &a);
     if (a.status == CL_OK) {
@@ -271,7 +283,11 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
                             s->state.t, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0],
                             m->where[1], s->state.dt));
     }
-    if (cuts >= s->max_failures || small) {
+    const bool last = cuts >= s->max_failures || small;
+    PetscCall(StepperAutoGivesWay(s, a.status, dt, last, &s->auto_.give_way));
+    if (s->auto_.give_way)
+      PetscFunctionReturn(PETSC_SUCCESS);
+    if (last) {
       *ok = false;
       PetscCall(PetscPrintf(
           m->grid.comm,

@@ -1,19 +1,16 @@
-/* What the implicit schemes know of plasticity: where a second stage starts, and the error of plastic strain and
+/* What the implicit schemes know of the skeleton: where a second stage starts, and the error of plastic strain and
    stress; docs/equations.md, section 8. */
 #include "clathra/stepper.h"
 
-void StepperStarPlastic(Stepper *s, double c)
+void StepperStarSkeleton(Stepper *s, double c)
 {
-  const Model  *m     = s->model;
-  StepperWork  *w     = &s->work;
-  const double *first = w->trial[0].p;
+  const Model *m = s->model;
+  StepperWork *w = &s->work;
 
-  for (PetscInt p = 0; w->p_star && p < m->P.n; p++) {
-    for (int k = 0; k < PLASTIC_COUNT; k++) {
-      const double y_n = k == PLASTIC_EPS ? m->P.f[P_EPS][p] : 0.0;
+  for (PetscInt p = 0; w->k_star && p < m->P.n; p++) {
+    const SkeletonStage y_n = ModelSkeletonStart(m, p);
 
-      w->p_star[PLASTIC_COUNT * p + k] = y_n + c * (first[PLASTIC_COUNT * p + k] - y_n);
-    }
+    SkeletonStar(&y_n, &w->trial[0].end[p], c, &w->k_star[p]);
   }
 }
 
@@ -23,7 +20,7 @@ void StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weig
   StepperWork     *w    = &s->work;
   const int        last = s->scheme->stages - 1;
 
-  for (PetscInt p = 0; w->p_star && p < P->n; p++) {
+  for (PetscInt p = 0; w->e_plastic && p < P->n; p++) {
     for (int q = 0; q < 5; q++) { /* eps_d_p, stress xx yy zz xy */
       const double y_n = P->f[q ? P_SIG + q - 1 : P_EPS][p], k_n = P->f[P_KP + q][p];
       const double k_1 = (w->trial[0].s[5 * p + q] - y_n) / (gamma * dt);

@@ -27,7 +27,7 @@ static void Star(Stepper *s, double dt)
       w->m_star[3 * p + k] = m_n + c * (w->trial[0].m[3 * p + k] - m_n);
     }
   }
-  StepperStarPlastic(s, c);
+  StepperStarSkeleton(s, c);
 }
 
 /* (26): weights of k_n, k_1, k_2; without k_n (fresh) the embedded first-order formula. */

@@ -82,6 +82,7 @@ PetscErrorCode StepperNextStage(Stepper *s)
   z->hold    = 0;
   z->fresh   = 1;
   z->err_old = 1.0;
+  z->kind    = 0; /* auto chooses anew */
   if (s->model->c->stage[z->stage].reset)
     ResetDisplacement(s);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -55,14 +55,8 @@ static PetscErrorCode LookAhead(Stepper *s, bool *ok)
 /* The scheme of this stage, with its storage. */
 static PetscErrorCode Prepare(Stepper *s, bool *ok)
 {
-  PetscBool choose;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscStrcmp(STEPPER_AUTO, s->model->c->stepper, &choose));
-  if (choose && s->forecast.hybrid)
-    s->scheme = &StepperScheme_Hybrid;
-  if (choose)
-    PetscCall(PetscPrintf(s->model->grid.comm, "  integrator chosen: %s\n", s->scheme->name));
+  PetscCall(StepperAutoBegin(s));
   if (s->scheme->create)
     PetscCall(s->scheme->create(s));
   if (s->scheme->ready)
@@ -207,6 +201,8 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok)
       PetscCall(Change(s, ok));
     if (*ok)
       PetscCall(s->scheme->advance(s, ok));
+    if (*ok && !StepperStageDone(s))
+      PetscCall(StepperAutoDecide(s, ok));
   }
   *ok = *ok && !s->broken;
   PetscFunctionReturn(PETSC_SUCCESS);

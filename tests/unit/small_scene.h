@@ -338,12 +338,12 @@ static inline void JacobianCase(Scene *s, unsigned has, bool inertia, bool axisy
   const double lower[2] = {gap, 0.0}, upper[2] = {0.47, 0.18};
 
   SceneInit(s, has, inertia, axisymmetric, basis, start, lower, upper);
-  s->mat.reacts               = reacts;
-  s->mat.elasticity.loss_only = set;
-  s->c.gravity[0]             = axisymmetric ? 0.0 : 2.0;
-  s->c.gravity[1]             = -9.81;
-  s->c.flux_interpolation     = !(set == 1 && !reacts);
-  s->region.pressure          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
+  s->mat.reacts            = reacts;
+  s->mat.elasticity.change = set;
+  s->c.gravity[0]          = axisymmetric ? 0.0 : 2.0;
+  s->c.gravity[1]          = -9.81;
+  s->c.flux_interpolation  = !(set == 1 && !reacts);
+  s->region.pressure       = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
   AddConditions(s, set);
 }
 

@@ -143,7 +143,7 @@ static void read_bp2(void **state)
   assert_true(m->retention.p_smooth == 2500 && m->retention.p_trap == 5e4 && m->relperm.Sgr == 0.4);
   assert_true(m->permeability.phi0 == 0.15 && m->permeability.k0 == 1.53e-15 && m->permeability.mh == 3);
   assert_true(m->reacts && m->kinetics.K0 == 2.5e-10 && m->kinetics.equilibrium.A1 == 1000 && m->kinetics.M_g == 0.016);
-  assert_true(m->elasticity.E0 == 9e7 && !m->elasticity.loss_only);
+  assert_true(m->elasticity.E0 == 9e7 && !m->elasticity.change);
   assert_true(c.region[0].pressure == 3.25e6 && c.region[0].temperature == 4 && c.region[0].ppc[1] == 2);
   assert_true(c.bc[0].type == BC_FIXED && c.bc[0].axis == 0 && c.bc[1].type == BC_ROLLER && c.bc[2].position == 0.02);
   assert_true(c.bc[3].type == BC_TRACTION && c.bc[3].side == SIDE_XMAX && c.bc[3].region == -1);

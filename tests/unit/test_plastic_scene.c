@@ -74,10 +74,10 @@ static void RandomPoint(Rng *r, Point *q)
   PointInitialMasses(&q->fs, &q->mat, q->h.V, 0.3, 0.21, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
                      &q->h.m_star[2]);
   for (int k = 0; k < 4; k++) {
-    q->h.skeleton.sig[k]     = RngBetween(r, -3e6, 1e6);
-    q->h.skeleton.plastic[k] = RngBetween(r, -1e-3, 1e-3);
+    q->h.skeleton.sig[k]          = RngBetween(r, -3e6, 1e6);
+    q->h.skeleton.from.plastic[k] = RngBetween(r, -1e-3, 1e-3);
   }
-  q->h.skeleton.eps = RngBetween(r, 0.0, 0.2);
+  q->h.skeleton.from.own[OWN_P_EPS] = RngBetween(r, 0.0, 0.2);
   for (int k = 0; k < IN_COUNT; k++)
     q->in[k] = RngBetween(r, -1.0, 1.0) * (k < IN_HOOP ? 0.02 : k == IN_HOOP ? 0.02 * q->axis : k < IN_GT ? 1e4 : 0.0);
   q->in[IN_P]     = q->fs.phase[PHASE_W] ? pw : 0.0;
@@ -169,12 +169,19 @@ static void TestJacobian(void **state)
     Scene *s     = malloc(sizeof(*s));
     double yield = 0.0, all;
 
-    JacobianCase(s, sets[k % SETS].has, true, k >= SETS, BASIS_CPGIMP, 0.0, 0.0, false, 0);
-    s->mat.plasticity = Weak(k % 2);
-    s->c.fields.has |= HAS_PLASTIC;
+    const bool bonds = k % SETS == SETS - 1; /* hydrate that goes, with a stress of its own */
+
+    JacobianCase(s, sets[k % SETS].has, true, k >= SETS, BASIS_CPGIMP, 0.0, 0.0, bonds, 1);
+    s->mat.elasticity.change = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
+    s->mat.plasticity        = Weak(k % 2);
+    s->c.fields.has |= SkeletonHas(&s->mat);
     JacobianState(s);
     for (PetscInt p = 0; p < s->m.P.n; p++)
       s->m.P.f[P_EPS][p] = 0.1 * (1.0 + Noise(70, s->m.P.i[PI_ID][p], 0));
+    for (PetscInt p = 0; bonds && p < s->m.P.n; p++) {
+      for (int i = 0; i < 4; i++)
+        s->m.P.f[P_BOND + i][p] = 1e6 * Noise(71, s->m.P.i[PI_ID][p], i);
+    }
     const double worst = DirectionError(s, 2), entry = k % SETS == 1 ? ColumnError(s) : 0.0;
     yield = Sum(Yielding(s));
     all   = Sum((double)s->m.P.n);

@@ -19,17 +19,24 @@ typedef struct {
   int             which;
 } Sample;
 
+static SkeletonStep StepOf(const Sample *q, const double in[SKELETON_IN])
+{
+  return (SkeletonStep){
+      .c       = cos(in[SKELETON_THETA]),
+      .s       = sin(in[SKELETON_THETA]),
+      .e       = {in[SKELETON_STRAIN], in[SKELETON_STRAIN + 1], in[SKELETON_STRAIN + 2], in[SKELETON_STRAIN + 3]},
+      .thermal = in[SKELETON_THERMAL],
+      .E_n     = q->E_n,
+      .E       = in[SKELETON_E],
+      .Sh      = in[SKELETON_SH],
+      .kept    = in[SKELETON_KEPT]};
+}
+
 static bool Go(const Sample *q, const double in[SKELETON_IN], SkeletonState *s, SkeletonTangent *t)
 {
+  const SkeletonStep d   = StepOf(q, in);
   const char        *why = NULL;
-  const SkeletonStep d   = {
-        .c       = cos(in[SKELETON_THETA]),
-        .s       = sin(in[SKELETON_THETA]),
-        .e       = {in[SKELETON_STRAIN], in[SKELETON_STRAIN + 1], in[SKELETON_STRAIN + 2], in[SKELETON_STRAIN + 3]},
-        .thermal = in[SKELETON_THERMAL],
-        .E_n     = q->E_n,
-        .E       = in[SKELETON_E],
-        .Sh      = in[SKELETON_SH]};
+
   const bool found = SkeletonUpdate(&q->mat, &q->h, &d, s, t, &why);
 
   assert_true(found == (why == NULL));
@@ -175,10 +182,26 @@ static void MakeEqual(Rng *r, Sample *q, bool in_plane)
 
   q->in[SKELETON_THETA] = 0.0;
   for (int i = 0; i < 4; i++) {
-    double *v[] = {q->h.sig, q->h.sig0, &q->in[SKELETON_STRAIN], q->h.plastic};
+    double *v[] = {q->h.sig, q->h.sig0, &q->in[SKELETON_STRAIN], q->h.from.plastic};
 
     v[i][in_plane ? YY : ZZ] = v[i][XX] * (1.0 + near);
     v[i][XY] *= near;
+  }
+}
+
+/* The same skeleton with part of its stiffness and of its stress the hydrate's, some of which goes in the stage. */
+static void MakeBonded(Rng *r, Sample *q)
+{
+  const double E = q->in[SKELETON_E], stress = fabs(q->h.sig[XX]) + fabs(q->h.sig[YY]);
+
+  q->mat.elasticity.E0     = E * RngBetween(r, 0.2, 0.8);
+  q->mat.elasticity.Eh     = E;
+  q->mat.elasticity.change = STIFFNESS_BONDS;
+  q->in[SKELETON_KEPT]     = RngPick(r, 3) ? RngBetween(r, 0.0, 1.0) : 1.0;
+  for (int k = 0; k < 4; k++) {
+    q->h.from.sig[k]              = q->h.sig[k] + 0.1 * stress * RngBetween(r, -1.0, 1.0);
+    q->h.from.strain[k]           = 0.3 * q->in[SKELETON_STRAIN + k];
+    q->h.from.own[OWN_P_BOND + k] = 0.3 * stress * RngBetween(r, -1.0, 1.0);
   }
 }
 
@@ -208,22 +231,76 @@ static Sample RandomSample(Rng *r, int flow, bool cutoff)
     k->c_max = k->c_min = k->c_res = 0.0;
   if (cutoff)
     k->cutoff = RngBetween(r, 0.0, 0.9) * k->c_res / tan(k->phi_peak * DEG);
-  q.h.eps              = RngPick(r, 2) ? RngLog(r, 1e-4, 1.0) : 0.0;
-  q.in[SKELETON_THETA] = RngBetween(r, -1.0, 1.0);
-  q.in[SKELETON_E]     = E;
-  q.in[SKELETON_SH]    = RngBetween(r, 0.0, 0.5);
-  q.E_n                = E * RngBetween(r, 0.9, 1.1);
-  const double mean    = size * RngBetween(r, -1.0, 0.3);
+  q.h.from.own[OWN_P_EPS] = RngPick(r, 2) ? RngLog(r, 1e-4, 1.0) : 0.0;
+  q.in[SKELETON_THETA]    = RngBetween(r, -1.0, 1.0);
+  q.in[SKELETON_E]        = E;
+  q.in[SKELETON_SH]       = RngBetween(r, 0.0, 0.5);
+  q.E_n                   = E * RngBetween(r, 0.9, 1.1);
+  const double mean       = size * RngBetween(r, -1.0, 0.3);
   for (int i = 0; i < 4; i++) {
     q.h.sig0[i]               = i < 3 ? 0.2 * mean : 0.0;
     q.h.sig[i]                = (i < 3 ? mean : 0.0) + 0.3 * size * RngBetween(r, -1.0, 1.0);
     q.in[SKELETON_STRAIN + i] = size / E * RngBetween(r, -1.0, 1.0);
-    q.h.plastic[i]            = RngPick(r, 2) ? 0.1 * size / E * RngBetween(r, -1.0, 1.0) : 0.0;
+    q.h.from.plastic[i]       = RngPick(r, 2) ? 0.1 * size / E * RngBetween(r, -1.0, 1.0) : 0.0;
   }
   if (RngPick(r, 4) == 0)
     MakeEqual(r, &q, RngPick(r, 2));
   q.in[SKELETON_THERMAL] = 0.05 * size / E * RngBetween(r, -1.0, 1.0);
+  k->factor              = RngPick(r, 3) ? 1.0 : RngBetween(r, 0.8, 2.0);
+  if (RngPick(r, 3) == 0)
+    MakeBonded(r, &q);
   return q;
+}
+
+/* A factor does what dividing the strengths by hand does (no softening: that of tan(phi) is not tan of that of phi). */
+static void TestStrengthFactor(void **state)
+{
+  Rng    r          = {412};
+  double worst      = 0.0;
+  int    plastic[3] = {0};
+
+  (void)state;
+  for (int n = 0; n < 6000; n++) {
+    Sample      q = RandomSample(&r, n % 3 ? FLOW_MOHR_COULOMB : FLOW_MENETREY_WILLAM, n % 3 == 2), by_hand;
+    Plasticity *k = &q.mat.plasticity, *l = &by_hand.mat.plasticity;
+
+    k->eta_s = k->eta_h = 0.0; /* strength is that of the ..._max */
+    k->c_min = k->c_res = k->c_max;
+    k->psi_min          = k->psi_max;
+    k->phi_res          = k->phi_peak;
+    k->factor           = RngBetween(&r, 0.5, 3.0);
+    by_hand             = q;
+    l->factor           = 1.0;
+    l->c_max = l->c_min = l->c_res = k->c_max / k->factor;
+    l->cutoff                      = k->cutoff / k->factor;
+    l->phi_peak = l->phi_res = atan(tan(k->phi_peak * DEG) / k->factor) / DEG;
+    l->psi_max = l->psi_min = atan(tan(k->psi_max * DEG) / k->factor) / DEG;
+    SkeletonState s, t;
+    const bool    found = Go(&q, q.in, &s, NULL), same = Go(&by_hand, by_hand.in, &t, NULL);
+
+    assert_true(found == same);
+    plastic[n % 3] += found && s.region != RETURN_ELASTIC;
+    for (int i = 0; i < 4 && found; i++)
+      worst = fmax(worst, fabs(s.sig[i] - t.sig[i]) / (fabs(t.sig[XX]) + fabs(t.sig[YY]) + fabs(t.sig[ZZ])));
+  }
+  printf("strength factor: off by %.1e from strengths divided by hand (%d, %d, %d plastic points)\n", worst, plastic[0],
+         plastic[1], plastic[2]);
+  assert_true(worst < 1e-10 && plastic[0] > 500 && plastic[1] > 500 && plastic[2] > 500);
+}
+
+/* Some states of a law whose strength its neighbours' plastic strain sets. */
+static void GiveNonlocal(Sample *q, int n)
+{
+  if (n % 5 != 4)
+    return;
+  q->mat.plasticity.nonlocal = 0.1;
+  q->h.nonlocal              = 0.3 + 0.5 * q->h.from.own[OWN_P_EPS];
+}
+
+/* Plastic strain that sets the strength at the end. */
+static double Softens(const Sample *q, const SkeletonState *s)
+{
+  return q->mat.plasticity.nonlocal > 0.0 ? q->h.nonlocal : s->own[OWN_P_EPS];
 }
 
 /* Principal stresses, falling. */
@@ -247,11 +324,12 @@ static void TestYieldSurface(void **state)
 
   (void)state;
   for (int k = 0; k < n; k++) {
-    const Sample  q = RandomSample(&r, k % 2, k % 4 == 3);
+    Sample        q = RandomSample(&r, k % 2, k % 4 == 3);
     SkeletonState s;
     Strength      now;
     double        y[3], dy[3], dphi;
 
+    GiveNonlocal(&q, k);
     if (!Go(&q, q.in, &s, NULL)) {
       lost++;
       printf("lost %d c %g psi %g\n", k, q.mat.plasticity.c_max, q.mat.plasticity.psi_max);
@@ -259,19 +337,19 @@ static void TestYieldSurface(void **state)
     }
     count[k % 2][s.region]++;
     if (s.region == RETURN_ELASTIC) {
-      assert_true(s.work == 0.0 && s.eps == q.h.eps);
+      assert_true(s.work == 0.0 && s.own[OWN_P_EPS] == q.h.from.own[OWN_P_EPS]);
       continue;
     }
-    StrengthEvaluate(&q.mat.plasticity, q.in[SKELETON_SH], s.eps, &now);
+    StrengthEvaluate(&q.mat.plasticity, q.in[SKELETON_SH], Softens(&q, &s), &now);
     Sorted(s.sig, y);
-    const double F = MohrCoulombYield(now.phi, now.c, y, dy, &dphi), over = y[0] - q.mat.plasticity.cutoff;
+    const double F = MohrCoulombYield(now.phi, now.c, y, dy, &dphi), over = y[0] - StrengthCutoff(&q.mat.plasticity);
     const double unit =
         now.c > 0.0 ? now.c
                     : 1e-3 * (fabs(q.h.sig[XX]) + fabs(q.h.sig[YY]) + q.in[SKELETON_E] * fabs(q.in[SKELETON_STRAIN]) +
                               q.in[SKELETON_E] * fabs(q.in[SKELETON_STRAIN + 1]));
     worst = fmax(worst, (s.region == RETURN_TENSION ? fmax(F, over) : fmax(fabs(F), over)) / unit);
     least = fmin(least, s.work / (unit * 1e-3));
-    assert_true(s.eps >= q.h.eps);
+    assert_true(s.own[OWN_P_EPS] >= q.h.from.own[OWN_P_EPS]);
   }
   for (int f = 0; f < 2; f++)
     printf("%s: %d elastic, %d face, %d edge, %d apex, %d tension\n", f ? "mohr_coulomb" : "menetrey_willam",
@@ -304,7 +382,7 @@ static void NearApex(double near, double far, double strained, int states, doubl
     law->psi_min            = 5.0;
     law->eta_s              = 5.0;
     law->eccentricity       = 0.1;
-    q.h.eps                 = eps;
+    q.h.from.own[OWN_P_EPS] = eps;
     StrengthEvaluate(law, 0.0, eps, &k);
     const double apex = k.c / tan(k.phi), d = apex * RngLog(&r, 10.0 * near, far),
                  sm = apex * (1.0 + (n % 2 ? -1.0 : 1.0) * RngLog(&r, near, 0.1));
@@ -318,10 +396,10 @@ static void NearApex(double near, double far, double strained, int states, doubl
     if (s.region == RETURN_ELASTIC)
       continue;
     count++;
-    StrengthEvaluate(law, 0.0, s.eps, &k);
+    StrengthEvaluate(law, 0.0, s.own[OWN_P_EPS], &k);
     Sorted(s.sig, y);
     worst = fmax(worst, fabs(MohrCoulombYield(k.phi, k.c, y, dy, &dphi)) / k.c);
-    back  = fmax(back, fmax((eps - s.eps) * 6e8 / apex, -s.work * 6e8 / (apex * apex)));
+    back  = fmax(back, fmax((eps - s.own[OWN_P_EPS]) * 6e8 / apex, -s.work * 6e8 / (apex * apex)));
   }
   printf("within %g of the apex: %d states, yield function off by %.1e c at most, flow back by %.1e, %d not returned\n",
          near, count, worst, back, lost);
@@ -390,6 +468,7 @@ static void TestTangent(void **state)
     SkeletonTangent t;
     SkeletonState   s;
 
+    GiveNonlocal(&q, n);
     if (!Go(&q, q.in, &s, &t) || (s.region == RETURN_FACE && RngPick(&r, 4)))
       continue;
     for (q.which = 0; q.which < SKELETON_IN; q.which++) {
@@ -455,20 +534,27 @@ static void TestTurned(void **state)
 
     Turn4(w.h.sig, a);
     Turn4(w.h.sig0, a);
-    Turn4(w.h.plastic, a);
+    Turn4(w.h.from.plastic, a);
+    Turn4(w.h.from.strain, a);
+    Turn4(w.h.from.sig, a);
+    Turn4(w.h.from.own + OWN_P_BOND, a);
     Turn4(&w.in[SKELETON_STRAIN], a);
     assert_true(Go(&q, q.in, &s, NULL) && Go(&w, w.in, &z, NULL));
-    w.h.eps = z.eps; /* from the plastic strain it ended with it flows no more */
-    memcpy(w.h.plastic, z.plastic, sizeof(z.plastic));
+    const SkeletonStep d = StepOf(&w, w.in);
+    SkeletonEndStage(&w.h, &d, &z, 1.0, &w.h.from); /* from where it ended it flows no more */
+    w.in[SKELETON_KEPT] = 1.0;
     assert_true(Go(&w, w.in, &again, NULL));
     for (int i = 0; i < 4; i++)
       worst = fmax(worst, fabs(again.sig[i] - z.sig[i]) / unit);
     Turn4(z.sig, -a);
     Turn4(z.plastic, -a);
+    Turn4(z.own + OWN_P_BOND, -a);
     for (int i = 0; i < 4; i++)
       worst = fmax(worst,
                    fmax(fabs(s.sig[i] - z.sig[i]) / unit, fabs(s.plastic[i] - z.plastic[i]) * q.in[SKELETON_E] / unit));
-    worst = fmax(worst, fabs(s.eps - z.eps));
+    worst = fmax(worst, fabs(s.own[OWN_P_EPS] - z.own[OWN_P_EPS]));
+    for (int i = 0; i < 4; i++)
+      worst = fmax(worst, fabs(s.own[OWN_P_BOND + i] - z.own[OWN_P_BOND + i]) / unit);
   }
   printf("turned frame: off by %.1e\n", worst);
   assert_true(worst < 1e-8);
@@ -583,8 +669,8 @@ static void FollowPath(Sample *q, double to, int steps)
     }
     assert_true(fabs(s.sig[XX] - side) < 1e-6 * fabs(side));
     memcpy(q->h.sig, s.sig, sizeof(s.sig));
-    q->h.eps = s.eps;
-    x[0]     = 0.99 * x[1];
+    q->h.from.own[OWN_P_EPS] = s.own[OWN_P_EPS];
+    x[0]                     = 0.99 * x[1];
   }
 }
 
@@ -615,16 +701,16 @@ static void TestBiaxialPath(void **state)
     FollowPath(&q, to, 400);
     FollowPath(&c, to, 800);
     for (int i = 0; i < 2; i++) { /* extrapolated to no step: both are of first order */
-      const double axial = 2.0 * c.h.sig[YY] - q.h.sig[YY], e = 2.0 * c.h.eps - q.h.eps;
+      const double axial = 2.0 * c.h.sig[YY] - q.h.sig[YY], e = 2.0 * c.h.from.own[OWN_P_EPS] - q.h.from.own[OWN_P_EPS];
 
       worst[i] = fmax(worst[i], i ? fabs(e - eps) : fabs(axial / y[2] - 1.0));
     }
     Strength at;
-    StrengthEvaluate(k, 0.4, c.h.eps, &at);
+    StrengthEvaluate(k, 0.4, c.h.from.own[OWN_P_EPS], &at);
     const double si = sin(at.phi), exact = (c.h.sig[XX] * (1.0 + si) - 2.0 * at.c * cos(at.phi)) / (1.0 - si);
     printf("biaxial, %.0f %%: axial %.4f MPa, eps %.5f (differences %.4f, %.5f)\n", -100.0 * to, c.h.sig[YY] * 1e-6,
-           c.h.eps, y[2] * 1e-6, eps);
-    if (c.h.eps > 0.0)
+           c.h.from.own[OWN_P_EPS], y[2] * 1e-6, eps);
+    if (c.h.from.own[OWN_P_EPS] > 0.0)
       law = fmax(law, fabs(c.h.sig[YY] / exact - 1.0));
   }
   printf("  off by %.1e (stress), %.1e (plastic strain); law of the peak %.1e\n", worst[0], worst[1], law);
@@ -652,9 +738,9 @@ static double BandWork(double cell, double length)
 
     q.in[SKELETON_STRAIN + 3] = 0.5 * slip;
     assert_true(Go(&q, q.in, &s, NULL));
-    work += cell * (s.work - (s.eps > q.h.eps ? 2e4 * slip : 0.0));
+    work += cell * (s.work - (s.own[OWN_P_EPS] > q.h.from.own[OWN_P_EPS] ? 2e4 * slip : 0.0));
     memcpy(q.h.sig, s.sig, sizeof(s.sig));
-    q.h.eps = s.eps;
+    q.h.from.own[OWN_P_EPS] = s.own[OWN_P_EPS];
   }
   return work;
 }
@@ -674,10 +760,10 @@ static void TestSofteningLength(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestPotential),       cmocka_unit_test(TestKnownPoints),
-                                     cmocka_unit_test(TestYieldSurface),    cmocka_unit_test(TestTangent),
-                                     cmocka_unit_test(TestTurned),          cmocka_unit_test(TestBiaxialPath),
-                                     cmocka_unit_test(TestSofteningLength), cmocka_unit_test(TestNearApex)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(TestPotential),       cmocka_unit_test(TestKnownPoints), cmocka_unit_test(TestYieldSurface),
+      cmocka_unit_test(TestTangent),         cmocka_unit_test(TestTurned),      cmocka_unit_test(TestBiaxialPath),
+      cmocka_unit_test(TestSofteningLength), cmocka_unit_test(TestNearApex),    cmocka_unit_test(TestStrengthFactor)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,21 +31,21 @@ static Material RandomMaterial(Rng *r, Regime regime)
   assert_true(PermeabilitySetHydrateType(&m.permeability, PermeabilityHydrateTypes()[RngPick(r, 3)]));
   assert_true(PermeabilitySetPorosityType(&m.permeability, PermeabilityPorosityTypes()[RngPick(r, 3)]));
   assert_true(EquilibriumSetType(&m.kinetics.equilibrium, EquilibriumTypes()[RngPick(r, 2)]));
-  m.retention.p0         = RngLog(r, 1e3, 1e6);
-  m.retention.m          = RngBetween(r, 0.2, 0.8);
-  m.retention.lambda     = RngBetween(r, 0.5, 3.0);
-  m.relperm.nw           = RngBetween(r, 1.0, 6.0);
-  m.relperm.ng           = RngBetween(r, 1.0, 4.0);
-  m.relperm.of_pores     = m.relperm.nw > 3.5;
-  m.permeability.k0      = RngLog(r, 1e-18, 1e-10);
-  m.solid.beta           = RngBetween(r, -1e-4, 3e-4);
-  m.hydrate.beta         = RngBetween(r, 1e-5, 5e-4);
-  m.water.beta           = RngBetween(r, 0.0, 5e-4);
-  m.kinetics.K0          = RngLog(r, 1e-11, 1e-8);
-  m.kinetics.dE          = RngPick(r, 2) ? 0.0 : 20.0;
-  m.elasticity.bh        = RngPick(r, 2) ? 1.0 : RngBetween(r, 0.5, 3.0);
-  m.elasticity.loss_only = RngPick(r, 2);
-  m.reacts               = regime != NO_KINETICS;
+  m.retention.p0      = RngLog(r, 1e3, 1e6);
+  m.retention.m       = RngBetween(r, 0.2, 0.8);
+  m.retention.lambda  = RngBetween(r, 0.5, 3.0);
+  m.relperm.nw        = RngBetween(r, 1.0, 6.0);
+  m.relperm.ng        = RngBetween(r, 1.0, 4.0);
+  m.relperm.of_pores  = m.relperm.nw > 3.5;
+  m.permeability.k0   = RngLog(r, 1e-18, 1e-10);
+  m.solid.beta        = RngBetween(r, -1e-4, 3e-4);
+  m.hydrate.beta      = RngBetween(r, 1e-5, 5e-4);
+  m.water.beta        = RngBetween(r, 0.0, 5e-4);
+  m.kinetics.K0       = RngLog(r, 1e-11, 1e-8);
+  m.kinetics.dE       = RngPick(r, 2) ? 0.0 : 20.0;
+  m.elasticity.bh     = RngPick(r, 2) ? 1.0 : RngBetween(r, 0.5, 3.0);
+  m.elasticity.change = RngPick(r, 3);
+  m.reacts            = regime != NO_KINETICS;
   if (RngPick(r, 2)) {
     m.kinetics.dE = 78151.0;
     m.kinetics.K0 *= exp(78151.0 / (8.314 * 280.0));
@@ -107,6 +107,11 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
     q->h.m_star[0] *= regime == LIMITED ? -0.01 : 0.0;
   if (regime == NO_HYDRATE && RngPick(r, 2))
     q->h.Sh_n = 0.0;
+  for (int k = 0; k < 4; k++) { /* where hydrate bears a stress of its own */
+    q->h.skeleton.from.sig[k]              = RngBetween(r, -5e6, 5e6);
+    q->h.skeleton.from.strain[k]           = RngBetween(r, -1e-3, 1e-3);
+    q->h.skeleton.from.own[OWN_P_BOND + k] = RngBetween(r, -5e6, 5e6);
+  }
   for (int k = 0; k < 6; k++) {
     q->h.skeleton.sig[k]  = RngBetween(r, -5e6, 5e6);
     q->h.skeleton.sig0[k] = RngBetween(r, -2e6, 2e6);
@@ -396,6 +401,10 @@ static void RestingParticle(Rng *r, Particle *q)
   PointOutput o;
 
   RandomParticle(r, NO_KINETICS, q);
+  for (int i = 0; i < 4; i++) { /* a first stage */
+    q->h.skeleton.from.sig[i]    = q->h.skeleton.sig[i];
+    q->h.skeleton.from.strain[i] = 0.0;
+  }
   q->h.T_n = q->in[IN_T];
   memset(&q->in[IN_GRADU], 0, MOTION_COUNT * sizeof(double));
   assert_int_equal(Evaluate(q, false, &s, &o), CL_OK);
@@ -485,6 +494,8 @@ static void TestManyTurns(void **state)
     assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
     memcpy(q.h.skeleton.sig, s.skeleton.sig, sizeof(s.skeleton.sig));
     memcpy(q.h.skeleton.sig0, s.skeleton.sig0, sizeof(s.skeleton.sig0));
+    memcpy(q.h.skeleton.from.sig, s.skeleton.sig, sizeof(q.h.skeleton.from.sig));
+    memcpy(q.h.skeleton.from.own, s.skeleton.own, sizeof(s.skeleton.own));
     q.h.V = s.V;
   }
   RotateTensor(first, 1000.0 * 73.0 * PI / 180.0, turned);

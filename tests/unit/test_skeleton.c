@@ -51,18 +51,18 @@ static Sample RandomSample(Rng *r)
 /* Plane stresses, and a material that some of them make yield. */
 static void MakePlastic(Rng *r, Sample *q)
 {
-  q->mat.plasticity = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
-                                   .c_max        = 2e6,
-                                   .c_min        = 2e6,
-                                   .c_res        = 1e6,
-                                   .phi_peak     = 30.0,
-                                   .phi_res      = 25.0,
-                                   .psi_max      = 10.0,
-                                   .psi_min      = 5.0,
-                                   .eta_s        = 1.0,
-                                   .eccentricity = 0.1,
-                                   .cutoff       = INFINITY};
-  q->h.eps          = RngBetween(r, 0.0, 0.5);
+  q->mat.plasticity        = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
+                                          .c_max        = 2e6,
+                                          .c_min        = 2e6,
+                                          .c_res        = 1e6,
+                                          .phi_peak     = 30.0,
+                                          .phi_res      = 25.0,
+                                          .psi_max      = 10.0,
+                                          .psi_min      = 5.0,
+                                          .eta_s        = 1.0,
+                                          .eccentricity = 0.1,
+                                          .cutoff       = INFINITY};
+  q->h.from.own[OWN_P_EPS] = RngBetween(r, 0.0, 0.5);
   for (int i = 4; i < 6; i++)
     q->h.sig[i] = q->h.sig0[i] = 0.0;
 }
@@ -90,14 +90,14 @@ static void TestBlock(void **state)
                              .E       = a[7],
                              .Sh      = a[8],
                              .work    = plastic ? work : NULL,
-                             .store   = {.eps = eps, .yield = yield}};
+                             .store   = {.own[OWN_P_EPS] = eps, .yield = yield}};
 
     for (int k = 0; k < N; k++) {
       q[k]     = RandomSample(&r);
       q[k].mat = q[0].mat;
       if (plastic)
         MakePlastic(&r, &q[k]);
-      eps[k]                       = q[k].h.eps;
+      eps[k]                       = q[k].h.from.own[OWN_P_EPS];
       q[k].in[SKELETON_STRAIN + 2] = 0.0;
       const SkeletonStep d         = StepOf(q[k].in, q[k].E_n);
       const double       row[9]    = {d.c, d.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
@@ -124,7 +124,7 @@ static void TestBlock(void **state)
         worst = fmax(worst, fabs(sig[6 + i][k] - (k < b.n ? s.sig0[i] : q[k].h.sig0[i])));
       }
       if (plastic && k < b.n) {
-        worst = fmax(worst, 1e7 * fmax(fabs(eps[k] - s.eps), fabs(work[k] - s.work) / 1e5));
+        worst = fmax(worst, 1e7 * fmax(fabs(eps[k] - s.own[OWN_P_EPS]), fabs(work[k] - s.work) / 1e5));
         assert_true((int)yield[k] == (int)s.region);
         yields += s.region != RETURN_ELASTIC;
       }

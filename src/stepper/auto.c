@@ -1,0 +1,292 @@
+/* auto: which integrator takes the run on, decided at any time from what the next second would cost by either;
+   docs/equations.md, section 15.  Work is counted, not clocked: a run repeats and restarts bit for bit. */
+#include "clathra/stepper.h"
+
+#define MARGIN 2.0         /* of cost, to be worth a change */
+#define LOOKS_IMPLICIT 3   /* in a row that ask for hybrid ... */
+#define LOOKS_HYBRID 4     /* ... or for the implicit one, times the patience */
+#define PATIENCE_MOST 1024 /* looks: some 1e6 steps of hybrid */
+#define START 0.1          /* first implicit step, of the one that would do */
+#define STILL_GROWING 1.5  /* a wanted step that grows by so much is not yet what the scene allows */
+
+enum { UNDECIDED, IMPLICIT, HYBRID };
+
+/* What stops leave of a step that would be dt long: the larger of the interval to the next one and the one behind it.
+ */
+static double Allowed(const Stepper *s, double dt)
+{
+  bool         kink;
+  const double stop  = StepperNextStop(s, &kink);
+  Stepper      there = *s;
+
+  there.state.t = stop;
+  return fmin(dt, fmax(stop - s->state.t, StepperNextStop(&there, &kink) - stop));
+}
+
+/* s of the forecast's machine that the next second takes by hybrid (99), of the slowest rank; INFINITY if it has no
+   stable step. */
+static PetscErrorCode CostHybrid(Stepper *s, StableStep *limit, double *cost)
+{
+  const Model *m = s->model;
+
+  PetscFunctionBeginUser;
+  *cost = INFINITY;
+  PetscCall(StepperHybridLimit(s, limit));
+  if (limit->dt > 0.0)
+    *cost = StepperHybridWork(m, 1.0) / fmin(m->c->cfl * limit->dt, m->c->dt_max);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cost, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ... by implicit steps of length dt with so many Newton iterations each (99). */
+static PetscErrorCode CostImplicit(const Stepper *s, double newton, double dt, double *cost)
+{
+  PetscFunctionBeginUser;
+  *cost = StepperImplicitWork(s->model, newton, 1.0) / dt;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cost, 1, MPI_DOUBLE, MPI_MAX, s->model->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- the implicit step that hybrid's motion would allow
+ */
+#define RATES 7 /* p_w, p_g, T, S_h, displacement, plastic strain, stress */
+
+/* Sums over the particles that are compared. */
+typedef struct {
+  double change[RATES];         /* squares of changes */
+  double jump, mass, volume, n; /* mass times the square of the skeleton's change of velocity; mass of all phases */
+} Motion;
+
+static void AddSquare(const double *now, const double *then, PetscInt p, PetscInt q, double *sum)
+{
+  if (now)
+    *sum += PetscSqr(now[p] - then[q]);
+}
+
+static void AddMotion(const Particles *P, const Particles *then, PetscInt p, PetscInt q, Motion *sum)
+{
+  double *const *now = (double *const *)P->f, *const *was = (double *const *)then->f;
+
+  AddSquare(now[P_PW], was[P_PW], p, q, &sum->change[0]);
+  AddSquare(now[P_PG], was[P_PG], p, q, &sum->change[1]);
+  AddSquare(now[P_T], was[P_T], p, q, &sum->change[2]);
+  AddSquare(now[P_SH], was[P_SH], p, q, &sum->change[3]);
+  for (int d = 0; d < CL_DIM; d++)
+    AddSquare(now[P_U + d], was[P_U + d], p, q, &sum->change[4]);
+  AddSquare(now[P_EPS], was[P_EPS], p, q, &sum->change[5]);
+  for (int k = 0; k < 4; k++)
+    AddSquare(now[P_SIG + k], was[P_SIG + k], p, q, &sum->change[6]);
+  double mass = 0.0, jump = 0.0;
+  for (int k = 0; k < 4; k++)
+    mass += now[P_MS + k] ? now[P_MS + k][p] : 0.0;
+  for (int d = 0; d < CL_DIM; d++)
+    AddSquare(now[P_VS + d], was[P_VS + d], p, q, &jump);
+  sum->jump += mass * jump;
+  sum->mass += mass;
+  sum->volume += now[P_V][p];
+  sum->n++;
+}
+
+/* Places of the particles in the order of their numbers. */
+static PetscErrorCode ByNumber(const Particles *P, PetscInt **id, PetscInt **place)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(P->n, id, P->n, place));
+  PetscCall(PetscArraycpy(*id, P->i[PI_ID], P->n));
+  for (PetscInt p = 0; p < P->n; p++)
+    (*place)[p] = p;
+  PetscCall(PetscSortIntWithArray(P->n, *id, *place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Since the last burst began; particles that changed ranks in it are left out. */
+static PetscErrorCode MotionOf(const Stepper *s, Motion *sum)
+{
+  const Particles *P = &s->model->P, *then = &s->good;
+  PetscInt        *id, *place, *id_then, *place_then;
+
+  PetscFunctionBeginUser;
+  *sum = (Motion){.n = 0.0};
+  PetscCall(ByNumber(P, &id, &place));
+  PetscCall(ByNumber(then, &id_then, &place_then));
+  for (PetscInt p = 0, q = 0; p < P->n; p++) {
+    while (q < then->n && id_then[q] < id[p])
+      q++;
+    if (q < then->n && id_then[q] == id[p])
+      AddMotion(P, then, place[p], place_then[q], sum);
+  }
+  PetscCall(PetscFree2(id, place));
+  PetscCall(PetscFree2(id_then, place_then));
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, sum, sizeof(*sum) / sizeof(double), MPI_DOUBLE, MPI_SUM, s->model->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Do waves carry stresses that count (100)? */
+static bool Waves(const Stepper *s, const Motion *sum)
+{
+  const double limit = s->limit.each[LIMIT_WAVE];
+
+  if (!isfinite(limit))
+    return false;
+  const double speed = 2.0 / (sqrt(GridHighest2(&s->model->grid)) * limit);
+
+  return sum->mass / sum->volume * speed * sqrt(sum->jump / sum->mass) > s->tol * s->state.scale_p;
+}
+
+/* (100); 0 where waves count. */
+static PetscErrorCode StepThatWouldDo(const Stepper *s, double *dt)
+{
+  const StepperState *z            = &s->state;
+  const double        scale[RATES] = {z->scale_p, z->scale_p,        STEPPER_SCALE_T, STEPPER_SCALE_SH,
+                                      z->scale_u, STEPPER_SCALE_EPS, z->scale_p};
+  Motion              sum;
+
+  PetscFunctionBeginUser;
+  PetscCall(MotionOf(s, &sum));
+  *dt = 0.0;
+  if (Waves(s, &sum))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  *dt = Allowed(s, s->dt_max);
+  for (int k = 0; k < RATES; k++) {
+    const double rate = sqrt(sum.change[k] / sum.n) / (z->t - s->auto_.good_t);
+
+    if (rate > 0.0)
+      *dt = fmin(*dt, pow(s->tol, 1.0 / StepperScheme_Sdirk2.error_order) * scale[k] / rate);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- changes */
+/* A change starts as a stage does: particles stay as they are, rates of the last step are none of the next. */
+static PetscErrorCode GoOver(Stepper *s, int kind, double dt, bool *ok)
+{
+  StepperState *z = &s->state;
+
+  PetscFunctionBeginUser;
+  if (s->scheme->destroy)
+    PetscCall(s->scheme->destroy(s));
+  s->scheme  = kind == HYBRID ? &StepperScheme_Hybrid : &StepperScheme_Sdirk2;
+  z->kind    = kind;
+  z->votes   = 0;
+  z->since   = z->t;
+  z->spent   = 0.0;
+  z->dt      = fmin(fmax(dt, s->dt_min), s->dt_max);
+  z->hold    = 0;
+  z->fresh   = 1;
+  z->err_old = 1.0;
+  if (s->scheme->create)
+    PetscCall(s->scheme->create(s));
+  if (s->scheme->ready)
+    PetscCall(s->scheme->ready(s, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A visit that cost more than hybrid would have makes the next one wait longer. */
+static void LearnFromVisit(StepperState *z, double hybrid)
+{
+  const bool paid = z->t > z->since && z->spent / (z->t - z->since) <= hybrid;
+
+  z->patience = paid ? 1 : PetscMin(2 * z->patience, PATIENCE_MOST);
+}
+
+static PetscErrorCode FromImplicit(Stepper *s, bool *ok)
+{
+  StepperState *z = &s->state;
+  StableStep    limit;
+  const double  dt = s->auto_.give_way ? s->auto_.dt : Allowed(s, z->dt);
+  double        implicit, hybrid;
+
+  PetscFunctionBeginUser;
+  z->spent += StepperImplicitWork(s->model, (double)s->auto_.newton, 1.0);
+  PetscCall(CostHybrid(s, &limit, &hybrid));
+  PetscCall(CostImplicit(s, (double)s->auto_.newton, dt, &implicit));
+  const bool growing = z->dt > STILL_GROWING * s->auto_.dt;
+
+  z->votes = !growing && implicit > MARGIN * hybrid ? z->votes + 1 : 0;
+  if (!s->auto_.give_way && z->votes < LOOKS_IMPLICIT)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscPrintf(s->model->grid.comm,
+                        "t = %g s: %s -> hybrid: a second takes %.2g s by implicit steps of %.2g s (%s), %.2g s by "
+                        "hybrid's\n",
+                        z->t, s->scheme->name, implicit, dt, s->auto_.give_way ? "which fail" : "that do not grow",
+                        hybrid));
+  s->auto_.give_way = false;
+  LearnFromVisit(z, hybrid);
+  PetscCall(GoOver(s, HYBRID, z->dt, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FromHybrid(Stepper *s, bool *ok)
+{
+  StepperState *z = &s->state;
+  const double  c = fmin(s->model->c->cfl * s->limit.dt, s->dt_max), newton = STEPPER_NEWTON * 2.0;
+  double        dt = 0.0, cost[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(StepThatWouldDo(s, &dt));
+  cost[0] = StepperHybridWork(s->model, 1.0) / c;
+  cost[1] = dt > 0.0 ? StepperImplicitWork(s->model, newton, 1.0) / dt : INFINITY;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cost, 2, MPI_DOUBLE, MPI_MAX, s->model->grid.comm));
+  z->votes = cost[1] * MARGIN < cost[0] ? z->votes + 1 : 0;
+  if (z->votes < LOOKS_HYBRID * z->patience)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscPrintf(s->model->grid.comm,
+                        "t = %g s: hybrid -> sdirk2: a second takes %.2g s by hybrid's steps, %.2g s by implicit ones "
+                        "of %.2g s that would do\n",
+                        z->t, cost[0], cost[1], dt));
+  PetscCall(GoOver(s, IMPLICIT, START * dt, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StepperAutoBegin(Stepper *s)
+{
+  StepperState *z = &s->state;
+  const Case   *c = s->model->c;
+  PetscBool     chosen;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrcmp(STEPPER_AUTO, c->stepper, &chosen));
+  s->auto_.on = chosen && s->adaptive && !CaseNeedsImplicit(c);
+  if (!chosen)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (z->kind == UNDECIDED) {
+    z->kind     = s->forecast.hybrid ? HYBRID : IMPLICIT;
+    z->votes    = 0;
+    z->patience = 1;
+    z->since    = s->state.t;
+    z->spent    = 0.0;
+  }
+  if (z->kind == HYBRID)
+    s->scheme = &StepperScheme_Hybrid;
+  PetscCall(
+      PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s\n", s->scheme->name, s->auto_.on ? ", for now" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool last, bool *yes)
+{
+  StableStep limit;
+  double     implicit, hybrid;
+
+  PetscFunctionBeginUser;
+  *yes = false;
+  if (!s->auto_.on || (status == CL_INACCURATE && !last))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CostHybrid(s, &limit, &hybrid));
+  PetscCall(CostImplicit(s, 2.0 * STEPPER_NEWTON, dt, &implicit));
+  *yes = isfinite(hybrid) && (last || implicit > MARGIN * hybrid);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok)
+{
+  PetscFunctionBeginUser;
+  if (!s->auto_.on || s->stop || s->broken)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->state.kind == HYBRID)
+    PetscCall(FromHybrid(s, ok));
+  else
+    PetscCall(FromImplicit(s, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+"""stepper_type: auto.  A saturated column is loaded slowly, then suddenly, then unloaded slowly: consolidation, a wave, and
+consolidation again, each with its exact solution.  Which integrator works when; its answer against the exact one and
+against either integrator alone; what a change leaves as it was; restarts around a change; ranks."""
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
+import _files  # noqa: E402
+from common import Run, check, check_true, finish, order, scratch, table  # noqa: E402
+from exact import constrained_modulus  # noqa: E402
+from exact_dynamic import DynamicColumn  # noqa: E402
+
+CASE = Path(__file__).parent / "cases" / "saturated_column.yaml"
+K, K_W, Q, END = 1e-8, 22e6, 3e3, 80.0
+LOADS = ((0.0, 10.0, Q), (20.0, 20.1, Q), (60.0, 70.0, -Q))  # from, to (s), change (Pa)
+PHASES = ((0, 20), (20, 25), (25, 60), (60, 80))
+
+
+def options(cells, tol):
+    rows, q = ["0 s,1 MPa"], 0.0
+    for begin, end, change in LOADS:
+        rows += [f"{begin} s,{1e6 + q} Pa"] * (begin > 0) + [f"{end} s,{1e6 + q + change} Pa"]
+        q += change
+    return ("-grid_cells", f"{cells},1", "-time_end", f"{END} s", "-output_times", "0 s", "-output_probe_every", "0.5 s",
+            "-stepper_adapt", "yes", "-stepper_dt", "0.1 s", "-stepper_tol", tol, "-mat_sand_water_bulk_modulus", f"{K_W} Pa",
+            "-mat_sand_permeability_k0", f"{K} m^2", "-bc_load_normal_table", ",".join(rows))  # fmt: skip
+
+
+def column(kind, *more, cells=26, tol=1e-3, **keywords):
+    return Run.of_case(CASE, "-stepper_type", kind, *options(cells, tol), *more, **keywords)
+
+
+def exact(x, quantity, t):
+    found = np.zeros_like(t)
+    for begin, end, change in LOADS:
+        m = DynamicColumn(H=10.0, M=constrained_modulus(14.516e6, 0.3), n_f=0.33, rho_s=2000.0, rho_w=1000.0, Kw=K_W, mobility=K / 1e-3, q=change, rise=end - begin)
+        late = t > begin
+        found[late] += m.solution(x, t[late] - begin)[quantity]
+    return found
+
+
+WATCHED = {"u(H)": ("end", "u_x_m", 10.0, "u", 0.0), "p(H/2)": ("middle", "p_Pa", 5.0, "p", 1e6)}
+TIMES = 0.5 * np.arange(1, round(END / 0.5) + 1)
+EXACT = {name: exact(x, q, TIMES) + zero for name, (_, _, x, q, zero) in WATCHED.items()}
+
+
+def errors(run):
+    """{curve: largest error over its range in each phase}."""
+    found = {}
+    for name, (probe, quantity, *_) in WATCHED.items():
+        off = np.abs(run.at(probe, quantity, TIMES) - EXACT[name]) / np.ptp(EXACT[name])
+        found[name] = [float(np.max(off[(TIMES > a) & (TIMES <= b)])) for a, b in PHASES]
+    return found
+
+
+def changes(run):
+    return [(float(t), a, b) for t, a, b in re.findall(r"^t = (\S+) s: (\w+) -> (\w+):", run.output, re.M)]
+
+
+# --------------------------------------------------------------------------------------------------- who works when
+runs = {(kind, n): column(kind, cells=n) for kind, n in (("auto", 13), ("auto", 26), ("sdirk2", 26), ("hybrid", 26))}
+off = {k: errors(r) for k, r in runs.items()}
+print("error over the range of the curve, phase by phase")
+table(["integrator", "cells", "curve", *(f"{a} ... {b} s" for a, b in PHASES), "steps"],
+      [(kind, n, c, *(f"{e:.2e}" for e in off[kind, n][c]), int(runs[kind, n].balance["step"][-1])) for kind, n in runs for c in WATCHED])
+run = runs["auto", 26]
+found = changes(run)
+check_true("implicit, hybrid for the wave, implicit again", [c[1:] for c in found] == [("sdirk2", "hybrid"), ("hybrid", "sdirk2")], str(found))
+check_true("hybrid begins with the wave and ends when it has died", 20.0 < found[0][0] < 20.1 and 21.0 < found[1][0] < 60.0, str(found))
+check("u of auto, worst of all phases", max(off["auto", 26]["u(H)"]), 0.01)
+check("p of auto, worst of all phases", max(off["auto", 26]["p(H/2)"]), 0.04)
+check("... against that of hybrid alone", max(off["auto", 26]["p(H/2)"]) / max(off["hybrid", 26]["p(H/2)"]), 1.2)
+check("the wave's error falls with h", max(off["auto", 26]["p(H/2)"]) / max(off["auto", 13]["p(H/2)"]), 0.7)
+check_true("sdirk2 alone damps the wave away at this tolerance", max(off["sdirk2", 26]["p(H/2)"]) > 5 * max(off["auto", 26]["p(H/2)"]))
+check_true("auto takes less than half of hybrid's steps", runs["auto", 26].balance["step"][-1] < 0.5 * runs["hybrid", 26].balance["step"][-1])
+check("water", np.max(np.abs(run.balance["water_error"])), 1e-13)
+lines = re.findall(r"^  (sdirk2|hybrid) from \S+ s to \S+ s, \d+ steps", (run.out / "summary.txt").read_text(), re.M)
+check_true("a line for each in summary.txt", lines == ["sdirk2", "hybrid", "sdirk2"], str(lines))
+fixed = column("auto", "-stepper_adapt", "no", "-stepper_dt", "0.5 s")
+check_true("with a fixed step it stays with what it chose", not changes(fixed) and "integrator chosen: sdirk2\n" in fixed.output)
+
+# ------------------------------------------------------------------------------- a change leaves everything as it was
+rows = run.balance["time_s"]
+first, second = (int(np.argmin(np.abs(rows - t))) + 1 for t, *_ in found)  # advances until each change
+there = column("auto", "-stepper_max_steps", first)
+alone = column("sdirk2", "-stepper_max_steps", first)
+names = _files.different(there.out, alone.out, ("probes.csv", "balance.csv"))
+check_true("particles and totals at a change are those of sdirk2 alone, bit for bit",
+           changes(there) and {n.split("/")[-1] for n in names} <= {"kind", "votes", "patience", "since", "spent", "hold", "fresh", "err_old", "dt"}, ", ".join(names))  # fmt: skip
+
+# ------------------------------------------------------------------------------------------------------ restart, ranks
+for what, cut in {"before the change to hybrid": first - 1, "at it": first, "after it": first + 1, "at the change back": second, "after it": second + 1}.items():
+    out = scratch() / "out"
+    column("auto", "-stepper_max_steps", cut, out=out)
+    column("auto", "-restart", out / "checkpoint.h5", out=out)
+    names = _files.different(run.out, out)
+    check_true(f"cut {what}: the same bit for bit", not names, ", ".join(names[:5]))
+two = column("auto", ranks=2)
+check_true("2 ranks change at the same steps", [c[1:] for c in changes(two)] == [c[1:] for c in found] and np.allclose([c[0] for c in changes(two)], [c[0] for c in found], rtol=1e-6), str(changes(two)))
+check("2 ranks against 1, p over its range", np.max(np.abs(two.probe("middle")["p_Pa"] - run.probe("middle")["p_Pa"])) / Q, 1e-6)
+finish()
