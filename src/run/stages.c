@@ -102,7 +102,8 @@ static PetscErrorCode LimitWords(const Entry *e, char words[200])
       PetscCall(PetscSNPrintf(words + n, 200 - n, "%s%s %.3g %%", strchr(words, '(') ? ", " : " (", cl_limit_word[k],
                               100.0 * e->ruled[k] / (e->to - e->from)));
   }
-  PetscCall(PetscStrlcat(words, ")", 200));
+  if (strchr(words, '('))
+    PetscCall(PetscStrlcat(words, ")", 200));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
