@@ -311,7 +311,8 @@ bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
 
   for (int i = 0; i < 3; i++)
     size = fmax(size, fabs(t->y[i]));
-  const bool beyond = ReturnApex(t, CLOSE * size, slopes, &apex);
+  const bool near   = ReturnApex(t, FLAT * size, slopes, &apex);
+  const bool beyond = near && (t->y[0] + t->y[1] + t->y[2]) / 3.0 >= apex.y[0] - CLOSE * size;
   bool       found  = false;
   r->iterations     = 0;
   r->region         = RETURN_FACE;
@@ -334,10 +335,10 @@ bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
     found = isfinite(x[0] + x[X_L]) && Newton(t, size, x, &r->iterations);
   }
   found = found || (!beyond && Continuation(t, size, x, &r->iterations));
-  if (!found) {
+  if (!found) { /* in a needle: what is found below the apex would differ from it by less than FLAT */
     apex.iterations = r->iterations;
     *r              = apex;
-    return beyond;
+    return near;
   }
   for (int i = 0; i < 3; i++)
     r->y[i] = x[i];

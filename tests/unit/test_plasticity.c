@@ -410,7 +410,7 @@ static void TestNearApex(void **state)
 {
   (void)state;
   NearApex(1e-6, 1.0, 2.5, 50000, 1e-10);
-  NearApex(1e-12, 1e-5, 5.0, 300000, 1e-8);
+  NearApex(1e-12, 0.1, 5.0, 300000, 2e-7);
 }
 
 /* ---------------------------------------------------------------- tangent */
