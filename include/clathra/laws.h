@@ -147,6 +147,7 @@ typedef struct {
   double eta_h, Sh_max;       /* how strength falls with hydrate */
   double eta_s;               /* ... and with plastic strain */
   double length, cell;        /* softening_length (0: none) and size of a cell, m: eta_s is scaled by cell/length */
+  double nonlocal;            /* nonlocal_length, m (0: none): neighbours whose plastic strain softens a particle */
   double eccentricity;        /* of the smooth potential in the meridian plane, of c_max */
   double cutoff;              /* largest tension, Pa; INFINITY: none */
   double heat;                /* share of the plastic work that becomes heat, [0,1] */

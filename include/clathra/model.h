@@ -11,6 +11,7 @@
 typedef struct {
   double         t;      /* end of the stage, where boundary functions are evaluated, s */
   double         dt;     /* dt', s */
+  double         ahead;  /* of the end of the stage since t_n, s */
   double        *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
   double        *u_star; /* [n_local][CL_DIM] starred displacement, m */
   double        *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
@@ -162,7 +163,7 @@ void ModelPlateStiffness(const Model *m, Face *f);
 /* The skeleton of particle p at t_n, where a first stage starts. */
 static inline SkeletonStage ModelSkeletonStart(const Model *m, PetscInt p)
 {
-  const SkeletonStore store = ParticlesSkeleton(&m->P, p);
+  const SkeletonStore store = ParticlesSkeleton(&m->P, p, 0.0);
   SkeletonHistory     h;
 
   SkeletonTake(&store, 0, &h);

@@ -90,10 +90,14 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
   return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
 }
 
-/* History of the skeleton of the particles from `first` on; the set must have a solid. */
-static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first)
+/* History of the skeleton of the particles from `first` on, for a stage that ends `ahead` (s) of the last average of
+   neighbours; the set must have a solid. */
+static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first, double ahead)
 {
-  SkeletonStore s = {.yield = P->f[P_YIELD] ? P->f[P_YIELD] + first : NULL};
+  SkeletonStore s = {.yield    = P->f[P_YIELD] ? P->f[P_YIELD] + first : NULL,
+                     .nonlocal = P->f[P_NONLOCAL] ? P->f[P_NONLOCAL] + first : NULL,
+                     .rate     = P->f[P_NONLOCAL] ? P->f[P_NONLOCAL_RATE] + first : NULL,
+                     .ahead    = ahead};
 
   for (int k = 0; k < OWN_COUNT; k++)
     s.own[k] = P->f[P_HISTORY + k] ? P->f[P_HISTORY + k] + first : NULL;
@@ -142,3 +146,7 @@ void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM]
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);
+/* At the end of a step (or burst of steps) of length `time` (s): what grew of the plastic strain since the last call,
+   averaged over neighbours, joins P_NONLOCAL, for materials with a nonlocal_length; particles of the others go on with
+   their own.  docs/equations.md (85).  Collective. */
+PetscErrorCode ParticlesNonlocal(const Case *c, const Grid *g, double time, Particles *P);

@@ -41,7 +41,10 @@ typedef struct {
   X(P_YIELD, HAS_PLASTIC, "yield", 1, "-", "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension")       \
   X(P_WP, HAS_PLASTIC, "plastic_work", 1, "J", "dissipated by the particle so far")                                    \
   X(P_HEAT, HAS_PLASTIC, "plastic_heat", 1, "J", "hybrid: of the last step, which the next one gives to the nodes")    \
-  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")
+  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")     \
+  X(P_NONLOCAL, HAS_NONLOCAL, "eps_d_p_nonlocal", 1, "-", "sum of its averages over neighbours, what softens")         \
+  X(P_NONLOCAL_RATE, HAS_NONLOCAL, "rate_nonlocal", 1, "1/s", "of eps_d_p_nonlocal, mean of the last step")            \
+  X(P_AVERAGED, HAS_NONLOCAL, "eps_d_p_averaged", 1, "-", "eps_d_p at the last average")
 
 /* OWN_P_EPS, ...: place of a history variable in the arrays below. */
 #define CL_OWN_ENUM(id, has, name, nc, unit, doc) OWN_##id, OWN_##id##_LAST_ = OWN_##id + (nc)-1,
@@ -60,6 +63,7 @@ typedef struct {
 typedef struct {
   double        sig[6], sig0[6]; /* effective stress at t_n and the initial one that turns with the body, Pa */
   SkeletonStage from;
+  double        nonlocal; /* plastic strain that sets the strength, end of the stage (86); only with nonlocal_length */
 } SkeletonHistory;
 
 /* Where on the yield surface a state was returned to. */
@@ -87,7 +91,8 @@ typedef struct {
 
 /* Where the history of particles stands: arrays over particles, null where a scene does not hold it. */
 typedef struct {
-  double *sig[6], *sig0[6], *own[OWN_COUNT], *yield;
+  double *sig[6], *sig0[6], *own[OWN_COUNT], *yield, *nonlocal, *rate;
+  double  ahead; /* of the end of the stage, since the last average of neighbours, s */
 } SkeletonStore;
 
 /* n particles of one material; the history is replaced.  Strain and rotation as in SkeletonStep, e_zz = 0. */
@@ -113,7 +118,10 @@ const SkeletonLaw *SkeletonLawOf(const Material *mat);
 /* Rows of the tables that a material needs. */
 static inline unsigned SkeletonHas(const Material *mat)
 {
-  return SkeletonLawOf(mat)->has | (ElasticityHasBonds(&mat->elasticity) ? HAS_BONDS : 0u);
+  const bool nonlocal = mat->plasticity.type != PLASTICITY_NONE && mat->plasticity.nonlocal > 0.0;
+
+  return SkeletonLawOf(mat)->has | (ElasticityHasBonds(&mat->elasticity) ? HAS_BONDS : 0u) |
+         (nonlocal ? HAS_NONLOCAL : 0u);
 }
 
 /* t may be null. */
@@ -159,12 +167,18 @@ static inline __attribute__((always_inline)) void SkeletonKeepStress(const Skele
     f->sig0[k][q] = s->sig0[k];
   }
 }
+/* (86) */
+static inline double SkeletonNonlocal(const SkeletonStore *f, ptrdiff_t q)
+{
+  return f->nonlocal ? f->nonlocal[q] + f->ahead * f->rate[q] : 0.0;
+}
 static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
 {
   SkeletonTakeStress(f, q, h);
   h->from = (SkeletonStage){.sig = {h->sig[0], h->sig[1], h->sig[2], h->sig[3]}};
   for (int k = 0; k < OWN_COUNT; k++)
     h->from.own[k] = f->own[k] ? f->own[k][q] : 0.0;
+  h->nonlocal = SkeletonNonlocal(f, q);
 }
 static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)
 {

@@ -145,6 +145,10 @@ static const Key case_key[] = {
     BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
             .choices = pressures_word),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
+    BOOLEAN(
+        Case, "mean_dilatation", mean_dilatation, "no",
+        "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
+        "does not lock"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
@@ -322,6 +326,11 @@ static const Key material_key[] = {
          "width of a shear band that eta_s is meant for: eta_s is scaled by the size of a cell over it, so that what a "
          "band "
          "dissipates per area does not depend on the grid; 0 m = not scaled"),
+    REAL(Material, "plasticity_nonlocal_length", plasticity.nonlocal, "m", "[0,1e6]", "0 m",
+         "strength follows the plastic strain of neighbours, averaged with weights (d/l) exp(-(d/l)^2) of their "
+         "distance "
+         "d, l this length: the width of a band then does not depend on the grid; at least two cells; 0 m = the "
+         "particle's own"),
     REAL(Material, "plasticity_eccentricity", plasticity.eccentricity, "", "(0,10]", "0.1",
          "of the smooth potential: how round its end is, of cohesion_max"),
     REAL(Material, "plasticity_tension_cutoff", plasticity.cutoff, "Pa", "[0,1e12]", "none",

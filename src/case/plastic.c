@@ -29,6 +29,28 @@ static void CheckSnapBack(Reader *r, const Material *m)
   }
 }
 
+#define LEAST_CELLS 2.0 /* in a nonlocal_length: with less it is the grid again that decides */
+
+/* A length over which plastic strain is averaged needs cells finer than itself, and strength that falls with strain. */
+static void CheckNonlocal(Reader *r, const Case *c, const Material *m)
+{
+  const Plasticity *p = &m->plasticity;
+  double            h = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    h = fmax(h, (c->upper[d] - c->lower[d]) / (double)c->cells[d]);
+  if (p->nonlocal < LEAST_CELLS * h * (1.0 - 1e-9))
+    FAIL("plasticity_nonlocal_length", "= %g m is less than two cells; allowed [%g m,1e+06 m], or 0 m for none",
+         p->nonlocal, LEAST_CELLS * h);
+  if (p->length > 0.0)
+    FAIL("plasticity_nonlocal_length", "and plasticity_softening_length correct for the same thing: give one of them");
+  if (p->eta_s == 0.0 || (p->c_res == p->c_max && p->phi_res == p->phi_peak && p->psi_max == 0.0))
+    FAIL("plasticity_nonlocal_length",
+         "needs strength that falls with plastic strain: eta_s is %g, cohesion, friction "
+         "and dilation fall by %g Pa, %g deg, %g deg",
+         p->eta_s, p->c_max - p->c_res, p->phi_peak - p->phi_res, p->psi_max);
+}
+
 void CheckPlasticity(Reader *r, const Case *c, const Material *m)
 {
   const Plasticity *p = &m->plasticity;
@@ -52,8 +74,10 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
     FAIL("plasticity_tension_cutoff", "needs plasticity_flow: mohr_coulomb");
   if (p->heat > 0.0 && !c->fields.heat)
     FAIL("plasticity_heat", "is %g but heat is not among the fields of the scene (%s)", p->heat, c->fields_wanted);
-  if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
-    CheckSnapBack(r, m);
+  if (p->nonlocal > 0.0)
+    CheckNonlocal(r, c, m);
+  else if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
+    CheckSnapBack(r, m); /* a strength given for the step cannot fall within it */
   if (p->psi_max > p->phi_peak && r->rank == 0)
     fprintf(stderr,
             "clathra: warning: material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)\n",

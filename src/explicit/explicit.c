@@ -234,6 +234,7 @@ PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
 {
   PetscFunctionBeginUser;
   e->m->status = CL_OK;
+  e->ahead     = 0.0;
   PetscCall(Ready(e));
   if (e->o.mass_scaling > 1.0)
     PetscCall(ActingForces(e));
@@ -313,6 +314,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   m->status = CL_OK;
   e->latent = e->advected = 0.0;
   PetscCall(PetscArrayzero(e->work, WORK_RATES));
+  e->ahead += dt;
   BcValuesEvaluate(m->c, t + dt, &m->bc);
   if (e->stale)
     PetscCall(NodesRebuild(e));
@@ -338,6 +340,7 @@ PetscErrorCode ExplicitEnd(Explicit *e)
 
   PetscFunctionBeginUser;
   PetscCall(PlatesEnd(e));
+  PetscCall(ParticlesNonlocal(e->m->c, &e->m->grid, e->ahead, P));
   for (PetscInt p = 0; p < P->n; p++) {
     PointProperties q;
     const char     *why;

@@ -34,6 +34,19 @@ INLINE void Gather(const Explicit *e, Run r, const Weights *w, Gathered *g)
   }
 }
 
+/* (88) */
+INLINE void MeanDilatation(const Explicit *e, const Set s, Run r, const Weights *w, Gathered *g)
+{
+  const int at = C_Vs(s);
+
+  for (int q = 0; q < r.n; q++) {
+    const double more = MoreDivergence(e, w, q, &e->C[at], LANES, g->dx[q][at] + g->dy[q][at + 1]);
+
+    g->dx[q][at] += more;
+    g->dy[q][at + 1] += more;
+  }
+}
+
 /* Bare form, the paper's (72): increments of pressure from the particle's own balances, with the new temperature. */
 INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
 {
@@ -310,7 +323,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .Sh      = Sh,
                                .kept    = kept,
                                .work    = yields ? work : NULL,
-                               .store   = ParticlesSkeleton(&e->m->P, r.p)};
+                               .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
   e->m->released += Released(el, &block, e->m->P.f[P_V] + r.p);
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
     ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
@@ -375,6 +388,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     kept[q] = 1.0;
   WeightsOf(e, r, &w);
   Gather(e, r, &w, &g);
+  if (s.solid && e->m->c->mean_dilatation)
+    MeanDilatation(e, s, r, &w, &g);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))

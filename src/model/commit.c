@@ -241,7 +241,7 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   f[P_LOGJ][p] += log(s->V / f[P_V][p]);
   f[P_V][p] = s->V;
 
-  const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+  const SkeletonStore store = ParticlesSkeleton(&m->P, 0, 0.0);
   SkeletonKeep(&store, p, &s->skeleton);
 }
 
@@ -272,7 +272,7 @@ static void Forward(const PointState *s, const double G[CL_DIM], double g[CL_DIM
 static double Released(const Model *m, PetscInt p, const PointState *s)
 {
   const Elasticity   *el    = &ParticleMaterial(m, p)->elasticity;
-  const SkeletonStore store = ParticlesSkeleton(&m->P, 0);
+  const SkeletonStore store = ParticlesSkeleton(&m->P, 0, 0.0);
   const double        old   = m->P.f[P_MH][p];
   SkeletonHistory     h;
   double              dE;
@@ -342,5 +342,6 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
   }
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
   PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
+  PetscCall(ParticlesNonlocal(m->c, &m->grid, m->stage.ahead, &m->P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

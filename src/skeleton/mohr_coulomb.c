@@ -84,25 +84,26 @@ static void StressSlopes(const Principal *p, const Returned *r, double C[4][4], 
   }
 }
 
-static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, const Principal *p)
+static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, double nonlocal, const Principal *p)
 {
   const Elasticity *el = &mat->elasticity;
 
-  return (Trial3){.law  = &mat->plasticity,
-                  .G2   = 2.0 * ElasticityShearFactor(el),
-                  .lame = ElasticityLameFactor(el),
-                  .E    = StageModulus(el, d),
-                  .Sh   = d->Sh,
-                  .eps  = eps,
-                  .y    = {p->y[0], p->y[1], p->y[2]}};
+  return (Trial3){.law      = &mat->plasticity,
+                  .G2       = 2.0 * ElasticityShearFactor(el),
+                  .lame     = ElasticityLameFactor(el),
+                  .E        = StageModulus(el, d),
+                  .Sh       = d->Sh,
+                  .eps      = eps,
+                  .nonlocal = nonlocal,
+                  .y        = {p->y[0], p->y[1], p->y[2]}};
 }
 
-static bool Yields(const Plasticity *law, double Sh, double eps, const double y[3])
+static bool Yields(const Plasticity *law, double Sh, double eps, double nonlocal, const double y[3])
 {
   Strength k;
   double   dy[3], dphi;
 
-  StrengthEvaluate(law, Sh, eps, &k);
+  StrengthOf(law, Sh, eps, nonlocal, &k);
   const double round_off = ROUND_OFF * k.c + 1e-2 * ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
   return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > StrengthCutoff(law) + round_off;
 }
@@ -148,17 +149,17 @@ static void PlasticTangent(const Elasticity *el, const SkeletonStep *d, const Pr
 }
 
 /* From the trial stress in s to the yield surface; what that takes off it in `over`, with the plastic strain e. */
-static bool Return(const Material *mat, const SkeletonStep *d, SkeletonState *s, SkeletonTangent *t, double over[4],
-                   double e[4], const char **why)
+static bool Return(const Material *mat, const SkeletonStep *d, double nonlocal, SkeletonState *s, SkeletonTangent *t,
+                   double over[4], double e[4], const char **why)
 {
   Principal p;
   Returned  r;
   double    v[3];
 
   PrincipalOf(s->sig, &p);
-  if (!Yields(&mat->plasticity, d->Sh, s->own[OWN_P_EPS], p.y))
+  if (!Yields(&mat->plasticity, d->Sh, s->own[OWN_P_EPS], nonlocal, p.y))
     return true;
-  const Trial3 at = TrialOf(mat, d, s->own[OWN_P_EPS], &p);
+  const Trial3 at = TrialOf(mat, d, s->own[OWN_P_EPS], nonlocal, &p);
   if (!ReturnToYield(&at, t != NULL, &r)) {
     *why = "no stress on the yield surface was found for the strain of this step";
     return false;
@@ -184,7 +185,7 @@ bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const Ske
   double over[4], e[4];
 
   TrialState(&mat->elasticity, h, d, s, t);
-  if (!Return(mat, d, s, t, over, e, why))
+  if (!Return(mat, d, h->nonlocal, s, t, over, e, why))
     return false;
   if (s->region != RETURN_ELASTIC)
     ReturnEnd(&mat->elasticity, h, d, over, e, s);
@@ -214,7 +215,7 @@ bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char *
                             .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
     double             over[4], e[4];
 
-    found       = Return(mat, &d, &s, NULL, over, e, why) && found;
+    found       = Return(mat, &d, SkeletonNonlocal(f, q), &s, NULL, over, e, why) && found;
     b->work[q]  = s.work;
     f->yield[q] = (double)s.region;
     if (s.region != RETURN_ELASTIC)

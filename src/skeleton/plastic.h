@@ -8,9 +8,22 @@ typedef struct {
   const Plasticity *law;
   double            G2, lame; /* of Hooke's law per Young's modulus: 2G/E, lambda/E */
   double            E, Sh;
-  double            eps;  /* deviatoric plastic strain at the start */
-  double            y[3]; /* trial stresses, falling, Pa */
+  double            eps;      /* deviatoric plastic strain at the start */
+  double            nonlocal; /* that which sets the strength where the law has a nonlocal_length */
+  double            y[3];     /* trial stresses, falling, Pa */
 } Trial3;
+
+/* Strength at the plastic strain eps, or what the neighbours left of it, which no slope in eps changes. */
+static inline void StrengthOf(const Plasticity *law, double Sh, double eps, double nonlocal, Strength *k)
+{
+  StrengthEvaluate(law, Sh, law->nonlocal > 0.0 ? nonlocal : eps, k);
+  if (law->nonlocal > 0.0)
+    k->c_e = k->phi_e = k->psi_e = 0.0;
+}
+static inline void StrengthAt(const Trial3 *t, double eps, Strength *k)
+{
+  StrengthOf(t->law, t->Sh, eps, t->nonlocal, k);
+}
 
 /* Columns of the slopes: the trial stresses, E, S_h. */
 enum { BY_E = 3, BY_SH, BY_COUNT };

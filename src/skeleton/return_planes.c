@@ -288,6 +288,7 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r)
   double       dn[3], by[BY_COUNT], y_eps[3], slope;
   double       lo = t->eps, hi = t->eps + 2.0 * DeviatoricNorm(t->y, dn) / (t->G2 * t->E), eps = lo;
   const double close = 1e-16 + 1e-15 * hi;
+  const bool   given = SofteningRate(t->law) == 0.0 || t->law->nonlocal > 0.0; /* strength, whatever the strain */
 
   r->region     = RETURN_FACE;
   r->iterations = 0;
@@ -296,7 +297,7 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r)
     Closest  o;
 
     r->iterations++;
-    StrengthEvaluate(t->law, t->Sh, eps, &k);
+    StrengthAt(t, eps, &k);
     if (!AtStrength(t, &k, &o, &r->region))
       return false;
     const double f         = Excess(t, eps, &o, &k, &slope, by, y_eps);
@@ -304,8 +305,8 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r)
     double next            = slope > 0.0 ? eps - f / slope : lo - 1.0;
     if (!(next >= lo && next <= hi))
       next = 0.5 * (lo + hi);
-    if (fabs(next - eps) <= close || hi - lo <= 4.0 * close || SofteningRate(t->law) == 0.0) {
-      r->eps = SofteningRate(t->law) == 0.0 ? eps - f : eps;
+    if (fabs(next - eps) <= close || hi - lo <= 4.0 * close || given) {
+      r->eps = given ? eps - f : eps;
       Finish(t, &o, &k, slope, by, y_eps, slopes, r);
       return slope > 0.0;
     }
@@ -324,7 +325,7 @@ bool ReturnApex(const Trial3 *t, bool slopes, Returned *r)
 
   r->eps    = t->eps + n;
   r->region = RETURN_APEX;
-  StrengthEvaluate(t->law, t->Sh, r->eps, &k);
+  StrengthAt(t, r->eps, &k);
   if (!(k.phi > 0.0) || sm * tan(k.phi) < k.c)
     return false;
   Apex(&k, &o);

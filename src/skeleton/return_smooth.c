@@ -33,7 +33,7 @@ static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, Sy
   FlowGradient P;
   double       dF[3], dn[3], F_phi, n_y[3] = {0.0}, n_eps = 0.0, n_S = 0.0;
 
-  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
+  StrengthAt(t, t->eps + x[X_EPS], &k);
   MenetreyWillamGradient(k.phi, k.psi, FlowRoundness(t->law), x, &P);
   const double n = DeviatoricNorm(P.dev, dn), L = x[X_L];
 
@@ -207,7 +207,7 @@ static void GuessBeyond(const Trial3 *t, double x[UNKNOWNS])
   const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, norm = DeviatoricNorm(t->y, ds);
 
   x[X_EPS] = norm / (t->G2 * t->E);
-  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
+  StrengthAt(t, t->eps + x[X_EPS], &k);
   const double tp = tan(k.psi), m = FlowRoundness(t->law) * tp, at = k.c / tan(k.phi),
                R    = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi));
   x[X_L]            = (sm - at) / ((t->G2 + 3.0 * t->lame) * tp / 3.0);
@@ -225,7 +225,7 @@ static void GuessShare(const Trial3 *t, double x[UNKNOWNS])
   const double sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0, norm = DeviatoricNorm(t->y, ds);
 
   x[X_EPS] = norm / (t->G2 * t->E);
-  StrengthEvaluate(t->law, t->Sh, t->eps + x[X_EPS], &k);
+  StrengthAt(t, t->eps + x[X_EPS], &k);
   const double tp = tan(k.psi), m = FlowRoundness(t->law) * tp, K = (t->G2 + 3.0 * t->lame) * tp / 3.0,
                R = (3.0 - sin(k.phi)) / (6.0 * cos(k.phi)), rho = 1.5 * R * norm,
                F = MohrCoulombYield(k.phi, k.c, t->y, dF, &F_phi), shear = F + k.c - sm * tan(k.phi);
@@ -250,7 +250,7 @@ static bool Continuation(const Trial3 *t, double scale, double x[UNKNOWNS], int 
   Strength k;
   double   done = 0.0, step = 0.25, from[UNKNOWNS], inside, dF[3], dphi;
 
-  StrengthEvaluate(t->law, t->Sh, t->eps, &k);
+  StrengthAt(t, t->eps, &k);
   inside = fmin((t->y[0] + t->y[1] + t->y[2]) / 3.0, k.phi > 0.0 ? 0.5 * k.c / tan(k.phi) : INFINITY);
   for (int i = 0; i < UNKNOWNS; i++)
     from[i] = i < 3 ? inside : 0.0;
@@ -283,7 +283,7 @@ static bool StaysAtApex(const Trial3 *t, double scale, const Returned *apex)
   Strength     k;
   FlowGradient P;
 
-  StrengthEvaluate(t->law, t->Sh, apex->eps, &k);
+  StrengthAt(t, apex->eps, &k);
   if (k.psi < FLAT)
     return true;
   if (FlowRoundness(t->law) * tan(k.psi) > SHARP * scale)

@@ -90,10 +90,15 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 {
   Model       *m     = s->model;
   StepperWork *w     = &s->work;
-  const Stage  stage = {
-       .t = t, .dt = dt, .x_star = w->x_star, .u_star = w->u_star, .m_star = w->m_star, .k_star = w->k_star};
-  StageRates rates;
-  PetscInt   newton = 0;
+  const Stage  stage = {.t      = t,
+                        .dt     = dt,
+                        .ahead  = t - s->state.t,
+                        .x_star = w->x_star,
+                        .u_star = w->u_star,
+                        .m_star = w->m_star,
+                        .k_star = w->k_star};
+  StageRates   rates;
+  PetscInt     newton = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelBeginStage(m, &stage));

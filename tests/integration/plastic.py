@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A footing on a softening Mohr-Coulomb block, with sdirk2 and hybrid: the same on 1, 2 and 4 ranks, a restart in the
 middle of the plastic flow bit for bit, the heat of plastic work in the balance of heat, and both integrators against
-each other.
+each other; and all that where the plastic strain of neighbours softens (nonlocal_length).
 """
 import sys
 from pathlib import Path
@@ -17,6 +17,7 @@ KINDS = {
     "hybrid": ("-stepper_type", "hybrid", "-stepper_adapt", "yes"),
 }
 CUT = {"sdirk2": "11", "hybrid": "1"}  # steps, bursts of 256 steps
+NONLOCAL = ("-mat_soil_plasticity_nonlocal_length", "0.6 m", "-mat_soil_plasticity_eta_s", "50")
 
 
 def footing(kind, *options, **keywords):
@@ -31,18 +32,26 @@ def difference(a, b):
     return worst[name], name
 
 
-rows, runs = [], {}
-for kind in KINDS:
-    one = runs[kind] = footing(kind)
+def reproduced(kind, *options):
+    """One run and its last snapshot; on more ranks, and cut in two, it is the same."""
+    words = f"{kind}{', nonlocal' if options else ''}"
+    one = footing(kind, *options)
     last = one.snapshots()[-1][1]
     for n in (2, 4):
-        value, where = difference(one, footing(kind, ranks=n))
-        check(f"{kind}: {n} ranks against 1, {where}", value, 1e-7)
+        value, where = difference(one, footing(kind, *options, ranks=n))
+        check(f"{words}: {n} ranks against 1, {where}", value, 1e-7)
     out = scratch() / "out"
-    footing(kind, "-stepper_max_steps", CUT[kind], out=out)
-    two = footing(kind, "-restart", out / "checkpoint.h5", out=out)
+    footing(kind, *options, "-stepper_max_steps", CUT[kind], out=out)
+    two = footing(kind, *options, "-restart", out / "checkpoint.h5", out=out)
     same = all(np.array_equal(v, two.snapshots()[-1][1][name]) for name, v in last.items())
-    check_true(f"{kind}: a restart in plastic flow, bit for bit", same and all((one.out / f).read_bytes() == (out / f).read_bytes() for f in ("probes.csv", "balance.csv")))
+    check_true(f"{words}: a restart in plastic flow, bit for bit", same and all((one.out / f).read_bytes() == (out / f).read_bytes() for f in ("probes.csv", "balance.csv")))
+    return one, last
+
+
+rows, runs = [], {}
+for kind in KINDS:
+    one, last = reproduced(kind)
+    runs[kind] = one
     work, pending = last["plastic_work"].sum(), last["plastic_heat"].sum()
     gain = one.balance["heat_J"][-1]
     check(f"{kind}: heat gained against the share of the plastic work", abs(gain + pending - 0.7 * work) / work, 1e-10)
@@ -53,4 +62,12 @@ table(["integrator", "largest eps_d_p", "plastic work (J)", "heat (J)", "settlem
 a, b = (runs[k].probe("p")["u_y_m"][-1] for k in KINDS)
 check("hybrid against sdirk2: settlement", abs(b / a - 1), 0.05)
 check("hybrid against sdirk2: plastic work", abs(rows[1][2] / rows[0][2] - 1), 0.1)
+strains = {}
+for kind in KINDS:
+    one, last = reproduced(kind, *NONLOCAL)
+    own, around, V = (last[name][:, 0] for name in ("eps_d_p", "eps_d_p_nonlocal", "volume"))
+    strains[kind] = own, around
+    check(f"{kind}, nonlocal: averages keep the sum of the plastic strain", abs(np.sum(V * around) / np.sum(V * own) - 1), 0.15)
+    check(f"{kind}, nonlocal: largest average over largest plastic strain", around.max() / own.max(), (0.2, 0.95))
+check("hybrid against sdirk2, nonlocal: plastic strain", np.max(np.abs(strains["hybrid"][1] - strains["sdirk2"][1])) / strains["sdirk2"][1].max(), 0.1)
 finish()

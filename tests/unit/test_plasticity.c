@@ -288,6 +288,21 @@ static void TestStrengthFactor(void **state)
   assert_true(worst < 1e-10 && plastic[0] > 500 && plastic[1] > 500 && plastic[2] > 500);
 }
 
+/* Some states of a law whose strength its neighbours' plastic strain sets. */
+static void GiveNonlocal(Sample *q, int n)
+{
+  if (n % 5 != 4)
+    return;
+  q->mat.plasticity.nonlocal = 0.1;
+  q->h.nonlocal              = 0.3 + 0.5 * q->h.from.own[OWN_P_EPS];
+}
+
+/* Plastic strain that sets the strength at the end. */
+static double Softens(const Sample *q, const SkeletonState *s)
+{
+  return q->mat.plasticity.nonlocal > 0.0 ? q->h.nonlocal : s->own[OWN_P_EPS];
+}
+
 /* Principal stresses, falling. */
 static void Sorted(const double s[6], double y[3])
 {
@@ -309,11 +324,12 @@ static void TestYieldSurface(void **state)
 
   (void)state;
   for (int k = 0; k < n; k++) {
-    const Sample  q = RandomSample(&r, k % 2, k % 4 == 3);
+    Sample        q = RandomSample(&r, k % 2, k % 4 == 3);
     SkeletonState s;
     Strength      now;
     double        y[3], dy[3], dphi;
 
+    GiveNonlocal(&q, k);
     if (!Go(&q, q.in, &s, NULL)) {
       lost++;
       printf("lost %d c %g psi %g\n", k, q.mat.plasticity.c_max, q.mat.plasticity.psi_max);
@@ -324,7 +340,7 @@ static void TestYieldSurface(void **state)
       assert_true(s.work == 0.0 && s.own[OWN_P_EPS] == q.h.from.own[OWN_P_EPS]);
       continue;
     }
-    StrengthEvaluate(&q.mat.plasticity, q.in[SKELETON_SH], s.own[OWN_P_EPS], &now);
+    StrengthEvaluate(&q.mat.plasticity, q.in[SKELETON_SH], Softens(&q, &s), &now);
     Sorted(s.sig, y);
     const double F = MohrCoulombYield(now.phi, now.c, y, dy, &dphi), over = y[0] - StrengthCutoff(&q.mat.plasticity);
     const double unit =
@@ -444,6 +460,7 @@ static void TestTangent(void **state)
     SkeletonTangent t;
     SkeletonState   s;
 
+    GiveNonlocal(&q, n);
     if (!Go(&q, q.in, &s, &t) || (s.region == RETURN_FACE && RngPick(&r, 4)))
       continue;
     for (q.which = 0; q.which < SKELETON_IN; q.which++) {
