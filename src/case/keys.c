@@ -60,6 +60,12 @@ static bool BcNeedsSide(const void *p)
 {
   return !((const Bc *)p)->along.n;
 }
+static bool NeedsPlace(const void *p)
+{
+  const Probe *b = (const Probe *)p;
+
+  return b->over < 0 && b->surface.side == SIDE_COUNT && !b->surface.along.n;
+}
 static bool MeterNeedsSide(const void *p)
 {
   return !((const Meter *)p)->along.n;
@@ -340,7 +346,8 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
-    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials, or none: only to be cut out of others, or to hold a region_temperature",
+    NAME(Region, "material", material, NULL, GROUP_MATERIAL,
+         "one of materials, or none: only to be cut out of others, to hold a region_temperature, or for a probe's mean",
          .word = "none", .shape = true),
     POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
     POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
@@ -440,8 +447,22 @@ static const Key bc_key[] = {
 };
 
 static const Key probe_key[] = {
-    REALS(Probe, 2, "at", x, "m", "", NULL, "initial position, inside a region"),
-    BOOLEAN(Probe, "fixed", fixed, "no", "stays there in space; otherwise follows the body"),
+    NAME(Probe, "over", over, "none", GROUP_REGION,
+         "the mean over a region, weighted with current volumes: its particles, or of a region without particles those "
+         "that were in its shape first",
+         .word = "none"),
+    POINTS(Probe, "along", surface.along,
+           "[[x, y], ...]: the mean over the faces on this line, in the initial configuration, weighted with current "
+           "areas"),
+    CHOICE(Probe, "side", surface.side, "none", side_word, "the mean over this side of the body, by area"),
+    NAME(Probe, "region", surface.region, "all", GROUP_REGION, "with side or along: one of regions, or all"),
+    REAL(Probe, "from", surface.from, "m", "", "start", "with side: only the part from here ...", .word = "-start"),
+    REAL(Probe, "to", surface.to, "m", "", "end", "... to here", .word = "end"),
+    REALS(Probe, 2, "at", x, "m", "", "none, none", "a point: initial position, inside a region",
+          WHEN(NeedsPlace, "over, side and along are not given"), .word = "none"),
+    BOOLEAN(Probe, "fixed", fixed, "no",
+            "a point stays there in space, otherwise it follows the body; a mean is over what is in the region's shape "
+            "now"),
     {.name = NULL},
 };
 
@@ -512,7 +533,8 @@ const GroupInfo case_group[GROUP_COUNT] = {
     GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
           "Parts of the body, each of one shape, and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
-    GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
+    GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key,
+          "Points and means whose history is written"),
     GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
           "Parts of the surface that count what crosses them"),
     GROUP(CaseStage, "stage_", "stages", "stage", nstage, stage, false, stage_key,

@@ -90,10 +90,29 @@ void           TablesClose(Output *out);
 
 /* ---------------------------------------------------------------- probes.c, balance.c, meters.c: header lines, rank 0
  */
-void ProbesHeader(const Case *c, FILE *f);
-void BalanceHeader(const Case *c, FILE *f);
-void MetersHeader(const Case *c, FILE *f);
-bool MetersWanted(const Model *m); /* is there anything to write? */
+/* Columns of a probe that others name: in the order of the table in probes.c. */
+enum {
+  PROBE_P    = 0,
+  PROBE_PW   = 1, /* p_w, p_g, T */
+  PROBE_SG   = 6,
+  PROBE_X    = 13,
+  PROBE_MEAN = 16,
+  PROBE_Q,
+  PROBE_COUNT
+};
+bool   ProbeWanted(const Case *c, int q);
+double ProbeQuantity(const Particles *P, PetscInt p, int q);
+/* means.c: is this probe one?  This rank's sums of weights times values, and of weights (m^3 or m^2), of all that are.
+ */
+static inline bool ProbeIsMean(const Probe *p)
+{
+  return !isfinite(p->x[0]);
+}
+PetscErrorCode MeansAdd(const Model *m, double value[][PROBE_COUNT], double *weight);
+void           ProbesHeader(const Case *c, FILE *f);
+void           BalanceHeader(const Case *c, FILE *f);
+void           MetersHeader(const Case *c, FILE *f);
+bool           MetersWanted(const Model *m); /* is there anything to write? */
 
 /* Stages may take seconds after years: their times are told apart to the last digit. */
 static inline void IoTime(const Case *c, FILE *f, double t)
