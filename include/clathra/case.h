@@ -86,9 +86,11 @@ enum {
   QUANTITY_U,
   QUANTITY_STRESS,
   QUANTITY_X,
-  QUANTITY_EPS,  /* deviatoric plastic strain */
-  QUANTITY_MEAN, /* mean effective stress, compression-positive */
-  QUANTITY_Q,    /* deviatoric stress sqrt(3 J2) */
+  QUANTITY_EPS,    /* deviatoric plastic strain */
+  QUANTITY_MEAN,   /* mean effective stress, compression-positive */
+  QUANTITY_Q,      /* deviatoric stress sqrt(3 J2) */
+  QUANTITY_STRAIN, /* volumetric and deviatoric */
+  QUANTITY_YIELD,  /* distance to yield; is it reached? */
   QUANTITY_COUNT
 };
 

@@ -209,7 +209,8 @@ static const Key case_key[] = {
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
     TEXT(Case, "output_quantities", quantities_wanted, "all",
-         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q; all is what the "
+         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q, strain, yield; "
+         "all is what the "
          "scene has fields "
          "for"),
     REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),

@@ -98,10 +98,18 @@ enum {
   PROBE_X    = 13,
   PROBE_MEAN = 16,
   PROBE_Q,
+  PROBE_SHEAR = 19,
+  PROBE_MARGIN,
+  PROBE_YIELDS,
   PROBE_COUNT
 };
 bool   ProbeWanted(const Case *c, int q);
-double ProbeQuantity(const Particles *P, PetscInt p, int q);
+double ProbeQuantity(const Model *m, PetscInt p, int q);
+/* derived.c: mean effective stress, compression-positive, or sqrt(3 J2), Pa; deviatoric logarithmic strain
+   sqrt(2/3 dev e : dev e) since the start; distance to yield, Pa (NaN for a particle that cannot). */
+double DerivedStress(const Particles *P, PetscInt p, bool deviator);
+double DerivedShear(const Case *c, const Particles *P, PetscInt p);
+double DerivedMargin(const Model *m, PetscInt p);
 /* means.c: is this probe one?  This rank's sums of weights times values, and of weights (m^3 or m^2), of all that are.
  */
 static inline bool ProbeIsMean(const Probe *p)

@@ -21,7 +21,7 @@ static void AddParticle(const Model *m, PetscInt p, double weight, double value[
 {
   for (int q = 0; q < PROBE_COUNT; q++) {
     if (ProbeWanted(m->c, q))
-      value[q] += weight * ProbeQuantity(&m->P, p, q);
+      value[q] += weight * ProbeQuantity(m, p, q);
   }
 }
 

@@ -23,7 +23,11 @@ static const struct {
                          {"y_m", HAS_ALL, QUANTITY_X, P_X + 1},
                          {"eps_d_p", HAS_PLASTIC, QUANTITY_EPS, P_EPS},
                          [PROBE_MEAN] = {"p_eff_Pa", HAS_PLASTIC, QUANTITY_MEAN, -1},
-                         [PROBE_Q]    = {"q_Pa", HAS_PLASTIC, QUANTITY_Q, -1}};
+                         [PROBE_Q]    = {"q_Pa", HAS_PLASTIC, QUANTITY_Q, -1},
+                         {"eps_v", HAS_PLASTIC, QUANTITY_STRAIN, P_LOGJ},
+                         [PROBE_SHEAR]  = {"eps_d", HAS_PLASTIC, QUANTITY_STRAIN, -1},
+                         [PROBE_MARGIN] = {"yield_distance_Pa", HAS_PLASTIC, QUANTITY_YIELD, -1},
+                         [PROBE_YIELDS] = {"yields", HAS_PLASTIC, QUANTITY_YIELD, -1}};
 
 bool ProbeWanted(const Case *c, int q)
 {
@@ -124,22 +128,32 @@ static void Solve(Fit *f, const double M[M_COUNT])
   }
 }
 
-double ProbeQuantity(const Particles *P, PetscInt p, int q)
+double ProbeQuantity(const Model *m, PetscInt p, int q)
 {
+  const Particles *P = &m->P;
+
   if (column[q].component >= 0)
     return P->f[column[q].component][p];
-  if (q == PROBE_MEAN || q == PROBE_Q) {
-    double s[6];
-
-    for (int k = 0; k < 6; k++)
-      s[k] = P->f[P_SIG + k][p];
-    return q == PROBE_Q ? Mises6(s) : -Trace6(s) / 3.0;
+  switch (q) {
+  case PROBE_P:
+    return MeanPressure(P, p);
+  case PROBE_SG:
+    return GasSaturation(P, p);
+  case PROBE_SHEAR:
+    return DerivedShear(m->c, P, p);
+  case PROBE_MARGIN:
+    return DerivedMargin(m, p);
+  case PROBE_YIELDS:
+    return P->f[P_YIELD][p] != (double)RETURN_ELASTIC;
+  default:
+    return DerivedStress(P, p, q == PROBE_Q);
   }
-  return q == PROBE_P ? MeanPressure(P, p) : GasSaturation(P, p);
 }
 
-static void AddValues(const Case *c, const Fit *f, const Particles *P, double value[PROBE_COUNT])
+static void AddValues(const Model *m, const Fit *f, double value[PROBE_COUNT])
 {
+  const Particles *P = &m->P;
+
   for (PetscInt p = 0; p < P->n; p++) {
     double       d[CL_DIM];
     const double w = Weight(f, P, p, d);
@@ -149,8 +163,8 @@ static void AddValues(const Case *c, const Fit *f, const Particles *P, double va
     const double share = w / f->total * (1.0 - f->g[0] * (d[0] - f->mean[0]) - f->g[1] * (d[1] - f->mean[1]));
 
     for (int q = 0; q < PROBE_COUNT; q++) {
-      if (ProbeWanted(c, q))
-        value[q] += share * ProbeQuantity(P, p, q);
+      if (ProbeWanted(m->c, q))
+        value[q] += share * ProbeQuantity(m, p, q);
     }
   }
 }
@@ -223,7 +237,7 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
   PetscCall(FitAll(out, m, fit));
   for (PetscInt k = 0; k < n; k++) {
     if (!ProbeIsMean(&m->c->probe[k]))
-      AddValues(m->c, &fit[k], &m->P, value + k * PROBE_COUNT);
+      AddValues(m, &fit[k], value + k * PROBE_COUNT);
   }
   PetscCall(MeansAdd(m, (double(*)[PROBE_COUNT])value, weight));
   PetscCallMPI(
