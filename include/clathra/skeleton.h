@@ -112,6 +112,8 @@ typedef struct {
                  const char **why);
   bool (*block)(const Material *, const SkeletonBlock *, const char **why);
   void (*start)(const Material *, double own[OWN_COUNT]); /* history of a new particle; null: zero */
+  /* distance to yield, Pa: positive inside; null: it does not yield */
+  double (*margin)(const Material *, double Sh, const SkeletonHistory *);
 } SkeletonLaw;
 const SkeletonLaw *SkeletonLawOf(const Material *mat);
 
@@ -189,6 +191,14 @@ static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const Skele
   }
   if (f->yield)
     f->yield[q] = (double)s->region;
+}
+
+/* How far a state is from yield, in Pa, as the yield function measures it; NaN for a law that does not yield. */
+static inline double SkeletonMargin(const Material *mat, double Sh, const SkeletonHistory *h)
+{
+  const SkeletonLaw *law = SkeletonLawOf(mat);
+
+  return law->margin ? law->margin(mat, Sh, h) : NAN;
 }
 
 /* ---------------------------------------------------------------- energy (89) */
