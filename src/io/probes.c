@@ -1,8 +1,19 @@
 /* probes.csv: affine least-squares values at points of the body or of space. */
 #include "io_private.h"
+#include <string.h>
 
 /* A column, the quantity it belongs to, and the component of the store that holds it (-1: computed). */
-enum { Q_P = 0, Q_SG = 6, Q_MEAN = 16, Q_Q, Q_COUNT };
+enum { Q_P = 0, Q_SG = 6, Q_HISTORY = 15, Q_MEAN = Q_HISTORY + OWN_COUNT, Q_Q, Q_COUNT };
+/* One row for a number, four for a tensor. */
+#define COLUMN_1(id, has, name, quantity) {name, has, quantity, id},
+#define COLUMN_4(id, has, name, quantity)                                                                              \
+  {name "_xx", has, quantity, id}, {name "_yy", has, quantity, id + 1}, {name "_zz", has, quantity, id + 2},           \
+      {name "_xy", has, quantity, id + 3},
+#define HISTORY_COLUMN(id, has, name, nc, unit, doc) COLUMN_##nc(id, has, name, QUANTITY_HISTORY + PLACE_##id)
+#define HISTORY_PLACE(id, has, name, nc, unit, doc) PLACE_##id,
+#define HISTORY_UNIT(id, has, name, nc, unit, doc) unit,
+enum { CL_SKELETON_HISTORY(HISTORY_PLACE) };
+static const char *const history_unit[] = {CL_SKELETON_HISTORY(HISTORY_UNIT)};
 static const struct {
   const char *name;
   unsigned    has; /* fields it goes with */
@@ -22,9 +33,9 @@ static const struct {
                      {"sxy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 3},
                      {"x_m", HAS_ALL, QUANTITY_X, P_X},
                      {"y_m", HAS_ALL, QUANTITY_X, P_X + 1},
-                     {"eps_d_p", HAS_PLASTIC, QUANTITY_EPS, P_EPS},
-                     [Q_MEAN] = {"p_eff_Pa", HAS_PLASTIC, QUANTITY_MEAN, -1},
-                     [Q_Q]    = {"q_Pa", HAS_PLASTIC, QUANTITY_Q, -1}};
+                     [Q_HISTORY] =
+                         CL_SKELETON_HISTORY(HISTORY_COLUMN)[Q_MEAN] = {"p_eff_Pa", HAS_PLASTIC, QUANTITY_MEAN, -1},
+                     [Q_Q]                                           = {"q_Pa", HAS_PLASTIC, QUANTITY_Q, -1}};
 
 static bool Wanted(const Case *c, int q)
 {
@@ -45,13 +56,22 @@ typedef struct {
   double total;                   /* sum of weights */
 } Fit;
 
+/* What a column of the skeleton's history adds to its name; the other names hold their unit. */
+static const char *Unit(int q)
+{
+  const int   k    = column[q].quantity - QUANTITY_HISTORY;
+  const char *unit = k >= 0 && k < SKELETON_HISTORY ? history_unit[k] : "-";
+
+  return strcmp(unit, "-") ? unit : "";
+}
+
 void ProbesHeader(const Case *c, FILE *f)
 {
   fprintf(f, "time_s");
   for (PetscInt k = 0; k < c->nprobe; k++) {
     for (int q = 0; q < Q_COUNT; q++) {
       if (Wanted(c, q))
-        fprintf(f, ",%s.%s", c->probe[k].name, column[q].name);
+        fprintf(f, ",%s.%s%s%s", c->probe[k].name, column[q].name, *Unit(q) ? "_" : "", Unit(q));
     }
   }
   fprintf(f, "\n");

@@ -11,7 +11,7 @@ PetscErrorCode PrintStrength(const Case *c, MPI_Comm comm)
     const Plasticity *p = r->material < 0 ? NULL : &c->material[r->material].plasticity;
     Strength          s;
 
-    if (!p || p->type == PLASTICITY_NONE || !c->fields.solid)
+    if (!p || p->type != PLASTICITY_MOHR_COULOMB || !c->fields.solid)
       continue;
     StrengthEvaluate(p, r->Sh, 0.0, &s);
     PetscCall(PetscPrintf(comm,
