@@ -5,6 +5,7 @@
 #include "clathra/fields.h"
 #include "clathra/material.h"
 #include "clathra/schedule.h"
+#include "clathra/skeleton.h"
 
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
@@ -86,11 +87,11 @@ enum {
   QUANTITY_U,
   QUANTITY_STRESS,
   QUANTITY_X,
-  QUANTITY_EPS,    /* deviatoric plastic strain */
-  QUANTITY_MEAN,   /* mean effective stress, compression-positive */
-  QUANTITY_Q,      /* deviatoric stress sqrt(3 J2) */
-  QUANTITY_STRAIN, /* volumetric and deviatoric */
-  QUANTITY_YIELD,  /* distance to yield; is it reached? */
+  QUANTITY_HISTORY,                                    /* of the skeleton, variable by variable */
+  QUANTITY_MEAN = QUANTITY_HISTORY + SKELETON_HISTORY, /* mean effective stress, compression-positive */
+  QUANTITY_Q,                                          /* deviatoric stress sqrt(3 J2) */
+  QUANTITY_STRAIN,                                     /* volumetric and deviatoric */
+  QUANTITY_YIELD,                                      /* distance to yield; is it reached? */
   QUANTITY_COUNT
 };
 
@@ -267,7 +268,7 @@ static inline bool RegionGeostatic(const Region *r)
 /* Friction angle of a material, rad; NAN for one that has none. */
 static inline double MaterialFrictionAngle(const Material *m)
 {
-  return m->plasticity.type == PLASTICITY_NONE ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
+  return m->plasticity.type != PLASTICITY_MOHR_COULOMB ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
 }
 
 /* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */

@@ -51,6 +51,10 @@ typedef struct {
 enum { CL_SKELETON_HISTORY(CL_OWN_ENUM) OWN_COUNT };
 #undef CL_OWN_ENUM
 
+#define CL_OWN_ONE(id, has, name, nc, unit, doc) +1
+enum { SKELETON_HISTORY = 0 CL_SKELETON_HISTORY(CL_OWN_ONE) }; /* variables, not components */
+#undef CL_OWN_ONE
+
 /* What a stage starts from, or ends with: as the body lay at t_n, starred in a second stage (24). */
 typedef struct {
   double own[OWN_COUNT];

@@ -304,7 +304,7 @@ static const Key material_key[] = {
     REAL(Material, "elasticity_ah", elasticity.ah, "", "[0,100]", "1", ""),
     REAL(Material, "elasticity_bh", elasticity.bh, "", "(0,20]", "1", ""),
     REAL(Material, "elasticity_nu", elasticity.nu, "", "[0,0.5)", NULL, "Poisson's ratio", .has = HAS_SOLID),
-    CHOICE(Material, "elasticity_stiffness_change", elasticity.change, "both", stiffness_word,
+    CHOICE(Material, "elasticity_stiffness_change", elasticity.change, "bonds", stiffness_word,
            "stress follows E(S_h) both ways, only its loss, or hydrate bears a stress of its own that goes with it"),
     CHOICE(Material, "plasticity_law", plasticity.type, "none", plasticity_word, "strength of the skeleton",
            .has = HAS_SOLID),

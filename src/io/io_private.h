@@ -92,13 +92,15 @@ void           TablesClose(Output *out);
  */
 /* Columns of a probe that others name: in the order of the table in probes.c. */
 enum {
-  PROBE_P    = 0,
-  PROBE_PW   = 1, /* p_w, p_g, T */
-  PROBE_SG   = 6,
-  PROBE_X    = 13,
-  PROBE_MEAN = 16,
+  PROBE_P       = 0,
+  PROBE_PW      = 1, /* p_w, p_g, T */
+  PROBE_SG      = 6,
+  PROBE_X       = 13,
+  PROBE_HISTORY = 15, /* of the skeleton, component by component */
+  PROBE_MEAN    = PROBE_HISTORY + OWN_COUNT,
   PROBE_Q,
-  PROBE_SHEAR = 19,
+  PROBE_STRAIN,
+  PROBE_SHEAR,
   PROBE_MARGIN,
   PROBE_YIELDS,
   PROBE_COUNT

@@ -12,7 +12,7 @@ PetscErrorCode PrintStrength(const Case *c, MPI_Comm comm)
     char              reduced[48] = "";
     Strength          s;
 
-    if (!p || p->type == PLASTICITY_NONE || !c->fields.solid)
+    if (!p || p->type != PLASTICITY_MOHR_COULOMB || !c->fields.solid)
       continue;
     if (c->strength_factor != 1.0)
       PetscCall(PetscSNPrintf(reduced, sizeof(reduced), ", strength_factor %g", c->strength_factor));
