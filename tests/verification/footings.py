@@ -8,15 +8,15 @@ Finer grids, 30 deg and the circle: docs/plasticity.md.
 """
 import numpy as np
 
-from _footings import collapse, exact, order, strip
+from _footings import STRIP, collapse, exact, order, saturated, strip, strip_run
 from common import check, finish, judge, table
 
 rows = []
 
 
-def measured(name, cells, rough, *more, implicit=False, what=""):
+def measured(name, cells, rough, *more, implicit=False, what="", case=STRIP):
     """Collapse load at a/cells."""
-    u, load = strip(name, cells, rough, *more, implicit=implicit)
+    u, load = strip(name, cells, rough, *more, implicit=implicit, case=case)
     found, growth = collapse(u, load)
     rows.append([name, "rough" if rough else "smooth", "implicit" if implicit else "hybrid", f"a/{cells}", found, 100 * (found / exact(name) - 1), 100 * growth, what])
     return found, growth
@@ -39,7 +39,12 @@ def family(name, rough, implicit, grids, finest, extrapolated, *more):
 strong = family("Prandtl", True, True, (4, 8, 16), (0.0, 0.03), 0.015)
 free = family("Prandtl", True, False, (4, 8), None, 0.015)
 check("Prandtl: hybrid against implicit", np.abs(free / strong[:2] - 1).max(), 0.01)
-smooth = family("Prandtl", False, True, (8,), (0.0, 0.06), None)
+wet = [measured("Prandtl", 4, True, implicit=i, what="undrained", case=saturated())[0] for i in (True, False)]
+check("Prandtl on saturated ground, undrained: the same load, both integrators", np.abs(wet / np.array([strong[0], free[0]]) - 1).max(), 1e-3)
+last = strip_run("Prandtl", 4, True, case=saturated()).snapshots()
+volume = last[-1][1]["volume"] / (last[0][1]["volume"] * np.exp(last[-1][1]["log_J"])) - 1
+check("... hybrid: volume of particles against their strain", np.abs(volume).max(), 1e-9)
+family("Prandtl", False, True, (8,), (0.0, 0.06), None)
 for name in ("Nc, 20 deg", "Nq, 20 deg"):
     free = family(name, False, False, (4, 8), None, 0.03)
     check(f"{name}: implicit against hybrid, a/4", measured(name, 4, False, implicit=True)[0] / free[0] - 1, (-0.04, 0.04))
