@@ -56,7 +56,7 @@ def waves():
 def consolidates():
     """Load work beyond the pressure of the pores is half stored and half dissipated; all of it is found again."""
     elastic = 3e3**2 * 10.0 * 0.2 / (2 * 14.516e6 * 0.7 / (1.3 * 0.4))
-    for kind, bar in (("sdirk2", 1e-3), ("hybrid", 5e-3)):
+    for kind, bar in (("sdirk2", 1e-4), ("hybrid", 2e-4)):
         run = consolidation(Kw=2.2e9, end=40.0, every=40.0, cells=(13, 1)).run(*(adaptive(kind) if kind == "hybrid" else fixed(kind, 0.1)), cells=(13, 1))
         b = {k: v[-1] for k, v in run.balance.items()}
         rows.append(["consolidation", kind, *(b[k] for k in ("kinetic_energy_J", *COLUMNS))])
@@ -64,6 +64,13 @@ def consolidates():
         check(f"consolidation, {kind}: elastic energy against q^2 V/2M", abs(b["elastic_energy_J"] / elastic - 1), 0.01)
         check(f"consolidation, {kind}: given less kept and dissipated", abs((b["load_work_J"] + b["pressure_work_J"]) / size - 1), bar)
         check(f"consolidation, {kind}: remainder", abs(b["energy_remainder_J"]) / size, bar)
+
+
+def drains():
+    """On the way, with 1 MPa on either side of the load: works of what balances must be those of one motion."""
+    run = consolidation(cells=(13, 1)).run(*adaptive("hybrid"), cells=(13, 1))
+    b = {k: v[-1] for k, v in run.balance.items()}
+    check("draining, hybrid: remainder", abs(b["energy_remainder_J"]) / (b["drag_work_J"] + b["elastic_energy_J"]), 1e-3)
 
 
 PRESSED = ("-inertia", "no", "-stepper_dt", "2 ms", "-time_end", "0.12 s", "-output_times", "0.12 s", "-output_probe_every", "10 ms", "-bc_plate_rough", "no", "-bc_plate_velocity", "-0.1 m/s",
@@ -91,7 +98,7 @@ def plates():
     short = ("-time_end", "0.1 s", "-output_times", "0.1 s", "-stepper_dt", "1 ms")
     for kind in ("sdirk2", "euler", "hybrid"):
         run, b = go("plate", kind, CASES / "plate_block.yaml", *short)
-        check(f"plate, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], 0.02 if kind == "euler" else 0.012)
+        check(f"plate, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], {"sdirk2": 0.008, "euler": 0.02, "hybrid": 0.002}[kind])
     for kind in ("sdirk2", "hybrid"):
         run, b = go("footing", kind, FOOTING)
         check(f"footing, {kind}: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.01)
@@ -115,7 +122,7 @@ def around():
                         "-stepper_dt", "0.05 s", "-time_end", "0.5 s", "-output_probe_every", "0.5 s", "-bc_shear_shear_ramp", "0 Pa,-0.1 MPa,0 s,0.4 s",
                         *(TIGHT if kind != "hybrid" else ()))  # fmt: skip
             left.append(b)
-        check(f"sheared in 10 and 0.1 MPa, {kind}: remainders apart", abs(left[1]["energy_remainder"] - left[0]["energy_remainder"]) / left[0]["elastic_energy"], 2e-4)
+        check(f"sheared in 10 and 0.1 MPa, {kind}: remainders apart", abs(left[1]["energy_remainder"] - left[0]["energy_remainder"]) / left[0]["elastic_energy"], 1e-8)
         check(f"sheared in 10 MPa, {kind}: remainder", abs(left[1]["energy_remainder"]) / left[1]["elastic_energy"], 0.03)
 
 
@@ -138,6 +145,7 @@ if __name__ == "__main__":
     falls()
     waves()
     consolidates()
+    drains()
     yields()
     plates()
     around()
