@@ -356,7 +356,7 @@ static void TestSeed(void **state)
   (void)state;
   MakeGrid(&g);
   MakeCase(&c, &mat, region);
-  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE | HAS_PLASTIC, &P));
+  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE | HAS_HISTORY, &P));
   Call(ParticlesSeed(&c, &g, &P));
   for (PetscInt p = 0; p < P.n; p++) {
     const PetscInt id = P.i[PI_ID][p], r = id >= 19 * 9, k = r ? id - 19 * 9 : id, i = k % nx[r], j = k / nx[r];
@@ -399,7 +399,7 @@ static double Stamp(PetscInt id, int k)
 
 static void Fill(const Grid *g, Particles *P, PetscInt n)
 {
-  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE | HAS_PLASTIC, P));
+  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE | HAS_HISTORY, P));
   Call(ParticlesResize(P, n));
   for (PetscInt p = 0; p < n; p++) {
     const PetscInt id = p * g->size + g->rank;

@@ -112,7 +112,7 @@ static void Seed(Scene *s, const PetscInt n[2])
   Particles     *P     = &s->m.P;
   const PetscInt total = n[0] * n[1];
 
-  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE | HAS_PLASTIC, P));
+  Call(ParticlesCreate(HAS_ALL | HAS_GAS_PRESSURE | HAS_HISTORY, P));
   Call(ParticlesResize(P, 0));
   for (PetscInt k = 0; k < total; k++) {
     const PetscInt id = (PetscInt)(((int64_t)k * 7919 + 13) % total); /* 7919 is prime */
@@ -142,7 +142,7 @@ static void SceneCreate(Scene *s, MPI_Comm comm, PetscInt across)
 
   memset(s, 0, sizeof(*s));
   Check(FieldSetMake(HAS_ALL, true, false, &s->c.fields));
-  s->c.fields.has |= HAS_PLASTIC;
+  s->c.fields.has |= HAS_HISTORY;
   memcpy(s->c.lower, lower, sizeof(lower));
   memcpy(s->c.upper, upper, sizeof(upper));
   memcpy(s->c.cells, cells, sizeof(cells));
