@@ -31,6 +31,34 @@ probes: [middle]
 probe: {middle: {at: [0.05 m, 0.005 m]}}
 """
 
+CLAY = """
+title: clay compressed from all sides, about an axis
+fields: [solid]
+geometry: axisymmetric
+inertia: no
+grid: {lower: [0 m, 0 m], upper: [3 m, 1.5 m], cells: [6, 3]}
+materials: [clay]
+mat:
+  clay:
+    porosity: 0.5
+    solid: {density: 2700 kg/m^3, heat_capacity: 800 J/(kg K), conductivity: 3 W/(m K)}
+    permeability: {k0: 1e-12 m^2, hydrate_law: none}
+    elasticity: {E0: 20 MPa, nu: 0.3}
+    plasticity: {law: cam_clay, M: 1.2, lambda: 0.05, preconsolidation: 150 kPa}
+regions: [body]
+region: {body: {lower: [0 m, 0 m], upper: [1 m, 1 m], material: clay, particles_per_cell: [2, 2], stress: [-100 kPa, -100 kPa, -100 kPa, 0 Pa, 0 Pa, 0 Pa]}}
+boundaries: [base, side, top]
+bc:
+  base: {type: roller, axis: y, position: 0 m}
+  side: {type: traction, side: right, normal: {ramp: [100 kPa, 300 kPa, 0 s, 1 s]}}
+  top: {type: traction, side: top, normal: {ramp: [100 kPa, 300 kPa, 0 s, 1 s]}}
+time: {end: 1 s}
+stepper: {type: euler, adapt: no, dt: 0.1 s}
+output: {probe_every: 0 s, times: [1 s]}
+probes: [m]
+probe: {m: {at: [0.5 m, 0.5 m]}}
+"""
+
 
 def blocks():
     """[(file, [(old lines, new lines)])] of the page's diff blocks."""
@@ -135,4 +163,43 @@ check_true("condition: also when only a later stage has such an integrator", loc
            and "in stage fast: hybrid does not know the condition radiation" in local.stdout, local.stdout[-200:])  # fmt: skip
 local = launch(extended, case, *late, "-case_check", "-stage_fast_boundaries", "none", out=tree / "local")
 check_true("condition: but not where it does not act", local.returncode == 0, local.stdout[-200:])
+
+# a law of the skeleton, with no hand on store, files or probes
+K, LAMBDA, SLOPE = 20e6 / 1.2, 0.05, 1.2
+case = tree / "clay.yaml"
+case.write_text(CLAY)
+clay = run(extended, case)
+last, probe = clay.snapshot(1.0), clay.probe("m")
+check("clay: all-round compression, volume in log strain", np.max(np.abs(last["log_J"] / -(200e3 / K + LAMBDA * np.log(2.0)) - 1)), 1e-6)
+check("clay: p_c is the pressure", np.max(np.abs(last["p_c"] / 300e3 - 1)), 1e-6)
+check("clay: p_c of a probe before it yields is the start's", abs(probe["p_c_Pa"][1] / 150e3 - 1), 1e-12)
+check_true("clay: p_c in XDMF and checkpoint", "p_c" in (clay.out / "fields.xdmf").read_text() and b"p_c" in (clay.out / "checkpoint.h5").read_bytes())
+only = run(extended, case, "-output_quantities", "p_c")
+check_true("clay: p_c as a quantity of probes", (only.out / "probes.csv").read_text().startswith("time_s,m.p_c_Pa\n"))
+check_true("clay: no p_c where no clay is", "p_c" not in two.snapshots()[-1][1])
+half = run(extended, case, "-stepper_max_steps", "6")
+again = run(extended, case, "-restart", half.out / "checkpoint.h5", out=half.out)
+check_true("clay: a restart bit for bit", all(np.array_equal(v, again.snapshot(1.0)[k]) for k, v in last.items()))
+apart = run(extended, case, ranks=2).snapshot(1.0)
+check("clay: 2 ranks against 1, p_c", np.max(np.abs(apart["p_c"] / last["p_c"] - 1)), 1e-9)
+bad = launch(extended, case, "-mat_clay_plasticity_lambda", "0", out=tree / "local")
+check_true("clay: a bad parameter is refused with its range", bad.returncode == 2 and "mat_clay_plasticity_lambda" in bad.stdout and "(0,10]" in bad.stdout)
+
+# undrained: e = -dp/K, so p_c and q are functions of p, whatever the shape of the test
+WET = CLAY.replace("[solid]", "[solid, water]").replace("150 kPa", "200 kPa").replace("-100 kPa", "-200 kPa").replace("material: clay, part", "material: clay, pressure: 1 MPa, part")
+WET = WET[: WET.index("  side:")] + """  side: {type: traction, side: right, normal: 1.2 MPa}
+  top: {type: plate, side: top, velocity: -0.1 m/s}
+""" + WET[WET.index("time:") :]
+PLANE = WET.replace("axisymmetric", "plane").replace("boundaries: [", "boundaries: [left, ").replace("bc:\n", "bc:\n  left: {type: roller, axis: x, position: 0 m}\n")
+for name, text, bar, options in (
+    ("sdirk2, about the axis", WET, 1e-3, ("-stepper_type", "sdirk2", "-stepper_dt", "0.01 s", "-mat_clay_water_bulk_modulus", "incompressible")),
+    ("hybrid, in the plane", PLANE, 0.02, ("-inertia", "yes", "-stepper_type", "hybrid", "-stepper_adapt", "yes", "-stepper_damping", "0.2")),
+):
+    case.write_text(text)
+    probe = run(extended, case, *options).probe("m")
+    p, q = probe["p_eff_Pa"], probe["q_Pa"]
+    pc = 200e3 * np.exp(-(p - 200e3) / (K * LAMBDA))
+    check(f"clay, undrained, {name}: p_c", np.max(np.abs(probe["p_c_Pa"] / pc - 1)), bar)
+    check(f"clay, undrained, {name}: stress path", np.max(np.abs(q - SLOPE * np.sqrt(np.maximum(p * (pc - p), 0.0)))) / 130e3, bar)
+    check(f"clay, undrained, {name}: q/p at the end over M", q[-1] / p[-1] / SLOPE, (1 - bar, 1 + bar))
 finish()

@@ -53,16 +53,18 @@ static void MakePlastic(Rng *r, Sample *q)
 {
   q->mat.plasticity        = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
                                           .c_max        = 2e6,
-                                          .c_min        = 2e6,
+                                          .c_min        = 1.2e6,
                                           .c_res        = 1e6,
                                           .phi_peak     = 30.0,
-                                          .phi_res      = 25.0,
+                                          .phi_res      = 10.0,
                                           .psi_max      = 10.0,
                                           .psi_min      = 5.0,
                                           .eta_s        = 1.0,
+                                          .eta_h        = 4.0,
+                                          .Sh_max       = 0.5,
                                           .eccentricity = 0.1,
                                           .cutoff       = INFINITY};
-  q->h.from.own[OWN_P_EPS] = RngBetween(r, 0.0, 0.5);
+  q->h.from.own[OWN_P_EPS] = RngPick(r, 2) ? RngBetween(r, 0.0, 0.5) : 0.0;
   for (int i = 4; i < 6; i++)
     q->h.sig[i] = q->h.sig0[i] = 0.0;
 }
