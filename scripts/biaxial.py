@@ -243,9 +243,11 @@ def verdicts(r):
         "0.4 m is too much for this sample: no bands part from the rest.",
     ]  # fmt: skip
     if "short_h067" in r:
-        far = min(15, r["short_h067"][0]["strain"][-1])
+        far = min(15, r["short_h067"][0]["snapshot_strain"][-1])
+        wide = lambda name: np.mean([b["width"] for b in at_strain(r[name][0], far)["bands"].values()])
         with_, without = apart(r["short"][0], r["short_h067"][0], 0.3, far), apart(r["A"][0], r["h067"][0], 0.3, far)
-        text.append(f"With 0.25 m the curves on 0.1 and 0.067 m are apart by {percent(with_)} of the peak up to {far:.1f} % of strain, without a length by {percent(without)}. Strength cannot fall within a step then, and steps of "
+        text.append(f"With 0.25 m the curves on 0.1 and 0.067 m are apart by {percent(with_)} of the peak up to {far:.1f} % of strain, without a length by {percent(without)}; the width of bands is there "
+                    f"{wide('short'):.2f} and {wide('short_h067'):.2f} m, without a length {wide('A'):.2f} and {wide('h067'):.2f}. Strength cannot fall within a step then, and steps of "
                     f"sdirk2 on 0.067 m keep at {r['short_h067'][0]['dt_median']:.2g} s (least {r['short_h067'][0]['dt_least']:.2g} s after the start).")  # fmt: skip
     return [*lines, "", *text, "",
             "In the lower band volume, porosity and S_h alternate between rows of particles (Figure 14): particles of a cell share its mean dilation, and shear carries them through it row by row. `mean_dilatation`",

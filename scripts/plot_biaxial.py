@@ -16,7 +16,7 @@ from plotting import COLOURS, STYLES, plt, save, set_style
 LABELS = {
     "A": "A: kinetics", "B": "B: no kinetics", "C": "C: and plastic heat", "hybrid": "A, hybrid", "B_hybrid": "B, hybrid", "C_hybrid": "C, hybrid",
     "psi": "ψ = φ", "slow_A": "A, $K_0$ = 3.6e4", "slow_C": "C, $K_0$ = 3.6e4", "h067": "0.067 m", "h05": "0.05 m", "h067_9": "0.067 m, 9 particles", "h2": "0.2 m", "soft_h2": "0.2 m, softening_length",
-    "soft_h067": "0.067 m, softening_length", "nonlocal": "0.1 m, nonlocal 0.4 m", "nonlocal_h067": "0.067 m, nonlocal", "nonlocal_h2": "0.2 m, nonlocal 0.4 m", "short": "0.1 m, nonlocal 0.25 m",
+    "soft_h067": "0.067 m, softening_length", "nonlocal": "0.1 m, nonlocal 0.4 m", "nonlocal_h2": "0.2 m, nonlocal 0.4 m", "short": "0.1 m, nonlocal 0.25 m", "short_h067": "0.067 m, nonlocal 0.25 m",
 }  # fmt: skip
 EPS, PRESSURE, SH, T, LOST = "$\\epsilon_d^p$ (–)", "p – 3.75 (MPa)", "$S_h$ (–)", "T (°C)", "$\\delta m_h$ (%)"
 FIELDS = (  # Figures 14 and 15: run, title, field, factor, shift, limits
