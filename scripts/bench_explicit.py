@@ -22,7 +22,7 @@ mat:
     porosity: 0.15
     solid: {{density: 2600 kg/m^3, heat_capacity: 800 J/(kg K), conductivity: 3 W/(m K)}}
     permeability: {{k0: 1e-12 m^2, mh: 3}}
-    elasticity: {{E0: 90 MPa, Eh: 2 GPa, ah: 1, bh: 1, nu: 0.3}}
+    elasticity: {{E0: 90 MPa, Eh: 2 GPa, ah: 1, bh: 1, nu: 0.3, stiffness_change: both}}
 {laws}
 regions: [block]
 region: {{block: {{lower: [0 m, 0 m], upper: [1 m, 1 m], material: soil, particles_per_cell: [2, 2]{state}}}}}

@@ -5,6 +5,7 @@
 #include "clathra/fields.h"
 #include "clathra/material.h"
 #include "clathra/schedule.h"
+#include "clathra/skeleton.h"
 
 typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
 
@@ -86,9 +87,11 @@ enum {
   QUANTITY_U,
   QUANTITY_STRESS,
   QUANTITY_X,
-  QUANTITY_EPS,  /* deviatoric plastic strain */
-  QUANTITY_MEAN, /* mean effective stress, compression-positive */
-  QUANTITY_Q,    /* deviatoric stress sqrt(3 J2) */
+  QUANTITY_HISTORY,                                    /* of the skeleton, variable by variable */
+  QUANTITY_MEAN = QUANTITY_HISTORY + SKELETON_HISTORY, /* mean effective stress, compression-positive */
+  QUANTITY_Q,                                          /* deviatoric stress sqrt(3 J2) */
+  QUANTITY_STRAIN,                                     /* volumetric and deviatoric */
+  QUANTITY_YIELD,                                      /* distance to yield; is it reached? */
   QUANTITY_COUNT
 };
 
@@ -124,12 +127,6 @@ typedef struct {
   double     alpha;            /* convection coefficient, W/(m^2 K) */
 } Bc;
 
-typedef struct {
-  char   name[64];
-  double x[CL_DIM]; /* m, in the initial configuration unless fixed */
-  bool   fixed;     /* stays at x in space; otherwise follows the nearest particle set */
-} Probe;
-
 #define CL_METERS 16 /* at most */
 
 /* Counts what crosses a part of the body's surface, whatever the conditions there. */
@@ -140,6 +137,15 @@ typedef struct {
   double   from, to; /* m, along the side */
   Points   along;    /* or those on this line */
 } Meter;
+
+/* A point whose history is written, or what the history of a mean is taken over. */
+typedef struct {
+  char     name[64];
+  double   x[CL_DIM]; /* m, initial position; infinite: a mean */
+  bool     fixed;     /* stays there in space, not with the material */
+  PetscInt over;      /* mean over this region, by volume; -1: not */
+  Meter    surface;   /* mean over this part of the surface, by area; SIDE_COUNT without a line: not */
+} Probe;
 
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
@@ -262,7 +268,7 @@ static inline bool RegionGeostatic(const Region *r)
 /* Friction angle of a material, rad; NAN for one that has none. */
 static inline double MaterialFrictionAngle(const Material *m)
 {
-  return m->plasticity.type == PLASTICITY_NONE ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
+  return m->plasticity.type != PLASTICITY_MOHR_COULOMB ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
 }
 
 /* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */

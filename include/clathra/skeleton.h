@@ -51,6 +51,10 @@ typedef struct {
 enum { CL_SKELETON_HISTORY(CL_OWN_ENUM) OWN_COUNT };
 #undef CL_OWN_ENUM
 
+#define CL_OWN_ONE(id, has, name, nc, unit, doc) +1
+enum { SKELETON_HISTORY = 0 CL_SKELETON_HISTORY(CL_OWN_ONE) }; /* variables, not components */
+#undef CL_OWN_ONE
+
 /* What a stage starts from, or ends with: as the body lay at t_n, starred in a second stage (24). */
 typedef struct {
   double own[OWN_COUNT];
@@ -112,6 +116,8 @@ typedef struct {
                  const char **why);
   bool (*block)(const Material *, const SkeletonBlock *, const char **why);
   void (*start)(const Material *, double own[OWN_COUNT]); /* history of a new particle; null: zero */
+  /* distance to yield, Pa: positive inside; null: it does not yield */
+  double (*margin)(const Material *, double Sh, const SkeletonHistory *);
 } SkeletonLaw;
 const SkeletonLaw *SkeletonLawOf(const Material *mat);
 
@@ -189,6 +195,14 @@ static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const Skele
   }
   if (f->yield)
     f->yield[q] = (double)s->region;
+}
+
+/* How far a state is from yield, in Pa, as the yield function measures it; NaN for a law that does not yield. */
+static inline double SkeletonMargin(const Material *mat, double Sh, const SkeletonHistory *h)
+{
+  const SkeletonLaw *law = SkeletonLawOf(mat);
+
+  return law->margin ? law->margin(mat, Sh, h) : NAN;
 }
 
 /* ---------------------------------------------------------------- energy (89) */

@@ -60,6 +60,12 @@ static bool BcNeedsSide(const void *p)
 {
   return !((const Bc *)p)->along.n;
 }
+static bool NeedsPlace(const void *p)
+{
+  const Probe *b = (const Probe *)p;
+
+  return b->over < 0 && b->surface.side == SIDE_COUNT && !b->surface.along.n;
+}
 static bool MeterNeedsSide(const void *p)
 {
   return !((const Meter *)p)->along.n;
@@ -203,7 +209,8 @@ static const Key case_key[] = {
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
     TEXT(Case, "output_quantities", quantities_wanted, "all",
-         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q; all is what the "
+         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q, strain, yield; "
+         "all is what the "
          "scene has fields "
          "for"),
     REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),
@@ -297,7 +304,7 @@ static const Key material_key[] = {
     REAL(Material, "elasticity_ah", elasticity.ah, "", "[0,100]", "1", ""),
     REAL(Material, "elasticity_bh", elasticity.bh, "", "(0,20]", "1", ""),
     REAL(Material, "elasticity_nu", elasticity.nu, "", "[0,0.5)", NULL, "Poisson's ratio", .has = HAS_SOLID),
-    CHOICE(Material, "elasticity_stiffness_change", elasticity.change, "both", stiffness_word,
+    CHOICE(Material, "elasticity_stiffness_change", elasticity.change, "bonds", stiffness_word,
            "stress follows E(S_h) both ways, only its loss, or hydrate bears a stress of its own that goes with it"),
     CHOICE(Material, "plasticity_law", plasticity.type, "none", plasticity_word, "strength of the skeleton",
            .has = HAS_SOLID),
@@ -340,7 +347,8 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
-    NAME(Region, "material", material, NULL, GROUP_MATERIAL, "one of materials, or none: only to be cut out of others, or to hold a region_temperature",
+    NAME(Region, "material", material, NULL, GROUP_MATERIAL,
+         "one of materials, or none: only to be cut out of others, to hold a region_temperature, or for a probe's mean",
          .word = "none", .shape = true),
     POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
     POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
@@ -440,8 +448,22 @@ static const Key bc_key[] = {
 };
 
 static const Key probe_key[] = {
-    REALS(Probe, 2, "at", x, "m", "", NULL, "initial position, inside a region"),
-    BOOLEAN(Probe, "fixed", fixed, "no", "stays there in space; otherwise follows the body"),
+    NAME(Probe, "over", over, "none", GROUP_REGION,
+         "the mean over a region, weighted with current volumes: its particles, or of a region without particles those "
+         "that were in its shape first",
+         .word = "none"),
+    POINTS(Probe, "along", surface.along,
+           "[[x, y], ...]: the mean over the faces on this line, in the initial configuration, weighted with current "
+           "areas"),
+    CHOICE(Probe, "side", surface.side, "none", side_word, "the mean over this side of the body, by area"),
+    NAME(Probe, "region", surface.region, "all", GROUP_REGION, "with side or along: one of regions, or all"),
+    REAL(Probe, "from", surface.from, "m", "", "start", "with side: only the part from here ...", .word = "-start"),
+    REAL(Probe, "to", surface.to, "m", "", "end", "... to here", .word = "end"),
+    REALS(Probe, 2, "at", x, "m", "", "none, none", "a point: initial position, inside a region",
+          WHEN(NeedsPlace, "over, side and along are not given"), .word = "none"),
+    BOOLEAN(Probe, "fixed", fixed, "no",
+            "a point stays there in space, otherwise it follows the body; a mean is over what is in the region's shape "
+            "now"),
     {.name = NULL},
 };
 
@@ -512,7 +534,8 @@ const GroupInfo case_group[GROUP_COUNT] = {
     GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
           "Parts of the body, each of one shape, and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
-    GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
+    GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key,
+          "Points and means whose history is written"),
     GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
           "Parts of the surface that count what crosses them"),
     GROUP(CaseStage, "stage_", "stages", "stage", nstage, stage, false, stage_key,

@@ -55,7 +55,7 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
 {
   const Plasticity *p = &m->plasticity;
 
-  if (p->type == PLASTICITY_NONE || !c->fields.solid)
+  if (p->type != PLASTICITY_MOHR_COULOMB || !c->fields.solid)
     return;
   if (p->c_max == 0.0 && p->phi_peak == 0.0)
     FAIL("plasticity_cohesion_max", "is 0 Pa and plasticity_friction_peak 0 deg: the material has no strength at all");

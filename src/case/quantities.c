@@ -4,18 +4,25 @@
 #include <string.h>
 #include <strings.h>
 
+#define HISTORY_ROW(id, needs, name, nc, unit, doc) {name, needs},
 static const struct {
   const char *word;
   unsigned    has; /* fields any of which it needs */
-} quantity[QUANTITY_COUNT] = {
-    [QUANTITY_P] = {"p", HAS_WATER},           [QUANTITY_PW] = {"p_w", HAS_WATER},
-    [QUANTITY_PG] = {"p_g", HAS_GAS},          [QUANTITY_T] = {"T", HAS_HEAT},
-    [QUANTITY_SH] = {"S_h", HAS_ALL},          [QUANTITY_SW] = {"S_w", HAS_WATER},
-    [QUANTITY_SG] = {"S_g", HAS_GAS},          [QUANTITY_U] = {"u", HAS_SOLID},
-    [QUANTITY_STRESS] = {"stress", HAS_SOLID}, [QUANTITY_X] = {"x", HAS_ALL},
-    [QUANTITY_EPS] = {"eps_d_p", HAS_PLASTIC}, [QUANTITY_MEAN] = {"p_eff", HAS_PLASTIC},
-    [QUANTITY_Q] = {"q", HAS_PLASTIC},
-};
+} quantity[QUANTITY_COUNT] = {[QUANTITY_P]       = {"p", HAS_WATER},
+                              [QUANTITY_PW]      = {"p_w", HAS_WATER},
+                              [QUANTITY_PG]      = {"p_g", HAS_GAS},
+                              [QUANTITY_T]       = {"T", HAS_HEAT},
+                              [QUANTITY_SH]      = {"S_h", HAS_ALL},
+                              [QUANTITY_SW]      = {"S_w", HAS_WATER},
+                              [QUANTITY_SG]      = {"S_g", HAS_GAS},
+                              [QUANTITY_U]       = {"u", HAS_SOLID},
+                              [QUANTITY_STRESS]  = {"stress", HAS_SOLID},
+                              [QUANTITY_X]       = {"x", HAS_ALL},
+                              [QUANTITY_MEAN]    = {"p_eff", HAS_PLASTIC},
+                              [QUANTITY_Q]       = {"q", HAS_PLASTIC},
+                              [QUANTITY_STRAIN]  = {"strain", HAS_PLASTIC},
+                              [QUANTITY_YIELD]   = {"yield", HAS_PLASTIC},
+                              [QUANTITY_HISTORY] = CL_SKELETON_HISTORY(HISTORY_ROW)};
 
 /* The quantity of this name, QUANTITY_COUNT if there is none. */
 static int Find(const char *word)
@@ -29,17 +36,20 @@ static int Find(const char *word)
 
 static void Add(Reader *r, Case *c, const char *word)
 {
-  const int q = Find(word);
-  char      words[64];
+  const int q          = Find(word);
+  char      words[256] = "";
 
   if (q == QUANTITY_COUNT) {
-    ReaderError(r, "output_quantities", word,
-                "must be all or a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q");
+    for (int k = 0; k < QUANTITY_COUNT; k++)
+      snprintf(words + strlen(words), sizeof(words) - strlen(words), "%s%s", k ? ", " : "", quantity[k].word);
+    ReaderError(r, "output_quantities", word, "must be all or a list of %s", words);
     return;
   }
   if (!(c->fields.has & quantity[q].has)) {
-    if (quantity[q].has == HAS_PLASTIC) {
-      ReaderError(r, "output_quantities", quantity[q].word, "needs a material with a plasticity_law");
+    if (!(quantity[q].has & HAS_ALL)) {
+      ReaderError(r, "output_quantities", quantity[q].word,
+                  quantity[q].has == HAS_PLASTIC ? "needs a material with a plasticity_law"
+                                                 : "needs a material whose skeleton has it");
       return;
     }
     FieldsWords(quantity[q].has, words);

@@ -34,30 +34,33 @@ typedef struct {
   double v[3][2], expansion;
 } Motion;
 
-static void MotionAt(const Model *m, const Reach *r, const double *x, const PointState *s, Motion *o)
+static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x, const PointState *s, Motion *o)
 {
   const FieldSet *fs      = &m->c->fields;
   const bool      there[] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
-  const double(*F)[2] = s->F, det = F[0][0] * F[1][1] - F[0][1] * F[1][0];
-  double g[2][2] = {{0.0}}, hoop = 0.0, lambda = 1.0;
+  const double(*F)[2] = s->F, det = F[0][0] * F[1][1] - F[0][1] * F[1][0], lambda = s->V / (m->P.f[P_V][p] * det);
+  double g[2][2] = {{0.0}}, hoop = 0.0, more = 0.0;
 
   *o = (Motion){0};
   for (int a = 0; a < r->n; a++) {
-    const double *xI = &x[r->node[a] * fs->n];
+    const double *xI = &x[r->node[a] * fs->n], *v = &xI[PlaceVs(fs)];
 
     for (int k = 0; k < 3; k++) {
       for (int i = 0; there[k] && i < 2; i++)
         o->v[k][i] += r->S[a] * xI[fs->at[F_VSX + 2 * k] + i];
     }
     for (int i = 0; i < 2; i++) {
-      g[i][0] += r->G[a][0] * xI[PlaceVs(fs) + i];
-      g[i][1] += r->G[a][1] * xI[PlaceVs(fs) + i];
+      g[i][0] += r->G[a][0] * v[i];
+      g[i][1] += r->G[a][1] * v[i];
     }
     if (m->c->axisymmetric)
-      hoop += r->H[a] * xI[PlaceVs(fs)];
-    if (m->c->axisymmetric)
-      lambda += r->H[a] * (m->stage.u_star[r->node[a] * CL_DIM] + m->stage.dt * xI[PlaceVs(fs)]);
+      hoop += r->H[a] * v[0];
+    if (m->c->mean_dilatation)
+      more += r->B[a][0] * v[0] + r->B[a][1] * v[1];
   }
+  g[0][0] += more;
+  g[1][1] += more;
+  hoop += m->c->axisymmetric ? more : 0.0;
   o->expansion =
       s->V * ((F[1][1] * g[0][0] - F[1][0] * g[0][1] - F[0][1] * g[1][0] + F[0][0] * g[1][1]) / det + hoop / lambda);
 }
@@ -86,7 +89,7 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
   const FieldSet *fs = &m->c->fields;
   Motion          k;
 
-  MotionAt(m, r, x, s, &k);
+  MotionAt(m, p, r, x, s, &k);
   if (fs->inertia)
     power[WORK_INERTIA] += InertiaPower(m, r, x, out);
   for (int i = 0; i < 2; i++)

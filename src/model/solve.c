@@ -279,6 +279,19 @@ static PetscErrorCode Explain(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Would the velocity at the start carry a node out of the trusted range within this stage?  Then it is none of a step
+   so long: what is left of a motion that has come to rest since. */
+static bool TooFast(const Model *m, const double *x)
+{
+  const FieldSet *fs  = &m->c->fields;
+  double          far = 0.0;
+
+  for (int d = 0; fs->solid && d < CL_DIM; d++)
+    far = fmax(far, fabs(x[PlaceVs(fs) + d]) * m->stage.dt / m->grid.h[d]);
+  return far > LIMIT_J;
+}
+
+/* From the state at the start, or at rest. */
 static PetscErrorCode FirstGuess(Model *m, const double *x)
 {
   const PetscInt n = m->c->fields.n;
@@ -288,8 +301,9 @@ static PetscErrorCode FirstGuess(Model *m, const double *x)
   PetscCall(VecGetArrayWrite(m->X, &a));
   for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
     const bool fixed = (m->mask[k / n] >> (k % n)) & 1u;
+    const bool rests = m->c->fields.field[k % n] < F_PW && TooFast(m, &x[k - k % n]);
 
-    a[k] = (fixed ? m->fixed[k] : x[k]) / m->col_scale[k];
+    a[k] = (fixed ? m->fixed[k] : rests ? 0.0 : x[k]) / m->col_scale[k];
   }
   PetscCall(VecRestoreArrayWrite(m->X, &a));
   PetscFunctionReturn(PETSC_SUCCESS);

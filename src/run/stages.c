@@ -4,9 +4,11 @@
 typedef struct {
   const char *integrator;
   PetscInt    stage;
-  double      from, to;     /* s of the scene, in this process */
-  double      clock, spent; /* s of the wall: when it began, so far */
-  double      scaling;      /* error of mass scaling so far */
+  double      from, to;           /* s of the scene, in this process */
+  double      clock, spent;       /* s of the wall: when it began, so far */
+  double      scaling;            /* error of mass scaling so far */
+  double      least, most;        /* stable step, s */
+  double      ruled[LIMIT_COUNT]; /* s of the scene, by what bounded the step */
   PetscInt    steps, refused, newton;
 } Entry;
 
@@ -49,6 +51,16 @@ PetscErrorCode StageLogDestroy(StageLog **log)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Stable step of the step just taken, and for how long which limit set it. */
+static void NoteLimit(Entry *e, const Stepper *s)
+{
+  const StableStep *limit = &s->limit;
+
+  e->least = e->most > 0.0 ? fmin(e->least, limit->dt) : limit->dt;
+  e->most  = fmax(e->most, limit->dt);
+  e->ruled[limit->rules] += s->state.t - e->to;
+}
+
 PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info)
 {
   Entry *e = &log->entry[log->n - 1];
@@ -56,7 +68,9 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   PetscFunctionBeginUser;
   if (s->state.stage != e->stage || s->scheme->name != e->integrator)
     PetscCall(Append(log, s, s->state.stage != e->stage ? s->model->c->t_begin : e->to));
-  e          = &log->entry[log->n - 1];
+  e = &log->entry[log->n - 1];
+  if (s->explicit)
+    NoteLimit(e, s);
   e->to      = s->state.t;
   e->spent   = Wall() - e->clock;
   e->scaling = s->explicit ? ExplicitMassScalingError(s->explicit) : 0.0;
@@ -73,27 +87,49 @@ void StageLogProgress(const StageLog *log, const Stepper *s, double *done, doubl
   *left = *done > 0.0 ? (Wall() - log->clock) * (1.0 - *done) / *done : 0.0;
 }
 
+/* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */
+static PetscErrorCode LimitWords(const Entry *e, char words[200])
+{
+  PetscFunctionBeginUser;
+  words[0] = '\0';
+  if (!(e->most > 0.0))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(words, 200, ", stable step %.3g s to %.3g s", e->least, e->most));
+  for (int k = 0; k < LIMIT_COUNT; k++) {
+    const size_t n = strlen(words);
+
+    if (e->ruled[k] > 0.0)
+      PetscCall(PetscSNPrintf(words + n, 200 - n, "%s%s %.3g %%", strchr(words, '(') ? ", " : " (", cl_limit_word[k],
+                              100.0 * e->ruled[k] / (e->to - e->from)));
+  }
+  if (strchr(words, '('))
+    PetscCall(PetscStrlcat(words, ")", 200));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **text)
 {
   const Case  *c    = s->model->c;
-  const size_t line = 320;
+  const size_t line = 520;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(line * (size_t)log->n, text));
   for (PetscInt k = 0; k < log->n; k++) {
     const Entry *e  = &log->entry[k];
-    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "";
+    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[200];
 
     if (e->steps == 0 || (c->nstage == 0 && log->n == 1))
       continue;
     if (CaseInStage(c, e->stage)->mass_scaling > 1.0 && e->scaling > 0.0)
       PetscCall(PetscSNPrintf(scaled, sizeof(scaled), ", mass scaling added up to %.2g of the forces", e->scaling));
+    PetscCall(LimitWords(e, limit));
     if (c->nstage)
       PetscCall(PetscSNPrintf(stage, sizeof(stage), "stage %s: ", c->stage[e->stage].name));
     PetscCall(PetscSNPrintf(at, line,
                             "  %s%s from %g s to %g s, %" PetscInt_FMT " steps, %" PetscInt_FMT
-                            " refused, %" PetscInt_FMT " Newton iterations, %.2f s%s\n",
-                            stage, e->integrator, e->from, e->to, e->steps, e->refused, e->newton, e->spent, scaled));
+                            " refused, %" PetscInt_FMT " Newton iterations, %.2f s%s%s\n",
+                            stage, e->integrator, e->from, e->to, e->steps, e->refused, e->newton, e->spent, limit,
+                            scaled));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,6 +3,7 @@
 #include "plastic.h"
 
 #define ROUND_OFF 1e-12 /* share of the cohesion: a state returned before is not returned again */
+#define CHUNK 32        /* particles tested at once */
 #define NEAR_EQUAL 1e-8 /* principal stresses closer than this share of their size: limit of the spin part */
 
 /* In-plane principal stresses and direction of a stress xx yy zz xy; order[i]: 0, 1 in the plane, 2 out of it. */
@@ -108,6 +109,19 @@ static bool Yields(const Plasticity *law, double Sh, double eps, double nonlocal
   return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > StrengthCutoff(law) + round_off;
 }
 
+/* - F of (63), or what is left to the tension cut-off. */
+double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory *h)
+{
+  const Plasticity *law = &mat->plasticity;
+  Principal         p;
+  Strength          k;
+  double            dy[3], dphi;
+
+  PrincipalOf(h->sig, &p);
+  StrengthOf(law, Sh, h->from.own[OWN_P_EPS], h->nonlocal, &k);
+  return fmin(-MohrCoulombYield(k.phi, k.c, p.y, dy, &dphi), StrengthCutoff(law) - p.y[0]);
+}
+
 static bool ReturnToYield(const Trial3 *t, bool slopes, Returned *r)
 {
   return t->law->flow == FLOW_MOHR_COULOMB ? ReturnPlanes(t, slopes, r) : ReturnSmooth(t, slopes, r);
@@ -203,13 +217,39 @@ static void KeepReturned(const SkeletonStore *f, int q, const SkeletonState *s, 
   }
 }
 
+/* Which of n trial states from q on may yield, without exponentials or angles of their own: where nothing has flowed
+   yet, friction is that of the peak and the cohesion c_min or more; where all normal stresses are compressive, no
+   strength is below the residual one.  Vector code. */
+static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n, unsigned char may[CHUNK])
+{
+  const double peak = law->phi_peak * M_PI / 180.0, res = law->phi_res * M_PI / 180.0, sp = sin(peak), sr = sin(res),
+               cp = law->c_min * cos(peak), cr = law->c_res * cos(res), cutoff = law->cutoff;
+  const double *xx = f->sig[XX] + q, *yy = f->sig[YY] + q, *zz = f->sig[ZZ] + q, *xy = f->sig[XY] + q,
+               *eps = f->own[OWN_P_EPS] + q;
+
+  for (int k = 0; k < n; k++) {
+    const double d = 0.5 * (xx[k] - yy[k]), m = 0.5 * (xx[k] + yy[k]), r = sqrt(d * d + xy[k] * xy[k]);
+    const double hi = m + r > zz[k] ? m + r : zz[k], lo = m - r < zz[k] ? m - r : zz[k];
+    const double shear = 0.5 * (hi - lo), mean = 0.5 * (hi + lo);
+    const int    fresh = (eps[k] == 0.0) & (shear + mean * sp <= cp), worn = (hi <= 0.0) & (shear + mean * sr <= cr);
+
+    may[k] = (unsigned char)!((hi <= cutoff) & (fresh | worn));
+  }
+}
+
 /* Trial stresses of all first, in vector code, then those that yield one by one. */
 bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why)
 {
   const SkeletonStore *f     = &b->store;
   bool                 found = Block_Elastic(mat, b, why);
+  unsigned char        may[CHUNK];
 
   for (int q = 0; q < b->n; q++) {
+    if (q % CHUNK == 0)
+      MayYield(&mat->plasticity, f, q, b->n - q < CHUNK ? b->n - q : CHUNK, may);
+    f->yield[q] = (double)RETURN_ELASTIC;
+    if (!may[q % CHUNK])
+      continue; /* its work is zero already */
     const SkeletonStep d = {.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
     SkeletonState      s = {.sig            = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]},
                             .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};

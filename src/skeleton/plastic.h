@@ -37,12 +37,13 @@ typedef struct {
 /* False if no state was found.  Slopes are filled if asked for. */
 bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r); /* flow: menetrey_willam */
 bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r); /* flow: mohr_coulomb */
-/* Both: to the apex c/tan(phi); false if the trial state does not lie beyond it. */
-bool ReturnApex(const Trial3 *t, bool slopes, Returned *r);
+/* To the apex c/tan(phi); false if the trial state lies more than `slack`, Pa, below it. */
+bool ReturnApex(const Trial3 *t, double slack, bool slopes, Returned *r);
 
-bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
-                        SkeletonTangent *t, const char **why);
-bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why);
+bool   Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
+                          SkeletonTangent *t, const char **why);
+double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory *h);
+bool   Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why);
 
 /* sqrt(2/3 dev x : dev x) of principal values, and its slopes. */
 double DeviatoricNorm(const double x[3], double dx[3]);

@@ -315,7 +315,7 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r)
   return false;
 }
 
-bool ReturnApex(const Trial3 *t, bool slopes, Returned *r)
+bool ReturnApex(const Trial3 *t, double slack, bool slopes, Returned *r)
 {
   double       dn[3], y_eps[3];
   const double per = 1.0 / (t->G2 * t->E), n = per * DeviatoricNorm(t->y, dn), sm = (t->y[0] + t->y[1] + t->y[2]) / 3.0;
@@ -326,7 +326,7 @@ bool ReturnApex(const Trial3 *t, bool slopes, Returned *r)
   r->eps    = t->eps + n;
   r->region = RETURN_APEX;
   StrengthAt(t, r->eps, &k);
-  if (!(k.phi > 0.0) || sm * tan(k.phi) < k.c)
+  if (!(k.phi > 0.0) || (sm + slack) * tan(k.phi) < k.c)
     return false;
   Apex(&k, &o);
   for (int i = 0; i < 3; i++)

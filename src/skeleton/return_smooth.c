@@ -145,6 +145,15 @@ static double Size(const System *s)
   return sqrt(sum);
 }
 
+/* Near the apex the flow is so steep that round-off of the stresses keeps the residual from falling: there the next
+   step says how well they are known. */
+static bool Settled(const Trial3 *t, double scale, const double x[UNKNOWNS], const double dx[UNKNOWNS])
+{
+  const double most = fmax(fmax(fabs(dx[0]), fabs(dx[1])), fmax(fabs(dx[2]), t->E * fabs(dx[X_EPS])));
+
+  return most <= CLOSE * scale && x[X_L] >= -CLOSE * scale;
+}
+
 /* Newton with halved steps from x; true if it arrived. */
 static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *iterations)
 {
@@ -165,17 +174,19 @@ static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *itera
         to[i] = x[i] + step * dx[i];
       Equations(t, to, false, &s);
       const double now = Size(&s);
+      if (close && !(now < size))
+        return x[X_L] >= -CLOSE * scale; /* the better one stays */
       if (close || now < (1.0 - 1e-4 * step) * size) {
         size = now;
         break;
       }
       if (h == HALVINGS)
-        return false;
+        return Settled(t, scale, x, dx);
     }
     for (int i = 0; i < UNKNOWNS; i++)
       x[i] = to[i];
     if (close)
-      return size <= CLOSE * scale && x[X_L] >= -CLOSE * scale;
+      return x[X_L] >= -CLOSE * scale;
   }
   return false;
 }
@@ -295,15 +306,16 @@ static bool StaysAtApex(const Trial3 *t, double scale, const Returned *apex)
 
 bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
 {
-  double     x[UNKNOWNS] = {t->y[0], t->y[1], t->y[2], 0.0, 0.0}, size = 0.0;
-  Returned   apex;
-  const bool beyond = ReturnApex(t, slopes, &apex);
+  double   x[UNKNOWNS] = {t->y[0], t->y[1], t->y[2], 0.0, 0.0}, size = 0.0;
+  Returned apex;
 
-  r->iterations = 0;
-  r->region     = RETURN_FACE;
   for (int i = 0; i < 3; i++)
     size = fmax(size, fabs(t->y[i]));
-  bool found = false;
+  const bool near   = ReturnApex(t, FLAT * size, slopes, &apex);
+  const bool beyond = near && (t->y[0] + t->y[1] + t->y[2]) / 3.0 >= apex.y[0] - CLOSE * size;
+  bool       found  = false;
+  r->iterations     = 0;
+  r->region         = RETURN_FACE;
   if (beyond) {
     if (StaysAtApex(t, size, &apex)) {
       apex.iterations = 0;
@@ -323,10 +335,10 @@ bool ReturnSmooth(const Trial3 *t, bool slopes, Returned *r)
     found = isfinite(x[0] + x[X_L]) && Newton(t, size, x, &r->iterations);
   }
   found = found || (!beyond && Continuation(t, size, x, &r->iterations));
-  if (!found) {
+  if (!found) { /* in a needle: what is found below the apex would differ from it by less than FLAT */
     apex.iterations = r->iterations;
     *r              = apex;
-    return beyond;
+    return near;
   }
   for (int i = 0; i < 3; i++)
     r->y[i] = x[i];

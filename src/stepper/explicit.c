@@ -164,6 +164,19 @@ static PetscErrorCode Accept(Stepper *s, PetscInt n, double dt, double stop, boo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The stable step as it is now; says so when another limit sets it. */
+static PetscErrorCode Limit(Stepper *s)
+{
+  const LimitKind before = s->limit.rules;
+
+  PetscFunctionBeginUser;
+  PetscCall(ExplicitStableStep(s->explicit, &s->limit));
+  if (s->limit.rules != before && before != LIMIT_NONE)
+    PetscCall(PetscPrintf(s->model->grid.comm, "t = %g s: %s rules now, stable step %.4g s (%s before)\n", s->state.t,
+                          cl_limit_word[s->limit.rules], s->limit.dt, cl_limit_word[before]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Advance(Stepper *s, bool *ok)
 {
   Model       *m = s->model;
@@ -179,7 +192,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     double  dt;
 
     PetscCall(ExplicitBegin(s->explicit, &a.status));
-    PetscCall(ExplicitStableStep(s->explicit, &s->limit));
+    PetscCall(Limit(s));
     bool stable = true;
     PetscCall(CheckFixed(s, &stable));
     if (!stable) {

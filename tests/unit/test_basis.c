@@ -304,6 +304,44 @@ static void TestStencilExpand(void **state)
   Call(GridDestroy(&g));
 }
 
+/* (88): the weights are the mean over the cell of the divergence of each node's function, weighted with r about an
+   axis, by Gauss's rule of two points an axis (exact: of third order at most); the cell is the one that holds the
+   particle. */
+static void TestCellDilatation(void **state)
+{
+  const double at[2] = {0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0)};
+  const Grid   g     = {.h = {0.3, 0.2}};
+  double       worst = 0.0;
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    const bool   axis = k > 0;
+    const double r0   = k == 2 ? 0.0 : 1.7;
+
+    for (PetscInt i = -1; i <= 2; i++) {
+      for (PetscInt j = -1; j <= 2; j++) {
+        double mean[2] = {0.0}, weight = 0.0, Q[CL_DIM];
+
+        for (int q = 0; q < 4; q++) {
+          const double x = at[q % 2], y = at[q / 2], r = axis ? r0 + x * g.h[0] : 1.0;
+          const double Nx = i == 0 ? 1.0 - x : i == 1 ? x : 0.0, Ny = j == 0 ? 1.0 - y : j == 1 ? y : 0.0;
+          const double dx = i == 0 ? -1.0 : i == 1 ? 1.0 : 0.0, dy = j == 0 ? -1.0 : j == 1 ? 1.0 : 0.0;
+
+          mean[0] += r * dx / g.h[0] * Ny + (axis ? Nx * Ny : 0.0);
+          mean[1] += r * Nx * dy / g.h[1];
+          weight += r;
+        }
+        CellDilatation(&g, axis, (PetscInt[CL_DIM]){i, j}, r0, Q);
+        for (int d = 0; d < CL_DIM; d++)
+          worst = fmax(worst, fabs(Q[d] - mean[d] / weight) * g.h[d]);
+      }
+    }
+  }
+  Check(worst < 1e-14);
+  Check(BasisCell(3.2, 3.0, 8.0) == 0 && BasisCell(4.2, 3.0, 8.0) == 1 && BasisCell(3.2, 2.0, 8.0) == 1);
+  Check(BasisCell(8.0, 7.0, 8.0) == 0 && BasisCell(4.0 - 1e-9, 3.0, 8.0) == 1 && BasisCell(7.6, 7.0, 8.0) == 0);
+}
+
 /* ---------------------------------------------------------------- particles */
 static void MakeCase(Case *c, Material *mat, Region *region)
 {
@@ -532,9 +570,11 @@ static void TestLeaving(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestAxis),    cmocka_unit_test(TestAgainstDefinition), cmocka_unit_test(TestClipping),
-      cmocka_unit_test(TestNodeMap), cmocka_unit_test(TestNodeSums),          cmocka_unit_test(TestStencilExpand),
-      cmocka_unit_test(TestSeed),    cmocka_unit_test(TestMigrate),           cmocka_unit_test(TestLeaving),
+      cmocka_unit_test(TestAxis),           cmocka_unit_test(TestAgainstDefinition),
+      cmocka_unit_test(TestClipping),       cmocka_unit_test(TestNodeMap),
+      cmocka_unit_test(TestNodeSums),       cmocka_unit_test(TestStencilExpand),
+      cmocka_unit_test(TestCellDilatation), cmocka_unit_test(TestSeed),
+      cmocka_unit_test(TestMigrate),        cmocka_unit_test(TestLeaving),
   };
   int failed;
 

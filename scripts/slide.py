@@ -1,0 +1,257 @@
+#!/usr/bin/python3
+"""What a slide did: slide.py FOLDER
+
+FOLDER is a run of cases/slope_a, slope_b or slope_c.  Measures the slide and its shear bands from snapshots and balance.csv, writes FOLDER/slide.json and
+puts the measures at the end of FOLDER/summary.txt.  docs/slopes.md says how each of them is defined.
+"""
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from results import read_csv, read_snapshots
+
+MOVED = 0.01  # of the height: what has moved farther has failed
+STARTED = 0.01  # failed share of the body at the onset
+RISEN = 3.0  # kinetic energy at the rise, of the largest during the loading
+PROMINENT = 0.02  # of the largest kinetic energy: how far it falls between two peaks
+SMOOTH = 1.0  # s: half the window of the quadratic fits of the kinetic energy
+SHEARED = 0.15  # eps_d_p of a sheared particle
+CONTRAST = 2.0  # of a band's strain to that beside it
+LONG = 0.4  # of the height: the shortest band
+GAS = 0.016 / 0.124  # kg of methane per kg of hydrate
+STANDARD = 0.6789  # kg/m3, methane at 101.4 kPa and 15.56 degC
+
+
+class Run:
+    """Snapshots and balance of a run.  cell: size (m) of a cell along y, from 2 x 2 particles, or `across` of them."""
+
+    def __init__(self, folder, loaded=10.0, across=2):
+        self.folder = Path(folder)
+        self.snapshots = read_snapshots(folder)
+        self.balance = read_csv(self.folder / "balance.csv")
+        self.time = np.array([t for t, _ in self.snapshots])
+        first = self.snapshots[0][1]
+        self.start, self.end = first["initial_position"], self.snapshots[-1][1]
+        self.spacing = 2 * first["half_length"][0]
+        self.cell = across * self.spacing[1]
+        self.height = self.start[:, 1].max() + self.spacing[1] / 2
+        top = self.start[:, 1] > self.height - self.spacing[1]
+        self.crest = self.start[top, 0].max() + self.spacing[0] / 2
+        self.toe = self.start[:, 0].max() + self.spacing[0] / 2
+        self.top = top
+        self.loaded = loaded
+        self.rest = self.at(loaded)["displacement"]
+
+    def at(self, time):
+        """The snapshot nearest to a time."""
+        return self.snapshots[int(np.argmin(abs(self.time - time)))][1]
+
+    def moved(self, particles):
+        """Distance (m) of each particle from where the loading left it."""
+        return np.hypot(*(particles["displacement"] - self.rest).T)
+
+    def failed(self, particles):
+        return self.moved(particles) > MOVED * self.height
+
+    def rows(self, variable, component=0):
+        """(snapshots, particles) values of a variable."""
+        return np.array([p[variable][:, component] for _, p in self.snapshots])
+
+
+def crossing(times, values, level):
+    """First time at which values, one for each time, pass a level; None if they do not."""
+    above = np.flatnonzero(values > level)
+    if not len(above):
+        return None
+    k = above[0]
+    if k == 0:
+        return float(times[0])
+    return float(times[k - 1] + (level - values[k - 1]) / (values[k] - values[k - 1]) * (times[k] - times[k - 1]))
+
+
+def kinetic(balance):
+    """(t, E_k (J), P_k (W), R_k (W/s)): kinetic energy, and its slopes by quadratic least squares over 2 SMOOTH."""
+    t, e = balance["time_s"], balance["kinetic_energy_J"]
+    P, R = np.zeros(len(t)), np.zeros(len(t))
+    for k in range(len(t)):
+        near = slice(*np.searchsorted(t, (t[k] - SMOOTH, t[k] + SMOOTH)))
+        if near.stop - near.start > 3:
+            a, b, _ = np.polyfit(t[near] - t[k], e[near], 2)
+            P[k], R[k] = b, 2 * a
+    return t, e, P, R
+
+
+def smooth(t, values):
+    """Means over 2 SMOOTH."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    first, last = np.searchsorted(t, t - SMOOTH), np.searchsorted(t, t + SMOOTH)
+    return (total[last] - total[first]) / (last - first)
+
+
+def peaks(t, values, least):
+    """Times of the local maxima from which values fall by at least `least` on both sides."""
+    found, low, top = [], values[0], None
+    for time, v in zip(t, values):
+        if top is None:
+            low = min(low, v)
+            if v > low + least:
+                top = (v, time)
+        else:
+            top = max(top, (v, time))
+            if v < top[0] - least:
+                found.append(top)
+                low, top = v, None
+    return found
+
+
+# ---------------------------------------------------------------- bands
+def passed(run, level):
+    """Time at which each particle's eps_d_p passes a level; infinite where it never does."""
+    eps = run.rows("eps_d_p")
+    k = np.argmax(eps > level, axis=0)
+    below, above = np.take_along_axis(eps, np.maximum(k - 1, 0)[None], 0)[0], np.take_along_axis(eps, k[None], 0)[0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        time = run.time[np.maximum(k - 1, 0)] + (level - below) / (above - below) * (run.time[k] - run.time[np.maximum(k - 1, 0)])
+    return np.where((eps > level).any(axis=0), np.where(k == 0, run.time[0], time), np.inf)
+
+
+def longest(good):
+    """(first, last) of the longest run of True, over gaps of up to two."""
+    best, first, last = (0, -1), None, None
+    for j in np.flatnonzero(good):
+        if first is None or j - last > 3:
+            first = j
+        last = j
+        if last - first > best[1] - best[0]:
+            best = (first, last)
+    return best
+
+
+def strips(x, eps, angle, cell, least):
+    """Best straight strip at one angle: (score, offset, from, to along it), from the mean strain of strips one cell wide, each compared with those two
+    cells to either side.  x (n, 2), eps (n,); NaN where a particle already belongs to a band."""
+    along = np.array([np.cos(angle), np.sin(angle)])
+    s, n = x @ along, x @ np.array([-along[1], along[0]])
+    i, j = np.floor((n - n.min()) / (cell / 2)).astype(int), np.floor((s - s.min()) / cell).astype(int)
+    total, count, used = (np.zeros((i.max() + 14, j.max() + 1)) for _ in range(3))
+    free = ~np.isnan(eps)
+    np.add.at(total, (i[free] + 6, j[free]), eps[free])
+    np.add.at(count, (i[free] + 6, j[free]), 1)
+    with np.errstate(invalid="ignore"):
+        two = lambda a: a[:-1] + a[1:]
+        mean = two(total) / two(count)
+    beside = np.fmax(np.roll(mean, 5, axis=0), np.roll(mean, -5, axis=0))
+    good = (mean > SHEARED) & (mean > CONTRAST * np.where(np.isnan(beside), 0, beside))
+    best = (0.0,)
+    for k in np.flatnonzero(good.sum(axis=1) * cell >= 0.5 * least):
+        a, b = longest(good[k])
+        score = np.minimum(np.where(good[k], mean[k], 0)[a : b + 1], 1).sum()
+        if (b - a + 1) * cell >= least and good[k, a : b + 1].mean() > 0.5 and score > best[0]:
+            best = (score, n.min() + (k - 6 + 1) * cell / 2, s.min() + a * cell, s.min() + (b + 1) * cell)
+    return best
+
+
+def bands(run):
+    """Shear bands: straight strips of sheared particles in the initial configuration, the strongest first, each particle in one band."""
+    x, eps, when = run.start, run.end["eps_d_p"][:, 0].copy(), passed(run, SHEARED)
+    eps[x[:, 1] < 2.5 * run.cell] = np.nan  # the heated base
+    found = []
+    while len(found) < 40:
+        best = max(((*strips(x, eps, a, run.cell, LONG * run.height), a) for a in np.radians(np.arange(20, 161, 2))), key=lambda b: b[0])
+        if best[0] <= 0:
+            break
+        _, offset, first, last, angle = best
+        along = np.array([np.cos(angle), np.sin(angle)])
+        s, n = x @ along, x @ np.array([-along[1], along[0]])
+        inside = (s >= first) & (s <= last) & (abs(n - offset) < 1.5 * run.cell) & ~np.isnan(eps)
+        members = inside & (eps > SHEARED)
+        time = float(np.median(when[members]))
+        now = run.at(time)["position"][members]
+        weight = eps[members]
+        axis = np.linalg.svd((now - np.average(now, axis=0, weights=weight)) * np.sqrt(weight)[:, None], full_matrices=False)[2][0]
+        middle = np.average(n[members], weights=eps[members]) * np.array([-along[1], along[0]])
+        low, high = sorted((middle + first * along, middle + last * along), key=lambda end: end[1])
+        found.append({"time_s": time, "angle_deg": float(np.degrees(np.arctan(abs(axis[1] / axis[0])))),
+                      "rises": "upslope" if axis[0] * axis[1] < 0 else "downslope",
+                      "x_low_m": float(low[0]), "y_low_m": float(low[1]), "x_high_m": float(high[0]), "y_high_m": float(high[1]),
+                      "eps_d_p": float(np.median(eps[members])), "members": np.flatnonzero(members)})  # fmt: skip
+        eps[inside | ((abs(n - offset) < 2.5 * run.cell) & (s >= first) & (s <= last))] = np.nan
+    return sorted(found, key=lambda b: b["time_s"])
+
+
+# ---------------------------------------------------------------- measures
+def measure(run):
+    """The measures of the slide, with units in their names."""
+    total = run.snapshots[0][1]["volume"].sum()
+    share = np.array([p["volume"][run.failed(p), 0].sum() for _, p in run.snapshots]) / total
+    failed = run.failed(run.end)
+    b, (t, e, _, _) = run.balance, kinetic(run.balance)
+    quiet = t <= run.loaded
+    after = t > run.loaded
+    tops = peaks(t[after], smooth(t, e)[after], PROMINENT * e.max())
+    mean = [np.average(np.hypot(*p["v_s"][failed].T), weights=p["mass_solid"][failed, 0]) if failed.any() else 0.0 for _, p in run.snapshots]
+    fastest = [np.hypot(*p["v_s"].T).max() for _, p in run.snapshots]
+    slab = run.end["volume"][failed, 0]
+    lost = b["hydrate_kg"][0] - b["hydrate_kg"][-1]
+    scarp = run.start[run.top & failed, 0]
+    return {
+        "end_s": float(run.time[-1]),
+        "onset_s": crossing(run.time, share, STARTED),
+        "rise_of_kinetic_energy_s": crossing(t[after], e[after], RISEN * e[quiet].max()) if quiet.any() else None,
+        "failed_volume_m2": float(slab.sum()),
+        "failed_share": float(share[-1]),
+        "mean_displacement_m": float(np.average(run.moved(run.end)[failed], weights=slab)) if failed.any() else 0.0,
+        "largest_displacement_m": float(run.moved(run.end).max()),
+        "runout_m": float((run.end["position"] + run.end["half_length"])[:, 0].max() - run.toe),
+        "retrogression_m": float(run.crest - scarp.min() + run.spacing[0] / 2) if len(scarp) else 0.0,
+        "peak_mean_velocity_m_s": float(max(mean)),
+        "peak_particle_velocity_m_s": float(max(fastest)),
+        "peak_kinetic_energy_J": float(e.max()),
+        "peak_kinetic_energy_s": float(t[e.argmax()]),
+        "peaks_of_kinetic_energy_s": [float(time) for _, time in tops],
+        "kinetic_energy_at_end_J": float(e[-1]),
+        "hydrate_lost_kg": float(lost),
+        "hydrate_lost_share": float(lost / b["hydrate_kg"][0]),
+        "gas_released_kg": float(GAS * lost),
+        "gas_released_std_m3": float(GAS * lost / STANDARD),
+    }  # fmt: skip
+
+
+def words(m, found):
+    """The measures as lines of summary.txt."""
+    time = lambda s: "never" if s is None else f"{s:.1f} s"
+    yield f"slide, to t = {m['end_s']:.0f} s (scripts/slide.py):"
+    yield f"  onset {time(m['onset_s'])}, kinetic energy rises at {time(m['rise_of_kinetic_energy_s'])}"
+    yield (f"  failed {m['failed_volume_m2']:.0f} m3 per metre ({100 * m['failed_share']:.0f} % of the body), moved by {m['mean_displacement_m']:.1f} m in the mean and "
+           f"up to {m['largest_displacement_m']:.1f} m; runout {m['runout_m']:.1f} m, retrogression {m['retrogression_m']:.0f} m behind the crest")  # fmt: skip
+    tops = ", ".join(f"{t:.0f}" for t in m["peaks_of_kinetic_energy_s"]) or "none"
+    yield (f"  largest mean velocity of what failed {m['peak_mean_velocity_m_s']:.2f} m/s, of a particle {m['peak_particle_velocity_m_s']:.1f} m/s; kinetic energy up to "
+           f"{m['peak_kinetic_energy_J']:.3g} J per metre at {m['peak_kinetic_energy_s']:.1f} s, peaks at {tops} s")  # fmt: skip
+    yield (f"  hydrate lost {m['hydrate_lost_kg']:.0f} kg ({100 * m['hydrate_lost_share']:.2f} %), gas released {m['gas_released_kg']:.0f} kg = "
+           f"{m['gas_released_std_m3']:.0f} m3 at 101.4 kPa and 15.56 degC, per metre")  # fmt: skip
+    yield f"  {len(found)} shear bands" + (": time, angle to the base, from and to (where it was at the start), eps_d_p" if found else "")
+    for b in found:
+        yield (f"    {b['time_s']:6.1f} s  {b['angle_deg']:3.0f} deg, rises {b['rises']:9s}  ({b['x_low_m']:.0f}, {b['y_low_m']:.0f}) to ({b['x_high_m']:.0f}, {b['y_high_m']:.0f}) m  "
+               f"{b['eps_d_p']:.2f}")  # fmt: skip
+
+
+def write(run, m, found):
+    """slide.json, and the end of summary.txt, in place of what stood there of an earlier call."""
+    kept = [{k: v for k, v in b.items() if k != "members"} for b in found]
+    (run.folder / "slide.json").write_text(json.dumps(m | {"bands": kept}, indent=1) + "\n")
+    summary = run.folder / "summary.txt"
+    before = summary.read_text().split("slide, to t = ")[0] if summary.is_file() else ""
+    summary.write_text(before + "\n".join(words(m, found)) + "\n")
+
+
+def main(folder):
+    run = Run(folder)
+    m, found = measure(run), bands(run)
+    write(run, m, found)
+    print("\n".join(words(m, found)))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,170 @@
+#!/usr/bin/python3
+"""The page of the slopes: slopes.py add NAME FOLDER [ACROSS [WHAT IT TOOK]], slopes.py page
+
+`add` measures a run (scripts/slide.py) with ACROSS particles along a cell (2) and keeps what the page needs as docs/slopes.json[NAME]; `page` writes docs/slopes.md
+from that file alone.
+"""
+import json
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+
+import slide
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+KEPT = DOCS / "slopes.json"
+POINTS = {"A": (165, 1), "B": (113, 53)}  # m, of scripts/plot_slope.py
+SERIES = {"T": "T", "eps_d_p": "eps_d_p", "log_J": "log_J", "p": "p", "S_h": "S_h", "m_h": "mass_hydrate"}
+
+
+def add(name, folder, across="2", took=""):
+    run = slide.Run(folder, across=int(across))
+    m, found = slide.measure(run), slide.bands(run)
+    slide.write(run, m, found)
+    m["bands"] = [{k: v for k, v in b.items() if k != "members"} for b in found]
+    m["took"] = took or took_of(folder)
+    m["balance"] = closing(run.balance)
+    t = run.balance["time_s"]
+    every = np.unique(np.searchsorted(t, np.arange(0, t[-1], 1.0)))
+    m["series"] = {"t": short(t[every]), "E_k": short(run.balance["kinetic_energy_J"][every]), "hydrate_kg": short(run.balance["hydrate_kg"][every], 9)}
+    for point, place in POINTS.items() if name == "A" else ():
+        m["snapshots"], m.setdefault("points", {})[point] = short(run.time), {}
+        i = int(np.argmin(np.hypot(*(run.start - place).T)))
+        m["points"][point] = {k: short(run.rows(v)[:, i], 6) for k, v in SERIES.items()}
+    kept = json.loads(KEPT.read_text()) if KEPT.is_file() else {}
+    kept[name] = m
+    KEPT.write_text(json.dumps(kept, separators=(",", ":"), sort_keys=True).replace('},"', '},\n"') + "\n")
+
+
+def short(values, digits=5):
+    return [float(f"{v:.{digits}g}") for v in values]
+
+
+def took_of(folder):
+    """Steps and seconds of the summary's line `integrator by stage, N steps, N refused, N Newton iterations, X s`."""
+    found = re.search(r"(\d+) steps, (\d+) refused, \d+ Newton iterations, ([\d.]+) s", (Path(folder) / "summary.txt").read_text())
+    return f"{found[1]} steps, {found[2]} refused" if found else ""
+
+
+def closing(balance):
+    """Largest errors of the conserved quantities, and of the energy where the run kept it."""
+    keys = [k for k in balance if k.endswith("_error")]
+    return {k: float(abs(balance[k]).max()) for k in keys}
+
+
+# ---------------------------------------------------------------- page
+def table(rows):
+    width = len(rows[0])
+    return ["| " + " | ".join(map(str, rows[0])) + " |", "|" + "---|" * width] + ["| " + " | ".join(map(str, r)) + " |" for r in rows[1:]]
+
+
+def band_words(m):
+    return "; ".join(f"{b['time_s']:.0f} s {b['angle_deg']:.0f}°" for b in m["bands"]) or "none"
+
+
+def seconds(s):
+    return "–" if s is None else f"{s:.1f}"
+
+
+def row(label, m):
+    return (label, seconds(m["onset_s"]), f"{m['peak_kinetic_energy_J']:.3g} at {m['peak_kinetic_energy_s']:.1f} s",
+            ", ".join(f"{t:.0f}" for t in m["peaks_of_kinetic_energy_s"]), f"{m['failed_volume_m2']:.0f} ({100 * m['failed_share']:.0f} %)",
+            f"{m['mean_displacement_m']:.1f}", f"{m['runout_m']:.1f}", f"{m['retrogression_m']:.0f}", f"{m['peak_mean_velocity_m_s']:.2f}",
+            f"{100 * m['hydrate_lost_share']:.2f}", f"{m['gas_released_kg']:.0f}", band_words(m), f"{m['end_s']:.0f}", m["took"])  # fmt: skip
+
+
+HEAD = ("run", "onset (s)", "largest E_k (J/m)", "its peaks (s)", "failed (m³/m)", "moved (m)", "runout (m)", "retrogression (m)", "speed (m/s)",
+        "hydrate lost (%)", "gas (kg/m)", "bands: time, angle", "to t (s)", "took")  # fmt: skip
+
+
+def runs_of(kept, names):
+    return table([HEAD] + [row(label, kept[n]) for n, label in names if n in kept])
+
+
+def at(m, point, key, time):
+    return float(np.interp(time, m["snapshots"], m["points"][point][key]))
+
+
+def scenario_a(kept):
+    m = kept["A"]
+    e, t = np.array(m["series"]["E_k"]), np.array(m["series"]["t"])
+    calm = t[(t > m["peak_kinetic_energy_s"]) & (e < 0.01 * e.max())]
+    eps_a = np.array(m["points"]["A"]["eps_d_p"])
+    rate = np.diff(eps_a) / np.diff(m["snapshots"])
+    fastest = m["snapshots"][int(rate.argmax())]
+    p0 = m["points"]["A"]["p"][0]
+    T_B = np.array(m["points"]["B"]["T"])
+    k = int(np.argmax(T_B[np.array(m["snapshots"]) >= 10])) + int(np.argmax(np.array(m["snapshots"]) >= 10))
+    yield ("E_k rises sharply at about 13 s", f"at {m['rise_of_kinetic_energy_s']:.1f} s, as heating starts at 10 s", "agrees but for the delay")
+    yield ("significant peak at about 25 s", f"{m['peak_kinetic_energy_J']:.2g} J/m at {m['peak_kinetic_energy_s']:.1f} s; a smaller one at 11 s, as pressure rises in the base", "agrees")
+    yield ("by 32 s nearly zero", f"below 1 % of the peak from {calm[0]:.0f} s on" if len(calm) else "not by the end", "agrees" if len(calm) and abs(calm[0] - 32) < 3 else "**differs**")
+    later = [x for x in m["peaks_of_kinetic_energy_s"] if x > 34]
+    yield ("rises again: peaks at 38, 50, 100 s", "peaks at " + ", ".join(f"{x:.0f} s" for x in later) if later else
+           f"none: E_k stays below {100 * e[t > 36].max() / e.max():.2g} % of the peak", "agrees" if later else "**differs**, see below")  # fmt: skip
+    yield ("a V-shaped band from the base to the ground by 25 s, three parts", f"two bands at {band_words(m)}, from (152, 10) m to the ground", "agrees")
+    yield ("by 200 s largely ceased", f"since {calm[0]:.0f} s" if len(calm) else "no", "earlier here")
+    yield ("point A: 6 °C at once", f"{at(m, 'A', 'T', 11):.1f} °C at 11 s, 1 m above the base", "agrees: the mean of its cell is 6.1 °C")
+    yield ("A: hydrate goes fast, p rises sharply", f"S_h {at(m, 'A', 'S_h', 10):.2f} to {at(m, 'A', 'S_h', 20):.2f} by 20 s; p by {(at(m, 'A', 'p', 12) - p0) / 1e6:.1f} MPa in 2 s", "agrees")
+    yield ("A: shear strain takes off at 20 s", f"rises from 10 s on, fastest at {fastest:.0f} s", "agrees")
+    yield ("A: volumetric strain rises", f"ln J {at(m, 'A', 'log_J', 30):+.2f} at 30 s", "agrees")
+    yield ("in the band: dilation, less pore pressure, less hydrate", f"B at 60 s: ln J {at(m, 'B', 'log_J', 60):+.3f}, p {(at(m, 'B', 'p', 60) - p0) / 1e6:+.2f} MPa, S_h {at(m, 'B', 'S_h', 60):.2f}", "agrees")
+    yield ("B warms a little before it cools", f"{T_B[k]:.2f} °C at {m['snapshots'][k]:.0f} s, from {at(m, 'B', 'T', 10):.2f}, then {T_B[-1]:.2f} °C", "agrees" if T_B[k] > at(m, "B", "T", 10) + 0.005 else "**differs**")
+
+
+def section_a(kept):
+    lines = ["## Scenario A", "", *runs_of(kept, RUNS_A), ""]
+    if "A" in kept:
+        lines += table([("the paper says", "here", "")] + list(scenario_a(kept))) + ["", *NOTES_A]
+    return lines
+
+
+RUNS_A = (
+    ("A", "A: θ = 0.5"), ("A_theta_0", "θ = 0"), ("A_printed", "K_0 = 3.6e4, as printed"), ("A_half", "half the step (cfl 0.4)"),
+    ("A_ranks", "2 ranks"), ("A_ppc9", "3 x 3 particles"), ("A_3m", "cells of 3 m"), ("A_2m", "cells of 2 m"), ("A_8m", "cells of 8 m"),
+    ("A_length", "softening_length 4 m, cells of 2 m"), ("A_sdirk2", "sdirk2"),
+)  # fmt: skip
+RUNS_B = (("B", "B: θ = 0.5"), ("B_theta_0", "θ = 0"))
+RUNS_C = (("C", "C: θ = 0.5"), ("C_theta_0", "θ = 0"))
+NOTES_A = """- *Later peaks.* The paper's further peaks of E_k, without new bands, are put down to creep as hydrate goes on dissociating. Here the hydrate of the heated row of cells is
+  gone by then (point A: all of it by 100 s), the block rests on the stump of the base left of 150 m, and 2 % of all hydrate is lost for good. With K_0 = 3.6e4, the rate as printed, the
+  slide comes in many small rushes from 76 s to 184 s instead.
+- *The rate of the reaction* decides the time scale. The paper's times (rise, peak at 25 s, rest at 32 s) come out with K_0 = 3.6e5, ten times the printed rate; dE is not legible in it.
+- *Point B* has no deviatoric stress from 22 s on: the left band is pulled open and its skeleton is at the apex of the yield surface, while suction (-0.75 MPa) holds it together.
+- *What is left of E_k* at the end, 0.03 MJ/m, is in two particles at the toe that swing against each other: a motion that the grid does not see (FLIP).
+
+![energy](figures/slope_a_energy.png)
+
+![points](figures/slope_a_points.png)
+
+![bands](figures/slope_a_bands.png)""".split("\n")
+INTRO = """# Submarine slopes
+
+Section 5.2 of the paper, by [slope_a](../cases/slope_a/README.md){others}, with `hybrid`. Made by `scripts/slopes.py page` from
+`docs/slopes.json`, into which `scripts/slopes.py add` puts what [scripts/slide.py](../scripts/slide.py) measures of a run.
+
+## What is measured
+
+- *Failed*: what has moved farther than 1 % of the height (1 m) since the loading ended. *Onset*: when 1 % of the body has. *Moved*: mean over what failed.
+- *Runout*: how far the front is ahead of the toe at the start, along the base. *Retrogression*: from the crest back to the farthest failed particle of the ground.
+- *Speed*: the largest mean velocity of what has failed in the end. *Peaks* of E_k: maxima from which it falls by 2 % of the largest on either side, in means over 2 s.
+- *P_k, R_k*: slopes of E_k by quadratic least squares over 2 s (rows of `balance.csv` are 0.1 s apart).
+- *Bands*: straight strips one cell wide, at every angle in steps of 2 degrees and every half cell, in the configuration at the start and above the heated base. A piece of a strip, one cell long,
+  counts where its mean ε_d^p exceeds 0.15 and twice that of the strips two and a half cells to either side; a strip needs a row of such pieces 40 % of the slope's height long, with
+  gaps of two at most. The strip with the largest sum of strain is a band, its particles are taken out, and so on. A band's time is the median of the times at which its particles pass 0.15;
+  its angle is that of the main axis of their places at that time, weighted with strain, against the base.
+- *Gas released*: what the hydrate lost gave, per metre of thickness; all of it stays in the closed body.
+"""
+
+
+def page():
+    kept = json.loads(KEPT.read_text())
+    others = "".join(f", [{c}](../cases/{c}/README.md)" for c in ("slope_b", "slope_c") if (DOCS.parent / "cases" / c).is_dir())
+    lines = [INTRO.format(others=others), *section_a(kept)]
+    (DOCS / "slopes.md").write_text("\n".join(lines).rstrip() + "\n")
+    print(DOCS / "slopes.md")
+
+
+if __name__ == "__main__":
+    {"add": add, "page": page}[sys.argv[1]](*sys.argv[2:])

@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Slope A on cells of 8 m as it begins to slide, by hybrid: the same on 1 and 2 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
+step; and what scripts/slide.py finds: onset, failed part, and the bands of strains that are known.
+"""
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import Run, check, check_true, finish, scratch  # noqa: E402
+
+import slide  # noqa: E402  scripts/, which common puts on the path
+
+COARSE = ("-quiet", "-grid_cells", "75,15", "-gravity_ramp", "3 s", "-stage_load_end", "3 s", "-stage_slide_end", "7 s", "-output_every", "0.5 s")
+
+
+def slope(*options, **keywords):
+    return Run.of_case("slope_a", *COARSE, *options, **keywords)
+
+
+def known_bands():
+    """Three bands in a slope of 300 m x 100 m: angle, rises, time, and a strip beside them that is too short; strain of 0.03 everywhere."""
+    wanted = ((50, "downslope", 20.0, 60), (65, "upslope", 31.0, 230), (50, "downslope", 44.0, 140))
+    x = np.stack(np.meshgrid(np.arange(1, 300, 2.0), np.arange(1, 100, 2.0)), axis=-1).reshape(-1, 2)
+    strain = np.full(len(x), 0.03)
+    time = np.full(len(x), np.inf)
+    for angle, rises, when, foot in wanted:
+        slope = np.tan(np.radians(angle)) * (1 if rises == "downslope" else -1)
+        inside = abs((x[:, 1] - slope * (x[:, 0] - foot)) * np.cos(np.arctan(slope))) < 4
+        strain[inside], time[inside] = 0.6, when
+    short = (abs(x[:, 0] - 270) < 4) & (abs(x[:, 1] - 60) < 12)
+    strain[short], time[short] = 0.6, 10.0
+    times = np.arange(0, 60.5, 1.0)
+    snapshots = [(t, {"eps_d_p": np.where(t >= time, strain, 0.0)[:, None], "position": x}) for t in times]
+    run = SimpleNamespace(start=x, end=snapshots[-1][1], snapshots=snapshots, time=times, cell=4.0, height=100.0)
+    run.at = lambda time: slide.Run.at(run, time)
+    run.rows = lambda *a: slide.Run.rows(run, *a)
+    found = slide.bands(run)
+    check("bands found of three that are known", len(found), (3, 3))
+    for (angle, rises, when, foot), b in zip(wanted, found):
+        check(f"band of {angle} deg: angle found", b["angle_deg"], (angle - 1, angle + 1))
+        check_true(f"band of {angle} deg: rises {rises}", b["rises"] == rises)
+        check(f"band of {angle} deg: time", b["time_s"], (when - 1, when))
+        check(f"band of {angle} deg: distance of its low end from the line, m", abs(b["y_low_m"] - abs(np.tan(np.radians(angle)) * (b["x_low_m"] - foot))), 4.0)
+
+
+one = slope()
+last = one.snapshots()[-1][1]
+two = slope(ranks=2).snapshots()[-1][1]
+worst = max(np.max(np.abs(v - two[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield")
+check("2 ranks against 1", worst, 1e-6)
+check_true("no particle is lost", np.array_equal(last["id"], one.snapshots()[0][1]["id"]) and all(np.isfinite(v).all() for v in last.values()))
+for what in ("water", "methane"):
+    check(f"{what} kept, of the mass at the start", np.max(np.abs(one.balance[f"{what}_error"])), 1e-12)
+
+cut = scratch() / "cut"
+slope("-stepper_max_steps", "8", "-checkpoint_every", "0.5 s", out=cut)  # bursts; the slide begins at 3 s
+begun = slope("-restart", cut / "checkpoint.h5", "-stepper_max_steps", "40", out=cut).balance["time_s"][-1]
+check("time of the restart, in the slide (s)", begun, (4.0, 6.5))
+again = slope("-restart", cut / "checkpoint.h5", out=cut).snapshots()[-1][1]
+check_true("a restart in the slide, bit for bit", all(np.array_equal(v, again[k]) for k, v in last.items()) and (one.out / "probes.csv").read_bytes() == (cut / "probes.csv").read_bytes())
+
+summary = (one.out / "summary.txt").read_text()
+check_true("the summary says which limit set the step of each stage", summary.count("(waves in the mixture 100 %)") == 2)
+run = slide.Run(one.out, loaded=3.0)
+m = slide.measure(run)
+slide.write(run, m, slide.bands(run))
+slide.write(run, m, slide.bands(run))
+check_true("the slide stands once at the end of the summary", (one.out / "summary.txt").read_text().startswith(summary) and (one.out / "summary.txt").read_text().count("slide, to t =") == 1)
+check("onset (s)", m["onset_s"], (3.0, 5.0))
+check("share of the body that failed", m["failed_share"], (0.3, 0.7))
+check("runout (m)", m["runout_m"], (0.2, 20.0))
+check("gas released over hydrate lost", m["gas_released_kg"] / m["hydrate_lost_kg"], (0.016 / 0.124 - 1e-12, 0.016 / 0.124 + 1e-12))
+known_bands()
+finish()
