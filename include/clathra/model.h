@@ -9,12 +9,13 @@
 
 /* One implicit stage: everything an integrator says to the physics. */
 typedef struct {
-  double         t;      /* end of the stage, where boundary functions are evaluated, s */
-  double         dt;     /* dt', s */
-  double         ahead;  /* of the end of the stage since t_n, s */
-  double        *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
-  double        *u_star; /* [n_local][CL_DIM] starred displacement, m */
-  double        *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
+  double  t;      /* end of the stage, where boundary functions are evaluated, s */
+  double  dt;     /* dt', s */
+  double  ahead;  /* of the end of the stage since t_n, s */
+  double  drain;  /* share per time of the heat that hybrid left (69) given in this step: 1 over its length, 1/s */
+  double *x_star; /* [n_local][fields.n] starred nodal velocities, pressures, temperature */
+  double *u_star; /* [n_local][CL_DIM] starred displacement, m */
+  double *m_star; /* [n][3] starred masses m_h, m_w, m_g, kg */
   SkeletonStage *k_star; /* [n] starred state of the skeleton; null: that of t_n */
 } Stage;
 

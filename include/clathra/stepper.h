@@ -46,6 +46,7 @@ typedef struct {
   SkeletonStage *k_star;               /* [n]; null where the skeleton holds no history */
   double        *e_plastic;            /* [n][5] errors of Trial.s; null without plasticity */
   Trial          trial[2];
+  double         drain; /* of the stages to come, 1/s */
   PetscInt       cap_nodes, cap_particles;
 } StepperWork;
 

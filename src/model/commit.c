@@ -333,6 +333,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
     s.m_g = trial->m[3 * p + 2];
     if (trial->s) {
       m->P.f[P_WP][p] += trial->end[p].work;
+      m->P.f[P_HEAT][p] = 0.0; /* the stages gave it */
       for (int k = 0; k < 5; k++)
         m->P.f[P_KP + k][p] = trial->k[5 * p + k];
     }

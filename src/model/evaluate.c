@@ -13,6 +13,8 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
   if (status != CL_OK)
     ModelNoteFailure(m, status, why, p);
+  else if (m->P.f[P_HEAT] && m->c->fields.heat)
+    o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* (69) */
   return status;
 }
 

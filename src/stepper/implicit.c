@@ -93,6 +93,7 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
   const Stage  stage = {.t      = t,
                         .dt     = dt,
                         .ahead  = t - s->state.t,
+                        .drain  = w->drain,
                         .x_star = w->x_star,
                         .u_star = w->u_star,
                         .m_star = w->m_star,
@@ -260,6 +261,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     Attempt      a  = {.status = CL_OK};
 
     PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * m->c->fields.n));
+    s->work.drain = 1.0 / dt;
     PetscCall(s->scheme->step(s, dt, &a));
     s->auto_.newton += a.newton;
     s->auto_.dt = dt;

@@ -58,6 +58,12 @@ for kind in KINDS:
     check(f"{kind}: share of particles that yield at the end", np.mean(last["yield"] > 0), (0.1, 1.0))
     check(f"{kind}: plastic work is never negative", -last["plastic_work"].min(), 0.0)
     rows.append([kind, last["eps_d_p"].max(), work, gain, one.probe("p")["u_y_m"][-1]])
+out = scratch() / "out"  # heat that hybrid's last step leaves for the next one, which is implicit
+left = footing("hybrid", "-time_end", "0.36 s", "-output_times", "0 s,0.36 s", out=out).snapshots()[-1][1]["plastic_heat"].sum()
+both = footing("sdirk2", "-restart", out / "checkpoint.h5", out=out)
+work, pending, gain = (*(both.snapshots()[-1][1][name].sum() for name in ("plastic_work", "plastic_heat")), both.balance["heat_J"][-1])
+check("hybrid, then sdirk2: heat gained against the share of the plastic work", abs(gain + pending - 0.7 * work) / work, 1e-10)
+check("hybrid, then sdirk2: share of the work whose heat was left between them", left / work, (1e-6, 1.0))
 table(["integrator", "largest eps_d_p", "plastic work (J)", "heat (J)", "settlement (m)"], rows)
 a, b = (runs[k].probe("p")["u_y_m"][-1] for k in KINDS)
 check("hybrid against sdirk2: settlement", abs(b / a - 1), 0.05)
