@@ -53,6 +53,13 @@ static inline void BasisAverage(double a, double b, double gradient_length, doub
   dS[2] = (third ? 1.0 - b2 : 0.0) / gradient_length;
 }
 
+/* Which of the two cells behind the first node of a stencil holds a particle: 0 or 1; s its place in cells, first the
+   node, cells those of the grid along the axis. */
+static inline int BasisCell(double s, double first, double cells)
+{
+  return floor(BasisSnap(s)) > first && first + 1.0 < cells;
+}
+
 /* One axis: nodes base, base+1, base+2; docs/equations.md (3), (4). */
 typedef struct {
   PetscInt base;
@@ -61,8 +68,9 @@ typedef struct {
 
 typedef struct {
   Axis   axis[CL_DIM];
-  double hoop[3]; /* (29) about an axis: weights of u_r/r, 1/m; times r they are the plain weights of (3) */
-  double r;       /* radius of the domain's middle, m; 0 in the plane */
+  double hoop[3];      /* (29) about an axis: weights of u_r/r, 1/m; times r they are the plain weights of (3) */
+  double r;            /* radius of the domain's middle, m; 0 in the plane */
+  int    cell[CL_DIM]; /* the particle's cell from base on, 0 or 1 along each axis */
 } Stencil;
 
 /* x, l in m; h the cell size, lower the grid's lower corner and cells their number along this axis.  A domain that
@@ -76,6 +84,10 @@ void BasisHat(double x, double lower, double h, Axis *a);
 
 /* Where a linear function takes the weights' value, m: the particle's centre, about an axis the ring's centroid. */
 double AxisCentroid(const Axis *a, double lower, double h);
+
+/* (88): a node's weights Q in the mean volume change of a cell, 1/m; i: place of the node from the cell's lower left
+   one on (others: zero); r: radius of that one, m (used about an axis only). */
+void CellDilatation(const Grid *g, bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
 
 /* Local active numbers of the nodes, their weights and gradients, and about an axis (r > 0) H, the weights of u_r/r;
    returns how many (nodes of zero weight and gradient are left out). */

@@ -86,9 +86,11 @@ enum {
   QUANTITY_U,
   QUANTITY_STRESS,
   QUANTITY_X,
-  QUANTITY_EPS,  /* deviatoric plastic strain */
-  QUANTITY_MEAN, /* mean effective stress, compression-positive */
-  QUANTITY_Q,    /* deviatoric stress sqrt(3 J2) */
+  QUANTITY_EPS,    /* deviatoric plastic strain */
+  QUANTITY_MEAN,   /* mean effective stress, compression-positive */
+  QUANTITY_Q,      /* deviatoric stress sqrt(3 J2) */
+  QUANTITY_STRAIN, /* volumetric and deviatoric */
+  QUANTITY_YIELD,  /* distance to yield; is it reached? */
   QUANTITY_COUNT
 };
 
@@ -124,12 +126,6 @@ typedef struct {
   double     alpha;            /* convection coefficient, W/(m^2 K) */
 } Bc;
 
-typedef struct {
-  char   name[64];
-  double x[CL_DIM]; /* m, in the initial configuration unless fixed */
-  bool   fixed;     /* stays at x in space; otherwise follows the nearest particle set */
-} Probe;
-
 #define CL_METERS 16 /* at most */
 
 /* Counts what crosses a part of the body's surface, whatever the conditions there. */
@@ -140,6 +136,15 @@ typedef struct {
   double   from, to; /* m, along the side */
   Points   along;    /* or those on this line */
 } Meter;
+
+/* A point whose history is written, or what the history of a mean is taken over. */
+typedef struct {
+  char     name[64];
+  double   x[CL_DIM]; /* m, initial position; infinite: a mean */
+  bool     fixed;     /* stays there in space, not with the material */
+  PetscInt over;      /* mean over this region, by volume; -1: not */
+  Meter    surface;   /* mean over this part of the surface, by area; SIDE_COUNT without a line: not */
+} Probe;
 
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
@@ -155,6 +160,7 @@ typedef struct Case {
   FieldSet  fields;                          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM];                 /* m/s^2 */
   double    gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
+  bool      mean_dilatation;                 /* volume change of the cell, not of the particle's own place (88) */
   double    strength_factor;                 /* all strength is divided by it (87) */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */

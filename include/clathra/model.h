@@ -32,11 +32,29 @@ typedef struct {
 /* What a meter counts, outwards: kg/s of water and gas, W. */
 enum { METER_WATER = PHASE_W, METER_GAS = PHASE_G, METER_HEAT, METER_COUNT };
 
+/* Works of the mechanical balance (90): what is counted as it happens, J or, as rates, W. */
+enum {
+  WORK_INERTIA = 0, /* of all forces on the nodes' masses: what the kinetic energy gains before the integrator's loss */
+  WORK_GRAVITY,
+  WORK_LOADS,    /* of tractions and of the ambient pressure */
+  WORK_PLATES,   /* of plates and of prescribed motion */
+  WORK_PRESSURE, /* of the fluids' pressures, as fluids expand and through open faces */
+  WORK_DRAG,     /* dissipated between skeleton and fluids */
+  WORK_DAMPING,  /* taken by artificial damping and the ghost penalty */
+  WORK_RATES,    /* those before it are rates of a stage; the rest is what a step made of the particles' energies */
+  WORK_RELEASED = WORK_RATES, /* elastic energy that went with the stiffness */
+  WORK_HEAT,                  /* share of the plastic dissipation that became heat */
+  WORK_LOST,                  /* kinetic energy that the integrator took */
+  WORK_REMAINDER,
+  WORK_COUNT
+};
+
 /* Rates over the boundary and inside at the end of a stage, global sums. */
 typedef struct {
   double out[PHASE_COUNT];                /* kg/s */
   double heat_in, heat_source, heat_rate; /* W: through the boundary, latent less advected, stored */
   double meter[CL_METERS][METER_COUNT];
+  double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;
 
 /* Second difference of the ghost penalty (22): a node with its neighbours along one axis. */
@@ -96,6 +114,7 @@ typedef struct {
   PetscInt    plates;           /* their number */
   double (*plate)[PLATE_COUNT]; /* [Case.nlisted] at the end of the last stage; zero where it is no plate */
   double  *plate_K;             /* [Case.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
+  double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
   Mat    J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
@@ -174,6 +193,18 @@ typedef struct {
   double kinetic;  /* energy of all phases, J */
 } ModelTotals;
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);
+
+/* Energies of the mechanical balance (90) that the particles hold, J; zero without mechanics.  Sums over all ranks. */
+enum {
+  ENERGY_KINETIC = 0,
+  ENERGY_ELASTIC,  /* (89), over that of the initial stress */
+  ENERGY_PLASTIC,  /* dissipated so far */
+  ENERGY_HEAT,     /* the share of it that became heat */
+  ENERGY_RELEASED, /* Model.released */
+  ENERGY_COUNT
+};
+double         ModelKineticEnergy(const Particles *P, PetscInt p); /* of all phases of a particle, J */
+PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT]);
 
 /* SNES callbacks, exposed for tests. */
 PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model);

@@ -112,6 +112,8 @@ typedef struct {
                  const char **why);
   bool (*block)(const Material *, const SkeletonBlock *, const char **why);
   void (*start)(const Material *, double own[OWN_COUNT]); /* history of a new particle; null: zero */
+  /* distance to yield, Pa: positive inside; null: it does not yield */
+  double (*margin)(const Material *, double Sh, const SkeletonHistory *);
 } SkeletonLaw;
 const SkeletonLaw *SkeletonLawOf(const Material *mat);
 
@@ -189,4 +191,56 @@ static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const Skele
   }
   if (f->yield)
     f->yield[q] = (double)s->region;
+}
+
+/* How far a state is from yield, in Pa, as the yield function measures it; NaN for a law that does not yield. */
+static inline double SkeletonMargin(const Material *mat, double Sh, const SkeletonHistory *h)
+{
+  const SkeletonLaw *law = SkeletonLawOf(mat);
+
+  return law->margin ? law->margin(mat, Sh, h) : NAN;
+}
+
+/* ---------------------------------------------------------------- energy (89) */
+/* (both) : D^-1 : (over) / 2 of stresses, J/m^3. */
+static inline double SkeletonComplement(double nu, double E, const double both[6], const double over[6])
+{
+  const double product = both[XX] * over[XX] + both[YY] * over[YY] + both[ZZ] * over[ZZ] +
+                         2.0 * (both[XY] * over[XY] + both[YZ] * over[YZ] + both[XZ] * over[XZ]);
+
+  return ((1.0 + nu) * product - nu * Trace6(both) * Trace6(over)) / (2.0 * E);
+}
+/* Elastic energy per volume over that of the initial stress, J/m^3, with Young's modulus E. */
+static inline double SkeletonEnergy(const Elasticity *el, double E, const SkeletonHistory *h)
+{
+  const bool   bonds = ElasticityHasBonds(el);
+  const double E_h = E - el->E0, *own = h->from.own + OWN_P_BOND;
+  double       bond[6] = {0.0}, both[6], over[6];
+
+  for (int k = 0; bonds && k < 4; k++)
+    bond[k] = own[k];
+  for (int k = 0; k < 6; k++) {
+    both[k] = h->sig[k] - bond[k] + h->sig0[k];
+    over[k] = h->sig[k] - bond[k] - h->sig0[k];
+  }
+  return SkeletonComplement(el->nu, bonds ? el->E0 : E, both, over) +
+         (bonds && E_h > 0.0 ? SkeletonComplement(el->nu, E_h, bond, bond) : 0.0);
+}
+/* Elastic energy per volume lost at held strain as Young's modulus goes from E_n to E and the share `kept` of the
+   hydrate stays, J/m^3. */
+static inline double SkeletonReleased(const Elasticity *el, double E_n, double E, double kept, const SkeletonHistory *h)
+{
+  const double    r    = el->change == STIFFNESS_LOSS_ONLY && E > E_n ? 1.0 : E / E_n;
+  SkeletonHistory left = *h;
+
+  if (ElasticityHasBonds(el)) {
+    for (int k = 0; k < 4; k++) {
+      left.from.own[OWN_P_BOND + k] *= kept;
+      left.sig[k] -= (1.0 - kept) * h->from.own[OWN_P_BOND + k];
+    }
+  } else {
+    for (int k = 0; k < 6; k++)
+      left.sig[k] = h->sig0[k] + r * (h->sig[k] - h->sig0[k]);
+  }
+  return SkeletonEnergy(el, E_n, h) - SkeletonEnergy(el, E, &left);
 }

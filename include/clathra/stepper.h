@@ -24,6 +24,8 @@ typedef struct {
   double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source; /* J since t = 0 */
   double   meter[CL_METERS][METER_COUNT];   /* (33): kg of water and gas, J, outwards since t = 0 */
+  double   work[WORK_COUNT];                /* (90), J since t = 0 */
+  double   energy[ENERGY_COUNT];            /* J, as the particles hold them now */
   double   water0, methane0, capacity0;     /* totals at t = 0, kg, J/K */
   double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
   double   scale_p,
@@ -56,6 +58,7 @@ typedef struct {
   double   out[PHASE_COUNT];                /* kg over the step */
   double   heat_gain, heat_in, heat_source; /* J over the step */
   double   meter[CL_METERS][METER_COUNT];   /* kg, J over the step */
+  double   work[WORK_RATES];                /* J over the step */
 } Attempt;
 
 #define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
@@ -174,6 +177,11 @@ void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok);
+/* energy.c: the mechanical balance (90).  What the particles hold at the start; what the works of an accepted step made
+   of it; what a change of materials does.  Collective. */
+PetscErrorCode StepperEnergyStart(Stepper *s);
+PetscErrorCode StepperEnergyStep(Stepper *s, const double work[WORK_RATES]);
+PetscErrorCode StepperEnergyChange(Stepper *s);
 PetscErrorCode StepperFreeWork(StepperWork *w);
 const char    *StepperStatusName(ClStatus st);
 PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */

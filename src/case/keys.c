@@ -60,6 +60,12 @@ static bool BcNeedsSide(const void *p)
 {
   return !((const Bc *)p)->along.n;
 }
+static bool NeedsPlace(const void *p)
+{
+  const Probe *b = (const Probe *)p;
+
+  return b->over < 0 && b->surface.side == SIDE_COUNT && !b->surface.along.n;
+}
 static bool MeterNeedsSide(const void *p)
 {
   return !((const Meter *)p)->along.n;
@@ -145,6 +151,10 @@ static const Key case_key[] = {
     BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
             .choices = pressures_word),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
+    BOOLEAN(
+        Case, "mean_dilatation", mean_dilatation, "no",
+        "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
+        "does not lock"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
@@ -203,7 +213,8 @@ static const Key case_key[] = {
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
     TEXT(Case, "output_quantities", quantities_wanted, "all",
-         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q; all is what the "
+         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q, strain, yield; "
+         "all is what the "
          "scene has fields "
          "for"),
     REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),
@@ -341,8 +352,8 @@ static const Key material_key[] = {
 
 static const Key region_key[] = {
     NAME(Region, "material", material, NULL, GROUP_MATERIAL,
-         "one of materials, or none: only to be cut out of others, or to hold a region_temperature", .word = "none",
-         .shape = true),
+         "one of materials, or none: only to be cut out of others, to hold a region_temperature, or for a probe's mean",
+         .word = "none", .shape = true),
     POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
     POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
     REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true),
@@ -441,8 +452,22 @@ static const Key bc_key[] = {
 };
 
 static const Key probe_key[] = {
-    REALS(Probe, 2, "at", x, "m", "", NULL, "initial position, inside a region"),
-    BOOLEAN(Probe, "fixed", fixed, "no", "stays there in space; otherwise follows the body"),
+    NAME(Probe, "over", over, "none", GROUP_REGION,
+         "the mean over a region, weighted with current volumes: its particles, or of a region without particles those "
+         "that were in its shape first",
+         .word = "none"),
+    POINTS(Probe, "along", surface.along,
+           "[[x, y], ...]: the mean over the faces on this line, in the initial configuration, weighted with current "
+           "areas"),
+    CHOICE(Probe, "side", surface.side, "none", side_word, "the mean over this side of the body, by area"),
+    NAME(Probe, "region", surface.region, "all", GROUP_REGION, "with side or along: one of regions, or all"),
+    REAL(Probe, "from", surface.from, "m", "", "start", "with side: only the part from here ...", .word = "-start"),
+    REAL(Probe, "to", surface.to, "m", "", "end", "... to here", .word = "end"),
+    REALS(Probe, 2, "at", x, "m", "", "none, none", "a point: initial position, inside a region",
+          WHEN(NeedsPlace, "over, side and along are not given"), .word = "none"),
+    BOOLEAN(Probe, "fixed", fixed, "no",
+            "a point stays there in space, otherwise it follows the body; a mean is over what is in the region's shape "
+            "now"),
     {.name = NULL},
 };
 
@@ -515,7 +540,8 @@ const GroupInfo case_group[GROUP_COUNT] = {
     GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
           "Parts of the body, each of one shape, and their initial state"),
     GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
-    GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key, "Points whose history is written"),
+    GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key,
+          "Points and means whose history is written"),
     GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
           "Parts of the surface that count what crosses them"),
     GROUP(CaseStage, "stage_", "stages", "stage", nstage, stage, false, stage_key,

@@ -9,7 +9,7 @@ static void CheckSnapBack(Reader *r, const Material *m)
 {
   const Plasticity *p = &m->plasticity;
 
-  const double eta = SofteningRate(p);
+  const double eta = p->nonlocal > 0.0 ? 0.0 : SofteningRate(p); /* a strength given for the step cannot fall in it */
 
   for (int k = 0; k <= 10; k++) {
     double       dE, worst = 0.0;
@@ -76,8 +76,8 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
     FAIL("plasticity_heat", "is %g but heat is not among the fields of the scene (%s)", p->heat, c->fields_wanted);
   if (p->nonlocal > 0.0)
     CheckNonlocal(r, c, m);
-  else if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
-    CheckSnapBack(r, m); /* a strength given for the step cannot fall within it */
+  if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
+    CheckSnapBack(r, m);
   if (p->psi_max > p->phi_peak && r->rank == 0)
     fprintf(stderr,
             "clathra: warning: material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)\n",

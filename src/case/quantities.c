@@ -14,7 +14,8 @@ static const struct {
     [QUANTITY_SG] = {"S_g", HAS_GAS},          [QUANTITY_U] = {"u", HAS_SOLID},
     [QUANTITY_STRESS] = {"stress", HAS_SOLID}, [QUANTITY_X] = {"x", HAS_ALL},
     [QUANTITY_EPS] = {"eps_d_p", HAS_PLASTIC}, [QUANTITY_MEAN] = {"p_eff", HAS_PLASTIC},
-    [QUANTITY_Q] = {"q", HAS_PLASTIC},
+    [QUANTITY_Q] = {"q", HAS_PLASTIC},         [QUANTITY_STRAIN] = {"strain", HAS_PLASTIC},
+    [QUANTITY_YIELD] = {"yield", HAS_PLASTIC},
 };
 
 /* The quantity of this name, QUANTITY_COUNT if there is none. */
@@ -33,8 +34,9 @@ static void Add(Reader *r, Case *c, const char *word)
   char      words[64];
 
   if (q == QUANTITY_COUNT) {
-    ReaderError(r, "output_quantities", word,
-                "must be all or a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q");
+    ReaderError(
+        r, "output_quantities", word,
+        "must be all or a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q, strain, yield");
     return;
   }
   if (!(c->fields.has & quantity[q].has)) {

@@ -279,6 +279,8 @@ PetscErrorCode CaseDestroy(Case *c)
   }
   for (PetscInt i = 0; i < c->nmeter; i++)
     PetscCall(PetscFree(c->meter[i].along.x));
+  for (PetscInt i = 0; i < c->nprobe; i++)
+    PetscCall(PetscFree(c->probe[i].surface.along.x));
   for (PetscInt i = 0; i < c->nregion; i++) {
     PetscCall(PetscFree(c->region[i].polygon.x));
     PetscCall(PetscFree(c->region[i].below.x));

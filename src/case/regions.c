@@ -91,9 +91,13 @@ static void CheckBounds(Reader *r, const Case *c, const Region *g)
   }
 }
 
-/* A shape without particles must be cut out of another region or hold temperatures. */
+/* A shape without particles must be cut out of another region, hold temperatures or be what a mean is over. */
 static bool Serves(const Case *c, PetscInt region)
 {
+  for (PetscInt k = 0; k < c->nprobe; k++) {
+    if (c->probe[k].over == region)
+      return true;
+  }
   for (PetscInt k = 0; k < c->nbc; k++) {
     if (c->bc[k].type == BC_REGION_TEMPERATURE && c->bc[k].region == region)
       return true;
@@ -130,7 +134,7 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
   }
   if (RegionEmpty(g) && !Serves(c, region))
     FAIL_AT(GROUP_REGION, g->name, "material",
-            "is none, but no region has %s in its minus and no region_temperature names it", g->name);
+            "is none, but no region has %s in its minus and no region_temperature or probe names it", g->name);
 }
 
 /* ---------------------------------------------------------------- their particles */
@@ -286,7 +290,8 @@ void CheckHeld(Reader *r, const Case *c, const Bc *b)
           "has no node of the grid in its shape: refine the grid, or let the shape follow its lines");
 }
 
-void CheckProbe(Reader *r, const Case *c, const Probe *p)
+/* A point lies in the body. */
+static void CheckPoint(Reader *r, const Case *c, const Probe *p)
 {
   double slack[CL_DIM];
 
@@ -297,4 +302,53 @@ void CheckProbe(Reader *r, const Case *c, const Probe *p)
       return;
   }
   FAIL_AT(GROUP_PROBE, p->name, "at", "(%g m, %g m) lies in no region", p->x[0], p->x[1]);
+}
+
+typedef struct {
+  const Case *c;
+  PetscInt    region;
+} Within;
+
+static bool LiesWithin(const Place *p, const void *context)
+{
+  const Within *w = (const Within *)context;
+
+  return RegionHolds(w->c, w->region, p->x);
+}
+
+/* A region without particles holds some of another's. */
+static void CheckOver(Reader *r, const Case *c, const Probe *p)
+{
+  const Within w     = {c, p->over};
+  bool         holds = !RegionEmpty(&c->region[p->over]);
+
+  for (PetscInt i = 0; i < c->nregion && !holds; i++)
+    holds = !RegionEmpty(&c->region[i]) && AnyPlace(c, i, LiesWithin, &w);
+  if (!holds)
+    FAIL_AT(GROUP_PROBE, p->name, "over", "region %s holds no particle", c->region[p->over].name);
+}
+
+void CheckProbe(Reader *r, const Case *c, const Probe *p)
+{
+  const bool point = isfinite(p->x[0]) || isfinite(p->x[1]), over = p->over >= 0,
+             surface = p->surface.side != SIDE_COUNT || p->surface.along.n;
+  const Meter *m     = &p->surface;
+
+  if (point + over + surface > 1)
+    FAIL_AT(GROUP_PROBE, p->name, point ? "at" : "over",
+            "is one of three: a point (at), a region (over), a surface (side or along)");
+  else if (!surface && (m->region >= 0 || isfinite(m->from) || isfinite(m->to)))
+    FAIL_AT(GROUP_PROBE, p->name,
+            m->region >= 0      ? "region"
+            : isfinite(m->from) ? "from"
+                                : "to",
+            "goes with side or along");
+  else if (surface && p->fixed)
+    FAIL_AT(GROUP_PROBE, p->name, "fixed", "goes with at or over: a surface moves with the body");
+  else if (point)
+    CheckPoint(r, c, p);
+  else if (over)
+    CheckOver(r, c, p);
+  else
+    CheckFaces(r, c, GROUP_PROBE, p->name, m);
 }

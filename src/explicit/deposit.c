@@ -189,6 +189,28 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
   }
 }
 
+/* (88): the mean stress in the plane acts through the mean volume change of the particle's cell. */
+INLINE void MeanDilatation(Explicit *e, const Set s, Run r, const Weights *w, Values *v)
+{
+  const int     width = LANES * Rows(A_Count(s)), up = (int)e->m->grid.gm[0], at = A_Mix(s);
+  const double *h = e->m->grid.h;
+
+  for (int q = 0; q < r.n; q++) {
+    const int   *slot = &e->slot[w->first[q] + w->cell[q]], node[4] = {slot[0], slot[1], slot[up], slot[up + 1]};
+    double      *fx = v->force[0][q], *fy = v->force[1][q];
+    const double mean = 0.5 * (fx[at + MIX_FX] + fy[at + MIX_FY]);
+
+    fx[at + MIX_FX] -= mean;
+    fy[at + MIX_FY] -= mean;
+    for (int a = 0; a < 4; a++) {
+      double *row = &e->A[node[a] * width + at];
+
+      row[MIX_FX] += mean * (a % 2 ? 0.5 : -0.5) / h[0];
+      row[MIX_FY] += mean * (a / 2 ? 0.5 : -0.5) / h[1];
+    }
+  }
+}
+
 /* The paper's (60e) per unit of the fluid's volume: V p_p G, by parts; the bare form only. */
 INLINE void WeakForces(Explicit *e, const Set s, Run r, const Weights *w)
 {
@@ -251,6 +273,8 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
+  if (s.solid && e->m->c->mean_dilatation)
+    MeanDilatation(e, s, r, &w, &v);
   if (s.fluids && e->o.particle_pressures) {
     for (int q = 0; q < r.n; q++) {
       for (int k = 0; k < s.fluids; k++)

@@ -47,6 +47,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
+  PetscCall(PetscFree(e->pull));
   PetscCall(PlatesDestroy(e));
   PetscCall(PetscFree(e));
   *out = NULL;
@@ -280,6 +281,7 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   FacesForces(e, dt);
   PetscCall(NodeMapSum(&e->map, e->A, width));
   PetscCall(NodesVelocities(e, t, dt));
+  FacesWork(e, dt);
   PetscCall(PetscLogEventEnd(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -312,6 +314,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   m->status = CL_OK;
   e->latent = e->advected = 0.0;
   e->ahead += dt;
+  PetscCall(PetscArrayzero(e->work, WORK_RATES));
   BcValuesEvaluate(m->c, t + dt, &m->bc);
   if (e->stale)
     PetscCall(NodesRebuild(e));
@@ -322,6 +325,8 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   Update(e, dt);
   PetscCall(PetscLogEventEnd(e->event[STEP_UPDATE], 0, 0, 0, 0));
   sum->heat_source += e->latent - e->advected;
+  for (int k = 0; k < WORK_RATES; k++)
+    sum->work[k] += e->work[k];
   PetscCall(PetscLogEventBegin(e->event[STEP_ORDER], 0, 0, 0, 0));
   Look(e);
   PetscCall(Agree(e, status));

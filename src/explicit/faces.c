@@ -58,6 +58,8 @@ PetscErrorCode FacesBegin(Explicit *e)
       e->face[n++] = e->face[k];
   }
   e->nface = n;
+  PetscCall(PetscFree(e->pull));
+  PetscCall(PetscCalloc1(n, &e->pull));
   PetscCall(PetscFree(stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -126,6 +128,8 @@ void FacesForces(Explicit *e, double dt)
     Reach(e, f, true, &r);
     Inputs(e, f, in);
     Evaluate(e, f, in, dt, &o);
+    for (int d = 0; s.solid && d < CL_DIM; d++)
+      e->pull[k][d] = -o.out[F_VSX + d];
     if (f->plate >= 0)
       PlatesDeposit(e, f, r.n, r.node);
     for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
@@ -139,10 +143,31 @@ void FacesForces(Explicit *e, double dt)
 
       for (int d = 0; d < CL_DIM; d++) {
         if (s.solid)
-          row[A_Mix(s) + MIX_FX + d] -= f->N[a] * o.out[F_VSX + d];
+          row[A_Mix(s) + MIX_FX + d] += f->N[a] * e->pull[k][d];
         for (int ph = 0; ph < s.fluids; ph++)
           row[A_Fluid(s, ph) + FL_GX + d] += f->N[a] * force[ph][d];
       }
+    }
+  }
+}
+
+void FacesWork(Explicit *e, double dt)
+{
+  const Set s     = e->set;
+  const int width = LANES * Rows(B_Count(s));
+
+  for (PetscInt k = 0; s.solid && k < e->nface; k++) {
+    const double *pull = e->pull[k];
+    Nodes         r;
+
+    if (pull[0] == 0.0 && pull[1] == 0.0)
+      continue;
+    Reach(e, &e->face[k], false, &r);
+    for (int a = 0; a < r.n; a++) {
+      const double *b = &e->B[r.node[a] * width];
+
+      for (int d = 0; d < CL_DIM; d++)
+        e->work[WORK_LOADS] += dt * pull[d] * e->face[k].N[a] * b[d];
     }
   }
 }

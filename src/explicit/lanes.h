@@ -161,6 +161,8 @@ struct Explicit {
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
   double latent, advected;          /* J over the step */
   double ahead;                     /* of the end of the step, since ExplicitBegin, s */
+  double work[WORK_RATES];          /* J over the step (92), this rank */
+  double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
   double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
@@ -170,6 +172,7 @@ struct Explicit {
 typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
   int    first[BLOCK]; /* padded number of the lowest left node */
+  int    cell[BLOCK];  /* ... of the particle's cell, from there on */
 } Weights;
 
 /* A run of particles of one material. */
@@ -180,6 +183,19 @@ typedef struct {
 } Run;
 
 void WeightsOf(const Explicit *e, Run r, Weights *w);
+
+/* (88): half of what the mean divergence over a particle's cell is beyond its own; rows of nodal velocities, `width`
+   numbers each, the velocity first. */
+INLINE double MoreDivergence(const Explicit *e, const Weights *w, int q, const double *rows, int width, double own)
+{
+  const int    *slot = &e->slot[w->first[q] + w->cell[q]], up = (int)e->m->grid.gm[0];
+  const double *v[4] = {&rows[slot[0] * width], &rows[slot[1] * width], &rows[slot[up] * width],
+                        &rows[slot[up + 1] * width]};
+  const double *h    = e->m->grid.h;
+
+  return 0.5 * (0.5 * (v[1][0] - v[0][0] + v[3][0] - v[2][0]) / h[0] +
+                0.5 * (v[2][1] - v[0][1] + v[3][1] - v[1][1]) / h[1] - own);
+}
 
 void Deposit(Explicit *e);
 void Rates(Explicit *e, double dt);
@@ -222,6 +238,7 @@ PetscErrorCode NodesVelocities(Explicit *e, double t, double dt); /* A -> B; t a
 PetscErrorCode NodesScalars(Explicit *e, StageRates *r);          /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
+void           FacesWork(Explicit *e, double dt); /* of the tractions, with the new velocities */
 PetscErrorCode FacesBegin(Explicit *e);
 void           FacesPlace(const Explicit *e, Face *f);                               /* where it is now */
 int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */

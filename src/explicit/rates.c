@@ -35,6 +35,17 @@ INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gath
   }
 }
 
+/* (88) */
+INLINE void MeanDilatation(const Explicit *e, const Set s, Run r, const Weights *w, Gathered *g)
+{
+  for (int q = 0; q < r.n; q++) {
+    const double more = MoreDivergence(e, w, q, e->B, LANES * Rows(B_Count(s)), g->dx[q][0] + g->dy[q][1]);
+
+    g->dx[q][0] += more;
+    g->dy[q][1] += more;
+  }
+}
+
 INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
 {
   const int width = 3 * LANES;
@@ -303,6 +314,8 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
 
   WeightsOf(e, r, &w);
   Gather(e, s, r, &w, &g);
+  if (s.solid && e->m->c->mean_dilatation)
+    MeanDilatation(e, s, r, &w, &g);
   Velocities(e, s, r, &g);
   for (int q = 0; q < r.n; q++) {
     for (int k = 0; k < LANES; k++)

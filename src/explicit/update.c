@@ -34,6 +34,19 @@ INLINE void Gather(const Explicit *e, Run r, const Weights *w, Gathered *g)
   }
 }
 
+/* (88) */
+INLINE void MeanDilatation(const Explicit *e, const Set s, Run r, const Weights *w, Gathered *g)
+{
+  const int at = C_Vs(s);
+
+  for (int q = 0; q < r.n; q++) {
+    const double more = MoreDivergence(e, w, q, &e->C[at], LANES, g->dx[q][at] + g->dy[q][at + 1]);
+
+    g->dx[q][at] += more;
+    g->dy[q][at + 1] += more;
+  }
+}
+
 /* Bare form, the paper's (72): increments of pressure from the particle's own balances, with the new temperature. */
 INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
 {
@@ -234,6 +247,55 @@ INLINE void ThermalStrain(const Explicit *e, const Set s, Run r, const Gathered 
   }
 }
 
+/* (92): work of the pressures, trapezoidal, and of the ambient one as the particles of a block expand and move. */
+INLINE void ExpansionWork(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
+{
+  const Ambient *ambient   = &e->m->bc.ambient;
+  double *const *f         = e->m->P.f;
+  const double *restrict V = f[P_V] + r.p;
+  double inside = 0.0, outside = 0.0;
+
+  for (int q = 0; s.fluids && q < r.n; q++) {
+    const PetscInt p   = r.p + q;
+    const double   dpw = g->value[q][0], pw = f[P_PW][p] - 0.5 * dpw;
+    double         mean = pw;
+
+    if (s.fluids == 2) {
+      const double dpg = g->value[q][1], pg = f[P_PG][p] - 0.5 * dpg;
+
+      mean += (e->t[T_SG][p] + 0.5 * e->t[T_DS][p] * (dpg - dpw)) * (pg - pw);
+    }
+    inside += mean * V[q] * (n->J[q] - 1.0);
+  }
+  for (int q = 0; ambient->on && q < r.n; q++) {
+    const double  x[CL_DIM] = {f[P_X][r.p + q], f[P_X + 1][r.p + q]};
+    const double *v         = &g->value[q][C_Vs(s)];
+    double        gradient[CL_DIM];
+
+    outside += V[q] * (AmbientPressure(ambient, x, gradient) * (n->J[q] - 1.0) +
+                       dt * (gradient[0] * v[0] + gradient[1] * v[1]));
+  }
+  e->work[WORK_PRESSURE] += inside;
+  e->work[WORK_LOADS] -= outside;
+}
+
+/* Elastic energy that goes with the stiffness, J. */
+static double Released(const Elasticity *el, const SkeletonBlock *b, const double *restrict V)
+{
+  double sum     = 0.0;
+  bool   changes = false;
+
+  for (int q = 0; q < b->n; q++)
+    changes |= b->E[q] != b->E_n[q];
+  for (int q = 0; changes && q < b->n; q++) {
+    SkeletonHistory h;
+
+    SkeletonTake(&b->store, q, &h);
+    sum += V[q] * SkeletonReleased(el, b->E_n[q], b->E[q], b->kept ? b->kept[q] : 1.0, &h);
+  }
+  return sum;
+}
+
 /* What plastic flow dissipated, J, and the share of it that the next step gives to the nodes as heat. */
 static void PlasticWork(Explicit *e, Run r, const double *work)
 {
@@ -275,6 +337,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .kept    = kept,
                                .work    = yields ? work : NULL,
                                .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
+  e->m->released += Released(el, &block, e->m->P.f[P_V] + r.p);
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
     ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
   if (yields)
@@ -338,6 +401,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     kept[q] = 1.0;
   WeightsOf(e, r, &w);
   Gather(e, r, &w, &g);
+  if (s.solid && e->m->c->mean_dilatation)
+    MeanDilatation(e, s, r, &w, &g);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))
@@ -350,6 +415,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (!StrainOf(s, r.n, &g, dt, &n))
     ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
   CarryGradients(e, s, r, &g, &n, dt);
+  ExpansionWork(e, s, r, &g, &n, dt);
   StressOf(e, s, r, &g, &n, T, kept);
   Deform(e, s, r, &g, dt);
   for (int q = 0; q < r.n; q++)

@@ -92,6 +92,12 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
     ReadBalance(e, a, d, &b);
     const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
     Solve(e, &b, dt, held, value, v);
+    if (!held && e->o.damping > 0.0)
+      e->work[WORK_DAMPING] += e->node[I].own * dt * e->o.damping * fabs(b.f) *
+                               (b.v > 0.0   ? 1.0
+                                : b.v < 0.0 ? -1.0
+                                            : 0.0) *
+                               0.5 * (v[0] + b.v);
     e->inc[6 * I + d] = v[0] - b.v;
     for (int k = 0; k < e->set.fluids; k++)
       e->inc[6 * I + 2 * (1 + k) + d] = v[1 + k] - b.vf[k];
@@ -100,8 +106,37 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
   }
 }
 
+/* (92): works at a node along d with the mean of its velocities v (skeleton, water, gas) before and after. */
+static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const double v[3], double dt)
+{
+  const Set     s = e->set;
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->nplate ? e->push[I] : NULL;
+  const double  scale = e->o.mass_scaling, mean = 0.5 * (v[0] + w->v), gravity = e->m->bc.gravity[d];
+  double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, drag = 0.0, pressure = 0.0,
+         value = 0.0;
+
+  for (int k = 0; k < s.fluids; k++) {
+    const double own = 0.5 * (v[1 + k] + w->vf[k]), share = a[A_Fluid(s, k) + FL_W] / a[A_V(s)];
+    const double flow = share * (own - mean), slip = e->o.drag_implicit ? v[1 + k] - v[0] : w->vf[k] - w->v;
+
+    inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
+    gained += w->m[k] * (v[1 + k] - w->vf[k]);
+    weight += w->m[k] * own;
+    drag += w->B[k] * slip * flow;
+    pressure += a[A_Fluid(s, k) + FL_GX + d] * flow;
+  }
+  e->work[WORK_INERTIA] += scale * inertia;
+  e->work[WORK_GRAVITY] += dt * gravity * weight;
+  e->work[WORK_DRAG] += dt * drag;
+  e->work[WORK_PRESSURE] += dt * pressure;
+  if (push)
+    e->work[WORK_PLATES] += dt * push[d] * v[0];
+  if (e->node[I].held >= 0 && Held(e, I, F_VSX + d, &value) && value != 0.0)
+    e->work[WORK_PLATES] += (scale * gained - dt * w->f) * value;
+}
+
 /* Row that the particles read: own start velocity, the increment, then what is prescribed. */
-static void WriteVelocities(Explicit *e, PetscInt I)
+static void WriteVelocities(Explicit *e, PetscInt I, double dt)
 {
   const Set     s = e->set;
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
@@ -131,6 +166,8 @@ static void WriteVelocities(Explicit *e, PetscInt I)
       bf[B_DV + d]   = v[1 + k] - w.vf[k];
       bf[B_VEL + d]  = v[1 + k];
     }
+    if (s.solid)
+      NodeWork(e, I, d, &w, v, dt);
   }
   for (int k = 0; k < s.fluids; k++)
     b[B_P(s, k)] = a[k] / V;
@@ -163,7 +200,7 @@ PetscErrorCode NodesVelocities(Explicit *e, double t, double dt)
   PetscCall(NodeMapBroadcast(&e->map, e->inc, 6));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     if (Volume(e, I) > 0.0)
-      WriteVelocities(e, I);
+      WriteVelocities(e, I, dt);
     else
       PetscCall(PetscArrayzero(&e->B[I * width], width));
   }

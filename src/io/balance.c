@@ -1,12 +1,33 @@
 /* balance.csv: what the body holds, what went through its boundary, and what is missing. */
 #include "io_private.h"
 
+/* Columns of the mechanical balance (90), in scenes with a solid. */
+typedef enum { OF_RATE, OF_ENERGY, OF_WORK } Source;
+static const struct {
+  const char *name;
+  Source      source;
+  int         place;
+} column[] = {{"kinetic_power_W", OF_RATE, WORK_INERTIA},
+              {"elastic_energy_J", OF_ENERGY, ENERGY_ELASTIC},
+              {"plastic_work_J", OF_ENERGY, ENERGY_PLASTIC},
+              {"plastic_heat_J", OF_WORK, WORK_HEAT},
+              {"gravity_work_J", OF_WORK, WORK_GRAVITY},
+              {"load_work_J", OF_WORK, WORK_LOADS},
+              {"plate_work_J", OF_WORK, WORK_PLATES},
+              {"pressure_work_J", OF_WORK, WORK_PRESSURE},
+              {"drag_work_J", OF_WORK, WORK_DRAG},
+              {"damping_work_J", OF_WORK, WORK_DAMPING},
+              {"elastic_released_J", OF_WORK, WORK_RELEASED},
+              {"kinetic_lost_J", OF_WORK, WORK_LOST},
+              {"energy_remainder_J", OF_WORK, WORK_REMAINDER}};
+
 void BalanceHeader(const Case *c, FILE *f)
 {
-  fprintf(f,
-          "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
-          "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J%s\n",
-          c->nstage ? ",stage" : "");
+  fprintf(f, "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
+             "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J");
+  for (size_t k = 0; c->fields.solid && k < sizeof(column) / sizeof(*column); k++)
+    fprintf(f, ",%s", column[k].name);
+  fprintf(f, "%s\n", c->nstage ? ",stage" : "");
 }
 
 /* Relative to the initial store; absolute where there was none. */
@@ -15,9 +36,18 @@ static double Relative(double missing, double store)
   return store > 0.0 ? missing / store : missing;
 }
 
-static PetscErrorCode WriteRow(Output *out, const Case *c, const StepperState *s, const StepInfo *info,
+static void WriteEnergies(const Model *m, const StepperState *s, FILE *f)
+{
+  const double *from[] = {[OF_RATE] = m->rates.work, [OF_ENERGY] = s->energy, [OF_WORK] = s->work};
+
+  for (size_t k = 0; m->c->fields.solid && k < sizeof(column) / sizeof(*column); k++)
+    fprintf(f, ",%.17g", from[column[k].source][column[k].place]);
+}
+
+static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, const StepInfo *info,
                                const ModelTotals *now)
 {
+  const Case  *c       = m->c;
   const double water   = Relative(now->water + s->out[PHASE_W] - s->water0, s->water0);
   const double methane = Relative(now->methane + s->out[PHASE_G] - s->methane0, s->methane0);
   const double heat    = Relative(s->heat_gain - s->heat_in - s->heat_source, s->capacity0 * 1.0); /* of 1 K */
@@ -32,6 +62,7 @@ static PetscErrorCode WriteRow(Output *out, const Case *c, const StepperState *s
   fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
   fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
   fprintf(f, ",%.17g", now->kinetic);
+  WriteEnergies(m, s, f);
   if (c->nstage)
     fprintf(f, ",%" PetscInt_FMT, s->stage + 1);
   fprintf(f, "\n");
@@ -47,7 +78,7 @@ PetscErrorCode OutputBalance(Output *out, const Model *m, const StepperState *s,
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(m, &now));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out, m->c, s, info, &now);
+    ierr = WriteRow(out, m, s, info, &now);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -90,10 +90,37 @@ void           TablesClose(Output *out);
 
 /* ---------------------------------------------------------------- probes.c, balance.c, meters.c: header lines, rank 0
  */
-void ProbesHeader(const Case *c, FILE *f);
-void BalanceHeader(const Case *c, FILE *f);
-void MetersHeader(const Case *c, FILE *f);
-bool MetersWanted(const Model *m); /* is there anything to write? */
+/* Columns of a probe that others name: in the order of the table in probes.c. */
+enum {
+  PROBE_P    = 0,
+  PROBE_PW   = 1, /* p_w, p_g, T */
+  PROBE_SG   = 6,
+  PROBE_X    = 13,
+  PROBE_MEAN = 16,
+  PROBE_Q,
+  PROBE_SHEAR = 19,
+  PROBE_MARGIN,
+  PROBE_YIELDS,
+  PROBE_COUNT
+};
+bool   ProbeWanted(const Case *c, int q);
+double ProbeQuantity(const Model *m, PetscInt p, int q);
+/* derived.c: mean effective stress, compression-positive, or sqrt(3 J2), Pa; deviatoric logarithmic strain
+   sqrt(2/3 dev e : dev e) since the start; distance to yield, Pa (NaN for a particle that cannot). */
+double DerivedStress(const Particles *P, PetscInt p, bool deviator);
+double DerivedShear(const Case *c, const Particles *P, PetscInt p);
+double DerivedMargin(const Model *m, PetscInt p);
+/* means.c: is this probe one?  This rank's sums of weights times values, and of weights (m^3 or m^2), of all that are.
+ */
+static inline bool ProbeIsMean(const Probe *p)
+{
+  return !isfinite(p->x[0]);
+}
+PetscErrorCode MeansAdd(const Model *m, double value[][PROBE_COUNT], double *weight);
+void           ProbesHeader(const Case *c, FILE *f);
+void           BalanceHeader(const Case *c, FILE *f);
+void           MetersHeader(const Case *c, FILE *f);
+bool           MetersWanted(const Model *m); /* is there anything to write? */
 
 /* Stages may take seconds after years: their times are told apart to the last digit. */
 static inline void IoTime(const Case *c, FILE *f, double t)

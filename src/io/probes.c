@@ -1,32 +1,35 @@
-/* probes.csv: affine least-squares values at points of the body or of space. */
+/* probes.csv: affine least-squares values at points of the body or of space, and means (means.c). */
 #include "io_private.h"
 
 /* A column, the quantity it belongs to, and the component of the store that holds it (-1: computed). */
-enum { Q_P = 0, Q_SG = 6, Q_MEAN = 16, Q_Q, Q_COUNT };
 static const struct {
   const char *name;
   unsigned    has; /* fields it goes with */
   int         quantity, component;
-} column[Q_COUNT] = {[Q_P] = {"p_Pa", HAS_WATER, QUANTITY_P, -1},
-                     {"p_w_Pa", HAS_WATER, QUANTITY_PW, P_PW},
-                     {"p_g_Pa", HAS_GAS_PRESSURE, QUANTITY_PG, P_PG},
-                     {"T_degC", HAS_HEAT, QUANTITY_T, P_T},
-                     {"S_h", HAS_ALL, QUANTITY_SH, P_SH},
-                     {"S_w", HAS_WATER, QUANTITY_SW, P_SW},
-                     [Q_SG] = {"S_g", HAS_GAS, QUANTITY_SG, -1},
-                     {"u_x_m", HAS_SOLID, QUANTITY_U, P_U},
-                     {"u_y_m", HAS_SOLID, QUANTITY_U, P_U + 1},
-                     {"sxx_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG},
-                     {"syy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 1},
-                     {"szz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 2},
-                     {"sxy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 3},
-                     {"x_m", HAS_ALL, QUANTITY_X, P_X},
-                     {"y_m", HAS_ALL, QUANTITY_X, P_X + 1},
-                     {"eps_d_p", HAS_PLASTIC, QUANTITY_EPS, P_EPS},
-                     [Q_MEAN] = {"p_eff_Pa", HAS_PLASTIC, QUANTITY_MEAN, -1},
-                     [Q_Q]    = {"q_Pa", HAS_PLASTIC, QUANTITY_Q, -1}};
+} column[PROBE_COUNT] = {[PROBE_P] = {"p_Pa", HAS_WATER, QUANTITY_P, -1},
+                         {"p_w_Pa", HAS_WATER, QUANTITY_PW, P_PW},
+                         {"p_g_Pa", HAS_GAS_PRESSURE, QUANTITY_PG, P_PG},
+                         {"T_degC", HAS_HEAT, QUANTITY_T, P_T},
+                         {"S_h", HAS_ALL, QUANTITY_SH, P_SH},
+                         {"S_w", HAS_WATER, QUANTITY_SW, P_SW},
+                         [PROBE_SG] = {"S_g", HAS_GAS, QUANTITY_SG, -1},
+                         {"u_x_m", HAS_SOLID, QUANTITY_U, P_U},
+                         {"u_y_m", HAS_SOLID, QUANTITY_U, P_U + 1},
+                         {"sxx_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG},
+                         {"syy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 1},
+                         {"szz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 2},
+                         {"sxy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 3},
+                         {"x_m", HAS_ALL, QUANTITY_X, P_X},
+                         {"y_m", HAS_ALL, QUANTITY_X, P_X + 1},
+                         {"eps_d_p", HAS_PLASTIC, QUANTITY_EPS, P_EPS},
+                         [PROBE_MEAN] = {"p_eff_Pa", HAS_PLASTIC, QUANTITY_MEAN, -1},
+                         [PROBE_Q]    = {"q_Pa", HAS_PLASTIC, QUANTITY_Q, -1},
+                         {"eps_v", HAS_PLASTIC, QUANTITY_STRAIN, P_LOGJ},
+                         [PROBE_SHEAR]  = {"eps_d", HAS_PLASTIC, QUANTITY_STRAIN, -1},
+                         [PROBE_MARGIN] = {"yield_distance_Pa", HAS_PLASTIC, QUANTITY_YIELD, -1},
+                         [PROBE_YIELDS] = {"yields", HAS_PLASTIC, QUANTITY_YIELD, -1}};
 
-static bool Wanted(const Case *c, int q)
+bool ProbeWanted(const Case *c, int q)
 {
   return (c->fields.has & column[q].has) && (c->quantities == 0 || ((c->quantities >> column[q].quantity) & 1u));
 }
@@ -49,8 +52,8 @@ void ProbesHeader(const Case *c, FILE *f)
 {
   fprintf(f, "time_s");
   for (PetscInt k = 0; k < c->nprobe; k++) {
-    for (int q = 0; q < Q_COUNT; q++) {
-      if (Wanted(c, q))
+    for (int q = 0; q < PROBE_COUNT; q++) {
+      if (ProbeWanted(c, q))
         fprintf(f, ",%s.%s", c->probe[k].name, column[q].name);
     }
   }
@@ -125,22 +128,32 @@ static void Solve(Fit *f, const double M[M_COUNT])
   }
 }
 
-static double Quantity(const Particles *P, PetscInt p, int q)
+double ProbeQuantity(const Model *m, PetscInt p, int q)
 {
+  const Particles *P = &m->P;
+
   if (column[q].component >= 0)
     return P->f[column[q].component][p];
-  if (q == Q_MEAN || q == Q_Q) {
-    double s[6];
-
-    for (int k = 0; k < 6; k++)
-      s[k] = P->f[P_SIG + k][p];
-    return q == Q_Q ? Mises6(s) : -Trace6(s) / 3.0;
+  switch (q) {
+  case PROBE_P:
+    return MeanPressure(P, p);
+  case PROBE_SG:
+    return GasSaturation(P, p);
+  case PROBE_SHEAR:
+    return DerivedShear(m->c, P, p);
+  case PROBE_MARGIN:
+    return DerivedMargin(m, p);
+  case PROBE_YIELDS:
+    return P->f[P_YIELD][p] != (double)RETURN_ELASTIC;
+  default:
+    return DerivedStress(P, p, q == PROBE_Q);
   }
-  return q == Q_P ? MeanPressure(P, p) : GasSaturation(P, p);
 }
 
-static void AddValues(const Case *c, const Fit *f, const Particles *P, double value[Q_COUNT])
+static void AddValues(const Model *m, const Fit *f, double value[PROBE_COUNT])
 {
+  const Particles *P = &m->P;
+
   for (PetscInt p = 0; p < P->n; p++) {
     double       d[CL_DIM];
     const double w = Weight(f, P, p, d);
@@ -149,9 +162,9 @@ static void AddValues(const Case *c, const Fit *f, const Particles *P, double va
       continue;
     const double share = w / f->total * (1.0 - f->g[0] * (d[0] - f->mean[0]) - f->g[1] * (d[1] - f->mean[1]));
 
-    for (int q = 0; q < Q_COUNT; q++) {
-      if (Wanted(c, q))
-        value[q] += share * Quantity(P, p, q);
+    for (int q = 0; q < PROBE_COUNT; q++) {
+      if (ProbeWanted(m->c, q))
+        value[q] += share * ProbeQuantity(m, p, q);
     }
   }
 }
@@ -171,12 +184,14 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
     for (PetscInt k = 0; k < c->nprobe; k++) {
       fit[k] = (Fit){.x = {c->probe[k].x[0], c->probe[k].x[1]}, .fixed = c->probe[k].fixed};
       Reach(c, &m->grid, out->reach[k], fit[k].reach);
+      if (ProbeIsMean(&c->probe[k]))
+        continue;
       AddMoments(&fit[k], &m->P, M + k * M_COUNT);
     }
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, M, (PetscMPIInt)(c->nprobe * M_COUNT), MPI_DOUBLE, MPI_SUM, m->grid.comm));
     for (PetscInt k = 0; k < c->nprobe; k++) {
       Solve(&fit[k], M + k * M_COUNT);
-      if (fit[k].total > 0.0 || fit[k].fixed)
+      if (fit[k].total > 0.0 || fit[k].fixed || ProbeIsMean(&c->probe[k]))
         continue;
       out->reach[k] *= 2.0;
       again = true;
@@ -194,11 +209,11 @@ static PetscErrorCode WriteRow(Output *out, const Case *c, double t, const Fit *
   PetscCall(RowBegin(out, &f));
   IoTime(c, f, t);
   for (PetscInt k = 0; k < n; k++) {
-    for (int q = 0; q < Q_COUNT; q++) {
-      if (!Wanted(c, q))
+    for (int q = 0; q < PROBE_COUNT; q++) {
+      if (!ProbeWanted(c, q))
         continue;
       if (fit[k].total > 0.0)
-        fprintf(f, ",%.12e", value[k * Q_COUNT + q]);
+        fprintf(f, ",%.12e", value[k * PROBE_COUNT + q]);
       else
         fprintf(f, ",nan");
     }
@@ -213,15 +228,27 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
   const PetscInt n    = m->c->nprobe;
   PetscErrorCode ierr = PETSC_SUCCESS;
   Fit           *fit;
-  double        *value;
+  double        *value, *weight; /* weight: of means, behind the values of all */
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &fit));
-  PetscCall(PetscCalloc1(n * Q_COUNT, &value));
+  PetscCall(PetscCalloc1(n * (PROBE_COUNT + 1), &value));
+  weight = value + n * PROBE_COUNT;
   PetscCall(FitAll(out, m, fit));
-  for (PetscInt k = 0; k < n; k++)
-    AddValues(m->c, &fit[k], &m->P, value + k * Q_COUNT);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * Q_COUNT), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  for (PetscInt k = 0; k < n; k++) {
+    if (!ProbeIsMean(&m->c->probe[k]))
+      AddValues(m, &fit[k], value + k * PROBE_COUNT);
+  }
+  PetscCall(MeansAdd(m, (double(*)[PROBE_COUNT])value, weight));
+  PetscCallMPI(
+      MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * (PROBE_COUNT + 1)), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  for (PetscInt k = 0; k < n; k++) {
+    if (!ProbeIsMean(&m->c->probe[k]))
+      continue;
+    fit[k].total = weight[k];
+    for (int q = 0; q < PROBE_COUNT; q++)
+      value[k * PROBE_COUNT + q] /= weight[k] > 0.0 ? weight[k] : 1.0;
+  }
   if (m->grid.rank == 0)
     ierr = WriteRow(out, m->c, s->t, fit, n, value);
   PetscCall(IoAgree(m->grid.comm, ierr));

@@ -11,10 +11,13 @@ const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VSX, 2}, {"v_w", "m/s", F_VWX
                                   {"p_w", "Pa", F_PW, 1},   {"p_g", "Pa", F_PG, 1},   {"T", "degC", F_T, 1},
                                   {NULL, NULL, 0, 0}};
 
-enum { X_P = 0, X_SG, X_REGION, X_ID, X_VERTEX };
-const ExtraVariable io_extra[] = {[X_P] = {"p", "Pa", false, HAS_WATER},       [X_SG] = {"S_g", "-", false, HAS_GAS},
-                                  [X_REGION] = {"region", "-", true, HAS_ALL}, [X_ID] = {"id", "-", true, HAS_ALL},
-                                  [X_VERTEX] = {"vertex", "-", true, HAS_ALL}, {NULL, NULL, false, 0}};
+enum { X_P = 0, X_SG, X_MEAN, X_Q, X_SHEAR, X_MARGIN, X_REGION, X_ID, X_VERTEX };
+const ExtraVariable io_extra[] = {
+    [X_P] = {"p", "Pa", false, HAS_WATER},          [X_SG] = {"S_g", "-", false, HAS_GAS},
+    [X_MEAN] = {"p_eff", "Pa", false, HAS_PLASTIC}, [X_Q] = {"q", "Pa", false, HAS_PLASTIC},
+    [X_SHEAR] = {"eps_d", "-", false, HAS_PLASTIC}, [X_MARGIN] = {"yield_distance", "Pa", false, HAS_PLASTIC},
+    [X_REGION] = {"region", "-", true, HAS_ALL},    [X_ID] = {"id", "-", true, HAS_ALL},
+    [X_VERTEX] = {"vertex", "-", true, HAS_ALL},    {NULL, NULL, false, 0}};
 
 typedef struct {
   hid_t          file, group; /* rank 0 */
@@ -40,6 +43,22 @@ static PetscErrorCode StartFile(Writer *w, const StepperState *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static double Extra(const Model *m, PetscInt p, int k)
+{
+  switch (k) {
+  case X_P:
+    return MeanPressure(&m->P, p);
+  case X_SG:
+    return GasSaturation(&m->P, p);
+  case X_SHEAR:
+    return DerivedShear(m->c, &m->P, p);
+  case X_MARGIN:
+    return DerivedMargin(m, p);
+  default:
+    return DerivedStress(&m->P, p, k == X_Q);
+  }
+}
+
 static PetscErrorCode WriteExtra(Writer *w, const Model *m, Gather *g)
 {
   const Particles *P       = &m->P;
@@ -55,7 +74,7 @@ static PetscErrorCode WriteExtra(Writer *w, const Model *m, Gather *g)
     if (!(P->has & v->has))
       continue;
     for (PetscInt p = 0; p < P->n && !v->integer; p++)
-      local[p] = k == X_P ? MeanPressure(P, p) : GasSaturation(P, p);
+      local[p] = Extra(m, p, k);
     if (!v->integer)
       PetscCall(GatherReals(g, local, 1, g->data));
     else if (k == X_REGION)

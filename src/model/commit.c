@@ -91,6 +91,8 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
     for (int a = 0; a < r.n; a++)
       sum += m->face[k].N[a];
     ModelCountFace(m->c, &m->face[k], sum, &o, rates);
+    if (m->c->fields.solid)
+      FacePower(m, &m->face[k], &r, x, &o, rates->work);
   }
 }
 
@@ -198,11 +200,17 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       PlasticState(p, &s.skeleton, trial);
     if (m->c->fields.heat)
       HeatRates(m, &r, x, o.out, rates);
+    if (m->c->fields.solid)
+      ParticlePower(m, p, &r, x, in, &s, o.out, rates->work);
   }
   PetscCall(KeepBalance(m, trial->m));
   if (m->c->fields.one_pressure)
     CheckShares(m, x, trial->m);
   BoundaryRates(m, x, rates);
+  if (m->c->fields.solid) {
+    rates->work[WORK_PLATES] += HeldPower(m);
+    rates->work[WORK_DAMPING] += GhostPower(m, x);
+  }
   PetscCall(PlatesReport(m, x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   m->rates = *rates;
@@ -260,6 +268,20 @@ static void Forward(const PointState *s, const double G[CL_DIM], double g[CL_DIM
   g[1] = (F[0][0] * G[1] - F[0][1] * G[0]) / det;
 }
 
+/* Elastic energy that went with the stiffness in this step. */
+static double Released(const Model *m, PetscInt p, const PointState *s)
+{
+  const Elasticity   *el    = &ParticleMaterial(m, p)->elasticity;
+  const SkeletonStore store = ParticlesSkeleton(&m->P, 0, 0.0);
+  const double        old   = m->P.f[P_MH][p];
+  SkeletonHistory     h;
+  double              dE;
+
+  SkeletonTake(&store, p, &h);
+  return s->V * SkeletonReleased(el, ElasticityYoung(el, m->P.f[P_SH][p], &dE), ElasticityYoung(el, s->Sh, &dE),
+                                 s->m_h < old ? s->m_h / old : 1.0, &h);
+}
+
 static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
                          const PointState *s)
 {
@@ -296,6 +318,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
 
   PetscFunctionBeginUser;
   PetscCall(ModelProjectGradients(m, x, m->proj));
+  m->released = 0.0;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  s;
@@ -313,6 +336,8 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
       for (int k = 0; k < 5; k++)
         m->P.f[P_KP + k][p] = trial->k[5 * p + k];
     }
+    if (m->c->fields.solid)
+      m->released += Released(m, p, &s);
     WriteHistory(m, p, x, &r, in, &s);
   }
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));

@@ -3,16 +3,36 @@
 
 #include "clathra/model.h"
 
-/* A particle's nodes with their values; H only about an axis. */
+/* A particle's nodes with their values; H only about an axis; B (88) only with mean dilatation, else zero. */
 typedef struct {
   int      n;
   PetscInt node[CL_NODES];
-  double   S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
+  double   S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES], B[CL_NODES][CL_DIM];
 } Reach;
+
+/* (88) */
+static inline void MeanDilatation(const Model *m, PetscInt p, Reach *r)
+{
+  const Stencil *s            = &m->stencil[p];
+  const PetscInt cell[CL_DIM] = {s->axis[0].base + s->cell[0], s->axis[1].base + s->cell[1]};
+  const double radius = m->grid.lower[0] + (double)cell[0] * m->grid.h[0], share = m->c->axisymmetric ? 1.0 / 3.0 : 0.5;
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt i[CL_DIM] = {m->map.ij[r->node[a]][0] - cell[0], m->map.ij[r->node[a]][1] - cell[1]};
+
+    CellDilatation(&m->grid, m->c->axisymmetric, i, radius, r->B[a]);
+    for (int d = 0; d < CL_DIM; d++)
+      r->B[a][d] = share * (r->B[a][d] - r->G[a][d]);
+    if (m->c->axisymmetric)
+      r->B[a][0] -= share * r->H[a];
+  }
+}
 
 static inline void ReachExpand(const Model *m, PetscInt p, Reach *r)
 {
   r->n = StencilExpand(&m->stencil[p], &m->grid, &m->map, r->node, r->S, r->G, r->H);
+  if (m->c->mean_dilatation)
+    MeanDilatation(m, p, r);
 }
 
 /* Weights that carry the particle's middle along: S in the plane, the plain average about an axis. */
@@ -89,7 +109,9 @@ static inline double NodeVolume(const Model *m, PetscInt I)
 static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const double *x, const double *N,
                                double in[IN_COUNT])
 {
-  const int n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
+  const int  n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
+  const bool mean = m->c->mean_dilatation;
+  double     more = 0.0;
 
   for (int a = 0; a < r->n; a++) {
     const double *v = &x[r->node[a] * n + vs], *us = &m->stage.u_star[r->node[a] * CL_DIM], *G = r->G[a];
@@ -101,9 +123,15 @@ static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const
     }
     if (m->c->axisymmetric)
       in[IN_HOOP] += u[0] * r->H[a];
+    if (mean)
+      more += u[0] * r->B[a][0] + u[1] * r->B[a][1];
     for (int i = 0; i < 2; i++)
       in[IN_U + i] += (N ? N[a] : MotionWeight(m, p, r, a)) * u[i];
   }
+  in[IN_GRADU] += more;
+  in[IN_GRADU + 3] += more;
+  if (m->c->axisymmetric)
+    in[IN_HOOP] += more;
 }
 
 /* Darcy flux of a fluid at a node (19). */
@@ -266,5 +294,13 @@ void           PlatesMark(Model *m, const double *x);
 bool           PlatesCouple(const Model *m);
 PetscErrorCode PlatesMult(const Model *m, const double *x, double *f);
 PetscErrorCode PlatesReport(Model *m, const double *x);
+/* Powers (91) of a particle, of a face with what it adds to its nodes, of prescribed motion (this rank's nodes), W; a
+   scene with a solid. */
+void           ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
+                             const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES]);
+void           FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
+                         double power[WORK_RATES]);
+double         HeldPower(const Model *m);
+double         GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
 PetscErrorCode WideCreate(Model *m, Mat *A);
 PetscErrorCode ModelResizeNodal(Model *m);

@@ -4,7 +4,7 @@
 /* One node as a particle or face sees it; NS and NU stand for S in the Darcy fluxes and in the displacement. */
 typedef struct {
   double        S, NS, NU, H;
-  const double *G, *w;
+  const double *G, *w, *B; /* B: null without mean dilatation */
 } NodeWeights;
 
 /* d out/d(unknowns of one node): one row of D times d in/d x. */
@@ -20,6 +20,8 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
       col[vs + i] = dt * (D[IN_GRADU + 2 * i] * G[0] + D[IN_GRADU + 2 * i + 1] * G[1] + D[IN_U + i] * b->NU);
     if (axisymmetric)
       col[vs] += dt * D[IN_HOOP] * b->H;
+    for (int i = 0; b->B && i < 2; i++)
+      col[vs + i] += dt * (D[IN_GRADU] + D[IN_GRADU + 3] + (axisymmetric ? D[IN_HOOP] : 0.0)) * b->B[i];
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
@@ -68,7 +70,8 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
 
 /* Rows of node a against the columns DB of node b (b's block starts at *out, row length ld). */
 static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int n, const NodeFactors *k, double dt,
-                        double S, const double *G, double H, double DB[OUT_COUNT][F_COUNT], double *out, int ld)
+                        double S, const double *G, double H, const double *B, double DB[OUT_COUNT][F_COUNT],
+                        double *out, int ld)
 {
   for (int i = 0; fs->solid && i < 2; i++) {
     double *row = &out[(PlaceVs(fs) + i) * ld];
@@ -83,6 +86,8 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
       row[q] += S * DB[OUT_A + i][q];
     for (int q = 0; axisymmetric && i == 0 && q < n; q++)
       row[q] += H * DB[OUT_HOOP][q];
+    for (int q = 0; B && q < n; q++)
+      row[q] += B[i] * (DB[OUT_P][q] + DB[OUT_P + 3][q] + (axisymmetric ? DB[OUT_HOOP][q] : 0.0));
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
@@ -196,6 +201,7 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
                             .NU = MotionWeight(m, p, r, b),
                             .H  = axisymmetric ? r->H[b] : 0.0,
                             .G  = r->G[b],
+                            .B  = m->c->mean_dilatation ? r->B[b] : NULL,
                             .w  = &m->w[2 * r->node[b]]};
     double            DB[OUT_COUNT][F_COUNT];
 
@@ -204,7 +210,8 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
     for (int a = 0; a < r->n; a++) {
       double *out = &block[(a * ld + b) * n];
 
-      Rows(fs, axisymmetric, ambient, n, &factor[a], dt, r->S[a], r->G[a], axisymmetric ? r->H[a] : 0.0, DB, out, ld);
+      Rows(fs, axisymmetric, ambient, n, &factor[a], dt, r->S[a], r->G[a], axisymmetric ? r->H[a] : 0.0,
+           m->c->mean_dilatation ? r->B[a] : NULL, DB, out, ld);
       if (a == b)
         Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, out, ld);
     }
@@ -290,6 +297,7 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
                             .NU = face->N[b],
                             .H  = m->c->axisymmetric ? r->H[b] : 0.0,
                             .G  = r->G[b],
+                            .B  = m->c->mean_dilatation ? r->B[b] : NULL,
                             .w  = &m->w[2 * r->node[b]]};
 
     for (int k = 0; k < F_COUNT; k++) {

@@ -110,10 +110,11 @@ PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of the phases of a particle; m: skeleton with hydrate, water, gas. */
-static double KineticEnergy(const Particles *P, PetscInt p, const double m[3])
+double ModelKineticEnergy(const Particles *P, PetscInt p)
 {
-  double sum = 0.0;
+  const double m[3] = {P->f[P_MS][p] + P->f[P_MH][p], P->f[P_MW] ? P->f[P_MW][p] : 0.0,
+                       P->f[P_MG] ? P->f[P_MG][p] : 0.0};
+  double       sum  = 0.0;
 
   for (int k = 0; k < 3; k++) {
     const int v = P_VS + k * CL_DIM;
@@ -143,7 +144,7 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
     sum[4] += m->P.f[P_V][p];
     sum[6] += mg;
     sum[5] += ms * mat->c_s + mh * mat->c_h + mw * mat->c_w + mg * mat->c_g;
-    sum[7] += KineticEnergy(&m->P, p, (const double[3]){ms + mh, mw, mg});
+    sum[7] += ModelKineticEnergy(&m->P, p);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   *t = (ModelTotals){.water    = sum[0],

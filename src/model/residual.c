@@ -55,7 +55,8 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
 /* Rows (15) of the mixture from one particle; those of the fluids lend it their inertia. */
 static void ScatterSolid(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
 {
-  const FieldSet *fs = &m->c->fields;
+  const FieldSet *fs   = &m->c->fields;
+  const double    mean = out[OUT_P] + out[OUT_P + 3] + (m->c->axisymmetric ? out[OUT_HOOP] : 0.0);
 
   for (int a = 0; a < r->n; a++) {
     const double *G  = r->G[a];
@@ -77,6 +78,8 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
       fI[i] += r->S[a] * out[OUT_A + i];
     if (m->c->axisymmetric)
       fI[0] += r->H[a] * out[OUT_HOOP];
+    for (int i = 0; m->c->mean_dilatation && i < 2; i++)
+      fI[i] += r->B[a][i] * mean;
   }
 }
 

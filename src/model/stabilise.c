@@ -260,6 +260,25 @@ static void GhostResidual(const Model *m, const GhostLine *g, const double *x, d
   }
 }
 
+double GhostPower(const Model *m, const double *x)
+{
+  const FieldSet *fs    = &m->c->fields;
+  double          power = 0.0;
+
+  for (PetscInt k = 0; k < m->nghost; k++) {
+    const GhostLine *g = &m->ghost[k];
+
+    for (int d = 0; d < CL_DIM; d++) {
+      double jump = 0.0;
+
+      for (int a = 0; a < 3; a++)
+        jump += second[a] * x[g->node[a] * fs->n + PlaceVs(fs) + d];
+      power += g->a * g->M * m->stage.dt * jump * jump;
+    }
+  }
+  return power;
+}
+
 static void ProjectionResidual(const Model *m, const ProjectionCell *c, const double *x, double *f)
 {
   const FieldSet *fs    = &m->c->fields;

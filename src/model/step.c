@@ -41,6 +41,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
         BasisRadius(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s->axis[d], s->hoop, &s->r);
       else
         BasisAxis(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s->axis[d]);
+      s->cell[d] = BasisCell((x - g->lower[d]) / g->h[d], (double)s->axis[d].base, (double)g->cells[d]);
     }
     if (!InsideGrid(g, s)) {
       ModelNoteFailure(m, CL_LEFT_GRID, "a particle's domain leaves the background grid", p);

@@ -26,7 +26,8 @@ PetscErrorCode PrintStrength(const Case *c, MPI_Comm comm)
 
 /* Over all particles of the scene. */
 typedef struct {
-  double all, yield, apex, work, eps;
+  double all, yield, apex, work, behind; /* behind: sum of eps_d_p of those at the apex */
+  double eps, torn;                      /* largest eps_d_p, and of those at the apex */
 } Yielding;
 
 static PetscErrorCode Count(const Model *m, Yielding *y)
@@ -42,9 +43,13 @@ static PetscErrorCode Count(const Model *m, Yielding *y)
     y->apex += at == (double)RETURN_APEX;
     y->work += P->f[P_WP][p];
     y->eps = fmax(y->eps, P->f[P_EPS][p]);
+    if (at == (double)RETURN_APEX) {
+      y->behind += P->f[P_EPS][p];
+      y->torn = fmax(y->torn, P->f[P_EPS][p]);
+    }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &y->all, 4, MPI_DOUBLE, MPI_SUM, m->grid.comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &y->eps, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &y->all, 5, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &y->eps, 2, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,7 +64,8 @@ PetscErrorCode YieldText(const Model *m, char text[128])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Count(m, &y));
   if (y.apex > TEARING * y.all)
-    PetscCall(PetscSNPrintf(tears, sizeof(tears), ", %.0f at the apex (tearing)", y.apex));
+    PetscCall(PetscSNPrintf(tears, sizeof(tears), ", %.0f at the apex (tearing; eps_d_p %.2g, up to %.2g)", y.apex,
+                            y.behind / y.apex, y.torn));
   if (y.yield > 0.0)
     PetscCall(PetscSNPrintf(text, 128, ", %.0f particles yield%s", y.yield, tears));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -67,6 +73,7 @@ PetscErrorCode YieldText(const Model *m, char text[128])
 
 PetscErrorCode YieldSummary(const Model *m, char text[256])
 {
+  char     tears[64] = "";
   Yielding y;
 
   PetscFunctionBeginUser;
@@ -74,10 +81,12 @@ PetscErrorCode YieldSummary(const Model *m, char text[256])
   if (!m->P.f[P_YIELD])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Count(m, &y));
+  if (y.apex > 0.0)
+    PetscCall(PetscSNPrintf(tears, sizeof(tears), " (eps_d_p %.2g, up to %.2g)", y.behind / y.apex, y.torn));
   PetscCall(
       PetscSNPrintf(text, 256,
-                    "  plastic: %.0f of %.0f particles yield at the end, %.0f at the apex; eps_d_p up to %.3g, %.6g "
+                    "  plastic: %.0f of %.0f particles yield at the end, %.0f at the apex%s; eps_d_p up to %.3g, %.6g "
                     "J dissipated\n",
-                    y.yield, y.all, y.apex, y.eps, y.work));
+                    y.yield, y.all, y.apex, tears, y.eps, y.work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

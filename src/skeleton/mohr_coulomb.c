@@ -108,6 +108,19 @@ static bool Yields(const Plasticity *law, double Sh, double eps, double nonlocal
   return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > StrengthCutoff(law) + round_off;
 }
 
+/* - F of (63), or what is left to the tension cut-off. */
+double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory *h)
+{
+  const Plasticity *law = &mat->plasticity;
+  Principal         p;
+  Strength          k;
+  double            dy[3], dphi;
+
+  PrincipalOf(h->sig, &p);
+  StrengthOf(law, Sh, h->from.own[OWN_P_EPS], h->nonlocal, &k);
+  return fmin(-MohrCoulombYield(k.phi, k.c, p.y, dy, &dphi), StrengthCutoff(law) - p.y[0]);
+}
+
 static bool ReturnToYield(const Trial3 *t, bool slopes, Returned *r)
 {
   return t->law->flow == FLOW_MOHR_COULOMB ? ReturnPlanes(t, slopes, r) : ReturnSmooth(t, slopes, r);

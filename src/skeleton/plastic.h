@@ -40,9 +40,10 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r); /* flow: mohr_coul
 /* To the apex c/tan(phi); false if the trial state lies more than `slack`, Pa, below it. */
 bool ReturnApex(const Trial3 *t, double slack, bool slopes, Returned *r);
 
-bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
-                        SkeletonTangent *t, const char **why);
-bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why);
+bool   Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
+                          SkeletonTangent *t, const char **why);
+double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory *h);
+bool   Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why);
 
 /* sqrt(2/3 dev x : dev x) of principal values, and its slopes. */
 double DeviatoricNorm(const double x[3], double dx[3]);

@@ -74,9 +74,12 @@ bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why
 }
 
 /* By PLASTICITY_... */
-static const SkeletonLaw laws[] = {
-    {.name = "none", .update = Update_Elastic, .block = Block_Elastic},
-    {.name = "mohr_coulomb", .has = HAS_PLASTIC, .update = Update_MohrCoulomb, .block = Block_MohrCoulomb}};
+static const SkeletonLaw laws[] = {{.name = "none", .update = Update_Elastic, .block = Block_Elastic},
+                                   {.name   = "mohr_coulomb",
+                                    .has    = HAS_PLASTIC,
+                                    .update = Update_MohrCoulomb,
+                                    .block  = Block_MohrCoulomb,
+                                    .margin = Margin_MohrCoulomb}};
 
 const SkeletonLaw *SkeletonLawOf(const Material *mat)
 {

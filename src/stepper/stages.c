@@ -85,5 +85,6 @@ PetscErrorCode StepperNextStage(Stepper *s)
   z->kind    = 0; /* auto chooses anew */
   if (s->model->c->stage[z->stage].reset)
     ResetDisplacement(s);
+  PetscCall(StepperEnergyChange(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,6 +22,7 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
   s->state.water0    = t.water;
   s->state.methane0  = t.methane;
   s->state.capacity0 = t.capacity;
+  PetscCall(StepperEnergyStart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,6 +144,8 @@ void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt
     for (int q = 0; q < METER_COUNT; q++)
       a->meter[k][q] += weight * rates->meter[k][q];
   }
+  for (int k = 0; k < WORK_RATES; k++)
+    a->work[k] += weight * rates->work[k];
 }
 
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
@@ -167,6 +170,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
     for (int q = 0; q < METER_COUNT; q++)
       z->meter[k][q] += a->meter[k][q];
   }
+  PetscCall(StepperEnergyStep(s, a->work));
   if (s->monitor)
     PetscCall(s->monitor(s, info, s->monitor_ctx));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -165,13 +165,15 @@ static double Yielding(Scene *s)
 static void TestJacobian(void **state)
 {
   (void)state;
-  for (int k = 0; k < 2 * SETS; k++) {
-    Scene *s     = malloc(sizeof(*s));
-    double yield = 0.0, all;
+  for (int k = 0; k < 4 * SETS; k++) {
+    const bool axis = k / SETS % 2, mean = k >= 2 * SETS;
+    Scene     *s     = malloc(sizeof(*s));
+    double     yield = 0.0, all;
 
     const bool bonds = k % SETS == SETS - 1; /* hydrate that goes, with a stress of its own */
 
-    JacobianCase(s, sets[k % SETS].has, true, k >= SETS, BASIS_CPGIMP, 0.0, 0.0, bonds, 1);
+    JacobianCase(s, sets[k % SETS].has, true, axis, k % 2 && mean ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, 0.0, bonds, 1);
+    s->c.mean_dilatation     = mean;
     s->mat.elasticity.change = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
     s->mat.plasticity        = Weak(k % 2);
     s->c.fields.has |= SkeletonHas(&s->mat);
@@ -185,8 +187,8 @@ static void TestJacobian(void **state)
     const double worst = DirectionError(s, 2), entry = k % SETS == 1 ? ColumnError(s) : 0.0;
     yield = Sum(Yielding(s));
     all   = Sum((double)s->m.P.n);
-    Say("Jacobian, %-4s %s: directions %.1e, entries %.1e; %g of %g particles yield\n", sets[k % SETS].name,
-        k < SETS ? "plane" : "axis ", worst, entry, yield, all);
+    Say("Jacobian, %-4s %s%s: directions %.1e, entries %.1e; %g of %g particles yield\n", sets[k % SETS].name,
+        axis ? "axis " : "plane", mean ? ", mean dilatation" : "", worst, entry, yield, all);
     Check(worst < 1e-6 && entry < 1e-6 && yield > 0.7 * all);
     SceneDestroy(s);
     free(s);

@@ -1,0 +1,165 @@
+/* Mechanical energy: what the particles hold (89), and the powers of an implicit stage (91). */
+#include "gather.h"
+
+PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT])
+{
+  const Particles *P = &m->P;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(energy, ENERGY_COUNT));
+  if (!m->c->fields.solid)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  const SkeletonStore store = ParticlesSkeleton(P, 0, 0.0);
+  for (PetscInt p = 0; p < P->n; p++) {
+    const Material *mat = ParticleMaterial(m, p);
+    SkeletonHistory h;
+    double          dE;
+
+    SkeletonTake(&store, p, &h);
+    energy[ENERGY_KINETIC] += ModelKineticEnergy(P, p);
+    energy[ENERGY_ELASTIC] +=
+        P->f[P_V][p] * SkeletonEnergy(&mat->elasticity, ElasticityYoung(&mat->elasticity, P->f[P_SH][p], &dE), &h);
+    if (P->f[P_WP]) {
+      energy[ENERGY_PLASTIC] += P->f[P_WP][p];
+      energy[ENERGY_HEAT] += mat->plasticity.heat * P->f[P_WP][p];
+    }
+  }
+  energy[ENERGY_RELEASED] = m->released;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, ENERGY_COUNT, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Velocities of skeleton, water and gas at a particle, and V div v_s. */
+typedef struct {
+  double v[3][2], expansion;
+} Motion;
+
+static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x, const PointState *s, Motion *o)
+{
+  const FieldSet *fs      = &m->c->fields;
+  const bool      there[] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
+  const double(*F)[2] = s->F, det = F[0][0] * F[1][1] - F[0][1] * F[1][0], lambda = s->V / (m->P.f[P_V][p] * det);
+  double g[2][2] = {{0.0}}, hoop = 0.0, more = 0.0;
+
+  *o = (Motion){0};
+  for (int a = 0; a < r->n; a++) {
+    const double *xI = &x[r->node[a] * fs->n], *v = &xI[PlaceVs(fs)];
+
+    for (int k = 0; k < 3; k++) {
+      for (int i = 0; there[k] && i < 2; i++)
+        o->v[k][i] += r->S[a] * xI[fs->at[F_VSX + 2 * k] + i];
+    }
+    for (int i = 0; i < 2; i++) {
+      g[i][0] += r->G[a][0] * v[i];
+      g[i][1] += r->G[a][1] * v[i];
+    }
+    if (m->c->axisymmetric)
+      hoop += r->H[a] * v[0];
+    if (m->c->mean_dilatation)
+      more += r->B[a][0] * v[0] + r->B[a][1] * v[1];
+  }
+  g[0][0] += more;
+  g[1][1] += more;
+  hoop += m->c->axisymmetric ? more : 0.0;
+  o->expansion =
+      s->V * ((F[1][1] * g[0][0] - F[1][0] * g[0][1] - F[0][1] * g[1][0] + F[0][0] * g[1][1]) / det + hoop / lambda);
+}
+
+/* Of the mass of a phase in the inertia of the rows: M a . v over the nodes. */
+static double InertiaPower(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT])
+{
+  const FieldSet *fs      = &m->c->fields;
+  const bool      there[] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
+  double          sum     = 0.0;
+
+  for (int k = 0; k < 3; k++) {
+    for (int a = 0; there[k] && a < r->n; a++) {
+      const PetscInt q = r->node[a] * fs->n + fs->at[F_VSX + 2 * k];
+
+      for (int i = 0; i < 2; i++)
+        sum += out[OUT_M + k] * r->S[a] * (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt * x[q + i];
+    }
+  }
+  return sum;
+}
+
+void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
+                   const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES])
+{
+  const FieldSet *fs = &m->c->fields;
+  Motion          k;
+
+  MotionAt(m, p, r, x, s, &k);
+  if (fs->inertia)
+    power[WORK_INERTIA] += InertiaPower(m, r, x, out);
+  for (int i = 0; i < 2; i++)
+    power[WORK_GRAVITY] +=
+        m->bc.gravity[i] * (out[OUT_M] * k.v[0][i] + (fs->phase[PHASE_W] ? out[OUT_M + 1] * k.v[1][i] : 0.0) +
+                            (fs->phase[PHASE_G] ? out[OUT_M + 2] * k.v[2][i] : 0.0));
+  power[WORK_PRESSURE] += fs->fluid ? s->p * k.expansion : 0.0;
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    for (int i = 0; i < 2; i++)
+      power[WORK_PRESSURE] -= out[OUT_G + 2 * f + i] * in[IN_J + 2 * f + i];
+    for (int a = 0; a < r->n; a++) {
+      double J[2];
+
+      DarcyFlux(m, r->node[a], f, &x[r->node[a] * fs->n], J);
+      power[WORK_DRAG] += DragWeight(m, p, r->node[a], f, r->S[a]) * out[OUT_D + f] * (J[0] * J[0] + J[1] * J[1]);
+    }
+  }
+  if (!m->bc.ambient.on)
+    return;
+  double at[CL_DIM], gradient[CL_DIM];
+  for (int d = 0; d < CL_DIM; d++)
+    at[d] = AxisCentroid(&m->stencil[p].axis[d], m->grid.lower[d], m->grid.h[d]) + in[IN_U + d];
+  power[WORK_LOADS] -=
+      AmbientPressure(&m->bc.ambient, at, gradient) * k.expansion + out[OUT_A] * k.v[0][0] + out[OUT_A + 1] * k.v[0][1];
+}
+
+void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
+               double power[WORK_RATES])
+{
+  const FieldSet *fs    = &m->c->fields;
+  double          force = 0.0, plate = 0.0;
+
+  for (int a = 0; a < r->n; a++) {
+    const double *xI = &x[r->node[a] * fs->n];
+
+    for (int d = 0; d < CL_DIM; d++) {
+      const double v    = f->N[a] * xI[PlaceVs(fs) + d];
+      const bool   over = f->plate >= 0 && d == SideAxis(f->side);
+
+      force -= o->out[F_VSX + d] * v;
+      if (f->plate >= 0)
+        plate += (over ? -SideSign(f->side) * o->plate[PLATE_FORCE] : o->plate[PLATE_SHEAR]) * v;
+    }
+    for (int ph = 0; ph < PHASE_COUNT; ph++) {
+      double J[2];
+
+      if (!fs->phase[ph])
+        continue;
+      DarcyFlux(m, r->node[a], ph, xI, J);
+      for (int d = 0; d < CL_DIM; d++)
+        power[WORK_PRESSURE] -= f->N[a] * o->out[F_VWX + 2 * ph + d] * J[d];
+    }
+  }
+  power[WORK_PLATES] += plate;
+  power[WORK_LOADS] += force - plate;
+}
+
+/* Prescribed motion of nodes: what is left in their rows (15) is the force that holds them. */
+double HeldPower(const Model *m)
+{
+  const FieldSet *fs  = &m->c->fields;
+  double          sum = 0.0;
+
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int k = PlaceVs(fs); k < PlaceVs(fs) + CL_DIM; k++) {
+      if ((m->mask[I] >> k) & 1u)
+        sum += m->f[I * fs->n + k] * m->fixed[I * fs->n + k];
+    }
+  }
+  return sum;
+}

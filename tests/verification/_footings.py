@@ -1,0 +1,52 @@
+"""Rigid footings on Mohr-Coulomb ground at their collapse load: cases, exact loads and how to run them."""
+from pathlib import Path
+
+import numpy as np
+
+from common import Run
+
+STRIP = Path(__file__).parent / "cases" / "strip.yaml"
+END = 0.0632  # s
+# name: friction (deg), cohesion, surcharge (MPa), exact mean pressure (MPa), width and depth of the ground (half-widths), settlement
+STRIPS = {
+    "Prandtl": (0, 1, 0, 5.14159, 3.5, 1.5, 3.6e-4),
+    "Nc, 20 deg": (20, 1, 0, 14.8347, 4.25, 1.5, 6e-4),
+    "Nq, 20 deg": (20, 0, 1, 6.3994, 4.25, 1.5, 3.8e-4),
+    "Nc, 30 deg": (30, 1, 0, 30.1396, 6, 2, 1.6e-3),
+    "Nq, 30 deg": (30, 0, 1, 18.4011, 6, 2, 7e-4),
+}
+IMPLICIT = ("-inertia", "no", "-stepper_type", "euler", "-stepper_adapt", "no", "-stepper_dt", f"{END / 30} s", "-stabilisation_ghost_penalty", "1e-3",
+            "-bc_plate_velocity")  # fmt: skip
+
+
+def strip(name, cells, rough, *more, implicit=False):
+    """Mean pressure under the plate (MPa) over its settlement (half-widths), with `cells` cells a half-width: (n,), (n,)."""
+    phi, c, q, _, width, depth, settles = STRIPS[name]
+    if implicit:
+        motion = (*IMPLICIT, f"{-settles / END:.17g} m/s")
+    else:
+        fast = settles / (0.505 * END)
+        motion = ("-bc_plate_velocity_table", f"0 s, {-fast} m/s, {0.4 * END} s, {-fast} m/s, {0.5 * END} s, {-0.1 * fast} m/s, {END} s, {-0.1 * fast} m/s")
+    top = depth + max(0.25, 1 / cells)
+    run = Run.of_case(STRIP, "-quiet", "-grid_upper", f"{width} m, {top} m", "-grid_cells", f"{round(width * cells)},{round(top * cells)}",
+                      "-region_ground_upper", f"{width} m, {depth} m", "-bc_right_position", f"{width} m", "-bc_plate_rough", "yes" if rough else "no",
+                      "-mat_soil_plasticity_friction_peak", f"{phi} deg", "-mat_soil_plasticity_dilation_max", f"{phi} deg",
+                      "-mat_soil_plasticity_cohesion_max", f"{c} MPa", "-bc_surcharge_normal", f"{q} MPa",
+                      "-region_ground_stress", ",".join(3 * [f"{-q} MPa"] + 3 * ["0 Pa"]), *motion, *more, exit_code=(0, 3))  # fmt: skip
+    m = run.csv("meters.csv")
+    return -m["plate.position_m"], m["plate.force_N"] / 1e6
+
+
+def collapse(u, load):
+    """Collapse load: the mean over the last fifth of the settlement, or of what was reached of it; and how much it still grows there."""
+    late = u >= 0.8 * u[-1]
+    return load[late].mean(), load[-1] / load[late][0] - 1
+
+
+def exact(name):
+    return STRIPS[name][3]
+
+
+def order(h, load, want):
+    error = np.abs(np.asarray(load) / want - 1)
+    return np.log(error[:-1] / error[1:]) / np.log(np.asarray(h)[:-1] / np.asarray(h)[1:])

@@ -1,0 +1,147 @@
+#!/usr/bin/env python3
+"""The mechanical balance (90) in balance.csv, by implicit and explicit integrators: each term where it is known, and what is left."""
+from pathlib import Path
+
+import numpy as np
+
+from _integrators import adaptive, consolidation, fixed
+from common import Run, check, check_true, finish, order, table
+
+CASES = Path(__file__).parent / "cases"
+FOOTING = Path(__file__).resolve().parents[1] / "integration" / "cases" / "footing.yaml"
+COLUMNS = ("elastic_energy_J", "plastic_work_J", "plastic_heat_J", "gravity_work_J", "load_work_J", "plate_work_J", "pressure_work_J", "drag_work_J",
+           "damping_work_J", "elastic_released_J", "kinetic_lost_J", "energy_remainder_J")  # fmt: skip
+HYBRID = ("-stepper_type", "hybrid", "-stepper_adapt", "yes", "-inertia", "yes")
+TIGHT = ("-newton_tol_residual", 1e-10, "-newton_tol_update", 1e-8, "-ksp_rtol", 1e-8)
+rows = []
+
+
+def go(name, kind, case, *options, **keywords):
+    """The run, and its last row in short."""
+    run = Run.of_case(case, "-quiet", *(HYBRID if kind == "hybrid" else ("-stepper_type", kind)), *options, **keywords)
+    b = {k.rsplit("_", 1)[0]: v[-1] for k, v in run.balance.items() if k.endswith("_J")}
+    rows.append([name, kind, *(b[k.rsplit("_", 1)[0]] for k in ("kinetic_energy_J", *COLUMNS))])
+    return run, b
+
+
+def falls():
+    """Gravity is all: to round-off, but for what backward Euler takes, m g^2 dt T/2."""
+    for kind in ("sdirk2", "euler", "hybrid"):
+        run, b = go("free fall", kind, CASES / "falling.yaml")
+        expected = b["gravity_work"] * (run.balance["dt_s"][-1] / (0.8 + run.balance["dt_s"][-1]) if kind == "euler" else 0.0)
+        check(f"free fall, {kind}: gravity, kinetic", abs(b["gravity_work"] - b["kinetic_energy"] - expected) / b["kinetic_energy"], 1e-11)
+        check(f"free fall, {kind}: kinetic energy lost", abs(b["kinetic_lost"] - expected) / b["kinetic_energy"], 1e-11)
+        check(f"free fall, {kind}: remainder", abs(b["energy_remainder"]) / b["kinetic_energy"], 1e-10)
+        P = run.balance["kinetic_power_W"][-1] / (b["kinetic_energy"] * 2 / 0.8)
+        check(f"free fall, {kind}: power", abs(P - 1), 0.03)  # hybrid: the mean over a burst
+
+
+def waves():
+    """A pulse in a dry bar: nothing is dissipated, and what is left falls with the step."""
+    found = []
+    for kind, low in (("sdirk2", 1.6), ("euler", 0.8), ("hybrid", 0.8)):
+        left, sizes = [], (26, 52, 104)
+        for n in sizes:
+            run, b = go(f"bar wave, {n} cells", kind, CASES / "bar.yaml", "-grid_cells", f"{n},1", "-stepper_dt", f"{26e-3 / n} s",
+                        *(TIGHT if kind != "hybrid" else ()))  # fmt: skip
+            held = b["kinetic_energy"] + b["elastic_energy"]
+            left.append(np.max(np.abs(run.balance["energy_remainder_J"] + run.balance["kinetic_lost_J"])) / held)
+        orders = order(1 / np.array(sizes), left)
+        found += [[kind, n, e] for n, e in zip(sizes, left)]
+        check(f"bar wave, {kind}: order of what is left", orders[-1], (low, 4))
+        check(f"bar wave, {kind}: what is left, share of the energy", left[-1], 0.2 if kind == "euler" else 0.02)
+    table(["integrator", "cells", "lost and left, share"], found)
+
+
+def consolidates():
+    """Load work beyond the pressure of the pores is half stored and half dissipated; all of it is found again."""
+    elastic = 3e3**2 * 10.0 * 0.2 / (2 * 14.516e6 * 0.7 / (1.3 * 0.4))
+    for kind, bar in (("sdirk2", 1e-3), ("hybrid", 5e-3)):
+        run = consolidation(Kw=2.2e9, end=40.0, every=40.0, cells=(13, 1)).run(*(adaptive(kind) if kind == "hybrid" else fixed(kind, 0.1)), cells=(13, 1))
+        b = {k: v[-1] for k, v in run.balance.items()}
+        rows.append(["consolidation", kind, *(b[k] for k in ("kinetic_energy_J", *COLUMNS))])
+        size = b["drag_work_J"] + b["elastic_energy_J"]
+        check(f"consolidation, {kind}: elastic energy against q^2 V/2M", abs(b["elastic_energy_J"] / elastic - 1), 0.01)
+        check(f"consolidation, {kind}: given less kept and dissipated", abs((b["load_work_J"] + b["pressure_work_J"]) / size - 1), bar)
+        check(f"consolidation, {kind}: remainder", abs(b["energy_remainder_J"]) / size, bar)
+
+
+PRESSED = ("-inertia", "no", "-stepper_dt", "2 ms", "-time_end", "0.12 s", "-output_times", "0.12 s", "-output_probe_every", "10 ms", "-bc_plate_rough", "no", "-bc_plate_velocity", "-0.1 m/s",
+           "-mat_ground_plasticity_law", "mohr_coulomb", "-mat_ground_plasticity_cohesion_max", "20 kPa", "-mat_ground_plasticity_flow", "mohr_coulomb",
+           "-boundaries", "base,plate,left", "-bc_left_type", "roller", "-bc_left_axis", "x", "-bc_left_position", "0 m", "-mat_ground_plasticity_friction_peak", "0 deg", "-mat_ground_plasticity_dilation_max", "0 deg", "-bc_base_type", "roller",
+           "-stabilisation_ghost_penalty", "0")  # fmt: skip
+
+
+def yields():
+    """At a steady yield all that the plate gives is dissipated."""
+    for kind in ("sdirk2", "euler", "hybrid"):
+        options = () if kind != "hybrid" else ("-stepper_damping", "0.1")
+        run, b = go("squeezed block", kind, CASES / "plate_block.yaml", *PRESSED, *(HYBRID if kind == "hybrid" else ()), *options)
+        half = len(run.balance["time_s"]) // 2
+        given, gone = (run.balance[k][-1] - run.balance[k][half] for k in ("plate_work_J", "plastic_work_J"))
+        gone += run.balance["damping_work_J"][-1] - run.balance["damping_work_J"][half]
+        stored = run.balance["elastic_energy_J"][-1] - run.balance["elastic_energy_J"][half]
+        check(f"steady yield, {kind}: dissipated over the plate's work", gone / given, (0.97, 1.03))
+        check(f"steady yield, {kind}: stored", abs(stored) / given, 0.02)
+        check(f"steady yield, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], 0.02)
+
+
+def plates():
+    """A block under a rough plate, and a footing that softens: small strain, small remainder."""
+    short = ("-time_end", "0.1 s", "-output_times", "0.1 s", "-stepper_dt", "1 ms")
+    for kind in ("sdirk2", "euler", "hybrid"):
+        run, b = go("plate", kind, CASES / "plate_block.yaml", *short)
+        check(f"plate, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], 0.02 if kind == "euler" else 0.012)
+    for kind in ("sdirk2", "hybrid"):
+        run, b = go("footing", kind, FOOTING)
+        check(f"footing, {kind}: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.01)
+        check(f"footing, {kind}: heat, share of the plastic work", abs(b["plastic_heat"] / b["plastic_work"] - 0.7), 1e-12)
+        two, b2 = go("footing, 2 ranks", kind, FOOTING, *(TIGHT if kind == "sdirk2" else ()), ranks=2)
+        one, b1 = (run, b) if kind == "hybrid" else go("footing, tight", kind, FOOTING, *TIGHT)
+        off = max(abs(b2[k] - b1[k]) for k in b1 if "heat" not in k) / b1["load_work"]
+        check(f"footing, {kind}: 2 ranks against 1", off, 1e-7)
+    run, b = go("footing, damped", "hybrid", FOOTING, "-stepper_damping", "0.3")
+    check("footing, damped hybrid: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.01)
+    check("footing, damped hybrid: what damping takes", b["damping_work"] / b["load_work"], (1e-3, 0.2))
+
+
+def around():
+    """A constant pressure outside and in the pores does work, but leaves as little."""
+    for kind in ("sdirk2", "hybrid"):
+        left = []
+        for p in (0.1e6, 10e6):
+            run, b = go(f"sheared in {p / 1e6:g} MPa", kind, CASES / "shear_block.yaml", "-fields", "hm", "-region_block_pressure", f"{p} Pa",
+                        "-mat_soft_water_ref_pressure", f"{p} Pa", "-mat_soft_water_bulk_modulus", "100 MPa", "-ambient_pressure", f"{p} Pa",
+                        "-stepper_dt", "0.05 s", "-time_end", "0.5 s", "-output_probe_every", "0.5 s", "-bc_shear_shear_ramp", "0 Pa,-0.1 MPa,0 s,0.4 s",
+                        *(TIGHT if kind != "hybrid" else ()))  # fmt: skip
+            left.append(b)
+        check(f"sheared in 10 and 0.1 MPa, {kind}: remainders apart", abs(left[1]["energy_remainder"] - left[0]["energy_remainder"]) / left[0]["elastic_energy"], 2e-4)
+        check(f"sheared in 10 MPa, {kind}: remainder", abs(left[1]["energy_remainder"]) / left[1]["elastic_energy"], 0.03)
+
+
+def hydrate():
+    """Hydrate goes, and the stiffness with it, or with the stress it bore: what it takes is counted."""
+    for kind in ("sdirk2", "hybrid"):
+        for change, bar in (("both", 0.1), ("bonds", 0.1)):
+            run, b = go(f"dissociating, {change}", kind, CASES / "block.yaml", "-mat_sand_elasticity_stiffness_change", change)
+            check(f"dissociating block, {change}, {kind}: remainder over the released", abs(b["energy_remainder"]) / b["elastic_released"], bar)
+            check(f"dissociating block, {change}, {kind}: released over the elastic energy", b["elastic_released"] / b["elastic_energy"], (0.005, 0.1))
+
+
+def rigid():
+    """Without mechanics no such columns."""
+    run = Run.of_case(CASES / "diffusion.yaml", "-quiet", "-stepper_max_steps", "1")
+    check_true("a rigid body has no mechanical balance", not set(COLUMNS) & set(run.balance))
+
+
+if __name__ == "__main__":
+    falls()
+    waves()
+    consolidates()
+    yields()
+    plates()
+    around()
+    hydrate()
+    rigid()
+    table(["scene", "integrator", *(k.replace("_energy_J", "").replace("_J", "") for k in ("kinetic_energy_J", *COLUMNS))], rows)
+    finish()

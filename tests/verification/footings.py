@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Collapse loads of rigid strips (cases/strip.yaml): Prandtl's, and Nc and Nq of associated weightless ground at 20 deg, with
+hybrid and implicit, rough and smooth; and what volumetric locking does without mean dilatation.
+
+The plate pushes the node at its edge, and the ground follows over the next cell: a load too large by h/2 of the half-width and
+more, of first order.  The finest grid of Prandtl's strip is h = a/16; the factors at 20 deg, from a/4 and a/8, are extrapolated.
+Finer grids, 30 deg and the circle: docs/plasticity.md.
+"""
+import numpy as np
+
+from _footings import collapse, exact, order, strip
+from common import check, finish, judge, table
+
+rows = []
+
+
+def measured(name, cells, rough, *more, implicit=False, what=""):
+    """Collapse load at a/cells."""
+    u, load = strip(name, cells, rough, *more, implicit=implicit)
+    found, growth = collapse(u, load)
+    rows.append([name, "rough" if rough else "smooth", "implicit" if implicit else "hybrid", f"a/{cells}", found, 100 * (found / exact(name) - 1), 100 * growth, what])
+    return found, growth
+
+
+def family(name, rough, implicit, grids, finest, extrapolated, *more):
+    """Loads that fall towards the exact one, on grids of a/cells."""
+    found = [measured(name, n, rough, *more, implicit=implicit) for n in grids]
+    load, h = np.array([f[0] for f in found]), 1 / np.array(grids)
+    title = f"{name}, {'rough' if rough else 'smooth'}, {'implicit' if implicit else 'hybrid'}"
+    if finest:
+        judge("strength", f"{title}: collapse load at h = a/{grids[-1]}", load[-1] / exact(name) - 1, finest, 0.01, "%")
+    if len(grids) > 1:
+        check(f"{title}: order in h", order(h, load, exact(name))[-1], (0.7, 1.4))
+        judge("strength", f"{title}: collapse load, h to 0", abs((2 * load[-1] - load[-2]) / exact(name) - 1), extrapolated, 0.01, "%")
+    check(f"{title}: growth over the last fifth", max(abs(f[1]) for f in found), 0.02)
+    return load
+
+
+strong = family("Prandtl", True, True, (4, 8, 16), (0.0, 0.03), 0.015)
+free = family("Prandtl", True, False, (4, 8), None, 0.015)
+check("Prandtl: hybrid against implicit", np.abs(free / strong[:2] - 1).max(), 0.01)
+smooth = family("Prandtl", False, True, (8,), (0.0, 0.06), None)
+for name in ("Nc, 20 deg", "Nq, 20 deg"):
+    free = family(name, False, False, (4, 8), None, 0.03)
+    check(f"{name}: implicit against hybrid, a/4", measured(name, 4, False, implicit=True)[0] / free[0] - 1, (-0.04, 0.04))
+locked = [measured("Prandtl", n, True, "-mean_dilatation", "no", "-bc_plate_velocity", "-0.03 m/s", implicit=True, what="locks") for n in (4, 8)]
+check("Prandtl without mean dilatation: over the exact load at a/8, and still growing", locked[1][0] / exact("Prandtl") - 1, (0.2, 1.0))
+check("... growth over the last fifth", locked[1][1], (0.02, 1.0))
+table(["case", "plate", "integrator", "h", "load (MPa)", "error (%)", "growth (%)", ""], rows)
+finish()
