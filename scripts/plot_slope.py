@@ -96,17 +96,18 @@ def points(name, run, out):
 
 def energy(name, runs, measures, out):
     figure, axes = plt.subplots(2, 2, figsize=(13, 7), sharex=True)
+    lines = []
     end = min(max(2.5 * m["peak_kinetic_energy_s"], 50) for m in measures)
     for (label, run), m, colour, style in zip(runs.items(), measures, COLOURS, STYLES):
         t, e, P, R = slide.kinetic(run.balance)
         for ax, y in zip(axes.flat, (e, P, R, 100 * (1 - run.balance["hydrate_kg"] / run.balance["hydrate_kg"][0]))):
             ax.plot(t, y, style, color=colour, label=label, lw=1.2)
-        text = (f"{label}: onset {m['onset_s'] or float('nan'):.1f} s, failed {m['failed_volume_m2']:.0f} m³/m, runout {m['runout_m']:.1f} m,\n"
-                f"retrogression {m['retrogression_m']:.0f} m, up to {m['peak_mean_velocity_m_s']:.2f} m/s, gas {m['gas_released_kg']:.0f} kg/m")  # fmt: skip
-        axes[0, 0].text(0.98, 0.95 if run is list(runs.values())[0] else 0.78, text, transform=axes[0, 0].transAxes, ha="right", va="top", fontsize=8)
+        lines.append(f"{label}: onset {m['onset_s'] or float('nan'):.1f} s, failed {m['failed_volume_m2']:.0f} m³/m, runout {m['runout_m']:.1f} m, "
+                     f"retrogression {m['retrogression_m']:.0f} m, up to {m['peak_mean_velocity_m_s']:.2f} m/s, gas {m['gas_released_kg']:.0f} kg/m")  # fmt: skip
     for ax, title in zip(axes.flat, ("$E_k$ (J/m)", "$P_k = dE_k/dt$ (W/m)", "$R_k = d^2E_k/dt^2$ (W/(s m))", "hydrate lost (%)")):
         ax.set(xlabel="t (s)", title=title)
     axes[1, 1].legend()
+    figure.suptitle("\n".join(lines), fontsize=9)
     axes[0, 0].set_xlim(0, min(end, max(run.time[-1] for run in runs.values())))
     save(figure, out, f"{name}_energy")
 
@@ -124,6 +125,8 @@ def picture_bands(name, runs, found, out):
         for k, b in enumerate(bands):
             colour = COLOURS[k % 6]
             ax.plot((b["x_low_m"], b["x_high_m"]), (b["y_low_m"], b["y_high_m"]), color=colour, lw=1.5)
+            if b["y_high_m"] - b["y_low_m"] < 0.6 * height:
+                continue
             ax.annotate(f"{b['time_s']:.0f} s, {b['angle_deg']:.0f}°", (b["x_high_m"], b["y_high_m"]), color=colour, fontsize=8, ha="center", va="bottom")
         ax.set(xlim=(0, length), ylim=(0, 1.15 * height), aspect="equal", title=f"{label}: $\\epsilon_d^p$ at {run.time[-1]:.0f} s where particles were at the start, bands found")
         ax.grid(False)

@@ -17,9 +17,11 @@ STARTED = 0.01  # failed share of the body at the onset
 RISEN = 3.0  # kinetic energy at the rise, of the largest during the loading
 PROMINENT = 0.02  # of the largest kinetic energy: how far it falls between two peaks
 SMOOTH = 1.0  # s: half the window of the quadratic fits of the kinetic energy
+HEATED = 150.0  # m: where the heated base begins
 SHEARED = 0.15  # eps_d_p of a sheared particle
 CONTRAST = 2.0  # of a band's strain to that beside it
-LONG = 0.4  # of the height: the shortest band
+LONG, SHORT = 0.6, 0.4  # of the height: the shortest band as it forms, and at the end
+SEARCH = 2.0  # s between two searches
 GAS = 0.016 / 0.124  # kg of methane per kg of hydrate
 STANDARD = 0.6789  # kg/m3, methane at 101.4 kPa and 15.56 degC
 
@@ -153,31 +155,45 @@ def strips(x, eps, angle, cell, least):
     return best
 
 
+def strip(run, eps, least):
+    """The best straight strip of at least a length: (angle, offset, from, to along it); None if there is none."""
+    best = max(((*strips(run.start, eps, a, run.cell, least), a) for a in np.radians(np.arange(20, 161, 2))), key=lambda b: b[0])
+    return (best[4], *best[1:4]) if best[0] > 0 else None
+
+
+def describe(run, eps, when, where):
+    """A band from its strip: its members are the sheared particles of the strip, one and a half cells to either side."""
+    angle, offset, first, last = where
+    along = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-along[1], along[0]])
+    s, n = run.start @ along, run.start @ across
+    with np.errstate(invalid="ignore"):
+        members = np.flatnonzero((s >= first) & (s <= last) & (abs(n - offset) < 1.5 * run.cell) & (eps > SHEARED))
+    weight, time = eps[members], float(np.median(when[members]))
+    now = run.at(time)["position"][members]
+    axis = np.linalg.svd((now - np.average(now, axis=0, weights=weight)) * np.sqrt(weight)[:, None], full_matrices=False)[2][0]
+    middle = np.average(n[members], weights=weight) * across
+    low, high = sorted((middle + first * along, middle + last * along), key=lambda end: end[1])
+    return {"time_s": time, "angle_deg": float(np.degrees(np.arctan(abs(axis[1] / axis[0])))), "rises": "upslope" if axis[0] * axis[1] < 0 else "downslope",
+            "x_low_m": float(low[0]), "y_low_m": float(low[1]), "x_high_m": float(high[0]), "y_high_m": float(high[1]),
+            "eps_d_p": float(np.median(run.end["eps_d_p"][members, 0]))}  # fmt: skip
+
+
 def bands(run):
-    """Shear bands: straight strips of sheared particles in the initial configuration, the strongest first, each particle in one band."""
-    x, eps, when = run.start, run.end["eps_d_p"][:, 0].copy(), passed(run, SHEARED)
-    eps[x[:, 1] < 2.5 * run.cell] = np.nan  # the heated base
-    found = []
-    while len(found) < 40:
-        best = max(((*strips(x, eps, a, run.cell, LONG * run.height), a) for a in np.radians(np.arange(20, 161, 2))), key=lambda b: b[0])
-        if best[0] <= 0:
-            break
-        _, offset, first, last, angle = best
-        along = np.array([np.cos(angle), np.sin(angle)])
-        s, n = x @ along, x @ np.array([-along[1], along[0]])
-        inside = (s >= first) & (s <= last) & (abs(n - offset) < 1.5 * run.cell) & ~np.isnan(eps)
-        members = inside & (eps > SHEARED)
-        time = float(np.median(when[members]))
-        now = run.at(time)["position"][members]
-        weight = eps[members]
-        axis = np.linalg.svd((now - np.average(now, axis=0, weights=weight)) * np.sqrt(weight)[:, None], full_matrices=False)[2][0]
-        middle = np.average(n[members], weights=eps[members]) * np.array([-along[1], along[0]])
-        low, high = sorted((middle + first * along, middle + last * along), key=lambda end: end[1])
-        found.append({"time_s": time, "angle_deg": float(np.degrees(np.arctan(abs(axis[1] / axis[0])))),
-                      "rises": "upslope" if axis[0] * axis[1] < 0 else "downslope",
-                      "x_low_m": float(low[0]), "y_low_m": float(low[1]), "x_high_m": float(high[0]), "y_high_m": float(high[1]),
-                      "eps_d_p": float(np.median(eps[members])), "members": np.flatnonzero(members)})  # fmt: skip
-        eps[inside | ((abs(n - offset) < 2.5 * run.cell) & (s >= first) & (s <= last))] = np.nan
+    """Shear bands in order of time: straight strips of sheared particles in the initial configuration.  Long ones as they form, looked for every SEARCH seconds, then
+    what is left at the end; the strongest first, and each particle in one band, with those two and a half cells from it and two cells beyond its ends."""
+    x, when, taken, found = run.start, passed(run, SHEARED), run.start[:, 1] < 2.5 * run.cell, []
+    times = [*np.arange(run.time[0], run.time[-1], SEARCH), run.time[-1]]
+    for k, time in enumerate(times):
+        if k < len(times) - 1 and not ((when <= time) & (when > time - 2 * SEARCH) & ~taken).any():
+            continue
+        eps = run.at(time)["eps_d_p"][:, 0]
+        least = (LONG if k < len(times) - 1 else SHORT) * run.height
+        while (where := strip(run, np.where(taken, np.nan, eps), least)) is not None:
+            found.append(describe(run, np.where(taken, np.nan, eps), when, where))
+            angle, offset, first, last = where
+            s, n = x @ np.array([np.cos(angle), np.sin(angle)]), x @ np.array([-np.sin(angle), np.cos(angle)])
+            taken |= (abs(n - offset) < 2.5 * run.cell) & (s > first - 2 * run.cell) & (s < last + 2 * run.cell)
     return sorted(found, key=lambda b: b["time_s"])
 
 
@@ -187,12 +203,16 @@ def measure(run):
     total = run.snapshots[0][1]["volume"].sum()
     share = np.array([p["volume"][run.failed(p), 0].sum() for _, p in run.snapshots]) / total
     failed = run.failed(run.end)
-    b, (t, e, _, _) = run.balance, kinetic(run.balance)
+    b, (t, e, _, R) = run.balance, kinetic(run.balance)
     quiet = t <= run.loaded
     after = t > run.loaded
     tops = peaks(t[after], smooth(t, e)[after], PROMINENT * e.max())
+    late = t > run.loaded + 3 * SMOOTH  # the jump of the temperature is past
+    bursts = peaks(t[late], R[late], 0.1 * R[late].max()) if late.any() else []
+    x, y = run.start.T
+    base = passed(run, SHEARED)[(y < run.spacing[1]) & (x > HEATED) & (x < HEATED + 5 * run.cell)]
     mean = [np.average(np.hypot(*p["v_s"][failed].T), weights=p["mass_solid"][failed, 0]) if failed.any() else 0.0 for _, p in run.snapshots]
-    fastest = [np.hypot(*p["v_s"].T).max() for _, p in run.snapshots]
+    fastest = [np.quantile(np.hypot(*p["v_s"].T), 0.999) for _, p in run.snapshots]
     slab = run.end["volume"][failed, 0]
     lost = b["hydrate_kg"][0] - b["hydrate_kg"][-1]
     scarp = run.start[run.top & failed, 0]
@@ -207,10 +227,12 @@ def measure(run):
         "runout_m": float((run.end["position"] + run.end["half_length"])[:, 0].max() - run.toe),
         "retrogression_m": float(run.crest - scarp.min() + run.spacing[0] / 2) if len(scarp) else 0.0,
         "peak_mean_velocity_m_s": float(max(mean)),
-        "peak_particle_velocity_m_s": float(max(fastest)),
+        "peak_velocity_m_s": float(max(fastest)),
         "peak_kinetic_energy_J": float(e.max()),
         "peak_kinetic_energy_s": float(t[e.argmax()]),
         "peaks_of_kinetic_energy_s": [float(time) for _, time in tops],
+        "peaks_of_R_k_s": [float(time) for _, time in bursts],
+        "base_sheared_at_its_upper_end_s": float(np.median(base)) if len(base) and np.isfinite(np.median(base)) else None,
         "kinetic_energy_at_end_J": float(e[-1]),
         "hydrate_lost_kg": float(lost),
         "hydrate_lost_share": float(lost / b["hydrate_kg"][0]),
@@ -227,7 +249,7 @@ def words(m, found):
     yield (f"  failed {m['failed_volume_m2']:.0f} m3 per metre ({100 * m['failed_share']:.0f} % of the body), moved by {m['mean_displacement_m']:.1f} m in the mean and "
            f"up to {m['largest_displacement_m']:.1f} m; runout {m['runout_m']:.1f} m, retrogression {m['retrogression_m']:.0f} m behind the crest")  # fmt: skip
     tops = ", ".join(f"{t:.0f}" for t in m["peaks_of_kinetic_energy_s"]) or "none"
-    yield (f"  largest mean velocity of what failed {m['peak_mean_velocity_m_s']:.2f} m/s, of a particle {m['peak_particle_velocity_m_s']:.1f} m/s; kinetic energy up to "
+    yield (f"  largest mean velocity of what failed {m['peak_mean_velocity_m_s']:.2f} m/s, of all but one particle in a thousand {m['peak_velocity_m_s']:.1f} m/s; kinetic energy up to "
            f"{m['peak_kinetic_energy_J']:.3g} J per metre at {m['peak_kinetic_energy_s']:.1f} s, peaks at {tops} s")  # fmt: skip
     yield (f"  hydrate lost {m['hydrate_lost_kg']:.0f} kg ({100 * m['hydrate_lost_share']:.2f} %), gas released {m['gas_released_kg']:.0f} kg = "
            f"{m['gas_released_std_m3']:.0f} m3 at 101.4 kPa and 15.56 degC, per metre")  # fmt: skip
@@ -239,8 +261,7 @@ def words(m, found):
 
 def write(run, m, found):
     """slide.json, and the end of summary.txt, in place of what stood there of an earlier call."""
-    kept = [{k: v for k, v in b.items() if k != "members"} for b in found]
-    (run.folder / "slide.json").write_text(json.dumps(m | {"bands": kept}, indent=1) + "\n")
+    (run.folder / "slide.json").write_text(json.dumps(m | {"bands": found}, indent=1) + "\n")
     summary = run.folder / "summary.txt"
     before = summary.read_text().split("slide, to t = ")[0] if summary.is_file() else ""
     summary.write_text(before + "\n".join(words(m, found)) + "\n")

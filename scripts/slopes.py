@@ -23,7 +23,7 @@ def add(name, folder, across="2", took=""):
     run = slide.Run(folder, across=int(across))
     m, found = slide.measure(run), slide.bands(run)
     slide.write(run, m, found)
-    m["bands"] = [{k: v for k, v in b.items() if k != "members"} for b in found]
+    m["bands"] = found
     m["took"] = took or took_of(folder)
     m["balance"] = closing(run.balance)
     t = run.balance["time_s"]
@@ -60,8 +60,16 @@ def table(rows):
     return ["| " + " | ".join(map(str, rows[0])) + " |", "|" + "---|" * width] + ["| " + " | ".join(map(str, r)) + " |" for r in rows[1:]]
 
 
+def tall(m):
+    """Bands through at least 0.6 of the height of the slope (100 m)."""
+    return [b for b in m["bands"] if b["y_high_m"] - b["y_low_m"] >= 60]
+
+
 def band_words(m):
-    return "; ".join(f"{b['time_s']:.0f} s {b['angle_deg']:.0f}°" for b in m["bands"]) or "none"
+    """Times and angles of the tall bands, and how many others there are."""
+    words = "; ".join(f"{b['time_s']:.0f} s {b['angle_deg']:.0f}°" for b in tall(m)) or "none"
+    others = len(m["bands"]) - len(tall(m))
+    return words + (f"; {others} shorter" if others else "")
 
 
 def seconds(s):
@@ -76,7 +84,7 @@ def row(label, m):
 
 
 HEAD = ("run", "onset (s)", "largest E_k (J/m)", "its peaks (s)", "failed (m³/m)", "moved (m)", "runout (m)", "retrogression (m)", "speed (m/s)",
-        "hydrate lost (%)", "gas (kg/m)", "bands: time, angle", "to t (s)", "took")  # fmt: skip
+        "hydrate lost (%)", "gas (kg/m)", "bands through 60 % of the height: time, angle", "to t (s)", "took")  # fmt: skip
 
 
 def runs_of(kept, names):
@@ -151,9 +159,9 @@ Section 5.2 of the paper, by [slope_a](../cases/slope_a/README.md){others}, with
 - *Speed*: the largest mean velocity of what has failed in the end. *Peaks* of E_k: maxima from which it falls by 2 % of the largest on either side, in means over 2 s.
 - *P_k, R_k*: slopes of E_k by quadratic least squares over 2 s (rows of `balance.csv` are 0.1 s apart).
 - *Bands*: straight strips one cell wide, at every angle in steps of 2 degrees and every half cell, in the configuration at the start and above the heated base. A piece of a strip, one cell long,
-  counts where its mean ε_d^p exceeds 0.15 and twice that of the strips two and a half cells to either side; a strip needs a row of such pieces 40 % of the slope's height long, with
-  gaps of two at most. The strip with the largest sum of strain is a band, its particles are taken out, and so on. A band's time is the median of the times at which its particles pass 0.15;
-  its angle is that of the main axis of their places at that time, weighted with strain, against the base.
+  counts where its mean ε_d^p exceeds 0.15 and twice that of the strips two and a half cells to either side; a strip needs a row of such pieces 60 % of the slope's height long (40 % in the
+  state at the end), with gaps of two at most. They are looked for every 2 s; the strip with the largest sum of strain is a band, its particles and those within two and a half cells
+  are taken out, and so on. A band's time is the median of the times at which its particles pass 0.15; its angle is that of the main axis of their places at that time, weighted with strain, against the base.
 - *Gas released*: what the hydrate lost gave, per metre of thickness; all of it stays in the closed body.
 """
 

@@ -12,6 +12,7 @@ typedef struct {
   bool particle_pressures; /* the paper's bare form, its (72): rates of pressure by the particle, not shared over nodes
                             */
   double flip;             /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
+  double relaxation;       /* s, (97); INFINITY: none */
   double damping;          /* local damping of the mixture's out-of-balance force, [0,1) */
   double mass_scaling;     /* factor on every inertia, >= 1 */
 } ExplicitOptions;

@@ -187,6 +187,10 @@ static const Key case_key[] = {
     REAL(Case, "stepper_flip", flip, "", "[0,1]", "1",
          "hybrid, explicit: particles take increments of nodal velocity (1, FLIP), the velocity itself (0, PIC), or a "
          "mixture"),
+    REAL(Case, "stepper_relaxation", relaxation, "s", "(0,inf]", "none",
+         "hybrid, explicit: time over which pressures and temperature of a particle tend to those of the nodes, which "
+         "do not see what differs within a cell; or the word none",
+         .word = "none"),
     REAL(
         Case, "stepper_damping", damping, "", "[0,1)", "0",
         "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
@@ -511,6 +515,8 @@ static const Key stage_key[] = {
     BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES,
             "hybrid, explicit: take a fixed step above the stable one all the same", .kept = true),
     REAL(CaseStage, "stepper_flip", c.flip, "", "[0,1]", CASES, "hybrid, explicit: FLIP (1) to PIC (0)", .kept = true),
+    REAL(CaseStage, "stepper_relaxation", c.relaxation, "s", "(0,inf]", CASES,
+         "hybrid, explicit: time over which particles take up the nodes' pressures and temperature", .kept = true),
     REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),
     REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES,
          "hybrid, explicit: factor on all inertia", .kept = true),

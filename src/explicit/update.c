@@ -124,6 +124,19 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
   return fine;
 }
 
+/* (97): p_w, p_g, T tend to what the nodes have at the particle. */
+INLINE void Relax(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  const double share = -expm1(-dt / e->o.relaxation);
+
+  for (int k = 0; share > 0.0 && k < Scalars(s); k++) {
+    double *restrict y = e->m->P.f[P_PW + (k < s.fluids ? k : 2)] + r.p;
+
+    for (int q = 0; q < r.n; q++)
+      y[q] += share * (g->value[q][C_End(s) + k] - y[q]);
+  }
+}
+
 /* Gradients go along with the motion, F^-T g. */
 INLINE void CarryGradients(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
 {
@@ -395,6 +408,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (!Fields(e, s, r, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", r.p);
   MassesOf(e, s, r, &g, kept, &e->m->limited);
+  Relax(e, s, r, &g, dt);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   if (!s.solid)
     return;

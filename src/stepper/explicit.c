@@ -13,6 +13,7 @@ static PetscErrorCode Create(Stepper *s)
                              .tied               = c->tied,
                              .particle_pressures = c->bare,
                              .flip               = c->flip,
+                             .relaxation         = c->relaxation,
                              .damping            = c->damping,
                              .mass_scaling       = c->mass_scaling};
 

@@ -55,8 +55,9 @@ double StepperImplicitWork(const Model *m, double newton, double factors)
 
 PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)
 {
-  const ExplicitOptions o = {.drag_implicit = true, .flip = 1.0, .mass_scaling = s->model->c->mass_scaling};
-  Explicit             *e;
+  const ExplicitOptions o = {
+      .drag_implicit = true, .flip = 1.0, .relaxation = INFINITY, .mass_scaling = s->model->c->mass_scaling};
+  Explicit *e;
 
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &e));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Slope A on cells of 8 m as it begins to slide, by hybrid: the same on 1 and 2 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
-step; and what scripts/slide.py finds: onset, failed part, and the bands of strains that are known.
+step; pressures that tend to the nodes' lose what no node sees and no mass; and what scripts/slide.py finds: onset, failed part, and the bands of strains that are known.
 """
 import sys
 from pathlib import Path
@@ -10,6 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import Run, check, check_true, finish, scratch  # noqa: E402
+from results import read_snapshots  # noqa: E402
 
 import slide  # noqa: E402  scripts/, which common puts on the path
 
@@ -73,5 +74,23 @@ check("onset (s)", m["onset_s"], (3.0, 5.0))
 check("share of the body that failed", m["failed_share"], (0.3, 0.7))
 check("runout (m)", m["runout_m"], (0.2, 20.0))
 check("gas released over hydrate lost", m["gas_released_kg"] / m["hydrate_lost_kg"], (0.016 / 0.124 - 1e-12, 0.016 / 0.124 + 1e-12))
+
+
+def rough(run):
+    """Mean distance of the particles' pressure from what the nodes' is between them, and mean pressure, Pa."""
+    particles, grid = (read_snapshots(run.out, kind)[-1][1] for kind in ("particles", "grid"))
+    nodes = grid["p_w"].reshape(16, 76)  # of 8 m, from (0, 0)
+    at = particles["position"] / 8
+    (i, j), (a, b) = np.floor(at).astype(int).T, (at % 1).T
+    between = (1 - b) * ((1 - a) * nodes[j, i] + a * nodes[j, i + 1]) + b * ((1 - a) * nodes[j + 1, i] + a * nodes[j + 1, i + 1])
+    return np.nanmean(abs(particles["p_w"][:, 0] - between)), particles["p"].mean()
+
+
+relaxed = slope("-stepper_relaxation", "0.2 s")
+(own, mean), (shared, same) = rough(one), rough(relaxed)
+check(f"distance of pressures from the nodes', relaxed over own ({own:.3g} Pa)", shared / own, (0.0, 0.5))
+check("mean pressure, relaxed against own", abs(same / mean - 1), 0.01)
+for what in ("water", "methane"):
+    check(f"{what} kept where pressures relax", np.max(np.abs(relaxed.balance[f"{what}_error"])), 1e-12)
 known_bands()
 finish()
