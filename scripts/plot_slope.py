@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Slopes after Figures 20 to 31 of the paper: plot_slope.py NAME WITH WITHOUT OUT
 
-NAME is slope_a, slope_b or slope_c; WITH and WITHOUT are runs of it with and without heat from plastic work.  Measures both (scripts/slide.py) and writes
+NAME is slope_a, slope_b or slope_c; WITH and WITHOUT (or -) are runs of it with and without heat from plastic work.  Measures both (scripts/slide.py) and writes
 case_NAME.png, NAME_points.png, NAME_energy.png, NAME_bands.png and the film NAME.mp4 (NAME.gif where there is no ffmpeg) into OUT.
 """
 import shutil
@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 import slide
 from plotting import COLOURS, PA, STYLES, plt, save, set_style
 
-TIMES = {"slope_a": (25, 250), "slope_b": (15, 18, 45, 72, 250), "slope_c": (17, 30, 41, 56, 77, 250)}  # s, of the paper's maps
+TIMES = {"slope_a": (25, 250), "slope_b": (15, 18, 30, 42, 72, 250), "slope_c": (17, 30, 41, 56, 77, 100, 250)}  # s, of the paper's maps
 POINTS = {"A": (165, 1), "B": (113, 53)}  # m, places at the start
 MAPS = (  # title, value of a particle, limits
     ("temperature T (°C)", lambda run, p: p["T"][:, 0], (-2, 8)),
@@ -166,7 +166,7 @@ def film(name, run, out):
 
 def main(name, heated, unheated, out):
     set_style()
-    runs = {"θ = 0.5": slide.Run(heated), "θ = 0": slide.Run(unheated)}
+    runs = {"θ = 0.5": slide.Run(heated)} | ({"θ = 0": slide.Run(unheated)} if unheated != "-" else {})
     measures, found = [], []
     for label, run in runs.items():
         measures.append(slide.measure(run))

@@ -340,7 +340,8 @@ static const Key material_key[] = {
     REAL(Material, "plasticity_nonlocal_length", plasticity.nonlocal, "m", "[0,1e6]", "0 m",
          "strength follows the plastic strain of neighbours, averaged with weights (d/l) exp(-(d/l)^2) of their "
          "distance "
-         "d, l this length: the width of a band then does not depend on the grid; at least two cells; 0 m = the "
+         "d, l this length: what a band carries then depends less on the grid (docs/biaxial.md); at least two cells; 0 "
+         "m = the "
          "particle's own"),
     REAL(Material, "plasticity_eccentricity", plasticity.eccentricity, "", "(0,10]", "0.1",
          "of the smooth potential: how round its end is, of cohesion_max"),
