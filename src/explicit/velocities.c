@@ -80,6 +80,22 @@ static void Solve(const Explicit *e, const Balance *b, double dt, bool held, dou
   }
 }
 
+/* (92): work of the drag along d in a balance (of a node, or of one and those that follow it) with its answer v; a
+   fluid that is held moves as it must. */
+static double DragWork(const Explicit *e, PetscInt I, int d, const double *a, const Balance *b, const double v[3])
+{
+  const Set s   = e->set;
+  double    sum = 0.0, held;
+
+  for (int k = 0; k < s.fluids; k++) {
+    const double end   = Held(e, I, F_VWX + 2 * k + d, &held) ? held : v[1 + k];
+    const double share = a[A_Fluid(s, k) + FL_W] / a[A_V(s)], slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
+
+    sum += b->B[k] * slip * share * 0.5 * (end + b->vf[k] - v[0] - b->v);
+  }
+  return sum;
+}
+
 static void NodeVelocities(Explicit *e, PetscInt I, double dt)
 {
   const int     width = LANES * Rows(A_Count(e->set));
@@ -92,6 +108,8 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
     ReadBalance(e, a, d, &b);
     const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
     Solve(e, &b, dt, held, value, v);
+    if (e->set.solid && e->set.fluids)
+      e->work[WORK_DRAG] += e->node[I].own * dt * DragWork(e, I, d, a, &b, v);
     if (!held && e->o.damping > 0.0)
       e->work[WORK_DAMPING] += e->node[I].own * dt * e->o.damping * fabs(b.f) *
                                (b.v > 0.0   ? 1.0
@@ -112,22 +130,19 @@ static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const dou
   const Set     s = e->set;
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->nplate ? e->push[I] : NULL;
   const double  scale = e->o.mass_scaling, mean = 0.5 * (v[0] + w->v), gravity = e->m->bc.gravity[d];
-  double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, drag = 0.0, pressure = 0.0,
-         value = 0.0;
+  double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
     const double own = 0.5 * (v[1 + k] + w->vf[k]), share = a[A_Fluid(s, k) + FL_W] / a[A_V(s)];
-    const double flow = share * (own - mean), slip = e->o.drag_implicit ? v[1 + k] - v[0] : w->vf[k] - w->v;
+    const double flow = share * (own - mean);
 
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
     weight += w->m[k] * own;
-    drag += w->B[k] * slip * flow;
     pressure += a[A_Fluid(s, k) + FL_GX + d] * flow;
   }
   e->work[WORK_INERTIA] += scale * inertia;
   e->work[WORK_GRAVITY] += dt * gravity * weight;
-  e->work[WORK_DRAG] += dt * drag;
   e->work[WORK_PRESSURE] += dt * pressure;
   if (push)
     e->work[WORK_PLATES] += dt * push[d] * v[0];

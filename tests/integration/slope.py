@@ -53,6 +53,7 @@ two = slope(ranks=2).snapshots()[-1][1]
 worst = max(np.max(np.abs(v - two[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield")
 check("2 ranks against 1", worst, 1e-6)
 check_true("no particle is lost", np.array_equal(last["id"], one.snapshots()[0][1]["id"]) and all(np.isfinite(v).all() for v in last.values()))
+check("what the balance of energy leaves, of the work of gravity", abs(one.balance["energy_remainder_J"][-1] / one.balance["gravity_work_J"][-1]), 0.02)
 for what in ("water", "methane"):
     check(f"{what} kept, of the mass at the start", np.max(np.abs(one.balance[f"{what}_error"])), 1e-12)
 
