@@ -16,7 +16,7 @@ MOVED = 0.01  # of the height: what has moved farther has failed
 STARTED = 0.01  # failed share of the body at the onset
 RISEN = 3.0  # kinetic energy at the rise, of the largest during the loading
 PROMINENT = 0.02  # of the largest kinetic energy: how far it falls between two peaks
-SMOOTH = 1.0  # s: half the window of the quadratic fits of the kinetic energy
+SMOOTH = 1.0  # s: half the window of means and slopes in time
 HEATED = 150.0  # m: where the heated base begins
 SHEARED = 0.15  # eps_d_p of a sheared particle
 CONTRAST = 2.0  # of a band's strain to that beside it
@@ -74,15 +74,14 @@ def crossing(times, values, level):
 
 
 def kinetic(balance):
-    """(t, E_k (J), P_k (W), R_k (W/s)): kinetic energy, and its slopes by quadratic least squares over 2 SMOOTH."""
-    t, e = balance["time_s"], balance["kinetic_energy_J"]
-    P, R = np.zeros(len(t)), np.zeros(len(t))
+    """(t, E_k (J), P_k (W), R_k (W/s)): kinetic energy, its power from the forces (mean over 2 SMOOTH), and the slope of that by linear least squares over as long."""
+    t, e, power = (balance[k] for k in ("time_s", "kinetic_energy_J", "kinetic_power_W"))
+    R = np.zeros(len(t))
     for k in range(len(t)):
         near = slice(*np.searchsorted(t, (t[k] - SMOOTH, t[k] + SMOOTH)))
         if near.stop - near.start > 3:
-            a, b, _ = np.polyfit(t[near] - t[k], e[near], 2)
-            P[k], R[k] = b, 2 * a
-    return t, e, P, R
+            R[k] = np.polyfit(t[near] - t[k], power[near], 1)[0]
+    return t, e, smooth(t, power), R
 
 
 def smooth(t, values):

@@ -49,12 +49,30 @@ def took_of(folder):
 
 
 def closing(balance):
-    """Largest errors of the conserved quantities, and of the energy where the run kept it."""
-    keys = [k for k in balance if k.endswith("_error")]
-    return {k: float(abs(balance[k]).max()) for k in keys}
+    """Largest errors of the conserved quantities, and the balance of energy at the end (J)."""
+    errors = {k: float(abs(v).max()) for k, v in balance.items() if k.endswith("_error")}
+    return errors | {k: float(balance[k][-1]) for k, _ in ENERGY}
+
+
+ENERGY = (("gravity_work_J", "gravity"), ("load_work_J", "sea's pressure"), ("pressure_work_J", "pore fluids"), ("kinetic_energy_J", "kinetic"), ("elastic_energy_J", "elastic"),
+          ("elastic_released_J", "released with hydrate"), ("plastic_work_J", "plastic"), ("drag_work_J", "drag"), ("kinetic_lost_J", "lost between particles and nodes"), ("energy_remainder_J", "left over"))  # fmt: skip
+
+
+LABELS = {"A": "A, θ = 0.5", "A_theta_0": "A, θ = 0", "A_half": "A, half the step", "A_8m": "A, cells of 8 m", "A_printed": "A, K_0 = 3.6e4",
+          "B8": "B, θ = 0.5", "C8": "C, θ = 0.5", "C8_theta_0": "C, θ = 0"}  # fmt: skip
 
 
 # ---------------------------------------------------------------- page
+def energy(kept):
+    """Balance of energy of every run that kept it, at its end, MJ per metre."""
+    rows = [("run", *(word for _, word in ENERGY), "left over, of gravity's work")]
+    for name, m in kept.items():
+        if "energy_remainder_J" in m["balance"]:
+            b = m["balance"]
+            rows.append((f"{LABELS.get(name, name)}, {m['end_s']:.0f} s", *(f"{b[k] / 1e6:.4g}" for k, _ in ENERGY), f"{100 * abs(b['energy_remainder_J'] / b['gravity_work_J']):.2g} %"))
+    return ["## Balance of energy", "", "MJ per metre: works of the first three, and where they went.", "", *table(rows)]
+
+
 def table(rows):
     width = len(rows[0])
     return ["| " + " | ".join(map(str, rows[0])) + " |", "|" + "---|" * width] + ["| " + " | ".join(map(str, r)) + " |" for r in rows[1:]]
@@ -198,11 +216,6 @@ NOTES_C = """- On cells of 8 m the heated layer is twice as thick as the paper's
 
 ![bands](figures/slope_c_bands.png)""".split("\n")
 NOT_RUN = """
-## Balance of energy
-
-Scenario A on cells of 8 m to 40 s, by the columns of `balance.csv`, MJ per metre: work of gravity 373.9, of the sea's pressure on the surface -1504.3, of the pore fluids 1796.0, together 665.6; kinetic 0.04,
-elastic 86.9, plastic 577.2, lost between particles and nodes 0.6, together 664.8. What is left is 0.2 % of the work of gravity.
-
 ## What was not run
 
 Cells of 2 m, B and C on the paper's cells of 4 m, the times from 100 to 250 s of B and C, `softening_length` on several meshes, sdirk2 (the prototype of the law stalled at 13.5 s in the wedge at the toe), 3 m cells and 3 x 3 particles in A, and two ranks at 4 m
@@ -230,7 +243,7 @@ Section 5.2 of the paper, by [slope_a](../cases/slope_a/README.md){others}, with
 - *Failed*: what has moved farther than 1 % of the height (1 m) since the loading ended. *Onset*: when 1 % of the body has. *Moved*: mean over what failed.
 - *Runout*: how far the front is ahead of the toe at the start, along the base. *Retrogression*: from the crest back to the farthest failed particle of the ground.
 - *Speed*: the largest mean velocity of what has failed in the end. *Peaks* of E_k: maxima from which it falls by 2 % of the largest on either side, in means over 2 s.
-- *P_k, R_k*: slopes of E_k by quadratic least squares over 2 s (rows of `balance.csv` are 0.1 s apart).
+- *P_k*: the power of the forces on what moves (`kinetic_power_W` of `balance.csv`), in means over 2 s; *R_k*: its slope by linear least squares over 2 s.
 - *Bands*: straight strips one cell wide, at every angle in steps of 2 degrees and every half cell, in the configuration at the start and above the heated base. A piece of a strip, one cell long,
   counts where its mean ε_d^p exceeds 0.15 and twice that of the strips two and a half cells to either side; a strip needs a row of such pieces 60 % of the slope's height long (40 % in the
   state at the end), with gaps of two at most. They are looked for every 2 s; the strip with the largest sum of strain is a band, its particles and those within two and a half cells
@@ -242,7 +255,7 @@ Section 5.2 of the paper, by [slope_a](../cases/slope_a/README.md){others}, with
 def page():
     kept = json.loads(KEPT.read_text())
     others = "".join(f", [{c}](../cases/{c}/README.md)" for c in ("slope_b", "slope_c") if (DOCS.parent / "cases" / c).is_dir())
-    lines = [INTRO.format(others=others), *section_a(kept), *section(kept, "B", RUNS_B, scenario_b, "B8", NOTES_B), *section(kept, "C", RUNS_C, scenario_c, "C8", NOTES_C), *NOT_RUN]
+    lines = [INTRO.format(others=others), *section_a(kept), *section(kept, "B", RUNS_B, scenario_b, "B8", NOTES_B), *section(kept, "C", RUNS_C, scenario_c, "C8", NOTES_C), *energy(kept), *NOT_RUN]
     (DOCS / "slopes.md").write_text("\n".join(lines).rstrip() + "\n")
     print(DOCS / "slopes.md")
 
