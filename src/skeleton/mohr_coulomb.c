@@ -218,12 +218,14 @@ static void KeepReturned(const SkeletonStore *f, int q, const SkeletonState *s, 
 }
 
 /* Which of n trial states from q on may yield, without exponentials or angles of their own: where nothing has flowed
-   yet, friction is that of the peak and the cohesion c_min or more; where all normal stresses are compressive, no
-   strength is below the residual one.  Vector code. */
+   yet (nor around it), friction is that of the peak and the cohesion c_min or more; where all normal stresses are
+   compressive, no strength is below the residual one.  All of them reduced (87).  Vector code. */
 static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n, unsigned char may[CHUNK])
 {
-  const double peak = law->phi_peak * M_PI / 180.0, res = law->phi_res * M_PI / 180.0, sp = sin(peak), sr = sin(res),
-               cp = law->c_min * cos(peak), cr = law->c_res * cos(res), cutoff = law->cutoff;
+  const double part = StrengthReduced(law, 1.0), peak = atan(part * tan(law->phi_peak * M_PI / 180.0)),
+               res = atan(part * tan(law->phi_res * M_PI / 180.0)), sp = sin(peak), sr = sin(res),
+               cp = part * law->c_min * cos(peak), cr = part * law->c_res * cos(res), cutoff = StrengthCutoff(law);
+  const int     own = law->nonlocal == 0.0; /* strength follows the particle's own strain */
   const double *xx = f->sig[XX] + q, *yy = f->sig[YY] + q, *zz = f->sig[ZZ] + q, *xy = f->sig[XY] + q,
                *eps = f->own[OWN_P_EPS] + q;
 
@@ -231,7 +233,7 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
     const double d = 0.5 * (xx[k] - yy[k]), m = 0.5 * (xx[k] + yy[k]), r = sqrt(d * d + xy[k] * xy[k]);
     const double hi = m + r > zz[k] ? m + r : zz[k], lo = m - r < zz[k] ? m - r : zz[k];
     const double shear = 0.5 * (hi - lo), mean = 0.5 * (hi + lo);
-    const int    fresh = (eps[k] == 0.0) & (shear + mean * sp <= cp), worn = (hi <= 0.0) & (shear + mean * sr <= cr);
+    const int fresh = own & (eps[k] == 0.0) & (shear + mean * sp <= cp), worn = (hi <= 0.0) & (shear + mean * sr <= cr);
 
     may[k] = (unsigned char)!((hi <= cutoff) & (fresh | worn));
   }

@@ -255,7 +255,7 @@ static void TestBlock(void **state)
   for (int run = 0; run < 100; run++) {
     Material mat = Bonded(STIFFNESS_BONDS);
     Walk     w[N];
-    double   in[10][N], held[13 + OWN_COUNT][N] = {{0.0}}, work[N];
+    double   in[10][N], held[15 + OWN_COUNT][N] = {{0.0}}, work[N];
 
     if (run % 2)
       mat.plasticity = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
@@ -270,7 +270,13 @@ static void TestBlock(void **state)
                                     .cell         = 1.0,
                                     .eccentricity = 0.1,
                                     .cutoff       = INFINITY,
-                                    .factor       = 1.0};
+                                    .factor       = run % 3 ? 1.0 : 1.8};
+    if (run % 4 == 3) { /* softens, with its own plastic strain or that of its neighbours */
+      mat.plasticity.c_res    = 1e5;
+      mat.plasticity.phi_res  = 15.0;
+      mat.plasticity.eta_s    = 5.0;
+      mat.plasticity.nonlocal = run % 8 == 3 ? 0.5 : 0.0;
+    }
     SkeletonBlock b = {.n           = N,
                        .c           = in[0],
                        .s           = in[1],
@@ -290,6 +296,8 @@ static void TestBlock(void **state)
     }
     for (int i = 0; i < OWN_COUNT; i++)
       b.store.own[i] = held[13 + i];
+    b.store.nonlocal = held[13 + OWN_COUNT];
+    b.store.rate     = held[14 + OWN_COUNT];
     SkeletonState s[N];
     for (int q = 0; q < N; q++) {
       const char        *why;
@@ -315,6 +323,8 @@ static void TestBlock(void **state)
         held[13 + OWN_P_BOND + i][q] = w[q].h.from.own[OWN_P_BOND + i] = RngBetween(&r, -5e5, 5e5);
         w[q].h.from.sig[i]                                             = w[q].h.sig[i];
       }
+      held[13 + OWN_P_EPS][q] = w[q].h.from.own[OWN_P_EPS] = run % 4 == 3 && q % 2 ? RngBetween(&r, 0.0, 0.5) : 0.0;
+      held[13 + OWN_COUNT][q] = w[q].h.nonlocal = RngBetween(&r, 0.0, 0.5);
       assert_true(SkeletonUpdate(&mat, &w[q].h, &d, &s[q], NULL, &why));
       yield += s[q].region != RETURN_ELASTIC;
     }
