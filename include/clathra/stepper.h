@@ -14,7 +14,7 @@ typedef struct {
   PetscInt stage;         /* of the case; t may have reached its end */
   PetscInt newton_total, failures_total, limited_total;
   PetscInt loose_total; /* steps accepted with an error above the tolerance: at dt_min, or noise of the particles */
-  PetscInt kind;        /* auto: 0 not chosen yet, 1 implicit, 2 hybrid */
+  PetscInt kind;        /* auto: AUTO_... */
   PetscInt votes;       /* auto: looks in a row that asked for the other one */
   PetscInt patience;    /* auto: doubles with every visit of the implicit integrator that did not pay */
   double   t;           /* s */
@@ -89,6 +89,7 @@ typedef struct {
   PetscErrorCode (*check)(const Stepper *s, bool *ok);
 } StepperScheme;
 
+enum { AUTO_UNDECIDED = 0, AUTO_IMPLICIT, AUTO_HYBRID };
 /* What auto looks at; auto.c. */
 typedef struct {
   bool     on;       /* stepper_type: auto, with adaptive steps, in a scene that hybrid knows */
@@ -147,8 +148,10 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok);
 PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k);
 /* At the end of a stage that is not the last: the next one begins. */
 PetscErrorCode StepperNextStage(Stepper *s);
-bool           StepperStageDone(const Stepper *s);
-bool           StepperDone(const Stepper *s);
+/* The first step behind a change of stage or integrator is to be dt (s) and knows nothing of those before. */
+void StepperForget(StepperState *z, double dt);
+bool StepperStageDone(const Stepper *s);
+bool StepperDone(const Stepper *s);
 /* Displacement below which errors are not resolved more finely, m. */
 double StepperFloorU(const Stepper *s);
 /* "stage NAME: ", empty without stages. */
@@ -160,6 +163,11 @@ double StepperHybridWork(const Model *m, double steps);
 double StepperImplicitWork(const Model *m, double newton, double factors);
 /* Stable step of hybrid on the present state.  Collective. */
 PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit);
+/* The step that hybrid takes of it, s. */
+static inline double StepperHybridStep(const Case *c, const StableStep *limit)
+{
+  return fmin(c->cfl * limit->dt, c->dt_max);
+}
 PetscErrorCode StepperPrintForecast(const Stepper *s);
 
 /* ---- auto.c: docs/equations.md, section 15 */

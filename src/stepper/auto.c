@@ -9,8 +9,6 @@
 #define START 0.1          /* first implicit step, of the one that would do */
 #define STILL_GROWING 1.5  /* a wanted step that grows by so much is not yet what the scene allows */
 
-enum { UNDECIDED, IMPLICIT, HYBRID };
-
 /* What stops leave of a step that would be dt long: the larger of the interval to the next one and the one behind it.
  */
 static double Allowed(const Stepper *s, double dt)
@@ -23,17 +21,16 @@ static double Allowed(const Stepper *s, double dt)
   return fmin(dt, fmax(stop - s->state.t, StepperNextStop(&there, &kink) - stop));
 }
 
-/* s of the forecast's machine that the next second takes by hybrid (99), of the slowest rank; INFINITY if it has no
-   stable step. */
-static PetscErrorCode CostHybrid(Stepper *s, StableStep *limit, double *cost)
+/* s of the forecast's machine that the next second takes by hybrid (99), of the slowest rank, with this stable step;
+   INFINITY if there is none. */
+static PetscErrorCode CostHybrid(const Stepper *s, const StableStep *limit, double *cost)
 {
   const Model *m = s->model;
 
   PetscFunctionBeginUser;
   *cost = INFINITY;
-  PetscCall(StepperHybridLimit(s, limit));
   if (limit->dt > 0.0)
-    *cost = StepperHybridWork(m, 1.0) / fmin(m->c->cfl * limit->dt, m->c->dt_max);
+    *cost = StepperHybridWork(m, 1.0) / StepperHybridStep(m->c, limit);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cost, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,15 +163,12 @@ static PetscErrorCode GoOver(Stepper *s, int kind, double dt, bool *ok)
   PetscFunctionBeginUser;
   if (s->scheme->destroy)
     PetscCall(s->scheme->destroy(s));
-  s->scheme  = kind == HYBRID ? &StepperScheme_Hybrid : &StepperScheme_Sdirk2;
-  z->kind    = kind;
-  z->votes   = 0;
-  z->since   = z->t;
-  z->spent   = 0.0;
-  z->dt      = fmin(fmax(dt, s->dt_min), s->dt_max);
-  z->hold    = 0;
-  z->fresh   = 1;
-  z->err_old = 1.0;
+  s->scheme = kind == AUTO_HYBRID ? &StepperScheme_Hybrid : &StepperScheme_Sdirk2;
+  z->kind   = kind;
+  z->votes  = 0;
+  z->since  = z->t;
+  z->spent  = 0.0;
+  StepperForget(z, fmin(fmax(dt, s->dt_min), s->dt_max));
   if (s->scheme->create)
     PetscCall(s->scheme->create(s));
   if (s->scheme->ready)
@@ -199,6 +193,7 @@ static PetscErrorCode FromImplicit(Stepper *s, bool *ok)
 
   PetscFunctionBeginUser;
   z->spent += StepperImplicitWork(s->model, (double)s->auto_.newton, 1.0);
+  PetscCall(StepperHybridLimit(s, &limit));
   PetscCall(CostHybrid(s, &limit, &hybrid));
   PetscCall(CostImplicit(s, (double)s->auto_.newton, dt, &implicit));
   const bool growing = z->dt > STILL_GROWING * s->auto_.dt;
@@ -213,29 +208,28 @@ static PetscErrorCode FromImplicit(Stepper *s, bool *ok)
                         hybrid));
   s->auto_.give_way = false;
   LearnFromVisit(z, hybrid);
-  PetscCall(GoOver(s, HYBRID, z->dt, ok));
+  PetscCall(GoOver(s, AUTO_HYBRID, z->dt, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode FromHybrid(Stepper *s, bool *ok)
 {
-  StepperState *z = &s->state;
-  const double  c = fmin(s->model->c->cfl * s->limit.dt, s->dt_max), newton = STEPPER_NEWTON * 2.0;
-  double        dt = 0.0, cost[2];
+  StepperState *z  = &s->state;
+  double        dt = 0.0, hybrid, implicit = INFINITY;
 
   PetscFunctionBeginUser;
   PetscCall(StepThatWouldDo(s, &dt));
-  cost[0] = StepperHybridWork(s->model, 1.0) / c;
-  cost[1] = dt > 0.0 ? StepperImplicitWork(s->model, newton, 1.0) / dt : INFINITY;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cost, 2, MPI_DOUBLE, MPI_MAX, s->model->grid.comm));
-  z->votes = cost[1] * MARGIN < cost[0] ? z->votes + 1 : 0;
+  PetscCall(CostHybrid(s, &s->limit, &hybrid));
+  if (dt > 0.0)
+    PetscCall(CostImplicit(s, 2.0 * STEPPER_NEWTON, dt, &implicit));
+  z->votes = implicit * MARGIN < hybrid ? z->votes + 1 : 0;
   if (z->votes < LOOKS_HYBRID * z->patience)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscPrintf(s->model->grid.comm,
                         "t = %g s: hybrid -> sdirk2: a second takes %.2g s by hybrid's steps, %.2g s by implicit ones "
                         "of %.2g s that would do\n",
-                        z->t, cost[0], cost[1], dt));
-  PetscCall(GoOver(s, IMPLICIT, START * dt, ok));
+                        z->t, hybrid, implicit, dt));
+  PetscCall(GoOver(s, AUTO_IMPLICIT, START * dt, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -250,14 +244,14 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
   s->auto_.on = chosen && s->adaptive && !CaseNeedsImplicit(c);
   if (!chosen)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (z->kind == UNDECIDED) {
-    z->kind     = s->forecast.hybrid ? HYBRID : IMPLICIT;
+  if (z->kind == AUTO_UNDECIDED) {
+    z->kind     = s->forecast.hybrid ? AUTO_HYBRID : AUTO_IMPLICIT;
     z->votes    = 0;
     z->patience = 1;
     z->since    = s->state.t;
     z->spent    = 0.0;
   }
-  if (z->kind == HYBRID)
+  if (z->kind == AUTO_HYBRID)
     s->scheme = &StepperScheme_Hybrid;
   PetscCall(
       PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s\n", s->scheme->name, s->auto_.on ? ", for now" : ""));
@@ -273,6 +267,7 @@ PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool 
   *yes = false;
   if (!s->auto_.on || (status == CL_INACCURATE && !last))
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StepperHybridLimit(s, &limit));
   PetscCall(CostHybrid(s, &limit, &hybrid));
   PetscCall(CostImplicit(s, 2.0 * STEPPER_NEWTON, dt, &implicit));
   *yes = isfinite(hybrid) && (last || implicit > MARGIN * hybrid);
@@ -284,7 +279,7 @@ PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok)
   PetscFunctionBeginUser;
   if (!s->auto_.on || s->stop || s->broken)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->state.kind == HYBRID)
+  if (s->state.kind == AUTO_HYBRID)
     PetscCall(FromHybrid(s, ok));
   else
     PetscCall(FromImplicit(s, ok));

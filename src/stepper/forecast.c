@@ -80,7 +80,7 @@ PetscErrorCode StepperForecast(Stepper *s)
   if (!CaseNeedsImplicit(c))
     PetscCall(StepperHybridLimit(s, &f->limit));
   if (f->limit.dt > 0.0) {
-    f->hybrid_steps   = fmax(ceil(left / fmin(c->cfl * f->limit.dt, c->dt_max)), 1.0);
+    f->hybrid_steps   = fmax(ceil(left / StepperHybridStep(c, &f->limit)), 1.0);
     f->hybrid_seconds = StepperHybridWork(m, f->hybrid_steps);
   }
   f->implicit_steps = ImplicitSteps(s, left);

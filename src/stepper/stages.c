@@ -69,6 +69,14 @@ static void ResetDisplacement(Stepper *s)
   s->state.scale_u = StepperFloorU(s);
 }
 
+void StepperForget(StepperState *z, double dt)
+{
+  z->dt      = dt;
+  z->hold    = 0;
+  z->fresh   = 1;
+  z->err_old = 1.0;
+}
+
 /* Particles stay as they are; only the rates of the last step are no rates of this stage. */
 PetscErrorCode StepperNextStage(Stepper *s)
 {
@@ -78,11 +86,8 @@ PetscErrorCode StepperNextStage(Stepper *s)
   z->t = s->model->c->t_end; /* to the last digit */
   z->stage++;
   PetscCall(StepperTakeStage(s, z->stage));
-  z->dt      = s->model->c->dt;
-  z->hold    = 0;
-  z->fresh   = 1;
-  z->err_old = 1.0;
-  z->kind    = 0; /* auto chooses anew */
+  StepperForget(z, s->model->c->dt);
+  z->kind = AUTO_UNDECIDED;
   if (s->model->c->stage[z->stage].reset)
     ResetDisplacement(s);
   PetscCall(StepperEnergyChange(s));
