@@ -1,9 +1,8 @@
-/* What a user should know of a start that is out of balance; docs/equations.md, sections 7 and 13. */
+/* What a user should know of a start that is out of balance with gravity; docs/equations.md, section 13. */
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
 
 #define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
-#define FILLED 1e-3     /* of a cell's volume: what it may be short of */
 
 /* Does the skeleton of a region have a weight to carry, and no stress that does? */
 static PetscErrorCode Unstressed(const Case *c, const Region *r, bool *unstressed)
@@ -44,57 +43,11 @@ static PetscErrorCode LargestTension(MPI_Comm comm, const Case *c, const Particl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells that particles fill in part, on all ranks; a cell's particles are on one. */
-static PetscErrorCode CutCells(const Grid *g, const Case *c, const Particles *P, PetscInt *cut)
+PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
 {
-  const PetscInt n = g->gm[0] * g->gm[1];
-  double        *filled; /* share of each cell */
+  double tension = 0.0, scale = 0.0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n, &filled));
-  for (PetscInt p = 0; p < P->n; p++) {
-    const double x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
-    PetscInt     cell[CL_DIM];
-
-    if (!GridCell(g, x, cell))
-      continue;
-    const double middle = g->lower[0] + ((double)cell[0] + 0.5) * g->h[0];
-    filled[GridPadded(g, cell[0], cell[1])] +=
-        P->f[P_V][p] / (g->h[0] * g->h[1] * (c->axisymmetric ? 2.0 * M_PI * middle : 1.0));
-  }
-  *cut = 0;
-  for (PetscInt k = 0; k < n; k++)
-    *cut += filled[k] > 0.0 && fabs(filled[k] - 1.0) > FILLED;
-  PetscCall(PetscFree(filled));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cut, 1, MPIU_INT, MPI_SUM, g->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MeansWarning(const Grid *g, const Case *c, const Particles *P)
-{
-  const char *const key = c->mean_strain > 0.0 ? "mean_strain" : "mean_dilatation";
-  PetscInt          cut;
-
-  PetscFunctionBeginUser;
-  PetscCall(CutCells(g, c, P, &cut));
-  if (cut > 0)
-    PetscCall(
-        PetscFPrintf(g->comm, stderr,
-                     "clathra: warning: the surface cuts %" PetscInt_FMT
-                     " cells of the grid, and %s leaves forces there of the order of the stress times what a cell "
-                     "lacks: let the body fill its cells, or do without\n",
-                     cut, key));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode InitialWarnings(const Grid *g, const Case *c, const Particles *P)
-{
-  const MPI_Comm comm    = g->comm;
-  double         tension = 0.0, scale = 0.0;
-
-  PetscFunctionBeginUser;
-  if (c->fields.solid && (c->mean_dilatation || c->mean_strain > 0.0))
-    PetscCall(MeansWarning(g, c, P));
   if (!c->fields.solid || CaseGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {

@@ -196,7 +196,8 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(WriteCase(m->grid.comm, c, run));
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
-    PetscCall(InitialWarnings(&m->grid, m->c, &m->P));
+    PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    PetscCall(CellMeansWarning(&m->grid, m->c, &m->P));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));
