@@ -31,6 +31,7 @@ static Material RandomMaterial(Rng *r, Regime regime)
   assert_true(PermeabilitySetHydrateType(&m.permeability, PermeabilityHydrateTypes()[RngPick(r, 3)]));
   assert_true(PermeabilitySetPorosityType(&m.permeability, PermeabilityPorosityTypes()[RngPick(r, 3)]));
   assert_true(EquilibriumSetType(&m.kinetics.equilibrium, EquilibriumTypes()[RngPick(r, 2)]));
+  assert_true(GasSetType(&m.gas, GasTypes()[RngPick(r, 2)]));
   m.retention.p0      = RngLog(r, 1e3, 1e6);
   m.retention.m       = RngBetween(r, 0.2, 0.8);
   m.retention.lambda  = RngBetween(r, 0.5, 3.0);
