@@ -2,7 +2,8 @@
 #include "clathra/laws_batch.h"
 #include "laws_private.h"
 
-/* rho = rho_0 exp((p - p_ref)/K - beta (T - T_ref)), paper (10); K = INFINITY is incompressible.  Also solid, hydrate.
+/* rho = rho_0 exp((p - p_ref)/K - beta (T - T_ref)), (221), (P10); K = INFINITY is incompressible.  Also solid,
+ * hydrate.
  */
 double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT)
 {
@@ -14,7 +15,7 @@ double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, dou
   return law->rho0 * e;
 }
 
-/* Ideal gas, paper (11): rho = M p/(R T_K). */
+/* Ideal gas, (222), (P11): rho = M p/(R T_K). */
 static void Gas_Ideal(const Gas *law, int n, const double *restrict p, const double *restrict T, double *restrict rho,
                       double *restrict rho_p, double *restrict rho_T)
 {
