@@ -109,7 +109,8 @@ enum {
   T_SG,    /* share of gas and its slope */
   T_DS,
   T_RHO,                 /* [2] densities of the fluids */
-  T_DRAG = T_RHO + 2,    /* [2] mu/(k_a k_r) */
+  T_GAS  = T_RHO + 2,    /* [2] slopes of that of the gas in p_g and T */
+  T_DRAG = T_GAS + 2,    /* [2] mu/(k_a k_r) */
   T_V    = T_DRAG + 2,   /* volume at the end of the step */
   T_EOS,                 /* [2] masses at that volume and the old pressures */
   T_SLOPE = T_EOS + 2,   /* [2][3] their slopes in p_w, p_g, T */
