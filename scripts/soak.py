@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Random scenes and mutated cases, by the thousand: soak.py [--scenes N] [--cases N] [--seed S] [--limit SECONDS] ...
+"""Random scenes and mutated cases, by the thousand: soak.py [--scenes N] [--cases N] [--seed S] [--record FILE] ...
 
 Scenes are admissible ones drawn at random: fields, properties, saturations, loads, integrators, bases, geometry, gravity,
 regions, ranks.  Each is run for a few steps under a time limit and falls into one class:
@@ -7,22 +7,30 @@ regions, ranks.  Each is run for a few steps under a time limit and falls into o
   finished   refused (exit code 2, a sentence)   given up (3, a reason)
   hang   crash   NaN   balance (above 1e-10)   silent (an end without a sentence)
   ranks (1 against 2 differ)   pair (implicit against hybrid differ, where both can)
+  company (went wrong after other scenes in the same process, but not alone)
 
-Mutated cases are the cases of the tree changed by grammar: values, units, keys, lines, brackets; they are read and
+They run one after another in a few processes (tests/soak/many.c), for a start costs more than a scene; what goes wrong
+is run once more by the program itself, alone.  Mutated cases are the cases of the tree changed by grammar: values, units, keys, lines, brackets; they are read and
 checked, and some of those that are valid run.  Whatever is not finished, refused or given up leaves a folder with the
-case, the command and what was said (--keep).  The same seed makes the same scenes and cases.
+case, the command and what was said (--keep).  The same seed makes the same scenes and cases.  --record adds the counts
+to a file, from where --table makes one table of all of them: runs of any length add up.
 """
 import argparse
 import collections
 import concurrent.futures
+import json
 import math
 import os
 import random
 import re
+import select
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +43,7 @@ ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                "OMPI_MCA_mpi_yield_when_idle": "1"}  # fmt: skip
+MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 GOOD = ("finished", "refused", "given up")
 BALANCE = 1e-10
 RANKS = 1e-6  # of the largest change
@@ -170,27 +179,105 @@ def scene(seed):
         lines.append("pressures: one")
     middle = [0.5 * (a + b) for a, b in zip(*box)]
     lines += ["probes: [middle, top]", f"probe: {{middle: {{at: [{middle[0]!r} m, {middle[1]!r} m]}}, top: {{at: [{middle[0]!r} m, {box[1][1]!r} m]}}}}"]
-    return "\n".join(lines) + "\n", {"integrator": integrator, "ranks": r.choices([1, 2], [85, 15])[0],
-                                     "both": r.random() < 0.1, "pair": pair and basis != "linear"}  # fmt: skip
+    return "\n".join(lines) + "\n", {"integrator": integrator, "ranks": r.choices([1, 2], [92, 8])[0],
+                                     "both": r.random() < 0.06, "pair": pair and basis != "linear"}  # fmt: skip
 
 
 # ---------------------------------------------------------------------------------------- running and judging
+class Server:
+    """tests/soak/many.c on some ranks: cases one after another in one process, as long as it lives."""
+
+    def __init__(self, program, ranks):
+        command = [str(program)] if ranks == 1 else ["mpiexec", "-n", str(ranks), str(program)]
+        alone = {"OMPI_MCA_ess_singleton_isolated": "1"} if ranks == 1 else {}
+        self.job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT, **alone}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                    stderr=subprocess.STDOUT, start_new_session=True)  # fmt: skip
+        self.left = 100  # a new process now and then: what one leaks is not the other's
+
+    def run(self, words, limit):
+        """(exit code, what was said); None: not done within the limit (s)."""
+        said, until = b"", time.monotonic() + limit
+        self.left -= 1
+        try:
+            self.job.stdin.write(" ".join(map(str, words)).encode() + b"\n")
+            self.job.stdin.flush()
+        except BrokenPipeError:
+            pass  # read what it said, below
+        while not (mark := re.search(rb"\x01(\d+)\n", said)):
+            left = until - time.monotonic()
+            ready = left > 0 and select.select([self.job.stdout], [], [], left)[0]
+            more = os.read(self.job.stdout.fileno(), 65536) if ready else b""
+            said += more
+            if not more:
+                self.left = 0
+                return (self.job.wait() if ready else None), said.decode(errors="replace")
+        if mark[1] == b"1":
+            self.left = 0  # what an error of PETSc left behind is no place to go on from
+        return int(mark[1]), said[: mark.start()].decode(errors="replace")
+
+    def end(self):
+        self.job.stdin.close()
+        try:
+            self.job.wait(0 if self.left == 0 else 30)
+        except subprocess.TimeoutExpired:
+            self.job.terminate()  # mpiexec takes its ranks along
+            try:
+                self.job.wait(10)
+            except subprocess.TimeoutExpired:
+                os.killpg(self.job.pid, signal.SIGKILL)
+                self.job.wait()
+
+
 class Soak:
     def __init__(self, args):
-        self.program, self.limit, self.keep, self.steps = str(args.program), args.limit, Path(args.keep), args.steps
+        self.program, self.many, self.limit, self.keep, self.steps = str(args.program), args.many, args.limit, Path(args.keep), args.steps
+        self.mine, self.servers = threading.local(), []
+
+    def close(self):
+        for server in self.servers:
+            if server.job.poll() is None:
+                server.end()
+
+    def words(self, case, out, options):
+        return [str(case), "-quiet", "-stepper_max_steps", str(self.steps), *options, "-output_dir", str(out)]
+
+    def serve(self, words, ranks=1):
+        """(exit code, what was said) of a run in this thread's process for so many ranks."""
+        mine = self.mine.__dict__.setdefault("servers", {})
+        if ranks in mine and mine[ranks].left <= 0:
+            mine.pop(ranks).end()
+        if ranks not in mine:
+            mine[ranks] = Server(self.many, ranks)
+            self.servers.append(mine[ranks])
+        return mine[ranks].run(words, self.limit * ranks)
 
     def run(self, case, out, *options, ranks=1):
-        command = [self.program, str(case), "-quiet", "-stepper_max_steps", str(self.steps), *options, "-output_dir", str(out)]
+        return self.serve(self.words(case, out, options), ranks)
+
+    def alone(self, case, out, *options, ranks=1):
+        """A run by the program itself, in a process of its own."""
+        command = [self.program, *self.words(case, out, options)]
         if ranks > 1:
             command = ["mpiexec", "-n", str(ranks), *command]
         job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)  # fmt: skip
         try:
-            text = job.communicate(timeout=self.limit * ranks)[0]
+            text = job.communicate(timeout=2 * self.limit * ranks)[0]
+            return job.returncode, text
         except subprocess.TimeoutExpired:
-            os.killpg(job.pid, 9)  # its own group
+            job.terminate()
+            time.sleep(1)
+            os.killpg(job.pid, signal.SIGKILL)  # its own group
             return None, job.communicate()[0]
-        return job.returncode, text
+
+    def judged(self, case, out, *options, ranks=1):
+        """Class and note of a run; what went wrong is run once more, alone."""
+        kind, note = self.judge(*self.run(case, out, *options, ranks=ranks), out)
+        if kind in GOOD:
+            return kind, note
+        out = out.with_name(f"{out.name}-alone")
+        again, said = self.judge(*self.alone(case, out, *options, ranks=ranks), out)
+        return (again, said) if again not in GOOD else ("company", f"{kind} after other cases in one process, {again} alone: {note}")
 
     def judge(self, code, text, out):
         """Class and note of one run."""
@@ -214,31 +301,36 @@ class Soak:
 
     def scene(self, seed):
         text, facts = scene(seed)
-        folder = Path(tempfile.mkdtemp(prefix="soak-"))
-        case, out = folder / "case.yaml", folder / "out"
+        folder = Path(tempfile.mkdtemp(prefix="soak-", dir=MEMORY))
+        case = folder / "case.yaml"
         case.write_text(text)
-        kind, note = self.judge(*self.run(case, out, ranks=facts["ranks"]), out)
-        if kind == "finished" and facts["both"]:
-            kind, note = self.compare(case, folder, "ranks", RANKS, ("-stepper_adapt", "no"), (("1", 1, ()), ("2", 2, ())))
-        elif kind == "finished" and facts["pair"]:
-            kind, note = self.compare(case, folder, "pair", PAIR, ("-stepper_max_steps", "100000"),
-                                      (("hybrid", 1, ()), ("sdirk2", 1, ("-stepper_type", "sdirk2", "-stepper_tol", "1e-4"))))  # fmt: skip
+        found = self.compare_ranks(case, folder) if facts["both"] else None
+        kind, note = found or self.judged(case, folder / "out", ranks=facts["ranks"])
+        if kind == "finished" and facts["pair"]:
+            kind, note = self.compare_pair(case, folder) or (kind, note)
         self.end(folder, kind, f"scene {seed} ({facts['integrator']}, {facts['ranks']} ranks)", note)
         return kind, facts["integrator"], note, seed
 
-    def compare(self, case, folder, kind, bar, options, two):
-        """Runs a scene twice, with fixed steps where that is asked for, and compares the last rows of its probes."""
-        if "-stepper_adapt" in options:
-            end = float(re.search(r"end: (\S+) s", case.read_text())[1])
-            hybrid = re.search(r"type: (hybrid|explicit|auto)", case.read_text())
-            options = ("-newton_tol_update", "1e-9", "-ksp_rtol", "1e-9") + (() if hybrid else (*options, "-stepper_dt", f"{end / 100:.6g} s"))
+    def compare_ranks(self, case, folder):
+        """1 rank against 2, implicit runs with fixed steps, lest round-off choose another step; None: one of them gives up."""
+        text = case.read_text()
+        end = float(re.search(r"end: (\S+) s", text)[1])
+        fixed = () if re.search(r"type: (hybrid|explicit|auto)", text) else ("-stepper_adapt", "no", "-stepper_dt", f"{end / 100:.6g} s")
+        options = ("-newton_tol_update", "1e-9", "-ksp_rtol", "1e-9", *fixed)
+        return self.compare(case, folder, "ranks", RANKS, (("1", 1, options), ("2", 2, options)))
+
+    def compare_pair(self, case, folder):
+        """hybrid against sdirk2; None: one of them gives up."""
+        steps = ("-stepper_max_steps", "100000")
+        return self.compare(case, folder, "pair", PAIR, (("hybrid", 1, steps), ("sdirk2", 1, (*steps, "-stepper_type", "sdirk2", "-stepper_tol", "1e-4"))))  # fmt: skip
+
+    def compare(self, case, folder, kind, bar, two):
+        """Class and note of two runs of a scene that ought to end the same, from the last rows of their probes."""
         rows = []
-        for name, ranks, more in two:
-            code, text = self.run(case, folder / name, *options, *more, ranks=ranks)
-            if code != 0:
-                if code is None or code not in (0, 2, 3):
-                    return self.judge(code, text, folder / name)
-                return "finished", ""  # one of them gives up: said, and counted elsewhere
+        for name, ranks, options in two:
+            found, note = self.judged(case, folder / name, *options, ranks=ranks)
+            if found != "finished":
+                return None if found in GOOD else (found, note)
             rows.append(read_csv(folder / name / "probes.csv"))
         worst, where = 0.0, ""
         for column in rows[0]:
@@ -350,123 +442,140 @@ def mutated(seed, keys, bases):
     return text
 
 
-def read_batch(reader, folder, seeds, texts, limit):
-    """[(seed, code, what was said)]; a process that dies or hangs loses only the case it was at."""
-    results, at = [], 0
-    for seed, text in zip(seeds, texts):
-        (folder / f"{seed}.yaml").write_text(text, encoding="utf-8", errors="replace")
-    while at < len(seeds):
-        paths = "".join(f"{folder / f'{s}.yaml'}\n" for s in seeds[at:])
-        job = subprocess.Popen([str(reader)], env={**os.environ, **ENVIRONMENT}, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.PIPE, text=True, errors="replace")  # fmt: skip
-        try:
-            said, code = job.communicate(paths, timeout=limit * 10)[1], job.returncode
-        except subprocess.TimeoutExpired:
-            job.kill()
-            said, code = job.communicate()[1], None
-        *done, rest = re.split(r"\x01(\d)\n", said)
-        for text, mark in zip(done[::2], done[1::2]):
-            results.append((seeds[at], int(mark), text))
-            at += 1
-        if at < len(seeds):
-            results.append((seeds[at], code, rest))
-            at += 1
-    return results
+def check_mutated(soak, seed, text, share):
+    """[class] of a mutated case that is read and checked, and of its run if it is valid and drawn."""
+    folder = Path(tempfile.mkdtemp(prefix="soak-", dir=MEMORY))
+    case = folder / "case.yaml"
+    case.write_text(text, encoding="utf-8", errors="replace")
+    code, said = soak.serve([case, "-case_check"])
+    kind = {0: "valid", 2: "refused", None: "hang"}.get(code, "crash")
+    if kind == "refused" and not re.search(r"\.yaml(:\d+)?: .", said) or "runtime error" in said:
+        kind = "silent"
+    found, note = [kind], f"exit code {code}: {said}"
+    if kind == "valid" and random.Random(f"run {seed}").random() < share:
+        kind, note = soak.judged(case, folder / "out", "-stepper_max_steps", "3")
+        found.append(f"run: {kind}")
+    soak.end(folder, "finished" if kind == "valid" else kind, f"mutated case {seed}", note)
+    return found
 
 
 def soak_cases(soak, args):
     listing = subprocess.run([soak.program, "-case_keys"], capture_output=True, text=True, env={**os.environ, **ENVIRONMENT}).stdout
     keys = re.findall(r"^\| `([^`]+)`", listing, re.M)
     bases = [p.read_text() for p in sorted([*ROOT.glob("cases/*/case.yaml"), *ROOT.glob("tests/*/cases/*.yaml")])]
-    count, runnable = collections.Counter(), []
-    size = 250
-
-    def batch(first):
-        seeds = list(range(first, min(first + size, args.seed + args.cases)))
-        folder = Path(tempfile.mkdtemp(prefix="soak-cases-"))
-        texts = [mutated(s, keys, bases) for s in seeds]
-        found = read_batch(args.reader, folder, seeds, texts, soak.limit)
-        shutil.rmtree(folder)
-        return [(s, c, said, t) for (s, c, said), t in zip(found, texts)]
-
+    count = collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        for found in pool.map(batch, range(args.seed, args.seed + args.cases, size)):
-            for seed, code, said, text in found:
-                kind = {0: "valid", 2: "refused", None: "hang"}.get(code, "crash")
-                if kind == "refused" and not re.search(r"\.yaml(:\d+)?: .", said) or "runtime error" in said:
-                    kind = "silent"
-                count[kind] += 1
-                if kind == "valid" and random.Random(f"run {seed}").random() < args.run_valid:
-                    runnable.append((seed, text))
-                elif kind not in ("valid", "refused"):
-                    keep(soak, kind, text, f"case {seed}: {code}", said)
-        for kind in pool.map(lambda item: run_mutated(soak, *item), runnable):
-            count[f"run: {kind}"] += 1
+        for kinds in pool.map(lambda s: check_mutated(soak, s, mutated(s, keys, bases), args.run_valid), range(args.seed, args.seed + args.cases)):
+            count.update(kinds)
     return count
-
-
-def keep(soak, kind, text, what, note):
-    folder = Path(tempfile.mkdtemp(prefix="soak-"))
-    (folder / "case.yaml").write_text(text, encoding="utf-8", errors="replace")
-    soak.end(folder, kind, what, note)
-
-
-def run_mutated(soak, seed, text):
-    folder = Path(tempfile.mkdtemp(prefix="soak-"))
-    (folder / "case.yaml").write_text(text, encoding="utf-8", errors="replace")
-    code, said = soak.run(folder / "case.yaml", folder / "out", "-stepper_max_steps", "3")
-    kind, note = soak.judge(code, said, folder / "out")
-    soak.end(folder, kind, f"mutated case {seed}, run", note)
-    return kind
 
 
 # ---------------------------------------------------------------------------------------- the whole
 def soak_scenes(soak, args):
-    count, by, reasons = collections.Counter(), collections.Counter(), collections.Counter()
+    """{integrator: {class: number}}, {reason: number}"""
+    by, reasons = collections.defaultdict(collections.Counter), collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         for kind, integrator, note, seed in pool.map(soak.scene, range(args.seed, args.seed + args.scenes)):
-            count[kind] += 1
-            by[integrator, kind] += 1
+            by[integrator][kind] += 1
             if kind != "finished":
                 reasons[f"{kind}: {re.sub(r'[-+]?[0-9.]+(e[-+]?[0-9]+)?', '#', note)[:110]}"] += 1
             if args.verbose and kind != "finished":
                 print(f"scene {seed} ({integrator}): {kind}: {note}", flush=True)
-    return count, by, reasons
+    return by, reasons
+
+
+def words(count):
+    return ", ".join(f"{n} {k}" for k, n in count.most_common())
+
+
+def wrong(count):
+    return sum(n for k, n in count.items() if k.removeprefix("run: ") not in (*GOOD, "valid"))
+
+
+def commit():
+    done = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    return done.stdout.strip() if done.returncode == 0 else "unknown"
+
+
+def read_record(path):
+    return [json.loads(line) for line in Path(path).read_text().splitlines()] if Path(path).is_file() else []
+
+
+def next_seed(record, kind):
+    return max((e["seed"] + e[kind] for e in record if kind in e), default=1)
+
+
+COLUMNS = {"finished": "finished", "refused": "refused", "given up": "given up with a reason", "hang": "hang", "crash": "crash", "NaN": "NaN",
+           "balance": "balance above 1e-10", "silent": "end without a sentence", "company": "only after others in one process",
+           "ranks": "1 rank against 2", "pair": "implicit against hybrid"}  # fmt: skip
+
+
+def table(record):
+    """What the record holds, all slices together, as a page's tables."""
+    by, cases, n, m = collections.defaultdict(collections.Counter), collections.Counter(), 0, 0
+    for e in record:
+        for name, count in e.get("by", {}).items():
+            by[name].update(count)
+        cases.update(e.get("count", {}))
+        n, m = n + e.get("scenes", 0), m + e.get("cases", 0)
+    whole = sum(by.values(), collections.Counter())
+    lines = [f"| {n} scenes | {' | '.join(COLUMNS.values())} |", "|---" * (len(COLUMNS) + 1) + "|"]
+    for name, count in (*sorted(by.items()), ("all", whole)):
+        lines.append(f"| {name} | {' | '.join(str(count[k]) for k in COLUMNS)} |")
+    kinds = sorted(cases, key=lambda k: (k.startswith("run: "), -cases[k]))
+    return "\n".join([*lines, "", f"{m} mutated cases: " + ", ".join(f"{cases[k]} {k}" for k in kinds) + "."])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", nargs="?", default=ROOT / "build" / "clathra")
-    parser.add_argument("--reader", help="read_many beside the tests", default=None)
+    parser.add_argument("--many", help="soak_many, beside the tests", default=None)
     parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=None, help="default: 1, or where the record ends")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds a run may take")
     parser.add_argument("--steps", type=int, default=40, help="steps (bursts of hybrid) of a scene at most")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--run-valid", type=float, default=0.01, help="share of the valid mutated cases that is run")
     parser.add_argument("--keep", default="results/soak", help="folder for what goes wrong")
+    parser.add_argument("--record", help="file to which the counts of this slice are added, a line each")
+    parser.add_argument("--table", action="store_true", help="print what the record holds, and do nothing else")
     parser.add_argument("--verbose", action="store_true")
     args = parser.parse_args()
+    record = read_record(args.record) if args.record else []
+    if args.table:
+        print(table(record))
+        return 0
     args.program = Path(args.program).resolve()
-    args.reader = Path(args.reader or args.program.parent / "tests" / "read_many").resolve()
-    soak = Soak(args)
-    wrong = 0
+    args.many = Path(args.many or args.program.parent / "tests" / "soak_many").resolve()
+    seed, soak, bad = args.seed, Soak(args), 0
+
+    def note(**entry):
+        if args.record:
+            with open(args.record, "a") as file:
+                file.write(json.dumps({"commit": commit(), "seed": args.seed, **entry}) + "\n")
+
     if args.scenes:
-        count, by, reasons = soak_scenes(soak, args)
-        print(f"{args.scenes} scenes from {args.seed}: " + ", ".join(f"{n} {k}" for k, n in count.most_common()))
-        for name in sorted({i for i, _ in by}):
-            print(f"  {name}: " + ", ".join(f"{n} {k}" for (i, k), n in sorted(by.items()) if i == name))
+        args.seed = next_seed(record, "scenes") if seed is None else seed
+        by, reasons = soak_scenes(soak, args)
+        count = sum(by.values(), collections.Counter())
+        note(scenes=args.scenes, steps=args.steps, by=by, reasons=reasons)
+        print(f"{args.scenes} scenes from {args.seed}: {words(count)}")
+        for name in sorted(by):
+            print(f"  {name}: {words(by[name])}")
         for reason, n in reasons.most_common(15):
             print(f"  {n:5d} {reason}")
-        wrong += sum(n for k, n in count.items() if k not in GOOD)
+        bad += wrong(count)
     if args.cases:
+        args.seed = next_seed(record, "cases") if seed is None else seed
         count = soak_cases(soak, args)
-        print(f"{args.cases} mutated cases from {args.seed}: " + ", ".join(f"{n} {k}" for k, n in count.most_common()))
-        wrong += sum(n for k, n in count.items() if k.removeprefix("run: ") not in (*GOOD, "valid"))
-    if wrong:
-        print(f"{wrong} went wrong; see {args.keep}")
-    return 1 if wrong else 0
+        note(cases=args.cases, count=count)
+        print(f"{args.cases} mutated cases from {args.seed}: {words(count)}")
+        bad += wrong(count)
+    soak.close()
+    if bad:
+        print(f"{bad} went wrong; see {args.keep}")
+    return 1 if bad else 0
 
 
 if __name__ == "__main__":
