@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
-from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, boxes, derived, is_column, plt, save, set_style, stage_axis, steady_limits, time_unit
-from results import probe_names, read_csv, read_snapshots
+from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, boxes, derived, is_column, plt, save, set_style, stage_axis, steady_limits
+from clathra import probe_names, read_csv, read_snapshots, time_unit
 
 # Panels of probes.png: label, [(column, factor, name in the legend)], least width of the y axis.  A scene without a field
 # has no columns for it, and no panel or curve.

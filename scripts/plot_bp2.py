@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from plotting import COLOURS, MM, PA, QUANTITIES, derived, plt, save, set_style, steady_limits
-from results import probe_names, read_csv, read_snapshots
+from clathra import probe_names, read_csv, read_snapshots
 
 REFERENCE = Path(__file__).resolve().parents[1] / "cases" / "bp2" / "reference"
 INNER, LOADED = 0.6, 1.0  # m from the fixed end

@@ -41,12 +41,6 @@ QUANTITIES = {  # name: label
 }
 
 
-def time_unit(end):
-    """(name, seconds) of the unit in which times up to `end` (s) read well."""
-    units = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", 3.15576e7))
-    return next((u for u in reversed(units) if end >= 5 * u[1] and (u[0] != "min" or end >= 7200)), units[0])
-
-
 def is_column(position):
     """Axis (0 or 1) along which the body is a strip, at least eight times as long as wide and with no more than four rows of
     particles across; None if it is not one."""

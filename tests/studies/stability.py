@@ -26,7 +26,7 @@ import exact  # noqa: E402
 from _extremes import CELL, P, SCENE, attempt, cells, difference, scene, stable_step  # noqa: E402
 from _ladder import ElasticWave, Terzaghi  # noqa: E402
 from common import CASES  # noqa: E402
-from results import read_csv, read_snapshots  # noqa: E402
+from clathra import read_csv, read_snapshots  # noqa: E402
 
 FOLDER, PAGE, FIGURES = ROOT / "results" / "stability_study", ROOT / "docs" / "stability.md", ROOT / "docs" / "figures"
 DIFFUSION = ROOT / "tests" / "verification" / "cases" / "diffusion.yaml"
