@@ -10,10 +10,11 @@ regions, ranks.  Each is run for a few steps under a time limit and falls into o
   company (went wrong after other scenes in the same process, but not alone)
 
 They run one after another in a few processes (tests/soak/many.c), for a start costs more than a scene; what goes wrong
-is run once more by the program itself, alone.  Mutated cases are the cases of the tree changed by grammar: values, units, keys, lines, brackets; they are read and
-checked, and some of those that are valid run.  Whatever is not finished, refused or given up leaves a folder with the
-case, the command and what was said (--keep).  The same seed makes the same scenes and cases.  --record adds the counts
-to a file, from where --table makes one table of all of them: runs of any length add up.
+is run once more by the program itself, alone.  Mutated cases are the cases of the tree changed by grammar: values,
+units, keys, lines, brackets; they are read and checked, and some of those that are valid run.  Whatever is not
+finished, refused or given up leaves a folder with the case, the command and what was said (--keep).  The same seed
+makes the same scenes and cases.  --record adds the counts to a file, from where --table makes one table of all of
+them: runs of any length add up.
 """
 import argparse
 import collections
