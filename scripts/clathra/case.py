@@ -4,8 +4,9 @@ import re
 ENTRY = re.compile(r"^( *)([\w-]+):(?: (.*))?$")
 
 
-def read_case(path):
-    """{key as on the command line: value}: mat_sand_porosity: 0.4; numbers without their (SI) units, words, lists of these."""
+def read_case(path, texts=False):
+    """{key as on the command line: value}: mat_sand_porosity: 0.4; numbers without their (SI) units, words, lists of these; with `texts`
+    what the file says, with units."""
     found, parents = {}, []
     for line in open(path, encoding="utf-8"):
         entry = ENTRY.match(line.rstrip("\n"))
@@ -14,7 +15,7 @@ def read_case(path):
         depth = len(entry[1]) // 2
         parents[depth:] = [entry[2]]
         if entry[3] is not None:
-            found["_".join(parents)] = _value(entry[3])
+            found["_".join(parents)] = entry[3] if texts else _value(entry[3])
     return found
 
 

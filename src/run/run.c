@@ -13,7 +13,7 @@ typedef struct {
   char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   double    t_saved;                                                   /* of that */
   double    clock_start;                                               /* s of the wall */
-  bool      quiet;
+  bool      quiet, restarted;
   bool      written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
@@ -63,6 +63,17 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode WriteLog(const Case *c, MPI_Comm comm, Run *run)
+{
+  bool ok = true;
+
+  PetscFunctionBeginUser;
+  if (!run->lost)
+    PetscCall(LogWrite(comm, c->output_dir, run->restarted, &ok));
+  run->lost = run->lost || !ok;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The rows first: a restart from this checkpoint takes them for granted. */
 static PetscErrorCode Save(Stepper *s, Run *run)
 {
@@ -100,10 +111,11 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   if (AtSnapshot(c, t) || last) {
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
+    PetscCall(WriteLog(c, s->model->grid.comm, run));
   }
   PetscCall(OutputGood(run->out, s->model->grid.comm, &ok));
-  run->lost = !ok;
-  if (ok && AtMultiple(c, c->checkpoint_every, t))
+  run->lost = run->lost || !ok;
+  if (!run->lost && AtMultiple(c, c->checkpoint_every, t))
     PetscCall(Save(s, run));
   s->stop = s->stop || run->lost;
   PetscCall(Progress(s, info, run));
@@ -191,7 +203,8 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
     s->state.next_snapshot++;
   }
   PetscCall(OutputGood(run->out, m->grid.comm, &ok));
-  run->lost        = run->lost || !ok;
+  run->lost = run->lost || !ok;
+  PetscCall(WriteLog(c, m->grid.comm, run));
   run->clock_start = Wall();
   PetscCall(StageLogCreate(s, &run->log));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -237,6 +250,7 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   PetscCall(OutputDestroy(&run->out, s->model->grid.comm, &closed));
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
+  PetscCall(WriteLog(s->model->c, s->model->grid.comm, run));
   if (run->lost || !ok)
     *exit_code = CL_EXIT_FAILED;
   else if (s->signal && !StepperDone(s))
@@ -258,7 +272,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
     if (!ok)
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(PetscStrncpy(run->saved, restart, sizeof(run->saved)));
-    run->t_saved = s->state.t;
+    run->t_saved   = s->state.t;
+    run->restarted = true;
   } else
     run->t_saved = NAN;
   PetscCall(StepperReady(s, &ok));
@@ -316,6 +331,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
   run.quiet = quiet;
+  PetscCall(LogStart(comm));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (!GridFits(size, c->cells)) {
     PetscCall(PetscFPrintf(comm, stderr,
@@ -350,5 +366,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   }
   PetscCall(StepperDestroy(&stepper));
   PetscCall(ModelDestroy(&model));
+  PetscCall(LogEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

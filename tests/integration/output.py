@@ -85,6 +85,9 @@ def check_tables():
     check_true("balance.csv: a row a step, dt adds up", np.array_equal(b["step"], range(1, len(b["step"]) + 1))
                and np.allclose(np.cumsum(b["dt_s"]), b["time_s"]) and abs(b["time_s"][-1] - 60) < 1e-9)  # fmt: skip
     check_true("summary.txt: the end of what was printed", (good.out / "summary.txt").read_text() in good.output)
+    log = (good.out / "log.txt").read_text().splitlines()
+    check_true("log.txt: the command, then all that was said", log[0].startswith("# ") and "bp2 -grid_cells 13,1 -time_end '60 s'" in log[1]
+               and sorted(log[2:]) == sorted(good.output.splitlines()), log[1])  # fmt: skip
     steps = [s for s in good.output.splitlines() if s.startswith("step")]
     check_true("a line a step with percentage and time left", len(steps) == len(b["step"]) and "(100.0 %)" in steps[-1]
                and steps[-1].endswith("0 s left"), steps[-1])  # fmt: skip
