@@ -9,7 +9,7 @@
 typedef struct {
   bool drag_implicit;      /* hybrid; explicit otherwise */
   bool tied;               /* nearly empty nodes follow their fullest neighbour in part (41) */
-  bool particle_pressures; /* the paper's bare form, its (72): rates of pressure by the particle, not shared over nodes
+  bool particle_pressures; /* the paper's bare form (P72): rates of pressure by the particle, not shared over nodes
                             */
   double flip;             /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
   double relaxation;       /* s, (97); INFINITY: none */

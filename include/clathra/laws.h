@@ -75,7 +75,7 @@ static inline double EquilibriumPressure(const Equilibrium *law, double T, doubl
 }
 
 /* ---------------------------------------------------------------- Kim-Bishnoi kinetics
-   R = K_d(T) A_s (p_e - p), mol/(m^3 s), positive for dissociation (equations 33-37 of the paper). */
+   R = K_d(T) A_s (p_e - p), mol/(m^3 s), positive for dissociation (P33)-(P37). */
 typedef struct {
   double      K0;            /* mol/(m^2 Pa s) */
   double      dE;            /* activation energy J/mol; 0 = constant K_d */

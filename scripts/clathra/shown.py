@@ -1,4 +1,5 @@
 """What pictures of a run show, whatever draws them: quantities of particles and histories, their labels and units."""
+import re
 from typing import Callable, NamedTuple
 
 import numpy as np
@@ -14,6 +15,16 @@ class Quantity(NamedTuple):
     unit: str
     needs: str  # variable of the snapshot
     of: Callable
+
+    @property
+    def axis(self):
+        """Words beside an axis of a plot."""
+        return f"{tex(self.label)} ({self.unit})"
+
+
+def tex(label):
+    """Subscripts as matplotlib sets them: u_x to $u_x$."""
+    return re.sub(r"\b(\w)_(\w)\b", r"$\1_\2$", label)
 
 
 def _part(name, component, factor=1.0):

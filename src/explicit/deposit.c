@@ -211,7 +211,7 @@ INLINE void MeanDilatation(Explicit *e, const Set s, Run r, const Weights *w, Va
   }
 }
 
-/* The paper's (60e) per unit of the fluid's volume: V p_p G, by parts; the bare form only. */
+/* The paper's (P60e) per unit of the fluid's volume: V p_p G, by parts; the bare form only. */
 INLINE void WeakForces(Explicit *e, const Set s, Run r, const Weights *w)
 {
   const int width = LANES * Rows(A_Count(s)), stride = (int)e->m->grid.gm[0];

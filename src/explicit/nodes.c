@@ -47,7 +47,7 @@ static PetscErrorCode FindHeld(Explicit *e)
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     unsigned mask = 0;
 
-    PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[I], &mask, value);
+    PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[I], false, &mask, value);
     e->node[I].held = mask ? (int)n++ : -1;
   }
   PetscCall(PetscMalloc3(n, &e->held, n, &e->mask, n * nf, &e->fixed));

@@ -280,7 +280,7 @@ INLINE double Divergence(const Explicit *e, const Set s, const Weights *w, int q
   return div;
 }
 
-/* The paper's bare form, its (72): the balances of mass stay at the particle, with the divergence of the flux there;
+/* The paper's bare form (P72): the balances of mass stay at the particle, with the divergence of the flux there;
  * nodes see the heat alone. */
 INLINE void Keep(Explicit *e, const Set s, Run r, double dt, const Weights *w, Given *o)
 {

@@ -47,7 +47,7 @@ INLINE void MeanDilatation(const Explicit *e, const Set s, Run r, const Weights 
   }
 }
 
-/* Bare form, the paper's (72): increments of pressure from the particle's own balances, with the new temperature. */
+/* Bare form, the paper's (P72): increments of pressure from the particle's own balances, with the new temperature. */
 INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
 {
   for (int q = 0; q < r.n; q++) {

@@ -197,7 +197,7 @@ PetscErrorCode NodesVelocities(Explicit *e, double t, double dt)
   PetscFunctionBeginUser;
   for (PetscInt h = 0; h < e->nheld; h++) {
     e->mask[h] = 0;
-    PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[e->held[h]], &e->mask[h],
+    PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[e->held[h]], false, &e->mask[h],
                     &e->fixed[h * e->m->c->fields.n]);
   }
   e->added = 0.0;

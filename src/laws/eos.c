@@ -2,7 +2,8 @@
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* rho = rho_0 exp((p - p_ref)/K - beta (T - T_ref)), paper (10); K = INFINITY is incompressible.  Also solid, hydrate.
+/* rho = rho_0 exp((p - p_ref)/K - beta (T - T_ref)), (221), (P10); K = INFINITY is incompressible.  Also solid,
+ * hydrate.
  */
 double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT)
 {
@@ -14,7 +15,7 @@ double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, dou
   return law->rho0 * e;
 }
 
-/* Ideal gas, paper (11): rho = M p/(R T_K). */
+/* Ideal gas, (222), (P11): rho = M p/(R T_K). */
 double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT)
 {
   const double TK = T + LAW_ZERO_CELSIUS;
