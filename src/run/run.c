@@ -336,7 +336,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
   run.quiet = quiet;
-  PetscCall(LogStart(comm));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (!GridFits(size, c->cells)) {
     PetscCall(PetscFPrintf(comm, stderr,
@@ -346,6 +345,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(LogStart(comm));
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
