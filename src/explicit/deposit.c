@@ -44,14 +44,14 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
     RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
+    GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
       const double of = mat->relperm.of_pores ? 1.0 - w->Sh[q] : 1.0;
 
-      w->sw[q]           = 1.0 - sg[q];
-      w->p[q]            = pw[q] + sg[q] * pc[q];
-      w->rho[PHASE_G][q] = mat->gas.M * pg[q] / (CL_GAS_CONSTANT * (T[q] + CL_ZERO_CELSIUS));
-      x[PHASE_W][q]      = of * w->sw[q];
-      x[PHASE_G][q]      = of * sg[q];
+      w->sw[q]      = 1.0 - sg[q];
+      w->p[q]       = pw[q] + sg[q] * pc[q];
+      x[PHASE_W][q] = of * w->sw[q];
+      x[PHASE_G][q] = of * sg[q];
     }
     RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], kr);
     for (int q = 0; q < r.n; q++)

@@ -101,12 +101,12 @@ INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, co
     wg[q]  = -open[q] * rho_w[q] * ds;
     wT[q]  = rho_w[q] * (1.0 - sg) * (V_T - open[q] * mat->water.beta);
     if (s.fluids == 2) {
-      const double rho = e->t[T_RHO + 1][r.p + q], pg = f[P_PG][r.p + q];
+      const double rho = e->t[T_RHO + 1][r.p + q], rho_p = e->t[T_GAS][r.p + q], rho_T = e->t[T_GAS + 1][r.p + q];
 
       e->t[T_EOS + 1][r.p + q]   = open[q] * sg * rho;
       e->t[T_SLOPE + 3][r.p + q] = -open[q] * rho * ds;
-      e->t[T_SLOPE + 4][r.p + q] = open[q] * rho * (ds + sg / pg);
-      e->t[T_SLOPE + 5][r.p + q] = rho * sg * (V_T - open[q] / (T[q] + CL_ZERO_CELSIUS));
+      e->t[T_SLOPE + 4][r.p + q] = open[q] * (rho * ds + sg * rho_p);
+      e->t[T_SLOPE + 5][r.p + q] = sg * (rho * V_T + open[q] * rho_T);
     }
   }
 }

@@ -349,7 +349,7 @@ static void MakeCase(Case *c, Material *mat, Region *region)
                     .solid     = {2600.0, INFINITY, 0.0, 0.0, 4.0},
                     .hydrate   = {900.0, INFINITY, 0.0, 0.0, 4.0},
                     .water     = {1000.0, 2.2e9, 0.0, 3.25e6, 4.0},
-                    .gas       = {0.016},
+                    .gas       = {.M = 0.016},
                     .retention = {.p0 = 5e4, .m = 0.3, .lambda = 1.5, .Swr = 0.2, .Sgr = 0.1}};
   Check(RetentionSetType(&mat->retention, "van_genuchten"));
   region[0] = (Region){.name        = "a",
