@@ -39,7 +39,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
 {
   const double t_begin = s->model->c->t_begin;
   double       done, left;
-  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "", yields[128];
+  char         cuts[32] = "", error[64] = "", solved[48], stage[80], begin[32] = "", yields[128];
 
   PetscFunctionBeginUser;
   if (run->quiet)
@@ -56,7 +56,8 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   else
     PetscCall(PetscSNPrintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton));
   if (s->adaptive && !s->explicit)
-    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
+    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance (%s)", info->err,
+                            stepper_error_word[info->rules]));
   PetscCall(PetscPrintf(s->model->grid.comm,
                         "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
                         stage, s->state.step, begin, s->state.t - t_begin, 100.0 * done, info->dt, solved, error, cuts,
@@ -134,21 +135,23 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char                text[2560], local[512], loose[256], ice[256], yields[256], gaps[256], *stages, *all;
-  ModelTotals         t;
-  bool                ok;
+  char        text[2560], above[64] = "", local[512], loose[256], ice[256], yields[256], gaps[256], *stages, *all;
+  ModelTotals t;
+  bool        ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   PetscCall(LocalSummary(s, local));
   PetscCall(YieldSummary(s->model, yields));
   PetscCall(LooseSummary(s, loose));
+  if (z->loose_total)
+    PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(IceSummary(s, ice));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-                          " Newton iterations, %.2f s\n%s"
+                          " Newton iterations, %.2f s%s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
                           "%s%s%s%s  results in %s\n",
@@ -156,7 +159,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
                           s->model->c->nstage ? "by stage"
                           : s->auto_.on       ? STEPPER_AUTO
                                               : s->scheme->name,
-                          z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, local,
+                          z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
