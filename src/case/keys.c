@@ -160,6 +160,9 @@ static const Key case_key[] = {
         Case, "mean_dilatation", mean_dilatation, "no",
         "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
         "does not lock"),
+    REAL(Case, "mean_strain", mean_strain, "", "[0,1]", "0",
+         "share of the mean motion of its cell in the strain of a particle: a skeleton that yields flows more freely; "
+         "1 leaves modes without stiffness, 0.95 does for collapse loads"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
