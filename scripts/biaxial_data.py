@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from results import read_csv, read_snapshots
+from clathra import read_csv, read_snapshots
 
 HEIGHT, WIDTH = 4.0, 1.0  # of the half sample, m
 BAND = 0.3  # eps of what is called a band

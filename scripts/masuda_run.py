@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from results import read_csv
+from clathra import read_csv
 
 REFERENCE = Path(__file__).resolve().parents[1] / "cases" / "masuda" / "reference" / "masuda.csv"
 RADIUS, LENGTH = 25.4e-3, 0.3  # m, of the core

@@ -1,187 +1,215 @@
 #!/usr/bin/python3
-"""Figures of any run: plot.py OUT_DIR [OUT_DIR ...] writes OUT_DIR/figures/*.png.
+"""Pictures of any run: plot.py FOLDER [FOLDER ...] writes FOLDER/figures/*.png
 
 probes.png     histories at the probes
 balance.png    errors of the water, methane and energy balance, length of the steps
-profiles.png   a strip one cell wide: profiles along it at up to six snapshots
-particles.png  any other body: particles coloured by p, T, S_h and S_w at up to four snapshots
+profiles.png   a strip one cell wide: profiles along it at up to six snapshots; upright if the strip is
+particles.png  any other body, deformed: p, T, S_h, S_w (or what else changes) at up to four snapshots
+maps.png       the same body at the last snapshot: everything else that changes, stress, strain, porosity, flow
+
+scripts/report.py makes one page of it all.
 """
 import sys
-from pathlib import Path
 
 import numpy as np
 
-from plotting import COLOURS, MM, PA, QUANTITIES, STYLES, boxes, derived, is_column, plt, save, set_style, stage_axis, steady_limits, time_unit
-from results import probe_names, read_csv, read_snapshots
+import clathra
+from clathra import shown
+from clathra.units import duration
+from plotting import COLOURS, STYLES, boxes, plt, save, set_style, steady_limits
 
-# Panels of probes.png: label, [(column, factor, name in the legend)], least width of the y axis.  A scene without a field
-# has no columns for it, and no panel or curve.
-PANELS = [
-    ("pore pressure (MPa)", [("p_Pa", PA, ""), ("p_w_Pa", PA, "water"), ("p_g_Pa", PA, "gas")], 0.01),
-    (QUANTITIES["T"], [("T_degC", 1, "")], 0.1),
-    (QUANTITIES["S_h"], [("S_h", 1, "")], 0.01),
-    ("saturation (–)", [("S_w", 1, "water"), ("S_g", 1, "gas")], 0.01),
-    ("displacement (mm)", [("u_x_m", MM, "x"), ("u_y_m", MM, "y")], 0.01),
-    ("effective stress (MPa, tension +)", [("sxx_Pa", PA, "xx"), ("syy_Pa", PA, "yy"), ("sxy_Pa", PA, "xy")], 0.01),
-]
-
-SHORT = {"p": "p (MPa)", "T": "T (°C)", "S_h": "$S_h$ (–)", "S_w": "$S_w$ (–)",
-         "u_x": "$u_x$ (mm)", "u_y": "$u_y$ (mm)"}  # beside colour bars  # fmt: skip
+FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
+ARROWS = 18  # along the longer side
 
 
-def spread(count, most):
-    """Indices of at most `most` of `count` things, first and last among them."""
-    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int)))
+def head(run, what):
+    return f"{run.title}: {what}"
 
 
-def history_panel(axes, probes, stages, names, label, columns, least):
-    shown, (unit, seconds) = [], time_unit(probes["time_s"][-1])
+def stage_ticks(axes, ends):
+    lengths = np.diff([0.0, *ends])
+    axes.set(xticks=np.arange(len(lengths)) + 0.5, xticklabels=[duration(n) for n in lengths], xlabel="time in each stage, of this length",
+             xlim=(0, len(lengths)))  # fmt: skip
+    axes.grid(False, axis="x")
+    for k in range(1, len(lengths)):
+        axes.axvline(k, color="0.6", lw=0.8)
+
+
+def history_panel(axes, run, stages, label, unit, columns, least):
+    probes, values = run.probes, []
+    name, seconds = clathra.time_unit(probes["time_s"][-1])
     x = stages[0](probes["time_s"]) if stages else probes["time_s"] / seconds
-    for colour, name in zip(COLOURS * len(names), names):
+    for colour, probe in zip(COLOURS * len(run.probe_names), run.probe_names):
         for style, (column, factor, _) in zip(STYLES, columns):
-            values = probes[f"{name}.{column}"] * factor
-            axes.plot(x, values, style, color=colour)
-            shown.append(values)
-    steady_limits(axes, *shown, least=least)
-    axes.set(xlabel=f"time ({unit})", ylabel=label)
+            values.append(probes[f"{probe}.{column}"] * factor)
+            axes.plot(x, values[-1], style, color=colour)
+    steady_limits(axes, *values, least=least)
+    axes.set(xlabel=f"time ({name})", ylabel=shown.tex(f"{label} ({unit})"))
     if stages:
-        lengths = np.diff([0.0, *stages[1]])
-        axes.set(xticks=np.arange(len(lengths)) + 0.5, xticklabels=["{:.4g} {}".format(n / u[1], u[0]) for n in lengths for u in [time_unit(5 * n)]],
-                 xlabel="time in each stage, of this length", xlim=(0, len(lengths)))  # fmt: skip
-        axes.grid(False, axis="x")
-        for k in range(1, len(lengths)):
-            axes.axvline(k, color="0.6", lw=0.8)
+        stage_ticks(axes, stages[1])
     if len(columns) > 1:
-        handles = [plt.Line2D([], [], color="0.3", ls=s, label=c[2] or "mean") for s, c in zip(STYLES, columns)]
-        axes.legend(handles=handles, loc="best")
+        handles = [plt.Line2D([], [], color="0.3", ls=s, label=c[2]) for s, c in zip(STYLES, columns)]
+        axes.legend(handles=handles, loc="center left", bbox_to_anchor=(1.0, 0.5))
 
 
-def plot_probes(out):
-    probes = read_csv(out / "probes.csv")
-    names = probe_names(probes)
-    stages = stage_axis(read_csv(out / "balance.csv")) if (out / "balance.csv").is_file() else None
-    if not names or not len(probes["time_s"]):
-        return
-    written = lambda columns: [c for c in columns if f"{names[0]}.{c[0]}" in probes]
-    panels = [(label, written(columns), least) for label, columns, least in PANELS if written(columns)]
-    if not any(probes.get(f"{n}.S_h", np.zeros(1)).any() for n in names):
-        panels = [p for p in panels if p[1][0][0] != "S_h"]
-    constant = lambda c: all(np.ptp(probes[f"{n}.{c}"]) == 0 for n in names)
-    panels = [p for p in panels if p[1][0][0] != "S_w" or not all(constant(c[0]) for c in p[1])]
+def plot_probes(run):
+    if len(run.probes.get("time_s", ())) < 2:
+        return False  # no step was made
+    panels = shown.histories(run.probes, run.probe_names)
+    if not panels:
+        return False
+    stages = shown.stage_axis(run.balance)
     wide = min(len(panels), 3 if len(panels) > 4 else 2)
-    figure, grid = plt.subplots(-(-len(panels) // wide), wide, figsize=(4.33 * wide, 3.5 * -(-len(panels) // wide)),
-                                squeeze=False)  # fmt: skip
+    figure, grid = plt.subplots(-(-len(panels) // wide), wide, figsize=(4.9 * wide, 3.5 * -(-len(panels) // wide)), squeeze=False)
     for axes in grid.flat[len(panels) :]:
         axes.remove()
     for axes, panel in zip(grid.flat, panels):
-        history_panel(axes, probes, stages, names, *panel)
-    handles = [plt.Line2D([], [], color=c, lw=2.5, label=f"probe {n}") for c, n in zip(COLOURS * len(names), names)]
-    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.01, 0.0), ncol=2 * wide)
-    figure.suptitle(f"{out.name}: histories at the probes", x=0.01, ha="left")
-    save(figure, out / "figures", "probes")
+        history_panel(axes, run, stages, *panel)
+    handles = [plt.Line2D([], [], color=c, lw=2.5, label=n) for c, n in zip(COLOURS * len(run.probe_names), run.probe_names)]
+    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 0.95), title="probe")
+    figure.suptitle(head(run, "histories at the probes"), x=0.01, ha="left")
+    save(figure, run.folder / "figures", "probes")
+    return True
 
 
-def plot_balance(out):
-    if not (out / "balance.csv").is_file():
-        return
-    balance = read_csv(out / "balance.csv")
+def plot_balance(run):
+    balance = run.balance
     if not len(balance["time_s"]):
-        return
-    unit, seconds = time_unit(balance["time_s"][-1])
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8))
-    for (name, label), style in zip((("water", "water"), ("methane", "methane"), ("heat", "energy")), STYLES):
+        return False
+    unit, seconds = clathra.time_unit(balance["time_s"][-1])
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 3.8))
+    for (name, label), style in zip((("water", "water"), ("methane", "methane"), ("heat", "energy (of 1 K)")), STYLES):
         error = np.abs(balance[f"{name}_error"])
-        if not error.any():
-            continue  # not in the scene
-        left.semilogy(balance["time_s"] / seconds, np.maximum(error, 1e-18), style, label=label)
+        if error.any():  # it is in the scene
+            left.semilogy(balance["time_s"] / seconds, np.maximum(error, 1e-18), style, label=label)
     left.set(xlabel=f"time ({unit})", ylabel="balance error / initial store (–)", title="conservation")
     if left.lines:
-        left.legend()
-    right.step(balance["time_s"] / seconds, balance["dt_s"], where="pre", color=COLOURS[0])
-    right.set(xlabel=f"time ({unit})", ylabel="step (s)", yscale="log", title=f"{len(balance['time_s'])} steps, "
+        left.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    else:
+        left.remove()
+    right.step(balance["time_s"] / seconds, balance["dt_s"], where="pre", color=COLOURS[0], marker="." if len(balance["dt_s"]) < 3 else "")
+    right.set(xlabel=f"time ({unit})", ylabel="step (s)", yscale="log", title=f"{int(balance['step'][-1])} steps, "
               f"{int(balance['newton'].sum())} Newton iterations")  # fmt: skip
-    save(figure, out / "figures", "balance")
+    figure.suptitle(head(run, "balances and steps"), x=0.01, ha="left")
+    save(figure, run.folder / "figures", "balance")
+    return True
 
 
-def present(snapshots, names):
-    """Those of the quantities that the scene has; hydrate and saturations only where they are not the same everywhere."""
-    held = [derived(particles) for _, particles in snapshots]
-    varies = lambda name: np.ptp(np.concatenate([h[name] for h in held])) > 0
-    return [n for n in names if n in held[0] and (n not in ("S_h", "S_w") or varies(n))]
-
-
-def plot_profiles(out, snapshots, axis):
-    """Profiles along the strip against the current position, one colour a snapshot."""
-    chosen = [snapshots[k] for k in spread(len(snapshots), 6)]
-    names = ["p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y"]
-    names = present(chosen, names)
-    figure, grid = plt.subplots(1, len(names), figsize=(3.4 * len(names) + 1, 3.8), squeeze=False)
-    grid = grid[0]
-    colours = plt.cm.viridis(np.linspace(0, 0.88, len(chosen)))
-    unit, seconds = time_unit(chosen[-1][0])
-    for axes, name in zip(grid, names):
-        shown = []
-        for (time, particles), colour in zip(chosen, colours):
+def plot_profiles(run, times, snapshots, axis):
+    """Profiles along the strip against the current position, one colour a snapshot; along y with y upright."""
+    keys = ("p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y", "s_xx" if axis == 0 else "s_yy")
+    quantities = [q for q in shown.shown(snapshots) if q.key in keys]
+    if not quantities:
+        return False
+    size = (3.4 * len(quantities) + 1, 3.8) if axis == 0 else (2.6 * len(quantities) + 1, 5.6)
+    figure, grid = plt.subplots(1, len(quantities), figsize=size, squeeze=False, sharey=axis == 1)
+    colours = plt.cm.viridis(np.linspace(0, 0.88, len(snapshots)))
+    for axes, q in zip(grid[0], quantities):
+        for time, particles, colour in zip(times, snapshots, colours):
             order = np.argsort(particles["position"][:, axis], kind="stable")
-            values = derived(particles)[name][order]
-            axes.plot(particles["position"][order, axis], values, ".-", ms=2.5, lw=1.1, color=colour, label=f"{time / seconds:.4g} {unit}")
-            shown.append(values)
-        steady_limits(axes, *shown, least=0.01)
-        axes.set(xlabel=f"{'xy'[axis]} (m)", ylabel=QUANTITIES[name])
-    grid[-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), title="time")
-    figure.suptitle(f"{out.name}: profiles of the particles", x=0.01, ha="left")
-    save(figure, out / "figures", "profiles")
+            along, values = particles["position"][order, axis], q.of(particles)[order]
+            axes.plot(*((along, values) if axis == 0 else (values, along)), ".-", ms=2.5, lw=1.1, color=colour, label=duration(time))
+        axes.set(**{"xlabel": "x (m)", "ylabel": q.axis} if axis == 0 else {"xlabel": q.axis})
+    if axis == 1:
+        grid[0][0].set_ylabel("y (m)")
+    grid[0][-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), title="time")
+    figure.suptitle(head(run, "profiles of the particles"), x=0.01, ha="left")
+    save(figure, run.folder / "figures", "profiles")
+    return True
 
 
-def plot_scatter(out, snapshots):
+def frame_size(snapshots, most=(3.4, 3.2)):
+    """Width and height (inches) of one map with equal scales."""
+    extent = np.max([np.ptp(p["position"], axis=0) for p in snapshots], axis=0)
+    width = np.clip(4.5 * extent[0] / extent[1], 1.0, most[0])
+    return width, np.clip(width * extent[1] / extent[0], 0.8, most[1])
+
+
+def tidy_axes(axes, narrow):
+    axes.set_aspect("equal")
+    axes.set(xlabel="x (m)", ylabel="y (m)")
+    axes.label_outer()
+    if narrow:
+        axes.tick_params(axis="x", labelrotation=90)
+
+
+def plot_film(run, times, snapshots, quantities):
     """One row a quantity, one column a snapshot, one colour scale a row."""
-    chosen = [snapshots[k] for k in spread(len(snapshots), 4)]
-    unit, seconds = time_unit(chosen[-1][0])
-    names = present(chosen, ["p", "T", "S_h", "S_w", "u_x", "u_y"])[:4]
-    extent = np.ptp(chosen[0][1]["position"], axis=0)
-    width = np.clip(4.5 * extent[0] / extent[1], 1.0, 3.4)
-    height = np.clip(width * extent[1] / extent[0], 0.8, 3.2) + 0.35
-    figure, grid = plt.subplots(len(names), len(chosen), figsize=(width * len(chosen) + 1.5, height * len(names) + 0.5),
+    width, height = frame_size(snapshots)
+    figure, grid = plt.subplots(len(quantities), len(snapshots), figsize=(width * len(snapshots) + 1.8, (height + 0.35) * len(quantities) + 0.5),
                                 squeeze=False, sharex=True, sharey=True)  # fmt: skip
-    for row, name in zip(grid, names):
-        values = [derived(particles)[name] for _, particles in chosen]
-        low, high = min(map(np.min, values)), max(map(np.max, values))
-        if high - low < 1e-9:
-            low, high = low - 1e-3, high + 1e-3
-        for axes, (time, particles), v in zip(row, chosen, values):
-            dots = boxes(axes, particles, v, low, high)
-            axes.set_aspect("equal")
-            axes.set_title(f"{time / seconds:.4g} {unit}" if name == names[0] else "")
-        row[0].set_ylabel("y (m)")
-        figure.colorbar(dots, ax=list(row), label=SHORT[name], pad=0.01, aspect=15)
-    for axes in grid[-1]:
-        axes.set_xlabel("x (m)")
-        if height * extent[0] < 0.6 * extent[1]:  # narrow
-            axes.tick_params(axis="x", labelrotation=90)
-    figure.suptitle(f"{out.name}: particles", x=0.01, ha="left")
-    save(figure, out / "figures", "particles")
+    for row, q in zip(grid, quantities):
+        values = [q.of(p) for p in snapshots]
+        low, high = np.nanmin(values), np.nanmax(values)
+        for axes, time, p, v in zip(row, times, snapshots, values):
+            drawn = boxes(axes, p, v, low, high, snapshots[0])
+            axes.set_title(f"t = {duration(time)}" if q is quantities[0] else "")
+            tidy_axes(axes, width < 1.5)
+        figure.colorbar(drawn, ax=list(row), label=q.axis, pad=0.01, aspect=15)
+    figure.suptitle(head(run, "the body at output times"), x=0.01, ha="left")
+    save(figure, run.folder / "figures", "particles")
 
 
-def plot_run(out):
-    plot_probes(out)
-    plot_balance(out)
-    snapshots = read_snapshots(out)
-    if snapshots:
-        axis = is_column(snapshots[0][1]["position"])
-        if axis is None:
-            plot_scatter(out, snapshots)
-        else:
-            plot_profiles(out, snapshots, axis)
+def arrows(axes, p, fluid):
+    """Velocity of a fluid in the pores against the skeleton, at particles that lie evenly; the longest arrow's speed."""
+    x, v = p["position"], p[fluid] - p.get("v_s", 0.0)
+    size = np.ptp(x, axis=0).max() / ARROWS
+    at = np.unique(np.floor((x - x.min(0)) / size) @ [10000, 1], return_index=True)[1]
+    longest = np.nanmax(np.hypot(*v[at].T))
+    if longest > 0:
+        axes.quiver(*x[at].T, *v[at].T, angles="xy", scale_units="xy", scale=longest / (1.6 * size), width=0.004, color="0.1", alpha=0.8)
+    return longest
+
+
+def plot_maps(run, time, particles, first, quantities):
+    """Every quantity at one time, each with a scale of its own; arrows of flow over the speeds of the fluids."""
+    width, height = frame_size([particles], (4.2, 3.6))
+    wide = min(len(quantities), max(1, round(13 / (width + 1.3))))
+    rows = -(-len(quantities) // wide)
+    figure, grid = plt.subplots(rows, wide, figsize=((width + 1.3) * wide, (height + 0.6) * rows + 0.4), squeeze=False)
+    for axes in grid.flat[len(quantities) :]:
+        axes.remove()
+    for axes, q in zip(grid.flat, quantities):
+        figure.colorbar(boxes(axes, particles, q.of(particles), first=first), ax=axes, pad=0.01, aspect=15)
+        axes.set_title(q.axis)
+        if q.key in ("v_w", "v_g"):
+            arrows(axes, particles, q.key)
+        tidy_axes(axes, width < 1.5)
+    figure.suptitle(head(run, f"t = {duration(time)}"), x=0.01, ha="left")
+    save(figure, run.folder / "figures", "maps")
+
+
+def plot_body(run):
+    times = run.times
+    if not len(times):
+        return False
+    first = run.particles(times[0])
+    axis = shown.strip_axis(first["position"])
+    times = times[shown.spread(len(times), 4 if axis is None else 6)]
+    snapshots = [first, *(run.particles(t) for t in times[1:])]
+    if axis is not None:
+        return plot_profiles(run, times, snapshots, axis)
+    changing = shown.shown(snapshots)
+    rows = [q for q in changing if q.key in FIRST][:4]
+    if rows:
+        plot_film(run, times, snapshots, rows)
+    rest = [q for q in changing if q not in rows and np.nanmax(q.of(snapshots[-1])) > np.nanmin(q.of(snapshots[-1]))]
+    if rest and len(times) > 1:
+        plot_maps(run, times[-1], snapshots[-1], first, rest)
+    return bool(rows)
 
 
 def main(folders):
     if not folders:
         sys.exit(__doc__)
     set_style()
-    for folder in map(Path, folders):
-        if not (folder / "probes.csv").is_file():
-            sys.exit(f"plot.py: {folder} holds no run (no probes.csv)")
-        plot_run(folder)
+    for folder in folders:
+        try:
+            run = clathra.Run(folder)
+        except clathra.NoRun as error:
+            sys.exit(f"plot.py: {error}")
+        if not any([plot_probes(run), plot_balance(run), plot_body(run)]):
+            print(f"  {folder}: nothing to draw yet")
 
 
 if __name__ == "__main__":

@@ -9,8 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from plotting import COLOURS, MM, PA, QUANTITIES, derived, plt, save, set_style, steady_limits
-from results import probe_names, read_csv, read_snapshots
+import clathra
+from clathra import probe_names, read_csv
+from clathra.shown import QUANTITIES
+from plotting import COLOURS, MM, PA, plt, save, set_style, steady_limits
 
 REFERENCE = Path(__file__).resolve().parents[1] / "cases" / "bp2" / "reference"
 INNER, LOADED = 0.6, 1.0  # m from the fixed end
@@ -80,28 +82,24 @@ def plot_histories(folder, case, keys, size, name, title, out):
     save(figure, out, name)
 
 
-def snapshot_near(snapshots, time):
-    """The snapshot at `time`, or None."""
-    return next((s for t, s in snapshots if abs(t - time) < 1e-6 * time), None)
-
-
 def plot_profiles(folder, out, times=(500.0, 1000.0)):
-    snapshots = read_snapshots(folder)
-    found = [(t, s) for t in times if (s := snapshot_near(snapshots, t)) is not None]
+    run = clathra.Run(folder)
+    found = [(t, run.particles(t)) for t in times if np.any(np.isclose(run.times, t))]
     if not found:
         print(f"  no particle snapshots at {times} s in {folder}")
         return
-    names = ("p", "T", "S_h", "u_x")
+    wanted = {q.key: q for q in QUANTITIES}
+    quantities = [wanted[key] for key in ("p", "T", "S_h", "u_x")]
     figure, grid = plt.subplots(1, 4, figsize=(14, 3.8))
-    for axes, name, letter in zip(grid, names, "abcd"):
+    for axes, quantity, letter in zip(grid, quantities, "abcd"):
         shown = []
         for (time, particles), colour, style in zip(found, COLOURS, ("-", "--")):
             x = particles["position"][:, 0]
             order = np.argsort(x, kind="stable")
-            shown.append(derived(particles)[name][order])
+            shown.append(quantity.of(particles)[order])
             axes.plot(x[order], shown[-1], style, color=colour, label=f"{time:g} s")
         steady_limits(axes, *shown, least=0.01)
-        axes.set(xlabel="x (m)", ylabel=QUANTITIES[name], xlim=(0, 1))
+        axes.set(xlabel="x (m)", ylabel=quantity.axis, xlim=(0, 1))
         axes.set_title(f"({letter})", fontweight="bold")
     grid[0].legend(loc="best")
     figure.suptitle("BP2 case 2 (hydrate kinetics on): profiles (Figure 11)", x=0.01, ha="left")

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from plotting import COLOURS, MM, PA, boxes, plt, save, set_style
-from results import read_csv, read_snapshots
+from clathra import read_csv, read_snapshots
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "verification"))

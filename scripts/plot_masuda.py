@@ -12,7 +12,7 @@ import numpy as np
 
 from masuda_run import BARS, JUDGED, REFERENCE, curves, differences
 from plotting import COLOURS, PA, plt, save, set_style, steady_limits
-from results import read_csv, read_snapshots
+from clathra import read_csv, read_snapshots
 
 TIMES = ((600, "10 min"), (3600, "1 h"), (7200, "2 h"), (10800, "3 h"), (14400, "4 h"))
 FIELDS = (  # variable, factor, label, colours

@@ -1,4 +1,4 @@
-"""What the plot scripts share: style, names and units of the plotted quantities."""
+"""What the plot scripts share: style, colours, saving; what is plotted stands in clathra/shown.py."""
 from pathlib import Path
 
 import matplotlib
@@ -8,10 +8,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
 
+from clathra.shown import MM, MPA, corners
+
 # Okabe and Ito's colours, told apart by colour-blind readers too; line styles differ as well.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 STYLES = ["-", "--", "-.", ":"]
-PA, MM = 1e-6, 1e3  # to MPa, to mm
+PA = MPA
 
 
 def set_style():
@@ -24,38 +26,6 @@ def set_style():
     })  # fmt: skip
 
 
-def derived(particles):
-    """Plotted quantities of one snapshot, in the units of QUANTITIES, that its scene has: {name: (n,) array}."""
-    found = {"p": ("p", 0, PA), "T": ("T", 0, 1), "S_h": ("S_h", 0, 1), "S_w": ("S_w", 0, 1),
-             "u_x": ("displacement", 0, MM), "u_y": ("displacement", 1, MM)}  # fmt: skip
-    return {name: particles[v][:, k] * factor for name, (v, k, factor) in found.items() if v in particles}
-
-
-QUANTITIES = {  # name: label
-    "p": "pore pressure p (MPa)",
-    "T": "temperature T (°C)",
-    "S_h": "hydrate saturation $S_h$ (–)",
-    "S_w": "water saturation $S_w$ (–)",
-    "u_x": "displacement $u_x$ (mm)",
-    "u_y": "displacement $u_y$ (mm)",
-}
-
-
-def time_unit(end):
-    """(name, seconds) of the unit in which times up to `end` (s) read well."""
-    units = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", 3.15576e7))
-    return next((u for u in reversed(units) if end >= 5 * u[1] and (u[0] != "min" or end >= 7200)), units[0])
-
-
-def is_column(position):
-    """Axis (0 or 1) along which the body is a strip, at least eight times as long as wide and with no more than four rows of
-    particles across; None if it is not one."""
-    extent = np.ptp(position, axis=0)
-    axis = int(np.argmax(extent))
-    rows = np.unique(np.round(position[:, 1 - axis] / extent[axis], 6))
-    return axis if extent[1 - axis] < extent[axis] / 8 and len(rows) <= 4 else None
-
-
 def steady_limits(axes, *values, least=1e-9):
     """Keeps a nearly constant curve from being blown up: y range at least `least` wide."""
     values = np.concatenate([np.ravel(v) for v in values])
@@ -64,25 +34,15 @@ def steady_limits(axes, *values, least=1e-9):
         axes.set_ylim(values.mean() - least, values.mean() + least)
 
 
-def boxes(axes, particles, values, low=None, high=None):
-    """Particles as the boxes that they fill, where they are, coloured by values (n,) from low to high; returns the collection."""
-    x, l = particles["position"], particles["half_length"]
-    corners = np.stack([x + l * s for s in ((-1, -1), (1, -1), (1, 1), (-1, 1))], axis=1)
-    found = PolyCollection(corners, array=values, cmap="viridis", lw=0.15, edgecolor="face")
+def boxes(axes, particles, values, low=None, high=None, first=None):
+    """Particles as what they fill, deformed since `first` (the same particles at the start), coloured by values (n,) from low to
+    high; returns the collection."""
+    found = PolyCollection(corners(particles, first or particles), array=values, cmap="viridis", lw=0.15, edgecolor="face")
     found.set_clim(low, high)
     axes.add_collection(found)
     axes.autoscale_view()
     axes.grid(False)
     return found
-
-
-def stage_axis(balance):
-    """(map of times (s) to an axis on which each stage is one wide, ends of the stages (s)); None without stages."""
-    stage = balance.get("stage", np.zeros(len(balance["time_s"])))
-    ends = [balance["time_s"][stage == k][-1] for k in np.unique(stage)]
-    if len(ends) < 2 or np.any(np.diff(ends) <= 0):
-        return None
-    return (lambda t: np.interp(t, [0.0, *ends], range(len(ends) + 1))), ends
 
 
 def save(figure, folder, name):

@@ -6,7 +6,7 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 export python=/usr/bin/python3 # Debian's, the one that has the packages
 
-run_packages=(petsc-dev libpetsc-real-dev libhdf5-openmpi-dev libopenmpi-dev openmpi-bin libopenblas0-pthread
+run_packages=(petsc-dev libpetsc-real-dev libhdf5-openmpi-dev libopenmpi-dev openmpi-bin libyaml-dev libopenblas0-pthread
   libcmocka-dev python3-numpy python3-h5py python3-matplotlib cmake ninja-build pkg-config gcc)
 check_packages=("${run_packages[@]}" clang-format cppcheck)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from results import read_csv, read_snapshots
+from clathra import read_csv, read_snapshots
 
 MOVED = 0.01  # of the height: what has moved farther has failed
 STARTED = 0.01  # failed share of the body at the onset

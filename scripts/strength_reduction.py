@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from results import read_snapshots
+from clathra import read_snapshots
 
 ROOT = Path(__file__).resolve().parent.parent
 MOST = 6  # widenings of the bracket

@@ -29,6 +29,10 @@ PetscErrorCode FolderRelease(Folder *folder);
 PetscErrorCode FolderWriteText(MPI_Comm comm, const char *dir, const char *name, const char *text, size_t bytes,
                                bool *ok);
 
+/* Adds to the end of a text file of the folder; fresh: a new file in its place.  Collective. */
+PetscErrorCode FolderAppendText(MPI_Comm comm, const char *dir, const char *name, bool fresh, const char *text,
+                                size_t bytes, bool *ok);
+
 /* Creates the output folder's files (through rank 0).  append: continue the files of a run that was restarted at
    state->t: rows and snapshots later than t are dropped. */
 PetscErrorCode OutputCreate(const Model *m, const StepperState *s, bool append, Output **out);

@@ -21,16 +21,13 @@ bool        QuantityParse(const char *text, const char *si, double *value, char 
 bool        NumberParse(const char *text, double *value, const char **end); /* decimal, finite; no nan, inf or hex */
 const char *QuantityName(const char *si);                                   /* "a pressure" for "Pa" */
 
-/* ---------------------------------------------------------------- scan.c, yaml.c */
+/* ---------------------------------------------------------------- document.c, reader.c */
 typedef struct {
-  char *name, *value; /* option name without the dash; NULL value = empty */
-  bool  used;
-} Entry;
-typedef struct {
-  char    *name;
-  PetscInt line, offset; /* offset in the text of a key that begins a line, else -1 */
-  bool     map;          /* other keys stand below it */
-} Mark;                  /* a key of the file, inner or leaf */
+  char    *name, *value; /* option name without the dash; NULL value = empty */
+  PetscInt line;
+  bool     map; /* no value: other keys stand below it */
+  bool     used;
+} Entry; /* a key of the file */
 
 typedef enum {
   GROUP_CASE = 0,
@@ -48,9 +45,8 @@ typedef struct {
   MPI_Comm    comm;
   PetscMPIInt rank;
   char        file[PETSC_MAX_PATH_LEN];
-  PetscInt    nentry, nmark;
+  PetscInt    nentry;
   Entry      *entry;
-  Mark       *mark;
   PetscInt    nerror;
   char       *error[CASE_ERRORS];
   bool        bad[GROUP_COUNT]; /* some key of the group could not be read */
@@ -59,14 +55,13 @@ typedef struct {
 /* Adds one error: "file:line: key = value: message"; `key` and `value` may be NULL. */
 void ReaderError(Reader *r, const char *key, const char *value, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Reads the file on rank 0, shares it, and fills entries and marks; errors go to the reader. */
+/* Reads the file on rank 0, shares it, and fills the entries; errors go to the reader. */
 PetscErrorCode ReaderLoad(Reader *r, const char *path);
 PetscErrorCode ReaderDestroy(Reader *r);
 /* Finds the value of a key: the command line wins over the file.  *from_file tells which. */
 PetscErrorCode ReaderFind(Reader *r, const char *name, const char **value, bool *found, bool *from_file);
-/* Walks the text: refuses what a case must not contain and notes the line of every key; false: one error was added.
-   A list in a list, [[a, b], [c, d]], which PETSc does not read, becomes [ a; b ,  c; d ]. */
-bool ReaderScan(Reader *r, char *text);
+/* The text as YAML into entries; false: one error was added. */
+bool ReaderParse(Reader *r, const char *text);
 
 /* ---------------------------------------------------------------- keys.c */
 typedef enum {

@@ -18,7 +18,7 @@ PetscErrorCode KeyNames(Reader *r, const Case *c, const char *shown, const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Inner lists as ReaderScan writes them: [[a, b], [c, d]] to a; b, c; d.  false: it is no list of lists. */
+/* Inner lists as ReaderParse writes them: [[a, b], [c, d]] to a; b, c; d.  false: it is no list of lists. */
 static bool FlattenLists(char *text)
 {
   int depth = 0;

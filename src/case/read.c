@@ -130,15 +130,6 @@ static bool OfBadBoundary(const Case *c, const char *name)
   return false;
 }
 
-/* A value of the file of which PETSc kept nothing: an empty map or list, or a name that reads like a number. */
-static bool Dropped(const Reader *r, const Mark *m)
-{
-  for (PetscInt i = 0; !m->map && i < r->nentry; i++)
-    if (!strcasecmp(r->entry[i].name, m->name))
-      return false;
-  return !m->map;
-}
-
 static PetscErrorCode Leftovers(Reader *r, const Case *c)
 {
   PetscInt n;
@@ -147,18 +138,8 @@ static PetscErrorCode Leftovers(Reader *r, const Case *c)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < r->nentry; i++) {
     Entry *e = &r->entry[i];
-    if (!e->used && !OfBadBoundary(c, e->name))
+    if (!e->map && !e->used && !OfBadBoundary(c, e->name))
       Unknown(r, c, e->name, e->name, e->value, last);
-  }
-  for (PetscInt i = 0; i < r->nmark; i++) {
-    const char *name = r->mark[i].name;
-
-    if (!Dropped(r, &r->mark[i]))
-      continue;
-    if (!strncasecmp(name, "nan", 3) || !strncasecmp(name, "inf", 3))
-      Unknown(r, c, name, name, NULL, last);
-    else
-      ReaderError(r, name, NULL, "has no value");
   }
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++) {

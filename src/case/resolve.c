@@ -261,7 +261,8 @@ PetscErrorCode CasePrintKeys(FILE *out)
         "measures the same as the SI unit below. A schedule is a value, or one of `{table: [t0, v0, t1, v1, ...]}` "
         "(straight\n"
         "lines), `{ramp: [v0, v1, t0, t1]}`, `{rate: [v0, rate, t0, t1]}` (from v0 at t0 until t1) and\n"
-        "`{piecewise: [t0, v0, t1, v1, ...]}` (each value holds until the next time).\n\n",
+        "`{piecewise: [t0, v0, t1, v1, ...]}` (each value holds until the next time). YAML's anchors and merge keys\n"
+        "repeat what is said elsewhere: `sand: &sand {...}`, `clay: {<<: *sand, porosity: 0.5}`.\n\n",
         out);
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     const GroupInfo *info = &case_group[g];

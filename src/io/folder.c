@@ -190,6 +190,29 @@ PetscErrorCode FolderRelease(Folder *folder)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode FolderAppendText(MPI_Comm comm, const char *dir, const char *name, bool fresh, const char *text,
+                                size_t bytes, bool *ok)
+{
+  char        path[IO_PATH];
+  PetscMPIInt rank;
+  int         good = 1;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(IoPath(dir, name, path));
+  if (rank == 0 && (fresh || access(path, F_OK) != 0)) {
+    good = IoReplace(path, false, 1, &(IoPiece){text, bytes});
+  } else if (rank == 0) {
+    const int fd = IoOpenEnd(path);
+
+    good = fd >= 0 && IoAppend(fd, path, text, bytes);
+    good = fd >= 0 && IoClose(fd, path) && good;
+  }
+  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, comm));
+  *ok = good;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode FolderWriteText(MPI_Comm comm, const char *dir, const char *name, const char *text, size_t bytes,
                                bool *ok)
 {

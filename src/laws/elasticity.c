@@ -1,4 +1,4 @@
-/* Young's modulus of hydrate-bearing sediment, paper (46). */
+/* Young's modulus of hydrate-bearing sediment, (P46). */
 #include "clathra/laws.h"
 #include "laws_private.h"
 
@@ -21,7 +21,7 @@ static double Stiffening(double S, double b, double *dS)
   return v;
 }
 
-/* E = E_0 + a_h E_h S_h^b_h, Pa, and dE/dS_h. */
+/* (237): E = E_0 + a_h E_h S_h^b_h, Pa, and dE/dS_h. */
 double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh)
 {
   const double a = law->ah * law->Eh;

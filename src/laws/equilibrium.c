@@ -2,7 +2,7 @@
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* Sloan (1987), paper (37): p_e = A1 exp(A2 - A3/T_K). */
+/* (231), Sloan (1987), (P37): p_e = A1 exp(A2 - A3/T_K). */
 static double Equilibrium_Sloan(const Equilibrium *law, double T, double *dpe_dT)
 {
   const double TK = T + LAW_ZERO_CELSIUS;
@@ -36,9 +36,9 @@ static double Polynomial(const double c[6], double t, double *dt)
   return y;
 }
 
-/* Moridis (2003), 148.8-320 K; outside the exponent continues linearly.  The printed switch at 273.2 K jumps by 2 %,
-   which no Newton iteration can sit on: the branches are joined where they cross (273.483 K), C1 over +-0.25 K; the
-   printed values stand everywhere but in 273.2-273.74 K. */
+/* (232), Moridis (2003), 148.8-320 K; outside the exponent continues linearly.  The printed switch at 273.2 K jumps by
+   2 %, which no Newton iteration can sit on: the branches are joined where they cross (273.483 K), C1 over +-0.25 K;
+   the printed values stand everywhere but in 273.2-273.74 K. */
 static double Equilibrium_Moridis(const Equilibrium *law, double T, double *dpe_dT)
 {
   const double t = fmax(MORIDIS_COLDEST, fmin(T, MORIDIS_HOTTEST));

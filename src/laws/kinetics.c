@@ -1,8 +1,8 @@
-/* Kim-Bishnoi kinetics (1987): rate constant and formation surface, paper (35), (36). */
+/* Kim-Bishnoi kinetics (1987): rate constant and formation surface, (P35), (P36). */
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* K_d = K_0 exp(-dE/(R T_K)), mol/(m^2 Pa s), and dK_d/dT; T in degC. */
+/* (233): K_d = K_0 exp(-dE/(R T_K)), mol/(m^2 Pa s), and dK_d/dT; T in degC. */
 double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT)
 {
   *dKd_dT = 0.0;
@@ -17,7 +17,7 @@ double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT)
   return law->K0 * e;
 }
 
-/* A_s = A_geo S_w S_g (1 - S_h) = A_geo s_w s_g (1 - S_h)^3, 1/m, with s_g = 1 - s_w; and its derivatives. */
+/* (234): A_s = A_geo S_w S_g (1 - S_h) = A_geo s_w s_g (1 - S_h)^3, 1/m, with s_g = 1 - s_w; and its derivatives. */
 double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh)
 {
   const double v = 1.0 - Sh, film = law->A_geo * sw * (1.0 - sw);

@@ -1,5 +1,5 @@
 /* Strength of hydrate-bearing sediment: Mohr-Coulomb's yield function, softening, the smooth flow potential of Menetrey
-   and Willam (1995); paper (48)-(52), docs/equations.md, section 14. */
+   and Willam (1995); (P48)-(P52), docs/equations.md, section 14. */
 #include "clathra/laws.h"
 #include "laws_private.h"
 

@@ -1,4 +1,4 @@
-/* Intrinsic permeability k_a = k_0 f_phi(phi) f_Sh(S_h), paper (38)-(41). */
+/* Intrinsic permeability k_a = k_0 f_phi(phi) f_Sh(S_h), (P38)-(P41). */
 #include "clathra/laws.h"
 #include "laws_private.h"
 
@@ -11,7 +11,7 @@ static double Factor_None(const Permeability *law, double x, double *df)
   return 1.0;
 }
 
-/* f = (1 - S_h)^mh; C1 toe near S_h = 1 where mh < 2, so that the slope stays finite. */
+/* (229): f = (1 - S_h)^mh; C1 toe near S_h = 1 where mh < 2, so that the slope stays finite. */
 static double Hydrate_Power(const Permeability *law, double Sh, double *df_dSh)
 {
   const double f = LawToePower(1.0 - Sh, law->mh, df_dSh);
@@ -20,8 +20,8 @@ static double Hydrate_Power(const Permeability *law, double Sh, double *df_dSh)
   return f;
 }
 
-/* Masuda (1999): f = k_h + (1 - k_h)(S_hc - S_h)/S_hc below S_hc, k_h above; the printed (40) divides by S_h and
- * diverges. */
+/* (230), Masuda (1999): f = k_h + (1 - k_h)(S_hc - S_h)/S_hc below S_hc, k_h above; the printed (P40) divides by S_h
+ * and diverges. */
 static double Hydrate_MasudaRamp(const Permeability *law, double Sh, double *df_dSh)
 {
   *df_dSh = 0.0;
@@ -31,7 +31,7 @@ static double Hydrate_MasudaRamp(const Permeability *law, double Sh, double *df_
   return law->kh + (1.0 - law->kh) * (law->Shc - Sh) / law->Shc;
 }
 
-/* Kozeny-Carman: f = (phi/phi_0)^1.5 J^3, J = (1 - phi_0)/(1 - phi); the second factor of the printed (39) is inverted.
+/* (227): f = (phi/phi_0)^1.5 J^3, J = (1 - phi_0)/(1 - phi); the second factor of the printed (P39) is inverted.
  */
 static double Porosity_KozenyCarman(const Permeability *law, double phi, double *df_dphi)
 {
@@ -41,7 +41,7 @@ static double Porosity_KozenyCarman(const Permeability *law, double phi, double 
   return r * root * J3;
 }
 
-/* f = J^2 with J = (1 - phi_0)/(1 - phi) the volume ratio at constant solid volume (Xie and Leo 2004). */
+/* (228): f = J^2 with J = (1 - phi_0)/(1 - phi) the volume ratio at constant solid volume (Xie and Leo 2004). */
 static double Porosity_SquareJacobian(const Permeability *law, double phi, double *df_dphi)
 {
   const double J = (1.0 - law->phi0) / (1.0 - phi);
@@ -50,7 +50,7 @@ static double Porosity_SquareJacobian(const Permeability *law, double phi, doubl
   return J * J;
 }
 
-/* k_a (m^2) at porosity phi and hydrate saturation S_h, and its derivatives. */
+/* (226): k_a (m^2) at porosity phi and hydrate saturation S_h, and its derivatives. */
 double PermeabilityEvaluate(const Permeability *law, double phi, double Sh, double *dk_dphi, double *dk_dSh)
 {
   double       dphi, dSh;

@@ -1,8 +1,9 @@
-/* Relative permeability: modified Corey (1954), paper (42). */
+/* Relative permeability: modified Corey (1954), (P42). */
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* k_r = b^n, b = (s - own)/(1 - S_wr - S_gr) clipped to [0,1]; C1 at 0 by the toe of LawToePower, a kink at b = 1. */
+/* (225): k_r = b^n, b = (s - own)/(1 - S_wr - S_gr) clipped to [0,1]; C1 at 0 by the toe of LawToePower, a kink at b
+ * = 1. */
 static double Corey(double s, double own, double range, double n, double *dkr)
 {
   const double b = (s - own) / range;

@@ -1,5 +1,5 @@
 /* Retention: gas share of the fluid-filled pore space s_g(p_c), p_c = p_g - p_w (Pa); van Genuchten (1980), Brooks and
-   Corey (1964).  (4), (6) are the paper's numbers. */
+   Corey (1964); (P4), (P6). */
 #include "clathra/laws.h"
 #include "laws_private.h"
 
@@ -30,8 +30,8 @@ static double Drained(const Retention *law, double p, double *dp)
   return VG < 0.5 ? 1.0 - VG : -expm1(s);
 }
 
-/* Smooth form: s_g = S_gr' exp(p-/p_t) + (1 - S_wr - S_gr')(1 - VG(p+)), p+ = p_s sp(p_c/p_s), p- = -p_s sp(-p_c/p_s).
-   Trapped gas is compressed once p_c < 0; C-infinity and increasing, where the printed (6) is NaN for p_c < 0.
+/* (223): s_g = S_gr' exp(p-/p_t) + (1 - S_wr - S_gr')(1 - VG(p+)), p+ = p_s sp(p_c/p_s), p- = -p_s sp(-p_c/p_s).
+   Trapped gas is compressed once p_c < 0; C-infinity and increasing, where the printed (P6) is NaN for p_c < 0.
    Zero (or unset) p_smooth, p_trap mean 0.05 p_0, p_0. */
 static double Retention_VanGenuchten(const Retention *law, double pc, double *ds_dpc)
 {
@@ -46,7 +46,7 @@ static double Retention_VanGenuchten(const Retention *law, double pc, double *ds
   return trapped + room * drained;
 }
 
-/* Printed law (4), (6) with p_c cut at 0: s_g = S_gr + (1 - S_wr - S_gr)(1 - VG(max(p_c, 0))); C1. */
+/* Printed law (P4), (P6) with p_c cut at 0: s_g = S_gr + (1 - S_wr - S_gr)(1 - VG(max(p_c, 0))); C1. */
 static double Retention_VanGenuchtenClamped(const Retention *law, double pc, double *ds_dpc)
 {
   const double room = 1.0 - law->Swr - law->Sgr, drained = Drained(law, pc, ds_dpc);
@@ -55,7 +55,7 @@ static double Retention_VanGenuchtenClamped(const Retention *law, double pc, dou
   return law->Sgr + room * drained;
 }
 
-/* s_g = S_gr + (1 - S_wr - S_gr)(1 - (p_c/p_0)^-lambda) for p_c > p_0, else S_gr; kink at p_0. */
+/* (224): s_g = S_gr + (1 - S_wr - S_gr)(1 - (p_c/p_0)^-lambda) for p_c > p_0, else S_gr; kink at p_0. */
 static double Retention_BrooksCorey(const Retention *law, double pc, double *ds_dpc)
 {
   *ds_dpc = 0.0;

@@ -2,15 +2,15 @@
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* L = C0 - C1 T_K, J per kg of hydrate, and dL/dT; T in degC.  Paper (30), with T in kelvin. */
+/* (235): L = C0 - C1 T_K, J per kg of hydrate, and dL/dT; T in degC.  (P30), with T in kelvin. */
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT)
 {
   *dL_dT = -law->C1;
   return law->C0 - law->C1 * (T + LAW_ZERO_CELSIUS);
 }
 
-/* X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)], s_g = 1 - s_w; X in the order solid, hydrate,
-   water, gas.  Paper (29). */
+/* (236): X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)], s_g = 1 - s_w; X in the order solid,
+   hydrate, water, gas.  (P29). */
 double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh, double *d_dsw)
 {
   const double fluid = sw * X[2] + (1.0 - sw) * X[3], pore = Sh * X[1] + (1.0 - Sh) * fluid;

@@ -52,7 +52,7 @@ static void LogStrain(double J2, const double dJ2[4], Kinematics *k)
     k->de[s][MOTION_HOOP] = s == 3 ? 1.0 / k->lambda : 0.0;
 }
 
-/* cof = lambda cof F_2, linear in F_2 and in lambda. */
+/* cof = lambda cof F_2 of (6), linear in F_2 and in lambda. */
 static void Cofactor(Kinematics *k)
 {
   static const double sign[2][2] = {{1.0, -1.0}, {-1.0, 1.0}};

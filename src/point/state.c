@@ -138,7 +138,7 @@ static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarSta
   s->latent   = JetChain(L, dL, T);
 }
 
-/* Young's modulus and the expansivity (45) of skeleton and hydrate. */
+/* Young's modulus and the expansivity (P45) of skeleton and hydrate. */
 static void Skeleton(const Material *mat, ScalarState *s)
 {
   double       dE;

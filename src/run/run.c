@@ -13,7 +13,7 @@ typedef struct {
   char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   double    t_saved;                                                   /* of that */
   double    clock_start;                                               /* s of the wall */
-  bool      quiet;
+  bool      quiet, restarted;
   bool      written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
@@ -38,7 +38,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
 {
   const double t_begin = s->model->c->t_begin;
   double       done, left;
-  char         cuts[32] = "", error[32] = "", solved[48], stage[80], begin[32] = "", yields[128];
+  char         cuts[32] = "", error[64] = "", solved[48], stage[80], begin[32] = "", yields[128];
 
   PetscFunctionBeginUser;
   if (run->quiet)
@@ -55,11 +55,23 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
   else
     PetscCall(PetscSNPrintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton));
   if (s->adaptive && !s->explicit)
-    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
+    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance (%s)", info->err,
+                            stepper_error_word[info->rules]));
   PetscCall(PetscPrintf(s->model->grid.comm,
                         "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
                         stage, s->state.step, begin, s->state.t - t_begin, 100.0 * done, info->dt, solved, error, cuts,
                         yields, left));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteLog(const Case *c, MPI_Comm comm, Run *run)
+{
+  bool ok = true;
+
+  PetscFunctionBeginUser;
+  if (!run->lost)
+    PetscCall(LogWrite(comm, c->output_dir, run->restarted, &ok));
+  run->lost = run->lost || !ok;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -100,10 +112,11 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   if (AtSnapshot(c, t) || last) {
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
+    PetscCall(WriteLog(c, s->model->grid.comm, run));
   }
   PetscCall(OutputGood(run->out, s->model->grid.comm, &ok));
-  run->lost = !ok;
-  if (ok && AtMultiple(c, c->checkpoint_every, t))
+  run->lost = run->lost || !ok;
+  if (!run->lost && AtMultiple(c, c->checkpoint_every, t))
     PetscCall(Save(s, run));
   s->stop = s->stop || run->lost;
   PetscCall(Progress(s, info, run));
@@ -120,7 +133,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char                text[2048], local[512], loose[256], yields[256], gaps[256], *stages, *all;
+  char                text[2048], above[64] = "", local[512], loose[256], yields[256], gaps[256], *stages, *all;
   ModelTotals         t;
   bool                ok;
 
@@ -129,11 +142,13 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscCall(LocalSummary(s, local));
   PetscCall(YieldSummary(s->model, yields));
   PetscCall(LooseSummary(s, loose));
+  if (z->loose_total)
+    PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(PetscSNPrintf(text, sizeof(text),
                           "%s: %s at t = %g s\n"
                           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-                          " Newton iterations, %.2f s\n%s"
+                          " Newton iterations, %.2f s%s\n%s"
                           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
                           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
                           "%s%s%s  results in %s\n",
@@ -141,7 +156,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
                           s->model->c->nstage ? "by stage"
                           : s->auto_.on       ? STEPPER_AUTO
                                               : s->scheme->name,
-                          z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, local,
+                          z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
                           Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
                           Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
                           Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
@@ -185,13 +200,15 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    PetscCall(CellMeansWarning(&m->grid, m->c, &m->P));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));
     s->state.next_snapshot++;
   }
   PetscCall(OutputGood(run->out, m->grid.comm, &ok));
-  run->lost        = run->lost || !ok;
+  run->lost = run->lost || !ok;
+  PetscCall(WriteLog(c, m->grid.comm, run));
   run->clock_start = Wall();
   PetscCall(StageLogCreate(s, &run->log));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -203,6 +220,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   const MPI_Comm comm = s->model->grid.comm;
   const double   t    = s->state.t;
   const char    *why  = run->lost ? "not all could be written; see to it" : "the state is not finite";
+  char           advice[CL_ADVICE];
 
   PetscFunctionBeginUser;
   if ((run->lost || s->broken) && run->saved[0]) {
@@ -217,8 +235,12 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (s->signal && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
                           strsignal(s->signal), t, run->saved));
-  } else if (!ok)
+  } else if (!ok) {
+    PetscCall(AmbientAdvice(s->model->c, advice));
+    if (advice[0])
+      PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
     PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -237,6 +259,7 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   PetscCall(OutputDestroy(&run->out, s->model->grid.comm, &closed));
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
+  PetscCall(WriteLog(s->model->c, s->model->grid.comm, run));
   if (run->lost || !ok)
     *exit_code = CL_EXIT_FAILED;
   else if (s->signal && !StepperDone(s))
@@ -258,7 +281,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
     if (!ok)
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(PetscStrncpy(run->saved, restart, sizeof(run->saved)));
-    run->t_saved = s->state.t;
+    run->t_saved   = s->state.t;
+    run->restarted = true;
   } else
     run->t_saved = NAN;
   PetscCall(StepperReady(s, &ok));
@@ -325,6 +349,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(LogStart(comm));
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
@@ -350,5 +375,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   }
   PetscCall(StepperDestroy(&stepper));
   PetscCall(ModelDestroy(&model));
+  PetscCall(LogEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

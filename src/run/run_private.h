@@ -6,6 +6,12 @@
 
 double Wall(void); /* s */
 
+/* ---------------------------------------------------------------- log.c: log.txt */
+PetscErrorCode LogStart(MPI_Comm comm); /* keeps what is said from here on */
+/* What was said since the last time goes into the folder; append: after what a run before wrote.  Collective. */
+PetscErrorCode LogWrite(MPI_Comm comm, const char *dir, bool append, bool *ok);
+PetscErrorCode LogEnd(void);
+
 /* ---------------------------------------------------------------- times.c */
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
 double NextMultiple(const Case *c, double every, double t);

@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import Run, check, check_true, finish, scratch  # noqa: E402
-from results import read_snapshots  # noqa: E402
+from clathra import read_snapshots  # noqa: E402
 
 import slide  # noqa: E402  scripts/, which common puts on the path
 

@@ -26,7 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
 from common import ENVIRONMENT  # noqa: E402
 from masuda_run import BARS, REFERENCE, at_times, curves, differences, dissociated, gas_at_start  # noqa: E402
-from results import read_csv, read_snapshots  # noqa: E402
+from clathra import read_csv, read_snapshots  # noqa: E402
 
 FOLDER, PAGE, README = ROOT / "results" / "masuda_study", ROOT / "docs" / "masuda.md", ROOT / "cases" / "masuda" / "README.md"
 MAT = "-mat_berea_"

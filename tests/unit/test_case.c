@@ -119,6 +119,47 @@ static void schedule_values(void **state)
   assert_true(ScheduleNextKink(&jump, 10) == 20);
 }
 
+/* ---------------------------------------------------------------- YAML */
+/* Entries as "name=value@line", maps left out; what libyaml or the walk says begins with '!'. */
+static void parsed(void **state)
+{
+  static const char *const row[][2] = {
+      {"a: 1 MPa\nb: {c: x, d: [1 m, 2 m]}\n", "a=1 MPa@1 b_c=x@2 b_d=1 m,2 m@2 "},
+      {"a:\n  - [1, 2] # first\n  - [3,\n     4]\n", "a=1; 2,3; 4@1 "},
+      {"a: 'x: # y'\nb: \"q \\\"r\\\"\"\nc: two\n  lines # gone\n", "a=x: # y@1 b=q \"r\"@2 c=two lines@3 "},
+      {"a: ~\nb: ''\nc: []\nd: {}\ne: 'null'\nf:\n", "a=@1 b=@2 c=@3 d=@4 e=null@5 f=@6 "},
+      {"a: &v 7 m\nb: *v\n", "a=7 m@1 b=7 m@2 "},
+      {"a: &m {x: 1, y: {z: 2, w: 3}}\nb:\n  <<: *m\n  x: 5\n",
+       "a_x=1@1 a_y_z=2@1 a_y_w=3@1 b_x=5@4 b_y_z=2@1 b_y_w=3@1 "},
+      {"b:\n  y: {z: 9}\n  <<: {y: {z: 2, w: 3}}\n", "b_y_z=9@2 "},
+      {"a: {<<: [{x: 1}, {x: 2, y: 3}]}\n", "a_x=1@1 a_y=3@1 "},
+      {"a: &m {<<: {x: 1}, y: 2}\nb: {<<: *m, x: 3}\n", "a_y=2@1 a_x=1@1 b_x=3@2 b_y=2@1 "},
+      {"\xef\xbb\xbf--- # begins\na: 1\r\nb: 2\r\n...\n", "a=1@2 b=2@3 "},
+      {"a: 1\nA: 2\n", "!A: is given twice, on lines 1 and 2"},
+      {"a_b: 1\na: {b: 2}\n", "!a_b: is given twice, on lines 1 and 2"},
+      {"a: [1, 2\nb: 3\n", "a bracket is opened here"},
+      {"- a\n", "!is not a case"},
+      {"# nothing\n", "!is not a case"},
+  };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+    Reader r        = {.comm = PETSC_COMM_SELF, .file = "f"};
+    char   got[512] = "";
+
+    if (ReaderParse(&r, row[i][0])) {
+      for (PetscInt k = 0; k < r.nentry; k++)
+        if (!r.entry[k].map)
+          snprintf(got + strlen(got), sizeof got - strlen(got), "%s=%s@%d ", r.entry[k].name,
+                   r.entry[k].value ? r.entry[k].value : "", (int)r.entry[k].line);
+      if (strcmp(got, row[i][1]))
+        fail_msg("%s\ngives %s\nnot   %s", row[i][0], got, row[i][1]);
+    } else if (r.nerror != 1 || !strstr(r.error[0], row[i][1] + (*row[i][1] == '!')))
+      fail_msg("%s\nis refused with: %s", row[i][0], r.nerror ? r.error[0] : "nothing");
+    GOOD(ReaderDestroy(&r));
+  }
+}
+
 /* ---------------------------------------------------------------- cases */
 static void set_option(const char *name, const char *value)
 {
@@ -414,15 +455,11 @@ static void resolved_is_the_same_case(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(units_to_si),
-      cmocka_unit_test(units_refused),
-      cmocka_unit_test(schedule_values),
-      cmocka_unit_test(read_bp2),
-      cmocka_unit_test(stages),
-      cmocka_unit_test(refused),
-      cmocka_unit_test(nearest_key),
-      cmocka_unit_test(command_line_wins),
-      cmocka_unit_test(resolved_is_the_same_case),
+      cmocka_unit_test(units_to_si),       cmocka_unit_test(units_refused),
+      cmocka_unit_test(schedule_values),   cmocka_unit_test(parsed),
+      cmocka_unit_test(read_bp2),          cmocka_unit_test(stages),
+      cmocka_unit_test(refused),           cmocka_unit_test(nearest_key),
+      cmocka_unit_test(command_line_wins), cmocka_unit_test(resolved_is_the_same_case),
   };
   const char *up = strstr(__FILE__, "tests/unit/");
   int         failed;

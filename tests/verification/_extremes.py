@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from common import binary, launch, scratch
-from results import read_csv, read_snapshots
+from clathra import read_csv, read_snapshots
 
 SCENE = Path(__file__).parent / "cases" / "stability.yaml"
 LENGTH, CELL, MAT, AT = 0.2, 0.02, "-mat_sand_", "-region_column_"

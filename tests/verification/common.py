@@ -24,7 +24,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
-from results import probe_names, read_csv, read_snapshots  # noqa: E402
+from clathra import probe_names, read_csv, read_snapshots  # noqa: E402
 
 CASES = ROOT / "cases"
 ENVIRONMENT = {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Mohr-Coulomb with softening in a whole scene: uniaxial strain from a state on the yield surface, against the rate
-equations integrated here without any return (paper (A.7), derivatives by differences), for every integrator; and the
+equations integrated here without any return ((PA.7), derivatives by differences), for every integrator; and the
 order of euler and sdirk2 on it.
 """
 from pathlib import Path

@@ -12,7 +12,7 @@ import numpy as np
 from _extremes import CELL, SCENE, attempt, difference, scene, stable_step
 from _ladder import ElasticWave as W
 from common import CASES, check, check_true, finish, judge, table
-from results import read_snapshots
+from clathra import read_snapshots
 
 ROW = "stability"
 FALLING = Path(__file__).parent / "cases" / "falling.yaml"

@@ -1,4 +1,4 @@
-/* yaml: loading a case file through PETSc's YAML reader into a private database, and the list of errors. */
+/* reader: the case file, its entries and the options that win over them, and the list of errors. */
 #include "case_private.h"
 #include <stdarg.h>
 #include <stdio.h>
@@ -10,15 +10,15 @@
 #define FILE_MAX 1000000
 
 /* Line of a key, or of the map it belongs to; 0 if neither is in the file. */
-static PetscInt MarkLine(const Reader *r, const char *name)
+static PetscInt KeyLine(const Reader *r, const char *name)
 {
   char path[256], *cut;
 
   snprintf(path, sizeof path, "%s", name);
   do {
-    for (PetscInt i = 0; i < r->nmark; i++)
-      if (!strcasecmp(r->mark[i].name, path))
-        return r->mark[i].line;
+    for (PetscInt i = 0; i < r->nentry; i++)
+      if (!strcasecmp(r->entry[i].name, path))
+        return r->entry[i].line;
     cut = strrchr(path, '_');
     if (cut)
       *cut = 0;
@@ -41,8 +41,8 @@ void ReaderError(Reader *r, const char *key, const char *value, const char *form
   snprintf(where, sizeof where, "%s", command_line ? "command line" : r->file);
   if (on_line)
     snprintf(where, sizeof where, "%s:%s", r->file, key + 5);
-  else if (key && *key && MarkLine(r, key))
-    snprintf(where, sizeof where, "%s:%d", r->file, (int)MarkLine(r, key));
+  else if (key && *key && KeyLine(r, key))
+    snprintf(where, sizeof where, "%s:%d", r->file, (int)KeyLine(r, key));
   size = strlen(where) + strlen(what) + (key ? strlen(key) : 0) + (value ? strnlen(value, 80) : 0) + 16;
   text = malloc(size);
   snprintf(text, size, "%s: %s", where, on_line || !key || !*key ? "" : key);
@@ -116,129 +116,6 @@ static PetscErrorCode FileShare(Reader *r, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps PETSc's own message instead of printing it. */
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *fun, const char *file, PetscErrorCode n,
-                                  PetscErrorType p, const char *mess, void *ctx)
-{
-  char *kept = ctx;
-
-  (void)comm, (void)line, (void)fun, (void)file;
-  if (p == PETSC_ERROR_INITIAL && mess)
-    snprintf(kept, CASE_WHY, "%s", mess);
-  return n;
-}
-
-static bool Parses(PetscOptions db, const char *text, char why[CASE_WHY])
-{
-  PetscErrorCode ierr;
-
-  if (PetscPushErrorHandler(KeepMessage, why))
-    return false;
-  ierr = PetscOptionsInsertStringYAML(db, text);
-  if (PetscPopErrorHandler())
-    return false;
-  return ierr == 0;
-}
-
-/* The longest run of leading lines that PETSc can read ends before the error. */
-static PetscErrorCode LastGoodLine(char *text, PetscInt *good)
-{
-  PetscInt line = 0;
-  char     why[CASE_WHY];
-
-  PetscFunctionBeginUser;
-  *good = 0;
-  if (strlen(text) > 50000)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  for (char *p = text; (p = strchr(p, '\n')) && line < 1000; p++) {
-    PetscOptions db;
-    char         keep = p[1];
-
-    line++;
-    PetscCall(PetscOptionsCreate(&db));
-    p[1] = 0;
-    if (Parses(db, text, why))
-      *good = line;
-    p[1] = keep;
-    PetscCall(PetscOptionsDestroy(&db));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode KeepEntries(Reader *r, PetscOptions db)
-{
-  PetscInt n;
-  char   **names, **values;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsLeftGet(db, &n, &names, &values)); /* nothing was used yet: all of them */
-  r->entry = realloc(r->entry, (size_t)(r->nentry + n + 1) * sizeof *r->entry);
-  for (PetscInt i = 0; i < n; i++) {
-    Entry *e = &r->entry[r->nentry++];
-    e->name  = strdup(names[i]);
-    e->value = values[i] && *values[i] ? strdup(values[i]) : NULL;
-    e->used  = false;
-  }
-  PetscCall(PetscOptionsLeftRestore(db, &n, &names, &values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* PETSc 3.18 holds 512 options: a larger case is read one top-level key at a time. */
-static PetscErrorCode LoadParts(Reader *r, char *text, char why[CASE_WHY], bool *ok)
-{
-  PetscInt begin = -1;
-
-  PetscFunctionBeginUser;
-  *ok = true;
-  for (PetscInt i = 0; i <= r->nmark && *ok; i++) {
-    PetscInt     end = i < r->nmark ? r->mark[i].offset : (PetscInt)strlen(text);
-    PetscOptions db;
-    char         keep;
-
-    if (end < 0)
-      continue;
-    if (begin >= 0) {
-      PetscCall(PetscOptionsCreate(&db));
-      keep      = text[end];
-      text[end] = 0;
-      *ok       = Parses(db, text + begin, why);
-      text[end] = keep;
-      if (*ok)
-        PetscCall(KeepEntries(r, db));
-      PetscCall(PetscOptionsDestroy(&db));
-    }
-    begin = end;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode LoadText(Reader *r, char *text)
-{
-  PetscOptions db;
-  PetscInt     good;
-  char         why[CASE_WHY] = "";
-  bool         ok, large;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsCreate(&db));
-  ok = Parses(db, text, why);
-  if (ok)
-    PetscCall(KeepEntries(r, db));
-  PetscCall(PetscOptionsDestroy(&db));
-  large = !ok && strstr(why, "max number of options");
-  if (large)
-    PetscCall(LoadParts(r, text, why, &ok));
-  if (ok)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (large && strstr(why, "max number of options")) {
-    ReaderError(r, NULL, NULL, "has more than 512 values below one key, which PETSc cannot read");
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(LastGoodLine(text, &good));
-  ReaderError(r, NULL, NULL, "is not readable as YAML (%s); the first %d lines are well-formed", why, (int)good);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A case may be given as a folder. */
 static PetscErrorCode FilePath(Reader *r, const char *path)
 {
@@ -267,8 +144,7 @@ PetscErrorCode ReaderLoad(Reader *r, const char *path)
   PetscCall(FileShare(r, &text));
   if (!text)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (ReaderScan(r, text))
-    PetscCall(LoadText(r, text));
+  ReaderParse(r, text);
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -280,12 +156,9 @@ PetscErrorCode ReaderDestroy(Reader *r)
     free(r->entry[i].name);
     free(r->entry[i].value);
   }
-  for (PetscInt i = 0; i < r->nmark; i++)
-    free(r->mark[i].name);
   for (PetscInt i = 0; i < PetscMin(r->nerror, CASE_ERRORS); i++)
     free(r->error[i]);
   free(r->entry);
-  free(r->mark);
   memset(r, 0, sizeof *r);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -300,7 +173,7 @@ PetscErrorCode ReaderFind(Reader *r, const char *name, const char **value, bool 
   *found = *from_file = false;
   *value              = NULL;
   for (PetscInt i = 0; i < r->nentry; i++) {
-    if (strcasecmp(r->entry[i].name, name))
+    if (r->entry[i].map || strcasecmp(r->entry[i].name, name))
       continue;
     r->entry[i].used = true;
     *found = *from_file = true;

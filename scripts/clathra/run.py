@@ -1,0 +1,115 @@
+"""A run by its folder."""
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from .case import read_case
+from .tables import probe_names, read_csv, read_snapshot, snapshot_times
+
+
+class NoRun(Exception):
+    """The folder holds no run."""
+
+
+class Run:
+    """What a run left in `folder`; files are read when first asked for.
+
+    times    (snapshots,) s, of particles()
+    case     {key: value} as it ran, in SI units
+    probes, balance, meters  {column: (rows,) array} of the CSV files; {} if the run wrote none
+    summary, log             what the program said at its end, and in all ("" while it runs)
+    """
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        if not (self.folder / "case.yaml").is_file() or not (self.folder / "balance.csv").is_file():
+            raise NoRun(f"{folder} holds no run (no case.yaml and balance.csv)")
+
+    def __repr__(self):
+        return f"clathra.Run({str(self.folder)!r})"
+
+    def _table(self, name):
+        path = self.folder / name
+        return read_csv(path) if path.is_file() else {}
+
+    def _text(self, name):
+        path = self.folder / name
+        return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+
+    case = cached_property(lambda self: read_case(self.folder / "case.yaml"))
+    probes = cached_property(lambda self: self._table("probes.csv"))
+    balance = cached_property(lambda self: self._table("balance.csv"))
+    meters = cached_property(lambda self: self._table("meters.csv"))
+    summary = cached_property(lambda self: self._text("summary.txt"))
+    log = cached_property(lambda self: self._text("log.txt"))
+
+    @property
+    def title(self):
+        return self.case.get("title") or self.folder.name
+
+    @property
+    def finished(self):
+        """Did it come to its end?"""
+        return ": finished at t = " in self.summary
+
+    @property
+    def axisymmetric(self):
+        return self.case.get("geometry") == "axisymmetric"
+
+    def names(self, group):
+        """Names that the case lists: regions, materials, boundaries, probes, meters, stages."""
+        return self.case.get(group, [])
+
+    @property
+    def probe_names(self):
+        return probe_names(self.probes)
+
+    def probe(self, name):
+        """{quantity: (rows,) array} of one probe: p_Pa, T_degC, S_h, u_x_m, ..., and time_s."""
+        return self._columns(self.probes, name, "probe", self.probe_names)
+
+    def meter(self, name):
+        """{quantity: (rows,) array} of one meter or plate: water_kg_s, gas_std_m3, position_m, ..., and time_s."""
+        return self._columns(self.meters, name, "meter or plate", probe_names(self.meters))
+
+    @staticmethod
+    def _columns(table, name, what, names):
+        found = {c[len(name) + 1 :]: v for c, v in table.items() if c.startswith(f"{name}.")}
+        if not found:
+            raise KeyError(f"no {what} {name}; there are: {', '.join(names) or 'none'}")
+        return {"time_s": table["time_s"], **found}
+
+    @cached_property
+    def _keys(self):
+        return {kind: snapshot_times(self.folder, kind) for kind in ("particles", "grid")}
+
+    @property
+    def times(self):
+        return np.array(list(self._keys["particles"].values()))
+
+    def _snapshot(self, kind, time):
+        keys, times = list(self._keys[kind]), np.array(list(self._keys[kind].values()))
+        if not len(keys):
+            raise KeyError(f"{self.folder} holds no snapshots of the {kind}")
+        k = len(keys) - 1 if time is None else int(np.argmin(abs(times - time)))
+        if time is not None and abs(times[k] - time) > 1e-6 * max(abs(time), times[-1] - times[0]):
+            raise KeyError(f"no snapshot at {time:g} s; nearest is {times[k]:.17g} s (all: Run.times)")
+        return read_snapshot(self.folder, keys[k], kind)
+
+    def particles(self, time=None):
+        """{variable: (n,) array, of vectors and tensors (n, components)} at a time of `times` (s); None: the last."""
+        return {k: v[:, 0] if v.ndim == 2 and v.shape[1] == 1 else v for k, v in self._snapshot("particles", time).items()}
+
+    def grid(self, time=None):
+        """{field: (rows, columns) array, of velocities (rows, columns, 2)} of the nodes, NaN where there is no sediment, with their
+        coordinates x (columns,) and y (rows,), m: what the step that ended at this time started from."""
+        x, y = self.lines
+        fields = {k: v.reshape(len(y), len(x), -1) for k, v in self._snapshot("grid", time).items()}
+        return {"x": x, "y": y, **{k: v[..., 0] if v.shape[2] == 1 else v for k, v in fields.items()}}
+
+    @property
+    def lines(self):
+        """Lines of the background grid: (x (m), y (m))."""
+        low, high, cells = (self.case[f"grid_{k}"] for k in ("lower", "upper", "cells"))
+        return tuple(np.linspace(low[d], high[d], int(cells[d]) + 1) for d in (0, 1))

@@ -1,0 +1,151 @@
+"""What pictures of a run show, whatever draws them: quantities of particles and histories, their labels and units."""
+import re
+from typing import Callable, NamedTuple
+
+import numpy as np
+
+MPA, MM = 1e-6, 1e3  # from Pa, from m
+
+
+class Quantity(NamedTuple):
+    """One number a particle: `of(particles)` is (n,), in `unit`; particles as Run.particles gives them."""
+
+    key: str
+    label: str
+    unit: str
+    needs: str  # variable of the snapshot
+    of: Callable
+
+    @property
+    def axis(self):
+        """Words beside an axis of a plot."""
+        return f"{tex(self.label)} ({self.unit})"
+
+
+def tex(label):
+    """Subscripts as matplotlib sets them: u_x to $u_x$."""
+    return re.sub(r"\b(\w)_(\w)\b", r"$\1_\2$", label)
+
+
+def _part(name, component, factor=1.0):
+    return lambda p: p[name][:, component] * factor
+
+
+def _scalar(name, factor=1.0):
+    return lambda p: p[name] * factor
+
+
+def _speed(name):
+    return lambda p: np.hypot(*p[name].T)
+
+
+def _mises(p):
+    s = p["stress"][:, :3] - p["stress"][:, :3].mean(axis=1, keepdims=True)
+    return MPA * np.sqrt(1.5 * (s**2).sum(axis=1) + 3.0 * (p["stress"][:, 3:] ** 2).sum(axis=1))
+
+
+def _relative(fluid):
+    """Speed of a fluid against the skeleton."""
+    return lambda p: np.hypot(*(p[fluid] - p.get("v_s", 0.0)).T)
+
+
+QUANTITIES = [
+    Quantity("p", "pore pressure p", "MPa", "p", _scalar("p", MPA)),
+    Quantity("T", "temperature T", "°C", "T", _scalar("T")),
+    Quantity("S_h", "hydrate saturation S_h", "–", "S_h", _scalar("S_h")),
+    Quantity("S_w", "water saturation S_w", "–", "S_w", _scalar("S_w")),
+    Quantity("S_g", "gas saturation S_g", "–", "S_g", _scalar("S_g")),
+    Quantity("porosity", "porosity", "–", "porosity", _scalar("porosity")),
+    Quantity("u_x", "displacement u_x", "mm", "displacement", _part("displacement", 0, MM)),
+    Quantity("u_y", "displacement u_y", "mm", "displacement", _part("displacement", 1, MM)),
+    Quantity("s_xx", "effective stress xx (tension +)", "MPa", "stress", _part("stress", 0, MPA)),
+    Quantity("s_yy", "effective stress yy (tension +)", "MPa", "stress", _part("stress", 1, MPA)),
+    Quantity("s_xy", "effective stress xy", "MPa", "stress", _part("stress", 3, MPA)),
+    Quantity("q", "deviatoric stress q", "MPa", "stress", _mises),
+    Quantity("eps_v", "volumetric strain ln J", "–", "log_J", _scalar("log_J")),
+    Quantity("eps_d_p", "plastic strain", "–", "eps_d_p", _scalar("eps_d_p")),
+    Quantity("p_w", "water pressure p_w", "MPa", "p_w", _scalar("p_w", MPA)),
+    Quantity("p_g", "gas pressure p_g", "MPa", "p_g", _scalar("p_g", MPA)),
+    Quantity("v_w", "speed of the water in the pores", "m/s", "v_w", _relative("v_w")),
+    Quantity("v_g", "speed of the gas in the pores", "m/s", "v_g", _relative("v_g")),
+    Quantity("v_s", "speed of the skeleton", "m/s", "v_s", _speed("v_s")),
+]
+
+# Histories at probes: label, unit, [(column, factor, name in the legend)], least width of the axis.
+HISTORIES = [
+    ("pore pressure", "MPa", [("p_Pa", MPA, "mean"), ("p_w_Pa", MPA, "water"), ("p_g_Pa", MPA, "gas")], 0.01),
+    ("temperature T", "°C", [("T_degC", 1, "")], 0.1),
+    ("hydrate saturation S_h", "–", [("S_h", 1, "")], 0.01),
+    ("saturation", "–", [("S_w", 1, "water"), ("S_g", 1, "gas")], 0.01),
+    ("displacement", "mm", [("u_x_m", MM, "x"), ("u_y_m", MM, "y")], 0.01),
+    ("effective stress, tension +", "MPa", [("sxx_Pa", MPA, "xx"), ("syy_Pa", MPA, "yy"), ("sxy_Pa", MPA, "xy")], 0.01),
+]
+
+
+def shown(snapshots):
+    """The quantities that the scene has and that are not the same everywhere and always, in order."""
+    found, first = [], snapshots[0]
+    for q in QUANTITIES:
+        if q.needs not in first or (q.key == "p_w" and "p_g" not in first):
+            continue
+        values = np.concatenate([q.of(p) for p in snapshots])
+        values = values[np.isfinite(values)]
+        if values.size and np.ptp(values) > 1e-9 * np.abs(values).max():
+            found.append(q)
+    return found
+
+
+def histories(probes, names):
+    """The panels of HISTORIES that the probes `names` have, without saturations that never change and hydrate that is not there."""
+    found = []
+    for label, unit, columns, least in HISTORIES:
+        held = [c for c in columns if names and f"{names[0]}.{c[0]}" in probes]
+        curves = [probes[f"{n}.{c[0]}"] for n in names for c in held]
+        idle = {"S_h": lambda v: not np.nan_to_num(v).any(), "S_w": lambda v: not np.ptp(np.nan_to_num(v))}.get(held[0][0] if held else "")
+        if held and not (idle and all(map(idle, curves))):
+            found.append((label, unit, held, least))
+    return found
+
+
+def half_edges(particles, first):
+    """(n, 2, 2) half edges (m) of the particles' domains, one a row: those of the start (`first`, of the same particles) carried by the
+    deformation gradient, so that they are the true outline.  What is stretched beyond three times is drawn as a box of its volume."""
+    l = particles["half_length"]
+    box = np.stack([np.stack([l[:, 0], 0 * l[:, 0]], -1), np.stack([0 * l[:, 1], l[:, 1]], -1)], 1)
+    if "deformation_gradient" not in particles or len(first["half_length"]) != len(l):
+        return box
+    F, F0 = (p["deformation_gradient"].reshape(-1, 2, 2) for p in (particles, first))
+    l0 = first["half_length"] / np.linalg.norm(F0, axis=1)
+    edges = np.swapaxes(F * l0[:, None, :], 1, 2)
+    square = np.sqrt(np.abs(np.linalg.det(F)))[:, None, None] * np.stack([np.diag(x) for x in l0])
+    long = np.linalg.norm(F, axis=1).max(axis=1) > 3.0
+    return np.where(long[:, None, None], square, edges)
+
+
+def corners(particles, first):
+    """(n, 4, 2) corners (m) of the particles' domains in the plane, in order around each."""
+    a, b = np.swapaxes(half_edges(particles, first), 0, 1)
+    return np.stack([particles["position"] + s * a + t * b for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))], axis=1)
+
+
+def strip_axis(position):
+    """Axis (0 or 1) along which the body is a strip, at least eight times as long as wide and with no more than four rows of
+    particles across; None if it is not one."""
+    extent = np.ptp(position, axis=0)
+    axis = int(np.argmax(extent))
+    rows = np.unique(np.round(position[:, 1 - axis] / extent[axis], 6))
+    return axis if extent[1 - axis] < extent[axis] / 8 and len(rows) <= 4 else None
+
+
+def stage_axis(balance):
+    """(map of times (s) to an axis on which each stage is one wide, ends of the stages (s)); None without stages."""
+    stage = balance.get("stage", np.zeros(len(balance["time_s"])))
+    ends = [balance["time_s"][stage == k][-1] for k in np.unique(stage)]
+    if len(ends) < 2 or np.any(np.diff(ends) <= 0):
+        return None
+    return (lambda t: np.interp(t, [0.0, *ends], range(len(ends) + 1))), ends
+
+
+def spread(count, most):
+    """Indices of at most `most` of `count` things, first and last among them."""
+    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist()))

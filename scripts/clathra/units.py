@@ -1,0 +1,15 @@
+"""Units in which times read well."""
+
+TIMES = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", 3.15576e7))
+
+
+def time_unit(end):
+    """(name, seconds) of the unit in which times up to `end` (s) read well."""
+    return next((u for u in reversed(TIMES) if end >= 5 * u[1] and (u[0] != "min" or end >= 7200)), TIMES[0])
+
+
+def duration(seconds):
+    """One time with its unit: "30 s", "1 day", "2.5 years"."""
+    name, size = next((u for u in reversed(TIMES) if abs(seconds) >= u[1] * (1 - 1e-9)), TIMES[0])
+    value = f"{seconds / size:.4g}"
+    return f"{value} {name[:-1] if value == '1' and name in ('days', 'years') else name}"
