@@ -168,6 +168,7 @@ typedef struct Case {
   int       ice;                             /* ICE_... */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */
+  double    ambient_drag;                    /* C of (152) */
   PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
   Material *material;
   Region   *region;
