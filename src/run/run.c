@@ -242,8 +242,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
     if (!run->frozen)
       PetscCall(AmbientAdvice(s->model->c, advice));
     if (advice[0])
-      PetscCall(PetscPrintf(comm, "A likely cause: %s
-", advice));
+      PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
     PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
