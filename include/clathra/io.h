@@ -49,7 +49,7 @@ PetscErrorCode OutputMeters(Output *out, const Model *m, const StepperState *s);
 /* One row of balance.csv. */
 PetscErrorCode OutputBalance(Output *out, const Model *m, const StepperState *s, const StepInfo *info);
 /* Particles (all history variables, p, mass-weighted ids) and nodes as snapshot number s->next_snapshot: a file in the
-   folder fields, listed by fields.h5 and fields.xdmf. */
+   folder fields, listed by fields.h5, particles.xdmf and grid.xdmf. */
 PetscErrorCode OutputSnapshot(Output *out, const Model *m, const StepperState *s);
 
 /* Checkpoint: written aside, then renamed; the previous one is kept as NAME.old.  Holds the state, all particle
