@@ -81,7 +81,7 @@ def main(arguments):
     if not os.path.isfile(os.path.join(folder, "particles.xdmf")):
         raise SystemExit(f"paraview_run.py: {folder} holds no run (no particles.xdmf)")
     if len(arguments) > 1:
-        GetActiveViewOrCreate("RenderView").ViewSize = [1200, 800]
+        GetActiveViewOrCreate("RenderView").ViewSize = [600, 400]
     view, _, _ = show(folder, arguments[2] if len(arguments) > 2 else None)
     if len(arguments) > 1:
         SaveScreenshot(arguments[1], view, ImageResolution=[1200, 800])
