@@ -25,6 +25,9 @@ typedef struct {
    Collective. */
 PetscErrorCode FolderTake(MPI_Comm comm, const char *dir, const Origin *from, Folder *folder, int *exit_code);
 PetscErrorCode FolderRelease(Folder *folder);
+/* Does the folder hold nothing, or results of the case whose resolved form this is?  Otherwise a sentence.  Collective.
+ */
+PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool *ok);
 /* A text file of the folder in one piece, on rank 0: whole, or as it was.  Collective. */
 PetscErrorCode FolderWriteText(MPI_Comm comm, const char *dir, const char *name, const char *text, size_t bytes,
                                bool *ok);
