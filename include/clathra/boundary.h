@@ -15,9 +15,12 @@ typedef struct {
   double   x[CL_DIM]; /* middle of the face, m */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   PetscInt region;
-  double   x0[CL_DIM];                                                /* initial position of the particle, m */
-  double   n0[CL_DIM];                                                /* FaceNormal there */
-  double   N[CL_NODES];                                               /* weights, in the order of StencilExpand */
+  double   x0[CL_DIM];        /* initial position of the particle, m */
+  double   n0[CL_DIM];        /* FaceNormal there */
+  double   N[CL_NODES];       /* weights, in the order of StencilExpand */
+  double   Nr[CL_NODES];      /* (195): those of Darcy fluxes along x */
+  double   ring[2];           /* (197), (198): what is lost between face and body in a ring, in 2 pi k and kappa */
+  double   skin[PHASE_COUNT]; /* the same as a resistance to a fluid, Pa s/m^3 */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
   PetscInt plate;                                                     /* the same */
   double   moved[CL_DIM];                                             /* displacement since the start, m */
@@ -27,12 +30,24 @@ typedef struct {
   unsigned meters;  /* bit k: Case.meter[k] counts it */
 } Face;
 
+/* Weight of a node in what a face adds to row q, and takes from its Darcy fluxes. */
+static inline double FaceWeight(const Face *f, int a, int q)
+{
+  return q == F_VWX || q == F_VGX ? f->Nr[a] : f->N[a];
+}
+
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
 PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
                           Face **face);
 
 /* Where the face is and how it distributes, for its particle's present position and weights. */
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
+
+#define FACE_PENALTY 20.0 /* gamma of (199) */
+
+/* (197), (198): what radial flow to a face at radius r (m), whose particles have the half-length l, loses between body
+   and face beyond what the grid carries, per 2 pi k/mu and height: of a fluid (penalty 0), or of heat. */
+double FaceRing(const Case *c, const Grid *g, double r, double l, double penalty);
 
 /* Normal stress (Pa, compression-positive) prescribed at time t on a side of the particle of a region that was first
    at x (m); 0 where none is. */
@@ -96,7 +111,7 @@ void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[
 /* CL_OK, or why the plate cannot go to `position` in this step; the sentence goes to text. */
 ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position, char *text, size_t size);
 
-/* Dirichlet values on grid planes, in regions and on the axis: sets bit k of mask and value[k] for every prescribed
-   unknown, k its place in the field set, of grid node ij. */
-void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
-                     double *value);
+/* Dirichlet values on grid planes, in regions and on the axis, where what the node sees was seeded there: sets bit k of
+   mask and value[k] for every prescribed unknown, k its place in the field set, of grid node ij. */
+void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
+                     unsigned *mask, double *value);

@@ -141,7 +141,9 @@ enum {
   NC_REACTION,
   NC_REACTION_HEAT,
   NC_DRAG,
-  NC_COUNT = NC_DRAG + 2
+  NC_RING = NC_DRAG + 2, /* 1/r */
+  NC_AXIS,               /* of what was seeded at the axis: 1 */
+  NC_COUNT
 };
 
 /* Grid and particles of a case at its initial state. */

@@ -2,8 +2,6 @@
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
 
-#define TEMPERATURE_PENALTY 20.0 /* of kappa_m/l: a prescribed face temperature is a strong convection */
-
 Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
 {
   Ambient a = {.pressure = ScheduleValue(&c->ambient_pressure, t)};
@@ -85,11 +83,11 @@ typedef struct {
 static void Open(const Material *mat, const Face *f, int phase, const Outside *outside, const double a[2],
                  const double da[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
-  double       dp, dT;
-  const double p = outside->p[phase], jump = p - FacePressure(f, phase, in),
+  double        dp, dT;
+  const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1], skin = f->skin[phase];
+  const double  p = outside->p[phase], jump = p + skin * Ja - FacePressure(f, phase, in),
                rho = Density(mat, phase, p, in[IN_T], &dp, &dT);
-  const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1];
-  double       *D = o->D[F_PW + phase];
+  double *D        = o->D[F_PW + phase];
 
   o->out[F_PW + phase] = dt * rho * Ja;
   o->outflow[phase]    = rho * Ja;
@@ -109,8 +107,10 @@ static void Open(const Material *mat, const Face *f, int phase, const Outside *o
       row[IN_U + d] = outside->du[d] * a[i];
     for (int j = 0; j < 2; j++)
       row[IN_GP + 2 * phase + j] = -a[i] * f->r[j];
+    for (int j = 0; j < 2; j++)
+      row[IN_J + 2 * phase + j] = skin * a[j] * a[i];
     for (int k = 0; k < MOTION_COUNT; k++)
-      row[k] = jump * da[i][k];
+      row[k] = jump * da[i][k] + skin * (J[0] * da[0][k] + J[1] * da[1][k]) * a[i];
   }
   for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
     const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
@@ -131,30 +131,32 @@ static double Area(const double s[2], const double ds[2][MOTION_COUNT], double d
   return area;
 }
 
+/* Heat that a face lets in: a flux, exchange with what is outside, and a prescribed temperature (199). */
 static void Heat(const Case *c, const Face *f, const BcValues *v, const double s[2], const double ds[2][MOTION_COUNT],
                  const double in[IN_COUNT], double kappa, FaceOutput *o)
 {
-  const double T       = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
-  double       in_flux = f->heat >= 0 ? v->value[f->heat] : 0.0, alpha = 0.0, darea[MOTION_COUNT];
-  const double area = Area(s, ds, darea);
+  const double *g = &in[IN_GT], T = in[IN_T] + g[0] * f->r[0] + g[1] * f->r[1];
+  double        flux = f->heat >= 0 ? v->value[f->heat] : 0.0, alpha = 0.0, conducts = 0.0, darea[MOTION_COUNT];
+  const double  area = Area(s, ds, darea);
 
   if (f->convection >= 0) {
     alpha = c->bc[f->convection].alpha;
-    in_flux += alpha * (v->value[f->convection] - T);
+    flux += alpha * (v->value[f->convection] - T);
   }
   if (f->temperature >= 0) {
-    const double strong = TEMPERATURE_PENALTY * kappa / hypot(f->r[0], f->r[1]);
+    const double strong = FACE_PENALTY / hypot(f->r[0], f->r[1]);
 
-    alpha += strong;
-    in_flux += strong * (v->value[f->temperature] - T);
+    conducts = kappa / (1.0 + strong * f->ring[1] * f->x[0]);
+    alpha += strong * conducts;
+    flux += strong * conducts * (v->value[f->temperature] - T);
   }
-  o->out[F_T]     = -in_flux * area;
-  o->heat_in      = in_flux * area;
+  o->heat_in      = flux * area + conducts * (g[0] * s[0] + g[1] * s[1]);
+  o->out[F_T]     = -o->heat_in;
   o->D[F_T][IN_T] = alpha * area;
   for (int j = 0; j < 2; j++)
-    o->D[F_T][IN_GT + j] = alpha * area * f->r[j];
+    o->D[F_T][IN_GT + j] = alpha * area * f->r[j] - conducts * s[j];
   for (int k = 0; k < MOTION_COUNT; k++)
-    o->D[F_T][k] = -in_flux * darea[k];
+    o->D[F_T][k] = -flux * darea[k] - conducts * (g[0] * ds[0][k] + g[1] * ds[1][k]);
 }
 
 /* Prescribed mean pressure of a face; that of the ambient fluid depends on where the face is. */
@@ -331,12 +333,12 @@ static void Hold(const FieldSet *fs, int d, double velocity, bool drained, unsig
   }
 }
 
-void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], unsigned *mask,
-                     double *value)
+void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
+                     unsigned *mask, double *value)
 {
   const FieldSet *fs = &c->fields;
 
-  if (c->axisymmetric && g->lower[0] + (double)ij[0] * g->h[0] < 1e-6 * g->h[0])
+  if (at_axis && g->lower[0] + (double)ij[0] * g->h[0] < 1e-6 * g->h[0])
     Hold(fs, 0, 0.0, false, mask, value); /* nothing crosses the axis */
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc *b = &c->bc[k];

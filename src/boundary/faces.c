@@ -78,10 +78,22 @@ static void Weights(const Case *c, const Grid *g, const Particles *P, const Sten
   }
   for (int b = 0; b < 3; b++) {
     for (int a = 0; a < 3; a++) {
-      if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0))
-        f->N[n++] = w[0][a] * w[1][b];
+      if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0)) {
+        f->N[n]    = w[0][a] * w[1][b];
+        f->Nr[n++] = w[0][a] * w[1][b];
+      }
     }
   }
+}
+
+/* (197), (198): of the faces of a hole about the axis on which something is prescribed. */
+static void Ring(const Case *c, const Grid *g, const Particles *P, Face *f)
+{
+  const bool   hole = c->axisymmetric && f->side == SIDE_XMIN;
+  const double l    = P->f[P_L][f->particle];
+
+  f->ring[0] = hole && f->pressure >= 0 ? FaceRing(c, g, f->x[0], l, 0.0) : 0.0;
+  f->ring[1] = hole && f->temperature >= 0 ? FaceRing(c, g, f->x[0], l, FACE_PENALTY) : 0.0;
 }
 
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
@@ -108,6 +120,8 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
   f->s[0]        = fabs(A) * (F[1][1] * f->n0[0] - F[1][0] * f->n0[1]);
   f->s[1]        = fabs(A) * (F[0][0] * f->n0[1] - F[0][1] * f->n0[0]);
   Weights(c, g, P, stencil, half, f);
+  Ring(c, g, P, f);
+  f->skin[PHASE_W] = f->skin[PHASE_G] = 0.0;
 }
 
 static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,

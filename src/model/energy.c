@@ -142,7 +142,7 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
         continue;
       DarcyFlux(m, r->node[a], ph, xI, J);
       for (int d = 0; d < CL_DIM; d++)
-        power[WORK_PRESSURE] -= f->N[a] * o->out[F_VWX + 2 * ph + d] * J[d];
+        power[WORK_PRESSURE] -= FaceWeight(f, a, F_VWX + 2 * ph + d) * o->out[F_VWX + 2 * ph + d] * J[d];
     }
   }
   power[WORK_PLATES] += plate;

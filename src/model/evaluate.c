@@ -46,7 +46,9 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
   double         in[IN_COUNT], p0[PHASE_COUNT], kappa = 0.0, sum = 0.0;
 
   ReachExpand(m, p, r);
-  GatherInputs(m, p, r, x, face->N, in);
+  GatherInputs(m, p, r, x, face, in);
+  for (int q = F_PW; q <= F_T; q++)
+    in[q == F_T ? IN_T : IN_P + q - F_PW] += Shift(m, p, r, q);
   ModelInitialAtFace(m, face, p0);
   for (int a = 0; a < r->n; a++) {
     kappa += face->N[a] * m->coef[r->node[a] * NC_COUNT + NC_KAPPA];

@@ -106,7 +106,7 @@ static inline double NodeVolume(const Model *m, PetscInt I)
   return h0 * m->grid.h[1] * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
 }
 
-static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const double *x, const double *N,
+static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const double *x, const Face *face,
                                double in[IN_COUNT])
 {
   const int  n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
@@ -126,7 +126,7 @@ static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const
     if (mean)
       more += u[0] * r->B[a][0] + u[1] * r->B[a][1];
     for (int i = 0; i < 2; i++)
-      in[IN_U + i] += (N ? N[a] : MotionWeight(m, p, r, a)) * u[i];
+      in[IN_U + i] += (face ? face->N[a] : MotionWeight(m, p, r, a)) * u[i];
   }
   in[IN_GRADU] += more;
   in[IN_GRADU + 3] += more;
@@ -173,28 +173,28 @@ static inline void Acceleration(const Model *m, PetscInt I, const double *x, int
     acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
 }
 
-static inline void GatherFluid(const Model *m, int f, const Reach *r, const double *x, const double *N,
+static inline void GatherFluid(const Model *m, int f, const Reach *r, const double *x, const Face *face,
                                double in[IN_COUNT])
 {
   const int n = m->c->fields.n, at = PlaceP(&m->c->fields, f);
 
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
-    const double   p = x[I * n + at], SJ = N ? N[a] : r->S[a];
+    const double   p = x[I * n + at];
     double         J[2];
 
     DarcyFlux(m, I, f, &x[I * n], J);
     in[IN_P + f] += r->S[a] * (p - m->x_n[I * n + at]);
     for (int i = 0; i < 2; i++) {
       in[IN_GP + 2 * f + i] += r->G[a][i] * p;
-      in[IN_J + 2 * f + i] += SJ * J[i];
+      in[IN_J + 2 * f + i] += (face ? FaceWeight(face, a, F_VWX + 2 * f + i) : r->S[a]) * J[i];
     }
   }
 }
 
-/* Inputs (1), (5), (19) of particle p from the nodal values x; N replaces S for the Darcy fluxes and the displacement
+/* Inputs (1), (5), (19) of particle p from the nodal values x; Darcy fluxes and displacement are those at its face
    (NULL: the particle's own). */
-static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, const double *x, const double *N,
+static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, const double *x, const Face *face,
                                 double in[IN_COUNT])
 {
   const FieldSet *fs = &m->c->fields;
@@ -203,12 +203,12 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
     in[q] = 0.0;
   in[IN_T] = ParticleT(m, p);
   if (fs->solid)
-    GatherSolid(m, p, r, x, N, in);
+    GatherSolid(m, p, r, x, face, in);
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
     in[IN_P + f] = m->P.f[HeldPressure(fs, P_PW, f)][p];
-    GatherFluid(m, f, r, x, N, in);
+    GatherFluid(m, f, r, x, face, in);
   }
   if (!fs->heat)
     return;

@@ -1,9 +1,10 @@
 /* The assembled part J2 of the Jacobian: block of one particle, block of one face. */
 #include "gather.h"
 
-/* One node as a particle or face sees it; NS and NU stand for S in the Darcy fluxes and in the displacement. */
+/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes and in the
+   displacement. */
 typedef struct {
-  double        S, NS, NU, H;
+  double        S, NS[CL_DIM], NU, H;
   const double *G, *w, *B; /* B: null without mean dilatation */
 } NodeWeights;
 
@@ -27,7 +28,7 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
     if (!fs->phase[f])
       continue;
     for (int i = 0; i < 2; i++) {
-      const double J = D[IN_J + 2 * f + i] * b->NS * b->w[f];
+      const double J = D[IN_J + 2 * f + i] * b->NS[i] * b->w[f];
 
       col[PlaceV(fs, f) + i] = J;
       if (fs->solid)
@@ -197,7 +198,7 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
     Factors(m, p, r->node[a], x, r->S[a], &factor[a]);
   for (int b = 0; b < r->n; b++) {
     const NodeWeights at = {.S  = r->S[b],
-                            .NS = r->S[b],
+                            .NS = {r->S[b], r->S[b]},
                             .NU = MotionWeight(m, p, r, b),
                             .H  = axisymmetric ? r->H[b] : 0.0,
                             .G  = r->G[b],
@@ -293,7 +294,7 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
 
   for (int b = 0; b < r->n; b++) {
     const NodeWeights at = {.S  = r->S[b],
-                            .NS = face->N[b],
+                            .NS = {face->Nr[b], face->N[b]},
                             .NU = face->N[b],
                             .H  = m->c->axisymmetric ? r->H[b] : 0.0,
                             .G  = r->G[b],
@@ -307,7 +308,7 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
         continue;
       Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[k], &at, col);
       for (int a = 0; a < r->n; a++) {
-        const double N = face->N[a] * RowWeightOf(m, r->node[a], k);
+        const double N = FaceWeight(face, a, k) * RowWeightOf(m, r->node[a], k);
 
         for (int q = 0; q < fs->n; q++)
           block[(a * fs->n + fs->at[k]) * ld + b * fs->n + q] += N * col[q];

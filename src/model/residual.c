@@ -159,7 +159,7 @@ static void FaceLoop(const Model *m, const double *x, double *f)
     for (int a = 0; a < r.n; a++) {
       for (int q = 0; q < F_COUNT; q++) {
         if (fs->at[q] >= 0)
-          *RowOf(m, f, r.node[a], q) += face->N[a] * o.out[q];
+          *RowOf(m, f, r.node[a], q) += FaceWeight(face, a, q) * o.out[q];
       }
     }
   }

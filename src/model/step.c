@@ -1,6 +1,7 @@
 /* Start of a step: stencils, active nodes and nodal start values on the configuration at t_n. */
 #include "gather.h"
 
+#define AT_AXIS 1e-6        /* of a half-length */
 #define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its drag stays central */
 
 static bool InsideGrid(const Grid *g, const Stencil *s)
@@ -100,11 +101,23 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
     s[SUM_X + PlaceT(fs)] += S * q->capacity * Carried(m, p, P_T, P_GT, d);
 }
 
+/* Did the particle's domain begin at the axis? */
+static bool SeededAtAxis(const Model *m, PetscInt p)
+{
+  double l[CL_DIM];
+
+  if (!m->c->axisymmetric)
+    return false;
+  ParticlesInitialHalfLength(m->c, m->P.i[PI_REGION][p], l);
+  return ParticleInitialX(&m->P, p, 0) < l[0] * (1.0 + AT_AXIS);
+}
+
 static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointProperties *q, double *sum)
 {
   const Grid  *g     = &m->grid;
   const int    width = SUM_X + m->c->fields.n;
   const double V     = m->P.f[P_V][p];
+  const bool   axis  = SeededAtAxis(m, p);
   double       at[CL_DIM]; /* where the particle's values belong */
 
   for (int d = 0; d < CL_DIM; d++)
@@ -125,6 +138,10 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     c[NC_CAPACITY] += S * q->capacity;
     c[NC_REACTION] += VS * q->reaction;
     c[NC_REACTION_HEAT] += VS * q->reaction_heat;
+    if (m->c->axisymmetric) {
+      c[NC_RING] += V * r->H[a];
+      c[NC_AXIS] += axis ? VS : 0.0;
+    }
     for (int k = 0; k < PHASE_COUNT; k++) {
       if (!m->c->fields.phase[k])
         continue;
@@ -230,6 +247,28 @@ static PetscErrorCode UpstreamWeights(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* (195), (197): about an axis the flux through a face goes with 1/r. */
+static void RadialFace(const Model *m, Face *f)
+{
+  const double area              = hypot(f->n[0], f->n[1]);
+  double       drag[PHASE_COUNT] = {0.0}, sum = 0.0;
+  Reach        r;
+
+  if (!m->c->axisymmetric || !(f->x[0] > 0.0))
+    return;
+  ReachExpand(m, f->particle, &r);
+  for (int a = 0; a < r.n; a++) {
+    const double *c = &m->coef[r.node[a] * NC_COUNT];
+
+    f->Nr[a] = f->N[a] / (c[NC_RING] * f->x[0]);
+    sum += f->N[a];
+    for (int k = 0; k < PHASE_COUNT; k++)
+      drag[k] += f->N[a] * c[NC_DRAG + k];
+  }
+  for (int k = 0; k < PHASE_COUNT; k++)
+    f->skin[k] = f->ring[0] * f->x[0] * drag[k] / (sum * area);
+}
+
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 {
   unsigned char *flag;
@@ -251,6 +290,8 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   }
   if (*status == CL_OK) {
     PetscCall(FacesBuild(m->c, &m->grid, &m->P, m->stencil, &m->nface, &m->face));
+    for (PetscInt k = 0; k < m->nface; k++)
+      RadialFace(m, &m->face[k]);
     for (PetscInt k = 0; m->plates && k < m->nface; k++) {
       if (m->face[k].plate >= 0)
         ModelPlateStiffness(m, &m->face[k]);
@@ -349,7 +390,8 @@ PetscErrorCode ModelBeginStage(Model *m, const Stage *s)
   BcValuesEvaluate(m->c, s->t, &m->bc);
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     m->mask[I] = 0;
-    PlaneConditions(m->c, &m->grid, &m->bc, m->map.ij[I], &m->mask[I], &m->fixed[I * m->c->fields.n]);
+    PlaneConditions(m->c, &m->grid, &m->bc, m->map.ij[I], m->coef[I * NC_COUNT + NC_AXIS] > 0.0, &m->mask[I],
+                    &m->fixed[I * m->c->fields.n]);
   }
   Scales(m);
   PetscFunctionReturn(PETSC_SUCCESS);

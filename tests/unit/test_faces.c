@@ -48,12 +48,15 @@ static void SceneInit(Scene *s, Rng *r)
   s->face.pressure   = -1;
   s->face.heat       = -1;
   s->face.convection = -1;
-  s->face.temperature = -1;
-  s->face.inflow      = -1;
-  s->face.plate       = -1;
-  s->face.K           = 1e9;
-  s->face.moved[0]    = 3e-3;
-  s->face.moved[1]    = -2e-3;
+  s->face.temperature   = -1;
+  s->face.inflow        = -1;
+  s->face.plate         = -1;
+  s->face.K             = 1e9;
+  s->face.moved[0]      = 3e-3;
+  s->face.moved[1]      = -2e-3;
+  s->face.ring[1]       = 0.1;
+  s->face.skin[PHASE_W] = 1e9;
+  s->face.skin[PHASE_G] = 3e8;
 }
 
 /* Inputs of a particle: a motion of some percent, pressures, gradients, fluxes. */
@@ -286,6 +289,29 @@ static void Tangents(void **state)
   }
 }
 
+/* (199): at the prescribed temperature a face conducts as the body does; off it, it gives heat. */
+static void FaceTemperature(void **state)
+{
+  Rng        r = {.s = 19};
+  Scene      s;
+  FaceOutput o;
+  double     in[IN_COUNT] = {0.0};
+
+  SceneInit(&s, &r);
+  s.face.temperature = 2;
+  s.face.ring[1]     = 0.0;
+  in[IN_GT]          = -7.0;
+  in[IN_GT + 1]      = 3.0;
+  s.value[2]         = 10.0;
+  in[IN_T]           = 10.0 - in[IN_GT] * s.face.r[0] - in[IN_GT + 1] * s.face.r[1];
+  Evaluate(&s, in, &o);
+  assert_true(fabs(o.heat_in - KAPPA * (in[IN_GT] * s.face.s[0] + in[IN_GT + 1] * s.face.s[1])) < 1e-12);
+  in[IN_T] -= 1.0;
+  const double before = o.heat_in, given = FACE_PENALTY * KAPPA / hypot(s.face.r[0], s.face.r[1]);
+  Evaluate(&s, in, &o);
+  assert_true(fabs((o.heat_in - before) / (given * hypot(s.face.s[0], s.face.s[1])) - 1.0) < 1e-12);
+}
+
 /* (31): whatever p_c is, the mean outside is the prescribed one; free takes the particle's p_c, held the initial one.
  */
 static void MeanPressure(void **state)
@@ -304,7 +330,9 @@ static void MeanPressure(void **state)
       memset(in, 0, MOTION_COUNT * sizeof(*in)); /* a = n */
       Evaluate(&s, in, &o);
       for (int ph = 0; ph < PHASE_COUNT; ph++)
-        p[ph] = o.out[F_VWX + 2 * ph] / s.face.n[0] + in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
+        p[ph] = o.out[F_VWX + 2 * ph] / s.face.n[0] -
+                s.face.skin[ph] * (in[IN_J + 2 * ph] * s.face.n[0] + in[IN_J + 2 * ph + 1] * s.face.n[1]) +
+                in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
                 in[IN_GP + 2 * ph + 1] * s.face.r[1]; /* the row has what it differs from the body's own */
       const double pc = natural ? in[IN_P + 1] - in[IN_P] : s.p0[1] - s.p0[0];
       const double sg = RetentionGasShare(&s.mat.retention, pc, &ds);
@@ -436,9 +464,10 @@ static void Share(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents),    cmocka_unit_test(MeanPressure),
-                                     cmocka_unit_test(PlateForces), cmocka_unit_test(MassRows),
-                                     cmocka_unit_test(TrueArea),    cmocka_unit_test(Share)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(Tangents),    cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
+      cmocka_unit_test(PlateForces), cmocka_unit_test(MassRows),     cmocka_unit_test(TrueArea),
+      cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
