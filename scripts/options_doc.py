@@ -75,7 +75,9 @@ Every `-snes_`, `-ksp_` and `-pc_` option of PETSc works. The program's own defa
 |---|---|---|
 {petsc}
 
-A misspelt option of PETSc or of the table above is not an error; `-options_left` shows it.
+A misspelt key of the case, and an option that begins as this program's own do (`-stepper_`, `-newton_`, `-model_`, `-output_`,
+`-checkpoint_`, `-case_`), is an error before anything is run. One of PETSc's cannot be told from those that nobody asked for yet:
+the run ends with the warning that it was not used.
 
 ## Keys of a case
 

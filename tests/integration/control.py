@@ -78,7 +78,21 @@ def check_advice():
                and "docs/giving_up.md" in said[at + 1], said[at : at + 2])  # fmt: skip
 
 
+def check_words():
+    """A function of time in one word, and a probe that the case does not have."""
+    read = lambda *options: (run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", *options, out=scratch() / "out").out / "case.yaml").read_text()
+    both = [read("-bc_load_normal" + end, text) for end, text in (("", "{ramp: [3.25 MPa, 10 MPa, 0 s, 500 s]}"), ("_ramp", "3.25 MPa, 10 MPa, 0 s, 500 s"))]
+    lines = [next(line for line in text.splitlines() if "normal:" in line) for text in both]
+    check_true("-bc_load_normal '{ramp: [...]}'", lines[0] == lines[1] and "10000000 Pa" in lines[0], lines[0])
+    for wrong in ("{slope: [1 MPa, 2 MPa, 0 s, 1 s]}", "{ramp [1 MPa]}", "{", "{ramp: [1 MPa]}"):
+        done = launch(binary(), *BP2, "-bc_load_normal", wrong, out=scratch() / "out")
+        check_true(f"{wrong} is refused", done.returncode == 2 and "bc_load_normal" in done.stdout, done.stdout[-200:])
+    text = read("-probes", "mine", "-probe_mine_at", "0.3 m, 0.01 m")
+    check_true("a probe from the command line", "probes: [mine]" in text and "at: [0.3 m, 0.01 m]" in text)
+
+
 def main():
+    check_words()
     check_limit()
     check_checkpoints()
     check_progress()
