@@ -87,8 +87,8 @@ def check_words():
     for wrong in ("{slope: [1 MPa, 2 MPa, 0 s, 1 s]}", "{ramp [1 MPa]}", "{", "{ramp: [1 MPa]}"):
         done = launch(binary(), *BP2, "-bc_load_normal", wrong, out=scratch() / "out")
         check_true(f"{wrong} is refused", done.returncode == 2 and "bc_load_normal" in done.stdout, done.stdout[-200:])
-    text = read("-probes", "mine", "-probe_mine_at", "0.3 m, 0.01 m")
-    check_true("a probe from the command line", "probes: [mine]" in text and "at: [0.3 m, 0.01 m]" in text)
+    text = read("-probes", "p06, surface, mine", "-probe_mine_at", "0.3 m, 0.01 m")
+    check_true("a probe from the command line", "probes: [p06, surface, mine]" in text and "at: [0.3 m, 0.01 m]" in text)
 
 
 def main():
