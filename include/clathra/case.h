@@ -162,6 +162,7 @@ typedef struct Case {
   double    gravity[CL_DIM];                 /* m/s^2 */
   double    gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
   bool      mean_dilatation;                 /* volume change of the cell, not of the particle's own place (88) */
+  double    mean_strain;                     /* share of the cell's mean in a particle's strain (160) */
   double    strength_factor;                 /* all strength is divided by it (87) */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */

@@ -90,6 +90,9 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
   return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
 }
 
+/* Temperature that a particle started from (81), degC. */
+double ParticleInitialT(const Case *c, const Particles *P, PetscInt p);
+
 /* History of the skeleton of the particles from `first` on, for a stage that ends `ahead` (s) of the last average of
    neighbours; the set must have a solid. */
 static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first, double ahead)

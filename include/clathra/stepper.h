@@ -28,15 +28,16 @@ typedef struct {
   double   energy[ENERGY_COUNT];            /* J, as the particles hold them now */
   double   water0, methane0, capacity0;     /* totals at t = 0, kg, J/K */
   double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
-  double   scale_p,
-      scale_u; /* largest change of pressure or stress (Pa) and displacement (m) so far: what errors are relative to */
+  double   scale_p, scale_T, scale_u; /* largest change of pressure or stress (Pa), temperature (K) and displacement (m)
+                                         so far: what errors are   relative to */
 } StepperState;
 
 /* Numbers of the step just taken, for monitors. */
 typedef struct {
   double   dt, err; /* s; error relative to the tolerance (fixed steps: 0) */
   PetscInt newton;
-  PetscInt cuts; /* failures before it succeeded */
+  PetscInt cuts;  /* failures before it succeeded */
+  int      rules; /* whose error err is: stepper_error_word */
 } StepInfo;
 
 /* Work space of a step, sized for the particles and nodes of this configuration. */
@@ -55,6 +56,7 @@ typedef struct {
   ClStatus status;
   PetscInt newton, limited;
   double   err;                             /* relative to the tolerance */
+  int      rules;                           /* whose error that is: stepper_error_word */
   double   loose;                           /* ... when it is accepted above 1; else 0 */
   double   out[PHASE_COUNT];                /* kg over the step */
   double   heat_gain, heat_in, heat_source; /* J over the step */
@@ -64,8 +66,9 @@ typedef struct {
 
 #define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
 #define STEPPER_NEWTON 4.0  /* iterations a stage that a forecast counts on */
-/* Changes that count as one in a step's error besides those of pressure and displacement. */
-#define STEPPER_SCALE_T 1.0 /* K */
+#define STEPPER_ERRORS 7    /* p_w, p_g, T, S_h, position, plastic strain, stress */
+extern const char *const stepper_error_word[STEPPER_ERRORS];
+/* Changes that count as one in a step's error besides those of pressure, temperature and displacement. */
 #define STEPPER_SCALE_SH 0.1
 #define STEPPER_SCALE_EPS 0.1 /* of plastic strain */
 
@@ -178,6 +181,18 @@ typedef struct {
 const TimeUnit *StepperTimeUnit(double seconds);
 PetscErrorCode  StepperPrintForecast(const Stepper *s);
 
+/* ---- learnt.c */
+#define LEARNT 400
+/* What it cost (s) to come to times t (s) since the start, thinned out. */
+typedef struct {
+  int    n;
+  double t[LEARNT], cost[LEARNT];
+} Learnt;
+void LearntAdd(Learnt *l, double t, double cost);
+/* What the way to t_end will cost, s: every doubling of time so many times what the one before did as the last one, no
+   less than half of it and no more than twice (which is an even pace). */
+double LearntLeft(const Learnt *l, double t_end);
+
 /* ---- auto.c: docs/equations.md, section 15 */
 /* The integrator a stage begins with, or a restart goes on with. */
 PetscErrorCode StepperAutoBegin(Stepper *s);
@@ -210,5 +225,6 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 void StepperStarSkeleton(Stepper *s, double c);
 /* Rates of plastic strain and stress at the end of a step of length dt whose stages have length gamma dt, and their
    errors from the weights of k_n, k_1, k_2 (25), (26). */
-void   StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);
-double StepperErrorNorm(Stepper *s, const double *e, const double *eu); /* collective; e [n][4], eu [n][2] */
+void StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);
+/* Collective; e [n][4], eu [n][2]; a->rules says which error it is. */
+double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a);

@@ -17,17 +17,25 @@
   {                                                                                                                    \
     #field, offsetof(StepperState, field), 1, true                                                                     \
   }
-const StateField io_state_field[] = {INT(step),          REAL(t),          REAL(dt),           REAL(err_old),
-                                     INT(hold),          INT(fresh),       INT(newton_total),  INT(failures_total),
-                                     INT(limited_total), INT(loose_total), REAL(err_worst),    REAL(out),
-                                     REAL(heat_gain),    REAL(heat_in),    REAL(heat_source),  REAL(water0),
-                                     REAL(methane0),     REAL(capacity0),  REAL(scale_p),      REAL(scale_u),
-                                     INT(next_snapshot), INT(stage),       REAL(meter),        INT(kind),
-                                     INT(votes),         INT(patience),    REAL(since),        REAL(spent),
-                                     REAL(work),         REAL(energy),     {NULL, 0, 0, false}};
-/* Twelve integers, sixteen reals, the meters, works and energies. */
+const StateField io_state_field[] = {INT(step),          REAL(t),
+                                     REAL(dt),           REAL(err_old),
+                                     INT(hold),          INT(fresh),
+                                     INT(newton_total),  INT(failures_total),
+                                     INT(limited_total), INT(loose_total),
+                                     REAL(err_worst),    REAL(out),
+                                     REAL(heat_gain),    REAL(heat_in),
+                                     REAL(heat_source),  REAL(water0),
+                                     REAL(methane0),     REAL(capacity0),
+                                     REAL(scale_p),      REAL(scale_u),
+                                     REAL(scale_T),      INT(next_snapshot),
+                                     INT(stage),         REAL(meter),
+                                     INT(kind),          INT(votes),
+                                     INT(patience),      REAL(since),
+                                     REAL(spent),        REAL(work),
+                                     REAL(energy),       {NULL, 0, 0, false}};
+/* Twelve integers, seventeen reals, the meters, works and energies. */
 _Static_assert(sizeof(StepperState) ==
-                   12 * sizeof(PetscInt) + (16 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
+                   12 * sizeof(PetscInt) + (17 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 typedef struct {

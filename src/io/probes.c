@@ -189,6 +189,90 @@ static void AddValues(const Model *m, const Fit *f, double value[PROBE_COUNT])
   }
 }
 
+/* Pressures, temperature and saturations, which a limit shares out in groups so that p stays the mean of p_w and p_g,
+   and saturations add up to 1. */
+enum { LIMITED = PROBE_SG + 1, GROUPS = 3 };
+static const int group_end[GROUPS] = {3, 4, LIMITED}; /* p, p_w, p_g; T; S_h, S_w, S_g */
+
+/* What a probe interpolates: its neighbours' largest values and those of their negatives, and so of their distances. */
+typedef struct {
+  double top[2 * LIMITED], far[2 * CL_DIM];
+} Range;
+
+static void AddRange(const Model *m, const Fit *f, Range *r, double mean[LIMITED])
+{
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    double       d[CL_DIM];
+    const double w = Weight(f, &m->P, p, d);
+
+    if (w == 0.0)
+      continue;
+    for (int q = 0; q < LIMITED; q++) {
+      const double v = ProbeWanted(m->c, q) ? ProbeQuantity(m, p, q) : 0.0;
+
+      mean[q] += w / f->total * v;
+      r->top[2 * q]     = fmax(r->top[2 * q], v);
+      r->top[2 * q + 1] = fmax(r->top[2 * q + 1], -v);
+    }
+    for (int i = 0; i < 2 * CL_DIM; i++)
+      r->far[i] = fmax(r->far[i], i % 2 ? -d[i / 2] : d[i / 2]);
+  }
+}
+
+/* Share of the affine part that keeps a value between its neighbours'. */
+static double Share(double value, double mean, const double top[2])
+{
+  const double over = value - mean, room = over > 0.0 ? top[0] - mean : mean + top[1];
+
+  return fabs(over) > room ? fmax(room, 0.0) / fabs(over) : 1.0;
+}
+
+/* Among its neighbours a probe stays in their range.  Beyond them, at the surface, it goes on linearly, saturations
+   from 0 to 1. */
+static void Limit(const Case *c, const Range *r, const double mean[LIMITED], double value[PROBE_COUNT])
+{
+  const bool among = fmin(r->far[0], r->far[1]) >= 0.0 && fmin(r->far[2], r->far[3]) >= 0.0;
+
+  for (int k = 0, first = 0; k < GROUPS; first = group_end[k++]) {
+    static const double saturation[2] = {1.0, 0.0};
+    double              share         = 1.0;
+
+    for (int q = first; q < group_end[k] && (among || k == GROUPS - 1); q++) {
+      if (ProbeWanted(c, q))
+        share = fmin(share, Share(value[q], mean[q], among ? &r->top[2 * q] : saturation));
+    }
+    for (int q = first; q < group_end[k] && share < 1.0; q++)
+      value[q] = mean[q] + share * (value[q] - mean[q]);
+  }
+}
+
+static PetscErrorCode LimitAll(const Model *m, const Fit *fit, double *value)
+{
+  const PetscInt n = m->c->nprobe;
+  Range         *range;
+  double(*mean)[LIMITED];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &range));
+  PetscCall(PetscCalloc1(n, &mean));
+  for (PetscInt k = 0; k < n; k++) {
+    for (size_t i = 0; i < sizeof(*range) / sizeof(double); i++)
+      ((double *)&range[k])[i] = -INFINITY;
+    if (!ProbeIsMean(&m->c->probe[k]))
+      AddRange(m, &fit[k], &range[k], mean[k]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, (PetscMPIInt)(n * sizeof(*range) / sizeof(double)), MPI_DOUBLE,
+                             MPI_MAX, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean, (PetscMPIInt)(n * LIMITED), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  for (PetscInt k = 0; k < n; k++) {
+    if (!ProbeIsMean(&m->c->probe[k]) && fit[k].total > 0.0)
+      Limit(m->c, &range[k], mean[k], value + k * PROBE_COUNT);
+  }
+  PetscCall(PetscFree(range));
+  PetscCall(PetscFree(mean));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A material point without a neighbour (outside the body) gets a wider reach; a fixed one is then empty space. */
 static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
 {
@@ -262,6 +346,7 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
   PetscCall(MeansAdd(m, (double(*)[PROBE_COUNT])value, weight));
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * (PROBE_COUNT + 1)), MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscCall(LimitAll(m, fit, value));
   for (PetscInt k = 0; k < n; k++) {
     if (!ProbeIsMean(&m->c->probe[k]))
       continue;

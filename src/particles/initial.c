@@ -21,6 +21,14 @@ static double InitialTemperature(const Case *c, const Region *r, const double x[
   return r->temperature + r->geothermal * depth;
 }
 
+double ParticleInitialT(const Case *c, const Particles *P, PetscInt p)
+{
+  const double x[CL_DIM] = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)};
+  double       grad[CL_DIM];
+
+  return InitialTemperature(c, &c->region[P->i[PI_REGION][p]], x, grad);
+}
+
 /* Integral of exp(-beta (T - T_ref)) over the height from the geothermal datum to z, m. */
 static double ThermalHeight(const Case *c, const Region *r, double z)
 {

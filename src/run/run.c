@@ -50,7 +50,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   const Case  *c       = s->model->c;
   const double t_begin = c->t_begin;
   double       done, left;
-  char cuts[32] = "", error[32] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32], rest[32];
+  char cuts[32] = "", error[64] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32], rest[32];
 
   PetscFunctionBeginUser;
   if (run->quiet || !WatchLine(&run->watch, CaseAtEnd(c, s->state.t) || s->stop))
@@ -73,7 +73,8 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   else
     PetscCall(PetscSNPrintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton));
   if (s->adaptive && !s->explicit)
-    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance", info->err));
+    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance (%s)", info->err,
+                            stepper_error_word[info->rules]));
   PetscCall(PetscPrintf(s->model->grid.comm,
                         "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s left\n", stage,
                         s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
@@ -151,7 +152,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char                text[2048], local[512], loose[256], yields[256], gaps[256], *stages, *all;
+  char                text[2048], above[64] = "", local[512], loose[256], yields[256], gaps[256], *stages, *all;
   ModelTotals         t;
   bool                ok;
 
@@ -160,12 +161,14 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscCall(LocalSummary(s, local));
   PetscCall(YieldSummary(s->model, yields));
   PetscCall(LooseSummary(s, loose));
+  if (z->loose_total)
+    PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(PetscSNPrintf(
       text, sizeof(text),
       "%s: %s at t = %g s\n"
       "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-      " Newton iterations, %.2f s\n%s"
+      " Newton iterations, %.2f s%s\n%s"
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
       "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
       "%s%s%s  results in %s\n",
@@ -173,7 +176,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       s->model->c->nstage ? "by stage"
       : s->auto_.on       ? STEPPER_AUTO
                           : s->scheme->name,
-      z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, local,
+      z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
       Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
       Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
       Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, yields, loose,
@@ -243,6 +246,7 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    PetscCall(CellMeansWarning(&m->grid, m->c, &m->P));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));

@@ -16,6 +16,7 @@ struct StageLog {
   PetscInt n, cap, step; /* entries, allocated, steps at the last look */
   double   from, clock;  /* when the stage began: s of the scene in this process, of the wall */
   Entry   *entry;
+  Learnt   learnt; /* since then */
 };
 
 static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
@@ -26,8 +27,9 @@ static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
     PetscCall(PetscRealloc(sizeof(Entry) * (size_t)log->cap, &log->entry));
   }
   if (log->n == 0 || log->entry[log->n - 1].stage != s->state.stage) {
-    log->from  = from;
-    log->clock = Wall();
+    log->from     = from;
+    log->clock    = Wall();
+    log->learnt.n = 0;
   }
   log->entry[log->n++] =
       (Entry){.integrator = s->scheme->name, .stage = s->state.stage, .from = from, .to = from, .clock = Wall()};
@@ -78,13 +80,14 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   e->refused += info->cuts;
   e->newton += info->newton;
   log->step = s->state.step;
+  LearntAdd(&log->learnt, s->state.t - log->from, Wall() - log->clock);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left)
 {
   *done = (s->state.t - log->from) / (s->model->c->t_end - log->from);
-  *left = *done > 0.0 ? (Wall() - log->clock) * (1.0 - *done) / *done : 0.0;
+  *left = LearntLeft(&log->learnt, s->model->c->t_end - log->from);
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */

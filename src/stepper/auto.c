@@ -135,7 +135,7 @@ static bool Waves(const Stepper *s, const Motion *sum)
 static PetscErrorCode StepThatWouldDo(const Stepper *s, double *dt)
 {
   const StepperState *z            = &s->state;
-  const double        scale[RATES] = {z->scale_p, z->scale_p,        STEPPER_SCALE_T, STEPPER_SCALE_SH,
+  const double        scale[RATES] = {z->scale_p, z->scale_p,        z->scale_T, STEPPER_SCALE_SH,
                                       z->scale_u, STEPPER_SCALE_EPS, z->scale_p};
   Motion              sum;
 

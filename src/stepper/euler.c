@@ -28,7 +28,7 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
     for (int d = 0; d < 2; d++)
       eu[2 * p + d] = s->state.fresh ? 0.0 : 0.5 * dt * (w->trial[0].v[2 * p + d] - w->v_n[2 * p + d]);
   }
-  a->err = StepperErrorNorm(s, e, eu);
+  a->err = StepperErrorNorm(s, e, eu, a);
   PetscCall(PetscFree2(e, eu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

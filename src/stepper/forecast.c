@@ -9,9 +9,11 @@
 #define TANGENT 0.9e-6  /* s a particle and unknown of a node: Jacobian */
 #define FACTOR 5.5e-7   /* s: factorisation of N unknowns, n to a node, takes FACTOR n N^1.3 */
 #define FACTOR_POWER 1.3
-#define SMOOTH_STEPS 150.0 /* an adaptive run whose loads are slow */
-#define TRANSITS 100.0     /* waves matter in a run that is no longer than so many of their transits ... */
-#define PER_TRANSIT 40.0   /* ... and want so many steps each */
+#define SMOOTH_STEPS 150.0  /* an adaptive run whose loads are slow */
+#define BEHIND_KINK 12.0    /* steps that a kink adds */
+#define MOST_STRETCHES 2000 /* ... looked at */
+#define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
+#define PER_TRANSIT 40.0    /* ... and want so many steps each */
 
 static double Extent(const Case *c)
 {
@@ -32,7 +34,28 @@ double StepperHybridWork(const Model *m, double steps)
   return steps * (double)m->P.n * (HYBRID_BASE + HYBRID_SCALAR * s + HYBRID_COUPLED * s * s);
 }
 
-/* Steps of an implicit run: as fixed, or few unless waves have to be resolved. */
+/* Steps that kinks of the loads, output times and dt_max ask for in what is left: a stretch between two of them takes
+   one, and behind a kink as many more as it takes to come back to the old length. */
+static double Stretches(const Stepper *s, double left)
+{
+  const Model *m     = s->model;
+  Stepper      ahead = *s;
+  double       steps = 0.0;
+  int          n     = 0;
+
+  ahead.state.t = m->c->t_end - left;
+  for (; ahead.state.t < m->c->t_end && n < MOST_STRETCHES; n++) {
+    bool         kink;
+    const double stop = StepperNextStop(&ahead, &kink);
+
+    steps += fmax(1.0, ceil((stop - ahead.state.t) / s->dt_max)) + (kink && stop < m->c->t_end ? BEHIND_KINK : 0.0);
+    ahead.state.t = stop;
+  }
+  return n < MOST_STRETCHES ? steps : steps * left / (ahead.state.t - (m->c->t_end - left));
+}
+
+/* Steps of an implicit run: as fixed, or few unless waves have to be resolved, events come often or loads have kinks.
+ */
 static double ImplicitSteps(const Stepper *s, double left)
 {
   const Model *m = s->model;
@@ -43,7 +66,9 @@ static double ImplicitSteps(const Stepper *s, double left)
   const double transits =
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
 
-  return transits < TRANSITS ? fmax(SMOOTH_STEPS, PER_TRANSIT * transits) : SMOOTH_STEPS;
+  const double steps = fmax(SMOOTH_STEPS, Stretches(s, left));
+
+  return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
 }
 
 double StepperImplicitWork(const Model *m, double newton, double factors)

@@ -116,12 +116,15 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-double StepperErrorNorm(Stepper *s, const double *e, const double *eu)
+const char *const stepper_error_word[STEPPER_ERRORS] = {"p_w",   "p_g", "T", "S_h", "displacement", "plastic strain",
+                                                        "stress"};
+
+double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a)
 {
-  const Model *m        = s->model;
-  const double scale[7] = {s->state.scale_p, s->state.scale_p,  STEPPER_SCALE_T, STEPPER_SCALE_SH,
-                           s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
-  double       sum[8] = {0.0}, worst = 0.0;
+  const Model *m                       = s->model;
+  const double scale[STEPPER_ERRORS]   = {s->state.scale_p, s->state.scale_p,  s->state.scale_T, STEPPER_SCALE_SH,
+                                          s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
+  double       sum[STEPPER_ERRORS + 1] = {0.0}, worst = 0.0;
 
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 4; k++)
@@ -130,11 +133,18 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu)
     for (int k = 0; s->work.e_plastic && k < 5; k++)
       sum[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
   }
-  sum[7] = (double)m->P.n;
-  if (MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm))
+  sum[STEPPER_ERRORS] = (double)m->P.n;
+  if (MPI_Allreduce(MPI_IN_PLACE, sum, STEPPER_ERRORS + 1, MPI_DOUBLE, MPI_SUM, m->grid.comm))
     return NAN;
-  for (int k = 0; k < 7; k++)
-    worst = fmax(worst, ClSize(sqrt(sum[k] / sum[7]) / (s->tol * scale[k])));
+  a->rules = 0;
+  for (int k = 0; k < STEPPER_ERRORS; k++) {
+    const double err = ClSize(sqrt(sum[k] / sum[STEPPER_ERRORS]) / (s->tol * scale[k]));
+
+    if (err > worst) {
+      worst    = err;
+      a->rules = k;
+    }
+  }
   return worst;
 }
 
@@ -182,7 +192,7 @@ static double WantedStep(const Stepper *s, double dt, bool kink, const Attempt *
 static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a, PetscInt cuts)
 {
   StepperState  *z    = &s->state;
-  const StepInfo info = {.dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts};
+  const StepInfo info = {.dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts, .rules = a->rules};
 
   PetscFunctionBeginUser;
   PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates));
@@ -276,7 +286,9 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     }
     const bool small = dt <= s->dt_min * (1.0 + 1e-9);
     if (a.status == CL_INACCURATE) {
-      m->why         = "the error estimate stays above the tolerance";
+      PetscCall(PetscSNPrintf(m->text, sizeof(m->text), "the error estimate, of %s, stays above the tolerance",
+                              stepper_error_word[a.rules]));
+      m->why         = m->text;
       dt_inaccurate  = dt;
       err_inaccurate = a.err;
       s->state.dt    = fmax(dt * fmax(0.2, 0.9 * pow(a.err, -1.0 / s->scheme->error_order)), s->dt_min);

@@ -67,7 +67,7 @@ static PetscErrorCode Error(Stepper *s, double dt, Attempt *a)
       eu[q] = dt * (weight[0] * w->v_n[q] + weight[1] * w->trial[0].v[q] + weight[2] * w->trial[1].v[q]);
     }
   }
-  a->err = StepperErrorNorm(s, e, eu);
+  a->err = StepperErrorNorm(s, e, eu, a);
   PetscCall(PetscFree2(e, eu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

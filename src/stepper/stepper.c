@@ -2,6 +2,7 @@
 #include "clathra/stepper.h"
 
 #define FLOOR_P 1e4 /* Pa: pressure changes below it are not resolved more finely */
+#define FLOOR_T 1.0 /* K: likewise */
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s)
 {
@@ -16,6 +17,7 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
   s->state.err_old = 1.0;
   s->state.fresh   = 1;
   s->state.scale_p = FLOOR_P;
+  s->state.scale_T = FLOOR_T;
   s->state.scale_u = StepperFloorU(s);
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-stepper_max_steps", &s->max_steps, NULL));
   PetscCall(ModelComputeTotals(m, &t));
@@ -90,12 +92,12 @@ PetscErrorCode StepperDestroy(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What errors are relative to: the largest change since the start; of pore pressure or stress, and of position.  With
-   them ranks agree on a signal. */
+/* What errors are relative to: the largest change since the start; of pore pressure or stress, temperature and
+   position.  With them ranks agree on a signal. */
 static PetscErrorCode UpdateScales(Stepper *s)
 {
   const Model *m      = s->model;
-  double       top[3] = {s->state.scale_p, s->state.scale_u, s->interrupted ? s->interrupted() : 0};
+  double       top[4] = {s->state.scale_p, s->state.scale_u, s->state.scale_T, s->interrupted ? s->interrupted() : 0};
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) { /* p_w, p_g, sigma'_xx, _yy, _zz against their initial values */
@@ -109,16 +111,20 @@ static PetscErrorCode UpdateScales(Stepper *s)
     for (PetscInt p = 0; p < m->P.n; p++)
       top[1] = fmax(top[1], ClSize(m->P.f[P_U + d][p]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 3, MPI_DOUBLE, MPI_MAX, m->grid.comm));
-  s->broken = !isfinite(top[0] + top[1]);
+  for (PetscInt p = 0; m->P.f[P_T] && p < m->P.n; p++)
+    top[2] = fmax(top[2], ClSize(m->P.f[P_T][p] - ParticleInitialT(m->c, &m->P, p)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 4, MPI_DOUBLE, MPI_MAX, m->grid.comm));
+  s->broken = !isfinite(top[0] + top[1] + top[2]);
   if (s->broken) {
-    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: a pressure, stress or displacement is not a number\n",
+    PetscCall(PetscPrintf(m->grid.comm,
+                          "Given up at t = %g s: a pressure, stress, temperature or displacement is not a number\n",
                           s->state.t));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   s->state.scale_p = top[0];
   s->state.scale_u = top[1];
-  s->signal        = (int)top[2];
+  s->state.scale_T = top[2];
+  s->signal        = (int)top[3];
   s->stop          = s->stop || s->signal;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

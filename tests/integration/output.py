@@ -14,6 +14,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import CASES, Run, binary, check_true, finish, launch, run, scratch  # noqa: E402
 
+BOUNDARIES = Path(__file__).resolve().parents[1] / "verification" / "cases" / "boundaries.yaml"
 OPTIONS = ("-progress", "0", "-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-output_probe_every", "10 s")
 QUANTITIES = ["p_Pa", "p_w_Pa", "p_g_Pa", "T_degC", "S_h", "S_w", "S_g", "u_x_m", "u_y_m", "sxx_Pa", "syy_Pa", "szz_Pa",
               "sxy_Pa", "x_m", "y_m"]  # fmt: skip
@@ -140,7 +141,22 @@ def check_loose():
     summary, steps = (loose.out / "summary.txt").read_text(), len(loose.balance["step"])
     check_true("steps above the tolerance are counted in summary.txt", f"{steps} steps were accepted above the tolerance" in
                summary and " 0 refused" in summary, summary)  # fmt: skip
+    check_true("... and beside the steps and refusals", f"; {steps} steps above the tolerance" in summary, summary)
+    check_true("... and progress names the field that rules", "of tolerance (" in loose.output)
     check_true("... a run within it says nothing", "accepted above" not in (good.out / "summary.txt").read_text())
+
+
+def check_probe_range():
+    """A probe at a surface beside a jump of hydrate: its saturations are from 0 to 1, and add up to 1."""
+    split, z = "0.95 m", "0.05 m"
+    strip = Run.of_case(BOUNDARIES, "-quiet", "-fields", "water", "-time_end", "1 s", "-stepper_dt", "1 s", "-regions", "strip,bare", "-region_strip_Sh", "0.4",
+                        "-region_strip_upper", f"{split},0.1 m", "-region_bare_lower", f"{split},0 m", "-region_bare_upper", "1 m,0.1 m",
+                        "-region_bare_material", "sand", "-region_bare_pressure", "5 MPa", "-region_bare_temperature", "10 degC",
+                        "-probe_left_at", f"0.9 m,{z}", "-probe_middle_at", f"0.94 m,{z}", "-probe_right_at", f"1 m,{z}")  # fmt: skip
+    at = [strip.probe(name) for name in ("left", "middle", "right")]
+    Sh = [p["S_h"][-1] for p in at]
+    check_true("a probe at a surface has no negative hydrate", 0.4 >= Sh[0] >= Sh[1] >= Sh[2] and abs(Sh[2]) < 1e-12, str(Sh))
+    check_true("... and its saturations add up to 1", all(abs(p["S_h"][-1] + p["S_w"][-1] - 1.0) < 1e-12 for p in at))
 
 
 def check_refusals():
@@ -173,5 +189,6 @@ check_tables()
 check_resolved()
 check_failure()
 check_loose()
+check_probe_range()
 check_refusals()
 finish()

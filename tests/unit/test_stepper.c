@@ -1,8 +1,11 @@
-/* A number that is none is no small error: neither the estimate of a step nor the state after it passes it by. */
+/* A number that is none is no small error: neither the estimate of a step nor the state after it passes it by; what
+   errors are relative to; the time left. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <math.h>
 #include <cmocka.h>
 #include "clathra/stepper.h"
 
@@ -16,7 +19,7 @@ static Stepper s;
 static int Start(void **state)
 {
   m           = (Model){.c = &c};
-  s           = (Stepper){.model = &m, .tol = 1e-3, .state = {.scale_p = 1e4, .scale_u = 1e-3}};
+  s           = (Stepper){.model = &m, .tol = 1e-3, .state = {.scale_p = 1e4, .scale_T = 1.0, .scale_u = 1e-3}};
   c.fields    = (FieldSet){.has = HAS_SOLID | HAS_WATER};
   m.grid.comm = PETSC_COMM_WORLD;
   GOOD(ParticlesCreate(c.fields.has, &m.P));
@@ -35,14 +38,115 @@ static int End(void **state)
 
 static void AnErrorThatIsNoNumberIsLarge(void **state)
 {
-  double e[4 * N] = {0}, eu[2 * N] = {0};
+  double  e[4 * N] = {0}, eu[2 * N] = {0};
+  Attempt a = {.status = CL_OK};
 
-  assert_true(StepperErrorNorm(&s, e, eu) == 0.0);
+  assert_true(StepperErrorNorm(&s, e, eu, &a) == 0.0);
   e[4 * 1 + 0] = NAN;
-  assert_true(StepperErrorNorm(&s, e, eu) > 1.0);
+  assert_true(StepperErrorNorm(&s, e, eu, &a) > 1.0);
   e[4 * 1 + 0]  = 0.0;
   eu[2 * 2 + 1] = NAN;
-  assert_true(StepperErrorNorm(&s, e, eu) > 1.0);
+  assert_true(StepperErrorNorm(&s, e, eu, &a) > 1.0);
+  assert_string_equal(stepper_error_word[a.rules], "displacement");
+}
+
+/* An error of T counts by the largest change so far, whatever the place has started from; the largest is named. */
+static void TemperatureCountsByItsChange(void **state)
+{
+  double         e[4 * N] = {0}, eu[2 * N] = {0};
+  Attempt        a    = {.status = CL_OK};
+  const StepInfo info = {.dt = 1.0};
+  Region         r    = {.temperature = 4.0};
+
+  c.region = &r;
+  GOOD(ParticlesDestroy(&m.P));
+  GOOD(ParticlesCreate(HAS_WATER | HAS_HEAT, &m.P));
+  GOOD(ParticlesResize(&m.P, N));
+  for (int p = 0; p < N; p++) {
+    for (int k = 0; k < P_COUNT; k++) {
+      if (m.P.f[k])
+        m.P.f[k][p] = 0.0;
+    }
+    m.P.i[PI_REGION][p] = 0;
+    m.P.f[P_T][p]       = 4.0;
+    e[4 * p + 2]        = 1e-3;
+  }
+  GOOD(StepperAccept(&s, &a, &info));
+  assert_true(s.state.scale_T == 1.0);
+  assert_true(fabs(StepperErrorNorm(&s, e, eu, &a) - 1.0) < 1e-12);
+  m.P.f[P_T][1] = 60.0;
+  GOOD(StepperAccept(&s, &a, &info));
+  m.P.f[P_T][1] = 4.0;
+  GOOD(StepperAccept(&s, &a, &info));
+  assert_true(s.state.scale_T == 56.0);
+  assert_true(fabs(StepperErrorNorm(&s, e, eu, &a) - 1.0 / 56.0) < 1e-12);
+  assert_string_equal(stepper_error_word[a.rules], "T");
+  m.P.f[P_T][2] = NAN;
+  GOOD(StepperAccept(&s, &a, &info));
+  assert_true(s.broken && s.state.scale_T == 56.0);
+}
+
+/* Runs of known length, one unit of cost a step: of what is left after 5 % and later. */
+static double LeftOff(double (*next)(double t, double dt), double t_end)
+{
+  Learnt l = {.n = 0};
+  double t = 0.0, dt = 1.0, steps = 0.0, all = 0.0, worst = 1.0;
+
+  for (double x = 0.0, d = 1.0; x < t_end; all += 1.0) {
+    x += d;
+    d = next(x, d);
+  }
+  while (t < 0.9 * t_end) {
+    t += dt;
+    dt = next(t, dt);
+    LearntAdd(&l, t, ++steps);
+    if (t < 0.05 * t_end || t >= 0.9 * t_end)
+      continue;
+    const double off = LearntLeft(&l, t_end) / (all - steps);
+    worst            = fmax(worst, fmax(off, 1.0 / off));
+  }
+  return worst;
+}
+
+static double Even(double t, double dt)
+{
+  return 1.0;
+}
+
+static double Diffuses(double t, double dt)
+{
+  return fmax(1.0, 0.05 * t); /* steps in proportion to time, as where a front spreads */
+}
+
+static double Grows(double t, double dt)
+{
+  return fmin(1.2 * dt, 400.0);
+}
+
+static double Root(double t, double dt)
+{
+  return fmax(1.0, 0.5 * sqrt(t));
+}
+
+static void TimeLeftIsLearnt(void **state)
+{
+  static const struct {
+    const char *what;
+    double (*next)(double, double);
+    double end;
+  } run[]  = {{"even steps", Even, 1e5},
+              {"dt ~ t", Diffuses, 1e6},
+              {"growth to a largest step", Grows, 1e5},
+              {"dt ~ sqrt t", Root, 1e6}};
+  Learnt l = {.n = 0};
+
+  assert_true(LearntLeft(&l, 1.0) == 0.0);
+  for (size_t k = 0; k < sizeof(run) / sizeof(*run); k++) {
+    const double worst = LeftOff(run[k].next, run[k].end);
+
+    printf("time left after 5 %%, %-26s off by a factor of %.3f at most\n", run[k].what, worst);
+    assert_true(worst < 2.0);
+  }
 }
 
 static void AStateThatIsNoNumberIsNotGoneOnWith(void **state)
@@ -84,7 +188,9 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(AnErrorThatIsNoNumberIsLarge, Start, End),
                                      cmocka_unit_test_setup_teardown(AStateThatIsNoNumberIsNotGoneOnWith, Start, End),
-                                     cmocka_unit_test_setup_teardown(ASignalStopsAfterTheStep, Start, End)};
+                                     cmocka_unit_test_setup_teardown(ASignalStopsAfterTheStep, Start, End),
+                                     cmocka_unit_test_setup_teardown(TemperatureCountsByItsChange, Start, End),
+                                     cmocka_unit_test(TimeLeftIsLearnt)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL))
