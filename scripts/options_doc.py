@@ -29,8 +29,14 @@ PROGRAM = [  # option, value, default, meaning
     ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this, rows of "
      "mass and energy 20 times lower"),
     ("-newton_tol_update", "x", "1e-6", "... and every scaled update too, in units of 1 MPa and 1 K"),
-    ("-newton_refactor", "N", "20", "the preconditioner is made once a step, and anew after a linear solve of more than "
-     "N iterations; a stage that fails is tried again with a new one at every Newton iteration"),
+    ("-newton_preconditioner", "auto, whole, reduced", "auto", "whole: of the whole matrix, LU unless -pc_type says "
+     "otherwise; reduced: multigrid on what is left without the fluid velocities (docs/equations.md, section 9), where it "
+     "breaks down LU of the whole for that stage; auto: whole"),
+    ("-reduced_pc_type", "PETSc's", "fieldsplit", "solver of the reduced matrix: fieldsplit, its two groups of unknowns in "
+     "turn; lu, all of it factorised"),
+    ("-newton_refactor", "N", "by its cost", "the preconditioner is made once a step, and anew after a linear solve of more "
+     "than N iterations, or where N is not given when solves have lost as many iterations as a new one costs; a stage that "
+     "fails is tried again with a new one at every Newton iteration"),
     ("-model_pmat_type", "aij, baij", "aij with UMFPACK, else baij", "storage of the matrix that the preconditioner "
      "sees; UMFPACK needs aij, ILU by blocks of nine needs baij; goes with the solver of the same preset"),
 ]  # fmt: skip
@@ -43,13 +49,18 @@ PETSC = [  # the ones worth knowing, with this program's defaults
     ("-ksp_atol", "0.02 newton_tol_residual", "its absolute tolerance, on scaled rows"),
     ("-ksp_max_it", "60", "iterations before the linear solve has failed"),
     ("-ksp_gmres_restart", "60", "vectors kept by GMRES"),
-    ("-pc_type", "lu", "preconditioner: lu, ilu, asm, bjacobi ..."),
+    ("-ksp_rtol", "1e-4", "... with the reduced preconditioner"),
+    ("-ksp_max_it", "200", "... with the reduced preconditioner"),
+    ("-pc_type", "lu", "preconditioner of the whole: lu, ilu, asm, bjacobi ..."),
+    ("-reduced_pc_fieldsplit_type", "multiplicative", "how the groups follow each other: flow (p_w, p_g, T), then motion (v_s)"),
+    ("-reduced_fieldsplit_flow_pc_type", "gamg", "of p_w, p_g, T: aggregation, smoothed by ILU (-reduced_fieldsplit_flow_mg_levels_...)"),
+    ("-reduced_fieldsplit_motion_pc_type", "hypre", "of v_s: BoomerAMG; gamg without hypre"),
     ("-pc_factor_mat_solver_type", "umfpack up to 4000 unknowns on one rank, else mumps", "who factorises"),
     ("-options_file", "", "reads options from a file, for example a preset of options/"),
     ("-snes_monitor, -ksp_converged_reason", "", "watch Newton's method and the linear solver"),
     ("-options_left", "", "at the end, lists options that nobody read: finds misspelt ones"),
     ("-log_view", "", "where the time went; this program's own events are ClBeginStep, ClResidual, ClJacobian, "
-     "ClWidePart"),
+     "ClWidePart, ClReducedMatrix, ClReducedApply"),
 ]  # fmt: skip
 
 HEAD = """\

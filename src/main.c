@@ -20,7 +20,7 @@ static const char help[] =
     "\n"
     "Others: -quiet, -progress S, -checkpoint_wall S, -stepper_max_steps N, -newton_tol_residual 1e-9, "
     "-newton_tol_update 1e-6,\n"
-    "-newton_refactor 20, -model_pmat_type aij|baij.\n"
+    "-newton_preconditioner auto|whole|reduced, -newton_refactor N, -model_pmat_type aij|baij.\n"
     "Presets: -options_file options/NAME.opts (later options win); -snes_, -ksp_, -pc_ are PETSc's; docs/options.md "
     "has all.\n"
     "Exit codes: 0 done, 1 bug, 2 wrong case or option, 3 gave up or could not write (last good state in\n"

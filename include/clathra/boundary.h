@@ -59,7 +59,10 @@ PetscErrorCode CellMeansWarning(const Grid *g, const Case *c, const Particles *P
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */
 PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
-/* Warnings about a start out of balance with gravity, on rank 0.  Collective. */
+#define CL_ADVICE 400
+/* Where pore pressure above the stiffness of the skeleton is held by tractions: what to do instead; else empty. */
+PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE]);
+/* Warnings about a start out of balance with gravity, or in it by tractions alone, on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
 
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
@@ -94,8 +97,9 @@ typedef struct {
   double outflow[PHASE_COUNT], heat_in;
   double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
 } FaceOutput;
+/* velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  const double in[IN_COUNT], double kappa, double dt, FaceOutput *o);
+                  const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o);
 
 /* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
 double PlatePosition(const Bc *b, double t);

@@ -166,6 +166,7 @@ typedef struct Case {
   double    strength_factor;                 /* all strength is divided by it (87) */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */
+  double    ambient_drag;                    /* C of (152) */
   PetscInt  nmaterial, nregion, nbc, nprobe, nmeter;
   Material *material;
   Region   *region;

@@ -73,12 +73,27 @@ typedef struct {
   double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
 } ProjectionCell;
 
+/* PETSc's log events. */
+enum { EVENT_BEGIN_STEP = 0, EVENT_RESIDUAL, EVENT_JACOBIAN, EVENT_WIDE, EVENT_SETUP, EVENT_REDUCED, EVENT_COUNT };
+
+/* Whole: of J2 with all its unknowns, LU unless PETSc's options say otherwise.  Reduced: (170).  Auto: by size. */
+enum { PRECONDITIONER_AUTO = 0, PRECONDITIONER_WHOLE, PRECONDITIONER_REDUCED };
+
+/* When a preconditioner is made anew (176). */
+typedef struct {
+  bool   fresh, due; /* no solve with it yet; its loss has reached the cost of a new one */
+  double per_decade; /* GMRES iterations of its first solve per decade of the residual */
+  double lost;       /* iterations beyond that since */
+} Renewal;
+
+typedef struct Reduced Reduced; /* reduced.c */
+
 typedef struct {
   const Case   *c;
   Grid          grid;
   Particles     P;
   NodeMap       map;
-  PetscLogEvent event[4]; /* begin step, residual, Jacobian, wide part */
+  PetscLogEvent event[EVENT_COUNT];
 
   /* on the configuration at t_n, built by ModelBeginStep */
   Stencil        *stencil; /* [n] */
@@ -118,15 +133,20 @@ typedef struct {
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
-  Mat    J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
-  Vec    X, R;        /* scaled unknowns and residual */
-  SNES   snes;
+  Mat      J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
+  Vec      X, R;        /* scaled unknowns and residual */
+  SNES     snes;
+  PC       set_aside; /* that of the reduced one while LU takes over */
+  Renewal  renewal;
+  PetscInt preconditioner; /* PRECONDITIONER_... as asked for (option -newton_preconditioner) */
+  bool     reduces;        /* GMRES has the reduced one */
+  Reduced *reduced;        /* the reduced preconditioner; null: factors of the whole or what PETSc's options say */
   bool   refactor; /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
   bool   always_refactor; /* ... at every Jacobian: second attempt at a stage */
   double factored_dt;     /* dt' it was made for, s */
   char pmat_type[16]; /* aij | baij of the preconditioner's matrix (option -model_pmat_type); empty: as the solver likes
                          it */
-  PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor) */
+  PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
   double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
 } Model;
 

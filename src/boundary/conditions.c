@@ -67,6 +67,30 @@ static void Traction(double q, double s, const double a[2], const double da[2][M
   }
 }
 
+/* (152): dynamic pressure of the fluid around the body on a face that moves into it. */
+static void Drag(const Case *c, const double velocity[CL_DIM], const double a[2], const double da[2][MOTION_COUNT],
+                 double dt, FaceOutput *o)
+{
+  const double area2 = a[0] * a[0] + a[1] * a[1], w = velocity[0] * a[0] + velocity[1] * a[1];
+  const double C = 0.5 * c->ambient_density * c->ambient_drag / area2, q = C * w * w;
+
+  if (w <= 0.0 || C == 0.0)
+    return;
+  for (int i = 0; i < 2; i++) {
+    double *row = o->D[F_VSX + i];
+
+    o->out[F_VSX + i] += q * a[i];
+    for (int d = 0; d < CL_DIM; d++)
+      row[IN_U + d] += 2.0 * C * w * a[d] / dt * a[i];
+    for (int k = 0; k < MOTION_COUNT; k++) {
+      const double dw     = velocity[0] * da[0][k] + velocity[1] * da[1][k],
+                   darea2 = 2.0 * (a[0] * da[0][k] + a[1] * da[1][k]);
+
+      row[k] += (2.0 * C * w * dw - q * darea2 / area2) * a[i] + q * da[i][k];
+    }
+  }
+}
+
 static double Density(const Material *mat, int phase, double p, double T, double *dp, double *dT)
 {
   return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, dp, dT) : GasDensity(&mat->gas, p, T, dp, dT);
@@ -272,7 +296,7 @@ static void Carry(const Kinematics *k, const double n[2], double a[2], double da
 }
 
 void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  const double in[IN_COUNT], double kappa, double dt, FaceOutput *o)
+                  const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o)
 {
   double     a[2] = {f->n[0], f->n[1]}, da[2][MOTION_COUNT] = {{0.0}};
   double     s[2] = {f->s[0], f->s[1]}, ds[2][MOTION_COUNT] = {{0.0}};
@@ -288,6 +312,7 @@ void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Materia
     Carry(&k, f->s, s, ds);
     if (f->traction >= 0)
       Traction(v->value[f->traction], v->shear[f->traction], a, da, o);
+    Drag(c, velocity, a, da, dt, o);
   }
   Fluids(c, f, v, mat, p0, a, da, in, dt, o);
   if (c->fields.heat)

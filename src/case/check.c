@@ -24,6 +24,9 @@ static void CheckCase(Reader *r, const Case *c)
     CheckRadius(r, c);
   if (c->ambient_density > 0.0 && c->gravity[0] == 0.0 && c->gravity[1] == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);
+  if (c->ambient_drag > 0.0 && c->ambient_density == 0.0)
+    FAIL_AT(GROUP_CASE, "", "ambient_drag", "(%g) is that of a fluid with a density: give ambient_density",
+            c->ambient_drag);
   if ((double)c->cells[0] * c->cells[1] > 1e8)
     FAIL_AT(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
   if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !(c->nstage && r->bad[GROUP_STAGE]))

@@ -171,6 +171,8 @@ static const Key case_key[] = {
         "of the fluid that the scene stands in: acts on the whole surface of the body; at and above ambient_level"),
     REAL(Case, "ambient_density", ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
          "of that fluid: below ambient_level its pressure grows with depth"),
+    REAL(Case, "ambient_drag", ambient_drag, "", "[0,100]", "0",
+         "coefficient of the drag of that fluid, at rest, on faces that move into it", .has = HAS_SOLID),
     ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
          WHEN(NeedsEnd, "there are no stages"), .kept = true),

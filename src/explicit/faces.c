@@ -7,8 +7,8 @@ static bool Acts(const Case *c, const Face *f)
 
   for (PetscInt k = 0; k < c->nmeter; k++)
     counted = counted || (f->meters >> k & 1);
-  return counted || f->traction >= 0 || f->pressure >= 0 || f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 ||
-         f->inflow >= 0 || f->plate >= 0;
+  return counted || (c->ambient_drag > 0.0 && c->fields.solid) || f->traction >= 0 || f->pressure >= 0 ||
+         f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 || f->inflow >= 0 || f->plate >= 0;
 }
 
 /* Weights of a face's particle where it is now. */
@@ -105,12 +105,14 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   const Material *mat = &e->m->c->material[e->m->c->region[f->region].material];
   PointProperties q   = {0};
   const char     *why;
-  double          p0[PHASE_COUNT];
+  double          p0[PHASE_COUNT], velocity[CL_DIM] = {0.0};
 
+  for (int d = 0; e->set.solid && d < CL_DIM; d++)
+    velocity[d] = e->m->P.f[P_VS + d][f->particle];
   ModelInitialAtFace(e->m, f, p0);
   if (f->temperature >= 0) /* the only condition that asks for a conductivity */
     ModelParticleProperties(e->m, f->particle, &q, &why);
-  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, q.kappa, dt, o);
+  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, velocity, q.kappa, dt, o);
 }
 
 /* Tractions, and for the fluids what a prescribed pressure differs from the body's own at the face. */

@@ -43,7 +43,7 @@ void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o)
 {
   const PetscInt p = face->particle;
-  double         in[IN_COUNT], p0[PHASE_COUNT], kappa = 0.0, sum = 0.0;
+  double         in[IN_COUNT], p0[PHASE_COUNT], velocity[CL_DIM] = {0.0}, kappa = 0.0, sum = 0.0;
 
   ReachExpand(m, p, r);
   GatherInputs(m, p, r, x, face, in);
@@ -53,8 +53,10 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
   for (int a = 0; a < r->n; a++) {
     kappa += face->N[a] * m->coef[r->node[a] * NC_COUNT + NC_KAPPA];
     sum += face->N[a];
+    for (int d = 0; m->c->fields.solid && d < CL_DIM; d++)
+      velocity[d] += face->N[a] * x[r->node[a] * m->c->fields.n + PlaceVs(&m->c->fields) + d];
   }
-  FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, kappa / sum, m->stage.dt, o);
+  FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, velocity, kappa / sum, m->stage.dt, o);
   if (face->plate >= 0)
     PlateEvaluate(&m->c->bc[face->plate], face, m->bc.value[face->plate], in, o);
 }

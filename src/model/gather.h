@@ -293,6 +293,16 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   }
 }
 
+/* What a Jacobian is assembled for. */
+typedef struct {
+  FieldSet fs;                   /* unknowns and rows */
+  bool     reduced;              /* the reduced matrix, else J2 */
+  bool     eliminated;           /* fs lacks the fluid velocities of the scene */
+  bool     force;                /* OUT_A counts in the rows of v_s */
+  bool     fixed_stress;         /* (174) in the mass rows */
+  int      nout, out[OUT_COUNT]; /* outputs that the rows read */
+} Assembly;
+
 /* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
  * model. */
 ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
@@ -306,10 +316,31 @@ PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);
-PetscErrorCode StabilisationJacobian(Model *m);
-/* Adds an n-node block (n times the set's unknowns square, row major, unscaled) to J2, with scales and Dirichlet rows.
- */
-PetscErrorCode JacobianAdd(Model *m, int n, const PetscInt *node, double *block);
+PetscErrorCode StabilisationJacobian(Model *m, const Assembly *to);
+/* Makes ready to assemble for the unknowns `fs`: those of the scene, or what is left without fluid velocities. */
+void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to);
+/* Adds an n-node block (n times the unknowns square, row major, unscaled; it is overwritten) to J2, with scales and
+   Dirichlet rows, or to the reduced matrix. */
+PetscErrorCode AssemblyAdd(Model *m, const Assembly *to, int n, const PetscInt *node, double *block);
+/* What eliminated fluid velocities leave of the tangent (171)-(174) of a particle, of a face. */
+void EliminateParticle(const Model *m, const Reach *r, const double *x, const double in[IN_COUNT], bool fixed_stress,
+                       PointOutput *o);
+void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput *o);
+/* The reduced matrix and its solver (reduced.c). */
+PetscErrorCode ReducedCreate(Model *m);
+PetscErrorCode ReducedDestroy(Reduced **reduced);
+PetscErrorCode ReducedBegin(Model *m, Assembly *to); /* empties it, says what to assemble */
+void           ReducedAdd(Model *m, int n, const PetscInt *node, const double *block);
+PetscErrorCode ReducedSetUp(Model *m);               /* from what was added */
+PetscErrorCode ReducedFollow(Model *m);              /* J2 is a new one */
+PetscErrorCode ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
+/* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
+PetscErrorCode PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
+PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);
+PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew);
+/* Where GMRES fails with the reduced one: LU of the whole, with a line that says so, until PreconditionerReturn. */
+PetscErrorCode PreconditionerFallBack(Model *m);
+PetscErrorCode PreconditionerReturn(Model *m);
 /* Plates (plates.c): their number and state; (73) position of those with a prescribed force at the nodal values x, all
    ranks; which faces touch, for the tangent; its dense part, f -= ... x; what the meters report. */
 PetscErrorCode ModelPlatesCreate(Model *m);

@@ -1,4 +1,5 @@
-/* The assembled part J2 of the Jacobian: block of one particle, block of one face. */
+/* The Jacobian assembled from particles and faces: J2 with all unknowns, and what (170) leaves when the fluid
+   velocities are eliminated. */
 #include "gather.h"
 
 /* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes and in the
@@ -28,7 +29,7 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; PlaceV(fs, f) >= 0 && i < 2; i++) {
       const double J = D[IN_J + 2 * f + i] * b->NS[i] * b->w[f];
 
       col[PlaceV(fs, f) + i] = J;
@@ -94,7 +95,7 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; PlaceV(fs, f) >= 0 && i < 2; i++) {
       double *row = &out[(PlaceV(fs, f) + i) * ld];
 
       for (int q = 0; q < n; q++)
@@ -118,7 +119,8 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
   }
 }
 
-/* The lumped terms couple a node only with itself. */
+/* The lumped terms couple a node only with itself.  Eliminated fluids move with the skeleton as far as drag holds them
+   (173). */
 static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const NodeFactors *k, double dt, double S,
                      const double *w, double *block, int ld)
 {
@@ -135,6 +137,11 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
 
       if (!fs->phase[f])
         continue;
+      if (PlaceV(fs, f) < 0) {
+        if (fs->solid && drag > 0.0)
+          block[vs * ld + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + inertia * out[OUT_MI + f]);
+        continue;
+      }
       block[v * ld + v] += inertia * out[OUT_MI + f] + drag;
       if (!fs->solid)
         continue;
@@ -146,54 +153,54 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
     block[PlaceT(fs) * ld + PlaceT(fs)] += S * out[OUT_C] / dt;
 }
 
-/* Outputs that the rows of a field set read. */
-typedef struct {
-  int n, out[OUT_COUNT];
-} Outputs;
-
-static void Add(Outputs *list, int first, int count)
+static void Add(Assembly *to, int first, int count)
 {
   for (int k = 0; k < count; k++)
-    list->out[list->n++] = first + k;
+    to->out[to->nout++] = first + k;
 }
 
-static void OutputsOf(const FieldSet *fs, bool axisymmetric, bool ambient, Outputs *list)
+void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
 {
-  list->n = 0;
+  *to = (Assembly){.fs = *fs, .eliminated = fs->fluid && PlaceV(fs, PHASE_W) < 0};
+  /* eliminated fluids push the mixture as they are accelerated (173) */
+  to->force = m->bc.ambient.on || (to->eliminated && fs->inertia);
   if (fs->solid) {
-    Add(list, OUT_P, 4);
-    Add(list, OUT_M, 1);
-    if (axisymmetric)
-      Add(list, OUT_HOOP, 1);
-    if (ambient)
-      Add(list, OUT_A, 2);
+    Add(to, OUT_P, 4);
+    Add(to, OUT_M, 1);
+    if (m->c->axisymmetric)
+      Add(to, OUT_HOOP, 1);
+    if (to->force)
+      Add(to, OUT_A, 2);
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    Add(list, OUT_G + 2 * f, 2);
-    Add(list, OUT_FLUX + 2 * f, 2);
+    Add(to, OUT_FLUX + 2 * f, 2);
+    Add(to, OUT_DM + f, 1);
     if (fs->solid)
-      Add(list, OUT_M + 1 + f, 1);
-    Add(list, OUT_MI + f, 1);
-    Add(list, OUT_D + f, 1);
-    Add(list, OUT_DM + f, 1);
+      Add(to, OUT_M + 1 + f, 1);
+    if (to->eliminated)
+      continue;
+    Add(to, OUT_G + 2 * f, 2);
+    Add(to, OUT_MI + f, 1);
+    Add(to, OUT_D + f, 1);
   }
   if (fs->heat) {
-    Add(list, OUT_HEAT, 2);
-    Add(list, OUT_C, 2); /* and OUT_Q */
+    Add(to, OUT_HEAT, 2);
+    Add(to, OUT_C, 2); /* and OUT_Q */
   }
 }
 
-/* `fs` with a constant number of unknowns lets the compiler unroll the rows of the largest set. */
-static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m, const FieldSet *fs, int n,
-                                                                  const Outputs *list, PetscInt p, const Reach *r,
-                                                                  const double *x, const PointOutput *o, double *block)
+/* A constant number of unknowns lets the compiler unroll the rows of the largest sets. */
+static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p,
+                                                                  const Reach *r, const double *x, const PointOutput *o,
+                                                                  double *block)
 {
-  const int    ld           = r->n * n;
-  const bool   axisymmetric = m->c->axisymmetric, ambient = m->bc.ambient.on;
-  const double dt = m->stage.dt;
-  NodeFactors  factor[CL_NODES];
+  const FieldSet *fs           = &to->fs;
+  const int       ld           = r->n * n;
+  const bool      axisymmetric = m->c->axisymmetric;
+  const double    dt           = m->stage.dt;
+  NodeFactors     factor[CL_NODES];
 
   for (int a = 0; a < r->n; a++)
     Factors(m, p, r->node[a], x, r->S[a], &factor[a]);
@@ -208,12 +215,12 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
                             .w  = &m->w[2 * r->node[b]]};
     double            DB[OUT_COUNT][F_COUNT];
 
-    for (int k = 0; k < list->n; k++)
-      Columns(fs, axisymmetric, dt, o->D[list->out[k]], &at, DB[list->out[k]]);
+    for (int k = 0; k < to->nout; k++)
+      Columns(fs, axisymmetric, dt, o->D[to->out[k]], &at, DB[to->out[k]]);
     for (int a = 0; a < r->n; a++) {
       double *out = &block[(a * ld + b) * n];
 
-      Rows(fs, axisymmetric, ambient, n, &factor[a], dt, r->S[a], r->G[a], r->M[a], axisymmetric ? r->K[a] : 0.0,
+      Rows(fs, axisymmetric, to->force, n, &factor[a], dt, r->S[a], r->G[a], r->M[a], axisymmetric ? r->K[a] : 0.0,
            m->c->mean_dilatation ? r->B[a] : NULL, DB, out, ld);
       if (a == b)
         Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, out, ld);
@@ -221,18 +228,19 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
   }
 }
 
-static void ParticleBlock(const Model *m, const Outputs *list, PetscInt p, const Reach *r, const double *x,
+static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
                           const PointOutput *o, double *block)
 {
-  const FieldSet *fs = &m->c->fields;
-
-  if (fs->n == F_COUNT)
-    ParticleBlockOf(m, fs, F_COUNT, list, p, r, x, o, block);
+  if (to->fs.n == F_COUNT)
+    ParticleBlockOf(m, to, F_COUNT, p, r, x, o, block);
+  else if (to->fs.n == 5)
+    ParticleBlockOf(m, to, 5, p, r, x, o, block);
   else
-    ParticleBlockOf(m, fs, fs->n, list, p, r, x, o, block);
+    ParticleBlockOf(m, to, to->fs.n, p, r, x, o, block);
 }
 
-PetscErrorCode JacobianAdd(Model *m, int n, const PetscInt *node, double *block)
+/* Into J2: rows and columns scaled, rows of prescribed unknowns empty. */
+static PetscErrorCode AddScaled(Model *m, int n, const PetscInt *node, double *block)
 {
   const int nf = m->c->fields.n, ld = n * nf;
 
@@ -255,6 +263,16 @@ PetscErrorCode JacobianAdd(Model *m, int n, const PetscInt *node, double *block)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode AssemblyAdd(Model *m, const Assembly *to, int n, const PetscInt *node, double *block)
+{
+  PetscFunctionBeginUser;
+  if (to->reduced)
+    ReducedAdd(m, n, node, block);
+  else
+    PetscCall(AddScaled(m, n, node, block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
 {
   for (int f = 0; f < PHASE_COUNT; f++) {
@@ -265,13 +283,12 @@ static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
   }
 }
 
-static PetscErrorCode ParticleLoop(Model *m, const double *x)
+/* The targets in turn; what eliminates changes the tangent, so it comes last. */
+static PetscErrorCode ParticleLoop(Model *m, const double *x, int ntarget, const Assembly *target)
 {
-  double  block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
-  Outputs list;
+  double block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
 
   PetscFunctionBeginUser;
-  OutputsOf(&m->c->fields, m->c->axisymmetric, m->bc.ambient.on, &list);
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  state;
@@ -282,17 +299,21 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x)
       continue; /* the residual said so */
     if (m->wide)
       KeepWide(&m->c->fields, &o, &m->wide[12 * p]);
-    ParticleBlock(m, &list, p, &r, x, &o, block);
-    PetscCall(JacobianAdd(m, r.n, r.node, block));
+    for (int k = 0; k < ntarget; k++) {
+      if (target[k].reduced)
+        EliminateParticle(m, &r, x, in, target[k].fixed_stress, &o);
+      ParticleBlock(m, &target[k], p, &r, x, &o, block);
+      PetscCall(AssemblyAdd(m, &target[k], r.n, r.node, block));
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Rows of a face's nodes: all are weighted with N. */
-static void FaceBlock(const Model *m, const Face *face, const Reach *r, const FaceOutput *o, double *block)
+static void FaceBlock(const Model *m, const FieldSet *fs, const Face *face, const Reach *r, const FaceOutput *o,
+                      double *block)
 {
-  const FieldSet *fs = &m->c->fields;
-  const int       ld = r->n * fs->n;
+  const int ld = r->n * fs->n;
 
   for (int b = 0; b < r->n; b++) {
     const NodeWeights at = {.S  = r->S[b],
@@ -320,7 +341,7 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
   }
 }
 
-static PetscErrorCode FaceLoop(Model *m, const double *x)
+static PetscErrorCode FaceLoop(Model *m, const double *x, int ntarget, const Assembly *target)
 {
   double block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
 
@@ -330,10 +351,13 @@ static PetscErrorCode FaceLoop(Model *m, const double *x)
     FaceOutput o;
 
     FaceAt(m, &m->face[k], x, &r, &o);
-    for (int q = 0; q < r.n * m->c->fields.n * r.n * m->c->fields.n; q++)
-      block[q] = 0.0;
-    FaceBlock(m, &m->face[k], &r, &o, block);
-    PetscCall(JacobianAdd(m, r.n, r.node, block));
+    for (int t = 0; t < ntarget; t++) {
+      if (target[t].reduced)
+        EliminateFace(m, &m->face[k], &r, &o);
+      PetscCall(PetscArrayzero(block, PetscSqr(r.n * target[t].fs.n)));
+      FaceBlock(m, &target[t].fs, &m->face[k], &r, &o, block);
+      PetscCall(AssemblyAdd(m, &target[t], r.n, r.node, block));
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -355,50 +379,46 @@ static PetscErrorCode DirichletDiagonal(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The factors of one step serve all its Newton iterations as long as GMRES stays quick with them. */
-static PetscErrorCode ChoosePreconditioner(Model *m, SNES snes, Mat P)
-{
-  PetscInt its = 0;
-  KSP      ksp = NULL;
-
-  PetscFunctionBeginUser;
-  if (snes) {
-    PetscCall(SNESGetKSP(snes, &ksp));
-    PetscCall(KSPGetIterationNumber(ksp, &its));
-  }
-  if (m->always_refactor || its > m->poor || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt)
-    m->refactor = true;
-  if (snes)
-    PetscCall(SNESSetLagPreconditioner(snes, m->refactor ? -2 : -1)); /* -2: once, now; -1: never again */
-  if (m->refactor && P != m->J2)
-    PetscCall(MatConvert(m->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
-  m->refactor    = false;
-  m->factored_dt = m->stage.dt;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
 {
-  Model *m = (Model *)model;
+  Model   *m = (Model *)model;
+  Assembly target[2];
+  bool     renew;
+  int      n = 1;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(m->event[2], 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
+  PetscCall(PreconditionerChoose(m, snes, &renew));
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
   PetscCall(MatZeroEntries(m->J2));
   PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);
-  PetscCall(ParticleLoop(m, m->x));
-  PetscCall(FaceLoop(m, m->x));
-  PetscCall(StabilisationJacobian(m));
+  AssemblyOf(m, &m->c->fields, &target[0]);
+  if (renew && m->reduces) {
+    PetscCall(ReducedBegin(m, &target[1]));
+    n = 2;
+  }
+  PetscCall(ParticleLoop(m, m->x, n, target));
+  PetscCall(FaceLoop(m, m->x, n, target));
+  for (int k = 0; k < n; k++)
+    PetscCall(StabilisationJacobian(m, &target[k]));
   PetscCall(DirichletDiagonal(m));
   PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
-  PetscCall(ChoosePreconditioner(m, snes, P));
+  if (m->reduces)
+    PetscCall(ReducedFollow(m));
+  if (renew && m->reduces) {
+    PetscCall(PetscLogEventBegin(m->event[EVENT_SETUP], 0, 0, 0, 0));
+    PetscCall(ReducedSetUp(m));
+    PetscCall(PetscLogEventEnd(m->event[EVENT_SETUP], 0, 0, 0, 0));
+  }
+  if (renew && P != m->J2)
+    PetscCall(MatConvert(m->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
   if (A != P) {
     PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   }
-  PetscCall(PetscLogEventEnd(m->event[2], 0, 0, 0, 0));
+  PetscCall(PetscLogEventEnd(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

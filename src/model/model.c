@@ -3,8 +3,10 @@
 
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
 {
-  static const char *const name[4] = {"ClBeginStep", "ClResidual", "ClJacobian", "ClWidePart"};
-  const Case              *first   = CaseInStage(c, 0); /* whose loads the initial state is in balance with */
+  static const char *const name[EVENT_COUNT] = {"ClBeginStep", "ClResidual",      "ClJacobian",
+                                                "ClWidePart",  "ClReducedMatrix", "ClReducedApply"};
+  static const char *const kind[]            = {"auto", "whole", "reduced"};
+  const Case              *first             = CaseInStage(c, 0); /* whose loads the initial state is in balance with */
   PetscClassId             id;
 
   PetscFunctionBeginUser;
@@ -17,14 +19,15 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   PetscCall(ModelPlatesCreate(m));
   m->tol_residual = 1e-9;
-  m->poor         = 20;
+  m->poor         = -1;
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
+  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &m->preconditioner, NULL));
   m->tol_update = 1e-6;
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));
   PetscCall(PetscClassIdRegister("Clathra", &id));
-  for (int e = 0; e < 4; e++)
+  for (int e = 0; e < EVENT_COUNT; e++)
     PetscCall(PetscLogEventRegister(name[e], id, &m->event[e]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -43,6 +46,7 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(VecDestroy(&m->X));
   PetscCall(VecDestroy(&m->R));
   PetscCall(SNESDestroy(&m->snes));
+  PetscCall(ReducedDestroy(&m->reduced));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

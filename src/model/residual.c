@@ -204,7 +204,7 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
 
   PetscFunctionBeginUser;
   (void)snes;
-  PetscCall(PetscLogEventBegin(m->event[1], 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(m->event[EVENT_RESIDUAL], 0, 0, 0, 0));
   m->status  = CL_OK;
   m->limited = 0;
   PetscCall(ModelUnscale(m, X, m->x));
@@ -220,6 +220,6 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
   if (m->mass_row)
     PetscCall(SumMassRows(m));
   PetscCall(Finish(m, m->x, m->f, R));
-  PetscCall(PetscLogEventEnd(m->event[1], 0, 0, 0, 0));
+  PetscCall(PetscLogEventEnd(m->event[EVENT_RESIDUAL], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -166,10 +166,6 @@ static PetscErrorCode LimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* UMFPACK's factorisation beats MUMPS only on small problems: 3.3 against 3.9 ms for a strip of 900 unknowns, 4.1
-   against 0.36 s for a block of 10,000. */
-#define UMFPACK_MOST 4000
-
 /* From the right, so that it stops on the rows' own residual, not below their round-off; a method of the user's choice
    may know the left side only. */
 static PetscErrorCode SetSide(KSP ksp)
@@ -189,14 +185,14 @@ static PetscErrorCode SetSide(KSP ksp)
 /* Defaults: GMRES preconditioned by a direct factorisation of J2; every -snes_, -ksp_, -pc_ option wins. */
 static PetscErrorCode CreateSolver(Model *m)
 {
-  const bool     small = m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
   SNESLineSearch ls;
   PetscBool      aij;
+  bool           small;
   KSP            ksp;
-  PC             pc;
 
   PetscFunctionBeginUser;
   m->refactor = true;
+  PetscCall(PreconditionerChooseKind(m, &small));
   PetscCall(CreateJ2(m));
   PetscCall(WideCreate(m, &m->A));
   PetscCall(MatCreateVecs(m->J2, &m->X, &m->R));
@@ -219,9 +215,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(KSPSetType(ksp, KSPGMRES));
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->tol_residual, PETSC_DEFAULT, 60));
   PetscCall(KSPGMRESSetRestart(ksp, 60));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, small ? MATSOLVERUMFPACK : MATSOLVERMUMPS));
+  PetscCall(PreconditionerCreate(m, small, ksp));
   PetscCall(SetSide(ksp));
   PetscCall(SNESSetFromOptions(m->snes));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -318,11 +312,14 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
   if (!m->snes)
     PetscCall(CreateSolver(m));
   *newton = 0;
-  /* With old factors where they serve, else with new ones at every iteration; then a linear solve that stops early
-     still gives a good direction. */
-  for (int attempt = 0; attempt < 2; attempt++) {
+  /* With an old preconditioner where it serves, else with a new one at every iteration, at last with LU; then a linear
+     solve that stops early still gives a good direction. */
+  const int attempts = m->reduces ? 3 : 2;
+  for (int attempt = 0; attempt < attempts; attempt++) {
     m->always_refactor = attempt > 0;
-    PetscCall(SNESSetMaxLinearSolveFailures(m->snes, attempt > 0 ? 4 : 1));
+    if (attempt == 2)
+      PetscCall(PreconditionerFallBack(m));
+    PetscCall(SNESSetMaxLinearSolveFailures(m->snes, attempt == attempts - 1 ? 4 : 1));
     PetscCall(FirstGuess(m, x));
     PetscCall(SNESSolve(m->snes, NULL, m->X));
     PetscCall(SNESGetConvergedReason(m->snes, &reason));
@@ -332,12 +329,15 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
       PetscCall(ModelReduceStatus(m, &m->status));
     if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->status != CL_OK))
       break;
+    if (attempt == 1 && reason != SNES_DIVERGED_LINEAR_SOLVE)
+      break;
   }
   if (reason < 0) {
     PetscCall(Explain(m));
     m->refactor = true;
   } else
     m->status = CL_OK;
+  PetscCall(PreconditionerReturn(m));
   PetscCall(ModelReduceStatus(m, status));
   if (*status == CL_OK)
     PetscCall(ModelUnscale(m, m->X, x));

@@ -312,10 +312,10 @@ void StabilisationResidual(const Model *m, const double *x, double *f)
     ProjectionResidual(m, &m->cell[k], x, f);
 }
 
-static void GhostBlock(const Model *m, const GhostLine *g, double *block)
+static void GhostBlock(const Model *m, const FieldSet *fs, const GhostLine *g, double *block)
 {
-  const int  n  = m->c->fields.n;
-  const int *at = m->c->fields.at;
+  const int  n  = fs->n;
+  const int *at = fs->at;
   double     c[F_COUNT];
 
   GhostCoefficients(m, g, m->stage.dt, c);
@@ -329,10 +329,9 @@ static void GhostBlock(const Model *m, const GhostLine *g, double *block)
   }
 }
 
-static void ProjectionBlock(const Model *m, const ProjectionCell *c, double *block)
+static void ProjectionBlock(const Model *m, const FieldSet *fs, const ProjectionCell *c, double *block)
 {
-  const FieldSet *fs = &m->c->fields;
-  const int       n  = fs->n;
+  const int n = fs->n;
 
   for (int a = 0; a < 4; a++) {
     for (int r = 0; r < PHASE_COUNT; r++) {
@@ -351,20 +350,20 @@ static void ProjectionBlock(const Model *m, const ProjectionCell *c, double *blo
   }
 }
 
-PetscErrorCode StabilisationJacobian(Model *m)
+PetscErrorCode StabilisationJacobian(Model *m, const Assembly *to)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->nghost; k++) {
     double block[9 * F_COUNT * F_COUNT] = {0.0};
 
-    GhostBlock(m, &m->ghost[k], block);
-    PetscCall(JacobianAdd(m, 3, m->ghost[k].node, block));
+    GhostBlock(m, &to->fs, &m->ghost[k], block);
+    PetscCall(AssemblyAdd(m, to, 3, m->ghost[k].node, block));
   }
   for (PetscInt k = 0; k < m->ncell; k++) {
     double block[16 * F_COUNT * F_COUNT] = {0.0};
 
-    ProjectionBlock(m, &m->cell[k], block);
-    PetscCall(JacobianAdd(m, 4, m->cell[k].node, block));
+    ProjectionBlock(m, &to->fs, &m->cell[k], block);
+    PetscCall(AssemblyAdd(m, to, 4, m->cell[k].node, block));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

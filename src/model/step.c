@@ -275,7 +275,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   bool           changed;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(m->event[0], 0, 0, 0, 0));
+  PetscCall(PetscLogEventBegin(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));
   m->status   = CL_OK;
   m->refactor = true;
   PetscCall(PetscCalloc1(m->grid.gm[0] * m->grid.gm[1], &flag));
@@ -300,7 +300,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(UpstreamWeights(m));
   }
   PetscCall(PetscFree(flag));
-  PetscCall(PetscLogEventEnd(m->event[0], 0, 0, 0, 0));
+  PetscCall(PetscLogEventEnd(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -67,9 +67,9 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
   PetscCall(MatMult(m->J2, X, Y));
   const bool wide = m->c->flux_interpolation && m->c->fields.fluid;
   if (wide || PlatesCouple(m)) {
-    PetscCall(PetscLogEventBegin(m->event[3], 0, 0, 0, 0));
+    PetscCall(PetscLogEventBegin(m->event[EVENT_WIDE], 0, 0, 0, 0));
     PetscCall(WideApply(m, wide, X, Y));
-    PetscCall(PetscLogEventEnd(m->event[3], 0, 0, 0, 0));
+    PetscCall(PetscLogEventEnd(m->event[EVENT_WIDE], 0, 0, 0, 0));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -266,6 +266,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   const MPI_Comm comm = s->model->grid.comm;
   const double   t    = s->state.t;
   const char    *why  = run->lost ? "not all could be written; see to it" : "the state is not finite";
+  char           advice[CL_ADVICE];
 
   PetscFunctionBeginUser;
   if ((run->lost || s->broken) && run->saved[0]) {
@@ -283,8 +284,12 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (run->watch.over && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended at t = %g s, before -time_limit %g s is over; go on with -restart %s\n", t,
                           run->watch.limit, run->saved));
-  } else if (!ok)
+  } else if (!ok) {
+    PetscCall(AmbientAdvice(s->model->c, advice));
+    if (advice[0])
+      PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
     PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -404,6 +409,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(LogStart(comm));
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;

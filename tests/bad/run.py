@@ -90,6 +90,7 @@ CASES = [
     ("ambient on a face without a fluid around", [(", initial: yes", ", pressure: ambient")], ["bc_drain_pressure", "neither ambient_pressure"], []),
     ("ambient in a misspelt word", [(", initial: yes", ", pressure: ambiant"), ("basis: cpgimp", "ambient: {pressure: 1 MPa}")],
      ["bc_drain_pressure", "ambiant"], []),
+    ("drag of a fluid without density", [("basis: cpgimp", "ambient: {pressure: 1 MPa, drag: 1.2}")], ["ambient_drag", "ambient_density"], []),
     ("ambient density without gravity", [("basis: cpgimp", "ambient: {density: 1025 kg/m^3}")], ["ambient_density", "without gravity"], []),
     ("negative ambient pressure", [("basis: cpgimp", "ambient: {pressure: -1 MPa}")], ["ambient_pressure", "[0,1e10]"], []),
     ("doubled key", [("basis: cpgimp", "basis: cpgimp\nbasis: linear")], ["basis", "given twice"], []),

@@ -12,7 +12,7 @@
 #include "../../src/case/case_private.h"
 
 #define GOOD(call) assert_int_equal((call), 0)
-#define LONG 3000
+#define LONG 1048576
 
 /* As they stand in a file.  NULL: LONG characters. */
 static const char *const value[] = {"",
@@ -104,7 +104,8 @@ static bool Read(const char *path, Case *c)
 static void WriteWith(const char *path, const char *resolved, Group g, const char *instance, const Key *k,
                       const char *v)
 {
-  char        line[256], inside[80] = "", filler[LONG + 1];
+  static char filler[LONG + 1];
+  char        line[256], inside[80] = "";
   const char *indent = g == GROUP_CASE ? "" : "    ";
   bool        here = g == GROUP_CASE, done = false;
   FILE       *f = fopen(path, "w");

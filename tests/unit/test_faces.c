@@ -85,7 +85,9 @@ typedef struct {
 
 static void Evaluate(const Scene *s, const double in[IN_COUNT], FaceOutput *o)
 {
-  FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, in, KAPPA, DT, o);
+  const double velocity[CL_DIM] = {0.02 + in[IN_U] / DT, -0.01 + in[IN_U + 1] / DT};
+
+  FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, in, velocity, KAPPA, DT, o);
   if (s->face.plate >= 0)
     PlateEvaluate(&s->bc[s->face.plate], &s->face, s->value[s->face.plate], in, o);
 }
@@ -238,8 +240,15 @@ static void LoosePlate(Scene *s, Rng *r)
   s->bc[0].separates = true;
 }
 
+static void Drag(Scene *s, Rng *r)
+{
+  s->c.ambient_density = RngBetween(r, 900.0, 1100.0);
+  s->c.ambient_drag    = RngBetween(r, 0.5, 2.0);
+}
+
 static void Everything(Scene *s, Rng *r)
 {
+  Drag(s, r);
   Free(s, r);
   WarmInflow(s, r);
   s->face.traction = s->face.convection = s->face.temperature = 2;
@@ -262,7 +271,7 @@ static const struct {
                  {"pressure, ambient", AmbientHeld},
                  {"ambient, free", AmbientFree},
                  {"heat flux", HeatFlux},
-
+                 {"drag", Drag},
                  {"all at once", Everything},
                  {"plate", Plate},
                  {"plate, rough", RoughPlate},
@@ -310,6 +319,26 @@ static void FaceTemperature(void **state)
   const double before = o.heat_in, given = FACE_PENALTY * KAPPA / hypot(s.face.r[0], s.face.r[1]);
   Evaluate(&s, in, &o);
   assert_true(fabs((o.heat_in - before) / (given * hypot(s.face.s[0], s.face.s[1])) - 1.0) < 1e-12);
+}
+
+/* (152): dynamic pressure on a face that moves into the fluid, none on one that leaves it. */
+static void DragOfTheSea(void **state)
+{
+  Rng        r = {.s = 152};
+  Scene      s;
+  FaceOutput o;
+  double     in[IN_COUNT] = {0.0};
+
+  SceneInit(&s, &r);
+  Drag(&s, &r);
+  s.face.n[0] = 0.0; /* Evaluate moves the face by (0.02, -0.01) m/s */
+  s.face.n[1] = -3.0;
+  Evaluate(&s, in, &o);
+  assert_true(o.out[F_VSX] == 0.0);
+  assert_true(fabs(o.out[F_VSY] / (0.5 * s.c.ambient_density * s.c.ambient_drag * 1e-4 * -3.0) - 1.0) < 1e-14);
+  s.face.n[1] = 3.0;
+  Evaluate(&s, in, &o);
+  assert_true(o.out[F_VSX] == 0.0 && o.out[F_VSY] == 0.0);
 }
 
 /* (31): whatever p_c is, the mean outside is the prescribed one; free takes the particle's p_c, held the initial one.
@@ -464,10 +493,10 @@ static void Share(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(Tangents),    cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
-      cmocka_unit_test(PlateForces), cmocka_unit_test(MassRows),     cmocka_unit_test(TrueArea),
-      cmocka_unit_test(Share)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents),        cmocka_unit_test(MeanPressure),
+                                     cmocka_unit_test(FaceTemperature), cmocka_unit_test(DragOfTheSea),
+                                     cmocka_unit_test(PlateForces),     cmocka_unit_test(MassRows),
+                                     cmocka_unit_test(TrueArea),        cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

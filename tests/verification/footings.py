@@ -9,7 +9,7 @@ first order.  Nc and Nq are within 3 % at h = a/8, Prandtl's strip at a/16.  Fin
 import numpy as np
 
 from _footings import STRIP, circle, collapse, exact, order, saturated, strip, strip_run
-from common import check, finish, judge, table
+from common import check, check_true, finish, judge, table
 
 rows = []
 
@@ -60,5 +60,8 @@ for s, (load, growth) in zip((0.95, 0), found):
     rows.append(["Cox's circle", "smooth", "implicit", "R/4", 141 * load, 100 * (load - 1), 100 * growth, "" if s else "locks"])
 judge("strength", "Cox's circle on heavy ground, 30 deg, h = R/4", found[0][0] - 1, (0.0, 0.2), 0.01, "%")
 check("... without mean strain: over the exact load", found[1][0] - 1, (0.4, 1.0))
+for top, warns in ((1.5, False), (1.45, True)):
+    said = strip_run("Prandtl", 4, True, "-region_ground_upper", f"3.5 m, {top} m", "-stepper_max_steps", "1").output
+    check_true(f"ground to {top} m: {'warns' if warns else 'no word'} of cells that the surface cuts", ("the surface cuts" in said) == warns)
 table(["case", "plate", "integrator", "h", "load (MPa)", "error (%)", "growth (%)", ""], rows)
 finish()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, check_true, finish, judge, table
+from common import Run, check, check_true, finish, judge, table
 
 CASES = Path(__file__).parent / "cases"
 ROW = "surfaces"
@@ -157,9 +157,32 @@ def slope():
         judge(ROW, f"sea floor that dips by 10 degrees, {name}: shear stress, cells of 0.5 m", errors[-1], 0.01)
 
 
+def sinks():
+    """With the drag (152) a block tends to its terminal velocity; where it stood in the cells, ranks and restarts do not matter."""
+    rho, g, C, H = 2650 * 0.6, 9.81, 1.2, 0.4
+    limit, pull = np.sqrt(2 * (rho - 1000) * g * H / (1000 * C)), (1 - 1000 / rho) * g
+    ends = []
+    for kind, options in (("sdirk2", ("-stepper_type", "sdirk2")), ("hybrid", ("-stepper_type", "hybrid", "-stepper_adapt", "yes"))):
+        run = Run.of_case(CASES / "sinking.yaml", "-quiet", *options)
+        t, moved = run.time, run.probe("middle")["u_y_m"]
+        exact = limit**2 / pull * np.log(np.cosh(pull * t / limit))
+        judge(ROW, f"sinking block, {kind}: way, off the closed form, of the whole", np.max(np.abs(moved + exact)) / exact[-1], 5e-3)
+        v = last(run)["v_s"][:, 1].mean()
+        judge(ROW, f"sinking block, {kind}: velocity over the terminal one", v / (-limit * np.tanh(pull * t[-1] / limit)), (0.99, 1.01))
+        b = {k: w[-1] for k, w in run.balance.items()}
+        given = b["gravity_work_J"] + b["load_work_J"]  # load: buoyancy and drag
+        check(f"sinking block, {kind}: what the works of weight, buoyancy and drag leave, of the first", abs(b["energy_remainder_J"]) / b["gravity_work_J"], 2e-3)
+        check(f"sinking block, {kind}: kinetic energy over those works", b["kinetic_energy_J"] / given, (0.98, 1.0))
+        two = last(Run.of_case(CASES / "sinking.yaml", "-quiet", *options, ranks=2))
+        check(f"sinking block, {kind}: 2 ranks against 1", np.max(np.abs(two["v_s"] - last(run)["v_s"])) / limit, 1e-7)
+        ends.append(v)
+    check("sinking block: hybrid against sdirk2", abs(ends[1] / ends[0] - 1), 5e-3)
+
+
 rest()
 deeper()
 leaning()
 falling()
 slope()
+sinks()
 finish()

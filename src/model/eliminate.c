@@ -1,0 +1,124 @@
+/* Fluid velocities eliminated from the tangent of a particle or a face, as if each were alone with its nodes:
+   (171)-(174) of docs/equations.md.  What is left couples nodes only as far as a particle reaches. */
+#include "gather.h"
+
+/* (171): d J/d(inputs) of a particle's Darcy flux. */
+static void FluxResponse(const Model *m, const Reach *r, const double *x, const double in[IN_COUNT],
+                         const PointOutput *o, int f, double dJ[CL_DIM][IN_COUNT])
+{
+  const FieldSet *fs          = &m->c->fields;
+  const double    inertia     = fs->inertia ? 1.0 / m->stage.dt : 0.0;
+  double          acc[CL_DIM] = {0.0}, w = 0.0;
+
+  for (int a = 0; a < r->n; a++) {
+    double at[CL_DIM];
+
+    Acceleration(m, r->node[a], x, PlaceV(fs, f), at);
+    w += r->S[a] * m->w[PHASE_COUNT * r->node[a] + f];
+    for (int i = 0; i < CL_DIM; i++)
+      acc[i] += r->S[a] * at[i];
+  }
+  const double resist = o->out[OUT_D + f] * w + inertia * o->out[OUT_MI + f];
+  const double mobile = resist > 0.0 ? -w / resist : 0.0;
+  for (int i = 0; i < CL_DIM; i++) {
+    const double *dG = o->D[OUT_G + 2 * f + i], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f];
+
+    for (int q = 0; q < IN_COUNT; q++)
+      dJ[i][q] = mobile * (dG[q] + acc[i] * dM[q] + in[IN_J + 2 * f + i] * dD[q]);
+    if (fs->solid)
+      dJ[i][IN_U + i] += mobile * inertia * o->out[OUT_MI + f] / m->stage.dt;
+  }
+}
+
+/* Row `k` of the tangent: the flux follows the other inputs. */
+static void Follow(double *D, int f, const double dJ[CL_DIM][IN_COUNT])
+{
+  for (int i = 0; i < CL_DIM; i++) {
+    const double J = D[IN_J + 2 * f + i];
+
+    for (int q = 0; q < IN_COUNT && J != 0.0; q++)
+      D[q] += J * dJ[i][q];
+  }
+}
+
+/* (172): with Pi g = g the bracket of (19) has no slope with respect to g. */
+static void DropBracket(const FieldSet *fs, PointOutput *o, int f)
+{
+  for (int j = 0; j < CL_DIM; j++) {
+    for (int i = 0; i < CL_DIM; i++)
+      o->D[OUT_FLUX + 2 * f + i][IN_GP + 2 * f + j] += o->wide[f][i][j];
+    if (fs->heat)
+      o->D[OUT_Q][IN_GP + 2 * f + j] += o->wide_q[f][j];
+  }
+}
+
+/* (174): what the mass rows lose to a skeleton that gives way to the pressures. */
+static void FixedStress(const FieldSet *fs, PointOutput *o)
+{
+  const double *P0 = o->D[OUT_P], *P1 = o->D[OUT_P + 3];
+  const double  M = 0.5 * (P0[IN_GRADU] + P1[IN_GRADU + 3]);
+
+  for (int f = 0; f < PHASE_COUNT && M > 0.0; f++) {
+    double *D = o->D[OUT_DM + f];
+
+    if (!fs->phase[f])
+      continue;
+    const double dV = 0.5 * (D[IN_GRADU] + D[IN_GRADU + 3]);
+    for (int q = IN_P; q <= IN_T; q++)
+      D[q] -= dV * 0.5 * (P0[q] + P1[q]) / M;
+  }
+}
+
+void EliminateParticle(const Model *m, const Reach *r, const double *x, const double in[IN_COUNT], bool fixed_stress,
+                       PointOutput *o)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    double dJ[CL_DIM][IN_COUNT];
+
+    if (!fs->phase[f])
+      continue;
+    FluxResponse(m, r, x, in, o, f, dJ);
+    DropBracket(fs, o, f);
+    for (int i = 0; i < CL_DIM; i++)
+      Follow(o->D[OUT_FLUX + 2 * f + i], f, dJ);
+    if (fs->heat)
+      Follow(o->D[OUT_Q], f, dJ);
+    for (int i = 0; fs->solid && fs->inertia && i < CL_DIM; i++) { /* (173); its share of v_s is lumped */
+      for (int q = 0; q < IN_U; q++)
+        o->D[OUT_A + i][q] += o->out[OUT_MI + f] / m->stage.dt * dJ[i][q];
+    }
+  }
+  if (fixed_stress && fs->solid)
+    FixedStress(fs, o);
+}
+
+void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput *o)
+{
+  const FieldSet *fs      = &m->c->fields;
+  const double    inertia = fs->inertia ? 1.0 / m->stage.dt : 0.0;
+
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    double *D = o->D[F_PW + f], given = 0.0, own = 0.0;
+
+    if (!fs->phase[f])
+      continue;
+    for (int a = 0; a < r->n; a++) {
+      const double *c = &m->coef[r->node[a] * NC_COUNT], w = m->w[PHASE_COUNT * r->node[a] + f];
+      const double  resist = c[NC_DRAG + f] * w + inertia * c[NC_RHO + f];
+      const double  mobile = resist > 0.0 ? w / resist : 0.0;
+
+      own += face->N[a] * mobile;
+      given += face->N[a] * face->N[a] * mobile / m->V[r->node[a]];
+    }
+    for (int i = 0; i < CL_DIM; i++) {
+      const double  J     = D[IN_J + 2 * f + i];
+      const double *force = o->D[F_VWX + 2 * f + i];
+
+      D[IN_GP + 2 * f + i] -= J * own;
+      for (int q = 0; q < IN_COUNT; q++)
+        D[q] -= J * given * force[q];
+    }
+  }
+}

@@ -1,0 +1,143 @@
+/* Which preconditioner GMRES has, when it is made anew, and what takes over where it breaks down. */
+#include "gather.h"
+
+/* UMFPACK's factorisation beats MUMPS only on small problems: 3.3 against 3.9 ms for a strip of 900 unknowns, 4.1
+   against 0.36 s for a block of 10,000. */
+#define UMFPACK_MOST 4000
+
+/* What it costs to make one, in GMRES iterations, measured (docs/benchmark.md): the reduced one whatever the size; LU,
+   whose work grows faster than that of an iteration, by the square root of the number of unknowns. */
+#define COST_REDUCED 3.0
+#define COST_LU_LEAST 10.0
+#define COST_LU 0.24
+
+PetscErrorCode PreconditionerChooseKind(Model *m, bool *small)
+{
+  PetscBool own;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &own));
+  m->reduces = m->preconditioner == PRECONDITIONER_REDUCED && !own;
+  *small     = !m->reduces && m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyReduced(PC pc, Vec R, Vec Y)
+{
+  Model *m;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &m));
+  PetscCall(PetscLogEventBegin(m->event[EVENT_REDUCED], 0, 0, 0, 0));
+  PetscCall(ReducedApply(m, R, Y));
+  PetscCall(PetscLogEventEnd(m->event[EVENT_REDUCED], 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static double Cost(const Model *m)
+{
+  return m->reduces ? COST_REDUCED
+                    : fmax(COST_LU_LEAST, COST_LU * sqrt((double)m->map.n_global * (double)m->c->fields.n));
+}
+
+/* (176): iterations per decade that the residual fell, with a new preconditioner and since. */
+static PetscErrorCode CountIterations(KSP ksp, Vec R, Vec Y, void *model)
+{
+  Model         *m = (Model *)model;
+  Renewal       *w = &m->renewal;
+  PetscReal      first, last;
+  PetscInt       its;
+  const PetscInt most = m->poor;
+
+  PetscFunctionBeginUser;
+  (void)Y;
+  PetscCall(KSPGetIterationNumber(ksp, &its));
+  PetscCall(KSPGetResidualNorm(ksp, &last));
+  PetscCall(VecNorm(R, NORM_2, &first));
+  const double decades = first > 0.0 && last > 0.0 ? log10(first / last) : 0.0;
+  if (w->fresh) {
+    w->per_decade = decades > 0.0 ? (double)its / decades : INFINITY;
+    w->lost       = 0.0;
+    w->fresh      = false;
+  } else {
+    w->lost += fmax((double)its - w->per_decade * fmax(decades, 0.0), 0.0);
+  }
+  w->due = most >= 0 ? its > most : w->lost > Cost(m);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(KSPSetPostSolve(ksp, CountIterations, m));
+  if (m->reduces) {
+    PetscCall(ReducedCreate(m));
+    PetscCall(PCSetType(pc, PCSHELL));
+    PetscCall(PCShellSetName(pc, "reduced"));
+    PetscCall(PCShellSetContext(pc, m));
+    PetscCall(PCShellSetApply(pc, ApplyReduced));
+    PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 200));
+  } else {
+    PetscCall(PCSetType(pc, PCLU));
+    PetscCall(PCFactorSetMatSolverType(pc, small ? MATSOLVERUMFPACK : MATSOLVERMUMPS));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew)
+{
+  PetscFunctionBeginUser;
+  *renew =
+      m->refactor || m->always_refactor || m->renewal.due || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt;
+  if (snes)
+    PetscCall(SNESSetLagPreconditioner(snes, *renew ? -2 : -1)); /* -2: once, now; -1: never again */
+  m->refactor = false;
+  if (!*renew)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  m->factored_dt = m->stage.dt;
+  m->renewal     = (Renewal){.fresh = true};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerFallBack(Model *m)
+{
+  KSPConvergedReason reason;
+  const char        *why;
+  KSP                ksp;
+  PC                 pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(m->snes, &ksp));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  why = reason == KSP_DIVERGED_ITS ? "too many iterations" : KSPConvergedReasons[reason];
+  PetscCall(PetscPrintf(m->grid.comm,
+                        "t = %g s: the reduced preconditioner broke down (%s); LU of the whole solves this stage\n",
+                        m->stage.t, why));
+  PetscCall(KSPGetPC(ksp, &m->set_aside));
+  PetscCall(PetscObjectReference((PetscObject)m->set_aside));
+  PetscCall(PCCreate(m->grid.comm, &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(KSPSetPC(ksp, pc));
+  PetscCall(PCDestroy(&pc));
+  m->reduces = false;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerReturn(Model *m)
+{
+  KSP ksp;
+
+  PetscFunctionBeginUser;
+  if (!m->set_aside)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetKSP(m->snes, &ksp));
+  PetscCall(KSPSetPC(ksp, m->set_aside));
+  PetscCall(PCDestroy(&m->set_aside));
+  m->reduces  = true;
+  m->refactor = true;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,566 @@
+/* The reduced preconditioner (170)-(175): a matrix for v_s, p_w, p_g and T alone, of radius 2, and its solver.
+   Values are gathered node by node, each with its 25 neighbours, and handed to PETSc as two groups of unknowns, `flow`
+   (pressures, temperature) and `motion` (v_s), that PCFIELDSPLIT takes as they are.  Every option -reduced_... of the
+   solver wins over what stands here. */
+#include "gather.h"
+
+#define RADIUS 2
+#define WIDTH (2 * RADIUS + 1)
+#define NEIGHBOURS (WIDTH * WIDTH)
+
+enum { FLOW = 0, MOTION, GROUPS };
+
+struct Reduced {
+  FieldSet fs;                           /* unknowns of a node */
+  int      first[GROUPS], count[GROUPS]; /* their places */
+  int      full[F_COUNT];                /* place in the block of the scene's set */
+  double  *value;                        /* [n_local][NEIGHBOURS][fs.n][fs.n]; null between two renewals */
+  double   row[F_COUNT], col[F_COUNT];   /* units of rows and columns: each one number for the whole body */
+  Mat      block[GROUPS][GROUPS], nest, whole;
+  KSP      ksp;
+  Vec      b, y;             /* owned nodes: flow of all, then motion of all */
+  Vec      slaved, diagonal; /* of the scene's set: J2 y, diagonal of J2 */
+};
+
+static void Unknowns(const FieldSet *fs, Reduced *r)
+{
+  int place[F_COUNT] = {0};
+
+  r->fs   = *fs;
+  r->fs.n = 0;
+  for (int k = 0; k < fs->n; k++) {
+    const int q = fs->field[k];
+
+    place[k] = -1;
+    if (q >= F_VWX && q <= F_VGY)
+      continue;
+    place[k]               = r->fs.n;
+    r->full[r->fs.n]       = k;
+    r->fs.field[r->fs.n++] = q;
+  }
+  for (int q = 0; q < F_COUNT; q++)
+    r->fs.at[q] = fs->at[q] >= 0 ? place[fs->at[q]] : -1;
+  r->first[MOTION] = 0;
+  r->count[MOTION] = r->first[FLOW] = fs->solid ? CL_DIM : 0;
+  r->count[FLOW]                    = r->fs.n - r->first[FLOW];
+}
+
+static PetscInt Neighbour(const Model *m, PetscInt I, int k)
+{
+  const Grid    *g = &m->grid;
+  const PetscInt i = m->map.ij[I][0] + k % WIDTH - RADIUS, j = m->map.ij[I][1] + k / WIDTH - RADIUS;
+
+  if (i < g->gs[0] || j < g->gs[1] || i >= g->gs[0] + g->gm[0] || j >= g->gs[1] + g->gm[1])
+    return -1;
+  return m->map.index[GridPadded(g, i, j)];
+}
+
+static PetscErrorCode CreateBlock(Model *m, int rows, int cols, Mat *A)
+{
+  const NodeMap *map = &m->map;
+  PetscInt      *dnz, *onz;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(map->n_owned * rows, &dnz, map->n_owned * rows, &onz));
+  for (PetscInt I = 0; I < map->n_owned; I++) {
+    for (int k = 0; k < NEIGHBOURS; k++) {
+      const PetscInt K = Neighbour(m, I, k);
+
+      for (int q = 0; K >= 0 && q < rows; q++)
+        (K < map->n_owned ? dnz : onz)[I * rows + q] += cols;
+    }
+  }
+  PetscCall(MatCreateAIJ(m->grid.comm, map->n_owned * rows, map->n_owned * cols, PETSC_DETERMINE, PETSC_DETERMINE, 0,
+                         dnz, 0, onz, A));
+  PetscCall(MatSetBlockSizes(*A, rows, cols));
+  PetscCall(PetscFree2(dnz, onz));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rigid motions of the body, which algebraic multigrid must carry to its coarse grids. */
+static PetscErrorCode RigidMotions(Model *m, Mat A)
+{
+  const NodeMap *map = &m->map;
+  MatNullSpace   null;
+  Vec            v[3], x;
+  double        *a;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(A, &x, NULL));
+  PetscCall(VecSetBlockSize(x, CL_DIM));
+  if (m->c->axisymmetric) { /* only along the axis */
+    PetscCall(VecStrideSet(x, 1, 1.0));
+    PetscCall(VecNormalize(x, NULL));
+    v[0] = x;
+    PetscCall(MatNullSpaceCreate(m->grid.comm, PETSC_FALSE, 1, v, &null));
+  } else {
+    PetscCall(VecGetArrayWrite(x, &a));
+    for (PetscInt I = 0; I < map->n_owned; I++) {
+      for (int d = 0; d < CL_DIM; d++)
+        a[CL_DIM * I + d] = m->grid.lower[d] + (double)map->ij[I][d] * m->grid.h[d];
+    }
+    PetscCall(VecRestoreArrayWrite(x, &a));
+    PetscCall(MatNullSpaceCreateRigidBody(x, &null));
+  }
+  PetscCall(MatSetNearNullSpace(A, null));
+  PetscCall(MatNullSpaceDestroy(&null));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An option of the solver unless the user gave it. */
+static PetscErrorCode Prefer(const char *name, const char *value)
+{
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
+  if (!given)
+    PetscCall(PetscOptionsSetValue(NULL, name, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An option of a group's solver: `name` behind its prefix. */
+static PetscErrorCode PreferFor(const char *group, const char *name, const char *value)
+{
+  char full[128];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(full, sizeof(full), "-reduced_fieldsplit_%s_%s", group, name));
+  PetscCall(Prefer(full, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode IsGiven(const char *group, PetscBool *given)
+{
+  char full[128];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(full, sizeof(full), "-reduced_fieldsplit_%s_pc_type", group));
+  PetscCall(PetscOptionsHasName(NULL, NULL, full, given));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Algebraic multigrid, unless the user wants something else. */
+static PetscErrorCode PreferMotion(void)
+{
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(IsGiven("motion", &given));
+  if (given)
+    PetscFunctionReturn(PETSC_SUCCESS);
+#if defined(PETSC_HAVE_HYPRE)
+  PetscCall(PreferFor("motion", "pc_type", "hypre"));
+  PetscCall(PreferFor("motion", "pc_hypre_boomeramg_strong_threshold", "0.5"));
+#else
+  PetscCall(PreferFor("motion", "pc_type", "gamg"));
+#endif
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Aggregates of nodes, all fields of a node together, smoothed by ILU: capillary pressure and reaction couple the
+   fields within a node so strongly that multigrid field by field diverges. */
+static PetscErrorCode PreferFlow(void)
+{
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(IsGiven("flow", &given));
+  if (given)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PreferFor("flow", "pc_type", "gamg"));
+  PetscCall(PreferFor("flow", "mg_levels_ksp_type", "richardson"));
+  PetscCall(PreferFor("flow", "mg_levels_ksp_max_it", "1"));
+  PetscCall(PreferFor("flow", "mg_levels_pc_type", "bjacobi"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Preferences(const Reduced *r)
+{
+  char type[32] = PCFIELDSPLIT;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-reduced_pc_type", type, sizeof(type), NULL));
+  if (strcmp(type, PCFIELDSPLIT) != 0)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (r->count[FLOW] > 0)
+    PetscCall(PreferFlow());
+  if (r->count[MOTION] > 0)
+    PetscCall(PreferMotion());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateMatrices(Model *m, Reduced *r)
+{
+  Mat        a[GROUPS * GROUPS];
+  const bool both = r->count[FLOW] > 0 && r->count[MOTION] > 0;
+
+  PetscFunctionBeginUser;
+  for (int s = 0; s < GROUPS; s++) {
+    for (int t = 0; t < GROUPS; t++) {
+      if (r->count[s] > 0 && r->count[t] > 0)
+        PetscCall(CreateBlock(m, r->count[s], r->count[t], &r->block[s][t]));
+      a[GROUPS * s + t] = r->block[s][t];
+    }
+  }
+  if (r->count[MOTION] > 0)
+    PetscCall(RigidMotions(m, r->block[MOTION][MOTION]));
+  if (both) {
+    PetscCall(MatCreateNest(m->grid.comm, GROUPS, NULL, GROUPS, NULL, a, &r->nest));
+  } else {
+    r->nest = r->block[r->count[FLOW] > 0 ? FLOW : MOTION][r->count[FLOW] > 0 ? FLOW : MOTION];
+    PetscCall(PetscObjectReference((PetscObject)r->nest));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateSplit(Reduced *r)
+{
+  static const char *const name[GROUPS] = {"flow", "motion"};
+  IS                       is[GROUPS];
+  PC                       pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetOptionsPrefix(r->ksp, "reduced_"));
+  PetscCall(KSPGetPC(r->ksp, &pc));
+  PetscCall(PCSetType(pc, PCFIELDSPLIT));
+  PetscCall(PCFieldSplitSetType(pc, PC_COMPOSITE_MULTIPLICATIVE));
+  PetscCall(MatNestGetISs(r->nest, is, NULL));
+  for (int s = 0; s < GROUPS; s++)
+    PetscCall(PCFieldSplitSetIS(pc, name[s], is[s]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Anything but a split wants one matrix. */
+static PetscErrorCode IsSplit(const Reduced *r, bool *split)
+{
+  PetscBool same;
+  PC        pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(r->ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCFIELDSPLIT, &same));
+  *split = same;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new one at every renewal: what multigrid keeps from set-up to set-up would make a run depend on where it was last
+   restarted. */
+static PetscErrorCode CreateSolver(Reduced *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(KSPDestroy(&r->ksp));
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)r->nest), &r->ksp));
+  PetscCall(KSPSetType(r->ksp, KSPPREONLY));
+  if (r->count[FLOW] > 0 && r->count[MOTION] > 0)
+    PetscCall(CreateSplit(r));
+  else
+    PetscCall(
+        KSPSetOptionsPrefix(r->ksp, r->count[FLOW] > 0 ? "reduced_fieldsplit_flow_" : "reduced_fieldsplit_motion_"));
+  PetscCall(KSPSetFromOptions(r->ksp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedCreate(Model *m)
+{
+  Reduced *r;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&r));
+  m->reduced = r;
+  Unknowns(&m->c->fields, r);
+  PetscCall(CreateMatrices(m, r));
+  PetscCall(MatCreateVecs(r->nest, &r->y, &r->b));
+  PetscCall(MatCreateVecs(m->J2, &r->slaved, &r->diagonal));
+  PetscCall(Preferences(r));
+  PetscCall(CreateSolver(r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedDestroy(Reduced **reduced)
+{
+  Reduced *r = *reduced;
+
+  PetscFunctionBeginUser;
+  if (!r)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (int s = 0; s < GROUPS; s++) {
+    for (int t = 0; t < GROUPS; t++)
+      PetscCall(MatDestroy(&r->block[s][t]));
+  }
+  PetscCall(MatDestroy(&r->nest));
+  PetscCall(MatDestroy(&r->whole));
+  PetscCall(KSPDestroy(&r->ksp));
+  PetscCall(VecDestroy(&r->b));
+  PetscCall(VecDestroy(&r->y));
+  PetscCall(VecDestroy(&r->slaved));
+  PetscCall(VecDestroy(&r->diagonal));
+  PetscCall(PetscFree(r->value));
+  PetscCall(PetscFree(*reduced));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows and columns of a field have one unit each, the mean of Newton's scales, so that what is smooth in the body is
+   smooth for multigrid. */
+static PetscErrorCode Units(Model *m, Reduced *r)
+{
+  double sum[2 * F_COUNT] = {0.0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int k = 0; k < r->fs.n; k++) {
+      const PetscInt q = I * m->c->fields.n + r->full[k];
+
+      sum[k] += m->row_scale[q] / (double)m->map.n_global;
+      sum[F_COUNT + k] += m->col_scale[q] / (double)m->map.n_global;
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2 * F_COUNT, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  for (int k = 0; k < r->fs.n; k++) {
+    r->row[k] = sum[k];
+    r->col[k] = sum[F_COUNT + k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedBegin(Model *m, Assembly *to)
+{
+  Reduced *r = m->reduced;
+  bool     split;
+
+  PetscFunctionBeginUser;
+  AssemblyOf(m, &r->fs, to);
+  PetscCall(IsSplit(r, &split));
+  to->reduced      = true;
+  to->fixed_stress = split;
+  PetscCall(Units(m, r));
+  PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS * r->fs.n * r->fs.n, &r->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows and columns of prescribed unknowns stay empty but for what they would have on the diagonal. */
+static inline bool Held(const Model *m, const Reduced *r, PetscInt I, int k)
+{
+  return (m->mask[I] >> r->full[k]) & 1u;
+}
+
+void ReducedAdd(Model *m, int n, const PetscInt *node, const double *block)
+{
+  Reduced  *r  = m->reduced;
+  const int nf = r->fs.n, ld = n * nf;
+
+  for (int a = 0; a < n; a++) {
+    const PetscInt I = node[a];
+
+    for (int b = 0; b < n; b++) {
+      const PetscInt K = node[b];
+      const PetscInt k =
+          (m->map.ij[K][1] - m->map.ij[I][1] + RADIUS) * WIDTH + m->map.ij[K][0] - m->map.ij[I][0] + RADIUS;
+      double *v = &r->value[(size_t)(I * NEIGHBOURS + k) * nf * nf];
+
+      for (int s = 0; s < nf; s++) {
+        for (int t = 0; t < nf; t++)
+          v[s * nf + t] += block[(a * nf + s) * ld + b * nf + t];
+      }
+    }
+  }
+}
+
+static void Scaled(const Model *m, const Reduced *r, PetscInt I, PetscInt K, double *v)
+{
+  const int nf = r->fs.n;
+
+  for (int s = 0; s < nf; s++) {
+    for (int t = 0; t < nf; t++) {
+      const bool keep = I == K && s == t;
+
+      v[s * nf + t] *= !keep && (Held(m, r, I, s) || Held(m, r, K, t)) ? 0.0 : r->col[t] / r->row[s];
+    }
+  }
+}
+
+/* Rows of one node into the matrix of groups s, t. */
+static PetscErrorCode Insert(const Model *m, const Reduced *r, PetscInt I, int s, int t, int n, const int *k)
+{
+  const int rows = r->count[s], cols = r->count[t], nf = r->fs.n;
+  PetscInt  row[F_COUNT], col[NEIGHBOURS * F_COUNT];
+  double    v[F_COUNT * NEIGHBOURS * F_COUNT];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < rows; i++) {
+    row[i] = m->map.global[I] * rows + i;
+    for (int b = 0; b < n; b++) {
+      const double *from = &r->value[(size_t)(I * NEIGHBOURS + k[b]) * nf * nf + (r->first[s] + i) * nf + r->first[t]];
+
+      for (int j = 0; j < cols; j++)
+        v[(i * n + b) * cols + j] = from[j];
+    }
+  }
+  for (int b = 0; b < n; b++) {
+    for (int j = 0; j < cols; j++)
+      col[b * cols + j] = m->map.global[Neighbour(m, I, k[b])] * cols + j;
+  }
+  PetscCall(MatSetValues(r->block[s][t], rows, row, n * cols, col, v, ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FillMatrices(Model *m, Reduced *r)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    int k[NEIGHBOURS], n = 0;
+
+    for (int q = 0; q < NEIGHBOURS; q++) {
+      const PetscInt K = Neighbour(m, I, q);
+
+      if (K < 0)
+        continue;
+      k[n++] = q;
+      Scaled(m, r, I, K, &r->value[(size_t)(I * NEIGHBOURS + q) * r->fs.n * r->fs.n]);
+    }
+    for (int s = 0; s < GROUPS; s++) {
+      for (int t = 0; t < GROUPS; t++) {
+        if (r->block[s][t])
+          PetscCall(Insert(m, r, I, s, t, n, k));
+      }
+    }
+  }
+  for (int k = 0; k < 2 * GROUPS * GROUPS; k++) {
+    Mat A = r->block[k / GROUPS % GROUPS][k % GROUPS];
+
+    if (A && k < GROUPS * GROUPS)
+      PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+    else if (A)
+      PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedSetUp(Model *m)
+{
+  Reduced *r = m->reduced;
+  bool     split;
+  Mat      A = r->nest;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < GROUPS * GROUPS; k++) {
+    if (r->block[k / GROUPS][k % GROUPS])
+      PetscCall(MatZeroEntries(r->block[k / GROUPS][k % GROUPS]));
+  }
+  PetscCall(FillMatrices(m, r));
+  PetscCall(PetscFree(r->value));
+  if (r->nest != r->block[FLOW][FLOW] && r->nest != r->block[MOTION][MOTION]) {
+    PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+    PetscCall(IsSplit(r, &split));
+    if (!split) {
+      PetscCall(MatConvert(r->nest, MATAIJ, r->whole ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &r->whole));
+      A = r->whole;
+    }
+  }
+  PetscCall(CreateSolver(r));
+  PetscCall(KSPSetOperators(r->ksp, A, A));
+  PetscCall(KSPSetUp(r->ksp));
+  PetscCall(KSPSetUpOnBlocks(r->ksp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedFollow(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatGetDiagonal(m->J2, m->reduced->diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Place of unknown k of owned node I in b and y. */
+static inline PetscInt Place(const Model *m, const Reduced *r, PetscInt I, int k)
+{
+  if (k < r->count[MOTION])
+    return m->map.n_owned * r->count[FLOW] + I * r->count[MOTION] + k;
+  return I * r->count[FLOW] + k - r->first[FLOW];
+}
+
+static PetscErrorCode Restrict(const Model *m, const Reduced *r, Vec R)
+{
+  const double *a;
+  double       *b;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(R, &a));
+  PetscCall(VecGetArrayWrite(r->b, &b));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int k = 0; k < r->fs.n; k++) {
+      const PetscInt q = I * m->c->fields.n + r->full[k];
+
+      b[Place(m, r, I, k)] = Held(m, r, I, k) ? 0.0 : a[q] * m->row_scale[q] / r->row[k];
+    }
+  }
+  PetscCall(VecRestoreArrayWrite(r->b, &b));
+  PetscCall(VecRestoreArrayRead(R, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The fluid velocities stay zero. */
+static PetscErrorCode Prolong(const Model *m, const Reduced *r, Vec R, Vec Y)
+{
+  const double *a, *y;
+  double       *x;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(Y, 0.0));
+  PetscCall(VecGetArrayRead(R, &a));
+  PetscCall(VecGetArrayRead(r->y, &y));
+  PetscCall(VecGetArray(Y, &x));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int k = 0; k < r->fs.n; k++) {
+      const PetscInt q = I * m->c->fields.n + r->full[k];
+
+      x[q] = Held(m, r, I, k) ? a[q] : y[Place(m, r, I, k)] * r->col[k] / m->col_scale[q];
+    }
+  }
+  PetscCall(VecRestoreArray(Y, &x));
+  PetscCall(VecRestoreArrayRead(r->y, &y));
+  PetscCall(VecRestoreArrayRead(R, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (175): their rows couple them with nothing but themselves and what has just been found. */
+static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double   *a, *s, *d;
+  double         *x;
+
+  PetscFunctionBeginUser;
+  if (r->fs.n == fs->n)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMult(m->J2, Y, r->slaved));
+  PetscCall(VecGetArrayRead(R, &a));
+  PetscCall(VecGetArrayRead(r->slaved, &s));
+  PetscCall(VecGetArrayRead(r->diagonal, &d));
+  PetscCall(VecGetArray(Y, &x));
+  for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
+    const int q = fs->field[k % fs->n];
+
+    if (q >= F_VWX && q <= F_VGY)
+      x[k] = (a[k] - s[k]) / d[k];
+  }
+  PetscCall(VecRestoreArray(Y, &x));
+  PetscCall(VecRestoreArrayRead(r->diagonal, &d));
+  PetscCall(VecRestoreArrayRead(r->slaved, &s));
+  PetscCall(VecRestoreArrayRead(R, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedApply(Model *m, Vec R, Vec Y)
+{
+  Reduced *r = m->reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall(Restrict(m, r, R));
+  PetscCall(KSPSolve(r->ksp, r->b, r->y));
+  PetscCall(Prolong(m, r, R, Y));
+  PetscCall(RecoverVelocities(m, r, R, Y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
