@@ -202,8 +202,7 @@ class Server:
 
     def __init__(self, program, ranks):
         command = [str(program)] if ranks == 1 else ["mpiexec", "-n", str(ranks), str(program)]
-        alone = {"OMPI_MCA_ess_singleton_isolated": "1"} if ranks == 1 else {}
-        self.job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT, **alone}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        self.job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                     stderr=subprocess.STDOUT, start_new_session=True)  # fmt: skip
         self.left = 100  # a new process now and then: what one leaks is not the other's
 

@@ -147,6 +147,7 @@ typedef struct {
   Meter    surface;   /* mean over this part of the surface, by area; SIDE_COUNT without a line: not */
 } Probe;
 
+enum { ICE_WARN = 0, ICE_STOP };
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
 typedef struct Case {
@@ -164,6 +165,7 @@ typedef struct Case {
   bool      mean_dilatation;                 /* volume change of the cell, not of the particle's own place (88) */
   double    mean_strain;                     /* share of the cell's mean in a particle's strain (160) */
   double    strength_factor;                 /* all strength is divided by it (87) */
+  int       ice;                             /* ICE_... */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */
   double    ambient_drag;                    /* C of (152) */

@@ -65,13 +65,14 @@ struct Equilibrium {
   double A1, A2, A3; /* Sloan form p_e = A1 exp(A2 - A3/T_K); A1 Pa, A2 -, A3 K */
   double (*pressure)(const Equilibrium *, double T_degC, double *dpe_dT);
   const char *type;
+  double      shift; /* K by which salt lowers the temperature of equilibrium */
 };
-bool                 EquilibriumSetType(Equilibrium *law,
-                                        const char  *type); /* sloan | moridis (a polynomial ln p_e[MPa] in T_K, Moridis 2003) */
+/* sloan | moridis (a polynomial ln p_e[MPa] in T_K, Moridis 2003) | kamath (over water and ice) | masuda */
+bool                 EquilibriumSetType(Equilibrium *law, const char *type);
 const char *const   *EquilibriumTypes(void);
 static inline double EquilibriumPressure(const Equilibrium *law, double T, double *dpe_dT)
 {
-  return law->pressure(law, T, dpe_dT);
+  return law->pressure(law, T + law->shift, dpe_dT);
 }
 
 /* ---------------------------------------------------------------- Kim-Bishnoi kinetics
@@ -109,10 +110,32 @@ bool               GasSetType(Gas *law, const char *type); /* peng_robinson | id
 const char *const *GasTypes(void);
 double             GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
 
+/* ---------------------------------------------------------------- salt water; salinity in kg of salt per kg of brine
+ */
+double BrineExcessDensity(double salinity, double T); /* over that of fresh water, kg/m^3 */
+double BrineEquilibriumShift(double salinity);        /* K */
+double BrineMelting(double salinity, double p);       /* degC: melting point of ice in it at p (Pa) */
+
+/* ---------------------------------------------------------------- viscosity, Pa s */
+enum { WATER_VISCOSITY_CONSTANT = 0, WATER_VISCOSITY_KESTIN };
+enum { GAS_VISCOSITY_CONSTANT = 0, GAS_VISCOSITY_LEE };
+typedef struct {
+  int    law;
+  double mu;       /* of the constant */
+  double salinity; /* of water */
+  double M;        /* of gas, kg/mol */
+} Viscosity;
+double WaterViscosity(const Viscosity *law, double T, double *dmu_dT);
+double GasViscosity(const Viscosity *law, double rho, double T, double *dmu_drho, double *dmu_dT);
+
 /* ---------------------------------------------------------------- heat */
-/* Latent heat of dissociation per kg of hydrate, C0 - C1 T_K, J/kg. */
+/* Heat of dissociation per kg of hydrate, J/kg: C0 - C1 T_K, or that at T_ref and from there on with the heat
+   capacities (Kirchhoff). */
 typedef struct {
   double C0, C1;
+  bool   kirchhoff;
+  double T_ref; /* degC */
+  double dc;    /* heat capacity of what a kg of hydrate leaves, less its own, J/(kg K) */
 } LatentHeat;
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
 /* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity

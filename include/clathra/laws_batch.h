@@ -13,4 +13,6 @@ void LiquidDensityBatch(const Liquid *law, int n, const double *p, const double 
 /* The gas has this form alone; GasDensity is it for one state. */
 void GasDensityBatch(const Gas *law, int n, const double *p, const double *T, double *rho, double *drho_dp,
                      double *drho_dT);
+void WaterViscosityBatch(const Viscosity *law, int n, const double *T, double *mu);
+void GasViscosityBatch(const Viscosity *law, int n, const double *rho, const double *T, double *mu);
 void ElasticityYoungBatch(const Elasticity *law, int n, const double *Sh, double *E);

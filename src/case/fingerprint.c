@@ -6,7 +6,7 @@
 /* Keys of the case and of stages that a restart may change: names, what is written, the numerics of time and of the
  * solver. */
 static const char *const may_change[] = {"title",   "fields",    "time_",       "stepper_", "stabilisation_",
-                                         "output_", "standard_", "checkpoint_", NULL};
+                                         "output_", "standard_", "checkpoint_", "ice",      NULL};
 
 /* Keys of a stage that are already in the scene as it holds there, or in the begin of the next stage. */
 static const char *const in_scene[] = {"end", "boundaries", "materials", NULL};

@@ -89,22 +89,26 @@ LAW(Gas, GasSetType, GasTypes, gas, type)
 LAW(Equilibrium, EquilibriumSetType, EquilibriumTypes, kinetics.equilibrium, type)
 
 /* ---------------------------------------------------------------- words */
-static const char *const basis_word[]      = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
-static const char *const pressures_word[]  = {"two", "one", NULL};
-static const char *const geometry_word[]   = {"plane", "axisymmetric", NULL};
-static const char *const stepper_word[]    = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
-static const char *const surface_word[]    = {"free", "tied", NULL};
-static const char *const share_word[]      = {"nodes", "particles", NULL};
-static const char *const side_word[]       = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
-static const char *const axis_word[]       = {"x", "y", NULL};
-static const char *const space_word[]      = {"fluids", "pores", NULL};
-static const char *const stiffness_word[]  = {"both", "loss_only", "bonds", NULL};
-static const char *const plasticity_word[] = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
-static const char *const flow_word[]       = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
-static const char *const capillary_word[]  = {"held", "free", NULL};
-static const char *const holds_word[]      = {"all", "skeleton", NULL};
-static const char *const clock_word[]      = {"run", "stage", NULL};
-static const char *const phases_word[]     = {"both", "water", "gas", NULL}; /* OpenPhases */
+static const char *const basis_word[]           = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
+static const char *const pressures_word[]       = {"two", "one", NULL};
+static const char *const geometry_word[]        = {"plane", "axisymmetric", NULL};
+static const char *const stepper_word[]         = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
+static const char *const surface_word[]         = {"free", "tied", NULL};
+static const char *const share_word[]           = {"nodes", "particles", NULL};
+static const char *const side_word[]            = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
+static const char *const axis_word[]            = {"x", "y", NULL};
+static const char *const space_word[]           = {"fluids", "pores", NULL};
+static const char *const stiffness_word[]       = {"both", "loss_only", "bonds", NULL};
+static const char *const water_viscosity_word[] = {"constant", "kestin", NULL}; /* WATER_VISCOSITY_... */
+static const char *const gas_viscosity_word[]   = {"constant", "lee", NULL};    /* GAS_VISCOSITY_... */
+static const char *const latent_word[]          = {"linear", "kirchhoff", NULL};
+static const char *const ice_word[]             = {"warn", "stop", NULL};                    /* ICE_... */
+static const char *const plasticity_word[]      = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
+static const char *const flow_word[]            = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
+static const char *const capillary_word[]       = {"held", "free", NULL};
+static const char *const holds_word[]           = {"all", "skeleton", NULL};
+static const char *const clock_word[]           = {"run", "stage", NULL};
+static const char *const phases_word[]          = {"both", "water", "gas", NULL}; /* OpenPhases */
 /* behind the end of the words: what BC_PLATE_LINE is called */
 const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
                                     "plate",    "roller",   "fixed",     "temperature", "region_temperature", NULL,
@@ -174,6 +178,9 @@ static const Key case_key[] = {
     REAL(Case, "ambient_drag", ambient_drag, "", "[0,100]", "0",
          "coefficient of the drag of that fluid, at rest, on faces that move into it", .has = HAS_SOLID),
     ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
+    CHOICE(Case, "ice", ice, "warn", ice_word,
+           "when pore water is colder than its melting point, of which no equation knows: say so and go on, or end the "
+           "run"),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
          WHEN(NeedsEnd, "there are no stages"), .kept = true),
     TEXT(Case, "stepper_type", stepper, "sdirk2",
@@ -248,11 +255,16 @@ static const Key material_key[] = {
     REAL(Material, "hydrate_expansion", hydrate.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion"),
     REAL(Material, "hydrate_molar_mass", kinetics.M_h, "kg/mol", "(0,10]", "0.124 kg/mol", "must be M_g + N_h M_w"),
     REAL(Material, "hydrate_number", kinetics.N_h, "", "(0,100]", "6", "hydration number N_h: water per gas"),
-    REAL(Material, "water_density", water.rho0, "kg/m^3", "(0,1e5]", "1000 kg/m^3",
-         "at ref_pressure and ref_temperature"),
+    REAL(Material, "water_density", fresh, "kg/m^3", "(0,1e5]", "1000 kg/m^3",
+         "of fresh water, at ref_pressure and ref_temperature"),
+    REAL(Material, "water_salinity", salinity, "", "[0,0.16]", "0",
+         "kg of salt per kg of pore water, a given constant: raises its density, lowers the temperatures of "
+         "equilibrium and of melting"),
     REAL(Material, "water_bulk_modulus", water.K, "Pa", "(0,inf)", "2.2 GPa", "or the word incompressible",
          .word = "incompressible"),
-    REAL(Material, "water_viscosity", mu_w, "Pa s", "(0,1e6]", "1e-3 Pa s", ""),
+    REAL(Material, "water_viscosity", mu_w.mu, "Pa s", "(0,1e6]", "1e-3 Pa s", "of the law constant"),
+    CHOICE(Material, "water_viscosity_law", mu_w.law, "constant", water_viscosity_word,
+           "kestin falls with temperature, grows with salinity"),
     REAL(Material, "water_heat_capacity", c_w, "J/(kg K)", "(0,1e6]", "4200 J/(kg K)", ""),
     REAL(Material, "water_conductivity", kappa_w, "W/(m K)", "[0,1e4]", "0.5 W/(m K)", "thermal conductivity"),
     REAL(Material, "water_expansion", water.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion"),
@@ -266,7 +278,9 @@ static const Key material_key[] = {
          "peng_robinson; methane by default"),
     REAL(Material, "gas_critical_pressure", gas.pc, "Pa", "(0,1e9]", "4.5992 MPa", "peng_robinson"),
     REAL(Material, "gas_acentric_factor", gas.eccentric, "", "(-1,2]", "0.01142", "peng_robinson"),
-    REAL(Material, "gas_viscosity", mu_g, "Pa s", "(0,1e6]", "7e-6 Pa s", ""),
+    REAL(Material, "gas_viscosity", mu_g.mu, "Pa s", "(0,1e6]", "7e-6 Pa s", "of the law constant"),
+    CHOICE(Material, "gas_viscosity_law", mu_g.law, "constant", gas_viscosity_word,
+           "lee grows with temperature and density"),
     REAL(Material, "gas_heat_capacity", c_g, "J/(kg K)", "(0,1e6]", "2100 J/(kg K)", ""),
     REAL(Material, "gas_conductivity", kappa_g, "W/(m K)", "[0,1e4]", "0.044 W/(m K)", "thermal conductivity"),
     LAWKEY("retention_law", "van_genuchten", law_Retention, "van_genuchten is the smooth form with trapped gas"),
@@ -307,13 +321,18 @@ static const Key material_key[] = {
     REAL(Material, "kinetics_dE", kinetics.dE, "J/mol", "[0,1e7]", "0 J/mol", "activation energy; 0 = constant K_d"),
     REAL(Material, "kinetics_A_geo", kinetics.A_geo, "1/m", "[0,inf)", "0 1/m", "hydrate surface per volume",
          WHEN(NeedsRate, "active")),
-    LAWKEY("kinetics_equilibrium", "sloan", law_Equilibrium, "sloan is p_e = A1 exp(A2 - A3/T)"),
+    LAWKEY("kinetics_equilibrium", "sloan", law_Equilibrium,
+           "sloan is p_e = A1 exp(A2 - A3/T); the others are methane's"),
     REAL(Material, "kinetics_A1", kinetics.equilibrium.A1, "Pa", "(0,1e10]", "1 kPa", ""),
     REAL(Material, "kinetics_A2", kinetics.equilibrium.A2, "", "[-1000,1000]", "38.98", ""),
     REAL(Material, "kinetics_A3", kinetics.equilibrium.A3, "K", "[0,1e6]", "8533.8 K", ""),
     REAL(Material, "latent_heat_C0", latent.C0, "J/kg", "[0,1e8]", "473632 J/kg",
          "heat of dissociation C0 - C1 T (T in kelvin)"),
     REAL(Material, "latent_heat_C1", latent.C1, "J/(kg K)", "[-1e5,1e5]", "140.117 J/(kg K)", ""),
+    BOOLEAN(Material, "latent_heat_law", latent.kirchhoff, "linear",
+            "C0 - C1 T, or that at T_ref and from there on with the heat capacities of hydrate, water and gas",
+            .choices = latent_word),
+    REAL(Material, "latent_heat_T_ref", latent.T_ref, "degC", "(-273.15,1000]", "0 degC", "kirchhoff"),
     REAL(Material, "elasticity_E0", elasticity.E0, "Pa", "(0,1e15]", NULL,
          "Young's modulus without hydrate, or the word rigid", .word = "rigid", .has = HAS_SOLID),
     REAL(Material, "elasticity_Eh", elasticity.Eh, "Pa", "[0,1e15]", "0 Pa", "E = E0 + ah Eh S_h^bh"),

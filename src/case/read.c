@@ -172,6 +172,18 @@ static void CaseName(const char *file, char *name, size_t size)
     snprintf(name, size, "%s", base + 1);
 }
 
+/* What salt and heat capacities make of the laws. */
+static void DeriveFluids(Material *m)
+{
+  const Kinetics *k = &m->kinetics;
+
+  m->water.rho0                 = m->fresh + BrineExcessDensity(m->salinity, m->water.T_ref);
+  m->kinetics.equilibrium.shift = BrineEquilibriumShift(m->salinity);
+  m->mu_w.salinity              = m->salinity;
+  m->mu_g.M                     = m->gas.M;
+  m->latent.dc                  = (k->N_h * k->M_w * m->c_w + k->M_g * m->c_g) / k->M_h - m->c_h;
+}
+
 static PetscErrorCode Derive(Reader *r, Case *c)
 {
   PetscFunctionBeginUser;
@@ -185,9 +197,10 @@ static PetscErrorCode Derive(Reader *r, Case *c)
   }
   RegionsFinish(c);
   for (PetscInt i = 0; i < c->nmaterial; i++) {
-    Material *m          = &c->material[i];
-    Liquid   *l[]        = {&m->solid, &m->hydrate};
-    m->kinetics.M_g      = m->gas.M;
+    Material *m     = &c->material[i];
+    Liquid   *l[]   = {&m->solid, &m->hydrate};
+    m->kinetics.M_g = m->gas.M;
+    DeriveFluids(m);
     m->plasticity.factor = c->strength_factor;
     m->plasticity.cell   = sqrt((c->upper[0] - c->lower[0]) / c->cells[0] * (c->upper[1] - c->lower[1]) / c->cells[1]);
     for (int j = 0; j < 2; j++) {

@@ -14,7 +14,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   const Material *mat      = r.mat;
   double *const  *f        = e->m->P.f;
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK]                                      = {0.0}, ka[BLOCK], kr[BLOCK];
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, ka[BLOCK], kr[BLOCK], mu[BLOCK];
 
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
@@ -33,9 +33,10 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
 
   LiquidDensityBatch(&mat->water, r.n, pw, T, w->rho[PHASE_W]);
   PermeabilityBatch(&mat->permeability, r.n, w->phi, w->Sh, ka);
+  WaterViscosityBatch(&mat->mu_w, r.n, T, mu);
   for (int q = 0; q < r.n; q++) {
     w->p[q]             = pw[q];
-    w->drag[PHASE_W][q] = mat->mu_w / ka[q];
+    w->drag[PHASE_W][q] = mu[q] / ka[q];
   }
   if (s.fluids == 2) {
     const double *restrict pg = f[P_PG] + r.p;
@@ -57,8 +58,9 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
     for (int q = 0; q < r.n; q++)
       w->drag[PHASE_W][q] /= Largest(kr[q], CL_MOBILITY_FLOOR);
     RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], kr);
+    GasViscosityBatch(&mat->mu_g, r.n, w->rho[PHASE_G], T, mu);
     for (int q = 0; q < r.n; q++)
-      w->drag[PHASE_G][q] = mat->mu_g / (ka[q] * Largest(kr[q], CL_MOBILITY_FLOOR));
+      w->drag[PHASE_G][q] = mu[q] / (ka[q] * Largest(kr[q], CL_MOBILITY_FLOOR));
   }
   for (int k = 0; k < s.fluids; k++) {
     for (int q = 0; q < r.n; q++) {

@@ -29,13 +29,15 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(scale_p),      REAL(scale_u),
                                      REAL(scale_T),      INT(next_snapshot),
                                      INT(stage),         REAL(meter),
-                                     INT(kind),          INT(votes),
-                                     INT(patience),      REAL(since),
-                                     REAL(spent),        REAL(work),
-                                     REAL(energy),       {NULL, 0, 0, false}};
-/* Twelve integers, seventeen reals, the meters, works and energies. */
+                                     INT(kind),          INT(ice_total),
+                                     INT(ice_most),      REAL(ice_coldest),
+                                     INT(votes),         INT(patience),
+                                     REAL(since),        REAL(spent),
+                                     REAL(work),         REAL(energy),
+                                     {NULL, 0, 0, false}};
+/* Fourteen integers, eighteen reals, the meters, works and energies. */
 _Static_assert(sizeof(StepperState) ==
-                   12 * sizeof(PetscInt) + (17 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
+                   14 * sizeof(PetscInt) + (18 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 typedef struct {

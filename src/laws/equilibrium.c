@@ -22,7 +22,7 @@ static const double over_ice[6]   = {0.96486076446964683,  0.037252533185766023,
 #define MORIDIS_COLDEST (148.8 - LAW_ZERO_CELSIUS) /* degC; the ends of the data */
 #define MORIDIS_HOTTEST (320.0 - LAW_ZERO_CELSIUS)
 #define MORIDIS_CROSSING 0.33344344905243205 /* degC, where the two polynomials meet */
-#define MORIDIS_BLEND 0.25                   /* K, half-width of the blend */
+#define BLEND 0.25                           /* K, half-width of the blend between the curves over ice and over water */
 
 static double Polynomial(const double c[6], double t, double *dt)
 {
@@ -36,27 +36,63 @@ static double Polynomial(const double c[6], double t, double *dt)
   return y;
 }
 
+/* ln p_e from that over ice and over water (value and slope), joined C1 where they cross. */
+static double Joined(double T, double crossing, const double ice[2], const double water[2], double *dT)
+{
+  const double x = fmax(0.0, fmin((T - crossing) / (2.0 * BLEND) + 0.5, 1.0));
+  const double w = x * x * (3.0 - 2.0 * x), dw = 6.0 * x * (1.0 - x) / (2.0 * BLEND); /* weight of water */
+
+  *dT = ice[1] + w * (water[1] - ice[1]) + dw * (water[0] - ice[0]);
+  return ice[0] + w * (water[0] - ice[0]);
+}
+
 /* (232), Moridis (2003), 148.8-320 K; outside the exponent continues linearly.  The printed switch at 273.2 K jumps by
-   2 %, which no Newton iteration can sit on: the branches are joined where they cross (273.483 K), C1 over +-0.25 K;
-   the printed values stand everywhere but in 273.2-273.74 K. */
+   2 %, which no Newton iteration can sit on: the branches are joined where they cross (273.483 K); the printed values
+   stand everywhere but in 273.2-273.74 K. */
 static double Equilibrium_Moridis(const Equilibrium *law, double T, double *dpe_dT)
 {
   const double t = fmax(MORIDIS_COLDEST, fmin(T, MORIDIS_HOTTEST));
-  const double x = fmax(0.0, fmin((t - MORIDIS_CROSSING) / (2.0 * MORIDIS_BLEND) + 0.5, 1.0));
-  const double w = x * x * (3.0 - 2.0 * x), dw = 6.0 * x * (1.0 - x) / (2.0 * MORIDIS_BLEND); /* weight of water */
-  double       dy_w, dy_i, de;
-  const double y_w = Polynomial(over_water, t, &dy_w), y_i = Polynomial(over_ice, t, &dy_i);
-  const double dy = dy_i + w * (dy_w - dy_i) + dw * (y_w - y_i);
-  const double e  = LawExp(y_i + w * (y_w - y_i) + dy * (T - t), &de);
+  double       ice[2], water[2], dy, de;
 
   (void)law;
+  water[0]       = Polynomial(over_water, t, &water[1]);
+  ice[0]         = Polynomial(over_ice, t, &ice[1]);
+  const double y = Joined(t, MORIDIS_CROSSING, ice, water, &dy), e = LawExp(y + dy * (T - t), &de);
+
   *dpe_dT = 1e6 * de * dy;
   return 1e6 * e;
 }
 
+/* (122), Kamath (1984), p_e in kPa, 248-298 K: over ice and over water, joined where they cross (0.807 degC). */
+static double Equilibrium_Kamath(const Equilibrium *law, double T, double *dpe_dT)
+{
+  static const double A[2] = {14.717, 38.980}, B[2] = {1886.79, 8533.80}; /* ice, water */
+  const double        TK = T + LAW_ZERO_CELSIUS, crossing = (B[1] - B[0]) / (A[1] - A[0]) - LAW_ZERO_CELSIUS;
+  const double        ice[2]   = {A[0] - B[0] / TK, B[0] / (TK * TK)};
+  const double        water[2] = {A[1] - B[1] / TK, B[1] / (TK * TK)};
+  double              dy, de;
+  const double        e = LawExp(Joined(T, crossing, ice, water, &dy), &de);
+
+  (void)law;
+  *dpe_dT = 1e3 * de * dy;
+  return 1e3 * e;
+}
+
+/* (123), Masuda et al. (1999), in Pa: the curve of Selim and Sloan (1989) raised by 15 %. */
+static double Equilibrium_Masuda(const Equilibrium *law, double T, double *dpe_dT)
+{
+  const double TK = T + LAW_ZERO_CELSIUS;
+  double       de;
+  const double e = LawExp(49.3185 - 9459.0 / TK, &de);
+
+  (void)law;
+  *dpe_dT = 1.15 * de * 9459.0 / (TK * TK);
+  return 1.15 * e;
+}
+
 typedef double (*Pressure)(const Equilibrium *, double, double *);
-static const char *const names[] = {"sloan", "moridis", NULL};
-static const Pressure    laws[]  = {Equilibrium_Sloan, Equilibrium_Moridis};
+static const char *const names[] = {"sloan", "moridis", "kamath", "masuda", NULL};
+static const Pressure    laws[]  = {Equilibrium_Sloan, Equilibrium_Moridis, Equilibrium_Kamath, Equilibrium_Masuda};
 _Static_assert(sizeof names / sizeof *names == sizeof laws / sizeof *laws + 1, "a name for every law");
 
 const char *const *EquilibriumTypes(void)

@@ -2,11 +2,14 @@
 #include "clathra/laws.h"
 #include "laws_private.h"
 
-/* (235): L = C0 - C1 T_K, J per kg of hydrate, and dL/dT; T in degC.  (P30), with T in kelvin. */
+/* (235), (P30): L = C0 - C1 T_K, J per kg of hydrate, and dL/dT; T in degC.  Or (130), Kirchhoff's law from T_ref on.
+ */
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT)
 {
-  *dL_dT = -law->C1;
-  return law->C0 - law->C1 * (T + LAW_ZERO_CELSIUS);
+  const double at = law->kirchhoff ? law->T_ref : T;
+
+  *dL_dT = law->kirchhoff ? law->dc : -law->C1;
+  return law->C0 - law->C1 * (at + LAW_ZERO_CELSIUS) + (law->kirchhoff ? law->dc * (T - at) : 0.0);
 }
 
 /* (236): X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)], s_g = 1 - s_w; X in the order solid,

@@ -109,8 +109,17 @@ static Jet RelPermJet(const RelPerm *law, int phase, const ScalarState *s)
   return kr < CL_MOBILITY_FLOOR ? JetConstant(CL_MOBILITY_FLOOR) : JetChain(kr, d, x);
 }
 
+static Jet ViscosityJet(const Material *mat, int phase, Jet rho, Jet T)
+{
+  double       dT, drho = 0.0;
+  const double mu =
+      phase == PHASE_W ? WaterViscosity(&mat->mu_w, T.v, &dT) : GasViscosity(&mat->mu_g, rho.v, T.v, &drho, &dT);
+
+  return JetChain2(mu, drho, rho, dT, T);
+}
+
 /* mu/(k_a k_r) of the phases that flow. */
-static void Drag(const FieldSet *fs, const Material *mat, ScalarState *s)
+static void Drag(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
 {
   double       dphi, dSh;
   const double k  = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
@@ -121,7 +130,7 @@ static void Drag(const FieldSet *fs, const Material *mat, ScalarState *s)
       continue; /* a lone fluid fills the pores: k_r = 1 */
     const Jet kr = fs->phase[PHASE_G] ? RelPermJet(&mat->relperm, f, s) : JetConstant(1.0);
 
-    s->drag[f] = JetDiv(JetConstant(f == PHASE_W ? mat->mu_w : mat->mu_g), JetMul(ka, kr));
+    s->drag[f] = JetDiv(ViscosityJet(mat, f, s->rho[f], T), JetMul(ka, kr));
   }
 }
 
@@ -232,7 +241,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     s->m_g          = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
   }
   if (fs->fluid)
-    Drag(fs, mat, s);
+    Drag(fs, mat, T, s);
   if (fs->heat)
     Thermal(mat, h, T, s);
   if (fs->solid)

@@ -15,6 +15,7 @@ typedef struct {
   double    t_saved;                                                   /* of that */
   double    clock_start;                                               /* s of the wall */
   bool      quiet, restarted;
+  bool      frozen;        /* ended for ice */
   bool      written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
@@ -123,6 +124,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   PetscFunctionBeginUser;
   PetscCall(WatchStep(s->model->grid.comm, &run->watch, &save, &end));
   PetscCall(StageLogStep(run->log, s, info));
+  PetscCall(IceLook(s, &run->frozen));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
   if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));
@@ -137,7 +139,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   run->lost = run->lost || !ok;
   if (!run->lost && (save || AtMultiple(c, c->checkpoint_every, t)))
     PetscCall(Save(s, run));
-  s->stop = s->stop || run->lost || end;
+  s->stop = s->stop || run->lost || run->frozen || end;
   PetscCall(Progress(s, info, run));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,9 +154,9 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char                text[2048], above[64] = "", local[512], loose[256], yields[256], gaps[256], *stages, *all;
-  ModelTotals         t;
-  bool                ok;
+  char        text[2560], above[64] = "", local[512], loose[256], ice[256], yields[256], gaps[256], *stages, *all;
+  ModelTotals t;
+  bool        ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
@@ -164,6 +166,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   if (z->loose_total)
     PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
   PetscCall(LongSummary(s->model, gaps));
+  PetscCall(IceSummary(s, ice));
   PetscCall(PetscSNPrintf(
       text, sizeof(text),
       "%s: %s at t = %g s\n"
@@ -171,7 +174,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       " Newton iterations, %.2f s%s\n%s"
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
       "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-      "%s%s%s  results in %s\n",
+      "%s%s%s%s  results in %s\n",
       s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
       s->model->c->nstage ? "by stage"
       : s->auto_.on       ? STEPPER_AUTO
@@ -180,7 +183,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
       Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
       Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, yields, loose,
-      gaps, s->model->c->output_dir));
+      gaps, ice, s->model->c->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);
@@ -263,10 +266,10 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
 /* Why the run ends here, and what there is to go on from. */
 static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
 {
-  const MPI_Comm comm = s->model->grid.comm;
-  const double   t    = s->state.t;
-  const char    *why  = run->lost ? "not all could be written; see to it" : "the state is not finite";
-  char           advice[CL_ADVICE];
+  const MPI_Comm comm              = s->model->grid.comm;
+  const double   t                 = s->state.t;
+  const char    *why               = run->lost ? "not all could be written; see to it" : "the state is not finite";
+  char           advice[CL_ADVICE] = "";
 
   PetscFunctionBeginUser;
   if ((run->lost || s->broken) && run->saved[0]) {
@@ -281,11 +284,9 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (s->signal && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
                           strsignal(s->signal), t, run->saved));
-  } else if (run->watch.over && !StepperDone(s)) {
-    PetscCall(PetscPrintf(comm, "Ended at t = %g s, before -time_limit %g s is over; go on with -restart %s\n", t,
-                          run->watch.limit, run->saved));
-  } else if (!ok) {
-    PetscCall(AmbientAdvice(s->model->c, advice));
+  } else if (!ok || run->frozen) {
+    if (!run->frozen)
+      PetscCall(AmbientAdvice(s->model->c, advice));
     if (advice[0])
       PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
     PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
@@ -309,7 +310,7 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
   PetscCall(WriteLog(s->model->c, s->model->grid.comm, run));
-  if (run->lost || !ok)
+  if (run->lost || run->frozen || !ok)
     *exit_code = CL_EXIT_FAILED;
   else if ((s->signal || run->watch.over) && !StepperDone(s))
     *exit_code = CL_EXIT_SIGNAL;
@@ -430,6 +431,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "",
                           c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
     PetscCall(PrintStrength(c, comm));
+    PetscCall(PrintEquilibrium(c, comm));
     PetscCall(Go(c, &stepper, &run, restart, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }

@@ -49,3 +49,11 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
 PetscErrorCode LocalSummary(const Stepper *s, char text[512]); /* of an integrator without matrices */
 PetscErrorCode LooseSummary(const Stepper *s, char text[256]); /* errors that were put up with */
 PetscErrorCode LongSummary(const Model *m, char text[256]);    /* domains longer than a cell; collective */
+PetscErrorCode IceSummary(const Stepper *s, char text[256]);   /* water below its melting point */
+
+/* ---------------------------------------------------------------- phases.c */
+/* Curve and pressure of equilibrium of each region that reacts, at its temperature. */
+PetscErrorCode PrintEquilibrium(const Case *c, MPI_Comm comm);
+/* Counts the particles below the melting point of their water, (127), after a step or a burst, and says so the first
+   time; *ends: the case wants the run to end there.  Collective. */
+PetscErrorCode IceLook(Stepper *s, bool *ends);

@@ -11,8 +11,8 @@ static inline Material SedimentMaterial(void)
                 .solid        = {2600.0, INFINITY, 3e-5, 0.0, 4.0},
                 .hydrate      = {900.0, INFINITY, 2e-4, 0.0, 4.0},
                 .water        = {1000.0, 2.2e9, 2.1e-4, 3.25e6, 4.0},
-                .mu_w         = 1e-3,
-                .mu_g         = 7e-6,
+                .mu_w         = {.mu = 1e-3, .salinity = 0.03},
+                .mu_g         = {.mu = 7e-6, .M = 0.016},
                 .c_s          = 800.0,
                 .c_h          = 2010.0,
                 .c_w          = 4200.0,
@@ -24,8 +24,8 @@ static inline Material SedimentMaterial(void)
                 .retention    = {.p0 = 5e4, .m = 0.3, .lambda = 1.5, .Swr = 0.2, .Sgr = 0.1},
                 .relperm      = {0.2, 0.1, 4.0, 2.0, false},
                 .permeability = {.k0 = 1.53e-15, .phi0 = 0.3, .mh = 3.0, .kh = 0.1, .Shc = 0.4},
-                .kinetics     = {2.5e-10, 0.0, 1e6, 0.124, 0.018, 0.016, 6.0, {1000.0, 38.98, 8533.8, NULL, NULL}},
-                .latent       = {473632.0, 140.117},
+                .kinetics     = {2.5e-10, 0.0, 1e6, 0.124, 0.018, 0.016, 6.0, {1000.0, 38.98, 8533.8, NULL, NULL, 0.0}},
+                .latent       = {.C0 = 473632.0, .C1 = 140.117},
                 .elasticity   = {90e6, 2e9, 1.0, 1.0, 0.3, false}};
 
   m.gas = (Gas){.M = 0.016, .Tc = 190.564, .pc = 4.5992e6, .eccentric = 0.01142};

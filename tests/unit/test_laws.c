@@ -48,6 +48,7 @@ typedef struct {
   Liquid       liquid;
   Gas          gas;
   LatentHeat   latent;
+  double       salinity;
   Elasticity   young;
   double       X[4];
 } Set;
@@ -72,9 +73,12 @@ static Set Draw(void)
                          Uniform(0, 1e7), Uniform(-10, 30)};
   s.gas       = (Gas){
             .M = Uniform(0.01, 0.05), .Tc = Uniform(100, 200), .pc = LogUniform(1e6, 1e7), .eccentric = Uniform(-0.2, 0.4)};
-  s.latent = (LatentHeat){Uniform(4e5, 5e5), Uniform(0, 200)};
-  s.young  = (Elasticity){
-       LogUniform(1e6, 1e9), LogUniform(1e6, 1e10), Uniform(0, 1), Chance(0.2) ? 1 : LogUniform(0.2, 4), 0.3, false};
+  s.latent =
+      (LatentHeat){.C0 = Uniform(4e5, 5e5), .C1 = Uniform(0, 200), .T_ref = Uniform(-10, 30), .dc = -Uniform(0, 300)};
+  s.young = (Elasticity){
+      LogUniform(1e6, 1e9), LogUniform(1e6, 1e10), Uniform(0, 1), Chance(0.2) ? 1 : LogUniform(0.2, 4), 0.3, false};
+  s.eq.shift = Chance(0.5) ? 0 : 1.3;
+  s.salinity = Chance(0.5) ? 0 : Uniform(0, 0.16);
   for (int i = 0; i < 4; i++)
     s.X[i] = LogUniform(0.01, 1e6);
   return s;
@@ -149,6 +153,19 @@ static double F_GasDensity(const Row *r, Set *s, const double *x, double *d)
 static double F_Latent(const Row *r, Set *s, const double *x, double *d)
 {
   return LatentHeatEvaluate(&s->latent, x[0], d);
+}
+static double F_Kirchhoff(const Row *r, Set *s, const double *x, double *d)
+{
+  s->latent.kirchhoff = true;
+  return LatentHeatEvaluate(&s->latent, x[0], d);
+}
+static double F_WaterViscosity(const Row *r, Set *s, const double *x, double *d)
+{
+  return WaterViscosity(&(Viscosity){.law = WATER_VISCOSITY_KESTIN, .salinity = s->salinity}, x[0], d);
+}
+static double F_GasViscosity(const Row *r, Set *s, const double *x, double *d)
+{
+  return GasViscosity(&(Viscosity){.law = GAS_VISCOSITY_LEE, .M = s->gas.M}, x[0], x[1], &d[0], &d[1]);
 }
 static double F_Mixture(const Row *r, Set *s, const double *x, double *d)
 {
@@ -248,7 +265,20 @@ static Kinks K_Ramp(const Set *s, const double *x, int i)
 }
 static Kinks K_Moridis(const Set *s, const double *x, int i)
 {
-  return (Kinks){4, {148.8 - 273.15, 0.333443449 - 0.25, 0.333443449 + 0.25, 320 - 273.15}, {false}};
+  const double by = s->eq.shift;
+
+  return (Kinks){
+      4, {148.8 - 273.15 - by, 0.333443449 - 0.25 - by, 0.333443449 + 0.25 - by, 320 - 273.15 - by}, {false}};
+}
+static Kinks K_Kamath(const Set *s, const double *x, int i)
+{
+  const double at = 0.80665842 - s->eq.shift;
+
+  return (Kinks){2, {at - 0.25, at + 0.25}, {false}};
+}
+static Kinks K_Kestin(const Set *s, const double *x, int i)
+{
+  return (Kinks){2, {-40, 180}, {true, true}};
 }
 static Kinks K_Rate(const Set *s, const double *x, int i)
 {
@@ -288,12 +318,17 @@ static const Row rows[] = {
     {"porosity", "none", F_Porosity, 2, {1e-12, 0}, {1 - 1e-12, 1}, L_Fraction, K_Porosity, 0, INFINITY, 0},
     {"equilibrium", "sloan", F_Equilibrium, 1, {-50}, {150}, L_Kelvin, NULL, 1e3, 1e14, 1},
     {"equilibrium", "moridis", F_Equilibrium, 1, {-200}, {150}, L_Kelvin, K_Moridis, 10, 1e15, 1},
+    {"equilibrium", "kamath", F_Equilibrium, 1, {-50}, {150}, L_Kelvin, K_Kamath, 1e3, 1e12, 1},
+    {"equilibrium", "masuda", F_Equilibrium, 1, {-50}, {150}, L_Kelvin, NULL, 1e2, 1e13, 1},
     {"rate constant", NULL, F_Rate, 1, {-50}, {150}, L_Kelvin, K_Rate, 0, 1e6, 1},
     {"formation area", NULL, F_Area, 2, {0, 0}, {1, 1}, L_Fraction, NULL, 0, 2.5e6, 0},
     {"liquid density", NULL, F_Liquid, 2, {1, -50}, {1e9, 150}, L_Liquid, K_Liquid, 1e-90, INFINITY, 1},
     {"gas density", "ideal", F_GasDensity, 2, {1, -50}, {1e9, 150}, L_GasDensity, NULL, 0, INFINITY, 1},
     {"gas density", "peng_robinson", F_GasDensity, 2, {1, -50}, {1e9, 150}, L_GasDensity, NULL, 0, INFINITY, 1},
     {"latent heat", NULL, F_Latent, 1, {-50}, {150}, L_Kelvin, NULL, 3e5, 5e5, -1},
+    {"latent heat", "kirchhoff", F_Kirchhoff, 1, {-50}, {150}, L_Kelvin, NULL, 2e5, 6e5, -1},
+    {"water viscosity", "kestin", F_WaterViscosity, 1, {-60}, {200}, L_Kelvin, K_Kestin, 1e-5, 0.1, -1},
+    {"gas viscosity", "lee", F_GasViscosity, 2, {1e-3, -50}, {400, 150}, L_GasDensity, NULL, 1e-6, INFINITY, 1},
     {"mixture", NULL, F_Mixture, 3, {0, 0, 0}, {1, 1, 1}, L_Fraction, NULL, 0.01, 1e6, 0},
     {"Young", NULL, F_Young, 1, {0}, {1}, L_Fraction, K_Young, 1e6, 1.2e10, 1},
 };

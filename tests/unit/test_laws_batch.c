@@ -145,11 +145,33 @@ static void TestGas(void **state)
   }
 }
 
+static void TestViscosity(void **state)
+{
+  double d, e;
+
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    const Viscosity law = {.law = k, .mu = 2e-5, .salinity = 0.03, .M = 0.016};
+
+    for (int q = 0; q < N; q++) {
+      x[q] = RandomIn(0.1, 300.0);
+      y[q] = RandomIn(-5.0, 90.0);
+    }
+    WaterViscosityBatch(&law, N, y, a);
+    GasViscosityBatch(&law, N, x, y, da);
+    for (int q = 0; q < N; q++) {
+      b[q]  = WaterViscosity(&law, y[q], &d);
+      db[q] = GasViscosity(&law, x[q], y[q], &d, &e);
+    }
+    assert_true(Worst(N, a, b) == 0.0 && Worst(N, da, db) == 0.0);
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestRetention), cmocka_unit_test(TestRelPerm),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestRetention),    cmocka_unit_test(TestRelPerm),
                                      cmocka_unit_test(TestPermeability), cmocka_unit_test(TestGas),
-                                     cmocka_unit_test(TestLiquidAndStiffness)};
+                                     cmocka_unit_test(TestViscosity),    cmocka_unit_test(TestLiquidAndStiffness)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

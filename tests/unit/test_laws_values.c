@@ -124,6 +124,54 @@ static void EquilibriumValues(void **state)
   }
 }
 
+static void OtherCurves(void **state)
+{
+  Equilibrium law = {.shift = 0};
+  double      d, fresh;
+
+  assert_true(EquilibriumSetType(&law, "kamath"));
+  Near(EquilibriumPressure(&law, 4, &d), 3600153.3966544433, 1e-13); /* 40 digits */
+  Near(EquilibriumPressure(&law, 10, &d), 6913313.392231686, 1e-13);
+  Near(EquilibriumPressure(&law, -5, &d), 2166085.8161686994, 1e-13);
+  assert_true(EquilibriumSetType(&law, "masuda"));
+  Near(EquilibriumPressure(&law, 4, &d), 4541324.18581276, 1e-13);
+  Near(EquilibriumPressure(&law, 10, &d), 9359853.57636106, 1e-13);
+  fresh     = EquilibriumPressure(&law, 10, &d);
+  law.shift = 1.5;
+  Near(EquilibriumPressure(&law, 8.5, &d), fresh, 1e-13);
+}
+
+static void BrineValues(void **state)
+{
+  Near(BrineMelting(0.04, 101325 + 500e4), -2.588567466391664, 1e-13); /* the check value of Fofonoff and Millard */
+  assert_true(BrineMelting(0, 101325) == 0);
+  Near(BrineMelting(0, 1e6), -0.0677, 0.01); /* -0.0753 K/MPa; Clausius-Clapeyron: -0.0743 */
+  Near(BrineEquilibriumShift(0.0335), 1.1, 1e-14);
+  Near(BrineEquilibriumShift(0.035), 1.150757415565222, 1e-12);
+  Near(BrineEquilibriumShift(0.1), 3.485647820968829, 1e-12);
+  assert_true(BrineEquilibriumShift(0) == 0 && BrineExcessDensity(0, 10) == 0);
+  Near(BrineExcessDensity(0.035, 5), 1027.67547 - 999.96675, 0.01); /* EOS-80 */
+  Near(BrineExcessDensity(0.035, 25), 1023.34306 - 997.04796, 0.02);
+}
+
+static void ViscosityValues(void **state)
+{
+  const Viscosity water = {.law = WATER_VISCOSITY_KESTIN, .mu = 7},
+                  salty = {.law = WATER_VISCOSITY_KESTIN, .salinity = 0.035};
+  const Viscosity gas = {.law = GAS_VISCOSITY_LEE, .M = 0.016043}, held = {.mu = 3};
+  double          d, e;
+
+  Near(WaterViscosity(&water, 0, &d), 0.0017915037498227595, 1e-13); /* 40 digits; measured 1.792e-3 */
+  Near(WaterViscosity(&water, 20, &d), 1.002e-3, 1e-13);
+  Near(WaterViscosity(&water, 25, &d), 0.89020056617052e-3, 1e-12);
+  Near(WaterViscosity(&salty, 20, &d), 1.077e-3, 5e-3); /* sea water, ITTC (2011) */
+  Near(GasViscosity(&gas, 0.65, 26.85, &d, &e), 1.1434807304398947e-05, 1e-12);
+  Near(GasViscosity(&gas, 0.65, 26.85, &d, &e), 1.112e-5, 0.03); /* methane at 0.1 MPa */
+  Near(GasViscosity(&gas, 87.315, 4, &d, &e), 1.4199571152950395e-05, 1e-12);
+  assert_true(WaterViscosity(&held, 4, &d) == 3 && d == 0 && GasViscosity(&held, 4, 4, &d, &e) == 3 && d == 0 &&
+              e == 0);
+}
+
 static void KineticsValues(void **state)
 {
   Kinetics masuda = {.K0 = 3.6e4, .dE = 78151, .A_geo = 7.5e5, .M_h = 0.124};
@@ -146,10 +194,10 @@ static void KineticsValues(void **state)
 static void StateAndHeatValues(void **state)
 {
   const Liquid water = {1000, 2.2e9, 3e-4, 3.25e6, 4}, grain = {2600, INFINITY, 0, 0, 0}, soft = {1000, 1e3, 0, 0, 0};
-  Gas          methane    = {.M = 0.016};
-  const LatentHeat latent = {473632, 140.117};
-  const double     X[4]   = {1, 2, 4, 8};
-  double           dp, dT, d;
+  Gas          methane = {.M = 0.016};
+  LatentHeat   latent  = {.C0 = 473632, .C1 = 140.117};
+  const double X[4]    = {1, 2, 4, 8};
+  double       dp, dT, d;
 
   Near(LiquidDensity(&water, 3.25e6, 4, &dp, &dT), 1000, 1e-15);
   Near(LiquidDensity(&water, 3.25e6 + 2.2e7, 14, &dp, &dT), 1000 * exp(0.01 - 0.003), 1e-14);
@@ -158,6 +206,9 @@ static void StateAndHeatValues(void **state)
   assert_true(GasSetType(&methane, "ideal"));
   Near(GasDensity(&methane, 3.25e6, 4, &dp, &dT), 0.016 * 3.25e6 / (8.314 * 277.15), 1e-14);
   Near(LatentHeatEvaluate(&latent, 4, &d), 434.8e3, 1e-4);
+  latent.kirchhoff = true, latent.T_ref = 4, latent.dc = -500;
+  Near(LatentHeatEvaluate(&latent, 4, &d), 473632 - 140.117 * 277.15, 1e-14);
+  Near(LatentHeatEvaluate(&latent, 14, &d), 473632 - 140.117 * 277.15 - 5000, 1e-14);
   Near(MixtureAverage(0.5, 0.5, 0.25, X, &dp, &dT, &d), 0.5 * 1 + 0.25 * 2 + 0.0625 * 4 + 0.1875 * 8, 1e-15);
   assert_true(MixtureAverage(0, 0.3, 0.3, X, &dp, &dT, &d) == 1 && MixtureAverage(1, 1, 0.3, X, &dp, &dT, &d) == 2);
 }
@@ -232,10 +283,11 @@ static void ElasticityValues(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(RetentionValues),    cmocka_unit_test(RelPermValues),
-                                     cmocka_unit_test(PermeabilityValues), cmocka_unit_test(EquilibriumValues),
-                                     cmocka_unit_test(KineticsValues),     cmocka_unit_test(StateAndHeatValues),
-                                     cmocka_unit_test(GasValues),          cmocka_unit_test(ElasticityValues)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(RetentionValues),   cmocka_unit_test(RelPermValues),   cmocka_unit_test(PermeabilityValues),
+      cmocka_unit_test(EquilibriumValues), cmocka_unit_test(OtherCurves),     cmocka_unit_test(BrineValues),
+      cmocka_unit_test(ViscosityValues),   cmocka_unit_test(KineticsValues),  cmocka_unit_test(StateAndHeatValues),
+      cmocka_unit_test(GasValues),         cmocka_unit_test(ElasticityValues)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

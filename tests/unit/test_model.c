@@ -349,7 +349,7 @@ static void TestDarcy(void **state)
   StageStart(s, 1e3);
   const double sw = 1.0 - RetentionGasShare(&mat->retention, 0.0, &d),
                k  = PermeabilityEvaluate(&mat->permeability, 0.3, 0.0, &d, &e);
-  const double v  = -k * RelPermWater(&mat->relperm, sw, &d) / mat->mu_w * slope / (0.3 * sw);
+  const double v  = -k * RelPermWater(&mat->relperm, sw, &d) / mat->mu_w.mu * slope / (0.3 * sw);
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
     s->m.x_n[I * F_COUNT + F_VWX] = s->stage.x_star[I * F_COUNT + F_VWX] = v;

@@ -47,6 +47,15 @@ static void SetMaterial(Material *m, const Variant *v)
   m->permeability.phi0 = 0.4;
   m->solid.beta *= v->expansion;
   m->hydrate.beta *= v->expansion;
+  if (v->of_pores) { /* "other laws" */
+    Check(GasSetType(&m->gas, "peng_robinson"));
+    Check(EquilibriumSetType(&m->kinetics.equilibrium, "kamath"));
+    m->kinetics.equilibrium.shift = 0.5;
+    m->mu_w.law                   = WATER_VISCOSITY_KESTIN;
+    m->mu_g.law                   = GAS_VISCOSITY_LEE;
+    m->latent.kirchhoff           = true;
+    m->latent.dc                  = -300.0;
+  }
   if (v->yields)
     m->plasticity = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
                                  .flow         = FLOW_MENETREY_WILLAM,

@@ -30,7 +30,7 @@ static Material RandomMaterial(Rng *r, Regime regime)
   assert_true(RetentionSetType(&m.retention, RetentionTypes()[RngPick(r, 3)]));
   assert_true(PermeabilitySetHydrateType(&m.permeability, PermeabilityHydrateTypes()[RngPick(r, 3)]));
   assert_true(PermeabilitySetPorosityType(&m.permeability, PermeabilityPorosityTypes()[RngPick(r, 3)]));
-  assert_true(EquilibriumSetType(&m.kinetics.equilibrium, EquilibriumTypes()[RngPick(r, 2)]));
+  assert_true(EquilibriumSetType(&m.kinetics.equilibrium, EquilibriumTypes()[RngPick(r, 4)]));
   m.retention.p0     = RngLog(r, 1e3, 1e6);
   m.retention.m      = RngBetween(r, 0.2, 0.8);
   m.retention.lambda = RngBetween(r, 0.5, 3.0);
@@ -38,15 +38,20 @@ static Material RandomMaterial(Rng *r, Regime regime)
   m.relperm.ng       = RngBetween(r, 1.0, 4.0);
   m.relperm.of_pores = m.relperm.nw > 3.5;
   assert_true(GasSetType(&m.gas, GasTypes()[m.relperm.ng > 2.5]));
-  m.permeability.k0   = RngLog(r, 1e-18, 1e-10);
-  m.solid.beta        = RngBetween(r, -1e-4, 3e-4);
-  m.hydrate.beta      = RngBetween(r, 1e-5, 5e-4);
-  m.water.beta        = RngBetween(r, 0.0, 5e-4);
-  m.kinetics.K0       = RngLog(r, 1e-11, 1e-8);
-  m.kinetics.dE       = RngPick(r, 2) ? 0.0 : 20.0;
-  m.elasticity.bh     = RngPick(r, 2) ? 1.0 : RngBetween(r, 0.5, 3.0);
-  m.elasticity.change = RngPick(r, 3);
-  m.reacts            = regime != NO_KINETICS;
+  m.kinetics.equilibrium.shift = m.relperm.ng > 3.0 ? 0.0 : 1.2;
+  m.mu_w.law                   = m.relperm.nw > 3.0;
+  m.mu_g.law                   = m.relperm.nw > 2.5;
+  m.latent.kirchhoff           = m.relperm.ng > 2.0;
+  m.latent.dc                  = 300.0;
+  m.permeability.k0            = RngLog(r, 1e-18, 1e-10);
+  m.solid.beta                 = RngBetween(r, -1e-4, 3e-4);
+  m.hydrate.beta               = RngBetween(r, 1e-5, 5e-4);
+  m.water.beta                 = RngBetween(r, 0.0, 5e-4);
+  m.kinetics.K0                = RngLog(r, 1e-11, 1e-8);
+  m.kinetics.dE                = RngPick(r, 2) ? 0.0 : 20.0;
+  m.elasticity.bh              = RngPick(r, 2) ? 1.0 : RngBetween(r, 0.5, 3.0);
+  m.elasticity.change          = RngPick(r, 3);
+  m.reacts                     = regime != NO_KINETICS;
   if (RngPick(r, 2)) {
     m.kinetics.dE = 78151.0;
     m.kinetics.K0 *= exp(78151.0 / (8.314 * 280.0));

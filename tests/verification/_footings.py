@@ -49,14 +49,14 @@ def strip_run(name, cells, rough, *more, implicit=False, case=STRIP):
     return Run.of_case(case, "-quiet", "-grid_upper", f"{width} m, {top} m", "-grid_cells", f"{round(width * cells)},{round(top * cells)}",
                        "-region_ground_upper", f"{width} m, {depth} m", "-bc_right_position", f"{width} m", "-bc_plate_rough", "yes" if rough else "no",
                        "-mat_soil_plasticity_friction_peak", f"{phi} deg", "-mat_soil_plasticity_dilation_max", f"{phi} deg",
-                       "-mat_soil_plasticity_cohesion_max", f"{c} MPa", "-bc_surcharge_normal", f"{q} MPa",
+                       "-mat_soil_plasticity_cohesion_max", f"{c} MPa", *(("-ambient_pressure", f"{q} MPa") if q else ()),
                        "-region_ground_stress", ",".join(3 * [f"{-q} MPa"] + 3 * ["0 Pa"]), *motion, *more, exit_code=(0, 3))  # fmt: skip
 
 
 def strip(*arguments, **more):
     """Settlement (half-widths) and mean pressure under the plate (MPa) of a strip_run: (n,), (n,)."""
     m = strip_run(*arguments, **more).csv("meters.csv")
-    return -m["plate.position_m"], m["plate.force_N"] / 1e6
+    return -m["plate.position_m"], m["plate.force_N"] / 1e6 + STRIPS[arguments[0]][2]  # the surcharge is ambient, the plate bears what is beyond it
 
 
 def collapse(u, load):
