@@ -284,6 +284,9 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (s->signal && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
                           strsignal(s->signal), t, run->saved));
+  } else if (run->watch.over && !run->frozen && ok && !StepperDone(s)) {
+    PetscCall(PetscPrintf(comm, "Ended at t = %g s, before -time_limit %g s is over; go on with -restart %s\n", t,
+                          run->watch.limit, run->saved));
   } else if (!ok || run->frozen) {
     if (!run->frozen)
       PetscCall(AmbientAdvice(s->model->c, advice));
@@ -410,7 +413,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(LogStart(comm));
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
