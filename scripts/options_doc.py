@@ -20,6 +20,11 @@ PROGRAM = [  # option, value, default, meaning
      "meters, stages); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a "
      "new one"),
     ("-quiet", "", "", "no line per step; refused steps and the summary are still printed"),
+    ("-progress", "s", "1", "seconds of the clock on the wall between lines of progress, at least; 0 = a line for every step"),
+    ("-time_limit", "s", "none", "seconds of the clock on the wall after which the run must have ended: it does so before two more steps as "
+     "long as its longest would pass them, with a checkpoint and exit code 4"),
+    ("-checkpoint_wall", "s", "300", "seconds of the clock on the wall between checkpoints, beside those of `checkpoint_every`; 0 = none"),
+    ("-overwrite", "", "", "write into an output folder that holds the results of another case"),
     ("-stepper_max_steps", "N", "no limit", "stop after N more steps, with a checkpoint and exit code 0"),
     ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this, rows of "
      "mass and energy 20 times lower"),
@@ -81,7 +86,9 @@ Every `-snes_`, `-ksp_` and `-pc_` option of PETSc works. The program's own defa
 |---|---|---|
 {petsc}
 
-A misspelt option of PETSc or of the table above is not an error; `-options_left` shows it.
+A misspelt key of the case, and an option that begins as this program's own do (`-stepper_`, `-newton_`, `-model_`, `-output_`,
+`-checkpoint_`, `-case_`), is an error before anything is run. One of PETSc's cannot be told from those that nobody asked for yet:
+the run ends with the warning that it was not used.
 
 ## Keys of a case
 

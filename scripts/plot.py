@@ -19,6 +19,7 @@ from clathra.units import duration
 from plotting import COLOURS, STYLES, boxes, plt, save, set_style, steady_limits
 
 FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
+PICTURES = ("probes", "balance", "profiles", "particles", "maps")
 ARROWS = 18  # along the longer side
 
 
@@ -208,6 +209,8 @@ def main(folders):
             run = clathra.Run(folder)
         except clathra.NoRun as error:
             sys.exit(f"plot.py: {error}")
+        for name in PICTURES:
+            (run.folder / "figures" / f"{name}.png").unlink(missing_ok=True)
         if not any([plot_probes(run), plot_balance(run), plot_body(run)]):
             print(f"  {folder}: nothing to draw yet")
 

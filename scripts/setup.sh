@@ -55,6 +55,10 @@ setup_build() {
   local folder=$root/$1 target=$2
   shift 2
   mkdir -p "$folder"
+  if [ -f "$folder/CMakeCache.txt" ] && ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$folder/CMakeCache.txt"; then
+    say "$folder was configured for a folder of another name: configuring it anew"
+    rm -rf "$folder/CMakeCache.txt" "$folder/CMakeFiles"
+  fi
   quietly "$folder/configure.log" cmake -S "$root" -B "$folder" -G Ninja "$@" || die "cmake failed in $folder"
   quietly "$folder/build.log" cmake --build "$folder" --target "$target" || die "the build failed in $folder"
 }

@@ -25,6 +25,9 @@ typedef struct {
    Collective. */
 PetscErrorCode FolderTake(MPI_Comm comm, const char *dir, const Origin *from, Folder *folder, int *exit_code);
 PetscErrorCode FolderRelease(Folder *folder);
+/* Does the folder hold nothing, or results of the case whose resolved form this is?  Otherwise a sentence.  Collective.
+ */
+PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool *ok);
 /* A text file of the folder in one piece, on rank 0: whole, or as it was.  Collective. */
 PetscErrorCode FolderWriteText(MPI_Comm comm, const char *dir, const char *name, const char *text, size_t bytes,
                                bool *ok);
@@ -49,7 +52,7 @@ PetscErrorCode OutputMeters(Output *out, const Model *m, const StepperState *s);
 /* One row of balance.csv. */
 PetscErrorCode OutputBalance(Output *out, const Model *m, const StepperState *s, const StepInfo *info);
 /* Particles (all history variables, p, mass-weighted ids) and nodes as snapshot number s->next_snapshot: a file in the
-   folder fields, listed by fields.h5 and fields.xdmf. */
+   folder fields, listed by fields.h5, particles.xdmf and grid.xdmf. */
 PetscErrorCode OutputSnapshot(Output *out, const Model *m, const StepperState *s);
 
 /* Checkpoint: written aside, then renamed; the previous one is kept as NAME.old.  Holds the state, all particle

@@ -174,7 +174,15 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 {
   return fmin(c->cfl * limit->dt, c->dt_max);
 }
-PetscErrorCode StepperPrintForecast(const Stepper *s);
+/* A line with what to try after a run was given up for this cause. */
+PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
+/* The largest unit of which a time (s) holds two. */
+typedef struct {
+  double      s;
+  const char *name;
+} TimeUnit;
+const TimeUnit *StepperTimeUnit(double seconds);
+PetscErrorCode  StepperPrintForecast(const Stepper *s);
 
 /* ---- learnt.c */
 #define LEARNT 400

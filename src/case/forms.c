@@ -4,6 +4,7 @@
      key: {ramp: [v0, v1, t0, t1]}             from v0 at t0 to v1 at t1
      key: {rate: [v0, rate, t0, t1]}           from v0 at t0 with this rate until t1
      key: {piecewise: [t0, v0, t1, v1, ...]}   each value holds until the next time
+   On the command line -key_ramp "v0, v1, t0, t1" or -key "{ramp: [v0, v1, t0, t1]}".
    Before the first time the first value holds, after the last time the last. */
 #include "case_private.h"
 #include <stdio.h>
@@ -101,6 +102,47 @@ static bool ScheduleParse(Reader *r, const char *shown, const char *text, const 
   return ok;
 }
 
+/* "{ramp: [...]}" in one word, as the command line gives it: the form, and its values in `inner`, as long as the text;
+ * -1: it is none. */
+static int FormInBraces(const char *text, char *inner)
+{
+  const char *p = text + 1 + strspn(text + 1, " ");
+
+  for (int f = FORM_TABLE; case_schedule_form[f]; f++) {
+    const char  *name = case_schedule_form[f] + 1; /* without _ */
+    const size_t n = strlen(name), colon = n + strspn(p + PetscMin(n, strlen(p)), " ");
+
+    if (strncasecmp(p, name, n) || p[colon] != ':')
+      continue;
+    p += colon + 1;
+    strcpy(inner, p + strspn(p, " ["));
+    inner[strcspn(inner, "]}")] = 0;
+    return f;
+  }
+  return -1;
+}
+
+/* A value of the command line may be a form in braces. */
+static bool ScheduleGiven(Reader *r, const char *shown, const char *text, const Key *k, int form, Schedule *s)
+{
+  char *inner;
+  bool  ok;
+
+  if (form != FORM_CONSTANT || *text != '{')
+    return ScheduleParse(r, shown, text, k, form, s);
+  inner = strdup(text);
+  form  = FormInBraces(text, inner);
+  ok    = form > 0;
+  if (ok)
+    ok = ScheduleParse(r, shown, inner, k, form, s);
+  else
+    ReaderError(r, shown, text,
+                "is no function of time: {table: [t0, v0, t1, v1, ...]}, {ramp: [v0, v1, t0, t1]}, {rate: ...}, "
+                "{piecewise: ...}");
+  free(inner);
+  return ok;
+}
+
 PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s)
 {
   char        name[300], shown[301];
@@ -127,7 +169,7 @@ PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const v
     ReaderError(r, shown, text, "%s is given in two forms; choose one", option);
   } else if (form >= 0) {
     if (text)
-      ScheduleParse(r, shown, text, k, form, s);
+      (void)ScheduleGiven(r, shown, text, k, form, s);
     else
       ReaderError(r, shown, NULL, "has no value");
   } else if (KeyApplies(k, GROUP_BC, instance)) {

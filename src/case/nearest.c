@@ -199,10 +199,18 @@ static bool PrefixOwned(const Case *c, const char *name)
   return KeyUnlisted(c, name, &g, word, sizeof word);
 }
 
+/* The program's own, under the names of groups of keys. */
+static bool OfTheRun(const char *name)
+{
+  return !strcasecmp(name, "time_limit") || !strcasecmp(name, "checkpoint_wall");
+}
+
 bool KeyOwned(const Case *c, const char *name)
 {
   char nearest[256];
 
+  if (OfTheRun(name))
+    return false;
   if (PrefixOwned(c, name))
     return true;
   if (SharedPrefix(name))

@@ -1,6 +1,7 @@
 /* resolve: writes the case in SI, every key of the table at its value, such that reading it gives the same doubles; and
    prints the table itself. */
 #include "case_private.h"
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -183,9 +184,11 @@ static void WriteGroup(FILE *f, const Case *c, Group g)
 
 PetscErrorCode CaseWriteResolved(const Case *c, FILE *f)
 {
+  char full[PATH_MAX];
+
   PetscFunctionBeginUser;
   fprintf(f, "# The case as it ran, in SI units with every default; itself a case.  Written by clathra from\n# %s\n",
-          c->file);
+          realpath(c->file, full) ? full : c->file);
   WriteInstance(f, c, GROUP_CASE, (const char *)c, "");
   for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
     WriteGroup(f, c, g);

@@ -1,4 +1,4 @@
-/* The output folder: one run at a time, and files of one history.
+/* The output folder: one run at a time, files of one history, and of one case unless -overwrite.
 
    run.lock is locked (flock) while a run lives; the kernel gives it back when the process dies, however it dies.
 
@@ -18,6 +18,8 @@
 #include <sys/random.h>
 #include <time.h>
 #include <unistd.h>
+
+#define HEAD (PETSC_MAX_PATH_LEN + 16) /* of a line of a resolved case */
 
 typedef struct {
   int    n;
@@ -142,6 +144,47 @@ static bool Join(const char *dir, const Origin *from, History *h)
           "from it\n",
           dir);
   return false;
+}
+
+/* The first lines of a resolved case say of which file it is (1) and its title (2). */
+static void Head(FILE *f, char line[3][HEAD])
+{
+  memset(line, 0, sizeof(char[3][HEAD]));
+  for (int k = 0; f && k < 3 && fgets(line[k], HEAD, f); k++)
+    line[k][strcspn(line[k], "\n")] = '\0';
+  if (f)
+    fclose(f);
+}
+
+/* A case may have moved to another place with its folder: then its title tells. */
+static bool HoldsOther(const char *dir, char *resolved, size_t bytes)
+{
+  char path[IO_PATH], held[3][HEAD], ours[3][HEAD];
+
+  snprintf(path, sizeof(path), "%s/case.yaml", dir);
+  Head(fopen(path, "r"), held);
+  Head(fmemopen(resolved, bytes, "r"), ours);
+  if (strcmp(held[0], ours[0]) || !strcmp(held[1], ours[1]) ||
+      (strcmp(ours[2], "title: ''") && !strcmp(held[2], ours[2])))
+    return false;
+  fprintf(stderr,
+          "clathra: %s holds the results of another case, %s; give another -output_dir, or -overwrite to lose them\n",
+          dir, held[1] + 2);
+  return true;
+}
+
+PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool *ok)
+{
+  PetscMPIInt rank;
+  int         other = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0)
+    other = HoldsOther(dir, resolved, bytes);
+  PetscCallMPI(MPI_Bcast(&other, 1, MPI_INT, 0, comm));
+  *ok = !other;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static int Enter(const char *dir, const Origin *from, uint64_t run)

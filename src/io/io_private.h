@@ -134,8 +134,10 @@ static inline void IoTime(const Case *c, FILE *f, double t)
 #define SNAPSHOT_NAME "fields/%06d.h5"
 PetscErrorCode SeriesStart(Output *out, bool append, PetscInt next);
 PetscErrorCode SeriesAdd(Output *out, const SnapshotEntry *entry);
-PetscErrorCode SeriesWrite(Output *out, const Grid *g); /* fields.h5 and fields.xdmf */
-void           XdmfPrint(FILE *f, const Output *out, const Grid *g);
+PetscErrorCode SeriesWrite(Output *out, const Grid *g); /* fields.h5, particles.xdmf and grid.xdmf */
+typedef enum { XDMF_PARTICLES = 0, XDMF_GRID, XDMF_COUNT } XdmfKind;
+extern const char *const xdmf_name[];
+void                     XdmfPrint(FILE *f, const Output *out, const Grid *g, XdmfKind kind);
 
 /* ---------------------------------------------------------------- h5util.c */
 #define H5Check(expr) PetscCheck((expr) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s", #expr)

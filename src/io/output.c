@@ -1,10 +1,27 @@
 /* The files of a run: created, or cut back to the time of a restart and continued. */
 #include "io_private.h"
 
+#include <unistd.h>
+
+/* What a run before left and this one will not write, or not yet. */
+static void RemoveStale(const Output *out, const Model *m)
+{
+  static const char *const name[] = {"summary.txt", "report.html", "fields.xdmf", "meters.csv"};
+  const int                n      = MetersWanted(m) ? 3 : 4;
+  char                     path[IO_PATH + 16];
+
+  for (int k = 0; k < n; k++) {
+    snprintf(path, sizeof(path), "%s/%s", out->dir, name[k]);
+    (void)unlink(path);
+  }
+}
+
 static PetscErrorCode OpenFiles(Output *out, const Model *m, const StepperState *s, bool append)
 {
   PetscFunctionBeginUser;
   out->failed = !IoMakeFolder(out->dir);
+  if (!append)
+    RemoveStale(out, m);
   PetscCall(TablesOpen(out, m, append, s->t));
   PetscCall(SeriesStart(out, append, s->next_snapshot));
   PetscCall(SeriesWrite(out, &m->grid));

@@ -1,5 +1,6 @@
-/* The list of a run's snapshots.  fields.h5 holds nothing but links into the files of the folder `fields`, fields.xdmf
-   names them; both are made anew from the files at a restart and at every snapshot, so neither can be lost. */
+/* The list of a run's snapshots.  fields.h5 holds nothing but links into the files of the folder `fields`,
+   particles.xdmf and grid.xdmf name them; all are made anew from the files at a restart and at every snapshot, so none
+   can be lost. */
 #include "io_private.h"
 
 #include <dirent.h>
@@ -144,23 +145,33 @@ static PetscErrorCode IndexWrite(Output *out, const char *path)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode XdmfWrite(Output *out, const Grid *g, XdmfKind kind)
+{
+  char   path[IO_PATH], name[32], *text;
+  size_t size;
+  FILE  *f = open_memstream(&text, &size);
+
+  PetscFunctionBeginUser;
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  XdmfPrint(f, out, g, kind);
+  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  snprintf(name, sizeof(name), "%s.xdmf", xdmf_name[kind]);
+  PetscCall(IoPath(out->dir, name, path));
+  if (!out->failed)
+    out->failed = !IoReplace(path, false, 1, &(IoPiece){text, size});
+  free(text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SeriesWrite(Output *out, const Grid *g)
 {
-  char   path[IO_PATH], *text;
-  size_t size;
-  FILE  *f;
+  char path[IO_PATH];
 
   PetscFunctionBeginUser;
   PetscCall(IoPath(out->dir, "fields.h5", path));
   if (!out->failed)
     PetscCall(IndexWrite(out, path));
-  f = open_memstream(&text, &size);
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  XdmfPrint(f, out, g);
-  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscCall(IoPath(out->dir, "fields.xdmf", path));
-  if (!out->failed)
-    out->failed = !IoReplace(path, false, 1, &(IoPiece){text, size});
-  free(text);
+  for (XdmfKind kind = XDMF_PARTICLES; kind < XDMF_COUNT; kind++)
+    PetscCall(XdmfWrite(out, g, kind));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,9 +1,12 @@
-/* fields.xdmf: the time series of particles and grid over the files of the snapshots, for ParaView's and VisIt's XDMF 3
-   readers. The particles name their vertices, for XDMF 3 makes no points of bare coordinates; the grid is one layer of
-   a 3-D mesh, for VTK's reader lays a 2DCoRectMesh into the y-z plane. */
+/* particles.xdmf and grid.xdmf: the time series of either over the files of the snapshots, for ParaView's and VisIt's
+   XDMF readers. Two files, for the readers hide one series behind the other, and snapshots without nodal fields, when
+   they share one. The particles name their vertices, for XDMF 3 makes no points of bare coordinates; the grid is one
+   layer of a 3-D mesh, for VTK's reader lays a 2DCoRectMesh into the y-z plane. */
 #include "io_private.h"
 
 #include <string.h>
+
+const char *const xdmf_name[] = {[XDMF_PARTICLES] = "particles", [XDMF_GRID] = "grid"};
 
 static void Item(FILE *f, const char *dims, bool integer, const char *kind, PetscInt number, const char *name)
 {
@@ -72,24 +75,15 @@ static void NodeGrid(FILE *f, const FieldSet *fs, const Grid *g, const SnapshotE
   fprintf(f, "      </Grid>\n");
 }
 
-void XdmfPrint(FILE *f, const Output *out, const Grid *g)
+void XdmfPrint(FILE *f, const Output *out, const Grid *g, XdmfKind kind)
 {
-  bool any = false;
-
   fprintf(f, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n");
-  fprintf(f, "    <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+  fprintf(f, "    <Grid Name=\"%s\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", xdmf_name[kind]);
   for (PetscInt k = 0; k < out->nsnapshot; k++) {
-    ParticleGrid(f, &out->fields, &out->snapshot[k]);
-    any = any || out->snapshot[k].grid;
+    if (kind == XDMF_PARTICLES)
+      ParticleGrid(f, &out->fields, &out->snapshot[k]);
+    else if (out->snapshot[k].grid)
+      NodeGrid(f, &out->fields, g, &out->snapshot[k]);
   }
-  fprintf(f, "    </Grid>\n");
-  if (any) {
-    fprintf(f, "    <Grid Name=\"grid\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-    for (PetscInt k = 0; k < out->nsnapshot; k++) {
-      if (out->snapshot[k].grid)
-        NodeGrid(f, &out->fields, g, &out->snapshot[k]);
-    }
-    fprintf(f, "    </Grid>\n");
-  }
-  fprintf(f, "  </Domain>\n</Xdmf>\n");
+  fprintf(f, "    </Grid>\n  </Domain>\n</Xdmf>\n");
 }

@@ -9,6 +9,7 @@
 typedef struct {
   Output   *out;
   Folder    folder;
+  Watch     watch;
   StageLog *log;
   char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   double    t_saved;                                                   /* of that */
@@ -35,19 +36,36 @@ static double NextEvent(const Stepper *s, void *ctx)
   return fmin(NextSnapshot(c, t), fmin(NextMultiple(c, c->probe_every, t), NextMultiple(c, c->checkpoint_every, t)));
 }
 
-static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run *run)
+/* "3.5 s" in units that read well. */
+static PetscErrorCode Time(double seconds, double scale, char text[32])
 {
-  const double t_begin = s->model->c->t_begin;
-  double       done, left;
-  char         cuts[32] = "", error[64] = "", solved[48], stage[80], begin[32] = "", yields[128];
+  const TimeUnit *unit = StepperTimeUnit(scale);
 
   PetscFunctionBeginUser;
-  if (run->quiet)
+  PetscCall(PetscSNPrintf(text, 32, "%.6g %s", seconds / unit->s, unit->name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
+{
+  const Case  *c       = s->model->c;
+  const double t_begin = c->t_begin;
+  double       done, left;
+  char cuts[32] = "", error[64] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32], rest[32];
+
+  PetscFunctionBeginUser;
+  if (run->quiet || !WatchLine(&run->watch, CaseAtEnd(c, s->state.t) || s->stop))
     PetscFunctionReturn(PETSC_SUCCESS);
   StageLogProgress(run->log, s, &done, &left);
   StepperStageWords(s, stage);
-  if (t_begin > 0.0)
-    PetscCall(PetscSNPrintf(begin, sizeof(begin), "%g s + ", t_begin));
+  if (t_begin > 0.0) {
+    PetscCall(Time(t_begin, t_begin, now));
+    PetscCall(PetscSNPrintf(begin, sizeof(begin), "%s + ", now));
+  }
+  PetscCall(Time(s->state.t - t_begin, c->t_end - t_begin, now));
+  PetscCall(Time(info->dt, info->dt, dt));
+  PetscCall(PetscSNPrintf(rest, sizeof(rest), "%.3g %s", round(left) / StepperTimeUnit(left)->s,
+                          StepperTimeUnit(left)->name));
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
@@ -59,9 +77,8 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, const Run
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance (%s)", info->err,
                             stepper_error_word[info->rules]));
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "%sstep %4" PetscInt_FMT ": t = %s%-10.6g s (%5.1f %%), dt = %-9.4g s, %s%s%s%s, %.0f s left\n",
-                        stage, s->state.step, begin, s->state.t - t_begin, 100.0 * done, info->dt, solved, error, cuts,
-                        yields, left));
+                        "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s left\n", stage,
+                        s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,6 +106,7 @@ static PetscErrorCode Save(Stepper *s, Run *run)
     PetscCall(PetscStrncpy(run->saved, run->checkpoint, sizeof(run->saved)));
     run->t_saved = s->state.t;
     run->written = true;
+    WatchSaved(&run->watch);
   }
   run->lost = run->lost || !ok;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,9 +119,10 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   const Case  *c    = s->model->c;
   const double t    = s->state.t;
   const bool   last = CaseAtEnd(c, t); /* of the run, or of a stage */
-  bool         ok;
+  bool         ok, save, end;
 
   PetscFunctionBeginUser;
+  PetscCall(WatchStep(s->model->grid.comm, &run->watch, &save, &end));
   PetscCall(StageLogStep(run->log, s, info));
   PetscCall(IceLook(s, &run->frozen));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
@@ -118,9 +137,9 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   }
   PetscCall(OutputGood(run->out, s->model->grid.comm, &ok));
   run->lost = run->lost || !ok;
-  if (!run->lost && AtMultiple(c, c->checkpoint_every, t))
+  if (!run->lost && (save || AtMultiple(c, c->checkpoint_every, t)))
     PetscCall(Save(s, run));
-  s->stop = s->stop || run->lost || run->frozen;
+  s->stop = s->stop || run->lost || run->frozen || end;
   PetscCall(Progress(s, info, run));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -148,22 +167,23 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
     PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(IceSummary(s, ice));
-  PetscCall(PetscSNPrintf(text, sizeof(text),
-                          "%s: %s at t = %g s\n"
-                          "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-                          " Newton iterations, %.2f s%s\n%s"
-                          "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e K\n"
-                          "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-                          "%s%s%s%s  results in %s\n",
-                          s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
-                          s->model->c->nstage ? "by stage"
-                          : s->auto_.on       ? STEPPER_AUTO
-                                              : s->scheme->name,
-                          z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
-                          Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
-                          Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
-                          Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate,
-                          z->limited_total, yields, loose, gaps, ice, s->model->c->output_dir));
+  PetscCall(PetscSNPrintf(
+      text, sizeof(text),
+      "%s: %s at t = %g s\n"
+      "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
+      " Newton iterations, %.2f s%s\n%s"
+      "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
+      "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
+      "%s%s%s%s  results in %s\n",
+      s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
+      s->model->c->nstage ? "by stage"
+      : s->auto_.on       ? STEPPER_AUTO
+                          : s->scheme->name,
+      z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
+      Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
+      Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
+      Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, yields, loose,
+      gaps, ice, s->model->c->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);
@@ -176,20 +196,46 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 }
 
 /* ---------------------------------------------------------------- from the first row to the last */
-static PetscErrorCode WriteCase(MPI_Comm comm, const Case *c, Run *run)
+static PetscErrorCode CaseText(const Case *c, char **text, size_t *size)
 {
-  char  *text;
-  size_t size;
-  bool   ok;
-  FILE  *f = open_memstream(&text, &size);
+  FILE *f = open_memstream(text, size);
 
   PetscFunctionBeginUser;
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
   PetscCall(CaseWriteResolved(c, f));
   PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteCase(MPI_Comm comm, const Case *c, Run *run)
+{
+  char  *text;
+  size_t size;
+  bool   ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(CaseText(c, &text, &size));
   PetscCall(FolderWriteText(comm, c->output_dir, "case.yaml", text, size, &ok));
   free(text);
   run->lost = run->lost || !ok;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new run does not write over another case's results unless it is told to. */
+static PetscErrorCode CheckFolder(MPI_Comm comm, const Case *c, bool *ok)
+{
+  PetscBool overwrite = PETSC_FALSE;
+  char     *text;
+  size_t    size;
+
+  PetscFunctionBeginUser;
+  *ok = true;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-overwrite", &overwrite, NULL));
+  if (overwrite)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CaseText(c, &text, &size));
+  PetscCall(FolderCheckCase(comm, c->output_dir, text, size, ok));
+  free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,6 +284,9 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (s->signal && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
                           strsignal(s->signal), t, run->saved));
+  } else if (run->watch.over && !run->frozen && ok && !StepperDone(s)) {
+    PetscCall(PetscPrintf(comm, "Ended at t = %g s, before -time_limit %g s is over; go on with -restart %s\n", t,
+                          run->watch.limit, run->saved));
   } else if (!ok || run->frozen) {
     if (!run->frozen)
       PetscCall(AmbientAdvice(s->model->c, advice));
@@ -266,7 +315,7 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   PetscCall(WriteLog(s->model->c, s->model->grid.comm, run));
   if (run->lost || run->frozen || !ok)
     *exit_code = CL_EXIT_FAILED;
-  else if (s->signal && !StepperDone(s))
+  else if ((s->signal || run->watch.over) && !StepperDone(s))
     *exit_code = CL_EXIT_SIGNAL;
   else
     *exit_code = CL_EXIT_OK;
@@ -287,8 +336,12 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
     PetscCall(PetscStrncpy(run->saved, restart, sizeof(run->saved)));
     run->t_saved   = s->state.t;
     run->restarted = true;
-  } else
+  } else {
     run->t_saved = NAN;
+    PetscCall(CheckFolder(s->model->grid.comm, c, &ok));
+    if (!ok)
+      PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(StepperReady(s, &ok));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -337,6 +390,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   Stepper     stepper;
   char        restart[PETSC_MAX_PATH_LEN] = "";
   PetscBool   quiet                       = PETSC_FALSE;
+  bool        ok;
   PetscInt    unknown;
   PetscMPIInt size;
 
@@ -344,6 +398,12 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
   run.quiet = quiet;
+  PetscCall(LogStart(comm));
+  PetscCall(WatchStart(comm, &run.watch, &ok));
+  if (!ok) {
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (!GridFits(size, c->cells)) {
     PetscCall(PetscFPrintf(comm, stderr,
@@ -353,7 +413,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(LogStart(comm));
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;

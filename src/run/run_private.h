@@ -12,6 +12,19 @@ PetscErrorCode LogStart(MPI_Comm comm); /* keeps what is said from here on */
 PetscErrorCode LogWrite(MPI_Comm comm, const char *dir, bool append, bool *ok);
 PetscErrorCode LogEnd(void);
 
+/* ---------------------------------------------------------------- watch.c: seconds of the clock on the wall */
+typedef struct {
+  double limit, often, line;                  /* -time_limit, -checkpoint_wall, -progress */
+  double begun, saved, before, said, longest; /* when; the longest step so far */
+  bool   over;                                /* it was time to end */
+} Watch;
+PetscErrorCode WatchStart(MPI_Comm comm, Watch *w, bool *ok);
+/* After a step: is it time for a checkpoint; would two steps more, as long as the longest, pass the limit?  Collective.
+ */
+PetscErrorCode WatchStep(MPI_Comm comm, Watch *w, bool *save, bool *end);
+void           WatchSaved(Watch *w);
+bool           WatchLine(Watch *w, bool last); /* is it time for a line?  The last one always comes */
+
 /* ---------------------------------------------------------------- times.c */
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
 double NextMultiple(const Case *c, double every, double t);

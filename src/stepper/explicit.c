@@ -215,6 +215,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
         s->state.t, n, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1], s->state.dt));
     if (cuts >= s->max_failures) {
       PetscCall(GiveUp(s, m->why ? m->why : "?", ok));
+      PetscCall(StepperAdvise(s, a.status));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

@@ -117,18 +117,22 @@ PetscErrorCode StepperForecast(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+const TimeUnit *StepperTimeUnit(double seconds)
+{
+  static const TimeUnit unit[] = {{3.15576e7, "years"}, {86400.0, "days"}, {3600.0, "h"}, {60.0, "min"}, {1.0, "s"}};
+  int                   k      = 0;
+
+  while (k < 4 && seconds < 2.0 * unit[k].s)
+    k++;
+  return &unit[k];
+}
+
 /* "12 s", "3.4 h", "20 years". */
 static void Duration(double seconds, char text[32])
 {
-  static const struct {
-    double      s;
-    const char *unit;
-  } unit[] = {{3.156e7, "years"}, {86400.0, "days"}, {3600.0, "h"}, {60.0, "min"}, {0.0, "s"}};
-  int k    = 0;
+  const TimeUnit *unit = StepperTimeUnit(seconds);
 
-  while (seconds < 2.0 * unit[k].s)
-    k++;
-  snprintf(text, 32, "%.2g %s", seconds / (unit[k].s > 0.0 ? unit[k].s : 1.0), unit[k].unit);
+  snprintf(text, 32, "%.2g %s", seconds / unit->s, unit->name);
 }
 
 PetscErrorCode StepperPrintForecast(const Stepper *s)

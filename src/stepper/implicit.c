@@ -243,6 +243,7 @@ static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
       s->model->grid.comm,
       "Given up at t = %g s: for %d steps dt has been about %.2g s, at which the rest would take %.1g steps\n",
       s->state.t, CRAWL_STEPS, dt, left / dt));
+  PetscCall(StepperAdvise(s, CL_INACCURATE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -261,6 +262,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     *ok = false;
     PetscCall(PetscPrintf(m->grid.comm, "t = %.10g s: %s near (%.12g, %.12g) m; no smaller step can help\n", s->state.t,
                           m->why, m->where[0], m->where[1]));
+    PetscCall(StepperAdvise(s, status));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SizeWork(s));
@@ -307,6 +309,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
           m->grid.comm,
           "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n", s->state.t,
           cuts + 1, m->why ? m->why : "?", StepperStatusName(a.status), m->where[0], m->where[1]));
+      PetscCall(StepperAdvise(s, a.status));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

@@ -1,0 +1,27 @@
+/* What a user may try when a run gives up, for its cause, the likeliest first; docs/giving_up.md says more. */
+#include "clathra/stepper.h"
+
+PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
+{
+  static const char *const advice[] = {
+      [CL_DOMAIN] =
+          "the load or the pressure that brings a particle there: a ramp instead of a jump, and less of it; the "
+          "units of what acts near that place; finer cells there",
+      [CL_NONFINITE] = "the units of the materials and conditions near that place; a smaller stepper_dt; without the "
+                       "conditions one by one",
+      [CL_LEFT_GRID] =
+          "a larger grid, for the body must stay inside it; a roller or fixed line where the body should be "
+          "held",
+      [CL_TOO_FAR] = "gravity_ramp or a ramp of the load; stress: {geostatic: K0} for a body that starts unstressed; "
+                     "inertia: yes where it slides; stepper_type hybrid or auto for what is fast",
+      [CL_SOLVER] =
+          "a ramp instead of a jump of what acts near that place; Sgr of some percent and p0 of some kPa more, "
+          "where gas or water is nearly immobile; stepper_type hybrid or auto; finer cells there",
+      [CL_INACCURATE] = "stepper_tol ten times larger; a ramp instead of a jump; finer cells where fields are steep"};
+  const char *what = status >= 0 && status <= CL_INACCURATE ? advice[status] : NULL;
+
+  PetscFunctionBeginUser;
+  if (what)
+    PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s (docs/giving_up.md)\n", what));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""How a run is held on to: -time_limit, -checkpoint_wall, -progress, -overwrite, and what to try when it gives up.
+
+The scene is BP2 on 13 cells.
+"""
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import CASES, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
+
+BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
+
+
+def check_limit():
+    """A run that is ended by the clock goes on to what the straight run gives, bit for bit."""
+    out, straight = scratch() / "out", scratch() / "straight"
+    begun = time.monotonic()
+    done = launch(binary(), *BP2, "-time_end", "2000 s", "-quiet", "-time_limit", "2", out=out)
+    check("a run of 40 000 steps with -time_limit 2 s takes, on a busy machine too", time.monotonic() - begun, 60.0)
+    check_true("... exit code 4, and how to go on", done.returncode == 4 and "before -time_limit 2" in done.stdout and f"-restart {out}" in done.stdout, done.stdout[-200:])
+    t = float((out / "balance.csv").read_text().splitlines()[-1].split(",")[1])
+    end = f"{round((t + 1) / 0.05) * 0.05:g} s"
+    run(binary(), *BP2, "-quiet", "-time_end", end, "-restart", out / "checkpoint.h5", out=out)
+    run(binary(), *BP2, "-quiet", "-time_end", end, out=straight)
+    same = [f for f in ("probes.csv", "balance.csv") if (out / f).read_bytes() == (straight / f).read_bytes()]
+    check_true("... with a restart it is the straight run, bit for bit", len(same) == 2, f"{same} from {t} s")
+    for option, value in (("-time_limit", "0"), ("-checkpoint_wall", "-1"), ("-progress", "-1")):
+        done = launch(binary(), *BP2, option, value, out=scratch() / "none")
+        check_true(f"{option} {value} is refused", done.returncode == 2 and option in done.stdout and "clock on the wall" in done.stdout)
+
+
+def check_checkpoints():
+    for seconds, wanted in (("0.01", True), ("0", False), ("300", False)):
+        out = scratch() / "out"
+        run(binary(), *BP2, "-quiet", "-time_end", "2 s", "-checkpoint_wall", seconds, out=out)
+        check_true(f"-checkpoint_wall {seconds}: checkpoints on the way: {wanted}", (out / "checkpoint.h5.old").exists() == wanted)
+
+
+def check_progress():
+    few, all_ = (run(binary(), *BP2, "-time_end", "2 s", "-progress", s, out=scratch() / "out").output for s in ("1", "0"))
+    lines = lambda text: [line for line in text.splitlines() if line.startswith("step")]
+    check_true("-progress 0: a line a step", len(lines(all_)) == 40)
+    check("lines in a run of about a second, at most one a second", len(lines(few)), (2, 20))
+    check_true("the last step is told", "step   40:" in lines(few)[-1] and "(100.0 %)" in lines(few)[-1], lines(few)[-1])
+    slow = run(binary(), CASES / "century", "-progress", "0", "-stepper_max_steps", "2", out=scratch() / "out").output
+    check_true("times in the unit of the run", " years (" in lines(slow)[-1], lines(slow)[-1])
+
+
+def check_folder():
+    out, other = scratch() / "out", scratch() / "other.yaml"
+    run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", out=out)
+    before = {f.name: f.read_bytes() for f in out.iterdir() if f.is_file()}
+    text = (CASES / "bp2" / "case.yaml").read_text()
+    other.write_text(text.replace("title: BP2", "title: another one, BP2"))
+    done = launch(binary(), other, *BP2[1:], "-quiet", "-time_end", "0.1 s", out=out)
+    after = {f.name: f.read_bytes() for f in out.iterdir() if f.is_file()}
+    check_true("another case's folder is refused, and nothing changed", done.returncode == 2 and "bp2/case.yaml" in done.stdout
+               and "-overwrite" in done.stdout and before == after, done.stdout[-300:])  # fmt: skip
+    check_true("-overwrite takes it", launch(binary(), other, *BP2[1:], "-quiet", "-time_end", "0.1 s", "-overwrite", out=out).returncode == 0
+               and "another one" in (out / "case.yaml").read_text())  # fmt: skip
+    check_true("the same case with other values does not need it", launch(binary(), other, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
+    (out / "meters.csv").write_text("stale\n")
+    (out / "report.html").write_text("stale\n")
+    launch(binary(), other, *BP2[1:], "-quiet", "-time_end", "0.2 s", "-stepper_max_steps", "1", out=out)
+    check_true("stale files do not stand beside new ones", not (out / "meters.csv").exists() and not (out / "report.html").exists())
+    moved = scratch() / "moved.yaml"
+    moved.write_text(other.read_text())
+    check_true("nor does a case that has moved", launch(binary(), moved, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
+
+
+def check_advice():
+    done = launch(binary(), *BP2[:5], "-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "1e5 MPa", out=scratch() / "out")
+    said = done.stdout.splitlines()
+    at = next((k for k, line in enumerate(said) if line.startswith("Given up")), -2)
+    check_true("what to try stands under why it was given up", done.returncode == 3 and "What to try, in this order" in said[at + 1]
+               and "docs/giving_up.md" in said[at + 1], said[at : at + 2])  # fmt: skip
+
+
+def check_words():
+    """A function of time in one word, and a probe that the case does not have."""
+    read = lambda *options: (run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", *options, out=scratch() / "out").out / "case.yaml").read_text()
+    both = [read("-bc_load_normal" + end, text) for end, text in (("", "{ramp: [3.25 MPa, 10 MPa, 0 s, 500 s]}"), ("_ramp", "3.25 MPa, 10 MPa, 0 s, 500 s"))]
+    lines = [next(line for line in text.splitlines() if "normal:" in line) for text in both]
+    check_true("-bc_load_normal '{ramp: [...]}'", lines[0] == lines[1] and "10000000 Pa" in lines[0], lines[0])
+    for wrong in ("{slope: [1 MPa, 2 MPa, 0 s, 1 s]}", "{ramp [1 MPa]}", "{", "{ramp: [1 MPa]}"):
+        done = launch(binary(), *BP2, "-bc_load_normal", wrong, out=scratch() / "out")
+        check_true(f"{wrong} is refused", done.returncode == 2 and "bc_load_normal" in done.stdout, done.stdout[-200:])
+    text = read("-probes", "p06, surface, mine", "-probe_mine_at", "0.3 m, 0.01 m")
+    check_true("a probe from the command line", "probes: [p06, surface, mine]" in text and "at: [0.3 m, 0.01 m]" in text)
+
+
+def main():
+    check_words()
+    check_limit()
+    check_checkpoints()
+    check_progress()
+    check_folder()
+    check_advice()
+    finish()
+
+
+main()

@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+"""scripts/sweep.py and scripts/compare.py: every combination once, resumed where it was ended, in one table; differences as they are."""
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import ROOT, binary, check, check_true, finish, scratch  # noqa: E402
+
+import clathra  # noqa: E402
+import compare  # noqa: E402
+import sweep  # noqa: E402
+
+FIXED = ("-stepper_adapt", "no", "-stepper_dt", "100 s", "-time_end", "600 s", "-output_times", "600 s", "-output_probe_every", "100 s")
+KEYS = ("mat_clay_permeability_k0=1e-15 m^2,1e-14 m^2", "grid_cells=8,1|16,1")
+
+
+def call(script, *arguments):
+    done = subprocess.run([sys.executable, ROOT / "scripts" / script, *map(str, arguments)], capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+def check_sweep(out):
+    code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED, "-stepper_max_steps", "2")
+    check_true("a sweep that is ended after two steps", code == 0 and not any(sweep.finished(f) for f in out.iterdir() if f.is_dir()), said[-200:])
+    code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED)
+    with open(out / "sweep.csv", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    check_true("one row a combination", code == 0 and [(r["mat_clay_permeability_k0"], r["grid_cells"]) for r in rows] == [
+        (k, g) for k in ("1e-15 m^2", "1e-14 m^2") for g in ("8,1", "16,1")], said[-300:])  # fmt: skip
+    folders = sorted(f for f in out.iterdir() if f.is_dir())
+    check_true("all went on from their checkpoints to their end", len(folders) == 4 and all(
+        clathra.Run(f).finished and "-restart" in clathra.Run(f).log and len(clathra.Run(f).balance["step"]) == 6 for f in folders))  # fmt: skip
+    last = [clathra.Run(out / sweep.SAFE.sub("_", f"mat_clay_permeability_k0={r['mat_clay_permeability_k0']},grid_cells={r['grid_cells']}")).probes["base.p_Pa"][-1]
+            for r in rows]  # fmt: skip
+    check("the table's values are the runs' last ones", np.max(np.abs(np.array([float(r["base.p_Pa"]) for r in rows]) - last)), 0.0)
+    check_true("which differ between the rows", len(set(last)) == 4 and (out / "sweep.png").is_file())
+    before = [(f / "balance.csv").stat().st_mtime_ns for f in folders]
+    code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED)
+    check_true("what has finished is not run again", said.count("finished before") == 4 and before == [(f / "balance.csv").stat().st_mtime_ns for f in folders])
+    code, said = call("sweep.py", "terzaghi", "mat_clay_porosity=0.4,1.4", "--out", out / "bad", "--program", binary(), "--", *FIXED)
+    check_true("a wrong value costs its own run only", code == 2 and "exit code 0" in said and "mat_clay_porosity = '1.4'" in said, said[-300:])
+    return folders
+
+
+def check_compare(folders, out):
+    code, said = call("compare.py", folders[0], folders[2], "--out", out)
+    check_true("compare.py", code == 0 and (out / "compare.png").is_file(), said[-300:])
+    lines = [line.split() for line in said.splitlines()]
+    a, b = (clathra.Run(f).probes["base.p_Pa"] for f in (folders[0], folders[2]))
+    row = next(w for w in lines if w and w[0] == "base.p_Pa")
+    check("the largest difference of a column", abs(float(row[1]) - np.max(np.abs(a - b))) / np.max(np.abs(a - b)), 1e-3)
+    at = int(np.argmax(np.abs(a - b)))
+    check("and its time, s", abs(float(row[3]) - clathra.Run(folders[0]).probes["time_s"][at]), 0.0)
+    key = [w for w in lines if w and w[0].startswith(("mat_", "grid_", "bc_")) and "=" not in w[0]]
+    check_true("the one key in which they differ", [w[0] for w in key] == ["mat_clay_permeability_k0"], key)
+    check_true("a run against itself", not compare.largest(clathra.Run(folders[0]), clathra.Run(folders[0])))
+    code, said = call("compare.py", folders[0], out / "nothing")
+    check_true("what is no run is named", code == 2 and "nothing holds no run" in said, said[-200:])
+
+
+def main():
+    out = scratch()
+    check_compare(check_sweep(out / "sweep"), out)
+    finish()
+
+
+main()
