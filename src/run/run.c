@@ -398,7 +398,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
   run.quiet = quiet;
-  PetscCall(LogStart(comm));
   PetscCall(WatchStart(comm, &run.watch, &ok));
   if (!ok) {
     *exit_code = CL_EXIT_INPUT;
@@ -413,6 +412,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(LogStart(comm)); /* until LogEnd, which every way out from here passes */
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
