@@ -38,6 +38,7 @@ stepper: {{type: hybrid}}
 output: {{probe_every: 10 s}}
 """
 GAS = """
+    gas: {eos: ideal}
     retention: {law: van_genuchten, p0: 50 kPa, m: 0.3, Swr: 0.2, Sgr: 0.4}
     relperm: {nw: 4, ng: 2}
     kinetics: {active: yes, K0: 2.5e-7 mol/(m^2 Pa s), dE: 0 J/mol, A_geo: 1e6 1/m, equilibrium: sloan, A1: 1 kPa, A2: 38.98, A3: 8533.8 K}

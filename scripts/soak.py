@@ -1,30 +1,40 @@
 #!/usr/bin/python3
-"""Random scenes and mutated cases, by the thousand: soak.py [--scenes N] [--cases N] [--seed S] [--limit SECONDS] ...
+"""Random scenes and mutated cases, by the thousand: soak.py [--scenes N] [--cases N] [--seed S] [--record FILE] ...
 
 Scenes are admissible ones drawn at random: fields, properties, saturations, loads, integrators, bases, geometry, gravity,
 regions, ranks.  Each is run for a few steps under a time limit and falls into one class:
 
-  finished   refused (exit code 2, a sentence)   given up (3, a reason)
+  finished   refused (exit code 2, a sentence)   given up (3, a reason)   slow (still stepping after the limit)
   hang   crash   NaN   balance (above 1e-10)   silent (an end without a sentence)
   ranks (1 against 2 differ)   pair (implicit against hybrid differ, where both can)
+  company (went wrong after other scenes in the same process, but not alone)
 
-Mutated cases are the cases of the tree changed by grammar: values, units, keys, lines, brackets; they are read and
-checked, and some of those that are valid run.  Whatever is not finished, refused or given up leaves a folder with the
-case, the command and what was said (--keep).  The same seed makes the same scenes and cases.
+They run one after another in a few processes (tests/soak/many.c), for a start costs more than a scene; what goes wrong
+is run once more by the program itself, alone.  Mutated cases are the cases of the tree changed by grammar: values,
+units, keys, lines, brackets; they are read and checked, and some of those that are valid run.  Whatever is not
+finished, refused or given up leaves a folder with the case, the command and what was said (--keep).  The same seed
+makes the same scenes and cases.  --record adds the counts to a file, from where --table makes one table of all of
+them: runs of any length add up.
 """
 import argparse
 import collections
 import concurrent.futures
+import json
 import math
 import os
 import random
 import re
+import select
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import threading
+import time
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -35,10 +45,13 @@ ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                "OMPI_MCA_mpi_yield_when_idle": "1"}  # fmt: skip
-GOOD = ("finished", "refused", "given up")
+MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+GOOD = ("finished", "refused", "given up", "slow")
 BALANCE = 1e-10
 RANKS = 1e-6  # of the largest change
-PAIR = 0.5  # of the largest change: another order in time, the same physics
+PAIR = 0.5  # of the mean change: another order in time, the same physics
+KINDS = {"pressure, stress": ("p_w", "p_g", "stress"), "temperature": ("T",), "saturation": ("S_h", "S_w"), "displacement": ("displacement",)}
+FLOOR = {"pressure, stress": 1e4, "temperature": 0.1, "saturation": 1e-3, "displacement": 1e-5}  # Pa, K, 1, 1: smaller changes are as good as none
 
 
 # ---------------------------------------------------------------------------------------- random scenes
@@ -115,6 +128,13 @@ def boundaries(r, box, fluid, gas, heat, p, T, t_end, smooth):
     return bc
 
 
+def travels(r, text, slow, h, size):
+    """Time (s) in which the slowest wave crosses the body some times, so that a load that grows slowly leaves a state
+    that any integrator must reach; at most a few thousand steps of the fastest."""
+    c = min(math.sqrt(float(E) / 2500) for E in re.findall(r"E0: (\S+) Pa", text)) if slow else 1000.0
+    return min(r.uniform(5, 15) * size / c, h)
+
+
 def scene(seed):
     """(text of the case, facts) of the scene with this number."""
     r = random.Random(f"scene {seed}")
@@ -126,7 +146,7 @@ def scene(seed):
     integrator = r.choices(["sdirk2", "euler", "hybrid", "explicit", "auto"], [40, 20, 25, 5, 10])[0]
     if axisymmetric and integrator in ("hybrid", "explicit"):
         integrator = "sdirk2"
-    pair = integrator == "hybrid" and r.random() < 0.3
+    pair = integrator == "hybrid" and r.random() < 0.1
     h = log_uniform(r, 0.01, 2)
     cells = r.randint(2, 8), r.randint(2, 8)
     x0, y0 = (0.0, 0.0) if r.random() < 0.7 else (round(r.uniform(0, 3), 2), round(r.uniform(-5, 5), 2))
@@ -145,6 +165,8 @@ def scene(seed):
         text, swr, sgr = material(r, fluid, gas, heat, hydrate)
         residual.append((swr, sgr))
         lines.append(f"  m{k}: {text}")
+    if pair:
+        t_end = travels(r, "".join(lines), gas or not fluid, h, max(cells) * h)
     gravity = fluid and r.random() < 0.3
     water = ", hydrostatic: yes, datum: %r m" % box[1][1] if gravity and fluid else ""
     lines += [f"regions: [{', '.join(f'r{k}' for k in range(layers))}]", "region:"]
@@ -170,37 +192,123 @@ def scene(seed):
         lines.append("pressures: one")
     middle = [0.5 * (a + b) for a, b in zip(*box)]
     lines += ["probes: [middle, top]", f"probe: {{middle: {{at: [{middle[0]!r} m, {middle[1]!r} m]}}, top: {{at: [{middle[0]!r} m, {box[1][1]!r} m]}}}}"]
-    return "\n".join(lines) + "\n", {"integrator": integrator, "ranks": r.choices([1, 2], [85, 15])[0],
-                                     "both": r.random() < 0.1, "pair": pair and basis != "linear"}  # fmt: skip
+    return "\n".join(lines) + "\n", {"integrator": integrator, "ranks": r.choices([1, 2], [92, 8])[0],
+                                     "both": r.random() < 0.06, "pair": pair and basis != "linear"}  # fmt: skip
 
 
 # ---------------------------------------------------------------------------------------- running and judging
+class Server:
+    """tests/soak/many.c on some ranks: cases one after another in one process, as long as it lives."""
+
+    def __init__(self, program, ranks):
+        command = [str(program)] if ranks == 1 else ["mpiexec", "-n", str(ranks), str(program)]
+        alone = {"OMPI_MCA_ess_singleton_isolated": "1"} if ranks == 1 else {}
+        self.job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT, **alone}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                    stderr=subprocess.STDOUT, start_new_session=True)  # fmt: skip
+        self.left = 100  # a new process now and then: what one leaks is not the other's
+
+    def run(self, words, limit):
+        """(exit code, what was said); None: not done within the limit (s)."""
+        said, until = b"", time.monotonic() + limit
+        self.left -= 1
+        try:
+            self.job.stdin.write(" ".join(map(str, words)).encode() + b"\n")
+            self.job.stdin.flush()
+        except BrokenPipeError:
+            pass  # read what it said, below
+        while not (mark := re.search(rb"\x01(\d+)\n", said)):
+            left = until - time.monotonic()
+            ready = left > 0 and select.select([self.job.stdout], [], [], left)[0]
+            more = os.read(self.job.stdout.fileno(), 65536) if ready else b""
+            said += more
+            if not more:
+                self.left = 0
+                return (self.job.wait() if ready else None), said.decode(errors="replace")
+        if mark[1] == b"1":
+            self.left = 0  # what an error of PETSc left behind is no place to go on from
+        return int(mark[1]), said[: mark.start()].decode(errors="replace")
+
+    def end(self):
+        self.job.stdin.close()
+        try:
+            self.job.wait(0 if self.left == 0 else 30)
+        except subprocess.TimeoutExpired:
+            self.job.terminate()  # mpiexec takes its ranks along
+            try:
+                self.job.wait(10)
+            except subprocess.TimeoutExpired:
+                os.killpg(self.job.pid, signal.SIGKILL)
+                self.job.wait()
+
+
 class Soak:
     def __init__(self, args):
-        self.program, self.limit, self.keep, self.steps = str(args.program), args.limit, Path(args.keep), args.steps
+        self.program, self.many, self.limit, self.keep, self.steps = str(args.program), args.many, args.limit, Path(args.keep), args.steps
+        self.mine, self.servers = threading.local(), []
+
+    def close(self):
+        for server in self.servers:
+            if server.job.poll() is None:
+                server.end()
+
+    def words(self, case, out, options):
+        return [str(case), "-quiet", "-stepper_max_steps", str(self.steps), *options, "-output_dir", str(out)]
+
+    def serve(self, words, ranks=1):
+        """(exit code, what was said) of a run in this thread's process for so many ranks."""
+        mine = self.mine.__dict__.setdefault("servers", {})
+        if ranks in mine and mine[ranks].left <= 0:
+            mine.pop(ranks).end()
+        if ranks not in mine:
+            mine[ranks] = Server(self.many, ranks)
+            self.servers.append(mine[ranks])
+        return mine[ranks].run(words, self.limit * ranks)
 
     def run(self, case, out, *options, ranks=1):
-        command = [self.program, str(case), "-quiet", "-stepper_max_steps", str(self.steps), *options, "-output_dir", str(out)]
+        return self.serve(self.words(case, out, options), ranks)
+
+    def alone(self, case, out, *options, ranks=1):
+        """A run by the program itself, in a process of its own."""
+        command = [self.program, *self.words(case, out, options)]
         if ranks > 1:
             command = ["mpiexec", "-n", str(ranks), *command]
         job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)  # fmt: skip
         try:
-            text = job.communicate(timeout=self.limit * ranks)[0]
+            text = job.communicate(timeout=2 * self.limit * ranks)[0]
         except subprocess.TimeoutExpired:
-            os.killpg(job.pid, 9)  # its own group
-            return None, job.communicate()[0]
+            job.send_signal(signal.SIGUSR1)  # asks for the end after the step: what still steps does not hang
+            try:
+                text = job.communicate(timeout=self.limit)[0]
+            except subprocess.TimeoutExpired:
+                job.terminate()
+                time.sleep(1)
+                os.killpg(job.pid, signal.SIGKILL)  # its own group
+                return None, job.communicate()[0]
         return job.returncode, text
+
+    def judged(self, case, out, *options, ranks=1):
+        """Class and note of a run; what went wrong is run once more, alone."""
+        kind, note = self.judge(*self.run(case, out, *options, ranks=ranks), out)
+        if kind in GOOD:
+            return kind, note
+        out, begin = out.with_name(f"{out.name}-alone"), time.monotonic()
+        again, said = self.judge(*self.alone(case, out, *options, ranks=ranks), out)
+        if again not in GOOD or (kind == "hang" and time.monotonic() - begin > 0.5 * self.limit * ranks):
+            return again, said  # a machine that is busy makes any run slow
+        return "company", f"{kind} after other cases in one process, {again} alone: {note}"
 
     def judge(self, code, text, out):
         """Class and note of one run."""
         if code is None:
-            return "hang", text[-200:]
+            return "hang", text[-600:]
+        if code == 4:
+            return "slow", ""
         if code not in (0, 2, 3) or "PETSC ERROR" in text or "Sanitizer" in text or "HDF5-DIAG" in text:
-            return "crash", f"exit code {code}: {text[-200:]}"
+            return "crash", f"exit code {code}: {text[-600:]}"
         if code == 2:
             said = [s for s in text.splitlines() if ": " in s]
-            return ("refused", re.sub(r"\S*case\.yaml:\d*:? ?", "", said[0])) if said else ("silent", text[-200:])
+            return ("refused", re.sub(r"\S*case\.yaml:\d*:? ?", "", said[0])) if said else ("silent", text[-600:])
         bad = numbers(out)
         if bad:
             return "NaN", bad
@@ -210,48 +318,48 @@ class Soak:
         if code == 0:
             return "finished", ""
         reason = [s for s in text.splitlines() if s.startswith(("Given up", "t = ")) and ("Given up" in s or "no smaller" in s)]
-        return ("given up", reason[-1]) if reason else ("silent", text[-200:])
+        return ("given up", reason[-1]) if reason else ("silent", text[-600:])
 
     def scene(self, seed):
         text, facts = scene(seed)
-        folder = Path(tempfile.mkdtemp(prefix="soak-"))
-        case, out = folder / "case.yaml", folder / "out"
+        folder = Path(tempfile.mkdtemp(prefix="soak-", dir=MEMORY))
+        case = folder / "case.yaml"
         case.write_text(text)
-        kind, note = self.judge(*self.run(case, out, ranks=facts["ranks"]), out)
-        if kind == "finished" and facts["both"]:
-            kind, note = self.compare(case, folder, "ranks", RANKS, ("-stepper_adapt", "no"), (("1", 1, ()), ("2", 2, ())))
-        elif kind == "finished" and facts["pair"]:
-            kind, note = self.compare(case, folder, "pair", PAIR, ("-stepper_max_steps", "100000"),
-                                      (("hybrid", 1, ()), ("sdirk2", 1, ("-stepper_type", "sdirk2", "-stepper_tol", "1e-4"))))  # fmt: skip
+        found = self.compare_ranks(case, folder) if facts["both"] else None
+        kind, note = found or self.judged(case, folder / "out", ranks=facts["ranks"])
+        if kind == "finished" and facts["pair"]:
+            kind, note = self.compare_pair(case, folder) or (kind, note)
         self.end(folder, kind, f"scene {seed} ({facts['integrator']}, {facts['ranks']} ranks)", note)
         return kind, facts["integrator"], note, seed
 
-    def compare(self, case, folder, kind, bar, options, two):
-        """Runs a scene twice, with fixed steps where that is asked for, and compares the last rows of its probes."""
-        if "-stepper_adapt" in options:
-            end = float(re.search(r"end: (\S+) s", case.read_text())[1])
-            hybrid = re.search(r"type: (hybrid|explicit|auto)", case.read_text())
-            options = ("-newton_tol_update", "1e-9", "-ksp_rtol", "1e-9") + (() if hybrid else (*options, "-stepper_dt", f"{end / 100:.6g} s"))
-        rows = []
-        for name, ranks, more in two:
-            code, text = self.run(case, folder / name, *options, *more, ranks=ranks)
-            if code != 0:
-                if code is None or code not in (0, 2, 3):
-                    return self.judge(code, text, folder / name)
-                return "finished", ""  # one of them gives up: said, and counted elsewhere
-            rows.append(read_csv(folder / name / "probes.csv"))
-        worst, where = 0.0, ""
-        for column in rows[0]:
-            if kind == "pair" and column.startswith("top."):
-                continue  # at the edge the two differ by what a cell does not resolve
-            a, b = rows[0][column], rows[1][column]
-            if column == "time_s" and not math.isclose(a[-1], b[-1], rel_tol=1e-6):
-                return "finished", ""  # stopped at -stepper_max_steps at different times
-            floor = {"Pa": 1e-4 * max(1e5, abs(a[0])), "C": 1e-2, "m": 1e-4}.get(column.rsplit("_", 1)[-1][-2:].strip("g"), 1e-3)
-            change = max(np.ptp(a), np.ptp(b), floor)
-            if abs(a[-1] - b[-1]) / change > worst:
-                worst, where = abs(a[-1] - b[-1]) / change, column
-        return (kind, f"{where}: {worst:.2g} of its largest change") if worst > bar else ("finished", "")
+    def compare_ranks(self, case, folder):
+        """1 rank against 2, implicit runs with fixed steps, lest round-off choose another step; None: one of them gives up."""
+        text = case.read_text()
+        end = float(re.search(r"end: (\S+) s", text)[1])
+        fixed = () if re.search(r"type: (hybrid|explicit|auto)", text) else ("-stepper_adapt", "no", "-stepper_dt", f"{end / 100:.6g} s")
+        options = ("-newton_tol_update", "1e-9", "-ksp_rtol", "1e-9", *fixed)
+        return self.compare(case, folder, "ranks", RANKS, (("1", 1, options), ("2", 2, options)))
+
+    def compare_pair(self, case, folder):
+        """hybrid against sdirk2; None: one of them gives up."""
+        implicit = ("-stepper_max_steps", "400", "-stepper_type", "sdirk2", "-stepper_tol", "1e-3")
+        return self.compare(case, folder, "pair", PAIR, (("hybrid", 1, ("-stepper_max_steps", "100000")), ("sdirk2", 1, implicit)))
+
+    def compare(self, case, folder, kind, bar, two):
+        """Class and note of two runs of a scene that ought to end the same, from all particles at their end."""
+        ends = []
+        for name, ranks, options in two:
+            found, note = self.judged(case, folder / name, *options, ranks=ranks)
+            if found != "finished":
+                return None if found in GOOD else (found, note)
+            ends.append(changes(folder / name))
+        (t, a), (t_b, b) = ends
+        if not math.isclose(t, t_b, rel_tol=1e-6):
+            return "finished", ""  # stopped at -stepper_max_steps at different times
+        size = np.max if kind == "ranks" else lambda v: math.sqrt(np.mean(v**2))
+        worst, where = max((size(abs(a[k] - b[k])) / max(size(abs(a[k])), size(abs(b[k])), FLOOR[k]), k) for k in a)
+        note = f"{where}: {worst:.2g} of {'its largest change' if kind == 'ranks' else 'the mean change'}"
+        return (kind, note) if worst > bar else ("finished", note)
 
     def end(self, folder, kind, what, note):
         if kind not in GOOD or os.environ.get("SOAK_KEEP") == kind:
@@ -262,6 +370,26 @@ class Soak:
             shutil.rmtree(folder, ignore_errors=True)
 
 
+def last_state(out):
+    """{group/name: array} of the checkpoint, which holds all that a run goes on from; particles in order of their id."""
+    with h5py.File(out / "checkpoint.h5", "r") as file:
+        found = {f"{g}/{k}": file[g][k][()] for g in ("state", "particles") for k in file[g]}
+    order = np.argsort(found["particles/id"], kind="stable")
+    return {k: v[order] if k.startswith("particles/") else v for k, v in found.items()}
+
+
+def changes(out):
+    """(time (s), {kind: (values,) array}): what the run changed, over all particles; strains for displacements."""
+    end, start = last_state(out), read_snapshots(out)[0][1]
+    size = np.ptp(end["particles/initial_position"], axis=0).max()
+    found = {}
+    for kind, names in KINDS.items():
+        parts = [(end[f"particles/{n}"].reshape(len(start["id"]), -1) - start[n]).ravel() for n in names if n in start]
+        if parts:
+            found[kind] = np.concatenate(parts) / (size if kind == "displacement" else 1.0)
+    return float(end["state/t"][0]), found
+
+
 def numbers(out):
     """Where a file of the run holds something that is not finite; "" if nowhere."""
     for name in ("probes.csv", "balance.csv"):
@@ -270,10 +398,10 @@ def numbers(out):
         for column, values in read_csv(out / name).items():
             if not np.all(np.isfinite(values)):
                 return f"{name}: {column}"
-    for t, variables in read_snapshots(out):
+    for t, variables in (*read_snapshots(out), ("the end", last_state(out))):
         for name, values in variables.items():
             if np.ndim(values) and not np.all(np.isfinite(values)):
-                return f"fields.h5: {name} at {t:g} s"
+                return f"{name} at {t} s"
     return ""
 
 
@@ -350,123 +478,140 @@ def mutated(seed, keys, bases):
     return text
 
 
-def read_batch(reader, folder, seeds, texts, limit):
-    """[(seed, code, what was said)]; a process that dies or hangs loses only the case it was at."""
-    results, at = [], 0
-    for seed, text in zip(seeds, texts):
-        (folder / f"{seed}.yaml").write_text(text, encoding="utf-8", errors="replace")
-    while at < len(seeds):
-        paths = "".join(f"{folder / f'{s}.yaml'}\n" for s in seeds[at:])
-        job = subprocess.Popen([str(reader)], env={**os.environ, **ENVIRONMENT}, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.PIPE, text=True, errors="replace")  # fmt: skip
-        try:
-            said, code = job.communicate(paths, timeout=limit * 10)[1], job.returncode
-        except subprocess.TimeoutExpired:
-            job.kill()
-            said, code = job.communicate()[1], None
-        *done, rest = re.split(r"\x01(\d)\n", said)
-        for text, mark in zip(done[::2], done[1::2]):
-            results.append((seeds[at], int(mark), text))
-            at += 1
-        if at < len(seeds):
-            results.append((seeds[at], code, rest))
-            at += 1
-    return results
+def check_mutated(soak, seed, text, share):
+    """[class] of a mutated case that is read and checked, and of its run if it is valid and drawn."""
+    folder = Path(tempfile.mkdtemp(prefix="soak-", dir=MEMORY))
+    case = folder / "case.yaml"
+    case.write_text(text, encoding="utf-8", errors="replace")
+    code, said = soak.serve([case, "-case_check"])
+    kind = {0: "valid", 2: "refused", None: "hang"}.get(code, "crash")
+    if kind == "refused" and not re.search(r"\.yaml(:\d+)?: .", said) or "runtime error" in said:
+        kind = "silent"
+    found, note = [kind], f"exit code {code}: {said}"
+    if kind == "valid" and random.Random(f"run {seed}").random() < share:
+        kind, note = soak.judged(case, folder / "out", "-stepper_max_steps", "3")
+        found.append(f"run: {kind}")
+    soak.end(folder, "finished" if kind == "valid" else kind, f"mutated case {seed}", note)
+    return found
 
 
 def soak_cases(soak, args):
     listing = subprocess.run([soak.program, "-case_keys"], capture_output=True, text=True, env={**os.environ, **ENVIRONMENT}).stdout
     keys = re.findall(r"^\| `([^`]+)`", listing, re.M)
     bases = [p.read_text() for p in sorted([*ROOT.glob("cases/*/case.yaml"), *ROOT.glob("tests/*/cases/*.yaml")])]
-    count, runnable = collections.Counter(), []
-    size = 250
-
-    def batch(first):
-        seeds = list(range(first, min(first + size, args.seed + args.cases)))
-        folder = Path(tempfile.mkdtemp(prefix="soak-cases-"))
-        texts = [mutated(s, keys, bases) for s in seeds]
-        found = read_batch(args.reader, folder, seeds, texts, soak.limit)
-        shutil.rmtree(folder)
-        return [(s, c, said, t) for (s, c, said), t in zip(found, texts)]
-
+    count = collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
-        for found in pool.map(batch, range(args.seed, args.seed + args.cases, size)):
-            for seed, code, said, text in found:
-                kind = {0: "valid", 2: "refused", None: "hang"}.get(code, "crash")
-                if kind == "refused" and not re.search(r"\.yaml(:\d+)?: .", said) or "runtime error" in said:
-                    kind = "silent"
-                count[kind] += 1
-                if kind == "valid" and random.Random(f"run {seed}").random() < args.run_valid:
-                    runnable.append((seed, text))
-                elif kind not in ("valid", "refused"):
-                    keep(soak, kind, text, f"case {seed}: {code}", said)
-        for kind in pool.map(lambda item: run_mutated(soak, *item), runnable):
-            count[f"run: {kind}"] += 1
+        for kinds in pool.map(lambda s: check_mutated(soak, s, mutated(s, keys, bases), args.run_valid), range(args.seed, args.seed + args.cases)):
+            count.update(kinds)
     return count
-
-
-def keep(soak, kind, text, what, note):
-    folder = Path(tempfile.mkdtemp(prefix="soak-"))
-    (folder / "case.yaml").write_text(text, encoding="utf-8", errors="replace")
-    soak.end(folder, kind, what, note)
-
-
-def run_mutated(soak, seed, text):
-    folder = Path(tempfile.mkdtemp(prefix="soak-"))
-    (folder / "case.yaml").write_text(text, encoding="utf-8", errors="replace")
-    code, said = soak.run(folder / "case.yaml", folder / "out", "-stepper_max_steps", "3")
-    kind, note = soak.judge(code, said, folder / "out")
-    soak.end(folder, kind, f"mutated case {seed}, run", note)
-    return kind
 
 
 # ---------------------------------------------------------------------------------------- the whole
 def soak_scenes(soak, args):
-    count, by, reasons = collections.Counter(), collections.Counter(), collections.Counter()
+    """{integrator: {class: number}}, {reason: number}"""
+    by, reasons = collections.defaultdict(collections.Counter), collections.Counter()
     with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
         for kind, integrator, note, seed in pool.map(soak.scene, range(args.seed, args.seed + args.scenes)):
-            count[kind] += 1
-            by[integrator, kind] += 1
+            by[integrator][kind] += 1
             if kind != "finished":
                 reasons[f"{kind}: {re.sub(r'[-+]?[0-9.]+(e[-+]?[0-9]+)?', '#', note)[:110]}"] += 1
             if args.verbose and kind != "finished":
                 print(f"scene {seed} ({integrator}): {kind}: {note}", flush=True)
-    return count, by, reasons
+    return by, reasons
+
+
+def words(count):
+    return ", ".join(f"{n} {k}" for k, n in count.most_common())
+
+
+def wrong(count):
+    return sum(n for k, n in count.items() if k.removeprefix("run: ") not in (*GOOD, "valid"))
+
+
+def commit():
+    done = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    return done.stdout.strip() if done.returncode == 0 else "unknown"
+
+
+def read_record(path):
+    return [json.loads(line) for line in Path(path).read_text().splitlines()] if Path(path).is_file() else []
+
+
+def next_seed(record, kind):
+    return max((e["seed"] + e[kind] for e in record if kind in e), default=1)
+
+
+COLUMNS = {"finished": "finished", "refused": "refused", "given up": "given up with a reason", "slow": "still stepping after the time limit", "hang": "hang", "crash": "crash", "NaN": "NaN",
+           "balance": "balance above 1e-10", "silent": "end without a sentence", "company": "only after others in one process",
+           "ranks": "1 rank against 2", "pair": "implicit against hybrid"}  # fmt: skip
+
+
+def table(record):
+    """What the record holds, all slices together, as a page's tables."""
+    by, cases, n, m = collections.defaultdict(collections.Counter), collections.Counter(), 0, 0
+    for e in record:
+        for name, count in e.get("by", {}).items():
+            by[name].update(count)
+        cases.update(e.get("count", {}))
+        n, m = n + e.get("scenes", 0), m + e.get("cases", 0)
+    whole = sum(by.values(), collections.Counter())
+    lines = [f"| {n} scenes | {' | '.join(COLUMNS.values())} |", "|---" * (len(COLUMNS) + 1) + "|"]
+    for name, count in (*sorted(by.items()), ("all", whole)):
+        lines.append(f"| {name} | {' | '.join(str(count[k]) for k in COLUMNS)} |")
+    kinds = sorted(cases, key=lambda k: (k.startswith("run: "), -cases[k]))
+    return "\n".join([*lines, "", f"{m} mutated cases: " + ", ".join(f"{cases[k]} {k}" for k in kinds) + "."])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", nargs="?", default=ROOT / "build" / "clathra")
-    parser.add_argument("--reader", help="read_many beside the tests", default=None)
+    parser.add_argument("--many", help="soak_many, beside the tests", default=None)
     parser.add_argument("--scenes", type=int, default=100)
     parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=None, help="default: 1, or where the record ends")
     parser.add_argument("--limit", type=float, default=60.0, help="seconds a run may take")
     parser.add_argument("--steps", type=int, default=40, help="steps (bursts of hybrid) of a scene at most")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--run-valid", type=float, default=0.01, help="share of the valid mutated cases that is run")
     parser.add_argument("--keep", default="results/soak", help="folder for what goes wrong")
+    parser.add_argument("--record", help="file to which the counts of this slice are added, a line each")
+    parser.add_argument("--table", action="store_true", help="print what the record holds, and do nothing else")
     parser.add_argument("--verbose", action="store_true")
     args = parser.parse_args()
+    record = read_record(args.record) if args.record else []
+    if args.table:
+        print(table(record))
+        return 0
     args.program = Path(args.program).resolve()
-    args.reader = Path(args.reader or args.program.parent / "tests" / "read_many").resolve()
-    soak = Soak(args)
-    wrong = 0
+    args.many = Path(args.many or args.program.parent / "tests" / "soak_many").resolve()
+    seed, soak, bad = args.seed, Soak(args), 0
+
+    def note(**entry):
+        if args.record:
+            with open(args.record, "a") as file:
+                file.write(json.dumps({"commit": commit(), "seed": args.seed, **entry}) + "\n")
+
     if args.scenes:
-        count, by, reasons = soak_scenes(soak, args)
-        print(f"{args.scenes} scenes from {args.seed}: " + ", ".join(f"{n} {k}" for k, n in count.most_common()))
-        for name in sorted({i for i, _ in by}):
-            print(f"  {name}: " + ", ".join(f"{n} {k}" for (i, k), n in sorted(by.items()) if i == name))
+        args.seed = next_seed(record, "scenes") if seed is None else seed
+        by, reasons = soak_scenes(soak, args)
+        count = sum(by.values(), collections.Counter())
+        note(scenes=args.scenes, steps=args.steps, by=by, reasons=reasons)
+        print(f"{args.scenes} scenes from {args.seed}: {words(count)}")
+        for name in sorted(by):
+            print(f"  {name}: {words(by[name])}")
         for reason, n in reasons.most_common(15):
             print(f"  {n:5d} {reason}")
-        wrong += sum(n for k, n in count.items() if k not in GOOD)
+        bad += wrong(count)
     if args.cases:
+        args.seed = next_seed(record, "cases") if seed is None else seed
         count = soak_cases(soak, args)
-        print(f"{args.cases} mutated cases from {args.seed}: " + ", ".join(f"{n} {k}" for k, n in count.most_common()))
-        wrong += sum(n for k, n in count.items() if k.removeprefix("run: ") not in (*GOOD, "valid"))
-    if wrong:
-        print(f"{wrong} went wrong; see {args.keep}")
-    return 1 if wrong else 0
+        note(cases=args.cases, count=count)
+        print(f"{args.cases} mutated cases from {args.seed}: {words(count)}")
+        bad += wrong(count)
+    soak.close()
+    if bad:
+        print(f"{bad} went wrong; see {args.keep}")
+    return 1 if bad else 0
 
 
 if __name__ == "__main__":

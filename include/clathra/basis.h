@@ -85,9 +85,10 @@ void BasisHat(double x, double lower, double h, Axis *a);
 /* Where a linear function takes the weights' value, m: the particle's centre, about an axis the ring's centroid. */
 double AxisCentroid(const Axis *a, double lower, double h);
 
-/* (88): a node's weights Q in the mean volume change of a cell, 1/m; i: place of the node from the cell's lower left
-   one on (others: zero); r: radius of that one, m (used about an axis only). */
-void CellDilatation(const Grid *g, bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
+/* (160): a node's weights Q in the mean gradient over a cell, 1/m, and the hoop's, which is returned (0 in the plane);
+   i: place of the node from the cell's lower left one on (others: zero); r: radius of that one, m (used about an axis
+   only). */
+double CellGradient(const Grid *g, bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
 
 /* Local active numbers of the nodes, their weights and gradients, and about an axis (r > 0) H, the weights of u_r/r;
    returns how many (nodes of zero weight and gradient are left out). */

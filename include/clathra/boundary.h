@@ -53,10 +53,16 @@ double FaceRing(const Case *c, const Grid *g, double r, double l, double penalty
    at x (m); 0 where none is. */
 double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t);
 
+/* A warning, on rank 0, where the surface cuts cells whose mean motion strains the particles (88), (160).  Collective.
+ */
+PetscErrorCode CellMeansWarning(const Grid *g, const Case *c, const Particles *P);
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */
 PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
-/* Warnings about a start out of balance with gravity, on rank 0.  Collective. */
+#define CL_ADVICE 400
+/* Where pore pressure above the stiffness of the skeleton is held by tractions: what to do instead; else empty. */
+PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE]);
+/* Warnings about a start out of balance with gravity, or in it by tractions alone, on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
 
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the

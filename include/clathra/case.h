@@ -162,6 +162,7 @@ typedef struct Case {
   double    gravity[CL_DIM];                 /* m/s^2 */
   double    gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
   bool      mean_dilatation;                 /* volume change of the cell, not of the particle's own place (88) */
+  double    mean_strain;                     /* share of the cell's mean in a particle's strain (160) */
   double    strength_factor;                 /* all strength is divided by it (87) */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */
@@ -193,7 +194,7 @@ typedef struct Case {
   double relaxation;   /* s: pressures and temperature of particles tend to those of the nodes; INFINITY: never */
   double damping;      /* local damping */
   double mass_scaling; /* factor on inertia */
-  bool   tied;         /* nearly empty nodes follow their fullest neighbour in part */
+  bool   tied;         /* p, T of nearly empty nodes follow their fullest neighbour in part */
   bool   bare;         /* rates of pressure by the particle (the paper's form), not shared over nodes */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */

@@ -95,11 +95,19 @@ typedef struct {
   double beta; /* volumetric thermal expansion, 1/K */
   double p_ref, T_ref;
 } Liquid; /* rho = rho0 exp((p - p_ref)/K - beta (T - T_ref)); also solid and hydrate, with K infinite */
-double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT);
-typedef struct {
-  double M; /* kg/mol */
-} Gas;
-double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT); /* ideal: M p/(R T_K) */
+double             LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT);
+typedef struct Gas Gas;
+struct Gas {
+  double M;         /* kg/mol */
+  double Tc, pc;    /* critical temperature, K, and pressure, Pa; peng_robinson */
+  double eccentric; /* acentric factor; peng_robinson */
+  /* of n states p (Pa), T (degC): rho, d rho/dp, d rho/dT; nothing may overlap.  NULL: ideal */
+  void (*density)(const Gas *, int n, const double *p, const double *T, double *rho, double *drho_dp, double *drho_dT);
+  const char *type;
+};
+bool               GasSetType(Gas *law, const char *type); /* peng_robinson | ideal (M p/(R T_K)) */
+const char *const *GasTypes(void);
+double             GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
 
 /* ---------------------------------------------------------------- heat */
 /* Latent heat of dissociation per kg of hydrate, C0 - C1 T_K, J/kg. */

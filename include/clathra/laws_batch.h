@@ -10,4 +10,7 @@ void RelPermWaterBatch(const RelPerm *law, int n, const double *sw, double *kr);
 void RelPermGasBatch(const RelPerm *law, int n, const double *sg, double *kr);
 void PermeabilityBatch(const Permeability *law, int n, const double *phi, const double *Sh, double *k);
 void LiquidDensityBatch(const Liquid *law, int n, const double *p, const double *T, double *rho);
+/* The gas has this form alone; GasDensity is it for one state. */
+void GasDensityBatch(const Gas *law, int n, const double *p, const double *T, double *rho, double *drho_dp,
+                     double *drho_dT);
 void ElasticityYoungBatch(const Elasticity *law, int n, const double *Sh, double *E);

@@ -194,7 +194,6 @@ typedef struct {
   double gas;                            /* free gas, kg */
   double V;
   double capacity; /* J/K */
-  double kinetic;  /* energy of all phases, J */
 } ModelTotals;
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);
 

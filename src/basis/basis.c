@@ -102,20 +102,19 @@ int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt 
   return n;
 }
 
-void CellDilatation(const Grid *g, bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM])
+double CellGradient(const Grid *g, bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM])
 {
   const double *h = g->h;
 
   Q[0] = Q[1] = 0.0;
   if (i[0] < 0 || i[0] > 1 || i[1] < 0 || i[1] > 1)
-    return;
-  if (!axisymmetric) {
-    Q[0] = (i[0] ? 0.5 : -0.5) / h[0];
-    Q[1] = (i[1] ? 0.5 : -0.5) / h[1];
-    return;
-  }
+    return 0.0;
+  Q[0] = (i[0] ? 0.5 : -0.5) / h[0];
+  Q[1] = (i[1] ? 0.5 : -0.5) / h[1];
+  if (!axisymmetric)
+    return 0.0;
   const double ring = r * h[0] + 0.5 * h[0] * h[0], outer = 0.5 * r * h[0] + h[0] * h[0] / 3.0; /* int r, int r N dr */
 
-  Q[0] = (i[0] ? 0.5 * (r + h[0]) : -0.5 * r) / ring;
   Q[1] = (i[0] ? outer : ring - outer) / (ring * (i[1] ? h[1] : -h[1]));
+  return 0.25 * h[0] / ring;
 }

@@ -1,4 +1,5 @@
-/* What a user should know of a start that is out of balance with gravity; docs/equations.md, section 13. */
+/* What a user should know of a start that is out of balance with gravity (docs/equations.md, section 13), or whose pore
+   pressure is left to tractions (section 6). */
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
 
@@ -43,11 +44,57 @@ static PetscErrorCode LargestTension(MPI_Comm comm, const Case *c, const Particl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is there a traction as large as this one, at any time? */
+static bool Pushed(const Case *c, double least)
+{
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Schedule *q = &c->bc[k].value;
+
+    for (PetscInt i = 0; c->bc[k].type == BC_TRACTION && i < q->n; i++) {
+      if (q->y[i] >= least)
+        return true;
+    }
+  }
+  return false;
+}
+
+PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE])
+{
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (PetscInt k = 0; c->fields.solid && c->fields.fluid && k < c->nregion; k++) {
+    const Region  *r         = &c->region[k];
+    const double   middle[2] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
+    const Ambient  around    = AmbientOf(c, c->t_begin, c->gravity);
+    double         E, beyond, gradient[CL_DIM], dE;
+    InitialScalars s;
+
+    if (RegionEmpty(r))
+      continue;
+    E = ElasticityYoung(&c->material[r->material].elasticity, r->Sh, &dE);
+    PetscCall(InitialScalarsAt(c, r, middle, &s));
+    beyond = s.p - AmbientPressure(&around, middle, gradient);
+    if (beyond < E || !Pushed(c, E))
+      continue;
+    PetscCall(PetscSNPrintf(text, CL_ADVICE,
+                            "the pores of region %s bear %.3g Pa, %.3g times its stiffness, against tractions on its "
+                            "faces: what the two differ by, as faces move, may tear it apart; let ambient: {pressure: "
+                            "...} bear what they have in common, and give tractions beyond it",
+                            r->name, beyond, beyond / E));
+    break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
 {
   double tension = 0.0, scale = 0.0;
+  char   advice[CL_ADVICE];
 
   PetscFunctionBeginUser;
+  PetscCall(AmbientAdvice(c, advice));
+  if (advice[0])
+    PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
   if (!c->fields.solid || CaseGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {

@@ -65,6 +65,18 @@ static void CheckSaturations(Reader *r, const Case *c, const Region *g)
       m->retention.type, m->name, g->Sg / (1 - g->Sh), g->Sw / (1 - g->Sh), m->retention.Swr, m->retention.Sgr);
 }
 
+/* (120) is for a gas that no pressure condenses. */
+static void CheckGas(Reader *r, const Case *c, const Region *g)
+{
+  const Gas *law = &c->material[g->material].gas;
+
+  if (c->fields.phase[PHASE_G] && !r->bad[GROUP_MATERIAL] && !strcmp(law->type, "peng_robinson") &&
+      g->temperature + CL_ZERO_CELSIUS <= law->Tc)
+    FAIL_AT(GROUP_REGION, g->name, "temperature",
+            "%g degC is not above gas_critical_temperature, %g K (%g degC): peng_robinson does not know liquid gas",
+            g->temperature, law->Tc, law->Tc - CL_ZERO_CELSIUS);
+}
+
 static void CheckRegion(Reader *r, const Case *c, PetscInt i)
 {
   const Region  *g      = &c->region[i];
@@ -79,6 +91,7 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
     FAIL_AT(GROUP_REGION, g->name, "particles_per_cell",
             "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
   CheckSaturations(r, c, g);
+  CheckGas(r, c, g);
   if (!r->bad[GROUP_MATERIAL] && c->material[g->material].plasticity.type != PLASTICITY_NONE &&
       (g->stress[4] != 0.0 || g->stress[5] != 0.0))
     FAIL_AT(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],

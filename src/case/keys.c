@@ -85,6 +85,7 @@ static bool MeterNeedsSide(const void *p)
 LAW(Retention, RetentionSetType, RetentionTypes, retention, type)
 LAW(Hydrate, PermeabilitySetHydrateType, PermeabilityHydrateTypes, permeability, hydrate_type)
 LAW(Porosity, PermeabilitySetPorosityType, PermeabilityPorosityTypes, permeability, porosity_type)
+LAW(Gas, GasSetType, GasTypes, gas, type)
 LAW(Equilibrium, EquilibriumSetType, EquilibriumTypes, kinetics.equilibrium, type)
 
 /* ---------------------------------------------------------------- words */
@@ -155,6 +156,9 @@ static const Key case_key[] = {
         Case, "mean_dilatation", mean_dilatation, "no",
         "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
         "does not lock"),
+    REAL(Case, "mean_strain", mean_strain, "", "[0,1]", "0",
+         "share of the mean motion of its cell in the strain of a particle: a skeleton that yields flows more freely; "
+         "1 leaves modes without stiffness, 0.95 does for collapse loads"),
     REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
@@ -198,7 +202,8 @@ static const Key case_key[] = {
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
     BOOLEAN(Case, "stepper_surface", tied, "tied",
-            "hybrid, explicit: nearly empty nodes follow their fullest neighbour in part", .choices = surface_word),
+            "hybrid, explicit: p and T of nearly empty nodes follow their fullest neighbour in part",
+            .choices = surface_word),
     BOOLEAN(Case, "stepper_pressures", bare, "nodes",
             "hybrid, explicit: rates of pressure shared over nodes, or by each particle alone (the paper's form, which "
             "rings)",
@@ -255,7 +260,12 @@ static const Key material_key[] = {
     REAL(Material, "water_ref_temperature", water.T_ref, "degC", "(-273.15,1000]", "20 degC",
          "of the densities, grains and hydrate too"),
     REAL(Material, "water_molar_mass", kinetics.M_w, "kg/mol", "(0,10]", "0.018 kg/mol", ""),
-    REAL(Material, "gas_molar_mass", gas.M, "kg/mol", "(0,10]", "0.016 kg/mol", "of the ideal gas; methane by default"),
+    REAL(Material, "gas_molar_mass", gas.M, "kg/mol", "(0,10]", "0.016 kg/mol", "methane by default"),
+    LAWKEY("gas_eos", "peng_robinson", law_Gas, "density; ideal is M p/(R T), the paper's"),
+    REAL(Material, "gas_critical_temperature", gas.Tc, "K", "(0,1e4]", "190.564 K",
+         "peng_robinson; methane by default"),
+    REAL(Material, "gas_critical_pressure", gas.pc, "Pa", "(0,1e9]", "4.5992 MPa", "peng_robinson"),
+    REAL(Material, "gas_acentric_factor", gas.eccentric, "", "(-1,2]", "0.01142", "peng_robinson"),
     REAL(Material, "gas_viscosity", mu_g, "Pa s", "(0,1e6]", "7e-6 Pa s", ""),
     REAL(Material, "gas_heat_capacity", c_g, "J/(kg K)", "(0,1e6]", "2100 J/(kg K)", ""),
     REAL(Material, "gas_conductivity", kappa_g, "W/(m K)", "[0,1e4]", "0.044 W/(m K)", "thermal conductivity"),

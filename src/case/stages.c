@@ -207,6 +207,11 @@ static bool SameLiquid(const Liquid *a, const Liquid *b)
   return a->rho0 == b->rho0 && a->K == b->K && a->beta == b->beta && a->p_ref == b->p_ref && a->T_ref == b->T_ref;
 }
 
+static bool SameGas(const Gas *a, const Gas *b)
+{
+  return a->density == b->density && a->M == b->M && a->Tc == b->Tc && a->pc == b->pc && a->eccentric == b->eccentric;
+}
+
 /* What ties masses to pressures and volumes, or hydrate to water and gas, and so cannot change while all of them stay.
  */
 static const char *Differs(const FieldSet *fs, const Material *a, const Material *b)
@@ -222,8 +227,8 @@ static const char *Differs(const FieldSet *fs, const Material *a, const Material
     return "density or expansion of hydrate";
   if (fs->phase[PHASE_W] && !SameLiquid(&a->water, &b->water))
     return "density, compressibility or expansion of water";
-  if (fs->phase[PHASE_G] && a->gas.M != b->gas.M)
-    return "molar mass of gas";
+  if (fs->phase[PHASE_G] && !SameGas(&a->gas, &b->gas))
+    return "equation of state of gas";
   if (fs->phase[PHASE_G] &&
       (strcmp(x->type, y->type) || x->p0 != y->p0 || x->m != y->m || x->lambda != y->lambda || x->Swr != y->Swr ||
        x->Sgr != y->Sgr || x->p_smooth != y->p_smooth || x->p_trap != y->p_trap))

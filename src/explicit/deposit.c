@@ -44,14 +44,14 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
     RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
+    GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
       const double of = mat->relperm.of_pores ? 1.0 - w->Sh[q] : 1.0;
 
-      w->sw[q]           = 1.0 - sg[q];
-      w->p[q]            = pw[q] + sg[q] * pc[q];
-      w->rho[PHASE_G][q] = mat->gas.M * pg[q] / (CL_GAS_CONSTANT * (T[q] + CL_ZERO_CELSIUS));
-      x[PHASE_W][q]      = of * w->sw[q];
-      x[PHASE_G][q]      = of * sg[q];
+      w->sw[q]      = 1.0 - sg[q];
+      w->p[q]       = pw[q] + sg[q] * pc[q];
+      x[PHASE_W][q] = of * w->sw[q];
+      x[PHASE_G][q] = of * sg[q];
     }
     RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], kr);
     for (int q = 0; q < r.n; q++)
@@ -189,24 +189,25 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
   }
 }
 
-/* (88): the mean stress in the plane acts through the mean volume change of the particle's cell. */
-INLINE void MeanDilatation(Explicit *e, const Set s, Run r, const Weights *w, Values *v)
+/* (160), (88): part of the stress acts through the mean motion of the particle's cell. */
+INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const Weights *w, Values *v)
 {
-  const int     width = LANES * Rows(A_Count(s)), up = (int)e->m->grid.gm[0], at = A_Mix(s);
-  const double *h = e->m->grid.h;
+  const int width = LANES * Rows(A_Count(s)), at = A_Mix(s);
 
   for (int q = 0; q < r.n; q++) {
-    const int   *slot = &e->slot[w->first[q] + w->cell[q]], node[4] = {slot[0], slot[1], slot[up], slot[up + 1]};
-    double      *fx = v->force[0][q], *fy = v->force[1][q];
-    const double mean = 0.5 * (fx[at + MIX_FX] + fy[at + MIX_FY]);
+    double      *fx = &v->force[0][q][at], *fy = &v->force[1][q][at];
+    const double more = c->volume * (fx[MIX_FX] + fy[MIX_FY]);
+    const double xx = c->strain * fx[MIX_FX] + more, yy = c->strain * fy[MIX_FY] + more, xy = c->strain * fx[MIX_FY];
 
-    fx[at + MIX_FX] -= mean;
-    fy[at + MIX_FY] -= mean;
+    fx[MIX_FX] -= xx;
+    fy[MIX_FY] -= yy;
+    fx[MIX_FY] -= xy;
+    fy[MIX_FX] -= xy;
     for (int a = 0; a < 4; a++) {
-      double *row = &e->A[node[a] * width + at];
+      double *row = &e->A[CellNode(e, w, q, a) * width + at];
 
-      row[MIX_FX] += mean * (a % 2 ? 0.5 : -0.5) / h[0];
-      row[MIX_FY] += mean * (a / 2 ? 0.5 : -0.5) / h[1];
+      row[MIX_FX] += c->Q[a][0] * xx + c->Q[a][1] * xy;
+      row[MIX_FY] += c->Q[a][0] * xy + c->Q[a][1] * yy;
     }
   }
 }
@@ -240,6 +241,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Values v;
   Weights             w;
   Fluids              state;
+  CellMean            mean;
   double *const      *f = e->m->P.f;
   const double       *T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p, *restrict V = f[P_V] + r.p;
   double              C[BLOCK];
@@ -273,8 +275,8 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
-  if (s.solid && e->m->c->mean_dilatation)
-    MeanDilatation(e, s, r, &w, &v);
+  if (CellMeanOf(e, &mean))
+    CellForces(e, s, r, &mean, &w, &v);
   if (s.fluids && e->o.particle_pressures) {
     for (int q = 0; q < r.n; q++) {
       for (int k = 0; k < s.fluids; k++)

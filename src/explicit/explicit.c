@@ -44,7 +44,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(FreeParticles(e));
   PetscCall(NodeMapDestroy(&e->map));
   PetscCall(PetscFree(e->raw));
-  PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
+  PetscCall(PetscFree4(e->gain, e->link, e->node, e->slot));
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
   PetscCall(PetscFree(e->pull));
@@ -65,7 +65,7 @@ static bool Needs(const Explicit *e, int k)
     return Scalars(s) > 0;
   if (k >= T_MISS)
     return e->o.particle_pressures && s.fluids > 0;
-  if (k == T_SG || k == T_DS || k >= T_GAIN)
+  if (k == T_SG || k == T_DS || k == T_GAS || k == T_GAS + 1 || k >= T_GAIN)
     return s.fluids == 2;
   return s.fluids > 0; /* those of the gas, too: few, and the pointers stay simple */
 }

@@ -5,6 +5,7 @@
    trace. */
 #pragma once
 
+#include "clathra/basis.h"
 #include "clathra/explicit.h"
 
 #define BLOCK 32
@@ -108,7 +109,8 @@ enum {
   T_SG,    /* share of gas and its slope */
   T_DS,
   T_RHO,                 /* [2] densities of the fluids */
-  T_DRAG = T_RHO + 2,    /* [2] mu/(k_a k_r) */
+  T_GAS  = T_RHO + 2,    /* [2] slopes of that of the gas in p_g and T */
+  T_DRAG = T_GAS + 2,    /* [2] mu/(k_a k_r) */
   T_V    = T_DRAG + 2,   /* volume at the end of the step */
   T_EOS,                 /* [2] masses at that volume and the old pressures */
   T_SLOPE = T_EOS + 2,   /* [2][3] their slopes in p_w, p_g, T */
@@ -121,10 +123,9 @@ enum {
 };
 
 typedef struct {
-  int    root;  /* fuller node that this one follows; its own number if it stands for itself */
-  double own;   /* share that it keeps of its own balances; 1 if it follows nobody */
-  int    held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
-  bool   leads; /* others follow it */
+  int    root; /* fuller node that this one follows; its own number if it stands for itself */
+  double own;  /* share that it keeps of its own balances; 1 if it follows nobody */
+  int    held; /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
 } NodeInfo;
 
 /* Parts of a step in -log_view. */
@@ -139,12 +140,11 @@ struct Explicit {
   int            *base[CL_DIM]; /* first node along each axis, as at the last look */
   PetscInt       *order, *key;  /* work space of the sort */
   NodeMap         map;
-  int            *slot;              /* padded grid node -> row */
-  PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
-  double         *raw;               /* memory of the arrays below */
-  double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it */
-  double *gain;   /* [rows][3] the same of the scalars */
+  int            *slot;          /* padded grid node -> row */
+  PetscInt        rows;          /* n_local + 1: the last row takes what nobody needs */
+  double         *raw;           /* memory of the arrays below */
+  double         *A, *B, *R, *C; /* [rows][8 n] */
+  double *gain;   /* [rows][3] increments of the scalars from a node's own balances, with what its followers gave it */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
   NodeInfo *node; /* [rows] */
@@ -184,17 +184,48 @@ typedef struct {
 
 void WeightsOf(const Explicit *e, Run r, Weights *w);
 
-/* (88): half of what the mean divergence over a particle's cell is beyond its own; rows of nodal velocities, `width`
-   numbers each, the velocity first. */
-INLINE double MoreDivergence(const Explicit *e, const Weights *w, int q, const double *rows, int width, double own)
-{
-  const int    *slot = &e->slot[w->first[q] + w->cell[q]], up = (int)e->m->grid.gm[0];
-  const double *v[4] = {&rows[slot[0] * width], &rows[slot[1] * width], &rows[slot[up] * width],
-                        &rows[slot[up + 1] * width]};
-  const double *h    = e->m->grid.h;
+/* (160), (88): what particles take of the mean over their cell: of its gradient, and of its divergence beyond that in
+   each direction; the nodes of a cell, row by row, and their weights in its gradient. */
+typedef struct {
+  double strain, volume, Q[4][CL_DIM];
+} CellMean;
 
-  return 0.5 * (0.5 * (v[1][0] - v[0][0] + v[3][0] - v[2][0]) / h[0] +
-                0.5 * (v[2][1] - v[0][1] + v[3][1] - v[1][1]) / h[1] - own);
+INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
+{
+  c->strain = e->m->c->mean_strain;
+  c->volume = e->m->c->mean_dilatation ? 0.5 * (1.0 - c->strain) : 0.0;
+  if (!e->set.solid || (c->strain == 0.0 && c->volume == 0.0))
+    return false;
+  for (int a = 0; a < 4; a++)
+    CellGradient(&e->m->grid, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
+  return true;
+}
+
+INLINE int CellNode(const Explicit *e, const Weights *w, int q, int a)
+{
+  return e->slot[w->first[q] + w->cell[q] + a % 2 + a / 2 * (int)e->m->grid.gm[0]];
+}
+
+/* Gradients dx, dy of a particle's velocity; rows of nodal velocities, `width` numbers each, the velocity first. */
+INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, int q, const double *rows, int width,
+                       double dx[CL_DIM], double dy[CL_DIM])
+{
+  double beyond[CL_DIM][CL_DIM] = {{-dx[0], -dy[0]}, {-dx[1], -dy[1]}};
+
+  for (int a = 0; a < 4; a++) {
+    const double *v = &rows[CellNode(e, w, q, a) * width];
+
+    for (int i = 0; i < CL_DIM; i++) {
+      beyond[i][0] += c->Q[a][0] * v[i];
+      beyond[i][1] += c->Q[a][1] * v[i];
+    }
+  }
+  const double more = c->volume * (beyond[0][0] + beyond[1][1]);
+
+  dx[0] += c->strain * beyond[0][0] + more;
+  dy[0] += c->strain * beyond[0][1];
+  dx[1] += c->strain * beyond[1][0];
+  dy[1] += c->strain * beyond[1][1] + more;
 }
 
 void Deposit(Explicit *e);

@@ -35,17 +35,6 @@ INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gath
   }
 }
 
-/* (88) */
-INLINE void MeanDilatation(const Explicit *e, const Set s, Run r, const Weights *w, Gathered *g)
-{
-  for (int q = 0; q < r.n; q++) {
-    const double more = MoreDivergence(e, w, q, e->B, LANES * Rows(B_Count(s)), g->dx[q][0] + g->dy[q][1]);
-
-    g->dx[q][0] += more;
-    g->dy[q][1] += more;
-  }
-}
-
 INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
 {
   const int width = 3 * LANES;
@@ -101,12 +90,12 @@ INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, co
     wg[q]  = -open[q] * rho_w[q] * ds;
     wT[q]  = rho_w[q] * (1.0 - sg) * (V_T - open[q] * mat->water.beta);
     if (s.fluids == 2) {
-      const double rho = e->t[T_RHO + 1][r.p + q], pg = f[P_PG][r.p + q];
+      const double rho = e->t[T_RHO + 1][r.p + q], rho_p = e->t[T_GAS][r.p + q], rho_T = e->t[T_GAS + 1][r.p + q];
 
       e->t[T_EOS + 1][r.p + q]   = open[q] * sg * rho;
       e->t[T_SLOPE + 3][r.p + q] = -open[q] * rho * ds;
-      e->t[T_SLOPE + 4][r.p + q] = open[q] * rho * (ds + sg / pg);
-      e->t[T_SLOPE + 5][r.p + q] = rho * sg * (V_T - open[q] / (T[q] + CL_ZERO_CELSIUS));
+      e->t[T_SLOPE + 4][r.p + q] = open[q] * (rho * ds + sg * rho_p);
+      e->t[T_SLOPE + 5][r.p + q] = sg * (rho * V_T + open[q] * rho_T);
     }
   }
 }
@@ -309,13 +298,15 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Gathered g;
   _Alignas(64) Given    o;
   Weights               w;
+  CellMean              mean;
   double                pore[BLOCK], open[BLOCK];
   const double         *T = s.heat ? e->m->P.f[P_T] + r.p : e->t[T_T] + r.p;
 
+  const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
   Gather(e, s, r, &w, &g);
-  if (s.solid && e->m->c->mean_dilatation)
-    MeanDilatation(e, s, r, &w, &g);
+  for (int q = 0; q < r.n && shared; q++)
+    MeanMotion(e, &mean, &w, q, e->B, LANES * Rows(B_Count(s)), g.dx[q], g.dy[q]);
   Velocities(e, s, r, &g);
   for (int q = 0; q < r.n; q++) {
     for (int k = 0; k < LANES; k++)

@@ -34,19 +34,6 @@ INLINE void Gather(const Explicit *e, Run r, const Weights *w, Gathered *g)
   }
 }
 
-/* (88) */
-INLINE void MeanDilatation(const Explicit *e, const Set s, Run r, const Weights *w, Gathered *g)
-{
-  const int at = C_Vs(s);
-
-  for (int q = 0; q < r.n; q++) {
-    const double more = MoreDivergence(e, w, q, &e->C[at], LANES, g->dx[q][at] + g->dy[q][at + 1]);
-
-    g->dx[q][at] += more;
-    g->dy[q][at + 1] += more;
-  }
-}
-
 /* Bare form, the paper's (P72): increments of pressure from the particle's own balances, with the new temperature. */
 INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
 {
@@ -393,16 +380,18 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Gathered g;
   Weights               w;
   Strain                n;
+  CellMean              mean;
   double *const        *f = e->m->P.f;
   double                kept[BLOCK];
   const double         *T;
 
   for (int q = 0; q < BLOCK; q++)
     kept[q] = 1.0;
+  const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
   Gather(e, r, &w, &g);
-  if (s.solid && e->m->c->mean_dilatation)
-    MeanDilatation(e, s, r, &w, &g);
+  for (int q = 0; q < r.n && shared; q++)
+    MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], LANES, &g.dx[q][C_Vs(s)], &g.dy[q][C_Vs(s)]);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))

@@ -61,7 +61,7 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
   fprintf(f, ",%.17g,%.17g,%.12e", now->water, s->out[PHASE_W], water);
   fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
   fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
-  fprintf(f, ",%.17g", now->kinetic);
+  fprintf(f, ",%.17g", s->energy[ENERGY_KINETIC]);
   WriteEnergies(m, s, f);
   if (c->nstage)
     fprintf(f, ",%" PetscInt_FMT, s->stage + 1);

@@ -227,21 +227,22 @@ static double Share(double value, double mean, const double top[2])
   return fabs(over) > room ? fmax(room, 0.0) / fabs(over) : 1.0;
 }
 
-/* A saturation stays in the range of what it is interpolated from; so do pressures and temperature where the probe lies
-   among its neighbours.  Beyond them, at the surface, these go on linearly. */
+/* Among its neighbours a probe stays in their range.  Beyond them, at the surface, it goes on linearly, saturations
+   from 0 to 1. */
 static void Limit(const Case *c, const Range *r, const double mean[LIMITED], double value[PROBE_COUNT])
 {
   const bool among = fmin(r->far[0], r->far[1]) >= 0.0 && fmin(r->far[2], r->far[3]) >= 0.0;
 
   for (int k = 0, first = 0; k < GROUPS; first = group_end[k++]) {
-    double share = 1.0;
+    static const double saturation[2] = {1.0, 0.0};
+    double              share         = 1.0;
 
     for (int q = first; q < group_end[k] && (among || k == GROUPS - 1); q++) {
       if (ProbeWanted(c, q))
-        share = fmin(share, Share(value[q], mean[q], &r->top[2 * q]));
+        share = fmin(share, Share(value[q], mean[q], among ? &r->top[2 * q] : saturation));
     }
     for (int q = first; q < group_end[k] && share < 1.0; q++)
-      value[q] = fmin(fmax(mean[q] + share * (value[q] - mean[q]), -r->top[2 * q + 1]), r->top[2 * q]);
+      value[q] = mean[q] + share * (value[q] - mean[q]);
   }
 }
 

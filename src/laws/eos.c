@@ -1,5 +1,5 @@
 /* Equations of state: intrinsic densities, kg/m^3, of pressure (Pa) and temperature (degC). */
-#include "clathra/laws.h"
+#include "clathra/laws_batch.h"
 #include "laws_private.h"
 
 /* rho = rho_0 exp((p - p_ref)/K - beta (T - T_ref)), (221), (P10); K = INFINITY is incompressible.  Also solid,
@@ -16,11 +16,114 @@ double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, dou
 }
 
 /* Ideal gas, (222), (P11): rho = M p/(R T_K). */
+static void Gas_Ideal(const Gas *law, int n, const double *restrict p, const double *restrict T, double *restrict rho,
+                      double *restrict rho_p, double *restrict rho_T)
+{
+  for (int q = 0; q < n; q++) {
+    const double TK = T[q] + LAW_ZERO_CELSIUS;
+
+    rho_p[q] = law->M / (LAW_GAS_CONSTANT * TK);
+    rho[q]   = rho_p[q] * p[q];
+    rho_T[q] = -rho[q] / TK;
+  }
+}
+
+#define GAS_BLOCK 32
+#define ROOT_NEAR 1e-9 /* Newton's step that ends the search: the next one would be of the order of its square */
+#define ROOT_STEPS 200 /* only at a critical point, where three roots meet, are more than ten taken */
+
+/* Largest Z of (120), by Newton's method from the side on which it is monotone: from 1 + B, where the cubic is A > 0
+   and convex, or, where its right extremum (or inflection) lies above zero, from B, where it is -2 B^2 and concave. */
+static void GasRoot(int n, const double *restrict A, const double *restrict B, double *restrict Z)
+{
+  int more = 1;
+
+  for (int q = 0; q < n; q++) {
+    const double e = 1.0 - B[q], c1 = A[q] - B[q] * (3.0 * B[q] + 2.0), c0 = B[q] * (A[q] - B[q] * (1.0 + B[q]));
+    const double D = e * e - 3.0 * c1, at = (e + sqrt(D > 0.0 ? D : 0.0)) / 3.0;
+
+    Z[q] = ((at - e) * at + c1) * at - c0 <= 0.0 ? 1.0 + B[q] : B[q];
+  }
+  for (int step = 0; step < ROOT_STEPS && more; step++) {
+    more = 0;
+    for (int q = 0; q < n; q++) {
+      const double e = 1.0 - B[q], c1 = A[q] - B[q] * (3.0 * B[q] + 2.0), c0 = B[q] * (A[q] - B[q] * (1.0 + B[q]));
+      const double z = Z[q], f = ((z - e) * z + c1) * z - c0, f_Z = (3.0 * z - 2.0 * e) * z + c1, d = f / f_Z;
+
+      Z[q] = z - d;
+      more |= fabs(d) > ROOT_NEAR * z;
+    }
+  }
+}
+
+/* Peng and Robinson (1976), (120), (121); slopes by the implicit function theorem.  Below p = 0 the gas is ideal, with
+   value and slopes that meet. */
+static void Gas_PengRobinson(const Gas *law, int n, const double *restrict p, const double *restrict T,
+                             double *restrict rho, double *restrict rho_p, double *restrict rho_T)
+{
+  const double R = LAW_GAS_CONSTANT, RTc = R * law->Tc, b = 0.07779607 * RTc / law->pc,
+               a     = 0.45723553 * RTc * RTc / law->pc,
+               kappa = 0.37464 + law->eccentric * (1.54226 - 0.26992 * law->eccentric);
+  double A[GAS_BLOCK], B[GAS_BLOCK], Z[GAS_BLOCK], A_p[GAS_BLOCK], A_T[GAS_BLOCK];
+
+  for (int q = 0; q < n; q++) {
+    const double TK = T[q] + LAW_ZERO_CELSIUS, RT = R * TK, root = sqrt(TK / law->Tc), s = 1.0 + kappa * (1.0 - root);
+    const double s_T = -0.5 * kappa * root / TK, P = p[q] > 0.0 ? p[q] : 0.0;
+
+    A_p[q] = a * s * s / (RT * RT);
+    A_T[q] = 2.0 * a * s * P / (RT * RT) * (s_T - s / TK);
+    A[q]   = A_p[q] * P;
+    B[q]   = b * P / RT;
+  }
+  GasRoot(n, A, B, Z);
+  for (int q = 0; q < n; q++) {
+    const double TK = T[q] + LAW_ZERO_CELSIUS, P = p[q] > 0.0 ? p[q] : 0.0, z = Z[q], B_p = b / (R * TK);
+    const double f_Z = (3.0 * z - 2.0 * (1.0 - B[q])) * z + A[q] - B[q] * (3.0 * B[q] + 2.0), f_A = z - B[q],
+                 f_B = (z - 6.0 * B[q] - 2.0) * z - A[q] + B[q] * (2.0 + 3.0 * B[q]);
+    const double Z_p = -(f_A * A_p[q] + f_B * B_p) / f_Z, Z_T = -(f_A * A_T[q] - f_B * B[q] / TK) / f_Z;
+    const double c = law->M / (z * R * TK);
+
+    rho[q]   = c * p[q];
+    rho_p[q] = c * (1.0 - P * Z_p / z);
+    rho_T[q] = -rho[q] * (1.0 / TK + Z_T / z);
+  }
+}
+
+typedef void (*GasLaw)(const Gas *, int, const double *, const double *, double *, double *, double *);
+static const char *const gas_names[] = {"peng_robinson", "ideal", NULL};
+static const GasLaw      gas_laws[]  = {Gas_PengRobinson, Gas_Ideal};
+_Static_assert(sizeof gas_names / sizeof *gas_names == sizeof gas_laws / sizeof *gas_laws + 1, "a name for every law");
+
+const char *const *GasTypes(void)
+{
+  return gas_names;
+}
+
+/* Sets the function and the name; constants stay.  False, and nothing set, for an unknown name. */
+bool GasSetType(Gas *law, const char *type)
+{
+  const int i = LawFind(gas_names, type);
+
+  if (i < 0)
+    return false;
+  law->density = gas_laws[i];
+  law->type    = gas_names[i];
+  return true;
+}
+
+void GasDensityBatch(const Gas *law, int n, const double *p, const double *T, double *rho, double *drho_dp,
+                     double *drho_dT)
+{
+  const GasLaw density = law->density ? law->density : Gas_Ideal;
+
+  for (int q = 0; q < n; q += GAS_BLOCK)
+    density(law, n - q < GAS_BLOCK ? n - q : GAS_BLOCK, &p[q], &T[q], &rho[q], &drho_dp[q], &drho_dT[q]);
+}
+
 double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT)
 {
-  const double TK = T + LAW_ZERO_CELSIUS;
+  double rho;
 
-  *drho_dp = law->M / (LAW_GAS_CONSTANT * TK);
-  *drho_dT = -*drho_dp * p / TK;
-  return *drho_dp * p;
+  GasDensityBatch(law, 1, &p, &T, &rho, drho_dp, drho_dT);
+  return rho;
 }

@@ -7,16 +7,15 @@ PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT])
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(energy, ENERGY_COUNT));
-  if (!m->c->fields.solid)
-    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < P->n; p++)
+    energy[ENERGY_KINETIC] += ModelKineticEnergy(P, p);
   const SkeletonStore store = ParticlesSkeleton(P, 0, 0.0);
-  for (PetscInt p = 0; p < P->n; p++) {
+  for (PetscInt p = 0; m->c->fields.solid && p < P->n; p++) {
     const Material *mat = ParticleMaterial(m, p);
     SkeletonHistory h;
     double          dE;
 
     SkeletonTake(&store, p, &h);
-    energy[ENERGY_KINETIC] += ModelKineticEnergy(P, p);
     energy[ENERGY_ELASTIC] +=
         P->f[P_V][p] * SkeletonEnergy(&mat->elasticity, ElasticityYoung(&mat->elasticity, P->f[P_SH][p], &dE), &h);
     if (P->f[P_WP]) {
@@ -39,30 +38,22 @@ static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x
   const FieldSet *fs      = &m->c->fields;
   const bool      there[] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
   const double(*F)[2] = s->F, det = F[0][0] * F[1][1] - F[0][1] * F[1][0], lambda = s->V / (m->P.f[P_V][p] * det);
-  double g[2][2] = {{0.0}}, hoop = 0.0, more = 0.0;
+  double u[CL_NODES][CL_DIM], g[MOTION_COUNT];
 
   *o = (Motion){0};
   for (int a = 0; a < r->n; a++) {
-    const double *xI = &x[r->node[a] * fs->n], *v = &xI[PlaceVs(fs)];
+    const double *xI = &x[r->node[a] * fs->n];
 
     for (int k = 0; k < 3; k++) {
       for (int i = 0; there[k] && i < 2; i++)
         o->v[k][i] += r->S[a] * xI[fs->at[F_VSX + 2 * k] + i];
     }
-    for (int i = 0; i < 2; i++) {
-      g[i][0] += r->G[a][0] * v[i];
-      g[i][1] += r->G[a][1] * v[i];
-    }
-    if (m->c->axisymmetric)
-      hoop += r->H[a] * v[0];
-    if (m->c->mean_dilatation)
-      more += r->B[a][0] * v[0] + r->B[a][1] * v[1];
+    for (int i = 0; i < 2; i++)
+      u[a][i] = xI[PlaceVs(fs) + i];
   }
-  g[0][0] += more;
-  g[1][1] += more;
-  hoop += m->c->axisymmetric ? more : 0.0;
+  MotionGradient(m, r, u, g);
   o->expansion =
-      s->V * ((F[1][1] * g[0][0] - F[1][0] * g[0][1] - F[0][1] * g[1][0] + F[0][0] * g[1][1]) / det + hoop / lambda);
+      s->V * ((F[1][1] * g[0] - F[1][0] * g[1] - F[0][1] * g[2] + F[0][0] * g[3]) / det + g[MOTION_HOOP] / lambda);
 }
 
 /* Of the mass of a phase in the inertia of the rows: M a . v over the nodes. */

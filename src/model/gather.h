@@ -3,36 +3,71 @@
 
 #include "clathra/model.h"
 
-/* A particle's nodes with their values; H only about an axis; B (88) only with mean dilatation, else zero. */
+/* A particle's nodes with their values; H only about an axis; M, K are G, H as the motion sees them (160); B (88) only
+   with mean dilatation. */
 typedef struct {
   int      n;
   PetscInt node[CL_NODES];
   double   S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES], B[CL_NODES][CL_DIM];
+  const double (*M)[CL_DIM], *K;
+  double mixed[CL_NODES][CL_DIM], mixed_hoop[CL_NODES];
 } Reach;
 
-/* (88) */
-static inline void MeanDilatation(const Model *m, PetscInt p, Reach *r)
+/* (160), then (88) */
+static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
 {
   const Stencil *s            = &m->stencil[p];
+  const bool     ring         = m->c->axisymmetric;
   const PetscInt cell[CL_DIM] = {s->axis[0].base + s->cell[0], s->axis[1].base + s->cell[1]};
-  const double radius = m->grid.lower[0] + (double)cell[0] * m->grid.h[0], share = m->c->axisymmetric ? 1.0 / 3.0 : 0.5;
+  const double   radius = m->grid.lower[0] + (double)cell[0] * m->grid.h[0], share = m->c->mean_strain;
+  const double   mean = m->c->mean_dilatation ? (1.0 - share) / (ring ? 3.0 : 2.0) : 0.0;
 
   for (int a = 0; a < r->n; a++) {
     const PetscInt i[CL_DIM] = {m->map.ij[r->node[a]][0] - cell[0], m->map.ij[r->node[a]][1] - cell[1]};
+    double         Q[CL_DIM];
+    const double   hoop = CellGradient(&m->grid, ring, i, radius, Q), beyond = ring ? hoop - r->H[a] : 0.0;
 
-    CellDilatation(&m->grid, m->c->axisymmetric, i, radius, r->B[a]);
-    for (int d = 0; d < CL_DIM; d++)
-      r->B[a][d] = share * (r->B[a][d] - r->G[a][d]);
-    if (m->c->axisymmetric)
-      r->B[a][0] -= share * r->H[a];
+    for (int d = 0; d < CL_DIM; d++) {
+      r->mixed[a][d] = r->G[a][d] + share * (Q[d] - r->G[a][d]);
+      r->B[a][d]     = mean * (Q[d] - r->G[a][d]);
+    }
+    r->mixed_hoop[a] = ring ? r->H[a] + share * beyond : 0.0;
+    r->B[a][0] += mean * beyond;
   }
+  r->M = r->mixed;
+  r->K = r->mixed_hoop;
 }
 
 static inline void ReachExpand(const Model *m, PetscInt p, Reach *r)
 {
   r->n = StencilExpand(&m->stencil[p], &m->grid, &m->map, r->node, r->S, r->G, r->H);
-  if (m->c->mean_dilatation)
-    MeanDilatation(m, p, r);
+  r->M = r->G;
+  r->K = r->H;
+  if (m->c->mean_dilatation || m->c->mean_strain > 0.0)
+    CellMotion(m, p, r);
+}
+
+/* Gradient and hoop strain of what moves with the nodes, u: of each of the particle's nodes. */
+static inline void MotionGradient(const Model *m, const Reach *r, double (*u)[CL_DIM], double g[MOTION_COUNT])
+{
+  double more = 0.0;
+
+  for (int k = 0; k < MOTION_COUNT; k++)
+    g[k] = 0.0;
+  for (int a = 0; a < r->n; a++) {
+    for (int i = 0; i < 2; i++) {
+      g[2 * i] += u[a][i] * r->M[a][0];
+      g[2 * i + 1] += u[a][i] * r->M[a][1];
+    }
+    if (m->c->axisymmetric)
+      g[MOTION_HOOP] += u[a][0] * r->K[a];
+    if (m->c->mean_dilatation)
+      more += u[a][0] * r->B[a][0] + u[a][1] * r->B[a][1];
+  }
+  g[0] += more;
+  g[3] += more;
+  if (m->c->axisymmetric)
+    g[MOTION_HOOP] += more;
 }
 
 /* Weights that carry the particle's middle along: S in the plane, the plain average about an axis. */
@@ -109,29 +144,18 @@ static inline double NodeVolume(const Model *m, PetscInt I)
 static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const double *x, const Face *face,
                                double in[IN_COUNT])
 {
-  const int  n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
-  const bool mean = m->c->mean_dilatation;
-  double     more = 0.0;
+  const int n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
+  double    u[CL_NODES][CL_DIM];
 
   for (int a = 0; a < r->n; a++) {
-    const double *v = &x[r->node[a] * n + vs], *us = &m->stage.u_star[r->node[a] * CL_DIM], *G = r->G[a];
-    const double  u[2] = {us[0] + m->stage.dt * v[0], us[1] + m->stage.dt * v[1]};
+    const double *v = &x[r->node[a] * n + vs], *us = &m->stage.u_star[r->node[a] * CL_DIM];
 
     for (int i = 0; i < 2; i++) {
-      in[IN_GRADU + 2 * i] += u[i] * G[0];
-      in[IN_GRADU + 2 * i + 1] += u[i] * G[1];
+      u[a][i] = us[i] + m->stage.dt * v[i];
+      in[IN_U + i] += (face ? face->N[a] : MotionWeight(m, p, r, a)) * u[a][i];
     }
-    if (m->c->axisymmetric)
-      in[IN_HOOP] += u[0] * r->H[a];
-    if (mean)
-      more += u[0] * r->B[a][0] + u[1] * r->B[a][1];
-    for (int i = 0; i < 2; i++)
-      in[IN_U + i] += (face ? face->N[a] : MotionWeight(m, p, r, a)) * u[i];
   }
-  in[IN_GRADU] += more;
-  in[IN_GRADU + 3] += more;
-  if (m->c->axisymmetric)
-    in[IN_HOOP] += more;
+  MotionGradient(m, r, u, &in[IN_GRADU]);
 }
 
 /* Darcy flux of a fluid at a node (19). */

@@ -4,8 +4,8 @@
 /* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes and in the
    displacement. */
 typedef struct {
-  double        S, NS[CL_DIM], NU, H;
-  const double *G, *w, *B; /* B: null without mean dilatation */
+  double        S, NS[CL_DIM], NU, K;
+  const double *G, *M, *w, *B; /* B: null without mean dilatation */
 } NodeWeights;
 
 /* d out/d(unknowns of one node): one row of D times d in/d x. */
@@ -15,12 +15,13 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
   const double *G = b->G;
 
   if (fs->solid) {
-    const int vs = PlaceVs(fs);
+    const double *M  = b->M;
+    const int     vs = PlaceVs(fs);
 
     for (int i = 0; i < 2; i++)
-      col[vs + i] = dt * (D[IN_GRADU + 2 * i] * G[0] + D[IN_GRADU + 2 * i + 1] * G[1] + D[IN_U + i] * b->NU);
+      col[vs + i] = dt * (D[IN_GRADU + 2 * i] * M[0] + D[IN_GRADU + 2 * i + 1] * M[1] + D[IN_U + i] * b->NU);
     if (axisymmetric)
-      col[vs] += dt * D[IN_HOOP] * b->H;
+      col[vs] += dt * D[IN_HOOP] * b->K;
     for (int i = 0; b->B && i < 2; i++)
       col[vs + i] += dt * (D[IN_GRADU] + D[IN_GRADU + 3] + (axisymmetric ? D[IN_HOOP] : 0.0)) * b->B[i];
   }
@@ -71,14 +72,14 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
 
 /* Rows of node a against the columns DB of node b (b's block starts at *out, row length ld). */
 static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int n, const NodeFactors *k, double dt,
-                        double S, const double *G, double H, const double *B, double DB[OUT_COUNT][F_COUNT],
-                        double *out, int ld)
+                        double S, const double *G, const double *M, double K, const double *B,
+                        double DB[OUT_COUNT][F_COUNT], double *out, int ld)
 {
   for (int i = 0; fs->solid && i < 2; i++) {
     double *row = &out[(PlaceVs(fs) + i) * ld];
 
     for (int q = 0; q < n; q++)
-      row[q] = G[0] * DB[OUT_P + 2 * i][q] + G[1] * DB[OUT_P + 2 * i + 1][q] + S * k->acc[0][i] * DB[OUT_M][q];
+      row[q] = M[0] * DB[OUT_P + 2 * i][q] + M[1] * DB[OUT_P + 2 * i + 1][q] + S * k->acc[0][i] * DB[OUT_M][q];
     for (int f = 0; f < PHASE_COUNT; f++) {
       for (int q = 0; fs->phase[f] && q < n; q++)
         row[q] += S * k->acc[1 + f][i] * DB[OUT_M + 1 + f][q];
@@ -86,7 +87,7 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
     for (int q = 0; ambient && q < n; q++)
       row[q] += S * DB[OUT_A + i][q];
     for (int q = 0; axisymmetric && i == 0 && q < n; q++)
-      row[q] += H * DB[OUT_HOOP][q];
+      row[q] += K * DB[OUT_HOOP][q];
     for (int q = 0; B && q < n; q++)
       row[q] += B[i] * (DB[OUT_P][q] + DB[OUT_P + 3][q] + (axisymmetric ? DB[OUT_HOOP][q] : 0.0));
   }
@@ -200,8 +201,9 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
     const NodeWeights at = {.S  = r->S[b],
                             .NS = {r->S[b], r->S[b]},
                             .NU = MotionWeight(m, p, r, b),
-                            .H  = axisymmetric ? r->H[b] : 0.0,
+                            .K  = axisymmetric ? r->K[b] : 0.0,
                             .G  = r->G[b],
+                            .M  = r->M[b],
                             .B  = m->c->mean_dilatation ? r->B[b] : NULL,
                             .w  = &m->w[2 * r->node[b]]};
     double            DB[OUT_COUNT][F_COUNT];
@@ -211,7 +213,7 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
     for (int a = 0; a < r->n; a++) {
       double *out = &block[(a * ld + b) * n];
 
-      Rows(fs, axisymmetric, ambient, n, &factor[a], dt, r->S[a], r->G[a], axisymmetric ? r->H[a] : 0.0,
+      Rows(fs, axisymmetric, ambient, n, &factor[a], dt, r->S[a], r->G[a], r->M[a], axisymmetric ? r->K[a] : 0.0,
            m->c->mean_dilatation ? r->B[a] : NULL, DB, out, ld);
       if (a == b)
         Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, out, ld);
@@ -296,8 +298,9 @@ static void FaceBlock(const Model *m, const Face *face, const Reach *r, const Fa
     const NodeWeights at = {.S  = r->S[b],
                             .NS = {face->Nr[b], face->N[b]},
                             .NU = face->N[b],
-                            .H  = m->c->axisymmetric ? r->H[b] : 0.0,
+                            .K  = m->c->axisymmetric ? r->K[b] : 0.0,
                             .G  = r->G[b],
+                            .M  = r->M[b],
                             .B  = m->c->mean_dilatation ? r->B[b] : NULL,
                             .w  = &m->w[2 * r->node[b]]};
 

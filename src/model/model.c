@@ -128,7 +128,7 @@ double ModelKineticEnergy(const Particles *P, PetscInt p)
 
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
 {
-  double sum[8] = {0.0};
+  double sum[7] = {0.0};
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->P.n; p++) {
@@ -145,16 +145,14 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
     sum[4] += m->P.f[P_V][p];
     sum[6] += mg;
     sum[5] += ms * mat->c_s + mh * mat->c_h + mw * mat->c_w + mg * mat->c_g;
-    sum[7] += ModelKineticEnergy(&m->P, p);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   *t = (ModelTotals){.water    = sum[0],
                      .methane  = sum[1],
                      .hydrate  = sum[2],
                      .solid    = sum[3],
                      .gas      = sum[6],
                      .V        = sum[4],
-                     .capacity = sum[5],
-                     .kinetic  = sum[7]};
+                     .capacity = sum[5]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -59,7 +59,7 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
   const double    mean = out[OUT_P] + out[OUT_P + 3] + (m->c->axisymmetric ? out[OUT_HOOP] : 0.0);
 
   for (int a = 0; a < r->n; a++) {
-    const double *G  = r->G[a];
+    const double *G  = r->M[a];
     double       *fI = &f[r->node[a] * fs->n + PlaceVs(fs)], acc[2], inertia[2];
 
     Acceleration(m, r->node[a], x, PlaceVs(fs), acc);
@@ -77,7 +77,7 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
     for (int i = 0; m->bc.ambient.on && i < 2; i++)
       fI[i] += r->S[a] * out[OUT_A + i];
     if (m->c->axisymmetric)
-      fI[0] += r->H[a] * out[OUT_HOOP];
+      fI[0] += r->K[a] * out[OUT_HOOP];
     for (int i = 0; m->c->mean_dilatation && i < 2; i++)
       fI[i] += r->B[a][i] * mean;
   }

@@ -200,6 +200,7 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    PetscCall(CellMeansWarning(&m->grid, m->c, &m->P));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));
@@ -219,6 +220,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   const MPI_Comm comm = s->model->grid.comm;
   const double   t    = s->state.t;
   const char    *why  = run->lost ? "not all could be written; see to it" : "the state is not finite";
+  char           advice[CL_ADVICE];
 
   PetscFunctionBeginUser;
   if ((run->lost || s->broken) && run->saved[0]) {
@@ -233,8 +235,12 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (s->signal && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
                           strsignal(s->signal), t, run->saved));
-  } else if (!ok)
+  } else if (!ok) {
+    PetscCall(AmbientAdvice(s->model->c, advice));
+    if (advice[0])
+      PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
     PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -334,7 +340,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
   run.quiet = quiet;
-  PetscCall(LogStart(comm));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (!GridFits(size, c->cells)) {
     PetscCall(PetscFPrintf(comm, stderr,
@@ -344,6 +349,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(LogStart(comm));
   PetscCall(ModelCreate(comm, c, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;

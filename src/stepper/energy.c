@@ -15,11 +15,13 @@ PetscErrorCode StepperEnergyStep(Stepper *s, const double work[WORK_RATES])
   double        now[ENERGY_COUNT], gain[ENERGY_COUNT];
 
   PetscFunctionBeginUser;
+  PetscCall(ModelEnergies(s->model, now));
+  for (int k = 0; k < ENERGY_COUNT; k++) {
+    gain[k]      = now[k] - z->energy[k];
+    z->energy[k] = now[k];
+  }
   if (!c->fields.solid)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelEnergies(s->model, now));
-  for (int k = 0; k < ENERGY_COUNT; k++)
-    gain[k] = now[k] - z->energy[k];
   /* quasi-static: no inertia in the balance of momentum, so none here */
   const double kinetic = (!c->fields.inertia ? 0.0 : s->explicit ? c->mass_scaling : 1.0) * gain[ENERGY_KINETIC];
   const double lost    = work[WORK_INERTIA] - kinetic;
@@ -32,8 +34,6 @@ PetscErrorCode StepperEnergyStep(Stepper *s, const double work[WORK_RATES])
   z->work[WORK_HEAT] += gain[ENERGY_HEAT];
   z->work[WORK_LOST] += lost;
   z->work[WORK_REMAINDER] += given - gone - kinetic - gain[ENERGY_ELASTIC];
-  for (int k = 0; k < ENERGY_COUNT; k++)
-    z->energy[k] = now[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,7 +18,7 @@ METER = lambda keys: ("basis: cpgimp", f"basis: cpgimp\nmeters: [outlet]\nmeter:
 PLATE = lambda keys: ("base: {type: fixed, axis: x, position: 0 m", "base: {type: plate, " + keys)
 STAGES = lambda a, b: ("time: {end: 2000 s}", f"stages: [a, b]\nstage:\n  a: {{{a}}}\n  b: {{{b}}}")
 SEDIMENT = {"porosity": "0.15", "solid_density": "2600 kg/m^3", "solid_heat_capacity": "800 J/(kg K)", "solid_conductivity": "3 W/(m K)",
-            "water_ref_pressure": "3.25 MPa", "water_ref_temperature": "4 degC", "retention_p0": "50 kPa", "retention_m": "0.3", "retention_Swr": "0.2",
+            "water_ref_pressure": "3.25 MPa", "water_ref_temperature": "4 degC", "gas_eos": "ideal", "retention_p0": "50 kPa", "retention_m": "0.3", "retention_Swr": "0.2",
             "retention_Sgr": "0.4", "relperm_nw": "4", "relperm_ng": "2", "permeability_k0": "1e-14 m^2", "permeability_mh": "3", "kinetics_active": "yes",
             "kinetics_K0": "1e-10 mol/(m^2 Pa s)", "kinetics_A_geo": "1e6 1/m", "elasticity_E0": "9 MPa", "elasticity_nu": "0.3"}
 SHAPE = lambda keys: ("    lower: [0 m, 0 m]\n    upper: [1 m, 0.02 m]\n", f"    {keys}\n")
@@ -122,6 +122,9 @@ CASES = [
     ("list too long", [("at: [0.6 m, 0.01 m]", "at: [0.6 m, 0.01 m, 0 m]")], ["probe_p06_at", "needs 2"], []),
     ("bad word", [("active: yes", "active: perhaps")], [M + "kinetics_active", "yes | no"], []),
     ("bad law", [("law: van_genuchten", "law: van_genuchen")], [M + "retention_law", "did you mean van_genuchten"], []),
+    ("bad equation of state", [("eos: ideal", "eos: van_der_waals")], [M + "gas_eos", "peng_robinson | ideal"], []),
+    ("gas that may condense", [("eos: ideal", "eos: peng_robinson, critical_temperature: 304.1 K")], ["region_column_temperature", "gas_critical_temperature", "304.1"], []),
+    ("critical pressure without unit", [("eos: ideal", "eos: ideal, critical_pressure: 4.6")], [M + "gas_critical_pressure", "unit"], []),
     ("bad basis", [("basis: cpgimp", "basis: cubic")], ["basis", "ugimp"], []),
     ("bad stepper", [("type: sdirk2", "type: sdirk3")], ["stepper_type", "euler"], []),
     # --- names

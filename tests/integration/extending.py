@@ -60,6 +60,32 @@ probe: {m: {at: [0.5 m, 0.5 m]}}
 """
 
 
+GAS = """
+title: gas in a closed cell, warmed
+fields: [water, gas, heat]
+grid: {lower: [0 m, 0 m], upper: [0.04 m, 0.04 m], cells: [4, 4]}
+materials: [sand]
+mat:
+  sand:
+    porosity: 0.3
+    solid: {density: 2600 kg/m^3, heat_capacity: 800 J/(kg K), conductivity: 3 W/(m K)}
+    water: {bulk_modulus: incompressible}
+    gas: {eos: virial}
+    retention: {p0: 1 kPa, m: 0.5, Swr: 0.1, Sgr: 0.05}
+    relperm: {nw: 2, ng: 2}
+    permeability: {k0: 1e-16 m^2, hydrate_law: none}
+regions: [cell]
+region: {cell: {lower: [0 m, 0 m], upper: [0.04 m, 0.04 m], material: sand, pressure: 3 MPa, temperature: 4 degC, Sw: 0.6, Sg: 0.4}}
+boundaries: [bath]
+bc: {bath: {type: region_temperature, region: cell, temperature: {ramp: [4 degC, 24 degC, 0 s, 1 s]}}}
+time: {end: 1 s}
+stepper: {adapt: no, dt: 0.01 s}
+probes: [m]
+probe: {m: {at: [0.02 m, 0.02 m]}}
+output: {times: [0 s, 1 s]}
+"""
+
+
 def blocks():
     """[(file, [(old lines, new lines)])] of the page's diff blocks."""
     found = []
@@ -136,6 +162,17 @@ cubic = run(extended, *BP2, "-stepper_type", "euler", "-stepper_dt", "5 s", "-ma
 ratio = cubic.balance["water_out_kg"][-1] / plain.balance["water_out_kg"][-1]
 check("law: water that left, cubic over Kozeny-Carman", ratio, (0.9, 1.1))
 check_true("law: it makes a difference", abs(ratio - 1) > 1e-6, f"{ratio - 1:.2e}")
+
+# an equation of state: in a closed cell of incompressible water the density of the gas stays
+case = tree / "gas.yaml"
+case.write_text(GAS)
+for kind, dt, bar in (("sdirk2", "0.01 s", 1e-9), ("hybrid", "0.001 s", 1e-5)):
+    gas = run(extended, case, "-stepper_type", kind, "-stepper_dt", dt)
+    first, last = gas.snapshot(0.0), gas.snapshot(1.0)
+    rho = (first["mass_gas"] / first["volume"]).mean() / (0.3 * 0.4)
+    p = [rho * 8.314 * (T + 273.15) / (0.016 + rho * 5e-5) for T in (4.0, 24.0)]
+    check(f"equation of state, {kind}: gas of the initial state", abs(first["p_g"].mean() / p[0] - 1), 1e-9)
+    check(f"equation of state, {kind}: rise of p_g when warmed, relative", np.max(np.abs((last["p_g"] - first["p_g"]) / (p[1] - p[0]) - 1)), bar)
 
 # a history variable: the load only grows, so the highest pressure is the pressure
 last = cubic.snapshot(100.0)

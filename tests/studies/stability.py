@@ -27,6 +27,7 @@ from _extremes import CELL, P, SCENE, attempt, cells, difference, scene, stable_
 from _ladder import ElasticWave, Terzaghi  # noqa: E402
 from common import CASES  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
+from soak import read_record, table  # noqa: E402
 
 FOLDER, PAGE, FIGURES = ROOT / "results" / "stability_study", ROOT / "docs" / "stability.md", ROOT / "docs" / "figures"
 DIFFUSION = ROOT / "tests" / "verification" / "cases" / "diffusion.yaml"
@@ -427,7 +428,7 @@ def page(study, found):
              *table(["scene", "step / stable step", *INTEGRATORS],
                     [[n, f"{f:g}", *(cell(row[i], note, lambda e: f"{e:.3g}") for i in INTEGRATORS)] for n, f, row in found["waves"]])]  # fmt: skip
     text += ["## What breaks", "", *breaks(study, found), ""]
-    text += ["## Random scenes and mutated cases", "", (Path(__file__).with_name("soak.md")).read_text()]
+    text += ["## Random scenes and mutated cases", "", soak_text()]
     text += ["## What runs said", "", *(f"{k + 1}. {s}" for k, s in enumerate(note.text)), ""]
     return "\n".join(text)
 
@@ -546,6 +547,12 @@ def draw_steps(found, path):
 
 PARTS = {"properties": properties, "steps": steps, "events": events, "falling": falling, "consolidation": consolidation, "waves": waves,
          "limits": limits}  # fmt: skip
+
+
+def soak_text():
+    """soak.md with the table of all recorded runs of scripts/soak.py."""
+    here = Path(__file__)
+    return here.with_name("soak.md").read_text().replace("@table@", table(read_record(here.with_name("soak.jsonl"))))
 
 
 def main():

@@ -11,7 +11,6 @@ static inline Material SedimentMaterial(void)
                 .solid        = {2600.0, INFINITY, 3e-5, 0.0, 4.0},
                 .hydrate      = {900.0, INFINITY, 2e-4, 0.0, 4.0},
                 .water        = {1000.0, 2.2e9, 2.1e-4, 3.25e6, 4.0},
-                .gas          = {0.016},
                 .mu_w         = 1e-3,
                 .mu_g         = 7e-6,
                 .c_s          = 800.0,
@@ -29,6 +28,8 @@ static inline Material SedimentMaterial(void)
                 .latent       = {473632.0, 140.117},
                 .elasticity   = {90e6, 2e9, 1.0, 1.0, 0.3, false}};
 
+  m.gas = (Gas){.M = 0.016, .Tc = 190.564, .pc = 4.5992e6, .eccentric = 0.01142};
+  assert_true(GasSetType(&m.gas, "ideal"));
   assert_true(RetentionSetType(&m.retention, "van_genuchten"));
   assert_true(PermeabilitySetHydrateType(&m.permeability, "power"));
   assert_true(PermeabilitySetPorosityType(&m.permeability, "kozeny_carman"));

@@ -70,10 +70,11 @@ static Set Draw(void)
   s.kin.A_geo = LogUniform(1, 1e7);
   s.liquid    = (Liquid){Uniform(500, 3000), Chance(0.2) ? INFINITY : LogUniform(1e6, 1e12), Uniform(0, 1e-3),
                          Uniform(0, 1e7), Uniform(-10, 30)};
-  s.gas       = (Gas){Uniform(0.01, 0.05)};
-  s.latent    = (LatentHeat){Uniform(4e5, 5e5), Uniform(0, 200)};
-  s.young     = (Elasticity){
-          LogUniform(1e6, 1e9), LogUniform(1e6, 1e10), Uniform(0, 1), Chance(0.2) ? 1 : LogUniform(0.2, 4), 0.3, false};
+  s.gas       = (Gas){
+            .M = Uniform(0.01, 0.05), .Tc = Uniform(100, 200), .pc = LogUniform(1e6, 1e7), .eccentric = Uniform(-0.2, 0.4)};
+  s.latent = (LatentHeat){Uniform(4e5, 5e5), Uniform(0, 200)};
+  s.young  = (Elasticity){
+       LogUniform(1e6, 1e9), LogUniform(1e6, 1e10), Uniform(0, 1), Chance(0.2) ? 1 : LogUniform(0.2, 4), 0.3, false};
   for (int i = 0; i < 4; i++)
     s.X[i] = LogUniform(0.01, 1e6);
   return s;
@@ -142,6 +143,7 @@ static double F_Liquid(const Row *r, Set *s, const double *x, double *d)
 }
 static double F_GasDensity(const Row *r, Set *s, const double *x, double *d)
 {
+  assert_true(GasSetType(&s->gas, r->type));
   return GasDensity(&s->gas, x[0], x[1], &d[0], &d[1]);
 }
 static double F_Latent(const Row *r, Set *s, const double *x, double *d)
@@ -289,7 +291,8 @@ static const Row rows[] = {
     {"rate constant", NULL, F_Rate, 1, {-50}, {150}, L_Kelvin, K_Rate, 0, 1e6, 1},
     {"formation area", NULL, F_Area, 2, {0, 0}, {1, 1}, L_Fraction, NULL, 0, 2.5e6, 0},
     {"liquid density", NULL, F_Liquid, 2, {1, -50}, {1e9, 150}, L_Liquid, K_Liquid, 1e-90, INFINITY, 1},
-    {"gas density", NULL, F_GasDensity, 2, {1, -50}, {1e9, 150}, L_GasDensity, NULL, 0, INFINITY, 1},
+    {"gas density", "ideal", F_GasDensity, 2, {1, -50}, {1e9, 150}, L_GasDensity, NULL, 0, INFINITY, 1},
+    {"gas density", "peng_robinson", F_GasDensity, 2, {1, -50}, {1e9, 150}, L_GasDensity, NULL, 0, INFINITY, 1},
     {"latent heat", NULL, F_Latent, 1, {-50}, {150}, L_Kelvin, NULL, 3e5, 5e5, -1},
     {"mixture", NULL, F_Mixture, 3, {0, 0, 0}, {1, 1, 1}, L_Fraction, NULL, 0.01, 1e6, 0},
     {"Young", NULL, F_Young, 1, {0}, {1}, L_Fraction, K_Young, 1e6, 1.2e10, 1},

@@ -121,10 +121,35 @@ static void TestLiquidAndStiffness(void **state)
   }
 }
 
+/* The law has one form; what differs is how many states it sees at a time. */
+static void TestGas(void **state)
+{
+  const char *const *type = GasTypes();
+
+  (void)state;
+  for (int k = 0; type[k]; k++) {
+    Gas           law = {.M = 0.016, .Tc = 190.564, .pc = 4.5992e6, .eccentric = 0.01142};
+    static double da_T[N], db_T[N];
+
+    assert_true(GasSetType(&law, type[k]));
+    for (int q = 0; q < N; q++) {
+      x[q] = pow(10.0, RandomIn(0.0, 9.0));
+      y[q] = RandomIn(-50.0, 150.0);
+    }
+    GasDensityBatch(&law, N, x, y, a, da, da_T);
+    for (int q = 0; q < N; q++)
+      b[q] = GasDensity(&law, x[q], y[q], &db[q], &db_T[q]);
+    printf("gas %-14s: density %.1e, slopes %.1e, %.1e\n", type[k], Worst(N, a, b), Worst(N, da, db),
+           Worst(N, da_T, db_T));
+    assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11 && Worst(N, da_T, db_T) < 1e-11);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestRetention), cmocka_unit_test(TestRelPerm),
-                                     cmocka_unit_test(TestPermeability), cmocka_unit_test(TestLiquidAndStiffness)};
+                                     cmocka_unit_test(TestPermeability), cmocka_unit_test(TestGas),
+                                     cmocka_unit_test(TestLiquidAndStiffness)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -290,13 +290,14 @@ static void TestUniformStress(void **state)
   const double        sxx = -5e6, syy = -3e6, sxy = 1.2e6, p = 3.25e6;
 
   (void)state;
-  for (int k = 0; k < 6; k++) {
-    const bool mean = k >= 4, ugimp = k / 2 % 2 || k == 5;
+  for (int k = 0; k < 8; k++) {
+    const bool mean = k >= 4, ugimp = k >= 4 ? k % 2 : k / 2 % 2;
     const int  at = mean ? 0 : k % 2; /* mean dilatation on the grid's lines only */
     Scene     *s  = malloc(sizeof(*s));
 
     SceneInit(s, HAS_ALL, true, false, ugimp ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, box[at], box[at] + 2);
     s->c.mean_dilatation = mean;
+    s->c.mean_strain     = k >= 6 ? 0.9 : 0.0;
     /* normal stress is compression-positive; the shear acts along the normal turned by +90 degrees */
     AddFace(s, BC_TRACTION, SIDE_XMIN, p - sxx, sxy);
     AddFace(s, BC_TRACTION, SIDE_XMAX, p - sxx, sxy);
@@ -312,7 +313,10 @@ static void TestUniformStress(void **state)
     Call(ModelBeginStage(&s->m, &s->stage));
     const double residual = ResidualAt(s, s->m.x_n, 0, F_COUNT);
     Say("uniform stress, %-6s, %s%s: residual %.1e of 1 MPa\n", basis_name[ugimp], at ? "across cells" : "on the grid ",
-        mean ? ", mean dilatation" : "", residual);
+        k >= 6 ? ", mean strain"
+        : mean ? ", mean dilatation"
+               : "",
+        residual);
     Check(residual < 1e-13);
     SceneDestroy(s);
     free(s);

@@ -6,6 +6,8 @@ import numpy as np
 from common import Run, scratch
 
 STRIP = Path(__file__).parent / "cases" / "strip.yaml"
+CIRCLE = STRIP.with_name("circle.yaml")
+COX = 141 * 1.6e3  # Pa
 END = 0.0632  # s
 # name: friction (deg), cohesion, surcharge (MPa), exact mean pressure (MPa), width and depth of the ground (half-widths), settlement
 STRIPS = {
@@ -61,6 +63,14 @@ def collapse(u, load):
     """Collapse load: the mean over the last fifth of the settlement, or of what was reached of it; and how much it still grows there."""
     late = u >= 0.8 * u[-1]
     return load[late].mean(), load[-1] / load[late][0] - 1
+
+
+def circle(cells, strain):
+    """Load over Cox's at a settlement of 0.0005 of the radius, and its growth over the last fifth of it; cells over the radius."""
+    run = Run.of_case(CIRCLE, "-quiet", "-grid_cells", f"{4 * cells},{2 * cells}", "-mean_strain", strain, exit_code=(0, 3))
+    m = run.csv("meters.csv")
+    u, load = -m["plate.position_m"], m["plate.force_N"] / np.pi / COX
+    return load[-1], load[-1] / np.interp(0.8 * u[-1], u, load) - 1
 
 
 def exact(name):

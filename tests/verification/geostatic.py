@@ -64,7 +64,7 @@ TURNED = (("[4 m, 24 m], cells: [2, 12]", "[24 m, 4 m], cells: [12, 2]"), ("[0 m
 UPWARD = (*NO_HEAT, ("fields: thm", "fields: hm"), ("-9.81", "9.81"), ("datum: 40 m", "datum: 20 m"), ("side: top", "side: bottom"),
           ("axis: y, position: 0 m", "axis: y, position: 20 m"))  # fmt: skip
 HYDRATE = (("fields: thm", "fields: thmc"), ("degC, geothermal: 2", "degC, Sh: 0.3, Sw: 0.6999999999, Sg: 1e-10, geothermal: 2"),
-           ("    permeability:", "    gas: {viscosity: 1e6 Pa s}\n    retention: {law: van_genuchten, p0: 10 kPa, m: 0.5, Swr: 0.1, Sgr: 0}\n"
+           ("    permeability:", "    gas: {eos: ideal, viscosity: 1e6 Pa s}\n    retention: {law: van_genuchten, p0: 10 kPa, m: 0.5, Swr: 0.1, Sgr: 0}\n"
             "    relperm: {Swr: 0.1, Sgr: 0.5, nw: 3, ng: 2}\n    permeability:"))  # fmt: skip
 BURST = ("-stepper_type", "hybrid", "-time_end", "1e-4 s", "-stepper_dt", "1e-5 s", "-output_times", "0 s, 1e-4 s",
          "-mat_sand_water_bulk_modulus", "1e13 Pa", "-mat_clay_water_bulk_modulus", "1e13 Pa")  # fmt: skip
