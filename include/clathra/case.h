@@ -182,6 +182,7 @@ typedef struct Case {
   double pressure_projection; /* alpha, 0 = off; default 1 */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
+  bool   saturation_upwind;   /* (200); default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
   char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | auto */
@@ -290,11 +291,12 @@ static inline const char *CaseNeedsImplicit(const Case *c)
     if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u))
       return c->bc[k].name;
   }
-  return c->axisymmetric   ? "geometry: axisymmetric"
-         : c->one_pressure ? "pressures: one"
-         : c->upstream     ? "stabilisation_upstream"
-         : !c->inertia     ? "inertia: no"
-                           : NULL;
+  return c->axisymmetric        ? "geometry: axisymmetric"
+         : c->one_pressure      ? "pressures: one"
+         : c->upstream          ? "stabilisation_upstream"
+         : c->saturation_upwind ? "stabilisation_saturation"
+         : !c->inertia          ? "inertia: no"
+                                : NULL;
 }
 
 /* Reads and checks a case (a folder or a .yaml file) together with the options database, collectively.

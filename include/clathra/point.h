@@ -50,6 +50,7 @@ typedef struct {
   double          T_n, Sh_n; /* at t_n */
   double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   SkeletonHistory skeleton;
+  double          spread[PHASE_COUNT];  /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
   double          proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double bracket;  /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
@@ -89,6 +90,7 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 /* Properties at t_n that projections, scales and stabilisation need. */
 typedef struct {
   double rho[PHASE_COUNT], drag[PHASE_COUNT]; /* kg/m^3, Pa s/m^2 */
+  double mobility_slope[PHASE_COUNT];         /* d(1/drag)/dp_c, m^2/(Pa^2 s) */
   double s[PHASE_COUNT], phi, Sh;             /* s_w, s_g, porosity, hydrate saturation */
   double capacity, kappa;                     /* V C_m (J/K), W/(m K) */
   double M, G;                                /* constrained and shear modulus, Pa */

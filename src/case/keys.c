@@ -223,6 +223,8 @@ static const Key case_key[] = {
     BOOLEAN(Case, "stabilisation_flux_interpolation", flux_interpolation, "yes", "momentum-interpolated mass flux"),
     BOOLEAN(Case, "stabilisation_upstream", upstream, "no",
             "relative permeabilities from upstream, for sharp fronts of saturation"),
+    BOOLEAN(Case, "stabilisation_saturation", saturation_upwind, "no",
+            "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

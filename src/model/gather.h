@@ -270,6 +270,8 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->sw_n    = ParticleSw(m, p);
   h->dt      = m->stage.dt;
   h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
   h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
   for (int d = 0; h->ambient && d < CL_DIM; d++)
     h->x[d] = AxisCentroid(&m->stencil[p].axis[d], m->grid.lower[d], m->grid.h[d]);

@@ -26,10 +26,13 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
   if (m->P.n > m->stencil_cap) {
     PetscCall(PetscFree(m->stencil));
     PetscCall(PetscFree(m->wide));
+    PetscCall(PetscFree(m->spread));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
     if (m->c->fields.fluid && m->c->flux_interpolation)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
+    if (m->c->saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
+      PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
   }
   for (PetscInt p = 0; p < m->P.n; p++) {
     Stencil *s = &m->stencil[p];
@@ -99,6 +102,22 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   }
   if (fs->heat)
     s[SUM_X + PlaceT(fs)] += S * q->capacity * Carried(m, p, P_T, P_GT, d);
+}
+
+/* Diffusion of p_c that carries the saturations of a fluid with its flow (200). */
+static double SpreadOf(const Model *m, PetscInt p, int phase, const PointProperties *q)
+{
+  static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
+  const double     both                  = 1.0 / (q->drag[PHASE_W] + q->drag[PHASE_G]);
+  double           g[CL_DIM], hg = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    g[d] = m->P.f[gradient[phase] + d][p] - q->rho[phase] * m->c->gravity[d];
+    hg += m->grid.h[d] * fabs(g[d]);
+  }
+  const double Pe = 0.5 * hg * fabs(q->mobility_slope[phase]) / both;
+
+  return Pe > 1e-4 ? both * (Pe / tanh(Pe) - 1.0) : 0.0;
 }
 
 /* Did the particle's domain begin at the axis? */
@@ -194,6 +213,8 @@ static PetscErrorCode Project(Model *m)
       ModelNoteFailure(m, status, why, p);
       continue;
     }
+    for (int k = 0; m->spread && k < PHASE_COUNT; k++)
+      m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
   }

@@ -175,6 +175,32 @@ static void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
   }
 }
 
+/* (200): adds V_n rho D K (g_g - g_w). */
+static void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
+                   const double in[IN_COUNT], bool tangent, PointOutput *o)
+{
+  const double c[2] = {in[IN_GP + 2] - in[IN_GP], in[IN_GP + 3] - in[IN_GP + 1]}, VD = h->V * h->spread[f];
+  const Jet    rho = s->rho[f];
+
+  if (VD == 0.0)
+    return;
+  for (int i = 0; i < 2; i++) {
+    const double Kc = metric->K[i][0] * c[0] + metric->K[i][1] * c[1];
+    double      *D  = o->D[OUT_FLUX + 2 * f + i];
+
+    o->out[OUT_FLUX + 2 * f + i] += VD * rho.v * Kc;
+    if (!tangent)
+      continue;
+    AddJet(D, VD * Kc, &rho, k);
+    for (int q = 0; q < MOTION_COUNT; q++)
+      D[q] += VD * rho.v * (metric->d[i][0][q] * c[0] + metric->d[i][1][q] * c[1]);
+    for (int j = 0; j < 2; j++) {
+      D[IN_GP + 2 + j] += VD * rho.v * metric->K[i][j];
+      D[IN_GP + j] -= VD * rho.v * metric->K[i][j];
+    }
+  }
+}
+
 /* (18)-(20): Phi = V_n rho [ cof^T J + tau K (Pi g - g) ]. */
 static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
                  const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
@@ -386,6 +412,7 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
       continue;
     FluidForces(h, k, f, in, tangent, o);
     Flux(fs, h, k, &metric, &s, f, in, tangent, o, &state->tau[f]);
+    Spread(h, k, &metric, &s, f, in, tangent, o);
     FluidScalars(mat, h, k, &s, f, tangent, o);
   }
   if (fs->heat) {

@@ -291,9 +291,11 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
 
     if (!fs->phase[f])
       continue;
-    r->rho[f]     = s.rho[f].v;
-    r->drag[f]    = s.drag[f].v;
-    r->storage[f] = m->d[f == PHASE_W ? JET_PW : JET_PG] / (V * s.rho[f].v);
+    r->rho[f]            = s.rho[f].v;
+    r->drag[f]           = s.drag[f].v;
+    const Jet mobility   = JetDiv(JetConstant(1.0), s.drag[f]);
+    r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
+    r->storage[f]        = m->d[f == PHASE_W ? JET_PW : JET_PG] / (V * s.rho[f].v);
   }
   if (fs->heat) {
     r->capacity = s.capacity.v;

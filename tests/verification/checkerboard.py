@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+"""The README's own case, on half its cells: no alternating saturations beside the end of the pressure face with
+stabilisation_saturation (200); what it must not change; water and methane; two ranks; hybrid refuses it."""
+import re
+from pathlib import Path
+
+import numpy as np
+
+from common import ROOT, binary, check, check_true, finish, largest_difference, launch, run, scratch
+
+case = scratch() / "case.yaml"
+case.write_text(re.search(r"```yaml\n(title: a hydrate layer is drawn down.*?)```", Path(ROOT / "README.md").read_text(), re.S)[1])
+ROW, OPTIONS = 20, ("-quiet", "-grid_cells", "10,6", "-time_end", "1 h", "-output_every", "1 h")
+
+
+def well(upwind, *more, **keywords):
+    return run(binary(), case, *OPTIONS, "-stabilisation_saturation", upwind, *more, **keywords)
+
+
+def alternation(done, quantity):
+    """Largest second difference over neighbouring cells of a particle variable, and its range."""
+    v = done.snapshot(3600.0)[quantity].ravel().reshape(-1, ROW)
+    across, along = v[:, 4:] - 2 * v[:, 2:-2] + v[:, :-4], v[4:] - 2 * v[2:-2] + v[:-4]
+    return max(np.max(np.abs(across)), np.max(np.abs(along)))
+
+
+upwind, central = well("yes"), well("no")
+print(f"S_w: second differences of up to {alternation(central, 'S_w'):.4f} without (200), {alternation(upwind, 'S_w'):.4f} with it")
+check("S_w: largest second difference between cells, of that without (200)", alternation(upwind, "S_w") / alternation(central, "S_w"), 0.3)
+p = [r.probe("middle")["p_Pa"][-1] for r in (upwind, central)]
+check("pressure at the probe, with and without, of the drop", abs(p[0] - p[1]) / 2e6, 0.01)
+for name in ("water_error", "methane_error"):
+    check(f"{name}", np.max(np.abs(upwind.balance[name])), 1e-12)
+two = well("yes", ranks=2)
+check("1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], upwind.probe("middle")["p_Pa"]), 1e-7)
+hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-stabilisation_saturation", "yes", "-case_check", out=scratch() / "out")
+check_true("hybrid refuses it by name", hybrid.returncode == 2 and "stabilisation_saturation" in hybrid.stdout, hybrid.stdout)
+finish()
