@@ -235,14 +235,21 @@ static void Limit(const Case *c, const Range *r, const double mean[LIMITED], dou
 
   for (int k = 0, first = 0; k < GROUPS; first = group_end[k++]) {
     static const double saturation[2] = {1.0, 0.0};
-    double              share         = 1.0;
+    double              share = 1.0, end = 0.0;
+    int                 tight = -1; /* the one that ends where its range does, to the last digit */
 
     for (int q = first; q < group_end[k] && (among || k == GROUPS - 1); q++) {
-      if (ProbeWanted(c, q))
-        share = fmin(share, Share(value[q], mean[q], among ? &r->top[2 * q] : saturation));
+      const double *top = among ? &r->top[2 * q] : saturation;
+      const double  own = ProbeWanted(c, q) ? Share(value[q], mean[q], top) : 1.0;
+
+      if (own < share) {
+        share = own;
+        tight = q;
+        end   = value[q] > mean[q] ? top[0] : -top[1];
+      }
     }
     for (int q = first; q < group_end[k] && share < 1.0; q++)
-      value[q] = mean[q] + share * (value[q] - mean[q]);
+      value[q] = q == tight ? end : mean[q] + share * (value[q] - mean[q]);
   }
 }
 

@@ -310,8 +310,8 @@ static bool Change(const Key *k, char *instance)
 /* A checkpoint is refused when any key was changed, but those that a restart may change. */
 static void EveryKeyIsInTheFingerprint(void **state)
 {
-  static const char *const free_[] = {"title",          "fields",  "time_",     "stepper_",
-                                      "stabilisation_", "output_", "standard_", "checkpoint_"};
+  static const char *const free_[] = {"title",   "fields",    "time_",       "stepper_", "stabilisation_",
+                                      "output_", "standard_", "checkpoint_", "ice"};
   Case                     c;
   int                      changed = 0;
 
