@@ -37,6 +37,26 @@ static inline Material SedimentMaterial(void)
   return m;
 }
 
+/* Weak against the stresses of the tests, so that nearly all states are plastic; heat: share of the work. */
+static inline Plasticity WeakPlasticity(int flow, double heat)
+{
+  return (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
+                      .flow         = flow,
+                      .c_max        = 2e5,
+                      .c_min        = 1e5,
+                      .c_res        = 5e4,
+                      .phi_peak     = 25.0,
+                      .phi_res      = 20.0,
+                      .psi_max      = 12.0,
+                      .psi_min      = 8.0,
+                      .eta_h        = 3.0,
+                      .Sh_max       = 0.4,
+                      .eta_s        = 1.0,
+                      .eccentricity = 0.1,
+                      .cutoff       = INFINITY,
+                      .heat         = heat};
+}
+
 /* The full set of fields. */
 static inline const FieldSet *AllFields(void)
 {

@@ -57,20 +57,7 @@ static void SetMaterial(Material *m, const Variant *v)
     m->latent.dc                  = -300.0;
   }
   if (v->yields)
-    m->plasticity = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
-                                 .flow         = FLOW_MENETREY_WILLAM,
-                                 .c_max        = 2e5,
-                                 .c_min        = 1e5,
-                                 .c_res        = 5e4,
-                                 .phi_peak     = 25.0,
-                                 .phi_res      = 20.0,
-                                 .psi_max      = 12.0,
-                                 .psi_min      = 8.0,
-                                 .eta_h        = 3.0,
-                                 .Sh_max       = 0.4,
-                                 .eta_s        = 1.0,
-                                 .eccentricity = 0.1,
-                                 .cutoff       = INFINITY};
+    m->plasticity = WeakPlasticity(FLOW_MENETREY_WILLAM, 0.0); /* hybrid gives the heat a step later */
 }
 
 static const double stress[6] = {-4e6, -1.2e6, -1.1e6, 0.0, 0.0, 0.0}; /* effective, Pa */

@@ -14,26 +14,6 @@ static const struct {
 } sets[] = {{"m", HAS_SOLID}, {"tm", HAS_SOLID | HAS_HEAT}, {"hm", HAS_SOLID | HAS_WATER}, {"thmc", HAS_ALL}};
 #define SETS ((int)(sizeof(sets) / sizeof(*sets)))
 
-/* Weak against the stresses of the random states, so that nearly all of them are plastic. */
-static Plasticity Weak(int flow)
-{
-  return (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
-                      .flow         = flow,
-                      .c_max        = 2e5,
-                      .c_min        = 1e5,
-                      .c_res        = 5e4,
-                      .phi_peak     = 25.0,
-                      .phi_res      = 20.0,
-                      .psi_max      = 12.0,
-                      .psi_min      = 8.0,
-                      .eta_h        = 3.0,
-                      .Sh_max       = 0.4,
-                      .eta_s        = 1.0,
-                      .eccentricity = 0.1,
-                      .cutoff       = INFINITY,
-                      .heat         = 0.7};
-}
-
 /* ---------------------------------------------------------------- a particle */
 typedef struct {
   FieldSet     fs;
@@ -67,7 +47,7 @@ static void RandomPoint(Rng *r, Point *q)
   double       ds;
 
   q->mat            = SedimentMaterial();
-  q->mat.plasticity = Weak(RngPick(r, 2));
+  q->mat.plasticity = WeakPlasticity(RngPick(r, 2), 0.7);
   q->mat.reacts     = gas && RngPick(r, 2);
   q->h              = (PointHistory){.V = 2e-4, .T_n = T, .Sh_n = 0.2, .dt = RngLog(r, 0.1, 10.0), .bracket = 1.0};
   const double sg   = gas ? RetentionGasShare(&q->mat.retention, pg - pw, &ds) : 0.0;
@@ -177,7 +157,7 @@ static void TestJacobian(void **state)
     s->c.mean_dilatation     = mean || (strain && k % 2);
     s->c.mean_strain         = strain ? 0.7 : 0.0;
     s->mat.elasticity.change = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
-    s->mat.plasticity        = Weak(k % 2);
+    s->mat.plasticity        = WeakPlasticity(k % 2, 0.7);
     s->c.fields.has |= SkeletonHas(&s->mat);
     JacobianState(s);
     for (PetscInt p = 0; p < s->m.P.n; p++)
