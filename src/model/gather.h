@@ -329,6 +329,8 @@ void EliminateParticle(const Model *m, const Reach *r, const double *x, const do
                        PointOutput *o);
 void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput *o);
 /* The reduced matrix and its solver (reduced.c). */
+/* Types of the solvers of the groups that are there, behind -reduced_..., which options of the user win over. */
+PetscErrorCode ReducedPreferences(bool flow, bool motion);
 PetscErrorCode ReducedCreate(Model *m);
 PetscErrorCode ReducedDestroy(Reduced **reduced);
 PetscErrorCode ReducedBegin(Model *m, Assembly *to); /* empties it, says what to assemble */

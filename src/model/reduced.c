@@ -108,89 +108,6 @@ static PetscErrorCode RigidMotions(Model *m, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An option of the solver unless the user gave it. */
-static PetscErrorCode Prefer(const char *name, const char *value)
-{
-  PetscBool given;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
-  if (!given)
-    PetscCall(PetscOptionsSetValue(NULL, name, value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* An option of a group's solver: `name` behind its prefix. */
-static PetscErrorCode PreferFor(const char *group, const char *name, const char *value)
-{
-  char full[128];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "-reduced_fieldsplit_%s_%s", group, name));
-  PetscCall(Prefer(full, value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode IsGiven(const char *group, PetscBool *given)
-{
-  char full[128];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "-reduced_fieldsplit_%s_pc_type", group));
-  PetscCall(PetscOptionsHasName(NULL, NULL, full, given));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Algebraic multigrid, unless the user wants something else. */
-static PetscErrorCode PreferMotion(void)
-{
-  PetscBool given;
-
-  PetscFunctionBeginUser;
-  PetscCall(IsGiven("motion", &given));
-  if (given)
-    PetscFunctionReturn(PETSC_SUCCESS);
-#if defined(PETSC_HAVE_HYPRE)
-  PetscCall(PreferFor("motion", "pc_type", "hypre"));
-  PetscCall(PreferFor("motion", "pc_hypre_boomeramg_strong_threshold", "0.5"));
-#else
-  PetscCall(PreferFor("motion", "pc_type", "gamg"));
-#endif
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Aggregates of nodes, all fields of a node together, smoothed by ILU: capillary pressure and reaction couple the
-   fields within a node so strongly that multigrid field by field diverges. */
-static PetscErrorCode PreferFlow(void)
-{
-  PetscBool given;
-
-  PetscFunctionBeginUser;
-  PetscCall(IsGiven("flow", &given));
-  if (given)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PreferFor("flow", "pc_type", "gamg"));
-  PetscCall(PreferFor("flow", "mg_levels_ksp_type", "richardson"));
-  PetscCall(PreferFor("flow", "mg_levels_ksp_max_it", "1"));
-  PetscCall(PreferFor("flow", "mg_levels_pc_type", "bjacobi"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Preferences(const Reduced *r)
-{
-  char type[32] = PCFIELDSPLIT;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-reduced_pc_type", type, sizeof(type), NULL));
-  if (strcmp(type, PCFIELDSPLIT) != 0)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (r->count[FLOW] > 0)
-    PetscCall(PreferFlow());
-  if (r->count[MOTION] > 0)
-    PetscCall(PreferMotion());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode CreateMatrices(Model *m, Reduced *r)
 {
   Mat        a[GROUPS * GROUPS];
@@ -273,7 +190,7 @@ PetscErrorCode ReducedCreate(Model *m)
   PetscCall(CreateMatrices(m, r));
   PetscCall(MatCreateVecs(r->nest, &r->y, &r->b));
   PetscCall(MatCreateVecs(m->J2, &r->slaved, &r->diagonal));
-  PetscCall(Preferences(r));
+  PetscCall(ReducedPreferences(r->count[FLOW] > 0, r->count[MOTION] > 0));
   PetscCall(CreateSolver(r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
