@@ -123,10 +123,9 @@ enum {
 };
 
 typedef struct {
-  int    root;  /* fuller node that this one follows; its own number if it stands for itself */
-  double own;   /* share that it keeps of its own balances; 1 if it follows nobody */
-  int    held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
-  bool   leads; /* others follow it */
+  int    root; /* fuller node that this one follows; its own number if it stands for itself */
+  double own;  /* share that it keeps of its own balances; 1 if it follows nobody */
+  int    held; /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
 } NodeInfo;
 
 /* Parts of a step in -log_view. */
@@ -141,12 +140,11 @@ struct Explicit {
   int            *base[CL_DIM]; /* first node along each axis, as at the last look */
   PetscInt       *order, *key;  /* work space of the sort */
   NodeMap         map;
-  int            *slot;              /* padded grid node -> row */
-  PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
-  double         *raw;               /* memory of the arrays below */
-  double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it */
-  double *gain;   /* [rows][3] the same of the scalars */
+  int            *slot;          /* padded grid node -> row */
+  PetscInt        rows;          /* n_local + 1: the last row takes what nobody needs */
+  double         *raw;           /* memory of the arrays below */
+  double         *A, *B, *R, *C; /* [rows][8 n] */
+  double *gain;   /* [rows][3] increments of the scalars from a node's own balances, with what its followers gave it */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
   NodeInfo *node; /* [rows] */
