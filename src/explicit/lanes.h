@@ -10,6 +10,7 @@
 
 #define BLOCK 32
 #define LANES 8
+#define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
 #define INLINE static inline __attribute__((always_inline))
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
@@ -281,6 +282,21 @@ PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
+
+/* Do relative changes of p_g go through the nodes (151)? */
+INLINE bool Relative(const Explicit *e, Set s)
+{
+  return s.fluids == 2 && !e->o.particle_pressures;
+}
+
+/* (151): increments of p_w and p_g, where the latter is p_g, from what the nodes have solved for. */
+INLINE void PressuresOf(double p_g, const double y[2], double d[2])
+{
+  const double gas = p_g / PRESSURE_UNIT * y[1];
+
+  d[0] = gas + y[0];
+  d[1] = gas;
+}
 
 INLINE double Largest(double a, double b)
 {

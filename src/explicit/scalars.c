@@ -90,6 +90,13 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
   }
   for (int k = 0; k < n; k++)
     c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
+  if (Relative(e, s)) {
+    double d[2];
+
+    PressuresOf(a[1] / V, c, d);
+    for (int k = 0; k < 2; k++)
+      c[C_End(s) + k] = a[k] / V + d[k];
+  }
   if (s.heat)
     rates->heat_rate += a[A_C(s)] * c[s.fluids];
   for (int d = 0; s.solid && d < CL_DIM; d++)

@@ -52,6 +52,18 @@ INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
   }
 }
 
+/* (151) */
+INLINE void Pressures(const Explicit *e, Run r, Gathered *g)
+{
+  const double *restrict p = e->m->P.f[P_PG] + r.p;
+
+  for (int q = 0; q < r.n; q++) {
+    const double y[2] = {g->value[q][0], g->value[q][1]};
+
+    PressuresOf(p[q], y, g->value[q]);
+  }
+}
+
 typedef struct {
   double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK];
 } Strain;
@@ -394,6 +406,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], LANES, &g.dx[q][C_Vs(s)], &g.dy[q][C_Vs(s)]);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
+  if (Relative(e, s))
+    Pressures(e, r, &g);
   if (!Fields(e, s, r, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", r.p);
   MassesOf(e, s, r, &g, kept, &e->m->limited);
