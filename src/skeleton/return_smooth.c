@@ -86,6 +86,19 @@ static bool Settled(const Trial3 *t, double scale, const double x[UNKNOWNS], con
   return most <= CLOSE * scale && x[X_L] >= -CLOSE * scale;
 }
 
+/* What that leaves of F goes off the mean stress. */
+static bool OntoSurface(const Trial3 *t, double x[UNKNOWNS])
+{
+  Strength k;
+  double   dF[3], dphi;
+
+  StrengthAt(t, t->eps + x[X_EPS], &k);
+  const double off = MohrCoulombYield(k.phi, k.c, x, dF, &dphi) / (dF[0] + dF[2]);
+  for (int i = 0; i < 3; i++)
+    x[i] -= isfinite(off) ? off : 0.0;
+  return true;
+}
+
 /* Newton with halved steps from x; true if it arrived. */
 static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *iterations)
 {
@@ -113,7 +126,7 @@ static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *itera
         break;
       }
       if (h == HALVINGS)
-        return Settled(t, scale, x, dx);
+        return Settled(t, scale, x, dx) && OntoSurface(t, x);
     }
     for (int i = 0; i < UNKNOWNS; i++)
       x[i] = to[i];
