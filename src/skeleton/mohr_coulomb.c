@@ -257,9 +257,10 @@ bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char *
                             .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
     double             over[4], e[4];
 
-    found       = Return(mat, &d, SkeletonNonlocal(f, q), &s, NULL, over, e, why) && found;
-    b->work[q]  = s.work;
-    f->yield[q] = (double)s.region;
+    const bool fine = Return(mat, &d, SkeletonNonlocal(f, q), &s, NULL, over, e, why);
+    found           = found && fine;
+    b->work[q]      = fine ? s.work : NAN;
+    f->yield[q]     = (double)s.region;
     if (s.region != RETURN_ELASTIC)
       KeepReturned(f, q, &s, BondShare(&mat->elasticity, &d), over);
   }
