@@ -159,6 +159,7 @@ typedef struct Case {
   bool      axisymmetric;      /* x is the radius, y runs along the axis; all per full ring */
   char      fields_wanted[64]; /* auto, or the words of cl_field_word, or the name of a set */
   bool      inertia, one_pressure;
+  bool      compression_heat;                /* heat of compression and throttling of the fluids (290) */
   FieldSet  fields;                          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM];                 /* m/s^2 */
   double    gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */

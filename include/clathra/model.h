@@ -53,7 +53,8 @@ enum {
 /* Rates over the boundary and inside at the end of a stage, global sums. */
 typedef struct {
   double out[PHASE_COUNT];                /* kg/s */
-  double heat_in, heat_source, heat_rate; /* W: through the boundary, latent less advected, stored */
+  double heat_in, heat_source, heat_rate; /* W: through the boundary; latent and squeezed less advected; stored */
+  double squeezed;                        /* W: of compression and throttling of the fluids (290) */
   double meter[CL_METERS][METER_COUNT];
   double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;

@@ -155,6 +155,8 @@ static const Key case_key[] = {
     BOOLEAN(Case, "inertia", inertia, "yes", "accelerations; no is quasi-static"),
     BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
             .choices = pressures_word),
+    BOOLEAN(Case, "compression_heat", compression_heat, "no",
+            "fluids warm as they are compressed and cool or warm as they are throttled (Joule-Thomson)"),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
     BOOLEAN(
         Case, "mean_dilatation", mean_dilatation, "no",
