@@ -240,6 +240,15 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, double 
   }
 }
 
+/* (290): what the rise of the pressures gave. */
+INLINE void CountCompression(Explicit *e, const Set s, Run r, const Gathered *g)
+{
+  for (int k = 0; k < s.fluids; k++) {
+    for (int q = 0; q < r.n; q++)
+      e->squeezed += e->t[T_WARM + k][r.p + q] * g->value[q][k];
+  }
+}
+
 /* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
 INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
@@ -460,6 +469,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (!Fields(e, s, r, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
   MassesOf(e, s, r, &g, kept, &e->m->limited);
+  if (s.heat && e->m->c->compression_heat)
+    CountCompression(e, s, r, &g);
   Relax(e, s, r, &g, dt);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   if (!s.solid)

@@ -90,6 +90,8 @@ CASES = [
     ("ambient on a face without a fluid around", [(", initial: yes", ", pressure: ambient")], ["bc_drain_pressure", "neither ambient_pressure"], []),
     ("ambient in a misspelt word", [(", initial: yes", ", pressure: ambiant"), ("basis: cpgimp", "ambient: {pressure: 1 MPa}")],
      ["bc_drain_pressure", "ambiant"], []),
+    ("heat of compression without heat", [("basis: cpgimp", "compression_heat: yes\nfields: [solid, water]")], ["compression_heat", "heat and a fluid"], []),
+    ("heat of compression in the bare form", [("basis: cpgimp", "compression_heat: yes\nstepper_pressures: particles")], ["compression_heat", "stepper_pressures: particles"], []),
     ("drag of a fluid without density", [("basis: cpgimp", "ambient: {pressure: 1 MPa, drag: 1.2}")], ["ambient_drag", "ambient_density"], []),
     ("ambient density without gravity", [("basis: cpgimp", "ambient: {density: 1025 kg/m^3}")], ["ambient_density", "without gravity"], []),
     ("negative ambient pressure", [("basis: cpgimp", "ambient: {pressure: -1 MPa}")], ["ambient_pressure", "[0,1e10]"], []),
