@@ -114,7 +114,8 @@ enum {
   T_V    = T_DRAG + 2,   /* volume at the end of the step */
   T_EOS,                 /* [2] masses at that volume and the old pressures */
   T_SLOPE = T_EOS + 2,   /* [2][3] their slopes in p_w, p_g, T */
-  T_GAIN  = T_SLOPE + 6, /* hydrate: gain at the old p and T, slopes in p and T */
+  T_WARM  = T_SLOPE + 6, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
+  T_GAIN  = T_WARM + 2,  /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
   T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
@@ -162,6 +163,7 @@ struct Explicit {
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
   double latent, advected;          /* J over the step */
+  double squeezed;                  /* (290), J over the step */
   double ahead;                     /* of the end of the step, since ExplicitBegin, s */
   double work[WORK_RATES];          /* J over the step (92), this rank */
   double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */

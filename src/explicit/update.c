@@ -56,6 +56,18 @@ INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
   }
 }
 
+/* Particle of a block with the largest value; NaN is larger than all. */
+static PetscInt Worst(Run r, const double size[])
+{
+  int worst = 0;
+
+  for (int q = 1; q < r.n && !isnan(size[worst]); q++) {
+    if (!(size[q] <= size[worst]))
+      worst = q;
+  }
+  return r.p + worst;
+}
+
 typedef struct {
   double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK];
 } Strain;
@@ -93,6 +105,38 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
   return !large; /* NaN is wrong as well */
 }
 
+/* The particle of a block that is strained most. */
+static PetscInt Strained(Run r, const Strain *n)
+{
+  double size[BLOCK];
+
+  for (int q = 0; q < r.n; q++)
+    size[q] = n->xx[q] * n->xx[q] + n->yy[q] * n->yy[q] + 2.0 * n->xy[q] * n->xy[q];
+  return Worst(r, size);
+}
+
+#define FARTHEST 1e15 /* Pa, degC: beyond it a field has left its range */
+
+static double Least(int field)
+{
+  return field == 0 ? -FARTHEST : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
+}
+
+/* The first particle of a block with a field outside its range. */
+static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
+{
+  for (int q = 0; q < r.n; q++) {
+    for (int k = 0; k < Scalars(s); k++) {
+      const int    field = k < s.fluids ? k : 2;
+      const double y     = e->m->P.f[P_PW + field][r.p + q];
+
+      if (!(y > Least(field) && y < FARTHEST))
+        return r.p + q;
+    }
+  }
+  return r.p;
+}
+
 /* p_w, p_g, T and their gradients; false if one leaves its range. */
 INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
 {
@@ -103,13 +147,13 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
     const int field    = k < s.fluids ? k : 2;
     double *restrict y = e->m->P.f[P_PW + field] + r.p, *restrict gx = e->m->P.f[grad[field]] + r.p,
                      *restrict gy = e->m->P.f[grad[field] + 1] + r.p;
-    const double least            = field == 0 ? -1e15 : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
+    const double least            = Least(field);
 
     for (int q = 0; q < r.n; q++) {
       y[q] += g->value[q][k];
       gx[q] = g->dx[q][C_End(s) + k];
       gy[q] = g->dy[q][C_End(s) + k];
-      out |= WRONG_UNLESS((y[q] > least) & (y[q] < 1e15));
+      out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
   }
   return !out;
@@ -200,20 +244,30 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, double 
   }
 }
 
+/* (290): what the rise of the pressures gave. */
+INLINE void CountCompression(Explicit *e, const Set s, Run r, const Gathered *g)
+{
+  for (int k = 0; k < s.fluids; k++) {
+    for (int q = 0; q < r.n; q++)
+      e->squeezed += e->t[T_WARM + k][r.p + q] * g->value[q][k];
+  }
+}
+
 /* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
 INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
   double *const *f     = e->m->P.f;
   const bool     known = s.fluids || s.heat; /* the volume, from the pass before */
   double *restrict V = f[P_V] + r.p, *restrict Sh = f[P_SH] + r.p;
-  const double *restrict at = known ? e->t[T_V] + r.p : V, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK]                                                      = {0.0};
+  const double *restrict at = known ? e->t[T_V] + r.p : NULL, *restrict ms = f[P_MS] + r.p,
+                         *restrict mh = f[P_MH] + r.p;
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
   Wrong  full = 0;
 
   LiquidDensityBatch(&r.mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const double volume = known ? at[q] : at[q] * n->J[q], pore = volume - ms[q] / rho_s[q],
+    const double volume = known ? at[q] : V[q] * n->J[q], pore = volume - ms[q] / rho_s[q],
                  open = pore - mh[q] / rho_h[q];
 
     full |= WRONG_UNLESS(open > 0.0);
@@ -313,7 +367,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
 
   ElasticityYoungBatch(el, r.n, Sh, E_old);
   if (!PoresOf(e, s, r, n, T, phi))
-    ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", Worst(r, Sh)); /* S_h >= 1 */
   ElasticityYoungBatch(el, r.n, Sh, E);
   ThermalStrain(e, s, r, g, phi, thermal);
   const SkeletonBlock block = {.n       = r.n,
@@ -331,7 +385,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
   e->m->released += Released(el, &block, e->m->P.f[P_V] + r.p);
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
-    ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, why, Worst(r, work));
   if (yields)
     PlasticWork(e, r, work);
 }
@@ -352,6 +406,25 @@ INLINE void Deform(Explicit *e, const Set s, Run r, const Gathered *g, double dt
       y[q] += b;
     }
   }
+}
+
+/* The particle of a block that moves farthest, in cells, or stands outside the grid. */
+static PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  const Grid *grid = &e->m->grid;
+  double      size[BLOCK];
+
+  for (int q = 0; q < r.n; q++) {
+    size[q] = 0.0;
+    for (int d = 0; d < CL_DIM; d++) {
+      const double x = (e->m->P.f[P_X + d][r.p + q] - grid->lower[d]) / grid->h[d];
+
+      size[q] = fmax(size[q], fabs(dt * g->value[q][C_Vs(s) + d]) / grid->h[d]);
+      if (!(x >= 0.0 && x <= (double)grid->cells[d]))
+        size[q] = NAN;
+    }
+  }
+  return Worst(r, size);
 }
 
 /* Positions and domains; false if a particle crosses half a cell or leaves the grid. */
@@ -400,14 +473,16 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))
-    ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", r.p);
+    ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
   MassesOf(e, s, r, &g, kept, &e->m->limited);
+  if (s.heat && e->m->c->compression_heat)
+    CountCompression(e, s, r, &g);
   Relax(e, s, r, &g, dt);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   if (!s.solid)
     return;
   if (!StrainOf(s, r.n, &g, dt, &n))
-    ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", Strained(r, &n));
   CarryGradients(e, s, r, &g, &n, dt);
   ExpansionWork(e, s, r, &g, &n, dt);
   StressOf(e, s, r, &g, &n, T, kept);
@@ -419,7 +494,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
       Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], LANES);
   }
   if (!Move(e, s, r, &g, &n, dt))
-    ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step, or leaves the grid", r.p);
+    ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step, or leaves the grid",
+                     Farthest(e, s, r, &g, dt));
 }
 
 MAKE_LOOPS(UpdateRun)

@@ -278,6 +278,8 @@ static bool ReturnOne(const Material *mat, const SkeletonBlock *b, Yielding *y, 
   const bool found = Return(mat, &y->d, SkeletonNonlocal(&b->store, y->q), &y->p, &y->s, NULL, over, e, why);
 
   KeepYielding(mat, b, y, over);
+  if (!found)
+    b->work[y->q] = NAN;
   return found;
 }
 
