@@ -159,6 +159,7 @@ typedef struct Case {
   bool      axisymmetric;      /* x is the radius, y runs along the axis; all per full ring */
   char      fields_wanted[64]; /* auto, or the words of cl_field_word, or the name of a set */
   bool      inertia, one_pressure;
+  bool      compression_heat;                /* heat of compression and throttling of the fluids (290) */
   FieldSet  fields;                          /* what the scene needs, as named or derived */
   double    gravity[CL_DIM];                 /* m/s^2 */
   double    gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
@@ -183,6 +184,7 @@ typedef struct Case {
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
   bool   saturation_upwind;   /* (200); default false */
+  bool   lumped_reaction;     /* (265); default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
   char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | auto */
@@ -295,6 +297,7 @@ static inline const char *CaseNeedsImplicit(const Case *c)
          : c->one_pressure      ? "pressures: one"
          : c->upstream          ? "stabilisation_upstream"
          : c->saturation_upwind ? "stabilisation_saturation"
+         : c->lumped_reaction   ? "stabilisation_reaction"
          : !c->inertia          ? "inertia: no"
                                 : NULL;
 }

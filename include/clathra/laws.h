@@ -104,11 +104,15 @@ struct Gas {
   double eccentric; /* acentric factor; peng_robinson */
   /* of n states p (Pa), T (degC): rho, d rho/dp, d rho/dT; nothing may overlap.  NULL: ideal */
   void (*density)(const Gas *, int n, const double *p, const double *T, double *rho, double *drho_dp, double *drho_dT);
+  /* beta at the density rho (kg/m^3), T_K, with its slopes in both */
+  double (*expansion)(const Gas *, double rho, double TK, double *db_drho, double *db_dT);
   const char *type;
 };
 bool               GasSetType(Gas *law, const char *type); /* peng_robinson | ideal (M p/(R T_K)) */
 const char *const *GasTypes(void);
 double             GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
+/* Volumetric thermal expansion -(1/rho) drho/dT at constant pressure, 1/K, with slopes in p and T (291). */
+double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double *dbeta_dT);
 
 /* ---------------------------------------------------------------- salt water; salinity in kg of salt per kg of brine
  */

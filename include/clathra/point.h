@@ -38,7 +38,7 @@ enum {
   OUT_D     = 20, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
   OUT_DM    = 22, /* [pi] mass gained minus released by hydrate, kg */
   OUT_C     = 24, /* heat capacity, J/K */
-  OUT_Q     = 25, /* advected minus released heat, W */
+  OUT_Q     = 25, /* advected minus released heat, less what compression and throttling of the fluids give, W */
   OUT_A     = 26, /* [i] V grad p_a, N; where there is an ambient pressure */
   OUT_COUNT = 28
 };
@@ -52,11 +52,14 @@ typedef struct {
   SkeletonHistory skeleton;
   double          spread[PHASE_COUNT];  /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
   double          proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
-  double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
-  double bracket;  /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
-  double dt;       /* dt' of the stage */
-  const Ambient *ambient; /* at the end of the stage; NULL: no pressure around the body */
-  double         x[2];    /* where the particle's values belong at t_n, m; for the ambient pressure */
+  double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
+  double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
+  bool   compression; /* heat of compression and throttling (290); then also ... */
+  double p_star[PHASE_COUNT]; /* ... starred p_w, p_g, Pa */
+  double gravity[2];          /* ... m/s^2 */
+  double dt;                  /* dt' of the stage */
+  const Ambient *ambient;     /* at the end of the stage; NULL: no pressure around the body */
+  double         x[2];        /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
 /* State at the end of the stage. */
@@ -67,7 +70,8 @@ typedef struct {
   double        stretch[2];
   double        F[2][2]; /* of the step, in the plane */
   double        rho[PHASE_COUNT], tau[PHASE_COUNT];
-  bool          limited; /* hydrate positivity limiter acted */
+  bool          limited;  /* hydrate positivity limiter acted */
+  double        squeezed; /* heat of compression and throttling (290), W */
 } PointState;
 
 typedef struct {

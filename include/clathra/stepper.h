@@ -26,6 +26,7 @@ typedef struct {
   double   err_worst;   /* largest error of the steps in loose_total */
   double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source; /* J since t = 0 */
+  double   squeezed;                        /* of the heat source: compression and throttling (290), J since t = 0 */
   double   meter[CL_METERS][METER_COUNT];   /* (33): kg of water and gas, J, outwards since t = 0 */
   double   work[WORK_COUNT];                /* (90), J since t = 0 */
   double   energy[ENERGY_COUNT];            /* J, as the particles hold them now */
@@ -63,6 +64,7 @@ typedef struct {
   double   loose;                           /* ... when it is accepted above 1; else 0 */
   double   out[PHASE_COUNT];                /* kg over the step */
   double   heat_gain, heat_in, heat_source; /* J over the step */
+  double   squeezed;                        /* J over the step */
   double   meter[CL_METERS][METER_COUNT];   /* kg, J over the step */
   double   work[WORK_RATES];                /* J over the step */
 } Attempt;
@@ -176,6 +178,8 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 }
 /* A line with what to try after a run was given up for this cause. */
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
+/* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
+PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
 /* The largest unit of which a time (s) holds two. */
 typedef struct {
   double      s;

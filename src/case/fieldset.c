@@ -166,7 +166,7 @@ static PetscErrorCode FieldsDerive(Reader *r, const Case *c, unsigned *has)
     *has &= ~(unsigned)HAS_SOLID;
   if (!gas && !reacts)
     *has &= ~(unsigned)HAS_GAS;
-  if (!reacts && uniform && !heated)
+  if (!reacts && uniform && !heated && !c->compression_heat)
     *has &= ~(unsigned)HAS_HEAT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -155,6 +155,8 @@ static const Key case_key[] = {
     BOOLEAN(Case, "inertia", inertia, "yes", "accelerations; no is quasi-static"),
     BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
             .choices = pressures_word),
+    BOOLEAN(Case, "compression_heat", compression_heat, "no",
+            "fluids warm as they are compressed and cool or warm as they are throttled (Joule-Thomson)"),
     CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
     BOOLEAN(
         Case, "mean_dilatation", mean_dilatation, "no",
@@ -225,6 +227,9 @@ static const Key case_key[] = {
             "relative permeabilities from upstream, for sharp fronts of saturation"),
     BOOLEAN(Case, "stabilisation_saturation", saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
+    BOOLEAN(Case, "stabilisation_reaction", lumped_reaction, "no",
+            "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
+            "front of heat"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

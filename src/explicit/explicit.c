@@ -61,6 +61,8 @@ static bool Needs(const Explicit *e, int k)
 
   if (k == T_T)
     return !s.heat;
+  if (k == T_WARM || k == T_WARM + 1)
+    return e->m->c->compression_heat;
   if (k == T_V)
     return Scalars(s) > 0;
   if (k >= T_MISS)
@@ -312,7 +314,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
 
   PetscFunctionBeginUser;
   m->status = CL_OK;
-  e->latent = e->advected = 0.0;
+  e->latent = e->advected = e->squeezed = 0.0;
   e->ahead += dt;
   PetscCall(PetscArrayzero(e->work, WORK_RATES));
   BcValuesEvaluate(m->c, t + dt, &m->bc);
@@ -324,7 +326,8 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   PetscCall(PetscLogEventBegin(e->event[STEP_UPDATE], 0, 0, 0, 0));
   Update(e, dt);
   PetscCall(PetscLogEventEnd(e->event[STEP_UPDATE], 0, 0, 0, 0));
-  sum->heat_source += e->latent - e->advected;
+  sum->heat_source += e->latent - e->advected + e->squeezed;
+  sum->squeezed += e->squeezed;
   for (int k = 0; k < WORK_RATES; k++)
     sum->work[k] += e->work[k];
   PetscCall(PetscLogEventBegin(e->event[STEP_ORDER], 0, 0, 0, 0));

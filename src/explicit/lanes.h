@@ -115,7 +115,8 @@ enum {
   T_V    = T_DRAG + 2,   /* volume at the end of the step */
   T_EOS,                 /* [2] masses at that volume and the old pressures */
   T_SLOPE = T_EOS + 2,   /* [2][3] their slopes in p_w, p_g, T */
-  T_GAIN  = T_SLOPE + 6, /* hydrate: gain at the old p and T, slopes in p and T */
+  T_WARM  = T_SLOPE + 6, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
+  T_GAIN  = T_WARM + 2,  /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
   T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
@@ -161,6 +162,7 @@ struct Explicit {
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
   double latent, advected;          /* J over the step */
+  double squeezed;                  /* (290), J over the step */
   double ahead;                     /* of the end of the step, since ExplicitBegin, s */
   double work[WORK_RATES];          /* J over the step (92), this rank */
   double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
@@ -173,7 +175,7 @@ struct Explicit {
 typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
   int    first[BLOCK]; /* padded number of the lowest left node */
-  int    cell[BLOCK];  /* ... of the particle's cell, from there on */
+  int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
 } Weights;
 
 /* A run of particles of one material. */
@@ -191,12 +193,17 @@ typedef struct {
   double strain, volume, Q[4][CL_DIM];
 } CellMean;
 
+INLINE bool TakesCellMean(const Explicit *e)
+{
+  return e->set.solid && (e->m->c->mean_strain > 0.0 || e->m->c->mean_dilatation);
+}
+
 INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
 {
+  if (!TakesCellMean(e))
+    return false;
   c->strain = e->m->c->mean_strain;
   c->volume = e->m->c->mean_dilatation ? 0.5 * (1.0 - c->strain) : 0.0;
-  if (!e->set.solid || (c->strain == 0.0 && c->volume == 0.0))
-    return false;
   for (int a = 0; a < 4; a++)
     CellGradient(&e->m->grid, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
   return true;

@@ -189,6 +189,31 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
   }
 }
 
+/* (290): throttling with the fluxes above, and in the matrix what a rise of pressure gives. */
+INLINE void CompressionRow(Explicit *e, const Set s, Run r, const Gathered *g, const double *restrict T, Given *o)
+{
+  const double *b   = e->m->bc.gravity;
+  const int     row = s.fluids, n = Scalars(s);
+
+  for (int k = 0; k < s.fluids; k++) {
+    const int at = B_P(s, k);
+
+    for (int q = 0; q < r.n; q++) {
+      const PetscInt p   = r.p + q;
+      const double   rho = e->t[T_RHO + k][p], TK = T[q] + CL_ZERO_CELSIUS;
+      const double   beta  = k == 0 ? r.mat->water.beta : rho > 0.0 ? -e->t[T_GAS + 1][p] / rho : 1.0 / TK;
+      const double   share = rho > 0.0 ? (1.0 - beta * TK) / rho : 0.0;
+      const double   given =
+          o->force[0][q][k] * (b[0] - share * g->dx[q][at]) + o->force[1][q][k] * (b[1] - share * g->dy[q][at]);
+
+      o->value[q][row] += given;
+      e->squeezed += given;
+      e->t[T_WARM + k][p] = rho > 0.0 ? beta * TK * e->t[T_EOS + k][p] / rho : 0.0;
+      o->value[q][R_Matrix(s) + row * n + k] -= e->t[T_WARM + k][p];
+    }
+  }
+}
+
 /* Heat of the plastic work of the step before. */
 INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
 {
@@ -334,6 +359,8 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     FluidRow(e, s, r, k, &g, dt, &o);
   if (s.heat)
     HeatRow(e, s, r, &g, dt, pore, open, &o);
+  if (s.heat && e->m->c->compression_heat)
+    CompressionRow(e, s, r, &g, T, &o);
   if (s.heat && s.solid && r.mat->plasticity.heat > 0.0)
     PlasticHeat(e, s, r, &o);
   if (s.fluids == 2 && r.mat->reacts) {

@@ -25,6 +25,8 @@ void BalanceHeader(const Case *c, FILE *f)
 {
   fprintf(f, "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
              "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J");
+  if (c->compression_heat)
+    fprintf(f, ",compression_heat_J");
   for (size_t k = 0; c->fields.solid && k < sizeof(column) / sizeof(*column); k++)
     fprintf(f, ",%s", column[k].name);
   fprintf(f, "%s\n", c->nstage ? ",stage" : "");
@@ -62,6 +64,8 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
   fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
   fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
   fprintf(f, ",%.17g", s->energy[ENERGY_KINETIC]);
+  if (c->compression_heat)
+    fprintf(f, ",%.17g", s->squeezed);
   WriteEnergies(m, s, f);
   if (c->nstage)
     fprintf(f, ",%" PetscInt_FMT, s->stage + 1);

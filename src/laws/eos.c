@@ -89,9 +89,41 @@ static void Gas_PengRobinson(const Gas *law, int n, const double *restrict p, co
   }
 }
 
+static double Expansion_Ideal(const Gas *law, double rho, double TK, double *db_drho, double *db_dT)
+{
+  (void)law;
+  (void)rho;
+  *db_drho = 0.0;
+  *db_dT   = -1.0 / (TK * TK);
+  return 1.0 / TK;
+}
+
+/* (291): -y/x with x = v^2 dp/dv and y = v dp/dT of p(v, T), in the molar density d = 1/v. */
+static double Expansion_PengRobinson(const Gas *law, double rho, double TK, double *db_drho, double *db_dT)
+{
+  const double R = LAW_GAS_CONSTANT, RTc = R * law->Tc, b = 0.07779607 * RTc / law->pc,
+               a     = 0.45723553 * RTc * RTc / law->pc,
+               kappa = 0.37464 + law->eccentric * (1.54226 - 0.26992 * law->eccentric);
+  const double root = sqrt(TK / law->Tc), s = 1.0 + kappa * (1.0 - root), s_T = -0.5 * kappa * root / TK,
+               s_TT = 0.25 * kappa * root / (TK * TK);
+  const double A = a * s * s, A_T = 2.0 * a * s * s_T, A_TT = 2.0 * a * (s_T * s_T + s * s_TT);
+  const double d = rho <= 0.0 ? 0.0 : rho / law->M, e = 1.0 - b * d, Q = 1.0 + b * d * (2.0 - b * d),
+               Q_d = 2.0 * b * (1.0 - b * d), t = 2.0 * d * (1.0 + b * d) / (Q * Q);
+  const double t_d = 2.0 * (1.0 + 2.0 * b * d) / (Q * Q) - 2.0 * t * Q_d / Q;
+  const double x = -R * TK / (e * e) + A * t, x_d = -2.0 * b * R * TK / (e * e * e) + A * t_d,
+               x_T = -R / (e * e) + A_T * t;
+  const double y = R / e - A_T * d / Q, y_d = R * b / (e * e) - A_T / Q * (1.0 - d * Q_d / Q), y_T = -A_TT * d / Q;
+
+  *db_drho = -(y_d - y * x_d / x) / (x * law->M);
+  *db_dT   = -(y_T - y * x_T / x) / x;
+  return -y / x;
+}
+
 typedef void (*GasLaw)(const Gas *, int, const double *, const double *, double *, double *, double *);
-static const char *const gas_names[] = {"peng_robinson", "ideal", NULL};
-static const GasLaw      gas_laws[]  = {Gas_PengRobinson, Gas_Ideal};
+typedef double (*ExpansionLaw)(const Gas *, double, double, double *, double *);
+static const char *const  gas_names[]      = {"peng_robinson", "ideal", NULL};
+static const GasLaw       gas_laws[]       = {Gas_PengRobinson, Gas_Ideal};
+static const ExpansionLaw expansion_laws[] = {Expansion_PengRobinson, Expansion_Ideal};
 _Static_assert(sizeof gas_names / sizeof *gas_names == sizeof gas_laws / sizeof *gas_laws + 1, "a name for every law");
 
 const char *const *GasTypes(void)
@@ -106,8 +138,9 @@ bool GasSetType(Gas *law, const char *type)
 
   if (i < 0)
     return false;
-  law->density = gas_laws[i];
-  law->type    = gas_names[i];
+  law->density   = gas_laws[i];
+  law->expansion = expansion_laws[i];
+  law->type      = gas_names[i];
   return true;
 }
 
@@ -126,4 +159,16 @@ double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *d
 
   GasDensityBatch(law, 1, &p, &T, &rho, drho_dp, drho_dT);
   return rho;
+}
+
+double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double *dbeta_dT)
+{
+  double             rho_p, rho_T, b_rho, b_T;
+  const double       rho       = GasDensity(law, p, T, &rho_p, &rho_T);
+  const ExpansionLaw expansion = law->expansion ? law->expansion : Expansion_Ideal;
+  const double       beta      = expansion(law, rho, T + LAW_ZERO_CELSIUS, &b_rho, &b_T);
+
+  *dbeta_dp = p > 0.0 ? b_rho * rho_p : 0.0;
+  *dbeta_dT = b_T + (p > 0.0 ? b_rho * rho_T : 0.0);
+  return beta;
 }

@@ -154,11 +154,13 @@ static void CheckShares(Model *m, const double *x, const double *masses)
   }
 }
 
-static void HeatRates(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], StageRates *rates)
+static void HeatRates(const Model *m, const Reach *r, const double *x, const PointState *s, const double out[OUT_COUNT],
+                      StageRates *rates)
 {
   const FieldSet *fs = &m->c->fields;
 
   rates->heat_source -= out[OUT_Q];
+  rates->squeezed += s->squeezed;
   for (int a = 0; a < r->n; a++) {
     const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
 
@@ -199,7 +201,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
     if (trial->s)
       PlasticState(p, &s.skeleton, trial);
     if (m->c->fields.heat)
-      HeatRates(m, &r, x, o.out, rates);
+      HeatRates(m, &r, x, &s, o.out, rates);
     if (m->c->fields.solid)
       ParticlePower(m, p, &r, x, in, &s, o.out, rates->work);
   }

@@ -259,6 +259,20 @@ static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
   return shift;
 }
 
+/* (1) of the pressure that the stage starts from, Pa. */
+static inline double StarredPressure(const Model *m, PetscInt p, const Reach *r, int f)
+{
+  const FieldSet *fs  = &m->c->fields;
+  double          sum = m->P.f[HeldPressure(fs, P_PW, f)][p];
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt k = r->node[a] * fs->n + PlaceP(fs, f);
+
+    sum += r->S[a] * (m->stage.x_star[k] - m->x_n[k]);
+  }
+  return sum;
+}
+
 static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, PointHistory *h)
 {
   const FieldSet *fs = &m->c->fields;
@@ -272,6 +286,11 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
+  h->compression = m->c->compression_heat;
+  for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
+    h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
+    h->gravity[k] = m->bc.gravity[k];
+  }
   h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
   for (int d = 0; h->ambient && d < CL_DIM; d++)
     h->x[d] = AxisCentroid(&m->stencil[p].axis[d], m->grid.lower[d], m->grid.h[d]);
@@ -315,6 +334,11 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
+/* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to its block (row length r->n times
+   the unknowns). */
+void LumpBuild(Model *m);
+void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void LumpBlock(const Model *m, const FieldSet *fs, PetscInt p, const Reach *r, double *block);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);

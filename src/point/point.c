@@ -305,6 +305,38 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
   }
 }
 
+/* (290) of one fluid: what its compression and throttling take of OUT_Q; needs its flux. */
+static void CompressionHeat(const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
+                            const double in[IN_COUNT], bool tangent, PointState *state, PointOutput *o)
+{
+  const Jet     p = JetVariable(in[IN_P + f], f == PHASE_W ? JET_PW : JET_PG), rho = s->rho[f];
+  const Jet     volume = JetDiv(f == PHASE_W ? s->m_w : s->m_g, rho);
+  const Jet     rise   = JetScale(-1.0 / h->dt, JetMul(JetMul(volume, s->warm[f]), JetShift(p, -h->p_star[f])));
+  const Jet     share  = JetDiv(JetShift(JetScale(-1.0, s->warm[f]), 1.0), rho); /* (1 - beta T_K)/rho */
+  const double *g = &in[IN_GP + 2 * f], *flux = &o->out[OUT_FLUX + 2 * f], *b = h->gravity;
+  double       *D = o->D[OUT_Q], sum = rise.v;
+
+  for (int i = 0; i < 2; i++) {
+    const double head = share.v * g[i] - k->F[0][i] * b[0] - k->F[1][i] * b[1];
+
+    sum += flux[i] * head;
+    for (int q = 0; tangent && q < IN_COUNT; q++)
+      D[q] += head * o->D[OUT_FLUX + 2 * f + i][q];
+    for (int j = 0; tangent && j < 2; j++) {
+      o->wide_q[f][j] += head * o->wide[f][i][j];
+      D[IN_GRADU + 2 * j + i] -= flux[i] * b[j];
+    }
+    if (tangent)
+      D[IN_GP + 2 * f + i] += flux[i] * share.v;
+  }
+  o->out[OUT_Q] += sum;
+  state->squeezed -= sum;
+  if (!tangent)
+    return;
+  AddJet(D, 1.0, &rise, k);
+  AddJet(D, flux[0] * g[0] + flux[1] * g[1], &share, k);
+}
+
 /* (69) */
 static void PlasticHeat(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
                         const Stress *st, bool tangent, PointOutput *o)
@@ -323,16 +355,17 @@ static void PlasticHeat(const Material *mat, const PointHistory *h, const Kinema
 
 static void FillState(const FieldSet *fs, const ScalarState *s, PointState *state)
 {
-  state->V       = s->V.v;
-  state->phi     = s->phi.v;
-  state->Sh      = s->Sh.v;
-  state->Sw      = (1.0 - s->Sh.v) * s->sw.v;
-  state->Sg      = (1.0 - s->Sh.v) * s->sg.v;
-  state->m_h     = s->m_h.v;
-  state->m_w     = s->m_w.v;
-  state->m_g     = s->m_g.v;
-  state->p       = s->p.v;
-  state->limited = s->limited;
+  state->V        = s->V.v;
+  state->phi      = s->phi.v;
+  state->Sh       = s->Sh.v;
+  state->Sw       = (1.0 - s->Sh.v) * s->sw.v;
+  state->Sg       = (1.0 - s->Sh.v) * s->sg.v;
+  state->m_h      = s->m_h.v;
+  state->m_w      = s->m_w.v;
+  state->m_g      = s->m_g.v;
+  state->p        = s->p.v;
+  state->limited  = s->limited;
+  state->squeezed = 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     state->rho[f] = fs->phase[f] ? s->rho[f].v : 0.0;
 }
@@ -418,6 +451,10 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
     Heat(fs, mat, h, k, &s, in, tangent, o);
+    for (int f = 0; h->compression && f < PHASE_COUNT; f++) {
+      if (fs->phase[f])
+        CompressionHeat(h, k, &s, f, in, tangent, state, o);
+    }
     if (fs->solid)
       PlasticHeat(mat, h, k, &s, &st, tangent, o);
   }

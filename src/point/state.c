@@ -147,6 +147,18 @@ static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarSta
   s->latent   = JetChain(L, dL, T);
 }
 
+/* beta T_K of a fluid (291). */
+static Jet ExpansionJet(const Material *mat, int phase, Jet p, Jet T)
+{
+  const Jet TK = JetShift(T, CL_ZERO_CELSIUS);
+  double    dp, dT;
+
+  if (phase == PHASE_W)
+    return JetScale(mat->water.beta, TK);
+  const double beta = GasExpansion(&mat->gas, p.v, T.v, &dp, &dT);
+  return JetMul(JetChain2(beta, dp, p, dT, T), TK);
+}
+
 /* Young's modulus and the expansivity (P45) of skeleton and hydrate. */
 static void Skeleton(const Material *mat, ScalarState *s)
 {
@@ -244,6 +256,10 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     Drag(fs, mat, T, s);
   if (fs->heat)
     Thermal(mat, h, T, s);
+  for (int f = 0; fs->heat && h->compression && f < PHASE_COUNT; f++) {
+    if (fs->phase[f])
+      s->warm[f] = ExpansionJet(mat, f, f == PHASE_W ? pw : pg, T);
+  }
   if (fs->solid)
     Skeleton(mat, s);
   return CL_OK;

@@ -11,6 +11,7 @@ typedef struct {
   Jet  drag[PHASE_COUNT]; /* mu/(k_a k_r), Pa s/m^2 */
   Jet  capacity, kappa;   /* V C_m (J/K); kappa_m (W/m/K) */
   Jet  latent;            /* J/kg */
+  Jet  warm[PHASE_COUNT]; /* beta T_K of the fluids, where compression counts */
   Jet  E;                 /* Young's modulus, Pa */
   Jet  beta;              /* mean volumetric expansivity of the skeleton, 1/K */
   bool limited;

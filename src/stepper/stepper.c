@@ -146,6 +146,7 @@ void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt
   a->heat_gain += weight * rates->heat_rate;
   a->heat_in += weight * rates->heat_in;
   a->heat_source += weight * rates->heat_source;
+  a->squeezed += weight * rates->squeezed;
   for (PetscInt k = 0; k < c->nmeter; k++) {
     for (int q = 0; q < METER_COUNT; q++)
       a->meter[k][q] += weight * rates->meter[k][q];
@@ -172,6 +173,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
   z->heat_gain += a->heat_gain;
   z->heat_in += a->heat_in;
   z->heat_source += a->heat_source;
+  z->squeezed += a->squeezed;
   for (PetscInt k = 0; k < s->model->c->nmeter; k++) {
     for (int q = 0; q < METER_COUNT; q++)
       z->meter[k][q] += a->meter[k][q];

@@ -544,10 +544,10 @@ static void DamagedFilesAreRefused(void **state)
   }
   ExpectRefused(&s, bad, "damaged");
   if (world_rank == 0) {
-    memcpy(strstr(data, "Version "), "version 9", 9);
+    memcpy(strstr(data, "Version "), "version 8", 9);
     WriteBytes(bad, data, n);
   }
-  ExpectRefused(&s, bad, "format version 9");
+  ExpectRefused(&s, bad, "format version 8");
   PathOf(bad, "nowhere.h5");
   ExpectRefused(&s, bad, "No such file");
   ExpectRefused(&s, folder, "not a file");

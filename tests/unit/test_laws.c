@@ -163,6 +163,12 @@ static double F_WaterViscosity(const Row *r, Set *s, const double *x, double *d)
 {
   return WaterViscosity(&(Viscosity){.law = WATER_VISCOSITY_KESTIN, .salinity = s->salinity}, x[0], d);
 }
+static double F_GasExpansion(const Row *r, Set *s, const double *x, double *d)
+{
+  assert_true(GasSetType(&s->gas, r->type));
+  return GasExpansion(&s->gas, x[0], x[1], &d[0], &d[1]);
+}
+
 static double F_GasViscosity(const Row *r, Set *s, const double *x, double *d)
 {
   return GasViscosity(&(Viscosity){.law = GAS_VISCOSITY_LEE, .M = s->gas.M}, x[0], x[1], &d[0], &d[1]);
@@ -328,6 +334,7 @@ static const Row rows[] = {
     {"latent heat", NULL, F_Latent, 1, {-50}, {150}, L_Kelvin, NULL, 3e5, 5e5, -1},
     {"latent heat", "kirchhoff", F_Kirchhoff, 1, {-50}, {150}, L_Kelvin, NULL, 2e5, 6e5, -1},
     {"water viscosity", "kestin", F_WaterViscosity, 1, {-60}, {200}, L_Kelvin, K_Kestin, 1e-5, 0.1, -1},
+    {"gas expansion", "peng_robinson", F_GasExpansion, 2, {1, -50}, {1e8, 150}, L_GasDensity, NULL, 0, INFINITY, 0},
     {"gas viscosity", "lee", F_GasViscosity, 2, {1e-3, -50}, {400, 150}, L_GasDensity, NULL, 1e-6, INFINITY, 1},
     {"mixture", NULL, F_Mixture, 3, {0, 0, 0}, {1, 1, 1}, L_Fraction, NULL, 0.01, 1e6, 0},
     {"Young", NULL, F_Young, 1, {0}, {1}, L_Fraction, K_Young, 1e6, 1.2e10, 1},

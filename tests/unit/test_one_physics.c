@@ -17,21 +17,23 @@ typedef struct {
   const char *retention, *hydrate, *porosity;
   int         stiffness;
   double      bh, expansion;
-  bool        of_pores, yields;
+  bool        of_pores, yields, compression;
 } Variant;
 
 static const Variant variants[] = {
-    {"dissociates", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false},
-    {"forms", HAS_ALL, 4.8e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false},
-    {"other laws", HAS_ALL, 2.6e6, "brooks_corey", "masuda_ramp", "square_jacobian", STIFFNESS_LOSS_ONLY, 1.5, 30.0,
-     true, false},
-    {"bonds", HAS_ALL, 2.6e6, "van_genuchten_clamped", "none", "none", STIFFNESS_BONDS, 1.0, 1.0, false, false},
-    {"plastic", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, true},
-    {"one fluid", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
-     30.0, false, false},
-    {"rigid", HAS_WATER | HAS_GAS | HAS_HEAT, 2.6e6, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false,
+    {"dissociates", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false,
      false},
-    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true},
+    {"forms", HAS_ALL, 4.8e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false},
+    {"other laws", HAS_ALL, 2.6e6, "brooks_corey", "masuda_ramp", "square_jacobian", STIFFNESS_LOSS_ONLY, 1.5, 30.0,
+     true, false, true},
+    {"bonds", HAS_ALL, 2.6e6, "van_genuchten_clamped", "none", "none", STIFFNESS_BONDS, 1.0, 1.0, false, false, false},
+    {"plastic", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, true,
+     false},
+    {"one fluid", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
+     30.0, false, false, true},
+    {"rigid", HAS_WATER | HAS_GAS | HAS_HEAT, 2.6e6, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false,
+     false, true},
+    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true, false},
 };
 
 static void SetMaterial(Material *m, const Variant *v)
@@ -112,7 +114,8 @@ static void Make(Scene *s, const Variant *v, const char *stepper, bool slips)
   }
   SetMaterial(&s->mat, v);
   s->c.fields.has |= (v->yields ? HAS_PLASTIC : 0) | (v->stiffness == STIFFNESS_BONDS ? HAS_BONDS : 0);
-  s->region.pressure = v->pressure;
+  s->region.pressure    = v->pressure;
+  s->c.compression_heat = v->compression;
   snprintf(s->c.stepper, sizeof s->c.stepper, "%s", stepper);
   s->c.dt = s->c.dt_max = s->c.t_end = STEP;
   s->c.dt_min                        = 1e-3 * STEP;

@@ -130,7 +130,12 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
     q->in[IN_GT + (k & 1)]  = RngBetween(r, -50.0, 50.0);
     q->in[IN_U + (k & 1)]   = RngBetween(r, -1e-3, 1e-3);
   }
-  q->h.ambient = &sea;
+  q->h.ambient     = &sea;
+  q->h.compression = RngPick(r, 2) != 0;
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    q->h.p_star[f]  = q->in[IN_P + f] + RngBetween(r, -2e6, 2e6);
+    q->h.gravity[f] = RngBetween(r, -20.0, 20.0);
+  }
 }
 
 static ClStatus Evaluate(const Particle *q, bool tangent, PointState *s, PointOutput *o)
@@ -302,6 +307,8 @@ static void Magnitudes(const Particle *q, const PointState *s, const PointOutput
   size[OUT_DM] += s->m_w + s->m_h;
   size[OUT_DM + 1] += s->m_g + s->m_h;
   size[OUT_Q] += latent * (s->m_h + fabs(q->h.m_star[0]));
+  if (q->h.compression)
+    size[OUT_Q] += s->V * 1e6 / q->h.dt;
 }
 
 /* Long steps see round-off least, short ones stay off the kinks of the laws: the better of the two counts. */
