@@ -3,6 +3,10 @@
 #include "lanes.h"
 #include "clathra/laws_batch.h"
 
+/* What a loop over particles finds wrong: of the width of its numbers, so that the loop stays vector code. */
+typedef int64_t Wrong;
+#define WRONG_UNLESS(condition) ((condition) ? (Wrong)0 : (Wrong)1)
+
 #define LARGEST_STRAIN 0.1 /* of one step: beyond it the series below lose digits, and the step is no small one */
 
 typedef struct {
@@ -73,7 +77,7 @@ typedef struct {
 INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o)
 {
   const int at    = C_Vs(s);
-  bool      small = true;
+  Wrong     large = 0;
 
   for (int q = 0; q < n; q++) {
     const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
@@ -87,7 +91,7 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
     const double ratio =
         1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
 
-    small &= (fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0); /* false for NaN */
+    large |= WRONG_UNLESS((fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0));
     o->c[q]          = c;
     o->s[q]          = si;
     o->xx[q]         = 0.5 * lnJ + 0.5 * ratio * d / m;
@@ -98,7 +102,7 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
     o->stretch[0][q] = c * Fxx + si * Fyx;
     o->stretch[1][q] = -si * Fxy + c * Fyy;
   }
-  return small;
+  return !large; /* NaN is wrong as well */
 }
 
 /* The particle of a block that is strained most. */
@@ -137,7 +141,7 @@ static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
 INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
 {
   static const int grad[3] = {P_GW, P_GG, P_GT};
-  bool             fine    = true;
+  Wrong            out     = 0;
 
   for (int k = 0; k < Scalars(s); k++) {
     const int field    = k < s.fluids ? k : 2;
@@ -149,10 +153,10 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
       y[q] += g->value[q][k];
       gx[q] = g->dx[q][C_End(s) + k];
       gy[q] = g->dy[q][C_End(s) + k];
-      fine &= (y[q] > least) & (y[q] < FARTHEST);
+      out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
   }
-  return fine;
+  return !out;
 }
 
 /* (97): p_w, p_g, T tend to what the nodes have at the particle. */
@@ -252,25 +256,26 @@ INLINE void CountCompression(Explicit *e, const Set s, Run r, const Gathered *g)
 /* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
 INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
-  double *const *f         = e->m->P.f;
-  const double *restrict V = s.fluids || s.heat ? e->t[T_V] + r.p : NULL;
-  double *restrict Sh      = f[P_SH] + r.p;
+  double *const *f     = e->m->P.f;
+  const bool     known = s.fluids || s.heat; /* the volume, from the pass before */
+  double *restrict V = f[P_V] + r.p, *restrict Sh = f[P_SH] + r.p;
+  const double *restrict at = known ? e->t[T_V] + r.p : NULL, *restrict ms = f[P_MS] + r.p,
+                         *restrict mh = f[P_MH] + r.p;
   double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
-  bool   fine = true;
+  Wrong  full = 0;
 
   LiquidDensityBatch(&r.mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const PetscInt p      = r.p + q;
-    const double   volume = V ? V[q] : f[P_V][p] * n->J[q], pore = volume - f[P_MS][p] / rho_s[q],
-                 open = pore - f[P_MH][p] / rho_h[q];
+    const double volume = known ? at[q] : V[q] * n->J[q], pore = volume - ms[q] / rho_s[q],
+                 open = pore - mh[q] / rho_h[q];
 
-    fine &= (open > 0.0);
-    phi[q]    = pore / volume;
-    Sh[q]     = 1.0 - open / pore;
-    f[P_V][p] = volume;
+    full |= WRONG_UNLESS(open > 0.0);
+    phi[q] = pore / volume;
+    Sh[q]  = 1.0 - open / pore;
+    V[q]   = volume;
   }
-  return fine;
+  return !full;
 }
 
 /* Mean thermal strain of skeleton and hydrate. */
@@ -322,11 +327,12 @@ INLINE void ExpansionWork(Explicit *e, const Set s, Run r, const Gathered *g, co
 /* Elastic energy that goes with the stiffness, J. */
 static double Released(const Elasticity *el, const SkeletonBlock *b, const double *restrict V)
 {
-  double sum     = 0.0;
-  bool   changes = false;
+  const double *E = b->E, *E_n = b->E_n;
+  double        sum     = 0.0;
+  Wrong         changes = 0;
 
   for (int q = 0; q < b->n; q++)
-    changes |= b->E[q] != b->E_n[q];
+    changes |= WRONG_UNLESS(E[q] == E_n[q]);
   for (int q = 0; changes && q < b->n; q++) {
     SkeletonHistory h;
 
@@ -425,7 +431,7 @@ static PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *
 INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
 {
   const Grid *grid = &e->m->grid;
-  bool        fine = true;
+  Wrong       far  = 0;
 
   for (int d = 0; d < CL_DIM; d++) {
     double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict u = e->m->P.f[P_U + d] + r.p,
@@ -437,14 +443,14 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
 
       x[q] += step;
       u[q] += step;
-      fine &= (fabs(step) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper);
+      far |= WRONG_UNLESS((fabs(step) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
     }
     if (e->m->c->basis == BASIS_CPGIMP) {
       for (int q = 0; q < r.n; q++)
         l[q] *= n->stretch[d][q];
     }
   }
-  return fine;
+  return !far;
 }
 
 INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
