@@ -99,6 +99,13 @@ typedef struct {
 
 typedef struct Reduced Reduced; /* reduced.c */
 
+/* One of two fluids at a node (16). */
+typedef struct {
+  double F[CL_DIM]; /* inertia, pressure gradient and faces, N */
+  double D;         /* sum of V S mu/k_a, Pa s m */
+  double root;      /* mean of sqrt(k_r) (108) */
+} FluidNode;
+
 typedef struct {
   const Case   *c;
   Grid          grid;
@@ -133,6 +140,8 @@ typedef struct {
   /* of the last evaluation */
   double     *x, *f;     /* [n_local][fields.n] unscaled unknowns, residual */
   double     *mass_row;  /* [n_local][2] mass balances of water and gas, one pressure only; kg */
+  FluidNode  *fluid;     /* [n_local][2] where there are two */
+  bool        evaluated; /* x and fluid are those of a residual of this stage */
   double     *proj;      /* [n_local][4] projected pressure gradients Pi g, Pa/m */
   double     *wide;      /* [n][12] particle coefficients of the wide part (27) */
   ClStatus    status;    /* why the last evaluation failed, on this rank */
@@ -174,8 +183,9 @@ enum {
   NC_REACTION,
   NC_REACTION_HEAT,
   NC_DRAG,
-  NC_RING = NC_DRAG + 2, /* 1/r */
-  NC_AXIS,               /* of what was seeded at the axis: 1 */
+  NC_KR   = NC_DRAG + 2,
+  NC_RING = NC_KR + 2, /* 1/r */
+  NC_AXIS,             /* of what was seeded at the axis: 1 */
   NC_COUNT
 };
 

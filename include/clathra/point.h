@@ -8,7 +8,9 @@
 #include "clathra/kinematics.h"
 #include "clathra/skeleton.h"
 
-#define CL_MOBILITY_FLOOR 1e-9 /* of k_r, in the drag only: an immobile phase still has a velocity */
+#define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
+/* Of phi S_pi at a node (107): a fluid that is not there moves with the skeleton. */
+#define CL_SHARE_FLOOR 1e-6
 
 /* What the interpolation gives a particle; the tangent is taken with respect to these numbers in this order. */
 enum {
@@ -35,12 +37,13 @@ enum {
   OUT_G     = 11, /* [pi][i] V_n cof F g_pi, N: force of a fluid's pressure gradient */
   OUT_M     = 15, /* m_s + m_h, m_w, m_g, kg */
   OUT_MI    = 18, /* [pi] V rho_pi, kg */
-  OUT_D     = 20, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
-  OUT_DM    = 22, /* [pi] mass gained minus released by hydrate, kg */
-  OUT_C     = 24, /* heat capacity, J/K */
-  OUT_Q     = 25, /* advected minus released heat, less what compression and throttling of the fluids give, W */
-  OUT_A     = 26, /* [i] V grad p_a, N; where there is an ambient pressure */
-  OUT_COUNT = 28
+  OUT_D     = 20, /* [pi] V mu/k_a, Pa s m: drag per Darcy flux where k_r = 1 */
+  OUT_ROOT  = 22, /* [pi] sqrt(k_r) (108) */
+  OUT_DM    = 24, /* [pi] mass gained minus released by hydrate, kg */
+  OUT_C     = 26, /* heat capacity, J/K */
+  OUT_Q     = 27, /* advected minus released heat, less what compression and throttling of the fluids give, W */
+  OUT_A     = 28, /* [i] V grad p_a, N; where there is an ambient pressure */
+  OUT_COUNT = 30
 };
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
@@ -93,13 +96,14 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 
 /* Properties at t_n that projections, scales and stabilisation need. */
 typedef struct {
-  double rho[PHASE_COUNT], drag[PHASE_COUNT]; /* kg/m^3, Pa s/m^2 */
-  double mobility_slope[PHASE_COUNT];         /* d(1/drag)/dp_c, m^2/(Pa^2 s) */
-  double s[PHASE_COUNT], phi, Sh;             /* s_w, s_g, porosity, hydrate saturation */
-  double capacity, kappa;                     /* V C_m (J/K), W/(m K) */
-  double M, G;                                /* constrained and shear modulus, Pa */
-  double storage[PHASE_COUNT];                /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
-  double reaction, reaction_heat;             /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
+  double rho[PHASE_COUNT];                     /* kg/m^3 */
+  double resist[PHASE_COUNT], kr[PHASE_COUNT]; /* mu/k_a, Pa s/m^2; relative permeability */
+  double mobility_slope[PHASE_COUNT];          /* d(k_a k_r/mu)/dp_c, m^2/(Pa^2 s) */
+  double s[PHASE_COUNT], phi, Sh;              /* s_w, s_g, porosity, hydrate saturation */
+  double capacity, kappa;                      /* V C_m (J/K), W/(m K) */
+  double M, G;                                 /* constrained and shear modulus, Pa */
+  double storage[PHASE_COUNT];                 /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
+  double reaction, reaction_heat;              /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
 } PointProperties;
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
                                  double pg, double T, double sw_n, PointProperties *r, const char **why);

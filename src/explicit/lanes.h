@@ -31,7 +31,7 @@ INLINE int Rows(int n)
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
  * and each fluid. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
-enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_COUNT };
+enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
 INLINE int A_V(Set s)
 {
   return Scalars(s);
@@ -44,9 +44,13 @@ INLINE int A_Mix(Set s)
 {
   return Scalars(s) + 1 + s.heat;
 }
+INLINE int FluidLanes(Set s) /* a lone fluid has no k_r */
+{
+  return s.fluids == 2 ? FL_ROOT + 1 : FL_ROOT;
+}
 INLINE int A_Fluid(Set s, int f)
 {
-  return A_Mix(s) + MIX_COUNT * s.solid + FL_COUNT * f;
+  return A_Mix(s) + MIX_COUNT * s.solid + FluidLanes(s) * f;
 }
 INLINE int A_Count(Set s)
 {

@@ -3,9 +3,16 @@
 
 /* One direction of one node: masses, start velocities, forces; fluids per unit of their volume. */
 typedef struct {
-  double M, v, f;                        /* skeleton; f of the mixture */
-  double m[2], vf[2], r[2], Mi[2], B[2]; /* fluids: mass, velocity, force, mass per unit of volume fraction, drag */
+  double M, v, f; /* skeleton; f of the mixture */
+  /* fluids: mass, velocity; (16) of each: force, mass per unit of volume fraction, drag, all times k_r; k_r, share */
+  double m[2], vf[2], r[2], Mi[2], B[2], kr[2], w[2];
 } Balance;
+
+/* Share of a fluid in the volume of a node (18), (107). */
+static double Share(const Explicit *e, const double *a, int k)
+{
+  return Largest(a[A_Fluid(e->set, k) + FL_W] / a[A_V(e->set)], CL_SHARE_FLOOR);
+}
 
 static double Velocity(double momentum, double mass, double otherwise)
 {
@@ -25,9 +32,11 @@ static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
 
     b->m[k]  = f[FL_M];
     b->vf[k] = Velocity(f[FL_VX + d], f[FL_M], b->v);
-    b->Mi[k] = f[FL_MI];
-    b->r[k]  = f[FL_GX + d] + f[FL_MI] * gravity;
-    b->B[k]  = f[FL_DRAG] * f[FL_W] / V;
+    b->kr[k] = s.fluids == 2 ? PetscSqr(f[FL_ROOT] / V) : 1.0;
+    b->w[k]  = Share(e, a, k);
+    b->Mi[k] = b->kr[k] * f[FL_MI];
+    b->r[k]  = b->kr[k] * (f[FL_GX + d] + f[FL_MI] * gravity);
+    b->B[k]  = f[FL_DRAG] * b->w[k];
     mass += f[FL_M];
   }
   b->f = s.solid ? mix[MIX_FX + d] + (b->M + mass) * gravity : 0.0;
@@ -82,16 +91,16 @@ static void Solve(const Explicit *e, const Balance *b, double dt, bool held, dou
 
 /* (92): work of the drag along d in a balance (of a node, or of one and those that follow it) with its answer v; a
    fluid that is held moves as it must. */
-static double DragWork(const Explicit *e, PetscInt I, int d, const double *a, const Balance *b, const double v[3])
+static double DragWork(const Explicit *e, PetscInt I, int d, const Balance *b, const double v[3])
 {
   const Set s   = e->set;
   double    sum = 0.0, held;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double end   = Held(e, I, F_VWX + 2 * k + d, &held) ? held : v[1 + k];
-    const double share = a[A_Fluid(s, k) + FL_W] / a[A_V(s)], slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
+    const double end  = Held(e, I, F_VWX + 2 * k + d, &held) ? held : v[1 + k];
+    const double slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
 
-    sum += b->B[k] * slip * share * 0.5 * (end + b->vf[k] - v[0] - b->v);
+    sum += b->B[k] / b->kr[k] * slip * b->w[k] * 0.5 * (end + b->vf[k] - v[0] - b->v);
   }
   return sum;
 }
@@ -109,7 +118,7 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
     const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
     Solve(e, &b, dt, held, value, v);
     if (e->set.solid && e->set.fluids)
-      e->work[WORK_DRAG] += e->node[I].own * dt * DragWork(e, I, d, a, &b, v);
+      e->work[WORK_DRAG] += e->node[I].own * dt * DragWork(e, I, d, &b, v);
     if (!held && e->o.damping > 0.0)
       e->work[WORK_DAMPING] += e->node[I].own * dt * e->o.damping * fabs(b.f) *
                                (b.v > 0.0   ? 1.0
@@ -133,8 +142,7 @@ static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const dou
   double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double own = 0.5 * (v[1 + k] + w->vf[k]), share = a[A_Fluid(s, k) + FL_W] / a[A_V(s)];
-    const double flow = share * (own - mean);
+    const double own = 0.5 * (v[1 + k] + w->vf[k]), flow = w->w[k] * (own - mean);
 
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
@@ -176,7 +184,7 @@ static void WriteVelocities(Explicit *e, PetscInt I, double dt)
       v[1 + k] = w.vf[k] + Blended(e, I, 6, e->inc, 2 * (1 + k) + d);
       if (Held(e, I, F_VWX + 2 * k + d, &value))
         v[1 + k] = value;
-      bf[B_J + d]    = f[FL_W] / V * (v[1 + k] - v[0]);
+      bf[B_J + d]    = w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -f[FL_GX + d] / V;
       bf[B_DV + d]   = v[1 + k] - w.vf[k];
       bf[B_VEL + d]  = v[1 + k];

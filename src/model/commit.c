@@ -233,6 +233,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   if (m->c->fields.solid) {
     rates->work[WORK_PLATES] += HeldPower(m);
     rates->work[WORK_DAMPING] += GhostPower(m, x);
+    rates->work[WORK_DRAG] += DragPower(m, x);
   }
   PetscCall(PlatesReport(m, x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));

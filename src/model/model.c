@@ -40,6 +40,7 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
   PetscCall(PetscFree(m->mass_row));
+  PetscCall(PetscFree(m->fluid));
   PetscCall(MatDestroy(&m->J2));
   PetscCall(MatDestroy(&m->A));
   PetscCall(MatDestroy(&m->Pmat));
@@ -83,6 +84,8 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
   if (m->c->fields.one_pressure)
     PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->mass_row));
+  if (m->c->fields.phase[PHASE_W] && m->c->fields.phase[PHASE_G])
+    PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,7 +2,7 @@
 #include "gather.h"
 
 #define AT_AXIS 1e-6        /* of a half-length */
-#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its drag stays central */
+#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its k_r stays central */
 
 static bool InsideGrid(const Grid *g, const Stencil *s)
 {
@@ -111,7 +111,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
 static double SpreadOf(const Model *m, PetscInt p, int phase, const PointProperties *q)
 {
   static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
-  const double     both                  = 1.0 / (q->drag[PHASE_W] + q->drag[PHASE_G]);
+  const double     w = q->kr[PHASE_W] / q->resist[PHASE_W], o = q->kr[PHASE_G] / q->resist[PHASE_G];
+  const double     both = w > 0.0 && o > 0.0 ? w * o / (w + o) : 0.0;
   double           g[CL_DIM], hg = 0.0;
 
   for (int d = 0; d < CL_DIM; d++) {
@@ -167,10 +168,11 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     for (int k = 0; k < PHASE_COUNT; k++) {
       if (!m->c->fields.phase[k])
         continue;
-      c[NC_LAMBDA + k] += VS * q->rho[k] / q->drag[k];
+      c[NC_LAMBDA + k] += VS * q->rho[k] * q->kr[k] / q->resist[k];
       c[NC_RHO + k] += VS * q->rho[k];
       c[NC_STORAGE + k] += VS * q->storage[k];
-      c[NC_DRAG + k] += VS * q->drag[k];
+      c[NC_DRAG + k] += VS * q->resist[k];
+      c[NC_KR + k] += VS * sqrt(q->kr[k]);
     }
   }
 }
@@ -190,9 +192,11 @@ static void Average(Model *m, const double *sum)
       x[k] = weight > 0.0 ? s[SUM_X + k] / weight : 0.0;
     }
     for (int k = 0; k < PHASE_COUNT; k++)
-      m->w[2 * I + k] = s[SUM_W + k] / V;
+      m->w[2 * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
     for (int k = 0; k < NC_COUNT; k++)
       c[k] /= V;
+    for (int k = 0; k < PHASE_COUNT; k++) /* (108) */
+      c[NC_KR + k] *= c[NC_KR + k];
   }
 }
 
@@ -287,10 +291,23 @@ static void RadialFace(const Model *m, Face *f)
     f->Nr[a] = f->N[a] / (c[NC_RING] * f->x[0]);
     sum += f->N[a];
     for (int k = 0; k < PHASE_COUNT; k++)
-      drag[k] += f->N[a] * c[NC_DRAG + k];
+      drag[k] += f->N[a] * c[NC_DRAG + k] / c[NC_KR + k];
   }
   for (int k = 0; k < PHASE_COUNT; k++)
     f->skin[k] = f->ring[0] * f->x[0] * drag[k] / (sum * area);
+}
+
+/* (109) */
+static void InflowFace(const Model *m, Face *f)
+{
+  PointProperties q;
+  const char     *why;
+  Reach           r;
+
+  if (f->inflow < 0 || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
+    return;
+  ReachExpand(m, f->particle, &r);
+  FaceInflow(f, r.n, r.S, q.kr);
 }
 
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
@@ -314,8 +331,10 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   }
   if (*status == CL_OK) {
     PetscCall(FacesBuild(m->c, &m->grid, &m->P, m->stencil, &m->nface, &m->face));
-    for (PetscInt k = 0; k < m->nface; k++)
+    for (PetscInt k = 0; k < m->nface; k++) {
       RadialFace(m, &m->face[k]);
+      InflowFace(m, &m->face[k]);
+    }
     for (PetscInt k = 0; m->plates && k < m->nface; k++) {
       if (m->face[k].plate >= 0)
         ModelPlateStiffness(m, &m->face[k]);
@@ -354,7 +373,8 @@ static double FluidScale(const Model *m, PetscInt I, int phase, double h)
   const FieldSet *fs = &m->c->fields;
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6;
   const double    sliver = sqrt(2.0 * NodeVolume(m, I) / m->V[I]);
-  double          row    = P / h * fmax(1.0, ROUND_OFF * sliver), v;
+  const double    kr     = c[NC_KR + phase];
+  double          row    = kr * P / h * fmax(1.0, ROUND_OFF * sliver), v;
 
   if (!fs->solid)
     return row;
@@ -380,9 +400,9 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
     for (int k = 0; k < PHASE_COUNT; k++) {
       if (!fs->phase[k])
         continue;
-      const double inertia = fs->inertia ? c[NC_RHO + k] / dt : 0.0;
+      const double kr = c[NC_KR + k], inertia = fs->inertia ? kr * c[NC_RHO + k] / dt : 0.0;
 
-      col[PlaceV(fs, k) + d] = P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
+      col[PlaceV(fs, k) + d] = kr * P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
       row[PlaceV(fs, k) + d] = V * FluidScale(m, I, k, h);
     }
   }
@@ -411,7 +431,8 @@ static void Scales(Model *m)
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s)
 {
   PetscFunctionBeginUser;
-  m->stage = *s;
+  m->stage     = *s;
+  m->evaluated = false;
   BcValuesEvaluate(m->c, s->t, &m->bc);
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     m->mask[I] = 0;

@@ -118,8 +118,8 @@ static Jet ViscosityJet(const Material *mat, int phase, Jet rho, Jet T)
   return JetChain2(mu, drho, rho, dT, T);
 }
 
-/* mu/(k_a k_r) of the phases that flow. */
-static void Drag(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
+/* mu/k_a and k_r of the phases that flow. */
+static void Mobility(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
 {
   double       dphi, dSh;
   const double k  = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
@@ -128,9 +128,8 @@ static void Drag(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue; /* a lone fluid fills the pores: k_r = 1 */
-    const Jet kr = fs->phase[PHASE_G] ? RelPermJet(&mat->relperm, f, s) : JetConstant(1.0);
-
-    s->drag[f] = JetDiv(ViscosityJet(mat, f, s->rho[f], T), JetMul(ka, kr));
+    s->kr[f]     = fs->phase[PHASE_G] ? RelPermJet(&mat->relperm, f, s) : JetConstant(1.0);
+    s->resist[f] = JetDiv(ViscosityJet(mat, f, s->rho[f], T), ka);
   }
 }
 
@@ -253,7 +252,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     s->m_g          = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
   }
   if (fs->fluid)
-    Drag(fs, mat, T, s);
+    Mobility(fs, mat, T, s);
   if (fs->heat)
     Thermal(mat, h, T, s);
   for (int f = 0; fs->heat && h->compression && f < PHASE_COUNT; f++) {
@@ -308,8 +307,9 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     if (!fs->phase[f])
       continue;
     r->rho[f]            = s.rho[f].v;
-    r->drag[f]           = s.drag[f].v;
-    const Jet mobility   = JetDiv(JetConstant(1.0), s.drag[f]);
+    r->resist[f]         = s.resist[f].v;
+    r->kr[f]             = s.kr[f].v;
+    const Jet mobility   = JetDiv(s.kr[f], s.resist[f]);
     r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
     r->storage[f]        = m->d[f == PHASE_W ? JET_PW : JET_PG] / (V * s.rho[f].v);
   }
