@@ -103,6 +103,7 @@ static const char *const water_viscosity_word[] = {"constant", "kestin", NULL}; 
 static const char *const gas_viscosity_word[]   = {"constant", "lee", NULL};    /* GAS_VISCOSITY_... */
 static const char *const latent_word[]          = {"linear", "kirchhoff", NULL};
 static const char *const ice_word[]             = {"warn", "stop", NULL};                    /* ICE_... */
+static const char *const without_gas_word[]     = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
 static const char *const plasticity_word[]      = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
 static const char *const flow_word[]            = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
 static const char *const capillary_word[]       = {"held", "free", NULL};
@@ -180,6 +181,9 @@ static const Key case_key[] = {
     REAL(Case, "ambient_drag", ambient_drag, "", "[0,100]", "0",
          "coefficient of the drag of that fluid, at rest, on faces that move into it", .has = HAS_SOLID),
     ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
+    CHOICE(Case, "without_gas", without_gas, "auto", without_gas_word,
+           "sediment may be or become free of gas: water then holds 1e-7 of what gas would; auto: where a region has "
+           "Sg: 0"),
     CHOICE(Case, "ice", ice, "warn", ice_word,
            "when pore water is colder than its melting point, of which no equation knows: say so and go on, or end the "
            "run"),

@@ -154,11 +154,11 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
   for (int q = 0; q < r.n; q++) {
-    const double share = k ? 1.0 - w->sw[q] : w->sw[q];
+    const double share = k ? 1.0 - w->sw[q] : w->sw[q], mass = Largest(m[q], 0.0); /* a trace may be none (101) */
 
-    v->value[q][at + FL_M]    = m[q];
-    v->value[q][at + FL_VX]   = m[q] * vx[q];
-    v->value[q][at + FL_VY]   = m[q] * vy[q];
+    v->value[q][at + FL_M]    = mass;
+    v->value[q][at + FL_VX]   = mass * vx[q];
+    v->value[q][at + FL_VY]   = mass * vy[q];
     v->value[q][at + FL_GX]   = -V[q] * gx[q];
     v->value[q][at + FL_GY]   = -V[q] * gy[q];
     v->value[q][at + FL_MI]   = V[q] * w->rho[k][q];

@@ -10,6 +10,7 @@
 
 #define BLOCK 32
 #define LANES 8
+#define STRAIGHT 0.5 /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
 #define INLINE static inline __attribute__((always_inline))
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
@@ -169,6 +170,7 @@ struct Explicit {
   double latent, advected;          /* J over the step */
   double squeezed;                  /* (290), J over the step */
   double ahead;                     /* of the end of the step, since ExplicitBegin, s */
+  double straight;                  /* STRAIGHT p_0, the least of all materials, Pa */
   double work[WORK_RATES];          /* J over the step (92), this rank */
   double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
   double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
@@ -294,6 +296,15 @@ PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
+
+/* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
+INLINE void PerOpenVolume(const Explicit *e, const Material *mat, PetscInt p, double pg, double held[PHASE_COUNT])
+{
+  const double sg = e->t[T_SG][p];
+
+  held[PHASE_W] = (1.0 - sg) * e->t[T_RHO][p];
+  held[PHASE_G] = sg * e->t[T_RHO + 1][p] + (1.0 - sg) * mat->gas.trace * pg;
+}
 
 INLINE double Largest(double a, double b)
 {

@@ -397,4 +397,7 @@ double         HeldPower(const Model *m);
 double         DragPower(const Model *m, const double *x);  /* of two fluids, this rank's nodes */
 double         GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
 PetscErrorCode WideCreate(Model *m, Mat *A);
+/* What Newton's update may change at once: before every line search. */
+#define CL_LIMIT_J 0.5 /* volumetric strain of a step */
+PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);
 PetscErrorCode ModelResizeNodal(Model *m);

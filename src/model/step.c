@@ -90,7 +90,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   for (int k = 0; k < 3; k++) {
     if (!there[k])
       continue;
-    const double mass = k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p];
+    const double mass =
+        fmax(k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p], 0.0); /* a trace may be none (101) */
 
     s[SUM_M + k] += S * mass;
     for (int i = 0; i < 2; i++)
@@ -161,6 +162,10 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     c[NC_CAPACITY] += S * q->capacity;
     c[NC_REACTION] += VS * q->reaction;
     c[NC_REACTION_HEAT] += VS * q->reaction_heat;
+    if (VS > m->most[I]) {
+      m->most[I]     = VS;
+      m->material[I] = ParticleMaterial(m, p);
+    }
     if (m->c->axisymmetric) {
       c[NC_RING] += V * r->H[a];
       c[NC_AXIS] += axis ? VS : 0.0;
@@ -211,6 +216,7 @@ static PetscErrorCode Project(Model *m)
   PetscCall(PetscArrayzero(m->V, m->map.n_local));
   PetscCall(PetscArrayzero(m->Vk, m->map.n_local));
   PetscCall(PetscArrayzero(m->coef, m->map.n_local * NC_COUNT));
+  PetscCall(PetscArrayzero(m->most, m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {
     PointProperties q;
     Reach           r;

@@ -191,7 +191,7 @@ static void Saturations(const FieldSet *fs, const Material *mat, double sw_n, Je
   s->p  = JetAdd(pw, JetMul(s->sg, pc));
 }
 
-static ClStatus CheckInputs(const FieldSet *fs, const double in[IN_COUNT], const char **why)
+static ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
 {
   const bool finite = isfinite(in[IN_T]) && (!fs->phase[PHASE_W] || isfinite(in[IN_P])) &&
                       (!fs->phase[PHASE_G] || isfinite(in[IN_P + 1]));
@@ -208,8 +208,8 @@ static ClStatus CheckInputs(const FieldSet *fs, const double in[IN_COUNT], const
     *why = "temperature fell to absolute zero";
     return CL_DOMAIN;
   }
-  if (fs->phase[PHASE_G] && in[IN_P + 1] <= 0.0) {
-    *why = "gas pressure fell to zero";
+  if (fs->phase[PHASE_G] && mat->gas.trace == 0.0 && in[IN_P + 1] <= 0.0) {
+    *why = "gas pressure fell to zero; without_gas: yes lets gas vanish";
     return CL_DOMAIN;
   }
   return CL_OK;
@@ -223,7 +223,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   const Jet zero  = JetConstant(0.0);
   const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
 
-  const ClStatus status = CheckInputs(fs, in, why);
+  const ClStatus status = CheckInputs(fs, mat, in, why);
   if (status != CL_OK)
     return status;
   s->V   = JetScale(h->V, JetVariable(J, JET_J));
@@ -250,6 +250,8 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   if (fs->phase[PHASE_G]) {
     s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
     s->m_g          = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
+    if (!fs->one_pressure) /* (101) */
+      s->m_g = JetAdd(s->m_g, JetScale(mat->gas.trace, JetMul(Vf, JetMul(s->sw, pg))));
   }
   if (fs->fluid)
     Mobility(fs, mat, T, s);
@@ -275,6 +277,39 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
   *m_w = fs->phase[PHASE_W] ? Vf * (1.0 - sg) * LiquidDensity(&mat->water, pw, T, &d, &e) : 0.0;
   *m_g = gas ? Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e) : 0.0;
+  if (gas && !fs->one_pressure)
+    *m_g += Vf * (1.0 - sg) * mat->gas.trace * pg;
+}
+
+double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT])
+{
+  double       ds, rho_p, dT;
+  const double sg = RetentionGasShare(&mat->retention, pg - pw, &ds), rho = GasDensity(&mat->gas, pg, T, &rho_p, &dT),
+               c = mat->gas.trace * pg;
+
+  slope[PHASE_W] = -ds * (rho - c);
+  slope[PHASE_G] = ds * (rho - c) + sg * rho_p + (1.0 - sg) * mat->gas.trace;
+  return sg * rho + (1.0 - sg) * c;
+}
+
+#define CLOSE 1e-4 /* of p_0 */
+
+double PointGasPressure(const Material *mat, double want, double pw, double T, double a, double b)
+{
+  double       slope[PHASE_COUNT], lo = fmin(a, b), hi = fmax(a, b);
+  const double close = CLOSE * mat->retention.p0;
+
+  if ((PointMethane(mat, pw, lo, T, slope) - want) * (PointMethane(mat, pw, hi, T, slope) - want) >= 0.0)
+    return b;
+  while (hi - lo > close + 4.0 * PETSC_MACHINE_EPSILON * fabs(hi)) {
+    const double mid = 0.5 * (lo + hi);
+
+    if (PointMethane(mat, pw, mid, T, slope) < want)
+      lo = mid;
+    else
+      hi = mid;
+  }
+  return 0.5 * (lo + hi);
 }
 
 /* Rate of the reaction for 1 Pa off equilibrium, whichever way it goes. */

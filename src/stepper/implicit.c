@@ -60,6 +60,8 @@ void StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4])
     y[k]    = m->P.f[held[k]] ? m->P.f[held[k]][p] : 0.0;
     rate[k] = m->P.f[P_RATE] ? m->P.f[P_RATE + k][p] : 0.0;
   }
+  if (m->P.f[P_PG])
+    y[1] = GasToBe(y[0], y[1]);
 }
 
 double StepperMass(const Model *m, PetscInt p, int k)

@@ -147,6 +147,11 @@ CASES = [
     # --- agreement
     ("saturations", [("Sg: 0.4\n", "Sg: 0.3\n")], ["region_column_Sw", "must be 1"], []),
     ("residual saturations", [("Swr: 0.2, Sgr: 0.4", "Swr: 0.6, Sgr: 0.4")], [M + "retention_Swr", "below 1"], []),
+    ("no gas in a law that leaves some", [("Sw: 0.6\n    Sg: 0.4\n", "Sw: 1\n    Sg: 0\n"), ("law: van_genuchten,", "law: van_genuchten_clamped,")],
+     ["region_column_Sg", "retention law"], []),
+    ("gas let into sediment without any, by hybrid", [("Sw: 0.6\n    Sg: 0.4\n", "Sw: 1\n    Sg: 0\n"), ("type: sdirk2", "type: hybrid"),
+      ("type: pressure, side: right, initial: yes}", "type: inflow, side: right, gas: 1e-6 m/s}")],
+     ["stepper_type", "hybrid does not know an inflow of gas where a region has Sg: 0"], []),
     ("retention out of reach", [("Sw: 0.6\n    Sg: 0.4\n", "Sw: 0.1\n    Sg: 0.9\n")], ["region_column_Sg", "retention law"], []),
     ("grid upside down", [("upper: [1.04 m, 0.02 m]", "upper: [1.04 m, -0.02 m]")], ["grid_upper", "above"], []),
     ("region upside down", [("upper: [1 m, 0.02 m]", "upper: [-1 m, 0.02 m]")], ["region_column_upper", "above"], []),
