@@ -83,7 +83,7 @@ def check_files(page):
 def case_patterns(binary):
     keys = re.findall(r"^\| `(\w*(?:<name>)?\w*)` \|", options_doc.case_keys(binary), re.M)
     lists = re.findall(r"^`(\w+)`: the list", options_doc.case_keys(binary), re.M)
-    form = r"(_table|_ramp|_rate|_piecewise)?"
+    form = r"(_table|_ramp|_rate|_piecewise|_sine|_csv)?"
     return re.compile("-(" + "|".join(k.replace("<name>", r"[\w-]+?") + form for k in keys + lists) + ")")
 
 
