@@ -16,6 +16,7 @@ PAGE = ROOT / "docs" / "options.md"
 PROGRAM = [  # option, value, default, meaning
     ("-case_check", "", "", "read and check the case, write nothing"),
     ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
+    ("-case_curves", "", "", "print what the laws of the case's materials give, curve by curve, and stop: what docs/laws.md is drawn from"),
     ("-restart", "FILE", "", "go on from a checkpoint of the same case (grid, regions, materials, boundary conditions, "
      "meters, stages); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a "
      "new one"),
