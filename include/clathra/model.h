@@ -71,6 +71,7 @@ typedef struct {
 typedef struct {
   PetscInt node[4];
   double   K[4][4];                          /* m^2/Pa */
+  double   t_inertia;                        /* of (275), s */
   double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
 } ProjectionCell;
 

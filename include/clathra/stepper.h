@@ -178,6 +178,8 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 }
 /* A line with what to try after a run was given up for this cause. */
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
+/* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
+PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
 /* The largest unit of which a time (s) holds two. */
 typedef struct {
   double      s;

@@ -25,3 +25,15 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
     PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s (docs/giving_up.md)\n", what));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status)
+{
+  const Model *m = s->model;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPrintf(
+      m->grid.comm, "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
+      s->state.t, attempts, m->why ? m->why : "?", StepperStatusName(status), m->where[0], m->where[1]));
+  PetscCall(StepperAdvise(s, status));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
