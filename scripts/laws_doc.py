@@ -112,6 +112,10 @@ def page(binary):
         out += [f"| `{k[0]}` | {' | '.join(k[1:6])} |" for k in own]
         out += ["", f"Source: {source}. Code: {', '.join(f'`{f}`' for f in where)}."]
         index += [f"| ({n}) | [{title}](#{title.lower().replace(' ', '-').replace(',', '')}) | {', '.join(f'`{k[0]}`' for k in own)} | {', '.join(f'`{f}`' for f in files(n))} |" for n in numbers]
+    rest = [k for k in table if not any(re.fullmatch(law[4], k[0]) for law in LAWS)]
+    if rest:
+        out += ["", "## Other keys of a material", "", "| key | kind | SI unit | range | default | meaning |", "|---|---|---|---|---|---|"]
+        out += [f"| `{k[0]}` | {' | '.join(k[1:6])} |" for k in rest]
     out += ["", "## Equation, keys, file", "", "| equation | law | keys | cited in |", "|---|---|---|---|", *index, ""]
     return "\n".join(out)
 
