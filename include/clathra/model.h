@@ -52,9 +52,10 @@ enum {
 
 /* Rates over the boundary and inside at the end of a stage, global sums. */
 typedef struct {
-  double out[PHASE_COUNT];                /* kg/s */
-  double heat_in, heat_source, heat_rate; /* W: through the boundary; latent and squeezed less advected; stored */
-  double squeezed;                        /* W: of compression and throttling of the fluids (290) */
+  double out[PHASE_COUNT];                      /* kg/s */
+  double heat_in, heat_source, heat_rate;       /* W: through the boundary; latent and squeezed less advected; stored */
+  double squeezed;                              /* W: of compression and throttling of the fluids (290) */
+  double left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg/s: in the mass rows, and what they exchange (277) */
   double meter[CL_METERS][METER_COUNT];
   double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;
