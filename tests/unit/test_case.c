@@ -100,7 +100,8 @@ static void units_refused(void **state)
 static void schedule_values(void **state)
 {
   double   t[] = {10, 20, 40}, y[] = {1, 3, -1};
-  Schedule line = {3, t, y, false}, jump = {3, t, y, true}, constant = {1, t, y, false};
+  Schedule line = {.n = 3, .t = t, .y = y}, jump = {.n = 3, .t = t, .y = y, .steps = true},
+           constant = {.n = 1, .t = t, .y = y};
 
   (void)state;
   assert_true(ScheduleValue(&line, 0) == 1 && ScheduleValue(&line, 10) == 1 && ScheduleValue(&line, 15) == 2);
