@@ -69,7 +69,7 @@ static char *FileText(const char *path, char why[CASE_WHY])
     return NULL;
   }
   if (info.st_size > FILE_MAX) {
-    snprintf(why, CASE_WHY, "has %ld bytes, more than %d", (long)info.st_size, FILE_MAX);
+    snprintf(why, CASE_WHY, "has %ld bytes; at most %d are read", (long)info.st_size, FILE_MAX);
     return NULL;
   }
   f = fopen(path, "rb");
