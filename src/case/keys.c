@@ -230,6 +230,10 @@ static const Key case_key[] = {
             "relative permeabilities from upstream, for sharp fronts of saturation"),
     BOOLEAN(Case, "stabilisation_saturation", saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
+    BOOLEAN(
+        Case, "stabilisation_heat", heat_upwind, "no",
+        "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
+        "conducted"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

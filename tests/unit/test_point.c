@@ -131,6 +131,9 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
     q->in[IN_U + (k & 1)]   = RngBetween(r, -1e-3, 1e-3);
   }
   q->h.ambient     = &sea;
+  q->h.upwind[0]   = 3.0;
+  q->h.upwind[1]   = 0.7;
+  q->h.upwind[2]   = -0.9;
   q->h.compression = RngPick(r, 2) != 0;
   for (int f = 0; f < PHASE_COUNT; f++) {
     q->h.p_star[f]  = q->in[IN_P + f] + RngBetween(r, -2e6, 2e6);
