@@ -24,14 +24,13 @@ mat:
     permeability: {{k0: 1e-12 m^2, mh: 3}}
     elasticity: {{E0: 90 MPa, Eh: 2 GPa, ah: 1, bh: 1, nu: 0.3, stiffness_change: both}}
 {laws}
-regions: [block]
-region: {{block: {{lower: [0 m, 0 m], upper: [1 m, 1 m], material: soil, particles_per_cell: [2, 2]{state}}}}}
+regions: {regions}
 boundaries: [base, low, high, load{drains}]
 bc:
   base: {{type: fixed, axis: x, position: 0 m}}
   low: {{type: roller, axis: y, position: 0 m}}
   high: {{type: roller, axis: y, position: 1 m}}
-  load: {{type: traction, side: right, normal: {{ramp: [{p} MPa, {q} MPa, 0 s, 1 s]}}}}
+  load: {{type: traction, side: right, normal: {{ramp: [{p} MPa, {q} MPa, 0 s, {rise} s]}}}}
 {drain}
 time: {{end: 10 s}}
 stepper: {{type: hybrid}}
@@ -44,12 +43,18 @@ GAS = """
     kinetics: {active: yes, K0: 2.5e-7 mol/(m^2 Pa s), dE: 0 J/mol, A_geo: 1e6 1/m, equilibrium: sloan, A1: 1 kPa, A2: 38.98, A3: 8533.8 K}
     latent_heat: {C0: 473632 J/kg, C1: 140.117 J/(kg K)}
 """
+# The tenth beside the load starts on the yield surface, and the load, which rises, keeps it there.
+PLASTIC = GAS + """
+    plasticity: {law: mohr_coulomb, flow: menetrey_willam, cohesion_max: 10 kPa, cohesion_residual: 5 kPa, friction_peak: 15 deg, dilation_max: 5 deg, eta_s: 5}
+"""
 DRAIN = "  drain: {type: pressure, side: right, initial: yes}"
+WET = ", pressure: 3.25 MPa, temperature: 4 degC, Sw: 0.6, Sg: 0.4, Sh: 0"
 # name, fields, laws, state, drained, numbers a step must at least read and write per particle
 SETS = [
     ("dry (m)", "[solid]", "", "", False),
     ("saturated (hm)", "[solid, water]", "", ", pressure: 3.25 MPa", True),
-    ("six fields (thmc)", "thmc", GAS, ", pressure: 3.25 MPa, temperature: 4 degC, Sw: 0.6, Sg: 0.4, Sh: 0", True),
+    ("six fields (thmc)", "thmc", GAS, WET, True),
+    ("six fields, plastic", "thmc", PLASTIC, WET, True),
 ]
 
 
@@ -77,8 +82,13 @@ def traffic(fields):
 
 def case_text(kind, n):
     name, fields, laws, state, drained = kind
-    p = 3.25 if drained else 0.0
-    body = COMMON.format(top=1 + 4 / n, nx=n + 4, n=n, laws=laws, state=state, drains=", drain" if drained else "", drain=DRAIN if drained else "", p=p, q=p + 1)
+    plastic = laws is PLASTIC
+    p = (3.25 if drained else 0.0) + (1 if plastic else 0)
+    box = lambda left, right, stress: f"{{lower: [{left} m, 0 m], upper: [{right} m, 1 m], material: soil, particles_per_cell: [2, 2]{state}{stress}}}"
+    stress = lambda across: f", stress: [-1 MPa, {across} MPa, {across} MPa, 0 Pa, 0 Pa, 0 Pa]"
+    part = round(0.9 * n) / n
+    body = COMMON.format(top=1 + 4 / n, nx=n + 4, n=n, laws=laws, drains=", drain" if drained else "", drain=DRAIN if drained else "", p=p, q=p + 1, rise=0.01 if plastic else 1,
+                         regions=f"[far, near]\nregion: {{far: {box(0, part, stress(-1))}, near: {box(part, 1, stress(-0.5735))}}}" if plastic else f"[block]\nregion: {{block: {box(0, 1, '')}}}")  # fmt: skip
     return f"title: {name}\nfields: {fields}\n{body}"
 
 
@@ -91,7 +101,8 @@ def run(binary, kind, n, bursts):
     events = {m.group(1): float(m.group(2)) for m in re.finditer(r"^(ClEx\w+)\s+\d+\s+[\d.]+\s+([\d.e+-]+)\s", text, re.M)}
     steps = int(re.search(r"integrator hybrid, (\d+) steps", text).group(1))
     memory = float(re.search(r"([\d.]+) B a particle", text).group(1))
-    return steps, events, memory
+    yields = re.search(r"(\d+) of (\d+) particles yield", text)
+    return steps, events, memory, int(yields.group(1)) / int(yields.group(2)) if yields else 0.0
 
 
 def table(binary):
@@ -100,11 +111,11 @@ def table(binary):
     rows = []
     for kind in SETS:
         for n, bursts in ((71, 4), (224, 1)):
-            steps, events, memory = run(binary, kind, n, bursts)
+            steps, events, memory, yields = run(binary, kind, n, bursts)
             particles, seconds = 4 * n * n, sum(events.values())
             rate = particles * steps / seconds
             shares = [f"{100 * events.get(e, 0.0) / seconds:.0f} %" for e in PARTS]
-            rows.append([kind[0], particles, f"{rate / 1e6:.2f}", *shares, f"{memory:.0f}", f"{100 * rate * traffic(kind[1]) / copy:.0f} %"])
+            rows.append([kind[0] + (f", {100 * yields:.0f} % yield" if yields else ""), particles, f"{rate / 1e6:.2f}", *shares, f"{memory:.0f}", f"{100 * rate * traffic(kind[1]) / copy:.0f} %"])
             print(rows[-1], flush=True)
     head = ["scene", "particles", "million particle-steps a second", *PARTS.values(), "B a particle", "traffic of a stream copy"]
     return head, rows, copy

@@ -17,6 +17,8 @@ LABELS = {
     "A": "A: kinetics", "B": "B: no kinetics", "C": "C: and plastic heat", "hybrid": "A, hybrid", "B_hybrid": "B, hybrid", "C_hybrid": "C, hybrid",
     "psi": "ψ = φ", "slow_A": "A, $K_0$ = 3.6e4", "slow_C": "C, $K_0$ = 3.6e4", "h067": "0.067 m", "h05": "0.05 m", "h067_9": "0.067 m, 9 particles", "h2": "0.2 m", "soft_h2": "0.2 m, softening_length",
     "soft_h067": "0.067 m, softening_length", "nonlocal": "0.1 m, nonlocal 0.4 m", "nonlocal_h2": "0.2 m, nonlocal 0.4 m", "short": "0.1 m, nonlocal 0.25 m", "short_h067": "0.067 m, nonlocal 0.25 m",
+    "hybrid_9": "0.1 m, 9 particles", "h2_hybrid": "0.2 m", "h067_hybrid": "0.067 m", "h05_hybrid": "0.05 m", "soft_h067_hybrid": "0.067 m, softening_length",
+    "short_hybrid": "0.1 m, nonlocal 0.25 m", "short_h067_hybrid": "0.067 m, nonlocal 0.25 m",
 }  # fmt: skip
 EPS, PRESSURE, SH, T, LOST = "$\\epsilon_d^p$ (–)", "p – 3.75 (MPa)", "$S_h$ (–)", "T (°C)", "$\\delta m_h$ (%)"
 FIELDS = (  # Figures 14 and 15: run, title, field, factor, shift, limits
@@ -29,12 +31,13 @@ HEAT = (  # Figure 17, and with a slower reaction
     ("slow_A", T, "T", 1, 0, (0, 2.8)), ("slow_C", T, "T", 1, 0, (0, 2.8)),
 )  # fmt: skip
 MESHES = ("h2", "A", "h067", "h067_9", "h05", "soft_h2", "soft_h067", "nonlocal_h2", "nonlocal", "short", "short_h067")
+MESHES_HYBRID = ("hybrid", "hybrid_9", "h067_hybrid", "h05_hybrid", "soft_h067_hybrid", "short_hybrid", "short_h067_hybrid")
 STRAINS = (2.4, 3.6, 4.9, 7.4, 15.0)  # %: of Figures C.36 and C.37
 MAPS = {  # what the figures need: {run: {strain: fields}}
     "A": {15.0: ("eps", "volume", "porosity", "p", "Sh", "T", "lost")} | {s: ("eps",) for s in STRAINS[:-1]},
     "B": {15.0: ("p", "Sh")}, "C": {15.0: ("T", "lost")}, "slow_A": {15.0: ("T",)}, "slow_C": {15.0: ("T",)},
     "psi": {s: ("eps",) for s in STRAINS},
-} | {name: {15.0: ("eps",)} for name in MESHES if name != "A"}  # fmt: skip
+} | {name: {15.0: ("eps",)} for name in (*MESHES, *MESHES_HYBRID) if name != "A"}  # fmt: skip
 
 
 def nearest(maps, strain):
@@ -72,7 +75,7 @@ def curves(runs, wanted, out, name):
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 4))
     for k, run in enumerate(n for n in wanted if n in runs):
         data = runs[run][0]
-        look = dict(color=COLOURS[k % len(COLOURS)], ls=STYLES[k % len(STYLES)], label=LABELS[run] if run != "A" or "B" in wanted else "0.1 m")
+        look = dict(color=COLOURS[k % len(COLOURS)], ls=STYLES[k % len(STYLES)], label=LABELS[run] if run not in ("A", "hybrid") or "B" in wanted else "0.1 m")
         left.plot(data["strain"], data["stress"], **look)
         right.plot(data["snapshot_strain"], [100 * s["volume"] for s in data["states"]], marker=".", **look)
     left.set(xlabel="axial strain (%)", ylabel="axial stress beyond 3.75 MPa (MPa)")
@@ -118,10 +121,10 @@ def orientation(runs, out):
     save(figure, out, "biaxial_angles")
 
 
-def meshes(runs, out):
+def meshes(runs, names, out, suffix=""):
     """Figures B.32 and B.33: cells, particles, and what regularises."""
-    wanted = [n for n in MESHES if n in runs]
-    title = lambda n: "0.1 m" if n == "A" else LABELS[n].replace(", ", "\n")
+    wanted = [n for n in names if n in runs]
+    title = lambda n: "0.1 m" if n in ("A", "hybrid") else LABELS[n].replace(", ", "\n")
     whole = [n for n in wanted if runs[n][1] and max(runs[n][1]) > 14]
     figure, axes = plt.subplots(1, len(whole), figsize=(1.7 * len(whole) + 1, 4.9), sharey=True, squeeze=False)
     for at, run in zip(axes[0], whole):
@@ -130,8 +133,8 @@ def meshes(runs, out):
         at.set_title(title(run), fontsize=9)
     axes[0, 0].set_ylabel("y (m)")
     figure.colorbar(shown, ax=axes, label=EPS)
-    save(figure, out, "biaxial_meshes")
-    curves(runs, wanted, out, "biaxial_mesh_curves")
+    save(figure, out, "biaxial_meshes" + suffix)
+    curves(runs, wanted, out, "biaxial_mesh_curves" + suffix)
 
 
 def figures(runs, out):
@@ -143,7 +146,9 @@ def figures(runs, out):
     point_m(runs, out)
     orientation(runs, out)
     if sum(name in runs for name in MESHES) > 1:
-        meshes(runs, out)
+        meshes(runs, MESHES, out)
+    if any(n in runs for n in MESHES_HYBRID[1:]):
+        meshes(runs, MESHES_HYBRID, out, "_hybrid")
 
 
 def row(name, run):

@@ -53,8 +53,8 @@ double FaceRing(const Case *c, const Grid *g, double r, double l, double penalty
    at x (m); 0 where none is. */
 double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t);
 
-/* A warning, on rank 0, where the surface cuts cells whose mean motion strains the particles (88), (160).  Collective.
- */
+/* Warnings, on rank 0, where the surface cuts cells whose mean motion strains the particles (88), (160), and where
+   hybrid has a traction on such a surface.  Collective. */
 PetscErrorCode CellMeansWarning(const Grid *g, const Case *c, const Particles *P);
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */

@@ -185,6 +185,7 @@ typedef struct Case {
   bool   upstream;            /* drag of the fluids from upstream; default false */
   bool   saturation_upwind;   /* (200); default false */
   bool   heat_upwind;         /* (293); default false */
+  bool   lumped_reaction;     /* (265); default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
   char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | auto */
@@ -298,6 +299,7 @@ static inline const char *CaseNeedsImplicit(const Case *c)
          : c->one_pressure      ? "pressures: one"
          : c->upstream          ? "stabilisation_upstream"
          : c->saturation_upwind ? "stabilisation_saturation"
+         : c->lumped_reaction   ? "stabilisation_reaction"
          : !c->inertia          ? "inertia: no"
                                 : NULL;
 }

@@ -52,9 +52,10 @@ enum {
 
 /* Rates over the boundary and inside at the end of a stage, global sums. */
 typedef struct {
-  double out[PHASE_COUNT];                /* kg/s */
-  double heat_in, heat_source, heat_rate; /* W: through the boundary; latent and squeezed less advected; stored */
-  double squeezed;                        /* W: of compression and throttling of the fluids (290) */
+  double out[PHASE_COUNT];                      /* kg/s */
+  double heat_in, heat_source, heat_rate;       /* W: through the boundary; latent and squeezed less advected; stored */
+  double squeezed;                              /* W: of compression and throttling of the fluids (290) */
+  double left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg/s: in the mass rows, and what they exchange (277) */
   double meter[CL_METERS][METER_COUNT];
   double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;
@@ -71,6 +72,7 @@ typedef struct {
 typedef struct {
   PetscInt node[4];
   double   K[4][4];                          /* m^2/Pa */
+  double   t_inertia;                        /* of (275), s */
   double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
 } ProjectionCell;
 
@@ -86,6 +88,14 @@ typedef struct {
   double per_decade; /* GMRES iterations of its first solve per decade of the residual */
   double lost;       /* iterations beyond that since */
 } Renewal;
+
+/* What shares a particle's reaction out among its nodes (265), at t_n. */
+typedef struct {
+  double rate;           /* hydrate per time and driving pressure, kg/(s Pa) */
+  double decay;          /* M_h K_d A_geo <p_e - p>/rho_h, 1/s (266) */
+  double drive[F_COUNT]; /* d(p_e - p)/d p_w, d p_g, d T */
+  double gain[F_COUNT];  /* what a kg of hydrate adds to the rows (17), (21) of a node: kg, J */
+} Lump;
 
 typedef struct Reduced Reduced; /* reduced.c */
 
@@ -105,6 +115,7 @@ typedef struct {
   double         *up; /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
   double         *spread; /* [n][2] (200); NULL when off */
   double         *upwind; /* [n][3] (293); NULL when off */
+  Lump           *lump;   /* [n] (265); NULL when off */
   double         *Vk;     /* [n_local] sum of V S k0 over the first k0, m^3 */
   double         *coef;   /* [n_local][NC_COUNT] nodal means, places NC_... */
   unsigned       *mask;   /* [n_local] Dirichlet bits */

@@ -108,7 +108,8 @@ typedef struct {
   SkeletonStore store;
 } SkeletonBlock;
 
-/* A law: its functions return false with *why pointing to a sentence; a shorter step mends that. */
+/* A law: its functions return false with *why pointing to a sentence; a shorter step mends that.  The work of a block's
+   particles without a stress is NaN then. */
 typedef struct {
   const char *name;
   unsigned    has; /* HAS_...: whose rows of the tables it needs */

@@ -29,9 +29,40 @@ static PetscErrorCode CutCells(const Grid *g, const Case *c, const Particles *P,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* First traction that is not zero of a scene that hybrid may run; null: none. */
+static const Bc *HybridTraction(const Case *c)
+{
+  if (strcmp(c->stepper, "hybrid") && strcmp(c->stepper, "explicit") && strcmp(c->stepper, "auto"))
+    return NULL;
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Bc *bc = &c->bc[k];
+
+    for (PetscInt i = 0; bc->type == BC_TRACTION && i < bc->value.n; i++) {
+      if (bc->value.y[i] != 0.0)
+        return bc;
+    }
+    for (PetscInt i = 0; bc->type == BC_TRACTION && i < bc->shear.n; i++) {
+      if (bc->shear.y[i] != 0.0)
+        return bc;
+    }
+  }
+  return NULL;
+}
+
+/* The same of any stage. */
+static const Bc *AnyHybridTraction(const Case *c)
+{
+  const Bc *found = NULL;
+
+  for (PetscInt k = 0; k < PetscMax(c->nstage, 1) && !found; k++)
+    found = HybridTraction(CaseInStage(c, k));
+  return found;
+}
+
 PetscErrorCode CellMeansWarning(const Grid *g, const Case *c, const Particles *P)
 {
-  const char *const key = c->mean_strain > 0.0 ? "mean_strain" : "mean_dilatation";
+  const char *const key      = c->mean_strain > 0.0 ? "mean_strain" : "mean_dilatation";
+  const Bc         *traction = AnyHybridTraction(c);
   PetscInt          cut;
 
   PetscFunctionBeginUser;
@@ -45,5 +76,12 @@ PetscErrorCode CellMeansWarning(const Grid *g, const Case *c, const Particles *P
                      " cells of the grid, and %s leaves forces there of the order of the stress times what a cell "
                      "lacks: let the body fill its cells, or do without\n",
                      cut, key));
+  if (traction)
+    PetscCall(PetscFPrintf(g->comm, stderr,
+                           "clathra: warning: the traction %s (bc_%s_type) stands against stress that acts through "
+                           "%s: where its surface rises from the grid's line, hybrid gives it to nodes of almost no "
+                           "mass, and loads come out wrong; let an ambient pressure or a plate bear it, or take sdirk2 "
+                           "or euler\n",
+                           traction->name, traction->name, key));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

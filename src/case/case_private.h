@@ -179,8 +179,8 @@ void           CheckInitial(Reader *r, const Case *c, const Region *g); /* initi
 /* regions.c: shapes, faces named by a side or a line, probes */
 void               RegionsFinish(Case *c); /* once all keys are read */
 void               CheckShape(Reader *r, const Case *c, PetscInt region);
-void               CheckOverlap(Reader *r, const Case *c);    /* of good shapes; none of them without particles */
-bool               FacesExist(const Case *c, const Meter *m); /* has the body any of them? */
+void               CheckOverlap(Reader *r, const Case *c); /* of good shapes; none of them without particles */
+bool               FacesShared(const Case *c, const Meter *a, const Meter *b); /* has the body any that both name? */
 void               CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
 void               CheckHeld(Reader *r, const Case *c, const Bc *b);
 void               CheckProbe(Reader *r, const Case *c, const Probe *p);

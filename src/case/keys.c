@@ -234,6 +234,9 @@ static const Key case_key[] = {
         Case, "stabilisation_heat", heat_upwind, "no",
         "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
         "conducted"),
+    BOOLEAN(Case, "stabilisation_reaction", lumped_reaction, "no",
+            "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
+            "front of heat"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

@@ -56,11 +56,10 @@ static void CheckLine(Reader *r, const Case *c, const Bc *b)
         far, SMALL * h, SMALL);
 }
 
-/* Do two conditions share a part of the body's surface? */
-static bool Meet(const Bc *a, const Bc *b)
+/* Do two conditions share a part of the body's surface, sides or lines? */
+static bool Meet(const Case *c, const Bc *a, const Bc *b)
 {
-  return a->side == b->side && (a->region < 0 || b->region < 0 || a->region == b->region) && a->from < b->to &&
-         b->from < a->to;
+  return (a->along.n || b->along.n || a->side == b->side) && FacesShared(c, &BcFaces(a), &BcFaces(b));
 }
 
 static bool ActsIn(const Case *stage, const Bc *b)
@@ -81,7 +80,7 @@ static void CheckOpen(Reader *r, const Case *c, const Bc *b)
     for (PetscInt k = 0; k < stage->nbc && ActsIn(stage, b); k++) {
       const Bc *o = &stage->bc[k];
 
-      if ((o->type != BC_PRESSURE && o->type != BC_INFLOW) || !Meet(b, o))
+      if ((o->type != BC_PRESSURE && o->type != BC_INFLOW) || !Meet(c, b, o))
         continue;
       FAIL(b, "holds",
            "is all, a closed plate, but %s lets fluid through the same part of the side; a porous plate has holds: "
@@ -127,7 +126,9 @@ void CheckPlate(Reader *r, const Case *c, const Bc *b)
       break;
     }
   }
-  if (!r->bad[GROUP_CASE] && !r->bad[GROUP_REGION] && !FacesExist(c, &BcFaces(b)))
+  if (r->bad[GROUP_CASE] || r->bad[GROUP_REGION])
+    return;
+  if (!FacesShared(c, &BcFaces(b), &BcFaces(b)))
     FAIL(b, "side", "the body has no free surface there that the plate could act on");
   if (!r->bad[GROUP_STAGE]) {
     CheckOpen(r, c, b);

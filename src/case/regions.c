@@ -205,22 +205,26 @@ void CheckOverlap(Reader *r, const Case *c)
 }
 
 /* ---------------------------------------------------------------- faces */
-static bool HasNamed(const Place *p, const void *meter)
+static bool HasNamed(const Place *p, const void *meters)
 {
-  const PetscInt bits = RegionFaces(p->c, p->region, p->lattice, p->ij);
+  const Meter *const *m    = (const Meter *const *)meters;
+  const PetscInt      bits = RegionFaces(p->c, p->region, p->lattice, p->ij);
 
   for (int side = 0; side < SIDE_COUNT; side++) {
-    if ((bits >> side & 1) && FaceNamed(p->c, (const Meter *)meter, p->region, p->x, side))
+    if ((bits >> side & 1) && FaceNamed(p->c, m[0], p->region, p->x, side) &&
+        FaceNamed(p->c, m[1], p->region, p->x, side))
       return true;
   }
   return false;
 }
 
 /* What the regions' boxes say, where all are whole. */
-bool FacesExist(const Case *c, const Meter *m)
+bool FacesShared(const Case *c, const Meter *a, const Meter *b)
 {
+  const Meter *const both[] = {a, b};
+
   for (PetscInt i = 0; i < c->nregion; i++) {
-    if (AnyPlace(c, i, HasNamed, m))
+    if (AnyPlace(c, i, HasNamed, both))
       return true;
   }
   return false;
@@ -238,7 +242,7 @@ static bool SideMeets(const Case *c, const Meter *m)
   }
   if (whole)
     return meets;
-  return FacesExist(c, m);
+  return FacesShared(c, m, m);
 }
 
 void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m)

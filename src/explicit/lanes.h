@@ -176,7 +176,7 @@ struct Explicit {
 typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
   int    first[BLOCK]; /* padded number of the lowest left node */
-  int    cell[BLOCK];  /* ... of the particle's cell, from there on */
+  int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
 } Weights;
 
 /* A run of particles of one material. */
@@ -194,12 +194,17 @@ typedef struct {
   double strain, volume, Q[4][CL_DIM];
 } CellMean;
 
+INLINE bool TakesCellMean(const Explicit *e)
+{
+  return e->set.solid && (e->m->c->mean_strain > 0.0 || e->m->c->mean_dilatation);
+}
+
 INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
 {
+  if (!TakesCellMean(e))
+    return false;
   c->strain = e->m->c->mean_strain;
   c->volume = e->m->c->mean_dilatation ? 0.5 * (1.0 - c->strain) : 0.0;
-  if (!e->set.solid || (c->strain == 0.0 && c->volume == 0.0))
-    return false;
   for (int a = 0; a < 4; a++)
     CellGradient(&e->m->grid, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
   return true;

@@ -3,6 +3,10 @@
 #include "lanes.h"
 #include "clathra/laws_batch.h"
 
+/* What a loop over particles finds wrong: of the width of its numbers, so that the loop stays vector code. */
+typedef int64_t Wrong;
+#define WRONG_UNLESS(condition) ((condition) ? (Wrong)0 : (Wrong)1)
+
 #define LARGEST_STRAIN 0.1 /* of one step: beyond it the series below lose digits, and the step is no small one */
 
 typedef struct {
@@ -52,6 +56,18 @@ INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
   }
 }
 
+/* Particle of a block with the largest value; NaN is larger than all. */
+static PetscInt Worst(Run r, const double size[])
+{
+  int worst = 0;
+
+  for (int q = 1; q < r.n && !isnan(size[worst]); q++) {
+    if (!(size[q] <= size[worst]))
+      worst = q;
+  }
+  return r.p + worst;
+}
+
 typedef struct {
   double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK];
 } Strain;
@@ -61,7 +77,7 @@ typedef struct {
 INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o)
 {
   const int at    = C_Vs(s);
-  bool      small = true;
+  Wrong     large = 0;
 
   for (int q = 0; q < n; q++) {
     const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
@@ -75,7 +91,7 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
     const double ratio =
         1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
 
-    small &= (fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0); /* false for NaN */
+    large |= WRONG_UNLESS((fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0));
     o->c[q]          = c;
     o->s[q]          = si;
     o->xx[q]         = 0.5 * lnJ + 0.5 * ratio * d / m;
@@ -86,29 +102,61 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
     o->stretch[0][q] = c * Fxx + si * Fyx;
     o->stretch[1][q] = -si * Fxy + c * Fyy;
   }
-  return small;
+  return !large; /* NaN is wrong as well */
+}
+
+/* The particle of a block that is strained most. */
+static PetscInt Strained(Run r, const Strain *n)
+{
+  double size[BLOCK];
+
+  for (int q = 0; q < r.n; q++)
+    size[q] = n->xx[q] * n->xx[q] + n->yy[q] * n->yy[q] + 2.0 * n->xy[q] * n->xy[q];
+  return Worst(r, size);
+}
+
+#define FARTHEST 1e15 /* Pa, degC: beyond it a field has left its range */
+
+static double Least(int field)
+{
+  return field == 0 ? -FARTHEST : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
+}
+
+/* The first particle of a block with a field outside its range. */
+static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
+{
+  for (int q = 0; q < r.n; q++) {
+    for (int k = 0; k < Scalars(s); k++) {
+      const int    field = k < s.fluids ? k : 2;
+      const double y     = e->m->P.f[P_PW + field][r.p + q];
+
+      if (!(y > Least(field) && y < FARTHEST))
+        return r.p + q;
+    }
+  }
+  return r.p;
 }
 
 /* p_w, p_g, T and their gradients; false if one leaves its range. */
 INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
 {
   static const int grad[3] = {P_GW, P_GG, P_GT};
-  bool             fine    = true;
+  Wrong            out     = 0;
 
   for (int k = 0; k < Scalars(s); k++) {
     const int field    = k < s.fluids ? k : 2;
     double *restrict y = e->m->P.f[P_PW + field] + r.p, *restrict gx = e->m->P.f[grad[field]] + r.p,
                      *restrict gy = e->m->P.f[grad[field] + 1] + r.p;
-    const double least            = field == 0 ? -1e15 : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
+    const double least            = Least(field);
 
     for (int q = 0; q < r.n; q++) {
       y[q] += g->value[q][k];
       gx[q] = g->dx[q][C_End(s) + k];
       gy[q] = g->dy[q][C_End(s) + k];
-      fine &= (y[q] > least) & (y[q] < 1e15);
+      out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
   }
-  return fine;
+  return !out;
 }
 
 /* (97): p_w, p_g, T tend to what the nodes have at the particle. */
@@ -208,25 +256,26 @@ INLINE void CountCompression(Explicit *e, const Set s, Run r, const Gathered *g)
 /* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
 INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
-  double *const *f         = e->m->P.f;
-  const double *restrict V = s.fluids || s.heat ? e->t[T_V] + r.p : NULL;
-  double *restrict Sh      = f[P_SH] + r.p;
+  double *const *f     = e->m->P.f;
+  const bool     known = s.fluids || s.heat; /* the volume, from the pass before */
+  double *restrict V = f[P_V] + r.p, *restrict Sh = f[P_SH] + r.p;
+  const double *restrict at = known ? e->t[T_V] + r.p : NULL, *restrict ms = f[P_MS] + r.p,
+                         *restrict mh = f[P_MH] + r.p;
   double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
-  bool   fine = true;
+  Wrong  full = 0;
 
   LiquidDensityBatch(&r.mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const PetscInt p      = r.p + q;
-    const double   volume = V ? V[q] : f[P_V][p] * n->J[q], pore = volume - f[P_MS][p] / rho_s[q],
-                 open = pore - f[P_MH][p] / rho_h[q];
+    const double volume = known ? at[q] : V[q] * n->J[q], pore = volume - ms[q] / rho_s[q],
+                 open = pore - mh[q] / rho_h[q];
 
-    fine &= (open > 0.0);
-    phi[q]    = pore / volume;
-    Sh[q]     = 1.0 - open / pore;
-    f[P_V][p] = volume;
+    full |= WRONG_UNLESS(open > 0.0);
+    phi[q] = pore / volume;
+    Sh[q]  = 1.0 - open / pore;
+    V[q]   = volume;
   }
-  return fine;
+  return !full;
 }
 
 /* Mean thermal strain of skeleton and hydrate. */
@@ -278,11 +327,12 @@ INLINE void ExpansionWork(Explicit *e, const Set s, Run r, const Gathered *g, co
 /* Elastic energy that goes with the stiffness, J. */
 static double Released(const Elasticity *el, const SkeletonBlock *b, const double *restrict V)
 {
-  double sum     = 0.0;
-  bool   changes = false;
+  const double *E = b->E, *E_n = b->E_n;
+  double        sum     = 0.0;
+  Wrong         changes = 0;
 
   for (int q = 0; q < b->n; q++)
-    changes |= b->E[q] != b->E_n[q];
+    changes |= WRONG_UNLESS(E[q] == E_n[q]);
   for (int q = 0; changes && q < b->n; q++) {
     SkeletonHistory h;
 
@@ -317,7 +367,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
 
   ElasticityYoungBatch(el, r.n, Sh, E_old);
   if (!PoresOf(e, s, r, n, T, phi))
-    ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", Worst(r, Sh)); /* S_h >= 1 */
   ElasticityYoungBatch(el, r.n, Sh, E);
   ThermalStrain(e, s, r, g, phi, thermal);
   const SkeletonBlock block = {.n       = r.n,
@@ -335,7 +385,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
                                .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
   e->m->released += Released(el, &block, e->m->P.f[P_V] + r.p);
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
-    ModelNoteFailure(e->m, CL_DOMAIN, why, r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, why, Worst(r, work));
   if (yields)
     PlasticWork(e, r, work);
 }
@@ -358,11 +408,30 @@ INLINE void Deform(Explicit *e, const Set s, Run r, const Gathered *g, double dt
   }
 }
 
+/* The particle of a block that moves farthest, in cells, or stands outside the grid. */
+static PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  const Grid *grid = &e->m->grid;
+  double      size[BLOCK];
+
+  for (int q = 0; q < r.n; q++) {
+    size[q] = 0.0;
+    for (int d = 0; d < CL_DIM; d++) {
+      const double x = (e->m->P.f[P_X + d][r.p + q] - grid->lower[d]) / grid->h[d];
+
+      size[q] = fmax(size[q], fabs(dt * g->value[q][C_Vs(s) + d]) / grid->h[d]);
+      if (!(x >= 0.0 && x <= (double)grid->cells[d]))
+        size[q] = NAN;
+    }
+  }
+  return Worst(r, size);
+}
+
 /* Positions and domains; false if a particle crosses half a cell or leaves the grid. */
 INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
 {
   const Grid *grid = &e->m->grid;
-  bool        fine = true;
+  Wrong       far  = 0;
 
   for (int d = 0; d < CL_DIM; d++) {
     double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict u = e->m->P.f[P_U + d] + r.p,
@@ -374,14 +443,14 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
 
       x[q] += step;
       u[q] += step;
-      fine &= (fabs(step) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper);
+      far |= WRONG_UNLESS((fabs(step) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
     }
     if (e->m->c->basis == BASIS_CPGIMP) {
       for (int q = 0; q < r.n; q++)
         l[q] *= n->stretch[d][q];
     }
   }
-  return fine;
+  return !far;
 }
 
 INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
@@ -404,7 +473,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (!Fields(e, s, r, &g))
-    ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", r.p);
+    ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
   MassesOf(e, s, r, &g, kept, &e->m->limited);
   if (s.heat && e->m->c->compression_heat)
     CountCompression(e, s, r, &g);
@@ -413,7 +482,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   if (!s.solid)
     return;
   if (!StrainOf(s, r.n, &g, dt, &n))
-    ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", r.p);
+    ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", Strained(r, &n));
   CarryGradients(e, s, r, &g, &n, dt);
   ExpansionWork(e, s, r, &g, &n, dt);
   StressOf(e, s, r, &g, &n, T, kept);
@@ -425,7 +494,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
       Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], LANES);
   }
   if (!Move(e, s, r, &g, &n, dt))
-    ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step, or leaves the grid", r.p);
+    ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step, or leaves the grid",
+                     Farthest(e, s, r, &g, dt));
 }
 
 MAKE_LOOPS(UpdateRun)

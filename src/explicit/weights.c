@@ -1,7 +1,7 @@
 /* Weights (3), (4) of a block of particles. */
 #include "lanes.h"
 
-INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *restrict base, int *restrict cell)
+INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *restrict base)
 {
   const Grid  *g     = &e->m->grid;
   const double lower = g->lower[d], h = g->h[d], cells = (double)g->cells[d];
@@ -30,23 +30,37 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
       w->D[d][k][q] = D[k];
     }
     base[q] = (int)first;
-    cell[q] = BasisCell((x[q] - lower) / h, first, cells);
+  }
+}
+
+/* Places of the particles' cells from their first nodes on. */
+static void Cells(const Explicit *e, Run r, int *const base[CL_DIM], Weights *w)
+{
+  const Grid *g = &e->m->grid;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    const double lower = g->lower[d], h = g->h[d], cells = (double)g->cells[d];
+    const double *restrict x = e->m->P.f[P_X + d] + r.p;
+    const int stride         = d ? (int)g->gm[0] : 1;
+
+    for (int q = 0; q < r.n; q++)
+      w->cell[q] = (d ? w->cell[q] : 0) + stride * BasisCell((x[q] - lower) / h, (double)base[d][q], cells);
   }
 }
 
 void WeightsOf(const Explicit *e, Run r, Weights *w)
 {
   const Grid *g = &e->m->grid;
-  int         base[CL_DIM][BLOCK], cell[CL_DIM][BLOCK];
+  int x[BLOCK], y[BLOCK], *const base[CL_DIM] = {x, y};
 
   for (int d = 0; d < CL_DIM; d++) {
     if (e->m->c->basis == BASIS_LINEAR)
-      Axes(e, r, d, true, w, base[d], cell[d]);
+      Axes(e, r, d, true, w, base[d]);
     else
-      Axes(e, r, d, false, w, base[d], cell[d]);
+      Axes(e, r, d, false, w, base[d]);
   }
   for (int q = 0; q < r.n; q++)
-    w->first[q] = (int)GridPadded(g, base[0][q], base[1][q]);
-  for (int q = 0; q < r.n; q++)
-    w->cell[q] = cell[0][q] + cell[1][q] * (int)g->gm[0];
+    w->first[q] = (int)GridPadded(g, x[q], y[q]);
+  if (TakesCellMean(e))
+    Cells(e, r, base, w);
 }

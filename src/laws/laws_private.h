@@ -7,7 +7,6 @@
 
 #define LAW_GAS_CONSTANT 8.314 /* J/(mol K) */
 #define LAW_PI 3.14159265358979323846
-#define LAW_DEG (LAW_PI / 180.0)
 #define LAW_LN10 2.30258509299404568402
 #define LAW_ZERO_CELSIUS 273.15 /* K */
 #define LAW_EXP_MAX 200.0       /* no exponent of a sensible parameter set comes near */

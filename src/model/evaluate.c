@@ -28,14 +28,18 @@ ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q,
                                  ParticleT(m, p), ParticleSw(m, p), q, why);
 }
 
+/* (276) */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT])
 {
   const PetscInt p      = face->particle;
   const Region  *r      = &m->c->region[m->P.i[PI_REGION][p]];
-  double         weight = 0.0;
+  double         weight = 0.0, rho = 0.0, dp, dT;
 
-  for (int d = 0; r->hydrostatic && d < CL_DIM; d++)
-    weight += ParticleMaterial(m, p)->water.rho0 * m->c->gravity[d] * face->r[d];
+  if (r->hydrostatic && m->c->fields.phase[PHASE_W])
+    rho = LiquidDensity(&ParticleMaterial(m, p)->water, m->P.f[HeldPressure(&m->c->fields, P_PW0, PHASE_W)][p],
+                        ParticleInitialT(m->c, &m->P, p), &dp, &dT);
+  for (int d = 0; d < CL_DIM; d++)
+    weight += rho * m->c->gravity[d] * face->r[d];
   for (int f = 0; f < PHASE_COUNT; f++)
     p0[f] = m->c->fields.phase[f] ? m->P.f[HeldPressure(&m->c->fields, P_PW0, f)][p] + weight : 0.0;
 }

@@ -336,6 +336,11 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
+/* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to its block (row length r->n times
+   the unknowns). */
+void LumpBuild(Model *m);
+void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void LumpBlock(const Model *m, const FieldSet *fs, PetscInt p, const Reach *r, double *block);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);

@@ -303,6 +303,7 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x, int ntarget, const
       if (target[k].reduced)
         EliminateParticle(m, &r, x, in, target[k].fixed_stress, &o);
       ParticleBlock(m, &target[k], p, &r, x, &o, block);
+      LumpBlock(m, &target[k].fs, p, &r, block);
       PetscCall(AssemblyAdd(m, &target[k], r.n, r.node, block));
     }
   }

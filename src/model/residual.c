@@ -143,6 +143,7 @@ static void ParticleLoop(Model *m, const double *x, double *f)
       return;
     m->limited += state.limited;
     Scatter(m, p, &r, x, o.out, f);
+    LumpResidual(m, p, &r, x, f);
   }
 }
 

@@ -134,7 +134,7 @@ static PetscErrorCode BuildGhost(Model *m)
 /* Sums over the particles of one cell. */
 typedef struct {
   double w, wN[4], wNN[4][4];
-  double V, s[PHASE_COUNT], rho[PHASE_COUNT];
+  double V, mass, compliance, s[PHASE_COUNT], rho[PHASE_COUNT]; /* compliance: V/G */
 } CellSums;
 
 static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellSums *c)
@@ -153,6 +153,8 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
 
   c->w += w;
   c->V += V;
+  c->compliance += V / q.G;
+  c->mass += m->P.f[P_MS][p] + m->P.f[P_MH][p];
   for (int a = 0; a < 4; a++) {
     c->wN[a] += w * N[a];
     for (int b = 0; b < 4; b++)
@@ -161,11 +163,14 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
   for (int f = 0; f < PHASE_COUNT; f++) {
     c->s[f] += V * q.s[f];
     c->rho[f] += V * q.rho[f];
+    c->mass += V * q.phi * (1.0 - q.Sh) * q.s[f] * q.rho[f];
   }
 }
 
 static bool FinishCell(const Model *m, const PetscInt cell[], const CellSums *c, ProjectionCell *k)
 {
+  const double h2 = 1.0 / (1.0 / PetscSqr(m->grid.h[0]) + 1.0 / PetscSqr(m->grid.h[1]));
+
   for (int a = 0; a < 4; a++) {
     k->node[a] = CellIndex(m, cell[0] + a % 2, cell[1] + a / 2);
     if (k->node[a] < 0)
@@ -177,6 +182,7 @@ static bool FinishCell(const Model *m, const PetscInt cell[], const CellSums *c,
     k->s[f]   = c->s[f] / c->V;
     k->rho[f] = c->rho[f] / c->V;
   }
+  k->t_inertia = m->c->fields.inertia ? sqrt(c->mass / c->V * c->compliance / c->V * h2 / 15.0) : 0.0;
   return true;
 }
 
@@ -279,9 +285,16 @@ double GhostPower(const Model *m, const double *x)
   return power;
 }
 
+/* (275): what is left of 1/(2G) in a stage whose inertia holds the skeleton back. */
+static double ProjectionShare(const Model *m, const ProjectionCell *c)
+{
+  return 1.0 / (1.0 + PetscSqr(c->t_inertia / m->stage.dt));
+}
+
 static void ProjectionResidual(const Model *m, const ProjectionCell *c, const double *x, double *f)
 {
   const FieldSet *fs    = &m->c->fields;
+  const double    share = ProjectionShare(m, c);
   double          dp[4] = {0.0};
 
   for (int b = 0; b < 4; b++) {
@@ -299,7 +312,7 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
       Kdp += c->K[a][b] * dp[b];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       if (fs->phase[ph])
-        *MassRow(m, f, c->node[a], ph) += c->rho[ph] * c->s[ph] * Kdp;
+        *MassRow(m, f, c->node[a], ph) += c->rho[ph] * c->s[ph] * share * Kdp;
     }
   }
 }
@@ -331,14 +344,15 @@ static void GhostBlock(const Model *m, const FieldSet *fs, const GhostLine *g, d
 
 static void ProjectionBlock(const Model *m, const FieldSet *fs, const ProjectionCell *c, double *block)
 {
-  const int n = fs->n;
+  const int    n     = fs->n;
+  const double share = ProjectionShare(m, c);
 
   for (int a = 0; a < 4; a++) {
     for (int r = 0; r < PHASE_COUNT; r++) {
       if (!fs->phase[r])
         continue;
       double      *row = &block[(a * n + PlaceP(fs, r)) * 4 * n];
-      const double w   = RowWeight(m, c->node[a], r) * c->rho[r] * c->s[r];
+      const double w   = RowWeight(m, c->node[a], r) * c->rho[r] * c->s[r] * share;
 
       for (int b = 0; b < 4; b++) {
         for (int q = 0; q < PHASE_COUNT; q++) {

@@ -28,6 +28,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->wide));
     PetscCall(PetscFree(m->spread));
     PetscCall(PetscFree(m->upwind));
+    PetscCall(PetscFree(m->lump));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
     if (m->c->fields.fluid && m->c->flux_interpolation)
@@ -36,6 +37,8 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
       PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
     if (m->c->heat_upwind && m->c->fields.heat && m->c->fields.fluid)
       PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->upwind));
+    if (m->c->lumped_reaction && m->c->fields.phase[PHASE_G])
+      PetscCall(PetscCalloc1(m->stencil_cap, &m->lump));
   }
   for (PetscInt p = 0; p < m->P.n; p++) {
     Stencil *s = &m->stencil[p];
@@ -339,6 +342,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     }
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamWeights(m));
+    LumpBuild(m);
   }
   PetscCall(PetscFree(flag));
   PetscCall(PetscLogEventEnd(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));

@@ -1,8 +1,7 @@
 /* Mohr-Coulomb behind the interface of the skeleton: elastic trial, principal stresses in the plane, return, and back
    with the tangent; docs/equations.md, section 14. */
-#include "plastic.h"
+#include "smooth.h"
 
-#define ROUND_OFF 1e-12 /* share of the cohesion: a state returned before is not returned again */
 #define CHUNK 32        /* particles tested at once */
 #define NEAR_EQUAL 1e-8 /* principal stresses closer than this share of their size: limit of the spin part */
 
@@ -105,7 +104,7 @@ static bool Yields(const Plasticity *law, double Sh, double eps, double nonlocal
   double   dy[3], dphi;
 
   StrengthOf(law, Sh, eps, nonlocal, &k);
-  const double round_off = ROUND_OFF * k.c + 1e-2 * ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
+  const double round_off = YIELD_ROUND_OFF * k.c + 1e-2 * YIELD_ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
   return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > StrengthCutoff(law) + round_off;
 }
 
@@ -162,59 +161,56 @@ static void PlasticTangent(const Elasticity *el, const SkeletonStep *d, const Pr
   }
 }
 
-/* From the trial stress in s to the yield surface; what that takes off it in `over`, with the plastic strain e. */
-static bool Return(const Material *mat, const SkeletonStep *d, double nonlocal, SkeletonState *s, SkeletonTangent *t,
-                   double over[4], double e[4], const char **why)
+/* Takes the returned state r into s; what that takes off the trial stress in `over`, with the plastic strain e. */
+static void TakeReturned(const Material *mat, double E, const Principal *p, const Returned *r, SkeletonState *s,
+                         double over[4], double e[4])
 {
-  Principal p;
-  Returned  r;
-  double    v[3];
+  double v[3];
 
-  PrincipalOf(s->sig, &p);
-  if (!Yields(&mat->plasticity, d->Sh, s->own[OWN_P_EPS], nonlocal, p.y))
+  for (int k = 0; k < 4; k++)
+    over[k] = s->sig[k];
+  Unsort(p, r->y, v);
+  FromPrincipal(p, v, s->sig);
+  for (int k = 0; k < 4; k++)
+    over[k] -= s->sig[k];
+  PlasticStrain(&mat->elasticity, E, over, e);
+  s->own[OWN_P_EPS] = r->eps;
+  s->region         = r->region;
+  s->work           = Double(s->sig, e);
+}
+
+/* From the trial stress in s, with principal stresses p, to the yield surface; over, e as above. */
+static bool Return(const Material *mat, const SkeletonStep *d, double nonlocal, const Principal *p, SkeletonState *s,
+                   SkeletonTangent *t, double over[4], double e[4], const char **why)
+{
+  Returned r;
+
+  if (!Yields(&mat->plasticity, d->Sh, s->own[OWN_P_EPS], nonlocal, p->y))
     return true;
-  const Trial3 at = TrialOf(mat, d, s->own[OWN_P_EPS], nonlocal, &p);
+  const Trial3 at = TrialOf(mat, d, s->own[OWN_P_EPS], nonlocal, p);
   if (!ReturnToYield(&at, t != NULL, &r)) {
     *why = "no stress on the yield surface was found for the strain of this step";
     return false;
   }
-  for (int k = 0; k < 4; k++)
-    over[k] = s->sig[k];
-  Unsort(&p, r.y, v);
-  FromPrincipal(&p, v, s->sig);
-  for (int k = 0; k < 4; k++)
-    over[k] -= s->sig[k];
-  PlasticStrain(&mat->elasticity, at.E, over, e);
-  s->own[OWN_P_EPS] = r.eps;
-  s->region         = r.region;
-  s->work           = Double(s->sig, e);
+  TakeReturned(mat, at.E, p, &r, s, over, e);
   if (t)
-    PlasticTangent(&mat->elasticity, d, &p, &r, s->sig, e, t);
+    PlasticTangent(&mat->elasticity, d, p, &r, s->sig, e, t);
   return true;
 }
 
 bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                         SkeletonTangent *t, const char **why)
 {
-  double over[4], e[4];
+  double    over[4], e[4];
+  Principal p;
 
   TrialState(&mat->elasticity, h, d, s, t);
-  if (!Return(mat, d, h->nonlocal, s, t, over, e, why))
+  PrincipalOf(s->sig, &p);
+  if (!Return(mat, d, h->nonlocal, &p, s, t, over, e, why))
     return false;
   if (s->region != RETURN_ELASTIC)
     ReturnEnd(&mat->elasticity, h, d, over, e, s);
   return true;
-}
-
-/* What the block keeps of particle q that yields. */
-static void KeepReturned(const SkeletonStore *f, int q, const SkeletonState *s, double share, const double over[4])
-{
-  f->own[OWN_P_EPS][q] = s->own[OWN_P_EPS];
-  for (int k = 0; k < 4; k++) {
-    f->sig[k][q] = s->sig[k];
-    if (share != 0.0)
-      f->own[OWN_P_BOND + k][q] -= share * over[k];
-  }
 }
 
 /* Which of n trial states from q on may yield, without exponentials or angles of their own: where nothing has flowed
@@ -239,29 +235,121 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
   }
 }
 
-/* Trial stresses of all first, in vector code, then those that yield one by one. */
-bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why)
+/* A particle of a block at its trial stress. */
+typedef struct {
+  int           q;
+  SkeletonStep  d;
+  SkeletonState s;
+  Principal     p;
+} Yielding;
+
+static void TakeYielding(const SkeletonBlock *b, int q, Yielding *y)
+{
+  const SkeletonStore *f = &b->store;
+
+  y->q = q;
+  y->d = (SkeletonStep){.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
+  y->s = (SkeletonState){.sig            = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]},
+                         .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
+  PrincipalOf(y->s.sig, &y->p);
+}
+
+/* What the block keeps of a particle that yields. */
+static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yielding *y, const double over[4])
 {
   const SkeletonStore *f     = &b->store;
-  bool                 found = Block_Elastic(mat, b, why);
-  unsigned char        may[CHUNK];
+  const double         share = BondShare(&mat->elasticity, &y->d);
 
-  for (int q = 0; q < b->n; q++) {
-    if (q % CHUNK == 0)
-      MayYield(&mat->plasticity, f, q, b->n - q < CHUNK ? b->n - q : CHUNK, may);
-    f->yield[q] = (double)RETURN_ELASTIC;
-    if (!may[q % CHUNK])
-      continue; /* its work is zero already */
-    const SkeletonStep d = {.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
-    SkeletonState      s = {.sig            = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]},
-                            .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
-    double             over[4], e[4];
+  b->work[y->q]  = y->s.work;
+  f->yield[y->q] = (double)y->s.region;
+  if (y->s.region == RETURN_ELASTIC)
+    return;
+  f->own[OWN_P_EPS][y->q] = y->s.own[OWN_P_EPS];
+  for (int k = 0; k < 4; k++) {
+    f->sig[k][y->q] = y->s.sig[k];
+    if (share != 0.0)
+      f->own[OWN_P_BOND + k][y->q] -= share * over[k];
+  }
+}
 
-    found       = Return(mat, &d, SkeletonNonlocal(f, q), &s, NULL, over, e, why) && found;
-    b->work[q]  = s.work;
-    f->yield[q] = (double)s.region;
-    if (s.region != RETURN_ELASTIC)
-      KeepReturned(f, q, &s, BondShare(&mat->elasticity, &d), over);
+static bool ReturnOne(const Material *mat, const SkeletonBlock *b, Yielding *y, const char **why)
+{
+  double     over[4], e[4];
+  const bool found = Return(mat, &y->d, SkeletonNonlocal(&b->store, y->q), &y->p, &y->s, NULL, over, e, why);
+
+  KeepYielding(mat, b, y, over);
+  if (!found)
+    b->work[y->q] = NAN;
+  return found;
+}
+
+/* The smooth return of up to SMOOTH_LANES particles at once; the hard ones one by one. */
+static bool ReturnLanes(const Material *mat, const SkeletonBlock *b, const int *list, int n, const char **why)
+{
+  const Elasticity *el    = &mat->elasticity;
+  bool              found = true;
+  Yielding          y[SMOOTH_LANES];
+  SmoothLanes       l;
+
+  for (int i = 0; i < n; i++)
+    TakeYielding(b, list[i], &y[i]);
+  for (int i = 0; i < SMOOTH_LANES; i++) {
+    const Yielding *from = &y[i < n ? i : 0];
+
+    for (int k = 0; k < 3; k++)
+      l.y[k][i] = from->p.y[k];
+    l.E[i]        = StageModulus(el, &from->d);
+    l.Sh[i]       = from->d.Sh;
+    l.eps[i]      = from->s.own[OWN_P_EPS];
+    l.nonlocal[i] = SkeletonNonlocal(&b->store, from->q);
+  }
+  ReturnSmoothLanes(&mat->plasticity, 2.0 * ElasticityShearFactor(el), ElasticityLameFactor(el), &l);
+  for (int i = 0; i < n; i++) {
+    const Returned r = {.y = {l.y[0][i], l.y[1][i], l.y[2][i]}, .eps = l.eps[i], .region = RETURN_FACE};
+    double         over[4], e[4];
+
+    if (l.elastic[i])
+      continue;
+    if (!l.found[i]) {
+      found = ReturnOne(mat, b, &y[i], why) && found;
+      continue;
+    }
+    TakeReturned(mat, StageModulus(el, &y[i].d), &y[i].p, &r, &y[i].s, over, e);
+    KeepYielding(mat, b, &y[i], over);
+  }
+  return found;
+}
+
+/* Trial stresses of all first, then the returns of those that yield, both in vector code. */
+bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why)
+{
+  const Plasticity *law   = &mat->plasticity;
+  const bool        lanes = law->flow == FLOW_MENETREY_WILLAM && (law->factor == 0.0 || law->factor == 1.0);
+  bool              found = Block_Elastic(mat, b, why);
+  unsigned char     may[CHUNK];
+
+  for (int q = 0; q < b->n; q++)
+    b->store.yield[q] = (double)RETURN_ELASTIC; /* their work is zero already */
+  for (int q = 0; q < b->n; q += CHUNK) {
+    const int n = b->n - q < CHUNK ? b->n - q : CHUNK;
+    int       list[CHUNK], many = 0;
+
+    MayYield(law, &b->store, q, n, may);
+    for (int k = 0; k < n; k++) {
+      list[many] = q + k;
+      many += may[k];
+    }
+    for (int k = 0, group; k < many; k += group) {
+      group = !lanes || many - k == 1 ? 1 : many - k < SMOOTH_LANES ? many - k : SMOOTH_LANES;
+      if (group > 1) {
+        found = ReturnLanes(mat, b, list + k, group, why) && found;
+        continue;
+      }
+      Yielding y;
+
+      TakeYielding(b, list[k], &y);
+      found = ReturnOne(mat, b, &y, why) && found;
+    }
   }
   return found;
 }

@@ -3,6 +3,8 @@
 
 #include "elastic.h"
 
+#define YIELD_ROUND_OFF 1e-12 /* share of the cohesion: a state returned before is not returned again */
+
 /* Trial state of a return and what it may use. */
 typedef struct {
   const Plasticity *law;
@@ -46,4 +48,13 @@ double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory 
 bool   Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why);
 
 /* sqrt(2/3 dev x : dev x) of principal values, and its slopes. */
-double DeviatoricNorm(const double x[3], double dx[3]);
+INLINE double DeviatoricNorm(const double x[3], double dx[3])
+{
+  const double m = (x[0] + x[1] + x[2]) / 3.0, s[3] = {x[0] - m, x[1] - m, x[2] - m};
+  const double n = sqrt(2.0 / 3.0 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
+
+#pragma GCC unroll 3
+  for (int i = 0; i < 3; i++)
+    dx[i] = n > 0.0 ? 2.0 / 3.0 * s[i] / n : 0.0;
+  return n;
+}

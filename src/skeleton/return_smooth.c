@@ -1,81 +1,22 @@
 /* Return along the smooth potential: five equations for three stresses, multiplier and plastic strain
    (docs/equations.md, section 14).  The potential is isotropic and convex, so the order of the stresses stays and one
    multiplier is enough: edges of the yield surface need no case of their own. */
-#include "plastic.h"
+#include "smooth.h"
 
-#define UNKNOWNS 5
+#define UNKNOWNS SMOOTH_UNKNOWNS
 #define ITERATIONS 30
 #define HALVINGS 12
 #define BISECTIONS 60
 #define SHARP 1e-6 /* roundness of the potential's end, of the stress, below which it is a point */
 #define FLAT 1e-7  /* dilation below which the potential has no end to speak of: to the apex at once */
-#define CLOSE 1e-9 /* scaled residual from which one more full step ends at round-off */
-enum { X_L = 3, X_EPS };
+#define CLOSE SMOOTH_CLOSE
 
-double DeviatoricNorm(const double x[3], double dx[3])
+static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, SmoothSystem *s)
 {
-  const double m = (x[0] + x[1] + x[2]) / 3.0, s[3] = {x[0] - m, x[1] - m, x[2] - m};
-  const double n = sqrt(2.0 / 3.0 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2]));
-
-  for (int i = 0; i < 3; i++)
-    dx[i] = n > 0.0 ? 2.0 / 3.0 * s[i] / n : 0.0;
-  return n;
-}
-
-/* (65) at x = (y, multiplier in Pa, growth of the plastic strain), all in Pa: rows as unknowns, then matrices. */
-typedef struct {
-  double r[UNKNOWNS], A[UNKNOWNS][UNKNOWNS], by[UNKNOWNS][BY_COUNT];
-} System;
-
-static void Equations(const Trial3 *t, const double x[UNKNOWNS], bool slopes, System *s)
-{
-  Strength     k;
-  FlowGradient P;
-  double       dF[3], dn[3], F_phi, n_y[3] = {0.0}, n_eps = 0.0, n_S = 0.0;
+  Strength k;
 
   StrengthAt(t, t->eps + x[X_EPS], &k);
-  MenetreyWillamGradient(k.phi, k.psi, FlowRoundness(t->law), x, &P);
-  const double n = DeviatoricNorm(P.dev, dn), L = x[X_L];
-
-  for (int i = 0; i < 3; i++) {
-    const double P_eps = P.phi[i] * k.phi_e + P.psi[i] * k.psi_e, P_S = P.psi[i] * k.psi_S;
-
-    n_eps += dn[i] * P_eps;
-    n_S += dn[i] * P_S;
-    for (int j = 0; j < 3; j++)
-      n_y[j] += dn[i] * P.yy[i][j];
-  }
-  const double tr = P.y[0] + P.y[1] + P.y[2], tr_psi = P.psi[0] + P.psi[1] + P.psi[2];
-  const double tr_eps = tr_psi * k.psi_e, tr_S = tr_psi * k.psi_S;
-  for (int i = 0; i < 3; i++) {
-    const double P_eps = P.phi[i] * k.phi_e + P.psi[i] * k.psi_e, DP = t->G2 * P.y[i] + t->lame * tr;
-
-    s->r[i] = x[i] - t->y[i] + L * DP;
-    for (int j = 0; j < 3; j++) {
-      s->A[i][j] = (i == j ? 1.0 : 0.0) + L * t->G2 * P.yy[i][j];
-      if (slopes)
-        s->by[i][j] = i == j ? -1.0 : 0.0;
-    }
-    s->A[i][X_L]    = DP;
-    s->A[i][X_EPS]  = L * (t->G2 * P_eps + t->lame * tr_eps);
-    s->by[i][BY_E]  = 0.0;
-    s->by[i][BY_SH] = L * (t->G2 * P.psi[i] * k.psi_S + t->lame * tr_S);
-    s->by[X_L][i] = s->by[X_EPS][i] = 0.0;
-  }
-  s->r[X_L]   = MohrCoulombYield(k.phi, k.c, x, dF, &F_phi);
-  s->r[X_EPS] = t->E * x[X_EPS] - L * n;
-  for (int j = 0; j < 3; j++) {
-    s->A[X_L][j]   = dF[j];
-    s->A[X_EPS][j] = -L * n_y[j];
-  }
-  s->A[X_L][X_L]      = 0.0;
-  s->A[X_L][X_EPS]    = F_phi * k.phi_e - k.c_e;
-  s->A[X_EPS][X_L]    = -n;
-  s->A[X_EPS][X_EPS]  = t->E - L * n_eps;
-  s->by[X_L][BY_E]    = 0.0;
-  s->by[X_L][BY_SH]   = -k.c_S;
-  s->by[X_EPS][BY_E]  = x[X_EPS];
-  s->by[X_EPS][BY_SH] = -L * n_S;
+  SmoothEquations(t, &k, sin(k.phi), cos(k.phi), tan(k.psi), FlowRoundness(t->law), x, slopes, s);
 }
 
 /* A z = b for m right sides, with pivots; both are overwritten.  False if A is singular. */
@@ -120,7 +61,7 @@ static bool Solve(double A[UNKNOWNS][UNKNOWNS], int m, double b[UNKNOWNS][BY_COU
 }
 
 /* Matrix with the column of the plastic strain per Pa, so that its pivots are of one size. */
-static bool NewtonStep(const Trial3 *t, System *s, double dx[UNKNOWNS])
+static bool NewtonStep(const Trial3 *t, SmoothSystem *s, double dx[UNKNOWNS])
 {
   double b[UNKNOWNS][BY_COUNT];
 
@@ -136,15 +77,6 @@ static bool NewtonStep(const Trial3 *t, System *s, double dx[UNKNOWNS])
   return true;
 }
 
-static double Size(const System *s)
-{
-  double sum = 0.0;
-
-  for (int i = 0; i < UNKNOWNS; i++)
-    sum += s->r[i] * s->r[i];
-  return sqrt(sum);
-}
-
 /* Near the apex the flow is so steep that round-off of the stresses keeps the residual from falling: there the next
    step says how well they are known. */
 static bool Settled(const Trial3 *t, double scale, const double x[UNKNOWNS], const double dx[UNKNOWNS])
@@ -154,14 +86,27 @@ static bool Settled(const Trial3 *t, double scale, const double x[UNKNOWNS], con
   return most <= CLOSE * scale && x[X_L] >= -CLOSE * scale;
 }
 
+/* What that leaves of F goes off the mean stress. */
+static bool OntoSurface(const Trial3 *t, double x[UNKNOWNS])
+{
+  Strength k;
+  double   dF[3], dphi;
+
+  StrengthAt(t, t->eps + x[X_EPS], &k);
+  const double off = MohrCoulombYield(k.phi, k.c, x, dF, &dphi) / (dF[0] + dF[2]);
+  for (int i = 0; i < 3; i++)
+    x[i] -= isfinite(off) ? off : 0.0;
+  return true;
+}
+
 /* Newton with halved steps from x; true if it arrived. */
 static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *iterations)
 {
-  System s;
-  double size, dx[UNKNOWNS];
+  SmoothSystem s;
+  double       size, dx[UNKNOWNS];
 
   Equations(t, x, false, &s);
-  size = Size(&s);
+  size = SmoothSize(&s);
   for (int it = 0; it < ITERATIONS; it++) {
     const bool close = size <= CLOSE * scale;
     double     step  = 1.0, to[UNKNOWNS];
@@ -173,7 +118,7 @@ static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *itera
       for (int i = 0; i < UNKNOWNS; i++)
         to[i] = x[i] + step * dx[i];
       Equations(t, to, false, &s);
-      const double now = Size(&s);
+      const double now = SmoothSize(&s);
       if (close && !(now < size))
         return x[X_L] >= -CLOSE * scale; /* the better one stays */
       if (close || now < (1.0 - 1e-4 * step) * size) {
@@ -181,7 +126,7 @@ static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *itera
         break;
       }
       if (h == HALVINGS)
-        return Settled(t, scale, x, dx);
+        return Settled(t, scale, x, dx) && OntoSurface(t, x);
     }
     for (int i = 0; i < UNKNOWNS; i++)
       x[i] = to[i];
@@ -193,7 +138,7 @@ static bool Newton(const Trial3 *t, double scale, double x[UNKNOWNS], int *itera
 
 static void Slopes(const Trial3 *t, const double x[UNKNOWNS], Returned *r)
 {
-  System s;
+  SmoothSystem s;
 
   Equations(t, x, true, &s);
   for (int i = 0; i < UNKNOWNS; i++) {

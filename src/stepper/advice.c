@@ -16,12 +16,25 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
                      "inertia: yes where it slides; stepper_type hybrid or auto for what is fast",
       [CL_SOLVER] =
           "a ramp instead of a jump of what acts near that place; Sgr of some percent and p0 of some kPa more, "
-          "where gas or water is nearly immobile; stepper_type hybrid or auto; finer cells there",
+          "where gas or water is nearly immobile; surfaces on lines of the grid, or well inside cells; "
+          "stepper_type hybrid or auto; finer cells there",
       [CL_INACCURATE] = "stepper_tol ten times larger; a ramp instead of a jump; finer cells where fields are steep"};
   const char *what = status >= 0 && status <= CL_INACCURATE ? advice[status] : NULL;
 
   PetscFunctionBeginUser;
   if (what)
     PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s (docs/giving_up.md)\n", what));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status)
+{
+  const Model *m = s->model;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPrintf(
+      m->grid.comm, "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
+      s->state.t, attempts, m->why ? m->why : "?", StepperStatusName(status), m->where[0], m->where[1]));
+  PetscCall(StepperAdvise(s, status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -135,14 +135,6 @@ static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GiveUp(Stepper *s, const char *why, bool *ok)
-{
-  PetscFunctionBeginUser;
-  *ok = false;
-  PetscCall(PetscPrintf(s->model->grid.comm, "Given up at t = %g s: %s\n", s->state.t, why));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The accepted burst becomes history; nodal values of the new state are there for whoever writes them. */
 static PetscErrorCode Accept(Stepper *s, PetscInt n, double dt, double stop, bool reached, const Attempt *a,
                              PetscInt cuts)
@@ -197,7 +189,9 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     bool stable = true;
     PetscCall(CheckFixed(s, &stable));
     if (!stable) {
-      PetscCall(GiveUp(s, "the fixed step is above the stable one by now", ok));
+      *ok = false;
+      PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: the fixed step is above the stable one by now\n",
+                            s->state.t));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     const PetscInt n = Plan(s, stop, &dt);
@@ -214,8 +208,8 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
         m->grid.comm, "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
         s->state.t, n, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1], s->state.dt));
     if (cuts >= s->max_failures) {
-      PetscCall(GiveUp(s, m->why ? m->why : "?", ok));
-      PetscCall(StepperAdvise(s, a.status));
+      *ok = false;
+      PetscCall(StepperGiveUp(s, cuts + 1, a.status));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

@@ -311,11 +311,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       PetscFunctionReturn(PETSC_SUCCESS);
     if (last) {
       *ok = false;
-      PetscCall(PetscPrintf(
-          m->grid.comm,
-          "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n", s->state.t,
-          cuts + 1, m->why ? m->why : "?", StepperStatusName(a.status), m->where[0], m->where[1]));
-      PetscCall(StepperAdvise(s, a.status));
+      PetscCall(StepperGiveUp(s, cuts + 1, a.status));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

@@ -211,6 +211,8 @@ CASES = [
     ("plate: soft", [PLATE("side: left, stiffness: 0.1, velocity: 1 um/s")], ["bc_base_stiffness", "[1,1e6]"], []),
     ("plate: force in another unit", [PLATE("side: left, force: 1 kPa")], ["bc_base_force", "N"], []),
     ("plate: closed, on a drained side", [PLATE("side: right, velocity: 1 um/s")], ["bc_base_holds", "drain", "holds: skeleton"], []),
+    ("plate: closed, drained along a line on its side", [PLATE("side: right, velocity: 1 um/s"), ("side: right, initial: yes", "along: [[1 m, 0 m], [1 m, 0.02 m]], initial: yes")],
+     ["bc_base_holds", "drain", "holds: skeleton"], []),
     ("plate: on a grid line, far", [PLATE("axis: x, position: 0 m, velocity: {table: [0 s, 1 um/s, 1000 s, -1 um/s]}")],
      ["bc_base_velocity", "0.001 m", "side: left"], []),
     ("plate: in a scene without solid", [PLATE("side: left, velocity: 1 um/s"), ("basis: cpgimp", "fields: thc")], ["bc_base_type", "needs solid"], []),

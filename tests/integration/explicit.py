@@ -3,6 +3,7 @@
 
 The block of two materials of ranks.py, squeezed by a tenth within 0.2 s: particles pass from cell to cell and from rank to rank.
 """
+import re
 import sys
 from pathlib import Path
 
@@ -79,6 +80,13 @@ check_true("water without compressibility is refused", r.returncode == 2 and "no
 r = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "1e-2 s", "-stepper_force_dt", "yes",
            "-stepper_max_failures", "2", out=out)  # fmt: skip
 check_true("forced: ends with exit code 3 and says why", r.returncode == 3 and "Given up" in r.stdout and "refused" in r.stdout, r.stdout[-300:])
+
+# particles are worked on in blocks; the one that fails is named, under the load, and not the first of its block
+punched = launch(binary(), CASE, *LOAD, "-quiet", "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "1e-5 s", "-stepper_max_failures", "1", "-bc_load_normal_ramp", "4 GPa,4 GPa,0 s,1 s",
+                 "-bc_load_from", "0.4 m", "-bc_load_to", "0.5 m", out=scratch() / "punched")  # fmt: skip
+place = re.search(r"Given up at .*no open pores are left .*near \((\S+), (\S+)\) m", punched.stdout)
+check_true("punched: says where, under the load", punched.returncode == 3 and place and 0.4 <= float(place[1]) <= 0.5 and float(place[2]) > 0.65, punched.stdout[-400:])
+
 with h5py.File(out / "checkpoint.h5", "r") as file:
     check_true("forced: the saved state is finite", all(np.all(np.isfinite(v[()])) for v in file["particles"].values()))
 finish()

@@ -49,6 +49,9 @@ def reproduced(kind, *options):
 
 
 rows, runs = [], {}
+said = footing("sdirk2", "-mat_soil_plasticity_dilation_max", "60 deg", "-stepper_max_steps", "1").output
+check_true("dilation above friction: a warning with both", "material soil dilates more than it rubs (dilation_max 60 deg > friction_peak" in said)
+check_true("... and the strength at the start is printed", "starts with cohesion" in said and "dilation 60 deg" in said)
 for kind in KINDS:
     one, last = reproduced(kind)
     runs[kind] = one

@@ -428,7 +428,7 @@ def page(study, found):
              *table(["scene", "step / stable step", *INTEGRATORS],
                     [[n, f"{f:g}", *(cell(row[i], note, lambda e: f"{e:.3g}") for i in INTEGRATORS)] for n, f, row in found["waves"]])]  # fmt: skip
     text += ["## What breaks", "", *breaks(study, found), ""]
-    text += ["## Random scenes and mutated cases", "", soak_text()]
+    text += [SOAK, "", soak_text()]
     text += ["## What runs said", "", *(f"{k + 1}. {s}" for k, s in enumerate(note.text)), ""]
     return "\n".join(text)
 
@@ -545,6 +545,7 @@ def draw_steps(found, path):
     plt.close(figure)
 
 
+SOAK = "## Random scenes and mutated cases"
 PARTS = {"properties": properties, "steps": steps, "events": events, "falling": falling, "consolidation": consolidation, "waves": waves,
          "limits": limits}  # fmt: skip
 
@@ -560,9 +561,14 @@ def main():
     parser.add_argument("program", nargs="?", default=str(ROOT / "build" / "clathra"))
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--only", nargs="*", choices=PARTS)
+    parser.add_argument("--soak", action="store_true", help="only the page's section on random scenes, from the record")
     given = parser.parse_args()
     program = Path(given.program).resolve()
     sys.argv[1:] = [str(program)]
+    if given.soak:
+        before, rest = PAGE.read_text().split(SOAK + "\n", 1)
+        PAGE.write_text(f"{before}{SOAK}\n\n{soak_text()}\n{rest[rest.index('## '):]}")
+        return
     FOLDER.mkdir(parents=True, exist_ok=True)
     study = Study(program, given.fresh)
     found = {name: part(study) for name, part in PARTS.items() if given.only is None or name in given.only}

@@ -343,6 +343,7 @@ static inline void JacobianCase(Scene *s, unsigned has, bool inertia, bool axisy
   s->c.gravity[0]          = axisymmetric ? 0.0 : 2.0;
   s->c.gravity[1]          = -9.81;
   s->c.flux_interpolation  = !(set == 1 && !reacts);
+  s->c.lumped_reaction     = reacts;
   s->c.compression_heat    = s->c.fields.heat && s->c.fields.fluid && set != 1;
   s->region.pressure       = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
   AddConditions(s, set);

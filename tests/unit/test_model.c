@@ -11,10 +11,10 @@
 #include "small_scene.h"
 
 /* ---------------------------------------------------------------- (a) Jacobian */
-/* A random state, with relative permeabilities from upstream where hydrate reacts. */
+/* A random state, with relative permeabilities from upstream and the reaction by nodes where hydrate reacts. */
 static void UpstreamScene(Scene *s, BasisType basis, bool reacts, int set)
 {
-  double upstream = 0.0;
+  double upstream = 0.0, lumped = 0.0;
 
   JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
   s->c.upstream = reacts;
@@ -22,7 +22,9 @@ static void UpstreamScene(Scene *s, BasisType basis, bool reacts, int set)
   Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
     upstream += s->m.up && s->m.up[3 * k + 2] > 0.0; /* no storage where it is off */
-  Check((Sum(upstream) > 0.0) == reacts);
+  for (PetscInt p = 0; p < s->m.P.n; p++)
+    lumped += s->m.lump && s->m.lump[p].rate > 0.0;
+  Check((Sum(upstream) > 0.0) == reacts && (Sum(lumped) > 0.0) == reacts);
 }
 
 static void TestJacobian(void **state)

@@ -317,7 +317,7 @@ static void Sorted(const double s[6], double y[3])
 static void TestYieldSurface(void **state)
 {
   const char *more  = getenv("CLATHRA_PLASTIC_STATES");
-  const int   n     = more ? atoi(more) : 200000;
+  const int   n     = more ? atoi(more) : 1000000;
   Rng         r     = {402};
   double      worst = 0.0, least = 0.0;
   int         count[2][5] = {{0}}, lost = 0;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The README's own case, on half its cells: no alternating saturations beside the end of the pressure face with
-stabilisation_saturation (200); what it must not change; water and methane; two ranks; hybrid refuses it."""
+stabilisation_saturation (200); what it must not change; water and methane; two ranks; hybrid refuses it.  A heater of 60 degC in
+hydrate: none forms ahead of the front with stabilisation_reaction (265), nor does S_h alternate."""
 import re
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from common import ROOT, binary, check, check_true, finish, largest_difference, launch, run, scratch
 
+CASES = Path(__file__).parent / "cases"
 case = scratch() / "case.yaml"
 case.write_text(re.search(r"```yaml\n(title: a hydrate layer is drawn down.*?)```", Path(ROOT / "README.md").read_text(), re.S)[1])
 ROW, OPTIONS = 20, ("-quiet", "-grid_cells", "10,6", "-time_end", "1 h", "-output_every", "1 h")
@@ -33,6 +35,25 @@ for name in ("water_error", "methane_error"):
     check(f"{name}", np.max(np.abs(upwind.balance[name])), 1e-12)
 two = well("yes", ranks=2)
 check("1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], upwind.probe("middle")["p_Pa"]), 1e-7)
-hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-stabilisation_saturation", "yes", "-case_check", out=scratch() / "out")
-check_true("hybrid refuses it by name", hybrid.returncode == 2 and "stabilisation_saturation" in hybrid.stdout, hybrid.stdout)
+for name in ("saturation", "reaction"):
+    hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-stabilisation_saturation", "no", f"-stabilisation_{name}", "yes", "-case_check", out=scratch() / "out")
+    check_true(f"hybrid refuses stabilisation_{name}", hybrid.returncode == 2 and f"stabilisation_{name}" in hybrid.stdout, hybrid.stdout)
+
+
+def heater(lumped, *more, **keywords):
+    """The run, and S_h along x at the end."""
+    done = run(binary(), CASES / "heater.yaml", "-quiet", "-stabilisation_reaction", lumped, *more, **keywords)
+    return done, done.snapshot(done.time[-1])["S_h"].ravel().reshape(2, -1)[0]
+
+
+(nodes, S), (particles, S_0) = heater("yes"), heater("no")
+print(f"S_h beside the heater with (265): {np.round(S, 2)}\n                      without it: {np.round(S_0, 2)}")
+check("(265): hydrate ahead of the front, beyond that far away", np.max(S) / S[-1] - 1, 0.01)
+check("(265): S_h that falls towards the far end", max(np.max(-np.diff(S)), 0.0), 1e-3)
+check_true("without it there is more than a tenth", np.max(S_0) / S_0[-1] > 1.1, f"{np.max(S_0) / S_0[-1] - 1:.3f}")
+check("(265): hydrate that is left, with and without", abs(np.sum(S) / np.sum(S_0) - 1), 0.15)
+for name in ("water_error", "methane_error"):
+    check(f"(265): {name}", np.max(np.abs(nodes.balance[name])), 1e-12)
+one, two = (heater("yes", "-time_end", "1 h", ranks=n)[1] for n in (1, 2))
+check("(265): 1 and 2 ranks, S_h", np.max(np.abs(two - one)), 1e-8)
 finish()

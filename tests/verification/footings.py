@@ -55,13 +55,21 @@ load, growth = measured("Nq, 30 deg", 4, False)
 judge("strength", "Nq, 30 deg, smooth, hybrid: collapse load at h = a/4", load / exact("Nq, 30 deg") - 1, (0.0, 0.03), 0.01, "%")
 load, growth = measured("Nq, 30 deg", 4, False, "-mean_strain", "0", what="locks")
 check("... without mean strain: over the exact load", load / exact("Nq, 30 deg") - 1, (0.15, 0.3))
-found = [circle(4, s) for s in (0.95, 0.0)]
-for s, (load, growth) in zip((0.95, 0), found):
-    rows.append(["Cox's circle", "smooth", "implicit", "R/4", 141 * load, 100 * (load - 1), 100 * growth, "" if s else "locks"])
-judge("strength", "Cox's circle on heavy ground, 30 deg, h = R/4", found[0][0] - 1, (0.0, 0.2), 0.01, "%")
-check("... without mean strain: over the exact load", found[1][0] - 1, (0.4, 1.0))
+found = {(n, s): circle(n, s) for n, s in ((4, 0.99), (8, 0.99), (4, 0))}
+for (n, s), (load, growth) in found.items():
+    rows.append(["Cox's circle", "smooth", "implicit", f"R/{n}", 141 * load, 100 * (load - 1), 100 * growth, "" if s else "locks"])
+coarse, fine = (found[n, 0.99] for n in (4, 8))
+judge("strength", "Cox's circle on heavy ground, 30 deg, h = R/8", fine[0] - 1, (0.0, 0.06), 0.01, "%")
+check("... order in h", order([1 / 4, 1 / 8], [coarse[0], fine[0]], 1)[0], (0.8, 1.5))
+check("... growth over the last fifth", max(coarse[1], fine[1]), 0.01)
+check("... without mean strain: over the exact load", found[4, 0][0] - 1, (0.4, 1.0))
 for top, warns in ((1.5, False), (1.45, True)):
     said = strip_run("Prandtl", 4, True, "-region_ground_upper", f"3.5 m, {top} m", "-stepper_max_steps", "1").output
     check_true(f"ground to {top} m: {'warns' if warns else 'no word'} of cells that the surface cuts", ("the surface cuts" in said) == warns)
+BEARS = ("-boundaries", "base,left,right,plate,beside", "-bc_beside_type", "traction", "-bc_beside_side", "top", "-bc_beside_from", "1 m", "-bc_beside_normal")
+for means, load, implicit, warns in (("0.95", "1 MPa", False, True), ("0.95", "0 Pa", False, False), ("0.95", "1 MPa", True, False), ("0", "1 MPa", False, False)):
+    only = () if means != "0" else ("-mean_dilatation", "no")
+    said = strip_run("Prandtl", 4, True, *BEARS, load, "-mean_strain", means, *only, "-stepper_max_steps", "1", implicit=implicit).output
+    check_true(f"traction of {load}, mean_strain {means}, {'implicit' if implicit else 'hybrid'}: {'a warning names it' if warns else 'no word'}", ("the traction beside (bc_beside_type)" in said) == warns)
 table(["case", "plate", "integrator", "h", "load (MPa)", "error (%)", "growth (%)", ""], rows)
 finish()

@@ -82,6 +82,9 @@ at_rest("hydrate and a trace of gas, thmc", variant("hydrate", *HYDRATE))
 off = variant("off", *DRY, *OFF)
 at_rest("layers and surface inside cells", off)
 at_rest("layers and surface inside cells, ugimp about an axis", off, "-basis", "ugimp", "-geometry", "axisymmetric")
+WARM = ("-mat_sand_water_expansion", "2e-4 1/K", "-mat_clay_water_expansion", "2e-4 1/K", "-region_deep_temperature", "60 degC", "-region_shallow_temperature", "60 degC")
+at_rest("open top, water lighter than at its reference", variant("open", *NO_HEAT, ("fields: thm", "fields: hm"), ("right, sea", "right, sea, open"),
+        ("  sea: {", "  open: {type: pressure, side: top, initial: yes}\n  sea: {"), ("297525 Pa", f"{P_ATM + RHO_W * np.exp(-2e-4 * 40) * G * 20!r} Pa")), *WARM)  # fmt: skip
 at_rest("linear functions", variant("dry", *DRY), "-boundaries", "base,left,right,sea", "-bc_sea_normal", "0 Pa", "-basis", "linear")
 wet = variant("wet", *NO_HEAT, ("fields: thm", "fields: hm"), *OFF, ("297525 Pa", "306354 Pa"))
 at_rest("saturated, layers and surface inside cells", wet)

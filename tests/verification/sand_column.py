@@ -2,9 +2,10 @@
 """Collapse of a column of dry sand of aspect ratio 2, with hybrid and implicit: the runout of experiments in the plane is 2.4 to
 3.6 initial widths for sands of about 30 deg; with a wrong friction angle it is not.  No cohesion: the free surface is at the apex of the yield surface all the time.
 """
+import re
 from pathlib import Path
 
-from common import Run, check, finish, judge, table
+from common import Run, check, check_true, finish, judge, table
 
 CASE = Path(__file__).parent / "cases" / "sand_column.yaml"
 LOW, HIGH = 2.4, 3.6
@@ -20,6 +21,10 @@ for name, more, flow, friction, right in (
     x = last["position"][:, 0]
     runout = sorted(x)[-5] - 1.0  # the farthest few may have left the heap
     rows.append([name, flow, friction, runout, (last["yield"] == 3).mean()])
+    if not rows[1:]:
+        torn = re.search(r"(\d+) at the apex \(eps_d_p ([\d.e+-]+), up to ([\d.e+-]+)\)", run.output)
+        check_true("the summary says how many particles are at the apex, and the strain behind it",
+                   torn and int(torn.group(1)) == (last["yield"] == 3).sum() and abs(float(torn.group(3)) / last["eps_d_p"][last["yield"] == 3].max() - 1) < 0.05)  # fmt: skip
     if right:
         judge("strength", f"runout of a column of sand over its width, {name}, {flow}, {friction} deg", runout, (LOW, HIGH))
     else:
