@@ -35,7 +35,7 @@ static Scene *Make(unsigned has, BasisType basis, const char *stepper, double p,
   for (int d = 0; d < 3 && !s->c.fields.fluid; d++)
     s->region.stress[d] = -p;
   s->number[0]          = p;
-  s->c.ambient_pressure = (Schedule){1, &s->zero, s->number, false};
+  s->c.ambient_pressure = (Schedule){.n = 1, .t = &s->zero, .y = s->number};
   s->region.K0          = INFINITY; /* the stress is as given */
   strcpy(s->c.stepper, stepper);
   s->c.t_end = s->c.dt_max = t_end;
