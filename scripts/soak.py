@@ -558,7 +558,11 @@ def table(record):
     for name, count in (*sorted(by.items()), ("all", whole)):
         lines.append(f"| {name} | {' | '.join(str(count[k]) for k in COLUMNS)} |")
     kinds = sorted(cases, key=lambda k: (k.startswith("run: "), -cases[k]))
-    return "\n".join([*lines, "", f"{m} mutated cases: " + ", ".join(f"{cases[k]} {k}" for k in kinds) + "."])
+    made = collections.defaultdict(collections.Counter)
+    for e in record:
+        made[e["commit"]].update({k: e[k] for k in ("scenes", "cases") if k in e})
+    by_commit = "; ".join(f"{c}: " + ", ".join(f"{k} {what}" for what, k in count.items()) for c, count in made.items())
+    return "\n".join([*lines, "", f"{m} mutated cases: " + ", ".join(f"{cases[k]} {k}" for k in kinds) + ".", "", f"By commit: {by_commit}."])
 
 
 def main():

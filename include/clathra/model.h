@@ -52,9 +52,10 @@ enum {
 
 /* Rates over the boundary and inside at the end of a stage, global sums. */
 typedef struct {
-  double out[PHASE_COUNT];                /* kg/s */
-  double heat_in, heat_source, heat_rate; /* W: through the boundary; latent and squeezed less advected; stored */
-  double squeezed;                        /* W: of compression and throttling of the fluids (290) */
+  double out[PHASE_COUNT];                      /* kg/s */
+  double heat_in, heat_source, heat_rate;       /* W: through the boundary; latent and squeezed less advected; stored */
+  double squeezed;                              /* W: of compression and throttling of the fluids (290) */
+  double left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg/s: in the mass rows, and what they exchange (277) */
   double meter[CL_METERS][METER_COUNT];
   double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;
@@ -113,6 +114,7 @@ typedef struct {
   double         *V;   /* [n_local] sum of V_n S, m^3 */
   double         *up; /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
   double         *spread; /* [n][2] (200); NULL when off */
+  double         *upwind; /* [n][3] (293); NULL when off */
   Lump           *lump;   /* [n] (265); NULL when off */
   double         *Vk;     /* [n_local] sum of V S k0 over the first k0, m^3 */
   double         *coef;   /* [n_local][NC_COUNT] nodal means, places NC_... */

@@ -34,10 +34,11 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      INT(votes),         INT(patience),
                                      REAL(since),        REAL(spent),
                                      REAL(work),         REAL(energy),
-                                     REAL(squeezed),     {NULL, 0, 0, false}};
-/* Fourteen integers, nineteen reals, the meters, works and energies. */
+                                     REAL(squeezed),     REAL(left),
+                                     REAL(moved),        {NULL, 0, 0, false}};
+/* Fourteen integers, twenty-three reals, the meters, works and energies. */
 _Static_assert(sizeof(StepperState) ==
-                   14 * sizeof(PetscInt) + (19 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
+                   14 * sizeof(PetscInt) + (23 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 typedef struct {

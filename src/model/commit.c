@@ -96,6 +96,25 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
   }
 }
 
+/* (277): what a particle stores, and hands from cell to cell. */
+static void CountMoved(const Model *m, const double out[OUT_COUNT], StageRates *rates)
+{
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    if (m->c->fields.phase[ph])
+      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[OUT_FLUX + 2 * ph]) / m->grid.h[0] +
+                          fabs(out[OUT_FLUX + 2 * ph + 1]) / m->grid.h[1];
+  }
+}
+
+/* With one pressure the rest of a fluid's own row is no error (34). */
+static void CountLeft(const Model *m, StageRates *rates)
+{
+  for (int ph = 0; ph < PHASE_COUNT && !m->mass_row; ph++) {
+    for (PetscInt I = 0; m->c->fields.phase[ph] && I < m->map.n_owned; I++)
+      rates->left[ph] += fabs(*MassRow(m, m->f, I, ph)) / m->stage.dt;
+  }
+}
+
 /* (28): what is left in the mass rows goes back to the particles, to be found again in the next step. */
 static PetscErrorCode KeepBalance(Model *m, double *masses)
 {
@@ -200,11 +219,13 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       trial->end[p] = s.end;
     if (trial->s)
       PlasticState(p, &s.skeleton, trial);
+    CountMoved(m, o.out, rates);
     if (m->c->fields.heat)
       HeatRates(m, &r, x, &s, o.out, rates);
     if (m->c->fields.solid)
       ParticlePower(m, p, &r, x, in, &s, o.out, rates->work);
   }
+  CountLeft(m, rates);
   PetscCall(KeepBalance(m, trial->m));
   if (m->c->fields.one_pressure)
     CheckShares(m, x, trial->m);

@@ -154,7 +154,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char        text[2560], above[64] = "", local[512], loose[256], ice[256], yields[256], gaps[256], *stages, *all;
+  char text[2560], above[64] = "", local[512], left[128], loose[256], ice[256], yields[256], gaps[256], *stages, *all;
   ModelTotals t;
   bool        ok;
 
@@ -165,6 +165,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscCall(LooseSummary(s, loose));
   if (z->loose_total)
     PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
+  PetscCall(LeftSummary(s, left));
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(IceSummary(s, ice));
   PetscCall(PetscSNPrintf(
@@ -174,7 +175,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       " Newton iterations, %.2f s%s\n%s"
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
       "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-      "%s%s%s%s  results in %s\n",
+      "%s%s%s%s%s  results in %s\n",
       s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
       s->model->c->nstage ? "by stage"
       : s->auto_.on       ? STEPPER_AUTO
@@ -182,8 +183,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
       Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
       Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
-      Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, yields, loose,
-      gaps, ice, s->model->c->output_dir));
+      Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, left, yields,
+      loose, gaps, ice, s->model->c->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);

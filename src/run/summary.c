@@ -19,6 +19,24 @@ PetscErrorCode LocalSummary(const Stepper *s, char text[512])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What Newton's method left in the balances of mass: it goes back to the particles (28), so the ledger does not show
+ * it. */
+PetscErrorCode LeftSummary(const Stepper *s, char text[128])
+{
+  const StepperState *z        = &s->state;
+  double              share[2] = {0.0};
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    share[ph] = z->moved[ph] > 0.0 ? z->left[ph] / z->moved[ph] : 0.0;
+  if (z->moved[PHASE_W] + z->moved[PHASE_G] > 0.0 && !s->model->c->fields.one_pressure)
+    PetscCall(PetscSNPrintf(text, 128,
+                            "  left in the balances by Newton's method: water %.2e, gas %.2e of what moved\n",
+                            share[PHASE_W], share[PHASE_G]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Errors that were put up with. */
 PetscErrorCode LooseSummary(const Stepper *s, char text[256])
 {

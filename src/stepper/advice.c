@@ -16,7 +16,8 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
                      "inertia: yes where it slides; stepper_type hybrid or auto for what is fast",
       [CL_SOLVER] =
           "a ramp instead of a jump of what acts near that place; Sgr of some percent and p0 of some kPa more, "
-          "where gas or water is nearly immobile; stepper_type hybrid or auto; finer cells there",
+          "where gas or water is nearly immobile; surfaces on lines of the grid, or well inside cells; "
+          "stepper_type hybrid or auto; finer cells there",
       [CL_INACCURATE] = "stepper_tol ten times larger; a ramp instead of a jump; finer cells where fields are steep"};
   const char *what = status >= 0 && status <= CL_INACCURATE ? advice[status] : NULL;
 

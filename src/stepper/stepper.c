@@ -133,7 +133,8 @@ double StepperNextStop(const Stepper *s, bool *kink)
 {
   const double t = s->state.t, at_kink = BcNextKink(s->model->c, t);
   const double event = s->next_event ? s->next_event(s, s->monitor_ctx) : INFINITY;
-  const double stop  = fmin(s->model->c->t_end, fmin(at_kink, event));
+  const double mark  = BcNextMark(s->model->c, t);
+  const double stop  = fmin(fmin(s->model->c->t_end, mark), fmin(at_kink, event));
 
   *kink = stop == at_kink;
   return stop;
@@ -141,8 +142,11 @@ double StepperNextStop(const Stepper *s, bool *kink)
 
 void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt *a)
 {
-  for (int ph = 0; ph < PHASE_COUNT; ph++)
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
     a->out[ph] += weight * rates->out[ph];
+    a->left[ph] += weight * rates->left[ph];
+    a->moved[ph] += weight * rates->moved[ph];
+  }
   a->heat_gain += weight * rates->heat_rate;
   a->heat_in += weight * rates->heat_in;
   a->heat_source += weight * rates->heat_source;
@@ -168,8 +172,11 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
   z->newton_total += a->newton;
   z->failures_total += info->cuts;
   z->limited_total += a->limited;
-  for (int ph = 0; ph < PHASE_COUNT; ph++)
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
     z->out[ph] += a->out[ph];
+    z->left[ph] += a->left[ph];
+    z->moved[ph] += a->moved[ph];
+  }
   z->heat_gain += a->heat_gain;
   z->heat_in += a->heat_in;
   z->heat_source += a->heat_source;

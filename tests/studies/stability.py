@@ -27,7 +27,7 @@ from _extremes import CELL, P, SCENE, attempt, cells, difference, scene, stable_
 from _ladder import ElasticWave, Terzaghi  # noqa: E402
 from common import CASES  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
-from soak import read_record, table  # noqa: E402
+from soak import read_record, table as soak_table  # noqa: E402
 
 FOLDER, PAGE, FIGURES = ROOT / "results" / "stability_study", ROOT / "docs" / "stability.md", ROOT / "docs" / "figures"
 DIFFUSION = ROOT / "tests" / "verification" / "cases" / "diffusion.yaml"
@@ -428,7 +428,7 @@ def page(study, found):
              *table(["scene", "step / stable step", *INTEGRATORS],
                     [[n, f"{f:g}", *(cell(row[i], note, lambda e: f"{e:.3g}") for i in INTEGRATORS)] for n, f, row in found["waves"]])]  # fmt: skip
     text += ["## What breaks", "", *breaks(study, found), ""]
-    text += ["## Random scenes and mutated cases", "", soak_text()]
+    text += [SOAK, "", soak_text()]
     text += ["## What runs said", "", *(f"{k + 1}. {s}" for k, s in enumerate(note.text)), ""]
     return "\n".join(text)
 
@@ -545,6 +545,7 @@ def draw_steps(found, path):
     plt.close(figure)
 
 
+SOAK = "## Random scenes and mutated cases"
 PARTS = {"properties": properties, "steps": steps, "events": events, "falling": falling, "consolidation": consolidation, "waves": waves,
          "limits": limits}  # fmt: skip
 
@@ -552,7 +553,7 @@ PARTS = {"properties": properties, "steps": steps, "events": events, "falling": 
 def soak_text():
     """soak.md with the table of all recorded runs of scripts/soak.py."""
     here = Path(__file__)
-    return here.with_name("soak.md").read_text().replace("@table@", table(read_record(here.with_name("soak.jsonl"))))
+    return here.with_name("soak.md").read_text().replace("@table@", soak_table(read_record(here.with_name("soak.jsonl"))))
 
 
 def main():
@@ -560,9 +561,14 @@ def main():
     parser.add_argument("program", nargs="?", default=str(ROOT / "build" / "clathra"))
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--only", nargs="*", choices=PARTS)
+    parser.add_argument("--soak", action="store_true", help="only the page's section on random scenes, from the record")
     given = parser.parse_args()
     program = Path(given.program).resolve()
     sys.argv[1:] = [str(program)]
+    if given.soak:
+        before, rest = PAGE.read_text().split(SOAK + "\n", 1)
+        PAGE.write_text(f"{before}{SOAK}\n\n{soak_text()}\n{rest[rest.index('## '):]}")
+        return
     FOLDER.mkdir(parents=True, exist_ok=True)
     study = Study(program, given.fresh)
     found = {name: part(study) for name, part in PARTS.items() if given.only is None or name in given.only}
