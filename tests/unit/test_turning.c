@@ -41,6 +41,7 @@ static Scene *Make(unsigned has, BasisType basis, const char *stepper, double p,
   s->c.t_end = s->c.dt_max = t_end;
   s->c.dt                  = strcmp(stepper, "hybrid") ? 0.005 : has & HAS_WATER ? 5e-6 : 1e-4;
   s->c.dt_min              = 1e-9;
+  s->c.error_exponent      = 2.0;
   s->c.tol                 = 1e-3;
   s->c.max_failures        = 5;
   s->c.cfl                 = 0.8;
