@@ -83,6 +83,8 @@ typedef struct {
 Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM]);
 void    BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double  BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
+double  BcNextMark(const Case *c,
+                   double      t); /* first time after t that a step must not cross for the waves of a schedule */
 
 /* What is said of a plate: position since the start along its axis (m); force on the body, compression-positive, and
    along the side in the direction of the axis (N); area under it (m^2). */

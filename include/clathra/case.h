@@ -186,6 +186,7 @@ typedef struct Case {
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
   bool   saturation_upwind;   /* (200); default false */
+  bool   heat_upwind;         /* (293); default false */
   bool   lumped_reaction;     /* (265); default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
@@ -193,6 +194,7 @@ typedef struct Case {
   bool     adaptive;
   double   dt, dt_min, dt_max; /* s; dt = first (adaptive) or fixed step */
   double   tol;                /* relative tolerance of the error estimate */
+  double   error_exponent;     /* of its mean over the particles (292) */
   PetscInt max_failures;       /* cuts in a row before the run is given up */
   /* hybrid and explicit */
   double cfl;          /* step as a share of the stable one */

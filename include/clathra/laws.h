@@ -148,6 +148,9 @@ typedef struct {
   double dc;    /* heat capacity of what a kg of hydrate leaves, less its own, J/(kg K) */
 } LatentHeat;
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
+/* (293): conductivity K (xx, yy, xy; W/(m K)) beside kappa that carries heat with the flow: a is the heat capacity that
+   flows (W/(m^2 K)), h the size of a cell (m). */
+void HeatUpwind(double kappa, const double a[2], const double h[2], double K[3]);
 /* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity
    (X = kappa) and, with X = rho c, for the heat capacity; derivatives with respect to phi, S_h and s_w. */
 double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh,

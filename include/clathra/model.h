@@ -121,6 +121,7 @@ typedef struct {
   double  *V;      /* [n_local] sum of V_n S, m^3 */
   double  *up;     /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
   double  *spread; /* [n][2] (200); NULL when off */
+  double  *upwind; /* [n][3] (293); NULL when off */
   Lump    *lump;   /* [n] (265); NULL when off */
   double  *Vk;     /* [n_local] sum of V S k0 over the first k0, m^3 */
   double  *coef;   /* [n_local][NC_COUNT] nodal means, places NC_... */

@@ -54,6 +54,7 @@ typedef struct {
   double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   SkeletonHistory skeleton;
   double          spread[PHASE_COUNT];  /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
+  double          upwind[3];            /* (293), xx, yy, xy, W/(m K) */
   double          proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */

@@ -45,6 +45,21 @@ static double NextKink(const Bc *b, double t)
   return b->zero + next;
 }
 
+double BcNextMark(const Case *c, double t)
+{
+  double next = fmin(ScheduleNextMark(&c->ambient_pressure, t), ScheduleNextMark(&c->ambient_level, t));
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Bc       *b     = &c->bc[k];
+    const double    at    = t - b->zero + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+    const Schedule *own[] = {&b->value, &b->shear, &b->displacement, &b->force, &b->phase[0], &b->phase[1]};
+
+    for (size_t i = 0; i < sizeof(own) / sizeof(*own); i++)
+      next = fmin(next, b->zero + ScheduleNextMark(own[i], at));
+  }
+  return next;
+}
+
 double BcNextKink(const Case *c, double t)
 {
   const double ramped = c->t_begin + c->gravity_ramp;

@@ -198,6 +198,10 @@ static const Key case_key[] = {
          .plain = true),
     REAL(Case, "stepper_dt_max", dt_max, "s", "(0,inf)", "1 @time_end", "longest step", .plain = true),
     REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate"),
+    REAL(Case, "stepper_error_exponent", error_exponent, "", "[1,16]", "2",
+         "of the mean of the error over the particles: 2 is the root mean square, in which a front in a small part of "
+         "the "
+         "body drowns; 8 sees it"),
     INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
              "cuts in a row before the run is given up"),
     REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "hybrid, explicit: step as a share of the stable one"),
@@ -230,6 +234,10 @@ static const Key case_key[] = {
             "relative permeabilities from upstream, for sharp fronts of saturation"),
     BOOLEAN(Case, "stabilisation_saturation", saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
+    BOOLEAN(
+        Case, "stabilisation_heat", heat_upwind, "no",
+        "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
+        "conducted"),
     BOOLEAN(Case, "stabilisation_reaction", lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),

@@ -184,6 +184,17 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
     e->advected += advected;
     o->force[0][q][row] = -dt * V * kappa * g->dx[q][at];
     o->force[1][q][row] = -dt * V * kappa * g->dy[q][at];
+    if (e->m->c->heat_upwind) {
+      double a[CL_DIM] = {0.0}, K[3];
+
+      for (int k = 0; k < s.fluids; k++) {
+        for (int d = 0; d < CL_DIM; d++)
+          a[d] += (k ? mat->c_g : mat->c_w) * o->force[d][q][k] / (dt * V);
+      }
+      HeatUpwind(kappa, a, e->m->grid.h, K);
+      o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
+      o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
+    }
     for (int i = 0; i < s.fluids; i++)
       o->value[q][R_Matrix(s) + row * n + i] = 0.0;
     o->value[q][R_Matrix(s) + row * n + row] = Capacity(e, s, mat, p);

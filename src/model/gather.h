@@ -294,6 +294,8 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
+  for (int k = 0; k < 3; k++)
+    h->upwind[k] = m->upwind ? m->upwind[3 * p + k] : 0.0;
   h->compression = m->c->compression_heat;
   for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
     h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;

@@ -59,6 +59,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->stencil));
   PetscCall(PetscFree(m->wide));
   PetscCall(PetscFree(m->spread));
+  PetscCall(PetscFree(m->upwind));
   PetscCall(PetscFree(m->lump));
   PetscCall(PetscFree(m->face));
   PetscCall(PetscFree(m->ghost));

@@ -27,6 +27,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->stencil));
     PetscCall(PetscFree(m->wide));
     PetscCall(PetscFree(m->spread));
+    PetscCall(PetscFree(m->upwind));
     PetscCall(PetscFree(m->lump));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
@@ -34,6 +35,8 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
     if (m->c->saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
       PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
+    if (m->c->heat_upwind && m->c->fields.heat && m->c->fields.fluid)
+      PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->upwind));
     if (m->c->lumped_reaction && m->c->fields.phase[PHASE_G])
       PetscCall(PetscCalloc1(m->stencil_cap, &m->lump));
   }
@@ -123,6 +126,21 @@ static double SpreadOf(const Model *m, PetscInt p, int phase, const PointPropert
   const double Pe = 0.5 * hg * fabs(q->mobility_slope[phase]) / both;
 
   return Pe > 1e-4 ? both * (Pe / tanh(Pe) - 1.0) : 0.0;
+}
+
+/* Conductivity that carries heat with the flow of t_n (293). */
+static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[3])
+{
+  static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
+  const Material  *mat                   = ParticleMaterial(m, p);
+  double           a[CL_DIM]             = {0.0};
+
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
+      a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] / q->drag[k] *
+              (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
+  }
+  HeatUpwind(q->kappa, a, m->grid.h, K);
 }
 
 /* Did the particle's domain begin at the axis? */
@@ -228,6 +246,8 @@ static PetscErrorCode Project(Model *m)
     }
     for (int k = 0; m->spread && k < PHASE_COUNT; k++)
       m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
+    if (m->upwind)
+      UpwindOf(m, p, &q, &m->upwind[3 * p]);
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
   }

@@ -236,14 +236,15 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   }
 }
 
-/* Conduction: V kappa F^-1 F^-T g_T. */
+/* Conduction: V kappa F^-1 F^-T g_T, and what carries heat with the flow, (293) on the configuration at t_n. */
 static void Conduction(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s,
                        const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   for (int i = 0; i < 2; i++) {
-    const double Kg = metric->K[i][0] * in[IN_GT] + metric->K[i][1] * in[IN_GT + 1];
+    const double Kg    = metric->K[i][0] * in[IN_GT] + metric->K[i][1] * in[IN_GT + 1];
+    const double up[2] = {i ? h->upwind[2] : h->upwind[0], i ? h->upwind[1] : h->upwind[2]};
 
-    o->out[OUT_HEAT + i] = h->V * s->kappa.v * Kg;
+    o->out[OUT_HEAT + i] = h->V * (s->kappa.v * Kg + up[0] * in[IN_GT] + up[1] * in[IN_GT + 1]);
     if (!tangent)
       continue;
     double *D = o->D[OUT_HEAT + i];
@@ -251,7 +252,7 @@ static void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
     for (int q = 0; q < MOTION_COUNT; q++)
       D[q] += h->V * s->kappa.v * (metric->d[i][0][q] * in[IN_GT] + metric->d[i][1][q] * in[IN_GT + 1]);
     for (int j = 0; j < 2; j++)
-      D[IN_GT + j] += h->V * s->kappa.v * metric->K[i][j];
+      D[IN_GT + j] += h->V * (s->kappa.v * metric->K[i][j] + up[j]);
   }
 }
 

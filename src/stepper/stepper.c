@@ -137,7 +137,8 @@ double StepperNextStop(const Stepper *s, bool *kink)
 {
   const double t = s->state.t, at_kink = BcNextKink(s->model->c, t);
   const double event = s->next_event ? s->next_event(s, s->monitor_ctx) : INFINITY;
-  const double stop  = fmin(s->model->c->t_end, fmin(at_kink, event));
+  const double mark  = BcNextMark(s->model->c, t);
+  const double stop  = fmin(fmin(s->model->c->t_end, mark), fmin(at_kink, event));
 
   *kink = stop == at_kink;
   return stop;

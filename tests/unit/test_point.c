@@ -146,6 +146,9 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
     q->in[IN_U + (k & 1)]   = RngBetween(r, -1e-3, 1e-3);
   }
   q->h.ambient     = &sea;
+  q->h.upwind[0]   = 3.0;
+  q->h.upwind[1]   = 0.7;
+  q->h.upwind[2]   = -0.9;
   q->h.compression = RngPick(r, 2) != 0;
   for (int f = 0; f < PHASE_COUNT; f++) {
     q->h.p_star[f]  = q->in[IN_P + f] + RngBetween(r, -2e6, 2e6);
@@ -749,6 +752,36 @@ static void TestReactionConserves(void **state)
   assert_true(worst < 1e-15);
 }
 
+/* Without a reaction heat is what the masses store, and what each fluid carries with its own heat capacity. */
+static void TestHeatOfMasses(void **state)
+{
+  Rng    r     = {111};
+  double worst = 0.0;
+
+  (void)state;
+  for (int n = 0; n < 20000; n++) {
+    Particle    q;
+    PointState  s;
+    PointOutput o;
+
+    RandomParticle(&r, NO_KINETICS, &q);
+    q.h.compression = false;
+    assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
+    const double *water = &o.out[OUT_FLUX], *gas = &o.out[OUT_FLUX + 2], *g = &q.in[IN_GT];
+    const double  stored  = q.h.m_s * q.mat.c_s + s.m_h * q.mat.c_h + s.m_w * q.mat.c_w + s.m_g * q.mat.c_g;
+    double        carried = 0.0, size = 0.0;
+
+    for (int i = 0; i < 2; i++) {
+      carried += (q.mat.c_w * water[i] + q.mat.c_g * gas[i]) * g[i];
+      size += fabs(q.mat.c_w * water[i] * g[i]) + fabs(q.mat.c_g * gas[i] * g[i]);
+    }
+    worst = fmax(worst, fabs(o.out[OUT_Q] - carried) / size);
+    worst = fmax(worst, fabs(o.out[OUT_C] / stored - 1.0));
+  }
+  printf("heat of the masses, stored and carried: %.1e\n", worst);
+  assert_true(worst < 1e-14);
+}
+
 /* ---------------------------------------------------------------- robustness */
 /* 1e5 admissible states over a wide box: every number comes out finite. */
 static void TestNeverNan(void **state)
@@ -873,6 +906,7 @@ int main(void)
       cmocka_unit_test(TestHydrateEquation),
       cmocka_unit_test(TestStiffKinetics),
       cmocka_unit_test(TestReactionConserves),
+      cmocka_unit_test(TestHeatOfMasses),
       cmocka_unit_test(TestNeverNan),
       cmocka_unit_test(TestInadmissible),
       cmocka_unit_test(TestRefusals),
