@@ -137,7 +137,7 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
 
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
-      a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] / q->drag[k] *
+      a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] * q->kr[k] / q->resist[k] *
               (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
   }
   HeatUpwind(q->kappa, a, m->grid.h, K);
