@@ -292,7 +292,7 @@ def fine(r):
 
 
 def left_out(r):
-    words = {"h05": "0.05 m, the paper's cells, by sdirk2", "h05_hybrid": "0.05 m by hybrid", "h067_9": "0.067 m with 9 particles a cell", "soft_h067": "0.067 m with `softening_length` by sdirk2", "short_h067": "0.067 m with `nonlocal_length`", "nonlocal": "0.1 m with a `nonlocal_length` of 0.4 m",
+    words = {"h05": "0.05 m, the paper's cells, by sdirk2", "h05_hybrid": "0.05 m by hybrid", "h067_9": "0.067 m with 9 particles a cell", "soft_h067": "0.067 m with `softening_length` by sdirk2", "short_h067": "0.067 m with `nonlocal_length` by sdirk2", "nonlocal": "0.1 m with a `nonlocal_length` of 0.4 m",
              "C_hybrid": "C by hybrid"}  # fmt: skip
     lines = []
     for name, w in words.items():

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes docs/options.md: options_doc.py CLATHRA [--check]
+"""Makes docs/options.md, and docs/laws.md but for its pictures: options_doc.py CLATHRA [--check]
 
 The keys of a case come from `CLATHRA -case_keys`; the options of the program itself are kept by hand below, and
 tests/docs.py holds them against what src/ reads.  --check writes nothing and fails when the page is out of date.
@@ -16,6 +16,7 @@ PAGE = ROOT / "docs" / "options.md"
 PROGRAM = [  # option, value, default, meaning
     ("-case_check", "", "", "read and check the case, write nothing"),
     ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
+    ("-case_curves", "", "", "print what the laws of the case's materials give, curve by curve, and stop: what docs/laws.md is drawn from"),
     ("-restart", "FILE", "", "go on from a checkpoint of the same case (grid, regions, materials, boundary conditions, "
      "meters, stages); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a "
      "new one"),
@@ -135,7 +136,10 @@ def main(arguments):
         sys.exit(__doc__)
     new = page(arguments[0])
     if not check:
+        import laws_doc  # whose page lists keys, too
+
         PAGE.write_text(new)
+        laws_doc.PAGE.write_text(laws_doc.page(arguments[0]))
         return 0
     old = PAGE.read_text() if PAGE.is_file() else ""
     difference = list(difflib.unified_diff(old.splitlines(), new.splitlines(), str(PAGE), "as it should be", lineterm=""))

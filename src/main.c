@@ -30,7 +30,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
 {
   Case        c;
   bool        ok;
-  PetscBool   keys = PETSC_FALSE, check = PETSC_FALSE, help_asked = PETSC_FALSE;
+  PetscBool   keys = PETSC_FALSE, check = PETSC_FALSE, curves = PETSC_FALSE, help_asked = PETSC_FALSE;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
@@ -38,6 +38,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscCall(PetscOptionsHasHelp(NULL, &help_asked));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", &keys, NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_check", &check, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_curves", &curves, NULL));
   *exit_code = CL_EXIT_OK;
   if (keys || (help_asked && argc < 3)) {
     if (rank == 0)
@@ -55,9 +56,11 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (curves && rank == 0)
+    PetscCall(CasePrintCurves(&c, stdout));
   if (check)
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: the case is valid\n", c.file));
-  else
+  else if (!curves)
     PetscCall(CaseRun(PETSC_COMM_WORLD, &c, exit_code));
   PetscCall(CaseDestroy(&c));
   PetscFunctionReturn(PETSC_SUCCESS);

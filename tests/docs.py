@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """README and docs against the program: docs.py CLATHRA
 
-- docs/options.md is what scripts/options_doc.py makes of this program
+- docs/options.md and docs/laws.md are what their scripts make of this program
 - the options read in src/ and the options of that page are the same
 - files and functions that README and docs name exist
 - commands in README and docs, and presets, use options that exist; presets hold no physics and nothing unread
@@ -29,6 +29,9 @@ NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat)_\w+")
 spec = importlib.util.spec_from_file_location("options_doc", ROOT / "scripts" / "options_doc.py")
 options_doc = importlib.util.module_from_spec(spec)
 sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "scripts"))
+import laws_doc  # noqa: E402
+
 spec.loader.exec_module(options_doc)
 
 
@@ -54,6 +57,18 @@ def check_page(binary):
     old = options_doc.PAGE.read_text() if options_doc.PAGE.is_file() else ""
     if old != options_doc.page(binary):
         yield "docs/options.md is out of date: run scripts/options_doc.py CLATHRA"
+
+
+def check_laws(binary):
+    """docs/laws.md is what scripts/laws_doc.py makes of this program, the code cites its equations, and the curves are whole."""
+    text = laws_doc.PAGE.read_text()
+    if text != laws_doc.page(binary):
+        yield "docs/laws.md is out of date: run scripts/options_doc.py CLATHRA"
+    yield from (f"docs/laws.md: no code cites ({n})" for law in laws_doc.LAWS for n in law[3] if not laws_doc.files(n))
+    for law in laws_doc.LAWS:
+        columns, rows = laws_doc.curves(binary, law[1], law[2][-1][1])
+        if len(rows) < 100 or any(len(r) != len(columns) or any(v != v for v in r) for r in rows):
+            yield f"-case_curves: the rows of {law[1]} are not whole"
 
 
 def named_files(page):
@@ -83,7 +98,7 @@ def check_files(page):
 def case_patterns(binary):
     keys = re.findall(r"^\| `(\w*(?:<name>)?\w*)` \|", options_doc.case_keys(binary), re.M)
     lists = re.findall(r"^`(\w+)`: the list", options_doc.case_keys(binary), re.M)
-    form = r"(_table|_ramp|_rate|_piecewise)?"
+    form = r"(_table|_ramp|_rate|_piecewise|_sine|_csv)?"
     return re.compile("-(" + "|".join(k.replace("<name>", r"[\w-]+?") + form for k in keys + lists) + ")")
 
 
@@ -148,7 +163,7 @@ def main(binary):
     known = lambda word: word in program or PETSC.fullmatch(word) or case.fullmatch(word)
     planted = ["-stepper_typ", "-mat_sand_porosty", "-newton_tol", "-grid", "-ksptype"]
     found = [f"self-test: {word} was taken for an option" for word in planted if known(word)]
-    found += [*check_table(), *check_page(binary), *check_example(binary)]
+    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_example(binary)]
     for page in PAGES:
         found += [*check_files(page), *check_commands(page, known)]
     for preset in PRESETS:

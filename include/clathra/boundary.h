@@ -15,10 +15,11 @@ typedef struct {
   double   x[CL_DIM]; /* middle of the face, m */
   double   r[CL_DIM]; /* from where the particle's values belong (AxisCentroid) to the face, m */
   PetscInt region;
-  double   x0[CL_DIM];        /* initial position of the particle, m */
-  double   n0[CL_DIM];        /* FaceNormal there */
-  double   N[CL_NODES];       /* weights, in the order of StencilExpand */
-  double   Nr[CL_NODES];      /* (195): those of Darcy fluxes along x */
+  double   x0[CL_DIM];                /* initial position of the particle, m */
+  double   n0[CL_DIM];                /* FaceNormal there */
+  double   N[CL_NODES];               /* weights, in the order of StencilExpand */
+  double   Nr[CL_NODES];              /* (195): those of Darcy fluxes along x */
+  double   Nm[PHASE_COUNT][CL_NODES]; /* (109): those in the rows of mass */
   double   ring[2];           /* (197), (198): what is lost between face and body in a ring, in 2 pi k and kappa */
   double   skin[PHASE_COUNT]; /* the same as a resistance to a fluid, Pa s/m^3 */
   PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
@@ -33,6 +34,8 @@ typedef struct {
 /* Weight of a node in what a face adds to row q, and takes from its Darcy fluxes. */
 static inline double FaceWeight(const Face *f, int a, int q)
 {
+  if (q == F_PW || q == F_PG)
+    return f->Nm[q - F_PW][a];
   return q == F_VWX || q == F_VGX ? f->Nr[a] : f->N[a];
 }
 
@@ -42,6 +45,10 @@ PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, cons
 
 /* Where the face is and how it distributes, for its particle's present position and weights. */
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
+
+/* (109): weights of an inflow of fluids that cannot move yet.  S: n weights of the face's particle (-), in the order of
+   StencilExpand; kr: its relative permeabilities at t_n (-). */
+void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT]);
 
 #define FACE_PENALTY 20.0 /* gamma of (199) */
 
@@ -76,6 +83,8 @@ typedef struct {
 Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM]);
 void    BcValuesEvaluate(const Case *c, double t, BcValues *v);
 double  BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
+double  BcNextMark(const Case *c,
+                   double      t); /* first time after t that a step must not cross for the waves of a schedule */
 
 /* What is said of a plate: position since the start along its axis (m); force on the body, compression-positive, and
    along the side in the direction of the axis (N); area under it (m^2). */

@@ -147,6 +147,7 @@ typedef struct {
   Meter    surface;   /* mean over this part of the surface, by area; SIDE_COUNT without a line: not */
 } Probe;
 
+enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
 enum { ICE_WARN = 0, ICE_STOP };
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
@@ -167,6 +168,7 @@ typedef struct Case {
   double    mean_strain;                     /* share of the cell's mean in a particle's strain (160) */
   double    strength_factor;                 /* all strength is divided by it (87) */
   int       ice;                             /* ICE_... */
+  int       without_gas;                     /* WITHOUT_GAS_... */
   Schedule  ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
   double    ambient_density;                 /* kg/m^3 */
   double    ambient_drag;                    /* C of (152) */
@@ -184,6 +186,7 @@ typedef struct Case {
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
   bool   saturation_upwind;   /* (200); default false */
+  bool   heat_upwind;         /* (293); default false */
   bool   lumped_reaction;     /* (265); default false */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
@@ -191,6 +194,7 @@ typedef struct Case {
   bool     adaptive;
   double   dt, dt_min, dt_max; /* s; dt = first (adaptive) or fixed step */
   double   tol;                /* relative tolerance of the error estimate */
+  double   error_exponent;     /* of its mean over the particles (292) */
   PetscInt max_failures;       /* cuts in a row before the run is given up */
   /* hybrid and explicit */
   double cfl;          /* step as a share of the stable one */
@@ -285,6 +289,30 @@ static inline double RegionK0(const Case *c, const Region *r)
   return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
 }
 
+/* Does a region start without gas where there are two pressures (section 19 of docs/equations.md)? */
+static inline bool CaseStartsWithoutGas(const Case *c)
+{
+  bool without = false;
+
+  for (PetscInt k = 0; k < c->nregion; k++)
+    without = without || ((c->fields.has & HAS_GAS_PRESSURE) && c->region[k].Sg == 0.0);
+  return without;
+}
+
+/* ... and is gas let in? */
+static inline bool CaseLetsGasIn(const Case *c)
+{
+  bool enters = false;
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Schedule *gas = &c->bc[k].phase[PHASE_G];
+
+    for (PetscInt i = 0; c->bc[k].type == BC_INFLOW && i < gas->n; i++)
+      enters = enters || gas->y[i] > 0.0;
+  }
+  return enters && CaseStartsWithoutGas(c);
+}
+
 /* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
    nothing does. */
 static inline const char *CaseNeedsImplicit(const Case *c)
@@ -299,6 +327,7 @@ static inline const char *CaseNeedsImplicit(const Case *c)
          : c->saturation_upwind ? "stabilisation_saturation"
          : c->lumped_reaction   ? "stabilisation_reaction"
          : !c->inertia          ? "inertia: no"
+         : CaseLetsGasIn(c)     ? "an inflow of gas where a region has Sg: 0"
                                 : NULL;
 }
 

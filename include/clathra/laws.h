@@ -28,6 +28,9 @@ static inline double RetentionGasShare(const Retention *law, double pc, double *
 }
 /* Capillary pressure at which the gas share is s_g, by bracketing; false if the law never reaches s_g. */
 bool RetentionInvert(const Retention *law, double sg, double *pc);
+/* Capillary pressure at and below which a pore holds no gas (103); false if the law leaves some at any (a clamped law
+   with S_gr > 0). */
+bool RetentionNoGas(const Retention *law, double *pc);
 
 /* ---------------------------------------------------------------- relative permeability (modified Corey)
    base = (s - Sr_own)/(1 - Swr - Sgr) clipped to [0,1] with a C1 toe at 0; k_r = base^n.
@@ -102,6 +105,7 @@ struct Gas {
   double M;         /* kg/mol */
   double Tc, pc;    /* critical temperature, K, and pressure, Pa; peng_robinson */
   double eccentric; /* acentric factor; peng_robinson */
+  double trace;     /* H of (101), kg/(m^3 Pa); 0 where every region starts with gas */
   /* of n states p (Pa), T (degC): rho, d rho/dp, d rho/dT; nothing may overlap.  NULL: ideal */
   void (*density)(const Gas *, int n, const double *p, const double *T, double *rho, double *drho_dp, double *drho_dT);
   /* beta at the density rho (kg/m^3), T_K, with its slopes in both */
@@ -113,6 +117,8 @@ const char *const *GasTypes(void);
 double             GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
 /* Volumetric thermal expansion -(1/rho) drho/dT at constant pressure, 1/K, with slopes in p and T (291). */
 double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double *dbeta_dT);
+
+double GasTrace(const Gas *law); /* H (102): of the methane that gives p_g a meaning where there is no gas */
 
 /* ---------------------------------------------------------------- salt water; salinity in kg of salt per kg of brine
  */
@@ -142,6 +148,9 @@ typedef struct {
   double dc;    /* heat capacity of what a kg of hydrate leaves, less its own, J/(kg K) */
 } LatentHeat;
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
+/* (293): conductivity K (xx, yy, xy; W/(m K)) beside kappa that carries heat with the flow: a is the heat capacity that
+   flows (W/(m^2 K)), h the size of a cell (m). */
+void HeatUpwind(double kappa, const double a[2], const double h[2], double K[3]);
 /* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity
    (X = kappa) and, with X = rho c, for the heat capacity; derivatives with respect to phi, S_h and s_w. */
 double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh,

@@ -99,6 +99,13 @@ typedef struct {
 
 typedef struct Reduced Reduced; /* reduced.c */
 
+/* One of two fluids at a node (16). */
+typedef struct {
+  double F[CL_DIM]; /* inertia, pressure gradient and faces, N */
+  double D;         /* sum of V S mu/k_a, Pa s m */
+  double root;      /* mean of sqrt(k_r) (108) */
+} FluidNode;
+
 typedef struct {
   const Case   *c;
   Grid          grid;
@@ -107,23 +114,26 @@ typedef struct {
   PetscLogEvent event[EVENT_COUNT];
 
   /* on the configuration at t_n, built by ModelBeginStep */
-  Stencil        *stencil; /* [n] */
-  PetscInt        stencil_cap;
-  double         *x_n; /* [n_local][fields.n] projected start values */
-  double         *w;   /* [n_local][2] (phi S_pi)_I */
-  double         *V;   /* [n_local] sum of V_n S, m^3 */
-  double         *up; /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
-  double         *spread; /* [n][2] (200); NULL when off */
-  Lump           *lump;   /* [n] (265); NULL when off */
-  double         *Vk;     /* [n_local] sum of V S k0 over the first k0, m^3 */
-  double         *coef;   /* [n_local][NC_COUNT] nodal means, places NC_... */
-  unsigned       *mask;   /* [n_local] Dirichlet bits */
-  double         *fixed;  /* [n_local][fields.n] Dirichlet values of the stage */
-  PetscInt        nface;
-  Face           *face;
-  PetscInt        nghost, ncell;
-  GhostLine      *ghost;
-  ProjectionCell *cell;
+  Stencil *stencil; /* [n] */
+  PetscInt stencil_cap;
+  double  *x_n;    /* [n_local][fields.n] projected start values */
+  double  *w;      /* [n_local][2] (phi S_pi)_I */
+  double  *V;      /* [n_local] sum of V_n S, m^3 */
+  double  *up;     /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
+  double  *spread; /* [n][2] (200); NULL when off */
+  double  *upwind; /* [n][3] (293); NULL when off */
+  Lump    *lump;   /* [n] (265); NULL when off */
+  double  *Vk;     /* [n_local] sum of V S k0 over the first k0, m^3 */
+  double  *coef;   /* [n_local][NC_COUNT] nodal means, places NC_... */
+  const Material **material; /* [n_local] of most of what this rank has at the node */
+  double          *most;     /* [n_local] ... volume of the particle that it is of, times S, m^3 */
+  unsigned        *mask;     /* [n_local] Dirichlet bits */
+  double          *fixed;    /* [n_local][fields.n] Dirichlet values of the stage */
+  PetscInt         nface;
+  Face            *face;
+  PetscInt         nghost, ncell;
+  GhostLine       *ghost;
+  ProjectionCell  *cell;
 
   /* of the stage, built by ModelBeginStage */
   Stage    stage;
@@ -133,6 +143,8 @@ typedef struct {
   /* of the last evaluation */
   double     *x, *f;     /* [n_local][fields.n] unscaled unknowns, residual */
   double     *mass_row;  /* [n_local][2] mass balances of water and gas, one pressure only; kg */
+  FluidNode  *fluid;     /* [n_local][2] where there are two */
+  bool        evaluated; /* x and fluid are those of a residual of this stage */
   double     *proj;      /* [n_local][4] projected pressure gradients Pi g, Pa/m */
   double     *wide;      /* [n][12] particle coefficients of the wide part (27) */
   ClStatus    status;    /* why the last evaluation failed, on this rank */
@@ -174,8 +186,9 @@ enum {
   NC_REACTION,
   NC_REACTION_HEAT,
   NC_DRAG,
-  NC_RING = NC_DRAG + 2, /* 1/r */
-  NC_AXIS,               /* of what was seeded at the axis: 1 */
+  NC_KR   = NC_DRAG + 2,
+  NC_RING = NC_KR + 2, /* 1/r */
+  NC_AXIS,             /* of what was seeded at the axis: 1 */
   NC_COUNT
 };
 

@@ -130,6 +130,12 @@ typedef PetscErrorCode (*SiteVisit)(const Case *c, const Grid *g, const Site *si
 /* Calls visit for every site of the body, on every rank and in the same order. */
 PetscErrorCode SitesVisit(const Case *c, const Grid *g, SiteVisit visit, void *ctx);
 
+/* (106): what step control takes for p_g: the pressure of gas or, where there is none, of that which would appear. */
+static inline double GasToBe(double pw, double pg)
+{
+  return pg > pw ? pg : pw;
+}
+
 /* What a region starts from at one place. */
 typedef struct {
   double pw, pg, sg, p, T;               /* Pa, share of the fluids, mean (10), degC */

@@ -8,7 +8,9 @@
 #include "clathra/kinematics.h"
 #include "clathra/skeleton.h"
 
-#define CL_MOBILITY_FLOOR 1e-9 /* of k_r, in the drag only: an immobile phase still has a velocity */
+#define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
+/* Of phi S_pi at a node (107): a fluid that is not there moves with the skeleton. */
+#define CL_SHARE_FLOOR 1e-6
 
 /* What the interpolation gives a particle; the tangent is taken with respect to these numbers in this order. */
 enum {
@@ -35,12 +37,13 @@ enum {
   OUT_G     = 11, /* [pi][i] V_n cof F g_pi, N: force of a fluid's pressure gradient */
   OUT_M     = 15, /* m_s + m_h, m_w, m_g, kg */
   OUT_MI    = 18, /* [pi] V rho_pi, kg */
-  OUT_D     = 20, /* [pi] V mu/(k_a k_r), Pa s m^2/m^2 ... drag per Darcy flux */
-  OUT_DM    = 22, /* [pi] mass gained minus released by hydrate, kg */
-  OUT_C     = 24, /* heat capacity, J/K */
-  OUT_Q     = 25, /* advected minus released heat, less what compression and throttling of the fluids give, W */
-  OUT_A     = 26, /* [i] V grad p_a, N; where there is an ambient pressure */
-  OUT_COUNT = 28
+  OUT_D     = 20, /* [pi] V mu/k_a, Pa s m: drag per Darcy flux where k_r = 1 */
+  OUT_ROOT  = 22, /* [pi] sqrt(k_r) (108) */
+  OUT_DM    = 24, /* [pi] mass gained minus released by hydrate, kg */
+  OUT_C     = 26, /* heat capacity, J/K */
+  OUT_Q     = 27, /* advected minus released heat, less what compression and throttling of the fluids give, W */
+  OUT_A     = 28, /* [i] V grad p_a, N; where there is an ambient pressure */
+  OUT_COUNT = 30
 };
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
@@ -51,6 +54,7 @@ typedef struct {
   double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   SkeletonHistory skeleton;
   double          spread[PHASE_COUNT];  /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
+  double          upwind[3];            /* (293), xx, yy, xy, W/(m K) */
   double          proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
@@ -91,15 +95,21 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
 void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double sg, double pw,
                         double pg, double T, double *m_s, double *m_h, double *m_w, double *m_g);
 
+/* Methane of a unit of open pore space, kg/m^3 (101), with its slopes in p_w and p_g. */
+double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT]);
+/* p_g between a and b at which it is `want`, to 1e-4 of p_0; b where there is none between them. */
+double PointGasPressure(const Material *mat, double want, double pw, double T, double a, double b);
+
 /* Properties at t_n that projections, scales and stabilisation need. */
 typedef struct {
-  double rho[PHASE_COUNT], drag[PHASE_COUNT]; /* kg/m^3, Pa s/m^2 */
-  double mobility_slope[PHASE_COUNT];         /* d(1/drag)/dp_c, m^2/(Pa^2 s) */
-  double s[PHASE_COUNT], phi, Sh;             /* s_w, s_g, porosity, hydrate saturation */
-  double capacity, kappa;                     /* V C_m (J/K), W/(m K) */
-  double M, G;                                /* constrained and shear modulus, Pa */
-  double storage[PHASE_COUNT];                /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
-  double reaction, reaction_heat;             /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
+  double rho[PHASE_COUNT];                     /* kg/m^3 */
+  double resist[PHASE_COUNT], kr[PHASE_COUNT]; /* mu/k_a, Pa s/m^2; relative permeability */
+  double mobility_slope[PHASE_COUNT];          /* d(k_a k_r/mu)/dp_c, m^2/(Pa^2 s) */
+  double s[PHASE_COUNT], phi, Sh;              /* s_w, s_g, porosity, hydrate saturation */
+  double capacity, kappa;                      /* V C_m (J/K), W/(m K) */
+  double M, G;                                 /* constrained and shear modulus, Pa */
+  double storage[PHASE_COUNT];                 /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
+  double reaction, reaction_heat;              /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
 } PointProperties;
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
                                  double pg, double T, double sw_n, PointProperties *r, const char **why);

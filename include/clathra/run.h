@@ -10,3 +10,5 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code);
 void ProcessPrepare(void);
 void ProcessListen(void);
 int  ProcessSignal(void); /* the signal that asked this rank to end; 0: none */
+/* Prints what the laws of the materials give over their variables, a block of rows "x, y, ..." for each. */
+PetscErrorCode CasePrintCurves(const Case *c, FILE *out);

@@ -45,6 +45,21 @@ static double NextKink(const Bc *b, double t)
   return b->zero + next;
 }
 
+double BcNextMark(const Case *c, double t)
+{
+  double next = fmin(ScheduleNextMark(&c->ambient_pressure, t), ScheduleNextMark(&c->ambient_level, t));
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Bc       *b     = &c->bc[k];
+    const double    at    = t - b->zero + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+    const Schedule *own[] = {&b->value, &b->shear, &b->displacement, &b->force, &b->phase[0], &b->phase[1]};
+
+    for (size_t i = 0; i < sizeof(own) / sizeof(*own); i++)
+      next = fmin(next, b->zero + ScheduleNextMark(own[i], at));
+  }
+  return next;
+}
+
 double BcNextKink(const Case *c, double t)
 {
   const double ramped = c->t_begin + c->gravity_ramp;
@@ -248,13 +263,22 @@ static void Fluids(const Case *c, const Face *f, const BcValues *v, const Materi
   }
 }
 
+/* (106): gas that enters where there is none has the pressure of the water before it. */
+static int InflowPressure(const Case *c, const Face *f, int phase, const double in[IN_COUNT])
+{
+  const bool two = c->fields.has & HAS_GAS_PRESSURE;
+
+  return two && phase == PHASE_G && FacePressure(f, PHASE_W, in) > FacePressure(f, PHASE_G, in) ? PHASE_W : phase;
+}
+
 /* (32): mass and, where it comes with a temperature of its own, heat of what is let in.  Its density is the body's own
    at the face. */
 static void Inflow(const Case *c, const Face *f, const BcValues *v, const Material *mat, int phase, const double s[2],
                    const double ds[2][MOTION_COUNT], const double in[IN_COUNT], double dt, FaceOutput *o)
 {
-  const double p = FacePressure(f, phase, in);
-  const double T = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
+  const int    own = InflowPressure(c, f, phase, in);
+  const double p   = FacePressure(f, own, in);
+  const double T   = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1];
   double       darea[MOTION_COUNT];
   const double q = v->phase[phase][f->inflow], area = Area(s, ds, darea);
   const bool   heats = c->fields.heat && c->bc[f->inflow].value.n && q > 0.0;
@@ -262,11 +286,11 @@ static void Inflow(const Case *c, const Face *f, const BcValues *v, const Materi
   double       dp, dT, drate[IN_COUNT] = {0.0};
   const double rho = Density(mat, phase, p, T, &dp, &dT), rate = rho * q * area;
 
-  drate[IN_P + phase] = dp * q * area;
-  drate[IN_T]         = dT * q * area;
+  drate[IN_P + own] = dp * q * area;
+  drate[IN_T]       = dT * q * area;
   for (int j = 0; j < 2; j++) {
-    drate[IN_GP + 2 * phase + j] = dp * q * area * f->r[j];
-    drate[IN_GT + j]             = dT * q * area * f->r[j];
+    drate[IN_GP + 2 * own + j] = dp * q * area * f->r[j];
+    drate[IN_GT + j]           = dT * q * area * f->r[j];
   }
   for (int k = 0; k < MOTION_COUNT; k++)
     drate[k] = rho * q * darea[k];

@@ -79,8 +79,9 @@ static void Weights(const Case *c, const Grid *g, const Particles *P, const Sten
   for (int b = 0; b < 3; b++) {
     for (int a = 0; a < 3; a++) {
       if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0)) {
-        f->N[n]    = w[0][a] * w[1][b];
-        f->Nr[n++] = w[0][a] * w[1][b];
+        f->N[n] = f->Nr[n] = w[0][a] * w[1][b];
+        f->Nm[PHASE_W][n] = f->Nm[PHASE_G][n] = f->N[n];
+        n++;
       }
     }
   }
@@ -122,6 +123,24 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
   Weights(c, g, P, stencil, half, f);
   Ring(c, g, P, f);
   f->skin[PHASE_W] = f->skin[PHASE_G] = 0.0;
+}
+
+#define MOBILE 1e-3 /* k_r from which on what is let in can flow on */
+
+void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT])
+{
+  double sum = 0.0;
+
+  if (f->inflow < 0 || f->pressure >= 0)
+    return;
+  for (int a = 0; a < n; a++)
+    sum += f->N[a];
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const double share = fmin(1.0, kr[k] / MOBILE);
+
+    for (int a = 0; a < n; a++)
+      f->Nm[k][a] = share * f->N[a] + (1.0 - share) * sum * S[a];
+  }
 }
 
 static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,

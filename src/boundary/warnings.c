@@ -51,7 +51,7 @@ static bool Pushed(const Case *c, double least)
     const Schedule *q = &c->bc[k].value;
 
     for (PetscInt i = 0; c->bc[k].type == BC_TRACTION && i < q->n; i++) {
-      if (q->y[i] >= least)
+      if (q->y[i] + ScheduleSwing(q) >= least)
         return true;
     }
   }

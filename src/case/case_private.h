@@ -3,6 +3,7 @@
 #pragma once
 
 #include "clathra/case.h"
+#include <string.h>
 
 /* ---------------------------------------------------------------- units.c */
 enum { UNIT_KG = 0, UNIT_M, UNIT_S, UNIT_K, UNIT_MOL, UNIT_DEG, UNIT_DIMS };
@@ -60,6 +61,8 @@ PetscErrorCode ReaderLoad(Reader *r, const char *path);
 PetscErrorCode ReaderDestroy(Reader *r);
 /* Finds the value of a key: the command line wins over the file.  *from_file tells which. */
 PetscErrorCode ReaderFind(Reader *r, const char *name, const char **value, bool *found, bool *from_file);
+/* A whole file, read on rank 0, on all ranks; free it.  NULL and a reason if it cannot be read as text. */
+PetscErrorCode ReaderText(Reader *r, const char *path, char **text, char why[CASE_WHY]);
 /* The text as YAML into entries; false: one error was added. */
 bool ReaderParse(Reader *r, const char *text);
 
@@ -155,6 +158,12 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k);
 bool           YesNoRead(const char *text, bool *value); /* yes, no, true, ...; false for another word */
 void           KeyMissing(Reader *r, const char *option, const Key *k);
 bool RealRead(Reader *r, const char *shown, const char *text, const char *unit, const char *range, double *value);
+/* csv.c: points of the function of time that a column of a file is; `text` is "FILE" or "FILE, COLUMN". */
+PetscErrorCode ScheduleCsv(Reader *r, const char *shown, const char *text, const Key *k, Schedule *s, bool *ok);
+static inline const char *ScheduleDifference(const Key *k) /* unit of a difference of its values */
+{
+  return strcmp(k->unit, "degC") ? k->unit : "K";
+}
 PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s);
 /* One of the names of group k->names as its index; the word for all or none as -1; false: one error was added. */
 bool KeyName(Reader *r, const Case *c, const char *shown, const char *text, const Key *k, PetscInt *value);

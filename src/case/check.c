@@ -65,7 +65,10 @@ static void CheckSaturations(Reader *r, const Case *c, const Region *g)
     FAIL_AT(GROUP_REGION, g->name, "Sw", "Sh + Sw + Sg must be 1, is %.12g", sum);
     return;
   }
-  if (r->bad[GROUP_MATERIAL] || !c->fields.phase[PHASE_G] || RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
+  if (r->bad[GROUP_MATERIAL] || !c->fields.phase[PHASE_G])
+    return;
+  if (g->Sg == 0.0 && c->without_gas != WITHOUT_GAS_NO ? RetentionNoGas(&m->retention, &pc)
+                                                       : RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
     return;
   FAIL_AT(
       GROUP_REGION, g->name, "Sg",

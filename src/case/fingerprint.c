@@ -40,7 +40,8 @@ static uint64_t HashSchedule(uint64_t h, const Schedule *s)
   const int n = (int)s->n, steps = s->steps;
 
   h = HashBytes(HashBytes(h, &n, sizeof n), &steps, sizeof steps);
-  return HashReals(HashReals(h, s->t, (size_t)s->n), s->y, (size_t)s->n);
+  h = HashReals(HashReals(h, s->t, (size_t)s->n), s->y, (size_t)s->n);
+  return HashReals(h, (const double *)s->wave, (size_t)s->nwave * sizeof(Wave) / sizeof(double));
 }
 
 static uint64_t HashPoints(uint64_t h, const Points *p)

@@ -20,7 +20,7 @@ static bool IsZero(const Schedule *s)
     if (s->y[i] != 0.0)
       return false;
   }
-  return true;
+  return s->nwave == 0;
 }
 
 /* p_w and p_g stand for themselves, and both for a face that is open for both. */

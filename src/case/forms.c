@@ -4,6 +4,8 @@
      key: {ramp: [v0, v1, t0, t1]}             from v0 at t0 to v1 at t1
      key: {rate: [v0, rate, t0, t1]}           from v0 at t0 with this rate until t1
      key: {piecewise: [t0, v0, t1, v1, ...]}   each value holds until the next time
+     key: {sine: [mean, amplitude, period, begin, ...]}   waves (267)
+     key: {csv: [FILE, COLUMN]}                straight lines between the rows of a file (csv.c)
    On the command line -key_ramp "v0, v1, t0, t1" or -key "{ramp: [v0, v1, t0, t1]}".
    Before the first time the first value holds, after the last time the last. */
 #include "case_private.h"
@@ -12,7 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { FORM_CONSTANT = 0, FORM_TABLE, FORM_RAMP, FORM_RATE, FORM_PIECEWISE };
+enum { FORM_CONSTANT = 0, FORM_TABLE, FORM_RAMP, FORM_RATE, FORM_PIECEWISE, FORM_SINE, FORM_CSV };
 
 static void SchedulePoint(Schedule *s, double t, double y)
 {
@@ -73,6 +75,40 @@ static bool ScheduleRamp(Reader *r, const char *shown, const List *list, const K
   return true;
 }
 
+/* (267): mean, then amplitude, period and begin of each wave. */
+static bool ScheduleWaves(Reader *r, const char *shown, const List *list, const Key *k, Schedule *s)
+{
+  const bool short_form = list->n == 3; /* one that begins at 0 */
+  double     mean;
+
+  if (!short_form && (list->n < 4 || list->n % 3 != 1)) {
+    ReaderError(r, shown, NULL, "has %d values, needs the mean, and amplitude, period and begin of each wave",
+                (int)list->n);
+    return false;
+  }
+  if (!RealRead(r, shown, list->item[0], k->unit, k->range, &mean))
+    return false;
+  SchedulePoint(s, 0, mean);
+  s->wave = calloc((size_t)list->n, sizeof *s->wave);
+  for (PetscInt i = 1; i < list->n; i += 3) {
+    Wave *w = &s->wave[s->nwave++];
+
+    if (!RealRead(r, shown, list->item[i], ScheduleDifference(k), "", &w->amplitude) ||
+        !RealRead(r, shown, list->item[i + 1], "s", "(0,inf)", &w->period) ||
+        (!short_form && !RealRead(r, shown, list->item[i + 2], "s", "", &w->begin)))
+      return false;
+  }
+  for (int sign = -1; sign <= 1; sign += 2) {
+    const double end = mean + sign * ScheduleSwing(s);
+
+    if (RangeHolds(k->range, end))
+      continue;
+    ReaderError(r, shown, NULL, "its waves may reach %g %s, out of range %s", end, k->unit, k->range);
+    return false;
+  }
+  return true;
+}
+
 static bool ScheduleParse(Reader *r, const char *shown, const char *text, const Key *k, int form, Schedule *s)
 {
   List   list;
@@ -91,6 +127,8 @@ static bool ScheduleParse(Reader *r, const char *shown, const char *text, const 
     SchedulePoint(s, 0, y);
   } else if (form == FORM_TABLE || form == FORM_PIECEWISE)
     ok = ScheduleTable(r, shown, &list, k, s);
+  else if (form == FORM_SINE)
+    ok = ScheduleWaves(r, shown, &list, k, s);
   else
     ok = ScheduleRamp(r, shown, &list, k, form == FORM_RATE, s);
   s->steps = form == FORM_PIECEWISE;
@@ -123,24 +161,25 @@ static int FormInBraces(const char *text, char *inner)
 }
 
 /* A value of the command line may be a form in braces. */
-static bool ScheduleGiven(Reader *r, const char *shown, const char *text, const Key *k, int form, Schedule *s)
+static PetscErrorCode ScheduleGiven(Reader *r, const char *shown, const char *text, const Key *k, int form, Schedule *s)
 {
-  char *inner;
-  bool  ok;
+  char *inner = strdup(text);
+  bool  ok    = true;
 
-  if (form != FORM_CONSTANT || *text != '{')
-    return ScheduleParse(r, shown, text, k, form, s);
-  inner = strdup(text);
-  form  = FormInBraces(text, inner);
-  ok    = form > 0;
-  if (ok)
-    ok = ScheduleParse(r, shown, inner, k, form, s);
-  else
-    ReaderError(r, shown, text,
-                "is no function of time: {table: [t0, v0, t1, v1, ...]}, {ramp: [v0, v1, t0, t1]}, {rate: ...}, "
-                "{piecewise: ...}");
+  PetscFunctionBeginUser;
+  if (form == FORM_CONSTANT && *text == '{') {
+    form = FormInBraces(text, inner);
+    if (form < 0)
+      ReaderError(r, shown, text,
+                  "is no function of time: {table: [t0, v0, t1, v1, ...]}, {ramp: [v0, v1, t0, t1]}, {rate: ...}, "
+                  "{piecewise: ...}, {sine: [mean, amplitude, period, begin]}, {csv: [FILE, COLUMN]}");
+  }
+  if (form == FORM_CSV)
+    PetscCall(ScheduleCsv(r, shown, inner, k, s, &ok));
+  else if (form >= 0)
+    (void)ScheduleParse(r, shown, inner, k, form, s);
   free(inner);
-  return ok;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const void *instance, Schedule *s)
@@ -169,7 +208,7 @@ PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const v
     ReaderError(r, shown, text, "%s is given in two forms; choose one", option);
   } else if (form >= 0) {
     if (text)
-      (void)ScheduleGiven(r, shown, text, k, form, s);
+      PetscCall(ScheduleGiven(r, shown, text, k, form, s));
     else
       ReaderError(r, shown, NULL, "has no value");
   } else if (KeyApplies(k, GROUP_BC, instance)) {

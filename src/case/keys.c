@@ -103,6 +103,7 @@ static const char *const water_viscosity_word[] = {"constant", "kestin", NULL}; 
 static const char *const gas_viscosity_word[]   = {"constant", "lee", NULL};    /* GAS_VISCOSITY_... */
 static const char *const latent_word[]          = {"linear", "kirchhoff", NULL};
 static const char *const ice_word[]             = {"warn", "stop", NULL};                    /* ICE_... */
+static const char *const without_gas_word[]     = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
 static const char *const plasticity_word[]      = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
 static const char *const flow_word[]            = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
 static const char *const capillary_word[]       = {"held", "free", NULL};
@@ -180,6 +181,9 @@ static const Key case_key[] = {
     REAL(Case, "ambient_drag", ambient_drag, "", "[0,100]", "0",
          "coefficient of the drag of that fluid, at rest, on faces that move into it", .has = HAS_SOLID),
     ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
+    CHOICE(Case, "without_gas", without_gas, "auto", without_gas_word,
+           "sediment may be or become free of gas: water then holds 1e-7 of what gas would; auto: where a region has "
+           "Sg: 0"),
     CHOICE(Case, "ice", ice, "warn", ice_word,
            "when pore water is colder than its melting point, of which no equation knows: say so and go on, or end the "
            "run"),
@@ -194,6 +198,10 @@ static const Key case_key[] = {
          .plain = true),
     REAL(Case, "stepper_dt_max", dt_max, "s", "(0,inf)", "1 @time_end", "longest step", .plain = true),
     REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate"),
+    REAL(Case, "stepper_error_exponent", error_exponent, "", "[1,16]", "2",
+         "of the mean of the error over the particles: 2 is the root mean square, in which a front in a small part of "
+         "the "
+         "body drowns; 8 sees it"),
     INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
              "cuts in a row before the run is given up"),
     REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "hybrid, explicit: step as a share of the stable one"),
@@ -227,6 +235,10 @@ static const Key case_key[] = {
             "relative permeabilities from upstream, for sharp fronts of saturation"),
     BOOLEAN(Case, "stabilisation_saturation", saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
+    BOOLEAN(
+        Case, "stabilisation_heat", heat_upwind, "no",
+        "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
+        "conducted"),
     BOOLEAN(Case, "stabilisation_reaction", lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-const char *const case_schedule_form[] = {"", "_table", "_ramp", "_rate", "_piecewise", NULL};
+const char *const case_schedule_form[] = {"", "_table", "_ramp", "_rate", "_piecewise", "_sine", "_csv", NULL};
 
 bool KeyApplies(const Key *k, Group g, const void *instance)
 {

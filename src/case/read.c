@@ -186,6 +186,9 @@ static void DeriveFluids(Material *m)
 
 static PetscErrorCode Derive(Reader *r, Case *c)
 {
+  const bool starts  = c->without_gas == WITHOUT_GAS_AUTO && CaseStartsWithoutGas(c);
+  const bool without = (c->fields.has & HAS_GAS_PRESSURE) && (starts || c->without_gas == WITHOUT_GAS_YES);
+
   PetscFunctionBeginUser;
   c->nlisted = c->nbc;
   c->listed  = c->bc;
@@ -200,6 +203,7 @@ static PetscErrorCode Derive(Reader *r, Case *c)
     Material *m     = &c->material[i];
     Liquid   *l[]   = {&m->solid, &m->hydrate};
     m->kinetics.M_g = m->gas.M;
+    m->gas.trace    = without ? GasTrace(&m->gas) : 0.0; /* (102) */
     DeriveFluids(m);
     m->plasticity.factor = c->strength_factor;
     m->plasticity.cell   = sqrt((c->upper[0] - c->lower[0]) / c->cells[0] * (c->upper[1] - c->lower[1]) / c->cells[1]);

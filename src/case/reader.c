@@ -69,7 +69,7 @@ static char *FileText(const char *path, char why[CASE_WHY])
     return NULL;
   }
   if (info.st_size > FILE_MAX) {
-    snprintf(why, CASE_WHY, "has %ld bytes; a case file has at most %d", (long)info.st_size, FILE_MAX);
+    snprintf(why, CASE_WHY, "has %ld bytes; at most %d are read", (long)info.st_size, FILE_MAX);
     return NULL;
   }
   f = fopen(path, "rb");
@@ -81,7 +81,7 @@ static char *FileText(const char *path, char why[CASE_WHY])
   n    = fread(text, 1, FILE_MAX + 1, f);
   fclose(f);
   if (n > FILE_MAX)
-    snprintf(why, CASE_WHY, "is too large for a case file");
+    snprintf(why, CASE_WHY, "is too large");
   else if (memchr(text, 0, n))
     snprintf(why, CASE_WHY, "holds a zero byte; it is not a text file");
   else if (strspn(text, " \t\r\n") == n)
@@ -92,24 +92,21 @@ static char *FileText(const char *path, char why[CASE_WHY])
   return NULL;
 }
 
-/* Reads on rank 0 and shares; *text is NULL on all ranks if there was an error. */
-static PetscErrorCode FileShare(Reader *r, char **text)
+PetscErrorCode ReaderText(Reader *r, const char *path, char **text, char why[CASE_WHY])
 {
-  char why[CASE_WHY] = "";
-  int  size          = 0;
+  int size = 0;
 
   PetscFunctionBeginUser;
-  *text = NULL;
+  *text  = NULL;
+  why[0] = '\0';
   if (r->rank == 0) {
-    *text = FileText(r->file, why);
+    *text = FileText(path, why);
     size  = *text ? (int)strlen(*text) + 1 : 0;
   }
   PetscCallMPI(MPI_Bcast(&size, 1, MPI_INT, 0, r->comm));
   PetscCallMPI(MPI_Bcast(why, CASE_WHY, MPI_CHAR, 0, r->comm));
-  if (!size) {
-    ReaderError(r, NULL, NULL, "%s", why);
+  if (!size)
     PetscFunctionReturn(PETSC_SUCCESS);
-  }
   if (r->rank)
     *text = calloc((size_t)size, 1);
   PetscCallMPI(MPI_Bcast(*text, size, MPI_CHAR, 0, r->comm));
@@ -136,14 +133,16 @@ static PetscErrorCode FilePath(Reader *r, const char *path)
 
 PetscErrorCode ReaderLoad(Reader *r, const char *path)
 {
-  char *text;
+  char *text, why[CASE_WHY];
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(r->comm, &r->rank));
   PetscCall(FilePath(r, path));
-  PetscCall(FileShare(r, &text));
-  if (!text)
+  PetscCall(ReaderText(r, r->file, &text, why));
+  if (!text) {
+    ReaderError(r, NULL, NULL, "%s", why);
     PetscFunctionReturn(PETSC_SUCCESS);
+  }
   ReaderParse(r, text);
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);

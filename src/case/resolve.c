@@ -53,8 +53,28 @@ static void WriteReals(FILE *f, const Key *k, const double *value, PetscInt n)
     fputc(']', f);
 }
 
+static void WriteWaves(FILE *f, const Key *k, const Schedule *s)
+{
+  fputs("{sine: [", f);
+  WriteReal(f, k, s->y[0]);
+  for (PetscInt i = 0; i < s->nwave; i++) {
+    fputs(", ", f);
+    WriteNumber(f, s->wave[i].amplitude);
+    fprintf(f, " %s, ", ScheduleDifference(k));
+    WriteNumber(f, s->wave[i].period);
+    fputs(" s, ", f);
+    WriteNumber(f, s->wave[i].begin);
+    fputs(" s", f);
+  }
+  fputs("]}", f);
+}
+
 static void WriteSchedule(FILE *f, const Key *k, const Schedule *s)
 {
+  if (s->nwave) {
+    WriteWaves(f, k, s);
+    return;
+  }
   if (s->n == 1) {
     WriteReal(f, k, s->y[0]);
     return;
@@ -258,15 +278,19 @@ static void PrintKey(FILE *out, Group g, const Key *k)
 PetscErrorCode CasePrintKeys(FILE *out)
 {
   PetscFunctionBeginUser;
-  fputs("Nested maps of a case file join to one name: `mat: {sand: {porosity: 0.3}}` is the key `mat_sand_porosity`, "
-        "and\n"
-        "`-mat_sand_porosity 0.3` on the command line replaces it. A value of a quantity carries its unit, any that\n"
-        "measures the same as the SI unit below. A schedule is a value, or one of `{table: [t0, v0, t1, v1, ...]}` "
-        "(straight\n"
-        "lines), `{ramp: [v0, v1, t0, t1]}`, `{rate: [v0, rate, t0, t1]}` (from v0 at t0 until t1) and\n"
-        "`{piecewise: [t0, v0, t1, v1, ...]}` (each value holds until the next time). YAML's anchors and merge keys\n"
-        "repeat what is said elsewhere: `sand: &sand {...}`, `clay: {<<: *sand, porosity: 0.5}`.\n\n",
-        out);
+  fputs(
+      "Nested maps of a case file join to one name: `mat: {sand: {porosity: 0.3}}` is the key `mat_sand_porosity`, "
+      "and\n"
+      "`-mat_sand_porosity 0.3` on the command line replaces it. A value of a quantity carries its unit, any that\n"
+      "measures the same as the SI unit below. A schedule is a value, or one of `{table: [t0, v0, t1, v1, ...]}` "
+      "(straight\n"
+      "lines), `{ramp: [v0, v1, t0, t1]}`, `{rate: [v0, rate, t0, t1]}` (from v0 at t0 until t1),\n"
+      "`{piecewise: [t0, v0, t1, v1, ...]}` (each value holds until the next time), `{sine: [mean, amplitude, period,\n"
+      "begin, ...]}` (one or more waves; zero and rising at their begin) and `{csv: [FILE, COLUMN]}` (straight lines\n"
+      "through the rows of a file beside the case, whose first line names its columns with their units: `time [h],\n"
+      "sea [kPa]`; the first is the time, COLUMN by default the second). YAML's anchors and merge keys\n"
+      "repeat what is said elsewhere: `sand: &sand {...}`, `clay: {<<: *sand, porosity: 0.5}`.\n\n",
+      out);
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     const GroupInfo *info = &case_group[g];
     fprintf(out, "%s### %s\n\n", g ? "\n" : "", info->doc);

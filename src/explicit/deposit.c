@@ -5,7 +5,8 @@
 #include "clathra/tensor.h"
 
 typedef struct {
-  double phi[BLOCK], Sh[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], drag[PHASE_COUNT][BLOCK], p[BLOCK];
+  double phi[BLOCK], Sh[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
+  double resist[PHASE_COUNT][BLOCK], kr[PHASE_COUNT][BLOCK]; /* mu/k_a, k_r */
 } Fluids;
 
 /* Shares, densities and drags at t_n (8)-(10), (16). */
@@ -14,7 +15,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   const Material *mat      = r.mat;
   double *const  *f        = e->m->P.f;
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, ka[BLOCK], kr[BLOCK], mu[BLOCK];
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK]                                      = {0.0}, ka[BLOCK], mu[BLOCK];
 
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
@@ -35,8 +36,9 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   PermeabilityBatch(&mat->permeability, r.n, w->phi, w->Sh, ka);
   WaterViscosityBatch(&mat->mu_w, r.n, T, mu);
   for (int q = 0; q < r.n; q++) {
-    w->p[q]             = pw[q];
-    w->drag[PHASE_W][q] = mu[q] / ka[q];
+    w->p[q]               = pw[q];
+    w->resist[PHASE_W][q] = mu[q] / ka[q];
+    w->kr[PHASE_W][q]     = 1.0;
   }
   if (s.fluids == 2) {
     const double *restrict pg = f[P_PG] + r.p;
@@ -54,18 +56,20 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
       x[PHASE_W][q] = of * w->sw[q];
       x[PHASE_G][q] = of * sg[q];
     }
-    RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], kr);
-    for (int q = 0; q < r.n; q++)
-      w->drag[PHASE_W][q] /= Largest(kr[q], CL_MOBILITY_FLOOR);
-    RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], kr);
+    RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], w->kr[PHASE_W]);
+    RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], w->kr[PHASE_G]);
+    for (int k = 0; k < PHASE_COUNT; k++) {
+      for (int q = 0; q < r.n; q++)
+        w->kr[k][q] = Largest(w->kr[k][q], CL_MOBILITY_FLOOR);
+    }
     GasViscosityBatch(&mat->mu_g, r.n, w->rho[PHASE_G], T, mu);
     for (int q = 0; q < r.n; q++)
-      w->drag[PHASE_G][q] = mu[q] / (ka[q] * Largest(kr[q], CL_MOBILITY_FLOOR));
+      w->resist[PHASE_G][q] = mu[q] / ka[q];
   }
   for (int k = 0; k < s.fluids; k++) {
     for (int q = 0; q < r.n; q++) {
       e->t[T_RHO + k][r.p + q]  = w->rho[k][q];
-      e->t[T_DRAG + k][r.p + q] = w->drag[k][q];
+      e->t[T_DRAG + k][r.p + q] = w->resist[k][q] / w->kr[k][q];
     }
   }
 }
@@ -150,16 +154,18 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
   for (int q = 0; q < r.n; q++) {
-    const double share = k ? 1.0 - w->sw[q] : w->sw[q];
+    const double share = k ? 1.0 - w->sw[q] : w->sw[q], mass = Largest(m[q], 0.0); /* a trace may be none (101) */
 
-    v->value[q][at + FL_M]    = m[q];
-    v->value[q][at + FL_VX]   = m[q] * vx[q];
-    v->value[q][at + FL_VY]   = m[q] * vy[q];
+    v->value[q][at + FL_M]    = mass;
+    v->value[q][at + FL_VX]   = mass * vx[q];
+    v->value[q][at + FL_VY]   = mass * vy[q];
     v->value[q][at + FL_GX]   = -V[q] * gx[q];
     v->value[q][at + FL_GY]   = -V[q] * gy[q];
     v->value[q][at + FL_MI]   = V[q] * w->rho[k][q];
-    v->value[q][at + FL_DRAG] = V[q] * w->drag[k][q];
+    v->value[q][at + FL_DRAG] = V[q] * w->resist[k][q];
     v->value[q][at + FL_W]    = V[q] * w->phi[q] * (1.0 - w->Sh[q]) * share;
+    if (s.fluids == 2)
+      v->value[q][at + FL_ROOT] = V[q] * sqrt(w->kr[k][q]);
   }
 }
 

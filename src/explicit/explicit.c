@@ -16,6 +16,10 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   e->o   = *o;
   e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat};
   *out   = e;
+
+  e->straight = INFINITY;
+  for (PetscInt k = 0; k < m->c->nmaterial && m->c->material[k].gas.trace > 0.0; k++)
+    e->straight = PetscMin(e->straight, STRAIGHT * m->c->material[k].retention.p0);
   PetscCall(PlatesCreate(e));
   PetscCall(PetscClassIdRegister("Clathra explicit", &id));
   for (int k = 0; k < STEP_PARTS; k++)

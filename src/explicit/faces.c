@@ -72,13 +72,18 @@ typedef struct {
 /* A face with its nodes, in the order of its weights. */
 static void Reach(const Explicit *e, Face *f, bool place, Nodes *r)
 {
-  Stencil s;
-  double  S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
+  Stencil         s;
+  PointProperties q;
+  const char     *why;
+  double          S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
 
   Place(e, f->particle, &s);
-  if (place)
-    FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
   r->n = StencilExpand(&s, &e->m->grid, &e->map, r->node, S, G, H);
+  if (!place)
+    return;
+  FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
+  if (f->inflow >= 0 && ModelParticleProperties(e->m, f->particle, &q, &why) == CL_OK)
+    FaceInflow(f, r->n, S, q.kr);
 }
 
 /* Inputs of a face at t_n: the particle's own values and gradients. */
@@ -208,7 +213,7 @@ void FacesRates(Explicit *e, double dt, StageRates *rates)
 
       weight += f->N[a];
       for (int ph = 0; ph < s.fluids; ph++)
-        row[ph] -= f->N[a] * o.out[F_PW + ph];
+        row[ph] -= FaceWeight(f, a, F_PW + ph) * o.out[F_PW + ph];
       if (s.heat)
         row[s.fluids] -= dt * f->N[a] * o.out[F_T];
     }

@@ -10,6 +10,7 @@
 
 #define BLOCK 32
 #define LANES 8
+#define STRAIGHT 0.5      /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
 #define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
 #define INLINE static inline __attribute__((always_inline))
 
@@ -32,7 +33,7 @@ INLINE int Rows(int n)
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
  * and each fluid. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
-enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_COUNT };
+enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
 INLINE int A_V(Set s)
 {
   return Scalars(s);
@@ -45,9 +46,13 @@ INLINE int A_Mix(Set s)
 {
   return Scalars(s) + 1 + s.heat;
 }
+INLINE int FluidLanes(Set s) /* a lone fluid has no k_r */
+{
+  return s.fluids == 2 ? FL_ROOT + 1 : FL_ROOT;
+}
 INLINE int A_Fluid(Set s, int f)
 {
-  return A_Mix(s) + MIX_COUNT * s.solid + FL_COUNT * f;
+  return A_Mix(s) + MIX_COUNT * s.solid + FluidLanes(s) * f;
 }
 INLINE int A_Count(Set s)
 {
@@ -164,6 +169,7 @@ struct Explicit {
   double latent, advected;          /* J over the step */
   double squeezed;                  /* (290), J over the step */
   double ahead;                     /* of the end of the step, since ExplicitBegin, s */
+  double straight;                  /* STRAIGHT p_0, the least of all materials, Pa; infinite without (101) */
   double work[WORK_RATES];          /* J over the step (92), this rank */
   double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
   double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
@@ -290,10 +296,10 @@ PetscErrorCode PlatesStart(Explicit *e);                                        
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
 
-/* Do relative changes of p_g go through the nodes (151)? */
+/* Do relative changes of p_g go through the nodes (151)?  Not where p_g may be below zero (101). */
 INLINE bool Relative(const Explicit *e, Set s)
 {
-  return s.fluids == 2 && !e->o.particle_pressures;
+  return s.fluids == 2 && !e->o.particle_pressures && !(e->straight < INFINITY);
 }
 
 /* (151): increments of p_w and p_g, where the latter is p_g, from what the nodes have solved for. */
@@ -303,6 +309,15 @@ INLINE void PressuresOf(double p_g, const double y[2], double d[2])
 
   d[0] = gas + y[0];
   d[1] = gas;
+}
+
+/* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
+INLINE void PerOpenVolume(const Explicit *e, const Material *mat, PetscInt p, double pg, double held[PHASE_COUNT])
+{
+  const double sg = e->t[T_SG][p];
+
+  held[PHASE_W] = (1.0 - sg) * e->t[T_RHO][p];
+  held[PHASE_G] = sg * e->t[T_RHO + 1][p] + (1.0 - sg) * mat->gas.trace * pg;
 }
 
 INLINE double Largest(double a, double b)

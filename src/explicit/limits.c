@@ -68,10 +68,12 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
   for (int i = 0; i < s.fluids; i++) {
     const double share = q.phi * (1.0 - q.Sh) * q.s[i];
 
+    const double drag = q.resist[i] / q.kr[i];
+
     total += share * q.rho[i];
     w->fluid[i] = k2 * share * C[i][i] / (q.rho[i] * e->o.mass_scaling);
-    w->drag[i]  = q.drag[i] * share / (q.rho[i] * e->o.mass_scaling);
-    w->both[i]  = q.drag[i] * share * (1.0 / q.rho[i] + share / rho) / e->o.mass_scaling;
+    w->drag[i]  = drag * share / (q.rho[i] * e->o.mass_scaling);
+    w->both[i]  = drag * share * (1.0 / q.rho[i] + share / rho) / e->o.mass_scaling;
     for (int j = 0; j < s.fluids; j++) {
       const double other = q.phi * (1.0 - q.Sh) * q.s[j];
 

@@ -89,13 +89,14 @@ INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, co
     ww[q]  = open[q] * rho_w[q] * ((1.0 - sg) * per_K + ds);
     wg[q]  = -open[q] * rho_w[q] * ds;
     wT[q]  = rho_w[q] * (1.0 - sg) * (V_T - open[q] * mat->water.beta);
-    if (s.fluids == 2) {
+    if (s.fluids == 2) { /* (101) */
       const double rho = e->t[T_RHO + 1][r.p + q], rho_p = e->t[T_GAS][r.p + q], rho_T = e->t[T_GAS + 1][r.p + q];
+      const double H = mat->gas.trace, pg = f[P_PG][r.p + q], held = sg * rho + (1.0 - sg) * H * pg;
 
-      e->t[T_EOS + 1][r.p + q]   = open[q] * sg * rho;
-      e->t[T_SLOPE + 3][r.p + q] = -open[q] * rho * ds;
-      e->t[T_SLOPE + 4][r.p + q] = open[q] * (rho * ds + sg * rho_p);
-      e->t[T_SLOPE + 5][r.p + q] = sg * (rho * V_T + open[q] * rho_T);
+      e->t[T_EOS + 1][r.p + q]   = open[q] * held;
+      e->t[T_SLOPE + 3][r.p + q] = -open[q] * (rho - H * pg) * ds;
+      e->t[T_SLOPE + 4][r.p + q] = open[q] * ((rho - H * pg) * ds + sg * rho_p + (1.0 - sg) * H);
+      e->t[T_SLOPE + 5][r.p + q] = held * V_T + open[q] * sg * rho_T;
     }
   }
 }
@@ -183,6 +184,17 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
     e->advected += advected;
     o->force[0][q][row] = -dt * V * kappa * g->dx[q][at];
     o->force[1][q][row] = -dt * V * kappa * g->dy[q][at];
+    if (e->m->c->heat_upwind) {
+      double a[CL_DIM] = {0.0}, K[3];
+
+      for (int k = 0; k < s.fluids; k++) {
+        for (int d = 0; d < CL_DIM; d++)
+          a[d] += (k ? mat->c_g : mat->c_w) * o->force[d][q][k] / (dt * V);
+      }
+      HeatUpwind(kappa, a, e->m->grid.h, K);
+      o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
+      o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
+    }
     for (int i = 0; i < s.fluids; i++)
       o->value[q][R_Matrix(s) + row * n + i] = 0.0;
     o->value[q][R_Matrix(s) + row * n + row] = Capacity(e, s, mat, p);
@@ -238,11 +250,11 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
     const PetscInt p  = r.p + q;
     const double   sg = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg};
     const double   gain = e->t[T_GAIN][p], gain_p = e->t[T_GAIN_P][p], gain_T = e->t[T_GAIN_T][p];
-    double         dL;
+    double         dL, held[PHASE_COUNT];
 
+    PerOpenVolume(e, r.mat, p, e->m->P.f[P_PG][p], held);
     for (int row = 0; row < n; row++) {
-      const double c = row < s.fluids ? nu[row] - share[row] * e->t[T_RHO + row][p] / rho_h[q]
-                                      : -LatentHeatEvaluate(&r.mat->latent, T[q], &dL);
+      const double c = row < s.fluids ? nu[row] - held[row] / rho_h[q] : -LatentHeatEvaluate(&r.mat->latent, T[q], &dL);
 
       o->value[q][row] -= c * gain;
       for (int i = 0; i < s.fluids; i++)

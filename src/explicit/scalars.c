@@ -97,6 +97,8 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
     for (int k = 0; k < 2; k++)
       c[C_End(s) + k] = a[k] / V + d[k];
   }
+  if (s.fluids == 2 && fabs(c[1] - c[0]) > e->straight) /* (105): not to be believed; particles will say */
+    c[C_End(s) + 1] = a[1] / V;
   if (s.heat)
     rates->heat_rate += a[A_C(s)] * c[s.fluids];
   for (int d = 0; s.solid && d < CL_DIM; d++)

@@ -129,9 +129,9 @@ static PetscInt Strained(Run r, const Strain *n)
 
 #define FARTHEST 1e15 /* Pa, degC: beyond it a field has left its range */
 
-static double Least(int field)
+static double Least(const Material *mat, int field)
 {
-  return field == 0 ? -FARTHEST : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
+  return field == 0 || (field == 1 && mat->gas.trace > 0.0) ? -FARTHEST : field == 1 ? 0.0 : -CL_ZERO_CELSIUS;
 }
 
 /* The first particle of a block with a field outside its range. */
@@ -142,7 +142,7 @@ static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
       const int    field = k < s.fluids ? k : 2;
       const double y     = e->m->P.f[P_PW + field][r.p + q];
 
-      if (!(y > Least(field) && y < FARTHEST))
+      if (!(y > Least(r.mat, field) && y < FARTHEST))
         return r.p + q;
     }
   }
@@ -159,7 +159,7 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
     const int field    = k < s.fluids ? k : 2;
     double *restrict y = e->m->P.f[P_PW + field] + r.p, *restrict gx = e->m->P.f[grad[field]] + r.p,
                      *restrict gy = e->m->P.f[grad[field] + 1] + r.p;
-    const double least            = Least(field);
+    const double least            = Least(r.mat, field);
 
     for (int q = 0; q < r.n; q++) {
       y[q] += g->value[q][k];
@@ -169,6 +169,30 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
     }
   }
   return !out;
+}
+
+/* (105): where a step takes p_c further than the law is straight, p_g is what belongs to the particle's methane, which
+   (40) has given it: between the old one and that of the linear relation. */
+INLINE void GasOfMethane(Explicit *e, const Set s, Run r, const Gathered *g)
+{
+  double *const *f     = e->m->P.f;
+  const double   p0    = r.mat->retention.p0;
+  bool           bends = false;
+
+  for (int q = 0; q < r.n; q++)
+    bends |= fabs(g->value[q][1] - g->value[q][0]) > STRAIGHT * p0;
+  for (int q = 0; bends && q < r.n; q++) {
+    const PetscInt p  = r.p + q;
+    const double   dp = g->value[q][1], pg = f[P_PG][p], T = s.heat ? f[P_T][p] : e->t[T_T][p];
+    double         drho, dT;
+
+    if (fabs(dp - g->value[q][0]) <= STRAIGHT * p0)
+      continue;
+    const double open = e->t[T_V][p] - f[P_MS][p] / LiquidDensity(&r.mat->solid, 0.0, T, &drho, &dT) -
+                        f[P_MH][p] / LiquidDensity(&r.mat->hydrate, 0.0, T, &drho, &dT);
+
+    f[P_PG][p] = PointGasPressure(r.mat, f[P_MG][p] / open, f[P_PW][p], T, pg - dp, pg);
+  }
 }
 
 /* (97): p_w, p_g, T tend to what the nodes have at the particle. */
@@ -234,16 +258,16 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, double 
     const PetscInt p  = r.p + q;
     const double   sg = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg};
     const double   T = s.heat ? f[P_T][p] - g->value[q][2] : e->t[T_T][p]; /* at t_n */
-    double         dp, dT, dL;
+    double         dp, dT, dL, held[PHASE_COUNT];
     const double   rho_h  = LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT);
     const double   wanted = e->t[T_GAIN][p] +
                           e->t[T_GAIN_P][p] * (share[0] * g->value[q][0] + share[1] * g->value[q][1]) +
                           (s.heat ? e->t[T_GAIN_T][p] * g->value[q][2] : 0.0);
     const double gain = Largest(wanted, -f[P_MH][p]);
 
+    PerOpenVolume(e, mat, p, f[P_PG][p] - g->value[q][1], held);
     for (int k = 0; k < 2; k++)
-      f[P_MW + k][p] +=
-          (share[k] == 0.0 ? 0.0 : -share[k] * e->t[T_RHO + k][p] / rho_h * wanted) + nu[k] * (wanted - gain);
+      f[P_MW + k][p] += -held[k] / rho_h * wanted + nu[k] * (wanted - gain);
     if (s.heat) {
       const double L = LatentHeatEvaluate(&mat->latent, T, &dL);
 
@@ -491,6 +515,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   MassesOf(e, s, r, &g, kept, &e->m->limited);
   if (s.heat && e->m->c->compression_heat)
     CountCompression(e, s, r, &g);
+  if (s.fluids == 2 && r.mat->gas.trace > 0.0)
+    GasOfMethane(e, s, r, &g);
   Relax(e, s, r, &g, dt);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   if (!s.solid)

@@ -3,9 +3,16 @@
 
 /* One direction of one node: masses, start velocities, forces; fluids per unit of their volume. */
 typedef struct {
-  double M, v, f;                        /* skeleton; f of the mixture */
-  double m[2], vf[2], r[2], Mi[2], B[2]; /* fluids: mass, velocity, force, mass per unit of volume fraction, drag */
+  double M, v, f; /* skeleton; f of the mixture */
+  /* fluids: mass, velocity; (16) of each: force, mass per unit of volume fraction, drag, all times k_r; k_r, share */
+  double m[2], vf[2], r[2], Mi[2], B[2], kr[2], w[2];
 } Balance;
+
+/* Share of a fluid in the volume of a node (18), (107). */
+static double Share(const Explicit *e, const double *a, int k)
+{
+  return Largest(a[A_Fluid(e->set, k) + FL_W] / a[A_V(e->set)], CL_SHARE_FLOOR);
+}
 
 static double Velocity(double momentum, double mass, double otherwise)
 {
@@ -25,9 +32,11 @@ static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
 
     b->m[k]  = f[FL_M];
     b->vf[k] = Velocity(f[FL_VX + d], f[FL_M], b->v);
-    b->Mi[k] = f[FL_MI];
-    b->r[k]  = f[FL_GX + d] + f[FL_MI] * gravity;
-    b->B[k]  = f[FL_DRAG] * f[FL_W] / V;
+    b->kr[k] = s.fluids == 2 ? PetscSqr(f[FL_ROOT] / V) : 1.0;
+    b->w[k]  = Share(e, a, k);
+    b->Mi[k] = b->kr[k] * f[FL_MI];
+    b->r[k]  = b->kr[k] * (f[FL_GX + d] + f[FL_MI] * gravity);
+    b->B[k]  = f[FL_DRAG] * b->w[k];
     mass += f[FL_M];
   }
   b->f = s.solid ? mix[MIX_FX + d] + (b->M + mass) * gravity : 0.0;
@@ -100,13 +109,13 @@ static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *b, const dou
          value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double own = mean[1 + k], flow = a[A_Fluid(s, k) + FL_W] / a[A_V(s)] * (own - mean[0]);
+    const double own = mean[1 + k], flow = b->w[k] * (own - mean[0]);
 
     inertia += b->m[k] * (v[1 + k] - b->vf[k]) * own;
     gained += b->m[k] * (v[1 + k] - b->vf[k]);
     weight += b->m[k] * own;
     pressure += a[A_Fluid(s, k) + FL_GX + d] * flow;
-    drag += b->B[k] * (e->o.drag_implicit ? v[1 + k] - v[0] : b->vf[k] - b->v) * flow;
+    drag += b->B[k] / b->kr[k] * (e->o.drag_implicit ? v[1 + k] - v[0] : b->vf[k] - b->v) * flow;
   }
   e->work[WORK_INERTIA] += scale * inertia;
   e->work[WORK_GRAVITY] += dt * gravity * weight;
@@ -146,7 +155,7 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
-      bf[B_J + d]    = f[FL_W] / V * (v[1 + k] - v[0]);
+      bf[B_J + d]    = w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -f[FL_GX + d] / V;
       bf[B_DV + d]   = v[1 + k] - w.vf[k];
       bf[B_VEL + d]  = v[1 + k];

@@ -172,3 +172,11 @@ double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double
   *dbeta_dT = b_T + (p > 0.0 ? b_rho * rho_T : 0.0);
   return beta;
 }
+
+#define TRACE 1e-7      /* of the ideal gas at TRACE_AT; water really holds 0.04 of it */
+#define TRACE_AT 283.15 /* K */
+
+double GasTrace(const Gas *law)
+{
+  return TRACE * law->M / (LAW_GAS_CONSTANT * TRACE_AT);
+}

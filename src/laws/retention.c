@@ -97,6 +97,17 @@ bool RetentionInvert(const Retention *law, double sg, double *pc)
   return true;
 }
 
+#define VANISHED 20.0 /* e^-20: share of the residual gas that is left */
+
+bool RetentionNoGas(const Retention *law, double *pc)
+{
+  if (!Plateau(law, pc)) {
+    *pc = -VANISHED * (law->p_trap > 0.0 ? law->p_trap : law->p0);
+    return true;
+  }
+  return law->Sgr == 0.0;
+}
+
 typedef double (*GasShare)(const Retention *, double, double *);
 static const char *const names[] = {"van_genuchten", "van_genuchten_clamped", "brooks_corey", NULL};
 static const GasShare    laws[]  = {Retention_VanGenuchten, Retention_VanGenuchtenClamped, Retention_BrooksCorey};

@@ -23,3 +23,14 @@ double MixtureAverage(double phi, double Sh, double sw, const double X[4], doubl
   *d_dsw  = phi * (1.0 - Sh) * (X[2] - X[3]);
   return (1.0 - phi) * X[0] + phi * pore;
 }
+
+/* (293) */
+void HeatUpwind(double kappa, const double a[2], const double h[2], double K[3])
+{
+  const double square = a[0] * a[0] + a[1] * a[1], half = 0.5 * (h[0] * fabs(a[0]) + h[1] * fabs(a[1]));
+  const double c = half > kappa ? (half - kappa) / square : 0.0;
+
+  K[0] = c * a[0] * a[0];
+  K[1] = c * a[1] * a[1];
+  K[2] = c * a[0] * a[1];
+}

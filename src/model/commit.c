@@ -214,6 +214,8 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       trial->m[3 * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
     for (int k = 0; k < 3; k++)
       trial->y[4 * p + k] = m->P.f[P_PW + k] ? in[IN_P + k] : 0.0;
+    if (m->P.f[P_PG])
+      trial->y[4 * p + 1] = GasToBe(in[IN_P], in[IN_P + 1]);
     trial->y[4 * p + 3] = s.Sh;
     if (trial->end)
       trial->end[p] = s.end;
@@ -233,6 +235,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   if (m->c->fields.solid) {
     rates->work[WORK_PLATES] += HeldPower(m);
     rates->work[WORK_DAMPING] += GhostPower(m, x);
+    rates->work[WORK_DRAG] += DragPower(m, x);
   }
   PetscCall(PlatesReport(m, x));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, rates, sizeof(*rates) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));

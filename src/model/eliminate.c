@@ -8,25 +8,27 @@ static void FluxResponse(const Model *m, const Reach *r, const double *x, const 
 {
   const FieldSet *fs          = &m->c->fields;
   const double    inertia     = fs->inertia ? 1.0 / m->stage.dt : 0.0;
-  double          acc[CL_DIM] = {0.0}, w = 0.0;
+  double          acc[CL_DIM] = {0.0}, w = 0.0, kr = 0.0;
 
   for (int a = 0; a < r->n; a++) {
     double at[CL_DIM];
 
     Acceleration(m, r->node[a], x, PlaceV(fs, f), at);
     w += r->S[a] * m->w[PHASE_COUNT * r->node[a] + f];
+    kr += r->S[a] * (m->fluid ? PetscSqr(m->fluid[PHASE_COUNT * r->node[a] + f].root) : 1.0);
     for (int i = 0; i < CL_DIM; i++)
       acc[i] += r->S[a] * at[i];
   }
-  const double resist = o->out[OUT_D + f] * w + inertia * o->out[OUT_MI + f];
+  const double resist = o->out[OUT_D + f] * w + inertia * kr * o->out[OUT_MI + f];
   const double mobile = resist > 0.0 ? -w / resist : 0.0;
   for (int i = 0; i < CL_DIM; i++) {
-    const double *dG = o->D[OUT_G + 2 * f + i], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f];
+    const double *dG = o->D[OUT_G + 2 * f + i], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f], *dR = o->D[OUT_ROOT + f];
+    const double  F = o->out[OUT_G + 2 * f + i] + acc[i] * o->out[OUT_MI + f], rise = 2.0 * sqrt(kr) * F;
 
     for (int q = 0; q < IN_COUNT; q++)
-      dJ[i][q] = mobile * (dG[q] + acc[i] * dM[q] + in[IN_J + 2 * f + i] * dD[q]);
+      dJ[i][q] = mobile * (kr * (dG[q] + acc[i] * dM[q]) + rise * dR[q] + in[IN_J + 2 * f + i] * dD[q]);
     if (fs->solid)
-      dJ[i][IN_U + i] += mobile * inertia * o->out[OUT_MI + f] / m->stage.dt;
+      dJ[i][IN_U + i] += mobile * inertia * kr * o->out[OUT_MI + f] / m->stage.dt;
   }
 }
 
@@ -106,8 +108,8 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
       continue;
     for (int a = 0; a < r->n; a++) {
       const double *c = &m->coef[r->node[a] * NC_COUNT], w = m->w[PHASE_COUNT * r->node[a] + f];
-      const double  resist = c[NC_DRAG + f] * w + inertia * c[NC_RHO + f];
-      const double  mobile = resist > 0.0 ? w / resist : 0.0;
+      const double  kr = c[NC_KR + f], resist = c[NC_DRAG + f] * w + inertia * kr * c[NC_RHO + f];
+      const double  mobile = resist > 0.0 ? w * kr / resist : 0.0;
 
       own += face->N[a] * mobile;
       given += face->N[a] * face->N[a] * mobile / m->V[r->node[a]];

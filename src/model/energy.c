@@ -93,11 +93,11 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
       continue;
     for (int i = 0; i < 2; i++)
       power[WORK_PRESSURE] -= out[OUT_G + 2 * f + i] * in[IN_J + 2 * f + i];
-    for (int a = 0; a < r->n; a++) {
+    for (int a = 0; !m->fluid && a < r->n; a++) {
       double J[2];
 
       DarcyFlux(m, r->node[a], f, &x[r->node[a] * fs->n], J);
-      power[WORK_DRAG] += DragWeight(m, p, r->node[a], f, r->S[a]) * out[OUT_D + f] * (J[0] * J[0] + J[1] * J[1]);
+      power[WORK_DRAG] += r->S[a] * out[OUT_D + f] * (J[0] * J[0] + J[1] * J[1]);
     }
   }
   if (!m->bc.ambient.on)
@@ -138,6 +138,23 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
   }
   power[WORK_PLATES] += plate;
   power[WORK_LOADS] += force - plate;
+}
+
+/* Drag of two fluids (16): D |J|^2/k_r. */
+double DragPower(const Model *m, const double *x)
+{
+  double sum = 0.0;
+
+  for (PetscInt I = 0; m->fluid && I < m->map.n_owned; I++) {
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
+      double           J[2];
+
+      DarcyFlux(m, I, f, &x[I * m->c->fields.n], J);
+      sum += at->D * (J[0] * J[0] + J[1] * J[1]) / PetscSqr(at->root);
+    }
+  }
+  return sum;
 }
 
 /* Prescribed motion of nodes: what is left in their rows (15) is the force that holds them. */

@@ -125,6 +125,8 @@ static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
 {
   const bool mass = q == F_PW || q == F_PG;
 
+  if (m->fluid && q >= F_VWX && q <= F_VGY)
+    return &m->fluid[PHASE_COUNT * I + (q - F_VWX) / CL_DIM].F[(q - F_VWX) % CL_DIM];
   return mass ? MassRow(m, f, I, q - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[q]];
 }
 
@@ -178,14 +180,20 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
   return s;
 }
 
-/* Weight of a particle's drag at a node in (16): S, or what looks upstream (35). */
-static inline double DragWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
+/* Weight of a particle in k_r of a node (108): S, or what looks upstream (35). */
+static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
   if (!m->c->upstream)
     return S;
   const double *u = &m->up[6 * I + 3 * f];
 
   return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
+}
+
+/* ... of all in the node's k_r (108). */
+static inline double MobilityShare(const Model *m, PetscInt p, PetscInt I, int f, double S)
+{
+  return MobilityWeight(m, p, I, f, S) * m->P.f[P_V][p] / m->V[I];
 }
 
 /* Acceleration less gravity of the velocity at place k of a node's block; quasi-static: only gravity. */
@@ -286,6 +294,8 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
+  for (int k = 0; k < 3; k++)
+    h->upwind[k] = m->upwind ? m->upwind[3 * p + k] : 0.0;
   h->compression = m->c->compression_heat;
   for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
     h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
@@ -330,6 +340,8 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
                           PointState *s, PointOutput *o);
 /* The same for a surface face. */
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o);
+/* Momenta of two fluids (16) at X, on all local nodes; costs a residual only where the last one was elsewhere. */
+PetscErrorCode ModelFluidsAt(Model *m, Vec X);
 /* Projected pressure gradients (20) of the nodal pressures x into proj (n_local x 4), all ranks. */
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
@@ -384,6 +396,10 @@ void           ParticlePower(const Model *m, PetscInt p, const Reach *r, const d
 void           FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
                          double power[WORK_RATES]);
 double         HeldPower(const Model *m);
+double         DragPower(const Model *m, const double *x);  /* of two fluids, this rank's nodes */
 double         GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
 PetscErrorCode WideCreate(Model *m, Mat *A);
+/* What Newton's update may change at once: before every line search. */
+#define CL_LIMIT_J 0.5 /* volumetric strain of a step */
+PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);
 PetscErrorCode ModelResizeNodal(Model *m);

@@ -46,8 +46,9 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
   double acc[3][2], J[PHASE_COUNT][2], Tdot;
-  double weight[PHASE_COUNT]; /* RowWeight */
-  double drag[PHASE_COUNT];   /* DragWeight */
+  double weight[PHASE_COUNT];  /* RowWeight */
+  double kr[PHASE_COUNT];      /* of the node (108) */
+  double rise[PHASE_COUNT][2]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
 } NodeFactors;
 
 static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, double S, NodeFactors *n)
@@ -61,8 +62,15 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
       continue;
     Acceleration(m, I, x, PlaceV(fs, f), n->acc[1 + f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
-    n->drag[f]   = DragWeight(m, p, I, f, S);
+    n->kr[f]     = 1.0;
     n->weight[f] = RowWeight(m, I, f);
+    if (!m->fluid)
+      continue;
+    const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
+
+    n->kr[f] = at->root * at->root;
+    for (int i = 0; i < 2; i++)
+      n->rise[f][i] = 2.0 * at->root * MobilityShare(m, p, I, f, S) * at->F[i];
   }
   if (fs->heat) {
     const PetscInt k = I * fs->n + PlaceT(fs);
@@ -99,8 +107,10 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
       double *row = &out[(PlaceV(fs, f) + i) * ld];
 
       for (int q = 0; q < n; q++)
-        row[q] = S * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
-                 k->drag[f] * k->J[f][i] * DB[OUT_D + f][q];
+        row[q] = S * (k->kr[f] * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
+                      k->J[f][i] * DB[OUT_D + f][q]);
+      for (int q = 0; fs->phase[PHASE_W] && fs->phase[PHASE_G] && q < n; q++)
+        row[q] += k->rise[f][i] * DB[OUT_ROOT + f][q];
     }
     const bool shared = f == PHASE_G && fs->one_pressure; /* the row that the water has begun */
     double    *row    = &out[PlaceP(fs, f) * ld];
@@ -133,16 +143,16 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
       block[vs * ld + vs] += inertia * out[OUT_M];
     for (int f = 0; f < PHASE_COUNT; f++) {
       const int    v    = PlaceV(fs, f) + i;
-      const double drag = k->drag[f] * out[OUT_D + f] * w[f];
+      const double drag = S * out[OUT_D + f] * w[f], mass = k->kr[f] * out[OUT_MI + f];
 
       if (!fs->phase[f])
         continue;
       if (PlaceV(fs, f) < 0) {
         if (fs->solid && drag > 0.0)
-          block[vs * ld + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + inertia * out[OUT_MI + f]);
+          block[vs * ld + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + inertia * mass);
         continue;
       }
-      block[v * ld + v] += inertia * out[OUT_MI + f] + drag;
+      block[v * ld + v] += inertia * mass + drag;
       if (!fs->solid)
         continue;
       block[v * ld + vs] -= drag;
@@ -184,6 +194,8 @@ void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
     Add(to, OUT_G + 2 * f, 2);
     Add(to, OUT_MI + f, 1);
     Add(to, OUT_D + f, 1);
+    if (m->fluid)
+      Add(to, OUT_ROOT + f, 1);
   }
   if (fs->heat) {
     Add(to, OUT_HEAT, 2);
@@ -310,6 +322,12 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x, int ntarget, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Factor of what a face puts into the row of any unknown: k_r in (16). */
+static double MobilityOf(const Model *m, PetscInt I, int q)
+{
+  return m->fluid && q >= F_VWX && q <= F_VGY ? PetscSqr(m->fluid[PHASE_COUNT * I + (q - F_VWX) / CL_DIM].root) : 1.0;
+}
+
 /* Rows of a face's nodes: all are weighted with N. */
 static void FaceBlock(const Model *m, const FieldSet *fs, const Face *face, const Reach *r, const FaceOutput *o,
                       double *block)
@@ -333,7 +351,7 @@ static void FaceBlock(const Model *m, const FieldSet *fs, const Face *face, cons
         continue;
       Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[k], &at, col);
       for (int a = 0; a < r->n; a++) {
-        const double N = FaceWeight(face, a, k) * RowWeightOf(m, r->node[a], k);
+        const double N = FaceWeight(face, a, k) * RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
 
         for (int q = 0; q < fs->n; q++)
           block[(a * fs->n + fs->at[k]) * ld + b * fs->n + q] += N * col[q];
@@ -390,6 +408,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
   PetscCall(PreconditionerChoose(m, snes, &renew));
+  PetscCall(ModelFluidsAt(m, X));
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
   PetscCall(MatZeroEntries(m->J2));

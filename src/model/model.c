@@ -36,10 +36,12 @@ static PetscErrorCode DestroyNodal(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(m->x_n, m->w, m->V, m->Vk, m->coef));
+  PetscCall(PetscFree2(m->material, m->most));
   PetscCall(PetscFree(m->up));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
   PetscCall(PetscFree(m->mass_row));
+  PetscCall(PetscFree(m->fluid));
   PetscCall(MatDestroy(&m->J2));
   PetscCall(MatDestroy(&m->A));
   PetscCall(MatDestroy(&m->Pmat));
@@ -57,6 +59,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->stencil));
   PetscCall(PetscFree(m->wide));
   PetscCall(PetscFree(m->spread));
+  PetscCall(PetscFree(m->upwind));
   PetscCall(PetscFree(m->lump));
   PetscCall(PetscFree(m->face));
   PetscCall(PetscFree(m->ghost));
@@ -77,12 +80,15 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
   PetscCall(PetscCalloc5(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n * NC_COUNT, &m->coef));
+  PetscCall(PetscCalloc2(n, &m->material, n, &m->most));
   if (m->c->upstream)
     PetscCall(PetscCalloc1(n * 6, &m->up));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
   if (m->c->fields.one_pressure)
     PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->mass_row));
+  if (m->c->fields.phase[PHASE_W] && m->c->fields.phase[PHASE_G])
+    PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -83,22 +83,36 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
   }
 }
 
+/* Momentum (16) of one fluid at a node: a lone one has its drag at once, of two only what goes into it. */
+static void ScatterMomentum(const Model *m, PetscInt p, int ph, PetscInt I, double S, const double *x,
+                            const double out[OUT_COUNT], double *f)
+{
+  const FieldSet *fs  = &m->c->fields;
+  FluidNode      *at  = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
+  double         *row = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];
+
+  Acceleration(m, I, x, PlaceV(fs, ph), acc);
+  for (int i = 0; i < 2; i++)
+    row[i] += S * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]);
+  if (at) {
+    at->D += S * out[OUT_D + ph];
+    at->root += MobilityShare(m, p, I, ph, S) * out[OUT_ROOT + ph];
+    return;
+  }
+  DarcyFlux(m, I, ph, &x[I * fs->n], J);
+  for (int i = 0; i < 2; i++)
+    row[i] += S * out[OUT_D + ph] * J[i];
+}
+
 /* Rows (16) and (17) of one fluid from one particle. */
 static void ScatterFluid(const Model *m, PetscInt p, int ph, const Reach *r, const double *x,
                          const double out[OUT_COUNT], double *f)
 {
-  const FieldSet *fs = &m->c->fields;
-
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
     const double   S = r->S[a], *G = r->G[a];
-    double        *fI = &f[I * fs->n], *row = &fI[PlaceV(fs, ph)], acc[2], J[2];
 
-    Acceleration(m, I, x, PlaceV(fs, ph), acc);
-    DarcyFlux(m, I, ph, &x[I * fs->n], J);
-    const double drag = DragWeight(m, p, I, ph, S) * out[OUT_D + ph];
-    for (int i = 0; i < 2; i++)
-      row[i] += S * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]) + drag * J[i];
+    ScatterMomentum(m, p, ph, I, S, x, out, f);
     *MassRow(m, f, I, ph) +=
         S * out[OUT_DM + ph] - m->stage.dt * (G[0] * out[OUT_FLUX + 2 * ph] + G[1] * out[OUT_FLUX + 2 * ph + 1]);
   }
@@ -166,6 +180,26 @@ static void FaceLoop(const Model *m, const double *x, double *f)
   }
 }
 
+/* (16) of two fluids: k_r F + D J. */
+static PetscErrorCode MomentumRows(Model *m, const double *x)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapReduce(&m->map, (double *)m->fluid, PHASE_COUNT * sizeof(FluidNode) / sizeof(double)));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int ph = 0; ph < PHASE_COUNT; ph++) {
+      const FluidNode *at = &m->fluid[PHASE_COUNT * I + ph];
+      double           J[2];
+
+      DarcyFlux(m, I, ph, &x[I * fs->n], J);
+      for (int i = 0; i < 2; i++)
+        m->f[I * fs->n + PlaceV(fs, ph) + i] = at->root * at->root * at->F[i] + at->D * J[i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* (34): the balances of both fluids make one of volume. */
 static PetscErrorCode SumMassRows(Model *m)
 {
@@ -199,19 +233,18 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
+/* Unscaled rows of the owned nodes at X. */
+static PetscErrorCode Rows(Model *m, Vec X)
 {
-  Model *m = (Model *)model;
-
   PetscFunctionBeginUser;
-  (void)snes;
-  PetscCall(PetscLogEventBegin(m->event[EVENT_RESIDUAL], 0, 0, 0, 0));
   m->status  = CL_OK;
   m->limited = 0;
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(PetscArrayzero(m->f, m->map.n_local * m->c->fields.n));
   if (m->mass_row)
     PetscCall(PetscArrayzero(m->mass_row, m->map.n_local * PHASE_COUNT));
+  if (m->fluid)
+    PetscCall(PetscArrayzero(m->fluid, m->map.n_local * PHASE_COUNT));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
   PetscCall(PlatesPosition(m, m->x));
   ParticleLoop(m, m->x, m->f);
@@ -220,6 +253,49 @@ PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
   PetscCall(NodeMapReduce(&m->map, m->f, m->c->fields.n));
   if (m->mass_row)
     PetscCall(SumMassRows(m));
+  if (m->fluid)
+    PetscCall(MomentumRows(m, m->x));
+  m->evaluated = true;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is X what this rank evaluated last? */
+static PetscErrorCode Evaluated(const Model *m, Vec X, bool *same)
+{
+  const double *a;
+
+  PetscFunctionBeginUser;
+  *same = m->evaluated;
+  PetscCall(VecGetArrayRead(X, &a));
+  for (PetscInt k = 0; *same && k < m->map.n_owned * m->c->fields.n; k++)
+    *same = a[k] * m->col_scale[k] == m->x[k];
+  PetscCall(VecRestoreArrayRead(X, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelFluidsAt(Model *m, Vec X)
+{
+  bool same;
+
+  PetscFunctionBeginUser;
+  if (!m->fluid)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Evaluated(m, X, &same));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_C_BOOL, MPI_LAND, m->grid.comm));
+  if (!same)
+    PetscCall(Rows(m, X));
+  PetscCall(NodeMapBroadcast(&m->map, (double *)m->fluid, PHASE_COUNT * sizeof(FluidNode) / sizeof(double)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
+{
+  Model *m = (Model *)model;
+
+  PetscFunctionBeginUser;
+  (void)snes;
+  PetscCall(PetscLogEventBegin(m->event[EVENT_RESIDUAL], 0, 0, 0, 0));
+  PetscCall(Rows(m, X));
   PetscCall(Finish(m, m->x, m->f, R));
   PetscCall(PetscLogEventEnd(m->event[EVENT_RESIDUAL], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -3,11 +3,6 @@
 
 #define CONSERVATION 20.0 /* mass and energy are solved that much tighter than momentum */
 
-/* Limits of one Newton update, so that no law is evaluated far outside its range. */
-#define LIMIT_T 5.0  /* K */
-#define LIMIT_PG 0.5 /* of the gas pressure */
-#define LIMIT_J 0.5  /* volumetric strain of a step */
-
 /* Block pattern: all active nodes within radius 2, so that it holds whatever the particles do. */
 static PetscErrorCode CreateJ2(Model *m)
 {
@@ -115,57 +110,6 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Share of a node's update that stays in the trusted range. */
-static double NodeLimit(const Model *m, PetscInt I, const double *x, const double *y)
-{
-  const FieldSet *fs  = &m->c->fields;
-  const double   *s   = &m->col_scale[I * fs->n];
-  double          cut = 1.0;
-
-  if (fs->heat) {
-    const double dT = fabs(y[PlaceT(fs)] * s[PlaceT(fs)]);
-
-    if (dT > LIMIT_T)
-      cut = fmin(cut, LIMIT_T / dT);
-  }
-  if (fs->phase[PHASE_G]) {
-    const double dpg = fabs(y[PlaceP(fs, PHASE_G)]), pg = fabs(x[PlaceP(fs, PHASE_G)]);
-
-    if (dpg > LIMIT_PG * pg && pg > 0.0)
-      cut = fmin(cut, LIMIT_PG * pg / dpg);
-  }
-  for (int d = 0; fs->solid && d < CL_DIM; d++) {
-    const double du = fabs(y[PlaceVs(fs) + d] * s[PlaceVs(fs) + d]) * m->stage.dt;
-
-    if (du > LIMIT_J * m->grid.h[d])
-      cut = fmin(cut, LIMIT_J * m->grid.h[d] / du);
-  }
-  return cut;
-}
-
-/* Shortens an update that leaves the trusted range of the laws. */
-static PetscErrorCode LimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
-{
-  Model          *m  = (Model *)model;
-  const FieldSet *fs = &m->c->fields;
-  const double   *x, *y;
-  double          cut = 1.0;
-
-  PetscFunctionBeginUser;
-  (void)ls;
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArrayRead(Y, &y));
-  for (PetscInt I = 0; I < m->map.n_owned; I++)
-    cut = fmin(cut, NodeLimit(m, I, &x[I * fs->n], &y[I * fs->n]));
-  PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(VecRestoreArrayRead(Y, &y));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_MIN, m->grid.comm));
-  *changed = cut < 1.0 ? PETSC_TRUE : PETSC_FALSE;
-  if (*changed)
-    PetscCall(VecScale(Y, cut));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* From the right, so that it stops on the rows' own residual, not below their round-off; a method of the user's choice
    may know the left side only. */
 static PetscErrorCode SetSide(KSP ksp)
@@ -210,7 +154,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESSetConvergenceTest(m->snes, Converged, m, NULL));
   PetscCall(SNESGetLineSearch(m->snes, &ls));
   PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
-  PetscCall(SNESLineSearchSetPreCheck(ls, LimitUpdate, m));
+  PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
   PetscCall(SNESGetKSP(m->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPGMRES));
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->tol_residual, PETSC_DEFAULT, 60));
@@ -282,7 +226,7 @@ static bool TooFast(const Model *m, const double *x)
 
   for (int d = 0; fs->solid && d < CL_DIM; d++)
     far = fmax(far, fabs(x[PlaceVs(fs) + d]) * m->stage.dt / m->grid.h[d]);
-  return far > LIMIT_J;
+  return far > CL_LIMIT_J;
 }
 
 /* From the state at the start, or at rest. */

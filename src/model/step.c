@@ -2,7 +2,7 @@
 #include "gather.h"
 
 #define AT_AXIS 1e-6        /* of a half-length */
-#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its drag stays central */
+#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its k_r stays central */
 
 static bool InsideGrid(const Grid *g, const Stencil *s)
 {
@@ -27,6 +27,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->stencil));
     PetscCall(PetscFree(m->wide));
     PetscCall(PetscFree(m->spread));
+    PetscCall(PetscFree(m->upwind));
     PetscCall(PetscFree(m->lump));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
@@ -34,6 +35,8 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
     if (m->c->saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
       PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
+    if (m->c->heat_upwind && m->c->fields.heat && m->c->fields.fluid)
+      PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->upwind));
     if (m->c->lumped_reaction && m->c->fields.phase[PHASE_G])
       PetscCall(PetscCalloc1(m->stencil_cap, &m->lump));
   }
@@ -90,7 +93,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   for (int k = 0; k < 3; k++) {
     if (!there[k])
       continue;
-    const double mass = k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p];
+    const double mass =
+        fmax(k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p], 0.0); /* a trace may be none (101) */
 
     s[SUM_M + k] += S * mass;
     for (int i = 0; i < 2; i++)
@@ -111,7 +115,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
 static double SpreadOf(const Model *m, PetscInt p, int phase, const PointProperties *q)
 {
   static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
-  const double     both                  = 1.0 / (q->drag[PHASE_W] + q->drag[PHASE_G]);
+  const double     w = q->kr[PHASE_W] / q->resist[PHASE_W], o = q->kr[PHASE_G] / q->resist[PHASE_G];
+  const double     both = w > 0.0 && o > 0.0 ? w * o / (w + o) : 0.0;
   double           g[CL_DIM], hg = 0.0;
 
   for (int d = 0; d < CL_DIM; d++) {
@@ -121,6 +126,21 @@ static double SpreadOf(const Model *m, PetscInt p, int phase, const PointPropert
   const double Pe = 0.5 * hg * fabs(q->mobility_slope[phase]) / both;
 
   return Pe > 1e-4 ? both * (Pe / tanh(Pe) - 1.0) : 0.0;
+}
+
+/* Conductivity that carries heat with the flow of t_n (293). */
+static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[3])
+{
+  static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
+  const Material  *mat                   = ParticleMaterial(m, p);
+  double           a[CL_DIM]             = {0.0};
+
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
+      a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] * q->kr[k] / q->resist[k] *
+              (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
+  }
+  HeatUpwind(q->kappa, a, m->grid.h, K);
 }
 
 /* Did the particle's domain begin at the axis? */
@@ -160,6 +180,10 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     c[NC_CAPACITY] += S * q->capacity;
     c[NC_REACTION] += VS * q->reaction;
     c[NC_REACTION_HEAT] += VS * q->reaction_heat;
+    if (VS > m->most[I]) {
+      m->most[I]     = VS;
+      m->material[I] = ParticleMaterial(m, p);
+    }
     if (m->c->axisymmetric) {
       c[NC_RING] += V * r->H[a];
       c[NC_AXIS] += axis ? VS : 0.0;
@@ -167,10 +191,11 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     for (int k = 0; k < PHASE_COUNT; k++) {
       if (!m->c->fields.phase[k])
         continue;
-      c[NC_LAMBDA + k] += VS * q->rho[k] / q->drag[k];
+      c[NC_LAMBDA + k] += VS * q->rho[k] * q->kr[k] / q->resist[k];
       c[NC_RHO + k] += VS * q->rho[k];
       c[NC_STORAGE + k] += VS * q->storage[k];
-      c[NC_DRAG + k] += VS * q->drag[k];
+      c[NC_DRAG + k] += VS * q->resist[k];
+      c[NC_KR + k] += VS * sqrt(q->kr[k]);
     }
   }
 }
@@ -190,9 +215,11 @@ static void Average(Model *m, const double *sum)
       x[k] = weight > 0.0 ? s[SUM_X + k] / weight : 0.0;
     }
     for (int k = 0; k < PHASE_COUNT; k++)
-      m->w[2 * I + k] = s[SUM_W + k] / V;
+      m->w[2 * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
     for (int k = 0; k < NC_COUNT; k++)
       c[k] /= V;
+    for (int k = 0; k < PHASE_COUNT; k++) /* (108) */
+      c[NC_KR + k] *= c[NC_KR + k];
   }
 }
 
@@ -207,6 +234,7 @@ static PetscErrorCode Project(Model *m)
   PetscCall(PetscArrayzero(m->V, m->map.n_local));
   PetscCall(PetscArrayzero(m->Vk, m->map.n_local));
   PetscCall(PetscArrayzero(m->coef, m->map.n_local * NC_COUNT));
+  PetscCall(PetscArrayzero(m->most, m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {
     PointProperties q;
     Reach           r;
@@ -218,6 +246,8 @@ static PetscErrorCode Project(Model *m)
     }
     for (int k = 0; m->spread && k < PHASE_COUNT; k++)
       m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
+    if (m->upwind)
+      UpwindOf(m, p, &q, &m->upwind[3 * p]);
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
   }
@@ -287,10 +317,23 @@ static void RadialFace(const Model *m, Face *f)
     f->Nr[a] = f->N[a] / (c[NC_RING] * f->x[0]);
     sum += f->N[a];
     for (int k = 0; k < PHASE_COUNT; k++)
-      drag[k] += f->N[a] * c[NC_DRAG + k];
+      drag[k] += f->N[a] * c[NC_DRAG + k] / c[NC_KR + k];
   }
   for (int k = 0; k < PHASE_COUNT; k++)
     f->skin[k] = f->ring[0] * f->x[0] * drag[k] / (sum * area);
+}
+
+/* (109) */
+static void InflowFace(const Model *m, Face *f)
+{
+  PointProperties q;
+  const char     *why;
+  Reach           r;
+
+  if (f->inflow < 0 || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
+    return;
+  ReachExpand(m, f->particle, &r);
+  FaceInflow(f, r.n, r.S, q.kr);
 }
 
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
@@ -314,8 +357,10 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   }
   if (*status == CL_OK) {
     PetscCall(FacesBuild(m->c, &m->grid, &m->P, m->stencil, &m->nface, &m->face));
-    for (PetscInt k = 0; k < m->nface; k++)
+    for (PetscInt k = 0; k < m->nface; k++) {
       RadialFace(m, &m->face[k]);
+      InflowFace(m, &m->face[k]);
+    }
     for (PetscInt k = 0; m->plates && k < m->nface; k++) {
       if (m->face[k].plate >= 0)
         ModelPlateStiffness(m, &m->face[k]);
@@ -354,7 +399,8 @@ static double FluidScale(const Model *m, PetscInt I, int phase, double h)
   const FieldSet *fs = &m->c->fields;
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6;
   const double    sliver = sqrt(2.0 * NodeVolume(m, I) / m->V[I]);
-  double          row    = P / h * fmax(1.0, ROUND_OFF * sliver), v;
+  const double    kr     = c[NC_KR + phase];
+  double          row    = kr * P / h * fmax(1.0, ROUND_OFF * sliver), v;
 
   if (!fs->solid)
     return row;
@@ -380,9 +426,9 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
     for (int k = 0; k < PHASE_COUNT; k++) {
       if (!fs->phase[k])
         continue;
-      const double inertia = fs->inertia ? c[NC_RHO + k] / dt : 0.0;
+      const double kr = c[NC_KR + k], inertia = fs->inertia ? kr * c[NC_RHO + k] / dt : 0.0;
 
-      col[PlaceV(fs, k) + d] = P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
+      col[PlaceV(fs, k) + d] = kr * P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
       row[PlaceV(fs, k) + d] = V * FluidScale(m, I, k, h);
     }
   }
@@ -411,7 +457,8 @@ static void Scales(Model *m)
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s)
 {
   PetscFunctionBeginUser;
-  m->stage = *s;
+  m->stage     = *s;
+  m->evaluated = false;
   BcValuesEvaluate(m->c, s->t, &m->bc);
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     m->mask[I] = 0;

@@ -59,7 +59,10 @@ static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Mat
 
   PetscFunctionBeginUser;
   s->sg = r->Sg / (1.0 - r->Sh);
-  if (two)
+  if (two && s->sg == 0.0 && mat->gas.trace > 0.0) /* (103) */
+    PetscCheck(RetentionNoGas(&mat->retention, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "region %s: the retention law leaves gas at any pressure", r->name);
+  else if (two)
     PetscCheck(RetentionInvert(&mat->retention, s->sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "region %s: the retention law never reaches the initial gas share %g", r->name, s->sg);
   s->pw = r->pressure - s->sg * pc;

@@ -206,9 +206,10 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
                  const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
 {
   const double(*K)[2] = metric->K;
-  const Jet rho       = s->rho[f];
-  const Jet tau   = JetDiv(JetConstant(1.0), fs->inertia ? JetAdd(s->drag[f], JetScale(1.0 / h->dt, rho)) : s->drag[f]);
-  const Jet rt    = JetScale(h->bracket, JetMul(rho, tau));
+  const Jet     rho   = s->rho[f];
+  const Jet     held  = fs->inertia ? JetScale(1.0 / h->dt, JetMul(s->kr[f], rho)) : JetConstant(0.0);
+  const Jet     tau   = JetDiv(s->kr[f], JetAdd(s->resist[f], held));
+  const Jet     rt    = JetScale(h->bracket, JetMul(rho, tau));
   const double *J = &in[IN_J + 2 * f], *g = &in[IN_GP + 2 * f];
   const double  b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
 
@@ -235,14 +236,15 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   }
 }
 
-/* Conduction: V kappa F^-1 F^-T g_T. */
+/* Conduction: V kappa F^-1 F^-T g_T, and what carries heat with the flow, (293) on the configuration at t_n. */
 static void Conduction(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s,
                        const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   for (int i = 0; i < 2; i++) {
-    const double Kg = metric->K[i][0] * in[IN_GT] + metric->K[i][1] * in[IN_GT + 1];
+    const double Kg    = metric->K[i][0] * in[IN_GT] + metric->K[i][1] * in[IN_GT + 1];
+    const double up[2] = {i ? h->upwind[2] : h->upwind[0], i ? h->upwind[1] : h->upwind[2]};
 
-    o->out[OUT_HEAT + i] = h->V * s->kappa.v * Kg;
+    o->out[OUT_HEAT + i] = h->V * (s->kappa.v * Kg + up[0] * in[IN_GT] + up[1] * in[IN_GT + 1]);
     if (!tangent)
       continue;
     double *D = o->D[OUT_HEAT + i];
@@ -250,7 +252,7 @@ static void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
     for (int q = 0; q < MOTION_COUNT; q++)
       D[q] += h->V * s->kappa.v * (metric->d[i][0][q] * in[IN_GT] + metric->d[i][1][q] * in[IN_GT + 1]);
     for (int j = 0; j < 2; j++)
-      D[IN_GT + j] += h->V * s->kappa.v * metric->K[i][j];
+      D[IN_GT + j] += h->V * (s->kappa.v * metric->K[i][j] + up[j]);
   }
 }
 
@@ -268,13 +270,15 @@ static void FluidScalars(const Material *mat, const PointHistory *h, const Kinem
   const Jet    mass = f == PHASE_W ? s->m_w : s->m_g;
   const double nu =
       f == PHASE_W ? mat->kinetics.N_h * mat->kinetics.M_w / mat->kinetics.M_h : mat->kinetics.M_g / mat->kinetics.M_h;
-  Jet dm = JetShift(mass, -h->m_star[1 + f]);
+  const double root = sqrt(s->kr[f].v);
+  Jet          dm   = JetShift(mass, -h->m_star[1 + f]);
 
   if (mat->reacts)
     dm = JetAdd(dm, JetScale(nu, JetShift(s->m_h, -h->m_star[0])));
   PutScalar(OUT_M + 1 + f, mass, k, tangent, o);
   PutScalar(OUT_MI + f, JetMul(s->V, s->rho[f]), k, tangent, o);
-  PutScalar(OUT_D + f, JetMul(s->V, s->drag[f]), k, tangent, o);
+  PutScalar(OUT_D + f, JetMul(s->V, s->resist[f]), k, tangent, o);
+  PutScalar(OUT_ROOT + f, JetChain(root, 0.5 / root, s->kr[f]), k, tangent, o);
   PutScalar(OUT_DM + f, dm, k, tangent, o);
 }
 

@@ -118,8 +118,8 @@ static Jet ViscosityJet(const Material *mat, int phase, Jet rho, Jet T)
   return JetChain2(mu, drho, rho, dT, T);
 }
 
-/* mu/(k_a k_r) of the phases that flow. */
-static void Drag(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
+/* mu/k_a and k_r of the phases that flow. */
+static void Mobility(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
 {
   double       dphi, dSh;
   const double k  = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
@@ -128,9 +128,8 @@ static void Drag(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue; /* a lone fluid fills the pores: k_r = 1 */
-    const Jet kr = fs->phase[PHASE_G] ? RelPermJet(&mat->relperm, f, s) : JetConstant(1.0);
-
-    s->drag[f] = JetDiv(ViscosityJet(mat, f, s->rho[f], T), JetMul(ka, kr));
+    s->kr[f]     = fs->phase[PHASE_G] ? RelPermJet(&mat->relperm, f, s) : JetConstant(1.0);
+    s->resist[f] = JetDiv(ViscosityJet(mat, f, s->rho[f], T), ka);
   }
 }
 
@@ -192,7 +191,7 @@ static void Saturations(const FieldSet *fs, const Material *mat, double sw_n, Je
   s->p  = JetAdd(pw, JetMul(s->sg, pc));
 }
 
-static ClStatus CheckInputs(const FieldSet *fs, const double in[IN_COUNT], const char **why)
+static ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
 {
   const bool finite = isfinite(in[IN_T]) && (!fs->phase[PHASE_W] || isfinite(in[IN_P])) &&
                       (!fs->phase[PHASE_G] || isfinite(in[IN_P + 1]));
@@ -209,8 +208,8 @@ static ClStatus CheckInputs(const FieldSet *fs, const double in[IN_COUNT], const
     *why = "temperature fell to absolute zero";
     return CL_DOMAIN;
   }
-  if (fs->phase[PHASE_G] && in[IN_P + 1] <= 0.0) {
-    *why = "gas pressure fell to zero";
+  if (fs->phase[PHASE_G] && mat->gas.trace == 0.0 && in[IN_P + 1] <= 0.0) {
+    *why = "gas pressure fell to zero; without_gas: yes lets gas vanish";
     return CL_DOMAIN;
   }
   return CL_OK;
@@ -224,7 +223,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   const Jet zero  = JetConstant(0.0);
   const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
 
-  const ClStatus status = CheckInputs(fs, in, why);
+  const ClStatus status = CheckInputs(fs, mat, in, why);
   if (status != CL_OK)
     return status;
   s->V   = JetScale(h->V, JetVariable(J, JET_J));
@@ -251,9 +250,11 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   if (fs->phase[PHASE_G]) {
     s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
     s->m_g          = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
+    if (!fs->one_pressure) /* (101) */
+      s->m_g = JetAdd(s->m_g, JetScale(mat->gas.trace, JetMul(Vf, JetMul(s->sw, pg))));
   }
   if (fs->fluid)
-    Drag(fs, mat, T, s);
+    Mobility(fs, mat, T, s);
   if (fs->heat)
     Thermal(mat, h, T, s);
   for (int f = 0; fs->heat && h->compression && f < PHASE_COUNT; f++) {
@@ -276,6 +277,39 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
   *m_w = fs->phase[PHASE_W] ? Vf * (1.0 - sg) * LiquidDensity(&mat->water, pw, T, &d, &e) : 0.0;
   *m_g = gas ? Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e) : 0.0;
+  if (gas && !fs->one_pressure)
+    *m_g += Vf * (1.0 - sg) * mat->gas.trace * pg;
+}
+
+double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT])
+{
+  double       ds, rho_p, dT;
+  const double sg = RetentionGasShare(&mat->retention, pg - pw, &ds), rho = GasDensity(&mat->gas, pg, T, &rho_p, &dT),
+               c = mat->gas.trace * pg;
+
+  slope[PHASE_W] = -ds * (rho - c);
+  slope[PHASE_G] = ds * (rho - c) + sg * rho_p + (1.0 - sg) * mat->gas.trace;
+  return sg * rho + (1.0 - sg) * c;
+}
+
+#define CLOSE 1e-4 /* of p_0 */
+
+double PointGasPressure(const Material *mat, double want, double pw, double T, double a, double b)
+{
+  double       slope[PHASE_COUNT], lo = fmin(a, b), hi = fmax(a, b);
+  const double close = CLOSE * mat->retention.p0;
+
+  if ((PointMethane(mat, pw, lo, T, slope) - want) * (PointMethane(mat, pw, hi, T, slope) - want) >= 0.0)
+    return b;
+  while (hi - lo > close + 4.0 * PETSC_MACHINE_EPSILON * fabs(hi)) {
+    const double mid = 0.5 * (lo + hi);
+
+    if (PointMethane(mat, pw, mid, T, slope) < want)
+      lo = mid;
+    else
+      hi = mid;
+  }
+  return 0.5 * (lo + hi);
 }
 
 /* Rate of the reaction for 1 Pa off equilibrium, whichever way it goes. */
@@ -308,8 +342,9 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     if (!fs->phase[f])
       continue;
     r->rho[f]            = s.rho[f].v;
-    r->drag[f]           = s.drag[f].v;
-    const Jet mobility   = JetDiv(JetConstant(1.0), s.drag[f]);
+    r->resist[f]         = s.resist[f].v;
+    r->kr[f]             = s.kr[f].v;
+    const Jet mobility   = JetDiv(s.kr[f], s.resist[f]);
     r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
     r->storage[f]        = m->d[f == PHASE_W ? JET_PW : JET_PG] / (V * s.rho[f].v);
   }

@@ -7,13 +7,13 @@
 typedef struct {
   Jet  V, Vp, phi, Sh, sw, sg, p;
   Jet  m_h, m_w, m_g;
-  Jet  rho[PHASE_COUNT];  /* intrinsic densities */
-  Jet  drag[PHASE_COUNT]; /* mu/(k_a k_r), Pa s/m^2 */
-  Jet  capacity, kappa;   /* V C_m (J/K); kappa_m (W/m/K) */
-  Jet  latent;            /* J/kg */
-  Jet  warm[PHASE_COUNT]; /* beta T_K of the fluids, where compression counts */
-  Jet  E;                 /* Young's modulus, Pa */
-  Jet  beta;              /* mean volumetric expansivity of the skeleton, 1/K */
+  Jet  rho[PHASE_COUNT];                     /* intrinsic densities */
+  Jet  resist[PHASE_COUNT], kr[PHASE_COUNT]; /* mu/k_a, Pa s/m^2; relative permeability */
+  Jet  capacity, kappa;                      /* V C_m (J/K); kappa_m (W/m/K) */
+  Jet  latent;                               /* J/kg */
+  Jet  warm[PHASE_COUNT];                    /* beta T_K of the fluids, where compression counts */
+  Jet  E;                                    /* Young's modulus, Pa */
+  Jet  beta;                                 /* mean volumetric expansivity of the skeleton, 1/K */
   bool limited;
 } ScalarState;
 

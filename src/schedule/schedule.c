@@ -1,4 +1,4 @@
-/* schedule: values and kinks of piecewise-linear and piecewise-constant functions of time. */
+/* schedule: values and kinks of piecewise-linear and piecewise-constant functions of time, and their waves. */
 #include "clathra/schedule.h"
 #include <stdlib.h>
 
@@ -22,18 +22,44 @@ static PetscInt ScheduleFind(const Schedule *s, double t)
   return lo;
 }
 
-double ScheduleValue(const Schedule *s, double t)
+static double Phase(const Wave *w, double t)
 {
-  PetscInt i;
+  return 2.0 * M_PI * fmod((t - w->begin) / w->period, 1.0);
+}
 
-  if (s->n == 0)
-    return 0;
-  i = ScheduleFind(s, t);
+/* (267) */
+static double Waves(const Schedule *s, double t)
+{
+  double sum = 0.0;
+
+  for (PetscInt k = 0; k < s->nwave; k++)
+    sum += s->wave[k].amplitude * sin(Phase(&s->wave[k], t));
+  return sum;
+}
+
+double ScheduleSwing(const Schedule *s)
+{
+  double sum = 0.0;
+
+  for (PetscInt k = 0; k < s->nwave; k++)
+    sum += fabs(s->wave[k].amplitude);
+  return sum;
+}
+
+static double Points(const Schedule *s, double t)
+{
+  const PetscInt i = ScheduleFind(s, t);
+
   if (i < 0)
     return s->y[0];
   if (i == s->n - 1 || s->steps)
     return s->y[i];
   return s->y[i] + (s->y[i + 1] - s->y[i]) * ((t - s->t[i]) / (s->t[i + 1] - s->t[i]));
+}
+
+double ScheduleValue(const Schedule *s, double t)
+{
+  return s->n ? Points(s, t) + Waves(s, t) : 0.0;
 }
 
 double ScheduleNextKink(const Schedule *s, double t)
@@ -47,13 +73,33 @@ double ScheduleNextKink(const Schedule *s, double t)
   return INFINITY;
 }
 
+double ScheduleNextMark(const Schedule *s, double t)
+{
+  double next = INFINITY;
+
+  for (PetscInt k = 0; k < s->nwave; k++) {
+    const double eighth = s->wave[k].period / 8.0, begin = s->wave[k].begin,
+                 n    = floor((t - begin) / eighth + 1e-9) + 1.0; /* past round-off */
+    const double mark = begin + n * eighth;
+
+    next = fmin(next, mark > t + Slack(mark, t) ? mark : mark + eighth);
+  }
+  return next;
+}
+
 double ScheduleIntegral(const Schedule *s, double t)
 {
   double sum = 0.0;
 
-  for (double from = 0.0, to; from < t; from = to) {
+  for (PetscInt k = 0; k < s->nwave; k++) {
+    const Wave *w = &s->wave[k];
+
+    sum += w->amplitude * w->period / (2.0 * M_PI) * (cos(Phase(w, 0.0)) - cos(Phase(w, t)));
+  }
+
+  for (double from = 0.0, to; s->n && from < t; from = to) {
     to = PetscMin(ScheduleNextKink(s, from), t);
-    sum += (to - from) * (s->steps ? ScheduleValue(s, from) : 0.5 * (ScheduleValue(s, from) + ScheduleValue(s, to)));
+    sum += (to - from) * (s->steps ? Points(s, from) : 0.5 * (Points(s, from) + Points(s, to)));
   }
   return sum;
 }
@@ -62,6 +108,6 @@ void ScheduleDestroy(Schedule *s)
 {
   free(s->t);
   free(s->y);
-  s->t = s->y = NULL;
-  s->n        = 0;
+  free(s->wave);
+  *s = (Schedule){0};
 }

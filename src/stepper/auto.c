@@ -65,7 +65,8 @@ static void AddMotion(const Particles *P, const Particles *then, PetscInt p, Pet
   double *const *now = (double *const *)P->f, *const *was = (double *const *)then->f;
 
   AddSquare(now[P_PW], was[P_PW], p, q, &sum->change[0]);
-  AddSquare(now[P_PG], was[P_PG], p, q, &sum->change[1]);
+  if (now[P_PG])
+    sum->change[1] += PetscSqr(GasToBe(now[P_PW][p], now[P_PG][p]) - GasToBe(was[P_PW][q], was[P_PG][q]));
   AddSquare(now[P_T], was[P_T], p, q, &sum->change[2]);
   AddSquare(now[P_SH], was[P_SH], p, q, &sum->change[3]);
   for (int d = 0; d < CL_DIM; d++)

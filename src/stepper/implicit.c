@@ -60,6 +60,8 @@ void StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4])
     y[k]    = m->P.f[held[k]] ? m->P.f[held[k]][p] : 0.0;
     rate[k] = m->P.f[P_RATE] ? m->P.f[P_RATE + k][p] : 0.0;
   }
+  if (m->P.f[P_PG])
+    y[1] = GasToBe(y[0], y[1]);
 }
 
 double StepperMass(const Model *m, PetscInt p, int k)
@@ -119,26 +121,32 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 const char *const stepper_error_word[STEPPER_ERRORS] = {"p_w",   "p_g", "T", "S_h", "displacement", "plastic strain",
                                                         "stress"};
 
+/* (292) */
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a)
 {
   const Model *m                       = s->model;
   const double scale[STEPPER_ERRORS]   = {s->state.scale_p, s->state.scale_p,  s->state.scale_T, STEPPER_SCALE_SH,
                                           s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
+  const double half                    = 0.5 * m->c->error_exponent;
   double       sum[STEPPER_ERRORS + 1] = {0.0}, worst = 0.0;
 
   for (PetscInt p = 0; p < m->P.n; p++) {
+    double square[STEPPER_ERRORS] = {0.0};
+
     for (int k = 0; k < 4; k++)
-      sum[k] += PetscSqr(e[4 * p + k]);
-    sum[4] += PetscSqr(eu[2 * p]) + PetscSqr(eu[2 * p + 1]);
+      square[k] = PetscSqr(e[4 * p + k]);
+    square[4] = PetscSqr(eu[2 * p]) + PetscSqr(eu[2 * p + 1]);
     for (int k = 0; s->work.e_plastic && k < 5; k++)
-      sum[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
+      square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
+    for (int k = 0; k < STEPPER_ERRORS; k++)
+      sum[k] += pow(square[k] / PetscSqr(s->tol * scale[k]), half);
   }
   sum[STEPPER_ERRORS] = (double)m->P.n;
   if (MPI_Allreduce(MPI_IN_PLACE, sum, STEPPER_ERRORS + 1, MPI_DOUBLE, MPI_SUM, m->grid.comm))
     return NAN;
   a->rules = 0;
   for (int k = 0; k < STEPPER_ERRORS; k++) {
-    const double err = ClSize(sqrt(sum[k] / sum[STEPPER_ERRORS]) / (s->tol * scale[k]));
+    const double err = ClSize(pow(sum[k] / sum[STEPPER_ERRORS], 0.5 / half));
 
     if (err > worst) {
       worst    = err;

@@ -104,8 +104,12 @@ static PetscErrorCode UpdateScales(Stepper *s)
     const int     now = k < 2 ? P_PW + k : P_SIG + k - 2, start = k < 2 ? P_PW0 + k : P_SIG0 + k - 2;
     const double *a = m->P.f[now], *b = m->P.f[start];
 
-    for (PetscInt p = 0; a && p < m->P.n; p++)
-      top[0] = fmax(top[0], ClSize(a[p] - b[p]));
+    for (PetscInt p = 0; a && p < m->P.n; p++) {
+      const bool gas = now == P_PG; /* the water before it */
+
+      top[0] =
+          fmax(top[0], ClSize(gas ? GasToBe(m->P.f[P_PW][p], a[p]) - GasToBe(m->P.f[P_PW0][p], b[p]) : a[p] - b[p]));
+    }
   }
   for (int d = 0; m->P.f[P_U] && d < CL_DIM; d++) {
     for (PetscInt p = 0; p < m->P.n; p++)
@@ -133,7 +137,8 @@ double StepperNextStop(const Stepper *s, bool *kink)
 {
   const double t = s->state.t, at_kink = BcNextKink(s->model->c, t);
   const double event = s->next_event ? s->next_event(s, s->monitor_ctx) : INFINITY;
-  const double stop  = fmin(s->model->c->t_end, fmin(at_kink, event));
+  const double mark  = BcNextMark(s->model->c, t);
+  const double stop  = fmin(fmin(s->model->c->t_end, mark), fmin(at_kink, event));
 
   *kink = stop == at_kink;
   return stop;

@@ -33,6 +33,13 @@ STRESS = lambda value: ("    Sh: 0\n", f"    Sh: 0\n    stress: {value}\n")
 STRENGTH = lambda keys: [("    elasticity:", "    plasticity: {law: mohr_coulomb, " + keys + "}\n    elasticity:")]
 
 CASES = [
+    # --- functions of time
+    ("wave without a period", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 0.1 MPa]}}\ntime: {end")], ["ambient_pressure_sine", "has 2 values", "amplitude, period and begin"], []),
+    ("wave of no length", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 0.1 MPa, 0 h]}}\ntime: {end")], ["ambient_pressure_sine", "'0 h'", "(0,inf) s"], []),
+    ("wave out of range", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 2 MPa, 12 h]}}\ntime: {end")], ["ambient_pressure_sine", "may reach -1e+06 Pa", "[0,1e10]"], []),
+    ("wave in the wrong unit", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 2 m, 12 h]}}\ntime: {end")], ["ambient_pressure_sine", "'2 m'", "a pressure"], []),
+    ("file that is not there", [("time: {end", "ambient: {pressure: {csv: tide.csv}}\ntime: {end")], ["ambient_pressure_csv", "tide.csv", "there is no such file"], []),
+    ("file that is no table", [("time: {end", f"ambient: {{pressure: {{csv: [{os.path.abspath(__file__)}, sea]}}}}\ntime: {{end")], ["ambient_pressure_csv", "no column sea"], []),
     # --- strength
     ("no such law of strength", [("    elasticity:", "    plasticity: {law: cam_clay}\n    elasticity:")], [M + "plasticity_law", "mohr_coulomb"], []),
     ("strength without cohesion", STRENGTH("friction_peak: 30 deg"), [M + "plasticity_cohesion_max", "required when law is mohr_coulomb"], []),
@@ -147,6 +154,11 @@ CASES = [
     # --- agreement
     ("saturations", [("Sg: 0.4\n", "Sg: 0.3\n")], ["region_column_Sw", "must be 1"], []),
     ("residual saturations", [("Swr: 0.2, Sgr: 0.4", "Swr: 0.6, Sgr: 0.4")], [M + "retention_Swr", "below 1"], []),
+    ("no gas in a law that leaves some", [("Sw: 0.6\n    Sg: 0.4\n", "Sw: 1\n    Sg: 0\n"), ("law: van_genuchten,", "law: van_genuchten_clamped,")],
+     ["region_column_Sg", "retention law"], []),
+    ("gas let into sediment without any, by hybrid", [("Sw: 0.6\n    Sg: 0.4\n", "Sw: 1\n    Sg: 0\n"), ("type: sdirk2", "type: hybrid"),
+      ("type: pressure, side: right, initial: yes}", "type: inflow, side: right, gas: 1e-6 m/s}")],
+     ["stepper_type", "hybrid does not know an inflow of gas where a region has Sg: 0"], []),
     ("retention out of reach", [("Sw: 0.6\n    Sg: 0.4\n", "Sw: 0.1\n    Sg: 0.9\n")], ["region_column_Sg", "retention law"], []),
     ("grid upside down", [("upper: [1.04 m, 0.02 m]", "upper: [1.04 m, -0.02 m]")], ["grid_upper", "above"], []),
     ("region upside down", [("upper: [1 m, 0.02 m]", "upper: [-1 m, 0.02 m]")], ["region_column_upper", "above"], []),

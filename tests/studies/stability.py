@@ -27,7 +27,7 @@ from _extremes import CELL, P, SCENE, attempt, cells, difference, scene, stable_
 from _ladder import ElasticWave, Terzaghi  # noqa: E402
 from common import CASES  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
-from soak import read_record, table  # noqa: E402
+from soak import read_record, table as soak_table  # noqa: E402
 
 FOLDER, PAGE, FIGURES = ROOT / "results" / "stability_study", ROOT / "docs" / "stability.md", ROOT / "docs" / "figures"
 DIFFUSION = ROOT / "tests" / "verification" / "cases" / "diffusion.yaml"
@@ -553,7 +553,7 @@ PARTS = {"properties": properties, "steps": steps, "events": events, "falling": 
 def soak_text():
     """soak.md with the table of all recorded runs of scripts/soak.py."""
     here = Path(__file__)
-    return here.with_name("soak.md").read_text().replace("@table@", table(read_record(here.with_name("soak.jsonl"))))
+    return here.with_name("soak.md").read_text().replace("@table@", soak_table(read_record(here.with_name("soak.jsonl"))))
 
 
 def main():

@@ -88,7 +88,7 @@ static inline Schedule Constant(Scene *s, int which, double v)
   double *y = &s->number[2 * s->c.nbc + which];
 
   *y = v;
-  return (Schedule){1, &s->zero, y, false};
+  return (Schedule){.n = 1, .t = &s->zero, .y = y};
 }
 
 static inline Bc *AddFace(Scene *s, BcType type, Side side, double value, double shear)

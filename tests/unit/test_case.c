@@ -100,7 +100,8 @@ static void units_refused(void **state)
 static void schedule_values(void **state)
 {
   double   t[] = {10, 20, 40}, y[] = {1, 3, -1};
-  Schedule line = {3, t, y, false}, jump = {3, t, y, true}, constant = {1, t, y, false};
+  Schedule line = {.n = 3, .t = t, .y = y}, jump = {.n = 3, .t = t, .y = y, .steps = true},
+           constant = {.n = 1, .t = t, .y = y};
 
   (void)state;
   assert_true(ScheduleValue(&line, 0) == 1 && ScheduleValue(&line, 10) == 1 && ScheduleValue(&line, 15) == 2);
@@ -117,6 +118,23 @@ static void schedule_values(void **state)
   assert_true(fabs(ScheduleIntegral(&line, 40) - 50) < 1e-13 && fabs(ScheduleIntegral(&line, 50) - 40) < 1e-13);
   assert_true(fabs(ScheduleIntegral(&jump, 25) - 35) < 1e-13 && ScheduleIntegral(&constant, 7) == 7);
   assert_true(ScheduleNextKink(&jump, 10) == 20);
+
+  /* 1 + 2 sin(2 pi (t - 10)/8): its eighths are whole seconds; the integral over two periods is that of the mean */
+  Wave     wave[2] = {{2, 8, 10}, {0.5, 5, 0}};
+  Schedule tide    = {.n = 1, .t = t, .y = y, .nwave = 1, .wave = wave},
+           both    = {.n = 1, .t = t, .y = y, .nwave = 2, .wave = wave};
+
+  assert_true(fabs(ScheduleValue(&tide, 12) - 3) < 1e-14 && fabs(ScheduleValue(&tide, 16) + 1) < 1e-14);
+  assert_true(fabs(ScheduleValue(&tide, 0) + 1) < 1e-14 && fabs(ScheduleValue(&tide, 10 + 8e6) - 1) < 1e-8);
+  assert_true(ScheduleNextMark(&tide, 0) == 1 && ScheduleNextMark(&tide, 1) == 2 &&
+              ScheduleNextMark(&tide, 10.5) == 11);
+  assert_true(ScheduleNextMark(&tide, 3 * (1 - 1e-13)) == 4 && ScheduleNextMark(&both, 0) == 0.625);
+  assert_true(isinf(ScheduleNextMark(&line, 0)) && isinf(ScheduleNextKink(&tide, 0)) && ScheduleSwing(&both) == 2.5);
+  assert_true(fabs(ScheduleIntegral(&tide, 16) - 16) < 1e-13);
+  double sum = 0;
+  for (int i = 0; i < 7000; i++)
+    sum += 1e-3 * ScheduleValue(&both, 1e-3 * (i + 0.5));
+  assert_true(fabs(ScheduleIntegral(&both, 7) - sum) < 1e-6);
 }
 
 /* ---------------------------------------------------------------- YAML */

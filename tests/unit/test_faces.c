@@ -33,7 +33,7 @@ static void SceneInit(Scene *s, Rng *r)
 {
   memset(s, 0, sizeof(*s));
   s->mat   = SedimentMaterial();
-  s->given = (Schedule){1, one, one, false};
+  s->given = (Schedule){.n = 1, .t = one, .y = one};
   assert_true(FieldSetMake(HAS_ALL, true, false, &s->c.fields));
   s->c.bc             = s->bc;
   s->c.nbc            = 3;

@@ -181,8 +181,11 @@ static double TangentError(Point *q, bool axisymmetric)
     const double value =
         o.out[r < OUT_DM || r > OUT_DM + 1 ? r : OUT_M + 1 + r - OUT_DM]; /* masses gained: of the mass */
 
-    if (size[r] > 0.0) /* differences hold 1e-12 of the value itself */
-      worst = fmax(worst, error[r] / fmax(size[r], 1e-3 * fabs(value)));
+    /* differences hold 1e-12 of the value itself, 1e-11 of the drag, whose S_h is found by iteration */
+    const double noise = r == OUT_D || r == OUT_D + 1 ? 1e-2 : 1e-3;
+
+    if (size[r] > 0.0)
+      worst = fmax(worst, error[r] / fmax(size[r], noise * fabs(value)));
   }
   return worst;
 }

@@ -120,6 +120,7 @@ static void Make(Scene *s, const Variant *v, const char *stepper, bool slips)
   s->c.dt = s->c.dt_max = s->c.t_end = STEP;
   s->c.dt_min                        = 1e-3 * STEP;
   s->c.cfl                           = 0.8;
+  s->c.error_exponent                = 2.0;
   s->c.tol                           = 1.0;
   s->c.flip = s->c.mass_scaling = 1.0;
   s->c.relaxation               = INFINITY;

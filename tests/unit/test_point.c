@@ -19,9 +19,20 @@ typedef struct {
   double       in[IN_COUNT];
 } Particle;
 
-typedef enum { NO_KINETICS = 0, DISSOCIATING, FORMING, JUST_BELOW, JUST_ABOVE, NO_HYDRATE, LIMITED, REGIMES } Regime;
-static const char *const regime_name[REGIMES] = {"no kinetics", "dissociating", "forming",     "p_e - 0.1 %",
-                                                 "p_e + 0.1 %", "no hydrate",   "m_h* below 0"};
+typedef enum {
+  NO_KINETICS = 0,
+  DISSOCIATING,
+  FORMING,
+  JUST_BELOW,
+  JUST_ABOVE,
+  NO_HYDRATE,
+  LIMITED,
+  NO_GAS,
+  LITTLE_GAS,
+  REGIMES
+} Regime;
+static const char *const regime_name[REGIMES] = {"no kinetics", "dissociating", "forming", "p_e - 0.1 %", "p_e + 0.1 %",
+                                                 "no hydrate",  "m_h* below 0", "no gas",  "little gas"};
 
 static Material RandomMaterial(Rng *r, Regime regime)
 {
@@ -31,7 +42,8 @@ static Material RandomMaterial(Rng *r, Regime regime)
   assert_true(PermeabilitySetHydrateType(&m.permeability, PermeabilityHydrateTypes()[RngPick(r, 3)]));
   assert_true(PermeabilitySetPorosityType(&m.permeability, PermeabilityPorosityTypes()[RngPick(r, 3)]));
   assert_true(EquilibriumSetType(&m.kinetics.equilibrium, EquilibriumTypes()[RngPick(r, 4)]));
-  m.retention.p0     = RngLog(r, 1e3, 1e6);
+  m.gas.trace        = regime == NO_GAS || regime == LITTLE_GAS ? GasTrace(&m.gas) : 0.0;
+  m.retention.p0     = RngLog(r, regime == NO_GAS || regime == LITTLE_GAS ? 1e5 : 1e3, 1e6);
   m.retention.m      = RngBetween(r, 0.2, 0.8);
   m.retention.lambda = RngBetween(r, 0.5, 3.0);
   m.relperm.nw       = RngBetween(r, 1.0, 6.0);
@@ -71,12 +83,15 @@ static void SetPressures(Particle *q, double p, double pc)
 
 static void SetPressureOfRegime(Rng *r, Particle *q, Regime regime)
 {
-  static const double lo[REGIMES] = {0.5, 0.3, 1.05, 0.9989, 1.0009, 0.5, 0.5};
-  static const double hi[REGIMES] = {2.0, 0.95, 2.0, 0.9991, 1.0011, 2.0, 2.0};
+  static const double lo[REGIMES] = {0.5, 0.3, 1.05, 0.9989, 1.0009, 0.5, 0.5, 0.3, 1.05};
+  static const double hi[REGIMES] = {2.0, 0.95, 2.0, 0.9991, 1.0011, 2.0, 2.0, 0.95, 2.0};
   double              d;
   const double        pe = EquilibriumPressure(&q->mat.kinetics.equilibrium, q->in[IN_T] + q->h.shift[2], &d);
-  const double        pc = RngPick(r, 4) ? RngLog(r, 0.1, 10.0) * q->mat.retention.p0 : -0.5 * q->mat.retention.p0;
+  const double        p0 = q->mat.retention.p0;
+  double              pc = RngPick(r, 4) ? RngLog(r, 0.1, 10.0) * p0 : -0.5 * p0;
 
+  if (regime == NO_GAS || regime == LITTLE_GAS)
+    pc = p0 * (regime == NO_GAS ? RngBetween(r, -40.0, -20.0) : RngBetween(r, -0.3, 0.3));
   SetPressures(q, RngBetween(r, lo[regime], hi[regime]) * pe, pc);
   for (int f = 0; f < PHASE_COUNT; f++) /* what the reaction sees is the same */
     q->in[IN_P + f] -= q->h.shift[0];
@@ -131,6 +146,9 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
     q->in[IN_U + (k & 1)]   = RngBetween(r, -1e-3, 1e-3);
   }
   q->h.ambient     = &sea;
+  q->h.upwind[0]   = 3.0;
+  q->h.upwind[1]   = 0.7;
+  q->h.upwind[2]   = -0.9;
   q->h.compression = RngPick(r, 2) != 0;
   for (int f = 0; f < PHASE_COUNT; f++) {
     q->h.p_star[f]  = q->in[IN_P + f] + RngBetween(r, -2e6, 2e6);
@@ -303,7 +321,8 @@ static void Magnitudes(const Particle *q, const PointState *s, const PointOutput
 
   for (int i = 0; i < OUT_COUNT; i++)
     size[i] = fabs(o->out[i]);
-  size[OUT_M] = s->m_h;
+  size[OUT_M]    = s->m_h;
+  size[OUT_ROOT] = size[OUT_ROOT + 1] = 10.0; /* where a fluid fills the pores slopes drown in the digits of 1 */
   size[OUT_DM] += s->m_w + s->m_h;
   size[OUT_DM + 1] += s->m_g + s->m_h;
   size[OUT_Q] += latent * (s->m_h + fabs(q->h.m_star[0]));
@@ -479,8 +498,10 @@ static void TestRigidRotation(void **state)
       force = fmax(force, fabs(ob.out[OUT_HEAT + k] - oa.out[OUT_HEAT + k]) / (q.h.V * 150.0));
     }
     for (int k = OUT_M; k <= OUT_C; k++) {
+      const bool share = k == OUT_ROOT || k == OUT_ROOT + 1; /* of 1, and steep where it is small */
+
       if (k < OUT_DM || k == OUT_C)
-        scalar = fmax(scalar, fabs(ob.out[k] / oa.out[k] - 1.0));
+        scalar = fmax(scalar, fabs(ob.out[k] - oa.out[k]) / (share ? 1.0 : oa.out[k]));
     }
   }
   printf("rigid rotation of a stressed body: stress %.1e, forces %.1e, masses and coefficients %.1e\n", stress, force,
@@ -731,6 +752,36 @@ static void TestReactionConserves(void **state)
   assert_true(worst < 1e-15);
 }
 
+/* Without a reaction heat is what the masses store, and what each fluid carries with its own heat capacity. */
+static void TestHeatOfMasses(void **state)
+{
+  Rng    r     = {111};
+  double worst = 0.0;
+
+  (void)state;
+  for (int n = 0; n < 20000; n++) {
+    Particle    q;
+    PointState  s;
+    PointOutput o;
+
+    RandomParticle(&r, NO_KINETICS, &q);
+    q.h.compression = false;
+    assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
+    const double *water = &o.out[OUT_FLUX], *gas = &o.out[OUT_FLUX + 2], *g = &q.in[IN_GT];
+    const double  stored  = q.h.m_s * q.mat.c_s + s.m_h * q.mat.c_h + s.m_w * q.mat.c_w + s.m_g * q.mat.c_g;
+    double        carried = 0.0, size = 0.0;
+
+    for (int i = 0; i < 2; i++) {
+      carried += (q.mat.c_w * water[i] + q.mat.c_g * gas[i]) * g[i];
+      size += fabs(q.mat.c_w * water[i] * g[i]) + fabs(q.mat.c_g * gas[i] * g[i]);
+    }
+    worst = fmax(worst, fabs(o.out[OUT_Q] - carried) / size);
+    worst = fmax(worst, fabs(o.out[OUT_C] / stored - 1.0));
+  }
+  printf("heat of the masses, stored and carried: %.1e\n", worst);
+  assert_true(worst < 1e-14);
+}
+
 /* ---------------------------------------------------------------- robustness */
 /* 1e5 admissible states over a wide box: every number comes out finite. */
 static void TestNeverNan(void **state)
@@ -828,9 +879,6 @@ static void TestRefusals(void **state)
   p              = q;
   p.in[IN_GRADU] = -0.999;
   Refused(&p, CL_DOMAIN, "porosity below zero");
-  p              = q;
-  p.in[IN_P + 1] = -1.0;
-  Refused(&p, CL_DOMAIN, "negative gas pressure");
   p = q;
   p.h.m_star[0] *= 1e3;
   p.mat.reacts = false;
@@ -858,6 +906,7 @@ int main(void)
       cmocka_unit_test(TestHydrateEquation),
       cmocka_unit_test(TestStiffKinetics),
       cmocka_unit_test(TestReactionConserves),
+      cmocka_unit_test(TestHeatOfMasses),
       cmocka_unit_test(TestNeverNan),
       cmocka_unit_test(TestInadmissible),
       cmocka_unit_test(TestRefusals),

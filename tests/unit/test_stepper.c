@@ -18,10 +18,11 @@ static Stepper s;
 
 static int Start(void **state)
 {
-  m           = (Model){.c = &c};
-  s           = (Stepper){.model = &m, .tol = 1e-3, .state = {.scale_p = 1e4, .scale_T = 1.0, .scale_u = 1e-3}};
-  c.fields    = (FieldSet){.has = HAS_SOLID | HAS_WATER};
-  m.grid.comm = PETSC_COMM_WORLD;
+  m                = (Model){.c = &c};
+  s                = (Stepper){.model = &m, .tol = 1e-3, .state = {.scale_p = 1e4, .scale_T = 1.0, .scale_u = 1e-3}};
+  c.fields         = (FieldSet){.has = HAS_SOLID | HAS_WATER};
+  c.error_exponent = 2.0;
+  m.grid.comm      = PETSC_COMM_WORLD;
   GOOD(ParticlesCreate(c.fields.has, &m.P));
   GOOD(ParticlesResize(&m.P, N));
   for (int k = 0; k < P_COUNT; k++) {
@@ -48,6 +49,28 @@ static void AnErrorThatIsNoNumberIsLarge(void **state)
   eu[2 * 2 + 1] = NAN;
   assert_true(StepperErrorNorm(&s, e, eu, &a) > 1.0);
   assert_string_equal(stepper_error_word[a.rules], "displacement");
+}
+
+/* (292): what one of three particles has, by exponent. */
+static void TheExponentSeesAFront(void **state)
+{
+  double  e[4 * N] = {0}, eu[2 * N] = {0};
+  Attempt a = {.status = CL_OK};
+
+  e[4 * 2]                = s.tol * s.state.scale_p;
+  eu[2 * 1]               = 0.3 * s.tol * s.state.scale_u;
+  eu[2 * 1 + 1]           = -0.4 * s.tol * s.state.scale_u;
+  const double exponent[] = {1.0, 2.0, 8.0, 16.0};
+  for (int k = 0; k < 4; k++) {
+    c.error_exponent = exponent[k];
+    assert_true(fabs(StepperErrorNorm(&s, e, eu, &a) / pow(3.0, -1.0 / exponent[k]) - 1.0) < 1e-12);
+    assert_string_equal(stepper_error_word[a.rules], "p_w");
+  }
+  e[4 * 2] = 0.0;
+  assert_true(fabs(StepperErrorNorm(&s, e, eu, &a) / (0.5 * pow(3.0, -1.0 / 16.0)) - 1.0) < 1e-12);
+  e[4 * 2] = NAN;
+  assert_true(isinf(StepperErrorNorm(&s, e, eu, &a)));
+  c.error_exponent = 2.0;
 }
 
 /* An error of T counts by the largest change so far, whatever the place has started from; the largest is named. */
@@ -187,6 +210,7 @@ static void ASignalStopsAfterTheStep(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(AnErrorThatIsNoNumberIsLarge, Start, End),
+                                     cmocka_unit_test_setup_teardown(TheExponentSeesAFront, Start, End),
                                      cmocka_unit_test_setup_teardown(AStateThatIsNoNumberIsNotGoneOnWith, Start, End),
                                      cmocka_unit_test_setup_teardown(ASignalStopsAfterTheStep, Start, End),
                                      cmocka_unit_test_setup_teardown(TemperatureCountsByItsChange, Start, End),

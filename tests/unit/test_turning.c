@@ -35,12 +35,13 @@ static Scene *Make(unsigned has, BasisType basis, const char *stepper, double p,
   for (int d = 0; d < 3 && !s->c.fields.fluid; d++)
     s->region.stress[d] = -p;
   s->number[0]          = p;
-  s->c.ambient_pressure = (Schedule){1, &s->zero, s->number, false};
+  s->c.ambient_pressure = (Schedule){.n = 1, .t = &s->zero, .y = s->number};
   s->region.K0          = INFINITY; /* the stress is as given */
   strcpy(s->c.stepper, stepper);
   s->c.t_end = s->c.dt_max = t_end;
   s->c.dt                  = strcmp(stepper, "hybrid") ? 0.005 : has & HAS_WATER ? 5e-6 : 1e-4;
   s->c.dt_min              = 1e-9;
+  s->c.error_exponent      = 2.0;
   s->c.tol                 = 1e-3;
   s->c.max_failures        = 5;
   s->c.cfl                 = 0.8;

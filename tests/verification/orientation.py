@@ -3,7 +3,7 @@
 
 Turned and mirrored columns do the same arithmetic in another order: round-off, amplified by Newton's tolerances.  For the
 shift the column floats, loaded and drained at both ends, so that no grid plane ties it to the grid; what a shift changes
-must be less than the discretisation error, that is the error against 48 cells of the worst placed column.
+must be no more than the discretisation error, that is the error against 48 cells of the worst placed column.
 """
 import itertools
 from pathlib import Path
@@ -90,12 +90,12 @@ def shifted():
         for q, what in enumerate(("profile of p", "u of the end")):
             largest = max(error[n, s][q] for s in shifts)
             ratio = max(change[n, s][q] for s in shifts) / largest
-            judge(10, f"shifted, {n} cells: change of {what} over discretisation error ({largest:.2g})", ratio, 1.0)
+            judge(10, f"shifted, {n} cells: change of {what} over discretisation error ({largest:.2g})", ratio, 1.1)
             if n == 2 * N:  # the ratio alone would let both grow
-                judge(10, f"shifted, {n} cells: largest error of {what}, of its largest value", largest, (7e-3, 2.8e-3)[q])
-                judge(10, f"shifted, {n} cells: largest change of {what}, of its largest value", max(change[n, s][q] for s in shifts), (6.5e-3, 2e-3)[q])
+                judge(10, f"shifted, {n} cells: largest error of {what}, of its largest value", largest, (7e-3, 1.2e-3)[q])
+                judge(10, f"shifted, {n} cells: largest change of {what}, of its largest value", max(change[n, s][q] for s in shifts), (3.5e-3, 1.2e-3)[q])
     check("errors with 24 cells over those with 12, worst shift",
-          max(max(error[2 * N, s]) for s in shifts) / max(max(error[N, s]) for s in shifts), 0.2)  # fmt: skip
+          max(max(error[2 * N, s]) for s in shifts) / max(max(error[N, s]) for s in shifts), 0.3)  # fmt: skip  # 0.25 is order 2
 
 
 if __name__ == "__main__":

@@ -1,0 +1,116 @@
+/* What Newton's update may change at once, node by node. */
+#include "gather.h"
+
+/* Limits of one update, so that no law is evaluated far outside its range. */
+#define LIMIT_T 5.0 /* K */
+#define LIMIT_P 0.5 /* of the pressure of a gas that is there or appears */
+
+#define REACH 25.0         /* of p_0 below p_w: where no gas is left */
+#define LARGEST_SHARE 0.05 /* of the open pores: what gas gains or loses in one update */
+#define CURVED 0.5         /* of the linear change of methane: what the law may differ from it */
+#define STRAIGHT 0.002     /* of p_0: change of p_c over which any law is straight */
+
+/* (104): where the law bends, p_g to where a node holds as much methane as the linear update d of both pressures says,
+   but no more of it than that; p_w keeps a share of the pressure there is, for gas that appears holds it.  False where
+   the law is nearly straight. */
+static bool FollowMethane(const Material *mat, const double p[PHASE_COUNT], double d[PHASE_COUNT], double T)
+{
+  double       slope[PHASE_COUNT], none[PHASE_COUNT];
+  const double there = fmax(p[PHASE_W], p[PHASE_G]), pw = fmax(p[PHASE_W] + d[PHASE_W], (1.0 - LIMIT_P) * there),
+               pg = p[PHASE_G] + d[PHASE_G], most = LARGEST_SHARE * GasDensity(&mat->gas, there, T, &none[0], &none[1]);
+  const double from   = PointMethane(mat, p[PHASE_W], p[PHASE_G], T, slope),
+               linear = slope[PHASE_W] * d[PHASE_W] + slope[PHASE_G] * d[PHASE_G];
+  const double want   = from + fmax(-most, fmin(linear, most));
+  const double least = fmin(pg, pw - REACH * mat->retention.p0), largest = fmax(pg, p[PHASE_G]);
+
+  if (fabs(d[PHASE_G] - d[PHASE_W]) <= STRAIGHT * mat->retention.p0 ||
+      fabs(PointMethane(mat, pw, pg, T, none) - want) <= CURVED * fabs(linear))
+    return false;
+  const double found = PointGasPressure(mat, want, pw, T, least, largest);
+  if (found == largest)
+    return false;
+  d[PHASE_W] = pw - p[PHASE_W];
+  d[PHASE_G] = found - p[PHASE_G];
+  return true;
+}
+
+/* Does it to a node's update; false where nothing changes. */
+static bool Follow(const Model *m, PetscInt I, const double *x, double *y)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double   *s = &m->col_scale[I * fs->n], T = fs->heat ? x[PlaceT(fs)] * s[PlaceT(fs)] : 0.0;
+  double          p[PHASE_COUNT], d[PHASE_COUNT]; /* SNES takes the update off */
+
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    p[k] = x[PlaceP(fs, k)] * s[PlaceP(fs, k)];
+    d[k] = -y[PlaceP(fs, k)] * s[PlaceP(fs, k)];
+  }
+  if (m->material[I]->gas.trace == 0.0 || !FollowMethane(m->material[I], p, d, T))
+    return false;
+  for (int k = 0; k < PHASE_COUNT; k++)
+    y[PlaceP(fs, k)] = -d[k] / s[PlaceP(fs, k)];
+  return true;
+}
+
+/* Is there a gas phase before and after the update? */
+static bool HoldsGas(const Model *m, PetscInt I, const double *x, const double *y)
+{
+  const FieldSet *fs = &m->c->fields;
+  const int       w = PlaceP(fs, PHASE_W), g = PlaceP(fs, PHASE_G);
+  const double    pc = x[g] - x[w];
+
+  return fs->one_pressure || m->material[I]->gas.trace == 0.0 || (pc > 0.0 && pc - (y[g] - y[w]) > 0.0);
+}
+
+/* Share of a node's update that stays in the trusted range. */
+static double NodeLimit(const Model *m, PetscInt I, const double *x, const double *y)
+{
+  const FieldSet *fs  = &m->c->fields;
+  const double   *s   = &m->col_scale[I * fs->n];
+  double          cut = 1.0;
+
+  if (fs->heat) {
+    const double dT = fabs(y[PlaceT(fs)] * s[PlaceT(fs)]);
+
+    if (dT > LIMIT_T)
+      cut = fmin(cut, LIMIT_T / dT);
+  }
+  if (fs->phase[PHASE_G] && HoldsGas(m, I, x, y)) {
+    const double dpg = fabs(y[PlaceP(fs, PHASE_G)]), pg = fabs(x[PlaceP(fs, PHASE_G)]);
+
+    if (dpg > LIMIT_P * pg && pg > 0.0)
+      cut = fmin(cut, LIMIT_P * pg / dpg);
+  }
+  for (int d = 0; fs->solid && d < CL_DIM; d++) {
+    const double du = fabs(y[PlaceVs(fs) + d] * s[PlaceVs(fs) + d]) * m->stage.dt;
+
+    if (du > CL_LIMIT_J * m->grid.h[d])
+      cut = fmin(cut, CL_LIMIT_J * m->grid.h[d] / du);
+  }
+  return cut;
+}
+
+PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
+{
+  Model          *m  = (Model *)model;
+  const FieldSet *fs = &m->c->fields;
+  const double   *x;
+  double         *y, cut[2] = {1.0, 1.0}; /* of the update; 0 where a node's own has changed */
+
+  PetscFunctionBeginUser;
+  (void)ls;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArray(Y, &y));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    if ((fs->has & HAS_GAS_PRESSURE) && Follow(m, I, &x[I * fs->n], &y[I * fs->n]))
+      cut[1] = 0.0;
+    cut[0] = fmin(cut[0], NodeLimit(m, I, &x[I * fs->n], &y[I * fs->n]));
+  }
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArray(Y, &y));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cut, 2, MPI_DOUBLE, MPI_MIN, m->grid.comm));
+  *changed = fmin(cut[0], cut[1]) < 1.0 ? PETSC_TRUE : PETSC_FALSE;
+  if (cut[0] < 1.0)
+    PetscCall(VecScale(Y, cut[0]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

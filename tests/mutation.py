@@ -1,0 +1,195 @@
+#!/usr/bin/python3
+"""Do the tests see wrong physics?  Plants one fault after the other in a copy of the tree, builds it, runs the quick tests
+until one fails: mutation.py [--record FILE] [--page FILE] [--only NAME ...] [--fresh] [--work FOLDER] [--sound]
+
+Each fault is a line of src/laws, src/point, src/model or src/boundary that says something else, with its derivative where
+it has one, so that a Newton method or a tangent test need not notice: what must notice is a test of the physics.  A
+fault that no test sees makes the exit code 1.  --record keeps what was found, a line each, and goes on from there; --page
+makes docs/mutation.md of it.  Some seconds each on a quiet core.
+"""
+import argparse
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tests" / "verification"))
+from common import ENVIRONMENT  # noqa: E402
+
+# The quick tests, in the order in which they are asked: seconds in all.
+UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "one_physics", "explicit", "axisymmetry", "plasticity",
+        "fieldsets", "turning")  # fmt: skip
+FIRST = {"laws": "laws_values", "point": "point", "boundary": "faces", "model": "model"}  # the folder's own
+RUNS = ("closed_cell", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
+        "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "bp2_reference")  # fmt: skip
+
+# (name, file, [(what stands there, what is planted), ...])
+LAWS, POINT, MODEL, BOUNDARY = "src/laws/", "src/point/", "src/model/", "src/boundary/"
+FAULTS = [
+    ("water expands the wrong way", LAWS + "eos.c", [("law->K - law->beta * (T - law->T_ref)", "law->K + law->beta * (T - law->T_ref)"), ("-law->rho0 * de * law->beta", "law->rho0 * de * law->beta")]),
+    ("ideal gas: kelvin less 0.15", LAWS + "eos.c", [("const double TK = T[q] + LAW_ZERO_CELSIUS;\n\n    rho_p[q] = law->M", "const double TK = T[q] + 273.0;\n\n    rho_p[q] = law->M")]),
+    ("hydrate stiffens 2 % less", LAWS + "elasticity.c", [("law->ah * law->Eh", "0.98 * law->ah * law->Eh")]),
+    ("k_r of gas leaves out the water's residual", LAWS + "relperm.c", [("Corey(sg, law->Sgr, 1.0 - law->Swr - law->Sgr", "Corey(sg, law->Sgr, 1.0 - law->Sgr")]),
+    ("hydrate clogs with mh + 0.1", LAWS + "permeability.c", [("LawToePower(1.0 - Sh, law->mh", "LawToePower(1.0 - Sh, law->mh + 0.1")]),
+    ("formation on (1 - S_h)^2", LAWS + "kinetics.c", [("return film * v * v * v", "return film * v * v"), ("-3.0 * film * v * v;", "-2.0 * film * v;"), ("(1.0 - 2.0 * sw) * v * v * v", "(1.0 - 2.0 * sw) * v * v")]),
+    ("latent heat takes degC for kelvin", LAWS + "thermal.c", [("(at + LAW_ZERO_CELSIUS)", "at")]),
+    ("hydrate conducts like water", LAWS + "thermal.c", [("Sh * X[1] +", "Sh * X[2] +"), ("(X[1] - fluid)", "(X[2] - fluid)")]),
+    ("Masuda's equilibrium 2 % low", LAWS + "equilibrium.c", [("return 1.15 * e", "return 1.127 * e"), ("1.15 * de", "1.127 * de")]),
+    ("mean pressure p_w + s_w p_c", POINT + "state.c", [("JetAdd(pw, JetMul(s->sg, pc))", "JetAdd(pw, JetMul(s->sw, pc))")]),
+    ("hydrate stores no heat", POINT + "state.c", [("JetScale(mat->c_h, s->m_h)", "JetScale(0.0, s->m_h)")]),
+    ("hydrate does not hinder flow", POINT + "state.c", [("s->phi.v, s->Sh.v, &dphi, &dSh);\n  const Jet    ka = JetChain2(k, dphi, s->phi, dSh, s->Sh)", "s->phi.v, 0.0, &dphi, &dSh);\n  const Jet    ka = JetChain2(k, dphi, s->phi, 0.0, s->Sh)")]),
+    ("hydrate's expansivity left out", POINT + "state.c", [("JetScale(mat->hydrate.beta, ice)", "JetScale(0.0, ice)")]),
+    ("half of the thermal strain again", POINT + "point.c", [("JetScale(1.0 / 3.0, JetMul(s->beta", "JetScale(0.5, JetMul(s->beta")]),
+    ("1 % more gas from hydrate", POINT + "point.c", [(": mat->kinetics.M_g / mat->kinetics.M_h;", ": 1.01 * mat->kinetics.M_g / mat->kinetics.M_h;")]),
+    ("gas carries heat like water", POINT + "point.c", [("{mat->c_w, mat->c_g}", "{mat->c_w, mat->c_w}")]),
+    ("no flux interpolation (20)", POINT + "point.c", [("JetScale(h->bracket, JetMul(rho, tau))", "JetScale(0.0, JetMul(rho, tau))")]),
+    ("conduction without 1/J", POINT + "point.c", [("k->cof[1][i] * k->cof[1][j]) / k->J;", "k->cof[1][i] * k->cof[1][j]);"), ("(dc - g->K[i][j] * k->dJ[q]) / k->J", "dc")]),
+    ("no pore pressure around the axis", POINT + "point.c", [("hoop = st->s[ZZ] - p;", "hoop = st->s[ZZ];"), ("AddJet(o->D[OUT_HOOP], -h->V * k->cof_hoop, &s->p, k);", "")]),
+    ("the sea's weight twice", POINT + "point.c", [("o->out[OUT_A + i] = s->V.v * a.g[i]", "o->out[OUT_A + i] = 2.0 * s->V.v * a.g[i]")]),
+    ("small strain, J - 1 for ln J", POINT + "kinematics.c", [("lnJ = 0.5 * log(J2)", "lnJ = 0.5 * (J2 - 1.0)"), ("dlnJ = 0.5 * dJ2[c] / J2", "dlnJ = 0.5 * dJ2[c]")]),
+    ("cpgimp domains shear", POINT + "kinematics.c", [("co * F[0][0] + si * F[1][0]", "F[0][0]")]),
+    ("heat at open boundaries 1 % more", BOUNDARY + "conditions.c", [("= flux * area + conducts", "= 1.01 * flux * area + conducts")]),
+    ("convection sees the particle, not the face", BOUNDARY + "conditions.c", [("T = in[IN_T] + g[0] * f->r[0] + g[1] * f->r[1];\n  double        flux", "T = in[IN_T];\n  double        flux"), ("alpha * area * f->r[j] - conducts", "-conducts")]),
+    ("outflow 1 % too dense", BOUNDARY + "conditions.c", [("rho = Density(mat, phase, p, in[IN_T], &dp, &dT);\n  double *D ", "rho = 1.01 * Density(mat, phase, p, in[IN_T], &dp, &dT);\n  double *D ")]),
+    ("inflow brings heat above its own temperature", BOUNDARY + "conditions.c", [("v->value[f->inflow] - T : 0.0", "v->value[f->inflow] : 0.0")]),
+    ("natural outflow with the water's share", BOUNDARY + "conditions.c", [("o->p[PHASE_W]   = mean - sg * pc;", "o->p[PHASE_W]   = mean - (1.0 - sg) * pc;"), ("-sg - ds * pc;", "-(1.0 - sg) + ds * pc;")]),
+    ("shear traction turned", BOUNDARY + "conditions.c", [("q * a[0] + s * a[1]", "q * a[0] - s * a[1]"), ("q * a[1] - s * a[0]", "q * a[1] + s * a[0]"), ("q * da[0][k] + s * da[1][k]", "q * da[0][k] - s * da[1][k]"), ("q * da[1][k] - s * da[0][k]", "q * da[1][k] + s * da[0][k]")]),
+    ("tangents of faces do not turn", BOUNDARY + "faces.c", [("f->n[tangent]  = -A * F[axis][tangent]", "f->n[tangent]  = 0.0 * F[axis][tangent]")]),
+    ("staircases count their steps", BOUNDARY + "faces.c", [("(F[1][1] * f->n0[0] - F[1][0] * f->n0[1])", "f->n[0] / fabs(A)"), ("(F[0][0] * f->n0[1] - F[0][1] * f->n0[0])", "f->n[1] / fabs(A)")]),
+    ("friction of a plate the wrong way", BOUNDARY + "plates.c", [("o->out[F_VSX + t] -= o->plate[PLATE_SHEAR]", "o->out[F_VSX + t] += o->plate[PLATE_SHEAR]")]),
+    ("inertia of the fluids left out of the mixture", MODEL + "residual.c", [("inertia[i] += out[OUT_M + 1 + ph] * acc[i]", "inertia[i] += 0.0 * out[OUT_M + 1 + ph] * acc[i]")]),
+    ("initial pressure at a face without its water", MODEL + "evaluate.c", [("weight += rho *", "weight += 0.0 * rho *")]),
+    ("pressure projection without inertia (275)", MODEL + "stabilise.c", [("return 1.0 / (1.0 + PetscSqr(c->t_inertia / m->stage.dt))", "return c->t_inertia >= 0.0 && m->stage.dt > 0.0 ? 1.0 : 0.0")]),
+    ("ghost penalty ten times", MODEL + "stabilise.c", [("const double g = m->c->ghost_penalty;", "const double g = 10.0 * m->c->ghost_penalty;")]),
+]  # fmt: skip
+
+
+def copy(folder):
+    """A copy of the files under version control, built once."""
+    files = subprocess.run(["git", "-C", str(ROOT), "ls-files", "-z"], capture_output=True, check=True).stdout.split(b"\0")
+    for name in filter(None, map(bytes.decode, files)):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        if (ROOT / name).is_file():
+            shutil.copy(ROOT / name, folder / name)
+
+
+def build(folder, target):
+    """What the compiler says against it; "" if nothing."""
+    done = subprocess.run(["ninja", "-C", str(folder / "build"), target], capture_output=True, text=True)
+    return "" if done.returncode == 0 else done.stdout[-1500:]
+
+
+def configure(folder):
+    script = f"cd {folder} && source scripts/setup.sh && set +e && setup_build build clathra"
+    subprocess.run(["bash", "-c", script], check=True, stdout=subprocess.DEVNULL)
+
+
+def tests(folder, path):
+    """(name, what it needs, command) of the quick tests, those of the fault's folder first."""
+    own = FIRST[Path(path).parts[1]]
+    for name in sorted(UNIT, key=lambda u: u != own):
+        yield f"unit/test_{name}", f"tests/test_{name}", ["mpiexec", "-n", "1", str(folder / "build" / "tests" / f"test_{name}")]
+    for name in RUNS:
+        yield f"verification/{name}", "clathra", [sys.executable, str(folder / "tests" / "verification" / f"{name}.py"), str(folder / "build" / "clathra")]
+
+
+def said(text):
+    """The line of a failing test that names what failed."""
+    found = re.search(r"^FAIL (.*?)(?:   |$)", text, re.M) or re.search(r"\[  FAILED  \] (\w+)", text)
+    return found[1].strip() if found else "ends with an error"
+
+
+def found_by(folder, path):
+    """(test, what it says) of the first quick test that fails; None: they all pass."""
+    for name, target, command in tests(folder, path):
+        against = build(folder, target)
+        if against:
+            return "the compiler", against.splitlines()[-1]
+        try:
+            done = subprocess.run(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                                  errors="replace", timeout=600)  # fmt: skip
+        except subprocess.TimeoutExpired:
+            return name, "not done in ten minutes"
+        if done.returncode:
+            return name, said(done.stdout + done.stderr)
+    return None
+
+
+def plant(folder, fault):
+    """The row of a fault: (name, file, test that found it, what it says)."""
+    name, path, edits = fault
+    file = folder / path
+    good = text = file.read_text()
+    for old, new in edits:
+        if text.count(old) != 1:
+            raise SystemExit(f"{name}: {path} holds {text.count(old)} times\n{old}\nmend this script")
+        text = text.replace(old, new)
+    file.write_text(text)
+    try:
+        return (name, path, *(found_by(folder, path) or ("", "")))
+    finally:
+        file.write_text(good)
+
+
+def page(found):
+    rows = [(name, path, *found[name]) for name, path, _ in FAULTS if name in found]
+    seen, left = sum(bool(r[2]) for r in rows), [name for name, *_ in FAULTS if name not in found]
+    lines = ["# Planted faults", "",
+             "Written by `tests/mutation.py --record tests/studies/mutation.jsonl --page docs/mutation.md`; change that, not this page. Each fault is planted alone in a copy of the tree, with its derivative where it has "
+             "one, so that what finds it is a test of the physics, not Newton's method. The quick tests (unit tests on one rank, then verification that takes seconds) run until one fails.", "",
+             f"{seen} of {len(rows)} faults were found." + (f" Written down, but not planted yet: {', '.join(left)}." if left else ""), "",
+             "| planted | in | found first by | what it says | commit |", "|---|---|---|---|---|"]  # fmt: skip
+    lines += [f"| {name} | {path} | {test or '**none**'} | {what} | {commit} |" for name, path, test, what, commit in rows]
+    return "\n".join(lines) + "\n"
+
+
+def read(record):
+    """{fault: (test, what it says, commit)}, the last of each."""
+    lines = Path(record).read_text().splitlines() if record and Path(record).is_file() else []
+    return {e["fault"]: (e["test"], e["says"], e["commit"]) for e in map(json.loads, lines)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--page", help="file for the result, as a page")
+    parser.add_argument("--only", nargs="*", help="faults whose names hold one of these words")
+    parser.add_argument("--work", help="folder for the copy, kept; default: a new one, removed")
+    parser.add_argument("--record", help="file of what was found, gone on with")
+    parser.add_argument("--fresh", action="store_true", help="ask for all faults again")
+    parser.add_argument("--sound", action="store_true", help="first run the quick tests without a fault")
+    args = parser.parse_args()
+    folder = Path(args.work or tempfile.mkdtemp(prefix="clathra-mutation-")).resolve()
+    found = {} if args.fresh else read(args.record)
+    faults = [f for f in FAULTS if f[0] not in found and (not args.only or any(w in f[0] for w in args.only))]
+    commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
+    try:
+        if faults:
+            copy(folder)
+            configure(folder)
+        sound = found_by(folder, MODEL) if args.sound else None
+        if sound:
+            raise SystemExit(f"without a fault {sound[0]} fails: {sound[1]}")
+        for fault in faults:
+            name, path, test, says = plant(folder, fault)
+            found[name] = (test, says, commit)
+            print(f"{name}: {test or 'NOT FOUND'}: {says}", flush=True)
+            if args.record:
+                with open(args.record, "a") as file:
+                    file.write(json.dumps({"commit": commit, "fault": name, "file": path, "test": test, "says": says}) + "\n")
+    finally:
+        if not args.work:
+            shutil.rmtree(folder, ignore_errors=True)
+    if args.page:
+        Path(args.page).write_text(page(found))
+    missed = [name for name, (test, _, _) in found.items() if not test]
+    print(f"{len(found) - len(missed)} of {len(found)} found" + (f"; not: {', '.join(missed)}" if missed else ""))
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""Sediment without gas (equations (101)-(109)): gas appears as hydrate dissociates and is gone when hydrate has formed of it,
+against the exact equilibrium of a closed cell, implicit and hybrid, on two ranks and across a restart; gas that is let into
+sediment full of water, against finite volumes.
+"""
+import math
+from pathlib import Path
+
+import numpy as np
+
+import exact
+from common import Run, check, finish, judge, scratch, table
+
+CASES = Path(__file__).parent / "cases"
+CELL = CASES / "no_gas_cell.yaml"
+LAW = exact.Retention(p0=1e4, m=0.5, Swr=0.1, Sgr=0.0)
+SOLUBILITY = 1e-7 * 0.016 / (8.314 * 283.15)  # kg/(m^3 Pa) (102)
+PHI, KW, P_REF = 0.3, 2.2e9, 2.84e6
+WATER = ("-bc_sea_type", "pressure", "-bc_sea_side", "right", "-bc_sea_pressure", "8 MPa", "-bc_sea_phases", "water")
+FORMS = ("-without_gas", "yes", "-boundaries", "sea", *WATER, "-region_cell_pressure", "8 MPa", "-region_cell_Sh", 0.1, "-region_cell_Sw", 0.85,
+         "-region_cell_Sg", 0.05)  # fmt: skip
+
+
+def water(p):
+    return 1000.0 * math.exp((p - P_REF) / KW)
+
+
+def equilibrium(p0, T0, Sh):
+    """p_w, p_g, T, S_h, S_g of the closed adiabatic cell without gas, when p = p_e(T)."""
+    cell = exact.masuda_cell(p=p0, T=T0, phi=PHI, Sh=Sh, Sw=1 - Sh, Sg=0.0)
+    pg0 = p0 - 20 * LAW.p0  # where a run starts without gas (103)
+    mh0, mw0 = PHI * Sh * 900.0, PHI * (1 - Sh) * water(p0)
+    mg0 = PHI * (1 - Sh) * SOLUBILITY * pg0
+    heat = exact.replace(cell, rho_w=water(p0))
+
+    def state(formed):
+        T, mh = heat.temperature(formed), mh0 + formed
+        mw, mg = mw0 - formed * 6 * 0.018 / 0.124, mg0 - formed * 0.016 / 0.124
+        pores = PHI - mh / 900.0
+
+        def gas_share(pw):
+            return 1 - mw / (pores * water(pw))
+
+        def lacks(pw):
+            s = gas_share(pw)
+            pc = exact.bisect(lambda x: LAW.gas_share(x) - s, -3e6, 3e6, 70)
+            pg = pw + pc
+            return pores * (s * 0.016 * pg / (8.314 * (T + exact.ZERO_C)) + (1 - s) * SOLUBILITY * pg) - mg
+
+        tight = P_REF + KW * math.log(mw / (pores * 1000.0))  # no room for gas
+        pw = exact.bisect(lacks, tight + 1e-6 * KW, tight + 0.5 * KW, 60)
+        s = gas_share(pw)
+        pc = exact.bisect(lambda x: LAW.gas_share(x) - s, -3e6, 3e6)
+        return {"p_w": pw, "p_g": pw + pc, "p": pw + s * pc, "T": T, "S_h": mh / 900 / PHI, "S_g": (1 - mh / 900 / PHI) * s}
+
+    formed = exact.bisect(lambda m: state(m)["p"] - cell.equilibrium_pressure(state(m)["T"]), -3e-3 * mh0, -1e-6 * mh0, 50)
+    return state(formed)
+
+
+def balances(name, run):
+    worst = max(np.max(np.abs(run.balance[f"{w}_error"])) for w in ("water", "methane"))
+    judge(24, f"{name}: water and methane, largest error of any step", worst, 1e-13)
+
+
+def appears():
+    want = equilibrium(2e6, 2.3, 0.5)
+    for name, options in (("sdirk2", ()), ("euler, steps of 0.25 s", ("-stepper_type", "euler", "-stepper_adapt", "no", "-stepper_dt", 0.25, "-time_end", "10 s")),
+                          ("hybrid", ("-stepper_type", "hybrid", "-stepper_adapt", "yes", "-time_end", "2 s", "-output_probe_every", "1 s"))):  # fmt: skip
+        run = Run.of_case(CELL, *options)
+        columns = {"p": "p_Pa", "p_g": "p_g_Pa", "T": "T_degC", "S_h": "S_h", "S_g": "S_g"}
+        got = {k: run.probe("middle")[c][-1] for k, c in columns.items()}
+        print(f"\nno gas at first, {name}: {len(run.balance['time_s'])} steps")
+        table(("quantity", "computed", "exact", "relative error"), [(k, f"{got[k]:.8g}", f"{want[k]:.8g}", got[k] / want[k] - 1) for k in got])  # fmt: skip
+        for k in got:
+            judge(24, f"gas appears, {name}: {k} at equilibrium, relative error", abs(got[k] / want[k] - 1), 2e-5 if k == "S_g" else 1e-6)
+        balances(f"gas appears, {name}", run)
+        check("steps refused or over tolerance", run.output.count("refused ("), 2 if name == "sdirk2" else 0)
+
+
+def disappears():
+    gas = PHI * 0.05 * 0.016 * (8e6 + LAW.invert(0.05 / 0.9) * (1 - 0.05 / 0.9)) / (8.314 * 275.45)  # kg/m^3
+    made = 0.01 * gas * 0.124 / 0.016  # kg in the cell
+    run = Run.of_case(CELL, *FORMS)
+    judge(24, "gas is gone, sdirk2: hydrate made against what all gas makes, relative error", abs((run.balance["hydrate_kg"][-1] - 0.27) / made - 1), 1e-5)
+    judge(24, "gas is gone, sdirk2: S_g", run.probe("middle")["S_g"][-1], (0.0, 1e-9))
+    balances("gas is gone, sdirk2", run)
+    check("steps refused", run.output.count("refused ("), 2)
+    short = ("-time_end", "60 s", "-output_probe_every", "10 s")
+    one, other = (Run.of_case(CELL, *FORMS, *short, *o).probe("middle") for o in ((), ("-stepper_type", "hybrid", "-stepper_adapt", "yes")))
+    table(("time (s)", "S_g sdirk2", "hybrid"), zip(range(0, 70, 10), one["S_g"], other["S_g"]))
+    judge(24, "gas goes, hybrid against sdirk2: S_g, of the first", np.max(np.abs(one["S_g"] - other["S_g"])) / 0.05, 5e-3)
+
+
+def column():
+    case = CASES / "no_gas_column.yaml"
+    keys = [f"{p}.{q}" for p in ("hydrate", "free") for q in ("p_Pa", "T_degC", "S_h", "S_g")]
+    straight, two, hybrid = (Run.of_case(case, *o, ranks=n) for n, o in ((1, ()), (2, ()), (1, ("-stepper_type", "hybrid", "-stepper_adapt", "yes"))))
+    differ = lambda a, b: max(np.max(np.abs(a.probes[k] - b.probes[k])) / max(np.max(np.abs(a.probes[k])), 1e-3) for k in keys)
+    print()
+    judge(24, "column: two ranks against one, largest relative difference", differ(straight, two), 1e-9)
+    judge(24, "column: hybrid against sdirk2, largest relative difference", differ(straight, hybrid), 8e-3)
+    for name, run in (("sdirk2", straight), ("hybrid", hybrid)):
+        balances(f"column, {name}", run)
+        judge(24, f"column, {name}: gas in the half without hydrate", np.max(run.probe("free")["S_g"]), 1e-6)
+    out = scratch() / "half"
+    Run.of_case(case, "-time_end", "20 ms", out=out)
+    Run.of_case(case, "-restart", out / "checkpoint.h5", out=out)
+    again = Run(out)
+    check("column: restart while gas appears, bit for bit", max(np.max(np.abs(straight.probes[k][-5:] - again.probes[k][-5:])) for k in keys), 0.0)
+
+
+K, Q, MU = 1e-12, 2e-6, (1e-3, 7e-6)  # m^2, m/s, Pa s of no_gas_inflow.yaml
+
+
+def displaced(cells, end):
+    """Places (m) and S_g when gas drives water out of 1 m of sand, both incompressible: explicit finite volumes."""
+    h, pc = 1 / cells, np.linspace(-2e4, 1e4, 20001)
+    share = np.array(LAW.gas_share(pc)) - LAW.gas_share(-2e5)
+    mobile = lambda s: (np.clip(1 - s / 0.9, 0, 1) ** 4 / MU[0], np.clip(s / 0.9, 0, 1) ** 2 / MU[1])
+    w, g = mobile(share)
+    spread, speed = np.nanmax(K * w * g / (w + g) * np.gradient(pc, share)), Q * np.nanmax(np.gradient(g / (w + g), share))
+    steps = 1 + int(end / min(0.4 * h * h * PHI / spread, 0.4 * h * PHI / speed))
+    s = np.zeros(cells)
+    for _ in range(steps):
+        w, g = (0.5 * (m[1:] + m[:-1]) for m in mobile(s))
+        u = g / (w + g) * (Q - K * w * np.diff(np.interp(s, share, pc)) / h)
+        s -= end / steps / PHI / h * np.diff(np.concatenate(([Q], u, [u[-1]])))
+    return (np.arange(cells) + 0.5) * h, s
+
+
+def inflow():
+    case, end = CASES / "no_gas_inflow.yaml", 3600.0
+    x, want = displaced(100, end)
+    rows = []
+    for cells in (20, 40):
+        run = Run.of_case(case, "-grid_cells", f"{cells},1")
+        v = run.snapshot(end)
+        exact_S = np.interp(v["position"][:, 0], x, want)
+        rows.append((float(cells), np.mean(np.abs(v["S_g"][:, 0] - exact_S)) / np.mean(exact_S), v["S_g"].min(), len(run.balance["time_s"])))
+        lost = np.max(np.abs(run.balance["methane_error"])) * run.balance["methane_kg"][0] / run.balance["methane_kg"][-1]
+        judge(24, f"inflow, {cells} cells: methane, largest error of any step over what is there at the end", lost, 1e-13)
+    print("\ngas into sediment full of water, 1 h")
+    table(("cells", "mean error of S_g, of its mean", "smallest S_g", "steps"), rows)
+    judge(24, "gas into water, 40 cells: mean error of S_g, of its mean", rows[1][1], 0.02, 0.01, "%")
+    judge(24, "gas into water: error on 40 cells over that on 20", rows[1][1] / rows[0][1], 0.7)
+    judge(24, "gas into water: smallest S_g", min(r[2] for r in rows), (0.0, 1e-6))
+
+
+if __name__ == "__main__":
+    inflow()
+    appears()
+    disappears()
+    column()
+    finish()
