@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import ROOT, binary, check, check_true, finish, largest_difference, launch, run, scratch
+from common import ROOT, binary, check_true, finish, judge, largest_difference, launch, run, scratch
 
 CASES = Path(__file__).parent / "cases"
 case = scratch() / "case.yaml"
@@ -28,13 +28,13 @@ def alternation(done, quantity):
 
 upwind, central = well("yes"), well("no")
 print(f"S_w: second differences of up to {alternation(central, 'S_w'):.4f} without (200), {alternation(upwind, 'S_w'):.4f} with it")
-check("S_w: largest second difference between cells, of that without (200)", alternation(upwind, "S_w") / alternation(central, "S_w"), 0.3)
+judge("fronts", "S_w: largest second difference between cells, of that without (200)", alternation(upwind, "S_w") / alternation(central, "S_w"), 0.3)
 p = [r.probe("middle")["p_Pa"][-1] for r in (upwind, central)]
-check("pressure at the probe, with and without, of the drop", abs(p[0] - p[1]) / 2e6, 0.01)
+judge("fronts", "pressure at the probe, with and without, of the drop", abs(p[0] - p[1]) / 2e6, 0.01)
 for name in ("water_error", "methane_error"):
-    check(f"{name}", np.max(np.abs(upwind.balance[name])), 1e-12)
+    judge("fronts", f"{name}", np.max(np.abs(upwind.balance[name])), 1e-12)
 two = well("yes", ranks=2)
-check("1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], upwind.probe("middle")["p_Pa"]), 1e-7)
+judge("fronts", "1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], upwind.probe("middle")["p_Pa"]), 1e-7)
 for name in ("saturation", "reaction"):
     hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-stabilisation_saturation", "no", f"-stabilisation_{name}", "yes", "-case_check", out=scratch() / "out")
     check_true(f"hybrid refuses stabilisation_{name}", hybrid.returncode == 2 and f"stabilisation_{name}" in hybrid.stdout, hybrid.stdout)
@@ -48,12 +48,12 @@ def heater(lumped, *more, **keywords):
 
 (nodes, S), (particles, S_0) = heater("yes"), heater("no")
 print(f"S_h beside the heater with (265): {np.round(S, 2)}\n                      without it: {np.round(S_0, 2)}")
-check("(265): hydrate ahead of the front, beyond that far away", np.max(S) / S[-1] - 1, 0.01)
-check("(265): S_h that falls towards the far end", max(np.max(-np.diff(S)), 0.0), 1e-3)
+judge("fronts", "(265): hydrate ahead of the front, beyond that far away", np.max(S) / S[-1] - 1, 0.01)
+judge("fronts", "(265): S_h that falls towards the far end", max(np.max(-np.diff(S)), 0.0), 1e-3)
 check_true("without it there is more than a tenth", np.max(S_0) / S_0[-1] > 1.1, f"{np.max(S_0) / S_0[-1] - 1:.3f}")
-check("(265): hydrate that is left, with and without", abs(np.sum(S) / np.sum(S_0) - 1), 0.15)
+judge("fronts", "(265): hydrate that is left, with and without", abs(np.sum(S) / np.sum(S_0) - 1), 0.15)
 for name in ("water_error", "methane_error"):
-    check(f"(265): {name}", np.max(np.abs(nodes.balance[name])), 1e-12)
+    judge("fronts", f"(265): {name}", np.max(np.abs(nodes.balance[name])), 1e-12)
 one, two = (heater("yes", "-time_end", "1 h", ranks=n)[1] for n in (1, 2))
-check("(265): 1 and 2 ranks, S_h", np.max(np.abs(two - one)), 1e-8)
+judge("fronts", "(265): 1 and 2 ranks, S_h", np.max(np.abs(two - one)), 1e-8)
 finish()

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from common import Run, check, check_true, finish, scratch, table
+from common import Run, check_true, finish, judge, scratch, table
 from exact import R_GAS, ZERO_C, Retention, bisect
 
 M, TC, PC, ECCENTRIC = 0.016, 190.564, 4.5992e6, 0.01142
@@ -157,11 +157,11 @@ for eos in ("peng_robinson", "ideal"):
         pump = Run.of_case(folder / "pump.yaml", "-mat_sand_gas_eos", eos, *kind)
         end = pump.probe("middle")["T_degC"][-1]
         rows.append((eos, stepper, bath["heat_in_J"][-1] / heat - 1, bath["compression_heat_J"][-1] / given - 1, end, T, (end - T) / (T - 4)))
-        check(f"{eos}, {stepper}: heat that warms a closed cell by 20 K, of what compression gives", abs(bath["heat_in_J"][-1] - heat) / given, 0.01)
-        check(f"{eos}, {stepper}: ... heat of compression in balance.csv", abs(rows[-1][3]), 0.01)
-        check(f"{eos}, {stepper}: rise of T as water is pressed in", abs(rows[-1][6]), 0.01)
-        check(f"{eos}, {stepper}: ... heat of compression in balance.csv", abs(pump.balance["compression_heat_J"][-1] / work - 1), 0.01)
-        check(f"{eos}, {stepper}: balance of heat", np.max(np.abs(pump.balance["heat_error"])), 1e-8)
+        judge("fluids", f"{eos}, {stepper}: heat that warms a closed cell by 20 K, of what compression gives", abs(bath["heat_in_J"][-1] - heat) / given, 0.01)
+        judge("fluids", f"{eos}, {stepper}: ... heat of compression in balance.csv", abs(rows[-1][3]), 0.01)
+        judge("fluids", f"{eos}, {stepper}: rise of T as water is pressed in", abs(rows[-1][6]), 0.01)
+        judge("fluids", f"{eos}, {stepper}: ... heat of compression in balance.csv", abs(pump.balance["compression_heat_J"][-1] / work - 1), 0.01)
+        judge("fluids", f"{eos}, {stepper}: balance of heat", np.max(np.abs(pump.balance["heat_error"])), 1e-8)
 table(("gas", "integrator", "heat of warming", "of it compression", "T after pumping", "exact", "error of the rise"), rows)
 
 # gas throttled from 10 to 5 MPa: c dT + (1 - beta T)/rho dp - b dx = 0 along the way, with the run's own p(x)
@@ -181,17 +181,17 @@ for eos, stepper, gravity in (("peng_robinson", "sdirk2", -1e4), ("ideal", "sdir
     rows.append((eos, stepper, gravity, p[-1] / 1e6, T[-1] - T[0], want[-1] - T[0], off))
     name = f"{eos}, {stepper}, gravity {gravity:g} m/s^2"
     if eos == "ideal":
-        check(f"{name}: an ideal gas is not cooled (K; what the water that expands took is not gone yet)", off, 0.01)
+        judge("fluids", f"{name}: an ideal gas is not cooled (K; what the water that expands took is not gone yet)", off, 0.01)
     else:
-        check(f"{name}: T along the way, of the drop", off / (T[0] - T[-1]), 0.01)
-        check(f"{name}: drop over 4.7 MPa, K", T[0] - T[-1], (20, 40))
+        judge("fluids", f"{name}: T along the way, of the drop", off / (T[0] - T[-1]), 0.01)
+        judge("fluids", f"{name}: drop over 4.7 MPa, K", T[0] - T[-1], (20, 40))
     if eos == "ideal":
         continue
     case = (folder / "plug.yaml", "-gravity", f"{gravity} m/s^2, 0 m/s^2", *kind)
     short = ("-time_end", "0.2 s", "-output_times", "0 s, 0.2 s")
     half, two = Run.of_case(*case, *short), Run.of_case(*case, *short, ranks=2)
     before = half.balance["compression_heat_J"][-1]
-    check(f"{name}: 2 ranks against 1 at 0.2 s, K", np.max(np.abs(two.snapshots()[-1][1]["T"] - half.snapshots()[-1][1]["T"])), 1e-9)
+    judge("fluids", f"{name}: 2 ranks against 1 at 0.2 s, K", np.max(np.abs(two.snapshots()[-1][1]["T"] - half.snapshots()[-1][1]["T"])), 1e-9)
     again = Run.of_case(*case, "-restart", half.out / "checkpoint.h5", "-time_end", "0.4 s", "-output_times", "0 s, 0.2 s, 0.4 s", out=half.out).balance
     sum_ = again["compression_heat_J"]
     check_true(f"{name}: heat of compression goes on over a restart", before in sum_ and sum_[-1] < 2 * before < 0, (before, sum_[-1]))

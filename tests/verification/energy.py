@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from _integrators import adaptive, consolidation, fixed
-from common import Run, check, check_true, finish, order, table
+from common import Run, check_true, finish, judge, order, table
 
 CASES = Path(__file__).parent / "cases"
 FOOTING = Path(__file__).resolve().parents[1] / "integration" / "cases" / "footing.yaml"
@@ -29,11 +29,11 @@ def falls():
     for kind in ("sdirk2", "euler", "hybrid"):
         run, b = go("free fall", kind, CASES / "falling.yaml")
         expected = b["gravity_work"] * (run.balance["dt_s"][-1] / (0.8 + run.balance["dt_s"][-1]) if kind == "euler" else 0.0)
-        check(f"free fall, {kind}: gravity, kinetic", abs(b["gravity_work"] - b["kinetic_energy"] - expected) / b["kinetic_energy"], 1e-11)
-        check(f"free fall, {kind}: kinetic energy lost", abs(b["kinetic_lost"] - expected) / b["kinetic_energy"], 1e-11)
-        check(f"free fall, {kind}: remainder", abs(b["energy_remainder"]) / b["kinetic_energy"], 1e-10)
+        judge("energy", f"free fall, {kind}: gravity, kinetic", abs(b["gravity_work"] - b["kinetic_energy"] - expected) / b["kinetic_energy"], 1e-11)
+        judge("energy", f"free fall, {kind}: kinetic energy lost", abs(b["kinetic_lost"] - expected) / b["kinetic_energy"], 1e-11)
+        judge("energy", f"free fall, {kind}: remainder", abs(b["energy_remainder"]) / b["kinetic_energy"], 1e-10)
         P = run.balance["kinetic_power_W"][-1] / (b["kinetic_energy"] * 2 / 0.8)
-        check(f"free fall, {kind}: power", abs(P - 1), 0.03)  # hybrid: the mean over a burst
+        judge("energy", f"free fall, {kind}: power", abs(P - 1), 0.03)  # hybrid: the mean over a burst
 
 
 def waves():
@@ -48,8 +48,8 @@ def waves():
             left.append(np.max(np.abs(run.balance["energy_remainder_J"] + run.balance["kinetic_lost_J"])) / held)
         orders = order(1 / np.array(sizes), left)
         found += [[kind, n, e] for n, e in zip(sizes, left)]
-        check(f"bar wave, {kind}: order of what is left", orders[-1], (low, 4))
-        check(f"bar wave, {kind}: what is left, share of the energy", left[-1], 0.2 if kind == "euler" else 0.02)
+        judge("energy", f"bar wave, {kind}: order of what is left", orders[-1], (low, 4))
+        judge("energy", f"bar wave, {kind}: what is left, share of the energy", left[-1], 0.2 if kind == "euler" else 0.02)
     table(["integrator", "cells", "lost and left, share"], found)
 
 
@@ -61,16 +61,16 @@ def consolidates():
         b = {k: v[-1] for k, v in run.balance.items()}
         rows.append(["consolidation", kind, *(b[k] for k in ("kinetic_energy_J", *COLUMNS))])
         size = b["drag_work_J"] + b["elastic_energy_J"]
-        check(f"consolidation, {kind}: elastic energy against q^2 V/2M", abs(b["elastic_energy_J"] / elastic - 1), 0.01)
-        check(f"consolidation, {kind}: given less kept and dissipated", abs((b["load_work_J"] + b["pressure_work_J"]) / size - 1), bar)
-        check(f"consolidation, {kind}: remainder", abs(b["energy_remainder_J"]) / size, bar)
+        judge("energy", f"consolidation, {kind}: elastic energy against q^2 V/2M", abs(b["elastic_energy_J"] / elastic - 1), 0.01)
+        judge("energy", f"consolidation, {kind}: given less kept and dissipated", abs((b["load_work_J"] + b["pressure_work_J"]) / size - 1), bar)
+        judge("energy", f"consolidation, {kind}: remainder", abs(b["energy_remainder_J"]) / size, bar)
 
 
 def drains():
     """On the way, with 1 MPa on either side of the load: works of what balances must be those of one motion."""
     run = consolidation(cells=(13, 1)).run(*adaptive("hybrid"), cells=(13, 1))
     b = {k: v[-1] for k, v in run.balance.items()}
-    check("draining, hybrid: remainder", abs(b["energy_remainder_J"]) / (b["drag_work_J"] + b["elastic_energy_J"]), 1e-3)
+    judge("energy", "draining, hybrid: remainder", abs(b["energy_remainder_J"]) / (b["drag_work_J"] + b["elastic_energy_J"]), 1e-3)
 
 
 PRESSED = ("-inertia", "no", "-stepper_dt", "2 ms", "-time_end", "0.12 s", "-output_times", "0.12 s", "-output_probe_every", "10 ms", "-bc_plate_rough", "no", "-bc_plate_velocity", "-0.1 m/s",
@@ -88,9 +88,9 @@ def yields():
         given, gone = (run.balance[k][-1] - run.balance[k][half] for k in ("plate_work_J", "plastic_work_J"))
         gone += run.balance["damping_work_J"][-1] - run.balance["damping_work_J"][half]
         stored = run.balance["elastic_energy_J"][-1] - run.balance["elastic_energy_J"][half]
-        check(f"steady yield, {kind}: dissipated over the plate's work", gone / given, (0.97, 1.03))
-        check(f"steady yield, {kind}: stored", abs(stored) / given, 0.02)
-        check(f"steady yield, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], 0.02)
+        judge("energy", f"steady yield, {kind}: dissipated over the plate's work", gone / given, (0.97, 1.03))
+        judge("energy", f"steady yield, {kind}: stored", abs(stored) / given, 0.02)
+        judge("energy", f"steady yield, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], 0.02)
 
 
 def plates():
@@ -98,18 +98,18 @@ def plates():
     short = ("-time_end", "0.1 s", "-output_times", "0.1 s", "-stepper_dt", "1 ms")
     for kind in ("sdirk2", "euler", "hybrid"):
         run, b = go("plate", kind, CASES / "plate_block.yaml", *short)
-        check(f"plate, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], {"sdirk2": 0.008, "euler": 0.02, "hybrid": 0.002}[kind])
+        judge("energy", f"plate, {kind}: remainder", abs(b["energy_remainder"]) / b["plate_work"], {"sdirk2": 0.008, "euler": 0.02, "hybrid": 0.002}[kind])
     for kind in ("sdirk2", "hybrid"):
         run, b = go("footing", kind, FOOTING)
-        check(f"footing, {kind}: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.01)
-        check(f"footing, {kind}: heat, share of the plastic work", abs(b["plastic_heat"] / b["plastic_work"] - 0.7), 1e-12)
+        judge("energy", f"footing, {kind}: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.01)
+        judge("energy", f"footing, {kind}: heat, share of the plastic work", abs(b["plastic_heat"] / b["plastic_work"] - 0.7), 1e-12)
         two, b2 = go("footing, 2 ranks", kind, FOOTING, *(TIGHT if kind == "sdirk2" else ()), ranks=2)
         one, b1 = (run, b) if kind == "hybrid" else go("footing, tight", kind, FOOTING, *TIGHT)
         off = max(abs(b2[k] - b1[k]) for k in b1 if "heat" not in k) / b1["load_work"]
-        check(f"footing, {kind}: 2 ranks against 1", off, 1e-7)
+        judge("energy", f"footing, {kind}: 2 ranks against 1", off, 1e-7)
     run, b = go("footing, damped", "hybrid", FOOTING, "-stepper_damping", "0.3")
-    check("footing, damped hybrid: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.01)
-    check("footing, damped hybrid: what damping takes", b["damping_work"] / b["load_work"], (1e-3, 0.2))
+    judge("energy", "footing, damped hybrid: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.01)
+    judge("energy", "footing, damped hybrid: what damping takes", b["damping_work"] / b["load_work"], (1e-3, 0.2))
 
 
 def around():
@@ -122,8 +122,8 @@ def around():
                         "-stepper_dt", "0.05 s", "-time_end", "0.5 s", "-output_probe_every", "0.5 s", "-bc_shear_shear_ramp", "0 Pa,-0.1 MPa,0 s,0.4 s",
                         *(TIGHT if kind != "hybrid" else ()))  # fmt: skip
             left.append(b)
-        check(f"sheared in 10 and 0.1 MPa, {kind}: remainders apart", abs(left[1]["energy_remainder"] - left[0]["energy_remainder"]) / left[0]["elastic_energy"], 1e-8)
-        check(f"sheared in 10 MPa, {kind}: remainder", abs(left[1]["energy_remainder"]) / left[1]["elastic_energy"], 0.03)
+        judge("energy", f"sheared in 10 and 0.1 MPa, {kind}: remainders apart", abs(left[1]["energy_remainder"] - left[0]["energy_remainder"]) / left[0]["elastic_energy"], 1e-8)
+        judge("energy", f"sheared in 10 MPa, {kind}: remainder", abs(left[1]["energy_remainder"]) / left[1]["elastic_energy"], 0.03)
 
 
 def hydrate():
@@ -131,8 +131,8 @@ def hydrate():
     for kind in ("sdirk2", "hybrid"):
         for change, bar in (("both", 0.1), ("bonds", 0.1)):
             run, b = go(f"dissociating, {change}", kind, CASES / "block.yaml", "-mat_sand_elasticity_stiffness_change", change)
-            check(f"dissociating block, {change}, {kind}: remainder over the released", abs(b["energy_remainder"]) / b["elastic_released"], bar)
-            check(f"dissociating block, {change}, {kind}: released over the elastic energy", b["elastic_released"] / b["elastic_energy"], (0.005, 0.1))
+            judge("energy", f"dissociating block, {change}, {kind}: remainder over the released", abs(b["energy_remainder"]) / b["elastic_released"], bar)
+            judge("energy", f"dissociating block, {change}, {kind}: released over the elastic energy", b["elastic_released"] / b["elastic_energy"], (0.005, 0.1))
 
 
 def rigid():

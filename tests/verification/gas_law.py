@@ -4,7 +4,7 @@ Robinson's equation solved here on its own; what the paper's ideal gas would mak
 """
 import numpy as np
 
-from common import Run, check, check_true, finish, scratch, table
+from common import Run, check_true, finish, judge, scratch, table
 from exact import R_GAS, ZERO_C, Retention, bisect
 
 M, TC, PC, ECCENTRIC = 0.016, 190.564, 4.5992e6, 0.01142
@@ -70,7 +70,7 @@ for p, T in ((2.84e6, 2.3), (3.75e6, 2.3), (10e6, 4.0), (15e6, 10.0)):
     rho = start.snapshot(0.0)["mass_gas"].sum() / (V * PHI * SG)
     ideal = M * pg / (R_GAS * (T + ZERO_C))
     rows.append((p / 1e6, T, rho, ideal / rho, rho / density(pg, T) - 1))
-    check(f"gas in place at {p / 1e6:g} MPa, {T:g} degC against (120), relative", abs(rows[-1][4]), 1e-12)
+    judge("fluids", f"gas in place at {p / 1e6:g} MPa, {T:g} degC against (120), relative", abs(rows[-1][4]), 1e-12)
 table(("p (MPa)", "T (degC)", "rho (kg/m^3)", "Z", "error"), rows)
 
 want, wrong = warmed(3e6, 4.0, 24.0), warmed(3e6, 4.0, 24.0, lambda p, T: M * p / (R_GAS * (T + ZERO_C)))
@@ -81,7 +81,7 @@ for name, bar, options in (("sdirk2", 2e-7, []), ("euler", 2e-7, ["-stepper_type
     p, T = run.probe("middle")["p_Pa"], run.probe("middle")["T_degC"][-1]
     rise = (p[-1] - p[0]) / (want - 3e6) - 1
     rows.append((name, T, p[-1], want, wrong, rise))
-    check(f"{name}: rise of p in a closed cell warmed by 20 K against (120), relative", abs(rise), bar)
+    judge("fluids", f"{name}: rise of p in a closed cell warmed by 20 K against (120), relative", abs(rise), bar)
 table(("integrator", "T (degC)", "p (Pa)", "exact", "of an ideal gas", "error of the rise"), rows)
 check_true("an ideal gas would not do", abs((wrong - want) / (want - 3e6)) > 0.02, f"{(wrong - want) / (want - 3e6):.3f} of the rise")
 
@@ -92,6 +92,6 @@ for name, kind in (("sdirk2", []), ("hybrid", FIXED)):
     half = Run.of_case(case, *kind, *HALF)
     again = Run.of_case(case, *kind, "-restart", half.out / "checkpoint.h5", "-output_times", "0 s, 0.5 s, 1 s", out=half.out)
     last = one.snapshot(1.0)
-    check(f"{name}: 2 ranks against 1, p_g relative", np.max(np.abs(two.snapshot(1.0)["p_g"] / last["p_g"] - 1)), 1e-10)
-    check(f"{name}: over a restart at 0.5 s, p_g relative", np.max(np.abs(again.snapshot(1.0)["p_g"] / last["p_g"] - 1)), 1e-6)
+    judge("fluids", f"{name}: 2 ranks against 1, p_g relative", np.max(np.abs(two.snapshot(1.0)["p_g"] / last["p_g"] - 1)), 1e-10)
+    judge("fluids", f"{name}: over a restart at 0.5 s, p_g relative", np.max(np.abs(again.snapshot(1.0)["p_g"] / last["p_g"] - 1)), 1e-6)
 finish()

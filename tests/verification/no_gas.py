@@ -59,7 +59,7 @@ def equilibrium(p0, T0, Sh):
 
 def balances(name, run):
     worst = max(np.max(np.abs(run.balance[f"{w}_error"])) for w in ("water", "methane"))
-    judge(24, f"{name}: water and methane, largest error of any step", worst, 1e-13)
+    judge("gas", f"{name}: water and methane, largest error of any step", worst, 1e-13)
 
 
 def appears():
@@ -72,7 +72,7 @@ def appears():
         print(f"\nno gas at first, {name}: {len(run.balance['time_s'])} steps")
         table(("quantity", "computed", "exact", "relative error"), [(k, f"{got[k]:.8g}", f"{want[k]:.8g}", got[k] / want[k] - 1) for k in got])  # fmt: skip
         for k in got:
-            judge(24, f"gas appears, {name}: {k} at equilibrium, relative error", abs(got[k] / want[k] - 1), 2e-5 if k == "S_g" else 1e-6)
+            judge("gas", f"gas appears, {name}: {k} at equilibrium, relative error", abs(got[k] / want[k] - 1), 2e-5 if k == "S_g" else 1e-6)
         balances(f"gas appears, {name}", run)
         check("steps refused or over tolerance", run.output.count("refused ("), 2 if name == "sdirk2" else 0)
 
@@ -81,14 +81,14 @@ def disappears():
     gas = PHI * 0.05 * 0.016 * (8e6 + LAW.invert(0.05 / 0.9) * (1 - 0.05 / 0.9)) / (8.314 * 275.45)  # kg/m^3
     made = 0.01 * gas * 0.124 / 0.016  # kg in the cell
     run = Run.of_case(CELL, *FORMS)
-    judge(24, "gas is gone, sdirk2: hydrate made against what all gas makes, relative error", abs((run.balance["hydrate_kg"][-1] - 0.27) / made - 1), 1e-5)
-    judge(24, "gas is gone, sdirk2: S_g", run.probe("middle")["S_g"][-1], (0.0, 1e-9))
+    judge("gas", "gas is gone, sdirk2: hydrate made against what all gas makes, relative error", abs((run.balance["hydrate_kg"][-1] - 0.27) / made - 1), 1e-5)
+    judge("gas", "gas is gone, sdirk2: S_g", run.probe("middle")["S_g"][-1], (0.0, 1e-9))
     balances("gas is gone, sdirk2", run)
     check("steps refused", run.output.count("refused ("), 2)
     short = ("-time_end", "60 s", "-output_probe_every", "10 s")
     one, other = (Run.of_case(CELL, *FORMS, *short, *o).probe("middle") for o in ((), ("-stepper_type", "hybrid", "-stepper_adapt", "yes")))
     table(("time (s)", "S_g sdirk2", "hybrid"), zip(range(0, 70, 10), one["S_g"], other["S_g"]))
-    judge(24, "gas goes, hybrid against sdirk2: S_g, of the first", np.max(np.abs(one["S_g"] - other["S_g"])) / 0.05, 5e-3)
+    judge("gas", "gas goes, hybrid against sdirk2: S_g, of the first", np.max(np.abs(one["S_g"] - other["S_g"])) / 0.05, 5e-3)
 
 
 def column():
@@ -97,11 +97,11 @@ def column():
     straight, two, hybrid = (Run.of_case(case, *o, ranks=n) for n, o in ((1, ()), (2, ()), (1, ("-stepper_type", "hybrid", "-stepper_adapt", "yes"))))
     differ = lambda a, b: max(np.max(np.abs(a.probes[k] - b.probes[k])) / max(np.max(np.abs(a.probes[k])), 1e-3) for k in keys)
     print()
-    judge(24, "column: two ranks against one, largest relative difference", differ(straight, two), 1e-9)
-    judge(24, "column: hybrid against sdirk2, largest relative difference", differ(straight, hybrid), 8e-3)
+    judge("gas", "column: two ranks against one, largest relative difference", differ(straight, two), 1e-9)
+    judge("gas", "column: hybrid against sdirk2, largest relative difference", differ(straight, hybrid), 8e-3)
     for name, run in (("sdirk2", straight), ("hybrid", hybrid)):
         balances(f"column, {name}", run)
-        judge(24, f"column, {name}: gas in the half without hydrate", np.max(run.probe("free")["S_g"]), 1e-6)
+        judge("gas", f"column, {name}: gas in the half without hydrate", np.max(run.probe("free")["S_g"]), 1e-6)
     out = scratch() / "half"
     Run.of_case(case, "-time_end", "20 ms", out=out)
     Run.of_case(case, "-restart", out / "checkpoint.h5", out=out)
@@ -138,12 +138,12 @@ def inflow():
         exact_S = np.interp(v["position"][:, 0], x, want)
         rows.append((float(cells), np.mean(np.abs(v["S_g"][:, 0] - exact_S)) / np.mean(exact_S), v["S_g"].min(), len(run.balance["time_s"])))
         lost = np.max(np.abs(run.balance["methane_error"])) * run.balance["methane_kg"][0] / run.balance["methane_kg"][-1]
-        judge(24, f"inflow, {cells} cells: methane, largest error of any step over what is there at the end", lost, 1e-13)
+        judge("gas", f"inflow, {cells} cells: methane, largest error of any step over what is there at the end", lost, 1e-13)
     print("\ngas into sediment full of water, 1 h")
     table(("cells", "mean error of S_g, of its mean", "smallest S_g", "steps"), rows)
-    judge(24, "gas into water, 40 cells: mean error of S_g, of its mean", rows[1][1], 0.02, 0.01, "%")
-    judge(24, "gas into water: error on 40 cells over that on 20", rows[1][1] / rows[0][1], 0.7)
-    judge(24, "gas into water: smallest S_g", min(r[2] for r in rows), (0.0, 1e-6))
+    judge("gas", "gas into water, 40 cells: mean error of S_g, of its mean", rows[1][1], 0.02, 0.01, "%")
+    judge("gas", "gas into water: error on 40 cells over that on 20", rows[1][1] / rows[0][1], 0.7)
+    judge("gas", "gas into water: smallest S_g", min(r[2] for r in rows), (0.0, 1e-6))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, binary, check, check_true, finish, launch, scratch
+from common import Run, binary, check_true, finish, judge, launch, scratch
 
 CELL = Path(__file__).parent / "cases" / "masuda_cell.yaml"
 S, SHIFT = 0.035, 1.150757415565222  # (125), by hand
@@ -44,13 +44,13 @@ def salt():
     probe = run.probe("middle")
     said = re.search(r"equilibrium of hydrate by masuda, salinity 0.035 \((\S+) K colder\): p_e = (\S+) Pa at (\S+) degC", run.output)
     check_true("the curve, the salinity and p_e are printed", said is not None, run.output[:400])
-    check("printed p_e at the initial temperature, relative", abs(float(said[2]) / MASUDA(float(said[3]) + SHIFT) - 1), 1e-5)
-    check("closed cell in equilibrium: p over p_e(T + shift) - 1", abs(probe["p_Pa"][-1] / MASUDA(probe["T_degC"][-1] + SHIFT) - 1), 1e-4)
+    judge("fluids", "printed p_e at the initial temperature, relative", abs(float(said[2]) / MASUDA(float(said[3]) + SHIFT) - 1), 1e-5)
+    judge("fluids", "closed cell in equilibrium: p over p_e(T + shift) - 1", abs(probe["p_Pa"][-1] / MASUDA(probe["T_degC"][-1] + SHIFT) - 1), 1e-4)
     fresh = Run.of_case(CELL, "-time_end", "1e-3 s", "-stepper_dt", "1e-3 s", "-output_times", "0 s")
     ratio = run.snapshot(0.0)["mass_water"].sum() / fresh.snapshot(0.0)["mass_water"].sum()
     T = 2.3  # of the reference
     excess = S * (802 - 2.001 * T + 1.677e-2 * T**2 - 3.06e-5 * T**3 - 1.613e-5 * S * T**2)
-    check("water of 3.5 % salt is heavier by (126), relative", abs(ratio / (1 + excess / 1000) - 1), 1e-9)
+    judge("fluids", "water of 3.5 % salt is heavier by (126), relative", abs(ratio / (1 + excess / 1000) - 1), 1e-9)
 
 
 def kirchhoff():
@@ -61,7 +61,7 @@ def kirchhoff():
         (_, first), (_, last) = (lambda s: (s[0], s[-1]))(Run.of_case(CELL, "-mat_core_latent_heat_law", law).snapshots())
         H = [sum(float((v[k] * v["T"]).sum()) * c[k] for k in c) - L * float(v["mass_hydrate"].sum()) for v in (first, last)]
         heat = L * abs(float(last["mass_hydrate"].sum() - first["mass_hydrate"].sum()))
-        check(f"{law}: enthalpy that a closed cell lost, of the heat of reaction", abs(H[1] - H[0]) / heat, bar)
+        judge("fluids", f"{law}: enthalpy that a closed cell lost, of the heat of reaction", abs(H[1] - H[0]) / heat, bar)
 
 
 def viscosity(case):
@@ -81,7 +81,7 @@ def viscosity(case):
         for fluid in ("water", "gas"):
             column = next(k for k in laws if fluid in k and "kg" in k and "rate" not in k)
             a, b, p = (r[column][-1] for r in (laws, same, plain))
-            check(f"{name}: {fluid} that left, by its law against that constant", abs(a / b - 1), 1e-3)
+            judge("fluids", f"{name}: {fluid} that left, by its law against that constant", abs(a / b - 1), 1e-3)
             check_true(f"{name}: {fluid}, the law matters", abs(a / p - 1) > 0.02, f"{a / p:.4f}")
 
 
@@ -97,12 +97,12 @@ def ice(case):
         check_true(f"{name}: ice is said once", run.output.count("melting point of ice, by up to") == 1, run.output[-300:])
         said = re.search(r"at (\d+) looks, in up to (\d+) particles and by up to (\S+) K", summary)
         check_true(f"{name}: ... and counted in the summary", said is not None and int(said[2]) == 64, summary[-300:])
-        check(f"{name}: degrees below the melting point at 2.96 MPa", abs(float(said[3]) - (3 - 7.53e-8 * 2.9e6)), 0.01)
+        judge("fluids", f"{name}: degrees below the melting point at 2.96 MPa", abs(float(said[3]) - (3 - 7.53e-8 * 2.9e6)), 0.01)
         out = scratch() / "out"
         stop = launch(binary(), scene, *kind, "-ice", "stop", "-quiet", out=out)
         at = re.search(r"stopped at t = (\S+) s: the water", stop.stdout)
         check_true(f"{name}: ice: stop ends the run with code 3", stop.returncode == 3 and at is not None, stop.stdout[-300:])
-        check(f"{name}: ... where T passes the melting point (s)", float(at[1]), (4.2 / 7 - 0.01, 4.2 / 7 + (0.3 if kind else 0.02)))
+        judge("fluids", f"{name}: ... where T passes the melting point (s)", float(at[1]), (4.2 / 7 - 0.01, 4.2 / 7 + (0.3 if kind else 0.02)))
         on = launch(binary(), scene, *kind, "-ice", "warn", "-restart", out / "checkpoint.h5", "-quiet", out=out)
         check_true(f"{name}: ... and ice: warn goes on from there", on.returncode == 0 and "finished" in (out / "summary.txt").read_text(), on.stdout[-300:])
     sea = Run.of_case(scene, "-bc_bath_temperature_ramp", "4 degC, -1.5 degC, 0 s, 1 s", "-mat_sand_water_salinity", "0.035")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, check, finish, table
+from common import Run, finish, judge, table
 
 CASE = Path(__file__).parent / "cases" / "saturated_column.yaml"
 H, n, E, nu, g, K_w = 10.0, 0.33, 1e6, 0.3, 10.0, 2.2e9
@@ -40,5 +40,5 @@ for steps in (50, 100):
 found["hybrid", 0] = off("hybrid", "-stepper_type", "hybrid", "-stepper_adapt", "yes")
 table(("integrator", "steps to cross", "largest error of the end, of its largest displacement"), [(*k, v) for k, v in found.items()])
 for (scheme, steps), error in found.items():
-    check(f"{scheme}, {steps or 'its own'} steps: end of the column", error, 0.03 if scheme == "euler" else 0.01)
+    judge(6, f"{scheme}, {steps or 'its own'} steps: end of the column", error, 0.03 if scheme == "euler" else 0.01)
 finish()

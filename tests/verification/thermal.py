@@ -4,7 +4,7 @@ water that cannot leave (that one free under its load: implicit alone).
 """
 import numpy as np
 
-from common import Run, check, finish, scratch
+from common import Run, finish, judge, scratch
 from exact import bisect
 
 PHI, BETA, BETA_W, K_W, E, NU, RISE = 0.4, 3e-4, 6e-4, 2.2e9, 50e6, 0.3, 20.0
@@ -55,10 +55,10 @@ def dry():
     """Free in the plane: e = (1 + nu) a, sigma'_zz = -E a; between walls sigma' = -(3 lambda + 2 G) a, a = beta dT/3."""
     for name, bar, options in (("sdirk2", 1e-4, ["-inertia", "no"]), ("hybrid", 1e-4, HYBRID)):
         J, stress, _ = warmed("solid, heat", "bath, left, bottom", *options)
-        check(f"{name}: free, ln J over 2 (1 + nu) a", np.max(np.abs(J / (2 * (1 + NU) * A) - 1)), bar)
-        check(f"{name}: free, sigma'_zz over -E a", np.max(np.abs(stress[:, 2] / (-E * A) - 1)), bar)
+        judge("fluids", f"{name}: free, ln J over 2 (1 + nu) a", np.max(np.abs(J / (2 * (1 + NU) * A) - 1)), bar)
+        judge("fluids", f"{name}: free, sigma'_zz over -E a", np.max(np.abs(stress[:, 2] / (-E * A) - 1)), bar)
         J, stress, _ = warmed("solid, heat", "bath, left, bottom, right, top", *options)
-        check(f"{name}: between walls, sigma' over -(3 lambda + 2 G) a", np.max(np.abs(stress[:, :3] / (-(3 * LAME + 2 * G) * A) - 1)), bar)
+        judge("fluids", f"{name}: between walls, sigma' over -(3 lambda + 2 G) a", np.max(np.abs(stress[:, :3] / (-(3 * LAME + 2 * G) * A) - 1)), bar)
 
 
 def pores(J):
@@ -72,12 +72,12 @@ def wet():
     free = bisect(lambda e: (2 * LAME + 2 * G) * e - (3 * LAME + 2 * G) * A - K_W * (BETA_W * RISE - pores(np.exp(2 * e))), 0.0, 0.05)
     for name, bar, options in (("sdirk2", 1e-4, ["-inertia", "no"]), ("hybrid", 1e-4, HYBRID)):
         _, _, p = warmed("water, heat", "bath", *([] if name == "sdirk2" else options[:2]), water=True)
-        check(f"{name}: rigid, rise of p over the closed form", np.max(np.abs((p - 1e6) / held - 1)), bar)
+        judge("fluids", f"{name}: rigid, rise of p over the closed form", np.max(np.abs((p - 1e6) / held - 1)), bar)
         if name == "hybrid":
             continue  # the load's waves in water take longer to die away than this test may
         J, _, p = warmed("solid, water, heat", "bath, left, bottom, load, lid", *options, water=True)
-        check(f"{name}: free under its load, rise of p over the closed form", np.max(np.abs((p - 1e6) / (K_W * (BETA_W * RISE - pores(np.exp(2 * free)))) - 1)), 5 * bar)
-        check(f"{name}: free under its load, ln J over the closed form", np.max(np.abs(J / (2 * free) - 1)), bar)
+        judge("fluids", f"{name}: free under its load, rise of p over the closed form", np.max(np.abs((p - 1e6) / (K_W * (BETA_W * RISE - pores(np.exp(2 * free)))) - 1)), 5 * bar)
+        judge("fluids", f"{name}: free under its load, ln J over the closed form", np.max(np.abs(J / (2 * free) - 1)), bar)
     print(f"held: {held / 1e6:.4f} MPa, free: e = {free:.6g}")
 
 

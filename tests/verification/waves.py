@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import ROOT, binary, check, check_true, finish, launch, run, scratch
+from common import ROOT, binary, check_true, finish, judge, launch, run, scratch
 
 CASE = ROOT / "tests" / "verification" / "cases" / "wave.yaml"
 done = run(binary(), CASE, "-quiet")
@@ -22,9 +22,9 @@ def exact(x, t):
 
 for name, x in (("a", 0.11875), ("b", 0.31875)):
     T = done.probe(name)["T_degC"]
-    check(f"T at {x} m on the sixth day, of the amplitude at the face", np.max(np.abs(T[day] - exact(x, t[day]))) / 8, 0.01)
+    judge("4.3", f"T at {x} m on the sixth day, of the amplitude at the face", np.max(np.abs(T[day] - exact(x, t[day]))) / 8, 0.01)
 steps = np.diff(done.balance["time_s"])
-check("longest step, of an eighth of the period", np.max(steps) / 10800 - 1, 1e-9)
+judge("4.3", "longest step, of an eighth of the period", np.max(steps) / 10800 - 1, 1e-9)
 
 folder = scratch()
 hours = np.arange(0, 145, 0.5)
@@ -34,19 +34,19 @@ case = folder / "case.yaml"
 case.write_text(CASE.read_text().replace("{sine: [10 degC, 8 K, 24 h, 24 h]}", "{csv: [day.csv, Wall]}").replace("end: 6 d", "end: 1 d"))
 table = run(binary(), case, "-quiet")
 one = run(binary(), CASE, "-quiet", "-time_end", "1 d")
-check("file of half hours against the wave, of its amplitude", np.max(np.abs(table.probe("a")["T_degC"] - one.probe("a")["T_degC"])) / 8, 3e-3)
+judge("4.3", "file of half hours against the wave, of its amplitude", np.max(np.abs(table.probe("a")["T_degC"] - one.probe("a")["T_degC"])) / 8, 3e-3)
 for name, r in (("wave", one), ("file", table)):
     again = folder / name
     again.mkdir()
     (again / "case.yaml").write_text((r.out / "case.yaml").read_text())
     same = run(binary(), again, "-quiet", out=again / "out")
-    check(f"{name}: the resolved case runs to the same", np.max(np.abs(same.probe("a")["T_degC"] - r.probe("a")["T_degC"])), 0.0)
+    judge("4.3", f"{name}: the resolved case runs to the same", np.max(np.abs(same.probe("a")["T_degC"] - r.probe("a")["T_degC"])), 0.0)
 short = [run(binary(), CASE, "-quiet", "-time_end", "2 h", ranks=n).probe("a")["T_degC"] for n in (1, 2)]
-check("1 and 2 ranks, K", np.max(np.abs(short[1] - short[0])), 1e-9)
+judge("4.3", "1 and 2 ranks, K", np.max(np.abs(short[1] - short[0])), 1e-9)
 fixed = ("-quiet", "-time_end", "1 d", "-stepper_adapt", "no", "-stepper_dt", "1 h")
 whole, half = run(binary(), CASE, *fixed), run(binary(), CASE, *fixed, "-stepper_max_steps", 10)
 rest = run(binary(), CASE, *fixed, "-restart", half.out / "checkpoint.h5", out=half.out)
-check("restart: the same to the last bit", np.max(np.abs(rest.probe("a")["T_degC"] - whole.probe("a")["T_degC"])), 0.0)
+judge("4.3", "restart: the same to the last bit", np.max(np.abs(rest.probe("a")["T_degC"] - whole.probe("a")["T_degC"])), 0.0)
 (folder / "day.csv").write_text("time [h], wall [degC]\n0, 10\n2 , 11 K\n")
 bad = launch(binary(), case, "-case_check")
 check_true("a wrong cell is named", bad.returncode == 2 and "bc_day_temperature_csv" in bad.stdout and "line 3" in bad.stdout, bad.stdout)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, check, finish, largest_difference, table
+from common import Run, finish, judge, largest_difference, table
 
 CASE = Path(__file__).parent / "cases" / "boundaries.yaml"
 R_W, R, K, MU, BULK, KAPPA = 0.1, 20.1, 1e-12, 1e-3, 2.2e9, 0.7 * 3.0 + 0.3 * 0.044  # of the case; m, m^2, Pa s, Pa, W/(m K)
@@ -55,8 +55,8 @@ for what in ("water", "heat"):
 table(("flow of", "grid from", "h / r_w", "rate / Thiem", "at 1 m, of the drop"), rows)
 for what in ("water", "heat"):
     off = [abs(r[3] - 1) for r in rows if r[0] == what]
-    check(f"{what}: rate off Thiem's, h up to 20 r_w, wall on a line and across a cell", max(off), 5e-4)
-    check(f"{what}: at 1 m, of the drop, h up to 2 r_w", max(r[4] for r in rows if r[0] == what and r[2] <= 2.0), 2e-3)
+    judge("wells", f"{what}: rate off Thiem's, h up to 20 r_w, wall on a line and across a cell", max(off), 5e-4)
+    judge("wells", f"{what}: at 1 m, of the drop, h up to 2 r_w", max(r[4] for r in rows if r[0] == what and r[2] <= 2.0), 2e-3)
 
 # a body that can move, about the same flow: nothing holds it at an axis that it does not reach
 SOLID = ("-fields", "solid,water", "-mat_sand_elasticity_E0", "1e10 Pa", "-boundaries", "well,far,low,high,wall,rim",
@@ -64,8 +64,8 @@ SOLID = ("-fields", "solid,water", "-mat_sand_elasticity_E0", "1e10 Pa", "-bound
          "-bc_wall_type", "traction", "-bc_wall_side", "left", "-bc_wall_normal", f"{INSIDE} Pa", "-bc_rim_type", "traction", "-bc_rim_side", "right",
          "-bc_rim_normal", f"{OUTSIDE} Pa")  # fmt: skip
 solid = well(0.15, 0.0, "water", *SOLID)
-check("stiff skeleton: rate off Thiem's", abs(rate(solid, "water") / 0.15 - 1), 5e-4)
+judge("wells", "stiff skeleton: rate off Thiem's", abs(rate(solid, "water") / 0.15 - 1), 5e-4)
 one, two = (well(0.5, 0.0, "water", "-stepper_type", "sdirk2", ranks=n) for n in (1, 2))
-check("1 and 2 ranks: pressures", largest_difference(two.probe("left")["p_Pa"], one.probe("left")["p_Pa"]), 1e-10)
-check("sdirk2: rate off Thiem's", abs(rate(one, "water") / 0.5 - 1), 5e-4)
+judge("wells", "1 and 2 ranks: pressures", largest_difference(two.probe("left")["p_Pa"], one.probe("left")["p_Pa"]), 1e-10)
+judge("wells", "sdirk2: rate off Thiem's", abs(rate(one, "water") / 0.5 - 1), 5e-4)
 finish()
