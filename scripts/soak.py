@@ -51,7 +51,7 @@ BALANCE = 1e-10
 RANKS = 1e-6  # of the largest change
 PAIR = 0.5  # of the mean change: another order in time, the same physics
 KINDS = {"pressure, stress": ("p_w", "p_g", "stress"), "temperature": ("T",), "saturation": ("S_h", "S_w"), "displacement": ("displacement",)}
-FLOOR = {"pressure, stress": 1e4, "temperature": 0.1, "saturation": 1e-3, "displacement": 1e-5}  # Pa, K, 1, 1: smaller changes are as good as none
+FLOOR = {"pressure, stress": 1e4, "temperature": 0.1, "saturation": 1e-3, "displacement": 1e-4}  # Pa, K, 1, 1 (what 1e4 Pa strain sand by): smaller changes are as good as none
 
 
 # ---------------------------------------------------------------------------------------- random scenes
