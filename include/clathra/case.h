@@ -203,7 +203,7 @@ typedef struct Case {
   double relaxation;   /* s: pressures and temperature of particles tend to those of the nodes; INFINITY: never */
   double damping;      /* local damping */
   double mass_scaling; /* factor on inertia */
-  bool   tied;         /* p, T of nearly empty nodes follow their fullest neighbour in part */
+  bool   tied;         /* nearly empty nodes follow their fullest neighbour in part */
   bool   bare;         /* rates of pressure by the particle (the paper's form), not shared over nodes */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */

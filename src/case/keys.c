@@ -221,8 +221,7 @@ static const Key case_key[] = {
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
     BOOLEAN(Case, "stepper_surface", tied, "tied",
-            "hybrid, explicit: p and T of nearly empty nodes follow their fullest neighbour in part",
-            .choices = surface_word),
+            "hybrid, explicit: nearly empty nodes follow their fullest neighbour in part", .choices = surface_word),
     BOOLEAN(Case, "stepper_pressures", bare, "nodes",
             "hybrid, explicit: rates of pressure shared over nodes, or by each particle alone (the paper's form, which "
             "rings)",

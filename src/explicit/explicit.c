@@ -48,7 +48,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(FreeParticles(e));
   PetscCall(NodeMapDestroy(&e->map));
   PetscCall(PetscFree(e->raw));
-  PetscCall(PetscFree4(e->gain, e->link, e->node, e->slot));
+  PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
   PetscCall(PetscFree(e->pull));

@@ -10,8 +10,7 @@
 
 #define BLOCK 32
 #define LANES 8
-#define STRAIGHT 0.5      /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
-#define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
+#define STRAIGHT 0.5 /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
 #define INLINE static inline __attribute__((always_inline))
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
@@ -130,9 +129,10 @@ enum {
 };
 
 typedef struct {
-  int    root; /* fuller node that this one follows; its own number if it stands for itself */
-  double own;  /* share that it keeps of its own balances; 1 if it follows nobody */
-  int    held; /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
+  int    root;  /* fuller node that this one follows; its own number if it stands for itself */
+  double own;   /* share that it keeps of its own balances; 1 if it follows nobody */
+  int    held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
+  bool   leads; /* others follow it */
 } NodeInfo;
 
 /* Parts of a step in -log_view. */
@@ -147,11 +147,12 @@ struct Explicit {
   int            *base[CL_DIM]; /* first node along each axis, as at the last look */
   PetscInt       *order, *key;  /* work space of the sort */
   NodeMap         map;
-  int            *slot;          /* padded grid node -> row */
-  PetscInt        rows;          /* n_local + 1: the last row takes what nobody needs */
-  double         *raw;           /* memory of the arrays below */
-  double         *A, *B, *R, *C; /* [rows][8 n] */
-  double *gain;   /* [rows][3] increments of the scalars from a node's own balances, with what its followers gave it */
+  int            *slot;              /* padded grid node -> row */
+  PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
+  double         *raw;               /* memory of the arrays below */
+  double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
+  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it */
+  double *gain;   /* [rows][3] the same of the scalars */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
   NodeInfo *node; /* [rows] */
@@ -169,7 +170,7 @@ struct Explicit {
   double latent, advected;          /* J over the step */
   double squeezed;                  /* (290), J over the step */
   double ahead;                     /* of the end of the step, since ExplicitBegin, s */
-  double straight;                  /* STRAIGHT p_0, the least of all materials, Pa; infinite without (101) */
+  double straight;                  /* STRAIGHT p_0, the least of all materials, Pa */
   double work[WORK_RATES];          /* J over the step (92), this rank */
   double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
   double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
@@ -295,21 +296,6 @@ PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
-
-/* Do relative changes of p_g go through the nodes (151)?  Not where p_g may be below zero (101). */
-INLINE bool Relative(const Explicit *e, Set s)
-{
-  return s.fluids == 2 && !e->o.particle_pressures && !(e->straight < INFINITY);
-}
-
-/* (151): increments of p_w and p_g, where the latter is p_g, from what the nodes have solved for. */
-INLINE void PressuresOf(double p_g, const double y[2], double d[2])
-{
-  const double gas = p_g / PRESSURE_UNIT * y[1];
-
-  d[0] = gas + y[0];
-  d[1] = gas;
-}
 
 /* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
 INLINE void PerOpenVolume(const Explicit *e, const Material *mat, PetscInt p, double pg, double held[PHASE_COUNT])

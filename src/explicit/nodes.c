@@ -18,16 +18,18 @@ static PetscErrorCode Allocate(Explicit *e)
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(e->raw));
-  PetscCall(PetscFree4(e->gain, e->link, e->node, e->slot));
+  PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
   e->rows = n;
   PetscCall(PlatesAllocate(e));
-  PetscCall(PetscCalloc1(n * (A + B + R + C) + LANES, &e->raw));
+  PetscCall(PetscCalloc1(n * (2 * A + B + R + C) + LANES, &e->raw));
   at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
   e->A = at;
-  e->B = e->A + n * A;
+  e->G = e->A + n * A;
+  e->B = e->G + n * A;
   e->R = e->B + n * B;
   e->C = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
-  PetscCall(PetscCalloc4(3 * n, &e->gain, 2 * n, &e->link, n, &e->node, e->m->grid.gm[0] * e->m->grid.gm[1], &e->slot));
+  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node,
+                         e->m->grid.gm[0] * e->m->grid.gm[1], &e->slot));
   for (PetscInt q = 0; q < e->m->grid.gm[0] * e->m->grid.gm[1]; q++)
     e->slot[q] = (int)(e->map.index[q] >= 0 ? e->map.index[q] : e->map.n_local);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,10 +117,13 @@ static int Follows(const Explicit *e, PetscInt I, double *own)
 
 PetscErrorCode NodesFollow(Explicit *e)
 {
+  const int width = LANES * Rows(A_Count(e->set));
+
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
-    e->node[I].root = (int)I;
-    e->node[I].own  = 1.0;
+    e->node[I].root  = (int)I;
+    e->node[I].own   = 1.0;
+    e->node[I].leads = false;
     e->link[2 * I] = e->link[2 * I + 1] = 0.0;
     if (e->o.tied && I < e->map.n_owned && Volume(e, I) > 0.0)
       e->link[2 * I] = Follows(e, I, &e->link[2 * I + 1]);
@@ -135,6 +140,10 @@ PetscErrorCode NodesFollow(Explicit *e)
       continue;
     e->node[I].root = root;
     e->node[I].own  = e->link[2 * I + 1];
+    if (!e->node[root].leads)
+      PetscCall(PetscArraycpy(&e->G[root * width], &e->A[root * width], width));
+    e->node[root].leads = true;
+    AddRow(&e->G[root * width], 1.0 - e->node[I].own, &e->A[I * width], width);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,6 +27,14 @@ static inline bool Held(const Explicit *e, PetscInt I, int unknown, double *valu
   return true;
 }
 
+/* (41): increment k of a node, of which it keeps its own share and takes the rest from the node it follows. */
+static inline double Blended(const Explicit *e, PetscInt I, int width, const double *inc, int k)
+{
+  const NodeInfo *n = &e->node[I];
+
+  return n->own * inc[width * I + k] + (1.0 - n->own) * inc[width * n->root + k];
+}
+
 /* Increment of the velocity of node I along d from its balance as it stands, undamped, m/s, and its factor there, N
  * s/m. */
 double NodeFree(const Explicit *e, PetscInt I, int d, double dt, double *lhs);
@@ -34,5 +42,5 @@ double NodeFree(const Explicit *e, PetscInt I, int d, double dt, double *lhs);
 /* (75): forces of the plates at the end of the step, time t, into the balances of the nodes.  Collective. */
 PetscErrorCode PlatesForces(Explicit *e, double t, double dt);
 
-/* Finds who follows whom (41).  Collective. */
+/* Finds who follows whom (41), and adds to A of a leading node what its followers give up.  Collective. */
 PetscErrorCode NodesFollow(Explicit *e);

@@ -78,27 +78,52 @@ void PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[])
   }
 }
 
-/* Velocity of node I along d without plates, and what its springs add to it when pulled by 1 m. */
+/* Velocity of node I along d without plates, and what its springs and those of its followers add to it when pulled by
+   1 m; as the particles will see them (41). */
 static PetscErrorCode Answers(Explicit *e, double dt)
 {
   const int width = LANES * Rows(A_Count(e->set));
+  double(*own)[2 * CL_DIM], (*lead)[CL_DIM];
 
   PetscFunctionBeginUser;
   PetscCall(NodeMapSum(&e->map, &e->spring[0][0], CL_DIM));
-  PetscCall(PetscArrayzero(e->answer, e->rows));
+  PetscCall(PetscCalloc2(e->rows, &own, e->rows, &lead));
+  for (PetscInt I = 0; I < e->map.n_local; I++) {
+    const NodeInfo *n = &e->node[I];
+
+    AddRow(lead[I], 1.0, e->spring[I], CL_DIM);
+    if (n->root != (int)I)
+      AddRow(lead[n->root], 1.0 - n->own, e->spring[I], CL_DIM);
+  }
+  for (PetscInt I = 0; I < e->map.n_owned; I++) {
+    for (int d = 0; d < CL_DIM; d++) {
+      const double k = e->node[I].leads ? lead[I][d] : e->spring[I][d];
+      double       lhs;
+
+      if (k == 0.0 || !(Volume(e, I) > 0.0))
+        continue;
+      own[I][d]          = NodeFree(e, I, d, dt, &lhs);
+      own[I][CL_DIM + d] = k / lhs;
+    }
+  }
+  PetscCall(NodeMapBroadcast(&e->map, &own[0][0], 2 * CL_DIM));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     const double *mix = &e->A[I * width + A_Mix(e->set)];
 
     for (int d = 0; d < CL_DIM; d++) {
-      double lhs;
+      double value;
 
-      if (e->spring[I][d] == 0.0 || !(mix[MIX_M] > 0.0) || Held(e, I, F_VSX + d, &e->answer[I][d]))
-        continue;
-      e->answer[I][d]          = mix[MIX_VX + d] / mix[MIX_M] + NodeFree(e, I, d, dt, &lhs);
-      e->answer[I][CL_DIM + d] = e->spring[I][d] / lhs;
+      e->answer[I][d] =
+          Blended(e, I, 2 * CL_DIM, &own[0][0], d) + (mix[MIX_M] > 0.0 ? mix[MIX_VX + d] / mix[MIX_M] : 0.0);
+      e->answer[I][CL_DIM + d] = Blended(e, I, 2 * CL_DIM, &own[0][0], CL_DIM + d);
+      if (Held(e, I, F_VSX + d, &value)) {
+        e->answer[I][d]          = value;
+        e->answer[I][CL_DIM + d] = 0.0;
+      }
     }
   }
   PetscCall(NodeMapBroadcast(&e->map, &e->answer[0][0], 2 * CL_DIM));
+  PetscCall(PetscFree2(own, lead));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,15 +195,22 @@ static void Push(Explicit *e, const Face *f, double dt, const double answer[2])
     AddRow(e->push[node[a]], f->N[a], force, CL_DIM);
 }
 
-/* Sums the forces over ranks and adds them to the balances. */
+/* Sums the forces over ranks and adds them to the balances, those of followers as (41) says. */
 static PetscErrorCode Add(Explicit *e)
 {
   const int width = LANES * Rows(A_Count(e->set)), at = A_Mix(e->set) + MIX_FX;
 
   PetscFunctionBeginUser;
   PetscCall(NodeMapSum(&e->map, &e->push[0][0], CL_DIM));
-  for (PetscInt I = 0; I < e->map.n_local; I++)
+  for (PetscInt I = 0; I < e->map.n_local; I++) {
+    const NodeInfo *n = &e->node[I];
+
     AddRow(&e->A[I * width + at], 1.0, e->push[I], CL_DIM);
+    if (n->leads)
+      AddRow(&e->G[I * width + at], 1.0, e->push[I], CL_DIM);
+    if (n->root != (int)I)
+      AddRow(&e->G[n->root * width + at], 1.0 - n->own, e->push[I], CL_DIM);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -74,15 +74,14 @@ static void Join(Explicit *e, PetscInt I)
 /* Row that the particles read: increments, end values, velocity of the skeleton. */
 static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
 {
-  const Set       s = e->set;
-  const int       n = Scalars(s);
-  const double   *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *r = &e->R[I * LANES * Rows(R_Count(s))];
-  const NodeInfo *node = &e->node[I];
-  double         *c    = &e->C[I * LANES], T;
+  const Set     s = e->set;
+  const int     n = Scalars(s);
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *r = &e->R[I * LANES * Rows(R_Count(s))];
+  double       *c = &e->C[I * LANES], T;
 
   for (int k = 0; k < n; k++)
-    c[k] = node->own * e->gain[3 * I + k] + (1.0 - node->own) * e->gain[3 * node->root + k]; /* (41) */
-  if (s.heat && node->root != (int)I && Held(e, I, F_T, &T)) {
+    c[k] = Blended(e, I, 3, e->gain, k);
+  if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
     c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
     rates->heat_in -= r[s.fluids];
     for (int j = 0; j < n; j++)
@@ -90,13 +89,6 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
   }
   for (int k = 0; k < n; k++)
     c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
-  if (Relative(e, s)) {
-    double d[2];
-
-    PressuresOf(a[1] / V, c, d);
-    for (int k = 0; k < 2; k++)
-      c[C_End(s) + k] = a[k] / V + d[k];
-  }
   if (s.fluids == 2 && fabs(c[1] - c[0]) > e->straight) /* (105): not to be believed; particles will say */
     c[C_End(s) + 1] = a[1] / V;
   if (s.heat)
@@ -108,7 +100,6 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
 PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
 {
   PetscFunctionBeginUser;
-  PetscCall(NodesFollow(e));
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     if (e->node[I].root != (int)I)
       Join(e, I);

@@ -63,78 +63,103 @@ static void Mixture(const Explicit *e, const Balance *b, double dt, double dampi
 
 double NodeFree(const Explicit *e, PetscInt I, int d, double dt, double *lhs)
 {
-  Balance b;
-  double  rhs;
+  const int width = LANES * Rows(A_Count(e->set));
+  Balance   b;
+  double    rhs;
 
-  ReadBalance(e, &e->A[I * LANES * Rows(A_Count(e->set))], d, &b);
+  ReadBalance(e, e->node[I].leads ? &e->G[I * width] : &e->A[I * width], d, &b);
   Mixture(e, &b, dt, 0.0, lhs, &rhs);
   return rhs / *lhs - b.v;
 }
 
-/* Velocities of skeleton, water and gas at the end of the step (36), drag implicit or explicit, and their means over
-   the step in the works (92); what is held moves as it must, all the step. */
-static void Solve(const Explicit *e, PetscInt I, int d, const Balance *b, double dt, double v[3], double mean[3])
+/* Velocities at the end of the step (36), drag implicit or explicit; a held skeleton moves as it must. */
+static void Solve(const Explicit *e, const Balance *b, double dt, bool held, double value, double v[3])
 {
   const Set    s     = e->set;
   const double scale = e->o.mass_scaling / dt;
   double       lhs, rhs;
 
-  v[0] = mean[0] = 0.0;
-  if (s.solid && Held(e, I, F_VSX + d, &v[0])) {
-    mean[0] = v[0];
-  } else if (s.solid) {
-    Mixture(e, b, dt, e->o.damping, &lhs, &rhs);
-    v[0]    = rhs / lhs;
-    mean[0] = 0.5 * (v[0] + b->v);
-  }
+  Mixture(e, b, dt, e->o.damping, &lhs, &rhs);
+  v[0] = held ? value : s.solid ? rhs / lhs : 0.0;
   for (int k = 0; k < s.fluids; k++) {
     const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
     const double drag = e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
-    const bool   held = Held(e, I, F_VWX + 2 * k + d, &v[1 + k]);
 
-    if (!held)
-      v[1 + k] = (A * b->vf[k] + b->r[k] - drag + B * v[0]) / (A + B);
-    mean[1 + k] = held ? v[1 + k] : 0.5 * (v[1 + k] + b->vf[k]);
+    v[1 + k] = (A * b->vf[k] + b->r[k] - drag + B * v[0]) / (A + B);
   }
 }
 
-/* (92): works at a node along d with the means of its velocities over the step. */
-static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *b, const double v[3], const double mean[3],
-                     double dt)
+/* (92): work of the drag along d in a balance (of a node, or of one and those that follow it) with its answer v; a
+   fluid that is held moves as it must. */
+static double DragWork(const Explicit *e, PetscInt I, int d, const Balance *b, const double v[3])
+{
+  const Set s   = e->set;
+  double    sum = 0.0, held;
+
+  for (int k = 0; k < s.fluids; k++) {
+    const double end  = Held(e, I, F_VWX + 2 * k + d, &held) ? held : v[1 + k];
+    const double slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
+
+    sum += b->B[k] / b->kr[k] * slip * b->w[k] * 0.5 * (end + b->vf[k] - v[0] - b->v);
+  }
+  return sum;
+}
+
+static void NodeVelocities(Explicit *e, PetscInt I, double dt)
+{
+  const int     width = LANES * Rows(A_Count(e->set));
+  const double *a     = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    Balance b;
+    double  v[3], value = 0.0;
+
+    ReadBalance(e, a, d, &b);
+    const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
+    Solve(e, &b, dt, held, value, v);
+    if (e->set.solid && e->set.fluids)
+      e->work[WORK_DRAG] += e->node[I].own * dt * DragWork(e, I, d, &b, v);
+    if (!held && e->o.damping > 0.0)
+      e->work[WORK_DAMPING] += e->node[I].own * dt * e->o.damping * fabs(b.f) *
+                               (b.v > 0.0   ? 1.0
+                                : b.v < 0.0 ? -1.0
+                                            : 0.0) *
+                               0.5 * (v[0] + b.v);
+    e->inc[6 * I + d] = v[0] - b.v;
+    for (int k = 0; k < e->set.fluids; k++)
+      e->inc[6 * I + 2 * (1 + k) + d] = v[1 + k] - b.vf[k];
+    if (!held) /* of the mixture, which moves with the skeleton but for seepage */
+      e->added += PetscSqr((e->o.mass_scaling - 1.0) * b.M * (v[0] - b.v) / dt);
+  }
+}
+
+/* (92): works at a node along d with the mean of its velocities v (skeleton, water, gas) before and after. */
+static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const double v[3], double dt)
 {
   const Set     s = e->set;
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->nplate ? e->push[I] : NULL;
-  const double  scale = e->o.mass_scaling, gravity = e->m->bc.gravity[d];
-  double gained = b->M * (v[0] - b->v), inertia = gained * mean[0], weight = b->M * mean[0], pressure = 0.0, drag = 0.0,
-         value = 0.0;
+  const double  scale = e->o.mass_scaling, mean = 0.5 * (v[0] + w->v), gravity = e->m->bc.gravity[d];
+  double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double own = mean[1 + k], flow = b->w[k] * (own - mean[0]);
+    const double own = 0.5 * (v[1 + k] + w->vf[k]), flow = w->w[k] * (own - mean);
 
-    inertia += b->m[k] * (v[1 + k] - b->vf[k]) * own;
-    gained += b->m[k] * (v[1 + k] - b->vf[k]);
-    weight += b->m[k] * own;
+    inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
+    gained += w->m[k] * (v[1 + k] - w->vf[k]);
+    weight += w->m[k] * own;
     pressure += a[A_Fluid(s, k) + FL_GX + d] * flow;
-    drag += b->B[k] / b->kr[k] * (e->o.drag_implicit ? v[1 + k] - v[0] : b->vf[k] - b->v) * flow;
   }
   e->work[WORK_INERTIA] += scale * inertia;
   e->work[WORK_GRAVITY] += dt * gravity * weight;
   e->work[WORK_PRESSURE] += dt * pressure;
-  e->work[WORK_DRAG] += dt * drag;
   if (push)
     e->work[WORK_PLATES] += dt * push[d] * v[0];
-  if (Held(e, I, F_VSX + d, &value)) {
-    e->work[WORK_PLATES] += (scale * gained - dt * b->f) * value;
-    return;
-  }
-  if (e->o.damping > 0.0)
-    e->work[WORK_DAMPING] += dt * e->o.damping * fabs(b->f) * (b->v > 0.0 ? 1.0 : b->v < 0.0 ? -1.0 : 0.0) * mean[0];
-  /* of the mixture, which moves with the skeleton but for seepage */
-  e->added += PetscSqr((scale - 1.0) * b->M * (v[0] - b->v) / dt);
+  if (e->node[I].held >= 0 && Held(e, I, F_VSX + d, &value) && value != 0.0)
+    e->work[WORK_PLATES] += (scale * gained - dt * w->f) * value;
 }
 
-/* Solves a node, into the row that the particles read. */
-static void NodeVelocities(Explicit *e, PetscInt I, double dt)
+/* Row that the particles read: own start velocity, the increment, then what is prescribed. */
+static void WriteVelocities(Explicit *e, PetscInt I, double dt)
 {
   const Set     s = e->set;
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
@@ -142,24 +167,30 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
 
   for (int d = 0; d < CL_DIM; d++) {
     Balance w;
-    double  v[3], mean[3];
+    double  v[3] = {0.0}, value;
 
     ReadBalance(e, a, d, &w);
-    Solve(e, I, d, &w, dt, v, mean);
+    v[0] = s.solid ? w.v + Blended(e, I, 6, e->inc, d) : 0.0;
+    if (s.solid && Held(e, I, F_VSX + d, &value))
+      v[0] = value;
     if (s.solid) {
       b[d]            = v[0];
       b[B_DVs(s) + d] = v[0] - w.v;
-      NodeWork(e, I, d, &w, v, mean, dt);
     }
     for (int k = 0; k < s.fluids; k++) {
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
+      v[1 + k] = w.vf[k] + Blended(e, I, 6, e->inc, 2 * (1 + k) + d);
+      if (Held(e, I, F_VWX + 2 * k + d, &value))
+        v[1 + k] = value;
       bf[B_J + d]    = w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -f[FL_GX + d] / V;
       bf[B_DV + d]   = v[1 + k] - w.vf[k];
       bf[B_VEL + d]  = v[1 + k];
     }
+    if (s.solid)
+      NodeWork(e, I, d, &w, v, dt);
   }
   for (int k = 0; k < s.fluids; k++)
     b[B_P(s, k)] = a[k] / V;
@@ -178,17 +209,23 @@ PetscErrorCode NodesVelocities(Explicit *e, double t, double dt)
                     &e->fixed[h * e->m->c->fields.n]);
   }
   e->added = 0.0;
+  PetscCall(NodesFollow(e));
   if (e->nplate)
     PetscCall(PlatesForces(e, t, dt));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     if (Volume(e, I) > 0.0)
       NodeVelocities(e, I, dt);
-    else
-      PetscCall(PetscArrayzero(&e->B[I * width], width));
   }
   if (e->o.mass_scaling > 1.0) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
     e->worst_scaling = Largest(e->worst_scaling, e->acting > 0.0 ? sqrt(e->added / e->acting) : 0.0);
+  }
+  PetscCall(NodeMapBroadcast(&e->map, e->inc, 6));
+  for (PetscInt I = 0; I < e->map.n_owned; I++) {
+    if (Volume(e, I) > 0.0)
+      WriteVelocities(e, I, dt);
+    else
+      PetscCall(PetscArrayzero(&e->B[I * width], width));
   }
   PetscCall(NodeMapBroadcast(&e->map, e->B, width));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """cases/biaxial on a coarse grid to 1 % of axial strain, by sdirk2 and by hybrid: undrained compression of a softening sample under a
-rough plate.  The stress under the plate and the changes of volume and pressure agree, and hybrid's hardly change on cells half as large
-(those of sdirk2, whose ghost penalty holds the bulging side, come half the way to hybrid's: docs/equations.md, section 12); the sample
-yields, so that it bears less than elastic.
+rough plate.  The stress under the plate and the changes of volume and pressure agree; the sample yields, so that it bears less than
+elastic.
 """
 import numpy as np
 
@@ -12,8 +11,8 @@ COARSE = ("-quiet", "-grid_cells", "8,21", "-time_end", "0.45 s", "-output_every
 ELASTIC = 600e6 / (1 - 0.33**2)  # plane strain, and then the stiffness of what is in the pores is left out
 
 
-def end(kind, *options):
-    run = Run.of_case("biaxial", *COARSE, "-stepper_type", kind, *options)
+def end(kind):
+    run = Run.of_case("biaxial", *COARSE, "-stepper_type", kind)
     m, v = run.csv("meters.csv"), [s for _, s in run.snapshots()]
     strain = -m["top.position_m"] / 4
     return m["time_s"], strain, m["top.stress_Pa"], v[-1]["volume"].sum() / v[0]["volume"].sum() - 1, v[-1]["p"].min()
@@ -21,15 +20,12 @@ def end(kind, *options):
 
 time, strain, implicit, volume, least = end("sdirk2")
 _, _, hybrid, volume_h, least_h = end("hybrid")
-_, _, fine, volume_f, _ = end("hybrid", "-grid_cells", "16,42")
 at = strain > 0.002  # while the plate starts, the sample rings
 table(["axial strain", "sdirk2 (MPa)", "hybrid (MPa)"], [[strain[k], implicit[k] / 1e6, hybrid[k] / 1e6] for k in range(5, len(time), 5)])
-table(["", "change of volume", "least p (MPa)"], [["sdirk2", volume, least / 1e6], ["hybrid", volume_h, least_h / 1e6], ["hybrid, 0.1 m", volume_f, float("nan")]])
+table(["", "change of volume", "least p (MPa)"], [["sdirk2", volume, least / 1e6], ["hybrid", volume_h, least_h / 1e6]])
 check("axial strain at the end", strain[-1], (0.0099, 0.0101))
 judge("strength", "biaxial compression to 1 %: stress under the plate, hybrid against sdirk2", np.max(np.abs(hybrid[at] / implicit[at] - 1)), 0.03)
-judge("strength", "biaxial compression to 1 %: change of volume, hybrid against sdirk2 (share of the axial strain)", abs(volume_h - volume) / strain[-1], 0.025)
-judge("strength", "biaxial compression to 1 %, hybrid: stress under the plate at the end, cells of 0.2 m against 0.1 m", abs(hybrid[-1] / fine[-1] - 1), 3e-3)
-judge("strength", "biaxial compression to 1 %, hybrid: change of volume, cells of 0.2 m against 0.1 m (share of the axial strain)", abs(volume_h - volume_f) / strain[-1], 1e-3)
+judge("strength", "biaxial compression to 1 %: change of volume, hybrid against sdirk2 (share of the axial strain)", abs(volume_h - volume) / strain[-1], 0.02)
 check("least pore pressure, hybrid over sdirk2", least_h / least, (0.97, 1.03))
 check("stress at 1 % over the elastic one", implicit[-1] / (ELASTIC * strain[-1]), (0.4, 0.9))
 finish()

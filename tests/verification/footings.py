@@ -39,11 +39,8 @@ def family(name, rough, implicit, grids, finest, extrapolated, *more):
 strong = family("Prandtl", True, True, (4, 8, 16), (0.0, 0.03), 0.015)
 free = family("Prandtl", True, False, (4, 8), None, 0.015)
 check("Prandtl: hybrid against implicit", np.abs(free / strong[:2] - 1).max(), 0.01)
-# at 0.8 of the stable step a first sliver above the ground overshoots and yields: 0.3 % of the load
-HALF = ("-stepper_cfl", "0.4")
-wet = [measured("Prandtl", 4, True, *more, implicit=not more, what="undrained", case=saturated())[0] for more in ((), HALF)]
-dry = [strong[0], measured("Prandtl", 4, True, *HALF, what="half the step")[0]]
-check("Prandtl on saturated ground, undrained: the same load, both integrators", np.abs(np.array(wet) / dry - 1).max(), 1e-3)
+wet = [measured("Prandtl", 4, True, implicit=i, what="undrained", case=saturated())[0] for i in (True, False)]
+check("Prandtl on saturated ground, undrained: the same load, both integrators", np.abs(wet / np.array([strong[0], free[0]]) - 1).max(), 1e-3)
 last = strip_run("Prandtl", 4, True, case=saturated()).snapshots()
 volume = last[-1][1]["volume"] / (last[0][1]["volume"] * np.exp(last[-1][1]["log_J"])) - 1
 check("... hybrid: volume of particles against their strain", np.abs(volume).max(), 1e-9)
