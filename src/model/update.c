@@ -34,6 +34,12 @@ static bool FollowMethane(const Material *mat, const double p[PHASE_COUNT], doub
   return true;
 }
 
+/* The material of most of what this rank has at a node; the first one where it has nothing. */
+static const Material *NodeMaterial(const Model *m, PetscInt I)
+{
+  return m->material[I] ? m->material[I] : &m->c->material[0];
+}
+
 /* Does it to a node's update; false where nothing changes. */
 static bool Follow(const Model *m, PetscInt I, const double *x, double *y)
 {
@@ -45,7 +51,7 @@ static bool Follow(const Model *m, PetscInt I, const double *x, double *y)
     p[k] = x[PlaceP(fs, k)] * s[PlaceP(fs, k)];
     d[k] = -y[PlaceP(fs, k)] * s[PlaceP(fs, k)];
   }
-  if (m->material[I]->gas.trace == 0.0 || !FollowMethane(m->material[I], p, d, T))
+  if (NodeMaterial(m, I)->gas.trace == 0.0 || !FollowMethane(NodeMaterial(m, I), p, d, T))
     return false;
   for (int k = 0; k < PHASE_COUNT; k++)
     y[PlaceP(fs, k)] = -d[k] / s[PlaceP(fs, k)];
@@ -59,7 +65,7 @@ static bool HoldsGas(const Model *m, PetscInt I, const double *x, const double *
   const int       w = PlaceP(fs, PHASE_W), g = PlaceP(fs, PHASE_G);
   const double    pc = x[g] - x[w];
 
-  return fs->one_pressure || m->material[I]->gas.trace == 0.0 || (pc > 0.0 && pc - (y[g] - y[w]) > 0.0);
+  return fs->one_pressure || NodeMaterial(m, I)->gas.trace == 0.0 || (pc > 0.0 && pc - (y[g] - y[w]) > 0.0);
 }
 
 /* Share of a node's update that stays in the trusted range. */

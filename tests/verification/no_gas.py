@@ -102,6 +102,9 @@ def column():
     for name, run in (("sdirk2", straight), ("hybrid", hybrid)):
         balances(f"column, {name}", run)
         judge("gas", f"column, {name}: gas in the half without hydrate", np.max(run.probe("free")["S_g"]), 1e-6)
+    edge = ("-grid_upper", "0.175 m, 0.1 m", "-grid_cells", "7,2", "-time_end", "10 s", "-output_probe_every", "1 s")  # the second rank has the last nodes alone
+    one, two = (Run.of_case(CELL, *edge, ranks=n).probe("middle")["p_Pa"] for n in (1, 2))
+    judge("gas", "a rank with nodes but no particles (other steps): p against one rank, relative", np.max(np.abs(two / one - 1)), 1e-6)
     out = scratch() / "half"
     Run.of_case(case, "-time_end", "20 ms", out=out)
     Run.of_case(case, "-restart", out / "checkpoint.h5", out=out)
