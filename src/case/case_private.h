@@ -207,6 +207,9 @@ bool               FacesShared(const Case *c, const Meter *a, const Meter *b); /
 void               CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
 void               CheckHeld(Reader *r, const Case *c, const Bc *b);
 void               CheckProbe(Reader *r, const Case *c, const Probe *p);
+/* resolve.c: the value of a key as the resolved case gives it; keys that say nothing when they are empty */
+void               KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance);
+bool               KeyEmpty(const Key *k, const char *instance);
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);

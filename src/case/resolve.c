@@ -108,9 +108,10 @@ static void WriteNames(FILE *f, const Case *c, const Key *k, const Names *names)
   fputc(']', f);
 }
 
-/* Keys that say nothing when they are empty. */
-static bool Empty(const Key *k, const char *place)
+bool KeyEmpty(const Key *k, const char *instance)
 {
+  const char *place = instance + k->offset;
+
   switch (k->kind) {
   case KEY_SCHEDULE:
     return ((const Schedule *)place)->n == 0;
@@ -125,7 +126,7 @@ static bool Empty(const Key *k, const char *place)
   }
 }
 
-static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instance)
+void KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance)
 {
   const char *place = instance + k->offset;
 
@@ -177,10 +178,10 @@ static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance,
   for (const Key *k = case_group[g].key; k->name; k++) {
     if (k->like || !KeyApplies(k, g, instance) || !KeyNeeded(k, c))
       continue;
-    if (Empty(k, instance + k->offset))
+    if (KeyEmpty(k, instance))
       continue;
     fprintf(f, "%s%s: ", indent, k->name);
-    WriteValue(f, c, k, instance);
+    KeyWrite(f, c, k, instance);
     fputc('\n', f);
   }
 }
