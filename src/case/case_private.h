@@ -122,7 +122,7 @@ typedef struct {
 
 extern const GroupInfo   case_group[GROUP_COUNT];
 extern const char *const case_schedule_form[]; /* suffixes of a schedule key; the first, "", is a constant */
-extern const char *const case_bc_type[];       /* by BcType - 1 */
+extern const char *const case_bc_type[];       /* by BcType - 1; behind the NULL what forms resolve to */
 static inline PetscInt  *GroupCount(const Case *c, Group g)
 {
   return (PetscInt *)((char *)c + case_group[g].count);
