@@ -134,6 +134,10 @@ const char *const case_bc_type[] = {CL_FACE_CONDITIONS(BC_WORD) CL_NODE_CONDITIO
   ROW(T, name, KEY_CHOICE, member, 1, "", "", def, doc, .choices = words, ##__VA_ARGS__)
 #define NAME(T, name, member, def, group, doc, ...)                                                                    \
   ROW(T, name, KEY_NAME, member, 1, "", "", def, doc, .names = group, ##__VA_ARGS__)
+/* read by CaseLike; the member is not used */
+#define LIKE(T, group, doc)                                                                                            \
+  ROW(T, "like", KEY_NAME, name, 1, "", "", "none", doc, .names = group, .word = "none", .shape = true, .own = true,   \
+      .like = true)
 #define NAMES(T, name, member, group, doc, ...)                                                                        \
   ROW(T, name, KEY_NAMES, member, 0, "", "", "", doc, .names = group, ##__VA_ARGS__)
 #define POINTS(T, name, member, doc, ...) ROW(T, name, KEY_POINTS, member, 0, "m", "", "", doc, ##__VA_ARGS__)
@@ -262,6 +266,7 @@ static const Key case_key[] = {
 };
 
 static const Key material_key[] = {
+    LIKE(Material, GROUP_MATERIAL, "another of materials, whose keys hold where this one's are not given"),
     REAL(Material, "porosity", porosity, "", "(0,1)", NULL, "initial porosity"),
     REAL(Material, "solid_density", solid.rho0, "kg/m^3", "(0,1e5]", NULL, "of the grains"),
     REAL(Material, "solid_heat_capacity", c_s, "J/(kg K)", "(0,1e6]", NULL, "", .has = HAS_HEAT),
@@ -401,17 +406,21 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
+    LIKE(Region, GROUP_REGION,
+         "another of regions, whose keys hold where this one's are not given, but for shape and minus"),
     NAME(Region, "material", material, NULL, GROUP_MATERIAL,
          "one of materials, or none: only to be cut out of others, to hold a region_temperature, or for a probe's mean",
          .word = "none", .shape = true),
-    POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
-    POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
-    REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true),
+    POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true, .own = true),
+    POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true,
+           .own = true),
+    REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true,
+          .own = true),
     REALS(Region, 2, "lower", lower, "m", "", "none, none", "lower left corner of a box, or bounds of another shape",
-          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true),
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true, .own = true),
     REALS(Region, 2, "upper", upper, "m", "", "none, none", "upper right corner",
-          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true),
-    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one"),
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true, .own = true),
+    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one", .own = true),
     INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y"),
     REAL(Region, "pressure", pressure, "Pa", "(0,1e10]", NULL, "initial mean pore pressure", .has = HAS_WATER),
     REAL(Region, "temperature", temperature, "degC", "(-273.15,1000]", NULL, "initial temperature",

@@ -176,7 +176,7 @@ static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instanc
 static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance, const char *indent)
 {
   for (const Key *k = case_group[g].key; k->name; k++) {
-    if (!KeyApplies(k, g, instance) || !KeyNeeded(k, c))
+    if (k->like || !KeyApplies(k, g, instance) || !KeyNeeded(k, c))
       continue;
     if (Empty(k, instance + k->offset))
       continue;
