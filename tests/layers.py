@@ -17,7 +17,7 @@ LAYERS = [
     # Exceptions: plain data that many layers read.  case.h is what a scene says (regions, boundary conditions, probes),
     # with schedule.h, the function of time it holds; the reader of case files, src/case, stays at the bottom.
     ("schedule", ["schedule", "ambient"], ["schedule"]),
-    ("case data", ["case"], []),
+    ("case data", ["case", "conditions"], []),
     ("shape", ["geometry", "shape"], ["shape"]),
     ("point", ["point", "kinematics"], ["point"]),
     ("grid", ["grid"], ["grid"]),

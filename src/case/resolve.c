@@ -1,6 +1,7 @@
 /* resolve: writes the case in SI, every key of the table at its value, such that reading it gives the same doubles; and
    prints the table itself. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -239,14 +240,12 @@ static void PrintTypes(FILE *out, const Key *k)
   if (!k->types)
     return;
   fputs(" (types: ", out);
-  for (int t = 0; case_bc_type[t]; t++) {
-    if (!(k->types & (1u << (t + 1))))
+  for (int kind = BC_NONE + 1; kind < BC_COUNT; kind++) {
+    if (!(k->types >> kind & 1u))
       continue;
-    fprintf(out, "%s%s", comma, case_bc_type[t]);
+    fprintf(out, "%s%s", comma, cl_condition[kind].word);
     comma = ", ";
   }
-  if (k->types & (1u << BC_PLATE_LINE))
-    fprintf(out, "%splate without a side", comma);
   fputc(')', out);
 }
 
