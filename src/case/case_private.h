@@ -125,7 +125,7 @@ typedef struct {
 
 extern const GroupInfo   case_group[GROUP_COUNT];
 extern const char *const case_schedule_form[]; /* suffixes of a schedule key; the first, "", is a constant */
-extern const char *const case_bc_type[];       /* by BcType - 1 */
+extern const char *const case_bc_type[];       /* by BcType - 1; behind the NULL what forms resolve to */
 static inline PetscInt  *GroupCount(const Case *c, Group g)
 {
   return (PetscInt *)((char *)c + case_group[g].count);
@@ -200,13 +200,16 @@ void           CheckReduction(Reader *r, const Case *c);                     /* 
 void           CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
 void           CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
-void               RegionsFinish(Case *c); /* once all keys are read */
-void               CheckShape(Reader *r, const Case *c, PetscInt region);
-void               CheckOverlap(Reader *r, const Case *c); /* of good shapes; none of them without particles */
-bool               FacesShared(const Case *c, const Meter *a, const Meter *b); /* has the body any that both name? */
-void               CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
-void               CheckHeld(Reader *r, const Case *c, const Bc *b);
-void               CheckProbe(Reader *r, const Case *c, const Probe *p);
+void RegionsFinish(Case *c); /* once all keys are read */
+void CheckShape(Reader *r, const Case *c, PetscInt region);
+void CheckOverlap(Reader *r, const Case *c);                     /* of good shapes; none of them without particles */
+bool FacesShared(const Case *c, const Meter *a, const Meter *b); /* has the body any that both name? */
+void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
+void CheckHeld(Reader *r, const Case *c, const Bc *b);
+void CheckProbe(Reader *r, const Case *c, const Probe *p);
+/* resolve.c: the value of a key as the resolved case gives it; keys that say nothing when they are empty */
+void               KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance);
+bool               KeyEmpty(const Key *k, const char *instance);
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
   return !k->has || (c->fields.has & k->has);

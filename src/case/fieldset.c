@@ -1,5 +1,6 @@
 /* fieldset: which fields a scene needs, as its case names them, or as follows from what is identically zero in it. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include "clathra/skeleton.h"
 #include <stdlib.h>
 #include <string.h>
@@ -90,28 +91,6 @@ static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uni
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fields a condition prescribes something of. */
-static unsigned ConditionNeeds(BcType type)
-{
-  switch (type) {
-  case BC_TRACTION:
-  case BC_PLATE:
-  case BC_PLATE_LINE:
-    return HAS_SOLID;
-  case BC_PRESSURE:
-  case BC_INFLOW:
-    return HAS_WATER;
-  case BC_HEAT_FLUX:
-  case BC_CONVECTION:
-  case BC_FACE_TEMPERATURE:
-  case BC_TEMPERATURE:
-  case BC_REGION_TEMPERATURE:
-    return HAS_HEAT;
-  default:
-    return HAS_SOLID | HAS_WATER; /* rollers and fixed planes hold the velocities there are */
-  }
-}
-
 /* Does a condition prescribe heat? */
 static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
 {
@@ -122,7 +101,7 @@ static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
   for (PetscInt i = 0; i < c->nbc; i++) {
     PetscCall(Peek(r, c, GROUP_BC, i, "type", &text));
     for (int k = 0; text && case_bc_type[k]; k++)
-      *heated = *heated || (!strcasecmp(text, case_bc_type[k]) && ConditionNeeds((BcType)(k + 1)) == HAS_HEAT);
+      *heated = *heated || (!strcasecmp(text, case_bc_type[k]) && cl_condition[k + 1].has == HAS_HEAT);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -275,14 +254,14 @@ void CaseFieldSetFinish(Reader *r, Case *c)
   for (PetscInt i = 0; i < c->nregion && !r->bad[GROUP_REGION]; i++)
     FinishRegion(r, c, &c->region[i]);
   for (PetscInt i = 0; i < c->nbc && !r->bad[GROUP_BC]; i++) {
-    const unsigned needs = ConditionNeeds(c->bc[i].type);
+    const unsigned needs = cl_condition[c->bc[i].type].has;
 
     if (fs->has & needs)
       continue;
     FieldsWords(needs, words);
     KeyOption(option, sizeof option, GROUP_BC, c->bc[i].name, "type");
-    ReaderError(r, option, case_bc_type[c->bc[i].type - 1], "needs %s, which is not among the fields of the scene (%s)",
-                words, c->fields_wanted);
+    ReaderError(r, option, cl_condition[c->bc[i].type].word,
+                "needs %s, which is not among the fields of the scene (%s)", words, c->fields_wanted);
   }
   for (PetscInt i = 0; i < c->nmaterial && !r->bad[GROUP_MATERIAL]; i++) {
     const Material *m = &c->material[i];

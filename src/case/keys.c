@@ -110,10 +110,10 @@ static const char *const capillary_word[]       = {"held", "free", NULL};
 static const char *const holds_word[]           = {"all", "skeleton", NULL};
 static const char *const clock_word[]           = {"run", "stage", NULL};
 static const char *const phases_word[]          = {"both", "water", "gas", NULL}; /* OpenPhases */
-/* behind the end of the words: what BC_PLATE_LINE is called */
-const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
-                                    "plate",    "roller",   "fixed",     "temperature", "region_temperature", NULL,
-                                    "plate"};
+#define BC_WORD(kind, word, ...) word,
+const char *const case_bc_type[] = {CL_FACE_CONDITIONS(BC_WORD) CL_NODE_CONDITIONS(BC_WORD) NULL,
+                                    CL_NODE_FORMS(BC_WORD)};
+#undef BC_WORD
 
 /* ---------------------------------------------------------------- the table */
 /* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
@@ -447,12 +447,12 @@ static const Key region_key[] = {
 };
 
 #define TYPE(t) (1u << (t))
-#define FACES (TYPE(BC_ROLLER) - TYPE(BC_TRACTION)) /* every type before BC_ROLLER acts on faces, */
-#define PLANES                                                                                                         \
-  (TYPE(BC_REGION_TEMPERATURE) - TYPE(BC_ROLLER) + TYPE(BC_PLATE_LINE)) /* those from there on grid planes */
+#define ON_FACE(kind, ...) | TYPE(BC_##kind)
+#define PLANE(kind, word, has, by, term, where, doc) | ((where) == ON_PLANE ? TYPE(BC_##kind) : 0u)
+enum { FACES = 0u CL_FACE_CONDITIONS(ON_FACE), PLANES = 0u CL_NODE_CONDITIONS(PLANE) CL_NODE_FORMS(PLANE) };
 
 static const Key bc_key[] = {
-    CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
+    CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_NONE + 1),
     BOOLEAN(Bc, "clock", of_stage, "run", "what times of its values count from: the begin of the run, or of each stage",
             .choices = clock_word),
     POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",

@@ -1,6 +1,7 @@
 /* resolve: writes the case in SI, every key of the table at its value, such that reading it gives the same doubles; and
    prints the table itself. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -108,9 +109,10 @@ static void WriteNames(FILE *f, const Case *c, const Key *k, const Names *names)
   fputc(']', f);
 }
 
-/* Keys that say nothing when they are empty. */
-static bool Empty(const Key *k, const char *place)
+bool KeyEmpty(const Key *k, const char *instance)
 {
+  const char *place = instance + k->offset;
+
   switch (k->kind) {
   case KEY_SCHEDULE:
     return ((const Schedule *)place)->n == 0;
@@ -125,7 +127,7 @@ static bool Empty(const Key *k, const char *place)
   }
 }
 
-static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instance)
+void KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance)
 {
   const char *place = instance + k->offset;
 
@@ -177,10 +179,10 @@ static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance,
   for (const Key *k = case_group[g].key; k->name; k++) {
     if (k->like || !KeyApplies(k, g, instance) || !KeyNeeded(k, c))
       continue;
-    if (Empty(k, instance + k->offset))
+    if (KeyEmpty(k, instance))
       continue;
     fprintf(f, "%s%s: ", indent, k->name);
-    WriteValue(f, c, k, instance);
+    KeyWrite(f, c, k, instance);
     fputc('\n', f);
   }
 }
@@ -238,14 +240,12 @@ static void PrintTypes(FILE *out, const Key *k)
   if (!k->types)
     return;
   fputs(" (types: ", out);
-  for (int t = 0; case_bc_type[t]; t++) {
-    if (!(k->types & (1u << (t + 1))))
+  for (int kind = BC_NONE + 1; kind < BC_COUNT; kind++) {
+    if (!(k->types >> kind & 1u))
       continue;
-    fprintf(out, "%s%s", comma, case_bc_type[t]);
+    fprintf(out, "%s%s", comma, cl_condition[kind].word);
     comma = ", ";
   }
-  if (k->types & (1u << BC_PLATE_LINE))
-    fprintf(out, "%splate without a side", comma);
   fputc(')', out);
 }
 

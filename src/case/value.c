@@ -1,5 +1,6 @@
 /* value: reads one key of the table into its place, by kind. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
@@ -333,7 +334,7 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
     if (f.found && f.own && g == GROUP_REGION)
       ReaderError(r, f.shown, text, "is not a key of a region without particles (material: none)");
     else if (f.found && f.own)
-      ReaderError(r, f.shown, text, "is not a key of a boundary of type %s", case_bc_type[((Bc *)instance)->type - 1]);
+      ReaderError(r, f.shown, text, "is not a key of a boundary of type %s", cl_condition[((Bc *)instance)->type].word);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!f.found) {
