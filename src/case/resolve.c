@@ -177,7 +177,7 @@ void KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance)
 static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance, const char *indent)
 {
   for (const Key *k = case_group[g].key; k->name; k++) {
-    if (k->like || !KeyApplies(k, g, instance) || !KeyNeeded(k, c))
+    if (k->like || !KeyApplies(k, g, instance) || !KeyActs(k, c, instance))
       continue;
     if (KeyEmpty(k, instance))
       continue;

@@ -569,6 +569,7 @@ static void ForeignFilesAreRefused(void **state)
   StepperState       back;
 
   SceneCreate(&s, PETSC_COMM_WORLD, 4);
+  s.material.reacts      = true; /* so that K0 counts */
   double *const change[] = {
       &s.c.gravity[1], &s.region[0].upper[1], &s.material.kappa_s, &s.material.elasticity.E0, &s.material.kinetics.K0,
       &s.y[1],         &s.bc[0].alpha};
@@ -584,7 +585,7 @@ static void ForeignFilesAreRefused(void **state)
   }
   s.material.retention.type = "brooks_corey";
   ExpectRefused(&s, path, "another case");
-  s.material.retention.type = "";
+  s.material.retention.type = "van_genuchten";
   snprintf(s.c.title, sizeof(s.c.title), "another title");
   s.c.t_end = 7.0;
   Call(CheckpointRead(&s.m, &back, path, &origin, &ok));
