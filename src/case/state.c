@@ -29,7 +29,7 @@ static bool Named(const char *name, const char *const *list)
 /* The line "PREFIX KEY: VALUE". */
 static void WriteLine(FILE *f, const Case *c, const char *prefix, const Key *k, const char *instance)
 {
-  if (!KeyNeeded(k, c) || KeyEmpty(k, instance))
+  if (!KeyActs(k, c, instance) || KeyEmpty(k, instance))
     return;
   fprintf(f, "%s%s: ", prefix, k->name);
   KeyWrite(f, c, k, instance);

@@ -252,6 +252,7 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   if (!restart) {
     if (!run->initial[0])
       PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P));
     PetscCall(CellMeansWarning(&m->grid, m->c, &m->P));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
