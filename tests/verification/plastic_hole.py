@@ -8,15 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
+from _hole import P0, R0, WALL, quarter
 from common import Run, check, finish, judge, order, table
 
 CASE = Path(__file__).parent / "cases" / "hole.yaml"
-QUARTER = CASE.with_name("hole_quarter.yaml")
-P0, R0 = 30e6, 1.734998
 R = np.array([1.2, 1.5, 2.0, 3.0, 5.0])
 RADIAL = np.array([2.6293, 7.4695, 16.4632, 23.9836, 27.8341]) * 1e6
 HOOP = np.array([19.8389, 34.3596, 43.5368, 36.0164, 32.1659]) * 1e6
-WALL = {"0 deg": 0.1216712e-3, "30 deg": 0.2810346e-3}  # m, a hundredth of that at E = 6.77793 GPa
 
 
 def stress(x, s, r, inside):
@@ -52,43 +50,9 @@ for dilation, wall in WALL.items():
     check("order of the radial stress", order(sizes, [e[0] for e in errors])[0], (0.7, 3.0))
 
 # ---------------------------------------------------------------------------------------- a quarter in plane strain
-EDGE, TENSION, FAR = 12.0122e6, 3.45e6 / np.tan(np.radians(30)), 4.0  # Pa: radial stress at R0; c cot phi; m
-
-
-def far_stress(p):
-    """Radial stress at FAR when the wall bears p: elastic outside of the plastic zone, whose radius follows p (K_p = 3)."""
-    growth = (P0 - p) if p > EDGE else (P0 - EDGE) * (EDGE + TENSION) / (p + TENSION)
-    return P0 - growth / FAR**2
-
-
-def arc(radius, n):
-    a = np.linspace(0, np.pi / 2, n)
-    points = [f"[{radius * np.cos(x):.12g} m, {radius * np.sin(x):.12g} m]" for x in (a if radius == 1.0 else a[::-1])]
-    return f"[{', '.join(points)}]"
-
-
-def quarter(h, *options, end=1.0, rest=0.0, slows=False):
-    """Displacement of the wall inwards (m) and outermost radius that yielded (m); the load comes in `end` seconds, ever slower if it slows."""
-    n = round(4.4 / h)
-    part = np.linspace(0, 1, 41)
-    wall = P0 * ((1 - part) ** 2 if slows else 1 - part)
-    tables = [", ".join(f"{t * end:.8g} s, {value:.8g} Pa" for t, value in zip(part, values)) for values in (wall, [far_stress(p) for p in wall])]
-    run = Run.of_case(QUARTER, "-quiet", "-grid_upper", f"{n * h:.12g} m, {n * h:.12g} m", "-grid_cells", f"{n},{n}", "-bc_wall_along", arc(1.0, 33),
-                      "-bc_far_along", arc(FAR, 65), "-bc_wall_normal_table", tables[0], "-bc_far_normal_table", tables[1], "-time_end", f"{end + rest} s",
-                      "-output_times", f"{end + rest} s", *options)  # fmt: skip
-    p = run.snapshots()[-1][1]
-    x, u = p["position"], p["displacement"]
-    r = np.hypot(x[:, 0], x[:, 1])
-    near = r < 1 + 4 * h
-    inwards = -(u[near, 0] * x[near, 0] + u[near, 1] * x[near, 1]) / r[near]
-    return np.polyval(np.polyfit(r[near] - 1, inwards, 3), 0.0), r[p["plastic_work"][:, 0] > 0].max()
-
-
 plane, sizes = [], (0.2, 0.1)
 for h in sizes:
-    implicit = quarter(h, "-inertia", "no", "-stepper_type", "euler", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
-    hybrid = quarter(h, "-stepper_type", "hybrid", "-stepper_adapt", "yes", "-stepper_damping", 0.2, end=0.03, rest=0.0075, slows=True)
-    plane.append([h, *(f(v) for v in (implicit, hybrid) for f in (lambda v: v[0] / WALL["30 deg"] - 1, lambda v: v[1] / R0 - 1))])
+    plane.append([h, *quarter(h, hybrid=False), *quarter(h, hybrid=True)])
 print("\nquarter in plane strain, relative errors")
 table(["h (m)", "wall, implicit", "R0", "wall, hybrid", "R0"], plane)
 for name, k in (("implicit", 1), ("hybrid", 3)):
