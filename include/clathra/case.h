@@ -294,8 +294,8 @@ static inline bool CaseStartsWithoutGas(const Case *c)
 {
   bool without = false;
 
-  for (PetscInt k = 0; k < c->nregion; k++)
-    without = without || ((c->fields.has & HAS_GAS_PRESSURE) && c->region[k].Sg == 0.0);
+  for (PetscInt k = 0; k < c->nregion; k++) /* a region without material holds nothing: it names a place */
+    without = without || ((c->fields.has & HAS_GAS_PRESSURE) && c->region[k].material >= 0 && c->region[k].Sg == 0.0);
   return without;
 }
 
