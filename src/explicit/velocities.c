@@ -129,9 +129,9 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
     const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
     Solve(e, &b, dt, held, value, v);
     if (e->set.solid && e->set.fluids)
-      e->work[WORK_DRAG] += e->node[I].own * dt * DragWork(e, I, d, &b, v);
+      e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, I, d, &b, v);
     if (!held && e->o.damping > 0.0)
-      e->work[WORK_DAMPING] += e->node[I].own * dt * e->o.damping * fabs(b.f) *
+      e->work[WORK_DAMPING] += e->node[I].own_v * dt * e->o.damping * fabs(b.f) *
                                (b.v > 0.0   ? 1.0
                                 : b.v < 0.0 ? -1.0
                                             : 0.0) *
@@ -181,7 +181,7 @@ static void WriteVelocities(Explicit *e, PetscInt I, double dt)
     double  v[3] = {0.0}, value;
 
     ReadBalance(e, a, d, &w);
-    v[0] = s.solid ? w.v + Blended(e, I, 6, e->inc, d) : 0.0;
+    v[0] = s.solid ? w.v + Blended(e, I, e->node[I].own_v, 6, e->inc, d) : 0.0;
     if (s.solid && Held(e, I, F_VSX + d, &value))
       v[0] = value;
     if (s.solid) {
@@ -192,7 +192,7 @@ static void WriteVelocities(Explicit *e, PetscInt I, double dt)
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
-      v[1 + k] = w.vf[k] + Blended(e, I, 6, e->inc, 2 * (1 + k) + d);
+      v[1 + k] = w.vf[k] + Blended(e, I, e->node[I].own_v, 6, e->inc, 2 * (1 + k) + d);
       if (Held(e, I, F_VWX + 2 * k + d, &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.w[k] * (v[1 + k] - v[0]);
