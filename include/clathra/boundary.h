@@ -22,11 +22,10 @@ typedef struct {
   double   Nm[PHASE_COUNT][CL_NODES]; /* (109): those in the rows of mass */
   double   ring[2];           /* (197), (198): what is lost between face and body in a ring, in 2 pi k and kappa */
   double   skin[PHASE_COUNT]; /* the same as a resistance to a fluid, Pa s/m^3 */
-  PetscInt traction, pressure, heat, convection, temperature, inflow; /* index into Case.bc, -1 = none */
-  PetscInt plate;                                                     /* the same */
-  double   moved[CL_DIM];                                             /* displacement since the start, m */
-  double   a0;                                                        /* area at the start, m^2 */
-  double   K;       /* stiffness of its plate's spring, N/m; see PlateStiffness */
+  PetscInt bc[BC_FACES];      /* by kind: index into Case.bc, -1 = none */
+  double   moved[CL_DIM];     /* displacement since the start, m */
+  double   a0;                /* area at the start, m^2 */
+  double   K;                 /* stiffness of its plate's spring, N/m; see PlateStiffness */
   bool     touches; /* its plate takes part in the last tangent: always, or where one that separates touches */
   unsigned meters;  /* bit k: Case.meter[k] counts it */
 } Face;
@@ -126,6 +125,19 @@ static inline double PlateGap(const Face *f, double position, const double u[CL_
 void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o);
 /* CL_OK, or why the plate cannot go to `position` in this step; the sentence goes to text. */
 ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position, char *text, size_t size);
+
+/* What the program knows of a kind of condition: the rows of CL_FACE_CONDITIONS, CL_NODE_CONDITIONS. */
+typedef struct FaceState FaceState;
+typedef struct {
+  const char *word;
+  unsigned    has;   /* fields HAS_... any of which it needs */
+  int         where; /* ON_FACES, ON_PLANE, IN_REGION */
+  /* adds what condition Case.bc[k] does at a face; NULL: nothing, or a plate, whose force decides where it is */
+  void (*face)(const FaceState *x, PetscInt k, FaceOutput *o);
+  /* prescribes unknowns of a node as PlaneConditions does; at: the condition's value at the time */
+  void (*node)(const FieldSet *fs, const Bc *b, double at, unsigned *mask, double *value);
+} Condition;
+extern const Condition cl_condition[BC_COUNT]; /* by BcType */
 
 /* Dirichlet values on grid planes, in regions and on the axis, where what the node sees was seeded there: sets bit k of
    mask and value[k] for every prescribed unknown, k its place in the field set, of grid node ij. */

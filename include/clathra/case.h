@@ -1,28 +1,9 @@
 /* case: everything a scene says, in SI units (T in degC), read from cases/<name>/case.yaml and the command line. */
 #pragma once
 
-#include "clathra/base.h"
-#include "clathra/fields.h"
+#include "clathra/conditions.h"
 #include "clathra/material.h"
-#include "clathra/schedule.h"
 #include "clathra/skeleton.h"
-
-typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
-
-/* Axis and sign of a side's outward normal. */
-static inline int SideAxis(int side)
-{
-  return side / 2;
-}
-static inline double SideSign(int side)
-{
-  return side % 2 ? 1.0 : -1.0;
-}
-
-typedef struct {
-  PetscInt n;
-  double  *x; /* n x 2, m */
-} Points;
 
 typedef struct {
   PetscInt n, *i; /* indices into a list of the case */
@@ -53,28 +34,6 @@ typedef struct {
   Names     minus;     /* regions whose shapes are cut out */
 } Region;
 
-typedef enum {
-  BC_TRACTION = 1,       /* moving faces: total normal stress (compression-positive) and shear, Pa */
-  BC_PRESSURE,           /* moving faces: mean pore pressure, or p_w and p_g, Pa, or the initial ones */
-  BC_HEAT_FLUX,          /* moving faces: W/m^2 into the body */
-  BC_CONVECTION,         /* moving faces: alpha (T_a - T), W/m^2 */
-  BC_FACE_TEMPERATURE,   /* moving faces: T, degC */
-  BC_INFLOW,             /* moving faces: volume of water and gas into the body, m/s */
-  BC_PLATE,              /* moving faces: a rigid plate, by its velocity, displacement or force */
-  BC_ROLLER,             /* grid plane: normal velocity of all phases zero */
-  BC_FIXED,              /* grid plane: all velocities zero */
-  BC_TEMPERATURE,        /* grid plane: T, degC */
-  BC_REGION_TEMPERATURE, /* nodes in a region's initial shape: T, degC */
-  BC_WORDS,              /* the types before this have words of their own */
-  BC_PLATE_LINE          /* grid plane, `plate` without a side: its normal velocity, m/s; for small motions */
-} BcType;
-
-/* Those that the integrators without a matrix know, too; they refuse any other by name. */
-#define BC_LOCAL                                                                                                       \
-  (1u << BC_TRACTION | 1u << BC_PRESSURE | 1u << BC_HEAT_FLUX | 1u << BC_CONVECTION | 1u << BC_FACE_TEMPERATURE |      \
-   1u << BC_INFLOW | 1u << BC_ROLLER | 1u << BC_FIXED | 1u << BC_PLATE | 1u << BC_TEMPERATURE |                        \
-   1u << BC_REGION_TEMPERATURE)
-
 /* What a probe writes; words in src/case/quantities.c. */
 enum {
   QUANTITY_P = 0,
@@ -94,38 +53,6 @@ enum {
   QUANTITY_YIELD,                                      /* distance to yield; is it reached? */
   QUANTITY_COUNT
 };
-
-/* For which fluids a pressure opens a face; it stays closed for the other. */
-typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
-
-typedef struct {
-  char     name[64];
-  BcType   type;
-  PetscInt number;   /* its place in the list of the case, whatever acts in a stage */
-  bool     of_stage; /* times of the functions below count from the begin of the stage, not of the run */
-  double   zero;     /* s: where they count from */
-  /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
-     those on a line (side = SIDE_COUNT) */
-  Side     side;
-  PetscInt region;
-  double   from, to; /* m, along the side; -inf, +inf by default */
-  Points   along;
-  /* planes: nodes with coordinate `axis` equal to `position` */
-  PetscInt axis;
-  double   position;
-  /* functions of time */
-  Schedule   value; /* normal stress | p (mean) | heat flux | T_a | T (also of inflow) | plate velocity (along +axis) */
-  Schedule   displacement, force; /* plate: along +axis since the start, m; on the body, compression-positive, N */
-  Schedule   shear;               /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
-  Schedule   phase[PHASE_COUNT];  /* pressure: p_w, p_g, Pa; inflow: volume flux of water, gas, m/s */
-  bool       initial;             /* pressure: hold each face at its particle's initial p_w, p_g */
-  bool       natural; /* pressure: the particle's own capillary pressure instead of the face's initial one (31) */
-  OpenPhases open;    /* pressure */
-  bool       drained; /* roller, fixed, plate: holds the skeleton alone, fluids cross the plane */
-  bool       rough, separates; /* plate: holds the tangential displacement; takes no tension */
-  double     stiffness;        /* plate: of its springs, in units of the constrained modulus over a cell */
-  double     alpha;            /* convection coefficient, W/(m^2 K) */
-} Bc;
 
 #define CL_METERS 16 /* at most */
 
@@ -316,15 +243,24 @@ static inline bool CaseLetsGasIn(const Case *c)
   return enters && CaseStartsWithoutGas(c);
 }
 
+/* First condition that the integrators without a matrix do not know, or NULL. */
+static inline const Bc *CaseBcNeedsMatrix(const Case *c)
+{
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type != BC_NONE && !(BC_LOCAL >> c->bc[k].type & 1u))
+      return &c->bc[k];
+  }
+  return NULL;
+}
+
 /* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
    nothing does. */
 static inline const char *CaseNeedsImplicit(const Case *c)
 {
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u))
-      return c->bc[k].name;
-  }
-  return c->axisymmetric        ? "geometry: axisymmetric"
+  const Bc *b = CaseBcNeedsMatrix(c);
+
+  return b                      ? b->name
+         : c->axisymmetric      ? "geometry: axisymmetric"
          : c->one_pressure      ? "pressures: one"
          : c->upstream          ? "stabilisation_upstream"
          : c->saturation_upwind ? "stabilisation_saturation"

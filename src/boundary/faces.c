@@ -93,8 +93,8 @@ static void Ring(const Case *c, const Grid *g, const Particles *P, Face *f)
   const bool   hole = c->axisymmetric && f->side == SIDE_XMIN;
   const double l    = P->f[P_L][f->particle];
 
-  f->ring[0] = hole && f->pressure >= 0 ? FaceRing(c, g, f->x[0], l, 0.0) : 0.0;
-  f->ring[1] = hole && f->temperature >= 0 ? FaceRing(c, g, f->x[0], l, FACE_PENALTY) : 0.0;
+  f->ring[0] = hole && f->bc[BC_PRESSURE] >= 0 ? FaceRing(c, g, f->x[0], l, 0.0) : 0.0;
+  f->ring[1] = hole && f->bc[BC_FACE_TEMPERATURE] >= 0 ? FaceRing(c, g, f->x[0], l, FACE_PENALTY) : 0.0;
 }
 
 void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
@@ -131,7 +131,7 @@ void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT])
 {
   double sum = 0.0;
 
-  if (f->inflow < 0 || f->pressure >= 0)
+  if (f->bc[BC_INFLOW] < 0 || f->bc[BC_PRESSURE] >= 0)
     return;
   for (int a = 0; a < n; a++)
     sum += f->N[a];
@@ -151,14 +151,10 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
   f->region      = P->i[PI_REGION][p];
   f->x0[0]       = ParticleInitialX(P, p, 0);
   f->x0[1]       = ParticleInitialX(P, p, 1);
-  f->traction    = FindCondition(c, BC_TRACTION, f);
-  f->pressure    = FindCondition(c, BC_PRESSURE, f);
-  f->heat        = FindCondition(c, BC_HEAT_FLUX, f);
-  f->convection  = FindCondition(c, BC_CONVECTION, f);
-  f->temperature = FindCondition(c, BC_FACE_TEMPERATURE, f);
-  f->inflow      = FindCondition(c, BC_INFLOW, f);
-  f->plate       = FindCondition(c, BC_PLATE, f);
-  f->meters      = FindMeters(c, f);
+  f->bc[BC_NONE] = -1;
+  for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
+    f->bc[kind] = FindCondition(c, (BcType)kind, f);
+  f->meters = FindMeters(c, f);
   FaceNormal(c, f->region, f->x0, side, f->n0);
   FacePlace(c, g, P, &stencil[p], f);
 }

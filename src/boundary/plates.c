@@ -69,7 +69,7 @@ static const Bc *Met(const Case *c, const Grid *g, const Face *f, double positio
 
 ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position, char *text, size_t size)
 {
-  const Bc    *b  = &c->bc[f->plate], *plane;
+  const Bc    *b  = &c->bc[f->bc[BC_PLATE]], *plane;
   const int    d  = SideAxis(f->side);
   const double at = f->x[d] - f->moved[d] + position, upper = g->lower[d] + (double)g->cells[d] * g->h[d];
   const double zero[CL_DIM] = {0.0}, gap = PlateGap(f, position, zero), slack = 1e-9 * g->h[d];

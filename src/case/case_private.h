@@ -50,7 +50,8 @@ typedef struct {
   Entry      *entry;
   PetscInt    nerror;
   char       *error[CASE_ERRORS];
-  bool        bad[GROUP_COUNT]; /* some key of the group could not be read */
+  bool        bad[GROUP_COUNT];  /* some key of the group could not be read */
+  PetscInt   *like[GROUP_COUNT]; /* of each instance: whose keys hold where its own are not given, -1: nobody's */
 } Reader;
 
 /* Adds one error: "file:line: key = value: message"; `key` and `value` may be NULL. */
@@ -109,6 +110,8 @@ typedef struct {
   unsigned    has;   /* fields (HAS_...) any of which needs the key; 0 = always needed */
   bool        plain; /* a number without unit on the command line is in SI */
   bool        kept;  /* not given, what is there stays; `def` says in words what that is */
+  bool        own;   /* never that of the instance which this one is like */
+  bool        like;  /* names that instance: read before the others (CaseLike), and no part of the scene */
   const char *doc;
 } Key;
 
@@ -122,7 +125,7 @@ typedef struct {
 
 extern const GroupInfo   case_group[GROUP_COUNT];
 extern const char *const case_schedule_form[]; /* suffixes of a schedule key; the first, "", is a constant */
-extern const char *const case_bc_type[];       /* by BcType - 1 */
+extern const char *const case_bc_type[];       /* by BcType - 1; behind the NULL what forms resolve to */
 static inline PetscInt  *GroupCount(const Case *c, Group g)
 {
   return (PetscInt *)((char *)c + case_group[g].count);
@@ -154,6 +157,17 @@ int  EditDistance(const char *a, const char *b);
   } while (0)
 
 /* ---------------------------------------------------------------- value.c, forms.c, check.c */
+/* like.c: who is like whom; after the lists of names are read, before any other key.  A circle is refused. */
+PetscErrorCode CaseLike(Reader *r, const Case *c);
+PetscErrorCode LikeDestroy(Reader *r);
+/* Finds the value of a key of instance i, or of the first it is like that has one; `shown` is how messages name the key
+   where it was found, *own: it is the instance's. */
+typedef struct {
+  const char *text; /* NULL: empty */
+  char        shown[257];
+  bool        found, from_file, own;
+} Found;
+PetscErrorCode KeyFind(Reader *r, const Case *c, Group g, PetscInt i, const Key *k, Found *f);
 PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k);
 bool           YesNoRead(const char *text, bool *value); /* yes, no, true, ...; false for another word */
 void           KeyMissing(Reader *r, const char *option, const Key *k);

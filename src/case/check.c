@@ -1,5 +1,6 @@
 /* check: what no single key can show: values that must agree with each other. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include "clathra/shape.h"
 #include <stdio.h>
 #include <string.h>
@@ -144,14 +145,16 @@ void CaseCheck(Reader *r, const Case *c)
   if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
     CheckOverlap(r, c);
   for (PetscInt i = 0; i < c->nbc && !bad[GROUP_BC]; i++) {
-    const Bc *b = &c->bc[i];
-    if (b->type < BC_ROLLER) {
+    const Bc *b     = &c->bc[i];
+    const int where = cl_condition[b->type].where;
+
+    if (where == ON_FACES) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
         CheckFaces(r, c, GROUP_BC, b->name, &BcFaces(b));
       CheckFlow(r, c, b);
       if (b->type == BC_PLATE)
         CheckPlate(r, c, b);
-    } else if (b->type == BC_REGION_TEMPERATURE) {
+    } else if (where == IN_REGION) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
         CheckHeld(r, c, b);
     } else if (!bad[GROUP_CASE]) {

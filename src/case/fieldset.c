@@ -1,5 +1,6 @@
 /* fieldset: which fields a scene needs, as its case names them, or as follows from what is identically zero in it. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include "clathra/skeleton.h"
 #include <stdlib.h>
 #include <string.h>
@@ -7,33 +8,41 @@
 
 #define FIELDS_ALLOWED "auto, a list of solid, water, gas, heat, or one of thmc thc hmc hc thm hm th h tm m t"
 
-/* Text of a key as it stands in the case, NULL if it is not given. */
-static PetscErrorCode Peek(Reader *r, Group g, const char *instance, const char *key, const char **text)
+/* A key as it stands in the case. */
+static PetscErrorCode PeekFound(Reader *r, const Case *c, Group g, PetscInt i, const char *key, Found *f)
 {
-  char option[256];
-  bool found, from_file;
+  const Key *k = case_group[g].key;
 
   PetscFunctionBeginUser;
-  KeyOption(option, sizeof option, g, instance, key);
-  *text = NULL;
-  PetscCall(ReaderFind(r, option, text, &found, &from_file));
+  while (strcmp(k->name, key))
+    k++;
+  PetscCall(KeyFind(r, c, g, i, k, f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Its text, NULL if it is not given. */
+static PetscErrorCode Peek(Reader *r, const Case *c, Group g, PetscInt i, const char *key, const char **text)
+{
+  Found f;
+
+  PetscFunctionBeginUser;
+  PetscCall(PeekFound(r, c, g, i, key, &f));
+  *text = f.text;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Sets *reacts if the material does; a bare option on the command line is a yes. */
-static PetscErrorCode PeekReacts(Reader *r, const char *material, bool *reacts)
+static PetscErrorCode PeekReacts(Reader *r, const Case *c, PetscInt material, bool *reacts)
 {
-  char        option[256];
-  const char *text;
-  bool        found, from_file, yes;
+  Found f;
+  bool  yes;
 
   PetscFunctionBeginUser;
-  KeyOption(option, sizeof option, GROUP_MATERIAL, material, "kinetics_active");
-  PetscCall(ReaderFind(r, option, &text, &found, &from_file));
-  if (text)
-    *reacts = *reacts || (YesNoRead(text, &yes) && yes);
+  PetscCall(PeekFound(r, c, GROUP_MATERIAL, material, "kinetics_active", &f));
+  if (f.text)
+    *reacts = *reacts || (YesNoRead(f.text, &yes) && yes);
   else
-    *reacts = *reacts || (found && !from_file);
+    *reacts = *reacts || (f.found && !f.from_file);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -46,8 +55,8 @@ static PetscErrorCode PeekMaterials(Reader *r, const Case *c, bool *reacts, bool
   *reacts = false;
   *rigid  = c->nmaterial > 0;
   for (PetscInt i = 0; i < c->nmaterial; i++) {
-    PetscCall(PeekReacts(r, c->material[i].name, reacts));
-    PetscCall(Peek(r, GROUP_MATERIAL, c->material[i].name, "elasticity_E0", &text));
+    PetscCall(PeekReacts(r, c, i, reacts));
+    PetscCall(Peek(r, c, GROUP_MATERIAL, i, "elasticity_E0", &text));
     *rigid = *rigid && text && !strcasecmp(text, "rigid");
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,43 +74,21 @@ static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uni
   for (PetscInt i = 0; i < c->nregion; i++) {
     const char *sw;
 
-    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "material", &text));
+    PetscCall(Peek(r, c, GROUP_REGION, i, "material", &text));
     if (text && !strcasecmp(text, "none"))
       continue; /* without particles */
-    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "Sw", &sw));
-    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "Sg", &text));
+    PetscCall(Peek(r, c, GROUP_REGION, i, "Sw", &sw));
+    PetscCall(Peek(r, c, GROUP_REGION, i, "Sg", &text));
     *gas = *gas || (text ? strtod(text, NULL) != 0.0 : sw != NULL);
-    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "temperature", &text));
+    PetscCall(Peek(r, c, GROUP_REGION, i, "temperature", &text));
     if (!any)
       first = text;
     any      = true;
     *uniform = *uniform && (first && text ? !strcmp(first, text) : first == text);
-    PetscCall(Peek(r, GROUP_REGION, c->region[i].name, "geothermal", &text));
+    PetscCall(Peek(r, c, GROUP_REGION, i, "geothermal", &text));
     *uniform = *uniform && !(text && strtod(text, NULL) != 0.0);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Fields a condition prescribes something of. */
-static unsigned ConditionNeeds(BcType type)
-{
-  switch (type) {
-  case BC_TRACTION:
-  case BC_PLATE:
-  case BC_PLATE_LINE:
-    return HAS_SOLID;
-  case BC_PRESSURE:
-  case BC_INFLOW:
-    return HAS_WATER;
-  case BC_HEAT_FLUX:
-  case BC_CONVECTION:
-  case BC_FACE_TEMPERATURE:
-  case BC_TEMPERATURE:
-  case BC_REGION_TEMPERATURE:
-    return HAS_HEAT;
-  default:
-    return HAS_SOLID | HAS_WATER; /* rollers and fixed planes hold the velocities there are */
-  }
 }
 
 /* Does a condition prescribe heat? */
@@ -112,9 +99,9 @@ static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
   PetscFunctionBeginUser;
   *heated = false;
   for (PetscInt i = 0; i < c->nbc; i++) {
-    PetscCall(Peek(r, GROUP_BC, c->bc[i].name, "type", &text));
+    PetscCall(Peek(r, c, GROUP_BC, i, "type", &text));
     for (int k = 0; text && case_bc_type[k]; k++)
-      *heated = *heated || (!strcasecmp(text, case_bc_type[k]) && ConditionNeeds((BcType)(k + 1)) == HAS_HEAT);
+      *heated = *heated || (!strcasecmp(text, case_bc_type[k]) && cl_condition[k + 1].has == HAS_HEAT);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -125,10 +112,12 @@ static PetscErrorCode PeekSchedule(Reader *r, const char *instance, const char *
   PetscFunctionBeginUser;
   for (int f = 0; case_schedule_form[f]; f++) {
     const char *text;
-    char        name[64];
+    char        name[64], option[256];
+    bool        found, from_file;
 
     PetscCall(PetscSNPrintf(name, sizeof name, "%s%s", key, case_schedule_form[f]));
-    PetscCall(Peek(r, GROUP_BC, instance, name, &text));
+    KeyOption(option, sizeof option, GROUP_BC, instance, name);
+    PetscCall(ReaderFind(r, option, &text, &found, &from_file));
     *given = *given || (text && (f > 0 || zero || strtod(text, NULL) != 0.0));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -141,7 +130,7 @@ static PetscErrorCode PeekFlows(Reader *r, const Case *c, bool *gas, bool *heate
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->nbc; i++) {
-    PetscCall(Peek(r, GROUP_BC, c->bc[i].name, "type", &text));
+    PetscCall(Peek(r, c, GROUP_BC, i, "type", &text));
     if (text && !strcasecmp(text, "pressure"))
       PetscCall(PeekSchedule(r, c->bc[i].name, "p_g", false, gas));
     if (!text || strcasecmp(text, "inflow"))
@@ -265,14 +254,14 @@ void CaseFieldSetFinish(Reader *r, Case *c)
   for (PetscInt i = 0; i < c->nregion && !r->bad[GROUP_REGION]; i++)
     FinishRegion(r, c, &c->region[i]);
   for (PetscInt i = 0; i < c->nbc && !r->bad[GROUP_BC]; i++) {
-    const unsigned needs = ConditionNeeds(c->bc[i].type);
+    const unsigned needs = cl_condition[c->bc[i].type].has;
 
     if (fs->has & needs)
       continue;
     FieldsWords(needs, words);
     KeyOption(option, sizeof option, GROUP_BC, c->bc[i].name, "type");
-    ReaderError(r, option, case_bc_type[c->bc[i].type - 1], "needs %s, which is not among the fields of the scene (%s)",
-                words, c->fields_wanted);
+    ReaderError(r, option, cl_condition[c->bc[i].type].word,
+                "needs %s, which is not among the fields of the scene (%s)", words, c->fields_wanted);
   }
   for (PetscInt i = 0; i < c->nmaterial && !r->bad[GROUP_MATERIAL]; i++) {
     const Material *m = &c->material[i];

@@ -9,6 +9,7 @@
    On the command line -key_ramp "v0, v1, t0, t1" or -key "{ramp: [v0, v1, t0, t1]}".
    Before the first time the first value holds, after the last time the last. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -203,7 +204,7 @@ PetscErrorCode ScheduleRead(Reader *r, const char *option, const Key *k, const v
   }
   if (form >= 0 && !KeyApplies(k, GROUP_BC, instance)) {
     ReaderError(r, shown, text, "is not a key of a boundary of type %s",
-                case_bc_type[((const Bc *)instance)->type - 1]);
+                cl_condition[((const Bc *)instance)->type].word);
   } else if (n[0] > 1 || (!n[0] && n[1] > 1)) {
     ReaderError(r, shown, text, "%s is given in two forms; choose one", option);
   } else if (form >= 0) {

@@ -110,10 +110,10 @@ static const char *const capillary_word[]       = {"held", "free", NULL};
 static const char *const holds_word[]           = {"all", "skeleton", NULL};
 static const char *const clock_word[]           = {"run", "stage", NULL};
 static const char *const phases_word[]          = {"both", "water", "gas", NULL}; /* OpenPhases */
-/* behind the end of the words: what BC_PLATE_LINE is called */
-const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convection",  "face_temperature",   "inflow",
-                                    "plate",    "roller",   "fixed",     "temperature", "region_temperature", NULL,
-                                    "plate"};
+#define BC_WORD(kind, word, ...) word,
+const char *const case_bc_type[] = {CL_FACE_CONDITIONS(BC_WORD) CL_NODE_CONDITIONS(BC_WORD) NULL,
+                                    CL_NODE_FORMS(BC_WORD)};
+#undef BC_WORD
 
 /* ---------------------------------------------------------------- the table */
 /* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
@@ -134,6 +134,10 @@ const char *const case_bc_type[] = {"traction", "pressure", "heat_flux", "convec
   ROW(T, name, KEY_CHOICE, member, 1, "", "", def, doc, .choices = words, ##__VA_ARGS__)
 #define NAME(T, name, member, def, group, doc, ...)                                                                    \
   ROW(T, name, KEY_NAME, member, 1, "", "", def, doc, .names = group, ##__VA_ARGS__)
+/* read by CaseLike; the member is not used */
+#define LIKE(T, group, doc)                                                                                            \
+  ROW(T, "like", KEY_NAME, name, 1, "", "", "none", doc, .names = group, .word = "none", .shape = true, .own = true,   \
+      .like = true)
 #define NAMES(T, name, member, group, doc, ...)                                                                        \
   ROW(T, name, KEY_NAMES, member, 0, "", "", "", doc, .names = group, ##__VA_ARGS__)
 #define POINTS(T, name, member, doc, ...) ROW(T, name, KEY_POINTS, member, 0, "m", "", "", doc, ##__VA_ARGS__)
@@ -265,6 +269,7 @@ static const Key case_key[] = {
 };
 
 static const Key material_key[] = {
+    LIKE(Material, GROUP_MATERIAL, "another of materials, whose keys hold where this one's are not given"),
     REAL(Material, "porosity", porosity, "", "(0,1)", NULL, "initial porosity"),
     REAL(Material, "solid_density", solid.rho0, "kg/m^3", "(0,1e5]", NULL, "of the grains"),
     REAL(Material, "solid_heat_capacity", c_s, "J/(kg K)", "(0,1e6]", NULL, "", .has = HAS_HEAT),
@@ -404,17 +409,21 @@ static const Key material_key[] = {
 };
 
 static const Key region_key[] = {
+    LIKE(Region, GROUP_REGION,
+         "another of regions, whose keys hold where this one's are not given, but for shape and minus"),
     NAME(Region, "material", material, NULL, GROUP_MATERIAL,
          "one of materials, or none: only to be cut out of others, to hold a region_temperature, or for a probe's mean",
          .word = "none", .shape = true),
-    POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true),
-    POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true),
-    REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true),
+    POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true, .own = true),
+    POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true,
+           .own = true),
+    REALS(Region, 3, "circle", circle, "m", "", "none, none, none", "[x, y, radius]", .word = "none", .shape = true,
+          .own = true),
     REALS(Region, 2, "lower", lower, "m", "", "none, none", "lower left corner of a box, or bounds of another shape",
-          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true),
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true, .own = true),
     REALS(Region, 2, "upper", upper, "m", "", "none, none", "upper right corner",
-          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true),
-    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one"),
+          WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true, .own = true),
+    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one", .own = true),
     INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y"),
     REAL(Region, "pressure", pressure, "Pa", "(0,1e10]", NULL, "initial mean pore pressure", .has = HAS_WATER),
     REAL(Region, "temperature", temperature, "degC", "(-273.15,1000]", NULL, "initial temperature",
@@ -441,12 +450,12 @@ static const Key region_key[] = {
 };
 
 #define TYPE(t) (1u << (t))
-#define FACES (TYPE(BC_ROLLER) - TYPE(BC_TRACTION)) /* every type before BC_ROLLER acts on faces, */
-#define PLANES                                                                                                         \
-  (TYPE(BC_REGION_TEMPERATURE) - TYPE(BC_ROLLER) + TYPE(BC_PLATE_LINE)) /* those from there on grid planes */
+#define ON_FACE(kind, ...) | TYPE(BC_##kind)
+#define PLANE(kind, word, has, by, term, where, doc) | ((where) == ON_PLANE ? TYPE(BC_##kind) : 0u)
+enum { FACES = 0u CL_FACE_CONDITIONS(ON_FACE), PLANES = 0u CL_NODE_CONDITIONS(PLANE) CL_NODE_FORMS(PLANE) };
 
 static const Key bc_key[] = {
-    CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_TRACTION),
+    CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_NONE + 1),
     BOOLEAN(Bc, "clock", of_stage, "run", "what times of its values count from: the begin of the run, or of each stage",
             .choices = clock_word),
     POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",

@@ -87,7 +87,8 @@ static PetscErrorCode GroupRead(Reader *r, Case *c, Group g)
       bc->to     = INFINITY;
     }
     for (const Key *k = case_group[g].key; k->name; k++) {
-      PetscCall(KeyRead(r, c, g, i, k));
+      if (!k->like)
+        PetscCall(KeyRead(r, c, g, i, k));
       if (bc && !bc->type)
         break; /* which keys apply is not known */
       if (bc && k->offset == offsetof(Bc, type))
@@ -229,9 +230,28 @@ static void PrintErrors(const Reader *r)
   fprintf(stderr, "The case has %d error%s; nothing was run or written.\n", (int)r->nerror, r->nerror == 1 ? "" : "s");
 }
 
+/* All keys, once the names of the instances and what they are like are known. */
+static PetscErrorCode KeysRead(Reader *r, Case *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CaseStageEnds(r, c));
+  PetscCall(GroupRead(r, c, GROUP_CASE));
+  PetscCall(CaseFieldSet(r, c));
+  for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
+    PetscCall(GroupRead(r, c, g));
+  PetscCall(Derive(r, c));
+  CaseFieldSetFinish(r, c);
+  CaseQuantities(r, c);
+  PetscCall(CaseStages(r, c));
+  PetscCall(Leftovers(r, c));
+  CaseCheck(r, c);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
 {
-  Reader r = {.comm = comm};
+  Reader   r = {.comm = comm};
+  PetscInt errors;
 
   PetscFunctionBeginUser;
   memset(c, 0, sizeof *c);
@@ -240,17 +260,10 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
   if (!r.nerror) {
     for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(NamesRead(&r, c, g));
-    PetscCall(CaseStageEnds(&r, c));
-    PetscCall(GroupRead(&r, c, GROUP_CASE));
-    PetscCall(CaseFieldSet(&r, c));
-    for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
-      PetscCall(GroupRead(&r, c, g));
-    PetscCall(Derive(&r, c));
-    CaseFieldSetFinish(&r, c);
-    CaseQuantities(&r, c);
-    PetscCall(CaseStages(&r, c));
-    PetscCall(Leftovers(&r, c));
-    CaseCheck(&r, c);
+    errors = r.nerror;
+    PetscCall(CaseLike(&r, c));
+    if (r.nerror == errors)
+      PetscCall(KeysRead(&r, c));
   }
   *ok = r.nerror == 0;
   PrintErrors(&r);

@@ -33,8 +33,6 @@ void ReaderError(Reader *r, const char *key, const char *value, const char *form
   va_list args;
   bool    on_line = key && !strncmp(key, "line ", 5), command_line = key && *key == '-';
 
-  if (r->nerror++ >= CASE_ERRORS)
-    return;
   va_start(args, format);
   vsnprintf(what, sizeof what, format, args);
   va_end(args);
@@ -49,7 +47,16 @@ void ReaderError(Reader *r, const char *key, const char *value, const char *form
   if (value)
     snprintf(text + strlen(text), size - strlen(text), " = '%.80s'", value);
   snprintf(text + strlen(text), size - strlen(text), "%s%s", on_line || !key || !*key ? "" : ": ", what);
-  r->error[r->nerror - 1] = text;
+  for (PetscInt i = 0; i < PetscMin(r->nerror, CASE_ERRORS); i++) {
+    if (strcmp(r->error[i], text))
+      continue;
+    free(text); /* said already, of an instance that is like this one */
+    return;
+  }
+  if (r->nerror++ < CASE_ERRORS)
+    r->error[r->nerror - 1] = text;
+  else
+    free(text);
 }
 
 /* Reads the whole file; NULL and a reason if it cannot be a case. */
@@ -158,6 +165,7 @@ PetscErrorCode ReaderDestroy(Reader *r)
   for (PetscInt i = 0; i < PetscMin(r->nerror, CASE_ERRORS); i++)
     free(r->error[i]);
   free(r->entry);
+  PetscCall(LikeDestroy(r));
   memset(r, 0, sizeof *r);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

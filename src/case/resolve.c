@@ -1,6 +1,7 @@
 /* resolve: writes the case in SI, every key of the table at its value, such that reading it gives the same doubles; and
    prints the table itself. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -175,7 +176,7 @@ static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instanc
 static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance, const char *indent)
 {
   for (const Key *k = case_group[g].key; k->name; k++) {
-    if (!KeyApplies(k, g, instance) || !KeyNeeded(k, c))
+    if (k->like || !KeyApplies(k, g, instance) || !KeyNeeded(k, c))
       continue;
     if (Empty(k, instance + k->offset))
       continue;
@@ -238,14 +239,12 @@ static void PrintTypes(FILE *out, const Key *k)
   if (!k->types)
     return;
   fputs(" (types: ", out);
-  for (int t = 0; case_bc_type[t]; t++) {
-    if (!(k->types & (1u << (t + 1))))
+  for (int kind = BC_NONE + 1; kind < BC_COUNT; kind++) {
+    if (!(k->types >> kind & 1u))
       continue;
-    fprintf(out, "%s%s", comma, case_bc_type[t]);
+    fprintf(out, "%s%s", comma, cl_condition[kind].word);
     comma = ", ";
   }
-  if (k->types & (1u << BC_PLATE_LINE))
-    fprintf(out, "%splate without a side", comma);
   fputc(')', out);
 }
 

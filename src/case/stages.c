@@ -1,5 +1,6 @@
 /* stages: the case as it holds in each stage of a run.  All of it is made when the case is read; a run only looks. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include "clathra/shape.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,19 +48,18 @@ static void Fail(Reader *r, const char *stage, const char *key, const char *what
 /* What an integrator without matrices cannot do. */
 static void CheckLocal(Reader *r, const Case *c, const char *stage)
 {
+  const Bc   *b       = CaseBcNeedsMatrix(c);
   const char *unknown = CaseNeedsImplicit(c);
   char        what[CASE_WHY];
 
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type && !(BC_LOCAL >> c->bc[k].type & 1u)) {
-      char option[256];
+  if (b) {
+    char option[256];
 
-      KeyOption(option, sizeof option, GROUP_BC, c->bc[k].name, "type");
-      ReaderError(r, option, NULL, "%s%s%s%s does not know the condition %s; use sdirk2 or euler",
-                  stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", c->stepper,
-                  case_bc_type[c->bc[k].type - 1]);
-      return;
-    }
+    KeyOption(option, sizeof option, GROUP_BC, b->name, "type");
+    ReaderError(r, option, NULL, "%s%s%s%s does not know the condition %s; use sdirk2 or euler",
+                stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", c->stepper,
+                cl_condition[b->type].word);
+    return;
   }
   if (unknown) {
     snprintf(what, sizeof what, "%s does not know %s; use sdirk2 or euler", c->stepper, unknown);

@@ -1,5 +1,6 @@
 /* value: reads one key of the table into its place, by kind. */
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include <ctype.h>
 #include <errno.h>
 #include <stdio.h>
@@ -315,9 +316,9 @@ static PetscErrorCode KeyStore(Reader *r, Case *c, const char *shown, const char
 
 PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
 {
-  char       *instance = GroupInstance(c, g, i), option[256], shown[257];
+  char       *instance = GroupInstance(c, g, i), option[256];
   const char *text;
-  bool        found, from_file;
+  Found       f;
 
   PetscFunctionBeginUser;
   KeyOption(option, sizeof option, g, instance, k->name);
@@ -327,31 +328,31 @@ PetscErrorCode KeyRead(Reader *r, Case *c, Group g, PetscInt i, const Key *k)
   }
   if (k->kind == KEY_LAW) /* conditions of other keys look at it, whatever becomes of this one */
     k->law->set((Material *)instance, k->def ? k->def : k->law->types()[0]);
-  PetscCall(ReaderFind(r, option, &text, &found, &from_file));
-  snprintf(shown, sizeof shown, "%s%s", found && !from_file ? "-" : "", option);
+  PetscCall(KeyFind(r, c, g, i, k, &f));
+  text = f.text;
   if (!KeyApplies(k, g, instance)) {
-    if (found && g == GROUP_REGION)
-      ReaderError(r, shown, text, "is not a key of a region without particles (material: none)");
-    else if (found)
-      ReaderError(r, shown, text, "is not a key of a boundary of type %s", case_bc_type[((Bc *)instance)->type - 1]);
+    if (f.found && f.own && g == GROUP_REGION)
+      ReaderError(r, f.shown, text, "is not a key of a region without particles (material: none)");
+    else if (f.found && f.own)
+      ReaderError(r, f.shown, text, "is not a key of a boundary of type %s", cl_condition[((Bc *)instance)->type].word);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (!found) {
+  if (!f.found) {
     if (!KeyNeeded(k, c) && !k->def)
       PetscFunctionReturn(PETSC_SUCCESS);
     if (KeyNeeded(k, c) && (k->needed ? k->needed(instance) : !k->def))
       KeyMissing(r, option, k);
     else if (!k->kept && !DefaultReference(g, instance, k, (double *)(instance + k->offset)))
-      PetscCall(KeyStore(r, c, shown, k->def, k, instance));
+      PetscCall(KeyStore(r, c, f.shown, k->def, k, instance));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (!text && k->kind == KEY_BOOL && !from_file && !k->choices)
+  if (!text && k->kind == KEY_BOOL && !f.from_file && !k->choices)
     text = "yes";
   if (!text && k->def && !*k->def)
     text = "";
   if (text)
-    PetscCall(KeyStore(r, c, shown, text, k, instance));
+    PetscCall(KeyStore(r, c, f.shown, text, k, instance));
   else
-    ReaderError(r, shown, NULL, "has no value");
+    ReaderError(r, f.shown, NULL, "has no value");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

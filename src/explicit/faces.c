@@ -3,12 +3,13 @@
 
 static bool Acts(const Case *c, const Face *f)
 {
-  bool counted = false;
+  bool acts = c->ambient_drag > 0.0 && c->fields.solid;
 
   for (PetscInt k = 0; k < c->nmeter; k++)
-    counted = counted || (f->meters >> k & 1);
-  return counted || (c->ambient_drag > 0.0 && c->fields.solid) || f->traction >= 0 || f->pressure >= 0 ||
-         f->heat >= 0 || f->convection >= 0 || f->temperature >= 0 || f->inflow >= 0 || f->plate >= 0;
+    acts = acts || (f->meters >> k & 1);
+  for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
+    acts = acts || f->bc[kind] >= 0;
+  return acts;
 }
 
 /* Weights of a face's particle where it is now. */
@@ -82,7 +83,7 @@ static void Reach(const Explicit *e, Face *f, bool place, Nodes *r)
   if (!place)
     return;
   FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
-  if (f->inflow >= 0 && ModelParticleProperties(e->m, f->particle, &q, &why) == CL_OK)
+  if (f->bc[BC_INFLOW] >= 0 && ModelParticleProperties(e->m, f->particle, &q, &why) == CL_OK)
     FaceInflow(f, r->n, S, q.kr);
 }
 
@@ -115,7 +116,7 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   for (int d = 0; e->set.solid && d < CL_DIM; d++)
     velocity[d] = e->m->P.f[P_VS + d][f->particle];
   ModelInitialAtFace(e->m, f, p0);
-  if (f->temperature >= 0) /* the only condition that asks for a conductivity */
+  if (f->bc[BC_FACE_TEMPERATURE] >= 0) /* the only condition that asks for a conductivity */
     ModelParticleProperties(e->m, f->particle, &q, &why);
   FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, velocity, q.kappa, dt, o);
 }
@@ -137,7 +138,7 @@ void FacesForces(Explicit *e, double dt)
     Evaluate(e, f, in, dt, &o);
     for (int d = 0; s.solid && d < CL_DIM; d++)
       e->pull[k][d] = -o.out[F_VSX + d];
-    if (f->plate >= 0)
+    if (f->bc[BC_PLATE] >= 0)
       PlatesDeposit(e, f, r.n, r.node);
     for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
       const double p = FacePressure(f, ph, in);

@@ -45,13 +45,13 @@ PetscErrorCode PlatesStart(Explicit *e)
 /* Does the plate of a face act along d? */
 static bool Acts(const Explicit *e, const Face *f, int d)
 {
-  return d == SideAxis(f->side) || e->m->c->bc[f->plate].rough;
+  return d == SideAxis(f->side) || e->m->c->bc[f->bc[BC_PLATE]].rough;
 }
 
 static void Check(Model *m, const Face *f)
 {
   char           text[sizeof(m->text)];
-  const ClStatus status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->plate], text, sizeof(text));
+  const ClStatus status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->bc[BC_PLATE]], text, sizeof(text));
 
   if (status == CL_OK || m->status != CL_OK)
     return;
@@ -62,12 +62,12 @@ static void Check(Model *m, const Face *f)
 void PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[])
 {
   Model       *m            = e->m;
-  const Bc    *b            = &m->c->bc[f->plate];
+  const Bc    *b            = &m->c->bc[f->bc[BC_PLATE]];
   const double zero[CL_DIM] = {0.0};
 
   ModelPlateStiffness(m, f);
-  f->touches =
-      b->force.n || !b->separates || PlateGap(f, m->bc.value[f->plate], zero) > -NEAR * m->grid.h[SideAxis(f->side)];
+  f->touches = b->force.n || !b->separates ||
+               PlateGap(f, m->bc.value[f->bc[BC_PLATE]], zero) > -NEAR * m->grid.h[SideAxis(f->side)];
   if (!f->touches)
     return;
   if (!b->force.n)
@@ -155,7 +155,7 @@ static PetscErrorCode Position(Explicit *e, PetscInt which, double F, const doub
     double sum[3] = {0.0};
 
     for (PetscInt k = 0; k < e->nface; k++) {
-      if (e->face[k].plate != which || (b->separates && !first && n * face[k][0] <= face[k][1] * at))
+      if (e->face[k].bc[BC_PLATE] != which || (b->separates && !first && n * face[k][0] <= face[k][1] * at))
         continue;
       sum[0] += n * face[k][0];
       sum[1] += face[k][1];
@@ -175,9 +175,9 @@ static PetscErrorCode Position(Explicit *e, PetscInt which, double F, const doub
 /* Force of a face's plate to its nodes, and to what is said of the plate. */
 static void Push(Explicit *e, const Face *f, double dt, const double answer[2])
 {
-  const Bc    *b = &e->m->c->bc[f->plate];
+  const Bc    *b = &e->m->c->bc[f->bc[BC_PLATE]];
   const int    d = SideAxis(f->side);
-  const double n = SideSign(f->side), bears = n * (answer[0] - answer[1] * e->m->bc.value[f->plate]);
+  const double n = SideSign(f->side), bears = n * (answer[0] - answer[1] * e->m->bc.value[f->bc[BC_PLATE]]);
   double       force[CL_DIM] = {0.0}, *sum = e->plate_sum[b->number], pull, k;
   PetscInt     node[CL_NODES];
   const int    nodes = FaceNodes(e, f, node);
@@ -226,7 +226,7 @@ PetscErrorCode PlatesForces(Explicit *e, double t, double dt)
     const Face *f = &e->face[k];
     PetscInt    node[CL_NODES];
 
-    if (f->plate >= 0 && f->touches) {
+    if (f->bc[BC_PLATE] >= 0 && f->touches) {
       const int n = FaceNodes(e, f, node);
 
       FaceAnswer(e, f, n, node, SideAxis(f->side), dt, &face[k][0], &face[k][1]);
@@ -237,7 +237,7 @@ PetscErrorCode PlatesForces(Explicit *e, double t, double dt)
       PetscCall(Position(e, k, PlateForce(&c->bc[k], t), (const double(*)[2])face));
   }
   for (PetscInt k = 0; k < e->nface; k++) {
-    if (e->face[k].plate >= 0 && e->face[k].touches)
+    if (e->face[k].bc[BC_PLATE] >= 0 && e->face[k].touches)
       Push(e, &e->face[k], dt, face[k]);
   }
   PetscCall(PetscFree(face));
@@ -253,11 +253,11 @@ static void Areas(Explicit *e)
   for (PetscInt k = 0; k < e->nface; k++) {
     Face *f = &e->face[k];
 
-    if (f->plate < 0)
+    if (f->bc[BC_PLATE] < 0)
       continue;
     FacesPlace(e, f);
-    if (!e->m->c->bc[f->plate].separates || PlateGap(f, e->m->bc.value[f->plate], zero) > 0.0)
-      e->plate_sum[e->m->c->bc[f->plate].number][PLATE_AREA] += SideSign(f->side) * f->n[SideAxis(f->side)];
+    if (!e->m->c->bc[f->bc[BC_PLATE]].separates || PlateGap(f, e->m->bc.value[f->bc[BC_PLATE]], zero) > 0.0)
+      e->plate_sum[e->m->c->bc[f->bc[BC_PLATE]].number][PLATE_AREA] += SideSign(f->side) * f->n[SideAxis(f->side)];
   }
 }
 

@@ -120,10 +120,10 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
 
     for (int d = 0; d < CL_DIM; d++) {
       const double v    = f->N[a] * xI[PlaceVs(fs) + d];
-      const bool   over = f->plate >= 0 && d == SideAxis(f->side);
+      const bool   over = f->bc[BC_PLATE] >= 0 && d == SideAxis(f->side);
 
       force -= o->out[F_VSX + d] * v;
-      if (f->plate >= 0)
+      if (f->bc[BC_PLATE] >= 0)
         plate += (over ? -SideSign(f->side) * o->plate[PLATE_FORCE] : o->plate[PLATE_SHEAR]) * v;
     }
     for (int ph = 0; ph < PHASE_COUNT; ph++) {

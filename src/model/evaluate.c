@@ -61,6 +61,6 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
       velocity[d] += face->N[a] * x[r->node[a] * m->c->fields.n + PlaceVs(&m->c->fields) + d];
   }
   FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, velocity, kappa / sum, m->stage.dt, o);
-  if (face->plate >= 0)
-    PlateEvaluate(&m->c->bc[face->plate], face, m->bc.value[face->plate], in, o);
+  if (face->bc[BC_PLATE] >= 0)
+    PlateEvaluate(&m->c->bc[face->bc[BC_PLATE]], face, m->bc.value[face->bc[BC_PLATE]], in, o);
 }

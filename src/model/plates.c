@@ -23,7 +23,7 @@ void ModelPlateStiffness(const Model *m, Face *f)
   const char     *why;
 
   f->K = ModelParticleProperties(m, f->particle, &q, &why) == CL_OK
-             ? PlateStiffness(&m->c->bc[f->plate], f, &q, m->grid.h[SideAxis(f->side)])
+             ? PlateStiffness(&m->c->bc[f->bc[BC_PLATE]], f, &q, m->grid.h[SideAxis(f->side)])
              : 0.0; /* the projection says why */
 }
 
@@ -47,16 +47,16 @@ static void SumSprings(const Model *m, const double *u, bool first, double (*sum
 {
   for (PetscInt k = 0; k < m->nface; k++) {
     const Face *f = &m->face[k];
-    const Bc   *b = f->plate >= 0 ? &m->c->bc[f->plate] : NULL;
+    const Bc   *b = f->bc[BC_PLATE] >= 0 ? &m->c->bc[f->bc[BC_PLATE]] : NULL;
 
     if (!b || !b->force.n)
       continue;
     const double s = SideSign(f->side) * (f->moved[SideAxis(f->side)] + u[k]);
-    if (b->separates && !first && s <= SideSign(f->side) * m->bc.value[f->plate])
+    if (b->separates && !first && s <= SideSign(f->side) * m->bc.value[f->bc[BC_PLATE]])
       continue;
-    sum[f->plate][0] += f->K * s;
-    sum[f->plate][1] += f->K;
-    sum[f->plate][2] += 1.0;
+    sum[f->bc[BC_PLATE]][0] += f->K * s;
+    sum[f->bc[BC_PLATE]][1] += f->K;
+    sum[f->bc[BC_PLATE]][2] += 1.0;
   }
 }
 
@@ -80,7 +80,7 @@ PetscErrorCode PlatesPosition(Model *m, const double *x)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc3(m->nface, &u, c->nbc, &sum, c->nbc, &touching));
   for (PetscInt k = 0; k < m->nface; k++) {
-    if (m->face[k].plate >= 0)
+    if (m->face[k].bc[BC_PLATE] >= 0)
       u[k] = FaceMotion(m, &m->face[k], x);
   }
   /* fewer and fewer faces touch: the force is a convex function of the position, met from the left */
@@ -107,10 +107,10 @@ void PlatesMark(Model *m, const double *x)
   for (PetscInt k = 0; m->plates && k < m->nface; k++) {
     Face *f = &m->face[k];
 
-    if (f->plate < 0)
+    if (f->bc[BC_PLATE] < 0)
       continue;
-    const double s = f->moved[SideAxis(f->side)] + FaceMotion(m, f, x) - m->bc.value[f->plate];
-    f->touches     = !m->c->bc[f->plate].separates || SideSign(f->side) * s > 0.0;
+    const double s = f->moved[SideAxis(f->side)] + FaceMotion(m, f, x) - m->bc.value[f->bc[BC_PLATE]];
+    f->touches     = !m->c->bc[f->bc[BC_PLATE]].separates || SideSign(f->side) * s > 0.0;
   }
 }
 
@@ -128,7 +128,7 @@ PetscErrorCode PlatesMult(const Model *m, const double *x, double *f)
       const int   d    = SideAxis(face->side);
       Reach       r;
 
-      if (face->plate < 0 || !c->bc[face->plate].force.n || !face->touches)
+      if (face->bc[BC_PLATE] < 0 || !c->bc[face->bc[BC_PLATE]].force.n || !face->touches)
         continue;
       ReachExpand(m, face->particle, &r);
       for (int a = 0; a < r.n; a++) {
@@ -136,9 +136,9 @@ PetscErrorCode PlatesMult(const Model *m, const double *x, double *f)
         const double   w = face->K * face->N[a];
 
         if (pass == 0)
-          t[face->plate] += w * m->stage.dt * x[q];
+          t[face->bc[BC_PLATE]] += w * m->stage.dt * x[q];
         else
-          f[q] -= w * t[face->plate] / m->plate_K[face->plate];
+          f[q] -= w * t[face->bc[BC_PLATE]] / m->plate_K[face->bc[BC_PLATE]];
       }
     }
     if (pass == 0)
@@ -163,9 +163,9 @@ PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status)
   for (PetscInt k = 0; k < m->nface && m->status == CL_OK; k++) {
     const Face *f = &m->face[k];
 
-    if (f->plate < 0 || m->c->bc[f->plate].force.n)
+    if (f->bc[BC_PLATE] < 0 || m->c->bc[f->bc[BC_PLATE]].force.n)
       continue;
-    *status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->plate], m->text, sizeof(m->text));
+    *status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->bc[BC_PLATE]], m->text, sizeof(m->text));
     if (*status != CL_OK)
       ModelNoteFailure(m, *status, m->text, f->particle);
   }
@@ -184,11 +184,11 @@ PetscErrorCode PlatesReport(Model *m, const double *x)
     Reach      r;
     FaceOutput o;
 
-    if (m->face[k].plate < 0)
+    if (m->face[k].bc[BC_PLATE] < 0)
       continue;
     FaceAt(m, &m->face[k], x, &r, &o);
     for (int q = PLATE_FORCE; q < PLATE_COUNT; q++)
-      m->plate[m->c->bc[m->face[k].plate].number][q] += o.plate[q];
+      m->plate[m->c->bc[m->face[k].bc[BC_PLATE]].number][q] += o.plate[q];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, m->plate, (PetscMPIInt)(PLATE_COUNT * m->c->nlisted), MPI_DOUBLE, MPI_SUM,
                              m->grid.comm));

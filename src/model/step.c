@@ -330,7 +330,7 @@ static void InflowFace(const Model *m, Face *f)
   const char     *why;
   Reach           r;
 
-  if (f->inflow < 0 || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
+  if (f->bc[BC_INFLOW] < 0 || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
     return;
   ReachExpand(m, f->particle, &r);
   FaceInflow(f, r.n, r.S, q.kr);
@@ -362,7 +362,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
       InflowFace(m, &m->face[k]);
     }
     for (PetscInt k = 0; m->plates && k < m->nface; k++) {
-      if (m->face[k].plate >= 0)
+      if (m->face[k].bc[BC_PLATE] >= 0)
         ModelPlateStiffness(m, &m->face[k]);
     }
     PetscCall(StabilisationBuild(m));

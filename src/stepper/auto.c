@@ -190,10 +190,11 @@ static PetscErrorCode FromImplicit(Stepper *s, bool *ok)
   StepperState *z = &s->state;
   StableStep    limit;
   const double  dt = s->auto_.give_way ? s->auto_.dt : Allowed(s, z->dt);
-  double        implicit, hybrid;
+  double        implicit, hybrid, step;
 
   PetscFunctionBeginUser;
-  z->spent += StepperImplicitWork(s->model, (double)s->auto_.newton, 1.0);
+  PetscCall(CostImplicit(s, (double)s->auto_.newton, 1.0, &step)); /* the same on all ranks, as all that decides */
+  z->spent += step;
   PetscCall(StepperHybridLimit(s, &limit));
   PetscCall(CostHybrid(s, &limit, &hybrid));
   PetscCall(CostImplicit(s, (double)s->auto_.newton, dt, &implicit));

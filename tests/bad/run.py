@@ -106,6 +106,16 @@ CASES = [
     ("doubled map", [("time: {end: 2000 s}", "time: {end: 2000 s}\ntime: {end: 1 s}")], ["time", "given twice"], []),
     ("no value", [("porosity: 0.15", "porosity:")], [M + "porosity", "no value"], []),
     ("a list of maps", [("probes: [p06, surface]", "probes:\n  - {name: p06}\n  - {name: surface}")], ["probes"], []),
+    # --- like another
+    ("like a material that is not there", [("porosity: 0.15", "porosity: 0.15\n    like: sand")], [M + "like = 'sand'", "must be one of sediment"], []),
+    ("like itself", [("porosity: 0.15", "porosity: 0.15\n    like: sediment")], [M + "like", "circle: sediment like sediment"], []),
+    ("likes in a circle", [("porosity: 0.15", "like: b\n    porosity: 0.15")], ["mat_a_like", "circle: a like sediment like b like a"],
+     ["-materials", "a,sediment,b", "-mat_a_like", "sediment", "-mat_b_like", "a"]),
+    ("like nothing", [("porosity: 0.15", "porosity: 0.15\n    like:")], [M + "like", "no value"], []),
+    ("a value of another out of range, said once", [("porosity: 0.15", "porosity: 1.5")], [M + "porosity", "The case has 1 error"],
+     ["-materials", "sediment,b", "-mat_b_like", "sediment"]),
+    ("a shape is not another's", [], ["region_b_lower", "is missing"], ["-regions", "column,b", "-region_b_like", "column"]),
+    ("a probe is like nothing", [], ["-probe_p06_like", "unknown key"], ["-probe_p06_like", "surface"]),
     # --- units
     ("no unit", [("pressure: 3.25 MPa\n", "pressure: 3.25e6\n")], ["region_column_pressure", "unit of a pressure", "3.25e6 Pa"], []),
     ("wrong unit", [("temperature: 4 degC\n", "temperature: 4 Pa\n")], ["region_column_temperature", "a temperature", "degC"], []),
@@ -397,6 +407,10 @@ CASES = [
        [x for key, value in {**SEDIMENT, **changed}.items() for x in (f"-mat_other_{key}", value)])
       for what, word, changed in (("porosity", "porosity", {"porosity": "0.2"}), ("the grains", "grains", {"solid_density": "2500 kg/m^3"}),
                                   ("retention", "retention", {"retention_p0": "60 kPa"}), ("what reacts", "hydrate", {"kinetics_active": "no"}))),
+    ("condition that hybrid does not know", [PLATE("axis: x, position: 0 m, velocity: 0 m/s"), ("type: sdirk2", "type: hybrid")],
+     ["bc_base_type", "hybrid does not know the condition plate without a side; use sdirk2 or euler"], []),
+    ("the same in a later stage", [PLATE("axis: x, position: 0 m, velocity: 0 m/s"), STAGES("end: 10 s", "end: 2000 s, stepper: {type: hybrid}")],
+     ["bc_base_type", "in stage b: hybrid does not know the condition plate without a side"], []),
     ("hybrid stage without inertia", [STAGES("end: 10 s", "end: 2000 s, inertia: no, stepper: {type: hybrid}")],
      ["stage_b_stepper_type", "hybrid does not know inertia: no"], []),
     ("stage without inertia under the case's hybrid", [STAGES("end: 10 s", "end: 2000 s, inertia: no"), ("type: sdirk2", "type: hybrid")],

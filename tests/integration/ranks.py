@@ -105,4 +105,12 @@ try:
 except subprocess.TimeoutExpired:
     said = "the ranks wait for each other"
 check_true("a state that one rank finds inadmissible is refused by both", "refused (inadmissible state" in said, said[-200:])
+
+# auto's decisions rest on what all ranks know, also where one of them has no particles.
+try:
+    done = launch(binary(), HERE / "cases" / "auto_uneven.yaml", "-quiet", "-stepper_max_steps", "40", ranks=2, out=scratch() / "out", timeout=100)
+    said = done.stdout if done.returncode == 0 else f"exit code {done.returncode}: {done.stdout[-300:]}"
+except subprocess.TimeoutExpired:
+    said = "the ranks wait for each other"
+check_true("auto: an idle rank goes over to hybrid and back with the other", said.count("hybrid from ") == 1 and said.count("sdirk2 from ") == 2, said[-200:])
 finish()

@@ -263,6 +263,61 @@ static void place_without_gas(void **state)
   }
 }
 
+/* What an instance does not give is that of the one it is like, through a chain, the command line over the file. */
+static void like(void **state)
+{
+  static const char *const option[][2] = {
+      {"-materials", "silt,sediment,clay"},
+      {"-mat_clay_like", "sediment"},
+      {"-mat_silt_like", "clay"},
+      {"-mat_clay_porosity", "0.4"},
+      {"-mat_clay_kinetics_active", "no"},
+      {"-mat_silt_permeability_hydrate_law", "masuda_ramp"},
+      {"-mat_silt_permeability_kh", "0.2"},
+      {"-mat_silt_permeability_Shc", "0.3"},
+      {"-mat_sediment_solid_density", "2700 kg/m^3"},
+      {"-regions", "column,plug,hole"},
+      {"-region_column_upper", "0.5 m,0.02 m"},
+      {"-region_column_lower", "0.1 m,0 m"},
+      {"-region_column_minus", "hole"},
+      {"-region_plug_like", "column"},
+      {"-region_plug_lower", "0.5 m,0 m"},
+      {"-region_plug_upper", "1 m,0.02 m"},
+      {"-region_plug_material", "silt"},
+      {"-region_plug_pressure", "3 MPa"},
+      {"-region_hole_like", "column"}, /* which says nothing of a region without particles */
+      {"-region_hole_material", "none"},
+      {"-region_hole_lower", "0.1 m,0 m"},
+      {"-region_hole_upper", "0.2 m,0.02 m"},
+  };
+  Case            c, same;
+  bool            ok;
+  const Material *m;
+  const Region   *g;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+    set_option(option[i][0], option[i][1]);
+  GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
+  assert_true(ok);
+  set_option("-mat_silt_like", "none"); /* then it says too little */
+  GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &same, &ok));
+  assert_false(ok);
+  for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+    GOOD(PetscOptionsClearValue(NULL, option[i][0]));
+  m = c.material;
+  for (int i = 0; i < 3; i++) {
+    assert_true(m[i].solid.rho0 == 2700 && m[i].retention.m == 0.3 && m[i].elasticity.E0 == 9e7);
+    assert_true(m[i].porosity == (i == 1 ? 0.15 : 0.4) && m[i].reacts == (i == 1));
+    assert_true(m[i].permeability.phi0 == m[i].porosity); /* a default of its own */
+    assert_string_equal(m[i].permeability.hydrate_type, i ? "power" : "masuda_ramp");
+  }
+  g = &c.region[1];
+  assert_true(g->material == 0 && g->pressure == 3e6 && g->temperature == 4 && g->Sw == 0.6 && g->Sg == 0.4);
+  assert_true(g->lower[0] == 0.5 && g->minus.n == 0 && c.region[0].minus.n == 1 && c.region[2].material == -1);
+  GOOD(CaseDestroy(&c));
+}
+
 /* What a stage names, else what the case names, else the default with the stage's own length. */
 static void stages(void **state)
 {
@@ -499,11 +554,17 @@ static void resolved_is_the_same_case(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(units_to_si),       cmocka_unit_test(units_refused),
-      cmocka_unit_test(schedule_values),   cmocka_unit_test(parsed),
-      cmocka_unit_test(read_bp2),          cmocka_unit_test(stages),
-      cmocka_unit_test(refused),           cmocka_unit_test(nearest_key),
-      cmocka_unit_test(command_line_wins), cmocka_unit_test(resolved_is_the_same_case),
+      cmocka_unit_test(units_to_si),
+      cmocka_unit_test(units_refused),
+      cmocka_unit_test(schedule_values),
+      cmocka_unit_test(parsed),
+      cmocka_unit_test(read_bp2),
+      cmocka_unit_test(like),
+      cmocka_unit_test(stages),
+      cmocka_unit_test(refused),
+      cmocka_unit_test(nearest_key),
+      cmocka_unit_test(command_line_wins),
+      cmocka_unit_test(resolved_is_the_same_case),
       cmocka_unit_test(place_without_gas),
   };
   const char *up = strstr(__FILE__, "tests/unit/");

@@ -317,7 +317,7 @@ static void EveryKeyIsInTheFingerprint(void **state)
 
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     for (const Key *k = case_group[g].key; k->name; k++) {
-      bool mine = g != GROUP_PROBE;
+      bool mine = g != GROUP_PROBE && !k->like; /* the values that like stands for are */
 
       for (size_t i = 0; g == GROUP_CASE && i < sizeof free_ / sizeof *free_; i++)
         mine = mine && strncmp(k->name, free_[i], strlen(free_[i]));

@@ -43,14 +43,9 @@ static void SceneInit(Scene *s, Rng *r)
   s->v.phase[PHASE_G] = s->phase[PHASE_G];
   s->p0[PHASE_W]      = 3e6;
   s->p0[PHASE_G]      = 3e6 + RngBetween(r, 1e4, 2e5);
-  s->face            = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .s = {1.4, 0.6}, .x = {1.0, 2.0}, .r = {0.01, 0.002}};
-  s->face.traction   = -1;
-  s->face.pressure   = -1;
-  s->face.heat       = -1;
-  s->face.convection = -1;
-  s->face.temperature   = -1;
-  s->face.inflow        = -1;
-  s->face.plate         = -1;
+  s->face = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .s = {1.4, 0.6}, .x = {1.0, 2.0}, .r = {0.01, 0.002}};
+  for (int kind = 0; kind < BC_FACES; kind++)
+    s->face.bc[kind] = -1;
   s->face.K             = 1e9;
   s->face.moved[0]      = 3e-3;
   s->face.moved[1]      = -2e-3;
@@ -88,8 +83,8 @@ static void Evaluate(const Scene *s, const double in[IN_COUNT], FaceOutput *o)
   const double velocity[CL_DIM] = {0.02 + in[IN_U] / DT, -0.01 + in[IN_U + 1] / DT};
 
   FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, in, velocity, KAPPA, DT, o);
-  if (s->face.plate >= 0)
-    PlateEvaluate(&s->bc[s->face.plate], &s->face, s->value[s->face.plate], in, o);
+  if (s->face.bc[BC_PLATE] >= 0)
+    PlateEvaluate(&s->bc[s->face.bc[BC_PLATE]], &s->face, s->value[s->face.bc[BC_PLATE]], in, o);
 }
 
 static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
@@ -143,12 +138,12 @@ static void Closed(Scene *s, Rng *r)
 
 static void Prescribe(Scene *s, Rng *r, bool natural, OpenPhases open)
 {
-  s->face.pressure = 0;
-  s->bc[0].type    = BC_PRESSURE;
-  s->bc[0].value   = s->given;
-  s->value[0]      = RngBetween(r, 2e6, 4e6);
-  s->bc[0].natural = natural;
-  s->bc[0].open    = open;
+  s->face.bc[BC_PRESSURE] = 0;
+  s->bc[0].type           = BC_PRESSURE;
+  s->bc[0].value          = s->given;
+  s->value[0]             = RngBetween(r, 2e6, 4e6);
+  s->bc[0].natural        = natural;
+  s->bc[0].open           = open;
 }
 
 static void Held(Scene *s, Rng *r)
@@ -182,8 +177,8 @@ static void AmbientFree(Scene *s, Rng *r)
 
 static void HeatFlux(Scene *s, Rng *r)
 {
-  s->face.heat = 0;
-  s->value[0]  = RngBetween(r, -50.0, 50.0);
+  s->face.bc[BC_HEAT_FLUX] = 0;
+  s->value[0]              = RngBetween(r, -50.0, 50.0);
 }
 
 static void WaterOnly(Scene *s, Rng *r)
@@ -207,10 +202,10 @@ static void Separate(Scene *s, Rng *r)
 
 static void Inflow(Scene *s, Rng *r)
 {
-  s->face.inflow = 1;
-  s->bc[1].type  = BC_INFLOW;
-  s->phase[0][1] = RngBetween(r, -1e-5, 1e-5);
-  s->phase[1][1] = RngBetween(r, -1e-5, 1e-5);
+  s->face.bc[BC_INFLOW] = 1;
+  s->bc[1].type         = BC_INFLOW;
+  s->phase[0][1]        = RngBetween(r, -1e-5, 1e-5);
+  s->phase[1][1]        = RngBetween(r, -1e-5, 1e-5);
 }
 
 static void WarmInflow(Scene *s, Rng *r)
@@ -222,10 +217,10 @@ static void WarmInflow(Scene *s, Rng *r)
 
 static void Plate(Scene *s, Rng *r)
 {
-  s->face.plate = 0;
-  s->face.side  = RngBetween(r, 0.0, 1.0) < 0.5 ? SIDE_YMIN : SIDE_XMAX;
-  s->bc[0].type = BC_PLATE;
-  s->value[0]   = RngBetween(r, -1e-2, 1e-2);
+  s->face.bc[BC_PLATE] = 0;
+  s->face.side         = RngBetween(r, 0.0, 1.0) < 0.5 ? SIDE_YMIN : SIDE_XMAX;
+  s->bc[0].type        = BC_PLATE;
+  s->value[0]          = RngBetween(r, -1e-2, 1e-2);
 }
 
 static void RoughPlate(Scene *s, Rng *r)
@@ -251,10 +246,10 @@ static void Everything(Scene *s, Rng *r)
   Drag(s, r);
   Free(s, r);
   WarmInflow(s, r);
-  s->face.traction = s->face.convection = s->face.temperature = 2;
-  s->bc[2].alpha                                              = 15.0;
-  s->value[2]                                                 = 12.0;
-  s->shear[2]                                                 = 1e5;
+  s->face.bc[BC_TRACTION] = s->face.bc[BC_CONVECTION] = s->face.bc[BC_FACE_TEMPERATURE] = 2;
+  s->bc[2].alpha                                                                        = 15.0;
+  s->value[2]                                                                           = 12.0;
+  s->shear[2]                                                                           = 1e5;
 }
 
 static const struct {
@@ -307,12 +302,12 @@ static void FaceTemperature(void **state)
   double     in[IN_COUNT] = {0.0};
 
   SceneInit(&s, &r);
-  s.face.temperature = 2;
-  s.face.ring[1]     = 0.0;
-  in[IN_GT]          = -7.0;
-  in[IN_GT + 1]      = 3.0;
-  s.value[2]         = 10.0;
-  in[IN_T]           = 10.0 - in[IN_GT] * s.face.r[0] - in[IN_GT + 1] * s.face.r[1];
+  s.face.bc[BC_FACE_TEMPERATURE] = 2;
+  s.face.ring[1]                 = 0.0;
+  in[IN_GT]                      = -7.0;
+  in[IN_GT + 1]                  = 3.0;
+  s.value[2]                     = 10.0;
+  in[IN_T]                       = 10.0 - in[IN_GT] * s.face.r[0] - in[IN_GT + 1] * s.face.r[1];
   Evaluate(&s, in, &o);
   assert_true(fabs(o.heat_in - KAPPA * (in[IN_GT] * s.face.s[0] + in[IN_GT + 1] * s.face.s[1])) < 1e-12);
   in[IN_T] -= 1.0;
@@ -449,8 +444,8 @@ static void TrueArea(void **state)
     double     in[IN_COUNT];
 
     SceneInit(&s, &r);
-    s.face.heat = 2;
-    s.value[2]  = 50.0;
+    s.face.bc[BC_HEAT_FLUX] = 2;
+    s.value[2]              = 50.0;
     Inputs(&r, in);
     Evaluate(&s, in, &o);
 
@@ -475,9 +470,9 @@ static void Share(void **state)
 
     SceneInit(&s, &r);
     WarmInflow(&s, &r);
-    s.face.traction = s.face.convection = s.face.temperature = s.face.heat = 2;
-    s.bc[2].alpha                                                          = 15.0;
-    s.value[2]                                                             = 12.0;
+    s.face.bc[BC_TRACTION] = s.face.bc[BC_CONVECTION] = s.face.bc[BC_FACE_TEMPERATURE] = s.face.bc[BC_HEAT_FLUX] = 2;
+    s.bc[2].alpha                                                                                                = 15.0;
+    s.value[2]                                                                                                   = 12.0;
     Inputs(&r, in);
     Evaluate(&s, in, &whole);
     for (int d = 0; d < CL_DIM; d++)

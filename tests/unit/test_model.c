@@ -82,8 +82,8 @@ static void TestPlates(void **state)
     double         touching = 0.0, faces = 0.0;
 
     for (PetscInt i = 0; i < m->nface; i++) {
-      touching += m->face[i].plate == top && m->face[i].touches;
-      faces += m->face[i].plate == top;
+      touching += m->face[i].bc[BC_PLATE] == top && m->face[i].touches;
+      faces += m->face[i].bc[BC_PLATE] == top;
     }
     Call(PetscMalloc1(m->map.n_local * m->c->fields.n, &x));
     Call(PetscMalloc4(3 * m->P.n, &t.m, 4 * m->P.n, &t.y, 2 * m->P.n, &t.u, 2 * m->P.n, &t.v));

@@ -1,0 +1,100 @@
+/* conditions: the kinds of boundary conditions, declared once, and what a case says of each condition. */
+#pragma once
+
+#include "clathra/base.h"
+#include "clathra/fields.h"
+#include "clathra/schedule.h"
+
+typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
+
+/* Axis and sign of a side's outward normal. */
+static inline int SideAxis(int side)
+{
+  return side / 2;
+}
+static inline double SideSign(int side)
+{
+  return side % 2 ? 1.0 : -1.0;
+}
+
+typedef struct {
+  PetscInt n;
+  double  *x; /* n x 2, m */
+} Points;
+
+/* Which integrators know a kind; the others refuse it by name. */
+enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit; without a matrix */
+
+/* On faces, which move with the body.
+   X(kind, word, fields any of which it needs, integrators, its terms in src/boundary/terms.c, what it prescribes) */
+#define CL_FACE_CONDITIONS(X)                                                                                          \
+  X(TRACTION, "traction", HAS_SOLID, BY_ALL, FaceTraction, "total normal (compression-positive) and shear stress, Pa") \
+  X(PRESSURE, "pressure", HAS_WATER, BY_ALL, FacePressures, "mean pore pressure, or p_w and p_g, Pa, or the initial")  \
+  X(HEAT_FLUX, "heat_flux", HAS_HEAT, BY_ALL, FaceHeatFlux, "into the body, W/m^2")                                    \
+  X(CONVECTION, "convection", HAS_HEAT, BY_ALL, FaceConvection, "alpha (T_a - T), W/m^2")                              \
+  X(FACE_TEMPERATURE, "face_temperature", HAS_HEAT, BY_ALL, FaceTemperature, "T, degC")                                \
+  X(INFLOW, "inflow", HAS_WATER, BY_ALL, FaceInflows, "volume of water and gas into the body, m/s")                    \
+  X(PLATE, "plate", HAS_SOLID, BY_ALL, NULL, "a rigid plate: velocity, displacement or force (plates.c)")
+
+enum { ON_FACES = 1, ON_PLANE, IN_REGION };
+/* On nodes: of a grid plane, or in the initial shape of a region.  X(kind, word, fields, integrators, its values in
+   src/boundary/conditions.c, ON_..., what it prescribes); a motion without fluids or fluids without motion are held. */
+#define CL_NODE_CONDITIONS(X)                                                                                          \
+  X(ROLLER, "roller", HAS_SOLID | HAS_WATER, BY_ALL, NodeRoller, ON_PLANE, "normal velocity of all phases is zero")    \
+  X(FIXED, "fixed", HAS_SOLID | HAS_WATER, BY_ALL, NodeFixed, ON_PLANE, "all velocities are zero")                     \
+  X(TEMPERATURE, "temperature", HAS_HEAT, BY_ALL, NodeTemperature, ON_PLANE, "T, degC")                                \
+  X(REGION_TEMPERATURE, "region_temperature", HAS_HEAT, BY_ALL, NodeTemperature, IN_REGION, "T, degC")
+/* Kinds that the reader makes of others, whose word they share; the last column tells them apart.  A plate without a
+   side is a grid plane with a velocity, for small motions. */
+#define CL_NODE_FORMS(X) X(PLATE_LINE, "plate", HAS_SOLID, BY_MATRIX, NodeRoller, ON_PLANE, "without a side")
+
+#define CL_CONDITION_ID(kind, ...) BC_##kind,
+typedef enum {
+  BC_NONE = 0,
+  CL_FACE_CONDITIONS(CL_CONDITION_ID) BC_FACE_END_,
+  BC_FACE_LAST_ = BC_FACE_END_ - 1,
+  CL_NODE_CONDITIONS(CL_CONDITION_ID) BC_WORDS, /* the kinds before this have words of their own */
+  CL_NODE_FORMS(CL_CONDITION_ID) BC_COUNT
+} BcType;
+enum { BC_FACES = BC_FACE_END_ }; /* kinds from BC_NONE + 1 to before this act on faces */
+#undef CL_CONDITION_ID
+
+/* Bits 1 << BcType of those that the integrators without a matrix know. */
+#define CL_CONDITION_BIT(kind, word, has, by, ...) | ((by)&BY_STEPS ? 1u << BC_##kind : 0u)
+enum {
+  BC_LOCAL =
+      0u CL_FACE_CONDITIONS(CL_CONDITION_BIT) CL_NODE_CONDITIONS(CL_CONDITION_BIT) CL_NODE_FORMS(CL_CONDITION_BIT)
+};
+#undef CL_CONDITION_BIT
+
+/* For which fluids a pressure opens a face; it stays closed for the other. */
+typedef enum { OPEN_BOTH = 0, OPEN_WATER, OPEN_GAS } OpenPhases;
+
+typedef struct {
+  char     name[64];
+  BcType   type;
+  PetscInt number;   /* its place in the list of the case, whatever acts in a stage */
+  bool     of_stage; /* times of the functions below count from the begin of the stage, not of the run */
+  double   zero;     /* s: where they count from */
+  /* faces: a side of a region (all regions when region = -1), optionally only the part inside [from,to] along it, or
+     those on a line (side = SIDE_COUNT) */
+  Side     side;
+  PetscInt region;
+  double   from, to; /* m, along the side; -inf, +inf by default */
+  Points   along;
+  /* planes: nodes with coordinate `axis` equal to `position` */
+  PetscInt axis;
+  double   position;
+  /* functions of time */
+  Schedule   value; /* normal stress | p (mean) | heat flux | T_a | T (also of inflow) | plate velocity (along +axis) */
+  Schedule   displacement, force; /* plate: along +axis since the start, m; on the body, compression-positive, N */
+  Schedule   shear;               /* traction: shear stress along the side's tangent (n rotated by +90 degrees), Pa */
+  Schedule   phase[PHASE_COUNT];  /* pressure: p_w, p_g, Pa; inflow: volume flux of water, gas, m/s */
+  bool       initial;             /* pressure: hold each face at its particle's initial p_w, p_g */
+  bool       natural; /* pressure: the particle's own capillary pressure instead of the face's initial one (31) */
+  OpenPhases open;    /* pressure */
+  bool       drained; /* roller, fixed, plate: holds the skeleton alone, fluids cross the plane */
+  bool       rough, separates; /* plate: holds the tangential displacement; takes no tension */
+  double     stiffness;        /* plate: of its springs, in units of the constrained modulus over a cell */
+  double     alpha;            /* convection coefficient, W/(m^2 K) */
+} Bc;

@@ -1,0 +1,249 @@
+/* What each condition on a face adds to the balances, with the tangent. */
+#include "terms.h"
+
+/* Total traction: -q a + s a_perp; row v_s loses it. */
+void FaceTraction(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  const double q = x->v->value[k], s = x->v->shear[k];
+
+  o->out[F_VSX] += q * x->a[0] + s * x->a[1];
+  o->out[F_VSY] += q * x->a[1] - s * x->a[0];
+  for (int j = 0; j < MOTION_COUNT; j++) {
+    o->D[F_VSX][j] += q * x->da[0][j] + s * x->da[1][j];
+    o->D[F_VSY][j] += q * x->da[1][j] - s * x->da[0][j];
+  }
+}
+
+/* (152): dynamic pressure of the fluid around the body on a face that moves into it. */
+void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o)
+{
+  const double *a     = x->a;
+  const double  area2 = a[0] * a[0] + a[1] * a[1], w = velocity[0] * a[0] + velocity[1] * a[1];
+  const double  C = 0.5 * x->c->ambient_density * x->c->ambient_drag / area2, q = C * w * w;
+
+  if (w <= 0.0 || C == 0.0)
+    return;
+  for (int i = 0; i < 2; i++) {
+    double *row = o->D[F_VSX + i];
+
+    o->out[F_VSX + i] += q * a[i];
+    for (int d = 0; d < CL_DIM; d++)
+      row[IN_U + d] += 2.0 * C * w * a[d] / x->dt * a[i];
+    for (int k = 0; k < MOTION_COUNT; k++) {
+      const double dw     = velocity[0] * x->da[0][k] + velocity[1] * x->da[1][k],
+                   darea2 = 2.0 * (a[0] * x->da[0][k] + a[1] * x->da[1][k]);
+
+      row[k] += (2.0 * C * w * dw - q * darea2 / area2) * a[i] + q * x->da[i][k];
+    }
+  }
+}
+
+/* ---------------------------------------------------------------- fluids */
+static double Density(const Material *mat, int phase, double p, double T, double *dp, double *dT)
+{
+  return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, dp, dT) : GasDensity(&mat->gas, p, T, dp, dT);
+}
+
+/* Pressures outside, and their derivatives with respect to the particle's capillary pressure and to the displacement of
+   the face (the same for both fluids). */
+typedef struct {
+  double p[PHASE_COUNT], dpc[PHASE_COUNT], du[CL_DIM];
+} Outside;
+
+/* Open face: outflow rho J . a, and in the fluid's momentum what the pressure outside differs from the fluid's own
+   there, which is extrapolated from the particle.  A closed face adds nothing. */
+static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutput *o)
+{
+  double        dp, dT;
+  const Face   *f  = x->f;
+  const double *in = x->in, *a = x->a, dt = x->dt;
+  const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1], skin = f->skin[phase];
+  const double  p = outside->p[phase], jump = p + skin * Ja - FacePressure(f, phase, in),
+               rho = Density(x->mat, phase, p, in[IN_T], &dp, &dT);
+  double *D        = o->D[F_PW + phase];
+
+  o->out[F_PW + phase] += dt * rho * Ja;
+  o->outflow[phase] += rho * Ja;
+  D[IN_T] += dt * dT * Ja;
+  for (int j = 0; j < 2; j++)
+    D[IN_J + 2 * phase + j] += dt * rho * a[j];
+  for (int k = 0; k < MOTION_COUNT; k++)
+    D[k] += dt * rho * (J[0] * x->da[0][k] + J[1] * x->da[1][k]);
+  for (int d = 0; d < CL_DIM; d++)
+    D[IN_U + d] += dt * dp * outside->du[d] * Ja;
+  for (int i = 0; i < 2; i++) {
+    double *row = o->D[F_VWX + 2 * phase + i];
+
+    o->out[F_VWX + 2 * phase + i] += jump * a[i];
+    row[IN_P + phase] -= a[i];
+    for (int d = 0; d < CL_DIM; d++)
+      row[IN_U + d] += outside->du[d] * a[i];
+    for (int j = 0; j < 2; j++)
+      row[IN_GP + 2 * phase + j] -= a[i] * f->r[j];
+    for (int j = 0; j < 2; j++)
+      row[IN_J + 2 * phase + j] += skin * a[j] * a[i];
+    for (int k = 0; k < MOTION_COUNT; k++)
+      row[k] += jump * x->da[i][k] + skin * (J[0] * x->da[0][k] + J[1] * x->da[1][k]) * a[i];
+  }
+  for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
+    const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
+
+    D[IN_P + k] += dt * dp * dpk * Ja;
+    for (int i = 0; i < 2; i++)
+      o->D[F_VWX + 2 * phase + i][IN_P + k] += dpk * a[i];
+  }
+}
+
+/* Prescribed mean pressure of a face; that of the ambient fluid depends on where the face is. */
+static double MeanOutside(const FaceState *s, PetscInt k, double du[CL_DIM])
+{
+  const double value = s->v->value[k], x[CL_DIM] = {s->f->x[0] + s->in[IN_U], s->f->x[1] + s->in[IN_U + 1]};
+
+  return isinf(value) ? AmbientPressure(&s->v->ambient, x, du) : value;
+}
+
+/* (31): p_w and p_g as prescribed, the face's initial ones, or from the mean with a capillary pressure: that of the
+   face's initial state, or the particle's own (natural outflow). */
+static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
+{
+  const Retention *retention = &x->mat->retention;
+  const Bc        *b         = &x->c->bc[k];
+  const double    *p0 = x->p0, *in = x->in;
+  double           ds;
+
+  *o = (Outside){.p = {p0[PHASE_W], p0[PHASE_G]}};
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    if (b->phase[ph].n)
+      o->p[ph] = x->v->phase[ph][k];
+  }
+  if (b->phase[PHASE_W].n || b->phase[PHASE_G].n || (b->initial && !b->natural))
+    return;
+  if (!(x->c->fields.has & HAS_GAS_PRESSURE)) {
+    o->p[PHASE_W] = o->p[PHASE_G] = b->initial ? p0[PHASE_W] : MeanOutside(x, k, o->du);
+    return;
+  }
+  const double sg0   = RetentionGasShare(retention, p0[PHASE_G] - p0[PHASE_W], &ds);
+  const double mean0 = (1.0 - sg0) * p0[PHASE_W] + sg0 * p0[PHASE_G];
+  const double mean  = b->initial ? mean0 : MeanOutside(x, k, o->du);
+
+  if (b->natural) {
+    const double pc = in[IN_P + PHASE_G] - in[IN_P + PHASE_W], sg = RetentionGasShare(retention, pc, &ds);
+
+    o->p[PHASE_W]   = mean - sg * pc;
+    o->p[PHASE_G]   = o->p[PHASE_W] + pc;
+    o->dpc[PHASE_W] = -sg - ds * pc;
+    o->dpc[PHASE_G] = 1.0 + o->dpc[PHASE_W];
+    return;
+  }
+  for (int ph = 0; ph < PHASE_COUNT; ph++)
+    o->p[ph] = p0[ph] + mean - mean0;
+}
+
+static bool Opens(const Bc *b, int phase)
+{
+  return b->open == OPEN_BOTH || (b->open == OPEN_WATER) == (phase == PHASE_W);
+}
+
+void FacePressures(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  Outside outside;
+
+  OutsidePressures(x, k, &outside);
+  for (int phase = 0; phase < PHASE_COUNT; phase++) {
+    if (x->c->fields.phase[phase] && Opens(&x->c->bc[k], phase))
+      Open(x, phase, &outside, o);
+  }
+}
+
+/* (106): gas that enters where there is none has the pressure of the water before it. */
+static int InflowPressure(const FaceState *x, int phase)
+{
+  const bool two = x->c->fields.has & HAS_GAS_PRESSURE;
+
+  return two && phase == PHASE_G && FacePressure(x->f, PHASE_W, x->in) > FacePressure(x->f, PHASE_G, x->in) ? PHASE_W
+                                                                                                            : phase;
+}
+
+/* (32): mass and, where it comes with a temperature of its own, heat of what is let in.  Its density is the body's own
+   at the face. */
+static void Inflow(const FaceState *x, PetscInt k, int phase, FaceOutput *o)
+{
+  const Face  *f   = x->f;
+  const int    own = InflowPressure(x, phase);
+  const double p = FacePressure(f, own, x->in), area = x->area, dt = x->dt, q = x->v->phase[phase][k];
+  const bool   heats = x->c->fields.heat && x->c->bc[k].value.n && q > 0.0;
+  const double c_f = phase == PHASE_W ? x->mat->c_w : x->mat->c_g, dT_in = heats ? x->v->value[k] - x->T : 0.0;
+  double       dp, dT, drate[IN_COUNT] = {0.0};
+  const double rho = Density(x->mat, phase, p, x->T, &dp, &dT), rate = rho * q * area;
+
+  drate[IN_P + own] = dp * q * area;
+  drate[IN_T]       = dT * q * area;
+  for (int j = 0; j < 2; j++) {
+    drate[IN_GP + 2 * own + j] = dp * q * area * f->r[j];
+    drate[IN_GT + j]           = dT * q * area * f->r[j];
+  }
+  for (int j = 0; j < MOTION_COUNT; j++)
+    drate[j] = rho * q * x->darea[j];
+  o->out[F_PW + phase] -= dt * rate;
+  o->outflow[phase] -= rate;
+  o->out[F_T] -= c_f * rate * dT_in;
+  o->heat_in += c_f * rate * dT_in;
+  for (int j = 0; j < IN_COUNT; j++) {
+    o->D[F_PW + phase][j] -= dt * drate[j];
+    o->D[F_T][j] -= c_f * drate[j] * dT_in;
+  }
+  if (!heats)
+    return;
+  o->D[F_T][IN_T] += c_f * rate;
+  for (int j = 0; j < 2; j++)
+    o->D[F_T][IN_GT + j] += c_f * rate * f->r[j];
+}
+
+void FaceInflows(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  for (int phase = 0; phase < PHASE_COUNT; phase++) {
+    if (x->c->fields.phase[phase])
+      Inflow(x, k, phase, o);
+  }
+}
+
+/* ---------------------------------------------------------------- heat */
+/* A flux into the body (W/m^2) that falls by alpha with every kelvin of the face. */
+static void LetIn(const FaceState *x, double flux, double alpha, FaceOutput *o)
+{
+  o->heat_in += flux * x->area;
+  o->out[F_T] -= flux * x->area;
+  o->D[F_T][IN_T] += alpha * x->area;
+  for (int j = 0; j < 2; j++)
+    o->D[F_T][IN_GT + j] += alpha * x->area * x->f->r[j];
+  for (int j = 0; j < MOTION_COUNT; j++)
+    o->D[F_T][j] -= flux * x->darea[j];
+}
+
+void FaceHeatFlux(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  LetIn(x, x->v->value[k], 0.0, o);
+}
+
+void FaceConvection(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  const double alpha = x->c->bc[k].alpha;
+
+  LetIn(x, alpha * (x->v->value[k] - x->T), alpha, o);
+}
+
+/* (199): what the body conducts to the face, and a penalty. */
+void FaceTemperature(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  const double *g = &x->in[IN_GT], strong = FACE_PENALTY / hypot(x->f->r[0], x->f->r[1]);
+  const double  conducts = x->kappa / (1.0 + strong * x->f->ring[1] * x->f->x[0]);
+  const double  arrives  = conducts * (g[0] * x->s[0] + g[1] * x->s[1]);
+
+  LetIn(x, strong * conducts * (x->v->value[k] - x->T), strong * conducts, o);
+  o->heat_in += arrives;
+  o->out[F_T] -= arrives;
+  for (int j = 0; j < 2; j++)
+    o->D[F_T][IN_GT + j] -= conducts * x->s[j];
+  for (int j = 0; j < MOTION_COUNT; j++)
+    o->D[F_T][j] -= conducts * (g[0] * x->ds[0][j] + g[1] * x->ds[1][j]);
+}
