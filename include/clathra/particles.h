@@ -111,6 +111,8 @@ static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first
   return s;
 }
 
+/* Particles of another run as those a run starts with (340). */
+void           ParticlesBecomeInitial(Particles *P);
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */
 PetscErrorCode ParticlesDestroy(Particles *P);
 PetscErrorCode ParticlesResize(Particles *P, PetscInt n); /* keeps the first min(n, old n) */
