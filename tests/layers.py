@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The one-way rule: a file includes only headers of layers above its own.  Usage: layers.py [root of the tree].
+"""The one-way rule: a file includes only headers of layers above its own, and within a folder no two files call each
+other, directly or in a circle.  Usage: layers.py [root of the tree].
 
 It also judges a table of made-up files, some with planted violations, and fails if it misses one.
 """
@@ -81,6 +82,43 @@ def violations_of(path, text):
     return found
 
 
+# Folders whose files still call each other in circles: to become fewer.
+CIRCULAR = {"case", "explicit", "io", "run", "stepper"}
+STRINGS = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', re.S)
+DEFINITION = re.compile(r"^(?!static\b|typedef\b|extern\b|#)[A-Za-z_][\w \*]*?\b(\w+)\([^;{]*\)\n\{", re.M)
+
+
+def circle_of(files):
+    """One circle of files that call each other, as sentences; files: name -> text."""
+    code = {name: STRINGS.sub(" ", text) for name, text in files.items()}
+    home = {m.group(1): name for name, text in code.items() for m in DEFINITION.finditer(text)}
+    calls = {name: {home[w]: w for w in sorted(set(re.findall(r"\b\w+\b", text))) if home.get(w, name) != name} for name, text in code.items()}
+    done = set()
+
+    def visit(name, way):
+        if name in way:
+            ring = way[way.index(name) :] + [name]
+            return [f"{a} calls {calls[a][b]} of {b}" for a, b in zip(ring, ring[1:])]
+        if name in done:
+            return None
+        found = next(filter(None, (visit(other, way + [name]) for other in sorted(calls[name]))), None)
+        done.add(name)
+        return found
+
+    return next(filter(None, (visit(name, []) for name in sorted(code))), [])
+
+
+def circles(root):
+    found, free = [], []
+    for folder in sorted(p for p in (root / "src").iterdir() if p.is_dir()):
+        ring = circle_of({p.name: p.read_text() for p in folder.glob("*.c")})
+        if ring and folder.name not in CIRCULAR:
+            found.append(f"src/{folder.name}: files in a circle: " + ", ".join(ring))
+        elif not ring and folder.name in CIRCULAR:
+            free.append(f"src/{folder.name}: has no circle any more: take it out of CIRCULAR")
+    return found + free
+
+
 PLANTED = {  # path: text, whether it is wrong
     ("include/clathra/point.h", '#include "clathra/grid.h"\n'): True,
     ("include/clathra/laws.h", '#include "clathra/base.h"\n'): True,
@@ -102,6 +140,9 @@ PLANTED = {  # path: text, whether it is wrong
 
 def self_test():
     wrong = [path for (path, text), bad in PLANTED.items() if bool(violations_of(path, text)) != bad]
+    rings = {"a.c": "void A(void)\n{\n  C();\n}\n", "b.c": "int B(int x)\n{\n  A(); /* C */\n}\n", "c.c": "void C(void)\n{\n  D();\n}\n"}
+    if circle_of(rings) or len(circle_of({**rings, "d.c": "void D(void)\n{\n  B(1);\n}\n"})) != 4:
+        wrong.append("files in a circle")
     for path in wrong:
         print(f"self-test: a planted case was judged wrongly: {path}")
     return len(wrong)
@@ -111,6 +152,7 @@ def main():
     root = Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).resolve().parents[1])
     files = sorted(p for folder in ("src", "include") for p in (root / folder).rglob("*.[ch]"))
     found = [v for p in files for v in violations_of(p.relative_to(root).as_posix(), p.read_text())]
+    found += circles(root)
     print("\n".join(found + [f"{len(files)} files, {len(found)} violations, {len(PLANTED)} planted cases tried"]))
     return 1 if self_test() or found or not files else 0
 

@@ -366,14 +366,15 @@ void EliminateParticle(const Model *m, const Reach *r, const double *x, const do
 void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput *o);
 /* The reduced matrix and its solver (reduced.c). */
 /* Types of the solvers of the groups that are there, behind -reduced_..., which options of the user win over. */
-PetscErrorCode ReducedPreferences(bool flow, bool motion);
-PetscErrorCode ReducedCreate(Model *m);
-PetscErrorCode ReducedDestroy(Reduced **reduced);
-PetscErrorCode ReducedBegin(Model *m, Assembly *to); /* empties it, says what to assemble */
-void           ReducedAdd(Model *m, int n, const PetscInt *node, const double *block);
-PetscErrorCode ReducedSetUp(Model *m);               /* from what was added */
-PetscErrorCode ReducedFollow(Model *m);              /* J2 is a new one */
-PetscErrorCode ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
+PetscErrorCode  ReducedPreferences(bool flow, bool motion);
+PetscErrorCode  ReducedCreate(Model *m);
+PetscErrorCode  ReducedDestroy(Reduced **reduced);
+const FieldSet *ReducedFields(const Model *m);        /* its unknowns */
+PetscErrorCode  ReducedBegin(Model *m, Assembly *to); /* empties it; to: of its unknowns, marked as going there */
+void            ReducedAdd(Model *m, int n, const PetscInt *node, const double *block);
+PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
+PetscErrorCode  ReducedFollow(Model *m);              /* J2 is a new one */
+PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
 PetscErrorCode PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
 PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);

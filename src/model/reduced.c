@@ -241,13 +241,17 @@ static PetscErrorCode Units(Model *m, Reduced *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+const FieldSet *ReducedFields(const Model *m)
+{
+  return &m->reduced->fs;
+}
+
 PetscErrorCode ReducedBegin(Model *m, Assembly *to)
 {
-  Reduced *r = m->reduced;
-  bool     split;
+  Reduced *r     = m->reduced;
+  bool     split = false;
 
   PetscFunctionBeginUser;
-  AssemblyOf(m, &r->fs, to);
   PetscCall(IsSplit(r, &split));
   to->reduced      = true;
   to->fixed_stress = split;
@@ -356,9 +360,9 @@ static PetscErrorCode FillMatrices(Model *m, Reduced *r)
 
 PetscErrorCode ReducedSetUp(Model *m)
 {
-  Reduced *r = m->reduced;
-  bool     split;
-  Mat      A = r->nest;
+  Reduced *r     = m->reduced;
+  bool     split = false;
+  Mat      A     = r->nest;
 
   PetscFunctionBeginUser;
   for (int k = 0; k < GROUPS * GROUPS; k++) {

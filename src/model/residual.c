@@ -1,57 +1,6 @@
 /* The residual (15)-(23): particles, faces, stabilisation, Dirichlet rows. */
 #include "gather.h"
 
-PetscErrorCode ModelUnscale(Model *m, Vec X, double *x)
-{
-  const PetscInt n = m->c->fields.n;
-  const double  *a;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(X, &a));
-  for (PetscInt k = 0; k < m->map.n_owned * n; k++)
-    x[k] = a[k] * m->col_scale[k];
-  PetscCall(VecRestoreArrayRead(X, &a));
-  PetscCall(NodeMapBroadcast(&m->map, x, n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
-{
-  const FieldSet *fs = &m->c->fields;
-
-  PetscFunctionBeginUser;
-  if (!fs->fluid || !m->c->flux_interpolation)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(proj, 4 * m->map.n_local));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    const double Vk   = ConductingVolume(m, p);
-    double       g[4] = {0.0};
-    Reach        r;
-
-    ReachExpand(m, p, &r);
-    for (int f = 0; f < PHASE_COUNT; f++) {
-      for (int a = 0; fs->phase[f] && a < r.n; a++) {
-        const double pI = x[r.node[a] * fs->n + PlaceP(fs, f)];
-
-        g[2 * f] += r.G[a][0] * pI;
-        g[2 * f + 1] += r.G[a][1] * pI;
-      }
-    }
-    for (int a = 0; a < r.n; a++) {
-      const double VS = Vk * r.S[a];
-
-      for (int k = 0; k < 4; k++)
-        proj[4 * r.node[a] + k] += VS * g[k];
-    }
-  }
-  PetscCall(NodeMapSum(&m->map, proj, 4));
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
-    for (int k = 0; k < 4; k++)
-      proj[4 * I + k] /= m->Vk[I];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Rows (15) of the mixture from one particle; those of the fluids lend it their inertia. */
 static void ScatterSolid(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
 {

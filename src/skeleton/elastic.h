@@ -118,4 +118,6 @@ INLINE double BondShare(const Elasticity *el, const SkeletonStep *d)
   return ElasticityHasBonds(el) ? d->kept * (d->E - el->E0) / StageModulus(el, d) : 0.0;
 }
 
+bool Update_Elastic(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
+                    SkeletonTangent *t, const char **why);
 bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why);
