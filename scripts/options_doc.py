@@ -17,6 +17,8 @@ PROGRAM = [  # option, value, default, meaning
     ("-case_check", "", "", "read and check the case, write nothing"),
     ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
     ("-case_curves", "", "", "print what the laws of the case's materials give, curve by curve, and stop: what docs/laws.md is drawn from"),
+    ("-restart_as_initial", "FILE", "", "begin with the particles of a checkpoint, in another folder, at t = 0: conditions, gravity, times, integrator and the "
+     "laws that tie nothing of the state may differ; grid, fields, regions and what a material ties its masses and history to may not"),
     ("-restart", "FILE", "", "go on from a checkpoint of the same case (grid, regions, materials, boundary conditions, "
      "meters, stages); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a "
      "new one"),

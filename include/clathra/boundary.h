@@ -70,6 +70,8 @@ PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
 PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE]);
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
+/* The same about particles whose pore pressure is far from hydrostatic (341) or whose hydrate is not stable. */
+PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Case *c, const Particles *P);
 
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
    start, which its owner fills in where the force is prescribed. */

@@ -273,7 +273,10 @@ static inline const char *CaseNeedsImplicit(const Case *c)
 PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok);
 PetscErrorCode CaseWriteResolved(const Case *c, FILE *out); /* SI, itself a case that runs to the same result */
 /* What a restart must find unchanged: all keys but names, outputs, and the numerics of time and of the solver. */
-uint64_t       CaseFingerprint(const Case *c);
+uint64_t CaseFingerprint(const Case *c);
+/* What a state of its particles needs to be the initial state of another case: lines "key: value" of the grid, regions
+   and what their materials tie it to, in SI; both cases must have the same. */
+PetscErrorCode CaseWriteState(const Case *c, FILE *out);
 PetscErrorCode CaseDestroy(Case *c);
 /* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
  * -help. */

@@ -61,3 +61,6 @@ PetscErrorCode CheckpointWrite(const Model *m, const StepperState *s, uint64_t r
 /* Reads it onto any number of ranks; a damaged or foreign file is refused with a reason (*ok = false, message printed,
    model untouched). */
 PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok);
+/* Only its particles, as the initial ones (340) of a case that may differ in all but what CaseWriteState says; origin:
+   the run and time they are of. */
+PetscErrorCode CheckpointReadInitial(Model *m, const char *path, Origin *origin, bool *ok);

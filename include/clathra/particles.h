@@ -124,6 +124,8 @@ typedef struct {
  */
 void ParticlesKeep(const Particles *P, PetscInt first, PetscInt n, const ParticleMotion *motion);
 
+/* Particles of another run as those a run starts with (340). */
+void           ParticlesBecomeInitial(Particles *P);
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */
 PetscErrorCode ParticlesDestroy(Particles *P);
 PetscErrorCode ParticlesResize(Particles *P, PetscInt n); /* keeps the first min(n, old n) */

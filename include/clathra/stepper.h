@@ -145,6 +145,7 @@ struct Stepper {
 };
 
 PetscErrorCode StepperCreate(Model *m, Stepper *s); /* as the case says */
+PetscErrorCode StepperStart(Stepper *s); /* balances and energies from the particles as they are.  Collective */
 PetscErrorCode StepperDestroy(Stepper *s);
 /* Before anything is written, at the start or after a restart: what the schemes say about this stage and those to come;
  *ok = false: refused, a sentence was printed. */

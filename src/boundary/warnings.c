@@ -5,12 +5,17 @@
 
 #define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
 
-/* Does the skeleton of a region have a weight to carry, and no stress that does? */
-static PetscErrorCode Unstressed(const Case *c, const Region *r, bool *unstressed)
+/* Does the skeleton of a region have a weight to carry, and no stress that does?  Its weight from top to foot, Pa, and
+   how far it would sink under that, held at its sides, m. */
+static PetscErrorCode Unstressed(const Case *c, const Region *r, bool *unstressed, double *weight, double *sinks)
 {
-  const double   middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
-  double         water          = 0.0, dp, dT;
-  InitialScalars s;
+  const double g = CaseGravity(c), up[CL_DIM] = {-c->gravity[0] / g, -c->gravity[1] / g},
+               down[CL_DIM]        = {-up[0], -up[1]};
+  const double      height         = RegionHighest(r, up) + RegionHighest(r, down);
+  const double      middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
+  const Elasticity *el             = &c->material[r->material].elasticity;
+  double            water          = 0.0, dp, dT, dE;
+  InitialScalars    s;
 
   PetscFunctionBeginUser;
   *unstressed = !RegionGeostatic(r);
@@ -22,6 +27,9 @@ static PetscErrorCode Unstressed(const Case *c, const Region *r, bool *unstresse
   if (c->fields.fluid && r->hydrostatic)
     water = LiquidDensity(&c->material[r->material].water, s.pw, s.T, &dp, &dT);
   *unstressed = fabs(s.density - water) > NEGLIGIBLE * s.density;
+  *weight     = (s.density - water) * g * height;
+  *sinks      = 0.5 * *weight * height * (1.0 + el->nu) * (1.0 - 2.0 * el->nu) /
+           ((1.0 - el->nu) * ElasticityYoung(el, r->Sh, &dE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,18 +106,20 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
   if (!c->fields.solid || CaseGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {
-    bool unstressed;
+    bool   unstressed;
+    double weight = 0.0, sinks = 0.0;
 
     if (RegionEmpty(&c->region[k]))
       continue;
-    PetscCall(Unstressed(c, &c->region[k], &unstressed));
+    PetscCall(Unstressed(c, &c->region[k], &unstressed, &weight, &sinks));
     if (!unstressed)
       continue;
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: warning: gravity acts on an unstressed body: region %s starts without the stress "
-                           "that carries its weight and will move (stress: {geostatic: K0} gives it one, gravity_ramp "
-                           "lets the weight grow)\n",
-                           c->region[k].name));
+                           "that carries its weight, %.3g Pa from top to foot, and will move, by some %.3g m held at "
+                           "its sides (stress: {geostatic: K0} gives it one, gravity_ramp lets the weight grow, "
+                           "-restart_as_initial begins with a body that has settled)\n",
+                           c->region[k].name, weight, sinks));
     break;
   }
   if (CaseVertical(c) >= 0)

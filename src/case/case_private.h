@@ -105,13 +105,17 @@ typedef struct {
   Group              names;     /* KEY_NAME, KEY_NAMES: whose names */
   /* KEY_REAL: word that stands for infinity, "-word" for minus infinity; KEY_NAME: word that stands for -1 */
   const char *word;
-  bool        shape; /* GROUP_REGION: also of a region without particles */
-  unsigned    types; /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
-  unsigned    has;   /* fields (HAS_...) any of which needs the key; 0 = always needed */
-  bool        plain; /* a number without unit on the command line is in SI */
-  bool        kept;  /* not given, what is there stays; `def` says in words what that is */
-  bool        own;   /* never that of the instance which this one is like */
-  bool        like;  /* names that instance: read before the others (CaseLike), and no part of the scene */
+  bool        shape;          /* GROUP_REGION: also of a region without particles */
+  unsigned    types;          /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
+  unsigned    has;            /* fields (HAS_...) any of which needs the key; 0 = always needed */
+  unsigned    also;           /* ... and any of these */
+  bool (*acts)(const void *); /* does it anything in this instance?  NULL = always */
+  const char *idle;           /* when, in words */
+  bool        felt;           /* acts even where it is not needed */
+  bool        plain;          /* a number without unit on the command line is in SI */
+  bool        kept;           /* not given, what is there stays; `def` says in words what that is */
+  bool        own;            /* never that of the instance which this one is like */
+  bool        like;           /* names that instance: read before the others (CaseLike), and no part of the scene */
   const char *doc;
 } Key;
 
@@ -200,17 +204,27 @@ void           CheckReduction(Reader *r, const Case *c);                     /* 
 void           CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
 void           CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
-void               RegionsFinish(Case *c); /* once all keys are read */
-void               CheckShape(Reader *r, const Case *c, PetscInt region);
-void               CheckOverlap(Reader *r, const Case *c); /* of good shapes; none of them without particles */
-bool               FacesShared(const Case *c, const Meter *a, const Meter *b); /* has the body any that both name? */
-void               CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
-void               CheckHeld(Reader *r, const Case *c, const Bc *b);
-void               CheckProbe(Reader *r, const Case *c, const Probe *p);
+void RegionsFinish(Case *c); /* once all keys are read */
+void CheckShape(Reader *r, const Case *c, PetscInt region);
+void CheckOverlap(Reader *r, const Case *c);                     /* of good shapes; none of them without particles */
+bool FacesShared(const Case *c, const Meter *a, const Meter *b); /* has the body any that both name? */
+void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
+void CheckHeld(Reader *r, const Case *c, const Bc *b);
+void CheckProbe(Reader *r, const Case *c, const Probe *p);
+/* resolve.c: the value of a key as the resolved case gives it; keys that say nothing when they are empty */
+void               KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance);
+bool               KeyEmpty(const Key *k, const char *instance);
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
-  return !k->has || (c->fields.has & k->has);
+  return (!k->has || (c->fields.has & k->has)) && (!k->also || (c->fields.has & k->also));
 }
+/* ... and does it act in this instance? */
+static inline bool KeyActs(const Key *k, const Case *c, const void *instance)
+{
+  return k->felt || (KeyNeeded(k, c) && (!k->acts || k->acts(instance)));
+}
+/* idle.c: keys that are given and do nothing are named on rank 0; of a good case. */
+PetscErrorCode CaseIdle(Reader *r, const Case *c);
 
 /* ---------------------------------------------------------------- stages.c */
 /* When the stages end, and with the last of them the run; before the keys of the case are read. */

@@ -141,6 +141,21 @@ static PetscErrorCode PeekFlows(Reader *r, const Case *c, bool *gas, bool *heate
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is there hydrate at the start, or may it form? */
+static PetscErrorCode PeekHydrate(Reader *r, const Case *c, bool *hydrate)
+{
+  const char *text;
+  bool        rigid;
+
+  PetscFunctionBeginUser;
+  PetscCall(PeekMaterials(r, c, hydrate, &rigid));
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    PetscCall(Peek(r, c, GROUP_REGION, i, "Sh", &text));
+    *hydrate = *hydrate || (text && strtod(text, NULL) != 0.0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode FieldsDerive(Reader *r, const Case *c, unsigned *has)
 {
   bool reacts, rigid, gas, uniform, heated;
@@ -191,6 +206,7 @@ PetscErrorCode CaseFieldSet(Reader *r, Case *c)
   const bool derive = !strcasecmp(c->fields_wanted, "auto");
   PetscInt   before = r->nerror;
   unsigned   has    = HAS_ALL;
+  bool       hydrate;
 
   PetscFunctionBeginUser;
   if (derive)
@@ -203,6 +219,8 @@ PetscErrorCode CaseFieldSet(Reader *r, Case *c)
                   FIELDS_ALLOWED);
     FieldSetMake(HAS_ALL, c->inertia, c->one_pressure, &c->fields); /* so that the rest of the case is read */
   }
+  PetscCall(PeekHydrate(r, c, &hydrate));
+  c->fields.has |= hydrate ? HAS_HYDRATE : 0u;
   c->fields_wanted[0] = '\0'; /* the resolved case names what was found */
   for (int k = 0; cl_field_word[k]; k++) {
     if (!(c->fields.has & (1u << k)))
@@ -223,6 +241,8 @@ void FieldsWords(unsigned has, char text[64])
       strcat(text, " or ");
     strcat(text, cl_field_word[k]);
   }
+  if (has & HAS_HYDRATE)
+    strcat(strcat(text, text[0] ? " or " : ""), "hydrate");
 }
 
 static void FinishRegion(Reader *r, const Case *c, Region *g)

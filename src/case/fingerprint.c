@@ -96,7 +96,8 @@ static uint64_t HashScene(uint64_t h, const Case *c)
     h = HashBytes(h, &n, sizeof n);
     for (PetscInt i = 0; i < n; i++) {
       for (const Key *k = case_group[g].key; k->name; k++) {
-        if (!k->like && (g != GROUP_CASE || !BeginsWithOneOf(k->name, may_change)))
+        if (!k->like && KeyActs(k, c, GroupInstance(c, g, i)) &&
+            (g != GROUP_CASE || !BeginsWithOneOf(k->name, may_change)))
           h = HashKey(h, k, GroupInstance(c, g, i));
       }
     }

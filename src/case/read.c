@@ -266,6 +266,8 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
       PetscCall(KeysRead(&r, c));
   }
   *ok = r.nerror == 0;
+  if (*ok)
+    PetscCall(CaseIdle(&r, c));
   PrintErrors(&r);
   PetscCall(ReaderDestroy(&r));
   if (!*ok)

@@ -109,9 +109,10 @@ static void WriteNames(FILE *f, const Case *c, const Key *k, const Names *names)
   fputc(']', f);
 }
 
-/* Keys that say nothing when they are empty. */
-static bool Empty(const Key *k, const char *place)
+bool KeyEmpty(const Key *k, const char *instance)
 {
+  const char *place = instance + k->offset;
+
   switch (k->kind) {
   case KEY_SCHEDULE:
     return ((const Schedule *)place)->n == 0;
@@ -126,7 +127,7 @@ static bool Empty(const Key *k, const char *place)
   }
 }
 
-static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instance)
+void KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance)
 {
   const char *place = instance + k->offset;
 
@@ -176,12 +177,12 @@ static void WriteValue(FILE *f, const Case *c, const Key *k, const char *instanc
 static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance, const char *indent)
 {
   for (const Key *k = case_group[g].key; k->name; k++) {
-    if (k->like || !KeyApplies(k, g, instance) || !KeyNeeded(k, c))
+    if (k->like || !KeyApplies(k, g, instance) || !KeyActs(k, c, instance))
       continue;
-    if (Empty(k, instance + k->offset))
+    if (KeyEmpty(k, instance))
       continue;
     fprintf(f, "%s%s: ", indent, k->name);
-    WriteValue(f, c, k, instance);
+    KeyWrite(f, c, k, instance);
     fputc('\n', f);
   }
 }

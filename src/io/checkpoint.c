@@ -2,11 +2,13 @@
 
      512 bytes           the seal: see seal.c
      /state/<field>      StepperState
+     /scene              text: CaseWriteState
      /particles/<name>   cl_particle_variable (n x components); id, region, faces; rank and place: where the particle
    was, so that on as many ranks a restart finds the same order and goes on bit for bit; attribute ranks */
 #include "io_private.h"
 
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define REAL(field)                                                                                                    \
@@ -41,6 +43,17 @@ _Static_assert(sizeof(StepperState) ==
                    14 * sizeof(PetscInt) + (23 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
+PetscErrorCode IoScene(const Case *c, char **text, size_t *size)
+{
+  FILE *f = open_memstream(text, size);
+
+  PetscFunctionBeginUser;
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscCall(CaseWriteState(c, f));
+  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 typedef struct {
   hid_t          file, group; /* rank 0 */
   PetscErrorCode ierr;        /* rank 0: first error; the gathering goes on */
@@ -62,12 +75,27 @@ static PetscErrorCode WriteState(hid_t file, const StepperState *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Start(Writer *w, const StepperState *s, PetscMPIInt ranks)
+static PetscErrorCode WriteScene(hid_t file, const Case *c)
+{
+  char   *text;
+  size_t  size;
+  hsize_t n;
+
+  PetscFunctionBeginUser;
+  PetscCall(IoScene(c, &text, &size));
+  n = size;
+  PetscCall(H5Write(file, "scene", H5T_NATIVE_CHAR, 1, &n, text, NULL, false));
+  free(text);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Start(Writer *w, const Case *c, const StepperState *s, PetscMPIInt ranks)
 {
   PetscFunctionBeginUser;
   PetscCall(H5ImageCreate(SEAL_BYTES, &w->file));
   PetscCall(H5WriteInt(w->file, "ranks", ranks));
   PetscCall(WriteState(w->file, s));
+  PetscCall(WriteScene(w->file, c));
   PetscCall(H5Group(w->file, "/particles", &w->group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,7 +149,7 @@ PetscErrorCode CheckpointWrite(const Model *m, const StepperState *s, uint64_t r
   PetscFunctionBeginUser;
   PetscCheck(strlen(path) + 8 < PETSC_MAX_PATH_LEN, grid->comm, PETSC_ERR_ARG_SIZ, "the path %s is too long", path);
   if (grid->rank == 0)
-    w.ierr = Start(&w, s, grid->size);
+    w.ierr = Start(&w, m->c, s, grid->size);
   PetscCall(GatherCreate(m, &g));
   PetscCall(GatherVariables(&g, &m->P, false, w.group, &w.ierr));
   PetscCall(WriteInts(&w, &m->P, &g));

@@ -1,4 +1,5 @@
-/* Reading a checkpoint: rank 0 checks all of it, then deals the particles out to the owners of their cells. */
+/* Reading a checkpoint: rank 0 checks all of it, then deals the particles out to the owners of their cells.  To go on
+   with the same case, or as the initial state of another one. */
 #include "io_private.h"
 
 #include <stdlib.h>
@@ -10,7 +11,8 @@ typedef struct {
   PetscInt     ranks;        /* of the run that wrote it */
   PetscInt    *rank, *place; /* where each particle was */
   uint64_t     run;          /* that wrote it */
-  char         why[256];     /* reason of a refusal */
+  bool         initial;      /* as the initial state of a run */
+  char         why[512];     /* reason of a refusal */
 } Loaded;
 
 #define Refuse(L, ...)                                                                                                 \
@@ -123,7 +125,7 @@ static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
   if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
     Refuse(L, "/particles/id is missing or of wrong size");
   PetscCall(LoadState(file, L));
-  if (!L->why[0] && L->s.stage >= PetscMax(m->c->nstage, 1))
+  if (!L->why[0] && !L->initial && L->s.stage >= PetscMax(m->c->nstage, 1))
     Refuse(L, "the case has no stage %d", (int)L->s.stage + 1);
   PetscCall(ParticlesResize(&L->P, (PetscInt)n));
   PetscCall(PetscMalloc2((PetscInt)n, &L->rank, (PetscInt)n, &L->place));
@@ -140,6 +142,52 @@ static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The first line in which two scenes differ; false: none. */
+static bool Differ(char *theirs, char *ours, char *why, size_t size)
+{
+  char *ends[2], *a = strtok_r(theirs, "\n", &ends[0]), *b = strtok_r(ours, "\n", &ends[1]);
+
+  while (a && b && !strcmp(a, b)) {
+    a = strtok_r(NULL, "\n", &ends[0]);
+    b = strtok_r(NULL, "\n", &ends[1]);
+  }
+  if (a && b) {
+    char        *value = strrchr(a, ':'), *other = strrchr(b, ':');
+    const size_t length = (size_t)(value - a);
+
+    if (length == (size_t)(other - b) && !strncmp(a, b, length)) {
+      *value = '\0';
+      snprintf(why, size, "%.200s is%.100s in it but%.100s here", a, value + 1, other + 1);
+      return true;
+    }
+  }
+  if (a || b)
+    snprintf(why, size, "it says '%.200s' where this case says '%.200s'", a ? a : "nothing more",
+             b ? b : "nothing more");
+  return a || b;
+}
+
+static PetscErrorCode CheckScene(const Model *m, hid_t file, Loaded *L)
+{
+  hsize_t n;
+  size_t  size;
+  char   *theirs, *ours;
+
+  PetscFunctionBeginUser;
+  if (!H5Rows(file, "scene", &n) || n > PETSC_MAX_INT / 8)
+    Refuse(L, "/scene is missing or of wrong size");
+  PetscCall(PetscCalloc1((PetscInt)n + 1, &theirs));
+  if (!H5Read(file, "scene", H5T_NATIVE_CHAR, 1, &n, theirs))
+    snprintf(L->why, sizeof(L->why), "/scene is no text");
+  else {
+    PetscCall(IoScene(m->c, &ours, &size));
+    (void)Differ(theirs, ours, L->why, sizeof(L->why));
+    free(ours);
+  }
+  PetscCall(PetscFree(theirs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* On rank 0.  L->why stays empty if all is well. */
 static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
 {
@@ -151,14 +199,17 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   PetscCall(SealCheck(path, &fingerprint, &L->run, &ok, L->why, sizeof(L->why)));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (fingerprint != CaseFingerprint(m->c)) {
+  if (!L->initial && fingerprint != CaseFingerprint(m->c)) {
     Refuse(L,
            "it was written by another case (grid, regions, materials, boundary conditions, meters or stages differ)");
   }
   PetscCall(H5FileOpen(path, &file));
   if (file < 0)
     Refuse(L, "HDF5 cannot read it");
-  PetscCall(LoadFile(m, file, L));
+  if (L->initial)
+    PetscCall(CheckScene(m, file, L));
+  if (!L->why[0])
+    PetscCall(LoadFile(m, file, L));
   PetscCall(H5FileClose(&file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -233,10 +284,11 @@ static PetscErrorCode Deal(const Grid *g, const Loaded *L, Particles *P)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok)
+/* s NULL: as an initial state. */
+static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok)
 {
   const Grid *g    = &m->grid;
-  Loaded      L    = {0};
+  Loaded      L    = {.initial = s == NULL};
   int         good = 1;
 
   PetscFunctionBeginUser;
@@ -245,7 +297,7 @@ PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, Origi
     PetscCall(Load(m, path, &L));
     good = L.why[0] == '\0';
     if (!good)
-      fprintf(stderr, "%s: cannot restart from this file: %s\n", path, L.why);
+      fprintf(stderr, "%s: cannot %s this file: %s\n", path, s ? "restart from" : "start from the state of", L.why);
   }
   PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, g->comm));
   *ok = good != 0;
@@ -257,11 +309,28 @@ PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, Origi
     PetscCallMPI(MPI_Bcast(&L.s, sizeof(L.s), MPI_BYTE, 0, g->comm));
     PetscCallMPI(MPI_Bcast(&L.run, 1, MPI_UINT64_T, 0, g->comm));
     PetscCall(ParticlesDestroy(&m->P));
-    m->P    = P;
-    *s      = L.s;
+    m->P = P;
+    if (s)
+      *s = L.s;
     *origin = (Origin){.run = L.run, .t = L.s.t};
   }
   PetscCall(ParticlesDestroy(&L.P));
   PetscCall(PetscFree2(L.rank, L.place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CheckpointRead(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReadAll(m, s, path, origin, ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CheckpointReadInitial(Model *m, const char *path, Origin *origin, bool *ok)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReadAll(m, NULL, path, origin, ok));
+  if (*ok)
+    ParticlesBecomeInitial(&m->P);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

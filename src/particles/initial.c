@@ -154,3 +154,23 @@ PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+static void Zero(Particles *P, int first, int n)
+{
+  for (int k = first; k < first + n; k++)
+    for (PetscInt p = 0; P->f[k] && p < P->n; p++)
+      P->f[k][p] = 0.0;
+}
+
+/* (340): what changes are counted from; the part of the stress that hydrate bears stays a stress of its own. */
+void ParticlesBecomeInitial(Particles *P)
+{
+  Zero(P, P_U, CL_DIM);
+  Zero(P, P_LOGJ, 1);
+  for (PetscInt p = 0; p < P->n; p++) {
+    for (int i = 0; P->f[P_SIG0] && i < 6; i++)
+      P->f[P_SIG0 + i][p] = P->f[P_SIG + i][p] - (P->f[P_BOND] && i < 4 ? P->f[P_BOND + i][p] : 0.0);
+    for (int f = 0; f < PHASE_COUNT; f++)
+      Set(P, p, P_PW0 + f, P->f[P_PW + f] ? P->f[P_PW + f][p] : 0.0);
+  }
+}

@@ -12,6 +12,7 @@ typedef struct {
   Watch     watch;
   StageLog *log;
   char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
+  char      restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];  /* -restart, -restart_as_initial */
   double    t_saved;                                                   /* of that */
   double    clock_start;                                               /* s of the wall */
   bool      quiet, restarted;
@@ -249,7 +250,9 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(WriteCase(m->grid.comm, c, run));
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
-    PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    if (!run->initial[0])
+      PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+    PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P));
     PetscCall(CellMeansWarning(&m->grid, m->c, &m->P));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
@@ -323,10 +326,11 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restart, int *exit_code)
+static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
 {
-  Origin origin;
-  bool   ok = true;
+  const char *restart = run->restart;
+  Origin      origin;
+  bool        ok = true;
 
   PetscFunctionBeginUser;
   *exit_code = CL_EXIT_INPUT;
@@ -340,6 +344,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, const char *restar
   } else {
     run->t_saved = NAN;
     PetscCall(CheckFolder(s->model->grid.comm, c, &ok));
+    if (ok && run->initial[0])
+      PetscCall(StartFromState(s, run->initial, &ok));
     if (!ok)
       PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -389,16 +395,23 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   Run         run = {0};
   Model       model;
   Stepper     stepper;
-  char        restart[PETSC_MAX_PATH_LEN] = "";
-  PetscBool   quiet                       = PETSC_FALSE;
+  PetscBool   quiet = PETSC_FALSE;
   bool        ok;
   PetscInt    unknown;
   PetscMPIInt size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", restart, sizeof(restart), NULL));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", run.restart, sizeof(run.restart), NULL));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart_as_initial", run.initial, sizeof(run.initial), NULL));
   run.quiet = quiet;
+  if (run.restart[0] && run.initial[0]) {
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: -restart goes on with a run, -restart_as_initial begins another one: give one of "
+                           "them\n"));
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(WatchStart(comm, &run.watch, &ok));
   if (!ok) {
     *exit_code = CL_EXIT_INPUT;
@@ -435,7 +448,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
                           c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
     PetscCall(PrintStrength(c, comm));
     PetscCall(PrintEquilibrium(c, comm));
-    PetscCall(Go(c, &stepper, &run, restart, exit_code));
+    PetscCall(Go(c, &stepper, &run, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }
   PetscCall(StepperDestroy(&stepper));

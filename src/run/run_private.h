@@ -25,6 +25,11 @@ PetscErrorCode WatchStep(MPI_Comm comm, Watch *w, bool *save, bool *end);
 void           WatchSaved(Watch *w);
 bool           WatchLine(Watch *w, bool last); /* is it time for a line?  The last one always comes */
 
+/* ---------------------------------------------------------------- start.c */
+/* Particles of a checkpoint as the initial ones (340); what is counted from the start counts from them.  *ok = false: a
+   sentence was printed.  Collective. */
+PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok);
+
 /* ---------------------------------------------------------------- times.c */
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
 double NextMultiple(const Case *c, double every, double t);

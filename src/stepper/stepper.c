@@ -4,10 +4,21 @@
 #define FLOOR_P 1e4 /* Pa: pressure changes below it are not resolved more finely */
 #define FLOOR_T 1.0 /* K: likewise */
 
-PetscErrorCode StepperCreate(Model *m, Stepper *s)
+PetscErrorCode StepperStart(Stepper *s)
 {
   ModelTotals t;
 
+  PetscFunctionBeginUser;
+  PetscCall(ModelComputeTotals(s->model, &t));
+  s->state.water0    = t.water;
+  s->state.methane0  = t.methane;
+  s->state.capacity0 = t.capacity;
+  PetscCall(StepperEnergyStart(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode StepperCreate(Model *m, Stepper *s)
+{
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(s, sizeof(*s)));
   s->model = m;
@@ -20,11 +31,7 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
   s->state.scale_T = FLOOR_T;
   s->state.scale_u = StepperFloorU(s);
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-stepper_max_steps", &s->max_steps, NULL));
-  PetscCall(ModelComputeTotals(m, &t));
-  s->state.water0    = t.water;
-  s->state.methane0  = t.methane;
-  s->state.capacity0 = t.capacity;
-  PetscCall(StepperEnergyStart(s));
+  PetscCall(StepperStart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -150,8 +150,12 @@ static void SceneCreate(Scene *s, MPI_Comm comm, PetscInt across)
   for (int k = 0; k < PROBES; k++)
     snprintf(s->probe[k].name, sizeof(s->probe[k].name), "%s", probe_name[k]);
   snprintf(s->c.output_dir, sizeof(s->c.output_dir), "%s/deep/run", folder);
-  s->region[0]   = (Region){.lower = {0.0, 0.0}, .upper = {1.0, 0.04}, .ppc = {2, across == 1 ? 1 : 2}};
-  s->material    = (Material){.porosity = 0.4, .c_s = 800.0, .c_w = 4200.0, .c_h = 2000.0, .c_g = 2200.0};
+  s->region[0] = (Region){.lower = {0.0, 0.0}, .upper = {1.0, 0.04}, .ppc = {2, across == 1 ? 1 : 2}};
+  s->material  = (Material){.porosity = 0.4, .c_s = 800.0, .c_w = 4200.0, .c_h = 2000.0, .c_g = 2200.0};
+  Check(RetentionSetType(&s->material.retention, "van_genuchten") && GasSetType(&s->material.gas, "ideal") &&
+        EquilibriumSetType(&s->material.kinetics.equilibrium, "sloan") &&
+        PermeabilitySetHydrateType(&s->material.permeability, "power") &&
+        PermeabilitySetPorosityType(&s->material.permeability, "none"));
   s->t[1]        = 1.0;
   s->y[1]        = 5e6;
   s->bc[0]       = (Bc){.type = BC_TRACTION, .value = {2, s->t, s->y, false}};
@@ -565,6 +569,7 @@ static void ForeignFilesAreRefused(void **state)
   StepperState       back;
 
   SceneCreate(&s, PETSC_COMM_WORLD, 4);
+  s.material.reacts      = true; /* so that K0 counts */
   double *const change[] = {
       &s.c.gravity[1], &s.region[0].upper[1], &s.material.kappa_s, &s.material.elasticity.E0, &s.material.kinetics.K0,
       &s.y[1],         &s.bc[0].alpha};
@@ -580,7 +585,7 @@ static void ForeignFilesAreRefused(void **state)
   }
   s.material.retention.type = "brooks_corey";
   ExpectRefused(&s, path, "another case");
-  s.material.retention.type = "";
+  s.material.retention.type = "van_genuchten";
   snprintf(s.c.title, sizeof(s.c.title), "another title");
   s.c.t_end = 7.0;
   Call(CheckpointRead(&s.m, &back, path, &origin, &ok));

@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""Warnings of a start that does not stay as it is: they come where they should, with numbers, and in no shipped case.
+
+Unstressed bodies, pore pressures far from hydrostatic (341), hydrate outside its stability zone."""
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent / "verification"))
+from common import CASES, binary, check, check_true, finish, launch, scratch  # noqa: E402
+
+COLUMN = HERE.parent / "verification" / "cases" / "geostatic.yaml"  # in balance, two layers, 20 m
+BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
+WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "hydrate": "stability zone"}
+
+
+def said(case, *options, ranks=1):
+    done = launch(binary(), case, "-quiet", "-stepper_max_steps", 0, *options, ranks=ranks, out=scratch() / "out")
+    check_true(f"{case}: begins", done.returncode == 0, done.stdout[-300:] if done.returncode else "")
+    return [line for line in done.stdout.splitlines() if "warning" in line]
+
+
+def comes(what, expected, lines):
+    found = [k for k, words in WORDS.items() if any(words in line for line in lines)]
+    check_true(f"{what}: {', '.join(expected) or 'nothing'} is warned of", found == expected, found)
+    return "\n".join(lines)
+
+
+def numbers(text, words):
+    """The numbers that follow the words."""
+    return [float(x) for x in re.findall(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?", text[text.index(words) + len(words):])]
+
+
+for path in sorted(CASES.glob("*/case.yaml")):
+    comes(f"cases/{path.parent.name}", [], said(path.parent))
+
+# ---------------------------------------------------------------- pressure
+UNIFORM = [o for r in ("deep", "shallow") for o in (f"-region_{r}_hydrostatic", "no", f"-region_{r}_pressure", "0.3 MPa")]
+comes("a column in balance", [], said(COLUMN))
+text = comes("a uniform pressure", ["pressure"], said(COLUMN, *UNIFORM))
+weight = 1000 * 9.81 * 20
+apart, region = re.search(r"has ([\d.e+]+) Pa more beyond water at rest than region (\w+)", text).groups()
+check("... by the weight between the highest and the lowest particle", abs(float(apart) / (1000 * 9.81 * 19) - 1), 0.01)
+check_true("... highest in the upper layer, lowest in the lower", "region shallow at" in text and region == "deep")
+check("... the water's weight", abs(numbers(text, "the water weighs")[0] / weight - 1), 0.01)
+check_true("... the same on 2 ranks", text in "\n".join(said(COLUMN, *UNIFORM, ranks=2)))
+text = comes("layers of two levels", ["pressure"], said(COLUMN, "-region_deep_datum", "45 m"))
+check("... which differ by 5 m of water", abs(float(re.search(r"has ([\d.e+]+) Pa", text).group(1)) / 49050 - 1), 0.02)
+comes("layers half a metre apart", [], said(COLUMN, "-region_deep_datum", "40.5 m"))
+comes("a uniform pressure in gravity that grows", [], said(COLUMN, *UNIFORM, "-gravity_ramp", "1 s", "-region_deep_stress_geostatic", "no", "-region_shallow_stress_geostatic", "no"))
+comes("water that expands, in a steep geotherm", [], said(COLUMN, "-mat_clay_water_bulk_modulus", "1 GPa", "-mat_sand_water_expansion", "1e-3 1/K", "-mat_clay_water_expansion", "1e-3 1/K"))
+
+# ---------------------------------------------------------------- stress
+text = comes("no stress", ["stress"], said(COLUMN, "-region_deep_stress_geostatic", "no"))
+pascal, metres = re.search(r"weight, ([\d.e+]+) Pa from top to foot, and will move, by some ([\d.e+-]+) m", text).groups()
+buoyant = 0.6 * (2650 - 1000) * 9.81 * 8
+check("... its weight under water", abs(float(pascal) / buoyant - 1), 0.01)
+check("... how far it would sink", abs(float(metres) / (buoyant * 8 / 2 / (50e6 * 0.7 / (1.3 * 0.4))) - 1), 0.01)
+
+# ---------------------------------------------------------------- hydrate
+comes("hydrate that is stable", [], said(BLOCK, "-region_left_pressure", "5 MPa", "-region_right_pressure", "5 MPa"))
+text = comes("hydrate below its pressure", ["hydrate"], said(BLOCK))
+share, _, _, T, needs, has, up_to = numbers(text, "stability zone,")[:7]
+p_e = lambda T: 1.15 * np.exp(49.3185 - 9459 / (T + 273.15))
+check("... needs the pressure of equilibrium", abs(needs / p_e(2.3) - 1), 1e-3)
+check("... has its mean pore pressure", abs(has / 2.84e6 - 1), 1e-3)
+check("... and would be stable up to", abs(p_e(up_to) / has - 1), 1e-3)
+check_true("... all of it", share == 100 and T == 2.3)
+comes("hydrate that does not react", [], said(BLOCK, "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"))
+finish()
