@@ -30,7 +30,10 @@
   X(P_SIG0, HAS_SOLID, "stress_initial", 6, "Pa", "initial effective stress, rotated with the body")                   \
   X(P_PW0, HAS_WATER, "p_w_initial", 1, "Pa", "initial water pressure")                                                \
   X(P_PG0, HAS_GAS_PRESSURE, "p_g_initial", 1, "Pa", "initial gas pressure")                                           \
-  X(P_RATE, HAS_WATER | HAS_HEAT, "rate", 4, "1/s", "of p_w, p_g (Pa/s), T (K/s) and S_h at the end of the last step") \
+  X(P_RATE, HAS_WATER | HAS_HEAT, "rate_p_w", 1, "Pa/s", "at the end of the last step")                                \
+  X(P_RATE_PG, HAS_WATER | HAS_HEAT, "rate_p_g", 1, "Pa/s", "")                                                        \
+  X(P_RATE_T, HAS_WATER | HAS_HEAT, "rate_T", 1, "K/s", "")                                                            \
+  X(P_RATE_SH, HAS_WATER | HAS_HEAT, "rate_S_h", 1, "1/s", "")                                                         \
   X(P_X0, HAS_SOLID, "initial_position", 2, "m", "where it was seeded")                                                \
   X(P_SH, HAS_ALL, "S_h", 1, "-", "hydrate saturation")                                                                \
   CL_SKELETON_TABLE(X)                                                                                                 \
@@ -55,6 +58,7 @@ enum { P_HISTORY = P_EPS };
 CL_SKELETON_HISTORY(CL_OWN_CHECK)
 #undef CL_OWN_CHECK
 _Static_assert(P_PG0 == P_PW0 + 1, "initial p_w, p_g");
+_Static_assert(P_RATE_PG == P_RATE + 1 && P_RATE_T == P_RATE + 2 && P_RATE_SH == P_RATE + 3, "rates: p_w, p_g, T, S_h");
 _Static_assert(P_VW == P_VS + CL_DIM && P_VG == P_VW + CL_DIM, "velocities: skeleton, water, gas");
 
 typedef struct {

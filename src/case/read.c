@@ -131,8 +131,26 @@ static bool OfBadBoundary(const Case *c, const char *name)
   return false;
 }
 
+/* A key of the file of an instance that a list of names on the command line leaves out. */
+static PetscErrorCode LeftOut(Reader *r, const Case *c, const char *name, bool *out)
+{
+  const char *text;
+  char        instance[64];
+  Group       g;
+  bool        found, from_file;
+
+  PetscFunctionBeginUser;
+  *out = KeyUnlisted(c, name, &g, instance, sizeof instance);
+  if (*out) {
+    PetscCall(ReaderFind(r, case_group[g].list, &text, &found, &from_file));
+    *out = found && !from_file;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Leftovers(Reader *r, const Case *c)
 {
+  bool     out = false;
   PetscInt n;
   char   **names, **values, shown[256], last[128] = "";
 
@@ -140,6 +158,8 @@ static PetscErrorCode Leftovers(Reader *r, const Case *c)
   for (PetscInt i = 0; i < r->nentry; i++) {
     Entry *e = &r->entry[i];
     if (!e->map && !e->used && !OfBadBoundary(c, e->name))
+      PetscCall(LeftOut(r, c, e->name, &out));
+    if (!e->map && !e->used && !OfBadBoundary(c, e->name) && !out)
       Unknown(r, c, e->name, e->name, e->value, last);
   }
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));

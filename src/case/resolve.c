@@ -289,7 +289,10 @@ PetscErrorCode CasePrintKeys(FILE *out)
       "begin, ...]}` (one or more waves; zero and rising at their begin) and `{csv: [FILE, COLUMN]}` (straight lines\n"
       "through the rows of a file beside the case, whose first line names its columns with their units: `time [h],\n"
       "sea [kPa]`; the first is the time, COLUMN by default the second). YAML's anchors and merge keys\n"
-      "repeat what is said elsewhere: `sand: &sand {...}`, `clay: {<<: *sand, porosity: 0.5}`.\n\n",
+      "repeat what is said elsewhere: `sand: &sand {...}`, `clay: {<<: *sand, porosity: 0.5}`. A list of names on the\n"
+      "command line (`-probes a,b`) replaces the file's; what it leaves out of the file is not read. Times are in s, "
+      "min, h,\n"
+      "d, weeks, months (a twelfth of a year) and a (365.25 d), or those words in full.\n\n",
       out);
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     const GroupInfo *info = &case_group[g];

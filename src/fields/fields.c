@@ -75,7 +75,9 @@ void FieldSetPrint(const FieldSet *fs, char *text, int size)
       n += snprintf(text + n, (size_t)(size - n), "%s%s", n ? ", " : "", cl_field_word[k]);
   }
   for (int k = 0; k < SETS; k++) {
-    if (set_name[k].has == (fs->has & HAS_ALL) && n < size)
+    const bool reacts = (set_name[k].has & HAS_GAS) && (fs->has & HAS_HYDRATE), gas = set_name[k].has & HAS_GAS;
+
+    if (set_name[k].has == (fs->has & HAS_ALL) && (reacts || !gas) && n < size) /* c is for hydrate */
       n += snprintf(text + n, (size_t)(size - n), " (%s)", set_name[k].name);
   }
   if (fs->one_pressure && n < size)

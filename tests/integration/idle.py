@@ -83,6 +83,17 @@ for fields, has in (("m", ["solid"]), ("hm", ["solid", "water"]), ("thm", ["soli
     options = [o for k in more for o in ("-" + MORE[k], VALUE[k])]
     says(f"{fields}: idle are those of {', '.join(more)}", {"-" + MORE[k]: f"no {k}" for k in more}, path, *options)
 
+out = launch(binary(), FOLDER / "hmc.yaml", "-quiet", "-stepper_max_steps", 0, out=FOLDER / "hmc").stdout
+reacts = launch(binary(), CASES / "bp2", "-fields", "hmc", "-stepper_max_steps", 0, out=FOLDER / "bp2").stdout
+check_true("a scene without hydrate is no hmc", "fields: solid, water, gas;" in out and "fields: solid, water, gas (hmc);" in reacts, out.splitlines()[:3])
+
+# ---------------------------------------------------------------- lists of names on the command line
+says("a probe of the command line beside those of the file", {}, CASES / "terzaghi", "-probes", "base,end,more", "-probe_more_at", "0.5 m,0.01 m")
+says("... in their place: the file's are left out", {}, CASES / "terzaghi", "-probes", "more", "-probe_more_at", "0.5 m,0.01 m")
+says("a function of time on the command line", {}, CASES / "terzaghi", "-bc_drain_initial", "no", "-bc_drain_pressure", "{ramp: [1 kPa, 2 kPa, 0 s, 10 days]}")
+wrong = launch(binary(), CASES / "terzaghi", "-case_check", "-probe_more_at", "0.5 m,0.01 m")
+check_true("one that is in no list is refused", wrong.returncode == 2 and "'more' is not listed in probes" in wrong.stdout, wrong.stdout[-200:])
+
 # ---------------------------------------------------------------- shipped cases, and as they run
 for path in sorted(CASES.glob("*/case.yaml")):
     says(f"cases/{path.parent.name}", {}, path.parent)

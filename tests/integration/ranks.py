@@ -54,14 +54,12 @@ def snapshot_difference(a, b):
             return np.inf, "times or variables"
         for name in x:
             size = lambda v: np.max(np.abs(x[v])) or 1.0
-            parts, sizes = [slice(None)], [size(name)]
-            if name == "rate":  # of four variables: what a step makes of it
-                parts, sizes = range(4), [size(v) / dt for v in ("p_w", "p_g", "T", "S_h")]
+            scale = size(name)
+            if name in ("rate_p_w", "rate_p_g", "rate_T", "rate_S_h"):  # what a step makes of it
+                scale = size(name.removeprefix("rate_")) / dt
             elif name.startswith("grad_"):  # what it makes over a particle
-                sizes = [size(name.removeprefix("grad_")) / (2 * np.max(x["half_length"]))]
-            for part, size in zip(parts, sizes):
-                difference = np.max(np.abs(x[name][:, part] - y[name][:, part])) / size
-                worst = max(worst, (difference, f"{name} at {t:g} s"))
+                scale = size(name.removeprefix("grad_")) / (2 * np.max(x["half_length"]))
+            worst = max(worst, (np.max(np.abs(x[name] - y[name])) / scale, f"{name} at {t:g} s"))
     return worst
 
 

@@ -687,6 +687,8 @@ static const char script[] =
     "    assert np.allclose(X[:, 0], (np.arange(400) % 100 + .5) / 100, atol=1e-14)\n"
     "    assert g['stress'].shape == (400, 6) and g['T'].shape == (400,) and g['T'].dtype == 'f8'\n"
     "    assert g['T'].attrs['unit'] in ('degC', b'degC')\n"
+    "    assert [str(np.asarray(g['rate_' + q].attrs['unit']).astype(str)) for q in ('p_w', 'p_g', 'T', 'S_h')] == "
+    "['Pa/s', 'Pa/s', 'K/s', '1/s']\n"
     "    assert np.allclose(g['S_g'][()] + g['S_w'][()] + g['S_h'][()], 1) and np.allclose(g['p'][()], g['p_w'][()])\n"
     "    assert 'region' in g\n"
     "n = h['grid/%06d' % (count - 1)]\n"

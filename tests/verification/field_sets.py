@@ -45,7 +45,7 @@ def difference(a, b, leave_out=()):
     (_, x), (_, y) = a.snapshots()[-1], b.snapshots()[-1]
     for name in sorted(set(x) & set(y)):
         size = np.max(np.abs(x[name])) or 1.0
-        if name == "rate" or name.startswith(tuple(leave_out)):  # of p_w, p_g, T and S_h: those that both have, over what a step makes of the variable
+        if name in ("rate_p_w", "rate_p_g", "rate_T", "rate_S_h") or name.startswith(tuple(leave_out)):  # of p_w, p_g, T and S_h: those that both have, over what a step makes of the variable
             continue
         if name.startswith("grad_"):
             size = np.max(np.abs(x[name.removeprefix("grad_")])) / (2 * np.max(x["half_length"]))
