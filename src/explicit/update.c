@@ -56,6 +56,18 @@ INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
   }
 }
 
+/* (151) */
+INLINE void Pressures(const Explicit *e, Run r, Gathered *g)
+{
+  const double *restrict p = e->m->P.f[P_PG] + r.p;
+
+  for (int q = 0; q < r.n; q++) {
+    const double y[2] = {g->value[q][0], g->value[q][1]};
+
+    PressuresOf(p[q], y, g->value[q]);
+  }
+}
+
 /* Particle of a block with the largest value; NaN is larger than all. */
 static PetscInt Worst(Run r, const double size[])
 {
@@ -463,6 +475,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], LANES, &g.dx[q][C_Vs(s)], &g.dy[q][C_Vs(s)]);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
+  if (Relative(e, s))
+    Pressures(e, r, &g);
   if (!Fields(e, s, r, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
   MassesOf(e, s, r, &g, kept, &e->m->limited);
