@@ -55,7 +55,7 @@ SECTION = {  # beside that table
     "plates": "Rigid plates that move with the body: confined compression, forces, rough and loose plates, a footing",
     "geostatic": "Initial states in balance with gravity: nothing moves when the run starts (docs/equations.md, section 13)",
     "scenes": "cases/shear_box and cases/sea_floor on coarse grids: motion under any pressure; a falling sea against consolidation in one dimension",
-    "gas": "Sediment without gas: gas that appears, vanishes, is let in (docs/equations.md, section 19)",
+    "gas": "Sediment without gas: gas that appears, vanishes, is let in (docs/equations.md, section 19); gas that is stretched (section 12)",
     "fluids": "Fluids: real methane, equilibrium in salt water, viscosities, ice, heat of reaction, thermal strain and pressurisation, heat of compression",
     "fronts": "Sharp fronts: heat behind an inlet, saturations beside a pressure, hydrate ahead of a heater",
     "wells": "Wells about an axis against Thiem, in cells up to twenty times their radius",

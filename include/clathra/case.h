@@ -76,6 +76,8 @@ typedef struct {
 
 enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
 enum { ICE_WARN = 0, ICE_STOP };
+enum { SURFACE_FREE = 0, SURFACE_TIED, SURFACE_VELOCITIES_FREE }; /* (41): nothing, all, p and T alone */
+enum { PRESSURES_NODES = 0, PRESSURES_PARTICLES, PRESSURES_RELATIVE };
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
 typedef struct Case {
@@ -130,8 +132,9 @@ typedef struct Case {
   double relaxation;   /* s: pressures and temperature of particles tend to those of the nodes; INFINITY: never */
   double damping;      /* local damping */
   double mass_scaling; /* factor on inertia */
-  bool   tied;         /* nearly empty nodes follow their fullest neighbour in part */
-  bool   bare;         /* rates of pressure by the particle (the paper's form), not shared over nodes */
+  int    surface;      /* SURFACE_...: what of nearly empty nodes follows their fullest neighbour in part */
+  int    pressures;    /* PRESSURES_...: rates of pressure shared over nodes, by the particle (the paper's form), or
+                          shared, p_g's in proportion */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */
@@ -221,8 +224,8 @@ static inline bool CaseStartsWithoutGas(const Case *c)
 {
   bool without = false;
 
-  for (PetscInt k = 0; k < c->nregion; k++)
-    without = without || ((c->fields.has & HAS_GAS_PRESSURE) && c->region[k].Sg == 0.0);
+  for (PetscInt k = 0; k < c->nregion; k++) /* a region without material holds nothing: it names a place */
+    without = without || ((c->fields.has & HAS_GAS_PRESSURE) && c->region[k].material >= 0 && c->region[k].Sg == 0.0);
   return without;
 }
 

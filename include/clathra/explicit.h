@@ -9,6 +9,8 @@
 typedef struct {
   bool drag_implicit;      /* hybrid; explicit otherwise */
   bool tied;               /* nearly empty nodes follow their fullest neighbour in part (41) */
+  bool velocities_free;    /* ... in p and T alone */
+  bool relative_gas;       /* changes of p_g in proportion to it (151) */
   bool particle_pressures; /* the paper's bare form (P72): rates of pressure by the particle, not shared over nodes
                             */
   double flip;             /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
@@ -42,7 +44,7 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **e);
 PetscErrorCode ExplicitDestroy(Explicit **e);
 /* Sorts the particles by cell and readies nodes and faces for a run of steps.  Collective. */
 PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status);
-/* Largest stable step on the present state (38), (39).  Collective. */
+/* Largest stable step on the present state (38), (39), (150).  Collective. */
 PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit);
 /* One step from t to t + dt on the committed state; adds what crossed the boundary and what heat changed (integrals
    over the step: kg, J) to *sum.  A failed step leaves particles half-moved: the caller keeps a copy.  Collective. */

@@ -17,6 +17,7 @@ struct Retention {
   double p_smooth; /* smoothing width p_s, Pa; smooth form only; default 0.05 p0 */
   double p_trap;   /* pressure scale p_t of trapped gas, Pa; smooth form only; default p0 */
   double (*gas_share)(const Retention *, double pc, double *ds_dpc);
+  void (*gas_share_loop)(const Retention *, int n, const double *pc, double *s, double *ds_dpc); /* the same of n */
   const char *type;
 };
 /* Sets the law by name (van_genuchten | van_genuchten_clamped | brooks_corey); false for an unknown name. */
@@ -52,6 +53,9 @@ struct Permeability {
   double kh, Shc; /* plateau and threshold of Masuda's ramp; type masuda_ramp */
   double (*hydrate_factor)(const Permeability *, double Sh, double *df_dSh);
   double (*porosity_factor)(const Permeability *, double phi, double *df_dphi);
+  /* the same of n, which multiply k */
+  void (*hydrate_loop)(const Permeability *, int n, const double *Sh, double *k);
+  void (*porosity_loop)(const Permeability *, int n, const double *phi, double *k);
   const char *hydrate_type, *porosity_type;
 };
 bool PermeabilitySetHydrateType(Permeability *law, const char *type);  /* power | masuda_ramp | none */

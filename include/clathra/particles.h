@@ -115,6 +115,19 @@ static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first
   return s;
 }
 
+/* The motion of some particles in a step, in the plane; an array entry for each. */
+typedef struct {
+  const double *u[CL_DIM];         /* displacement, m */
+  const double *H[CL_DIM][CL_DIM]; /* its gradient in the configuration at the begin of the step */
+  const double *log_J;             /* ln of the volume over that at the begin of the step */
+  const double *stretch[CL_DIM];   /* of the domains; NULL: they keep their size */
+} ParticleMotion;
+/* What a step makes of the history of n particles from `first` on that have their new pressures, temperature and
+   gradients of these in the configuration at its begin: position, displacement, domain, deformation gradient, ln J,
+   and the gradients in that at its end.  Called once a step by both kinds of integrator; motion: NULL without a solid.
+ */
+void ParticlesKeep(const Particles *P, PetscInt first, PetscInt n, const ParticleMotion *motion);
+
 /* Particles of another run as those a run starts with (340). */
 void           ParticlesBecomeInitial(Particles *P);
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */

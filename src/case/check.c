@@ -26,7 +26,7 @@ static void CheckCase(Reader *r, const Case *c)
   if (c->compression_heat && !(c->fields.heat && c->fields.fluid))
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes needs heat and a fluid among the fields of the scene (%s)",
             c->fields_wanted);
-  else if (c->compression_heat && c->bare)
+  else if (c->compression_heat && c->pressures == PRESSURES_PARTICLES)
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes is not known with stepper_pressures: particles");
   if (c->ambient_density > 0.0 && c->gravity[0] == 0.0 && c->gravity[1] == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);

@@ -133,8 +133,8 @@ static const char *const basis_word[]           = {"cpgimp", "ugimp", "linear", 
 static const char *const pressures_word[]       = {"two", "one", NULL};
 static const char *const geometry_word[]        = {"plane", "axisymmetric", NULL};
 static const char *const stepper_word[]         = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
-static const char *const surface_word[]         = {"free", "tied", NULL};
-static const char *const share_word[]           = {"nodes", "particles", NULL};
+static const char *const surface_word[]         = {"free", "tied", "velocities_free", NULL};        /* SURFACE_... */
+static const char *const share_word[]           = {"nodes", "particles", "relative", NULL};         /* PRESSURES_... */
 static const char *const side_word[]            = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
 static const char *const axis_word[]            = {"x", "y", NULL};
 static const char *const space_word[]           = {"fluids", "pores", NULL};
@@ -267,12 +267,15 @@ static const Key case_key[] = {
         "ends"),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
-    BOOLEAN(Case, "stepper_surface", tied, "tied",
-            "hybrid, explicit: nearly empty nodes follow their fullest neighbour in part", .choices = surface_word),
-    BOOLEAN(Case, "stepper_pressures", bare, "nodes",
-            "hybrid, explicit: rates of pressure shared over nodes, or by each particle alone (the paper's form, which "
-            "rings)",
-            .choices = share_word),
+    CHOICE(
+        Case, "stepper_surface", surface, "tied", surface_word,
+        "hybrid, explicit: nearly empty nodes follow their fullest neighbour in part; velocities_free, for slides: in "
+        "pressures and temperature alone, which leaves the balance of energy as it is"),
+    CHOICE(
+        Case, "stepper_pressures", pressures, "nodes", share_word,
+        "hybrid, explicit: changes of pressure shared over nodes; likewise, but those of p_g in proportion to the p_g "
+        "that each particle has (relative), for gas in what tears; or by each particle alone (particles: the paper's "
+        "form, which rings)"),
     REAL(Case, "stabilisation_ghost_penalty", ghost_penalty, "", "[0,100]", "0.1", "at free surfaces; 0 = off"),
     REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),

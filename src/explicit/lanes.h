@@ -10,7 +10,8 @@
 
 #define BLOCK 32
 #define LANES 8
-#define STRAIGHT 0.5 /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
+#define STRAIGHT 0.5      /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
+#define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
 #define INLINE static inline __attribute__((always_inline))
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
@@ -130,9 +131,10 @@ enum {
 
 typedef struct {
   int    root;  /* fuller node that this one follows; its own number if it stands for itself */
-  double own;   /* share that it keeps of its own balances; 1 if it follows nobody */
+  double own;   /* share that it keeps of its own balances of mass and heat; 1 if it follows nobody */
+  double own_v; /* ... of momentum; 1 where velocities are free */
   int    held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
-  bool   leads; /* others follow it */
+  bool   leads; /* others follow it in velocity */
 } NodeInfo;
 
 /* Parts of a step in -log_view. */
@@ -296,6 +298,21 @@ PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
+
+/* Do relative changes of p_g go through the nodes (151)? */
+INLINE bool Relative(const Explicit *e, Set s)
+{
+  return s.fluids == 2 && e->o.relative_gas;
+}
+
+/* (151): increments of p_w and p_g, where the latter is p_g, from what the nodes have solved for. */
+INLINE void PressuresOf(double p_g, const double y[2], double d[2])
+{
+  const double gas = p_g / PRESSURE_UNIT * y[1];
+
+  d[0] = gas + y[0];
+  d[1] = gas;
+}
 
 /* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
 INLINE void PerOpenVolume(const Explicit *e, const Material *mat, PetscInt p, double pg, double held[PHASE_COUNT])

@@ -1,4 +1,4 @@
-/* The largest stable step (38), (39). */
+/* The largest stable step (38), (39), (150). */
 #include "lanes.h"
 
 const char *const cl_limit_word[LIMIT_COUNT] = {"none",
@@ -12,7 +12,7 @@ const char *const cl_limit_word[LIMIT_COUNT] = {"none",
 /* What one particle contributes: squares of the highest frequencies (1/s^2), rates of decay of relative motion (1/s).
  */
 typedef struct {
-  double wave, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT],
+  double wave, sliver, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT],
       heat; /* both: drag felt by fluid and skeleton */
   int fluids;
 } Spectrum;
@@ -33,6 +33,17 @@ static void Stiffness(const Set s, const Material *mat, const PointProperties *q
   C[0][0] = q->storage[PHASE_G] / det;
   C[1][1] = q->storage[PHASE_W] / det;
   C[0][1] = C[1][0] = c / det;
+}
+
+/* (150) in the form of (38), where velocities are free: k^2 of the thinnest sliver of a particle's domain; linear
+   functions have none. */
+static double Sliver(const Explicit *e, PetscInt p)
+{
+  double k2 = 0.0;
+
+  for (int d = 0; e->o.velocities_free && d < CL_DIM && e->m->c->basis != BASIS_LINEAR; d++)
+    k2 = Largest(k2, 2.0 / (e->m->P.f[P_L + d][p] * e->m->grid.h[d]));
+  return k2;
 }
 
 static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
@@ -71,8 +82,12 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
       skeleton += (q.s[i] - share) * C[i][j] * (q.s[j] - other);
     }
   }
-  if (s.solid)
-    w->wave = k2 * Largest(skeleton / rho, (q.M + bulk) / total) / e->o.mass_scaling;
+  if (s.solid) {
+    const double square = Largest(skeleton / rho, (q.M + bulk) / total) / e->o.mass_scaling;
+
+    w->wave   = k2 * square;
+    w->sliver = Sliver(e, p) * square;
+  }
   if (s.heat)
     w->heat = k2 * q.kappa * f[P_V][p] / q.capacity;
   return CL_OK;
@@ -117,7 +132,7 @@ static void Lower(double *bound, double by)
 /* Each kind alone, for the reader; a fluid whose drag damps the wave within a step diffuses. */
 static void Each(const Spectrum *w, bool implicit, double each[LIMIT_COUNT])
 {
-  Lower(&each[LIMIT_WAVE], 2.0 / sqrt(w->wave));
+  Lower(&each[LIMIT_WAVE], 2.0 / sqrt(Largest(w->wave, w->sliver)));
   Lower(&each[LIMIT_HEAT], 2.0 / w->heat);
   for (int i = 0; i < w->fluids; i++) {
     const double lambda = w->drag[i], square = w->fluid[i];
@@ -146,6 +161,7 @@ PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit)
       continue; /* the step itself will say why */
     Each(&w, e->o.drag_implicit, bound);
     Lower(&bound[LIMIT_COUNT], Together(&w, e->o.drag_implicit));
+    Lower(&bound[LIMIT_COUNT], 2.0 / sqrt(w.sliver));
     Lower(&bound[LIMIT_COUNT], 2.0 / w.heat);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, LIMIT_COUNT + 1, MPI_DOUBLE, MPI_MIN, e->m->grid.comm));

@@ -121,9 +121,9 @@ PetscErrorCode NodesFollow(Explicit *e)
 
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
-    e->node[I].root  = (int)I;
-    e->node[I].own   = 1.0;
-    e->node[I].leads = false;
+    e->node[I].root = (int)I;
+    e->node[I].own = e->node[I].own_v = 1.0;
+    e->node[I].leads                  = false;
     e->link[2 * I] = e->link[2 * I + 1] = 0.0;
     if (e->o.tied && I < e->map.n_owned && Volume(e, I) > 0.0)
       e->link[2 * I] = Follows(e, I, &e->link[2 * I + 1]);
@@ -140,6 +140,9 @@ PetscErrorCode NodesFollow(Explicit *e)
       continue;
     e->node[I].root = root;
     e->node[I].own  = e->link[2 * I + 1];
+    if (e->o.velocities_free)
+      continue;
+    e->node[I].own_v = e->node[I].own;
     if (!e->node[root].leads)
       PetscCall(PetscArraycpy(&e->G[root * width], &e->A[root * width], width));
     e->node[root].leads = true;

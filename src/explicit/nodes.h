@@ -27,12 +27,11 @@ static inline bool Held(const Explicit *e, PetscInt I, int unknown, double *valu
   return true;
 }
 
-/* (41): increment k of a node, of which it keeps its own share and takes the rest from the node it follows. */
-static inline double Blended(const Explicit *e, PetscInt I, int width, const double *inc, int k)
+/* (41): increment k of a node, which keeps its own share (NodeInfo: own, own_v) and takes the rest from the node it
+   follows. */
+static inline double Blended(const Explicit *e, PetscInt I, double own, int width, const double *inc, int k)
 {
-  const NodeInfo *n = &e->node[I];
-
-  return n->own * inc[width * I + k] + (1.0 - n->own) * inc[width * n->root + k];
+  return own * inc[width * I + k] + (1.0 - own) * inc[width * e->node[I].root + k];
 }
 
 /* Increment of the velocity of node I along d from its balance as it stands, undamped, m/s, and its factor there, N

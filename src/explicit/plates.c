@@ -93,7 +93,7 @@ static PetscErrorCode Answers(Explicit *e, double dt)
 
     AddRow(lead[I], 1.0, e->spring[I], CL_DIM);
     if (n->root != (int)I)
-      AddRow(lead[n->root], 1.0 - n->own, e->spring[I], CL_DIM);
+      AddRow(lead[n->root], 1.0 - n->own_v, e->spring[I], CL_DIM);
   }
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
     for (int d = 0; d < CL_DIM; d++) {
@@ -113,9 +113,9 @@ static PetscErrorCode Answers(Explicit *e, double dt)
     for (int d = 0; d < CL_DIM; d++) {
       double value;
 
-      e->answer[I][d] =
-          Blended(e, I, 2 * CL_DIM, &own[0][0], d) + (mix[MIX_M] > 0.0 ? mix[MIX_VX + d] / mix[MIX_M] : 0.0);
-      e->answer[I][CL_DIM + d] = Blended(e, I, 2 * CL_DIM, &own[0][0], CL_DIM + d);
+      e->answer[I][d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], d) +
+                        (mix[MIX_M] > 0.0 ? mix[MIX_VX + d] / mix[MIX_M] : 0.0);
+      e->answer[I][CL_DIM + d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], CL_DIM + d);
       if (Held(e, I, F_VSX + d, &value)) {
         e->answer[I][d]          = value;
         e->answer[I][CL_DIM + d] = 0.0;
@@ -209,7 +209,7 @@ static PetscErrorCode Add(Explicit *e)
     if (n->leads)
       AddRow(&e->G[I * width + at], 1.0, e->push[I], CL_DIM);
     if (n->root != (int)I)
-      AddRow(&e->G[n->root * width + at], 1.0 - n->own, e->push[I], CL_DIM);
+      AddRow(&e->G[n->root * width + at], 1.0 - n->own_v, e->push[I], CL_DIM);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

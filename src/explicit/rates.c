@@ -265,6 +265,21 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   }
 }
 
+/* (151): the columns of dp_w, dp_g for those of -dp_c and of the relative change of p_g. */
+INLINE void RelativeColumns(const Explicit *e, const Set s, Run r, Given *o)
+{
+  const int n              = Scalars(s);
+  const double *restrict p = e->m->P.f[P_PG] + r.p;
+
+  for (int q = 0; q < r.n; q++) {
+    for (int row = 0; row < n; row++) {
+      double *a = &o->value[q][R_Matrix(s) + row * n];
+
+      a[1] = (a[0] + a[1]) * (p[q] / PRESSURE_UNIT);
+    }
+  }
+}
+
 INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Given *o)
 {
   const int rows = Rows(R_Count(s)), stride = (int)e->m->grid.gm[0];
@@ -366,6 +381,8 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   }
   if (s.fluids && e->o.particle_pressures)
     Keep(e, s, r, dt, &w, &o);
+  if (Relative(e, s))
+    RelativeColumns(e, s, r, &o);
   Scatter(e, s, r, &w, &o);
 }
 

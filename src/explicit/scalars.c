@@ -80,7 +80,7 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
   double       *c = &e->C[I * LANES], T;
 
   for (int k = 0; k < n; k++)
-    c[k] = Blended(e, I, 3, e->gain, k);
+    c[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
   if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
     c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
     rates->heat_in -= r[s.fluids];
@@ -89,6 +89,13 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
   }
   for (int k = 0; k < n; k++)
     c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
+  if (Relative(e, s)) {
+    double d[2];
+
+    PressuresOf(a[1] / V, c, d);
+    for (int k = 0; k < 2; k++)
+      c[C_End(s) + k] = a[k] / V + d[k];
+  }
   if (s.fluids == 2 && fabs(c[1] - c[0]) > e->straight) /* (105): not to be believed; particles will say */
     c[C_End(s) + 1] = a[1] / V;
   if (s.heat)

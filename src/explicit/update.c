@@ -56,6 +56,18 @@ INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
   }
 }
 
+/* (151) */
+INLINE void Pressures(const Explicit *e, Run r, Gathered *g)
+{
+  const double *restrict p = e->m->P.f[P_PG] + r.p;
+
+  for (int q = 0; q < r.n; q++) {
+    const double y[2] = {g->value[q][0], g->value[q][1]};
+
+    PressuresOf(p[q], y, g->value[q]);
+  }
+}
+
 /* Particle of a block with the largest value; NaN is larger than all. */
 static PetscInt Worst(Run r, const double size[])
 {
@@ -69,7 +81,8 @@ static PetscInt Worst(Run r, const double size[])
 }
 
 typedef struct {
-  double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK];
+  double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK],
+      H[CL_DIM][CL_DIM][BLOCK];
 } Strain;
 
 /* (7) without branches: rotation c, s and logarithmic strain 1/2 ln F F^T by series in small increments; false if one
@@ -80,8 +93,8 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
   Wrong     large = 0;
 
   for (int q = 0; q < n; q++) {
-    const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
-                 Fyy = 1.0 + dt * g->dy[q][at + 1];
+    const double Hxx = dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
+                 Hyy = dt * g->dy[q][at + 1], Fxx = 1.0 + Hxx, Fyy = 1.0 + Hyy;
     const double a = Fxx + Fyy, b = Fyx - Fxy, per = 1.0 / sqrt(a * a + b * b), c = a * per, si = b * per;
     const double bxx = Fxx * Fxx + Fxy * Fxy, byy = Fyx * Fyx + Fyy * Fyy, off = Fxx * Fyx + Fxy * Fyy;
     const double m = 0.5 * (bxx + byy), d = 0.5 * (bxx - byy), y = (d * d + off * off) / (m * m);
@@ -97,6 +110,10 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
     o->xx[q]         = 0.5 * lnJ + 0.5 * ratio * d / m;
     o->yy[q]         = 0.5 * lnJ - 0.5 * ratio * d / m;
     o->xy[q]         = 0.5 * ratio * off / m;
+    o->H[0][0][q]    = Hxx;
+    o->H[0][1][q]    = Fxy;
+    o->H[1][0][q]    = Fyx;
+    o->H[1][1][q]    = Hyy;
     o->J[q]          = J;
     o->log_J[q]      = lnJ;
     o->stretch[0][q] = c * Fxx + si * Fyx;
@@ -193,28 +210,6 @@ INLINE void Relax(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
 
     for (int q = 0; q < r.n; q++)
       y[q] += share * (g->value[q][C_End(s) + k] - y[q]);
-  }
-}
-
-/* Gradients go along with the motion, F^-T g. */
-INLINE void CarryGradients(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
-{
-  static const int grad[3] = {P_GW, P_GG, P_GT};
-  const int        at      = C_Vs(s);
-
-  for (int k = 0; k < Scalars(s); k++) {
-    double *restrict gx = e->m->P.f[grad[k < s.fluids ? k : 2]] + r.p, *restrict gy =
-                                                                           e->m->P.f[grad[k < s.fluids ? k : 2] + 1] +
-                                                                           r.p;
-
-    for (int q = 0; q < r.n; q++) {
-      const double Fxx = 1.0 + dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
-                   Fyy = 1.0 + dt * g->dy[q][at + 1];
-      const double x = gx[q], y = gy[q];
-
-      gx[q] = (Fyy * x - Fyx * y) / n->J[q];
-      gy[q] = (Fxx * y - Fxy * x) / n->J[q];
-    }
   }
 }
 
@@ -414,24 +409,6 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
     PlasticWork(e, r, work);
 }
 
-/* F <- (1 + dt grad v) F. */
-INLINE void Deform(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
-{
-  const int at = C_Vs(s);
-
-  for (int j = 0; j < 2; j++) {
-    double *restrict x = e->m->P.f[P_F + j] + r.p, *restrict y = e->m->P.f[P_F + 2 + j] + r.p;
-
-    for (int q = 0; q < r.n; q++) {
-      const double a = dt * (g->dx[q][at] * x[q] + g->dy[q][at] * y[q]),
-                   b = dt * (g->dx[q][at + 1] * x[q] + g->dy[q][at + 1] * y[q]);
-
-      x[q] += a;
-      y[q] += b;
-    }
-  }
-}
-
 /* The particle of a block that moves farthest, in cells, or stands outside the grid. */
 static PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *g, double dt)
 {
@@ -451,28 +428,30 @@ static PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *
   return Worst(r, size);
 }
 
-/* Positions and domains; false if a particle crosses half a cell or leaves the grid. */
+/* Makes the motion history; false if a particle crosses half a cell or leaves the grid. */
 INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
 {
-  const Grid *grid = &e->m->grid;
-  Wrong       far  = 0;
+  const Grid    *grid   = &e->m->grid;
+  const bool     grows  = e->m->c->basis == BASIS_CPGIMP;
+  ParticleMotion motion = {.log_J = n->log_J};
+  double         u[CL_DIM][BLOCK];
+  Wrong          far = 0;
 
   for (int d = 0; d < CL_DIM; d++) {
-    double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict u = e->m->P.f[P_U + d] + r.p,
-                     *restrict l = e->m->P.f[P_L + d] + r.p;
+    for (int q = 0; q < r.n; q++)
+      u[d][q] = dt * g->value[q][C_Vs(s) + d];
+    motion.u[d]       = u[d];
+    motion.H[d][0]    = n->H[d][0];
+    motion.H[d][1]    = n->H[d][1];
+    motion.stretch[d] = grows ? n->stretch[d] : NULL;
+  }
+  ParticlesKeep(&e->m->P, r.p, r.n, &motion);
+  for (int d = 0; d < CL_DIM; d++) {
+    const double *restrict x = e->m->P.f[P_X + d] + r.p;
     const double h = grid->h[d], lower = grid->lower[d], upper = lower + (double)grid->cells[d] * h;
 
-    for (int q = 0; q < r.n; q++) {
-      const double step = dt * g->value[q][C_Vs(s) + d];
-
-      x[q] += step;
-      u[q] += step;
-      far |= WRONG_UNLESS((fabs(step) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
-    }
-    if (e->m->c->basis == BASIS_CPGIMP) {
-      for (int q = 0; q < r.n; q++)
-        l[q] *= n->stretch[d][q];
-    }
+    for (int q = 0; q < r.n; q++)
+      far |= WRONG_UNLESS((fabs(u[d][q]) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
   }
   return !far;
 }
@@ -496,6 +475,8 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], LANES, &g.dx[q][C_Vs(s)], &g.dy[q][C_Vs(s)]);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
+  if (Relative(e, s))
+    Pressures(e, r, &g);
   if (!Fields(e, s, r, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
   MassesOf(e, s, r, &g, kept, &e->m->limited);
@@ -505,16 +486,14 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     GasOfMethane(e, s, r, &g);
   Relax(e, s, r, &g, dt);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
-  if (!s.solid)
+  if (!s.solid) {
+    ParticlesKeep(&e->m->P, r.p, r.n, NULL);
     return;
+  }
   if (!StrainOf(s, r.n, &g, dt, &n))
     ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", Strained(r, &n));
-  CarryGradients(e, s, r, &g, &n, dt);
   ExpansionWork(e, s, r, &g, &n, dt);
   StressOf(e, s, r, &g, &n, T, kept);
-  Deform(e, s, r, &g, dt);
-  for (int q = 0; q < r.n; q++)
-    f[P_LOGJ][r.p + q] += n.log_J[q];
   if (!Scalars(s)) {
     for (int d = 0; d < CL_DIM; d++)
       Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], LANES);

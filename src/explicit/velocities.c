@@ -89,18 +89,29 @@ static void Solve(const Explicit *e, const Balance *b, double dt, bool held, dou
   }
 }
 
+/* Mean velocity over the step in the works (92), from what it is before and at the end; what is held moves as it must,
+   all the step. */
+static double Mean(const Explicit *e, PetscInt I, int unknown, double before, double end)
+{
+  double value;
+
+  return Held(e, I, unknown, &value) ? value : 0.5 * (end + before);
+}
+
 /* (92): work of the drag along d in a balance (of a node, or of one and those that follow it) with its answer v; a
    fluid that is held moves as it must. */
 static double DragWork(const Explicit *e, PetscInt I, int d, const Balance *b, const double v[3])
 {
-  const Set s   = e->set;
-  double    sum = 0.0, held;
+  const Set    s    = e->set;
+  const double mean = Mean(e, I, F_VSX + d, b->v, v[0]);
+  double       sum  = 0.0, held;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double end  = Held(e, I, F_VWX + 2 * k + d, &held) ? held : v[1 + k];
+    const int    at   = F_VWX + 2 * k + d;
+    const double end  = Held(e, I, at, &held) ? held : v[1 + k];
     const double slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
 
-    sum += b->B[k] / b->kr[k] * slip * b->w[k] * 0.5 * (end + b->vf[k] - v[0] - b->v);
+    sum += b->B[k] / b->kr[k] * slip * b->w[k] * (Mean(e, I, at, b->vf[k], end) - mean);
   }
   return sum;
 }
@@ -118,9 +129,9 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
     const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
     Solve(e, &b, dt, held, value, v);
     if (e->set.solid && e->set.fluids)
-      e->work[WORK_DRAG] += e->node[I].own * dt * DragWork(e, I, d, &b, v);
+      e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, I, d, &b, v);
     if (!held && e->o.damping > 0.0)
-      e->work[WORK_DAMPING] += e->node[I].own * dt * e->o.damping * fabs(b.f) *
+      e->work[WORK_DAMPING] += e->node[I].own_v * dt * e->o.damping * fabs(b.f) *
                                (b.v > 0.0   ? 1.0
                                 : b.v < 0.0 ? -1.0
                                             : 0.0) *
@@ -133,16 +144,16 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
   }
 }
 
-/* (92): works at a node along d with the mean of its velocities v (skeleton, water, gas) before and after. */
+/* (92): works at a node along d with the means of its velocities (skeleton, water, gas; v at the end) over the step. */
 static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const double v[3], double dt)
 {
   const Set     s = e->set;
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->nplate ? e->push[I] : NULL;
-  const double  scale = e->o.mass_scaling, mean = 0.5 * (v[0] + w->v), gravity = e->m->bc.gravity[d];
+  const double  scale = e->o.mass_scaling, mean = Mean(e, I, F_VSX + d, w->v, v[0]), gravity = e->m->bc.gravity[d];
   double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double own = 0.5 * (v[1 + k] + w->vf[k]), flow = w->w[k] * (own - mean);
+    const double own = Mean(e, I, F_VWX + 2 * k + d, w->vf[k], v[1 + k]), flow = w->w[k] * (own - mean);
 
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
@@ -170,7 +181,7 @@ static void WriteVelocities(Explicit *e, PetscInt I, double dt)
     double  v[3] = {0.0}, value;
 
     ReadBalance(e, a, d, &w);
-    v[0] = s.solid ? w.v + Blended(e, I, 6, e->inc, d) : 0.0;
+    v[0] = s.solid ? w.v + Blended(e, I, e->node[I].own_v, 6, e->inc, d) : 0.0;
     if (s.solid && Held(e, I, F_VSX + d, &value))
       v[0] = value;
     if (s.solid) {
@@ -181,7 +192,7 @@ static void WriteVelocities(Explicit *e, PetscInt I, double dt)
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
-      v[1 + k] = w.vf[k] + Blended(e, I, 6, e->inc, 2 * (1 + k) + d);
+      v[1 + k] = w.vf[k] + Blended(e, I, e->node[I].own_v, 6, e->inc, 2 * (1 + k) + d);
       if (Held(e, I, F_VWX + 2 * k + d, &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.w[k] * (v[1 + k] - v[0]);

@@ -5,7 +5,7 @@
 /* rho = rho_0 exp((p - p_ref)/K - beta (T - T_ref)), (221), (P10); K = INFINITY is incompressible.  Also solid,
  * hydrate.
  */
-double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT)
+INLINE double Density(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT)
 {
   double       de;
   const double e = LawExp((p - law->p_ref) / law->K - law->beta * (T - law->T_ref), &de);
@@ -13,6 +13,26 @@ double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, dou
   *drho_dp = law->rho0 * de / law->K;
   *drho_dT = -law->rho0 * de * law->beta;
   return law->rho0 * e;
+}
+
+double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT)
+{
+  return Density(law, p, T, drho_dp, drho_dT);
+}
+
+void LiquidDensityBatch(const Liquid *law, int n, const double *restrict p, const double *restrict T,
+                        double *restrict rho)
+{
+  const Liquid l = *law;
+  double       dp, dT;
+
+  if (isinf(l.K) && l.beta == 0.0) { /* the same everywhere */
+    for (int q = 0; q < n; q++)
+      rho[q] = l.rho0;
+    return;
+  }
+  for (int q = 0; q < n; q++)
+    rho[q] = Density(&l, p[q], T[q], &dp, &dT);
 }
 
 /* Ideal gas, (222), (P11): rho = M p/(R T_K). */

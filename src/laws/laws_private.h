@@ -24,36 +24,60 @@ static inline int LawFind(const char *const names[], const char *name)
   return -1;
 }
 
+/* A law is one formula without branches on the state, written as an INLINE function that gives value and slopes.  One
+   state at a time it is called as it is; over arrays a loop calls it, which the compiler makes vector code of, without
+   the slopes that the loop drops. */
+#define INLINE static inline __attribute__((always_inline))
+
+/* glibc's vector versions of these, which it declares under -ffast-math only. */
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
+  #if __GLIBC_PREREQ(2, 35)
+    #define VECTOR __attribute__((simd("notinbranch"), const, nothrow)) extern
+VECTOR double exp(double);
+VECTOR double log(double);
+VECTOR double pow(double, double);
+VECTOR double log1p(double);
+VECTOR double expm1(double);
+  #endif
+#endif
+
+/* Not fmax and fmin, which GCC calls as functions; x that is no number stays none. */
+INLINE double LawAtLeast(double x, double least)
+{
+  return x < least ? least : x;
+}
+
+INLINE double LawAtMost(double x, double most)
+{
+  return x > most ? most : x;
+}
+
+#define LAW_LEAST 1e-300 /* keeps logarithms of zero out of lanes that are not used */
+
 /* exp(x) for |x| <= X = 200; beyond, e^X (1 + x - X) and e^-X/(1 - X - x): C1, positive, increasing, never inf or 0.
    NaN stays NaN. */
-static inline double LawExp(double x, double *dx)
+INLINE double LawExp(double x, double *dx)
 {
-  const double over = fabs(x) - LAW_EXP_MAX;
-
-  if (!(over > 0.0))
-    return *dx = exp(x);
-
-  const double e = exp(copysign(LAW_EXP_MAX, x)), stretch = 1.0 + over;
+  const double e       = exp(LawAtMost(LawAtLeast(x, -LAW_EXP_MAX), LAW_EXP_MAX));
+  const double stretch = 1.0 + LawAtLeast(fabs(x) - LAW_EXP_MAX, 0.0);
 
   *dx = x > 0.0 ? e : e / (stretch * stretch);
   return x > 0.0 ? e * stretch : e / stretch;
 }
 
-/* b^n, n > 0, 0 for b <= 0.  Where n < 2 a toe replaces it below b0 = 1e-3: with t = b/b0 the cubic
+/* b^n, 0 for b <= 0.  Where n < 2 a toe replaces it below b0 = 1e-3: with t = b/b0 the cubic
    b0^n t^2 [(3 - n) + (n - 2) t] meets b^n in value and slope at b0 and starts flat, so that clipping at 0 is C1. */
-static inline double LawToePower(double b, double n, double *db)
+INLINE double LawToePower(double b, double n, double *db)
 {
-  *db = 0.0;
-  if (b <= 0.0)
-    return 0.0;
-  if (n < 2.0 && b < LAW_TOE) {
-    const double t = b / LAW_TOE, v = pow(LAW_TOE, n);
+  const double x = LawAtLeast(b, LAW_LEAST);
+  double       v = pow(x, n), d = n * v / x;
 
-    *db = v / LAW_TOE * t * (2.0 * (3.0 - n) + 3.0 * (n - 2.0) * t);
-    return v * t * t * ((3.0 - n) + (n - 2.0) * t);
+  if (n < 2.0) {
+    const double t = b / LAW_TOE, w = pow(LAW_TOE, n);
+
+    v = b < LAW_TOE ? w * t * t * ((3.0 - n) + (n - 2.0) * t) : v;
+    d = b < LAW_TOE ? w / LAW_TOE * t * (2.0 * (3.0 - n) + 3.0 * (n - 2.0) * t) : d;
   }
-  const double v = pow(b, n);
-
-  *db = n * v / b;
-  return v;
+  *db = b <= 0.0 ? 0.0 : d;
+  return b <= 0.0 ? 0.0 : v;
 }

@@ -1,42 +1,39 @@
 /* Retention: gas share of the fluid-filled pore space s_g(p_c), p_c = p_g - p_w (Pa); van Genuchten (1980), Brooks and
    Corey (1964); (P4), (P6). */
-#include "clathra/laws.h"
+#include "clathra/laws_batch.h"
 #include "laws_private.h"
 
 #define PC_MAX 1e9 /* Pa, range searched by RetentionInvert */
 #define PLATEAU_EPSILON 4e-16
 
 /* log(1 + e^x), accurate in both tails, and its slope 1/(1 + e^-x). */
-static double Softplus(double x, double *dx)
+INLINE double Softplus(double x, double *dx)
 {
   const double e = exp(-fabs(x));
 
   *dx = (x >= 0.0 ? 1.0 : e) / (1.0 + e);
-  return fmax(x, 0.0) + log1p(e);
+  return LawAtLeast(x, 0.0) + log1p(e);
 }
 
 /* 1 - VG(p), VG = [1 + (p/p_0)^n]^-m = exp(-m sp(L)), n = 1/(1 - m), L = n log(p/p_0): no overflow, and no cancellation
    where VG is near 1.  0 for p <= 0. */
-static double Drained(const Retention *law, double p, double *dp)
+INLINE double Drained(const Retention *law, double p, double *dp)
 {
-  *dp = 0.0;
-  if (p <= 0.0)
-    return 0.0;
-
   double       slope;
-  const double n = 1.0 / (1.0 - law->m), s = -law->m * Softplus(n * log(p / law->p0), &slope), VG = exp(s);
+  const double x = LawAtLeast(p, LAW_LEAST), n = 1.0 / (1.0 - law->m);
+  const double s = -law->m * Softplus(n * (log(x) - log(law->p0)), &slope);
 
-  *dp = law->m * n * VG * (slope / p);
-  return VG < 0.5 ? 1.0 - VG : -expm1(s);
+  *dp = p <= 0.0 ? 0.0 : law->m * n * exp(s) * (slope / x);
+  return p <= 0.0 ? 0.0 : -expm1(s);
 }
 
 /* (223): s_g = S_gr' exp(p-/p_t) + (1 - S_wr - S_gr')(1 - VG(p+)), p+ = p_s sp(p_c/p_s), p- = -p_s sp(-p_c/p_s).
    Trapped gas is compressed once p_c < 0; C-infinity and increasing, where the printed (P6) is NaN for p_c < 0.
    Zero (or unset) p_smooth, p_trap mean 0.05 p_0, p_0. */
-static double Retention_VanGenuchten(const Retention *law, double pc, double *ds_dpc)
+INLINE double Retention_VanGenuchten(const Retention *law, double pc, double *ds_dpc)
 {
   const double ps = law->p_smooth > 0.0 ? law->p_smooth : LAW_SMOOTH * law->p0;
-  const double pt = law->p_trap > 0.0 ? law->p_trap : law->p0, Sgr = fmax(law->Sgr, LAW_TRAPPED_MIN);
+  const double pt = law->p_trap > 0.0 ? law->p_trap : law->p0, Sgr = LawAtLeast(law->Sgr, LAW_TRAPPED_MIN);
   double       up, down, drained_dp;
   const double plus = ps * Softplus(pc / ps, &up), minus = -ps * Softplus(-pc / ps, &down);
   const double trapped = Sgr * exp(minus / pt), room = 1.0 - law->Swr - Sgr;
@@ -47,7 +44,7 @@ static double Retention_VanGenuchten(const Retention *law, double pc, double *ds
 }
 
 /* Printed law (P4), (P6) with p_c cut at 0: s_g = S_gr + (1 - S_wr - S_gr)(1 - VG(max(p_c, 0))); C1. */
-static double Retention_VanGenuchtenClamped(const Retention *law, double pc, double *ds_dpc)
+INLINE double Retention_VanGenuchtenClamped(const Retention *law, double pc, double *ds_dpc)
 {
   const double room = 1.0 - law->Swr - law->Sgr, drained = Drained(law, pc, ds_dpc);
 
@@ -56,16 +53,43 @@ static double Retention_VanGenuchtenClamped(const Retention *law, double pc, dou
 }
 
 /* (224): s_g = S_gr + (1 - S_wr - S_gr)(1 - (p_c/p_0)^-lambda) for p_c > p_0, else S_gr; kink at p_0. */
-static double Retention_BrooksCorey(const Retention *law, double pc, double *ds_dpc)
+INLINE double Retention_BrooksCorey(const Retention *law, double pc, double *ds_dpc)
 {
-  *ds_dpc = 0.0;
-  if (pc <= law->p0)
-    return law->Sgr;
+  const double x = LawAtLeast(pc, law->p0), room = 1.0 - law->Swr - law->Sgr, s = -law->lambda * log(x / law->p0);
 
-  const double room = 1.0 - law->Swr - law->Sgr, s = -law->lambda * log(pc / law->p0);
-
-  *ds_dpc = room * law->lambda * exp(s) / pc;
+  *ds_dpc = pc <= law->p0 ? 0.0 : room * law->lambda * exp(s) / x;
   return law->Sgr - room * expm1(s);
+}
+
+/* The laws by name.  A row makes its function of one state and its loop over n. */
+#define RETENTION_LAWS(X)                                                                                              \
+  X("van_genuchten", Retention_VanGenuchten)                                                                           \
+  X("van_genuchten_clamped", Retention_VanGenuchtenClamped)                                                            \
+  X("brooks_corey", Retention_BrooksCorey)
+
+#define NAME(name, Law) name,
+#define FUNCTION(name, Law) Law,
+#define LOOP(name, Law)                                                                                                \
+  static void Law##_Loop(const Retention *law, int n, const double *restrict pc, double *restrict s,                   \
+                         double *restrict ds)                                                                          \
+  {                                                                                                                    \
+    const Retention l = *law;                                                                                          \
+                                                                                                                       \
+    for (int q = 0; q < n; q++)                                                                                        \
+      s[q] = Law(&l, pc[q], &ds[q]);                                                                                   \
+  }
+#define LOOP_NAME(name, Law) Law##_Loop,
+
+typedef double (*GasShare)(const Retention *, double, double *);
+typedef void (*GasShareLoop)(const Retention *, int, const double *, double *, double *);
+static const char *const names[] = {RETENTION_LAWS(NAME) NULL};
+static const GasShare    laws[]  = {RETENTION_LAWS(FUNCTION)};
+RETENTION_LAWS(LOOP)
+static const GasShareLoop loops[] = {RETENTION_LAWS(LOOP_NAME)};
+
+void RetentionGasShareBatch(const Retention *law, int n, const double *pc, double *s, double *ds_dpc)
+{
+  law->gas_share_loop(law, n, pc, s, ds_dpc);
 }
 
 /* The plateau s_g = S_gr of a clamped law ends at *pc; false for a law without one. */
@@ -108,11 +132,6 @@ bool RetentionNoGas(const Retention *law, double *pc)
   return law->Sgr == 0.0;
 }
 
-typedef double (*GasShare)(const Retention *, double, double *);
-static const char *const names[] = {"van_genuchten", "van_genuchten_clamped", "brooks_corey", NULL};
-static const GasShare    laws[]  = {Retention_VanGenuchten, Retention_VanGenuchtenClamped, Retention_BrooksCorey};
-_Static_assert(sizeof names / sizeof *names == sizeof laws / sizeof *laws + 1, "a name for every law");
-
 const char *const *RetentionTypes(void)
 {
   return names;
@@ -125,7 +144,8 @@ bool RetentionSetType(Retention *law, const char *type)
 
   if (i < 0)
     return false;
-  law->gas_share = laws[i];
-  law->type      = names[i];
+  law->gas_share      = laws[i];
+  law->gas_share_loop = loops[i];
+  law->type           = names[i];
   return true;
 }

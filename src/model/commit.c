@@ -1,4 +1,4 @@
-/* End of a stage and of a step: the only place that writes history. */
+/* End of a stage and of a step: the only place of the implicit integrators that writes history. */
 #include "gather.h"
 
 #define MAX_MOVE 0.5   /* cells per step */
@@ -252,19 +252,14 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   double         u[CL_DIM];
 
   Displacement(m, p, r, x, u);
-  for (int d = 0; d < CL_DIM; d++) {
-    f[P_X + d][p] += u[d];
-    f[P_U + d][p] += u[d];
-    if (m->c->basis == BASIS_CPGIMP)
-      f[P_L + d][p] *= s->stretch[d];
-  }
-  for (int j = 0; j < 2; j++) { /* F <- (F of the step) F */
-    const double c[2] = {f[P_F + j][p], f[P_F + 2 + j][p]};
-
-    for (int i = 0; i < 2; i++)
-      f[P_F + 2 * i + j][p] = s->F[i][0] * c[0] + s->F[i][1] * c[1];
-  }
-  f[P_LOGJ][p] += log(s->V / f[P_V][p]);
+  const double log_J          = log(s->V / f[P_V][p]),
+               H[2][2]        = {{s->F[0][0] - 1.0, s->F[0][1]}, {s->F[1][0], s->F[1][1] - 1.0}};
+  const bool           grows  = m->c->basis == BASIS_CPGIMP;
+  const ParticleMotion motion = {.u       = {&u[0], &u[1]},
+                                 .H       = {{&H[0][0], &H[0][1]}, {&H[1][0], &H[1][1]}},
+                                 .log_J   = &log_J,
+                                 .stretch = {grows ? &s->stretch[0] : NULL, grows ? &s->stretch[1] : NULL}};
+  ParticlesKeep(&m->P, p, 1, &motion);
   f[P_V][p] = s->V;
 
   const SkeletonStore store = ParticlesSkeleton(&m->P, 0, 0.0);
@@ -283,15 +278,6 @@ static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *
       m->P.f[P_VS + q][p] += r->S[a] * (x[k] - m->x_n[k]);
     }
   }
-}
-
-/* A gradient on the configuration at the end of the step, F^-T G. */
-static void Forward(const PointState *s, const double G[CL_DIM], double g[CL_DIM])
-{
-  const double(*F)[2] = s->F, det = F[0][0] * F[1][1] - F[0][1] * F[1][0];
-
-  g[0] = (F[1][1] * G[0] - F[1][0] * G[1]) / det;
-  g[1] = (F[0][0] * G[1] - F[0][1] * G[0]) / det;
 }
 
 /* Elastic energy that went with the stiffness in this step. */
@@ -314,19 +300,19 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
   static const int gradient[3] = {P_GW, P_GG, P_GT};
   const FieldSet  *fs          = &m->c->fields;
   double *const   *f           = m->P.f;
-  double           g[CL_DIM];
 
-  if (fs->solid)
-    WriteMotion(m, p, x, r, s);
   WriteVelocities(m, p, x, r);
   for (int k = 0; k < 3; k++) { /* p_w, p_g, T */
     if (!f[P_PW + k])
       continue;
     f[P_PW + k][p] = in[IN_P + k];
-    Forward(s, &in[k < 2 ? IN_GP + 2 * k : IN_GT], g);
     for (int d = 0; d < CL_DIM; d++)
-      f[gradient[k] + d][p] = g[d];
+      f[gradient[k] + d][p] = in[(k < 2 ? IN_GP + 2 * k : IN_GT) + d];
   }
+  if (fs->solid)
+    WriteMotion(m, p, x, r, s);
+  else
+    ParticlesKeep(&m->P, p, 1, NULL);
   f[P_MH][p]  = s->m_h;
   f[P_SH][p]  = s->Sh;
   f[P_PHI][p] = s->phi;

@@ -274,7 +274,7 @@ static void FluidScalars(const Material *mat, const PointHistory *h, const Kinem
   Jet          dm   = JetShift(mass, -h->m_star[1 + f]);
 
   if (mat->reacts)
-    dm = JetAdd(dm, JetScale(nu, JetShift(s->m_h, -h->m_star[0])));
+    dm = JetAdd(dm, JetScale(nu, s->gain));
   PutScalar(OUT_M + 1 + f, mass, k, tangent, o);
   PutScalar(OUT_MI + f, JetMul(s->V, s->rho[f]), k, tangent, o);
   PutScalar(OUT_D + f, JetMul(s->V, s->resist[f]), k, tangent, o);
@@ -287,10 +287,9 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
                  const ScalarState *s, const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   const double c_f[PHASE_COUNT] = {mat->c_w, mat->c_g};
-  const Jet    gain             = JetShift(s->m_h, -h->m_star[0]);
 
   PutScalar(OUT_C, s->capacity, k, tangent, o);
-  PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, gain)) : JetConstant(0.0), k, tangent, o);
+  PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent, o);
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;

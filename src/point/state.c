@@ -25,7 +25,7 @@ static void Dissociate(const Material *mat, const PointHistory *h, Jet Kd, Jet d
   const Jet       rate = JetScale(h->dt * k->M_h * k->A_geo, JetDiv(JetMul(Kd, drive), rho_h));
 
   s->limited = h->m_star[0] < 0.0;
-  s->m_h     = JetDiv(JetConstant(from), JetShift(rate, 1.0));
+  s->gain    = JetShift(JetScale(-from, JetDiv(rate, JetShift(rate, 1.0))), from - h->m_star[0]);
 }
 
 /* m_h* + growth (A_s/A_geo) - S rho_h V_p as a function of S for formation (13); decreasing in S. */
@@ -72,7 +72,10 @@ static void Form(const Material *mat, const PointHistory *h, Jet Kd, Jet drive, 
   const Jet    fq = JetSub(JetMul(growth, JetChain(A, dw, s->sw)), JetScale(S, pore));
   const Jet    Sj = JetChain(S, -1.0 / dS, fq);
 
-  s->m_h = JetMul(Sj, pore);
+  /* growth A = pore S - m0 = gain; where little grows the left is exact, where much does the right */
+  const double grown = pore.v * S - m0, steep = growth.v * dA / pore.v;
+  s->gain   = JetMul(Sj, pore);
+  s->gain.v = (growth.v * A - steep * grown) / (1.0 - steep) + (m0 - h->m_star[0]);
 }
 
 /* The reaction sees p and T of the nodal fields, not the particle's own: those differ by what nodes cannot see (and so
@@ -85,7 +88,8 @@ static void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet r
 
   s->limited = false;
   if (!mat->reacts) {
-    s->m_h = JetConstant(h->m_star[0]);
+    s->gain = JetConstant(0.0);
+    s->m_h  = JetConstant(h->m_star[0]);
     return;
   }
   const double Kd    = KineticsRateConstant(&mat->kinetics, T_r.v, &dK);
@@ -96,6 +100,7 @@ static void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet r
     Dissociate(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
   else
     Form(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
+  s->m_h = JetShift(s->gain, h->m_star[0]);
 }
 
 /* k_r of a fluid among two, of its share of the open pores or of all of them. */

@@ -10,8 +10,10 @@ static PetscErrorCode Create(Stepper *s)
 {
   const Case           *c = s->model->c;
   const ExplicitOptions o = {.drag_implicit      = s->scheme == &StepperScheme_Hybrid,
-                             .tied               = c->tied,
-                             .particle_pressures = c->bare,
+                             .tied               = c->surface != SURFACE_FREE,
+                             .velocities_free    = c->surface != SURFACE_TIED,
+                             .relative_gas       = c->pressures == PRESSURES_RELATIVE,
+                             .particle_pressures = c->pressures == PRESSURES_PARTICLES,
                              .flip               = c->flip,
                              .relaxation         = c->relaxation,
                              .damping            = c->damping,

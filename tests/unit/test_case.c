@@ -243,6 +243,32 @@ static void command_line_wins(void **state)
   GOOD(CaseDestroy(&c));
 }
 
+/* A trace of gas (102) is for sediment without gas, not for a region that names a place. */
+static void place_without_gas(void **state)
+{
+  static const char *const option[][2] = {
+      {"-regions", "column,spot"},       {"-region_spot_lower", "0.1 m,0 m"}, {"-region_spot_upper", "0.2 m,0.02 m"},
+      {"-region_spot_material", "none"}, {"-probes", "p06,surface,mean"},     {"-probe_mean_over", "spot"}};
+  Case c;
+  bool ok;
+
+  (void)state;
+  for (int gas = 1; gas >= 0; gas--) {
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+      set_option(option[i][0], option[i][1]);
+    set_option("-region_column_Sw", gas ? "0.6" : "1");
+    set_option("-region_column_Sg", gas ? "0.4" : "0");
+    GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
+    for (size_t i = 0; i < sizeof option / sizeof *option; i++)
+      GOOD(PetscOptionsClearValue(NULL, option[i][0]));
+    GOOD(PetscOptionsClearValue(NULL, "-region_column_Sw"));
+    GOOD(PetscOptionsClearValue(NULL, "-region_column_Sg"));
+    assert_true(ok && c.nregion == 2 && c.region[1].material < 0);
+    assert_true(gas ? c.material[0].gas.trace == 0.0 : c.material[0].gas.trace > 0.0);
+    GOOD(CaseDestroy(&c));
+  }
+}
+
 /* What an instance does not give is that of the one it is like, through a chain, the command line over the file. */
 static void like(void **state)
 {
@@ -545,6 +571,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(nearest_key),
       cmocka_unit_test(command_line_wins),
       cmocka_unit_test(resolved_is_the_same_case),
+      cmocka_unit_test(place_without_gas),
   };
   const char *up = strstr(__FILE__, "tests/unit/");
   int         failed;

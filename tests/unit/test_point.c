@@ -712,6 +712,39 @@ static void ClosedCell(double p0, const char *what)
   assert_true(old < 1e-3);
 }
 
+/* A reaction ten times as slow makes a tenth of the hydrate, to round-off of what it makes rather than of what there
+   is: methane of pores without gas is far below that. */
+static void TestSlowReaction(void **state)
+{
+  Rng    r        = {118};
+  double worst[2] = {0.0, 0.0};
+  int    seen[2]  = {0, 0};
+
+  (void)state;
+  for (int n = 0; n < 400; n++) {
+    Particle    q;
+    PointState  s;
+    PointOutput o;
+    double      heat[2];
+
+    RandomParticle(&r, n % 2 ? NO_GAS : n % 4 ? FORMING : DISSOCIATING, &q);
+    q.in[IN_GT] = q.in[IN_GT + 1] = 0.0;
+    q.mat.kinetics.K0 *= 1e-15;
+    q.h.compression = false;
+    for (int k = 0; k < 2; k++, q.mat.kinetics.K0 *= 0.1) {
+      assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
+      heat[k] = o.out[OUT_Q];
+    }
+    if (heat[0] == 0.0 && heat[1] == 0.0) /* nothing forms without gas */
+      continue;
+    seen[n % 2]++;
+    worst[n % 2] = fmax(worst[n % 2], fabs(10.0 * heat[1] / heat[0] - 1.0));
+  }
+  printf("slow reaction: heat of a tenth of the rate off a tenth of the heat by %.1e with gas, %.1e without\n",
+         worst[0], worst[1]);
+  assert_true(seen[0] > 100 && seen[1] > 50 && worst[0] < 1e-9 && worst[1] < 1e-9);
+}
+
 static void TestStiffKinetics(void **state)
 {
   (void)state;
@@ -904,6 +937,7 @@ int main(void)
       cmocka_unit_test(TestSimpleShear),
       cmocka_unit_test(TestHydrateBounds),
       cmocka_unit_test(TestHydrateEquation),
+      cmocka_unit_test(TestSlowReaction),
       cmocka_unit_test(TestStiffKinetics),
       cmocka_unit_test(TestReactionConserves),
       cmocka_unit_test(TestHeatOfMasses),

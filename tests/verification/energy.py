@@ -36,6 +36,20 @@ def falls():
         judge("energy", f"free fall, {kind}: power", abs(P - 1), 0.03)  # hybrid: the mean over a burst
 
 
+def flies():
+    """A block that the sea presses all of a sudden, flying through cells with free velocities: no sliver overshoots (150), and where it started in a cell does not show."""
+    places = []
+    for name, shift in (("0.15 of a cell", 0.03), ("0.5", 0.1)):
+        run, b = go(f"flying block, {name}", "hybrid", CASES / "flying.yaml", "-region_block_lower", f"{0.4 + shift:g} m, {0.4 + shift:g} m",
+                    "-region_block_upper", f"{1.4 + shift:g} m, {1.1 + shift:g} m")  # fmt: skip
+        check_true(f"flying block, {name}: no step refused", ", 0 refused" in run.output, run.output[-800:])
+        last = run.snapshots()[-1][1]
+        places.append((last["volume"].sum(), last["v_s"][:, 0].mean()))
+        judge("energy", f"flying block, {name}: kinetic energy over gravity's work", abs(b["kinetic_energy"] / b["gravity_work"] - 1), 1e-5)
+    for k, (what, bar) in enumerate((("volume", 1e-5), ("velocity", 1e-6))):
+        judge("energy", f"flying block: {what}, 0.15 against 0.5 of a cell", abs(places[1][k] / places[0][k] - 1), bar)
+
+
 def waves():
     """A pulse in a dry bar: nothing is dissipated, and what is left falls with the step."""
     found = []
@@ -143,6 +157,7 @@ def rigid():
 
 if __name__ == "__main__":
     falls()
+    flies()
     waves()
     consolidates()
     drains()

@@ -20,16 +20,18 @@ for name, more, flow, friction, right in (
     last = run.snapshots()[-1][1]
     x = last["position"][:, 0]
     runout = sorted(x)[-5] - 1.0  # the farthest few may have left the heap
-    rows.append([name, flow, friction, runout, (last["yield"] == 3).mean()])
+    left = abs(run.balance["energy_remainder_J"][-1] / run.balance["gravity_work_J"][-1])
+    rows.append([name, flow, friction, runout, (last["yield"] == 3).mean(), left])
     if not rows[1:]:
         torn = re.search(r"(\d+) at the apex \(eps_d_p ([\d.e+-]+), up to ([\d.e+-]+)\)", run.output)
         check_true("the summary says how many particles are at the apex, and the strain behind it",
                    torn and int(torn.group(1)) == (last["yield"] == 3).sum() and abs(float(torn.group(3)) / last["eps_d_p"][last["yield"] == 3].max() - 1) < 0.05)  # fmt: skip
     if right:
         judge("strength", f"runout of a column of sand over its width, {name}, {flow}, {friction} deg", runout, (LOW, HIGH))
+        judge("strength", f"column of sand, {name}, {flow}: what the balance of energy leaves of gravity's work", left, 0.01)
     else:
         check(f"runout with a wrong friction of {friction} deg, {name}, distance from the band", max(LOW - runout, runout - HIGH), (0.05, 10))
 check("the two flows against each other", abs(rows[1][3] / rows[0][3] - 1), 0.1)
 check("implicit against hybrid", abs(rows[4][3] / rows[0][3] - 1), 0.1)
-table(["integrator", "flow", "friction (deg)", "runout / width", "share at the apex"], rows)
+table(["integrator", "flow", "friction (deg)", "runout / width", "share at the apex", "left of gravity's work"], rows)
 finish()
