@@ -10,16 +10,16 @@ static PetscInt LikeOf(const Reader *r, Group g, PetscInt i)
 
 PetscErrorCode KeyFind(Reader *r, const Case *c, Group g, PetscInt i, const Key *k, Found *f)
 {
-  char option[256];
+  char     option[256];
+  PetscInt j = i;
 
   PetscFunctionBeginUser;
-  for (PetscInt j = i; j >= 0; j = k->own ? -1 : LikeOf(r, g, j)) {
+  do {
     KeyOption(option, sizeof option, g, GroupInstance(c, g, j), k->name);
     PetscCall(ReaderFind(r, option, &f->text, &f->found, &f->from_file));
     f->own = j == i;
-    if (f->found)
-      break;
-  }
+    j      = k->own ? -1 : LikeOf(r, g, j);
+  } while (!f->found && j >= 0);
   if (!f->found)
     KeyOption(option, sizeof option, g, GroupInstance(c, g, i), k->name);
   snprintf(f->shown, sizeof f->shown, "%s%s", f->found && !f->from_file ? "-" : "", option);
