@@ -306,7 +306,7 @@ class Soak:
         if code not in (0, 2, 3) or "PETSC ERROR" in text or "Sanitizer" in text or "HDF5-DIAG" in text:
             return "crash", f"exit code {code}: {text[-600:]}"
         if code == 2:
-            said = [s for s in text.splitlines() if ": " in s]
+            said = [s for s in text.splitlines() if ": " in s and ": note: " not in s]
             return ("refused", re.sub(r"\S*case\.yaml:\d*:? ?", "", said[0])) if said else ("silent", text[-600:])
         bad = numbers(out)
         if bad:
