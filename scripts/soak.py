@@ -332,7 +332,7 @@ class Soak:
         return kind, facts["integrator"], note, seed
 
     def compare_ranks(self, case, folder):
-        """1 rank against 2, implicit runs with fixed steps, lest round-off choose another step; None: one of them gives up."""
+        """1 rank against 2 where both take the same steps, implicit runs fixed ones, lest round-off choose others; None: one of them gives up."""
         text = case.read_text()
         end = float(re.search(r"end: (\S+) s", text)[1])
         fixed = () if re.search(r"type: (hybrid|explicit|auto)", text) else ("-stepper_adapt", "no", "-stepper_dt", f"{end / 100:.6g} s")
@@ -357,10 +357,12 @@ class Soak:
             found, note = self.judged(case, folder / name, *options, ranks=ranks)
             if found != "finished":
                 return None if found in GOOD else (found, note)
-            ends.append(changes(folder / name))
-        (t, a), (t_b, b) = ends
+            ends.append((*changes(folder / name), read_csv(folder / name / "balance.csv")["time_s"]))
+        (t, a, steps), (t_b, b, steps_b) = ends
         if not math.isclose(t, t_b, rel_tol=1e-6):
             return "finished", ""  # stopped at -stepper_max_steps at different times
+        if kind == "ranks" and not (len(steps) == len(steps_b) and np.allclose(steps, steps_b, rtol=1e-9)):
+            return "finished", ""  # auto chose otherwise, or a step was refused on one of them alone
         size = np.max if kind == "ranks" else lambda v: math.sqrt(np.mean(v**2))
         worst, where = max((size(abs(a[k] - b[k])) / max(size(abs(a[k])), size(abs(b[k])), FLOOR[k]), k) for k in a)
         note = f"{where}: {worst:.2g} of {'its largest change' if kind == 'ranks' else 'the mean change'}"
