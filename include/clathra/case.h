@@ -280,6 +280,8 @@ uint64_t CaseFingerprint(const Case *c);
 /* What a state of its particles needs to be the initial state of another case: lines "key: value" of the grid, regions
    and what their materials tie it to, in SI; both cases must have the same. */
 PetscErrorCode CaseWriteState(const Case *c, FILE *out);
+/* What CaseWriteResolved or CaseWriteState writes, to be freed. */
+PetscErrorCode CaseText(const Case *c, PetscErrorCode (*write)(const Case *c, FILE *out), char **text, size_t *size);
 PetscErrorCode CaseDestroy(Case *c);
 /* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
  * -help. */

@@ -96,6 +96,11 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 
 /* Temperature that a particle started from (81), degC. */
 double ParticleInitialT(const Case *c, const Particles *P, PetscInt p);
+/* Its temperature, degC; in a scene without heat that of its region. */
+static inline double ParticleT(const Case *c, const Particles *P, PetscInt p)
+{
+  return P->f[P_T] ? P->f[P_T][p] : c->region[P->i[PI_REGION][p]].temperature;
+}
 
 /* History of the skeleton of the particles from `first` on, for a stage that ends `ahead` (s) of the last average of
    neighbours; the set must have a solid. */

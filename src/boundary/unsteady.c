@@ -17,11 +17,8 @@ static void MostTake(Most *m, const Case *c, const Particles *P, PetscInt i, dou
   const int region = (int)P->i[PI_REGION][i];
 
   if (value > m->value)
-    *m = (Most){.value  = value,
-                .x      = {P->f[P_X][i], P->f[P_X + 1][i]},
-                .p      = p,
-                .T      = P->f[P_T] ? P->f[P_T][i] : c->region[region].temperature,
-                .region = region};
+    *m = (Most){
+        .value = value, .x = {P->f[P_X][i], P->f[P_X + 1][i]}, .p = p, .T = ParticleT(c, P, i), .region = region};
 }
 
 static PetscErrorCode MostOfAll(MPI_Comm comm, Most *m)
@@ -50,9 +47,8 @@ static PetscErrorCode Column(MPI_Comm comm, const Case *c, const Particles *P, d
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
     const Region *r   = &c->region[P->i[PI_REGION][p]];
-    const double  x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, z = CaseHeight(c, x),
-                 T     = P->f[P_T] ? P->f[P_T][p] : r->temperature;
-    const double reach = fmax(P->f[P_L][p], P->f[P_L + 1][p]);
+    const double  x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, z = CaseHeight(c, x), T = ParticleT(c, P, p);
+    const double  reach = fmax(P->f[P_L][p], P->f[P_L + 1][p]);
 
     sum[0] += P->f[P_V][p];
     sum[1] += P->f[P_V][p] * LiquidDensity(&c->material[r->material].water, P->f[P_PW][p], T, &dp, &dT);
@@ -127,7 +123,7 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particl
   PetscFunctionBeginUser;
   for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
     const Material *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
-    const double    pw = P->f[P_PW][p], T = P->f[P_T] ? P->f[P_T][p] : c->region[P->i[PI_REGION][p]].temperature;
+    const double    pw = P->f[P_PW][p], T = ParticleT(c, P, p);
     const double    pg = P->f[P_PG] ? P->f[P_PG][p] : pw, Sg = 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
     const double    mean = pw + Sg / (1.0 - P->f[P_SH][p]) * (pg - pw); /* (10) */
 

@@ -217,6 +217,17 @@ PetscErrorCode CaseWriteResolved(const Case *c, FILE *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode CaseText(const Case *c, PetscErrorCode (*write)(const Case *c, FILE *out), char **text, size_t *size)
+{
+  FILE *f = open_memstream(text, size);
+
+  PetscFunctionBeginUser;
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscCall(write(c, f));
+  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ---------------------------------------------------------------- the list of keys */
 static void PrintKind(FILE *out, const Key *k)
 {

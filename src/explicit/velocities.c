@@ -42,6 +42,12 @@ static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
   b->f = s.solid ? mix[MIX_FX + d] + (b->M + mass) * gravity : 0.0;
 }
 
+/* Local damping: a share of the force out of balance, against the motion, N. */
+static double Damping(const Balance *b, double share)
+{
+  return share * fabs(b->f) * (b->v > 0.0 ? 1.0 : b->v < 0.0 ? -1.0 : 0.0);
+}
+
 /* Balance of the mixture (36) with the fluids' velocities eliminated: lhs v_s = rhs. */
 static void Mixture(const Explicit *e, const Balance *b, double dt, double damping, double *left, double *right)
 {
@@ -49,7 +55,7 @@ static void Mixture(const Explicit *e, const Balance *b, double dt, double dampi
   const double scale = e->o.mass_scaling / dt;
   double       lhs = scale * b->M, rhs = b->f + scale * b->M * b->v;
 
-  rhs -= damping * fabs(b->f) * (b->v > 0.0 ? 1.0 : b->v < 0.0 ? -1.0 : 0.0);
+  rhs -= Damping(b, damping);
   for (int k = 0; k < s.fluids; k++) {
     const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
     const double drag = e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
@@ -130,12 +136,8 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
     Solve(e, &b, dt, held, value, v);
     if (e->set.solid && e->set.fluids)
       e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, I, d, &b, v);
-    if (!held && e->o.damping > 0.0)
-      e->work[WORK_DAMPING] += e->node[I].own_v * dt * e->o.damping * fabs(b.f) *
-                               (b.v > 0.0   ? 1.0
-                                : b.v < 0.0 ? -1.0
-                                            : 0.0) *
-                               0.5 * (v[0] + b.v);
+    if (!held)
+      e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(&b, e->o.damping) * 0.5 * (v[0] + b.v);
     e->inc[6 * I + d] = v[0] - b.v;
     for (int k = 0; k < e->set.fluids; k++)
       e->inc[6 * I + 2 * (1 + k) + d] = v[1 + k] - b.vf[k];
@@ -165,7 +167,7 @@ static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const dou
   e->work[WORK_PRESSURE] += dt * pressure;
   if (push)
     e->work[WORK_PLATES] += dt * push[d] * v[0];
-  if (e->node[I].held >= 0 && Held(e, I, F_VSX + d, &value) && value != 0.0)
+  if (Held(e, I, F_VSX + d, &value))
     e->work[WORK_PLATES] += (scale * gained - dt * w->f) * value;
 }
 

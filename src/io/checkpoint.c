@@ -43,17 +43,6 @@ _Static_assert(sizeof(StepperState) ==
                    14 * sizeof(PetscInt) + (23 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
-PetscErrorCode IoScene(const Case *c, char **text, size_t *size)
-{
-  FILE *f = open_memstream(text, size);
-
-  PetscFunctionBeginUser;
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscCall(CaseWriteState(c, f));
-  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 typedef struct {
   hid_t          file, group; /* rank 0 */
   PetscErrorCode ierr;        /* rank 0: first error; the gathering goes on */
@@ -82,7 +71,7 @@ static PetscErrorCode WriteScene(hid_t file, const Case *c)
   hsize_t n;
 
   PetscFunctionBeginUser;
-  PetscCall(IoScene(c, &text, &size));
+  PetscCall(CaseText(c, CaseWriteState, &text, &size));
   n = size;
   PetscCall(H5Write(file, "scene", H5T_NATIVE_CHAR, 1, &n, text, NULL, false));
   free(text);

@@ -195,5 +195,3 @@ typedef struct {
   bool        integer;
 } StateField;
 extern const StateField io_state_field[]; /* NULL name ends it */
-/* What CaseWriteState says, to be freed. */
-PetscErrorCode IoScene(const Case *c, char **text, size_t *size);

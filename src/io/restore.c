@@ -180,7 +180,7 @@ static PetscErrorCode CheckScene(const Model *m, hid_t file, Loaded *L)
   if (!H5Read(file, "scene", H5T_NATIVE_CHAR, 1, &n, theirs))
     snprintf(L->why, sizeof(L->why), "/scene is no text");
   else {
-    PetscCall(IoScene(m->c, &ours, &size));
+    PetscCall(CaseText(m->c, CaseWriteState, &ours, &size));
     (void)Differ(theirs, ours, L->why, sizeof(L->why));
     free(ours);
   }

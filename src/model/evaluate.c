@@ -25,7 +25,7 @@ ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q,
   const double    pg = fs->phase[PHASE_G] ? m->P.f[HeldPressure(fs, P_PW, PHASE_G)][p] : 0.0;
 
   return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
-                                 ParticleT(m, p), ParticleSw(m, p), q, why);
+                                 ParticleT(m->c, &m->P, p), ParticleSw(m, p), q, why);
 }
 
 /* (276) */

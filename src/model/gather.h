@@ -87,12 +87,6 @@ static inline double ConductingVolume(const Model *m, PetscInt p)
   return m->P.f[P_V][p] * (ParticleMaterial(m, p)->permeability.k0 / m->c->material[0].permeability.k0);
 }
 
-/* Temperature of a particle at t_n; without a field of its own it is the region's. */
-static inline double ParticleT(const Model *m, PetscInt p)
-{
-  return m->c->fields.heat ? m->P.f[P_T][p] : m->c->region[m->P.i[PI_REGION][p]].temperature;
-}
-
 /* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */
 static inline int HeldPressure(const FieldSet *fs, int first, int f)
 {
@@ -233,7 +227,7 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
 
   for (int q = 0; q < IN_COUNT; q++)
     in[q] = 0.0;
-  in[IN_T] = ParticleT(m, p);
+  in[IN_T] = ParticleT(m->c, &m->P, p);
   if (fs->solid)
     GatherSolid(m, p, r, x, face, in);
   for (int f = 0; f < PHASE_COUNT; f++) {
@@ -287,7 +281,7 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
 
   h->V       = m->P.f[P_V][p];
   h->m_s     = m->P.f[P_MS][p];
-  h->T_n     = ParticleT(m, p);
+  h->T_n     = ParticleT(m->c, &m->P, p);
   h->Sh_n    = m->P.f[P_SH][p];
   h->sw_n    = ParticleSw(m, p);
   h->dt      = m->stage.dt;

@@ -13,7 +13,7 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   Reach           r;
 
   ReachExpand(m, p, &r);
-  own[F_T] = ParticleT(m, p) + Shift(m, p, &r, F_T);
+  own[F_T] = ParticleT(m->c, &m->P, p) + Shift(m, p, &r, F_T);
   for (int f = 0; f < PHASE_COUNT; f++)
     own[F_PW + f] = m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + Shift(m, p, &r, F_PW + f);
 

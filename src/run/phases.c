@@ -37,7 +37,7 @@ static PetscErrorCode Look(const Model *m, Cold *cold)
   *cold = (Cold){0.0, 0};
   for (PetscInt p = 0; c->fields.phase[PHASE_W] && p < P->n; p++) {
     const Region *r     = &c->region[P->i[PI_REGION][p]];
-    const double  T     = P->f[P_T] ? P->f[P_T][p] : r->temperature;
+    const double  T     = ParticleT(c, P, p);
     const double  below = BrineMelting(c->material[r->material].salinity, P->f[P_PW][p]) - T;
 
     cold->n += below > 0.0;

@@ -198,17 +198,6 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 }
 
 /* ---------------------------------------------------------------- from the first row to the last */
-static PetscErrorCode CaseText(const Case *c, char **text, size_t *size)
-{
-  FILE *f = open_memstream(text, size);
-
-  PetscFunctionBeginUser;
-  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscCall(CaseWriteResolved(c, f));
-  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode WriteCase(MPI_Comm comm, const Case *c, Run *run)
 {
   char  *text;
@@ -216,7 +205,7 @@ static PetscErrorCode WriteCase(MPI_Comm comm, const Case *c, Run *run)
   bool   ok;
 
   PetscFunctionBeginUser;
-  PetscCall(CaseText(c, &text, &size));
+  PetscCall(CaseText(c, CaseWriteResolved, &text, &size));
   PetscCall(FolderWriteText(comm, c->output_dir, "case.yaml", text, size, &ok));
   free(text);
   run->lost = run->lost || !ok;
@@ -235,7 +224,7 @@ static PetscErrorCode CheckFolder(MPI_Comm comm, const Case *c, bool *ok)
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-overwrite", &overwrite, NULL));
   if (overwrite)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CaseText(c, &text, &size));
+  PetscCall(CaseText(c, CaseWriteResolved, &text, &size));
   PetscCall(FolderCheckCase(comm, c->output_dir, text, size, ok));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
