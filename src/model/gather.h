@@ -370,6 +370,7 @@ PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
 PetscErrorCode  ReducedFollow(Model *m);              /* J2 is a new one */
 PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
+PetscErrorCode PreconditionerPlan(Model *m);                    /* (330), of the particles that were just seeded */
 PetscErrorCode PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
 PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);
 PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew);
