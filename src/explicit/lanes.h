@@ -171,11 +171,12 @@ struct Explicit {
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
   double latent, advected;          /* J over the step */
   double squeezed;                  /* (290), J over the step */
-  double ahead;                     /* of the end of the step, since ExplicitBegin, s */
-  double straight;                  /* STRAIGHT p_0, the least of all materials, Pa */
-  double work[WORK_RATES];          /* J over the step (92), this rank */
-  double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
-  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  double heat_in, warmed;  /* J over the step: what prescribed temperatures take, and all that warms the nodes */
+  double ahead;            /* of the end of the step, since ExplicitBegin, s */
+  double straight;         /* STRAIGHT p_0, the least of all materials, Pa */
+  double work[WORK_RATES]; /* J over the step (92), this rank */
+  double (*pull)[CL_DIM];  /* [nface] force of the tractions, N */
+  double added, acting;    /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
 };
@@ -187,7 +188,7 @@ typedef struct {
   int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
 } Weights;
 
-/* A run of particles of one material. */
+/* A run of particles of one material, or of nodes. */
 typedef struct {
   PetscInt        p;
   int             n;
@@ -248,10 +249,11 @@ INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, i
 void Deposit(Explicit *e);
 void Rates(Explicit *e, double dt);
 void Update(Explicit *e, double dt);
-/* Calls the loop made for the set of the scene on every run of particles. */
+/* Calls the loop made for the set of the scene on every run of particles, or on the nodes of this rank. */
 typedef void (*Loop)(Explicit *e, Run r, double dt);
 typedef Loop LoopTable[2][3][2]; /* [solid][fluids][heat] */
 void         ForRuns(Explicit *e, const LoopTable table, double dt);
+void         ForNodes(Explicit *e, const LoopTable table, double dt);
 #define LOOPS(f)                                                                                                       \
   {                                                                                                                    \
     {{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}},                                                         \
