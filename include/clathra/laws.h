@@ -71,6 +71,7 @@ typedef struct Equilibrium Equilibrium;
 struct Equilibrium {
   double A1, A2, A3; /* Sloan form p_e = A1 exp(A2 - A3/T_K); A1 Pa, A2 -, A3 K */
   double (*pressure)(const Equilibrium *, double T_degC, double *dpe_dT);
+  void (*pressure_loop)(const Equilibrium *, int n, const double *T_degC, double *pe, double *dpe_dT);
   const char *type;
   double      shift; /* K by which salt lowers the temperature of equilibrium */
 };
@@ -79,7 +80,7 @@ bool                 EquilibriumSetType(Equilibrium *law, const char *type);
 const char *const   *EquilibriumTypes(void);
 static inline double EquilibriumPressure(const Equilibrium *law, double T, double *dpe_dT)
 {
-  return law->pressure(law, T + law->shift, dpe_dT);
+  return law->pressure(law, T, dpe_dT);
 }
 
 /* ---------------------------------------------------------------- Kim-Bishnoi kinetics
@@ -93,8 +94,15 @@ typedef struct {
   Equilibrium equilibrium;
 } Kinetics;
 double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
-/* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
-double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);
+/* (234): A_s = A_geo S_w S_g (1 - S_h) = A_geo s_w s_g (1 - S_h)^3, 1/m, with s_g = 1 - s_w; and its derivatives. */
+static inline double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh)
+{
+  const double v = 1.0 - Sh, film = law->A_geo * sw * (1.0 - sw);
+
+  *dA_dsw = law->A_geo * (1.0 - 2.0 * sw) * v * v * v;
+  *dA_dSh = -3.0 * film * v * v;
+  return film * v * v * v;
+}
 
 /* ---------------------------------------------------------------- equations of state, kg/m^3 */
 typedef struct {

@@ -142,8 +142,7 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 {
   const int     width = LANES * Rows(A_Count(s));
   const double *a     = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
-
-  Balance b;
+  Balance       b;
 
   ReadMasses(e, s, a, dt, &b);
   for (int d = 0; d < CL_DIM; d++) {
@@ -193,8 +192,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 {
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], per_V = 1.0 / a[A_V(s)];
   double       *b = &e->B[I * LANES * Rows(B_Count(s))];
-
-  Balance w;
+  Balance       w;
 
   ReadMasses(e, s, a, dt, &w);
   for (int d = 0; d < CL_DIM; d++) {
