@@ -166,6 +166,8 @@ typedef struct {
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
+  double   **place;       /* [n_local][25] blocks of J2: neighbours of a node; of ghosts in `foreign` */
+  double    *foreign;     /* [ghosts][25][fields.n][fields.n] for other ranks' rows */
   Mat        J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
   Vec        X, R;        /* scaled unknowns and residual */
   SNES       snes;

@@ -44,6 +44,8 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree(m->mass_row));
   PetscCall(PetscFree(m->fluid));
   PetscCall(MatDestroy(&m->J2));
+  PetscCall(PetscFree(m->place));
+  PetscCall(PetscFree(m->foreign));
   PetscCall(MatDestroy(&m->A));
   PetscCall(MatDestroy(&m->Pmat));
   PetscCall(VecDestroy(&m->X));
