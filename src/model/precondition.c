@@ -12,7 +12,7 @@
 #define COST_LU 0.24
 
 /* Unknowns across the body from which the reduced one is the cheaper (330); without fluids none are eliminated, and LU
-   is faster as far as it was measured (400), but its memory grows. */
+   is faster as far as it was measured, to 400, but its memory grows. */
 #define ACROSS_LU 250.0
 #define ACROSS_LU_DRY 1000.0
 
