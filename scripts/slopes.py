@@ -231,8 +231,8 @@ below F = 1 the slab should accelerate by g sin β (1 - F) (Newmark's block). So
 | `sdirk2`, steps of 0.1 s | 0.927, -2.2 % | 0.914, 0.2 % | 0.902, 1.0 % |
 | a friction of 15° in the run instead of 25° | 1.28, 52 % | | |
 
-The weak layer is one cell thick on every mesh. In a layer of several cells pressures alternate between the particles of a cell where it is undrained and flows, and the F of a row's mean is up to 0.15 too low:
-its weakest particles yield first, and the others still bear.
+The weak layer is one cell thick on every mesh. In a layer of several cells pressures alternate between the particles of a cell where it is undrained and flows, and the F of a row's mean is up to 0.15 too high:
+its weakest particles yield and the others never bear what they could.
 """.split("\n")
 NOT_RUN = """
 ## What was not run
