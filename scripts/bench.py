@@ -148,7 +148,7 @@ def main():
     text = f"""# Benchmark
 
 Made by `cmake --build build --target bench` on one core; compare ratios, not seconds, between machines.
-BP2 case 2; the strip of 50 cells runs all 2000 s, the others a few steps.
+BP2 case 2; the strip of 50 cells runs all 2000 s, the others a few steps. Solvers against size and properties: [scale.md](scale.md).
 
 {markdown(HEAD, rows)}
 

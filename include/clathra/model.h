@@ -79,8 +79,16 @@ typedef struct {
 /* PETSc's log events. */
 enum { EVENT_BEGIN_STEP = 0, EVENT_RESIDUAL, EVENT_JACOBIAN, EVENT_WIDE, EVENT_SETUP, EVENT_REDUCED, EVENT_COUNT };
 
-/* Whole: of J2 with all its unknowns, LU unless PETSc's options say otherwise.  Reduced: (170).  Auto: by size. */
+/* Whole: of J2 with all its unknowns, LU unless PETSc's options say otherwise.  Reduced: (170).  Auto: by size (330).
+ */
 enum { PRECONDITIONER_AUTO = 0, PRECONDITIONER_WHOLE, PRECONDITIONER_REDUCED };
+
+/* Which of them the run has, and why: (330), of the particles as seeded, or by an option of the user. */
+typedef struct {
+  double      across; /* mean number of cells across the body */
+  bool        reduced, said;
+  const char *asked; /* the option that chose; null: by size */
+} SolverPlan;
 
 /* When a preconditioner is made anew (176). */
 typedef struct {
@@ -158,14 +166,17 @@ typedef struct {
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
-  Mat      J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
-  Vec      X, R;        /* scaled unknowns and residual */
-  SNES     snes;
-  PC       set_aside; /* that of the reduced one while LU takes over */
-  Renewal  renewal;
-  PetscInt preconditioner; /* PRECONDITIONER_... as asked for (option -newton_preconditioner) */
-  bool     reduces;        /* GMRES has the reduced one */
-  Reduced *reduced;        /* the reduced preconditioner; null: factors of the whole or what PETSc's options say */
+  double   **place;       /* [n_local][25] blocks of J2: neighbours of a node; of ghosts in `foreign` */
+  double    *foreign;     /* [ghosts][25][fields.n][fields.n] for other ranks' rows */
+  Mat        J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
+  Vec        X, R;        /* scaled unknowns and residual */
+  SNES       snes;
+  PC         set_aside; /* that of the reduced one while LU takes over */
+  Renewal    renewal;
+  PetscInt   preconditioner; /* PRECONDITIONER_... as asked for (option -newton_preconditioner) */
+  SolverPlan plan;
+  bool       reduces; /* GMRES has the reduced one */
+  Reduced   *reduced; /* the reduced preconditioner; null: factors of the whole or what PETSc's options say */
   bool   refactor; /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
   bool   always_refactor; /* ... at every Jacobian: second attempt at a stage */
   double factored_dt;     /* dt' it was made for, s */
@@ -195,6 +206,8 @@ enum {
 /* Grid and particles of a case at its initial state. */
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m);
 PetscErrorCode ModelDestroy(Model *m);
+/* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */
+PetscErrorCode ModelPrintSolver(Model *m);
 /* Stencils, active nodes, projections, faces and stabilisation on the configuration at t_n.  Collective; *status is the
    same on all ranks. */
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);

@@ -9,7 +9,7 @@ static void Add(Assembly *to, int first, int count)
 
 void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
 {
-  *to = (Assembly){.fs = *fs, .eliminated = fs->fluid && PlaceV(fs, PHASE_W) < 0};
+  *to = (Assembly){.fs = *fs, .place = m->place, .eliminated = fs->fluid && PlaceV(fs, PHASE_W) < 0};
   /* eliminated fluids push the mixture as they are accelerated (173) */
   to->force = m->bc.ambient.on || (to->eliminated && fs->inertia);
   if (fs->solid) {
@@ -41,36 +41,118 @@ void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
   }
 }
 
-/* Into J2: rows and columns scaled, rows of prescribed unknowns empty. */
-static PetscErrorCode AddScaled(Model *m, int n, const PetscInt *node, double *block)
+/* J2.  Blocks are added up unscaled where they end up, row by row; MatrixFinish turns them into BAIJ's columns, scales
+   them and sends what was found for other ranks' nodes. */
+
+/* Places in the values of a BAIJ matrix with this rank's rows: its columns are owned nodes, or others whose global
+   numbers `number` gives. */
+static PetscErrorCode Places(Model *m, Mat A, bool own, const PetscInt *number)
 {
-  const int nf = m->c->fields.n, ld = n * nf;
+  const PetscInt  n = m->c->fields.n;
+  const PetscInt *ia, *ja;
+  PetscInt        rows;
+  PetscBool       done;
+  double         *a;
 
   PetscFunctionBeginUser;
-  for (int row = 0; row < ld; row++) {
-    const PetscInt I     = node[row / nf];
-    const PetscInt k     = I * nf + row % nf;
-    const bool     fixed = (m->mask[I] >> (row % nf)) & 1u;
-    const double   scale = fixed ? 0.0 : 1.0 / m->row_scale[k];
-    double        *out   = &block[row * ld];
+  PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_TRUE, &rows, &ia, &ja, &done));
+  PetscCheck(done && rows == m->map.n_owned, m->grid.comm, PETSC_ERR_PLIB, "J2 has other rows than there are nodes");
+  PetscCall(MatSeqBAIJGetArray(A, &a));
+  for (PetscInt I = 0; I < rows; I++) {
+    for (int k = 0; k < NEIGHBOURS; k++) {
+      const PetscInt K = ModelNeighbour(m, I, k);
 
-    for (int b = 0; b < n; b++) {
-      const double *col = &m->col_scale[node[b] * nf];
-
-      for (int q = 0; q < nf; q++)
-        out[b * nf + q] *= scale * col[q];
+      if (K < 0 || (K < m->map.n_owned) != own)
+        continue;
+      for (PetscInt q = ia[I]; q < ia[I + 1]; q++) {
+        if ((own ? ja[q] : number[ja[q]]) == (own ? K : m->map.global[K]))
+          m->place[I * NEIGHBOURS + k] = &a[(size_t)q * n * n];
+      }
     }
   }
-  PetscCall(MatSetValuesBlockedLocal(m->J2, n, node, n, node, block, ADD_VALUES));
+  PetscCall(MatSeqBAIJRestoreArray(A, &a));
+  PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_TRUE, &rows, &ia, &ja, &done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode AssemblyAdd(Model *m, const Assembly *to, int n, const PetscInt *node, double *block)
+PetscErrorCode MatrixPlaces(Model *m)
 {
+  const PetscInt  n = m->c->fields.n, ghosts = m->map.n_local - m->map.n_owned;
+  const PetscInt *number;
+  PetscBool       one;
+  Mat             own, other;
+
   PetscFunctionBeginUser;
-  if (to->reduced)
-    ReducedAdd(m, n, node, block);
-  else
-    PetscCall(AddScaled(m, n, node, block));
+  PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS, &m->place));
+  PetscCall(PetscMalloc1((size_t)ghosts * NEIGHBOURS * n * n, &m->foreign));
+  PetscCall(MatSetOption(m->J2, MAT_ROW_ORIENTED, PETSC_FALSE));
+  PetscCall(PetscObjectTypeCompare((PetscObject)m->J2, MATSEQBAIJ, &one));
+  if (one) {
+    PetscCall(Places(m, m->J2, true, NULL));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MatMPIBAIJGetSeqBAIJ(m->J2, &own, &other, &number));
+  PetscCall(Places(m, own, true, NULL));
+  PetscCall(Places(m, other, false, number));
+  for (PetscInt k = 0; k < ghosts * NEIGHBOURS; k++)
+    m->place[m->map.n_owned * NEIGHBOURS + k] = &m->foreign[(size_t)k * n * n];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MatrixBegin(Model *m)
+{
+  const PetscInt n = m->c->fields.n;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatZeroEntries(m->J2));
+  PetscCall(PetscArrayzero(m->foreign, (size_t)(m->map.n_local - m->map.n_owned) * NEIGHBOURS * n * n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Scaled, rows of prescribed unknowns 1 on the diagonal; v by rows, into `out` by columns, which may be v. */
+static void Finished(const Model *m, PetscInt I, PetscInt K, const double *v, double *out)
+{
+  const int     n   = m->c->fields.n;
+  const double *col = &m->col_scale[K * n];
+  double        row[F_COUNT], t[F_COUNT * F_COUNT] = {0.0};
+
+  for (int s = 0; s < n; s++)
+    row[s] = (m->mask[I] >> s) & 1u ? 0.0 : 1.0 / m->row_scale[I * n + s];
+  for (int q = 0; q < n; q++) {
+    for (int s = 0; s < n; s++)
+      t[q * n + s] = v[s * n + q] * (row[s] * col[q]);
+  }
+  memcpy(out, t, (size_t)(n * n) * sizeof(double));
+}
+
+PetscErrorCode MatrixFinish(Model *m)
+{
+  const int n = m->c->fields.n;
+  double    block[F_COUNT * F_COUNT];
+
+  PetscFunctionBeginUser;
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    for (int k = 0; k < NEIGHBOURS; k++) {
+      const PetscInt K = ModelNeighbour(m, I, k);
+      double        *v = m->place[I * NEIGHBOURS + k];
+
+      if (K < 0 || !v)
+        continue;
+      if (I < m->map.n_owned) {
+        Finished(m, I, K, v, v);
+        continue;
+      }
+      Finished(m, I, K, v, block);
+      PetscCall(MatSetValuesBlockedLocal(m->J2, 1, &I, 1, &K, block, ADD_VALUES));
+    }
+  }
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int s = 0; s < n; s++) {
+      if ((m->mask[I] >> s) & 1u)
+        m->place[I * NEIGHBOURS + NEIGHBOURS / 2][s * n + s] = 1.0;
+    }
+  }
+  PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -318,15 +318,47 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   }
 }
 
+/* Nodes that one couples with: within two of it, itself in the middle. */
+#define RADIUS 2
+#define WIDTH (2 * RADIUS + 1)
+#define NEIGHBOURS (WIDTH * WIDTH)
+
+/* Local number of neighbour k; -1 where there is none that this rank knows. */
+static inline PetscInt ModelNeighbour(const Model *m, PetscInt I, int k)
+{
+  const Grid    *g = &m->grid;
+  const PetscInt i = m->map.ij[I][0] + k % WIDTH - RADIUS, j = m->map.ij[I][1] + k / WIDTH - RADIUS;
+
+  if (i < g->gs[0] || j < g->gs[1] || i >= g->gs[0] + g->gm[0] || j >= g->gs[1] + g->gm[1])
+    return -1;
+  return m->map.index[GridPadded(g, i, j)];
+}
+
+/* Which neighbour of I is K? */
+static inline PetscInt ModelOffset(const Model *m, PetscInt I, PetscInt K)
+{
+  return (m->map.ij[K][1] - m->map.ij[I][1] + RADIUS) * WIDTH + m->map.ij[K][0] - m->map.ij[I][0] + RADIUS;
+}
+
 /* What a Jacobian is assembled for. */
 typedef struct {
-  FieldSet fs;                   /* unknowns and rows */
-  bool     reduced;              /* the reduced matrix, else J2 */
-  bool     eliminated;           /* fs lacks the fluid velocities of the scene */
-  bool     force;                /* OUT_A counts in the rows of v_s */
-  bool     fixed_stress;         /* (174) in the mass rows */
-  int      nout, out[OUT_COUNT]; /* outputs that the rows read */
+  FieldSet       fs;                   /* unknowns and rows */
+  bool           reduced;              /* the reduced matrix, else J2 */
+  bool           eliminated;           /* fs lacks the fluid velocities of the scene */
+  bool           force;                /* OUT_A counts in the rows of v_s */
+  bool           fixed_stress;         /* (174) in the mass rows */
+  int            nout, out[OUT_COUNT]; /* outputs that the rows read */
+  double *const *place;                /* J2: blocks of the neighbours of each node; else ... */
+  double        *value;                /* ... [n_local][NEIGHBOURS][fs.n][fs.n] of the reduced matrix */
 } Assembly;
+
+/* Where rows of node I and columns of node K add up: fs.n x fs.n, by rows, unscaled. */
+static inline double *AssemblyBlock(const Model *m, const Assembly *to, PetscInt I, PetscInt K)
+{
+  const size_t k = (size_t)(I * NEIGHBOURS + ModelOffset(m, I, K));
+
+  return to->place ? to->place[k] : &to->value[k * (size_t)(to->fs.n * to->fs.n)];
+}
 
 /* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
  * model. */
@@ -340,20 +372,21 @@ PetscErrorCode ModelFluidsAt(Model *m, Vec X);
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
-/* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to its block (row length r->n times
-   the unknowns). */
+/* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
 void LumpBuild(Model *m);
 void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
-void LumpBlock(const Model *m, const FieldSet *fs, PetscInt p, const Reach *r, double *block);
+void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);
-PetscErrorCode StabilisationJacobian(Model *m, const Assembly *to);
+void           StabilisationJacobian(Model *m, const Assembly *to);
 /* Makes ready to assemble for the unknowns `fs`: those of the scene, or what is left without fluid velocities. */
 void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to);
-/* Adds an n-node block (n times the unknowns square, row major, unscaled; it is overwritten) to J2, with scales and
-   Dirichlet rows, or to the reduced matrix. */
-PetscErrorCode AssemblyAdd(Model *m, const Assembly *to, int n, const PetscInt *node, double *block);
+/* J2: where its blocks are, once for a pattern; empties it; scales what was added, with Dirichlet rows, and assembles.
+ */
+PetscErrorCode MatrixPlaces(Model *m);
+PetscErrorCode MatrixBegin(Model *m);
+PetscErrorCode MatrixFinish(Model *m);
 /* What eliminated fluid velocities leave of the tangent (171)-(174) of a particle, of a face. */
 void EliminateParticle(const Model *m, const Reach *r, const double *x, const double in[IN_COUNT], bool fixed_stress,
                        PointOutput *o);
@@ -365,11 +398,11 @@ PetscErrorCode  ReducedCreate(Model *m);
 PetscErrorCode  ReducedDestroy(Reduced **reduced);
 const FieldSet *ReducedFields(const Model *m);        /* its unknowns */
 PetscErrorCode  ReducedBegin(Model *m, Assembly *to); /* empties it; to: of its unknowns, marked as going there */
-void            ReducedAdd(Model *m, int n, const PetscInt *node, const double *block);
 PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
 PetscErrorCode  ReducedFollow(Model *m);              /* J2 is a new one */
 PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
+PetscErrorCode PreconditionerPlan(Model *m);                    /* (330), of the particles that were just seeded */
 PetscErrorCode PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
 PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);
 PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew);

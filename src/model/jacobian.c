@@ -165,11 +165,9 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
 
 /* A constant number of unknowns lets the compiler unroll the rows of the largest sets. */
 static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p,
-                                                                  const Reach *r, const double *x, const PointOutput *o,
-                                                                  double *block)
+                                                                  const Reach *r, const double *x, const PointOutput *o)
 {
   const FieldSet *fs           = &to->fs;
-  const int       ld           = r->n * n;
   const bool      axisymmetric = m->c->axisymmetric;
   const double    dt           = m->stage.dt;
   NodeFactors     factor[CL_NODES];
@@ -190,25 +188,28 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
     for (int k = 0; k < to->nout; k++)
       Columns(fs, axisymmetric, dt, o->D[to->out[k]], &at, DB[to->out[k]]);
     for (int a = 0; a < r->n; a++) {
-      double *out = &block[(a * ld + b) * n];
+      double *restrict sum = AssemblyBlock(m, to, r->node[a], r->node[b]);
+      double block[F_COUNT * F_COUNT];
 
       Rows(fs, axisymmetric, to->force, n, &factor[a], dt, r->S[a], r->G[a], r->M[a], axisymmetric ? r->K[a] : 0.0,
-           m->c->mean_dilatation ? r->B[a] : NULL, DB, out, ld);
+           m->c->mean_dilatation ? r->B[a] : NULL, DB, block, n);
       if (a == b)
-        Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, out, ld);
+        Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, block, n);
+      for (int k = 0; k < n * n; k++)
+        sum[k] += block[k];
     }
   }
 }
 
 static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
-                          const PointOutput *o, double *block)
+                          const PointOutput *o)
 {
   if (to->fs.n == F_COUNT)
-    ParticleBlockOf(m, to, F_COUNT, p, r, x, o, block);
+    ParticleBlockOf(m, to, F_COUNT, p, r, x, o);
   else if (to->fs.n == 5)
-    ParticleBlockOf(m, to, 5, p, r, x, o, block);
+    ParticleBlockOf(m, to, 5, p, r, x, o);
   else
-    ParticleBlockOf(m, to, to->fs.n, p, r, x, o, block);
+    ParticleBlockOf(m, to, to->fs.n, p, r, x, o);
 }
 
 static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
@@ -222,11 +223,8 @@ static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
 }
 
 /* The targets in turn; what eliminates changes the tangent, so it comes last. */
-static PetscErrorCode ParticleLoop(Model *m, const double *x, int ntarget, const Assembly *target)
+static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly *target)
 {
-  double block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
-
-  PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  state;
@@ -240,12 +238,10 @@ static PetscErrorCode ParticleLoop(Model *m, const double *x, int ntarget, const
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
         EliminateParticle(m, &r, x, in, target[k].fixed_stress, &o);
-      ParticleBlock(m, &target[k], p, &r, x, &o, block);
-      LumpBlock(m, &target[k].fs, p, &r, block);
-      PetscCall(AssemblyAdd(m, &target[k], r.n, r.node, block));
+      ParticleBlock(m, &target[k], p, &r, x, &o);
+      LumpBlock(m, &target[k], p, &r);
     }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Factor of what a face puts into the row of any unknown: k_r in (16). */
@@ -255,10 +251,9 @@ static double MobilityOf(const Model *m, PetscInt I, int q)
 }
 
 /* Rows of a face's nodes: all are weighted with N. */
-static void FaceBlock(const Model *m, const FieldSet *fs, const Face *face, const Reach *r, const FaceOutput *o,
-                      double *block)
+static void FaceBlock(const Model *m, const Assembly *to, const Face *face, const Reach *r, const FaceOutput *o)
 {
-  const int ld = r->n * fs->n;
+  const FieldSet *fs = &to->fs;
 
   for (int b = 0; b < r->n; b++) {
     const NodeWeights at = {.S  = r->S[b],
@@ -279,18 +274,17 @@ static void FaceBlock(const Model *m, const FieldSet *fs, const Face *face, cons
       for (int a = 0; a < r->n; a++) {
         const double N = FaceWeight(face, a, k) * RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
 
+        double *row = AssemblyBlock(m, to, r->node[a], r->node[b]) + fs->at[k] * fs->n;
+
         for (int q = 0; q < fs->n; q++)
-          block[(a * fs->n + fs->at[k]) * ld + b * fs->n + q] += N * col[q];
+          row[q] += N * col[q];
       }
     }
   }
 }
 
-static PetscErrorCode FaceLoop(Model *m, const double *x, int ntarget, const Assembly *target)
+static void FaceLoop(Model *m, const double *x, int ntarget, const Assembly *target)
 {
-  double block[CL_NODES * CL_NODES * F_COUNT * F_COUNT];
-
-  PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->nface; k++) {
     Reach      r;
     FaceOutput o;
@@ -299,29 +293,9 @@ static PetscErrorCode FaceLoop(Model *m, const double *x, int ntarget, const Ass
     for (int t = 0; t < ntarget; t++) {
       if (target[t].reduced)
         EliminateFace(m, &m->face[k], &r, &o);
-      PetscCall(PetscArrayzero(block, PetscSqr(r.n * target[t].fs.n)));
-      FaceBlock(m, &target[t].fs, &m->face[k], &r, &o, block);
-      PetscCall(AssemblyAdd(m, &target[t], r.n, r.node, block));
+      FaceBlock(m, &target[t], &m->face[k], &r, &o);
     }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows of prescribed unknowns: 1 on the diagonal (the scales cancel). */
-static PetscErrorCode DirichletDiagonal(Model *m)
-{
-  const int n = m->c->fields.n;
-  double    unit[F_COUNT * F_COUNT];
-
-  PetscFunctionBeginUser;
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int q = 0; q < n * n; q++)
-      unit[q] = 0.0;
-    for (int q = 0; q < n; q++)
-      unit[q * n + q] = (m->mask[I] >> q) & 1u ? 1.0 : 0.0;
-    PetscCall(MatSetValuesBlockedLocal(m->J2, 1, &I, 1, &I, unit, ADD_VALUES));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
@@ -337,7 +311,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(ModelFluidsAt(m, X));
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, m->proj));
-  PetscCall(MatZeroEntries(m->J2));
+  PetscCall(MatrixBegin(m));
   PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);
   AssemblyOf(m, &m->c->fields, &target[0]);
@@ -346,13 +320,11 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
     PetscCall(ReducedBegin(m, &target[1]));
     n = 2;
   }
-  PetscCall(ParticleLoop(m, m->x, n, target));
-  PetscCall(FaceLoop(m, m->x, n, target));
+  ParticleLoop(m, m->x, n, target);
+  FaceLoop(m, m->x, n, target);
   for (int k = 0; k < n; k++)
-    PetscCall(StabilisationJacobian(m, &target[k]));
-  PetscCall(DirichletDiagonal(m));
-  PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
+    StabilisationJacobian(m, &target[k]);
+  PetscCall(MatrixFinish(m));
   if (m->reduces)
     PetscCall(ReducedFollow(m));
   if (renew && m->reduces) {

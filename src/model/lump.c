@@ -83,10 +83,10 @@ void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, d
   }
 }
 
-void LumpBlock(const Model *m, const FieldSet *fs, PetscInt p, const Reach *r, double *block)
+void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r)
 {
-  const Lump *l  = m->lump ? &m->lump[p] : NULL;
-  const int   ld = r->n * fs->n;
+  const FieldSet *fs = &to->fs;
+  const Lump     *l  = m->lump ? &m->lump[p] : NULL;
 
   if (!l || l->rate == 0.0)
     return;
@@ -97,7 +97,7 @@ void LumpBlock(const Model *m, const FieldSet *fs, PetscInt p, const Reach *r, d
           fs->at[row] < 0 ? 0.0 : Share(m, l) * r->S[a] * Gain(m, l, row) * RowWeightOf(m, r->node[a], row);
 
       for (int b = 0; w != 0.0 && b < r->n; b++) {
-        double *out = &block[(a * fs->n + fs->at[row]) * ld + b * fs->n];
+        double *out = AssemblyBlock(m, to, r->node[a], r->node[b]) + fs->at[row] * fs->n;
 
         for (int q = 0; q < DRIVEN; q++) {
           if (fs->at[driven[q]] >= 0)

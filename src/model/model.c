@@ -23,6 +23,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
   PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &m->preconditioner, NULL));
+  PetscCall(PreconditionerPlan(m));
   m->tol_update = 1e-6;
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));
@@ -43,6 +44,8 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree(m->mass_row));
   PetscCall(PetscFree(m->fluid));
   PetscCall(MatDestroy(&m->J2));
+  PetscCall(PetscFree(m->place));
+  PetscCall(PetscFree(m->foreign));
   PetscCall(MatDestroy(&m->A));
   PetscCall(MatDestroy(&m->Pmat));
   PetscCall(VecDestroy(&m->X));

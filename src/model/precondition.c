@@ -11,13 +11,107 @@
 #define COST_LU_LEAST 10.0
 #define COST_LU 0.24
 
-PetscErrorCode PreconditionerChooseKind(Model *m, bool *small)
+/* Unknowns across the body from which the reduced one is the cheaper (330); without fluids none are eliminated, and LU
+   is faster as far as it was measured, to 400, but its memory grows. */
+#define ACROSS_LU 250.0
+#define ACROSS_LU_DRY 1000.0
+
+/* Cells that hold particles: their number, and the box about them. */
+static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[CL_DIM])
 {
-  PetscBool own;
+  const Grid    *g               = &m->grid;
+  PetscInt       end[2 * CL_DIM] = {PETSC_MIN_INT, PETSC_MIN_INT, PETSC_MIN_INT, PETSC_MIN_INT};
+  unsigned char *seen;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-pc_type", &own));
-  m->reduces = m->preconditioner == PRECONDITIONER_REDUCED && !own;
+  *count = 0;
+  PetscCall(PetscCalloc1(g->gm[0] * g->gm[1], &seen));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    const double x[CL_DIM] = {m->P.f[P_X][p], m->P.f[P_X + 1][p]};
+    PetscInt     cell[CL_DIM];
+
+    if (!GridCell(g, x, cell))
+      continue;
+    unsigned char *here = &seen[GridPadded(g, cell[0], cell[1])];
+    *count += !*here;
+    *here = 1;
+    for (int d = 0; d < CL_DIM; d++) {
+      end[d]          = PetscMax(end[d], cell[d]);
+      end[CL_DIM + d] = PetscMax(end[CL_DIM + d], -cell[d]);
+    }
+  }
+  PetscCall(PetscFree(seen));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 1, MPIU_INT, MPI_SUM, g->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, end, 2 * CL_DIM, MPIU_INT, MPI_MAX, g->comm));
+  for (int d = 0; d < CL_DIM; d++)
+    extent[d] = *count > 0 ? end[d] + end[CL_DIM + d] + 1 : 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options that ask for a solver of the whole. */
+static PetscErrorCode AskedFor(Model *m)
+{
+  static const char *const whole[] = {"-pc_type", "-ksp_type", "-model_pmat_type"};
+
+  PetscFunctionBeginUser;
+  m->plan.asked = m->preconditioner == PRECONDITIONER_AUTO ? NULL : "-newton_preconditioner";
+  for (size_t k = 0; k < sizeof(whole) / sizeof(*whole); k++) {
+    PetscBool own;
+
+    PetscCall(PetscOptionsHasName(NULL, NULL, whole[k], &own));
+    if (own && (k == 0 || !m->plan.asked)) {
+      m->plan.asked   = whole[k];
+      m->plan.reduced = false;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static double AcrossLU(const FieldSet *fs)
+{
+  return (fs->fluid ? ACROSS_LU : ACROSS_LU_DRY) / fs->n;
+}
+
+PetscErrorCode PreconditionerPlan(Model *m)
+{
+  PetscInt cells, extent[CL_DIM];
+
+  PetscFunctionBeginUser;
+  PetscCall(Occupied(m, &cells, extent));
+  m->plan.across  = (double)cells / (double)PetscMax(extent[0], extent[1]);
+  m->plan.reduced = m->preconditioner == PRECONDITIONER_REDUCED ||
+                    (m->preconditioner == PRECONDITIONER_AUTO && m->plan.across > AcrossLU(&m->c->fields));
+  PetscCall(AskedFor(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelPrintSolver(Model *m)
+{
+  SolverPlan *plan     = &m->plan;
+  const char *name     = plan->reduced ? "-reduced_pc_type" : "-pc_type";
+  char        type[64] = "", why[128];
+
+  PetscFunctionBeginUser;
+  if (plan->said)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  plan->said = true;
+  PetscCall(PetscOptionsGetString(NULL, NULL, name, type, sizeof(type), NULL));
+  if (!type[0])
+    PetscCall(PetscStrncpy(type, plan->reduced ? "multigrid" : PCLU, sizeof(type)));
+  if (plan->asked)
+    PetscCall(PetscSNPrintf(why, sizeof(why), "as %s asks", plan->asked));
+  else
+    PetscCall(PetscSNPrintf(why, sizeof(why), "%.3g cells across, %d unknowns a node (lu up to %.3g across)",
+                            plan->across, m->c->fields.n, AcrossLU(&m->c->fields)));
+  PetscCall(PetscPrintf(m->grid.comm, "  preconditioner: %s of the %s matrix: %s\n", type,
+                        plan->reduced ? "reduced" : "whole", why));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PreconditionerChooseKind(Model *m, bool *small)
+{
+  PetscFunctionBeginUser;
+  m->reduces = m->plan.reduced;
   *small     = !m->reduces && m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,10 +4,6 @@
    solver wins over what stands here. */
 #include "gather.h"
 
-#define RADIUS 2
-#define WIDTH (2 * RADIUS + 1)
-#define NEIGHBOURS (WIDTH * WIDTH)
-
 enum { FLOW = 0, MOTION, GROUPS };
 
 struct Reduced {
@@ -45,16 +41,6 @@ static void Unknowns(const FieldSet *fs, Reduced *r)
   r->count[FLOW]                    = r->fs.n - r->first[FLOW];
 }
 
-static PetscInt Neighbour(const Model *m, PetscInt I, int k)
-{
-  const Grid    *g = &m->grid;
-  const PetscInt i = m->map.ij[I][0] + k % WIDTH - RADIUS, j = m->map.ij[I][1] + k / WIDTH - RADIUS;
-
-  if (i < g->gs[0] || j < g->gs[1] || i >= g->gs[0] + g->gm[0] || j >= g->gs[1] + g->gm[1])
-    return -1;
-  return m->map.index[GridPadded(g, i, j)];
-}
-
 static PetscErrorCode CreateBlock(Model *m, int rows, int cols, Mat *A)
 {
   const NodeMap *map = &m->map;
@@ -64,7 +50,7 @@ static PetscErrorCode CreateBlock(Model *m, int rows, int cols, Mat *A)
   PetscCall(PetscCalloc2(map->n_owned * rows, &dnz, map->n_owned * rows, &onz));
   for (PetscInt I = 0; I < map->n_owned; I++) {
     for (int k = 0; k < NEIGHBOURS; k++) {
-      const PetscInt K = Neighbour(m, I, k);
+      const PetscInt K = ModelNeighbour(m, I, k);
 
       for (int q = 0; K >= 0 && q < rows; q++)
         (K < map->n_owned ? dnz : onz)[I * rows + q] += cols;
@@ -257,6 +243,8 @@ PetscErrorCode ReducedBegin(Model *m, Assembly *to)
   to->fixed_stress = split;
   PetscCall(Units(m, r));
   PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS * r->fs.n * r->fs.n, &r->value));
+  to->place = NULL;
+  to->value = r->value;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -264,28 +252,6 @@ PetscErrorCode ReducedBegin(Model *m, Assembly *to)
 static inline bool Held(const Model *m, const Reduced *r, PetscInt I, int k)
 {
   return (m->mask[I] >> r->full[k]) & 1u;
-}
-
-void ReducedAdd(Model *m, int n, const PetscInt *node, const double *block)
-{
-  Reduced  *r  = m->reduced;
-  const int nf = r->fs.n, ld = n * nf;
-
-  for (int a = 0; a < n; a++) {
-    const PetscInt I = node[a];
-
-    for (int b = 0; b < n; b++) {
-      const PetscInt K = node[b];
-      const PetscInt k =
-          (m->map.ij[K][1] - m->map.ij[I][1] + RADIUS) * WIDTH + m->map.ij[K][0] - m->map.ij[I][0] + RADIUS;
-      double *v = &r->value[(size_t)(I * NEIGHBOURS + k) * nf * nf];
-
-      for (int s = 0; s < nf; s++) {
-        for (int t = 0; t < nf; t++)
-          v[s * nf + t] += block[(a * nf + s) * ld + b * nf + t];
-      }
-    }
-  }
 }
 
 static void Scaled(const Model *m, const Reduced *r, PetscInt I, PetscInt K, double *v)
@@ -320,7 +286,7 @@ static PetscErrorCode Insert(const Model *m, const Reduced *r, PetscInt I, int s
   }
   for (int b = 0; b < n; b++) {
     for (int j = 0; j < cols; j++)
-      col[b * cols + j] = m->map.global[Neighbour(m, I, k[b])] * cols + j;
+      col[b * cols + j] = m->map.global[ModelNeighbour(m, I, k[b])] * cols + j;
   }
   PetscCall(MatSetValues(r->block[s][t], rows, row, n * cols, col, v, ADD_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -333,7 +299,7 @@ static PetscErrorCode FillMatrices(Model *m, Reduced *r)
     int k[NEIGHBOURS], n = 0;
 
     for (int q = 0; q < NEIGHBOURS; q++) {
-      const PetscInt K = Neighbour(m, I, q);
+      const PetscInt K = ModelNeighbour(m, I, q);
 
       if (K < 0)
         continue;

@@ -14,8 +14,8 @@ static PetscErrorCode CreateJ2(Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(map->n_owned, &dnz, map->n_owned, &onz));
   for (PetscInt I = 0; I < map->n_owned; I++) {
-    for (PetscInt k = 0; k < 25; k++) {
-      const PetscInt K = map->index[GridPadded(&m->grid, map->ij[I][0] + k % 5 - 2, map->ij[I][1] + k / 5 - 2)];
+    for (int k = 0; k < NEIGHBOURS; k++) {
+      const PetscInt K = ModelNeighbour(m, I, k);
 
       if (K >= 0)
         (K < map->n_owned ? dnz : onz)[I]++;
@@ -30,8 +30,8 @@ static PetscErrorCode CreateJ2(Model *m)
   for (PetscInt I = 0; I < map->n_owned; I++) {
     const double zero[F_COUNT * F_COUNT] = {0.0}; /* n x n of it */
 
-    for (PetscInt k = 0; k < 25; k++) {
-      const PetscInt K = map->index[GridPadded(&m->grid, map->ij[I][0] + k % 5 - 2, map->ij[I][1] + k / 5 - 2)];
+    for (int k = 0; k < NEIGHBOURS; k++) {
+      const PetscInt K = ModelNeighbour(m, I, k);
 
       if (K >= 0)
         PetscCall(MatSetValuesBlockedLocal(m->J2, 1, &I, 1, &K, zero, INSERT_VALUES));
@@ -40,6 +40,7 @@ static PetscErrorCode CreateJ2(Model *m)
   PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
   PetscCall(MatSetOption(m->J2, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  PetscCall(MatrixPlaces(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -325,10 +325,10 @@ void StabilisationResidual(const Model *m, const double *x, double *f)
     ProjectionResidual(m, &m->cell[k], x, f);
 }
 
-static void GhostBlock(const Model *m, const FieldSet *fs, const GhostLine *g, double *block)
+static void GhostBlock(const Model *m, const Assembly *to, const GhostLine *g)
 {
-  const int  n  = fs->n;
-  const int *at = fs->at;
+  const int  n  = to->fs.n;
+  const int *at = to->fs.at;
   double     c[F_COUNT];
 
   GhostCoefficients(m, g, m->stage.dt, c);
@@ -337,47 +337,38 @@ static void GhostBlock(const Model *m, const FieldSet *fs, const GhostLine *g, d
       const double w = c[k] * second[a] * RowWeightOf(m, g->node[a], k);
 
       for (int b = 0; b < 3; b++)
-        block[(a * n + at[k]) * 3 * n + b * n + at[k]] += w * second[b];
+        AssemblyBlock(m, to, g->node[a], g->node[b])[at[k] * n + at[k]] += w * second[b];
     }
   }
 }
 
-static void ProjectionBlock(const Model *m, const FieldSet *fs, const ProjectionCell *c, double *block)
+static void ProjectionBlock(const Model *m, const Assembly *to, const ProjectionCell *c)
 {
-  const int    n     = fs->n;
-  const double share = ProjectionShare(m, c);
+  const FieldSet *fs    = &to->fs;
+  const double    share = ProjectionShare(m, c);
 
   for (int a = 0; a < 4; a++) {
     for (int r = 0; r < PHASE_COUNT; r++) {
       if (!fs->phase[r])
         continue;
-      double      *row = &block[(a * n + PlaceP(fs, r)) * 4 * n];
-      const double w   = RowWeight(m, c->node[a], r) * c->rho[r] * c->s[r] * share;
+      const double w = RowWeight(m, c->node[a], r) * c->rho[r] * c->s[r] * share;
 
       for (int b = 0; b < 4; b++) {
+        double *row = AssemblyBlock(m, to, c->node[a], c->node[b]) + PlaceP(fs, r) * fs->n;
+
         for (int q = 0; q < PHASE_COUNT; q++) {
           if (fs->phase[q])
-            row[b * n + PlaceP(fs, q)] += w * c->s[q] * c->K[a][b];
+            row[PlaceP(fs, q)] += w * c->s[q] * c->K[a][b];
         }
       }
     }
   }
 }
 
-PetscErrorCode StabilisationJacobian(Model *m, const Assembly *to)
+void StabilisationJacobian(Model *m, const Assembly *to)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < m->nghost; k++) {
-    double block[9 * F_COUNT * F_COUNT] = {0.0};
-
-    GhostBlock(m, &to->fs, &m->ghost[k], block);
-    PetscCall(AssemblyAdd(m, to, 3, m->ghost[k].node, block));
-  }
-  for (PetscInt k = 0; k < m->ncell; k++) {
-    double block[16 * F_COUNT * F_COUNT] = {0.0};
-
-    ProjectionBlock(m, &to->fs, &m->cell[k], block);
-    PetscCall(AssemblyAdd(m, to, 4, m->cell[k].node, block));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < m->nghost; k++)
+    GhostBlock(m, to, &m->ghost[k]);
+  for (PetscInt k = 0; k < m->ncell; k++)
+    ProjectionBlock(m, to, &m->cell[k]);
 }

@@ -9,6 +9,7 @@
 #define TANGENT 0.9e-6  /* s a particle and unknown of a node: Jacobian */
 #define FACTOR 5.5e-7   /* s: factorisation of N unknowns, n to a node, takes FACTOR n N^1.3 */
 #define FACTOR_POWER 1.3
+#define REDUCED 5.0e-6      /* s an unknown and Newton iteration: GMRES with the reduced preconditioner */
 #define SMOOTH_STEPS 150.0  /* an adaptive run whose loads are slow */
 #define BEHIND_KINK 12.0    /* steps that a kink adds */
 #define MOST_STRETCHES 2000 /* ... looked at */
@@ -71,11 +72,13 @@ static double ImplicitSteps(const Stepper *s, double left)
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
 }
 
+/* As (99) with LU of the whole, (331) with the reduced preconditioner. */
 double StepperImplicitWork(const Model *m, double newton, double factors)
 {
   const double n = m->c->fields.n, nodes = (double)m->P.n / 4.0, N = n * nodes;
+  const double solver = m->plan.reduced ? newton * REDUCED * N : factors * FACTOR * n * pow(N, FACTOR_POWER);
 
-  return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + factors * FACTOR * n * pow(N, FACTOR_POWER);
+  return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + solver;
 }
 
 PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)

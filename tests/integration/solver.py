@@ -50,6 +50,29 @@ for ranks in (1, 2):
     names = different(straight.out, out)
     check_true(f"cut after step 3, {ranks} rank(s): the same bit for bit", not names, ", ".join(names[:5]))
 
+# By size: a block of 30 cells across has the reduced one, a strip of as many cells and any choice of the user's have not.
+BROAD = (*FIXED, "-time_end", "10 s", "-output_times", "0 s,10 s", "-grid_cells", "30,40", "-region_left_particles_per_cell", "2,1",
+         "-region_right_particles_per_cell", "2,1")  # fmt: skip
+
+
+def chosen(r):
+    return re.search(r"preconditioner: (\w+) of the (\w+) matrix: (.*)", r.output).groups()
+
+
+whole = run(*BROAD, "-newton_preconditioner", "whole")
+check_true("-newton_preconditioner whole", chosen(whole) == ("lu", "whole", "as -newton_preconditioner asks"), chosen(whole))
+for ranks in (1, 2):
+    broad = run(*BROAD, ranks=ranks)
+    check_true(f"many cells across, {ranks} rank(s): the reduced matrix", chosen(broad)[:2] == ("multigrid", "reduced"), chosen(broad))
+    check("... against LU: histories", apart(broad, whole), 1e-8)
+for given, said in (("-pc_type asm", ("asm", "whole")), ("-ksp_type fgmres", ("lu", "whole")), ("-grid_cells 30,4", ("lu", "whole")), ("-grid_cells 27,40", ("lu", "whole"))):
+    r = run(*BROAD, "-stepper_max_steps", 0, *given.split())
+    check_true(f"{given}: {said[0]} of the {said[1]}", chosen(r)[:2] == said, chosen(r))
+
+# The forecast knows what either costs.
+cost = [re.search(r"implicit about [\d.e+]+ steps, ([\d.]+) (s|min)", r.output).groups() for r in (broad, whole)]
+check_true("forecast: cheaper with the reduced one", float(cost[0][0]) < float(cost[1][0]) and cost[0][1] == cost[1][1], str(cost))
+
 # A reduced preconditioner that is none: LU takes over.
 weak = [w for g in ("flow", "motion") for w in (f"-reduced_fieldsplit_{g}_pc_type", "none")]
 broken = run(*FIXED, *preset("scale"), *weak, "-ksp_max_it", 40)

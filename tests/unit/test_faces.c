@@ -316,6 +316,43 @@ static void FaceTemperature(void **state)
   assert_true(fabs((o.heat_in - before) / (given * hypot(s.face.s[0], s.face.s[1])) - 1.0) < 1e-12);
 }
 
+/* A face exchanges heat by its own temperature, not by that of its particle. */
+static void Convection(void **state)
+{
+  Rng        r = {.s = 31};
+  Scene      s;
+  FaceOutput o;
+  double     in[IN_COUNT] = {[IN_T] = 8.0, [IN_GT] = -7.0, [IN_GT + 1] = 3.0};
+
+  SceneInit(&s, &r);
+  s.face.bc[BC_CONVECTION] = 2;
+  s.bc[2].alpha            = 15.0;
+  s.value[2]               = 12.0;
+  Evaluate(&s, in, &o);
+  const double T = in[IN_T] + in[IN_GT] * s.face.r[0] + in[IN_GT + 1] * s.face.r[1];
+  assert_true(fabs(o.heat_in / (15.0 * (12.0 - T) * hypot(s.face.s[0], s.face.s[1])) - 1.0) < 1e-14);
+}
+
+/* What leaves has the density of the pressure outside and of the particle's temperature. */
+static void DensityOfOutflow(void **state)
+{
+  Rng        r = {.s = 32};
+  Scene      s;
+  FaceOutput o;
+  double     in[IN_COUNT] =
+      {[IN_T] = 8.0, [IN_P] = 3e6, [IN_P + 1] = 3.1e6, [IN_J] = 2e-6, [IN_J + 1] = -1e-6, [IN_J + 2] = 5e-6},
+         d, e;
+
+  SceneInit(&s, &r);
+  Separate(&s, &r);
+  Evaluate(&s, in, &o);
+  const double water = LiquidDensity(&s.mat.water, s.phase[PHASE_W][0], 8.0, &d, &e),
+               gas   = GasDensity(&s.mat.gas, s.phase[PHASE_G][0], 8.0, &d, &e);
+  const double *n    = s.face.n;
+  assert_true(fabs(o.outflow[PHASE_W] / (water * (in[IN_J] * n[0] + in[IN_J + 1] * n[1])) - 1.0) < 1e-14);
+  assert_true(fabs(o.outflow[PHASE_G] / (gas * (in[IN_J + 2] * n[0] + in[IN_J + 3] * n[1])) - 1.0) < 1e-14);
+}
+
 /* (152): dynamic pressure on a face that moves into the fluid, none on one that leaves it. */
 static void DragOfTheSea(void **state)
 {
@@ -488,10 +525,11 @@ static void Share(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents),        cmocka_unit_test(MeanPressure),
-                                     cmocka_unit_test(FaceTemperature), cmocka_unit_test(DragOfTheSea),
-                                     cmocka_unit_test(PlateForces),     cmocka_unit_test(MassRows),
-                                     cmocka_unit_test(TrueArea),        cmocka_unit_test(Share)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents),         cmocka_unit_test(MeanPressure),
+                                     cmocka_unit_test(FaceTemperature),  cmocka_unit_test(DragOfTheSea),
+                                     cmocka_unit_test(PlateForces),      cmocka_unit_test(MassRows),
+                                     cmocka_unit_test(TrueArea),         cmocka_unit_test(Convection),
+                                     cmocka_unit_test(DensityOfOutflow), cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

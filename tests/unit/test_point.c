@@ -511,6 +511,74 @@ static void TestRigidRotation(void **state)
   assert_true(scalar < 1e-13);
 }
 
+/* The same state with the deformed configuration as its reference: F = 1, V = J V_n, gradients F^-T g. */
+static void MoveReference(const Particle *from, const Kinematics *k, Particle *q)
+{
+  *q     = *from;
+  q->h.V = k->J * from->h.V;
+  for (int a = 0; a < MOTION_COUNT; a++)
+    q->in[IN_GRADU + a] = 0.0;
+  for (int i = 0; i < 2; i++) {
+    const double *g = from->in, *co = k->cof[i];
+
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      q->in[IN_GP + 2 * f + i] = (co[0] * g[IN_GP + 2 * f] + co[1] * g[IN_GP + 2 * f + 1]) / k->J;
+      q->h.proj[f][i]          = (co[0] * from->h.proj[f][0] + co[1] * from->h.proj[f][1]) / k->J;
+    }
+    q->in[IN_GT + i] = (co[0] * g[IN_GT] + co[1] * g[IN_GT + 1]) / k->J;
+  }
+}
+
+/* Which configuration gradients are taken on does not matter: fluxes become F^-1 times those of the deformed one
+   (Piola), forces, masses and carried heat stay. */
+static void TestReference(void **state)
+{
+  Rng    r    = {112};
+  double flux = 0.0, force = 0.0, scalar = 0.0;
+  int    seen = 0;
+
+  (void)state;
+  for (int n = 0; n < 20000; n++) {
+    Particle    q, moved;
+    PointState  a, b;
+    PointOutput oa, ob;
+    Kinematics  k;
+
+    RandomParticle(&r, NO_KINETICS, &q);
+    for (int i = 0; i < MOTION_COUNT; i++)
+      q.in[IN_GRADU + i] *= 10.0;
+    q.h.compression = false;
+    q.h.upwind[0] = q.h.upwind[1] = q.h.upwind[2] = 0.0; /* is of the configuration at t_n */
+    assert_true(KinematicsEvaluate(&q.in[IN_GRADU], &k));
+    MoveReference(&q, &k, &moved);
+    if (Evaluate(&q, false, &a, &oa) != CL_OK)
+      continue; /* no pores are left */
+    assert_int_equal(Evaluate(&moved, false, &b, &ob), CL_OK);
+    seen++;
+    for (int row = OUT_FLUX; row <= OUT_HEAT; row += 2) {
+      const double *x = &ob.out[row], size = hypot(x[0], x[1]);
+
+      for (int i = 0; i < 2; i++) /* F^-1 = cof^T/J */
+        flux = fmax(flux, fabs(oa.out[row + i] - (k.cof[0][i] * x[0] + k.cof[1][i] * x[1]) / k.J) / size);
+    }
+    for (int row = OUT_G; row < OUT_M; row += 2) {
+      const double *x = &ob.out[row], *y = &oa.out[row];
+
+      force = fmax(force, hypot(y[0] - x[0], y[1] - x[1]) / hypot(x[0], x[1]));
+    }
+    for (int row = OUT_M; row <= OUT_C; row++) {
+      if (row < OUT_DM || row == OUT_C)
+        scalar = fmax(scalar, fabs(oa.out[row] - ob.out[row]) / fabs(ob.out[row]));
+    }
+  }
+  printf("another reference configuration: fluxes %.1e, forces %.1e, masses and coefficients %.1e\n", flux, force,
+         scalar);
+  assert_true(seen > 10000);
+  assert_true(flux < 1e-12);
+  assert_true(force < 1e-14);
+  assert_true(scalar < 1e-13);
+}
+
 /* A thousand turns of 73 degrees: the stress drifts by round-off only. */
 static void TestManyTurns(void **state)
 {
@@ -933,6 +1001,7 @@ int main(void)
       cmocka_unit_test(TestKinematicsValues),
       cmocka_unit_test(TestTangent),
       cmocka_unit_test(TestRigidRotation),
+      cmocka_unit_test(TestReference),
       cmocka_unit_test(TestManyTurns),
       cmocka_unit_test(TestSimpleShear),
       cmocka_unit_test(TestHydrateBounds),

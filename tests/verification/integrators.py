@@ -31,8 +31,10 @@ def at_own_step(scene, kind, cells, k):
 
 def exact_columns():
     """Error of the worst curve over its range, with cells and steps halved together."""
-    for scene, where in ((wave(), "gassy water, 22 MPa"), (wave(2.2e9), "water, 2.2 GPa"), (wave(np.inf), "incompressible water"),
-                         (consolidation(), "")):  # fmt: skip
+    scenes = (  # bars of euler, sdirk2 and of the explicit ones: 1.3 to 2 times what is left on 52 cells
+        (wave(), "gassy water, 22 MPa", (0.02, 0.002, 0.008)), (wave(2.2e9), "water, 2.2 GPa", (0.025, 0.01, 0.013)),
+        (wave(np.inf), "incompressible water", (0.036, 0.015, None)), (consolidation(), "", (0.006, 0.003, 0.001)))  # fmt: skip
+    for scene, where, bars in scenes:
         name, exact, rows = scene.name + (f", {where}" if where else ""), scene.exact(), []
         for kind in (*IMPLICIT, *(explicit_ones() if np.isfinite(scene.Kw) else ())):
             cells = [FEWEST * 2**k for k in range(3)]
@@ -40,9 +42,9 @@ def exact_columns():
             off = [worst(scene.curves(r), exact) for r in runs]
             orders = ["-", *(f"{o:.2f}" for o in -order(cells, off))]
             rows += [(kind, *each) for each in zip(cells, map(steps_of, runs), off, orders)]
-            first = kind == EULER
-            judge(ROW, f"{name}, {kind}, 52 cells: worst curve off the exact one", off[-1], 0.05 if first else 0.03, 0.01, "%")
-            check(f"{name}, {kind}: error falls with h and dt", off[-1] / off[0], 0.6 if first else 0.4)
+            bar = bars[IMPLICIT.index(kind)] if kind in IMPLICIT else bars[2]
+            judge(ROW, f"{name}, {kind}, 52 cells: worst curve off the exact one", off[-1], bar, 0.01, "%")
+            check(f"{name}, {kind}: error falls with h and dt", off[-1] / off[0], 0.6 if kind == EULER else 0.4)
         head(f"{name}: worst of {', '.join(exact)} off the exact curve, over its range")
         table(("integrator", "cells", "steps", "error", "order"), rows)
 
@@ -123,8 +125,8 @@ def explicit_kind():
         explicit_in_time(wave(cells=(FEWEST, 1)), kind, 5e-4)
         explicit_in_time(consolidation(cells=(FEWEST, 1)), kind, 5e-4)
     if "hybrid" in explicit_ones():
-        explicit_in_space(REACTING, "hybrid", cells, 0.03)
-        for case, bar in ((1, 0.04), (2, 0.02)):
+        explicit_in_space(REACTING, "hybrid", cells, 0.022)
+        for case, bar in ((1, 0.012), (2, 0.017)):
             explicit_in_space(bp2(case, 1000), "hybrid", cells, bar, *DAMPED)
 
 

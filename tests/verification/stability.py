@@ -19,7 +19,6 @@ FALLING = Path(__file__).parent / "cases" / "falling.yaml"
 FIXED = lambda kind, dt: ["-stepper_type", kind, "-stepper_adapt", "no", "-stepper_dt", f"{dt:.12g}", "-stepper_dt_min", f"{1e-7 * dt:.12g}"]
 UNTIL = lambda t: ["-time_end", f"{t:.12g} s", "-output_times", f"{t:.12g} s", "-stepper_dt_max", f"{t:.12g} s"]
 rows = []
-VIOLENT = 0.2  # at 60 degC all hydrate is gone within the first steps of 1 s
 
 
 def ends(name, done, kind="finished"):
@@ -31,21 +30,20 @@ def ends(name, done, kind="finished"):
 
 def properties():
     """Fixed steps of 1 s, up to 1e5 times the explicit limit, against a finer quasi-static run: 20 s of SCENE with one property changed."""
-    cases = {"k = 1e-9 m2": {"k": 1e-9}, "k = 1e-22 m2": {"k": 1e-22}, "reaction x 1e6": {"rate": 1e6}, "S_g = 1e-6": {"Sg": 1e-6, "Sh": 0.1},
-             "S_h = 0.9": {"Sh": 0.9, "Sg": 0.05}, "porosity 0.9": {"phi": 0.9}, "E = 1e5 Pa": {"E0": 1e5}, "E = 1e11 Pa": {"E0": 1e11},
-             "K_w infinite": {"Kw": math.inf}, "60 degC": {"T0": 60}, "60 MPa": {"p": 60e6}}  # fmt: skip
-    worst = 0.0
-    for name, change in cases.items():
+    cases = {  # what changes, and 1.3 to 1.5 times what steps of 1 s cost by euler; at 60 degC all hydrate is gone within the first of them
+        "k = 1e-9 m2": ({"k": 1e-9}, 0.024), "k = 1e-22 m2": ({"k": 1e-22}, 0.025), "reaction x 1e6": ({"rate": 1e6}, 0.045),
+        "S_g = 1e-6": ({"Sg": 1e-6, "Sh": 0.1}, 0.017), "S_h = 0.9": ({"Sh": 0.9, "Sg": 0.05}, 0.036), "porosity 0.9": ({"phi": 0.9}, 0.027),
+        "E = 1e5 Pa": ({"E0": 1e5}, 0.022), "E = 1e11 Pa": ({"E0": 1e11}, 0.017), "K_w infinite": ({"Kw": math.inf}, 0.024),
+        "60 degC": ({"T0": 60}, 0.11), "60 MPa": ({"p": 60e6}, 0.025)}  # fmt: skip
+    for name, (change, bar) in cases.items():
         options, load = [*scene(**change), *UNTIL(20.0)], 1e6 * min(1.0, change.get("E0", 1e8) / 1e8)
         fine = ends(f"{name}, fine", attempt([*options, "-inertia", "no", "-stepper_tol", "3e-4"]))
         done = ends(f"{name}, euler, 1 s", attempt([*options, *FIXED("euler", 1.0)]))
         if fine.kind == done.kind == "finished":
             error = max(difference(done.folder, fine.folder, load).values())
-            check(f"{name}: largest error", error, VIOLENT if name == "60 degC" else 0.05)
-            worst = max(worst, error)
+            judge(ROW, f"{name}, euler, steps of 1 s: largest error of any field over its largest change", error, bar)
             check(f"{name}: kinetic energy late over early", done.growth, 1.0)
             check(f"{name}: balance", done.balance, 1e-11)
-    judge(ROW, f"euler, steps of 1 s, {len(cases)} extremes: largest error of any field over its largest change", worst, VIOLENT)
 
 
 def fast_reaction():
@@ -62,7 +60,7 @@ def slivers():
     for depth in (1e-3, 1e-5, 2e-6, 9e-7, 1e-7, 1e-8):
         done = ends(f"sliver of {depth:g} cells", attempt([*options, "-region_column_upper", f"{0.2 + depth * CELL!r} m, 0.02 m"]))
         if done.kind == "finished":
-            judge(ROW, f"a sliver of {depth:g} cells: largest change of any field", max(difference(done.folder, whole.folder, 1e6).values()), 0.05)
+            judge(ROW, f"a sliver of {depth:g} cells: largest change of any field", max(difference(done.folder, whole.folder, 1e6).values()), 0.03)
 
 
 def refusals():

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Fields that alternate from cell to cell are judged by a number: zigzag, the smallest of three successive differences of
+alternating sign between the means of neighbouring cells in a row, the largest in the body, over the field's range.  It is 0 in
+smooth fields and at fronts, and the amplitude where cells alternate.  The shipped cases' final fields, of the pictures in docs,
+on shorter runs where they are long, and the README's own case.
+"""
+import re
+from pathlib import Path
+
+import numpy as np
+
+from common import CASES, ROOT, binary, check_true, finish, judge, run, scratch, table  # noqa: I001
+import clathra  # noqa: E402, from scripts, which common puts on the path
+
+SEEN = 0.02  # of the range of a picture's colours
+FRONT = 0.1  # what BP2's own front has on the grid of its figure
+# Variable: range below which it counts as constant.
+LEAST = {"p": 1e3, "p_w": 1e3, "T": 1e-2, "S_h": 1e-3, "S_w": 1e-3, "mean stress": 1e2, "displacement": 1e-9}
+
+
+def cell_means(run, particles, values):
+    """(nx, ny) means over the particles of each cell, NaN where there are none."""
+    low, high, n = (np.array(run.case[f"grid_{k}"]) for k in ("lower", "upper", "cells"))
+    n = n.astype(int)
+    i, j = np.clip(np.floor((particles["position"] - low) / (high - low) * n).astype(int), 0, n - 1).T
+    cell = i * n[1] + j
+    count, total = (np.bincount(cell, w, minlength=n.prod()) for w in (None, values))
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan).reshape(n)
+
+
+def zigzag(cells):
+    """Largest over both axes; rows with gaps are passed over where they are."""
+    worst = 0.0
+    for axis in (0, 1):
+        d = np.diff(np.moveaxis(cells, axis, 0), axis=0)
+        if len(d) < 3:
+            continue
+        three = np.stack([d[k : len(d) - 2 + k] for k in range(3)])
+        turns = np.all(three[:-1] * three[1:] < 0, axis=0)
+        worst = max(worst, np.max(np.abs(three).min(axis=0), where=turns, initial=0.0))
+    return worst
+
+
+def measured(folder):
+    """{variable: zigzag over range} of the last snapshot, of variables that vary."""
+    run = clathra.Run(folder)
+    p = run.particles(run.times[-1])
+    fields = {k: np.asarray(p[k]).reshape(len(p["id"]), -1) for k in ("p", "p_w", "T", "S_h", "S_w") if k in p}
+    if "stress" in p:
+        fields |= {"mean stress": p["stress"][:, :3].mean(axis=1, keepdims=True), "displacement": p["displacement"]}
+    found = {}
+    for name, values in fields.items():
+        parts = [cell_means(run, p, v) for v in values.T]
+        spread = max(np.nanmax(c) - np.nanmin(c) for c in parts)
+        if spread > LEAST[name]:
+            found[name] = max(zigzag(c) for c in parts) / spread
+    return found
+
+
+# ---------------------------------------------------------------- the measure itself
+x, y = np.meshgrid(np.arange(20), np.arange(10), indexing="ij")
+check_true("it is 0 for a smooth field, a front and an overshoot", zigzag(np.sin(x / 3) + y**2) == zigzag(1.0 * (x > 9)) == zigzag(1.0 * (x > 9) + 0.1 * (x == 10)) == 0.0)
+check_true("... and the amplitude of a checkerboard, in a corner too", zigzag(1.0 * ((x + y) % 2)) == 1.0 and abs(zigzag(np.where((x < 6) & (y < 6), 0.3 * ((x + y) % 2), 0.01 * x * y)) - 0.3) < 0.1)
+
+# ---------------------------------------------------------------- shipped cases
+SHORT = {"terzaghi": (), "heat_slab": (), "heat_advection": (), "gravity_column": (), "mcwhorter_sunada": (), "footing": (), "shear_box": (), "elastic_wave": (),
+         "stefan_front": ("-time_end", "12 h", "-output_times", "12 h"), "buckley_leverett": ("-grid_cells", "50,1"), "bp2": ("-time_end", "1000 s", "-output_times", "1000 s"),
+         "sea_floor": ("-stepper_max_steps", 4)}  # fmt: skip
+rows = []
+for name, options in SHORT.items():
+    found = measured(run(binary(), CASES / name, "-quiet", *options).out)
+    rows += [(name, k, v) for k, v in found.items()]
+    check_true(f"{name}: some field varies", bool(found), list(found))
+    if name == "bp2":  # particles of one cell share its strain, not their stiffness, which follows S_h: beside the front of 50 cells they alternate
+        print(f"     {name}: zigzag of the mean stress beside the front, not judged: {found.pop('mean stress'):.3g}")
+        judge("fronts", f"{name}, 50 cells: zigzag of S_w beside the front over its range", found.pop("S_w"), FRONT)
+    judge("fronts", f"{name}: zigzag of any field over its range", max(found.values()), SEEN)
+
+locked = measured(run(binary(), CASES / "footing", "-quiet", "-mat_ground_elasticity_nu", 0.4999).out)
+check_true("a skeleton that locks is seen: its mean stress alternates", locked["mean stress"] > 0.1, locked)
+case = scratch() / "case.yaml"
+case.write_text(re.search(r"```yaml\n(title: a hydrate layer is drawn down.*?)```", Path(ROOT / "README.md").read_text(), re.S)[1])
+FOUR_HOURS = ("-quiet", "-grid_cells", "10,6", "-time_end", "4 h", "-output_every", "4 h")
+found = measured(run(binary(), case, *FOUR_HOURS).out)
+central = measured(run(binary(), case, *FOUR_HOURS, "-stabilisation_saturation", "no").out)
+check_true("README's case without (200): its checkerboard is seen", central["S_w"] > 0.1, central)
+rows += [("README's case", k, v) for k, v in found.items()]
+judge("fronts", "README's case: zigzag of any field over its range", max(found.values()), SEEN)
+table(("case", "field", "zigzag/range"), rows)
+finish()
