@@ -52,8 +52,8 @@ INLINE double LawAtMost(double x, double most)
   return x > most ? most : x;
 }
 
-/* x, in lanes whose result is not used (x <= 0) another number: glibc's vector functions take all lanes one by one where
-   the result of one overflows or vanishes. */
+/* x, in lanes whose result is not used (x <= 0) another number: glibc's vector functions take all lanes one by one
+   where the result of one overflows or vanishes. */
 INLINE double LawWhereAbove0(double x, double otherwise)
 {
   return x <= 0.0 ? otherwise : x;
