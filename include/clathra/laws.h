@@ -94,15 +94,8 @@ typedef struct {
   Equilibrium equilibrium;
 } Kinetics;
 double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
-/* (234): A_s = A_geo S_w S_g (1 - S_h) = A_geo s_w s_g (1 - S_h)^3, 1/m, with s_g = 1 - s_w; and its derivatives. */
-static inline double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh)
-{
-  const double v = 1.0 - Sh, film = law->A_geo * sw * (1.0 - sw);
-
-  *dA_dsw = law->A_geo * (1.0 - 2.0 * sw) * v * v * v;
-  *dA_dSh = -3.0 * film * v * v;
-  return film * v * v * v;
-}
+/* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
+double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);
 
 /* ---------------------------------------------------------------- equations of state, kg/m^3 */
 typedef struct {

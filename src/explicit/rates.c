@@ -129,23 +129,26 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
   const double *restrict own_w = f[P_PW] + r.p, *restrict own_g = f[P_PG] + r.p;
   double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p,
                    *restrict gain_T = e->t[T_GAIN_T] + r.p;
-  double p_r[BLOCK]                 = {0.0}, T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK];
+  double p_r[BLOCK] = {0.0}, Sh[BLOCK] = {0.0}, sw[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK],
+         area[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
     const double pw = own ? own_w[q] : g->value[q][B_P(s, 0)], pg = own ? own_g[q] : g->value[q][B_P(s, 1)];
 
-    p_r[q] = (1.0 - sg[q]) * pw + sg[q] * pg;
+    sw[q]  = 1.0 - sg[q];
+    Sh[q]  = 1.0 - open[q] / pore[q];
+    p_r[q] = sw[q] * pw + sg[q] * pg;
     T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
   }
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
   EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);
+  KineticsFormationAreaBatch(&k, r.n, sw, Sh, area);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    double       dw, dA;
-    const double Sh = 1.0 - open[q] / pore[q], drive = pe[q] - p_r[q];
-    const double rho_h = mh[q] > 0.0 ? mh[q] / (pore[q] * Sh) : 1.0, c = dt * k.M_h * k.A_geo / rho_h,
+    const double drive = pe[q] - p_r[q];
+    const double rho_h = mh[q] > 0.0 ? mh[q] / (pore[q] * Sh[q]) : 1.0, c = dt * k.M_h * k.A_geo / rho_h,
                  a = c * Kd[q] * drive, per = 1.0 / (1.0 + a);
-    const double forms = dt * V[q] * k.M_h * Kd[q] * KineticsFormationArea(&k, 1.0 - sg[q], Sh, &dw, &dA);
+    const double forms = dt * V[q] * k.M_h * Kd[q] * area[q];
     const bool   goes  = drive >= 0.0;
 
     gain[q]   = goes ? -mh[q] * a * per : -forms * drive;

@@ -186,13 +186,19 @@ static void TestReaction(void **state)
     assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11);
   }
   for (int k = 0; k < 2; k++) {
-    const Kinetics   law    = {.K0 = 2.5e-7, .dE = k ? 8e4 : 0.0};
+    const Kinetics   law    = {.K0 = 2.5e-7, .dE = k ? 8e4 : 0.0, .A_geo = 1e6};
     const LatentHeat latent = {.C0 = 4.7e5, .C1 = 140.0, .kirchhoff = k, .T_ref = 4.0, .dc = 900.0};
 
     KineticsRateConstantBatch(&law, N, x, a, da);
     for (int q = 0; q < N; q++)
       b[q] = KineticsRateConstant(&law, x[q], &db[q]);
     assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11);
+    for (int q = 0; q < N; q++)
+      y[q] = RandomIn(0.0, 1.0);
+    KineticsFormationAreaBatch(&law, N, y, y, a);
+    for (int q = 0; q < N; q++)
+      b[q] = KineticsFormationArea(&law, y[q], y[q], &d, &db[q]);
+    assert_true(Worst(N, a, b) < 1e-15);
     LatentHeatBatch(&latent, N, x, a);
     for (int q = 0; q < N; q++)
       b[q] = LatentHeatEvaluate(&latent, x[q], &d);
