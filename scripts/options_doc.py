@@ -34,7 +34,7 @@ PROGRAM = [  # option, value, default, meaning
     ("-newton_tol_update", "x", "1e-6", "... and every scaled update too, in units of 1 MPa and 1 K"),
     ("-newton_preconditioner", "auto, whole, reduced", "auto", "whole: of the whole matrix, LU unless -pc_type says "
      "otherwise; reduced: multigrid on what is left without the fluid velocities (docs/equations.md, section 9), where it "
-     "breaks down LU of the whole for that stage; auto: reduced where the cells across times the unknowns a node exceed 250, "
+     "breaks down LU of the whole for that stage; auto: reduced where the cells across times the unknowns a node exceed 250 (1000 without fluids), "
      "unless -pc_type, -ksp_type or -model_pmat_type is given"),
     ("-reduced_pc_type", "PETSc's", "fieldsplit", "solver of the reduced matrix: fieldsplit, its two groups of unknowns in "
      "turn; lu, all of it factorised"),

@@ -71,6 +71,7 @@ typedef struct Equilibrium Equilibrium;
 struct Equilibrium {
   double A1, A2, A3; /* Sloan form p_e = A1 exp(A2 - A3/T_K); A1 Pa, A2 -, A3 K */
   double (*pressure)(const Equilibrium *, double T_degC, double *dpe_dT);
+  void (*pressure_loop)(const Equilibrium *, int n, const double *T_degC, double *pe, double *dpe_dT);
   const char *type;
   double      shift; /* K by which salt lowers the temperature of equilibrium */
 };
@@ -79,7 +80,7 @@ bool                 EquilibriumSetType(Equilibrium *law, const char *type);
 const char *const   *EquilibriumTypes(void);
 static inline double EquilibriumPressure(const Equilibrium *law, double T, double *dpe_dT)
 {
-  return law->pressure(law, T + law->shift, dpe_dT);
+  return law->pressure(law, T, dpe_dT);
 }
 
 /* ---------------------------------------------------------------- Kim-Bishnoi kinetics

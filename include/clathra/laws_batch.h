@@ -17,3 +17,10 @@ void GasDensityBatch(const Gas *law, int n, const double *p, const double *T, do
 void WaterViscosityBatch(const Viscosity *law, int n, const double *T, double *mu);
 void GasViscosityBatch(const Viscosity *law, int n, const double *rho, const double *T, double *mu);
 void ElasticityYoungBatch(const Elasticity *law, int n, const double *restrict Sh, double *restrict E);
+/* p_e and K_d with their slopes in T. */
+void EquilibriumPressureBatch(const Equilibrium *law, int n, const double *T, double *pe, double *dpe_dT);
+void KineticsRateConstantBatch(const Kinetics *law, int n, const double *restrict T, double *restrict Kd,
+                               double *restrict dKd_dT);
+void KineticsFormationAreaBatch(const Kinetics *law, int n, const double *restrict sw, const double *restrict Sh,
+                                double *restrict A);
+void LatentHeatBatch(const LatentHeat *law, int n, const double *restrict T, double *restrict L);

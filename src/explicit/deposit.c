@@ -67,9 +67,11 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
       w->resist[PHASE_G][q] = mu[q] / ka[q];
   }
   for (int k = 0; k < s.fluids; k++) {
+    double *restrict rho = e->t[T_RHO + k] + r.p, *restrict drag = e->t[T_DRAG + k] + r.p;
+
     for (int q = 0; q < r.n; q++) {
-      e->t[T_RHO + k][r.p + q]  = w->rho[k][q];
-      e->t[T_DRAG + k][r.p + q] = w->resist[k][q] / w->kr[k][q];
+      rho[q]  = w->rho[k][q];
+      drag[q] = w->resist[k][q] / w->kr[k][q];
     }
   }
 }
@@ -273,12 +275,9 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   if (s.heat) {
     const double *g[CL_DIM] = {f[P_GT] + r.p, f[P_GT + 1] + r.p};
 
-    for (int q = 0; q < r.n; q++) {
-      const PetscInt p = r.p + q;
-
-      C[q]               = Capacity(e, s, r.mat, p);
+    Capacities(e, s, r, C);
+    for (int q = 0; q < r.n; q++)
       v.value[q][A_C(s)] = C[q];
-    }
     Carried(e, r, s.fluids, C, T, g, &w, &v);
   }
   if (s.solid)

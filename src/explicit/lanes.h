@@ -171,11 +171,12 @@ struct Explicit {
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
   double latent, advected;          /* J over the step */
   double squeezed;                  /* (290), J over the step */
-  double ahead;                     /* of the end of the step, since ExplicitBegin, s */
-  double straight;                  /* STRAIGHT p_0, the least of all materials, Pa */
-  double work[WORK_RATES];          /* J over the step (92), this rank */
-  double (*pull)[CL_DIM];           /* [nface] force of the tractions, N */
-  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  double heat_in, warmed;  /* J over the step: what prescribed temperatures take, and all that warms the nodes */
+  double ahead;            /* of the end of the step, since ExplicitBegin, s */
+  double straight;         /* STRAIGHT p_0, the least of all materials, Pa */
+  double work[WORK_RATES]; /* J over the step (92), this rank */
+  double (*pull)[CL_DIM];  /* [nface] force of the tractions, N */
+  double added, acting;    /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
 };
@@ -187,7 +188,7 @@ typedef struct {
   int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
 } Weights;
 
-/* A run of particles of one material. */
+/* A run of particles of one material, or of nodes. */
 typedef struct {
   PetscInt        p;
   int             n;
@@ -248,10 +249,11 @@ INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, i
 void Deposit(Explicit *e);
 void Rates(Explicit *e, double dt);
 void Update(Explicit *e, double dt);
-/* Calls the loop made for the set of the scene on every run of particles. */
+/* Calls the loop made for the set of the scene on every run of particles, or on the nodes of this rank. */
 typedef void (*Loop)(Explicit *e, Run r, double dt);
 typedef Loop LoopTable[2][3][2]; /* [solid][fluids][heat] */
 void         ForRuns(Explicit *e, const LoopTable table, double dt);
+void         ForNodes(Explicit *e, const LoopTable table, double dt);
 #define LOOPS(f)                                                                                                       \
   {                                                                                                                    \
     {{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}},                                                         \
@@ -315,12 +317,16 @@ INLINE void PressuresOf(double p_g, const double y[2], double d[2])
 }
 
 /* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
-INLINE void PerOpenVolume(const Explicit *e, const Material *mat, PetscInt p, double pg, double held[PHASE_COUNT])
+INLINE void PerOpenVolume(const Explicit *e, Run r, const double *restrict pg, double held[PHASE_COUNT][BLOCK])
 {
-  const double sg = e->t[T_SG][p];
+  const double *restrict sg = e->t[T_SG] + r.p, *restrict rho_w = e->t[T_RHO] + r.p,
+                         *restrict rho_g = e->t[T_RHO + 1] + r.p;
+  const double trace                     = r.mat->gas.trace;
 
-  held[PHASE_W] = (1.0 - sg) * e->t[T_RHO][p];
-  held[PHASE_G] = sg * e->t[T_RHO + 1][p] + (1.0 - sg) * mat->gas.trace * pg;
+  for (int q = 0; q < r.n; q++) {
+    held[PHASE_W][q] = (1.0 - sg[q]) * rho_w[q];
+    held[PHASE_G][q] = sg[q] * rho_g[q] + (1.0 - sg[q]) * trace * pg[q];
+  }
 }
 
 INLINE double Largest(double a, double b)
@@ -328,21 +334,38 @@ INLINE double Largest(double a, double b)
   return a > b ? a : b;
 }
 
-/* Heat capacity of a particle, J/K. */
-INLINE double Capacity(const Explicit *e, Set s, const Material *mat, PetscInt p)
+/* Heat capacities of a block of particles, J/K. */
+INLINE void Capacities(const Explicit *e, Set s, Run r, double *restrict C)
 {
-  double *const *f = e->m->P.f;
-  double         C = f[P_MS][p] * mat->c_s + f[P_MH][p] * mat->c_h;
+  double *const *f          = e->m->P.f;
+  const double *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
 
-  for (int k = 0; k < s.fluids; k++)
-    C += f[P_MW + k][p] * (k ? mat->c_g : mat->c_w);
-  return C;
+  for (int q = 0; q < r.n; q++)
+    C[q] = ms[q] * r.mat->c_s + mh[q] * r.mat->c_h;
+  for (int k = 0; k < s.fluids; k++) {
+    const double *restrict m = f[P_MW + k] + r.p;
+    const double c           = k ? r.mat->c_g : r.mat->c_w;
+
+    for (int q = 0; q < r.n; q++)
+      C[q] += m[q] * c;
+  }
+}
+
+/* Sum of a block's n numbers. */
+INLINE double Sum(int n, const double *restrict x)
+{
+  double sum = 0.0;
+
+  for (int q = 0; q < n; q++)
+    sum += x[q];
+  return sum;
 }
 
 /* FLIP, mixed with PIC: velocities of n particles from increments and nodal values that stand `width` numbers apart. */
 INLINE void Blend(double flip, int n, double *restrict v, const double *restrict dv, const double *restrict nodal,
                   int width)
 {
+#pragma GCC ivdep
   for (int q = 0; q < n; q++)
     v[q] = flip * (v[q] + dv[q * width]) + (1.0 - flip) * nodal[q * width];
 }

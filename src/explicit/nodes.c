@@ -104,14 +104,14 @@ static int Follows(const Explicit *e, PetscInt I, double *own)
   int    found = 0;
 
   for (int k = 0; k < 4; k++) {
-    const double V = Volume(e, Neighbour(e, I, k));
+    const double V = Volume(e, e->set, Neighbour(e, I, k));
 
     if (V > MARGIN * best) {
       best  = V;
       found = 1 + k;
     }
   }
-  *own = fmin(Volume(e, I) / (TIE * best), 1.0);
+  *own = fmin(Volume(e, e->set, I) / (TIE * best), 1.0);
   return *own < 1.0 ? found : 0;
 }
 
@@ -125,7 +125,7 @@ PetscErrorCode NodesFollow(Explicit *e)
     e->node[I].own = e->node[I].own_v = 1.0;
     e->node[I].leads                  = false;
     e->link[2 * I] = e->link[2 * I + 1] = 0.0;
-    if (e->o.tied && I < e->map.n_owned && Volume(e, I) > 0.0)
+    if (e->o.tied && I < e->map.n_owned && Volume(e, e->set, I) > 0.0)
       e->link[2 * I] = Follows(e, I, &e->link[2 * I + 1]);
   }
   if (!e->o.tied)

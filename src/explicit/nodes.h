@@ -4,9 +4,9 @@
 #include "lanes.h"
 
 /* Volume of the particles about a node; 0 where there are none. */
-static inline double Volume(const Explicit *e, PetscInt I)
+INLINE double Volume(const Explicit *e, const Set s, PetscInt I)
 {
-  return e->A[I * LANES * Rows(A_Count(e->set)) + A_V(e->set)];
+  return e->A[I * LANES * Rows(A_Count(s)) + A_V(s)];
 }
 
 /* Adds a share of n numbers. */

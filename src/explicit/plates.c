@@ -100,7 +100,7 @@ static PetscErrorCode Answers(Explicit *e, double dt)
       const double k = e->node[I].leads ? lead[I][d] : e->spring[I][d];
       double       lhs;
 
-      if (k == 0.0 || !(Volume(e, I) > 0.0))
+      if (k == 0.0 || !(Volume(e, e->set, I) > 0.0))
         continue;
       own[I][d]          = NodeFree(e, I, d, dt, &lhs);
       own[I][CL_DIM + d] = k / lhs;

@@ -52,6 +52,27 @@ typedef struct {
   double value[BLOCK][2 * LANES], force[CL_DIM][BLOCK][LANES];
 } Given;
 
+/* (101) and its slopes; V_T: slope of the open pores' volume in T. */
+INLINE void GasMasses(Explicit *e, Run r, const double *restrict V_T, const double *restrict open)
+{
+  const double *restrict sg = e->t[T_SG] + r.p, *restrict ds = e->t[T_DS] + r.p, *restrict rho = e->t[T_RHO + 1] + r.p;
+  const double *restrict rho_p = e->t[T_GAS] + r.p, *restrict rho_T = e->t[T_GAS + 1] + r.p,
+                         *restrict pg = e->m->P.f[P_PG] + r.p;
+  double *restrict eos = e->t[T_EOS + 1] + r.p, *restrict gw = e->t[T_SLOPE + 3] + r.p,
+                   *restrict gg = e->t[T_SLOPE + 4] + r.p, *restrict gT = e->t[T_SLOPE + 5] + r.p;
+  const double H = r.mat->gas.trace;
+
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++) {
+    const double held = sg[q] * rho[q] + (1.0 - sg[q]) * H * pg[q], over = (rho[q] - H * pg[q]) * ds[q];
+
+    eos[q] = open[q] * held;
+    gw[q]  = -open[q] * over;
+    gg[q]  = open[q] * (over + sg[q] * rho_p[q] + (1.0 - sg[q]) * H);
+    gT[q]  = held * V_T[q] + open[q] * sg[q] * rho_T[q];
+  }
+}
+
 /* New volume, and the masses the laws give there at the old pressures, with their slopes (9). */
 INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, const Gathered *g, double dt,
                    double *restrict pore, double *restrict open)
@@ -75,30 +96,25 @@ INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, co
   }
   if (!s.fluids)
     return;
-  const double *restrict rho_w = e->t[T_RHO] + r.p;
+  const bool gas               = s.fluids == 2;
+  const double *restrict rho_w = e->t[T_RHO] + r.p, *restrict sg = gas ? e->t[T_SG] + r.p : zero,
+                         *restrict ds = gas ? e->t[T_DS] + r.p : zero;
   double *restrict eos = e->t[T_EOS] + r.p, *restrict ww = e->t[T_SLOPE] + r.p, *restrict wg = e->t[T_SLOPE + 1] + r.p,
                    *restrict wT = e->t[T_SLOPE + 2] + r.p;
-  const double per_K            = 1.0 / mat->water.K;
+  const double per_K = 1.0 / mat->water.K, beta_w = mat->water.beta, beta_s = mat->solid.beta,
+               beta_h = mat->hydrate.beta;
+  double V_T[BLOCK]; /* open pores, warmed */
 
+#pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double sg = s.fluids == 2 ? e->t[T_SG][r.p + q] : 0.0, ds = s.fluids == 2 ? e->t[T_DS][r.p + q] : 0.0;
-    const double V_T =
-        -mat->solid.beta * ms[q] / rho_s[q] - mat->hydrate.beta * mh[q] / rho_h[q]; /* open pores, warmed */
-
-    eos[q] = open[q] * (1.0 - sg) * rho_w[q];
-    ww[q]  = open[q] * rho_w[q] * ((1.0 - sg) * per_K + ds);
-    wg[q]  = -open[q] * rho_w[q] * ds;
-    wT[q]  = rho_w[q] * (1.0 - sg) * (V_T - open[q] * mat->water.beta);
-    if (s.fluids == 2) { /* (101) */
-      const double rho = e->t[T_RHO + 1][r.p + q], rho_p = e->t[T_GAS][r.p + q], rho_T = e->t[T_GAS + 1][r.p + q];
-      const double H = mat->gas.trace, pg = f[P_PG][r.p + q], held = sg * rho + (1.0 - sg) * H * pg;
-
-      e->t[T_EOS + 1][r.p + q]   = open[q] * held;
-      e->t[T_SLOPE + 3][r.p + q] = -open[q] * (rho - H * pg) * ds;
-      e->t[T_SLOPE + 4][r.p + q] = open[q] * ((rho - H * pg) * ds + sg * rho_p + (1.0 - sg) * H);
-      e->t[T_SLOPE + 5][r.p + q] = held * V_T + open[q] * sg * rho_T;
-    }
+    V_T[q] = -beta_s * ms[q] / rho_s[q] - beta_h * mh[q] / rho_h[q];
+    eos[q] = open[q] * (1.0 - sg[q]) * rho_w[q];
+    ww[q]  = open[q] * rho_w[q] * ((1.0 - sg[q]) * per_K + ds[q]);
+    wg[q]  = -open[q] * rho_w[q] * ds[q];
+    wT[q]  = rho_w[q] * (1.0 - sg[q]) * (V_T[q] - open[q] * beta_w);
   }
+  if (gas)
+    GasMasses(e, r, V_T, open);
 }
 
 /* Gain of hydrate over the step at the nodal p and T, and its slopes (11)-(13): dissociation implicit in S_h, formation
@@ -106,34 +122,38 @@ INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, co
 INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict T,
                      const double *restrict pore, const double *restrict open)
 {
-  const Kinetics *k     = &r.mat->kinetics;
+  const Kinetics k          = r.mat->kinetics;
+  double *const *f          = e->m->P.f;
+  const bool     own        = e->o.particle_pressures;
+  const double *restrict sg = e->t[T_SG] + r.p, *restrict V = e->t[T_V] + r.p, *restrict mh = f[P_MH] + r.p;
+  const double *restrict own_w = f[P_PW] + r.p, *restrict own_g = f[P_PG] + r.p;
   double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p,
                    *restrict gain_T = e->t[T_GAIN_T] + r.p;
+  double p_r[BLOCK] = {0.0}, Sh[BLOCK] = {0.0}, sw[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK],
+         area[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
-    const PetscInt p  = r.p + q;
-    const double   sg = e->t[T_SG][p], V = e->t[T_V][p], mh = e->m->P.f[P_MH][p], Sh = 1.0 - open[q] / pore[q];
-    const bool     own = e->o.particle_pressures;
-    const double   pw  = own ? e->m->P.f[P_PW][p] : g->value[q][B_P(s, 0)],
-                 pg    = own ? e->m->P.f[P_PG][p] : g->value[q][B_P(s, 1)];
-    const double p_r = (1.0 - sg) * pw + sg * pg, T_r = s.heat ? g->value[q][B_T(s)] : T[q];
-    double       dK, dpe, dw, dA;
-    const double Kd = KineticsRateConstant(k, T_r, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r, &dpe),
-                 drive = pe - p_r;
+    const double pw = own ? own_w[q] : g->value[q][B_P(s, 0)], pg = own ? own_g[q] : g->value[q][B_P(s, 1)];
 
-    if (drive >= 0.0) {
-      const double rho_h = mh > 0.0 ? mh / (pore[q] * Sh) : 1.0, c = dt * k->M_h * k->A_geo / rho_h, a = c * Kd * drive;
+    sw[q]  = 1.0 - sg[q];
+    Sh[q]  = 1.0 - open[q] / pore[q];
+    p_r[q] = sw[q] * pw + sg[q] * pg;
+    T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
+  }
+  KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
+  EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);
+  KineticsFormationAreaBatch(&k, r.n, sw, Sh, area);
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++) {
+    const double drive = pe[q] - p_r[q];
+    const double rho_h = mh[q] > 0.0 ? mh[q] / (pore[q] * Sh[q]) : 1.0, c = dt * k.M_h * k.A_geo / rho_h,
+                 a = c * Kd[q] * drive, per = 1.0 / (1.0 + a);
+    const double forms = dt * V[q] * k.M_h * Kd[q] * area[q];
+    const bool   goes  = drive >= 0.0;
 
-      gain[q]   = -mh * a / (1.0 + a);
-      gain_p[q] = mh * c * Kd / ((1.0 + a) * (1.0 + a));
-      gain_T[q] = -mh * c * (Kd * dpe + dK * drive) / ((1.0 + a) * (1.0 + a));
-    } else {
-      const double c = dt * V * k->M_h * Kd * KineticsFormationArea(k, 1.0 - sg, Sh, &dw, &dA);
-
-      gain[q]   = -c * drive;
-      gain_p[q] = c;
-      gain_T[q] = -c * dpe;
-    }
+    gain[q]   = goes ? -mh[q] * a * per : -forms * drive;
+    gain_p[q] = goes ? mh[q] * c * Kd[q] * per * per : forms;
+    gain_T[q] = goes ? -mh[q] * c * (Kd[q] * dpe[q] + dK[q] * drive) * per * per : -forms * dpe[q];
   }
 }
 
@@ -149,16 +169,39 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
+#pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     const double *v = g->value[q], tau = bracket / (drag[q] + rho[q] * scale), c = dt * V[q] * rho[q];
 
     o->value[q][k]    = m[q] - eos[q];
     o->force[0][q][k] = c * (v[at + B_J] + tau * (v[at + B_PROJ] - gx[q]));
     o->force[1][q][k] = c * (v[at + B_J + 1] + tau * (v[at + B_PROJ + 1] - gy[q]));
-    for (int i = 0; i < s.fluids; i++)
-      o->value[q][R_Matrix(s) + k * n + i] = e->t[T_SLOPE + 3 * k + i][r.p + q];
-    if (s.heat)
-      o->value[q][R_Matrix(s) + k * n + s.fluids] = e->t[T_SLOPE + 3 * k + 2][r.p + q];
+  }
+  for (int i = 0; i < n; i++) {
+    const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
+
+    for (int q = 0; q < r.n; q++)
+      o->value[q][R_Matrix(s) + k * n + i] = slope[q];
+  }
+}
+
+/* (293) */
+INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g, double dt,
+                       const double *restrict kappa, Given *o)
+{
+  const int row = s.fluids, at = B_T(s);
+
+  for (int q = 0; q < r.n; q++) {
+    const double V         = e->m->P.f[P_V][r.p + q];
+    double       a[CL_DIM] = {0.0}, K[3];
+
+    for (int k = 0; k < s.fluids; k++) {
+      for (int d = 0; d < CL_DIM; d++)
+        a[d] += (k ? r.mat->c_g : r.mat->c_w) * o->force[d][q][k] / (dt * V);
+    }
+    HeatUpwind(kappa[q], a, e->m->grid.h, K);
+    o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
+    o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
   }
 }
 
@@ -166,39 +209,37 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict pore,
                     const double *restrict open, Given *o)
 {
-  const Material *mat = r.mat;
-  double *const  *f   = e->m->P.f;
-  const int       n = Scalars(s), row = s.fluids, at = B_T(s);
+  const Material mat = *r.mat;
+  const int      n = Scalars(s), row = s.fluids, at = B_T(s);
+  const double *restrict V = e->m->P.f[P_V] + r.p, *restrict V_new = e->t[T_V] + r.p,
+                         *restrict sg = s.fluids == 2 ? e->t[T_SG] + r.p : NULL;
+  double kappa[BLOCK], advected[BLOCK], C[BLOCK];
 
+  Capacities(e, s, r, C);
+#pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const PetscInt p   = r.p + q;
-    const double   phi = pore[q] / e->t[T_V][p], Sh = 1.0 - open[q] / pore[q];
-    const double   sw    = s.fluids == 2 ? 1.0 - e->t[T_SG][p] : s.fluids ? 1.0 : 0.0;
-    const double   fluid = sw * mat->kappa_w + (1.0 - sw) * mat->kappa_g;
-    const double   kappa = (1.0 - phi) * mat->kappa_s + phi * (Sh * mat->kappa_h + (1.0 - Sh) * fluid), V = f[P_V][p];
-    double         advected = 0.0;
+    const double phi = pore[q] / V_new[q], Sh = 1.0 - open[q] / pore[q];
+    const double sw    = s.fluids == 2 ? 1.0 - sg[q] : s.fluids ? 1.0 : 0.0;
+    const double fluid = sw * mat.kappa_w + (1.0 - sw) * mat.kappa_g;
 
-    for (int k = 0; k < s.fluids; k++)
-      advected += (k ? mat->c_g : mat->c_w) * (o->force[0][q][k] * g->dx[q][at] + o->force[1][q][k] * g->dy[q][at]);
-    o->value[q][row] = -advected;
-    e->advected += advected;
-    o->force[0][q][row] = -dt * V * kappa * g->dx[q][at];
-    o->force[1][q][row] = -dt * V * kappa * g->dy[q][at];
-    if (e->m->c->heat_upwind) {
-      double a[CL_DIM] = {0.0}, K[3];
-
-      for (int k = 0; k < s.fluids; k++) {
-        for (int d = 0; d < CL_DIM; d++)
-          a[d] += (k ? mat->c_g : mat->c_w) * o->force[d][q][k] / (dt * V);
-      }
-      HeatUpwind(kappa, a, e->m->grid.h, K);
-      o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
-      o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
-    }
-    for (int i = 0; i < s.fluids; i++)
-      o->value[q][R_Matrix(s) + row * n + i] = 0.0;
-    o->value[q][R_Matrix(s) + row * n + row] = Capacity(e, s, mat, p);
+    kappa[q]    = (1.0 - phi) * mat.kappa_s + phi * (Sh * mat.kappa_h + (1.0 - Sh) * fluid);
+    advected[q] = 0.0;
+    if (s.fluids)
+      advected[q] += mat.c_w * (o->force[0][q][0] * g->dx[q][at] + o->force[1][q][0] * g->dy[q][at]);
+    if (s.fluids == 2)
+      advected[q] += mat.c_g * (o->force[0][q][1] * g->dx[q][at] + o->force[1][q][1] * g->dy[q][at]);
+    o->value[q][row]                         = -advected[q];
+    o->force[0][q][row]                      = -dt * V[q] * kappa[q] * g->dx[q][at];
+    o->force[1][q][row]                      = -dt * V[q] * kappa[q] * g->dy[q][at];
+    o->value[q][R_Matrix(s) + row * n + row] = C[q];
   }
+  for (int i = 0; i < s.fluids; i++) {
+    for (int q = 0; q < r.n; q++)
+      o->value[q][R_Matrix(s) + row * n + i] = 0.0;
+  }
+  e->advected += Sum(r.n, advected);
+  if (e->m->c->heat_upwind)
+    UpwindHeat(e, s, r, g, dt, kappa, o);
 }
 
 /* (290): throttling with the fluxes above, and in the matrix what a rise of pressure gives. */
@@ -243,24 +284,24 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   const Kinetics *k               = &r.mat->kinetics;
   const int       n               = Scalars(s);
   const double    nu[PHASE_COUNT] = {k->N_h * k->M_w / k->M_h, k->M_g / k->M_h};
-  double          zero[BLOCK]     = {0.0}, rho_h[BLOCK];
+  const double *restrict sg = e->t[T_SG] + r.p, *restrict gain = e->t[T_GAIN] + r.p,
+                         *restrict gain_p = e->t[T_GAIN_P] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
+  double zero[BLOCK] = {0.0}, rho_h[BLOCK], held[PHASE_COUNT][BLOCK], L[BLOCK];
 
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
-  for (int q = 0; q < r.n; q++) {
-    const PetscInt p  = r.p + q;
-    const double   sg = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg};
-    const double   gain = e->t[T_GAIN][p], gain_p = e->t[T_GAIN_P][p], gain_T = e->t[T_GAIN_T][p];
-    double         dL, held[PHASE_COUNT];
+  LatentHeatBatch(&r.mat->latent, r.n, T, L);
+  PerOpenVolume(e, r, e->m->P.f[P_PG] + r.p, held);
+  for (int row = 0; row < n; row++) {
+#pragma GCC ivdep
+    for (int q = 0; q < r.n; q++) {
+      const double c = row < s.fluids ? nu[row] - held[row][q] / rho_h[q] : -L[q];
+      double      *a = &o->value[q][R_Matrix(s) + row * n];
 
-    PerOpenVolume(e, r.mat, p, e->m->P.f[P_PG][p], held);
-    for (int row = 0; row < n; row++) {
-      const double c = row < s.fluids ? nu[row] - held[row] / rho_h[q] : -LatentHeatEvaluate(&r.mat->latent, T[q], &dL);
-
-      o->value[q][row] -= c * gain;
-      for (int i = 0; i < s.fluids; i++)
-        o->value[q][R_Matrix(s) + row * n + i] += c * gain_p * share[i];
+      o->value[q][row] -= c * gain[q];
+      a[PHASE_W] += c * gain_p[q] * (1.0 - sg[q]);
+      a[PHASE_G] += c * gain_p[q] * sg[q];
       if (s.heat)
-        o->value[q][R_Matrix(s) + row * n + s.fluids] += c * gain_T;
+        a[s.fluids] += c * gain_T[q];
     }
   }
 }

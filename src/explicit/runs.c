@@ -1,4 +1,4 @@
-/* Loops over blocks of particles of one material. */
+/* Calls of the loops made for each set of fields. */
 #include "lanes.h"
 
 void ForRuns(Explicit *e, const LoopTable table, double dt)
@@ -16,4 +16,9 @@ void ForRuns(Explicit *e, const LoopTable table, double dt)
     loop(e, (Run){p, n, &c->material[material]}, dt);
     p += n;
   }
+}
+
+void ForNodes(Explicit *e, const LoopTable table, double dt)
+{
+  table[e->set.solid][e->set.fluids][e->set.heat](e, (Run){0, (int)e->map.n_owned, NULL}, dt);
 }

@@ -3,7 +3,7 @@
 
 /* x of the n x n system A x = b by elimination with the diagonal as pivots: storage and capacity outweigh what couples
  * them. */
-static void SolveSmall(int n, double *A, double *b, double *x)
+INLINE void SolveSmall(int n, double *A, double *b, double *x)
 {
   for (int k = 0; k < n; k++) {
     for (int i = k + 1; i < n; i++) {
@@ -23,9 +23,8 @@ static void SolveSmall(int n, double *A, double *b, double *x)
 }
 
 /* Increments of p_w, p_g, T of a node, with what its followers gave it; a held temperature takes the heat it needs. */
-static void NodeScalars(Explicit *e, PetscInt I, StageRates *rates)
+INLINE void NodeScalars(Explicit *e, const Set s, PetscInt I)
 {
-  const Set     s = e->set;
   const int     n = Scalars(s);
   const double *r = &e->R[I * LANES * Rows(R_Count(s))], *a = &e->A[I * LANES * Rows(A_Count(s))];
   double        A[9], b[3], T;
@@ -46,7 +45,7 @@ static void NodeScalars(Explicit *e, PetscInt I, StageRates *rates)
   double heat = -r[n - 1];
   for (int j = 0; j < n; j++)
     heat += r[R_Matrix(s) + (n - 1) * n + j] * e->gain[3 * I + j];
-  rates->heat_in += heat;
+  e->heat_in += heat;
 }
 
 /* Adds what a node gives up of its rows to those of the node it follows.  A temperature prescribed there is its own:
@@ -72,9 +71,8 @@ static void Join(Explicit *e, PetscInt I)
 }
 
 /* Row that the particles read: increments, end values, velocity of the skeleton. */
-static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
+INLINE void WriteScalars(Explicit *e, const Set s, PetscInt I)
 {
-  const Set     s = e->set;
   const int     n = Scalars(s);
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *r = &e->R[I * LANES * Rows(R_Count(s))];
   double       *c = &e->C[I * LANES], T;
@@ -83,9 +81,9 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
     c[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
   if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
     c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
-    rates->heat_in -= r[s.fluids];
+    e->heat_in -= r[s.fluids];
     for (int j = 0; j < n; j++)
-      rates->heat_in += r[R_Matrix(s) + s.fluids * n + j] * c[j];
+      e->heat_in += r[R_Matrix(s) + s.fluids * n + j] * c[j];
   }
   for (int k = 0; k < n; k++)
     c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
@@ -99,29 +97,50 @@ static void WriteScalars(Explicit *e, PetscInt I, StageRates *rates)
   if (s.fluids == 2 && fabs(c[1] - c[0]) > e->straight) /* (105): not to be believed; particles will say */
     c[C_End(s) + 1] = a[1] / V;
   if (s.heat)
-    rates->heat_rate += a[A_C(s)] * c[s.fluids];
+    e->warmed += a[A_C(s)] * c[s.fluids];
   for (int d = 0; s.solid && d < CL_DIM; d++)
     c[C_Vs(s) + d] = e->B[I * LANES * Rows(B_Count(s)) + d];
 }
 
+/* Loops over the nodes of this rank that particles reach. */
+INLINE void ScalarsRun(Explicit *e, const Set s, Run r, double dt)
+{
+  (void)dt;
+  for (PetscInt I = r.p; I < r.p + r.n; I++) {
+    if (Volume(e, s, I) > 0.0)
+      NodeScalars(e, s, I);
+  }
+}
+
+INLINE void WriteRun(Explicit *e, const Set s, Run r, double dt)
+{
+  (void)dt;
+  for (PetscInt I = r.p; I < r.p + r.n; I++) {
+    if (Volume(e, s, I) > 0.0)
+      WriteScalars(e, s, I);
+    else
+      memset(&e->C[I * LANES], 0, sizeof(Lanes));
+  }
+}
+
+MAKE_LOOPS(ScalarsRun)
+MAKE_LOOPS(WriteRun)
+
 PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
 {
+  static const LoopTable solve = LOOPS(ScalarsRun), write = LOOPS(WriteRun);
+
   PetscFunctionBeginUser;
+  e->heat_in = e->warmed = 0.0;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     if (e->node[I].root != (int)I)
       Join(e, I);
   }
-  for (PetscInt I = 0; I < e->map.n_owned; I++) {
-    if (Volume(e, I) > 0.0)
-      NodeScalars(e, I, rates);
-  }
+  ForNodes(e, solve, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->gain, 3));
-  for (PetscInt I = 0; I < e->map.n_owned; I++) {
-    if (Volume(e, I) > 0.0)
-      WriteScalars(e, I, rates);
-    else
-      PetscCall(PetscArrayzero(&e->C[I * LANES], LANES));
-  }
+  ForNodes(e, write, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
+  rates->heat_in += e->heat_in;
+  rates->heat_rate += e->warmed;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

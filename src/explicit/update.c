@@ -213,54 +213,97 @@ INLINE void Relax(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
   }
 }
 
+/* Gain of hydrate in a block's particles, what was wanted of it and what there is (40). */
+INLINE void GainOf(const Explicit *e, const Set s, Run r, const Gathered *g, double *restrict wanted,
+                   double *restrict gain)
+{
+  const double *restrict gain_0 = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p,
+                         *restrict gain_T = e->t[T_GAIN_T] + r.p;
+  const double *restrict sg = e->t[T_SG] + r.p, *restrict mh = e->m->P.f[P_MH] + r.p;
+
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++) {
+    const double dp = (1.0 - sg[q]) * g->value[q][0] + sg[q] * g->value[q][1];
+
+    wanted[q] = gain_0[q] + gain_p[q] * dp + (s.heat ? gain_T[q] * g->value[q][2] : 0.0);
+    gain[q]   = Largest(wanted[q], -mh[q]);
+  }
+}
+
+/* Its heat, with T of t_n; what was missing goes back to the particle. */
+INLINE void HeatOf(Explicit *e, const Set s, Run r, const double *restrict T, const double *restrict wanted,
+                   const double *restrict gain)
+{
+  double *restrict now = e->m->P.f[P_T] + r.p;
+  double L[BLOCK], C[BLOCK], heat[BLOCK];
+
+  LatentHeatBatch(&r.mat->latent, r.n, T, L);
+  Capacities(e, s, r, C);
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++) {
+    now[q] += L[q] * (gain[q] - wanted[q]) / C[q];
+    heat[q] = L[q] * wanted[q];
+  }
+  e->latent += Sum(r.n, heat);
+}
+
+/* Mass of hydrate, what the fluids and heat give for it (40). */
+INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double *restrict kept, PetscInt *limited)
+{
+  double *const  *f               = e->m->P.f;
+  const Kinetics *kin             = &r.mat->kinetics;
+  const double    nu[PHASE_COUNT] = {kin->N_h * kin->M_w / kin->M_h, kin->M_g / kin->M_h};
+  double         *mw = f[P_MW] + r.p, *mg = f[P_MG] + r.p, *mh = f[P_MH] + r.p; /* read by HeatOf, too */
+  const double   *pg = f[P_PG] + r.p, *now = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
+  double wanted[BLOCK], gain[BLOCK], T[BLOCK], p[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, held[PHASE_COUNT][BLOCK];
+  int    fewer = 0;
+
+  GainOf(e, s, r, g, wanted, gain);
+  for (int q = 0; q < r.n; q++) { /* at t_n */
+    T[q] = now[q] - (s.heat ? g->value[q][2] : 0.0);
+    p[q] = pg[q] - g->value[q][1];
+  }
+  LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
+  PerOpenVolume(e, r, p, held);
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++) {
+    mw[q] += -held[PHASE_W][q] / rho_h[q] * wanted[q] + nu[PHASE_W] * (wanted[q] - gain[q]);
+    mg[q] += -held[PHASE_G][q] / rho_h[q] * wanted[q] + nu[PHASE_G] * (wanted[q] - gain[q]);
+  }
+  if (s.heat)
+    HeatOf(e, s, r, T, wanted, gain);
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++) {
+    fewer += gain[q] != wanted[q];
+    kept[q] = gain[q] < 0.0 ? 1.0 + gain[q] / mh[q] : 1.0;
+    mh[q] += gain[q];
+  }
+  *limited += fewer;
+}
+
 /* (40): masses of the fluids, what the laws' slopes make of the increments, so that the sum over particles is what the
    nodal balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the
    fluids and from the heat. */
 INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, double *restrict kept, PetscInt *limited)
 {
-  const Material *mat = r.mat;
-  double *const  *f   = e->m->P.f;
+  double *const *f = e->m->P.f;
 
   for (int k = 0; k < s.fluids; k++) {
-    double *restrict m = f[P_MW + k] + r.p;
+    double *restrict m         = f[P_MW + k] + r.p;
+    const double *restrict eos = e->t[T_EOS + k] + r.p;
 
-    for (int q = 0; q < r.n; q++) {
-      m[q] = e->t[T_EOS + k][r.p + q];
-      for (int i = 0; i < s.fluids; i++)
-        m[q] += e->t[T_SLOPE + 3 * k + i][r.p + q] * g->value[q][i];
-      if (s.heat)
-        m[q] += e->t[T_SLOPE + 3 * k + 2][r.p + q] * g->value[q][s.fluids];
+    for (int q = 0; q < r.n; q++)
+      m[q] = eos[q];
+    for (int i = 0; i < Scalars(s); i++) {
+      const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
+
+#pragma GCC ivdep
+      for (int q = 0; q < r.n; q++)
+        m[q] += slope[q] * g->value[q][i];
     }
   }
-  if (s.fluids < 2 || !mat->reacts)
-    return;
-  const Kinetics *kin             = &mat->kinetics;
-  const double    nu[PHASE_COUNT] = {kin->N_h * kin->M_w / kin->M_h, kin->M_g / kin->M_h};
-
-  for (int q = 0; q < r.n; q++) {
-    const PetscInt p  = r.p + q;
-    const double   sg = e->t[T_SG][p], share[PHASE_COUNT] = {1.0 - sg, sg};
-    const double   T = s.heat ? f[P_T][p] - g->value[q][2] : e->t[T_T][p]; /* at t_n */
-    double         dp, dT, dL, held[PHASE_COUNT];
-    const double   rho_h  = LiquidDensity(&mat->hydrate, 0.0, T, &dp, &dT);
-    const double   wanted = e->t[T_GAIN][p] +
-                          e->t[T_GAIN_P][p] * (share[0] * g->value[q][0] + share[1] * g->value[q][1]) +
-                          (s.heat ? e->t[T_GAIN_T][p] * g->value[q][2] : 0.0);
-    const double gain = Largest(wanted, -f[P_MH][p]);
-
-    PerOpenVolume(e, mat, p, f[P_PG][p] - g->value[q][1], held);
-    for (int k = 0; k < 2; k++)
-      f[P_MW + k][p] += -held[k] / rho_h * wanted + nu[k] * (wanted - gain);
-    if (s.heat) {
-      const double L = LatentHeatEvaluate(&mat->latent, T, &dL);
-
-      f[P_T][p] += L * (gain - wanted) / Capacity(e, s, mat, p);
-      e->latent += L * wanted;
-    }
-    *limited += gain != wanted;
-    kept[q] = gain < 0.0 ? 1.0 + gain / f[P_MH][p] : 1.0;
-    f[P_MH][p] += gain;
-  }
+  if (s.fluids == 2 && r.mat->reacts)
+    HydrateOf(e, s, r, g, kept, limited);
 }
 
 /* (290): what the rise of the pressures gave. */
@@ -278,13 +321,13 @@ INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const doub
   double *const *f     = e->m->P.f;
   const bool     known = s.fluids || s.heat; /* the volume, from the pass before */
   double *restrict V = f[P_V] + r.p, *restrict Sh = f[P_SH] + r.p;
-  const double *restrict at = known ? e->t[T_V] + r.p : NULL, *restrict ms = f[P_MS] + r.p,
-                         *restrict mh = f[P_MH] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
+  const double *restrict at = known ? e->t[T_V] + r.p : V, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
+  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK]                                                      = {0.0};
   Wrong  full = 0;
 
   LiquidDensityBatch(&r.mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
+#pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     const double volume = known ? at[q] : V[q] * n->J[q], pore = volume - ms[q] / rho_s[q],
                  open = pore - mh[q] / rho_h[q];

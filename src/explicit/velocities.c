@@ -1,103 +1,120 @@
 /* Between the first and the second pass: velocities of the nodes (36). */
 #include "nodes.h"
 
-/* One direction of one node: masses, start velocities, forces; fluids per unit of their volume. */
+/* Balances of a node (36): what has no direction, then one direction; fluids per unit of their volume. */
 typedef struct {
-  double M, v, f; /* skeleton; f of the mixture */
-  /* fluids: mass, velocity; (16) of each: force, mass per unit of volume fraction, drag, all times k_r; k_r, share */
-  double m[2], vf[2], r[2], Mi[2], B[2], kr[2], w[2];
+  double M, per_M; /* skeleton: mass and its inverse, 0 without */
+  double m[2], per_m[2];
+  /* (16) of each fluid: inertia per velocity, drag, times k_r, and the inverse of what multiplies its velocity; k_r,
+     share */
+  double A[2], B[2], per_AB[2], kr[2], w[2];
+  double lhs;               /* of the mixture, N s/m */
+  double v, f, vf[2], r[2]; /* skeleton: velocity, force on the mixture; fluids: velocity, force times k_r */
 } Balance;
 
 /* Share of a fluid in the volume of a node (18), (107). */
-static double Share(const Explicit *e, const double *a, int k)
+INLINE double Share(const Set s, const double *a, double per_V, int k)
 {
-  return Largest(a[A_Fluid(e->set, k) + FL_W] / a[A_V(e->set)], CL_SHARE_FLOOR);
+  return Largest(a[A_Fluid(s, k) + FL_W] * per_V, CL_SHARE_FLOOR);
 }
 
-static double Velocity(double momentum, double mass, double otherwise)
+INLINE double Inverse(double mass)
 {
-  return mass > 0.0 ? momentum / mass : otherwise;
+  return mass > 0.0 ? 1.0 / mass : 0.0;
 }
 
-static void ReadBalance(const Explicit *e, const double *a, int d, Balance *b)
+/* Drag that acts at the end of the step. */
+INLINE double DragAtEnd(const Explicit *e, const Balance *b, int k)
 {
-  const Set    s = e->set;
-  const double V = a[A_V(s)], *mix = &a[A_Mix(s)], gravity = e->m->bc.gravity[d];
-  double       mass = 0.0;
+  return e->o.drag_implicit ? b->B[k] : 0.0;
+}
 
-  b->M = s.solid ? mix[MIX_M] : 0.0;
-  b->v = s.solid ? Velocity(mix[MIX_VX + d], b->M, 0.0) : 0.0;
+/* ... and at its start. */
+INLINE double DragAtStart(const Explicit *e, const Balance *b, int k)
+{
+  return e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
+}
+
+/* Masses and drags, and the left side of the mixture's balance with the fluids' velocities eliminated. */
+INLINE void ReadMasses(const Explicit *e, const Set s, const double *a, double dt, Balance *b)
+{
+  const double per_V = 1.0 / a[A_V(s)], scale = e->o.mass_scaling / dt;
+
+  b->M     = s.solid ? a[A_Mix(s) + MIX_M] : 0.0;
+  b->per_M = Inverse(b->M);
+  b->lhs   = scale * b->M;
   for (int k = 0; k < s.fluids; k++) {
     const double *f = &a[A_Fluid(s, k)];
 
-    b->m[k]  = f[FL_M];
-    b->vf[k] = Velocity(f[FL_VX + d], f[FL_M], b->v);
-    b->kr[k] = s.fluids == 2 ? PetscSqr(f[FL_ROOT] / V) : 1.0;
-    b->w[k]  = Share(e, a, k);
-    b->Mi[k] = b->kr[k] * f[FL_MI];
-    b->r[k]  = b->kr[k] * (f[FL_GX + d] + f[FL_MI] * gravity);
-    b->B[k]  = f[FL_DRAG] * b->w[k];
-    mass += f[FL_M];
+    b->m[k]      = f[FL_M];
+    b->per_m[k]  = Inverse(f[FL_M]);
+    b->kr[k]     = s.fluids == 2 ? PetscSqr(f[FL_ROOT] * per_V) : 1.0;
+    b->w[k]      = Share(s, a, per_V, k);
+    b->A[k]      = scale * b->kr[k] * f[FL_MI];
+    b->B[k]      = f[FL_DRAG] * b->w[k];
+    b->per_AB[k] = 1.0 / (b->A[k] + DragAtEnd(e, b, k));
+    b->lhs += scale * b->m[k] * DragAtEnd(e, b, k) * b->per_AB[k];
   }
-  b->f = s.solid ? mix[MIX_FX + d] + (b->M + mass) * gravity : 0.0;
+}
+
+/* Velocities and forces along d. */
+INLINE void ReadForces(const Explicit *e, const Set s, const double *a, int d, Balance *b)
+{
+  const double *mix = &a[A_Mix(s)], gravity = e->m->bc.gravity[d];
+  double        mass = b->M;
+
+  b->v = s.solid ? mix[MIX_VX + d] * b->per_M : 0.0;
+  for (int k = 0; k < s.fluids; k++) {
+    const double *f = &a[A_Fluid(s, k)];
+
+    b->vf[k] = b->m[k] > 0.0 ? f[FL_VX + d] * b->per_m[k] : b->v;
+    b->r[k]  = b->kr[k] * (f[FL_GX + d] + f[FL_MI] * gravity);
+    mass += b->m[k];
+  }
+  b->f = s.solid ? mix[MIX_FX + d] + mass * gravity : 0.0;
 }
 
 /* Local damping: a share of the force out of balance, against the motion, N. */
-static double Damping(const Balance *b, double share)
+INLINE double Damping(const Balance *b, double share)
 {
   return share * fabs(b->f) * (b->v > 0.0 ? 1.0 : b->v < 0.0 ? -1.0 : 0.0);
 }
 
-/* Balance of the mixture (36) with the fluids' velocities eliminated: lhs v_s = rhs. */
-static void Mixture(const Explicit *e, const Balance *b, double dt, double damping, double *left, double *right)
+/* Right side of the balance of the mixture (36): lhs v_s = rhs. */
+INLINE double MixtureForce(const Explicit *e, const Set s, const Balance *b, double dt, double damping)
 {
-  const Set    s     = e->set;
   const double scale = e->o.mass_scaling / dt;
-  double       lhs = scale * b->M, rhs = b->f + scale * b->M * b->v;
+  double       rhs   = b->f + scale * b->M * b->v - Damping(b, damping);
 
-  rhs -= Damping(b, damping);
-  for (int k = 0; k < s.fluids; k++) {
-    const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
-    const double drag = e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
-
-    lhs += scale * b->m[k] * B / (A + B);
-    rhs -= scale * b->m[k] * (b->r[k] - drag - B * b->vf[k]) / (A + B);
-  }
-  *left  = lhs;
-  *right = rhs;
+  for (int k = 0; k < s.fluids; k++)
+    rhs -= scale * b->m[k] * (b->r[k] - DragAtStart(e, b, k) - DragAtEnd(e, b, k) * b->vf[k]) * b->per_AB[k];
+  return rhs;
 }
 
 double NodeFree(const Explicit *e, PetscInt I, int d, double dt, double *lhs)
 {
-  const int width = LANES * Rows(A_Count(e->set));
+  const Set s     = e->set;
+  const int width = LANES * Rows(A_Count(s));
   Balance   b;
-  double    rhs;
 
-  ReadBalance(e, e->node[I].leads ? &e->G[I * width] : &e->A[I * width], d, &b);
-  Mixture(e, &b, dt, 0.0, lhs, &rhs);
-  return rhs / *lhs - b.v;
+  const double *a = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
+  ReadMasses(e, s, a, dt, &b);
+  ReadForces(e, s, a, d, &b);
+  *lhs = b.lhs;
+  return MixtureForce(e, s, &b, dt, 0.0) / b.lhs - b.v;
 }
 
 /* Velocities at the end of the step (36), drag implicit or explicit; a held skeleton moves as it must. */
-static void Solve(const Explicit *e, const Balance *b, double dt, bool held, double value, double v[3])
+INLINE void Solve(const Explicit *e, const Set s, const Balance *b, double dt, bool held, double value, double v[3])
 {
-  const Set    s     = e->set;
-  const double scale = e->o.mass_scaling / dt;
-  double       lhs, rhs;
-
-  Mixture(e, b, dt, e->o.damping, &lhs, &rhs);
-  v[0] = held ? value : s.solid ? rhs / lhs : 0.0;
-  for (int k = 0; k < s.fluids; k++) {
-    const double A = scale * b->Mi[k], B = e->o.drag_implicit ? b->B[k] : 0.0;
-    const double drag = e->o.drag_implicit ? 0.0 : b->B[k] * (b->vf[k] - b->v);
-
-    v[1 + k] = (A * b->vf[k] + b->r[k] - drag + B * v[0]) / (A + B);
-  }
+  v[0] = held ? value : s.solid ? MixtureForce(e, s, b, dt, e->o.damping) / b->lhs : 0.0;
+  for (int k = 0; k < s.fluids; k++)
+    v[1 + k] = (b->A[k] * b->vf[k] + b->r[k] - DragAtStart(e, b, k) + DragAtEnd(e, b, k) * v[0]) * b->per_AB[k];
 }
 
 /* Mean velocity over the step in the works (92), from what it is before and at the end; what is held moves as it must,
    all the step. */
-static double Mean(const Explicit *e, PetscInt I, int unknown, double before, double end)
+INLINE double Mean(const Explicit *e, PetscInt I, int unknown, double before, double end)
 {
   double value;
 
@@ -106,9 +123,8 @@ static double Mean(const Explicit *e, PetscInt I, int unknown, double before, do
 
 /* (92): work of the drag along d in a balance (of a node, or of one and those that follow it) with its answer v; a
    fluid that is held moves as it must. */
-static double DragWork(const Explicit *e, PetscInt I, int d, const Balance *b, const double v[3])
+INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, int d, const Balance *b, const double v[3])
 {
-  const Set    s    = e->set;
   const double mean = Mean(e, I, F_VSX + d, b->v, v[0]);
   double       sum  = 0.0, held;
 
@@ -122,24 +138,25 @@ static double DragWork(const Explicit *e, PetscInt I, int d, const Balance *b, c
   return sum;
 }
 
-static void NodeVelocities(Explicit *e, PetscInt I, double dt)
+INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 {
-  const int     width = LANES * Rows(A_Count(e->set));
+  const int     width = LANES * Rows(A_Count(s));
   const double *a     = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
+  Balance       b;
 
+  ReadMasses(e, s, a, dt, &b);
   for (int d = 0; d < CL_DIM; d++) {
-    Balance b;
-    double  v[3], value = 0.0;
+    double v[3], value = 0.0;
 
-    ReadBalance(e, a, d, &b);
-    const bool held = e->set.solid && Held(e, I, F_VSX + d, &value);
-    Solve(e, &b, dt, held, value, v);
-    if (e->set.solid && e->set.fluids)
-      e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, I, d, &b, v);
+    ReadForces(e, s, a, d, &b);
+    const bool held = s.solid && Held(e, I, F_VSX + d, &value);
+    Solve(e, s, &b, dt, held, value, v);
+    if (s.solid && s.fluids)
+      e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, d, &b, v);
     if (!held)
       e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(&b, e->o.damping) * 0.5 * (v[0] + b.v);
     e->inc[6 * I + d] = v[0] - b.v;
-    for (int k = 0; k < e->set.fluids; k++)
+    for (int k = 0; k < s.fluids; k++)
       e->inc[6 * I + 2 * (1 + k) + d] = v[1 + k] - b.vf[k];
     if (!held) /* of the mixture, which moves with the skeleton but for seepage */
       e->added += PetscSqr((e->o.mass_scaling - 1.0) * b.M * (v[0] - b.v) / dt);
@@ -147,9 +164,8 @@ static void NodeVelocities(Explicit *e, PetscInt I, double dt)
 }
 
 /* (92): works at a node along d with the means of its velocities (skeleton, water, gas; v at the end) over the step. */
-static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const double v[3], double dt)
+INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance *w, const double v[3], double dt)
 {
-  const Set     s = e->set;
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->nplate ? e->push[I] : NULL;
   const double  scale = e->o.mass_scaling, mean = Mean(e, I, F_VSX + d, w->v, v[0]), gravity = e->m->bc.gravity[d];
   double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
@@ -172,17 +188,17 @@ static void NodeWork(Explicit *e, PetscInt I, int d, const Balance *w, const dou
 }
 
 /* Row that the particles read: own start velocity, the increment, then what is prescribed. */
-static void WriteVelocities(Explicit *e, PetscInt I, double dt)
+INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 {
-  const Set     s = e->set;
-  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], per_V = 1.0 / a[A_V(s)];
   double       *b = &e->B[I * LANES * Rows(B_Count(s))];
+  Balance       w;
 
+  ReadMasses(e, s, a, dt, &w);
   for (int d = 0; d < CL_DIM; d++) {
-    Balance w;
-    double  v[3] = {0.0}, value;
+    double v[3] = {0.0}, value;
 
-    ReadBalance(e, a, d, &w);
+    ReadForces(e, s, a, d, &w);
     v[0] = s.solid ? w.v + Blended(e, I, e->node[I].own_v, 6, e->inc, d) : 0.0;
     if (s.solid && Held(e, I, F_VSX + d, &value))
       v[0] = value;
@@ -198,22 +214,46 @@ static void WriteVelocities(Explicit *e, PetscInt I, double dt)
       if (Held(e, I, F_VWX + 2 * k + d, &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.w[k] * (v[1 + k] - v[0]);
-      bf[B_PROJ + d] = -f[FL_GX + d] / V;
+      bf[B_PROJ + d] = -f[FL_GX + d] * per_V;
       bf[B_DV + d]   = v[1 + k] - w.vf[k];
       bf[B_VEL + d]  = v[1 + k];
     }
     if (s.solid)
-      NodeWork(e, I, d, &w, v, dt);
+      NodeWork(e, s, I, d, &w, v, dt);
   }
   for (int k = 0; k < s.fluids; k++)
-    b[B_P(s, k)] = a[k] / V;
+    b[B_P(s, k)] = a[k] * per_V;
   if (s.heat)
     b[B_T(s)] = a[s.fluids] / a[A_C(s)];
 }
 
+/* Loops over the nodes of this rank that particles reach. */
+INLINE void VelocitiesRun(Explicit *e, const Set s, Run r, double dt)
+{
+  for (PetscInt I = r.p; I < r.p + r.n; I++) {
+    if (Volume(e, s, I) > 0.0)
+      NodeVelocities(e, s, I, dt);
+  }
+}
+
+INLINE void WriteRun(Explicit *e, const Set s, Run r, double dt)
+{
+  const int width = LANES * Rows(B_Count(s));
+
+  for (PetscInt I = r.p; I < r.p + r.n; I++) {
+    if (Volume(e, s, I) > 0.0)
+      WriteVelocities(e, s, I, dt);
+    else
+      memset(&e->B[I * width], 0, (size_t)width * sizeof(double));
+  }
+}
+
+MAKE_LOOPS(VelocitiesRun)
+MAKE_LOOPS(WriteRun)
+
 PetscErrorCode NodesVelocities(Explicit *e, double t, double dt)
 {
-  const int width = LANES * Rows(B_Count(e->set));
+  static const LoopTable solve = LOOPS(VelocitiesRun), write = LOOPS(WriteRun);
 
   PetscFunctionBeginUser;
   for (PetscInt h = 0; h < e->nheld; h++) {
@@ -225,21 +265,13 @@ PetscErrorCode NodesVelocities(Explicit *e, double t, double dt)
   PetscCall(NodesFollow(e));
   if (e->nplate)
     PetscCall(PlatesForces(e, t, dt));
-  for (PetscInt I = 0; I < e->map.n_owned; I++) {
-    if (Volume(e, I) > 0.0)
-      NodeVelocities(e, I, dt);
-  }
+  ForNodes(e, solve, dt);
   if (e->o.mass_scaling > 1.0) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
     e->worst_scaling = Largest(e->worst_scaling, e->acting > 0.0 ? sqrt(e->added / e->acting) : 0.0);
   }
   PetscCall(NodeMapBroadcast(&e->map, e->inc, 6));
-  for (PetscInt I = 0; I < e->map.n_owned; I++) {
-    if (Volume(e, I) > 0.0)
-      WriteVelocities(e, I, dt);
-    else
-      PetscCall(PetscArrayzero(&e->B[I * width], width));
-  }
-  PetscCall(NodeMapBroadcast(&e->map, e->B, width));
+  ForNodes(e, write, dt);
+  PetscCall(NodeMapBroadcast(&e->map, e->B, LANES * Rows(B_Count(e->set))));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

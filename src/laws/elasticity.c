@@ -6,7 +6,7 @@
    S_0^b t [(2 - b) + (b - 1) t] meets S^b in value and slope.  S < 0 (round-off) continues that, or 0. */
 INLINE double Stiffening(double S, double b, double *dS)
 {
-  const double x = LawAtLeast(S, LAW_LEAST);
+  const double x = LawWhereAbove0(S, 1.0);
   double       v = pow(x, b), d = b * v / x;
 
   if (b < 1.0) {

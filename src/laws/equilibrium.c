@@ -1,9 +1,9 @@
 /* Phase equilibrium of methane hydrate: pressure p_e (Pa) of the temperature (degC). */
-#include "clathra/laws.h"
+#include "clathra/laws_batch.h"
 #include "laws_private.h"
 
 /* (231), Sloan (1987), (P37): p_e = A1 exp(A2 - A3/T_K). */
-static double Equilibrium_Sloan(const Equilibrium *law, double T, double *dpe_dT)
+INLINE double Equilibrium_Sloan(const Equilibrium *law, double T, double *dpe_dT)
 {
   const double TK = T + LAW_ZERO_CELSIUS;
   double       de;
@@ -24,7 +24,7 @@ static const double over_ice[6]   = {0.96486076446964683,  0.037252533185766023,
 #define MORIDIS_CROSSING 0.33344344905243205 /* degC, where the two polynomials meet */
 #define BLEND 0.25                           /* K, half-width of the blend between the curves over ice and over water */
 
-static double Polynomial(const double c[6], double t, double *dt)
+INLINE double Polynomial(const double c[6], double t, double *dt)
 {
   double y = c[5];
 
@@ -37,9 +37,9 @@ static double Polynomial(const double c[6], double t, double *dt)
 }
 
 /* ln p_e from that over ice and over water (value and slope), joined C1 where they cross. */
-static double Joined(double T, double crossing, const double ice[2], const double water[2], double *dT)
+INLINE double Joined(double T, double crossing, const double ice[2], const double water[2], double *dT)
 {
-  const double x = fmax(0.0, fmin((T - crossing) / (2.0 * BLEND) + 0.5, 1.0));
+  const double x = LawAtLeast(LawAtMost((T - crossing) / (2.0 * BLEND) + 0.5, 1.0), 0.0);
   const double w = x * x * (3.0 - 2.0 * x), dw = 6.0 * x * (1.0 - x) / (2.0 * BLEND); /* weight of water */
 
   *dT = ice[1] + w * (water[1] - ice[1]) + dw * (water[0] - ice[0]);
@@ -49,9 +49,9 @@ static double Joined(double T, double crossing, const double ice[2], const doubl
 /* (232), Moridis (2003), 148.8-320 K; outside the exponent continues linearly.  The printed switch at 273.2 K jumps by
    2 %, which no Newton iteration can sit on: the branches are joined where they cross (273.483 K); the printed values
    stand everywhere but in 273.2-273.74 K. */
-static double Equilibrium_Moridis(const Equilibrium *law, double T, double *dpe_dT)
+INLINE double Equilibrium_Moridis(const Equilibrium *law, double T, double *dpe_dT)
 {
-  const double t = fmax(MORIDIS_COLDEST, fmin(T, MORIDIS_HOTTEST));
+  const double t = LawAtLeast(LawAtMost(T, MORIDIS_HOTTEST), MORIDIS_COLDEST);
   double       ice[2], water[2], dy, de;
 
   (void)law;
@@ -64,7 +64,7 @@ static double Equilibrium_Moridis(const Equilibrium *law, double T, double *dpe_
 }
 
 /* (122), Kamath (1984), p_e in kPa, 248-298 K: over ice and over water, joined where they cross (0.807 degC). */
-static double Equilibrium_Kamath(const Equilibrium *law, double T, double *dpe_dT)
+INLINE double Equilibrium_Kamath(const Equilibrium *law, double T, double *dpe_dT)
 {
   static const double A[2] = {14.717, 38.980}, B[2] = {1886.79, 8533.80}; /* ice, water */
   const double        TK = T + LAW_ZERO_CELSIUS, crossing = (B[1] - B[0]) / (A[1] - A[0]) - LAW_ZERO_CELSIUS;
@@ -79,7 +79,7 @@ static double Equilibrium_Kamath(const Equilibrium *law, double T, double *dpe_d
 }
 
 /* (123), Masuda et al. (1999), in Pa: the curve of Selim and Sloan (1989) raised by 15 %. */
-static double Equilibrium_Masuda(const Equilibrium *law, double T, double *dpe_dT)
+INLINE double Equilibrium_Masuda(const Equilibrium *law, double T, double *dpe_dT)
 {
   const double TK = T + LAW_ZERO_CELSIUS;
   double       de;
@@ -90,10 +90,41 @@ static double Equilibrium_Masuda(const Equilibrium *law, double T, double *dpe_d
   return 1.15 * e;
 }
 
+/* The laws by name.  A row makes its function of one state and its loop over n, at the temperature that salt shifts. */
+#define EQUILIBRIUM_LAWS(X)                                                                                            \
+  X("sloan", Equilibrium_Sloan)                                                                                        \
+  X("moridis", Equilibrium_Moridis)                                                                                    \
+  X("kamath", Equilibrium_Kamath)                                                                                      \
+  X("masuda", Equilibrium_Masuda)
+
+#define NAME(name, Law) name,
+#define MAKE(name, Law)                                                                                                \
+  static double Law##_One(const Equilibrium *law, double T, double *dpe_dT)                                            \
+  {                                                                                                                    \
+    return Law(law, T + law->shift, dpe_dT);                                                                           \
+  }                                                                                                                    \
+  static void Law##_Loop(const Equilibrium *law, int n, const double *restrict T, double *restrict pe,                 \
+                         double *restrict dpe_dT)                                                                      \
+  {                                                                                                                    \
+    const Equilibrium l = *law;                                                                                        \
+                                                                                                                       \
+    for (int q = 0; q < n; q++)                                                                                        \
+      pe[q] = Law(&l, T[q] + l.shift, &dpe_dT[q]);                                                                     \
+  }
+#define ONE_NAME(name, Law) Law##_One,
+#define LOOP_NAME(name, Law) Law##_Loop,
+
 typedef double (*Pressure)(const Equilibrium *, double, double *);
-static const char *const names[] = {"sloan", "moridis", "kamath", "masuda", NULL};
-static const Pressure    laws[]  = {Equilibrium_Sloan, Equilibrium_Moridis, Equilibrium_Kamath, Equilibrium_Masuda};
-_Static_assert(sizeof names / sizeof *names == sizeof laws / sizeof *laws + 1, "a name for every law");
+typedef void (*PressureLoop)(const Equilibrium *, int, const double *, double *, double *);
+static const char *const names[] = {EQUILIBRIUM_LAWS(NAME) NULL};
+EQUILIBRIUM_LAWS(MAKE)
+static const Pressure     laws[]  = {EQUILIBRIUM_LAWS(ONE_NAME)};
+static const PressureLoop loops[] = {EQUILIBRIUM_LAWS(LOOP_NAME)};
+
+void EquilibriumPressureBatch(const Equilibrium *law, int n, const double *T, double *pe, double *dpe_dT)
+{
+  law->pressure_loop(law, n, T, pe, dpe_dT);
+}
 
 const char *const *EquilibriumTypes(void)
 {
@@ -107,7 +138,8 @@ bool EquilibriumSetType(Equilibrium *law, const char *type)
 
   if (i < 0)
     return false;
-  law->pressure = laws[i];
-  law->type     = names[i];
+  law->pressure      = laws[i];
+  law->pressure_loop = loops[i];
+  law->type          = names[i];
   return true;
 }

@@ -52,7 +52,12 @@ INLINE double LawAtMost(double x, double most)
   return x > most ? most : x;
 }
 
-#define LAW_LEAST 1e-300 /* keeps logarithms of zero out of lanes that are not used */
+/* x, in lanes whose result is not used (x <= 0) another number: glibc's vector functions take all lanes one by one
+   where the result of one overflows or vanishes. */
+INLINE double LawWhereAbove0(double x, double otherwise)
+{
+  return x <= 0.0 ? otherwise : x;
+}
 
 /* exp(x) for |x| <= X = 200; beyond, e^X (1 + x - X) and e^-X/(1 - X - x): C1, positive, increasing, never inf or 0.
    NaN stays NaN. */
@@ -69,7 +74,7 @@ INLINE double LawExp(double x, double *dx)
    b0^n t^2 [(3 - n) + (n - 2) t] meets b^n in value and slope at b0 and starts flat, so that clipping at 0 is C1. */
 INLINE double LawToePower(double b, double n, double *db)
 {
-  const double x = LawAtLeast(b, LAW_LEAST);
+  const double x = LawWhereAbove0(b, 1.0);
   double       v = pow(x, n), d = n * v / x;
 
   if (n < 2.0) {

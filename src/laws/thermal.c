@@ -1,15 +1,29 @@
 /* Heat: latent heat of dissociation and properties of the mixture. */
-#include "clathra/laws.h"
+#include "clathra/laws_batch.h"
 #include "laws_private.h"
 
 /* (235), (P30): L = C0 - C1 T_K, J per kg of hydrate, and dL/dT; T in degC.  Or (130), Kirchhoff's law from T_ref on.
  */
-double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT)
+INLINE double Latent(const LatentHeat *law, double T, double *dL_dT)
 {
   const double at = law->kirchhoff ? law->T_ref : T;
 
   *dL_dT = law->kirchhoff ? law->dc : -law->C1;
   return law->C0 - law->C1 * (at + LAW_ZERO_CELSIUS) + (law->kirchhoff ? law->dc * (T - at) : 0.0);
+}
+
+double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT)
+{
+  return Latent(law, T, dL_dT);
+}
+
+void LatentHeatBatch(const LatentHeat *law, int n, const double *restrict T, double *restrict L)
+{
+  const LatentHeat l = *law;
+  double           d;
+
+  for (int q = 0; q < n; q++)
+    L[q] = Latent(&l, T[q], &d);
 }
 
 /* (236): X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)], s_g = 1 - s_w; X in the order solid,

@@ -4,7 +4,7 @@
 tradeoff.py [CLATHRA] [--only PART ...] [--page]
 
 CLATHRA  the program, default build/clathra
---only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice), take the others from docs/tradeoff.json
+--only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice, change), take the others from docs/tradeoff.json
 --page   write the page and the figures from docs/tradeoff.json
 
 Every number of the page is of one of its runs.  It is a study, no test: it takes about ten minutes of processor time.  Processor time is
@@ -22,6 +22,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
+import _auto as slow_fast  # noqa: E402
 import _integrators as scenes  # noqa: E402
 import exact  # noqa: E402
 from _integrators import EULER, EXPLICIT, SDIRK2, adaptive, apart, fixed, integrators, steps_of, timed  # noqa: E402
@@ -326,7 +327,35 @@ def choice():
     return found
 
 
-PARTS = {f.__name__: f for f in (wave, consolidation, bp2, block, permeability, terms, basis, choice)}
+def change():
+    """A run that `auto` carries from slow to fast and back, against either kind alone; `hybrid` extrapolated where it would take minutes."""
+    found, whole = [], None
+    for slow in (1, 10, 100):
+        t = slow_fast.times(slow)
+        exactly = {name: slow_fast.exact(x, q, t, slow) + zero for name, (_, _, x, q, zero) in slow_fast.WATCHED.items()}
+        for kind in ("auto", "hybrid", SDIRK2):
+            record = {"slow": slow, "kind": kind}
+            if kind == "hybrid" and slow > 10:
+                record.update(cpu=whole["cpu"] * slow / whole["slow"], steps=round(whole["steps"] * slow / whole["slow"]), extrapolated=True)
+            else:
+                run, cpu = Clock.of(SlowFast, kind, slow)
+                off = [np.max(np.abs(run.at(*slow_fast.WATCHED[name][:2], t) - exactly[name])) / np.ptp(slow_fast.EXACT[name]) for name in exactly]
+                record.update(cpu=cpu, steps=steps_of(run), error=max(off), changes=len(re.findall(r"^t = \S+ s: \w+ -> \w+:", run.output, re.M)))
+                whole = record if kind == "hybrid" else whole
+            found.append(record)
+            print("  ", record, flush=True)
+    return found
+
+
+class SlowFast:
+    """The scene of verification/auto.py for Clock."""
+
+    @staticmethod
+    def run(kind, slow, exit_code=0):
+        return timed(slow_fast.CASE, "-stepper_type", kind, *slow_fast.options(26, 1e-3, slow), exit_code=exit_code)
+
+
+PARTS = {f.__name__: f for f in (wave, consolidation, bp2, block, permeability, terms, basis, choice, change)}
 
 
 def measure(names):

@@ -167,11 +167,51 @@ static void TestViscosity(void **state)
   }
 }
 
+static void TestReaction(void **state)
+{
+  const char *const *type = EquilibriumTypes();
+  double             d;
+
+  (void)state;
+  for (int q = 0; q < N; q++)
+    x[q] = RandomIn(-30.0, 60.0);
+  for (int k = 0; type[k]; k++) {
+    Equilibrium law = {.A1 = 1e3, .A2 = 38.98, .A3 = 8533.8, .shift = 0.4 * k};
+
+    assert_true(EquilibriumSetType(&law, type[k]));
+    EquilibriumPressureBatch(&law, N, x, a, da);
+    for (int q = 0; q < N; q++)
+      b[q] = EquilibriumPressure(&law, x[q], &db[q]);
+    printf("equilibrium %-8s: pressure %.1e, slope %.1e\n", type[k], Worst(N, a, b), Worst(N, da, db));
+    assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11);
+  }
+  for (int k = 0; k < 2; k++) {
+    const Kinetics   law    = {.K0 = 2.5e-7, .dE = k ? 8e4 : 0.0, .A_geo = 1e6};
+    const LatentHeat latent = {.C0 = 4.7e5, .C1 = 140.0, .kirchhoff = k, .T_ref = 4.0, .dc = 900.0};
+
+    KineticsRateConstantBatch(&law, N, x, a, da);
+    for (int q = 0; q < N; q++)
+      b[q] = KineticsRateConstant(&law, x[q], &db[q]);
+    assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11);
+    for (int q = 0; q < N; q++)
+      y[q] = RandomIn(0.0, 1.0);
+    KineticsFormationAreaBatch(&law, N, y, y, a);
+    for (int q = 0; q < N; q++)
+      b[q] = KineticsFormationArea(&law, y[q], y[q], &d, &db[q]);
+    assert_true(Worst(N, a, b) < 1e-15);
+    LatentHeatBatch(&latent, N, x, a);
+    for (int q = 0; q < N; q++)
+      b[q] = LatentHeatEvaluate(&latent, x[q], &d);
+    assert_true(Worst(N, a, b) < 1e-15);
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestRetention),    cmocka_unit_test(TestRelPerm),
-                                     cmocka_unit_test(TestPermeability), cmocka_unit_test(TestGas),
-                                     cmocka_unit_test(TestViscosity),    cmocka_unit_test(TestLiquidAndStiffness)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestRetention),         cmocka_unit_test(TestRelPerm),
+                                     cmocka_unit_test(TestPermeability),      cmocka_unit_test(TestGas),
+                                     cmocka_unit_test(TestViscosity),         cmocka_unit_test(TestReaction),
+                                     cmocka_unit_test(TestLiquidAndStiffness)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

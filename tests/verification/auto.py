@@ -10,43 +10,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
 import _files  # noqa: E402
-from common import Run, check, check_true, finish, order, scratch, table  # noqa: E402
-from exact import constrained_modulus  # noqa: E402
-from exact_dynamic import DynamicColumn  # noqa: E402
-
-CASE = Path(__file__).parent / "cases" / "saturated_column.yaml"
-K, K_W, Q, END = 1e-8, 22e6, 3e3, 80.0
-LOADS = ((0.0, 10.0, Q), (20.0, 20.1, Q), (60.0, 70.0, -Q))  # from, to (s), change (Pa)
-PHASES = ((0, 20), (20, 25), (25, 60), (60, 80))
-
-
-def options(cells, tol):
-    rows, q = ["0 s,1 MPa"], 0.0
-    for begin, end, change in LOADS:
-        rows += [f"{begin} s,{1e6 + q} Pa"] * (begin > 0) + [f"{end} s,{1e6 + q + change} Pa"]
-        q += change
-    return ("-grid_cells", f"{cells},1", "-time_end", f"{END} s", "-output_times", "0 s", "-output_probe_every", "0.5 s",
-            "-stepper_adapt", "yes", "-stepper_dt", "0.1 s", "-stepper_tol", tol, "-mat_sand_water_bulk_modulus", f"{K_W} Pa",
-            "-mat_sand_permeability_k0", f"{K} m^2", "-bc_load_normal_table", ",".join(rows))  # fmt: skip
-
-
-def column(kind, *more, cells=26, tol=1e-3, **keywords):
-    return Run.of_case(CASE, "-stepper_type", kind, *options(cells, tol), *more, **keywords)
-
-
-def exact(x, quantity, t):
-    found = np.zeros_like(t)
-    for begin, end, change in LOADS:
-        m = DynamicColumn(H=10.0, M=constrained_modulus(14.516e6, 0.3), n_f=0.33, rho_s=2000.0, rho_w=1000.0, Kw=K_W, mobility=K / 1e-3, q=change, rise=end - begin)
-        late = t > begin
-        found[late] += m.solution(x, t[late] - begin)[quantity]
-    return found
-
-
-WATCHED = {"u(H)": ("end", "u_x_m", 10.0, "u", 0.0), "p(H/2)": ("middle", "p_Pa", 5.0, "p", 1e6)}
-TIMES = 0.5 * np.arange(1, round(END / 0.5) + 1)
-EXACT = {name: exact(x, q, TIMES) + zero for name, (_, _, x, q, zero) in WATCHED.items()}
-
+from _auto import EXACT, PHASES, Q, TIMES, WATCHED, column  # noqa: E402
+from common import check, check_true, finish, order, scratch, table  # noqa: E402
 
 def errors(run):
     """{curve: largest error over its range in each phase}."""
