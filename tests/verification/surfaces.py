@@ -137,9 +137,16 @@ def widening():
               3e-2 if name == "ugimp" else 5e-3)  # fmt: skip ; fixed domains leave gaps, and the body between them stretches by more than they do
 
 
+def heated():
+    """A flux of 100 W/m2 into the upper and the right side of a body whose top slopes by 1:2: sqrt(1.25) + 0.5 m of surface, on steps of 1.5 m."""
+    run = Run.of_case(Path(__file__).parent / "cases" / "heated_slope.yaml", "-quiet")
+    judge(ROW, "heat into a slope across the cells, against the flux times its length", abs(run.balance["heat_in_J"][-1] / (1000 * (1.25**0.5 + 0.5)) - 1), 1e-12)
+
+
 ambient()
 variants()
 longer()
 widening()
+heated()
 tractions()
 finish()
