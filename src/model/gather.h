@@ -93,7 +93,7 @@ static inline double ConductingVolume(const Model *m, PetscInt p)
   return m->P.f[P_V][p] * Conductance(m, p);
 }
 
-/* (342) over S_I: 1 where the node sees one material. */
+/* (350) over S_I: 1 where the node sees one material. */
 static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I)
 {
   return Conductance(m, p) * m->flow[I];
@@ -136,7 +136,7 @@ static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
   return mass ? MassRow(m, f, I, q - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[q]];
 }
 
-/* What a face of particle p at node I adds to row q is weighted with besides: (342) in (16). */
+/* What a face of particle p at node I adds to row q is weighted with besides: (350) in (16). */
 static inline double FaceFlow(const Model *m, PetscInt p, PetscInt I, int q)
 {
   return q >= F_VWX && q <= F_VGY ? FlowWeight(m, p, I) : 1.0;
@@ -192,7 +192,7 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
   return s;
 }
 
-/* Weight of a particle in k_r of a node (108): (342), or what looks upstream (35). */
+/* Weight of a particle in k_r of a node (108): (350), or what looks upstream (35). */
 static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
   if (!m->c->upstream)

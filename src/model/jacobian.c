@@ -2,7 +2,7 @@
    velocities are eliminated. */
 #include "gather.h"
 
-/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes, where it is (342),
+/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes, where it is (350),
    and in the displacement. */
 typedef struct {
   double        S, NS[CL_DIM], NU, K;
@@ -48,7 +48,7 @@ typedef struct {
   double acc[3][2], J[PHASE_COUNT][2], Tdot;
   double weight[PHASE_COUNT];  /* RowWeight */
   double kr[PHASE_COUNT];      /* of the node (108) */
-  double flow;                 /* (342) */
+  double flow;                 /* (350) */
   double rise[PHASE_COUNT][2]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
 } NodeFactors;
 

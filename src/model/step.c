@@ -221,7 +221,7 @@ static void Average(Model *m, const double *sum)
       m->w[2 * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
     for (int k = 0; k < NC_COUNT; k++)
       c[k] /= V;
-    for (int k = 0; k < PHASE_COUNT; k++) { /* (342), (108) */
+    for (int k = 0; k < PHASE_COUNT; k++) { /* (350), (108) */
       c[NC_DRAG + k] *= m->flow[I];
       c[NC_KR + k] = PetscSqr(c[NC_KR + k] * m->flow[I]);
     }

@@ -25,7 +25,7 @@ static double Contrast(const Case *c)
   return most / least;
 }
 
-/* (342) is not in hybrid. */
+/* (350) is not in hybrid. */
 static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 {
   PetscFunctionBeginUser;

@@ -46,7 +46,7 @@ static void TestJacobian(void **state)
   }
 }
 
-/* Two layers whose permeabilities differ a thousandfold (342), with one fluid and with two. */
+/* Two layers whose permeabilities differ a thousandfold (350), with one fluid and with two. */
 static void TestLayersJacobian(void **state)
 {
   static const unsigned has[2] = {HAS_SOLID | HAS_WATER, HAS_ALL};

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Flow along and across layers of sand and clay whose permeabilities differ 50,000-fold (342): exact along them wherever grid lines are, across
+"""Flow along and across layers of sand and clay whose permeabilities differ 50,000-fold (350): exact along them wherever grid lines are, across
 them on grid lines; a well in a layer against Thiem; hybrid says what it lacks."""
 from pathlib import Path
 
