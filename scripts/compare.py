@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Runs beside each other: compare.py RUN RUN ... [--out FOLDER]
+"""Runs beside each other: compare.py RUN RUN ... [-o FOLDER]
 
 Prints what the runs took and where they ended, the keys of the case in which they differ, and the largest difference of every
-probe's and meter's column from the first run's, at its times; writes FOLDER/compare.png (default: compare.png here) with the
-histories of all runs.
+probe's and meter's column from the first run's, at its times; writes FOLDER/compare.png (default: among the first run's figures)
+with the histories of all runs.  Differences below 1e-9 of the largest value of a field, any component at any probe, are round-off.
 """
 import argparse
 import re
@@ -19,6 +19,8 @@ WORK = re.compile(r"integrator (\S+(?: stage)?), (\d+) steps, (\d+) refused, (\d
 ERRORS = re.compile(r"water (\S+), methane (\S+) of the initial mass, heat (\S+)")
 SHOWN = 40  # differing keys
 ROUND_OFF = 1e-12  # of what is drawn, in its unit
+SAME = 1e-9  # of a field's largest value: equal
+COMPONENT = re.compile(r"(xx|yy|zz|xy|xz|yz|x|y|z)(?=_|$)")
 IDLE = ("title", "output_dir")  # keys that change no result
 
 
@@ -61,9 +63,18 @@ def columns_of(run):
     return {k: (t["time_s"], v) for t in (run.probes, run.meters) for k, v in t.items() if k != "time_s"}
 
 
+def scales(columns):
+    """{column: largest value of its field, all components at all probes or meters}."""
+    field, most = {c: COMPONENT.sub("*", c.rsplit(".", 1)[-1], count=1) for c in columns}, {}
+    for c, (_, v) in columns.items():
+        most[field[c]] = max(most.get(field[c], 0.0), np.abs(v[np.isfinite(v)]).max(initial=0.0))
+    return {c: most[field[c]] for c in columns}
+
+
 def largest(first, other):
     """[(column, largest difference, of the first's range, time)] over the time that both have."""
     a, b, found = columns_of(first), columns_of(other), []
+    size = scales(a)
     for name in a:
         if name not in b:
             continue
@@ -73,7 +84,7 @@ def largest(first, other):
             continue
         d = np.abs(np.interp(t[held], s, y) - x[held])
         k, extent = int(np.nanargmax(d)), np.ptp(x[held])
-        if d[k] > 0:
+        if d[k] > SAME * size[name]:
             found.append((name, d[k], d[k] / extent if extent > 0 else np.nan, t[held][k]))
     return found
 
@@ -84,7 +95,7 @@ def differences(runs, names):
         found = largest(runs[0], run)
         rows = [[f"{name} against {names[0]}", "largest difference", "of the range", "at (s)"]]
         rows += [[c, f"{d:.4g}", f"{share:.2%}" if np.isfinite(share) else "–", f"{t:.6g}"] for c, d, share, t in found]
-        lines += ["", *(table(rows) if found else [f"{name}: the same, as far as it goes" if set(columns_of(run)) & set(columns_of(runs[0])) else f"{name}: no column in common with {names[0]}"])]
+        lines += ["", *(table(rows) if found else [f"{name}: the same, as far as it goes (but for round-off)" if set(columns_of(run)) & set(columns_of(runs[0])) else f"{name}: no column in common with {names[0]}"])]
     return lines
 
 
@@ -135,7 +146,7 @@ def draw(runs, names, folder, picture="compare"):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", metavar="RUN")
-    parser.add_argument("--out", default=".", metavar="FOLDER")
+    parser.add_argument("-o", "--out", type=Path, metavar="FOLDER", help="of compare.png")
     options = parser.parse_args()
     try:
         runs = [clathra.Run(folder) for folder in options.runs]
@@ -143,7 +154,7 @@ def main():
         parser.exit(2, f"compare.py: {error}\n")
     names = labels(runs)
     print("\n".join([*work(runs, names), "", *differing(runs, names), *differences(runs, names)]))
-    draw(runs, names, Path(options.out))
+    draw(runs, names, options.out or runs[0].folder / "figures")
 
 
 if __name__ == "__main__":

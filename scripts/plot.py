@@ -2,6 +2,7 @@
 """Pictures of any run: plot.py FOLDER [FOLDER ...] writes FOLDER/figures/*.png
 
 probes.png     histories at the probes
+meters.png     what meters and plates count, free gas in the body
 balance.png    errors of the water, methane and energy balance, length of the steps
 profiles.png   a strip one cell wide: profiles along it at up to six snapshots; upright if the strip is
 particles.png  any other body, deformed: p, T, S_h, S_w (or what else changes) at up to four snapshots
@@ -12,14 +13,15 @@ scripts/report.py makes one page of it all.
 import sys
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 import clathra
 from clathra import shown
-from clathra.units import duration
-from plotting import COLOURS, STYLES, boxes, plt, save, set_style, steady_limits
+from clathra.units import duration, durations
+from plotting import COLOURS, STYLES, Plain, boxes, plt, save, set_style, steady_limits, wrapped
 
 FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
-PICTURES = ("probes", "balance", "profiles", "particles", "maps")
+PICTURES = ("probes", "meters", "balance", "profiles", "particles", "maps")
 ARROWS = 18  # along the longer side
 
 
@@ -73,6 +75,34 @@ def plot_probes(run):
     return True
 
 
+def plot_meters(run):
+    if len(run.meters.get("time_s", ())) < 2:
+        return False
+    names = clathra.probe_names(run.meters)
+    panels = shown.production(run.meters, names)
+    if not panels:
+        return False
+    stages, time, wide = shown.stage_axis(run.balance), run.meters["time_s"], min(len(panels), 3 if len(panels) > 4 else 2)
+    unit, seconds = clathra.time_unit(time[-1])
+    rows = -(-len(panels) // wide)
+    figure, grid = plt.subplots(rows, wide, figsize=(4.9 * wide, 3.5 * rows), squeeze=False)
+    for axes in grid.flat[len(panels) :]:
+        axes.remove()
+    colours = {**dict(zip(names, COLOURS * len(names))), "body": "0.3"}
+    for axes, (label, curves) in zip(grid.flat, panels):
+        for name, values in curves:
+            axes.plot(stages[0](time) if stages else time / seconds, values, color=colours[name])
+        axes.set(xlabel=f"time ({unit})", ylabel=label)
+        axes.yaxis.set_major_formatter(Plain())
+        if stages:
+            stage_ticks(axes, stages[1])
+    handles = [plt.Line2D([], [], color=colours[n], lw=2.5, label=n) for n in dict.fromkeys(n for _, curves in panels for n, _ in curves)]
+    figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 0.95), title="meter")
+    figure.suptitle(head(run, "what the meters count"), x=0.01, ha="left")
+    save(figure, run.folder / "figures", "meters")
+    return True
+
+
 def plot_balance(run):
     balance = run.balance
     if not len(balance["time_s"]):
@@ -106,11 +136,14 @@ def plot_profiles(run, times, snapshots, axis):
     figure, grid = plt.subplots(1, len(quantities), figsize=size, squeeze=False, sharey=axis == 1)
     colours = plt.cm.viridis(np.linspace(0, 0.88, len(snapshots)))
     for axes, q in zip(grid[0], quantities):
-        for time, particles, colour in zip(times, snapshots, colours):
+        for time, particles, colour in zip(durations(times), snapshots, colours):
             order = np.argsort(particles["position"][:, axis], kind="stable")
             along, values = particles["position"][order, axis], q.of(particles)[order]
-            axes.plot(*((along, values) if axis == 0 else (values, along)), ".-", ms=2.5, lw=1.1, color=colour, label=duration(time))
-        axes.set(**{"xlabel": "x (m)", "ylabel": q.axis} if axis == 0 else {"xlabel": q.axis})
+            axes.plot(*((along, values) if axis == 0 else (values, along)), ".-", ms=2.5, lw=1.1, color=colour, label=time)
+        label, shows = wrapped(q.axis, 3.0 if axis == 0 else 2.2), axes.yaxis if axis == 0 else axes.xaxis
+        axes.set(**{"xlabel": "x (m)", "ylabel": label} if axis == 0 else {"xlabel": label})
+        shows.set_major_formatter(Plain())
+        shows.set_major_locator(MaxNLocator(6 if axis == 0 else 3))
     if axis == 1:
         grid[0][0].set_ylabel("y (m)")
     grid[0][-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), title="time")
@@ -139,14 +172,15 @@ def plot_film(run, times, snapshots, quantities):
     width, height = frame_size(snapshots)
     figure, grid = plt.subplots(len(quantities), len(snapshots), figsize=(width * len(snapshots) + 1.8, (height + 0.35) * len(quantities) + 0.5),
                                 squeeze=False, sharex=True, sharey=True)  # fmt: skip
+    said = durations(times)
     for row, q in zip(grid, quantities):
         values = [q.of(p) for p in snapshots]
         low, high = np.nanmin(values), np.nanmax(values)
-        for axes, time, p, v in zip(row, times, snapshots, values):
+        for axes, time, p, v in zip(row, said, snapshots, values):
             drawn = boxes(axes, p, v, low, high, snapshots[0])
-            axes.set_title(f"t = {duration(time)}" if q is quantities[0] else "")
+            axes.set_title(f"t = {time}" if q is quantities[0] else "")
             tidy_axes(axes, width < 1.5)
-        figure.colorbar(drawn, ax=list(row), label=q.axis, pad=0.01, aspect=15)
+        figure.colorbar(drawn, ax=list(row), label=wrapped(q.axis, height), format=Plain(), ticks=MaxNLocator(4 if height < 1.5 else 6), pad=0.01, aspect=15)
     figure.suptitle(head(run, "the body at output times"), x=0.01, ha="left")
     save(figure, run.folder / "figures", "particles")
 
@@ -171,7 +205,7 @@ def plot_maps(run, time, particles, first, quantities):
     for axes in grid.flat[len(quantities) :]:
         axes.remove()
     for axes, q in zip(grid.flat, quantities):
-        figure.colorbar(boxes(axes, particles, q.of(particles), first=first), ax=axes, pad=0.01, aspect=15)
+        figure.colorbar(boxes(axes, particles, q.of(particles), first=first), ax=axes, format=Plain(), ticks=MaxNLocator(4 if height < 1.5 else 6), pad=0.01, aspect=15)
         axes.set_title(q.axis)
         if q.key in ("v_w", "v_g"):
             arrows(axes, particles, q.key)
@@ -211,7 +245,7 @@ def main(folders):
             sys.exit(f"plot.py: {error}")
         for name in PICTURES:
             (run.folder / "figures" / f"{name}.png").unlink(missing_ok=True)
-        if not any([plot_probes(run), plot_balance(run), plot_body(run)]):
+        if not any([plot_probes(run), plot_meters(run), plot_balance(run), plot_body(run)]):
             print(f"  {folder}: nothing to draw yet")
 
 

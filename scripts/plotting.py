@@ -1,4 +1,6 @@
 """What the plot scripts share: style, colours, saving; what is plotted stands in clathra/shown.py."""
+import re
+import textwrap
 from pathlib import Path
 
 import matplotlib
@@ -7,8 +9,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.collections import PolyCollection
+from matplotlib.ticker import Formatter
 
-from clathra.shown import MM, MPA, corners
+from clathra.shown import MM, MPA, corners, tex
 
 # Okabe and Ito's colours, told apart by colour-blind readers too; line styles differ as well.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -32,6 +35,29 @@ def steady_limits(axes, *values, least=1e-9):
     values = values[np.isfinite(values)]
     if values.size and np.ptp(values) < least:
         axes.set_ylim(values.mean() - least, values.mean() + least)
+
+
+class Plain(Formatter):
+    """Values at ticks with as many digits as their distance has, and no factor beside the axis, which labels would meet."""
+
+    def __call__(self, value, pos=None):
+        return self.format_ticks([value])[0]
+
+    def format_ticks(self, values):
+        values = np.asarray(values, dtype=float)
+        most, step = np.abs(values).max(initial=0.0), np.diff(np.sort(values)).min(initial=np.inf)
+        step = step if 0 < step < np.inf else most or 1.0
+        kind = "f" if not most or 1e-3 <= most < 1e5 else "e"
+        digits = next((n for n in range(15) if all(abs(float(f"{v:.{n}{kind}}") - v) < 0.05 * step for v in values)), 15)
+        texts = [f"{v:.{digits}{kind}}" if abs(v) > 1e-9 * step else "0" for v in values]
+        return [re.sub(r"e([+-])0*", lambda e: f"e{e[1].strip('+')}", t).replace("-", "\N{MINUS SIGN}") for t in texts]
+
+
+def wrapped(label, inches):
+    """A label on lines of that length, in letters of the size that labels have; its unit stays with the word before."""
+    word, bracket, unit = label.replace("$", "").rpartition(" (")
+    text = word + bracket.replace(" ", "\N{NO-BREAK SPACE}") + unit
+    return tex(textwrap.fill(text, max(10, int(inches / 0.085)), break_long_words=False, break_on_hyphens=False))
 
 
 def boxes(axes, particles, values, low=None, high=None, first=None):

@@ -15,7 +15,7 @@ import numpy as np
 
 import clathra
 from clathra import shown
-from clathra.units import duration
+from clathra.units import duration, durations
 
 TEMPLATE = Path(__file__).with_name("report.html")
 BYTES = 3_000_000  # of the film, before base64
@@ -71,19 +71,11 @@ def probe_charts(run, axis):
     return charts
 
 
-METERS = {"gas_std_m3": "gas out (standard m³)", "gas_kg_s": "gas out, rate (kg/s)", "water_kg": "water out (kg)", "water_kg_s": "water out, rate (kg/s)",
-          "heat_J": "heat out (J)", "heat_W": "heat out, rate (W)", "position_m": "plate, position (m)", "force_N": "plate, force (N)",
-          "stress_Pa": "plate, mean stress (Pa)", "shear_N": "plate, shear force (N)"}  # fmt: skip
-
-
 def meter_charts(run, axis):
-    names, charts = clathra.probe_names(run.meters), []
-    for column, label in METERS.items():
-        series = [(n, run.meters["time_s"], run.meters[f"{n}.{column}"]) for n in names if f"{n}.{column}" in run.meters]
-        charts += chart(axis, label, series) if any(v.any() for _, _, v in series) else []
-    if run.meters and np.ptp(run.meters.get("free_gas_std_m3", np.zeros(1))) > 0:
-        charts += chart(axis, "free gas in the body (standard m³)", [("body", run.meters["time_s"], run.meters["free_gas_std_m3"])])
-    return charts
+    if not len(run.meters.get("time_s", ())):
+        return []
+    panels = shown.production(run.meters, clathra.probe_names(run.meters))
+    return [c for label, curves in panels for c in chart(axis, label, [(n, run.meters["time_s"], v) for n, v in curves])]
 
 
 def step_charts(run, axis):
@@ -194,7 +186,7 @@ def film(run):
     edges, place = np.array(edges), np.array(place)
     low, longest = place.min((0, 1)), np.abs(edges).max()
     span = np.where(place.max((0, 1)) > low, place.max((0, 1)) - low, 1.0)
-    return {"times": [duration(run.times[k]) for k in frames], "n": place.shape[1], "stride": stride, "all": len(run.times),
+    return {"times": durations(run.times[frames]), "n": place.shape[1], "stride": stride, "all": len(run.times),
             "strip": shown.strip_axis(first["position"]), "low": low.tolist(), "span": span.tolist(), "longest": float(longest),
             "place": packed(np.round((place - low) / span * 65535), "<u2"), "edges": packed(np.round(edges / longest * 127), "i1"),
             "fields": [field(q, np.array([v[k] for v in values])) for k, q in enumerate(wanted)], "arrow_at": packed(at, "<u4"),

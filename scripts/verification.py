@@ -57,6 +57,7 @@ SECTION = {  # beside that table
     "scenes": "cases/shear_box and cases/sea_floor on coarse grids: motion under any pressure; a falling sea against consolidation in one dimension",
     "gas": "Sediment without gas: gas that appears, vanishes, is let in (docs/equations.md, section 19); gas that is stretched (section 12)",
     "fluids": "Fluids: real methane, equilibrium in salt water, viscosities, ice, heat of reaction, thermal strain and pressurisation, heat of compression",
+    "layers": "Layers of sand and clay: flow along and across them, a well in one",
     "fronts": "Sharp fronts: heat behind an inlet, saturations beside a pressure, hydrate ahead of a heater",
     "wells": "Wells about an axis against Thiem, in cells up to twenty times their radius",
     "energy": "Mechanical energy: what is left of its balance",

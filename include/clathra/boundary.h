@@ -68,9 +68,11 @@ PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
 #define CL_ADVICE 400
 /* Where pore pressure above the stiffness of the skeleton is held by tractions: what to do instead; else empty. */
 PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE]);
-/* Warnings about a start out of balance with gravity, or in it by tractions alone, on rank 0.  Collective. */
+/* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
+   between regions (342), on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
-/* The same about particles whose pore pressure is far from hydrostatic (341) or whose hydrate is not stable. */
+/* The same about particles whose pore pressure is far from hydrostatic (341), whose hydrate is not stable, or whose gas
+   becomes hydrate. */
 PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Case *c, const Particles *P);
 
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the

@@ -107,6 +107,23 @@ def histories(probes, names):
     return found
 
 
+# What meters and plates count: label of a column.
+METERS = {"gas_std_m3": "gas out (standard m³)", "gas_kg_s": "gas out, rate (kg/s)", "water_kg": "water out (kg)", "water_kg_s": "water out, rate (kg/s)",
+          "heat_J": "heat out (J)", "heat_W": "heat out, rate (W)", "position_m": "plate, position (m)", "force_N": "plate, force (N)",
+          "stress_Pa": "plate, mean stress (Pa)", "shear_N": "plate, shear force (N)"}  # fmt: skip
+
+
+def production(meters, names):
+    """[(label, [(meter, values)])] of what the meters `names` count that is not zero always, and of the free gas in the body."""
+    found = []
+    for column, label in METERS.items():
+        curves = [(n, meters[f"{n}.{column}"]) for n in names if f"{n}.{column}" in meters]
+        found += [(label, curves)] if any(v.any() for _, v in curves) else []
+    if np.ptp(meters.get("free_gas_std_m3", np.zeros(1))) > 0:
+        found.append(("free gas in the body (standard m³)", [("body", meters["free_gas_std_m3"])]))
+    return found
+
+
 def half_edges(particles, first):
     """(n, 2, 2) half edges (m) of the particles' domains, one a row: those of the start (`first`, of the same particles) carried by the
     deformation gradient, so that they are the true outline.  What is stretched beyond three times is drawn as a box of its volume."""

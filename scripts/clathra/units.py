@@ -11,5 +11,15 @@ def time_unit(end):
 def duration(seconds):
     """One time with its unit: "30 s", "1 day", "2.5 years"."""
     name, size = next((u for u in reversed(TIMES) if abs(seconds) >= u[1] * (1 - 1e-9)), TIMES[0])
-    value = f"{seconds / size:.4g}"
+    return said(seconds / size, name)
+
+
+def said(value, name):
+    value = f"{value:.4g}"
     return f"{value} {name[:-1] if value == '1' and name in ('days', 'years') else name}"
+
+
+def durations(times):
+    """Times (s) with one unit, that of an axis up to the last of them."""
+    name, size = time_unit(times[-1]) if len(times) else TIMES[0]
+    return [said(t / size, name) for t in times]

@@ -1,10 +1,12 @@
-/* Starts that do not stay as they are: pore pressure far from hydrostatic, hydrate that is not stable
-   (docs/equations.md, section 13). */
+/* Starts that do not stay as they are: pore pressure far from hydrostatic, hydrate that is not stable, gas where
+   hydrate is (docs/equations.md, section 13). */
 #include "clathra/boundary.h"
 
 #define FAR 0.1         /* of the weight of the water from top to foot */
 #define NOTICEABLE 0.01 /* of the largest pressure */
 #define OUTSIDE 1.01    /* p_e over p */
+#define WARMS 0.5       /* K: by how much hydrate that forms warms the sediment until p_e(T) = p */
+#define SOME_GAS 1e-3   /* of the pores */
 
 /* The largest of a value over all particles, and where it is. */
 typedef struct {
@@ -115,6 +117,14 @@ static double EquilibriumTemperature(const Equilibrium *law, double p)
   return 0.5 * (low + high);
 }
 
+/* (10) of a particle, Pa. */
+static double MeanPressure(const Particles *P, PetscInt p)
+{
+  const double pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw, Sg = 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
+
+  return pw + Sg / (1.0 - P->f[P_SH][p]) * (pg - pw);
+}
+
 static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particles *P)
 {
   Most   worst   = {.value = 0.0};
@@ -122,14 +132,12 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particl
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
-    const Material *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
-    const double    pw = P->f[P_PW][p], T = ParticleT(c, P, p);
-    const double    pg = P->f[P_PG] ? P->f[P_PG][p] : pw, Sg = 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
-    const double    mean = pw + Sg / (1.0 - P->f[P_SH][p]) * (pg - pw); /* (10) */
+    const Material *m    = &c->material[c->region[P->i[PI_REGION][p]].material];
+    const double    mean = MeanPressure(P, p);
 
     if (!m->reacts || m->kinetics.K0 == 0.0 || P->f[P_SH][p] <= 0.0)
       continue;
-    const double over = EquilibriumPressure(&m->kinetics.equilibrium, T, &d) / mean;
+    const double over = EquilibriumPressure(&m->kinetics.equilibrium, ParticleT(c, P, p), &d) / mean;
 
     mass[0] += over > OUTSIDE ? P->f[P_MH][p] : 0.0;
     mass[1] += P->f[P_MH][p];
@@ -151,10 +159,44 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gas and water that become hydrate: where T_e(p) - T > WARMS. */
+static PetscErrorCode FormationWarning(MPI_Comm comm, const Case *c, const Particles *P)
+{
+  Most   worst = {.value = -INFINITY};
+  double d;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
+    const Material *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
+    const Kinetics *k  = &m->kinetics;
+    const double    Sh = P->f[P_SH][p], Sw = P->f[P_SW][p], p_mean = MeanPressure(P, p), T = ParticleT(c, P, p);
+
+    if (!m->reacts || k->K0 == 0.0 || k->A_geo == 0.0 || !(Sw > 0.0) || !(1.0 - Sh - Sw > SOME_GAS) ||
+        EquilibriumPressure(&k->equilibrium, T + WARMS, &d) >= p_mean)
+      continue;
+    MostTake(&worst, c, P, p, EquilibriumTemperature(&k->equilibrium, p_mean) - T, p_mean);
+  }
+  PetscCall(MostOfAll(comm, &worst));
+  if (!(worst.value > WARMS))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  const Equilibrium *law = &c->material[c->region[worst.region].material].kinetics.equilibrium;
+
+  PetscCall(PetscFPrintf(
+      comm, stderr,
+      "clathra: warning: free gas starts where hydrate is stable, most in region %s at (%g m, %g m): at %.4g degC "
+      "hydrate forms above %.4g Pa and there are %.4g Pa, up to %.4g degC: gas and water turn into hydrate from the "
+      "start (Sg: 0, less pressure or a higher temperature starts in balance, or a first stage with kinetics_active: "
+      "no)\n",
+      c->region[worst.region].name, worst.x[0], worst.x[1], worst.T, EquilibriumPressure(law, worst.T, &d), worst.p,
+      worst.T + worst.value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Case *c, const Particles *P)
 {
   PetscFunctionBeginUser;
   PetscCall(PressureWarning(comm, c, P));
   PetscCall(HydrateWarning(comm, c, P));
+  PetscCall(FormationWarning(comm, c, P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

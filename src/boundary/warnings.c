@@ -1,8 +1,10 @@
 /* What a user should know of a start that is out of balance with gravity (docs/equations.md, section 13), or whose pore
-   pressure is left to tractions (section 6). */
+   pressure is left to tractions (section 6), or where capillary pressure jumps (section 13). */
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
 
+#define LEAST_JUMP 10e3 /* Pa, of (342) */
+#define JUMP 0.5        /* of the smaller p_0 */
 #define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
 
 /* Does the skeleton of a region have a weight to carry, and no stress that does?  Its weight from top to foot, Pa, and
@@ -94,6 +96,75 @@ PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does a local particle of region a have one of region b beside it? */
+static bool Touches(const Case *c, const Particles *P, PetscInt a, PetscInt b)
+{
+  for (PetscInt p = 0; p < P->n; p++) {
+    for (int side = 0; P->i[PI_REGION][p] == a && side < 2 * CL_DIM; side++) {
+      double y[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
+
+      y[side / 2] += (side % 2 ? 1.5 : -1.5) * P->f[P_L + side / 2][p];
+      if (RegionHolds(c, b, y))
+        return true;
+    }
+  }
+  return false;
+}
+
+/* p_c = p_g - p_w that a region starts with, Pa; it is the same all over it. */
+static PetscErrorCode StartCapillary(const Case *c, const Region *r, double *pc)
+{
+  const double   middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
+  InitialScalars s;
+
+  PetscFunctionBeginUser;
+  PetscCall(InitialScalarsAt(c, r, middle, &s));
+  *pc = s.pg - s.pw;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (342) between two regions; *jumps is the same on all ranks. */
+static PetscErrorCode JumpWarning(MPI_Comm comm, const Case *c, const Particles *P, PetscInt a, PetscInt b, bool *jumps)
+{
+  const Region *r = &c->region[a], *q = &c->region[b];
+  const double  p0    = fmin(c->material[r->material].retention.p0, c->material[q->material].retention.p0);
+  double        pc[2] = {0.0, 0.0};
+  int           touch;
+
+  PetscFunctionBeginUser;
+  PetscCall(StartCapillary(c, r, &pc[0]));
+  PetscCall(StartCapillary(c, q, &pc[1]));
+  *jumps = fabs(pc[0] - pc[1]) > fmax(LEAST_JUMP, JUMP * p0);
+  if (!*jumps)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  touch = Touches(c, P, a, b);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &touch, 1, MPI_INT, MPI_LOR, comm));
+  *jumps = touch;
+  if (!*jumps)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFPrintf(
+      comm, stderr,
+      "clathra: warning: regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas "
+      "flow between them at once, the faster the larger their permeability (the same p0 and gas share Sg/(1 - Sh) in "
+      "both, and Sg: 0 in both or neither, starts in balance)\n",
+      r->name, q->name, 1e-3 * pc[0], r->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1], q->Sg == 0.0 ? " (no gas)" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CapillaryWarning(MPI_Comm comm, const Case *c, const Particles *P)
+{
+  bool jumps = !(c->fields.has & HAS_GAS_PRESSURE);
+
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < c->nregion; a++) {
+    for (PetscInt b = a + 1; !jumps && b < c->nregion; b++) {
+      if (!RegionEmpty(&c->region[a]) && !RegionEmpty(&c->region[b]))
+        PetscCall(JumpWarning(comm, c, P, a, b, &jumps));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
 {
   double tension = 0.0, scale = 0.0;
@@ -103,6 +174,7 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
   PetscCall(AmbientAdvice(c, advice));
   if (advice[0])
     PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
+  PetscCall(CapillaryWarning(comm, c, P));
   if (!c->fields.solid || CaseGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {

@@ -81,10 +81,22 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
   return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
 }
 
-/* Weight of the projection (20): volume times permeability, in units of the first material's. */
+/* k0 of a particle in units of the first material's. */
+static inline double Conductance(const Model *m, PetscInt p)
+{
+  return ParticleMaterial(m, p)->permeability.k0 / m->c->material[0].permeability.k0;
+}
+
+/* Weight of the projection (20): volume times permeability. */
 static inline double ConductingVolume(const Model *m, PetscInt p)
 {
-  return m->P.f[P_V][p] * (ParticleMaterial(m, p)->permeability.k0 / m->c->material[0].permeability.k0);
+  return m->P.f[P_V][p] * Conductance(m, p);
+}
+
+/* (350) over S_I: 1 where the node sees one material. */
+static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I)
+{
+  return Conductance(m, p) * m->flow[I];
 }
 
 /* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */
@@ -122,6 +134,12 @@ static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
   if (m->fluid && q >= F_VWX && q <= F_VGY)
     return &m->fluid[PHASE_COUNT * I + (q - F_VWX) / CL_DIM].F[(q - F_VWX) % CL_DIM];
   return mass ? MassRow(m, f, I, q - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[q]];
+}
+
+/* What a face of particle p at node I adds to row q is weighted with besides: (350) in (16). */
+static inline double FaceFlow(const Model *m, PetscInt p, PetscInt I, int q)
+{
+  return q >= F_VWX && q <= F_VGY ? FlowWeight(m, p, I) : 1.0;
 }
 
 static inline double RowWeightOf(const Model *m, PetscInt I, int q)
@@ -174,11 +192,11 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
   return s;
 }
 
-/* Weight of a particle in k_r of a node (108): S, or what looks upstream (35). */
+/* Weight of a particle in k_r of a node (108): (350), or what looks upstream (35). */
 static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
   if (!m->c->upstream)
-    return S;
+    return S * FlowWeight(m, p, I);
   const double *u = &m->up[6 * I + 3 * f];
 
   return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
@@ -199,21 +217,21 @@ static inline void Acceleration(const Model *m, PetscInt I, const double *x, int
     acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
 }
 
-static inline void GatherFluid(const Model *m, int f, const Reach *r, const double *x, const Face *face,
+static inline void GatherFluid(const Model *m, PetscInt p, int f, const Reach *r, const double *x, const Face *face,
                                double in[IN_COUNT])
 {
   const int n = m->c->fields.n, at = PlaceP(&m->c->fields, f);
 
   for (int a = 0; a < r->n; a++) {
-    const PetscInt I = r->node[a];
-    const double   p = x[I * n + at];
+    const PetscInt I  = r->node[a];
+    const double   pI = x[I * n + at], flow = FlowWeight(m, p, I);
     double         J[2];
 
     DarcyFlux(m, I, f, &x[I * n], J);
-    in[IN_P + f] += r->S[a] * (p - m->x_n[I * n + at]);
+    in[IN_P + f] += r->S[a] * (pI - m->x_n[I * n + at]);
     for (int i = 0; i < 2; i++) {
-      in[IN_GP + 2 * f + i] += r->G[a][i] * p;
-      in[IN_J + 2 * f + i] += (face ? FaceWeight(face, a, F_VWX + 2 * f + i) : r->S[a]) * J[i];
+      in[IN_GP + 2 * f + i] += r->G[a][i] * pI;
+      in[IN_J + 2 * f + i] += (face ? FaceWeight(face, a, F_VWX + 2 * f + i) : r->S[a]) * flow * J[i];
     }
   }
 }
@@ -234,7 +252,7 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
     if (!fs->phase[f])
       continue;
     in[IN_P + f] = m->P.f[HeldPressure(fs, P_PW, f)][p];
-    GatherFluid(m, f, r, x, face, in);
+    GatherFluid(m, p, f, r, x, face, in);
   }
   if (!fs->heat)
     return;

@@ -2,8 +2,8 @@
    velocities are eliminated. */
 #include "gather.h"
 
-/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes and in the
-   displacement. */
+/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes, where it is (350),
+   and in the displacement. */
 typedef struct {
   double        S, NS[CL_DIM], NU, K;
   const double *G, *M, *w, *B; /* B: null without mean dilatation */
@@ -48,6 +48,7 @@ typedef struct {
   double acc[3][2], J[PHASE_COUNT][2], Tdot;
   double weight[PHASE_COUNT];  /* RowWeight */
   double kr[PHASE_COUNT];      /* of the node (108) */
+  double flow;                 /* (350) */
   double rise[PHASE_COUNT][2]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
 } NodeFactors;
 
@@ -57,6 +58,7 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
 
   if (fs->solid)
     Acceleration(m, I, x, PlaceVs(fs), n->acc[0]);
+  n->flow = fs->fluid ? S * FlowWeight(m, p, I) : S;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
@@ -107,8 +109,8 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
       double *row = &out[(PlaceV(fs, f) + i) * ld];
 
       for (int q = 0; q < n; q++)
-        row[q] = S * (k->kr[f] * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
-                      k->J[f][i] * DB[OUT_D + f][q]);
+        row[q] = k->flow * (k->kr[f] * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
+                            k->J[f][i] * DB[OUT_D + f][q]);
       for (int q = 0; fs->phase[PHASE_W] && fs->phase[PHASE_G] && q < n; q++)
         row[q] += k->rise[f][i] * DB[OUT_ROOT + f][q];
     }
@@ -134,7 +136,7 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
 static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const NodeFactors *k, double dt, double S,
                      const double *w, double *block, int ld)
 {
-  const double inertia = fs->inertia ? S / dt : 0.0;
+  const double inertia = fs->inertia ? S / dt : 0.0, moved = fs->inertia ? k->flow / dt : 0.0;
 
   for (int i = 0; i < 2; i++) {
     const int vs = PlaceVs(fs) + i;
@@ -143,16 +145,16 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
       block[vs * ld + vs] += inertia * out[OUT_M];
     for (int f = 0; f < PHASE_COUNT; f++) {
       const int    v    = PlaceV(fs, f) + i;
-      const double drag = S * out[OUT_D + f] * w[f], mass = k->kr[f] * out[OUT_MI + f];
+      const double drag = k->flow * out[OUT_D + f] * w[f], mass = moved * k->kr[f] * out[OUT_MI + f];
 
       if (!fs->phase[f])
         continue;
       if (PlaceV(fs, f) < 0) {
         if (fs->solid && drag > 0.0)
-          block[vs * ld + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + inertia * mass);
+          block[vs * ld + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + mass);
         continue;
       }
-      block[v * ld + v] += inertia * mass + drag;
+      block[v * ld + v] += mass + drag;
       if (!fs->solid)
         continue;
       block[v * ld + vs] -= drag;
@@ -176,7 +178,7 @@ static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m
     Factors(m, p, r->node[a], x, r->S[a], &factor[a]);
   for (int b = 0; b < r->n; b++) {
     const NodeWeights at = {.S  = r->S[b],
-                            .NS = {r->S[b], r->S[b]},
+                            .NS = {factor[b].flow, factor[b].flow},
                             .NU = MotionWeight(m, p, r, b),
                             .K  = axisymmetric ? r->K[b] : 0.0,
                             .G  = r->G[b],
@@ -256,14 +258,15 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
   const FieldSet *fs = &to->fs;
 
   for (int b = 0; b < r->n; b++) {
-    const NodeWeights at = {.S  = r->S[b],
-                            .NS = {face->Nr[b], face->N[b]},
-                            .NU = face->N[b],
-                            .K  = m->c->axisymmetric ? r->K[b] : 0.0,
-                            .G  = r->G[b],
-                            .M  = r->M[b],
-                            .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                            .w  = &m->w[2 * r->node[b]]};
+    const double      flow = fs->fluid ? FlowWeight(m, face->particle, r->node[b]) : 1.0;
+    const NodeWeights at   = {.S  = r->S[b],
+                              .NS = {flow * face->Nr[b], flow * face->N[b]},
+                              .NU = face->N[b],
+                              .K  = m->c->axisymmetric ? r->K[b] : 0.0,
+                              .G  = r->G[b],
+                              .M  = r->M[b],
+                              .B  = m->c->mean_dilatation ? r->B[b] : NULL,
+                              .w  = &m->w[2 * r->node[b]]};
 
     for (int k = 0; k < F_COUNT; k++) {
       double col[F_COUNT];
@@ -272,7 +275,8 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
         continue;
       Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[k], &at, col);
       for (int a = 0; a < r->n; a++) {
-        const double N = FaceWeight(face, a, k) * RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
+        const double N = FaceWeight(face, a, k) * FaceFlow(m, face->particle, r->node[a], k) *
+                         RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
 
         double *row = AssemblyBlock(m, to, r->node[a], r->node[b]) + fs->at[k] * fs->n;
 

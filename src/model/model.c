@@ -36,7 +36,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
 static PetscErrorCode DestroyNodal(Model *m)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(m->x_n, m->w, m->V, m->Vk, m->coef));
+  PetscCall(PetscFree6(m->x_n, m->w, m->V, m->Vk, m->flow, m->coef));
   PetscCall(PetscFree2(m->material, m->most));
   PetscCall(PetscFree(m->up));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
@@ -82,7 +82,7 @@ PetscErrorCode ModelResizeNodal(Model *m)
 
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
-  PetscCall(PetscCalloc5(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n * NC_COUNT, &m->coef));
+  PetscCall(PetscCalloc6(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
   PetscCall(PetscCalloc2(n, &m->material, n, &m->most));
   if (m->c->upstream)
     PetscCall(PetscCalloc1(n * 6, &m->up));

@@ -36,21 +36,22 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
 static void ScatterMomentum(const Model *m, PetscInt p, int ph, PetscInt I, double S, const double *x,
                             const double out[OUT_COUNT], double *f)
 {
-  const FieldSet *fs  = &m->c->fields;
-  FluidNode      *at  = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
-  double         *row = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];
+  const double    flow = S * FlowWeight(m, p, I);
+  const FieldSet *fs   = &m->c->fields;
+  FluidNode      *at   = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
+  double         *row  = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];
 
   Acceleration(m, I, x, PlaceV(fs, ph), acc);
   for (int i = 0; i < 2; i++)
-    row[i] += S * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]);
+    row[i] += flow * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]);
   if (at) {
-    at->D += S * out[OUT_D + ph];
+    at->D += flow * out[OUT_D + ph];
     at->root += MobilityShare(m, p, I, ph, S) * out[OUT_ROOT + ph];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);
   for (int i = 0; i < 2; i++)
-    row[i] += S * out[OUT_D + ph] * J[i];
+    row[i] += flow * out[OUT_D + ph] * J[i];
 }
 
 /* Rows (16) and (17) of one fluid from one particle. */
@@ -123,7 +124,7 @@ static void FaceLoop(const Model *m, const double *x, double *f)
     for (int a = 0; a < r.n; a++) {
       for (int q = 0; q < F_COUNT; q++) {
         if (fs->at[q] >= 0)
-          *RowOf(m, f, r.node[a], q) += FaceWeight(face, a, q) * o.out[q];
+          *RowOf(m, f, r.node[a], q) += FaceWeight(face, a, q) * FaceFlow(m, face->particle, r.node[a], q) * o.out[q];
       }
     }
   }

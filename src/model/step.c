@@ -173,8 +173,9 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
 
     DepositNode(m, p, S, d, q, &sum[I * width]);
     m->V[I] += VS;
-    if (m->c->fields.fluid)
-      m->Vk[I] += ConductingVolume(m, p) * S;
+    const double k0 = m->c->fields.fluid ? Conductance(m, p) : 1.0;
+
+    m->Vk[I] += VS * k0;
     c[NC_M] += VS * q->M;
     c[NC_KAPPA] += VS * q->kappa;
     c[NC_CAPACITY] += S * q->capacity;
@@ -194,8 +195,8 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
       c[NC_LAMBDA + k] += VS * q->rho[k] * q->kr[k] / q->resist[k];
       c[NC_RHO + k] += VS * q->rho[k];
       c[NC_STORAGE + k] += VS * q->storage[k];
-      c[NC_DRAG + k] += VS * q->resist[k];
-      c[NC_KR + k] += VS * sqrt(q->kr[k]);
+      c[NC_DRAG + k] += VS * k0 * q->resist[k];
+      c[NC_KR + k] += VS * k0 * sqrt(q->kr[k]);
     }
   }
 }
@@ -206,7 +207,9 @@ static void Average(Model *m, const double *sum)
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     const double *s = &sum[I * (SUM_X + fs->n)], V = m->V[I];
-    double       *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * fs->n];
+
+    m->flow[I] = V / m->Vk[I];
+    double *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * fs->n];
 
     for (int k = 0; k < fs->n; k++) {
       const int    q      = fs->field[k];
@@ -218,8 +221,10 @@ static void Average(Model *m, const double *sum)
       m->w[2 * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
     for (int k = 0; k < NC_COUNT; k++)
       c[k] /= V;
-    for (int k = 0; k < PHASE_COUNT; k++) /* (108) */
-      c[NC_KR + k] *= c[NC_KR + k];
+    for (int k = 0; k < PHASE_COUNT; k++) { /* (350), (108) */
+      c[NC_DRAG + k] *= m->flow[I];
+      c[NC_KR + k] = PetscSqr(c[NC_KR + k] * m->flow[I]);
+    }
   }
 }
 

@@ -1,6 +1,13 @@
 /* What a user may try when a run gives up, for its cause, the likeliest first; docs/giving_up.md says more. */
 #include "clathra/stepper.h"
 
+/* May the integrators without a matrix help, which a run by an implicit one does not try by itself? */
+static bool HybridMayHelp(const Stepper *s, ClStatus status)
+{
+  return (status == CL_TOO_FAR || status == CL_SOLVER) && !s->explicit && !s->auto_.on &&
+         !CaseNeedsImplicit(s->model->c);
+}
+
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
 {
   static const char *const advice[] = {
@@ -13,17 +20,18 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
           "a larger grid, for the body must stay inside it; a roller or fixed line where the body should be "
           "held",
       [CL_TOO_FAR] = "gravity_ramp or a ramp of the load; stress: {geostatic: K0} for a body that starts unstressed; "
-                     "inertia: yes where it slides; stepper_type hybrid or auto for what is fast",
+                     "inertia: yes where it slides",
       [CL_SOLVER] =
           "a ramp instead of a jump of what acts near that place; Sgr of some percent and p0 of some kPa more, "
           "where gas or water is nearly immobile; surfaces on lines of the grid, or well inside cells; "
-          "stepper_type hybrid or auto; finer cells there",
+          "finer cells there",
       [CL_INACCURATE] = "stepper_tol ten times larger; a ramp instead of a jump; finer cells where fields are steep"};
   const char *what = status >= 0 && status <= CL_INACCURATE ? advice[status] : NULL;
 
   PetscFunctionBeginUser;
   if (what)
-    PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s (docs/giving_up.md)\n", what));
+    PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s%s (docs/giving_up.md)\n", what,
+                          HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,10 +1,43 @@
 /* hybrid and explicit: many small steps without a matrix between two looks at the clock; docs/equations.md, section 12.
  */
+#include "clathra/shape.h"
 #include "clathra/stepper.h"
 
 #define BURST 256 /* steps between two estimates of the stable step, and at most lost by a failure */
 #define CUT 0.5   /* of the step after a burst that failed */
 #define HOLD 8    /* bursts at the smaller step after that */
+
+#define LAYERED 2.0 /* ratio of permeabilities from which on layers count */
+
+/* The largest ratio of k0 of the materials that regions are of. */
+static double Contrast(const Case *c)
+{
+  double least = INFINITY, most = 0.0;
+
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    if (RegionEmpty(&c->region[k]))
+      continue;
+    const double k0 = c->material[c->region[k].material].permeability.k0;
+
+    least = fmin(least, k0);
+    most  = fmax(most, k0);
+  }
+  return most / least;
+}
+
+/* (350) is not in hybrid. */
+static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  if (c->fields.fluid && Contrast(c) > LAYERED)
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: warning: k0 of the materials differs by a factor of %.3g: in hybrid's steps the "
+                           "least permeable material at a node holds all of its fluid, so that what flows along a "
+                           "layer is too little by what flows through about a cell of it; implicit steps have no such "
+                           "error\n",
+                           Contrast(c)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static PetscErrorCode Create(Stepper *s)
 {
@@ -22,6 +55,7 @@ static PetscErrorCode Create(Stepper *s)
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &s->explicit));
   PetscCall(ParticlesCreate(c->fields.has, &s->good));
+  PetscCall(SayLayers(c, s->model->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

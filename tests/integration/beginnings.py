@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Warnings of a start that does not stay as it is: they come where they should, with numbers, and in no shipped case.
 
-Unstressed bodies, pore pressures far from hydrostatic (341), hydrate outside its stability zone."""
+Unstressed bodies, pore pressures far from hydrostatic (341), capillary pressures that jump (342), hydrate outside its stability zone,
+gas inside it."""
 import re
 import sys
 from pathlib import Path
@@ -14,7 +15,8 @@ from common import CASES, binary, check, check_true, finish, launch, scratch  # 
 
 COLUMN = HERE.parent / "verification" / "cases" / "geostatic.yaml"  # in balance, two layers, 20 m
 BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
-WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "hydrate": "stability zone"}
+WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
+         "capillary": "touch and start with p_g - p_w"}
 
 
 def said(case, *options, ranks=1):
@@ -61,7 +63,8 @@ check("... its weight under water", abs(float(pascal) / buoyant - 1), 0.01)
 check("... how far it would sink", abs(float(metres) / (buoyant * 8 / 2 / (50e6 * 0.7 / (1.3 * 0.4))) - 1), 0.01)
 
 # ---------------------------------------------------------------- hydrate
-comes("hydrate that is stable", [], said(BLOCK, "-region_left_pressure", "5 MPa", "-region_right_pressure", "5 MPa"))
+both = lambda **k: [o for r in ("left", "right") for name, value in k.items() for o in (f"-region_{r}_{name}", value)]
+comes("hydrate that is stable", [], said(BLOCK, *both(pressure="3.8 MPa")))
 text = comes("hydrate below its pressure", ["hydrate"], said(BLOCK))
 share, _, _, T, needs, has, up_to = numbers(text, "stability zone,")[:7]
 p_e = lambda T: 1.15 * np.exp(49.3185 - 9459 / (T + 273.15))
@@ -70,4 +73,30 @@ check("... has its mean pore pressure", abs(has / 2.84e6 - 1), 1e-3)
 check("... and would be stable up to", abs(p_e(up_to) / has - 1), 1e-3)
 check_true("... all of it", share == 100 and T == 2.3)
 comes("hydrate that does not react", [], said(BLOCK, "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"))
+
+# ---------------------------------------------------------------- gas
+text = comes("gas far above the pressure of equilibrium", ["gas"], said(BLOCK, *both(pressure="5 MPa")))
+T, needs, has, up_to = numbers(text[text.index("): at") :], "at")[:4]
+check("... hydrate forms above", abs(needs / p_e(T) - 1), 1e-3)
+check("... there are", abs(has / 5e6 - 1), 1e-3)
+check("... up to", abs(p_e(up_to) / has - 1), 1e-3)
+check_true("... the same on 2 ranks", text in "\n".join(said(BLOCK, *both(pressure="5 MPa"), ranks=2)))
+comes("gas that would warm the sediment by 0.4 K", [], said(BLOCK, *both(pressure=f"{p_e(2.7):.0f} Pa")))
+comes("... and by 0.6 K", ["gas"], said(BLOCK, *both(pressure=f"{p_e(2.9):.0f} Pa")))
+comes("gas that does not react", [], said(BLOCK, *both(pressure="5 MPa"), "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"))
+
+# ---------------------------------------------------------------- capillary pressure: (223) inverted, m = 0.5
+STILL = [*both(pressure="3.8 MPa", Sh="0"), "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"]
+shares = lambda left, right: [o for r, g in (("left", left), ("right", right)) for o in (f"-region_{r}_Sg", f"{g}", f"-region_{r}_Sw", f"{1 - g}")]
+pc = lambda share: 10 * np.sqrt((1 - (share - 0.01) / 0.89) ** -2 - 1)  # kPa, p0 10 kPa, Swr 0.1, Sgr 0.01
+comes("one gas share", [], said(BLOCK, *STILL, *shares(0.2, 0.2)))
+comes("two whose p_g - p_w are less than 10 kPa apart", [], said(BLOCK, *STILL, *shares(0.2, 0.45)))
+text = comes("two that are further apart", ["capillary"], said(BLOCK, *STILL, *shares(0.2, 0.6)))
+low, high = map(float, re.search(r"p_g - p_w of ([\d.]+) kPa and ([\d.]+) kPa", text).groups())
+check("... p_g - p_w of the one, that of (223) but for its smooth corner", abs(low / pc(0.2) - 1), 0.02)
+check("... of the other", abs(high / pc(0.6) - 1), 0.02)
+check_true("... the same on 2 ranks", text in "\n".join(said(BLOCK, *STILL, *shares(0.2, 0.6), ranks=2)))
+comes("two that do not touch", [], said(BLOCK, *STILL, *shares(0.2, 0.6), "-region_right_lower", "0.6 m, 0 m"))
+text = comes("one without gas", ["capillary"], said(BLOCK, *STILL, *shares(0, 0.2)))
+check_true("... which is said", "(no gas) and" in text, text)
 finish()

@@ -76,6 +76,10 @@ def check_advice():
     at = next((k for k, line in enumerate(said) if line.startswith("Given up")), -2)
     check_true("what to try stands under why it was given up", done.returncode == 3 and "What to try, in this order" in said[at + 1]
                and "docs/giving_up.md" in said[at + 1], said[at : at + 2])  # fmt: skip
+    check_true("... hybrid among it, which knows the scene", "stepper_type hybrid" in said[at + 1], said[at + 1])
+    done = launch(binary(), *BP2[:5], "-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "1e5 MPa", "-stabilisation_saturation", "yes", out=scratch() / "out")
+    text = done.stdout[done.stdout.index("Given up") :]
+    check_true("... and not where it does not", "hybrid does not know stabilisation_saturation" in done.stdout and "What to try" in text and "stepper_type hybrid" not in text, text)
 
 
 def check_words():

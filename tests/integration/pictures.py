@@ -1,8 +1,10 @@
 #!/usr/bin/python3
-"""Pictures of scripts/plot.py: a sheared body is drawn whole, in cells that are no squares; which pictures there are of what run."""
+"""Pictures of scripts/plot.py: a sheared body is drawn whole, in cells that are no squares; which pictures there are of what run; no words
+over others; numbers at ticks."""
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 from matplotlib.path import Path as Outline
@@ -11,8 +13,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
 
 import clathra  # noqa: E402
+import plot  # noqa: E402
 from clathra import shown  # noqa: E402
-from plotting import boxes, plt  # noqa: E402
+from clathra.units import durations  # noqa: E402
+from plotting import Plain, boxes, plt, set_style, wrapped  # noqa: E402
 
 
 def draw(out):
@@ -44,21 +48,68 @@ def holes(particles, first):
     return (pixels[inside].min(axis=1) > 200).mean(), inside.mean()
 
 
+def drawn(axis):
+    """Labels of the ticks that lie on the axis."""
+    low, high = sorted(axis.get_view_interval())
+    return [t.label1 for t in axis.get_major_ticks() if t.label1.get_visible() and low - 1e-9 * (high - low) <= t.get_loc() <= high + 1e-9 * (high - low)]
+
+
+def overlaps(draw, *arguments):
+    """Pairs of words in a picture of plot.py one of which is drawn over the other."""
+    kept = []
+    plot.save = lambda figure, folder, name: kept.append(figure)
+    draw(*arguments)
+    figure = kept[0]
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    words = [t for a in figure.axes for axis in (a.xaxis, a.yaxis) for t in (axis.label, axis.get_offset_text(), *drawn(axis))]
+    words += [t for a in figure.axes for t in (a.title, a._left_title)]
+    held = [(t.get_text(), t.get_window_extent(renderer)) for t in words if t.get_visible() and t.get_text().strip()]
+    plt.close(figure)
+    return [(a, b) for k, (a, x) in enumerate(held) for b, y in held[:k] if min(x.x1, y.x1) - max(x.x0, y.x0) > 1 and min(x.y1, y.y1) - max(x.y0, y.y0) > 1]
+
+
+def body(columns, rows, size, height):
+    """Two snapshots of a body of squares (m), with values that are awkward to write."""
+    x, y = (a.ravel() for a in np.meshgrid((np.arange(columns) + 0.5) * size, height * (np.arange(rows) + 0.5) / rows))
+    share = (x + y) / (x + y).max()
+    p = {"position": np.c_[x, y], "half_length": np.full((len(x), 2), 0.5 * size), "id": np.arange(len(x)), "p": 1e7 + 40 * share, "T": 13.5 + 40 * share,
+         "S_h": 0.4 * share, "S_w": 0.9702 + 0.01 * share, "displacement": np.c_[2e-8 * share, -3e-7 * share], "stress": 120.0 * np.outer(share, np.ones(6))}  # fmt: skip
+    return [{**p, "p": 1e7 + 0 * share}, p]
+
+
+def check_words():
+    set_style()
+    run = SimpleNamespace(title="a body", folder=scratch())
+    flat, upright = body(40, 10, 0.1, 1.0), body(1, 40, 0.25, 10.0)
+    rows = [q for q in shown.shown(flat) if q.key in plot.FIRST][:4]
+    over = overlaps(plot.plot_film, run, (0.0, 3e5), flat, rows)
+    check_true("a flat body: no words over others", len(rows) == 4 and not over, over[:3])
+    over = overlaps(plot.plot_profiles, run, (0.0, 3e5), upright, 1)
+    check_true("profiles: no words over others", not over, over[:3])
+    check_true("one unit for all times of a picture", durations([0.0, 78120.0, 111600.0]) == ["0 h", "21.7 h", "31 h"], durations([0.0, 78120.0, 111600.0]))
+    texts = lambda *v: [t.replace("\N{MINUS SIGN}", "-") for t in Plain().format_ticks(v)]
+    check_true("ticks that lie close", texts(10.0, 10.0025, 10.005) == ["10.0000", "10.0025", "10.0050"], texts(10.0, 10.0025, 10.005))
+    check_true("small ones carry their own power of ten", texts(0, 5e-8, 1e-7) == ["0", "5e-8", "1e-7"] and texts(-2e6, 0) == ["-2e6", "0"], texts(0, 5e-8, 1e-7))
+    check_true("a unit stays with the word before it", wrapped("water saturation S_w (-)", 1.9) == "water saturation\n$S_w$\N{NO-BREAK SPACE}(-)", wrapped("water saturation S_w (-)", 1.9))
+
+
 def main():
     block, failed, upright = scratch() / "block", scratch() / "failed", scratch() / "upright"
-    run(binary(), CASES / "shear_box", "-grid_cells", "32,5", out=block)
+    run(binary(), CASES / "shear_box", "-grid_cells", "32,5", "-meters", "top", "-meter_top_side", "top", out=block)
     body = clathra.Run(block)
     white, share = holes(body.particles(), body.particles(0))
     check_true("the sheared block fills a part of the picture", 0.5 < share < 0.95, f"{share:.2f}")
     check("white pixels in it", white, 0.0)
     names, _ = draw(block)
-    check_true("pictures of a body", names == ["balance", "maps", "particles", "probes"], names)
+    check_true("pictures of a body and of its meters", names == ["balance", "maps", "meters", "particles", "probes"], names)
     launch(binary(), CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_dt", "10 s", "-stepper_dt_min", "9 s", "-bc_load_normal", "1e5 MPa", out=failed)
     names, said = draw(failed)
     check_true("a run without a step has no empty axes", names == [] and "nothing to draw yet" in said, names)
     run(binary(), CASES / "gravity_column", out=upright)
     names, _ = draw(upright)
-    check_true("pictures of a strip", "profiles" in names and "particles" not in names, names)
+    check_true("pictures of a strip", "profiles" in names and "particles" not in names and "meters" not in names, names)
+    check_words()
     finish()
 
 

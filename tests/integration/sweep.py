@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """scripts/sweep.py and scripts/compare.py: every combination once, resumed where it was ended, in one table; differences as they are."""
 import csv
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -46,6 +47,21 @@ def check_sweep(out):
     return folders
 
 
+def check_floor(folder, noisy):
+    """Round-off in a component that is zero is no difference; a thousandth of the field is."""
+    shutil.copytree(folder, noisy)
+    rows = list(csv.reader((noisy / "probes.csv").open()))
+    syy, sxy = (max(abs(float(r[k])) for r in rows[1:]) for k in (rows[0].index(f"base.{c}_Pa") for c in ("syy", "sxy")))
+    for share, wanted in ((1e-10, []), (1e-3, ["base.sxy_Pa"])):
+        k, table = rows[0].index("base.sxy_Pa"), [list(r) for r in rows]
+        for r in table[1:]:
+            r[k] = repr(float(r[k]) + share * syy)
+        with open(noisy / "probes.csv", "w", newline="") as stream:
+            csv.writer(stream).writerows(table)
+        found = [name for name, *_ in compare.largest(clathra.Run(folder), clathra.Run(noisy))]
+        check_true(f"a shear stress off by {share:g} of the largest stress, itself at most {sxy:.1e} Pa", found == wanted, found)
+
+
 def check_compare(folders, out):
     code, said = call("compare.py", folders[0], folders[2], "--out", out)
     check_true("compare.py", code == 0 and (out / "compare.png").is_file(), said[-300:])
@@ -58,6 +74,9 @@ def check_compare(folders, out):
     key = [w for w in lines if w and w[0].startswith(("mat_", "grid_", "bc_")) and "=" not in w[0]]
     check_true("the one key in which they differ", [w[0] for w in key] == ["mat_clay_permeability_k0"], key)
     check_true("a run against itself", not compare.largest(clathra.Run(folders[0]), clathra.Run(folders[0])))
+    code, said = call("compare.py", folders[0], folders[2])
+    check_true("by itself it draws among the first run's figures", code == 0 and (folders[0] / "figures" / "compare.png").is_file() and not Path("compare.png").exists())
+    check_floor(folders[0], out / "noise")
     code, said = call("compare.py", folders[0], out / "nothing")
     check_true("what is no run is named", code == 2 and "nothing holds no run" in said, said[-200:])
 

@@ -46,6 +46,33 @@ static void TestJacobian(void **state)
   }
 }
 
+/* Two layers whose permeabilities differ a thousandfold (350), with one fluid and with two. */
+static void TestLayersJacobian(void **state)
+{
+  static const unsigned has[2] = {HAS_SOLID | HAS_WATER, HAS_ALL};
+
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    Scene *s = malloc(sizeof(*s));
+
+    JacobianCase(s, has[k], true, false, BASIS_CPGIMP, 0.0, 0.0, false, 0);
+    Material mat[2]    = {s->mat, s->mat};
+    Region   region[2] = {s->region, s->region};
+    region[0].upper[1] = region[1].lower[1] = 0.08;
+    region[1].material                      = 1;
+    mat[1].permeability.k0 *= 1e-3;
+    s->c.nmaterial = s->c.nregion = 2;
+    s->c.material                 = mat;
+    s->c.region                   = region;
+    JacobianState(s);
+    const double worst = DirectionError(s, 3), entry = ColumnError(s);
+    Say("  two layers, %s: directions %.1e, entries %.1e\n", k ? "six fields" : "water", worst, entry);
+    Check(worst < 1e-6 && entry < 1e-6);
+    SceneDestroy(s);
+    free(s);
+  }
+}
+
 /* Plates: one that moves, rough; one with a prescribed force, whose springs couple all nodes under it (74), held to the
    body or free to separate, in which case a part of it touches. */
 static void PlateScene(Scene *s, bool axisymmetric, int kind)
@@ -455,9 +482,10 @@ static void TestNewtonOrder(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestJacobian),  cmocka_unit_test(TestPlates),      cmocka_unit_test(TestMassRows),
-      cmocka_unit_test(TestTwoLayers), cmocka_unit_test(TestHydrostatic), cmocka_unit_test(TestUniformStress),
-      cmocka_unit_test(TestDarcy),     cmocka_unit_test(TestHeatFlux),    cmocka_unit_test(TestNewtonOrder),
+      cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestLayersJacobian), cmocka_unit_test(TestPlates),
+      cmocka_unit_test(TestMassRows),      cmocka_unit_test(TestTwoLayers),      cmocka_unit_test(TestHydrostatic),
+      cmocka_unit_test(TestUniformStress), cmocka_unit_test(TestDarcy),          cmocka_unit_test(TestHeatFlux),
+      cmocka_unit_test(TestNewtonOrder),
   };
   int failed;
 

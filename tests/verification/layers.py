@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Flow along and across layers of sand and clay whose permeabilities differ 50,000-fold (350): exact along them wherever grid lines are, across
+them on grid lines; a well in a layer against Thiem; hybrid says what it lacks."""
+from pathlib import Path
+
+import numpy as np
+
+from common import Run, check_true, finish, judge, order, table
+
+CASES = Path(__file__).parent / "cases"
+LAYERS, WELL = CASES / "layers.yaml", CASES / "layered_well.yaml"
+ROW = "layers"
+SAND, CLAY, MU, RHO = 5e-13, 1e-17, 1e-3, 1000.0
+ALONG = RHO * 1e6 / 6 * (SAND + 2 * CLAY) / MU  # kg/(s m): 1 MPa over 6 m, layers of 1 m
+ACROSS = RHO * 1e6 * 6 / (1 / SAND + 2 / CLAY) / MU
+UP = ("-bc_in_side", "bottom", "-bc_out_side", "top", "-meter_in_side", "bottom", "-meter_out_side", "top")
+UPRIGHT = [f"-region_{name}_{end}={x} m,{y} m" for k, name in enumerate(("lower", "layer", "upper")) for end, x, y in (("lower", k, 0), ("upper", k + 1, 6))]
+TURNED = ("-grid_upper", "3 m,6 m", *(word for option in UPRIGHT for word in option.split("=")))
+SHIFTED = ("-grid_lower", "-0.13 m,-0.17 m", "-grid_upper", "6.37 m,3.33 m", "-grid_cells", "13,7")
+
+
+def rate(case, meter, *options):
+    run = Run.of_case(case, "-quiet", *options)
+    return abs(run.csv("meters.csv")[f"{meter}.water_kg_s"][-1])
+
+
+rows = []
+for name, options, exact, bar in (("along layers", (), ALONG, 1e-10), ("along layers, particles of two layers in a cell", SHIFTED, ALONG, 1e-10),
+                                  ("along layers, axes swapped", (*TURNED, *UP), ALONG, 1e-10), ("along layers, sdirk2 and inertia", ("-stepper_type", "sdirk2", "-inertia", "yes"), ALONG, 1e-6),
+                                  ("across layers", UP, ACROSS, 1e-8), ("across layers, axes swapped", TURNED, ACROSS, 1e-8)):  # fmt: skip
+    found = rate(LAYERS, "out", *options)
+    rows.append((name, found, exact))
+    judge(ROW, f"{name}: flow", abs(found / exact - 1), bar)
+table(("water, kg/(s m)", "found", "exact"), rows)
+
+thiem = 2 * np.pi * SAND * 4 * RHO / MU * 6e6 / np.log(20.1 / 0.1)
+cells = (11, 22, 44)
+off = [abs(rate(WELL, "well", "-grid_cells", f"{n},{13 * n // 11}", "-mat_sand_water_bulk_modulus", "1e20 Pa", "-mat_clay_water_bulk_modulus", "1e20 Pa") / thiem - 1) for n in cells]
+table(("cells", "off Thiem", "order"), [(n, o, "-" if k == 0 else f"{-order(cells, off)[k - 1]:.2f}") for k, (n, o) in enumerate(zip(cells, off))])
+for n, o, bar in zip(cells, off, (0.06, 0.02, 0.01)):
+    judge(ROW, f"well in 4 m of sand between clays, cells of {22 / n:g} x {11 / n:.2g} m: rate", o, bar, 0.01, "%")
+
+hybrid = Run.of_case(LAYERS, "-quiet", "-inertia", "yes", "-stepper_type", "hybrid", "-stepper_adapt", "yes", "-mat_sand_water_bulk_modulus", "1e8 Pa", "-mat_clay_water_bulk_modulus", "1e8 Pa",
+                     "-stepper_max_steps", "5")  # fmt: skip
+check_true("hybrid warns of layers", "k0 of the materials differs by a factor of 5e+04" in hybrid.output, hybrid.output[:300])
+finish()
