@@ -47,22 +47,27 @@ time: {end: 100 s}
 """
 
 
+def edited(source, folder, *pairs):
+    """Path of a copy of a case in `folder`, each (old, new) replaced."""
+    text = Path(source).read_text()
+    for old, new in pairs:
+        if old not in text:
+            raise SystemExit(f"bench: {source} no longer holds '{old}'")
+        text = text.replace(old, new)
+    path = Path(folder) / "case.yaml"
+    path.write_text(text)
+    return path
+
+
 def case_file(folder, nx, ny, height, name):
     """BP2 with other cells and another height of the body; or the dry block."""
     if name.startswith("dry"):
         path = Path(folder) / "case.yaml"
         path.write_text(DRY)
         return path
-    text = CASE.read_text()
-    for old, new in (("upper: [1.04 m, 0.02 m]", f"upper: [1.04 m, {height} m]"), ("cells: [52, 1]", f"cells: [{nx}, {ny}]"),
-                     ("upper: [1 m, 0.02 m]", f"upper: [1 m, {height} m]"), ("position: 0.02 m", f"position: {height} m"),
-                     ("0.01 m]}", f"{height / 2} m]}}")):
-        if old not in text:
-            raise SystemExit(f"bench: {CASE} no longer holds '{old}'")
-        text = text.replace(old, new)
-    path = Path(folder) / "case.yaml"
-    path.write_text(text)
-    return path
+    return edited(CASE, folder, ("upper: [1.04 m, 0.02 m]", f"upper: [1.04 m, {height} m]"), ("cells: [52, 1]", f"cells: [{nx}, {ny}]"),
+                  ("upper: [1 m, 0.02 m]", f"upper: [1 m, {height} m]"), ("position: 0.02 m", f"position: {height} m"),
+                  ("0.01 m]}", f"{height / 2} m]}}"))  # fmt: skip
 
 
 def log_events(text):

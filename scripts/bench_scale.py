@@ -51,24 +51,13 @@ def run(binary, case, options, ranks=1, limit=1800):
             "finished": " finished at " in text or " stopped at " in text}  # fmt: skip
 
 
-def edited(path, folder, *pairs):
-    text = Path(path).read_text()
-    for old, new in pairs:
-        if old not in text:
-            raise SystemExit(f"bench_scale: {path} no longer holds '{old}'")
-        text = text.replace(old, new)
-    out = Path(folder) / "case.yaml"
-    out.write_text(text)
-    return out
-
-
 def broad(folder, n):
     """BP2 as a block of n x n cells (and spare ones along x)."""
     return bench.case_file(folder, n + max(1, n // 25), n, 1.0, "block")
 
 
 def dry(folder, n):
-    return edited(bench.case_file(folder, 0, 0, 1.0, "dry"), folder, ("cells: [104, 100]", f"cells: [{n + max(1, n // 25)}, {n}]"))
+    return bench.edited(bench.case_file(folder, 0, 0, 1.0, "dry"), folder, ("cells: [104, 100]", f"cells: [{n + max(1, n // 25)}, {n}]"))
 
 
 def some_fields(folder, names, n):
@@ -86,7 +75,7 @@ def extreme(folder, fields="thmc", body="0.2 m", width="0.2 m", cells="[22, 20]"
     """The column of stability.yaml as a block of 20 x 20 cells; without gas for `hm`."""
     gas = [("Sh: 0.2, Sw: 0.6, Sg: 0.2", ""), ("pressure: 7 MPa, temperature: 10 degC,\n    ", "pressure: 7 MPa, temperature: 10 degC"),
            (", saturation: free", ""), ("kinetics: {active: yes", "kinetics: {active: no"), ("grid:", "fields: hm\ngrid:")] if fields == "hm" else []  # fmt: skip
-    return edited(STABILITY, folder, ("upper: [0.22 m, 0.02 m] ", f"upper: [0.22 m, {body}] "), ("cells: [11, 1]", f"cells: {cells}"),
+    return bench.edited(STABILITY, folder, ("upper: [0.22 m, 0.02 m] ", f"upper: [0.22 m, {body}] "), ("cells: [11, 1]", f"cells: {cells}"),
                   ("upper: [0.2 m, 0.02 m]", f"upper: [{width}, {body}]"), ("position: 0.02 m", f"position: {body}"),
                   ("{at: [0.2 m, 0.01 m]}", "{at: [0.18 m, 0.01 m]}"), *gas)  # fmt: skip
 

@@ -81,9 +81,11 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
   return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
 }
 
-/* k0 of a particle in units of the first material's. */
+/* k0 of a particle in units of the first material's; 1 without fluids, which need none. */
 static inline double Conductance(const Model *m, PetscInt p)
 {
+  if (!m->c->fields.fluid)
+    return 1.0;
   return ParticleMaterial(m, p)->permeability.k0 / m->c->material[0].permeability.k0;
 }
 

@@ -58,7 +58,7 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
 
   if (fs->solid)
     Acceleration(m, I, x, PlaceVs(fs), n->acc[0]);
-  n->flow = fs->fluid ? S * FlowWeight(m, p, I) : S;
+  n->flow = S * FlowWeight(m, p, I);
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
@@ -258,7 +258,7 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
   const FieldSet *fs = &to->fs;
 
   for (int b = 0; b < r->n; b++) {
-    const double      flow = fs->fluid ? FlowWeight(m, face->particle, r->node[b]) : 1.0;
+    const double      flow = FlowWeight(m, face->particle, r->node[b]);
     const NodeWeights at   = {.S  = r->S[b],
                               .NS = {flow * face->Nr[b], flow * face->N[b]},
                               .NU = face->N[b],

@@ -158,24 +158,22 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
 {
   const Grid  *g     = &m->grid;
   const int    width = SUM_X + m->c->fields.n;
-  const double V     = m->P.f[P_V][p];
-  const bool   axis  = SeededAtAxis(m, p);
+  const double V = m->P.f[P_V][p], k0 = Conductance(m, p);
+  const bool   axis = SeededAtAxis(m, p);
   double       at[CL_DIM]; /* where the particle's values belong */
 
   for (int d = 0; d < CL_DIM; d++)
     at[d] = AxisCentroid(&m->stencil[p].axis[d], g->lower[d], g->h[d]);
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
-    const double   S = r->S[a], VS = V * S;
+    const double   S = r->S[a], VS = V * S, VSk = VS * k0;
     const double   d[2] = {g->lower[0] + (double)m->map.ij[I][0] * g->h[0] - at[0],
                            g->lower[1] + (double)m->map.ij[I][1] * g->h[1] - at[1]};
     double        *c    = &m->coef[I * NC_COUNT];
 
     DepositNode(m, p, S, d, q, &sum[I * width]);
     m->V[I] += VS;
-    const double k0 = m->c->fields.fluid ? Conductance(m, p) : 1.0;
-
-    m->Vk[I] += VS * k0;
+    m->Vk[I] += VSk;
     c[NC_M] += VS * q->M;
     c[NC_KAPPA] += VS * q->kappa;
     c[NC_CAPACITY] += S * q->capacity;
@@ -195,8 +193,8 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
       c[NC_LAMBDA + k] += VS * q->rho[k] * q->kr[k] / q->resist[k];
       c[NC_RHO + k] += VS * q->rho[k];
       c[NC_STORAGE + k] += VS * q->storage[k];
-      c[NC_DRAG + k] += VS * k0 * q->resist[k];
-      c[NC_KR + k] += VS * k0 * sqrt(q->kr[k]);
+      c[NC_DRAG + k] += VSk * q->resist[k];
+      c[NC_KR + k] += VSk * sqrt(q->kr[k]);
     }
   }
 }
@@ -207,10 +205,9 @@ static void Average(Model *m, const double *sum)
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     const double *s = &sum[I * (SUM_X + fs->n)], V = m->V[I];
+    double       *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * fs->n];
 
     m->flow[I] = V / m->Vk[I];
-    double *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * fs->n];
-
     for (int k = 0; k < fs->n; k++) {
       const int    q      = fs->field[k];
       const double weight = q < F_PW ? s[SUM_M + q / 2] : q < F_T ? V : c[NC_CAPACITY];

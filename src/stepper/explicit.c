@@ -28,14 +28,16 @@ static double Contrast(const Case *c)
 /* (350) is not in hybrid. */
 static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 {
+  const double contrast = c->fields.fluid ? Contrast(c) : 1.0;
+
   PetscFunctionBeginUser;
-  if (c->fields.fluid && Contrast(c) > LAYERED)
+  if (contrast > LAYERED)
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: warning: k0 of the materials differs by a factor of %.3g: in hybrid's steps the "
                            "least permeable material at a node holds all of its fluid, so that what flows along a "
                            "layer is too little by what flows through about a cell of it; implicit steps have no such "
                            "error\n",
-                           Contrast(c)));
+                           contrast));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -222,10 +222,11 @@ static void TestTwoLayers(void **state)
     Region   region[2]  = {s->region, s->region};
     mat[1].retention.m  = 0.6;
     mat[1].retention.p0 = 2e5;
-    mat[1].porosity     = 0.45;
-    region[1].lower[1]  = 0.13;
-    region[1].upper[1]  = 0.25;
-    region[1].material  = 1;
+    mat[1].permeability.k0 *= 1e-3;
+    mat[1].porosity    = 0.45;
+    region[1].lower[1] = 0.13;
+    region[1].upper[1] = 0.25;
+    region[1].material = 1;
     s->c.nmaterial = s->c.nregion = 2;
     s->c.material                 = mat;
     s->c.region                   = region;
