@@ -111,6 +111,7 @@ typedef struct Case {
   double    standard_gas_density;                    /* kg/m^3 there: what they are computed with */
   /* stabilisation */
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
+  double ghost_storage;       /* g_s, 0 = off (default) */
   double pressure_projection; /* alpha, 0 = off; default 1 */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */

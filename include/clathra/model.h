@@ -60,12 +60,13 @@ typedef struct {
   double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;
 
-/* Second difference of the ghost penalty (22): a node with its neighbours along one axis. */
+/* Second difference of the ghost penalties (22), (351): a node with its neighbours along one axis. */
 typedef struct {
   PetscInt node[3];
   double   a;                   /* g A/h */
   double   M, kappa;            /* Pa, W/(m K) */
   double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
+  double   store[PHASE_COUNT];  /* g_s A h rho s, kg/Pa */
 } GhostLine;
 
 /* Pressure projection of one cell. */

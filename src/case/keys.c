@@ -277,6 +277,8 @@ static const Key case_key[] = {
         "that each particle has (relative), for gas in what tears; or by each particle alone (particles: the paper's "
         "form, which rings)"),
     REAL(Case, "stabilisation_ghost_penalty", ghost_penalty, "", "[0,100]", "0.1", "at free surfaces; 0 = off"),
+    REAL(Case, "stabilisation_ghost_storage", ghost_storage, "", "[0,100]", "0",
+         "the same on pressures' changes, for undrained bodies; 0 = off"),
     REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
     BOOLEAN(Case, "stabilisation_flux_interpolation", flux_interpolation, "yes", "momentum-interpolated mass flux"),

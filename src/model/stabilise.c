@@ -80,8 +80,7 @@ static bool IsCut(const double *fill, PetscInt I)
 
 static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsigned char *near)
 {
-  const double g = m->c->ghost_penalty;
-  PetscInt     n = 0;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(m->ghost));
@@ -98,12 +97,17 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
 
       if (!sides || lo < 0 || hi < 0)
         continue;
-      const double depth = NodeVolume(m, I) / (m->grid.h[0] * m->grid.h[1]); /* 1, or around the axis */
-      m->ghost[n++]      = (GhostLine){.node   = {lo, I, hi},
-                                       .a      = g * 0.5 * sides * depth * m->grid.h[t] / m->grid.h[d],
-                                       .M      = c[NC_M],
-                                       .kappa  = c[NC_KAPPA],
-                                       .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
+      const double depth = NodeVolume(m, I) / (m->grid.h[0] * m->grid.h[1]);  /* 1, or around the axis */
+      const double ratio = 0.5 * sides * depth * m->grid.h[t] / m->grid.h[d]; /* A/h */
+      GhostLine   *line  = &m->ghost[n++];
+
+      *line = (GhostLine){.node   = {lo, I, hi},
+                          .a      = m->c->ghost_penalty * ratio,
+                          .M      = c[NC_M],
+                          .kappa  = c[NC_KAPPA],
+                          .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
+      for (int f = 0; f < PHASE_COUNT; f++)
+        line->store[f] = m->c->ghost_storage * ratio * PetscSqr(m->grid.h[d]) * c[NC_RHO + f] * c[NC_STORAGE + f];
     }
   }
   m->nghost = n;
@@ -221,15 +225,15 @@ PetscErrorCode StabilisationBuild(Model *m)
 {
   PetscFunctionBeginUser;
   m->nghost = m->ncell = 0;
-  if (m->c->ghost_penalty > 0.0)
+  if (m->c->ghost_penalty > 0.0 || m->c->ghost_storage > 0.0)
     PetscCall(BuildGhost(m));
   if (m->c->pressure_projection > 0.0 && m->c->fields.solid && m->c->fields.fluid)
     PetscCall(BuildProjection(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coefficient of the penalty on each of the nine unknowns, zero where the set has none; none on the fluid velocities,
-   which carry the boundary pressure. */
+/* Coefficient of the penalties (22), (351) on each of the nine unknowns, zero where the set has none; none on the fluid
+   velocities, which carry the boundary pressure. */
 static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, double c[F_COUNT])
 {
   const FieldSet *fs = &m->c->fields;
@@ -240,7 +244,8 @@ static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, dou
     c[F_VSX] = c[F_VSY] = g->a * g->M * dt;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f])
-      c[F_PW + f] = g->a * dt / (1.0 / g->lambda[f] + (fs->inertia ? 1.0 / dt : 0.0)); /* dt' rho tau */
+      c[F_PW + f] =
+          g->store[f] + g->a * dt / (1.0 / g->lambda[f] + (fs->inertia ? 1.0 / dt : 0.0)); /* and dt' rho tau */
   }
   if (fs->heat)
     c[F_T] = g->a * g->kappa;
@@ -248,39 +253,43 @@ static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, dou
 
 static const double second[3] = {1.0, -2.0, 1.0};
 
+/* Second difference of unknown k of the nodal values x. */
+static double Jump(const Model *m, const GhostLine *g, const double *x, int k)
+{
+  const FieldSet *fs   = &m->c->fields;
+  double          jump = 0.0;
+
+  for (int a = 0; a < 3; a++)
+    jump += second[a] * x[g->node[a] * fs->n + fs->at[k]];
+  return jump;
+}
+
 static void GhostResidual(const Model *m, const GhostLine *g, const double *x, double *f)
 {
-  const int n = m->c->fields.n;
-  double    c[F_COUNT];
+  double c[F_COUNT];
 
   GhostCoefficients(m, g, m->stage.dt, c);
   for (int k = 0; k < F_COUNT; k++) {
-    double jump = 0.0;
-
     if (c[k] == 0.0)
       continue;
+    double pull = c[k] * Jump(m, g, x, k);
+
+    if (k == F_PW || k == F_PG) /* (351) is on the change from p* */
+      pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);
     for (int a = 0; a < 3; a++)
-      jump += second[a] * x[g->node[a] * n + m->c->fields.at[k]];
-    for (int a = 0; a < 3; a++)
-      *RowOf(m, f, g->node[a], k) += c[k] * jump * second[a];
+      *RowOf(m, f, g->node[a], k) += pull * second[a];
   }
 }
 
 double GhostPower(const Model *m, const double *x)
 {
-  const FieldSet *fs    = &m->c->fields;
-  double          power = 0.0;
+  double power = 0.0;
 
   for (PetscInt k = 0; k < m->nghost; k++) {
     const GhostLine *g = &m->ghost[k];
 
-    for (int d = 0; d < CL_DIM; d++) {
-      double jump = 0.0;
-
-      for (int a = 0; a < 3; a++)
-        jump += second[a] * x[g->node[a] * fs->n + PlaceVs(fs) + d];
-      power += g->a * g->M * m->stage.dt * jump * jump;
-    }
+    for (int d = 0; d < CL_DIM; d++)
+      power += g->a * g->M * m->stage.dt * PetscSqr(Jump(m, g, x, F_VSX + d));
   }
   return power;
 }

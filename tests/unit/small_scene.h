@@ -68,6 +68,7 @@ static inline void SceneInit(Scene *s, unsigned has, bool inertia, bool axisymme
                 .region              = &s->region,
                 .bc                  = s->bc,
                 .ghost_penalty       = 0.1,
+                .ghost_storage       = 0.2,
                 .pressure_projection = 1.0,
                 .flux_interpolation  = true};
   Check(FieldSetMake(has, inertia, one_pressure, &s->c.fields));

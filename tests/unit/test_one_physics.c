@@ -124,8 +124,9 @@ static void Make(Scene *s, const Variant *v, const char *stepper, bool slips)
   s->c.tol                           = 1.0;
   s->c.flip = s->c.mass_scaling = 1.0;
   s->c.relaxation               = INFINITY;
-  s->c.ghost_penalty = s->c.pressure_projection = 0.0; /* nothing to stabilise, but they reach far */
-  s->c.surface                                  = SURFACE_TIED;
+  s->c.ghost_penalty = s->c.ghost_storage = s->c.pressure_projection =
+      0.0; /* nothing to stabilise, but they reach far */
+  s->c.surface = SURFACE_TIED;
   for (int side = 0; side < SIDE_COUNT && (v->has & HAS_SOLID); side++)
     AddFace(s, BC_TRACTION, (Side)side, v->pressure - stress[side == SIDE_YMIN || side == SIDE_YMAX], 0.0);
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
