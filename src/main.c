@@ -71,7 +71,7 @@ int main(int argc, char **argv)
 {
   int exit_code = CL_EXIT_BUG;
 
-  ProcessPrepare();
+  ProcessPrepare(argv);
   if (PetscInitialize(&argc, &argv, NULL, help))
     return CL_EXIT_BUG;
   ProcessListen();

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 static const int             asks[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
@@ -20,10 +21,21 @@ static void Hear(int number)
   caught = number;
 }
 
-void ProcessPrepare(void)
+/* Threads of BLAS wait for each other at every small block of a matrix, and where others compute as well a run takes
+   several times as long: one thread, unless the environment says otherwise.  BLAS reads it before main. */
+static void OneThread(char **argv)
+{
+  if (getenv("OMP_NUM_THREADS") || getenv("OPENBLAS_NUM_THREADS"))
+    return;
+  if (setenv("OMP_NUM_THREADS", "1", 1) == 0)
+    (void)execv("/proc/self/exe", argv);
+}
+
+void ProcessPrepare(char **argv)
 {
   struct sigaction before;
 
+  OneThread(argv);
   for (int fd = 0; fd < 3; fd++) { /* a closed one would be given to the next file that is opened */
     if (fcntl(fd, F_GETFD) < 0)
       (void)!open("/dev/null", O_RDWR);

@@ -199,8 +199,24 @@ def check_streams():
         check_true(f"standard output {name}: the run goes on", not names, f"exit code {done.returncode}: {names[:3]}")
 
 
+def check_threads():
+    """BLAS takes one thread unless the environment says otherwise."""
+    words = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+    plain = {k: v for k, v in {**os.environ, **ENVIRONMENT}.items() if k not in words}
+    for given, threads in (({}, "1"), ({"OMP_NUM_THREADS": "2"}, "2"), ({"OPENBLAS_NUM_THREADS": "2"}, None)):
+        out = scratch() / "out"
+        job = subprocess.Popen(command(out, *FINE), env={**plain, **given}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        wait_for(out / "balance.csv", job)
+        seen = dict(s.split("=", 1) for s in Path(f"/proc/{job.pid}/environ").read_text().split("\0") if "=" in s)
+        job.terminate()
+        job.communicate(timeout=60)
+        check_true(f"threads of BLAS with {given or 'nothing said'}: {threads or 'as given'}", seen.get(words[0]) == threads and job.returncode == 4,
+                   f"{[seen.get(w) for w in words]}, exit code {job.returncode}")  # fmt: skip
+
+
 check_calls()
 check_limit()
+check_threads()
 check_lock()
 check_signals()
 check_streams()

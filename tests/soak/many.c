@@ -50,7 +50,7 @@ int main(int argc, char **argv)
   static char line[3 * PETSC_MAX_PATH_LEN];
   PetscMPIInt rank;
 
-  ProcessPrepare();
+  ProcessPrepare(argv);
   if (PetscInitialize(&argc, &argv, NULL, NULL))
     return CL_EXIT_BUG;
   ProcessListen();
