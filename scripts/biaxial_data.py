@@ -61,6 +61,9 @@ def width_of_band(v, slope, height):
         k = top
         while 0 < k < len(mean) - 1 and mean[k] > 0.5 * mean[top]:
             k += way
+        if k == top:  # the largest value is in the last slice looked at
+            ends.append(float(top))
+            continue
         drop = mean[k - way] - mean[k]
         ends.append(k - way + way * (mean[k - way] - 0.5 * mean[top]) / drop if drop > 0 else k)
     return float((ends[1] - ends[0]) * SLICE), float(mean[top])
