@@ -11,7 +11,7 @@ from pathlib import Path
 # From the top down.  Each row: layer, headers of include/clathra/ (without .h) that belong to it, folders of src/.
 LAYERS = [
     ("base", ["base"], ["base"]),
-    ("tensor", ["tensor", "jet", "fields"], ["tensor", "fields"]),
+    ("tensor", ["inline", "tensor", "jet", "fields"], ["tensor", "fields"]),
     ("laws", ["laws"], ["laws"]),
     ("material", ["material"], ["material"]),
     ("skeleton", ["skeleton"], ["skeleton"]),

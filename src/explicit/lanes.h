@@ -7,12 +7,12 @@
 
 #include "clathra/basis.h"
 #include "clathra/explicit.h"
+#include "clathra/inline.h"
 
 #define BLOCK 32
 #define LANES 8
 #define STRAIGHT 0.5      /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
 #define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
-#define INLINE static inline __attribute__((always_inline))
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
 

@@ -2,6 +2,7 @@
    pressure and temperature makes of them; docs/equations.md, section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
+#include "clathra/point_reaction.h"
 
 typedef struct {
   double value[BLOCK][3 * LANES], dx[BLOCK][LANES], dy[BLOCK][LANES]; /* at the particle; gradients of the first row */
@@ -145,15 +146,16 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
   KineticsFormationAreaBatch(&k, r.n, sw, Sh, area);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double drive = pe[q] - p_r[q];
-    const double rho_h = mh[q] > 0.0 ? mh[q] / (pore[q] * Sh[q]) : 1.0, c = dt * k.M_h * k.A_geo / rho_h,
-                 a = c * Kd[q] * drive, per = 1.0 / (1.0 + a);
-    const double forms = dt * V[q] * k.M_h * Kd[q] * area[q];
-    const bool   goes  = drive >= 0.0;
+    const Growth growth = ReactionGrowth(&k, dt, p_r[q], Kd[q], dK[q], pe[q], dpe[q]);
+    const double rho_h = mh[q] > 0.0 ? mh[q] / (pore[q] * Sh[q]) : 1.0, per_mass = k.A_geo / rho_h;
+    const bool   goes = p_r[q] <= pe[q];
+    double       slope;
+    const double gone = ReactionDissociated(mh[q], -per_mass * growth.v, &slope), to = V[q] * area[q],
+                 by = goes ? -per_mass * slope : to;
 
-    gain[q]   = goes ? -mh[q] * a * per : -forms * drive;
-    gain_p[q] = goes ? mh[q] * c * Kd[q] * per * per : forms;
-    gain_T[q] = goes ? -mh[q] * c * (Kd[q] * dpe[q] + dK[q] * drive) * per * per : -forms * dpe[q];
+    gain[q]   = goes ? gone : to * growth.v;
+    gain_p[q] = by * growth.p;
+    gain_T[q] = by * growth.T;
   }
 }
 
@@ -283,7 +285,7 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
 {
   const Kinetics *k               = &r.mat->kinetics;
   const int       n               = Scalars(s);
-  const double    nu[PHASE_COUNT] = {k->N_h * k->M_w / k->M_h, k->M_g / k->M_h};
+  const double    nu[PHASE_COUNT] = {KineticsWater(k), KineticsMethane(k)};
   const double *restrict sg = e->t[T_SG] + r.p, *restrict gain = e->t[T_GAIN] + r.p,
                          *restrict gain_p = e->t[T_GAIN_P] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
   double zero[BLOCK] = {0.0}, rho_h[BLOCK], held[PHASE_COUNT][BLOCK], L[BLOCK];

@@ -252,7 +252,7 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double
 {
   double *const  *f               = e->m->P.f;
   const Kinetics *kin             = &r.mat->kinetics;
-  const double    nu[PHASE_COUNT] = {kin->N_h * kin->M_w / kin->M_h, kin->M_g / kin->M_h};
+  const double    nu[PHASE_COUNT] = {KineticsWater(kin), KineticsMethane(kin)};
   double         *mw = f[P_MW] + r.p, *mg = f[P_MG] + r.p, *mh = f[P_MH] + r.p; /* read by HeatOf, too */
   const double   *pg = f[P_PG] + r.p, *now = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   double wanted[BLOCK], gain[BLOCK], T[BLOCK], p[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, held[PHASE_COUNT][BLOCK];

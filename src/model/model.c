@@ -122,8 +122,8 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
     const double    mw = m->c->fields.phase[PHASE_W] ? m->P.f[P_MW][p] : 0.0;
     const double    mg = m->c->fields.phase[PHASE_G] ? m->P.f[P_MG][p] : 0.0;
 
-    sum[0] += mw + (mat->reacts ? mh * k->N_h * k->M_w / k->M_h : 0.0);
-    sum[1] += mg + (mat->reacts ? mh * k->M_g / k->M_h : 0.0);
+    sum[0] += mw + (mat->reacts ? mh * KineticsWater(k) : 0.0);
+    sum[1] += mg + (mat->reacts ? mh * KineticsMethane(k) : 0.0);
     sum[2] += mh;
     sum[3] += ms;
     sum[4] += m->P.f[P_V][p];

@@ -268,8 +268,7 @@ static void FluidScalars(const Material *mat, const PointHistory *h, const Kinem
                          bool tangent, PointOutput *o)
 {
   const Jet    mass = f == PHASE_W ? s->m_w : s->m_g;
-  const double nu =
-      f == PHASE_W ? mat->kinetics.N_h * mat->kinetics.M_w / mat->kinetics.M_h : mat->kinetics.M_g / mat->kinetics.M_h;
+  const double nu   = f == PHASE_W ? KineticsWater(&mat->kinetics) : KineticsMethane(&mat->kinetics);
   const double root = sqrt(s->kr[f].v);
   Jet          dm   = JetShift(mass, -h->m_star[1 + f]);
 
