@@ -1,6 +1,7 @@
 /* Starts that do not stay as they are: pore pressure far from hydrostatic, hydrate that is not stable, gas where
    hydrate is (docs/equations.md, section 13). */
 #include "clathra/boundary.h"
+#include "clathra/point_state.h"
 
 #define FAR 0.1         /* of the weight of the water from top to foot */
 #define NOTICEABLE 0.01 /* of the largest pressure */
@@ -117,12 +118,12 @@ static double EquilibriumTemperature(const Equilibrium *law, double p)
   return 0.5 * (low + high);
 }
 
-/* (10) of a particle, Pa. */
-static double MeanPressure(const Particles *P, PetscInt p)
+/* Of a particle, Pa. */
+static double ParticleMean(const Particles *P, PetscInt p)
 {
   const double pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw, Sg = 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
 
-  return pw + Sg / (1.0 - P->f[P_SH][p]) * (pg - pw);
+  return MeanOfPressures(Sg / (1.0 - P->f[P_SH][p]), pw, pg).v;
 }
 
 static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particles *P)
@@ -133,7 +134,7 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particl
   PetscFunctionBeginUser;
   for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
     const Material *m    = &c->material[c->region[P->i[PI_REGION][p]].material];
-    const double    mean = MeanPressure(P, p);
+    const double    mean = ParticleMean(P, p);
 
     if (!m->reacts || m->kinetics.K0 == 0.0 || P->f[P_SH][p] <= 0.0)
       continue;
@@ -169,7 +170,7 @@ static PetscErrorCode FormationWarning(MPI_Comm comm, const Case *c, const Parti
   for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
     const Material *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
     const Kinetics *k  = &m->kinetics;
-    const double    Sh = P->f[P_SH][p], Sw = P->f[P_SW][p], p_mean = MeanPressure(P, p), T = ParticleT(c, P, p);
+    const double    Sh = P->f[P_SH][p], Sw = P->f[P_SW][p], p_mean = ParticleMean(P, p), T = ParticleT(c, P, p);
 
     if (!m->reacts || k->K0 == 0.0 || k->A_geo == 0.0 || !(Sw > 0.0) || !(1.0 - Sh - Sw > SOME_GAS) ||
         EquilibriumPressure(&k->equilibrium, T + WARMS, &d) >= p_mean)

@@ -5,7 +5,7 @@
 #include "clathra/tensor.h"
 
 typedef struct {
-  double phi[BLOCK], Sh[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
+  double phi[BLOCK], Sh[BLOCK], open[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
   double resist[PHASE_COUNT][BLOCK], kr[PHASE_COUNT][BLOCK]; /* mu/k_a, k_r */
 } Fluids;
 
@@ -20,12 +20,13 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const double pore = V[q] - ms[q] / rho_s[q];
+    const Pores v = PoresOf(V[q], ms[q], rho_s[q], mh[q], rho_h[q]);
 
-    w->phi[q] = pore / V[q];
-    w->Sh[q]  = mh[q] / (rho_h[q] * pore);
-    w->sw[q]  = s.fluids ? 1.0 : 0.0;
-    w->p[q]   = 0.0;
+    w->phi[q]  = v.phi;
+    w->Sh[q]   = v.Sh;
+    w->open[q] = v.open;
+    w->sw[q]   = s.fluids ? 1.0 : 0.0;
+    w->p[q]    = 0.0;
   }
   if (!s.fluids)
     return;
@@ -52,7 +53,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
       const double of = mat->relperm.of_pores ? 1.0 - w->Sh[q] : 1.0;
 
       w->sw[q]      = 1.0 - sg[q];
-      w->p[q]       = pw[q] + sg[q] * pc[q];
+      w->p[q]       = MeanOfPressures(sg[q], pw[q], pg[q]).v;
       x[PHASE_W][q] = of * w->sw[q];
       x[PHASE_G][q] = of * sg[q];
     }
@@ -165,7 +166,7 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
     v->value[q][at + FL_GY]   = -V[q] * gy[q];
     v->value[q][at + FL_MI]   = V[q] * w->rho[k][q];
     v->value[q][at + FL_DRAG] = V[q] * w->resist[k][q];
-    v->value[q][at + FL_W]    = V[q] * w->phi[q] * (1.0 - w->Sh[q]) * share;
+    v->value[q][at + FL_W]    = w->open[q] * share;
     if (s.fluids == 2)
       v->value[q][at + FL_ROOT] = V[q] * sqrt(w->kr[k][q]);
   }

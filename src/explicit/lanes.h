@@ -8,6 +8,7 @@
 #include "clathra/basis.h"
 #include "clathra/explicit.h"
 #include "clathra/inline.h"
+#include "clathra/point_state.h"
 
 #define BLOCK 32
 #define LANES 8
@@ -316,16 +317,16 @@ INLINE void PressuresOf(double p_g, const double y[2], double d[2])
   d[1] = gas;
 }
 
-/* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
+/* Water and methane of a unit of open pore space at t_n, kg/m^3: two fluids, with p_g of then. */
 INLINE void PerOpenVolume(const Explicit *e, Run r, const double *restrict pg, double held[PHASE_COUNT][BLOCK])
 {
   const double *restrict sg = e->t[T_SG] + r.p, *restrict rho_w = e->t[T_RHO] + r.p,
                          *restrict rho_g = e->t[T_RHO + 1] + r.p;
-  const double trace                     = r.mat->gas.trace;
+  const double H                         = r.mat->gas.trace;
 
   for (int q = 0; q < r.n; q++) {
-    held[PHASE_W][q] = (1.0 - sg[q]) * rho_w[q];
-    held[PHASE_G][q] = sg[q] * rho_g[q] + (1.0 - sg[q]) * trace * pg[q];
+    held[PHASE_W][q] = WaterContent(sg[q], rho_w[q]).v;
+    held[PHASE_G][q] = MethaneContent(H, sg[q], rho_g[q], pg[q]).v;
   }
 }
 

@@ -193,8 +193,9 @@ INLINE void GasOfMethane(Explicit *e, const Set s, Run r, const Gathered *g)
 
     if (fabs(dp - g->value[q][0]) <= STRAIGHT * p0)
       continue;
-    const double open = e->t[T_V][p] - f[P_MS][p] / LiquidDensity(&r.mat->solid, 0.0, T, &drho, &dT) -
-                        f[P_MH][p] / LiquidDensity(&r.mat->hydrate, 0.0, T, &drho, &dT);
+    const double open = PoresOf(e->t[T_V][p], f[P_MS][p], LiquidDensity(&r.mat->solid, 0.0, T, &drho, &dT), f[P_MH][p],
+                                LiquidDensity(&r.mat->hydrate, 0.0, T, &drho, &dT))
+                            .open;
 
     f[P_PG][p] = PointGasPressure(r.mat, f[P_MG][p] / open, f[P_PW][p], T, pg - dp, pg);
   }
@@ -316,7 +317,7 @@ INLINE void CountCompression(Explicit *e, const Set s, Run r, const Gathered *g)
 }
 
 /* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
-INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
+INLINE bool PoresAfter(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
   double *const *f     = e->m->P.f;
   const bool     known = s.fluids || s.heat; /* the volume, from the pass before */
@@ -329,12 +330,12 @@ INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const doub
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double volume = known ? at[q] : V[q] * n->J[q], pore = volume - ms[q] / rho_s[q],
-                 open = pore - mh[q] / rho_h[q];
+    const double volume = known ? at[q] : V[q] * n->J[q];
+    const Pores  v      = PoresOf(volume, ms[q], rho_s[q], mh[q], rho_h[q]);
 
-    full |= WRONG_UNLESS(open > 0.0);
-    phi[q] = pore / volume;
-    Sh[q]  = 1.0 - open / pore;
+    full |= WRONG_UNLESS(v.open > 0.0);
+    phi[q] = v.phi;
+    Sh[q]  = v.Sh;
     V[q]   = volume;
   }
   return !full;
@@ -370,7 +371,7 @@ INLINE void ExpansionWork(Explicit *e, const Set s, Run r, const Gathered *g, co
     if (s.fluids == 2) {
       const double dpg = g->value[q][1], pg = f[P_PG][p] - 0.5 * dpg;
 
-      mean += (e->t[T_SG][p] + 0.5 * e->t[T_DS][p] * (dpg - dpw)) * (pg - pw);
+      mean = MeanOfPressures(e->t[T_SG][p] + 0.5 * e->t[T_DS][p] * (dpg - dpw), pw, pg).v;
     }
     inside += mean * V[q] * (n->J[q] - 1.0);
   }
@@ -428,7 +429,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
   const char       *why = NULL;
 
   ElasticityYoungBatch(el, r.n, Sh, E_old);
-  if (!PoresOf(e, s, r, n, T, phi))
+  if (!PoresAfter(e, s, r, n, T, phi))
     ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", Worst(r, Sh)); /* S_h >= 1 */
   ElasticityYoungBatch(el, r.n, Sh, E);
   ThermalStrain(e, s, r, g, phi, thermal);

@@ -1,4 +1,5 @@
-/* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(13). */
+/* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(10). */
+#include "clathra/point_state.h"
 #include "state.h"
 
 static Jet LiquidJet(const Liquid *law, Jet p, Jet T)
@@ -7,6 +8,12 @@ static Jet LiquidJet(const Liquid *law, Jet p, Jet T)
   const double rho = LiquidDensity(law, p.v, T.v, &dp, &dT);
 
   return JetChain2(rho, dp, p, dT, T);
+}
+
+/* Methane that water holds (101): where there is one pressure, none. */
+static double Trace(const FieldSet *fs, const Material *mat)
+{
+  return fs->one_pressure ? 0.0 : mat->gas.trace;
 }
 
 static Jet GasJet(const Gas *law, Jet p, Jet T)
@@ -106,8 +113,9 @@ static void Saturations(const FieldSet *fs, const Material *mat, double sw_n, Je
 
     s->sg = JetChain(sg, ds, pc);
   }
-  s->sw = JetSub(s->sw, s->sg);
-  s->p  = JetAdd(pw, JetMul(s->sg, pc));
+  s->sw                = JetSub(s->sw, s->sg);
+  const MeanPressure m = MeanOfPressures(s->sg.v, pw.v, pg.v);
+  s->p                 = JetChain3(m.v, m.sg, s->sg, m.pw, pw, m.pg, pg);
 }
 
 static ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
@@ -164,13 +172,13 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   s->m_w = s->m_g = zero;
   if (fs->phase[PHASE_W]) {
     s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
-    s->m_w          = JetMul(Vf, JetMul(s->sw, s->rho[PHASE_W]));
+    const Content c = WaterContent(s->sg.v, s->rho[PHASE_W].v);
+    s->m_w          = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
   }
   if (fs->phase[PHASE_G]) {
     s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
-    s->m_g          = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
-    if (!fs->one_pressure) /* (101) */
-      s->m_g = JetAdd(s->m_g, JetScale(mat->gas.trace, JetMul(Vf, JetMul(s->sw, pg))));
+    const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
+    s->m_g          = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
   }
   if (fs->fluid)
     Mobility(fs, mat, T, s);
@@ -194,21 +202,20 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 
   *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
-  *m_w = fs->phase[PHASE_W] ? Vf * (1.0 - sg) * LiquidDensity(&mat->water, pw, T, &d, &e) : 0.0;
-  *m_g = gas ? Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e) : 0.0;
-  if (gas && !fs->one_pressure)
-    *m_g += Vf * (1.0 - sg) * mat->gas.trace * pg;
+  *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, LiquidDensity(&mat->water, pw, T, &d, &e)).v : 0.0;
+  *m_g = gas ? Vf * MethaneContent(Trace(fs, mat), sg, GasDensity(&mat->gas, pg, T, &d, &e), pg).v : 0.0;
 }
 
 double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT])
 {
-  double       ds, rho_p, dT;
-  const double sg = RetentionGasShare(&mat->retention, pg - pw, &ds), rho = GasDensity(&mat->gas, pg, T, &rho_p, &dT),
-               c = mat->gas.trace * pg;
+  double       ds, rho_p, rho_T;
+  const double sg   = RetentionGasShare(&mat->retention, pg - pw, &ds),
+               rho  = GasDensity(&mat->gas, pg, T, &rho_p, &rho_T);
+  const FluidMass m = MassOf(MethaneContent(mat->gas.trace, sg, rho, pg), 1.0, 0.0, ds, rho_p, rho_T);
 
-  slope[PHASE_W] = -ds * (rho - c);
-  slope[PHASE_G] = ds * (rho - c) + sg * rho_p + (1.0 - sg) * mat->gas.trace;
-  return sg * rho + (1.0 - sg) * c;
+  slope[PHASE_W] = m.other;
+  slope[PHASE_G] = m.own;
+  return m.v;
 }
 
 #define CLOSE 1e-4 /* of p_0 */
