@@ -5,6 +5,17 @@
 #include "clathra/inline.h"
 #include "clathra/laws.h"
 
+/* Share with its slope in the mass. */
+typedef struct {
+  double v, m;
+} Kept;
+
+/* k of (93): what is still there of the hydrate `from` (kg) when m is left. */
+INLINE Kept KeptHydrate(double from, double m)
+{
+  return m < from ? (Kept){m / from, 1.0 / from} : (Kept){m > 0.0 ? 1.0 : 0.0, 0.0};
+}
+
 /* Hydrate that a step adds to its surface, kg/m^2, with slopes in p (1/Pa) and T (1/K). */
 typedef struct {
   double v, p, T;

@@ -43,25 +43,24 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
   if (s.fluids == 2) {
     const double *restrict pg = f[P_PG] + r.p;
-    double pc[BLOCK], x[PHASE_COUNT][BLOCK];
+    const bool of_pores       = mat->relperm.of_pores;
+    double     pc[BLOCK], x[PHASE_COUNT][BLOCK];
 
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
     RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
     GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
-      const double of = mat->relperm.of_pores ? 1.0 - w->Sh[q] : 1.0;
-
       w->sw[q]      = 1.0 - sg[q];
       w->p[q]       = MeanOfPressures(sg[q], pw[q], pg[q]).v;
-      x[PHASE_W][q] = of * w->sw[q];
-      x[PHASE_G][q] = of * sg[q];
+      x[PHASE_W][q] = KrArgumentOf(of_pores, w->sw[q], w->Sh[q]).v;
+      x[PHASE_G][q] = KrArgumentOf(of_pores, sg[q], w->Sh[q]).v;
     }
     RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], w->kr[PHASE_W]);
     RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], w->kr[PHASE_G]);
     for (int k = 0; k < PHASE_COUNT; k++) {
       for (int q = 0; q < r.n; q++)
-        w->kr[k][q] = Largest(w->kr[k][q], CL_MOBILITY_FLOOR);
+        w->kr[k][q] = KrFloored(w->kr[k][q]);
     }
     GasViscosityBatch(&mat->mu_g, r.n, w->rho[PHASE_G], T, mu);
     for (int q = 0; q < r.n; q++)

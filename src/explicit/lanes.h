@@ -8,6 +8,8 @@
 #include "clathra/basis.h"
 #include "clathra/explicit.h"
 #include "clathra/inline.h"
+#include "clathra/point_flow.h"
+#include "clathra/point_heat.h"
 #include "clathra/point_state.h"
 
 #define BLOCK 32
@@ -339,17 +341,11 @@ INLINE double Largest(double a, double b)
 INLINE void Capacities(const Explicit *e, Set s, Run r, double *restrict C)
 {
   double *const *f          = e->m->P.f;
-  const double *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
+  const double *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p, *mw = s.fluids ? f[P_MW] + r.p : NULL,
+                         *mg = s.fluids == 2 ? f[P_MG] + r.p : NULL;
 
   for (int q = 0; q < r.n; q++)
-    C[q] = ms[q] * r.mat->c_s + mh[q] * r.mat->c_h;
-  for (int k = 0; k < s.fluids; k++) {
-    const double *restrict m = f[P_MW + k] + r.p;
-    const double c           = k ? r.mat->c_g : r.mat->c_w;
-
-    for (int q = 0; q < r.n; q++)
-      C[q] += m[q] * c;
-  }
+    C[q] = HeatCapacity(r.mat, ms[q], mh[q], mw ? mw[q] : 0.0, mg ? mg[q] : 0.0);
 }
 
 /* Sum of a block's n numbers. */

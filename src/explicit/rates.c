@@ -170,7 +170,7 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
   }
 }
 
-/* Row of one fluid: mass missing, mass flux (18)-(20), matrix. */
+/* Row of one fluid: mass missing, mass flux, matrix. */
 INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathered *g, double dt, Given *o)
 {
   double *const *f  = e->m->P.f;
@@ -184,11 +184,11 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double *v = g->value[q], tau = bracket / (drag[q] + rho[q] * scale), c = dt * V[q] * rho[q];
+    const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau;
 
     o->value[q][k]    = m[q] - eos[q];
-    o->force[0][q][k] = c * (v[at + B_J] + tau * (v[at + B_PROJ] - gx[q]));
-    o->force[1][q][k] = c * (v[at + B_J + 1] + tau * (v[at + B_PROJ + 1] - gy[q]));
+    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, v[at + B_J], v[at + B_PROJ] - gx[q]);
+    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, v[at + B_J + 1], v[at + B_PROJ + 1] - gy[q]);
   }
   for (int i = 0; i < n; i++) {
     const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
@@ -224,16 +224,15 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
   const Material mat = *r.mat;
   const int      n = Scalars(s), row = s.fluids, at = B_T(s);
   const double *restrict V = e->m->P.f[P_V] + r.p, *restrict sg = s.fluids == 2 ? e->t[T_SG] + r.p : NULL;
-  double kappa[BLOCK], advected[BLOCK], C[BLOCK];
+  const double kappas[4] = {mat.kappa_s, mat.kappa_h, mat.kappa_w, mat.kappa_g};
+  double       kappa[BLOCK], sw[BLOCK], advected[BLOCK], C[BLOCK];
 
   Capacities(e, s, r, C);
+  for (int q = 0; q < r.n; q++)
+    sw[q] = s.fluids == 2 ? 1.0 - sg[q] : s.fluids ? 1.0 : 0.0;
+  MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double phi = v->phi[q], Sh = v->Sh[q];
-    const double sw    = s.fluids == 2 ? 1.0 - sg[q] : s.fluids ? 1.0 : 0.0;
-    const double fluid = sw * mat.kappa_w + (1.0 - sw) * mat.kappa_g;
-
-    kappa[q]    = (1.0 - phi) * mat.kappa_s + phi * (Sh * mat.kappa_h + (1.0 - Sh) * fluid);
     advected[q] = 0.0;
     if (s.fluids)
       advected[q] += mat.c_w * (o->force[0][q][0] * g->dx[q][at] + o->force[1][q][0] * g->dy[q][at]);
@@ -266,7 +265,7 @@ INLINE void CompressionRow(Explicit *e, const Set s, Run r, const Gathered *g, c
       const PetscInt p   = r.p + q;
       const double   rho = e->t[T_RHO + k][p], TK = T[q] + CL_ZERO_CELSIUS;
       const double   beta  = k == 0 ? r.mat->water.beta : rho > 0.0 ? -e->t[T_GAS + 1][p] / rho : 1.0 / TK;
-      const double   share = rho > 0.0 ? (1.0 - beta * TK) / rho : 0.0;
+      const double   share = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
       const double   given =
           o->force[0][q][k] * (b[0] - share * g->dx[q][at]) + o->force[1][q][k] * (b[1] - share * g->dy[q][at]);
 

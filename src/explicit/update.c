@@ -2,6 +2,7 @@
    docs/equations.md, section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
+#include "clathra/point_reaction.h"
 
 /* What a loop over particles finds wrong: of the width of its numbers, so that the loop stays vector code. */
 typedef int64_t Wrong;
@@ -276,7 +277,7 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     fewer += gain[q] != wanted[q];
-    kept[q] = gain[q] < 0.0 ? 1.0 + gain[q] / mh[q] : 1.0;
+    kept[q] = KeptHydrate(mh[q], mh[q] + gain[q]).v;
     mh[q] += gain[q];
   }
   *limited += fewer;
@@ -346,13 +347,9 @@ INLINE void ThermalStrain(const Explicit *e, const Set s, Run r, const Gathered 
                           double *restrict thermal)
 {
   const double *restrict Sh = e->m->P.f[P_SH] + r.p;
-  const double grain = r.mat->solid.beta, ice = r.mat->hydrate.beta;
 
-  for (int q = 0; q < r.n; q++) {
-    const double h = phi[q] * Sh[q], c = 1.0 - phi[q];
-
-    thermal[q] = s.heat ? (c * grain + h * ice) / (c + h) * g->value[q][s.fluids] / 3.0 : 0.0;
-  }
+  for (int q = 0; q < r.n; q++)
+    thermal[q] = s.heat ? SolidExpansivity(r.mat, phi[q], Sh[q]).v * g->value[q][s.fluids] / 3.0 : 0.0;
 }
 
 /* (92): work of the pressures, trapezoidal, and of the ambient one as the particles of a block expand and move. */

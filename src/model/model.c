@@ -1,4 +1,5 @@
 /* Life of a model. */
+#include "clathra/point_heat.h"
 #include "gather.h"
 
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
@@ -128,7 +129,7 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
     sum[3] += ms;
     sum[4] += m->P.f[P_V][p];
     sum[6] += mg;
-    sum[5] += ms * mat->c_s + mh * mat->c_h + mw * mat->c_w + mg * mat->c_g;
+    sum[5] += HeatCapacity(mat, ms, mh, mw, mg);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   *t = (ModelTotals){.water    = sum[0],

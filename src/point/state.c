@@ -1,4 +1,6 @@
 /* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(10). */
+#include "clathra/point_flow.h"
+#include "clathra/point_heat.h"
 #include "clathra/point_state.h"
 #include "state.h"
 
@@ -27,12 +29,13 @@ static Jet GasJet(const Gas *law, Jet p, Jet T)
 /* k_r of a fluid among two, of its share of the open pores or of all of them. */
 static Jet RelPermJet(const RelPerm *law, int phase, const ScalarState *s)
 {
-  const Jet    share = phase == PHASE_W ? s->sw : s->sg;
-  const Jet    x     = law->of_pores ? JetMul(JetSub(JetConstant(1.0), s->Sh), share) : share;
-  double       d;
-  const double kr = phase == PHASE_W ? RelPermWater(law, x.v, &d) : RelPermGas(law, x.v, &d);
+  const Jet        share = phase == PHASE_W ? s->sw : s->sg;
+  const KrArgument a     = KrArgumentOf(law->of_pores, share.v, s->Sh.v);
+  const Jet        x     = JetChain2(a.v, a.share, share, a.Sh, s->Sh);
+  double           d;
+  const double     kr = phase == PHASE_W ? RelPermWater(law, x.v, &d) : RelPermGas(law, x.v, &d);
 
-  return kr < CL_MOBILITY_FLOOR ? JetConstant(CL_MOBILITY_FLOOR) : JetChain(kr, d, x);
+  return JetChain(KrFloored(kr), kr < CL_MOBILITY_FLOOR ? 0.0 : d, x);
 }
 
 static Jet ViscosityJet(const Material *mat, int phase, Jet rho, Jet T)
@@ -67,8 +70,8 @@ static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarSta
   const double L = LatentHeatEvaluate(&mat->latent, T.v, &dL);
 
   s->kappa    = JetAdd(JetChain2(k, dphi, s->phi, dSh, s->Sh), JetChain(0.0, dsw, s->sw));
-  s->capacity = JetAdd(JetShift(JetScale(mat->c_h, s->m_h), h->m_s * mat->c_s),
-                       JetAdd(JetScale(mat->c_w, s->m_w), JetScale(mat->c_g, s->m_g)));
+  s->capacity = JetChain3(HeatCapacity(mat, h->m_s, s->m_h.v, s->m_w.v, s->m_g.v), mat->c_h, s->m_h, mat->c_w, s->m_w,
+                          mat->c_g, s->m_g);
   s->latent   = JetChain(L, dL, T);
 }
 
@@ -84,15 +87,15 @@ static Jet ExpansionJet(const Material *mat, int phase, Jet p, Jet T)
   return JetMul(JetChain2(beta, dp, p, dT, T), TK);
 }
 
-/* Young's modulus and the expansivity (P45) of skeleton and hydrate. */
+/* Young's modulus and the expansivity of skeleton and hydrate. */
 static void Skeleton(const Material *mat, ScalarState *s)
 {
-  double       dE;
-  const double E      = ElasticityYoung(&mat->elasticity, s->Sh.v, &dE);
-  const Jet    grains = JetSub(JetConstant(1.0), s->phi), ice = JetMul(s->phi, s->Sh);
+  double            dE;
+  const double      E = ElasticityYoung(&mat->elasticity, s->Sh.v, &dE);
+  const Expansivity b = SolidExpansivity(mat, s->phi.v, s->Sh.v);
 
   s->E    = JetChain(E, dE, s->Sh);
-  s->beta = JetDiv(JetAdd(JetScale(mat->solid.beta, grains), JetScale(mat->hydrate.beta, ice)), JetAdd(grains, ice));
+  s->beta = JetChain2(b.v, b.phi, s->phi, b.Sh, s->Sh);
 }
 
 /* Shares of the fluids in the open pores and their mean pressure (10). */
