@@ -20,12 +20,12 @@ INLINE Pores PoresOf(double V, double m_s, double rho_s, double m_h, double rho_
 /* Pressure with slopes in s_g, p_w and p_g. */
 typedef struct {
   double v, sg, pw, pg;
-} MeanPressure;
+} PorePressure;
 
 /* (10) */
-INLINE MeanPressure MeanOfPressures(double sg, double pw, double pg)
+INLINE PorePressure PorePressureOf(double sg, double pw, double pg)
 {
-  return (MeanPressure){pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg};
+  return (PorePressure){pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg};
 }
 
 /* Mass in a unit of open pore volume, kg/m^3, with slopes in s_g, in the fluid's density and, apart from it, in its own

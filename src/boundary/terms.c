@@ -124,7 +124,7 @@ static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
     return;
   }
   const double sg0   = RetentionGasShare(retention, p0[PHASE_G] - p0[PHASE_W], &ds);
-  const double mean0 = MeanOfPressures(sg0, p0[PHASE_W], p0[PHASE_G]).v;
+  const double mean0 = PorePressureOf(sg0, p0[PHASE_W], p0[PHASE_G]).v;
   const double mean  = b->initial ? mean0 : MeanOutside(x, k, o->du);
 
   if (b->natural) {

@@ -52,7 +52,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
     GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
       w->sw[q]      = 1.0 - sg[q];
-      w->p[q]       = MeanOfPressures(sg[q], pw[q], pg[q]).v;
+      w->p[q]       = PorePressureOf(sg[q], pw[q], pg[q]).v;
       x[PHASE_W][q] = KrArgumentOf(of_pores, w->sw[q], w->Sh[q]).v;
       x[PHASE_G][q] = KrArgumentOf(of_pores, sg[q], w->Sh[q]).v;
     }

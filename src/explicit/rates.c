@@ -150,7 +150,7 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
     const double pw = own ? own_w[q] : g->value[q][B_P(s, 0)], pg = own ? own_g[q] : g->value[q][B_P(s, 1)];
 
     sw[q]  = 1.0 - sg[q];
-    p_r[q] = MeanOfPressures(sg[q], pw, pg).v;
+    p_r[q] = PorePressureOf(sg[q], pw, pg).v;
     T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
   }
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);

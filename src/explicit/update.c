@@ -368,7 +368,7 @@ INLINE void ExpansionWork(Explicit *e, const Set s, Run r, const Gathered *g, co
     if (s.fluids == 2) {
       const double dpg = g->value[q][1], pg = f[P_PG][p] - 0.5 * dpg;
 
-      mean = MeanOfPressures(e->t[T_SG][p] + 0.5 * e->t[T_DS][p] * (dpg - dpw), pw, pg).v;
+      mean = PorePressureOf(e->t[T_SG][p] + 0.5 * e->t[T_DS][p] * (dpg - dpw), pw, pg).v;
     }
     inside += mean * V[q] * (n->J[q] - 1.0);
   }

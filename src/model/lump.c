@@ -20,7 +20,7 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
     own[F_PW + f] = m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + Shift(m, p, &r, F_PW + f);
 
   const double pe = EquilibriumPressure(&k->equilibrium, own[F_T], &slope), Kd = KineticsRateConstant(k, own[F_T], &dK);
-  const MeanPressure p_r    = MeanOfPressures(q->s[PHASE_G], own[F_PW], own[F_PG]);
+  const PorePressure p_r    = PorePressureOf(q->s[PHASE_G], own[F_PW], own[F_PG]);
   const Growth       growth = ReactionGrowth(k, 1.0, p_r.v, Kd, dK, pe, slope); /* kg/(m^2 s) */
   const double       area =
       p_r.v <= pe ? k->A_geo * q->phi * q->Sh : KineticsFormationArea(k, q->s[PHASE_W], q->Sh, &dw, &dA);

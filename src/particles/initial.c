@@ -1,7 +1,6 @@
 /* The state that a particle starts from; docs/equations.md, section 13. */
 #include "clathra/particles.h"
 #include "clathra/point.h"
-#include "clathra/point_state.h"
 
 static double GeothermalDatum(const Case *c, const Region *r)
 {
@@ -70,10 +69,10 @@ static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Mat
   if (r->hydrostatic)
     s->pw = InitialWaterPressure(c, r, s->pw, x);
   s->pg = s->pw + pc;
-  s->p  = MeanOfPressures(s->sg, s->pw, s->pg).v;
+  s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   if (two) { /* to the last digit what the law makes of these pressures */
     s->sg = RetentionGasShare(&mat->retention, s->pg - s->pw, &ds);
-    s->p  = MeanOfPressures(s->sg, s->pw, s->pg).v;
+    s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -117,7 +117,7 @@ static void Saturations(const FieldSet *fs, const Material *mat, double sw_n, Je
     s->sg = JetChain(sg, ds, pc);
   }
   s->sw                = JetSub(s->sw, s->sg);
-  const MeanPressure m = MeanOfPressures(s->sg.v, pw.v, pg.v);
+  const PorePressure m = PorePressureOf(s->sg.v, pw.v, pg.v);
   s->p                 = JetChain3(m.v, m.sg, s->sg, m.pw, pw, m.pg, pg);
 }
 
