@@ -83,7 +83,7 @@ def violations_of(path, text):
 
 
 # Folders whose files still call each other in circles: to become fewer.
-CIRCULAR = {"case", "explicit"}
+CIRCULAR = {"explicit"}
 STRINGS = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', re.S)
 DEFINITION = re.compile(r"^(?!static\b|typedef\b|extern\b|#)[A-Za-z_][\w \*]*?\b(\w+)\([^;{]*\)\n\{", re.M)
 
