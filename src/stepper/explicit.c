@@ -1,6 +1,5 @@
 /* hybrid and explicit: many small steps without a matrix between two looks at the clock; docs/equations.md, section 12.
  */
-#include "clathra/shape.h"
 #include "clathra/stepper.h"
 
 #define BURST 256 /* steps between two estimates of the stable step, and at most lost by a failure */
