@@ -151,23 +151,27 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
 {
   double *const *f  = e->m->P.f;
   const int      at = A_Fluid(s, k), vel = k ? P_VG : P_VW, grad = k ? P_GG : P_GW;
+  const double   k0        = Conductance(s, e->m->c, r.mat);
   const double *restrict V = f[P_V] + r.p, *restrict m = f[P_MW + k] + r.p;
   const double *restrict vx = f[vel] + r.p, *restrict vy = f[vel + 1] + r.p;
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
   for (int q = 0; q < r.n; q++) {
     const double share = k ? 1.0 - w->sw[q] : w->sw[q], mass = Largest(m[q], 0.0); /* a trace may be none (101) */
+    const double Vk = V[q] * k0;
 
     v->value[q][at + FL_M]    = mass;
     v->value[q][at + FL_VX]   = mass * vx[q];
     v->value[q][at + FL_VY]   = mass * vy[q];
-    v->value[q][at + FL_GX]   = -V[q] * gx[q];
-    v->value[q][at + FL_GY]   = -V[q] * gy[q];
-    v->value[q][at + FL_MI]   = V[q] * w->rho[k][q];
-    v->value[q][at + FL_DRAG] = V[q] * w->resist[k][q];
+    v->value[q][at + FL_GX]   = -Vk * gx[q];
+    v->value[q][at + FL_GY]   = -Vk * gy[q];
+    v->value[q][at + FL_MI]   = Vk * w->rho[k][q];
+    v->value[q][at + FL_DRAG] = Vk * w->resist[k][q];
     v->value[q][at + FL_W]    = w->open[q] * share;
     if (s.fluids == 2)
-      v->value[q][at + FL_ROOT] = V[q] * sqrt(w->kr[k][q]);
+      v->value[q][at + FL_ROOT] = Vk * sqrt(w->kr[k][q]);
+    if (s.layers)
+      v->value[q][at + FL_Inertia(s)] = k0 * Vk * w->rho[k][q];
   }
 }
 
@@ -264,6 +268,8 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     for (int k = A_Count(s); k < LANES * Rows(A_Count(s)); k++)
       v.value[q][k] = 0.0;
     v.value[q][A_V(s)] = V[q];
+    if (s.layers)
+      v.value[q][A_K(s)] = V[q] * Conductance(s, e->m->c, r.mat);
   }
   State(e, s, r, T, &state);
   for (int k = 0; k < s.fluids; k++) {

@@ -22,6 +22,7 @@ typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_ali
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {
   int solid, fluids, heat; /* 0/1; water, water and gas; 0/1 */
+  int layers;              /* 0/1: materials differ in k0, and (350) shares a node's flow among them */
 } Set;
 
 INLINE int Scalars(Set s) /* unknowns of mass and heat: p_w, p_g, T */
@@ -34,7 +35,7 @@ INLINE int Rows(int n)
 }
 
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
- * and each fluid. */
+ * and each fluid, and with layers V k0. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
 enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
 INLINE int A_V(Set s)
@@ -49,17 +50,33 @@ INLINE int A_Mix(Set s)
 {
   return Scalars(s) + 1 + s.heat;
 }
-INLINE int FluidLanes(Set s) /* a lone fluid has no k_r */
+INLINE int FluidLanesAlike(Set s) /* a lone fluid has no k_r */
 {
   return s.fluids == 2 ? FL_ROOT + 1 : FL_ROOT;
+}
+INLINE int FL_Inertia(Set s) /* of one fluid (310); without layers that of its weight */
+{
+  return s.layers ? FluidLanesAlike(s) : FL_MI;
+}
+INLINE int FluidLanes(Set s)
+{
+  return FluidLanesAlike(s) + s.layers;
 }
 INLINE int A_Fluid(Set s, int f)
 {
   return A_Mix(s) + MIX_COUNT * s.solid + FluidLanes(s) * f;
 }
-INLINE int A_Count(Set s)
+INLINE int A_K(Set s)
 {
   return A_Fluid(s, s.fluids);
+}
+INLINE int A_Count(Set s)
+{
+  return A_K(s) + s.layers;
+}
+INLINE double Conductance(Set s, const Case *c, const Material *mat) /* weight of a particle's flow (350) */
+{
+  return s.layers ? CaseConductance(c, mat) : 1.0;
 }
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
@@ -156,7 +173,8 @@ struct Explicit {
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */
   double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it */
+  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it; of
+                     fluids with layers the flow per permeability (311) */
   double *gain;   /* [rows][3] the same of the scalars */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
@@ -172,6 +190,7 @@ struct Explicit {
   double (*answer)[2 * CL_DIM];     /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
+  bool   resize;                    /* rows of nodes have another length */
   double latent, advected;          /* J over the step */
   double squeezed;                  /* (290), J over the step */
   double heat_in, warmed;  /* J over the step: what prescribed temperatures take, and all that warms the nodes */
@@ -270,7 +289,10 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
 #define MAKE_LOOP(f, solid, fluids, heat)                                                                              \
   static void f##_##solid##fluids##heat(Explicit *e, Run r, double dt)                                                 \
   {                                                                                                                    \
-    f(e, (Set){solid, fluids, heat}, r, dt);                                                                           \
+    if (fluids && e->set.layers)                                                                                       \
+      f(e, (Set){solid, fluids, heat, 1}, r, dt);                                                                      \
+    else                                                                                                               \
+      f(e, (Set){solid, fluids, heat, 0}, r, dt);                                                                      \
   }
 #define MAKE_LOOPS(f)                                                                                                  \
   MAKE_LOOP(f, 0, 0, 1)                                                                                                \

@@ -175,8 +175,8 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 {
   double *const *f  = e->m->P.f;
   const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
-  const double   bracket   = e->m->c->flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
-               scale       = e->o.mass_scaling / dt;
+  const double   bracket = e->m->c->flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
+               scale = e->o.mass_scaling / dt, k0 = Conductance(s, e->m->c, r.mat);
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
                          *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
@@ -187,8 +187,8 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
     const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau;
 
     o->value[q][k]    = m[q] - eos[q];
-    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, v[at + B_J], v[at + B_PROJ] - gx[q]);
-    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, v[at + B_J + 1], v[at + B_PROJ + 1] - gy[q]);
+    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, k0 * v[at + B_J], v[at + B_PROJ] - gx[q]);
+    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, k0 * v[at + B_J + 1], v[at + B_PROJ + 1] - gy[q]);
   }
   for (int i = 0; i < n; i++) {
     const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
