@@ -47,11 +47,15 @@ HYBRID = ("-stepper_type", "hybrid", "-inertia", "yes", "-stepper_adapt", "yes",
 until = lambda t, clay: (*HYBRID, "-time_end", f"{t} s", "-output_times", f"{t} s", "-mat_sand_water_bulk_modulus", "1e8 Pa", "-mat_clay_water_bulk_modulus", f"{clay} Pa")
 THIN = ("-grid_upper", "1 m,3 m", "-grid_cells", "2,6", *(f(k) for k, name in enumerate(("lower", "layer", "upper")) for f in (lambda k, n=name: f"-region_{n}_upper", lambda k: f"1 m,{k + 1} m")))
 CLAY_20 = 0.05 * SAND
+# the outer layers are of sand at first, of something half as permeable from 100 s on
+LATER = ("-mat_clay_permeability_k0", f"{0.5 * SAND} m^2", "-region_lower_material", "sand", "-region_upper_material", "sand", "-stages", "alike,layers", "-stage_alike_end", "100 s",
+         "-stage_layers_end", "4000 s", "-stage_layers_materials", "lower,clay,upper,clay")  # fmt: skip
 rows = []
 for name, options, exact, bar in (("along layers", until(2500, 5e12), ALONG, 1e-10),
                                   ("along layers, particles of two layers in a cell", (*until(2500, 5e12), *SHIFTED), ALONG, 1e-6),
                                   ("along layers, axes swapped", (*until(2500, 5e12), *TURNED, *UP), ALONG, 1e-10),
                                   ("along layers, in and out through the sand alone", (*until(2500, 5e12), *(w for b in ("in", "out") for w in (f"-bc_{b}_from", "1 m", f"-bc_{b}_to", "2 m"))), ALONG, 0.02),
+                                  ("along layers from a stage on", (*until(4000, 1e8), *LATER), 2 * RHO * 1e6 / 6 * SAND / MU, 1e-8),
                                   ("across layers", (*until(8000, 2e8), *THIN, *UP, "-mat_clay_permeability_k0", f"{CLAY_20} m^2"), RHO * 1e6 / (1 / SAND + 2 / CLAY_20) / MU, 1e-8)):  # fmt: skip
     found = 1e3 * rate(LAYERS, "out", *options)
     rows.append((name, found, exact))
