@@ -11,7 +11,7 @@ from pathlib import Path
 # From the top down.  Each row: layer, headers of include/clathra/ (without .h) that belong to it, folders of src/.
 LAYERS = [
     ("base", ["base"], ["base"]),
-    ("tensor", ["tensor", "jet", "fields"], ["tensor", "fields"]),
+    ("tensor", ["inline", "tensor", "jet", "fields"], ["tensor", "fields"]),
     ("laws", ["laws"], ["laws"]),
     ("material", ["material"], ["material"]),
     ("skeleton", ["skeleton"], ["skeleton"]),
@@ -83,7 +83,7 @@ def violations_of(path, text):
 
 
 # Folders whose files still call each other in circles: to become fewer.
-CIRCULAR = {"case", "explicit", "io", "run", "stepper"}
+CIRCULAR = {"explicit"}
 STRINGS = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', re.S)
 DEFINITION = re.compile(r"^(?!static\b|typedef\b|extern\b|#)[A-Za-z_][\w \*]*?\b(\w+)\([^;{]*\)\n\{", re.M)
 

@@ -24,12 +24,12 @@ from common import ENVIRONMENT  # noqa: E402
 # The quick tests, in the order in which they are asked: seconds in all.
 UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "one_physics", "explicit", "axisymmetry", "plasticity",
         "fieldsets", "turning")  # fmt: skip
-FIRST = {"laws": "laws_values", "point": "point", "boundary": "faces", "model": "model"}  # the folder's own
-RUNS = ("closed_cell", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
+FIRST = {"laws": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
+RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
         "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "bp2_reference")  # fmt: skip
 
 # (name, file, [(what stands there, what is planted), ...])
-LAWS, POINT, MODEL, BOUNDARY = "src/laws/", "src/point/", "src/model/", "src/boundary/"
+LAWS, POINT, MODEL, BOUNDARY, EXPLICIT = "src/laws/", "src/point/", "src/model/", "src/boundary/", "src/explicit/"
 FAULTS = [
     ("water expands the wrong way", LAWS + "eos.c", [("law->K - law->beta * (T - law->T_ref)", "law->K + law->beta * (T - law->T_ref)"), ("-law->rho0 * de * law->beta", "law->rho0 * de * law->beta")]),
     ("ideal gas: kelvin less 0.15", LAWS + "eos.c", [("const double TK = T[q] + LAW_ZERO_CELSIUS;\n\n    rho_p[q] = law->M", "const double TK = T[q] + 273.0;\n\n    rho_p[q] = law->M")]),
@@ -66,6 +66,8 @@ FAULTS = [
     ("initial pressure at a face without its water", MODEL + "evaluate.c", [("weight += rho *", "weight += 0.0 * rho *")]),
     ("pressure projection without inertia (275)", MODEL + "stabilise.c", [("return 1.0 / (1.0 + PetscSqr(c->t_inertia / m->stage.dt))", "return c->t_inertia >= 0.0 && m->stage.dt > 0.0 ? 1.0 : 0.0")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("const double g = m->c->ghost_penalty;", "const double g = 10.0 * m->c->ghost_penalty;")]),
+    ("hybrid's particle of a layer takes the flow of its nodes (350)", EXPLICIT + "rates.c", [("c * (k0 * v[at + B_J] + tau", "c * ((1.0 + 0.0 * k0) * v[at + B_J] + tau"), ("c * (k0 * v[at + B_J + 1] + tau", "c * ((1.0 + 0.0 * k0) * v[at + B_J + 1] + tau")]),
+    ("inertia of hybrid's fluids in layers without its weight (310)", EXPLICIT + "velocities.c", [("PetscSqr(b->flow) * f[FL_Inertia(s)]", "b->flow * f[FL_MI]")]),
 ]  # fmt: skip
 
 

@@ -244,6 +244,28 @@ static inline bool CaseLetsGasIn(const Case *c)
   return enters && CaseStartsWithoutGas(c);
 }
 
+/* Weight of a material's share in the flow of a node (350): k0 in units of the first material's. */
+static inline double CaseConductance(const Case *c, const Material *mat)
+{
+  return mat->permeability.k0 / c->material[0].permeability.k0;
+}
+
+/* The largest ratio of k0 of the materials that regions are of; 1 without fluids. */
+static inline double CaseContrast(const Case *c)
+{
+  double least = INFINITY, most = 0.0;
+
+  for (PetscInt k = 0; c->fields.fluid && k < c->nregion; k++) {
+    if (c->region[k].material < 0)
+      continue;
+    const double k0 = c->material[c->region[k].material].permeability.k0;
+
+    least = fmin(least, k0);
+    most  = fmax(most, k0);
+  }
+  return most > 0.0 ? most / least : 1.0;
+}
+
 /* First condition that the integrators without a matrix do not know, or NULL. */
 static inline const Bc *CaseBcNeedsMatrix(const Case *c)
 {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "clathra/case.h"
+#include "clathra/point_state.h"
 #include "clathra/skeleton.h"
 
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
@@ -100,6 +101,14 @@ double ParticleInitialT(const Case *c, const Particles *P, PetscInt p);
 static inline double ParticleT(const Case *c, const Particles *P, PetscInt p)
 {
   return P->f[P_T] ? P->f[P_T][p] : c->region[P->i[PI_REGION][p]].temperature;
+}
+
+/* Mean pore pressure of what the particle holds, Pa; scenes with water. */
+static inline double ParticlePressure(const Particles *P, PetscInt p)
+{
+  const double pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw;
+
+  return PorePressureOf(1.0 - P->f[P_SW][p] / (1.0 - P->f[P_SH][p]), pw, pg).v;
 }
 
 /* History of the skeleton of the particles from `first` on, for a stage that ends `ahead` (s) of the last average of

@@ -22,7 +22,7 @@ bool        QuantityParse(const char *text, const char *si, double *value, char 
 bool        NumberParse(const char *text, double *value, const char **end); /* decimal, finite; no nan, inf or hex */
 const char *QuantityName(const char *si);                                   /* "a pressure" for "Pa" */
 
-/* ---------------------------------------------------------------- document.c, reader.c */
+/* ---------------------------------------------------------------- document.c, reader.c, load.c */
 typedef struct {
   char    *name, *value; /* option name without the dash; NULL value = empty */
   PetscInt line;
@@ -160,7 +160,10 @@ int  EditDistance(const char *a, const char *b);
     ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
   } while (0)
 
-/* ---------------------------------------------------------------- value.c, forms.c, check.c */
+/* ---------------------------------------------------------------- words.c, value.c, forms.c, check.c */
+/* The words that a key may have, NULL: none are listed; an error that names them, and the nearest. */
+const char *const *KeyWords(const Key *k);
+void               WordError(Reader *r, const char *shown, const char *text, const char *const *words);
 /* like.c: who is like whom; after the lists of names are read, before any other key.  A circle is refused. */
 PetscErrorCode CaseLike(Reader *r, const Case *c);
 PetscErrorCode LikeDestroy(Reader *r);

@@ -202,7 +202,7 @@ static void DeriveFluids(Material *m)
   m->kinetics.equilibrium.shift = BrineEquilibriumShift(m->salinity);
   m->mu_w.salinity              = m->salinity;
   m->mu_g.M                     = m->gas.M;
-  m->latent.dc                  = (k->N_h * k->M_w * m->c_w + k->M_g * m->c_g) / k->M_h - m->c_h;
+  m->latent.dc                  = KineticsWater(k) * m->c_w + KineticsMethane(k) * m->c_g - m->c_h;
 }
 
 static PetscErrorCode Derive(Reader *r, Case *c)

@@ -5,7 +5,7 @@
 #include "clathra/tensor.h"
 
 typedef struct {
-  double phi[BLOCK], Sh[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
+  double phi[BLOCK], Sh[BLOCK], open[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
   double resist[PHASE_COUNT][BLOCK], kr[PHASE_COUNT][BLOCK]; /* mu/k_a, k_r */
 } Fluids;
 
@@ -20,12 +20,13 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const double pore = V[q] - ms[q] / rho_s[q];
+    const Pores v = PoresOf(V[q], ms[q], rho_s[q], mh[q], rho_h[q]);
 
-    w->phi[q] = pore / V[q];
-    w->Sh[q]  = mh[q] / (rho_h[q] * pore);
-    w->sw[q]  = s.fluids ? 1.0 : 0.0;
-    w->p[q]   = 0.0;
+    w->phi[q]  = v.phi;
+    w->Sh[q]   = v.Sh;
+    w->open[q] = v.open;
+    w->sw[q]   = s.fluids ? 1.0 : 0.0;
+    w->p[q]    = 0.0;
   }
   if (!s.fluids)
     return;
@@ -42,25 +43,24 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
   if (s.fluids == 2) {
     const double *restrict pg = f[P_PG] + r.p;
-    double pc[BLOCK], x[PHASE_COUNT][BLOCK];
+    const bool of_pores       = mat->relperm.of_pores;
+    double     pc[BLOCK], x[PHASE_COUNT][BLOCK];
 
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
     RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
     GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
-      const double of = mat->relperm.of_pores ? 1.0 - w->Sh[q] : 1.0;
-
       w->sw[q]      = 1.0 - sg[q];
-      w->p[q]       = pw[q] + sg[q] * pc[q];
-      x[PHASE_W][q] = of * w->sw[q];
-      x[PHASE_G][q] = of * sg[q];
+      w->p[q]       = PorePressureOf(sg[q], pw[q], pg[q]).v;
+      x[PHASE_W][q] = KrArgumentOf(of_pores, w->sw[q], w->Sh[q]).v;
+      x[PHASE_G][q] = KrArgumentOf(of_pores, sg[q], w->Sh[q]).v;
     }
     RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], w->kr[PHASE_W]);
     RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], w->kr[PHASE_G]);
     for (int k = 0; k < PHASE_COUNT; k++) {
       for (int q = 0; q < r.n; q++)
-        w->kr[k][q] = Largest(w->kr[k][q], CL_MOBILITY_FLOOR);
+        w->kr[k][q] = KrFloored(w->kr[k][q]);
     }
     GasViscosityBatch(&mat->mu_g, r.n, w->rho[PHASE_G], T, mu);
     for (int q = 0; q < r.n; q++)
@@ -151,23 +151,27 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
 {
   double *const *f  = e->m->P.f;
   const int      at = A_Fluid(s, k), vel = k ? P_VG : P_VW, grad = k ? P_GG : P_GW;
+  const double   k0        = Conductance(s, e->m->c, r.mat);
   const double *restrict V = f[P_V] + r.p, *restrict m = f[P_MW + k] + r.p;
   const double *restrict vx = f[vel] + r.p, *restrict vy = f[vel + 1] + r.p;
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
   for (int q = 0; q < r.n; q++) {
     const double share = k ? 1.0 - w->sw[q] : w->sw[q], mass = Largest(m[q], 0.0); /* a trace may be none (101) */
+    const double Vk = V[q] * k0;
 
     v->value[q][at + FL_M]    = mass;
     v->value[q][at + FL_VX]   = mass * vx[q];
     v->value[q][at + FL_VY]   = mass * vy[q];
-    v->value[q][at + FL_GX]   = -V[q] * gx[q];
-    v->value[q][at + FL_GY]   = -V[q] * gy[q];
-    v->value[q][at + FL_MI]   = V[q] * w->rho[k][q];
-    v->value[q][at + FL_DRAG] = V[q] * w->resist[k][q];
-    v->value[q][at + FL_W]    = V[q] * w->phi[q] * (1.0 - w->Sh[q]) * share;
+    v->value[q][at + FL_GX]   = -Vk * gx[q];
+    v->value[q][at + FL_GY]   = -Vk * gy[q];
+    v->value[q][at + FL_MI]   = Vk * w->rho[k][q];
+    v->value[q][at + FL_DRAG] = Vk * w->resist[k][q];
+    v->value[q][at + FL_W]    = w->open[q] * share;
     if (s.fluids == 2)
-      v->value[q][at + FL_ROOT] = V[q] * sqrt(w->kr[k][q]);
+      v->value[q][at + FL_ROOT] = Vk * sqrt(w->kr[k][q]);
+    if (s.layers)
+      v->value[q][at + FL_Inertia(s)] = k0 * Vk * w->rho[k][q];
   }
 }
 
@@ -264,6 +268,8 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     for (int k = A_Count(s); k < LANES * Rows(A_Count(s)); k++)
       v.value[q][k] = 0.0;
     v.value[q][A_V(s)] = V[q];
+    if (s.layers)
+      v.value[q][A_K(s)] = V[q] * Conductance(s, e->m->c, r.mat);
   }
   State(e, s, r, T, &state);
   for (int k = 0; k < s.fluids; k++) {

@@ -4,6 +4,12 @@
 static const char *const part[STEP_PARTS] = {"ClExDeposit", "ClExVelocities", "ClExRates",
                                              "ClExScalars", "ClExUpdate",     "ClExOrder"};
 
+/* Do layers share a node's flow (350)?  Not in the bare form, which is the paper's. */
+static int Layers(const Explicit *e)
+{
+  return CaseContrast(e->m->c) > 1.0 && !e->o.particle_pressures;
+}
+
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out)
 {
   const FieldSet *fs = &m->c->fields;
@@ -14,7 +20,7 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   PetscCall(PetscNew(&e));
   e->m   = m;
   e->o   = *o;
-  e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat};
+  e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat, Layers(e)};
   *out   = e;
 
   e->straight = INFINITY;
@@ -190,6 +196,8 @@ static PetscErrorCode Sort(Explicit *e)
 static PetscErrorCode Ready(Explicit *e)
 {
   PetscFunctionBeginUser;
+  e->resize     = e->resize || Layers(e) != e->set.layers; /* a stage may bring other materials */
+  e->set.layers = Layers(e);
   PetscCall(SizeParticles(e));
   PetscCall(Sort(e));
   for (PetscInt p = 0; e->t[T_T] && p < e->m->P.n; p++)

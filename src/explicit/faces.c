@@ -106,9 +106,14 @@ static void Inputs(const Explicit *e, const Face *f, double in[IN_COUNT])
     in[IN_GT + d] = P[P_GT + d][p];
 }
 
+static const Material *MaterialOf(const Explicit *e, const Face *f)
+{
+  return &e->m->c->material[e->m->c->region[f->region].material];
+}
+
 static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT], double dt, FaceOutput *o)
 {
-  const Material *mat = &e->m->c->material[e->m->c->region[f->region].material];
+  const Material *mat = MaterialOf(e, f);
   PointProperties q   = {0};
   const char     *why;
   double          p0[PHASE_COUNT], velocity[CL_DIM] = {0.0};
@@ -136,6 +141,7 @@ void FacesForces(Explicit *e, double dt)
     Reach(e, f, true, &r);
     Inputs(e, f, in);
     Evaluate(e, f, in, dt, &o);
+    const double k0 = Conductance(s, e->m->c, MaterialOf(e, f));
     for (int d = 0; s.solid && d < CL_DIM; d++)
       e->pull[k][d] = -o.out[F_VSX + d];
     if (f->bc[BC_PLATE] >= 0)
@@ -153,7 +159,7 @@ void FacesForces(Explicit *e, double dt)
         if (s.solid)
           row[A_Mix(s) + MIX_FX + d] += f->N[a] * e->pull[k][d];
         for (int ph = 0; ph < s.fluids; ph++)
-          row[A_Fluid(s, ph) + FL_GX + d] += f->N[a] * force[ph][d];
+          row[A_Fluid(s, ph) + FL_GX + d] += k0 * f->N[a] * force[ph][d];
       }
     }
   }
@@ -183,13 +189,14 @@ void FacesWork(Explicit *e, double dt)
 /* Darcy fluxes at the face (19), with its own weights. */
 static void Fluxes(const Explicit *e, const Face *f, const Nodes *r, double in[IN_COUNT])
 {
-  const Set s     = e->set;
-  const int width = LANES * Rows(B_Count(s));
+  const Set    s     = e->set;
+  const int    width = LANES * Rows(B_Count(s));
+  const double k0    = Conductance(s, e->m->c, MaterialOf(e, f));
 
   for (int a = 0; a < r->n; a++) {
     for (int ph = 0; ph < s.fluids; ph++) {
       for (int d = 0; d < CL_DIM; d++)
-        in[IN_J + 2 * ph + d] += f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
+        in[IN_J + 2 * ph + d] += k0 * f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
     }
   }
 }

@@ -7,18 +7,22 @@
 
 #include "clathra/basis.h"
 #include "clathra/explicit.h"
+#include "clathra/inline.h"
+#include "clathra/point_flow.h"
+#include "clathra/point_heat.h"
+#include "clathra/point_state.h"
 
 #define BLOCK 32
 #define LANES 8
 #define STRAIGHT 0.5      /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
 #define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
-#define INLINE static inline __attribute__((always_inline))
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
 
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {
   int solid, fluids, heat; /* 0/1; water, water and gas; 0/1 */
+  int layers;              /* 0/1: materials differ in k0, and (350) shares a node's flow among them */
 } Set;
 
 INLINE int Scalars(Set s) /* unknowns of mass and heat: p_w, p_g, T */
@@ -31,7 +35,7 @@ INLINE int Rows(int n)
 }
 
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
- * and each fluid. */
+ * and each fluid, and with layers V k0. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
 enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
 INLINE int A_V(Set s)
@@ -46,17 +50,33 @@ INLINE int A_Mix(Set s)
 {
   return Scalars(s) + 1 + s.heat;
 }
-INLINE int FluidLanes(Set s) /* a lone fluid has no k_r */
+INLINE int FluidLanesAlike(Set s) /* a lone fluid has no k_r */
 {
   return s.fluids == 2 ? FL_ROOT + 1 : FL_ROOT;
+}
+INLINE int FL_Inertia(Set s) /* of one fluid (310); without layers that of its weight */
+{
+  return s.layers ? FluidLanesAlike(s) : FL_MI;
+}
+INLINE int FluidLanes(Set s)
+{
+  return FluidLanesAlike(s) + s.layers;
 }
 INLINE int A_Fluid(Set s, int f)
 {
   return A_Mix(s) + MIX_COUNT * s.solid + FluidLanes(s) * f;
 }
-INLINE int A_Count(Set s)
+INLINE int A_K(Set s)
 {
   return A_Fluid(s, s.fluids);
+}
+INLINE int A_Count(Set s)
+{
+  return A_K(s) + s.layers;
+}
+INLINE double Conductance(Set s, const Case *c, const Material *mat) /* weight of a particle's flow (350) */
+{
+  return s.layers ? CaseConductance(c, mat) : 1.0;
 }
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
@@ -153,7 +173,8 @@ struct Explicit {
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */
   double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it */
+  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it; of
+                     fluids with layers the flow per permeability (311) */
   double *gain;   /* [rows][3] the same of the scalars */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
@@ -169,6 +190,7 @@ struct Explicit {
   double (*answer)[2 * CL_DIM];     /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */
   bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
+  bool   resize;                    /* rows of nodes have another length */
   double latent, advected;          /* J over the step */
   double squeezed;                  /* (290), J over the step */
   double heat_in, warmed;  /* J over the step: what prescribed temperatures take, and all that warms the nodes */
@@ -267,7 +289,10 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
 #define MAKE_LOOP(f, solid, fluids, heat)                                                                              \
   static void f##_##solid##fluids##heat(Explicit *e, Run r, double dt)                                                 \
   {                                                                                                                    \
-    f(e, (Set){solid, fluids, heat}, r, dt);                                                                           \
+    if (fluids && e->set.layers)                                                                                       \
+      f(e, (Set){solid, fluids, heat, 1}, r, dt);                                                                      \
+    else                                                                                                               \
+      f(e, (Set){solid, fluids, heat, 0}, r, dt);                                                                      \
   }
 #define MAKE_LOOPS(f)                                                                                                  \
   MAKE_LOOP(f, 0, 0, 1)                                                                                                \
@@ -316,16 +341,16 @@ INLINE void PressuresOf(double p_g, const double y[2], double d[2])
   d[1] = gas;
 }
 
-/* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
+/* Water and methane of a unit of open pore space at t_n, kg/m^3: two fluids, with p_g of then. */
 INLINE void PerOpenVolume(const Explicit *e, Run r, const double *restrict pg, double held[PHASE_COUNT][BLOCK])
 {
   const double *restrict sg = e->t[T_SG] + r.p, *restrict rho_w = e->t[T_RHO] + r.p,
                          *restrict rho_g = e->t[T_RHO + 1] + r.p;
-  const double trace                     = r.mat->gas.trace;
+  const double H                         = r.mat->gas.trace;
 
   for (int q = 0; q < r.n; q++) {
-    held[PHASE_W][q] = (1.0 - sg[q]) * rho_w[q];
-    held[PHASE_G][q] = sg[q] * rho_g[q] + (1.0 - sg[q]) * trace * pg[q];
+    held[PHASE_W][q] = WaterContent(sg[q], rho_w[q]).v;
+    held[PHASE_G][q] = MethaneContent(H, sg[q], rho_g[q], pg[q]).v;
   }
 }
 
@@ -338,17 +363,11 @@ INLINE double Largest(double a, double b)
 INLINE void Capacities(const Explicit *e, Set s, Run r, double *restrict C)
 {
   double *const *f          = e->m->P.f;
-  const double *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
+  const double *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p, *mw = s.fluids ? f[P_MW] + r.p : NULL,
+                         *mg = s.fluids == 2 ? f[P_MG] + r.p : NULL;
 
   for (int q = 0; q < r.n; q++)
-    C[q] = ms[q] * r.mat->c_s + mh[q] * r.mat->c_h;
-  for (int k = 0; k < s.fluids; k++) {
-    const double *restrict m = f[P_MW + k] + r.p;
-    const double c           = k ? r.mat->c_g : r.mat->c_w;
-
-    for (int q = 0; q < r.n; q++)
-      C[q] += m[q] * c;
-  }
+    C[q] = HeatCapacity(r.mat, ms[q], mh[q], mw ? mw[q] : 0.0, mg ? mg[q] : 0.0);
 }
 
 /* Sum of a block's n numbers. */

@@ -46,11 +46,23 @@ static double Sliver(const Explicit *e, PetscInt p)
   return k2;
 }
 
+/* (312): k_a over that without hydrate, where what (350) weighs with does not count hydrate. */
+static double Openness(Set s, const Material *mat, const PointProperties *q)
+{
+  double dphi, dSh;
+
+  if (!s.layers)
+    return 1.0;
+  return PermeabilityEvaluate(&mat->permeability, q->phi, q->Sh, &dphi, &dSh) /
+         PermeabilityEvaluate(&mat->permeability, q->phi, 0.0, &dphi, &dSh);
+}
+
 static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
 {
-  const Model    *m = e->m;
-  const Set       s = e->set;
-  double *const  *f = (double *const *)m->P.f;
+  const Model    *m   = e->m;
+  const Set       s   = e->set;
+  const Material *mat = &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
+  double *const  *f   = (double *const *)m->P.f;
   const char     *why;
   PointProperties q;
   const double    k2      = GridHighest2(&m->grid);
@@ -62,8 +74,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
   *w  = (Spectrum){.fluids = s.fluids};
   rho = (f[P_MS][p] + f[P_MH][p]) / f[P_V][p];
   if (s.fluids)
-    Stiffness(s, &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material], &q,
-              s.fluids == 2 ? f[P_PG][p] - f[P_PW][p] : 0.0, C);
+    Stiffness(s, mat, &q, s.fluids == 2 ? f[P_PG][p] - f[P_PW][p] : 0.0, C);
   skeleton     = q.M;
   double total = rho;
   for (int i = 0; i < s.fluids; i++) {
@@ -73,7 +84,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
 
     total += share * q.rho[i];
     w->fluid[i] = k2 * share * C[i][i] / (q.rho[i] * e->o.mass_scaling);
-    w->drag[i]  = drag * share / (q.rho[i] * e->o.mass_scaling);
+    w->drag[i]  = Openness(s, mat, &q) * drag * share / (q.rho[i] * e->o.mass_scaling);
     w->both[i]  = drag * share * (1.0 / q.rho[i] + share / rho) / e->o.mass_scaling;
     for (int j = 0; j < s.fluids; j++) {
       const double other = q.phi * (1.0 - q.Sh) * q.s[j];

@@ -79,7 +79,8 @@ PetscErrorCode NodesRebuild(Explicit *e)
   }
   PetscCall(NodeMapUpdate(g, flag, &e->map, &changed));
   PetscCall(PetscFree(flag));
-  if (changed) {
+  if (changed || e->resize) {
+    e->resize = false;
     PetscCall(Allocate(e));
     PetscCall(FindHeld(e));
   }

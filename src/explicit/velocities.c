@@ -8,6 +8,7 @@ typedef struct {
   /* (16) of each fluid: inertia per velocity, drag, times k_r, and the inverse of what multiplies its velocity; k_r,
      share */
   double A[2], B[2], per_AB[2], kr[2], w[2];
+  double flow;              /* V/(V k0) (350) */
   double lhs;               /* of the mixture, N s/m */
   double v, f, vf[2], r[2]; /* skeleton: velocity, force on the mixture; fluids: velocity, force times k_r */
 } Balance;
@@ -16,6 +17,12 @@ typedef struct {
 INLINE double Share(const Set s, const double *a, double per_V, int k)
 {
   return Largest(a[A_Fluid(s, k) + FL_W] * per_V, CL_SHARE_FLOOR);
+}
+
+/* What makes (350) of sums weighted with k0. */
+INLINE double Flow(const Set s, const double *a)
+{
+  return s.layers ? a[A_V(s)] / a[A_K(s)] : 1.0;
 }
 
 INLINE double Inverse(double mass)
@@ -43,15 +50,16 @@ INLINE void ReadMasses(const Explicit *e, const Set s, const double *a, double d
   b->M     = s.solid ? a[A_Mix(s) + MIX_M] : 0.0;
   b->per_M = Inverse(b->M);
   b->lhs   = scale * b->M;
+  b->flow  = Flow(s, a);
   for (int k = 0; k < s.fluids; k++) {
     const double *f = &a[A_Fluid(s, k)];
 
     b->m[k]      = f[FL_M];
     b->per_m[k]  = Inverse(f[FL_M]);
-    b->kr[k]     = s.fluids == 2 ? PetscSqr(f[FL_ROOT] * per_V) : 1.0;
+    b->kr[k]     = s.fluids == 2 ? PetscSqr(b->flow * f[FL_ROOT] * per_V) : 1.0;
     b->w[k]      = Share(s, a, per_V, k);
-    b->A[k]      = scale * b->kr[k] * f[FL_MI];
-    b->B[k]      = f[FL_DRAG] * b->w[k];
+    b->A[k]      = scale * b->kr[k] * (s.layers ? PetscSqr(b->flow) * f[FL_Inertia(s)] : f[FL_MI]); /* (310) */
+    b->B[k]      = b->flow * f[FL_DRAG] * b->w[k];
     b->per_AB[k] = 1.0 / (b->A[k] + DragAtEnd(e, b, k));
     b->lhs += scale * b->m[k] * DragAtEnd(e, b, k) * b->per_AB[k];
   }
@@ -68,7 +76,7 @@ INLINE void ReadForces(const Explicit *e, const Set s, const double *a, int d, B
     const double *f = &a[A_Fluid(s, k)];
 
     b->vf[k] = b->m[k] > 0.0 ? f[FL_VX + d] * b->per_m[k] : b->v;
-    b->r[k]  = b->kr[k] * (f[FL_GX + d] + f[FL_MI] * gravity);
+    b->r[k]  = b->kr[k] * b->flow * (f[FL_GX + d] + f[FL_MI] * gravity);
     mass += b->m[k];
   }
   b->f = s.solid ? mix[MIX_FX + d] + mass * gravity : 0.0;
@@ -157,7 +165,7 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(&b, e->o.damping) * 0.5 * (v[0] + b.v);
     e->inc[6 * I + d] = v[0] - b.v;
     for (int k = 0; k < s.fluids; k++)
-      e->inc[6 * I + 2 * (1 + k) + d] = v[1 + k] - b.vf[k];
+      e->inc[6 * I + 2 * (1 + k) + d] = s.layers ? b.flow * (v[1 + k] - v[0]) : v[1 + k] - b.vf[k];
     if (!held) /* of the mixture, which moves with the skeleton but for seepage */
       e->added += PetscSqr((e->o.mass_scaling - 1.0) * b.M * (v[0] - b.v) / dt);
   }
@@ -176,7 +184,7 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
     weight += w->m[k] * own;
-    pressure += a[A_Fluid(s, k) + FL_GX + d] * flow;
+    pressure += w->flow * a[A_Fluid(s, k) + FL_GX + d] * flow;
   }
   e->work[WORK_INERTIA] += scale * inertia;
   e->work[WORK_GRAVITY] += dt * gravity * weight;
@@ -185,6 +193,15 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
     e->work[WORK_PLATES] += dt * push[d] * v[0];
   if (Held(e, I, F_VSX + d, &value))
     e->work[WORK_PLATES] += (scale * gained - dt * w->f) * value;
+}
+
+/* Velocity of a fluid: the increments of (41), or with layers the skeleton's and what follows from the node's flow per
+   permeability (311). */
+INLINE double FluidVelocity(const Explicit *e, const Set s, PetscInt I, const Balance *w, int k, int d, double v_s)
+{
+  const double shared = Blended(e, I, e->node[I].own_v, 6, e->inc, 2 * (1 + k) + d);
+
+  return s.layers ? v_s + shared / w->flow : w->vf[k] + shared;
 }
 
 /* Row that the particles read: own start velocity, the increment, then what is prescribed. */
@@ -210,11 +227,11 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
-      v[1 + k] = w.vf[k] + Blended(e, I, e->node[I].own_v, 6, e->inc, 2 * (1 + k) + d);
+      v[1 + k] = FluidVelocity(e, s, I, &w, k, d, v[0]);
       if (Held(e, I, F_VWX + 2 * k + d, &value))
         v[1 + k] = value;
-      bf[B_J + d]    = w.w[k] * (v[1 + k] - v[0]);
-      bf[B_PROJ + d] = -f[FL_GX + d] * per_V;
+      bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
+      bf[B_PROJ + d] = -w.flow * f[FL_GX + d] * per_V;
       bf[B_DV + d]   = v[1 + k] - w.vf[k];
       bf[B_VEL + d]  = v[1 + k];
     }

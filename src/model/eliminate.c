@@ -13,7 +13,7 @@ static void FluxResponse(const Model *m, const Reach *r, const double *x, const 
   for (int a = 0; a < r->n; a++) {
     double at[CL_DIM];
 
-    Acceleration(m, r->node[a], x, PlaceV(fs, f), at);
+    Acceleration(m, r->node[a], x, PlaceV(fs, f), 1.0, at);
     w += r->S[a] * m->w[PHASE_COUNT * r->node[a] + f];
     kr += r->S[a] * (m->fluid ? PetscSqr(m->fluid[PHASE_COUNT * r->node[a] + f].root) : 1.0);
     for (int i = 0; i < CL_DIM; i++)

@@ -81,12 +81,10 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
   return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
 }
 
-/* k0 of a particle in units of the first material's; 1 without fluids, which need none. */
+/* Weight of a particle's flow; 1 without fluids, which need none. */
 static inline double Conductance(const Model *m, PetscInt p)
 {
-  if (!m->c->fields.fluid)
-    return 1.0;
-  return ParticleMaterial(m, p)->permeability.k0 / m->c->material[0].permeability.k0;
+  return m->c->fields.fluid ? CaseConductance(m->c, ParticleMaterial(m, p)) : 1.0;
 }
 
 /* Weight of the projection (20): volume times permeability. */
@@ -210,13 +208,14 @@ static inline double MobilityShare(const Model *m, PetscInt p, PetscInt I, int f
   return MobilityWeight(m, p, I, f, S) * m->P.f[P_V][p] / m->V[I];
 }
 
-/* Acceleration less gravity of the velocity at place k of a node's block; quasi-static: only gravity. */
-static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double acc[2])
+/* Acceleration, weighted, less gravity of the velocity at place k of a node's block; quasi-static: only gravity. */
+static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double weight, double acc[2])
 {
   const PetscInt q = I * m->c->fields.n + k;
 
   for (int i = 0; i < 2; i++)
-    acc[i] = (m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
+    acc[i] =
+        (m->c->fields.inertia ? weight * (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
 }
 
 static inline void GatherFluid(const Model *m, PetscInt p, int f, const Reach *r, const double *x, const Face *face,

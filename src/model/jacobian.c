@@ -45,10 +45,10 @@ static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, con
 
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
-  double acc[3][2], J[PHASE_COUNT][2], Tdot;
-  double weight[PHASE_COUNT];  /* RowWeight */
-  double kr[PHASE_COUNT];      /* of the node (108) */
-  double flow;                 /* (350) */
+  double acc[3][2], own[PHASE_COUNT][2], J[PHASE_COUNT][2], Tdot; /* own: in (16), (310) */
+  double weight[PHASE_COUNT];                                     /* RowWeight */
+  double kr[PHASE_COUNT];                                         /* of the node (108) */
+  double flow, share;                                             /* (350), and without S */
   double rise[PHASE_COUNT][2]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
 } NodeFactors;
 
@@ -57,12 +57,14 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
   const FieldSet *fs = &m->c->fields;
 
   if (fs->solid)
-    Acceleration(m, I, x, PlaceVs(fs), n->acc[0]);
-  n->flow = S * FlowWeight(m, p, I);
+    Acceleration(m, I, x, PlaceVs(fs), 1.0, n->acc[0]);
+  n->share = FlowWeight(m, p, I);
+  n->flow  = S * n->share;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    Acceleration(m, I, x, PlaceV(fs, f), n->acc[1 + f]);
+    Acceleration(m, I, x, PlaceV(fs, f), 1.0, n->acc[1 + f]);
+    Acceleration(m, I, x, PlaceV(fs, f), n->share, n->own[f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
     n->kr[f]     = 1.0;
     n->weight[f] = RowWeight(m, I, f);
@@ -109,7 +111,7 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
       double *row = &out[(PlaceV(fs, f) + i) * ld];
 
       for (int q = 0; q < n; q++)
-        row[q] = k->flow * (k->kr[f] * (k->acc[1 + f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
+        row[q] = k->flow * (k->kr[f] * (k->own[f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
                             k->J[f][i] * DB[OUT_D + f][q]);
       for (int q = 0; fs->phase[PHASE_W] && fs->phase[PHASE_G] && q < n; q++)
         row[q] += k->rise[f][i] * DB[OUT_ROOT + f][q];
@@ -136,7 +138,7 @@ static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int
 static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const NodeFactors *k, double dt, double S,
                      const double *w, double *block, int ld)
 {
-  const double inertia = fs->inertia ? S / dt : 0.0, moved = fs->inertia ? k->flow / dt : 0.0;
+  const double inertia = fs->inertia ? S / dt : 0.0, moved = fs->inertia ? k->flow * k->share / dt : 0.0;
 
   for (int i = 0; i < 2; i++) {
     const int vs = PlaceVs(fs) + i;
@@ -166,8 +168,8 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
 }
 
 /* A constant number of unknowns lets the compiler unroll the rows of the largest sets. */
-static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p,
-                                                                  const Reach *r, const double *x, const PointOutput *o)
+INLINE void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p, const Reach *r, const double *x,
+                            const PointOutput *o)
 {
   const FieldSet *fs           = &to->fs;
   const bool      axisymmetric = m->c->axisymmetric;

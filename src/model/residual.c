@@ -11,13 +11,13 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
     const double *G  = r->M[a];
     double       *fI = &f[r->node[a] * fs->n + PlaceVs(fs)], acc[2], inertia[2];
 
-    Acceleration(m, r->node[a], x, PlaceVs(fs), acc);
+    Acceleration(m, r->node[a], x, PlaceVs(fs), 1.0, acc);
     for (int i = 0; i < 2; i++)
       inertia[i] = out[OUT_M] * acc[i];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       if (!fs->phase[ph])
         continue;
-      Acceleration(m, r->node[a], x, PlaceV(fs, ph), acc);
+      Acceleration(m, r->node[a], x, PlaceV(fs, ph), 1.0, acc);
       for (int i = 0; i < 2; i++)
         inertia[i] += out[OUT_M + 1 + ph] * acc[i];
     }
@@ -41,7 +41,7 @@ static void ScatterMomentum(const Model *m, PetscInt p, int ph, PetscInt I, doub
   FluidNode      *at   = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
   double         *row  = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];
 
-  Acceleration(m, I, x, PlaceV(fs, ph), acc);
+  Acceleration(m, I, x, PlaceV(fs, ph), FlowWeight(m, p, I), acc); /* (310) */
   for (int i = 0; i < 2; i++)
     row[i] += flow * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]);
   if (at) {

@@ -1,6 +1,5 @@
 /* hybrid and explicit: many small steps without a matrix between two looks at the clock; docs/equations.md, section 12.
  */
-#include "clathra/shape.h"
 #include "clathra/stepper.h"
 
 #define BURST 256 /* steps between two estimates of the stable step, and at most lost by a failure */
@@ -9,35 +8,20 @@
 
 #define LAYERED 2.0 /* ratio of permeabilities from which on layers count */
 
-/* The largest ratio of k0 of the materials that regions are of. */
-static double Contrast(const Case *c)
-{
-  double least = INFINITY, most = 0.0;
-
-  for (PetscInt k = 0; k < c->nregion; k++) {
-    if (RegionEmpty(&c->region[k]))
-      continue;
-    const double k0 = c->material[c->region[k].material].permeability.k0;
-
-    least = fmin(least, k0);
-    most  = fmax(most, k0);
-  }
-  return most / least;
-}
-
-/* (350) is not in hybrid. */
+/* (350) is not in the paper's bare form. */
 static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 {
-  const double contrast = c->fields.fluid ? Contrast(c) : 1.0;
+  const double contrast = c->pressures == PRESSURES_PARTICLES ? CaseContrast(c) : 1.0;
 
   PetscFunctionBeginUser;
   if (contrast > LAYERED)
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: warning: k0 of the materials differs by a factor of %.3g: in hybrid's steps the "
-                           "least permeable material at a node holds all of its fluid, so that what flows along a "
-                           "layer is too little by what flows through about a cell of it; implicit steps have no such "
-                           "error\n",
-                           contrast));
+    PetscCall(
+        PetscFPrintf(comm, stderr,
+                     "clathra: warning: k0 of the materials differs by a factor of %.3g: with pressures: particles the "
+                     "least permeable material at a node holds all of its fluid, so that what flows along a "
+                     "layer is too little by what flows through about a cell of it; implicit steps have no such "
+                     "error\n",
+                     contrast));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -45,6 +45,8 @@ typedef struct {
   Region   region;
   Bc       bc[MAX_BC];
   double   number[2 * MAX_BC], zero; /* values of constant schedules */
+  Material pair[2];                  /* of two layers */
+  Region   half[2];
   Model    m;
   Stage    stage;
 } Scene;
@@ -110,6 +112,21 @@ static inline void AddPlane(Scene *s, BcType type, PetscInt axis, double positio
   s->bc[s->c.nbc]       = (Bc){.type = type, .axis = axis, .position = position, .region = -1};
   s->bc[s->c.nbc].value = Constant(s, 0, value);
   s->c.nbc++;
+}
+
+/* Makes two layers of the region, which meet at x or y = `at`; k0 of the second is `contrast` times that of the first.
+   The material is as it is by now. */
+static inline void SceneLayers(Scene *s, int axis, double at, double contrast)
+{
+  s->pair[0] = s->pair[1] = s->mat;
+  s->half[0] = s->half[1] = s->region;
+  s->half[0].upper[axis]  = at;
+  s->half[1].lower[axis]  = at;
+  s->half[1].material     = 1;
+  s->pair[1].permeability.k0 *= contrast;
+  s->c.nmaterial = s->c.nregion = 2;
+  s->c.material                 = s->pair;
+  s->c.region                   = s->half;
 }
 
 /* A test with more than one layer points s->c.region and s->c.material at its own. */

@@ -56,14 +56,7 @@ static void TestLayersJacobian(void **state)
     Scene *s = malloc(sizeof(*s));
 
     JacobianCase(s, has[k], true, false, BASIS_CPGIMP, 0.0, 0.0, false, 0);
-    Material mat[2]    = {s->mat, s->mat};
-    Region   region[2] = {s->region, s->region};
-    region[0].upper[1] = region[1].lower[1] = 0.08;
-    region[1].material                      = 1;
-    mat[1].permeability.k0 *= 1e-3;
-    s->c.nmaterial = s->c.nregion = 2;
-    s->c.material                 = mat;
-    s->c.region                   = region;
+    SceneLayers(s, 1, 0.08, 1e-3);
     JacobianState(s);
     const double worst = DirectionError(s, 3), entry = ColumnError(s);
     Say("  two layers, %s: directions %.1e, entries %.1e\n", k ? "six fields" : "water", worst, entry);

@@ -18,22 +18,29 @@ typedef struct {
   int         stiffness;
   double      bh, expansion;
   bool        of_pores, yields, compression;
+  double      contrast; /* k0 of the right half over that of the left; 0: one material */
 } Variant;
 
 static const Variant variants[] = {
     {"dissociates", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false,
-     false},
-    {"forms", HAS_ALL, 4.8e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false},
+     false, 0.0},
+    {"forms", HAS_ALL, 4.8e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
+     0.0},
     {"other laws", HAS_ALL, 2.6e6, "brooks_corey", "masuda_ramp", "square_jacobian", STIFFNESS_LOSS_ONLY, 1.5, 30.0,
-     true, false, true},
-    {"bonds", HAS_ALL, 2.6e6, "van_genuchten_clamped", "none", "none", STIFFNESS_BONDS, 1.0, 1.0, false, false, false},
-    {"plastic", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, true,
-     false},
+     true, false, true, 0.0},
+    {"bonds", HAS_ALL, 2.6e6, "van_genuchten_clamped", "none", "none", STIFFNESS_BONDS, 1.0, 1.0, false, false, false,
+     0.0},
+    {"plastic", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, true, false,
+     0.0},
     {"one fluid", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
-     30.0, false, false, true},
+     30.0, false, false, true, 0.0},
     {"rigid", HAS_WATER | HAS_GAS | HAS_HEAT, 2.6e6, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false,
-     false, true},
-    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true, false},
+     false, true, 0.0},
+    {"layers", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
+     1e3},
+    {"wet layers", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
+     1.0, false, false, false, 1e-3},
+    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true, false, 0.0},
 };
 
 static void SetMaterial(Material *m, const Variant *v)
@@ -129,6 +136,8 @@ static void Make(Scene *s, const Variant *v, const char *stepper, bool slips)
   s->c.surface = SURFACE_TIED;
   for (int side = 0; side < SIDE_COUNT && (v->has & HAS_SOLID); side++)
     AddFace(s, BC_TRACTION, (Side)side, v->pressure - stress[side == SIDE_YMIN || side == SIDE_YMAX], 0.0);
+  if (v->contrast > 0.0)
+    SceneLayers(s, 0, 0.5 * (box[0][0] + box[1][0]), v->contrast); /* they meet within the cell that is looked at */
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
   s->m.tol_residual = s->m.tol_update = 1e-11;
   SetState(s, slips);

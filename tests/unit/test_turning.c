@@ -13,14 +13,16 @@
 #include "clathra/stepper.h"
 #include "clathra/tensor.h"
 
-#define OMEGA 5.0 /* rad/s */
-#define SIZE 0.3  /* m, of the body */
+#define OMEGA 5.0  /* rad/s */
+#define SIZE 0.3   /* m, of the body */
+#define EXCESS 1e3 /* Pa */
 
 static const double middle[CL_DIM] = {0.4, 0.4};
 
-/* A body of 0.3 m x `height` in the middle of 16 x 16 cells of 0.05 m, at pressure p inside and out. */
+/* A body of 0.3 m x `height` in the middle of 16 x 16 cells of 0.05 m, at pressure p inside and out; its upper half is
+   `contrast` times as permeable, unless that is 1, and then at a pressure of its own, so that water flows. */
 static Scene *Make(unsigned has, BasisType basis, const char *stepper, int surface, double p, double height,
-                   double t_end)
+                   double contrast, double t_end)
 {
   const double lower[2] = {0.25, middle[1] - 0.5 * height}, upper[2] = {0.55, middle[1] + 0.5 * height};
   Scene       *s = malloc(sizeof(*s));
@@ -48,6 +50,10 @@ static Scene *Make(unsigned has, BasisType basis, const char *stepper, int surfa
   s->c.cfl                 = 0.8;
   s->c.flip = s->c.mass_scaling = 1.0;
   s->c.surface                  = surface;
+  if (contrast != 1.0) {
+    SceneLayers(s, 1, middle[1], contrast);
+    s->half[1].pressure += EXCESS;
+  }
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
   s->m.tol_residual = 1e-11;
   for (PetscInt i = 0; i < s->m.P.n; i++) {
@@ -67,9 +73,10 @@ typedef struct {
   double   x[256][2], X[256][2], stress[256][3];
 } End;
 
-static void Turn(unsigned has, BasisType basis, const char *stepper, int surface, double p, double t_end, End *e)
+static void Turn(unsigned has, BasisType basis, const char *stepper, int surface, double p, double contrast,
+                 double t_end, End *e)
 {
-  Scene  *s = Make(has, basis, stepper, surface, p, 0.16, t_end); /* across the lines of the grid */
+  Scene  *s = Make(has, basis, stepper, surface, p, 0.16, contrast, t_end); /* across the lines of the grid */
   Stepper stepping;
   bool    ok;
 
@@ -130,20 +137,38 @@ static void TestTurn(void **state)
     int         surface;
     double degrees[3], least; /* share of an angle that is reached: nodes see the smoothed velocity of the particles,
                                  so a body of six cells turns slower, the more so the more steps it takes */
-  } body[] = {
-      {"dry, sdirk2", "sdirk2", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 0.95},
-      {"dry, ugimp, euler", "euler", HAS_SOLID, BASIS_UGIMP, SURFACE_TIED, {30, 45, 90}, 0.95},
-      {"dry, hybrid", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 0.3},
-      {"saturated, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {90}, 0.95},
-      {"saturated, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 0.3},
-      {"dry, hybrid, velocities free", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_VELOCITIES_FREE, {30, 45, 90}, 0.3},
-      {"saturated, hybrid, velocities free",
-       "hybrid",
-       HAS_SOLID | HAS_WATER,
-       BASIS_CPGIMP,
-       SURFACE_VELOCITIES_FREE,
-       {30},
-       0.3}};
+    double contrast;
+  } body[] = {{"dry, sdirk2", "sdirk2", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 0.95, 1.0},
+              {"dry, ugimp, euler", "euler", HAS_SOLID, BASIS_UGIMP, SURFACE_TIED, {30, 45, 90}, 0.95, 1.0},
+              {"dry, hybrid", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 0.3, 1.0},
+              {"saturated, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {90}, 0.95, 1.0},
+              {"saturated, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 0.3, 1.0},
+              {"dry, hybrid, velocities free",
+               "hybrid",
+               HAS_SOLID,
+               BASIS_CPGIMP,
+               SURFACE_VELOCITIES_FREE,
+               {30, 45, 90},
+               0.3,
+               1.0},
+              {"saturated, hybrid, velocities free",
+               "hybrid",
+               HAS_SOLID | HAS_WATER,
+               BASIS_CPGIMP,
+               SURFACE_VELOCITIES_FREE,
+               {30},
+               0.3,
+               1.0},
+              {"layers, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {45}, 0.95, 1e3},
+              {"layers, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 0.3, 1e3},
+              {"layers, hybrid, velocities free",
+               "hybrid",
+               HAS_SOLID | HAS_WATER,
+               BASIS_CPGIMP,
+               SURFACE_VELOCITIES_FREE,
+               {30},
+               0.3,
+               1e3}};
   static End low, high;
 
   (void)state;
@@ -152,8 +177,8 @@ static void TestTurn(void **state)
       const double t = 1.17 * body[k].degrees[a] * M_PI / 180.0 / OMEGA;
       double       x = 0.0, stress = 0.0, angle;
 
-      Turn(body[k].has, body[k].basis, body[k].stepper, body[k].surface, 1e5, t, &low);
-      Turn(body[k].has, body[k].basis, body[k].stepper, body[k].surface, 1e7, t, &high);
+      Turn(body[k].has, body[k].basis, body[k].stepper, body[k].surface, 1e5, body[k].contrast, t, &low);
+      Turn(body[k].has, body[k].basis, body[k].stepper, body[k].surface, 1e7, body[k].contrast, t, &high);
       for (PetscInt i = 0; i < low.n; i++) {
         x = fmax(x, hypot(high.x[i][0] - low.x[i][0], high.x[i][1] - low.x[i][1]) / SIZE);
         for (int c = 0; c < 3; c++)
@@ -180,7 +205,7 @@ static void TestGradient(void **state)
 
   (void)state;
   for (int hybrid = 0; hybrid < 2; hybrid++) {
-    Scene  *s = Make(HAS_SOLID | HAS_HEAT, BASIS_CPGIMP, hybrid ? "hybrid" : "euler", SURFACE_TIED, 0.0, 0.2, dt);
+    Scene  *s = Make(HAS_SOLID | HAS_HEAT, BASIS_CPGIMP, hybrid ? "hybrid" : "euler", SURFACE_TIED, 0.0, 0.2, 1.0, dt);
     Stepper stepping;
     double  worst = 0.0, checked = 0.0;
     bool    ok;

@@ -33,6 +33,13 @@ def saturated(p):
             "-mat_soft_water_ref_pressure", f"{p} MPa")  # fmt: skip
 
 
+def layered(p):
+    """... of which the upper half is a ten-thousandth as permeable (350)."""
+    return (*saturated(p), "-materials", "soft,tight", "-mat_tight_like", "soft", "-mat_tight_permeability_k0", "1e-14 m^2", "-regions", "block,roof", "-region_roof_like", "block",
+            "-region_roof_material", "tight", "-region_block_upper", "1.5 m,0.5 m", "-region_roof_lower", "0.5 m,0.5 m", "-region_roof_upper",
+            "1.5 m,1 m")  # fmt: skip
+
+
 def gassy(p):
     """... with gas, whose density and stiffness go with p: drained and at rest in the end, the block stands the same."""
     return ("-fields", "solid,water,gas", *OPEN, "-ambient_pressure", f"{p} MPa", "-region_block_pressure", f"{p} MPa", "-region_block_Sw", "0.5",
@@ -61,7 +68,8 @@ TO_REST = (*HYBRID, "-bc_shear_shear_ramp", "0 Pa,-0.1 MPa,0 s,0.4 s", "-time_en
 def ambient():
     """Dry and saturated bodies take the same path; gas is denser and stiffer under 10 MPa, so there only the end counts."""
     bodies = {"dry": (around, (0.0, *PRESSURES), (*QUICK, "-stepper_dt", "2e-4 s")),
-              "saturated": (saturated, (0.1, 10.0), (*QUICK, "-stepper_dt", "2e-5 s")), "gas": (gassy, (0.1, 10.0), TO_REST)}  # fmt: skip
+              "saturated": (saturated, (0.1, 10.0), (*QUICK, "-stepper_dt", "2e-5 s")),
+              "layers": (layered, (0.1, 10.0), (*QUICK, "-stepper_dt", "2e-5 s")), "gas": (gassy, (0.1, 10.0), TO_REST)}  # fmt: skip
     rows = []
     for what, (scene, pressures, hybrid) in bodies.items():
         tight = () if what == "gas" else TIGHT
