@@ -232,8 +232,8 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
         v[1 + k] = value;
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -w.flow * f[FL_GX + d] * per_V;
-      bf[B_DV + d]   = v[1 + k] - w.vf[k];
-      bf[B_VEL + d]  = v[1 + k];
+      bf[B_DV + d]   = s.layers ? w.flow * (v[1 + k] - w.vf[k] - (v[0] - w.v)) : v[1 + k] - w.vf[k];
+      bf[B_VEL + d]  = s.layers ? w.flow * (v[1 + k] - v[0]) : v[1 + k];
     }
     if (s.solid)
       NodeWork(e, s, I, d, &w, v, dt);
