@@ -18,6 +18,7 @@ LAYERS = [
     # Exceptions: plain data that many layers read.  case.h is what a scene says (regions, boundary conditions, probes),
     # with schedule.h, the function of time it holds; the reader of case files, src/case, stays at the bottom.
     ("schedule", ["schedule", "ambient"], ["schedule"]),
+    ("grid lines", ["lines"], ["lines"]),
     ("case data", ["case", "conditions"], []),
     ("shape", ["geometry", "shape"], ["shape"]),
     ("point", ["point", "kinematics"], ["point"]),

@@ -208,6 +208,8 @@ typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
   int    first[BLOCK]; /* padded number of the lowest left node */
   int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
+  double unit[CL_DIM][BLOCK], third[CL_DIM][BLOCK]; /* m, from the first node to the second; times that, to the third */
+  double inverse[CL_DIM][BLOCK];                    /* of the width of the particle's cell, 1/m; likewise */
 } Weights;
 
 /* A run of particles of one material, or of nodes. */
@@ -222,7 +224,7 @@ void WeightsOf(const Explicit *e, Run r, Weights *w);
 /* (160), (88): what particles take of the mean over their cell: of its gradient, and of its divergence beyond that in
    each direction; the nodes of a cell, row by row, and their weights in its gradient. */
 typedef struct {
-  double strain, volume, Q[4][CL_DIM];
+  double strain, volume, Q[4][CL_DIM]; /* Q: of a cell of width 1 */
 } CellMean;
 
 INLINE bool TakesCellMean(const Explicit *e)
@@ -237,7 +239,7 @@ INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
   c->strain = e->m->c->mean_strain;
   c->volume = e->m->c->mean_dilatation ? 0.5 * (1.0 - c->strain) : 0.0;
   for (int a = 0; a < 4; a++)
-    CellGradient(&e->m->grid, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
+    CellGradient((double[CL_DIM]){1.0, 1.0}, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
   return true;
 }
 
@@ -256,8 +258,8 @@ INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, i
     const double *v = &rows[CellNode(e, w, q, a) * width];
 
     for (int i = 0; i < CL_DIM; i++) {
-      beyond[i][0] += c->Q[a][0] * v[i];
-      beyond[i][1] += c->Q[a][1] * v[i];
+      beyond[i][0] += c->Q[a][0] * w->inverse[0][q] * v[i];
+      beyond[i][1] += c->Q[a][1] * w->inverse[1][q] * v[i];
     }
   }
   const double more = c->volume * (beyond[0][0] + beyond[1][1]);

@@ -66,7 +66,8 @@ void PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[])
 
   ModelPlateStiffness(m, f);
   f->touches = b->force.n || !b->separates ||
-               PlateGap(f, m->bc.value[f->bc[BC_PLATE]], zero) > -NEAR * m->grid.h[SideAxis(f->side)];
+               PlateGap(f, m->bc.value[f->bc[BC_PLATE]], zero) >
+                   -NEAR * LinesWidthAt(&m->grid.line[SideAxis(f->side)], f->x[SideAxis(f->side)]);
   if (!f->touches)
     return;
   if (!b->force.n)

@@ -206,13 +206,15 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
 
   for (int q = 0; q < r.n; q++) {
     const double V         = e->m->P.f[P_V][r.p + q];
-    double       a[CL_DIM] = {0.0}, K[3];
+    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[3];
 
+    for (int d = 0; d < CL_DIM; d++)
+      h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
     for (int k = 0; k < s.fluids; k++) {
       for (int d = 0; d < CL_DIM; d++)
         a[d] += (k ? r.mat->c_g : r.mat->c_w) * o->force[d][q][k] / (dt * V);
     }
-    HeatUpwind(kappa[q], a, e->m->grid.h, K);
+    HeatUpwind(kappa[q], a, h, K);
     o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
     o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
   }
