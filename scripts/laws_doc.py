@@ -76,7 +76,7 @@ def formulas():
 def citations():
     """{path: numbers that its comments cite}"""
     comments = lambda path: "\n".join(re.findall(r"/\*.*?\*/", path.read_text(), re.S))
-    return {str(p.relative_to(ROOT)): {int(n) for n in re.findall(r"(?<![\w)])\((\d{1,3})\)", comments(p))} for p in sorted((ROOT / "src").rglob("*.[ch]"))}
+    return {str(p.relative_to(ROOT)): {int(n) for n in re.findall(r"(?<![\w)])\((\d{1,3})\)", comments(p))} for p in sorted([*(ROOT / "src").rglob("*.[ch]"), *(ROOT / "include").rglob("point_*.h")])}
 
 
 def files(number):

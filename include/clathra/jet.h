@@ -43,6 +43,16 @@ static inline Jet JetChain2(double f, double fa, Jet a, double fb, Jet b)
   return r;
 }
 
+/* f(a, b, c) with partial derivatives fa, fb, fc. */
+static inline Jet JetChain3(double f, double fa, Jet a, double fb, Jet b, double fc, Jet c)
+{
+  Jet r = {f, {0.0}};
+
+  for (int k = 0; k < JET_COUNT; k++)
+    r.d[k] = fa * a.d[k] + fb * b.d[k] + fc * c.d[k];
+  return r;
+}
+
 static inline Jet JetAdd(Jet a, Jet b)
 {
   return JetChain2(a.v + b.v, 1.0, a, 1.0, b);

@@ -93,6 +93,15 @@ typedef struct {
   double      N_h;           /* hydration number */
   Equilibrium equilibrium;
 } Kinetics;
+/* Water and methane that a kg of hydrate leaves, kg. */
+static inline double KineticsWater(const Kinetics *law)
+{
+  return law->N_h * law->M_w / law->M_h;
+}
+static inline double KineticsMethane(const Kinetics *law)
+{
+  return law->M_g / law->M_h;
+}
 double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
 /* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
 double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);

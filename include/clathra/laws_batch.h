@@ -23,4 +23,6 @@ void KineticsRateConstantBatch(const Kinetics *law, int n, const double *restric
                                double *restrict dKd_dT);
 void KineticsFormationAreaBatch(const Kinetics *law, int n, const double *restrict sw, const double *restrict Sh,
                                 double *restrict A);
+void MixtureAverageBatch(int n, const double *restrict phi, const double *restrict Sh, const double *restrict sw,
+                         const double X[4], double *restrict mean);
 void LatentHeatBatch(const LatentHeat *law, int n, const double *restrict T, double *restrict L);

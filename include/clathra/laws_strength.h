@@ -4,9 +4,9 @@
 #pragma once
 
 #include <math.h>
+#include "clathra/inline.h"
 #include "clathra/laws.h"
 
-#define STRENGTH_INLINE static inline __attribute__((always_inline))
 #define STRENGTH_DEG (3.14159265358979323846 / 180.0)
 
 /* What (61) gives at a hydrate saturation: cohesion (Pa) and dilation (deg), and slopes in S_h, those of psi in rad. */
@@ -15,7 +15,7 @@ typedef struct {
 } PeakStrength;
 
 /* (61); hydrate: exp[eta_h (S_h - S_h,max)], d_hydrate its slope in the exponent. */
-STRENGTH_INLINE void PeakStrengthOf(const Plasticity *law, double hydrate, double d_hydrate, PeakStrength *p)
+INLINE void PeakStrengthOf(const Plasticity *law, double hydrate, double d_hydrate, PeakStrength *p)
 {
   p->c     = law->c_min + (law->c_max - law->c_min) * hydrate;
   p->psi   = law->psi_min + (law->psi_max - law->psi_min) * hydrate;
@@ -24,8 +24,8 @@ STRENGTH_INLINE void PeakStrengthOf(const Plasticity *law, double hydrate, doubl
 }
 
 /* (62); left: exp(-eta eps), d_left its slope in the exponent. */
-STRENGTH_INLINE void SoftenedStrengthOf(const Plasticity *law, const PeakStrength *p, double eta, double left,
-                                        double d_left, Strength *s)
+INLINE void SoftenedStrengthOf(const Plasticity *law, const PeakStrength *p, double eta, double left, double d_left,
+                               Strength *s)
 {
   s->c     = law->c_res + (p->c - law->c_res) * left;
   s->phi   = STRENGTH_DEG * (law->phi_res + (law->phi_peak - law->phi_res) * left);
@@ -38,7 +38,7 @@ STRENGTH_INLINE void SoftenedStrengthOf(const Plasticity *law, const PeakStrengt
 }
 
 /* (63) */
-STRENGTH_INLINE double YieldOf(double si, double co, double c, const double y[3], double dy[3], double *dphi)
+INLINE double YieldOf(double si, double co, double c, const double y[3], double dy[3], double *dphi)
 {
   const double half = 0.5 * (y[0] - y[2]), mean = 0.5 * (y[0] + y[2]);
 
@@ -54,7 +54,7 @@ typedef struct {
   double f, t, tt, e, te;
 } FlowSection;
 
-STRENGTH_INLINE void FlowSectionOf(double t, double e, FlowSection *s)
+INLINE void FlowSectionOf(double t, double e, FlowSection *s)
 {
   const double a = 1.0 - e * e, b = 2.0 * e - 1.0, under = 4.0 * a * t * t + 5.0 * e * e - 4.0 * e,
                w = sqrt(under > 1e-16 ? under : 1e-16);
@@ -74,7 +74,7 @@ STRENGTH_INLINE void FlowSectionOf(double t, double e, FlowSection *s)
 
 /* P (64) with m = apex tan(psi); si, co of phi, tp = tan(psi).  Stresses in any order: the potential is isotropic.
    Where q = 0 the deviatoric slope is that of a triaxial state, and its product with rho zero. */
-STRENGTH_INLINE void FlowGradientOf(double si, double co, double tp, double apex, const double y[3], FlowGradient *P)
+INLINE void FlowGradientOf(double si, double co, double tp, double apex, const double y[3], FlowGradient *P)
 {
   const double first  = (y[0] >= y[1] ? 1.0 : 0.0) * (y[0] >= y[2] ? 1.0 : 0.0),
                second = (1.0 - first) * (y[1] >= y[2] ? 1.0 : 0.0), is_top[3] = {first, second, 1.0 - first - second};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "clathra/case.h"
+#include "clathra/point_state.h"
 #include "clathra/skeleton.h"
 
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
@@ -102,6 +103,14 @@ static inline double ParticleT(const Case *c, const Particles *P, PetscInt p)
   return P->f[P_T] ? P->f[P_T][p] : c->region[P->i[PI_REGION][p]].temperature;
 }
 
+/* Mean pore pressure of what the particle holds, Pa; scenes with water. */
+static inline double ParticlePressure(const Particles *P, PetscInt p)
+{
+  const double pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw;
+
+  return PorePressureOf(1.0 - P->f[P_SW][p] / (1.0 - P->f[P_SH][p]), pw, pg).v;
+}
+
 /* History of the skeleton of the particles from `first` on, for a stage that ends `ahead` (s) of the last average of
    neighbours; the set must have a solid. */
 static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first, double ahead)
@@ -175,7 +184,7 @@ double InitialWaterPressure(const Case *c, const Region *r, double pressure, con
 PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
                                     const double l[]);
 /* Half-lengths of a region's particles at the start, m. */
-void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM]);
+void ParticlesInitialHalfLength(const Case *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM]);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);

@@ -8,7 +8,6 @@
 #include "clathra/kinematics.h"
 #include "clathra/skeleton.h"
 
-#define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
 /* Of phi S_pi at a node (107): a fluid that is not there moves with the skeleton. */
 #define CL_SHARE_FLOOR 1e-6
 

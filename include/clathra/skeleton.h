@@ -156,8 +156,7 @@ static inline void SkeletonStar(const SkeletonStage *y_n, const SkeletonStage *y
 
 /* Outside the block forms of the laws the only functions that read and write the history of particle q; the stress
    alone is what every law holds. */
-static inline __attribute__((always_inline)) void SkeletonTakeStress(const SkeletonStore *f, ptrdiff_t q,
-                                                                     SkeletonHistory *h)
+INLINE void SkeletonTakeStress(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
 {
 #pragma GCC unroll 6
   for (int k = 0; k < 6; k++) {
@@ -165,8 +164,7 @@ static inline __attribute__((always_inline)) void SkeletonTakeStress(const Skele
     h->sig0[k] = f->sig0[k][q];
   }
 }
-static inline __attribute__((always_inline)) void SkeletonKeepStress(const SkeletonStore *f, ptrdiff_t q,
-                                                                     const SkeletonState *s)
+INLINE void SkeletonKeepStress(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)
 {
 #pragma GCC unroll 6
   for (int k = 0; k < 6; k++) {

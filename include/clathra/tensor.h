@@ -2,6 +2,7 @@
 #pragma once
 
 #include <math.h>
+#include "clathra/inline.h"
 
 enum { XX = 0, YY, ZZ, XY, YZ, XZ };
 
@@ -19,7 +20,7 @@ static inline double Mises6(const double s[6])
 }
 
 /* r = R s R^T for the rotation in the x-y plane with cosine c and sine n. */
-static inline __attribute__((always_inline)) void Turn6(const double s[6], double c, double n, double r[6])
+INLINE void Turn6(const double s[6], double c, double n, double r[6])
 {
   const double xx = s[XX], yy = s[YY], xy = s[XY], xz = s[XZ], yz = s[YZ];
 

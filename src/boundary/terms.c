@@ -1,5 +1,6 @@
 /* What each condition on a face adds to the balances, with the tangent. */
 #include "terms.h"
+#include "clathra/point_state.h"
 
 /* Total traction: -q a + s a_perp; row v_s loses it. */
 void FaceTraction(const FaceState *x, PetscInt k, FaceOutput *o)
@@ -123,7 +124,7 @@ static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
     return;
   }
   const double sg0   = RetentionGasShare(retention, p0[PHASE_G] - p0[PHASE_W], &ds);
-  const double mean0 = (1.0 - sg0) * p0[PHASE_W] + sg0 * p0[PHASE_G];
+  const double mean0 = PorePressureOf(sg0, p0[PHASE_W], p0[PHASE_G]).v;
   const double mean  = b->initial ? mean0 : MeanOutside(x, k, o->du);
 
   if (b->natural) {

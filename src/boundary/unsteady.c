@@ -117,14 +117,6 @@ static double EquilibriumTemperature(const Equilibrium *law, double p)
   return 0.5 * (low + high);
 }
 
-/* (10) of a particle, Pa. */
-static double MeanPressure(const Particles *P, PetscInt p)
-{
-  const double pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw, Sg = 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
-
-  return pw + Sg / (1.0 - P->f[P_SH][p]) * (pg - pw);
-}
-
 static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particles *P)
 {
   Most   worst   = {.value = 0.0};
@@ -133,7 +125,7 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particl
   PetscFunctionBeginUser;
   for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
     const Material *m    = &c->material[c->region[P->i[PI_REGION][p]].material];
-    const double    mean = MeanPressure(P, p);
+    const double    mean = ParticlePressure(P, p);
 
     if (!m->reacts || m->kinetics.K0 == 0.0 || P->f[P_SH][p] <= 0.0)
       continue;
@@ -169,7 +161,7 @@ static PetscErrorCode FormationWarning(MPI_Comm comm, const Case *c, const Parti
   for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
     const Material *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
     const Kinetics *k  = &m->kinetics;
-    const double    Sh = P->f[P_SH][p], Sw = P->f[P_SW][p], p_mean = MeanPressure(P, p), T = ParticleT(c, P, p);
+    const double    Sh = P->f[P_SH][p], Sw = P->f[P_SW][p], p_mean = ParticlePressure(P, p), T = ParticleT(c, P, p);
 
     if (!m->reacts || k->K0 == 0.0 || k->A_geo == 0.0 || !(Sw > 0.0) || !(1.0 - Sh - Sw > SOME_GAS) ||
         EquilibriumPressure(&k->equilibrium, T + WARMS, &d) >= p_mean)

@@ -22,7 +22,7 @@ bool        QuantityParse(const char *text, const char *si, double *value, char 
 bool        NumberParse(const char *text, double *value, const char **end); /* decimal, finite; no nan, inf or hex */
 const char *QuantityName(const char *si);                                   /* "a pressure" for "Pa" */
 
-/* ---------------------------------------------------------------- document.c, reader.c */
+/* ---------------------------------------------------------------- document.c, reader.c, load.c */
 typedef struct {
   char    *name, *value; /* option name without the dash; NULL value = empty */
   PetscInt line;
@@ -104,7 +104,7 @@ typedef struct {
   const Law         *law;       /* KEY_LAW */
   Group              names;     /* KEY_NAME, KEY_NAMES: whose names */
   /* KEY_REAL: word that stands for infinity, "-word" for minus infinity; KEY_NAME: word that stands for -1 */
-  const char *word;
+  const char *word;           /* KEY_INT: word that stands for 0 */
   bool        shape;          /* GROUP_REGION: also of a region without particles */
   unsigned    types;          /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
   unsigned    has;            /* fields (HAS_...) any of which needs the key; 0 = always needed */
@@ -160,7 +160,10 @@ int  EditDistance(const char *a, const char *b);
     ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
   } while (0)
 
-/* ---------------------------------------------------------------- value.c, forms.c, check.c */
+/* ---------------------------------------------------------------- words.c, value.c, forms.c, check.c */
+/* The words that a key may have, NULL: none are listed; an error that names them, and the nearest. */
+const char *const *KeyWords(const Key *k);
+void               WordError(Reader *r, const char *shown, const char *text, const char *const *words);
 /* like.c: who is like whom; after the lists of names are read, before any other key.  A circle is refused. */
 PetscErrorCode CaseLike(Reader *r, const Case *c);
 PetscErrorCode LikeDestroy(Reader *r);
@@ -231,6 +234,9 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c);
 PetscErrorCode CaseStageEnds(Reader *r, Case *c);
 /* The case as it holds in each stage, and what cannot be; after the case is read and derived. */
 PetscErrorCode CaseStages(Reader *r, Case *c);
+/* ---------------------------------------------------------------- spacing.c */
+/* The lines and numbers of cells that the grid's spacing makes, once the keys of the case are read. */
+PetscErrorCode CaseSpacing(Reader *r, Case *c);
 PetscErrorCode CaseStagesDestroy(Case *c);
 void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and steps; of a stage unless NULL */
 

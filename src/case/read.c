@@ -202,7 +202,7 @@ static void DeriveFluids(Material *m)
   m->kinetics.equilibrium.shift = BrineEquilibriumShift(m->salinity);
   m->mu_w.salinity              = m->salinity;
   m->mu_g.M                     = m->gas.M;
-  m->latent.dc                  = (k->N_h * k->M_w * m->c_w + k->M_g * m->c_g) / k->M_h - m->c_h;
+  m->latent.dc                  = KineticsWater(k) * m->c_w + KineticsMethane(k) * m->c_g - m->c_h;
 }
 
 static PetscErrorCode Derive(Reader *r, Case *c)
@@ -256,6 +256,7 @@ static PetscErrorCode KeysRead(Reader *r, Case *c)
   PetscFunctionBeginUser;
   PetscCall(CaseStageEnds(r, c));
   PetscCall(GroupRead(r, c, GROUP_CASE));
+  PetscCall(CaseSpacing(r, c));
   PetscCall(CaseFieldSet(r, c));
   for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
     PetscCall(GroupRead(r, c, g));
@@ -299,6 +300,8 @@ PetscErrorCode CaseDestroy(Case *c)
 {
   PetscFunctionBeginUser;
   PetscCall(CaseStagesDestroy(c));
+  for (int d = 0; d < CL_DIM; d++)
+    PetscCall(LinesDestroy(&c->line[d]));
   ScheduleDestroy(&c->ambient_pressure);
   ScheduleDestroy(&c->ambient_level);
   for (PetscInt i = 0; i < c->nbc; i++) {

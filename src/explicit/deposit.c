@@ -5,7 +5,7 @@
 #include "clathra/tensor.h"
 
 typedef struct {
-  double phi[BLOCK], Sh[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
+  double phi[BLOCK], Sh[BLOCK], open[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
   double resist[PHASE_COUNT][BLOCK], kr[PHASE_COUNT][BLOCK]; /* mu/k_a, k_r */
 } Fluids;
 
@@ -20,12 +20,13 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
   for (int q = 0; q < r.n; q++) {
-    const double pore = V[q] - ms[q] / rho_s[q];
+    const Pores v = PoresOf(V[q], ms[q], rho_s[q], mh[q], rho_h[q]);
 
-    w->phi[q] = pore / V[q];
-    w->Sh[q]  = mh[q] / (rho_h[q] * pore);
-    w->sw[q]  = s.fluids ? 1.0 : 0.0;
-    w->p[q]   = 0.0;
+    w->phi[q]  = v.phi;
+    w->Sh[q]   = v.Sh;
+    w->open[q] = v.open;
+    w->sw[q]   = s.fluids ? 1.0 : 0.0;
+    w->p[q]    = 0.0;
   }
   if (!s.fluids)
     return;
@@ -42,25 +43,24 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
   if (s.fluids == 2) {
     const double *restrict pg = f[P_PG] + r.p;
-    double pc[BLOCK], x[PHASE_COUNT][BLOCK];
+    const bool of_pores       = mat->relperm.of_pores;
+    double     pc[BLOCK], x[PHASE_COUNT][BLOCK];
 
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
     RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
     GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
-      const double of = mat->relperm.of_pores ? 1.0 - w->Sh[q] : 1.0;
-
       w->sw[q]      = 1.0 - sg[q];
-      w->p[q]       = pw[q] + sg[q] * pc[q];
-      x[PHASE_W][q] = of * w->sw[q];
-      x[PHASE_G][q] = of * sg[q];
+      w->p[q]       = PorePressureOf(sg[q], pw[q], pg[q]).v;
+      x[PHASE_W][q] = KrArgumentOf(of_pores, w->sw[q], w->Sh[q]).v;
+      x[PHASE_G][q] = KrArgumentOf(of_pores, sg[q], w->Sh[q]).v;
     }
     RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], w->kr[PHASE_W]);
     RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], w->kr[PHASE_G]);
     for (int k = 0; k < PHASE_COUNT; k++) {
       for (int q = 0; q < r.n; q++)
-        w->kr[k][q] = Largest(w->kr[k][q], CL_MOBILITY_FLOOR);
+        w->kr[k][q] = KrFloored(w->kr[k][q]);
     }
     GasViscosityBatch(&mat->mu_g, r.n, w->rho[PHASE_G], T, mu);
     for (int q = 0; q < r.n; q++)
@@ -83,18 +83,16 @@ typedef struct {
 } Values;
 
 /* V (p + g . (x_I - x_p)) at the lowest left node of the patch, and its growth from node to node (2). */
-INLINE void Carried(const Explicit *e, Run r, int lane, const double *restrict weight, const double *restrict y,
+INLINE void Carried(Run r, int lane, const double *restrict weight, const double *restrict y,
                     const double *const g[CL_DIM], const Weights *w, Values *v)
 {
-  const Grid *grid = &e->m->grid;
-
   for (int q = 0; q < r.n; q++) {
     double at = y[q];
 
-    /* x_p from the first node: S_1 + 2 S_2 cells on (weights reproduce the middle) */
+    /* x_p from the first node: S_1 + third S_2 units on (weights reproduce the middle) */
     for (int d = 0; d < CL_DIM; d++) {
-      at -= g[d][q] * (w->S[d][1][q] + 2.0 * w->S[d][2][q]) * grid->h[d];
-      v->carry[d][q][lane] = weight[q] * g[d][q] * grid->h[d];
+      at -= g[d][q] * (w->S[d][1][q] + w->third[d][q] * w->S[d][2][q]) * w->unit[d][q];
+      v->carry[d][q][lane] = weight[q] * g[d][q] * w->unit[d][q];
     }
     v->value[q][lane] = weight[q] * at;
   }
@@ -167,7 +165,7 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
     v->value[q][at + FL_GY]   = -Vk * gy[q];
     v->value[q][at + FL_MI]   = Vk * w->rho[k][q];
     v->value[q][at + FL_DRAG] = Vk * w->resist[k][q];
-    v->value[q][at + FL_W]    = V[q] * w->phi[q] * (1.0 - w->Sh[q]) * share;
+    v->value[q][at + FL_W]    = w->open[q] * share;
     if (s.fluids == 2)
       v->value[q][at + FL_ROOT] = Vk * sqrt(w->kr[k][q]);
     if (s.layers)
@@ -185,6 +183,8 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
     const Lanes  cx = *(const Lanes *)v->carry[0][q], cy = *(const Lanes *)v->carry[1][q];
     const Lanes  fx = *(const Lanes *)v->force[0][q], fy = *(const Lanes *)v->force[1][q];
 
+    const double x[3] = {0.0, 1.0, w->third[0][q]}, y[3] = {0.0, 1.0, w->third[1][q]};
+
     for (int b = 0; b < 3; b++) {
       const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
 
@@ -194,7 +194,7 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
         Lanes        first = value[0];
 
         if (Scalars(s))
-          first += cx * (double)a + cy * (double)b;
+          first += cx * x[a] + cy * y[b];
         row[0] += s.solid ? first * S + fx * Gx + fy * Gy : first * S;
         for (int z = 1; z < rows; z++)
           row[z] += value[z] * S;
@@ -220,8 +220,10 @@ INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const
     for (int a = 0; a < 4; a++) {
       double *row = &e->A[CellNode(e, w, q, a) * width + at];
 
-      row[MIX_FX] += c->Q[a][0] * xx + c->Q[a][1] * xy;
-      row[MIX_FY] += c->Q[a][0] * xy + c->Q[a][1] * yy;
+      const double Qx = c->Q[a][0] * w->inverse[0][q], Qy = c->Q[a][1] * w->inverse[1][q];
+
+      row[MIX_FX] += Qx * xx + Qy * xy;
+      row[MIX_FY] += Qx * xy + Qy * yy;
     }
   }
 }
@@ -275,7 +277,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   for (int k = 0; k < s.fluids; k++) {
     const double *g[CL_DIM] = {f[k ? P_GG : P_GW] + r.p, f[(k ? P_GG : P_GW) + 1] + r.p};
 
-    Carried(e, r, k, V, f[P_PW + k] + r.p, g, &w, &v);
+    Carried(r, k, V, f[P_PW + k] + r.p, g, &w, &v);
     FluidValues(e, s, r, k, &state, &v);
   }
   if (s.heat) {
@@ -284,7 +286,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     Capacities(e, s, r, C);
     for (int q = 0; q < r.n; q++)
       v.value[q][A_C(s)] = C[q];
-    Carried(e, r, s.fluids, C, T, g, &w, &v);
+    Carried(r, s.fluids, C, T, g, &w, &v);
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);

@@ -7,12 +7,15 @@
 
 #include "clathra/basis.h"
 #include "clathra/explicit.h"
+#include "clathra/inline.h"
+#include "clathra/point_flow.h"
+#include "clathra/point_heat.h"
+#include "clathra/point_state.h"
 
 #define BLOCK 32
 #define LANES 8
 #define STRAIGHT 0.5      /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
 #define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
-#define INLINE static inline __attribute__((always_inline))
 
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
 
@@ -205,6 +208,8 @@ typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
   int    first[BLOCK]; /* padded number of the lowest left node */
   int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
+  double unit[CL_DIM][BLOCK], third[CL_DIM][BLOCK]; /* m, from the first node to the second; times that, to the third */
+  double inverse[CL_DIM][BLOCK];                    /* of the width of the particle's cell, 1/m; likewise */
 } Weights;
 
 /* A run of particles of one material, or of nodes. */
@@ -219,7 +224,7 @@ void WeightsOf(const Explicit *e, Run r, Weights *w);
 /* (160), (88): what particles take of the mean over their cell: of its gradient, and of its divergence beyond that in
    each direction; the nodes of a cell, row by row, and their weights in its gradient. */
 typedef struct {
-  double strain, volume, Q[4][CL_DIM];
+  double strain, volume, Q[4][CL_DIM]; /* Q: of a cell of width 1 */
 } CellMean;
 
 INLINE bool TakesCellMean(const Explicit *e)
@@ -234,7 +239,7 @@ INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
   c->strain = e->m->c->mean_strain;
   c->volume = e->m->c->mean_dilatation ? 0.5 * (1.0 - c->strain) : 0.0;
   for (int a = 0; a < 4; a++)
-    CellGradient(&e->m->grid, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
+    CellGradient((double[CL_DIM]){1.0, 1.0}, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
   return true;
 }
 
@@ -253,8 +258,8 @@ INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, i
     const double *v = &rows[CellNode(e, w, q, a) * width];
 
     for (int i = 0; i < CL_DIM; i++) {
-      beyond[i][0] += c->Q[a][0] * v[i];
-      beyond[i][1] += c->Q[a][1] * v[i];
+      beyond[i][0] += c->Q[a][0] * w->inverse[0][q] * v[i];
+      beyond[i][1] += c->Q[a][1] * w->inverse[1][q] * v[i];
     }
   }
   const double more = c->volume * (beyond[0][0] + beyond[1][1]);
@@ -305,9 +310,10 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
   MAKE_LOOP(f, 1, 2, 1)
 
 /* Node side. */
-PetscErrorCode NodesRebuild(Explicit *e);                         /* numbering, when particles reach other nodes */
-PetscErrorCode NodesVelocities(Explicit *e, double t, double dt); /* A -> B; t at the end of the step */
-PetscErrorCode NodesScalars(Explicit *e, StageRates *r);          /* R -> C */
+PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */
+PetscErrorCode NodesPrepare(Explicit *e);                /* prescribed values, and who follows whom (41) */
+PetscErrorCode NodesVelocities(Explicit *e, double dt);  /* A -> B */
+PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 void           FacesWork(Explicit *e, double dt); /* of the tractions, with the new velocities */
@@ -315,12 +321,14 @@ PetscErrorCode FacesBegin(Explicit *e);
 void           FacesPlace(const Explicit *e, Face *f);                               /* where it is now */
 int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */
 
-/* Plates (plates.c). */
+/* Plates (plates.c, plate_forces.c). */
 PetscErrorCode PlatesCreate(Explicit *e);
 PetscErrorCode PlatesAllocate(Explicit *e);
 PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
+/* Forces at the end of the step, time t, into the balances of the nodes.  Collective. */
+PetscErrorCode PlatesForces(Explicit *e, double t, double dt);
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
 
 /* Do relative changes of p_g go through the nodes (151)? */
@@ -338,16 +346,16 @@ INLINE void PressuresOf(double p_g, const double y[2], double d[2])
   d[1] = gas;
 }
 
-/* Water and methane of a unit of open pore space at t_n, kg/m^3 (101): two fluids, with p_g of then. */
+/* Water and methane of a unit of open pore space at t_n, kg/m^3: two fluids, with p_g of then. */
 INLINE void PerOpenVolume(const Explicit *e, Run r, const double *restrict pg, double held[PHASE_COUNT][BLOCK])
 {
   const double *restrict sg = e->t[T_SG] + r.p, *restrict rho_w = e->t[T_RHO] + r.p,
                          *restrict rho_g = e->t[T_RHO + 1] + r.p;
-  const double trace                     = r.mat->gas.trace;
+  const double H                         = r.mat->gas.trace;
 
   for (int q = 0; q < r.n; q++) {
-    held[PHASE_W][q] = (1.0 - sg[q]) * rho_w[q];
-    held[PHASE_G][q] = sg[q] * rho_g[q] + (1.0 - sg[q]) * trace * pg[q];
+    held[PHASE_W][q] = WaterContent(sg[q], rho_w[q]).v;
+    held[PHASE_G][q] = MethaneContent(H, sg[q], rho_g[q], pg[q]).v;
   }
 }
 
@@ -360,17 +368,11 @@ INLINE double Largest(double a, double b)
 INLINE void Capacities(const Explicit *e, Set s, Run r, double *restrict C)
 {
   double *const *f          = e->m->P.f;
-  const double *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
+  const double *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p, *mw = s.fluids ? f[P_MW] + r.p : NULL,
+                         *mg = s.fluids == 2 ? f[P_MG] + r.p : NULL;
 
   for (int q = 0; q < r.n; q++)
-    C[q] = ms[q] * r.mat->c_s + mh[q] * r.mat->c_h;
-  for (int k = 0; k < s.fluids; k++) {
-    const double *restrict m = f[P_MW + k] + r.p;
-    const double c           = k ? r.mat->c_g : r.mat->c_w;
-
-    for (int q = 0; q < r.n; q++)
-      C[q] += m[q] * c;
-  }
+    C[q] = HeatCapacity(r.mat, ms[q], mh[q], mw ? mw[q] : 0.0, mg ? mg[q] : 0.0);
 }
 
 /* Sum of a block's n numbers. */

@@ -2,6 +2,7 @@
    pressure and temperature makes of them; docs/equations.md, section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
+#include "clathra/point_reaction.h"
 
 typedef struct {
   double value[BLOCK][3 * LANES], dx[BLOCK][LANES], dy[BLOCK][LANES]; /* at the particle; gradients of the first row */
@@ -71,75 +72,89 @@ typedef struct {
   double value[BLOCK][2 * LANES], force[CL_DIM][BLOCK][LANES];
 } Given;
 
-/* (101) and its slopes; V_T: slope of the open pores' volume in T. */
-INLINE void GasMasses(Explicit *e, Run r, const double *restrict V_T, const double *restrict open)
-{
-  const double *restrict sg = e->t[T_SG] + r.p, *restrict ds = e->t[T_DS] + r.p, *restrict rho = e->t[T_RHO + 1] + r.p;
-  const double *restrict rho_p = e->t[T_GAS] + r.p, *restrict rho_T = e->t[T_GAS + 1] + r.p,
-                         *restrict pg = e->m->P.f[P_PG] + r.p;
-  double *restrict eos = e->t[T_EOS + 1] + r.p, *restrict gw = e->t[T_SLOPE + 3] + r.p,
-                   *restrict gg = e->t[T_SLOPE + 4] + r.p, *restrict gT = e->t[T_SLOPE + 5] + r.p;
-  const double H = r.mat->gas.trace;
+/* Volumes of a block's particles at the end of the step, with the hydrate of t_n. */
+typedef struct {
+  double rho_h[BLOCK], pore[BLOCK], open[BLOCK], open_T[BLOCK], phi[BLOCK], Sh[BLOCK]; /* open_T: slope in T */
+} Volumes;
 
-#pragma GCC ivdep
-  for (int q = 0; q < r.n; q++) {
-    const double held = sg[q] * rho[q] + (1.0 - sg[q]) * H * pg[q], over = (rho[q] - H * pg[q]) * ds[q];
-
-    eos[q] = open[q] * held;
-    gw[q]  = -open[q] * over;
-    gg[q]  = open[q] * (over + sg[q] * rho_p[q] + (1.0 - sg[q]) * H);
-    gT[q]  = held * V_T[q] + open[q] * sg[q] * rho_T[q];
-  }
-}
-
-/* New volume, and the masses the laws give there at the old pressures, with their slopes (9). */
-INLINE void Masses(Explicit *e, const Set s, Run r, const double *restrict T, const Gathered *g, double dt,
-                   double *restrict pore, double *restrict open)
+INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T, const Gathered *g, double dt,
+                      Volumes *o)
 {
   const Material *mat      = r.mat;
   double *const  *f        = e->m->P.f;
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
   double *restrict V_new = e->t[T_V] + r.p;
-  double rho_s[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
+  double       rho_s[BLOCK], zero[BLOCK] = {0.0};
+  const double beta_s = mat->solid.beta, beta_h = mat->hydrate.beta;
 
   LiquidDensityBatch(&mat->solid, r.n, zero, T, rho_s);
-  LiquidDensityBatch(&mat->hydrate, r.n, zero, T, rho_h);
+  LiquidDensityBatch(&mat->hydrate, r.n, zero, T, o->rho_h);
   for (int q = 0; q < r.n; q++) {
     double J = 1.0;
 
     if (s.solid)
       J = (1.0 + dt * g->dx[q][0]) * (1.0 + dt * g->dy[q][1]) - dt * dt * g->dy[q][0] * g->dx[q][1];
-    V_new[q] = V[q] * J;
-    pore[q]  = V_new[q] - ms[q] / rho_s[q];
-    open[q]  = pore[q] - mh[q] / rho_h[q];
-  }
-  if (!s.fluids)
-    return;
-  const bool gas               = s.fluids == 2;
-  const double *restrict rho_w = e->t[T_RHO] + r.p, *restrict sg = gas ? e->t[T_SG] + r.p : zero,
-                         *restrict ds = gas ? e->t[T_DS] + r.p : zero;
-  double *restrict eos = e->t[T_EOS] + r.p, *restrict ww = e->t[T_SLOPE] + r.p, *restrict wg = e->t[T_SLOPE + 1] + r.p,
-                   *restrict wT = e->t[T_SLOPE + 2] + r.p;
-  const double per_K = 1.0 / mat->water.K, beta_w = mat->water.beta, beta_s = mat->solid.beta,
-               beta_h = mat->hydrate.beta;
-  double V_T[BLOCK]; /* open pores, warmed */
+    V_new[q]      = V[q] * J;
+    const Pores v = PoresOf(V_new[q], ms[q], rho_s[q], mh[q], o->rho_h[q]);
 
-#pragma GCC ivdep
-  for (int q = 0; q < r.n; q++) {
-    V_T[q] = -beta_s * ms[q] / rho_s[q] - beta_h * mh[q] / rho_h[q];
-    eos[q] = open[q] * (1.0 - sg[q]) * rho_w[q];
-    ww[q]  = open[q] * rho_w[q] * ((1.0 - sg[q]) * per_K + ds[q]);
-    wg[q]  = -open[q] * rho_w[q] * ds[q];
-    wT[q]  = rho_w[q] * (1.0 - sg[q]) * (V_T[q] - open[q] * beta_w);
+    o->pore[q]   = v.pore;
+    o->open[q]   = v.open;
+    o->phi[q]    = v.phi;
+    o->Sh[q]     = v.Sh;
+    o->open_T[q] = -beta_s * ms[q] / rho_s[q] - beta_h * mh[q] / o->rho_h[q];
   }
-  if (gas)
-    GasMasses(e, r, V_T, open);
 }
 
-/* Gain of hydrate over the step at the nodal p and T, and its slopes (11)-(13): dissociation implicit in S_h, formation
+/* Where the mass of a fluid and its slopes stand. */
+typedef struct {
+  double *v, *slope[3]; /* in p_w, p_g, T */
+} MassArrays;
+
+INLINE MassArrays MassArraysOf(const Explicit *e, Run r, int k)
+{
+  double *const *slope = &e->t[T_SLOPE + 3 * k];
+
+  return (MassArrays){e->t[T_EOS + k] + r.p, {slope[0] + r.p, slope[1] + r.p, slope[2] + r.p}};
+}
+
+INLINE void KeepMass(const MassArrays *o, int q, int own, FluidMass m)
+{
+  o->v[q]              = m.v;
+  o->slope[own][q]     = m.own;
+  o->slope[1 - own][q] = m.other;
+  o->slope[2][q]       = m.T;
+}
+
+/* The masses the laws give in these volumes at the old pressures, with their slopes. */
+INLINE void WaterMasses(Explicit *e, const Set s, Run r, const Volumes *v)
+{
+  const double none[BLOCK] = {0.0}, *sg = s.fluids == 2 ? e->t[T_SG] + r.p : none,
+               *ds = s.fluids == 2 ? e->t[T_DS] + r.p : none, *rho = e->t[T_RHO] + r.p;
+  const double     per_K = 1.0 / r.mat->water.K, beta = r.mat->water.beta;
+  const MassArrays o = MassArraysOf(e, r, PHASE_W);
+
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++)
+    KeepMass(&o, q, PHASE_W,
+             MassOf(WaterContent(sg[q], rho[q]), v->open[q], v->open_T[q], -ds[q], per_K * rho[q], -beta * rho[q]));
+}
+
+INLINE void MethaneMasses(Explicit *e, Run r, const Volumes *v)
+{
+  const double *sg = e->t[T_SG] + r.p, *ds = e->t[T_DS] + r.p, *rho = e->t[T_RHO + 1] + r.p, *rho_p = e->t[T_GAS] + r.p,
+               *rho_T = e->t[T_GAS + 1] + r.p, *pg = e->m->P.f[P_PG] + r.p, H = r.mat->gas.trace;
+  const MassArrays o = MassArraysOf(e, r, PHASE_G);
+
+#pragma GCC ivdep
+  for (int q = 0; q < r.n; q++)
+    KeepMass(&o, q, PHASE_G,
+             MassOf(MethaneContent(H, sg[q], rho[q], pg[q]), v->open[q], v->open_T[q], ds[q], rho_p[q], rho_T[q]));
+}
+
+/* Gain of hydrate over the step at the nodal p and T, and its slopes: dissociation implicit in S_h, formation
    on the surface at t_n. */
 INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict T,
-                     const double *restrict pore, const double *restrict open)
+                     const Volumes *v)
 {
   const Kinetics k          = r.mat->kinetics;
   double *const *f          = e->m->P.f;
@@ -148,35 +163,33 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
   const double *restrict own_w = f[P_PW] + r.p, *restrict own_g = f[P_PG] + r.p;
   double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p,
                    *restrict gain_T = e->t[T_GAIN_T] + r.p;
-  double p_r[BLOCK] = {0.0}, Sh[BLOCK] = {0.0}, sw[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK],
-         area[BLOCK];
+  double p_r[BLOCK], sw[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK], area[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
     const double pw = own ? own_w[q] : g->value[q][B_P(s, 0)], pg = own ? own_g[q] : g->value[q][B_P(s, 1)];
 
     sw[q]  = 1.0 - sg[q];
-    Sh[q]  = 1.0 - open[q] / pore[q];
-    p_r[q] = sw[q] * pw + sg[q] * pg;
+    p_r[q] = PorePressureOf(sg[q], pw, pg).v;
     T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
   }
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
   EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);
-  KineticsFormationAreaBatch(&k, r.n, sw, Sh, area);
+  KineticsFormationAreaBatch(&k, r.n, sw, v->Sh, area);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double drive = pe[q] - p_r[q];
-    const double rho_h = mh[q] > 0.0 ? mh[q] / (pore[q] * Sh[q]) : 1.0, c = dt * k.M_h * k.A_geo / rho_h,
-                 a = c * Kd[q] * drive, per = 1.0 / (1.0 + a);
-    const double forms = dt * V[q] * k.M_h * Kd[q] * area[q];
-    const bool   goes  = drive >= 0.0;
+    const Growth growth = ReactionGrowth(&k, dt, p_r[q], Kd[q], dK[q], pe[q], dpe[q]);
+    const bool   goes   = p_r[q] <= pe[q];
+    double       slope;
+    const double per_mass = k.A_geo / v->rho_h[q], to = V[q] * area[q],
+                 gone = ReactionDissociated(mh[q], -per_mass * growth.v, &slope), by = goes ? -per_mass * slope : to;
 
-    gain[q]   = goes ? -mh[q] * a * per : -forms * drive;
-    gain_p[q] = goes ? mh[q] * c * Kd[q] * per * per : forms;
-    gain_T[q] = goes ? -mh[q] * c * (Kd[q] * dpe[q] + dK[q] * drive) * per * per : -forms * dpe[q];
+    gain[q]   = goes ? gone : to * growth.v;
+    gain_p[q] = by * growth.p;
+    gain_T[q] = by * growth.T;
   }
 }
 
-/* Row of one fluid: mass missing, mass flux (18)-(20), matrix. */
+/* Row of one fluid: mass missing, mass flux, matrix. */
 INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathered *g, double dt, Given *o)
 {
   double *const *f  = e->m->P.f;
@@ -190,11 +203,11 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double *v = g->value[q], tau = bracket / (drag[q] + rho[q] * scale), c = dt * V[q] * rho[q];
+    const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau;
 
     o->value[q][k]    = m[q] - eos[q];
-    o->force[0][q][k] = c * (k0 * v[at + B_J] + tau * (v[at + B_PROJ] - gx[q]));
-    o->force[1][q][k] = c * (k0 * v[at + B_J + 1] + tau * (v[at + B_PROJ + 1] - gy[q]));
+    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, k0 * v[at + B_J], v[at + B_PROJ] - gx[q]);
+    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, k0 * v[at + B_J + 1], v[at + B_PROJ + 1] - gy[q]);
   }
   for (int i = 0; i < n; i++) {
     const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
@@ -212,36 +225,35 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
 
   for (int q = 0; q < r.n; q++) {
     const double V         = e->m->P.f[P_V][r.p + q];
-    double       a[CL_DIM] = {0.0}, K[3];
+    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[3];
 
+    for (int d = 0; d < CL_DIM; d++)
+      h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
     for (int k = 0; k < s.fluids; k++) {
       for (int d = 0; d < CL_DIM; d++)
         a[d] += (k ? r.mat->c_g : r.mat->c_w) * o->force[d][q][k] / (dt * V);
     }
-    HeatUpwind(kappa[q], a, e->m->grid.h, K);
+    HeatUpwind(kappa[q], a, h, K);
     o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
     o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
   }
 }
 
 /* Row of heat (21): conduction, advection with the fluxes above, capacity. */
-INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict pore,
-                    const double *restrict open, Given *o)
+INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const Volumes *v, Given *o)
 {
   const Material mat = *r.mat;
   const int      n = Scalars(s), row = s.fluids, at = B_T(s);
-  const double *restrict V = e->m->P.f[P_V] + r.p, *restrict V_new = e->t[T_V] + r.p,
-                         *restrict sg = s.fluids == 2 ? e->t[T_SG] + r.p : NULL;
-  double kappa[BLOCK], advected[BLOCK], C[BLOCK];
+  const double *restrict V = e->m->P.f[P_V] + r.p, *restrict sg = s.fluids == 2 ? e->t[T_SG] + r.p : NULL;
+  const double kappas[4] = {mat.kappa_s, mat.kappa_h, mat.kappa_w, mat.kappa_g};
+  double       kappa[BLOCK], sw[BLOCK], advected[BLOCK], C[BLOCK];
 
   Capacities(e, s, r, C);
+  for (int q = 0; q < r.n; q++)
+    sw[q] = s.fluids == 2 ? 1.0 - sg[q] : s.fluids ? 1.0 : 0.0;
+  MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double phi = pore[q] / V_new[q], Sh = 1.0 - open[q] / pore[q];
-    const double sw    = s.fluids == 2 ? 1.0 - sg[q] : s.fluids ? 1.0 : 0.0;
-    const double fluid = sw * mat.kappa_w + (1.0 - sw) * mat.kappa_g;
-
-    kappa[q]    = (1.0 - phi) * mat.kappa_s + phi * (Sh * mat.kappa_h + (1.0 - Sh) * fluid);
     advected[q] = 0.0;
     if (s.fluids)
       advected[q] += mat.c_w * (o->force[0][q][0] * g->dx[q][at] + o->force[1][q][0] * g->dy[q][at]);
@@ -274,7 +286,7 @@ INLINE void CompressionRow(Explicit *e, const Set s, Run r, const Gathered *g, c
       const PetscInt p   = r.p + q;
       const double   rho = e->t[T_RHO + k][p], TK = T[q] + CL_ZERO_CELSIUS;
       const double   beta  = k == 0 ? r.mat->water.beta : rho > 0.0 ? -e->t[T_GAS + 1][p] / rho : 1.0 / TK;
-      const double   share = rho > 0.0 ? (1.0 - beta * TK) / rho : 0.0;
+      const double   share = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
       const double   given =
           o->force[0][q][k] * (b[0] - share * g->dx[q][at]) + o->force[1][q][k] * (b[1] - share * g->dy[q][at]);
 
@@ -298,22 +310,21 @@ INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
 }
 
 /* What the reaction adds to all rows: gain = gain_0 + gain_p (s . dp) + gain_T dT. */
-INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, Given *o)
+INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, Given *o)
 {
   const Kinetics *k               = &r.mat->kinetics;
   const int       n               = Scalars(s);
-  const double    nu[PHASE_COUNT] = {k->N_h * k->M_w / k->M_h, k->M_g / k->M_h};
+  const double    nu[PHASE_COUNT] = {KineticsWater(k), KineticsMethane(k)};
   const double *restrict sg = e->t[T_SG] + r.p, *restrict gain = e->t[T_GAIN] + r.p,
                          *restrict gain_p = e->t[T_GAIN_P] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
-  double zero[BLOCK] = {0.0}, rho_h[BLOCK], held[PHASE_COUNT][BLOCK], L[BLOCK];
+  double held[PHASE_COUNT][BLOCK], L[BLOCK];
 
-  LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   LatentHeatBatch(&r.mat->latent, r.n, T, L);
   PerOpenVolume(e, r, e->m->P.f[P_PG] + r.p, held);
   for (int row = 0; row < n; row++) {
 #pragma GCC ivdep
     for (int q = 0; q < r.n; q++) {
-      const double c = row < s.fluids ? nu[row] - held[row][q] / rho_h[q] : -L[q];
+      const double c = row < s.fluids ? nu[row] - held[row][q] / v->rho_h[q] : -L[q];
       double      *a = &o->value[q][R_Matrix(s) + row * n];
 
       o->value[q][row] -= c * gain[q];
@@ -411,7 +422,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Given    o;
   Weights               w;
   CellMean              mean;
-  double                pore[BLOCK], open[BLOCK];
+  Volumes               v;
   const double         *T = s.heat ? e->m->P.f[P_T] + r.p : e->t[T_T] + r.p;
 
   const bool shared = CellMeanOf(e, &mean);
@@ -426,18 +437,22 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     for (int k = R_Count(s); k < LANES * Rows(R_Count(s)); k++)
       o.value[q][k] = 0.0;
   }
-  Masses(e, s, r, T, &g, dt, pore, open);
+  VolumesOf(e, s, r, T, &g, dt, &v);
+  if (s.fluids)
+    WaterMasses(e, s, r, &v);
+  if (s.fluids == 2)
+    MethaneMasses(e, r, &v);
   for (int k = 0; k < s.fluids; k++)
     FluidRow(e, s, r, k, &g, dt, &o);
   if (s.heat)
-    HeatRow(e, s, r, &g, dt, pore, open, &o);
+    HeatRow(e, s, r, &g, dt, &v, &o);
   if (s.heat && e->m->c->compression_heat)
     CompressionRow(e, s, r, &g, T, &o);
   if (s.heat && s.solid && r.mat->plasticity.heat > 0.0)
     PlasticHeat(e, s, r, &o);
   if (s.fluids == 2 && r.mat->reacts) {
-    Reaction(e, s, r, &g, dt, T, pore, open);
-    ReactionRows(e, s, r, T, &o);
+    Reaction(e, s, r, &g, dt, T, &v);
+    ReactionRows(e, s, r, T, &v, &o);
   }
   if (s.fluids && e->o.particle_pressures)
     Keep(e, s, r, dt, &w, &o);

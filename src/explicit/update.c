@@ -2,6 +2,7 @@
    docs/equations.md, section 12. */
 #include "lanes.h"
 #include "clathra/laws_batch.h"
+#include "clathra/point_reaction.h"
 
 /* What a loop over particles finds wrong: of the width of its numbers, so that the loop stays vector code. */
 typedef int64_t Wrong;
@@ -193,8 +194,9 @@ INLINE void GasOfMethane(Explicit *e, const Set s, Run r, const Gathered *g)
 
     if (fabs(dp - g->value[q][0]) <= STRAIGHT * p0)
       continue;
-    const double open = e->t[T_V][p] - f[P_MS][p] / LiquidDensity(&r.mat->solid, 0.0, T, &drho, &dT) -
-                        f[P_MH][p] / LiquidDensity(&r.mat->hydrate, 0.0, T, &drho, &dT);
+    const double open = PoresOf(e->t[T_V][p], f[P_MS][p], LiquidDensity(&r.mat->solid, 0.0, T, &drho, &dT), f[P_MH][p],
+                                LiquidDensity(&r.mat->hydrate, 0.0, T, &drho, &dT))
+                            .open;
 
     f[P_PG][p] = PointGasPressure(r.mat, f[P_MG][p] / open, f[P_PW][p], T, pg - dp, pg);
   }
@@ -252,7 +254,7 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double
 {
   double *const  *f               = e->m->P.f;
   const Kinetics *kin             = &r.mat->kinetics;
-  const double    nu[PHASE_COUNT] = {kin->N_h * kin->M_w / kin->M_h, kin->M_g / kin->M_h};
+  const double    nu[PHASE_COUNT] = {KineticsWater(kin), KineticsMethane(kin)};
   double         *mw = f[P_MW] + r.p, *mg = f[P_MG] + r.p, *mh = f[P_MH] + r.p; /* read by HeatOf, too */
   const double   *pg = f[P_PG] + r.p, *now = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   double wanted[BLOCK], gain[BLOCK], T[BLOCK], p[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, held[PHASE_COUNT][BLOCK];
@@ -275,7 +277,7 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     fewer += gain[q] != wanted[q];
-    kept[q] = gain[q] < 0.0 ? 1.0 + gain[q] / mh[q] : 1.0;
+    kept[q] = KeptHydrate(mh[q], mh[q] + gain[q]).v;
     mh[q] += gain[q];
   }
   *limited += fewer;
@@ -316,7 +318,7 @@ INLINE void CountCompression(Explicit *e, const Set s, Run r, const Gathered *g)
 }
 
 /* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
-INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
+INLINE bool PoresAfter(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
   double *const *f     = e->m->P.f;
   const bool     known = s.fluids || s.heat; /* the volume, from the pass before */
@@ -329,12 +331,12 @@ INLINE bool PoresOf(Explicit *e, const Set s, Run r, const Strain *n, const doub
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double volume = known ? at[q] : V[q] * n->J[q], pore = volume - ms[q] / rho_s[q],
-                 open = pore - mh[q] / rho_h[q];
+    const double volume = known ? at[q] : V[q] * n->J[q];
+    const Pores  v      = PoresOf(volume, ms[q], rho_s[q], mh[q], rho_h[q]);
 
-    full |= WRONG_UNLESS(open > 0.0);
-    phi[q] = pore / volume;
-    Sh[q]  = 1.0 - open / pore;
+    full |= WRONG_UNLESS(v.open > 0.0);
+    phi[q] = v.phi;
+    Sh[q]  = v.Sh;
     V[q]   = volume;
   }
   return !full;
@@ -345,13 +347,9 @@ INLINE void ThermalStrain(const Explicit *e, const Set s, Run r, const Gathered 
                           double *restrict thermal)
 {
   const double *restrict Sh = e->m->P.f[P_SH] + r.p;
-  const double grain = r.mat->solid.beta, ice = r.mat->hydrate.beta;
 
-  for (int q = 0; q < r.n; q++) {
-    const double h = phi[q] * Sh[q], c = 1.0 - phi[q];
-
-    thermal[q] = s.heat ? (c * grain + h * ice) / (c + h) * g->value[q][s.fluids] / 3.0 : 0.0;
-  }
+  for (int q = 0; q < r.n; q++)
+    thermal[q] = s.heat ? SolidExpansivity(r.mat, phi[q], Sh[q]).v * g->value[q][s.fluids] / 3.0 : 0.0;
 }
 
 /* (92): work of the pressures, trapezoidal, and of the ambient one as the particles of a block expand and move. */
@@ -370,7 +368,7 @@ INLINE void ExpansionWork(Explicit *e, const Set s, Run r, const Gathered *g, co
     if (s.fluids == 2) {
       const double dpg = g->value[q][1], pg = f[P_PG][p] - 0.5 * dpg;
 
-      mean += (e->t[T_SG][p] + 0.5 * e->t[T_DS][p] * (dpg - dpw)) * (pg - pw);
+      mean = PorePressureOf(e->t[T_SG][p] + 0.5 * e->t[T_DS][p] * (dpg - dpw), pw, pg).v;
     }
     inside += mean * V[q] * (n->J[q] - 1.0);
   }
@@ -428,7 +426,7 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
   const char       *why = NULL;
 
   ElasticityYoungBatch(el, r.n, Sh, E_old);
-  if (!PoresOf(e, s, r, n, T, phi))
+  if (!PoresAfter(e, s, r, n, T, phi))
     ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", Worst(r, Sh)); /* S_h >= 1 */
   ElasticityYoungBatch(el, r.n, Sh, E);
   ThermalStrain(e, s, r, g, phi, thermal);
@@ -461,14 +459,31 @@ static PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *
   for (int q = 0; q < r.n; q++) {
     size[q] = 0.0;
     for (int d = 0; d < CL_DIM; d++) {
-      const double x = (e->m->P.f[P_X + d][r.p + q] - grid->lower[d]) / grid->h[d];
+      const GridLines *line = &grid->line[d];
+      const double     x = LinesPlace(line, e->m->P.f[P_X + d][r.p + q]), u = dt * g->value[q][C_Vs(s) + d];
 
-      size[q] = fmax(size[q], fabs(dt * g->value[q][C_Vs(s) + d]) / grid->h[d]);
+      size[q] = fmax(size[q], fabs(u) / LinesLeastAt(line, e->m->P.f[P_X + d][r.p + q] - u));
       if (!(x >= 0.0 && x <= (double)grid->cells[d]))
         size[q] = NAN;
     }
   }
   return Worst(r, size);
+}
+
+/* Does a particle, now at x, come from more than half a cell away, or leave the grid? */
+INLINE Wrong Strays(const GridLines *line, int n, const double *restrict u, const double *restrict x)
+{
+  const double h = line->h, lower = line->lower, upper = LinesAt(line, line->cells);
+  Wrong        far = 0;
+
+  if (!line->x) {
+    for (int q = 0; q < n; q++)
+      far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
+    return far;
+  }
+  for (int q = 0; q < n; q++)
+    far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * LinesLeastAt(line, x[q] - u[q])) & (x[q] >= lower) & (x[q] <= upper));
+  return far;
 }
 
 /* Makes the motion history; false if a particle crosses half a cell or leaves the grid. */
@@ -490,11 +505,7 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
   }
   ParticlesKeep(&e->m->P, r.p, r.n, &motion);
   for (int d = 0; d < CL_DIM; d++) {
-    const double *restrict x = e->m->P.f[P_X + d] + r.p;
-    const double h = grid->h[d], lower = grid->lower[d], upper = lower + (double)grid->cells[d] * h;
-
-    for (int q = 0; q < r.n; q++)
-      far |= WRONG_UNLESS((fabs(u[d][q]) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
+    far |= Strays(&grid->line[d], r.n, u[d], e->m->P.f[P_X + d] + r.p);
   }
   return !far;
 }

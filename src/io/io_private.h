@@ -47,16 +47,6 @@ typedef struct {
 } ExtraVariable;
 extern const ExtraVariable io_extra[]; /* NULL name ends it */
 
-/* p = s_w p_w + s_g p_g with s = S/(1 - S_h), Pa. */
-static inline double MeanPressure(const Particles *P, PetscInt p)
-{
-  if (!P->f[P_PG])
-    return P->f[P_PW][p];
-  const double sw = P->f[P_SW][p] / (1.0 - P->f[P_SH][p]);
-
-  return sw * P->f[P_PW][p] + (1.0 - sw) * P->f[P_PG][p];
-}
-
 static inline double GasSaturation(const Particles *P, PetscInt p)
 {
   return 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
@@ -80,17 +70,21 @@ bool IoAppend(int fd, const char *path, const char *text, size_t bytes);
 bool IoSync(int fd, const char *path); /* to the disk */
 bool IoClose(int fd, const char *path);
 
+/* ---------------------------------------------------------------- rows.c: rank 0.  A row is printed into memory, then
+   written; nothing more is written after a failure. */
+extern const char *const cl_table_name[TABLE_COUNT];
+PetscErrorCode           RowBegin(Output *out, FILE **f);
+PetscErrorCode           RowKeep(Output *out); /* as out->text, of out->size, to be freed */
+PetscErrorCode           RowEnd(Output *out, TableId id);
+
 /* ---------------------------------------------------------------- tables.c: rank 0 */
 PetscErrorCode TablesOpen(Output *out, const Model *m, bool append, double t);
-/* A row is printed into memory, then written; nothing more is written after a failure. */
-PetscErrorCode RowBegin(Output *out, FILE **f);
-PetscErrorCode RowEnd(Output *out, TableId id);
 void           TablesSync(Output *out);
 void           TablesClose(Output *out);
 
 /* ---------------------------------------------------------------- probes.c, balance.c, meters.c: header lines, rank 0
  */
-/* Columns of a probe that others name: in the order of the table in probes.c. */
+/* Columns of a probe that others name: in the order of the table in columns.c. */
 enum {
   PROBE_P       = 0,
   PROBE_PW      = 1, /* p_w, p_g, T */

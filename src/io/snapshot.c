@@ -47,7 +47,7 @@ static double Extra(const Model *m, PetscInt p, int k)
 {
   switch (k) {
   case X_P:
-    return MeanPressure(&m->P, p);
+    return ParticlePressure(&m->P, p);
   case X_SG:
     return GasSaturation(&m->P, p);
   case X_SHEAR:

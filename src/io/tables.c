@@ -6,40 +6,10 @@
 #include <string.h>
 
 static const struct {
-  const char *name;
-  int         time; /* column of the time */
+  int time; /* column of the time */
   void (*header)(const Case *, FILE *);
-} table[TABLE_COUNT] = {[TABLE_PROBES]  = {"probes.csv", 0, ProbesHeader},
-                        [TABLE_BALANCE] = {"balance.csv", 1, BalanceHeader},
-                        [TABLE_METERS]  = {"meters.csv", 0, MetersHeader}};
-
-PetscErrorCode RowBegin(Output *out, FILE **f)
-{
-  PetscFunctionBeginUser;
-  *f = out->row = open_memstream(&out->text, &out->size);
-  PetscCheck(*f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode TextEnd(Output *out)
-{
-  PetscFunctionBeginUser;
-  PetscCheck(fclose(out->row) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RowEnd(Output *out, TableId id)
-{
-  char path[IO_PATH];
-
-  PetscFunctionBeginUser;
-  PetscCall(TextEnd(out));
-  PetscCall(IoPath(out->dir, table[id].name, path));
-  if (!out->failed)
-    out->failed = !IoAppend(out->fd[id], path, out->text, out->size);
-  free(out->text);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+} table[TABLE_COUNT] = {
+    [TABLE_PROBES] = {0, ProbesHeader}, [TABLE_BALANCE] = {1, BalanceHeader}, [TABLE_METERS] = {0, MetersHeader}};
 
 /* A whole line with a time not later than t; slack: of times as they are written. */
 static bool Keep(const char *line, int column, double t, double slack)
@@ -90,16 +60,16 @@ static PetscErrorCode Open(Output *out, const Model *m, TableId id, bool append,
   FILE        *f;
 
   PetscFunctionBeginUser;
-  PetscCall(IoPath(out->dir, table[id].name, path));
+  PetscCall(IoPath(out->dir, cl_table_name[id], path));
   PetscCall(RowBegin(out, &f));
   table[id].header(m->c, f);
-  PetscCall(TextEnd(out));
+  PetscCall(RowKeep(out));
   header = out->text;
   PetscCall(RowBegin(out, &f));
   fputs(header, f);
   if (append)
     out->failed = !CopyRows(path, table[id].time, header, t, slack, f);
-  PetscCall(TextEnd(out));
+  PetscCall(RowKeep(out));
   if (!out->failed)
     out->failed = !IoReplace(path, false, 1, &(IoPiece){out->text, out->size});
   if (!out->failed)
@@ -124,7 +94,7 @@ void TablesSync(Output *out)
   for (TableId id = 0; id < TABLE_COUNT && !out->failed; id++) {
     char path[IO_PATH + 16];
 
-    snprintf(path, sizeof(path), "%s/%s", out->dir, table[id].name);
+    snprintf(path, sizeof(path), "%s/%s", out->dir, cl_table_name[id]);
     if (out->fd[id] >= 0)
       out->failed = !IoSync(out->fd[id], path);
   }
@@ -135,7 +105,7 @@ void TablesClose(Output *out)
   for (TableId id = 0; id < TABLE_COUNT; id++) {
     char path[IO_PATH + 16];
 
-    snprintf(path, sizeof(path), "%s/%s", out->dir, table[id].name);
+    snprintf(path, sizeof(path), "%s/%s", out->dir, cl_table_name[id]);
     if (out->fd[id] >= 0 && !IoClose(out->fd[id], path))
       out->failed = true;
     out->fd[id] = -1;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
+#include "clathra/inline.h"
 
 #define LAW_GAS_CONSTANT 8.314 /* J/(mol K) */
 #define LAW_PI 3.14159265358979323846
@@ -27,7 +28,6 @@ static inline int LawFind(const char *const names[], const char *name)
 /* A law is one formula without branches on the state, written as an INLINE function that gives value and slopes.  One
    state at a time it is called as it is; over arrays a loop calls it, which the compiler makes vector code of, without
    the slopes that the loop drops. */
-#define INLINE static inline __attribute__((always_inline))
 
 /* glibc's vector versions of these, which it declares under -ffast-math only. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)

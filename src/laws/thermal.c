@@ -28,7 +28,7 @@ void LatentHeatBatch(const LatentHeat *law, int n, const double *restrict T, dou
 
 /* (236): X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)], s_g = 1 - s_w; X in the order solid,
    hydrate, water, gas.  (P29). */
-double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh, double *d_dsw)
+INLINE double Average(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh, double *d_dsw)
 {
   const double fluid = sw * X[2] + (1.0 - sw) * X[3], pore = Sh * X[1] + (1.0 - Sh) * fluid;
 
@@ -36,6 +36,21 @@ double MixtureAverage(double phi, double Sh, double sw, const double X[4], doubl
   *d_dSh  = phi * (X[1] - fluid);
   *d_dsw  = phi * (1.0 - Sh) * (X[2] - X[3]);
   return (1.0 - phi) * X[0] + phi * pore;
+}
+
+double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh, double *d_dsw)
+{
+  return Average(phi, Sh, sw, X, d_dphi, d_dSh, d_dsw);
+}
+
+void MixtureAverageBatch(int n, const double *restrict phi, const double *restrict Sh, const double *restrict sw,
+                         const double X[4], double *restrict mean)
+{
+  const double x[4] = {X[0], X[1], X[2], X[3]};
+  double       d[3];
+
+  for (int q = 0; q < n; q++)
+    mean[q] = Average(phi[q], Sh[q], sw[q], x, &d[0], &d[1], &d[2]);
 }
 
 /* (293) */

@@ -43,9 +43,10 @@ void ModelStartVelocity(const Model *m, double *v)
 static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
 {
   for (int d = 0; d < CL_DIM; d++) {
-    const double to = m->P.f[P_X + d][p] + u[d], upper = m->grid.lower[d] + (double)m->grid.cells[d] * m->grid.h[d];
+    const GridLines *line = &m->grid.line[d];
+    const double     to = m->P.f[P_X + d][p] + u[d], upper = LinesAt(line, line->cells);
 
-    if (fabs(u[d]) > MAX_MOVE * m->grid.h[d])
+    if (fabs(u[d]) > MAX_MOVE * LinesLeastAt(line, m->P.f[P_X + d][p]))
       ModelNoteFailure(m, CL_TOO_FAR, "a particle moves more than half a cell in one step", p);
     else if (to < m->grid.lower[d] || to > upper)
       ModelNoteFailure(m, CL_LEFT_GRID, "a particle leaves the background grid", p);
@@ -97,12 +98,15 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
 }
 
 /* (277): what a particle stores, and hands from cell to cell. */
-static void CountMoved(const Model *m, const double out[OUT_COUNT], StageRates *rates)
+static void CountMoved(const Model *m, PetscInt p, const double out[OUT_COUNT], StageRates *rates)
 {
+  double h[CL_DIM];
+
+  CellWidths(m, p, h);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     if (m->c->fields.phase[ph])
-      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[OUT_FLUX + 2 * ph]) / m->grid.h[0] +
-                          fabs(out[OUT_FLUX + 2 * ph + 1]) / m->grid.h[1];
+      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[OUT_FLUX + 2 * ph]) / h[0] +
+                          fabs(out[OUT_FLUX + 2 * ph + 1]) / h[1];
   }
 }
 
@@ -221,7 +225,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       trial->end[p] = s.end;
     if (trial->s)
       PlasticState(p, &s.skeleton, trial);
-    CountMoved(m, o.out, rates);
+    CountMoved(m, p, o.out, rates);
     if (m->c->fields.heat)
       HeatRates(m, &r, x, &s, o.out, rates);
     if (m->c->fields.solid)

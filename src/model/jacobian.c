@@ -168,8 +168,8 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
 }
 
 /* A constant number of unknowns lets the compiler unroll the rows of the largest sets. */
-static inline __attribute__((always_inline)) void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p,
-                                                                  const Reach *r, const double *x, const PointOutput *o)
+INLINE void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p, const Reach *r, const double *x,
+                            const PointOutput *o)
 {
   const FieldSet *fs           = &to->fs;
   const bool      axisymmetric = m->c->axisymmetric;

@@ -1,4 +1,6 @@
 /* The reaction by nodes (265), (266): each node pays for the share of a particle's reaction that it drives itself. */
+#include "clathra/point_reaction.h"
+#include "clathra/point_state.h"
 #include "gather.h"
 
 /* Unknowns that drive the reaction, and rows that pay for it. */
@@ -9,7 +11,7 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
 {
   const Material *mat = ParticleMaterial(m, p);
   const Kinetics *k   = &mat->kinetics;
-  double          own[F_COUNT], slope, dw, dA;
+  double          own[F_COUNT], slope, dK, dw, dA;
   Reach           r;
 
   ReachExpand(m, p, &r);
@@ -17,19 +19,19 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   for (int f = 0; f < PHASE_COUNT; f++)
     own[F_PW + f] = m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + Shift(m, p, &r, F_PW + f);
 
-  const double drive =
-      EquilibriumPressure(&k->equilibrium, own[F_T], &slope) - q->s[PHASE_W] * own[F_PW] - q->s[PHASE_G] * own[F_PG];
-  const double Kd = k->M_h * KineticsRateConstant(k, own[F_T], &dw);
-  const double area =
-      drive >= 0.0 ? k->A_geo * q->phi * q->Sh : KineticsFormationArea(k, q->s[PHASE_W], q->Sh, &dw, &dA);
+  const double pe = EquilibriumPressure(&k->equilibrium, own[F_T], &slope), Kd = KineticsRateConstant(k, own[F_T], &dK);
+  const PorePressure p_r    = PorePressureOf(q->s[PHASE_G], own[F_PW], own[F_PG]);
+  const Growth       growth = ReactionGrowth(k, 1.0, p_r.v, Kd, dK, pe, slope); /* kg/(m^2 s) */
+  const double       area =
+      p_r.v <= pe ? k->A_geo * q->phi * q->Sh : KineticsFormationArea(k, q->s[PHASE_W], q->Sh, &dw, &dA);
 
-  l->rate        = m->P.f[P_V][p] * Kd * area;
-  l->decay       = drive > 0.0 && q->Sh > 0.0 ? Kd * area / (q->phi * q->Sh * mat->hydrate.rho0) * drive : 0.0;
-  l->drive[F_PW] = -q->s[PHASE_W];
-  l->drive[F_PG] = -q->s[PHASE_G];
+  l->rate        = m->P.f[P_V][p] * growth.p * area;
+  l->decay       = p_r.v < pe && q->Sh > 0.0 ? -growth.v * k->A_geo / mat->hydrate.rho0 : 0.0;
+  l->drive[F_PW] = -p_r.pw;
+  l->drive[F_PG] = -p_r.pg;
   l->drive[F_T]  = slope;
-  l->gain[F_PW]  = k->N_h * k->M_w / k->M_h;
-  l->gain[F_PG]  = k->M_g / k->M_h;
+  l->gain[F_PW]  = KineticsWater(k);
+  l->gain[F_PG]  = KineticsMethane(k);
   l->gain[F_T]   = -LatentHeatEvaluate(&mat->latent, own[F_T], &dw);
 }
 

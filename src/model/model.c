@@ -1,4 +1,5 @@
 /* Life of a model. */
+#include "clathra/point_heat.h"
 #include "gather.h"
 
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
@@ -12,7 +13,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(m, sizeof(*m)));
   m->c = c;
-  PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
+  PetscCall(GridCreateOn(comm, (GridLines[CL_DIM]){CaseLines(c, 0), CaseLines(c, 1)}, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(first, &m->grid, &m->P));
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
@@ -122,13 +123,13 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
     const double    mw = m->c->fields.phase[PHASE_W] ? m->P.f[P_MW][p] : 0.0;
     const double    mg = m->c->fields.phase[PHASE_G] ? m->P.f[P_MG][p] : 0.0;
 
-    sum[0] += mw + (mat->reacts ? mh * k->N_h * k->M_w / k->M_h : 0.0);
-    sum[1] += mg + (mat->reacts ? mh * k->M_g / k->M_h : 0.0);
+    sum[0] += mw + (mat->reacts ? mh * KineticsWater(k) : 0.0);
+    sum[1] += mg + (mat->reacts ? mh * KineticsMethane(k) : 0.0);
     sum[2] += mh;
     sum[3] += ms;
     sum[4] += m->P.f[P_V][p];
     sum[6] += mg;
-    sum[5] += ms * mat->c_s + mh * mat->c_h + mw * mat->c_w + mg * mat->c_g;
+    sum[5] += HeatCapacity(mat, ms, mh, mw, mg);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   *t = (ModelTotals){.water    = sum[0],

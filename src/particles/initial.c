@@ -69,10 +69,10 @@ static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Mat
   if (r->hydrostatic)
     s->pw = InitialWaterPressure(c, r, s->pw, x);
   s->pg = s->pw + pc;
-  s->p  = s->pw + s->sg * pc;
+  s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   if (two) { /* to the last digit what the law makes of these pressures */
     s->sg = RetentionGasShare(&mat->retention, s->pg - s->pw, &ds);
-    s->p  = s->pw + s->sg * (s->pg - s->pw);
+    s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,8 @@
 /* Stress, fluxes and their consistent tangent; docs/equations.md (14)-(21). */
 #include "state.h"
+#include "clathra/point_flow.h"
+#include "clathra/point_heat.h"
+#include "clathra/point_reaction.h"
 #include "clathra/tensor.h"
 
 /* Row of the tangent for a scalar output c * jet: J spreads over grad u. */
@@ -36,14 +39,6 @@ static void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const 
   AddJet(row, d[SKELETON_KEPT], kept, k);
 }
 
-/* (93): share of the hydrate that the stage starts from that is still there. */
-static Jet KeptHydrate(const PointHistory *h, const Jet *m_h)
-{
-  const double from = h->m_star[0];
-
-  return m_h->v < from ? JetScale(1.0 / from, *m_h) : JetConstant(m_h->v > 0.0 ? 1.0 : 0.0);
-}
-
 /* Effective stress and its tangent; e_zz is the hoop strain, zero in plane strain. */
 static ClStatus EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
                                 double T, bool tangent, SkeletonState *state, SkeletonStage *end, Stress *out,
@@ -57,7 +52,8 @@ static ClStatus EffectiveStress(const Material *mat, const PointHistory *h, cons
                           .thermal = thermal.v,
                           .E       = s->E.v,
                           .Sh      = s->Sh.v};
-  const Jet       kept = ElasticityHasBonds(&mat->elasticity) ? KeptHydrate(h, &s->m_h) : JetConstant(1.0);
+  const Kept      k_h  = ElasticityHasBonds(&mat->elasticity) ? KeptHydrate(h->m_star[0], s->m_h.v) : (Kept){1.0, 0.0};
+  const Jet       kept = JetChain(k_h.v, k_h.m, s->m_h);
   SkeletonTangent t;
 
   d.E_n  = ElasticityYoung(&mat->elasticity, h->Sh_n, &dE);
@@ -201,14 +197,14 @@ static void Spread(const PointHistory *h, const Kinematics *k, const Metric *met
   }
 }
 
-/* (18)-(20): Phi = V_n rho [ cof^T J + tau K (Pi g - g) ]. */
+/* Phi = V_n rho [ cof^T J + tau K (Pi g - g) ] (19). */
 static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
                  const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
 {
   const double(*K)[2] = metric->K;
   const Jet     rho   = s->rho[f];
-  const Jet     held  = fs->inertia ? JetScale(1.0 / h->dt, JetMul(s->kr[f], rho)) : JetConstant(0.0);
-  const Jet     tau   = JetDiv(s->kr[f], JetAdd(s->resist[f], held));
+  const Tau     t     = TauOf(s->kr[f].v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
+  const Jet     tau   = JetChain3(t.v, t.kr, s->kr[f], t.resist, s->resist[f], t.rho, rho);
   const Jet     rt    = JetScale(h->bracket, JetMul(rho, tau));
   const double *J = &in[IN_J + 2 * f], *g = &in[IN_GP + 2 * f];
   const double  b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
@@ -218,7 +214,7 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
     const int    row = OUT_FLUX + 2 * f + i;
     const double cJ = k->cof[0][i] * J[0] + k->cof[1][i] * J[1], Kb = K[i][0] * b[0] + K[i][1] * b[1];
 
-    o->out[row] = h->V * (rho.v * cJ + rt.v * Kb);
+    o->out[row] = MassFlux(h->V, rho.v, rt.v, cJ, Kb);
     if (!tangent)
       continue;
     double *D = o->D[row];
@@ -268,8 +264,7 @@ static void FluidScalars(const Material *mat, const PointHistory *h, const Kinem
                          bool tangent, PointOutput *o)
 {
   const Jet    mass = f == PHASE_W ? s->m_w : s->m_g;
-  const double nu =
-      f == PHASE_W ? mat->kinetics.N_h * mat->kinetics.M_w / mat->kinetics.M_h : mat->kinetics.M_g / mat->kinetics.M_h;
+  const double nu   = f == PHASE_W ? KineticsWater(&mat->kinetics) : KineticsMethane(&mat->kinetics);
   const double root = sqrt(s->kr[f].v);
   Jet          dm   = JetShift(mass, -h->m_star[1 + f]);
 
@@ -312,12 +307,13 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
 static void CompressionHeat(const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
                             const double in[IN_COUNT], bool tangent, PointState *state, PointOutput *o)
 {
-  const Jet     p = JetVariable(in[IN_P + f], f == PHASE_W ? JET_PW : JET_PG), rho = s->rho[f];
-  const Jet     volume = JetDiv(f == PHASE_W ? s->m_w : s->m_g, rho);
-  const Jet     rise   = JetScale(-1.0 / h->dt, JetMul(JetMul(volume, s->warm[f]), JetShift(p, -h->p_star[f])));
-  const Jet     share  = JetDiv(JetShift(JetScale(-1.0, s->warm[f]), 1.0), rho); /* (1 - beta T_K)/rho */
-  const double *g = &in[IN_GP + 2 * f], *flux = &o->out[OUT_FLUX + 2 * f], *b = h->gravity;
-  double       *D = o->D[OUT_Q], sum = rise.v;
+  const Jet        p = JetVariable(in[IN_P + f], f == PHASE_W ? JET_PW : JET_PG), rho = s->rho[f];
+  const Jet        volume = JetDiv(f == PHASE_W ? s->m_w : s->m_g, rho);
+  const Jet        rise   = JetScale(-1.0 / h->dt, JetMul(JetMul(volume, s->warm[f]), JetShift(p, -h->p_star[f])));
+  const Throttling t      = ThrottlingOf(s->warm[f].v, rho.v);
+  const Jet        share  = JetChain2(t.v, t.warm, s->warm[f], t.rho, rho);
+  const double    *g = &in[IN_GP + 2 * f], *flux = &o->out[OUT_FLUX + 2 * f], *b = h->gravity;
+  double          *D = o->D[OUT_Q], sum = rise.v;
 
   for (int i = 0; i < 2; i++) {
     const double head = share.v * g[i] - k->F[0][i] * b[0] - k->F[1][i] * b[1];

@@ -1,4 +1,7 @@
-/* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(13). */
+/* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(10). */
+#include "clathra/point_flow.h"
+#include "clathra/point_heat.h"
+#include "clathra/point_state.h"
 #include "state.h"
 
 static Jet LiquidJet(const Liquid *law, Jet p, Jet T)
@@ -9,6 +12,12 @@ static Jet LiquidJet(const Liquid *law, Jet p, Jet T)
   return JetChain2(rho, dp, p, dT, T);
 }
 
+/* Methane that water holds (101): where there is one pressure, none. */
+static double Trace(const FieldSet *fs, const Material *mat)
+{
+  return fs->one_pressure ? 0.0 : mat->gas.trace;
+}
+
 static Jet GasJet(const Gas *law, Jet p, Jet T)
 {
   double       dp, dT;
@@ -17,101 +26,16 @@ static Jet GasJet(const Gas *law, Jet p, Jet T)
   return JetChain2(rho, dp, p, dT, T);
 }
 
-/* (12): dissociation is linear in the hydrate mass. */
-static void Dissociate(const Material *mat, const PointHistory *h, Jet Kd, Jet drive, Jet rho_h, ScalarState *s)
-{
-  const Kinetics *k    = &mat->kinetics;
-  const double    from = fmax(h->m_star[0], 0.0);
-  const Jet       rate = JetScale(h->dt * k->M_h * k->A_geo, JetDiv(JetMul(Kd, drive), rho_h));
-
-  s->limited = h->m_star[0] < 0.0;
-  s->gain    = JetShift(JetScale(-from, JetDiv(rate, JetShift(rate, 1.0))), from - h->m_star[0]);
-}
-
-/* m_h* + growth (A_s/A_geo) - S rho_h V_p as a function of S for formation (13); decreasing in S. */
-static double FormationBalance(const Kinetics *k, double S, double sw, double m0, double growth, double pore,
-                               double *dS)
-{
-  double       dw, dA;
-  const double A = KineticsFormationArea(k, sw, S, &dw, &dA);
-
-  *dS = growth * dA - pore;
-  return m0 + growth * A - pore * S;
-}
-
-/* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
-static void Form(const Material *mat, const PointHistory *h, Jet Kd, Jet drive, Jet rho_h, ScalarState *s)
-{
-  const Kinetics *k      = &mat->kinetics;
-  const double    m0     = fmax(h->m_star[0], 0.0);
-  const Jet       growth = JetScale(-h->dt * k->M_h, JetMul(s->V, JetMul(Kd, drive)));
-  const Jet       pore   = JetMul(rho_h, s->Vp);
-  double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0, dw, dA;
-
-  s->limited = h->m_star[0] < 0.0;
-  for (int it = 0; it < 100; it++) {
-    const double f = FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
-
-    if (f > 0.0)
-      lo = S;
-    else
-      hi = S;
-    double next = S - f / dS;
-    if (!(next > lo && next < hi))
-      next = f == 0.0 ? S : 0.5 * (lo + hi);
-    if (fabs(next - S) <= 1e-16 + 4e-16 * S) {
-      S = next;
-      break;
-    }
-    S = next;
-  }
-  FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
-
-  /* dS = -(df/dq)/(df/dS) dq with f = m0 + growth A(sw, S) - pore S */
-  const double A  = KineticsFormationArea(k, s->sw.v, S, &dw, &dA);
-  const Jet    fq = JetSub(JetMul(growth, JetChain(A, dw, s->sw)), JetScale(S, pore));
-  const Jet    Sj = JetChain(S, -1.0 / dS, fq);
-
-  /* growth A = pore S - m0 = gain; where little grows the left is exact, where much does the right */
-  const double grown = pore.v * S - m0, steep = growth.v * dA / pore.v;
-  s->gain   = JetMul(Sj, pore);
-  s->gain.v = (growth.v * A - steep * grown) / (1.0 - steep) + (m0 - h->m_star[0]);
-}
-
-/* The reaction sees p and T of the nodal fields, not the particle's own: those differ by what nodes cannot see (and so
-   never correct), which a fast reaction would turn into hydrate. */
-static void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s)
-{
-  const Jet T_r = JetShift(T, h->shift[2]);
-  const Jet p_r = JetAdd(s->p, JetAdd(JetScale(h->shift[0], s->sw), JetScale(h->shift[1], s->sg)));
-  double    dK, dpe;
-
-  s->limited = false;
-  if (!mat->reacts) {
-    s->gain = JetConstant(0.0);
-    s->m_h  = JetConstant(h->m_star[0]);
-    return;
-  }
-  const double Kd    = KineticsRateConstant(&mat->kinetics, T_r.v, &dK);
-  const double pe    = EquilibriumPressure(&mat->kinetics.equilibrium, T_r.v, &dpe);
-  const Jet    drive = JetSub(JetChain(pe, dpe, T_r), p_r); /* p_e - p */
-
-  if (drive.v >= 0.0)
-    Dissociate(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
-  else
-    Form(mat, h, JetChain(Kd, dK, T_r), drive, rho_h, s);
-  s->m_h = JetShift(s->gain, h->m_star[0]);
-}
-
 /* k_r of a fluid among two, of its share of the open pores or of all of them. */
 static Jet RelPermJet(const RelPerm *law, int phase, const ScalarState *s)
 {
-  const Jet    share = phase == PHASE_W ? s->sw : s->sg;
-  const Jet    x     = law->of_pores ? JetMul(JetSub(JetConstant(1.0), s->Sh), share) : share;
-  double       d;
-  const double kr = phase == PHASE_W ? RelPermWater(law, x.v, &d) : RelPermGas(law, x.v, &d);
+  const Jet        share = phase == PHASE_W ? s->sw : s->sg;
+  const KrArgument a     = KrArgumentOf(law->of_pores, share.v, s->Sh.v);
+  const Jet        x     = JetChain2(a.v, a.share, share, a.Sh, s->Sh);
+  double           d;
+  const double     kr = phase == PHASE_W ? RelPermWater(law, x.v, &d) : RelPermGas(law, x.v, &d);
 
-  return kr < CL_MOBILITY_FLOOR ? JetConstant(CL_MOBILITY_FLOOR) : JetChain(kr, d, x);
+  return JetChain(KrFloored(kr), kr < CL_MOBILITY_FLOOR ? 0.0 : d, x);
 }
 
 static Jet ViscosityJet(const Material *mat, int phase, Jet rho, Jet T)
@@ -146,8 +70,8 @@ static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarSta
   const double L = LatentHeatEvaluate(&mat->latent, T.v, &dL);
 
   s->kappa    = JetAdd(JetChain2(k, dphi, s->phi, dSh, s->Sh), JetChain(0.0, dsw, s->sw));
-  s->capacity = JetAdd(JetShift(JetScale(mat->c_h, s->m_h), h->m_s * mat->c_s),
-                       JetAdd(JetScale(mat->c_w, s->m_w), JetScale(mat->c_g, s->m_g)));
+  s->capacity = JetChain3(HeatCapacity(mat, h->m_s, s->m_h.v, s->m_w.v, s->m_g.v), mat->c_h, s->m_h, mat->c_w, s->m_w,
+                          mat->c_g, s->m_g);
   s->latent   = JetChain(L, dL, T);
 }
 
@@ -163,15 +87,15 @@ static Jet ExpansionJet(const Material *mat, int phase, Jet p, Jet T)
   return JetMul(JetChain2(beta, dp, p, dT, T), TK);
 }
 
-/* Young's modulus and the expansivity (P45) of skeleton and hydrate. */
+/* Young's modulus and the expansivity of skeleton and hydrate. */
 static void Skeleton(const Material *mat, ScalarState *s)
 {
-  double       dE;
-  const double E      = ElasticityYoung(&mat->elasticity, s->Sh.v, &dE);
-  const Jet    grains = JetSub(JetConstant(1.0), s->phi), ice = JetMul(s->phi, s->Sh);
+  double            dE;
+  const double      E = ElasticityYoung(&mat->elasticity, s->Sh.v, &dE);
+  const Expansivity b = SolidExpansivity(mat, s->phi.v, s->Sh.v);
 
   s->E    = JetChain(E, dE, s->Sh);
-  s->beta = JetDiv(JetAdd(JetScale(mat->solid.beta, grains), JetScale(mat->hydrate.beta, ice)), JetAdd(grains, ice));
+  s->beta = JetChain2(b.v, b.phi, s->phi, b.Sh, s->Sh);
 }
 
 /* Shares of the fluids in the open pores and their mean pressure (10). */
@@ -192,8 +116,9 @@ static void Saturations(const FieldSet *fs, const Material *mat, double sw_n, Je
 
     s->sg = JetChain(sg, ds, pc);
   }
-  s->sw = JetSub(s->sw, s->sg);
-  s->p  = JetAdd(pw, JetMul(s->sg, pc));
+  s->sw                = JetSub(s->sw, s->sg);
+  const PorePressure m = PorePressureOf(s->sg.v, pw.v, pg.v);
+  s->p                 = JetChain3(m.v, m.sg, s->sg, m.pw, pw, m.pg, pg);
 }
 
 static ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
@@ -250,13 +175,13 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   s->m_w = s->m_g = zero;
   if (fs->phase[PHASE_W]) {
     s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
-    s->m_w          = JetMul(Vf, JetMul(s->sw, s->rho[PHASE_W]));
+    const Content c = WaterContent(s->sg.v, s->rho[PHASE_W].v);
+    s->m_w          = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
   }
   if (fs->phase[PHASE_G]) {
     s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
-    s->m_g          = JetMul(Vf, JetMul(s->sg, s->rho[PHASE_G]));
-    if (!fs->one_pressure) /* (101) */
-      s->m_g = JetAdd(s->m_g, JetScale(mat->gas.trace, JetMul(Vf, JetMul(s->sw, pg))));
+    const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
+    s->m_g          = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
   }
   if (fs->fluid)
     Mobility(fs, mat, T, s);
@@ -280,21 +205,20 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 
   *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
-  *m_w = fs->phase[PHASE_W] ? Vf * (1.0 - sg) * LiquidDensity(&mat->water, pw, T, &d, &e) : 0.0;
-  *m_g = gas ? Vf * sg * GasDensity(&mat->gas, pg, T, &d, &e) : 0.0;
-  if (gas && !fs->one_pressure)
-    *m_g += Vf * (1.0 - sg) * mat->gas.trace * pg;
+  *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, LiquidDensity(&mat->water, pw, T, &d, &e)).v : 0.0;
+  *m_g = gas ? Vf * MethaneContent(Trace(fs, mat), sg, GasDensity(&mat->gas, pg, T, &d, &e), pg).v : 0.0;
 }
 
 double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT])
 {
-  double       ds, rho_p, dT;
-  const double sg = RetentionGasShare(&mat->retention, pg - pw, &ds), rho = GasDensity(&mat->gas, pg, T, &rho_p, &dT),
-               c = mat->gas.trace * pg;
+  double       ds, rho_p, rho_T;
+  const double sg   = RetentionGasShare(&mat->retention, pg - pw, &ds),
+               rho  = GasDensity(&mat->gas, pg, T, &rho_p, &rho_T);
+  const FluidMass m = MassOf(MethaneContent(mat->gas.trace, sg, rho, pg), 1.0, 0.0, ds, rho_p, rho_T);
 
-  slope[PHASE_W] = -ds * (rho - c);
-  slope[PHASE_G] = ds * (rho - c) + sg * rho_p + (1.0 - sg) * mat->gas.trace;
-  return sg * rho + (1.0 - sg) * c;
+  slope[PHASE_W] = m.other;
+  slope[PHASE_G] = m.own;
+  return m.v;
 }
 
 #define CLOSE 1e-4 /* of p_0 */

@@ -21,3 +21,5 @@ typedef struct {
 /* Only what the fields of the set need is filled. */
 ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, double J,
                              const double in[IN_COUNT], ScalarState *s, const char **why);
+/* m_h and its gain, from p, shares and pores of s and the temperature (reaction.c). */
+void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s);

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 typedef struct {
   Output   *out;
@@ -19,14 +18,6 @@ typedef struct {
   bool      frozen;        /* ended for ice */
   bool      written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
-
-double Wall(void)
-{
-  struct timespec t;
-
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static double NextEvent(const Stepper *s, void *ctx)
 {

@@ -4,8 +4,6 @@
 #include "clathra/io.h"
 #include "clathra/run.h"
 
-double Wall(void); /* s */
-
 /* ---------------------------------------------------------------- log.c: log.txt */
 PetscErrorCode LogStart(MPI_Comm comm); /* keeps what is said from here on */
 /* What was said since the last time goes into the folder; append: after what a run before wrote.  Collective. */
@@ -13,6 +11,7 @@ PetscErrorCode LogWrite(MPI_Comm comm, const char *dir, bool append, bool *ok);
 PetscErrorCode LogEnd(void);
 
 /* ---------------------------------------------------------------- watch.c: seconds of the clock on the wall */
+double Wall(void); /* now, s */
 typedef struct {
   double limit, often, line;                  /* -time_limit, -checkpoint_wall, -progress */
   double begun, saved, before, said, longest; /* when; the longest step so far */

@@ -1,8 +1,17 @@
 /* What a run does by the clock on the wall: lines of progress, checkpoints, and an end before its time is over. */
 #include "run_private.h"
+#include <time.h>
 
 #define OFTEN 300.0 /* s between checkpoints, unless -checkpoint_wall says otherwise */
 #define LINE 1.0    /* s between lines of progress, unless -progress does */
+
+double Wall(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
 
 PetscErrorCode WatchStart(MPI_Comm comm, Watch *w, bool *ok)
 {

@@ -3,8 +3,6 @@
 
 #include "clathra/skeleton.h"
 
-#define INLINE static inline __attribute__((always_inline))
-
 /* Share of the stress above the initial one that a change of E leaves, r of (14); true where it follows E. */
 INLINE bool Relaxation(const Elasticity *el, double E, double E_n, double *r)
 {

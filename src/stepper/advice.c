@@ -1,6 +1,14 @@
 /* What a user may try when a run gives up, for its cause, the likeliest first; docs/giving_up.md says more. */
 #include "clathra/stepper.h"
 
+const char *StepperStatusName(ClStatus st)
+{
+  static const char *const name[] = {"fine",          "inadmissible state", "not finite", "left the grid",
+                                     "moved too far", "no solution",        "inaccurate", "fatal"};
+
+  return name[st];
+}
+
 /* May the integrators without a matrix help, which a run by an implicit one does not try by itself? */
 static bool HybridMayHelp(const Stepper *s, ClStatus status)
 {

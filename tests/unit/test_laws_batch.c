@@ -203,6 +203,14 @@ static void TestReaction(void **state)
     for (int q = 0; q < N; q++)
       b[q] = LatentHeatEvaluate(&latent, x[q], &d);
     assert_true(Worst(N, a, b) < 1e-15);
+
+    const double X[4] = {3.0, 0.5, 0.6, 0.03};
+    double       slope[3];
+
+    MixtureAverageBatch(N, y, y, y, X, a);
+    for (int q = 0; q < N; q++)
+      b[q] = MixtureAverage(y[q], y[q], y[q], X, &slope[0], &slope[1], &slope[2]);
+    assert_true(Worst(N, a, b) < 1e-15);
   }
 }
 

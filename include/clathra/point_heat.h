@@ -1,0 +1,40 @@
+/* Heat of a particle: every relation once, with its slopes, for one particle and for loops over blocks (point_state.h).
+ */
+#pragma once
+
+#include "clathra/inline.h"
+#include "clathra/material.h"
+
+/* V C_m, J/K; the slopes in the masses (kg) are the specific heats. */
+INLINE double HeatCapacity(const Material *mat, double m_s, double m_h, double m_w, double m_g)
+{
+  return m_s * mat->c_s + m_h * mat->c_h + m_w * mat->c_w + m_g * mat->c_g;
+}
+
+/* Number with slopes in phi and S_h. */
+typedef struct {
+  double v, phi, Sh;
+} Expansivity;
+
+/* (P45): volumetric, of skeleton and hydrate, 1/K. */
+INLINE Expansivity SolidExpansivity(const Material *mat, double phi, double Sh)
+{
+  const double grains = 1.0 - phi, ice = phi * Sh, per = 1.0 / (grains + ice);
+  const double v        = (grains * mat->solid.beta + ice * mat->hydrate.beta) * per;
+  const double d_grains = (mat->solid.beta - v) * per, d_ice = (mat->hydrate.beta - v) * per;
+
+  return (Expansivity){v, Sh * d_ice - d_grains, phi * d_ice};
+}
+
+/* Heat per mass and pressure, m^3/kg, with slopes in beta T_K and rho. */
+typedef struct {
+  double v, warm, rho;
+} Throttling;
+
+/* (290): what a kg of a fluid takes up per Pa that it flows down; warm: its beta T_K. */
+INLINE Throttling ThrottlingOf(double warm, double rho)
+{
+  const double v = (1.0 - warm) / rho;
+
+  return (Throttling){v, -1.0 / rho, -v / rho};
+}

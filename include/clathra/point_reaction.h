@@ -1,0 +1,39 @@
+/* The reaction of a particle: every relation once, with its slopes, for one particle (residual, Jacobian) and for loops
+   over blocks of them (hybrid). */
+#pragma once
+
+#include "clathra/inline.h"
+#include "clathra/laws.h"
+
+/* Share with its slope in the mass. */
+typedef struct {
+  double v, m;
+} Kept;
+
+/* k of (93): what is still there of the hydrate `from` (kg) when m is left. */
+INLINE Kept KeptHydrate(double from, double m)
+{
+  return m < from ? (Kept){m / from, 1.0 / from} : (Kept){m > 0.0 ? 1.0 : 0.0, 0.0};
+}
+
+/* Hydrate that a step adds to its surface, kg/m^2, with slopes in p (1/Pa) and T (1/K). */
+typedef struct {
+  double v, p, T;
+} Growth;
+
+/* (11) per surface: -dt' M_h K_d (p_e - p); p in Pa, K_d and p_e with their slopes in T. */
+INLINE Growth ReactionGrowth(const Kinetics *k, double dt, double p, double Kd, double dKd_dT, double pe, double dpe_dT)
+{
+  const double c = dt * k->M_h, drive = pe - p;
+
+  return (Growth){-c * Kd * drive, c * Kd, -c * (dKd_dT * drive + Kd * dpe_dT)};
+}
+
+/* (12): what a particle that holds `from` (kg) gains, with its slope in a = dt' M_h K_d A_geo (p_e - p)/rho_h >= 0. */
+INLINE double ReactionDissociated(double from, double a, double *slope)
+{
+  const double per = 1.0 / (1.0 + a);
+
+  *slope = -from * per * per;
+  return -from * (a / (1.0 + a)); /* never more than there is */
+}

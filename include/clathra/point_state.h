@@ -1,0 +1,62 @@
+/* State of a particle: every relation once, with its slopes, for one particle (residual, Jacobian: they carry the
+   slopes along as jets) and for loops over blocks of them (hybrid, which takes of the slopes what it needs). */
+#pragma once
+
+#include "clathra/inline.h"
+#include "clathra/material.h"
+
+/* (8): V_p and V_f, m^3, phi and S_h; a particle's jets are made of the same quotients. */
+typedef struct {
+  double pore, open, phi, Sh;
+} Pores;
+
+INLINE Pores PoresOf(double V, double m_s, double rho_s, double m_h, double rho_h)
+{
+  const double pore = V - m_s / rho_s, hydrate = m_h / rho_h;
+
+  return (Pores){pore, pore - hydrate, pore / V, hydrate / pore};
+}
+
+/* Pressure with slopes in s_g, p_w and p_g. */
+typedef struct {
+  double v, sg, pw, pg;
+} PorePressure;
+
+/* (10) */
+INLINE PorePressure PorePressureOf(double sg, double pw, double pg)
+{
+  return (PorePressure){pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg};
+}
+
+/* Mass in a unit of open pore volume, kg/m^3, with slopes in s_g, in the fluid's density and, apart from it, in its own
+   pressure. */
+typedef struct {
+  double v, sg, rho, p;
+} Content;
+
+/* (9) */
+INLINE Content WaterContent(double sg, double rho)
+{
+  return (Content){(1.0 - sg) * rho, -rho, 1.0 - sg, 0.0};
+}
+
+/* (101); H as in Gas.trace. */
+INLINE Content MethaneContent(double H, double sg, double rho, double pg)
+{
+  const double c = H * pg;
+
+  return (Content){sg * rho + (1.0 - sg) * c, rho - c, sg, (1.0 - sg) * H};
+}
+
+/* Mass (kg) with slopes in the fluid's own pressure, in that of the other fluid, and in T. */
+typedef struct {
+  double v, own, other, T;
+} FluidMass;
+
+/* (9) in an open volume with its slope in T; the slope of s_g in the fluid's own pressure; those of its density. */
+INLINE FluidMass MassOf(Content c, double open, double open_T, double sg_own, double rho_p, double rho_T)
+{
+  const double turns = open * c.sg * sg_own;
+
+  return (FluidMass){open * c.v, turns + open * (c.rho * rho_p + c.p), -turns, c.v * open_T + open * c.rho * rho_T};
+}

@@ -1,0 +1,89 @@
+/* The reaction of one particle with its tangent; docs/equations.md (11)-(13). */
+#include "clathra/point_reaction.h"
+#include "state.h"
+
+/* Hydrate that goes, (12). */
+static void Dissociate(const Material *mat, double from, Jet growth, Jet rho_h, ScalarState *s)
+{
+  double       slope;
+  const Jet    a    = JetScale(-mat->kinetics.A_geo, JetDiv(growth, rho_h));
+  const double gain = ReactionDissociated(from, a.v, &slope);
+
+  s->gain = JetChain(gain, slope, a);
+}
+
+/* m_h* + growth A_s - S rho_h V_p as a function of S for formation (13); decreasing in S. */
+static double FormationBalance(const Kinetics *k, double S, double sw, double m0, double growth, double pore,
+                               double *dS)
+{
+  double       dw, dA;
+  const double A = KineticsFormationArea(k, sw, S, &dw, &dA);
+
+  *dS = growth * dA - pore;
+  return m0 + growth * A - pore * S;
+}
+
+/* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
+static void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, ScalarState *s)
+{
+  const Kinetics *k      = &mat->kinetics;
+  const Jet       growth = JetMul(s->V, per_area);
+  const Jet       pore   = JetMul(rho_h, s->Vp);
+  double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0, dw, dA;
+
+  for (int it = 0; it < 100; it++) {
+    const double f = FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
+
+    if (f > 0.0)
+      lo = S;
+    else
+      hi = S;
+    double next = S - f / dS;
+    if (!(next > lo && next < hi))
+      next = f == 0.0 ? S : 0.5 * (lo + hi);
+    if (fabs(next - S) <= 1e-16 + 4e-16 * S) {
+      S = next;
+      break;
+    }
+    S = next;
+  }
+  FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
+
+  /* dS = -(df/dq)/(df/dS) dq with f = m0 + growth A(sw, S) - pore S */
+  const double A  = KineticsFormationArea(k, s->sw.v, S, &dw, &dA);
+  const Jet    fq = JetSub(JetMul(growth, JetChain(A, dw, s->sw)), JetScale(S, pore));
+  const Jet    Sj = JetChain(S, -1.0 / dS, fq);
+
+  /* growth A = pore S - m0 = gain; where little grows the left is exact, where much does the right */
+  const double grown = pore.v * S - m0, steep = growth.v * dA / pore.v;
+  s->gain   = JetMul(Sj, pore);
+  s->gain.v = (growth.v * A - steep * grown) / (1.0 - steep);
+}
+
+/* The reaction sees p and T of the nodal fields, not the particle's own: those differ by what nodes cannot see (and so
+   never correct), which a fast reaction would turn into hydrate. */
+void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s)
+{
+  const Kinetics *k   = &mat->kinetics;
+  const double    m0  = fmax(h->m_star[0], 0.0);
+  const Jet       T_r = JetShift(T, h->shift[2]);
+  const Jet       p_r = JetAdd(s->p, JetAdd(JetScale(h->shift[0], s->sw), JetScale(h->shift[1], s->sg)));
+  double          dK, dpe;
+
+  s->limited = mat->reacts && h->m_star[0] < 0.0;
+  if (!mat->reacts) {
+    s->gain = JetConstant(0.0);
+    s->m_h  = JetConstant(h->m_star[0]);
+    return;
+  }
+  const double Kd = KineticsRateConstant(k, T_r.v, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe);
+  const Growth g      = ReactionGrowth(k, h->dt, p_r.v, Kd, dK, pe, dpe);
+  const Jet    growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
+
+  if (p_r.v <= pe)
+    Dissociate(mat, m0, growth, rho_h, s);
+  else
+    Form(mat, m0, growth, rho_h, s);
+  s->gain = JetShift(s->gain, m0 - h->m_star[0]);
+  s->m_h  = JetShift(s->gain, h->m_star[0]);
+}
