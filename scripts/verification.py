@@ -60,6 +60,7 @@ SECTION = {  # beside that table
     "layers": "Layers of sand and clay: flow along and across them, a well in one",
     "fronts": "Sharp fronts: heat behind an inlet, saturations beside a pressure, hydrate ahead of a heater",
     "wells": "Wells about an axis against Thiem, in cells up to twenty times their radius",
+    "graded": "Cells that differ: patch tests, rest, free fall, Terzaghi with fine cells at the drain, a well of 0.1 m in 100 m",
     "energy": "Mechanical energy: what is left of its balance",
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",

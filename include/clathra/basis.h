@@ -17,10 +17,16 @@ static inline double BasisSnap(double s)
 }
 
 /* The domain along one axis in cells: [lo, hi], clipped at the grid's edge, and the length that gradients are divided
- * by. */
+ * by, in cells. */
 typedef struct {
   double lo, hi, length;
 } BasisDomain;
+
+/* The same where cells differ, with the widths of the two cells it may lie in, its own and that of gradients, m (301).
+ */
+typedef struct {
+  double lo, hi, width[2], length, gradient_length;
+} BasisSpan;
 
 /* Half-length that a domain acts with: a longer one would reach four nodes. */
 static inline double BasisHalfLength(double l, double h)
@@ -37,17 +43,18 @@ static inline BasisDomain BasisDomainOf(double x, double l, double lower, double
   return (BasisDomain){lo, hi, clipped ? hi - lo : 2.0 * r};
 }
 
-/* (3) for a domain of at most one cell from its first node on, without branches: the kernels of src/explicit take it
-   for many particles at once.  a, b: edges of the domain from the first node on, in cells, 0 <= a < 1, a < b <= a + 1.
- */
-static inline void BasisAverage(double a, double b, double gradient_length, double S[3], double dS[3])
+/* (3), (301) for a domain in two cells of widths w0, w1, without branches: the kernels of src/explicit take it for many
+   particles at once.  a, b: edges of the domain from the first node on, in cells, 0 <= a < 1, a < b <= 2; length: its
+   own, in the unit of the widths.  Equal cells: w0 = w1 = 1 and length b - a. */
+static inline void BasisAverage(double a, double b, double w0, double w1, double length, double gradient_length,
+                                double S[3], double dS[3])
 {
   const bool   third = b > 1.0;
   const double a1 = 1.0 - a, b1 = third ? 0.0 : 1.0 - b, b2 = 2.0 - b, over = third ? b - 1.0 : 0.0;
 
-  S[0]  = ((1.0 - 0.5 * b1 * b1) - (1.0 - 0.5 * a1 * a1)) / (b - a);
-  S[1]  = ((third ? 1.0 - 0.5 * b2 * b2 : 0.5 * b * b) - 0.5 * a * a) / (b - a);
-  S[2]  = 0.5 * over * over / (b - a);
+  S[0]  = w0 * ((1.0 - 0.5 * b1 * b1) - (1.0 - 0.5 * a1 * a1)) / length;
+  S[1]  = ((third ? 0.5 * (w0 + w1) - w1 * (0.5 * b2 * b2) : w0 * (0.5 * b * b)) - w0 * (0.5 * a * a)) / length;
+  S[2]  = w1 * (0.5 * over * over) / length;
   dS[0] = (b1 - a1) / gradient_length;
   dS[1] = (1.0 - fabs(b - 1.0) - (1.0 - a1)) / gradient_length;
   dS[2] = (third ? 1.0 - b2 : 0.0) / gradient_length;
@@ -73,22 +80,31 @@ typedef struct {
   int    cell[CL_DIM]; /* the particle's cell from base on, 0 or 1 along each axis */
 } Stencil;
 
-/* x, l in m; h the cell size, lower the grid's lower corner and cells their number along this axis.  A domain that
-   reaches over the grid's edge (fixed half-lengths under compression) is clipped there. */
-void BasisAxis(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a);
+/* x, l in m.  A domain that reaches over the grid's edge (fixed half-lengths under compression) is clipped there. */
+void BasisAxis(BasisType type, double x, double l, const GridLines *line, Axis *a);
 /* The same for the radius: averages weighted with r (29); also the weights of u_r/r and the radius of the middle. */
-void BasisRadius(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a, double hoop[3],
-                 double *r);
+void BasisRadius(BasisType type, double x, double l, const GridLines *line, Axis *a, double hoop[3], double *r);
 /* Hat functions at a point: a surface face along its normal. */
-void BasisHat(double x, double lower, double h, Axis *a);
+void BasisHat(double x, const GridLines *line, Axis *a);
+
+/* Half-length that a domain acts with at x, m (302). */
+double BasisReach(const GridLines *line, double x, double l);
+/* The domain where cells differ. */
+BasisSpan BasisSpanOf(const GridLines *line, double x, double l);
+
+/* The particle's cell along an axis, from its first node on. */
+static inline int BasisCellAt(const GridLines *line, double x, const Axis *a)
+{
+  return BasisCell(LinesPlace(line, x), (double)a->base, (double)line->cells);
+}
 
 /* Where a linear function takes the weights' value, m: the particle's centre, about an axis the ring's centroid. */
-double AxisCentroid(const Axis *a, double lower, double h);
+double AxisCentroid(const Axis *a, const GridLines *line);
 
-/* (160): a node's weights Q in the mean gradient over a cell, 1/m, and the hoop's, which is returned (0 in the plane);
-   i: place of the node from the cell's lower left one on (others: zero); r: radius of that one, m (used about an axis
-   only). */
-double CellGradient(const Grid *g, bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
+/* (160): a node's weights Q in the mean gradient over a cell of widths h (m), 1/m, and the hoop's, which is returned (0
+   in the plane); i: place of the node from the cell's lower left one on (others: zero); r: radius of that one, m (used
+   about an axis only). */
+double CellGradient(const double h[CL_DIM], bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
 
 /* Local active numbers of the nodes, their weights and gradients, and about an axis (r > 0) H, the weights of u_r/r;
    returns how many (nodes of zero weight and gradient are left out). */

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "clathra/conditions.h"
+#include "clathra/lines.h"
 #include "clathra/material.h"
 #include "clathra/skeleton.h"
 
@@ -80,11 +81,16 @@ enum { SURFACE_FREE = 0, SURFACE_TIED, SURFACE_VELOCITIES_FREE }; /* (41): nothi
 enum { PRESSURES_NODES = 0, PRESSURES_PARTICLES, PRESSURES_RELATIVE };
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
+#define SPACING 1024 /* characters */
+
 typedef struct Case {
   char      file[PETSC_MAX_PATH_LEN]; /* the case file */
   char      title[256];
   double    lower[CL_DIM], upper[CL_DIM]; /* background grid, m */
   PetscInt  cells[CL_DIM];
+  char      spacing[CL_DIM][SPACING]; /* as given; none: equal cells */
+  char      table[CL_DIM][SPACING];   /* the other form of it */
+  GridLines line[CL_DIM];             /* of an axis with a spacing */
   BasisType basis;
   bool      axisymmetric;      /* x is the radius, y runs along the axis; all per full ring */
   char      fields_wanted[64]; /* auto, or the words of cl_field_word, or the name of a set */
@@ -152,6 +158,12 @@ typedef struct Case {
   PetscInt          nlisted;
   const Bc         *listed; /* all boundaries of the case */
 } Case;
+
+/* The grid's lines along an axis; they stay the case's. */
+static inline GridLines CaseLines(const Case *c, int d)
+{
+  return c->line[d].x ? c->line[d] : LinesEqual(c->lower[d], c->upper[d], c->cells[d]);
+}
 
 /* One of the stages of a run, which follow each other in time. */
 typedef struct CaseStage {

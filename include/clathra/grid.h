@@ -1,14 +1,15 @@
 /* grid: the background grid, its distribution over ranks, and the numbering of active nodes. */
 #pragma once
 
-#include "clathra/base.h"
+#include "clathra/lines.h"
 
-/* Uniform grid of rectangles.  The owner of node (i,j) owns cell (i,j), the one to its right and above.
-   Local node arrays are padded by two nodes on every side, also outside the grid (never active there). */
+/* Grid of rectangles between lines of either axis.  The owner of node (i,j) owns cell (i,j), the one to its right and
+   above. Local node arrays are padded by two nodes on every side, also outside the grid (never active there). */
 typedef struct {
   MPI_Comm    comm;
   PetscMPIInt rank, size;
-  double      lower[CL_DIM], h[CL_DIM]; /* m */
+  GridLines   line[CL_DIM];
+  double      lower[CL_DIM]; /* m */
   PetscInt    cells[CL_DIM];
   DM          da; /* nodes; box stencil of width 2 */
   PetscInt    nproc[CL_DIM];
@@ -18,20 +19,37 @@ typedef struct {
 } Grid;
 
 /* Can a grid of so many cells be shared among so many ranks?  GridCreate fails if not. */
-bool           GridFits(PetscMPIInt size, const PetscInt cells[]);
+bool GridFits(PetscMPIInt size, const PetscInt cells[]);
+/* The lines stay the caller's, who keeps them as long as the grid; GridCreate makes equal cells. */
+PetscErrorCode GridCreateOn(MPI_Comm comm, const GridLines line[CL_DIM], Grid *g);
 PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g);
 PetscErrorCode GridDestroy(Grid *g);
 /* Cell of a point; false outside the grid.  Points on the upper edge belong to the last cell. */
 bool        GridCell(const Grid *g, const double x[], PetscInt cell[]);
 PetscMPIInt GridCellOwner(const Grid *g, const PetscInt cell[]);
 
-/* Square of the largest wave number that the grid carries, 1/m^2. */
+/* Place of a node, m. */
+static inline double GridNode(const Grid *g, int d, PetscInt i)
+{
+  return LinesAt(&g->line[d], i);
+}
+
+/* Square of the largest wave number that the grid carries, 1/m^2: anywhere, and near a place. */
 static inline double GridHighest2(const Grid *g)
 {
   double k2 = 0.0;
 
   for (int d = 0; d < CL_DIM; d++)
-    k2 += 4.0 / PetscSqr(g->h[d]);
+    k2 += 4.0 / PetscSqr(g->line[d].h);
+  return k2;
+}
+
+static inline double GridHighest2At(const Grid *g, const double x[CL_DIM])
+{
+  double k2 = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    k2 += 4.0 / PetscSqr(LinesLeastAt(&g->line[d], x[d]));
   return k2;
 }
 

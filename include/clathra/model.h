@@ -63,6 +63,7 @@ typedef struct {
 /* Second difference of the ghost penalties (22), (351): a node with its neighbours along one axis. */
 typedef struct {
   PetscInt node[3];
+  double   second[3];           /* h times the jump of the gradient (303); 1, -2, 1 where cells are equal */
   double   a;                   /* g A/h */
   double   M, kappa;            /* Pa, W/(m K) */
   double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */

@@ -184,7 +184,7 @@ double InitialWaterPressure(const Case *c, const Region *r, double pressure, con
 PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
                                     const double l[]);
 /* Half-lengths of a region's particles at the start, m. */
-void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM]);
+void ParticlesInitialHalfLength(const Case *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM]);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);

@@ -4,10 +4,13 @@
 
 #include "clathra/case.h"
 
-/* Places for the particles of a region: centres at from + (first + i + 1/2) spacing, i < n. */
+/* Places for the particles of a region, i < n: from from + (first + i) spacing to as much of i + 1, m.  Where the
+   grid's cells differ, in cells from its first line on, and from (first + i) spacing, but that the first begins at from
+   and the last ends at to. */
 typedef struct {
-  PetscInt first[CL_DIM], n[CL_DIM];
-  double   from[CL_DIM], spacing[CL_DIM]; /* m */
+  PetscInt  first[CL_DIM], n[CL_DIM];
+  double    from[CL_DIM], spacing[CL_DIM], to[CL_DIM];
+  GridLines line[CL_DIM];
 } Lattice;
 
 /* A region that is to be cut out of others and holds no particles? */
@@ -32,9 +35,11 @@ bool RegionReaches(const Case *c, PetscInt region, const double x[], const doubl
 /* Greatest coordinate along a direction in the region, or a little more. */
 double RegionHighest(const Region *r, const double direction[]);
 
-/* A box is cut into whole spacings: ppc per cell where it follows the grid, the nearest number elsewhere; other shapes
-   take the places of a regular filling of the grid's cells. */
+/* A box is cut into whole spacings: ppc per cell where it follows the grid, the nearest number elsewhere; other shapes,
+   and boxes where cells differ, take the places of a regular filling of the grid's cells. */
 void RegionLattice(const Case *c, PetscInt region, Lattice *lattice);
+/* Width along axis d of the place that holds x, m. */
+double LatticeWidth(const Lattice *lattice, int d, double x);
 /* Centre of place ij; is there a particle? */
 bool RegionPlace(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[], double x[]);
 /* Bits 1 << Side of those sides of the particle at place ij beyond which no region has a particle. */

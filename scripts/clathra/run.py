@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from .case import read_case
-from .tables import probe_names, read_csv, read_snapshot, snapshot_times
+from .tables import probe_names, read_csv, read_lines, read_snapshot, snapshot_times
 
 
 class NoRun(Exception):
@@ -111,5 +111,4 @@ class Run:
     @property
     def lines(self):
         """Lines of the background grid: (x (m), y (m))."""
-        low, high, cells = (self.case[f"grid_{k}"] for k in ("lower", "upper", "cells"))
-        return tuple(np.linspace(low[d], high[d], int(cells[d]) + 1) for d in (0, 1))
+        return read_lines(self.folder)

@@ -29,6 +29,14 @@ def snapshot_times(folder, kind="particles"):
         return {key: float(np.ravel(h5[kind][key].attrs["time"])[0]) for key in sorted(h5.get(kind, {}))}
 
 
+def read_lines(folder):
+    """Places of the lines of the background grid, m: (x (columns,), y (rows,))."""
+    import h5py
+
+    with h5py.File(Path(folder) / "fields.h5", "r") as h5:
+        return h5["lines/x"][()], h5["lines/y"][()]
+
+
 def read_snapshot(folder, key, kind="particles"):
     """{variable: array} of one snapshot: of particles (n, components), sorted by their id, where the file holds one, so that
     runs on different ranks can be compared; of the grid (rows, columns[, 2])."""

@@ -16,28 +16,66 @@ static double HatIntegral(double s)
   return s < 0.0 ? 0.5 * (1.0 + s) * (1.0 + s) : 1.0 - 0.5 * (1.0 - s) * (1.0 - s);
 }
 
-void BasisHat(double x, double lower, double h, Axis *a)
+void BasisHat(double x, const GridLines *line, Axis *a)
 {
-  const double s = BasisSnap((x - lower) / h), base = floor(s);
+  const double s = BasisSnap(LinesPlace(line, x)), base = floor(s);
 
-  a->base = (PetscInt)base;
+  a->base        = (PetscInt)base;
+  const double h = LinesWidth(line, a->base);
   for (int k = 0; k < 3; k++) {
     a->S[k]  = Hat(s - base - k);
     a->dS[k] = k == 0 ? -1.0 / h : k == 1 ? 1.0 / h : 0.0;
   }
 }
 
-void BasisAxis(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a)
+/* Local width of the cells (302), m: that of a cell in its middle, the mean of two on the line between them. */
+static double LocalWidth(const GridLines *line, PetscInt cell, double x)
+{
+  const double h = LinesWidth(line, cell), t = 2.0 * (x - LinesAt(line, cell)) / h - 1.0; /* -1 ... 1 */
+  const double beside = LinesWidth(line, t < 0.0 ? cell - 1 : cell + 1);
+
+  return h + 0.5 * fabs(t) * (beside - h);
+}
+
+double BasisReach(const GridLines *line, double x, double l)
+{
+  return BasisHalfLength(l, line->x ? LocalWidth(line, LinesFind(line, x), x) : line->h);
+}
+
+BasisSpan BasisSpanOf(const GridLines *line, double x, double l)
+{
+  const double   cells = (double)line->cells, r = BasisReach(line, x, l), s = LinesPlace(line, x);
+  const double   from = BasisSnap(LinesPlace(line, x - r)), to = BasisSnap(LinesPlace(line, x + r));
+  const bool     clipped = (s >= 0.0) & (s <= cells) & ((from < 0.0) | (to > cells));
+  BasisSpan      d       = {.lo = clipped ? fmax(from, 0.0) : from, .hi = clipped ? fmin(to, cells) : to};
+  const PetscInt first   = (PetscInt)floor(d.lo);
+
+  d.length          = LinesFrom(line, d.hi) - LinesFrom(line, d.lo);
+  d.gradient_length = clipped ? d.length : 2.0 * r;
+  for (int k = 0; k < 2; k++)
+    d.width[k] = LinesWidth(line, first + k);
+  return d;
+}
+
+void BasisAxis(BasisType type, double x, double l, const GridLines *line, Axis *a)
 {
   if (type == BASIS_LINEAR) {
-    BasisHat(x, lower, h, a);
+    BasisHat(x, line, a);
     return;
   }
-  const BasisDomain d    = BasisDomainOf(x, l, lower, h, (double)cells);
-  const double      base = floor(d.lo);
+  if (line->x) {
+    const BasisSpan d    = BasisSpanOf(line, x, l);
+    const double    base = floor(d.lo);
+
+    a->base = (PetscInt)base;
+    BasisAverage(d.lo - base, d.hi - base, d.width[0], d.width[1], d.length, d.gradient_length, a->S, a->dS);
+    return;
+  }
+  const BasisDomain d    = BasisDomainOf(x, l, line->lower, line->h, (double)line->cells);
+  const double      base = floor(d.lo), lo = d.lo - base, hi = d.hi - base;
 
   a->base = (PetscInt)base;
-  BasisAverage(d.lo - base, d.hi - base, d.length * h, a->S, a->dS);
+  BasisAverage(lo, hi, 1.0, 1.0, hi - lo, d.length * line->h, a->S, a->dS);
 }
 
 /* Integral of s N(s) from -infinity, N the hat function of unit width. */
@@ -48,18 +86,55 @@ static double HatMoment(double s)
   return t < 0.0 ? even + odd - 1.0 / 6.0 : even - odd - 1.0 / 6.0;
 }
 
-void BasisRadius(BasisType type, double x, double l, double lower, double h, PetscInt cells, Axis *a, double hoop[3],
-                 double *r)
+/* (29) where cells differ: over the part of the domain in each cell N and r are linear, so r N has its exact mean by
+   Simpson's rule. */
+static void RadiusUnequal(const GridLines *line, double x, double l, Axis *a, double hoop[3], double *r)
 {
-  BasisAxis(type, x, l, lower, h, cells, a);
+  const BasisSpan d  = BasisSpanOf(line, x, l);
+  const double    lo = LinesFrom(line, d.lo), hi = LinesFrom(line, d.hi), radius = 0.5 * (lo + hi);
+  double          S[3] = {0.0}, edge[3] = {0.0};
+
+  for (int c = 0; c < 2; c++) {
+    const double left = LinesAt(line, a->base + c), h = d.width[c];
+    const double p = fmax(lo, left), q = fmin(hi, left + h), mid = 0.5 * (p + q), w = (q - p) / 6.0;
+
+    if (!(q > p))
+      continue;
+    for (int k = 0; k < 2; k++) { /* N of the left and the right node at p, mid, q */
+      const double sign = k ? 1.0 : -1.0, at = k ? left : left + h;
+      const double Np = sign * (p - at) / h, Nm = sign * (mid - at) / h, Nq = sign * (q - at) / h;
+
+      S[c + k] += w * (p * Np + 4.0 * mid * Nm + q * Nq);
+      edge[c + k] += q * Nq - p * Np; /* [r N] = int (r N' + N) dr */
+    }
+  }
+  *r = radius;
+  for (int k = 0; k < 3; k++) {
+    const double integral = a->S[k] * d.length;
+
+    hoop[k]  = a->S[k] / radius;
+    a->S[k]  = S[k] / (radius * d.length);
+    a->dS[k] = (edge[k] - integral) / (radius * d.length);
+  }
+}
+
+void BasisRadius(BasisType type, double x, double l, const GridLines *line, Axis *a, double hoop[3], double *r)
+{
+  BasisAxis(type, x, l, line, a);
   if (type == BASIS_LINEAR) {
     *r = x;
     for (int k = 0; k < 3; k++)
       hoop[k] = a->S[k] / x;
     return;
   }
-  const BasisDomain d = BasisDomainOf(x, l, lower, h, (double)cells);
-  const double axis = -lower / h, mid = 0.5 * (d.lo + d.hi), radius = mid - axis, length = d.hi - d.lo; /* in cells */
+  if (line->x) {
+    RadiusUnequal(line, x, l, a, hoop, r);
+    return;
+  }
+  const double      h    = line->h;
+  const BasisDomain d    = BasisDomainOf(x, l, line->lower, h, (double)line->cells);
+  const double      axis = -line->lower / h, mid = 0.5 * (d.lo + d.hi), radius = mid - axis,
+               length = d.hi - d.lo; /* in cells */
 
   *r = radius * h;
   for (int k = 0; k < 3; k++) { /* (29); r = r_k + s about node k */
@@ -73,9 +148,16 @@ void BasisRadius(BasisType type, double x, double l, double lower, double h, Pet
   }
 }
 
-double AxisCentroid(const Axis *a, double lower, double h)
+double AxisCentroid(const Axis *a, const GridLines *line)
 {
-  return lower + h * ((double)a->base * (a->S[0] + a->S[1] + a->S[2]) + a->S[1] + 2.0 * a->S[2]);
+  if (line->x) {
+    double at = 0.0;
+
+    for (int k = 0; k < 3; k++)
+      at += a->S[k] * LinesAt(line, a->base + k);
+    return at;
+  }
+  return line->lower + line->h * ((double)a->base * (a->S[0] + a->S[1] + a->S[2]) + a->S[1] + 2.0 * a->S[2]);
 }
 
 int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt node[CL_NODES], double S[CL_NODES],
@@ -102,10 +184,8 @@ int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt 
   return n;
 }
 
-double CellGradient(const Grid *g, bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM])
+double CellGradient(const double h[CL_DIM], bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM])
 {
-  const double *h = g->h;
-
   Q[0] = Q[1] = 0.0;
   if (i[0] < 0 || i[0] > 1 || i[1] < 0 || i[1] > 1)
     return 0.0;

@@ -17,9 +17,10 @@ static PetscErrorCode CutCells(const Grid *g, const Case *c, const Particles *P,
 
     if (!GridCell(g, x, cell))
       continue;
-    const double middle = g->lower[0] + ((double)cell[0] + 0.5) * g->h[0];
+    const double h[CL_DIM] = {LinesWidth(&g->line[0], cell[0]), LinesWidth(&g->line[1], cell[1])};
+    const double middle    = LinesFrom(&g->line[0], (double)cell[0] + 0.5);
     filled[GridPadded(g, cell[0], cell[1])] +=
-        P->f[P_V][p] / (g->h[0] * g->h[1] * (c->axisymmetric ? 2.0 * M_PI * middle : 1.0));
+        P->f[P_V][p] / (h[0] * h[1] * (c->axisymmetric ? 2.0 * M_PI * middle : 1.0));
   }
   *cut = 0;
   for (PetscInt k = 0; k < n; k++)

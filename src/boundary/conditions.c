@@ -58,16 +58,14 @@ void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Materia
 /* ---------------------------------------------------------------- nodes */
 static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 {
-  const double x = g->lower[b->axis] + (double)ij[b->axis] * g->h[b->axis];
-
-  return fabs(x - b->position) < 1e-6 * g->h[b->axis];
+  return fabs(GridNode(g, b->axis, ij[b->axis]) - b->position) < 1e-6 * g->line[b->axis].h;
 }
 
 /* Does the node lie in the initial shape of the condition's region? */
 static bool InRegion(const Case *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 {
-  const double slack[CL_DIM] = {1e-6 * g->h[0], 1e-6 * g->h[1]};
-  const double x[CL_DIM]     = {g->lower[0] + (double)ij[0] * g->h[0], g->lower[1] + (double)ij[1] * g->h[1]};
+  const double slack[CL_DIM] = {1e-6 * g->line[0].h, 1e-6 * g->line[1].h};
+  const double x[CL_DIM]     = {GridNode(g, 0, ij[0]), GridNode(g, 1, ij[1])};
 
   for (PetscInt k = 0; k < c->nregion; k++) {
     if ((b->region < 0 || b->region == k) && RegionReaches(c, k, x, slack))
@@ -114,7 +112,7 @@ void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const Pets
 {
   const FieldSet *fs = &c->fields;
 
-  if (at_axis && g->lower[0] + (double)ij[0] * g->h[0] < 1e-6 * g->h[0])
+  if (at_axis && GridNode(g, 0, ij[0]) < 1e-6 * g->line[0].h)
     Hold(fs, 0, 0.0, false, mask, value); /* nothing crosses the axis */
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc        *b    = &c->bc[k];

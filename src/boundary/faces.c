@@ -35,20 +35,43 @@ static unsigned FindMeters(const Case *c, const Face *f)
 
 #define POINT 1e-5 /* of a cell: shorter than that along an axis a face counts as a point there */
 
-/* Weights along one axis of a face that spans 2 t about s (cells): of the interval inside the particle's domain, whose
-   nodes are the only ones it may use; a hat function where that is a point. */
-static void AxisWeights(const Case *c, const Grid *g, int d, double s, double t, const BasisDomain *dom, Axis *a)
+/* Along one axis what is inside the particle's domain of a face that spans 2 t about s: its middle and half-length, m,
+   and how many cells it spans. */
+static double Inside(const GridLines *line, const Particles *P, const Face *f, int d, double t, double *x, double *l)
 {
-  const double lo = fmin(fmax(s - t, dom->lo), dom->hi), hi = fmin(fmax(s + t, dom->lo), dom->hi), h = g->h[d];
-  const double x = g->lower[d] + 0.5 * (lo + hi) * h, l = 0.5 * (hi - lo) * h;
-  double       hoop[3], r;
+  const double p = P->f[P_X + d][f->particle], half = P->f[P_L + d][f->particle], s = f->x[d];
 
-  if (hi - lo < POINT)
-    BasisHat(x, g->lower[d], h, a);
+  if (line->x) {
+    const BasisSpan dom = BasisSpanOf(line, p, half);
+    const double    lo  = fmin(fmax(LinesPlace(line, s - t), dom.lo), dom.hi),
+                 hi     = fmin(fmax(LinesPlace(line, s + t), dom.lo), dom.hi);
+
+    *x = 0.5 * (LinesFrom(line, lo) + LinesFrom(line, hi));
+    *l = 0.5 * (LinesFrom(line, hi) - LinesFrom(line, lo));
+    return hi - lo;
+  }
+  const double      h = line->h, lower = line->lower, at = (s - lower) / h, r = t / h;
+  const BasisDomain dom = BasisDomainOf(p, half, lower, h, (double)line->cells);
+  const double      lo = fmin(fmax(at - r, dom.lo), dom.hi), hi = fmin(fmax(at + r, dom.lo), dom.hi);
+
+  *x = lower + 0.5 * (lo + hi) * h;
+  *l = 0.5 * (hi - lo) * h;
+  return hi - lo;
+}
+
+/* Weights along one axis: of the interval inside the particle's domain, whose nodes are the only ones it may use; a hat
+   function where that is a point. */
+static void AxisWeights(const Case *c, const Grid *g, const Particles *P, const Face *f, int d, double t, Axis *a)
+{
+  const GridLines *line = &g->line[d];
+  double           hoop[3], r, x, l;
+
+  if (Inside(line, P, f, d, t, &x, &l) < POINT)
+    BasisHat(x, line, a);
   else if (d == 0 && c->axisymmetric)
-    BasisRadius(BASIS_UGIMP, x, l, g->lower[d], h, g->cells[d], a, hoop, &r);
+    BasisRadius(BASIS_UGIMP, x, l, line, a, hoop, &r);
   else
-    BasisAxis(BASIS_UGIMP, x, l, g->lower[d], h, g->cells[d], a);
+    BasisAxis(BASIS_UGIMP, x, l, line, a);
 }
 
 /* Products of the axes' weights, in the order of StencilExpand.  A linear particle does not reach the nodes of its
@@ -61,15 +84,10 @@ static void Weights(const Case *c, const Grid *g, const Particles *P, const Sten
   int         n = 0;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const double h = g->h[d], lower = g->lower[d];
-    Axis         a = st->axis[d];
+    Axis a = st->axis[d];
 
-    if (c->basis != BASIS_LINEAR) {
-      const BasisDomain dom =
-          BasisDomainOf(P->f[P_X + d][f->particle], P->f[P_L + d][f->particle], lower, h, (double)g->cells[d]);
-
-      AxisWeights(c, g, d, (f->x[d] - lower) / h, half[d] / h, &dom, &a);
-    }
+    if (c->basis != BASIS_LINEAR)
+      AxisWeights(c, g, P, f, d, half[d], &a);
     for (int k = 0; k < 3; k++) {
       const PetscInt at = st->axis[d].base + k - a.base;
 
@@ -104,12 +122,12 @@ void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *
   const double   sign    = SideSign(f->side);
   double         F[2][2] = {{1.0, 0.0}, {0.0, 1.0}}, l[CL_DIM], half[CL_DIM];
 
-  ParticlesInitialHalfLength(c, f->region, l);
+  ParticlesInitialHalfLength(c, f->region, f->x0, l);
   for (int k = 0; P->f[P_F] && k < 4; k++)
     F[k / 2][k % 2] = P->f[P_F + k][p];
   for (int d = 0; d < CL_DIM; d++) {
     f->x[d]     = P->f[P_X + d][p] + sign * F[d][axis] * l[axis];
-    f->r[d]     = f->x[d] - AxisCentroid(&stencil->axis[d], g->lower[d], g->h[d]);
+    f->r[d]     = f->x[d] - AxisCentroid(&stencil->axis[d], &g->line[d]);
     half[d]     = fabs(F[d][tangent]) * l[tangent];
     f->moved[d] = f->x[d] - f->x0[d] - (d == axis ? sign * l[axis] : 0.0);
   }

@@ -45,8 +45,8 @@ static PetscErrorCode FillCell(const Case *c, const Grid *g, const Site *site, S
 
   PetscFunctionBeginUser;
   PetscCall(InitialScalarsAt(c, r, site->x, &q));
-  BasisAxis(c->basis, site->x[v], l, g->lower[v], g->h[v], g->cells[v], &axis);
-  BasisHat(site->x[v] + s->up * l, g->lower[v], g->h[v], &hat);
+  BasisAxis(c->basis, site->x[v], l, &g->line[v], &axis);
+  BasisHat(site->x[v] + s->up * l, &g->line[v], &hat);
   *a         = (Cell){.site = *site, .height = CaseHeight(c, site->x), .p = q.p, .base = axis.base, .hat = hat.base};
   a->ambient = AmbientPressure(&around, site->x, gradient);
   a->weight  = 2.0 * l * (q.density * CaseGravity(c) + s->up * gradient[v]);
@@ -275,11 +275,13 @@ PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P)
   if (!wanted || !c->fields.solid || !P->n)
     PetscFunctionReturn(PETSC_SUCCESS);
   const int    across = 1 - v;
-  const double slack = 1e-6 * g->h[across], lower = g->lower[across] + (double)g->xs[across] * g->h[across];
+  const double slack = 1e-6 * g->line[across].h, lower = GridNode(g, across, g->xs[across]);
   Sites        s = {.vertical = v,
                     .up       = c->gravity[v] < 0.0 ? 1 : -1,
                     .from     = lower - slack,
-                    .to       = lower + (double)g->xm[across] * g->h[across] + slack};
+                    .to       = (g->line[across].x ? GridNode(g, across, g->xs[across] + g->xm[across])
+                                                   : lower + (double)g->xm[across] * g->line[across].h) +
+                          slack};
 
   PetscCall(SitesVisit(c, g, Collect, &s));
   PetscCall(PetscMalloc1(s.n, &s.order));

@@ -53,7 +53,7 @@ void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[
 static const Bc *Met(const Case *c, const Grid *g, const Face *f, double position)
 {
   const int    d     = SideAxis(f->side);
-  const double start = f->x[d] - f->moved[d], least = THINNEST * g->h[d];
+  const double start = f->x[d] - f->moved[d], least = THINNEST * LinesLeastAt(&g->line[d], f->x[d]);
 
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc    *b    = &c->bc[k];
@@ -71,8 +71,8 @@ ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position
 {
   const Bc    *b  = &c->bc[f->bc[BC_PLATE]], *plane;
   const int    d  = SideAxis(f->side);
-  const double at = f->x[d] - f->moved[d] + position, upper = g->lower[d] + (double)g->cells[d] * g->h[d];
-  const double zero[CL_DIM] = {0.0}, gap = PlateGap(f, position, zero), slack = 1e-9 * g->h[d];
+  const double at = f->x[d] - f->moved[d] + position, upper = GridNode(g, d, g->cells[d]);
+  const double zero[CL_DIM] = {0.0}, gap = PlateGap(f, position, zero), slack = 1e-9 * g->line[d].h;
   const bool   touches = !b->separates || gap > 0.0;
 
   if (!touches)
@@ -86,7 +86,7 @@ ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position
     snprintf(text, size, "plate %s comes within half a cell of %s, which holds the body", b->name, plane->name);
     return CL_LEFT_GRID;
   }
-  if (fabs(gap) > FARTHEST * g->h[d]) {
+  if (fabs(gap) > FARTHEST * LinesLeastAt(&g->line[d], f->x[d])) {
     snprintf(text, size, "plate %s moves more than half a cell in one step", b->name);
     return CL_TOO_FAR;
   }

@@ -7,17 +7,19 @@
 /* Radial flow of one unit out of a ring of particles as wide as the face's own, per 2 pi k/mu and height: p at the
    nodes from the one below the face on, the last two of which have ln r; jump as the last unknown. */
 typedef struct {
-  double A[SIZE][SIZE], b[SIZE];
-  double V[SIZE], W[SIZE]; /* int S r dr, int S dr */
-  double N[SIZE], E[SIZE]; /* weights of the face; of p extrapolated to it */
-  double dS[SIZE];         /* and of dp/dr there */
-  double depth;            /* from the face to where its particle's values belong, m */
-  double h, first;         /* cell; radius of the first node, m */
+  double    A[SIZE][SIZE], b[SIZE];
+  double    V[SIZE], W[SIZE]; /* int S r dr, int S dr */
+  double    N[SIZE], E[SIZE]; /* weights of the face; of p extrapolated to it */
+  double    dS[SIZE];         /* and of dp/dr there */
+  double    depth;            /* from the face to where its particle's values belong, m */
+  GridLines line;             /* of the nodes */
+  double    place[SIZE + 1 + 2 * LINES_PAD];
+  PetscInt  guess;
 } Column;
 
 static double NodeRadius(const Column *k, int i)
 {
-  return k->first + i * k->h;
+  return LinesAt(&k->line, i);
 }
 
 typedef struct {
@@ -32,7 +34,7 @@ static Piece PieceAt(const Case *c, const Column *k, double r, double l)
   Axis   a;
   double hoop[3];
 
-  BasisRadius(c->basis, r, l, k->first, k->h, SIZE, &a, hoop, &q.r);
+  BasisRadius(c->basis, r, l, &k->line, &a, hoop, &q.r);
   q.base = (int)a.base;
   for (int i = 0; i < 3; i++) {
     q.S[i]     = a.S[i];
@@ -47,7 +49,7 @@ static void FaceOf(Column *k, const Piece *q, double r)
 {
   Axis at;
 
-  BasisHat(r, k->first, k->h, &at);
+  BasisHat(r, &k->line, &at);
   k->depth = -r;
   for (int i = 0; i < 3; i++)
     k->depth += q->S[i] * NodeRadius(k, q->base + i);
@@ -79,12 +81,14 @@ static void Deposit(Column *k, const Piece *q, double width, bool lift)
 /* (22) on the two lines beyond the face, where it cuts a cell. */
 static void Ghost(const Case *c, Column *k)
 {
-  static const double second[3] = {1.0, -2.0, 1.0};
-
   for (int n = 1; n <= 2; n++) {
+    const double h = LinesAround(&k->line, n), below = h / LinesWidth(&k->line, n - 1),
+                 above     = h / LinesWidth(&k->line, n);
+    const double second[3] = {below, -(below + above), above};
+
     for (int i = 0; i < 3; i++) {
       for (int j = 0; j < 3; j++)
-        k->A[n - 1 + i][n - 1 + j] += c->ghost_penalty * NodeRadius(k, n) / k->h * second[i] * second[j];
+        k->A[n - 1 + i][n - 1 + j] += c->ghost_penalty * NodeRadius(k, n) / h * second[i] * second[j];
     }
   }
 }
@@ -145,29 +149,71 @@ static void Outflow(Column *k, double r, double penalty)
   k->b[SIZE - 1] = 1.0;
 }
 
+/* The cells from the face's own on, as wide as the last one beyond the grid's end. */
+static void TakeLines(const GridLines *line, PetscInt cell, Column *k)
+{
+  const double first = LinesAt(line, cell);
+
+  k->line = (GridLines){.lower = first, .cells = SIZE, .h = line->h};
+  if (!line->x)
+    return;
+  k->line.nguess = 1;
+  k->line.guess  = &k->guess;
+  k->line.x      = k->place + LINES_PAD;
+  for (PetscInt i = -LINES_PAD; i <= SIZE + LINES_PAD; i++) {
+    const PetscInt at = cell + i, end = line->cells;
+
+    k->line.x[i] = at <= end ? LinesAt(line, at) : line->upper + (double)(at - end) * LinesWidth(line, end - 1);
+  }
+  k->line.upper = k->line.x[SIZE];
+}
+
+/* What linear elements lose of ln r beyond the column: 1/12 (h/r)^3 each. */
+static double Beyond(const GridLines *line, PetscInt first, double last)
+{
+  double sum = 0.0;
+
+  if (!line->x)
+    return line->h * line->h / (24.0 * last * last);
+  for (PetscInt i = first; i < line->cells; i++)
+    sum += pow(LinesWidth(line, i) / (LinesAt(line, i) + LinesAt(line, i + 1)), 3.0) * 8.0 / 12.0;
+  return sum;
+}
+
+/* The next particle outwards: as many in its cell as in the first. */
+static double Next(const Column *k, double l, double *x, double half)
+{
+  const double edge = *x + half, next = l * (LinesWidthAt(&k->line, edge + 1e-6 * l) / LinesWidth(&k->line, 0));
+
+  *x += half + next;
+  return next;
+}
+
 double FaceRing(const Case *c, const Grid *g, double r, double l, double penalty)
 {
-  const double h = g->h[0], s = BasisSnap((r - g->lower[0]) / h), cell = floor(s);
-  Column       k    = {.h = h, .first = g->lower[0] + cell * h};
-  const double last = NodeRadius(&k, SIZE - 3);
-  double       p    = 0.0;
+  const GridLines *line = &g->line[0];
+  const double     s = BasisSnap(LinesPlace(line, r)), cell = floor(s);
+  Column           k = {.guess = 0};
+  double           p = 0.0;
 
-  if (c->basis == BASIS_LINEAR || !(r > 0.0) || l > 0.5 * h * (1.0 + BASIS_SNAP))
+  TakeLines(line, (PetscInt)cell, &k);
+  const double last = NodeRadius(&k, SIZE - 3);
+  if (c->basis == BASIS_LINEAR || !(r > 0.0) || l > 0.5 * LinesWidth(&k.line, 0) * (1.0 + BASIS_SNAP))
     return 0.0;
-  for (double x = r + l; x - l < last; x += 2.0 * l) {
-    const Piece q = PieceAt(c, &k, x, l);
+  for (double x = r + l, half = l; x - half < last; half = Next(&k, l, &x, half)) {
+    const Piece q = PieceAt(c, &k, x, half);
 
     for (int i = 0; i < 3; i++) {
-      k.V[q.base + i] += q.S[i] * q.r * 2.0 * l;
-      k.W[q.base + i] += q.plain[i] * 2.0 * l;
+      k.V[q.base + i] += q.S[i] * q.r * 2.0 * half;
+      k.W[q.base + i] += q.plain[i] * 2.0 * half;
     }
     if (x == r + l)
       FaceOf(&k, &q, r);
   }
-  for (double x = r + l; x - l < last; x += 2.0 * l) {
-    const Piece q = PieceAt(c, &k, x, l);
+  for (double x = r + l, half = l; x - half < last; half = Next(&k, l, &x, half)) {
+    const Piece q = PieceAt(c, &k, x, half);
 
-    Deposit(&k, &q, 2.0 * l, penalty == 0.0);
+    Deposit(&k, &q, 2.0 * half, penalty == 0.0);
   }
   if (s != cell)
     Ghost(c, &k);
@@ -177,5 +223,5 @@ double FaceRing(const Case *c, const Grid *g, double r, double l, double penalty
   Solve(&k);
   for (int i = 0; i < SIZE - 1; i++)
     p += k.E[i] * k.b[i];
-  return p - k.b[SIZE - 1] - log(r) + h * h / (24.0 * last * last);
+  return p - k.b[SIZE - 1] - log(r) + Beyond(line, (PetscInt)cell + SIZE - 3, last);
 }

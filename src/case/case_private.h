@@ -104,7 +104,7 @@ typedef struct {
   const Law         *law;       /* KEY_LAW */
   Group              names;     /* KEY_NAME, KEY_NAMES: whose names */
   /* KEY_REAL: word that stands for infinity, "-word" for minus infinity; KEY_NAME: word that stands for -1 */
-  const char *word;
+  const char *word;           /* KEY_INT: word that stands for 0 */
   bool        shape;          /* GROUP_REGION: also of a region without particles */
   unsigned    types;          /* GROUP_BC: bit mask of 1 << BcType; 0 = every type */
   unsigned    has;            /* fields (HAS_...) any of which needs the key; 0 = always needed */
@@ -234,6 +234,9 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c);
 PetscErrorCode CaseStageEnds(Reader *r, Case *c);
 /* The case as it holds in each stage, and what cannot be; after the case is read and derived. */
 PetscErrorCode CaseStages(Reader *r, Case *c);
+/* ---------------------------------------------------------------- spacing.c */
+/* The lines and numbers of cells that the grid's spacing makes, once the keys of the case are read. */
+PetscErrorCode CaseSpacing(Reader *r, Case *c);
 PetscErrorCode CaseStagesDestroy(Case *c);
 void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and steps; of a stage unless NULL */
 

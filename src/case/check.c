@@ -115,16 +115,17 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
 
 static void CheckPlane(Reader *r, const Case *c, const Bc *b)
 {
-  double h = (c->upper[b->axis] - c->lower[b->axis]) / c->cells[b->axis], line = (b->position - c->lower[b->axis]) / h;
+  const GridLines lines = CaseLines(c, b->axis);
+  const double    line  = LinesPlace(&lines, b->position);
 
-  if (!(h > 0))
+  if (!(lines.h > 0))
     return;
   if (line < -1e-6 || line > c->cells[b->axis] + 1e-6)
     FAIL_AT(GROUP_BC, b->name, "position", "%g m lies outside the grid, %g..%g m", b->position, c->lower[b->axis],
             c->upper[b->axis]);
   else if (fabs(line - round(line)) > 1e-6)
     FAIL_AT(GROUP_BC, b->name, "position", "%g m is not on a grid line; the nearest is at %.9g m", b->position,
-            c->lower[b->axis] + round(line) * h);
+            LinesAt(&lines, (PetscInt)round(line)));
 }
 
 void CaseCheck(Reader *r, const Case *c)

@@ -5,6 +5,26 @@
 #include <string.h>
 
 /* ---------------------------------------------------------------- conditions */
+static bool HasSpacingX(const void *p)
+{
+  return ((const Case *)p)->spacing[0][0];
+}
+static bool HasSpacingY(const void *p)
+{
+  return ((const Case *)p)->spacing[1][0];
+}
+static bool HasTableX(const void *p)
+{
+  return ((const Case *)p)->table[0][0];
+}
+static bool HasTableY(const void *p)
+{
+  return ((const Case *)p)->table[1][0];
+}
+static bool HasEqualAxis(const void *p)
+{
+  return !(HasSpacingX(p) || HasTableX(p)) || !(HasSpacingY(p) || HasTableY(p));
+}
 static bool NeedsM(const void *p)
 {
   return !strncmp(((const Material *)p)->retention.type, "van_genuchten", 13);
@@ -166,7 +186,8 @@ const char *const case_bc_type[] = {CL_FACE_CONDITIONS(BC_WORD) CL_NODE_CONDITIO
   ROW(T, name, KEY_REAL, member, n, unit, range, def, doc, ##__VA_ARGS__)
 #define REAL(T, name, member, unit, range, def, doc, ...)                                                              \
   ROW(T, name, KEY_REAL, member, 1, unit, range, def, doc, ##__VA_ARGS__)
-#define INTEGERS(T, n, name, member, range, def, doc) ROW(T, name, KEY_INT, member, n, "", range, def, doc)
+#define INTEGERS(T, n, name, member, range, def, doc, ...)                                                             \
+  ROW(T, name, KEY_INT, member, n, "", range, def, doc, ##__VA_ARGS__)
 #define BOOLEAN(T, name, member, def, doc, ...) ROW(T, name, KEY_BOOL, member, 1, "", "", def, doc, ##__VA_ARGS__)
 #define TEXT(T, name, member, def, doc, ...)                                                                           \
   ROW(T, name, KEY_TEXT, member, sizeof(((T *)0)->member), "", "", def, doc, ##__VA_ARGS__)
@@ -194,7 +215,19 @@ static const Key case_key[] = {
     TEXT(Case, "title", title, "", "one line"),
     REALS(Case, 2, "grid_lower", lower, "m", "", NULL, "lower left corner of the background grid"),
     REALS(Case, 2, "grid_upper", upper, "m", "", NULL, "upper right corner; the body must not leave the grid"),
-    INTEGERS(Case, 2, "grid_cells", cells, "[1,100000]", NULL, "cells along x and y"),
+    TEXT(Case, "grid_spacing_x", spacing[0], "",
+         "sizes of the cells along x: one size (0.5 m), or first size, largest size and growth from cell to cell, "
+         "from the lower end on ([0.05 m, 2 m, growth 1.15])",
+         ACTS(HasSpacingX, "it is given")),
+    TEXT(Case, "grid_spacing_x_table", table[0], "",
+         "the same by places, which are lines of the grid, and sizes there, from the lower end to the upper "
+         "({table: [0 m, 0.5 m, 4 m, 0.05 m, 10 m, 1 m]})",
+         ACTS(HasTableX, "it is given")),
+    TEXT(Case, "grid_spacing_y", spacing[1], "", "likewise along y", ACTS(HasSpacingY, "it is given")),
+    TEXT(Case, "grid_spacing_y_table", table[1], "", "likewise along y", ACTS(HasTableY, "it is given")),
+    INTEGERS(Case, 2, "grid_cells", cells, "[1,100000]", "auto, auto",
+             "cells along x and y; auto: as many as the spacing of that axis makes",
+             WHEN(HasEqualAxis, "an axis has no spacing"), .word = "auto"),
     BOOLEAN(Case, "geometry", axisymmetric, "plane", "axisymmetric: x is the radius, y runs along the axis",
             .choices = geometry_word),
     TEXT(Case, "fields", fields_wanted, "auto",

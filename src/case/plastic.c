@@ -37,8 +37,11 @@ static void CheckNonlocal(Reader *r, const Case *c, const Material *m)
   const Plasticity *p = &m->plasticity;
   double            h = 0.0;
 
-  for (int d = 0; d < CL_DIM; d++)
-    h = fmax(h, (c->upper[d] - c->lower[d]) / (double)c->cells[d]);
+  for (int d = 0; d < CL_DIM; d++) {
+    const GridLines line = CaseLines(c, d);
+
+    h = fmax(h, LinesWidest(&line));
+  }
   if (p->nonlocal < LEAST_CELLS * h * (1.0 - 1e-9))
     FAIL("plasticity_nonlocal_length", "= %g m is less than two cells; allowed [%g m,1e+06 m], or 0 m for none",
          p->nonlocal, LEAST_CELLS * h);
@@ -76,6 +79,10 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
     FAIL("plasticity_heat", "is %g but heat is not among the fields of the scene (%s)", p->heat, c->fields_wanted);
   if (p->nonlocal > 0.0)
     CheckNonlocal(r, c, m);
+  if (p->length > 0.0 && (c->line[0].x || c->line[1].x))
+    FAIL("plasticity_softening_length",
+         "needs equal cells: it adapts softening to one size of them; take plasticity_nonlocal_length on a grid with a "
+         "spacing");
   if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
     CheckSnapBack(r, m);
   if (p->psi_max > p->phi_peak && r->rank == 0)

@@ -49,8 +49,9 @@ static double Farthest(const Schedule *velocity, double t_end)
 
 static void CheckLine(Reader *r, const Case *c, const Bc *b)
 {
-  const double h   = (c->upper[b->axis] - c->lower[b->axis]) / (double)c->cells[b->axis];
-  const double far = Farthest(&b->value, c->nstage ? c->stage[c->nstage - 1].end : c->t_end);
+  const GridLines line = CaseLines(c, b->axis);
+  const double    h    = LinesLeastAt(&line, b->position);
+  const double    far  = Farthest(&b->value, c->nstage ? c->stage[c->nstage - 1].end : c->t_end);
 
   if (h > 0.0 && far > SMALL * h)
     FAIL(

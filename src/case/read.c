@@ -256,6 +256,7 @@ static PetscErrorCode KeysRead(Reader *r, Case *c)
   PetscFunctionBeginUser;
   PetscCall(CaseStageEnds(r, c));
   PetscCall(GroupRead(r, c, GROUP_CASE));
+  PetscCall(CaseSpacing(r, c));
   PetscCall(CaseFieldSet(r, c));
   for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
     PetscCall(GroupRead(r, c, g));
@@ -299,6 +300,8 @@ PetscErrorCode CaseDestroy(Case *c)
 {
   PetscFunctionBeginUser;
   PetscCall(CaseStagesDestroy(c));
+  for (int d = 0; d < CL_DIM; d++)
+    PetscCall(LinesDestroy(&c->line[d]));
   ScheduleDestroy(&c->ambient_pressure);
   ScheduleDestroy(&c->ambient_level);
   for (PetscInt i = 0; i < c->nbc; i++) {

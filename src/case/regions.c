@@ -270,21 +270,22 @@ void CheckHeld(Reader *r, const Case *c, const Bc *b)
 {
   for (PetscInt i = 0; i < c->nregion; i++) {
     const Region *g = &c->region[i];
-    double        h[CL_DIM], slack[CL_DIM], x[CL_DIM];
+    GridLines     line[CL_DIM];
+    double        slack[CL_DIM], x[CL_DIM];
     PetscInt      from[CL_DIM], to[CL_DIM];
 
     if (b->region >= 0 && b->region != i)
       continue;
     for (int d = 0; d < CL_DIM; d++) {
-      h[d]     = (c->upper[d] - c->lower[d]) / c->cells[d];
-      slack[d] = 1e-6 * h[d];
-      from[d]  = (PetscInt)ceil((g->lower[d] - c->lower[d]) / h[d] - 1e-6);
-      to[d]    = (PetscInt)floor((g->upper[d] - c->lower[d]) / h[d] + 1e-6);
+      line[d]  = CaseLines(c, d);
+      slack[d] = 1e-6 * line[d].h;
+      from[d]  = (PetscInt)ceil(LinesPlace(&line[d], g->lower[d]) - 1e-6);
+      to[d]    = (PetscInt)floor(LinesPlace(&line[d], g->upper[d]) + 1e-6);
     }
     for (PetscInt n = from[1]; n <= to[1]; n++) {
       for (PetscInt m = from[0]; m <= to[0]; m++) {
-        x[0] = c->lower[0] + (double)m * h[0];
-        x[1] = c->lower[1] + (double)n * h[1];
+        x[0] = LinesAt(&line[0], m);
+        x[1] = LinesAt(&line[1], n);
         if (RegionReaches(c, i, x, slack))
           return;
       }
@@ -300,7 +301,7 @@ static void CheckPoint(Reader *r, const Case *c, const Probe *p)
   double slack[CL_DIM];
 
   for (int d = 0; d < CL_DIM; d++)
-    slack[d] = 1e-6 * (c->upper[d] - c->lower[d]) / c->cells[d];
+    slack[d] = 1e-6 * CaseLines(c, d).h;
   for (PetscInt i = 0; i < c->nregion; i++) {
     if (!RegionEmpty(&c->region[i]) && RegionReaches(c, i, p->x, slack))
       return;

@@ -28,6 +28,10 @@ static bool KeyInt(Reader *r, const char *shown, const char *text, const Key *k,
   char *end;
   long  n;
 
+  if (k->word && !strcasecmp(text, k->word)) {
+    *value = 0;
+    return true;
+  }
   errno = 0;
   n     = strtol(text, &end, 10);
   if (end == text || *end) {

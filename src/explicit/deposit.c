@@ -83,18 +83,16 @@ typedef struct {
 } Values;
 
 /* V (p + g . (x_I - x_p)) at the lowest left node of the patch, and its growth from node to node (2). */
-INLINE void Carried(const Explicit *e, Run r, int lane, const double *restrict weight, const double *restrict y,
+INLINE void Carried(Run r, int lane, const double *restrict weight, const double *restrict y,
                     const double *const g[CL_DIM], const Weights *w, Values *v)
 {
-  const Grid *grid = &e->m->grid;
-
   for (int q = 0; q < r.n; q++) {
     double at = y[q];
 
-    /* x_p from the first node: S_1 + 2 S_2 cells on (weights reproduce the middle) */
+    /* x_p from the first node: S_1 + third S_2 units on (weights reproduce the middle) */
     for (int d = 0; d < CL_DIM; d++) {
-      at -= g[d][q] * (w->S[d][1][q] + 2.0 * w->S[d][2][q]) * grid->h[d];
-      v->carry[d][q][lane] = weight[q] * g[d][q] * grid->h[d];
+      at -= g[d][q] * (w->S[d][1][q] + w->third[d][q] * w->S[d][2][q]) * w->unit[d][q];
+      v->carry[d][q][lane] = weight[q] * g[d][q] * w->unit[d][q];
     }
     v->value[q][lane] = weight[q] * at;
   }
@@ -185,6 +183,8 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
     const Lanes  cx = *(const Lanes *)v->carry[0][q], cy = *(const Lanes *)v->carry[1][q];
     const Lanes  fx = *(const Lanes *)v->force[0][q], fy = *(const Lanes *)v->force[1][q];
 
+    const double x[3] = {0.0, 1.0, w->third[0][q]}, y[3] = {0.0, 1.0, w->third[1][q]};
+
     for (int b = 0; b < 3; b++) {
       const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
 
@@ -194,7 +194,7 @@ INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Val
         Lanes        first = value[0];
 
         if (Scalars(s))
-          first += cx * (double)a + cy * (double)b;
+          first += cx * x[a] + cy * y[b];
         row[0] += s.solid ? first * S + fx * Gx + fy * Gy : first * S;
         for (int z = 1; z < rows; z++)
           row[z] += value[z] * S;
@@ -220,8 +220,10 @@ INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const
     for (int a = 0; a < 4; a++) {
       double *row = &e->A[CellNode(e, w, q, a) * width + at];
 
-      row[MIX_FX] += c->Q[a][0] * xx + c->Q[a][1] * xy;
-      row[MIX_FY] += c->Q[a][0] * xy + c->Q[a][1] * yy;
+      const double Qx = c->Q[a][0] * w->inverse[0][q], Qy = c->Q[a][1] * w->inverse[1][q];
+
+      row[MIX_FX] += Qx * xx + Qy * xy;
+      row[MIX_FY] += Qx * xy + Qy * yy;
     }
   }
 }
@@ -275,7 +277,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   for (int k = 0; k < s.fluids; k++) {
     const double *g[CL_DIM] = {f[k ? P_GG : P_GW] + r.p, f[(k ? P_GG : P_GW) + 1] + r.p};
 
-    Carried(e, r, k, V, f[P_PW + k] + r.p, g, &w, &v);
+    Carried(r, k, V, f[P_PW + k] + r.p, g, &w, &v);
     FluidValues(e, s, r, k, &state, &v);
   }
   if (s.heat) {
@@ -284,7 +286,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     Capacities(e, s, r, C);
     for (int q = 0; q < r.n; q++)
       v.value[q][A_C(s)] = C[q];
-    Carried(e, r, s.fluids, C, T, g, &w, &v);
+    Carried(r, s.fluids, C, T, g, &w, &v);
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);

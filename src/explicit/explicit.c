@@ -106,17 +106,21 @@ static void Look(Explicit *e)
   const Model *m = e->m;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const Grid  *g = &m->grid;
-    const double h = g->h[d], lower = g->lower[d], cells = (double)g->cells[d], first = (double)g->xs[d];
-    const double end         = (double)(g->xs[d] + g->xm[d]) + (g->xs[d] + g->xm[d] > g->cells[d] ? 1.0 : 0.0);
-    const bool   linear      = m->c->basis == BASIS_LINEAR;
+    const Grid      *g    = &m->grid;
+    const GridLines *line = &g->line[d];
+    const double     h = line->h, lower = line->lower, cells = (double)line->cells, first = (double)g->xs[d];
+    const double     end     = (double)(g->xs[d] + g->xm[d]) + (g->xs[d] + g->xm[d] > g->cells[d] ? 1.0 : 0.0);
+    const bool       linear  = m->c->basis == BASIS_LINEAR;
     const double *restrict x = m->P.f[P_X + d], *restrict l = m->P.f[P_L + d];
     int *restrict base = e->base[d];
     int changed = 0, strays = 0;
 
     for (PetscInt p = 0; p < m->P.n; p++) {
-      const double s   = (x[p] - lower) / h;
-      const int    now = (int)floor(linear ? BasisSnap(s) : BasisDomainOf(x[p], l[p], lower, h, cells).lo);
+      const double s   = LinesPlace(line, x[p]);
+      const double lo  = linear    ? BasisSnap(s)
+                         : line->x ? BasisSpanOf(line, x[p], l[p]).lo
+                                   : BasisDomainOf(x[p], l[p], lower, h, cells).lo;
+      const int    now = (int)floor(lo);
 
       changed |= now != base[p];
       strays |= (s < first) | (s >= end);
@@ -213,11 +217,12 @@ static PetscErrorCode Ready(Explicit *e)
 static PetscErrorCode ActingForces(Explicit *e)
 {
   const Model *m   = e->m;
-  const double h   = fmin(m->grid.h[0], m->grid.h[1]);
   double       sum = 0.0;
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; e->set.solid && p < m->P.n; p++) {
+    const double h =
+        fmin(LinesWidthAt(&m->grid.line[0], m->P.f[P_X][p]), LinesWidthAt(&m->grid.line[1], m->P.f[P_X + 1][p]));
     const double pore = e->set.fluids ? m->P.f[P_PW][p] : 0.0, mass = m->P.f[P_MS][p] + m->P.f[P_MH][p];
 
     for (int d = 0; d < CL_DIM; d++)
@@ -277,7 +282,10 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   PetscCall(PlatesStart(e));
   FacesForces(e, dt);
   PetscCall(NodeMapSum(&e->map, e->A, width));
-  PetscCall(NodesVelocities(e, t, dt));
+  PetscCall(NodesPrepare(e));
+  if (e->nplate)
+    PetscCall(PlatesForces(e, t, dt));
+  PetscCall(NodesVelocities(e, dt));
   FacesWork(e, dt);
   PetscCall(PetscLogEventEnd(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -19,8 +19,7 @@ static void Place(const Explicit *e, PetscInt p, Stencil *s)
 
   s->r = 0.0;
   for (int d = 0; d < CL_DIM; d++)
-    BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][p], e->m->P.f[P_L + d][p], g->lower[d], g->h[d], g->cells[d],
-              &s->axis[d]);
+    BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][p], e->m->P.f[P_L + d][p], &g->line[d], &s->axis[d]);
 }
 
 void FacesPlace(const Explicit *e, Face *f)

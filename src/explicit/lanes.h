@@ -208,6 +208,8 @@ typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
   int    first[BLOCK]; /* padded number of the lowest left node */
   int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
+  double unit[CL_DIM][BLOCK], third[CL_DIM][BLOCK]; /* m, from the first node to the second; times that, to the third */
+  double inverse[CL_DIM][BLOCK];                    /* of the width of the particle's cell, 1/m; likewise */
 } Weights;
 
 /* A run of particles of one material, or of nodes. */
@@ -222,7 +224,7 @@ void WeightsOf(const Explicit *e, Run r, Weights *w);
 /* (160), (88): what particles take of the mean over their cell: of its gradient, and of its divergence beyond that in
    each direction; the nodes of a cell, row by row, and their weights in its gradient. */
 typedef struct {
-  double strain, volume, Q[4][CL_DIM];
+  double strain, volume, Q[4][CL_DIM]; /* Q: of a cell of width 1 */
 } CellMean;
 
 INLINE bool TakesCellMean(const Explicit *e)
@@ -237,7 +239,7 @@ INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
   c->strain = e->m->c->mean_strain;
   c->volume = e->m->c->mean_dilatation ? 0.5 * (1.0 - c->strain) : 0.0;
   for (int a = 0; a < 4; a++)
-    CellGradient(&e->m->grid, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
+    CellGradient((double[CL_DIM]){1.0, 1.0}, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
   return true;
 }
 
@@ -256,8 +258,8 @@ INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, i
     const double *v = &rows[CellNode(e, w, q, a) * width];
 
     for (int i = 0; i < CL_DIM; i++) {
-      beyond[i][0] += c->Q[a][0] * v[i];
-      beyond[i][1] += c->Q[a][1] * v[i];
+      beyond[i][0] += c->Q[a][0] * w->inverse[0][q] * v[i];
+      beyond[i][1] += c->Q[a][1] * w->inverse[1][q] * v[i];
     }
   }
   const double more = c->volume * (beyond[0][0] + beyond[1][1]);
@@ -308,9 +310,10 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
   MAKE_LOOP(f, 1, 2, 1)
 
 /* Node side. */
-PetscErrorCode NodesRebuild(Explicit *e);                         /* numbering, when particles reach other nodes */
-PetscErrorCode NodesVelocities(Explicit *e, double t, double dt); /* A -> B; t at the end of the step */
-PetscErrorCode NodesScalars(Explicit *e, StageRates *r);          /* R -> C */
+PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */
+PetscErrorCode NodesPrepare(Explicit *e);                /* prescribed values, and who follows whom (41) */
+PetscErrorCode NodesVelocities(Explicit *e, double dt);  /* A -> B */
+PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 void           FacesWork(Explicit *e, double dt); /* of the tractions, with the new velocities */
@@ -318,12 +321,14 @@ PetscErrorCode FacesBegin(Explicit *e);
 void           FacesPlace(const Explicit *e, Face *f);                               /* where it is now */
 int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */
 
-/* Plates (plates.c). */
+/* Plates (plates.c, plate_forces.c). */
 PetscErrorCode PlatesCreate(Explicit *e);
 PetscErrorCode PlatesAllocate(Explicit *e);
 PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
+/* Forces at the end of the step, time t, into the balances of the nodes.  Collective. */
+PetscErrorCode PlatesForces(Explicit *e, double t, double dt);
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
 
 /* Do relative changes of p_g go through the nodes (151)? */

@@ -42,7 +42,7 @@ static double Sliver(const Explicit *e, PetscInt p)
   double k2 = 0.0;
 
   for (int d = 0; e->o.velocities_free && d < CL_DIM && e->m->c->basis != BASIS_LINEAR; d++)
-    k2 = Largest(k2, 2.0 / (e->m->P.f[P_L + d][p] * e->m->grid.h[d]));
+    k2 = Largest(k2, 2.0 / (e->m->P.f[P_L + d][p] * LinesLeastAt(&e->m->grid.line[d], e->m->P.f[P_X + d][p])));
   return k2;
 }
 
@@ -65,7 +65,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
   double *const  *f   = (double *const *)m->P.f;
   const char     *why;
   PointProperties q;
-  const double    k2      = GridHighest2(&m->grid);
+  const double    k2      = GridHighest2At(&m->grid, (double[CL_DIM]){f[P_X][p], f[P_X + 1][p]});
   double          C[2][2] = {{0.0}}, bulk = 0.0, skeleton, rho;
 
   const ClStatus status = ModelParticleProperties(m, p, &q, &why);

@@ -36,10 +36,29 @@ INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gath
   }
 }
 
+/* (313): with layers nodes give the slip per permeability, and what it changes by. */
+INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
+{
+  const double k0 = Conductance(s, e->m->c, r.mat);
+
+  for (int q = 0; q < r.n; q++) {
+    double *v = g->value[q];
+
+    for (int k = 0; k < s.fluids; k++) {
+      for (int d = 0; d < CL_DIM; d++) {
+        v[B_Fluid(s, k) + B_DV + d]  = k0 * v[B_Fluid(s, k) + B_DV + d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
+        v[B_Fluid(s, k) + B_VEL + d] = k0 * v[B_Fluid(s, k) + B_VEL + d] + (s.solid ? v[d] : 0.0);
+      }
+    }
+  }
+}
+
 INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
 {
   const int width = 3 * LANES;
 
+  if (s.layers)
+    Slips(e, s, r, g);
   for (int d = 0; d < CL_DIM; d++) {
     if (s.solid)
       Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], width);
@@ -206,13 +225,15 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
 
   for (int q = 0; q < r.n; q++) {
     const double V         = e->m->P.f[P_V][r.p + q];
-    double       a[CL_DIM] = {0.0}, K[3];
+    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[3];
 
+    for (int d = 0; d < CL_DIM; d++)
+      h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
     for (int k = 0; k < s.fluids; k++) {
       for (int d = 0; d < CL_DIM; d++)
         a[d] += (k ? r.mat->c_g : r.mat->c_w) * o->force[d][q][k] / (dt * V);
     }
-    HeatUpwind(kappa[q], a, e->m->grid.h, K);
+    HeatUpwind(kappa[q], a, h, K);
     o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
     o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
   }

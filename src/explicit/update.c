@@ -459,14 +459,31 @@ static PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *
   for (int q = 0; q < r.n; q++) {
     size[q] = 0.0;
     for (int d = 0; d < CL_DIM; d++) {
-      const double x = (e->m->P.f[P_X + d][r.p + q] - grid->lower[d]) / grid->h[d];
+      const GridLines *line = &grid->line[d];
+      const double     x = LinesPlace(line, e->m->P.f[P_X + d][r.p + q]), u = dt * g->value[q][C_Vs(s) + d];
 
-      size[q] = fmax(size[q], fabs(dt * g->value[q][C_Vs(s) + d]) / grid->h[d]);
+      size[q] = fmax(size[q], fabs(u) / LinesLeastAt(line, e->m->P.f[P_X + d][r.p + q] - u));
       if (!(x >= 0.0 && x <= (double)grid->cells[d]))
         size[q] = NAN;
     }
   }
   return Worst(r, size);
+}
+
+/* Does a particle, now at x, come from more than half a cell away, or leave the grid? */
+INLINE Wrong Strays(const GridLines *line, int n, const double *restrict u, const double *restrict x)
+{
+  const double h = line->h, lower = line->lower, upper = LinesAt(line, line->cells);
+  Wrong        far = 0;
+
+  if (!line->x) {
+    for (int q = 0; q < n; q++)
+      far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
+    return far;
+  }
+  for (int q = 0; q < n; q++)
+    far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * LinesLeastAt(line, x[q] - u[q])) & (x[q] >= lower) & (x[q] <= upper));
+  return far;
 }
 
 /* Makes the motion history; false if a particle crosses half a cell or leaves the grid. */
@@ -488,11 +505,7 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
   }
   ParticlesKeep(&e->m->P, r.p, r.n, &motion);
   for (int d = 0; d < CL_DIM; d++) {
-    const double *restrict x = e->m->P.f[P_X + d] + r.p;
-    const double h = grid->h[d], lower = grid->lower[d], upper = lower + (double)grid->cells[d] * h;
-
-    for (int q = 0; q < r.n; q++)
-      far |= WRONG_UNLESS((fabs(u[d][q]) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
+    far |= Strays(&grid->line[d], r.n, u[d], e->m->P.f[P_X + d] + r.p);
   }
   return !far;
 }

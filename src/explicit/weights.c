@@ -1,10 +1,11 @@
 /* Weights (3), (4) of a block of particles. */
 #include "lanes.h"
 
+/* Where cells are equal. */
 INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *restrict base)
 {
-  const Grid  *g     = &e->m->grid;
-  const double lower = g->lower[d], h = g->h[d], cells = (double)g->cells[d];
+  const GridLines *line  = &e->m->grid.line[d];
+  const double     lower = line->lower, h = line->h, cells = (double)line->cells;
   const double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict l = e->m->P.f[P_L + d] + r.p;
 
   for (int q = 0; q < r.n; q++) {
@@ -22,8 +23,9 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
     } else {
       const BasisDomain b = BasisDomainOf(x[q], l[q], lower, h, cells);
 
-      first = floor(b.lo);
-      BasisAverage(b.lo - first, b.hi - first, b.length * h, S, D);
+      first           = floor(b.lo);
+      const double lo = b.lo - first, hi = b.hi - first;
+      BasisAverage(lo, hi, 1.0, 1.0, hi - lo, b.length * h, S, D);
     }
     for (int k = 0; k < 3; k++) {
       w->S[d][k][q] = S[k];
@@ -33,18 +35,50 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
   }
 }
 
+/* Where they differ (301). */
+static void AxesUnequal(const Explicit *e, Run r, int d, Weights *w, int *restrict base)
+{
+  const GridLines *line = &e->m->grid.line[d];
+
+  for (int q = 0; q < r.n; q++) {
+    Axis a;
+
+    BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][r.p + q], e->m->P.f[P_L + d][r.p + q], line, &a);
+    for (int k = 0; k < 3; k++) {
+      w->S[d][k][q] = a.S[k];
+      w->D[d][k][q] = a.dS[k];
+    }
+    base[q] = (int)a.base;
+  }
+}
+
+/* Places of the nodes from the first on. */
+INLINE void Nodes(const Explicit *e, Run r, int d, const int *restrict base, Weights *w)
+{
+  const GridLines *line = &e->m->grid.line[d];
+
+  for (int q = 0; q < r.n; q++) {
+    w->unit[d][q]  = line->x ? LinesWidth(line, base[q]) : line->h;
+    w->third[d][q] = line->x ? 1.0 + LinesWidth(line, base[q] + 1) / w->unit[d][q] : 2.0;
+  }
+}
+
 /* Places of the particles' cells from their first nodes on. */
 static void Cells(const Explicit *e, Run r, int *const base[CL_DIM], Weights *w)
 {
   const Grid *g = &e->m->grid;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const double lower = g->lower[d], h = g->h[d], cells = (double)g->cells[d];
+    const GridLines *line    = &g->line[d];
     const double *restrict x = e->m->P.f[P_X + d] + r.p;
     const int stride         = d ? (int)g->gm[0] : 1;
 
-    for (int q = 0; q < r.n; q++)
-      w->cell[q] = (d ? w->cell[q] : 0) + stride * BasisCell((x[q] - lower) / h, (double)base[d][q], cells);
+    for (int q = 0; q < r.n; q++) {
+      const int second = BasisCell(LinesPlace(line, x[q]), (double)base[d][q], (double)line->cells);
+
+      w->cell[q]       = (d ? w->cell[q] : 0) + stride * second;
+      w->inverse[d][q] = 1.0 / LinesWidth(line, base[d][q] + second);
+    }
   }
 }
 
@@ -54,10 +88,13 @@ void WeightsOf(const Explicit *e, Run r, Weights *w)
   int x[BLOCK], y[BLOCK], *const base[CL_DIM] = {x, y};
 
   for (int d = 0; d < CL_DIM; d++) {
-    if (e->m->c->basis == BASIS_LINEAR)
+    if (g->line[d].x)
+      AxesUnequal(e, r, d, w, base[d]);
+    else if (e->m->c->basis == BASIS_LINEAR)
       Axes(e, r, d, true, w, base[d]);
     else
       Axes(e, r, d, false, w, base[d]);
+    Nodes(e, r, d, base[d], w);
   }
   for (int q = 0; q < r.n; q++)
     w->first[q] = (int)GridPadded(g, x[q], y[q]);

@@ -30,7 +30,17 @@ bool GridFits(PetscMPIInt size, const PetscInt cells[])
 
 PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g)
 {
-  PetscInt nodes[CL_DIM] = {cells[0] + 1, cells[1] + 1}, *count[CL_DIM], coord[CL_DIM];
+  const GridLines line[CL_DIM] = {LinesEqual(lower[0], upper[0], cells[0]), LinesEqual(lower[1], upper[1], cells[1])};
+
+  PetscFunctionBeginUser;
+  PetscCall(GridCreateOn(comm, line, g));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode GridCreateOn(MPI_Comm comm, const GridLines line[CL_DIM], Grid *g)
+{
+  const PetscInt cells[CL_DIM] = {line[0].cells, line[1].cells};
+  PetscInt       nodes[CL_DIM] = {cells[0] + 1, cells[1] + 1}, *count[CL_DIM], coord[CL_DIM];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(g, sizeof(*g)));
@@ -41,9 +51,9 @@ PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double uppe
              "a grid of %" PetscInt_FMT " x %" PetscInt_FMT " cells is too small for %d ranks: use fewer ranks",
              cells[0], cells[1], g->size);
   for (int d = 0; d < CL_DIM; d++) {
-    g->lower[d] = lower[d];
+    g->line[d]  = line[d];
+    g->lower[d] = line[d].lower;
     g->cells[d] = cells[d];
-    g->h[d]     = (upper[d] - lower[d]) / (double)cells[d];
     PetscCall(PetscMalloc1(g->nproc[d], &count[d]));
     PetscCall(PetscMalloc1(g->nproc[d] + 1, &g->start[d]));
     g->start[d][0] = 0;
@@ -79,7 +89,7 @@ PetscErrorCode GridDestroy(Grid *g)
 bool GridCell(const Grid *g, const double x[], PetscInt cell[])
 {
   for (int d = 0; d < CL_DIM; d++) {
-    const double s = (x[d] - g->lower[d]) / g->h[d];
+    const double s = LinesPlace(&g->line[d], x[d]);
 
     if (!(s >= 0.0 && s <= (double)g->cells[d]))
       return false;

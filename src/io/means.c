@@ -74,9 +74,9 @@ static PetscErrorCode BuildFaces(const Model *m, PetscInt *n, Face **face)
       const double x = m->P.f[P_X + d][p], l = m->P.f[P_L + d][p];
 
       if (d == 0 && m->c->axisymmetric)
-        BasisRadius(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s[p].axis[d], s[p].hoop, &s[p].r);
+        BasisRadius(m->c->basis, x, l, &g->line[d], &s[p].axis[d], s[p].hoop, &s[p].r);
       else
-        BasisAxis(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s[p].axis[d]);
+        BasisAxis(m->c->basis, x, l, &g->line[d], &s[p].axis[d]);
     }
   }
   PetscCall(FacesBuild(m->c, g, &m->P, s, n, face));

@@ -17,14 +17,14 @@ typedef struct {
 } Fit;
 
 /* One cell, or two particle spacings where they are wider: at an edge two rows of particles are within reach. */
-static void Reach(const Case *c, const Grid *g, double widening, double reach[CL_DIM])
+static void Reach(const Case *c, const Grid *g, const double x[CL_DIM], double widening, double reach[CL_DIM])
 {
   for (int d = 0; d < CL_DIM; d++) {
     PetscInt ppc = 2;
 
     for (PetscInt k = 0; k < c->nregion; k++)
       ppc = c->region[k].material < 0 ? ppc : PetscMin(ppc, c->region[k].ppc[d]);
-    reach[d] = widening * g->h[d] * (ppc < 2 ? 2.0 : 1.0);
+    reach[d] = widening * LinesWidthAt(&g->line[d], x[d]) * (ppc < 2 ? 2.0 : 1.0);
   }
 }
 
@@ -208,7 +208,7 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
     PetscCall(PetscArrayzero(M, c->nprobe * M_COUNT));
     for (PetscInt k = 0; k < c->nprobe; k++) {
       fit[k] = (Fit){.x = {c->probe[k].x[0], c->probe[k].x[1]}, .fixed = c->probe[k].fixed};
-      Reach(c, &m->grid, out->reach[k], fit[k].reach);
+      Reach(c, &m->grid, fit[k].x, out->reach[k], fit[k].reach);
       if (ProbeIsMean(&c->probe[k]))
         continue;
       AddMoments(&fit[k], &m->P, M + k * M_COUNT);

@@ -118,7 +118,28 @@ static PetscErrorCode Link(hid_t group, PetscInt number, const char *kind)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode IndexWrite(Output *out, const char *path)
+/* /lines/x, /lines/y: where the lines of the grid are. */
+static PetscErrorCode LinesWrite(hid_t file, const Grid *g)
+{
+  hid_t group;
+
+  PetscFunctionBeginUser;
+  PetscCall(H5Group(file, "/lines", &group));
+  for (int d = 0; d < CL_DIM; d++) {
+    const hsize_t n = (hsize_t)g->cells[d] + 1;
+    double       *x;
+
+    PetscCall(PetscMalloc1(g->cells[d] + 1, &x));
+    for (PetscInt i = 0; i <= g->cells[d]; i++)
+      x[i] = GridNode(g, d, i);
+    PetscCall(H5Write(group, d ? "y" : "x", H5T_NATIVE_DOUBLE, 1, &n, x, "m", false));
+    PetscCall(PetscFree(x));
+  }
+  H5Check(H5Gclose(group));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode IndexWrite(Output *out, const Grid *g, const char *path)
 {
   hid_t   file, particles, grid = -1;
   IoPiece image;
@@ -127,6 +148,7 @@ static PetscErrorCode IndexWrite(Output *out, const char *path)
   PetscCall(H5ImageCreate(0, &file));
   PetscCall(H5WriteText(file, "format", "clathra fields"));
   PetscCall(H5WriteInt(file, "format_version", IO_FORMAT_VERSION));
+  PetscCall(LinesWrite(file, g));
   PetscCall(H5Group(file, "/particles", &particles));
   for (PetscInt k = 0; k < out->nsnapshot; k++) {
     PetscCall(Link(particles, out->snapshot[k].number, "/particles"));
@@ -170,7 +192,7 @@ PetscErrorCode SeriesWrite(Output *out, const Grid *g)
   PetscFunctionBeginUser;
   PetscCall(IoPath(out->dir, "fields.h5", path));
   if (!out->failed)
-    PetscCall(IndexWrite(out, path));
+    PetscCall(IndexWrite(out, g, path));
   for (XdmfKind kind = XDMF_PARTICLES; kind < XDMF_COUNT; kind++)
     PetscCall(XdmfWrite(out, g, kind));
   PetscFunctionReturn(PETSC_SUCCESS);

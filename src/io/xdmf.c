@@ -53,13 +53,8 @@ static void ParticleGrid(FILE *f, const FieldSet *fs, const SnapshotEntry *e)
   fprintf(f, "      </Grid>\n");
 }
 
-static void NodeGrid(FILE *f, const FieldSet *fs, const Grid *g, const SnapshotEntry *e)
+static void Equal(FILE *f, const Grid *g, const char *n)
 {
-  char n[64];
-
-  snprintf(n, sizeof(n), "1 %d %d", (int)g->cells[1] + 1, (int)g->cells[0] + 1);
-  fprintf(f, "      <Grid Name=\"grid_%06d\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n", (int)e->number,
-          e->t);
   fprintf(f, "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"%s\"/>\n", n);
   fprintf(f, "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">");
   fprintf(f, "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">0 %.17g %.17g</DataItem>",
@@ -67,7 +62,36 @@ static void NodeGrid(FILE *f, const FieldSet *fs, const Grid *g, const SnapshotE
   fprintf(f,
           "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">1 %.17g "
           "%.17g</DataItem></Geometry>\n",
-          g->h[1], g->h[0]);
+          g->line[1].h, g->line[0].h);
+}
+
+/* Places of the lines, x, y and the one layer. */
+static void Lines(FILE *f, const Grid *g, const char *n)
+{
+  fprintf(f, "        <Topology TopologyType=\"3DRectMesh\" Dimensions=\"%s\"/>\n", n);
+  fprintf(f, "        <Geometry GeometryType=\"VXVYVZ\">");
+  for (int d = 0; d < CL_DIM; d++) {
+    fprintf(f, "<DataItem Dimensions=\"%d\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">",
+            (int)g->cells[d] + 1);
+    for (PetscInt i = 0; i <= g->cells[d]; i++)
+      fprintf(f, "%s%.17g", i ? " " : "", GridNode(g, d, i));
+    fprintf(f, "</DataItem>");
+  }
+  fprintf(f,
+          "<DataItem Dimensions=\"1\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">0</DataItem></Geometry>\n");
+}
+
+static void NodeGrid(FILE *f, const FieldSet *fs, const Grid *g, const SnapshotEntry *e)
+{
+  char n[64];
+
+  snprintf(n, sizeof(n), "1 %d %d", (int)g->cells[1] + 1, (int)g->cells[0] + 1);
+  fprintf(f, "      <Grid Name=\"grid_%06d\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n", (int)e->number,
+          e->t);
+  if (g->line[0].x || g->line[1].x)
+    Lines(f, g, n);
+  else
+    Equal(f, g, n);
   for (const NodalVariable *v = io_nodal; v->name; v++) {
     if (fs->at[v->first] >= 0)
       Attribute(f, n, v->nc, false, "grid", e->number, v->name);

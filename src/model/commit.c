@@ -43,9 +43,10 @@ void ModelStartVelocity(const Model *m, double *v)
 static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
 {
   for (int d = 0; d < CL_DIM; d++) {
-    const double to = m->P.f[P_X + d][p] + u[d], upper = m->grid.lower[d] + (double)m->grid.cells[d] * m->grid.h[d];
+    const GridLines *line = &m->grid.line[d];
+    const double     to = m->P.f[P_X + d][p] + u[d], upper = LinesAt(line, line->cells);
 
-    if (fabs(u[d]) > MAX_MOVE * m->grid.h[d])
+    if (fabs(u[d]) > MAX_MOVE * LinesLeastAt(line, m->P.f[P_X + d][p]))
       ModelNoteFailure(m, CL_TOO_FAR, "a particle moves more than half a cell in one step", p);
     else if (to < m->grid.lower[d] || to > upper)
       ModelNoteFailure(m, CL_LEFT_GRID, "a particle leaves the background grid", p);
@@ -97,12 +98,15 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
 }
 
 /* (277): what a particle stores, and hands from cell to cell. */
-static void CountMoved(const Model *m, const double out[OUT_COUNT], StageRates *rates)
+static void CountMoved(const Model *m, PetscInt p, const double out[OUT_COUNT], StageRates *rates)
 {
+  double h[CL_DIM];
+
+  CellWidths(m, p, h);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     if (m->c->fields.phase[ph])
-      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[OUT_FLUX + 2 * ph]) / m->grid.h[0] +
-                          fabs(out[OUT_FLUX + 2 * ph + 1]) / m->grid.h[1];
+      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[OUT_FLUX + 2 * ph]) / h[0] +
+                          fabs(out[OUT_FLUX + 2 * ph + 1]) / h[1];
   }
 }
 
@@ -221,7 +225,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       trial->end[p] = s.end;
     if (trial->s)
       PlasticState(p, &s.skeleton, trial);
-    CountMoved(m, o.out, rates);
+    CountMoved(m, p, o.out, rates);
     if (m->c->fields.heat)
       HeatRates(m, &r, x, &s, o.out, rates);
     if (m->c->fields.solid)
@@ -266,16 +270,19 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   SkeletonKeep(&store, p, &s->skeleton);
 }
 
-/* FLIP: velocities of skeleton, water, gas. */
+/* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). */
 static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r)
 {
   const FieldSet *fs = &m->c->fields;
 
   for (int q = F_VSX; q < F_PW; q++) {
     for (int a = 0; fs->at[q] >= 0 && a < r->n; a++) {
-      const PetscInt k = r->node[a] * fs->n + fs->at[q];
+      const PetscInt I = r->node[a], k = I * fs->n + fs->at[q];
+      const PetscInt vs   = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
+      const double   dv   = x[k] - m->x_n[k];
+      const double   slip = q < F_VWX ? 0.0 : fs->solid ? dv - (x[vs] - m->x_n[vs]) : dv;
 
-      m->P.f[P_VS + q][p] += r->S[a] * (x[k] - m->x_n[k]);
+      m->P.f[P_VS + q][p] += r->S[a] * (dv + (FlowWeight(m, p, I) - 1.0) * slip);
     }
   }
 }

@@ -104,7 +104,7 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
     return;
   double at[CL_DIM], gradient[CL_DIM];
   for (int d = 0; d < CL_DIM; d++)
-    at[d] = AxisCentroid(&m->stencil[p].axis[d], m->grid.lower[d], m->grid.h[d]) + in[IN_U + d];
+    at[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]) + in[IN_U + d];
   power[WORK_LOADS] -=
       AmbientPressure(&m->bc.ambient, at, gradient) * k.expansion + out[OUT_A] * k.v[0][0] + out[OUT_A + 1] * k.v[0][1];
 }

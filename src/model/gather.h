@@ -19,13 +19,14 @@ static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
   const Stencil *s            = &m->stencil[p];
   const bool     ring         = m->c->axisymmetric;
   const PetscInt cell[CL_DIM] = {s->axis[0].base + s->cell[0], s->axis[1].base + s->cell[1]};
-  const double   radius = m->grid.lower[0] + (double)cell[0] * m->grid.h[0], share = m->c->mean_strain;
+  const double   h[CL_DIM]    = {LinesWidth(&m->grid.line[0], cell[0]), LinesWidth(&m->grid.line[1], cell[1])};
+  const double   radius = GridNode(&m->grid, 0, cell[0]), share = m->c->mean_strain;
   const double   mean = m->c->mean_dilatation ? (1.0 - share) / (ring ? 3.0 : 2.0) : 0.0;
 
   for (int a = 0; a < r->n; a++) {
     const PetscInt i[CL_DIM] = {m->map.ij[r->node[a]][0] - cell[0], m->map.ij[r->node[a]][1] - cell[1]};
     double         Q[CL_DIM];
-    const double   hoop = CellGradient(&m->grid, ring, i, radius, Q), beyond = ring ? hoop - r->H[a] : 0.0;
+    const double   hoop = CellGradient(h, ring, i, radius, Q), beyond = ring ? hoop - r->H[a] : 0.0;
 
     for (int d = 0; d < CL_DIM; d++) {
       r->mixed[a][d] = r->G[a][d] + share * (Q[d] - r->G[a][d]);
@@ -147,12 +148,26 @@ static inline double RowWeightOf(const Model *m, PetscInt I, int q)
   return q == F_PW || q == F_PG ? RowWeight(m, I, q - F_PW) : 1.0;
 }
 
+/* Widths of a particle's cell, m. */
+static inline void CellWidths(const Model *m, PetscInt p, double h[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    h[d] = LinesWidth(&m->grid.line[d], m->stencil[p].axis[d].base + m->stencil[p].cell[d]);
+}
+
 /* Volume of a full cell about a node, m^3. */
 static inline double NodeVolume(const Model *m, PetscInt I)
 {
-  const double h0 = m->grid.h[0], r = m->grid.lower[0] + (double)m->map.ij[I][0] * h0;
+  const PetscInt *ij = m->map.ij[I];
+  const double    h0 = LinesAround(&m->grid.line[0], ij[0]), r = GridNode(&m->grid, 0, ij[0]);
 
-  return h0 * m->grid.h[1] * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
+  return h0 * LinesAround(&m->grid.line[1], ij[1]) * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
+}
+
+/* The smallest cell width at a node, m. */
+static inline double NodeWidth(const Model *m, PetscInt I)
+{
+  return fmin(LinesLess(&m->grid.line[0], m->map.ij[I][0]), LinesLess(&m->grid.line[1], m->map.ij[I][1]));
 }
 
 static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const double *x, const Face *face,
@@ -188,7 +203,7 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
   double s = 0.0;
 
   for (int d = 0; d < CL_DIM; d++)
-    s += direction[d] * (m->grid.lower[d] + (double)m->map.ij[I][d] * m->grid.h[d] - m->P.f[P_X + d][p]);
+    s += direction[d] * (GridNode(&m->grid, d, m->map.ij[I][d]) - m->P.f[P_X + d][p]);
   return s;
 }
 
@@ -316,7 +331,7 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   }
   h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
   for (int d = 0; h->ambient && d < CL_DIM; d++)
-    h->x[d] = AxisCentroid(&m->stencil[p].axis[d], m->grid.lower[d], m->grid.h[d]);
+    h->x[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]);
   for (int k = 0; k < 3; k++) {
     h->m_star[k] = m->stage.m_star[3 * p + k];
     h->shift[k]  = Shift(m, p, r, F_PW + k);

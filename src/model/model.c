@@ -13,7 +13,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(m, sizeof(*m)));
   m->c = c;
-  PetscCall(GridCreate(comm, c->lower, c->upper, c->cells, &m->grid));
+  PetscCall(GridCreateOn(comm, (GridLines[CL_DIM]){CaseLines(c, 0), CaseLines(c, 1)}, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(first, &m->grid, &m->P));
   PetscCall(GeostaticStress(first, &m->grid, &m->P));

@@ -22,9 +22,11 @@ void ModelPlateStiffness(const Model *m, Face *f)
   PointProperties q;
   const char     *why;
 
-  f->K = ModelParticleProperties(m, f->particle, &q, &why) == CL_OK
-             ? PlateStiffness(&m->c->bc[f->bc[BC_PLATE]], f, &q, m->grid.h[SideAxis(f->side)])
-             : 0.0; /* the projection says why */
+  f->K =
+      ModelParticleProperties(m, f->particle, &q, &why) == CL_OK
+          ? PlateStiffness(&m->c->bc[f->bc[BC_PLATE]], f, &q,
+                           LinesWidthAt(&m->grid.line[SideAxis(f->side)], m->P.f[P_X + SideAxis(f->side)][f->particle]))
+          : 0.0; /* the projection says why */
 }
 
 /* Displacement of a face along its plate's axis since t_n. */

@@ -83,7 +83,7 @@ static PetscErrorCode RigidMotions(Model *m, Mat A)
     PetscCall(VecGetArrayWrite(x, &a));
     for (PetscInt I = 0; I < map->n_owned; I++) {
       for (int d = 0; d < CL_DIM; d++)
-        a[CL_DIM * I + d] = m->grid.lower[d] + (double)map->ij[I][d] * m->grid.h[d];
+        a[CL_DIM * I + d] = GridNode(&m->grid, d, map->ij[I][d]);
     }
     PetscCall(VecRestoreArrayWrite(x, &a));
     PetscCall(MatNullSpaceCreateRigidBody(x, &null));

@@ -184,7 +184,7 @@ static PetscErrorCode FindWorst(Model *m, int *field)
       continue;
     local.value = fabs(a[k]);
     for (int d = 0; d < CL_DIM; d++)
-      at[d] = m->grid.lower[d] + (double)m->map.ij[k / n][d] * m->grid.h[d];
+      at[d] = GridNode(&m->grid, d, m->map.ij[k / n][d]);
     at[2] = (double)m->c->fields.field[k % n];
   }
   PetscCall(VecRestoreArrayRead(m->R, &a));
@@ -220,13 +220,13 @@ static PetscErrorCode Explain(Model *m)
 
 /* Would the velocity at the start carry a node out of the trusted range within this stage?  Then it is none of a step
    so long: what is left of a motion that has come to rest since. */
-static bool TooFast(const Model *m, const double *x)
+static bool TooFast(const Model *m, PetscInt I, const double *x)
 {
   const FieldSet *fs  = &m->c->fields;
   double          far = 0.0;
 
   for (int d = 0; fs->solid && d < CL_DIM; d++)
-    far = fmax(far, fabs(x[PlaceVs(fs) + d]) * m->stage.dt / m->grid.h[d]);
+    far = fmax(far, fabs(x[PlaceVs(fs) + d]) * m->stage.dt / LinesLess(&m->grid.line[d], m->map.ij[I][d]));
   return far > CL_LIMIT_J;
 }
 
@@ -240,7 +240,7 @@ static PetscErrorCode FirstGuess(Model *m, const double *x)
   PetscCall(VecGetArrayWrite(m->X, &a));
   for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
     const bool fixed = (m->mask[k / n] >> (k % n)) & 1u;
-    const bool rests = m->c->fields.field[k % n] < F_PW && TooFast(m, &x[k - k % n]);
+    const bool rests = m->c->fields.field[k % n] < F_PW && TooFast(m, k / n, &x[k - k % n]);
 
     a[k] = (fixed ? m->fixed[k] : rests ? 0.0 : x[k]) / m->col_scale[k];
   }

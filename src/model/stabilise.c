@@ -14,34 +14,41 @@ static PetscInt CellIndex(const Model *m, PetscInt i, PetscInt j)
 }
 
 /* Share of [x-l, x+l] in its first cell; slivers to either side of a grid line do not count. */
-static double FirstShare(const Grid *g, int d, double x, double l, PetscInt *first)
+static double FirstShare(const GridLines *line, double x, double l, PetscInt *first)
 {
-  const double from = (x - l - g->lower[d]) / g->h[d], length = 2.0 * l / g->h[d];
+  const double from = LinesPlace(line, x - l);
   double       share;
 
-  *first = (PetscInt)floor(from + SLIVER);
-  share  = ((double)*first + 1.0 - from) / length;
+  *first              = (PetscInt)floor(from + SLIVER);
+  const double length = 2.0 * l / LinesWidth(line, *first); /* in its first cells */
+  share               = ((double)*first + 1.0 - from) / length;
   return share > 1.0 - SLIVER ? 1.0 : share;
+}
+
+static double CellVolume(const Model *m, PetscInt i, PetscInt j)
+{
+  return LinesWidth(&m->grid.line[0], i) * LinesWidth(&m->grid.line[1], j);
 }
 
 static void FillCells(const Model *m, double *fill)
 {
-  const double A_cell = m->grid.h[0] * m->grid.h[1];
-
   for (PetscInt p = 0; p < m->P.n; p++) {
     const double ring = m->c->axisymmetric ? 2.0 * M_PI * m->P.f[P_X][p] : 1.0;
     PetscInt     first[CL_DIM];
     double       share[CL_DIM];
 
-    for (int d = 0; d < CL_DIM; d++)
-      share[d] =
-          FirstShare(&m->grid, d, m->P.f[P_X + d][p], BasisHalfLength(m->P.f[P_L + d][p], m->grid.h[d]), &first[d]);
+    for (int d = 0; d < CL_DIM; d++) {
+      const GridLines *line = &m->grid.line[d];
+      const double     x    = m->P.f[P_X + d][p];
+
+      share[d] = FirstShare(line, x, BasisReach(line, x, m->P.f[P_L + d][p]), &first[d]);
+    }
     for (int k = 0; k < 4; k++) {
       const double   w = (k % 2 ? 1.0 - share[0] : share[0]) * (k / 2 ? 1.0 - share[1] : share[1]);
       const PetscInt I = w > 0.0 ? CellIndex(m, first[0] + k % 2, first[1] + k / 2) : -1;
 
       if (I >= 0)
-        fill[2 * I] += w * m->P.f[P_V][p] / (ring * A_cell);
+        fill[2 * I] += w * m->P.f[P_V][p] / (ring * CellVolume(m, first[0] + k % 2, first[1] + k / 2));
     }
   }
 }
@@ -55,7 +62,7 @@ static void MarkSurface(const Model *m, double *fill)
     double      s[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
-      s[d] = (f->x[d] - m->grid.lower[d]) / m->grid.h[d];
+      s[d] = LinesPlace(&m->grid.line[d], f->x[d]);
     if (fabs(s[axis] - round(s[axis])) < 1e-6 || (f->n[0] == 0.0 && f->n[1] == 0.0))
       continue; /* on a grid line, or the axis: nothing is cut */
     const PetscInt I = CellIndex(m, (PetscInt)floor(s[0]), (PetscInt)floor(s[1]));
@@ -89,25 +96,31 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
     const PetscInt i = m->map.ij[I][0], j = m->map.ij[I][1];
 
     for (int d = 0; d < CL_DIM; d++) {
-      const int      t  = 1 - d;
-      const PetscInt lo = CellIndex(m, i - (d == 0), j - (d == 1)), hi = CellIndex(m, i + (d == 0), j + (d == 1));
-      const int      sides =
-          FaceNeedsPenalty(m, fill, near, i, j, d) + FaceNeedsPenalty(m, fill, near, i - (d == 1), j - (d == 0), d);
-      const double *c = &m->coef[I * NC_COUNT];
+      const GridLines *line = &m->grid.line[d], *across = &m->grid.line[1 - d];
+      const PetscInt   k = d ? j : i, l = d ? i : j;
+      const PetscInt   lo = CellIndex(m, i - (d == 0), j - (d == 1)), hi = CellIndex(m, i + (d == 0), j + (d == 1));
+      const bool       right = FaceNeedsPenalty(m, fill, near, i, j, d),
+                 left        = FaceNeedsPenalty(m, fill, near, i - (d == 1), j - (d == 0), d);
+      const double A         = LinesAround(across, l),
+                   sides     = ((right ? LinesWidth(across, l) : 0.0) + (left ? LinesWidth(across, l - 1) : 0.0)) / A;
+      const double *c        = &m->coef[I * NC_COUNT];
 
-      if (!sides || lo < 0 || hi < 0)
+      if (!(right || left) || lo < 0 || hi < 0)
         continue;
-      const double depth = NodeVolume(m, I) / (m->grid.h[0] * m->grid.h[1]);  /* 1, or around the axis */
-      const double ratio = 0.5 * sides * depth * m->grid.h[t] / m->grid.h[d]; /* A/h */
-      GhostLine   *line  = &m->ghost[n++];
+      const double h     = LinesAround(line, k);
+      const double depth = NodeVolume(m, I) / (d ? A * h : h * A); /* 1, or around the axis */
+      const double below = h / LinesWidth(line, k - 1), above = h / LinesWidth(line, k);
+      const double ratio = 0.5 * sides * depth * A / h; /* A/h */
+      GhostLine   *ghost = &m->ghost[n++];
 
-      *line = (GhostLine){.node   = {lo, I, hi},
-                          .a      = m->c->ghost_penalty * ratio,
-                          .M      = c[NC_M],
-                          .kappa  = c[NC_KAPPA],
-                          .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
+      *ghost = (GhostLine){.node   = {lo, I, hi},
+                           .second = {below, -(below + above), above},
+                           .a      = m->c->ghost_penalty * ratio,
+                           .M      = c[NC_M],
+                           .kappa  = c[NC_KAPPA],
+                           .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
       for (int f = 0; f < PHASE_COUNT; f++)
-        line->store[f] = m->c->ghost_storage * ratio * PetscSqr(m->grid.h[d]) * c[NC_RHO + f] * c[NC_STORAGE + f];
+        ghost->store[f] = m->c->ghost_storage * ratio * h * h * c[NC_RHO + f] * c[NC_STORAGE + f];
     }
   }
   m->nghost = n;
@@ -150,7 +163,7 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
   if (ModelParticleProperties(m, p, &q, &why) != CL_OK)
     return; /* ModelBeginStep reported it */
   for (int d = 0; d < CL_DIM; d++)
-    r[d] = (m->P.f[P_X + d][p] - m->grid.lower[d]) / m->grid.h[d] - (double)cell[d];
+    r[d] = LinesPlace(&m->grid.line[d], m->P.f[P_X + d][p]) - (double)cell[d];
 
   const double V = m->P.f[P_V][p], w = V * m->c->pressure_projection / (2.0 * q.G);
   const double N[4] = {(1 - r[0]) * (1 - r[1]), r[0] * (1 - r[1]), (1 - r[0]) * r[1], r[0] * r[1]};
@@ -173,7 +186,8 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
 
 static bool FinishCell(const Model *m, const PetscInt cell[], const CellSums *c, ProjectionCell *k)
 {
-  const double h2 = 1.0 / (1.0 / PetscSqr(m->grid.h[0]) + 1.0 / PetscSqr(m->grid.h[1]));
+  const double h[CL_DIM] = {LinesWidth(&m->grid.line[0], cell[0]), LinesWidth(&m->grid.line[1], cell[1])};
+  const double h2        = 1.0 / (1.0 / PetscSqr(h[0]) + 1.0 / PetscSqr(h[1]));
 
   for (int a = 0; a < 4; a++) {
     k->node[a] = CellIndex(m, cell[0] + a % 2, cell[1] + a / 2);
@@ -251,8 +265,6 @@ static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, dou
     c[F_T] = g->a * g->kappa;
 }
 
-static const double second[3] = {1.0, -2.0, 1.0};
-
 /* Second difference of unknown k of the nodal values x. */
 static double Jump(const Model *m, const GhostLine *g, const double *x, int k)
 {
@@ -260,7 +272,7 @@ static double Jump(const Model *m, const GhostLine *g, const double *x, int k)
   double          jump = 0.0;
 
   for (int a = 0; a < 3; a++)
-    jump += second[a] * x[g->node[a] * fs->n + fs->at[k]];
+    jump += g->second[a] * x[g->node[a] * fs->n + fs->at[k]];
   return jump;
 }
 
@@ -277,7 +289,7 @@ static void GhostResidual(const Model *m, const GhostLine *g, const double *x, d
     if (k == F_PW || k == F_PG) /* (351) is on the change from p* */
       pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);
     for (int a = 0; a < 3; a++)
-      *RowOf(m, f, g->node[a], k) += pull * second[a];
+      *RowOf(m, f, g->node[a], k) += pull * g->second[a];
   }
 }
 
@@ -343,10 +355,10 @@ static void GhostBlock(const Model *m, const Assembly *to, const GhostLine *g)
   GhostCoefficients(m, g, m->stage.dt, c);
   for (int k = 0; k < F_COUNT; k++) {
     for (int a = 0; a < 3 && c[k] != 0.0; a++) {
-      const double w = c[k] * second[a] * RowWeightOf(m, g->node[a], k);
+      const double w = c[k] * g->second[a] * RowWeightOf(m, g->node[a], k);
 
       for (int b = 0; b < 3; b++)
-        AssemblyBlock(m, to, g->node[a], g->node[b])[at[k] * n + at[k]] += w * second[b];
+        AssemblyBlock(m, to, g->node[a], g->node[b])[at[k] * n + at[k]] += w * g->second[b];
     }
   }
 }

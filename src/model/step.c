@@ -48,10 +48,10 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
       const double x = m->P.f[P_X + d][p], l = m->P.f[P_L + d][p];
 
       if (d == 0 && m->c->axisymmetric)
-        BasisRadius(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s->axis[d], s->hoop, &s->r);
+        BasisRadius(m->c->basis, x, l, &g->line[d], &s->axis[d], s->hoop, &s->r);
       else
-        BasisAxis(m->c->basis, x, l, g->lower[d], g->h[d], g->cells[d], &s->axis[d]);
-      s->cell[d] = BasisCell((x - g->lower[d]) / g->h[d], (double)s->axis[d].base, (double)g->cells[d]);
+        BasisAxis(m->c->basis, x, l, &g->line[d], &s->axis[d]);
+      s->cell[d] = BasisCellAt(&g->line[d], x, &s->axis[d]);
     }
     if (!InsideGrid(g, s)) {
       ModelNoteFailure(m, CL_LEFT_GRID, "a particle's domain leaves the background grid", p);
@@ -117,11 +117,12 @@ static double SpreadOf(const Model *m, PetscInt p, int phase, const PointPropert
   static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
   const double     w = q->kr[PHASE_W] / q->resist[PHASE_W], o = q->kr[PHASE_G] / q->resist[PHASE_G];
   const double     both = w > 0.0 && o > 0.0 ? w * o / (w + o) : 0.0;
-  double           g[CL_DIM], hg = 0.0;
+  double           g[CL_DIM], h[CL_DIM], hg = 0.0;
 
+  CellWidths(m, p, h);
   for (int d = 0; d < CL_DIM; d++) {
     g[d] = m->P.f[gradient[phase] + d][p] - q->rho[phase] * m->c->gravity[d];
-    hg += m->grid.h[d] * fabs(g[d]);
+    hg += h[d] * fabs(g[d]);
   }
   const double Pe = 0.5 * hg * fabs(q->mobility_slope[phase]) / both;
 
@@ -133,14 +134,15 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
 {
   static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
   const Material  *mat                   = ParticleMaterial(m, p);
-  double           a[CL_DIM]             = {0.0};
+  double           a[CL_DIM]             = {0.0}, h[CL_DIM];
 
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
       a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] * q->kr[k] / q->resist[k] *
               (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
   }
-  HeatUpwind(q->kappa, a, m->grid.h, K);
+  CellWidths(m, p, h);
+  HeatUpwind(q->kappa, a, h, K);
 }
 
 /* Did the particle's domain begin at the axis? */
@@ -150,8 +152,9 @@ static bool SeededAtAxis(const Model *m, PetscInt p)
 
   if (!m->c->axisymmetric)
     return false;
-  ParticlesInitialHalfLength(m->c, m->P.i[PI_REGION][p], l);
-  return ParticleInitialX(&m->P, p, 0) < l[0] * (1.0 + AT_AXIS);
+  const double x[CL_DIM] = {ParticleInitialX(&m->P, p, 0), ParticleInitialX(&m->P, p, 1)};
+  ParticlesInitialHalfLength(m->c, m->P.i[PI_REGION][p], x, l);
+  return x[0] < l[0] * (1.0 + AT_AXIS);
 }
 
 static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointProperties *q, double *sum)
@@ -163,12 +166,11 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
   double       at[CL_DIM]; /* where the particle's values belong */
 
   for (int d = 0; d < CL_DIM; d++)
-    at[d] = AxisCentroid(&m->stencil[p].axis[d], g->lower[d], g->h[d]);
+    at[d] = AxisCentroid(&m->stencil[p].axis[d], &g->line[d]);
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
     const double   S = r->S[a], VS = V * S, VSk = VS * k0;
-    const double   d[2] = {g->lower[0] + (double)m->map.ij[I][0] * g->h[0] - at[0],
-                           g->lower[1] + (double)m->map.ij[I][1] * g->h[1] - at[1]};
+    const double   d[2] = {GridNode(g, 0, m->map.ij[I][0]) - at[0], GridNode(g, 1, m->map.ij[I][1]) - at[1]};
     double        *c    = &m->coef[I * NC_COUNT];
 
     DepositNode(m, p, S, d, q, &sum[I * width]);
@@ -296,7 +298,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
   }
   PetscCall(NodeMapSum(&m->map, sum, 2));
   for (PetscInt k = 0; k < 2 * m->map.n_local; k++) {
-    if (sum[k] > UPSTREAM_LEAST * fmin(m->grid.h[0], m->grid.h[1]) * m->V[k / 2])
+    if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, k / 2) * m->V[k / 2])
       m->up[3 * k + 2] = m->V[k / 2] / sum[k];
   }
   PetscCall(PetscFree(sum));
@@ -449,11 +451,10 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
 
 static void Scales(Model *m)
 {
-  const double h = fmin(m->grid.h[0], m->grid.h[1]);
-  const int    n = m->c->fields.n;
+  const int n = m->c->fields.n;
 
   for (PetscInt I = 0; I < m->map.n_local; I++)
-    NodeScales(m, I, h, &m->row_scale[I * n], &m->col_scale[I * n]);
+    NodeScales(m, I, NodeWidth(m, I), &m->row_scale[I * n], &m->col_scale[I * n]);
 }
 
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s)

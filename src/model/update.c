@@ -89,9 +89,10 @@ static double NodeLimit(const Model *m, PetscInt I, const double *x, const doubl
   }
   for (int d = 0; fs->solid && d < CL_DIM; d++) {
     const double du = fabs(y[PlaceVs(fs) + d] * s[PlaceVs(fs) + d]) * m->stage.dt;
+    const double h  = LinesLess(&m->grid.line[d], m->map.ij[I][d]);
 
-    if (du > CL_LIMIT_J * m->grid.h[d])
-      cut = fmin(cut, CL_LIMIT_J * m->grid.h[d] / du);
+    if (du > CL_LIMIT_J * h)
+      cut = fmin(cut, CL_LIMIT_J * h / du);
   }
   return cut;
 }

@@ -67,8 +67,7 @@ static bool Reaches(const Grid *g, PetscMPIInt r, const double x[CL_DIM], double
   double         d2         = 0.0;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const double lo = g->lower[d] + (double)g->start[d][at[d]] * g->h[d],
-                 hi = g->lower[d] + (double)g->start[d][at[d] + 1] * g->h[d];
+    const double lo = GridNode(g, d, g->start[d][at[d]]), hi = GridNode(g, d, g->start[d][at[d] + 1]);
 
     d2 += PetscSqr(fmax(0.0, fmax(lo - x[d], x[d] - hi)));
   }

@@ -2,13 +2,13 @@
 #include "clathra/particles.h"
 #include "clathra/shape.h"
 
-void ParticlesInitialHalfLength(const Case *c, PetscInt region, double l[CL_DIM])
+void ParticlesInitialHalfLength(const Case *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM])
 {
   Lattice lattice;
 
   RegionLattice(c, region, &lattice);
   for (int d = 0; d < CL_DIM; d++)
-    l[d] = 0.5 * lattice.spacing[d];
+    l[d] = 0.5 * LatticeWidth(&lattice, d, x[d]);
 }
 
 static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, SiteVisit visit,
@@ -22,11 +22,12 @@ static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region,
   if (RegionEmpty(&c->region[region]))
     PetscFunctionReturn(PETSC_SUCCESS);
   RegionLattice(c, region, &lattice);
-  ParticlesInitialHalfLength(c, region, l);
   for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
     for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
       if (!RegionPlace(c, region, &lattice, ij, x))
         continue;
+      for (int d = 0; d < CL_DIM; d++)
+        l[d] = 0.5 * LatticeWidth(&lattice, d, x[d]);
       const Site site = {.id     = (*id)++,
                          .region = region,
                          .faces  = RegionFaces(c, region, &lattice, ij),

@@ -5,12 +5,12 @@
 /* Points are judged a little off their place (of a cell), so that round-off decides nothing: a point on an edge goes
    to the region above or to the right of it. */
 #define NUDGE 1e-7
+#define ROUND 1e-9 /* of a cell: an edge of a place so close to a line lies on it */
+/* Of a place: a box with less than that beyond the last edge of the filling stretches the place before it; where there
+   is one place a cell, a longer domain would act shorter than it is. */
+#define LEAST_PLACE 0.25
+#define LEAST_ONLY 0.05
 #define ON_CIRCLE 1e-9 /* of the radius: on it is outside */
-
-static double Cell(const Case *c, int d)
-{
-  return (c->upper[d] - c->lower[d]) / (double)c->cells[d];
-}
 
 static void Bounds(const Points *points, double lower[], double upper[])
 {
@@ -49,7 +49,9 @@ void RegionBound(const Case *c, Region *r)
 /* The region's own shape, before `minus`. */
 static bool Holds(const Case *c, const Region *r, const double x[])
 {
-  const double y[CL_DIM] = {x[0] + NUDGE * Cell(c, 0), x[1] + 0.618 * NUDGE * Cell(c, 1)};
+  const GridLines line[CL_DIM] = {CaseLines(c, 0), CaseLines(c, 1)};
+  const double    y[CL_DIM]    = {x[0] + NUDGE * LinesWidthAt(&line[0], x[0]),
+                                  x[1] + 0.618 * NUDGE * LinesWidthAt(&line[1], x[1])};
 
   for (int d = 0; d < CL_DIM; d++) {
     if (!(y[d] >= r->lower[d] && y[d] < r->upper[d]))
@@ -118,12 +120,40 @@ double RegionHighest(const Region *r, const double direction[])
 }
 
 /* ---------------------------------------------------------------- places */
+/* Where cells differ the places are those of a regular filling of the cells, by which domains end on lines; a box cuts
+   or stretches the outermost to its sides. */
+static void LatticeUnequal(const Case *c, const Region *r, int d, Lattice *lattice)
+{
+  const GridLines *line = &lattice->line[d];
+  const double     ppc  = (double)r->ppc[d];
+  const double lower = LinesPlace(line, r->lower[d]) * ppc, upper = LinesPlace(line, r->upper[d]) * ppc; /* places */
+  const bool   box   = r->shape == SHAPE_BOX;
+  const double least = r->ppc[d] > 1 ? LEAST_PLACE : LEAST_ONLY;
+  PetscInt     first = PetscMax((PetscInt)floor(lower + ROUND), 0), last = (PetscInt)ceil(upper - ROUND);
+
+  if (box) {
+    first = (PetscInt)floor(lower + least);
+    last  = PetscMax((PetscInt)ceil(upper - least), first + 1);
+  }
+  last                = PetscMin(last, c->cells[d] * r->ppc[d]);
+  lattice->first[d]   = first;
+  lattice->n[d]       = PetscMax(last - first, 0);
+  lattice->spacing[d] = 1.0 / ppc;
+  lattice->from[d]    = box ? lower / ppc : (double)first / ppc;
+  lattice->to[d]      = box ? upper / ppc : (double)last / ppc;
+}
+
 void RegionLattice(const Case *c, PetscInt region, Lattice *lattice)
 {
   const Region *r = &c->region[region];
 
   for (int d = 0; d < CL_DIM; d++) {
-    const double length = r->upper[d] - r->lower[d], h = Cell(c, d), ppc = (double)r->ppc[d];
+    lattice->line[d] = CaseLines(c, d);
+    if (lattice->line[d].x) {
+      LatticeUnequal(c, r, d, lattice);
+      continue;
+    }
+    const double length = r->upper[d] - r->lower[d], h = lattice->line[d].h, ppc = (double)r->ppc[d];
 
     if (r->shape == SHAPE_BOX) {
       lattice->first[d]   = 0;
@@ -140,12 +170,50 @@ void RegionLattice(const Case *c, PetscInt region, Lattice *lattice)
   }
 }
 
+/* Edge i of the places, m, where cells differ; beyond the ends one place after the other. */
+static double LatticeEdge(const Lattice *lattice, int d, PetscInt i)
+{
+  const PetscInt n       = lattice->n[d];
+  const double   spacing = lattice->spacing[d], regular = (double)(lattice->first[d] + i) * spacing;
+  const double   s    = i <= 0   ? lattice->from[d] + (double)i * spacing
+                        : i >= n ? lattice->to[d] + (double)(i - n) * spacing
+                                 : regular;
+  const double   line = rint(s);
+
+  return LinesFrom(&lattice->line[d], fabs(s - line) < ROUND ? line : s);
+}
+
+/* Number of the place that holds x, also where there is none. */
+static PetscInt LatticeIndex(const Lattice *lattice, int d, double x)
+{
+  if (!lattice->line[d].x)
+    return (PetscInt)floor((x - lattice->from[d]) / lattice->spacing[d]) - lattice->first[d];
+  const double   s = LinesPlace(&lattice->line[d], x), spacing = lattice->spacing[d];
+  const PetscInt i = (PetscInt)floor(s / spacing) - lattice->first[d], n = lattice->n[d];
+
+  if (s < lattice->from[d])
+    return (PetscInt)floor((s - lattice->from[d]) / spacing);
+  if (s >= lattice->to[d])
+    return n + (PetscInt)floor((s - lattice->to[d]) / spacing);
+  return PetscMin(PetscMax(i, 0), n - 1);
+}
+
+double LatticeWidth(const Lattice *lattice, int d, double x)
+{
+  if (!lattice->line[d].x)
+    return lattice->spacing[d];
+  const PetscInt i = LatticeIndex(lattice, d, x);
+
+  return LatticeEdge(lattice, d, i + 1) - LatticeEdge(lattice, d, i);
+}
+
 bool RegionPlace(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[], double x[])
 {
   bool in = true;
 
   for (int d = 0; d < CL_DIM; d++) {
-    x[d] = lattice->from[d] + ((double)(lattice->first[d] + ij[d]) + 0.5) * lattice->spacing[d];
+    x[d] = lattice->line[d].x ? 0.5 * (LatticeEdge(lattice, d, ij[d]) + LatticeEdge(lattice, d, ij[d] + 1))
+                              : lattice->from[d] + ((double)(lattice->first[d] + ij[d]) + 0.5) * lattice->spacing[d];
     in   = in && ij[d] >= 0 && ij[d] < lattice->n[d];
   }
   return in && (RegionWhole(&c->region[region]) || RegionHolds(c, region, x));
@@ -169,7 +237,7 @@ static bool Covers(const Case *c, PetscInt region, const double x[], const doubl
     return true;
   RegionLattice(c, region, &lattice);
   for (int d = 0; d < CL_DIM; d++)
-    ij[d] = (PetscInt)floor((x[d] - lattice.from[d]) / lattice.spacing[d]) - lattice.first[d];
+    ij[d] = LatticeIndex(&lattice, d, x[d]);
   return RegionPlace(c, region, &lattice, ij, centre);
 }
 
@@ -185,7 +253,7 @@ PetscInt RegionFaces(const Case *c, PetscInt region, const Lattice *lattice, con
     double         next[CL_DIM], outside[CL_DIM] = {x[0], x[1]};
     bool           covered = RegionPlace(c, region, lattice, beside, next);
 
-    outside[d] += sign * 1.001 * (0.5 * lattice->spacing[d]);
+    outside[d] += sign * 1.001 * (0.5 * LatticeWidth(lattice, d, x[d]));
     for (PetscInt k = 0; k < c->nregion && !covered; k++)
       covered = k != region && Covers(c, k, outside, next, RegionWhole(&c->region[region]));
     if (!covered)
@@ -273,7 +341,7 @@ void FaceNormal(const Case *c, PetscInt region, const double x[], int side, doub
   w.n[d] = sign;
   if (!RegionWhole(r)) {
     RegionLattice(c, region, &lattice);
-    w.b[d] += sign * lattice.spacing[d];
+    w.b[d] += sign * LatticeWidth(&lattice, d, x[d]);
     TryShape(&w, r);
     for (PetscInt k = 0; k < r->minus.n; k++)
       TryShape(&w, &c->region[r->minus.i[k]]);
@@ -291,9 +359,11 @@ static bool OnLine(const Case *c, const Points *line, PetscInt region, const dou
   Lattice   lattice;
 
   RegionLattice(c, region, &lattice);
-  a[d] += 0.5 * SideSign(side) * lattice.spacing[d];
-  b[d] = a[d] + LINE_REACH * lattice.spacing[d];
-  a[d] -= LINE_REACH * lattice.spacing[d];
+  const double width = LatticeWidth(&lattice, d, x[d]);
+
+  a[d] += 0.5 * SideSign(side) * width;
+  b[d] = a[d] + LINE_REACH * width;
+  a[d] -= LINE_REACH * width;
   for (PetscInt k = 0; k + 1 < line->n; k++) {
     if (SegmentsMeet(a, b, line->x + 2 * k, line->x + 2 * (k + 1), &t))
       return true;

@@ -6,7 +6,7 @@ static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperSch
 
 double StepperFloorU(const Stepper *s)
 {
-  return 1e-3 * fmin(s->model->grid.h[0], s->model->grid.h[1]);
+  return 1e-3 * fmin(s->model->grid.line[0].h, s->model->grid.line[1].h);
 }
 
 void StepperStageWords(const Stepper *s, char words[80])

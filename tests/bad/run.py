@@ -32,7 +32,29 @@ STRESS = lambda value: ("    Sh: 0\n", f"    Sh: 0\n    stress: {value}\n")
 
 STRENGTH = lambda keys: [("    elasticity:", "    plasticity: {law: mohr_coulomb, " + keys + "}\n    elasticity:")]
 
+SPACING = lambda value, cells="auto, 1": [("cells: [52, 1]", f"cells: [{cells}]\n  spacing: {{{value}}}")]
+
 CASES = [
+    # --- spacing of the grid
+    ("growth below 1", SPACING("x: [0.01 m, 0.05 m, growth 0.9]"), ["grid_spacing_x", "'0.9'", "[1,2]"], []),
+    ("growth above 2", SPACING("x: [0.01 m, 0.05 m, growth 2.5]"), ["grid_spacing_x", "'2.5'", "[1,2]"], []),
+    ("first size above the largest", SPACING("x: [0.05 m, 0.01 m, growth 1.1]"), ["grid_spacing_x", "first size is above the largest", "0.05 m > 0.01 m"], []),
+    ("size without unit", SPACING("x: [0.01, 0.05 m, growth 1.1]"), ["grid_spacing_x", "'0.01'", "0.01 m"], []),
+    ("size of nothing", SPACING("x: [0 m, 0.05 m, growth 1.1]"), ["grid_spacing_x", "'0 m'", "(0,1e6]"], []),
+    ("two sizes alone", SPACING("x: [0.01 m, 0.05 m]"), ["grid_spacing_x", "has 2 values", "the growth"], []),
+    ("cells that do not fill the axis", SPACING("x: 0.3 m"), ["grid_spacing_x", "0.3 m do not fill 1.04 m", "nearest: 0.346666667 m, 0.26 m"], []),
+    ("first size that does not fit", SPACING("x: [0.7 m, 0.9 m, growth 1.1]"), ["grid_spacing_x", "2 cells of at least 0.7 m are longer than the grid, 1.04 m"], []),
+    ("too many cells", SPACING("x: [1e-6 m, 1e-6 m, growth 1.1]"), ["grid_spacing_x", "more than 100000 cells"], []),
+    ("table that ends early", SPACING("x: {table: [0 m, 0.01 m, 1 m, 0.05 m]}"), ["grid_spacing_x_table", "0..1.04 m", "has 1 m there"], []),
+    ("table that turns back", SPACING("x: {table: [0 m, 0.01 m, 0.7 m, 0.02 m, 0.5 m, 0.02 m, 1.04 m, 0.05 m]}"), ["grid_spacing_x_table", "must ascend", "0.5 m after 0.7 m"], []),
+    ("table of one place", SPACING("x: {table: [0 m, 0.01 m]}"), ["grid_spacing_x_table", "needs pairs"], []),
+    ("table that jumps", SPACING("x: {table: [0 m, 0.01 m, 0.5 m, 0.01 m, 0.51 m, 0.1 m, 1.04 m, 0.1 m]}"), ["grid_spacing_x_table", "more than 2 times as wide"], []),
+    ("two spacings", SPACING("x: {table: [0 m, 0.01 m, 1.04 m, 0.02 m]}"), ["grid_spacing_x_table", "two ways to say the same"], ["-grid_spacing_x", "0.02 m"]),
+    ("spacing against the cells", SPACING("x: 0.02 m", "50, 1"), ["grid_cells", "names 50 cells along x, but the spacing makes 52"], []),
+    ("auto without a spacing", [("cells: [52, 1]", "cells: [auto, 1]")], ["grid_cells", "auto along x", "grid_spacing_x"], []),
+    ("no cells and one spacing", [("  cells: [52, 1]\n", "  spacing: {x: 0.02 m}\n")], ["grid_cells"], []),
+    ("softening of one size of cells", SPACING("x: [0.01 m, 0.05 m, growth 1.1]")
+     + STRENGTH("cohesion_max: 1 MPa, cohesion_residual: 0.9 MPa, friction_peak: 30 deg, eta_s: 0.1, softening_length: 0.02 m"), [M + "plasticity_softening_length", "needs equal cells"], []),
     # --- functions of time
     ("wave without a period", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 0.1 MPa]}}\ntime: {end")], ["ambient_pressure_sine", "has 2 values", "amplitude, period and begin"], []),
     ("wave of no length", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 0.1 MPa, 0 h]}}\ntime: {end")], ["ambient_pressure_sine", "'0 h'", "(0,inf) s"], []),

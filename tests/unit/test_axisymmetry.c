@@ -20,7 +20,9 @@ static void RadialErrors(BasisType basis, double x, double l, double lower, doub
   Axis   a;
   double H[3], r, S = 0.0, G = 0.0, Gr = 0.0, Hr = 0.0, mean = 0.0, first = 0.0;
 
-  BasisRadius(basis, x, l, lower, h, cells, &a, H, &r);
+  const GridLines line = LinesEqual(lower, lower + (double)cells * h, cells);
+
+  BasisRadius(basis, x, l, &line, &a, H, &r);
   const double lo = fmax(x - l, lower), hi = fmin(x + l, lower + (double)cells * h), mid = 0.5 * (lo + hi);
   for (int k = 0; k < 3; k++) {
     const double rk = lower + (double)(a.base + k) * h;
@@ -40,7 +42,7 @@ static void RadialErrors(BasisType basis, double x, double l, double lower, doub
   e->mean  = fmax(e->mean, fabs(mean / (basis == BASIS_LINEAR ? x : mid) - 1.0));
   /* int r^2 dr / int r dr */
   const double ring = basis == BASIS_LINEAR ? x : 2.0 / 3.0 * (hi * hi + hi * lo + lo * lo) / (hi + lo);
-  e->centroid       = fmax(e->centroid, fmax(fabs(first - ring), fabs(AxisCentroid(&a, lower, h) - first)) / h);
+  e->centroid       = fmax(e->centroid, fmax(fabs(first - ring), fabs(AxisCentroid(&a, &line) - first)) / h);
 }
 
 static void TestRadialWeights(void **state)
@@ -79,9 +81,10 @@ static void TestRadialWeights(void **state)
 /* Weights against quadrature of N r, N' r and N, panel by panel between the grid lines. */
 static void TestRadialQuadrature(void **state)
 {
-  const double h     = 0.2;
-  double       worst = 0.0;
-  Rng          rng   = {5};
+  const double    h     = 0.2;
+  const GridLines line  = LinesEqual(0.0, 6.0 * h, 6);
+  double          worst = 0.0;
+  Rng             rng   = {5};
 
   (void)state;
   for (int n = 0; n < 2000; n++) {
@@ -89,7 +92,7 @@ static void TestRadialQuadrature(void **state)
     double       H[3], r;
     Axis         a;
 
-    BasisRadius(BASIS_CPGIMP, x, l, 0.0, h, 6, &a, H, &r);
+    BasisRadius(BASIS_CPGIMP, x, l, &line, &a, H, &r);
     for (int k = 0; k < 3; k++) {
       const double node   = (double)(a.base + k) * h;
       const double cut[5] = {lo, fmin(fmax(node - h, lo), hi), fmin(fmax(node, lo), hi), fmin(fmax(node + h, lo), hi),
@@ -285,8 +288,8 @@ static void TestHomogeneous(void **state)
     Call(ModelBeginStage(&s->m, &s->stage));
     Call(PetscMalloc1(s->m.map.n_local * 2, &x));
     for (PetscInt I = 0; I < s->m.map.n_local; I++) {
-      x[2 * I]     = a * (double)s->m.map.ij[I][0] * s->m.grid.h[0] / dt;
-      x[2 * I + 1] = b * (double)s->m.map.ij[I][1] * s->m.grid.h[1] / dt;
+      x[2 * I]     = a * (double)s->m.map.ij[I][0] * s->m.grid.line[0].h / dt;
+      x[2 * I + 1] = b * (double)s->m.map.ij[I][1] * s->m.grid.line[1].h / dt;
     }
     const double residual = ResidualAt(s, x, 0, F_COUNT);
     Call(PetscMalloc4(3 * s->m.P.n, &t.m, 4 * s->m.P.n, &t.y, 2 * s->m.P.n, &t.u, 2 * s->m.P.n, &t.v));

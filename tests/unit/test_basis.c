@@ -53,8 +53,9 @@ static void RandomDomain(Rng *r, double lower, double h, int cells, double *x, d
 
 static void TestAxis(void **state)
 {
-  const double lower = -0.37, h = 0.13;
-  const int    cells = 9;
+  const double    lower = -0.37, h = 0.13;
+  const int       cells = 9;
+  const GridLines line  = LinesEqual(lower, lower + cells * h, cells);
 
   (void)state;
   for (int basis = 0; basis < 3; basis++) {
@@ -66,7 +67,7 @@ static void TestAxis(void **state)
       Axis   a;
 
       RandomDomain(&r, lower, h, cells, &x, &l);
-      BasisAxis((BasisType)basis, x, l, lower, h, cells, &a);
+      BasisAxis((BasisType)basis, x, l, &line, &a);
       const Moments m = MomentsOf(&a, lower, h, x);
       w.one           = fmax(w.one, fabs(m.one) * l / h); /* (3) divides by 2 l: so does its round-off */
       w.zero          = fmax(w.zero, fabs(m.zero) * l);
@@ -89,7 +90,8 @@ static void TestAxis(void **state)
 /* Weights by fine quadrature of the hat functions, gradients by differences of the weights. */
 static void TestAgainstDefinition(void **state)
 {
-  const double lower = 0.2, h = 0.5;
+  const double    lower = 0.2, h = 0.5;
+  const GridLines line = LinesEqual(lower, lower + 8.0 * h, 8);
 
   (void)state;
   for (int basis = 0; basis < 3; basis++) {
@@ -100,9 +102,9 @@ static void TestAgainstDefinition(void **state)
       const double l = RngBetween(&r, 0.02, 0.5) * h, x = RngBetween(&r, lower + h, lower + 7.0 * h), t = 1e-5 * h;
       Axis         a, up, down;
 
-      BasisAxis((BasisType)basis, x, l, lower, h, 8, &a);
-      BasisAxis((BasisType)basis, x + t, l, lower, h, 8, &up);
-      BasisAxis((BasisType)basis, x - t, l, lower, h, 8, &down);
+      BasisAxis((BasisType)basis, x, l, &line, &a);
+      BasisAxis((BasisType)basis, x + t, l, &line, &up);
+      BasisAxis((BasisType)basis, x - t, l, &line, &down);
       for (int k = 0; k < 3; k++) {
         const double node = lower + (double)(a.base + k) * h, lo = x - l, hi = x + l;
         const double cut[5] = {lo, fmin(fmax(node - h, lo), hi), fmin(fmax(node, lo), hi), fmin(fmax(node + h, lo), hi),
@@ -125,7 +127,8 @@ static void TestAgainstDefinition(void **state)
 /* Domains over the edge of the grid keep to it: sums still hold, no node outside. */
 static void TestClipping(void **state)
 {
-  Rng r = {203};
+  const GridLines line = LinesEqual(0.0, 4.0, 4);
+  Rng             r    = {203};
 
   (void)state;
   for (int n = 0; n < 20000; n++) {
@@ -133,8 +136,8 @@ static void TestClipping(void **state)
     Axis         a, b;
     double       Sa = -1.0, Sb = -1.0, Ga = 0.0, Gb = 0.0;
 
-    BasisAxis(BASIS_UGIMP, x, l, 0.0, 1.0, 4, &a);
-    BasisAxis(BASIS_UGIMP, 4.0 - x, l, 0.0, 1.0, 4, &b);
+    BasisAxis(BASIS_UGIMP, x, l, &line, &a);
+    BasisAxis(BASIS_UGIMP, 4.0 - x, l, &line, &b);
     for (int k = 0; k < 3; k++) {
       Check(a.base >= 0 && ((a.S[k] == 0.0 && a.dS[k] == 0.0) || a.base + k <= 4));
       Check(b.base >= 0 && ((b.S[k] == 0.0 && b.dS[k] == 0.0) || b.base + k <= 4));
@@ -278,8 +281,8 @@ static void TestStencilExpand(void **state)
     double   S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES], x[2], l[2];
 
     for (int d = 0; d < 2; d++) {
-      RandomDomain(&r, g.lower[d], g.h[d], (int)g.cells[d], &x[d], &l[d]);
-      BasisAxis((BasisType)(n % 3), x[d], l[d], g.lower[d], g.h[d], g.cells[d], &s.axis[d]);
+      RandomDomain(&r, g.lower[d], g.line[d].h, (int)g.cells[d], &x[d], &l[d]);
+      BasisAxis((BasisType)(n % 3), x[d], l[d], &g.line[d], &s.axis[d]);
     }
     Check(GridCell(&g, x, cell));
     if (GridCellOwner(&g, cell) != g.rank)
@@ -297,7 +300,7 @@ static void TestStencilExpand(void **state)
         Check(node[b] != node[a]);
       sum += S[a];
     }
-    Check(fabs(sum - 1.0) < 1e-15 * (g.h[0] / l[0] + g.h[1] / l[1]));
+    Check(fabs(sum - 1.0) < 1e-15 * (g.line[0].h / l[0] + g.line[1].h / l[1]));
   }
   Call(PetscFree(flag));
   Call(NodeMapDestroy(&map));
@@ -310,7 +313,7 @@ static void TestStencilExpand(void **state)
 static void TestCellGradient(void **state)
 {
   const double at[2] = {0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0)};
-  const Grid   g     = {.h = {0.3, 0.2}};
+  const double h[2]  = {0.3, 0.2};
   double       worst = 0.0;
 
   (void)state;
@@ -323,20 +326,20 @@ static void TestCellGradient(void **state)
         double mean[3] = {0.0}, weight = 0.0, Q[CL_DIM];
 
         for (int q = 0; q < 4; q++) {
-          const double x = at[q % 2], y = at[q / 2], r = axis ? r0 + x * g.h[0] : 1.0;
+          const double x = at[q % 2], y = at[q / 2], r = axis ? r0 + x * h[0] : 1.0;
           const double Nx = i == 0 ? 1.0 - x : i == 1 ? x : 0.0, Ny = j == 0 ? 1.0 - y : j == 1 ? y : 0.0;
           const double dx = i == 0 ? -1.0 : i == 1 ? 1.0 : 0.0, dy = j == 0 ? -1.0 : j == 1 ? 1.0 : 0.0;
 
-          mean[0] += r * dx / g.h[0] * Ny;
-          mean[1] += r * Nx * dy / g.h[1];
+          mean[0] += r * dx / h[0] * Ny;
+          mean[1] += r * Nx * dy / h[1];
           mean[2] += axis ? Nx * Ny : 0.0;
           weight += r;
         }
-        const double hoop = CellGradient(&g, axis, (PetscInt[CL_DIM]){i, j}, r0, Q);
+        const double hoop = CellGradient(h, axis, (PetscInt[CL_DIM]){i, j}, r0, Q);
 
-        worst = fmax(worst, fabs(hoop - mean[2] / weight) * g.h[0]);
+        worst = fmax(worst, fabs(hoop - mean[2] / weight) * h[0]);
         for (int d = 0; d < CL_DIM; d++)
-          worst = fmax(worst, fabs(Q[d] - mean[d] / weight) * g.h[d]);
+          worst = fmax(worst, fabs(Q[d] - mean[d] / weight) * h[d]);
       }
     }
   }
@@ -459,18 +462,18 @@ static void Place(const Grid *g, PetscInt id, int round, double x[2])
   Rng r = {0x9E3779B97F4A7C15ULL * (uint64_t)(id + 1) + (uint64_t)(round + 1) * 77777ULL};
 
   for (int d = 0; d < 2; d++) {
-    const double width = (double)g->cells[d] * g->h[d];
+    const double width = (double)g->cells[d] * g->line[d].h;
 
     (void)RngUnit(&r);
     x[d] = g->lower[d] + width * RngUnit(&r);
     if (g->nproc[d] > 1 && RngPick(&r, 2)) {
-      x[d] = g->lower[d] + (double)g->start[d][1] * g->h[d];
+      x[d] = g->lower[d] + (double)g->start[d][1] * g->line[d].h;
       if (RngPick(&r, 3))
         x[d] = nextafter(x[d], RngPick(&r, 2) ? INFINITY : -INFINITY);
     }
   }
   if (id == 5) {
-    x[0] = g->lower[0] + (double)g->cells[0] * g->h[0]; /* the far corner belongs to the last cell */
+    x[0] = g->lower[0] + (double)g->cells[0] * g->line[0].h; /* the far corner belongs to the last cell */
     x[1] = g->lower[1];
   }
 }

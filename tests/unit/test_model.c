@@ -382,7 +382,7 @@ static void TestDarcy(void **state)
   double       scale = 0.0; /* kg; what flows through a square metre in the step is 1e3 s x 1e3 kg/m^3 x J */
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
     scale = fmax(scale, s->m.row_scale[I * F_COUNT + F_PW]);
-  const double mass = ResidualAt(s, x, F_PW, F_PG) * scale / (1e6 * fabs(v) * 0.3 * sw * s->m.grid.h[1]);
+  const double mass = ResidualAt(s, x, F_PW, F_PG) * scale / (1e6 * fabs(v) * 0.3 * sw * s->m.grid.line[1].h);
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
     x[I * F_COUNT + F_VWX] *= 1.001; /* the rows do see the velocity */
   const double seen = ResidualAt(s, x, F_VWX, F_VGX);

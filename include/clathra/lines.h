@@ -1,0 +1,86 @@
+/* lines: the lines of the background grid along one axis, equally spaced or not.  Pure data, the same on every rank. */
+#pragma once
+
+#include "clathra/base.h"
+
+#define LINES_PAD 4    /* lines known beyond either end, as far apart as the last two */
+#define LINES_MOST 2.0 /* ratio of neighbouring cells */
+
+typedef struct {
+  PetscInt cells;
+  double   lower, upper;
+  double   h;              /* width of every cell, of the narrowest where they differ, m */
+  double  *x;              /* [-LINES_PAD, cells + LINES_PAD] places, m; NULL: equally spaced */
+  PetscInt nguess, *guess; /* first cell of each of nguess equal parts */
+} GridLines;
+
+/* Equally spaced. */
+static inline GridLines LinesEqual(double lower, double upper, PetscInt cells)
+{
+  return (GridLines){.cells = cells, .lower = lower, .upper = upper, .h = (upper - lower) / (double)cells};
+}
+
+/* From cells + 1 places that ascend; of a.x and a.guess LinesDestroy. */
+PetscErrorCode LinesCreate(PetscInt cells, const double place[], GridLines *a);
+PetscErrorCode LinesDestroy(GridLines *a);
+
+/* The nearest of the cells that are known. */
+static inline PetscInt LinesKnown(const GridLines *a, PetscInt i)
+{
+  return PetscMin(PetscMax(i, -LINES_PAD), a->cells + LINES_PAD - 1);
+}
+
+/* Place of line i, and width of the cell to its right, m. */
+static inline double LinesAt(const GridLines *a, PetscInt i)
+{
+  return a->x ? a->x[PetscMin(PetscMax(i, -LINES_PAD), a->cells + LINES_PAD)] : a->lower + (double)i * a->h;
+}
+
+static inline double LinesWidth(const GridLines *a, PetscInt i)
+{
+  const PetscInt k = LinesKnown(a, i);
+
+  return a->x ? a->x[k + 1] - a->x[k] : a->h;
+}
+
+/* Mean of the cells on both sides of line i, and the smaller of them, m. */
+static inline double LinesAround(const GridLines *a, PetscInt i)
+{
+  return a->x ? 0.5 * (LinesWidth(a, i - 1) + LinesWidth(a, i)) : a->h;
+}
+
+static inline double LinesLess(const GridLines *a, PetscInt i)
+{
+  return a->x ? fmin(LinesWidth(a, i - 1), LinesWidth(a, i)) : a->h;
+}
+
+/* Cell of a place of unequal lines, also beyond their ends as far as lines are known there. */
+PetscInt LinesFind(const GridLines *a, double x);
+
+/* The same of any lines. */
+static inline PetscInt LinesCell(const GridLines *a, double x)
+{
+  return a->x ? LinesFind(a, x) : (PetscInt)floor((x - a->lower) / a->h);
+}
+
+/* Width of the cell at x, of the smallest of it and its two neighbours, and the largest of all, m. */
+static inline double LinesWidthAt(const GridLines *a, double x)
+{
+  return a->x ? LinesWidth(a, LinesFind(a, x)) : a->h;
+}
+double LinesLeastAt(const GridLines *a, double x);
+double LinesWidest(const GridLines *a);
+
+/* (300): a place in cells from the first line on, and back. */
+double LinesPlaceUnequal(const GridLines *a, double x);
+double LinesFromUnequal(const GridLines *a, double s);
+
+static inline double LinesPlace(const GridLines *a, double x)
+{
+  return a->x ? LinesPlaceUnequal(a, x) : (x - a->lower) / a->h;
+}
+
+static inline double LinesFrom(const GridLines *a, double s)
+{
+  return a->x ? LinesFromUnequal(a, s) : a->lower + s * a->h;
+}
