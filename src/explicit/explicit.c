@@ -282,7 +282,10 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   PetscCall(PlatesStart(e));
   FacesForces(e, dt);
   PetscCall(NodeMapSum(&e->map, e->A, width));
-  PetscCall(NodesVelocities(e, t, dt));
+  PetscCall(NodesPrepare(e));
+  if (e->nplate)
+    PetscCall(PlatesForces(e, t, dt));
+  PetscCall(NodesVelocities(e, dt));
   FacesWork(e, dt);
   PetscCall(PetscLogEventEnd(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -310,9 +310,10 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
   MAKE_LOOP(f, 1, 2, 1)
 
 /* Node side. */
-PetscErrorCode NodesRebuild(Explicit *e);                         /* numbering, when particles reach other nodes */
-PetscErrorCode NodesVelocities(Explicit *e, double t, double dt); /* A -> B; t at the end of the step */
-PetscErrorCode NodesScalars(Explicit *e, StageRates *r);          /* R -> C */
+PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */
+PetscErrorCode NodesPrepare(Explicit *e);                /* prescribed values, and who follows whom (41) */
+PetscErrorCode NodesVelocities(Explicit *e, double dt);  /* A -> B */
+PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
 void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 void           FacesWork(Explicit *e, double dt); /* of the tractions, with the new velocities */
@@ -320,12 +321,14 @@ PetscErrorCode FacesBegin(Explicit *e);
 void           FacesPlace(const Explicit *e, Face *f);                               /* where it is now */
 int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */
 
-/* Plates (plates.c). */
+/* Plates (plates.c, plate_forces.c). */
 PetscErrorCode PlatesCreate(Explicit *e);
 PetscErrorCode PlatesAllocate(Explicit *e);
 PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
+/* Forces at the end of the step, time t, into the balances of the nodes.  Collective. */
+PetscErrorCode PlatesForces(Explicit *e, double t, double dt);
 PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks */
 
 /* Do relative changes of p_g go through the nodes (151)? */

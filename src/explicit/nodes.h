@@ -38,8 +38,5 @@ static inline double Blended(const Explicit *e, PetscInt I, double own, int widt
  * s/m. */
 double NodeFree(const Explicit *e, PetscInt I, int d, double dt, double *lhs);
 
-/* (75): forces of the plates at the end of the step, time t, into the balances of the nodes.  Collective. */
-PetscErrorCode PlatesForces(Explicit *e, double t, double dt);
-
 /* Finds who follows whom (41), and adds to A of a leading node what its followers give up.  Collective. */
 PetscErrorCode NodesFollow(Explicit *e);

@@ -36,10 +36,29 @@ INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gath
   }
 }
 
+/* (313): with layers nodes give the slip per permeability, and what it changes by. */
+INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
+{
+  const double k0 = Conductance(s, e->m->c, r.mat);
+
+  for (int q = 0; q < r.n; q++) {
+    double *v = g->value[q];
+
+    for (int k = 0; k < s.fluids; k++) {
+      for (int d = 0; d < CL_DIM; d++) {
+        v[B_Fluid(s, k) + B_DV + d]  = k0 * v[B_Fluid(s, k) + B_DV + d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
+        v[B_Fluid(s, k) + B_VEL + d] = k0 * v[B_Fluid(s, k) + B_VEL + d] + (s.solid ? v[d] : 0.0);
+      }
+    }
+  }
+}
+
 INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
 {
   const int width = 3 * LANES;
 
+  if (s.layers)
+    Slips(e, s, r, g);
   for (int d = 0; d < CL_DIM; d++) {
     if (s.solid)
       Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], width);

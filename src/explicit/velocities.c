@@ -232,8 +232,8 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
         v[1 + k] = value;
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -w.flow * f[FL_GX + d] * per_V;
-      bf[B_DV + d]   = v[1 + k] - w.vf[k];
-      bf[B_VEL + d]  = v[1 + k];
+      bf[B_DV + d]   = s.layers ? w.flow * (v[1 + k] - w.vf[k] - (v[0] - w.v)) : v[1 + k] - w.vf[k];
+      bf[B_VEL + d]  = s.layers ? w.flow * (v[1 + k] - v[0]) : v[1 + k];
     }
     if (s.solid)
       NodeWork(e, s, I, d, &w, v, dt);
@@ -268,20 +268,24 @@ INLINE void WriteRun(Explicit *e, const Set s, Run r, double dt)
 MAKE_LOOPS(VelocitiesRun)
 MAKE_LOOPS(WriteRun)
 
-PetscErrorCode NodesVelocities(Explicit *e, double t, double dt)
+PetscErrorCode NodesPrepare(Explicit *e)
 {
-  static const LoopTable solve = LOOPS(VelocitiesRun), write = LOOPS(WriteRun);
-
   PetscFunctionBeginUser;
   for (PetscInt h = 0; h < e->nheld; h++) {
     e->mask[h] = 0;
     PlaneConditions(e->m->c, &e->m->grid, &e->m->bc, e->map.ij[e->held[h]], false, &e->mask[h],
                     &e->fixed[h * e->m->c->fields.n]);
   }
-  e->added = 0.0;
   PetscCall(NodesFollow(e));
-  if (e->nplate)
-    PetscCall(PlatesForces(e, t, dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NodesVelocities(Explicit *e, double dt)
+{
+  static const LoopTable solve = LOOPS(VelocitiesRun), write = LOOPS(WriteRun);
+
+  PetscFunctionBeginUser;
+  e->added = 0.0;
   ForNodes(e, solve, dt);
   if (e->o.mass_scaling > 1.0) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));

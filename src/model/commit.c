@@ -270,16 +270,19 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   SkeletonKeep(&store, p, &s->skeleton);
 }
 
-/* FLIP: velocities of skeleton, water, gas. */
+/* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). */
 static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r)
 {
   const FieldSet *fs = &m->c->fields;
 
   for (int q = F_VSX; q < F_PW; q++) {
     for (int a = 0; fs->at[q] >= 0 && a < r->n; a++) {
-      const PetscInt k = r->node[a] * fs->n + fs->at[q];
+      const PetscInt I = r->node[a], k = I * fs->n + fs->at[q];
+      const PetscInt vs   = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
+      const double   dv   = x[k] - m->x_n[k];
+      const double   slip = q < F_VWX ? 0.0 : fs->solid ? dv - (x[vs] - m->x_n[vs]) : dv;
 
-      m->P.f[P_VS + q][p] += r->S[a] * (x[k] - m->x_n[k]);
+      m->P.f[P_VS + q][p] += r->S[a] * (dv + (FlowWeight(m, p, I) - 1.0) * slip);
     }
   }
 }

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from _integrators import adaptive, consolidation, fixed
+from _shear_block import roof, saturated
 from common import Run, check_true, finish, judge, order, table
 
 CASES = Path(__file__).parent / "cases"
@@ -155,6 +156,13 @@ def rigid():
     check_true("a rigid body has no mechanical balance", not set(COLUMNS) & set(run.balance))
 
 
+def layers():
+    """A sheared block, open all around, of which the upper part is a ten-thousandth as permeable: no drag but that of what each layer's water does (313)."""
+    _, b = go("layers", "hybrid", CASES / "shear_block.yaml", "-bc_shear_shear_ramp", "0 Pa,-0.1 MPa,0 s,0.1 s", "-time_end", "0.12 s", "-stepper_dt", "2e-5 s", "-stepper_surface",
+              "velocities_free", *saturated(0.1), *roof("1e-14 m^2", 0.53))  # fmt: skip
+    judge("energy", "sheared layers, hybrid: remainder", abs(b["energy_remainder"]) / b["load_work"], 0.015)
+
+
 if __name__ == "__main__":
     falls()
     flies()
@@ -166,5 +174,6 @@ if __name__ == "__main__":
     around()
     hydrate()
     rigid()
+    layers()
     table(["scene", "integrator", *(k.replace("_energy_J", "").replace("_J", "") for k in ("kinetic_energy_J", *COLUMNS))], rows)
     finish()

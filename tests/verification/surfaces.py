@@ -9,15 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from _shear_block import CASE, OPEN, SIDES, roof, saturated
 from common import Run, check_true, finish, judge, order, table
 
-CASE = Path(__file__).parent / "cases" / "shear_block.yaml"
 ROW = "surfaces"
 PRESSURES = (0.1, 1.0, 10.0)  # MPa
 TIGHT = ("-newton_tol_residual", "1e-10", "-newton_tol_update", "1e-9", "-ksp_rtol", "1e-10")
-SIDES = ("left", "right", "top")
-OPEN = ("-boundaries", "base,shear," + ",".join(SIDES),
-        *(o for s in SIDES for o in (f"-bc_{s}_type", "pressure", f"-bc_{s}_side", s, f"-bc_{s}_pressure", "ambient")))  # fmt: skip
 PUSH = ("-boundaries", "base,shear,left,right",
         *(o for s in SIDES[:2] for o in (f"-bc_{s}_type", "traction", f"-bc_{s}_side", s, f"-bc_{s}_normal", "0.5 MPa")))  # fmt: skip
 
@@ -27,17 +24,9 @@ def around(p):
     return ("-ambient_pressure", f"{p} MPa", "-region_block_stress", ",".join([f"{-p} MPa"] * 3 + ["0 Pa"] * 3))
 
 
-def saturated(p):
-    """... in its pores; water is as dense at any p, so that nothing but the pressure differs."""
-    return ("-fields", "solid,water", *OPEN, "-ambient_pressure", f"{p} MPa", "-region_block_pressure", f"{p} MPa",
-            "-mat_soft_water_ref_pressure", f"{p} MPa")  # fmt: skip
-
-
 def layered(p):
-    """... of which the upper half is a ten-thousandth as permeable (350)."""
-    return (*saturated(p), "-materials", "soft,tight", "-mat_tight_like", "soft", "-mat_tight_permeability_k0", "1e-14 m^2", "-regions", "block,roof", "-region_roof_like", "block",
-            "-region_roof_material", "tight", "-region_block_upper", "1.5 m,0.5 m", "-region_roof_lower", "0.5 m,0.5 m", "-region_roof_upper",
-            "1.5 m,1 m")  # fmt: skip
+    """A saturated block of which the upper half is a ten-thousandth as permeable (350)."""
+    return (*saturated(p), *roof("1e-14 m^2", 0.5))
 
 
 def gassy(p):
