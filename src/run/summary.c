@@ -56,11 +56,12 @@ PetscErrorCode LooseSummary(const Stepper *s, char text[256])
 /* Domains that act shorter than they are (BasisHalfLength). */
 PetscErrorCode LongSummary(const Model *m, char text[256])
 {
-  PetscInt n = 0;
+  const bool changes = m->c->basis == BASIS_CPGIMP || m->grid.line[0].x || m->grid.line[1].x; /* length, or cells */
+  PetscInt   n       = 0;
 
   PetscFunctionBeginUser;
   text[0] = '\0';
-  for (PetscInt p = 0; m->c->basis == BASIS_CPGIMP && p < m->P.n; p++) {
+  for (PetscInt p = 0; changes && m->c->basis != BASIS_LINEAR && p < m->P.n; p++) {
     bool cut = false;
 
     for (int d = 0; d < CL_DIM; d++)

@@ -57,6 +57,13 @@ for name, options, scale in (("rest_hydrostatic", ("-grid_cells", "1,auto", "-gr
     rows.append((name, *(np.max(np.abs(last[v])) / scale for v in ("v_s", "v_w"))))
 table(("at rest", "v_s (nm/s)", "v_w (nm/s)"), rows)
 judge("graded", "hydrostatic and geostatic columns, two layers: largest velocity, over 1 nm/s", max(max(r[1:]) for r in rows), 1e-6)
+held = [o for n, side, T in (("cold", "top", 10), ("hot", "bottom", 30))
+        for o in (f"-bc_{n}_type", "face_temperature", f"-bc_{n}_side", side, f"-bc_{n}_temperature", f"{T} degC")]  # fmt: skip
+warm = Run.of_case(CASES / "graded_patch.yaml", *QUIET, *axes(FINE["middle"], FINE["middle"]), "-fields", "heat", "-boundaries", "cold,hot", *held, "-inertia", "yes", "-gravity", "0 m/s^2,-9.81 m/s^2",
+                   "-region_square_geothermal", "20 K/m", "-region_square_geothermal_datum", "1 m", "-stepper_type", "hybrid", "-stepper_adapt", "yes", "-stepper_dt", "10 s", "-time_end", "1e5 s",
+                   "-output_times", "1e5 s", "-stepper_max_steps", "20000", timeout=60)  # fmt: skip
+p = warm.snapshots()[-1][1]
+judge("graded", "hybrid: a linear temperature stays, after a day", np.max(np.abs(p["T"].ravel() - 30.0 + 20.0 * p["position"][:, 1])) / 20.0, 1e-10)
 fall = {g: Run.of_case(CASES / "falling.yaml", *QUIET, "-time_end", "0.6 s", "-output_times", "0.6 s", "-stepper_dt", "4 ms", "-region_block_particles_per_cell", "3,3", *o, timeout=200)
         for g, o in (("equal", ()), ("graded", ("-grid_cells", "6,auto", "-grid_spacing_y_table", SHAFT)))}  # fmt: skip
 last = {g: r.snapshots()[-1][1] for g, r in fall.items()}
