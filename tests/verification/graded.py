@@ -67,6 +67,12 @@ judge("graded", "hybrid: a linear temperature stays, after a day", np.max(np.abs
 fall = {g: Run.of_case(CASES / "falling.yaml", *QUIET, "-time_end", "0.6 s", "-output_times", "0.6 s", "-stepper_dt", "4 ms", "-region_block_particles_per_cell", "3,3", *o, timeout=200)
         for g, o in (("equal", ()), ("graded", ("-grid_cells", "6,auto", "-grid_spacing_y_table", SHAFT)))}  # fmt: skip
 last = {g: r.snapshots()[-1][1] for g, r in fall.items()}
+warm = Run.of_case(CASES / "falling.yaml", *QUIET, "-fields", "solid,heat", "-boundaries", "", "-probes", "", "-grid_cells", "6,auto", "-grid_spacing_y_table", SHAFT,
+                   "-region_block_particles_per_cell", "3,3", "-region_block_geothermal", "50 K/m", "-region_block_geothermal_datum", "3.9 m", "-region_block_temperature", "10 degC",
+                   "-mat_sand_solid_heat_capacity", "800 J/(kg K)", "-mat_sand_solid_conductivity", "1e-9 W/(m K)", "-mat_sand_gas_conductivity", "1e-9 W/(m K)", "-stepper_type", "hybrid", "-stepper_adapt", "yes",
+                   "-stepper_dt", "1e-5 s", "-time_end", "0.4 s", "-output_times", "0.4 s", timeout=100)  # fmt: skip
+gradient = np.max(np.abs(warm.snapshots()[-1][1]["grad_T"] - [0.0, -50.0])) / 50.0
+judge("graded", "hybrid: the gradient of a linear temperature in a falling block", gradient, 1e-10)
 speed = -9.81 * 0.6
 rows = [(g, np.max(np.abs(p["v_s"][:, 1] / speed - 1)), np.max(np.abs(p["stress"])) / 1e7, np.ptp(p["displacement"][:, 1])) for g, p in last.items()]
 table(("a block falls through cells that are", "speed off g t", "stress over E0", "spread of its fall (m)"), rows)
