@@ -22,7 +22,7 @@ def contents(path):
         for kind in file if path.name == "fields.h5" else ():  # links into other files, which visititems passes by
             for key in file[kind]:
                 visit(f"{kind}/{key}", file[kind][key])
-                for name in file[kind][key]:
+                for name in file[kind][key] if isinstance(file[kind][key], h5py.Group) else ():
                     visit(f"{kind}/{key}/{name}", file[kind][key][name])
     return found
 
