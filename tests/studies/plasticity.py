@@ -62,7 +62,7 @@ def wanted():
     yield from (("slope", (40, f, 1)) for f in (1.3, 1.35, 1.4))
     yield from (("footing", (name, 16, "hybrid", int(name == "Prandtl"), 2)) for name in STRIPS)
     yield from (("hole", (n, i)) for n in (5, 10, 20) for i in ("implicit", "hybrid"))
-    yield ("hole", (40, "implicit"))
+    yield from (("hole", (40, i)) for i in ("implicit", "hybrid"))
     yield from (("circle", (n, *CIRCLES[1])) for n in (16, 24))
     yield from (("circle", (n, *CIRCLES[0])) for n in (8, 16))
 
