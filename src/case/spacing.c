@@ -87,8 +87,11 @@ static bool Grow(Making *m, double first, double largest, double growth)
       low = mid;
   }
   growth = sum > length * (1.0 + FIT) ? 0.5 * (low + high) : growth;
-  for (PetscInt k = 1; k <= n; k++) {
-    if (!Add(m, k == n ? m->upper : m->lower + Length(first, largest, growth, k)))
+  sum    = 0.0;
+  size   = first;
+  for (PetscInt k = 1; k <= n; k++, size = fmin(size * growth, largest)) {
+    sum += size;
+    if (!Add(m, k == n ? m->upper : m->lower + sum))
       return false;
   }
   return true;
