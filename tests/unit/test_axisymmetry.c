@@ -369,12 +369,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestUniformStress),    cmocka_unit_test(TestHomogeneous),
       cmocka_unit_test(TestAxialHeat),
   };
-  int failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

@@ -582,13 +582,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestCellGradient), cmocka_unit_test(TestSeed),
       cmocka_unit_test(TestMigrate),      cmocka_unit_test(TestLeaving),
   };
-  int failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

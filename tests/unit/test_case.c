@@ -7,6 +7,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 #include "../../src/case/case_private.h"
+#include "ranks.h"
 
 static char bp2[PETSC_MAX_PATH_LEN]; /* cases/bp2 of this tree */
 
@@ -574,11 +575,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(place_without_gas),
   };
   const char *up = strstr(__FILE__, "tests/unit/");
-  int         failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL))
-    return 1;
   snprintf(bp2, sizeof bp2, "%.*scases/bp2", (int)(up - __FILE__), __FILE__);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

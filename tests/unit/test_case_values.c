@@ -10,6 +10,7 @@
 #include <glob.h>
 #include <cmocka.h>
 #include "../../src/case/case_private.h"
+#include "ranks.h"
 
 #define GOOD(call) assert_int_equal((call), 0)
 #define LONG 1048576
@@ -381,26 +382,30 @@ static void EveryStageIsInTheFingerprint(void **state)
   GOOD(CaseDestroy(&c));
 }
 
+static int MakeFolder(void **state)
+{
+  (void)state;
+  return !mkdtemp(folder);
+}
+
+static int RemoveFolder(void **state)
+{
+  char command[128];
+
+  (void)state;
+  snprintf(command, sizeof command, "rm -rf '%s'", folder);
+  return system(command);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(EveryKeyWithEveryValue), cmocka_unit_test(EveryKeyOnTheCommandLine),
       cmocka_unit_test(EveryKeyIsInTheFingerprint), cmocka_unit_test(EveryStageIsInTheFingerprint)};
-  int  failed;
-  char command[128];
-
   const char *up = strstr(__FILE__, "tests/unit");
 
   snprintf(cases, sizeof cases, "%.*scases", (int)(up - __FILE__), __FILE__);
   snprintf(bp2, sizeof bp2, "%.*scases/bp2/case.yaml", (int)(up - __FILE__), __FILE__);
   snprintf(stages, sizeof stages, "%.*stests/integration/cases/stages.yaml", (int)(up - __FILE__), __FILE__);
-  if (PetscInitialize(&argc, &argv, NULL, NULL))
-    return 1;
-  if (!mkdtemp(folder))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  snprintf(command, sizeof command, "rm -rf '%s'", folder);
-  if (system(command) || PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, MakeFolder, RemoveFolder);
 }

@@ -187,13 +187,6 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestBalances), cmocka_unit_test(TestRest),
                                      cmocka_unit_test(TestTranslation), cmocka_unit_test(TestStableStep)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

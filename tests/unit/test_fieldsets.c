@@ -279,12 +279,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestTangent),      cmocka_unit_test(TestJacobianPlane),
       cmocka_unit_test(TestJacobianAxis), cmocka_unit_test(TestJacobianOnePressure),
   };
-  int failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

@@ -831,13 +831,24 @@ static void FilesThatDoNotFitAreKeptAside(void **state)
   SceneDestroy(&s);
 }
 
-static void RemoveFolder(void)
+static int MakeFolder(void **state)
+{
+  (void)state;
+  snprintf(folder, sizeof(folder), "%s/clathra_io_XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
+  if (world_rank == 0 && !mkdtemp(folder))
+    return 1;
+  return MPI_Bcast(folder, sizeof(folder), MPI_CHAR, 0, PETSC_COMM_WORLD);
+}
+
+static int RemoveFolder(void **state)
 {
   char command[512];
 
+  (void)state;
   snprintf(command, sizeof(command), "rm -rf '%s'", folder);
-  if (world_rank == 0 && system(command))
-    fprintf(stderr, "cannot remove %s\n", folder);
+  if (MPI_Barrier(PETSC_COMM_WORLD))
+    return 1;
+  return world_rank == 0 && system(command);
 }
 
 int main(int argc, char **argv)
@@ -848,18 +859,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(DamagedFilesAreRefused),       cmocka_unit_test(ForeignFilesAreRefused),
       cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(FilesAreCutBackAtARestart),
       cmocka_unit_test(FilesThatDoNotFitAreKeptAside)};
-  int failed;
 
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank));
-  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &world_size));
-  snprintf(folder, sizeof(folder), "%s/clathra_io_XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
-  if (world_rank == 0 && !mkdtemp(folder))
-    return 1;
-  PetscCallMPI(MPI_Bcast(folder, sizeof(folder), MPI_CHAR, 0, PETSC_COMM_WORLD));
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
-  RemoveFolder();
-  PetscCall(PetscFinalize());
-  return failed;
+  return RunTests(argc, argv, tests, MakeFolder, RemoveFolder);
 }

@@ -330,13 +330,5 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(TestRadius), cmocka_unit_test(TestPlaces),
                                      cmocka_unit_test(TestGrid)};
 
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

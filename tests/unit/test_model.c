@@ -481,12 +481,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestUniformStress), cmocka_unit_test(TestDarcy),          cmocka_unit_test(TestHeatFlux),
       cmocka_unit_test(TestNewtonOrder),
   };
-  int failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

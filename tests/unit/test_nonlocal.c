@@ -172,12 +172,6 @@ static void TestEven(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestPairs), cmocka_unit_test(TestEven)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL))
-    return 1;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank);
-  MPI_Comm_size(PETSC_COMM_WORLD, &world_size);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() ? 1 : failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

@@ -239,12 +239,6 @@ static void TestOnePhysics(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestOnePhysics)};
-  int                     failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

@@ -184,12 +184,6 @@ static void TestJacobian(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestParticle), cmocka_unit_test(TestJacobian)};
-  int                     failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

@@ -151,8 +151,5 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestSets)};
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  const int failed = cmocka_run_group_tests_name("reduced", tests, NULL, NULL);
-  return PetscFinalize() || failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

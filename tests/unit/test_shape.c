@@ -410,13 +410,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestPartition),      cmocka_unit_test(TestMeasures), cmocka_unit_test(TestAlong),
       cmocka_unit_test(TestBoxFaces),       cmocka_unit_test(TestReach),
   };
-  int failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <cmocka.h>
 #include "clathra/stepper.h"
+#include "ranks.h"
 
 #define N 3
 #define GOOD(call) assert_int_equal((call), 0)
@@ -215,10 +216,6 @@ int main(int argc, char **argv)
                                      cmocka_unit_test_setup_teardown(ASignalStopsAfterTheStep, Start, End),
                                      cmocka_unit_test_setup_teardown(TemperatureCountsByItsChange, Start, End),
                                      cmocka_unit_test(TimeLeftIsLearnt)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

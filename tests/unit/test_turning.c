@@ -251,13 +251,6 @@ static void TestGradient(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestTurn), cmocka_unit_test(TestGradient)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }
