@@ -1,7 +1,7 @@
 /* basis: weights and gradients of a particle's domain, as tensor products. */
 #pragma once
 
-#include "clathra/case.h"
+#include "clathra/scene.h"
 #include "clathra/grid.h"
 
 #define CL_NODES 9 /* nodes a particle can reach: 3 per axis */

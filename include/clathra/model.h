@@ -117,7 +117,7 @@ typedef struct {
 } FluidNode;
 
 typedef struct {
-  const Case   *c;
+  const Scene  *c;
   Grid          grid;
   Particles     P;
   NodeMap       map;
@@ -164,8 +164,8 @@ typedef struct {
   double      where[CL_DIM];
   StageRates  rates;            /* of the last stage */
   PetscInt    plates;           /* their number */
-  double (*plate)[PLATE_COUNT]; /* [Case.nlisted] at the end of the last stage; zero where it is no plate */
-  double  *plate_K;             /* [Case.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
+  double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */
+  double  *plate_K;             /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
@@ -206,8 +206,9 @@ enum {
   NC_COUNT
 };
 
-/* Grid and particles of a case at its initial state. */
-PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m);
+/* Grid and particles of a scene at its initial state.  first: the scene of the first stage, whose loads that state is
+   in balance with; c itself without stages. */
+PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m);
 PetscErrorCode ModelDestroy(Model *m);
 /* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */
 PetscErrorCode ModelPrintSolver(Model *m);
@@ -245,7 +246,7 @@ ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q,
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
 /* Adds a face's rates, weighted with `weight`, to those of the whole boundary and of the meters that cover it. */
-void ModelCountFace(const Case *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates);
+void ModelCountFace(const Scene *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates);
 /* Same status on all ranks (the worst), with its reason and place on all ranks. */
 PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status);
 

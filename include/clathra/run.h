@@ -11,4 +11,4 @@ void ProcessPrepare(char **argv); /* may start the program again, with one threa
 void ProcessListen(void);
 int  ProcessSignal(void); /* the signal that asked this rank to end; 0: none */
 /* Prints what the laws of the materials give over their variables, a block of rows "x, y, ..." for each. */
-PetscErrorCode CasePrintCurves(const Case *c, FILE *out);
+PetscErrorCode CasePrintCurves(const Scene *c, FILE *out);

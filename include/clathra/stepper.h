@@ -2,6 +2,7 @@
    (rolled back, cut and retried), fatal. */
 #pragma once
 
+#include "clathra/case.h"
 #include "clathra/explicit.h"
 
 /* Everything besides the particles that a run carries from step to step (in the checkpoint, so that a restart is bit
@@ -144,6 +145,11 @@ struct Stepper {
   double (*next_event)(const Stepper *s, void *ctx);
 };
 
+/* The case as it holds now: of the stage, if there are any. */
+static inline const Case *StepperCase(const Stepper *s)
+{
+  return CaseOf(s->model->c);
+}
 PetscErrorCode StepperCreate(Model *m, Stepper *s); /* as the case says */
 PetscErrorCode StepperStart(Stepper *s); /* balances and energies from the particles as they are.  Collective */
 PetscErrorCode StepperDestroy(Stepper *s);
@@ -215,7 +221,7 @@ PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok);
 /* The next time that a step must hit: a kink of a schedule, an event, the end. */
 double StepperNextStop(const Stepper *s, bool *kink);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
-void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt *a);
+void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok);

@@ -250,7 +250,7 @@ static void TestPlaces(void **state)
 
   (void)state;
   for (int n = 0; n < 500; n++) {
-    Case    c      = {.cells = {CELLS, 2}, .lower = {0.0, 0.0}, .upper = {0.0, 1.0}};
+    Scene   c      = {.cells = {CELLS, 2}, .lower = {0.0, 0.0}, .upper = {0.0, 1.0}};
     Region  region = {.shape = SHAPE_BOX, .ppc = {1 + n % 3, 2}, .material = 0};
     Lattice lattice;
     double  end;
