@@ -86,10 +86,11 @@ typedef struct {
 } BcValues;
 /* (42): the fluid around the body at time t, gravity being what it is then. */
 Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM]);
-void    BcValuesEvaluate(const Scene *c, double t, BcValues *v);
-double  BcNextKink(const Scene *c, double t); /* first kink of any schedule after t, INFINITY if none */
-double  BcNextMark(const Scene *c,
-                   double       t); /* first time after t that a step must not cross for the waves of a schedule */
+/* Fills v, whose arrays are there, with what holds at time t (s). */
+void   BcValuesEvaluate(const Scene *c, double t, BcValues *v);
+double BcNextKink(const Scene *c, double t); /* first kink of any schedule after t, INFINITY if none */
+double BcNextMark(const Scene *c,
+                  double       t); /* first time after t that a step must not cross for the waves of a schedule */
 
 /* What is said of a plate: position since the start along its axis (m); force on the body, compression-positive, and
    along the side in the direction of the axis (N); area under it (m^2). */
@@ -117,6 +118,7 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
 
 /* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
 double PlatePosition(const Bc *b, double t);
+/* The force that a plate is prescribed to bear at time t, compression-positive, N; 0 where its motion is. */
 double PlateForce(const Bc *b, double t);
 /* Stiffness of a face's spring, N/m: q are the properties of its particle, h the cell along the plate's axis. */
 double PlateStiffness(const Bc *b, const Face *f, const PointProperties *q, double h);

@@ -101,6 +101,7 @@ static inline const Case *CaseInStage(const Case *c, PetscInt k)
   return c->nstage ? &c->stage[k].c : c;
 }
 
+/* Has the run, or the stage whose case this is, ended at time t (s)? */
 static inline bool CaseAtEnd(const Case *c, double t)
 {
   return t >= c->t_end - SceneTimeSlack(&c->scene, c->t_end);
@@ -118,6 +119,7 @@ uint64_t CaseFingerprint(const Case *c);
 PetscErrorCode CaseWriteState(const Case *c, FILE *out);
 /* What CaseWriteResolved or CaseWriteState writes, to be freed. */
 PetscErrorCode CaseText(const Case *c, PetscErrorCode (*write)(const Case *c, FILE *out), char **text, size_t *size);
+/* Frees all that CaseRead made, and the stages. */
 PetscErrorCode CaseDestroy(Case *c);
 /* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
  * -help. */

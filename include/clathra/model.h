@@ -209,6 +209,7 @@ enum {
 /* Grid and particles of a scene at its initial state.  first: the scene of the first stage, whose loads that state is
    in balance with; c itself without stages. */
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m);
+/* Frees all but the scene.  Collective. */
 PetscErrorCode ModelDestroy(Model *m);
 /* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */
 PetscErrorCode ModelPrintSolver(Model *m);
@@ -257,6 +258,7 @@ typedef struct {
   double V;
   double capacity; /* J/K */
 } ModelTotals;
+/* Of the particles as they are.  Collective; the same on all ranks. */
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);
 
 /* Energies of the mechanical balance (90) that the particles hold, J; zero without mechanics.  Sums over all ranks. */
@@ -268,9 +270,11 @@ enum {
   ENERGY_RELEASED, /* Model.released */
   ENERGY_COUNT
 };
-double         ModelKineticEnergy(const Particles *P, PetscInt p); /* of all phases of a particle, J */
+double ModelKineticEnergy(const Particles *P, PetscInt p); /* of all phases of a particle, J */
+/* Fills all of ENERGY_..., J.  Collective; the same on all ranks. */
 PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT]);
 
 /* SNES callbacks, exposed for tests. */
 PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model);
+/* A: the shell that applies the exact Jacobian; P: the preconditioner's matrix.  Collective. */
 PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model);

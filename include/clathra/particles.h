@@ -84,6 +84,7 @@ typedef struct {
   PetscInt *i[PI_COUNT];
 } Particles;
 
+/* Is the variable of a field that the scene has? */
 static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
 {
   return P->has & v->has;
@@ -145,8 +146,10 @@ void ParticlesKeep(const Particles *P, PetscInt first, PetscInt n, const Particl
 /* Particles of another run as those a run starts with (340). */
 void           ParticlesBecomeInitial(Particles *P);
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */
+/* Frees all variables; the store is empty then. */
 PetscErrorCode ParticlesDestroy(Particles *P);
 PetscErrorCode ParticlesResize(Particles *P, PetscInt n); /* keeps the first min(n, old n) */
+/* All variables of `from`; `to` holds the same fields and takes its size. */
 PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);
 
 #include "clathra/grid.h"

@@ -107,6 +107,7 @@ static inline double SceneTimeSlack(const Scene *c, double t)
   return 1e-12 * fabs(t - c->t_begin) + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
 }
 
+/* Its magnitude once the ramp is over, m/s^2. */
 static inline double SceneGravity(const Scene *c) /* m/s^2 */
 {
   return hypot(c->gravity[0], c->gravity[1]);
@@ -126,6 +127,7 @@ static inline int SceneVertical(const Scene *c)
   return (c->gravity[0] != 0.0) == (c->gravity[1] != 0.0) ? -1 : c->gravity[0] != 0.0 ? 0 : 1;
 }
 
+/* Does the stress of the region follow from the weight above it? */
 static inline bool RegionGeostatic(const Region *r)
 {
   return r->consolidated || (r->K0 > 0.0 && !isinf(r->K0));

@@ -57,4 +57,5 @@ void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, dou
 #define LINE_REACH 0.6
 #define BcFaces(b)                                                                                                     \
   ((Meter){.side = (b)->side, .region = (b)->region, .from = (b)->from, .to = (b)->to, .along = (b)->along})
+/* x: centre of the initial face, m; side: SIDE_... of the particle, region: its region. */
 bool FaceNamed(const Scene *c, const Meter *m, PetscInt region, const double x[], int side);
