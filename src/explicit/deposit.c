@@ -37,7 +37,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   PermeabilityBatch(&mat->permeability, r.n, w->phi, w->Sh, ka);
   WaterViscosityBatch(&mat->mu_w, r.n, T, mu);
   for (int q = 0; s.layers && q < r.n; q++)
-    e->t[T_CONDUCT][r.p + q] = CaseConductance(e->m->c, mat, w->Sh[q]);
+    e->t[T_CONDUCT][r.p + q] = SceneConductance(e->m->c, mat, w->Sh[q]);
   for (int q = 0; q < r.n; q++) {
     w->p[q]               = pw[q];
     w->resist[PHASE_W][q] = mu[q] / ka[q];

@@ -182,7 +182,7 @@ struct Explicit {
   PetscInt  nface;
   Face     *face;
   PetscInt  nplate;
-  double (*plate_sum)[PLATE_COUNT]; /* [Case.nlisted] what this rank's faces bear at the end of the step */
+  double (*plate_sum)[PLATE_COUNT]; /* [Scene.nlisted] what this rank's faces bear at the end of the step */
   double (*spring)[CL_DIM];         /* [rows] stiffness of the springs at a node, N/m */
   double (*answer)[2 * CL_DIM];     /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */
