@@ -168,6 +168,13 @@ ratio = cubic.balance["water_out_kg"][-1] / plain.balance["water_out_kg"][-1]
 check("law: water that left, cubic over Kozeny-Carman", ratio, (0.9, 1.1))
 check_true("law: it makes a difference", abs(ratio - 1) > 1e-6, f"{ratio - 1:.2e}")
 
+# ... and in hybrid's loops over arrays: from phi = 1.5 phi_0 on it is the constant 1.5^3 k_0, as long as porosity hardly changes
+SHORT = (*BP2[:3], "-time_end", "0.02 s", "-output_times", "0.02 s", "-stepper_type", "hybrid")
+cubic_hybrid = run(extended, *SHORT, "-mat_sediment_permeability_porosity_law", "cubic", "-mat_sediment_permeability_phi0", "0.1")
+constant = run(extended, *SHORT, "-mat_sediment_permeability_porosity_law", "none", "-mat_sediment_permeability_k0", f"{1.5**3 * 1.53e-15} m^2")
+ratio = cubic_hybrid.balance["water_out_kg"][-1] / constant.balance["water_out_kg"][-1]
+check("law, hybrid: water that left, cubic from 1.5 phi_0 on over a constant 1.5^3 k_0", ratio, (0.9999, 1.0001))
+
 # an equation of state: in a closed cell of incompressible water the density of the gas stays
 case = tree / "gas.yaml"
 case.write_text(GAS)
