@@ -145,12 +145,25 @@ def build(tree):
     return folder / "clathra"
 
 
+def costs():
+    """{example: (files, lines)} as the page's table says, and as its blocks are."""
+    page = PAGE.read_text()
+    said = {row[0]: (int(row[1]), int(row[2])) for row in re.findall(r"^\| (an? [^|]*?) \| (\d+)[^|]* \| (\d+)[^|]* \|$", page, re.M)}
+    counted = []
+    for section in re.split(r"^## ", page, flags=re.M)[1:]:
+        found = re.findall(r"^```diff\n(.*?)^```", section, re.M | re.S)
+        counted.append((len({b.split()[1] for b in found}), sum(len(re.findall(r"^\+[ \t]*\S", b, re.M)) for b in found)))
+    return said, [c for c in counted if c[0]]
+
+
 tree = scratch() / "clathra"
 tree.mkdir()
 for folder in ("src", "include"):
     shutil.copytree(ROOT / folder, tree / folder)
 shutil.copy(ROOT / "CMakeLists.txt", tree)
 check_true("every block finds its place", apply(tree) > 15)
+said, counted = costs()
+check_true("the table of costs is what the blocks are", list(said.values()) == counted, f"{said} {counted}")
 for name, row, more in ( # a variable of more components than any other
     ("include/clathra/particles.h", '"hydrate saturation")', ' X(P_WIDE, HAS_ALL, "wide", 9, "-", "")'),
     ("src/particles/initial.c", "Set(P, p, P_SW, r->Sw);", " for (int k = 0; k < 9; k++) Set(P, p, P_WIDE + k, (k + 1) * x[0]);")):  # fmt: skip
