@@ -23,8 +23,7 @@ STORE, PAGE = ROOT / "docs" / "scale.json", ROOT / "docs" / "scale.md"
 STABILITY = ROOT / "tests" / "verification" / "cases" / "stability.yaml"
 FOOTING = ROOT / "tests" / "verification" / "cases" / "strip.yaml"
 FIELD_SETS = ROOT / "tests" / "verification" / "cases" / "field_sets.yaml"
-ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}  # fmt: skip
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 WHOLE, REDUCED = ("-newton_preconditioner", "whole"), ("-newton_preconditioner", "reduced")
 KEPT, FRESH = (), ("-newton_refactor", "0")
 

@@ -58,7 +58,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (curves && rank == 0)
-    PetscCall(CasePrintCurves(&c, stdout));
+    PetscCall(CasePrintCurves(&c.scene, stdout));
   if (check)
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: the case is valid\n", c.file));
   else if (!curves)

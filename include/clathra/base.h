@@ -54,6 +54,7 @@ static inline double ClSize(double x)
 
 /* FNV-1a, 64 bits: begins with FNV_START. */
 #define FNV_START UINT64_C(14695981039346656037)
+/* The hash after so many bytes more. */
 static inline uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes)
 {
   const unsigned char *c = (const unsigned char *)data;
@@ -63,6 +64,7 @@ static inline uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes)
   return hash;
 }
 
+/* degC to K. */
 static inline double ClCelsiusToKelvin(double T)
 {
   return T + CL_ZERO_CELSIUS;

@@ -1,7 +1,7 @@
 /* basis: weights and gradients of a particle's domain, as tensor products. */
 #pragma once
 
-#include "clathra/case.h"
+#include "clathra/scene.h"
 #include "clathra/grid.h"
 
 #define CL_NODES 9 /* nodes a particle can reach: 3 per axis */
@@ -9,6 +9,7 @@
 /* Of a cell: a domain edge so close to a grid line lies on it; a thinner sliver drowns in round-off. */
 #define BASIS_SNAP 1e-6
 
+/* A place in cells, on the grid line that it all but lies on. */
 static inline double BasisSnap(double s)
 {
   const double line = rint(s);
@@ -34,6 +35,8 @@ static inline double BasisHalfLength(double l, double h)
   return l < 0.5 * h ? l : 0.5 * h;
 }
 
+/* Domain of a particle at x with half length l (m) along an axis of so many cells of width h (m) from `lower` on, cut
+   where it would leave the grid. */
 static inline BasisDomain BasisDomainOf(double x, double l, double lower, double h, double cells)
 {
   const double s = (x - lower) / h, r = BasisHalfLength(l, h) / h, from = BasisSnap(s - r), to = BasisSnap(s + r);

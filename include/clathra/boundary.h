@@ -39,11 +39,11 @@ static inline double FaceWeight(const Face *f, int a, int q)
 }
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
-PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
+PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
                           Face **face);
 
 /* Where the face is and how it distributes, for its particle's present position and weights. */
-void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
+void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
 
 /* (109): weights of an inflow of fluids that cannot move yet.  S: n weights of the face's particle (-), in the order of
    StencilExpand; kr: its relative permeabilities at t_n (-). */
@@ -53,41 +53,44 @@ void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT]);
 
 /* (197), (198): what radial flow to a face at radius r (m), whose particles have the half-length l, loses between body
    and face beyond what the grid carries, per 2 pi k/mu and height: of a fluid (penalty 0), or of heat. */
-double FaceRing(const Case *c, const Grid *g, double r, double l, double penalty);
+double FaceRing(const Scene *c, const Grid *g, double r, double l, double penalty);
 
 /* Normal stress (Pa, compression-positive) prescribed at time t on a side of the particle of a region that was first
    at x (m); 0 where none is. */
-double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t);
+double FaceLoad(const Scene *c, Side side, PetscInt region, const double x[CL_DIM], double t);
 
+/* First traction that is not zero, NULL: none. */
+const Bc *SceneTraction(const Scene *c);
 /* Warnings, on rank 0, where the surface cuts cells whose mean motion strains the particles (88), (160), and where
-   hybrid has a traction on such a surface.  Collective. */
-PetscErrorCode CellMeansWarning(const Grid *g, const Case *c, const Particles *P);
+   hybrid has a traction (NULL: none) on such a surface.  Collective. */
+PetscErrorCode CellMeansWarning(const Grid *g, const Scene *c, const Particles *P, const Bc *traction);
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */
-PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P);
+PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P);
 #define CL_ADVICE 400
 /* Where pore pressure above the stiffness of the skeleton is held by tractions: what to do instead; else empty. */
-PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE]);
+PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE]);
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
    between regions (342), on rank 0.  Collective. */
-PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P);
+PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
 /* The same about particles whose pore pressure is far from hydrostatic (341), whose hydrate is not stable, or whose gas
    becomes hydrate. */
-PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Case *c, const Particles *P);
+PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
 
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
    start, which its owner fills in where the force is prescribed. */
 typedef struct {
-  double *value, *shear, *phase[PHASE_COUNT]; /* [Case.nbc] */
+  double *value, *shear, *phase[PHASE_COUNT]; /* [Scene.nbc] */
   double  gravity[CL_DIM];
   Ambient ambient;
 } BcValues;
 /* (42): the fluid around the body at time t, gravity being what it is then. */
-Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM]);
-void    BcValuesEvaluate(const Case *c, double t, BcValues *v);
-double  BcNextKink(const Case *c, double t); /* first kink of any schedule after t, INFINITY if none */
-double  BcNextMark(const Case *c,
-                   double      t); /* first time after t that a step must not cross for the waves of a schedule */
+Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM]);
+/* Fills v, whose arrays are there, with what holds at time t (s). */
+void   BcValuesEvaluate(const Scene *c, double t, BcValues *v);
+double BcNextKink(const Scene *c, double t); /* first kink of any schedule after t, INFINITY if none */
+double BcNextMark(const Scene *c,
+                  double       t); /* first time after t that a step must not cross for the waves of a schedule */
 
 /* What is said of a plate: position since the start along its axis (m); force on the body, compression-positive, and
    along the side in the direction of the axis (N); area under it (m^2). */
@@ -110,11 +113,12 @@ typedef struct {
   double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
 } FaceOutput;
 /* velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
-void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
+void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o);
 
 /* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
 double PlatePosition(const Bc *b, double t);
+/* The force that a plate is prescribed to bear at time t, compression-positive, N; 0 where its motion is. */
 double PlateForce(const Bc *b, double t);
 /* Stiffness of a face's spring, N/m: q are the properties of its particle, h the cell along the plate's axis. */
 double PlateStiffness(const Bc *b, const Face *f, const PointProperties *q, double h);
@@ -128,7 +132,7 @@ static inline double PlateGap(const Face *f, double position, const double u[CL_
 /* Adds the plate's spring to what a face adds to its nodes, with the tangent. */
 void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o);
 /* CL_OK, or why the plate cannot go to `position` in this step; the sentence goes to text. */
-ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position, char *text, size_t size);
+ClStatus PlateCheck(const Scene *c, const Grid *g, const Face *f, double position, char *text, size_t size);
 
 /* What the program knows of a kind of condition: the rows of CL_FACE_CONDITIONS, CL_NODE_CONDITIONS. */
 typedef struct FaceState FaceState;
@@ -145,5 +149,5 @@ extern const Condition cl_condition[BC_COUNT]; /* by BcType */
 
 /* Dirichlet values on grid planes, in regions and on the axis, where what the node sees was seeded there: sets bit k of
    mask and value[k] for every prescribed unknown, k its place in the field set, of grid node ij. */
-void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
+void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
                      unsigned *mask, double *value);

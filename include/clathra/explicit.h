@@ -40,7 +40,9 @@ typedef struct {
 
 typedef struct Explicit Explicit;
 
+/* The integrator of a model, which must outlive it, and its work space.  Collective. */
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **e);
+/* Frees it; *e becomes NULL.  Collective. */
 PetscErrorCode ExplicitDestroy(Explicit **e);
 /* Sorts the particles by cell and readies nodes and faces for a run of steps.  Collective. */
 PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status);

@@ -43,18 +43,22 @@ void FieldSetPrint(const FieldSet *fs, char *text, int size);
 /* A set by its name (thmc, thc, hm, thm, m, ...); 0 for an unknown one. */
 unsigned FieldSetByName(const char *name);
 
+/* Place of the first component of the skeleton velocity among a node's unknowns; -1 without a solid. */
 static inline int PlaceVs(const FieldSet *fs)
 {
   return fs->at[F_VSX];
 }
+/* ... of a fluid's velocity; -1 where the fluid is not there or has no unknown. */
 static inline int PlaceV(const FieldSet *fs, int phase) /* velocity of a fluid */
 {
   return fs->at[F_VWX + 2 * phase];
 }
+/* ... of a fluid's pressure; -1 likewise; one place for both where they have one pressure. */
 static inline int PlaceP(const FieldSet *fs, int phase)
 {
   return fs->at[F_PW + phase];
 }
+/* ... of the temperature; -1 without heat. */
 static inline int PlaceT(const FieldSet *fs)
 {
   return fs->at[F_T];

@@ -22,10 +22,13 @@ typedef struct {
 bool GridFits(PetscMPIInt size, const PetscInt cells[]);
 /* The lines stay the caller's, who keeps them as long as the grid; GridCreate makes equal cells. */
 PetscErrorCode GridCreateOn(MPI_Comm comm, const GridLines line[CL_DIM], Grid *g);
+/* A grid of equal cells between two corners (m), shared among the ranks.  Collective. */
 PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g);
+/* Frees the layout; the lines stay their owner's.  Collective. */
 PetscErrorCode GridDestroy(Grid *g);
 /* Cell of a point; false outside the grid.  Points on the upper edge belong to the last cell. */
-bool        GridCell(const Grid *g, const double x[], PetscInt cell[]);
+bool GridCell(const Grid *g, const double x[], PetscInt cell[]);
+/* The rank that owns a cell, as its lower left node is owned. */
 PetscMPIInt GridCellOwner(const Grid *g, const PetscInt cell[]);
 
 /* Place of a node, m. */
@@ -44,6 +47,7 @@ static inline double GridHighest2(const Grid *g)
   return k2;
 }
 
+/* The same of the smallest of the cell at x (m) and its neighbours, 1/m^2. */
 static inline double GridHighest2At(const Grid *g, const double x[CL_DIM])
 {
   double k2 = 0.0;
@@ -53,6 +57,7 @@ static inline double GridHighest2At(const Grid *g, const double x[CL_DIM])
   return k2;
 }
 
+/* Place of node (i, j) in arrays over this rank's nodes and ghosts. */
 static inline PetscInt GridPadded(const Grid *g, PetscInt i, PetscInt j)
 {
   return (j - g->gs[1]) * g->gm[0] + (i - g->gs[0]);
@@ -74,6 +79,7 @@ typedef struct {
 /* Numbers the nodes whose flag (padded array) is set on any rank; *changed tells whether the map is a new one.
    Collective. */
 PetscErrorCode NodeMapUpdate(const Grid *g, const unsigned char *flag, NodeMap *map, bool *changed);
+/* Frees the numbering; the map can be updated anew afterwards.  Collective. */
 PetscErrorCode NodeMapDestroy(NodeMap *map);
 /* a: n_local x nc.  Adds the ghosts' values to their owners and gives every rank the sum. */
 PetscErrorCode NodeMapSum(NodeMap *map, double *a, PetscInt nc);

@@ -24,6 +24,7 @@ typedef struct {
    from, NULL for a new run) does not belong to the files that are there; CL_EXIT_FAILED, the disk has no room.
    Collective. */
 PetscErrorCode FolderTake(MPI_Comm comm, const char *dir, const Origin *from, Folder *folder, int *exit_code);
+/* Gives the folder back: others may write into it. */
 PetscErrorCode FolderRelease(Folder *folder);
 /* Does the folder hold nothing, or results of the case whose resolved form this is?  Otherwise a sentence.  Collective.
  */

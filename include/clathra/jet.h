@@ -10,11 +10,13 @@ typedef struct {
   double v, d[JET_COUNT];
 } Jet;
 
+/* A number whose slopes are zero. */
 static inline Jet JetConstant(double v)
 {
   return (Jet){v, {0.0}};
 }
 
+/* The variable of place `which`: slope 1 in itself. */
 static inline Jet JetVariable(double v, int which)
 {
   Jet r = JetConstant(v);
@@ -53,21 +55,25 @@ static inline Jet JetChain3(double f, double fa, Jet a, double fb, Jet b, double
   return r;
 }
 
+/* a + b. */
 static inline Jet JetAdd(Jet a, Jet b)
 {
   return JetChain2(a.v + b.v, 1.0, a, 1.0, b);
 }
 
+/* a - b. */
 static inline Jet JetSub(Jet a, Jet b)
 {
   return JetChain2(a.v - b.v, 1.0, a, -1.0, b);
 }
 
+/* a b. */
 static inline Jet JetMul(Jet a, Jet b)
 {
   return JetChain2(a.v * b.v, b.v, a, a.v, b);
 }
 
+/* a/b; b must not be zero. */
 static inline Jet JetDiv(Jet a, Jet b)
 {
   const double q = a.v / b.v;
@@ -75,11 +81,13 @@ static inline Jet JetDiv(Jet a, Jet b)
   return JetChain2(q, 1.0 / b.v, a, -q / b.v, b);
 }
 
+/* c a. */
 static inline Jet JetScale(double c, Jet a)
 {
   return JetChain(c * a.v, c, a);
 }
 
+/* a + c. */
 static inline Jet JetShift(Jet a, double c)
 {
   a.v += c;

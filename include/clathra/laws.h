@@ -21,8 +21,9 @@ struct Retention {
   const char *type;
 };
 /* Sets the law by name (van_genuchten | van_genuchten_clamped | brooks_corey); false for an unknown name. */
-bool                 RetentionSetType(Retention *law, const char *type);
-const char *const   *RetentionTypes(void); /* NULL-terminated */
+bool               RetentionSetType(Retention *law, const char *type);
+const char *const *RetentionTypes(void); /* NULL-terminated */
+/* s_g at p_c (Pa), with its slope, 1/Pa. */
 static inline double RetentionGasShare(const Retention *law, double pc, double *ds_dpc)
 {
   return law->gas_share(law, pc, ds_dpc);
@@ -41,7 +42,9 @@ typedef struct {
   double nw, ng;   /* Corey exponents, > 0 */
   bool   of_pores;
 } RelPerm;
+/* k_rw of the share s_w of the open pores (or of all, of_pores), in [0, 1], with its slope. */
 double RelPermWater(const RelPerm *law, double sw, double *dkr_dsw);
+/* k_rg of the share s_g likewise. */
 double RelPermGas(const RelPerm *law, double sg, double *dkr_dsg);
 
 /* ---------------------------------------------------------------- intrinsic permeability k_a = k0 f_phi f_Sh, m^2 */
@@ -60,7 +63,9 @@ struct Permeability {
 };
 bool PermeabilitySetHydrateType(Permeability *law, const char *type);  /* power | masuda_ramp | none */
 bool PermeabilitySetPorosityType(Permeability *law, const char *type); /* kozeny_carman | square_jacobian | none */
+/* Words of the laws in S_h, NULL-terminated. */
 const char *const *PermeabilityHydrateTypes(void);
+/* Words of the laws in phi, NULL-terminated. */
 const char *const *PermeabilityPorosityTypes(void);
 /* kozeny_carman: (phi/phi0)^1.5 ((1-phi0)/(1-phi))^3.  square_jacobian: J^2 with J = (1-phi0)/(1-phi), for the exact
    large-strain consolidation solution of Xie and Leo (2004). */
@@ -76,8 +81,10 @@ struct Equilibrium {
   double      shift; /* K by which salt lowers the temperature of equilibrium */
 };
 /* sloan | moridis (a polynomial ln p_e[MPa] in T_K, Moridis 2003) | kamath (over water and ice) | masuda */
-bool                 EquilibriumSetType(Equilibrium *law, const char *type);
-const char *const   *EquilibriumTypes(void);
+bool EquilibriumSetType(Equilibrium *law, const char *type);
+/* Words of the laws, NULL-terminated. */
+const char *const *EquilibriumTypes(void);
+/* p_e at T (degC), Pa, with its slope, Pa/K. */
 static inline double EquilibriumPressure(const Equilibrium *law, double T, double *dpe_dT)
 {
   return law->pressure(law, T, dpe_dT);
@@ -98,6 +105,7 @@ static inline double KineticsWater(const Kinetics *law)
 {
   return law->N_h * law->M_w / law->M_h;
 }
+/* ... methane, kg. */
 static inline double KineticsMethane(const Kinetics *law)
 {
   return law->M_g / law->M_h;
@@ -113,6 +121,7 @@ typedef struct {
   double beta; /* volumetric thermal expansion, 1/K */
   double p_ref, T_ref;
 } Liquid; /* rho = rho0 exp((p - p_ref)/K - beta (T - T_ref)); also solid and hydrate, with K infinite */
+/* rho at p (Pa) and T (degC), kg/m^3, with slopes, kg/(m^3 Pa) and kg/(m^3 K). */
 double             LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT);
 typedef struct Gas Gas;
 struct Gas {
@@ -126,9 +135,11 @@ struct Gas {
   double (*expansion)(const Gas *, double rho, double TK, double *db_drho, double *db_dT);
   const char *type;
 };
-bool               GasSetType(Gas *law, const char *type); /* peng_robinson | ideal (M p/(R T_K)) */
+bool GasSetType(Gas *law, const char *type); /* peng_robinson | ideal (M p/(R T_K)) */
+/* Words of the laws, NULL-terminated. */
 const char *const *GasTypes(void);
-double             GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
+/* rho at p (Pa) and T (degC), kg/m^3, with slopes, kg/(m^3 Pa) and kg/(m^3 K). */
+double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
 /* Volumetric thermal expansion -(1/rho) drho/dT at constant pressure, 1/K, with slopes in p and T (291). */
 double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double *dbeta_dT);
 
@@ -149,7 +160,9 @@ typedef struct {
   double salinity; /* of water */
   double M;        /* of gas, kg/mol */
 } Viscosity;
+/* mu at T (degC), Pa s, with its slope, Pa s/K. */
 double WaterViscosity(const Viscosity *law, double T, double *dmu_dT);
+/* mu at rho (kg/m^3) and T (degC), Pa s, with slopes in both. */
 double GasViscosity(const Viscosity *law, double rho, double T, double *dmu_drho, double *dmu_dT);
 
 /* ---------------------------------------------------------------- heat */
@@ -161,6 +174,7 @@ typedef struct {
   double T_ref; /* degC */
   double dc;    /* heat capacity of what a kg of hydrate leaves, less its own, J/(kg K) */
 } LatentHeat;
+/* L at T (degC), J/kg, with its slope, J/(kg K). */
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
 /* (293): conductivity K (xx, yy, xy; W/(m K)) beside kappa that carries heat with the flow: a is the heat capacity that
    flows (W/(m^2 K)), h the size of a cell (m). */
@@ -179,14 +193,17 @@ typedef struct {
   int    change; /* STIFFNESS_... */
 } Elasticity;
 double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh); /* C1 toe where b_h < 1 at S_h = 0 */
+/* Does hydrate bear a stress of its own that goes with it? */
 static inline bool ElasticityHasBonds(const Elasticity *law)
 {
   return law->change == STIFFNESS_BONDS && law->ah * law->Eh > 0.0;
 }
+/* G/E. */
 static inline double ElasticityShearFactor(const Elasticity *law) /* G/E */
 {
   return 0.5 / (1.0 + law->nu);
 }
+/* lambda/E. */
 static inline double ElasticityLameFactor(const Elasticity *law) /* lambda/E */
 {
   return law->nu / ((1.0 + law->nu) * (1.0 - 2.0 * law->nu));
@@ -216,6 +233,7 @@ typedef struct {
 typedef struct {
   double c, phi, psi, c_e, phi_e, psi_e, c_S, psi_S;
 } Strength;
+/* eta_s as a cell of this size sees it: dissipation per area of a band does not depend on the cell. */
 static inline double SofteningRate(const Plasticity *law)
 {
   return law->length > 0.0 ? law->eta_s * law->cell / law->length : law->eta_s;
@@ -225,6 +243,7 @@ static inline double StrengthReduced(const Plasticity *law, double strength)
 {
   return law->factor > 0.0 ? strength / law->factor : strength;
 }
+/* The tension cut-off that the factor leaves, Pa. */
 static inline double StrengthCutoff(const Plasticity *law)
 {
   return StrengthReduced(law, law->cutoff);
@@ -234,6 +253,8 @@ static inline double FlowRoundness(const Plasticity *law)
 {
   return law->eccentricity * StrengthReduced(law, law->c_max);
 }
+/* Cohesion (Pa), friction and dilation angle (rad) at S_h and the deviatoric plastic strain eps, with slopes in both.
+ */
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s);
 
 /* F_eps/F_eps,allowed of a plastic state on the yield surface at mean stress sm, the largest over Lode angles, with
@@ -250,4 +271,6 @@ typedef struct {
   double yy[3][3];       /* deviatoric as well */
   double phi[3], psi[3]; /* slopes of P_y; that in phi is deviatoric */
 } FlowGradient;
+/* P_y at principal stresses y (Pa) with friction phi and dilation psi (rad); apex: the rounding of the tip, Pa
+ * (FlowRoundness). */
 void MenetreyWillamGradient(double phi, double psi, double apex, const double y[3], FlowGradient *P);

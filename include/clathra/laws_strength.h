@@ -54,6 +54,7 @@ typedef struct {
   double f, t, tt, e, te;
 } FlowSection;
 
+/* At t = cos(theta), theta the Lode angle, and eccentricity e in [1/2, 1]. */
 INLINE void FlowSectionOf(double t, double e, FlowSection *s)
 {
   const double a = 1.0 - e * e, b = 2.0 * e - 1.0, under = 4.0 * a * t * t + 5.0 * e * e - 4.0 * e,

@@ -22,6 +22,7 @@ static inline GridLines LinesEqual(double lower, double upper, PetscInt cells)
 
 /* From cells + 1 places that ascend; of a.x and a.guess LinesDestroy. */
 PetscErrorCode LinesCreate(PetscInt cells, const double place[], GridLines *a);
+/* Frees x and guess; nothing for equal cells. */
 PetscErrorCode LinesDestroy(GridLines *a);
 
 /* The nearest of the cells that are known. */
@@ -36,6 +37,7 @@ static inline double LinesAt(const GridLines *a, PetscInt i)
   return a->x ? a->x[PetscMin(PetscMax(i, -LINES_PAD), a->cells + LINES_PAD)] : a->lower + (double)i * a->h;
 }
 
+/* Width of the cell to the right of line i, of the nearest known one beyond the ends, m. */
 static inline double LinesWidth(const GridLines *a, PetscInt i)
 {
   const PetscInt k = LinesKnown(a, i);
@@ -49,6 +51,7 @@ static inline double LinesAround(const GridLines *a, PetscInt i)
   return a->x ? 0.5 * (LinesWidth(a, i - 1) + LinesWidth(a, i)) : a->h;
 }
 
+/* The smaller of the cells on both sides of line i, m. */
 static inline double LinesLess(const GridLines *a, PetscInt i)
 {
   return a->x ? fmin(LinesWidth(a, i - 1), LinesWidth(a, i)) : a->h;
@@ -68,18 +71,23 @@ static inline double LinesWidthAt(const GridLines *a, double x)
 {
   return a->x ? LinesWidth(a, LinesFind(a, x)) : a->h;
 }
+/* Width of the smallest of the cell at x (m) and its two neighbours, m. */
 double LinesLeastAt(const GridLines *a, double x);
+/* Width of the largest cell, m. */
 double LinesWidest(const GridLines *a);
 
 /* (300): a place in cells from the first line on, and back. */
 double LinesPlaceUnequal(const GridLines *a, double x);
+/* The place (m) that lies s cells from the first line on; unequal lines. */
 double LinesFromUnequal(const GridLines *a, double s);
 
+/* A place (m) in cells from the first line on. */
 static inline double LinesPlace(const GridLines *a, double x)
 {
   return a->x ? LinesPlaceUnequal(a, x) : (x - a->lower) / a->h;
 }
 
+/* The place (m) that lies s cells from the first line on. */
 static inline double LinesFrom(const GridLines *a, double s)
 {
   return a->x ? LinesFromUnequal(a, s) : a->lower + s * a->h;

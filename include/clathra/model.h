@@ -117,7 +117,7 @@ typedef struct {
 } FluidNode;
 
 typedef struct {
-  const Case   *c;
+  const Scene  *c;
   Grid          grid;
   Particles     P;
   NodeMap       map;
@@ -165,8 +165,8 @@ typedef struct {
   double      where[CL_DIM];
   StageRates  rates;            /* of the last stage */
   PetscInt    plates;           /* their number */
-  double (*plate)[PLATE_COUNT]; /* [Case.nlisted] at the end of the last stage; zero where it is no plate */
-  double  *plate_K;             /* [Case.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
+  double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */
+  double  *plate_K;             /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
@@ -207,8 +207,10 @@ enum {
   NC_COUNT
 };
 
-/* Grid and particles of a case at its initial state. */
-PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m);
+/* Grid and particles of a scene at its initial state.  first: the scene of the first stage, whose loads that state is
+   in balance with; c itself without stages. */
+PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m);
+/* Frees all but the scene.  Collective. */
 PetscErrorCode ModelDestroy(Model *m);
 /* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */
 PetscErrorCode ModelPrintSolver(Model *m);
@@ -246,7 +248,7 @@ ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q,
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
 /* Adds a face's rates, weighted with `weight`, to those of the whole boundary and of the meters that cover it. */
-void ModelCountFace(const Case *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates);
+void ModelCountFace(const Scene *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates);
 /* Same status on all ranks (the worst), with its reason and place on all ranks. */
 PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status);
 
@@ -257,6 +259,7 @@ typedef struct {
   double V;
   double capacity; /* J/K */
 } ModelTotals;
+/* Of the particles as they are.  Collective; the same on all ranks. */
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);
 
 /* Energies of the mechanical balance (90) that the particles hold, J; zero without mechanics.  Sums over all ranks. */
@@ -268,9 +271,11 @@ enum {
   ENERGY_RELEASED, /* Model.released */
   ENERGY_COUNT
 };
-double         ModelKineticEnergy(const Particles *P, PetscInt p); /* of all phases of a particle, J */
+double ModelKineticEnergy(const Particles *P, PetscInt p); /* of all phases of a particle, J */
+/* Fills all of ENERGY_..., J.  Collective; the same on all ranks. */
 PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT]);
 
 /* SNES callbacks, exposed for tests. */
 PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model);
+/* A: the shell that applies the exact Jacobian; P: the preconditioner's matrix.  Collective. */
 PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model);

@@ -2,7 +2,7 @@
    store, the HDF5 names, the checkpoint and the docs follow from this table. */
 #pragma once
 
-#include "clathra/case.h"
+#include "clathra/scene.h"
 #include "clathra/point_state.h"
 #include "clathra/skeleton.h"
 
@@ -84,6 +84,7 @@ typedef struct {
   PetscInt *i[PI_COUNT];
 } Particles;
 
+/* Is the variable of a field that the scene has? */
 static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
 {
   return P->has & v->has;
@@ -96,9 +97,9 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 }
 
 /* Temperature that a particle started from (81), degC. */
-double ParticleInitialT(const Case *c, const Particles *P, PetscInt p);
+double ParticleInitialT(const Scene *c, const Particles *P, PetscInt p);
 /* Its temperature, degC; in a scene without heat that of its region. */
-static inline double ParticleT(const Case *c, const Particles *P, PetscInt p)
+static inline double ParticleT(const Scene *c, const Particles *P, PetscInt p)
 {
   return P->f[P_T] ? P->f[P_T][p] : c->region[P->i[PI_REGION][p]].temperature;
 }
@@ -145,23 +146,25 @@ void ParticlesKeep(const Particles *P, PetscInt first, PetscInt n, const Particl
 /* Particles of another run as those a run starts with (340). */
 void           ParticlesBecomeInitial(Particles *P);
 PetscErrorCode ParticlesCreate(unsigned has, Particles *P); /* an empty store for the fields HAS_... */
+/* Frees all variables; the store is empty then. */
 PetscErrorCode ParticlesDestroy(Particles *P);
 PetscErrorCode ParticlesResize(Particles *P, PetscInt n); /* keeps the first min(n, old n) */
+/* All variables of `from`; `to` holds the same fields and takes its size. */
 PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);
 
 #include "clathra/grid.h"
 
 /* Fills the regions of the case with particles, each on the rank that owns its cell, numbered the same whatever the
    number of ranks.  Collective. */
-PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P);
+PetscErrorCode ParticlesSeed(const Scene *c, const Grid *g, Particles *P);
 /* A place that gets a particle. */
 typedef struct {
   PetscInt id, region, faces;    /* faces: bits of PI_FACES */
   double   x[CL_DIM], l[CL_DIM]; /* centre, half-lengths, m */
 } Site;
-typedef PetscErrorCode (*SiteVisit)(const Case *c, const Grid *g, const Site *site, void *ctx);
+typedef PetscErrorCode (*SiteVisit)(const Scene *c, const Grid *g, const Site *site, void *ctx);
 /* Calls visit for every site of the body, on every rank and in the same order. */
-PetscErrorCode SitesVisit(const Case *c, const Grid *g, SiteVisit visit, void *ctx);
+PetscErrorCode SitesVisit(const Scene *c, const Grid *g, SiteVisit visit, void *ctx);
 
 /* (106): what step control takes for p_g: the pressure of gas or, where there is none, of that which would appear. */
 static inline double GasToBe(double pw, double pg)
@@ -176,19 +179,19 @@ typedef struct {
   double grad_p[CL_DIM], grad_T[CL_DIM]; /* Pa/m (of p_w and of p_g), K/m */
 } InitialScalars;
 /* x in m.  Error where the retention law never reaches the initial gas share. */
-PetscErrorCode InitialScalarsAt(const Case *c, const Region *r, const double x[], InitialScalars *s);
+PetscErrorCode InitialScalarsAt(const Scene *c, const Region *r, const double x[], InitialScalars *s);
 /* Pressure (Pa) at x of the water that has `pressure` at the region's datum (82). */
-double InitialWaterPressure(const Case *c, const Region *r, double pressure, const double x[]);
+double InitialWaterPressure(const Scene *c, const Region *r, double pressure, const double x[]);
 
 /* Everything of particle p of a region but its numbers: at x (m), with half-lengths l (m). */
-PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+PetscErrorCode ParticleInitialState(const Scene *c, PetscInt region, Particles *P, PetscInt p, const double x[],
                                     const double l[]);
 /* Half-lengths of a region's particles at the start, m. */
-void ParticlesInitialHalfLength(const Case *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM]);
+void ParticlesInitialHalfLength(const Scene *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM]);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);
 /* At the end of a step (or burst of steps) of length `time` (s): what grew of the plastic strain since the last call,
    averaged over neighbours, joins P_NONLOCAL, for materials with a nonlocal_length; particles of the others go on with
    their own.  docs/equations.md (85).  Collective. */
-PetscErrorCode ParticlesNonlocal(const Case *c, const Grid *g, double time, Particles *P);
+PetscErrorCode ParticlesNonlocal(const Scene *c, const Grid *g, double time, Particles *P);

@@ -110,5 +110,7 @@ typedef struct {
   double storage[PHASE_COUNT];                 /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
   double reaction, reaction_heat;              /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
 } PointProperties;
+/* At V (m^3), masses m_s, m_h (kg), p_w, p_g (Pa), T (degC) and the water share sw_n of t_n, which holds where there is
+   one pressure. Returns why the state is inadmissible, with a sentence in *why; r is not to be used then. */
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
                                  double pg, double T, double sw_n, PointProperties *r, const char **why);

@@ -12,6 +12,7 @@ typedef struct {
   double v, share, Sh;
 } KrArgument;
 
+/* share: of the open pores, in [0, 1]. */
 INLINE KrArgument KrArgumentOf(bool of_pores, double share, double Sh)
 {
   const double of = of_pores ? 1.0 - Sh : 1.0;
@@ -19,6 +20,7 @@ INLINE KrArgument KrArgumentOf(bool of_pores, double share, double Sh)
   return (KrArgument){of * share, of, of_pores ? -share : 0.0};
 }
 
+/* k_r, or the least that a mobility is taken with. */
 INLINE double KrFloored(double kr)
 {
   return kr < CL_MOBILITY_FLOOR ? CL_MOBILITY_FLOOR : kr;

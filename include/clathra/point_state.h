@@ -10,6 +10,7 @@ typedef struct {
   double pore, open, phi, Sh;
 } Pores;
 
+/* Of a volume V (m^3) with masses (kg) of grains and hydrate of these densities (kg/m^3). */
 INLINE Pores PoresOf(double V, double m_s, double rho_s, double m_h, double rho_h)
 {
   const double pore = V - m_s / rho_s, hydrate = m_h / rho_h;

@@ -8,7 +8,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code);
 
 /* Before PETSc is initialised, and after: see src/run/process.c. */
 void ProcessPrepare(char **argv); /* may start the program again, with one thread for BLAS */
+/* Signals that ask for the end are noted from here on. */
 void ProcessListen(void);
 int  ProcessSignal(void); /* the signal that asked this rank to end; 0: none */
 /* Prints what the laws of the materials give over their variables, a block of rows "x, y, ..." for each. */
-PetscErrorCode CasePrintCurves(const Case *c, FILE *out);
+PetscErrorCode CasePrintCurves(const Scene *c, FILE *out);

@@ -26,4 +26,5 @@ double ScheduleNextKink(const Schedule *s, double t);
 double ScheduleNextMark(const Schedule *s, double t);
 /* Sum of the amplitudes: how far its waves leave what is left without them. */
 double ScheduleSwing(const Schedule *s);
-void   ScheduleDestroy(Schedule *s);
+/* Frees its points and waves; it is empty then. */
+void ScheduleDestroy(Schedule *s);

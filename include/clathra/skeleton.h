@@ -120,6 +120,7 @@ typedef struct {
   /* distance to yield, Pa: positive inside; null: it does not yield */
   double (*margin)(const Material *, double Sh, const SkeletonHistory *);
 } SkeletonLaw;
+/* The row of the table that a material takes. */
 const SkeletonLaw *SkeletonLawOf(const Material *mat);
 
 /* Rows of the tables that a material needs. */
@@ -137,6 +138,8 @@ static inline bool SkeletonUpdate(const Material *mat, const SkeletonHistory *h,
 {
   return SkeletonLawOf(mat)->update(mat, h, d, s, t, why);
 }
+/* The same over a block of particles, without tangents; writes their stress and history.  False: no state was found for
+   one of them, with a sentence in *why; its work is NaN. */
 static inline bool SkeletonUpdateBlock(const Material *mat, const SkeletonBlock *b, const char **why)
 {
   return SkeletonLawOf(mat)->block(mat, b, why);
@@ -164,6 +167,7 @@ INLINE void SkeletonTakeStress(const SkeletonStore *f, ptrdiff_t q, SkeletonHist
     h->sig0[k] = f->sig0[k][q];
   }
 }
+/* Writes it. */
 INLINE void SkeletonKeepStress(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)
 {
 #pragma GCC unroll 6
@@ -177,6 +181,7 @@ static inline double SkeletonNonlocal(const SkeletonStore *f, ptrdiff_t q)
 {
   return f->nonlocal ? f->nonlocal[q] + f->ahead * f->rate[q] : 0.0;
 }
+/* Stress and history of particle q. */
 static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
 {
   SkeletonTakeStress(f, q, h);
@@ -185,6 +190,7 @@ static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHis
     h->from.own[k] = f->own[k] ? f->own[k][q] : 0.0;
   h->nonlocal = SkeletonNonlocal(f, q);
 }
+/* Writes them. */
 static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)
 {
   SkeletonKeepStress(f, q, s);

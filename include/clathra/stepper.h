@@ -2,6 +2,7 @@
    (rolled back, cut and retried), fatal. */
 #pragma once
 
+#include "clathra/case.h"
 #include "clathra/explicit.h"
 
 /* Everything besides the particles that a run carries from step to step (in the checkpoint, so that a restart is bit
@@ -144,8 +145,14 @@ struct Stepper {
   double (*next_event)(const Stepper *s, void *ctx);
 };
 
+/* The case as it holds now: of the stage, if there are any. */
+static inline const Case *StepperCase(const Stepper *s)
+{
+  return CaseOf(s->model->c);
+}
 PetscErrorCode StepperCreate(Model *m, Stepper *s); /* as the case says */
 PetscErrorCode StepperStart(Stepper *s); /* balances and energies from the particles as they are.  Collective */
+/* Frees the work space and the integrator's own; the model stays.  Collective. */
 PetscErrorCode StepperDestroy(Stepper *s);
 /* Before anything is written, at the start or after a restart: what the schemes say about this stage and those to come;
  *ok = false: refused, a sentence was printed. */
@@ -161,16 +168,20 @@ PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k);
 PetscErrorCode StepperNextStage(Stepper *s);
 /* The first step behind a change of stage or integrator is to be dt (s) and knows nothing of those before. */
 void StepperForget(StepperState *z, double dt);
+/* Is the end of the stage, or of a run without stages, reached? */
 bool StepperStageDone(const Stepper *s);
+/* Is the end of the last stage reached? */
 bool StepperDone(const Stepper *s);
 /* Displacement below which errors are not resolved more finely, m. */
 double StepperFloorU(const Stepper *s);
 /* "stage NAME: ", empty without stages. */
 void StepperStageWords(const Stepper *s, char words[80]);
 
+/* Fills Stepper.forecast from the state as it is.  Collective. */
 PetscErrorCode StepperForecast(Stepper *s);
 /* Seconds of the forecast's machine, of this rank: hybrid steps; Newton iterations and factorisations. */
 double StepperHybridWork(const Model *m, double steps);
+/* Likewise: so many Newton iterations and factorisations, s. */
 double StepperImplicitWork(const Model *m, double newton, double factors);
 /* Stable step of hybrid on the present state.  Collective. */
 PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit);
@@ -188,8 +199,10 @@ typedef struct {
   double      s;
   const char *name;
 } TimeUnit;
+/* Seconds where none holds two. */
 const TimeUnit *StepperTimeUnit(double seconds);
-PetscErrorCode  StepperPrintForecast(const Stepper *s);
+/* A line about Stepper.forecast.  Collective. */
+PetscErrorCode StepperPrintForecast(const Stepper *s);
 
 /* ---- learnt.c */
 #define LEARNT 400
@@ -198,6 +211,7 @@ typedef struct {
   int    n;
   double t[LEARNT], cost[LEARNT];
 } Learnt;
+/* To come to time t (s) has cost so much since the start, s. */
 void LearntAdd(Learnt *l, double t, double cost);
 /* What the way to t_end will cost, s: every doubling of time so many times what the one before did as the last one, no
    less than half of it and no more than twice (which is an even pace). */
@@ -215,21 +229,28 @@ PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok);
 /* The next time that a step must hit: a kink of a schedule, an event, the end. */
 double StepperNextStop(const Stepper *s, bool *kink);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
-void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt *a);
+void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
+/* The advance of schemes that have a `step`: attempts, control of their length, commit.  Collective. */
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok);
 /* energy.c: the mechanical balance (90).  What the particles hold at the start; what the works of an accepted step made
    of it; what a change of materials does.  Collective. */
 PetscErrorCode StepperEnergyStart(Stepper *s);
+/* After a step: work in J, WORK_....  Collective. */
 PetscErrorCode StepperEnergyStep(Stepper *s, const double work[WORK_RATES]);
+/* After a change of stage: materials may hold another elastic energy.  Collective. */
 PetscErrorCode StepperEnergyChange(Stepper *s);
+/* Frees the arrays of a work space. */
 PetscErrorCode StepperFreeWork(StepperWork *w);
+/* In words, for messages. */
 const char    *StepperStatusName(ClStatus st);
 PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */
 /* p_w, p_g, T, S_h of particle p at t_n and their rates in the last step; zero where there is no such field. */
-void           StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4]);
-double         StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
+void   StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4]);
+double StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
+/* One backward-Euler stage that ends at t (s), of length dt (s), from the starred values in the work space; weight dt
+   is its share of the step's integrals.  a->status says why it failed, if so.  Collective. */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
 /* Starred plastic state of the second stage (24), from that of the first with c = (1 - gamma)/gamma. */
 void StepperStarSkeleton(Stepper *s, double c);

@@ -6,6 +6,7 @@
 
 enum { XX = 0, YY, ZZ, XY, YZ, XZ };
 
+/* xx + yy + zz. */
 static inline double Trace6(const double s[6])
 {
   return s[XX] + s[YY] + s[ZZ];

@@ -4,7 +4,7 @@
 #define FILLED 1e-3 /* of a cell's volume: what it may be short of */
 
 /* Cells that particles fill in part, on all ranks; a cell's particles are on one. */
-static PetscErrorCode CutCells(const Grid *g, const Case *c, const Particles *P, PetscInt *cut)
+static PetscErrorCode CutCells(const Grid *g, const Scene *c, const Particles *P, PetscInt *cut)
 {
   const PetscInt n = g->gm[0] * g->gm[1];
   double        *filled; /* share of each cell */
@@ -30,11 +30,8 @@ static PetscErrorCode CutCells(const Grid *g, const Case *c, const Particles *P,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First traction that is not zero of a scene that hybrid may run; null: none. */
-static const Bc *HybridTraction(const Case *c)
+const Bc *SceneTraction(const Scene *c)
 {
-  if (strcmp(c->stepper, "hybrid") && strcmp(c->stepper, "explicit") && strcmp(c->stepper, "auto"))
-    return NULL;
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc *bc = &c->bc[k];
 
@@ -50,20 +47,9 @@ static const Bc *HybridTraction(const Case *c)
   return NULL;
 }
 
-/* The same of any stage. */
-static const Bc *AnyHybridTraction(const Case *c)
+PetscErrorCode CellMeansWarning(const Grid *g, const Scene *c, const Particles *P, const Bc *traction)
 {
-  const Bc *found = NULL;
-
-  for (PetscInt k = 0; k < PetscMax(c->nstage, 1) && !found; k++)
-    found = HybridTraction(CaseInStage(c, k));
-  return found;
-}
-
-PetscErrorCode CellMeansWarning(const Grid *g, const Case *c, const Particles *P)
-{
-  const char *const key      = c->mean_strain > 0.0 ? "mean_strain" : "mean_dilatation";
-  const Bc         *traction = AnyHybridTraction(c);
+  const char *const key = c->mean_strain > 0.0 ? "mean_strain" : "mean_dilatation";
   PetscInt          cut;
 
   PetscFunctionBeginUser;

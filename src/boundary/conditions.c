@@ -21,7 +21,7 @@ static void Area(FaceState *x)
     x->darea[k] = (x->s[0] * x->ds[0][k] + x->s[1] * x->ds[1][k]) / x->area;
 }
 
-void FaceEvaluate(const Case *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
+void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o)
 {
   FaceState x = {.c     = c,
@@ -62,7 +62,7 @@ static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 }
 
 /* Does the node lie in the initial shape of the condition's region? */
-static bool InRegion(const Case *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
+static bool InRegion(const Scene *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 {
   const double slack[CL_DIM] = {1e-6 * g->line[0].h, 1e-6 * g->line[1].h};
   const double x[CL_DIM]     = {GridNode(g, 0, ij[0]), GridNode(g, 1, ij[1])};
@@ -107,7 +107,7 @@ static void NodeTemperature(const FieldSet *fs, const Bc *b, double at, unsigned
   value[PlaceT(fs)] = at;
 }
 
-void PlaneConditions(const Case *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
+void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
                      unsigned *mask, double *value)
 {
   const FieldSet *fs = &c->fields;

@@ -3,7 +3,7 @@
 #include "clathra/shape.h"
 
 /* Last condition of a type on this face; later ones in the case win. */
-static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
+static PetscInt FindCondition(const Scene *c, BcType type, const Face *f)
 {
   PetscInt found = -1;
 
@@ -16,7 +16,7 @@ static PetscInt FindCondition(const Case *c, BcType type, const Face *f)
   return found;
 }
 
-double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM], double t)
+double FaceLoad(const Scene *c, Side side, PetscInt region, const double x[CL_DIM], double t)
 {
   const Face     f = {.side = (int)side, .region = region, .x0 = {x[0], x[1]}};
   const PetscInt k = FindCondition(c, BC_TRACTION, &f);
@@ -24,7 +24,7 @@ double FaceLoad(const Case *c, Side side, PetscInt region, const double x[CL_DIM
   return k < 0 ? 0.0 : ScheduleValue(&c->bc[k].value, t);
 }
 
-static unsigned FindMeters(const Case *c, const Face *f)
+static unsigned FindMeters(const Scene *c, const Face *f)
 {
   unsigned meters = 0;
 
@@ -61,7 +61,7 @@ static double Inside(const GridLines *line, const Particles *P, const Face *f, i
 
 /* Weights along one axis: of the interval inside the particle's domain, whose nodes are the only ones it may use; a hat
    function where that is a point. */
-static void AxisWeights(const Case *c, const Grid *g, const Particles *P, const Face *f, int d, double t, Axis *a)
+static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const Face *f, int d, double t, Axis *a)
 {
   const GridLines *line = &g->line[d];
   double           hoop[3], r, x, l;
@@ -76,7 +76,7 @@ static void AxisWeights(const Case *c, const Grid *g, const Particles *P, const 
 
 /* Products of the axes' weights, in the order of StencilExpand.  A linear particle does not reach the nodes of its
    face, which then acts at the particle. */
-static void Weights(const Case *c, const Grid *g, const Particles *P, const Stencil *st, const double half[CL_DIM],
+static void Weights(const Scene *c, const Grid *g, const Particles *P, const Stencil *st, const double half[CL_DIM],
                     Face *f)
 {
   const Axis *x = &st->axis[0], *y = &st->axis[1];
@@ -106,7 +106,7 @@ static void Weights(const Case *c, const Grid *g, const Particles *P, const Sten
 }
 
 /* (197), (198): of the faces of a hole about the axis on which something is prescribed. */
-static void Ring(const Case *c, const Grid *g, const Particles *P, Face *f)
+static void Ring(const Scene *c, const Grid *g, const Particles *P, Face *f)
 {
   const bool   hole = c->axisymmetric && f->side == SIDE_XMIN;
   const double l    = P->f[P_L][f->particle];
@@ -115,7 +115,7 @@ static void Ring(const Case *c, const Grid *g, const Particles *P, Face *f)
   f->ring[1] = hole && f->bc[BC_FACE_TEMPERATURE] >= 0 ? FaceRing(c, g, f->x[0], l, FACE_PENALTY) : 0.0;
 }
 
-void FacePlace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
+void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
 {
   const PetscInt p    = f->particle;
   const int      axis = SideAxis(f->side), tangent = 1 - axis;
@@ -161,7 +161,7 @@ void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT])
   }
 }
 
-static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
+static void MakeFace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
                      Face *f)
 {
   f->particle    = p;
@@ -177,7 +177,7 @@ static void MakeFace(const Case *c, const Grid *g, const Particles *P, const Ste
   FacePlace(c, g, P, &stencil[p], f);
 }
 
-PetscErrorCode FacesBuild(const Case *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
+PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
                           Face **face)
 {
   PetscInt count = 0;

@@ -33,7 +33,7 @@ typedef struct {
   bool    *seen;                    /* [regions] */
 } Column;
 
-static PetscErrorCode FillCell(const Case *c, const Grid *g, const Site *site, Sites *s, Cell *a)
+static PetscErrorCode FillCell(const Scene *c, const Grid *g, const Site *site, Sites *s, Cell *a)
 {
   const Region  *r = &c->region[site->region];
   const int      v = s->vertical, side = 2 * v + (s->up > 0);
@@ -47,9 +47,9 @@ static PetscErrorCode FillCell(const Case *c, const Grid *g, const Site *site, S
   PetscCall(InitialScalarsAt(c, r, site->x, &q));
   BasisAxis(c->basis, site->x[v], l, &g->line[v], &axis);
   BasisHat(site->x[v] + s->up * l, &g->line[v], &hat);
-  *a         = (Cell){.site = *site, .height = CaseHeight(c, site->x), .p = q.p, .base = axis.base, .hat = hat.base};
+  *a         = (Cell){.site = *site, .height = SceneHeight(c, site->x), .p = q.p, .base = axis.base, .hat = hat.base};
   a->ambient = AmbientPressure(&around, site->x, gradient);
-  a->weight  = 2.0 * l * (q.density * CaseGravity(c) + s->up * gradient[v]);
+  a->weight  = 2.0 * l * (q.density * SceneGravity(c) + s->up * gradient[v]);
   if ((site->faces >> side) & 1)
     a->load = FaceLoad(c, (Side)side, site->region, site->x, 0.0);
   for (int k = 0; k < 3; k++) {
@@ -60,7 +60,7 @@ static PetscErrorCode FillCell(const Case *c, const Grid *g, const Site *site, S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Collect(const Case *c, const Grid *g, const Site *site, void *sites)
+static PetscErrorCode Collect(const Scene *c, const Grid *g, const Site *site, void *sites)
 {
   Sites       *s = (Sites *)sites;
   const double x = site->x[1 - s->vertical], l = site->l[1 - s->vertical];
@@ -120,7 +120,7 @@ static PetscInt StripeEnd(const Sites *s, PetscInt first)
 }
 
 /* Everything above and below one place across: of each region the stripe that holds it. */
-static void Gather(const Case *c, const Sites *s, double x, Column *col)
+static void Gather(const Scene *c, const Sites *s, double x, Column *col)
 {
   col->n = 0;
   for (PetscInt r = 0; r < c->nregion; r++)
@@ -214,7 +214,7 @@ static void Balance(const Sites *s, Column *col)
   }
 }
 
-static PetscErrorCode SolveColumns(const Case *c, const Grid *g, Sites *s)
+static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, Sites *s)
 {
   Column  col = {.nodes = g->cells[s->vertical] + 3};
   double *total;
@@ -242,7 +242,7 @@ static PetscErrorCode SolveColumns(const Case *c, const Grid *g, Sites *s)
 }
 
 /* Effective stresses of the local particles of geostatic regions; both lists ascend in number. */
-static PetscErrorCode Assign(const Case *c, const Sites *s, Particles *P)
+static PetscErrorCode Assign(const Scene *c, const Sites *s, Particles *P)
 {
   PetscInt k = 0;
 
@@ -264,9 +264,9 @@ static PetscErrorCode Assign(const Case *c, const Sites *s, Particles *P)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode GeostaticStress(const Case *c, const Grid *g, Particles *P)
+PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P)
 {
-  const int v      = CaseVertical(c);
+  const int v      = SceneVertical(c);
   bool      wanted = false;
 
   PetscFunctionBeginUser;

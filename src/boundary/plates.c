@@ -50,7 +50,7 @@ void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[
 }
 
 /* Has the plate met a plane that holds the body along its axis, or the plane a plate? */
-static const Bc *Met(const Case *c, const Grid *g, const Face *f, double position)
+static const Bc *Met(const Scene *c, const Grid *g, const Face *f, double position)
 {
   const int    d     = SideAxis(f->side);
   const double start = f->x[d] - f->moved[d], least = THINNEST * LinesLeastAt(&g->line[d], f->x[d]);
@@ -67,7 +67,7 @@ static const Bc *Met(const Case *c, const Grid *g, const Face *f, double positio
   return NULL;
 }
 
-ClStatus PlateCheck(const Case *c, const Grid *g, const Face *f, double position, char *text, size_t size)
+ClStatus PlateCheck(const Scene *c, const Grid *g, const Face *f, double position, char *text, size_t size)
 {
   const Bc    *b  = &c->bc[f->bc[BC_PLATE]], *plane;
   const int    d  = SideAxis(f->side);

@@ -28,7 +28,7 @@ typedef struct {
 } Piece;
 
 /* A particle of half-length l at radius r. */
-static Piece PieceAt(const Case *c, const Column *k, double r, double l)
+static Piece PieceAt(const Scene *c, const Column *k, double r, double l)
 {
   Piece  q;
   Axis   a;
@@ -79,7 +79,7 @@ static void Deposit(Column *k, const Piece *q, double width, bool lift)
 }
 
 /* (22) on the two lines beyond the face, where it cuts a cell. */
-static void Ghost(const Case *c, Column *k)
+static void Ghost(const Scene *c, Column *k)
 {
   for (int n = 1; n <= 2; n++) {
     const double h = LinesAround(&k->line, n), below = h / LinesWidth(&k->line, n - 1),
@@ -88,7 +88,7 @@ static void Ghost(const Case *c, Column *k)
 
     for (int i = 0; i < 3; i++) {
       for (int j = 0; j < 3; j++)
-        k->A[n - 1 + i][n - 1 + j] += c->ghost_penalty * NodeRadius(k, n) / h * second[i] * second[j];
+        k->A[n - 1 + i][n - 1 + j] += c->stabilisation.ghost_penalty * NodeRadius(k, n) / h * second[i] * second[j];
     }
   }
 }
@@ -189,7 +189,7 @@ static double Next(const Column *k, double l, double *x, double half)
   return next;
 }
 
-double FaceRing(const Case *c, const Grid *g, double r, double l, double penalty)
+double FaceRing(const Scene *c, const Grid *g, double r, double l, double penalty)
 {
   const GridLines *line = &g->line[0];
   const double     s = BasisSnap(LinesPlace(line, r)), cell = floor(s);

@@ -6,7 +6,7 @@
 
 /* What the terms of a face see; slopes are those in the inputs IN_GRADU of its particle. */
 struct FaceState {
-  const Case     *c;
+  const Scene    *c;
   const Face     *f;
   const BcValues *v;
   const Material *mat;

@@ -14,7 +14,7 @@ typedef struct {
   int    region;
 } Most;
 
-static void MostTake(Most *m, const Case *c, const Particles *P, PetscInt i, double value, double p)
+static void MostTake(Most *m, const Scene *c, const Particles *P, PetscInt i, double value, double p)
 {
   const int region = (int)P->i[PI_REGION][i];
 
@@ -42,14 +42,15 @@ static PetscErrorCode MostOfAll(MPI_Comm comm, Most *m)
 
 /* ---------------------------------------------------------------- hydrostatic */
 /* Mean density of the water, kg/m^3; the weight of its column from top to foot and the largest pressure, Pa. */
-static PetscErrorCode Column(MPI_Comm comm, const Case *c, const Particles *P, double *rho, double *weight, double *top)
+static PetscErrorCode Column(MPI_Comm comm, const Scene *c, const Particles *P, double *rho, double *weight,
+                             double *top)
 {
   double sum[2] = {0.0, 0.0}, most[3] = {-INFINITY, -INFINITY, 0.0}, dp, dT;
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
     const Region *r   = &c->region[P->i[PI_REGION][p]];
-    const double  x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, z = CaseHeight(c, x), T = ParticleT(c, P, p);
+    const double  x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, z = SceneHeight(c, x), T = ParticleT(c, P, p);
     const double  reach = fmax(P->f[P_L][p], P->f[P_L + 1][p]);
 
     sum[0] += P->f[P_V][p];
@@ -61,24 +62,24 @@ static PetscErrorCode Column(MPI_Comm comm, const Case *c, const Particles *P, d
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, comm));
   *rho    = sum[1] / sum[0];
-  *weight = *rho * CaseGravity(c) * (most[0] + most[1]);
+  *weight = *rho * SceneGravity(c) * (most[0] + most[1]);
   *top    = most[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* (341): the pressure beyond that of water at rest is the same all over where water is at rest. */
-static PetscErrorCode PressureWarning(MPI_Comm comm, const Case *c, const Particles *P)
+static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   Most   high = {.value = -INFINITY}, low = {.value = -INFINITY};
   double rho = 0.0, weight = 0.0, top = 0.0;
 
   PetscFunctionBeginUser;
-  if (!c->fields.phase[PHASE_W] || CaseGravity(c) == 0.0 || c->gravity_ramp > 0.0)
+  if (!c->fields.phase[PHASE_W] || SceneGravity(c) == 0.0 || c->gravity_ramp > 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Column(comm, c, P, &rho, &weight, &top));
   for (PetscInt p = 0; p < P->n; p++) {
     const double x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, pw = P->f[P_PW][p],
-                 beyond = pw + rho * CaseGravity(c) * CaseHeight(c, x);
+                 beyond = pw + rho * SceneGravity(c) * SceneHeight(c, x);
 
     MostTake(&high, c, P, p, beyond, pw);
     MostTake(&low, c, P, p, -beyond, pw);
@@ -117,7 +118,7 @@ static double EquilibriumTemperature(const Equilibrium *law, double p)
   return 0.5 * (low + high);
 }
 
-static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particles *P)
+static PetscErrorCode HydrateWarning(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   Most   worst   = {.value = 0.0};
   double mass[2] = {0.0, 0.0}, d; /* of hydrate that reacts, outside and in all */
@@ -152,7 +153,7 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Case *c, const Particl
 }
 
 /* Gas and water that become hydrate: where T_e(p) - T > WARMS. */
-static PetscErrorCode FormationWarning(MPI_Comm comm, const Case *c, const Particles *P)
+static PetscErrorCode FormationWarning(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   Most   worst = {.value = -INFINITY};
   double d;
@@ -184,7 +185,7 @@ static PetscErrorCode FormationWarning(MPI_Comm comm, const Case *c, const Parti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Case *c, const Particles *P)
+PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   PetscFunctionBeginUser;
   PetscCall(PressureWarning(comm, c, P));

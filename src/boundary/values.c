@@ -1,7 +1,7 @@
 /* Prescribed values of all conditions, gravity and the fluid around the body as functions of time. */
 #include "clathra/boundary.h"
 
-Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
+Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM])
 {
   Ambient a = {.pressure = ScheduleValue(&c->ambient_pressure, t)};
 
@@ -12,7 +12,7 @@ Ambient AmbientOf(const Case *c, double t, const double gravity[CL_DIM])
   return a;
 }
 
-void BcValuesEvaluate(const Case *c, double t, BcValues *v)
+void BcValuesEvaluate(const Scene *c, double t, BcValues *v)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
     const double at = t - c->bc[k].zero;
@@ -44,7 +44,7 @@ static double NextKink(const Bc *b, double t)
   return b->zero + next;
 }
 
-double BcNextMark(const Case *c, double t)
+double BcNextMark(const Scene *c, double t)
 {
   double next = fmin(ScheduleNextMark(&c->ambient_pressure, t), ScheduleNextMark(&c->ambient_level, t));
 
@@ -59,10 +59,10 @@ double BcNextMark(const Case *c, double t)
   return next;
 }
 
-double BcNextKink(const Case *c, double t)
+double BcNextKink(const Scene *c, double t)
 {
   const double ramped = c->t_begin + c->gravity_ramp;
-  double       next   = t < ramped - CaseTimeSlack(c, ramped) ? ramped : INFINITY;
+  double       next   = t < ramped - SceneTimeSlack(c, ramped) ? ramped : INFINITY;
 
   next = fmin(next, fmin(ScheduleNextKink(&c->ambient_pressure, t), ScheduleNextKink(&c->ambient_level, t)));
   for (PetscInt k = 0; k < c->nbc; k++)

@@ -9,9 +9,9 @@
 
 /* Does the skeleton of a region have a weight to carry, and no stress that does?  Its weight from top to foot, Pa, and
    how far it would sink under that, held at its sides, m. */
-static PetscErrorCode Unstressed(const Case *c, const Region *r, bool *unstressed, double *weight, double *sinks)
+static PetscErrorCode Unstressed(const Scene *c, const Region *r, bool *unstressed, double *weight, double *sinks)
 {
-  const double g = CaseGravity(c), up[CL_DIM] = {-c->gravity[0] / g, -c->gravity[1] / g},
+  const double g = SceneGravity(c), up[CL_DIM] = {-c->gravity[0] / g, -c->gravity[1] / g},
                down[CL_DIM]        = {-up[0], -up[1]};
   const double      height         = RegionHighest(r, up) + RegionHighest(r, down);
   const double      middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
@@ -36,9 +36,9 @@ static PetscErrorCode Unstressed(const Case *c, const Region *r, bool *unstresse
 }
 
 /* Largest tension of a geostatic start, Pa, and the stress it is measured by; globally. */
-static PetscErrorCode LargestTension(MPI_Comm comm, const Case *c, const Particles *P, double *tension, double *scale)
+static PetscErrorCode LargestTension(MPI_Comm comm, const Scene *c, const Particles *P, double *tension, double *scale)
 {
-  const int v       = CaseVertical(c);
+  const int v       = SceneVertical(c);
   double    most[2] = {0.0, 0.0};
 
   PetscFunctionBeginUser;
@@ -55,7 +55,7 @@ static PetscErrorCode LargestTension(MPI_Comm comm, const Case *c, const Particl
 }
 
 /* Is there a traction as large as this one, at any time? */
-static bool Pushed(const Case *c, double least)
+static bool Pushed(const Scene *c, double least)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Schedule *q = &c->bc[k].value;
@@ -68,7 +68,7 @@ static bool Pushed(const Case *c, double least)
   return false;
 }
 
-PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE])
+PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE])
 {
   PetscFunctionBeginUser;
   text[0] = '\0';
@@ -97,7 +97,7 @@ PetscErrorCode AmbientAdvice(const Case *c, char text[CL_ADVICE])
 }
 
 /* Does a local particle of region a have one of region b beside it? */
-static bool Touches(const Case *c, const Particles *P, PetscInt a, PetscInt b)
+static bool Touches(const Scene *c, const Particles *P, PetscInt a, PetscInt b)
 {
   for (PetscInt p = 0; p < P->n; p++) {
     for (int side = 0; P->i[PI_REGION][p] == a && side < 2 * CL_DIM; side++) {
@@ -112,7 +112,7 @@ static bool Touches(const Case *c, const Particles *P, PetscInt a, PetscInt b)
 }
 
 /* p_c = p_g - p_w that a region starts with, Pa; it is the same all over it. */
-static PetscErrorCode StartCapillary(const Case *c, const Region *r, double *pc)
+static PetscErrorCode StartCapillary(const Scene *c, const Region *r, double *pc)
 {
   const double   middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
   InitialScalars s;
@@ -124,7 +124,8 @@ static PetscErrorCode StartCapillary(const Case *c, const Region *r, double *pc)
 }
 
 /* (342) between two regions; *jumps is the same on all ranks. */
-static PetscErrorCode JumpWarning(MPI_Comm comm, const Case *c, const Particles *P, PetscInt a, PetscInt b, bool *jumps)
+static PetscErrorCode JumpWarning(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt a, PetscInt b,
+                                  bool *jumps)
 {
   const Region *r = &c->region[a], *q = &c->region[b];
   const double  p0    = fmin(c->material[r->material].retention.p0, c->material[q->material].retention.p0);
@@ -151,7 +152,7 @@ static PetscErrorCode JumpWarning(MPI_Comm comm, const Case *c, const Particles 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CapillaryWarning(MPI_Comm comm, const Case *c, const Particles *P)
+static PetscErrorCode CapillaryWarning(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   bool jumps = !(c->fields.has & HAS_GAS_PRESSURE);
 
@@ -165,7 +166,7 @@ static PetscErrorCode CapillaryWarning(MPI_Comm comm, const Case *c, const Parti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
+PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   double tension = 0.0, scale = 0.0;
   char   advice[CL_ADVICE];
@@ -175,7 +176,7 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
   if (advice[0])
     PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
   PetscCall(CapillaryWarning(comm, c, P));
-  if (!c->fields.solid || CaseGravity(c) == 0.0)
+  if (!c->fields.solid || SceneGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {
     bool   unstressed;
@@ -194,7 +195,7 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Case *c, const Particles *P)
                            c->region[k].name, weight, sinks));
     break;
   }
-  if (CaseVertical(c) >= 0)
+  if (SceneVertical(c) >= 0)
     PetscCall(LargestTension(comm, c, P, &tension, &scale));
   if (tension > NEGLIGIBLE * scale)
     PetscCall(PetscFPrintf(comm, stderr,

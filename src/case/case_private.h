@@ -116,6 +116,11 @@ typedef struct {
   bool        kept;           /* not given, what is there stays; `def` says in words what that is */
   bool        own;            /* never that of the instance which this one is like */
   bool        like;           /* names that instance: read before the others (CaseLike), and no part of the scene */
+  /* with any of these fields particles hold masses that mean something else with another value: no stage can change
+     it, and the state of one case begins another only where it is the same */
+  unsigned    binds;
+  bool        history; /* the same of what their skeleton remembers, which a stage may change */
+  bool        made;    /* GROUP_STAGE: what it says is in the scene of the stage, or in when the next one begins */
   const char *doc;
 } Key;
 
@@ -204,28 +209,32 @@ PetscErrorCode PlateForm(Reader *r, Bc *b);
 void           CheckPlate(Reader *r, const Case *c, const Bc *b);
 void           CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
 void           CheckReduction(Reader *r, const Case *c);                     /* strength_factor */
-void           CheckFlow(Reader *r, const Case *c, const Bc *b);             /* flow.c: pressure and inflow */
-void           CheckInitial(Reader *r, const Case *c, const Region *g); /* initial.c: states in balance with gravity */
+void           CheckFlow(Reader *r, const Scene *c, const Bc *b);            /* flow.c: pressure and inflow */
+void           CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
-void RegionsFinish(Case *c); /* once all keys are read */
+void RegionsFinish(Scene *c); /* once all keys are read */
 void CheckShape(Reader *r, const Case *c, PetscInt region);
-void CheckOverlap(Reader *r, const Case *c);                     /* of good shapes; none of them without particles */
-bool FacesShared(const Case *c, const Meter *a, const Meter *b); /* has the body any that both name? */
-void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m);
-void CheckHeld(Reader *r, const Case *c, const Bc *b);
-void CheckProbe(Reader *r, const Case *c, const Probe *p);
+void CheckOverlap(Reader *r, const Scene *c);                     /* of good shapes; none of them without particles */
+bool FacesShared(const Scene *c, const Meter *a, const Meter *b); /* has the body any that both name? */
+void CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Meter *m);
+void CheckHeld(Reader *r, const Scene *c, const Bc *b);
+void CheckProbe(Reader *r, const Scene *c, const Probe *p);
 /* resolve.c: the value of a key as the resolved case gives it; keys that say nothing when they are empty */
 void               KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance);
 bool               KeyEmpty(const Key *k, const char *instance);
 static inline bool KeyNeeded(const Key *k, const Case *c)
 {
-  return (!k->has || (c->fields.has & k->has)) && (!k->also || (c->fields.has & k->also));
+  return (!k->has || (c->scene.fields.has & k->has)) && (!k->also || (c->scene.fields.has & k->also));
 }
 /* ... and does it act in this instance? */
 static inline bool KeyActs(const Key *k, const Case *c, const void *instance)
 {
   return k->felt || (KeyNeeded(k, c) && (!k->acts || k->acts(instance)));
 }
+/* fingerprint.c: may a restart change it?  How to run the scene, and the numerics of the model. */
+bool KeyMayChange(const Key *k, Group g);
+/* Adds what the key says of an instance to a hash. */
+uint64_t KeyHash(uint64_t h, const Key *k, const char *instance);
 /* idle.c: keys that are given and do nothing are named on rank 0; of a good case. */
 PetscErrorCode CaseIdle(Reader *r, const Case *c);
 
@@ -236,7 +245,7 @@ PetscErrorCode CaseStageEnds(Reader *r, Case *c);
 PetscErrorCode CaseStages(Reader *r, Case *c);
 /* ---------------------------------------------------------------- spacing.c */
 /* The lines and numbers of cells that the grid's spacing makes, once the keys of the case are read. */
-PetscErrorCode CaseSpacing(Reader *r, Case *c);
+PetscErrorCode CaseSpacing(Reader *r, Scene *c);
 PetscErrorCode CaseStagesDestroy(Case *c);
 void CheckTimes(Reader *r, const Case *c, const char *stage); /* integrator and steps; of a stage unless NULL */
 

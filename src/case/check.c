@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* About an axis. */
-static void CheckRadius(Reader *r, const Case *c)
+static void CheckRadius(Reader *r, const Scene *c)
 {
   if (c->lower[0] < 0.0)
     FAIL_AT(GROUP_CASE, "", "grid_lower", "must not be left of the axis, x = 0, when geometry is axisymmetric (%g m)",
@@ -18,22 +18,23 @@ static void CheckCase(Reader *r, const Case *c)
   if (!c->nstage)
     CheckTimes(r, c, NULL);
   for (int d = 0; d < CL_DIM; d++)
-    if (c->upper[d] <= c->lower[d])
-      FAIL_AT(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->upper[d],
-              c->lower[d]);
-  if (c->axisymmetric)
-    CheckRadius(r, c);
-  if (c->compression_heat && !(c->fields.heat && c->fields.fluid))
+    if (c->scene.upper[d] <= c->scene.lower[d])
+      FAIL_AT(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->scene.upper[d],
+              c->scene.lower[d]);
+  if (c->scene.axisymmetric)
+    CheckRadius(r, &c->scene);
+  if (c->scene.compression_heat && !(c->scene.fields.heat && c->scene.fields.fluid))
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes needs heat and a fluid among the fields of the scene (%s)",
             c->fields_wanted);
-  else if (c->compression_heat && c->pressures == PRESSURES_PARTICLES)
+  else if (c->scene.compression_heat && c->pressures == PRESSURES_PARTICLES)
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes is not known with stepper_pressures: particles");
-  if (c->ambient_density > 0.0 && c->gravity[0] == 0.0 && c->gravity[1] == 0.0)
-    FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)", c->ambient_density);
-  if (c->ambient_drag > 0.0 && c->ambient_density == 0.0)
+  if (c->scene.ambient_density > 0.0 && c->scene.gravity[0] == 0.0 && c->scene.gravity[1] == 0.0)
+    FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)",
+            c->scene.ambient_density);
+  if (c->scene.ambient_drag > 0.0 && c->scene.ambient_density == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_drag", "(%g) is that of a fluid with a density: give ambient_density",
-            c->ambient_drag);
-  if ((double)c->cells[0] * c->cells[1] > 1e8)
+            c->scene.ambient_drag);
+  if ((double)c->scene.cells[0] * c->scene.cells[1] > 1e8)
     FAIL_AT(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
   if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !(c->nstage && r->bad[GROUP_STAGE]))
     FAIL_AT(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
@@ -55,7 +56,7 @@ static void CheckMaterial(Reader *r, const Material *m)
             "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
 }
 
-static void CheckSaturations(Reader *r, const Case *c, const Region *g)
+static void CheckSaturations(Reader *r, const Scene *c, const Region *g)
 {
   const Material *m = &c->material[g->material];
   double          pc, sum = g->Sh + g->Sw + g->Sg;
@@ -78,7 +79,7 @@ static void CheckSaturations(Reader *r, const Case *c, const Region *g)
 }
 
 /* (120) is for a gas that no pressure condenses. */
-static void CheckGas(Reader *r, const Case *c, const Region *g)
+static void CheckGas(Reader *r, const Scene *c, const Region *g)
 {
   const Gas *law = &c->material[g->material].gas;
 
@@ -91,7 +92,7 @@ static void CheckGas(Reader *r, const Case *c, const Region *g)
 
 static void CheckRegion(Reader *r, const Case *c, PetscInt i)
 {
-  const Region  *g      = &c->region[i];
+  const Region  *g      = &c->scene.region[i];
   const PetscInt before = r->nerror;
 
   CheckShape(r, c, i);
@@ -102,20 +103,20 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
   if (g->ppc[0] * g->ppc[1] < 2)
     FAIL_AT(GROUP_REGION, g->name, "particles_per_cell",
             "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
-  CheckSaturations(r, c, g);
-  CheckGas(r, c, g);
-  if (!r->bad[GROUP_MATERIAL] && c->material[g->material].plasticity.type != PLASTICITY_NONE &&
+  CheckSaturations(r, &c->scene, g);
+  CheckGas(r, &c->scene, g);
+  if (!r->bad[GROUP_MATERIAL] && c->scene.material[g->material].plasticity.type != PLASTICITY_NONE &&
       (g->stress[4] != 0.0 || g->stress[5] != 0.0))
     FAIL_AT(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
             g->stress[5], "plasticity_law does not know");
   const Case *first = r->bad[GROUP_STAGE] ? c : CaseInStage(c, 0);
   if (r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
-    CheckInitial(r, first, &first->region[i]);
+    CheckInitial(r, &first->scene, &first->scene.region[i]);
 }
 
-static void CheckPlane(Reader *r, const Case *c, const Bc *b)
+static void CheckPlane(Reader *r, const Scene *c, const Bc *b)
 {
-  const GridLines lines = CaseLines(c, b->axis);
+  const GridLines lines = SceneLines(c, b->axis);
   const double    line  = LinesPlace(&lines, b->position);
 
   if (!(lines.h > 0))
@@ -134,40 +135,40 @@ void CaseCheck(Reader *r, const Case *c)
 
   if (!bad[GROUP_CASE])
     CheckCase(r, c);
-  for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
-    CheckMaterial(r, &c->material[i]);
-  for (PetscInt i = 0; i < c->nmaterial && !bad[GROUP_MATERIAL]; i++)
-    CheckPlasticity(r, c, &c->material[i]);
+  for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
+    CheckMaterial(r, &c->scene.material[i]);
+  for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
+    CheckPlasticity(r, c, &c->scene.material[i]);
   if (!bad[GROUP_CASE] && !bad[GROUP_MATERIAL])
     CheckReduction(r, c);
-  r->bad[GROUP_CASE] |= c->upper[0] <= c->lower[0] || c->upper[1] <= c->lower[1];
-  for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->nregion && all; i++)
+  r->bad[GROUP_CASE] |= c->scene.upper[0] <= c->scene.lower[0] || c->scene.upper[1] <= c->scene.lower[1];
+  for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->scene.nregion && all; i++)
     CheckRegion(r, c, i);
   if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
-    CheckOverlap(r, c);
-  for (PetscInt i = 0; i < c->nbc && !bad[GROUP_BC]; i++) {
-    const Bc *b     = &c->bc[i];
+    CheckOverlap(r, &c->scene);
+  for (PetscInt i = 0; i < c->scene.nbc && !bad[GROUP_BC]; i++) {
+    const Bc *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;
 
     if (where == ON_FACES) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
-        CheckFaces(r, c, GROUP_BC, b->name, &BcFaces(b));
-      CheckFlow(r, c, b);
+        CheckFaces(r, &c->scene, GROUP_BC, b->name, &BcFaces(b));
+      CheckFlow(r, &c->scene, b);
       if (b->type == BC_PLATE)
         CheckPlate(r, c, b);
     } else if (where == IN_REGION) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
-        CheckHeld(r, c, b);
+        CheckHeld(r, &c->scene, b);
     } else if (!bad[GROUP_CASE]) {
-      CheckPlane(r, c, b);
+      CheckPlane(r, &c->scene, b);
       if (b->type == BC_PLATE_LINE)
         CheckPlate(r, c, b);
     }
   }
   for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
-    CheckProbe(r, c, &c->probe[i]);
-  for (PetscInt i = 0; i < c->nmeter && !bad[GROUP_METER] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
-    CheckFaces(r, c, GROUP_METER, c->meter[i].name, &c->meter[i]);
-  if (c->nmeter > CL_METERS)
-    FAIL_AT(GROUP_CASE, "", "meters", "lists %d names, at most %d are allowed", (int)c->nmeter, CL_METERS);
+    CheckProbe(r, &c->scene, &c->probe[i]);
+  for (PetscInt i = 0; i < c->scene.nmeter && !bad[GROUP_METER] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
+    CheckFaces(r, &c->scene, GROUP_METER, c->scene.meter[i].name, &c->scene.meter[i]);
+  if (c->scene.nmeter > CL_METERS)
+    FAIL_AT(GROUP_CASE, "", "meters", "lists %d names, at most %d are allowed", (int)c->scene.nmeter, CL_METERS);
 }

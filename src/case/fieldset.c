@@ -53,8 +53,8 @@ static PetscErrorCode PeekMaterials(Reader *r, const Case *c, bool *reacts, bool
 
   PetscFunctionBeginUser;
   *reacts = false;
-  *rigid  = c->nmaterial > 0;
-  for (PetscInt i = 0; i < c->nmaterial; i++) {
+  *rigid  = c->scene.nmaterial > 0;
+  for (PetscInt i = 0; i < c->scene.nmaterial; i++) {
     PetscCall(PeekReacts(r, c, i, reacts));
     PetscCall(Peek(r, c, GROUP_MATERIAL, i, "elasticity_E0", &text));
     *rigid = *rigid && text && !strcasecmp(text, "rigid");
@@ -71,7 +71,7 @@ static PetscErrorCode PeekRegions(Reader *r, const Case *c, bool *gas, bool *uni
   PetscFunctionBeginUser;
   *gas     = false;
   *uniform = true;
-  for (PetscInt i = 0; i < c->nregion; i++) {
+  for (PetscInt i = 0; i < c->scene.nregion; i++) {
     const char *sw;
 
     PetscCall(Peek(r, c, GROUP_REGION, i, "material", &text));
@@ -98,7 +98,7 @@ static PetscErrorCode PeekHeated(Reader *r, const Case *c, bool *heated)
 
   PetscFunctionBeginUser;
   *heated = false;
-  for (PetscInt i = 0; i < c->nbc; i++) {
+  for (PetscInt i = 0; i < c->scene.nbc; i++) {
     PetscCall(Peek(r, c, GROUP_BC, i, "type", &text));
     for (int k = 0; text && case_bc_type[k]; k++)
       *heated = *heated || (!strcasecmp(text, case_bc_type[k]) && cl_condition[k + 1].has == HAS_HEAT);
@@ -129,14 +129,14 @@ static PetscErrorCode PeekFlows(Reader *r, const Case *c, bool *gas, bool *heate
   const char *text;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < c->nbc; i++) {
+  for (PetscInt i = 0; i < c->scene.nbc; i++) {
     PetscCall(Peek(r, c, GROUP_BC, i, "type", &text));
     if (text && !strcasecmp(text, "pressure"))
-      PetscCall(PeekSchedule(r, c->bc[i].name, "p_g", false, gas));
+      PetscCall(PeekSchedule(r, c->scene.bc[i].name, "p_g", false, gas));
     if (!text || strcasecmp(text, "inflow"))
       continue;
-    PetscCall(PeekSchedule(r, c->bc[i].name, "gas", false, gas));
-    PetscCall(PeekSchedule(r, c->bc[i].name, "temperature", true, heated));
+    PetscCall(PeekSchedule(r, c->scene.bc[i].name, "gas", false, gas));
+    PetscCall(PeekSchedule(r, c->scene.bc[i].name, "temperature", true, heated));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -149,7 +149,7 @@ static PetscErrorCode PeekHydrate(Reader *r, const Case *c, bool *hydrate)
 
   PetscFunctionBeginUser;
   PetscCall(PeekMaterials(r, c, hydrate, &rigid));
-  for (PetscInt i = 0; i < c->nregion; i++) {
+  for (PetscInt i = 0; i < c->scene.nregion; i++) {
     PetscCall(Peek(r, c, GROUP_REGION, i, "Sh", &text));
     *hydrate = *hydrate || (text && strtod(text, NULL) != 0.0);
   }
@@ -170,7 +170,7 @@ static PetscErrorCode FieldsDerive(Reader *r, const Case *c, unsigned *has)
     *has &= ~(unsigned)HAS_SOLID;
   if (!gas && !reacts)
     *has &= ~(unsigned)HAS_GAS;
-  if (!reacts && uniform && !heated && !c->compression_heat)
+  if (!reacts && uniform && !heated && !c->scene.compression_heat)
     *has &= ~(unsigned)HAS_HEAT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,17 +213,18 @@ PetscErrorCode CaseFieldSet(Reader *r, Case *c)
     PetscCall(FieldsDerive(r, c, &has));
   else
     has = FieldsParse(r, c->fields_wanted);
-  if (!FieldSetMake(has, c->inertia, c->one_pressure, &c->fields)) {
+  if (!FieldSetMake(has, c->scene.inertia, c->scene.one_pressure, &c->scene.fields)) {
     if (r->nerror == before)
       ReaderError(r, "fields", c->fields_wanted, "has gas without water, which no scene here can have; must be %s",
                   FIELDS_ALLOWED);
-    FieldSetMake(HAS_ALL, c->inertia, c->one_pressure, &c->fields); /* so that the rest of the case is read */
+    FieldSetMake(HAS_ALL, c->scene.inertia, c->scene.one_pressure,
+                 &c->scene.fields); /* so that the rest of the case is read */
   }
   PetscCall(PeekHydrate(r, c, &hydrate));
-  c->fields.has |= hydrate ? HAS_HYDRATE : 0u;
+  c->scene.fields.has |= hydrate ? HAS_HYDRATE : 0u;
   c->fields_wanted[0] = '\0'; /* the resolved case names what was found */
   for (int k = 0; cl_field_word[k]; k++) {
-    if (!(c->fields.has & (1u << k)))
+    if (!(c->scene.fields.has & (1u << k)))
       continue;
     PetscCall(PetscStrlcat(c->fields_wanted, c->fields_wanted[0] ? "," : "", sizeof c->fields_wanted));
     PetscCall(PetscStrlcat(c->fields_wanted, cl_field_word[k], sizeof c->fields_wanted));
@@ -247,7 +248,7 @@ void FieldsWords(unsigned has, char text[64])
 
 static void FinishRegion(Reader *r, const Case *c, Region *g)
 {
-  const FieldSet *fs = &c->fields;
+  const FieldSet *fs = &c->scene.fields;
   char            option[256];
 
   if (fs->phase[PHASE_G] || g->material < 0)
@@ -265,26 +266,26 @@ static void FinishRegion(Reader *r, const Case *c, Region *g)
 
 void CaseFieldSetFinish(Reader *r, Case *c)
 {
-  const FieldSet *fs = &c->fields;
+  const FieldSet *fs = &c->scene.fields;
   char            option[256], words[64];
 
-  for (PetscInt i = 0; i < c->nmaterial && fs->solid; i++)
-    c->fields.has |= SkeletonHas(&c->material[i]);
+  for (PetscInt i = 0; i < c->scene.nmaterial && fs->solid; i++)
+    c->scene.fields.has |= SkeletonHas(&c->scene.material[i]);
 
-  for (PetscInt i = 0; i < c->nregion && !r->bad[GROUP_REGION]; i++)
-    FinishRegion(r, c, &c->region[i]);
-  for (PetscInt i = 0; i < c->nbc && !r->bad[GROUP_BC]; i++) {
-    const unsigned needs = cl_condition[c->bc[i].type].has;
+  for (PetscInt i = 0; i < c->scene.nregion && !r->bad[GROUP_REGION]; i++)
+    FinishRegion(r, c, &c->scene.region[i]);
+  for (PetscInt i = 0; i < c->scene.nbc && !r->bad[GROUP_BC]; i++) {
+    const unsigned needs = cl_condition[c->scene.bc[i].type].has;
 
     if (fs->has & needs)
       continue;
     FieldsWords(needs, words);
-    KeyOption(option, sizeof option, GROUP_BC, c->bc[i].name, "type");
-    ReaderError(r, option, cl_condition[c->bc[i].type].word,
+    KeyOption(option, sizeof option, GROUP_BC, c->scene.bc[i].name, "type");
+    ReaderError(r, option, cl_condition[c->scene.bc[i].type].word,
                 "needs %s, which is not among the fields of the scene (%s)", words, c->fields_wanted);
   }
-  for (PetscInt i = 0; i < c->nmaterial && !r->bad[GROUP_MATERIAL]; i++) {
-    const Material *m = &c->material[i];
+  for (PetscInt i = 0; i < c->scene.nmaterial && !r->bad[GROUP_MATERIAL]; i++) {
+    const Material *m = &c->scene.material[i];
 
     if (m->reacts && !fs->phase[PHASE_G]) {
       KeyOption(option, sizeof option, GROUP_MATERIAL, m->name, "kinetics_active");

@@ -1,23 +1,17 @@
 /* fingerprint: a number that two cases share when a checkpoint of one can be continued by the other.  It runs over the
-   key table, so that a new key belongs to it unless it is named here. */
+   key table: a new key of the scene belongs to it by itself. */
 #include "case_private.h"
+#include <stddef.h>
 #include <string.h>
 
-/* Keys of the case and of stages that a restart may change: names, what is written, the numerics of time and of the
- * solver. */
-static const char *const may_change[] = {"title",   "fields",    "time_",       "stepper_", "stabilisation_",
-                                         "output_", "standard_", "checkpoint_", "ice",      NULL};
+_Static_assert(offsetof(Case, scene) == 0 && offsetof(Scene, stabilisation) + sizeof(Stabilisation) == sizeof(Scene),
+               "the scene begins a case, and ends with the numerics of the model");
 
-/* Keys of a stage that are already in the scene as it holds there, or in the begin of the next stage. */
-static const char *const in_scene[] = {"end", "boundaries", "materials", NULL};
-
-static bool BeginsWithOneOf(const char *name, const char *const *word)
+bool KeyMayChange(const Key *k, Group g)
 {
-  for (int i = 0; word[i]; i++) {
-    if (!strncmp(name, word[i], strlen(word[i])))
-      return true;
-  }
-  return false;
+  const size_t numerics = offsetof(Scene, stabilisation); /* and behind them how to run it */
+
+  return g == GROUP_CASE ? k->offset >= numerics : g == GROUP_STAGE && k->offset >= offsetof(CaseStage, c) + numerics;
 }
 
 static uint64_t HashReals(uint64_t h, const double *v, size_t n)
@@ -54,7 +48,7 @@ static uint64_t HashNames(uint64_t h, const Names *l)
   return HashBytes(HashBytes(h, &l->n, sizeof l->n), l->i, (size_t)l->n * sizeof *l->i);
 }
 
-static uint64_t HashKey(uint64_t h, const Key *k, const char *instance)
+uint64_t KeyHash(uint64_t h, const Key *k, const char *instance)
 {
   const char *place = instance + k->offset;
   const int   yes   = k->kind == KEY_BOOL && *(const bool *)place;
@@ -87,7 +81,7 @@ static uint64_t HashKey(uint64_t h, const Key *k, const char *instance)
 
 static uint64_t HashScene(uint64_t h, const Case *c)
 {
-  h = HashBytes(h, &c->fields.has, sizeof c->fields.has);
+  h = HashBytes(h, &c->scene.fields.has, sizeof c->scene.fields.has);
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     const PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
 
@@ -96,9 +90,8 @@ static uint64_t HashScene(uint64_t h, const Case *c)
     h = HashBytes(h, &n, sizeof n);
     for (PetscInt i = 0; i < n; i++) {
       for (const Key *k = case_group[g].key; k->name; k++) {
-        if (!k->like && KeyActs(k, c, GroupInstance(c, g, i)) &&
-            (g != GROUP_CASE || !BeginsWithOneOf(k->name, may_change)))
-          h = HashKey(h, k, GroupInstance(c, g, i));
+        if (!k->like && KeyActs(k, c, GroupInstance(c, g, i)) && !KeyMayChange(k, g))
+          h = KeyHash(h, k, GroupInstance(c, g, i));
       }
     }
   }
@@ -116,10 +109,10 @@ uint64_t CaseFingerprint(const Case *c)
   for (PetscInt i = 0; i < c->nstage; i++) {
     const CaseStage *s = &c->stage[i];
 
-    h = HashScene(HashReals(h, &s->c.t_begin, 1), &s->c);
+    h = HashScene(HashReals(h, &s->c.scene.t_begin, 1), &s->c);
     for (const Key *k = case_group[GROUP_STAGE].key; k->name; k++) {
-      if (!BeginsWithOneOf(k->name, may_change) && !BeginsWithOneOf(k->name, in_scene))
-        h = HashKey(h, k, (const char *)s);
+      if (!k->made && !KeyMayChange(k, GROUP_STAGE))
+        h = KeyHash(h, k, (const char *)s);
     }
   }
   return h;

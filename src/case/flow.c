@@ -4,14 +4,14 @@
 #define FAIL(b, key, ...) FAIL_AT(GROUP_BC, (b)->name, key, __VA_ARGS__)
 
 /* A key of a field that the scene has not. */
-static void CheckField(Reader *r, const Case *c, const Bc *b, const char *key, unsigned needs, bool given)
+static void CheckField(Reader *r, const Scene *c, const Bc *b, const char *key, unsigned needs, bool given)
 {
   char words[64];
 
   if (!given || (c->fields.has & needs))
     return;
   FieldsWords(needs, words);
-  FAIL(b, key, "needs %s, which is not among the fields of the scene (%s)", words, c->fields_wanted);
+  FAIL(b, key, "needs %s, which is not among the fields of the scene (%s)", words, CaseOf(c)->fields_wanted);
 }
 
 static bool IsZero(const Schedule *s)
@@ -24,7 +24,7 @@ static bool IsZero(const Schedule *s)
 }
 
 /* p_w and p_g stand for themselves, and both for a face that is open for both. */
-static void CheckPhases(Reader *r, const Case *c, const Bc *b)
+static void CheckPhases(Reader *r, const Scene *c, const Bc *b)
 {
   const char *const key[PHASE_COUNT]   = {"p_w", "p_g"};
   const bool        given[PHASE_COUNT] = {b->phase[PHASE_W].n > 0, b->phase[PHASE_G].n > 0};
@@ -48,13 +48,13 @@ static void CheckPhases(Reader *r, const Case *c, const Bc *b)
 }
 
 /* The word ambient wants a fluid around the body. */
-static void CheckAmbient(Reader *r, const Case *c, const Bc *b)
+static void CheckAmbient(Reader *r, const Scene *c, const Bc *b)
 {
   if (b->value.n == 1 && isinf(b->value.y[0]) && IsZero(&c->ambient_pressure) && c->ambient_density == 0.0)
     FAIL(b, "pressure", "is ambient, but the case has neither ambient_pressure nor ambient_density");
 }
 
-void CheckFlow(Reader *r, const Case *c, const Bc *b)
+void CheckFlow(Reader *r, const Scene *c, const Bc *b)
 {
   if (b->type == BC_PRESSURE) {
     CheckAmbient(r, c, b);

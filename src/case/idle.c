@@ -6,7 +6,7 @@
 #define SHOWN 12
 
 /* Why a key does nothing. */
-static void Why(const Key *k, const Case *c, char why[CASE_WHY])
+static void Why(const Key *k, const Scene *c, char why[CASE_WHY])
 {
   const unsigned lacks = k->has && !(c->fields.has & k->has)     ? k->has
                          : k->also && !(c->fields.has & k->also) ? k->also
@@ -40,7 +40,7 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c)
         PetscCall(KeyFind(r, c, g, i, k, &at));
         if (!at.found || !at.own)
           continue;
-        Why(k, c, why);
+        Why(k, &c->scene, why);
         if (n++ < SHOWN)
           fprintf(f, "%s%s (%s)", n > 1 ? ", " : "", at.shown, why);
       }

@@ -5,70 +5,45 @@
 
 #define FAIL(region, key, ...) FAIL_AT(GROUP_REGION, region, key, __VA_ARGS__)
 
-/* The highest (sign 1) or lowest (-1) point of a region, on the vertical through the origin. */
-static void Extreme(const Case *c, const Region *g, double sign, double x[CL_DIM])
-{
-  const double gravity    = CaseGravity(c),
-               up[CL_DIM] = {-sign * c->gravity[0] / gravity, -sign * c->gravity[1] / gravity};
-  const double reach      = RegionHighest(g, up);
-
-  for (int d = 0; d < CL_DIM; d++)
-    x[d] = up[d] * reach;
-}
-
-double CaseTop(const Case *c)
-{
-  double top = -INFINITY, x[CL_DIM];
-
-  if (CaseGravity(c) == 0.0)
-    return 0.0;
-  for (PetscInt i = 0; i < c->nregion; i++) {
-    if (RegionEmpty(&c->region[i]))
-      continue;
-    Extreme(c, &c->region[i], 1.0, x);
-    top = fmax(top, CaseHeight(c, x));
-  }
-  return top;
-}
-
 /* Pressure at the top must stay positive. */
-static void CheckHydrostatic(Reader *r, const Case *c, const Region *g)
+static void CheckHydrostatic(Reader *r, const Scene *c, const Region *g)
 {
   double lowest, x[CL_DIM];
 
-  if (CaseGravity(c) == 0.0) {
+  if (SceneGravity(c) == 0.0) {
     FAIL(g->name, "hydrostatic", "is yes but gravity is zero");
     return;
   }
-  Extreme(c, g, 1.0, x);
+  RegionExtreme(c, g, 1.0, x);
   lowest = InitialWaterPressure(c, g, g->pressure, x);
   if (!(lowest > 0.0))
     FAIL(g->name, "datum", "makes the pressure %g Pa at the top; it must be positive", lowest);
 }
 
-static void CheckGeothermal(Reader *r, const Case *c, const Region *g)
+static void CheckGeothermal(Reader *r, const Scene *c, const Region *g)
 {
   double coldest = INFINITY, x[CL_DIM];
 
   if (!(c->fields.has & HAS_HEAT)) {
-    FAIL(g->name, "geothermal", "needs heat, which is not among the fields of the scene (%s)", c->fields_wanted);
+    FAIL(g->name, "geothermal", "needs heat, which is not among the fields of the scene (%s)",
+         CaseOf(c)->fields_wanted);
     return;
   }
-  if (CaseGravity(c) == 0.0) {
+  if (SceneGravity(c) == 0.0) {
     FAIL(g->name, "geothermal", "is given but gravity, which says where depth is, is zero");
     return;
   }
   for (int sign = -1; sign <= 1; sign += 2) {
-    const double datum = isinf(g->geothermal_datum) ? CaseTop(c) : g->geothermal_datum;
+    const double datum = isinf(g->geothermal_datum) ? SceneTop(c) : g->geothermal_datum;
 
-    Extreme(c, g, sign, x);
-    coldest = fmin(coldest, g->temperature + g->geothermal * fmax(datum - CaseHeight(c, x), 0.0));
+    RegionExtreme(c, g, sign, x);
+    coldest = fmin(coldest, g->temperature + g->geothermal * fmax(datum - SceneHeight(c, x), 0.0));
   }
   if (coldest <= -CL_ZERO_CELSIUS)
     FAIL(g->name, "geothermal", "makes the temperature %g degC at its top or foot", coldest);
 }
 
-static void CheckGeostatic(Reader *r, const Case *c, const Region *g)
+static void CheckGeostatic(Reader *r, const Scene *c, const Region *g)
 {
   const char *key    = g->consolidated ? "stress_normally_consolidated" : "stress_geostatic";
   bool        listed = false;
@@ -80,10 +55,10 @@ static void CheckGeostatic(Reader *r, const Case *c, const Region *g)
   if (g->consolidated && g->K0 > 0.0 && !isinf(g->K0))
     FAIL(g->name, key, "and stress_geostatic are both given; choose one");
   if (!(c->fields.has & HAS_SOLID))
-    FAIL(g->name, key, "needs solid, which is not among the fields of the scene (%s)", c->fields_wanted);
-  if (CaseGravity(c) == 0.0)
+    FAIL(g->name, key, "needs solid, which is not among the fields of the scene (%s)", CaseOf(c)->fields_wanted);
+  if (SceneGravity(c) == 0.0)
     FAIL(g->name, key, "is given but gravity is zero");
-  else if (CaseVertical(c) < 0)
+  else if (SceneVertical(c) < 0)
     FAIL(g->name, key, "needs gravity along x or y, not oblique (%g, %g m/s^2)", c->gravity[0], c->gravity[1]);
   if (c->gravity_ramp > 0.0)
     FAIL(g->name, key, "is in balance with gravity, but gravity_ramp makes it start from zero; choose one");
@@ -92,7 +67,7 @@ static void CheckGeostatic(Reader *r, const Case *c, const Region *g)
          c->material[g->material].name);
 }
 
-void CheckInitial(Reader *r, const Case *c, const Region *g)
+void CheckInitial(Reader *r, const Scene *c, const Region *g)
 {
   if (g->hydrostatic && c->fields.fluid)
     CheckHydrostatic(r, c, g);

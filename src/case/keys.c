@@ -7,19 +7,19 @@
 /* ---------------------------------------------------------------- conditions */
 static bool HasSpacingX(const void *p)
 {
-  return ((const Case *)p)->spacing[0][0];
+  return ((const Case *)p)->scene.spacing[0][0];
 }
 static bool HasSpacingY(const void *p)
 {
-  return ((const Case *)p)->spacing[1][0];
+  return ((const Case *)p)->scene.spacing[1][0];
 }
 static bool HasTableX(const void *p)
 {
-  return ((const Case *)p)->table[0][0];
+  return ((const Case *)p)->scene.table[0][0];
 }
 static bool HasTableY(const void *p)
 {
-  return ((const Case *)p)->table[1][0];
+  return ((const Case *)p)->scene.table[1][0];
 }
 static bool HasEqualAxis(const void *p)
 {
@@ -203,65 +203,73 @@ const char *const case_bc_type[] = {CL_FACE_CONDITIONS(BC_WORD) CL_NODE_CONDITIO
   ROW(T, name, KEY_NAMES, member, 0, "", "", "", doc, .names = group, ##__VA_ARGS__)
 #define POINTS(T, name, member, doc, ...) ROW(T, name, KEY_POINTS, member, 0, "m", "", "", doc, ##__VA_ARGS__)
 /* a law is set by its function; the member is not used */
-#define LAWKEY(name, def, law_, doc) ROW(Material, name, KEY_LAW, porosity, 1, "", "", def, doc, .law = &law_)
+#define LAWKEY(name, def, law_, doc, ...)                                                                              \
+  ROW(Material, name, KEY_LAW, porosity, 1, "", "", def, doc, .law = &law_, ##__VA_ARGS__)
 #define SCHEDULE(name, member, unit, range, def, types_, doc, ...)                                                     \
   ROW(Bc, name, KEY_SCHEDULE, member, 1, unit, range, def, doc, .types = types_, ##__VA_ARGS__)
 #define WHEN(condition, words) .needed = condition, .when = words
 /* does nothing otherwise; is required besides */
 #define ACTS(condition, words) .acts = condition, .idle = words
+/* what particles hold means something else with another value, where there are any of these fields */
+#define BINDS(fields) .binds = fields
 #define OFLAW(condition, words) WHEN(condition, words), ACTS(condition, words)
 
 static const Key case_key[] = {
     TEXT(Case, "title", title, "", "one line"),
-    REALS(Case, 2, "grid_lower", lower, "m", "", NULL, "lower left corner of the background grid"),
-    REALS(Case, 2, "grid_upper", upper, "m", "", NULL, "upper right corner; the body must not leave the grid"),
-    TEXT(Case, "grid_spacing_x", spacing[0], "",
+    REALS(Case, 2, "grid_lower", scene.lower, "m", "", NULL, "lower left corner of the background grid",
+          BINDS(HAS_ALL)),
+    REALS(Case, 2, "grid_upper", scene.upper, "m", "", NULL, "upper right corner; the body must not leave the grid",
+          BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_x", scene.spacing[0], "",
          "sizes of the cells along x: one size (0.5 m), or first size, largest size and growth from cell to cell, "
          "from the lower end on ([0.05 m, 2 m, growth 1.15])",
-         ACTS(HasSpacingX, "it is given")),
-    TEXT(Case, "grid_spacing_x_table", table[0], "",
+         ACTS(HasSpacingX, "it is given"), BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_x_table", scene.table[0], "",
          "the same by places, which are lines of the grid, and sizes there, from the lower end to the upper "
          "({table: [0 m, 0.5 m, 4 m, 0.05 m, 10 m, 1 m]})",
-         ACTS(HasTableX, "it is given")),
-    TEXT(Case, "grid_spacing_y", spacing[1], "", "likewise along y", ACTS(HasSpacingY, "it is given")),
-    TEXT(Case, "grid_spacing_y_table", table[1], "", "likewise along y", ACTS(HasTableY, "it is given")),
-    INTEGERS(Case, 2, "grid_cells", cells, "[1,100000]", "auto, auto",
+         ACTS(HasTableX, "it is given"), BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_y", scene.spacing[1], "", "likewise along y", ACTS(HasSpacingY, "it is given"),
+         BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_y_table", scene.table[1], "", "likewise along y", ACTS(HasTableY, "it is given"),
+         BINDS(HAS_ALL)),
+    INTEGERS(Case, 2, "grid_cells", scene.cells, "[1,100000]", "auto, auto",
              "cells along x and y; auto: as many as the spacing of that axis makes",
-             WHEN(HasEqualAxis, "an axis has no spacing"), .word = "auto"),
-    BOOLEAN(Case, "geometry", axisymmetric, "plane", "axisymmetric: x is the radius, y runs along the axis",
-            .choices = geometry_word),
+             WHEN(HasEqualAxis, "an axis has no spacing"), .word = "auto", BINDS(HAS_ALL)),
+    BOOLEAN(Case, "geometry", scene.axisymmetric, "plane", "axisymmetric: x is the radius, y runs along the axis",
+            .choices = geometry_word, BINDS(HAS_ALL)),
     TEXT(Case, "fields", fields_wanted, "auto",
          "what the scene needs: a list of solid, water, gas, heat, or a set's name (thmc, thc, hmc, thm, hm, m, ...); "
-         "auto drops what is identically zero"),
-    BOOLEAN(Case, "inertia", inertia, "yes", "accelerations; no is quasi-static"),
-    BOOLEAN(Case, "pressures", one_pressure, "two", "one: p_g = p_w, saturations follow explicitly from the masses",
-            .choices = pressures_word),
-    BOOLEAN(Case, "compression_heat", compression_heat, "no",
+         "auto drops what is identically zero",
+         BINDS(HAS_ALL)),
+    BOOLEAN(Case, "inertia", scene.inertia, "yes", "accelerations; no is quasi-static"),
+    BOOLEAN(Case, "pressures", scene.one_pressure, "two",
+            "one: p_g = p_w, saturations follow explicitly from the masses", .choices = pressures_word, BINDS(HAS_ALL)),
+    BOOLEAN(Case, "compression_heat", scene.compression_heat, "no",
             "fluids warm as they are compressed and cool or warm as they are throttled (Joule-Thomson)"),
-    CHOICE(Case, "basis", basis, "cpgimp", basis_word, "basis functions"),
+    CHOICE(Case, "basis", scene.basis, "cpgimp", basis_word, "basis functions"),
     BOOLEAN(
-        Case, "mean_dilatation", mean_dilatation, "no",
+        Case, "mean_dilatation", scene.mean_dilatation, "no",
         "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
         "does not lock"),
-    REAL(Case, "mean_strain", mean_strain, "", "[0,1]", "0",
+    REAL(Case, "mean_strain", scene.mean_strain, "", "[0,1]", "0",
          "share of the mean motion of its cell in the strain of a particle: a skeleton that yields flows more freely; "
          "1 leaves modes without stiffness, 0.95 does for collapse loads"),
-    REALS(Case, 2, "gravity", gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
-    REAL(Case, "gravity_ramp", gravity_ramp, "s", "[0,inf)", "0 s",
+    REALS(Case, 2, "gravity", scene.gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
+    REAL(Case, "gravity_ramp", scene.gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
     REAL(
-        Case, "strength_factor", strength_factor, "", "(0,1e3]", "1",
+        Case, "strength_factor", scene.strength_factor, "", "(0,1e3]", "1",
         "cohesion, tension cut-off and the tangents of friction and dilation angle of all materials are divided by it: "
         "the "
         "largest one that a slope bears is its factor of safety"),
-    ROW(Case, "ambient_pressure", KEY_SCHEDULE, ambient_pressure, 1, "Pa", "[0,1e10]", "0 Pa",
+    ROW(Case, "ambient_pressure", KEY_SCHEDULE, scene.ambient_pressure, 1, "Pa", "[0,1e10]", "0 Pa",
         "of the fluid that the scene stands in: acts on the whole surface of the body; at and above ambient_level"),
-    REAL(Case, "ambient_density", ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
+    REAL(Case, "ambient_density", scene.ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
          "of that fluid: below ambient_level its pressure grows with depth"),
-    REAL(Case, "ambient_drag", ambient_drag, "", "[0,100]", "0",
+    REAL(Case, "ambient_drag", scene.ambient_drag, "", "[0,100]", "0",
          "coefficient of the drag of that fluid, at rest, on faces that move into it", .has = HAS_SOLID),
-    ROW(Case, "ambient_level", KEY_SCHEDULE, ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
-    CHOICE(Case, "without_gas", without_gas, "auto", without_gas_word,
+    ROW(Case, "ambient_level", KEY_SCHEDULE, scene.ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
+    CHOICE(Case, "without_gas", scene.without_gas, "auto", without_gas_word,
            "sediment may be or become free of gas: water then holds 1e-7 of what gas would; auto: where a region has "
            "Sg: 0"),
     CHOICE(Case, "ice", ice, "warn", ice_word,
@@ -309,21 +317,23 @@ static const Key case_key[] = {
         "hybrid, explicit: changes of pressure shared over nodes; likewise, but those of p_g in proportion to the p_g "
         "that each particle has (relative), for gas in what tears; or by each particle alone (particles: the paper's "
         "form, which rings)"),
-    REAL(Case, "stabilisation_ghost_penalty", ghost_penalty, "", "[0,100]", "0.1", "at free surfaces; 0 = off"),
-    REAL(Case, "stabilisation_ghost_storage", ghost_storage, "", "[0,100]", "0",
+    REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
+         "at free surfaces; 0 = off"),
+    REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",
          "the same on pressures' changes, for undrained bodies; 0 = off"),
-    REAL(Case, "stabilisation_pressure_projection", pressure_projection, "", "[0,100]", "1",
+    REAL(Case, "stabilisation_pressure_projection", scene.stabilisation.pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
-    BOOLEAN(Case, "stabilisation_flux_interpolation", flux_interpolation, "yes", "momentum-interpolated mass flux"),
-    BOOLEAN(Case, "stabilisation_upstream", upstream, "no",
+    BOOLEAN(Case, "stabilisation_flux_interpolation", scene.stabilisation.flux_interpolation, "yes",
+            "momentum-interpolated mass flux"),
+    BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",
             "relative permeabilities from upstream, for sharp fronts of saturation"),
-    BOOLEAN(Case, "stabilisation_saturation", saturation_upwind, "no",
+    BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
     BOOLEAN(
-        Case, "stabilisation_heat", heat_upwind, "no",
+        Case, "stabilisation_heat", scene.stabilisation.heat_upwind, "no",
         "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
         "conducted"),
-    BOOLEAN(Case, "stabilisation_reaction", lumped_reaction, "no",
+    BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
@@ -348,30 +358,32 @@ static const Key case_key[] = {
 
 static const Key material_key[] = {
     LIKE(Material, GROUP_MATERIAL, "another of materials, whose keys hold where this one's are not given"),
-    REAL(Material, "porosity", porosity, "", "(0,1)", NULL, "initial porosity"),
-    REAL(Material, "solid_density", solid.rho0, "kg/m^3", "(0,1e5]", NULL, "of the grains"),
+    REAL(Material, "porosity", porosity, "", "(0,1)", NULL, "initial porosity", BINDS(HAS_ALL)),
+    REAL(Material, "solid_density", solid.rho0, "kg/m^3", "(0,1e5]", NULL, "of the grains", BINDS(HAS_ALL)),
     REAL(Material, "solid_heat_capacity", c_s, "J/(kg K)", "(0,1e6]", NULL, "", .has = HAS_HEAT),
     REAL(Material, "solid_conductivity", kappa_s, "W/(m K)", "[0,1e4]", NULL, "thermal conductivity", .has = HAS_HEAT),
-    REAL(Material, "solid_expansion", solid.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion"),
-    REAL(Material, "hydrate_density", hydrate.rho0, "kg/m^3", "(0,1e5]", "900 kg/m^3", "", .has = HAS_HYDRATE),
+    REAL(Material, "solid_expansion", solid.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion",
+         BINDS(HAS_ALL)),
+    REAL(Material, "hydrate_density", hydrate.rho0, "kg/m^3", "(0,1e5]", "900 kg/m^3", "", .has = HAS_HYDRATE,
+         BINDS(HAS_ALL)),
     REAL(Material, "hydrate_heat_capacity", c_h, "J/(kg K)", "(0,1e6]", "2010 J/(kg K)", "", .has = HAS_HYDRATE,
          .also = HAS_HEAT),
     REAL(Material, "hydrate_conductivity", kappa_h, "W/(m K)", "[0,1e4]", "0.5 W/(m K)", "thermal conductivity",
          .has = HAS_HYDRATE, .also = HAS_HEAT),
     REAL(Material, "hydrate_expansion", hydrate.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion",
-         .has = HAS_HYDRATE),
+         .has = HAS_HYDRATE, BINDS(HAS_ALL)),
     REAL(Material, "hydrate_molar_mass", kinetics.M_h, "kg/mol", "(0,10]", "0.124 kg/mol", "must be M_g + N_h M_w",
-         .has = HAS_HYDRATE),
+         .has = HAS_HYDRATE, BINDS(HAS_ALL)),
     REAL(Material, "hydrate_number", kinetics.N_h, "", "(0,100]", "6", "hydration number N_h: water per gas",
-         .has = HAS_HYDRATE),
+         .has = HAS_HYDRATE, BINDS(HAS_ALL)),
     REAL(Material, "water_density", fresh, "kg/m^3", "(0,1e5]", "1000 kg/m^3",
-         "of fresh water, at ref_pressure and ref_temperature", .has = HAS_WATER),
+         "of fresh water, at ref_pressure and ref_temperature", .has = HAS_WATER, BINDS(HAS_WATER)),
     REAL(Material, "water_salinity", salinity, "", "[0,0.16]", "0",
          "kg of salt per kg of pore water, a given constant: raises its density, lowers the temperatures of "
          "equilibrium and of melting",
-         .has = HAS_WATER),
+         .has = HAS_WATER, BINDS(HAS_WATER)),
     REAL(Material, "water_bulk_modulus", water.K, "Pa", "(0,inf)", "2.2 GPa", "or the word incompressible",
-         .word = "incompressible", .has = HAS_WATER),
+         .word = "incompressible", .has = HAS_WATER, BINDS(HAS_WATER)),
     REAL(Material, "water_viscosity", mu_w.mu, "Pa s", "(0,1e6]", "1e-3 Pa s", "of the law constant", .has = HAS_WATER,
          ACTS(WaterIsConstant, "viscosity_law is constant")),
     CHOICE(Material, "water_viscosity_law", mu_w.law, "constant", water_viscosity_word,
@@ -381,21 +393,22 @@ static const Key material_key[] = {
     REAL(Material, "water_conductivity", kappa_w, "W/(m K)", "[0,1e4]", "0.5 W/(m K)", "thermal conductivity",
          .has = HAS_WATER, .also = HAS_HEAT),
     REAL(Material, "water_expansion", water.beta, "1/K", "[-0.1,0.1]", "0 1/K", "volumetric thermal expansion",
-         .has = HAS_WATER),
-    REAL(Material, "water_ref_pressure", water.p_ref, "Pa", "[0,1e10]", "101325 Pa", "of the densities"),
+         .has = HAS_WATER, BINDS(HAS_WATER)),
+    REAL(Material, "water_ref_pressure", water.p_ref, "Pa", "[0,1e10]", "101325 Pa", "of the densities",
+         BINDS(HAS_ALL)),
     REAL(Material, "water_ref_temperature", water.T_ref, "degC", "(-273.15,1000]", "20 degC",
-         "of the densities, grains and hydrate too"),
+         "of the densities, grains and hydrate too", BINDS(HAS_ALL)),
     REAL(Material, "water_molar_mass", kinetics.M_w, "kg/mol", "(0,10]", "0.018 kg/mol", "",
-         .has = HAS_WATER | HAS_HYDRATE),
+         .has = HAS_WATER | HAS_HYDRATE, BINDS(HAS_ALL)),
     REAL(Material, "gas_molar_mass", gas.M, "kg/mol", "(0,10]", "0.016 kg/mol", "methane by default",
-         .has = HAS_GAS | HAS_HYDRATE),
-    LAWKEY("gas_eos", "peng_robinson", law_Gas, "density; ideal is M p/(R T), the paper's"),
+         .has = HAS_GAS | HAS_HYDRATE, BINDS(HAS_ALL)),
+    LAWKEY("gas_eos", "peng_robinson", law_Gas, "density; ideal is M p/(R T), the paper's", BINDS(HAS_GAS)),
     REAL(Material, "gas_critical_temperature", gas.Tc, "K", "(0,1e4]", "190.564 K", "peng_robinson; methane by default",
-         .has = HAS_GAS, ACTS(IsCubic, "eos is peng_robinson")),
+         .has = HAS_GAS, ACTS(IsCubic, "eos is peng_robinson"), BINDS(HAS_GAS)),
     REAL(Material, "gas_critical_pressure", gas.pc, "Pa", "(0,1e9]", "4.5992 MPa", "peng_robinson", .has = HAS_GAS,
-         ACTS(IsCubic, "eos is peng_robinson")),
+         ACTS(IsCubic, "eos is peng_robinson"), BINDS(HAS_GAS)),
     REAL(Material, "gas_acentric_factor", gas.eccentric, "", "(-1,2]", "0.01142", "peng_robinson", .has = HAS_GAS,
-         ACTS(IsCubic, "eos is peng_robinson")),
+         ACTS(IsCubic, "eos is peng_robinson"), BINDS(HAS_GAS)),
     REAL(Material, "gas_viscosity", mu_g.mu, "Pa s", "(0,1e6]", "7e-6 Pa s", "of the law constant", .has = HAS_GAS,
          ACTS(GasIsConstant, "viscosity_law is constant")),
     CHOICE(Material, "gas_viscosity_law", mu_g.law, "constant", gas_viscosity_word,
@@ -404,19 +417,23 @@ static const Key material_key[] = {
          .also = HAS_HEAT),
     REAL(Material, "gas_conductivity", kappa_g, "W/(m K)", "[0,1e4]", "0.044 W/(m K)", "thermal conductivity",
          .has = HAS_GAS, .also = HAS_HEAT),
-    LAWKEY("retention_law", "van_genuchten", law_Retention, "van_genuchten is the smooth form with trapped gas"),
+    LAWKEY("retention_law", "van_genuchten", law_Retention, "van_genuchten is the smooth form with trapped gas",
+           BINDS(HAS_GAS)),
     REAL(Material, "retention_p0", retention.p0, "Pa", "(0,1e10]", NULL, "air-entry (reference) pressure",
-         .has = HAS_GAS),
+         .has = HAS_GAS, BINDS(HAS_GAS)),
     REAL(Material, "retention_m", retention.m, "", "(0,1)", "0.5", "van Genuchten's m",
-         OFLAW(NeedsM, "law is van_genuchten..."), .has = HAS_GAS),
+         OFLAW(NeedsM, "law is van_genuchten..."), .has = HAS_GAS, BINDS(HAS_GAS)),
     REAL(Material, "retention_lambda", retention.lambda, "", "(0,100]", "1", "Brooks-Corey pore-size index",
-         OFLAW(NeedsLambda, "law is brooks_corey"), .has = HAS_GAS),
-    REAL(Material, "retention_Swr", retention.Swr, "", "[0,1)", NULL, "residual water saturation", .has = HAS_GAS),
-    REAL(Material, "retention_Sgr", retention.Sgr, "", "[0,1)", NULL, "residual gas saturation", .has = HAS_GAS),
+         OFLAW(NeedsLambda, "law is brooks_corey"), .has = HAS_GAS, BINDS(HAS_GAS)),
+    REAL(Material, "retention_Swr", retention.Swr, "", "[0,1)", NULL, "residual water saturation", .has = HAS_GAS,
+         BINDS(HAS_GAS)),
+    REAL(Material, "retention_Sgr", retention.Sgr, "", "[0,1)", NULL, "residual gas saturation", .has = HAS_GAS,
+         BINDS(HAS_GAS)),
     REAL(Material, "retention_p_smooth", retention.p_smooth, "Pa", "(0,1e10]", "0.05 @retention_p0",
-         "smoothing width of the smooth form", .has = HAS_GAS, ACTS(IsSmooth, "law is van_genuchten")),
+         "smoothing width of the smooth form", .has = HAS_GAS, ACTS(IsSmooth, "law is van_genuchten"), BINDS(HAS_GAS)),
     REAL(Material, "retention_p_trap", retention.p_trap, "Pa", "(0,1e10]", "1 @retention_p0",
-         "pressure scale of trapped gas, smooth form", .has = HAS_GAS, ACTS(IsSmooth, "law is van_genuchten")),
+         "pressure scale of trapped gas, smooth form", .has = HAS_GAS, ACTS(IsSmooth, "law is van_genuchten"),
+         BINDS(HAS_GAS)),
     REAL(Material, "relperm_Swr", relperm.Swr, "", "[0,1)", "1 @retention_Swr", "residual water saturation of k_rw",
          .has = HAS_GAS),
     REAL(Material, "relperm_Sgr", relperm.Sgr, "", "[0,1)", "1 @retention_Sgr", "residual gas saturation of k_rg",
@@ -438,7 +455,7 @@ static const Key material_key[] = {
          OFLAW(NeedsRamp, "hydrate_law is masuda_ramp"), .has = HAS_WATER, .also = HAS_HYDRATE),
     REAL(Material, "permeability_Shc", permeability.Shc, "", "(0,1]", "1", "threshold",
          OFLAW(NeedsRamp, "hydrate_law is masuda_ramp"), .has = HAS_WATER, .also = HAS_HYDRATE),
-    BOOLEAN(Material, "kinetics_active", reacts, "no", "hydrate forms and dissociates"),
+    BOOLEAN(Material, "kinetics_active", reacts, "no", "hydrate forms and dissociates", BINDS(HAS_ALL)),
     REAL(Material, "kinetics_K0", kinetics.K0, "mol/(m^2 Pa s)", "[0,inf)", "0 mol/(m^2 Pa s)",
          "K_d = K0 exp(-dE/(R T))", OFLAW(NeedsRate, "active")),
     REAL(Material, "kinetics_dE", kinetics.dE, "J/mol", "[0,1e7]", "0 J/mol", "activation energy; 0 = constant K_d",
@@ -473,7 +490,7 @@ static const Key material_key[] = {
            "stress follows E(S_h) both ways, only its loss, or hydrate bears a stress of its own that goes with it",
            .has = HAS_SOLID, .also = HAS_HYDRATE),
     CHOICE(Material, "plasticity_law", plasticity.type, "none", plasticity_word, "strength of the skeleton",
-           .has = HAS_SOLID),
+           .has = HAS_SOLID, .history = true),
     CHOICE(Material, "plasticity_flow", plasticity.flow, "menetrey_willam", flow_word,
            "potential: smooth, or the planes of the dilation angle", .has = HAS_SOLID,
            ACTS(NeedsStrength, "law is mohr_coulomb")),
@@ -538,8 +555,9 @@ static const Key region_key[] = {
           WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "-none", .shape = true, .own = true),
     REALS(Region, 2, "upper", upper, "m", "", "none, none", "upper right corner",
           WHEN(NeedsBox, "polygon, below and circle are not given"), .word = "none", .shape = true, .own = true),
-    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one", .own = true),
-    INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y"),
+    NAMES(Region, "minus", minus, GROUP_REGION, "list of regions whose shapes are cut out of this one", .own = true,
+          BINDS(HAS_ALL)),
+    INTEGERS(Region, 2, "particles_per_cell", ppc, "[1,10]", "2, 2", "along x and y", BINDS(HAS_ALL)),
     REAL(Region, "pressure", pressure, "Pa", "(0,1e10]", NULL, "initial mean pore pressure", .has = HAS_WATER),
     REAL(Region, "temperature", temperature, "degC", "(-273.15,1000]", NULL, "initial temperature",
          .has = HAS_HEAT | HAS_GAS, .felt = true),
@@ -663,22 +681,24 @@ static const Key meter_key[] = {
 #define CASES "the case's"
 #define CASES_LENGTH "the case's if it is given, else the same share of the stage's length"
 static const Key stage_key[] = {
-    REAL(CaseStage, "end", end, "s", "(0,inf)", NULL, "it begins where the stage before ends"),
+    REAL(CaseStage, "end", end, "s", "(0,inf)", NULL, "it begins where the stage before ends", .made = true),
     BOOLEAN(
         CaseStage, "reset_displacement", reset, "no",
         "displacement and log_J count from the begin of the stage; sides, from and to stay those of the initial body"),
     BOOLEAN(CaseStage, "kinetics_active", reaction, "yes",
             "no: hydrate neither forms nor dissociates, in materials whose kinetics are active"),
-    TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; all, or none"),
-    TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act"),
+    TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; all, or none",
+         .made = true),
+    TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act", .made = true),
     TEXT(CaseStage, "materials", materials, "",
-         "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay"),
-    REALS(CaseStage, 2, "gravity", c.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
-    REAL(CaseStage, "gravity_ramp", c.gravity_ramp, "s", "[0,inf)", CASES,
+         "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay",
+         .made = true),
+    REALS(CaseStage, 2, "gravity", c.scene.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
+    REAL(CaseStage, "gravity_ramp", c.scene.gravity_ramp, "s", "[0,inf)", CASES,
          "gravity goes from that of the stage before to that of this one over this time", .kept = true),
-    REAL(CaseStage, "strength_factor", c.strength_factor, "", "(0,1e3]", CASES,
+    REAL(CaseStage, "strength_factor", c.scene.strength_factor, "", "(0,1e3]", CASES,
          "strength is divided by it, from the begin of the stage on", .kept = true),
-    BOOLEAN(CaseStage, "inertia", c.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
+    BOOLEAN(CaseStage, "inertia", c.scene.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
     TEXT(CaseStage, "stepper_type", c.stepper, CASES, "time integrator", .choices = stepper_word, .kept = true),
     BOOLEAN(CaseStage, "stepper_adapt", c.adaptive, CASES, "choose the step by the error estimate", .kept = true),
     REAL(CaseStage, "stepper_dt", c.dt, "s", "(0,inf)", CASES_LENGTH, "first step (adaptive) or fixed step",
@@ -715,13 +735,14 @@ static const Key stage_key[] = {
   }
 const GroupInfo case_group[GROUP_COUNT] = {
     {.prefix = "", .list = NULL, .noun = "case", .doc = "The scene", .size = sizeof(Case), .key = case_key},
-    GROUP(Material, "mat_", "materials", "material", nmaterial, material, true, material_key, "Laws and constants"),
-    GROUP(Region, "region_", "regions", "region", nregion, region, true, region_key,
+    GROUP(Material, "mat_", "materials", "material", scene.nmaterial, scene.material, true, material_key,
+          "Laws and constants"),
+    GROUP(Region, "region_", "regions", "region", scene.nregion, scene.region, true, region_key,
           "Parts of the body, each of one shape, and their initial state"),
-    GROUP(Bc, "bc_", "boundaries", "boundary", nbc, bc, false, bc_key, "Boundary conditions"),
+    GROUP(Bc, "bc_", "boundaries", "boundary", scene.nbc, scene.bc, false, bc_key, "Boundary conditions"),
     GROUP(Probe, "probe_", "probes", "probe", nprobe, probe, false, probe_key,
           "Points and means whose history is written"),
-    GROUP(Meter, "meter_", "meters", "meter", nmeter, meter, false, meter_key,
+    GROUP(Meter, "meter_", "meters", "meter", scene.nmeter, scene.meter, false, meter_key,
           "Parts of the surface that count what crosses them"),
     GROUP(CaseStage, "stage_", "stages", "stage", nstage, stage, false, stage_key,
           "Stages that follow each other in time; a key that is not given is the case's"),

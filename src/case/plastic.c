@@ -32,13 +32,13 @@ static void CheckSnapBack(Reader *r, const Material *m)
 #define LEAST_CELLS 2.0 /* in a nonlocal_length: with less it is the grid again that decides */
 
 /* A length over which plastic strain is averaged needs cells finer than itself, and strength that falls with strain. */
-static void CheckNonlocal(Reader *r, const Case *c, const Material *m)
+static void CheckNonlocal(Reader *r, const Scene *c, const Material *m)
 {
   const Plasticity *p = &m->plasticity;
   double            h = 0.0;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const GridLines line = CaseLines(c, d);
+    const GridLines line = SceneLines(c, d);
 
     h = fmax(h, LinesWidest(&line));
   }
@@ -58,7 +58,7 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
 {
   const Plasticity *p = &m->plasticity;
 
-  if (p->type != PLASTICITY_MOHR_COULOMB || !c->fields.solid)
+  if (p->type != PLASTICITY_MOHR_COULOMB || !c->scene.fields.solid)
     return;
   if (p->c_max == 0.0 && p->phi_peak == 0.0)
     FAIL("plasticity_cohesion_max", "is 0 Pa and plasticity_friction_peak 0 deg: the material has no strength at all");
@@ -75,11 +75,11 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
          p->psi_max);
   if (isfinite(p->cutoff) && p->flow != FLOW_MOHR_COULOMB)
     FAIL("plasticity_tension_cutoff", "needs plasticity_flow: mohr_coulomb");
-  if (p->heat > 0.0 && !c->fields.heat)
+  if (p->heat > 0.0 && !c->scene.fields.heat)
     FAIL("plasticity_heat", "is %g but heat is not among the fields of the scene (%s)", p->heat, c->fields_wanted);
   if (p->nonlocal > 0.0)
-    CheckNonlocal(r, c, m);
-  if (p->length > 0.0 && (c->line[0].x || c->line[1].x))
+    CheckNonlocal(r, &c->scene, m);
+  if (p->length > 0.0 && (c->scene.line[0].x || c->scene.line[1].x))
     FAIL("plasticity_softening_length",
          "needs equal cells: it adapts softening to one size of them; take plasticity_nonlocal_length on a grid with a "
          "spacing");
@@ -97,33 +97,33 @@ static void CheckStages(Reader *r, const Case *c)
   for (PetscInt i = 0; i < c->nstage && !r->bad[GROUP_STAGE]; i++) {
     const Case *s = CaseInStage(c, i);
 
-    for (PetscInt k = 0; k < s->nmaterial && s->strength_factor != c->strength_factor; k++) {
-      if (s->material[k].plasticity.type != PLASTICITY_NONE && isfinite(s->material[k].elasticity.E0))
-        CheckSnapBack(r, &s->material[k]);
+    for (PetscInt k = 0; k < s->scene.nmaterial && s->scene.strength_factor != c->scene.strength_factor; k++) {
+      if (s->scene.material[k].plasticity.type != PLASTICITY_NONE && isfinite(s->scene.material[k].elasticity.E0))
+        CheckSnapBack(r, &s->scene.material[k]);
     }
   }
 }
 
 void CheckReduction(Reader *r, const Case *c)
 {
-  bool reduced = c->strength_factor != 1.0, strong = false;
+  bool reduced = c->scene.strength_factor != 1.0, strong = false;
 
   for (PetscInt i = 0; i < c->nstage; i++)
-    reduced = reduced || CaseInStage(c, i)->strength_factor != 1.0;
-  for (PetscInt k = 0; k < c->nmaterial; k++)
-    strong = strong || (c->material[k].plasticity.type != PLASTICITY_NONE && c->fields.solid);
+    reduced = reduced || CaseInStage(c, i)->scene.strength_factor != 1.0;
+  for (PetscInt k = 0; k < c->scene.nmaterial; k++)
+    strong = strong || (c->scene.material[k].plasticity.type != PLASTICITY_NONE && c->scene.fields.solid);
   if (!reduced)
     return;
   if (!strong)
     FAIL_AT(GROUP_CASE, "", "strength_factor", "needs a material with a plasticity_law: nothing here has a strength");
   CheckStages(r, c);
-  for (PetscInt k = 0; k < c->nmaterial && r->rank == 0; k++) {
-    const Plasticity *p = &c->material[k].plasticity;
+  for (PetscInt k = 0; k < c->scene.nmaterial && r->rank == 0; k++) {
+    const Plasticity *p = &c->scene.material[k].plasticity;
 
     if (p->type != PLASTICITY_NONE && p->psi_max == 0.0 && p->phi_peak > 0.0)
       fprintf(stderr,
               "clathra: warning: strength_factor with a dilation of 0 deg (material %s): the factor at which a body "
               "fails then depends on the grid, even without softening; compare grids\n",
-              c->material[k].name);
+              c->scene.material[k].name);
   }
 }

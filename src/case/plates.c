@@ -49,7 +49,7 @@ static double Farthest(const Schedule *velocity, double t_end)
 
 static void CheckLine(Reader *r, const Case *c, const Bc *b)
 {
-  const GridLines line = CaseLines(c, b->axis);
+  const GridLines line = SceneLines(&c->scene, b->axis);
   const double    h    = LinesLeastAt(&line, b->position);
   const double    far  = Farthest(&b->value, c->nstage ? c->stage[c->nstage - 1].end : c->t_end);
 
@@ -62,15 +62,15 @@ static void CheckLine(Reader *r, const Case *c, const Bc *b)
 }
 
 /* Do two conditions share a part of the body's surface, sides or lines? */
-static bool Meet(const Case *c, const Bc *a, const Bc *b)
+static bool Meet(const Scene *c, const Bc *a, const Bc *b)
 {
   return (a->along.n || b->along.n || a->side == b->side) && FacesShared(c, &BcFaces(a), &BcFaces(b));
 }
 
 static bool ActsIn(const Case *stage, const Bc *b)
 {
-  for (PetscInt k = 0; k < stage->nbc; k++) {
-    if (stage->bc[k].number == b->number)
+  for (PetscInt k = 0; k < stage->scene.nbc; k++) {
+    if (stage->scene.bc[k].number == b->number)
       return true;
   }
   return false;
@@ -82,10 +82,10 @@ static void CheckOpen(Reader *r, const Case *c, const Bc *b)
   for (PetscInt i = 0; i < PetscMax(c->nstage, 1) && !b->drained; i++) {
     const Case *stage = CaseInStage(c, i);
 
-    for (PetscInt k = 0; k < stage->nbc && ActsIn(stage, b); k++) {
-      const Bc *o = &stage->bc[k];
+    for (PetscInt k = 0; k < stage->scene.nbc && ActsIn(stage, b); k++) {
+      const Bc *o = &stage->scene.bc[k];
 
-      if ((o->type != BC_PRESSURE && o->type != BC_INFLOW) || !Meet(c, b, o))
+      if ((o->type != BC_PRESSURE && o->type != BC_INFLOW) || !Meet(&c->scene, b, o))
         continue;
       FAIL(b, "holds",
            "is all, a closed plate, but %s lets fluid through the same part of the side; a porous plate has holds: "
@@ -135,7 +135,7 @@ void CheckPlate(Reader *r, const Case *c, const Bc *b)
   }
   if (r->bad[GROUP_CASE] || r->bad[GROUP_REGION])
     return;
-  if (!FacesShared(c, &BcFaces(b), &BcFaces(b)))
+  if (!FacesShared(&c->scene, &BcFaces(b), &BcFaces(b)))
     FAIL(b, "side", "the body has no free surface there that the plate could act on");
   if (!r->bad[GROUP_STAGE]) {
     CheckOpen(r, c, b);

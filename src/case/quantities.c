@@ -45,7 +45,7 @@ static void Add(Reader *r, Case *c, const char *word)
     ReaderError(r, "output_quantities", word, "must be all or a list of %s", words);
     return;
   }
-  if (!(c->fields.has & quantity[q].has)) {
+  if (!(c->scene.fields.has & quantity[q].has)) {
     if (!(quantity[q].has & HAS_ALL)) {
       ReaderError(r, "output_quantities", quantity[q].word,
                   quantity[q].has == HAS_PLASTIC ? "needs a material with a plasticity_law"

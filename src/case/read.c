@@ -79,7 +79,7 @@ static PetscErrorCode GroupRead(Reader *r, Case *c, Group g)
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
-    Bc *bc = g == GROUP_BC ? &c->bc[i] : NULL;
+    Bc *bc = g == GROUP_BC ? &c->scene.bc[i] : NULL;
     if (bc) {
       bc->number = i;
       bc->region = -1;
@@ -120,7 +120,7 @@ static void Unknown(Reader *r, const Case *c, const char *shown, const char *nam
 }
 
 /* The instance of a boundary whose type is wrong: its keys were not asked for, that is no second error. */
-static bool OfBadBoundary(const Case *c, const char *name)
+static bool OfBadBoundary(const Scene *c, const char *name)
 {
   for (PetscInt i = 0; i < c->nbc; i++) {
     char prefix[80];
@@ -157,15 +157,15 @@ static PetscErrorCode Leftovers(Reader *r, const Case *c)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < r->nentry; i++) {
     Entry *e = &r->entry[i];
-    if (!e->map && !e->used && !OfBadBoundary(c, e->name))
+    if (!e->map && !e->used && !OfBadBoundary(&c->scene, e->name))
       PetscCall(LeftOut(r, c, e->name, &out));
-    if (!e->map && !e->used && !OfBadBoundary(c, e->name) && !out)
+    if (!e->map && !e->used && !OfBadBoundary(&c->scene, e->name) && !out)
       Unknown(r, c, e->name, e->name, e->value, last);
   }
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++) {
     snprintf(shown, sizeof shown, "-%s", names[i]);
-    if (OfBadBoundary(c, names[i]) || !KeyOwned(c, names[i]))
+    if (OfBadBoundary(&c->scene, names[i]) || !KeyOwned(c, names[i]))
       continue;
     Unknown(r, c, shown, names[i], values[i], last);
   }
@@ -207,27 +207,28 @@ static void DeriveFluids(Material *m)
 
 static PetscErrorCode Derive(Reader *r, Case *c)
 {
-  const bool starts  = c->without_gas == WITHOUT_GAS_AUTO && CaseStartsWithoutGas(c);
-  const bool without = (c->fields.has & HAS_GAS_PRESSURE) && (starts || c->without_gas == WITHOUT_GAS_YES);
+  const bool starts  = c->scene.without_gas == WITHOUT_GAS_AUTO && SceneStartsWithoutGas(&c->scene);
+  const bool without = (c->scene.fields.has & HAS_GAS_PRESSURE) && (starts || c->scene.without_gas == WITHOUT_GAS_YES);
 
   PetscFunctionBeginUser;
-  c->nlisted = c->nbc;
-  c->listed  = c->bc;
+  c->scene.nlisted = c->scene.nbc;
+  c->scene.listed  = c->scene.bc;
   if (!strcmp(c->output_dir, "results/<case name>")) {
     char name[256];
     CaseName(r->file, name, sizeof name);
     PetscCallMPI(MPI_Bcast(name, sizeof name, MPI_CHAR, 0, r->comm));
     snprintf(c->output_dir, sizeof c->output_dir, "results/%s", name);
   }
-  RegionsFinish(c);
-  for (PetscInt i = 0; i < c->nmaterial; i++) {
-    Material *m     = &c->material[i];
+  RegionsFinish(&c->scene);
+  for (PetscInt i = 0; i < c->scene.nmaterial; i++) {
+    Material *m     = &c->scene.material[i];
     Liquid   *l[]   = {&m->solid, &m->hydrate};
     m->kinetics.M_g = m->gas.M;
     m->gas.trace    = without ? GasTrace(&m->gas) : 0.0; /* (102) */
     DeriveFluids(m);
-    m->plasticity.factor = c->strength_factor;
-    m->plasticity.cell   = sqrt((c->upper[0] - c->lower[0]) / c->cells[0] * (c->upper[1] - c->lower[1]) / c->cells[1]);
+    m->plasticity.factor = c->scene.strength_factor;
+    m->plasticity.cell   = sqrt((c->scene.upper[0] - c->scene.lower[0]) / c->scene.cells[0] *
+                                (c->scene.upper[1] - c->scene.lower[1]) / c->scene.cells[1]);
     for (int j = 0; j < 2; j++) {
       l[j]->K     = INFINITY;
       l[j]->p_ref = m->water.p_ref;
@@ -256,7 +257,7 @@ static PetscErrorCode KeysRead(Reader *r, Case *c)
   PetscFunctionBeginUser;
   PetscCall(CaseStageEnds(r, c));
   PetscCall(GroupRead(r, c, GROUP_CASE));
-  PetscCall(CaseSpacing(r, c));
+  PetscCall(CaseSpacing(r, &c->scene));
   PetscCall(CaseFieldSet(r, c));
   for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
     PetscCall(GroupRead(r, c, g));
@@ -301,32 +302,32 @@ PetscErrorCode CaseDestroy(Case *c)
   PetscFunctionBeginUser;
   PetscCall(CaseStagesDestroy(c));
   for (int d = 0; d < CL_DIM; d++)
-    PetscCall(LinesDestroy(&c->line[d]));
-  ScheduleDestroy(&c->ambient_pressure);
-  ScheduleDestroy(&c->ambient_level);
-  for (PetscInt i = 0; i < c->nbc; i++) {
-    ScheduleDestroy(&c->bc[i].value);
-    ScheduleDestroy(&c->bc[i].shear);
-    ScheduleDestroy(&c->bc[i].displacement);
-    ScheduleDestroy(&c->bc[i].force);
+    PetscCall(LinesDestroy(&c->scene.line[d]));
+  ScheduleDestroy(&c->scene.ambient_pressure);
+  ScheduleDestroy(&c->scene.ambient_level);
+  for (PetscInt i = 0; i < c->scene.nbc; i++) {
+    ScheduleDestroy(&c->scene.bc[i].value);
+    ScheduleDestroy(&c->scene.bc[i].shear);
+    ScheduleDestroy(&c->scene.bc[i].displacement);
+    ScheduleDestroy(&c->scene.bc[i].force);
     for (int ph = 0; ph < PHASE_COUNT; ph++)
-      ScheduleDestroy(&c->bc[i].phase[ph]);
-    PetscCall(PetscFree(c->bc[i].along.x));
+      ScheduleDestroy(&c->scene.bc[i].phase[ph]);
+    PetscCall(PetscFree(c->scene.bc[i].along.x));
   }
-  for (PetscInt i = 0; i < c->nmeter; i++)
-    PetscCall(PetscFree(c->meter[i].along.x));
+  for (PetscInt i = 0; i < c->scene.nmeter; i++)
+    PetscCall(PetscFree(c->scene.meter[i].along.x));
   for (PetscInt i = 0; i < c->nprobe; i++)
     PetscCall(PetscFree(c->probe[i].surface.along.x));
-  for (PetscInt i = 0; i < c->nregion; i++) {
-    PetscCall(PetscFree(c->region[i].polygon.x));
-    PetscCall(PetscFree(c->region[i].below.x));
-    PetscCall(PetscFree(c->region[i].minus.i));
+  for (PetscInt i = 0; i < c->scene.nregion; i++) {
+    PetscCall(PetscFree(c->scene.region[i].polygon.x));
+    PetscCall(PetscFree(c->scene.region[i].below.x));
+    PetscCall(PetscFree(c->scene.region[i].minus.i));
   }
-  PetscCall(PetscFree(c->material));
-  PetscCall(PetscFree(c->region));
-  PetscCall(PetscFree(c->bc));
+  PetscCall(PetscFree(c->scene.material));
+  PetscCall(PetscFree(c->scene.region));
+  PetscCall(PetscFree(c->scene.bc));
   PetscCall(PetscFree(c->probe));
-  PetscCall(PetscFree(c->meter));
+  PetscCall(PetscFree(c->scene.meter));
   PetscCall(PetscFree(c->times));
   memset(c, 0, sizeof *c);
   PetscFunctionReturn(PETSC_SUCCESS);

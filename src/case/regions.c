@@ -21,7 +21,7 @@ static int ShapeOf(const Region *g, ShapeKind *shape)
   return n;
 }
 
-void RegionsFinish(Case *c)
+void RegionsFinish(Scene *c)
 {
   for (PetscInt k = 0; k < c->nregion; k++) {
     (void)ShapeOf(&c->region[k], &c->region[k].shape);
@@ -71,7 +71,7 @@ static void CheckCircle(Reader *r, const Region *g)
 }
 
 /* The region lies in the grid. */
-static void CheckBounds(Reader *r, const Case *c, const Region *g)
+static void CheckBounds(Reader *r, const Scene *c, const Region *g)
 {
   const char *key = shape_key[g->shape];
 
@@ -98,13 +98,13 @@ static bool Serves(const Case *c, PetscInt region)
     if (c->probe[k].over == region)
       return true;
   }
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type == BC_REGION_TEMPERATURE && c->bc[k].region == region)
+  for (PetscInt k = 0; k < c->scene.nbc; k++) {
+    if (c->scene.bc[k].type == BC_REGION_TEMPERATURE && c->scene.bc[k].region == region)
       return true;
   }
-  for (PetscInt k = 0; k < c->nregion; k++) {
-    for (PetscInt m = 0; m < c->region[k].minus.n; m++) {
-      if (c->region[k].minus.i[m] == region)
+  for (PetscInt k = 0; k < c->scene.nregion; k++) {
+    for (PetscInt m = 0; m < c->scene.region[k].minus.n; m++) {
+      if (c->scene.region[k].minus.i[m] == region)
         return true;
     }
   }
@@ -113,7 +113,7 @@ static bool Serves(const Case *c, PetscInt region)
 
 void CheckShape(Reader *r, const Case *c, PetscInt region)
 {
-  const Region  *g      = &c->region[region];
+  const Region  *g      = &c->scene.region[region];
   const PetscInt before = r->nerror;
   ShapeKind      shape;
 
@@ -127,7 +127,7 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
   else if (shape == SHAPE_CIRCLE)
     CheckCircle(r, g);
   if (r->nerror == before)
-    CheckBounds(r, c, g);
+    CheckBounds(r, &c->scene, g);
   for (PetscInt k = 0; k < g->minus.n; k++) {
     if (g->minus.i[k] == region)
       FAIL_AT(GROUP_REGION, g->name, "minus", "the region cannot be cut out of itself");
@@ -139,7 +139,7 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
 
 /* ---------------------------------------------------------------- their particles */
 typedef struct {
-  const Case     *c;
+  const Scene    *c;
   PetscInt        region;
   const Lattice  *lattice;
   const PetscInt *ij;
@@ -147,7 +147,7 @@ typedef struct {
 } Place;
 
 /* Is there a particle that `is` says yes to?  NULL: any. */
-static bool AnyPlace(const Case *c, PetscInt region, bool (*is)(const Place *, const void *), const void *context)
+static bool AnyPlace(const Scene *c, PetscInt region, bool (*is)(const Place *, const void *), const void *context)
 {
   Lattice     lattice;
   PetscInt    ij[CL_DIM];
@@ -172,7 +172,7 @@ static bool IsInside(const Place *place, const void *other)
 }
 
 /* Boxes by their sides, other shapes by the centres of particles. */
-static bool Overlap(const Case *c, PetscInt i, PetscInt j)
+static bool Overlap(const Scene *c, PetscInt i, PetscInt j)
 {
   const Region *g = &c->region[i], *o = &c->region[j];
 
@@ -187,7 +187,7 @@ static bool Overlap(const Case *c, PetscInt i, PetscInt j)
   return AnyPlace(c, i, IsInside, &j) || AnyPlace(c, j, IsInside, &i);
 }
 
-void CheckOverlap(Reader *r, const Case *c)
+void CheckOverlap(Reader *r, const Scene *c)
 {
   for (PetscInt i = 0; i < c->nregion; i++) {
     const Region *g = &c->region[i];
@@ -219,7 +219,7 @@ static bool HasNamed(const Place *p, const void *meters)
 }
 
 /* What the regions' boxes say, where all are whole. */
-bool FacesShared(const Case *c, const Meter *a, const Meter *b)
+bool FacesShared(const Scene *c, const Meter *a, const Meter *b)
 {
   const Meter *const both[] = {a, b};
 
@@ -230,7 +230,7 @@ bool FacesShared(const Case *c, const Meter *a, const Meter *b)
   return false;
 }
 
-static bool SideMeets(const Case *c, const Meter *m)
+static bool SideMeets(const Scene *c, const Meter *m)
 {
   const int along = m->side == SIDE_XMIN || m->side == SIDE_XMAX ? 1 : 0;
   bool      meets = false, whole = !m->along.n;
@@ -245,7 +245,7 @@ static bool SideMeets(const Case *c, const Meter *m)
   return FacesShared(c, m, m);
 }
 
-void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter *m)
+void CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Meter *m)
 {
   if (m->along.n) {
     if (m->side != SIDE_COUNT)
@@ -266,7 +266,7 @@ void CheckFaces(Reader *r, const Case *c, Group g, const char *name, const Meter
 
 /* ---------------------------------------------------------------- points */
 /* A region whose temperature is held must hold a node. */
-void CheckHeld(Reader *r, const Case *c, const Bc *b)
+void CheckHeld(Reader *r, const Scene *c, const Bc *b)
 {
   for (PetscInt i = 0; i < c->nregion; i++) {
     const Region *g = &c->region[i];
@@ -277,7 +277,7 @@ void CheckHeld(Reader *r, const Case *c, const Bc *b)
     if (b->region >= 0 && b->region != i)
       continue;
     for (int d = 0; d < CL_DIM; d++) {
-      line[d]  = CaseLines(c, d);
+      line[d]  = SceneLines(c, d);
       slack[d] = 1e-6 * line[d].h;
       from[d]  = (PetscInt)ceil(LinesPlace(&line[d], g->lower[d]) - 1e-6);
       to[d]    = (PetscInt)floor(LinesPlace(&line[d], g->upper[d]) + 1e-6);
@@ -296,12 +296,12 @@ void CheckHeld(Reader *r, const Case *c, const Bc *b)
 }
 
 /* A point lies in the body. */
-static void CheckPoint(Reader *r, const Case *c, const Probe *p)
+static void CheckPoint(Reader *r, const Scene *c, const Probe *p)
 {
   double slack[CL_DIM];
 
   for (int d = 0; d < CL_DIM; d++)
-    slack[d] = 1e-6 * CaseLines(c, d).h;
+    slack[d] = 1e-6 * SceneLines(c, d).h;
   for (PetscInt i = 0; i < c->nregion; i++) {
     if (!RegionEmpty(&c->region[i]) && RegionReaches(c, i, p->x, slack))
       return;
@@ -310,8 +310,8 @@ static void CheckPoint(Reader *r, const Case *c, const Probe *p)
 }
 
 typedef struct {
-  const Case *c;
-  PetscInt    region;
+  const Scene *c;
+  PetscInt     region;
 } Within;
 
 static bool LiesWithin(const Place *p, const void *context)
@@ -322,7 +322,7 @@ static bool LiesWithin(const Place *p, const void *context)
 }
 
 /* A region without particles holds some of another's. */
-static void CheckOver(Reader *r, const Case *c, const Probe *p)
+static void CheckOver(Reader *r, const Scene *c, const Probe *p)
 {
   const Within w     = {c, p->over};
   bool         holds = !RegionEmpty(&c->region[p->over]);
@@ -333,7 +333,7 @@ static void CheckOver(Reader *r, const Case *c, const Probe *p)
     FAIL_AT(GROUP_PROBE, p->name, "over", "region %s holds no particle", c->region[p->over].name);
 }
 
-void CheckProbe(Reader *r, const Case *c, const Probe *p)
+void CheckProbe(Reader *r, const Scene *c, const Probe *p)
 {
   const bool point = isfinite(p->x[0]) || isfinite(p->x[1]), over = p->over >= 0,
              surface = p->surface.side != SIDE_COUNT || p->surface.along.n;

@@ -196,7 +196,7 @@ static bool Gentle(const Making *m, bool *equal)
 }
 
 /* Are the cells that grid_cells names those? */
-static void Count(Reader *r, Case *c, int d, PetscInt cells)
+static void Count(Reader *r, Scene *c, int d, PetscInt cells)
 {
   if (c->cells[d] && c->cells[d] != cells)
     FAIL_AT(GROUP_CASE, "", "grid_cells", "names %d cells along %c, but the spacing makes %d: auto takes those",
@@ -204,7 +204,7 @@ static void Count(Reader *r, Case *c, int d, PetscInt cells)
   c->cells[d] = cells;
 }
 
-static PetscErrorCode TakeAxis(Reader *r, Case *c, int d)
+static PetscErrorCode TakeAxis(Reader *r, Scene *c, int d)
 {
   const bool table = c->table[d][0];
   char       key[32];
@@ -229,7 +229,7 @@ static PetscErrorCode TakeAxis(Reader *r, Case *c, int d)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CaseSpacing(Reader *r, Case *c)
+PetscErrorCode CaseSpacing(Reader *r, Scene *c)
 {
   const PetscInt before = r->nerror;
 

@@ -48,8 +48,8 @@ static void Fail(Reader *r, const char *stage, const char *key, const char *what
 /* What an integrator without matrices cannot do. */
 static void CheckLocal(Reader *r, const Case *c, const char *stage)
 {
-  const Bc   *b       = CaseBcNeedsMatrix(c);
-  const char *unknown = CaseNeedsImplicit(c);
+  const Bc   *b       = SceneBcNeedsMatrix(&c->scene);
+  const char *unknown = SceneNeedsImplicit(&c->scene);
   char        what[CASE_WHY];
 
   if (b) {
@@ -73,7 +73,8 @@ void CheckTimes(Reader *r, const Case *c, const char *stage)
 
   if (Local(c))
     CheckLocal(r, c, stage);
-  if (c->pressures == PRESSURES_RELATIVE && !((c->fields.has & HAS_GAS_PRESSURE) && c->material[0].gas.trace == 0.0))
+  if (c->pressures == PRESSURES_RELATIVE &&
+      !((c->scene.fields.has & HAS_GAS_PRESSURE) && c->scene.material[0].gas.trace == 0.0))
     Fail(r, stage, "stepper_pressures",
          "relative is for scenes with a pressure of the gas that all of the sediment holds");
   if (Local(c) && c->dt > c->dt_max) {
@@ -85,9 +86,9 @@ void CheckTimes(Reader *r, const Case *c, const char *stage)
              c->dt_min, c->dt, c->dt_max);
     Fail(r, stage, "stepper_dt", what);
   }
-  if (c->axisymmetric && c->gravity[0] != 0.0) {
+  if (c->scene.axisymmetric && c->scene.gravity[0] != 0.0) {
     snprintf(what, sizeof what, "must point along the axis, y, when geometry is axisymmetric (%g m/s^2 along x)",
-             c->gravity[0]);
+             c->scene.gravity[0]);
     Fail(r, stage, "gravity", what);
   }
 }
@@ -123,7 +124,7 @@ static void OfLength(const char *name, const Case *c, void *place)
 {
   for (const Key *k = case_group[GROUP_CASE].key; k->name; k++) {
     if (!strcmp(k->name, name) && k->def && strstr(k->def, "@time_end"))
-      *(double *)place = strtod(k->def, NULL) * (c->t_end - c->t_begin);
+      *(double *)place = strtod(k->def, NULL) * (c->t_end - c->scene.t_begin);
   }
 }
 
@@ -175,7 +176,7 @@ static void MarkNames(Reader *r, const Case *c, const CaseStage *s, const char *
     if (k < 0)
       continue;
     if (marked[k])
-      FAIL(s, key, "the boundary %s is listed twice", c->bc[k].name);
+      FAIL(s, key, "the boundary %s is listed twice", c->scene.bc[k].name);
     marked[k] = true;
   }
   ListDestroy(&list);
@@ -192,52 +193,28 @@ static PetscErrorCode StageBoundaries(Reader *r, const Case *c, CaseStage *s)
   if (!all && s->off[0])
     FAIL(s, "boundaries_off", "is given beside boundaries; choose one");
   MarkNames(r, c, s, all ? "boundaries_off" : "boundaries", all ? s->off : none ? "" : s->boundaries, marked);
-  PetscCall(PetscMalloc1(PetscMax(c->nbc, 1), &s->c.bc));
-  for (PetscInt k = 0; k < c->nbc; k++) {
+  PetscCall(PetscMalloc1(PetscMax(c->scene.nbc, 1), &s->c.scene.bc));
+  for (PetscInt k = 0; k < c->scene.nbc; k++) {
     if (marked[k] == all)
       continue;
-    s->c.bc[n]      = c->bc[k];
-    s->c.bc[n].zero = c->bc[k].of_stage ? s->c.t_begin : 0.0;
+    s->c.scene.bc[n]      = c->scene.bc[k];
+    s->c.scene.bc[n].zero = c->scene.bc[k].of_stage ? s->c.scene.t_begin : 0.0;
     n++;
   }
-  s->c.nbc = n;
+  s->c.scene.nbc = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------------------------------------------------------------- materials */
-static bool SameLiquid(const Liquid *a, const Liquid *b)
+/* The first key that ties masses to pressures and volumes, or hydrate to water and gas, and differs: it cannot, while
+   all of them stay; NULL if there is none. */
+static const char *Differs(const Case *c, const Material *a, const Material *b)
 {
-  return a->rho0 == b->rho0 && a->K == b->K && a->beta == b->beta && a->p_ref == b->p_ref && a->T_ref == b->T_ref;
-}
-
-static bool SameGas(const Gas *a, const Gas *b)
-{
-  return a->density == b->density && a->M == b->M && a->Tc == b->Tc && a->pc == b->pc && a->eccentric == b->eccentric;
-}
-
-/* What ties masses to pressures and volumes, or hydrate to water and gas, and so cannot change while all of them stay.
- */
-static const char *Differs(const FieldSet *fs, const Material *a, const Material *b)
-{
-  const Retention *x = &a->retention, *y = &b->retention;
-  const Kinetics  *p = &a->kinetics, *q = &b->kinetics;
-
-  if (a->porosity != b->porosity)
-    return "porosity";
-  if (!SameLiquid(&a->solid, &b->solid))
-    return "density or expansion of the grains";
-  if (!SameLiquid(&a->hydrate, &b->hydrate))
-    return "density or expansion of hydrate";
-  if (fs->phase[PHASE_W] && !SameLiquid(&a->water, &b->water))
-    return "density, compressibility or expansion of water";
-  if (fs->phase[PHASE_G] && !SameGas(&a->gas, &b->gas))
-    return "equation of state of gas";
-  if (fs->phase[PHASE_G] &&
-      (strcmp(x->type, y->type) || x->p0 != y->p0 || x->m != y->m || x->lambda != y->lambda || x->Swr != y->Swr ||
-       x->Sgr != y->Sgr || x->p_smooth != y->p_smooth || x->p_trap != y->p_trap))
-    return "retention";
-  if (a->reacts != b->reacts || p->M_h != q->M_h || p->M_w != q->M_w || p->M_g != q->M_g || p->N_h != q->N_h)
-    return "hydrate (kinetics active or not, molar masses, hydrate number)";
+  for (const Key *k = case_group[GROUP_MATERIAL].key; k->name; k++) {
+    if ((k->binds & c->scene.fields.has) && (KeyActs(k, c, a) || KeyActs(k, c, b)) &&
+        KeyHash(FNV_START, k, (const char *)a) != KeyHash(FNV_START, k, (const char *)b))
+      return k->name;
+  }
   return NULL;
 }
 
@@ -246,10 +223,10 @@ static PetscErrorCode StageMaterials(Reader *r, const Case *c, CaseStage *s)
   List list;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(PetscMax(c->nregion, 1), &s->c.region));
-  PetscCall(PetscArraycpy(s->c.region, c->region, c->nregion));
-  PetscCall(PetscMalloc1(PetscMax(c->nmaterial, 1), &s->c.material));
-  PetscCall(PetscArraycpy(s->c.material, c->material, c->nmaterial));
+  PetscCall(PetscMalloc1(PetscMax(c->scene.nregion, 1), &s->c.scene.region));
+  PetscCall(PetscArraycpy(s->c.scene.region, c->scene.region, c->scene.nregion));
+  PetscCall(PetscMalloc1(PetscMax(c->scene.nmaterial, 1), &s->c.scene.material));
+  PetscCall(PetscArraycpy(s->c.scene.material, c->scene.material, c->scene.nmaterial));
   ListCreate(s->materials, &list);
   if (list.n % 2)
     FAIL(s, "materials", "has %d names, needs pairs: region, material, ...", (int)list.n);
@@ -259,24 +236,24 @@ static PetscErrorCode StageMaterials(Reader *r, const Case *c, CaseStage *s)
 
     if (g < 0 || m < 0)
       continue;
-    if (RegionEmpty(&c->region[g])) {
-      FAIL(s, "materials", "region %s has no particles (material: none)", c->region[g].name);
+    if (RegionEmpty(&c->scene.region[g])) {
+      FAIL(s, "materials", "region %s has no particles (material: none)", c->scene.region[g].name);
       continue;
     }
-    const Material *old = &c->material[c->region[g].material];
-    const char     *why = Differs(&c->fields, old, &c->material[m]);
+    const Material *old = &c->scene.material[c->scene.region[g].material];
+    const char     *why = Differs(c, old, &c->scene.material[m]);
 
     if (why)
       FAIL(s, "materials",
            "region %s cannot change from %s to %s, whose %s differs: its masses could not stay as they are",
-           c->region[g].name, old->name, c->material[m].name, why);
-    s->c.region[g].material = m;
+           c->scene.region[g].name, old->name, c->scene.material[m].name, why);
+    s->c.scene.region[g].material = m;
   }
   ListDestroy(&list);
-  for (PetscInt m = 0; m < c->nmaterial; m++)
-    s->c.material[m].plasticity.factor = s->c.strength_factor;
-  for (PetscInt m = 0; m < c->nmaterial && !s->reaction; m++)
-    s->c.material[m].kinetics.K0 = 0.0; /* hydrate stays, and goes on to count as water and gas in the balances */
+  for (PetscInt m = 0; m < c->scene.nmaterial; m++)
+    s->c.scene.material[m].plasticity.factor = s->c.scene.strength_factor;
+  for (PetscInt m = 0; m < c->scene.nmaterial && !s->reaction; m++)
+    s->c.scene.material[m].kinetics.K0 = 0.0; /* hydrate stays, and goes on to count as water and gas in the balances */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,10 +263,10 @@ static void StageGravity(Reader *r, const Case *before, bool last, CaseStage *s)
   bool changes = false;
 
   for (int d = 0; d < CL_DIM; d++) {
-    s->c.gravity_before[d] = before ? before->gravity[d] : 0.0;
-    changes                = changes || s->c.gravity_before[d] != s->c.gravity[d];
+    s->c.scene.gravity_before[d] = before ? before->scene.gravity[d] : 0.0;
+    changes                      = changes || s->c.scene.gravity_before[d] != s->c.scene.gravity[d];
   }
-  if (changes && !last && s->c.gravity_ramp > s->c.t_end - s->c.t_begin)
+  if (changes && !last && s->c.scene.gravity_ramp > s->c.t_end - s->c.scene.t_begin)
     Fail(r, s->name, "gravity_ramp",
          "must not be longer than the stage, in which gravity changes, where another one follows");
 }
@@ -306,11 +283,11 @@ PetscErrorCode CaseStages(Reader *r, Case *c)
     CaseStage     *s      = &c->stage[i];
     const PetscInt errors = r->nerror;
 
-    s->c         = *c;
-    s->c.t_begin = i ? c->stage[i - 1].end : 0.0;
-    s->c.t_end   = s->end;
+    s->c               = *c;
+    s->c.scene.t_begin = i ? c->stage[i - 1].end : 0.0;
+    s->c.t_end         = s->end;
     PetscCall(StageKeys(r, c, i));
-    s->c.fields.inertia = s->c.inertia;
+    s->c.scene.fields.inertia = s->c.scene.inertia;
     PetscCall(StageMaterials(r, c, s));
     PetscCall(StageBoundaries(r, c, s));
     if (r->nerror > errors || r->bad[GROUP_CASE] || r->bad[GROUP_STAGE])
@@ -326,9 +303,9 @@ PetscErrorCode CaseStagesDestroy(Case *c)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->nstage; i++) {
-    PetscCall(PetscFree(c->stage[i].c.bc));
-    PetscCall(PetscFree(c->stage[i].c.region));
-    PetscCall(PetscFree(c->stage[i].c.material));
+    PetscCall(PetscFree(c->stage[i].c.scene.bc));
+    PetscCall(PetscFree(c->stage[i].c.scene.region));
+    PetscCall(PetscFree(c->stage[i].c.scene.material));
   }
   PetscCall(PetscFree(c->stage));
   PetscFunctionReturn(PETSC_SUCCESS);

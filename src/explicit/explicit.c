@@ -7,7 +7,7 @@ static const char *const part[STEP_PARTS] = {"ClExDeposit", "ClExVelocities", "C
 /* Do layers share a node's flow (350)?  Not in the bare form, which is the paper's. */
 static int Layers(const Explicit *e)
 {
-  return CaseContrast(e->m->c) > 1.0 && !e->o.particle_pressures;
+  return SceneContrast(e->m->c) > 1.0 && !e->o.particle_pressures;
 }
 
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out)

@@ -1,7 +1,7 @@
 /* Surface faces: forces in the first pass, what crosses them in the second; docs/equations.md, sections 6 and 12. */
 #include "lanes.h"
 
-static bool Acts(const Case *c, const Face *f)
+static bool Acts(const Scene *c, const Face *f)
 {
   bool acts = c->ambient_drag > 0.0 && c->fields.solid;
 

@@ -74,9 +74,9 @@ INLINE int A_Count(Set s)
 {
   return A_K(s) + s.layers;
 }
-INLINE double Conductance(Set s, const Case *c, const Material *mat) /* weight of a particle's flow (350) */
+INLINE double Conductance(Set s, const Scene *c, const Material *mat) /* weight of a particle's flow (350) */
 {
-  return s.layers ? CaseConductance(c, mat) : 1.0;
+  return s.layers ? SceneConductance(c, mat) : 1.0;
 }
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
@@ -185,7 +185,7 @@ struct Explicit {
   PetscInt  nface;
   Face     *face;
   PetscInt  nplate;
-  double (*plate_sum)[PLATE_COUNT]; /* [Case.nlisted] what this rank's faces bear at the end of the step */
+  double (*plate_sum)[PLATE_COUNT]; /* [Scene.nlisted] what this rank's faces bear at the end of the step */
   double (*spring)[CL_DIM];         /* [rows] stiffness of the springs at a node, N/m */
   double (*answer)[2 * CL_DIM];     /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */

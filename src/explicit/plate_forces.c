@@ -139,7 +139,7 @@ static PetscErrorCode Add(Explicit *e)
 
 PetscErrorCode PlatesForces(Explicit *e, double t, double dt)
 {
-  const Case *c = e->m->c;
+  const Scene *c = e->m->c;
   double(*face)[2];
 
   PetscFunctionBeginUser;

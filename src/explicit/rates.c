@@ -194,7 +194,7 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 {
   double *const *f  = e->m->P.f;
   const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
-  const double   bracket = e->m->c->flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
+  const double   bracket = e->m->c->stabilisation.flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
                scale = e->o.mass_scaling / dt, k0 = Conductance(s, e->m->c, r.mat);
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
                          *restrict drag = e->t[T_DRAG + k] + r.p;
@@ -269,7 +269,7 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
       o->value[q][R_Matrix(s) + row * n + i] = 0.0;
   }
   e->advected += Sum(r.n, advected);
-  if (e->m->c->heat_upwind)
+  if (e->m->c->stabilisation.heat_upwind)
     UpwindHeat(e, s, r, g, dt, kappa, o);
 }
 

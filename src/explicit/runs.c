@@ -4,7 +4,7 @@
 void ForRuns(Explicit *e, const LoopTable table, double dt)
 {
   const Loop      loop   = table[e->set.solid][e->set.fluids][e->set.heat];
-  const Case     *c      = e->m->c;
+  const Scene    *c      = e->m->c;
   const PetscInt *region = e->m->P.i[PI_REGION];
 
   for (PetscInt p = 0; p < e->m->P.n;) {

@@ -25,9 +25,9 @@ void BalanceHeader(const Case *c, FILE *f)
 {
   fprintf(f, "step,time_s,dt_s,newton,water_kg,water_out_kg,water_error,methane_kg,methane_out_kg,methane_error,"
              "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J");
-  if (c->compression_heat)
+  if (c->scene.compression_heat)
     fprintf(f, ",compression_heat_J");
-  for (size_t k = 0; c->fields.solid && k < sizeof(column) / sizeof(*column); k++)
+  for (size_t k = 0; c->scene.fields.solid && k < sizeof(column) / sizeof(*column); k++)
     fprintf(f, ",%s", column[k].name);
   fprintf(f, "%s\n", c->nstage ? ",stage" : "");
 }
@@ -49,7 +49,7 @@ static void WriteEnergies(const Model *m, const StepperState *s, FILE *f)
 static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, const StepInfo *info,
                                const ModelTotals *now)
 {
-  const Case  *c       = m->c;
+  const Case  *c       = CaseOf(m->c);
   const double water   = Relative(now->water + s->out[PHASE_W] - s->water0, s->water0);
   const double methane = Relative(now->methane + s->out[PHASE_G] - s->methane0, s->methane0);
   const double heat    = Relative(s->heat_gain - s->heat_in - s->heat_source, s->capacity0 * 1.0); /* of 1 K */
@@ -64,7 +64,7 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
   fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
   fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
   fprintf(f, ",%.17g", s->energy[ENERGY_KINETIC]);
-  if (c->compression_heat)
+  if (c->scene.compression_heat)
     fprintf(f, ",%.17g", s->squeezed);
   WriteEnergies(m, s, f);
   if (c->nstage)

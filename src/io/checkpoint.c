@@ -138,12 +138,12 @@ PetscErrorCode CheckpointWrite(const Model *m, const StepperState *s, uint64_t r
   PetscFunctionBeginUser;
   PetscCheck(strlen(path) + 8 < PETSC_MAX_PATH_LEN, grid->comm, PETSC_ERR_ARG_SIZ, "the path %s is too long", path);
   if (grid->rank == 0)
-    w.ierr = Start(&w, m->c, s, grid->size);
+    w.ierr = Start(&w, CaseOf(m->c), s, grid->size);
   PetscCall(GatherCreate(m, &g));
   PetscCall(GatherVariables(&g, &m->P, false, w.group, &w.ierr));
   PetscCall(WriteInts(&w, &m->P, &g));
   if (grid->rank == 0 && !w.ierr) {
-    w.ierr = Finish(&w, m->c, run, path, ok);
+    w.ierr = Finish(&w, CaseOf(m->c), run, path, ok);
     good   = *ok;
     PetscCall(H5FileClose(&w.file));
   }

@@ -42,7 +42,7 @@ static const struct {
 
 bool ProbeWanted(const Case *c, int q)
 {
-  return (c->fields.has & column[q].has) && (c->quantities == 0 || ((c->quantities >> column[q].quantity) & 1u));
+  return (c->scene.fields.has & column[q].has) && (c->quantities == 0 || ((c->quantities >> column[q].quantity) & 1u));
 }
 
 /* What a column of the skeleton's history adds to its name; the other names hold their unit. */

@@ -13,7 +13,7 @@ double DerivedStress(const Particles *P, PetscInt p, bool deviator)
   return deviator ? Mises6(s) : -Trace6(s) / 3.0;
 }
 
-double DerivedShear(const Case *c, const Particles *P, PetscInt p)
+double DerivedShear(const Scene *c, const Particles *P, PetscInt p)
 {
   double     u[MOTION_COUNT] = {P->f[P_F][p] - 1.0, P->f[P_F + 1][p], P->f[P_F + 2][p], P->f[P_F + 3][p] - 1.0};
   Kinematics k;

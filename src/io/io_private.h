@@ -104,7 +104,7 @@ double ProbeQuantity(const Model *m, PetscInt p, int q);
 /* derived.c: mean effective stress, compression-positive, or sqrt(3 J2), Pa; deviatoric logarithmic strain
    sqrt(2/3 dev e : dev e) since the start; distance to yield, Pa (NaN for a particle that cannot). */
 double DerivedStress(const Particles *P, PetscInt p, bool deviator);
-double DerivedShear(const Case *c, const Particles *P, PetscInt p);
+double DerivedShear(const Scene *c, const Particles *P, PetscInt p);
 double DerivedMargin(const Model *m, PetscInt p);
 /* means.c: is this probe one?  This rank's sums of weights times values, and of weights (m^3 or m^2), of all that are.
  */

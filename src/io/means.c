@@ -20,7 +20,7 @@ static bool Takes(const Model *m, const Probe *b, PetscInt p)
 static void AddParticle(const Model *m, PetscInt p, double weight, double value[PROBE_COUNT])
 {
   for (int q = 0; q < PROBE_COUNT; q++) {
-    if (ProbeWanted(m->c, q))
+    if (ProbeWanted(CaseOf(m->c), q))
       value[q] += weight * ProbeQuantity(m, p, q);
   }
 }
@@ -86,7 +86,7 @@ static PetscErrorCode BuildFaces(const Model *m, PetscInt *n, Face **face)
 
 PetscErrorCode MeansAdd(const Model *m, double value[][PROBE_COUNT], double *weight)
 {
-  const Case *c    = m->c;
+  const Case *c    = CaseOf(m->c);
   Face       *face = NULL;
   PetscInt    n    = 0;
   bool        any  = false;
@@ -103,7 +103,7 @@ PetscErrorCode MeansAdd(const Model *m, double value[][PROBE_COUNT], double *wei
     for (PetscInt k = 0; k < c->nprobe; k++) {
       const Probe *b = &c->probe[k];
 
-      if (ProbeIsMean(b) && b->over < 0 && FaceNamed(c, &b->surface, face[i].region, face[i].x0, face[i].side))
+      if (ProbeIsMean(b) && b->over < 0 && FaceNamed(&c->scene, &b->surface, face[i].region, face[i].x0, face[i].side))
         AddFace(m, &face[i], value[k], &weight[k]);
     }
   }

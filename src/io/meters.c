@@ -25,11 +25,11 @@ static void PlateRow(const Bc *b, const double plate[PLATE_COUNT], FILE *f)
 
 void MetersHeader(const Case *c, FILE *f)
 {
-  const FieldSet *fs = &c->fields;
+  const FieldSet *fs = &c->scene.fields;
 
   fprintf(f, "time_s");
-  for (PetscInt k = 0; k < c->nmeter; k++) {
-    const char *name = c->meter[k].name;
+  for (PetscInt k = 0; k < c->scene.nmeter; k++) {
+    const char *name = c->scene.meter[k].name;
 
     if (fs->phase[PHASE_W])
       fprintf(f, ",%s.water_kg_s,%s.water_kg", name, name);
@@ -38,9 +38,9 @@ void MetersHeader(const Case *c, FILE *f)
     if (fs->heat)
       fprintf(f, ",%s.heat_W,%s.heat_J", name, name);
   }
-  for (PetscInt k = 0; k < c->nlisted; k++) {
-    if (c->listed[k].type == BC_PLATE)
-      PlateHeader(&c->listed[k], f);
+  for (PetscInt k = 0; k < c->scene.nlisted; k++) {
+    if (c->scene.listed[k].type == BC_PLATE)
+      PlateHeader(&c->scene.listed[k], f);
   }
   if (fs->phase[PHASE_G])
     fprintf(f, ",free_gas_kg,free_gas_std_m3");
@@ -49,14 +49,14 @@ void MetersHeader(const Case *c, FILE *f)
 
 static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, double gas)
 {
-  const Case     *c  = m->c;
-  const FieldSet *fs = &c->fields;
+  const Case     *c  = CaseOf(m->c);
+  const FieldSet *fs = &c->scene.fields;
   FILE           *f;
 
   PetscFunctionBeginUser;
   PetscCall(RowBegin(out, &f));
   IoTime(c, f, s->t);
-  for (PetscInt k = 0; k < c->nmeter; k++) {
+  for (PetscInt k = 0; k < c->scene.nmeter; k++) {
     const double *rate = m->rates.meter[k], *sum = s->meter[k];
 
     if (fs->phase[PHASE_W])
@@ -66,9 +66,9 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
     if (fs->heat)
       fprintf(f, ",%.12e,%.17g", rate[METER_HEAT], sum[METER_HEAT]);
   }
-  for (PetscInt k = 0; k < c->nlisted; k++) {
-    if (c->listed[k].type == BC_PLATE)
-      PlateRow(&c->listed[k], m->plate[k], f);
+  for (PetscInt k = 0; k < c->scene.nlisted; k++) {
+    if (c->scene.listed[k].type == BC_PLATE)
+      PlateRow(&c->scene.listed[k], m->plate[k], f);
   }
   if (fs->phase[PHASE_G])
     fprintf(f, ",%.17g,%.12e", gas, gas / c->standard_gas_density);

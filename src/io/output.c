@@ -30,6 +30,7 @@ static PetscErrorCode OpenFiles(Output *out, const Model *m, const StepperState 
 
 PetscErrorCode OutputCreate(const Model *m, const StepperState *s, bool append, Output **result)
 {
+  const Case    *c    = CaseOf(m->c);
   PetscErrorCode ierr = PETSC_SUCCESS;
   Output        *out;
 
@@ -38,9 +39,9 @@ PetscErrorCode OutputCreate(const Model *m, const StepperState *s, bool append, 
   out->fields = m->c->fields;
   for (int k = 0; k < TABLE_COUNT; k++)
     out->fd[k] = -1;
-  PetscCall(PetscStrncpy(out->dir, m->c->output_dir, sizeof(out->dir)));
-  PetscCall(PetscMalloc1(m->c->nprobe, &out->reach));
-  for (PetscInt k = 0; k < m->c->nprobe; k++)
+  PetscCall(PetscStrncpy(out->dir, c->output_dir, sizeof(out->dir)));
+  PetscCall(PetscMalloc1(c->nprobe, &out->reach));
+  for (PetscInt k = 0; k < c->nprobe; k++)
     out->reach[k] = 1.0;
   if (m->grid.rank == 0)
     ierr = OpenFiles(out, m, s, append);

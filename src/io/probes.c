@@ -17,7 +17,7 @@ typedef struct {
 } Fit;
 
 /* One cell, or two particle spacings where they are wider: at an edge two rows of particles are within reach. */
-static void Reach(const Case *c, const Grid *g, const double x[CL_DIM], double widening, double reach[CL_DIM])
+static void Reach(const Scene *c, const Grid *g, const double x[CL_DIM], double widening, double reach[CL_DIM])
 {
   for (int d = 0; d < CL_DIM; d++) {
     PetscInt ppc = 2;
@@ -97,7 +97,7 @@ static void AddValues(const Model *m, const Fit *f, double value[PROBE_COUNT])
     const double share = w / f->total * (1.0 - f->g[0] * (d[0] - f->mean[0]) - f->g[1] * (d[1] - f->mean[1]));
 
     for (int q = 0; q < PROBE_COUNT; q++) {
-      if (ProbeWanted(m->c, q))
+      if (ProbeWanted(CaseOf(m->c), q))
         value[q] += share * ProbeQuantity(m, p, q);
     }
   }
@@ -122,7 +122,7 @@ static void AddRange(const Model *m, const Fit *f, Range *r, double mean[LIMITED
     if (w == 0.0)
       continue;
     for (int q = 0; q < LIMITED; q++) {
-      const double v = ProbeWanted(m->c, q) ? ProbeQuantity(m, p, q) : 0.0;
+      const double v = ProbeWanted(CaseOf(m->c), q) ? ProbeQuantity(m, p, q) : 0.0;
 
       mean[q] += w / f->total * v;
       r->top[2 * q]     = fmax(r->top[2 * q], v);
@@ -143,7 +143,7 @@ static double Share(double value, double mean, const double top[2])
 
 /* Among its neighbours a probe stays in their range.  Beyond them, at the surface, it goes on linearly, saturations
    from 0 to 1. */
-static void Limit(const Case *c, const Range *r, const double mean[LIMITED], double value[PROBE_COUNT])
+static void Limit(const Scene *c, const Range *r, const double mean[LIMITED], double value[PROBE_COUNT])
 {
   const bool among = fmin(r->far[0], r->far[1]) >= 0.0 && fmin(r->far[2], r->far[3]) >= 0.0;
 
@@ -154,7 +154,7 @@ static void Limit(const Case *c, const Range *r, const double mean[LIMITED], dou
 
     for (int q = first; q < group_end[k] && (among || k == GROUPS - 1); q++) {
       const double *top = among ? &r->top[2 * q] : saturation;
-      const double  own = ProbeWanted(c, q) ? Share(value[q], mean[q], top) : 1.0;
+      const double  own = ProbeWanted(CaseOf(c), q) ? Share(value[q], mean[q], top) : 1.0;
 
       if (own < share) {
         share = own;
@@ -169,7 +169,8 @@ static void Limit(const Case *c, const Range *r, const double mean[LIMITED], dou
 
 static PetscErrorCode LimitAll(const Model *m, const Fit *fit, double *value)
 {
-  const PetscInt n = m->c->nprobe;
+  const Case    *c = CaseOf(m->c);
+  const PetscInt n = c->nprobe;
   Range         *range;
   double(*mean)[LIMITED];
 
@@ -179,14 +180,14 @@ static PetscErrorCode LimitAll(const Model *m, const Fit *fit, double *value)
   for (PetscInt k = 0; k < n; k++) {
     for (size_t i = 0; i < sizeof(*range) / sizeof(double); i++)
       ((double *)&range[k])[i] = -INFINITY;
-    if (!ProbeIsMean(&m->c->probe[k]))
+    if (!ProbeIsMean(&c->probe[k]))
       AddRange(m, &fit[k], &range[k], mean[k]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, (PetscMPIInt)(n * sizeof(*range) / sizeof(double)), MPI_DOUBLE,
                              MPI_MAX, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean, (PetscMPIInt)(n * LIMITED), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   for (PetscInt k = 0; k < n; k++) {
-    if (!ProbeIsMean(&m->c->probe[k]) && fit[k].total > 0.0)
+    if (!ProbeIsMean(&c->probe[k]) && fit[k].total > 0.0)
       Limit(m->c, &range[k], mean[k], value + k * PROBE_COUNT);
   }
   PetscCall(PetscFree(range));
@@ -197,7 +198,7 @@ static PetscErrorCode LimitAll(const Model *m, const Fit *fit, double *value)
 /* A material point without a neighbour (outside the body) gets a wider reach; a fixed one is then empty space. */
 static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
 {
-  const Case *c = m->c;
+  const Case *c = CaseOf(m->c);
   double     *M;
   bool        again = true;
 
@@ -208,7 +209,7 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
     PetscCall(PetscArrayzero(M, c->nprobe * M_COUNT));
     for (PetscInt k = 0; k < c->nprobe; k++) {
       fit[k] = (Fit){.x = {c->probe[k].x[0], c->probe[k].x[1]}, .fixed = c->probe[k].fixed};
-      Reach(c, &m->grid, fit[k].x, out->reach[k], fit[k].reach);
+      Reach(&c->scene, &m->grid, fit[k].x, out->reach[k], fit[k].reach);
       if (ProbeIsMean(&c->probe[k]))
         continue;
       AddMoments(&fit[k], &m->P, M + k * M_COUNT);
@@ -250,7 +251,8 @@ static PetscErrorCode WriteRow(Output *out, const Case *c, double t, const Fit *
 
 PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
 {
-  const PetscInt n    = m->c->nprobe;
+  const Case    *c    = CaseOf(m->c);
+  const PetscInt n    = c->nprobe;
   PetscErrorCode ierr = PETSC_SUCCESS;
   Fit           *fit;
   double        *value, *weight; /* weight: of means, behind the values of all */
@@ -261,7 +263,7 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
   weight = value + n * PROBE_COUNT;
   PetscCall(FitAll(out, m, fit));
   for (PetscInt k = 0; k < n; k++) {
-    if (!ProbeIsMean(&m->c->probe[k]))
+    if (!ProbeIsMean(&c->probe[k]))
       AddValues(m, &fit[k], value + k * PROBE_COUNT);
   }
   PetscCall(MeansAdd(m, (double(*)[PROBE_COUNT])value, weight));
@@ -269,14 +271,14 @@ PetscErrorCode OutputProbes(Output *out, const Model *m, const StepperState *s)
       MPI_Allreduce(MPI_IN_PLACE, value, (PetscMPIInt)(n * (PROBE_COUNT + 1)), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscCall(LimitAll(m, fit, value));
   for (PetscInt k = 0; k < n; k++) {
-    if (!ProbeIsMean(&m->c->probe[k]))
+    if (!ProbeIsMean(&c->probe[k]))
       continue;
     fit[k].total = weight[k];
     for (int q = 0; q < PROBE_COUNT; q++)
       value[k * PROBE_COUNT + q] /= weight[k] > 0.0 ? weight[k] : 1.0;
   }
   if (m->grid.rank == 0)
-    ierr = WriteRow(out, m->c, s->t, fit, n, value);
+    ierr = WriteRow(out, c, s->t, fit, n, value);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscCall(PetscFree(fit));
   PetscCall(PetscFree(value));

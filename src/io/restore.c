@@ -125,7 +125,7 @@ static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
   if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
     Refuse(L, "/particles/id is missing or of wrong size");
   PetscCall(LoadState(file, L));
-  if (!L->why[0] && !L->initial && L->s.stage >= PetscMax(m->c->nstage, 1))
+  if (!L->why[0] && !L->initial && L->s.stage >= PetscMax(CaseOf(m->c)->nstage, 1))
     Refuse(L, "the case has no stage %d", (int)L->s.stage + 1);
   PetscCall(ParticlesResize(&L->P, (PetscInt)n));
   PetscCall(PetscMalloc2((PetscInt)n, &L->rank, (PetscInt)n, &L->place));
@@ -180,7 +180,7 @@ static PetscErrorCode CheckScene(const Model *m, hid_t file, Loaded *L)
   if (!H5Read(file, "scene", H5T_NATIVE_CHAR, 1, &n, theirs))
     snprintf(L->why, sizeof(L->why), "/scene is no text");
   else {
-    PetscCall(CaseText(m->c, CaseWriteState, &ours, &size));
+    PetscCall(CaseText(CaseOf(m->c), CaseWriteState, &ours, &size));
     (void)Differ(theirs, ours, L->why, sizeof(L->why));
     free(ours);
   }
@@ -199,7 +199,7 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   PetscCall(SealCheck(path, &fingerprint, &L->run, &ok, L->why, sizeof(L->why)));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (!L->initial && fingerprint != CaseFingerprint(m->c)) {
+  if (!L->initial && fingerprint != CaseFingerprint(CaseOf(m->c))) {
     Refuse(L,
            "it was written by another case (grid, regions, materials, boundary conditions, meters or stages differ)");
   }

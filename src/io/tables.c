@@ -55,14 +55,14 @@ static bool CopyRows(const char *path, int column, const char *header, double t,
 /* Header and kept rows take the place of the table, and it goes on at the end. */
 static PetscErrorCode Open(Output *out, const Model *m, TableId id, bool append, double t)
 {
-  const double slack = m->c->nstage ? 4.0 * PETSC_MACHINE_EPSILON : 1e-12;
+  const double slack = CaseOf(m->c)->nstage ? 4.0 * PETSC_MACHINE_EPSILON : 1e-12;
   char         path[IO_PATH], *header;
   FILE        *f;
 
   PetscFunctionBeginUser;
   PetscCall(IoPath(out->dir, cl_table_name[id], path));
   PetscCall(RowBegin(out, &f));
-  table[id].header(m->c, f);
+  table[id].header(CaseOf(m->c), f);
   PetscCall(RowKeep(out));
   header = out->text;
   PetscCall(RowBegin(out, &f));

@@ -53,7 +53,7 @@ static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
   }
 }
 
-void ModelCountFace(const Case *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates)
+void ModelCountFace(const Scene *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates)
 {
   for (int ph = 0; ph < PHASE_COUNT; ph++)
     rates->out[ph] += weight * o->outflow[ph];

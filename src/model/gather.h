@@ -85,7 +85,7 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
 /* Weight of a particle's flow; 1 without fluids, which need none. */
 static inline double Conductance(const Model *m, PetscInt p)
 {
-  return m->c->fields.fluid ? CaseConductance(m->c, ParticleMaterial(m, p)) : 1.0;
+  return m->c->fields.fluid ? SceneConductance(m->c, ParticleMaterial(m, p)) : 1.0;
 }
 
 /* Weight of the projection (20): volume times permeability. */
@@ -210,7 +210,7 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
 /* Weight of a particle in k_r of a node (108): (350), or what looks upstream (35). */
 static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
-  if (!m->c->upstream)
+  if (!m->c->stabilisation.upstream)
     return S * FlowWeight(m, p, I);
   const double *u = &m->up[6 * I + 3 * f];
 
@@ -319,7 +319,7 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->Sh_n    = m->P.f[P_SH][p];
   h->sw_n    = ParticleSw(m, p);
   h->dt      = m->stage.dt;
-  h->bracket = m->c->flux_interpolation ? 1.0 : 0.0;
+  h->bracket = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < 3; k++)

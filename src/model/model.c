@@ -2,18 +2,17 @@
 #include "clathra/point_heat.h"
 #include "gather.h"
 
-PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Model *m)
+PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m)
 {
   static const char *const name[EVENT_COUNT] = {"ClBeginStep", "ClResidual",      "ClJacobian",
                                                 "ClWidePart",  "ClReducedMatrix", "ClReducedApply"};
   static const char *const kind[]            = {"auto", "whole", "reduced"};
-  const Case              *first             = CaseInStage(c, 0); /* whose loads the initial state is in balance with */
   PetscClassId             id;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(m, sizeof(*m)));
   m->c = c;
-  PetscCall(GridCreateOn(comm, (GridLines[CL_DIM]){CaseLines(c, 0), CaseLines(c, 1)}, &m->grid));
+  PetscCall(GridCreateOn(comm, (GridLines[CL_DIM]){SceneLines(c, 0), SceneLines(c, 1)}, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(first, &m->grid, &m->P));
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
@@ -86,7 +85,7 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(DestroyNodal(m));
   PetscCall(PetscCalloc6(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
   PetscCall(PetscCalloc2(n, &m->material, n, &m->most));
-  if (m->c->upstream)
+  if (m->c->stabilisation.upstream)
     PetscCall(PetscCalloc1(n * 6, &m->up));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));

@@ -20,7 +20,7 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
   const FieldSet *fs = &m->c->fields;
 
   PetscFunctionBeginUser;
-  if (!fs->fluid || !m->c->flux_interpolation)
+  if (!fs->fluid || !m->c->stabilisation.flux_interpolation)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(proj, 4 * m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {

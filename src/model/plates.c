@@ -4,7 +4,7 @@
 
 PetscErrorCode ModelPlatesCreate(Model *m)
 {
-  const Case *c = m->c;
+  const Scene *c = m->c;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->nlisted; k++)
@@ -62,7 +62,7 @@ static void SumSprings(const Model *m, const double *u, bool first, double (*sum
   }
 }
 
-static bool AnyForce(const Case *c)
+static bool AnyForce(const Scene *c)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
     if (c->bc[k].force.n)
@@ -73,9 +73,9 @@ static bool AnyForce(const Case *c)
 
 PetscErrorCode PlatesPosition(Model *m, const double *x)
 {
-  const Case *c     = m->c;
-  bool        again = true;
-  double     *u, (*sum)[3], *touching;
+  const Scene *c     = m->c;
+  bool         again = true;
+  double      *u, (*sum)[3], *touching;
 
   PetscFunctionBeginUser;
   if (!m->plates || !AnyForce(c))
@@ -119,8 +119,8 @@ void PlatesMark(Model *m, const double *x)
 /* (74) */
 PetscErrorCode PlatesMult(const Model *m, const double *x, double *f)
 {
-  const Case *c = m->c;
-  double     *t;
+  const Scene *c = m->c;
+  double      *t;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->nbc, &t));

@@ -115,12 +115,12 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
 
       *ghost = (GhostLine){.node   = {lo, I, hi},
                            .second = {below, -(below + above), above},
-                           .a      = m->c->ghost_penalty * ratio,
+                           .a      = m->c->stabilisation.ghost_penalty * ratio,
                            .M      = c[NC_M],
                            .kappa  = c[NC_KAPPA],
                            .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
       for (int f = 0; f < PHASE_COUNT; f++)
-        ghost->store[f] = m->c->ghost_storage * ratio * h * h * c[NC_RHO + f] * c[NC_STORAGE + f];
+        ghost->store[f] = m->c->stabilisation.ghost_storage * ratio * h * h * c[NC_RHO + f] * c[NC_STORAGE + f];
     }
   }
   m->nghost = n;
@@ -165,7 +165,7 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
   for (int d = 0; d < CL_DIM; d++)
     r[d] = LinesPlace(&m->grid.line[d], m->P.f[P_X + d][p]) - (double)cell[d];
 
-  const double V = m->P.f[P_V][p], w = V * m->c->pressure_projection / (2.0 * q.G);
+  const double V = m->P.f[P_V][p], w = V * m->c->stabilisation.pressure_projection / (2.0 * q.G);
   const double N[4] = {(1 - r[0]) * (1 - r[1]), r[0] * (1 - r[1]), (1 - r[0]) * r[1], r[0] * r[1]};
 
   c->w += w;
@@ -239,9 +239,9 @@ PetscErrorCode StabilisationBuild(Model *m)
 {
   PetscFunctionBeginUser;
   m->nghost = m->ncell = 0;
-  if (m->c->ghost_penalty > 0.0 || m->c->ghost_storage > 0.0)
+  if (m->c->stabilisation.ghost_penalty > 0.0 || m->c->stabilisation.ghost_storage > 0.0)
     PetscCall(BuildGhost(m));
-  if (m->c->pressure_projection > 0.0 && m->c->fields.solid && m->c->fields.fluid)
+  if (m->c->stabilisation.pressure_projection > 0.0 && m->c->fields.solid && m->c->fields.fluid)
     PetscCall(BuildProjection(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,13 +33,13 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->order));
-    if (m->c->fields.fluid && m->c->flux_interpolation)
+    if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
-    if (m->c->saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
+    if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
       PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
-    if (m->c->heat_upwind && m->c->fields.heat && m->c->fields.fluid)
+    if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
       PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->upwind));
-    if (m->c->lumped_reaction && m->c->fields.phase[PHASE_G])
+    if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
       PetscCall(PetscCalloc1(m->stencil_cap, &m->lump));
   }
   for (PetscInt p = 0; p < m->P.n; p++) {
@@ -273,7 +273,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
   double         *sum;
 
   PetscFunctionBeginUser;
-  if (!m->c->upstream)
+  if (!m->c->stabilisation.upstream)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(m->up, 6 * m->map.n_local));
   for (PetscInt I = 0; I < m->map.n_local; I++) {

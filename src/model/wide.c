@@ -65,7 +65,7 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
   PetscCall(MatMult(m->J2, X, Y));
-  const bool wide = m->c->flux_interpolation && m->c->fields.fluid;
+  const bool wide = m->c->stabilisation.flux_interpolation && m->c->fields.fluid;
   if (wide || PlatesCouple(m)) {
     PetscCall(PetscLogEventBegin(m->event[EVENT_WIDE], 0, 0, 0, 0));
     PetscCall(WideApply(m, wide, X, Y));

@@ -1,27 +1,28 @@
 /* The state that a particle starts from; docs/equations.md, section 13. */
 #include "clathra/particles.h"
+#include "clathra/shape.h"
 #include "clathra/point.h"
 
-static double GeothermalDatum(const Case *c, const Region *r)
+static double GeothermalDatum(const Scene *c, const Region *r)
 {
-  return isinf(r->geothermal_datum) ? CaseTop(c) : r->geothermal_datum;
+  return isinf(r->geothermal_datum) ? SceneTop(c) : r->geothermal_datum;
 }
 
 /* (81): grad is null where the temperature does not grow with depth. */
-static double InitialTemperature(const Case *c, const Region *r, const double x[], double grad[CL_DIM])
+static double InitialTemperature(const Scene *c, const Region *r, const double x[], double grad[CL_DIM])
 {
-  const double depth = GeothermalDatum(c, r) - CaseHeight(c, x);
+  const double depth = GeothermalDatum(c, r) - SceneHeight(c, x);
 
   for (int d = 0; d < CL_DIM; d++)
     grad[d] = 0.0;
   if (r->geothermal == 0.0 || depth <= 0.0)
     return r->temperature;
   for (int d = 0; d < CL_DIM; d++)
-    grad[d] = r->geothermal * c->gravity[d] / CaseGravity(c);
+    grad[d] = r->geothermal * c->gravity[d] / SceneGravity(c);
   return r->temperature + r->geothermal * depth;
 }
 
-double ParticleInitialT(const Case *c, const Particles *P, PetscInt p)
+double ParticleInitialT(const Scene *c, const Particles *P, PetscInt p)
 {
   const double x[CL_DIM] = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)};
   double       grad[CL_DIM];
@@ -30,7 +31,7 @@ double ParticleInitialT(const Case *c, const Particles *P, PetscInt p)
 }
 
 /* Integral of exp(-beta (T - T_ref)) over the height from the geothermal datum to z, m. */
-static double ThermalHeight(const Case *c, const Region *r, double z)
+static double ThermalHeight(const Scene *c, const Region *r, double z)
 {
   const Liquid *water = &c->material[r->material].water;
   const double  above = z - GeothermalDatum(c, r), rate = water->beta * r->geothermal;
@@ -39,11 +40,11 @@ static double ThermalHeight(const Case *c, const Region *r, double z)
   return above >= 0.0 || rate == 0.0 ? e * above : -e * -expm1(rate * above) / rate;
 }
 
-double InitialWaterPressure(const Case *c, const Region *r, double pressure, const double x[])
+double InitialWaterPressure(const Scene *c, const Region *r, double pressure, const double x[])
 {
   const Liquid *water  = &c->material[r->material].water;
-  const double  height = ThermalHeight(c, r, CaseHeight(c, x)) - ThermalHeight(c, r, r->datum);
-  const double  weight = water->rho0 * CaseGravity(c) * height; /* of a column at the reference pressure */
+  const double  height = ThermalHeight(c, r, SceneHeight(c, x)) - ThermalHeight(c, r, r->datum);
+  const double  weight = water->rho0 * SceneGravity(c) * height; /* of a column at the reference pressure */
 
   if (isinf(water->K))
     return pressure - weight;
@@ -51,7 +52,7 @@ double InitialWaterPressure(const Case *c, const Region *r, double pressure, con
 }
 
 /* Pressures of the phases from their mean (10). */
-static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Material *mat, const double x[],
+static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Material *mat, const double x[],
                                        InitialScalars *s)
 {
   const bool two = c->fields.has & HAS_GAS_PRESSURE;
@@ -78,14 +79,14 @@ static PetscErrorCode InitialPressures(const Case *c, const Region *r, const Mat
 }
 
 /* Masses of hydrate, water, gas and grains in a volume. */
-static void Masses(const Case *c, const Region *r, const InitialScalars *s, double V, double m[4])
+static void Masses(const Scene *c, const Region *r, const InitialScalars *s, double V, double m[4])
 {
   const Material *mat = &c->material[r->material];
 
   PointInitialMasses(&c->fields, mat, V, mat->porosity, r->Sh, s->sg, s->pw, s->pg, s->T, &m[0], &m[1], &m[2], &m[3]);
 }
 
-PetscErrorCode InitialScalarsAt(const Case *c, const Region *r, const double x[], InitialScalars *s)
+PetscErrorCode InitialScalarsAt(const Scene *c, const Region *r, const double x[], InitialScalars *s)
 {
   const Material *mat = &c->material[r->material];
   double          m[4], dp, dT;
@@ -108,7 +109,7 @@ static void Set(Particles *P, PetscInt p, int component, double value)
     P->f[component][p] = value;
 }
 
-PetscErrorCode ParticleInitialState(const Case *c, PetscInt region, Particles *P, PetscInt p, const double x[],
+PetscErrorCode ParticleInitialState(const Scene *c, PetscInt region, Particles *P, PetscInt p, const double x[],
                                     const double l[])
 {
   const Region   *r   = &c->region[region];

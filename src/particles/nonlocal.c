@@ -20,17 +20,17 @@ typedef struct {
   Neighbour *of;
 } Cells;
 
-static PetscInt MaterialOf(const Case *c, const Particles *P, PetscInt p)
+static PetscInt MaterialOf(const Scene *c, const Particles *P, PetscInt p)
 {
   return c->region[P->i[PI_REGION][p]].material;
 }
 
-static double LengthOf(const Case *c, PetscInt material)
+static double LengthOf(const Scene *c, PetscInt material)
 {
   return c->material[material].plasticity.nonlocal;
 }
 
-static double LargestLength(const Case *c)
+static double LargestLength(const Scene *c)
 {
   double l = 0.0;
 
@@ -40,7 +40,7 @@ static double LargestLength(const Case *c)
 }
 
 /* A place and its mirror images behind planes of symmetry (rollers) within reach. */
-static int Images(const Case *c, const double x[CL_DIM], double reach, double image[IMAGES][CL_DIM])
+static int Images(const Scene *c, const double x[CL_DIM], double reach, double image[IMAGES][CL_DIM])
 {
   int n = 1;
 
@@ -75,7 +75,7 @@ static bool Reaches(const Grid *g, PetscMPIInt r, const double x[CL_DIM], double
 }
 
 /* What this rank's particles tell rank r; to == NULL: how many those are. */
-static PetscInt Tell(const Case *c, const Grid *g, const Particles *P, PetscMPIInt r, Neighbour *to)
+static PetscInt Tell(const Scene *c, const Grid *g, const Particles *P, PetscMPIInt r, Neighbour *to)
 {
   PetscInt n = 0;
 
@@ -97,7 +97,7 @@ static PetscInt Tell(const Case *c, const Grid *g, const Particles *P, PetscMPII
 }
 
 /* All neighbours of this rank's particles, in an order that their places on the ranks decide.  Collective. */
-static PetscErrorCode Exchange(const Case *c, const Grid *g, const Particles *P, PetscInt *n, Neighbour **all)
+static PetscErrorCode Exchange(const Scene *c, const Grid *g, const Particles *P, PetscInt *n, Neighbour **all)
 {
   PetscMPIInt *count, *to, *got, *from;
   Neighbour   *out;
@@ -210,7 +210,7 @@ static double Average(const Cells *k, const double x[CL_DIM], double material, d
   return weights > 0.0 ? sum / weights : own;
 }
 
-PetscErrorCode ParticlesNonlocal(const Case *c, const Grid *g, double time, Particles *P)
+PetscErrorCode ParticlesNonlocal(const Scene *c, const Grid *g, double time, Particles *P)
 {
   double *const *f = P->f;
   Neighbour     *all;

@@ -2,7 +2,7 @@
 #include "clathra/particles.h"
 #include "clathra/shape.h"
 
-void ParticlesInitialHalfLength(const Case *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM])
+void ParticlesInitialHalfLength(const Scene *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM])
 {
   Lattice lattice;
 
@@ -11,7 +11,7 @@ void ParticlesInitialHalfLength(const Case *c, PetscInt region, const double x[C
     l[d] = 0.5 * LatticeWidth(&lattice, d, x[d]);
 }
 
-static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region, PetscInt *id, SiteVisit visit,
+static PetscErrorCode VisitRegion(const Scene *c, const Grid *g, PetscInt region, PetscInt *id, SiteVisit visit,
                                   void *ctx)
 {
   Lattice  lattice;
@@ -40,7 +40,7 @@ static PetscErrorCode VisitRegion(const Case *c, const Grid *g, PetscInt region,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SitesVisit(const Case *c, const Grid *g, SiteVisit visit, void *ctx)
+PetscErrorCode SitesVisit(const Scene *c, const Grid *g, SiteVisit visit, void *ctx)
 {
   PetscInt id = 0;
 
@@ -51,7 +51,7 @@ PetscErrorCode SitesVisit(const Case *c, const Grid *g, SiteVisit visit, void *c
 }
 
 /* A particle where the cell is this rank's. */
-static PetscErrorCode Seed(const Case *c, const Grid *g, const Site *s, void *particles)
+static PetscErrorCode Seed(const Scene *c, const Grid *g, const Site *s, void *particles)
 {
   Particles *P = (Particles *)particles;
   PetscInt   cell[CL_DIM];
@@ -70,7 +70,7 @@ static PetscErrorCode Seed(const Case *c, const Grid *g, const Site *s, void *pa
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ParticlesSeed(const Case *c, const Grid *g, Particles *P)
+PetscErrorCode ParticlesSeed(const Scene *c, const Grid *g, Particles *P)
 {
   PetscFunctionBeginUser;
   PetscCall(ParticlesResize(P, 0));

@@ -176,7 +176,7 @@ static void Print(FILE *out, const Material *m, const Curve *k)
   }
 }
 
-PetscErrorCode CasePrintCurves(const Case *c, FILE *out)
+PetscErrorCode CasePrintCurves(const Scene *c, FILE *out)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->nmaterial; i++) {

@@ -2,7 +2,7 @@
 #include "run_private.h"
 #include "clathra/shape.h"
 
-PetscErrorCode PrintEquilibrium(const Case *c, MPI_Comm comm)
+PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->nregion; k++) {
@@ -30,7 +30,7 @@ typedef struct {
 
 static PetscErrorCode Look(const Model *m, Cold *cold)
 {
-  const Case      *c = m->c;
+  const Scene     *c = m->c;
   const Particles *P = &m->P;
 
   PetscFunctionBeginUser;
@@ -56,7 +56,7 @@ PetscErrorCode IceLook(Stepper *s, bool *ends)
 
   PetscFunctionBeginUser;
   PetscCall(Look(s->model, &cold));
-  *ends = cold.n > 0 && s->model->c->ice == ICE_STOP;
+  *ends = cold.n > 0 && StepperCase(s)->ice == ICE_STOP;
   if (cold.n == 0)
     PetscFunctionReturn(PETSC_SUCCESS);
   z->ice_total++;

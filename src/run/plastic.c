@@ -3,7 +3,7 @@
 
 #define TEARING 0.01 /* share of the particles at the apex that is worth a word while the run goes on */
 
-PetscErrorCode PrintStrength(const Case *c, MPI_Comm comm)
+PetscErrorCode PrintStrength(const Scene *c, MPI_Comm comm)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->nregion; k++) {

@@ -21,7 +21,7 @@ typedef struct {
 
 static double NextEvent(const Stepper *s, void *ctx)
 {
-  const Case  *c = s->model->c;
+  const Case  *c = StepperCase(s);
   const double t = s->state.t;
 
   (void)ctx;
@@ -40,8 +40,8 @@ static PetscErrorCode Time(double seconds, double scale, char text[32])
 
 static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
 {
-  const Case  *c       = s->model->c;
-  const double t_begin = c->t_begin;
+  const Case  *c       = StepperCase(s);
+  const double t_begin = c->scene.t_begin;
   double       done, left;
   char cuts[32] = "", error[64] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32], rest[32];
 
@@ -108,7 +108,7 @@ static PetscErrorCode Save(Stepper *s, Run *run)
 static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
 {
   Run         *run  = (Run *)ctx;
-  const Case  *c    = s->model->c;
+  const Case  *c    = StepperCase(s);
   const double t    = s->state.t;
   const bool   last = CaseAtEnd(c, t); /* of the run, or of a stage */
   bool         ok, save, end;
@@ -168,20 +168,20 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
       "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
       "%s%s%s%s%s  results in %s\n",
-      s->model->c->title, StepperDone(s) ? "finished" : "stopped", z->t,
-      s->model->c->nstage ? "by stage"
-      : s->auto_.on       ? STEPPER_AUTO
-                          : s->scheme->name,
+      StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", z->t,
+      StepperCase(s)->nstage ? "by stage"
+      : s->auto_.on          ? STEPPER_AUTO
+                             : s->scheme->name,
       z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
       Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
       Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
       Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, left, yields,
-      loose, gaps, ice, s->model->c->output_dir));
+      loose, gaps, ice, StepperCase(s)->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);
   PetscCall(PetscPrintf(comm, "%s%s", text, stages));
-  PetscCall(FolderWriteText(comm, s->model->c->output_dir, "summary.txt", all, strlen(all), &ok));
+  PetscCall(FolderWriteText(comm, StepperCase(s)->output_dir, "summary.txt", all, strlen(all), &ok));
   run->lost = run->lost || !ok;
   PetscCall(PetscFree(stages));
   PetscCall(PetscFree(all));
@@ -221,6 +221,21 @@ static PetscErrorCode CheckFolder(MPI_Comm comm, const Case *c, bool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The first traction that is not zero of a stage that hybrid may run; NULL: none. */
+static const Bc *HybridTraction(const Case *c)
+{
+  const Bc *found = NULL;
+
+  for (PetscInt k = 0; k < PetscMax(c->nstage, 1) && !found; k++) {
+    const Case *stage = CaseInStage(c, k);
+
+    if (!strcmp(stage->stepper, "hybrid") || !strcmp(stage->stepper, "explicit") ||
+        !strcmp(stage->stepper, STEPPER_AUTO))
+      found = SceneTraction(&stage->scene);
+  }
+  return found;
+}
+
 static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
 {
   const Model *m = s->model;
@@ -233,7 +248,7 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
     if (!run->initial[0])
       PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
     PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P));
-    PetscCall(CellMeansWarning(&m->grid, m->c, &m->P));
+    PetscCall(CellMeansWarning(&m->grid, m->c, &m->P, HybridTraction(c)));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));
@@ -296,7 +311,7 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   PetscCall(OutputDestroy(&run->out, s->model->grid.comm, &closed));
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
-  PetscCall(WriteLog(s->model->c, s->model->grid.comm, run));
+  PetscCall(WriteLog(StepperCase(s), s->model->grid.comm, run));
   if (run->lost || run->frozen || !ok)
     *exit_code = CL_EXIT_FAILED;
   else if ((s->signal || run->watch.over) && !StepperDone(s))
@@ -398,16 +413,16 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  if (!GridFits(size, c->cells)) {
+  if (!GridFits(size, c->scene.cells)) {
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: %s: grid_cells = %" PetscInt_FMT ", %" PetscInt_FMT
                            ": too few for %d ranks (each needs a part of at least 3 x 3 nodes); use fewer ranks\n",
-                           c->file, c->cells[0], c->cells[1], (int)size));
+                           c->file, c->scene.cells[0], c->scene.cells[1], (int)size));
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(LogStart(comm)); /* until LogEnd, which every way out from here passes */
-  PetscCall(ModelCreate(comm, c, &model));
+  PetscCall(ModelCreate(comm, &c->scene, &CaseInStage(c, 0)->scene, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
   stepper.monitor_ctx = &run;
@@ -419,15 +434,15 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   } else {
     char fields[128];
 
-    FieldSetPrint(&c->fields, fields, sizeof(fields));
+    FieldSetPrint(&c->scene.fields, fields, sizeof(fields));
     PetscCall(PetscPrintf(comm,
                           "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT
                           " cells%s, %s, to t = %g s\n  fields: %s; %d unknowns "
                           "a node\n",
-                          c->title, c->cells[0], c->cells[1], c->axisymmetric ? " about an axis" : "",
-                          c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->fields.n));
-    PetscCall(PrintStrength(c, comm));
-    PetscCall(PrintEquilibrium(c, comm));
+                          c->title, c->scene.cells[0], c->scene.cells[1], c->scene.axisymmetric ? " about an axis" : "",
+                          c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->scene.fields.n));
+    PetscCall(PrintStrength(&c->scene, comm));
+    PetscCall(PrintEquilibrium(&c->scene, comm));
     PetscCall(Go(c, &stepper, &run, exit_code));
     PetscCall(CheckOptions(comm, false, &unknown));
   }

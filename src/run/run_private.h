@@ -58,7 +58,7 @@ PetscErrorCode IceSummary(const Stepper *s, char text[256]);   /* water below it
 
 /* ---------------------------------------------------------------- phases.c */
 /* Curve and pressure of equilibrium of each region that reacts, at its temperature. */
-PetscErrorCode PrintEquilibrium(const Case *c, MPI_Comm comm);
+PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm);
 /* Counts the particles below the melting point of their water, (127), after a step or a burst, and says so the first
    time; *ends: the case wants the run to end there.  Collective. */
 PetscErrorCode IceLook(Stepper *s, bool *ends);

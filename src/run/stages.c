@@ -86,8 +86,8 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
 
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left)
 {
-  *done = (s->state.t - log->from) / (s->model->c->t_end - log->from);
-  *left = LearntLeft(&log->learnt, s->model->c->t_end - log->from);
+  *done = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from);
+  *left = LearntLeft(&log->learnt, StepperCase(s)->t_end - log->from);
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */
@@ -112,7 +112,7 @@ static PetscErrorCode LimitWords(const Entry *e, char words[200])
 
 PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **text)
 {
-  const Case  *c    = s->model->c;
+  const Case  *c    = StepperCase(s);
   const size_t line = 520;
 
   PetscFunctionBeginUser;

@@ -25,7 +25,7 @@ PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok)
 
   PetscFunctionBeginUser;
   if (s->model->grid.rank == 0)
-    inside = InFolder(path, s->model->c->output_dir);
+    inside = InFolder(path, StepperCase(s)->output_dir);
   PetscCallMPI(MPI_Bcast(&inside, 1, MPI_INT, 0, comm));
   *ok = !inside;
   if (inside)

@@ -4,7 +4,7 @@
 /* What an integrator without matrices has to say at the end. */
 PetscErrorCode LocalSummary(const Stepper *s, char text[512])
 {
-  const double scaling     = s->model->c->mass_scaling;
+  const double scaling     = StepperCase(s)->mass_scaling;
   char         scaled[128] = "";
 
   PetscFunctionBeginUser;

@@ -3,9 +3,9 @@
 
 double NextMultiple(const Case *c, double every, double t)
 {
-  const double at = t - c->t_begin + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+  const double at = t - c->scene.t_begin + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
 
-  return every > 0.0 ? c->t_begin + every * (floor(at / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
+  return every > 0.0 ? c->scene.t_begin + every * (floor(at / every * (1.0 + 1e-12) + 1e-9) + 1.0) : INFINITY;
 }
 
 double NextSnapshot(const Case *c, double t)
@@ -13,7 +13,7 @@ double NextSnapshot(const Case *c, double t)
   double next = NextMultiple(c, c->every, t);
 
   for (PetscInt k = 0; k < c->ntimes; k++) {
-    if (c->times[k] > t + CaseTimeSlack(c, t))
+    if (c->times[k] > t + SceneTimeSlack(&c->scene, t))
       next = fmin(next, c->times[k]);
   }
   return next;
@@ -21,12 +21,12 @@ double NextSnapshot(const Case *c, double t)
 
 static bool IsTime(const Case *c, double event, double t)
 {
-  return fabs(event - t) <= 1e-9 * fabs(t - c->t_begin) + CaseTimeSlack(c, t);
+  return fabs(event - t) <= 1e-9 * fabs(t - c->scene.t_begin) + SceneTimeSlack(&c->scene, t);
 }
 
 bool AtMultiple(const Case *c, double every, double t)
 {
-  return every > 0.0 && IsTime(c, c->t_begin + every * round((t - c->t_begin) / every), t);
+  return every > 0.0 && IsTime(c, c->scene.t_begin + every * round((t - c->scene.t_begin) / every), t);
 }
 
 bool AtSnapshot(const Case *c, double t)

@@ -24,7 +24,7 @@ static void Bounds(const Points *points, double lower[], double upper[])
   }
 }
 
-void RegionBound(const Case *c, Region *r)
+void RegionBound(const Scene *c, Region *r)
 {
   double lower[CL_DIM] = {c->lower[0], c->lower[1]}, upper[CL_DIM] = {c->upper[0], c->upper[1]};
 
@@ -47,9 +47,9 @@ void RegionBound(const Case *c, Region *r)
 }
 
 /* The region's own shape, before `minus`. */
-static bool Holds(const Case *c, const Region *r, const double x[])
+static bool Holds(const Scene *c, const Region *r, const double x[])
 {
-  const GridLines line[CL_DIM] = {CaseLines(c, 0), CaseLines(c, 1)};
+  const GridLines line[CL_DIM] = {SceneLines(c, 0), SceneLines(c, 1)};
   const double    y[CL_DIM]    = {x[0] + NUDGE * LinesWidthAt(&line[0], x[0]),
                                   x[1] + 0.618 * NUDGE * LinesWidthAt(&line[1], x[1])};
 
@@ -69,7 +69,7 @@ static bool Holds(const Case *c, const Region *r, const double x[])
   }
 }
 
-bool RegionHolds(const Case *c, PetscInt region, const double x[])
+bool RegionHolds(const Scene *c, PetscInt region, const double x[])
 {
   const Region *r = &c->region[region];
 
@@ -82,7 +82,7 @@ bool RegionHolds(const Case *c, PetscInt region, const double x[])
   return true;
 }
 
-bool RegionReaches(const Case *c, PetscInt region, const double x[], const double slack[])
+bool RegionReaches(const Scene *c, PetscInt region, const double x[], const double slack[])
 {
   const Region *r = &c->region[region];
 
@@ -119,10 +119,35 @@ double RegionHighest(const Region *r, const double direction[])
   return fmin(box, shape);
 }
 
+void RegionExtreme(const Scene *c, const Region *g, double sign, double x[CL_DIM])
+{
+  const double gravity    = SceneGravity(c),
+               up[CL_DIM] = {-sign * c->gravity[0] / gravity, -sign * c->gravity[1] / gravity};
+  const double reach      = RegionHighest(g, up);
+
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = up[d] * reach;
+}
+
+double SceneTop(const Scene *c)
+{
+  double top = -INFINITY, x[CL_DIM];
+
+  if (SceneGravity(c) == 0.0)
+    return 0.0;
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    if (RegionEmpty(&c->region[i]))
+      continue;
+    RegionExtreme(c, &c->region[i], 1.0, x);
+    top = fmax(top, SceneHeight(c, x));
+  }
+  return top;
+}
+
 /* ---------------------------------------------------------------- places */
 /* Where cells differ the places are those of a regular filling of the cells, by which domains end on lines; a box cuts
    or stretches the outermost to its sides. */
-static void LatticeUnequal(const Case *c, const Region *r, int d, Lattice *lattice)
+static void LatticeUnequal(const Scene *c, const Region *r, int d, Lattice *lattice)
 {
   const GridLines *line = &lattice->line[d];
   const double     ppc  = (double)r->ppc[d];
@@ -143,12 +168,12 @@ static void LatticeUnequal(const Case *c, const Region *r, int d, Lattice *latti
   lattice->to[d]      = box ? upper / ppc : (double)last / ppc;
 }
 
-void RegionLattice(const Case *c, PetscInt region, Lattice *lattice)
+void RegionLattice(const Scene *c, PetscInt region, Lattice *lattice)
 {
   const Region *r = &c->region[region];
 
   for (int d = 0; d < CL_DIM; d++) {
-    lattice->line[d] = CaseLines(c, d);
+    lattice->line[d] = SceneLines(c, d);
     if (lattice->line[d].x) {
       LatticeUnequal(c, r, d, lattice);
       continue;
@@ -207,7 +232,7 @@ double LatticeWidth(const Lattice *lattice, int d, double x)
   return LatticeEdge(lattice, d, i + 1) - LatticeEdge(lattice, d, i);
 }
 
-bool RegionPlace(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[], double x[])
+bool RegionPlace(const Scene *c, PetscInt region, const Lattice *lattice, const PetscInt ij[], double x[])
 {
   bool in = true;
 
@@ -220,7 +245,7 @@ bool RegionPlace(const Case *c, PetscInt region, const Lattice *lattice, const P
 }
 
 /* Does the region have a particle at x, just outside a side, or one whose place is the next, centred at `next`? */
-static bool Covers(const Case *c, PetscInt region, const double x[], const double next[], bool of_box)
+static bool Covers(const Scene *c, PetscInt region, const double x[], const double next[], bool of_box)
 {
   const Region *r = &c->region[region];
   Lattice       lattice;
@@ -241,7 +266,7 @@ static bool Covers(const Case *c, PetscInt region, const double x[], const doubl
   return RegionPlace(c, region, &lattice, ij, centre);
 }
 
-PetscInt RegionFaces(const Case *c, PetscInt region, const Lattice *lattice, const PetscInt ij[])
+PetscInt RegionFaces(const Scene *c, PetscInt region, const Lattice *lattice, const PetscInt ij[])
 {
   PetscInt bits = 0;
   double   x[CL_DIM];
@@ -265,9 +290,9 @@ PetscInt RegionFaces(const Case *c, PetscInt region, const Lattice *lattice, con
 /* ---------------------------------------------------------------- faces */
 /* A way out of the region, from a to b, and the first boundary it crosses. */
 typedef struct {
-  const Case *c;
-  PetscInt    region;
-  double      a[CL_DIM], b[CL_DIM], t, n[CL_DIM];
+  const Scene *c;
+  PetscInt     region;
+  double       a[CL_DIM], b[CL_DIM], t, n[CL_DIM];
 } WayOut;
 
 /* A crossing counts when the region ends there. */
@@ -330,7 +355,7 @@ static void TryShape(WayOut *w, const Region *r)
     TryEdge(w, box + 2 * k, box + 2 * (k + 1));
 }
 
-void FaceNormal(const Case *c, PetscInt region, const double x[], int side, double n[])
+void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, double n[])
 {
   const Region *r    = &c->region[region];
   const int     d    = SideAxis(side);
@@ -352,7 +377,7 @@ void FaceNormal(const Case *c, PetscInt region, const double x[], int side, doub
     n[i] = w.n[i] / steps;
 }
 
-static bool OnLine(const Case *c, const Points *line, PetscInt region, const double x[], int side)
+static bool OnLine(const Scene *c, const Points *line, PetscInt region, const double x[], int side)
 {
   const int d         = SideAxis(side);
   double    a[CL_DIM] = {x[0], x[1]}, b[CL_DIM] = {x[0], x[1]}, t;
@@ -371,7 +396,7 @@ static bool OnLine(const Case *c, const Points *line, PetscInt region, const dou
   return false;
 }
 
-bool FaceNamed(const Case *c, const Meter *m, PetscInt region, const double x[], int side)
+bool FaceNamed(const Scene *c, const Meter *m, PetscInt region, const double x[], int side)
 {
   const double along = x[1 - SideAxis(side)];
 

@@ -47,13 +47,13 @@ double StepperNextStop(const Stepper *s, bool *kink)
   const double t = s->state.t, at_kink = BcNextKink(s->model->c, t);
   const double event = s->next_event ? s->next_event(s, s->monitor_ctx) : INFINITY;
   const double mark  = BcNextMark(s->model->c, t);
-  const double stop  = fmin(fmin(s->model->c->t_end, mark), fmin(at_kink, event));
+  const double stop  = fmin(fmin(StepperCase(s)->t_end, mark), fmin(at_kink, event));
 
   *kink = stop == at_kink;
   return stop;
 }
 
-void StepperCount(const Case *c, const StageRates *rates, double weight, Attempt *a)
+void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a)
 {
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     a->out[ph] += weight * rates->out[ph];

@@ -13,7 +13,7 @@ const char *StepperStatusName(ClStatus st)
 static bool HybridMayHelp(const Stepper *s, ClStatus status)
 {
   return (status == CL_TOO_FAR || status == CL_SOLVER) && !s->explicit && !s->auto_.on &&
-         !CaseNeedsImplicit(s->model->c);
+         !SceneNeedsImplicit(s->model->c);
 }
 
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)

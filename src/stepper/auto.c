@@ -30,7 +30,7 @@ static PetscErrorCode CostHybrid(const Stepper *s, const StableStep *limit, doub
   PetscFunctionBeginUser;
   *cost = INFINITY;
   if (limit->dt > 0.0)
-    *cost = StepperHybridWork(m, 1.0) / StepperHybridStep(m->c, limit);
+    *cost = StepperHybridWork(m, 1.0) / StepperHybridStep(CaseOf(m->c), limit);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cost, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -238,12 +238,12 @@ static PetscErrorCode FromHybrid(Stepper *s, bool *ok)
 PetscErrorCode StepperAutoBegin(Stepper *s)
 {
   StepperState *z = &s->state;
-  const Case   *c = s->model->c;
+  const Case   *c = StepperCase(s);
   PetscBool     chosen;
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrcmp(STEPPER_AUTO, c->stepper, &chosen));
-  s->auto_.on = chosen && s->adaptive && !CaseNeedsImplicit(c);
+  s->auto_.on = chosen && s->adaptive && !SceneNeedsImplicit(&c->scene);
   if (!chosen)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (z->kind == AUTO_UNDECIDED) {

@@ -10,7 +10,7 @@ PetscErrorCode StepperEnergyStart(Stepper *s)
 
 PetscErrorCode StepperEnergyStep(Stepper *s, const double work[WORK_RATES])
 {
-  const Case   *c = s->model->c;
+  const Case   *c = StepperCase(s);
   StepperState *z = &s->state;
   double        now[ENERGY_COUNT], gain[ENERGY_COUNT];
 
@@ -20,10 +20,10 @@ PetscErrorCode StepperEnergyStep(Stepper *s, const double work[WORK_RATES])
     gain[k]      = now[k] - z->energy[k];
     z->energy[k] = now[k];
   }
-  if (!c->fields.solid)
+  if (!c->scene.fields.solid)
     PetscFunctionReturn(PETSC_SUCCESS);
   /* quasi-static: no inertia in the balance of momentum, so none here */
-  const double kinetic = (!c->fields.inertia ? 0.0 : s->explicit ? c->mass_scaling : 1.0) * gain[ENERGY_KINETIC];
+  const double kinetic = (!c->scene.fields.inertia ? 0.0 : s->explicit ? c->mass_scaling : 1.0) * gain[ENERGY_KINETIC];
   const double lost    = work[WORK_INERTIA] - kinetic;
   const double given   = work[WORK_GRAVITY] + work[WORK_LOADS] + work[WORK_PLATES] + work[WORK_PRESSURE],
                gone    = gain[ENERGY_PLASTIC] + now[ENERGY_RELEASED] + work[WORK_DRAG] + work[WORK_DAMPING] + lost;

@@ -11,7 +11,7 @@
 /* (350) is not in the paper's bare form. */
 static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 {
-  const double contrast = c->pressures == PRESSURES_PARTICLES ? CaseContrast(c) : 1.0;
+  const double contrast = c->pressures == PRESSURES_PARTICLES ? SceneContrast(&c->scene) : 1.0;
 
   PetscFunctionBeginUser;
   if (contrast > LAYERED)
@@ -27,7 +27,7 @@ static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 
 static PetscErrorCode Create(Stepper *s)
 {
-  const Case           *c = s->model->c;
+  const Case           *c = StepperCase(s);
   const ExplicitOptions o = {.drag_implicit      = s->scheme == &StepperScheme_Hybrid,
                              .tied               = c->surface != SURFACE_FREE,
                              .velocities_free    = c->surface != SURFACE_TIED,
@@ -40,7 +40,7 @@ static PetscErrorCode Create(Stepper *s)
 
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &s->explicit));
-  PetscCall(ParticlesCreate(c->fields.has, &s->good));
+  PetscCall(ParticlesCreate(c->scene.fields.has, &s->good));
   PetscCall(SayLayers(c, s->model->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -56,11 +56,11 @@ static PetscErrorCode Destroy(Stepper *s)
 /* A fixed step above the stable one is refused. */
 static PetscErrorCode CheckFixed(const Stepper *s, bool *ok)
 {
-  const double dt = s->model->c->dt;
+  const double dt = StepperCase(s)->dt;
   char         stage[80];
 
   PetscFunctionBeginUser;
-  if (s->adaptive || s->model->c->force_dt || dt <= s->limit.dt)
+  if (s->adaptive || StepperCase(s)->force_dt || dt <= s->limit.dt)
     PetscFunctionReturn(PETSC_SUCCESS);
   *ok = false;
   StepperStageWords(s, stage);
@@ -69,7 +69,7 @@ static PetscErrorCode CheckFixed(const Stepper *s, bool *ok)
                    "clathra: %s: %sstepper_dt = %g s is above the stable step of %g s (%s rules); allowed (0 s,%g "
                    "s], or -stepper_force_dt "
                    "yes, or -stepper_adapt yes\n",
-                   s->model->c->file, stage, dt, s->limit.dt, cl_limit_word[s->limit.rules], s->limit.dt));
+                   StepperCase(s)->file, stage, dt, s->limit.dt, cl_limit_word[s->limit.rules], s->limit.dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,7 +86,7 @@ static PetscErrorCode Check(const Stepper *s, bool *ok)
         s->model->grid.comm, stderr,
         "clathra: %s: %sstepper_type: %s has no stable step here (water without compressibility carries waves at any "
         "speed); use sdirk2 or euler\n",
-        s->model->c->file, stage, s->scheme->name));
+        StepperCase(s)->file, stage, s->scheme->name));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(CheckFixed(s, ok));
@@ -118,8 +118,8 @@ static PetscErrorCode Ready(Stepper *s, bool *ok)
 static PetscInt Plan(const Stepper *s, double stop, double *dt)
 {
   const StepperState *z    = &s->state;
-  const double        left = stop - z->t, share = s->model->c->cfl * s->limit.dt;
-  const double        free_ = s->adaptive ? fmin(share, s->dt_max) : s->model->c->dt,
+  const double        left = stop - z->t, share = StepperCase(s)->cfl * s->limit.dt;
+  const double        free_ = s->adaptive ? fmin(share, s->dt_max) : StepperCase(s)->dt,
                wanted       = z->hold > 0 ? fmin(z->dt, free_) : free_;
   const double n            = fmax(ceil(left / wanted - 1e-9), 1.0);
 

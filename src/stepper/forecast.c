@@ -16,7 +16,7 @@
 #define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
 #define PER_TRANSIT 40.0    /* ... and want so many steps each */
 
-static double Extent(const Case *c)
+static double Extent(const Scene *c)
 {
   double extent = 0.0;
 
@@ -44,15 +44,16 @@ static double Stretches(const Stepper *s, double left)
   double       steps = 0.0;
   int          n     = 0;
 
-  ahead.state.t = m->c->t_end - left;
-  for (; ahead.state.t < m->c->t_end && n < MOST_STRETCHES; n++) {
+  ahead.state.t = CaseOf(m->c)->t_end - left;
+  for (; ahead.state.t < CaseOf(m->c)->t_end && n < MOST_STRETCHES; n++) {
     bool         kink;
     const double stop = StepperNextStop(&ahead, &kink);
 
-    steps += fmax(1.0, ceil((stop - ahead.state.t) / s->dt_max)) + (kink && stop < m->c->t_end ? BEHIND_KINK : 0.0);
+    steps +=
+        fmax(1.0, ceil((stop - ahead.state.t) / s->dt_max)) + (kink && stop < CaseOf(m->c)->t_end ? BEHIND_KINK : 0.0);
     ahead.state.t = stop;
   }
-  return n < MOST_STRETCHES ? steps : steps * left / (ahead.state.t - (m->c->t_end - left));
+  return n < MOST_STRETCHES ? steps : steps * left / (ahead.state.t - (CaseOf(m->c)->t_end - left));
 }
 
 /* Steps of an implicit run: as fixed, or few unless waves have to be resolved, events come often or loads have kinks.
@@ -62,7 +63,7 @@ static double ImplicitSteps(const Stepper *s, double left)
   const Model *m = s->model;
 
   if (!s->adaptive)
-    return left / m->c->dt;
+    return left / CaseOf(m->c)->dt;
   const double speed = 2.0 / (sqrt(GridHighest2(&m->grid)) * s->forecast.limit.each[LIMIT_WAVE]);
   const double transits =
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
@@ -84,7 +85,7 @@ double StepperImplicitWork(const Model *m, double newton, double factors)
 PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)
 {
   const ExplicitOptions o = {
-      .drag_implicit = true, .flip = 1.0, .relaxation = INFINITY, .mass_scaling = s->model->c->mass_scaling};
+      .drag_implicit = true, .flip = 1.0, .relaxation = INFINITY, .mass_scaling = StepperCase(s)->mass_scaling};
   Explicit *e;
 
   PetscFunctionBeginUser;
@@ -97,15 +98,15 @@ PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)
 PetscErrorCode StepperForecast(Stepper *s)
 {
   const Model *m    = s->model;
-  const Case  *c    = m->c;
-  const double left = c->t_end - fmax(s->state.t, c->t_begin);
+  const Case  *c    = CaseOf(m->c);
+  const double left = c->t_end - fmax(s->state.t, c->scene.t_begin);
   Forecast    *f    = &s->forecast;
 
   PetscFunctionBeginUser;
   *f = (Forecast){.hybrid_steps = INFINITY, .hybrid_seconds = INFINITY};
   for (int k = 0; k < LIMIT_COUNT; k++)
     f->limit.each[k] = INFINITY;
-  if (!CaseNeedsImplicit(c))
+  if (!SceneNeedsImplicit(&c->scene))
     PetscCall(StepperHybridLimit(s, &f->limit));
   if (f->limit.dt > 0.0) {
     f->hybrid_steps   = fmax(ceil(left / StepperHybridStep(c, &f->limit)), 1.0);
@@ -141,7 +142,7 @@ static void Duration(double seconds, char text[32])
 PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
-  const char     *why = CaseNeedsImplicit(s->model->c);
+  const char     *why = SceneNeedsImplicit(s->model->c);
   char            hybrid[128], time[32], stage[80];
 
   PetscFunctionBeginUser;

@@ -127,7 +127,7 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
   const Model *m                       = s->model;
   const double scale[STEPPER_ERRORS]   = {s->state.scale_p, s->state.scale_p,  s->state.scale_T, STEPPER_SCALE_SH,
                                           s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
-  const double half                    = 0.5 * m->c->error_exponent;
+  const double half                    = 0.5 * CaseOf(m->c)->error_exponent;
   double       sum[STEPPER_ERRORS + 1] = {0.0}, worst = 0.0;
 
   for (PetscInt p = 0; p < m->P.n; p++) {
@@ -190,7 +190,7 @@ static double WantedStep(const Stepper *s, double dt, bool kink, const Attempt *
   double              next;
 
   if (!s->adaptive)
-    return z->hold > 0 ? z->dt : fmin(2.0 * z->dt, s->model->c->dt); /* back to the fixed step after a cut */
+    return z->hold > 0 ? z->dt : fmin(2.0 * z->dt, StepperCase(s)->dt); /* back to the fixed step after a cut */
   next = Controller(s, dt, a);
   if (kink)
     next *= CUT_AT_KINK;
@@ -240,7 +240,7 @@ static void Judge(Stepper *s, double dt, double dt_old, double err_old, Attempt 
 /* An adaptive run whose steps have shrunk to nothing is ended, for it would not end by itself. */
 static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
 {
-  const double left = s->model->c->t_end - s->state.t;
+  const double left = StepperCase(s)->t_end - s->state.t;
 
   PetscFunctionBeginUser;
   s->crawl = s->adaptive && left > CRAWL * dt ? s->crawl + 1 : 0;

@@ -11,7 +11,7 @@ double StepperFloorU(const Stepper *s)
 
 void StepperStageWords(const Stepper *s, char words[80])
 {
-  const Case *c = s->model->c;
+  const Case *c = StepperCase(s);
 
   words[0] = '\0';
   for (PetscInt k = 0; k < c->nstage; k++) {
@@ -22,21 +22,21 @@ void StepperStageWords(const Stepper *s, char words[80])
 
 bool StepperStageDone(const Stepper *s)
 {
-  return CaseAtEnd(s->model->c, s->state.t);
+  return CaseAtEnd(StepperCase(s), s->state.t);
 }
 
 bool StepperDone(const Stepper *s)
 {
-  return StepperStageDone(s) && s->state.stage + 1 >= s->model->c->nstage;
+  return StepperStageDone(s) && s->state.stage + 1 >= StepperCase(s)->nstage;
 }
 
 PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
 {
-  const Case *c = CaseInStage(s->model->c, k);
+  const Case *c = CaseInStage(StepperCase(s), k);
   PetscBool   same;
 
   PetscFunctionBeginUser;
-  s->model->c = c;
+  s->model->c = &c->scene;
   s->scheme   = NULL;
   for (int i = 0; schemes[i]; i++) {
     PetscCall(PetscStrcmp(schemes[i]->name, c->stepper, &same));
@@ -83,12 +83,12 @@ PetscErrorCode StepperNextStage(Stepper *s)
   StepperState *z = &s->state;
 
   PetscFunctionBeginUser;
-  z->t = s->model->c->t_end; /* to the last digit */
+  z->t = StepperCase(s)->t_end; /* to the last digit */
   z->stage++;
   PetscCall(StepperTakeStage(s, z->stage));
-  StepperForget(z, s->model->c->dt);
+  StepperForget(z, StepperCase(s)->dt);
   z->kind = AUTO_UNDECIDED;
-  if (s->model->c->stage[z->stage].reset)
+  if (StepperCase(s)->stage[z->stage].reset)
     ResetDisplacement(s);
   PetscCall(StepperEnergyChange(s));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -24,7 +24,7 @@ PetscErrorCode StepperCreate(Model *m, Stepper *s)
   s->model = m;
   PetscCall(StepperTakeStage(s, 0));
   s->max_steps     = PETSC_MAX_INT;
-  s->state.dt      = m->c->dt;
+  s->state.dt      = CaseOf(m->c)->dt;
   s->state.err_old = 1.0;
   s->state.fresh   = 1;
   s->state.scale_p = FLOOR_P;
@@ -50,7 +50,7 @@ static PetscErrorCode LookAhead(Stepper *s, bool *ok)
   const Forecast forecast = s->forecast;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = now + 1; k < s->model->c->nstage && *ok; k++) {
+  for (PetscInt k = now + 1; k < StepperCase(s)->nstage && *ok; k++) {
     PetscCall(StepperTakeStage(s, k));
     PetscCall(Look(s));
     s->limit = s->forecast.limit;
@@ -82,7 +82,7 @@ PetscErrorCode StepperReady(Stepper *s, bool *ok)
   *ok = true;
   PetscCall(StepperTakeStage(s, s->state.stage));
   if (!s->adaptive && s->state.hold == 0)
-    s->state.dt = s->model->c->dt; /* a fixed step is the case's, also after a restart */
+    s->state.dt = StepperCase(s)->dt; /* a fixed step is the case's, also after a restart */
   if (StepperStageDone(s) && !StepperDone(s))
     PetscCall(StepperNextStage(s));
   PetscCall(Look(s));

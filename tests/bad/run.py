@@ -427,8 +427,8 @@ CASES = [
     *((f"stage that would change {what}", [STAGES("end: 10 s", "end: 2000 s, materials: [column, other]"), ("materials: [sediment]", "materials: [sediment, other]")],
        ["stage_b_materials", "region column cannot change from sediment to other", word],
        [x for key, value in {**SEDIMENT, **changed}.items() for x in (f"-mat_other_{key}", value)])
-      for what, word, changed in (("porosity", "porosity", {"porosity": "0.2"}), ("the grains", "grains", {"solid_density": "2500 kg/m^3"}),
-                                  ("retention", "retention", {"retention_p0": "60 kPa"}), ("what reacts", "hydrate", {"kinetics_active": "no"}))),
+      for what, word, changed in (("porosity", "porosity", {"porosity": "0.2"}), ("the grains", "solid_density", {"solid_density": "2500 kg/m^3"}),
+                                  ("retention", "retention", {"retention_p0": "60 kPa"}), ("what reacts", "kinetics_active", {"kinetics_active": "no"}))),
     ("condition that hybrid does not know", [PLATE("axis: x, position: 0 m, velocity: 0 m/s"), ("type: sdirk2", "type: hybrid")],
      ["bc_base_type", "hybrid does not know the condition plate without a side; use sdirk2 or euler"], []),
     ("the same in a later stage", [PLATE("axis: x, position: 0 m, velocity: 0 m/s"), STAGES("end: 10 s", "end: 2000 s, stepper: {type: hybrid}")],

@@ -1,5 +1,5 @@
-/* Shared by the unit tests that run on several ranks: checks that end all of them.  Include after cmocka.h and PETSc.
- */
+/* Shared by the unit tests that run with PETSc: checks that end all ranks, and what main() does.  Include after
+   cmocka.h and PETSc. */
 #pragma once
 
 #include <stdio.h>
@@ -17,3 +17,17 @@ static PetscMPIInt world_rank, world_size;
     }                                                                                                                  \
   } while (0)
 #define Call(expr) Check((expr) == 0)
+
+/* Runs tests with PETSc; returns what main() should: the number of tests that failed, 1 where PETSc does not start or
+   end.  setup, teardown: before and after all of them, or NULL. */
+static inline int RunWithPetsc(int argc, char **argv, const char *group, const struct CMUnitTest *test, size_t n,
+                               CMFixtureFunction setup, CMFixtureFunction teardown)
+{
+  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
+      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
+    return 1;
+  const int failed = _cmocka_run_group_tests(group, test, n, setup, teardown);
+  return PetscFinalize() ? 1 : failed;
+}
+#define RunTests(argc, argv, tests, setup, teardown)                                                                   \
+  RunWithPetsc(argc, argv, #tests, tests, sizeof(tests) / sizeof *(tests), setup, teardown)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <stdlib.h>
+#include "clathra/case.h"
 #include "clathra/model.h"
 #include "random.h"
 #include "ranks.h"
@@ -49,31 +50,31 @@ typedef struct {
   Region   half[2];
   Model    m;
   Stage    stage;
-} Scene;
+} SmallScene;
 
 static bool one_pressure; /* of the scenes to come */
 
 /* Grid of 6 x 4 cells of 0.1 m x 0.08 m from x = `start`, with one region; conditions are added afterwards. */
-static inline void SceneInit(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
-                             const double lower[2], const double upper[2])
+static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis,
+                             double start, const double lower[2], const double upper[2])
 {
   memset(s, 0, sizeof(*s));
-  s->c = (Case){.lower               = {start, 0.0},
-                .upper               = {start + 0.6, 0.32},
-                .cells               = {6, 4},
-                .basis               = basis,
-                .axisymmetric        = axisymmetric,
-                .inertia             = inertia,
-                .nmaterial           = 1,
-                .nregion             = 1,
-                .material            = &s->mat,
-                .region              = &s->region,
-                .bc                  = s->bc,
-                .ghost_penalty       = 0.1,
-                .ghost_storage       = 0.2,
-                .pressure_projection = 1.0,
-                .flux_interpolation  = true};
-  Check(FieldSetMake(has, inertia, one_pressure, &s->c.fields));
+  s->c = (Case){.scene.lower                             = {start, 0.0},
+                .scene.upper                             = {start + 0.6, 0.32},
+                .scene.cells                             = {6, 4},
+                .scene.basis                             = basis,
+                .scene.axisymmetric                      = axisymmetric,
+                .scene.inertia                           = inertia,
+                .scene.nmaterial                         = 1,
+                .scene.nregion                           = 1,
+                .scene.material                          = &s->mat,
+                .scene.region                            = &s->region,
+                .scene.bc                                = s->bc,
+                .scene.stabilisation.ghost_penalty       = 0.1,
+                .scene.stabilisation.ghost_storage       = 0.2,
+                .scene.stabilisation.pressure_projection = 1.0,
+                .scene.stabilisation.flux_interpolation  = true};
+  Check(FieldSetMake(has, inertia, one_pressure, &s->c.scene.fields));
   s->mat                 = SedimentMaterial();
   s->mat.kappa_w         = 0.6;
   s->mat.permeability.k0 = 1.53e-13;
@@ -82,41 +83,41 @@ static inline void SceneInit(Scene *s, unsigned has, bool inertia, bool axisymme
                                     .upper       = {start + upper[0], upper[1]},
                                     .pressure    = 3.25e6,
                                     .temperature = 4.0};
-  s->region.Sw           = s->c.fields.phase[PHASE_G] ? 0.6 : s->c.fields.fluid ? 1.0 : 0.0;
-  s->region.Sg           = s->c.fields.phase[PHASE_G] ? 0.4 : 0.0;
+  s->region.Sw           = s->c.scene.fields.phase[PHASE_G] ? 0.6 : s->c.scene.fields.fluid ? 1.0 : 0.0;
+  s->region.Sg           = s->c.scene.fields.phase[PHASE_G] ? 0.4 : 0.0;
 }
 
-static inline Schedule Constant(Scene *s, int which, double v)
+static inline Schedule Constant(SmallScene *s, int which, double v)
 {
-  double *y = &s->number[2 * s->c.nbc + which];
+  double *y = &s->number[2 * s->c.scene.nbc + which];
 
   *y = v;
   return (Schedule){.n = 1, .t = &s->zero, .y = y};
 }
 
-static inline Bc *AddFace(Scene *s, BcType type, Side side, double value, double shear)
+static inline Bc *AddFace(SmallScene *s, BcType type, Side side, double value, double shear)
 {
-  Bc *b = &s->bc[s->c.nbc];
+  Bc *b = &s->bc[s->c.scene.nbc];
 
-  *b           = (Bc){.type = type, .side = side, .region = -1, .from = -INFINITY, .to = INFINITY, .alpha = 40.0};
-  b->value     = Constant(s, 0, value);
-  b->shear     = Constant(s, 1, shear);
-  b->number    = s->c.nbc++;
-  s->c.listed  = s->bc;
-  s->c.nlisted = s->c.nbc;
+  *b                 = (Bc){.type = type, .side = side, .region = -1, .from = -INFINITY, .to = INFINITY, .alpha = 40.0};
+  b->value           = Constant(s, 0, value);
+  b->shear           = Constant(s, 1, shear);
+  b->number          = s->c.scene.nbc++;
+  s->c.scene.listed  = s->bc;
+  s->c.scene.nlisted = s->c.scene.nbc;
   return b;
 }
 
-static inline void AddPlane(Scene *s, BcType type, PetscInt axis, double position, double value)
+static inline void AddPlane(SmallScene *s, BcType type, PetscInt axis, double position, double value)
 {
-  s->bc[s->c.nbc]       = (Bc){.type = type, .axis = axis, .position = position, .region = -1};
-  s->bc[s->c.nbc].value = Constant(s, 0, value);
-  s->c.nbc++;
+  s->bc[s->c.scene.nbc]       = (Bc){.type = type, .axis = axis, .position = position, .region = -1};
+  s->bc[s->c.scene.nbc].value = Constant(s, 0, value);
+  s->c.scene.nbc++;
 }
 
 /* Makes two layers of the region, which meet at x or y = `at`; k0 of the second is `contrast` times that of the first.
    The material is as it is by now. */
-static inline void SceneLayers(Scene *s, int axis, double at, double contrast)
+static inline void SceneLayers(SmallScene *s, int axis, double at, double contrast)
 {
   s->pair[0] = s->pair[1] = s->mat;
   s->half[0] = s->half[1] = s->region;
@@ -124,26 +125,26 @@ static inline void SceneLayers(Scene *s, int axis, double at, double contrast)
   s->half[1].lower[axis]  = at;
   s->half[1].material     = 1;
   s->pair[1].permeability.k0 *= contrast;
-  s->c.nmaterial = s->c.nregion = 2;
-  s->c.material                 = s->pair;
-  s->c.region                   = s->half;
+  s->c.scene.nmaterial = s->c.scene.nregion = 2;
+  s->c.scene.material                       = s->pair;
+  s->c.scene.region                         = s->half;
 }
 
 /* A test with more than one layer points s->c.region and s->c.material at its own. */
-static inline const Region *RegionOf(const Scene *s, PetscInt p)
+static inline const Region *RegionOf(const SmallScene *s, PetscInt p)
 {
-  return &s->c.region[s->m.P.i[PI_REGION][p]];
+  return &s->c.scene.region[s->m.P.i[PI_REGION][p]];
 }
 
-static inline const Material *MaterialOf(const Scene *s, PetscInt p)
+static inline const Material *MaterialOf(const SmallScene *s, PetscInt p)
 {
-  return &s->c.material[RegionOf(s, p)->material];
+  return &s->c.scene.material[RegionOf(s, p)->material];
 }
 
 /* Masses and saturations that belong to a particle's pressures. */
-static inline void Refill(Scene *s, PetscInt p, double Sh)
+static inline void Refill(SmallScene *s, PetscInt p, double Sh)
 {
-  const FieldSet *fs  = &s->c.fields;
+  const FieldSet *fs  = &s->c.scene.fields;
   const Region   *r   = RegionOf(s, p);
   const Material *mat = MaterialOf(s, p);
   double *const  *f   = s->m.P.f;
@@ -164,7 +165,7 @@ static inline void Refill(Scene *s, PetscInt p, double Sh)
 }
 
 /* Nodal and particle arrays of a stage that starts from the state at t_n. */
-static inline void StageStart(Scene *s, double dt)
+static inline void StageStart(SmallScene *s, double dt)
 {
   Model         *m = &s->m;
   const PetscInt n = m->c->fields.n;
@@ -183,16 +184,16 @@ static inline void StageStart(Scene *s, double dt)
     s->stage.m_star[k] = m->P.f[P_MH + k % 3] ? m->P.f[P_MH + k % 3][k / 3] : 0.0;
 }
 
-static inline void SceneDestroy(Scene *s)
+static inline void SceneDestroy(SmallScene *s)
 {
   Call(PetscFree3(s->stage.x_star, s->stage.u_star, s->stage.m_star));
   Call(ModelDestroy(&s->m));
 }
 
 /* The solver is made by the first ModelSolve: one iteration, whatever comes of it. */
-static inline void MakeSolver(Scene *s)
+static inline void MakeSolver(SmallScene *s)
 {
-  const PetscInt n = s->m.map.n_local * s->c.fields.n;
+  const PetscInt n = s->m.map.n_local * s->c.scene.fields.n;
   double        *x;
   PetscInt       newton;
   ClStatus       status;
@@ -218,7 +219,7 @@ static inline void SetX(Model *m, const double *x)
 
 /* Largest scaled residual of the equations of unknowns q in [from, to): momentum in units of 1 MPa over a cell, mass
    and heat in what 1 MPa and 1 K store. */
-static inline double ResidualAt(Scene *s, const double *x, int from, int to)
+static inline double ResidualAt(SmallScene *s, const double *x, int from, int to)
 {
   Model          *m  = &s->m;
   const FieldSet *fs = &m->c->fields;
@@ -247,7 +248,7 @@ static inline void AddNoise(double *a, PetscInt p, double size, double noise)
 }
 
 /* Random history: everything that a run could have left on a particle. */
-static inline void RandomHistory(Scene *s, double Sh)
+static inline void RandomHistory(SmallScene *s, double Sh)
 {
   double *const *f = s->m.P.f;
 
@@ -294,13 +295,13 @@ static inline void RandomUnknowns(const Model *m, double dt, int seed, double *x
   }
 }
 
-static inline void RandomStage(Scene *s, double dt)
+static inline void RandomStage(SmallScene *s, double dt)
 {
   Model *m = &s->m;
 
   StageStart(s, dt);
   RandomUnknowns(m, dt, 20, s->stage.x_star);
-  for (PetscInt I = 0; I < m->map.n_local && s->c.fields.solid; I++) {
+  for (PetscInt I = 0; I < m->map.n_local && s->c.scene.fields.solid; I++) {
     for (int d = 0; d < CL_DIM; d++)
       s->stage.u_star[I * CL_DIM + d] = 2e-4 * Noise(21 + d, m->map.ij[I][0], m->map.ij[I][1]);
   }
@@ -310,11 +311,11 @@ static inline void RandomStage(Scene *s, double dt)
 }
 
 /* Every kind of condition that the field set knows occurs in one of the two sets. */
-static inline void AddConditions(Scene *s, int set)
+static inline void AddConditions(SmallScene *s, int set)
 {
-  const FieldSet *fs    = &s->c.fields;
+  const FieldSet *fs    = &s->c.scene.fields;
   const bool      moves = fs->solid || fs->fluid;
-  const double    x0 = s->c.lower[0], axis = s->c.axisymmetric && x0 == 0.0;
+  const double    x0 = s->c.scene.lower[0], axis = s->c.scene.axisymmetric && x0 == 0.0;
 
   if (set == 0) {
     if (moves && !axis)
@@ -350,34 +351,34 @@ static inline void AddConditions(Scene *s, int set)
 }
 
 /* A body whose free sides cut cells; start: x of the grid's left side, the body begins `gap` right of it. */
-static inline void JacobianCase(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
-                                double gap, bool reacts, int set)
+static inline void JacobianCase(SmallScene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis,
+                                double start, double gap, bool reacts, int set)
 {
   const double lower[2] = {gap, 0.0}, upper[2] = {0.47, 0.18};
 
   SceneInit(s, has, inertia, axisymmetric, basis, start, lower, upper);
-  s->mat.reacts            = reacts;
-  s->mat.elasticity.change = set;
-  s->c.gravity[0]          = axisymmetric ? 0.0 : 2.0;
-  s->c.gravity[1]          = -9.81;
-  s->c.flux_interpolation  = !(set == 1 && !reacts);
-  s->c.lumped_reaction     = reacts;
-  s->c.compression_heat    = s->c.fields.heat && s->c.fields.fluid && set != 1;
-  s->region.pressure       = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
+  s->mat.reacts                               = reacts;
+  s->mat.elasticity.change                    = set;
+  s->c.scene.gravity[0]                       = axisymmetric ? 0.0 : 2.0;
+  s->c.scene.gravity[1]                       = -9.81;
+  s->c.scene.stabilisation.flux_interpolation = !(set == 1 && !reacts);
+  s->c.scene.stabilisation.lumped_reaction    = reacts;
+  s->c.scene.compression_heat                 = s->c.scene.fields.heat && s->c.scene.fields.fluid && set != 1;
+  s->region.pressure                          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
   AddConditions(s, set);
 }
 
 /* A random state of it. */
-static inline void JacobianState(Scene *s)
+static inline void JacobianState(SmallScene *s)
 {
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   RandomHistory(s, 0.2);
   RandomStage(s, 20.0);
   MakeSolver(s);
 }
 
-static inline void JacobianScene(Scene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis, double start,
-                                 double gap, bool reacts, int set)
+static inline void JacobianScene(SmallScene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis,
+                                 double start, double gap, bool reacts, int set)
 {
   JacobianCase(s, has, inertia, axisymmetric, basis, start, gap, reacts, set);
   JacobianState(s);
@@ -438,7 +439,7 @@ static inline void Difference(Model *m, Vec X, Vec D, double t, double *dy)
 }
 
 /* J at X = a random state. */
-static inline void PrepareJacobian(Scene *s, Vec *X, Vec *D, Vec *JD)
+static inline void PrepareJacobian(SmallScene *s, Vec *X, Vec *D, Vec *JD)
 {
   Model  *m = &s->m;
   double *x;
@@ -459,7 +460,7 @@ static inline void PrepareJacobian(Scene *s, Vec *X, Vec *D, Vec *JD)
 }
 
 /* Largest |J D - difference| of each equation over the largest difference of that equation, in random directions. */
-static inline double DirectionError(Scene *s, int directions)
+static inline double DirectionError(SmallScene *s, int directions)
 {
   Model         *m  = &s->m;
   const PetscInt nf = m->c->fields.n, n = m->map.n_owned * nf;
@@ -495,7 +496,7 @@ static inline double DirectionError(Scene *s, int directions)
 }
 
 /* Every entry, relative to the largest of its row. */
-static inline double ColumnError(Scene *s)
+static inline double ColumnError(SmallScene *s)
 {
   Model         *m  = &s->m;
   const PetscInt nf = m->c->fields.n, n = m->map.n_owned * nf, N = m->map.n_global * nf;
@@ -531,10 +532,10 @@ static inline double ColumnError(Scene *s)
   return Largest(worst);
 }
 
-/* Linear systems solved as well as can be, with factors of each iteration's own matrix. */
-static inline int StartTests(int *argc, char ***argv)
+/* Setup of a group: linear systems solved as well as can be, with factors of each iteration's own matrix. */
+static inline int SolveWell(void **state)
 {
-  return PetscInitialize(argc, argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-         MPI_Comm_size(PETSC_COMM_WORLD, &world_size) || PetscOptionsSetValue(NULL, "-ksp_rtol", "1e-10") ||
-         PetscOptionsSetValue(NULL, "-ksp_atol", "1e-14") || PetscOptionsSetValue(NULL, "-newton_refactor", "0");
+  (void)state;
+  return PetscOptionsSetValue(NULL, "-ksp_rtol", "1e-10") || PetscOptionsSetValue(NULL, "-ksp_atol", "1e-14") ||
+         PetscOptionsSetValue(NULL, "-newton_refactor", "0");
 }

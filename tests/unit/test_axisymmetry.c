@@ -197,7 +197,7 @@ static void TestJacobian(void **state)
   (void)state;
   Say("exact Jacobian about an axis, all fields: random directions; every entry relative to the largest of its row\n");
   for (int v = 0; v < 12; v++) {
-    Scene       *s     = malloc(sizeof(*s));
+    SmallScene  *s     = malloc(sizeof(*s));
     const int    basis = v / 4;
     const double start = v % 4 == 3 ? 0.3 : 0.0, gap = v % 4 == 2 ? 0.13 : 0.0;
 
@@ -223,8 +223,8 @@ static void TestUniformStress(void **state)
 
   (void)state;
   for (int k = 0; k < 24; k++) {
-    const bool mean = k >= 8;
-    Scene     *s    = malloc(sizeof(*s));
+    const bool  mean = k >= 8;
+    SmallScene *s    = malloc(sizeof(*s));
 
     if (mean && k % 2) { /* (88) holds for cells that are evenly filled */
       free(s);
@@ -232,14 +232,14 @@ static void TestUniformStress(void **state)
     }
     SceneInit(s, k % 2 ? HAS_ALL : HAS_SOLID | HAS_WATER, true, true, k / 4 % 2 ? BASIS_UGIMP : BASIS_CPGIMP, 0.0,
               box[k % 4], box[k % 4] + 2);
-    s->c.mean_dilatation = mean;
-    s->c.mean_strain     = k >= 16 ? 0.9 : 0.0;
+    s->c.scene.mean_dilatation = mean;
+    s->c.scene.mean_strain     = k >= 16 ? 0.9 : 0.0;
     AddFace(s, BC_TRACTION, SIDE_XMIN, p - srr, 0.0);
     AddFace(s, BC_TRACTION, SIDE_XMAX, p - srr, 0.0);
     AddFace(s, BC_TRACTION, SIDE_YMIN, p - szz, 0.0);
     AddFace(s, BC_TRACTION, SIDE_YMAX, p - szz, 0.0);
     AddFace(s, BC_PRESSURE, SIDE_XMAX, p, 0.0)->initial = true;
-    Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     for (PetscInt i = 0; i < s->m.P.n; i++) {
       s->m.P.f[P_SIG + XX][i] = s->m.P.f[P_SIG + ZZ][i] = srr;
       s->m.P.f[P_SIG + YY][i]                           = szz;
@@ -269,11 +269,11 @@ static void TestHomogeneous(void **state)
 
   (void)state;
   for (int basis = 0; basis < 3; basis++) {
-    Scene     *s = malloc(sizeof(*s));
-    double    *x, off = 0.0, volume = 0.0, place = 0.0;
-    Trial      t = {0};
-    StageRates rates;
-    ClStatus   status;
+    SmallScene *s = malloc(sizeof(*s));
+    double     *x, off = 0.0, volume = 0.0, place = 0.0;
+    Trial       t = {0};
+    StageRates  rates;
+    ClStatus    status;
 
     SceneInit(s, HAS_SOLID, false, true, (BasisType)basis, 0.0, lower, upper);
     const Elasticity *el = &s->mat.elasticity;
@@ -282,8 +282,8 @@ static void TestHomogeneous(void **state)
     AddFace(s, BC_TRACTION, SIDE_XMAX, -srr, 0.0);
     AddFace(s, BC_TRACTION, SIDE_YMAX, -szz, 0.0);
     AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
-    s->c.ghost_penalty = 0.1;
-    Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+    s->c.scene.stabilisation.ghost_penalty = 0.1;
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     StageStart(s, dt);
     Call(ModelBeginStage(&s->m, &s->stage));
     Call(PetscMalloc1(s->m.map.n_local * 2, &x));
@@ -331,8 +331,8 @@ static void TestAxialHeat(void **state)
 
   (void)state;
   for (int basis = 0; basis < 2; basis++) {
-    Scene *s = malloc(sizeof(*s));
-    double d[3];
+    SmallScene *s = malloc(sizeof(*s));
+    double      d[3];
 
     SceneInit(s, HAS_HEAT, true, true, (BasisType)basis, 0.0, lower, upper);
     s->mat.solid.beta  = 0.0;
@@ -340,7 +340,7 @@ static void TestAxialHeat(void **state)
     const double kappa = MixtureAverage(0.3, 0.0, 0.0, k, &d[0], &d[1], &d[2]);
     AddFace(s, BC_HEAT_FLUX, SIDE_YMIN, 0.0, 0.0);
     AddFace(s, BC_HEAT_FLUX, SIDE_YMAX, 0.0, 0.0);
-    Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     for (PetscInt p = 0; p < s->m.P.n; p++) {
       s->m.P.f[P_T][p]      = 4.0 + slope * s->m.P.f[P_X + 1][p];
       s->m.P.f[P_GT + 1][p] = slope;
@@ -348,7 +348,7 @@ static void TestAxialHeat(void **state)
     StageStart(s, 1e3);
     PointProperties q;
     const char     *why;
-    Call(PointPropertiesEvaluate(&s->c.fields, &s->mat, 1.0, 0.7 * s->mat.solid.rho0, 0.0, 0.0, 0.0, 4.0, 0.0, &q,
+    Call(PointPropertiesEvaluate(&s->c.scene.fields, &s->mat, 1.0, 0.7 * s->mat.solid.rho0, 0.0, 0.0, 0.0, 4.0, 0.0, &q,
                                  &why) != CL_OK);
     s->number[0] = -q.kappa * slope;
     s->number[2] = q.kappa * slope;
@@ -369,12 +369,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestUniformStress),    cmocka_unit_test(TestHomogeneous),
       cmocka_unit_test(TestAxialHeat),
   };
-  int failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

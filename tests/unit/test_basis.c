@@ -349,7 +349,7 @@ static void TestCellGradient(void **state)
 }
 
 /* ---------------------------------------------------------------- particles */
-static void MakeCase(Case *c, Material *mat, Region *region)
+static void MakeCase(Scene *c, Material *mat, Region *region)
 {
   *mat = (Material){.porosity  = 0.3,
                     .solid     = {2600.0, INFINITY, 0.0, 0.0, 4.0},
@@ -375,13 +375,13 @@ static void MakeCase(Case *c, Material *mat, Region *region)
                        .temperature = 4.0,
                        .Sw          = 0.6,
                        .Sg          = 0.4};
-  *c        = (Case){.lower     = {-0.2, 0.1},
-                     .upper     = {0.9, 0.8},
-                     .cells     = {CELLS_X, CELLS_Y},
-                     .material  = mat,
-                     .region    = region,
-                     .nmaterial = 1,
-                     .nregion   = 2};
+  *c        = (Scene){.lower     = {-0.2, 0.1},
+                      .upper     = {0.9, 0.8},
+                      .cells     = {CELLS_X, CELLS_Y},
+                      .material  = mat,
+                      .region    = region,
+                      .nmaterial = 1,
+                      .nregion   = 2};
   Check(FieldSetMake(HAS_ALL, true, false, &c->fields));
 }
 
@@ -390,7 +390,7 @@ static void TestSeed(void **state)
 {
   Grid           g;
   Particles      P;
-  Case           c;
+  Scene          c;
   Material       mat;
   Region         region[2];
   const PetscInt nx[2] = {19, 5}, ny[2] = {9, 5}, total = 19 * 9 + 5 * 5; /* ceil(9.3 x 2) x ceil(2.7 x 3), ... */
@@ -582,13 +582,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestCellGradient), cmocka_unit_test(TestSeed),
       cmocka_unit_test(TestMigrate),      cmocka_unit_test(TestLeaving),
   };
-  int failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

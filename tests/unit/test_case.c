@@ -7,6 +7,7 @@
 #include <unistd.h>
 #include <cmocka.h>
 #include "../../src/case/case_private.h"
+#include "ranks.h"
 
 static char bp2[PETSC_MAX_PATH_LEN]; /* cases/bp2 of this tree */
 
@@ -199,21 +200,25 @@ static void read_bp2(void **state)
   (void)state;
   GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
   assert_true(ok);
-  assert_true(c.nmaterial == 1 && c.nregion == 1 && c.nbc == 5 && c.nprobe == 2);
-  assert_true(c.cells[0] == 52 && c.cells[1] == 1 && c.upper[0] == 1.04 && c.basis == BASIS_CPGIMP);
+  assert_true(c.scene.nmaterial == 1 && c.scene.nregion == 1 && c.scene.nbc == 5 && c.nprobe == 2);
+  assert_true(c.scene.cells[0] == 52 && c.scene.cells[1] == 1 && c.scene.upper[0] == 1.04 &&
+              c.scene.basis == BASIS_CPGIMP);
   assert_true(c.t_end == 2000 && c.probe_every == 20 && c.ntimes == 5 && c.times[2] == 1000);
   assert_string_equal(c.output_dir, "results/bp2");
-  m = &c.material[0];
+  m = &c.scene.material[0];
   assert_true(m->porosity == 0.15 && m->solid.rho0 == 2600 && isinf(m->solid.K) && m->water.K == 2.2e9);
   assert_true(m->retention.p_smooth == 2500 && m->retention.p_trap == 5e4 && m->relperm.Sgr == 0.4);
   assert_true(m->permeability.phi0 == 0.15 && m->permeability.k0 == 1.53e-15 && m->permeability.mh == 3);
   assert_true(m->reacts && m->kinetics.K0 == 2.5e-10 && m->kinetics.equilibrium.A1 == 1000 && m->kinetics.M_g == 0.016);
   assert_true(m->elasticity.E0 == 9e7 && !m->elasticity.change);
-  assert_true(c.region[0].pressure == 3.25e6 && c.region[0].temperature == 4 && c.region[0].ppc[1] == 2);
-  assert_true(c.bc[0].type == BC_FIXED && c.bc[0].axis == 0 && c.bc[1].type == BC_ROLLER && c.bc[2].position == 0.02);
-  assert_true(c.bc[3].type == BC_TRACTION && c.bc[3].side == SIDE_XMAX && c.bc[3].region == -1);
-  assert_true(ScheduleValue(&c.bc[3].value, 500) == 8.25e6 && ScheduleValue(&c.bc[3].value, 3000) == 3.25e6);
-  assert_true(c.bc[4].type == BC_PRESSURE && c.bc[4].initial && c.bc[4].value.n == 0);
+  assert_true(c.scene.region[0].pressure == 3.25e6 && c.scene.region[0].temperature == 4 &&
+              c.scene.region[0].ppc[1] == 2);
+  assert_true(c.scene.bc[0].type == BC_FIXED && c.scene.bc[0].axis == 0 && c.scene.bc[1].type == BC_ROLLER &&
+              c.scene.bc[2].position == 0.02);
+  assert_true(c.scene.bc[3].type == BC_TRACTION && c.scene.bc[3].side == SIDE_XMAX && c.scene.bc[3].region == -1);
+  assert_true(ScheduleValue(&c.scene.bc[3].value, 500) == 8.25e6 &&
+              ScheduleValue(&c.scene.bc[3].value, 3000) == 3.25e6);
+  assert_true(c.scene.bc[4].type == BC_PRESSURE && c.scene.bc[4].initial && c.scene.bc[4].value.n == 0);
   GOOD(CaseDestroy(&c));
 }
 
@@ -235,9 +240,10 @@ static void command_line_wins(void **state)
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
     GOOD(PetscOptionsClearValue(NULL, option[i][0]));
   assert_true(ok);
-  assert_true(c.material[0].porosity == 0.2 && c.material[0].permeability.phi0 == 0.2 && !c.material[0].reacts);
-  assert_true(c.cells[0] == 104 && c.cells[1] == 2 && c.region[0].pressure == 3e6 && c.dt == 0.5);
-  assert_true(c.bc[3].value.n == 1 && c.bc[3].value.y[0] == 5e6);
+  assert_true(c.scene.material[0].porosity == 0.2 && c.scene.material[0].permeability.phi0 == 0.2 &&
+              !c.scene.material[0].reacts);
+  assert_true(c.scene.cells[0] == 104 && c.scene.cells[1] == 2 && c.scene.region[0].pressure == 3e6 && c.dt == 0.5);
+  assert_true(c.scene.bc[3].value.n == 1 && c.scene.bc[3].value.y[0] == 5e6);
   assert_string_equal(c.output_dir, "elsewhere");
   assert_string_equal(c.stepper, "euler");
   GOOD(CaseDestroy(&c));
@@ -263,8 +269,8 @@ static void place_without_gas(void **state)
       GOOD(PetscOptionsClearValue(NULL, option[i][0]));
     GOOD(PetscOptionsClearValue(NULL, "-region_column_Sw"));
     GOOD(PetscOptionsClearValue(NULL, "-region_column_Sg"));
-    assert_true(ok && c.nregion == 2 && c.region[1].material < 0);
-    assert_true(gas ? c.material[0].gas.trace == 0.0 : c.material[0].gas.trace > 0.0);
+    assert_true(ok && c.scene.nregion == 2 && c.scene.region[1].material < 0);
+    assert_true(gas ? c.scene.material[0].gas.trace == 0.0 : c.scene.material[0].gas.trace > 0.0);
     GOOD(CaseDestroy(&c));
   }
 }
@@ -311,16 +317,17 @@ static void like(void **state)
   assert_false(ok);
   for (size_t i = 0; i < sizeof option / sizeof *option; i++)
     GOOD(PetscOptionsClearValue(NULL, option[i][0]));
-  m = c.material;
+  m = c.scene.material;
   for (int i = 0; i < 3; i++) {
     assert_true(m[i].solid.rho0 == 2700 && m[i].retention.m == 0.3 && m[i].elasticity.E0 == 9e7);
     assert_true(m[i].porosity == (i == 1 ? 0.15 : 0.4) && m[i].reacts == (i == 1));
     assert_true(m[i].permeability.phi0 == m[i].porosity); /* a default of its own */
     assert_string_equal(m[i].permeability.hydrate_type, i ? "power" : "masuda_ramp");
   }
-  g = &c.region[1];
+  g = &c.scene.region[1];
   assert_true(g->material == 0 && g->pressure == 3e6 && g->temperature == 4 && g->Sw == 0.6 && g->Sg == 0.4);
-  assert_true(g->lower[0] == 0.5 && g->minus.n == 0 && c.region[0].minus.n == 1 && c.region[2].material == -1);
+  assert_true(g->lower[0] == 0.5 && g->minus.n == 0 && c.scene.region[0].minus.n == 1 &&
+              c.scene.region[2].material == -1);
   GOOD(CaseDestroy(&c));
 }
 
@@ -354,16 +361,19 @@ static void stages(void **state)
   assert_true(ok && c.nstage == 2);
   a = CaseInStage(&c, 0);
   b = CaseInStage(a, 1);
-  assert_true(a->t_begin == 0 && a->t_end == 500 && b->t_begin == 500 && b->t_end == 2000 && c.t_end == 2000);
-  assert_true(!a->inertia && !a->fields.inertia && b->inertia && b->fields.inertia && b->fields.n == a->fields.n);
+  assert_true(a->scene.t_begin == 0 && a->t_end == 500 && b->scene.t_begin == 500 && b->t_end == 2000 &&
+              c.t_end == 2000);
+  assert_true(!a->scene.inertia && !a->scene.fields.inertia && b->scene.inertia && b->scene.fields.inertia &&
+              b->scene.fields.n == a->scene.fields.n);
   assert_string_equal(a->stepper, "sdirk2");
   assert_string_equal(b->stepper, "hybrid");
   assert_true(a->tol == 0.1 && b->tol == 0.02 && a->dt == 1 && b->dt == 1 && b->dt_max == 50);
   assert_true(a->dt_min == 1e-9 * 500 && b->dt_min == 1e-9 * 1500);
-  assert_true(a->nbc == 5 && b->nbc == 4 && b->bc[3].type == BC_PRESSURE && c.nbc == 5);
-  assert_true(a->bc[4].zero == 0 && b->bc[3].zero == 500 && b->bc[0].zero == 0);
-  assert_true(a->material[0].kinetics.K0 == 0 && a->material[0].reacts && b->material[0].kinetics.K0 == 2.5e-10);
-  assert_true(a->gravity_before[1] == 0 && b->gravity_before[1] == -9.81 && b->gravity[1] == -1);
+  assert_true(a->scene.nbc == 5 && b->scene.nbc == 4 && b->scene.bc[3].type == BC_PRESSURE && c.scene.nbc == 5);
+  assert_true(a->scene.bc[4].zero == 0 && b->scene.bc[3].zero == 500 && b->scene.bc[0].zero == 0);
+  assert_true(a->scene.material[0].kinetics.K0 == 0 && a->scene.material[0].reacts &&
+              b->scene.material[0].kinetics.K0 == 2.5e-10);
+  assert_true(a->scene.gravity_before[1] == 0 && b->scene.gravity_before[1] == -9.81 && b->scene.gravity[1] == -1);
   GOOD(CaseDestroy(&c));
 }
 
@@ -379,7 +389,7 @@ static void refused(void **state)
     GOOD(CaseRead(PETSC_COMM_WORLD, bp2, &c, &ok));
     GOOD(PetscOptionsClearValue(NULL, option[i][0]));
     assert_false(ok);
-    assert_true(c.nmaterial == 0 && !c.material);
+    assert_true(c.scene.nmaterial == 0 && !c.scene.material);
   }
   GOOD(CaseRead(PETSC_COMM_WORLD, "/no/such/case", &c, &ok));
   assert_false(ok);
@@ -471,8 +481,8 @@ static void round_trip(const char *path, const char *resolved)
         same_key(&a, &b, g, i, k);
     }
   }
-  for (PetscInt i = 0; i < a.nmaterial; i++) {
-    const Material *m = &a.material[i], *n = &b.material[i];
+  for (PetscInt i = 0; i < a.scene.nmaterial; i++) {
+    const Material *m = &a.scene.material[i], *n = &b.scene.material[i];
     assert_memory_equal(&m->solid, &n->solid, sizeof m->solid);
     assert_memory_equal(&m->hydrate, &n->hydrate, sizeof m->hydrate);
     assert_memory_equal(&m->retention, &n->retention, sizeof m->retention);
@@ -574,11 +584,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(place_without_gas),
   };
   const char *up = strstr(__FILE__, "tests/unit/");
-  int         failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL))
-    return 1;
   snprintf(bp2, sizeof bp2, "%.*scases/bp2", (int)(up - __FILE__), __FILE__);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

@@ -27,20 +27,20 @@ static const struct {
 
 static const ExplicitOptions hybrid = {.drag_implicit = true, .tied = true, .flip = 1.0, .mass_scaling = 1.0};
 
-static Scene *Make(unsigned has, BasisType basis, int conditions, bool reacts)
+static SmallScene *Make(unsigned has, BasisType basis, int conditions, bool reacts)
 {
-  Scene *s = malloc(sizeof(*s));
+  SmallScene *s = malloc(sizeof(*s));
 
   SceneInit(s, has, true, false, basis, 0.0, box[0], box[1]);
   s->mat.reacts = reacts && (has & HAS_GAS) && (has & HAS_WATER);
   if (conditions >= 0)
     AddConditions(s, conditions);
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   return s;
 }
 
 /* Steps from the present state; the sum over all ranks of what crossed the boundary. */
-static StageRates Go(Scene *s, const ExplicitOptions *o, int steps, double share)
+static StageRates Go(SmallScene *s, const ExplicitOptions *o, int steps, double share)
 {
   Explicit  *e;
   StableStep limit;
@@ -71,7 +71,7 @@ static void TestBalances(void **state)
     double worst[3] = {0.0};
 
     for (int run = 0; run < 6; run++) {
-      Scene      *s = Make(sets[k].has, (BasisType)(run / 2), run % 2, true);
+      SmallScene *s = Make(sets[k].has, (BasisType)(run / 2), run % 2, true);
       ModelTotals before, after;
 
       RandomHistory(s, s->mat.reacts ? 0.2 : 0.0);
@@ -90,7 +90,7 @@ static void TestBalances(void **state)
 }
 
 /* Largest velocity of any phase. */
-static double Fastest(const Scene *s)
+static double Fastest(const SmallScene *s)
 {
   double v = 0.0;
 
@@ -106,15 +106,15 @@ static void TestRest(void **state)
 {
   (void)state;
   for (int basis = 0; basis < 2; basis++) {
-    Scene *s = Make(HAS_ALL, (BasisType)basis, -1, false);
+    SmallScene *s = Make(HAS_ALL, (BasisType)basis, -1, false);
 
     for (int side = 0; side < SIDE_COUNT; side++) {
       AddFace(s, BC_TRACTION, (Side)side, 3.25e6, 0.0);
       AddFace(s, BC_PRESSURE, (Side)side, 3.25e6, 0.0)->initial = true;
     }
     Call(PetscFree4(s->m.bc.value, s->m.bc.shear, s->m.bc.phase[0], s->m.bc.phase[1]));
-    Call(PetscCalloc4(s->c.nbc, &s->m.bc.value, s->c.nbc, &s->m.bc.shear, s->c.nbc, &s->m.bc.phase[0], s->c.nbc,
-                      &s->m.bc.phase[1]));
+    Call(PetscCalloc4(s->c.scene.nbc, &s->m.bc.value, s->c.scene.nbc, &s->m.bc.shear, s->c.scene.nbc, &s->m.bc.phase[0],
+                      s->c.scene.nbc, &s->m.bc.phase[1]));
     for (PetscInt p = 0; p < s->m.P.n; p++)
       Refill(s, p, 0.3 * (1.0 + Noise(3, s->m.P.i[PI_ID][p], 0)));
     Go(s, &hybrid, 20, 0.5);
@@ -129,8 +129,8 @@ static void TestRest(void **state)
 /* A free body in uniform motion keeps velocity, stress and pressure. */
 static void TestTranslation(void **state)
 {
-  Scene *s        = Make(HAS_SOLID | HAS_WATER, BASIS_CPGIMP, -1, false);
-  double worst[2] = {0.0};
+  SmallScene *s        = Make(HAS_SOLID | HAS_WATER, BASIS_CPGIMP, -1, false);
+  double      worst[2] = {0.0};
 
   (void)state;
   for (PetscInt p = 0; p < s->m.P.n; p++) {
@@ -160,7 +160,7 @@ static void TestStableStep(void **state)
 
   (void)state;
   for (int k = 0; k < 4; k++) {
-    Scene          *s = Make(HAS_SOLID | HAS_WATER | HAS_HEAT, BASIS_CPGIMP, -1, false);
+    SmallScene     *s = Make(HAS_SOLID | HAS_WATER | HAS_HEAT, BASIS_CPGIMP, -1, false);
     ExplicitOptions o = hybrid;
     Explicit       *e;
     ClStatus        status;
@@ -187,13 +187,6 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestBalances), cmocka_unit_test(TestRest),
                                      cmocka_unit_test(TestTranslation), cmocka_unit_test(TestStableStep)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

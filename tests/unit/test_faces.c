@@ -17,7 +17,7 @@
 #define KAPPA 2.0
 
 typedef struct {
-  Case     c;
+  Scene    c;
   Bc       bc[3];
   Material mat;
   Face     face;
@@ -25,11 +25,11 @@ typedef struct {
   double   value[3], shear[3], phase[PHASE_COUNT][3];
   double   p0[PHASE_COUNT];
   Schedule given; /* stands for any function of time: its value is in v */
-} Scene;
+} SmallScene;
 
 static double one[1];
 
-static void SceneInit(Scene *s, Rng *r)
+static void SceneInit(SmallScene *s, Rng *r)
 {
   memset(s, 0, sizeof(*s));
   s->mat   = SedimentMaterial();
@@ -73,12 +73,12 @@ static void Inputs(Rng *r, double in[IN_COUNT])
 }
 
 typedef struct {
-  const Scene *s;
-  double       in[IN_COUNT];
-  int          column;
+  const SmallScene *s;
+  double            in[IN_COUNT];
+  int               column;
 } Line;
 
-static void Evaluate(const Scene *s, const double in[IN_COUNT], FaceOutput *o)
+static void Evaluate(const SmallScene *s, const double in[IN_COUNT], FaceOutput *o)
 {
   const double velocity[CL_DIM] = {0.02 + in[IN_U] / DT, -0.01 + in[IN_U + 1] / DT};
 
@@ -100,7 +100,7 @@ static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
 }
 
 /* Every entry of the tangent against differences; relative to the largest entry of its row times the column's scale. */
-static double WorstTangent(const Scene *s, const double in[IN_COUNT])
+static double WorstTangent(const SmallScene *s, const double in[IN_COUNT])
 {
   static const double step[IN_COUNT] = {1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e4,  1e4,  1e-1, 1e4,  1e4,
                                         1e4,  1e4,  1e-1, 1e-1, 1e-6, 1e-6, 1e-6, 1e-6, 1e-4, 1e-4};
@@ -132,11 +132,11 @@ static double WorstTangent(const Scene *s, const double in[IN_COUNT])
 }
 
 /* ---------------------------------------------------------------- the conditions */
-static void Closed(Scene *s, Rng *r)
+static void Closed(SmallScene *s, Rng *r)
 {
 }
 
-static void Prescribe(Scene *s, Rng *r, bool natural, OpenPhases open)
+static void Prescribe(SmallScene *s, Rng *r, bool natural, OpenPhases open)
 {
   s->face.bc[BC_PRESSURE] = 0;
   s->bc[0].type           = BC_PRESSURE;
@@ -146,18 +146,18 @@ static void Prescribe(Scene *s, Rng *r, bool natural, OpenPhases open)
   s->bc[0].open           = open;
 }
 
-static void Held(Scene *s, Rng *r)
+static void Held(SmallScene *s, Rng *r)
 {
   Prescribe(s, r, false, OPEN_BOTH);
 }
 
-static void Free(Scene *s, Rng *r)
+static void Free(SmallScene *s, Rng *r)
 {
   Prescribe(s, r, true, OPEN_BOTH);
 }
 
 /* What stands around the body: 1 GPa/m, so that differences see it. */
-static void AmbientFluid(Scene *s, Rng *r, bool natural)
+static void AmbientFluid(SmallScene *s, Rng *r, bool natural)
 {
   Prescribe(s, r, natural, OPEN_BOTH);
   s->value[0] = INFINITY;
@@ -165,33 +165,33 @@ static void AmbientFluid(Scene *s, Rng *r, bool natural)
       (Ambient){.on = true, .pressure = 2e6, .weight = {3e8, -1e9}, .head = -1.7e9 - RngBetween(r, 5e6, 1e7)};
 }
 
-static void AmbientHeld(Scene *s, Rng *r)
+static void AmbientHeld(SmallScene *s, Rng *r)
 {
   AmbientFluid(s, r, false);
 }
 
-static void AmbientFree(Scene *s, Rng *r)
+static void AmbientFree(SmallScene *s, Rng *r)
 {
   AmbientFluid(s, r, true);
 }
 
-static void HeatFlux(Scene *s, Rng *r)
+static void HeatFlux(SmallScene *s, Rng *r)
 {
   s->face.bc[BC_HEAT_FLUX] = 0;
   s->value[0]              = RngBetween(r, -50.0, 50.0);
 }
 
-static void WaterOnly(Scene *s, Rng *r)
+static void WaterOnly(SmallScene *s, Rng *r)
 {
   Prescribe(s, r, true, OPEN_WATER);
 }
 
-static void GasOnly(Scene *s, Rng *r)
+static void GasOnly(SmallScene *s, Rng *r)
 {
   Prescribe(s, r, true, OPEN_GAS);
 }
 
-static void Separate(Scene *s, Rng *r)
+static void Separate(SmallScene *s, Rng *r)
 {
   Prescribe(s, r, false, OPEN_BOTH);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
@@ -200,7 +200,7 @@ static void Separate(Scene *s, Rng *r)
   }
 }
 
-static void Inflow(Scene *s, Rng *r)
+static void Inflow(SmallScene *s, Rng *r)
 {
   s->face.bc[BC_INFLOW] = 1;
   s->bc[1].type         = BC_INFLOW;
@@ -208,14 +208,14 @@ static void Inflow(Scene *s, Rng *r)
   s->phase[1][1]        = RngBetween(r, -1e-5, 1e-5);
 }
 
-static void WarmInflow(Scene *s, Rng *r)
+static void WarmInflow(SmallScene *s, Rng *r)
 {
   Inflow(s, r);
   s->bc[1].value = s->given;
   s->value[1]    = RngBetween(r, 1.0, 60.0);
 }
 
-static void Plate(Scene *s, Rng *r)
+static void Plate(SmallScene *s, Rng *r)
 {
   s->face.bc[BC_PLATE] = 0;
   s->face.side         = RngBetween(r, 0.0, 1.0) < 0.5 ? SIDE_YMIN : SIDE_XMAX;
@@ -223,25 +223,25 @@ static void Plate(Scene *s, Rng *r)
   s->value[0]          = RngBetween(r, -1e-2, 1e-2);
 }
 
-static void RoughPlate(Scene *s, Rng *r)
+static void RoughPlate(SmallScene *s, Rng *r)
 {
   Plate(s, r);
   s->bc[0].rough = true;
 }
 
-static void LoosePlate(Scene *s, Rng *r)
+static void LoosePlate(SmallScene *s, Rng *r)
 {
   Plate(s, r);
   s->bc[0].separates = true;
 }
 
-static void Drag(Scene *s, Rng *r)
+static void Drag(SmallScene *s, Rng *r)
 {
   s->c.ambient_density = RngBetween(r, 900.0, 1100.0);
   s->c.ambient_drag    = RngBetween(r, 0.5, 2.0);
 }
 
-static void Everything(Scene *s, Rng *r)
+static void Everything(SmallScene *s, Rng *r)
 {
   Drag(s, r);
   Free(s, r);
@@ -254,7 +254,7 @@ static void Everything(Scene *s, Rng *r)
 
 static const struct {
   const char *name;
-  void (*set)(Scene *, Rng *);
+  void (*set)(SmallScene *, Rng *);
 } condition[] = {{"closed", Closed},
                  {"pressure, held", Held},
                  {"pressure, free", Free},
@@ -280,8 +280,8 @@ static void Tangents(void **state)
     double worst = 0.0;
 
     for (int n = 0; n < STATES; n++) {
-      Scene  s;
-      double in[IN_COUNT];
+      SmallScene s;
+      double     in[IN_COUNT];
 
       SceneInit(&s, &r);
       condition[k].set(&s, &r);
@@ -297,7 +297,7 @@ static void Tangents(void **state)
 static void FaceTemperature(void **state)
 {
   Rng        r = {.s = 19};
-  Scene      s;
+  SmallScene s;
   FaceOutput o;
   double     in[IN_COUNT] = {0.0};
 
@@ -320,7 +320,7 @@ static void FaceTemperature(void **state)
 static void Convection(void **state)
 {
   Rng        r = {.s = 31};
-  Scene      s;
+  SmallScene s;
   FaceOutput o;
   double     in[IN_COUNT] = {[IN_T] = 8.0, [IN_GT] = -7.0, [IN_GT + 1] = 3.0};
 
@@ -337,7 +337,7 @@ static void Convection(void **state)
 static void DensityOfOutflow(void **state)
 {
   Rng        r = {.s = 32};
-  Scene      s;
+  SmallScene s;
   FaceOutput o;
   double     in[IN_COUNT] =
       {[IN_T] = 8.0, [IN_P] = 3e6, [IN_P + 1] = 3.1e6, [IN_J] = 2e-6, [IN_J + 1] = -1e-6, [IN_J + 2] = 5e-6},
@@ -357,7 +357,7 @@ static void DensityOfOutflow(void **state)
 static void DragOfTheSea(void **state)
 {
   Rng        r = {.s = 152};
-  Scene      s;
+  SmallScene s;
   FaceOutput o;
   double     in[IN_COUNT] = {0.0};
 
@@ -381,7 +381,7 @@ static void MeanPressure(void **state)
 
   for (int n = 0; n < STATES; n++) {
     for (int natural = 0; natural < 2; natural++) {
-      Scene      s;
+      SmallScene s;
       FaceOutput o;
       double     in[IN_COUNT], ds, p[PHASE_COUNT];
 
@@ -411,7 +411,7 @@ static void MassRows(void **state)
 
   for (size_t k = 0; k < sizeof(condition) / sizeof(*condition); k++) {
     for (int n = 0; n < STATES; n++) {
-      Scene      s;
+      SmallScene s;
       FaceOutput o;
       double     in[IN_COUNT];
 
@@ -440,7 +440,7 @@ static void PlateForces(void **state)
 
   for (int n = 0; n < STATES; n++) {
     for (int kind = 0; kind < 3; kind++) {
-      Scene      s;
+      SmallScene s;
       FaceOutput o;
       double     in[IN_COUNT];
 
@@ -476,7 +476,7 @@ static void TrueArea(void **state)
   Rng r = {.s = 17};
 
   for (int n = 0; n < STATES; n++) {
-    Scene      s;
+    SmallScene s;
     FaceOutput o;
     double     in[IN_COUNT];
 
@@ -501,7 +501,7 @@ static void Share(void **state)
   Rng r = {.s = 13};
 
   for (int n = 0; n < STATES; n++) {
-    Scene      s;
+    SmallScene s;
     FaceOutput whole, part;
     double     in[IN_COUNT];
 

@@ -227,8 +227,8 @@ static void Jacobians(bool axisymmetric, bool entries)
     if (one_pressure && !(has & HAS_GAS))
       continue;
     for (int v = 0; v < 8; v++) { /* basis changes with the set, so that all of them occur */
-      Scene    *s       = malloc(sizeof(*s));
-      const int inertia = v % 2, set = v / 2 % 2, reacts = v / 4 && (has & HAS_GAS);
+      SmallScene *s       = malloc(sizeof(*s));
+      const int   inertia = v % 2, set = v / 2 % 2, reacts = v / 4 && (has & HAS_GAS);
 
       if (v / 4 && !(has & HAS_GAS)) {
         free(s);
@@ -279,12 +279,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestTangent),      cmocka_unit_test(TestJacobianPlane),
       cmocka_unit_test(TestJacobianAxis), cmocka_unit_test(TestJacobianOnePressure),
   };
-  int failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

@@ -67,7 +67,7 @@ typedef struct {
   Probe    probe[6];
   double   t[2], y[2];
   Model    m;
-} Scene;
+} IoScene;
 
 enum { PROBE_END = 0, PROBE_MIDDLE, PROBE_CORNER, PROBE_FIXED, PROBE_EMPTY, PROBE_OUTSIDE, PROBES };
 static const char *const probe_name[PROBES] = {"end", "middle", "corner", "fixed", "empty", "outside"};
@@ -107,7 +107,7 @@ static void FillParticle(Particles *P, PetscInt p, PetscInt id, const double X[2
 }
 
 /* The nx x ny particles of the box [0,1] x [0,0.04], in a shuffled order on the owners of their cells. */
-static void Seed(Scene *s, const PetscInt n[2])
+static void Seed(IoScene *s, const PetscInt n[2])
 {
   Particles     *P     = &s->m.P;
   const PetscInt total = n[0] * n[1];
@@ -129,7 +129,7 @@ static void Seed(Scene *s, const PetscInt n[2])
   }
 }
 
-static void SceneCreate(Scene *s, MPI_Comm comm, PetscInt across)
+static void SceneCreate(IoScene *s, MPI_Comm comm, PetscInt across)
 {
   const double   lower[2] = {-0.1, -0.02}, upper[2] = {1.1, 0.06};
   const PetscInt cells[2] = {60, 4}, n[2] = {100, across};
@@ -141,11 +141,11 @@ static void SceneCreate(Scene *s, MPI_Comm comm, PetscInt across)
                                   {.x = {3.0, 0.02}}};
 
   memset(s, 0, sizeof(*s));
-  Check(FieldSetMake(HAS_ALL, true, false, &s->c.fields));
-  s->c.fields.has |= ~0u;
-  memcpy(s->c.lower, lower, sizeof(lower));
-  memcpy(s->c.upper, upper, sizeof(upper));
-  memcpy(s->c.cells, cells, sizeof(cells));
+  Check(FieldSetMake(HAS_ALL, true, false, &s->c.scene.fields));
+  s->c.scene.fields.has |= ~0u;
+  memcpy(s->c.scene.lower, lower, sizeof(lower));
+  memcpy(s->c.scene.upper, upper, sizeof(upper));
+  memcpy(s->c.scene.cells, cells, sizeof(cells));
   memcpy(s->probe, probe, sizeof(probe));
   for (int k = 0; k < PROBES; k++)
     snprintf(s->probe[k].name, sizeof(s->probe[k].name), "%s", probe_name[k]);
@@ -156,22 +156,22 @@ static void SceneCreate(Scene *s, MPI_Comm comm, PetscInt across)
         EquilibriumSetType(&s->material.kinetics.equilibrium, "sloan") &&
         PermeabilitySetHydrateType(&s->material.permeability, "power") &&
         PermeabilitySetPorosityType(&s->material.permeability, "none"));
-  s->t[1]        = 1.0;
-  s->y[1]        = 5e6;
-  s->bc[0]       = (Bc){.type = BC_TRACTION, .value = {2, s->t, s->y, false}};
-  s->c.nmaterial = s->c.nregion = s->c.nbc = 1;
-  s->c.nprobe                              = PROBES;
-  s->c.material                            = &s->material;
-  s->c.region                              = s->region;
-  s->c.bc                                  = s->bc;
-  s->c.probe                               = s->probe;
-  s->m.c                                   = &s->c;
+  s->t[1]              = 1.0;
+  s->y[1]              = 5e6;
+  s->bc[0]             = (Bc){.type = BC_TRACTION, .value = {2, s->t, s->y, false}};
+  s->c.scene.nmaterial = s->c.scene.nregion = s->c.scene.nbc = 1;
+  s->c.nprobe                                                = PROBES;
+  s->c.scene.material                                        = &s->material;
+  s->c.scene.region                                          = s->region;
+  s->c.scene.bc                                              = s->bc;
+  s->c.probe                                                 = s->probe;
+  s->m.c                                                     = &s->c.scene;
   Call(GridCreate(comm, lower, upper, cells, &s->m.grid));
   Seed(s, n);
 }
 
 /* Active nodes: the two lower rows; their values tell where they are. */
-static void AddNodes(Scene *s)
+static void AddNodes(IoScene *s)
 {
   Grid          *g = &s->m.grid;
   unsigned char *flag;
@@ -193,7 +193,7 @@ static void AddNodes(Scene *s)
   }
 }
 
-static void SceneDestroy(Scene *s)
+static void SceneDestroy(IoScene *s)
 {
   Call(ParticlesDestroy(&s->m.P));
   Call(PetscFree(s->m.x_n));
@@ -267,7 +267,7 @@ static void Back(const double x[2], double X[2])
   X[1] = (a * g - c * f) / det;
 }
 
-static void ExpectProbes(const Scene *s, const char *path)
+static void ExpectProbes(const IoScene *s, const char *path)
 {
   for (int k = 0; k < PROBES; k++) {
     double X[2] = {s->probe[k].x[0], s->probe[k].x[1]}, u[2];
@@ -297,7 +297,7 @@ static void ExpectProbes(const Scene *s, const char *path)
 
 static void ProbesReproduceLinearFields(void **state)
 {
-  Scene        s;
+  IoScene      s;
   StepperState z = SomeState();
   Output      *out;
   char         path[512];
@@ -315,7 +315,7 @@ static void ProbesReproduceLinearFields(void **state)
 /* One row of particles: no slope across, values of the row. */
 static void ProbesDropADirectionWithoutExtent(void **state)
 {
-  Scene        s;
+  IoScene      s;
   StepperState z = SomeState();
   Output      *out;
   char         path[512];
@@ -359,7 +359,7 @@ static void ExpectState(const StepperState *a, const StepperState *b)
 
 static void CheckpointComesBackBitForBit(void **state)
 {
-  Scene              s;
+  IoScene            s;
   const StepperState z    = SomeState();
   StepperState       back = {0};
   char               path[512], old[520];
@@ -408,7 +408,7 @@ static uint64_t HashUnordered(const Particles *P)
 
 static void CheckpointGoesToOtherRanks(void **state)
 {
-  Scene              one, all;
+  IoScene            one, all;
   const StepperState z = SomeState();
   StepperState       back;
   char               path[512];
@@ -446,7 +446,7 @@ static void CheckpointGoesToOtherRanks(void **state)
 }
 
 /* Reads a file that must be refused, in one sentence that names it, with the model untouched. */
-static void ExpectRefused(Scene *s, const char *path, const char *reason)
+static void ExpectRefused(IoScene *s, const char *path, const char *reason)
 {
   const uint64_t hash = HashParticles(&s->m.P);
   StepperState   z = SomeState(), before = z;
@@ -505,7 +505,7 @@ static char *ReadBytes(const char *path, size_t *n)
 
 static void DamagedFilesAreRefused(void **state)
 {
-  Scene              s;
+  IoScene            s;
   const StepperState z = SomeState();
   char               path[512], bad[512], *data = NULL;
   size_t             n = 0;
@@ -562,7 +562,7 @@ static void DamagedFilesAreRefused(void **state)
 /* A checkpoint of another case, of each kind of difference. */
 static void ForeignFilesAreRefused(void **state)
 {
-  Scene              s;
+  IoScene            s;
   const StepperState z = SomeState();
   char               path[512];
   bool               ok;
@@ -570,9 +570,10 @@ static void ForeignFilesAreRefused(void **state)
 
   SceneCreate(&s, PETSC_COMM_WORLD, 4);
   s.material.reacts      = true; /* so that K0 counts */
-  double *const change[] = {
-      &s.c.gravity[1], &s.region[0].upper[1], &s.material.kappa_s, &s.material.elasticity.E0, &s.material.kinetics.K0,
-      &s.y[1],         &s.bc[0].alpha};
+  double *const change[] = {&s.c.scene.gravity[1],   &s.region[0].upper[1],
+                            &s.material.kappa_s,     &s.material.elasticity.E0,
+                            &s.material.kinetics.K0, &s.y[1],
+                            &s.bc[0].alpha};
 
   PathOf(path, "case.h5");
   WriteCheckpoint(&s.m, &z, path);
@@ -649,7 +650,7 @@ static void WrongInsidesAreRefused(void **state)
                                        "/particles/T is not finite",
                                        "belongs to no region",
                                        "ranks is missing"};
-  Scene                    s;
+  IoScene                  s;
   const StepperState       z = SomeState();
   char                     path[512];
 
@@ -733,7 +734,7 @@ static void TakeSteps(Output *out, const Model *m, StepperState *z, int n)
 }
 
 /* A run of five steps with a state in its middle. */
-static void WriteRun(Scene *s, ModelTotals *total, StepperState *middle)
+static void WriteRun(IoScene *s, ModelTotals *total, StepperState *middle)
 {
   StepperState z = {.capacity0 = 2.0, .heat_gain = 6.0, .heat_in = 2.0};
   Output      *out;
@@ -767,7 +768,7 @@ static void ExpectBalance(const char *path, const ModelTotals *total)
 
 static void FilesAreCutBackAtARestart(void **state)
 {
-  Scene        s;
+  IoScene      s;
   StepperState middle;
   ModelTotals  total;
   Output      *out;
@@ -799,7 +800,7 @@ static void FilesAreCutBackAtARestart(void **state)
 /* Other probes, an unreadable list of snapshots and an unreadable snapshot: set aside, the rest goes on. */
 static void FilesThatDoNotFitAreKeptAside(void **state)
 {
-  Scene        s;
+  IoScene      s;
   StepperState z;
   ModelTotals  total;
   Output      *out;
@@ -831,13 +832,24 @@ static void FilesThatDoNotFitAreKeptAside(void **state)
   SceneDestroy(&s);
 }
 
-static void RemoveFolder(void)
+static int MakeFolder(void **state)
+{
+  (void)state;
+  snprintf(folder, sizeof(folder), "%s/clathra_io_XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
+  if (world_rank == 0 && !mkdtemp(folder))
+    return 1;
+  return MPI_Bcast(folder, sizeof(folder), MPI_CHAR, 0, PETSC_COMM_WORLD);
+}
+
+static int RemoveFolder(void **state)
 {
   char command[512];
 
+  (void)state;
   snprintf(command, sizeof(command), "rm -rf '%s'", folder);
-  if (world_rank == 0 && system(command))
-    fprintf(stderr, "cannot remove %s\n", folder);
+  if (MPI_Barrier(PETSC_COMM_WORLD))
+    return 1;
+  return world_rank == 0 && system(command);
 }
 
 int main(int argc, char **argv)
@@ -848,18 +860,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(DamagedFilesAreRefused),       cmocka_unit_test(ForeignFilesAreRefused),
       cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(FilesAreCutBackAtARestart),
       cmocka_unit_test(FilesThatDoNotFitAreKeptAside)};
-  int failed;
 
-  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank));
-  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &world_size));
-  snprintf(folder, sizeof(folder), "%s/clathra_io_XXXXXX", getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
-  if (world_rank == 0 && !mkdtemp(folder))
-    return 1;
-  PetscCallMPI(MPI_Bcast(folder, sizeof(folder), MPI_CHAR, 0, PETSC_COMM_WORLD));
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
-  RemoveFolder();
-  PetscCall(PetscFinalize());
-  return failed;
+  return RunTests(argc, argv, tests, MakeFolder, RemoveFolder);
 }

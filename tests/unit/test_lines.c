@@ -250,7 +250,7 @@ static void TestPlaces(void **state)
 
   (void)state;
   for (int n = 0; n < 500; n++) {
-    Case    c      = {.cells = {CELLS, 2}, .lower = {0.0, 0.0}, .upper = {0.0, 1.0}};
+    Scene   c      = {.cells = {CELLS, 2}, .lower = {0.0, 0.0}, .upper = {0.0, 1.0}};
     Region  region = {.shape = SHAPE_BOX, .ppc = {1 + n % 3, 2}, .material = 0};
     Lattice lattice;
     double  end;
@@ -330,13 +330,5 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(TestRadius), cmocka_unit_test(TestPlaces),
                                      cmocka_unit_test(TestGrid)};
 
-  int failed;
-
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

@@ -12,12 +12,12 @@
 
 /* ---------------------------------------------------------------- (a) Jacobian */
 /* A random state, with relative permeabilities from upstream and the reaction by nodes where hydrate reacts. */
-static void UpstreamScene(Scene *s, BasisType basis, bool reacts, int set)
+static void UpstreamScene(SmallScene *s, BasisType basis, bool reacts, int set)
 {
   double upstream = 0.0, lumped = 0.0;
 
   JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
-  s->c.upstream = reacts;
+  s->c.scene.stabilisation.upstream = reacts;
   JacobianState(s);
   Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
@@ -33,7 +33,7 @@ static void TestJacobian(void **state)
   Say("Jacobian (shell) against differences: random directions; every entry relative to the largest of its row\n");
   for (int basis = 0; basis < 3; basis++) {
     for (int k = 0; k < 4; k++) {
-      Scene *s = malloc(sizeof(*s));
+      SmallScene *s = malloc(sizeof(*s));
 
       UpstreamScene(s, (BasisType)basis, k / 2, k % 2);
       const double worst = DirectionError(s, 3), entry = k == 2 + basis % 2 ? ColumnError(s) : 0.0;
@@ -53,7 +53,7 @@ static void TestLayersJacobian(void **state)
 
   (void)state;
   for (int k = 0; k < 2; k++) {
-    Scene *s = malloc(sizeof(*s));
+    SmallScene *s = malloc(sizeof(*s));
 
     JacobianCase(s, has[k], true, false, BASIS_CPGIMP, 0.0, 0.0, false, 0);
     SceneLayers(s, 1, 0.08, 1e-3);
@@ -68,7 +68,7 @@ static void TestLayersJacobian(void **state)
 
 /* Plates: one that moves, rough; one with a prescribed force, whose springs couple all nodes under it (74), held to the
    body or free to separate, in which case a part of it touches. */
-static void PlateScene(Scene *s, bool axisymmetric, int kind)
+static void PlateScene(SmallScene *s, bool axisymmetric, int kind)
 {
   Bc *b;
 
@@ -89,12 +89,12 @@ static void TestPlates(void **state)
 {
   (void)state;
   for (int k = 0; k < 6; k++) {
-    Scene *s = malloc(sizeof(*s));
-    Model *m = &s->m;
-    Trial  t = {0};
+    SmallScene *s = malloc(sizeof(*s));
+    Model      *m = &s->m;
+    Trial       t = {0};
 
     PlateScene(s, k % 2, k / 2);
-    const PetscInt top   = s->c.nbc - 1;
+    const PetscInt top   = s->c.scene.nbc - 1;
     const double   worst = DirectionError(s, 3), entry = ColumnError(s);
     double        *x;
     StageRates     rates;
@@ -132,7 +132,7 @@ static void TestMassRows(void **state)
 
   (void)state;
   for (int k = 0; k < 12; k++) {
-    Scene       *s = malloc(sizeof(*s));
+    SmallScene  *s = malloc(sizeof(*s));
     Model       *m = &s->m;
     double      *x, mass[2] = {0.0}, gain[2] = {0.0};
     const double nu[2] = {6.0 * 0.018 / 0.124, 0.016 / 0.124};
@@ -171,7 +171,7 @@ static void TestMassRows(void **state)
 /* ---------------------------------------------------------------- states of rest, patch tests */
 /* Newton from a perturbed first guess must come back to rest: the largest velocity in units of its column scale, the
    velocity that makes 1 MPa in the step (immobile gas moves with the skeleton, whose scale then counts). */
-static double RestVelocity(Scene *s, double *scale)
+static double RestVelocity(SmallScene *s, double *scale)
 {
   Model   *m = &s->m;
   double  *x, worst = 0.0;
@@ -207,8 +207,8 @@ static void TestTwoLayers(void **state)
 
   (void)state;
   for (int basis = 0; basis < 2; basis++) {
-    Scene *s = malloc(sizeof(*s));
-    double scale;
+    SmallScene *s = malloc(sizeof(*s));
+    double      scale;
 
     SceneInit(s, HAS_ALL, true, false, (BasisType)basis, 0.0, lower, upper);
     Material mat[2]     = {s->mat, s->mat};
@@ -216,19 +216,19 @@ static void TestTwoLayers(void **state)
     mat[1].retention.m  = 0.6;
     mat[1].retention.p0 = 2e5;
     mat[1].permeability.k0 *= 1e-3;
-    mat[1].porosity    = 0.45;
-    region[1].lower[1] = 0.13;
-    region[1].upper[1] = 0.25;
-    region[1].material = 1;
-    s->c.nmaterial = s->c.nregion = 2;
-    s->c.material                 = mat;
-    s->c.region                   = region;
+    mat[1].porosity      = 0.45;
+    region[1].lower[1]   = 0.13;
+    region[1].upper[1]   = 0.25;
+    region[1].material   = 1;
+    s->c.scene.nmaterial = s->c.scene.nregion = 2;
+    s->c.scene.material                       = mat;
+    s->c.scene.region                         = region;
     AddPlane(s, BC_ROLLER, 0, 0.0, 0.0);
     AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
     AddFace(s, BC_TRACTION, SIDE_XMAX, q, 0.0);
     AddFace(s, BC_TRACTION, SIDE_YMAX, q, 0.0);
     AddFace(s, BC_PRESSURE, SIDE_YMAX, 0.0, 0.0)->initial = true;
-    Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     for (PetscInt p = 0; p < s->m.P.n; p++) {
       double *const *f = s->m.P.f;
       double         d;
@@ -251,23 +251,23 @@ static void TestTwoLayers(void **state)
 }
 
 /* Closed column under gravity: incompressible water, weightless immobile gas on the plateau of its retention curve. */
-static void HydrostaticScene(Scene *s, BasisType basis)
+static void HydrostaticScene(SmallScene *s, BasisType basis)
 {
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.5, 0.24}, g = 9.81;
   Material    *mat = &s->mat;
 
   SceneInit(s, HAS_ALL, true, false, basis, 0.0, lower, upper);
   Check(RetentionSetType(&mat->retention, "van_genuchten_clamped"));
-  mat->retention.Sgr = 0.05;
-  mat->water.K       = INFINITY;
-  mat->gas.M         = 1e-18;
-  s->c.gravity[1]    = -g;
-  s->region.Sg       = 0.05;
-  s->region.Sw       = 0.95;
+  mat->retention.Sgr    = 0.05;
+  mat->water.K          = INFINITY;
+  mat->gas.M            = 1e-18;
+  s->c.scene.gravity[1] = -g;
+  s->region.Sg          = 0.05;
+  s->region.Sw          = 0.95;
   AddPlane(s, BC_ROLLER, 0, 0.0, 0.0);
   AddPlane(s, BC_ROLLER, 0, 0.5, 0.0);
   AddPlane(s, BC_FIXED, 1, 0.0, 0.0);
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   for (PetscInt p = 0; p < s->m.P.n; p++) {
     double *const *f     = s->m.P.f;
     const double   depth = 0.24 - f[P_X + 1][p], T = f[P_T][p];
@@ -291,8 +291,8 @@ static void TestHydrostatic(void **state)
 {
   (void)state;
   for (int basis = 0; basis < 2; basis++) {
-    Scene *s = malloc(sizeof(*s));
-    double scale;
+    SmallScene *s = malloc(sizeof(*s));
+    double      scale;
 
     HydrostaticScene(s, (BasisType)basis);
     StageStart(s, 10.0);
@@ -314,19 +314,19 @@ static void TestUniformStress(void **state)
 
   (void)state;
   for (int k = 0; k < 8; k++) {
-    const bool mean = k >= 4, ugimp = k >= 4 ? k % 2 : k / 2 % 2;
-    const int  at = mean ? 0 : k % 2; /* mean dilatation on the grid's lines only */
-    Scene     *s  = malloc(sizeof(*s));
+    const bool  mean = k >= 4, ugimp = k >= 4 ? k % 2 : k / 2 % 2;
+    const int   at = mean ? 0 : k % 2; /* mean dilatation on the grid's lines only */
+    SmallScene *s  = malloc(sizeof(*s));
 
     SceneInit(s, HAS_ALL, true, false, ugimp ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, box[at], box[at] + 2);
-    s->c.mean_dilatation = mean;
-    s->c.mean_strain     = k >= 6 ? 0.9 : 0.0;
+    s->c.scene.mean_dilatation = mean;
+    s->c.scene.mean_strain     = k >= 6 ? 0.9 : 0.0;
     /* normal stress is compression-positive; the shear acts along the normal turned by +90 degrees */
     AddFace(s, BC_TRACTION, SIDE_XMIN, p - sxx, sxy);
     AddFace(s, BC_TRACTION, SIDE_XMAX, p - sxx, sxy);
     AddFace(s, BC_TRACTION, SIDE_YMIN, p - syy, -sxy);
     AddFace(s, BC_TRACTION, SIDE_YMAX, p - syy, -sxy);
-    Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     for (PetscInt i = 0; i < s->m.P.n; i++) {
       s->m.P.f[P_SIG + XX][i] = sxx;
       s->m.P.f[P_SIG + YY][i] = syy;
@@ -350,7 +350,7 @@ static void TestUniformStress(void **state)
 static void TestDarcy(void **state)
 {
   const double lower[2] = {0.1, 0.08}, upper[2] = {0.5, 0.24}, slope = 2e6;
-  Scene       *s   = malloc(sizeof(*s));
+  SmallScene  *s   = malloc(sizeof(*s));
   Material    *mat = &s->mat;
   double      *x, d, e;
 
@@ -360,7 +360,7 @@ static void TestDarcy(void **state)
   mat->water.K = INFINITY;
   AddFace(s, BC_PRESSURE, SIDE_XMIN, 3e6 + slope * 0.1, 0.0);
   AddFace(s, BC_PRESSURE, SIDE_XMAX, 3e6 + slope * 0.5, 0.0);
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   for (PetscInt p = 0; p < s->m.P.n; p++) {
     double *const *f = s->m.P.f;
 
@@ -401,8 +401,8 @@ static void TestHeatFlux(void **state)
 
   (void)state;
   for (int k = 0; k < 2; k++) {
-    Scene *s = malloc(sizeof(*s));
-    double d[3];
+    SmallScene *s = malloc(sizeof(*s));
+    double      d[3];
 
     SceneInit(s, HAS_ALL, true, false, BASIS_CPGIMP, 0.0, lower, upper);
     Material *mat   = &s->mat;
@@ -411,7 +411,7 @@ static void TestHeatFlux(void **state)
     const double kappa                                    = MixtureAverage(0.3, 0.0, 0.6, X, &d[0], &d[1], &d[2]);
     for (int side = 0; side < SIDE_COUNT; side++)
       AddFace(s, BC_HEAT_FLUX, (Side)side, (side % 2 ? 1.0 : -1.0) * kappa * slope[side / 2], 0.0);
-    Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     for (PetscInt p = 0; p < s->m.P.n; p++) {
       double *const *f = s->m.P.f;
 
@@ -435,7 +435,7 @@ static void TestHeatFlux(void **state)
 static void TestNewtonOrder(void **state)
 {
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.47, 0.16};
-  Scene       *s = malloc(sizeof(*s));
+  SmallScene  *s = malloc(sizeof(*s));
   double      *x, history[50] = {0.0}, best = 0.0;
   PetscInt     newton, n;
   ClStatus     status;
@@ -449,7 +449,7 @@ static void TestNewtonOrder(void **state)
   AddPlane(s, BC_ROLLER, 1, 0.16, 0.0);
   AddFace(s, BC_TRACTION, SIDE_XMAX, 5.25e6, 0.0);
   AddFace(s, BC_PRESSURE, SIDE_XMAX, 0.0, 0.0)->initial = true;
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   StageStart(s, 50.0);
   Call(ModelBeginStage(&s->m, &s->stage));
   MakeSolver(s);
@@ -481,12 +481,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestUniformStress), cmocka_unit_test(TestDarcy),          cmocka_unit_test(TestHeatFlux),
       cmocka_unit_test(TestNewtonOrder),
   };
-  int failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

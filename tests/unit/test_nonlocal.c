@@ -16,12 +16,12 @@
 
 typedef struct {
   Grid      g;
-  Case      c;
+  Scene     c;
   Material  mat[3];
   Region    region[3];
   Bc        bc[2];
   Particles P;
-} Scene;
+} SmallScene;
 
 /* What particle id is, from its number alone. */
 typedef struct {
@@ -46,7 +46,7 @@ static One OneOf(int id)
   return o;
 }
 
-static void Make(Scene *s, PetscInt rollers)
+static void Make(SmallScene *s, PetscInt rollers)
 {
   const double   lower[2] = {0.0, 0.0}, upper[2] = {1.0, 0.5};
   const PetscInt cells[2] = {25, 12};
@@ -59,7 +59,7 @@ static void Make(Scene *s, PetscInt rollers)
     s->region[k].material = k;
   s->bc[0] = (Bc){.type = BC_ROLLER, .axis = 0, .position = 0.0};
   s->bc[1] = (Bc){.type = BC_ROLLER, .axis = 1, .position = 0.5};
-  s->c     = (Case){.nmaterial = 3, .nregion = 3, .material = s->mat, .region = s->region, .nbc = rollers, .bc = s->bc};
+  s->c = (Scene){.nmaterial = 3, .nregion = 3, .material = s->mat, .region = s->region, .nbc = rollers, .bc = s->bc};
   Call(ParticlesCreate(HAS_SOLID | HAS_PLASTIC | HAS_NONLOCAL, &s->P));
   for (int id = 0; id < COUNT; id++) {
     const One      o = OneOf(id);
@@ -81,7 +81,7 @@ static void Make(Scene *s, PetscInt rollers)
   }
 }
 
-static void Free(Scene *s)
+static void Free(SmallScene *s)
 {
   Call(ParticlesDestroy(&s->P));
   Call(GridDestroy(&s->g));
@@ -117,7 +117,7 @@ static void TestPairs(void **state)
 
   (void)state;
   for (PetscInt rollers = 0; rollers <= 2; rollers++) {
-    Scene s;
+    SmallScene s;
 
     Make(&s, rollers);
     Call(ParticlesNonlocal(&s.c, &s.g, 0.5, &s.P));
@@ -148,7 +148,7 @@ static void TestPairs(void **state)
 /* What is the same everywhere stays so; a particle without neighbours has its own. */
 static void TestEven(void **state)
 {
-  Scene s;
+  SmallScene s;
 
   (void)state;
   Make(&s, 1);
@@ -172,12 +172,6 @@ static void TestEven(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestPairs), cmocka_unit_test(TestEven)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL))
-    return 1;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank);
-  MPI_Comm_size(PETSC_COMM_WORLD, &world_size);
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() ? 1 : failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

@@ -123,11 +123,11 @@ static void TestParticle(void **state)
 
 /* ---------------------------------------------------------------- the assembled Jacobian */
 /* Particles that yield at the state of PrepareJacobian. */
-static double Yielding(Scene *s)
+static double Yielding(SmallScene *s)
 {
   double *x, n = 0.0;
 
-  Call(PetscMalloc1(s->m.map.n_local * s->c.fields.n, &x));
+  Call(PetscMalloc1(s->m.map.n_local * s->c.scene.fields.n, &x));
   RandomUnknowns(&s->m, s->stage.dt, 30, x);
   for (PetscInt p = 0; p < s->m.P.n; p++) {
     Reach       r;
@@ -146,19 +146,19 @@ static void TestJacobian(void **state)
 {
   (void)state;
   for (int k = 0; k < 6 * SETS; k++) {
-    const bool axis = k / SETS % 2, mean = k / SETS / 2 == 1, strain = k / SETS / 2 == 2;
-    Scene     *s     = malloc(sizeof(*s));
-    double     yield = 0.0, all;
+    const bool  axis = k / SETS % 2, mean = k / SETS / 2 == 1, strain = k / SETS / 2 == 2;
+    SmallScene *s     = malloc(sizeof(*s));
+    double      yield = 0.0, all;
 
     const bool bonds = k % SETS == SETS - 1; /* hydrate that goes, with a stress of its own */
 
     JacobianCase(s, sets[k % SETS].has, true, axis, k % 2 && (mean || strain) ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, 0.0,
                  bonds, 1);
-    s->c.mean_dilatation     = mean || (strain && k % 2);
-    s->c.mean_strain         = strain ? 0.7 : 0.0;
-    s->mat.elasticity.change = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
-    s->mat.plasticity        = WeakPlasticity(k % 2, 0.7);
-    s->c.fields.has |= SkeletonHas(&s->mat);
+    s->c.scene.mean_dilatation = mean || (strain && k % 2);
+    s->c.scene.mean_strain     = strain ? 0.7 : 0.0;
+    s->mat.elasticity.change   = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
+    s->mat.plasticity          = WeakPlasticity(k % 2, 0.7);
+    s->c.scene.fields.has |= SkeletonHas(&s->mat);
     JacobianState(s);
     for (PetscInt p = 0; p < s->m.P.n; p++)
       s->m.P.f[P_EPS][p] = 0.1 * (1.0 + Noise(70, s->m.P.i[PI_ID][p], 0));
@@ -184,12 +184,6 @@ static void TestJacobian(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestParticle), cmocka_unit_test(TestJacobian)};
-  int                     failed;
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

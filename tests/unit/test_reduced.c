@@ -91,9 +91,9 @@ static Found Compare(unsigned has, bool inertia, bool axisymmetric, bool gas_rea
   Vec                      x[2];
 
   for (int k = 0; k < 2; k++) {
-    Scene *s = malloc(sizeof(*s));
-    Vec    X, R, JD;
-    KSP    ksp;
+    SmallScene *s = malloc(sizeof(*s));
+    Vec         X, R, JD;
+    KSP         ksp;
 
     Solver(kind[k]);
     JacobianScene(s, has, inertia, axisymmetric, BASIS_CPGIMP, axisymmetric ? 0.2 : 0.0, 0.0, gas_reacts, 0);
@@ -151,8 +151,5 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestSets)};
 
-  if (StartTests(&argc, &argv))
-    return 1;
-  const int failed = cmocka_run_group_tests_name("reduced", tests, NULL, NULL);
-  return PetscFinalize() || failed;
+  return RunTests(argc, argv, tests, SolveWell, NULL);
 }

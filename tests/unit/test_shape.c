@@ -83,31 +83,31 @@ static void TestSegments(void **state)
 /* ---------------------------------------------------------------- regions */
 #define REGIONS 4
 typedef struct {
-  Case     c;
+  Scene    c;
   Material mat;
   Region   region[REGIONS];
   Grid     g;
-} Scene;
+} SmallScene;
 
 /* `n` cells along each side of (-1.1, 1.3) x (-1.2, 1.4) m. */
-static void SceneMake(Scene *s, PetscInt n, PetscInt nregion)
+static void SceneMake(SmallScene *s, PetscInt n, PetscInt nregion)
 {
   memset(s, 0, sizeof *s);
   s->mat = (Material){.porosity = 0.3, .solid = {2600.0, INFINITY, 0.0, 0.0, 4.0}};
-  s->c   = (Case){.lower     = {-1.1, -1.2},
-                  .upper     = {1.3, 1.4},
-                  .cells     = {n, n},
-                  .material  = &s->mat,
-                  .region    = s->region,
-                  .nmaterial = 1,
-                  .nregion   = nregion};
+  s->c   = (Scene){.lower     = {-1.1, -1.2},
+                   .upper     = {1.3, 1.4},
+                   .cells     = {n, n},
+                   .material  = &s->mat,
+                   .region    = s->region,
+                   .nmaterial = 1,
+                   .nregion   = nregion};
   Check(FieldSetMake(HAS_SOLID, true, false, &s->c.fields));
   for (PetscInt k = 0; k < nregion; k++) {
     s->region[k] = (Region){.lower = {-INFINITY, -INFINITY}, .upper = {INFINITY, INFINITY}, .ppc = {2, 2}};
   }
 }
 
-static void SetCircle(Scene *s, PetscInt k, double x, double y, double radius)
+static void SetCircle(SmallScene *s, PetscInt k, double x, double y, double radius)
 {
   s->region[k].shape     = SHAPE_CIRCLE;
   s->region[k].circle[0] = x;
@@ -116,7 +116,7 @@ static void SetCircle(Scene *s, PetscInt k, double x, double y, double radius)
   RegionBound(&s->c, &s->region[k]);
 }
 
-static void SetPoints(Scene *s, PetscInt k, ShapeKind shape, PetscInt n, double *x)
+static void SetPoints(SmallScene *s, PetscInt k, ShapeKind shape, PetscInt n, double *x)
 {
   s->region[k].shape                                                    = shape;
   *(shape == SHAPE_BELOW ? &s->region[k].below : &s->region[k].polygon) = (Points){n, x};
@@ -128,7 +128,7 @@ static void SetPoints(Scene *s, PetscInt k, ShapeKind shape, PetscInt n, double 
 static void TestPartition(void **state)
 {
   static PetscInt circle[] = {2};
-  Scene           s;
+  SmallScene      s;
 
   (void)state;
   for (int slope = -4; slope <= 4; slope++) {
@@ -167,7 +167,7 @@ static void TestReach(void **state)
 {
   static double wedge_line[] = {-0.8, -0.7, 0.9, -0.4, 1.1, 0.5}, triangle[] = {-0.8, -0.7, 0.9, -0.4, 0.2, 1.1};
   const double  slack[] = {1e-6, 1e-6}, up[] = {0.0, 1.0}, tilted[] = {0.6, 0.8};
-  Scene         s;
+  SmallScene    s;
 
   (void)state;
   SceneMake(&s, 24, 3);
@@ -204,7 +204,7 @@ typedef struct {
 } Body;
 
 /* Volume, vector sum and size of the surface of what is seeded, over all ranks. */
-static void Measure(Scene *s, Body *body)
+static void Measure(SmallScene *s, Body *body)
 {
   double    sum[6] = {0}, n[CL_DIM];
   Particles P;
@@ -235,14 +235,14 @@ static void Measure(Scene *s, Body *body)
   Call(GridDestroy(&s->g));
 }
 
-typedef void (*Build)(Scene *, PetscInt cells);
+typedef void (*Build)(SmallScene *, PetscInt cells);
 
-static void BuildCircle(Scene *s, PetscInt n)
+static void BuildCircle(SmallScene *s, PetscInt n)
 {
   SceneMake(s, n, 1);
   SetCircle(s, 0, 0.06, 0.13, 0.9);
 }
-static void BuildRing(Scene *s, PetscInt n)
+static void BuildRing(SmallScene *s, PetscInt n)
 {
   static PetscInt hole[] = {1};
 
@@ -253,13 +253,13 @@ static void BuildRing(Scene *s, PetscInt n)
   s->region[0].minus    = (Names){1, hole};
 }
 static double wedge[] = {-0.8, -0.7, 0.9, -0.4, 1.1, 0.5, 0.2, 0.1, -0.3, 1.2};
-static void   BuildPolygon(Scene *s, PetscInt n)
+static void   BuildPolygon(SmallScene *s, PetscInt n)
 {
   SceneMake(s, n, 1);
   SetPoints(s, 0, SHAPE_POLYGON, 5, wedge);
 }
 /* Of two materials with particles of two sizes: no face between them. */
-static void BuildLayers(Scene *s, PetscInt n)
+static void BuildLayers(SmallScene *s, PetscInt n)
 {
   static double   low[] = {-1.0, -0.5, 0.2, -0.1, 1.2, 0.6}, high[] = {-1.0, 0.6, 1.2, 0.9};
   static PetscInt lower[] = {0};
@@ -272,7 +272,7 @@ static void BuildLayers(Scene *s, PetscInt n)
   s->region[1].minus                        = (Names){1, lower};
 }
 /* A ball: half a circle, cut at the axis. */
-static void BuildBall(Scene *s, PetscInt n)
+static void BuildBall(SmallScene *s, PetscInt n)
 {
   SceneMake(s, n, 1);
   s->c.axisymmetric     = true;
@@ -304,8 +304,8 @@ static void TestMeasures(void **state)
     double error[4][2];
 
     for (int level = 0; level < 4; level++) {
-      Scene s;
-      Body  b;
+      SmallScene s;
+      Body       b;
 
       body[k].build(&s, cells[level]);
       Measure(&s, &b);
@@ -326,10 +326,10 @@ static void TestMeasures(void **state)
    takes as much; one beside the body nothing. */
 static void TestAlong(void **state)
 {
-  Scene    s;
-  Lattice  lattice;
-  PetscInt ij[CL_DIM], count = 0, twice = 0, off = 0;
-  double   x[CL_DIM];
+  SmallScene s;
+  Lattice    lattice;
+  PetscInt   ij[CL_DIM], count = 0, twice = 0, off = 0;
+  double     x[CL_DIM];
 
   (void)state;
   for (PetscInt n = 12; n <= 96; n *= 2) {
@@ -373,7 +373,7 @@ static void TestBoxFaces(void **state)
   double      top[] = {-0.5, 0.75, 0.5, 0.75};
   const Meter line  = {.side = SIDE_COUNT, .region = 0, .along = {2, top}};
   const Meter part  = {.side = SIDE_YMAX, .region = -1, .from = 0.0, .to = INFINITY};
-  Scene       s;
+  SmallScene  s;
   Lattice     lattice;
   PetscInt    ij[CL_DIM], taken[SIDE_COUNT] = {0}, right = 0, faces = 0;
   double      x[CL_DIM], n[CL_DIM];
@@ -410,13 +410,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestPartition),      cmocka_unit_test(TestMeasures), cmocka_unit_test(TestAlong),
       cmocka_unit_test(TestBoxFaces),       cmocka_unit_test(TestReach),
   };
-  int failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

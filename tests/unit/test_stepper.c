@@ -8,6 +8,7 @@
 #include <math.h>
 #include <cmocka.h>
 #include "clathra/stepper.h"
+#include "ranks.h"
 
 #define N 3
 #define GOOD(call) assert_int_equal((call), 0)
@@ -18,12 +19,12 @@ static Stepper s;
 
 static int Start(void **state)
 {
-  m                = (Model){.c = &c};
+  m                = (Model){.c = &c.scene};
   s                = (Stepper){.model = &m, .tol = 1e-3, .state = {.scale_p = 1e4, .scale_T = 1.0, .scale_u = 1e-3}};
-  c.fields         = (FieldSet){.has = HAS_SOLID | HAS_WATER};
+  c.scene.fields   = (FieldSet){.has = HAS_SOLID | HAS_WATER};
   c.error_exponent = 2.0;
   m.grid.comm      = PETSC_COMM_WORLD;
-  GOOD(ParticlesCreate(c.fields.has, &m.P));
+  GOOD(ParticlesCreate(c.scene.fields.has, &m.P));
   GOOD(ParticlesResize(&m.P, N));
   for (int k = 0; k < P_COUNT; k++) {
     for (int p = 0; m.P.f[k] && p < N; p++)
@@ -81,7 +82,7 @@ static void TemperatureCountsByItsChange(void **state)
   const StepInfo info = {.dt = 1.0};
   Region         r    = {.temperature = 4.0};
 
-  c.region = &r;
+  c.scene.region = &r;
   GOOD(ParticlesDestroy(&m.P));
   GOOD(ParticlesCreate(HAS_WATER | HAS_HEAT, &m.P));
   GOOD(ParticlesResize(&m.P, N));
@@ -215,10 +216,6 @@ int main(int argc, char **argv)
                                      cmocka_unit_test_setup_teardown(ASignalStopsAfterTheStep, Start, End),
                                      cmocka_unit_test_setup_teardown(TemperatureCountsByItsChange, Start, End),
                                      cmocka_unit_test(TimeLeftIsLearnt)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  return PetscFinalize() || failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

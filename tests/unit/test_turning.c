@@ -21,25 +21,25 @@ static const double middle[CL_DIM] = {0.4, 0.4};
 
 /* A body of 0.3 m x `height` in the middle of 16 x 16 cells of 0.05 m, at pressure p inside and out; its upper half is
    `contrast` times as permeable, unless that is 1, and then at a pressure of its own, so that water flows. */
-static Scene *Make(unsigned has, BasisType basis, const char *stepper, int surface, double p, double height,
-                   double contrast, double t_end)
+static SmallScene *Make(unsigned has, BasisType basis, const char *stepper, int surface, double p, double height,
+                        double contrast, double t_end)
 {
   const double lower[2] = {0.25, middle[1] - 0.5 * height}, upper[2] = {0.55, middle[1] + 0.5 * height};
-  Scene       *s = malloc(sizeof(*s));
+  SmallScene  *s = malloc(sizeof(*s));
 
   SceneInit(s, has, true, false, basis, 0.0, lower, upper);
-  s->c.upper[0] = s->c.upper[1] = 0.8;
-  s->c.cells[0] = s->c.cells[1] = 16;
-  s->mat.elasticity.E0          = 1e7;
-  s->mat.elasticity.Eh          = 0.0;
-  s->mat.reacts                 = false;
-  s->mat.water.p_ref            = p; /* as dense and stiff at any p */
-  s->region.pressure            = p;
-  for (int d = 0; d < 3 && !s->c.fields.fluid; d++)
+  s->c.scene.upper[0] = s->c.scene.upper[1] = 0.8;
+  s->c.scene.cells[0] = s->c.scene.cells[1] = 16;
+  s->mat.elasticity.E0                      = 1e7;
+  s->mat.elasticity.Eh                      = 0.0;
+  s->mat.reacts                             = false;
+  s->mat.water.p_ref                        = p; /* as dense and stiff at any p */
+  s->region.pressure                        = p;
+  for (int d = 0; d < 3 && !s->c.scene.fields.fluid; d++)
     s->region.stress[d] = -p;
-  s->number[0]          = p;
-  s->c.ambient_pressure = (Schedule){.n = 1, .t = &s->zero, .y = s->number};
-  s->region.K0          = INFINITY; /* the stress is as given */
+  s->number[0]                = p;
+  s->c.scene.ambient_pressure = (Schedule){.n = 1, .t = &s->zero, .y = s->number};
+  s->region.K0                = INFINITY; /* the stress is as given */
   strcpy(s->c.stepper, stepper);
   s->c.t_end = s->c.dt_max = t_end;
   s->c.dt                  = strcmp(stepper, "hybrid") ? 0.005 : has & HAS_WATER ? 5e-6 : 1e-4;
@@ -54,7 +54,7 @@ static Scene *Make(unsigned has, BasisType basis, const char *stepper, int surfa
     SceneLayers(s, 1, middle[1], contrast);
     s->half[1].pressure += EXCESS;
   }
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c, &s->m));
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   s->m.tol_residual = 1e-11;
   for (PetscInt i = 0; i < s->m.P.n; i++) {
     for (int v = P_VS; v < P_VS + 6; v += 2) {
@@ -76,9 +76,9 @@ typedef struct {
 static void Turn(unsigned has, BasisType basis, const char *stepper, int surface, double p, double contrast,
                  double t_end, End *e)
 {
-  Scene  *s = Make(has, basis, stepper, surface, p, 0.16, contrast, t_end); /* across the lines of the grid */
-  Stepper stepping;
-  bool    ok;
+  SmallScene *s = Make(has, basis, stepper, surface, p, 0.16, contrast, t_end); /* across the lines of the grid */
+  Stepper     stepping;
+  bool        ok;
 
   Call(StepperCreate(&s->m, &stepping));
   Call(StepperReady(&stepping, &ok));
@@ -96,7 +96,7 @@ static void Turn(unsigned has, BasisType basis, const char *stepper, int surface
       e->X[k][d] = ParticleInitialX(&s->m.P, i, d);
     }
     for (int c = 0; c < 3; c++)
-      e->stress[k][c] = s->m.P.f[P_SIG + (c == 2 ? XY : c)][i] + (c < 2 && !s->c.fields.fluid ? p : 0.0);
+      e->stress[k][c] = s->m.P.f[P_SIG + (c == 2 ? XY : c)][i] + (c < 2 && !s->c.scene.fields.fluid ? p : 0.0);
   }
   const PetscInt n = sizeof(End) / sizeof(double) - 1;
   Call(MPI_Allreduce(MPI_IN_PLACE, e->x, (int)n, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
@@ -205,7 +205,8 @@ static void TestGradient(void **state)
 
   (void)state;
   for (int hybrid = 0; hybrid < 2; hybrid++) {
-    Scene  *s = Make(HAS_SOLID | HAS_HEAT, BASIS_CPGIMP, hybrid ? "hybrid" : "euler", SURFACE_TIED, 0.0, 0.2, 1.0, dt);
+    SmallScene *s =
+        Make(HAS_SOLID | HAS_HEAT, BASIS_CPGIMP, hybrid ? "hybrid" : "euler", SURFACE_TIED, 0.0, 0.2, 1.0, dt);
     Stepper stepping;
     double  worst = 0.0, checked = 0.0;
     bool    ok;
@@ -251,13 +252,6 @@ static void TestGradient(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestTurn), cmocka_unit_test(TestGradient)};
-  int                     failed;
 
-  if (PetscInitialize(&argc, &argv, NULL, NULL) || MPI_Comm_rank(PETSC_COMM_WORLD, &world_rank) ||
-      MPI_Comm_size(PETSC_COMM_WORLD, &world_size))
-    return 1;
-  failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (PetscFinalize())
-    return 1;
-  return failed;
+  return RunTests(argc, argv, tests, NULL, NULL);
 }

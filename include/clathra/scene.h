@@ -1,0 +1,219 @@
+/* scene: what a case says of the body, its surroundings and how they are modelled, in SI units (T in degC): all that
+   the physics sees of a case. */
+#pragma once
+
+#include "clathra/conditions.h"
+#include "clathra/lines.h"
+#include "clathra/material.h"
+#include "clathra/skeleton.h"
+
+typedef struct {
+  PetscInt n, *i; /* indices into a list of the case */
+} Names;
+
+typedef enum { SHAPE_BOX = 0, SHAPE_POLYGON, SHAPE_BELOW, SHAPE_CIRCLE } ShapeKind;
+
+typedef struct {
+  char     name[64];
+  double   lower[CL_DIM], upper[CL_DIM]; /* m: the box, or bounds of another shape */
+  PetscInt ppc[CL_DIM];                  /* particles per cell, per axis */
+  PetscInt material;                     /* index into Scene.material; -1: no particles, only cut out of others */
+  /* initial state */
+  double pressure;     /* mean pore pressure (10), Pa */
+  double temperature;  /* degC */
+  double Sh, Sw, Sg;   /* saturations of the pore space; sum 1 */
+  double stress[6];    /* initial effective stress, tension-positive: xx yy zz xy yz xz, Pa */
+  double K0;           /* stress: vertical from the weight above, horizontal K0 times it; infinite: from `stress` */
+  bool   consolidated; /* the same, with K0 = 1 - sin(friction angle) */
+  bool   hydrostatic;  /* water in balance with gravity */
+  double datum;        /* m: coordinate against gravity where p = pressure */
+  double geothermal,
+      geothermal_datum; /* K/m below it, m (infinite: top of the body); T = temperature there and above */
+  ShapeKind shape;
+  Points    polygon;   /* closed by itself */
+  Points    below;     /* all under this line, down to `lower` */
+  double    circle[3]; /* centre and radius, m */
+  Names     minus;     /* regions whose shapes are cut out */
+} Region;
+
+#define CL_METERS 16 /* at most */
+
+/* Counts what crosses a part of the body's surface, whatever the conditions there. */
+typedef struct {
+  char     name[64];
+  Side     side;
+  PetscInt region;   /* -1: all */
+  double   from, to; /* m, along the side */
+  Points   along;    /* or those on this line */
+} Meter;
+
+enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
+typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
+
+#define SPACING 1024 /* characters */
+
+/* Numerics of the model, which a restart may change. */
+typedef struct {
+  double ghost_penalty;       /* g, 0 = off; default 0.1 */
+  double ghost_storage;       /* g_s, 0 = off (default) */
+  double pressure_projection; /* alpha, 0 = off; default 1 */
+  bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
+  bool   upstream;            /* drag of the fluids from upstream; default false */
+  bool   saturation_upwind;   /* (200); default false */
+  bool   heat_upwind;         /* (293); default false */
+  bool   lumped_reaction;     /* (265); default false */
+} Stabilisation;
+
+typedef struct Scene {
+  double        lower[CL_DIM], upper[CL_DIM]; /* background grid, m */
+  PetscInt      cells[CL_DIM];
+  char          spacing[CL_DIM][SPACING]; /* as given; none: equal cells */
+  char          table[CL_DIM][SPACING];   /* the other form of it */
+  GridLines     line[CL_DIM];             /* of an axis with a spacing */
+  BasisType     basis;
+  bool          axisymmetric; /* x is the radius, y runs along the axis; all per full ring */
+  bool          inertia, one_pressure;
+  bool          compression_heat;                /* heat of compression and throttling of the fluids (290) */
+  FieldSet      fields;                          /* what the scene needs, as named or derived */
+  double        gravity[CL_DIM];                 /* m/s^2 */
+  double        gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
+  double        t_begin, gravity_before[CL_DIM]; /* where a stage starts from, s, m/s^2; of a whole case zeros */
+  bool          mean_dilatation;                 /* volume change of the cell, not of the particle's own place (88) */
+  double        mean_strain;                     /* share of the cell's mean in a particle's strain (160) */
+  double        strength_factor;                 /* all strength is divided by it (87) */
+  int           without_gas;                     /* WITHOUT_GAS_... */
+  Schedule      ambient_pressure, ambient_level; /* of the fluid around the body: Pa; m, coordinate against gravity */
+  double        ambient_density;                 /* kg/m^3 */
+  double        ambient_drag;                    /* C of (152) */
+  PetscInt      nmaterial, nregion, nbc, nmeter;
+  Material     *material;
+  Region       *region;
+  Bc           *bc; /* those that act */
+  PetscInt      nlisted;
+  const Bc     *listed; /* all boundaries of the case, also those that do not act in this stage */
+  Meter        *meter;
+  Stabilisation stabilisation;
+} Scene;
+
+/* The grid's lines along an axis; they stay the case's. */
+static inline GridLines SceneLines(const Scene *c, int d)
+{
+  return c->line[d].x ? c->line[d] : LinesEqual(c->lower[d], c->upper[d], c->cells[d]);
+}
+
+/* Times closer than this are the same, s. */
+static inline double SceneTimeSlack(const Scene *c, double t)
+{
+  return 1e-12 * fabs(t - c->t_begin) + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
+}
+
+/* Its magnitude once the ramp is over, m/s^2. */
+static inline double SceneGravity(const Scene *c) /* m/s^2 */
+{
+  return hypot(c->gravity[0], c->gravity[1]);
+}
+
+/* Coordinate against gravity, m; 0 without gravity. */
+static inline double SceneHeight(const Scene *c, const double x[])
+{
+  const double g = SceneGravity(c);
+
+  return g > 0.0 ? -(x[0] * c->gravity[0] + x[1] * c->gravity[1]) / g : 0.0;
+}
+
+/* Axis that gravity points along, -1 if it is oblique or zero. */
+static inline int SceneVertical(const Scene *c)
+{
+  return (c->gravity[0] != 0.0) == (c->gravity[1] != 0.0) ? -1 : c->gravity[0] != 0.0 ? 0 : 1;
+}
+
+/* Does the stress of the region follow from the weight above it? */
+static inline bool RegionGeostatic(const Region *r)
+{
+  return r->consolidated || (r->K0 > 0.0 && !isinf(r->K0));
+}
+
+/* Friction angle of a material, rad; NAN for one that has none. */
+static inline double MaterialFrictionAngle(const Material *m)
+{
+  return m->plasticity.type != PLASTICITY_MOHR_COULOMB ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
+}
+
+/* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */
+static inline double RegionK0(const Scene *c, const Region *r)
+{
+  return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
+}
+
+/* Does a region start without gas where there are two pressures (section 19 of docs/equations.md)? */
+static inline bool SceneStartsWithoutGas(const Scene *c)
+{
+  bool without = false;
+
+  for (PetscInt k = 0; k < c->nregion; k++) /* a region without material holds nothing: it names a place */
+    without = without || ((c->fields.has & HAS_GAS_PRESSURE) && c->region[k].material >= 0 && c->region[k].Sg == 0.0);
+  return without;
+}
+
+/* ... and is gas let in? */
+static inline bool SceneLetsGasIn(const Scene *c)
+{
+  bool enters = false;
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Schedule *gas = &c->bc[k].phase[PHASE_G];
+
+    for (PetscInt i = 0; c->bc[k].type == BC_INFLOW && i < gas->n; i++)
+      enters = enters || gas->y[i] > 0.0;
+  }
+  return enters && SceneStartsWithoutGas(c);
+}
+
+/* Weight of a material's share in the flow of a node (350): k0 in units of the first material's. */
+static inline double SceneConductance(const Scene *c, const Material *mat)
+{
+  return mat->permeability.k0 / c->material[0].permeability.k0;
+}
+
+/* The largest ratio of k0 of the materials that regions are of; 1 without fluids. */
+static inline double SceneContrast(const Scene *c)
+{
+  double least = INFINITY, most = 0.0;
+
+  for (PetscInt k = 0; c->fields.fluid && k < c->nregion; k++) {
+    if (c->region[k].material < 0)
+      continue;
+    const double k0 = c->material[c->region[k].material].permeability.k0;
+
+    least = fmin(least, k0);
+    most  = fmax(most, k0);
+  }
+  return most > 0.0 ? most / least : 1.0;
+}
+
+/* First condition that the integrators without a matrix do not know, or NULL. */
+static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
+{
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type != BC_NONE && !(BC_LOCAL >> c->bc[k].type & 1u))
+      return &c->bc[k];
+  }
+  return NULL;
+}
+
+/* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
+   nothing does. */
+static inline const char *SceneNeedsImplicit(const Scene *c)
+{
+  const Bc *b = SceneBcNeedsMatrix(c);
+
+  return b                                    ? b->name
+         : c->axisymmetric                    ? "geometry: axisymmetric"
+         : c->one_pressure                    ? "pressures: one"
+         : c->stabilisation.upstream          ? "stabilisation_upstream"
+         : c->stabilisation.saturation_upwind ? "stabilisation_saturation"
+         : c->stabilisation.lumped_reaction   ? "stabilisation_reaction"
+         : !c->inertia                        ? "inertia: no"
+         : SceneLetsGasIn(c)                  ? "an inflow of gas where a region has Sg: 0"
+                                              : NULL;
+}
