@@ -109,7 +109,7 @@ def case_keys(binary):
 
 def plain_keys():
     """Keys whose number may do without a unit on the command line, from the key table's source."""
-    text = (ROOT / "src" / "case" / "keys.c").read_text()
+    text = (ROOT / "src" / "case" / "keys_case.c").read_text()
     rows = re.split(r"\n    (?=[A-Z]+\()", text)
     return list(dict.fromkeys(re.search(r'"(\w+)"', row).group(1) for row in rows if re.search(r"\.plain\s*=\s*true", row)))
 

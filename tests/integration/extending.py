@@ -145,12 +145,25 @@ def build(tree):
     return folder / "clathra"
 
 
+def costs():
+    """{example: (files, lines)} as the page's table says, and as its blocks are."""
+    page = PAGE.read_text()
+    said = {row[0]: (int(row[1]), int(row[2])) for row in re.findall(r"^\| (an? [^|]*?) \| (\d+)[^|]* \| (\d+)[^|]* \|$", page, re.M)}
+    counted = []
+    for section in re.split(r"^## ", page, flags=re.M)[1:]:
+        found = re.findall(r"^```diff\n(.*?)^```", section, re.M | re.S)
+        counted.append((len({b.split()[1] for b in found}), sum(len(re.findall(r"^\+[ \t]*\S", b, re.M)) for b in found)))
+    return said, [c for c in counted if c[0]]
+
+
 tree = scratch() / "clathra"
 tree.mkdir()
 for folder in ("src", "include"):
     shutil.copytree(ROOT / folder, tree / folder)
 shutil.copy(ROOT / "CMakeLists.txt", tree)
 check_true("every block finds its place", apply(tree) > 15)
+said, counted = costs()
+check_true("the table of costs is what the blocks are", list(said.values()) == counted, f"{said} {counted}")
 for name, row, more in ( # a variable of more components than any other
     ("include/clathra/particles.h", '"hydrate saturation")', ' X(P_WIDE, HAS_ALL, "wide", 9, "-", "")'),
     ("src/particles/initial.c", "Set(P, p, P_SW, r->Sw);", " for (int k = 0; k < 9; k++) Set(P, p, P_WIDE + k, (k + 1) * x[0]);")):  # fmt: skip
@@ -167,6 +180,13 @@ cubic = run(extended, *BP2, "-stepper_type", "euler", "-stepper_dt", "5 s", "-ma
 ratio = cubic.balance["water_out_kg"][-1] / plain.balance["water_out_kg"][-1]
 check("law: water that left, cubic over Kozeny-Carman", ratio, (0.9, 1.1))
 check_true("law: it makes a difference", abs(ratio - 1) > 1e-6, f"{ratio - 1:.2e}")
+
+# ... and in hybrid's loops over arrays: from phi = 1.5 phi_0 on it is the constant 1.5^3 k_0, as long as porosity hardly changes
+SHORT = (*BP2[:3], "-time_end", "0.02 s", "-output_times", "0.02 s", "-stepper_type", "hybrid")
+cubic_hybrid = run(extended, *SHORT, "-mat_sediment_permeability_porosity_law", "cubic", "-mat_sediment_permeability_phi0", "0.1")
+constant = run(extended, *SHORT, "-mat_sediment_permeability_porosity_law", "none", "-mat_sediment_permeability_k0", f"{1.5**3 * 1.53e-15} m^2")
+ratio = cubic_hybrid.balance["water_out_kg"][-1] / constant.balance["water_out_kg"][-1]
+check("law, hybrid: water that left, cubic from 1.5 phi_0 on over a constant 1.5^3 k_0", ratio, (0.9999, 1.0001))
 
 # an equation of state: in a closed cell of incompressible water the density of the gas stays
 case = tree / "gas.yaml"
