@@ -128,7 +128,9 @@ struct Gas {
   double M;         /* kg/mol */
   double Tc, pc;    /* critical temperature, K, and pressure, Pa; peng_robinson */
   double eccentric; /* acentric factor; peng_robinson */
-  double trace;     /* H of (101), kg/(m^3 Pa); 0 where every region starts with gas */
+  double trace;     /* H of (101), kg/(m^3 Pa); 0 where every region starts with gas and none dissolves */
+  double henry;     /* solubility, mol/(m^3 Pa); 0: none is given */
+  double carried;   /* H of what goes with the water (352), kg/(m^3 Pa): with a solubility that of (101), else 0 */
   /* of n states p (Pa), T (degC): rho, d rho/dp, d rho/dT; nothing may overlap.  NULL: ideal */
   void (*density)(const Gas *, int n, const double *p, const double *T, double *rho, double *drho_dp, double *drho_dT);
   /* beta at the density rho (kg/m^3), T_K, with its slopes in both */

@@ -41,10 +41,16 @@ INLINE Content WaterContent(double sg, double rho)
   return (Content){(1.0 - sg) * rho, -rho, 1.0 - sg, 0.0};
 }
 
+/* Methane in a volume of water (101), kg/m^3; H as in Gas.trace or Gas.carried. */
+INLINE double DissolvedMethane(double H, double pg)
+{
+  return H * pg;
+}
+
 /* (101); H as in Gas.trace. */
 INLINE Content MethaneContent(double H, double sg, double rho, double pg)
 {
-  const double c = H * pg;
+  const double c = DissolvedMethane(H, pg);
 
   return (Content){sg * rho + (1.0 - sg) * c, rho - c, sg, (1.0 - sg) * H};
 }

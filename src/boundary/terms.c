@@ -95,6 +95,26 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   }
 }
 
+/* (352): the methane of the water that flows through an open face.  The fluid around the body holds none. */
+static void Dissolved(const FaceState *x, bool ambient, FaceOutput *o)
+{
+  const double H = x->mat->gas.carried, dt = x->dt, *a = x->a, *J = &x->in[IN_J], Ja = J[0] * a[0] + J[1] * a[1],
+               c = DissolvedMethane(H, FacePressure(x->f, PHASE_G, x->in));
+  double *D      = o->D[F_PG];
+
+  if (H == 0.0 || (ambient && Ja < 0.0))
+    return;
+  o->out[F_PG] += dt * c * Ja;
+  o->outflow[PHASE_G] += c * Ja;
+  D[IN_P + PHASE_G] += dt * H * Ja;
+  for (int j = 0; j < 2; j++) {
+    D[IN_GP + 2 * PHASE_G + j] += dt * H * Ja * x->f->r[j];
+    D[IN_J + j] += dt * c * a[j];
+  }
+  for (int k = 0; k < MOTION_COUNT; k++)
+    D[k] += dt * c * (J[0] * x->da[0][k] + J[1] * x->da[1][k]);
+}
+
 /* Prescribed mean pressure of a face; that of the ambient fluid depends on where the face is. */
 static double MeanOutside(const FaceState *s, PetscInt k, double du[CL_DIM])
 {
@@ -154,6 +174,8 @@ void FacePressures(const FaceState *x, PetscInt k, FaceOutput *o)
     if (x->c->fields.phase[phase] && Opens(&x->c->bc[k], phase))
       Open(x, phase, &outside, o);
   }
+  if ((x->c->fields.has & HAS_GAS_PRESSURE) && Opens(&x->c->bc[k], PHASE_W))
+    Dissolved(x, isinf(x->v->value[k]), o);
 }
 
 /* (106): gas that enters where there is none has the pressure of the water before it. */

@@ -40,7 +40,7 @@ static void CheckCase(Reader *r, const Case *c)
     FAIL_AT(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
 }
 
-static void CheckMaterial(Reader *r, const Material *m)
+static void CheckMaterial(Reader *r, const Scene *c, const Material *m)
 {
   const Kinetics *k       = &m->kinetics;
   double          balance = k->M_g + k->N_h * k->M_w;
@@ -54,6 +54,9 @@ static void CheckMaterial(Reader *r, const Material *m)
   if (fabs(k->M_h - balance) > 1e-6 * k->M_h)
     FAIL_AT(GROUP_MATERIAL, m->name, "hydrate_molar_mass",
             "is %.9g kg/mol but gas + hydrate_number * water make %.9g kg/mol", k->M_h, balance);
+  if (c->compression_heat && m->gas.carried > 0.0)
+    FAIL_AT(GROUP_MATERIAL, m->name, "gas_solubility",
+            "(%g mol/(m^3 Pa)) is not known with compression_heat: yes, which takes all methane for gas", m->gas.henry);
 }
 
 static void CheckSaturations(Reader *r, const Scene *c, const Region *g)
@@ -136,7 +139,7 @@ void CaseCheck(Reader *r, const Case *c)
   if (!bad[GROUP_CASE])
     CheckCase(r, c);
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
-    CheckMaterial(r, &c->scene.material[i]);
+    CheckMaterial(r, &c->scene, &c->scene.material[i]);
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckPlasticity(r, c, &c->scene.material[i]);
   if (!bad[GROUP_CASE] && !bad[GROUP_MATERIAL])

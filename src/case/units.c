@@ -93,6 +93,7 @@ static const struct {
     {"1/K", "a thermal expansion"},
     {"1/m", "a surface per volume"},
     {"mol/(m^2 Pa s)", "a rate constant"},
+    {"mol/(m^3 Pa)", "a solubility"},
 };
 
 const char *QuantityName(const char *si)

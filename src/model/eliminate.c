@@ -83,8 +83,8 @@ void EliminateParticle(const Model *m, const Reach *r, const double *x, const do
       continue;
     FluxResponse(m, r, x, in, o, f, dJ);
     DropBracket(fs, o, f);
-    for (int i = 0; i < CL_DIM; i++)
-      Follow(o->D[OUT_FLUX + 2 * f + i], f, dJ);
+    for (int row = OUT_FLUX; row < OUT_FLUX + PHASE_COUNT * CL_DIM; row++) /* gas goes with the water, too (352) */
+      Follow(o->D[row], f, dJ);
     if (fs->heat)
       Follow(o->D[OUT_Q], f, dJ);
     for (int i = 0; fs->solid && fs->inertia && i < CL_DIM; i++) { /* (173); its share of v_s is lumped */

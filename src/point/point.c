@@ -3,6 +3,7 @@
 #include "clathra/point_flow.h"
 #include "clathra/point_heat.h"
 #include "clathra/point_reaction.h"
+#include "clathra/point_state.h"
 #include "clathra/tensor.h"
 
 /* Row of the tangent for a scalar output c * jet: J spreads over grad u. */
@@ -232,6 +233,28 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   }
 }
 
+/* (352): adds V_n H p_g cof^T J_w, the methane that the water carries. */
+static void CarriedFlux(const Material *mat, const PointHistory *h, const Kinematics *k, const double in[IN_COUNT],
+                        bool tangent, PointOutput *o)
+{
+  const double H = mat->gas.carried, c = DissolvedMethane(H, in[IN_P + PHASE_G]), *J = &in[IN_J];
+
+  for (int i = 0; i < 2; i++) {
+    const int    row = OUT_FLUX + 2 * PHASE_G + i;
+    const double cJ  = k->cof[0][i] * J[0] + k->cof[1][i] * J[1];
+    double      *D   = o->D[row];
+
+    o->out[row] += MassFlux(h->V, c, 0.0, cJ, 0.0);
+    if (!tangent)
+      continue;
+    D[IN_P + PHASE_G] += h->V * H * cJ;
+    for (int q = 0; q < MOTION_COUNT; q++)
+      D[q] += h->V * c * (k->dcof[0][i][q] * J[0] + k->dcof[1][i][q] * J[1]);
+    for (int j = 0; j < 2; j++)
+      D[IN_J + j] += h->V * c * k->cof[j][i];
+  }
+}
+
 /* Conduction: V kappa F^-1 F^-T g_T, and what carries heat with the flow, (293) on the configuration at t_n. */
 static void Conduction(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s,
                        const double in[IN_COUNT], bool tangent, PointOutput *o)
@@ -447,6 +470,8 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
     Spread(h, k, &metric, &s, f, in, tangent, o);
     FluidScalars(mat, h, k, &s, f, tangent, o);
   }
+  if (fs->phase[PHASE_W] && fs->phase[PHASE_G] && mat->gas.carried > 0.0)
+    CarriedFlux(mat, h, k, in, tangent, o);
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
     Heat(fs, mat, h, k, &s, in, tangent, o);

@@ -42,7 +42,10 @@ static Material RandomMaterial(Rng *r, Regime regime)
   assert_true(PermeabilitySetHydrateType(&m.permeability, PermeabilityHydrateTypes()[RngPick(r, 3)]));
   assert_true(PermeabilitySetPorosityType(&m.permeability, PermeabilityPorosityTypes()[RngPick(r, 3)]));
   assert_true(EquilibriumSetType(&m.kinetics.equilibrium, EquilibriumTypes()[RngPick(r, 4)]));
-  m.gas.trace        = regime == NO_GAS || regime == LITTLE_GAS ? GasTrace(&m.gas) : 0.0;
+  m.gas.trace   = regime == NO_GAS || regime == LITTLE_GAS ? GasTrace(&m.gas) : 0.0;
+  m.gas.carried = regime == LITTLE_GAS && RngPick(r, 2) ? 3e-7 : 0.0;
+  if (m.gas.carried > 0.0)
+    m.gas.trace = m.gas.carried;
   m.retention.p0     = RngLog(r, regime == NO_GAS || regime == LITTLE_GAS ? 1e5 : 1e3, 1e6);
   m.retention.m      = RngBetween(r, 0.2, 0.8);
   m.retention.lambda = RngBetween(r, 0.5, 3.0);
