@@ -64,7 +64,7 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
     if (!fs->phase[f])
       continue;
     Acceleration(m, I, x, PlaceV(fs, f), 1.0, n->acc[1 + f]);
-    Acceleration(m, I, x, PlaceV(fs, f), n->share, n->own[f]);
+    FluidAcceleration(m, p, I, x, f, n->own[f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
     n->kr[f]     = 1.0;
     n->weight[f] = RowWeight(m, I, f);
@@ -167,6 +167,22 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
     block[PlaceT(fs) * ld + PlaceT(fs)] += S * out[OUT_C] / dt;
 }
 
+/* Beds: fluids feel the skeleton's acceleration (308). */
+static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT_COUNT], const NodeFactors *k,
+                         double dt, double *block, int ld)
+{
+  const double less[2][2] = {{A->xx - 1.0, A->xy}, {A->xy, A->yy - 1.0}};
+
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f] || PlaceV(fs, f) < 0)
+      continue;
+    for (int i = 0; i < 2; i++) {
+      for (int j = 0; j < 2; j++)
+        block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] += k->flow * k->kr[f] * out[OUT_MI + f] * less[i][j] / dt;
+    }
+  }
+}
+
 /* A constant number of unknowns lets the compiler unroll the rows of the largest sets. */
 INLINE void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p, const Reach *r, const double *x,
                             const PointOutput *o)
@@ -199,6 +215,8 @@ INLINE void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt 
            m->c->mean_dilatation ? r->B[a] : NULL, DB, block, n);
       if (a == b)
         Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, block, n);
+      if (a == b && m->beds && fs->solid && fs->inertia)
+        DiagonalBeds(fs, &m->beds[p].A, o->out, &factor[a], dt, block, n);
       for (int k = 0; k < n * n; k++)
         sum[k] += block[k];
     }
@@ -241,7 +259,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
       KeepWide(&m->c->fields, &o, &m->wide[12 * p]);
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
-        EliminateParticle(m, &r, x, in, target[k].fixed_stress, &o);
+        EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
       ParticleBlock(m, &target[k], p, &r, x, &o);
       LumpBlock(m, &target[k], p, &r);
     }
@@ -316,7 +334,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(PreconditionerChoose(m, snes, &renew));
   PetscCall(ModelFluidsAt(m, X));
   PetscCall(ModelUnscale(m, X, m->x));
-  PetscCall(ModelProjectGradients(m, m->x, m->proj));
+  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
   PetscCall(MatrixBegin(m));
   PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);

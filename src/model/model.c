@@ -65,6 +65,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->spread));
   PetscCall(PetscFree(m->upwind));
   PetscCall(PetscFree(m->lump));
+  PetscCall(PetscFree(m->beds));
   PetscCall(PetscFree(m->face));
   PetscCall(PetscFree(m->ghost));
   PetscCall(PetscFree(m->cell));
