@@ -1,4 +1,4 @@
-/* case_private: the inside of the case reader.  One declared key table (keys.c) from which reading, checking, the
+/* case_private: the inside of the case reader.  One declared key table (keys_*.c) from which reading, checking, the
    resolved case, the printed key list and the nearest-key search follow. */
 #pragma once
 
@@ -67,7 +67,7 @@ PetscErrorCode ReaderText(Reader *r, const char *path, char **text, char why[CAS
 /* The text as YAML into entries; false: one error was added. */
 bool ReaderParse(Reader *r, const char *text);
 
-/* ---------------------------------------------------------------- keys.c */
+/* ---------------------------------------------------------------- keys.c, keys_*.c by subject */
 typedef enum {
   KEY_REAL,
   KEY_INT,

@@ -61,6 +61,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(DestroyNodal(m));
   PetscCall(PetscFree(m->stencil));
   PetscCall(PetscFree(m->conduct));
+  PetscCall(PetscFree(m->order));
   PetscCall(PetscFree(m->wide));
   PetscCall(PetscFree(m->spread));
   PetscCall(PetscFree(m->upwind));

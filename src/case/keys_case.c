@@ -1,0 +1,229 @@
+/* keys_case: the grid, the surroundings, numerics, time and output; and what of it a stage may have of its own. */
+#include "key_rows.h"
+
+static bool HasSpacingX(const void *p)
+{
+  return ((const Case *)p)->scene.spacing[0][0];
+}
+static bool HasSpacingY(const void *p)
+{
+  return ((const Case *)p)->scene.spacing[1][0];
+}
+static bool HasTableX(const void *p)
+{
+  return ((const Case *)p)->scene.table[0][0];
+}
+static bool HasTableY(const void *p)
+{
+  return ((const Case *)p)->scene.table[1][0];
+}
+static bool HasEqualAxis(const void *p)
+{
+  return !(HasSpacingX(p) || HasTableX(p)) || !(HasSpacingY(p) || HasTableY(p));
+}
+static bool NeedsEnd(const void *p)
+{
+  return ((const Case *)p)->nstage == 0;
+}
+
+static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
+static const char *const pressures_word[]   = {"two", "one", NULL};
+static const char *const geometry_word[]    = {"plane", "axisymmetric", NULL};
+static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
+static const char *const surface_word[]     = {"free", "tied", "velocities_free", NULL}; /* SURFACE_... */
+static const char *const share_word[]       = {"nodes", "particles", "relative", NULL};  /* PRESSURES_... */
+static const char *const ice_word[]         = {"warn", "stop", NULL};                    /* ICE_... */
+static const char *const without_gas_word[] = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
+
+const Key case_key[] = {
+    TEXT(Case, "title", title, "", "one line"),
+    REALS(Case, 2, "grid_lower", scene.lower, "m", "", NULL, "lower left corner of the background grid",
+          BINDS(HAS_ALL)),
+    REALS(Case, 2, "grid_upper", scene.upper, "m", "", NULL, "upper right corner; the body must not leave the grid",
+          BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_x", scene.spacing[0], "",
+         "sizes of the cells along x: one size (0.5 m), or first size, largest size and growth from cell to cell, "
+         "from the lower end on ([0.05 m, 2 m, growth 1.15])",
+         ACTS(HasSpacingX, "it is given"), BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_x_table", scene.table[0], "",
+         "the same by places, which are lines of the grid, and sizes there, from the lower end to the upper "
+         "({table: [0 m, 0.5 m, 4 m, 0.05 m, 10 m, 1 m]})",
+         ACTS(HasTableX, "it is given"), BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_y", scene.spacing[1], "", "likewise along y", ACTS(HasSpacingY, "it is given"),
+         BINDS(HAS_ALL)),
+    TEXT(Case, "grid_spacing_y_table", scene.table[1], "", "likewise along y", ACTS(HasTableY, "it is given"),
+         BINDS(HAS_ALL)),
+    INTEGERS(Case, 2, "grid_cells", scene.cells, "[1,100000]", "auto, auto",
+             "cells along x and y; auto: as many as the spacing of that axis makes",
+             WHEN(HasEqualAxis, "an axis has no spacing"), .word = "auto", BINDS(HAS_ALL)),
+    BOOLEAN(Case, "geometry", scene.axisymmetric, "plane", "axisymmetric: x is the radius, y runs along the axis",
+            .choices = geometry_word, BINDS(HAS_ALL)),
+    TEXT(Case, "fields", fields_wanted, "auto",
+         "what the scene needs: a list of solid, water, gas, heat, or a set's name (thmc, thc, hmc, thm, hm, m, ...); "
+         "auto drops what is identically zero",
+         BINDS(HAS_ALL)),
+    BOOLEAN(Case, "inertia", scene.inertia, "yes", "accelerations; no is quasi-static"),
+    BOOLEAN(Case, "pressures", scene.one_pressure, "two",
+            "one: p_g = p_w, saturations follow explicitly from the masses", .choices = pressures_word, BINDS(HAS_ALL)),
+    BOOLEAN(Case, "compression_heat", scene.compression_heat, "no",
+            "fluids warm as they are compressed and cool or warm as they are throttled (Joule-Thomson)"),
+    CHOICE(Case, "basis", scene.basis, "cpgimp", basis_word, "basis functions"),
+    BOOLEAN(
+        Case, "mean_dilatation", scene.mean_dilatation, "no",
+        "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
+        "does not lock"),
+    REAL(Case, "mean_strain", scene.mean_strain, "", "[0,1]", "0",
+         "share of the mean motion of its cell in the strain of a particle: a skeleton that yields flows more freely; "
+         "1 leaves modes without stiffness, 0.95 does for collapse loads"),
+    REALS(Case, 2, "gravity", scene.gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
+    REAL(Case, "gravity_ramp", scene.gravity_ramp, "s", "[0,inf)", "0 s",
+         "gravity grows from zero to its value over this time"),
+    REAL(
+        Case, "strength_factor", scene.strength_factor, "", "(0,1e3]", "1",
+        "cohesion, tension cut-off and the tangents of friction and dilation angle of all materials are divided by it: "
+        "the "
+        "largest one that a slope bears is its factor of safety"),
+    ROW(Case, "ambient_pressure", KEY_SCHEDULE, scene.ambient_pressure, 1, "Pa", "[0,1e10]", "0 Pa",
+        "of the fluid that the scene stands in: acts on the whole surface of the body; at and above ambient_level"),
+    REAL(Case, "ambient_density", scene.ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
+         "of that fluid: below ambient_level its pressure grows with depth"),
+    REAL(Case, "ambient_drag", scene.ambient_drag, "", "[0,100]", "0",
+         "coefficient of the drag of that fluid, at rest, on faces that move into it", .has = HAS_SOLID),
+    ROW(Case, "ambient_level", KEY_SCHEDULE, scene.ambient_level, 1, "m", "", "0 m", "coordinate against gravity"),
+    CHOICE(Case, "without_gas", scene.without_gas, "auto", without_gas_word,
+           "sediment may be or become free of gas: water then holds 1e-7 of what gas would; auto: where a region has "
+           "Sg: 0"),
+    CHOICE(Case, "ice", ice, "warn", ice_word,
+           "when pore water is colder than its melting point, of which no equation knows: say so and go on, or end the "
+           "run"),
+    REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
+         WHEN(NeedsEnd, "there are no stages"), .kept = true),
+    TEXT(Case, "stepper_type", stepper, "sdirk2",
+         "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time", .choices = stepper_word),
+    BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
+    REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
+         .plain = true),
+    REAL(Case, "stepper_dt_min", dt_min, "s", "(0,inf)", "1e-9 @time_end", "a smaller step ends the run",
+         .plain = true),
+    REAL(Case, "stepper_dt_max", dt_max, "s", "(0,inf)", "1 @time_end", "longest step", .plain = true),
+    REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate"),
+    REAL(Case, "stepper_error_exponent", error_exponent, "", "[1,16]", "2",
+         "of the mean of the error over the particles: 2 is the root mean square, in which a front in a small part of "
+         "the "
+         "body drowns; 8 sees it"),
+    INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
+             "cuts in a row before the run is given up"),
+    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "hybrid, explicit: step as a share of the stable one"),
+    BOOLEAN(Case, "stepper_force_dt", force_dt, "no",
+            "hybrid, explicit: take a fixed step above the stable one all the same"),
+    REAL(Case, "stepper_flip", flip, "", "[0,1]", "1",
+         "hybrid, explicit: particles take increments of nodal velocity (1, FLIP), the velocity itself (0, PIC), or a "
+         "mixture"),
+    REAL(Case, "stepper_relaxation", relaxation, "s", "(0,inf]", "none",
+         "hybrid, explicit: time over which pressures and temperature of a particle tend to those of the nodes, which "
+         "do not see what differs within a cell; or the word none",
+         .word = "none"),
+    REAL(
+        Case, "stepper_damping", damping, "", "[0,1)", "0",
+        "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
+        "ends"),
+    REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
+         "hybrid, explicit: factor on all inertia; the error it makes is reported"),
+    CHOICE(
+        Case, "stepper_surface", surface, "tied", surface_word,
+        "hybrid, explicit: nearly empty nodes follow their fullest neighbour in part; velocities_free, for slides: in "
+        "pressures and temperature alone, which leaves the balance of energy as it is"),
+    CHOICE(
+        Case, "stepper_pressures", pressures, "nodes", share_word,
+        "hybrid, explicit: changes of pressure shared over nodes; likewise, but those of p_g in proportion to the p_g "
+        "that each particle has (relative), for gas in what tears; or by each particle alone (particles: the paper's "
+        "form, which rings)"),
+    REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
+         "at free surfaces; 0 = off"),
+    REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",
+         "the same on pressures' changes, for undrained bodies; 0 = off"),
+    REAL(Case, "stabilisation_pressure_projection", scene.stabilisation.pressure_projection, "", "[0,100]", "1",
+         "undrained limit; 0 = off"),
+    BOOLEAN(Case, "stabilisation_flux_interpolation", scene.stabilisation.flux_interpolation, "yes",
+            "momentum-interpolated mass flux"),
+    BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",
+            "relative permeabilities from upstream, for sharp fronts of saturation"),
+    BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
+            "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
+    BOOLEAN(
+        Case, "stabilisation_heat", scene.stabilisation.heat_upwind, "no",
+        "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
+        "conducted"),
+    BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
+            "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
+            "front of heat"),
+    TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
+    ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
+    REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
+    TEXT(Case, "output_quantities", quantities_wanted, "all",
+         "what probes write: a list of p, p_w, p_g, T, S_h, S_w, S_g, u, stress, x, eps_d_p, p_eff, q, strain, yield; "
+         "all is what the "
+         "scene has fields "
+         "for"),
+    REAL(Case, "output_probe_every", probe_every, "s", "[0,inf)", "0 s", "probe rows, hit exactly; 0 s = every step"),
+    REAL(Case, "standard_pressure", standard_pressure, "Pa", "(0,1e9]", "101.4 kPa",
+         "of standard volumes of gas; a note, not used"),
+    REAL(Case, "standard_temperature", standard_temperature, "degC", "(-273.15,1000]", "15.56 degC",
+         "of standard volumes of gas; a note, not used"),
+    REAL(Case, "standard_gas_density", standard_gas_density, "kg/m^3", "(0,1e3]", "0.6789 kg/m^3",
+         "of gas at standard_pressure and standard_temperature: what standard volumes are computed with"),
+    REAL(Case, "checkpoint_every", checkpoint_every, "s", "[0,inf)", "0 s", "0 s = only at the end and on failure",
+         .plain = true),
+    {.name = NULL},
+};
+
+/* Keys that stages share with the case: not given, the case's value stays. */
+#define CASES "the case's"
+#define CASES_LENGTH "the case's if it is given, else the same share of the stage's length"
+const Key stage_key[] = {
+    REAL(CaseStage, "end", end, "s", "(0,inf)", NULL, "it begins where the stage before ends", .made = true),
+    BOOLEAN(
+        CaseStage, "reset_displacement", reset, "no",
+        "displacement and log_J count from the begin of the stage; sides, from and to stay those of the initial body"),
+    BOOLEAN(CaseStage, "kinetics_active", reaction, "yes",
+            "no: hydrate neither forms nor dissociates, in materials whose kinetics are active"),
+    TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; all, or none",
+         .made = true),
+    TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act", .made = true),
+    TEXT(CaseStage, "materials", materials, "",
+         "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay",
+         .made = true),
+    REALS(CaseStage, 2, "gravity", c.scene.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
+    REAL(CaseStage, "gravity_ramp", c.scene.gravity_ramp, "s", "[0,inf)", CASES,
+         "gravity goes from that of the stage before to that of this one over this time", .kept = true),
+    REAL(CaseStage, "strength_factor", c.scene.strength_factor, "", "(0,1e3]", CASES,
+         "strength is divided by it, from the begin of the stage on", .kept = true),
+    BOOLEAN(CaseStage, "inertia", c.scene.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
+    TEXT(CaseStage, "stepper_type", c.stepper, CASES, "time integrator", .choices = stepper_word, .kept = true),
+    BOOLEAN(CaseStage, "stepper_adapt", c.adaptive, CASES, "choose the step by the error estimate", .kept = true),
+    REAL(CaseStage, "stepper_dt", c.dt, "s", "(0,inf)", CASES_LENGTH, "first step (adaptive) or fixed step",
+         .plain = true, .kept = true),
+    REAL(CaseStage, "stepper_dt_min", c.dt_min, "s", "(0,inf)", CASES_LENGTH, "a smaller step ends the run",
+         .plain = true, .kept = true),
+    REAL(CaseStage, "stepper_dt_max", c.dt_max, "s", "(0,inf)", CASES_LENGTH, "longest step", .plain = true,
+         .kept = true),
+    REAL(CaseStage, "stepper_tol", c.tol, "", "(0,1)", CASES, "relative tolerance of the error estimate", .kept = true),
+    REAL(CaseStage, "stepper_cfl", c.cfl, "", "(0,1]", CASES, "hybrid, explicit: step as a share of the stable one",
+         .kept = true),
+    BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES,
+            "hybrid, explicit: take a fixed step above the stable one all the same", .kept = true),
+    REAL(CaseStage, "stepper_flip", c.flip, "", "[0,1]", CASES, "hybrid, explicit: FLIP (1) to PIC (0)", .kept = true),
+    REAL(CaseStage, "stepper_relaxation", c.relaxation, "s", "(0,inf]", CASES,
+         "hybrid, explicit: time over which particles take up the nodes' pressures and temperature", .kept = true,
+         .word = "none"),
+    REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),
+    REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES,
+         "hybrid, explicit: factor on all inertia", .kept = true),
+    REAL(CaseStage, "output_every", c.every, "s", "[0,inf)", CASES, "snapshots, counted from the begin of the stage",
+         .kept = true),
+    REAL(CaseStage, "output_probe_every", c.probe_every, "s", "[0,inf)", CASES,
+         "probe rows, counted from the begin of the stage", .kept = true),
+    REAL(CaseStage, "checkpoint_every", c.checkpoint_every, "s", "[0,inf)", CASES,
+         "counted from the begin of the stage", .plain = true, .kept = true),
+    {.name = NULL},
+};

@@ -1,0 +1,43 @@
+/* keys_probe: what is written of points, means and parts of the surface. */
+#include "key_rows.h"
+
+static bool NeedsPlace(const void *p)
+{
+  const Probe *b = (const Probe *)p;
+
+  return b->over < 0 && b->surface.side == SIDE_COUNT && !b->surface.along.n;
+}
+static bool MeterNeedsSide(const void *p)
+{
+  return !((const Meter *)p)->along.n;
+}
+
+const Key probe_key[] = {
+    NAME(Probe, "over", over, "none", GROUP_REGION,
+         "the mean over a region, weighted with current volumes: its particles, or of a region without particles those "
+         "that were in its shape first",
+         .word = "none"),
+    POINTS(Probe, "along", surface.along,
+           "[[x, y], ...]: the mean over the faces on this line, in the initial configuration, weighted with current "
+           "areas"),
+    CHOICE(Probe, "side", surface.side, "none", case_side, "the mean over this side of the body, by area"),
+    NAME(Probe, "region", surface.region, "all", GROUP_REGION, "with side or along: one of regions, or all"),
+    REAL(Probe, "from", surface.from, "m", "", "start", "with side: only the part from here ...", .word = "-start"),
+    REAL(Probe, "to", surface.to, "m", "", "end", "... to here", .word = "end"),
+    REALS(Probe, 2, "at", x, "m", "", "none, none", "a point: initial position, inside a region",
+          WHEN(NeedsPlace, "over, side and along are not given"), .word = "none"),
+    BOOLEAN(Probe, "fixed", fixed, "no",
+            "a point stays there in space, otherwise it follows the body; a mean is over what is in the region's shape "
+            "now"),
+    {.name = NULL},
+};
+
+const Key meter_key[] = {
+    POINTS(Meter, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side"),
+    CHOICE(Meter, "side", side, "none", case_side, "side of the body, moves with it",
+           WHEN(MeterNeedsSide, "along is not given")),
+    NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
+    REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),
+    REAL(Meter, "to", to, "m", "", "end", "... to here", .word = "end"),
+    {.name = NULL},
+};
