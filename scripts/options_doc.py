@@ -47,7 +47,7 @@ PROGRAM = [  # option, value, default, meaning
 
 PETSC = [  # the ones worth knowing, with this program's defaults
     ("-snes_max_it", "15", "Newton iterations of a stage before the step is cut"),
-    ("-ksp_type", "gmres", "Krylov method on the exact Jacobian"),
+    ("-ksp_type", "fgmres", "Krylov method on the exact Jacobian"),
     ("-ksp_pc_side", "right", "so that it stops on the residual of the rows themselves"),
     ("-ksp_rtol", "1e-6", "its relative tolerance"),
     ("-ksp_atol", "0.02 newton_tol_residual", "its absolute tolerance, on scaled rows"),

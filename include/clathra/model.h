@@ -124,18 +124,20 @@ typedef struct {
   PetscLogEvent event[EVENT_COUNT];
 
   /* on the configuration at t_n, built by ModelBeginStep */
-  Stencil *stencil; /* [n] */
-  PetscInt stencil_cap;
-  double  *x_n;    /* [n_local][fields.n] projected start values */
-  double  *w;      /* [n_local][2] (phi S_pi)_I */
-  double  *V;      /* [n_local] sum of V_n S, m^3 */
-  double  *up;     /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
-  double  *spread; /* [n][2] (200); NULL when off */
-  double  *upwind; /* [n][3] (293); NULL when off */
-  Lump    *lump;   /* [n] (265); NULL when off */
-  double  *Vk;     /* [n_local] sum of V S k0 over the first k0, m^3 */
-  double  *flow;   /* [n_local] V/Vk (350) */
-  double  *coef;   /* [n_local][NC_COUNT] nodal means, places NC_... */
+  Stencil  *stencil; /* [n] */
+  PetscInt  stencil_cap;
+  PetscInt *order;  /* [n] particles by the nodes they reach */
+  double   *x_n;    /* [n_local][fields.n] projected start values */
+  double   *w;      /* [n_local][2] (phi S_pi)_I */
+  double   *V;      /* [n_local] sum of V_n S, m^3 */
+  double   *up;     /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
+  double   *spread; /* [n][2] (200); NULL when off */
+  double   *upwind; /* [n][3] (293); NULL when off */
+  Lump     *lump;   /* [n] (265); NULL when off */
+  double *conduct;  /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
+  double *Vk;       /* [n_local] sum of V S times it, m^3 */
+  double *flow;     /* [n_local] V/Vk (350) */
+  double *coef;     /* [n_local][NC_COUNT] nodal means, places NC_... */
   const Material **material; /* [n_local] of most of what this rank has at the node */
   double          *most;     /* [n_local] ... volume of the particle that it is of, times S, m^3 */
   unsigned        *mask;     /* [n_local] Dirichlet bits */

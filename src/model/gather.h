@@ -82,22 +82,16 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
   return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
 }
 
-/* Weight of a particle's flow; 1 without fluids, which need none. */
-static inline double Conductance(const Model *m, PetscInt p)
-{
-  return m->c->fields.fluid ? SceneConductance(m->c, ParticleMaterial(m, p)) : 1.0;
-}
-
 /* Weight of the projection (20): volume times permeability. */
 static inline double ConductingVolume(const Model *m, PetscInt p)
 {
-  return m->P.f[P_V][p] * Conductance(m, p);
+  return m->P.f[P_V][p] * m->conduct[p];
 }
 
-/* (350) over S_I: 1 where the node sees one material. */
+/* (350) over S_I: 1 where all particles of the node are as permeable. */
 static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I)
 {
-  return Conductance(m, p) * m->flow[I];
+  return m->conduct[p] * m->flow[I];
 }
 
 /* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */
@@ -393,6 +387,62 @@ static inline double *AssemblyBlock(const Model *m, const Assembly *to, PetscInt
 
   return to->place ? to->place[k] : &to->value[k * (size_t)(to->fs.n * to->fs.n)];
 }
+
+/* Rows of the tangent as long as the unknowns of all nodes of a particle or face, node by node, zeros up to a multiple
+   of 8, so that sums of them are vector code whatever the number of fields. */
+#define ROW_MOST ((CL_NODES * F_COUNT + 7) / 8 * 8)
+
+static inline int RowLength(int unknowns)
+{
+  return (unknowns + 7) / 8 * 8;
+}
+
+/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes, where it is (350),
+   and in the displacement. */
+typedef struct {
+  double        S, NS[CL_DIM], NU, K;
+  const double *G, *M, *w, *B; /* B: null without mean dilatation */
+} NodeWeights;
+
+/* d in/d(unknowns). */
+typedef struct {
+  int    length;
+  double in[IN_COUNT][ROW_MOST] __attribute__((aligned(64)));
+} Slopes;
+
+void SlopesBegin(int unknowns, Slopes *s);
+/* Those of the node whose unknowns are `first` ... first + fs->n - 1. */
+void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeights *b, int first, Slopes *s);
+/* row = D d in/d(unknowns), D = d out/d in. */
+void SlopesApply(const Slopes *s, const double D[IN_COUNT], double *row);
+
+/* A sum of rows with factors. */
+#define ROW_TERMS IN_COUNT
+typedef struct {
+  int           n;
+  double        factor[ROW_TERMS];
+  const double *row[ROW_TERMS];
+} RowSum;
+
+static inline void RowSumAdd(RowSum *s, double factor, const double *row)
+{
+  s->factor[s->n] = factor;
+  s->row[s->n++]  = row;
+}
+
+/* out += the sum. */
+void RowSumInto(RowSum *s, int length, double *out);
+
+/* The rows of a particle's nodes, summed over particles that reach the same ones before they go to the matrix. */
+typedef struct {
+  int      n;
+  PetscInt node[CL_NODES];
+  double   v[CL_NODES][F_COUNT][ROW_MOST] __attribute__((aligned(64)));
+} Patch;
+
+/* Makes it that of the nodes of r: one of other nodes (n = 0: of none) goes to the matrix first. */
+void PatchAt(const Model *m, const Assembly *to, const Reach *r, Patch *s);
+void PatchAdd(const Model *m, const Assembly *to, const Patch *s);
 
 /* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
  * model. */

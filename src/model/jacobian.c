@@ -2,47 +2,6 @@
    velocities are eliminated. */
 #include "gather.h"
 
-/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes, where it is (350),
-   and in the displacement. */
-typedef struct {
-  double        S, NS[CL_DIM], NU, K;
-  const double *G, *M, *w, *B; /* B: null without mean dilatation */
-} NodeWeights;
-
-/* d out/d(unknowns of one node): one row of D times d in/d x. */
-static inline void Columns(const FieldSet *fs, bool axisymmetric, double dt, const double *D, const NodeWeights *b,
-                           double *col)
-{
-  const double *G = b->G;
-
-  if (fs->solid) {
-    const double *M  = b->M;
-    const int     vs = PlaceVs(fs);
-
-    for (int i = 0; i < 2; i++)
-      col[vs + i] = dt * (D[IN_GRADU + 2 * i] * M[0] + D[IN_GRADU + 2 * i + 1] * M[1] + D[IN_U + i] * b->NU);
-    if (axisymmetric)
-      col[vs] += dt * D[IN_HOOP] * b->K;
-    for (int i = 0; b->B && i < 2; i++)
-      col[vs + i] += dt * (D[IN_GRADU] + D[IN_GRADU + 3] + (axisymmetric ? D[IN_HOOP] : 0.0)) * b->B[i];
-  }
-  for (int f = 0; f < PHASE_COUNT; f++) {
-    if (!fs->phase[f])
-      continue;
-    for (int i = 0; PlaceV(fs, f) >= 0 && i < 2; i++) {
-      const double J = D[IN_J + 2 * f + i] * b->NS[i] * b->w[f];
-
-      col[PlaceV(fs, f) + i] = J;
-      if (fs->solid)
-        col[PlaceVs(fs) + i] -= J;
-    }
-    const double dp    = D[IN_P + f] * b->S + D[IN_GP + 2 * f] * G[0] + D[IN_GP + 2 * f + 1] * G[1];
-    col[PlaceP(fs, f)] = f == PHASE_G && fs->one_pressure ? col[PlaceP(fs, f)] + dp : dp;
-  }
-  if (fs->heat)
-    col[PlaceT(fs)] = D[IN_T] * b->S + D[IN_GT] * G[0] + D[IN_GT + 1] * G[1];
-}
-
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
   double acc[3][2], own[PHASE_COUNT][2], J[PHASE_COUNT][2], Tdot; /* own: in (16), (310) */
@@ -83,53 +42,65 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
   }
 }
 
-/* Rows of node a against the columns DB of node b (b's block starts at *out, row length ld). */
-static inline void Rows(const FieldSet *fs, bool axisymmetric, bool ambient, int n, const NodeFactors *k, double dt,
-                        double S, const double *G, const double *M, double K, const double *B,
-                        double DB[OUT_COUNT][F_COUNT], double *out, int ld)
+/* Rows of node a against the slopes DB of the outputs in the unknowns of all nodes. */
+static void NodeRows(const Model *m, const Assembly *to, const Reach *r, int a, const NodeFactors *k,
+                     const double DB[OUT_COUNT][ROW_MOST], int length, double (*row)[ROW_MOST])
 {
-  for (int i = 0; fs->solid && i < 2; i++) {
-    double *row = &out[(PlaceVs(fs) + i) * ld];
+  const FieldSet *fs = &to->fs;
+  const double    S = r->S[a], *M = r->M[a], *G = r->G[a], *B = m->c->mean_dilatation ? r->B[a] : NULL;
+  RowSum          sum = {0};
 
-    for (int q = 0; q < n; q++)
-      row[q] = M[0] * DB[OUT_P + 2 * i][q] + M[1] * DB[OUT_P + 2 * i + 1][q] + S * k->acc[0][i] * DB[OUT_M][q];
+  for (int i = 0; fs->solid && i < 2; i++) {
+    sum.n = 0;
+    RowSumAdd(&sum, M[0], DB[OUT_P + 2 * i]);
+    RowSumAdd(&sum, M[1], DB[OUT_P + 2 * i + 1]);
+    RowSumAdd(&sum, S * k->acc[0][i], DB[OUT_M]);
     for (int f = 0; f < PHASE_COUNT; f++) {
-      for (int q = 0; fs->phase[f] && q < n; q++)
-        row[q] += S * k->acc[1 + f][i] * DB[OUT_M + 1 + f][q];
+      if (fs->phase[f])
+        RowSumAdd(&sum, S * k->acc[1 + f][i], DB[OUT_M + 1 + f]);
     }
-    for (int q = 0; ambient && q < n; q++)
-      row[q] += S * DB[OUT_A + i][q];
-    for (int q = 0; axisymmetric && i == 0 && q < n; q++)
-      row[q] += K * DB[OUT_HOOP][q];
-    for (int q = 0; B && q < n; q++)
-      row[q] += B[i] * (DB[OUT_P][q] + DB[OUT_P + 3][q] + (axisymmetric ? DB[OUT_HOOP][q] : 0.0));
+    if (to->force)
+      RowSumAdd(&sum, S, DB[OUT_A + i]);
+    if (m->c->axisymmetric && i == 0)
+      RowSumAdd(&sum, r->K[a], DB[OUT_HOOP]);
+    if (B) {
+      RowSumAdd(&sum, B[i], DB[OUT_P]);
+      RowSumAdd(&sum, B[i], DB[OUT_P + 3]);
+      if (m->c->axisymmetric)
+        RowSumAdd(&sum, B[i], DB[OUT_HOOP]);
+    }
+    RowSumInto(&sum, length, row[PlaceVs(fs) + i]);
   }
+  sum.n = 0;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    for (int i = 0; PlaceV(fs, f) >= 0 && i < 2; i++) {
-      double *row = &out[(PlaceV(fs, f) + i) * ld];
-
-      for (int q = 0; q < n; q++)
-        row[q] = k->flow * (k->kr[f] * (k->own[f][i] * DB[OUT_MI + f][q] + DB[OUT_G + 2 * f + i][q]) +
-                            k->J[f][i] * DB[OUT_D + f][q]);
-      for (int q = 0; fs->phase[PHASE_W] && fs->phase[PHASE_G] && q < n; q++)
-        row[q] += k->rise[f][i] * DB[OUT_ROOT + f][q];
-    }
-    const bool shared = f == PHASE_G && fs->one_pressure; /* the row that the water has begun */
-    double    *row    = &out[PlaceP(fs, f) * ld];
-    for (int q = 0; q < n; q++) {
-      const double flux = G[0] * DB[OUT_FLUX + 2 * f][q] + G[1] * DB[OUT_FLUX + 2 * f + 1][q];
-      const double mass = k->weight[f] * (S * DB[OUT_DM + f][q] - dt * flux);
-
-      row[q] = shared ? row[q] + mass : mass;
+    RowSumAdd(&sum, k->weight[f] * S, DB[OUT_DM + f]);
+    for (int j = 0; j < 2; j++)
+      RowSumAdd(&sum, -k->weight[f] * m->stage.dt * G[j], DB[OUT_FLUX + 2 * f + j]);
+    if (f == PHASE_W && fs->one_pressure)
+      continue; /* one row for both */
+    RowSumInto(&sum, length, row[PlaceP(fs, f)]);
+    sum.n = 0;
+  }
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    for (int i = 0; fs->phase[f] && PlaceV(fs, f) >= 0 && i < 2; i++) {
+      sum.n = 0;
+      RowSumAdd(&sum, k->flow * k->kr[f] * k->own[f][i], DB[OUT_MI + f]);
+      RowSumAdd(&sum, k->flow * k->kr[f], DB[OUT_G + 2 * f + i]);
+      RowSumAdd(&sum, k->flow * k->J[f][i], DB[OUT_D + f]);
+      if (m->fluid)
+        RowSumAdd(&sum, k->rise[f][i], DB[OUT_ROOT + f]);
+      RowSumInto(&sum, length, row[PlaceV(fs, f) + i]);
     }
   }
   if (fs->heat) {
-    double *row = &out[PlaceT(fs) * ld];
-
-    for (int q = 0; q < n; q++)
-      row[q] = S * (k->Tdot * DB[OUT_C][q] + DB[OUT_Q][q]) + G[0] * DB[OUT_HEAT][q] + G[1] * DB[OUT_HEAT + 1][q];
+    sum.n = 0;
+    RowSumAdd(&sum, S * k->Tdot, DB[OUT_C]);
+    RowSumAdd(&sum, S, DB[OUT_Q]);
+    for (int j = 0; j < 2; j++)
+      RowSumAdd(&sum, G[j], DB[OUT_HEAT + j]);
+    RowSumInto(&sum, length, row[PlaceT(fs)]);
   }
 }
 
@@ -167,18 +138,19 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
     block[PlaceT(fs) * ld + PlaceT(fs)] += S * out[OUT_C] / dt;
 }
 
-/* A constant number of unknowns lets the compiler unroll the rows of the largest sets. */
-INLINE void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt p, const Reach *r, const double *x,
-                            const PointOutput *o)
+/* What a particle adds to the blocks between its nodes. */
+static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
+                          const PointOutput *o, Patch *patch)
 {
   const FieldSet *fs           = &to->fs;
   const bool      axisymmetric = m->c->axisymmetric;
-  const double    dt           = m->stage.dt;
   NodeFactors     factor[CL_NODES];
+  Slopes          slopes;
+  double          DB[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
 
-  for (int a = 0; a < r->n; a++)
-    Factors(m, p, r->node[a], x, r->S[a], &factor[a]);
+  SlopesBegin(fs->n * r->n, &slopes);
   for (int b = 0; b < r->n; b++) {
+    Factors(m, p, r->node[b], x, r->S[b], &factor[b]);
     const NodeWeights at = {.S  = r->S[b],
                             .NS = {factor[b].flow, factor[b].flow},
                             .NU = MotionWeight(m, p, r, b),
@@ -187,33 +159,15 @@ INLINE void ParticleBlockOf(const Model *m, const Assembly *to, int n, PetscInt 
                             .M  = r->M[b],
                             .B  = m->c->mean_dilatation ? r->B[b] : NULL,
                             .w  = &m->w[2 * r->node[b]]};
-    double            DB[OUT_COUNT][F_COUNT];
 
-    for (int k = 0; k < to->nout; k++)
-      Columns(fs, axisymmetric, dt, o->D[to->out[k]], &at, DB[to->out[k]]);
-    for (int a = 0; a < r->n; a++) {
-      double *restrict sum = AssemblyBlock(m, to, r->node[a], r->node[b]);
-      double block[F_COUNT * F_COUNT];
-
-      Rows(fs, axisymmetric, to->force, n, &factor[a], dt, r->S[a], r->G[a], r->M[a], axisymmetric ? r->K[a] : 0.0,
-           m->c->mean_dilatation ? r->B[a] : NULL, DB, block, n);
-      if (a == b)
-        Diagonal(fs, o->out, &factor[a], dt, r->S[a], at.w, block, n);
-      for (int k = 0; k < n * n; k++)
-        sum[k] += block[k];
-    }
+    SlopesAdd(fs, axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
   }
-}
-
-static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
-                          const PointOutput *o)
-{
-  if (to->fs.n == F_COUNT)
-    ParticleBlockOf(m, to, F_COUNT, p, r, x, o);
-  else if (to->fs.n == 5)
-    ParticleBlockOf(m, to, 5, p, r, x, o);
-  else
-    ParticleBlockOf(m, to, to->fs.n, p, r, x, o);
+  for (int k = 0; k < to->nout; k++)
+    SlopesApply(&slopes, o->D[to->out[k]], DB[to->out[k]]);
+  for (int a = 0; a < r->n; a++) {
+    NodeRows(m, to, r, a, &factor[a], DB, slopes.length, patch->v[a]);
+    Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[2 * r->node[a]], &patch->v[a][0][a * fs->n], ROW_MOST);
+  }
 }
 
 static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
@@ -229,11 +183,16 @@ static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
 /* The targets in turn; what eliminates changes the tangent, so it comes last. */
 static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly *target)
 {
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach       r;
-    PointState  state;
-    PointOutput o;
-    double      in[IN_COUNT];
+  Patch patch[2];
+
+  for (int k = 0; k < ntarget; k++)
+    patch[k].n = 0;
+  for (PetscInt q = 0; q < m->P.n; q++) {
+    const PetscInt p = m->order[q];
+    Reach          r;
+    PointState     state;
+    PointOutput    o;
+    double         in[IN_COUNT];
 
     if (ParticleEvaluate(m, p, x, true, &r, in, &state, &o) != CL_OK)
       continue; /* the residual said so */
@@ -242,10 +201,13 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
         EliminateParticle(m, &r, x, in, target[k].fixed_stress, &o);
-      ParticleBlock(m, &target[k], p, &r, x, &o);
+      PatchAt(m, &target[k], &r, &patch[k]);
+      ParticleBlock(m, &target[k], p, &r, x, &o, &patch[k]);
       LumpBlock(m, &target[k], p, &r);
     }
   }
+  for (int k = 0; k < ntarget; k++)
+    PatchAdd(m, &target[k], &patch[k]);
 }
 
 /* Factor of what a face puts into the row of any unknown: k_r in (16). */
@@ -258,7 +220,9 @@ static double MobilityOf(const Model *m, PetscInt I, int q)
 static void FaceBlock(const Model *m, const Assembly *to, const Face *face, const Reach *r, const FaceOutput *o)
 {
   const FieldSet *fs = &to->fs;
+  Slopes          slopes;
 
+  SlopesBegin(fs->n * r->n, &slopes);
   for (int b = 0; b < r->n; b++) {
     const double      flow = FlowWeight(m, face->particle, r->node[b]);
     const NodeWeights at   = {.S  = r->S[b],
@@ -270,20 +234,23 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
                               .B  = m->c->mean_dilatation ? r->B[b] : NULL,
                               .w  = &m->w[2 * r->node[b]]};
 
-    for (int k = 0; k < F_COUNT; k++) {
-      double col[F_COUNT];
+    SlopesAdd(fs, m->c->axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
+  }
+  for (int k = 0; k < F_COUNT; k++) {
+    double row[ROW_MOST] __attribute__((aligned(64)));
 
-      if (fs->at[k] < 0)
-        continue;
-      Columns(fs, m->c->axisymmetric, m->stage.dt, o->D[k], &at, col);
-      for (int a = 0; a < r->n; a++) {
-        const double N = FaceWeight(face, a, k) * FaceFlow(m, face->particle, r->node[a], k) *
-                         RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
+    if (fs->at[k] < 0)
+      continue;
+    SlopesApply(&slopes, o->D[k], row);
+    for (int a = 0; a < r->n; a++) {
+      const double N = FaceWeight(face, a, k) * FaceFlow(m, face->particle, r->node[a], k) *
+                       RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
 
-        double *row = AssemblyBlock(m, to, r->node[a], r->node[b]) + fs->at[k] * fs->n;
+      for (int b = 0; b < r->n; b++) {
+        double *block = AssemblyBlock(m, to, r->node[a], r->node[b]) + fs->at[k] * fs->n;
 
         for (int q = 0; q < fs->n; q++)
-          row[q] += N * col[q];
+          block[q] += N * row[b * fs->n + q];
       }
     }
   }

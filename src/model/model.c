@@ -60,6 +60,8 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
   PetscCall(PetscFree(m->stencil));
+  PetscCall(PetscFree(m->conduct));
+  PetscCall(PetscFree(m->order));
   PetscCall(PetscFree(m->wide));
   PetscCall(PetscFree(m->spread));
   PetscCall(PetscFree(m->upwind));

@@ -127,7 +127,7 @@ static PetscErrorCode SetSide(KSP ksp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Defaults: GMRES preconditioned by a direct factorisation of J2; every -snes_, -ksp_, -pc_ option wins. */
+/* Defaults: flexible GMRES preconditioned by a direct factorisation of J2; every -snes_, -ksp_, -pc_ option wins. */
 static PetscErrorCode CreateSolver(Model *m)
 {
   SNESLineSearch ls;
@@ -157,7 +157,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
   PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
   PetscCall(SNESGetKSP(m->snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPGMRES));
+  PetscCall(KSPSetType(ksp, KSPFGMRES)); /* keeps what the preconditioner gave, where GMRES applies it once more */
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->tol_residual, PETSC_DEFAULT, 60));
   PetscCall(KSPGMRESSetRestart(ksp, 60));
   PetscCall(PreconditionerCreate(m, small, ksp));

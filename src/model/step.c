@@ -25,12 +25,16 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
   PetscFunctionBeginUser;
   if (m->P.n > m->stencil_cap) {
     PetscCall(PetscFree(m->stencil));
+    PetscCall(PetscFree(m->conduct));
+    PetscCall(PetscFree(m->order));
     PetscCall(PetscFree(m->wide));
     PetscCall(PetscFree(m->spread));
     PetscCall(PetscFree(m->upwind));
     PetscCall(PetscFree(m->lump));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
+    PetscCall(PetscMalloc1(m->stencil_cap, &m->conduct));
+    PetscCall(PetscMalloc1(m->stencil_cap, &m->order));
     if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
@@ -161,7 +165,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
 {
   const Grid  *g     = &m->grid;
   const int    width = SUM_X + m->c->fields.n;
-  const double V = m->P.f[P_V][p], k0 = Conductance(m, p);
+  const double V = m->P.f[P_V][p], weight = m->conduct[p];
   const bool   axis = SeededAtAxis(m, p);
   double       at[CL_DIM]; /* where the particle's values belong */
 
@@ -169,7 +173,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     at[d] = AxisCentroid(&m->stencil[p].axis[d], &g->line[d]);
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
-    const double   S = r->S[a], VS = V * S, VSk = VS * k0;
+    const double   S = r->S[a], VS = V * S, VSk = VS * weight;
     const double   d[2] = {GridNode(g, 0, m->map.ij[I][0]) - at[0], GridNode(g, 1, m->map.ij[I][1]) - at[1]};
     double        *c    = &m->coef[I * NC_COUNT];
 
@@ -229,7 +233,8 @@ static void Average(Model *m, const double *sum)
 
 static PetscErrorCode Project(Model *m)
 {
-  const int   width = SUM_X + m->c->fields.n;
+  const int   width  = SUM_X + m->c->fields.n;
+  const bool  shared = SceneContrast(m->c) > 1.0;
   double     *sum;
   const char *why;
 
@@ -252,6 +257,7 @@ static PetscErrorCode Project(Model *m)
       m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
     if (m->upwind)
       UpwindOf(m, p, &q, &m->upwind[3 * p]);
+    m->conduct[p] = shared ? SceneConductance(m->c, ParticleMaterial(m, p), m->P.f[P_SH][p]) : 1.0;
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
   }
@@ -340,6 +346,35 @@ static void InflowFace(const Model *m, Face *f)
   FaceInflow(f, r.n, r.S, q.kr);
 }
 
+#define TILE 16 /* nodes along x whose rows of J2 stay in the cache */
+
+/* Particles by their first node, tile by tile. */
+static PetscErrorCode Order(Model *m)
+{
+  const Grid    *g    = &m->grid;
+  const PetscInt keys = (g->gm[0] / TILE + 1) * TILE * g->gm[1];
+  PetscInt      *first;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(keys + 1, &first));
+  for (int pass = 0; pass < 2; pass++) {
+    for (PetscInt p = 0; p < m->P.n; p++) {
+      const Axis    *a = m->stencil[p].axis;
+      const PetscInt i = a[0].base - g->gs[0], j = a[1].base - g->gs[1];
+      const PetscInt k = (i / TILE * g->gm[1] + j) * TILE + i % TILE;
+
+      if (pass == 0)
+        first[k + 1]++;
+      else
+        m->order[first[k]++] = p;
+    }
+    for (PetscInt k = 0; pass == 0 && k < keys; k++)
+      first[k + 1] += first[k];
+  }
+  PetscCall(PetscFree(first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 {
   unsigned char *flag;
@@ -353,6 +388,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   PetscCall(BuildStencils(m, flag));
   PetscCall(ModelReduceStatus(m, status));
   if (*status == CL_OK) {
+    PetscCall(Order(m));
     PetscCall(NodeMapUpdate(&m->grid, flag, &m->map, &changed));
     if (changed)
       PetscCall(ModelResizeNodal(m));
