@@ -66,8 +66,10 @@ FAULTS = [
     ("initial pressure at a face without its water", MODEL + "evaluate.c", [("weight += rho *", "weight += 0.0 * rho *")]),
     ("pressure projection without inertia (275)", MODEL + "stabilise.c", [("return 1.0 / (1.0 + PetscSqr(c->t_inertia / m->stage.dt))", "return c->t_inertia >= 0.0 && m->stage.dt > 0.0 ? 1.0 : 0.0")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("const double g = m->c->ghost_penalty;", "const double g = 10.0 * m->c->ghost_penalty;")]),
-    ("hybrid's particle of a layer takes the flow of its nodes (350)", EXPLICIT + "rates.c", [("c * (k0 * v[at + B_J] + tau", "c * ((1.0 + 0.0 * k0) * v[at + B_J] + tau"), ("c * (k0 * v[at + B_J + 1] + tau", "c * ((1.0 + 0.0 * k0) * v[at + B_J + 1] + tau")]),
+    ("hybrid's particle of a layer takes the flow of its nodes (350)", EXPLICIT + "rates.c", [("rt, conduct * v[at + B_J], v", "rt, (1.0 + 0.0 * conduct) * v[at + B_J], v"), ("rt, conduct * v[at + B_J + 1], v", "rt, (1.0 + 0.0 * conduct) * v[at + B_J + 1], v")]),
     ("inertia of hybrid's fluids in layers without its weight (310)", EXPLICIT + "velocities.c", [("PetscSqr(b->flow) * f[FL_Inertia(s)]", "b->flow * f[FL_MI]")]),
+    ("a node's flow is shared as if there were no hydrate (350)", MODEL + "step.c", [("ParticleMaterial(m, p), m->P.f[P_SH][p])", "ParticleMaterial(m, p), 0.0)")]),
+    ("... by hybrid", EXPLICIT + "deposit.c", [("mat, w->Sh[q])", "mat, 0.0)")]),
 ]  # fmt: skip
 
 

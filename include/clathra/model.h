@@ -134,9 +134,10 @@ typedef struct {
   double   *spread; /* [n][2] (200); NULL when off */
   double   *upwind; /* [n][3] (293); NULL when off */
   Lump     *lump;   /* [n] (265); NULL when off */
-  double   *Vk;     /* [n_local] sum of V S k0 over the first k0, m^3 */
-  double   *flow;   /* [n_local] V/Vk (350) */
-  double   *coef;   /* [n_local][NC_COUNT] nodal means, places NC_... */
+  double *conduct;  /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
+  double *Vk;       /* [n_local] sum of V S times it, m^3 */
+  double *flow;     /* [n_local] V/Vk (350) */
+  double *coef;     /* [n_local][NC_COUNT] nodal means, places NC_... */
   const Material **material; /* [n_local] of most of what this rank has at the node */
   double          *most;     /* [n_local] ... volume of the particle that it is of, times S, m^3 */
   unsigned        *mask;     /* [n_local] Dirichlet bits */

@@ -169,13 +169,16 @@ static inline bool SceneLetsGasIn(const Scene *c)
   return enters && SceneStartsWithoutGas(c);
 }
 
-/* Weight of a material's share in the flow of a node (350): k0 in units of the first material's. */
-static inline double SceneConductance(const Scene *c, const Material *mat)
+/* k_p of (350) over the first material's k0, at a saturation of hydrate. */
+static inline double SceneConductance(const Scene *c, const Material *mat, double Sh)
 {
-  return mat->permeability.k0 / c->material[0].permeability.k0;
+  const Permeability *law = &mat->permeability;
+  double              slope;
+
+  return law->k0 * (mat->reacts ? 1.0 : law->hydrate_factor(law, Sh, &slope)) / c->material[0].permeability.k0;
 }
 
-/* The largest ratio of k0 of the materials that regions are of; 1 without fluids. */
+/* The largest ratio of k_p of the regions at the start; 1 without fluids.  Where it is 1, so are the weights (350). */
 static inline double SceneContrast(const Scene *c)
 {
   double least = INFINITY, most = 0.0;
@@ -183,10 +186,10 @@ static inline double SceneContrast(const Scene *c)
   for (PetscInt k = 0; c->fields.fluid && k < c->nregion; k++) {
     if (c->region[k].material < 0)
       continue;
-    const double k0 = c->material[c->region[k].material].permeability.k0;
+    const double conduct = SceneConductance(c, &c->material[c->region[k].material], c->region[k].Sh);
 
-    least = fmin(least, k0);
-    most  = fmax(most, k0);
+    least = fmin(least, conduct);
+    most  = fmax(most, conduct);
   }
   return most > 0.0 ? most / least : 1.0;
 }

@@ -36,6 +36,8 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   LiquidDensityBatch(&mat->water, r.n, pw, T, w->rho[PHASE_W]);
   PermeabilityBatch(&mat->permeability, r.n, w->phi, w->Sh, ka);
   WaterViscosityBatch(&mat->mu_w, r.n, T, mu);
+  for (int q = 0; s.layers && q < r.n; q++)
+    e->t[T_CONDUCT][r.p + q] = SceneConductance(e->m->c, mat, w->Sh[q]);
   for (int q = 0; q < r.n; q++) {
     w->p[q]               = pw[q];
     w->resist[PHASE_W][q] = mu[q] / ka[q];
@@ -149,14 +151,13 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
 {
   double *const *f  = e->m->P.f;
   const int      at = A_Fluid(s, k), vel = k ? P_VG : P_VW, grad = k ? P_GG : P_GW;
-  const double   k0        = Conductance(s, e->m->c, r.mat);
   const double *restrict V = f[P_V] + r.p, *restrict m = f[P_MW + k] + r.p;
   const double *restrict vx = f[vel] + r.p, *restrict vy = f[vel + 1] + r.p;
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
   for (int q = 0; q < r.n; q++) {
     const double share = k ? 1.0 - w->sw[q] : w->sw[q], mass = Largest(m[q], 0.0); /* a trace may be none (101) */
-    const double Vk = V[q] * k0;
+    const double conduct = Conductance(e, s, r.p + q), Vk = V[q] * conduct;
 
     v->value[q][at + FL_M]    = mass;
     v->value[q][at + FL_VX]   = mass * vx[q];
@@ -169,7 +170,7 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
     if (s.fluids == 2)
       v->value[q][at + FL_ROOT] = Vk * sqrt(w->kr[k][q]);
     if (s.layers)
-      v->value[q][at + FL_Inertia(s)] = k0 * Vk * w->rho[k][q];
+      v->value[q][at + FL_Inertia(s)] = conduct * Vk * w->rho[k][q];
   }
 }
 
@@ -270,10 +271,10 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     for (int k = A_Count(s); k < LANES * Rows(A_Count(s)); k++)
       v.value[q][k] = 0.0;
     v.value[q][A_V(s)] = V[q];
-    if (s.layers)
-      v.value[q][A_K(s)] = V[q] * Conductance(s, e->m->c, r.mat);
   }
   State(e, s, r, T, &state);
+  for (int q = 0; s.layers && q < r.n; q++)
+    v.value[q][A_K(s)] = V[q] * Conductance(e, s, r.p + q);
   for (int k = 0; k < s.fluids; k++) {
     const double *g[CL_DIM] = {f[k ? P_GG : P_GW] + r.p, f[(k ? P_GG : P_GW) + 1] + r.p};
 

@@ -71,6 +71,8 @@ static bool Needs(const Explicit *e, int k)
 
   if (k == T_T)
     return !s.heat;
+  if (k == T_CONDUCT)
+    return s.layers;
   if (k == T_WARM || k == T_WARM + 1)
     return e->m->c->compression_heat;
   if (k == T_V)
@@ -200,8 +202,11 @@ static PetscErrorCode Sort(Explicit *e)
 static PetscErrorCode Ready(Explicit *e)
 {
   PetscFunctionBeginUser;
-  e->resize     = e->resize || Layers(e) != e->set.layers; /* a stage may bring other materials */
-  e->set.layers = Layers(e);
+  if (Layers(e) != e->set.layers) { /* a stage may bring other materials */
+    e->resize     = true;
+    e->set.layers = Layers(e);
+    PetscCall(FreeParticles(e));
+  }
   PetscCall(SizeParticles(e));
   PetscCall(Sort(e));
   for (PetscInt p = 0; e->t[T_T] && p < e->m->P.n; p++)

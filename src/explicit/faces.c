@@ -140,7 +140,7 @@ void FacesForces(Explicit *e, double dt)
     Reach(e, f, true, &r);
     Inputs(e, f, in);
     Evaluate(e, f, in, dt, &o);
-    const double k0 = Conductance(s, e->m->c, MaterialOf(e, f));
+    const double conduct = Conductance(e, s, f->particle);
     for (int d = 0; s.solid && d < CL_DIM; d++)
       e->pull[k][d] = -o.out[F_VSX + d];
     if (f->bc[BC_PLATE] >= 0)
@@ -158,7 +158,7 @@ void FacesForces(Explicit *e, double dt)
         if (s.solid)
           row[A_Mix(s) + MIX_FX + d] += f->N[a] * e->pull[k][d];
         for (int ph = 0; ph < s.fluids; ph++)
-          row[A_Fluid(s, ph) + FL_GX + d] += k0 * f->N[a] * force[ph][d];
+          row[A_Fluid(s, ph) + FL_GX + d] += conduct * f->N[a] * force[ph][d];
       }
     }
   }
@@ -188,14 +188,14 @@ void FacesWork(Explicit *e, double dt)
 /* Darcy fluxes at the face (19), with its own weights. */
 static void Fluxes(const Explicit *e, const Face *f, const Nodes *r, double in[IN_COUNT])
 {
-  const Set    s     = e->set;
-  const int    width = LANES * Rows(B_Count(s));
-  const double k0    = Conductance(s, e->m->c, MaterialOf(e, f));
+  const Set    s       = e->set;
+  const int    width   = LANES * Rows(B_Count(s));
+  const double conduct = Conductance(e, s, f->particle);
 
   for (int a = 0; a < r->n; a++) {
     for (int ph = 0; ph < s.fluids; ph++) {
       for (int d = 0; d < CL_DIM; d++)
-        in[IN_J + 2 * ph + d] += k0 * f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
+        in[IN_J + 2 * ph + d] += conduct * f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
     }
   }
 }

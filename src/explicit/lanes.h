@@ -22,7 +22,7 @@ typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_ali
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {
   int solid, fluids, heat; /* 0/1; water, water and gas; 0/1 */
-  int layers;              /* 0/1: materials differ in k0, and (350) shares a node's flow among them */
+  int layers;              /* 0/1: particles differ in k_p, and (350) shares a node's flow among them */
 } Set;
 
 INLINE int Scalars(Set s) /* unknowns of mass and heat: p_w, p_g, T */
@@ -35,7 +35,7 @@ INLINE int Rows(int n)
 }
 
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
- * and each fluid, and with layers V k0. */
+ * and each fluid, and with layers V k_p. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
 enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
 INLINE int A_V(Set s)
@@ -73,10 +73,6 @@ INLINE int A_K(Set s)
 INLINE int A_Count(Set s)
 {
   return A_K(s) + s.layers;
-}
-INLINE double Conductance(Set s, const Scene *c, const Material *mat) /* weight of a particle's flow (350) */
-{
-  return s.layers ? SceneConductance(c, mat) : 1.0;
 }
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
@@ -134,14 +130,15 @@ enum {
   T_T = 0, /* degC, where heat has no field */
   T_SG,    /* share of gas and its slope */
   T_DS,
-  T_RHO,                 /* [2] densities of the fluids */
-  T_GAS  = T_RHO + 2,    /* [2] slopes of that of the gas in p_g and T */
-  T_DRAG = T_GAS + 2,    /* [2] mu/(k_a k_r) */
-  T_V    = T_DRAG + 2,   /* volume at the end of the step */
-  T_EOS,                 /* [2] masses at that volume and the old pressures */
-  T_SLOPE = T_EOS + 2,   /* [2][3] their slopes in p_w, p_g, T */
-  T_WARM  = T_SLOPE + 6, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
-  T_GAIN  = T_WARM + 2,  /* hydrate: gain at the old p and T, slopes in p and T */
+  T_RHO,                  /* [2] densities of the fluids */
+  T_GAS     = T_RHO + 2,  /* [2] slopes of that of the gas in p_g and T */
+  T_DRAG    = T_GAS + 2,  /* [2] mu/(k_a k_r) */
+  T_CONDUCT = T_DRAG + 2, /* weight of its flow at t_n (350); with layers */
+  T_V,                    /* volume at the end of the step */
+  T_EOS,                  /* [2] masses at that volume and the old pressures */
+  T_SLOPE = T_EOS + 2,    /* [2][3] their slopes in p_w, p_g, T */
+  T_WARM  = T_SLOPE + 6,  /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
+  T_GAIN  = T_WARM + 2,   /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
   T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
@@ -202,6 +199,12 @@ struct Explicit {
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
 };
+
+/* Weight of a particle's flow (350). */
+INLINE double Conductance(const Explicit *e, Set s, PetscInt p)
+{
+  return s.layers ? e->t[T_CONDUCT][p] : 1.0;
+}
 
 /* Weights of a block of particles. */
 typedef struct {

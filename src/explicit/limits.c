@@ -51,7 +51,7 @@ static double Openness(Set s, const Material *mat, const PointProperties *q)
 {
   double dphi, dSh;
 
-  if (!s.layers)
+  if (!s.layers || !mat->reacts)
     return 1.0;
   return PermeabilityEvaluate(&mat->permeability, q->phi, q->Sh, &dphi, &dSh) /
          PermeabilityEvaluate(&mat->permeability, q->phi, 0.0, &dphi, &dSh);

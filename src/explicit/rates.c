@@ -39,15 +39,14 @@ INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gath
 /* (313): with layers nodes give the slip per permeability, and what it changes by. */
 INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
 {
-  const double k0 = Conductance(s, e->m->c, r.mat);
-
   for (int q = 0; q < r.n; q++) {
-    double *v = g->value[q];
+    const double conduct = Conductance(e, s, r.p + q);
+    double      *v       = g->value[q];
 
     for (int k = 0; k < s.fluids; k++) {
       for (int d = 0; d < CL_DIM; d++) {
-        v[B_Fluid(s, k) + B_DV + d]  = k0 * v[B_Fluid(s, k) + B_DV + d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
-        v[B_Fluid(s, k) + B_VEL + d] = k0 * v[B_Fluid(s, k) + B_VEL + d] + (s.solid ? v[d] : 0.0);
+        v[B_Fluid(s, k) + B_DV + d]  = conduct * v[B_Fluid(s, k) + B_DV + d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
+        v[B_Fluid(s, k) + B_VEL + d] = conduct * v[B_Fluid(s, k) + B_VEL + d] + (s.solid ? v[d] : 0.0);
       }
     }
   }
@@ -194,8 +193,8 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 {
   double *const *f  = e->m->P.f;
   const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
-  const double   bracket = e->m->c->stabilisation.flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
-               scale = e->o.mass_scaling / dt, k0 = Conductance(s, e->m->c, r.mat);
+  const double   bracket   = e->m->c->stabilisation.flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
+               scale       = e->o.mass_scaling / dt;
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
                          *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
@@ -203,11 +202,12 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau;
+    const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau,
+                 conduct = Conductance(e, s, r.p + q);
 
     o->value[q][k]    = m[q] - eos[q];
-    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, k0 * v[at + B_J], v[at + B_PROJ] - gx[q]);
-    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, k0 * v[at + B_J + 1], v[at + B_PROJ + 1] - gy[q]);
+    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J], v[at + B_PROJ] - gx[q]);
+    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + 1], v[at + B_PROJ + 1] - gy[q]);
   }
   for (int i = 0; i < n; i++) {
     const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;

@@ -8,7 +8,7 @@ typedef struct {
   /* (16) of each fluid: inertia per velocity, drag, times k_r, and the inverse of what multiplies its velocity; k_r,
      share */
   double A[2], B[2], per_AB[2], kr[2], w[2];
-  double flow;              /* V/(V k0) (350) */
+  double flow;              /* V/(V k_p) (350) */
   double lhs;               /* of the mixture, N s/m */
   double v, f, vf[2], r[2]; /* skeleton: velocity, force on the mixture; fluids: velocity, force times k_r */
 } Balance;
@@ -19,7 +19,7 @@ INLINE double Share(const Set s, const double *a, double per_V, int k)
   return Largest(a[A_Fluid(s, k) + FL_W] * per_V, CL_SHARE_FLOOR);
 }
 
-/* What makes (350) of sums weighted with k0. */
+/* What makes (350) of sums weighted with k_p. */
 INLINE double Flow(const Set s, const double *a)
 {
   return s.layers ? a[A_V(s)] / a[A_K(s)] : 1.0;

@@ -82,22 +82,16 @@ static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
   return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
 }
 
-/* Weight of a particle's flow; 1 without fluids, which need none. */
-static inline double Conductance(const Model *m, PetscInt p)
-{
-  return m->c->fields.fluid ? SceneConductance(m->c, ParticleMaterial(m, p)) : 1.0;
-}
-
 /* Weight of the projection (20): volume times permeability. */
 static inline double ConductingVolume(const Model *m, PetscInt p)
 {
-  return m->P.f[P_V][p] * Conductance(m, p);
+  return m->P.f[P_V][p] * m->conduct[p];
 }
 
-/* (350) over S_I: 1 where the node sees one material. */
+/* (350) over S_I: 1 where all particles of the node are as permeable. */
 static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I)
 {
-  return Conductance(m, p) * m->flow[I];
+  return m->conduct[p] * m->flow[I];
 }
 
 /* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */

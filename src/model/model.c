@@ -62,6 +62,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
   PetscCall(PetscFree(m->stencil));
+  PetscCall(PetscFree(m->conduct));
   PetscCall(PetscFree(m->order));
   PetscCall(PetscFree(m->wide));
   PetscCall(PetscFree(m->spread));

@@ -25,6 +25,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
   PetscFunctionBeginUser;
   if (m->P.n > m->stencil_cap) {
     PetscCall(PetscFree(m->stencil));
+    PetscCall(PetscFree(m->conduct));
     PetscCall(PetscFree(m->order));
     PetscCall(PetscFree(m->wide));
     PetscCall(PetscFree(m->spread));
@@ -32,6 +33,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->lump));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
+    PetscCall(PetscMalloc1(m->stencil_cap, &m->conduct));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->order));
     if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
@@ -163,7 +165,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
 {
   const Grid  *g     = &m->grid;
   const int    width = SUM_X + m->c->fields.n;
-  const double V = m->P.f[P_V][p], k0 = Conductance(m, p);
+  const double V = m->P.f[P_V][p], weight = m->conduct[p];
   const bool   axis = SeededAtAxis(m, p);
   double       at[CL_DIM]; /* where the particle's values belong */
 
@@ -171,7 +173,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     at[d] = AxisCentroid(&m->stencil[p].axis[d], &g->line[d]);
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
-    const double   S = r->S[a], VS = V * S, VSk = VS * k0;
+    const double   S = r->S[a], VS = V * S, VSk = VS * weight;
     const double   d[2] = {GridNode(g, 0, m->map.ij[I][0]) - at[0], GridNode(g, 1, m->map.ij[I][1]) - at[1]};
     double        *c    = &m->coef[I * NC_COUNT];
 
@@ -231,7 +233,8 @@ static void Average(Model *m, const double *sum)
 
 static PetscErrorCode Project(Model *m)
 {
-  const int   width = SUM_X + m->c->fields.n;
+  const int   width  = SUM_X + m->c->fields.n;
+  const bool  shared = SceneContrast(m->c) > 1.0;
   double     *sum;
   const char *why;
 
@@ -254,6 +257,7 @@ static PetscErrorCode Project(Model *m)
       m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
     if (m->upwind)
       UpwindOf(m, p, &q, &m->upwind[3 * p]);
+    m->conduct[p] = shared ? SceneConductance(m->c, ParticleMaterial(m, p), m->P.f[P_SH][p]) : 1.0;
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
   }

@@ -15,13 +15,13 @@ static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 
   PetscFunctionBeginUser;
   if (contrast > LAYERED)
-    PetscCall(
-        PetscFPrintf(comm, stderr,
-                     "clathra: warning: k0 of the materials differs by a factor of %.3g: with pressures: particles the "
-                     "least permeable material at a node holds all of its fluid, so that what flows along a "
-                     "layer is too little by what flows through about a cell of it; implicit steps have no such "
-                     "error\n",
-                     contrast));
+    PetscCall(PetscFPrintf(
+        comm, stderr,
+        "clathra: warning: permeability of the regions differs by a factor of %.3g: with pressures: particles the "
+        "least permeable material at a node holds all of its fluid, so that what flows along a "
+        "layer is too little by what flows through about a cell of it; implicit steps have no such "
+        "error\n",
+        contrast));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
