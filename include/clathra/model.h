@@ -194,7 +194,10 @@ typedef struct {
   double factored_dt;     /* dt' it was made for, s */
   char pmat_type[16]; /* aij | baij of the preconditioner's matrix (option -model_pmat_type); empty: as the solver likes
                          it */
-  PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
+  double   keep_jacobian; /* (343), option -newton_keep_jacobian */
+  PetscInt kept;          /* iterations of the solve that took the Jacobian of the last */
+  double   residual;      /* largest scaled one of the last iteration */
+  PetscInt poor;          /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
   double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
 } Model;
 
@@ -227,8 +230,8 @@ PetscErrorCode ModelPrintSolver(Model *m);
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);
 /* Starts a stage: boundary values, scales.  The stage's arrays belong to the caller. */
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s);
-/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution.
- */
+/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution;
+   newton: iterations with a Jacobian of their own (343). */
 PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status);
 /* What the solution means for the particles; checks that they stay within half a cell and inside the grid. */
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status);
