@@ -32,6 +32,8 @@ PROGRAM = [  # option, value, default, meaning
     ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this, rows of "
      "mass and energy 20 times lower"),
     ("-newton_tol_update", "x", "1e-6", "... and every scaled update too, in units of 1 MPa and 1 K"),
+    ("-newton_keep_jacobian", "x", "0.01", "an iteration that takes the largest scaled row to less than x of what it was leaves its Jacobian "
+     "to the next; 0: a new one in every iteration"),
     ("-newton_preconditioner", "auto, whole, reduced", "auto", "whole: of the whole matrix, LU unless -pc_type says "
      "otherwise; reduced: multigrid on what is left without the fluid velocities (docs/equations.md, section 9), where it "
      "breaks down LU of the whole for that stage; auto: reduced where the cells across times the unknowns a node exceed 250 (1000 without fluids), "

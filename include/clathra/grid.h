@@ -63,7 +63,7 @@ static inline PetscInt GridPadded(const Grid *g, PetscInt i, PetscInt j)
   return (j - g->gs[1]) * g->gm[0] + (i - g->gs[0]);
 }
 
-#define CL_NODE_DOUBLES 32 /* at most, of a node in one exchange */
+#define CL_NODE_DOUBLES 40 /* at most, of a node in one exchange */
 
 /* Active nodes: owned ones first (they are a Vec's local part), then ghosts. */
 typedef struct {

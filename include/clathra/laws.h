@@ -54,6 +54,8 @@ struct Permeability {
   double phi0;    /* reference porosity */
   double mh;      /* exponent of (1-S_h)^mh; type power */
   double kh, Shc; /* plateau and threshold of Masuda's ramp; type masuda_ramp */
+  double ratio;   /* of what flows across the beds to what flows along them (306), (0,1] */
+  double dip;     /* of the beds at the start, from x towards y, deg */
   double (*hydrate_factor)(const Permeability *, double Sh, double *df_dSh);
   double (*porosity_factor)(const Permeability *, double phi, double *df_dphi);
   /* the same of n, which multiply k */

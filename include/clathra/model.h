@@ -107,6 +107,12 @@ typedef struct {
   double gain[F_COUNT];  /* what a kg of hydrate adds to the rows (17), (21) of a node: kg, J */
 } Lump;
 
+/* A particle with beds at t_n. */
+typedef struct {
+  Beds   A;                /* (306) */
+  double rho[PHASE_COUNT]; /* kg/m^3 */
+} Bedding;
+
 typedef struct Reduced Reduced; /* reduced.c */
 
 /* One of two fluids at a node (16). */
@@ -133,6 +139,7 @@ typedef struct {
   double   *up;     /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
   double   *spread; /* [n][2] (200); NULL when off */
   double   *upwind; /* [n][3] (293); NULL when off */
+  Bedding  *beds;   /* [n] NULL without */
   Lump     *lump;   /* [n] (265); NULL when off */
   double *conduct;  /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
   double *Vk;       /* [n_local] sum of V S times it, m^3 */
@@ -187,7 +194,10 @@ typedef struct {
   double factored_dt;     /* dt' it was made for, s */
   char pmat_type[16]; /* aij | baij of the preconditioner's matrix (option -model_pmat_type); empty: as the solver likes
                          it */
-  PetscInt poor;      /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
+  double   keep_jacobian; /* (343), option -newton_keep_jacobian */
+  PetscInt kept;          /* iterations of the solve that took the Jacobian of the last */
+  double   residual;      /* largest scaled one of the last iteration */
+  PetscInt poor;          /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
   double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
 } Model;
 
@@ -220,8 +230,8 @@ PetscErrorCode ModelPrintSolver(Model *m);
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);
 /* Starts a stage: boundary values, scales.  The stage's arrays belong to the caller. */
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s);
-/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution.
- */
+/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution;
+   newton: iterations with a Jacobian of their own (343). */
 PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status);
 /* What the solution means for the particles; checks that they stay within half a cell and inside the grid. */
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status);

@@ -2,8 +2,9 @@
    store, the HDF5 names, the checkpoint and the docs follow from this table. */
 #pragma once
 
-#include "clathra/scene.h"
+#include "clathra/point_flow.h"
 #include "clathra/point_state.h"
+#include "clathra/scene.h"
 #include "clathra/skeleton.h"
 
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
@@ -94,6 +95,17 @@ static inline bool ParticlesHold(const Particles *P, const ParticleVariable *v)
 static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
 {
   return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
+}
+
+/* What drives its fluids through the beds as they lie now (306). */
+static inline Beds ParticleBeds(const Scene *c, const Particles *P, PetscInt p)
+{
+  const Permeability *law  = &c->material[c->region[P->i[PI_REGION][p]].material].permeability;
+  double              F[4] = {1.0, 0.0, 0.0, 1.0};
+
+  for (int k = 0; P->f[P_F] && k < 4; k++)
+    F[k] = P->f[P_F + k][p];
+  return BedsOf(law->ratio, law->dip * M_PI / 180.0, F);
 }
 
 /* Temperature that a particle started from (81), degC. */

@@ -6,6 +6,7 @@
 #include "clathra/base.h"
 #include "clathra/fields.h"
 #include "clathra/kinematics.h"
+#include "clathra/point_flow.h"
 #include "clathra/skeleton.h"
 
 /* Of phi S_pi at a node (107): a fluid that is not there moves with the skeleton. */
@@ -58,11 +59,13 @@ typedef struct {
   double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   bool   compression; /* heat of compression and throttling (290); then also ... */
-  double p_star[PHASE_COUNT]; /* ... starred p_w, p_g, Pa */
-  double gravity[2];          /* ... m/s^2 */
-  double dt;                  /* dt' of the stage */
-  const Ambient *ambient;     /* at the end of the stage; NULL: no pressure around the body */
-  double         x[2];        /* where the particle's values belong at t_n, m; for the ambient pressure */
+  double p_star[PHASE_COUNT];            /* ... starred p_w, p_g, Pa */
+  double gravity[2];                     /* ... m/s^2 */
+  double dt;                             /* dt' of the stage */
+  const Beds    *beds;                   /* at t_n; NULL: none; then also ... */
+  double         weight[PHASE_COUNT][2]; /* ... rho b of the fluids at t_n, N/m^3 */
+  const Ambient *ambient;                /* at the end of the stage; NULL: no pressure around the body */
+  double         x[2];                   /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
 /* State at the end of the stage. */

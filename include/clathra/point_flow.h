@@ -2,10 +2,55 @@
    blocks (point_state.h). */
 #pragma once
 
+#include <math.h>
 #include <stdbool.h>
 #include "clathra/inline.h"
 
 #define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
+
+/* A of (306), what drives a fluid per gradient in units of k_a: xx, yy, xy; 1 without beds. */
+typedef struct {
+  double xx, yy, xy;
+} Beds;
+
+/* (306), (307) of a material whose beds dip by `dip` (rad) from x towards y and lay like that where the deformation
+   gradient F (xx, xy, yx, yy) was 1; ratio of k across them to k along them. */
+INLINE Beds BedsOf(double ratio, double dip, const double F[4])
+{
+  const double n0[2] = {-sin(dip), cos(dip)}, n[2] = {F[3] * n0[0] - F[2] * n0[1], F[0] * n0[1] - F[1] * n0[0]};
+  const double c = (1.0 - ratio) / (n[0] * n[0] + n[1] * n[1]);
+
+  return (Beds){1.0 - c * n[0] * n[0], 1.0 - c * n[1] * n[1], -c * n[0] * n[1]};
+}
+
+/* v := A v */
+INLINE void BedsDrive(const Beds *A, double v[2])
+{
+  const double x = v[0], y = v[1];
+
+  v[0] = A->xx * x + A->xy * y;
+  v[1] = A->xy * x + A->yy * y;
+}
+
+/* (309): what drives a fluid whose weight is w (rho b) like the gradient g of its pressure: g itself where it is at
+ * rest.
+ */
+INLINE void BedsDriveMoving(const Beds *A, const double w[2], double g[2])
+{
+  for (int d = 0; d < 2; d++)
+    g[d] -= w[d];
+  BedsDrive(A, g);
+  for (int d = 0; d < 2; d++)
+    g[d] += w[d];
+}
+
+/* J . (A^-1 - 1) J: what drag takes more than along the beds. */
+INLINE double BedsDrag(const Beds *A, const double J[2])
+{
+  const double det = A->xx * A->yy - A->xy * A->xy;
+
+  return (A->yy * J[0] * J[0] - 2.0 * A->xy * J[0] * J[1] + A->xx * J[1] * J[1]) / det - J[0] * J[0] - J[1] * J[1];
+}
 
 /* What k_r is a function of, with slopes in the fluid's share of the open pores and in S_h. */
 typedef struct {

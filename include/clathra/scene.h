@@ -194,6 +194,22 @@ static inline double SceneContrast(const Scene *c)
   return most > 0.0 ? most / least : 1.0;
 }
 
+/* Does a region's permeability differ along and across its beds (306)? */
+static inline bool SceneHasBeds(const Scene *c)
+{
+  bool beds = false;
+
+  for (PetscInt k = 0; c->fields.fluid && k < c->nregion; k++)
+    beds = beds || (c->region[k].material >= 0 && c->material[c->region[k].material].permeability.ratio != 1.0);
+  return beds;
+}
+
+/* Do particles share a node's flow in proportion to k_p (350)?  Hybrid knows beds with such shares alone. */
+static inline bool SceneSharesFlow(const Scene *c)
+{
+  return SceneHasBeds(c) || SceneContrast(c) > 1.0;
+}
+
 /* First condition that the integrators without a matrix do not know, or NULL. */
 static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
 {

@@ -93,6 +93,21 @@ static void CheckGas(Reader *r, const Scene *c, const Region *g)
             g->temperature, law->Tc, law->Tc - CL_ZERO_CELSIUS);
 }
 
+/* Beds (306) keep their shape about an axis if they are level; the paper's bare form has not (350). */
+static void CheckBeds(Reader *r, const Case *c, const Material *m)
+{
+  const Permeability *law = &m->permeability;
+
+  if (law->ratio == 1.0 || !c->scene.fields.fluid)
+    return;
+  if (c->scene.axisymmetric && law->dip != 0.0)
+    FAIL_AT(GROUP_MATERIAL, m->name, "permeability_dip",
+            "must be 0 deg when geometry is axisymmetric (%g deg): beds about an axis are level", law->dip);
+  if (c->pressures == PRESSURES_PARTICLES)
+    FAIL_AT(GROUP_MATERIAL, m->name, "permeability_ratio",
+            "below 1 (%g) is not known with stepper_pressures: particles", law->ratio);
+}
+
 static void CheckRegion(Reader *r, const Case *c, PetscInt i)
 {
   const Region  *g      = &c->scene.region[i];
@@ -138,8 +153,10 @@ void CaseCheck(Reader *r, const Case *c)
 
   if (!bad[GROUP_CASE])
     CheckCase(r, c);
-  for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
+  for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++) {
     CheckMaterial(r, &c->scene, &c->scene.material[i]);
+    CheckBeds(r, c, &c->scene.material[i]);
+  }
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)
     CheckPlasticity(r, c, &c->scene.material[i]);
   if (!bad[GROUP_CASE] && !bad[GROUP_MATERIAL])

@@ -9,6 +9,10 @@ static bool NeedsLambda(const void *p)
 {
   return !strcmp(((const Material *)p)->retention.type, "brooks_corey");
 }
+static bool HasBeds(const void *p)
+{
+  return ((const Material *)p)->permeability.ratio < 1.0;
+}
 static bool NeedsPower(const void *p)
 {
   return !strcmp(((const Material *)p)->permeability.hydrate_type, "power");
@@ -185,6 +189,11 @@ const Key material_key[] = {
          OFLAW(NeedsRamp, "hydrate_law is masuda_ramp"), .has = HAS_WATER, .also = HAS_HYDRATE),
     REAL(Material, "permeability_Shc", permeability.Shc, "", "(0,1]", "1", "threshold",
          OFLAW(NeedsRamp, "hydrate_law is masuda_ramp"), .has = HAS_WATER, .also = HAS_HYDRATE),
+    REAL(Material, "permeability_ratio", permeability.ratio, "", "(0,1]", "1",
+         "k across the beds over k along them, which is k_a (306)", .has = HAS_WATER),
+    REAL(Material, "permeability_dip", permeability.dip, "deg", "[-90,90]", "0 deg",
+         "of the beds at the start, from x towards y; they turn with the body", .has = HAS_WATER,
+         ACTS(HasBeds, "permeability_ratio is below 1")),
     BOOLEAN(Material, "kinetics_active", reacts, "no", "hydrate forms and dissociates", BINDS(HAS_ALL)),
     REAL(Material, "kinetics_K0", kinetics.K0, "mol/(m^2 Pa s)", "[0,inf)", "0 mol/(m^2 Pa s)",
          "K_d = K0 exp(-dE/(R T))", OFLAW(NeedsRate, "active")),

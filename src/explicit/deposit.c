@@ -81,7 +81,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
 /* A block's values, one row of numbers for each particle; x, y: what is multiplied with the node's place in the 3 x 3
    patch (carried values) and with the gradients (forces). */
 typedef struct {
-  double value[BLOCK][4 * LANES], carry[CL_DIM][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
+  double value[BLOCK][5 * LANES], carry[CL_DIM][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
 } Values;
 
 /* V (p + g . (x_I - x_p)) at the lowest left node of the patch, and its growth from node to node (2). */
@@ -159,11 +159,14 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
     const double share = k ? 1.0 - w->sw[q] : w->sw[q], mass = Largest(m[q], 0.0); /* a trace may be none (101) */
     const double conduct = Conductance(e, s, r.p + q), Vk = V[q] * conduct;
 
-    v->value[q][at + FL_M]    = mass;
-    v->value[q][at + FL_VX]   = mass * vx[q];
-    v->value[q][at + FL_VY]   = mass * vy[q];
-    v->value[q][at + FL_GX]   = -Vk * gx[q];
-    v->value[q][at + FL_GY]   = -Vk * gy[q];
+    v->value[q][at + FL_M]  = mass;
+    v->value[q][at + FL_VX] = mass * vx[q];
+    v->value[q][at + FL_VY] = mass * vy[q];
+    double g[CL_DIM]        = {gx[q], gy[q]};
+
+    Driven(e, s, r.p + q, w->rho[k][q], g);
+    v->value[q][at + FL_GX]   = -Vk * g[0];
+    v->value[q][at + FL_GY]   = -Vk * g[1];
     v->value[q][at + FL_MI]   = Vk * w->rho[k][q];
     v->value[q][at + FL_DRAG] = Vk * w->resist[k][q];
     v->value[q][at + FL_W]    = w->open[q] * share;
@@ -171,6 +174,23 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
       v->value[q][at + FL_ROOT] = Vk * sqrt(w->kr[k][q]);
     if (s.layers)
       v->value[q][at + FL_Inertia(s)] = conduct * Vk * w->rho[k][q];
+  }
+}
+
+/* (306) as the beds lie now. */
+INLINE void BedsValues(Explicit *e, const Set s, Run r, Values *v)
+{
+  for (int q = 0; s.beds && q < r.n; q++) {
+    const PetscInt p  = r.p + q;
+    const Beds     A  = ParticleBeds(e->m->c, &e->m->P, p);
+    const double   Vk = e->m->P.f[P_V][p] * Conductance(e, s, p);
+
+    e->t[T_BEDS][p]            = A.xx;
+    e->t[T_BEDS + 1][p]        = A.yy;
+    e->t[T_BEDS + 2][p]        = A.xy;
+    v->value[q][A_Beds(s)]     = Vk * (A.xx - 1.0);
+    v->value[q][A_Beds(s) + 1] = Vk * (A.yy - 1.0);
+    v->value[q][A_Beds(s) + 2] = Vk * A.xy;
   }
 }
 
@@ -275,6 +295,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   State(e, s, r, T, &state);
   for (int q = 0; s.layers && q < r.n; q++)
     v.value[q][A_K(s)] = V[q] * Conductance(e, s, r.p + q);
+  BedsValues(e, s, r, &v);
   for (int k = 0; k < s.fluids; k++) {
     const double *g[CL_DIM] = {f[k ? P_GG : P_GW] + r.p, f[(k ? P_GG : P_GW) + 1] + r.p};
 

@@ -7,7 +7,7 @@ static const char *const part[STEP_PARTS] = {"ClExDeposit", "ClExVelocities", "C
 /* Do layers share a node's flow (350)?  Not in the bare form, which is the paper's. */
 static int Layers(const Explicit *e)
 {
-  return SceneContrast(e->m->c) > 1.0 && !e->o.particle_pressures;
+  return SceneSharesFlow(e->m->c) && !e->o.particle_pressures;
 }
 
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out)
@@ -20,7 +20,7 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   PetscCall(PetscNew(&e));
   e->m   = m;
   e->o   = *o;
-  e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat, Layers(e)};
+  e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat, Layers(e), SceneHasBeds(m->c)};
   *out   = e;
 
   e->straight = INFINITY;
@@ -73,6 +73,8 @@ static bool Needs(const Explicit *e, int k)
     return !s.heat;
   if (k == T_CONDUCT)
     return s.layers;
+  if (k >= T_BEDS && k < T_BEDS + 3)
+    return s.beds;
   if (k == T_WARM || k == T_WARM + 1)
     return e->m->c->compression_heat;
   if (k == T_V)
@@ -202,9 +204,10 @@ static PetscErrorCode Sort(Explicit *e)
 static PetscErrorCode Ready(Explicit *e)
 {
   PetscFunctionBeginUser;
-  if (Layers(e) != e->set.layers) { /* a stage may bring other materials */
+  if (Layers(e) != e->set.layers || SceneHasBeds(e->m->c) != e->set.beds) { /* a stage may bring other materials */
     e->resize     = true;
     e->set.layers = Layers(e);
+    e->set.beds   = SceneHasBeds(e->m->c);
     PetscCall(FreeParticles(e));
   }
   PetscCall(SizeParticles(e));

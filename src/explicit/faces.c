@@ -151,6 +151,11 @@ void FacesForces(Explicit *e, double dt)
       for (int d = 0; d < CL_DIM; d++)
         force[ph][d] = -o.out[F_VWX + 2 * ph + d] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
     }
+    for (int ph = 0; s.beds && ph < s.fluids; ph++) {
+      const Beds A = BedsAt(e, f->particle);
+
+      BedsDrive(&A, force[ph]);
+    }
     for (int a = 0; a < r.n; a++) {
       double *row = &e->A[r.node[a] * width];
 

@@ -23,6 +23,7 @@ typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_ali
 typedef struct {
   int solid, fluids, heat; /* 0/1; water, water and gas; 0/1 */
   int layers;              /* 0/1: particles differ in k_p, and (350) shares a node's flow among them */
+  int beds;                /* 0/1: (306), with layers */
 } Set;
 
 INLINE int Scalars(Set s) /* unknowns of mass and heat: p_w, p_g, T */
@@ -35,7 +36,7 @@ INLINE int Rows(int n)
 }
 
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
- * and each fluid, and with layers V k_p. */
+ * and each fluid, and with layers V k_p, with beds that times A - 1. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
 enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
 INLINE int A_V(Set s)
@@ -70,9 +71,13 @@ INLINE int A_K(Set s)
 {
   return A_Fluid(s, s.fluids);
 }
-INLINE int A_Count(Set s)
+INLINE int A_Beds(Set s) /* xx, yy, xy */
 {
   return A_K(s) + s.layers;
+}
+INLINE int A_Count(Set s)
+{
+  return A_Beds(s) + 3 * s.beds;
 }
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
@@ -134,7 +139,8 @@ enum {
   T_GAS     = T_RHO + 2,  /* [2] slopes of that of the gas in p_g and T */
   T_DRAG    = T_GAS + 2,  /* [2] mu/(k_a k_r) */
   T_CONDUCT = T_DRAG + 2, /* weight of its flow at t_n (350); with layers */
-  T_V,                    /* volume at the end of the step */
+  T_BEDS,                 /* [3] A at t_n (306): xx, yy, xy; with beds */
+  T_V = T_BEDS + 3,       /* volume at the end of the step */
   T_EOS,                  /* [2] masses at that volume and the old pressures */
   T_SLOPE = T_EOS + 2,    /* [2][3] their slopes in p_w, p_g, T */
   T_WARM  = T_SLOPE + 6,  /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
@@ -204,6 +210,25 @@ struct Explicit {
 INLINE double Conductance(const Explicit *e, Set s, PetscInt p)
 {
   return s.layers ? e->t[T_CONDUCT][p] : 1.0;
+}
+
+/* A of a particle (306). */
+INLINE Beds BedsAt(const Explicit *e, PetscInt p)
+{
+  return (Beds){e->t[T_BEDS][p], e->t[T_BEDS + 1][p], e->t[T_BEDS + 2][p]};
+}
+
+/* (309): what drives a fluid of density rho like the gradient g of its pressure, with beds. */
+INLINE void Driven(const Explicit *e, Set s, PetscInt p, double rho, double g[CL_DIM])
+{
+  const double *b = e->m->bc.gravity;
+
+  if (!s.beds)
+    return;
+  const Beds   A         = BedsAt(e, p);
+  const double w[CL_DIM] = {rho * b[0], rho * b[1]};
+
+  BedsDriveMoving(&A, w, g);
 }
 
 /* Weights of a block of particles. */
@@ -294,10 +319,12 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
 #define MAKE_LOOP(f, solid, fluids, heat)                                                                              \
   static void f##_##solid##fluids##heat(Explicit *e, Run r, double dt)                                                 \
   {                                                                                                                    \
-    if (fluids && e->set.layers)                                                                                       \
-      f(e, (Set){solid, fluids, heat, 1}, r, dt);                                                                      \
+    if (fluids && e->set.beds)                                                                                         \
+      f(e, (Set){solid, fluids, heat, 1, 1}, r, dt);                                                                   \
+    else if (fluids && e->set.layers)                                                                                  \
+      f(e, (Set){solid, fluids, heat, 1, 0}, r, dt);                                                                   \
     else                                                                                                               \
-      f(e, (Set){solid, fluids, heat, 0}, r, dt);                                                                      \
+      f(e, (Set){solid, fluids, heat, 0, 0}, r, dt);                                                                   \
   }
 #define MAKE_LOOPS(f)                                                                                                  \
   MAKE_LOOP(f, 0, 0, 1)                                                                                                \

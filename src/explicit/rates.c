@@ -218,10 +218,12 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
   for (int q = 0; q < r.n; q++) {
     const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau,
                  conduct = Conductance(e, s, r.p + q);
+    double own[CL_DIM]   = {gx[q], gy[q]};
 
+    Driven(e, s, r.p + q, rho[q], own);
     o->value[q][k]    = m[q] - eos[q];
-    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J], v[at + B_PROJ] - gx[q]);
-    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + 1], v[at + B_PROJ + 1] - gy[q]);
+    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J], v[at + B_PROJ] - own[0]);
+    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + 1], v[at + B_PROJ + 1] - own[1]);
   }
   if (k == PHASE_G && r.mat->gas.carried > 0.0)
     CarriedFlux(e, s, r, g, dt, o);
@@ -230,6 +232,23 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 
     for (int q = 0; q < r.n; q++)
       o->value[q][R_Matrix(s) + k * n + i] = slope[q];
+  }
+}
+
+/* (92): what drag takes beyond that of flow along the beds, and pressure gives. */
+INLINE void BedsWork(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  for (int k = 0; s.beds && s.solid && k < s.fluids; k++) {
+    for (int q = 0; q < r.n; q++) {
+      const PetscInt p       = r.p + q;
+      const double   conduct = Conductance(e, s, p), *v = &g->value[q][B_Fluid(s, k) + B_J];
+      const double   J[CL_DIM] = {conduct * v[0], conduct * v[1]};
+      const Beds     A         = BedsAt(e, p);
+      const double   work      = dt * e->m->P.f[P_V][p] * e->t[T_DRAG + k][p] * BedsDrag(&A, J);
+
+      e->work[WORK_PRESSURE] += work;
+      e->work[WORK_DRAG] += work;
+    }
   }
 }
 
@@ -460,6 +479,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     MethaneMasses(e, r, &v);
   for (int k = 0; k < s.fluids; k++)
     FluidRow(e, s, r, k, &g, dt, &o);
+  BedsWork(e, s, r, &g, dt);
   if (s.heat)
     HeatRow(e, s, r, &g, dt, &v, &o);
   if (s.heat && e->m->c->compression_heat)

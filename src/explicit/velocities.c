@@ -120,6 +120,46 @@ INLINE void Solve(const Explicit *e, const Set s, const Balance *b, double dt, b
     v[1 + k] = (b->A[k] * b->vf[k] + b->r[k] - DragAtStart(e, b, k) + DragAtEnd(e, b, k) * v[0]) * b->per_AB[k];
 }
 
+/* The same with beds: fluids feel the skeleton's acceleration along either axis (308), so both balances b are one
+   system (314).  v: [axis][3]. */
+INLINE void SolveBeds(const Explicit *e, const Set s, const double *a, const Balance b[CL_DIM], double dt,
+                      const bool held[CL_DIM], const double value[CL_DIM], double v[CL_DIM][3])
+{
+  const double scale = e->o.mass_scaling / dt, per_k = 1.0 / a[A_K(s)], *X = &a[A_Beds(s)];
+  const double less[CL_DIM][CL_DIM] = {{X[0] * per_k, X[2] * per_k}, {X[2] * per_k, X[1] * per_k}};
+  double       L[CL_DIM][CL_DIM], rhs[CL_DIM], mass[PHASE_COUNT] = {0.0}, sum = 0.0;
+
+  for (int k = 0; k < s.fluids; k++) {
+    mass[k] = scale * b[0].kr[k] * b[0].flow * a[A_Fluid(s, k) + FL_MI];
+    sum += scale * b[0].m[k] * b[0].per_AB[k] * mass[k];
+  }
+  for (int i = 0; i < CL_DIM; i++) {
+    rhs[i] = MixtureForce(e, s, &b[i], dt, e->o.damping);
+    for (int j = 0; j < CL_DIM; j++) {
+      L[i][j] = (i == j ? b[i].lhs : 0.0) - sum * less[i][j];
+      rhs[i] -= sum * less[i][j] * b[j].v;
+    }
+  }
+  for (int i = 0; i < CL_DIM; i++) {
+    const int j = 1 - i;
+
+    if (held[i])
+      v[i][0] = value[i];
+    else if (held[j])
+      v[i][0] = (rhs[i] - L[i][j] * value[j]) / L[i][i];
+    else
+      v[i][0] = (L[j][j] * rhs[i] - L[i][j] * rhs[j]) / (L[0][0] * L[1][1] - L[0][1] * L[1][0]);
+  }
+  for (int i = 0; i < CL_DIM; i++) {
+    const double along = less[i][0] * (v[0][0] - b[0].v) + less[i][1] * (v[1][0] - b[1].v);
+
+    for (int k = 0; k < s.fluids; k++)
+      v[i][1 + k] = (b[i].A[k] * b[i].vf[k] + b[i].r[k] - DragAtStart(e, &b[i], k) + DragAtEnd(e, &b[i], k) * v[i][0] -
+                     mass[k] * along) *
+                    b[i].per_AB[k];
+  }
+}
+
 /* Mean velocity over the step in the works (92), from what it is before and at the end; what is held moves as it must,
    all the step. */
 INLINE double Mean(const Explicit *e, PetscInt I, int unknown, double before, double end)
@@ -146,29 +186,41 @@ INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, int d, const 
   return sum;
 }
 
+/* What a node's balance along d says, with its answer v. */
+INLINE void KeepVelocities(Explicit *e, const Set s, PetscInt I, int d, const Balance *b, bool held, const double v[3],
+                           double dt)
+{
+  if (s.solid && s.fluids)
+    e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, d, b, v);
+  if (!held)
+    e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(b, e->o.damping) * 0.5 * (v[0] + b->v);
+  e->inc[6 * I + d] = v[0] - b->v;
+  for (int k = 0; k < s.fluids; k++)
+    e->inc[6 * I + 2 * (1 + k) + d] = s.layers ? b->flow * (v[1 + k] - v[0]) : v[1 + k] - b->vf[k];
+  if (!held) /* of the mixture, which moves with the skeleton but for seepage */
+    e->added += PetscSqr((e->o.mass_scaling - 1.0) * b->M * (v[0] - b->v) / dt);
+}
+
 INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 {
   const int     width = LANES * Rows(A_Count(s));
   const double *a     = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
-  Balance       b;
+  Balance       b[CL_DIM];
+  double        v[CL_DIM][3], value[CL_DIM] = {0.0};
+  bool          held[CL_DIM];
 
-  ReadMasses(e, s, a, dt, &b);
+  ReadMasses(e, s, a, dt, &b[0]);
+  b[1] = b[0];
   for (int d = 0; d < CL_DIM; d++) {
-    double v[3], value = 0.0;
-
-    ReadForces(e, s, a, d, &b);
-    const bool held = s.solid && Held(e, I, F_VSX + d, &value);
-    Solve(e, s, &b, dt, held, value, v);
-    if (s.solid && s.fluids)
-      e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, d, &b, v);
-    if (!held)
-      e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(&b, e->o.damping) * 0.5 * (v[0] + b.v);
-    e->inc[6 * I + d] = v[0] - b.v;
-    for (int k = 0; k < s.fluids; k++)
-      e->inc[6 * I + 2 * (1 + k) + d] = s.layers ? b.flow * (v[1 + k] - v[0]) : v[1 + k] - b.vf[k];
-    if (!held) /* of the mixture, which moves with the skeleton but for seepage */
-      e->added += PetscSqr((e->o.mass_scaling - 1.0) * b.M * (v[0] - b.v) / dt);
+    ReadForces(e, s, a, d, &b[d]);
+    held[d] = s.solid && Held(e, I, F_VSX + d, &value[d]);
+    if (!(s.beds && s.solid))
+      Solve(e, s, &b[d], dt, held[d], value[d], v[d]);
   }
+  if (s.beds && s.solid)
+    SolveBeds(e, s, a, b, dt, held, value, v);
+  for (int d = 0; d < CL_DIM; d++)
+    KeepVelocities(e, s, I, d, &b[d], held[d], v[d], dt);
 }
 
 /* (92): works at a node along d with the means of its velocities (skeleton, water, gas; v at the end) over the step. */

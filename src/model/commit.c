@@ -336,7 +336,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
   PetscInt left;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelProjectGradients(m, x, m->proj));
+  PetscCall(ModelProjectGradients(m, x, false, m->proj));
   m->released = 0.0;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;

@@ -44,13 +44,16 @@ static void Follow(double *D, int f, const double dJ[CL_DIM][IN_COUNT])
 }
 
 /* (172): with Pi g = g the bracket of (19) has no slope with respect to g. */
-static void DropBracket(const FieldSet *fs, PointOutput *o, int f)
+static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f)
 {
-  for (int j = 0; j < CL_DIM; j++) {
-    for (int i = 0; i < CL_DIM; i++)
-      o->D[OUT_FLUX + 2 * f + i][IN_GP + 2 * f + j] += o->wide[f][i][j];
-    if (fs->heat)
-      o->D[OUT_Q][IN_GP + 2 * f + j] += o->wide_q[f][j];
+  for (int i = 0; i < CL_DIM + fs->heat; i++) {
+    const double *wide = i < CL_DIM ? o->wide[f][i] : o->wide_q[f];
+    double       *D = o->D[i < CL_DIM ? OUT_FLUX + 2 * f + i : OUT_Q], slope[CL_DIM] = {wide[0], wide[1]};
+
+    if (A)
+      BedsDrive(A, slope);
+    for (int j = 0; j < CL_DIM; j++)
+      D[IN_GP + 2 * f + j] += slope[j];
   }
 }
 
@@ -71,9 +74,10 @@ static void FixedStress(const FieldSet *fs, PointOutput *o)
   }
 }
 
-void EliminateParticle(const Model *m, const Reach *r, const double *x, const double in[IN_COUNT], bool fixed_stress,
-                       PointOutput *o)
+void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
+                       bool fixed_stress, PointOutput *o)
 {
+  const Beds     *A  = m->beds ? &m->beds[p].A : NULL;
   const FieldSet *fs = &m->c->fields;
 
   for (int f = 0; f < PHASE_COUNT; f++) {
@@ -82,7 +86,7 @@ void EliminateParticle(const Model *m, const Reach *r, const double *x, const do
     if (!fs->phase[f])
       continue;
     FluxResponse(m, r, x, in, o, f, dJ);
-    DropBracket(fs, o, f);
+    DropBracket(fs, A, o, f);
     for (int row = OUT_FLUX; row < OUT_FLUX + PHASE_COUNT * CL_DIM; row++) /* gas goes with the water, too (352) */
       Follow(o->D[row], f, dJ);
     if (fs->heat)

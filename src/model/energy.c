@@ -74,6 +74,19 @@ static double InertiaPower(const Model *m, const Reach *r, const double *x, cons
   return sum;
 }
 
+/* What drag takes beyond that of flow along the beds, and pressure gives: (16) was multiplied with A (308). */
+static double BedsPower(const Model *m, PetscInt p, const double in[IN_COUNT], const double out[OUT_COUNT])
+{
+  double sum = 0.0;
+
+  for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
+    const double kr = m->fluid ? PetscSqr(out[OUT_ROOT + f]) : 1.0;
+
+    sum += m->c->fields.phase[f] ? out[OUT_D + f] / kr * BedsDrag(&m->beds[p].A, &in[IN_J + 2 * f]) : 0.0;
+  }
+  return sum;
+}
+
 void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
                    const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES])
 {
@@ -88,6 +101,9 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
         m->bc.gravity[i] * (out[OUT_M] * k.v[0][i] + (fs->phase[PHASE_W] ? out[OUT_M + 1] * k.v[1][i] : 0.0) +
                             (fs->phase[PHASE_G] ? out[OUT_M + 2] * k.v[2][i] : 0.0));
   power[WORK_PRESSURE] += fs->fluid ? s->p * k.expansion : 0.0;
+  const double beds = BedsPower(m, p, in, out);
+  power[WORK_PRESSURE] += beds;
+  power[WORK_DRAG] += beds;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;

@@ -44,6 +44,25 @@ void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]
     p0[f] = m->c->fields.phase[f] ? m->P.f[HeldPressure(&m->c->fields, P_PW0, f)][p] + weight : 0.0;
 }
 
+/* Pressures at a face drive a fluid like those in its particle (308). */
+static void FaceBeds(const Beds *A, const FieldSet *fs, FaceOutput *o)
+{
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    const int at = F_VWX + CL_DIM * f;
+
+    if (!fs->phase[f])
+      continue;
+    BedsDrive(A, &o->out[at]);
+    for (int q = 0; q < IN_COUNT; q++) {
+      double slope[CL_DIM] = {o->D[at][q], o->D[at + 1][q]};
+
+      BedsDrive(A, slope);
+      o->D[at][q]     = slope[0];
+      o->D[at + 1][q] = slope[1];
+    }
+  }
+}
+
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o)
 {
   const PetscInt p = face->particle;
@@ -61,6 +80,8 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
       velocity[d] += face->N[a] * x[r->node[a] * m->c->fields.n + PlaceVs(&m->c->fields) + d];
   }
   FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, velocity, kappa / sum, m->stage.dt, o);
+  if (m->beds)
+    FaceBeds(&m->beds[p].A, &m->c->fields, o);
   if (face->bc[BC_PLATE] >= 0)
     PlateEvaluate(&m->c->bc[face->bc[BC_PLATE]], face, m->bc.value[face->bc[BC_PLATE]], in, o);
 }

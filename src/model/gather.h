@@ -94,6 +94,20 @@ static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I)
   return m->conduct[p] * m->flow[I];
 }
 
+/* v := A v where particle p has beds (306). */
+static inline void Drive(const Model *m, PetscInt p, double v[CL_DIM])
+{
+  if (m->beds)
+    BedsDrive(&m->beds[p].A, v);
+}
+
+/* rho b of a fluid of particle p with beds at t_n, N/m^3. */
+static inline void BedsWeight(const Model *m, PetscInt p, int f, double w[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    w[d] = m->beds[p].rho[f] * m->bc.gravity[d];
+}
+
 /* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */
 static inline int HeldPressure(const FieldSet *fs, int first, int f)
 {
@@ -227,6 +241,27 @@ static inline void Acceleration(const Model *m, PetscInt I, const double *x, int
         (m->c->fields.inertia ? weight * (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
 }
 
+/* ... of a fluid of particle p with (310); beds hold what of the skeleton's acceleration less gravity is across them
+   (308). */
+static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, const double *x, int f, double acc[2])
+{
+  const FieldSet *fs = &m->c->fields;
+  double          s[2], A[2];
+
+  Acceleration(m, I, x, PlaceV(fs, f), FlowWeight(m, p, I), acc);
+  if (!m->beds)
+    return;
+  for (int i = 0; i < 2; i++)
+    s[i] = -m->bc.gravity[i];
+  if (fs->solid)
+    Acceleration(m, I, x, PlaceVs(fs), 1.0, s);
+  for (int i = 0; i < 2; i++)
+    A[i] = s[i];
+  BedsDrive(&m->beds[p].A, A);
+  for (int i = 0; i < 2; i++)
+    acc[i] += A[i] - s[i];
+}
+
 static inline void GatherFluid(const Model *m, PetscInt p, int f, const Reach *r, const double *x, const Face *face,
                                double in[IN_COUNT])
 {
@@ -323,6 +358,9 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
     h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
     h->gravity[k] = m->bc.gravity[k];
   }
+  h->beds = m->beds ? &m->beds[p].A : NULL;
+  for (int f = 0; m->beds && f < PHASE_COUNT; f++)
+    BedsWeight(m, p, f, h->weight[f]);
   h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
   for (int d = 0; h->ambient && d < CL_DIM; d++)
     h->x[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]);
@@ -452,8 +490,9 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o);
 /* Momenta of two fluids (16) at X, on all local nodes; costs a residual only where the last one was elsewhere. */
 PetscErrorCode ModelFluidsAt(Model *m, Vec X);
-/* Projected pressure gradients (20) of the nodal pressures x into proj (n_local x 4), all ranks. */
-PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj);
+/* Projected pressure gradients (20), (309) of the nodal pressures x into proj (n_local x 4), all ranks; slope: what a
+   change x of them makes. */
+PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
 /* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
@@ -472,8 +511,8 @@ PetscErrorCode MatrixPlaces(Model *m);
 PetscErrorCode MatrixBegin(Model *m);
 PetscErrorCode MatrixFinish(Model *m);
 /* What eliminated fluid velocities leave of the tangent (171)-(174) of a particle, of a face. */
-void EliminateParticle(const Model *m, const Reach *r, const double *x, const double in[IN_COUNT], bool fixed_stress,
-                       PointOutput *o);
+void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
+                       bool fixed_stress, PointOutput *o);
 void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput *o);
 /* The reduced matrix and its solver (reduced.c). */
 /* Types of the solvers of the groups that are there, behind -reduced_..., which options of the user win over. */

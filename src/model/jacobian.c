@@ -23,7 +23,7 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
     if (!fs->phase[f])
       continue;
     Acceleration(m, I, x, PlaceV(fs, f), 1.0, n->acc[1 + f]);
-    Acceleration(m, I, x, PlaceV(fs, f), n->share, n->own[f]);
+    FluidAcceleration(m, p, I, x, f, n->own[f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
     n->kr[f]     = 1.0;
     n->weight[f] = RowWeight(m, I, f);
@@ -138,6 +138,22 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
     block[PlaceT(fs) * ld + PlaceT(fs)] += S * out[OUT_C] / dt;
 }
 
+/* Beds: fluids feel the skeleton's acceleration (308). */
+static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT_COUNT], const NodeFactors *k,
+                         double dt, double *block, int ld)
+{
+  const double less[2][2] = {{A->xx - 1.0, A->xy}, {A->xy, A->yy - 1.0}};
+
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f] || PlaceV(fs, f) < 0)
+      continue;
+    for (int i = 0; i < 2; i++) {
+      for (int j = 0; j < 2; j++)
+        block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] += k->flow * k->kr[f] * out[OUT_MI + f] * less[i][j] / dt;
+    }
+  }
+}
+
 /* What a particle adds to the blocks between its nodes. */
 static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
                           const PointOutput *o, Patch *patch)
@@ -167,6 +183,8 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
   for (int a = 0; a < r->n; a++) {
     NodeRows(m, to, r, a, &factor[a], DB, slopes.length, patch->v[a]);
     Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[2 * r->node[a]], &patch->v[a][0][a * fs->n], ROW_MOST);
+    if (m->beds && fs->solid && fs->inertia)
+      DiagonalBeds(fs, &m->beds[p].A, o->out, &factor[a], m->stage.dt, &patch->v[a][0][a * fs->n], ROW_MOST);
   }
 }
 
@@ -200,7 +218,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
       KeepWide(&m->c->fields, &o, &m->wide[12 * p]);
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
-        EliminateParticle(m, &r, x, in, target[k].fixed_stress, &o);
+        EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
       PatchAt(m, &target[k], &r, &patch[k]);
       ParticleBlock(m, &target[k], p, &r, x, &o, &patch[k]);
       LumpBlock(m, &target[k], p, &r);
@@ -283,7 +301,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(PreconditionerChoose(m, snes, &renew));
   PetscCall(ModelFluidsAt(m, X));
   PetscCall(ModelUnscale(m, X, m->x));
-  PetscCall(ModelProjectGradients(m, m->x, m->proj));
+  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
   PetscCall(MatrixBegin(m));
   PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);

@@ -24,7 +24,9 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
   PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &m->preconditioner, NULL));
   PetscCall(PreconditionerPlan(m));
-  m->tol_update = 1e-6;
+  m->tol_update    = 1e-6;
+  m->keep_jacobian = 0.01;
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_keep_jacobian", &m->keep_jacobian, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));
   PetscCall(PetscClassIdRegister("Clathra", &id));
@@ -66,6 +68,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->spread));
   PetscCall(PetscFree(m->upwind));
   PetscCall(PetscFree(m->lump));
+  PetscCall(PetscFree(m->beds));
   PetscCall(PetscFree(m->face));
   PetscCall(PetscFree(m->ghost));
   PetscCall(PetscFree(m->cell));

@@ -15,7 +15,7 @@ PetscErrorCode ModelUnscale(Model *m, Vec X, double *x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
+PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj)
 {
   const FieldSet *fs = &m->c->fields;
 
@@ -36,6 +36,13 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, double *proj)
         g[2 * f] += r.G[a][0] * pI;
         g[2 * f + 1] += r.G[a][1] * pI;
       }
+    }
+    for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
+      double w[CL_DIM] = {0.0};
+
+      if (!slope)
+        BedsWeight(m, p, f, w);
+      BedsDriveMoving(&m->beds[p].A, w, &g[2 * f]);
     }
     for (int a = 0; a < r.n; a++) {
       const double VS = Vk * r.S[a];

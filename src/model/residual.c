@@ -41,7 +41,7 @@ static void ScatterMomentum(const Model *m, PetscInt p, int ph, PetscInt I, doub
   FluidNode      *at   = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
   double         *row  = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];
 
-  Acceleration(m, I, x, PlaceV(fs, ph), FlowWeight(m, p, I), acc); /* (310) */
+  FluidAcceleration(m, p, I, x, ph, acc);
   for (int i = 0; i < 2; i++)
     row[i] += flow * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]);
   if (at) {
@@ -195,7 +195,7 @@ static PetscErrorCode Rows(Model *m, Vec X)
     PetscCall(PetscArrayzero(m->mass_row, m->map.n_local * PHASE_COUNT));
   if (m->fluid)
     PetscCall(PetscArrayzero(m->fluid, m->map.n_local * PHASE_COUNT));
-  PetscCall(ModelProjectGradients(m, m->x, m->proj));
+  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
   PetscCall(PlatesPosition(m, m->x));
   ParticleLoop(m, m->x, m->f);
   FaceLoop(m, m->x, m->f);

@@ -71,6 +71,18 @@ static double Largest(const double norm[F_COUNT], int *field)
   return norm[*field];
 }
 
+/* (343) */
+static PetscErrorCode JacobianChoose(SNES snes, PetscInt it, double residual, Model *m)
+{
+  const bool serves = it > 0 && residual < m->keep_jacobian * m->residual && !m->always_refactor && !m->renewal.due;
+
+  PetscFunctionBeginUser;
+  m->residual = residual;
+  m->kept += serves;
+  PetscCall(SNESSetLagJacobian(snes, serves ? -1 : 1)); /* -1: never again */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 #define SLAVED 0.1 /* fluid momentum: where a phase hardly moves, round-off of its drag stands at 1e-9 */
 
 /* Converged when every field's residual and update are small in units of 1 MPa and 1 K. */
@@ -108,6 +120,8 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
     *reason = it == 0 ? SNES_CONVERGED_FNORM_ABS : SNES_CONVERGED_SNORM_RELATIVE;
   else if (it >= max_it)
     *reason = SNES_DIVERGED_MAX_IT;
+  if (*reason == SNES_CONVERGED_ITERATING)
+    PetscCall(JacobianChoose(snes, it, r, m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -266,10 +280,11 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
       PetscCall(PreconditionerFallBack(m));
     PetscCall(SNESSetMaxLinearSolveFailures(m->snes, attempt == attempts - 1 ? 4 : 1));
     PetscCall(FirstGuess(m, x));
+    m->kept = 0;
     PetscCall(SNESSolve(m->snes, NULL, m->X));
     PetscCall(SNESGetConvergedReason(m->snes, &reason));
     PetscCall(SNESGetIterationNumber(m->snes, &its));
-    *newton += its;
+    *newton += its - m->kept;
     if (reason == SNES_DIVERGED_FNORM_NAN)
       PetscCall(ModelReduceStatus(m, &m->status));
     if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->status != CL_OK))

@@ -31,6 +31,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->spread));
     PetscCall(PetscFree(m->upwind));
     PetscCall(PetscFree(m->lump));
+    PetscCall(PetscFree(m->beds));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->conduct));
@@ -44,6 +45,10 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
       PetscCall(PetscCalloc1(m->stencil_cap, &m->lump));
   }
+  if (!SceneHasBeds(m->c)) /* a stage may bring other materials */
+    PetscCall(PetscFree(m->beds));
+  else if (!m->beds)
+    PetscCall(PetscMalloc1(m->stencil_cap, &m->beds));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Stencil *s = &m->stencil[p];
 
@@ -124,10 +129,11 @@ static double SpreadOf(const Model *m, PetscInt p, int phase, const PointPropert
   double           g[CL_DIM], h[CL_DIM], hg = 0.0;
 
   CellWidths(m, p, h);
-  for (int d = 0; d < CL_DIM; d++) {
+  for (int d = 0; d < CL_DIM; d++)
     g[d] = m->P.f[gradient[phase] + d][p] - q->rho[phase] * m->c->gravity[d];
+  Drive(m, p, g);
+  for (int d = 0; d < CL_DIM; d++)
     hg += h[d] * fabs(g[d]);
-  }
   const double Pe = 0.5 * hg * fabs(q->mobility_slope[phase]) / both;
 
   return Pe > 1e-4 ? both * (Pe / tanh(Pe) - 1.0) : 0.0;
@@ -145,6 +151,7 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
       a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] * q->kr[k] / q->resist[k] *
               (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
   }
+  Drive(m, p, a);
   CellWidths(m, p, h);
   HeatUpwind(q->kappa, a, h, K);
 }
@@ -234,7 +241,7 @@ static void Average(Model *m, const double *sum)
 static PetscErrorCode Project(Model *m)
 {
   const int   width  = SUM_X + m->c->fields.n;
-  const bool  shared = SceneContrast(m->c) > 1.0;
+  const bool  shared = SceneSharesFlow(m->c);
   double     *sum;
   const char *why;
 
@@ -253,6 +260,8 @@ static PetscErrorCode Project(Model *m)
       ModelNoteFailure(m, status, why, p);
       continue;
     }
+    if (m->beds)
+      m->beds[p] = (Bedding){ParticleBeds(m->c, &m->P, p), {q.rho[PHASE_W], q.rho[PHASE_G]}};
     for (int k = 0; m->spread && k < PHASE_COUNT; k++)
       m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
     if (m->upwind)

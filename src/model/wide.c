@@ -42,7 +42,7 @@ static PetscErrorCode WideApply(Model *m, bool wide, Vec X, Vec Y)
   PetscCall(ModelUnscale(m, X, x));
   PetscCall(PetscArrayzero(f, n * nf));
   if (wide)
-    PetscCall(ModelProjectGradients(m, x, proj));
+    PetscCall(ModelProjectGradients(m, x, true, proj));
   for (PetscInt p = 0; wide && p < m->P.n; p++)
     WideParticle(m, p, proj, f);
   if (PlatesCouple(m))

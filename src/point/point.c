@@ -134,14 +134,22 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
     o->D[OUT_HOOP][q] += h->V * hoop * k->dJ[q] / k->lambda;
 }
 
-/* out = V_n cof F g_pi (momentum of a fluid). */
+/* v := A v, with beds (306). */
+static inline void Drive(const PointHistory *h, double v[2])
+{
+  if (h->beds)
+    BedsDrive(h->beds, v);
+}
+
+/* out = V_n A cof F g_pi (momentum of a fluid); its columns likewise. */
 static void FluidForces(const PointHistory *h, const Kinematics *k, int f, const double in[IN_COUNT], bool tangent,
                         PointOutput *o)
 {
-  const double *g = &in[IN_GP + 2 * f];
+  const double *g  = &in[IN_GP + 2 * f];
+  const int     at = OUT_G + 2 * f;
 
   for (int i = 0; i < 2; i++) {
-    const int row = OUT_G + 2 * f + i;
+    const int row = at + i;
 
     o->out[row] = h->V * (k->cof[i][0] * g[0] + k->cof[i][1] * g[1]);
     if (!tangent)
@@ -150,6 +158,14 @@ static void FluidForces(const PointHistory *h, const Kinematics *k, int f, const
       o->D[row][IN_GP + 2 * f + j] += h->V * k->cof[i][j];
     for (int q = 0; q < MOTION_COUNT; q++)
       o->D[row][q] += h->V * (k->dcof[i][0][q] * g[0] + k->dcof[i][1][q] * g[1]);
+  }
+  Drive(h, &o->out[at]);
+  for (int q = 0; tangent && h->beds && q < IN_J; q++) {
+    double slope[2] = {o->D[at][q], o->D[at + 1][q]};
+
+    BedsDrive(h->beds, slope);
+    o->D[at][q]     = slope[0];
+    o->D[at + 1][q] = slope[1];
   }
 }
 
@@ -198,7 +214,7 @@ static void Spread(const PointHistory *h, const Kinematics *k, const Metric *met
   }
 }
 
-/* Phi = V_n rho [ cof^T J + tau K (Pi g - g) ] (19). */
+/* Phi = V_n rho [ cof^T J + tau K (Pi g - g) ] (19), (309). */
 static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
                  const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
 {
@@ -207,8 +223,12 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   const Tau     t     = TauOf(s->kr[f].v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
   const Jet     tau   = JetChain3(t.v, t.kr, s->kr[f], t.resist, s->resist[f], t.rho, rho);
   const Jet     rt    = JetScale(h->bracket, JetMul(rho, tau));
-  const double *J = &in[IN_J + 2 * f], *g = &in[IN_GP + 2 * f];
-  const double  b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
+  const double *J     = &in[IN_J + 2 * f];
+  double        g[]   = {in[IN_GP + 2 * f], in[IN_GP + 2 * f + 1]};
+
+  if (h->beds)
+    BedsDriveMoving(h->beds, h->weight[f], g);
+  const double b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
 
   *tau_out = tau.v;
   for (int i = 0; i < 2; i++) {
@@ -225,11 +245,14 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
       D[q] += h->V * rho.v * (k->dcof[0][i][q] * J[0] + k->dcof[1][i][q] * J[1]);
       D[q] += h->V * rt.v * (metric->d[i][0][q] * b[0] + metric->d[i][1][q] * b[1]);
     }
+    double slope[2] = {h->V * rt.v * K[i][0], h->V * rt.v * K[i][1]};
     for (int j = 0; j < 2; j++) {
       D[IN_J + 2 * f + j] += h->V * rho.v * k->cof[j][i];
-      D[IN_GP + 2 * f + j] -= h->V * rt.v * K[i][j];
-      o->wide[f][i][j] = h->V * rt.v * K[i][j];
+      o->wide[f][i][j] = slope[j];
     }
+    Drive(h, slope); /* A is symmetric */
+    for (int j = 0; j < 2; j++)
+      D[IN_GP + 2 * f + j] -= slope[j];
   }
 }
 

@@ -55,6 +55,13 @@ CASES = [
     ("no cells and one spacing", [("  cells: [52, 1]\n", "  spacing: {x: 0.02 m}\n")], ["grid_cells"], []),
     ("softening of one size of cells", SPACING("x: [0.01 m, 0.05 m, growth 1.1]")
      + STRENGTH("cohesion_max: 1 MPa, cohesion_residual: 0.9 MPa, friction_peak: 30 deg, eta_s: 0.1, softening_length: 0.02 m"), [M + "plasticity_softening_length", "needs equal cells"], []),
+    # --- beds
+    ("more across the beds than along them", [("permeability: {", "permeability: {ratio: 2, ")], [M + "permeability_ratio", "'2'", "(0,1]"], []),
+    ("dip without a unit", [("permeability: {", "permeability: {ratio: 0.5, dip: 30, ")], [M + "permeability_dip", "'30'", "30 deg"], []),
+    ("beds that dip about an axis", [("permeability: {", "permeability: {ratio: 0.5, dip: 30 deg, "), ("title: BP2", "geometry: axisymmetric\ntitle: BP2")],
+     [M + "permeability_dip", "must be 0 deg", "axisymmetric"], []),
+    ("beds in the bare form", [("permeability: {", "permeability: {ratio: 0.5, ")], [M + "permeability_ratio", "pressures: particles"],
+     ["-stepper_type", "hybrid", "-stepper_pressures", "particles", "-stepper_surface", "free"]),
     # --- functions of time
     ("wave without a period", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 0.1 MPa]}}\ntime: {end")], ["ambient_pressure_sine", "has 2 values", "amplitude, period and begin"], []),
     ("wave of no length", [("time: {end", "ambient: {pressure: {sine: [1 MPa, 0.1 MPa, 0 h]}}\ntime: {end")], ["ambient_pressure_sine", "'0 h'", "(0,inf) s"], []),

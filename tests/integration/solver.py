@@ -41,6 +41,18 @@ for name in PRESETS:
         check(f"options/{name}.opts on {ranks} rank(s) against the default: histories", error, 1e-8)
 table(["preset", "ranks", "apart"], rows)
 
+# An iteration that does well leaves its Jacobian to the next (343).
+def newton(r):
+    return int(re.search(r"(\d+) Newton iterations", r.output).group(1))
+
+
+always = run(*FIXED, "-newton_keep_jacobian", 0)
+check("a new Jacobian in every iteration against the default: histories", apart(always, reference), 1e-8)
+check_true("... and the default needs at most three quarters as many", 0 < newton(reference) <= 0.75 * newton(always), f"{newton(reference)} {newton(always)}")
+hopeless = run(*FIXED, "-newton_keep_jacobian", 1e9, "-snes_max_it", 5)
+check("one Jacobian a stage, which five iterations do not solve: a second attempt does; histories", apart(hopeless, reference), 1e-8)
+check_true("... and no step is refused", ", 0 refused" in hopeless.output, f"{newton(hopeless)} Jacobians, {newton(always)} of Newton's method")
+
 # Restart with the reduced preconditioner.
 ADAPTIVE = ("-quiet", *preset("scale"))
 for ranks in (1, 2):

@@ -23,7 +23,7 @@ static inline Material SedimentMaterial(void)
                 .kappa_g      = 0.044,
                 .retention    = {.p0 = 5e4, .m = 0.3, .lambda = 1.5, .Swr = 0.2, .Sgr = 0.1},
                 .relperm      = {0.2, 0.1, 4.0, 2.0, false},
-                .permeability = {.k0 = 1.53e-15, .phi0 = 0.3, .mh = 3.0, .kh = 0.1, .Shc = 0.4},
+                .permeability = {.k0 = 1.53e-15, .phi0 = 0.3, .mh = 3.0, .kh = 0.1, .Shc = 0.4, .ratio = 1.0},
                 .kinetics   = {2.5e-10, 0.0, 1e6, 0.124, 0.018, 0.016, 6.0, {.A1 = 1000.0, .A2 = 38.98, .A3 = 8533.8}},
                 .latent     = {.C0 = 473632.0, .C1 = 140.117},
                 .elasticity = {90e6, 2e9, 1.0, 1.0, 0.3, false}};

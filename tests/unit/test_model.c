@@ -66,6 +66,98 @@ static void TestLayersJacobian(void **state)
   }
 }
 
+/* Beds that dip (308), with one fluid and with two, in layers of unlike permeability. */
+static void TestBedsJacobian(void **state)
+{
+  static const unsigned has[3] = {HAS_SOLID | HAS_WATER, HAS_ALL, HAS_WATER | HAS_GAS | HAS_HEAT};
+
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    SmallScene *s = malloc(sizeof(*s));
+
+    JacobianCase(s, has[k], true, false, BASIS_CPGIMP, 0.0, 0.0, false, 0);
+    s->mat.permeability.ratio = 0.1;
+    s->mat.permeability.dip   = 25.0;
+    SceneLayers(s, 1, 0.08, 0.3);
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
+    RandomHistory(s, 0.2);
+    RandomStage(s, 1e-3); /* short: what (308) adds to inertia goes with 1/dt */
+    MakeSolver(s);
+    const double worst = DirectionError(s, 3), entry = ColumnError(s);
+    Say("  beds, %s: directions %.1e, entries %.1e\n",
+        k == 0   ? "water"
+        : k == 1 ? "six fields"
+                 : "rigid",
+        worst, entry);
+    Check(worst < 1e-6 && entry < 1e-6);
+    SceneDestroy(s);
+    free(s);
+  }
+}
+
+/* Residual of a random state of a body whose beds lay at `dip`, deg, before it was turned or sheared by F. */
+static void BedsResidual(double ratio, double dip, const double F[4], int n, double *a)
+{
+  SmallScene *s = malloc(sizeof(*s));
+  Model      *m = &s->m;
+
+  JacobianCase(s, HAS_ALL, true, false, BASIS_CPGIMP, 0.0, 0.0, false, 0);
+  s->c.scene.nbc = s->c.scene.nlisted = 0; /* faces turn, too */
+  s->mat.permeability.ratio           = ratio;
+  s->mat.permeability.dip             = dip;
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, m));
+  RandomHistory(s, 0.2);
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    for (int k = 0; k < 4; k++)
+      m->P.f[P_F + k][p] = F[k];
+  }
+  RandomStage(s, 20.0);
+  MakeSolver(s);
+  double       *x;
+  const double *R;
+  Call(PetscMalloc1(m->map.n_local * m->c->fields.n, &x));
+  RandomUnknowns(m, s->stage.dt, 30, x);
+  SetX(m, x);
+  Call(ModelResidual(NULL, m->X, m->R, m));
+  Call(VecGetArrayRead(m->R, &R));
+  Check(m->map.n_owned * m->c->fields.n <= n);
+  for (PetscInt k = 0; k < n; k++)
+    a[k] = k < m->map.n_owned * m->c->fields.n ? R[k] : 0.0;
+  Call(VecRestoreArrayRead(m->R, &R));
+  Call(PetscFree(x));
+  SceneDestroy(s);
+  free(s);
+}
+
+static double BedsApart(double dip, const double F[4], double dip_F, double ratio)
+{
+  static const double one[4] = {1.0, 0.0, 0.0, 1.0};
+  static double       a[512], b[512];
+  double              off = 0.0;
+
+  BedsResidual(ratio, dip, one, 512, a);
+  BedsResidual(ratio, dip_F, F, 512, b);
+  for (int k = 0; k < 512; k++)
+    off = fmax(off, fabs(a[k] - b[k]));
+  return Largest(off);
+}
+
+/* Beds are surfaces of the material (307): they turn with the body, a right angle too; shear along them leaves them as
+   they are, and shear across them by tan(45 deg) turns what stood upright to 45 deg. */
+static void TestBedsTurn(void **state)
+{
+  static const double turned[4] = {0.0, -1.0, 1.0, 0.0}, c = 0.8, si = 0.6, shear[4] = {1.0, 1.0, 0.0, 1.0};
+  const double        some[4] = {c, -si, si, c}, angle = atan2(si, c) * 180.0 / M_PI;
+  const double        right = BedsApart(90.0, turned, 0.0, 0.1), part = BedsApart(20.0 + angle, some, 20.0, 0.1),
+               along = BedsApart(0.0, shear, 0.0, 0.1), across = BedsApart(45.0, shear, 90.0, 0.1),
+               unlike = BedsApart(90.0, turned, 90.0, 0.1);
+
+  (void)state;
+  Say("beds turn: by 90 deg %.1e, by %.0f deg %.1e, sheared along %.1e, across %.1e; not turned %.1e\n", right, angle,
+      part, along, across, unlike);
+  Check(right < 1e-12 && part < 1e-12 && along < 1e-12 && across < 1e-12 && unlike > 1e-3);
+}
+
 /* Plates: one that moves, rough; one with a prescribed force, whose springs couple all nodes under it (74), held to the
    body or free to separate, in which case a part of it touches. */
 static void PlateScene(SmallScene *s, bool axisymmetric, int kind)
@@ -476,10 +568,10 @@ static void TestNewtonOrder(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestLayersJacobian), cmocka_unit_test(TestPlates),
-      cmocka_unit_test(TestMassRows),      cmocka_unit_test(TestTwoLayers),      cmocka_unit_test(TestHydrostatic),
-      cmocka_unit_test(TestUniformStress), cmocka_unit_test(TestDarcy),          cmocka_unit_test(TestHeatFlux),
-      cmocka_unit_test(TestNewtonOrder),
+      cmocka_unit_test(TestJacobian),  cmocka_unit_test(TestLayersJacobian), cmocka_unit_test(TestBedsJacobian),
+      cmocka_unit_test(TestBedsTurn),  cmocka_unit_test(TestPlates),         cmocka_unit_test(TestMassRows),
+      cmocka_unit_test(TestTwoLayers), cmocka_unit_test(TestHydrostatic),    cmocka_unit_test(TestUniformStress),
+      cmocka_unit_test(TestDarcy),     cmocka_unit_test(TestHeatFlux),       cmocka_unit_test(TestNewtonOrder),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);

@@ -19,28 +19,33 @@ typedef struct {
   double      bh, expansion;
   bool        of_pores, yields, compression;
   double      contrast; /* k0 of the right half over that of the left; 0: one material */
+  double      ratio;    /* of permeability across beds that dip by 30 deg, in a body that falls; 0: no beds */
 } Variant;
 
 static const Variant variants[] = {
     {"dissociates", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false,
-     false, 0.0},
+     false, 0.0, 0.0},
     {"forms", HAS_ALL, 4.8e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
-     0.0},
+     0.0, 0.0},
     {"other laws", HAS_ALL, 2.6e6, "brooks_corey", "masuda_ramp", "square_jacobian", STIFFNESS_LOSS_ONLY, 1.5, 30.0,
-     true, false, true, 0.0},
+     true, false, true, 0.0, 0.0},
     {"bonds", HAS_ALL, 2.6e6, "van_genuchten_clamped", "none", "none", STIFFNESS_BONDS, 1.0, 1.0, false, false, false,
-     0.0},
+     0.0, 0.0},
     {"plastic", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, true, false,
-     0.0},
+     0.0, 0.0},
     {"one fluid", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
-     30.0, false, false, true, 0.0},
+     30.0, false, false, true, 0.0, 0.0},
     {"rigid", HAS_WATER | HAS_GAS | HAS_HEAT, 2.6e6, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false,
-     false, true, 0.0},
+     false, true, 0.0, 0.0},
     {"layers", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
-     1e3},
+     1e3, 0.0},
     {"wet layers", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
-     1.0, false, false, false, 1e-3},
-    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true, false, 0.0},
+     1.0, false, false, false, 1e-3, 0.0},
+    {"beds", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
+     0.0, 0.1},
+    {"wet beds", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
+     1.0, false, false, false, 1e-3, 0.1},
+    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true, false, 0.0, 0.0},
 };
 
 static void SetMaterial(Material *m, const Variant *v)
@@ -54,6 +59,10 @@ static void SetMaterial(Material *m, const Variant *v)
   m->elasticity.bh     = v->bh;
   m->relperm.of_pores  = v->of_pores;
   m->permeability.phi0 = 0.4;
+  if (v->ratio > 0.0) {
+    m->permeability.ratio = v->ratio;
+    m->permeability.dip   = 30.0;
+  }
   m->solid.beta *= v->expansion;
   m->hydrate.beta *= v->expansion;
   if (v->of_pores) { /* "other laws" */
@@ -123,6 +132,8 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
   s->c.scene.fields.has |= (v->yields ? HAS_PLASTIC : 0) | (v->stiffness == STIFFNESS_BONDS ? HAS_BONDS : 0);
   s->region.pressure          = v->pressure;
   s->c.scene.compression_heat = v->compression;
+  s->c.scene.gravity[0]       = v->ratio > 0.0 ? 5.0 : 0.0;
+  s->c.scene.gravity[1]       = v->ratio > 0.0 ? -9.81 : 0.0;
   snprintf(s->c.stepper, sizeof s->c.stepper, "%s", stepper);
   s->c.dt = s->c.dt_max = s->c.t_end = STEP;
   s->c.dt_min                        = 1e-3 * STEP;

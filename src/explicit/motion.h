@@ -1,0 +1,118 @@
+/* How the particles of a block are strained and move in a step; docs/equations.md, section 12. */
+#pragma once
+
+#include "gathered.h"
+
+#define LARGEST_STRAIN 0.1 /* of one step: beyond it the series below lose digits, and the step is no small one */
+
+typedef struct {
+  double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK],
+      H[CL_DIM][CL_DIM][BLOCK];
+} Strain;
+
+/* (7) without branches: rotation c, s and logarithmic strain 1/2 ln F F^T by series in small increments; false if one
+ * is not small. */
+INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o)
+{
+  const int at    = C_Vs(s);
+  Wrong     large = 0;
+
+  for (int q = 0; q < n; q++) {
+    const double Hxx = dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
+                 Hyy = dt * g->dy[q][at + 1], Fxx = 1.0 + Hxx, Fyy = 1.0 + Hyy;
+    const double a = Fxx + Fyy, b = Fyx - Fxy, per = 1.0 / sqrt(a * a + b * b), c = a * per, si = b * per;
+    const double bxx = Fxx * Fxx + Fxy * Fxy, byy = Fyx * Fyx + Fyy * Fyy, off = Fxx * Fyx + Fxy * Fyy;
+    const double m = 0.5 * (bxx + byy), d = 0.5 * (bxx - byy), y = (d * d + off * off) / (m * m);
+    const double J = Fxx * Fyy - Fxy * Fyx, z = (J - 1.0) / (J + 1.0), z2 = z * z;
+    const double lnJ =
+        2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 / 11.0)))));
+    const double ratio =
+        1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
+
+    large |= WRONG_UNLESS((fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0));
+    o->c[q]          = c;
+    o->s[q]          = si;
+    o->xx[q]         = 0.5 * lnJ + 0.5 * ratio * d / m;
+    o->yy[q]         = 0.5 * lnJ - 0.5 * ratio * d / m;
+    o->xy[q]         = 0.5 * ratio * off / m;
+    o->H[0][0][q]    = Hxx;
+    o->H[0][1][q]    = Fxy;
+    o->H[1][0][q]    = Fyx;
+    o->H[1][1][q]    = Hyy;
+    o->J[q]          = J;
+    o->log_J[q]      = lnJ;
+    o->stretch[0][q] = c * Fxx + si * Fyx;
+    o->stretch[1][q] = -si * Fxy + c * Fyy;
+  }
+  return !large; /* NaN is wrong as well */
+}
+
+/* The particle of a block that is strained most. */
+static inline PetscInt Strained(Run r, const Strain *n)
+{
+  double size[BLOCK];
+
+  for (int q = 0; q < r.n; q++)
+    size[q] = n->xx[q] * n->xx[q] + n->yy[q] * n->yy[q] + 2.0 * n->xy[q] * n->xy[q];
+  return Worst(r, size);
+}
+
+/* The particle of a block that moves farthest, in cells, or stands outside the grid. */
+static inline PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  const Grid *grid = &e->m->grid;
+  double      size[BLOCK];
+
+  for (int q = 0; q < r.n; q++) {
+    size[q] = 0.0;
+    for (int d = 0; d < CL_DIM; d++) {
+      const GridLines *line = &grid->line[d];
+      const double     x = LinesPlace(line, e->m->P.f[P_X + d][r.p + q]), u = dt * g->value[q][C_Vs(s) + d];
+
+      size[q] = fmax(size[q], fabs(u) / LinesLeastAt(line, e->m->P.f[P_X + d][r.p + q] - u));
+      if (!(x >= 0.0 && x <= (double)grid->cells[d]))
+        size[q] = NAN;
+    }
+  }
+  return Worst(r, size);
+}
+
+/* Does a particle, now at x, come from more than half a cell away, or leave the grid? */
+INLINE Wrong Strays(const GridLines *line, int n, const double *restrict u, const double *restrict x)
+{
+  const double h = line->h, lower = line->lower, upper = LinesAt(line, line->cells);
+  Wrong        far = 0;
+
+  if (!line->x) {
+    for (int q = 0; q < n; q++)
+      far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
+    return far;
+  }
+  for (int q = 0; q < n; q++)
+    far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * LinesLeastAt(line, x[q] - u[q])) & (x[q] >= lower) & (x[q] <= upper));
+  return far;
+}
+
+/* Makes the motion history; false if a particle crosses half a cell or leaves the grid. */
+INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
+{
+  const Grid    *grid   = &e->m->grid;
+  const bool     grows  = e->m->c->basis == BASIS_CPGIMP;
+  ParticleMotion motion = {.log_J = n->log_J};
+  double         u[CL_DIM][BLOCK];
+  Wrong          far = 0;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    for (int q = 0; q < r.n; q++)
+      u[d][q] = dt * g->value[q][C_Vs(s) + d];
+    motion.u[d]       = u[d];
+    motion.H[d][0]    = n->H[d][0];
+    motion.H[d][1]    = n->H[d][1];
+    motion.stretch[d] = grows ? n->stretch[d] : NULL;
+  }
+  ParticlesKeep(&e->m->P, r.p, r.n, &motion);
+  for (int d = 0; d < CL_DIM; d++) {
+    far |= Strays(&grid->line[d], r.n, u[d], e->m->P.f[P_X + d] + r.p);
+  }
+  return !far;
+}
