@@ -55,6 +55,8 @@ CASES = [
     ("no cells and one spacing", [("  cells: [52, 1]\n", "  spacing: {x: 0.02 m}\n")], ["grid_cells"], []),
     ("softening of one size of cells", SPACING("x: [0.01 m, 0.05 m, growth 1.1]")
      + STRENGTH("cohesion_max: 1 MPa, cohesion_residual: 0.9 MPa, friction_peak: 30 deg, eta_s: 0.1, softening_length: 0.02 m"), [M + "plasticity_softening_length", "needs equal cells"], []),
+    ("methane that dissolves and is all taken for gas", [("gas: {", "gas: {solubility: 1.9e-5 mol/(m^3 Pa), "), ("title: BP2", "compression_heat: yes\ntitle: BP2")],
+     [M + "gas_solubility", "1.9e-05 mol/(m^3 Pa)", "compression_heat"], []),
     # --- beds
     ("more across the beds than along them", [("permeability: {", "permeability: {ratio: 2, ")], [M + "permeability_ratio", "'2'", "(0,1]"], []),
     ("dip without a unit", [("permeability: {", "permeability: {ratio: 0.5, dip: 30, ")], [M + "permeability_dip", "'30'", "30 deg"], []),
