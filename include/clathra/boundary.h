@@ -67,9 +67,12 @@ PetscErrorCode CellMeansWarning(const Grid *g, const Scene *c, const Particles *
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */
 PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P);
-#define CL_ADVICE 400
+#define CL_ADVICE 600
 /* Where pore pressure above the stiffness of the skeleton is held by tractions: what to do instead; else empty. */
 PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE]);
+/* Where p_g - p_w of two regions that touch jumps at the start (342), the first that do: what to do about it; else
+   empty.  The same on all ranks.  Collective. */
+PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P, char text[CL_ADVICE]);
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
    between regions (342), on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);

@@ -123,9 +123,9 @@ static PetscErrorCode StartCapillary(const Scene *c, const Region *r, double *pc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (342) between two regions; *jumps is the same on all ranks. */
-static PetscErrorCode JumpWarning(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt a, PetscInt b,
-                                  bool *jumps)
+/* (342) between two regions, in words: the same on all ranks; empty where there is no jump. */
+static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt a, PetscInt b,
+                           char text[CL_ADVICE])
 {
   const Region *r = &c->region[a], *q = &c->region[b];
   const double  p0    = fmin(c->material[r->material].retention.p0, c->material[q->material].retention.p0);
@@ -135,32 +135,29 @@ static PetscErrorCode JumpWarning(MPI_Comm comm, const Scene *c, const Particles
   PetscFunctionBeginUser;
   PetscCall(StartCapillary(c, r, &pc[0]));
   PetscCall(StartCapillary(c, q, &pc[1]));
-  *jumps = fabs(pc[0] - pc[1]) > fmax(LEAST_JUMP, JUMP * p0);
-  if (!*jumps)
+  if (fabs(pc[0] - pc[1]) <= fmax(LEAST_JUMP, JUMP * p0))
     PetscFunctionReturn(PETSC_SUCCESS);
   touch = Touches(c, P, a, b);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &touch, 1, MPI_INT, MPI_LOR, comm));
-  *jumps = touch;
-  if (!*jumps)
+  if (!touch)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFPrintf(
-      comm, stderr,
-      "clathra: warning: regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas "
-      "flow between them at once, the faster the larger their permeability (the same p0 and gas share Sg/(1 - Sh) in "
-      "both, and Sg: 0 in both or neither, starts in balance)\n",
+  PetscCall(PetscSNPrintf(
+      text, CL_ADVICE,
+      "regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between them "
+      "at once, the faster the larger their permeability (the same p0 and gas share Sg/(1 - Sh) in both, and Sg: 0 in "
+      "both or neither, starts in balance)",
       r->name, q->name, 1e-3 * pc[0], r->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1], q->Sg == 0.0 ? " (no gas)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CapillaryWarning(MPI_Comm comm, const Scene *c, const Particles *P)
+PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P, char text[CL_ADVICE])
 {
-  bool jumps = !(c->fields.has & HAS_GAS_PRESSURE);
-
   PetscFunctionBeginUser;
-  for (PetscInt a = 0; a < c->nregion; a++) {
-    for (PetscInt b = a + 1; !jumps && b < c->nregion; b++) {
+  text[0] = '\0';
+  for (PetscInt a = 0; (c->fields.has & HAS_GAS_PRESSURE) && a < c->nregion; a++) {
+    for (PetscInt b = a + 1; !text[0] && b < c->nregion; b++) {
       if (!RegionEmpty(&c->region[a]) && !RegionEmpty(&c->region[b]))
-        PetscCall(JumpWarning(comm, c, P, a, b, &jumps));
+        PetscCall(Jump(comm, c, P, a, b, text));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,7 +172,9 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P
   PetscCall(AmbientAdvice(c, advice));
   if (advice[0])
     PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
-  PetscCall(CapillaryWarning(comm, c, P));
+  PetscCall(CapillaryAdvice(comm, c, P, advice));
+  if (advice[0])
+    PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
   if (!c->fields.solid || SceneGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {

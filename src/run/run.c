@@ -289,6 +289,8 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (!ok || run->frozen) {
     if (!run->frozen)
       PetscCall(AmbientAdvice(s->model->c, advice));
+    if (!run->frozen && !advice[0])
+      PetscCall(CapillaryAdvice(comm, s->model->c, &s->model->P, advice));
     if (advice[0])
       PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
     PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
