@@ -41,7 +41,7 @@ FAULTS = [
     ("hydrate conducts like water", LAWS + "thermal.c", [("Sh * X[1] +", "Sh * X[2] +"), ("(X[1] - fluid)", "(X[2] - fluid)")]),
     ("Masuda's equilibrium 2 % low", LAWS + "equilibrium.c", [("return 1.15 * e", "return 1.127 * e"), ("1.15 * de", "1.127 * de")]),
     ("mean pressure p_w + s_w p_c", HEADER + "point_state.h", [("pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg}", "pw + (1.0 - sg) * (pg - pw), pw - pg, sg, 1.0 - sg}")]),
-    ("hydrate stores no heat", HEADER + "point_heat.h", [(" + m_h * mat->c_h", "")]),
+    ("hydrate stores no heat", HEADER + "point_heat.h", [(" + m_h * mat->c_h", " + 0.0 * m_h * mat->c_h")]),
     ("hydrate does not hinder flow", POINT + "state.c", [("s->phi.v, s->Sh.v, &dphi, &dSh);\n  const Jet    ka = JetChain2(k, dphi, s->phi, dSh, s->Sh)", "s->phi.v, 0.0, &dphi, &dSh);\n  const Jet    ka = JetChain2(k, dphi, s->phi, 0.0, s->Sh)")]),
     ("hydrate's expansivity left out", HEADER + "point_heat.h", [("+ ice * mat->hydrate.beta) * per", ") * per"), ("(mat->hydrate.beta - v) * per", "-v * per")]),
     ("half of the thermal strain again", POINT + "point.c", [("JetScale(1.0 / 3.0, JetMul(s->beta", "JetScale(0.5, JetMul(s->beta")]),
