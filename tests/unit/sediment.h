@@ -37,6 +37,13 @@ static inline Material SedimentMaterial(void)
   return m;
 }
 
+/* Methane dissolves in the water and goes with it (352): k in mol/(m^3 Pa). */
+static inline void SetSolubility(Gas *gas, double k)
+{
+  gas->henry   = k;
+  gas->carried = gas->trace = gas->M * k;
+}
+
 /* Weak against the stresses of the tests, so that nearly all states are plastic; heat: share of the work. */
 static inline Plasticity WeakPlasticity(int flow, double heat)
 {

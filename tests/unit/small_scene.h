@@ -78,6 +78,8 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
   s->mat                 = SedimentMaterial();
   s->mat.kappa_w         = 0.6;
   s->mat.permeability.k0 = 1.53e-13;
+  if (has & HAS_GAS_PRESSURE)
+    SetSolubility(&s->mat.gas, 1.9e-5);
   s->region              = (Region){.ppc         = {2, 2},
                                     .lower       = {start + lower[0], lower[1]},
                                     .upper       = {start + upper[0], upper[1]},

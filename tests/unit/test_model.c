@@ -353,6 +353,7 @@ static void HydrostaticScene(SmallScene *s, BasisType basis)
   mat->retention.Sgr    = 0.05;
   mat->water.K          = INFINITY;
   mat->gas.M            = 1e-18;
+  SetSolubility(&mat->gas, 1.9e-5);
   s->c.scene.gravity[1] = -g;
   s->region.Sg          = 0.05;
   s->region.Sw          = 0.95;

@@ -550,6 +550,7 @@ static void TestReference(void **state)
     RandomParticle(&r, NO_KINETICS, &q);
     for (int i = 0; i < MOTION_COUNT; i++)
       q.in[IN_GRADU + i] *= 10.0;
+    SetSolubility(&q.mat.gas, RngPick(&r, 2) ? 1.9e-5 : 0.0);
     q.h.compression = false;
     q.h.upwind[0] = q.h.upwind[1] = q.h.upwind[2] = 0.0; /* is of the configuration at t_n */
     assert_true(KinematicsEvaluate(&q.in[IN_GRADU], &k));
@@ -869,6 +870,7 @@ static void TestHeatOfMasses(void **state)
     PointOutput o;
 
     RandomParticle(&r, NO_KINETICS, &q);
+    SetSolubility(&q.mat.gas, RngPick(&r, 2) ? 1.9e-5 : 0.0);
     q.h.compression = false;
     assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
     const double *water = &o.out[OUT_FLUX], *gas = &o.out[OUT_FLUX + 2], *g = &q.in[IN_GT];
