@@ -202,7 +202,7 @@ typedef struct {
 /* Seconds where none holds two. */
 const TimeUnit *StepperTimeUnit(double seconds);
 /* Steps that kinks of the loads, output times and dt_max ask for in the last `left` seconds of the stage, at least;
-   *kinks (or NULL): how many of them end at a kink. */
+ *kinks (or NULL): how many of them end at a kink. */
 double StepperStops(const Stepper *s, double left, double *kinks);
 /* A line about Stepper.forecast.  Collective. */
 PetscErrorCode StepperPrintForecast(const Stepper *s);

@@ -82,7 +82,7 @@ static double ImplicitSteps(const Stepper *s, double left)
 double StepperImplicitWork(const Model *m, double newton, double factors)
 {
   const double n = m->c->fields.n, nodes = (double)m->P.n / 4.0, N = n * nodes;
-  const double solver = m->plan.reduced ? newton * REDUCED * N : factors * FACTOR * n * pow(N, FACTOR_POWER);
+  const double solver = ModelReduces(m) ? newton * REDUCED * N : factors * FACTOR * n * pow(N, FACTOR_POWER);
 
   return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + solver;
 }
