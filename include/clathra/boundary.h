@@ -76,9 +76,9 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
    between regions (342), on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
-/* The same about particles whose pore pressure is far from hydrostatic (341), whose hydrate is not stable, or whose gas
-   becomes hydrate. */
-PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
+/* The same about particles whose pore pressure is far from hydrostatic (341), whose gas gravity moves within the `span`
+   of the run (s) (315), whose hydrate is not stable, or whose gas becomes hydrate. */
+PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span);
 
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
    start, which its owner fills in where the force is prescribed. */

@@ -146,6 +146,8 @@ const char *const *GasTypes(void);
 double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
 /* Volumetric thermal expansion -(1/rho) drho/dT at constant pressure, 1/K, with slopes in p and T (291). */
 double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double *dbeta_dT);
+/* The same, 1/K, where the density rho (kg/m^3) at T (degC) is known; without slopes. */
+double GasExpansionAt(const Gas *law, double rho, double T);
 
 double GasTrace(const Gas *law); /* H (102): of the methane that gives p_g a meaning where there is no gas */
 

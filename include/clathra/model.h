@@ -81,24 +81,6 @@ typedef struct {
 /* PETSc's log events. */
 enum { EVENT_BEGIN_STEP = 0, EVENT_RESIDUAL, EVENT_JACOBIAN, EVENT_WIDE, EVENT_SETUP, EVENT_REDUCED, EVENT_COUNT };
 
-/* Whole: of J2 with all its unknowns, LU unless PETSc's options say otherwise.  Reduced: (170).  Auto: by size (330).
- */
-enum { PRECONDITIONER_AUTO = 0, PRECONDITIONER_WHOLE, PRECONDITIONER_REDUCED };
-
-/* Which of them the run has, and why: (330), of the particles as seeded, or by an option of the user. */
-typedef struct {
-  double      across; /* mean number of cells across the body */
-  bool        reduced, said;
-  const char *asked; /* the option that chose; null: by size */
-} SolverPlan;
-
-/* When a preconditioner is made anew (176). */
-typedef struct {
-  bool   fresh, due; /* no solve with it yet; its loss has reached the cost of a new one */
-  double per_decade; /* GMRES iterations of its first solve per decade of the residual */
-  double lost;       /* iterations beyond that since */
-} Renewal;
-
 /* What shares a particle's reaction out among its nodes (265), at t_n. */
 typedef struct {
   double rate;           /* hydrate per time and driving pressure, kg/(s Pa) */
@@ -113,7 +95,7 @@ typedef struct {
   double rho[PHASE_COUNT]; /* kg/m^3 */
 } Bedding;
 
-typedef struct Reduced Reduced; /* reduced.c */
+typedef struct Solver Solver; /* src/model/solver.h */
 
 /* One of two fluids at a node (16). */
 typedef struct {
@@ -178,27 +160,7 @@ typedef struct {
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
-  double   **place;       /* [n_local][25] blocks of J2: neighbours of a node; of ghosts in `foreign` */
-  double    *foreign;     /* [ghosts][25][fields.n][fields.n] for other ranks' rows */
-  Mat        J2, A, Pmat; /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell), preconditioner matrix */
-  Vec        X, R;        /* scaled unknowns and residual */
-  SNES       snes;
-  PC         set_aside; /* that of the reduced one while LU takes over */
-  Renewal    renewal;
-  PetscInt   preconditioner; /* PRECONDITIONER_... as asked for (option -newton_preconditioner) */
-  SolverPlan plan;
-  bool       reduces; /* GMRES has the reduced one */
-  Reduced   *reduced; /* the reduced preconditioner; null: factors of the whole or what PETSc's options say */
-  bool   refactor; /* the preconditioner is made anew at the next Jacobian: once a step, and when it has become poor */
-  bool   always_refactor; /* ... at every Jacobian: second attempt at a stage */
-  double factored_dt;     /* dt' it was made for, s */
-  char pmat_type[16]; /* aij | baij of the preconditioner's matrix (option -model_pmat_type); empty: as the solver likes
-                         it */
-  double   keep_jacobian; /* (343), option -newton_keep_jacobian */
-  PetscInt kept;          /* iterations of the solve that took the Jacobian of the last */
-  double   residual;      /* largest scaled one of the last iteration */
-  PetscInt poor;          /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
-  double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
+  Solver *solver; /* of the stages */
 } Model;
 
 /* Nodal means at t_n. */
@@ -223,6 +185,8 @@ enum {
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m);
 /* Frees all but the scene.  Collective. */
 PetscErrorCode ModelDestroy(Model *m);
+/* Will implicit steps have the reduced preconditioner (170) rather than factors of the whole matrix? */
+bool ModelReduces(const Model *m);
 /* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */
 PetscErrorCode ModelPrintSolver(Model *m);
 /* Stencils, active nodes, projections, faces and stabilisation on the configuration at t_n.  Collective; *status is the

@@ -320,7 +320,7 @@ INLINE void CompressionRow(Explicit *e, const Set s, Run r, const Gathered *g, c
     for (int q = 0; q < r.n; q++) {
       const PetscInt p   = r.p + q;
       const double   rho = e->t[T_RHO + k][p], TK = T[q] + CL_ZERO_CELSIUS;
-      const double   beta  = k == 0 ? r.mat->water.beta : rho > 0.0 ? -e->t[T_GAS + 1][p] / rho : 1.0 / TK;
+      const double   beta  = k == PHASE_W ? r.mat->water.beta : GasExpansionAt(&r.mat->gas, rho, T[q]);
       const double   share = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
       const double   given =
           o->force[0][q][k] * (b[0] - share * g->dx[q][at]) + o->force[1][q][k] * (b[1] - share * g->dy[q][at]);
@@ -359,7 +359,7 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   for (int row = 0; row < n; row++) {
 #pragma GCC ivdep
     for (int q = 0; q < r.n; q++) {
-      const double c = row < s.fluids ? nu[row] - held[row][q] / v->rho_h[q] : -L[q];
+      const double c = row < s.fluids ? nu[row] + Displaced(held[row][q], v->rho_h[q]) : -L[q];
       double      *a = &o->value[q][R_Matrix(s) + row * n];
 
       o->value[q][row] -= c * gain[q];

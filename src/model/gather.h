@@ -505,33 +505,10 @@ void           StabilisationResidual(const Model *m, const double *x, double *f)
 void           StabilisationJacobian(Model *m, const Assembly *to);
 /* Makes ready to assemble for the unknowns `fs`: those of the scene, or what is left without fluid velocities. */
 void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to);
-/* J2: where its blocks are, once for a pattern; empties it; scales what was added, with Dirichlet rows, and assembles.
- */
-PetscErrorCode MatrixPlaces(Model *m);
-PetscErrorCode MatrixBegin(Model *m);
-PetscErrorCode MatrixFinish(Model *m);
 /* What eliminated fluid velocities leave of the tangent (171)-(174) of a particle, of a face. */
 void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
                        bool fixed_stress, PointOutput *o);
 void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput *o);
-/* The reduced matrix and its solver (reduced.c). */
-/* Types of the solvers of the groups that are there, behind -reduced_..., which options of the user win over. */
-PetscErrorCode  ReducedPreferences(bool flow, bool motion);
-PetscErrorCode  ReducedCreate(Model *m);
-PetscErrorCode  ReducedDestroy(Reduced **reduced);
-const FieldSet *ReducedFields(const Model *m);        /* its unknowns */
-PetscErrorCode  ReducedBegin(Model *m, Assembly *to); /* empties it; to: of its unknowns, marked as going there */
-PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
-PetscErrorCode  ReducedFollow(Model *m);              /* J2 is a new one */
-PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
-/* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
-PetscErrorCode PreconditionerPlan(Model *m);                    /* (330), of the particles that were just seeded */
-PetscErrorCode PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
-PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);
-PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew);
-/* Where GMRES fails with the reduced one: LU of the whole, with a line that says so, until PreconditionerReturn. */
-PetscErrorCode PreconditionerFallBack(Model *m);
-PetscErrorCode PreconditionerReturn(Model *m);
 /* Plates (plates.c): their number and state; (73) position of those with a prescribed force at the nodal values x, all
    ranks; which faces touch, for the tangent; its dense part, f -= ... x; what the meters report. */
 PetscErrorCode ModelPlatesCreate(Model *m);
@@ -542,14 +519,13 @@ PetscErrorCode PlatesMult(const Model *m, const double *x, double *f);
 PetscErrorCode PlatesReport(Model *m, const double *x);
 /* Powers (91) of a particle, of a face with what it adds to its nodes, of prescribed motion (this rank's nodes), W; a
    scene with a solid. */
-void           ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
-                             const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES]);
-void           FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
-                         double power[WORK_RATES]);
-double         HeldPower(const Model *m);
-double         DragPower(const Model *m, const double *x);  /* of two fluids, this rank's nodes */
-double         GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
-PetscErrorCode WideCreate(Model *m, Mat *A);
+void   ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
+                     const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES]);
+void   FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
+                 double power[WORK_RATES]);
+double HeldPower(const Model *m);
+double DragPower(const Model *m, const double *x);  /* of two fluids, this rank's nodes */
+double GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
 /* What Newton's update may change at once: before every line search. */
 #define CL_LIMIT_J 0.5 /* volumetric strain of a step */
 PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);

@@ -1,6 +1,6 @@
 /* The Jacobian assembled from particles and faces: J2 with all unknowns, and what (170) leaves when the fluid
    velocities are eliminated. */
-#include "gather.h"
+#include "solver.h"
 
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
@@ -306,7 +306,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);
   AssemblyOf(m, &m->c->fields, &target[0]);
-  if (renew && m->reduces) {
+  if (renew && m->solver->reduces) {
     AssemblyOf(m, ReducedFields(m), &target[1]);
     PetscCall(ReducedBegin(m, &target[1]));
     n = 2;
@@ -316,15 +316,15 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   for (int k = 0; k < n; k++)
     StabilisationJacobian(m, &target[k]);
   PetscCall(MatrixFinish(m));
-  if (m->reduces)
+  if (m->solver->reduces)
     PetscCall(ReducedFollow(m));
-  if (renew && m->reduces) {
+  if (renew && m->solver->reduces) {
     PetscCall(PetscLogEventBegin(m->event[EVENT_SETUP], 0, 0, 0, 0));
     PetscCall(ReducedSetUp(m));
     PetscCall(PetscLogEventEnd(m->event[EVENT_SETUP], 0, 0, 0, 0));
   }
-  if (renew && P != m->J2)
-    PetscCall(MatConvert(m->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
+  if (renew && P != m->solver->J2)
+    PetscCall(MatConvert(m->solver->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
   if (A != P) {
     PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));

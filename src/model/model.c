@@ -1,12 +1,11 @@
 /* Life of a model. */
 #include "clathra/point_heat.h"
-#include "gather.h"
+#include "solver.h"
 
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m)
 {
   static const char *const name[EVENT_COUNT] = {"ClBeginStep", "ClResidual",      "ClJacobian",
                                                 "ClWidePart",  "ClReducedMatrix", "ClReducedApply"};
-  static const char *const kind[]            = {"auto", "whole", "reduced"};
   PetscClassId             id;
 
   PetscFunctionBeginUser;
@@ -18,17 +17,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   PetscCall(ModelPlatesCreate(m));
-  m->tol_residual = 1e-9;
-  m->poor         = -1;
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
-  PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
-  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &m->preconditioner, NULL));
+  PetscCall(SolverCreate(&m->solver));
   PetscCall(PreconditionerPlan(m));
-  m->tol_update    = 1e-6;
-  m->keep_jacobian = 0.01;
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_keep_jacobian", &m->keep_jacobian, NULL));
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));
   PetscCall(PetscClassIdRegister("Clathra", &id));
   for (int e = 0; e < EVENT_COUNT; e++)
     PetscCall(PetscLogEventRegister(name[e], id, &m->event[e]));
@@ -45,15 +35,7 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree3(m->x, m->f, m->proj));
   PetscCall(PetscFree(m->mass_row));
   PetscCall(PetscFree(m->fluid));
-  PetscCall(MatDestroy(&m->J2));
-  PetscCall(PetscFree(m->place));
-  PetscCall(PetscFree(m->foreign));
-  PetscCall(MatDestroy(&m->A));
-  PetscCall(MatDestroy(&m->Pmat));
-  PetscCall(VecDestroy(&m->X));
-  PetscCall(VecDestroy(&m->R));
-  PetscCall(SNESDestroy(&m->snes));
-  PetscCall(ReducedDestroy(&m->reduced));
+  PetscCall(SolverReset(m->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,6 +43,7 @@ PetscErrorCode ModelDestroy(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
+  PetscCall(SolverDestroy(&m->solver));
   PetscCall(PetscFree(m->stencil));
   PetscCall(PetscFree(m->conduct));
   PetscCall(PetscFree(m->order));

@@ -1,5 +1,5 @@
 /* Start of a step: stencils, active nodes and nodal start values on the configuration at t_n. */
-#include "gather.h"
+#include "solver.h"
 
 #define AT_AXIS 1e-6        /* of a half-length */
 #define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its k_r stays central */
@@ -391,8 +391,8 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));
-  m->status   = CL_OK;
-  m->refactor = true;
+  m->status = CL_OK;
+  PreconditionerRenew(m);
   PetscCall(PetscCalloc1(m->grid.gm[0] * m->grid.gm[1], &flag));
   PetscCall(BuildStencils(m, flag));
   PetscCall(ModelReduceStatus(m, status));

@@ -1,5 +1,5 @@
 /* The part of the Jacobian that runs through the projected gradients (27): particle by particle, never assembled. */
-#include "gather.h"
+#include "solver.h"
 
 /* What one particle's rows see of the projected gradients. */
 static void WideParticle(const Model *m, PetscInt p, const double *proj, double *f)
@@ -64,7 +64,7 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
-  PetscCall(MatMult(m->J2, X, Y));
+  PetscCall(MatMult(m->solver->J2, X, Y));
   const bool wide = m->c->stabilisation.flux_interpolation && m->c->fields.fluid;
   if (wide || PlatesCouple(m)) {
     PetscCall(PetscLogEventBegin(m->event[EVENT_WIDE], 0, 0, 0, 0));

@@ -157,7 +157,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   if (status != CL_OK)
     return status;
   s->V   = JetScale(h->V, JetVariable(J, JET_J));
-  s->Vp  = JetSub(s->V, JetDiv(JetConstant(h->m_s), rho_s));
+  s->Vp  = VolumeLeftJet(s->V, JetConstant(h->m_s), rho_s);
   s->phi = JetDiv(s->Vp, s->V);
   if (!(s->phi.v > 0.0)) {
     *why = "porosity fell to zero";
@@ -166,12 +166,12 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   Saturations(fs, mat, h->sw_n, pw, pg, s);
   HydrateMass(mat, h, T, rho_h, s);
 
-  const Jet Vh = JetDiv(s->m_h, rho_h), Vf = JetSub(s->Vp, Vh);
+  const Jet Vf = VolumeLeftJet(s->Vp, s->m_h, rho_h);
   if (!(Vf.v > 0.0)) {
     *why = "hydrate fills the pore space";
     return CL_DOMAIN;
   }
-  s->Sh  = JetDiv(Vh, s->Vp);
+  s->Sh  = PoreShareJet(s->m_h, rho_h, s->Vp);
   s->m_w = s->m_g = zero;
   if (fs->phase[PHASE_W]) {
     s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);

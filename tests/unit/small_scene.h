@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include "clathra/case.h"
 #include "clathra/model.h"
+#include "model/solver.h"
 #include "random.h"
 #include "ranks.h"
 #include "sediment.h"
@@ -205,7 +206,7 @@ static inline void MakeSolver(SmallScene *s)
   Call(PetscArraycpy(x, s->m.x_n, n));
   Call(ModelSolve(&s->m, x, &newton, &status));
   Call(PetscOptionsClearValue(NULL, "-snes_max_it"));
-  Call(SNESSetTolerances(s->m.snes, 0.0, 0.0, 0.0, 15, 10000));
+  Call(SNESSetTolerances(s->m.solver->snes, 0.0, 0.0, 0.0, 15, 10000));
   Call(PetscFree(x));
 }
 
@@ -213,10 +214,10 @@ static inline void SetX(Model *m, const double *x)
 {
   double *a;
 
-  Call(VecGetArrayWrite(m->X, &a));
+  Call(VecGetArrayWrite(m->solver->X, &a));
   for (PetscInt k = 0; k < m->map.n_owned * m->c->fields.n; k++)
     a[k] = x[k] / m->col_scale[k];
-  Call(VecRestoreArrayWrite(m->X, &a));
+  Call(VecRestoreArrayWrite(m->solver->X, &a));
 }
 
 /* Largest scaled residual of the equations of unknowns q in [from, to): momentum in units of 1 MPa over a cell, mass
@@ -228,17 +229,17 @@ static inline double ResidualAt(SmallScene *s, const double *x, int from, int to
   const double   *a;
   double          worst = 0.0;
 
-  if (!m->X)
+  if (!m->solver->X)
     MakeSolver(s);
   SetX(m, x);
-  Call(ModelResidual(NULL, m->X, m->R, m));
+  Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
   Check(m->status == CL_OK);
-  Call(VecGetArrayRead(m->R, &a));
+  Call(VecGetArrayRead(m->solver->R, &a));
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
     if (fs->field[k % fs->n] >= from && fs->field[k % fs->n] < to)
       worst = fmax(worst, fabs(a[k]));
   }
-  Call(VecRestoreArrayRead(m->R, &a));
+  Call(VecRestoreArrayRead(m->solver->R, &a));
   return Largest(worst);
 }
 
@@ -450,15 +451,15 @@ static inline void PrepareJacobian(SmallScene *s, Vec *X, Vec *D, Vec *JD)
   RandomUnknowns(m, s->stage.dt, 30, x);
   SetX(m, x);
   Call(PetscFree(x));
-  Call(VecDuplicate(m->X, X));
-  Call(VecDuplicate(m->X, D));
-  Call(VecDuplicate(m->X, JD));
-  Call(VecCopy(m->X, *X));
-  Call(ModelResidual(NULL, *X, m->R, m));
+  Call(VecDuplicate(m->solver->X, X));
+  Call(VecDuplicate(m->solver->X, D));
+  Call(VecDuplicate(m->solver->X, JD));
+  Call(VecCopy(m->solver->X, *X));
+  Call(ModelResidual(NULL, *X, m->solver->R, m));
   if (m->status != CL_OK)
     Say("  inadmissible: %s\n", m->why);
   Check(m->status == CL_OK);
-  Call(ModelJacobian(m->snes, *X, m->A, m->Pmat, m));
+  Call(ModelJacobian(m->solver->snes, *X, m->solver->A, m->solver->Pmat, m));
 }
 
 /* Largest |J D - difference| of each equation over the largest difference of that equation, in random directions. */
@@ -479,7 +480,7 @@ static inline double DirectionError(SmallScene *s, int directions)
     for (PetscInt i = 0; i < n; i++)
       d[i] = Noise(40 + k, m->map.ij[i / nf][0] + 100 * m->map.ij[i / nf][1], m->c->fields.field[i % nf]);
     Call(VecRestoreArrayWrite(D, &d));
-    Call(MatMult(m->A, D, JD));
+    Call(MatMult(m->solver->A, D, JD));
     Difference(m, X, D, 4e-3, dy);
     Call(VecGetArrayRead(JD, &a));
     for (PetscInt i = 0; i < n; i++) {
@@ -515,7 +516,7 @@ static inline double ColumnError(SmallScene *s)
       Call(VecSetValue(D, c, 1.0, INSERT_VALUES));
     Call(VecAssemblyBegin(D));
     Call(VecAssemblyEnd(D));
-    Call(MatMult(m->A, D, JD));
+    Call(MatMult(m->solver->A, D, JD));
     Difference(m, X, D, m->c->fields.field[c % nf] < F_PW ? 1e-1 : 2e-2, dy);
     Call(VecGetArrayRead(JD, &a));
     for (PetscInt k = 0; k < n; k++) {

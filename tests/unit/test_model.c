@@ -118,12 +118,12 @@ static void BedsResidual(double ratio, double dip, const double F[4], int n, dou
   Call(PetscMalloc1(m->map.n_local * m->c->fields.n, &x));
   RandomUnknowns(m, s->stage.dt, 30, x);
   SetX(m, x);
-  Call(ModelResidual(NULL, m->X, m->R, m));
-  Call(VecGetArrayRead(m->R, &R));
+  Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
+  Call(VecGetArrayRead(m->solver->R, &R));
   Check(m->map.n_owned * m->c->fields.n <= n);
   for (PetscInt k = 0; k < n; k++)
     a[k] = k < m->map.n_owned * m->c->fields.n ? R[k] : 0.0;
-  Call(VecRestoreArrayRead(m->R, &R));
+  Call(VecRestoreArrayRead(m->solver->R, &R));
   Call(PetscFree(x));
   SceneDestroy(s);
   free(s);
@@ -201,7 +201,7 @@ static void TestPlates(void **state)
     Call(PetscMalloc4(3 * m->P.n, &t.m, 4 * m->P.n, &t.y, 2 * m->P.n, &t.u, 2 * m->P.n, &t.v));
     RandomUnknowns(m, s->stage.dt, 30, x);
     SetX(m, x);
-    Call(ModelResidual(NULL, m->X, m->R, m));
+    Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
     Call(ModelEndStage(m, x, &t, &rates, &status));
     const double F = s->bc[top].force.y[0], error = fabs(m->plate[top][PLATE_FORCE] / F - 1.0);
     Say("plates, %s, kind %d: directions %.1e, entries %.1e, force %.1e; %g of %g faces touch\n",
@@ -237,7 +237,7 @@ static void TestMassRows(void **state)
     Call(PetscMalloc4(3 * m->P.n, &t.m, 4 * m->P.n, &t.y, 2 * m->P.n, &t.u, 2 * m->P.n, &t.v));
     RandomUnknowns(m, s->stage.dt, 50 + k, x);
     SetX(m, x);
-    Call(ModelResidual(NULL, m->X, m->R, m));
+    Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
     Check(m->status == CL_OK);
     Call(ModelEndStage(m, x, &t, &rates, &status));
     Check(status == CL_OK);
@@ -275,7 +275,7 @@ static double RestVelocity(SmallScene *s, double *scale)
   for (PetscInt k = 0; k < m->map.n_local * F_COUNT; k++)
     x[k] = m->x_n[k] +
            1e-3 * m->col_scale[k] * Noise(60, m->map.ij[k / F_COUNT][0] + 100 * m->map.ij[k / F_COUNT][1], k % F_COUNT);
-  m->tol_residual = 2e-12; /* and a twentieth of it in mass and energy */
+  m->solver->tol_residual = 2e-12; /* and a twentieth of it in mass and energy */
   Call(ModelSolve(m, x, &newton, &status));
   if (status != CL_OK)
     Say("  %s\n", m->why);
@@ -546,12 +546,12 @@ static void TestNewtonOrder(void **state)
   StageStart(s, 50.0);
   Call(ModelBeginStage(&s->m, &s->stage));
   MakeSolver(s);
-  s->m.tol_residual = 1e-11;
-  Call(SNESSetConvergenceHistory(s->m.snes, history, NULL, 50, PETSC_TRUE));
+  s->m.solver->tol_residual = 1e-11;
+  Call(SNESSetConvergenceHistory(s->m.solver->snes, history, NULL, 50, PETSC_TRUE));
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   Call(PetscArraycpy(x, s->m.x_n, s->m.map.n_local * F_COUNT));
   Call(ModelSolve(&s->m, x, &newton, &status));
-  Call(SNESGetConvergenceHistory(s->m.snes, NULL, NULL, &n));
+  Call(SNESGetConvergenceHistory(s->m.solver->snes, NULL, NULL, &n));
   Say("Newton on a sudden load of 2 MPa with hydrate forming, dt = 50 s:\n");
   for (PetscInt k = 0; k < n; k++) {
     const double order = k > 1 ? log(history[k] / history[k - 1]) / log(history[k - 1] / history[k - 2]) : NAN;
