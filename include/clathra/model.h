@@ -104,6 +104,13 @@ typedef struct {
   double root;      /* mean of sqrt(k_r) (108) */
 } FluidNode;
 
+/* Where the gas that moves through a particle comes from (332). */
+typedef struct {
+  double up[CL_DIM]; /* beta_p over the mean distance of the nodes upstream, along the flow, 1/m */
+  double base;       /* 1 - beta_p */
+  double kr;         /* k^_r,p at t_n (334) */
+} Donor;
+
 typedef struct {
   const Scene  *c;
   Grid          grid;
@@ -119,6 +126,7 @@ typedef struct {
   double   *w;      /* [n_local][2] (phi S_pi)_I */
   double   *V;      /* [n_local] sum of V_n S, m^3 */
   double   *up;     /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
+  Donor    *donor;  /* [n] (332); NULL when off */
   double   *spread; /* [n][2] (200); NULL when off */
   double   *upwind; /* [n][3] (293); NULL when off */
   Bedding  *beds;   /* [n] NULL without */
@@ -126,6 +134,7 @@ typedef struct {
   double *conduct;  /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
   double *Vk;       /* [n_local] sum of V S times it, m^3 */
   double *flow;     /* [n_local] V/Vk (350) */
+  double *source;   /* [n_local][2] the same (333) and Vk for gas as particles take it (332); NULL when off */
   double *coef;     /* [n_local][NC_COUNT] nodal means, places NC_... */
   const Material **material; /* [n_local] of most of what this rank has at the node */
   double          *most;     /* [n_local] ... volume of the particle that it is of, times S, m^3 */

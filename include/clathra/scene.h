@@ -59,6 +59,7 @@ typedef struct {
   double pressure_projection; /* alpha, 0 = off; default 1 */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
+  bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind;   /* (200); default false */
   bool   heat_upwind;         /* (293); default false */
   bool   lumped_reaction;     /* (265); default false */
@@ -169,6 +170,12 @@ static inline bool SceneLetsGasIn(const Scene *c)
   return enters && SceneStartsWithoutGas(c);
 }
 
+/* Has gas the mobility of where it comes from (332)? */
+static inline bool SceneDonor(const Scene *c)
+{
+  return c->stabilisation.donor && c->fields.phase[PHASE_W] && c->fields.phase[PHASE_G] && !c->fields.one_pressure;
+}
+
 /* k_p of (350) over the first material's k0, at a saturation of hydrate. */
 static inline double SceneConductance(const Scene *c, const Material *mat, double Sh)
 {
@@ -230,6 +237,7 @@ static inline const char *SceneNeedsImplicit(const Scene *c)
          : c->axisymmetric                    ? "geometry: axisymmetric"
          : c->one_pressure                    ? "pressures: one"
          : c->stabilisation.upstream          ? "stabilisation_upstream"
+         : c->stabilisation.donor             ? "stabilisation_donor"
          : c->stabilisation.saturation_upwind ? "stabilisation_saturation"
          : c->stabilisation.lumped_reaction   ? "stabilisation_reaction"
          : !c->inertia                        ? "inertia: no"

@@ -148,6 +148,9 @@ const Key case_key[] = {
             "momentum-interpolated mass flux"),
     BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",
             "relative permeabilities from upstream, for sharp fronts of saturation"),
+    BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
+            "gas has the mobility of the nodes it comes from, so that sediment without mobile gas gives none: for sand "
+            "with gas beside clay"),
     BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
     BOOLEAN(

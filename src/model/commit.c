@@ -282,7 +282,8 @@ static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *
       const double   dv   = x[k] - m->x_n[k];
       const double   slip = q < F_VWX ? 0.0 : fs->solid ? dv - (x[vs] - m->x_n[vs]) : dv;
 
-      m->P.f[P_VS + q][p] += r->S[a] * (dv + (FlowWeight(m, p, I) - 1.0) * slip);
+      m->P.f[P_VS + q][p] +=
+          r->S[a] * (dv + ((q < F_VWX ? 1.0 : FlowWeight(m, p, I, (q - F_VWX) / CL_DIM)) - 1.0) * slip);
     }
   }
 }

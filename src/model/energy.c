@@ -113,7 +113,7 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
       double J[2];
 
       DarcyFlux(m, r->node[a], f, &x[r->node[a] * fs->n], J);
-      power[WORK_DRAG] += r->S[a] * FlowWeight(m, p, r->node[a]) * out[OUT_D + f] * (J[0] * J[0] + J[1] * J[1]);
+      power[WORK_DRAG] += r->S[a] * FlowWeight(m, p, r->node[a], f) * out[OUT_D + f] * (J[0] * J[0] + J[1] * J[1]);
     }
   }
   if (!m->bc.ambient.on)
@@ -149,7 +149,7 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
         continue;
       DarcyFlux(m, r->node[a], ph, xI, J);
       for (int d = 0; d < CL_DIM; d++)
-        power[WORK_PRESSURE] -= FaceWeight(f, a, F_VWX + 2 * ph + d) * FlowWeight(m, f->particle, r->node[a]) *
+        power[WORK_PRESSURE] -= FaceWeight(f, a, F_VWX + 2 * ph + d) * FaceShare(m, f->particle, r->node[a], ph) *
                                 o->out[F_VWX + 2 * ph + d] * J[d];
     }
   }

@@ -89,9 +89,44 @@ static inline double ConductingVolume(const Model *m, PetscInt p)
 }
 
 /* (350) over S_I: 1 where all particles of the node are as permeable. */
-static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I)
+static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
 {
   return m->conduct[p] * m->flow[I];
+}
+
+/* omega_Ip (332): 1 where all nodes of the particle are as mobile. */
+static inline double DonorShare(const Model *m, PetscInt p, PetscInt I)
+{
+  const Donor *at = &m->donor[p];
+  double       up = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    up += at->up[d] * (m->P.f[P_X + d][p] - GridNode(&m->grid, d, m->map.ij[I][d]));
+  return at->base + fmax(up, 0.0);
+}
+
+static inline bool Donated(const Model *m, int f)
+{
+  return m->donor && f == PHASE_G;
+}
+
+/* Share of a node's flux of a fluid that goes through an open face of the particle: (350), of gas (333) without
+   omega. */
+static inline double FaceShare(const Model *m, PetscInt p, PetscInt I, int f)
+{
+  return Donated(m, f) ? m->conduct[p] * m->source[2 * I] : LayerWeight(m, p, I);
+}
+
+/* W_Ip/S_I of a fluid: (350), of gas (333). */
+static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I, int f)
+{
+  return Donated(m, f) ? DonorShare(m, p, I) * m->conduct[p] * m->source[2 * I] : LayerWeight(m, p, I);
+}
+
+/* Weight of a node's projected gradient in the bracket of (19): S_I, of gas (334). */
+static inline double ProjectedShare(const Model *m, PetscInt p, PetscInt I, int f, double S)
+{
+  return Donated(m, f) ? S * DonorShare(m, p, I) * m->coef[I * NC_COUNT + NC_KR + f] / m->donor[p].kr : S;
 }
 
 /* v := A v where particle p has beds (306). */
@@ -148,7 +183,7 @@ static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
 /* What a face of particle p at node I adds to row q is weighted with besides: (350) in (16). */
 static inline double FaceFlow(const Model *m, PetscInt p, PetscInt I, int q)
 {
-  return q >= F_VWX && q <= F_VGY ? FlowWeight(m, p, I) : 1.0;
+  return q >= F_VWX && q <= F_VGY ? FlowWeight(m, p, I, (q - F_VWX) / CL_DIM) : 1.0;
 }
 
 static inline double RowWeightOf(const Model *m, PetscInt I, int q)
@@ -219,7 +254,7 @@ static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const doub
 static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
   if (!m->c->stabilisation.upstream)
-    return S * FlowWeight(m, p, I);
+    return S * LayerWeight(m, p, I);
   const double *u = &m->up[6 * I + 3 * f];
 
   return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
@@ -248,7 +283,7 @@ static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, con
   const FieldSet *fs = &m->c->fields;
   double          s[2], A[2];
 
-  Acceleration(m, I, x, PlaceV(fs, f), FlowWeight(m, p, I), acc);
+  Acceleration(m, I, x, PlaceV(fs, f), FlowWeight(m, p, I, f), acc);
   if (!m->beds)
     return;
   for (int i = 0; i < 2; i++)
@@ -269,7 +304,7 @@ static inline void GatherFluid(const Model *m, PetscInt p, int f, const Reach *r
 
   for (int a = 0; a < r->n; a++) {
     const PetscInt I  = r->node[a];
-    const double   pI = x[I * n + at], flow = FlowWeight(m, p, I);
+    const double   pI = x[I * n + at], flow = face ? FaceShare(m, p, I, f) : FlowWeight(m, p, I, f);
     double         J[2];
 
     DarcyFlux(m, I, f, &x[I * n], J);
@@ -342,13 +377,14 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
 {
   const FieldSet *fs = &m->c->fields;
 
-  h->V       = m->P.f[P_V][p];
-  h->m_s     = m->P.f[P_MS][p];
-  h->T_n     = ParticleT(m->c, &m->P, p);
-  h->Sh_n    = m->P.f[P_SH][p];
-  h->sw_n    = ParticleSw(m, p);
-  h->dt      = m->stage.dt;
-  h->bracket = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
+  h->V        = m->P.f[P_V][p];
+  h->m_s      = m->P.f[P_MS][p];
+  h->T_n      = ParticleT(m->c, &m->P, p);
+  h->Sh_n     = m->P.f[P_SH][p];
+  h->sw_n     = ParticleSw(m, p);
+  h->dt       = m->stage.dt;
+  h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
+  h->mobility = m->donor ? m->donor[p].kr : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < 3; k++)
@@ -379,7 +415,7 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
     for (int i = 0; fs->phase[f] && i < 2; i++) {
       h->proj[f][i] = 0.0;
       for (int a = 0; a < r->n; a++)
-        h->proj[f][i] += r->S[a] * m->proj[4 * r->node[a] + 2 * f + i];
+        h->proj[f][i] += ProjectedShare(m, p, r->node[a], f, r->S[a]) * m->proj[4 * r->node[a] + 2 * f + i];
     }
   }
 }
@@ -435,10 +471,10 @@ static inline int RowLength(int unknowns)
   return (unknowns + 7) / 8 * 8;
 }
 
-/* One node as a particle or face sees it; NS (by component) and NU stand for S in the Darcy fluxes, where it is (350),
-   and in the displacement. */
+/* One node as a particle or face sees it; NS (by fluid and component) and NU stand for S in the Darcy fluxes, where it
+   is (350) or (333), and in the displacement. */
 typedef struct {
-  double        S, NS[CL_DIM], NU, K;
+  double        S, NS[PHASE_COUNT][CL_DIM], NU, K;
   const double *G, *M, *w, *B; /* B: null without mean dilatation */
 } NodeWeights;
 
@@ -497,8 +533,10 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
 /* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
 void LumpBuild(Model *m);
-void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
-void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
+/* (332)-(334): where each particle's gas comes from at t_n, all ranks. */
+PetscErrorCode DonorBuild(Model *m);
+void           LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void           LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);

@@ -7,7 +7,7 @@ typedef struct {
   double acc[3][2], own[PHASE_COUNT][2], J[PHASE_COUNT][2], Tdot; /* own: in (16), (310) */
   double weight[PHASE_COUNT];                                     /* RowWeight */
   double kr[PHASE_COUNT];                                         /* of the node (108) */
-  double flow, share;                                             /* (350), and without S */
+  double flow[PHASE_COUNT], share[PHASE_COUNT];                   /* (350), (333), and without S */
   double rise[PHASE_COUNT][2]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
 } NodeFactors;
 
@@ -17,14 +17,14 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
 
   if (fs->solid)
     Acceleration(m, I, x, PlaceVs(fs), 1.0, n->acc[0]);
-  n->share = FlowWeight(m, p, I);
-  n->flow  = S * n->share;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
     Acceleration(m, I, x, PlaceV(fs, f), 1.0, n->acc[1 + f]);
     FluidAcceleration(m, p, I, x, f, n->own[f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
+    n->share[f]  = FlowWeight(m, p, I, f);
+    n->flow[f]   = S * n->share[f];
     n->kr[f]     = 1.0;
     n->weight[f] = RowWeight(m, I, f);
     if (!m->fluid)
@@ -86,9 +86,9 @@ static void NodeRows(const Model *m, const Assembly *to, const Reach *r, int a, 
   for (int f = 0; f < PHASE_COUNT; f++) {
     for (int i = 0; fs->phase[f] && PlaceV(fs, f) >= 0 && i < 2; i++) {
       sum.n = 0;
-      RowSumAdd(&sum, k->flow * k->kr[f] * k->own[f][i], DB[OUT_MI + f]);
-      RowSumAdd(&sum, k->flow * k->kr[f], DB[OUT_G + 2 * f + i]);
-      RowSumAdd(&sum, k->flow * k->J[f][i], DB[OUT_D + f]);
+      RowSumAdd(&sum, k->flow[f] * k->kr[f] * k->own[f][i], DB[OUT_MI + f]);
+      RowSumAdd(&sum, k->flow[f] * k->kr[f], DB[OUT_G + 2 * f + i]);
+      RowSumAdd(&sum, k->flow[f] * k->J[f][i], DB[OUT_D + f]);
       if (m->fluid)
         RowSumAdd(&sum, k->rise[f][i], DB[OUT_ROOT + f]);
       RowSumInto(&sum, length, row[PlaceV(fs, f) + i]);
@@ -109,7 +109,7 @@ static void NodeRows(const Model *m, const Assembly *to, const Reach *r, int a, 
 static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const NodeFactors *k, double dt, double S,
                      const double *w, double *block, int ld)
 {
-  const double inertia = fs->inertia ? S / dt : 0.0, moved = fs->inertia ? k->flow * k->share / dt : 0.0;
+  const double inertia = fs->inertia ? S / dt : 0.0, per_dt = fs->inertia ? 1.0 / dt : 0.0;
 
   for (int i = 0; i < 2; i++) {
     const int vs = PlaceVs(fs) + i;
@@ -117,11 +117,13 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
     if (fs->solid)
       block[vs * ld + vs] += inertia * out[OUT_M];
     for (int f = 0; f < PHASE_COUNT; f++) {
-      const int    v    = PlaceV(fs, f) + i;
-      const double drag = k->flow * out[OUT_D + f] * w[f], mass = moved * k->kr[f] * out[OUT_MI + f];
+      const int v = PlaceV(fs, f) + i;
 
       if (!fs->phase[f])
         continue;
+      const double drag = k->flow[f] * out[OUT_D + f] * w[f],
+                   mass = per_dt * k->flow[f] * k->share[f] * k->kr[f] * out[OUT_MI + f];
+
       if (PlaceV(fs, f) < 0) {
         if (fs->solid && drag > 0.0)
           block[vs * ld + vs] += inertia * out[OUT_M + 1 + f] * drag / (drag + mass);
@@ -149,7 +151,7 @@ static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT
       continue;
     for (int i = 0; i < 2; i++) {
       for (int j = 0; j < 2; j++)
-        block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] += k->flow * k->kr[f] * out[OUT_MI + f] * less[i][j] / dt;
+        block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] += k->flow[f] * k->kr[f] * out[OUT_MI + f] * less[i][j] / dt;
     }
   }
 }
@@ -167,14 +169,15 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
   SlopesBegin(fs->n * r->n, &slopes);
   for (int b = 0; b < r->n; b++) {
     Factors(m, p, r->node[b], x, r->S[b], &factor[b]);
-    const NodeWeights at = {.S  = r->S[b],
-                            .NS = {factor[b].flow, factor[b].flow},
-                            .NU = MotionWeight(m, p, r, b),
-                            .K  = axisymmetric ? r->K[b] : 0.0,
-                            .G  = r->G[b],
-                            .M  = r->M[b],
-                            .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                            .w  = &m->w[2 * r->node[b]]};
+    const NodeWeights at = {
+        .S  = r->S[b],
+        .NS = {{factor[b].flow[PHASE_W], factor[b].flow[PHASE_W]}, {factor[b].flow[PHASE_G], factor[b].flow[PHASE_G]}},
+        .NU = MotionWeight(m, p, r, b),
+        .K  = axisymmetric ? r->K[b] : 0.0,
+        .G  = r->G[b],
+        .M  = r->M[b],
+        .B  = m->c->mean_dilatation ? r->B[b] : NULL,
+        .w  = &m->w[2 * r->node[b]]};
 
     SlopesAdd(fs, axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
   }
@@ -242,15 +245,16 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
 
   SlopesBegin(fs->n * r->n, &slopes);
   for (int b = 0; b < r->n; b++) {
-    const double      flow = FlowWeight(m, face->particle, r->node[b]);
-    const NodeWeights at   = {.S  = r->S[b],
-                              .NS = {flow * face->Nr[b], flow * face->N[b]},
-                              .NU = face->N[b],
-                              .K  = m->c->axisymmetric ? r->K[b] : 0.0,
-                              .G  = r->G[b],
-                              .M  = r->M[b],
-                              .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                              .w  = &m->w[2 * r->node[b]]};
+    const double water   = FaceShare(m, face->particle, r->node[b], PHASE_W),
+                 gas     = FaceShare(m, face->particle, r->node[b], PHASE_G);
+    const NodeWeights at = {.S  = r->S[b],
+                            .NS = {{water * face->Nr[b], water * face->N[b]}, {gas * face->Nr[b], gas * face->N[b]}},
+                            .NU = face->N[b],
+                            .K  = m->c->axisymmetric ? r->K[b] : 0.0,
+                            .G  = r->G[b],
+                            .M  = r->M[b],
+                            .B  = m->c->mean_dilatation ? r->B[b] : NULL,
+                            .w  = &m->w[2 * r->node[b]]};
 
     SlopesAdd(fs, m->c->axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
   }

@@ -31,6 +31,7 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree6(m->x_n, m->w, m->V, m->Vk, m->flow, m->coef));
   PetscCall(PetscFree2(m->material, m->most));
   PetscCall(PetscFree(m->up));
+  PetscCall(PetscFree(m->source));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
   PetscCall(PetscFree(m->mass_row));
@@ -48,6 +49,7 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscCall(PetscFree(m->conduct));
   PetscCall(PetscFree(m->order));
   PetscCall(PetscFree(m->wide));
+  PetscCall(PetscFree(m->donor));
   PetscCall(PetscFree(m->spread));
   PetscCall(PetscFree(m->upwind));
   PetscCall(PetscFree(m->lump));
@@ -74,6 +76,8 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(PetscCalloc2(n, &m->material, n, &m->most));
   if (m->c->stabilisation.upstream)
     PetscCall(PetscCalloc1(n * 6, &m->up));
+  if (SceneDonor(m->c))
+    PetscCall(PetscCalloc1(n * 2, &m->source));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
   if (m->c->fields.one_pressure)

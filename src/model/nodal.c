@@ -45,16 +45,17 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
       BedsDriveMoving(&m->beds[p].A, w, &g[2 * f]);
     }
     for (int a = 0; a < r.n; a++) {
-      const double VS = Vk * r.S[a];
+      for (int k = 0; k < 4; k++) {
+        const double share = Donated(m, k / CL_DIM) ? DonorShare(m, p, r.node[a]) : 1.0;
 
-      for (int k = 0; k < 4; k++)
-        proj[4 * r.node[a] + k] += VS * g[k];
+        proj[4 * r.node[a] + k] += Vk * r.S[a] * share * g[k];
+      }
     }
   }
   PetscCall(NodeMapSum(&m->map, proj, 4));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int k = 0; k < 4; k++)
-      proj[4 * I + k] /= m->Vk[I];
+      proj[4 * I + k] /= Donated(m, k / CL_DIM) ? m->source[2 * I + 1] : m->Vk[I];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -36,7 +36,7 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
 static void ScatterMomentum(const Model *m, PetscInt p, int ph, PetscInt I, double S, const double *x,
                             const double out[OUT_COUNT], double *f)
 {
-  const double    flow = S * FlowWeight(m, p, I);
+  const double    flow = S * FlowWeight(m, p, I, ph);
   const FieldSet *fs   = &m->c->fields;
   FluidNode      *at   = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
   double         *row  = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];

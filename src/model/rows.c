@@ -75,9 +75,9 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
       in[IN_GP + 2 * f + i][p] = b->G[i];
       if (PlaceV(fs, f) < 0)
         continue;
-      in[IN_J + 2 * f + i][first + PlaceV(fs, f) + i] = b->NS[i] * b->w[f];
+      in[IN_J + 2 * f + i][first + PlaceV(fs, f) + i] = b->NS[f][i] * b->w[f];
       if (fs->solid)
-        in[IN_J + 2 * f + i][vs + i] = -b->NS[i] * b->w[f];
+        in[IN_J + 2 * f + i][vs + i] = -b->NS[f][i] * b->w[f];
     }
   }
   if (fs->heat) {

@@ -28,6 +28,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->conduct));
     PetscCall(PetscFree(m->order));
     PetscCall(PetscFree(m->wide));
+    PetscCall(PetscFree(m->donor));
     PetscCall(PetscFree(m->spread));
     PetscCall(PetscFree(m->upwind));
     PetscCall(PetscFree(m->lump));
@@ -38,6 +39,8 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscMalloc1(m->stencil_cap, &m->order));
     if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
+    if (SceneDonor(m->c))
+      PetscCall(PetscMalloc1(m->stencil_cap, &m->donor));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
       PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
     if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
@@ -416,6 +419,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     }
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamWeights(m));
+    PetscCall(DonorBuild(m));
     LumpBuild(m);
   }
   PetscCall(PetscFree(flag));

@@ -220,8 +220,9 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
 {
   const double(*K)[2] = metric->K;
   const Jet     rho   = s->rho[f];
-  const Tau     t     = TauOf(s->kr[f].v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
-  const Jet     tau   = JetChain3(t.v, t.kr, s->kr[f], t.resist, s->resist[f], t.rho, rho);
+  const Jet     kr    = f == PHASE_G && h->mobility > 0.0 ? JetConstant(h->mobility) : s->kr[f];
+  const Tau     t     = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
+  const Jet     tau   = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
   const Jet     rt    = JetScale(h->bracket, JetMul(rho, tau));
   const double *J     = &in[IN_J + 2 * f];
   double        g[]   = {in[IN_GP + 2 * f], in[IN_GP + 2 * f + 1]};

@@ -11,20 +11,24 @@
 #include "small_scene.h"
 
 /* ---------------------------------------------------------------- (a) Jacobian */
-/* A random state, with relative permeabilities from upstream and the reaction by nodes where hydrate reacts. */
+/* A random state, with relative permeabilities from upstream and the reaction by nodes where hydrate reacts, and gas
+   with the mobility of where it comes from in the second set of conditions. */
 static void UpstreamScene(SmallScene *s, BasisType basis, bool reacts, int set)
 {
-  double upstream = 0.0, lumped = 0.0;
+  double upstream = 0.0, lumped = 0.0, donor = 0.0;
 
   JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
   s->c.scene.stabilisation.upstream = reacts;
+  s->c.scene.stabilisation.donor    = set;
   JacobianState(s);
   Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
     upstream += s->m.up && s->m.up[3 * k + 2] > 0.0; /* no storage where it is off */
   for (PetscInt p = 0; p < s->m.P.n; p++)
     lumped += s->m.lump && s->m.lump[p].rate > 0.0;
-  Check((Sum(upstream) > 0.0) == reacts && (Sum(lumped) > 0.0) == reacts);
+  for (PetscInt p = 0; p < s->m.P.n; p++)
+    donor += s->m.donor && s->m.donor[p].base < 1.0;
+  Check((Sum(upstream) > 0.0) == reacts && (Sum(lumped) > 0.0) == reacts && (Sum(donor) > 0.0) == (set > 0));
 }
 
 static void TestJacobian(void **state)
@@ -49,17 +53,19 @@ static void TestJacobian(void **state)
 /* Two layers whose permeabilities differ a thousandfold (350), with one fluid and with two. */
 static void TestLayersJacobian(void **state)
 {
-  static const unsigned has[2] = {HAS_SOLID | HAS_WATER, HAS_ALL};
+  static const unsigned    has[3]  = {HAS_SOLID | HAS_WATER, HAS_ALL, HAS_ALL};
+  static const char *const name[3] = {"water", "six fields", "six fields, gas from where it comes (332)"};
 
   (void)state;
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < 3; k++) {
     SmallScene *s = malloc(sizeof(*s));
 
     JacobianCase(s, has[k], true, false, BASIS_CPGIMP, 0.0, 0.0, false, 0);
+    s->c.scene.stabilisation.donor = k == 2;
     SceneLayers(s, 1, 0.08, 1e-3);
     JacobianState(s);
     const double worst = DirectionError(s, 3), entry = ColumnError(s);
-    Say("  two layers, %s: directions %.1e, entries %.1e\n", k ? "six fields" : "water", worst, entry);
+    Say("  two layers, %s: directions %.1e, entries %.1e\n", name[k], worst, entry);
     Check(worst < 1e-6 && entry < 1e-6);
     SceneDestroy(s);
     free(s);
@@ -303,10 +309,11 @@ static void TestTwoLayers(void **state)
     double      scale;
 
     SceneInit(s, HAS_ALL, true, false, (BasisType)basis, 0.0, lower, upper);
-    Material mat[2]     = {s->mat, s->mat};
-    Region   region[2]  = {s->region, s->region};
-    mat[1].retention.m  = 0.6;
-    mat[1].retention.p0 = 2e5;
+    s->c.scene.stabilisation.donor = basis;
+    Material mat[2]                = {s->mat, s->mat};
+    Region   region[2]             = {s->region, s->region};
+    mat[1].retention.m             = 0.6;
+    mat[1].retention.p0            = 2e5;
     mat[1].permeability.k0 *= 1e-3;
     mat[1].porosity      = 0.45;
     region[1].lower[1]   = 0.13;
@@ -350,9 +357,10 @@ static void HydrostaticScene(SmallScene *s, BasisType basis)
 
   SceneInit(s, HAS_ALL, true, false, basis, 0.0, lower, upper);
   Check(RetentionSetType(&mat->retention, "van_genuchten_clamped"));
-  mat->retention.Sgr    = 0.05;
-  mat->water.K          = INFINITY;
-  mat->gas.M            = 1e-18;
+  mat->retention.Sgr             = 0.05;
+  mat->water.K                   = INFINITY;
+  mat->gas.M                     = 1e-18;
+  s->c.scene.stabilisation.donor = basis;
   SetSolubility(&mat->gas, 1.9e-5);
   s->c.scene.gravity[1] = -g;
   s->region.Sg          = 0.05;
