@@ -158,7 +158,7 @@ static double ShareOfWater(const PointState *s)
 /* With one pressure the saturations are explicit: they may not leave [0,1] nor change much in a step. */
 static void CheckShares(Model *m, const double *x, const double *masses)
 {
-  for (PetscInt p = 0; p < m->P.n && m->status == CL_OK; p++) {
+  for (PetscInt p = 0; p < m->P.n && m->failure.status == CL_OK; p++) {
     Reach       r;
     PointState  s;
     PointOutput o;
@@ -201,8 +201,8 @@ static void PlasticState(PetscInt p, const SkeletonState *k, Trial *trial)
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
 {
   PetscFunctionBeginUser;
-  *rates    = (StageRates){0};
-  m->status = CL_OK;
+  *rates            = (StageRates){0};
+  m->failure.status = CL_OK;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  s;

@@ -1,7 +1,7 @@
 /* Private to model/: what passes between nodes and one particle. */
 #pragma once
 
-#include "clathra/model.h"
+#include "additions.h"
 
 /* A particle's nodes with their values; H only about an axis; M, K are G, H as the motion sees them (160); B (88) only
    with mean dilatation. */
@@ -220,7 +220,7 @@ static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int 
 {
   if (!m->c->stabilisation.upstream)
     return S * FlowWeight(m, p, I);
-  const double *u = &m->up[6 * I + 3 * f];
+  const double *u = &m->added->up[6 * I + 3 * f];
 
   return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
 }
@@ -350,9 +350,9 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->dt      = m->stage.dt;
   h->bracket = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
-    h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
+    h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < 3; k++)
-    h->upwind[k] = m->upwind ? m->upwind[3 * p + k] : 0.0;
+    h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
   h->compression = m->c->compression_heat;
   for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
     h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
@@ -530,3 +530,4 @@ double GhostPower(const Model *m, const double *x); /* that the penalty on v_s t
 #define CL_LIMIT_J 0.5 /* volumetric strain of a step */
 PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);
 PetscErrorCode ModelResizeNodal(Model *m);
+PetscErrorCode FreeParticleArrays(Model *m); /* of the configuration at t_n */

@@ -176,7 +176,7 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
     const bool fixed = (m->mask[k / n] >> (k % n)) & 1u;
 
     a[k] = fixed ? (x[k] - m->fixed[k]) / m->col_scale[k] : f[k] / m->row_scale[k];
-    if (m->status != CL_OK)
+    if (m->failure.status != CL_OK)
       a[k] = NAN; /* every rank sees it in the norm; SNESSetFunctionDomainError would tell this rank alone */
   }
   PetscCall(VecRestoreArrayWrite(R, &a));
@@ -187,8 +187,8 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
 static PetscErrorCode Rows(Model *m, Vec X)
 {
   PetscFunctionBeginUser;
-  m->status  = CL_OK;
-  m->limited = 0;
+  m->failure.status = CL_OK;
+  m->limited        = 0;
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(PetscArrayzero(m->f, m->map.n_local * m->c->fields.n));
   if (m->mass_row)

@@ -24,14 +24,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
 
   PetscFunctionBeginUser;
   if (m->P.n > m->stencil_cap) {
-    PetscCall(PetscFree(m->stencil));
-    PetscCall(PetscFree(m->conduct));
-    PetscCall(PetscFree(m->order));
-    PetscCall(PetscFree(m->wide));
-    PetscCall(PetscFree(m->spread));
-    PetscCall(PetscFree(m->upwind));
-    PetscCall(PetscFree(m->lump));
-    PetscCall(PetscFree(m->beds));
+    PetscCall(FreeParticleArrays(m));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->conduct));
@@ -39,11 +32,11 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
-      PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
+      PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->added->spread));
     if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
-      PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->upwind));
+      PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->added->upwind));
     if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
-      PetscCall(PetscCalloc1(m->stencil_cap, &m->lump));
+      PetscCall(PetscCalloc1(m->stencil_cap, &m->added->lump));
   }
   if (!SceneHasBeds(m->c)) /* a stage may bring other materials */
     PetscCall(PetscFree(m->beds));
@@ -262,10 +255,10 @@ static PetscErrorCode Project(Model *m)
     }
     if (m->beds)
       m->beds[p] = (Bedding){ParticleBeds(m->c, &m->P, p), {q.rho[PHASE_W], q.rho[PHASE_G]}};
-    for (int k = 0; m->spread && k < PHASE_COUNT; k++)
-      m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
-    if (m->upwind)
-      UpwindOf(m, p, &q, &m->upwind[3 * p]);
+    for (int k = 0; m->added->spread && k < PHASE_COUNT; k++)
+      m->added->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
+    if (m->added->upwind)
+      UpwindOf(m, p, &q, &m->added->upwind[3 * p]);
     m->conduct[p] = shared ? SceneConductance(m->c, ParticleMaterial(m, p), m->P.f[P_SH][p]) : 1.0;
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
@@ -288,7 +281,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
   PetscFunctionBeginUser;
   if (!m->c->stabilisation.upstream)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(m->up, 6 * m->map.n_local));
+  PetscCall(PetscArrayzero(m->added->up, 6 * m->map.n_local));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int f = 0; f < PHASE_COUNT; f++) {
       double J[2] = {0.0, 0.0};
@@ -297,7 +290,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
         DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
       const double size = hypot(J[0], J[1]);
       for (int d = 0; d < CL_DIM && size > 0.0; d++)
-        m->up[6 * I + 3 * f + d] = J[d] / size;
+        m->added->up[6 * I + 3 * f + d] = J[d] / size;
     }
   }
   PetscCall(PetscCalloc1(2 * m->map.n_local, &sum));
@@ -308,13 +301,13 @@ static PetscErrorCode UpstreamWeights(Model *m)
     for (int a = 0; a < r.n; a++) {
       for (int f = 0; f < PHASE_COUNT; f++)
         sum[2 * r.node[a] + f] +=
-            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], &m->up[6 * r.node[a] + 3 * f]), 0.0);
+            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], &m->added->up[6 * r.node[a] + 3 * f]), 0.0);
     }
   }
   PetscCall(NodeMapSum(&m->map, sum, 2));
   for (PetscInt k = 0; k < 2 * m->map.n_local; k++) {
     if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, k / 2) * m->V[k / 2])
-      m->up[3 * k + 2] = m->V[k / 2] / sum[k];
+      m->added->up[3 * k + 2] = m->V[k / 2] / sum[k];
   }
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -391,7 +384,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));
-  m->status = CL_OK;
+  m->failure.status = CL_OK;
   PreconditionerRenew(m);
   PetscCall(PetscCalloc1(m->grid.gm[0] * m->grid.gm[1], &flag));
   PetscCall(BuildStencils(m, flag));

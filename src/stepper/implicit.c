@@ -226,8 +226,8 @@ static bool IsNoise(const Stepper *s, double dt, double err, double dt_old, doub
 static void Judge(Stepper *s, double dt, double dt_old, double err_old, Attempt *a)
 {
   if (!isfinite(a->err)) {
-    a->status     = CL_NONFINITE;
-    s->model->why = "the error estimate is not a number";
+    a->status = CL_NONFINITE;
+    ModelExplain(s->model, "the error estimate is not a number");
   } else if (a->err > 1.0 && dt > s->dt_min && !IsNoise(s, dt, a->err, dt_old, err_old)) {
     a->status = CL_INACCURATE;
   } else if (a->err > 1.0) {
@@ -258,10 +258,12 @@ static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
 /* One step: attempts with ever smaller dt until one is accepted or the budget is spent. */
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
 {
-  Model   *m = s->model;
-  ClStatus status;
-  double   dt_inaccurate = 0.0, err_inaccurate = 0.0;
-  bool     kink;
+  Model         *m   = s->model;
+  const Failure *why = ModelFailure(m);
+  ClStatus       status;
+  double         dt_inaccurate = 0.0, err_inaccurate = 0.0;
+  char           text[CL_WHY];
+  bool           kink;
 
   PetscFunctionBeginUser;
   *ok = true;
@@ -269,7 +271,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   if (status != CL_OK) {
     *ok = false;
     PetscCall(PetscPrintf(m->grid.comm, "t = %.10g s: %s near (%.12g, %.12g) m; no smaller step can help\n", s->state.t,
-                          m->why, m->where[0], m->where[1]));
+                          why->why, why->where[0], why->where[1]));
     PetscCall(StepperAdvise(s, status));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -294,9 +296,9 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     }
     const bool small = dt <= s->dt_min * (1.0 + 1e-9);
     if (a.status == CL_INACCURATE) {
-      PetscCall(PetscSNPrintf(m->text, sizeof(m->text), "the error estimate, of %s, stays above the tolerance",
+      PetscCall(PetscSNPrintf(text, sizeof(text), "the error estimate, of %s, stays above the tolerance",
                               stepper_error_word[a.rules]));
-      m->why         = m->text;
+      ModelExplain(m, text);
       dt_inaccurate  = dt;
       err_inaccurate = a.err;
       s->state.dt    = fmax(dt * fmax(0.2, 0.9 * pow(a.err, -1.0 / s->scheme->error_order)), s->dt_min);
@@ -304,8 +306,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
       s->state.hold = HOLD;
       PetscCall(PetscPrintf(m->grid.comm, "t = %g s: step of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-                            s->state.t, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0],
-                            m->where[1], s->state.dt));
+                            s->state.t, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1],
+                            s->state.dt));
     }
     const bool last = cuts >= s->max_failures || small;
     PetscCall(StepperAutoGivesWay(s, a.status, dt, last, &s->auto_.give_way));
