@@ -57,8 +57,11 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   }
   PetscCall(Time(s->state.t - t_begin, c->t_end - t_begin, now));
   PetscCall(Time(info->dt, info->dt, dt));
-  PetscCall(PetscSNPrintf(rest, sizeof(rest), "%.3g %s", round(left) / StepperTimeUnit(left)->s,
-                          StepperTimeUnit(left)->name));
+  if (isnan(left))
+    PetscCall(PetscSNPrintf(rest, sizeof(rest), "time left not known yet"));
+  else
+    PetscCall(PetscSNPrintf(rest, sizeof(rest), "%.3g %s left", round(left) / StepperTimeUnit(left)->s,
+                            StepperTimeUnit(left)->name));
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
@@ -69,9 +72,8 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance (%s)", info->err,
                             stepper_error_word[info->rules]));
-  PetscCall(PetscPrintf(s->model->grid.comm,
-                        "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s left\n", stage,
-                        s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
+  PetscCall(PetscPrintf(s->model->grid.comm, "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s\n",
+                        stage, s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
