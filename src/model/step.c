@@ -1,4 +1,5 @@
 /* Start of a step: stencils, active nodes and nodal start values on the configuration at t_n. */
+#include "clathra/point_heat.h"
 #include "solver.h"
 
 #define AT_AXIS 1e-6        /* of a half-length */
@@ -99,8 +100,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
         fmax(k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p], 0.0); /* a trace may be none (101) */
 
     s[SUM_M + k] += S * mass;
-    for (int i = 0; i < 2; i++)
-      s[SUM_X + fs->at[F_VSX + 2 * k] + i] += S * mass * f[velocity[k] + i][p];
+    for (int i = 0; i < CL_DIM; i++)
+      s[SUM_X + fs->at[VectorAt(F_VSX, k, 0)] + i] += S * mass * f[velocity[k] + i][p];
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
@@ -141,7 +142,7 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
 
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
-      a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] * q->kr[k] / q->resist[k] *
+      a[d] -= SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
               (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
   }
   Drive(m, p, a);
@@ -221,7 +222,7 @@ static void Average(Model *m, const double *sum)
       x[k] = weight > 0.0 ? s[SUM_X + k] / weight : 0.0;
     }
     for (int k = 0; k < PHASE_COUNT; k++)
-      m->w[2 * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
+      m->w[PHASE_COUNT * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
     for (int k = 0; k < NC_COUNT; k++)
       c[k] /= V;
     for (int k = 0; k < PHASE_COUNT; k++) { /* (350), (108) */
@@ -449,7 +450,7 @@ static double FluidScale(const Model *m, PetscInt I, int phase, double h)
   v = P / h / ((fs->inertia ? c[NC_RHO + phase] / dt : 0.0) + c[NC_M] * dt / (h * h)); /* what 1 MPa brings about */
   for (int d = 0; d < CL_DIM; d++)
     v = fmax(v, fabs(m->stage.x_star[I * fs->n + PlaceVs(fs) + d]));
-  return fmax(row, ROUND_OFF * c[NC_DRAG + phase] * m->w[2 * I + phase] * v);
+  return fmax(row, ROUND_OFF * c[NC_DRAG + phase] * m->w[PHASE_COUNT * I + phase] * v);
 }
 
 /* Columns: 1 MPa, 1 K, and the velocities that belong to 1 MPa over a cell.  Rows: what such a change makes of each
@@ -460,7 +461,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6, V = m->V[I];
   const double    V_row = fmax(V, SLIVER * NodeVolume(m, I));
 
-  for (int d = 0; d < 2; d++) {
+  for (int d = 0; d < CL_DIM; d++) {
     if (fs->solid) {
       col[PlaceVs(fs) + d] = P * h / (c[NC_M] * dt);
       row[PlaceVs(fs) + d] = V_row * P / h;
@@ -470,14 +471,14 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
         continue;
       const double kr = c[NC_KR + k], inertia = fs->inertia ? kr * c[NC_RHO + k] / dt : 0.0;
 
-      col[PlaceV(fs, k) + d] = kr * P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
+      col[PlaceV(fs, k) + d] = kr * P / h / (inertia + c[NC_DRAG + k] * m->w[PHASE_COUNT * I + k]);
       row[PlaceV(fs, k) + d] = V * FluidScale(m, I, k, h);
     }
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
-    const double mass  = RowWeight(m, I, k) * V_row * MassScale(fs, c, k, m->w[2 * I + k], dt, h);
+    const double mass  = RowWeight(m, I, k) * V_row * MassScale(fs, c, k, m->w[PHASE_COUNT * I + k], dt, h);
     col[PlaceP(fs, k)] = P;
     row[PlaceP(fs, k)] = k == PHASE_G && fs->one_pressure ? row[PlaceP(fs, k)] + mass : mass;
   }

@@ -35,9 +35,10 @@ static PetscErrorCode SizeWork(Stepper *s)
   PetscCall(StepperFreeWork(w));
   PetscCall(
       PetscCalloc3(N * s->model->c->fields.n, &w->x, N * s->model->c->fields.n, &w->x_star, N * CL_DIM, &w->u_star));
-  PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, 2 * n, &w->v_n));
+  PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, CL_DIM * n, &w->v_n));
   for (int k = 0; k < 2; k++)
-    PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, 2 * n, &w->trial[k].u, 2 * n, &w->trial[k].v));
+    PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, CL_DIM * n, &w->trial[k].u, CL_DIM * n,
+                           &w->trial[k].v));
   const unsigned has = s->model->c->fields.has;
   for (int k = 0; k < 2 && (has & HAS_HISTORY); k++)
     PetscCall(PetscCalloc1(n, &w->trial[k].end));
@@ -135,7 +136,7 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
 
     for (int k = 0; k < 4; k++)
       square[k] = PetscSqr(e[4 * p + k]);
-    square[4] = PetscSqr(eu[2 * p]) + PetscSqr(eu[2 * p + 1]);
+    square[4] = PetscSqr(eu[CL_DIM * p]) + PetscSqr(eu[CL_DIM * p + 1]);
     for (int k = 0; s->work.e_plastic && k < 5; k++)
       square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
     for (int k = 0; k < STEPPER_ERRORS; k++)
