@@ -115,7 +115,7 @@ def row(r, base):
 
 def baseline(binary):
     """Memory of the program before it has a scene, bytes."""
-    process = subprocess.Popen([binary, str(CASE), "-case_check"], stdout=subprocess.DEVNULL)
+    process = subprocess.Popen([binary, "-case_keys"], stdout=subprocess.DEVNULL)
     _, _, usage = os.wait4(process.pid, 0)
     return usage.ru_maxrss * 1024.0
 

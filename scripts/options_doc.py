@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "options.md"
 
 PROGRAM = [  # option, value, default, meaning
-    ("-case_check", "", "", "read and check the case, write nothing"),
+    ("-case_check", "", "", "read and check the case and its start: refusals, forecast and warnings of a run; write nothing"),
     ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
     ("-case_curves", "", "", "print what the laws of the case's materials give, curve by curve, and stop: what docs/laws.md is drawn from"),
     ("-restart_as_initial", "FILE", "", "begin with the particles of a checkpoint, in another folder, at t = 0: conditions, gravity, times, integrator and the "

@@ -7,7 +7,8 @@ static const char help[] =
     "  clathra CASE [options]      CASE is a folder with a case.yaml, or such a file\n"
     "\n"
     "Ten options that matter:\n"
-    "  -case_check                 read and check the case, write nothing\n"
+    "  -case_check                 read and check the case and its start, forecast and warnings included; write "
+    "nothing\n"
     "  -case_keys                  print every key of a case file (needs no CASE)\n"
     "  -output_dir FOLDER          where the results go; results/NAME of the case\n"
     "  -overwrite                  ... though the results of another case are there\n"
@@ -60,10 +61,10 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   }
   if (curves && rank == 0)
     PetscCall(CasePrintCurves(&c.scene, stdout));
-  if (check)
+  if (check || !curves)
+    PetscCall(CaseRun(PETSC_COMM_WORLD, &c, check, exit_code));
+  if (check && *exit_code == CL_EXIT_OK)
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: the case is valid\n", c.file));
-  else if (!curves)
-    PetscCall(CaseRun(PETSC_COMM_WORLD, &c, exit_code));
   PetscCall(CaseDestroy(&c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

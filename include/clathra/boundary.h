@@ -76,9 +76,9 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
    between regions (342), on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
-/* The same about particles whose pore pressure is far from hydrostatic (341), whose hydrate is not stable, or whose gas
-   becomes hydrate. */
-PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
+/* The same about particles whose pore pressure is far from hydrostatic (341), whose gas gravity moves within the `span`
+   of the run (s) (315), whose hydrate is not stable, or whose gas becomes hydrate. */
+PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span);
 
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
    start, which its owner fills in where the force is prescribed. */
@@ -102,7 +102,7 @@ enum { PLATE_POSITION = 0, PLATE_FORCE, PLATE_SHEAR, PLATE_AREA, PLATE_COUNT };
 /* A fluid's own pressure at a face, extrapolated from its particle, Pa. */
 static inline double FacePressure(const Face *f, int phase, const double in[IN_COUNT])
 {
-  const double *g = &in[IN_GP + 2 * phase];
+  const double *g = &in[VectorAt(IN_GP, phase, 0)];
 
   return in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include "clathra/fields.h"
 
 /* ---------------------------------------------------------------- retention: gas share of the fluid-filled pore space
    s_g = S_g/(1 - S_h) as a function of capillary pressure p_c = p_g - p_w (Pa) and hydrate; s_w = 1 - s_g. */
@@ -121,6 +122,11 @@ static inline double KineticsMethane(const Kinetics *law)
 {
   return law->M_g / law->M_h;
 }
+/* ... of a fluid, PHASE_..., kg. */
+static inline double KineticsFluid(const Kinetics *law, int phase)
+{
+  return phase == PHASE_W ? KineticsWater(law) : KineticsMethane(law);
+}
 double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
 /* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
 double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);
@@ -155,6 +161,8 @@ const char *const *GasTypes(void);
 double GasDensity(const Gas *law, double p, double T, double *drho_dp, double *drho_dT);
 /* Volumetric thermal expansion -(1/rho) drho/dT at constant pressure, 1/K, with slopes in p and T (291). */
 double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double *dbeta_dT);
+/* The same, 1/K, where the density rho (kg/m^3) at T (degC) is known; without slopes. */
+double GasExpansionAt(const Gas *law, double rho, double T);
 
 double GasTrace(const Gas *law); /* H (102): of the methane that gives p_g a meaning where there is no gas */
 

@@ -37,3 +37,11 @@ INLINE double ReactionDissociated(double from, double a, double *slope)
   *slope = -from * per * per;
   return -from * (a / (1.0 + a)); /* never more than there is */
 }
+
+/* dm/dm_h of (37), (40): mass of a fluid that a kg of hydrate takes the place of; held: of a unit of open pores,
+ * kg/m^3.
+ */
+INLINE double Displaced(double held, double rho_h)
+{
+  return -held / rho_h;
+}

@@ -3,19 +3,36 @@
 #pragma once
 
 #include "clathra/inline.h"
+#include "clathra/jet.h"
 #include "clathra/material.h"
 
-/* (8): V_p and V_f, m^3, phi and S_h; a particle's jets are made of the same quotients. */
+/* (8) in numbers of a kind: doubles in loops over blocks, jets in one particle; Less(a, b) = a - b, Over(a, b) = a/b.
+   What a mass m (kg) of density rho (kg/m^3) leaves of a volume (m^3): grains the pores V_p, hydrate the open ones V_f;
+   V_p over V is phi, the volume of hydrate over V_p is S_h. */
+#define CL_PORES(Number, VolumeLeft, PoreShare, Less, Over)                                                            \
+  INLINE Number VolumeLeft(Number volume, Number m, Number rho)                                                        \
+  {                                                                                                                    \
+    return Less(volume, Over(m, rho));                                                                                 \
+  }                                                                                                                    \
+  INLINE Number PoreShare(Number m, Number rho, Number pore)                                                           \
+  {                                                                                                                    \
+    return Over(Over(m, rho), pore);                                                                                   \
+  }
+#define CL_LESS(a, b) ((a) - (b))
+#define CL_OVER(a, b) ((a) / (b))
+CL_PORES(double, VolumeLeft, PoreShare, CL_LESS, CL_OVER)
+CL_PORES(Jet, VolumeLeftJet, PoreShareJet, JetSub, JetDiv)
+
 typedef struct {
-  double pore, open, phi, Sh;
+  double pore, open, phi, Sh; /* V_p and V_f, m^3; phi and S_h */
 } Pores;
 
-/* Of a volume V (m^3) with masses (kg) of grains and hydrate of these densities (kg/m^3). */
+/* (8) of a volume V (m^3) with masses (kg) of grains and hydrate of these densities (kg/m^3). */
 INLINE Pores PoresOf(double V, double m_s, double rho_s, double m_h, double rho_h)
 {
-  const double pore = V - m_s / rho_s, hydrate = m_h / rho_h;
+  const double pore = VolumeLeft(V, m_s, rho_s);
 
-  return (Pores){pore, pore - hydrate, pore / V, hydrate / pore};
+  return (Pores){pore, VolumeLeft(pore, m_h, rho_h), pore / V, PoreShare(m_h, rho_h, pore)};
 }
 
 /* Pressure with slopes in s_g, p_w and p_g. */

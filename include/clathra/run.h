@@ -3,8 +3,9 @@
 
 #include "clathra/case.h"
 
-/* *exit_code: CL_EXIT_OK, CL_EXIT_INPUT (nothing written), CL_EXIT_FAILED or CL_EXIT_SIGNAL (last good state saved). */
-PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code);
+/* *exit_code: CL_EXIT_OK, CL_EXIT_INPUT (nothing written), CL_EXIT_FAILED or CL_EXIT_SIGNAL (last good state saved).
+   check: says and refuses what the run would up to its first step, and writes nothing.  Collective. */
+PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code);
 
 /* Before PETSc is initialised, and after: see src/run/process.c. */
 void ProcessPrepare(char **argv); /* may start the program again, with one thread for BLAS */

@@ -73,7 +73,7 @@ typedef struct {
 } Attempt;
 
 #define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
-#define STEPPER_NEWTON 4.0  /* iterations a stage that a forecast counts on */
+#define STEPPER_NEWTON 1.6  /* Jacobians a stage that a forecast counts on */
 #define STEPPER_ERRORS 7    /* p_w, p_g, T, S_h, position, plastic strain, stress */
 extern const char *const stepper_error_word[STEPPER_ERRORS];
 /* Changes that count as one in a step's error besides those of pressure, temperature and displacement. */
@@ -201,21 +201,37 @@ typedef struct {
 } TimeUnit;
 /* Seconds where none holds two. */
 const TimeUnit *StepperTimeUnit(double seconds);
+/* Steps that kinks of the loads, output times and dt_max ask for in the last `left` seconds of the stage, at least;
+ *kinks (or NULL): how many of them end at a kink. */
+double StepperStops(const Stepper *s, double left, double *kinks);
 /* A line about Stepper.forecast.  Collective. */
 PetscErrorCode StepperPrintForecast(const Stepper *s);
 
 /* ---- learnt.c */
 #define LEARNT 400
-/* What it cost (s) to come to times t (s) since the start, thinned out. */
+/* What it cost (s) to come to times t (s) since the origin, the last kink of a load or the begin, thinned out. */
 typedef struct {
   int    n;
   double t[LEARNT], cost[LEARNT];
+  double origin, spent; /* s of the scene, cost up to it, s */
+  double step;          /* cost of a step of late, s */
 } Learnt;
+/* From time t (s) on, to which it cost so much to come (s), times count anew. */
+void LearntBegin(Learnt *l, double t, double cost);
 /* To come to time t (s) has cost so much since the start, s. */
 void LearntAdd(Learnt *l, double t, double cost);
-/* What the way to t_end will cost, s: every doubling of time so many times what the one before did as the last one, no
-   less than half of it and no more than twice (which is an even pace). */
-double LearntLeft(const Learnt *l, double t_end);
+#define AHEAD_KINKS 20
+/* What is known of the rest of a stage. */
+typedef struct {
+  double end, kink[AHEAD_KINKS]; /* s */
+  int    kinks;
+  double stretch; /* mean time between two stops, s: a step is no longer */
+  bool   even;    /* steps are all alike: a stable or a fixed step, or too many kinks */
+} Ahead;
+/* false: there are more kinks than are listed. */
+bool StepperAhead(const Stepper *s, Ahead *a);
+/* What the way to the end will cost, s, (318), (319); NAN: nothing is known yet. */
+double LearntLeft(const Learnt *l, const Ahead *a);
 
 /* ---- auto.c: docs/equations.md, section 15 */
 /* The integrator a stage begins with, or a restart goes on with. */

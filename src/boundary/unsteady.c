@@ -1,9 +1,12 @@
-/* Starts that do not stay as they are: pore pressure far from hydrostatic, hydrate that is not stable, gas where
-   hydrate is (docs/equations.md, section 13). */
+/* Starts that do not stay as they are: pore pressure far from hydrostatic, gas that rises, hydrate that is not stable,
+   gas where hydrate is (docs/equations.md, section 13). */
 #include "clathra/boundary.h"
+#include "clathra/shape.h"
 
 #define FAR 0.1         /* of the weight of the water from top to foot */
 #define NOTICEABLE 0.01 /* of the largest pressure */
+#define MOVES 0.01      /* of the height of the body, in the whole run: less and gas does not count as moving */
+#define DAY 86400.0     /* s */
 #define OUTSIDE 1.01    /* p_e over p */
 #define WARMS 0.5       /* K: by how much hydrate that forms warms the sediment until p_e(T) = p */
 #define SOME_GAS 1e-3   /* of the pores */
@@ -41,9 +44,13 @@ static PetscErrorCode MostOfAll(MPI_Comm comm, Most *m)
 }
 
 /* ---------------------------------------------------------------- hydrostatic */
-/* Mean density of the water, kg/m^3; the weight of its column from top to foot and the largest pressure, Pa. */
-static PetscErrorCode Column(MPI_Comm comm, const Scene *c, const Particles *P, double *rho, double *weight,
-                             double *top)
+/* What water at rest would be in this body. */
+typedef struct {
+  double rho, height, weight; /* mean density, kg/m^3; of the body, m; of the water from top to foot, Pa */
+  double top;                 /* largest pressure of the water, Pa */
+} Column;
+
+static PetscErrorCode ColumnOf(MPI_Comm comm, const Scene *c, const Particles *P, Column *w)
 {
   double sum[2] = {0.0, 0.0}, most[3] = {-INFINITY, -INFINITY, 0.0}, dp, dT;
 
@@ -61,25 +68,28 @@ static PetscErrorCode Column(MPI_Comm comm, const Scene *c, const Particles *P, 
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, comm));
-  *rho    = sum[1] / sum[0];
-  *weight = *rho * SceneGravity(c) * (most[0] + most[1]);
-  *top    = most[2];
+  w->rho    = sum[1] / sum[0];
+  w->height = most[0] + most[1];
+  w->weight = w->rho * SceneGravity(c) * w->height;
+  w->top    = most[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (341): the pressure beyond that of water at rest is the same all over where water is at rest. */
-static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Particles *P)
+/* Are pressures that are so far apart (Pa) worth a word? */
+static bool FarApart(const Column *w, double apart)
 {
-  Most   high = {.value = -INFINITY}, low = {.value = -INFINITY};
-  double rho = 0.0, weight = 0.0, top = 0.0;
+  return apart >= FAR * w->weight && apart >= NOTICEABLE * w->top;
+}
+
+/* (341): the pressure beyond that of water at rest is the same all over where water is at rest. */
+static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Particles *P, const Column *w)
+{
+  Most high = {.value = -INFINITY}, low = {.value = -INFINITY};
 
   PetscFunctionBeginUser;
-  if (!c->fields.phase[PHASE_W] || SceneGravity(c) == 0.0 || c->gravity_ramp > 0.0)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Column(comm, c, P, &rho, &weight, &top));
   for (PetscInt p = 0; p < P->n; p++) {
     const double x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, pw = P->f[P_PW][p],
-                 beyond = pw + rho * SceneGravity(c) * SceneHeight(c, x);
+                 beyond = pw + w->rho * SceneGravity(c) * SceneHeight(c, x);
 
     MostTake(&high, c, P, p, beyond, pw);
     MostTake(&low, c, P, p, -beyond, pw);
@@ -88,7 +98,7 @@ static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Parti
   PetscCall(MostOfAll(comm, &low));
   const double apart = high.value + low.value;
 
-  if (apart < FAR * weight || apart < NOTICEABLE * top)
+  if (!FarApart(w, apart))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFPrintf(
       comm, stderr,
@@ -97,7 +107,118 @@ static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Parti
       "foot: it will flow from the start (hydrostatic: yes with one datum, or -restart_as_initial of a run "
       "that came to rest, starts in balance)\n",
       c->region[high.region].name, high.x[0], high.x[1], apart, c->region[low.region].name, low.x[0], low.x[1],
-      weight));
+      w->weight));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- gas under gravity */
+/* (316): how fast gas moves for every Pa/m that drives it, m^2/(Pa s), and its density, kg/m^3; 0 without gas, or where
+   the state is no start. */
+static double GasMoves(const Scene *c, const Particles *P, PetscInt p, double *rho)
+{
+  const Material *m = &c->material[c->region[P->i[PI_REGION][p]].material];
+  const double pw = P->f[P_PW][p], pg = P->f[P_PG] ? P->f[P_PG][p] : pw, share = P->f[P_SW][p] / (1.0 - P->f[P_SH][p]);
+  const char  *why;
+  PointProperties q;
+
+  if (PointPropertiesEvaluate(&c->fields, m, P->f[P_V][p], P->f[P_MS][p], P->f[P_MH][p], pw, pg, ParticleT(c, P, p),
+                              share, &q, &why) != CL_OK ||
+      !(q.s[PHASE_G] > 0.0))
+    return 0.0;
+  *rho = q.rho[PHASE_G];
+  return q.kr[PHASE_G] / (q.resist[PHASE_G] * q.phi * (1.0 - q.Sh) * q.s[PHASE_G]);
+}
+
+/* Gas of one region that moves by more than MOVES in `span` (s). */
+typedef struct {
+  Most   high, low; /* e_g of (315), Pa, and its negative */
+  double fastest;   /* (316), m^2/(Pa s) */
+} Buoyancy;
+
+/* Mean density of that gas, kg/m^3; 0: there is none. */
+static PetscErrorCode MovingGas(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt region, double least,
+                                double *mean)
+{
+  double sum[2] = {0.0, 0.0}, rho = 0.0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < P->n; p++) {
+    if (P->i[PI_REGION][p] != region || !(GasMoves(c, P, p, &rho) > least))
+      continue;
+    sum[0] += P->f[P_V][p];
+    sum[1] += P->f[P_V][p] * rho;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, comm));
+  *mean = sum[0] > 0.0 ? sum[1] / sum[0] : 0.0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BuoyancyOf(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt region, double least,
+                                 double mean, Buoyancy *b)
+{
+  PetscFunctionBeginUser;
+  *b = (Buoyancy){.high = {.value = -INFINITY}, .low = {.value = -INFINITY}};
+  for (PetscInt p = 0; p < P->n; p++) {
+    double       rho;
+    const double x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, pg = P->f[P_PG] ? P->f[P_PG][p] : P->f[P_PW][p];
+    const double moves = P->i[PI_REGION][p] == region ? GasMoves(c, P, p, &rho) : 0.0;
+    const double e     = pg + mean * SceneGravity(c) * SceneHeight(c, x);
+
+    if (!(moves > least))
+      continue;
+    b->fastest = fmax(b->fastest, moves);
+    MostTake(&b->high, c, P, p, e, pg);
+    MostTake(&b->low, c, P, p, -e, pg);
+  }
+  PetscCall(MostOfAll(comm, &b->high));
+  PetscCall(MostOfAll(comm, &b->low));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->fastest, 1, MPI_DOUBLE, MPI_MAX, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (315) of the first region where it holds; span: the time of the run, s. */
+static PetscErrorCode BuoyancyWarning(MPI_Comm comm, const Scene *c, const Particles *P, const Column *w, double span)
+{
+  const double least = MOVES * w->height / (span * w->rho * SceneGravity(c));
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; c->fields.phase[PHASE_G] && k < c->nregion; k++) {
+    double   mean = 0.0;
+    Buoyancy b;
+
+    if (RegionEmpty(&c->region[k]))
+      continue;
+    PetscCall(MovingGas(comm, c, P, k, least, &mean));
+    if (!(mean > 0.0))
+      continue;
+    PetscCall(BuoyancyOf(comm, c, P, k, least, mean, &b));
+    const double apart = b.high.value + b.low.value, away = hypot(b.high.x[0] - b.low.x[0], b.high.x[1] - b.low.x[1]);
+
+    if (!FarApart(w, apart))
+      continue;
+    PetscCall(PetscFPrintf(
+        comm, stderr,
+        "clathra: warning: gas starts out of balance with gravity: in region %s it has %.3g Pa more at (%g m, %g m) "
+        "than gas at rest would, seen from (%g m, %g m), and moves there from the start, by up to some %.2g m a day "
+        "(a gas share Sg/(1 - Sh) at which it has no relative permeability, layers with the more gas the higher they "
+        "lie, or -restart_as_initial of a run that came to rest, starts in balance)\n",
+        c->region[k].name, apart, b.high.x[0], b.high.x[1], b.low.x[0], b.low.x[1], b.fastest * apart / away * DAY));
+    break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fluids that gravity moves. */
+static PetscErrorCode GravityWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span)
+{
+  Column w;
+
+  PetscFunctionBeginUser;
+  if (!c->fields.phase[PHASE_W] || SceneGravity(c) == 0.0 || c->gravity_ramp > 0.0)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ColumnOf(comm, c, P, &w));
+  PetscCall(PressureWarning(comm, c, P, &w));
+  PetscCall(BuoyancyWarning(comm, c, P, &w, span));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -185,10 +306,10 @@ static PetscErrorCode FormationWarning(MPI_Comm comm, const Scene *c, const Part
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P)
+PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span)
 {
   PetscFunctionBeginUser;
-  PetscCall(PressureWarning(comm, c, P));
+  PetscCall(GravityWarnings(comm, c, P, span));
   PetscCall(HydrateWarning(comm, c, P));
   PetscCall(FormationWarning(comm, c, P));
   PetscFunctionReturn(PETSC_SUCCESS);

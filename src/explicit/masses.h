@@ -62,8 +62,8 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double
   PerHydrateVolume(e, r, p[PHASE_W], p[PHASE_G], held);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    mw[q] += -held[PHASE_W][q] / rho_h[q] * wanted[q] + nu[PHASE_W] * (wanted[q] - gain[q]);
-    mg[q] += -held[PHASE_G][q] / rho_h[q] * wanted[q] + nu[PHASE_G] * (wanted[q] - gain[q]);
+    mw[q] += Displaced(held[PHASE_W][q], rho_h[q]) * wanted[q] + nu[PHASE_W] * (wanted[q] - gain[q]);
+    mg[q] += Displaced(held[PHASE_G][q], rho_h[q]) * wanted[q] + nu[PHASE_G] * (wanted[q] - gain[q]);
   }
   if (s.heat)
     HeatOf(e, s, r, T, wanted, gain);

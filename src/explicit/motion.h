@@ -1,6 +1,7 @@
 /* How the particles of a block are strained and move in a step; docs/equations.md, section 12. */
 #pragma once
 
+#include "clathra/point_strain.h"
 #include "gathered.h"
 
 #define LARGEST_STRAIN 0.1 /* of one step: beyond it the series below lose digits, and the step is no small one */
@@ -20,29 +21,31 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
   for (int q = 0; q < n; q++) {
     const double Hxx = dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
                  Hyy = dt * g->dy[q][at + 1], Fxx = 1.0 + Hxx, Fyy = 1.0 + Hyy;
-    const double a = Fxx + Fyy, b = Fyx - Fxy, per = 1.0 / sqrt(a * a + b * b), c = a * per, si = b * per;
-    const double bxx = Fxx * Fxx + Fxy * Fxy, byy = Fyx * Fyx + Fyy * Fyy, off = Fxx * Fyx + Fxy * Fyy;
-    const double m = 0.5 * (bxx + byy), d = 0.5 * (bxx - byy), y = (d * d + off * off) / (m * m);
-    const double J = Fxx * Fyy - Fxy * Fyx, z = (J - 1.0) / (J + 1.0), z2 = z * z;
-    const double lnJ =
+    const Stretch of = StretchOf(Fxx, Fxy, Fyx, Fyy);
+    const double  a = of.along, b = of.turn, per = 1.0 / sqrt(a * a + b * b), c = a * per, si = b * per, y = of.y;
+    const double  J = Fxx * Fyy - Fxy * Fyx, z = (J - 1.0) / (J + 1.0), z2 = z * z;
+    const double  lnJ =
         2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 / 11.0)))));
     const double ratio =
         1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
+    double e[3], U[CL_DIM];
 
     large |= WRONG_UNLESS((fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0));
-    o->c[q]          = c;
-    o->s[q]          = si;
-    o->xx[q]         = 0.5 * lnJ + 0.5 * ratio * d / m;
-    o->yy[q]         = 0.5 * lnJ - 0.5 * ratio * d / m;
-    o->xy[q]         = 0.5 * ratio * off / m;
-    o->H[0][0][q]    = Hxx;
-    o->H[0][1][q]    = Fxy;
-    o->H[1][0][q]    = Fyx;
-    o->H[1][1][q]    = Hyy;
-    o->J[q]          = J;
-    o->log_J[q]      = lnJ;
-    o->stretch[0][q] = c * Fxx + si * Fyx;
-    o->stretch[1][q] = -si * Fxy + c * Fyy;
+    o->c[q] = c;
+    o->s[q] = si;
+    LogStrainOf(0.5 * lnJ, 0.5 * ratio * of.d / of.m, 0.5 * ratio * of.off / of.m, e);
+    o->xx[q]      = e[0];
+    o->yy[q]      = e[1];
+    o->xy[q]      = e[2];
+    o->H[0][0][q] = Hxx;
+    o->H[0][1][q] = Fxy;
+    o->H[1][0][q] = Fyx;
+    o->H[1][1][q] = Hyy;
+    o->J[q]       = J;
+    o->log_J[q]   = lnJ;
+    StretchDiagonal(c, si, Fxx, Fxy, Fyx, Fyy, U);
+    o->stretch[0][q] = U[0];
+    o->stretch[1][q] = U[1];
   }
   return !large; /* NaN is wrong as well */
 }

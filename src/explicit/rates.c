@@ -62,7 +62,7 @@ INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
     if (s.solid)
       Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], width);
     for (int k = 0; k < s.fluids; k++)
-      Blend(e->o.flip, r.n, e->m->P.f[(k ? P_VG : P_VW) + d] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
+      Blend(e->o.flip, r.n, e->m->P.f[VectorAt(P_VW, k, d)] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
             &g->value[0][B_Fluid(s, k) + B_VEL + d], width);
   }
 }
@@ -231,7 +231,7 @@ INLINE void CarriedFlux(const Explicit *e, const Set s, Run r, const Gathered *g
 INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathered *g, double dt, Given *o)
 {
   double *const *f  = e->m->P.f;
-  const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
+  const int      at = B_Fluid(s, k), n = Scalars(s), grad = VectorAt(P_GW, k, 0);
   const double   bracket   = e->m->c->stabilisation.flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
                scale       = e->o.mass_scaling / dt;
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
@@ -291,7 +291,7 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
     for (int k = 0; k < s.fluids; k++) {
       for (int d = 0; d < CL_DIM; d++)
-        a[d] += (k ? r.mat->c_g : r.mat->c_w) * o->force[d][q][k] / (dt * V);
+        a[d] += SpecificHeat(r.mat, k) * o->force[d][q][k] / (dt * V);
     }
     HeatUpwind(kappa[q], a, h, K);
     o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
@@ -345,7 +345,7 @@ INLINE void CompressionRow(Explicit *e, const Set s, Run r, const Gathered *g, c
     for (int q = 0; q < r.n; q++) {
       const PetscInt p   = r.p + q;
       const double   rho = e->t[T_RHO + k][p], TK = T[q] + CL_ZERO_CELSIUS;
-      const double   beta  = k == 0 ? r.mat->water.beta : rho > 0.0 ? -e->t[T_GAS + 1][p] / rho : 1.0 / TK;
+      const double   beta  = k == PHASE_W ? r.mat->water.beta : GasExpansionAt(&r.mat->gas, rho, T[q]);
       const double   share = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
       const double   given =
           o->force[0][q][k] * (b[0] - share * g->dx[q][at]) + o->force[1][q][k] * (b[1] - share * g->dy[q][at]);
@@ -384,7 +384,7 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   for (int row = 0; row < n; row++) {
 #pragma GCC ivdep
     for (int q = 0; q < r.n; q++) {
-      const double c = row < s.fluids ? nu[row] - held[row][q] / v->rho_h[q] : -L[q];
+      const double c = row < s.fluids ? nu[row] + Displaced(held[row][q], v->rho_h[q]) : -L[q];
       double      *a = &o->value[q][R_Matrix(s) + row * n];
 
       o->value[q][row] -= c * gain[q];

@@ -22,6 +22,17 @@ INLINE void SolveSmall(int n, double *A, double *b, double *x)
   }
 }
 
+/* What the row of a balance k of (37), r, lacks with the increments d: kg, J. */
+INLINE double Lacking(const Set s, const double *r, int k, const double *d)
+{
+  const int n   = Scalars(s);
+  double    sum = -r[k];
+
+  for (int j = 0; j < n; j++)
+    sum += r[R_Matrix(s) + k * n + j] * d[j];
+  return sum;
+}
+
 /* Increments of p_w, p_g, T of a node, with what its followers gave it; a held temperature takes the heat it needs. */
 INLINE void NodeScalars(Explicit *e, const Set s, PetscInt I)
 {
@@ -40,12 +51,8 @@ INLINE void NodeScalars(Explicit *e, const Set s, PetscInt I)
     b[n - 1] = T - a[s.fluids] / a[A_C(s)];
   }
   SolveSmall(n, A, b, &e->gain[3 * I]);
-  if (!held || e->node[I].root != (int)I)
-    return;
-  double heat = -r[n - 1];
-  for (int j = 0; j < n; j++)
-    heat += r[R_Matrix(s) + (n - 1) * n + j] * e->gain[3 * I + j];
-  e->heat_in += heat;
+  if (held && e->node[I].root == (int)I)
+    e->heat_in += Lacking(s, r, n - 1, &e->gain[3 * I]);
 }
 
 /* Adds what a node gives up of its rows to those of the node it follows.  A temperature prescribed there is its own:
@@ -81,9 +88,7 @@ INLINE void WriteScalars(Explicit *e, const Set s, PetscInt I)
     c[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
   if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
     c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
-    e->heat_in -= r[s.fluids];
-    for (int j = 0; j < n; j++)
-      e->heat_in += r[R_Matrix(s) + s.fluids * n + j] * c[j];
+    e->heat_in += Lacking(s, r, s.fluids, c);
   }
   for (int k = 0; k < n; k++)
     c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];

@@ -193,6 +193,14 @@ double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double
   return beta;
 }
 
+double GasExpansionAt(const Gas *law, double rho, double T)
+{
+  const ExpansionLaw expansion = law->expansion ? law->expansion : Expansion_Ideal;
+  double             b_rho, b_T;
+
+  return expansion(law, rho, T + LAW_ZERO_CELSIUS, &b_rho, &b_T);
+}
+
 #define TRACE 1e-7      /* of the ideal gas at TRACE_AT; water really holds 0.04 of it */
 #define TRACE_AT 283.15 /* K */
 

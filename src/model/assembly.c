@@ -1,5 +1,5 @@
 /* Where blocks of the tangent go: J2 or the reduced matrix. */
-#include "gather.h"
+#include "solver.h"
 
 static void Add(Assembly *to, int first, int count)
 {
@@ -9,7 +9,7 @@ static void Add(Assembly *to, int first, int count)
 
 void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
 {
-  *to = (Assembly){.fs = *fs, .place = m->place, .eliminated = fs->fluid && PlaceV(fs, PHASE_W) < 0};
+  *to = (Assembly){.fs = *fs, .place = m->solver->place, .eliminated = fs->fluid && PlaceV(fs, PHASE_W) < 0};
   /* eliminated fluids push the mixture as they are accelerated (173) */
   to->force = m->bc.ambient.on || (to->eliminated && fs->inertia);
   if (fs->solid) {
@@ -23,13 +23,13 @@ void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    Add(to, OUT_FLUX + 2 * f, 2);
+    Add(to, VectorAt(OUT_FLUX, f, 0), 2);
     Add(to, OUT_DM + f, 1);
     if (fs->solid)
       Add(to, OUT_M + 1 + f, 1);
     if (to->eliminated)
       continue;
-    Add(to, OUT_G + 2 * f, 2);
+    Add(to, VectorAt(OUT_G, f, 0), 2);
     Add(to, OUT_MI + f, 1);
     Add(to, OUT_D + f, 1);
     if (m->fluid)
@@ -66,7 +66,7 @@ static PetscErrorCode Places(Model *m, Mat A, bool own, const PetscInt *number)
         continue;
       for (PetscInt q = ia[I]; q < ia[I + 1]; q++) {
         if ((own ? ja[q] : number[ja[q]]) == (own ? K : m->map.global[K]))
-          m->place[I * NEIGHBOURS + k] = &a[(size_t)q * n * n];
+          m->solver->place[I * NEIGHBOURS + k] = &a[(size_t)q * n * n];
       }
     }
   }
@@ -83,19 +83,19 @@ PetscErrorCode MatrixPlaces(Model *m)
   Mat             own, other;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS, &m->place));
-  PetscCall(PetscMalloc1((size_t)ghosts * NEIGHBOURS * n * n, &m->foreign));
-  PetscCall(MatSetOption(m->J2, MAT_ROW_ORIENTED, PETSC_FALSE));
-  PetscCall(PetscObjectTypeCompare((PetscObject)m->J2, MATSEQBAIJ, &one));
+  PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS, &m->solver->place));
+  PetscCall(PetscMalloc1((size_t)ghosts * NEIGHBOURS * n * n, &m->solver->foreign));
+  PetscCall(MatSetOption(m->solver->J2, MAT_ROW_ORIENTED, PETSC_FALSE));
+  PetscCall(PetscObjectTypeCompare((PetscObject)m->solver->J2, MATSEQBAIJ, &one));
   if (one) {
-    PetscCall(Places(m, m->J2, true, NULL));
+    PetscCall(Places(m, m->solver->J2, true, NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(MatMPIBAIJGetSeqBAIJ(m->J2, &own, &other, &number));
+  PetscCall(MatMPIBAIJGetSeqBAIJ(m->solver->J2, &own, &other, &number));
   PetscCall(Places(m, own, true, NULL));
   PetscCall(Places(m, other, false, number));
   for (PetscInt k = 0; k < ghosts * NEIGHBOURS; k++)
-    m->place[m->map.n_owned * NEIGHBOURS + k] = &m->foreign[(size_t)k * n * n];
+    m->solver->place[m->map.n_owned * NEIGHBOURS + k] = &m->solver->foreign[(size_t)k * n * n];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,8 +104,8 @@ PetscErrorCode MatrixBegin(Model *m)
   const PetscInt n = m->c->fields.n;
 
   PetscFunctionBeginUser;
-  PetscCall(MatZeroEntries(m->J2));
-  PetscCall(PetscArrayzero(m->foreign, (size_t)(m->map.n_local - m->map.n_owned) * NEIGHBOURS * n * n));
+  PetscCall(MatZeroEntries(m->solver->J2));
+  PetscCall(PetscArrayzero(m->solver->foreign, (size_t)(m->map.n_local - m->map.n_owned) * NEIGHBOURS * n * n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -134,7 +134,7 @@ PetscErrorCode MatrixFinish(Model *m)
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int k = 0; k < NEIGHBOURS; k++) {
       const PetscInt K = ModelNeighbour(m, I, k);
-      double        *v = m->place[I * NEIGHBOURS + k];
+      double        *v = m->solver->place[I * NEIGHBOURS + k];
 
       if (K < 0 || !v)
         continue;
@@ -143,16 +143,16 @@ PetscErrorCode MatrixFinish(Model *m)
         continue;
       }
       Finished(m, I, K, v, block);
-      PetscCall(MatSetValuesBlockedLocal(m->J2, 1, &I, 1, &K, block, ADD_VALUES));
+      PetscCall(MatSetValuesBlockedLocal(m->solver->J2, 1, &I, 1, &K, block, ADD_VALUES));
     }
   }
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
     for (int s = 0; s < n; s++) {
       if ((m->mask[I] >> s) & 1u)
-        m->place[I * NEIGHBOURS + NEIGHBOURS / 2][s * n + s] = 1.0;
+        m->solver->place[I * NEIGHBOURS + NEIGHBOURS / 2][s * n + s] = 1.0;
     }
   }
-  PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyBegin(m->solver->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->solver->J2, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,12 +1,11 @@
 /* Life of a model. */
 #include "clathra/point_heat.h"
-#include "gather.h"
+#include "solver.h"
 
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m)
 {
   static const char *const name[EVENT_COUNT] = {"ClBeginStep", "ClResidual",      "ClJacobian",
                                                 "ClWidePart",  "ClReducedMatrix", "ClReducedApply"};
-  static const char *const kind[]            = {"auto", "whole", "reduced"};
   PetscClassId             id;
 
   PetscFunctionBeginUser;
@@ -18,17 +17,10 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   PetscCall(ModelPlatesCreate(m));
-  m->tol_residual = 1e-9;
-  m->poor         = -1;
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", m->pmat_type, sizeof(m->pmat_type), NULL));
-  PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &m->poor, NULL));
-  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &m->preconditioner, NULL));
+  m->failure.why[0] = '?';
+  PetscCall(PetscNew(&m->added));
+  PetscCall(SolverCreate(&m->solver));
   PetscCall(PreconditionerPlan(m));
-  m->tol_update    = 1e-6;
-  m->keep_jacobian = 0.01;
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_keep_jacobian", &m->keep_jacobian, NULL));
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &m->tol_residual, NULL));
-  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &m->tol_update, NULL));
   PetscCall(PetscClassIdRegister("Clathra", &id));
   for (int e = 0; e < EVENT_COUNT; e++)
     PetscCall(PetscLogEventRegister(name[e], id, &m->event[e]));
@@ -40,20 +32,27 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscFree6(m->x_n, m->w, m->V, m->Vk, m->flow, m->coef));
   PetscCall(PetscFree3(m->material, m->most, m->hydrate));
-  PetscCall(PetscFree(m->up));
+  PetscCall(PetscFree(m->added->up));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
   PetscCall(PetscFree(m->mass_row));
   PetscCall(PetscFree(m->fluid));
-  PetscCall(MatDestroy(&m->J2));
-  PetscCall(PetscFree(m->place));
-  PetscCall(PetscFree(m->foreign));
-  PetscCall(MatDestroy(&m->A));
-  PetscCall(MatDestroy(&m->Pmat));
-  PetscCall(VecDestroy(&m->X));
-  PetscCall(VecDestroy(&m->R));
-  PetscCall(SNESDestroy(&m->snes));
-  PetscCall(ReducedDestroy(&m->reduced));
+  PetscCall(SolverReset(m->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FreeParticleArrays(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->stencil));
+  PetscCall(PetscFree(m->conduct));
+  PetscCall(PetscFree(m->order));
+  PetscCall(PetscFree(m->wide));
+  PetscCall(PetscFree(m->added->spread));
+  PetscCall(PetscFree(m->added->upwind));
+  PetscCall(PetscFree(m->added->lump));
+  PetscCall(PetscFree(m->beds));
+  m->stencil_cap = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,17 +60,12 @@ PetscErrorCode ModelDestroy(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
-  PetscCall(PetscFree(m->stencil));
-  PetscCall(PetscFree(m->conduct));
-  PetscCall(PetscFree(m->order));
-  PetscCall(PetscFree(m->wide));
-  PetscCall(PetscFree(m->spread));
-  PetscCall(PetscFree(m->upwind));
-  PetscCall(PetscFree(m->lump));
-  PetscCall(PetscFree(m->beds));
+  PetscCall(SolverDestroy(&m->solver));
+  PetscCall(FreeParticleArrays(m));
   PetscCall(PetscFree(m->face));
-  PetscCall(PetscFree(m->ghost));
-  PetscCall(PetscFree(m->cell));
+  PetscCall(PetscFree(m->added->ghost));
+  PetscCall(PetscFree(m->added->cell));
+  PetscCall(PetscFree(m->added));
   PetscCall(PetscFree4(m->bc.value, m->bc.shear, m->bc.phase[0], m->bc.phase[1]));
   PetscCall(PetscFree2(m->plate, m->plate_K));
   PetscCall(ParticlesDestroy(&m->P));
@@ -90,7 +84,7 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(PetscCalloc6(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
   PetscCall(PetscCalloc3(n, &m->material, n, &m->most, n, &m->hydrate));
   if (m->c->stabilisation.upstream)
-    PetscCall(PetscCalloc1(n * 6, &m->up));
+    PetscCall(PetscCalloc1(n * 6, &m->added->up));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
   if (m->c->fields.one_pressure)

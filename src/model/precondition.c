@@ -1,5 +1,5 @@
 /* Which preconditioner GMRES has, when it is made anew, and what takes over where it breaks down. */
-#include "gather.h"
+#include "solver.h"
 
 /* UMFPACK's factorisation beats MUMPS only on small problems: 3.3 against 3.9 ms for a strip of 900 unknowns, 4.1
    against 0.36 s for a block of 10,000. */
@@ -54,14 +54,14 @@ static PetscErrorCode AskedFor(Model *m)
   static const char *const whole[] = {"-pc_type", "-ksp_type", "-model_pmat_type"};
 
   PetscFunctionBeginUser;
-  m->plan.asked = m->preconditioner == PRECONDITIONER_AUTO ? NULL : "-newton_preconditioner";
+  m->solver->plan.asked = m->solver->preconditioner == PRECONDITIONER_AUTO ? NULL : "-newton_preconditioner";
   for (size_t k = 0; k < sizeof(whole) / sizeof(*whole); k++) {
     PetscBool own;
 
     PetscCall(PetscOptionsHasName(NULL, NULL, whole[k], &own));
-    if (own && (k == 0 || !m->plan.asked)) {
-      m->plan.asked   = whole[k];
-      m->plan.reduced = false;
+    if (own && (k == 0 || !m->solver->plan.asked)) {
+      m->solver->plan.asked   = whole[k];
+      m->solver->plan.reduced = false;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -78,16 +78,22 @@ PetscErrorCode PreconditionerPlan(Model *m)
 
   PetscFunctionBeginUser;
   PetscCall(Occupied(m, &cells, extent));
-  m->plan.across  = (double)cells / (double)PetscMax(extent[0], extent[1]);
-  m->plan.reduced = m->preconditioner == PRECONDITIONER_REDUCED ||
-                    (m->preconditioner == PRECONDITIONER_AUTO && m->plan.across > AcrossLU(&m->c->fields));
+  m->solver->plan.across = (double)cells / (double)PetscMax(extent[0], extent[1]);
+  m->solver->plan.reduced =
+      m->solver->preconditioner == PRECONDITIONER_REDUCED ||
+      (m->solver->preconditioner == PRECONDITIONER_AUTO && m->solver->plan.across > AcrossLU(&m->c->fields));
   PetscCall(AskedFor(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+bool ModelReduces(const Model *m)
+{
+  return m->solver->plan.reduced;
+}
+
 PetscErrorCode ModelPrintSolver(Model *m)
 {
-  SolverPlan *plan     = &m->plan;
+  SolverPlan *plan     = &m->solver->plan;
   const char *name     = plan->reduced ? "-reduced_pc_type" : "-pc_type";
   char        type[64] = "", why[128];
 
@@ -111,8 +117,8 @@ PetscErrorCode ModelPrintSolver(Model *m)
 PetscErrorCode PreconditionerChooseKind(Model *m, bool *small)
 {
   PetscFunctionBeginUser;
-  m->reduces = m->plan.reduced;
-  *small     = !m->reduces && m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
+  m->solver->reduces = m->solver->plan.reduced;
+  *small             = !m->solver->reduces && m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,18 +136,18 @@ static PetscErrorCode ApplyReduced(PC pc, Vec R, Vec Y)
 
 static double Cost(const Model *m)
 {
-  return m->reduces ? COST_REDUCED
-                    : fmax(COST_LU_LEAST, COST_LU * sqrt((double)m->map.n_global * (double)m->c->fields.n));
+  return m->solver->reduces ? COST_REDUCED
+                            : fmax(COST_LU_LEAST, COST_LU * sqrt((double)m->map.n_global * (double)m->c->fields.n));
 }
 
 /* (176): iterations per decade that the residual fell, with a new preconditioner and since. */
 static PetscErrorCode CountIterations(KSP ksp, Vec R, Vec Y, void *model)
 {
   Model         *m = (Model *)model;
-  Renewal       *w = &m->renewal;
+  Renewal       *w = &m->solver->renewal;
   PetscReal      first, last;
   PetscInt       its;
-  const PetscInt most = m->poor;
+  const PetscInt most = m->solver->poor;
 
   PetscFunctionBeginUser;
   (void)Y;
@@ -167,7 +173,7 @@ PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp)
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(KSPSetPostSolve(ksp, CountIterations, m));
-  if (m->reduces) {
+  if (m->solver->reduces) {
     PetscCall(ReducedCreate(m));
     PetscCall(PCSetType(pc, PCSHELL));
     PetscCall(PCShellSetName(pc, "reduced"));
@@ -181,18 +187,23 @@ PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void PreconditionerRenew(Model *m)
+{
+  m->solver->refactor = true;
+}
+
 PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew)
 {
   PetscFunctionBeginUser;
-  *renew =
-      m->refactor || m->always_refactor || m->renewal.due || fabs(m->stage.dt - m->factored_dt) > 1e-3 * m->factored_dt;
+  *renew = m->solver->refactor || m->solver->always_refactor || m->solver->renewal.due ||
+           fabs(m->stage.dt - m->solver->factored_dt) > 1e-3 * m->solver->factored_dt;
   if (snes)
     PetscCall(SNESSetLagPreconditioner(snes, *renew ? -2 : -1)); /* -2: once, now; -1: never again */
-  m->refactor = false;
+  m->solver->refactor = false;
   if (!*renew)
     PetscFunctionReturn(PETSC_SUCCESS);
-  m->factored_dt = m->stage.dt;
-  m->renewal     = (Renewal){.fresh = true};
+  m->solver->factored_dt = m->stage.dt;
+  m->solver->renewal     = (Renewal){.fresh = true};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -204,20 +215,20 @@ PetscErrorCode PreconditionerFallBack(Model *m)
   PC                 pc;
 
   PetscFunctionBeginUser;
-  PetscCall(SNESGetKSP(m->snes, &ksp));
+  PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   why = reason == KSP_DIVERGED_ITS ? "too many iterations" : KSPConvergedReasons[reason];
   PetscCall(PetscPrintf(m->grid.comm,
                         "t = %g s: the reduced preconditioner broke down (%s); LU of the whole solves this stage\n",
                         m->stage.t, why));
-  PetscCall(KSPGetPC(ksp, &m->set_aside));
-  PetscCall(PetscObjectReference((PetscObject)m->set_aside));
+  PetscCall(KSPGetPC(ksp, &m->solver->set_aside));
+  PetscCall(PetscObjectReference((PetscObject)m->solver->set_aside));
   PetscCall(PCCreate(m->grid.comm, &pc));
   PetscCall(PCSetType(pc, PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(KSPSetPC(ksp, pc));
   PetscCall(PCDestroy(&pc));
-  m->reduces = false;
+  m->solver->reduces = false;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,12 +237,12 @@ PetscErrorCode PreconditionerReturn(Model *m)
   KSP ksp;
 
   PetscFunctionBeginUser;
-  if (!m->set_aside)
+  if (!m->solver->set_aside)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESGetKSP(m->snes, &ksp));
-  PetscCall(KSPSetPC(ksp, m->set_aside));
-  PetscCall(PCDestroy(&m->set_aside));
-  m->reduces  = true;
-  m->refactor = true;
+  PetscCall(SNESGetKSP(m->solver->snes, &ksp));
+  PetscCall(KSPSetPC(ksp, m->solver->set_aside));
+  PetscCall(PCDestroy(&m->solver->set_aside));
+  m->solver->reduces  = true;
+  m->solver->refactor = true;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,7 +2,7 @@
    Values are gathered node by node, each with its 25 neighbours, and handed to PETSc as two groups of unknowns, `flow`
    (pressures, temperature) and `motion` (v_s), that PCFIELDSPLIT takes as they are.  Every option -reduced_... of the
    solver wins over what stands here. */
-#include "gather.h"
+#include "solver.h"
 
 enum { FLOW = 0, MOTION, GROUPS };
 
@@ -171,11 +171,11 @@ PetscErrorCode ReducedCreate(Model *m)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&r));
-  m->reduced = r;
+  m->solver->reduced = r;
   Unknowns(&m->c->fields, r);
   PetscCall(CreateMatrices(m, r));
   PetscCall(MatCreateVecs(r->nest, &r->y, &r->b));
-  PetscCall(MatCreateVecs(m->J2, &r->slaved, &r->diagonal));
+  PetscCall(MatCreateVecs(m->solver->J2, &r->slaved, &r->diagonal));
   PetscCall(ReducedPreferences(r->count[FLOW] > 0, r->count[MOTION] > 0));
   PetscCall(CreateSolver(r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -229,12 +229,12 @@ static PetscErrorCode Units(Model *m, Reduced *r)
 
 const FieldSet *ReducedFields(const Model *m)
 {
-  return &m->reduced->fs;
+  return &m->solver->reduced->fs;
 }
 
 PetscErrorCode ReducedBegin(Model *m, Assembly *to)
 {
-  Reduced *r     = m->reduced;
+  Reduced *r     = m->solver->reduced;
   bool     split = false;
 
   PetscFunctionBeginUser;
@@ -326,7 +326,7 @@ static PetscErrorCode FillMatrices(Model *m, Reduced *r)
 
 PetscErrorCode ReducedSetUp(Model *m)
 {
-  Reduced *r     = m->reduced;
+  Reduced *r     = m->solver->reduced;
   bool     split = false;
   Mat      A     = r->nest;
 
@@ -356,7 +356,7 @@ PetscErrorCode ReducedSetUp(Model *m)
 PetscErrorCode ReducedFollow(Model *m)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatGetDiagonal(m->J2, m->reduced->diagonal));
+  PetscCall(MatGetDiagonal(m->solver->J2, m->solver->reduced->diagonal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -422,7 +422,7 @@ static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y
   PetscFunctionBeginUser;
   if (r->fs.n == fs->n)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(m->J2, Y, r->slaved));
+  PetscCall(MatMult(m->solver->J2, Y, r->slaved));
   PetscCall(VecGetArrayRead(R, &a));
   PetscCall(VecGetArrayRead(r->slaved, &s));
   PetscCall(VecGetArrayRead(r->diagonal, &d));
@@ -442,7 +442,7 @@ static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y
 
 PetscErrorCode ReducedApply(Model *m, Vec R, Vec Y)
 {
-  Reduced *r = m->reduced;
+  Reduced *r = m->solver->reduced;
 
   PetscFunctionBeginUser;
   PetscCall(Restrict(m, r, R));

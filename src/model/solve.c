@@ -1,7 +1,53 @@
 /* Newton-Krylov solution of one stage with PETSc's SNES. */
-#include "gather.h"
+#include "solver.h"
 
 #define CONSERVATION 20.0 /* mass and energy are solved that much tighter than momentum */
+
+PetscErrorCode SolverCreate(Solver **out)
+{
+  static const char *const kind[] = {"auto", "whole", "reduced"};
+  Solver                  *s;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  s->poor          = -1;
+  s->tol_residual  = 1e-9;
+  s->tol_update    = 1e-6;
+  s->keep_jacobian = 0.01;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", s->pmat_type, sizeof(s->pmat_type), NULL));
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &s->poor, NULL));
+  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &s->preconditioner, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_keep_jacobian", &s->keep_jacobian, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &s->tol_residual, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &s->tol_update, NULL));
+  *out = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SolverReset(Solver *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&s->J2));
+  PetscCall(PetscFree(s->place));
+  PetscCall(PetscFree(s->foreign));
+  PetscCall(MatDestroy(&s->A));
+  PetscCall(MatDestroy(&s->Pmat));
+  PetscCall(VecDestroy(&s->X));
+  PetscCall(VecDestroy(&s->R));
+  PetscCall(SNESDestroy(&s->snes));
+  PetscCall(ReducedDestroy(&s->reduced));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SolverDestroy(Solver **s)
+{
+  PetscFunctionBeginUser;
+  if (!*s)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SolverReset(*s));
+  PetscCall(PetscFree(*s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* Block pattern: all active nodes within radius 2, so that it holds whatever the particles do. */
 static PetscErrorCode CreateJ2(Model *m)
@@ -22,9 +68,9 @@ static PetscErrorCode CreateJ2(Model *m)
     }
   }
   PetscCall(MatCreateBAIJ(m->grid.comm, n, map->n_owned * n, map->n_owned * n, PETSC_DETERMINE, PETSC_DETERMINE, 0, dnz,
-                          0, onz, &m->J2));
+                          0, onz, &m->solver->J2));
   PetscCall(ISLocalToGlobalMappingCreate(m->grid.comm, n, map->n_local, map->global, PETSC_COPY_VALUES, &l2g));
-  PetscCall(MatSetLocalToGlobalMapping(m->J2, l2g, l2g));
+  PetscCall(MatSetLocalToGlobalMapping(m->solver->J2, l2g, l2g));
   PetscCall(ISLocalToGlobalMappingDestroy(&l2g));
   PetscCall(PetscFree2(dnz, onz));
   for (PetscInt I = 0; I < map->n_owned; I++) {
@@ -34,12 +80,12 @@ static PetscErrorCode CreateJ2(Model *m)
       const PetscInt K = ModelNeighbour(m, I, k);
 
       if (K >= 0)
-        PetscCall(MatSetValuesBlockedLocal(m->J2, 1, &I, 1, &K, zero, INSERT_VALUES));
+        PetscCall(MatSetValuesBlockedLocal(m->solver->J2, 1, &I, 1, &K, zero, INSERT_VALUES));
     }
   }
-  PetscCall(MatAssemblyBegin(m->J2, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(m->J2, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatSetOption(m->J2, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  PetscCall(MatAssemblyBegin(m->solver->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->solver->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatSetOption(m->solver->J2, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
   PetscCall(MatrixPlaces(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -74,11 +120,12 @@ static double Largest(const double norm[F_COUNT], int *field)
 /* (343) */
 static PetscErrorCode JacobianChoose(SNES snes, PetscInt it, double residual, Model *m)
 {
-  const bool serves = it > 0 && residual < m->keep_jacobian * m->residual && !m->always_refactor && !m->renewal.due;
+  const bool serves = it > 0 && residual < m->solver->keep_jacobian * m->solver->residual &&
+                      !m->solver->always_refactor && !m->solver->renewal.due;
 
   PetscFunctionBeginUser;
-  m->residual = residual;
-  m->kept += serves;
+  m->solver->residual = residual;
+  m->solver->kept += serves;
   PetscCall(SNESSetLagJacobian(snes, serves ? -1 : 1)); /* -1: never again */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -116,7 +163,7 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
   const double r = Largest(residual, &fr), u = Largest(update, &fu);
   PetscCall(PetscInfo(snes, "Newton %" PetscInt_FMT ": largest residual %.3e (%s), largest update %.3e (%s)\n", it, r,
                       cl_field[fr].equation, u, cl_field[fu].name));
-  if (r <= m->tol_residual && u <= m->tol_update)
+  if (r <= m->solver->tol_residual && u <= m->solver->tol_update)
     *reason = it == 0 ? SNES_CONVERGED_FNORM_ABS : SNES_CONVERGED_SNORM_RELATIVE;
   else if (it >= max_it)
     *reason = SNES_DIVERGED_MAX_IT;
@@ -150,33 +197,33 @@ static PetscErrorCode CreateSolver(Model *m)
   KSP            ksp;
 
   PetscFunctionBeginUser;
-  m->refactor = true;
+  m->solver->refactor = true;
   PetscCall(PreconditionerChooseKind(m, &small));
   PetscCall(CreateJ2(m));
-  PetscCall(WideCreate(m, &m->A));
-  PetscCall(MatCreateVecs(m->J2, &m->X, &m->R));
-  PetscCall(PetscStrcmp(m->pmat_type[0] ? m->pmat_type : small ? "aij" : "baij", "aij", &aij));
+  PetscCall(WideCreate(m, &m->solver->A));
+  PetscCall(MatCreateVecs(m->solver->J2, &m->solver->X, &m->solver->R));
+  PetscCall(PetscStrcmp(m->solver->pmat_type[0] ? m->solver->pmat_type : small ? "aij" : "baij", "aij", &aij));
   if (aij) {
-    PetscCall(MatConvert(m->J2, MATAIJ, MAT_INITIAL_MATRIX, &m->Pmat));
+    PetscCall(MatConvert(m->solver->J2, MATAIJ, MAT_INITIAL_MATRIX, &m->solver->Pmat));
   } else {
-    PetscCall(PetscObjectReference((PetscObject)m->J2));
-    m->Pmat = m->J2;
+    PetscCall(PetscObjectReference((PetscObject)m->solver->J2));
+    m->solver->Pmat = m->solver->J2;
   }
-  PetscCall(SNESCreate(m->grid.comm, &m->snes));
-  PetscCall(SNESSetFunction(m->snes, m->R, ModelResidual, m));
-  PetscCall(SNESSetJacobian(m->snes, m->A, m->Pmat, ModelJacobian, m));
-  PetscCall(SNESSetTolerances(m->snes, 0.0, 0.0, 0.0, 15, 10000));
-  PetscCall(SNESSetConvergenceTest(m->snes, Converged, m, NULL));
-  PetscCall(SNESGetLineSearch(m->snes, &ls));
+  PetscCall(SNESCreate(m->grid.comm, &m->solver->snes));
+  PetscCall(SNESSetFunction(m->solver->snes, m->solver->R, ModelResidual, m));
+  PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->Pmat, ModelJacobian, m));
+  PetscCall(SNESSetTolerances(m->solver->snes, 0.0, 0.0, 0.0, 15, 10000));
+  PetscCall(SNESSetConvergenceTest(m->solver->snes, Converged, m, NULL));
+  PetscCall(SNESGetLineSearch(m->solver->snes, &ls));
   PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
   PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
-  PetscCall(SNESGetKSP(m->snes, &ksp));
+  PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPFGMRES)); /* keeps what the preconditioner gave, where GMRES applies it once more */
-  PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->tol_residual, PETSC_DEFAULT, 60));
+  PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->solver->tol_residual, PETSC_DEFAULT, 60));
   PetscCall(KSPGMRESSetRestart(ksp, 60));
   PetscCall(PreconditionerCreate(m, small, ksp));
   PetscCall(SetSide(ksp));
-  PetscCall(SNESSetFromOptions(m->snes));
+  PetscCall(SNESSetFromOptions(m->solver->snes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -192,7 +239,7 @@ static PetscErrorCode FindWorst(Model *m, int *field)
   double         at[3] = {0.0};
 
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayRead(m->R, &a));
+  PetscCall(VecGetArrayRead(m->solver->R, &a));
   for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
     if (!(fabs(a[k]) > local.value))
       continue;
@@ -201,11 +248,11 @@ static PetscErrorCode FindWorst(Model *m, int *field)
       at[d] = GridNode(&m->grid, d, m->map.ij[k / n][d]);
     at[2] = (double)m->c->fields.field[k % n];
   }
-  PetscCall(VecRestoreArrayRead(m->R, &a));
+  PetscCall(VecRestoreArrayRead(m->solver->R, &a));
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->grid.comm));
   PetscCallMPI(MPI_Bcast(at, 3, MPI_DOUBLE, worst.rank, m->grid.comm));
   for (int d = 0; d < CL_DIM; d++)
-    m->where[d] = at[d];
+    m->failure.where[d] = at[d];
   *field = (int)at[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -218,17 +265,16 @@ static PetscErrorCode Explain(Model *m)
   int                field;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelReduceStatus(m, &m->status));
-  if (m->status != CL_OK)
+  PetscCall(ModelReduceStatus(m, &m->failure.status));
+  if (m->failure.status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS); /* a particle said it */
-  PetscCall(SNESGetKSP(m->snes, &ksp));
+  PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPGetConvergedReason(ksp, &linear));
   PetscCall(FindWorst(m, &field));
-  PetscCall(PetscSNPrintf(m->text, sizeof(m->text), "%s, largest residual in the equation of %s",
+  PetscCall(PetscSNPrintf(m->failure.why, sizeof(m->failure.why), "%s, largest residual in the equation of %s",
                           linear < 0 ? "the linear solver failed" : "Newton's method did not converge",
                           cl_field[field].equation));
-  m->status = CL_SOLVER;
-  m->why    = m->text;
+  m->failure.status = CL_SOLVER;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,14 +297,14 @@ static PetscErrorCode FirstGuess(Model *m, const double *x)
   double        *a;
 
   PetscFunctionBeginUser;
-  PetscCall(VecGetArrayWrite(m->X, &a));
+  PetscCall(VecGetArrayWrite(m->solver->X, &a));
   for (PetscInt k = 0; k < m->map.n_owned * n; k++) {
     const bool fixed = (m->mask[k / n] >> (k % n)) & 1u;
     const bool rests = m->c->fields.field[k % n] < F_PW && TooFast(m, k / n, &x[k - k % n]);
 
     a[k] = (fixed ? m->fixed[k] : rests ? 0.0 : x[k]) / m->col_scale[k];
   }
-  PetscCall(VecRestoreArrayWrite(m->X, &a));
+  PetscCall(VecRestoreArrayWrite(m->solver->X, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -268,38 +314,38 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
   PetscInt            its;
 
   PetscFunctionBeginUser;
-  if (!m->snes)
+  if (!m->solver->snes)
     PetscCall(CreateSolver(m));
   *newton = 0;
   /* With an old preconditioner where it serves, else with a new one at every iteration, at last with LU; then a linear
      solve that stops early still gives a good direction. */
-  const int attempts = m->reduces ? 3 : 2;
+  const int attempts = m->solver->reduces ? 3 : 2;
   for (int attempt = 0; attempt < attempts; attempt++) {
-    m->always_refactor = attempt > 0;
+    m->solver->always_refactor = attempt > 0;
     if (attempt == 2)
       PetscCall(PreconditionerFallBack(m));
-    PetscCall(SNESSetMaxLinearSolveFailures(m->snes, attempt == attempts - 1 ? 4 : 1));
+    PetscCall(SNESSetMaxLinearSolveFailures(m->solver->snes, attempt == attempts - 1 ? 4 : 1));
     PetscCall(FirstGuess(m, x));
-    m->kept = 0;
-    PetscCall(SNESSolve(m->snes, NULL, m->X));
-    PetscCall(SNESGetConvergedReason(m->snes, &reason));
-    PetscCall(SNESGetIterationNumber(m->snes, &its));
-    *newton += its - m->kept;
+    m->solver->kept = 0;
+    PetscCall(SNESSolve(m->solver->snes, NULL, m->solver->X));
+    PetscCall(SNESGetConvergedReason(m->solver->snes, &reason));
+    PetscCall(SNESGetIterationNumber(m->solver->snes, &its));
+    *newton += its - m->solver->kept;
     if (reason == SNES_DIVERGED_FNORM_NAN)
-      PetscCall(ModelReduceStatus(m, &m->status));
-    if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->status != CL_OK))
+      PetscCall(ModelReduceStatus(m, &m->failure.status));
+    if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK))
       break;
     if (attempt == 1 && reason != SNES_DIVERGED_LINEAR_SOLVE)
       break;
   }
   if (reason < 0) {
     PetscCall(Explain(m));
-    m->refactor = true;
+    m->solver->refactor = true;
   } else
-    m->status = CL_OK;
+    m->failure.status = CL_OK;
   PetscCall(PreconditionerReturn(m));
   PetscCall(ModelReduceStatus(m, status));
   if (*status == CL_OK)
-    PetscCall(ModelUnscale(m, m->X, x));
+    PetscCall(ModelUnscale(m, m->solver->X, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,5 @@
 /* The part of the Jacobian that runs through the projected gradients (27): particle by particle, never assembled. */
-#include "gather.h"
+#include "solver.h"
 
 /* What one particle's rows see of the projected gradients. */
 static void WideParticle(const Model *m, PetscInt p, const double *proj, double *f)
@@ -15,8 +15,8 @@ static void WideParticle(const Model *m, PetscInt p, const double *proj, double 
     if (!fs->phase[ph])
       continue;
     for (int a = 0; a < r.n; a++) {
-      g[0] += r.S[a] * proj[4 * r.node[a] + 2 * ph];
-      g[1] += r.S[a] * proj[4 * r.node[a] + 2 * ph + 1];
+      g[0] += r.S[a] * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, 0)];
+      g[1] += r.S[a] * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, 1)];
     }
     const double flux[2] = {W[4 * ph] * g[0] + W[4 * ph + 1] * g[1], W[4 * ph + 2] * g[0] + W[4 * ph + 3] * g[1]};
     const double q       = fs->heat ? W[8 + 2 * ph] * g[0] + W[8 + 2 * ph + 1] * g[1] : 0.0;
@@ -64,7 +64,7 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
-  PetscCall(MatMult(m->J2, X, Y));
+  PetscCall(MatMult(m->solver->J2, X, Y));
   const bool wide = m->c->stabilisation.flux_interpolation && m->c->fields.fluid;
   if (wide || PlatesCouple(m)) {
     PetscCall(PetscLogEventBegin(m->event[EVENT_WIDE], 0, 0, 0, 0));

@@ -1,5 +1,6 @@
 /* Exact kinematics of one increment, in plane strain or about an axis, and its derivatives. */
 #include "clathra/kinematics.h"
+#include "clathra/point_strain.h"
 #include <math.h>
 
 /* g(y) = atanh(sqrt y)/sqrt y and g'(y), by series where the closed form cancels. */
@@ -26,15 +27,12 @@ static double AtanhRatio(double y, double *dg)
 static void LogStrain(double J2, const double dJ2[4], Kinematics *k)
 {
   const double(*F)[2] = k->F;
-  const double bxx = F[0][0] * F[0][0] + F[0][1] * F[0][1], byy = F[1][0] * F[1][0] + F[1][1] * F[1][1];
-  const double o = F[0][0] * F[1][0] + F[0][1] * F[1][1], m = 0.5 * (bxx + byy), d = 0.5 * (bxx - byy);
-  const double y = (d * d + o * o) / (m * m);
-  double       dg, g = AtanhRatio(y, &dg);
-  const double f = g / m, lnJ = 0.5 * log(J2);
+  const Stretch b     = StretchOf(F[0][0], F[0][1], F[1][0], F[1][1]);
+  const double  o = b.off, m = b.m, d = b.d, y = b.y;
+  double        dg, g = AtanhRatio(y, &dg);
+  const double  f = g / m, lnJ = 0.5 * log(J2);
 
-  k->e[0] = lnJ + 0.5 * f * d;
-  k->e[1] = lnJ - 0.5 * f * d;
-  k->e[2] = 0.5 * f * o;
+  LogStrainOf(lnJ, 0.5 * f * d, 0.5 * f * o, k->e);
   k->e[3] = log(k->lambda);
   for (int c = 0; c < 4; c++) {
     const int    i = c / 2, j = c % 2;
@@ -57,15 +55,15 @@ static void Cofactor(Kinematics *k)
 {
   static const double sign[2][2] = {{1.0, -1.0}, {-1.0, 1.0}};
 
-  for (int i = 0; i < 2; i++) {
-    for (int j = 0; j < 2; j++) {
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++) {
       const double plane = sign[i][j] * k->F[1 - i][1 - j];
 
       k->cof[i][j] = k->lambda * plane;
       for (int c = 0; c < 4; c++)
-        k->dcof[i][j][c] = c == 2 * (1 - i) + (1 - j) ? k->lambda * sign[i][j] : 0.0;
+        k->dcof[i][j][c] = c == VectorAt(0, 1 - i, 1 - j) ? k->lambda * sign[i][j] : 0.0;
       k->dcof[i][j][MOTION_HOOP] = plane;
-      k->dJ[2 * i + j]           = k->cof[i][j];
+      k->dJ[VectorAt(0, i, j)]   = k->cof[i][j];
     }
   }
   k->dJ[MOTION_HOOP] = k->cof_hoop;
@@ -77,9 +75,9 @@ bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k)
   double(*F)[2] = k->F;
   double dJ2[4];
 
-  for (int i = 0; i < 2; i++) {
-    for (int j = 0; j < 2; j++)
-      F[i][j] = motion[2 * i + j] + (i == j);
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      F[i][j] = motion[VectorAt(0, i, j)] + (i == j);
   }
   k->lambda   = 1.0 + motion[MOTION_HOOP];
   k->cof_hoop = F[0][0] * F[1][1] - F[0][1] * F[1][0];
@@ -90,15 +88,15 @@ bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k)
   for (int c = 0; c < 4; c++)
     dJ2[c] = k->dJ[c] / k->lambda;
 
-  const double a = F[0][0] + F[1][1], b = F[1][0] - F[0][1], n = a * a + b * b;
-  const double co = a / sqrt(n), si = b / sqrt(n);
+  const Stretch of = StretchOf(F[0][0], F[0][1], F[1][0], F[1][1]);
+  const double  a = of.along, b = of.turn, n = a * a + b * b;
+  const double  co = a / sqrt(n), si = b / sqrt(n);
 
   k->theta     = atan2(b, a);
   k->dtheta[0] = k->dtheta[3] = -b / n;
   k->dtheta[1]                = -a / n;
   k->dtheta[2]                = a / n;
-  k->stretch[0]               = co * F[0][0] + si * F[1][0]; /* U = R^T F */
-  k->stretch[1]               = -si * F[0][1] + co * F[1][1];
+  StretchDiagonal(co, si, F[0][0], F[0][1], F[1][0], F[1][1], k->stretch);
   LogStrain(k->cof_hoop, dJ2, k);
   return true;
 }

@@ -14,6 +14,7 @@ typedef struct {
   char      restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];  /* -restart, -restart_as_initial */
   double    t_saved;                                                   /* of that */
   double    clock_start;                                               /* s of the wall */
+  bool      check;                                                     /* ends before anything is written */
   bool      quiet, restarted;
   bool      frozen;        /* ended for ice */
   bool      written, lost; /* a checkpoint by this run; not all could be written */
@@ -56,8 +57,11 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   }
   PetscCall(Time(s->state.t - t_begin, c->t_end - t_begin, now));
   PetscCall(Time(info->dt, info->dt, dt));
-  PetscCall(PetscSNPrintf(rest, sizeof(rest), "%.3g %s", round(left) / StepperTimeUnit(left)->s,
-                          StepperTimeUnit(left)->name));
+  if (isnan(left))
+    PetscCall(PetscSNPrintf(rest, sizeof(rest), "time left not known yet"));
+  else
+    PetscCall(PetscSNPrintf(rest, sizeof(rest), "%.3g %s left", round(left) / StepperTimeUnit(left)->s,
+                            StepperTimeUnit(left)->name));
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
@@ -68,9 +72,8 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   if (s->adaptive && !s->explicit)
     PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance (%s)", info->err,
                             stepper_error_word[info->rules]));
-  PetscCall(PetscPrintf(s->model->grid.comm,
-                        "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s left\n", stage,
-                        s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
+  PetscCall(PetscPrintf(s->model->grid.comm, "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s\n",
+                        stage, s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -236,6 +239,19 @@ static const Bc *HybridTraction(const Case *c)
   return found;
 }
 
+/* What a user should know of a start that is none of a checkpoint's; -case_check says it, too. */
+static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *run)
+{
+  PetscFunctionBeginUser;
+  if (run->restart[0])
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!run->initial[0])
+    PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+  PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P, c->t_end - c->scene.t_begin));
+  PetscCall(CellMeansWarning(&m->grid, m->c, &m->P, HybridTraction(c)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
 {
   const Model *m = s->model;
@@ -245,10 +261,6 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(WriteCase(m->grid.comm, c, run));
   PetscCall(OutputCreate(m, &s->state, restart, &run->out));
   if (!restart) {
-    if (!run->initial[0])
-      PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
-    PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P));
-    PetscCall(CellMeansWarning(&m->grid, m->c, &m->P, HybridTraction(c)));
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));
@@ -340,7 +352,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
     run->restarted = true;
   } else {
     run->t_saved = NAN;
-    PetscCall(CheckFolder(s->model->grid.comm, c, &ok));
+    if (!run->check)
+      PetscCall(CheckFolder(s->model->grid.comm, c, &ok));
     if (ok && run->initial[0])
       PetscCall(StartFromState(s, run->initial, &ok));
     if (!ok)
@@ -349,6 +362,11 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
   PetscCall(StepperReady(s, &ok));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StartWarnings(c, s->model, run));
+  if (run->check) {
+    *exit_code = CL_EXIT_OK;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(FolderTake(s->model->grid.comm, c->output_dir, restart[0] ? &origin : NULL, &run->folder, exit_code));
   if (*exit_code != CL_EXIT_OK)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -387,7 +405,7 @@ static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
+PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
 {
   Run         run = {0};
   Model       model;
@@ -398,6 +416,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
   PetscMPIInt size;
 
   PetscFunctionBeginUser;
+  run.check = check;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", run.restart, sizeof(run.restart), NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-restart_as_initial", run.initial, sizeof(run.initial), NULL));
@@ -446,7 +465,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, int *exit_code)
     PetscCall(PrintStrength(&c->scene, comm));
     PetscCall(PrintEquilibrium(&c->scene, comm));
     PetscCall(Go(c, &stepper, &run, exit_code));
-    PetscCall(CheckOptions(comm, false, &unknown));
+    if (!check) /* the solver has read its own by now */
+      PetscCall(CheckOptions(comm, false, &unknown));
   }
   PetscCall(StepperDestroy(&stepper));
   PetscCall(ModelDestroy(&model));

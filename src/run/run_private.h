@@ -42,7 +42,7 @@ typedef struct StageLog StageLog;
 PetscErrorCode          StageLogCreate(const Stepper *s, StageLog **log);
 PetscErrorCode          StageLogDestroy(StageLog **log);
 PetscErrorCode          StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info); /* an accepted step */
-/* Share of the stage that is done, and the seconds the rest of it will take. */
+/* Share of the stage that is done, and the seconds the rest of it will take; NAN: not known yet. */
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left);
 /* A line for every stage that was entered and every integrator that worked in it; empty where there was one only.
    PetscFree it. */

@@ -1,6 +1,8 @@
 /* What each stage of a run took, and in it each integrator that auto chose: for the progress and the summary. */
 #include "run_private.h"
 
+#define UNKNOWN 0.05 /* of the stage, before which no time left is named */
+
 typedef struct {
   const char *integrator;
   PetscInt    stage;
@@ -17,6 +19,8 @@ struct StageLog {
   double   from, clock;  /* when the stage began: s of the scene in this process, of the wall */
   Entry   *entry;
   Learnt   learnt; /* since then */
+  double   kink;   /* the next one, s */
+  bool     even;   /* too many of them to begin anew at each */
 };
 
 static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
@@ -27,9 +31,13 @@ static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
     PetscCall(PetscRealloc(sizeof(Entry) * (size_t)log->cap, &log->entry));
   }
   if (log->n == 0 || log->entry[log->n - 1].stage != s->state.stage) {
-    log->from     = from;
-    log->clock    = Wall();
-    log->learnt.n = 0;
+    Ahead ahead;
+
+    log->from   = from;
+    log->clock  = Wall();
+    log->kink   = BcNextKink(s->model->c, from);
+    log->even   = !StepperAhead(s, &ahead);
+    log->learnt = (Learnt){.origin = from};
   }
   log->entry[log->n++] =
       (Entry){.integrator = s->scheme->name, .stage = s->state.stage, .from = from, .to = from, .clock = Wall()};
@@ -80,14 +88,26 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   e->refused += info->cuts;
   e->newton += info->newton;
   log->step = s->state.step;
-  LearntAdd(&log->learnt, s->state.t - log->from, Wall() - log->clock);
+  LearntAdd(&log->learnt, s->state.t, Wall() - log->clock);
+  if (s->state.t >= log->kink) {
+    log->kink = BcNextKink(s->model->c, s->state.t);
+    if (!log->even)
+      LearntBegin(&log->learnt, s->state.t, Wall() - log->clock);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left)
 {
+  Ahead ahead;
+
   *done = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from);
-  *left = LearntLeft(&log->learnt, StepperCase(s)->t_end - log->from);
+  *left = CaseAtEnd(StepperCase(s), s->state.t) ? 0.0 : NAN;
+  if (*left == 0.0 || *done < UNKNOWN)
+    return;
+  StepperAhead(s, &ahead);
+  ahead.even = ahead.even || log->even;
+  *left      = LearntLeft(&log->learnt, &ahead);
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */

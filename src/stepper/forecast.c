@@ -1,16 +1,18 @@
-/* What the run would cost by either kind of integrator; docs/tradeoff.md shows where the numbers come from. */
+/* What the run would cost by either kind of integrator; docs/equations.md, section 15. */
 #include "clathra/stepper.h"
 
-/* Measured on one core of a 2024 server (docs/benchmark.md); what counts is their ratio. */
+/* Measured on one core of a 2024 server, within a factor of 1.8 for 18 scenes of 80 to 16 000 particles (hybrid: 8);
+   what counts is their ratio. */
 #define HYBRID_BASE 0.10e-6   /* s a particle and step: motion and stress */
-#define HYBRID_SCALAR 0.10e-6 /* ... each of p_w, p_g, T */
-#define HYBRID_COUPLED 0.02e-6
-#define PARTICLE 1.1e-6 /* s: residual */
+#define HYBRID_SCALAR 0.05e-6 /* ... each of p_w, p_g, T */
+#define HYBRID_COUPLED 0.01e-6
+#define PARTICLE 2.2e-6 /* s a particle and Jacobian: the residuals that go with it */
 #define TANGENT 0.9e-6  /* s a particle and unknown of a node: Jacobian */
-#define FACTOR 5.5e-7   /* s: factorisation of N unknowns, n to a node, takes FACTOR n N^1.3 */
+#define FACTOR 3.3e-7   /* s: factorisation of N unknowns, n to a node, and solves with it take FACTOR n N^1.3 */
 #define FACTOR_POWER 1.3
-#define REDUCED 5.0e-6      /* s an unknown and Newton iteration: GMRES with the reduced preconditioner */
-#define SMOOTH_STEPS 150.0  /* an adaptive run whose loads are slow */
+#define REDUCED 5.0e-6      /* s an unknown and Jacobian: GMRES with the reduced preconditioner */
+#define SMOOTH_STEPS 1e2    /* (317): an adaptive run whose loads are slow, at ... */
+#define SMOOTH_TOL 1e-3     /* ... this tolerance */
 #define BEHIND_KINK 12.0    /* steps that a kink adds */
 #define MOST_STRETCHES 2000 /* ... looked at */
 #define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
@@ -35,25 +37,26 @@ double StepperHybridWork(const Model *m, double steps)
   return steps * (double)m->P.n * (HYBRID_BASE + HYBRID_SCALAR * s + HYBRID_COUPLED * s * s);
 }
 
-/* Steps that kinks of the loads, output times and dt_max ask for in what is left: a stretch between two of them takes
-   one, and behind a kink as many more as it takes to come back to the old length. */
-static double Stretches(const Stepper *s, double left)
+double StepperStops(const Stepper *s, double left, double *kinks)
 {
-  const Model *m     = s->model;
+  const double t_end = StepperCase(s)->t_end, from = t_end - left;
   Stepper      ahead = *s;
-  double       steps = 0.0;
-  int          n     = 0;
+  double       steps = 0.0, found = 0.0, share;
+  int          n = 0;
 
-  ahead.state.t = CaseOf(m->c)->t_end - left;
-  for (; ahead.state.t < CaseOf(m->c)->t_end && n < MOST_STRETCHES; n++) {
+  ahead.state.t = from;
+  for (; ahead.state.t < t_end && n < MOST_STRETCHES; n++) {
     bool         kink;
     const double stop = StepperNextStop(&ahead, &kink);
 
-    steps +=
-        fmax(1.0, ceil((stop - ahead.state.t) / s->dt_max)) + (kink && stop < CaseOf(m->c)->t_end ? BEHIND_KINK : 0.0);
+    steps += fmax(1.0, ceil((stop - ahead.state.t) / s->dt_max));
+    found += kink && stop < t_end;
     ahead.state.t = stop;
   }
-  return n < MOST_STRETCHES ? steps : steps * left / (ahead.state.t - (CaseOf(m->c)->t_end - left));
+  share = n < MOST_STRETCHES ? 1.0 : left / (ahead.state.t - from);
+  if (kinks)
+    *kinks = found * share;
+  return steps * share;
 }
 
 /* Steps of an implicit run: as fixed, or few unless waves have to be resolved, events come often or loads have kinks.
@@ -61,6 +64,7 @@ static double Stretches(const Stepper *s, double left)
 static double ImplicitSteps(const Stepper *s, double left)
 {
   const Model *m = s->model;
+  double       kinks;
 
   if (!s->adaptive)
     return left / CaseOf(m->c)->dt;
@@ -68,7 +72,8 @@ static double ImplicitSteps(const Stepper *s, double left)
   const double transits =
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
 
-  const double steps = fmax(SMOOTH_STEPS, Stretches(s, left));
+  const double stops = StepperStops(s, left, &kinks);
+  const double steps = fmax(SMOOTH_STEPS * cbrt(SMOOTH_TOL / s->tol), stops + BEHIND_KINK * kinks); /* (317) */
 
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
 }
@@ -77,7 +82,7 @@ static double ImplicitSteps(const Stepper *s, double left)
 double StepperImplicitWork(const Model *m, double newton, double factors)
 {
   const double n = m->c->fields.n, nodes = (double)m->P.n / 4.0, N = n * nodes;
-  const double solver = m->plan.reduced ? newton * REDUCED * N : factors * FACTOR * n * pow(N, FACTOR_POWER);
+  const double solver = ModelReduces(m) ? newton * REDUCED * N : factors * FACTOR * n * pow(N, FACTOR_POWER);
 
   return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + solver;
 }

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Warnings of a start that does not stay as it is: they come where they should, with numbers, and in no shipped case.
 
-Unstressed bodies, pore pressures far from hydrostatic (341), capillary pressures that jump (342), hydrate outside its stability zone,
-gas inside it."""
+Unstressed bodies, pore pressures far from hydrostatic (341), gas that rises (315), capillary pressures that jump (342), hydrate outside its
+stability zone, gas inside it.  -case_check says them as a run does, and writes nothing."""
 import re
 import sys
 from pathlib import Path
@@ -14,15 +14,29 @@ sys.path.insert(0, str(HERE.parent / "verification"))
 from common import CASES, binary, check, check_true, finish, launch, scratch  # noqa: E402
 
 COLUMN = HERE.parent / "verification" / "cases" / "geostatic.yaml"  # in balance, two layers, 20 m
+COLUMN_OF_GAS = HERE.parent / "verification" / "cases" / "rest_hydrostatic.yaml"  # water and next to no gas, 1 m
+CLIFF = HERE.parent / "verification" / "cases" / "slope.yaml"  # hybrid
 BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
-WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
+WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "rises": "gas starts out of balance with gravity", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
          "capillary": "touch and start with p_g - p_w"}
 
 
-def said(case, *options, ranks=1):
-    done = launch(binary(), case, "-quiet", "-stepper_max_steps", 0, *options, ranks=ranks, out=scratch() / "out")
+def warned(done, case):
     check_true(f"{case}: begins", done.returncode == 0, done.stdout[-300:] if done.returncode else "")
     return [line for line in done.stdout.splitlines() if "warning" in line]
+
+
+def said(case, *options, ranks=1):
+    return warned(launch(binary(), case, "-case_check", *options, ranks=ranks), case)
+
+
+def same(what, case, *options, least=1):
+    """-case_check warns as a run does, and leaves nothing behind."""
+    out = scratch() / "out"
+    check, run = (warned(launch(binary(), case, *o, *options, out=out), case) for o in (["-case_check"], ["-quiet", "-stepper_max_steps", 0]))
+    check_true(f"{what}: -case_check warns as the run does", check == run and len(run) >= least, (check, run))
+    launch(binary(), case, "-case_check", *options, out=out.parent / "none")
+    check_true("... and writes nothing", not (out.parent / "none").exists())
 
 
 def comes(what, expected, lines):
@@ -54,6 +68,29 @@ check("... which differ by 5 m of water", abs(float(re.search(r"has ([\d.e+]+) P
 comes("layers half a metre apart", [], said(COLUMN, "-region_deep_datum", "40.5 m"))
 comes("a uniform pressure in gravity that grows", [], said(COLUMN, *UNIFORM, "-gravity_ramp", "1 s", "-region_deep_stress_geostatic", "no", "-region_shallow_stress_geostatic", "no"))
 comes("water that expands, in a steep geotherm", [], said(COLUMN, "-mat_clay_water_bulk_modulus", "1 GPa", "-mat_sand_water_expansion", "1e-3 1/K", "-mat_clay_water_expansion", "1e-3 1/K"))
+
+# ---------------------------------------------------------------- gas under gravity (315)
+def gas(share, *options, **kwargs):
+    return said(COLUMN_OF_GAS, "-region_column_Sg", f"{share}", "-region_column_Sw", f"{1 - share}", "-mat_sand_gas_viscosity", "1e-5 Pa s", "-mat_sand_relperm_Sgr", "0.05", "-mat_sand_retention_Sgr",
+                "0.05", "-region_column_pressure", "0.1 MPa", "-mat_sand_gas_molar_mass", "1.6 kg/mol", "-mat_sand_hydrate_molar_mass", "1.708 kg/mol", "-region_column_stress_geostatic", "0.5", *options, **kwargs)
+
+
+WIDE = ("-grid_cells", "3,10")
+text = comes("gas that can move, with the gradient of water", ["rises"], gas(0.3, *WIDE))
+apart, speed = map(float, re.search(r"has ([\d.e+]+) Pa more .* some ([\d.e+-]+) m a day", text).groups())
+buoyancy = (1000 - 0.1e6 / (8.314 / 1.6 * 283.15)) * 9.81  # a heavy gas
+check("... by the weight of the water less that of the gas", abs(apart / (buoyancy * 0.9) - 1), 0.02)
+check("... as fast as its mobility says", abs(speed / (1e-13 * (0.25 / 0.85) ** 2 / (1e-5 * 0.4 * 0.3) * buoyancy * 86400) - 1), 0.05)
+check_true("... the same on 2 ranks", text in "\n".join(gas(0.3, *WIDE, ranks=2)))
+comes("... but slowly in so short a run", [], gas(0.1))
+comes("... and in a longer one", ["rises"], gas(0.1, "-time_end", "1 h"))
+comes("gas that cannot move", [], gas(0.05, "-time_end", "10 d"))
+comes("gas that can, and no gravity to speak of", [], gas(0.3, "-gravity", "0 m/s^2,-1e-3 m/s^2"))
+
+# ---------------------------------------------------------------- -case_check and the run
+same("gas that rises", COLUMN_OF_GAS, "-region_column_Sg", "0.3", "-region_column_Sw", "0.7", "-region_column_stress_geostatic", "0.5", "-mat_sand_gas_viscosity", "1e-5 Pa s", "-mat_sand_relperm_Sgr", "0")
+same("no stress and a uniform pressure", COLUMN, *UNIFORM, "-region_deep_stress_geostatic", "no", least=2)
+same("a cliff by hybrid, whose means and tractions do not go together", CLIFF)
 
 # ---------------------------------------------------------------- stress
 text = comes("no stress", ["stress"], said(COLUMN, "-region_deep_stress_geostatic", "no"))

@@ -98,6 +98,8 @@ def check_tables():
     steps = [s for s in good.output.splitlines() if s.startswith("step")]
     check_true("a line a step with percentage and time left", len(steps) == len(b["step"]) and "(100.0 %)" in steps[-1]
                and steps[-1].endswith(" 0 s left"), steps[-1])  # fmt: skip
+    known = [(float(re.search(r"\(([\d.]+) %\)", s)[1]), s.endswith(" left")) for s in steps[3:]]  # three steps say nothing
+    check_true("time left is named from 5 % on, not before", all(is_known == (share >= 5) for share, is_known in known if abs(share - 5) > 0.1) and steps[0].endswith("time left not known yet"), known)
 
 
 def check_resolved():
@@ -171,6 +173,13 @@ def check_probe_range():
     check_true("... and its saturations add up to 1", all(abs(p["S_h"][-1] + p["S_w"][-1] - 1.0) < 1e-12 for p in at))
 
 
+def check_forecast():
+    for name, tol in (("mcwhorter_sunada", 1e-3), ("mcwhorter_sunada", 1e-4), ("terzaghi", 1e-3), ("century", 1e-2)):
+        done = Run.of_case(name, "-stepper_tol", tol)
+        says, took = float(re.search(r"implicit about ([\d.e+]+) steps", done.output)[1]), len(done.balance["step"])
+        check_true(f"{name}, tol {tol}: the forecast's steps (317) within a factor of two of those it takes", 0.5 < says / took < 2, f"{says:g} and {took}")
+
+
 def check_refusals():
     out = scratch() / "out"
     says("-case_check: valid", launch(binary(), BP2, "-case_check", out=out), 0, "the case is valid")
@@ -203,5 +212,6 @@ check_failure()
 check_left()
 check_loose()
 check_probe_range()
+check_forecast()
 check_refusals()
 finish()

@@ -1,6 +1,6 @@
 /* Runs the cases that standard input names, one a line with its options, in one process, for scripts/soak.py: starting
    MPI and PETSc costs more than a small scene.  After what a case has to say follows a line \001CODE, an exit code of
-   clathra.  With -case_check it is read and checked only. */
+   clathra.  With -case_check a case is read and checked, and its start is not built. */
 #include "clathra/run.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static PetscErrorCode Run(const char *path, int *code)
     PetscFunctionReturn(PETSC_SUCCESS);
   *code = CL_EXIT_OK;
   if (!check)
-    PetscCall(CaseRun(PETSC_COMM_WORLD, &c, code));
+    PetscCall(CaseRun(PETSC_COMM_WORLD, &c, false, code));
   PetscCall(CaseDestroy(&c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

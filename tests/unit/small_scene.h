@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include "clathra/case.h"
 #include "clathra/model.h"
+#include "model/solver.h"
 #include "random.h"
 #include "ranks.h"
 #include "sediment.h"
@@ -173,7 +174,7 @@ static inline void StageStart(SmallScene *s, double dt)
 
   Call(ModelBeginStep(m, &status));
   if (status != CL_OK)
-    Say("  %s\n", m->why);
+    Say("  %s\n", m->failure.why);
   Check(status == CL_OK);
   s->stage = (Stage){.t = dt, .dt = dt};
   Call(PetscMalloc3(m->map.n_local * n, &s->stage.x_star, m->map.n_local * CL_DIM, &s->stage.u_star, 3 * m->P.n,
@@ -203,7 +204,7 @@ static inline void MakeSolver(SmallScene *s)
   Call(PetscArraycpy(x, s->m.x_n, n));
   Call(ModelSolve(&s->m, x, &newton, &status));
   Call(PetscOptionsClearValue(NULL, "-snes_max_it"));
-  Call(SNESSetTolerances(s->m.snes, 0.0, 0.0, 0.0, 15, 10000));
+  Call(SNESSetTolerances(s->m.solver->snes, 0.0, 0.0, 0.0, 15, 10000));
   Call(PetscFree(x));
 }
 
@@ -211,10 +212,10 @@ static inline void SetX(Model *m, const double *x)
 {
   double *a;
 
-  Call(VecGetArrayWrite(m->X, &a));
+  Call(VecGetArrayWrite(m->solver->X, &a));
   for (PetscInt k = 0; k < m->map.n_owned * m->c->fields.n; k++)
     a[k] = x[k] / m->col_scale[k];
-  Call(VecRestoreArrayWrite(m->X, &a));
+  Call(VecRestoreArrayWrite(m->solver->X, &a));
 }
 
 /* Largest scaled residual of the equations of unknowns q in [from, to): momentum in units of 1 MPa over a cell, mass
@@ -226,17 +227,17 @@ static inline double ResidualAt(SmallScene *s, const double *x, int from, int to
   const double   *a;
   double          worst = 0.0;
 
-  if (!m->X)
+  if (!m->solver->X)
     MakeSolver(s);
   SetX(m, x);
-  Call(ModelResidual(NULL, m->X, m->R, m));
-  Check(m->status == CL_OK);
-  Call(VecGetArrayRead(m->R, &a));
+  Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
+  Check(m->failure.status == CL_OK);
+  Call(VecGetArrayRead(m->solver->R, &a));
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
     if (fs->field[k % fs->n] >= from && fs->field[k % fs->n] < to)
       worst = fmax(worst, fabs(a[k]));
   }
-  Call(VecRestoreArrayRead(m->R, &a));
+  Call(VecRestoreArrayRead(m->solver->R, &a));
   return Largest(worst);
 }
 
@@ -403,10 +404,10 @@ static inline void Difference(Model *m, Vec X, Vec D, double t, double *dy)
   for (int l = 0; l < LEVELS; l++, t *= 0.5) {
     Call(VecWAXPY(Xt, t, D, X));
     Call(ModelResidual(NULL, Xt, Ru, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     Call(VecWAXPY(Xt, -t, D, X));
     Call(ModelResidual(NULL, Xt, Rd, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     for (int k = 0; k <= l; k++)
       Call(PetscMalloc1(n, &a[l][k]));
     Call(VecGetArrayRead(Ru, &up));
@@ -448,15 +449,15 @@ static inline void PrepareJacobian(SmallScene *s, Vec *X, Vec *D, Vec *JD)
   RandomUnknowns(m, s->stage.dt, 30, x);
   SetX(m, x);
   Call(PetscFree(x));
-  Call(VecDuplicate(m->X, X));
-  Call(VecDuplicate(m->X, D));
-  Call(VecDuplicate(m->X, JD));
-  Call(VecCopy(m->X, *X));
-  Call(ModelResidual(NULL, *X, m->R, m));
-  if (m->status != CL_OK)
-    Say("  inadmissible: %s\n", m->why);
-  Check(m->status == CL_OK);
-  Call(ModelJacobian(m->snes, *X, m->A, m->Pmat, m));
+  Call(VecDuplicate(m->solver->X, X));
+  Call(VecDuplicate(m->solver->X, D));
+  Call(VecDuplicate(m->solver->X, JD));
+  Call(VecCopy(m->solver->X, *X));
+  Call(ModelResidual(NULL, *X, m->solver->R, m));
+  if (m->failure.status != CL_OK)
+    Say("  inadmissible: %s\n", m->failure.why);
+  Check(m->failure.status == CL_OK);
+  Call(ModelJacobian(m->solver->snes, *X, m->solver->A, m->solver->Pmat, m));
 }
 
 /* Largest |J D - difference| of each equation over the largest difference of that equation, in random directions. */
@@ -477,7 +478,7 @@ static inline double DirectionError(SmallScene *s, int directions)
     for (PetscInt i = 0; i < n; i++)
       d[i] = Noise(40 + k, m->map.ij[i / nf][0] + 100 * m->map.ij[i / nf][1], m->c->fields.field[i % nf]);
     Call(VecRestoreArrayWrite(D, &d));
-    Call(MatMult(m->A, D, JD));
+    Call(MatMult(m->solver->A, D, JD));
     Difference(m, X, D, 4e-3, dy);
     Call(VecGetArrayRead(JD, &a));
     for (PetscInt i = 0; i < n; i++) {
@@ -513,7 +514,7 @@ static inline double ColumnError(SmallScene *s)
       Call(VecSetValue(D, c, 1.0, INSERT_VALUES));
     Call(VecAssemblyBegin(D));
     Call(VecAssemblyEnd(D));
-    Call(MatMult(m->A, D, JD));
+    Call(MatMult(m->solver->A, D, JD));
     Difference(m, X, D, m->c->fields.field[c % nf] < F_PW ? 1e-1 : 2e-2, dy);
     Call(VecGetArrayRead(JD, &a));
     for (PetscInt k = 0; k < n; k++) {

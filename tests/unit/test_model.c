@@ -19,11 +19,11 @@ static void UpstreamScene(SmallScene *s, BasisType basis, bool reacts, int set)
   JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
   s->c.scene.stabilisation.upstream = reacts;
   JacobianState(s);
-  Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
+  Check((PetscInt)Sum((double)s->m.added->nghost) > 0 && (PetscInt)Sum((double)s->m.added->ncell) > 0);
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
-    upstream += s->m.up && s->m.up[3 * k + 2] > 0.0; /* no storage where it is off */
+    upstream += s->m.added->up && s->m.added->up[3 * k + 2] > 0.0; /* no storage where it is off */
   for (PetscInt p = 0; p < s->m.P.n; p++)
-    lumped += s->m.lump && s->m.lump[p].rate > 0.0;
+    lumped += s->m.added->lump && s->m.added->lump[p].rate > 0.0;
   Check((Sum(upstream) > 0.0) == reacts && (Sum(lumped) > 0.0) == reacts);
 }
 
@@ -118,12 +118,12 @@ static void BedsResidual(double ratio, double dip, const double F[4], int n, dou
   Call(PetscMalloc1(m->map.n_local * m->c->fields.n, &x));
   RandomUnknowns(m, s->stage.dt, 30, x);
   SetX(m, x);
-  Call(ModelResidual(NULL, m->X, m->R, m));
-  Call(VecGetArrayRead(m->R, &R));
+  Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
+  Call(VecGetArrayRead(m->solver->R, &R));
   Check(m->map.n_owned * m->c->fields.n <= n);
   for (PetscInt k = 0; k < n; k++)
     a[k] = k < m->map.n_owned * m->c->fields.n ? R[k] : 0.0;
-  Call(VecRestoreArrayRead(m->R, &R));
+  Call(VecRestoreArrayRead(m->solver->R, &R));
   Call(PetscFree(x));
   SceneDestroy(s);
   free(s);
@@ -201,7 +201,7 @@ static void TestPlates(void **state)
     Call(PetscMalloc4(3 * m->P.n, &t.m, 4 * m->P.n, &t.y, 2 * m->P.n, &t.u, 2 * m->P.n, &t.v));
     RandomUnknowns(m, s->stage.dt, 30, x);
     SetX(m, x);
-    Call(ModelResidual(NULL, m->X, m->R, m));
+    Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
     Call(ModelEndStage(m, x, &t, &rates, &status));
     const double F = s->bc[top].force.y[0], error = fabs(m->plate[top][PLATE_FORCE] / F - 1.0);
     Say("plates, %s, kind %d: directions %.1e, entries %.1e, force %.1e; %g of %g faces touch\n",
@@ -237,8 +237,8 @@ static void TestMassRows(void **state)
     Call(PetscMalloc4(3 * m->P.n, &t.m, 4 * m->P.n, &t.y, 2 * m->P.n, &t.u, 2 * m->P.n, &t.v));
     RandomUnknowns(m, s->stage.dt, 50 + k, x);
     SetX(m, x);
-    Call(ModelResidual(NULL, m->X, m->R, m));
-    Check(m->status == CL_OK);
+    Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
+    Check(m->failure.status == CL_OK);
     Call(ModelEndStage(m, x, &t, &rates, &status));
     Check(status == CL_OK);
     for (PetscInt p = 0; p < m->P.n; p++) {
@@ -275,10 +275,10 @@ static double RestVelocity(SmallScene *s, double *scale)
   for (PetscInt k = 0; k < m->map.n_local * F_COUNT; k++)
     x[k] = m->x_n[k] +
            1e-3 * m->col_scale[k] * Noise(60, m->map.ij[k / F_COUNT][0] + 100 * m->map.ij[k / F_COUNT][1], k % F_COUNT);
-  m->tol_residual = 2e-12; /* and a twentieth of it in mass and energy */
+  m->solver->tol_residual = 2e-12; /* and a twentieth of it in mass and energy */
   Call(ModelSolve(m, x, &newton, &status));
   if (status != CL_OK)
-    Say("  %s\n", m->why);
+    Say("  %s\n", m->failure.why);
   Check(status == CL_OK && newton > 0);
   for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
     if (k % F_COUNT < F_PW)
@@ -543,12 +543,12 @@ static void TestNewtonOrder(void **state)
   StageStart(s, 50.0);
   Call(ModelBeginStage(&s->m, &s->stage));
   MakeSolver(s);
-  s->m.tol_residual = 1e-11;
-  Call(SNESSetConvergenceHistory(s->m.snes, history, NULL, 50, PETSC_TRUE));
+  s->m.solver->tol_residual = 1e-11;
+  Call(SNESSetConvergenceHistory(s->m.solver->snes, history, NULL, 50, PETSC_TRUE));
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   Call(PetscArraycpy(x, s->m.x_n, s->m.map.n_local * F_COUNT));
   Call(ModelSolve(&s->m, x, &newton, &status));
-  Call(SNESGetConvergenceHistory(s->m.snes, NULL, NULL, &n));
+  Call(SNESGetConvergenceHistory(s->m.solver->snes, NULL, NULL, &n));
   Say("Newton on a sudden load of 2 MPa with hydrate forming, dt = 50 s:\n");
   for (PetscInt k = 0; k < n; k++) {
     const double order = k > 1 ? log(history[k] / history[k - 1]) / log(history[k - 1] / history[k - 2]) : NAN;

@@ -156,7 +156,7 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
   if (v->contrast > 0.0)
     SceneLayers(s, 0, 0.5 * (box[0][0] + box[1][0]), v->contrast); /* they meet within the cell that is looked at */
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
-  s->m.tol_residual = s->m.tol_update = 1e-11;
+  s->m.solver->tol_residual = s->m.solver->tol_update = 1e-11;
   SetState(s, slips);
 }
 

@@ -7,13 +7,12 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <cmocka.h>
-#include "model/gather.h"
 #include "small_scene.h"
 
 static const char *const set_names[] = {"thmc", "thc", "hmc", "hc", "thm", "hm", "th", "h", "tm", "m", "t"};
 #define SETS ((int)(sizeof(set_names) / sizeof(*set_names)))
 
-static void Solver(const char *kind)
+static void AskFor(const char *kind)
 {
   Call(PetscOptionsSetValue(NULL, "-newton_preconditioner", kind));
 }
@@ -62,7 +61,7 @@ static double RecoveryError(Model *m, Vec R, Vec Y)
 
   Call(VecDuplicate(R, &AY));
   Call(ReducedApply(m, R, Y));
-  Call(MatMult(m->A, Y, AY));
+  Call(MatMult(m->solver->A, Y, AY));
   Call(VecGetArrayRead(AY, &a));
   Call(VecGetArrayRead(R, &r));
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
@@ -95,15 +94,15 @@ static Found Compare(unsigned has, bool inertia, bool axisymmetric, bool gas_rea
     Vec         X, R, JD;
     KSP         ksp;
 
-    Solver(kind[k]);
+    AskFor(kind[k]);
     JacobianScene(s, has, inertia, axisymmetric, BASIS_CPGIMP, axisymmetric ? 0.2 : 0.0, 0.0, gas_reacts, 0);
     PrepareJacobian(s, &X, &R, &JD);
     RandomVector(&s->m, 70, R);
     Call(VecDuplicate(R, &x[k]));
     if (k == 1)
       f.recovery = RecoveryError(&s->m, R, x[k]);
-    Call(SNESGetKSP(s->m.snes, &ksp));
-    Call(KSPSetOperators(ksp, s->m.A, s->m.Pmat));
+    Call(SNESGetKSP(s->m.solver->snes, &ksp));
+    Call(KSPSetOperators(ksp, s->m.solver->A, s->m.solver->Pmat));
     Call(KSPSolve(ksp, R, x[k]));
     Call(KSPGetIterationNumber(ksp, &f.its[k]));
     if (k == 1)

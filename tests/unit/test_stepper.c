@@ -110,24 +110,42 @@ static void TemperatureCountsByItsChange(void **state)
   assert_true(s.broken && s.state.scale_T == 56.0);
 }
 
-/* Runs of known length, one unit of cost a step: of what is left after 5 % and later. */
-static double LeftOff(double (*next)(double t, double dt), double t_end)
+/* Runs of known length, one unit of cost a step, whose steps begin anew at kinks: of what is left after 5 % and later,
+   but for the first steps behind a kink. */
+static double LeftOff(double (*next)(double t, double dt), const Ahead *a)
 {
-  Learnt l = {.n = 0};
-  double t = 0.0, dt = 1.0, steps = 0.0, all = 0.0, worst = 1.0;
+  Learnt l    = {.n = 0};
+  double kink = a->kinks ? a->kink[0] : INFINITY, from = 0.0, dt = 1.0, steps = 0.0, all = 0.0, worst = 1.0;
+  int    passed = 0;
 
-  for (double x = 0.0, d = 1.0; x < t_end; all += 1.0) {
-    x += d;
-    d = next(x, d);
-  }
-  while (t < 0.9 * t_end) {
-    t += dt;
-    dt = next(t, dt);
-    LearntAdd(&l, t, ++steps);
-    if (t < 0.05 * t_end || t >= 0.9 * t_end)
-      continue;
-    const double off = LearntLeft(&l, t_end) / (all - steps);
-    worst            = fmax(worst, fmax(off, 1.0 / off));
+  for (int count = 1; count >= 0; count--) {
+    from = passed = 0;
+    dt            = 1.0;
+    kink          = a->kinks ? a->kink[0] : INFINITY;
+    for (double t = 0.0; t < 0.999999 * a->end;) {
+      Ahead ahead = *a;
+
+      t += fmin(fmin(dt, kink - t), a->end - t);
+      dt = next(t - from, dt);
+      all += count;
+      if (!count)
+        LearntAdd(&l, t, ++steps);
+      if (t >= kink) {
+        from = t;
+        dt   = 1.0;
+        kink = ++passed < a->kinks ? a->kink[passed] : INFINITY;
+        if (!count)
+          LearntBegin(&l, t, steps);
+      }
+      if (count || t < 0.05 * a->end || t >= 0.9 * a->end)
+        continue;
+      ahead.kinks -= passed;
+      for (int k = 0; k < ahead.kinks; k++)
+        ahead.kink[k] = a->kink[passed + k];
+      const double off = LearntLeft(&l, &ahead) / (all - steps);
+      if (t - from > 0.01 * a->end)
+        worst = fmax(worst, fmax(off, 1.0 / off));
+    }
   }
   return worst;
 }
@@ -157,16 +175,22 @@ static void TimeLeftIsLearnt(void **state)
   static const struct {
     const char *what;
     double (*next)(double, double);
-    double end;
-  } run[]  = {{"even steps", Even, 1e5},
-              {"dt ~ t", Diffuses, 1e6},
-              {"growth to a largest step", Grows, 1e5},
-              {"dt ~ sqrt t", Root, 1e6}};
+    Ahead ahead;
+  } run[] = {
+      {"even steps", Even, {.end = 1e5, .stretch = INFINITY, .even = true}},
+      {"as many as there are stops", Even, {.end = 1e4, .stretch = 1.0}},
+      {"dt ~ t", Diffuses, {.end = 1e6, .stretch = 5e4}},
+      {"growth to a largest step", Grows, {.end = 1e5, .stretch = 400.0}},
+      {"dt ~ sqrt t", Root, {.end = 1e6, .stretch = INFINITY}},
+      {"dt ~ t behind each kink", Diffuses, {.end = 1e6, .stretch = 1e5, .kinks = 2, .kink = {3e4, 4e5}}},
+  };
   Learnt l = {.n = 0};
 
-  assert_true(LearntLeft(&l, 1.0) == 0.0);
+  assert_true(isnan(LearntLeft(&l, &run[1].ahead)));
+  LearntAdd(&l, 1.0, 1.0);
+  assert_true(isnan(LearntLeft(&l, &run[1].ahead)));
   for (size_t k = 0; k < sizeof(run) / sizeof(*run); k++) {
-    const double worst = LeftOff(run[k].next, run[k].end);
+    const double worst = LeftOff(run[k].next, &run[k].ahead);
 
     printf("time left after 5 %%, %-26s off by a factor of %.3f at most\n", run[k].what, worst);
     assert_true(worst < 2.0);

@@ -55,7 +55,7 @@ static SmallScene *Make(unsigned has, BasisType basis, const char *stepper, int 
     s->half[1].pressure += EXCESS;
   }
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
-  s->m.tol_residual = 1e-11;
+  s->m.solver->tol_residual = 1e-11;
   for (PetscInt i = 0; i < s->m.P.n; i++) {
     for (int v = P_VS; v < P_VS + 6; v += 2) {
       if (!s->m.P.f[v])
@@ -211,9 +211,9 @@ static void TestGradient(void **state)
     double  worst = 0.0, checked = 0.0;
     bool    ok;
 
-    s->c.dt              = dt;
-    s->mat.elasticity.E0 = 100.0; /* its waves go 0.03 mm */
-    s->m.tol_update      = 1e-11;
+    s->c.dt                 = dt;
+    s->mat.elasticity.E0    = 100.0; /* its waves go 0.03 mm */
+    s->m.solver->tol_update = 1e-11;
     s->mat.kappa_s = s->mat.kappa_h = s->mat.kappa_w = s->mat.kappa_g = 0.0;
     for (PetscInt i = 0; i < s->m.P.n; i++) {
       double *const *f    = s->m.P.f;

@@ -1,0 +1,82 @@
+/* Private to model/: Newton's method for a stage, its matrices and its preconditioner. */
+#pragma once
+
+#include "gather.h"
+
+/* Whole: of J2 with all its unknowns, LU unless PETSc's options say otherwise.  Reduced: (170).  Auto: by size (330).
+ */
+enum { PRECONDITIONER_AUTO = 0, PRECONDITIONER_WHOLE, PRECONDITIONER_REDUCED };
+
+/* Which of them the run has, and why: (330), of the particles as seeded, or by an option of the user. */
+typedef struct {
+  double      across; /* mean number of cells across the body */
+  bool        reduced, said;
+  const char *asked; /* the option that chose; null: by size */
+} SolverPlan;
+
+/* When a preconditioner is made anew (176). */
+typedef struct {
+  bool   fresh, due; /* no solve with it yet; its loss has reached the cost of a new one */
+  double per_decade; /* GMRES iterations of its first solve per decade of the residual */
+  double lost;       /* iterations beyond that since */
+} Renewal;
+
+typedef struct Reduced Reduced; /* reduced.c */
+
+struct Solver {
+  double **place;   /* [n_local][NEIGHBOURS] blocks of J2: neighbours of a node; of ghosts in `foreign` */
+  double  *foreign; /* [ghosts][NEIGHBOURS][fields.n][fields.n] for other ranks' rows */
+  Mat      J2, A;   /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell) */
+  Mat      Pmat;    /* the preconditioner's */
+  Vec      X, R;    /* scaled unknowns and residual */
+  SNES     snes;
+
+  PetscInt   preconditioner; /* PRECONDITIONER_... as asked for (option -newton_preconditioner) */
+  SolverPlan plan;
+  bool       reduces;         /* GMRES has the reduced one */
+  Reduced   *reduced;         /* null: factors of the whole or what PETSc's options say */
+  PC         set_aside;       /* that of the reduced one while LU takes over */
+  bool       refactor;        /* made anew at the next Jacobian: once a step, and when it has become poor */
+  bool       always_refactor; /* ... at every Jacobian: second attempt at a stage */
+  double     factored_dt;     /* dt' it was made for, s */
+  Renewal    renewal;
+  PetscInt   poor;          /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
+  char       pmat_type[16]; /* aij | baij of its matrix (option -model_pmat_type); empty: as the solver likes it */
+
+  double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
+  double   residual;                 /* largest scaled one of the last iteration */
+  double   keep_jacobian;            /* (343), option -newton_keep_jacobian */
+  PetscInt kept;                     /* iterations of the solve that took the Jacobian of the last */
+};
+
+/* Life of a solver: of a model, with the options of the user, but for the plan; without what follows the active nodes;
+   ended. */
+PetscErrorCode SolverCreate(Solver **s);
+PetscErrorCode SolverReset(Solver *s);
+PetscErrorCode SolverDestroy(Solver **s);
+/* J2: where its blocks are, once for a pattern; empties it; scales what was added, with Dirichlet rows, and assembles.
+ */
+PetscErrorCode MatrixPlaces(Model *m);
+PetscErrorCode MatrixBegin(Model *m);
+PetscErrorCode MatrixFinish(Model *m);
+/* The reduced matrix and its solver (reduced.c). */
+/* Types of the solvers of the groups that are there, behind -reduced_..., which options of the user win over. */
+PetscErrorCode  ReducedPreferences(bool flow, bool motion);
+PetscErrorCode  ReducedCreate(Model *m);
+PetscErrorCode  ReducedDestroy(Reduced **reduced);
+const FieldSet *ReducedFields(const Model *m);        /* its unknowns */
+PetscErrorCode  ReducedBegin(Model *m, Assembly *to); /* empties it; to: of its unknowns, marked as going there */
+PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
+PetscErrorCode  ReducedFollow(Model *m);              /* J2 is a new one */
+PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
+/* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
+PetscErrorCode PreconditionerPlan(Model *m);                    /* (330), of the particles that were just seeded */
+PetscErrorCode PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
+PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);
+void           PreconditionerRenew(Model *m); /* at the next Jacobian */
+PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew);
+/* Where GMRES fails with the reduced one: LU of the whole, with a line that says so, until PreconditionerReturn. */
+PetscErrorCode PreconditionerFallBack(Model *m);
+PetscErrorCode PreconditionerReturn(Model *m);
+/* The exact Jacobian. */
+PetscErrorCode WideCreate(Model *m, Mat *A);
