@@ -115,9 +115,10 @@ typedef struct {
   double outflow[PHASE_COUNT], heat_in;
   double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
 } FaceOutput;
-/* velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
+/* Sh: of its particle at t_n; velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o);
+                  double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
+                  FaceOutput *o);
 
 /* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
 double PlatePosition(const Bc *b, double t);

@@ -7,7 +7,7 @@
 #include "clathra/fields.h"
 
 /* ---------------------------------------------------------------- retention: gas share of the fluid-filled pore space
-   s_g = S_g/(1 - S_h) as a function of capillary pressure p_c = p_g - p_w (Pa); s_w = 1 - s_g. */
+   s_g = S_g/(1 - S_h) as a function of capillary pressure p_c = p_g - p_w (Pa) and hydrate; s_w = 1 - s_g. */
 typedef struct Retention Retention;
 struct Retention {
   double p0;       /* air-entry (reference) pressure, Pa, > 0 */
@@ -17,6 +17,7 @@ struct Retention {
   double Sgr;      /* residual gas saturation, [0,1) */
   double p_smooth; /* smoothing width p_s, Pa; smooth form only; default 0.05 p0 */
   double p_trap;   /* pressure scale p_t of trapped gas, Pa; smooth form only; default p0 */
+  double hydrate;  /* exponent of 1 - S_h by which hydrate raises p_c (320), >= 0; 0: it does not */
   double (*gas_share)(const Retention *, double pc, double *ds_dpc);
   void (*gas_share_loop)(const Retention *, int n, const double *pc, double *s, double *ds_dpc); /* the same of n */
   const char *type;
@@ -24,16 +25,24 @@ struct Retention {
 /* Sets the law by name (van_genuchten | van_genuchten_clamped | brooks_corey); false for an unknown name. */
 bool               RetentionSetType(Retention *law, const char *type);
 const char *const *RetentionTypes(void); /* NULL-terminated */
-/* s_g at p_c (Pa), with its slope, 1/Pa. */
-static inline double RetentionGasShare(const Retention *law, double pc, double *ds_dpc)
+/* (320): (1 - S_h)^n, what p_c of a pore without hydrate is of that with hydrate, at the same s_g. */
+double RetentionNarrowing(const Retention *law, double Sh);
+/* Slope of s_g in S_h, of that in p_c (1/Pa), (320). */
+double RetentionHydrateSlope(const Retention *law, double pc, double Sh, double ds_dpc);
+/* s_g at p_c (Pa) in pores that hydrate fills to S_h, with its slopes, 1/Pa and -. */
+static inline double RetentionGasShare(const Retention *law, double pc, double Sh, double *ds_dpc, double *ds_dSh)
 {
-  return law->gas_share(law, pc, ds_dpc);
+  const double r = RetentionNarrowing(law, Sh), s = law->gas_share(law, r * pc, ds_dpc);
+
+  *ds_dpc *= r;
+  *ds_dSh = RetentionHydrateSlope(law, pc, Sh, *ds_dpc);
+  return s;
 }
 /* Capillary pressure at which the gas share is s_g, by bracketing; false if the law never reaches s_g. */
-bool RetentionInvert(const Retention *law, double sg, double *pc);
+bool RetentionInvert(const Retention *law, double sg, double Sh, double *pc);
 /* Capillary pressure at and below which a pore holds no gas (103); false if the law leaves some at any (a clamped law
    with S_gr > 0). */
-bool RetentionNoGas(const Retention *law, double *pc);
+bool RetentionNoGas(const Retention *law, double Sh, double *pc);
 
 /* ---------------------------------------------------------------- relative permeability (modified Corey)
    base = (s - Sr_own)/(1 - Swr - Sgr) clipped to [0,1] with a C1 toe at 0; k_r = base^n.

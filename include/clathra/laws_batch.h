@@ -6,7 +6,7 @@
 #include "clathra/laws.h"
 
 /* s_g at p_c, and its slope. */
-void RetentionGasShareBatch(const Retention *law, int n, const double *pc, double *s, double *ds_dpc);
+void RetentionGasShareBatch(const Retention *law, int n, const double *pc, const double *Sh, double *s, double *ds_dpc);
 /* k_rw at s_w. */
 void RelPermWaterBatch(const RelPerm *law, int n, const double *restrict sw, double *restrict kr);
 /* k_rg at s_g. */

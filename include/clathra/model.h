@@ -109,6 +109,7 @@ typedef struct {
   double *coef;    /* [n_local][NC_COUNT] nodal means, places NC_... */
   const Material **material; /* [n_local] of most of what this rank has at the node */
   double          *most;     /* [n_local] ... volume of the particle that it is of, times S, m^3 */
+  double          *hydrate;  /* [n_local] ... its S_h at t_n */
   unsigned        *mask;     /* [n_local] Dirichlet bits */
   double          *fixed;    /* [n_local][fields.n] Dirichlet values of the stage */
   PetscInt         nface;

@@ -97,10 +97,10 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
 void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double sg, double pw,
                         double pg, double T, double *m_s, double *m_h, double *m_w, double *m_g);
 
-/* Methane of a unit of open pore space, kg/m^3 (101), with its slopes in p_w and p_g. */
-double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT]);
+/* Methane of a unit of open pore space beside hydrate of S_h, kg/m^3 (101), with its slopes in p_w and p_g. */
+double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT]);
 /* p_g between a and b at which it is `want`, to 1e-4 of p_0; b where there is none between them. */
-double PointGasPressure(const Material *mat, double want, double pw, double T, double a, double b);
+double PointGasPressure(const Material *mat, double want, double Sh, double pw, double T, double a, double b);
 
 /* Properties at t_n that projections, scales and stabilisation need. */
 typedef struct {

@@ -77,10 +77,12 @@ typedef struct {
   double v, own, other, T;
 } FluidMass;
 
-/* (9) in an open volume with its slope in T; the slope of s_g in the fluid's own pressure; those of its density. */
-INLINE FluidMass MassOf(Content c, double open, double open_T, double sg_own, double rho_p, double rho_T)
+/* (9) in an open volume with its slope in T; the slopes of s_g in the fluid's own pressure and in T; those of its
+   density. */
+INLINE FluidMass MassOf(Content c, double open, double open_T, double sg_own, double sg_T, double rho_p, double rho_T)
 {
   const double turns = open * c.sg * sg_own;
 
-  return (FluidMass){open * c.v, turns + open * (c.rho * rho_p + c.p), -turns, c.v * open_T + open * c.rho * rho_T};
+  return (FluidMass){open * c.v, turns + open * (c.rho * rho_p + c.p), -turns,
+                     c.v * open_T + open * (c.sg * sg_T + c.rho * rho_T)};
 }
