@@ -46,7 +46,7 @@ FAULTS = [
     ("hydrate's expansivity left out", HEADER + "point_heat.h", [("+ ice * mat->hydrate.beta) * per", ") * per"), ("(mat->hydrate.beta - v) * per", "-v * per")]),
     ("half of the thermal strain again", POINT + "point.c", [("JetScale(1.0 / 3.0, JetMul(s->beta", "JetScale(0.5, JetMul(s->beta")]),
     ("1 % more gas from hydrate", HEADER + "laws.h", [("return law->M_g / law->M_h;", "return 1.01 * law->M_g / law->M_h;")]),
-    ("gas carries heat like water", POINT + "point.c", [("{mat->c_w, mat->c_g}", "{mat->c_w, mat->c_w}")]),
+    ("gas carries heat like water", HEADER + "point_heat.h", [("phase == PHASE_W ? mat->c_w : mat->c_g", "phase == PHASE_W ? mat->c_w : mat->c_w")]),
     ("no flux interpolation (20)", POINT + "point.c", [("JetScale(h->bracket, JetMul(rho, tau))", "JetScale(0.0, JetMul(rho, tau))")]),
     ("conduction without 1/J", POINT + "point.c", [("k->cof[1][i] * k->cof[1][j]) / k->J;", "k->cof[1][i] * k->cof[1][j]);"), ("(dc - g->K[i][j] * k->dJ[q]) / k->J", "dc")]),
     ("no pore pressure around the axis", POINT + "point.c", [("hoop = st->s[ZZ] - p;", "hoop = st->s[ZZ];"), ("AddJet(o->D[OUT_HOOP], -h->V * k->cof_hoop, &s->p, k);", ""), ("o->D[OUT_HOOP][IN_U + d] += h->V", "o->D[OUT_HOOP][IN_U + d] += 0.0")]),

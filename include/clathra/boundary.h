@@ -102,7 +102,7 @@ enum { PLATE_POSITION = 0, PLATE_FORCE, PLATE_SHEAR, PLATE_AREA, PLATE_COUNT };
 /* A fluid's own pressure at a face, extrapolated from its particle, Pa. */
 static inline double FacePressure(const Face *f, int phase, const double in[IN_COUNT])
 {
-  const double *g = &in[IN_GP + 2 * phase];
+  const double *g = &in[VectorAt(IN_GP, phase, 0)];
 
   return in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include "clathra/fields.h"
 
 /* ---------------------------------------------------------------- retention: gas share of the fluid-filled pore space
    s_g = S_g/(1 - S_h) as a function of capillary pressure p_c = p_g - p_w (Pa); s_w = 1 - s_g. */
@@ -111,6 +112,11 @@ static inline double KineticsWater(const Kinetics *law)
 static inline double KineticsMethane(const Kinetics *law)
 {
   return law->M_g / law->M_h;
+}
+/* ... of a fluid, PHASE_..., kg. */
+static inline double KineticsFluid(const Kinetics *law, int phase)
+{
+  return phase == PHASE_W ? KineticsWater(law) : KineticsMethane(law);
 }
 double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
 /* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */

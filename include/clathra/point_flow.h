@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include "clathra/dimension.h"
 #include "clathra/inline.h"
 
 #define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
@@ -37,10 +38,10 @@ INLINE void BedsDrive(const Beds *A, double v[2])
  */
 INLINE void BedsDriveMoving(const Beds *A, const double w[2], double g[2])
 {
-  for (int d = 0; d < 2; d++)
+  for (int d = 0; d < CL_DIM; d++)
     g[d] -= w[d];
   BedsDrive(A, g);
-  for (int d = 0; d < 2; d++)
+  for (int d = 0; d < CL_DIM; d++)
     g[d] += w[d];
 }
 

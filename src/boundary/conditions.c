@@ -6,7 +6,7 @@
 /* An area vector goes with the motion: a = cof(F) n. */
 static void Carry(const Kinematics *k, const double n[2], double a[2], double da[2][MOTION_COUNT])
 {
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     a[i] = k->cof[i][0] * n[0] + k->cof[i][1] * n[1];
     for (int q = 0; q < MOTION_COUNT; q++)
       da[i][q] = k->dcof[i][0][q] * n[0] + k->dcof[i][1][q] * n[1];

@@ -85,15 +85,15 @@ INLINE int A_Count(Set s)
 enum { B_J = 0, B_PROJ = 2, B_DV = 4, B_VEL = 6, B_PER_FLUID = 8 };
 INLINE int B_T(Set s)
 {
-  return 2 * s.solid;
+  return CL_DIM * s.solid;
 }
 INLINE int B_P(Set s, int f)
 {
-  return 2 * s.solid + s.heat + f;
+  return CL_DIM * s.solid + s.heat + f;
 }
 INLINE int B_Fluid(Set s, int f)
 {
-  return 2 * s.solid + s.heat + s.fluids + B_PER_FLUID * f;
+  return CL_DIM * s.solid + s.heat + s.fluids + B_PER_FLUID * f;
 }
 INLINE int B_DVs(Set s)
 {
@@ -101,7 +101,7 @@ INLINE int B_DVs(Set s)
 }
 INLINE int B_Count(Set s)
 {
-  return B_DVs(s) + 2 * s.solid;
+  return B_DVs(s) + CL_DIM * s.solid;
 }
 
 /* ... and to nodes: what is missing of each scalar, then the matrix that says what a change of the scalars makes of it.

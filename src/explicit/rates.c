@@ -62,7 +62,7 @@ INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
     if (s.solid)
       Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], width);
     for (int k = 0; k < s.fluids; k++)
-      Blend(e->o.flip, r.n, e->m->P.f[(k ? P_VG : P_VW) + d] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
+      Blend(e->o.flip, r.n, e->m->P.f[VectorAt(P_VW, k, d)] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
             &g->value[0][B_Fluid(s, k) + B_VEL + d], width);
   }
 }
@@ -206,7 +206,7 @@ INLINE void CarriedFlux(const Explicit *e, const Set s, Run r, const Gathered *g
 INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathered *g, double dt, Given *o)
 {
   double *const *f  = e->m->P.f;
-  const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
+  const int      at = B_Fluid(s, k), n = Scalars(s), grad = VectorAt(P_GW, k, 0);
   const double   bracket   = e->m->c->stabilisation.flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
                scale       = e->o.mass_scaling / dt;
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
@@ -266,7 +266,7 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
     for (int k = 0; k < s.fluids; k++) {
       for (int d = 0; d < CL_DIM; d++)
-        a[d] += (k ? r.mat->c_g : r.mat->c_w) * o->force[d][q][k] / (dt * V);
+        a[d] += SpecificHeat(r.mat, k) * o->force[d][q][k] / (dt * V);
     }
     HeatUpwind(kappa[q], a, h, K);
     o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);

@@ -33,8 +33,8 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
       for (int a = 0; fs->phase[f] && a < r.n; a++) {
         const double pI = x[r.node[a] * fs->n + PlaceP(fs, f)];
 
-        g[2 * f] += r.G[a][0] * pI;
-        g[2 * f + 1] += r.G[a][1] * pI;
+        for (int d = 0; d < CL_DIM; d++)
+          g[VectorAt(0, f, d)] += r.G[a][d] * pI;
       }
     }
     for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
@@ -42,7 +42,7 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
 
       if (!slope)
         BedsWeight(m, p, f, w);
-      BedsDriveMoving(&m->beds[p].A, w, &g[2 * f]);
+      BedsDriveMoving(&m->beds[p].A, w, &g[VectorAt(0, f, 0)]);
     }
     for (int a = 0; a < r.n; a++) {
       const double VS = Vk * r.S[a];

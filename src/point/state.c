@@ -70,8 +70,8 @@ static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarSta
   const double L = LatentHeatEvaluate(&mat->latent, T.v, &dL);
 
   s->kappa    = JetAdd(JetChain2(k, dphi, s->phi, dSh, s->Sh), JetChain(0.0, dsw, s->sw));
-  s->capacity = JetChain3(HeatCapacity(mat, h->m_s, s->m_h.v, s->m_w.v, s->m_g.v), mat->c_h, s->m_h, mat->c_w, s->m_w,
-                          mat->c_g, s->m_g);
+  s->capacity = JetChain3(HeatCapacity(mat, h->m_s, s->m_h.v, s->m[PHASE_W].v, s->m[PHASE_G].v), mat->c_h, s->m_h,
+                          mat->c_w, s->m[PHASE_W], mat->c_g, s->m[PHASE_G]);
   s->latent   = JetChain(L, dL, T);
 }
 
@@ -149,8 +149,8 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
                              const double in[IN_COUNT], ScalarState *s, const char **why)
 {
   const Jet pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
-            T     = JetVariable(in[IN_T], JET_T);
-  const Jet zero  = JetConstant(0.0);
+            T    = JetVariable(in[IN_T], JET_T);
+  const Jet zero = JetConstant(0.0), pressure[PHASE_COUNT] = {pw, pg};
   const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
 
   const ClStatus status = CheckInputs(fs, mat, in, why);
@@ -171,17 +171,17 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     *why = "hydrate fills the pore space";
     return CL_DOMAIN;
   }
-  s->Sh  = PoreShareJet(s->m_h, rho_h, s->Vp);
-  s->m_w = s->m_g = zero;
+  s->Sh         = PoreShareJet(s->m_h, rho_h, s->Vp);
+  s->m[PHASE_W] = s->m[PHASE_G] = zero;
   if (fs->phase[PHASE_W]) {
     s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
     const Content c = WaterContent(s->sg.v, s->rho[PHASE_W].v);
-    s->m_w          = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
+    s->m[PHASE_W]   = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
   }
   if (fs->phase[PHASE_G]) {
     s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
     const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
-    s->m_g          = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
+    s->m[PHASE_G]   = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
   }
   if (fs->fluid)
     Mobility(fs, mat, T, s);
@@ -189,7 +189,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     Thermal(mat, h, T, s);
   for (int f = 0; fs->heat && h->compression && f < PHASE_COUNT; f++) {
     if (fs->phase[f])
-      s->warm[f] = ExpansionJet(mat, f, f == PHASE_W ? pw : pg, T);
+      s->warm[f] = ExpansionJet(mat, f, pressure[f], T);
   }
   if (fs->solid)
     Skeleton(mat, s);
@@ -266,7 +266,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     return status;
   *r = (PointProperties){.s = {s.sw.v, s.sg.v}, .phi = s.phi.v, .Sh = s.Sh.v};
   for (int f = 0; f < PHASE_COUNT; f++) {
-    const Jet *m = f == PHASE_W ? &s.m_w : &s.m_g;
+    const Jet *m = &s.m[f];
 
     if (!fs->phase[f])
       continue;
@@ -275,7 +275,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->kr[f]             = s.kr[f].v;
     const Jet mobility   = JetDiv(s.kr[f], s.resist[f]);
     r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
-    r->storage[f]        = m->d[f == PHASE_W ? JET_PW : JET_PG] / (V * s.rho[f].v);
+    r->storage[f]        = m->d[JET_PW + f] / (V * s.rho[f].v);
   }
   if (fs->heat) {
     r->capacity = s.capacity.v;

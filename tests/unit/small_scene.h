@@ -174,7 +174,7 @@ static inline void StageStart(SmallScene *s, double dt)
 
   Call(ModelBeginStep(m, &status));
   if (status != CL_OK)
-    Say("  %s\n", m->why);
+    Say("  %s\n", m->failure.why);
   Check(status == CL_OK);
   s->stage = (Stage){.t = dt, .dt = dt};
   Call(PetscMalloc3(m->map.n_local * n, &s->stage.x_star, m->map.n_local * CL_DIM, &s->stage.u_star, 3 * m->P.n,
@@ -231,7 +231,7 @@ static inline double ResidualAt(SmallScene *s, const double *x, int from, int to
     MakeSolver(s);
   SetX(m, x);
   Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
-  Check(m->status == CL_OK);
+  Check(m->failure.status == CL_OK);
   Call(VecGetArrayRead(m->solver->R, &a));
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
     if (fs->field[k % fs->n] >= from && fs->field[k % fs->n] < to)
@@ -404,10 +404,10 @@ static inline void Difference(Model *m, Vec X, Vec D, double t, double *dy)
   for (int l = 0; l < LEVELS; l++, t *= 0.5) {
     Call(VecWAXPY(Xt, t, D, X));
     Call(ModelResidual(NULL, Xt, Ru, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     Call(VecWAXPY(Xt, -t, D, X));
     Call(ModelResidual(NULL, Xt, Rd, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     for (int k = 0; k <= l; k++)
       Call(PetscMalloc1(n, &a[l][k]));
     Call(VecGetArrayRead(Ru, &up));
@@ -454,9 +454,9 @@ static inline void PrepareJacobian(SmallScene *s, Vec *X, Vec *D, Vec *JD)
   Call(VecDuplicate(m->solver->X, JD));
   Call(VecCopy(m->solver->X, *X));
   Call(ModelResidual(NULL, *X, m->solver->R, m));
-  if (m->status != CL_OK)
-    Say("  inadmissible: %s\n", m->why);
-  Check(m->status == CL_OK);
+  if (m->failure.status != CL_OK)
+    Say("  inadmissible: %s\n", m->failure.why);
+  Check(m->failure.status == CL_OK);
   Call(ModelJacobian(m->solver->snes, *X, m->solver->A, m->solver->Pmat, m));
 }
 

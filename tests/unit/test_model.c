@@ -19,11 +19,11 @@ static void UpstreamScene(SmallScene *s, BasisType basis, bool reacts, int set)
   JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
   s->c.scene.stabilisation.upstream = reacts;
   JacobianState(s);
-  Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
+  Check((PetscInt)Sum((double)s->m.added->nghost) > 0 && (PetscInt)Sum((double)s->m.added->ncell) > 0);
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
-    upstream += s->m.up && s->m.up[3 * k + 2] > 0.0; /* no storage where it is off */
+    upstream += s->m.added->up && s->m.added->up[3 * k + 2] > 0.0; /* no storage where it is off */
   for (PetscInt p = 0; p < s->m.P.n; p++)
-    lumped += s->m.lump && s->m.lump[p].rate > 0.0;
+    lumped += s->m.added->lump && s->m.added->lump[p].rate > 0.0;
   Check((Sum(upstream) > 0.0) == reacts && (Sum(lumped) > 0.0) == reacts);
 }
 
@@ -238,7 +238,7 @@ static void TestMassRows(void **state)
     RandomUnknowns(m, s->stage.dt, 50 + k, x);
     SetX(m, x);
     Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     Call(ModelEndStage(m, x, &t, &rates, &status));
     Check(status == CL_OK);
     for (PetscInt p = 0; p < m->P.n; p++) {
@@ -278,7 +278,7 @@ static double RestVelocity(SmallScene *s, double *scale)
   m->solver->tol_residual = 2e-12; /* and a twentieth of it in mass and energy */
   Call(ModelSolve(m, x, &newton, &status));
   if (status != CL_OK)
-    Say("  %s\n", m->why);
+    Say("  %s\n", m->failure.why);
   Check(status == CL_OK && newton > 0);
   for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
     if (k % F_COUNT < F_PW)
