@@ -22,7 +22,8 @@ static void Area(FaceState *x)
 }
 
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o)
+                  double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
+                  FaceOutput *o)
 {
   FaceState x = {.c     = c,
                  .f     = f,
@@ -30,6 +31,7 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
                  .mat   = mat,
                  .p0    = p0,
                  .in    = in,
+                 .Sh    = Sh,
                  .kappa = kappa,
                  .dt    = dt,
                  .T     = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1],

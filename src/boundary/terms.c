@@ -131,7 +131,7 @@ static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
   const Retention *retention = &x->mat->retention;
   const Bc        *b         = &x->c->bc[k];
   const double    *p0 = x->p0, *in = x->in;
-  double           ds;
+  double           ds, dSh;
 
   *o = (Outside){.p = {p0[PHASE_W], p0[PHASE_G]}};
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
@@ -144,12 +144,12 @@ static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
     o->p[PHASE_W] = o->p[PHASE_G] = b->initial ? p0[PHASE_W] : MeanOutside(x, k, o->du);
     return;
   }
-  const double sg0   = RetentionGasShare(retention, p0[PHASE_G] - p0[PHASE_W], &ds);
+  const double sg0   = RetentionGasShare(retention, p0[PHASE_G] - p0[PHASE_W], x->Sh, &ds, &dSh);
   const double mean0 = PorePressureOf(sg0, p0[PHASE_W], p0[PHASE_G]).v;
   const double mean  = b->initial ? mean0 : MeanOutside(x, k, o->du);
 
   if (b->natural) {
-    const double pc = in[IN_P + PHASE_G] - in[IN_P + PHASE_W], sg = RetentionGasShare(retention, pc, &ds);
+    const double pc = in[IN_P + PHASE_G] - in[IN_P + PHASE_W], sg = RetentionGasShare(retention, pc, x->Sh, &ds, &dSh);
 
     o->p[PHASE_W]   = mean - sg * pc;
     o->p[PHASE_G]   = o->p[PHASE_W] + pc;

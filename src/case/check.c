@@ -72,8 +72,9 @@ static void CheckSaturations(Reader *r, const Scene *c, const Region *g)
   }
   if (r->bad[GROUP_MATERIAL] || !c->fields.phase[PHASE_G])
     return;
-  if (g->Sg == 0.0 && c->without_gas != WITHOUT_GAS_NO ? RetentionNoGas(&m->retention, &pc)
-                                                       : RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
+  if (g->Sg == 0.0 && c->without_gas != WITHOUT_GAS_NO
+          ? RetentionNoGas(&m->retention, g->Sh, &pc)
+          : RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), g->Sh, &pc))
     return;
   FAIL_AT(
       GROUP_REGION, g->name, "Sg",

@@ -50,7 +50,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
 
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
-    RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
+    RetentionGasShareBatch(&mat->retention, r.n, pc, w->Sh, sg, ds);
     GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
       w->sw[q]      = 1.0 - sg[q];

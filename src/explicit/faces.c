@@ -120,9 +120,9 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   for (int d = 0; e->set.solid && d < CL_DIM; d++)
     velocity[d] = e->m->P.f[P_VS + d][f->particle];
   ModelInitialAtFace(e->m, f, p0);
-  if (f->bc[BC_FACE_TEMPERATURE] >= 0) /* the only condition that asks for a conductivity */
+  if (f->bc[BC_FACE_TEMPERATURE] >= 0 || mat->retention.hydrate > 0.0) /* who else asks for conductivity or S_h? */
     ModelParticleProperties(e->m, f->particle, &q, &why);
-  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, velocity, q.kappa, dt, o);
+  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, q.Sh, in, velocity, q.kappa, dt, o);
 }
 
 /* Tractions, and for the fluids what a prescribed pressure differs from the body's own at the face. */

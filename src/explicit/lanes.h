@@ -376,16 +376,20 @@ INLINE void PressuresOf(double p_g, const double y[2], double d[2])
   d[1] = gas;
 }
 
-/* Water and methane of a unit of open pore space at t_n, kg/m^3: two fluids, with p_g of then. */
-INLINE void PerOpenVolume(const Explicit *e, Run r, const double *restrict pg, double held[PHASE_COUNT][BLOCK])
+/* (322): water and methane that a unit of hydrate displaces at t_n, kg/m^3: two fluids, with p_w and p_g of then. */
+INLINE void PerHydrateVolume(const Explicit *e, Run r, const double *restrict pw, const double *restrict pg,
+                             double held[PHASE_COUNT][BLOCK])
 {
   const double *restrict sg = e->t[T_SG] + r.p, *restrict rho_w = e->t[T_RHO] + r.p,
-                         *restrict rho_g = e->t[T_RHO + 1] + r.p;
-  const double H                         = r.mat->gas.trace;
+                         *restrict rho_g = e->t[T_RHO + 1] + r.p, *restrict ds = e->t[T_DS] + r.p;
+  const double H = r.mat->gas.trace, n = r.mat->retention.hydrate;
 
   for (int q = 0; q < r.n; q++) {
-    held[PHASE_W][q] = WaterContent(sg[q], rho_w[q]).v;
-    held[PHASE_G][q] = MethaneContent(H, sg[q], rho_g[q], pg[q]).v;
+    const Content water = WaterContent(sg[q], rho_w[q]), methane = MethaneContent(H, sg[q], rho_g[q], pg[q]);
+    const double  drains = n * (pg[q] - pw[q]) * ds[q]; /* -(1 - S_h) ds_g/dS_h (320) */
+
+    held[PHASE_W][q] = water.v + water.sg * drains;
+    held[PHASE_G][q] = methane.v + methane.sg * drains;
   }
 }
 

@@ -73,8 +73,28 @@ typedef struct {
 
 /* Volumes of a block's particles at the end of the step, with the hydrate of t_n. */
 typedef struct {
-  double rho_h[BLOCK], pore[BLOCK], open[BLOCK], open_T[BLOCK], phi[BLOCK], Sh[BLOCK]; /* open_T: slope in T */
+  double rho_h[BLOCK], pore[BLOCK], open[BLOCK], phi[BLOCK], Sh[BLOCK];
+  double open_T[BLOCK], sg_T[BLOCK]; /* slopes in T */
 } Volumes;
+
+/* (320) in these volumes, which change S_h; so does T. */
+INLINE void SharesOf(Explicit *e, Run r, const double *restrict rho_s, Volumes *o)
+{
+  const Material *mat       = r.mat;
+  double *const  *f         = e->m->P.f;
+  const double *restrict pw = f[P_PW] + r.p, *restrict pg = f[P_PG] + r.p, *restrict ms = f[P_MS] + r.p;
+  double *restrict sg = e->t[T_SG] + r.p, *restrict ds = e->t[T_DS] + r.p;
+  double pc[BLOCK];
+
+  for (int q = 0; q < r.n; q++)
+    pc[q] = pg[q] - pw[q];
+  RetentionGasShareBatch(&mat->retention, r.n, pc, o->Sh, sg, ds);
+  for (int q = 0; q < r.n; q++) {
+    const double Sh_T = o->Sh[q] * (mat->hydrate.beta + mat->solid.beta * ms[q] / (rho_s[q] * o->pore[q]));
+
+    o->sg_T[q] = RetentionHydrateSlope(&mat->retention, pc[q], o->Sh[q], ds[q]) * Sh_T;
+  }
+}
 
 INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T, const Gathered *g, double dt,
                       Volumes *o)
@@ -101,7 +121,10 @@ INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T,
     o->phi[q]    = v.phi;
     o->Sh[q]     = v.Sh;
     o->open_T[q] = -beta_s * ms[q] / rho_s[q] - beta_h * mh[q] / o->rho_h[q];
+    o->sg_T[q]   = 0.0;
   }
+  if (s.fluids == 2 && mat->retention.hydrate > 0.0)
+    SharesOf(e, r, rho_s, o);
 }
 
 /* Where the mass of a fluid and its slopes stand. */
@@ -135,7 +158,8 @@ INLINE void WaterMasses(Explicit *e, const Set s, Run r, const Volumes *v)
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++)
     KeepMass(&o, q, PHASE_W,
-             MassOf(WaterContent(sg[q], rho[q]), v->open[q], v->open_T[q], -ds[q], per_K * rho[q], -beta * rho[q]));
+             MassOf(WaterContent(sg[q], rho[q]), v->open[q], v->open_T[q], -ds[q], v->sg_T[q], per_K * rho[q],
+                    -beta * rho[q]));
 }
 
 INLINE void MethaneMasses(Explicit *e, Run r, const Volumes *v)
@@ -147,7 +171,8 @@ INLINE void MethaneMasses(Explicit *e, Run r, const Volumes *v)
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++)
     KeepMass(&o, q, PHASE_G,
-             MassOf(MethaneContent(H, sg[q], rho[q], pg[q]), v->open[q], v->open_T[q], ds[q], rho_p[q], rho_T[q]));
+             MassOf(MethaneContent(H, sg[q], rho[q], pg[q]), v->open[q], v->open_T[q], ds[q], v->sg_T[q], rho_p[q],
+                    rho_T[q]));
 }
 
 /* Gain of hydrate over the step at the nodal p and T, and its slopes: dissociation implicit in S_h, formation
@@ -355,7 +380,7 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   double held[PHASE_COUNT][BLOCK], L[BLOCK];
 
   LatentHeatBatch(&r.mat->latent, r.n, T, L);
-  PerOpenVolume(e, r, e->m->P.f[P_PG] + r.p, held);
+  PerHydrateVolume(e, r, e->m->P.f[P_PW] + r.p, e->m->P.f[P_PG] + r.p, held);
   for (int row = 0; row < n; row++) {
 #pragma GCC ivdep
     for (int q = 0; q < r.n; q++) {

@@ -31,7 +31,7 @@ static PetscErrorCode DestroyNodal(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree6(m->x_n, m->w, m->V, m->Vk, m->flow, m->coef));
-  PetscCall(PetscFree2(m->material, m->most));
+  PetscCall(PetscFree3(m->material, m->most, m->hydrate));
   PetscCall(PetscFree(m->added->up));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
@@ -82,7 +82,7 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
   PetscCall(PetscCalloc6(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
-  PetscCall(PetscCalloc2(n, &m->material, n, &m->most));
+  PetscCall(PetscCalloc3(n, &m->material, n, &m->most, n, &m->hydrate));
   if (m->c->stabilisation.upstream)
     PetscCall(PetscCalloc1(n * 6, &m->added->up));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));

@@ -189,6 +189,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     if (VS > m->most[I]) {
       m->most[I]     = VS;
       m->material[I] = ParticleMaterial(m, p);
+      m->hydrate[I]  = q->Sh;
     }
     if (m->c->axisymmetric) {
       c[NC_RING] += V * r->H[a];

@@ -123,6 +123,7 @@ CASES = [
     ("missing grid", [("  cells: [52, 1]\n", "")], ["grid_cells", "is missing"], []),
     ("missing end time", [("time: {end: 2000 s}", "")], ["time_end", "is missing"], []),
     ("missing when active", [("K0: 2.5e-10 mol/(m^2 Pa s), ", "")], [M + "kinetics_K0", "required when active"], []),
+    ("exponent of (320) below 0", [("law: van_genuchten, ", "law: van_genuchten, hydrate_exponent: -1, ")], [M + "retention_hydrate_exponent", "-1", "allowed: [0,20]"], []),
     ("missing van Genuchten m", [(" m: 0.3,", "")], [M + "retention_m", "is missing"], []),
     ("missing boundary value", [("    normal: {table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}\n", "")],
      ["bc_load_normal", "is missing"], []),

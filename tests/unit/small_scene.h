@@ -151,10 +151,10 @@ static inline void Refill(SmallScene *s, PetscInt p, double Sh)
   double *const  *f   = s->m.P.f;
   const double    T = fs->heat ? f[P_T][p] : r->temperature, pw = fs->phase[PHASE_W] ? f[P_PW][p] : 0.0;
   const double    pg = f[P_PG] ? f[P_PG][p] : pw;
-  double          m[4], ds, sg = fs->phase[PHASE_G] ? r->Sg : 0.0;
+  double          m[4], sg = fs->phase[PHASE_G] ? r->Sg : 0.0;
 
   if (f[P_PG])
-    sg = RetentionGasShare(&mat->retention, pg - pw, &ds);
+    sg = GasShareOf(mat, pg - pw, Sh);
   PointInitialMasses(fs, mat, f[P_V][p], mat->porosity, Sh, sg, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
   for (int k = 0; k < 4; k++) {
     if (f[P_MS + k])

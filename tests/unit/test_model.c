@@ -323,12 +323,11 @@ static void TestTwoLayers(void **state)
     Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     for (PetscInt p = 0; p < s->m.P.n; p++) {
       double *const *f = s->m.P.f;
-      double         d;
 
       f[P_PW][p] = f[P_PW0][p] = 3.2e6;
       f[P_PG][p] = f[P_PG0][p] = 3.3e6;
       Refill(s, p, s->m.P.i[PI_REGION][p] ? 0.3 : 0.0);
-      const double sg = RetentionGasShare(&MaterialOf(s, p)->retention, 1e5, &d);
+      const double sg = GasShareOf(MaterialOf(s, p), 1e5, f[P_SH][p]);
       for (int k = 0; k < 3; k++)
         f[P_SIG + k][p] = f[P_SIG0 + k][p] = 3.2e6 + sg * 1e5 - q;
     }
@@ -462,9 +461,8 @@ static void TestDarcy(void **state)
     Refill(s, p, 0.0);
   }
   StageStart(s, 1e3);
-  const double sw = 1.0 - RetentionGasShare(&mat->retention, 0.0, &d),
-               k  = PermeabilityEvaluate(&mat->permeability, 0.3, 0.0, &d, &e);
-  const double v  = -k * RelPermWater(&mat->relperm, sw, &d) / mat->mu_w.mu * slope / (0.3 * sw);
+  const double sw = 1.0 - GasShareOf(mat, 0.0, 0.0), k = PermeabilityEvaluate(&mat->permeability, 0.3, 0.0, &d, &e);
+  const double v = -k * RelPermWater(&mat->relperm, sw, &d) / mat->mu_w.mu * slope / (0.3 * sw);
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
     s->m.x_n[I * F_COUNT + F_VWX] = s->stage.x_star[I * F_COUNT + F_VWX] = v;
