@@ -46,7 +46,7 @@ typedef enum {
   CL_FATAL
 } ClStatus;
 
-/* |x| for maxima: NaN counts as infinite, for fmax and MPI_MAX pass NaN by. */
+/* |x| for maxima: NaN counts as infinite, for fmax and MPI_MAX pass NaN by; in the unit of x. */
 static inline double ClSize(double x)
 {
   return isnan(x) ? INFINITY : fabs(x);

@@ -25,7 +25,7 @@ struct Retention {
 /* Sets the law by name (van_genuchten | van_genuchten_clamped | brooks_corey); false for an unknown name. */
 bool               RetentionSetType(Retention *law, const char *type);
 const char *const *RetentionTypes(void); /* NULL-terminated */
-/* (320): (1 - S_h)^n, what p_c of a pore without hydrate is of that with hydrate, at the same s_g. */
+/* (320): (1 - S_h)^n, what p_c of a pore without hydrate is of that with hydrate, at the same s_g; dimensionless. */
 double RetentionNarrowing(const Retention *law, double Sh);
 /* Slope of s_g in S_h, of that in p_c (1/Pa), (320). */
 double RetentionHydrateSlope(const Retention *law, double pc, double Sh, double ds_dpc);
@@ -38,10 +38,10 @@ static inline double RetentionGasShare(const Retention *law, double pc, double S
   *ds_dSh = RetentionHydrateSlope(law, pc, Sh, *ds_dpc);
   return s;
 }
-/* Capillary pressure at which the gas share is s_g, by bracketing; false if the law never reaches s_g. */
+/* Capillary pressure, Pa, at which the gas share is s_g, by bracketing; false if the law never reaches s_g. */
 bool RetentionInvert(const Retention *law, double sg, double Sh, double *pc);
-/* Capillary pressure at and below which a pore holds no gas (103); false if the law leaves some at any (a clamped law
-   with S_gr > 0). */
+/* Capillary pressure, Pa, at and below which a pore holds no gas (103); false if the law leaves some at any (a clamped
+   law with S_gr > 0). */
 bool RetentionNoGas(const Retention *law, double Sh, double *pc);
 
 /* ---------------------------------------------------------------- relative permeability (modified Corey)
@@ -52,9 +52,9 @@ typedef struct {
   double nw, ng;   /* Corey exponents, > 0 */
   bool   of_pores;
 } RelPerm;
-/* k_rw of the share s_w of the open pores (or of all, of_pores), in [0, 1], with its slope. */
+/* k_rw of the share s_w of the open pores (or of all, of_pores), in [0, 1], with its slope; dimensionless. */
 double RelPermWater(const RelPerm *law, double sw, double *dkr_dsw);
-/* k_rg of the share s_g likewise. */
+/* k_rg of the share s_g likewise; dimensionless. */
 double RelPermGas(const RelPerm *law, double sg, double *dkr_dsg);
 
 /* ---------------------------------------------------------------- intrinsic permeability k_a = k0 f_phi f_Sh, m^2 */
@@ -127,7 +127,8 @@ static inline double KineticsFluid(const Kinetics *law, int phase)
 {
   return phase == PHASE_W ? KineticsWater(law) : KineticsMethane(law);
 }
-double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
+/* K_d = K0 exp(-dE/(R T_K)), mol/(m^2 Pa s), at T (degC), and its slope per K. */
+double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT);
 /* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
 double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);
 
@@ -164,7 +165,8 @@ double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double
 /* The same, 1/K, where the density rho (kg/m^3) at T (degC) is known; without slopes. */
 double GasExpansionAt(const Gas *law, double rho, double T);
 
-double GasTrace(const Gas *law); /* H (102): of the methane that gives p_g a meaning where there is no gas */
+/* H (102), kg/(m^3 Pa): of the methane that gives p_g a meaning where there is no gas. */
+double GasTrace(const Gas *law);
 
 /* ---------------------------------------------------------------- salt water; salinity in kg of salt per kg of brine
  */
@@ -201,7 +203,8 @@ double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
    flows (W/(m^2 K)), h the size of a cell (m). */
 void HeatUpwind(double kappa, const double a[2], const double h[2], double K[3]);
 /* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity
-   (X = kappa) and, with X = rho c, for the heat capacity; derivatives with respect to phi, S_h and s_w. */
+   (X = kappa, W/(m K)) and, with X = rho c, for the heat capacity (J/(m^3 K)); derivatives with respect to phi, S_h and
+   s_w. */
 double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh,
                       double *d_dsw);
 
@@ -213,19 +216,19 @@ typedef struct {
   double E0, Eh, ah, bh, nu;
   int    change; /* STIFFNESS_... */
 } Elasticity;
-double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh); /* C1 toe where b_h < 1 at S_h = 0 */
+double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh); /* Pa; C1 toe where b_h < 1 at S_h = 0 */
 /* Does hydrate bear a stress of its own that goes with it? */
 static inline bool ElasticityHasBonds(const Elasticity *law)
 {
   return law->change == STIFFNESS_BONDS && law->ah * law->Eh > 0.0;
 }
-/* G/E. */
-static inline double ElasticityShearFactor(const Elasticity *law) /* G/E */
+/* G/E, dimensionless. */
+static inline double ElasticityShearFactor(const Elasticity *law)
 {
   return 0.5 / (1.0 + law->nu);
 }
-/* lambda/E. */
-static inline double ElasticityLameFactor(const Elasticity *law) /* lambda/E */
+/* lambda/E, dimensionless. */
+static inline double ElasticityLameFactor(const Elasticity *law)
 {
   return law->nu / ((1.0 + law->nu) * (1.0 - 2.0 * law->nu));
 }
@@ -254,7 +257,7 @@ typedef struct {
 typedef struct {
   double c, phi, psi, c_e, phi_e, psi_e, c_S, psi_S;
 } Strength;
-/* eta_s as a cell of this size sees it: dissipation per area of a band does not depend on the cell. */
+/* eta_s as a cell of this size sees it, dimensionless: dissipation per area of a band does not depend on the cell. */
 static inline double SofteningRate(const Plasticity *law)
 {
   return law->length > 0.0 ? law->eta_s * law->cell / law->length : law->eta_s;

@@ -1,6 +1,7 @@
 /* laws_batch: the laws over arrays, values without the derivatives nobody asks for; one call for many particles of one
    material, so that the compiler takes several at a time.  The formulae are those of laws.h, the numbers to a few ulp,
-   for vector code has its own exp, log and pow.  n values each, in the units of laws.h; in and out may not overlap. */
+   for vector code has its own exp, log and pow.  n values each, in and out may not overlap.  Units:
+   those of laws.h. */
 #pragma once
 
 #include "clathra/laws.h"

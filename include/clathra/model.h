@@ -170,10 +170,11 @@ PetscErrorCode ModelPrintSolver(Model *m);
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);
 /* Starts a stage: boundary values, scales.  The stage's arrays belong to the caller. */
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s);
-/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution;
-   newton: iterations with a Jacobian of their own (343). */
+/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution
+   in SI units; newton: iterations with a Jacobian of their own (343). */
 PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status);
-/* What the solution means for the particles; checks that they stay within half a cell and inside the grid. */
+/* What the solution x (n_local x fields.n, SI units) means for the particles; checks that they stay within half a cell
+ * and inside the grid. */
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status);
 /* Can the plates go where they must in this stage? */
 PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status);
@@ -188,9 +189,10 @@ static inline SkeletonStage ModelSkeletonStart(const Model *m, PetscInt p)
   SkeletonTake(&store, 0, &h);
   return h.from;
 }
-/* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v. */
+/* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v, m/s. */
 void ModelStartVelocity(const Model *m, double *v);
-/* Makes the trial state of the last stage the history, with rates (n x 4), moves the particles and migrates them. */
+/* Makes the trial state of the last stage the history, with rates (n x 4, of p_w, p_g, T, S_h: Pa/s, K/s, 1/s), moves
+ * the particles and migrates them. */
 PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates);
 /* Notes why particle p cannot go on; the first reason of this rank stays. */
 void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p);

@@ -179,7 +179,8 @@ typedef PetscErrorCode (*SiteVisit)(const Scene *c, const Grid *g, const Site *s
 /* Calls visit for every site of the body, on every rank and in the same order. */
 PetscErrorCode SitesVisit(const Scene *c, const Grid *g, SiteVisit visit, void *ctx);
 
-/* (106): what step control takes for p_g: the pressure of gas or, where there is none, of that which would appear. */
+/* (106): what step control takes for p_g: the pressure of gas or, where there is none, of that which would appear; Pa.
+ */
 static inline double GasToBe(double pw, double pg)
 {
   return pg > pw ? pg : pw;

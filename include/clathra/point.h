@@ -87,9 +87,10 @@ typedef struct {
   double wide_q[PHASE_COUNT][2];  /* d q / d proj[pi][j] */
 } PointOutput;
 
-/* Evaluates (8)-(21) at a particle for the fields of the set; inputs of other fields are not read (but p_g = p_w and T
-   as given where gas and heat have no field), outputs and columns of other fields are not written.  tangent = false
-   leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing to a sentence. */
+/* Evaluates (8)-(21) at a particle for the fields of the set, in SI units with T in degC; inputs of other fields are
+   not read (but p_g = p_w and T as given where gas and heat have no field), outputs and columns of other fields are not
+   written.  tangent = false leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing
+   to a sentence. */
 ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
                        bool tangent, PointState *state, PointOutput *o, const char **why);
 
@@ -99,7 +100,7 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 
 /* Methane of a unit of open pore space beside hydrate of S_h, kg/m^3 (101), with its slopes in p_w and p_g. */
 double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT]);
-/* p_g between a and b at which it is `want`, to 1e-4 of p_0; b where there is none between them. */
+/* p_g between a and b (Pa) at which it is `want` (kg/m^3), to 1e-4 of p_0; b where there is none between them. */
 double PointGasPressure(const Material *mat, double want, double Sh, double pw, double T, double a, double b);
 
 /* Properties at t_n that projections, scales and stabilisation need. */

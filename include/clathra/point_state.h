@@ -40,7 +40,7 @@ typedef struct {
   double v, sg, pw, pg;
 } PorePressure;
 
-/* (10) */
+/* (10); s_g dimensionless, pressures in Pa. */
 INLINE PorePressure PorePressureOf(double sg, double pw, double pg)
 {
   return (PorePressure){pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg};
@@ -52,7 +52,7 @@ typedef struct {
   double v, sg, rho, p;
 } Content;
 
-/* (9) */
+/* (9); s_g dimensionless, rho in kg/m^3. */
 INLINE Content WaterContent(double sg, double rho)
 {
   return (Content){(1.0 - sg) * rho, -rho, 1.0 - sg, 0.0};
@@ -64,7 +64,7 @@ INLINE double DissolvedMethane(double H, double pg)
   return H * pg;
 }
 
-/* (101); H as in Gas.trace. */
+/* (101); H as in Gas.trace, kg/(m^3 Pa); s_g dimensionless, rho in kg/m^3, p_g in Pa. */
 INLINE Content MethaneContent(double H, double sg, double rho, double pg)
 {
   const double c = DissolvedMethane(H, pg);

@@ -203,6 +203,9 @@ typedef struct {
 } List;
 void ListCreate(const char *text, List *list);
 void ListDestroy(List *list);
+/* forms.c: "{ramp: [...]}" in one word, as the command line gives it: its place in case_schedule_form, and its values
+   in `inner`, as long as the text; -1: it is none. */
+int  FormInBraces(const char *text, char *inner);
 void CaseCheck(Reader *r, const Case *c);
 /* plates.c: a plate without a side is one on a grid line; what its keys must agree in. */
 PetscErrorCode PlateForm(Reader *r, Bc *b);

@@ -49,6 +49,8 @@ CASES = [
     ("table that turns back", SPACING("x: {table: [0 m, 0.01 m, 0.7 m, 0.02 m, 0.5 m, 0.02 m, 1.04 m, 0.05 m]}"), ["grid_spacing_x_table", "must ascend", "0.5 m after 0.7 m"], []),
     ("table of one place", SPACING("x: {table: [0 m, 0.01 m]}"), ["grid_spacing_x_table", "needs pairs"], []),
     ("table that jumps", SPACING("x: {table: [0 m, 0.01 m, 0.5 m, 0.01 m, 0.51 m, 0.1 m, 1.04 m, 0.1 m]}"), ["grid_spacing_x_table", "more than 2 times as wide"], []),
+    ("a spacing that is a ramp", SPACING("x: 0.02 m"), ["grid_spacing_x", "has 4 values", "the growth"], ["-grid_spacing_x", "{ramp: [0 m, 0.01 m, 1 m, 0.05 m]}"]),
+    ("a table in one word that jumps", SPACING("x: 0.02 m"), ["grid_spacing_x", "more than 2 times as wide"], ["-grid_spacing_x", "{table: [0 m, 0.01 m, 0.5 m, 0.01 m, 0.51 m, 0.1 m, 1.04 m, 0.1 m]}"]),
     ("two spacings", SPACING("x: {table: [0 m, 0.01 m, 1.04 m, 0.02 m]}"), ["grid_spacing_x_table", "two ways to say the same"], ["-grid_spacing_x", "0.02 m"]),
     ("spacing against the cells", SPACING("x: 0.02 m", "50, 1"), ["grid_cells", "names 50 cells along x, but the spacing makes 52"], []),
     ("auto without a spacing", [("cells: [52, 1]", "cells: [auto, 1]")], ["grid_cells", "auto along x", "grid_spacing_x"], []),
