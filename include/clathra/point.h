@@ -53,19 +53,19 @@ typedef struct {
   double          T_n, Sh_n; /* at t_n */
   double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   SkeletonHistory skeleton;
-  double          spread[PHASE_COUNT];  /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
-  double          upwind[3];            /* (293), xx, yy, xy, W/(m K) */
-  double          proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
+  double          spread[PHASE_COUNT]; /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
+  double          upwind[3];           /* (293), xx, yy, xy, W/(m K) */
+  double proj[PHASE_COUNT][CL_DIM];    /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   bool   compression; /* heat of compression and throttling (290); then also ... */
-  double p_star[PHASE_COUNT];            /* ... starred p_w, p_g, Pa */
-  double gravity[2];                     /* ... m/s^2 */
-  double dt;                             /* dt' of the stage */
-  const Beds    *beds;                   /* at t_n; NULL: none; then also ... */
-  double         weight[PHASE_COUNT][2]; /* ... rho b of the fluids at t_n, N/m^3 */
-  const Ambient *ambient;                /* at the end of the stage; NULL: no pressure around the body */
-  double         x[2];                   /* where the particle's values belong at t_n, m; for the ambient pressure */
+  double p_star[PHASE_COUNT];                 /* ... starred p_w, p_g, Pa */
+  double gravity[2];                          /* ... m/s^2 */
+  double dt;                                  /* dt' of the stage */
+  const Beds    *beds;                        /* at t_n; NULL: none; then also ... */
+  double         weight[PHASE_COUNT][CL_DIM]; /* ... rho b of the fluids at t_n, N/m^3 */
+  const Ambient *ambient;                     /* at the end of the stage; NULL: no pressure around the body */
+  double         x[2]; /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
 /* State at the end of the stage. */
@@ -82,9 +82,9 @@ typedef struct {
 
 typedef struct {
   double out[OUT_COUNT];
-  double D[OUT_COUNT][IN_COUNT];  /* d out / d in */
-  double wide[PHASE_COUNT][2][2]; /* d flux[pi][i] / d proj[pi][j] (27) */
-  double wide_q[PHASE_COUNT][2];  /* d q / d proj[pi][j] */
+  double D[OUT_COUNT][IN_COUNT];            /* d out / d in */
+  double wide[PHASE_COUNT][CL_DIM][CL_DIM]; /* d flux[pi][i] / d proj[pi][j] (27) */
+  double wide_q[PHASE_COUNT][CL_DIM];       /* d q / d proj[pi][j] */
 } PointOutput;
 
 /* Evaluates (8)-(21) at a particle for the fields of the set, in SI units with T in degC; inputs of other fields are

@@ -35,6 +35,13 @@ INLINE Pores PoresOf(double V, double m_s, double rho_s, double m_h, double rho_
   return (Pores){pore, VolumeLeft(pore, m_h, rho_h), pore / V, PoreShare(m_h, rho_h, pore)};
 }
 
+/* Of a fluid at its own pressure p (Pa) and T (degC), kg/m^3, with slopes, kg/(m^3 Pa) and kg/(m^3 K). */
+INLINE double FluidDensity(const Material *mat, int phase, double p, double T, double *drho_dp, double *drho_dT)
+{
+  return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, drho_dp, drho_dT)
+                          : GasDensity(&mat->gas, p, T, drho_dp, drho_dT);
+}
+
 /* Pressure with slopes in s_g, p_w and p_g. */
 typedef struct {
   double v, sg, pw, pg;

@@ -41,11 +41,6 @@ void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o)
 }
 
 /* ---------------------------------------------------------------- fluids */
-static double Density(const Material *mat, int phase, double p, double T, double *dp, double *dT)
-{
-  return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, dp, dT) : GasDensity(&mat->gas, p, T, dp, dT);
-}
-
 /* Pressures outside, and their derivatives with respect to the particle's capillary pressure and to the displacement of
    the face (the same for both fluids). */
 typedef struct {
@@ -61,7 +56,7 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   const double *in = x->in, *a = x->a, dt = x->dt;
   const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = J[0] * a[0] + J[1] * a[1], skin = f->skin[phase];
   const double  p = outside->p[phase], jump = p + skin * Ja - FacePressure(f, phase, in),
-               rho = Density(x->mat, phase, p, in[IN_T], &dp, &dT);
+               rho = FluidDensity(x->mat, phase, p, in[IN_T], &dp, &dT);
   double *D        = o->D[F_PW + phase];
 
   o->out[F_PW + phase] += dt * rho * Ja;
@@ -198,7 +193,7 @@ static void Inflow(const FaceState *x, PetscInt k, int phase, FaceOutput *o)
   const bool   heats = x->c->fields.heat && x->c->bc[k].value.n && q > 0.0;
   const double c_f = SpecificHeat(x->mat, phase), dT_in = heats ? x->v->value[k] - x->T : 0.0;
   double       dp, dT, drate[IN_COUNT] = {0.0};
-  const double rho = Density(x->mat, phase, p, x->T, &dp, &dT), rate = rho * q * area;
+  const double rho = FluidDensity(x->mat, phase, p, x->T, &dp, &dT), rate = rho * q * area;
 
   drate[IN_P + own] = dp * q * area;
   drate[IN_T]       = dT * q * area;

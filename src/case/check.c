@@ -148,7 +148,7 @@ static void CheckPlane(Reader *r, const Scene *c, const Bc *b)
             LinesAt(&lines, (PetscInt)round(line)));
 }
 
-void CaseCheck(Reader *r, const Case *c)
+void CaseCheck(Reader *r, Case *c)
 {
   const bool *bad = r->bad;
 
@@ -166,7 +166,7 @@ void CaseCheck(Reader *r, const Case *c)
   for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->scene.nregion && all; i++)
     CheckRegion(r, c, i);
   if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
-    CheckOverlap(r, &c->scene);
+    PetscCallVoid(RegionsCut(r, c));
   for (PetscInt i = 0; i < c->scene.nbc && !bad[GROUP_BC]; i++) {
     const Bc *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;

@@ -19,10 +19,10 @@ static double Trace(const FieldSet *fs, const Material *mat)
   return fs->one_pressure ? 0.0 : mat->gas.trace;
 }
 
-static Jet GasJet(const Gas *law, Jet p, Jet T)
+static Jet FluidJet(const Material *mat, int phase, Jet p, Jet T)
 {
   double       dp, dT;
-  const double rho = GasDensity(law, p.v, T.v, &dp, &dT);
+  const double rho = FluidDensity(mat, phase, p.v, T.v, &dp, &dT);
 
   return JetChain2(rho, dp, p, dT, T);
 }
@@ -245,12 +245,12 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
   s->Sh         = PoreShareJet(s->m_h, rho_h, s->Vp);
   s->m[PHASE_W] = s->m[PHASE_G] = zero;
   if (fs->phase[PHASE_W]) {
-    s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
+    s->rho[PHASE_W] = FluidJet(mat, PHASE_W, pw, T);
     const Content c = WaterContent(s->sg.v, s->rho[PHASE_W].v);
     s->m[PHASE_W]   = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
   }
   if (fs->phase[PHASE_G]) {
-    s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
+    s->rho[PHASE_G] = FluidJet(mat, PHASE_G, pg, T);
     const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
     s->m[PHASE_G]   = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
   }
@@ -276,8 +276,8 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 
   *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
-  *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, LiquidDensity(&mat->water, pw, T, &d, &e)).v : 0.0;
-  *m_g = gas ? Vf * MethaneContent(Trace(fs, mat), sg, GasDensity(&mat->gas, pg, T, &d, &e), pg).v : 0.0;
+  *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, FluidDensity(mat, PHASE_W, pw, T, &d, &e)).v : 0.0;
+  *m_g = gas ? Vf * MethaneContent(Trace(fs, mat), sg, FluidDensity(mat, PHASE_G, pg, T, &d, &e), pg).v : 0.0;
 }
 
 double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT])
