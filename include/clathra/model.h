@@ -143,16 +143,16 @@ typedef struct {
 enum {
   NC_M = 0,
   NC_LAMBDA,
-  NC_RHO     = NC_LAMBDA + 2,
-  NC_STORAGE = NC_RHO + 2,
-  NC_KAPPA   = NC_STORAGE + 2,
+  NC_RHO     = NC_LAMBDA + PHASE_COUNT,
+  NC_STORAGE = NC_RHO + PHASE_COUNT,
+  NC_KAPPA   = NC_STORAGE + PHASE_COUNT,
   NC_CAPACITY,
   NC_REACTION,
   NC_REACTION_HEAT,
   NC_DRAG,
-  NC_KR   = NC_DRAG + 2,
-  NC_RING = NC_KR + 2, /* 1/r */
-  NC_AXIS,             /* of what was seeded at the axis: 1 */
+  NC_KR   = NC_DRAG + PHASE_COUNT,
+  NC_RING = NC_KR + PHASE_COUNT, /* 1/r */
+  NC_AXIS,                       /* of what was seeded at the axis: 1 */
   NC_COUNT
 };
 

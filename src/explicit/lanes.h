@@ -135,21 +135,22 @@ enum {
   T_T = 0, /* degC, where heat has no field */
   T_SG,    /* share of gas and its slope */
   T_DS,
-  T_RHO,                  /* [2] densities of the fluids */
-  T_GAS     = T_RHO + 2,  /* [2] slopes of that of the gas in p_g and T */
-  T_DRAG    = T_GAS + 2,  /* [2] mu/(k_a k_r) */
-  T_CONDUCT = T_DRAG + 2, /* weight of its flow at t_n (350); with layers */
-  T_BEDS,                 /* [3] A at t_n (306): xx, yy, xy; with beds */
-  T_V = T_BEDS + 3,       /* volume at the end of the step */
-  T_EOS,                  /* [2] masses at that volume and the old pressures */
-  T_SLOPE = T_EOS + 2,    /* [2][3] their slopes in p_w, p_g, T */
-  T_WARM  = T_SLOPE + 6,  /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
-  T_GAIN  = T_WARM + 2,   /* hydrate: gain at the old p and T, slopes in p and T */
+  T_RHO,                            /* [2] densities of the fluids */
+  T_GAS     = T_RHO + PHASE_COUNT,  /* [2] slopes of that of the gas in p_g and T */
+  T_DRAG    = T_GAS + 2,            /* [2] mu/(k_a k_r) */
+  T_CONDUCT = T_DRAG + PHASE_COUNT, /* weight of its flow at t_n (350); with layers */
+  T_BEDS,                           /* [3] A at t_n (306): xx, yy, xy; with beds */
+  T_V = T_BEDS + 3,                 /* volume at the end of the step */
+  T_EOS,                            /* [2] masses at that volume and the old pressures */
+  T_SLOPE = T_EOS + PHASE_COUNT,    /* [2][3] their slopes in p_w, p_g, T */
+  T_WARM =
+      T_SLOPE + 3 * PHASE_COUNT, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
+  T_GAIN = T_WARM + PHASE_COUNT, /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
   T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
-  T_LOCAL = T_MISS + 2,
-  T_COUNT = T_LOCAL + 6
+  T_LOCAL = T_MISS + PHASE_COUNT,
+  T_COUNT = T_LOCAL + 3 * PHASE_COUNT
 };
 
 typedef struct {
