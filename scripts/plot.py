@@ -218,10 +218,10 @@ def plot_body(run):
     times = run.times
     if not len(times):
         return False
-    first = run.particles(times[0])
+    first = shown.drawn(run, times[0])
     axis = shown.strip_axis(first["position"])
     times = times[shown.spread(len(times), 4 if axis is None else 6)]
-    snapshots = [first, *(run.particles(t) for t in times[1:])]
+    snapshots = [first, *(shown.drawn(run, t) for t in times[1:])]
     if axis is not None:
         return plot_profiles(run, times, snapshots, axis)
     changing = shown.shown(snapshots)

@@ -2,7 +2,8 @@
 """Figures 9-11 of the paper, with this program's curves beside the reference: plot_bp2.py CASE1_DIR CASE2_DIR OUT
 
 Case 1 is BP2 with hydrate kinetics off, case 2 with kinetics on.  Writes OUT/fig09_case1.png, OUT/fig10_case2.png and
-OUT/fig11_profiles.png, and prints the largest differences from cases/bp2/reference/bp2_case{1,2}.csv.
+OUT/fig11_profiles.png, and prints the largest differences from cases/bp2/reference/bp2_case{1,2}.csv and, of the front of
+hydrate at 1000 s, from bp2_case2_front.csv.
 """
 import sys
 from pathlib import Path
@@ -82,6 +83,17 @@ def plot_histories(folder, case, keys, size, name, title, out):
     save(figure, out, name)
 
 
+def draw_front(axes, particles, values):
+    """The front of hydrate at 1000 s (reference in initial coordinates) where the particles have moved to."""
+    front, x0, x = read_csv(REFERENCE / "bp2_case2_front.csv"), particles["initial_position"][:, 0], particles["position"][:, 0]
+    order = np.argsort(x0, kind="stable")
+    places = np.interp(front["x0_m"], x0[order], x[order])
+    axes.plot(places, front["Sh"], "o", ms=4.5, mfc="none", mew=0.9, color="0.25", label="reference (finite volumes), 1000 s")
+    axes.legend(loc="lower left", fontsize=8)
+    error = np.max(np.abs(np.interp(front["x0_m"], x0[order], values[order]) - front["Sh"])) / np.max(values)
+    print(f"  case 2, S_h at the front at 1000 s: largest difference from the reference {100 * error:.1f} % of the peak")
+
+
 def plot_profiles(folder, out, times=(500.0, 1000.0)):
     run = clathra.Run(folder)
     found = [(t, run.particles(t)) for t in times if np.any(np.isclose(run.times, t))]
@@ -98,6 +110,8 @@ def plot_profiles(folder, out, times=(500.0, 1000.0)):
             order = np.argsort(x, kind="stable")
             shown.append(quantity.of(particles)[order])
             axes.plot(x[order], shown[-1], style, color=colour, label=f"{time:g} s")
+            if quantity.key == "S_h" and time == 1000.0:
+                draw_front(axes, particles, quantity.of(particles))
         steady_limits(axes, *shown, least=0.01)
         axes.set(xlabel="x (m)", ylabel=quantity.axis, xlim=(0, 1))
         axes.set_title(f"({letter})", fontweight="bold")

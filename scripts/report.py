@@ -172,13 +172,13 @@ def film(run):
     if not len(run.times):
         return None
     first = run.particles(run.times[0])
-    wanted = shown.shown([run.particles(t) for t in run.times[shown.spread(len(run.times), 8)]])
+    wanted = shown.shown([shown.drawn(run, t) for t in run.times[shown.spread(len(run.times), 8)]])
     frames, stride = chosen(run, len(first["id"]), 8 + len(wanted))
     ids = slice(None, None, stride)
     edges, place, values, flows = [], [], [], []
     at = evenly(first["position"][ids])
     for k in frames:
-        p = run.particles(run.times[k])
+        p = shown.drawn(run, run.times[k])
         edges.append(shown.half_edges(p, first)[ids].reshape(-1, 4))
         place.append(p["position"][ids])
         values.append([q.of(p)[ids] for q in wanted])

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include "clathra/dimension.h"
 
 typedef struct {
   bool   on;
@@ -16,7 +17,7 @@ static inline double AmbientPressure(const Ambient *a, const double x[2], double
   const double depth = a->weight[0] * x[0] + a->weight[1] * x[1] - a->head; /* as a pressure */
   const bool   below = !(depth <= 0.0);                                     /* NaN stays NaN */
 
-  for (int d = 0; d < 2; d++)
+  for (int d = 0; d < CL_DIM; d++)
     gradient[d] = below ? a->weight[d] : 0.0;
   return a->pressure + (below ? depth : 0.0);
 }

@@ -1,6 +1,7 @@
 /* base: PETSc, version shim, physical constants, status codes.  Every other header stands on this one. */
 #pragma once
 
+#include "clathra/dimension.h"
 #include <petscsnes.h>
 #include <petscdmda.h>
 #include <petscsf.h>
@@ -21,7 +22,6 @@
   #define PETSC_SUCCESS 0
 #endif
 
-#define CL_DIM 2               /* space dimensions of the grid; tensors are 3-D */
 #define CL_GAS_CONSTANT 8.314  /* J/(mol K), as in the paper's tables */
 #define CL_ZERO_CELSIUS 273.15 /* K */
 
@@ -46,7 +46,7 @@ typedef enum {
   CL_FATAL
 } ClStatus;
 
-/* |x| for maxima: NaN counts as infinite, for fmax and MPI_MAX pass NaN by. */
+/* |x| for maxima: NaN counts as infinite, for fmax and MPI_MAX pass NaN by; in the unit of x. */
 static inline double ClSize(double x)
 {
   return isnan(x) ? INFINITY : fabs(x);

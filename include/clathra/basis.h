@@ -29,7 +29,7 @@ typedef struct {
   double lo, hi, width[2], length, gradient_length;
 } BasisSpan;
 
-/* Half-length that a domain acts with: a longer one would reach four nodes. */
+/* Half-length that a domain acts with: a longer one would reach four nodes; all in m. */
 static inline double BasisHalfLength(double l, double h)
 {
   return l < 0.5 * h ? l : 0.5 * h;
@@ -85,9 +85,10 @@ typedef struct {
 
 /* x, l in m.  A domain that reaches over the grid's edge (fixed half-lengths under compression) is clipped there. */
 void BasisAxis(BasisType type, double x, double l, const GridLines *line, Axis *a);
-/* The same for the radius: averages weighted with r (29); also the weights of u_r/r and the radius of the middle. */
+/* The same for the radius: averages weighted with r (29); also the weights hoop of u_r/r (1/m) and the radius r of the
+   middle (m). */
 void BasisRadius(BasisType type, double x, double l, const GridLines *line, Axis *a, double hoop[3], double *r);
-/* Hat functions at a point: a surface face along its normal. */
+/* Hat functions at a point: a surface face along its normal; x in m. */
 void BasisHat(double x, const GridLines *line, Axis *a);
 
 /* Half-length that a domain acts with at x, m (302). */
@@ -109,7 +110,7 @@ double AxisCentroid(const Axis *a, const GridLines *line);
    about an axis only). */
 double CellGradient(const double h[CL_DIM], bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
 
-/* Local active numbers of the nodes, their weights and gradients, and about an axis (r > 0) H, the weights of u_r/r;
-   returns how many (nodes of zero weight and gradient are left out). */
+/* Local active numbers of the nodes, their weights S and gradients G (1/m), and about an axis (r > 0) H (1/m), the
+   weights of u_r/r; returns how many (nodes of zero weight and gradient are left out). */
 int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt node[CL_NODES], double S[CL_NODES],
                   double G[CL_NODES][CL_DIM], double H[CL_NODES]);

@@ -30,7 +30,7 @@ typedef struct {
   unsigned meters;  /* bit k: Case.meter[k] counts it */
 } Face;
 
-/* Weight of a node in what a face adds to row q, and takes from its Darcy fluxes. */
+/* Weight of a node in what a face adds to row q, and takes from its Darcy fluxes; dimensionless. */
 static inline double FaceWeight(const Face *f, int a, int q)
 {
   if (q == F_PW || q == F_PG)
@@ -87,13 +87,13 @@ typedef struct {
   double  gravity[CL_DIM];
   Ambient ambient;
 } BcValues;
-/* (42): the fluid around the body at time t, gravity being what it is then. */
+/* (42): the fluid around the body at time t (s), gravity (m/s^2) being what it is then. */
 Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM]);
 /* Fills v, whose arrays are there, with what holds at time t (s). */
 void   BcValuesEvaluate(const Scene *c, double t, BcValues *v);
-double BcNextKink(const Scene *c, double t); /* first kink of any schedule after t, INFINITY if none */
+double BcNextKink(const Scene *c, double t); /* first kink of any schedule after t, s; INFINITY if none */
 double BcNextMark(const Scene *c,
-                  double       t); /* first time after t that a step must not cross for the waves of a schedule */
+                  double       t); /* first time after t that a step must not cross for the waves of a schedule, s */
 
 /* What is said of a plate: position since the start along its axis (m); force on the body, compression-positive, and
    along the side in the direction of the axis (N); area under it (m^2). */
@@ -102,7 +102,7 @@ enum { PLATE_POSITION = 0, PLATE_FORCE, PLATE_SHEAR, PLATE_AREA, PLATE_COUNT };
 /* A fluid's own pressure at a face, extrapolated from its particle, Pa. */
 static inline double FacePressure(const Face *f, int phase, const double in[IN_COUNT])
 {
-  const double *g = &in[IN_GP + 2 * phase];
+  const double *g = &in[VectorAt(IN_GP, phase, 0)];
 
   return in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
 }
@@ -115,9 +115,10 @@ typedef struct {
   double outflow[PHASE_COUNT], heat_in;
   double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
 } FaceOutput;
-/* velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
+/* Sh: of its particle at t_n; velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o);
+                  double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
+                  FaceOutput *o);
 
 /* Position of a plate since the start at time t, m; 0 where its force is prescribed.  That force, N. */
 double PlatePosition(const Bc *b, double t);
@@ -134,7 +135,7 @@ static inline double PlateGap(const Face *f, double position, const double u[CL_
 }
 /* Adds the plate's spring to what a face adds to its nodes, with the tangent. */
 void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o);
-/* CL_OK, or why the plate cannot go to `position` in this step; the sentence goes to text. */
+/* CL_OK, or why the plate cannot go to `position` (m) in this step; the sentence goes to text. */
 ClStatus PlateCheck(const Scene *c, const Grid *g, const Face *f, double position, char *text, size_t size);
 
 /* What the program knows of a kind of condition: the rows of CL_FACE_CONDITIONS, CL_NODE_CONDITIONS. */
@@ -151,6 +152,6 @@ typedef struct {
 extern const Condition cl_condition[BC_COUNT]; /* by BcType */
 
 /* Dirichlet values on grid planes, in regions and on the axis, where what the node sees was seeded there: sets bit k of
-   mask and value[k] for every prescribed unknown, k its place in the field set, of grid node ij. */
+   mask and value[k] (m/s, Pa, degC) for every prescribed unknown, k its place in the field set, of grid node ij. */
 void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
                      unsigned *mask, double *value);

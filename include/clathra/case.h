@@ -3,24 +3,29 @@
 
 #include "clathra/scene.h"
 
-/* What a probe writes; words in src/case/quantities.c. */
+/* Quantities that probes may write: word, and the fields any of which it needs; those before the skeleton's history,
+   variable by variable, and those behind. */
+#define CL_QUANTITIES(X)                                                                                               \
+  X(QUANTITY_P, "p", HAS_WATER)                                                                                        \
+  X(QUANTITY_PW, "p_w", HAS_WATER)                                                                                     \
+  X(QUANTITY_PG, "p_g", HAS_GAS)                                                                                       \
+  X(QUANTITY_T, "T", HAS_HEAT)                                                                                         \
+  X(QUANTITY_SH, "S_h", HAS_ALL)                                                                                       \
+  X(QUANTITY_SW, "S_w", HAS_WATER)                                                                                     \
+  X(QUANTITY_SG, "S_g", HAS_GAS)                                                                                       \
+  X(QUANTITY_U, "u", HAS_SOLID)                                                                                        \
+  X(QUANTITY_STRESS, "stress", HAS_SOLID)                                                                              \
+  X(QUANTITY_X, "x", HAS_ALL)
+#define CL_QUANTITIES_BEHIND(X)                                                                                        \
+  X(QUANTITY_MEAN, "p_eff", HAS_PLASTIC)    /* mean effective stress, compression-positive */                          \
+  X(QUANTITY_Q, "q", HAS_PLASTIC)           /* deviatoric stress sqrt(3 J2) */                                         \
+  X(QUANTITY_STRAIN, "strain", HAS_PLASTIC) /* volumetric and deviatoric */                                            \
+  X(QUANTITY_YIELD, "yield", HAS_PLASTIC)   /* distance to yield; is it reached? */
+#define CL_QUANTITY_ID(id, word, has) id,
 enum {
-  QUANTITY_P = 0,
-  QUANTITY_PW,
-  QUANTITY_PG,
-  QUANTITY_T,
-  QUANTITY_SH,
-  QUANTITY_SW,
-  QUANTITY_SG,
-  QUANTITY_U,
-  QUANTITY_STRESS,
-  QUANTITY_X,
-  QUANTITY_HISTORY,                                    /* of the skeleton, variable by variable */
-  QUANTITY_MEAN = QUANTITY_HISTORY + SKELETON_HISTORY, /* mean effective stress, compression-positive */
-  QUANTITY_Q,                                          /* deviatoric stress sqrt(3 J2) */
-  QUANTITY_STRAIN,                                     /* volumetric and deviatoric */
-  QUANTITY_YIELD,                                      /* distance to yield; is it reached? */
-  QUANTITY_COUNT
+  CL_QUANTITIES(CL_QUANTITY_ID) QUANTITY_HISTORY,
+  QUANTITY_HISTORY_LAST = QUANTITY_HISTORY + SKELETON_HISTORY - 1,
+  CL_QUANTITIES_BEHIND(CL_QUANTITY_ID) QUANTITY_COUNT
 };
 
 /* A point whose history is written, or what the history of a mean is taken over. */

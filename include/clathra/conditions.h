@@ -12,7 +12,7 @@ static inline int SideAxis(int side)
 {
   return side / 2;
 }
-/* -1 or 1: where the normal points along its axis. */
+/* -1 or 1, dimensionless: where the normal points along its axis. */
 static inline double SideSign(int side)
 {
   return side % 2 ? 1.0 : -1.0;

@@ -54,7 +54,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
 /* Derived variables of the particles (porosity, saturation of water) for whoever reads them next. */
 PetscErrorCode ExplicitEnd(Explicit *e);
 /* Largest ratio, over the steps so far, of the inertia that mass scaling added to the forces of the stresses over a
-   cell (2-norms over the nodes). */
+   cell (2-norms over the nodes), dimensionless. */
 double ExplicitMassScalingError(const Explicit *e);
-/* Bytes a particle takes: store and work space. */
+/* Bytes (B) that a particle takes: store and work space. */
 double ExplicitBytesPerParticle(const Explicit *e);

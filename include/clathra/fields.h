@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include "clathra/dimension.h"
 
 enum { F_VSX = 0, F_VSY, F_VWX, F_VWY, F_VGX, F_VGY, F_PW, F_PG, F_T, F_COUNT };
 enum { PHASE_W = 0, PHASE_G = 1, PHASE_COUNT };
@@ -51,7 +52,7 @@ static inline int PlaceVs(const FieldSet *fs)
 /* ... of a fluid's velocity; -1 where the fluid is not there or has no unknown. */
 static inline int PlaceV(const FieldSet *fs, int phase) /* velocity of a fluid */
 {
-  return fs->at[F_VWX + 2 * phase];
+  return fs->at[VectorAt(F_VWX, phase, 0)];
 }
 /* ... of a fluid's pressure; -1 likewise; one place for both where they have one pressure. */
 static inline int PlaceP(const FieldSet *fs, int phase)

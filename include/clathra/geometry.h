@@ -1,4 +1,5 @@
-/* geometry: points, segments and polygons of the plane; pure functions.  A list of n points is x0 y0 x1 y1 ... */
+/* geometry: points, segments and polygons of the plane; pure functions.  A list of n points is x0 y0 x1 y1 ...
+   Units: m. */
 #pragma once
 
 #include "clathra/base.h"

@@ -26,7 +26,7 @@ PetscErrorCode GridCreateOn(MPI_Comm comm, const GridLines line[CL_DIM], Grid *g
 PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g);
 /* Frees the layout; the lines stay their owner's.  Collective. */
 PetscErrorCode GridDestroy(Grid *g);
-/* Cell of a point; false outside the grid.  Points on the upper edge belong to the last cell. */
+/* Cell of a point x (m); false outside the grid.  Points on the upper edge belong to the last cell. */
 bool GridCell(const Grid *g, const double x[], PetscInt cell[]);
 /* The rank that owns a cell, as its lower left node is owned. */
 PetscMPIInt GridCellOwner(const Grid *g, const PetscInt cell[]);
@@ -81,9 +81,9 @@ typedef struct {
 PetscErrorCode NodeMapUpdate(const Grid *g, const unsigned char *flag, NodeMap *map, bool *changed);
 /* Frees the numbering; the map can be updated anew afterwards.  Collective. */
 PetscErrorCode NodeMapDestroy(NodeMap *map);
-/* a: n_local x nc.  Adds the ghosts' values to their owners and gives every rank the sum. */
+/* a: n_local x nc, in any unit.  Adds the ghosts' values to their owners and gives every rank the sum. */
 PetscErrorCode NodeMapSum(NodeMap *map, double *a, PetscInt nc);
-/* Adds ghosts to owners only. */
+/* Adds ghosts to owners only; a: n_local x nc, in any unit. */
 PetscErrorCode NodeMapReduce(NodeMap *map, double *a, PetscInt nc);
-/* Gives ghosts their owners' values. */
+/* Gives ghosts their owners' values; a: n_local x nc, in any unit. */
 PetscErrorCode NodeMapBroadcast(NodeMap *map, double *a, PetscInt nc);

@@ -1,5 +1,6 @@
 /* jet: a value with its derivatives with respect to the four scalars (J, p_w, p_g, T) that fix a particle's state.
-   Arithmetic carries the chain rule, so that value and tangent are one expression and cannot drift apart. */
+   Arithmetic carries the chain rule, so that value and tangent are one expression and cannot drift apart.
+   Units: of the value; its slopes in that per 1 (J), Pa (p_w, p_g), K (T). */
 #pragma once
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include "clathra/dimension.h"
 
 /* Independent numbers of the motion: grad u row by row, and the hoop strain u_r/r (zero in plane strain). */
 enum { MOTION_HOOP = 4, MOTION_COUNT = 5 };

@@ -4,9 +4,10 @@
 #pragma once
 
 #include <stdbool.h>
+#include "clathra/fields.h"
 
 /* ---------------------------------------------------------------- retention: gas share of the fluid-filled pore space
-   s_g = S_g/(1 - S_h) as a function of capillary pressure p_c = p_g - p_w (Pa); s_w = 1 - s_g. */
+   s_g = S_g/(1 - S_h) as a function of capillary pressure p_c = p_g - p_w (Pa) and hydrate; s_w = 1 - s_g. */
 typedef struct Retention Retention;
 struct Retention {
   double p0;       /* air-entry (reference) pressure, Pa, > 0 */
@@ -16,6 +17,7 @@ struct Retention {
   double Sgr;      /* residual gas saturation, [0,1) */
   double p_smooth; /* smoothing width p_s, Pa; smooth form only; default 0.05 p0 */
   double p_trap;   /* pressure scale p_t of trapped gas, Pa; smooth form only; default p0 */
+  double hydrate;  /* exponent of 1 - S_h by which hydrate raises p_c (320), >= 0; 0: it does not */
   double (*gas_share)(const Retention *, double pc, double *ds_dpc);
   void (*gas_share_loop)(const Retention *, int n, const double *pc, double *s, double *ds_dpc); /* the same of n */
   const char *type;
@@ -23,16 +25,24 @@ struct Retention {
 /* Sets the law by name (van_genuchten | van_genuchten_clamped | brooks_corey); false for an unknown name. */
 bool               RetentionSetType(Retention *law, const char *type);
 const char *const *RetentionTypes(void); /* NULL-terminated */
-/* s_g at p_c (Pa), with its slope, 1/Pa. */
-static inline double RetentionGasShare(const Retention *law, double pc, double *ds_dpc)
+/* (320): (1 - S_h)^n, what p_c of a pore without hydrate is of that with hydrate, at the same s_g; dimensionless. */
+double RetentionNarrowing(const Retention *law, double Sh);
+/* Slope of s_g in S_h, of that in p_c (1/Pa), (320). */
+double RetentionHydrateSlope(const Retention *law, double pc, double Sh, double ds_dpc);
+/* s_g at p_c (Pa) in pores that hydrate fills to S_h, with its slopes, 1/Pa and -. */
+static inline double RetentionGasShare(const Retention *law, double pc, double Sh, double *ds_dpc, double *ds_dSh)
 {
-  return law->gas_share(law, pc, ds_dpc);
+  const double r = RetentionNarrowing(law, Sh), s = law->gas_share(law, r * pc, ds_dpc);
+
+  *ds_dpc *= r;
+  *ds_dSh = RetentionHydrateSlope(law, pc, Sh, *ds_dpc);
+  return s;
 }
-/* Capillary pressure at which the gas share is s_g, by bracketing; false if the law never reaches s_g. */
-bool RetentionInvert(const Retention *law, double sg, double *pc);
-/* Capillary pressure at and below which a pore holds no gas (103); false if the law leaves some at any (a clamped law
-   with S_gr > 0). */
-bool RetentionNoGas(const Retention *law, double *pc);
+/* Capillary pressure, Pa, at which the gas share is s_g, by bracketing; false if the law never reaches s_g. */
+bool RetentionInvert(const Retention *law, double sg, double Sh, double *pc);
+/* Capillary pressure, Pa, at and below which a pore holds no gas (103); false if the law leaves some at any (a clamped
+   law with S_gr > 0). */
+bool RetentionNoGas(const Retention *law, double Sh, double *pc);
 
 /* ---------------------------------------------------------------- relative permeability (modified Corey)
    base = (s - Sr_own)/(1 - Swr - Sgr) clipped to [0,1] with a C1 toe at 0; k_r = base^n.
@@ -42,9 +52,9 @@ typedef struct {
   double nw, ng;   /* Corey exponents, > 0 */
   bool   of_pores;
 } RelPerm;
-/* k_rw of the share s_w of the open pores (or of all, of_pores), in [0, 1], with its slope. */
+/* k_rw of the share s_w of the open pores (or of all, of_pores), in [0, 1], with its slope; dimensionless. */
 double RelPermWater(const RelPerm *law, double sw, double *dkr_dsw);
-/* k_rg of the share s_g likewise. */
+/* k_rg of the share s_g likewise; dimensionless. */
 double RelPermGas(const RelPerm *law, double sg, double *dkr_dsg);
 
 /* ---------------------------------------------------------------- intrinsic permeability k_a = k0 f_phi f_Sh, m^2 */
@@ -112,7 +122,13 @@ static inline double KineticsMethane(const Kinetics *law)
 {
   return law->M_g / law->M_h;
 }
-double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT); /* K_d = K0 exp(-dE/(R T_K)) */
+/* ... of a fluid, PHASE_..., kg. */
+static inline double KineticsFluid(const Kinetics *law, int phase)
+{
+  return phase == PHASE_W ? KineticsWater(law) : KineticsMethane(law);
+}
+/* K_d = K0 exp(-dE/(R T_K)), mol/(m^2 Pa s), at T (degC), and its slope per K. */
+double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT);
 /* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
 double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);
 
@@ -149,7 +165,8 @@ double GasExpansion(const Gas *law, double p, double T, double *dbeta_dp, double
 /* The same, 1/K, where the density rho (kg/m^3) at T (degC) is known; without slopes. */
 double GasExpansionAt(const Gas *law, double rho, double T);
 
-double GasTrace(const Gas *law); /* H (102): of the methane that gives p_g a meaning where there is no gas */
+/* H (102), kg/(m^3 Pa): of the methane that gives p_g a meaning where there is no gas. */
+double GasTrace(const Gas *law);
 
 /* ---------------------------------------------------------------- salt water; salinity in kg of salt per kg of brine
  */
@@ -186,7 +203,8 @@ double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
    flows (W/(m^2 K)), h the size of a cell (m). */
 void HeatUpwind(double kappa, const double a[2], const double h[2], double K[3]);
 /* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity
-   (X = kappa) and, with X = rho c, for the heat capacity; derivatives with respect to phi, S_h and s_w. */
+   (X = kappa, W/(m K)) and, with X = rho c, for the heat capacity (J/(m^3 K)); derivatives with respect to phi, S_h and
+   s_w. */
 double MixtureAverage(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh,
                       double *d_dsw);
 
@@ -198,19 +216,19 @@ typedef struct {
   double E0, Eh, ah, bh, nu;
   int    change; /* STIFFNESS_... */
 } Elasticity;
-double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh); /* C1 toe where b_h < 1 at S_h = 0 */
+double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh); /* Pa; C1 toe where b_h < 1 at S_h = 0 */
 /* Does hydrate bear a stress of its own that goes with it? */
 static inline bool ElasticityHasBonds(const Elasticity *law)
 {
   return law->change == STIFFNESS_BONDS && law->ah * law->Eh > 0.0;
 }
-/* G/E. */
-static inline double ElasticityShearFactor(const Elasticity *law) /* G/E */
+/* G/E, dimensionless. */
+static inline double ElasticityShearFactor(const Elasticity *law)
 {
   return 0.5 / (1.0 + law->nu);
 }
-/* lambda/E. */
-static inline double ElasticityLameFactor(const Elasticity *law) /* lambda/E */
+/* lambda/E, dimensionless. */
+static inline double ElasticityLameFactor(const Elasticity *law)
 {
   return law->nu / ((1.0 + law->nu) * (1.0 - 2.0 * law->nu));
 }
@@ -239,7 +257,7 @@ typedef struct {
 typedef struct {
   double c, phi, psi, c_e, phi_e, psi_e, c_S, psi_S;
 } Strength;
-/* eta_s as a cell of this size sees it: dissipation per area of a band does not depend on the cell. */
+/* eta_s as a cell of this size sees it, dimensionless: dissipation per area of a band does not depend on the cell. */
 static inline double SofteningRate(const Plasticity *law)
 {
   return law->length > 0.0 ? law->eta_s * law->cell / law->length : law->eta_s;

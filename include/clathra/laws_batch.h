@@ -1,12 +1,13 @@
 /* laws_batch: the laws over arrays, values without the derivatives nobody asks for; one call for many particles of one
    material, so that the compiler takes several at a time.  The formulae are those of laws.h, the numbers to a few ulp,
-   for vector code has its own exp, log and pow.  n values each, in the units of laws.h; in and out may not overlap. */
+   for vector code has its own exp, log and pow.  n values each, in and out may not overlap.  Units:
+   those of laws.h. */
 #pragma once
 
 #include "clathra/laws.h"
 
 /* s_g at p_c, and its slope. */
-void RetentionGasShareBatch(const Retention *law, int n, const double *pc, double *s, double *ds_dpc);
+void RetentionGasShareBatch(const Retention *law, int n, const double *pc, const double *Sh, double *s, double *ds_dpc);
 /* k_rw at s_w. */
 void RelPermWaterBatch(const RelPerm *law, int n, const double *restrict sw, double *restrict kr);
 /* k_rg at s_g. */

@@ -1,6 +1,7 @@
 /* laws_strength: the strength of laws.h, its yield function and its smooth potential, as functions for a loop over
    particles: no branches, no calls and no loops that remain, so that they become vector code there.  Arguments are what
-   laws.h says; angles come with their sines and cosines. */
+   laws.h says; angles come with their sines and cosines.  Units: stresses in Pa, angles in rad, strains and saturations
+   dimensionless. */
 #pragma once
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* lines: the lines of the background grid along one axis, equally spaced or not.  Pure data, the same on every rank. */
+/* lines: the lines of the background grid along one axis, equally spaced or not.  Pure data, the same on every rank.
+   Units: places and widths in m, places in cells dimensionless. */
 #pragma once
 
 #include "clathra/base.h"

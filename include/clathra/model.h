@@ -7,6 +7,8 @@
 #include "clathra/particles.h"
 #include "clathra/point.h"
 
+#define CL_WHY 256 /* length of a sentence that says why something cannot go on */
+
 /* One implicit stage: everything an integrator says to the physics. */
 typedef struct {
   double  t;      /* end of the stage, where boundary functions are evaluated, s */
@@ -60,34 +62,8 @@ typedef struct {
   double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;
 
-/* Second difference of the ghost penalties (22), (351): a node with its neighbours along one axis. */
-typedef struct {
-  PetscInt node[3];
-  double   second[3];           /* h times the jump of the gradient (303); 1, -2, 1 where cells are equal */
-  double   a;                   /* g A/h */
-  double   M, kappa;            /* Pa, W/(m K) */
-  double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
-  double   store[PHASE_COUNT];  /* g_s A h rho s, kg/Pa */
-} GhostLine;
-
-/* Pressure projection of one cell. */
-typedef struct {
-  PetscInt node[4];
-  double   K[4][4];                          /* m^2/Pa */
-  double   t_inertia;                        /* of (275), s */
-  double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
-} ProjectionCell;
-
 /* PETSc's log events. */
 enum { EVENT_BEGIN_STEP = 0, EVENT_RESIDUAL, EVENT_JACOBIAN, EVENT_WIDE, EVENT_SETUP, EVENT_REDUCED, EVENT_COUNT };
-
-/* What shares a particle's reaction out among its nodes (265), at t_n. */
-typedef struct {
-  double rate;           /* hydrate per time and driving pressure, kg/(s Pa) */
-  double decay;          /* M_h K_d A_geo <p_e - p>/rho_h, 1/s (266) */
-  double drive[F_COUNT]; /* d(p_e - p)/d p_w, d p_g, d T */
-  double gain[F_COUNT];  /* what a kg of hydrate adds to the rows (17), (21) of a node: kg, J */
-} Lump;
 
 /* A particle with beds at t_n. */
 typedef struct {
@@ -95,7 +71,15 @@ typedef struct {
   double rho[PHASE_COUNT]; /* kg/m^3 */
 } Bedding;
 
-typedef struct Solver Solver; /* src/model/solver.h */
+typedef struct Solver    Solver;    /* src/model/solver.h */
+typedef struct Additions Additions; /* src/model/additions.h */
+
+/* Why a step cannot go on. */
+typedef struct {
+  ClStatus status;        /* of the last evaluation, on this rank until ModelReduceStatus */
+  char     why[CL_WHY];   /* ... in words: the first reason of the rank */
+  double   where[CL_DIM]; /* m */
+} Failure;
 
 /* One of two fluids at a node (16). */
 typedef struct {
@@ -103,13 +87,6 @@ typedef struct {
   double D;         /* sum of V S mu/k_a, Pa s m */
   double root;      /* mean of sqrt(k_r) (108) */
 } FluidNode;
-
-/* Where the gas that moves through a particle comes from (332). */
-typedef struct {
-  double up[CL_DIM]; /* beta_p over the mean distance of the nodes upstream, along the flow, 1/m */
-  double base;       /* 1 - beta_p */
-  double kr;         /* k^_r,p at t_n (334) */
-} Donor;
 
 typedef struct {
   const Scene  *c;
@@ -121,30 +98,22 @@ typedef struct {
   /* on the configuration at t_n, built by ModelBeginStep */
   Stencil  *stencil; /* [n] */
   PetscInt  stencil_cap;
-  PetscInt *order;  /* [n] particles by the nodes they reach */
-  double   *x_n;    /* [n_local][fields.n] projected start values */
-  double   *w;      /* [n_local][2] (phi S_pi)_I */
-  double   *V;      /* [n_local] sum of V_n S, m^3 */
-  double   *up;     /* [n_local][2][3] upstream weights of drag: direction of flow, factor (0: none); NULL when off */
-  Donor    *donor;  /* [n] (332); NULL when off */
-  double   *spread; /* [n][2] (200); NULL when off */
-  double   *upwind; /* [n][3] (293); NULL when off */
-  Bedding  *beds;   /* [n] NULL without */
-  Lump     *lump;   /* [n] (265); NULL when off */
-  double *conduct;  /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
-  double *Vk;       /* [n_local] sum of V S times it, m^3 */
-  double *flow;     /* [n_local] V/Vk (350) */
-  double *source;   /* [n_local][2] the same (333) and Vk for gas as particles take it (332); NULL when off */
-  double *coef;     /* [n_local][NC_COUNT] nodal means, places NC_... */
+  PetscInt *order; /* [n] particles by the nodes they reach */
+  double   *x_n;   /* [n_local][fields.n] projected start values */
+  double   *w;     /* [n_local][2] (phi S_pi)_I */
+  double   *V;     /* [n_local] sum of V_n S, m^3 */
+  Bedding  *beds;  /* [n] NULL without */
+  double *conduct; /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
+  double *Vk;      /* [n_local] sum of V S times it, m^3 */
+  double *flow;    /* [n_local] V/Vk (350) */
+  double *coef;    /* [n_local][NC_COUNT] nodal means, places NC_... */
   const Material **material; /* [n_local] of most of what this rank has at the node */
   double          *most;     /* [n_local] ... volume of the particle that it is of, times S, m^3 */
+  double          *hydrate;  /* [n_local] ... its S_h at t_n */
   unsigned        *mask;     /* [n_local] Dirichlet bits */
   double          *fixed;    /* [n_local][fields.n] Dirichlet values of the stage */
   PetscInt         nface;
   Face            *face;
-  PetscInt         nghost, ncell;
-  GhostLine       *ghost;
-  ProjectionCell  *cell;
 
   /* of the stage, built by ModelBeginStage */
   Stage    stage;
@@ -152,40 +121,38 @@ typedef struct {
   double  *row_scale, *col_scale; /* [n_local][fields.n] */
 
   /* of the last evaluation */
-  double     *x, *f;     /* [n_local][fields.n] unscaled unknowns, residual */
-  double     *mass_row;  /* [n_local][2] mass balances of water and gas, one pressure only; kg */
-  FluidNode  *fluid;     /* [n_local][2] where there are two */
-  bool        evaluated; /* x and fluid are those of a residual of this stage */
-  double     *proj;      /* [n_local][4] projected pressure gradients Pi g, Pa/m */
-  double     *wide;      /* [n][12] particle coefficients of the wide part (27) */
-  ClStatus    status;    /* why the last evaluation failed, on this rank */
-  const char *why;       /* ... in words */
-  char        text[128]; /* storage for such words */
-  double      where[CL_DIM];
-  StageRates  rates;            /* of the last stage */
-  PetscInt    plates;           /* their number */
+  double    *x, *f;             /* [n_local][fields.n] unscaled unknowns, residual */
+  double    *mass_row;          /* [n_local][2] mass balances of water and gas, one pressure only; kg */
+  FluidNode *fluid;             /* [n_local][2] where there are two */
+  bool       evaluated;         /* x and fluid are those of a residual of this stage */
+  double    *proj;              /* [n_local][4] projected pressure gradients Pi g, Pa/m */
+  double    *wide;              /* [n][12] particle coefficients of the wide part (27) */
+  StageRates rates;             /* of the last stage */
+  PetscInt   plates;            /* their number */
   double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */
   double  *plate_K;             /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
 
-  Solver *solver; /* of the stages */
+  Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (265), (293) */
+  Solver    *solver;  /* of the stages */
+  Failure    failure; /* of the last evaluation */
 } Model;
 
 /* Nodal means at t_n. */
 enum {
   NC_M = 0,
   NC_LAMBDA,
-  NC_RHO     = NC_LAMBDA + 2,
-  NC_STORAGE = NC_RHO + 2,
-  NC_KAPPA   = NC_STORAGE + 2,
+  NC_RHO     = NC_LAMBDA + PHASE_COUNT,
+  NC_STORAGE = NC_RHO + PHASE_COUNT,
+  NC_KAPPA   = NC_STORAGE + PHASE_COUNT,
   NC_CAPACITY,
   NC_REACTION,
   NC_REACTION_HEAT,
   NC_DRAG,
-  NC_KR   = NC_DRAG + 2,
-  NC_RING = NC_KR + 2, /* 1/r */
-  NC_AXIS,             /* of what was seeded at the axis: 1 */
+  NC_KR   = NC_DRAG + PHASE_COUNT,
+  NC_RING = NC_KR + PHASE_COUNT, /* 1/r */
+  NC_AXIS,                       /* of what was seeded at the axis: 1 */
   NC_COUNT
 };
 
@@ -203,10 +170,11 @@ PetscErrorCode ModelPrintSolver(Model *m);
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);
 /* Starts a stage: boundary values, scales.  The stage's arrays belong to the caller. */
 PetscErrorCode ModelBeginStage(Model *m, const Stage *s);
-/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution;
-   newton: iterations with a Jacobian of their own (343). */
+/* Solves (15)-(23) for the stage; x (n_local x fields.n, ghosts included) holds the first guess and then the solution
+   in SI units; newton: iterations with a Jacobian of their own (343). */
 PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status);
-/* What the solution means for the particles; checks that they stay within half a cell and inside the grid. */
+/* What the solution x (n_local x fields.n, SI units) means for the particles; checks that they stay within half a cell
+ * and inside the grid. */
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status);
 /* Can the plates go where they must in this stage? */
 PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status);
@@ -221,12 +189,19 @@ static inline SkeletonStage ModelSkeletonStart(const Model *m, PetscInt p)
   SkeletonTake(&store, 0, &h);
   return h.from;
 }
-/* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v. */
+/* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v, m/s. */
 void ModelStartVelocity(const Model *m, double *v);
-/* Makes the trial state of the last stage the history, with rates (n x 4), moves the particles and migrates them. */
+/* Makes the trial state of the last stage the history, with rates (n x 4, of p_w, p_g, T, S_h: Pa/s, K/s, 1/s), moves
+ * the particles and migrates them. */
 PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates);
 /* Notes why particle p cannot go on; the first reason of this rank stays. */
 void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p);
+/* Why the last evaluation failed, and where; the words stay when the status is cleared. */
+const Failure *ModelFailure(const Model *m);
+/* Nothing has failed so far, on this rank. */
+void ModelClearFailure(Model *m);
+/* Other words for why a step is refused, for a reason that no particle has; the place stays. */
+void ModelExplain(Model *m, const char *why);
 /* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */

@@ -53,20 +53,20 @@ typedef struct {
   double          T_n, Sh_n; /* at t_n */
   double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   SkeletonHistory skeleton;
-  double          spread[PHASE_COUNT];  /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
-  double          upwind[3];            /* (293), xx, yy, xy, W/(m K) */
-  double          proj[PHASE_COUNT][2]; /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
+  double          spread[PHASE_COUNT]; /* (200), m^2/(Pa s), signed: what grad p_c moves of each fluid besides */
+  double          upwind[3];           /* (293), xx, yy, xy, W/(m K) */
+  double proj[PHASE_COUNT][CL_DIM];    /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double mobility;    /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
   double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   bool   compression; /* heat of compression and throttling (290); then also ... */
-  double p_star[PHASE_COUNT];            /* ... starred p_w, p_g, Pa */
-  double gravity[2];                     /* ... m/s^2 */
-  double dt;                             /* dt' of the stage */
-  const Beds    *beds;                   /* at t_n; NULL: none; then also ... */
-  double         weight[PHASE_COUNT][2]; /* ... rho b of the fluids at t_n, N/m^3 */
-  const Ambient *ambient;                /* at the end of the stage; NULL: no pressure around the body */
-  double         x[2];                   /* where the particle's values belong at t_n, m; for the ambient pressure */
+  double p_star[PHASE_COUNT];                 /* ... starred p_w, p_g, Pa */
+  double gravity[2];                          /* ... m/s^2 */
+  double dt;                                  /* dt' of the stage */
+  const Beds    *beds;                        /* at t_n; NULL: none; then also ... */
+  double         weight[PHASE_COUNT][CL_DIM]; /* ... rho b of the fluids at t_n, N/m^3 */
+  const Ambient *ambient;                     /* at the end of the stage; NULL: no pressure around the body */
+  double         x[2]; /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
 /* State at the end of the stage. */
@@ -83,14 +83,15 @@ typedef struct {
 
 typedef struct {
   double out[OUT_COUNT];
-  double D[OUT_COUNT][IN_COUNT];  /* d out / d in */
-  double wide[PHASE_COUNT][2][2]; /* d flux[pi][i] / d proj[pi][j] (27) */
-  double wide_q[PHASE_COUNT][2];  /* d q / d proj[pi][j] */
+  double D[OUT_COUNT][IN_COUNT];            /* d out / d in */
+  double wide[PHASE_COUNT][CL_DIM][CL_DIM]; /* d flux[pi][i] / d proj[pi][j] (27) */
+  double wide_q[PHASE_COUNT][CL_DIM];       /* d q / d proj[pi][j] */
 } PointOutput;
 
-/* Evaluates (8)-(21) at a particle for the fields of the set; inputs of other fields are not read (but p_g = p_w and T
-   as given where gas and heat have no field), outputs and columns of other fields are not written.  tangent = false
-   leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing to a sentence. */
+/* Evaluates (8)-(21) at a particle for the fields of the set, in SI units with T in degC; inputs of other fields are
+   not read (but p_g = p_w and T as given where gas and heat have no field), outputs and columns of other fields are not
+   written.  tangent = false leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing
+   to a sentence. */
 ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
                        bool tangent, PointState *state, PointOutput *o, const char **why);
 
@@ -98,10 +99,10 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
 void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, double phi, double Sh, double sg, double pw,
                         double pg, double T, double *m_s, double *m_h, double *m_w, double *m_g);
 
-/* Methane of a unit of open pore space, kg/m^3 (101), with its slopes in p_w and p_g. */
-double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT]);
-/* p_g between a and b at which it is `want`, to 1e-4 of p_0; b where there is none between them. */
-double PointGasPressure(const Material *mat, double want, double pw, double T, double a, double b);
+/* Methane of a unit of open pore space beside hydrate of S_h, kg/m^3 (101), with its slopes in p_w and p_g. */
+double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT]);
+/* p_g between a and b (Pa) at which it is `want` (kg/m^3), to 1e-4 of p_0; b where there is none between them. */
+double PointGasPressure(const Material *mat, double want, double Sh, double pw, double T, double a, double b);
 
 /* Properties at t_n that projections, scales and stabilisation need. */
 typedef struct {

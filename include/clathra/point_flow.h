@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include "clathra/dimension.h"
 #include "clathra/inline.h"
 
 #define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
@@ -23,7 +24,7 @@ INLINE Beds BedsOf(double ratio, double dip, const double F[4])
   return (Beds){1.0 - c * n[0] * n[0], 1.0 - c * n[1] * n[1], -c * n[0] * n[1]};
 }
 
-/* v := A v */
+/* v := A v; A dimensionless. */
 INLINE void BedsDrive(const Beds *A, double v[2])
 {
   const double x = v[0], y = v[1];
@@ -32,15 +33,14 @@ INLINE void BedsDrive(const Beds *A, double v[2])
   v[1] = A->xy * x + A->yy * y;
 }
 
-/* (309): what drives a fluid whose weight is w (rho b) like the gradient g of its pressure: g itself where it is at
- * rest.
- */
+/* (309): what drives a fluid whose weight is w (rho b, Pa/m) like the gradient g of its pressure (Pa/m): g itself where
+   it is at rest. */
 INLINE void BedsDriveMoving(const Beds *A, const double w[2], double g[2])
 {
-  for (int d = 0; d < 2; d++)
+  for (int d = 0; d < CL_DIM; d++)
     g[d] -= w[d];
   BedsDrive(A, g);
-  for (int d = 0; d < 2; d++)
+  for (int d = 0; d < CL_DIM; d++)
     g[d] += w[d];
 }
 
@@ -57,7 +57,7 @@ typedef struct {
   double v, share, Sh;
 } KrArgument;
 
-/* share: of the open pores, in [0, 1]. */
+/* share: of the open pores, in [0, 1], dimensionless. */
 INLINE KrArgument KrArgumentOf(bool of_pores, double share, double Sh)
 {
   const double of = of_pores ? 1.0 - Sh : 1.0;
@@ -65,7 +65,7 @@ INLINE KrArgument KrArgumentOf(bool of_pores, double share, double Sh)
   return (KrArgument){of * share, of, of_pores ? -share : 0.0};
 }
 
-/* k_r, or the least that a mobility is taken with. */
+/* k_r, or the least that a mobility is taken with; dimensionless. */
 INLINE double KrFloored(double kr)
 {
   return kr < CL_MOBILITY_FLOOR ? CL_MOBILITY_FLOOR : kr;
@@ -76,7 +76,7 @@ typedef struct {
   double v, kr, resist, rho;
 } Tau;
 
-/* (20); per_dt: 1/dt', with mass scaling, or 0 without inertia. */
+/* (20); resist: Pa s/m^2, rho: kg/m^3; per_dt: 1/dt' (1/s), with mass scaling, or 0 without inertia. */
 INLINE Tau TauOf(double kr, double resist, double rho, double per_dt)
 {
   const double sum = resist + kr * rho * per_dt, v = kr / sum;

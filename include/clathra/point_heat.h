@@ -2,8 +2,15 @@
  */
 #pragma once
 
+#include "clathra/fields.h"
 #include "clathra/inline.h"
 #include "clathra/material.h"
+
+/* Of a fluid, J/(kg K). */
+INLINE double SpecificHeat(const Material *mat, int phase)
+{
+  return phase == PHASE_W ? mat->c_w : mat->c_g;
+}
 
 /* V C_m, J/K; the slopes in the masses (kg) are the specific heats. */
 INLINE double HeatCapacity(const Material *mat, double m_s, double m_h, double m_w, double m_g)

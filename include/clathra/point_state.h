@@ -35,12 +35,19 @@ INLINE Pores PoresOf(double V, double m_s, double rho_s, double m_h, double rho_
   return (Pores){pore, VolumeLeft(pore, m_h, rho_h), pore / V, PoreShare(m_h, rho_h, pore)};
 }
 
+/* Of a fluid at its own pressure p (Pa) and T (degC), kg/m^3, with slopes, kg/(m^3 Pa) and kg/(m^3 K). */
+INLINE double FluidDensity(const Material *mat, int phase, double p, double T, double *drho_dp, double *drho_dT)
+{
+  return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, drho_dp, drho_dT)
+                          : GasDensity(&mat->gas, p, T, drho_dp, drho_dT);
+}
+
 /* Pressure with slopes in s_g, p_w and p_g. */
 typedef struct {
   double v, sg, pw, pg;
 } PorePressure;
 
-/* (10) */
+/* (10); s_g dimensionless, pressures in Pa. */
 INLINE PorePressure PorePressureOf(double sg, double pw, double pg)
 {
   return (PorePressure){pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg};
@@ -52,7 +59,7 @@ typedef struct {
   double v, sg, rho, p;
 } Content;
 
-/* (9) */
+/* (9); s_g dimensionless, rho in kg/m^3. */
 INLINE Content WaterContent(double sg, double rho)
 {
   return (Content){(1.0 - sg) * rho, -rho, 1.0 - sg, 0.0};
@@ -64,7 +71,7 @@ INLINE double DissolvedMethane(double H, double pg)
   return H * pg;
 }
 
-/* (101); H as in Gas.trace. */
+/* (101); H as in Gas.trace, kg/(m^3 Pa); s_g dimensionless, rho in kg/m^3, p_g in Pa. */
 INLINE Content MethaneContent(double H, double sg, double rho, double pg)
 {
   const double c = DissolvedMethane(H, pg);
@@ -77,10 +84,12 @@ typedef struct {
   double v, own, other, T;
 } FluidMass;
 
-/* (9) in an open volume with its slope in T; the slope of s_g in the fluid's own pressure; those of its density. */
-INLINE FluidMass MassOf(Content c, double open, double open_T, double sg_own, double rho_p, double rho_T)
+/* (9) in an open volume with its slope in T; the slopes of s_g in the fluid's own pressure and in T; those of its
+   density. */
+INLINE FluidMass MassOf(Content c, double open, double open_T, double sg_own, double sg_T, double rho_p, double rho_T)
 {
   const double turns = open * c.sg * sg_own;
 
-  return (FluidMass){open * c.v, turns + open * (c.rho * rho_p + c.p), -turns, c.v * open_T + open * c.rho * rho_T};
+  return (FluidMass){open * c.v, turns + open * (c.rho * rho_p + c.p), -turns,
+                     c.v * open_T + open * (c.sg * sg_T + c.rho * rho_T)};
 }

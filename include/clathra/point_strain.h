@@ -9,7 +9,7 @@ typedef struct {
   double along, turn, m, d, off, y;
 } Stretch;
 
-/* (7); F row by row. */
+/* (7); F row by row, dimensionless. */
 INLINE Stretch StretchOf(double xx, double xy, double yx, double yy)
 {
   const double bxx = xx * xx + xy * xy, byy = yx * yx + yy * yy, off = xx * yx + xy * yy;
@@ -18,7 +18,7 @@ INLINE Stretch StretchOf(double xx, double xy, double yx, double yy)
   return (Stretch){xx + yy, yx - xy, m, d, off, (d * d + off * off) / (m * m)};
 }
 
-/* Diagonal of U = R^T F, with the cosine and sine of R. */
+/* Diagonal of U = R^T F, with the cosine and sine of R; all dimensionless. */
 INLINE void StretchDiagonal(double c, double s, double xx, double xy, double yx, double yy, double U[2])
 {
   U[0] = c * xx + s * yx;

@@ -140,7 +140,7 @@ static inline double MaterialFrictionAngle(const Material *m)
   return m->plasticity.type != PLASTICITY_MOHR_COULOMB ? NAN : m->plasticity.phi_peak * M_PI / 180.0;
 }
 
-/* Horizontal over vertical effective stress of a geostatic region; NAN without a friction angle. */
+/* Horizontal over vertical effective stress of a geostatic region, dimensionless; NAN without a friction angle. */
 static inline double RegionK0(const Scene *c, const Region *r)
 {
   return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
@@ -185,7 +185,8 @@ static inline double SceneConductance(const Scene *c, const Material *mat, doubl
   return law->k0 * (mat->reacts ? 1.0 : law->hydrate_factor(law, Sh, &slope)) / c->material[0].permeability.k0;
 }
 
-/* The largest ratio of k_p of the regions at the start; 1 without fluids.  Where it is 1, so are the weights (350). */
+/* The largest ratio of k_p of the regions at the start; 1 without fluids; dimensionless.  Where it is 1, so are the
+ * weights (350). */
 static inline double SceneContrast(const Scene *c)
 {
   double least = INFINITY, most = 0.0;

@@ -1,5 +1,6 @@
 /* schedule: a piecewise-linear function of time with known kinks; constant, ramp and table are all of this kind,
-   `piecewise` holds each value until the next time (jumps), `sine` adds waves (267) to a constant. */
+   `piecewise` holds each value until the next time (jumps), `sine` adds waves (267) to a constant.  Units: times in s,
+   values in SI units of the key that they are of. */
 #pragma once
 
 #include "clathra/base.h"

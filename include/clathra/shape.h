@@ -27,12 +27,12 @@ static inline bool RegionWhole(const Region *r)
 
 /* Bounds of the shape inside `lower` and `upper` as given (infinite where not), which they replace. */
 void RegionBound(const Scene *c, Region *r);
-/* Does the region hold x, without what `minus` takes away?  A point on an edge that two regions share belongs to one
-   of them. */
+/* Does the region hold x (m), without what `minus` takes away?  A point on an edge that two regions share belongs to
+   one of them. */
 bool RegionHolds(const Scene *c, PetscInt region, const double x[]);
 /* ... or does its boundary pass within `slack` (m, along each axis)? */
 bool RegionReaches(const Scene *c, PetscInt region, const double x[], const double slack[]);
-/* Greatest coordinate along a direction in the region, or a little more. */
+/* Greatest coordinate (m) along a direction in the region, or a little more. */
 double RegionHighest(const Region *r, const double direction[]);
 /* The highest (sign 1) or lowest (-1) point of a region, on the vertical through the origin, m; with gravity. */
 void RegionExtreme(const Scene *c, const Region *g, double sign, double x[CL_DIM]);
@@ -44,13 +44,14 @@ double SceneTop(const Scene *c);
 void RegionLattice(const Scene *c, PetscInt region, Lattice *lattice);
 /* Width along axis d of the place that holds x, m. */
 double LatticeWidth(const Lattice *lattice, int d, double x);
-/* Centre of place ij; is there a particle? */
+/* Centre of place ij, m; is there a particle? */
 bool RegionPlace(const Scene *c, PetscInt region, const Lattice *lattice, const PetscInt ij[], double x[]);
 /* Bits 1 << Side of those sides of the particle at place ij beyond which no region has a particle. */
 PetscInt RegionFaces(const Scene *c, PetscInt region, const Lattice *lattice, const PetscInt ij[]);
 
-/* Area vector of the true surface that a face stands for, per area of its own: n/(|n_x| + |n_y|) with the outward
-   normal n of the boundary between its particle, initially at x, and the next place; on boxes that of the side. */
+/* Area vector of the true surface that a face stands for, per area of its own (dimensionless): n/(|n_x| + |n_y|) with
+   the outward normal n of the boundary between its particle, initially at x, and the next place; on boxes that of the
+   side. */
 void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, double n[]);
 /* Is the face one of those that a meter, or a condition written as one, names?  A line takes the faces whose normal,
    drawn LINE_REACH particle spacings out and in from the centre of the initial face, meets it. */

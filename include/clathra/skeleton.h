@@ -148,7 +148,7 @@ static inline bool SkeletonUpdateBlock(const Material *mat, const SkeletonBlock 
 /* The end of a stage as the body lay at t_n; volume V, m^3. */
 void SkeletonEndStage(const SkeletonHistory *h, const SkeletonStep *d, const SkeletonState *s, double V,
                       SkeletonStage *end);
-/* y_n + c (y_1 - y_n). */
+/* y_n + c (y_1 - y_n); c dimensionless. */
 static inline void SkeletonStar(const SkeletonStage *y_n, const SkeletonStage *y_1, double c, SkeletonStage *star)
 {
   const double *n = (const double *)y_n, *one = (const double *)y_1;
@@ -176,7 +176,7 @@ INLINE void SkeletonKeepStress(const SkeletonStore *f, ptrdiff_t q, const Skelet
     f->sig0[k][q] = s->sig0[k];
   }
 }
-/* (86) */
+/* (86), dimensionless. */
 static inline double SkeletonNonlocal(const SkeletonStore *f, ptrdiff_t q)
 {
   return f->nonlocal ? f->nonlocal[q] + f->ahead * f->rate[q] : 0.0;

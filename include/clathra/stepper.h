@@ -199,9 +199,9 @@ typedef struct {
   double      s;
   const char *name;
 } TimeUnit;
-/* Seconds where none holds two. */
+/* For a time of so many s; seconds where none holds two. */
 const TimeUnit *StepperTimeUnit(double seconds);
-/* Steps that kinks of the loads, output times and dt_max ask for in the last `left` seconds of the stage, at least;
+/* Steps that kinks of the loads, output times and dt_max ask for in the last `left` (s) of the stage, at least;
  *kinks (or NULL): how many of them end at a kink. */
 double StepperStops(const Stepper *s, double left, double *kinks);
 /* A line about Stepper.forecast.  Collective. */
@@ -236,13 +236,13 @@ double LearntLeft(const Learnt *l, const Ahead *a);
 /* ---- auto.c: docs/equations.md, section 15 */
 /* The integrator a stage begins with, or a restart goes on with. */
 PetscErrorCode StepperAutoBegin(Stepper *s);
-/* After an attempt of length dt failed so, the last one allowed or not: is it time for hybrid? */
+/* After an attempt of length dt (s) failed so, the last one allowed or not: is it time for hybrid? */
 PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool last, bool *yes);
 /* After every step: goes over to the other integrator where that pays. */
 PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok);
 
 /* Shared by the schemes. */
-/* The next time that a step must hit: a kink of a schedule, an event, the end. */
+/* The next time (s) that a step must hit: a kink of a schedule, an event, the end. */
 double StepperNextStop(const Stepper *s, bool *kink);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
 void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
@@ -262,16 +262,18 @@ PetscErrorCode StepperFreeWork(StepperWork *w);
 /* In words, for messages. */
 const char    *StepperStatusName(ClStatus st);
 PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */
-/* p_w, p_g, T, S_h of particle p at t_n and their rates in the last step; zero where there is no such field. */
+/* p_w, p_g, T, S_h of particle p at t_n (Pa, degC, 1) and their rates in the last step (per s); zero where there is no
+ * such field. */
 void   StepperHistory(const Model *m, PetscInt p, double y[4], double rate[4]);
 double StepperMass(const Model *m, PetscInt p, int k); /* m_h, m_w, m_g at t_n, kg */
 /* One backward-Euler stage that ends at t (s), of length dt (s), from the starred values in the work space; weight dt
    is its share of the step's integrals.  a->status says why it failed, if so.  Collective. */
 PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, double weight, Attempt *a);
-/* Starred plastic state of the second stage (24), from that of the first with c = (1 - gamma)/gamma. */
+/* Starred plastic state of the second stage (24), from that of the first with c = (1 - gamma)/gamma, dimensionless. */
 void StepperStarSkeleton(Stepper *s, double c);
-/* Rates of plastic strain and stress at the end of a step of length dt whose stages have length gamma dt, and their
+/* Rates of plastic strain and stress at the end of a step of length dt (s) whose stages have length gamma dt, and their
    errors from the weights of k_n, k_1, k_2 (25), (26). */
 void StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);
-/* Collective; e [n][4], eu [n][2]; a->rules says which error it is. */
+/* Dimensionless, over the tolerances.  Collective; e [n][4] (Pa, Pa, K, 1), eu [n][2] (m); a->rules says which error it
+ * is. */
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a);

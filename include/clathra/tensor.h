@@ -1,4 +1,5 @@
-/* tensor: symmetric 3x3 tensors as six numbers xx yy zz xy yz xz, and the 2x2 algebra of a plane motion. */
+/* tensor: symmetric 3x3 tensors as six numbers xx yy zz xy yz xz, and the 2x2 algebra of a plane motion.  Units: those
+   of the components. */
 #pragma once
 
 #include <math.h>

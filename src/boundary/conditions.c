@@ -6,7 +6,7 @@
 /* An area vector goes with the motion: a = cof(F) n. */
 static void Carry(const Kinematics *k, const double n[2], double a[2], double da[2][MOTION_COUNT])
 {
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     a[i] = k->cof[i][0] * n[0] + k->cof[i][1] * n[1];
     for (int q = 0; q < MOTION_COUNT; q++)
       da[i][q] = k->dcof[i][0][q] * n[0] + k->dcof[i][1][q] * n[1];
@@ -22,7 +22,8 @@ static void Area(FaceState *x)
 }
 
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
-                  const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt, FaceOutput *o)
+                  double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
+                  FaceOutput *o)
 {
   FaceState x = {.c     = c,
                  .f     = f,
@@ -30,6 +31,7 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
                  .mat   = mat,
                  .p0    = p0,
                  .in    = in,
+                 .Sh    = Sh,
                  .kappa = kappa,
                  .dt    = dt,
                  .T     = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1],

@@ -1,5 +1,6 @@
 /* What each condition on a face adds to the balances, with the tangent. */
 #include "terms.h"
+#include "clathra/point_heat.h"
 #include "clathra/point_state.h"
 
 /* Total traction: -q a + s a_perp; row v_s loses it. */
@@ -24,7 +25,7 @@ void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o)
 
   if (w <= 0.0 || C == 0.0)
     return;
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     double *row = o->D[F_VSX + i];
 
     o->out[F_VSX + i] += q * a[i];
@@ -40,11 +41,6 @@ void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o)
 }
 
 /* ---------------------------------------------------------------- fluids */
-static double Density(const Material *mat, int phase, double p, double T, double *dp, double *dT)
-{
-  return phase == PHASE_W ? LiquidDensity(&mat->water, p, T, dp, dT) : GasDensity(&mat->gas, p, T, dp, dT);
-}
-
 /* Pressures outside, and their derivatives with respect to the particle's capillary pressure and to the displacement of
    the face (the same for both fluids). */
 typedef struct {
@@ -58,31 +54,31 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   double        dp, dT;
   const Face   *f  = x->f;
   const double *in = x->in, *a = x->a, dt = x->dt;
-  const double *J = &in[IN_J + 2 * phase], Ja = J[0] * a[0] + J[1] * a[1], skin = f->skin[phase];
+  const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = J[0] * a[0] + J[1] * a[1], skin = f->skin[phase];
   const double  p = outside->p[phase], jump = p + skin * Ja - FacePressure(f, phase, in),
-               rho = Density(x->mat, phase, p, in[IN_T], &dp, &dT);
+               rho = FluidDensity(x->mat, phase, p, in[IN_T], &dp, &dT);
   double *D        = o->D[F_PW + phase];
 
   o->out[F_PW + phase] += dt * rho * Ja;
   o->outflow[phase] += rho * Ja;
   D[IN_T] += dt * dT * Ja;
-  for (int j = 0; j < 2; j++)
-    D[IN_J + 2 * phase + j] += dt * rho * a[j];
+  for (int j = 0; j < CL_DIM; j++)
+    D[VectorAt(IN_J, phase, j)] += dt * rho * a[j];
   for (int k = 0; k < MOTION_COUNT; k++)
     D[k] += dt * rho * (J[0] * x->da[0][k] + J[1] * x->da[1][k]);
   for (int d = 0; d < CL_DIM; d++)
     D[IN_U + d] += dt * dp * outside->du[d] * Ja;
-  for (int i = 0; i < 2; i++) {
-    double *row = o->D[F_VWX + 2 * phase + i];
+  for (int i = 0; i < CL_DIM; i++) {
+    double *row = o->D[VectorAt(F_VWX, phase, i)];
 
-    o->out[F_VWX + 2 * phase + i] += jump * a[i];
+    o->out[VectorAt(F_VWX, phase, i)] += jump * a[i];
     row[IN_P + phase] -= a[i];
     for (int d = 0; d < CL_DIM; d++)
       row[IN_U + d] += outside->du[d] * a[i];
-    for (int j = 0; j < 2; j++)
-      row[IN_GP + 2 * phase + j] -= a[i] * f->r[j];
-    for (int j = 0; j < 2; j++)
-      row[IN_J + 2 * phase + j] += skin * a[j] * a[i];
+    for (int j = 0; j < CL_DIM; j++)
+      row[VectorAt(IN_GP, phase, j)] -= a[i] * f->r[j];
+    for (int j = 0; j < CL_DIM; j++)
+      row[VectorAt(IN_J, phase, j)] += skin * a[j] * a[i];
     for (int k = 0; k < MOTION_COUNT; k++)
       row[k] += jump * x->da[i][k] + skin * (J[0] * x->da[0][k] + J[1] * x->da[1][k]) * a[i];
   }
@@ -90,8 +86,8 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
     const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
 
     D[IN_P + k] += dt * dp * dpk * Ja;
-    for (int i = 0; i < 2; i++)
-      o->D[F_VWX + 2 * phase + i][IN_P + k] += dpk * a[i];
+    for (int i = 0; i < CL_DIM; i++)
+      o->D[VectorAt(F_VWX, phase, i)][IN_P + k] += dpk * a[i];
   }
 }
 
@@ -107,8 +103,8 @@ static void Dissolved(const FaceState *x, bool ambient, FaceOutput *o)
   o->out[F_PG] += dt * c * Ja;
   o->outflow[PHASE_G] += c * Ja;
   D[IN_P + PHASE_G] += dt * H * Ja;
-  for (int j = 0; j < 2; j++) {
-    D[IN_GP + 2 * PHASE_G + j] += dt * H * Ja * x->f->r[j];
+  for (int j = 0; j < CL_DIM; j++) {
+    D[VectorAt(IN_GP, PHASE_G, j)] += dt * H * Ja * x->f->r[j];
     D[IN_J + j] += dt * c * a[j];
   }
   for (int k = 0; k < MOTION_COUNT; k++)
@@ -130,7 +126,7 @@ static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
   const Retention *retention = &x->mat->retention;
   const Bc        *b         = &x->c->bc[k];
   const double    *p0 = x->p0, *in = x->in;
-  double           ds;
+  double           ds, dSh;
 
   *o = (Outside){.p = {p0[PHASE_W], p0[PHASE_G]}};
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
@@ -143,12 +139,12 @@ static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
     o->p[PHASE_W] = o->p[PHASE_G] = b->initial ? p0[PHASE_W] : MeanOutside(x, k, o->du);
     return;
   }
-  const double sg0   = RetentionGasShare(retention, p0[PHASE_G] - p0[PHASE_W], &ds);
+  const double sg0   = RetentionGasShare(retention, p0[PHASE_G] - p0[PHASE_W], x->Sh, &ds, &dSh);
   const double mean0 = PorePressureOf(sg0, p0[PHASE_W], p0[PHASE_G]).v;
   const double mean  = b->initial ? mean0 : MeanOutside(x, k, o->du);
 
   if (b->natural) {
-    const double pc = in[IN_P + PHASE_G] - in[IN_P + PHASE_W], sg = RetentionGasShare(retention, pc, &ds);
+    const double pc = in[IN_P + PHASE_G] - in[IN_P + PHASE_W], sg = RetentionGasShare(retention, pc, x->Sh, &ds, &dSh);
 
     o->p[PHASE_W]   = mean - sg * pc;
     o->p[PHASE_G]   = o->p[PHASE_W] + pc;
@@ -195,15 +191,15 @@ static void Inflow(const FaceState *x, PetscInt k, int phase, FaceOutput *o)
   const int    own = InflowPressure(x, phase);
   const double p = FacePressure(f, own, x->in), area = x->area, dt = x->dt, q = x->v->phase[phase][k];
   const bool   heats = x->c->fields.heat && x->c->bc[k].value.n && q > 0.0;
-  const double c_f = phase == PHASE_W ? x->mat->c_w : x->mat->c_g, dT_in = heats ? x->v->value[k] - x->T : 0.0;
+  const double c_f = SpecificHeat(x->mat, phase), dT_in = heats ? x->v->value[k] - x->T : 0.0;
   double       dp, dT, drate[IN_COUNT] = {0.0};
-  const double rho = Density(x->mat, phase, p, x->T, &dp, &dT), rate = rho * q * area;
+  const double rho = FluidDensity(x->mat, phase, p, x->T, &dp, &dT), rate = rho * q * area;
 
   drate[IN_P + own] = dp * q * area;
   drate[IN_T]       = dT * q * area;
-  for (int j = 0; j < 2; j++) {
-    drate[IN_GP + 2 * own + j] = dp * q * area * f->r[j];
-    drate[IN_GT + j]           = dT * q * area * f->r[j];
+  for (int j = 0; j < CL_DIM; j++) {
+    drate[VectorAt(IN_GP, own, j)] = dp * q * area * f->r[j];
+    drate[IN_GT + j]               = dT * q * area * f->r[j];
   }
   for (int j = 0; j < MOTION_COUNT; j++)
     drate[j] = rho * q * x->darea[j];
@@ -218,7 +214,7 @@ static void Inflow(const FaceState *x, PetscInt k, int phase, FaceOutput *o)
   if (!heats)
     return;
   o->D[F_T][IN_T] += c_f * rate;
-  for (int j = 0; j < 2; j++)
+  for (int j = 0; j < CL_DIM; j++)
     o->D[F_T][IN_GT + j] += c_f * rate * f->r[j];
 }
 
@@ -237,7 +233,7 @@ static void LetIn(const FaceState *x, double flux, double alpha, FaceOutput *o)
   o->heat_in += flux * x->area;
   o->out[F_T] -= flux * x->area;
   o->D[F_T][IN_T] += alpha * x->area;
-  for (int j = 0; j < 2; j++)
+  for (int j = 0; j < CL_DIM; j++)
     o->D[F_T][IN_GT + j] += alpha * x->area * x->f->r[j];
   for (int j = 0; j < MOTION_COUNT; j++)
     o->D[F_T][j] -= flux * x->darea[j];
@@ -265,7 +261,7 @@ void FaceTemperature(const FaceState *x, PetscInt k, FaceOutput *o)
   LetIn(x, strong * conducts * (x->v->value[k] - x->T), strong * conducts, o);
   o->heat_in += arrives;
   o->out[F_T] -= arrives;
-  for (int j = 0; j < 2; j++)
+  for (int j = 0; j < CL_DIM; j++)
     o->D[F_T][IN_GT + j] -= conducts * x->s[j];
   for (int j = 0; j < MOTION_COUNT; j++)
     o->D[F_T][j] -= conducts * (g[0] * x->ds[0][j] + g[1] * x->ds[1][j]);

@@ -11,7 +11,7 @@ struct FaceState {
   const BcValues *v;
   const Material *mat;
   const double   *p0, *in;                             /* as of FaceEvaluate */
-  double          kappa, dt;                           /* W/(m K), s */
+  double          Sh, kappa, dt;                       /* -, W/(m K), s */
   double          T;                                   /* at the face, degC */
   double          a[CL_DIM], da[CL_DIM][MOTION_COUNT]; /* area vector, m^2 */
   double          s[CL_DIM], ds[CL_DIM][MOTION_COUNT]; /* that of the true surface (70) */

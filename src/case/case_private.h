@@ -203,7 +203,10 @@ typedef struct {
 } List;
 void ListCreate(const char *text, List *list);
 void ListDestroy(List *list);
-void CaseCheck(Reader *r, const Case *c);
+/* forms.c: "{ramp: [...]}" in one word, as the command line gives it: its place in case_schedule_form, and its values
+   in `inner`, as long as the text; -1: it is none. */
+int  FormInBraces(const char *text, char *inner);
+void CaseCheck(Reader *r, Case *c); /* cuts regions that later ones lie over */
 /* plates.c: a plate without a side is one on a grid line; what its keys must agree in. */
 PetscErrorCode PlateForm(Reader *r, Bc *b);
 void           CheckPlate(Reader *r, const Case *c, const Bc *b);
@@ -214,11 +217,12 @@ void           CheckInitial(Reader *r, const Scene *c, const Region *g); /* init
 /* regions.c: shapes, faces named by a side or a line, probes */
 void RegionsFinish(Scene *c); /* once all keys are read */
 void CheckShape(Reader *r, const Case *c, PetscInt region);
-void CheckOverlap(Reader *r, const Scene *c);                     /* of good shapes; none of them without particles */
-bool FacesShared(const Scene *c, const Meter *a, const Meter *b); /* has the body any that both name? */
-void CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Meter *m);
-void CheckHeld(Reader *r, const Scene *c, const Bc *b);
-void CheckProbe(Reader *r, const Scene *c, const Probe *p);
+/* Of good shapes: where two lie over each other the earlier one is cut; none is to be without particles. */
+PetscErrorCode RegionsCut(Reader *r, Case *c);
+bool           FacesShared(const Scene *c, const Meter *a, const Meter *b); /* has the body any that both name? */
+void           CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Meter *m);
+void           CheckHeld(Reader *r, const Scene *c, const Bc *b);
+void           CheckProbe(Reader *r, const Scene *c, const Probe *p);
 /* resolve.c: the value of a key as the resolved case gives it; keys that say nothing when they are empty */
 void               KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance);
 bool               KeyEmpty(const Key *k, const char *instance);

@@ -72,8 +72,9 @@ static void CheckSaturations(Reader *r, const Scene *c, const Region *g)
   }
   if (r->bad[GROUP_MATERIAL] || !c->fields.phase[PHASE_G])
     return;
-  if (g->Sg == 0.0 && c->without_gas != WITHOUT_GAS_NO ? RetentionNoGas(&m->retention, &pc)
-                                                       : RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), &pc))
+  if (g->Sg == 0.0 && c->without_gas != WITHOUT_GAS_NO
+          ? RetentionNoGas(&m->retention, g->Sh, &pc)
+          : RetentionInvert(&m->retention, g->Sg / (1 - g->Sh), g->Sh, &pc))
     return;
   FAIL_AT(
       GROUP_REGION, g->name, "Sg",
@@ -147,7 +148,7 @@ static void CheckPlane(Reader *r, const Scene *c, const Bc *b)
             LinesAt(&lines, (PetscInt)round(line)));
 }
 
-void CaseCheck(Reader *r, const Case *c)
+void CaseCheck(Reader *r, Case *c)
 {
   const bool *bad = r->bad;
 
@@ -165,7 +166,7 @@ void CaseCheck(Reader *r, const Case *c)
   for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->scene.nregion && all; i++)
     CheckRegion(r, c, i);
   if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
-    CheckOverlap(r, &c->scene);
+    PetscCallVoid(RegionsCut(r, c));
   for (PetscInt i = 0; i < c->scene.nbc && !bad[GROUP_BC]; i++) {
     const Bc *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;

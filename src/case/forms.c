@@ -141,9 +141,7 @@ static bool ScheduleParse(Reader *r, const char *shown, const char *text, const 
   return ok;
 }
 
-/* "{ramp: [...]}" in one word, as the command line gives it: the form, and its values in `inner`, as long as the text;
- * -1: it is none. */
-static int FormInBraces(const char *text, char *inner)
+int FormInBraces(const char *text, char *inner)
 {
   const char *p = text + 1 + strspn(text + 1, " ");
 

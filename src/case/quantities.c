@@ -4,25 +4,13 @@
 #include <string.h>
 #include <strings.h>
 
-#define HISTORY_ROW(id, needs, name, nc, unit, doc) {name, needs},
+#define ROW(id, word, has) [id] = {word, has},
+#define HISTORY_ROW(id, has, name, nc, unit, doc) {name, has},
 static const struct {
   const char *word;
   unsigned    has; /* fields any of which it needs */
-} quantity[QUANTITY_COUNT] = {[QUANTITY_P]       = {"p", HAS_WATER},
-                              [QUANTITY_PW]      = {"p_w", HAS_WATER},
-                              [QUANTITY_PG]      = {"p_g", HAS_GAS},
-                              [QUANTITY_T]       = {"T", HAS_HEAT},
-                              [QUANTITY_SH]      = {"S_h", HAS_ALL},
-                              [QUANTITY_SW]      = {"S_w", HAS_WATER},
-                              [QUANTITY_SG]      = {"S_g", HAS_GAS},
-                              [QUANTITY_U]       = {"u", HAS_SOLID},
-                              [QUANTITY_STRESS]  = {"stress", HAS_SOLID},
-                              [QUANTITY_X]       = {"x", HAS_ALL},
-                              [QUANTITY_MEAN]    = {"p_eff", HAS_PLASTIC},
-                              [QUANTITY_Q]       = {"q", HAS_PLASTIC},
-                              [QUANTITY_STRAIN]  = {"strain", HAS_PLASTIC},
-                              [QUANTITY_YIELD]   = {"yield", HAS_PLASTIC},
-                              [QUANTITY_HISTORY] = CL_SKELETON_HISTORY(HISTORY_ROW)};
+} quantity[QUANTITY_COUNT] = {CL_QUANTITIES(ROW)[QUANTITY_HISTORY] =
+                                  CL_SKELETON_HISTORY(HISTORY_ROW) CL_QUANTITIES_BEHIND(ROW)};
 
 /* The quantity of this name, QUANTITY_COUNT if there is none. */
 static int Find(const char *word)

@@ -187,21 +187,48 @@ static bool Overlap(const Scene *c, PetscInt i, PetscInt j)
   return AnyPlace(c, i, IsInside, &j) || AnyPlace(c, j, IsInside, &i);
 }
 
-void CheckOverlap(Reader *r, const Scene *c)
+/* Region j of the list lies over region i, an earlier one, and wins: its shape is cut out of that. */
+static PetscErrorCode Cut(const Reader *r, Case *c, PetscInt i, PetscInt j)
 {
-  for (PetscInt i = 0; i < c->nregion; i++) {
-    const Region *g = &c->region[i];
+  Region   *g     = &c->scene.region[i];
+  Names    *minus = &g->minus;
+  PetscInt *more;
 
-    if (!RegionEmpty(g) && !AnyPlace(c, i, NULL, NULL)) {
-      FAIL_AT(GROUP_REGION, g->name, g->minus.n ? "minus" : shape_key[g->shape],
-              "the region keeps no particle: no centre of one lies inside");
-      r->bad[GROUP_REGION] = true;
-    }
-    for (PetscInt j = 0; j < i; j++) {
-      if (Overlap(c, i, j))
-        FAIL_AT(GROUP_REGION, g->name, shape_key[g->shape], "the region overlaps region %s", c->region[j].name);
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(minus->n + 1, &more));
+  PetscCall(PetscArraycpy(more, minus->i, minus->n));
+  more[minus->n++] = j;
+  PetscCall(PetscFree(minus->i));
+  minus->i = more;
+  for (PetscInt k = 0; k < c->nstage; k++) {
+    if (c->stage[k].c.scene.region != c->scene.region)
+      c->stage[k].c.scene.region[i].minus = *minus;
+  }
+  if (r->rank == 0)
+    fprintf(stderr, "%s: note: region %s lies over region %s, which is cut out there: the later one in regions wins\n",
+            r->file, c->scene.region[j].name, g->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RegionsCut(Reader *r, Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < c->scene.nregion; i++) {
+    for (PetscInt j = i + 1; j < c->scene.nregion; j++) {
+      if (Overlap(&c->scene, i, j))
+        PetscCall(Cut(r, c, i, j));
     }
   }
+  for (PetscInt i = 0; i < c->scene.nregion; i++) {
+    const Region *g = &c->scene.region[i];
+
+    if (RegionEmpty(g) || AnyPlace(&c->scene, i, NULL, NULL))
+      continue;
+    FAIL_AT(GROUP_REGION, g->name, g->minus.n ? "minus" : shape_key[g->shape],
+            "the region keeps no particle: no centre of one lies inside");
+    r->bad[GROUP_REGION] = true;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------------------------------------------------------------- faces */

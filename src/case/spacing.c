@@ -5,6 +5,7 @@
 #include "case_private.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <strings.h>
 
 #define FIT 1e-9 /* of a length: as good as equal */
@@ -204,21 +205,33 @@ static void Count(Reader *r, Scene *c, int d, PetscInt cells)
   c->cells[d] = cells;
 }
 
+/* The table's values, from "{table: [...]}" in one word, as the command line gives it, or its own key; NULL: there is
+ * none. */
+static const char *TableOf(const Scene *c, int d, char inner[SPACING])
+{
+  int form;
+
+  if (c->table[d][0] || c->spacing[d][0] != '{')
+    return c->table[d][0] ? c->table[d] : NULL;
+  form = FormInBraces(c->spacing[d], inner);
+  return form > 0 && !strcmp(case_schedule_form[form], "_table") ? inner : NULL;
+}
+
 static PetscErrorCode TakeAxis(Reader *r, Scene *c, int d)
 {
-  const bool table = c->table[d][0];
-  char       key[32];
-  Making     m = {.r = r, .key = key, .lower = c->lower[d], .upper = c->upper[d]};
-  List       list;
-  bool       equal = true;
+  char        key[32], inner[SPACING];
+  const char *table = TableOf(c, d, inner);
+  Making      m     = {.r = r, .key = key, .lower = c->lower[d], .upper = c->upper[d]};
+  List        list;
+  bool        equal = true;
 
   PetscFunctionBeginUser;
-  snprintf(key, sizeof key, "grid_spacing_%c%s", "xy"[d], table ? "_table" : "");
-  if (table && c->spacing[d][0])
+  snprintf(key, sizeof key, "grid_spacing_%c%s", "xy"[d], c -> table[d][0] ? "_table" : "");
+  if (c->table[d][0] && c->spacing[d][0])
     FAIL_AT(GROUP_CASE, "", key, "and grid_spacing_%c are two ways to say the same: give one", "xy"[d]);
   PetscCall(PetscMalloc1(MOST + 1, &m.place));
   m.place[0] = m.lower;
-  ListCreate(table ? c->table[d] : c->spacing[d], &list);
+  ListCreate(table ? table : c->spacing[d], &list);
   if ((table ? TakeTable(&m, &list) : TakeSizes(&m, &list)) && Gentle(&m, &equal)) {
     Count(r, c, d, m.cells);
     if (!equal)

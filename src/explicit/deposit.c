@@ -50,7 +50,7 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
 
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
-    RetentionGasShareBatch(&mat->retention, r.n, pc, sg, ds);
+    RetentionGasShareBatch(&mat->retention, r.n, pc, w->Sh, sg, ds);
     GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     for (int q = 0; q < r.n; q++) {
       w->sw[q]      = 1.0 - sg[q];
@@ -150,7 +150,7 @@ INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w
 INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Fluids *w, Values *v)
 {
   double *const *f  = e->m->P.f;
-  const int      at = A_Fluid(s, k), vel = k ? P_VG : P_VW, grad = k ? P_GG : P_GW;
+  const int      at = A_Fluid(s, k), vel = VectorAt(P_VW, k, 0), grad = VectorAt(P_GW, k, 0);
   const double *restrict V = f[P_V] + r.p, *restrict m = f[P_MW + k] + r.p;
   const double *restrict vx = f[vel] + r.p, *restrict vy = f[vel + 1] + r.p;
   const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
@@ -297,7 +297,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     v.value[q][A_K(s)] = V[q] * Conductance(e, s, r.p + q);
   BedsValues(e, s, r, &v);
   for (int k = 0; k < s.fluids; k++) {
-    const double *g[CL_DIM] = {f[k ? P_GG : P_GW] + r.p, f[(k ? P_GG : P_GW) + 1] + r.p};
+    const double *g[CL_DIM] = {f[VectorAt(P_GW, k, 0)] + r.p, f[VectorAt(P_GW, k, 1)] + r.p};
 
     Carried(r, k, V, f[P_PW + k] + r.p, g, &w, &v);
     FluidValues(e, s, r, k, &state, &v);

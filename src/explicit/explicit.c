@@ -243,8 +243,8 @@ static PetscErrorCode ActingForces(Explicit *e)
 PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
 {
   PetscFunctionBeginUser;
-  e->m->status = CL_OK;
-  e->ahead     = 0.0;
+  ModelClearFailure(e->m);
+  e->ahead = 0.0;
   PetscCall(Ready(e));
   if (e->o.mass_scaling > 1.0)
     PetscCall(ActingForces(e));
@@ -256,11 +256,11 @@ PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
 static PetscErrorCode Agree(Explicit *e, ClStatus *status)
 {
   Model   *m       = e->m;
-  int      flag[3] = {m->status != CL_OK, e->stale, e->strays};
+  int      flag[3] = {ModelFailure(m)->status != CL_OK, e->stale, e->strays};
   PetscInt left;
 
   PetscFunctionBeginUser;
-  *status = m->status;
+  *status = ModelFailure(m)->status;
   if (m->grid.size > 1) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 3, MPI_INT, MPI_MAX, m->grid.comm));
     if (flag[0])
@@ -324,7 +324,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   Model *m = e->m;
 
   PetscFunctionBeginUser;
-  m->status = CL_OK;
+  ModelClearFailure(m);
   e->latent = e->advected = e->squeezed = 0.0;
   e->ahead += dt;
   PetscCall(PetscArrayzero(e->work, WORK_RATES));

@@ -99,7 +99,7 @@ static void Inputs(const Explicit *e, const Face *f, double in[IN_COUNT])
   for (int k = 0; k < s.fluids; k++) {
     in[IN_P + k] = P[P_PW + k][p];
     for (int d = 0; d < CL_DIM; d++)
-      in[IN_GP + 2 * k + d] = P[(k ? P_GG : P_GW) + d][p];
+      in[VectorAt(IN_GP, k, d)] = P[VectorAt(P_GW, k, d)][p];
   }
   for (int d = 0; s.heat && d < CL_DIM; d++)
     in[IN_GT + d] = P[P_GT + d][p];
@@ -120,9 +120,9 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   for (int d = 0; e->set.solid && d < CL_DIM; d++)
     velocity[d] = e->m->P.f[P_VS + d][f->particle];
   ModelInitialAtFace(e->m, f, p0);
-  if (f->bc[BC_FACE_TEMPERATURE] >= 0) /* the only condition that asks for a conductivity */
+  if (f->bc[BC_FACE_TEMPERATURE] >= 0 || mat->retention.hydrate > 0.0) /* who else asks for conductivity or S_h? */
     ModelParticleProperties(e->m, f->particle, &q, &why);
-  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, in, velocity, q.kappa, dt, o);
+  FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, q.Sh, in, velocity, q.kappa, dt, o);
 }
 
 /* Tractions, and for the fluids what a prescribed pressure differs from the body's own at the face. */
@@ -149,7 +149,7 @@ void FacesForces(Explicit *e, double dt)
       const double p = FacePressure(f, ph, in);
 
       for (int d = 0; d < CL_DIM; d++)
-        force[ph][d] = -o.out[F_VWX + 2 * ph + d] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
+        force[ph][d] = -o.out[VectorAt(F_VWX, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
     }
     for (int ph = 0; s.beds && ph < s.fluids; ph++) {
       const Beds A = BedsAt(e, f->particle);
@@ -200,7 +200,7 @@ static void Fluxes(const Explicit *e, const Face *f, const Nodes *r, double in[I
   for (int a = 0; a < r->n; a++) {
     for (int ph = 0; ph < s.fluids; ph++) {
       for (int d = 0; d < CL_DIM; d++)
-        in[IN_J + 2 * ph + d] += conduct * f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
+        in[VectorAt(IN_J, ph, d)] += conduct * f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
     }
   }
 }

@@ -85,15 +85,15 @@ INLINE int A_Count(Set s)
 enum { B_J = 0, B_PROJ = 2, B_DV = 4, B_VEL = 6, B_PER_FLUID = 8 };
 INLINE int B_T(Set s)
 {
-  return 2 * s.solid;
+  return CL_DIM * s.solid;
 }
 INLINE int B_P(Set s, int f)
 {
-  return 2 * s.solid + s.heat + f;
+  return CL_DIM * s.solid + s.heat + f;
 }
 INLINE int B_Fluid(Set s, int f)
 {
-  return 2 * s.solid + s.heat + s.fluids + B_PER_FLUID * f;
+  return CL_DIM * s.solid + s.heat + s.fluids + B_PER_FLUID * f;
 }
 INLINE int B_DVs(Set s)
 {
@@ -101,7 +101,7 @@ INLINE int B_DVs(Set s)
 }
 INLINE int B_Count(Set s)
 {
-  return B_DVs(s) + 2 * s.solid;
+  return B_DVs(s) + CL_DIM * s.solid;
 }
 
 /* ... and to nodes: what is missing of each scalar, then the matrix that says what a change of the scalars makes of it.
@@ -135,21 +135,22 @@ enum {
   T_T = 0, /* degC, where heat has no field */
   T_SG,    /* share of gas and its slope */
   T_DS,
-  T_RHO,                  /* [2] densities of the fluids */
-  T_GAS     = T_RHO + 2,  /* [2] slopes of that of the gas in p_g and T */
-  T_DRAG    = T_GAS + 2,  /* [2] mu/(k_a k_r) */
-  T_CONDUCT = T_DRAG + 2, /* weight of its flow at t_n (350); with layers */
-  T_BEDS,                 /* [3] A at t_n (306): xx, yy, xy; with beds */
-  T_V = T_BEDS + 3,       /* volume at the end of the step */
-  T_EOS,                  /* [2] masses at that volume and the old pressures */
-  T_SLOPE = T_EOS + 2,    /* [2][3] their slopes in p_w, p_g, T */
-  T_WARM  = T_SLOPE + 6,  /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
-  T_GAIN  = T_WARM + 2,   /* hydrate: gain at the old p and T, slopes in p and T */
+  T_RHO,                            /* [2] densities of the fluids */
+  T_GAS     = T_RHO + PHASE_COUNT,  /* [2] slopes of that of the gas in p_g and T */
+  T_DRAG    = T_GAS + 2,            /* [2] mu/(k_a k_r) */
+  T_CONDUCT = T_DRAG + PHASE_COUNT, /* weight of its flow at t_n (350); with layers */
+  T_BEDS,                           /* [3] A at t_n (306): xx, yy, xy; with beds */
+  T_V = T_BEDS + 3,                 /* volume at the end of the step */
+  T_EOS,                            /* [2] masses at that volume and the old pressures */
+  T_SLOPE = T_EOS + PHASE_COUNT,    /* [2][3] their slopes in p_w, p_g, T */
+  T_WARM =
+      T_SLOPE + 3 * PHASE_COUNT, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
+  T_GAIN = T_WARM + PHASE_COUNT, /* hydrate: gain at the old p and T, slopes in p and T */
   T_GAIN_P,
   T_GAIN_T,
   T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
-  T_LOCAL = T_MISS + 2,
-  T_COUNT = T_LOCAL + 6
+  T_LOCAL = T_MISS + PHASE_COUNT,
+  T_COUNT = T_LOCAL + 3 * PHASE_COUNT
 };
 
 typedef struct {
@@ -376,16 +377,20 @@ INLINE void PressuresOf(double p_g, const double y[2], double d[2])
   d[1] = gas;
 }
 
-/* Water and methane of a unit of open pore space at t_n, kg/m^3: two fluids, with p_g of then. */
-INLINE void PerOpenVolume(const Explicit *e, Run r, const double *restrict pg, double held[PHASE_COUNT][BLOCK])
+/* (322): water and methane that a unit of hydrate displaces at t_n, kg/m^3: two fluids, with p_w and p_g of then. */
+INLINE void PerHydrateVolume(const Explicit *e, Run r, const double *restrict pw, const double *restrict pg,
+                             double held[PHASE_COUNT][BLOCK])
 {
   const double *restrict sg = e->t[T_SG] + r.p, *restrict rho_w = e->t[T_RHO] + r.p,
-                         *restrict rho_g = e->t[T_RHO + 1] + r.p;
-  const double H                         = r.mat->gas.trace;
+                         *restrict rho_g = e->t[T_RHO + 1] + r.p, *restrict ds = e->t[T_DS] + r.p;
+  const double H = r.mat->gas.trace, n = r.mat->retention.hydrate;
 
   for (int q = 0; q < r.n; q++) {
-    held[PHASE_W][q] = WaterContent(sg[q], rho_w[q]).v;
-    held[PHASE_G][q] = MethaneContent(H, sg[q], rho_g[q], pg[q]).v;
+    const Content water = WaterContent(sg[q], rho_w[q]), methane = MethaneContent(H, sg[q], rho_g[q], pg[q]);
+    const double  drains = n * (pg[q] - pw[q]) * ds[q]; /* -(1 - S_h) ds_g/dS_h (320) */
+
+    held[PHASE_W][q] = water.v + water.sg * drains;
+    held[PHASE_G][q] = methane.v + methane.sg * drains;
   }
 }
 

@@ -24,10 +24,10 @@ static void Stiffness(const Set s, const Material *mat, const PointProperties *q
     C[0][0] = 1.0 / q->storage[PHASE_W];
     return;
   }
-  double       ds;
+  double       ds, ds_dSh;
   const double open = q->phi * (1.0 - q->Sh);
 
-  RetentionGasShare(&mat->retention, pc, &ds);
+  RetentionGasShare(&mat->retention, pc, q->Sh, &ds, &ds_dSh);
   const double c = open * ds, det = q->storage[PHASE_W] * q->storage[PHASE_G] - c * c;
 
   C[0][0] = q->storage[PHASE_G] / det;

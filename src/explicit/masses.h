@@ -47,17 +47,19 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double
   const Kinetics *kin             = &r.mat->kinetics;
   const double    nu[PHASE_COUNT] = {KineticsWater(kin), KineticsMethane(kin)};
   double         *mw = f[P_MW] + r.p, *mg = f[P_MG] + r.p, *mh = f[P_MH] + r.p; /* read by HeatOf, too */
-  const double   *pg = f[P_PG] + r.p, *now = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
-  double wanted[BLOCK], gain[BLOCK], T[BLOCK], p[BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, held[PHASE_COUNT][BLOCK];
-  int    fewer = 0;
+  const double   *pw = f[P_PW] + r.p, *pg = f[P_PG] + r.p, *now = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
+  double          wanted[BLOCK], gain[BLOCK], T[BLOCK], p[PHASE_COUNT][BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0},
+                                                                                    held[PHASE_COUNT][BLOCK];
+  int fewer = 0;
 
   GainOf(e, s, r, g, wanted, gain);
   for (int q = 0; q < r.n; q++) { /* at t_n */
-    T[q] = now[q] - (s.heat ? g->value[q][2] : 0.0);
-    p[q] = pg[q] - g->value[q][1];
+    T[q]          = now[q] - (s.heat ? g->value[q][2] : 0.0);
+    p[PHASE_W][q] = pw[q] - g->value[q][0];
+    p[PHASE_G][q] = pg[q] - g->value[q][1];
   }
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
-  PerOpenVolume(e, r, p, held);
+  PerHydrateVolume(e, r, p[PHASE_W], p[PHASE_G], held);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     mw[q] += Displaced(held[PHASE_W][q], rho_h[q]) * wanted[q] + nu[PHASE_W] * (wanted[q] - gain[q]);
@@ -125,10 +127,9 @@ INLINE void GasOfMethane(Explicit *e, const Set s, Run r, const Gathered *g)
 
     if (fabs(dp - g->value[q][0]) <= STRAIGHT * p0)
       continue;
-    const double open = PoresOf(e->t[T_V][p], f[P_MS][p], LiquidDensity(&r.mat->solid, 0.0, T, &drho, &dT), f[P_MH][p],
-                                LiquidDensity(&r.mat->hydrate, 0.0, T, &drho, &dT))
-                            .open;
+    const Pores v = PoresOf(e->t[T_V][p], f[P_MS][p], LiquidDensity(&r.mat->solid, 0.0, T, &drho, &dT), f[P_MH][p],
+                            LiquidDensity(&r.mat->hydrate, 0.0, T, &drho, &dT));
 
-    f[P_PG][p] = PointGasPressure(r.mat, f[P_MG][p] / open, f[P_PW][p], T, pg - dp, pg);
+    f[P_PG][p] = PointGasPressure(r.mat, f[P_MG][p] / v.open, v.Sh, f[P_PW][p], T, pg - dp, pg);
   }
 }

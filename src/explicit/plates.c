@@ -49,13 +49,11 @@ static bool Acts(const Explicit *e, const Face *f, int d)
 
 static void Check(Model *m, const Face *f)
 {
-  char           text[sizeof(m->text)];
-  const ClStatus status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->bc[BC_PLATE]], text, sizeof(text));
+  char           why[CL_WHY];
+  const ClStatus status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->bc[BC_PLATE]], why, sizeof(why));
 
-  if (status == CL_OK || m->status != CL_OK)
-    return;
-  snprintf(m->text, sizeof(m->text), "%s", text);
-  ModelNoteFailure(m, status, m->text, f->particle);
+  if (status != CL_OK)
+    ModelNoteFailure(m, status, why, f->particle);
 }
 
 void PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[])

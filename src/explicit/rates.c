@@ -62,7 +62,7 @@ INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
     if (s.solid)
       Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], width);
     for (int k = 0; k < s.fluids; k++)
-      Blend(e->o.flip, r.n, e->m->P.f[(k ? P_VG : P_VW) + d] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
+      Blend(e->o.flip, r.n, e->m->P.f[VectorAt(P_VW, k, d)] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
             &g->value[0][B_Fluid(s, k) + B_VEL + d], width);
   }
 }
@@ -73,8 +73,28 @@ typedef struct {
 
 /* Volumes of a block's particles at the end of the step, with the hydrate of t_n. */
 typedef struct {
-  double rho_h[BLOCK], pore[BLOCK], open[BLOCK], open_T[BLOCK], phi[BLOCK], Sh[BLOCK]; /* open_T: slope in T */
+  double rho_h[BLOCK], pore[BLOCK], open[BLOCK], phi[BLOCK], Sh[BLOCK];
+  double open_T[BLOCK], sg_T[BLOCK]; /* slopes in T */
 } Volumes;
+
+/* (320) in these volumes, which change S_h; so does T. */
+INLINE void SharesOf(Explicit *e, Run r, const double *restrict rho_s, Volumes *o)
+{
+  const Material *mat       = r.mat;
+  double *const  *f         = e->m->P.f;
+  const double *restrict pw = f[P_PW] + r.p, *restrict pg = f[P_PG] + r.p, *restrict ms = f[P_MS] + r.p;
+  double *restrict sg = e->t[T_SG] + r.p, *restrict ds = e->t[T_DS] + r.p;
+  double pc[BLOCK];
+
+  for (int q = 0; q < r.n; q++)
+    pc[q] = pg[q] - pw[q];
+  RetentionGasShareBatch(&mat->retention, r.n, pc, o->Sh, sg, ds);
+  for (int q = 0; q < r.n; q++) {
+    const double Sh_T = o->Sh[q] * (mat->hydrate.beta + mat->solid.beta * ms[q] / (rho_s[q] * o->pore[q]));
+
+    o->sg_T[q] = RetentionHydrateSlope(&mat->retention, pc[q], o->Sh[q], ds[q]) * Sh_T;
+  }
+}
 
 INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T, const Gathered *g, double dt,
                       Volumes *o)
@@ -101,7 +121,10 @@ INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T,
     o->phi[q]    = v.phi;
     o->Sh[q]     = v.Sh;
     o->open_T[q] = -beta_s * ms[q] / rho_s[q] - beta_h * mh[q] / o->rho_h[q];
+    o->sg_T[q]   = 0.0;
   }
+  if (s.fluids == 2 && mat->retention.hydrate > 0.0)
+    SharesOf(e, r, rho_s, o);
 }
 
 /* Where the mass of a fluid and its slopes stand. */
@@ -135,7 +158,8 @@ INLINE void WaterMasses(Explicit *e, const Set s, Run r, const Volumes *v)
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++)
     KeepMass(&o, q, PHASE_W,
-             MassOf(WaterContent(sg[q], rho[q]), v->open[q], v->open_T[q], -ds[q], per_K * rho[q], -beta * rho[q]));
+             MassOf(WaterContent(sg[q], rho[q]), v->open[q], v->open_T[q], -ds[q], v->sg_T[q], per_K * rho[q],
+                    -beta * rho[q]));
 }
 
 INLINE void MethaneMasses(Explicit *e, Run r, const Volumes *v)
@@ -147,7 +171,8 @@ INLINE void MethaneMasses(Explicit *e, Run r, const Volumes *v)
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++)
     KeepMass(&o, q, PHASE_G,
-             MassOf(MethaneContent(H, sg[q], rho[q], pg[q]), v->open[q], v->open_T[q], ds[q], rho_p[q], rho_T[q]));
+             MassOf(MethaneContent(H, sg[q], rho[q], pg[q]), v->open[q], v->open_T[q], ds[q], v->sg_T[q], rho_p[q],
+                    rho_T[q]));
 }
 
 /* Gain of hydrate over the step at the nodal p and T, and its slopes: dissociation implicit in S_h, formation
@@ -206,7 +231,7 @@ INLINE void CarriedFlux(const Explicit *e, const Set s, Run r, const Gathered *g
 INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathered *g, double dt, Given *o)
 {
   double *const *f  = e->m->P.f;
-  const int      at = B_Fluid(s, k), n = Scalars(s), grad = k ? P_GG : P_GW;
+  const int      at = B_Fluid(s, k), n = Scalars(s), grad = VectorAt(P_GW, k, 0);
   const double   bracket   = e->m->c->stabilisation.flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
                scale       = e->o.mass_scaling / dt;
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
@@ -266,7 +291,7 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
     for (int k = 0; k < s.fluids; k++) {
       for (int d = 0; d < CL_DIM; d++)
-        a[d] += (k ? r.mat->c_g : r.mat->c_w) * o->force[d][q][k] / (dt * V);
+        a[d] += SpecificHeat(r.mat, k) * o->force[d][q][k] / (dt * V);
     }
     HeatUpwind(kappa[q], a, h, K);
     o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
@@ -355,7 +380,7 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   double held[PHASE_COUNT][BLOCK], L[BLOCK];
 
   LatentHeatBatch(&r.mat->latent, r.n, T, L);
-  PerOpenVolume(e, r, e->m->P.f[P_PG] + r.p, held);
+  PerHydrateVolume(e, r, e->m->P.f[P_PW] + r.p, e->m->P.f[P_PG] + r.p, held);
   for (int row = 0; row < n; row++) {
 #pragma GCC ivdep
     for (int q = 0; q < r.n; q++) {

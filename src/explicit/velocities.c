@@ -177,7 +177,7 @@ INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, int d, const 
   double       sum  = 0.0, held;
 
   for (int k = 0; k < s.fluids; k++) {
-    const int    at   = F_VWX + 2 * k + d;
+    const int    at   = VectorAt(F_VWX, k, d);
     const double end  = Held(e, I, at, &held) ? held : v[1 + k];
     const double slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
 
@@ -196,7 +196,7 @@ INLINE void KeepVelocities(Explicit *e, const Set s, PetscInt I, int d, const Ba
     e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(b, e->o.damping) * 0.5 * (v[0] + b->v);
   e->inc[6 * I + d] = v[0] - b->v;
   for (int k = 0; k < s.fluids; k++)
-    e->inc[6 * I + 2 * (1 + k) + d] = s.layers ? b->flow * (v[1 + k] - v[0]) : v[1 + k] - b->vf[k];
+    e->inc[6 * I + VectorAt(0, 1 + k, d)] = s.layers ? b->flow * (v[1 + k] - v[0]) : v[1 + k] - b->vf[k];
   if (!held) /* of the mixture, which moves with the skeleton but for seepage */
     e->added += PetscSqr((e->o.mass_scaling - 1.0) * b->M * (v[0] - b->v) / dt);
 }
@@ -231,7 +231,7 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
   double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double own = Mean(e, I, F_VWX + 2 * k + d, w->vf[k], v[1 + k]), flow = w->w[k] * (own - mean);
+    const double own = Mean(e, I, VectorAt(F_VWX, k, d), w->vf[k], v[1 + k]), flow = w->w[k] * (own - mean);
 
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
@@ -251,7 +251,7 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
    permeability (311). */
 INLINE double FluidVelocity(const Explicit *e, const Set s, PetscInt I, const Balance *w, int k, int d, double v_s)
 {
-  const double shared = Blended(e, I, e->node[I].own_v, 6, e->inc, 2 * (1 + k) + d);
+  const double shared = Blended(e, I, e->node[I].own_v, 6, e->inc, VectorAt(0, 1 + k, d));
 
   return s.layers ? v_s + shared / w->flow : w->vf[k] + shared;
 }
@@ -280,7 +280,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       double       *bf = &b[B_Fluid(s, k)];
 
       v[1 + k] = FluidVelocity(e, s, I, &w, k, d, v[0]);
-      if (Held(e, I, F_VWX + 2 * k + d, &value))
+      if (Held(e, I, VectorAt(F_VWX, k, d), &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -w.flow * f[FL_GX + d] * per_V;

@@ -1,24 +1,52 @@
-/* What probes and snapshots compute from a particle's state: invariants of stress and strain, distance to yield. */
+/* What probes and snapshots compute from a particle's state, a row each: pressure and saturation, invariants of stress
+   and strain, distance to yield. */
 #include "io_private.h"
 
 #include "clathra/kinematics.h"
 #include "clathra/point.h"
 
-double DerivedStress(const Particles *P, PetscInt p, bool deviator)
+static double Pressure(const Model *m, PetscInt p)
+{
+  return ParticlePressure(&m->P, p);
+}
+
+static double GasSaturation(const Model *m, PetscInt p)
+{
+  return 1.0 - m->P.f[P_SH][p] - m->P.f[P_SW][p];
+}
+
+static void Stress(const Model *m, PetscInt p, double s[6])
+{
+  for (int k = 0; k < 6; k++)
+    s[k] = m->P.f[P_SIG + k][p];
+}
+
+/* Mean effective stress, compression-positive. */
+static double MeanStress(const Model *m, PetscInt p)
 {
   double s[6];
 
-  for (int k = 0; k < 6; k++)
-    s[k] = P->f[P_SIG + k][p];
-  return deviator ? Mises6(s) : -Trace6(s) / 3.0;
+  Stress(m, p, s);
+  return -Trace6(s) / 3.0;
 }
 
-double DerivedShear(const Scene *c, const Particles *P, PetscInt p)
+/* sqrt(3 J2) of the stress. */
+static double Deviator(const Model *m, PetscInt p)
 {
-  double     u[MOTION_COUNT] = {P->f[P_F][p] - 1.0, P->f[P_F + 1][p], P->f[P_F + 2][p], P->f[P_F + 3][p] - 1.0};
-  Kinematics k;
+  double s[6];
 
-  if (c->axisymmetric)
+  Stress(m, p, s);
+  return Mises6(s);
+}
+
+/* Deviatoric logarithmic strain since the start, sqrt(2/3 dev e : dev e). */
+static double Shear(const Model *m, PetscInt p)
+{
+  const Particles *P               = &m->P;
+  double           u[MOTION_COUNT] = {P->f[P_F][p] - 1.0, P->f[P_F + 1][p], P->f[P_F + 2][p], P->f[P_F + 3][p] - 1.0};
+  Kinematics       k;
+
+  if (m->c->axisymmetric)
     u[MOTION_HOOP] = P->f[P_X][p] / P->f[P_X0][p] - 1.0;
   if (!KinematicsEvaluate(u, &k))
     return NAN;
@@ -26,7 +54,8 @@ double DerivedShear(const Scene *c, const Particles *P, PetscInt p)
   return sqrt(2.0 / 3.0 * (x * x + y * y + z * z + 2.0 * k.e[2] * k.e[2]));
 }
 
-double DerivedMargin(const Model *m, PetscInt p)
+/* Distance to yield; NaN for a particle that cannot. */
+static double Margin(const Model *m, PetscInt p)
 {
   const SkeletonStore store = ParticlesSkeleton(&m->P, 0, 0.0);
   SkeletonHistory     h;
@@ -34,3 +63,18 @@ double DerivedMargin(const Model *m, PetscInt p)
   SkeletonTake(&store, p, &h);
   return SkeletonMargin(&m->c->material[m->c->region[m->P.i[PI_REGION][p]].material], m->P.f[P_SH][p], &h);
 }
+
+static double Yields(const Model *m, PetscInt p)
+{
+  return m->P.f[P_YIELD][p] != (double)RETURN_ELASTIC;
+}
+
+const DerivedQuantity io_derived[] = {
+    [DERIVED_P]      = {"p", "Pa", HAS_WATER, Pressure, true},
+    [DERIVED_SG]     = {"S_g", "-", HAS_GAS, GasSaturation, true},
+    [DERIVED_MEAN]   = {"p_eff", "Pa", HAS_PLASTIC, MeanStress, true},
+    [DERIVED_Q]      = {"q", "Pa", HAS_PLASTIC, Deviator, true},
+    [DERIVED_SHEAR]  = {"eps_d", "-", HAS_PLASTIC, Shear, true},
+    [DERIVED_MARGIN] = {"yield_distance", "Pa", HAS_PLASTIC, Margin, true},
+    [DERIVED_YIELDS] = {"yields", "-", HAS_PLASTIC, Yields, false}, /* a snapshot has `yield` of the store */
+    {NULL, NULL, 0, NULL, false}};

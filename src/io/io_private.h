@@ -39,18 +39,29 @@ typedef struct {
 } NodalVariable;
 extern const NodalVariable io_nodal[]; /* NULL name ends it */
 
-/* Variables of a snapshot beside cl_particle_variable. */
+/* What is computed from a particle's state: columns of probes and, but for some, variables of a snapshot (derived.c).
+ */
+enum {
+  DERIVED_P = 0,
+  DERIVED_SG,
+  DERIVED_MEAN,
+  DERIVED_Q,
+  DERIVED_SHEAR,
+  DERIVED_MARGIN,
+  DERIVED_YIELDS,
+  DERIVED_COUNT
+};
 typedef struct {
   const char *name, *unit;
-  bool        integer;
   unsigned    has; /* fields any of which it goes with */
-} ExtraVariable;
-extern const ExtraVariable io_extra[]; /* NULL name ends it */
+  double (*of)(const Model *m, PetscInt p);
+  bool snapshots;
+} DerivedQuantity;
+extern const DerivedQuantity io_derived[]; /* NULL name ends it */
 
-static inline double GasSaturation(const Particles *P, PetscInt p)
-{
-  return 1.0 - P->f[P_SH][p] - P->f[P_SW][p];
-}
+/* Integers of a particle in a snapshot. */
+enum { WHOLE_REGION = 0, WHOLE_ID, WHOLE_VERTEX, WHOLE_COUNT };
+extern const char *const io_whole[WHOLE_COUNT];
 
 /* ---------------------------------------------------------------- file.c: rank 0.  false: stderr has the reason */
 typedef struct {
@@ -101,11 +112,6 @@ enum {
 };
 bool   ProbeWanted(const Case *c, int q);
 double ProbeQuantity(const Model *m, PetscInt p, int q);
-/* derived.c: mean effective stress, compression-positive, or sqrt(3 J2), Pa; deviatoric logarithmic strain
-   sqrt(2/3 dev e : dev e) since the start; distance to yield, Pa (NaN for a particle that cannot). */
-double DerivedStress(const Particles *P, PetscInt p, bool deviator);
-double DerivedShear(const Scene *c, const Particles *P, PetscInt p);
-double DerivedMargin(const Model *m, PetscInt p);
 /* means.c: is this probe one?  This rank's sums of weights times values, and of weights (m^3 or m^2), of all that are.
  */
 static inline bool ProbeIsMean(const Probe *p)

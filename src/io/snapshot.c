@@ -1,7 +1,7 @@
 /* A snapshot, fields/000000.h5: the particles, sorted by id, and the nodal fields.
 
-     /particles/<variable>   n x components; those of cl_particle_variable and io_extra; `vertex` = 0, 1, 2, ...
-     /grid/<field>           rows (y) x columns (x) of all grid nodes (x components), NaN where inactive
+     /particles/<variable>   n x components; those of cl_particle_variable, io_derived and io_whole; `vertex` = 0, 1, 2,
+   ... /grid/<field>           rows (y) x columns (x) of all grid nodes (x components), NaN where inactive
 
    with the attribute `time` (s) on file and groups and `unit` on each dataset.  The nodal fields are those the last
    step started from (projections of the particles).  A file each, for a file that is rewritten may be lost with all. */
@@ -11,13 +11,7 @@ const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VSX, 2}, {"v_w", "m/s", F_VWX
                                   {"p_w", "Pa", F_PW, 1},   {"p_g", "Pa", F_PG, 1},   {"T", "degC", F_T, 1},
                                   {NULL, NULL, 0, 0}};
 
-enum { X_P = 0, X_SG, X_MEAN, X_Q, X_SHEAR, X_MARGIN, X_REGION, X_ID, X_VERTEX };
-const ExtraVariable io_extra[] = {
-    [X_P] = {"p", "Pa", false, HAS_WATER},          [X_SG] = {"S_g", "-", false, HAS_GAS},
-    [X_MEAN] = {"p_eff", "Pa", false, HAS_PLASTIC}, [X_Q] = {"q", "Pa", false, HAS_PLASTIC},
-    [X_SHEAR] = {"eps_d", "-", false, HAS_PLASTIC}, [X_MARGIN] = {"yield_distance", "Pa", false, HAS_PLASTIC},
-    [X_REGION] = {"region", "-", true, HAS_ALL},    [X_ID] = {"id", "-", true, HAS_ALL},
-    [X_VERTEX] = {"vertex", "-", true, HAS_ALL},    {NULL, NULL, false, 0}};
+const char *const io_whole[WHOLE_COUNT] = {"region", "id", "vertex"};
 
 typedef struct {
   hid_t          file, group; /* rank 0 */
@@ -43,50 +37,41 @@ static PetscErrorCode StartFile(Writer *w, const StepperState *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static double Extra(const Model *m, PetscInt p, int k)
+static PetscErrorCode WriteDerived(Writer *w, const Model *m, Gather *g)
 {
-  switch (k) {
-  case X_P:
-    return ParticlePressure(&m->P, p);
-  case X_SG:
-    return GasSaturation(&m->P, p);
-  case X_SHEAR:
-    return DerivedShear(m->c, &m->P, p);
-  case X_MARGIN:
-    return DerivedMargin(m, p);
-  default:
-    return DerivedStress(&m->P, p, k == X_Q);
-  }
-}
-
-static PetscErrorCode WriteExtra(Writer *w, const Model *m, Gather *g)
-{
-  const Particles *P       = &m->P;
-  const hsize_t    n       = (hsize_t)g->total;
-  PetscInt        *integer = (PetscInt *)g->data;
-  double          *local;
+  const hsize_t n = (hsize_t)g->total;
+  double       *local;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(P->n, &local));
-  for (int k = 0; io_extra[k].name; k++) {
-    const ExtraVariable *v = &io_extra[k];
-
-    if (!(P->has & v->has))
+  PetscCall(PetscMalloc1(m->P.n, &local));
+  for (const DerivedQuantity *v = io_derived; v->name; v++) {
+    if (!v->snapshots || !(m->P.has & v->has))
       continue;
-    for (PetscInt p = 0; p < P->n && !v->integer; p++)
-      local[p] = Extra(m, p, k);
-    if (!v->integer)
-      PetscCall(GatherReals(g, local, 1, g->data));
-    else if (k == X_REGION)
-      PetscCall(GatherInts(g, P->i[PI_REGION], integer));
-    if (g->rank > 0 || w->ierr)
-      continue;
-    for (PetscInt p = 0; p < g->total && (k == X_ID || k == X_VERTEX); p++)
-      integer[p] = k == X_ID ? g->id[p] : p;
-    w->ierr =
-        H5Write(w->group, v->name, v->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, 1, &n, g->data, v->unit, true);
+    for (PetscInt p = 0; p < m->P.n; p++)
+      local[p] = v->of(m, p);
+    PetscCall(GatherReals(g, local, 1, g->data));
+    if (g->rank == 0 && !w->ierr)
+      w->ierr = H5Write(w->group, v->name, H5T_NATIVE_DOUBLE, 1, &n, g->data, v->unit, true);
   }
   PetscCall(PetscFree(local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteWhole(Writer *w, const Particles *P, Gather *g)
+{
+  const hsize_t n     = (hsize_t)g->total;
+  PetscInt     *whole = (PetscInt *)g->data;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < WHOLE_COUNT; k++) {
+    if (k == WHOLE_REGION)
+      PetscCall(GatherInts(g, P->i[PI_REGION], whole));
+    if (g->rank > 0 || w->ierr)
+      continue;
+    for (PetscInt p = 0; p < g->total && k != WHOLE_REGION; p++)
+      whole[p] = k == WHOLE_ID ? g->id[p] : p;
+    w->ierr = H5Write(w->group, io_whole[k], H5T_NATIVE_INT, 1, &n, whole, "-", true);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -182,7 +167,8 @@ PetscErrorCode OutputSnapshot(Output *out, const Model *m, const StepperState *s
     w.ierr = StartFile(&w, s);
   PetscCall(GatherCreate(m, &g));
   PetscCall(GatherVariables(&g, &m->P, true, w.group, &w.ierr));
-  PetscCall(WriteExtra(&w, m, &g));
+  PetscCall(WriteDerived(&w, m, &g));
+  PetscCall(WriteWhole(&w, &m->P, &g));
   PetscCall(GatherNodes(m, &nodes, &place, &x));
   if (grid->rank == 0) {
     const SnapshotEntry entry = {.number = s->next_snapshot, .n = g.total, .t = s->t, .grid = nodes > 0};

@@ -4,8 +4,6 @@
    layer of a 3-D mesh, for VTK's reader lays a 2DCoRectMesh into the y-z plane. */
 #include "io_private.h"
 
-#include <string.h>
-
 const char *const xdmf_name[] = {[XDMF_PARTICLES] = "particles", [XDMF_GRID] = "grid"};
 
 static void Item(FILE *f, const char *dims, bool integer, const char *kind, PetscInt number, const char *name)
@@ -38,7 +36,7 @@ static void ParticleGrid(FILE *f, const FieldSet *fs, const SnapshotEntry *e)
   fprintf(f, "      <Grid Name=\"particles_%06d\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n",
           (int)e->number, e->t);
   fprintf(f, "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%s\" NodesPerElement=\"1\">", n);
-  Item(f, n, true, "particles", e->number, "vertex");
+  Item(f, n, true, "particles", e->number, io_whole[WHOLE_VERTEX]);
   fprintf(f, "</Topology>\n        <Geometry GeometryType=\"XY\">");
   Item(f, n2, false, "particles", e->number, "position");
   fprintf(f, "</Geometry>\n");
@@ -46,9 +44,13 @@ static void ParticleGrid(FILE *f, const FieldSet *fs, const SnapshotEntry *e)
     if (v->first != P_X && (fs->has & v->has))
       Attribute(f, n, v->nc, false, "particles", e->number, v->name);
   }
-  for (const ExtraVariable *v = io_extra; v->name; v++) {
-    if (strcmp(v->name, "vertex") && (fs->has & v->has))
-      Attribute(f, n, 1, v->integer, "particles", e->number, v->name);
+  for (const DerivedQuantity *v = io_derived; v->name; v++) {
+    if (v->snapshots && (fs->has & v->has))
+      Attribute(f, n, 1, false, "particles", e->number, v->name);
+  }
+  for (int k = 0; k < WHOLE_COUNT; k++) {
+    if (k != WHOLE_VERTEX)
+      Attribute(f, n, 1, true, "particles", e->number, io_whole[k]);
   }
   fprintf(f, "      </Grid>\n");
 }

@@ -87,9 +87,39 @@ static const GasShare    laws[]  = {RETENTION_LAWS(FUNCTION)};
 RETENTION_LAWS(LOOP)
 static const GasShareLoop loops[] = {RETENTION_LAWS(LOOP_NAME)};
 
-void RetentionGasShareBatch(const Retention *law, int n, const double *pc, double *s, double *ds_dpc)
+#define FULL 1e-12 /* least 1 - S_h: pores that hydrate fills are refused elsewhere */
+#define PIECE 32
+
+double RetentionNarrowing(const Retention *law, double Sh)
 {
-  law->gas_share_loop(law, n, pc, s, ds_dpc);
+  return law->hydrate > 0.0 ? pow(LawAtLeast(1.0 - Sh, FULL), law->hydrate) : 1.0;
+}
+
+/* (320): d/dS_h of s_g((1 - S_h)^n p_c) */
+double RetentionHydrateSlope(const Retention *law, double pc, double Sh, double ds_dpc)
+{
+  return -law->hydrate * pc / LawAtLeast(1.0 - Sh, FULL) * ds_dpc;
+}
+
+void RetentionGasShareBatch(const Retention *law, int n, const double *pc, const double *Sh, double *s, double *ds_dpc)
+{
+  double bare[PIECE], r[PIECE];
+
+  if (law->hydrate == 0.0) {
+    law->gas_share_loop(law, n, pc, s, ds_dpc);
+    return;
+  }
+  for (int from = 0; from < n; from += PIECE) {
+    const int some = n - from < PIECE ? n - from : PIECE;
+
+    for (int q = 0; q < some; q++) {
+      r[q]    = RetentionNarrowing(law, Sh[from + q]);
+      bare[q] = r[q] * pc[from + q];
+    }
+    law->gas_share_loop(law, some, bare, s + from, ds_dpc + from);
+    for (int q = 0; q < some; q++)
+      ds_dpc[from + q] *= r[q];
+  }
 }
 
 /* The plateau s_g = S_gr of a clamped law ends at *pc; false for a law without one. */
@@ -99,9 +129,10 @@ static bool Plateau(const Retention *law, double *pc)
   return law->gas_share != Retention_VanGenuchten;
 }
 
-/* p_c (Pa) with s_g(p_c) = sg, by bisection of [-1e9, 1e9] down to neighbouring doubles (about 70 evaluations; used for
-   initial states only).  On a plateau p_c is its end.  False, and *pc untouched, if the law never reaches sg. */
-bool RetentionInvert(const Retention *law, double sg, double *pc)
+/* p_c (Pa) without hydrate with s_g(p_c) = sg, by bisection of [-1e9, 1e9] down to neighbouring doubles (about 70
+   evaluations; used for initial states only).  On a plateau p_c is its end.  False, and *pc untouched, if the law never
+   reaches sg. */
+static bool Invert(const Retention *law, double sg, double *pc)
 {
   double lo = -PC_MAX, hi = PC_MAX, end, d;
 
@@ -121,15 +152,25 @@ bool RetentionInvert(const Retention *law, double sg, double *pc)
   return true;
 }
 
+bool RetentionInvert(const Retention *law, double sg, double Sh, double *pc)
+{
+  const bool found = Invert(law, sg, pc);
+
+  if (found)
+    *pc /= RetentionNarrowing(law, Sh);
+  return found;
+}
+
 #define VANISHED 20.0 /* e^-20: share of the residual gas that is left */
 
-bool RetentionNoGas(const Retention *law, double *pc)
+bool RetentionNoGas(const Retention *law, double Sh, double *pc)
 {
-  if (!Plateau(law, pc)) {
+  const bool clamped = Plateau(law, pc);
+
+  if (!clamped)
     *pc = -VANISHED * (law->p_trap > 0.0 ? law->p_trap : law->p0);
-    return true;
-  }
-  return law->Sgr == 0.0;
+  *pc /= RetentionNarrowing(law, Sh);
+  return !clamped || law->Sgr == 0.0;
 }
 
 const char *const *RetentionTypes(void)

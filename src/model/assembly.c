@@ -23,13 +23,13 @@ void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    Add(to, OUT_FLUX + 2 * f, 2);
+    Add(to, VectorAt(OUT_FLUX, f, 0), 2);
     Add(to, OUT_DM + f, 1);
     if (fs->solid)
       Add(to, OUT_M + 1 + f, 1);
     if (to->eliminated)
       continue;
-    Add(to, OUT_G + 2 * f, 2);
+    Add(to, VectorAt(OUT_G, f, 0), 2);
     Add(to, OUT_MI + f, 1);
     Add(to, OUT_D + f, 1);
     if (m->fluid)

@@ -37,7 +37,7 @@ static void Velocity(const Model *m, PetscInt p, const double *x, double v[CL_DI
 void ModelStartVelocity(const Model *m, double *v)
 {
   for (PetscInt p = 0; p < m->P.n; p++)
-    Velocity(m, p, m->x_n, &v[2 * p]);
+    Velocity(m, p, m->x_n, &v[CL_DIM * p]);
 }
 
 static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
@@ -105,8 +105,8 @@ static void CountMoved(const Model *m, PetscInt p, const double out[OUT_COUNT], 
   CellWidths(m, p, h);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     if (m->c->fields.phase[ph])
-      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[OUT_FLUX + 2 * ph]) / h[0] +
-                          fabs(out[OUT_FLUX + 2 * ph + 1]) / h[1];
+      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[VectorAt(OUT_FLUX, ph, 0)]) / h[0] +
+                          fabs(out[VectorAt(OUT_FLUX, ph, 1)]) / h[1];
   }
 }
 
@@ -158,7 +158,7 @@ static double ShareOfWater(const PointState *s)
 /* With one pressure the saturations are explicit: they may not leave [0,1] nor change much in a step. */
 static void CheckShares(Model *m, const double *x, const double *masses)
 {
-  for (PetscInt p = 0; p < m->P.n && m->status == CL_OK; p++) {
+  for (PetscInt p = 0; p < m->P.n && m->failure.status == CL_OK; p++) {
     Reach       r;
     PointState  s;
     PointOutput o;
@@ -201,8 +201,8 @@ static void PlasticState(PetscInt p, const SkeletonState *k, Trial *trial)
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
 {
   PetscFunctionBeginUser;
-  *rates    = (StageRates){0};
-  m->status = CL_OK;
+  *rates            = (StageRates){0};
+  m->failure.status = CL_OK;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  s;
@@ -211,9 +211,9 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
 
     if (ParticleEvaluate(m, p, x, false, &r, in, &s, &o) != CL_OK)
       continue;
-    Displacement(m, p, &r, x, &trial->u[2 * p]);
-    Velocity(m, p, x, &trial->v[2 * p]);
-    CheckMotion(m, p, &trial->u[2 * p]);
+    Displacement(m, p, &r, x, &trial->u[CL_DIM * p]);
+    Velocity(m, p, x, &trial->v[CL_DIM * p]);
+    CheckMotion(m, p, &trial->u[CL_DIM * p]);
     for (int k = 0; k < 3; k++)
       trial->m[3 * p + k] = k == 0 ? s.m_h : k == 1 ? s.m_w : s.m_g;
     for (int k = 0; k < 3; k++)
@@ -315,7 +315,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
       continue;
     f[P_PW + k][p] = in[IN_P + k];
     for (int d = 0; d < CL_DIM; d++)
-      f[gradient[k] + d][p] = in[(k < 2 ? IN_GP + 2 * k : IN_GT) + d];
+      f[gradient[k] + d][p] = in[(k < 2 ? VectorAt(IN_GP, k, 0) : IN_GT) + d];
   }
   if (fs->solid)
     WriteMotion(m, p, x, r, s);

@@ -58,32 +58,32 @@ static void DonorOf(const Model *m, PetscInt p, const Reach *r, Donor *donor)
 PetscErrorCode DonorBuild(Model *m)
 {
   PetscFunctionBeginUser;
-  if (!m->donor)
+  if (!m->added->donor)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(m->source, 2 * m->map.n_local));
+  PetscCall(PetscArrayzero(m->added->source, 2 * m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach r;
 
     ReachExpand(m, p, &r);
-    DonorOf(m, p, &r, &m->donor[p]);
-    m->donor[p].kr = 0.0;
+    DonorOf(m, p, &r, &m->added->donor[p]);
+    m->added->donor[p].kr = 0.0;
     for (int a = 0; a < r.n; a++) {
       const PetscInt I     = r.node[a];
       const double   share = r.S[a] * DonorShare(m, p, I);
 
-      m->donor[p].kr += share * m->coef[I * NC_COUNT + NC_KR + PHASE_G];
-      m->source[2 * I] += share * m->P.f[P_V][p];
-      m->source[2 * I + 1] += share * ConductingVolume(m, p);
+      m->added->donor[p].kr += share * m->coef[I * NC_COUNT + NC_KR + PHASE_G];
+      m->added->source[2 * I] += share * m->P.f[P_V][p];
+      m->added->source[2 * I + 1] += share * ConductingVolume(m, p);
     }
   }
-  PetscCall(NodeMapSum(&m->map, m->source, 2));
+  PetscCall(NodeMapSum(&m->map, m->added->source, 2));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    if (m->source[2 * I + 1] > 0.0) {
-      m->source[2 * I] /= m->source[2 * I + 1];
+    if (m->added->source[2 * I + 1] > 0.0) {
+      m->added->source[2 * I] /= m->added->source[2 * I + 1];
       continue;
     }
-    m->source[2 * I]     = m->flow[I]; /* nothing lies downstream of it */
-    m->source[2 * I + 1] = m->Vk[I];
+    m->added->source[2 * I]     = m->flow[I]; /* nothing lies downstream of it */
+    m->added->source[2 * I + 1] = m->Vk[I];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

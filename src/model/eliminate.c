@@ -22,11 +22,12 @@ static void FluxResponse(const Model *m, const Reach *r, const double *x, const 
   const double resist = o->out[OUT_D + f] * w + inertia * kr * o->out[OUT_MI + f];
   const double mobile = resist > 0.0 ? -w / resist : 0.0;
   for (int i = 0; i < CL_DIM; i++) {
-    const double *dG = o->D[OUT_G + 2 * f + i], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f], *dR = o->D[OUT_ROOT + f];
-    const double  F = o->out[OUT_G + 2 * f + i] + acc[i] * o->out[OUT_MI + f], rise = 2.0 * sqrt(kr) * F;
+    const double *dG = o->D[VectorAt(OUT_G, f, i)], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f],
+                 *dR = o->D[OUT_ROOT + f];
+    const double F = o->out[VectorAt(OUT_G, f, i)] + acc[i] * o->out[OUT_MI + f], rise = 2.0 * sqrt(kr) * F;
 
     for (int q = 0; q < IN_COUNT; q++)
-      dJ[i][q] = mobile * (kr * (dG[q] + acc[i] * dM[q]) + rise * dR[q] + in[IN_J + 2 * f + i] * dD[q]);
+      dJ[i][q] = mobile * (kr * (dG[q] + acc[i] * dM[q]) + rise * dR[q] + in[VectorAt(IN_J, f, i)] * dD[q]);
     if (fs->solid)
       dJ[i][IN_U + i] += mobile * inertia * kr * o->out[OUT_MI + f] / m->stage.dt;
   }
@@ -36,7 +37,7 @@ static void FluxResponse(const Model *m, const Reach *r, const double *x, const 
 static void Follow(double *D, int f, const double dJ[CL_DIM][IN_COUNT])
 {
   for (int i = 0; i < CL_DIM; i++) {
-    const double J = D[IN_J + 2 * f + i];
+    const double J = D[VectorAt(IN_J, f, i)];
 
     for (int q = 0; q < IN_COUNT && J != 0.0; q++)
       D[q] += J * dJ[i][q];
@@ -48,12 +49,12 @@ static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f
 {
   for (int i = 0; i < CL_DIM + fs->heat; i++) {
     const double *wide = i < CL_DIM ? o->wide[f][i] : o->wide_q[f];
-    double       *D = o->D[i < CL_DIM ? OUT_FLUX + 2 * f + i : OUT_Q], slope[CL_DIM] = {wide[0], wide[1]};
+    double       *D = o->D[i < CL_DIM ? VectorAt(OUT_FLUX, f, i) : OUT_Q], slope[CL_DIM] = {wide[0], wide[1]};
 
     if (A)
       BedsDrive(A, slope);
     for (int j = 0; j < CL_DIM; j++)
-      D[IN_GP + 2 * f + j] += slope[j];
+      D[VectorAt(IN_GP, f, j)] += slope[j];
   }
 }
 
@@ -119,10 +120,10 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
       given += face->N[a] * face->N[a] * mobile / m->V[r->node[a]];
     }
     for (int i = 0; i < CL_DIM; i++) {
-      const double  J     = D[IN_J + 2 * f + i];
-      const double *force = o->D[F_VWX + 2 * f + i];
+      const double  J     = D[VectorAt(IN_J, f, i)];
+      const double *force = o->D[VectorAt(F_VWX, f, i)];
 
-      D[IN_GP + 2 * f + i] -= J * own;
+      D[VectorAt(IN_GP, f, i)] -= J * own;
       for (int q = 0; q < IN_COUNT; q++)
         D[q] -= J * given * force[q];
     }

@@ -45,10 +45,10 @@ static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x
     const double *xI = &x[r->node[a] * fs->n];
 
     for (int k = 0; k < 3; k++) {
-      for (int i = 0; there[k] && i < 2; i++)
-        o->v[k][i] += r->S[a] * xI[fs->at[F_VSX + 2 * k] + i];
+      for (int i = 0; there[k] && i < CL_DIM; i++)
+        o->v[k][i] += r->S[a] * xI[fs->at[VectorAt(F_VSX, k, 0)] + i];
     }
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < CL_DIM; i++)
       u[a][i] = xI[PlaceVs(fs) + i];
   }
   MotionGradient(m, r, u, g);
@@ -65,9 +65,9 @@ static double InertiaPower(const Model *m, const Reach *r, const double *x, cons
 
   for (int k = 0; k < 3; k++) {
     for (int a = 0; there[k] && a < r->n; a++) {
-      const PetscInt q = r->node[a] * fs->n + fs->at[F_VSX + 2 * k];
+      const PetscInt q = r->node[a] * fs->n + fs->at[VectorAt(F_VSX, k, 0)];
 
-      for (int i = 0; i < 2; i++)
+      for (int i = 0; i < CL_DIM; i++)
         sum += out[OUT_M + k] * r->S[a] * (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt * x[q + i];
     }
   }
@@ -82,7 +82,7 @@ static double BedsPower(const Model *m, PetscInt p, const double in[IN_COUNT], c
   for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
     const double kr = m->fluid ? PetscSqr(out[OUT_ROOT + f]) : 1.0;
 
-    sum += m->c->fields.phase[f] ? out[OUT_D + f] / kr * BedsDrag(&m->beds[p].A, &in[IN_J + 2 * f]) : 0.0;
+    sum += m->c->fields.phase[f] ? out[OUT_D + f] / kr * BedsDrag(&m->beds[p].A, &in[VectorAt(IN_J, f, 0)]) : 0.0;
   }
   return sum;
 }
@@ -96,7 +96,7 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
   MotionAt(m, p, r, x, s, &k);
   if (fs->inertia)
     power[WORK_INERTIA] += InertiaPower(m, r, x, out);
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < CL_DIM; i++)
     power[WORK_GRAVITY] +=
         m->bc.gravity[i] * (out[OUT_M] * k.v[0][i] + (fs->phase[PHASE_W] ? out[OUT_M + 1] * k.v[1][i] : 0.0) +
                             (fs->phase[PHASE_G] ? out[OUT_M + 2] * k.v[2][i] : 0.0));
@@ -107,8 +107,8 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    for (int i = 0; i < 2; i++)
-      power[WORK_PRESSURE] -= out[OUT_G + 2 * f + i] * in[IN_J + 2 * f + i];
+    for (int i = 0; i < CL_DIM; i++)
+      power[WORK_PRESSURE] -= out[VectorAt(OUT_G, f, i)] * in[VectorAt(IN_J, f, i)];
     for (int a = 0; !m->fluid && a < r->n; a++) {
       double J[2];
 
@@ -149,8 +149,8 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
         continue;
       DarcyFlux(m, r->node[a], ph, xI, J);
       for (int d = 0; d < CL_DIM; d++)
-        power[WORK_PRESSURE] -= FaceWeight(f, a, F_VWX + 2 * ph + d) * FaceShare(m, f->particle, r->node[a], ph) *
-                                o->out[F_VWX + 2 * ph + d] * J[d];
+        power[WORK_PRESSURE] -= FaceWeight(f, a, VectorAt(F_VWX, ph, d)) * FaceShare(m, f->particle, r->node[a], ph) *
+                                o->out[VectorAt(F_VWX, ph, d)] * J[d];
     }
   }
   power[WORK_PLATES] += plate;

@@ -79,7 +79,8 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
     for (int d = 0; m->c->fields.solid && d < CL_DIM; d++)
       velocity[d] += face->N[a] * x[r->node[a] * m->c->fields.n + PlaceVs(&m->c->fields) + d];
   }
-  FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, in, velocity, kappa / sum, m->stage.dt, o);
+  FaceEvaluate(m->c, face, &m->bc, ParticleMaterial(m, p), p0, m->P.f[P_SH][p], in, velocity, kappa / sum, m->stage.dt,
+               o);
   if (m->beds)
     FaceBeds(&m->beds[p].A, &m->c->fields, o);
   if (face->bc[BC_PLATE] >= 0)

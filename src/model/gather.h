@@ -1,7 +1,7 @@
 /* Private to model/: what passes between nodes and one particle. */
 #pragma once
 
-#include "clathra/model.h"
+#include "additions.h"
 
 /* A particle's nodes with their values; H only about an axis; M, K are G, H as the motion sees them (160); B (88) only
    with mean dilatation. */
@@ -56,9 +56,9 @@ static inline void MotionGradient(const Model *m, const Reach *r, double (*u)[CL
   for (int k = 0; k < MOTION_COUNT; k++)
     g[k] = 0.0;
   for (int a = 0; a < r->n; a++) {
-    for (int i = 0; i < 2; i++) {
-      g[2 * i] += u[a][i] * r->M[a][0];
-      g[2 * i + 1] += u[a][i] * r->M[a][1];
+    for (int i = 0; i < CL_DIM; i++) {
+      for (int j = 0; j < CL_DIM; j++)
+        g[VectorAt(0, i, j)] += u[a][i] * r->M[a][j];
     }
     if (m->c->axisymmetric)
       g[MOTION_HOOP] += u[a][0] * r->K[a];
@@ -97,7 +97,7 @@ static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
 /* omega_Ip (332): 1 where all nodes of the particle are as mobile. */
 static inline double DonorShare(const Model *m, PetscInt p, PetscInt I)
 {
-  const Donor *at = &m->donor[p];
+  const Donor *at = &m->added->donor[p];
   double       up = 0.0;
 
   for (int d = 0; d < CL_DIM; d++)
@@ -107,26 +107,26 @@ static inline double DonorShare(const Model *m, PetscInt p, PetscInt I)
 
 static inline bool Donated(const Model *m, int f)
 {
-  return m->donor && f == PHASE_G;
+  return m->added->donor && f == PHASE_G;
 }
 
 /* Share of a node's flux of a fluid that goes through an open face of the particle: (350), of gas (333) without
    omega. */
 static inline double FaceShare(const Model *m, PetscInt p, PetscInt I, int f)
 {
-  return Donated(m, f) ? m->conduct[p] * m->source[2 * I] : LayerWeight(m, p, I);
+  return Donated(m, f) ? m->conduct[p] * m->added->source[2 * I] : LayerWeight(m, p, I);
 }
 
 /* W_Ip/S_I of a fluid: (350), of gas (333). */
 static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I, int f)
 {
-  return Donated(m, f) ? DonorShare(m, p, I) * m->conduct[p] * m->source[2 * I] : LayerWeight(m, p, I);
+  return Donated(m, f) ? DonorShare(m, p, I) * FaceShare(m, p, I, f) : LayerWeight(m, p, I);
 }
 
 /* Weight of a node's projected gradient in the bracket of (19): S_I, of gas (334). */
 static inline double ProjectedShare(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
-  return Donated(m, f) ? S * DonorShare(m, p, I) * m->coef[I * NC_COUNT + NC_KR + f] / m->donor[p].kr : S;
+  return Donated(m, f) ? S * DonorShare(m, p, I) * m->coef[I * NC_COUNT + NC_KR + f] / m->added->donor[p].kr : S;
 }
 
 /* v := A v where particle p has beds (306). */
@@ -222,7 +222,7 @@ static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const
   for (int a = 0; a < r->n; a++) {
     const double *v = &x[r->node[a] * n + vs], *us = &m->stage.u_star[r->node[a] * CL_DIM];
 
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < CL_DIM; i++) {
       u[a][i] = us[i] + m->stage.dt * v[i];
       in[IN_U + i] += (face ? face->N[a] : MotionWeight(m, p, r, a)) * u[a][i];
     }
@@ -234,9 +234,9 @@ static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const
 static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI, double J[2])
 {
   const FieldSet *fs = &m->c->fields;
-  const double    w = m->w[2 * I + f], *v = &xI[PlaceV(fs, f)];
+  const double    w = m->w[PHASE_COUNT * I + f], *v = &xI[PlaceV(fs, f)];
 
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < CL_DIM; i++)
     J[i] = w * (fs->solid ? v[i] - xI[PlaceVs(fs) + i] : v[i]);
 }
 
@@ -255,7 +255,7 @@ static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int 
 {
   if (!m->c->stabilisation.upstream)
     return S * LayerWeight(m, p, I);
-  const double *u = &m->up[6 * I + 3 * f];
+  const double *u = &m->added->up[6 * I + 3 * f];
 
   return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
 }
@@ -271,7 +271,7 @@ static inline void Acceleration(const Model *m, PetscInt I, const double *x, int
 {
   const PetscInt q = I * m->c->fields.n + k;
 
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < CL_DIM; i++)
     acc[i] =
         (m->c->fields.inertia ? weight * (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
 }
@@ -286,14 +286,14 @@ static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, con
   Acceleration(m, I, x, PlaceV(fs, f), FlowWeight(m, p, I, f), acc);
   if (!m->beds)
     return;
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < CL_DIM; i++)
     s[i] = -m->bc.gravity[i];
   if (fs->solid)
     Acceleration(m, I, x, PlaceVs(fs), 1.0, s);
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < CL_DIM; i++)
     A[i] = s[i];
   BedsDrive(&m->beds[p].A, A);
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < CL_DIM; i++)
     acc[i] += A[i] - s[i];
 }
 
@@ -309,9 +309,9 @@ static inline void GatherFluid(const Model *m, PetscInt p, int f, const Reach *r
 
     DarcyFlux(m, I, f, &x[I * n], J);
     in[IN_P + f] += r->S[a] * (pI - m->x_n[I * n + at]);
-    for (int i = 0; i < 2; i++) {
-      in[IN_GP + 2 * f + i] += r->G[a][i] * pI;
-      in[IN_J + 2 * f + i] += (face ? FaceWeight(face, a, F_VWX + 2 * f + i) : r->S[a]) * flow * J[i];
+    for (int i = 0; i < CL_DIM; i++) {
+      in[VectorAt(IN_GP, f, i)] += r->G[a][i] * pI;
+      in[VectorAt(IN_J, f, i)] += (face ? FaceWeight(face, a, VectorAt(F_VWX, f, i)) : r->S[a]) * flow * J[i];
     }
   }
 }
@@ -340,8 +340,8 @@ static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, cons
     const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
 
     in[IN_T] += r->S[a] * (x[k] - m->x_n[k]);
-    in[IN_GT] += r->G[a][0] * x[k];
-    in[IN_GT + 1] += r->G[a][1] * x[k];
+    for (int d = 0; d < CL_DIM; d++)
+      in[IN_GT + d] += r->G[a][d] * x[k];
   }
 }
 
@@ -384,11 +384,11 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
   h->sw_n     = ParticleSw(m, p);
   h->dt       = m->stage.dt;
   h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
-  h->mobility = m->donor ? m->donor[p].kr : 0.0;
+  h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
-    h->spread[f] = m->spread ? m->spread[PHASE_COUNT * p + f] : 0.0;
+    h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < 3; k++)
-    h->upwind[k] = m->upwind ? m->upwind[3 * p + k] : 0.0;
+    h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
   h->compression = m->c->compression_heat;
   for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
     h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
@@ -412,10 +412,11 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
       h->skeleton.from = m->stage.k_star[p];
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int i = 0; fs->phase[f] && i < 2; i++) {
+    for (int i = 0; fs->phase[f] && i < CL_DIM; i++) {
       h->proj[f][i] = 0.0;
       for (int a = 0; a < r->n; a++)
-        h->proj[f][i] += ProjectedShare(m, p, r->node[a], f, r->S[a]) * m->proj[4 * r->node[a] + 2 * f + i];
+        h->proj[f][i] +=
+            ProjectedShare(m, p, r->node[a], f, r->S[a]) * m->proj[VectorAt(0, PHASE_COUNT * r->node[a] + f, i)];
     }
   }
 }
@@ -568,3 +569,4 @@ double GhostPower(const Model *m, const double *x); /* that the penalty on v_s t
 #define CL_LIMIT_J 0.5 /* volumetric strain of a step */
 PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);
 PetscErrorCode ModelResizeNodal(Model *m);
+PetscErrorCode FreeParticleArrays(Model *m); /* of the configuration at t_n */

@@ -4,11 +4,11 @@
 
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
-  double acc[3][2], own[PHASE_COUNT][2], J[PHASE_COUNT][2], Tdot; /* own: in (16), (310) */
-  double weight[PHASE_COUNT];                                     /* RowWeight */
-  double kr[PHASE_COUNT];                                         /* of the node (108) */
-  double flow[PHASE_COUNT], share[PHASE_COUNT];                   /* (350), (333), and without S */
-  double rise[PHASE_COUNT][2]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
+  double acc[3][2], own[PHASE_COUNT][CL_DIM], J[PHASE_COUNT][CL_DIM], Tdot; /* own: in (16), (310) */
+  double weight[PHASE_COUNT];                                               /* RowWeight */
+  double kr[PHASE_COUNT];                                                   /* of the node (108) */
+  double flow[PHASE_COUNT], share[PHASE_COUNT];                             /* (350), (333), and without S */
+  double rise[PHASE_COUNT][CL_DIM]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
 } NodeFactors;
 
 static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, double S, NodeFactors *n)
@@ -32,7 +32,7 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
     const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
 
     n->kr[f] = at->root * at->root;
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < CL_DIM; i++)
       n->rise[f][i] = 2.0 * at->root * MobilityShare(m, p, I, f, S) * at->F[i];
   }
   if (fs->heat) {
@@ -50,10 +50,10 @@ static void NodeRows(const Model *m, const Assembly *to, const Reach *r, int a, 
   const double    S = r->S[a], *M = r->M[a], *G = r->G[a], *B = m->c->mean_dilatation ? r->B[a] : NULL;
   RowSum          sum = {0};
 
-  for (int i = 0; fs->solid && i < 2; i++) {
+  for (int i = 0; fs->solid && i < CL_DIM; i++) {
     sum.n = 0;
-    RowSumAdd(&sum, M[0], DB[OUT_P + 2 * i]);
-    RowSumAdd(&sum, M[1], DB[OUT_P + 2 * i + 1]);
+    RowSumAdd(&sum, M[0], DB[VectorAt(OUT_P, i, 0)]);
+    RowSumAdd(&sum, M[1], DB[VectorAt(OUT_P, i, 1)]);
     RowSumAdd(&sum, S * k->acc[0][i], DB[OUT_M]);
     for (int f = 0; f < PHASE_COUNT; f++) {
       if (fs->phase[f])
@@ -76,18 +76,18 @@ static void NodeRows(const Model *m, const Assembly *to, const Reach *r, int a, 
     if (!fs->phase[f])
       continue;
     RowSumAdd(&sum, k->weight[f] * S, DB[OUT_DM + f]);
-    for (int j = 0; j < 2; j++)
-      RowSumAdd(&sum, -k->weight[f] * m->stage.dt * G[j], DB[OUT_FLUX + 2 * f + j]);
+    for (int j = 0; j < CL_DIM; j++)
+      RowSumAdd(&sum, -k->weight[f] * m->stage.dt * G[j], DB[VectorAt(OUT_FLUX, f, j)]);
     if (f == PHASE_W && fs->one_pressure)
       continue; /* one row for both */
     RowSumInto(&sum, length, row[PlaceP(fs, f)]);
     sum.n = 0;
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int i = 0; fs->phase[f] && PlaceV(fs, f) >= 0 && i < 2; i++) {
+    for (int i = 0; fs->phase[f] && PlaceV(fs, f) >= 0 && i < CL_DIM; i++) {
       sum.n = 0;
       RowSumAdd(&sum, k->flow[f] * k->kr[f] * k->own[f][i], DB[OUT_MI + f]);
-      RowSumAdd(&sum, k->flow[f] * k->kr[f], DB[OUT_G + 2 * f + i]);
+      RowSumAdd(&sum, k->flow[f] * k->kr[f], DB[VectorAt(OUT_G, f, i)]);
       RowSumAdd(&sum, k->flow[f] * k->J[f][i], DB[OUT_D + f]);
       if (m->fluid)
         RowSumAdd(&sum, k->rise[f][i], DB[OUT_ROOT + f]);
@@ -98,7 +98,7 @@ static void NodeRows(const Model *m, const Assembly *to, const Reach *r, int a, 
     sum.n = 0;
     RowSumAdd(&sum, S * k->Tdot, DB[OUT_C]);
     RowSumAdd(&sum, S, DB[OUT_Q]);
-    for (int j = 0; j < 2; j++)
+    for (int j = 0; j < CL_DIM; j++)
       RowSumAdd(&sum, G[j], DB[OUT_HEAT + j]);
     RowSumInto(&sum, length, row[PlaceT(fs)]);
   }
@@ -111,7 +111,7 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
 {
   const double inertia = fs->inertia ? S / dt : 0.0, per_dt = fs->inertia ? 1.0 / dt : 0.0;
 
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     const int vs = PlaceVs(fs) + i;
 
     if (fs->solid)
@@ -149,8 +149,8 @@ static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f] || PlaceV(fs, f) < 0)
       continue;
-    for (int i = 0; i < 2; i++) {
-      for (int j = 0; j < 2; j++)
+    for (int i = 0; i < CL_DIM; i++) {
+      for (int j = 0; j < CL_DIM; j++)
         block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] += k->flow[f] * k->kr[f] * out[OUT_MI + f] * less[i][j] / dt;
     }
   }
@@ -177,7 +177,7 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
         .G  = r->G[b],
         .M  = r->M[b],
         .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-        .w  = &m->w[2 * r->node[b]]};
+        .w  = &m->w[PHASE_COUNT * r->node[b]]};
 
     SlopesAdd(fs, axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
   }
@@ -196,7 +196,7 @@ static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
   for (int f = 0; f < PHASE_COUNT; f++) {
     for (int k = 0; fs->phase[f] && k < 4; k++)
       wide[4 * f + k] = o->wide[f][k / 2][k % 2];
-    for (int j = 0; fs->phase[f] && fs->heat && j < 2; j++)
+    for (int j = 0; fs->phase[f] && fs->heat && j < CL_DIM; j++)
       wide[8 + 2 * f + j] = o->wide_q[f][j];
   }
 }
@@ -254,7 +254,7 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
                             .G  = r->G[b],
                             .M  = r->M[b],
                             .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                            .w  = &m->w[2 * r->node[b]]};
+                            .w  = &m->w[PHASE_COUNT * r->node[b]]};
 
     SlopesAdd(fs, m->c->axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
   }

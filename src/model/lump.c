@@ -37,13 +37,13 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
 
 void LumpBuild(Model *m)
 {
-  for (PetscInt p = 0; m->lump && p < m->P.n; p++) {
+  for (PetscInt p = 0; m->added->lump && p < m->P.n; p++) {
     PointProperties q;
     const char     *why;
 
-    m->lump[p] = (Lump){0};
+    m->added->lump[p] = (Lump){0};
     if (ParticleMaterial(m, p)->reacts && ModelParticleProperties(m, p, &q, &why) == CL_OK)
-      Coefficients(m, p, &q, &m->lump[p]);
+      Coefficients(m, p, &q, &m->added->lump[p]);
   }
 }
 
@@ -64,7 +64,7 @@ static double Gain(const Model *m, const Lump *l, int q)
 void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f)
 {
   const FieldSet *fs   = &m->c->fields;
-  const Lump     *l    = m->lump ? &m->lump[p] : NULL;
+  const Lump     *l    = m->added->lump ? &m->added->lump[p] : NULL;
   double          mean = 0.0, drive[CL_NODES];
 
   if (!l || l->rate == 0.0)
@@ -88,7 +88,7 @@ void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, d
 void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r)
 {
   const FieldSet *fs = &to->fs;
-  const Lump     *l  = m->lump ? &m->lump[p] : NULL;
+  const Lump     *l  = m->added->lump ? &m->added->lump[p] : NULL;
 
   if (!l || l->rate == 0.0)
     return;

@@ -17,6 +17,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   PetscCall(ModelPlatesCreate(m));
+  m->failure.why[0] = '?';
+  PetscCall(PetscNew(&m->added));
   PetscCall(SolverCreate(&m->solver));
   PetscCall(PreconditionerPlan(m));
   PetscCall(PetscClassIdRegister("Clathra", &id));
@@ -29,9 +31,9 @@ static PetscErrorCode DestroyNodal(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree6(m->x_n, m->w, m->V, m->Vk, m->flow, m->coef));
-  PetscCall(PetscFree2(m->material, m->most));
-  PetscCall(PetscFree(m->up));
-  PetscCall(PetscFree(m->source));
+  PetscCall(PetscFree3(m->material, m->most, m->hydrate));
+  PetscCall(PetscFree(m->added->up));
+  PetscCall(PetscFree(m->added->source));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree3(m->x, m->f, m->proj));
   PetscCall(PetscFree(m->mass_row));
@@ -40,23 +42,32 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode FreeParticleArrays(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->stencil));
+  PetscCall(PetscFree(m->conduct));
+  PetscCall(PetscFree(m->order));
+  PetscCall(PetscFree(m->wide));
+  PetscCall(PetscFree(m->added->donor));
+  PetscCall(PetscFree(m->added->spread));
+  PetscCall(PetscFree(m->added->upwind));
+  PetscCall(PetscFree(m->added->lump));
+  PetscCall(PetscFree(m->beds));
+  m->stencil_cap = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ModelDestroy(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
   PetscCall(SolverDestroy(&m->solver));
-  PetscCall(PetscFree(m->stencil));
-  PetscCall(PetscFree(m->conduct));
-  PetscCall(PetscFree(m->order));
-  PetscCall(PetscFree(m->wide));
-  PetscCall(PetscFree(m->donor));
-  PetscCall(PetscFree(m->spread));
-  PetscCall(PetscFree(m->upwind));
-  PetscCall(PetscFree(m->lump));
-  PetscCall(PetscFree(m->beds));
+  PetscCall(FreeParticleArrays(m));
   PetscCall(PetscFree(m->face));
-  PetscCall(PetscFree(m->ghost));
-  PetscCall(PetscFree(m->cell));
+  PetscCall(PetscFree(m->added->ghost));
+  PetscCall(PetscFree(m->added->cell));
+  PetscCall(PetscFree(m->added));
   PetscCall(PetscFree4(m->bc.value, m->bc.shear, m->bc.phase[0], m->bc.phase[1]));
   PetscCall(PetscFree2(m->plate, m->plate_K));
   PetscCall(ParticlesDestroy(&m->P));
@@ -73,11 +84,11 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
   PetscCall(PetscCalloc6(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
-  PetscCall(PetscCalloc2(n, &m->material, n, &m->most));
+  PetscCall(PetscCalloc3(n, &m->material, n, &m->most, n, &m->hydrate));
   if (m->c->stabilisation.upstream)
-    PetscCall(PetscCalloc1(n * 6, &m->up));
+    PetscCall(PetscCalloc1(n * 6, &m->added->up));
   if (SceneDonor(m->c))
-    PetscCall(PetscCalloc1(n * 2, &m->source));
+    PetscCall(PetscCalloc1(n * 2, &m->added->source));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
   if (m->c->fields.one_pressure)

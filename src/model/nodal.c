@@ -33,8 +33,8 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
       for (int a = 0; fs->phase[f] && a < r.n; a++) {
         const double pI = x[r.node[a] * fs->n + PlaceP(fs, f)];
 
-        g[2 * f] += r.G[a][0] * pI;
-        g[2 * f + 1] += r.G[a][1] * pI;
+        for (int d = 0; d < CL_DIM; d++)
+          g[VectorAt(0, f, d)] += r.G[a][d] * pI;
       }
     }
     for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
@@ -42,20 +42,20 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
 
       if (!slope)
         BedsWeight(m, p, f, w);
-      BedsDriveMoving(&m->beds[p].A, w, &g[2 * f]);
+      BedsDriveMoving(&m->beds[p].A, w, &g[VectorAt(0, f, 0)]);
     }
     for (int a = 0; a < r.n; a++) {
-      for (int k = 0; k < 4; k++) {
-        const double share = Donated(m, k / CL_DIM) ? DonorShare(m, p, r.node[a]) : 1.0;
+      const double VS    = Vk * r.S[a];
+      const double of[2] = {VS, m->added->donor ? VS * DonorShare(m, p, r.node[a]) : VS};
 
-        proj[4 * r.node[a] + k] += Vk * r.S[a] * share * g[k];
-      }
+      for (int k = 0; k < 4; k++)
+        proj[4 * r.node[a] + k] += of[k / CL_DIM] * g[k];
     }
   }
   PetscCall(NodeMapSum(&m->map, proj, 4));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int k = 0; k < 4; k++)
-      proj[4 * I + k] /= Donated(m, k / CL_DIM) ? m->source[2 * I + 1] : m->Vk[I];
+      proj[4 * I + k] /= Donated(m, k / CL_DIM) ? m->added->source[2 * I + 1] : m->Vk[I];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -157,19 +157,21 @@ bool PlatesCouple(const Model *m)
 
 PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status)
 {
+  char why[CL_WHY];
+
   PetscFunctionBeginUser;
   *status = CL_OK;
   if (!m->plates)
     PetscFunctionReturn(PETSC_SUCCESS);
-  m->status = CL_OK;
-  for (PetscInt k = 0; k < m->nface && m->status == CL_OK; k++) {
+  m->failure.status = CL_OK;
+  for (PetscInt k = 0; k < m->nface && m->failure.status == CL_OK; k++) {
     const Face *f = &m->face[k];
 
     if (f->bc[BC_PLATE] < 0 || m->c->bc[f->bc[BC_PLATE]].force.n)
       continue;
-    *status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->bc[BC_PLATE]], m->text, sizeof(m->text));
+    *status = PlateCheck(m->c, &m->grid, f, m->bc.value[f->bc[BC_PLATE]], why, sizeof(why));
     if (*status != CL_OK)
-      ModelNoteFailure(m, *status, m->text, f->particle);
+      ModelNoteFailure(m, *status, why, f->particle);
   }
   PetscCall(ModelReduceStatus(m, status));
   PetscFunctionReturn(PETSC_SUCCESS);

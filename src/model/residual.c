@@ -12,22 +12,22 @@ static void ScatterSolid(const Model *m, const Reach *r, const double *x, const 
     double       *fI = &f[r->node[a] * fs->n + PlaceVs(fs)], acc[2], inertia[2];
 
     Acceleration(m, r->node[a], x, PlaceVs(fs), 1.0, acc);
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < CL_DIM; i++)
       inertia[i] = out[OUT_M] * acc[i];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       if (!fs->phase[ph])
         continue;
       Acceleration(m, r->node[a], x, PlaceV(fs, ph), 1.0, acc);
-      for (int i = 0; i < 2; i++)
+      for (int i = 0; i < CL_DIM; i++)
         inertia[i] += out[OUT_M + 1 + ph] * acc[i];
     }
-    for (int i = 0; i < 2; i++)
-      fI[i] += r->S[a] * inertia[i] + G[0] * out[OUT_P + 2 * i] + G[1] * out[OUT_P + 2 * i + 1];
-    for (int i = 0; m->bc.ambient.on && i < 2; i++)
+    for (int i = 0; i < CL_DIM; i++)
+      fI[i] += r->S[a] * inertia[i] + G[0] * out[VectorAt(OUT_P, i, 0)] + G[1] * out[VectorAt(OUT_P, i, 1)];
+    for (int i = 0; m->bc.ambient.on && i < CL_DIM; i++)
       fI[i] += r->S[a] * out[OUT_A + i];
     if (m->c->axisymmetric)
       fI[0] += r->K[a] * out[OUT_HOOP];
-    for (int i = 0; m->c->mean_dilatation && i < 2; i++)
+    for (int i = 0; m->c->mean_dilatation && i < CL_DIM; i++)
       fI[i] += r->B[a][i] * mean;
   }
 }
@@ -42,15 +42,15 @@ static void ScatterMomentum(const Model *m, PetscInt p, int ph, PetscInt I, doub
   double         *row  = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];
 
   FluidAcceleration(m, p, I, x, ph, acc);
-  for (int i = 0; i < 2; i++)
-    row[i] += flow * (out[OUT_MI + ph] * acc[i] + out[OUT_G + 2 * ph + i]);
+  for (int i = 0; i < CL_DIM; i++)
+    row[i] += flow * (out[OUT_MI + ph] * acc[i] + out[VectorAt(OUT_G, ph, i)]);
   if (at) {
     at->D += flow * out[OUT_D + ph];
     at->root += MobilityShare(m, p, I, ph, S) * out[OUT_ROOT + ph];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);
-  for (int i = 0; i < 2; i++)
+  for (int i = 0; i < CL_DIM; i++)
     row[i] += flow * out[OUT_D + ph] * J[i];
 }
 
@@ -63,8 +63,8 @@ static void ScatterFluid(const Model *m, PetscInt p, int ph, const Reach *r, con
     const double   S = r->S[a], *G = r->G[a];
 
     ScatterMomentum(m, p, ph, I, S, x, out, f);
-    *MassRow(m, f, I, ph) +=
-        S * out[OUT_DM + ph] - m->stage.dt * (G[0] * out[OUT_FLUX + 2 * ph] + G[1] * out[OUT_FLUX + 2 * ph + 1]);
+    *MassRow(m, f, I, ph) += S * out[OUT_DM + ph] - m->stage.dt * (G[0] * out[VectorAt(OUT_FLUX, ph, 0)] +
+                                                                   G[1] * out[VectorAt(OUT_FLUX, ph, 1)]);
   }
 }
 
@@ -143,7 +143,7 @@ static PetscErrorCode MomentumRows(Model *m, const double *x)
       double           J[2];
 
       DarcyFlux(m, I, ph, &x[I * fs->n], J);
-      for (int i = 0; i < 2; i++)
+      for (int i = 0; i < CL_DIM; i++)
         m->f[I * fs->n + PlaceV(fs, ph) + i] = at->root * at->root * at->F[i] + at->D * J[i];
     }
   }
@@ -176,7 +176,7 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
     const bool fixed = (m->mask[k / n] >> (k % n)) & 1u;
 
     a[k] = fixed ? (x[k] - m->fixed[k]) / m->col_scale[k] : f[k] / m->row_scale[k];
-    if (m->status != CL_OK)
+    if (m->failure.status != CL_OK)
       a[k] = NAN; /* every rank sees it in the norm; SNESSetFunctionDomainError would tell this rank alone */
   }
   PetscCall(VecRestoreArrayWrite(R, &a));
@@ -187,8 +187,8 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
 static PetscErrorCode Rows(Model *m, Vec X)
 {
   PetscFunctionBeginUser;
-  m->status  = CL_OK;
-  m->limited = 0;
+  m->failure.status = CL_OK;
+  m->limited        = 0;
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(PetscArrayzero(m->f, m->map.n_local * m->c->fields.n));
   if (m->mass_row)

@@ -54,7 +54,7 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
 
   for (int i = 0; fs->solid && i < CL_DIM; i++) {
     for (int j = 0; j < CL_DIM; j++)
-      in[IN_GRADU + 2 * i + j][vs + i] = dt * b->M[j];
+      in[VectorAt(IN_GRADU, i, j)][vs + i] = dt * b->M[j];
     in[IN_U + i][vs + i] = dt * b->NU;
     if (axisymmetric && i == 0)
       in[IN_HOOP][vs] = dt * b->K;
@@ -72,12 +72,12 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
 
     in[IN_P + f][p] = b->S;
     for (int i = 0; i < CL_DIM; i++) {
-      in[IN_GP + 2 * f + i][p] = b->G[i];
+      in[VectorAt(IN_GP, f, i)][p] = b->G[i];
       if (PlaceV(fs, f) < 0)
         continue;
-      in[IN_J + 2 * f + i][first + PlaceV(fs, f) + i] = b->NS[f][i] * b->w[f];
+      in[VectorAt(IN_J, f, i)][first + PlaceV(fs, f) + i] = b->NS[f][i] * b->w[f];
       if (fs->solid)
-        in[IN_J + 2 * f + i][vs + i] = -b->NS[f][i] * b->w[f];
+        in[VectorAt(IN_J, f, i)][vs + i] = -b->NS[f][i] * b->w[f];
     }
   }
   if (fs->heat) {

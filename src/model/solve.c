@@ -252,7 +252,7 @@ static PetscErrorCode FindWorst(Model *m, int *field)
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->grid.comm));
   PetscCallMPI(MPI_Bcast(at, 3, MPI_DOUBLE, worst.rank, m->grid.comm));
   for (int d = 0; d < CL_DIM; d++)
-    m->where[d] = at[d];
+    m->failure.where[d] = at[d];
   *field = (int)at[2];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -265,17 +265,16 @@ static PetscErrorCode Explain(Model *m)
   int                field;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelReduceStatus(m, &m->status));
-  if (m->status != CL_OK)
+  PetscCall(ModelReduceStatus(m, &m->failure.status));
+  if (m->failure.status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS); /* a particle said it */
   PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPGetConvergedReason(ksp, &linear));
   PetscCall(FindWorst(m, &field));
-  PetscCall(PetscSNPrintf(m->text, sizeof(m->text), "%s, largest residual in the equation of %s",
+  PetscCall(PetscSNPrintf(m->failure.why, sizeof(m->failure.why), "%s, largest residual in the equation of %s",
                           linear < 0 ? "the linear solver failed" : "Newton's method did not converge",
                           cl_field[field].equation));
-  m->status = CL_SOLVER;
-  m->why    = m->text;
+  m->failure.status = CL_SOLVER;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -333,8 +332,8 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
     PetscCall(SNESGetIterationNumber(m->solver->snes, &its));
     *newton += its - m->solver->kept;
     if (reason == SNES_DIVERGED_FNORM_NAN)
-      PetscCall(ModelReduceStatus(m, &m->status));
-    if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->status != CL_OK))
+      PetscCall(ModelReduceStatus(m, &m->failure.status));
+    if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK))
       break;
     if (attempt == 1 && reason != SNES_DIVERGED_LINEAR_SOLVE)
       break;
@@ -343,7 +342,7 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
     PetscCall(Explain(m));
     m->solver->refactor = true;
   } else
-    m->status = CL_OK;
+    m->failure.status = CL_OK;
   PetscCall(PreconditionerReturn(m));
   PetscCall(ModelReduceStatus(m, status));
   if (*status == CL_OK)

@@ -90,8 +90,8 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(m->ghost));
-  PetscCall(PetscMalloc1(2 * PetscMax(m->map.n_owned, 1), &m->ghost));
+  PetscCall(PetscFree(m->added->ghost));
+  PetscCall(PetscMalloc1(2 * PetscMax(m->map.n_owned, 1), &m->added->ghost));
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
     const PetscInt i = m->map.ij[I][0], j = m->map.ij[I][1];
 
@@ -111,7 +111,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
       const double depth = NodeVolume(m, I) / (d ? A * h : h * A); /* 1, or around the axis */
       const double below = h / LinesWidth(line, k - 1), above = h / LinesWidth(line, k);
       const double ratio = 0.5 * sides * depth * A / h; /* A/h */
-      GhostLine   *ghost = &m->ghost[n++];
+      GhostLine   *ghost = &m->added->ghost[n++];
 
       *ghost = (GhostLine){.node   = {lo, I, hi},
                            .second = {below, -(below + above), above},
@@ -123,7 +123,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
         ghost->store[f] = m->c->stabilisation.ghost_storage * ratio * h * h * c[NC_RHO + f] * c[NC_STORAGE + f];
     }
   }
-  m->nghost = n;
+  m->added->nghost = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -219,18 +219,18 @@ static PetscErrorCode BuildProjection(Model *m)
     if (GridCell(g, x, cell))
       AddParticle(m, p, cell, &sum[GridPadded(g, cell[0], cell[1])]);
   }
-  PetscCall(PetscFree(m->cell));
-  PetscCall(PetscMalloc1(g->xm[0] * g->xm[1], &m->cell));
+  PetscCall(PetscFree(m->added->cell));
+  PetscCall(PetscMalloc1(g->xm[0] * g->xm[1], &m->added->cell));
   for (PetscInt j = g->xs[1]; j < g->xs[1] + g->xm[1]; j++) {
     for (PetscInt i = g->xs[0]; i < g->xs[0] + g->xm[0]; i++) {
       const PetscInt  cell[CL_DIM] = {i, j};
       const CellSums *s            = &sum[GridPadded(g, i, j)];
 
-      if (s->w > 0.0 && FinishCell(m, cell, s, &m->cell[n]))
+      if (s->w > 0.0 && FinishCell(m, cell, s, &m->added->cell[n]))
         n++;
     }
   }
-  m->ncell = n;
+  m->added->ncell = n;
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -238,7 +238,7 @@ static PetscErrorCode BuildProjection(Model *m)
 PetscErrorCode StabilisationBuild(Model *m)
 {
   PetscFunctionBeginUser;
-  m->nghost = m->ncell = 0;
+  m->added->nghost = m->added->ncell = 0;
   if (m->c->stabilisation.ghost_penalty > 0.0 || m->c->stabilisation.ghost_storage > 0.0)
     PetscCall(BuildGhost(m));
   if (m->c->stabilisation.pressure_projection > 0.0 && m->c->fields.solid && m->c->fields.fluid)
@@ -297,8 +297,8 @@ double GhostPower(const Model *m, const double *x)
 {
   double power = 0.0;
 
-  for (PetscInt k = 0; k < m->nghost; k++) {
-    const GhostLine *g = &m->ghost[k];
+  for (PetscInt k = 0; k < m->added->nghost; k++) {
+    const GhostLine *g = &m->added->ghost[k];
 
     for (int d = 0; d < CL_DIM; d++)
       power += g->a * g->M * m->stage.dt * PetscSqr(Jump(m, g, x, F_VSX + d));
@@ -340,10 +340,10 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
 
 void StabilisationResidual(const Model *m, const double *x, double *f)
 {
-  for (PetscInt k = 0; k < m->nghost; k++)
-    GhostResidual(m, &m->ghost[k], x, f);
-  for (PetscInt k = 0; k < m->ncell; k++)
-    ProjectionResidual(m, &m->cell[k], x, f);
+  for (PetscInt k = 0; k < m->added->nghost; k++)
+    GhostResidual(m, &m->added->ghost[k], x, f);
+  for (PetscInt k = 0; k < m->added->ncell; k++)
+    ProjectionResidual(m, &m->added->cell[k], x, f);
 }
 
 static void GhostBlock(const Model *m, const Assembly *to, const GhostLine *g)
@@ -388,8 +388,8 @@ static void ProjectionBlock(const Model *m, const Assembly *to, const Projection
 
 void StabilisationJacobian(Model *m, const Assembly *to)
 {
-  for (PetscInt k = 0; k < m->nghost; k++)
-    GhostBlock(m, to, &m->ghost[k]);
-  for (PetscInt k = 0; k < m->ncell; k++)
-    ProjectionBlock(m, to, &m->cell[k]);
+  for (PetscInt k = 0; k < m->added->nghost; k++)
+    GhostBlock(m, to, &m->added->ghost[k]);
+  for (PetscInt k = 0; k < m->added->ncell; k++)
+    ProjectionBlock(m, to, &m->added->cell[k]);
 }

@@ -3,30 +3,43 @@
 
 void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p)
 {
-  if (m->status != CL_OK)
+  if (m->failure.status != CL_OK)
     return;
-  m->status   = status;
-  m->why      = why;
-  m->where[0] = m->P.f[P_X][p];
-  m->where[1] = m->P.f[P_X + 1][p];
+  m->failure.status = status;
+  ModelExplain(m, why);
+  for (int d = 0; d < CL_DIM; d++)
+    m->failure.where[d] = m->P.f[P_X + d][p];
+}
+
+const Failure *ModelFailure(const Model *m)
+{
+  return &m->failure;
+}
+
+void ModelClearFailure(Model *m)
+{
+  m->failure.status = CL_OK;
+}
+
+void ModelExplain(Model *m, const char *why)
+{
+  snprintf(m->failure.why, sizeof(m->failure.why), "%s", why);
 }
 
 PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status)
 {
+  Failure *f = &m->failure;
   struct {
     int status, rank;
-  } local = {(int)m->status, m->grid.rank}, worst;
+  } local = {(int)f->status, m->grid.rank}, worst;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_2INT, MPI_MAXLOC, m->grid.comm));
   *status = (ClStatus)worst.status;
   if (worst.status != CL_OK && m->grid.size > 1) {
-    if (worst.rank == m->grid.rank && m->why != m->text)
-      PetscCall(PetscStrncpy(m->text, m->why ? m->why : "", sizeof(m->text)));
-    PetscCallMPI(MPI_Bcast(m->text, sizeof(m->text), MPI_CHAR, worst.rank, m->grid.comm));
-    PetscCallMPI(MPI_Bcast(m->where, CL_DIM, MPI_DOUBLE, worst.rank, m->grid.comm));
-    m->why = m->text;
+    PetscCallMPI(MPI_Bcast(f->why, sizeof(f->why), MPI_CHAR, worst.rank, m->grid.comm));
+    PetscCallMPI(MPI_Bcast(f->where, CL_DIM, MPI_DOUBLE, worst.rank, m->grid.comm));
   }
-  m->status = *status;
+  f->status = *status;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

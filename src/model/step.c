@@ -1,4 +1,5 @@
 /* Start of a step: stencils, active nodes and nodal start values on the configuration at t_n. */
+#include "clathra/point_heat.h"
 #include "solver.h"
 
 #define AT_AXIS 1e-6        /* of a half-length */
@@ -24,15 +25,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
 
   PetscFunctionBeginUser;
   if (m->P.n > m->stencil_cap) {
-    PetscCall(PetscFree(m->stencil));
-    PetscCall(PetscFree(m->conduct));
-    PetscCall(PetscFree(m->order));
-    PetscCall(PetscFree(m->wide));
-    PetscCall(PetscFree(m->donor));
-    PetscCall(PetscFree(m->spread));
-    PetscCall(PetscFree(m->upwind));
-    PetscCall(PetscFree(m->lump));
-    PetscCall(PetscFree(m->beds));
+    PetscCall(FreeParticleArrays(m));
     m->stencil_cap = m->P.cap;
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->conduct));
@@ -40,13 +33,13 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
       PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
     if (SceneDonor(m->c))
-      PetscCall(PetscMalloc1(m->stencil_cap, &m->donor));
+      PetscCall(PetscMalloc1(m->stencil_cap, &m->added->donor));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
-      PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->spread));
+      PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->added->spread));
     if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
-      PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->upwind));
+      PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->added->upwind));
     if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
-      PetscCall(PetscCalloc1(m->stencil_cap, &m->lump));
+      PetscCall(PetscCalloc1(m->stencil_cap, &m->added->lump));
   }
   if (!SceneHasBeds(m->c)) /* a stage may bring other materials */
     PetscCall(PetscFree(m->beds));
@@ -109,8 +102,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
         fmax(k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p], 0.0); /* a trace may be none (101) */
 
     s[SUM_M + k] += S * mass;
-    for (int i = 0; i < 2; i++)
-      s[SUM_X + fs->at[F_VSX + 2 * k] + i] += S * mass * f[velocity[k] + i][p];
+    for (int i = 0; i < CL_DIM; i++)
+      s[SUM_X + fs->at[VectorAt(F_VSX, k, 0)] + i] += S * mass * f[velocity[k] + i][p];
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
@@ -151,7 +144,7 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
 
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
-      a[d] -= (k ? mat->c_g : mat->c_w) * q->rho[k] * q->kr[k] / q->resist[k] *
+      a[d] -= SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
               (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
   }
   Drive(m, p, a);
@@ -198,6 +191,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     if (VS > m->most[I]) {
       m->most[I]     = VS;
       m->material[I] = ParticleMaterial(m, p);
+      m->hydrate[I]  = q->Sh;
     }
     if (m->c->axisymmetric) {
       c[NC_RING] += V * r->H[a];
@@ -231,7 +225,7 @@ static void Average(Model *m, const double *sum)
       x[k] = weight > 0.0 ? s[SUM_X + k] / weight : 0.0;
     }
     for (int k = 0; k < PHASE_COUNT; k++)
-      m->w[2 * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
+      m->w[PHASE_COUNT * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
     for (int k = 0; k < NC_COUNT; k++)
       c[k] /= V;
     for (int k = 0; k < PHASE_COUNT; k++) { /* (350), (108) */
@@ -265,10 +259,10 @@ static PetscErrorCode Project(Model *m)
     }
     if (m->beds)
       m->beds[p] = (Bedding){ParticleBeds(m->c, &m->P, p), {q.rho[PHASE_W], q.rho[PHASE_G]}};
-    for (int k = 0; m->spread && k < PHASE_COUNT; k++)
-      m->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
-    if (m->upwind)
-      UpwindOf(m, p, &q, &m->upwind[3 * p]);
+    for (int k = 0; m->added->spread && k < PHASE_COUNT; k++)
+      m->added->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
+    if (m->added->upwind)
+      UpwindOf(m, p, &q, &m->added->upwind[3 * p]);
     m->conduct[p] = shared ? SceneConductance(m->c, ParticleMaterial(m, p), m->P.f[P_SH][p]) : 1.0;
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
@@ -291,7 +285,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
   PetscFunctionBeginUser;
   if (!m->c->stabilisation.upstream)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(m->up, 6 * m->map.n_local));
+  PetscCall(PetscArrayzero(m->added->up, 6 * m->map.n_local));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int f = 0; f < PHASE_COUNT; f++) {
       double J[2] = {0.0, 0.0};
@@ -300,7 +294,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
         DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
       const double size = hypot(J[0], J[1]);
       for (int d = 0; d < CL_DIM && size > 0.0; d++)
-        m->up[6 * I + 3 * f + d] = J[d] / size;
+        m->added->up[6 * I + 3 * f + d] = J[d] / size;
     }
   }
   PetscCall(PetscCalloc1(2 * m->map.n_local, &sum));
@@ -311,13 +305,13 @@ static PetscErrorCode UpstreamWeights(Model *m)
     for (int a = 0; a < r.n; a++) {
       for (int f = 0; f < PHASE_COUNT; f++)
         sum[2 * r.node[a] + f] +=
-            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], &m->up[6 * r.node[a] + 3 * f]), 0.0);
+            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], &m->added->up[6 * r.node[a] + 3 * f]), 0.0);
     }
   }
   PetscCall(NodeMapSum(&m->map, sum, 2));
   for (PetscInt k = 0; k < 2 * m->map.n_local; k++) {
     if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, k / 2) * m->V[k / 2])
-      m->up[3 * k + 2] = m->V[k / 2] / sum[k];
+      m->added->up[3 * k + 2] = m->V[k / 2] / sum[k];
   }
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -394,7 +388,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));
-  m->status = CL_OK;
+  m->failure.status = CL_OK;
   PreconditionerRenew(m);
   PetscCall(PetscCalloc1(m->grid.gm[0] * m->grid.gm[1], &flag));
   PetscCall(BuildStencils(m, flag));
@@ -460,7 +454,7 @@ static double FluidScale(const Model *m, PetscInt I, int phase, double h)
   v = P / h / ((fs->inertia ? c[NC_RHO + phase] / dt : 0.0) + c[NC_M] * dt / (h * h)); /* what 1 MPa brings about */
   for (int d = 0; d < CL_DIM; d++)
     v = fmax(v, fabs(m->stage.x_star[I * fs->n + PlaceVs(fs) + d]));
-  return fmax(row, ROUND_OFF * c[NC_DRAG + phase] * m->w[2 * I + phase] * v);
+  return fmax(row, ROUND_OFF * c[NC_DRAG + phase] * m->w[PHASE_COUNT * I + phase] * v);
 }
 
 /* Columns: 1 MPa, 1 K, and the velocities that belong to 1 MPa over a cell.  Rows: what such a change makes of each
@@ -471,7 +465,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6, V = m->V[I];
   const double    V_row = fmax(V, SLIVER * NodeVolume(m, I));
 
-  for (int d = 0; d < 2; d++) {
+  for (int d = 0; d < CL_DIM; d++) {
     if (fs->solid) {
       col[PlaceVs(fs) + d] = P * h / (c[NC_M] * dt);
       row[PlaceVs(fs) + d] = V_row * P / h;
@@ -481,14 +475,14 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
         continue;
       const double kr = c[NC_KR + k], inertia = fs->inertia ? kr * c[NC_RHO + k] / dt : 0.0;
 
-      col[PlaceV(fs, k) + d] = kr * P / h / (inertia + c[NC_DRAG + k] * m->w[2 * I + k]);
+      col[PlaceV(fs, k) + d] = kr * P / h / (inertia + c[NC_DRAG + k] * m->w[PHASE_COUNT * I + k]);
       row[PlaceV(fs, k) + d] = V * FluidScale(m, I, k, h);
     }
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
-    const double mass  = RowWeight(m, I, k) * V_row * MassScale(fs, c, k, m->w[2 * I + k], dt, h);
+    const double mass  = RowWeight(m, I, k) * V_row * MassScale(fs, c, k, m->w[PHASE_COUNT * I + k], dt, h);
     col[PlaceP(fs, k)] = P;
     row[PlaceP(fs, k)] = k == PHASE_G && fs->one_pressure ? row[PlaceP(fs, k)] + mass : mass;
   }

@@ -13,20 +13,20 @@
 /* (104): where the law bends, p_g to where a node holds as much methane as the linear update d of both pressures says,
    but no more of it than that; p_w keeps a share of the pressure there is, for gas that appears holds it.  False where
    the law is nearly straight. */
-static bool FollowMethane(const Material *mat, const double p[PHASE_COUNT], double d[PHASE_COUNT], double T)
+static bool FollowMethane(const Material *mat, double Sh, const double p[PHASE_COUNT], double d[PHASE_COUNT], double T)
 {
   double       slope[PHASE_COUNT], none[PHASE_COUNT];
   const double there = fmax(p[PHASE_W], p[PHASE_G]), pw = fmax(p[PHASE_W] + d[PHASE_W], (1.0 - LIMIT_P) * there),
                pg = p[PHASE_G] + d[PHASE_G], most = LARGEST_SHARE * GasDensity(&mat->gas, there, T, &none[0], &none[1]);
-  const double from   = PointMethane(mat, p[PHASE_W], p[PHASE_G], T, slope),
+  const double from   = PointMethane(mat, Sh, p[PHASE_W], p[PHASE_G], T, slope),
                linear = slope[PHASE_W] * d[PHASE_W] + slope[PHASE_G] * d[PHASE_G];
   const double want   = from + fmax(-most, fmin(linear, most));
   const double least = fmin(pg, pw - REACH * mat->retention.p0), largest = fmax(pg, p[PHASE_G]);
 
   if (fabs(d[PHASE_G] - d[PHASE_W]) <= STRAIGHT * mat->retention.p0 ||
-      fabs(PointMethane(mat, pw, pg, T, none) - want) <= CURVED * fabs(linear))
+      fabs(PointMethane(mat, Sh, pw, pg, T, none) - want) <= CURVED * fabs(linear))
     return false;
-  const double found = PointGasPressure(mat, want, pw, T, least, largest);
+  const double found = PointGasPressure(mat, want, Sh, pw, T, least, largest);
   if (found == largest)
     return false;
   d[PHASE_W] = pw - p[PHASE_W];
@@ -51,7 +51,7 @@ static bool Follow(const Model *m, PetscInt I, const double *x, double *y)
     p[k] = x[PlaceP(fs, k)] * s[PlaceP(fs, k)];
     d[k] = -y[PlaceP(fs, k)] * s[PlaceP(fs, k)];
   }
-  if (NodeMaterial(m, I)->gas.trace == 0.0 || !FollowMethane(NodeMaterial(m, I), p, d, T))
+  if (NodeMaterial(m, I)->gas.trace == 0.0 || !FollowMethane(NodeMaterial(m, I), m->hydrate[I], p, d, T))
     return false;
   for (int k = 0; k < PHASE_COUNT; k++)
     y[PlaceP(fs, k)] = -d[k] / s[PlaceP(fs, k)];

@@ -17,8 +17,8 @@ static void WideParticle(const Model *m, PetscInt p, const double *proj, double 
     for (int a = 0; a < r.n; a++) {
       const double share = ProjectedShare(m, p, r.node[a], ph, r.S[a]);
 
-      g[0] += share * proj[4 * r.node[a] + 2 * ph];
-      g[1] += share * proj[4 * r.node[a] + 2 * ph + 1];
+      g[0] += share * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, 0)];
+      g[1] += share * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, 1)];
     }
     const double flux[2] = {W[4 * ph] * g[0] + W[4 * ph + 1] * g[1], W[4 * ph + 2] * g[0] + W[4 * ph + 3] * g[1]};
     const double q       = fs->heat ? W[8 + 2 * ph] * g[0] + W[8 + 2 * ph + 1] * g[1] : 0.0;

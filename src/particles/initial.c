@@ -56,15 +56,15 @@ static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Ma
                                        InitialScalars *s)
 {
   const bool two = c->fields.has & HAS_GAS_PRESSURE;
-  double     pc  = 0.0, ds;
+  double     pc  = 0.0, d[2];
 
   PetscFunctionBeginUser;
   s->sg = r->Sg / (1.0 - r->Sh);
   if (two && s->sg == 0.0 && mat->gas.trace > 0.0) /* (103) */
-    PetscCheck(RetentionNoGas(&mat->retention, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+    PetscCheck(RetentionNoGas(&mat->retention, r->Sh, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "region %s: the retention law leaves gas at any pressure", r->name);
   else if (two)
-    PetscCheck(RetentionInvert(&mat->retention, s->sg, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+    PetscCheck(RetentionInvert(&mat->retention, s->sg, r->Sh, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "region %s: the retention law never reaches the initial gas share %g", r->name, s->sg);
   s->pw = r->pressure - s->sg * pc;
   if (r->hydrostatic)
@@ -72,7 +72,7 @@ static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Ma
   s->pg = s->pw + pc;
   s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   if (two) { /* to the last digit what the law makes of these pressures */
-    s->sg = RetentionGasShare(&mat->retention, s->pg - s->pw, &ds);
+    s->sg = RetentionGasShare(&mat->retention, s->pg - s->pw, r->Sh, &d[0], &d[1]);
     s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -26,7 +26,7 @@ static void Deform(const Particles *P, PetscInt p, PetscInt n, const ParticleMot
   const double *restrict Hxx = m->H[0][0], *restrict Hxy = m->H[0][1], *restrict Hyx = m->H[1][0],
                          *restrict Hyy = m->H[1][1];
 
-  for (int j = 0; j < 2; j++) {
+  for (int j = 0; j < CL_DIM; j++) {
     double *restrict x = P->f[P_F + j] + p, *restrict y = P->f[P_F + 2 + j] + p;
 
     for (PetscInt q = 0; q < n; q++) {

@@ -55,15 +55,15 @@ static void Cofactor(Kinematics *k)
 {
   static const double sign[2][2] = {{1.0, -1.0}, {-1.0, 1.0}};
 
-  for (int i = 0; i < 2; i++) {
-    for (int j = 0; j < 2; j++) {
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++) {
       const double plane = sign[i][j] * k->F[1 - i][1 - j];
 
       k->cof[i][j] = k->lambda * plane;
       for (int c = 0; c < 4; c++)
-        k->dcof[i][j][c] = c == 2 * (1 - i) + (1 - j) ? k->lambda * sign[i][j] : 0.0;
+        k->dcof[i][j][c] = c == VectorAt(0, 1 - i, 1 - j) ? k->lambda * sign[i][j] : 0.0;
       k->dcof[i][j][MOTION_HOOP] = plane;
-      k->dJ[2 * i + j]           = k->cof[i][j];
+      k->dJ[VectorAt(0, i, j)]   = k->cof[i][j];
     }
   }
   k->dJ[MOTION_HOOP] = k->cof_hoop;
@@ -75,9 +75,9 @@ bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k)
   double(*F)[2] = k->F;
   double dJ2[4];
 
-  for (int i = 0; i < 2; i++) {
-    for (int j = 0; j < 2; j++)
-      F[i][j] = motion[2 * i + j] + (i == j);
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      F[i][j] = motion[VectorAt(0, i, j)] + (i == j);
   }
   k->lambda   = 1.0 + motion[MOTION_HOOP];
   k->cof_hoop = F[0][0] * F[1][1] - F[0][1] * F[1][0];

@@ -87,7 +87,7 @@ static AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const 
   if (!h->ambient)
     return a;
   a.p = AmbientPressure(h->ambient, x, a.g);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     o->out[OUT_A + i] = s->V.v * a.g[i];
     if (tangent)
       AddJet(o->D[OUT_A + i], a.g[i], &s->V, k);
@@ -104,19 +104,19 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
   static const int voigt[2][2] = {{XX, XY}, {XY, YY}};
 
   o->out[OUT_HOOP] = h->V * hoop * k->cof_hoop;
-  for (int i = 0; i < 2; i++) {
-    for (int j = 0; j < 2; j++) {
-      const int row = OUT_P + 2 * i + j;
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++) {
+      const int row = VectorAt(OUT_P, i, j);
 
       o->out[row] = h->V * (total[i][0] * k->cof[0][j] + total[i][1] * k->cof[1][j]);
-      for (int m = 0; tangent && m < 2; m++) {
+      for (int m = 0; tangent && m < CL_DIM; m++) {
         const double *ds = st->ds[voigt[i][m]], c = h->V * k->cof[m][j];
 
         for (int q = 0; q < IN_J; q++)
           o->D[row][q] += c * ds[q];
         if (m == i)
           AddJet(o->D[row], -c, &s->p, k);
-        for (int d = 0; m == i && d < 2; d++)
+        for (int d = 0; m == i && d < CL_DIM; d++)
           o->D[row][IN_U + d] += c * a->g[d];
         for (int q = 0; q < MOTION_COUNT; q++)
           o->D[row][q] += h->V * total[i][m] * k->dcof[m][j][q];
@@ -128,7 +128,7 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
   for (int q = 0; q < IN_J; q++)
     o->D[OUT_HOOP][q] += h->V * k->cof_hoop * st->ds[ZZ][q];
   AddJet(o->D[OUT_HOOP], -h->V * k->cof_hoop, &s->p, k);
-  for (int d = 0; d < 2; d++)
+  for (int d = 0; d < CL_DIM; d++)
     o->D[OUT_HOOP][IN_U + d] += h->V * k->cof_hoop * a->g[d];
   for (int q = 0; q < MOTION_HOOP; q++)
     o->D[OUT_HOOP][q] += h->V * hoop * k->dJ[q] / k->lambda;
@@ -145,17 +145,17 @@ static inline void Drive(const PointHistory *h, double v[2])
 static void FluidForces(const PointHistory *h, const Kinematics *k, int f, const double in[IN_COUNT], bool tangent,
                         PointOutput *o)
 {
-  const double *g  = &in[IN_GP + 2 * f];
-  const int     at = OUT_G + 2 * f;
+  const double *g  = &in[VectorAt(IN_GP, f, 0)];
+  const int     at = VectorAt(OUT_G, f, 0);
 
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     const int row = at + i;
 
     o->out[row] = h->V * (k->cof[i][0] * g[0] + k->cof[i][1] * g[1]);
     if (!tangent)
       continue;
-    for (int j = 0; j < 2; j++)
-      o->D[row][IN_GP + 2 * f + j] += h->V * k->cof[i][j];
+    for (int j = 0; j < CL_DIM; j++)
+      o->D[row][VectorAt(IN_GP, f, j)] += h->V * k->cof[i][j];
     for (int q = 0; q < MOTION_COUNT; q++)
       o->D[row][q] += h->V * (k->dcof[i][0][q] * g[0] + k->dcof[i][1][q] * g[1]);
   }
@@ -176,8 +176,8 @@ typedef struct {
 
 static void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
 {
-  for (int i = 0; i < 2; i++) {
-    for (int j = 0; j < 2; j++) {
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++) {
       g->K[i][j] = (k->cof[0][i] * k->cof[0][j] + k->cof[1][i] * k->cof[1][j]) / k->J;
       for (int q = 0; tangent && q < MOTION_COUNT; q++) {
         const double dc = k->dcof[0][i][q] * k->cof[0][j] + k->cof[0][i] * k->dcof[0][j][q] +
@@ -192,24 +192,25 @@ static void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
 static void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
                    const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double c[2] = {in[IN_GP + 2] - in[IN_GP], in[IN_GP + 3] - in[IN_GP + 1]}, VD = h->V * h->spread[f];
-  const Jet    rho = s->rho[f];
+  const double c[2] = {in[VectorAt(IN_GP, PHASE_G, 0)] - in[IN_GP], in[VectorAt(IN_GP, PHASE_G, 1)] - in[IN_GP + 1]},
+               VD   = h->V * h->spread[f];
+  const Jet rho     = s->rho[f];
 
   if (VD == 0.0)
     return;
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     const double Kc = metric->K[i][0] * c[0] + metric->K[i][1] * c[1];
-    double      *D  = o->D[OUT_FLUX + 2 * f + i];
+    double      *D  = o->D[VectorAt(OUT_FLUX, f, i)];
 
-    o->out[OUT_FLUX + 2 * f + i] += VD * rho.v * Kc;
+    o->out[VectorAt(OUT_FLUX, f, i)] += VD * rho.v * Kc;
     if (!tangent)
       continue;
     AddJet(D, VD * Kc, &rho, k);
     for (int q = 0; q < MOTION_COUNT; q++)
       D[q] += VD * rho.v * (metric->d[i][0][q] * c[0] + metric->d[i][1][q] * c[1]);
-    for (int j = 0; j < 2; j++) {
-      D[IN_GP + 2 + j] += VD * rho.v * metric->K[i][j];
-      D[IN_GP + j] -= VD * rho.v * metric->K[i][j];
+    for (int j = 0; j < CL_DIM; j++) {
+      D[VectorAt(IN_GP, PHASE_G, j)] += VD * rho.v * metric->K[i][j];
+      D[VectorAt(IN_GP, PHASE_W, j)] -= VD * rho.v * metric->K[i][j];
     }
   }
 }
@@ -224,16 +225,16 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   const Tau     t     = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
   const Jet     tau   = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
   const Jet     rt    = JetScale(h->bracket, JetMul(rho, tau));
-  const double *J     = &in[IN_J + 2 * f];
-  double        g[]   = {in[IN_GP + 2 * f], in[IN_GP + 2 * f + 1]};
+  const double *J     = &in[VectorAt(IN_J, f, 0)];
+  double        g[]   = {in[VectorAt(IN_GP, f, 0)], in[VectorAt(IN_GP, f, 1)]};
 
   if (h->beds)
     BedsDriveMoving(h->beds, h->weight[f], g);
   const double b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
 
   *tau_out = tau.v;
-  for (int i = 0; i < 2; i++) {
-    const int    row = OUT_FLUX + 2 * f + i;
+  for (int i = 0; i < CL_DIM; i++) {
+    const int    row = VectorAt(OUT_FLUX, f, i);
     const double cJ = k->cof[0][i] * J[0] + k->cof[1][i] * J[1], Kb = K[i][0] * b[0] + K[i][1] * b[1];
 
     o->out[row] = MassFlux(h->V, rho.v, rt.v, cJ, Kb);
@@ -247,13 +248,13 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
       D[q] += h->V * rt.v * (metric->d[i][0][q] * b[0] + metric->d[i][1][q] * b[1]);
     }
     double slope[2] = {h->V * rt.v * K[i][0], h->V * rt.v * K[i][1]};
-    for (int j = 0; j < 2; j++) {
-      D[IN_J + 2 * f + j] += h->V * rho.v * k->cof[j][i];
+    for (int j = 0; j < CL_DIM; j++) {
+      D[VectorAt(IN_J, f, j)] += h->V * rho.v * k->cof[j][i];
       o->wide[f][i][j] = slope[j];
     }
     Drive(h, slope); /* A is symmetric */
-    for (int j = 0; j < 2; j++)
-      D[IN_GP + 2 * f + j] -= slope[j];
+    for (int j = 0; j < CL_DIM; j++)
+      D[VectorAt(IN_GP, f, j)] -= slope[j];
   }
 }
 
@@ -263,8 +264,8 @@ static void CarriedFlux(const Material *mat, const PointHistory *h, const Kinema
 {
   const double H = mat->gas.carried, c = DissolvedMethane(H, in[IN_P + PHASE_G]), *J = &in[IN_J];
 
-  for (int i = 0; i < 2; i++) {
-    const int    row = OUT_FLUX + 2 * PHASE_G + i;
+  for (int i = 0; i < CL_DIM; i++) {
+    const int    row = VectorAt(OUT_FLUX, PHASE_G, i);
     const double cJ  = k->cof[0][i] * J[0] + k->cof[1][i] * J[1];
     double      *D   = o->D[row];
 
@@ -274,7 +275,7 @@ static void CarriedFlux(const Material *mat, const PointHistory *h, const Kinema
     D[IN_P + PHASE_G] += h->V * H * cJ;
     for (int q = 0; q < MOTION_COUNT; q++)
       D[q] += h->V * c * (k->dcof[0][i][q] * J[0] + k->dcof[1][i][q] * J[1]);
-    for (int j = 0; j < 2; j++)
+    for (int j = 0; j < CL_DIM; j++)
       D[IN_J + j] += h->V * c * k->cof[j][i];
   }
 }
@@ -283,7 +284,7 @@ static void CarriedFlux(const Material *mat, const PointHistory *h, const Kinema
 static void Conduction(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s,
                        const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     const double Kg    = metric->K[i][0] * in[IN_GT] + metric->K[i][1] * in[IN_GT + 1];
     const double up[2] = {i ? h->upwind[2] : h->upwind[0], i ? h->upwind[1] : h->upwind[2]};
 
@@ -294,7 +295,7 @@ static void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
     AddJet(D, h->V * Kg, &s->kappa, k);
     for (int q = 0; q < MOTION_COUNT; q++)
       D[q] += h->V * s->kappa.v * (metric->d[i][0][q] * in[IN_GT] + metric->d[i][1][q] * in[IN_GT + 1]);
-    for (int j = 0; j < 2; j++)
+    for (int j = 0; j < CL_DIM; j++)
       D[IN_GT + j] += h->V * (s->kappa.v * metric->K[i][j] + up[j]);
   }
 }
@@ -310,8 +311,8 @@ static void PutScalar(int r, Jet value, const Kinematics *k, bool tangent, Point
 static void FluidScalars(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
                          bool tangent, PointOutput *o)
 {
-  const Jet    mass = f == PHASE_W ? s->m_w : s->m_g;
-  const double nu   = f == PHASE_W ? KineticsWater(&mat->kinetics) : KineticsMethane(&mat->kinetics);
+  const Jet    mass = s->m[f];
+  const double nu   = KineticsFluid(&mat->kinetics, f);
   const double root = sqrt(s->kr[f].v);
   Jet          dm   = JetShift(mass, -h->m_star[1 + f]);
 
@@ -328,25 +329,26 @@ static void FluidScalars(const Material *mat, const PointHistory *h, const Kinem
 static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
                  const ScalarState *s, const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double c_f[PHASE_COUNT] = {mat->c_w, mat->c_g};
 
   PutScalar(OUT_C, s->capacity, k, tangent, o);
   PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent, o);
   for (int f = 0; f < PHASE_COUNT; f++) {
+    const double c_f = SpecificHeat(mat, f);
+
     if (!fs->phase[f])
       continue;
-    for (int i = 0; i < 2; i++) {
-      const int r = OUT_FLUX + 2 * f + i;
+    for (int i = 0; i < CL_DIM; i++) {
+      const int r = VectorAt(OUT_FLUX, f, i);
 
-      o->out[OUT_Q] += c_f[f] * o->out[r] * in[IN_GT + i];
+      o->out[OUT_Q] += c_f * o->out[r] * in[IN_GT + i];
       if (!tangent)
         continue;
       for (int q = 0; q < IN_COUNT; q++)
-        o->D[OUT_Q][q] += c_f[f] * in[IN_GT + i] * o->D[r][q];
-      o->D[OUT_Q][IN_GT + i] += c_f[f] * o->out[r];
+        o->D[OUT_Q][q] += c_f * in[IN_GT + i] * o->D[r][q];
+      o->D[OUT_Q][IN_GT + i] += c_f * o->out[r];
     }
-    for (int j = 0; tangent && j < 2; j++)
-      o->wide_q[f][j] = c_f[f] * (o->wide[f][0][j] * in[IN_GT] + o->wide[f][1][j] * in[IN_GT + 1]);
+    for (int j = 0; tangent && j < CL_DIM; j++)
+      o->wide_q[f][j] = c_f * (o->wide[f][0][j] * in[IN_GT] + o->wide[f][1][j] * in[IN_GT + 1]);
   }
 }
 
@@ -354,26 +356,26 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
 static void CompressionHeat(const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
                             const double in[IN_COUNT], bool tangent, PointState *state, PointOutput *o)
 {
-  const Jet        p = JetVariable(in[IN_P + f], f == PHASE_W ? JET_PW : JET_PG), rho = s->rho[f];
-  const Jet        volume = JetDiv(f == PHASE_W ? s->m_w : s->m_g, rho);
+  const Jet        p = JetVariable(in[IN_P + f], JET_PW + f), rho = s->rho[f];
+  const Jet        volume = JetDiv(s->m[f], rho);
   const Jet        rise   = JetScale(-1.0 / h->dt, JetMul(JetMul(volume, s->warm[f]), JetShift(p, -h->p_star[f])));
   const Throttling t      = ThrottlingOf(s->warm[f].v, rho.v);
   const Jet        share  = JetChain2(t.v, t.warm, s->warm[f], t.rho, rho);
-  const double    *g = &in[IN_GP + 2 * f], *flux = &o->out[OUT_FLUX + 2 * f], *b = h->gravity;
+  const double    *g = &in[VectorAt(IN_GP, f, 0)], *flux = &o->out[VectorAt(OUT_FLUX, f, 0)], *b = h->gravity;
   double          *D = o->D[OUT_Q], sum = rise.v;
 
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < CL_DIM; i++) {
     const double head = share.v * g[i] - k->F[0][i] * b[0] - k->F[1][i] * b[1];
 
     sum += flux[i] * head;
     for (int q = 0; tangent && q < IN_COUNT; q++)
-      D[q] += head * o->D[OUT_FLUX + 2 * f + i][q];
-    for (int j = 0; tangent && j < 2; j++) {
+      D[q] += head * o->D[VectorAt(OUT_FLUX, f, i)][q];
+    for (int j = 0; tangent && j < CL_DIM; j++) {
       o->wide_q[f][j] += head * o->wide[f][i][j];
-      D[IN_GRADU + 2 * j + i] -= flux[i] * b[j];
+      D[VectorAt(IN_GRADU, j, i)] -= flux[i] * b[j];
     }
     if (tangent)
-      D[IN_GP + 2 * f + i] += flux[i] * share.v;
+      D[VectorAt(IN_GP, f, i)] += flux[i] * share.v;
   }
   o->out[OUT_Q] += sum;
   state->squeezed -= sum;
@@ -407,8 +409,8 @@ static void FillState(const FieldSet *fs, const ScalarState *s, PointState *stat
   state->Sw       = (1.0 - s->Sh.v) * s->sw.v;
   state->Sg       = (1.0 - s->Sh.v) * s->sg.v;
   state->m_h      = s->m_h.v;
-  state->m_w      = s->m_w.v;
-  state->m_g      = s->m_g.v;
+  state->m_w      = s->m[PHASE_W].v;
+  state->m_g      = s->m[PHASE_G].v;
   state->p        = s->p.v;
   state->limited  = s->limited;
   state->squeezed = 0.0;
@@ -423,8 +425,9 @@ static ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char
   for (int r = OUT_FLUX; fs->fluid && r < OUT_HEAT; r++)
     sum += fs->phase[(r - OUT_FLUX) / 2] ? o->out[r] : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
-    sum +=
-        fs->phase[f] ? o->out[OUT_G + 2 * f] + o->out[OUT_G + 2 * f + 1] + o->out[OUT_D + f] + o->out[OUT_DM + f] : 0.0;
+    sum += fs->phase[f]
+               ? o->out[VectorAt(OUT_G, f, 0)] + o->out[VectorAt(OUT_G, f, 1)] + o->out[OUT_D + f] + o->out[OUT_DM + f]
+               : 0.0;
   for (int r = OUT_P; fs->solid && r < OUT_P + 4; r++)
     sum += o->out[r];
   if (fs->heat)
@@ -479,7 +482,7 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
       return strained;
     const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);
     MixtureForces(h, k, &s, &st, &a, tangent, o);
-    for (int d = 0; d < 2; d++)
+    for (int d = 0; d < CL_DIM; d++)
       state->stretch[d] = k->stretch[d];
   }
   for (int i = 0; i < 4; i++)

@@ -1,4 +1,5 @@
 /* Densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(10). */
+#include <string.h>
 #include "clathra/point_flow.h"
 #include "clathra/point_heat.h"
 #include "clathra/point_state.h"
@@ -18,10 +19,10 @@ static double Trace(const FieldSet *fs, const Material *mat)
   return fs->one_pressure ? 0.0 : mat->gas.trace;
 }
 
-static Jet GasJet(const Gas *law, Jet p, Jet T)
+static Jet FluidJet(const Material *mat, int phase, Jet p, Jet T)
 {
   double       dp, dT;
-  const double rho = GasDensity(law, p.v, T.v, &dp, &dT);
+  const double rho = FluidDensity(mat, phase, p.v, T.v, &dp, &dT);
 
   return JetChain2(rho, dp, p, dT, T);
 }
@@ -70,8 +71,8 @@ static void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarSta
   const double L = LatentHeatEvaluate(&mat->latent, T.v, &dL);
 
   s->kappa    = JetAdd(JetChain2(k, dphi, s->phi, dSh, s->Sh), JetChain(0.0, dsw, s->sw));
-  s->capacity = JetChain3(HeatCapacity(mat, h->m_s, s->m_h.v, s->m_w.v, s->m_g.v), mat->c_h, s->m_h, mat->c_w, s->m_w,
-                          mat->c_g, s->m_g);
+  s->capacity = JetChain3(HeatCapacity(mat, h->m_s, s->m_h.v, s->m[PHASE_W].v, s->m[PHASE_G].v), mat->c_h, s->m_h,
+                          mat->c_w, s->m[PHASE_W], mat->c_g, s->m[PHASE_G]);
   s->latent   = JetChain(L, dL, T);
 }
 
@@ -98,27 +99,98 @@ static void Skeleton(const Material *mat, ScalarState *s)
   s->beta = JetChain2(b.v, b.phi, s->phi, b.Sh, s->Sh);
 }
 
-/* Shares of the fluids in the open pores and their mean pressure (10). */
-static void Saturations(const FieldSet *fs, const Material *mat, double sw_n, Jet pw, Jet pg, ScalarState *s)
+/* Shares of two fluids in the open pores and their mean pressure (10). */
+static void Share(Jet sg, Jet pw, Jet pg, ScalarState *s)
 {
-  const Jet pc = JetSub(pg, pw);
-  double    ds;
+  const PorePressure m = PorePressureOf(sg.v, pw.v, pg.v);
 
-  s->sw = JetConstant(fs->phase[PHASE_W] ? 1.0 : 0.0);
-  s->sg = JetConstant(0.0);
-  s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
-  if (!fs->phase[PHASE_G])
-    return;
-  if (fs->one_pressure) {
-    s->sg = JetConstant(1.0 - sw_n);
-  } else {
-    const double sg = RetentionGasShare(&mat->retention, pc.v, &ds);
+  s->sg = sg;
+  s->sw = JetSub(JetConstant(1.0), sg);
+  s->p  = JetChain3(m.v, m.sg, sg, m.pw, pw, m.pg, pg);
+}
 
-    s->sg = JetChain(sg, ds, pc);
+/* (320) */
+static Jet GasShareJet(const Retention *law, Jet pc, Jet Sh)
+{
+  double       dpc, dSh;
+  const double sg = RetentionGasShare(law, pc.v, Sh.v, &dpc, &dSh);
+
+  return JetChain2(sg, dpc, pc, dSh, Sh);
+}
+
+/* (321): what the reaction makes of S_h if the fluids share the pores as at this S_h, less S_h itself, with its slope;
+   all else is fixed. */
+static double HydrateBalance(const Material *mat, const PointHistory *h, double Sh, double pw, double pg, double T,
+                             double rho_h, const ScalarState *s, double *slope)
+{
+  ScalarState  trial = {.V = JetConstant(s->V.v), .Vp = JetConstant(s->Vp.v)};
+  double       dpc, dSh;
+  const double sg = RetentionGasShare(&mat->retention, pg - pw, Sh, &dpc, &dSh), full = rho_h * s->Vp.v;
+
+  Share(JetVariable(sg, JET_J), JetConstant(pw), JetConstant(pg), &trial); /* the place of J is free for s_g */
+  HydrateMass(mat, h, JetConstant(T), JetConstant(rho_h), &trial);
+  *slope = trial.m_h.d[JET_J] * dSh / full - 1.0;
+  return trial.m_h.v / full - Sh;
+}
+
+#define ROUNDING 4e-16 /* of S_h */
+
+/* (321) by Newton inside a bracket: S_h, with what is left of the balance and its slope there. */
+static double SolveHydrate(const Material *mat, const PointHistory *h, double pw, double pg, double T, double rho_h,
+                           const ScalarState *s, double *f, double *slope)
+{
+  double lo = 0.0, hi = 1.0, Sh = fmin(fmax(h->m_star[0] / (rho_h * s->Vp.v), lo), hi);
+
+  for (int it = 0; it < 100; it++) {
+    *f                      = HydrateBalance(mat, h, Sh, pw, pg, T, rho_h, s, slope);
+    *(*f > 0.0 ? &lo : &hi) = Sh;
+    if (fabs(*f) <= ROUNDING || hi - lo <= ROUNDING)
+      break;
+    const double next = Sh - *f / *slope;
+
+    Sh = next > lo && next < hi && it % 3 ? next : 0.5 * (lo + hi); /* a kink of the law would hold Newton up */
   }
-  s->sw                = JetSub(s->sw, s->sg);
-  const PorePressure m = PorePressureOf(s->sg.v, pw.v, pg.v);
-  s->p                 = JetChain3(m.v, m.sg, s->sg, m.pw, pw, m.pg, pg);
+  return Sh;
+}
+
+/* The slopes follow from the implicit function theorem; of the mass of hydrate what the reaction says where it is slow,
+   what S_h says where it is fast, which is one Newton step more in either. */
+static void ShareWithHydrate(const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T, Jet rho_h,
+                             ScalarState *s)
+{
+  const Jet    full = JetMul(rho_h, s->Vp), pc = JetSub(pg, pw);
+  double       f, slope;
+  const double found = SolveHydrate(mat, h, pw.v, pg.v, T.v, rho_h.v, s, &f, &slope);
+
+  Share(GasShareJet(&mat->retention, pc, JetConstant(found)), pw, pg, s);
+  HydrateMass(mat, h, T, rho_h, s);
+  const Jet    Sh = JetChain(found - f / slope, -1.0 / slope, JetDiv(s->m_h, full)), m_h = JetMul(Sh, full);
+  const double more = -(slope + 1.0) * f / slope * full.v;
+
+  Share(GasShareJet(&mat->retention, pc, Sh), pw, pg, s);
+  s->m_h.v += more;
+  s->gain.v += more;
+  memcpy(s->m_h.d, m_h.d, sizeof(m_h.d));
+  memcpy(s->gain.d, m_h.d, sizeof(m_h.d));
+}
+
+/* Shares of the fluids in the open pores, their mean pressure, and hydrate. */
+static void Saturations(const FieldSet *fs, const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T,
+                        Jet rho_h, ScalarState *s)
+{
+  if (!fs->phase[PHASE_G]) {
+    s->sw = JetConstant(fs->phase[PHASE_W] ? 1.0 : 0.0);
+    s->sg = JetConstant(0.0);
+    s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
+  } else if (fs->one_pressure) {
+    Share(JetConstant(1.0 - h->sw_n), pw, pg, s);
+  } else if (mat->retention.hydrate > 0.0) {
+    ShareWithHydrate(mat, h, pw, pg, T, rho_h, s);
+    return;
+  } else {
+    Share(GasShareJet(&mat->retention, JetSub(pg, pw), JetConstant(0.0)), pw, pg, s);
+  }
+  HydrateMass(mat, h, T, rho_h, s);
 }
 
 static ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
@@ -149,8 +221,8 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
                              const double in[IN_COUNT], ScalarState *s, const char **why)
 {
   const Jet pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
-            T     = JetVariable(in[IN_T], JET_T);
-  const Jet zero  = JetConstant(0.0);
+            T    = JetVariable(in[IN_T], JET_T);
+  const Jet zero = JetConstant(0.0), pressure[PHASE_COUNT] = {pw, pg};
   const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
 
   const ClStatus status = CheckInputs(fs, mat, in, why);
@@ -163,25 +235,24 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     *why = "porosity fell to zero";
     return CL_DOMAIN;
   }
-  Saturations(fs, mat, h->sw_n, pw, pg, s);
-  HydrateMass(mat, h, T, rho_h, s);
+  Saturations(fs, mat, h, pw, pg, T, rho_h, s);
 
   const Jet Vf = VolumeLeftJet(s->Vp, s->m_h, rho_h);
   if (!(Vf.v > 0.0)) {
     *why = "hydrate fills the pore space";
     return CL_DOMAIN;
   }
-  s->Sh  = PoreShareJet(s->m_h, rho_h, s->Vp);
-  s->m_w = s->m_g = zero;
+  s->Sh         = PoreShareJet(s->m_h, rho_h, s->Vp);
+  s->m[PHASE_W] = s->m[PHASE_G] = zero;
   if (fs->phase[PHASE_W]) {
-    s->rho[PHASE_W] = LiquidJet(&mat->water, pw, T);
+    s->rho[PHASE_W] = FluidJet(mat, PHASE_W, pw, T);
     const Content c = WaterContent(s->sg.v, s->rho[PHASE_W].v);
-    s->m_w          = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
+    s->m[PHASE_W]   = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
   }
   if (fs->phase[PHASE_G]) {
-    s->rho[PHASE_G] = GasJet(&mat->gas, pg, T);
+    s->rho[PHASE_G] = FluidJet(mat, PHASE_G, pg, T);
     const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
-    s->m_g          = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
+    s->m[PHASE_G]   = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
   }
   if (fs->fluid)
     Mobility(fs, mat, T, s);
@@ -189,7 +260,7 @@ ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const Poin
     Thermal(mat, h, T, s);
   for (int f = 0; fs->heat && h->compression && f < PHASE_COUNT; f++) {
     if (fs->phase[f])
-      s->warm[f] = ExpansionJet(mat, f, f == PHASE_W ? pw : pg, T);
+      s->warm[f] = ExpansionJet(mat, f, pressure[f], T);
   }
   if (fs->solid)
     Skeleton(mat, s);
@@ -205,16 +276,16 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
 
   *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
-  *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, LiquidDensity(&mat->water, pw, T, &d, &e)).v : 0.0;
-  *m_g = gas ? Vf * MethaneContent(Trace(fs, mat), sg, GasDensity(&mat->gas, pg, T, &d, &e), pg).v : 0.0;
+  *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, FluidDensity(mat, PHASE_W, pw, T, &d, &e)).v : 0.0;
+  *m_g = gas ? Vf * MethaneContent(Trace(fs, mat), sg, FluidDensity(mat, PHASE_G, pg, T, &d, &e), pg).v : 0.0;
 }
 
-double PointMethane(const Material *mat, double pw, double pg, double T, double slope[PHASE_COUNT])
+double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT])
 {
-  double       ds, rho_p, rho_T;
-  const double sg   = RetentionGasShare(&mat->retention, pg - pw, &ds),
+  double       ds, ds_dSh, rho_p, rho_T;
+  const double sg   = RetentionGasShare(&mat->retention, pg - pw, Sh, &ds, &ds_dSh),
                rho  = GasDensity(&mat->gas, pg, T, &rho_p, &rho_T);
-  const FluidMass m = MassOf(MethaneContent(mat->gas.trace, sg, rho, pg), 1.0, 0.0, ds, rho_p, rho_T);
+  const FluidMass m = MassOf(MethaneContent(mat->gas.trace, sg, rho, pg), 1.0, 0.0, ds, 0.0, rho_p, rho_T);
 
   slope[PHASE_W] = m.other;
   slope[PHASE_G] = m.own;
@@ -223,17 +294,17 @@ double PointMethane(const Material *mat, double pw, double pg, double T, double 
 
 #define CLOSE 1e-4 /* of p_0 */
 
-double PointGasPressure(const Material *mat, double want, double pw, double T, double a, double b)
+double PointGasPressure(const Material *mat, double want, double Sh, double pw, double T, double a, double b)
 {
   double       slope[PHASE_COUNT], lo = fmin(a, b), hi = fmax(a, b);
   const double close = CLOSE * mat->retention.p0;
 
-  if ((PointMethane(mat, pw, lo, T, slope) - want) * (PointMethane(mat, pw, hi, T, slope) - want) >= 0.0)
+  if ((PointMethane(mat, Sh, pw, lo, T, slope) - want) * (PointMethane(mat, Sh, pw, hi, T, slope) - want) >= 0.0)
     return b;
   while (hi - lo > close + 4.0 * PETSC_MACHINE_EPSILON * fabs(hi)) {
     const double mid = 0.5 * (lo + hi);
 
-    if (PointMethane(mat, pw, mid, T, slope) < want)
+    if (PointMethane(mat, Sh, pw, mid, T, slope) < want)
       lo = mid;
     else
       hi = mid;
@@ -266,7 +337,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     return status;
   *r = (PointProperties){.s = {s.sw.v, s.sg.v}, .phi = s.phi.v, .Sh = s.Sh.v};
   for (int f = 0; f < PHASE_COUNT; f++) {
-    const Jet *m = f == PHASE_W ? &s.m_w : &s.m_g;
+    const Jet *m = &s.m[f];
 
     if (!fs->phase[f])
       continue;
@@ -275,7 +346,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->kr[f]             = s.kr[f].v;
     const Jet mobility   = JetDiv(s.kr[f], s.resist[f]);
     r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
-    r->storage[f]        = m->d[f == PHASE_W ? JET_PW : JET_PG] / (V * s.rho[f].v);
+    r->storage[f]        = m->d[JET_PW + f] / (V * s.rho[f].v);
   }
   if (fs->heat) {
     r->capacity = s.capacity.v;

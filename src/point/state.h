@@ -6,7 +6,7 @@
 
 typedef struct {
   Jet  V, Vp, phi, Sh, sw, sg, p;
-  Jet  m_h, m_w, m_g;
+  Jet  m_h, m[PHASE_COUNT]; /* masses, kg */
   Jet  gain; /* m_h - m_h*, kg, as the reaction makes it: the difference would round what m_h* is the large part of */
   Jet  rho[PHASE_COUNT];                     /* intrinsic densities */
   Jet  resist[PHASE_COUNT], kr[PHASE_COUNT]; /* mu/k_a, Pa s/m^2; relative permeability */

@@ -17,9 +17,9 @@ enum { SCALE_NONE = 0, SCALE_P0 };
 
 static void Retention_(const Material *m, double pc, double y[MOST])
 {
-  double d;
+  double d, dSh;
 
-  y[0] = RetentionGasShare(&m->retention, pc, &d);
+  y[0] = RetentionGasShare(&m->retention, pc, 0.0, &d, &dSh);
   y[1] = 1.0 - y[0];
 }
 

@@ -50,7 +50,8 @@ PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus statu
   PetscFunctionBeginUser;
   PetscCall(PetscPrintf(
       m->grid.comm, "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
-      s->state.t, attempts, m->why ? m->why : "?", StepperStatusName(status), m->where[0], m->where[1]));
+      s->state.t, attempts, ModelFailure(m)->why, StepperStatusName(status), ModelFailure(m)->where[0],
+      ModelFailure(m)->where[1]));
   PetscCall(StepperAdvise(s, status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,7 +16,7 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
   double      *e, *eu;
 
   StepperPlasticErrors(s, dt, 1.0, weight);
-  PetscCall(PetscMalloc2(4 * m->P.n, &e, 2 * m->P.n, &eu));
+  PetscCall(PetscMalloc2(4 * m->P.n, &e, CL_DIM * m->P.n, &eu));
   for (PetscInt p = 0; p < m->P.n; p++) { /* (25) */
     double y_n[4], k_n[4];
 
@@ -25,8 +25,8 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
       w->rates[4 * p + k] = (w->trial[0].y[4 * p + k] - y_n[k]) / dt;
       e[4 * p + k]        = s->state.fresh ? 0.0 : 0.5 * dt * (w->rates[4 * p + k] - k_n[k]);
     }
-    for (int d = 0; d < 2; d++)
-      eu[2 * p + d] = s->state.fresh ? 0.0 : 0.5 * dt * (w->trial[0].v[2 * p + d] - w->v_n[2 * p + d]);
+    for (int d = 0; d < CL_DIM; d++)
+      eu[CL_DIM * p + d] = s->state.fresh ? 0.0 : 0.5 * dt * (w->trial[0].v[CL_DIM * p + d] - w->v_n[CL_DIM * p + d]);
   }
   a->err = StepperErrorNorm(s, e, eu, a);
   PetscCall(PetscFree2(e, eu));

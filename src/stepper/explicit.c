@@ -194,9 +194,10 @@ static PetscErrorCode Limit(Stepper *s)
 
 static PetscErrorCode Advance(Stepper *s, bool *ok)
 {
-  Model       *m = s->model;
-  bool         kink;
-  const double stop = StepperNextStop(s, &kink);
+  Model         *m   = s->model;
+  const Failure *why = ModelFailure(m);
+  bool           kink;
+  const double   stop = StepperNextStop(s, &kink);
 
   PetscFunctionBeginUser;
   *ok = true;
@@ -228,7 +229,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     s->state.hold = HOLD;
     PetscCall(PetscPrintf(
         m->grid.comm, "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-        s->state.t, n, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0], m->where[1], s->state.dt));
+        s->state.t, n, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1], s->state.dt));
     if (cuts >= s->max_failures) {
       *ok = false;
       PetscCall(StepperGiveUp(s, cuts + 1, a.status));

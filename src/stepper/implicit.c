@@ -35,9 +35,10 @@ static PetscErrorCode SizeWork(Stepper *s)
   PetscCall(StepperFreeWork(w));
   PetscCall(
       PetscCalloc3(N * s->model->c->fields.n, &w->x, N * s->model->c->fields.n, &w->x_star, N * CL_DIM, &w->u_star));
-  PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, 2 * n, &w->v_n));
+  PetscCall(PetscCalloc3(3 * n, &w->m_star, 4 * n, &w->rates, CL_DIM * n, &w->v_n));
   for (int k = 0; k < 2; k++)
-    PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, 2 * n, &w->trial[k].u, 2 * n, &w->trial[k].v));
+    PetscCall(PetscCalloc4(3 * n, &w->trial[k].m, 4 * n, &w->trial[k].y, CL_DIM * n, &w->trial[k].u, CL_DIM * n,
+                           &w->trial[k].v));
   const unsigned has = s->model->c->fields.has;
   for (int k = 0; k < 2 && (has & HAS_HISTORY); k++)
     PetscCall(PetscCalloc1(n, &w->trial[k].end));
@@ -135,7 +136,7 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
 
     for (int k = 0; k < 4; k++)
       square[k] = PetscSqr(e[4 * p + k]);
-    square[4] = PetscSqr(eu[2 * p]) + PetscSqr(eu[2 * p + 1]);
+    square[4] = PetscSqr(eu[CL_DIM * p]) + PetscSqr(eu[CL_DIM * p + 1]);
     for (int k = 0; s->work.e_plastic && k < 5; k++)
       square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
     for (int k = 0; k < STEPPER_ERRORS; k++)
@@ -226,8 +227,8 @@ static bool IsNoise(const Stepper *s, double dt, double err, double dt_old, doub
 static void Judge(Stepper *s, double dt, double dt_old, double err_old, Attempt *a)
 {
   if (!isfinite(a->err)) {
-    a->status     = CL_NONFINITE;
-    s->model->why = "the error estimate is not a number";
+    a->status = CL_NONFINITE;
+    ModelExplain(s->model, "the error estimate is not a number");
   } else if (a->err > 1.0 && dt > s->dt_min && !IsNoise(s, dt, a->err, dt_old, err_old)) {
     a->status = CL_INACCURATE;
   } else if (a->err > 1.0) {
@@ -258,10 +259,12 @@ static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
 /* One step: attempts with ever smaller dt until one is accepted or the budget is spent. */
 PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
 {
-  Model   *m = s->model;
-  ClStatus status;
-  double   dt_inaccurate = 0.0, err_inaccurate = 0.0;
-  bool     kink;
+  Model         *m   = s->model;
+  const Failure *why = ModelFailure(m);
+  ClStatus       status;
+  double         dt_inaccurate = 0.0, err_inaccurate = 0.0;
+  char           text[CL_WHY];
+  bool           kink;
 
   PetscFunctionBeginUser;
   *ok = true;
@@ -269,7 +272,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   if (status != CL_OK) {
     *ok = false;
     PetscCall(PetscPrintf(m->grid.comm, "t = %.10g s: %s near (%.12g, %.12g) m; no smaller step can help\n", s->state.t,
-                          m->why, m->where[0], m->where[1]));
+                          why->why, why->where[0], why->where[1]));
     PetscCall(StepperAdvise(s, status));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -294,9 +297,9 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     }
     const bool small = dt <= s->dt_min * (1.0 + 1e-9);
     if (a.status == CL_INACCURATE) {
-      PetscCall(PetscSNPrintf(m->text, sizeof(m->text), "the error estimate, of %s, stays above the tolerance",
+      PetscCall(PetscSNPrintf(text, sizeof(text), "the error estimate, of %s, stays above the tolerance",
                               stepper_error_word[a.rules]));
-      m->why         = m->text;
+      ModelExplain(m, text);
       dt_inaccurate  = dt;
       err_inaccurate = a.err;
       s->state.dt    = fmax(dt * fmax(0.2, 0.9 * pow(a.err, -1.0 / s->scheme->error_order)), s->dt_min);
@@ -304,8 +307,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
       s->state.hold = HOLD;
       PetscCall(PetscPrintf(m->grid.comm, "t = %g s: step of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-                            s->state.t, dt, StepperStatusName(a.status), m->why ? m->why : "?", m->where[0],
-                            m->where[1], s->state.dt));
+                            s->state.t, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1],
+                            s->state.dt));
     }
     const bool last = cuts >= s->max_failures || small;
     PetscCall(StepperAutoGivesWay(s, a.status, dt, last, &s->auto_.give_way));

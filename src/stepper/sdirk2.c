@@ -49,7 +49,7 @@ static PetscErrorCode Error(Stepper *s, double dt, Attempt *a)
   PetscFunctionBeginUser;
   ErrorWeights(s->state.fresh, weight);
   StepperPlasticErrors(s, dt, GAMMA, weight);
-  PetscCall(PetscMalloc2(4 * m->P.n, &e, 2 * m->P.n, &eu));
+  PetscCall(PetscMalloc2(4 * m->P.n, &e, CL_DIM * m->P.n, &eu));
   for (PetscInt p = 0; p < m->P.n; p++) {
     double y_n[4], k_n[4];
 
@@ -61,8 +61,8 @@ static PetscErrorCode Error(Stepper *s, double dt, Attempt *a)
       w->rates[4 * p + k] = k2;
       e[4 * p + k]        = dt * (weight[0] * k_n[k] + weight[1] * k1 + weight[2] * k2);
     }
-    for (int d = 0; d < 2; d++) {
-      const PetscInt q = 2 * p + d;
+    for (int d = 0; d < CL_DIM; d++) {
+      const PetscInt q = CL_DIM * p + d;
 
       eu[q] = dt * (weight[0] * w->v_n[q] + weight[1] * w->trial[0].v[q] + weight[2] * w->trial[1].v[q]);
     }

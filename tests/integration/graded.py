@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A grid whose cells differ: 1 and 2 ranks agree, a restart goes on bit for bit, hybrid agrees with implicit steps, and the files say where its lines are.
+"""A grid whose cells differ: 1 and 2 ranks agree, a restart goes on bit for bit, hybrid agrees with implicit steps and explicit with it, and the files say where its lines are.
 
 The block of two materials of ranks.py, squeezed by a tenth: particles pass from cell to cell, and from rank to rank.  Along x cells are fine where the
 materials meet, along y at the drained top.
@@ -57,6 +57,8 @@ check("hybrid: 2 ranks against 1", worst(hybrid[1], hybrid[2]), 1e-8)
 check("hybrid: water and methane balance", np.max(np.abs([hybrid[1].balance[f"{w}_error"] for w in ("water", "methane")])), 1e-12)
 for name, bar in (("p_w", 0.01), ("displacement", 0.02)):
     check(f"hybrid against sdirk2: {name}", worst(fast, hybrid[1], (name,)), bar)
+drag = Run.of_case(CASE, *GRID, *FAST, "-stepper_type", "explicit", "-stepper_adapt", "no", "-stepper_dt", "1.5e-5 s")
+check("explicit, whose drag is explicit too, against hybrid", worst(hybrid[1], drag, ("p_w", "displacement", "stress")), 0.01)
 out = scratch() / "cut"
 half = launch(binary(), CASE, *GRID, *FAST, "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "3e-5 s", "-stepper_max_steps", "512", out=out)
 cut = Run.of_case(CASE, *GRID, *FAST, "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "3e-5 s", "-restart", out / "checkpoint.h5", out=out)

@@ -45,7 +45,7 @@ def check_film(film, out):
     worst = {"place": 0.0, "outline": 0.0}
     values = {f["key"]: f["low"] + unpack(f["data"], "u1", frames, n) / 254 * (f["high"] - f["low"]) for f in film["fields"]}
     for k, t in enumerate(done.times):
-        p = done.particles(t)
+        p = shown.drawn(done, t)
         F, l = p["deformation_gradient"].reshape(-1, 2, 2), first["half_length"]
         outline = p["position"] + F[:, :, 0] * l[:, :1] + F[:, :, 1] * l[:, 1:]
         worst["place"] = max(worst["place"], np.max(np.abs(place[k] - p["position"]) / film["span"]))
@@ -95,9 +95,9 @@ PIXELS = """(() => { const c = document.getElementById("film"), g = c.getContext
 def check_picture(page, done, key, time):
     """The colour in the middle of each particle is that of its value."""
     q = next(q for q in shown.QUANTITIES if q.key == key)
-    every = [q.of(done.particles(t)) for t in done.times]
+    every = [q.of(shown.drawn(done, t)) for t in done.times]
     low, high = min(map(np.min, every)), max(map(np.max, every))
-    wanted, seen = colour((q.of(done.particles(time)) - low) / (high - low)), np.array(page.ask(PIXELS))
+    wanted, seen = colour((q.of(shown.drawn(done, time)) - low) / (high - low)), np.array(page.ask(PIXELS))
     check(f"{key} at {time:g} s: colours in the middle of the particles, levels of 255", np.max(np.abs(wanted - seen)), 8)
 
 

@@ -134,4 +134,42 @@ for body in BODIES:
         check(f"{body}, {cells} cells: heat let in", abs(heat - 1), 0.45 / cells)
         check(f"{body}, {cells} cells: water let in", abs(water - heat), 1e-3)
 table(["body", "cells", "heat: error", "water: error"], lines)
+
+# --- regions that lie over each other: the later one wins
+OVER = """title: two regions
+grid: {{lower: [0 m, 0 m], upper: [2 m, 1 m], cells: [8, 4]}}
+fields: heat
+materials: [rock, soil]
+mat:
+  rock: {{porosity: 0.1, solid: {{density: 2650 kg/m^3, heat_capacity: 800 J/(kg K), conductivity: 3 W/(m K)}}, elasticity: {{E0: rigid}}}}
+  soil: {{like: rock, porosity: 0.4}}
+regions: [{order}]
+region:
+  box: {{lower: [0 m, 0 m], upper: [2 m, 1 m], material: rock, temperature: 10 degC{minus}}}
+  ball: {{circle: [1 m, 0.5 m, 0.4 m], material: soil, temperature: 20 degC}}
+stages: [one, two]
+stage: {{one: {{end: 1 h}}, two: {{end: 2 h, materials: [ball, soil]}}}}
+output: {{times: [0 s, 2 h]}}
+"""
+
+
+def the_same(a, b):
+    return all(np.array_equal(x[n], y[n]) for (_, x), (_, y) in zip(a.snapshots(), b.snapshots(), strict=True) for n in x)
+
+
+runs = {}
+for name, order, minus in (("later", "box, ball", ""), ("cut", "box, ball", ", minus: [ball]"), ("first", "ball, box", "")):
+    case = scratch() / "case.yaml"
+    case.write_text(OVER.format(order=order, minus=minus))
+    done = launch(binary(), case, "-quiet", out=case.parent / "out")
+    runs[name] = done, Run(case.parent / "out") if done.returncode == 0 else None
+later, cut = runs["later"][1], runs["cut"][1]
+check_true("a region over an earlier one is as if cut out of it", the_same(later, cut))
+check_true("... which is said", "note: region ball lies over region box" in runs["later"][0].stdout and "note: region" not in runs["cut"][0].stdout, runs["later"][0].stdout[-300:])
+start = later.snapshot(0.0)
+check("... they fill the box", abs(np.sum(start["volume"]) / 2.0 - 1), 1e-12)
+check_true("... the ball is the later one's", 0 < np.count_nonzero(start["region"] == 1) < len(start["region"]) / 2)
+check_true("an earlier one that is all covered is refused", runs["first"][0].returncode == 2 and "region_ball_minus" in runs["first"][0].stdout, runs["first"][0].stdout[-300:])
+again = Run.of_case(later.out / "case.yaml", "-quiet")
+check_true("the resolved case runs to the same", the_same(later, again))
 finish()

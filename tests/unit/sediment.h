@@ -74,12 +74,16 @@ static inline const FieldSet *AllFields(void)
   return &all;
 }
 
+static inline double GasShareOf(const Material *mat, double pc, double Sh)
+{
+  double d[2];
+
+  return RetentionGasShare(&mat->retention, pc, Sh, &d[0], &d[1]);
+}
+
 /* Masses of a particle that its pressures ask for. */
 static inline void InitialMasses(const Material *mat, double V, double phi, double Sh, double pw, double pg, double T,
                                  double *m_s, double *m_h, double *m_w, double *m_g)
 {
-  double ds;
-
-  PointInitialMasses(AllFields(), mat, V, phi, Sh, RetentionGasShare(&mat->retention, pg - pw, &ds), pw, pg, T, m_s,
-                     m_h, m_w, m_g);
+  PointInitialMasses(AllFields(), mat, V, phi, Sh, GasShareOf(mat, pg - pw, Sh), pw, pg, T, m_s, m_h, m_w, m_g);
 }

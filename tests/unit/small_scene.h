@@ -153,10 +153,10 @@ static inline void Refill(SmallScene *s, PetscInt p, double Sh)
   double *const  *f   = s->m.P.f;
   const double    T = fs->heat ? f[P_T][p] : r->temperature, pw = fs->phase[PHASE_W] ? f[P_PW][p] : 0.0;
   const double    pg = f[P_PG] ? f[P_PG][p] : pw;
-  double          m[4], ds, sg = fs->phase[PHASE_G] ? r->Sg : 0.0;
+  double          m[4], sg = fs->phase[PHASE_G] ? r->Sg : 0.0;
 
   if (f[P_PG])
-    sg = RetentionGasShare(&mat->retention, pg - pw, &ds);
+    sg = GasShareOf(mat, pg - pw, Sh);
   PointInitialMasses(fs, mat, f[P_V][p], mat->porosity, Sh, sg, pw, pg, T, &m[0], &m[1], &m[2], &m[3]);
   for (int k = 0; k < 4; k++) {
     if (f[P_MS + k])
@@ -176,7 +176,7 @@ static inline void StageStart(SmallScene *s, double dt)
 
   Call(ModelBeginStep(m, &status));
   if (status != CL_OK)
-    Say("  %s\n", m->why);
+    Say("  %s\n", m->failure.why);
   Check(status == CL_OK);
   s->stage = (Stage){.t = dt, .dt = dt};
   Call(PetscMalloc3(m->map.n_local * n, &s->stage.x_star, m->map.n_local * CL_DIM, &s->stage.u_star, 3 * m->P.n,
@@ -233,7 +233,7 @@ static inline double ResidualAt(SmallScene *s, const double *x, int from, int to
     MakeSolver(s);
   SetX(m, x);
   Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
-  Check(m->status == CL_OK);
+  Check(m->failure.status == CL_OK);
   Call(VecGetArrayRead(m->solver->R, &a));
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
     if (fs->field[k % fs->n] >= from && fs->field[k % fs->n] < to)
@@ -406,10 +406,10 @@ static inline void Difference(Model *m, Vec X, Vec D, double t, double *dy)
   for (int l = 0; l < LEVELS; l++, t *= 0.5) {
     Call(VecWAXPY(Xt, t, D, X));
     Call(ModelResidual(NULL, Xt, Ru, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     Call(VecWAXPY(Xt, -t, D, X));
     Call(ModelResidual(NULL, Xt, Rd, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     for (int k = 0; k <= l; k++)
       Call(PetscMalloc1(n, &a[l][k]));
     Call(VecGetArrayRead(Ru, &up));
@@ -456,9 +456,9 @@ static inline void PrepareJacobian(SmallScene *s, Vec *X, Vec *D, Vec *JD)
   Call(VecDuplicate(m->solver->X, JD));
   Call(VecCopy(m->solver->X, *X));
   Call(ModelResidual(NULL, *X, m->solver->R, m));
-  if (m->status != CL_OK)
-    Say("  inadmissible: %s\n", m->why);
-  Check(m->status == CL_OK);
+  if (m->failure.status != CL_OK)
+    Say("  inadmissible: %s\n", m->failure.why);
+  Check(m->failure.status == CL_OK);
   Call(ModelJacobian(m->solver->snes, *X, m->solver->A, m->solver->Pmat, m));
 }
 

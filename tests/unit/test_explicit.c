@@ -54,7 +54,7 @@ static StageRates Go(SmallScene *s, const ExplicitOptions *o, int steps, double 
   for (int k = 0; k < steps && status == CL_OK; k++)
     Call(ExplicitStep(e, 0.0, share * fmin(limit.dt, 1.0), &sum, &status));
   if (status != CL_OK)
-    Say("  %s\n", s->m.why);
+    Say("  %s\n", s->m.failure.why);
   Check(status == CL_OK);
   Call(ExplicitEnd(e));
   Call(ExplicitDestroy(&e));

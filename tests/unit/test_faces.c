@@ -23,7 +23,7 @@ typedef struct {
   Face     face;
   BcValues v;
   double   value[3], shear[3], phase[PHASE_COUNT][3];
-  double   p0[PHASE_COUNT];
+  double   p0[PHASE_COUNT], Sh;
   Schedule given; /* stands for any function of time: its value is in v */
 } SmallScene;
 
@@ -32,9 +32,11 @@ static double one[1];
 static void SceneInit(SmallScene *s, Rng *r)
 {
   memset(s, 0, sizeof(*s));
-  s->mat             = SedimentMaterial();
-  s->mat.gas.carried = 3e-7;
-  s->given           = (Schedule){.n = 1, .t = one, .y = one};
+  s->mat                   = SedimentMaterial();
+  s->mat.gas.carried       = 3e-7;
+  s->mat.retention.hydrate = 1.5;
+  s->Sh                    = 0.3;
+  s->given                 = (Schedule){.n = 1, .t = one, .y = one};
   assert_true(FieldSetMake(HAS_ALL, true, false, &s->c.fields));
   s->c.bc             = s->bc;
   s->c.nbc            = 3;
@@ -83,7 +85,7 @@ static void Evaluate(const SmallScene *s, const double in[IN_COUNT], FaceOutput 
 {
   const double velocity[CL_DIM] = {0.02 + in[IN_U] / DT, -0.01 + in[IN_U + 1] / DT};
 
-  FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, in, velocity, KAPPA, DT, o);
+  FaceEvaluate(&s->c, &s->face, &s->v, &s->mat, s->p0, s->Sh, in, velocity, KAPPA, DT, o);
   if (s->face.bc[BC_PLATE] >= 0)
     PlateEvaluate(&s->bc[s->face.bc[BC_PLATE]], &s->face, s->value[s->face.bc[BC_PLATE]], in, o);
 }
@@ -386,8 +388,7 @@ static void MeanPressure(void **state)
     for (int natural = 0; natural < 2; natural++) {
       SmallScene s;
       FaceOutput o;
-      double     in[IN_COUNT], ds, p[PHASE_COUNT];
-
+      double     in[IN_COUNT], p[PHASE_COUNT];
       SceneInit(&s, &r);
       Prescribe(&s, &r, natural, OPEN_BOTH);
       Inputs(&r, in);
@@ -399,7 +400,7 @@ static void MeanPressure(void **state)
                 in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
                 in[IN_GP + 2 * ph + 1] * s.face.r[1]; /* the row has what it differs from the body's own */
       const double pc = natural ? in[IN_P + 1] - in[IN_P] : s.p0[1] - s.p0[0];
-      const double sg = RetentionGasShare(&s.mat.retention, pc, &ds);
+      const double sg = GasShareOf(&s.mat, pc, s.Sh);
 
       assert_true(fabs(p[1] - p[0] - pc) < 1e-12 * p[1]);
       assert_true(fabs((1.0 - sg) * p[0] + sg * p[1] - s.value[0]) < 1e-12 * s.value[0]);

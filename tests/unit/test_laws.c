@@ -106,7 +106,12 @@ struct Row {
 static double F_Retention(const Row *r, Set *s, const double *x, double *d)
 {
   assert_true(RetentionSetType(&s->ret, r->type));
-  return RetentionGasShare(&s->ret, x[0], d);
+  return RetentionGasShare(&s->ret, x[0], x[1], &d[0], &d[1]);
+}
+static double F_Narrowed(const Row *r, Set *s, const double *x, double *d)
+{
+  s->ret.hydrate = 3 * s->ret.m;
+  return F_Retention(r, s, x, d);
 }
 static double F_Water(const Row *r, Set *s, const double *x, double *d)
 {
@@ -187,6 +192,12 @@ static double L_Smooth(const Set *s, const double *x, int i)
   const double ps = s->ret.p_smooth > 0 ? s->ret.p_smooth : 0.05 * s->ret.p0;
 
   return (1 - s->ret.m) * (fmin(ps, s->ret.p0) + 0.2 * fmax(x[0], 0));
+}
+static double L_Narrowed(const Set *s, const double *x, int i)
+{
+  const double r = RetentionNarrowing(&s->ret, x[1]), bare = r * x[0], h = L_Smooth(s, &bare, 0);
+
+  return i ? (1 - x[1]) * fmin(0.1, h / (s->ret.hydrate * fabs(bare))) : h / r;
 }
 static double L_Clamped(const Set *s, const double *x, int i)
 {
@@ -314,6 +325,7 @@ static const Row rows[] = {
     {"retention", "van_genuchten", F_Retention, 1, PC, L_Smooth, NULL, 0, 1, 1},
     {"retention", "van_genuchten_clamped", F_Retention, 1, PC, L_Clamped, K_Clamped, 0, 1, 1},
     {"retention", "brooks_corey", F_Retention, 1, PC, L_BrooksCorey, K_BrooksCorey, 0, 1, 1},
+    {"narrowed", "van_genuchten", F_Narrowed, 2, {-1e9, 0}, {1e9, 0.95}, L_Narrowed, NULL, 0, 1, 1},
     {"relperm water", NULL, F_Water, 1, {0}, {1}, L_Water, K_Water, 0, 1, 1},
     {"relperm gas", NULL, F_Gas, 1, {0}, {1}, L_Gas, K_Gas, 0, 1, 1},
     {"hydrate", "power", F_Hydrate, 2, {0, 0.01}, {1, 0.99}, L_Fraction, K_Power, 0, 1, -1},
@@ -563,7 +575,7 @@ static const Retention BP2 = {.p0 = 5e4, .m = 0.3, .lambda = 0.5, .Swr = 0.2, .S
 static void RetentionInversion(void **state)
 {
   Retention law = BP2;
-  double    pc, d;
+  double    pc, d, none;
 
   for (int k = 0; RetentionTypes()[k]; k++) {
     int found = 0;
@@ -572,12 +584,12 @@ static void RetentionInversion(void **state)
       law = Draw().ret;
       RetentionSetType(&law, RetentionTypes()[k]);
       const double from = (Chance(0.5) ? 1 : -1) * law.p0 * LogUniform(1e-3, 1e2),
-                   sg   = RetentionGasShare(&law, from, &d);
+                   sg   = RetentionGasShare(&law, from, 0.0, &d, &none);
 
       if (!(sg > 1e-300) || fabs(from) > 1e9)
         continue;
-      assert_true(RetentionInvert(&law, sg, &pc));
-      const double back = RetentionGasShare(&law, pc, &d);
+      assert_true(RetentionInvert(&law, sg, 0.0, &pc));
+      const double back = RetentionGasShare(&law, pc, 0.0, &d, &none);
 
       if (!(fabs(back - sg) <= 4e-16 + 4e-16 * fabs(pc) * d))
         fail_msg("%s: %.17g from %.17g", law.type, back, sg);
@@ -587,21 +599,22 @@ static void RetentionInversion(void **state)
     law = BP2;
     RetentionSetType(&law, RetentionTypes()[k]);
     pc = 7;
-    assert_false(RetentionInvert(&law, 0.8, &pc) || RetentionInvert(&law, 1.1, &pc) || RetentionInvert(&law, 0, &pc) ||
-                 RetentionInvert(&law, -0.1, &pc) || RetentionInvert(&law, NAN, &pc));
+    assert_false(RetentionInvert(&law, 0.8, 0.0, &pc) || RetentionInvert(&law, 1.1, 0.0, &pc) ||
+                 RetentionInvert(&law, 0, 0.0, &pc) || RetentionInvert(&law, -0.1, 0.0, &pc) ||
+                 RetentionInvert(&law, NAN, 0.0, &pc));
     assert_true(pc == 7);
   }
   law = BP2;
   RetentionSetType(&law, "van_genuchten");
-  assert_true(RetentionInvert(&law, 0.38735372246897245, &pc) && fabs(pc) < 1e-9); /* p_c = 0 */
-  assert_true(RetentionInvert(&law, 0.1, &pc) && pc < 0);
+  assert_true(RetentionInvert(&law, 0.38735372246897245, 0.0, &pc) && fabs(pc) < 1e-9); /* p_c = 0 */
+  assert_true(RetentionInvert(&law, 0.1, 0.0, &pc) && pc < 0);
   RetentionSetType(&law, "van_genuchten_clamped");
-  assert_true(RetentionInvert(&law, 0.4, &pc) && pc == 0);
-  assert_true(RetentionInvert(&law, 1 - 0.6, &pc) && pc == 0);
-  assert_false(RetentionInvert(&law, 0.39, &pc));
+  assert_true(RetentionInvert(&law, 0.4, 0.0, &pc) && pc == 0);
+  assert_true(RetentionInvert(&law, 1 - 0.6, 0.0, &pc) && pc == 0);
+  assert_false(RetentionInvert(&law, 0.39, 0.0, &pc));
   RetentionSetType(&law, "brooks_corey");
-  assert_true(RetentionInvert(&law, 0.4, &pc) && pc == law.p0);
-  assert_false(RetentionInvert(&law, 0.39, &pc));
+  assert_true(RetentionInvert(&law, 0.4, 0.0, &pc) && pc == law.p0);
+  assert_false(RetentionInvert(&law, 0.39, 0.0, &pc));
 }
 
 static int Seed(void **state)

@@ -34,15 +34,21 @@ static void TestRetention(void **state)
   (void)state;
   for (int k = 0; type[k]; k++) {
     Retention law = {.p0 = 5e4, .m = 0.3, .lambda = 1.5, .Swr = 0.2, .Sgr = 0.1};
+    double    none;
 
     assert_true(RetentionSetType(&law, type[k]));
-    for (int q = 0; q < N; q++)
-      x[q] = (q % 2 ? 1.0 : -1.0) * pow(10.0, RandomIn(-2.0, 8.0));
-    RetentionGasShareBatch(&law, N, x, a, da);
-    for (int q = 0; q < N; q++)
-      b[q] = RetentionGasShare(&law, x[q], &db[q]);
-    printf("retention %-22s: share %.1e, slope %.1e\n", type[k], Worst(N, a, b), Worst(N, da, db));
-    assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11);
+    for (law.hydrate = 0.0; law.hydrate < 2.0; law.hydrate += 1.5) {
+      for (int q = 0; q < N; q++) {
+        x[q] = (q % 2 ? 1.0 : -1.0) * pow(10.0, RandomIn(-2.0, 8.0));
+        y[q] = RandomIn(0.0, 0.95);
+      }
+      RetentionGasShareBatch(&law, N, x, y, a, da);
+      for (int q = 0; q < N; q++)
+        b[q] = RetentionGasShare(&law, x[q], y[q], &db[q], &none);
+      printf("retention %-22s, n = %.1f: share %.1e, slope %.1e\n", type[k], law.hydrate, Worst(N, a, b),
+             Worst(N, da, db));
+      assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11);
+    }
   }
 }
 

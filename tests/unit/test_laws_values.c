@@ -29,27 +29,27 @@ static void RetentionValues(void **state)
       {1e9, 0.79426198963633819, 2.45914553489e-12},
   };
   Retention law = BP2;
-  double    d;
+  double    d, none;
 
   RetentionSetType(&law, "van_genuchten");
   for (size_t i = 0; i < COUNT(exact); i++) {
-    Near(RetentionGasShare(&law, exact[i][0], &d), exact[i][1], 2e-15);
+    Near(RetentionGasShare(&law, exact[i][0], 0.0, &d, &none), exact[i][1], 2e-15);
     Near(d, exact[i][2], 1e-11);
   }
   law = (Retention){.p0 = 1e5, .m = 0.45, .Swr = 0.3, .Sgr = 0}; /* S_gr' = 1e-4 */
   RetentionSetType(&law, "van_genuchten");
-  Near(RetentionGasShare(&law, -3e6, &d), 9.3576229688401746e-18, 2e-15);
-  assert_true(RetentionGasShare(&law, -1e9, &d) == 0 && d == 0);
+  Near(RetentionGasShare(&law, -3e6, 0.0, &d, &none), 9.3576229688401746e-18, 2e-15);
+  assert_true(RetentionGasShare(&law, -1e9, 0.0, &d, &none) == 0 && d == 0);
 
   law = BP2;
   RetentionSetType(&law, "van_genuchten_clamped");
-  Near(RetentionGasShare(&law, 5e4, &d), 0.4 + 0.4 * (1 - pow(2, -0.3)), 1e-15);
-  assert_true(RetentionGasShare(&law, -1, &d) == 0.4 && d == 0);
-  assert_true(RetentionGasShare(&law, 0, &d) == 0.4 && d == 0);
+  Near(RetentionGasShare(&law, 5e4, 0.0, &d, &none), 0.4 + 0.4 * (1 - pow(2, -0.3)), 1e-15);
+  assert_true(RetentionGasShare(&law, -1, 0.0, &d, &none) == 0.4 && d == 0);
+  assert_true(RetentionGasShare(&law, 0, 0.0, &d, &none) == 0.4 && d == 0);
   RetentionSetType(&law, "brooks_corey");
-  Near(RetentionGasShare(&law, 2e5, &d), 0.4 + 0.4 * 0.5, 1e-15);
+  Near(RetentionGasShare(&law, 2e5, 0.0, &d, &none), 0.4 + 0.4 * 0.5, 1e-15);
   Near(d, 0.4 * 0.5 * 0.5 / 2e5, 1e-15);
-  assert_true(RetentionGasShare(&law, 4.9e4, &d) == 0.4 && d == 0);
+  assert_true(RetentionGasShare(&law, 4.9e4, 0.0, &d, &none) == 0.4 && d == 0);
 }
 
 static void RelPermValues(void **state)

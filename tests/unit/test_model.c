@@ -21,13 +21,13 @@ static void UpstreamScene(SmallScene *s, BasisType basis, bool reacts, int set)
   s->c.scene.stabilisation.upstream = reacts;
   s->c.scene.stabilisation.donor    = set;
   JacobianState(s);
-  Check((PetscInt)Sum((double)s->m.nghost) > 0 && (PetscInt)Sum((double)s->m.ncell) > 0);
+  Check((PetscInt)Sum((double)s->m.added->nghost) > 0 && (PetscInt)Sum((double)s->m.added->ncell) > 0);
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
-    upstream += s->m.up && s->m.up[3 * k + 2] > 0.0; /* no storage where it is off */
+    upstream += s->m.added->up && s->m.added->up[3 * k + 2] > 0.0; /* no storage where it is off */
   for (PetscInt p = 0; p < s->m.P.n; p++)
-    lumped += s->m.lump && s->m.lump[p].rate > 0.0;
+    lumped += s->m.added->lump && s->m.added->lump[p].rate > 0.0;
   for (PetscInt p = 0; p < s->m.P.n; p++)
-    donor += s->m.donor && s->m.donor[p].base < 1.0;
+    donor += s->m.added->donor && s->m.added->donor[p].base < 1.0;
   Check((Sum(upstream) > 0.0) == reacts && (Sum(lumped) > 0.0) == reacts && (Sum(donor) > 0.0) == (set > 0));
 }
 
@@ -244,7 +244,7 @@ static void TestMassRows(void **state)
     RandomUnknowns(m, s->stage.dt, 50 + k, x);
     SetX(m, x);
     Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
-    Check(m->status == CL_OK);
+    Check(m->failure.status == CL_OK);
     Call(ModelEndStage(m, x, &t, &rates, &status));
     Check(status == CL_OK);
     for (PetscInt p = 0; p < m->P.n; p++) {
@@ -284,7 +284,7 @@ static double RestVelocity(SmallScene *s, double *scale)
   m->solver->tol_residual = 2e-12; /* and a twentieth of it in mass and energy */
   Call(ModelSolve(m, x, &newton, &status));
   if (status != CL_OK)
-    Say("  %s\n", m->why);
+    Say("  %s\n", m->failure.why);
   Check(status == CL_OK && newton > 0);
   for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
     if (k % F_COUNT < F_PW)
@@ -330,12 +330,11 @@ static void TestTwoLayers(void **state)
     Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
     for (PetscInt p = 0; p < s->m.P.n; p++) {
       double *const *f = s->m.P.f;
-      double         d;
 
       f[P_PW][p] = f[P_PW0][p] = 3.2e6;
       f[P_PG][p] = f[P_PG0][p] = 3.3e6;
       Refill(s, p, s->m.P.i[PI_REGION][p] ? 0.3 : 0.0);
-      const double sg = RetentionGasShare(&MaterialOf(s, p)->retention, 1e5, &d);
+      const double sg = GasShareOf(MaterialOf(s, p), 1e5, f[P_SH][p]);
       for (int k = 0; k < 3; k++)
         f[P_SIG + k][p] = f[P_SIG0 + k][p] = 3.2e6 + sg * 1e5 - q;
     }
@@ -471,9 +470,8 @@ static void TestDarcy(void **state)
     Refill(s, p, 0.0);
   }
   StageStart(s, 1e3);
-  const double sw = 1.0 - RetentionGasShare(&mat->retention, 0.0, &d),
-               k  = PermeabilityEvaluate(&mat->permeability, 0.3, 0.0, &d, &e);
-  const double v  = -k * RelPermWater(&mat->relperm, sw, &d) / mat->mu_w.mu * slope / (0.3 * sw);
+  const double sw = 1.0 - GasShareOf(mat, 0.0, 0.0), k = PermeabilityEvaluate(&mat->permeability, 0.3, 0.0, &d, &e);
+  const double v = -k * RelPermWater(&mat->relperm, sw, &d) / mat->mu_w.mu * slope / (0.3 * sw);
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
     s->m.x_n[I * F_COUNT + F_VWX] = s->stage.x_star[I * F_COUNT + F_VWX] = v;

@@ -20,32 +20,38 @@ typedef struct {
   bool        of_pores, yields, compression;
   double      contrast; /* k0 of the right half over that of the left; 0: one material */
   double      ratio;    /* of permeability across beds that dip by 30 deg, in a body that falls; 0: no beds */
+  double      narrows;  /* exponent of (320) */
 } Variant;
 
 static const Variant variants[] = {
     {"dissociates", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false,
-     false, 0.0, 0.0},
+     false, 0.0, 0.0, 0.0},
     {"forms", HAS_ALL, 4.8e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
-     0.0, 0.0},
+     0.0, 0.0, 0.0},
     {"other laws", HAS_ALL, 2.6e6, "brooks_corey", "masuda_ramp", "square_jacobian", STIFFNESS_LOSS_ONLY, 1.5, 30.0,
-     true, false, true, 0.0, 0.0},
+     true, false, true, 0.0, 0.0, 0.0},
     {"bonds", HAS_ALL, 2.6e6, "van_genuchten_clamped", "none", "none", STIFFNESS_BONDS, 1.0, 1.0, false, false, false,
-     0.0, 0.0},
+     0.0, 0.0, 0.0},
     {"plastic", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, true, false,
-     0.0, 0.0},
+     0.0, 0.0, 0.0},
     {"one fluid", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
-     30.0, false, false, true, 0.0, 0.0},
+     30.0, false, false, true, 0.0, 0.0, 0.0},
+    {"narrow pores", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 30.0, false, false,
+     false, 0.0, 0.0, 2.0},
+    {"narrow pores fill", HAS_ALL, 4.8e6, "brooks_corey", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 30.0, false,
+     false, false, 0.0, 0.0, 2.0},
     {"rigid", HAS_WATER | HAS_GAS | HAS_HEAT, 2.6e6, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false,
-     false, true, 0.0, 0.0},
+     false, true, 0.0, 0.0, 0.0},
     {"layers", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
-     1e3, 0.0},
+     1e3, 0.0, 0.0},
     {"wet layers", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
-     1.0, false, false, false, 1e-3, 0.0},
+     1.0, false, false, false, 1e-3, 0.0, 0.0},
     {"beds", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false, false,
-     0.0, 0.1},
+     0.0, 0.1, 0.0},
     {"wet beds", HAS_SOLID | HAS_WATER | HAS_HEAT, 3e6, "van_genuchten", "none", "kozeny_carman", STIFFNESS_BOTH, 1.0,
-     1.0, false, false, false, 1e-3, 0.1},
-    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true, false, 0.0, 0.0},
+     1.0, false, false, false, 1e-3, 0.1, 0.0},
+    {"dry", HAS_SOLID, 0.0, "van_genuchten", "power", "none", STIFFNESS_BOTH, 1.0, 1.0, false, true, false, 0.0, 0.0,
+     0.0},
 };
 
 static void SetMaterial(Material *m, const Variant *v)
@@ -58,6 +64,7 @@ static void SetMaterial(Material *m, const Variant *v)
   m->elasticity.change = v->stiffness;
   m->elasticity.bh     = v->bh;
   m->relperm.of_pores  = v->of_pores;
+  m->retention.hydrate = v->narrows;
   m->permeability.phi0 = 0.4;
   if (v->ratio > 0.0) {
     m->permeability.ratio = v->ratio;
@@ -87,7 +94,6 @@ static void SetState(SmallScene *s, bool slips)
 {
   static const double L[2][2] = {{0.6, -0.3}, {0.9, 0.5}}, slip[3][2] = {{0.0, 0.0}, {3e-3, -2e-3}, {-4e-3, 1e-3}};
   double *const      *f = s->m.P.f;
-  double              slope;
 
   for (PetscInt p = 0; p < s->m.P.n; p++) {
     for (int k = 0; k < 6; k++) {
@@ -100,7 +106,7 @@ static void SetState(SmallScene *s, bool slips)
         f[P_SIG + k][p] = f[P_SIG0 + k][p] = stress[k];
     }
     if (f[P_PG]) {
-      f[P_PW][p] = s->region.pressure - RetentionGasShare(&s->mat.retention, CAPILLARY, &slope) * CAPILLARY;
+      f[P_PW][p] = s->region.pressure - GasShareOf(&s->mat, CAPILLARY, s->mat.reacts ? 0.2 : 0.0) * CAPILLARY;
       f[P_PG][p] = f[P_PW][p] + CAPILLARY;
     }
     Refill(s, p, s->mat.reacts ? 0.2 : 0.0);

@@ -44,13 +44,12 @@ static void RandomPoint(Rng *r, Point *q)
 {
   const bool   gas = q->fs.phase[PHASE_G];
   const double pw = 4e6, pg = pw + 1e5, T = RngBetween(r, 2.0, 8.0);
-  double       ds;
 
   q->mat            = SedimentMaterial();
   q->mat.plasticity = WeakPlasticity(RngPick(r, 2), 0.7);
   q->mat.reacts     = gas && RngPick(r, 2);
   q->h              = (PointHistory){.V = 2e-4, .T_n = T, .Sh_n = 0.2, .dt = RngLog(r, 0.1, 10.0), .bracket = 1.0};
-  const double sg   = gas ? RetentionGasShare(&q->mat.retention, pg - pw, &ds) : 0.0;
+  const double sg   = gas ? GasShareOf(&q->mat, pg - pw, 0.21) : 0.0;
   PointInitialMasses(&q->fs, &q->mat, q->h.V, 0.3, 0.21, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
                      &q->h.m_star[2]);
   for (int k = 0; k < 4; k++) {

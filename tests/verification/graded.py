@@ -2,7 +2,7 @@
 """A grid whose cells differ: what must be exact on any lines is, and what gains by fine cells does.
 
 A uniform stress and a linear temperature, fine at either end of either axis; bodies at rest; a fall through cells of changing width; consolidation with the
-cells at the drain; Thiem's well of 0.1 m in a reservoir of 100 m.
+cells at the drain; Thiem's well of 0.1 m in a reservoir of 100 m; a footing on ground of 40 m.
 """
 from pathlib import Path
 
@@ -47,6 +47,9 @@ table(("basis", "fine at", "stress off", "displacement not linear", "temperature
 judge("graded", "patch test, fine at either end of either axis: uniform stress, linear displacement", max(max(r[2:4]) for r in rows if r[0] == "cpgimp"), 1e-9)
 judge("graded", "... with domains that keep their length (strain 2e-6)", max(max(r[2:4]) for r in rows if r[0] == "ugimp"), 2e-6)
 judge("graded", "... linear temperature", max(r[4] for r in rows), 1e-9)
+
+last = Run.of_case(CASES / "graded_patch.yaml", *QUIET, *axes(FINE["low"], FINE["middle"]), "-basis", "linear", *TIGHT, "-boundaries", "base,wall", "-ambient_pressure", "2 kPa").snapshots()[-1][1]
+judge("graded", "... linear functions under an ambient pressure (a traction acts at their particles): uniform stress", np.max(np.abs(last["stress"][:, [0, 1, 3]] - [-2e3, -2e3, 0.0])) / 2e3, 1e-9)
 
 # ---------------------------------------------------------------- at rest, and in free fall
 rows = []
@@ -109,4 +112,22 @@ for what, size in (("fine at the well", "0.1 m,8 m,growth 1.25"), ("finer", "0.0
 table(("cells", "number", "rate / Thiem", "p at 0.15 m", "at 1 m", "at 20 m, of the drop"), rows)
 judge("graded", "Thiem, r_w = 0.1 m, to 100 m: rate off", max(abs(r[2] - 1) for r in rows[:2]), 1e-3)
 judge("graded", "... pressure off from 1 m on, of the drop", max(max(r[4:]) for r in rows[:2]), 1e-2)
+rows = []
+for lower in (0.06, 0.03):
+    run = Run.of_case(CASES / "graded_well.yaml", *QUIET, "-grid_lower", f"{lower} m,0 m", timeout=100)
+    rows.append((lower, run.csv("meters.csv")["well.water_kg_s"][-1] / thiem))
+table(("grid from (m)", "rate / Thiem"), rows)
+judge("graded", "... whose wall of 0.1 m lies within a cell: rate off", max(abs(r[1] - 1) for r in rows), 1e-2)
+
+# ---------------------------------------------------------------- a footing of 1 m on ground of 40 m, in as many cells as equal ones to 8 m
+E, NU = 20e6, 0.3
+HALF_SPACE = ("-grid_cells", "auto,auto", "-grid_upper", "40 m,40.05 m", "-region_ground_upper", "40 m,40 m", "-bc_side_position", "40 m", "-probes", "", "-stepper_dt", "1 s",
+              "-grid_spacing_x", "{table: [0 m,0.2 m,0.8 m,0.05 m,1 m,0.05 m,1.2 m,0.05 m,40 m,4 m]}", "-grid_spacing_y_table", "0 m,4 m,38.8 m,0.1 m,39.8 m,0.05 m,40 m,0.05 m,40.05 m,0.05 m")  # fmt: skip
+rows = []
+for rough in ("no", "yes"):
+    m = Run.of_case("footing", *QUIET, *HALF_SPACE, "-bc_footing_rough", rough, timeout=100).csv("meters.csv")
+    rows.append((rough, -m["footing.force_N"][-1] / m["footing.position_m"][-1] / (2 * E / (1 - NU**2))))
+table(("rough", "stiffness / half space"), rows)
+judge("graded", "a smooth footing over cells of 0.05 to 4 m: stiffness, over a half space's", abs(rows[0][1] - 1), 0.05)
+judge("graded", "... a rough one over it, against Spence", abs(rows[1][1] / rows[0][1] / ((1 - NU) * np.log(3 - 4 * NU) / (1 - 2 * NU)) - 1), 5e-3)
 finish()

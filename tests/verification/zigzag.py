@@ -2,7 +2,7 @@
 """Fields that alternate from cell to cell are judged by a number: zigzag, the smallest of three successive differences of
 alternating sign between the means of neighbouring cells in a row, the largest in the body, over the field's range.  It is 0 in
 smooth fields and at fronts, and the amplitude where cells alternate.  The shipped cases' final fields, of the pictures in docs,
-on shorter runs where they are long, and the README's own case.
+on shorter runs where they are long, and the README's own case; stresses beside a heater, whose particles alternate and whose pictures do not.
 """
 import re
 from pathlib import Path
@@ -11,6 +11,7 @@ import numpy as np
 
 from common import CASES, ROOT, binary, check_true, finish, judge, run, scratch, table  # noqa: I001
 import clathra  # noqa: E402, from scripts, which common puts on the path
+from clathra import shown  # noqa: E402
 
 SEEN = 0.02  # of the range of a picture's colours
 FRONT = 0.1  # what BP2's own front has on the grid of its figure
@@ -79,12 +80,36 @@ for name, options in SHORT.items():
 locked = measured(run(binary(), CASES / "footing", "-quiet", "-mat_ground_elasticity_nu", 0.4999).out)
 check_true("a skeleton that locks is seen: its mean stress alternates", locked["mean stress"] > 0.1, locked)
 case = scratch() / "case.yaml"
-case.write_text(re.search(r"```yaml\n(title: a hydrate layer is drawn down.*?)```", Path(ROOT / "README.md").read_text(), re.S)[1])
+text = re.search(r"```yaml\n(title: a hydrate layer is drawn down.*?)```", Path(ROOT / "README.md").read_text(), re.S)[1]
+case.write_text(text)
 FOUR_HOURS = ("-quiet", "-grid_cells", "10,6", "-time_end", "4 h", "-output_every", "4 h")
 found = measured(run(binary(), case, *FOUR_HOURS).out)
 central = measured(run(binary(), case, *FOUR_HOURS, "-stabilisation_saturation", "no").out)
 check_true("README's case without (200): its checkerboard is seen", central["S_w"] > 0.1, central)
 rows += [("README's case", k, v) for k, v in found.items()]
 judge("fronts", "README's case: zigzag of any field over its range", max(found.values()), SEEN)
+
+# ---------------------------------------------------------------- stresses that hydrate makes alternate within cells
+HEATER = text.replace("boundaries: [", "boundaries: [heater, ").replace("bc:\n", "bc:\n  heater: {type: face_temperature, side: left, from: 1 m, to: 3 m, temperature: {ramp: [10 degC, 60 degC, 0 h, 12 h]}}\n")
+case.write_text(re.sub(r"  well: \{.*\n", "  well: {type: pressure, side: top, initial: yes}\n", HEATER).replace("10 m", "4 m").replace("5 m, 2.5 m", "2 m, 2.5 m"))
+heated = clathra.Run(run(binary(), case, "-quiet", "-grid_cells", "8,12", "-stepper_tol", "1e-2", "-time_end", "2 d", "-output_every", "2 d").out)
+own, seen = heated.particles(), shown.drawn(heated, None)
+
+
+def rows_of_particles(values):
+    """(nx, ny) of a body of 2 x 2 particles a cell."""
+    order = np.lexsort(heated.particles()["initial_position"].T[::-1].round(6))
+    return values[order].reshape(16, -1)
+
+
+for what, p, least, most in (("its particles", own, 0.2, 1.0), ("the nodal means that pictures show", seen, 0.0, 0.05)):
+    syy = rows_of_particles(p["stress"][:, 1])
+    found = zigzag(syy) / np.ptp(syy)
+    rows.append(("heater", what, found))
+    check_true(f"a heater: zigzag of the vertical stress, {what}: {found:.3g} of its range", least <= found <= most)
+x = own["position"]
+smooth, constant = (np.abs(shown.nodal_means(heated.lines, own, v[:, None])[:, 0] - v) for v in (x[:, 1] - 0.2 * x[:, 0], np.full(len(x), 7.0)))
+inside = np.all((x > 0.5) & (x < x.max(0) - 0.5), axis=1)
+check_true("nodal means keep a constant, and inside a linear field", constant.max() < 1e-12 and smooth[inside].max() < 0.01, (constant.max(), smooth[inside].max()))
 table(("case", "field", "zigzag/range"), rows)
 finish()

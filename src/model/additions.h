@@ -1,0 +1,49 @@
+/* Private to model/: what the scheme adds to the balances so that they are well posed and do not oscillate. */
+#pragma once
+
+#include "clathra/model.h"
+
+/* Second difference of the ghost penalties (22), (351): a node with its neighbours along one axis. */
+typedef struct {
+  PetscInt node[3];
+  double   second[3];           /* h times the jump of the gradient (303); 1, -2, 1 where cells are equal */
+  double   a;                   /* g A/h */
+  double   M, kappa;            /* Pa, W/(m K) */
+  double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
+  double   store[PHASE_COUNT];  /* g_s A h rho s, kg/Pa */
+} GhostLine;
+
+/* Pressure projection of one cell. */
+typedef struct {
+  PetscInt node[4];
+  double   K[4][4];                          /* m^2/Pa */
+  double   t_inertia;                        /* of (275), s */
+  double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
+} ProjectionCell;
+
+/* What shares a particle's reaction out among its nodes (265), at t_n. */
+typedef struct {
+  double rate;           /* hydrate per time and driving pressure, kg/(s Pa) */
+  double decay;          /* M_h K_d A_geo <p_e - p>/rho_h, 1/s (266) */
+  double drive[F_COUNT]; /* d(p_e - p)/d p_w, d p_g, d T */
+  double gain[F_COUNT];  /* what a kg of hydrate adds to the rows (17), (21) of a node: kg, J */
+} Lump;
+
+/* Where the gas that moves through a particle comes from (332). */
+typedef struct {
+  double up[CL_DIM]; /* beta_p over the mean distance of the nodes upstream, along the flow, 1/m */
+  double base;       /* 1 - beta_p */
+  double kr;         /* k^_r,p at t_n (334) */
+} Donor;
+
+struct Additions {
+  PetscInt        nghost, ncell;
+  GhostLine      *ghost; /* [nghost] */
+  ProjectionCell *cell;  /* [ncell] (23) */
+  double *up;    /* [n_local][2][3] upstream weights of drag (35): direction of flow, factor (0: none); NULL when off */
+  Donor  *donor; /* [n] (332); NULL when off */
+  double *source; /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
+  double *spread; /* [n][2] (200); NULL when off */
+  double *upwind; /* [n][3] (293); NULL when off */
+  Lump   *lump;   /* [n] (265); NULL when off */
+};

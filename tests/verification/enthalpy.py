@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+"""Enthalpy of a closed, insulated column, added up from masses and temperatures of its particles, while hydrate dissociates in one half and water
+and gas flow from it to the other: with Kirchhoff's law (130) H = sum m c (T - T_ref) - m_h L(T_ref) is a function of the state and stays.  The rows of
+heat in balance.csv, which sum what each step gave, are not asked.
+"""
+from pathlib import Path
+
+from common import Run, check_true, finish, judge, table
+
+CASE = Path(__file__).parent / "cases" / "enthalpy.yaml"
+CAPACITY = {"mass_solid": 800.0, "mass_hydrate": 2010.0, "mass_water": 4200.0, "mass_gas": 2100.0}  # J/(kg K)
+LATENT = 446120 - 132.638 * 273.15  # J/kg, at T_ref = 0 degC
+SHORT = ("-time_end", "1 s", "-output_times", "0 s,1 s")
+
+
+def enthalpy(v):
+    return sum(c * float((v[m] * v["T"]).sum()) for m, c in CAPACITY.items()) - LATENT * float(v["mass_hydrate"].sum())
+
+
+def lost(*options, ranks=1):
+    """What the column's enthalpy has changed by, and what flowed with the fluids, over the heat of reaction."""
+    (_, first), (_, last) = Run.of_case(CASE, "-quiet", *options, ranks=ranks).snapshots()
+    heat = LATENT * float((first["mass_hydrate"] - last["mass_hydrate"]).sum())
+    cold = first["position"][:, 0] > 0.5
+    carried = sum(CAPACITY[m] * float((last[m] - first[m])[cold].sum()) for m in ("mass_water", "mass_gas")) * 4.0  # K between the halves
+    return (enthalpy(last) - enthalpy(first)) / heat, carried / heat
+
+
+rows = [(name, *lost(*options, ranks=ranks)) for name, ranks, options in (
+    ("10 cells", 1, ()), ("20 cells", 1, ("-grid_cells", "20,1")), ("40 cells", 1, ("-grid_cells", "40,1")), ("10 cells, 2 ranks", 2, ()),
+    ("10 cells, 1 s", 1, SHORT), ("10 cells, 1 s, hybrid", 1, (*SHORT, "-stepper_type", "hybrid", "-stepper_adapt", "yes")),
+    ("10 cells, law linear", 1, ("-mat_core_latent_heat_law", "linear")))]  # fmt: skip
+table(("", "enthalpy lost", "carried by the fluids"), rows)
+error = [abs(row[1]) for row in rows]
+for k, bar in enumerate((3e-4, 2e-4, 1.2e-4, 3e-4, 5e-5, 3e-5)):
+    judge("fluids", f"closed column, {rows[k][0]}: enthalpy of the state lost, of the heat of reaction", error[k], bar)
+judge("fluids", "closed column: enthalpy lost on two ranks, apart from one", abs(rows[3][1] - rows[0][1]), 1e-9)
+check_true("falls with h", error[0] > error[1] > error[2], str(error[:3]))
+judge("fluids", "closed column with (235), whose heat depends on the way: lost, of the heat of reaction", error[6], (0.02, 0.1))
+finish()
