@@ -81,13 +81,13 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
   s->mat.permeability.k0 = 1.53e-13;
   if (has & HAS_GAS_PRESSURE)
     SetSolubility(&s->mat.gas, 1.9e-5);
-  s->region              = (Region){.ppc         = {2, 2},
-                                    .lower       = {start + lower[0], lower[1]},
-                                    .upper       = {start + upper[0], upper[1]},
-                                    .pressure    = 3.25e6,
-                                    .temperature = 4.0};
-  s->region.Sw           = s->c.scene.fields.phase[PHASE_G] ? 0.6 : s->c.scene.fields.fluid ? 1.0 : 0.0;
-  s->region.Sg           = s->c.scene.fields.phase[PHASE_G] ? 0.4 : 0.0;
+  s->region    = (Region){.ppc         = {2, 2},
+                          .lower       = {start + lower[0], lower[1]},
+                          .upper       = {start + upper[0], upper[1]},
+                          .pressure    = 3.25e6,
+                          .temperature = 4.0};
+  s->region.Sw = s->c.scene.fields.phase[PHASE_G] ? 0.6 : s->c.scene.fields.fluid ? 1.0 : 0.0;
+  s->region.Sg = s->c.scene.fields.phase[PHASE_G] ? 0.4 : 0.0;
 }
 
 static inline Schedule Constant(SmallScene *s, int which, double v)
