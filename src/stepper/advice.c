@@ -16,6 +16,15 @@ static bool HybridMayHelp(const Stepper *s, ClStatus status)
          !SceneNeedsImplicit(s->model->c);
 }
 
+/* Does gas lie in layers, of which one may hold it fast, without (332)? */
+static bool DonorMayHelp(const Stepper *s, ClStatus status)
+{
+  const Scene *c = s->model->c;
+
+  return (status == CL_SOLVER || status == CL_INACCURATE) && !s->explicit && !c->stabilisation.donor &&
+         c->fields.phase[PHASE_W] && c->fields.phase[PHASE_G] && !c->fields.one_pressure && SceneContrast(c) > 1.0;
+}
+
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
 {
   static const char *const advice[] = {
@@ -38,8 +47,10 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
 
   PetscFunctionBeginUser;
   if (what)
-    PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s%s (docs/giving_up.md)\n", what,
-                          HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : ""));
+    PetscCall(PetscPrintf(
+        s->model->grid.comm, "  What to try, in this order: %s%s%s (docs/giving_up.md)\n",
+        DonorMayHelp(s, status) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "", what,
+        HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

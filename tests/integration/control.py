@@ -84,6 +84,10 @@ def check_advice():
             "-region_wet_temperature", "4 degC", "-region_wet_Sh", 0, "-region_wet_Sw", 1, "-region_wet_Sg", 0)  # fmt: skip
     said = launch(binary(), *BP2[:5], "-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "1e5 MPa", *jump, out=scratch() / "out").stdout.splitlines()
     check_true("a jump of p_c at the start is named where the run gives up", any(line.startswith("A likely cause: regions column and wet touch") for line in said), said[-8:])
+    layers = ("-materials", "sediment,clay", "-mat_clay_like", "sediment", "-mat_clay_permeability_k0", "1e-18 m^2", "-region_wet_material", "clay", "-region_wet_Sw", 0.6, "-region_wet_Sg", 0.4)
+    load = ("-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "1e5 MPa")
+    tried = ["in this order: stabilisation_donor" in launch(binary(), *BP2[:5], *load, *jump, *more, out=scratch() / "out").stdout for more in (layers, (*layers, "-stabilisation_donor", "yes"))]
+    check_true("gas of where it comes from (332) is tried first in layers, unless it is on, and not in one material", tried == [True, False] and "stabilisation_donor" not in text, tried)
 
 
 def check_words():
