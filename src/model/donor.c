@@ -2,29 +2,35 @@
    docs/equations.md. */
 #include "gather.h"
 
+#define ROUND_OFF 1e-12 /* of the terms of a gradient: less of it has no direction */
+
 /* Direction of the gas that moves through a particle at t_n, by Darcy's law; false where there is none. */
 static bool Direction(const Model *m, PetscInt p, const Reach *r, double e[CL_DIM])
 {
   const FieldSet *fs  = &m->c->fields;
-  double          rho = 0.0;
+  double          rho = 0.0, terms = 0.0;
 
   for (int d = 0; d < CL_DIM; d++)
     e[d] = 0.0;
   for (int a = 0; a < r->n; a++) {
-    const PetscInt I = r->node[a];
+    const PetscInt I  = r->node[a];
+    const double   pI = m->x_n[I * fs->n + PlaceP(fs, PHASE_G)];
 
+    terms += hypot(r->G[a][0], r->G[a][1]) * fabs(pI);
     rho += r->S[a] * m->coef[I * NC_COUNT + NC_RHO + PHASE_G];
     for (int d = 0; d < CL_DIM; d++)
-      e[d] -= r->G[a][d] * m->x_n[I * fs->n + PlaceP(fs, PHASE_G)];
+      e[d] -= r->G[a][d] * pI;
   }
   for (int d = 0; d < CL_DIM; d++)
     e[d] += rho * m->bc.gravity[d];
   if (m->beds)
     BedsDrive(&m->beds[p].A, e);
   const double size = hypot(e[0], e[1]);
-  for (int d = 0; d < CL_DIM && size > 0.0; d++)
+  if (size <= ROUND_OFF * terms)
+    return false;
+  for (int d = 0; d < CL_DIM; d++)
     e[d] /= size;
-  return size > 0.0;
+  return true;
 }
 
 #define NEAREST 1e-3 /* of a cell: mean distance of the nodes upstream below which there are none */
