@@ -170,10 +170,16 @@ static inline bool SceneLetsGasIn(const Scene *c)
   return enters && SceneStartsWithoutGas(c);
 }
 
+/* Water and gas, each with a pressure of its own. */
+static inline bool SceneTwoPressures(const Scene *c)
+{
+  return c->fields.phase[PHASE_W] && c->fields.phase[PHASE_G] && !c->fields.one_pressure;
+}
+
 /* Has gas the mobility of where it comes from (332)? */
 static inline bool SceneDonor(const Scene *c)
 {
-  return c->stabilisation.donor && c->fields.phase[PHASE_W] && c->fields.phase[PHASE_G] && !c->fields.one_pressure;
+  return c->stabilisation.donor && SceneTwoPressures(c);
 }
 
 /* k_p of (350) over the first material's k0, at a saturation of hydrate. */

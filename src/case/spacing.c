@@ -219,6 +219,7 @@ static const char *TableOf(const Scene *c, int d, char inner[SPACING])
 
 static PetscErrorCode TakeAxis(Reader *r, Scene *c, int d)
 {
+  const bool  own = c->table[d][0];
   char        key[32], inner[SPACING];
   const char *table = TableOf(c, d, inner);
   Making      m     = {.r = r, .key = key, .lower = c->lower[d], .upper = c->upper[d]};
@@ -226,8 +227,8 @@ static PetscErrorCode TakeAxis(Reader *r, Scene *c, int d)
   bool        equal = true;
 
   PetscFunctionBeginUser;
-  snprintf(key, sizeof key, "grid_spacing_%c%s", "xy"[d], c -> table[d][0] ? "_table" : "");
-  if (c->table[d][0] && c->spacing[d][0])
+  snprintf(key, sizeof key, "grid_spacing_%c%s", "xy"[d], own ? "_table" : "");
+  if (own && c->spacing[d][0])
     FAIL_AT(GROUP_CASE, "", key, "and grid_spacing_%c are two ways to say the same: give one", "xy"[d]);
   PetscCall(PetscMalloc1(MOST + 1, &m.place));
   m.place[0] = m.lower;

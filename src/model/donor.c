@@ -46,13 +46,10 @@ static void DonorOf(const Model *m, PetscInt p, const Reach *r, Donor *donor)
   for (int a = 0; a < r->n; a++) {
     const PetscInt I    = r->node[a];
     const double   root = sqrt(m->coef[I * NC_COUNT + NC_KR + PHASE_G]);
-    double         up   = 0.0;
 
-    for (int d = 0; d < CL_DIM; d++)
-      up += e[d] * (m->P.f[P_X + d][p] - GridNode(&m->grid, d, m->map.ij[I][d]));
     least = fmin(least, root);
     most  = fmax(most, root);
-    distance += r->S[a] * fmax(up, 0.0);
+    distance += r->S[a] * fmax(-Upstream(m, p, I, e), 0.0);
   }
   if (distance < NEAREST * NodeWidth(m, r->node[0]))
     return;

@@ -94,15 +94,22 @@ static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
   return m->conduct[p] * m->flow[I];
 }
 
+/* How far a particle lies upstream of a node, against the direction of flow there, m; negative downstream. */
+static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const double direction[CL_DIM])
+{
+  double s = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    s += direction[d] * (GridNode(&m->grid, d, m->map.ij[I][d]) - m->P.f[P_X + d][p]);
+  return s;
+}
+
 /* omega_Ip (332): 1 where all nodes of the particle are as mobile. */
 static inline double DonorShare(const Model *m, PetscInt p, PetscInt I)
 {
   const Donor *at = &m->added->donor[p];
-  double       up = 0.0;
 
-  for (int d = 0; d < CL_DIM; d++)
-    up += at->up[d] * (m->P.f[P_X + d][p] - GridNode(&m->grid, d, m->map.ij[I][d]));
-  return at->base + fmax(up, 0.0);
+  return at->base + fmax(-Upstream(m, p, I, at->up), 0.0);
 }
 
 static inline bool Donated(const Model *m, int f)
@@ -238,16 +245,6 @@ static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI
 
   for (int i = 0; i < CL_DIM; i++)
     J[i] = w * (fs->solid ? v[i] - xI[PlaceVs(fs) + i] : v[i]);
-}
-
-/* How far a particle lies upstream of a node, against the direction of flow there, m; negative downstream. */
-static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const double direction[CL_DIM])
-{
-  double s = 0.0;
-
-  for (int d = 0; d < CL_DIM; d++)
-    s += direction[d] * (GridNode(&m->grid, d, m->map.ij[I][d]) - m->P.f[P_X + d][p]);
-  return s;
 }
 
 /* Weight of a particle in k_r of a node (108): (350), or what looks upstream (35). */
@@ -412,11 +409,13 @@ static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, Poi
       h->skeleton.from = m->stage.k_star[p];
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int i = 0; fs->phase[f] && i < CL_DIM; i++) {
+    for (int i = 0; i < CL_DIM; i++)
       h->proj[f][i] = 0.0;
-      for (int a = 0; a < r->n; a++)
-        h->proj[f][i] +=
-            ProjectedShare(m, p, r->node[a], f, r->S[a]) * m->proj[VectorAt(0, PHASE_COUNT * r->node[a] + f, i)];
+    for (int a = 0; fs->phase[f] && a < r->n; a++) {
+      const double share = ProjectedShare(m, p, r->node[a], f, r->S[a]);
+
+      for (int i = 0; i < CL_DIM; i++)
+        h->proj[f][i] += share * m->proj[VectorAt(0, PHASE_COUNT * r->node[a] + f, i)];
     }
   }
 }
@@ -534,10 +533,10 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
 /* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
 void LumpBuild(Model *m);
+void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (332)-(334): where each particle's gas comes from at t_n, all ranks. */
 PetscErrorCode DonorBuild(Model *m);
-void           LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
-void           LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);

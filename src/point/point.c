@@ -329,7 +329,6 @@ static void FluidScalars(const Material *mat, const PointHistory *h, const Kinem
 static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
                  const ScalarState *s, const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-
   PutScalar(OUT_C, s->capacity, k, tangent, o);
   PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent, o);
   for (int f = 0; f < PHASE_COUNT; f++) {

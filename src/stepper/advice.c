@@ -22,7 +22,7 @@ static bool DonorMayHelp(const Stepper *s, ClStatus status)
   const Scene *c = s->model->c;
 
   return (status == CL_SOLVER || status == CL_INACCURATE) && !s->explicit && !c->stabilisation.donor &&
-         c->fields.phase[PHASE_W] && c->fields.phase[PHASE_G] && !c->fields.one_pressure && SceneContrast(c) > 1.0;
+         SceneTwoPressures(c) && SceneContrast(c) > 1.0;
 }
 
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
