@@ -194,13 +194,8 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
 /* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
 PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
-/* The largest unit of which a time (s) holds two. */
-typedef struct {
-  double      s;
-  const char *name;
-} TimeUnit;
-/* For a time of so many s; seconds where none holds two. */
-const TimeUnit *StepperTimeUnit(double seconds);
+/* "12 s", "3.4 h", "1 year": a time (s) with so many digits, in the largest unit of which `scale` (s) holds two. */
+void StepperTime(double seconds, double scale, int digits, char text[32]);
 /* Steps that kinks of the loads, output times and dt_max ask for in the last `left` (s) of the stage, at least;
  *kinks (or NULL): how many of them end at a kink. */
 double StepperStops(const Stepper *s, double left, double *kinks);
