@@ -62,7 +62,7 @@ FAULTS = [
     ("tangents of faces do not turn", BOUNDARY + "faces.c", [("f->n[tangent]  = -A * F[axis][tangent]", "f->n[tangent]  = 0.0 * F[axis][tangent]")]),
     ("staircases count their steps", BOUNDARY + "faces.c", [("(F[1][1] * f->n0[0] - F[1][0] * f->n0[1])", "f->n[0] / fabs(A)"), ("(F[0][0] * f->n0[1] - F[0][1] * f->n0[0])", "f->n[1] / fabs(A)")]),
     ("friction of a plate the wrong way", BOUNDARY + "plates.c", [("o->out[F_VSX + t] -= o->plate[PLATE_SHEAR]", "o->out[F_VSX + t] += o->plate[PLATE_SHEAR]")]),
-    ("inertia of the fluids left out of the mixture", MODEL + "residual.c", [("inertia[i] += out[OUT_M + 1 + ph] * acc[i]", "inertia[i] += 0.0 * out[OUT_M + 1 + ph] * acc[i]")]),
+    ("inertia of the fluids left out of the mixture", MODEL + "residual.c", [("fI[i] += take[TAKE_M + k] * acc[i]", "fI[i] += (k > 0 ? 0.0 : 1.0) * take[TAKE_M + k] * acc[i]")]),
     ("initial pressure at a face without its water", MODEL + "evaluate.c", [("weight += rho *", "weight += 0.0 * rho *")]),
     ("pressure projection without inertia (275)", MODEL + "stabilise.c", [("return 1.0 / (1.0 + PetscSqr(c->t_inertia / m->stage.dt))", "return c->t_inertia >= 0.0 && m->stage.dt > 0.0 ? 1.0 : 0.0")]),
     ("the tangent has 1 % less of every fourth term", MODEL + "rows.c", [("+ f3 * r3[j]", "+ 0.99 * f3 * r3[j]")]),

@@ -306,6 +306,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(ModelFluidsAt(m, X));
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
+  ModelGive(m, m->x);
   PetscCall(MatrixBegin(m));
   PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);

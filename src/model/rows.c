@@ -2,11 +2,6 @@
 #include "gather.h"
 
 #define TOGETHER 4 /* rows that are read in one go */
-#define LANES 8
-
-/* Rows are whole numbers of these, and begin where one may; the compiler has instructions for them or takes smaller
-   ones. */
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
 
 INLINE void SumInto(const RowSum *s, int n, double *out)
 {
