@@ -417,36 +417,39 @@ typedef struct {
 
 /* d in/d(unknowns). */
 typedef struct {
-  int    length;
+  int    unknowns, length; /* unknowns: 0 before the first SlopesBegin */
   double in[IN_COUNT][ROW_MOST] __attribute__((aligned(64)));
 } Slopes;
 
-void SlopesBegin(int unknowns, Slopes *s);
+/* anew: with mean dilatation; else what SlopesAdd wrote for other nodes has the places that it writes again. */
+void SlopesBegin(int unknowns, bool anew, Slopes *s);
 /* Those of the node whose unknowns are `first` ... first + fs->n - 1. */
 void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeights *b, int first, Slopes *s);
-/* row = D d in/d(unknowns), D = d out/d in. */
-void SlopesApply(const Slopes *s, const double D[IN_COUNT], double *row);
+/* row[k] = D[k] d in/d(unknowns), D[k] = d out_k/d in, of n outputs. */
+void SlopesApply(const Slopes *s, int n, const double *const *D, double *const *row);
 
-/* A sum of rows with factors. */
+/* Sums of the same rows, each with factors of its own. */
 #define ROW_TERMS IN_COUNT
 typedef struct {
   int           n;
-  double        factor[ROW_TERMS];
   const double *row[ROW_TERMS];
+  double        factor[ROW_TERMS][CL_NODES]; /* [row][sum] */
 } RowSum;
 
-static inline void RowSumAdd(RowSum *s, double factor, const double *row)
+/* One more row; the caller fills the factors that it returns. */
+static inline double *RowSumAdd(RowSum *s, const double *row)
 {
-  s->factor[s->n] = factor;
-  s->row[s->n++]  = row;
+  s->row[s->n] = row;
+  return s->factor[s->n++];
 }
 
-/* out += the sum. */
-void RowSumInto(RowSum *s, int length, double *out);
+/* out := the sums, which are the first, or out += them. */
+void RowSumInto(const RowSum *s, int sums, int length, bool first, double *const *out);
 
 /* The rows of a particle's nodes, summed over particles that reach the same ones before they go to the matrix. */
 typedef struct {
   int      n;
+  bool     fresh; /* no particle has written its rows */
   PetscInt node[CL_NODES];
   double   v[CL_NODES][F_COUNT][ROW_MOST] __attribute__((aligned(64)));
 } Patch;
