@@ -20,5 +20,5 @@ typedef struct {
 
 /* motion: d u_i / d X_j on the configuration at t_n, then u_r/r.  False if J <= 0 or not finite. */
 bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k);
-/* The same without the slopes, which stay as they are. */
+/* The same without the slopes, which stay as they are; motion dimensionless. */
 bool KinematicsValues(const double motion[MOTION_COUNT], Kinematics *k);

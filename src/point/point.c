@@ -333,12 +333,10 @@ INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
 
     if (!fs->phase[f])
       continue;
-    for (int i = 0; i < CL_DIM; i++) {
+    o->out[OUT_Q] += AdvectedHeat(c_f, &o->out[VectorAt(OUT_FLUX, f, 0)], &in[IN_GT]);
+    for (int i = 0; tangent && i < CL_DIM; i++) {
       const int r = VectorAt(OUT_FLUX, f, i);
 
-      o->out[OUT_Q] += c_f * o->out[r] * in[IN_GT + i];
-      if (!tangent)
-        continue;
       for (int q = 0; q < IN_COUNT; q++)
         o->D[OUT_Q][q] += c_f * in[IN_GT + i] * o->D[r][q];
       o->D[OUT_Q][IN_GT + i] += c_f * o->out[r];
@@ -358,20 +356,20 @@ INLINE void CompressionHeat(const PointHistory *h, const Kinematics *k, const Sc
   const Throttling t      = ThrottlingOf(s->warm[f].v, rho.v);
   const Jet        share  = JetChain2(t.v, t.warm, s->warm[f], t.rho, rho);
   const double    *g = &in[VectorAt(IN_GP, f, 0)], *flux = &o->out[VectorAt(OUT_FLUX, f, 0)], *b = h->gravity;
-  double          *D = o->D[OUT_Q], sum = rise.v;
+  const double     fall[CL_DIM] = {k->F[0][0] * b[0] + k->F[1][0] * b[1], k->F[0][1] * b[0] + k->F[1][1] * b[1]};
+  const double     sum          = rise.v + ThrottledHeat(share.v, flux, g, fall);
+  double          *D            = o->D[OUT_Q];
 
-  for (int i = 0; i < CL_DIM; i++) {
-    const double head = share.v * g[i] - k->F[0][i] * b[0] - k->F[1][i] * b[1];
+  for (int i = 0; tangent && i < CL_DIM; i++) {
+    const double head = share.v * g[i] - fall[i];
 
-    sum += flux[i] * head;
-    for (int q = 0; tangent && q < IN_COUNT; q++)
+    for (int q = 0; q < IN_COUNT; q++)
       D[q] += head * o->D[VectorAt(OUT_FLUX, f, i)][q];
-    for (int j = 0; tangent && j < CL_DIM; j++) {
+    for (int j = 0; j < CL_DIM; j++) {
       o->wide_q[f][j] += head * o->wide[f][i][j];
       D[VectorAt(IN_GRADU, j, i)] -= flux[i] * b[j];
     }
-    if (tangent)
-      D[VectorAt(IN_GP, f, i)] += flux[i] * share.v;
+    D[VectorAt(IN_GP, f, i)] += flux[i] * share.v;
   }
   o->out[OUT_Q] += sum;
   state->squeezed -= sum;
