@@ -1,12 +1,8 @@
 /* Rows of the tangent in the unknowns of all nodes of a particle or face. */
 #include "gather.h"
 
-#define TOGETHER 4 /* sums that go on side by side: each row is read once for all of them */
-#ifdef __AVX512F__
-  #define TILE 5 /* Lanes of each that registers hold */
-#else
-  #define TILE 1
-#endif
+#define TOGETHER 4                /* sums that go on side by side: each row is read once for all of them */
+#define TILE (LANES == 8 ? 5 : 2) /* Lanes of each that registers hold */
 
 /* `count` of the sums from the k-th on, n Lanes from the j-th on. */
 INLINE void SumTile(const RowSum *s, int k, int count, int j, int n, bool first, double *const *out)
