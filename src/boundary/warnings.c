@@ -126,30 +126,56 @@ static PetscErrorCode StartCapillary(const Scene *c, const Region *r, double *pc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gas share S_g with which region r starts at the capillary pressure pc (Pa) of another, with its own p_0 (346). */
+static double ShareAt(const Scene *c, const Region *r, double pc)
+{
+  double d[2];
+
+  return (1.0 - r->Sh) * RetentionGasShare(&c->material[r->material].retention, pc, r->Sh, &d[0], &d[1]);
+}
+
+/* How two regions that are not in balance could start so. */
+static PetscErrorCode Balanced(const Scene *c, const Region *r[2], const double pc[2], char text[256])
+{
+  const int finer = c->material[r[1]->material].retention.p0 > c->material[r[0]->material].retention.p0;
+
+  PetscFunctionBeginUser;
+  if (r[0]->Sg == 0.0 || r[1]->Sg == 0.0)
+    PetscCall(PetscSNPrintf(text, 256, "Sg: 0 in both or neither"));
+  else
+    PetscCall(PetscSNPrintf(text, 256,
+                            "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; or the same p0 and gas "
+                            "share Sg/(1 - Sh) in both, though the finer may not have so much",
+                            ShareAt(c, r[finer], pc[!finer]), r[finer]->name, r[!finer]->name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* (342) between two regions, in words: the same on all ranks; empty where there is no jump. */
 static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt a, PetscInt b,
                            char text[CL_ADVICE])
 {
-  const Region *r = &c->region[a], *q = &c->region[b];
-  const double  p0    = fmin(c->material[r->material].retention.p0, c->material[q->material].retention.p0);
+  const Region *r[2]  = {&c->region[a], &c->region[b]};
+  const double  p0    = fmin(c->material[r[0]->material].retention.p0, c->material[r[1]->material].retention.p0);
   double        pc[2] = {0.0, 0.0};
   int           touch;
+  char          balanced[256];
 
   PetscFunctionBeginUser;
-  PetscCall(StartCapillary(c, r, &pc[0]));
-  PetscCall(StartCapillary(c, q, &pc[1]));
+  for (int k = 0; k < 2; k++)
+    PetscCall(StartCapillary(c, r[k], &pc[k]));
   if (fabs(pc[0] - pc[1]) <= fmax(LEAST_JUMP, JUMP * p0))
     PetscFunctionReturn(PETSC_SUCCESS);
   touch = Touches(c, P, a, b);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &touch, 1, MPI_INT, MPI_LOR, comm));
   if (!touch)
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Balanced(c, r, pc, balanced));
   PetscCall(PetscSNPrintf(
       text, CL_ADVICE,
       "regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between them "
-      "at once, the faster the larger their permeability (the same p0 and gas share Sg/(1 - Sh) in both, and Sg: 0 in "
-      "both or neither, starts in balance)",
-      r->name, q->name, 1e-3 * pc[0], r->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1], q->Sg == 0.0 ? " (no gas)" : ""));
+      "at once, the faster the larger their permeability (in balance: %s)",
+      r[0]->name, r[1]->name, 1e-3 * pc[0], r[0]->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1],
+      r[1]->Sg == 0.0 ? " (no gas)" : "", balanced));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
