@@ -1,22 +1,26 @@
 /* One particle, one face: gather from the nodes and evaluate. */
 #include "gather.h"
 
+#define GRADIENTS (GIVE_COUNT - GIVE_GRAD)
+
 /* Sums of what a particle's nodes hold. */
 typedef struct {
-  double S[GIVE_GRAD], G[CL_DIM][LANES];
+  double S[GIVE_GRAD], G[CL_DIM][GRADIENTS];
 } Sums;
 
 static void Sum(const Model *m, const Reach *r, Sums *s)
 {
-  Lanes S[GIVE_GRAD / LANES] = {{0.0}}, G[CL_DIM] = {{0.0}};
+  Lanes S[GIVE_GRAD / LANES] = {{0.0}}, G[CL_DIM][GRADIENTS / LANES] = {{{0.0}}};
 
   for (int a = 0; a < r->n; a++) {
-    const Lanes *node = (const Lanes *)&m->give[GIVE_COUNT * r->node[a]];
+    const Lanes *node = (const Lanes *)&m->give[GIVE_COUNT * r->node[a]], *grad = node + GIVE_GRAD / LANES;
 
     for (int k = 0; k < GIVE_GRAD / LANES; k++)
       S[k] += r->S[a] * node[k];
-    for (int d = 0; d < CL_DIM; d++)
-      G[d] += r->G[a][d] * node[GIVE_GRAD / LANES];
+    for (int d = 0; d < CL_DIM; d++) {
+      for (int k = 0; k < GRADIENTS / LANES; k++)
+        G[d][k] += r->G[a][d] * grad[k];
+    }
   }
   memcpy(s->S, S, sizeof(S));
   memcpy(s->G, G, sizeof(G));

@@ -94,9 +94,13 @@ static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
   return m->conduct[p] * m->flow[I];
 }
 
-/* What nodes and particles exchange stands in rows of whole Lanes, so that sums of them are vector code whatever the
-   fields; the compiler has instructions for Lanes or takes smaller ones. */
-#define LANES 8
+/* What nodes and particles exchange, and rows of the tangent, are whole numbers of these, so that sums of them are
+   vector code whatever the fields.  As wide as a register: of wider ones the compiler keeps what it sums in memory. */
+#ifdef __AVX512F__
+  #define LANES 8
+#else
+  #define LANES 4
+#endif
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias, aligned(sizeof(double))));
 
 /* Model.give, what a node holds for its particles: they sum it with S, what stands from GIVE_GRAD on with G. */

@@ -305,6 +305,7 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
   const FieldSet *fs = &to->fs;
   Slopes          slopes;
 
+  slopes.unknowns = 0;
   SlopesBegin(fs->n * r->n, true, &slopes);
   for (int b = 0; b < r->n; b++) {
     const double water   = FaceShare(m, face->particle, r->node[b], PHASE_W),

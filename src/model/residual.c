@@ -3,7 +3,7 @@
 
 /* What a particle adds at each of its nodes: [0] is weighted with S, [1] and [2] with the components of G. */
 typedef struct {
-  double S[TAKE_GRAD], G[CL_DIM][LANES];
+  double S[TAKE_GRAD], G[CL_DIM][TAKE_COUNT - TAKE_GRAD];
 } Shares;
 
 /* (35) is no share of the particle's own. */
@@ -119,7 +119,8 @@ static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const
 
     for (int k = 0; k < TAKE_GRAD / LANES; k++)
       node[k] += r->S[a] * S[k];
-    node[TAKE_GRAD / LANES] += r->G[a][0] * *Gx + r->G[a][1] * *Gy;
+    for (int k = 0; k < (TAKE_COUNT - TAKE_GRAD) / LANES; k++)
+      node[TAKE_GRAD / LANES + k] += r->G[a][0] * Gx[k] + r->G[a][1] * Gy[k];
   }
 }
 

@@ -1,23 +1,20 @@
 /* Rows of the tangent in the unknowns of all nodes of a particle or face. */
 #include "gather.h"
 
-#define TOGETHER 4 /* sums that go on side by side: each row is read once for all of them */
-#ifdef __AVX512F__
-  #define TILE 5 /* Lanes of each that registers hold */
-#else
-  #define TILE 1
-#endif
+#define TOGETHER 4                /* sums that go on side by side: each row is read once for all of them */
+#define TILE (LANES == 8 ? 5 : 2) /* Lanes of each that registers hold */
 
 /* `count` of the sums from the k-th on, n Lanes from the j-th on. */
 INLINE void SumTile(const RowSum *s, int k, int count, int j, int n, bool first, double *const *out)
 {
-  Lanes sum[TOGETHER][TILE];
+  const Lanes none = {0.0};
+  Lanes       sum[TOGETHER][TILE];
 
 #pragma GCC unroll 4
   for (int c = 0; c < count; c++) {
 #pragma GCC unroll 5
     for (int l = 0; l < n; l++)
-      sum[c][l] = first ? (Lanes){0.0} : ((const Lanes *)out[k + c])[j + l];
+      sum[c][l] = first ? none : ((const Lanes *)out[k + c])[j + l];
   }
   for (int q = 0; q < s->n; q++) {
     const Lanes *row = (const Lanes *)s->row[q] + j;
@@ -60,7 +57,7 @@ void RowSumInto(const RowSum *s, int sums, int length, bool first, double *const
 
 void SlopesBegin(int unknowns, bool anew, Slopes *s)
 {
-  if (s->unknowns == unknowns && !anew)
+  if (!anew && s->unknowns == unknowns)
     return;
   s->unknowns = unknowns;
   s->length   = RowLength(unknowns);
