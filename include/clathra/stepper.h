@@ -72,9 +72,8 @@ typedef struct {
   double   work[WORK_RATES];                      /* J over the step */
 } Attempt;
 
-#define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
-#define STEPPER_NEWTON 1.6  /* Jacobians a stage that a forecast counts on */
-#define STEPPER_ERRORS 7    /* p_w, p_g, T, S_h, position, plastic strain, stress */
+#define STEPPER_NEWTON 1.6 /* Jacobians a stage that a forecast counts on */
+#define STEPPER_ERRORS 7   /* p_w, p_g, T, S_h, position, plastic strain, stress */
 extern const char *const stepper_error_word[STEPPER_ERRORS];
 /* Changes that count as one in a step's error besides those of pressure, temperature and displacement. */
 #define STEPPER_SCALE_SH 0.1

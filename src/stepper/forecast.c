@@ -111,7 +111,7 @@ PetscErrorCode StepperForecast(Stepper *s)
   *f = (Forecast){.hybrid_steps = INFINITY, .hybrid_seconds = INFINITY};
   for (int k = 0; k < LIMIT_COUNT; k++)
     f->limit.each[k] = INFINITY;
-  if (!SceneNeedsImplicit(&c->scene))
+  if (!CaseNeedsImplicit(c))
     PetscCall(StepperHybridLimit(s, &f->limit));
   if (f->limit.dt > 0.0) {
     f->hybrid_steps   = fmax(ceil(left / StepperHybridStep(c, &f->limit)), 1.0);
@@ -144,7 +144,7 @@ void StepperTime(double seconds, double scale, int digits, char text[32])
 PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
-  const char     *why = SceneNeedsImplicit(s->model->c);
+  const char     *why = CaseNeedsImplicit(StepperCase(s));
   char            hybrid[128], time[32], stage[80];
 
   PetscFunctionBeginUser;
