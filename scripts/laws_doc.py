@@ -17,7 +17,7 @@ CASE, MATERIAL = ROOT / "docs" / "laws.yaml", "sand"  # whose parameters the pic
 # title; its curve; what the picture varies (label, keys of the material); equations; keys (without mat_<name>_); source
 LAWS = [
     ("Retention", "retention", [("van_genuchten", "retention_law van_genuchten"), ("van_genuchten, twice p0", "retention_p0 40000"), ("brooks_corey", "retention_law brooks_corey retention_lambda 1")],
-     (223, 224, 320), r"retention_\w+", "van Genuchten (1980), Brooks and Corey (1964); with hydrate Leverett (1941), Gupta et al. (2015)"),
+     (223, 224, 320), r"retention_\w+", "van Genuchten (1980), Brooks and Corey (1964); with hydrate Leverett (1941), and a power law as in S. Gupta's models"),
     ("Relative permeability", "relative_permeability", [("n = 4, 2", "relperm_nw 4 relperm_ng 2"), ("n = 2, 2", "relperm_nw 2 relperm_ng 2")],
      (225,), r"relperm_\w+", "Corey (1954)"),
     ("Permeability and hydrate", "permeability_hydrate", [("power, mh = 3", "permeability_mh 3"), ("power, mh = 8", "permeability_mh 8"), ("masuda_ramp", "permeability_hydrate_law masuda_ramp permeability_kh 0.1 permeability_Shc 0.5")],

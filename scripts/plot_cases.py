@@ -244,9 +244,23 @@ def sea_floor(run, *axes):
     right.legend(loc="center")
 
 
-PANELS = {"century_hydrate": (1, 3), "sea_floor": (3, 2)}  # rows and columns; one row of two without a word
+def slope_warming(run, *axes):
+    year, settled = 31557600.0, 20
+    case, falling = run(), run("-ambient_level", "{ramp: [461.5 m, 441.5 m, 20 a, 120 a]}")
+    at = {round(t / year) - settled: v for t, v in case.snapshots}
+    for panel, years in zip(axes, (30, 60, 150)):
+        body(panel, at[years]["S_h"][:, 0], at[years], "$S_h$")
+        panel.set_title(f"after {years} years")
+    for what, shown, colour in (("a sea that warms", case, COLOURS[0]), ("... and falls by 20 m", falling, COLOURS[1])):
+        b = shown.csv("balance")
+        axes[3].plot(b["time_s"] / year - settled, 100 * b["hydrate_kg"] / b["hydrate_kg"][0], color=colour, label=what)
+    axes[3].set(xlabel="years", ylabel="hydrate left (%)", ylim=(0, 105))
+    axes[3].legend()
+
+
+PANELS = {"century_hydrate": (1, 3), "sea_floor": (3, 2), "slope_warming": (2, 2)}  # rows and columns; one row of two without a word
 FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century,
-           century_hydrate, footing, shear_box, sea_floor]  # fmt: skip
+           century_hydrate, footing, shear_box, sea_floor, slope_warming]  # fmt: skip
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):

@@ -26,6 +26,8 @@ static const char help[] =
     "aij|baij.\n"
     "Presets: -options_file options/NAME.opts (later options win); -snes_, -ksp_, -pc_ are PETSc's; docs/options.md "
     "has all.\n"
+    "Equations: docs/equations.md, after \"A fully coupled THMC-MPM framework for modeling phase transition and large\n"
+    "deformation in methane hydrate-bearing sediment\".\n"
     "Exit codes: 0 done, 1 bug, 2 wrong case or option, 3 gave up or could not write (last good state in\n"
     "checkpoint.h5), 4 ended by a signal (state in checkpoint.h5).\n\n";
 
@@ -74,6 +76,10 @@ int main(int argc, char **argv)
   int exit_code = CL_EXIT_BUG;
 
   ProcessPrepare(argv);
+  for (int k = 1; k < argc; k++) {
+    if (strcmp(argv[k], "--help") == 0)
+      argv[k]++; /* PETSc knows -help */
+  }
   if (PetscInitialize(&argc, &argv, NULL, help))
     return CL_EXIT_BUG;
   ProcessListen();

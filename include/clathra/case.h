@@ -3,6 +3,8 @@
 
 #include "clathra/scene.h"
 
+#include <string.h>
+
 /* Quantities that probes may write: word, and the fields any of which it needs; those before the skeleton's history,
    variable by variable, and those behind. */
 #define CL_QUANTITIES(X)                                                                                               \
@@ -99,6 +101,17 @@ typedef struct CaseStage {
   char   materials[2048];             /* region, material, region, material, ... */
   Case   c; /* the case as it holds in this stage: conditions and materials of its own, the rest shared */
 } CaseStage;
+
+#define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
+
+/* What keeps the case from steps without a matrix, as it says it (a boundary by its name); NULL if nothing does.
+   Stabilisations that such steps go without are those of the implicit steps of `auto`; alone, they refuse them. */
+static inline const char *CaseNeedsImplicit(const Case *c)
+{
+  const char *scene = SceneNeedsImplicit(&c->scene);
+
+  return scene || !strcmp(c->stepper, STEPPER_AUTO) ? scene : SceneStabilisesImplicit(&c->scene, 0);
+}
 
 /* The case as it holds in stage k; the case itself if it has no stages. */
 static inline const Case *CaseInStage(const Case *c, PetscInt k)

@@ -7,8 +7,11 @@
 
 enum { JET_J = 0, JET_PW, JET_PG, JET_T, JET_COUNT };
 
+typedef double JetSlopes __attribute__((vector_size(JET_COUNT * sizeof(double))));
+
 typedef struct {
-  double v, d[JET_COUNT];
+  double    v;
+  JetSlopes d;
 } Jet;
 
 /* A number whose slopes are zero. */
@@ -29,31 +32,19 @@ static inline Jet JetVariable(double v, int which)
 /* f(a) with f' = df. */
 static inline Jet JetChain(double f, double df, Jet a)
 {
-  Jet r = {f, {0.0}};
-
-  for (int k = 0; k < JET_COUNT; k++)
-    r.d[k] = df * a.d[k];
-  return r;
+  return (Jet){f, df * a.d};
 }
 
 /* f(a, b) with partial derivatives fa, fb. */
 static inline Jet JetChain2(double f, double fa, Jet a, double fb, Jet b)
 {
-  Jet r = {f, {0.0}};
-
-  for (int k = 0; k < JET_COUNT; k++)
-    r.d[k] = fa * a.d[k] + fb * b.d[k];
-  return r;
+  return (Jet){f, fa * a.d + fb * b.d};
 }
 
 /* f(a, b, c) with partial derivatives fa, fb, fc. */
 static inline Jet JetChain3(double f, double fa, Jet a, double fb, Jet b, double fc, Jet c)
 {
-  Jet r = {f, {0.0}};
-
-  for (int k = 0; k < JET_COUNT; k++)
-    r.d[k] = fa * a.d[k] + fb * b.d[k] + fc * c.d[k];
-  return r;
+  return (Jet){f, fa * a.d + fb * b.d + fc * c.d};
 }
 
 /* a + b. */

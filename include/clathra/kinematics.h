@@ -13,10 +13,12 @@ typedef struct {
   double cof[2][2], cof_hoop;       /* J F^-T = lambda cof F_2; hoop: det F_2 */
   double dcof[2][2][MOTION_COUNT];  /* d cof_ij / d motion */
   double dJ[MOTION_COUNT];          /* dcof_hoop = dJ/lambda but for the hoop strain, where it is zero */
-  double theta, dtheta[4];          /* rotation of the polar decomposition, rad */
+  double c, s, dtheta[4];           /* cosine and sine of the polar decomposition's rotation theta (rad) */
   double e[4], de[4][MOTION_COUNT]; /* logarithmic strain xx, yy, xy, zz */
   double stretch[2];                /* diagonal of the right stretch tensor U */
 } Kinematics;
 
 /* motion: d u_i / d X_j on the configuration at t_n, then u_r/r.  False if J <= 0 or not finite. */
 bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k);
+/* The same without the slopes, which stay as they are; motion dimensionless. */
+bool KinematicsValues(const double motion[MOTION_COUNT], Kinematics *k);

@@ -121,14 +121,15 @@ typedef struct {
   double  *row_scale, *col_scale; /* [n_local][fields.n] */
 
   /* of the last evaluation */
-  double    *x, *f;             /* [n_local][fields.n] unscaled unknowns, residual */
-  double    *mass_row;          /* [n_local][2] mass balances of water and gas, one pressure only; kg */
-  FluidNode *fluid;             /* [n_local][2] where there are two */
-  bool       evaluated;         /* x and fluid are those of a residual of this stage */
-  double    *proj;              /* [n_local][4] projected pressure gradients Pi g, Pa/m */
-  double    *wide;              /* [n][12] particle coefficients of the wide part (27) */
-  StageRates rates;             /* of the last stage */
-  PetscInt   plates;            /* their number */
+  double    *x, *f;       /* [n_local][fields.n] unscaled unknowns, residual */
+  double    *mass_row;    /* [n_local][2] mass balances of water and gas, one pressure only; kg */
+  FluidNode *fluid;       /* [n_local][2] where there are two */
+  bool       evaluated;   /* x and fluid are those of a residual of this stage */
+  double    *proj;        /* [n_local][4] projected pressure gradients Pi g, Pa/m */
+  double    *give, *take; /* [n_local][...] what nodes hold for their particles, what these add (src/model/gather.h) */
+  double    *wide;        /* [n][12] particle coefficients of the wide part (27) */
+  StageRates rates;       /* of the last stage */
+  PetscInt   plates;      /* their number */
   double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */
   double  *plate_K;             /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */

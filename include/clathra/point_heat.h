@@ -18,6 +18,12 @@ INLINE double HeatCapacity(const Material *mat, double m_s, double m_h, double m
   return m_s * mat->c_s + m_h * mat->c_h + m_w * mat->c_w + m_g * mat->c_g;
 }
 
+/* What a flux of mass takes along (21), W: c in J/(kg K), the flux in kg m/s, the gradient of T in K/m. */
+INLINE double AdvectedHeat(double c, const double flux[CL_DIM], const double gT[CL_DIM])
+{
+  return c * (flux[0] * gT[0] + flux[1] * gT[1]);
+}
+
 /* Number with slopes in phi and S_h. */
 typedef struct {
   double v, phi, Sh;
@@ -44,4 +50,11 @@ INLINE Throttling ThrottlingOf(double warm, double rho)
   const double v = (1.0 - warm) / rho;
 
   return (Throttling){v, -1.0 / rho, -v / rho};
+}
+
+/* (290): what a flux of mass (kg m/s) takes up as it is throttled, W; share as above, the gradient of its pressure in
+   Pa/m, gravity b in m/s^2. */
+INLINE double ThrottledHeat(double share, const double flux[CL_DIM], const double g[CL_DIM], const double b[CL_DIM])
+{
+  return flux[0] * (share * g[0] - b[0]) + flux[1] * (share * g[1] - b[1]);
 }

@@ -243,20 +243,35 @@ static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
   return NULL;
 }
 
+/* The k-th of the stabilisations that are on and that steps without a matrix go without, as the case says it; NULL:
+   there are no more. */
+static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
+{
+  const struct {
+    bool        on;
+    const char *word;
+  } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
+               {c->stabilisation.donor, "stabilisation_donor"},
+               {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
+               {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
+
+  for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
+    if (known[i].on && k-- == 0)
+      return known[i].word;
+  }
+  return NULL;
+}
+
 /* What keeps a scene from the integrators without a matrix, as the case says it (a boundary by its name); NULL if
    nothing does. */
 static inline const char *SceneNeedsImplicit(const Scene *c)
 {
   const Bc *b = SceneBcNeedsMatrix(c);
 
-  return b                                    ? b->name
-         : c->axisymmetric                    ? "geometry: axisymmetric"
-         : c->one_pressure                    ? "pressures: one"
-         : c->stabilisation.upstream          ? "stabilisation_upstream"
-         : c->stabilisation.donor             ? "stabilisation_donor"
-         : c->stabilisation.saturation_upwind ? "stabilisation_saturation"
-         : c->stabilisation.lumped_reaction   ? "stabilisation_reaction"
-         : !c->inertia                        ? "inertia: no"
-         : SceneLetsGasIn(c)                  ? "an inflow of gas where a region has Sg: 0"
-                                              : NULL;
+  return b                   ? b->name
+         : c->axisymmetric   ? "geometry: axisymmetric"
+         : c->one_pressure   ? "pressures: one"
+         : !c->inertia       ? "inertia: no"
+         : SceneLetsGasIn(c) ? "an inflow of gas where a region has Sg: 0"
+                             : NULL;
 }

@@ -72,9 +72,8 @@ typedef struct {
   double   work[WORK_RATES];                      /* J over the step */
 } Attempt;
 
-#define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
-#define STEPPER_NEWTON 1.6  /* Jacobians a stage that a forecast counts on */
-#define STEPPER_ERRORS 7    /* p_w, p_g, T, S_h, position, plastic strain, stress */
+#define STEPPER_NEWTON 1.6 /* Jacobians a stage that a forecast counts on */
+#define STEPPER_ERRORS 7   /* p_w, p_g, T, S_h, position, plastic strain, stress */
 extern const char *const stepper_error_word[STEPPER_ERRORS];
 /* Changes that count as one in a step's error besides those of pressure, temperature and displacement. */
 #define STEPPER_SCALE_SH 0.1
@@ -194,13 +193,8 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
 /* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
 PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
-/* The largest unit of which a time (s) holds two. */
-typedef struct {
-  double      s;
-  const char *name;
-} TimeUnit;
-/* For a time of so many s; seconds where none holds two. */
-const TimeUnit *StepperTimeUnit(double seconds);
+/* "12 s", "3.4 h", "1 year": a time (s) with so many digits, in the largest unit of which `scale` (s) holds two. */
+void StepperTime(double seconds, double scale, int digits, char text[32]);
 /* Steps that kinks of the loads, output times and dt_max ask for in the last `left` (s) of the stage, at least;
  *kinks (or NULL): how many of them end at a kink. */
 double StepperStops(const Stepper *s, double left, double *kinks);
@@ -214,23 +208,26 @@ typedef struct {
   int    n;
   double t[LEARNT], cost[LEARNT];
   double origin, spent; /* s of the scene, cost up to it, s */
-  double step;          /* cost of a step of late, s */
+  double step, dt;      /* cost of a step of late, s; the last one, s of the scene */
+  double kink;          /* t_k of (345), s: how long after the stage's begin the origin is; 0: it is the begin */
+  double doubling;      /* C_k of (345), s, as known at the origin; 0: not at all */
 } Learnt;
-/* From time t (s) on, to which it cost so much to come (s), times count anew. */
-void LearntBegin(Learnt *l, double t, double cost);
+/* From time t (s) on, to which it cost so much to come (s), times count anew: behind a kink so long (s) after the
+   stage's begin. */
+void LearntBegin(Learnt *l, double t, double cost, double kink);
 /* To come to time t (s) has cost so much since the start, s. */
 void LearntAdd(Learnt *l, double t, double cost);
 #define AHEAD_KINKS 20
 /* What is known of the rest of a stage. */
 typedef struct {
-  double end, kink[AHEAD_KINKS]; /* s */
+  double begin, end, kink[AHEAD_KINKS]; /* s: of the stage; of the kinks that are left */
   int    kinks;
   double stretch; /* mean time between two stops, s: a step is no longer */
   bool   even;    /* steps are all alike: a stable or a fixed step, or too many kinks */
 } Ahead;
 /* false: there are more kinks than are listed. */
 bool StepperAhead(const Stepper *s, Ahead *a);
-/* What the way to the end will cost, s, (318), (319); NAN: nothing is known yet. */
+/* What the way to the end will cost, s, (318), (319), (345); NAN: nothing is known yet. */
 double LearntLeft(const Learnt *l, const Ahead *a);
 
 /* ---- auto.c: docs/equations.md, section 15 */

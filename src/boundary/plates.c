@@ -45,7 +45,7 @@ void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[
     o->out[F_VSX + t] -= o->plate[PLATE_SHEAR];
     o->D[F_VSX + t][IN_U + t] += f->K;
   }
-  if (KinematicsEvaluate(&in[IN_GRADU], &k))
+  if (KinematicsValues(&in[IN_GRADU], &k))
     o->plate[PLATE_AREA] = n * (k.cof[d][0] * f->n[0] + k.cof[d][1] * f->n[1]);
 }
 

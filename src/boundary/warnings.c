@@ -1,10 +1,13 @@
 /* What a user should know of a start that is out of balance with gravity (docs/equations.md, section 13), or whose pore
-   pressure is left to tractions (section 6), or where capillary pressure jumps (section 13). */
+   pressure is left to tractions (section 6), or where capillary pressure jumps (section 13); and of heat that is let in
+   beside hydrate (section 7). */
 #include "clathra/boundary.h"
+#include "clathra/point_heat.h"
 #include "clathra/shape.h"
 
 #define LEAST_JUMP 10e3 /* Pa, of (342) */
 #define JUMP 0.5        /* of the smaller p_0 */
+#define HEATS 0.3       /* of the pores: hydrate that the heat a condition brings can melt (344) */
 #define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
 
 /* Does the skeleton of a region have a weight to carry, and no stress that does?  Its weight from top to foot, Pa, and
@@ -123,30 +126,56 @@ static PetscErrorCode StartCapillary(const Scene *c, const Region *r, double *pc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gas share S_g with which region r starts at the capillary pressure pc (Pa) of another, with its own p_0 (346). */
+static double ShareAt(const Scene *c, const Region *r, double pc)
+{
+  double d[2];
+
+  return (1.0 - r->Sh) * RetentionGasShare(&c->material[r->material].retention, pc, r->Sh, &d[0], &d[1]);
+}
+
+/* How two regions that are not in balance could start so. */
+static PetscErrorCode Balanced(const Scene *c, const Region *r[2], const double pc[2], char text[256])
+{
+  const int finer = c->material[r[1]->material].retention.p0 > c->material[r[0]->material].retention.p0;
+
+  PetscFunctionBeginUser;
+  if (r[0]->Sg == 0.0 || r[1]->Sg == 0.0)
+    PetscCall(PetscSNPrintf(text, 256, "Sg: 0 in both or neither"));
+  else
+    PetscCall(PetscSNPrintf(text, 256,
+                            "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; or the same p0 and gas "
+                            "share Sg/(1 - Sh) in both, though the finer may not have so much",
+                            ShareAt(c, r[finer], pc[!finer]), r[finer]->name, r[!finer]->name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* (342) between two regions, in words: the same on all ranks; empty where there is no jump. */
 static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt a, PetscInt b,
                            char text[CL_ADVICE])
 {
-  const Region *r = &c->region[a], *q = &c->region[b];
-  const double  p0    = fmin(c->material[r->material].retention.p0, c->material[q->material].retention.p0);
+  const Region *r[2]  = {&c->region[a], &c->region[b]};
+  const double  p0    = fmin(c->material[r[0]->material].retention.p0, c->material[r[1]->material].retention.p0);
   double        pc[2] = {0.0, 0.0};
   int           touch;
+  char          balanced[256];
 
   PetscFunctionBeginUser;
-  PetscCall(StartCapillary(c, r, &pc[0]));
-  PetscCall(StartCapillary(c, q, &pc[1]));
+  for (int k = 0; k < 2; k++)
+    PetscCall(StartCapillary(c, r[k], &pc[k]));
   if (fabs(pc[0] - pc[1]) <= fmax(LEAST_JUMP, JUMP * p0))
     PetscFunctionReturn(PETSC_SUCCESS);
   touch = Touches(c, P, a, b);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &touch, 1, MPI_INT, MPI_LOR, comm));
   if (!touch)
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Balanced(c, r, pc, balanced));
   PetscCall(PetscSNPrintf(
       text, CL_ADVICE,
       "regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between them "
-      "at once, the faster the larger their permeability (the same p0 and gas share Sg/(1 - Sh) in both, and Sg: 0 in "
-      "both or neither, starts in balance)",
-      r->name, q->name, 1e-3 * pc[0], r->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1], q->Sg == 0.0 ? " (no gas)" : ""));
+      "at once, the faster the larger their permeability (in balance: %s)",
+      r[0]->name, r[1]->name, 1e-3 * pc[0], r[0]->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1],
+      r[1]->Sg == 0.0 ? " (no gas)" : "", balanced));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -163,6 +192,58 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The condition that brings the highest temperature, at any time, degC; NULL: none prescribes one. */
+static const Bc *Hottest(const Scene *c, double *T)
+{
+  const unsigned heats = 1u << BC_CONVECTION | 1u << BC_FACE_TEMPERATURE | 1u << BC_TEMPERATURE |
+                         1u << BC_REGION_TEMPERATURE | 1u << BC_INFLOW;
+  const Bc *hottest = NULL;
+
+  *T = -INFINITY;
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    const Schedule *q = &c->bc[k].value;
+
+    for (PetscInt i = 0; (heats >> c->bc[k].type & 1u) && i < q->n; i++) {
+      if (q->y[i] + ScheduleSwing(q) > *T) {
+        hottest = &c->bc[k];
+        *T      = q->y[i] + ScheduleSwing(q);
+      }
+    }
+  }
+  return hottest;
+}
+
+/* (344) */
+static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Particles *P)
+{
+  double    most[2] = {0.0, 0.0}, T, slope; /* share of the pores; K */
+  const Bc *b       = Hottest(c, &T);
+
+  PetscFunctionBeginUser;
+  if (!b || !c->fields.heat || !c->fields.phase[PHASE_G] || c->stabilisation.lumped_reaction)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < P->n; p++) {
+    const Material *m   = &c->material[c->region[P->i[PI_REGION][p]].material];
+    const double    own = ParticleT(c, P, p), full = P->f[P_PHI][p] * P->f[P_V][p] * m->hydrate.rho0;
+    const double    heat = HeatCapacity(m, P->f[P_MS][p], P->f[P_MH][p], P->f[P_MW][p], P->f[P_MG][p]) * (T - own);
+
+    if (!m->reacts || m->kinetics.K0 == 0.0 || P->f[P_SH][p] <= 0.0)
+      continue;
+    most[0] = fmax(most[0], heat / (full * LatentHeatEvaluate(&m->latent, own, &slope)));
+    most[1] = fmax(most[1], T - own);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, comm));
+  if (most[0] > HEATS)
+    PetscCall(PetscFPrintf(
+        comm, stderr,
+        "clathra: warning: %s brings %.4g degC to hydrate that is up to %.3g K colder, heat to melt %.2g of the pores "
+        "full of it: ahead of such a front S_h of neighbouring particles alternates with implicit steps and coarse "
+        "cells (stabilisation_reaction: yes keeps it smooth, but hydrate goes early; cells of half the width do both "
+        "less)\n",
+        b->name, T, most[1], most[0]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   double tension = 0.0, scale = 0.0;
@@ -175,6 +256,7 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P
   PetscCall(CapillaryAdvice(comm, c, P, advice));
   if (advice[0])
     PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
+  PetscCall(HeatingWarning(comm, c, P));
   if (!c->fields.solid || SceneGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {

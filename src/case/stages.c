@@ -49,7 +49,7 @@ static void Fail(Reader *r, const char *stage, const char *key, const char *what
 static void CheckLocal(Reader *r, const Case *c, const char *stage)
 {
   const Bc   *b       = SceneBcNeedsMatrix(&c->scene);
-  const char *unknown = SceneNeedsImplicit(&c->scene);
+  const char *unknown = CaseNeedsImplicit(c);
   char        what[CASE_WHY];
 
   if (b) {

@@ -314,11 +314,13 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
+    const double gT[CL_DIM] = {g->dx[q][at], g->dy[q][at]};
+
     advected[q] = 0.0;
-    if (s.fluids)
-      advected[q] += mat.c_w * (o->force[0][q][0] * g->dx[q][at] + o->force[1][q][0] * g->dy[q][at]);
-    if (s.fluids == 2)
-      advected[q] += mat.c_g * (o->force[0][q][1] * g->dx[q][at] + o->force[1][q][1] * g->dy[q][at]);
+#pragma GCC unroll 2
+    for (int k = 0; k < s.fluids; k++)
+      advected[q] +=
+          AdvectedHeat(SpecificHeat(&mat, k), (const double[CL_DIM]){o->force[0][q][k], o->force[1][q][k]}, gT);
     o->value[q][row]                         = -advected[q];
     o->force[0][q][row]                      = -dt * V[q] * kappa[q] * g->dx[q][at];
     o->force[1][q][row]                      = -dt * V[q] * kappa[q] * g->dy[q][at];
@@ -345,13 +347,13 @@ INLINE void CompressionRow(Explicit *e, const Set s, Run r, const Gathered *g, c
     for (int q = 0; q < r.n; q++) {
       const PetscInt p   = r.p + q;
       const double   rho = e->t[T_RHO + k][p], TK = T[q] + CL_ZERO_CELSIUS;
-      const double   beta  = k == PHASE_W ? r.mat->water.beta : GasExpansionAt(&r.mat->gas, rho, T[q]);
-      const double   share = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
-      const double   given =
-          o->force[0][q][k] * (b[0] - share * g->dx[q][at]) + o->force[1][q][k] * (b[1] - share * g->dy[q][at]);
+      const double   beta         = k == PHASE_W ? r.mat->water.beta : GasExpansionAt(&r.mat->gas, rho, T[q]);
+      const double   share        = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
+      const double   flux[CL_DIM] = {o->force[0][q][k], o->force[1][q][k]}, g_p[CL_DIM] = {g->dx[q][at], g->dy[q][at]};
+      const double   taken = ThrottledHeat(share, flux, g_p, b);
 
-      o->value[q][row] += given;
-      e->squeezed += given;
+      o->value[q][row] -= taken;
+      e->squeezed -= taken;
       e->t[T_WARM + k][p] = rho > 0.0 ? beta * TK * e->t[T_EOS + k][p] / rho : 0.0;
       o->value[q][R_Matrix(s) + row * n + k] -= e->t[T_WARM + k][p];
     }

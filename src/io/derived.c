@@ -48,7 +48,7 @@ static double Shear(const Model *m, PetscInt p)
 
   if (m->c->axisymmetric)
     u[MOTION_HOOP] = P->f[P_X][p] / P->f[P_X0][p] - 1.0;
-  if (!KinematicsEvaluate(u, &k))
+  if (!KinematicsValues(u, &k))
     return NAN;
   const double mean = (k.e[0] + k.e[1] + k.e[3]) / 3.0, x = k.e[0] - mean, y = k.e[1] - mean, z = k.e[3] - mean;
   return sqrt(2.0 / 3.0 * (x * x + y * y + z * z + 2.0 * k.e[2] * k.e[2]));

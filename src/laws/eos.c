@@ -15,8 +15,18 @@ INLINE double Density(const Liquid *law, double p, double T, double *drho_dp, do
   return law->rho0 * e;
 }
 
+/* The same everywhere? */
+INLINE bool Constant(const Liquid *law)
+{
+  return isinf(law->K) && law->beta == 0.0;
+}
+
 double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT)
 {
+  if (Constant(law)) {
+    *drho_dp = *drho_dT = 0.0;
+    return law->rho0;
+  }
   return Density(law, p, T, drho_dp, drho_dT);
 }
 
@@ -26,7 +36,7 @@ void LiquidDensityBatch(const Liquid *law, int n, const double *restrict p, cons
   const Liquid l = *law;
   double       dp, dT;
 
-  if (isinf(l.K) && l.beta == 0.0) { /* the same everywhere */
+  if (Constant(&l)) {
     for (int q = 0; q < n; q++)
       rho[q] = l.rho0;
     return;

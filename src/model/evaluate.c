@@ -1,15 +1,190 @@
 /* One particle, one face: gather from the nodes and evaluate. */
 #include "gather.h"
 
+#define GRADIENTS (GIVE_COUNT - GIVE_GRAD)
+
+/* Sums of what a particle's nodes hold. */
+typedef struct {
+  double S[GIVE_GRAD], G[CL_DIM][GRADIENTS];
+} Sums;
+
+static void Sum(const Model *m, const Reach *r, Sums *s)
+{
+  Lanes S[GIVE_GRAD / LANES] = {{0.0}}, G[CL_DIM][GRADIENTS / LANES] = {{{0.0}}};
+
+  for (int a = 0; a < r->n; a++) {
+    const Lanes *node = (const Lanes *)&m->give[GIVE_COUNT * r->node[a]], *grad = node + GIVE_GRAD / LANES;
+
+    for (int k = 0; k < GIVE_GRAD / LANES; k++)
+      S[k] += r->S[a] * node[k];
+    for (int d = 0; d < CL_DIM; d++) {
+      for (int k = 0; k < GRADIENTS / LANES; k++)
+        G[d][k] += r->G[a][d] * grad[k];
+    }
+  }
+  memcpy(s->S, S, sizeof(S));
+  memcpy(s->G, G, sizeof(G));
+}
+
+/* Displacement and its gradient where the motion has weights of its own. */
+static void GatherMotion(const Model *m, PetscInt p, const Reach *r, double in[IN_COUNT])
+{
+  double u[CL_NODES][CL_DIM];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    in[IN_U + d] = 0.0;
+    for (int a = 0; a < r->n; a++) {
+      u[a][d] = m->give[GIVE_COUNT * r->node[a] + GIVE_U + d];
+      in[IN_U + d] += MotionWeight(m, p, r, a) * u[a][d];
+    }
+  }
+  MotionGradient(m, r, u, &in[IN_GRADU]);
+}
+
+/* (333): gas that comes from where it is. */
+static void GatherDonated(const Model *m, PetscInt p, const Reach *r, const double *x, double J[CL_DIM])
+{
+  J[0] = J[1] = 0.0;
+  for (int a = 0; a < r->n; a++) {
+    const double w = r->S[a] * FlowWeight(m, p, r->node[a], PHASE_G);
+    double       at[CL_DIM];
+
+    DarcyFlux(m, r->node[a], PHASE_G, &x[r->node[a] * m->c->fields.n], at);
+    for (int d = 0; d < CL_DIM; d++)
+      J[d] += w * at[d];
+  }
+}
+
+/* Inputs (1), (5), (19) of particle p. */
+static void GatherInputs(const Model *m, PetscInt p, const Reach *r, const double *x, const Sums *s,
+                         double in[IN_COUNT])
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int q = 0; q < IN_COUNT; q++)
+    in[q] = 0.0;
+  in[IN_T] = ParticleT(m->c, &m->P, p) + s->S[GIVE_SCALAR + F_T - F_PW];
+  for (int d = 0; d < CL_DIM; d++) {
+    in[IN_GT + d] = s->G[d][F_T - F_PW];
+    in[IN_U + d]  = s->S[GIVE_U + d];
+    for (int i = 0; i < CL_DIM; i++)
+      in[VectorAt(IN_GRADU, i, d)] = s->G[d][GIVE_MOTION - GIVE_GRAD + i];
+  }
+  if (fs->solid && (m->c->axisymmetric || r->M != r->G))
+    GatherMotion(m, p, r, in);
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue;
+    in[IN_P + f] = m->P.f[HeldPressure(fs, P_PW, f)][p] + s->S[GIVE_SCALAR + f];
+    for (int d = 0; d < CL_DIM; d++) {
+      in[VectorAt(IN_GP, f, d)] = s->G[d][f];
+      in[VectorAt(IN_J, f, d)]  = m->conduct[p] * s->S[VectorAt(GIVE_J, f, d)];
+    }
+    if (Donated(m, f))
+      GatherDonated(m, p, r, x, &in[VectorAt(IN_J, f, 0)]);
+  }
+}
+
+/* Displacement and Darcy fluxes at a face of the particle. */
+static void GatherFace(const Model *m, PetscInt p, const Reach *r, const double *x, const Face *face,
+                       double in[IN_COUNT])
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt I    = r->node[a];
+    const double  *node = &m->give[GIVE_COUNT * I];
+
+    for (int d = 0; d < CL_DIM; d++)
+      in[IN_U + d] = (a ? in[IN_U + d] : 0.0) + face->N[a] * node[GIVE_U + d];
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      double J[CL_DIM];
+
+      if (!fs->phase[f])
+        continue;
+      DarcyFlux(m, I, f, &x[I * fs->n], J);
+      for (int d = 0; d < CL_DIM; d++) {
+        const int at = VectorAt(IN_J, f, d);
+
+        in[at] = (a ? in[at] : 0.0) + FaceWeight(face, a, VectorAt(F_VWX, f, d)) * FaceShare(m, p, I, f) * J[d];
+      }
+    }
+  }
+}
+
+/* (1) of the pressure that the stage starts from, Pa. */
+static double StarredPressure(const Model *m, PetscInt p, const Reach *r, int f)
+{
+  const FieldSet *fs  = &m->c->fields;
+  double          sum = m->P.f[HeldPressure(fs, P_PW, f)][p];
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt k = r->node[a] * fs->n + PlaceP(fs, f);
+
+    sum += r->S[a] * (m->stage.x_star[k] - m->x_n[k]);
+  }
+  return sum;
+}
+
+static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums *s, PointHistory *h)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  h->V        = m->P.f[P_V][p];
+  h->m_s      = m->P.f[P_MS][p];
+  h->T_n      = ParticleT(m->c, &m->P, p);
+  h->Sh_n     = m->P.f[P_SH][p];
+  h->sw_n     = ParticleSw(m, p);
+  h->dt       = m->stage.dt;
+  h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
+  h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
+  for (int k = 0; k < 3; k++)
+    h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
+  h->compression = m->c->compression_heat;
+  for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
+    h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
+    h->gravity[k] = m->bc.gravity[k];
+  }
+  h->beds = m->beds ? &m->beds[p].A : NULL;
+  for (int f = 0; m->beds && f < PHASE_COUNT; f++)
+    BedsWeight(m, p, f, h->weight[f]);
+  h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
+  for (int d = 0; h->ambient && d < CL_DIM; d++)
+    h->x[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]);
+  for (int k = 0; k < 3; k++) {
+    h->m_star[k] = m->stage.m_star[3 * p + k];
+    h->shift[k]  = fs->at[F_PW + k] >= 0 ? s->S[GIVE_START + k] - OwnValue(m, p, F_PW + k) : 0.0;
+  }
+  if (fs->solid) {
+    const SkeletonStore store = ParticlesSkeleton(&m->P, 0, m->stage.ahead);
+
+    SkeletonTake(&store, p, &h->skeleton);
+    if (m->stage.k_star)
+      h->skeleton.from = m->stage.k_star[p];
+  }
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    for (int d = 0; d < CL_DIM; d++) {
+      h->proj[f][d] = Donated(m, f) ? 0.0 : s->S[VectorAt(GIVE_PROJ, f, d)];
+      for (int a = 0; Donated(m, f) && a < r->n; a++)
+        h->proj[f][d] +=
+            ProjectedShare(m, p, r->node[a], f, r->S[a]) * m->proj[VectorAt(0, PHASE_COUNT * r->node[a] + f, d)];
+    }
+  }
+}
+
 ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
                           PointState *s, PointOutput *o)
 {
   PointHistory h;
+  Sums         sums;
   const char  *why = NULL;
 
   ReachExpand(m, p, r);
-  GatherInputs(m, p, r, x, NULL, in);
-  GatherHistory(m, p, r, &h);
+  Sum(m, r, &sums);
+  GatherInputs(m, p, r, x, &sums, in);
+  GatherHistory(m, p, r, &sums, &h);
   const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
   if (status != CL_OK)
     ModelNoteFailure(m, status, why, p);
@@ -67,9 +242,12 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
 {
   const PetscInt p = face->particle;
   double         in[IN_COUNT], p0[PHASE_COUNT], velocity[CL_DIM] = {0.0}, kappa = 0.0, sum = 0.0;
+  Sums           sums;
 
   ReachExpand(m, p, r);
-  GatherInputs(m, p, r, x, face, in);
+  Sum(m, r, &sums);
+  GatherInputs(m, p, r, x, &sums, in);
+  GatherFace(m, p, r, x, face, in);
   for (int q = F_PW; q <= F_T; q++)
     in[q == F_T ? IN_T : IN_P + q - F_PW] += Shift(m, p, r, q);
   ModelInitialAtFace(m, face, p0);

@@ -94,6 +94,48 @@ static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
   return m->conduct[p] * m->flow[I];
 }
 
+/* What nodes and particles exchange, and rows of the tangent, are whole numbers of these, so that sums of them are
+   vector code whatever the fields.  As wide as a register: of wider ones the compiler keeps what it sums in memory. */
+#ifdef __AVX512F__
+  #define LANES 8
+#else
+  #define LANES 4
+#endif
+typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias, aligned(sizeof(double))));
+
+/* Model.give, what a node holds for its particles: they sum it with S, what stands from GIVE_GRAD on with G. */
+enum {
+  GIVE_SCALAR = 0,  /* p_w, p_g (Pa), T (K) less those at t_n */
+  GIVE_START  = 3,  /* those at t_n */
+  GIVE_U      = 6,  /* displacement of the step, m */
+  GIVE_J      = 8,  /* Darcy fluxes times V/Vk (350), m/s */
+  GIVE_PROJ   = 12, /* projected pressure gradients, Pa/m */
+  GIVE_GRAD   = 16,
+  GIVE_MOTION = GIVE_GRAD + 3, /* after p_w, p_g, T: displacement */
+  GIVE_COUNT  = 24
+};
+
+/* Model.take, what particles have added at a node: with S, what stands from TAKE_GRAD on with G. */
+enum {
+  TAKE_M     = 0,  /* OUT_M */
+  TAKE_DM    = 3,  /* OUT_DM */
+  TAKE_C     = 5,  /* OUT_C, OUT_Q */
+  TAKE_ROOT  = 7,  /* OUT_ROOT with V and the layer's weight (108) */
+  TAKE_A     = 9,  /* OUT_A */
+  TAKE_FLUID = 11, /* of each fluid FLUID_... with the layer's weight (350), or (333) */
+  TAKE_GRAD  = 24, /* what is tested with G in the rows of v_s ... */
+  TAKE_MASS  = 26, /* ... of the fluids' masses ... */
+  TAKE_HEAT  = 28, /* ... and of T */
+  TAKE_COUNT = 32
+};
+enum {
+  FLUID_MI = 0,
+  FLUID_MI2,
+  FLUID_G,
+  FLUID_D = 4,
+  FLUID_COUNT
+}; /* OUT_MI, once more with the weight, OUT_G, OUT_D */
+
 /* How far a particle lies upstream of a node, against the direction of flow there, m; negative downstream. */
 static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const double direction[CL_DIM])
 {
@@ -117,11 +159,17 @@ static inline bool Donated(const Model *m, int f)
   return m->added->donor && f == PHASE_G;
 }
 
+/* The node's factor in both. */
+static inline double NodeShare(const Model *m, PetscInt I, int f)
+{
+  return Donated(m, f) ? m->added->source[2 * I] : m->flow[I];
+}
+
 /* Share of a node's flux of a fluid that goes through an open face of the particle: (350), of gas (333) without
    omega. */
 static inline double FaceShare(const Model *m, PetscInt p, PetscInt I, int f)
 {
-  return Donated(m, f) ? m->conduct[p] * m->added->source[2 * I] : LayerWeight(m, p, I);
+  return m->conduct[p] * NodeShare(m, I, f);
 }
 
 /* W_Ip/S_I of a fluid: (350), of gas (333). */
@@ -220,23 +268,6 @@ static inline double NodeWidth(const Model *m, PetscInt I)
   return fmin(LinesLess(&m->grid.line[0], m->map.ij[I][0]), LinesLess(&m->grid.line[1], m->map.ij[I][1]));
 }
 
-static inline void GatherSolid(const Model *m, PetscInt p, const Reach *r, const double *x, const Face *face,
-                               double in[IN_COUNT])
-{
-  const int n = m->c->fields.n, vs = PlaceVs(&m->c->fields);
-  double    u[CL_NODES][CL_DIM];
-
-  for (int a = 0; a < r->n; a++) {
-    const double *v = &x[r->node[a] * n + vs], *us = &m->stage.u_star[r->node[a] * CL_DIM];
-
-    for (int i = 0; i < CL_DIM; i++) {
-      u[a][i] = us[i] + m->stage.dt * v[i];
-      in[IN_U + i] += (face ? face->N[a] : MotionWeight(m, p, r, a)) * u[a][i];
-    }
-  }
-  MotionGradient(m, r, u, &in[IN_GRADU]);
-}
-
 /* Darcy flux of a fluid at a node (19). */
 static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI, double J[2])
 {
@@ -263,83 +294,57 @@ static inline double MobilityShare(const Model *m, PetscInt p, PetscInt I, int f
   return MobilityWeight(m, p, I, f, S) * m->P.f[P_V][p] / m->V[I];
 }
 
-/* Acceleration, weighted, less gravity of the velocity at place k of a node's block; quasi-static: only gravity. */
-static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double weight, double acc[2])
+/* Acceleration of the velocity at place k of a node's block; quasi-static: none. */
+static inline void Rate(const Model *m, PetscInt I, const double *x, int k, double rate[2])
 {
   const PetscInt q = I * m->c->fields.n + k;
 
   for (int i = 0; i < CL_DIM; i++)
-    acc[i] =
-        (m->c->fields.inertia ? weight * (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0) - m->bc.gravity[i];
+    rate[i] = m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0;
 }
 
-/* ... of a fluid of particle p with (310); beds hold what of the skeleton's acceleration less gravity is across them
-   (308). */
-static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, const double *x, int f, double acc[2])
+/* ... weighted, less gravity. */
+static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double weight, double acc[2])
+{
+  Rate(m, I, x, k, acc);
+  for (int i = 0; i < CL_DIM; i++)
+    acc[i] = weight * acc[i] - m->bc.gravity[i];
+}
+
+/* What of the skeleton's acceleration less gravity beds take off a fluid (308): (A - 1) of it. */
+static inline void BedsHold(const Model *m, PetscInt p, PetscInt I, const double *x, double across[2])
 {
   const FieldSet *fs = &m->c->fields;
-  double          s[2], A[2];
+  double          s[2];
 
-  Acceleration(m, I, x, PlaceV(fs, f), FlowWeight(m, p, I, f), acc);
-  if (!m->beds)
-    return;
   for (int i = 0; i < CL_DIM; i++)
     s[i] = -m->bc.gravity[i];
   if (fs->solid)
     Acceleration(m, I, x, PlaceVs(fs), 1.0, s);
   for (int i = 0; i < CL_DIM; i++)
-    A[i] = s[i];
-  BedsDrive(&m->beds[p].A, A);
+    across[i] = s[i];
+  BedsDrive(&m->beds[p].A, across);
   for (int i = 0; i < CL_DIM; i++)
-    acc[i] += A[i] - s[i];
+    across[i] -= s[i];
 }
 
-static inline void GatherFluid(const Model *m, PetscInt p, int f, const Reach *r, const double *x, const Face *face,
-                               double in[IN_COUNT])
+/* ... of a fluid of particle p with (310). */
+static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, const double *x, int f, double acc[2])
 {
-  const int n = m->c->fields.n, at = PlaceP(&m->c->fields, f);
+  double across[2];
 
-  for (int a = 0; a < r->n; a++) {
-    const PetscInt I  = r->node[a];
-    const double   pI = x[I * n + at], flow = face ? FaceShare(m, p, I, f) : FlowWeight(m, p, I, f);
-    double         J[2];
-
-    DarcyFlux(m, I, f, &x[I * n], J);
-    in[IN_P + f] += r->S[a] * (pI - m->x_n[I * n + at]);
-    for (int i = 0; i < CL_DIM; i++) {
-      in[VectorAt(IN_GP, f, i)] += r->G[a][i] * pI;
-      in[VectorAt(IN_J, f, i)] += (face ? FaceWeight(face, a, VectorAt(F_VWX, f, i)) : r->S[a]) * flow * J[i];
-    }
-  }
-}
-
-/* Inputs (1), (5), (19) of particle p from the nodal values x; Darcy fluxes and displacement are those at its face
-   (NULL: the particle's own). */
-static inline void GatherInputs(const Model *m, PetscInt p, const Reach *r, const double *x, const Face *face,
-                                double in[IN_COUNT])
-{
-  const FieldSet *fs = &m->c->fields;
-
-  for (int q = 0; q < IN_COUNT; q++)
-    in[q] = 0.0;
-  in[IN_T] = ParticleT(m->c, &m->P, p);
-  if (fs->solid)
-    GatherSolid(m, p, r, x, face, in);
-  for (int f = 0; f < PHASE_COUNT; f++) {
-    if (!fs->phase[f])
-      continue;
-    in[IN_P + f] = m->P.f[HeldPressure(fs, P_PW, f)][p];
-    GatherFluid(m, p, f, r, x, face, in);
-  }
-  if (!fs->heat)
+  Acceleration(m, I, x, PlaceV(&m->c->fields, f), FlowWeight(m, p, I, f), acc);
+  if (!m->beds)
     return;
-  for (int a = 0; a < r->n; a++) {
-    const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
+  BedsHold(m, p, I, x, across);
+  for (int i = 0; i < CL_DIM; i++)
+    acc[i] += across[i];
+}
 
-    in[IN_T] += r->S[a] * (x[k] - m->x_n[k]);
-    for (int d = 0; d < CL_DIM; d++)
-      in[IN_GT + d] += r->G[a][d] * x[k];
-  }
+/* Own value at t_n of unknown q = F_PW, F_PG, F_T. */
+static inline double OwnValue(const Model *m, PetscInt p, int q)
+{
+  return m->P.f[q == F_T ? P_T : HeldPressure(&m->c->fields, P_PW, q - F_PW)][p];
 }
 
 /* Nodal less own value at t_n of unknown q = F_PW, F_PG, F_T. */
@@ -350,74 +355,10 @@ static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
 
   if (fs->at[q] < 0)
     return 0.0;
-  shift = -m->P.f[q == F_T ? P_T : HeldPressure(fs, P_PW, q - F_PW)][p];
+  shift = -OwnValue(m, p, q);
   for (int a = 0; a < r->n; a++)
     shift += r->S[a] * m->x_n[r->node[a] * fs->n + fs->at[q]];
   return shift;
-}
-
-/* (1) of the pressure that the stage starts from, Pa. */
-static inline double StarredPressure(const Model *m, PetscInt p, const Reach *r, int f)
-{
-  const FieldSet *fs  = &m->c->fields;
-  double          sum = m->P.f[HeldPressure(fs, P_PW, f)][p];
-
-  for (int a = 0; a < r->n; a++) {
-    const PetscInt k = r->node[a] * fs->n + PlaceP(fs, f);
-
-    sum += r->S[a] * (m->stage.x_star[k] - m->x_n[k]);
-  }
-  return sum;
-}
-
-static inline void GatherHistory(const Model *m, PetscInt p, const Reach *r, PointHistory *h)
-{
-  const FieldSet *fs = &m->c->fields;
-
-  h->V        = m->P.f[P_V][p];
-  h->m_s      = m->P.f[P_MS][p];
-  h->T_n      = ParticleT(m->c, &m->P, p);
-  h->Sh_n     = m->P.f[P_SH][p];
-  h->sw_n     = ParticleSw(m, p);
-  h->dt       = m->stage.dt;
-  h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
-  h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
-  for (int f = 0; f < PHASE_COUNT; f++)
-    h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
-  for (int k = 0; k < 3; k++)
-    h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
-  h->compression = m->c->compression_heat;
-  for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
-    h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
-    h->gravity[k] = m->bc.gravity[k];
-  }
-  h->beds = m->beds ? &m->beds[p].A : NULL;
-  for (int f = 0; m->beds && f < PHASE_COUNT; f++)
-    BedsWeight(m, p, f, h->weight[f]);
-  h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
-  for (int d = 0; h->ambient && d < CL_DIM; d++)
-    h->x[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]);
-  for (int k = 0; k < 3; k++) {
-    h->m_star[k] = m->stage.m_star[3 * p + k];
-    h->shift[k]  = Shift(m, p, r, F_PW + k);
-  }
-  if (fs->solid) {
-    const SkeletonStore store = ParticlesSkeleton(&m->P, 0, m->stage.ahead);
-
-    SkeletonTake(&store, p, &h->skeleton);
-    if (m->stage.k_star)
-      h->skeleton.from = m->stage.k_star[p];
-  }
-  for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int i = 0; i < CL_DIM; i++)
-      h->proj[f][i] = 0.0;
-    for (int a = 0; fs->phase[f] && a < r->n; a++) {
-      const double share = ProjectedShare(m, p, r->node[a], f, r->S[a]);
-
-      for (int i = 0; i < CL_DIM; i++)
-        h->proj[f][i] += share * m->proj[VectorAt(0, PHASE_COUNT * r->node[a] + f, i)];
-    }
-  }
 }
 
 /* Nodes that one couples with: within two of it, itself in the middle. */
@@ -480,36 +421,39 @@ typedef struct {
 
 /* d in/d(unknowns). */
 typedef struct {
-  int    length;
+  int    unknowns, length; /* unknowns: 0 before the first SlopesBegin */
   double in[IN_COUNT][ROW_MOST] __attribute__((aligned(64)));
 } Slopes;
 
-void SlopesBegin(int unknowns, Slopes *s);
+/* anew: with mean dilatation; else what SlopesAdd wrote for other nodes has the places that it writes again. */
+void SlopesBegin(int unknowns, bool anew, Slopes *s);
 /* Those of the node whose unknowns are `first` ... first + fs->n - 1. */
 void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeights *b, int first, Slopes *s);
-/* row = D d in/d(unknowns), D = d out/d in. */
-void SlopesApply(const Slopes *s, const double D[IN_COUNT], double *row);
+/* row[k] = D[k] d in/d(unknowns), D[k] = d out_k/d in, of n outputs. */
+void SlopesApply(const Slopes *s, int n, const double *const *D, double *const *row);
 
-/* A sum of rows with factors. */
+/* Sums of the same rows, each with factors of its own. */
 #define ROW_TERMS IN_COUNT
 typedef struct {
   int           n;
-  double        factor[ROW_TERMS];
   const double *row[ROW_TERMS];
+  double        factor[ROW_TERMS][CL_NODES]; /* [row][sum] */
 } RowSum;
 
-static inline void RowSumAdd(RowSum *s, double factor, const double *row)
+/* One more row; the caller fills the factors that it returns. */
+static inline double *RowSumAdd(RowSum *s, const double *row)
 {
-  s->factor[s->n] = factor;
-  s->row[s->n++]  = row;
+  s->row[s->n] = row;
+  return s->factor[s->n++];
 }
 
-/* out += the sum. */
-void RowSumInto(RowSum *s, int length, double *out);
+/* out := the sums, which are the first, or out += them. */
+void RowSumInto(const RowSum *s, int sums, int length, bool first, double *const *out);
 
 /* The rows of a particle's nodes, summed over particles that reach the same ones before they go to the matrix. */
 typedef struct {
   int      n;
+  bool     fresh; /* no particle has written its rows */
   PetscInt node[CL_NODES];
   double   v[CL_NODES][F_COUNT][ROW_MOST] __attribute__((aligned(64)));
 } Patch;
@@ -518,6 +462,8 @@ typedef struct {
 void PatchAt(const Model *m, const Assembly *to, const Reach *r, Patch *s);
 void PatchAdd(const Model *m, const Assembly *to, const Patch *s);
 
+/* What nodes hold for their particles at the nodal values x; before ParticleEvaluate and FaceAt. */
+void ModelGive(Model *m, const double *x);
 /* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
  * model. */
 ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],

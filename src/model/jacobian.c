@@ -42,66 +42,123 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
   }
 }
 
-/* Rows of node a against the slopes DB of the outputs in the unknowns of all nodes. */
-static void NodeRows(const Model *m, const Assembly *to, const Reach *r, int a, const NodeFactors *k,
-                     const double DB[OUT_COUNT][ROW_MOST], int length, double (*row)[ROW_MOST])
-{
-  const FieldSet *fs = &to->fs;
-  const double    S = r->S[a], *M = r->M[a], *G = r->G[a], *B = m->c->mean_dilatation ? r->B[a] : NULL;
-  RowSum          sum = {0};
+/* Adds `expression` of node a, of each of them, times the slopes DB of an output to a row. */
+#define TERM(output, expression)                                                                                       \
+  do {                                                                                                                 \
+    double *factor = RowSumAdd(&sum, DB[output]);                                                                      \
+    for (int a = 0; a < r->n; a++)                                                                                     \
+      factor[a] = (expression);                                                                                        \
+  } while (0)
 
-  for (int i = 0; fs->solid && i < CL_DIM; i++) {
+/* Where row k of a particle's nodes stands. */
+static void RowOfNodes(Patch *patch, int k, int n, double *row[CL_NODES])
+{
+  for (int a = 0; a < n; a++)
+    row[a] = patch->v[a][k];
+}
+
+/* Rows of the nodes against the slopes DB of the outputs in the unknowns of all of them. */
+static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k,
+                      const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+{
+  const double *S = r->S;
+  RowSum        sum;
+  double       *row[CL_NODES];
+
+  for (int i = 0; i < CL_DIM; i++) {
     sum.n = 0;
-    RowSumAdd(&sum, M[0], DB[VectorAt(OUT_P, i, 0)]);
-    RowSumAdd(&sum, M[1], DB[VectorAt(OUT_P, i, 1)]);
-    RowSumAdd(&sum, S * k->acc[0][i], DB[OUT_M]);
+    for (int j = 0; j < CL_DIM; j++)
+      TERM(VectorAt(OUT_P, i, j), r->M[a][j]);
+    TERM(OUT_M, S[a] * k[a].acc[0][i]);
     for (int f = 0; f < PHASE_COUNT; f++) {
-      if (fs->phase[f])
-        RowSumAdd(&sum, S * k->acc[1 + f][i], DB[OUT_M + 1 + f]);
+      if (to->fs.phase[f])
+        TERM(OUT_M + 1 + f, S[a] * k[a].acc[1 + f][i]);
     }
     if (to->force)
-      RowSumAdd(&sum, S, DB[OUT_A + i]);
+      TERM(OUT_A + i, S[a]);
     if (m->c->axisymmetric && i == 0)
-      RowSumAdd(&sum, r->K[a], DB[OUT_HOOP]);
-    if (B) {
-      RowSumAdd(&sum, B[i], DB[OUT_P]);
-      RowSumAdd(&sum, B[i], DB[OUT_P + 3]);
+      TERM(OUT_HOOP, r->K[a]);
+    if (m->c->mean_dilatation) {
+      TERM(OUT_P, r->B[a][i]);
+      TERM(OUT_P + 3, r->B[a][i]);
       if (m->c->axisymmetric)
-        RowSumAdd(&sum, B[i], DB[OUT_HOOP]);
+        TERM(OUT_HOOP, r->B[a][i]);
     }
-    RowSumInto(&sum, length, row[PlaceVs(fs) + i]);
+    RowOfNodes(patch, PlaceVs(&to->fs) + i, r->n, row);
+    RowSumInto(&sum, r->n, length, patch->fresh, row);
   }
-  sum.n = 0;
+}
+
+static void MassRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k,
+                     const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+{
+  const FieldSet *fs = &to->fs;
+  const double   *S = r->S, dt = m->stage.dt;
+  RowSum          sum = {.n = 0};
+  double         *row[CL_NODES];
+
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    RowSumAdd(&sum, k->weight[f] * S, DB[OUT_DM + f]);
+    TERM(OUT_DM + f, k[a].weight[f] * S[a]);
     for (int j = 0; j < CL_DIM; j++)
-      RowSumAdd(&sum, -k->weight[f] * m->stage.dt * G[j], DB[VectorAt(OUT_FLUX, f, j)]);
+      TERM(VectorAt(OUT_FLUX, f, j), -k[a].weight[f] * dt * r->G[a][j]);
     if (f == PHASE_W && fs->one_pressure)
       continue; /* one row for both */
-    RowSumInto(&sum, length, row[PlaceP(fs, f)]);
+    RowOfNodes(patch, PlaceP(fs, f), r->n, row);
+    RowSumInto(&sum, r->n, length, patch->fresh, row);
     sum.n = 0;
   }
+}
+
+static void MomentumRows(const Model *m, const Assembly *to, const Reach *r, int f, const NodeFactors *k,
+                         const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+{
+  RowSum  sum;
+  double *row[CL_NODES];
+
+  for (int i = 0; i < CL_DIM; i++) {
+    sum.n = 0;
+    TERM(OUT_MI + f, k[a].flow[f] * k[a].kr[f] * k[a].own[f][i]);
+    TERM(VectorAt(OUT_G, f, i), k[a].flow[f] * k[a].kr[f]);
+    TERM(OUT_D + f, k[a].flow[f] * k[a].J[f][i]);
+    if (m->fluid)
+      TERM(OUT_ROOT + f, k[a].rise[f][i]);
+    RowOfNodes(patch, PlaceV(&to->fs, f) + i, r->n, row);
+    RowSumInto(&sum, r->n, length, patch->fresh, row);
+  }
+}
+
+static void HeatRows(const Assembly *to, const Reach *r, const NodeFactors *k, const double DB[OUT_COUNT][ROW_MOST],
+                     int length, Patch *patch)
+{
+  const double *S   = r->S;
+  RowSum        sum = {.n = 0};
+  double       *row[CL_NODES];
+
+  TERM(OUT_C, S[a] * k[a].Tdot);
+  TERM(OUT_Q, S[a]);
+  for (int j = 0; j < CL_DIM; j++)
+    TERM(OUT_HEAT + j, r->G[a][j]);
+  RowOfNodes(patch, PlaceT(&to->fs), r->n, row);
+  RowSumInto(&sum, r->n, length, patch->fresh, row);
+}
+
+static void NodeRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k,
+                     const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+{
+  const FieldSet *fs = &to->fs;
+
+  if (fs->solid)
+    SolidRows(m, to, r, k, DB, length, patch);
+  MassRows(m, to, r, k, DB, length, patch);
   for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int i = 0; fs->phase[f] && PlaceV(fs, f) >= 0 && i < CL_DIM; i++) {
-      sum.n = 0;
-      RowSumAdd(&sum, k->flow[f] * k->kr[f] * k->own[f][i], DB[OUT_MI + f]);
-      RowSumAdd(&sum, k->flow[f] * k->kr[f], DB[VectorAt(OUT_G, f, i)]);
-      RowSumAdd(&sum, k->flow[f] * k->J[f][i], DB[OUT_D + f]);
-      if (m->fluid)
-        RowSumAdd(&sum, k->rise[f][i], DB[OUT_ROOT + f]);
-      RowSumInto(&sum, length, row[PlaceV(fs, f) + i]);
-    }
+    if (fs->phase[f] && PlaceV(fs, f) >= 0)
+      MomentumRows(m, to, r, f, k, DB, length, patch);
   }
-  if (fs->heat) {
-    sum.n = 0;
-    RowSumAdd(&sum, S * k->Tdot, DB[OUT_C]);
-    RowSumAdd(&sum, S, DB[OUT_Q]);
-    for (int j = 0; j < CL_DIM; j++)
-      RowSumAdd(&sum, G[j], DB[OUT_HEAT + j]);
-    RowSumInto(&sum, length, row[PlaceT(fs)]);
-  }
+  if (fs->heat)
+    HeatRows(to, r, k, DB, length, patch);
+  patch->fresh = false;
 }
 
 /* The lumped terms couple a node only with itself.  Eliminated fluids move with the skeleton as far as drag holds them
@@ -158,15 +215,16 @@ static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT
 
 /* What a particle adds to the blocks between its nodes. */
 static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
-                          const PointOutput *o, Patch *patch)
+                          const PointOutput *o, Slopes *slopes, Patch *patch)
 {
   const FieldSet *fs           = &to->fs;
   const bool      axisymmetric = m->c->axisymmetric;
   NodeFactors     factor[CL_NODES];
-  Slopes          slopes;
+  const double   *D[OUT_COUNT];
+  double         *row[OUT_COUNT];
   double          DB[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
 
-  SlopesBegin(fs->n * r->n, &slopes);
+  SlopesBegin(fs->n * r->n, m->c->mean_dilatation, slopes);
   for (int b = 0; b < r->n; b++) {
     Factors(m, p, r->node[b], x, r->S[b], &factor[b]);
     const NodeWeights at = {
@@ -179,12 +237,15 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
         .B  = m->c->mean_dilatation ? r->B[b] : NULL,
         .w  = &m->w[PHASE_COUNT * r->node[b]]};
 
-    SlopesAdd(fs, axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
+    SlopesAdd(fs, axisymmetric, m->stage.dt, &at, b * fs->n, slopes);
   }
-  for (int k = 0; k < to->nout; k++)
-    SlopesApply(&slopes, o->D[to->out[k]], DB[to->out[k]]);
+  for (int k = 0; k < to->nout; k++) {
+    D[k]   = o->D[to->out[k]];
+    row[k] = DB[to->out[k]];
+  }
+  SlopesApply(slopes, to->nout, D, row);
+  NodeRows(m, to, r, factor, DB, slopes->length, patch);
   for (int a = 0; a < r->n; a++) {
-    NodeRows(m, to, r, a, &factor[a], DB, slopes.length, patch->v[a]);
     Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[2 * r->node[a]], &patch->v[a][0][a * fs->n], ROW_MOST);
     if (m->beds && fs->solid && fs->inertia)
       DiagonalBeds(fs, &m->beds[p].A, o->out, &factor[a], m->stage.dt, &patch->v[a][0][a * fs->n], ROW_MOST);
@@ -204,10 +265,11 @@ static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
 /* The targets in turn; what eliminates changes the tangent, so it comes last. */
 static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly *target)
 {
-  Patch patch[2];
+  Patch  patch[2];
+  Slopes slopes[2];
 
   for (int k = 0; k < ntarget; k++)
-    patch[k].n = 0;
+    patch[k].n = slopes[k].unknowns = 0;
   for (PetscInt q = 0; q < m->P.n; q++) {
     const PetscInt p = m->order[q];
     Reach          r;
@@ -223,7 +285,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
       if (target[k].reduced)
         EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
       PatchAt(m, &target[k], &r, &patch[k]);
-      ParticleBlock(m, &target[k], p, &r, x, &o, &patch[k]);
+      ParticleBlock(m, &target[k], p, &r, x, &o, &slopes[k], &patch[k]);
       LumpBlock(m, &target[k], p, &r);
     }
   }
@@ -243,7 +305,8 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
   const FieldSet *fs = &to->fs;
   Slopes          slopes;
 
-  SlopesBegin(fs->n * r->n, &slopes);
+  slopes.unknowns = 0;
+  SlopesBegin(fs->n * r->n, true, &slopes);
   for (int b = 0; b < r->n; b++) {
     const double water   = FaceShare(m, face->particle, r->node[b], PHASE_W),
                  gas     = FaceShare(m, face->particle, r->node[b], PHASE_G);
@@ -259,11 +322,13 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
     SlopesAdd(fs, m->c->axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
   }
   for (int k = 0; k < F_COUNT; k++) {
-    double row[ROW_MOST] __attribute__((aligned(64)));
+    double        row[ROW_MOST] __attribute__((aligned(64)));
+    const double *D      = o->D[k];
+    double       *to_row = row;
 
     if (fs->at[k] < 0)
       continue;
-    SlopesApply(&slopes, o->D[k], row);
+    SlopesApply(&slopes, 1, &D, &to_row);
     for (int a = 0; a < r->n; a++) {
       const double N = FaceWeight(face, a, k) * FaceFlow(m, face->particle, r->node[a], k) *
                        RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
@@ -306,6 +371,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(ModelFluidsAt(m, X));
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
+  ModelGive(m, m->x);
   PetscCall(MatrixBegin(m));
   PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);

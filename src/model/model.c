@@ -35,7 +35,7 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree(m->added->up));
   PetscCall(PetscFree(m->added->source));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
-  PetscCall(PetscFree3(m->x, m->f, m->proj));
+  PetscCall(PetscFree5(m->x, m->f, m->proj, m->give, m->take));
   PetscCall(PetscFree(m->mass_row));
   PetscCall(PetscFree(m->fluid));
   PetscCall(SolverReset(m->solver));
@@ -91,7 +91,8 @@ PetscErrorCode ModelResizeNodal(Model *m)
   if (SceneDonor(m->c))
     PetscCall(PetscCalloc1(n * 2, &m->added->source));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
-  PetscCall(PetscCalloc3(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj));
+  PetscCall(
+      PetscCalloc5(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj, n * GIVE_COUNT, &m->give, n * TAKE_COUNT, &m->take));
   if (m->c->fields.one_pressure)
     PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->mass_row));
   if (m->c->fields.phase[PHASE_W] && m->c->fields.phase[PHASE_G])

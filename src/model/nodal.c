@@ -17,9 +17,13 @@ PetscErrorCode ModelUnscale(Model *m, Vec X, double *x)
 
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj)
 {
-  const FieldSet *fs = &m->c->fields;
+  const FieldSet *fs    = &m->c->fields;
+  const bool      donor = m->added->donor;
+  int             at[PHASE_COUNT]; /* of a fluid that is not there: the other's, for nobody */
 
   PetscFunctionBeginUser;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    at[f] = PlaceP(fs, fs->phase[f] ? f : 1 - f);
   if (!fs->fluid || !m->c->stabilisation.flux_interpolation)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(proj, 4 * m->map.n_local));
@@ -29,13 +33,11 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
     Reach        r;
 
     ReachExpand(m, p, &r);
-    for (int f = 0; f < PHASE_COUNT; f++) {
-      for (int a = 0; fs->phase[f] && a < r.n; a++) {
-        const double pI = x[r.node[a] * fs->n + PlaceP(fs, f)];
+    for (int a = 0; a < r.n; a++) {
+      const double *xI = &x[r.node[a] * fs->n], pI[PHASE_COUNT] = {xI[at[PHASE_W]], xI[at[PHASE_G]]};
 
-        for (int d = 0; d < CL_DIM; d++)
-          g[VectorAt(0, f, d)] += r.G[a][d] * pI;
-      }
+      for (int k = 0; k < 4; k++)
+        g[k] += r.G[a][k % CL_DIM] * pI[k / CL_DIM];
     }
     for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
       double w[CL_DIM] = {0.0};
@@ -46,7 +48,7 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
     }
     for (int a = 0; a < r.n; a++) {
       const double VS    = Vk * r.S[a];
-      const double of[2] = {VS, m->added->donor ? VS * DonorShare(m, p, r.node[a]) : VS};
+      const double of[2] = {VS, donor ? VS * DonorShare(m, p, r.node[a]) : VS};
 
       for (int k = 0; k < 4; k++)
         proj[4 * r.node[a] + k] += of[k / CL_DIM] * g[k];
@@ -58,4 +60,37 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
       proj[4 * I + k] /= Donated(m, k / CL_DIM) ? m->added->source[2 * I + 1] : m->Vk[I];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ModelGive(Model *m, const double *x)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    const double *now = &x[I * fs->n], *start = &m->x_n[I * fs->n];
+    double       *to = &m->give[GIVE_COUNT * I];
+
+    for (int q = F_PW; q <= F_T; q++) {
+      const int k = fs->at[q];
+
+      if (k < 0)
+        continue;
+      to[GIVE_SCALAR + q - F_PW] = now[k] - start[k];
+      to[GIVE_START + q - F_PW]  = start[k];
+      to[GIVE_GRAD + q - F_PW]   = now[k];
+    }
+    for (int d = 0; fs->solid && d < CL_DIM; d++)
+      to[GIVE_U + d] = to[GIVE_MOTION + d] = m->stage.u_star[I * CL_DIM + d] + m->stage.dt * now[PlaceVs(fs) + d];
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      double *J = &to[VectorAt(GIVE_J, f, 0)];
+
+      if (!fs->phase[f])
+        continue;
+      DarcyFlux(m, I, f, now, J);
+      for (int d = 0; d < CL_DIM; d++) {
+        J[d] *= m->flow[I];
+        to[VectorAt(GIVE_PROJ, f, d)] = m->proj[VectorAt(0, PHASE_COUNT * I + f, d)];
+      }
+    }
+  }
 }

@@ -1,98 +1,194 @@
 /* The residual (15)-(23): particles, faces, stabilisation, Dirichlet rows. */
 #include "gather.h"
 
-/* Rows (15) of the mixture from one particle; those of the fluids lend it their inertia. */
-static void ScatterSolid(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
+/* What a particle adds at each of its nodes: [0] is weighted with S, [1] and [2] with the components of G. */
+typedef struct {
+  double S[TAKE_GRAD], G[CL_DIM][TAKE_COUNT - TAKE_GRAD];
+} Shares;
+
+/* (35) is no share of the particle's own. */
+static bool LayerRoot(const Model *m)
 {
-  const FieldSet *fs   = &m->c->fields;
-  const double    mean = out[OUT_P] + out[OUT_P + 3] + (m->c->axisymmetric ? out[OUT_HOOP] : 0.0);
+  return !m->c->stabilisation.upstream;
+}
 
-  for (int a = 0; a < r->n; a++) {
-    const double *G  = r->M[a];
-    double       *fI = &f[r->node[a] * fs->n + PlaceVs(fs)], acc[2], inertia[2];
+static void SharesOf(const Model *m, PetscInt p, const double out[OUT_COUNT], Shares *s)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double    c = m->conduct[p], dt = m->stage.dt;
 
-    Acceleration(m, r->node[a], x, PlaceVs(fs), 1.0, acc);
-    for (int i = 0; i < CL_DIM; i++)
-      inertia[i] = out[OUT_M] * acc[i];
-    for (int ph = 0; ph < PHASE_COUNT; ph++) {
-      if (!fs->phase[ph])
-        continue;
-      Acceleration(m, r->node[a], x, PlaceV(fs, ph), 1.0, acc);
-      for (int i = 0; i < CL_DIM; i++)
-        inertia[i] += out[OUT_M + 1 + ph] * acc[i];
+  *s = (Shares){.S = {[TAKE_M] = out[OUT_M]}};
+  for (int i = 0; fs->solid && i < CL_DIM; i++) {
+    s->S[TAKE_A + i] = m->bc.ambient.on ? out[OUT_A + i] : 0.0;
+    for (int d = 0; d < CL_DIM; d++)
+      s->G[d][i] = out[VectorAt(OUT_P, i, d)];
+  }
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    double *of = &s->S[TAKE_FLUID + FLUID_COUNT * f];
+
+    if (!fs->phase[f])
+      continue;
+    s->S[TAKE_M + 1 + f] = out[OUT_M + 1 + f];
+    s->S[TAKE_DM + f]    = out[OUT_DM + f];
+    s->S[TAKE_ROOT + f]  = m->fluid && LayerRoot(m) ? c * m->P.f[P_V][p] * out[OUT_ROOT + f] : 0.0;
+    of[FLUID_MI]         = c * out[OUT_MI + f];
+    of[FLUID_MI2]        = c * of[FLUID_MI];
+    of[FLUID_D]          = c * out[OUT_D + f];
+    for (int d = 0; d < CL_DIM; d++) {
+      of[FLUID_G + d]                    = c * out[VectorAt(OUT_G, f, d)];
+      s->G[d][TAKE_MASS - TAKE_GRAD + f] = -dt * out[VectorAt(OUT_FLUX, f, d)];
     }
-    for (int i = 0; i < CL_DIM; i++)
-      fI[i] += r->S[a] * inertia[i] + G[0] * out[VectorAt(OUT_P, i, 0)] + G[1] * out[VectorAt(OUT_P, i, 1)];
-    for (int i = 0; m->bc.ambient.on && i < CL_DIM; i++)
-      fI[i] += r->S[a] * out[OUT_A + i];
-    if (m->c->axisymmetric)
-      fI[0] += r->K[a] * out[OUT_HOOP];
-    for (int i = 0; m->c->mean_dilatation && i < CL_DIM; i++)
-      fI[i] += r->B[a][i] * mean;
+  }
+  for (int d = 0; fs->heat && d < CL_DIM; d++) {
+    s->S[TAKE_C + d]               = out[OUT_C + d];
+    s->G[d][TAKE_HEAT - TAKE_GRAD] = out[OUT_HEAT + d];
   }
 }
 
-/* Momentum (16) of one fluid at a node: a lone one has its drag at once, of two only what goes into it. */
-static void ScatterMomentum(const Model *m, PetscInt p, int ph, PetscInt I, double S, const double *x,
-                            const double out[OUT_COUNT], double *f)
+/* Where motion has weights of its own: about an axis, over cells. */
+static void ScatterMotion(Model *m, const Reach *r, const double out[OUT_COUNT], Shares *s)
 {
-  const double    flow = S * FlowWeight(m, p, I, ph);
-  const FieldSet *fs   = &m->c->fields;
-  FluidNode      *at   = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
-  double         *row  = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], acc[2], J[2];
+  const double mean = out[OUT_P] + out[OUT_P + 3] + (m->c->axisymmetric ? out[OUT_HOOP] : 0.0);
 
-  FluidAcceleration(m, p, I, x, ph, acc);
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int a = 0; a < r->n; a++) {
+      double *row = &m->take[TAKE_COUNT * r->node[a] + TAKE_GRAD + i];
+
+      *row += r->M[a][0] * s->G[0][i] + r->M[a][1] * s->G[1][i];
+      if (m->c->axisymmetric && i == 0)
+        *row += r->K[a] * out[OUT_HOOP];
+      if (m->c->mean_dilatation)
+        *row += r->B[a][i] * mean;
+    }
+    s->G[0][i] = s->G[1][i] = 0.0;
+  }
+}
+
+/* What of a fluid has weights that differ from node to node: of gas (333), of its mobility (35). */
+static void ScatterFluid(Model *m, PetscInt p, const Reach *r, int f, const double out[OUT_COUNT], Shares *s)
+{
+  double *of = &s->S[TAKE_FLUID + FLUID_COUNT * f];
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt I    = r->node[a];
+    double        *node = &m->take[TAKE_COUNT * I];
+
+    if (m->fluid && !LayerRoot(m))
+      node[TAKE_ROOT + f] += MobilityWeight(m, p, I, f, r->S[a]) * m->P.f[P_V][p] * out[OUT_ROOT + f];
+    if (!Donated(m, f))
+      continue;
+    const double share = DonorShare(m, p, I);
+    for (int k = 0; k < FLUID_COUNT; k++)
+      node[TAKE_FLUID + FLUID_COUNT * f + k] += r->S[a] * share * (k == FLUID_MI2 ? share : 1.0) * of[k];
+  }
+  for (int k = 0; Donated(m, f) && k < FLUID_COUNT; k++)
+    of[k] = 0.0;
+}
+
+/* Beds hold what of the skeleton's acceleration less gravity is across them (308). */
+static void ScatterBeds(Model *m, PetscInt p, const Reach *r, const double *x, int f, const double out[OUT_COUNT])
+{
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt I      = r->node[a];
+    const double   weight = r->S[a] * FlowWeight(m, p, I, f) / NodeShare(m, I, f) * out[OUT_MI + f];
+    double         across[CL_DIM];
+
+    BedsHold(m, p, I, x, across);
+    for (int d = 0; d < CL_DIM; d++)
+      m->take[TAKE_COUNT * I + TAKE_FLUID + FLUID_COUNT * f + FLUID_G + d] += weight * across[d];
+  }
+}
+
+static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT])
+{
+  const FieldSet *fs = &m->c->fields;
+  Shares          s;
+
+  SharesOf(m, p, out, &s);
+  if (fs->solid && (m->c->axisymmetric || r->M != r->G))
+    ScatterMotion(m, r, out, &s);
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (fs->phase[f] && m->beds)
+      ScatterBeds(m, p, r, x, f, out);
+    if (fs->phase[f] && (Donated(m, f) || !LayerRoot(m)))
+      ScatterFluid(m, p, r, f, out, &s);
+  }
+  const Lanes *S = (const Lanes *)s.S, *Gx = (const Lanes *)s.G[0], *Gy = (const Lanes *)s.G[1];
+  for (int a = 0; a < r->n; a++) {
+    Lanes *node = (Lanes *)&m->take[TAKE_COUNT * r->node[a]];
+
+    for (int k = 0; k < TAKE_GRAD / LANES; k++)
+      node[k] += r->S[a] * S[k];
+    for (int k = 0; k < (TAKE_COUNT - TAKE_GRAD) / LANES; k++)
+      node[TAKE_GRAD / LANES + k] += r->G[a][0] * Gx[k] + r->G[a][1] * Gy[k];
+  }
+}
+
+/* Row (15) at a node; the fluids lend the mixture their inertia. */
+static void SolidRow(const Model *m, PetscInt I, const double *x, const double *take, double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+  double         *fI = &f[I * fs->n + PlaceVs(fs)], acc[2];
+
+  for (int k = 0; k < 1 + PHASE_COUNT; k++) {
+    if (k > 0 && !fs->phase[k - 1])
+      continue;
+    Acceleration(m, I, x, k > 0 ? PlaceV(fs, k - 1) : PlaceVs(fs), 1.0, acc);
+    for (int i = 0; i < CL_DIM; i++)
+      fI[i] += take[TAKE_M + k] * acc[i];
+  }
   for (int i = 0; i < CL_DIM; i++)
-    row[i] += flow * (out[OUT_MI + ph] * acc[i] + out[VectorAt(OUT_G, ph, i)]);
+    fI[i] += take[TAKE_GRAD + i] + take[TAKE_A + i];
+}
+
+/* Rows (16) and (17) of a fluid at a node: a lone one has its drag at once, of two only what goes into it. */
+static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const double *take, double *f)
+{
+  const FieldSet *fs    = &m->c->fields;
+  const double   *of    = &take[TAKE_FLUID + FLUID_COUNT * ph];
+  FluidNode      *at    = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
+  double         *row   = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], rate[2], J[2];
+  const double    share = NodeShare(m, I, ph);
+
+  *MassRow(m, f, I, ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
+  Rate(m, I, x, PlaceV(fs, ph), rate); /* (310) */
+  for (int i = 0; i < CL_DIM; i++)
+    row[i] += share * (share * of[FLUID_MI2] * rate[i] - of[FLUID_MI] * m->bc.gravity[i] + of[FLUID_G + i]);
   if (at) {
-    at->D += flow * out[OUT_D + ph];
-    at->root += MobilityShare(m, p, I, ph, S) * out[OUT_ROOT + ph];
+    at->D += share * of[FLUID_D];
+    at->root += (LayerRoot(m) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);
   for (int i = 0; i < CL_DIM; i++)
-    row[i] += flow * out[OUT_D + ph] * J[i];
+    row[i] += share * of[FLUID_D] * J[i];
 }
 
-/* Rows (16) and (17) of one fluid from one particle. */
-static void ScatterFluid(const Model *m, PetscInt p, int ph, const Reach *r, const double *x,
-                         const double out[OUT_COUNT], double *f)
+/* Row (21) at a node. */
+static void HeatRow(const Model *m, PetscInt I, const double *x, const double *take, double *f)
 {
-  for (int a = 0; a < r->n; a++) {
-    const PetscInt I = r->node[a];
-    const double   S = r->S[a], *G = r->G[a];
+  const PetscInt k = I * m->c->fields.n + PlaceT(&m->c->fields);
 
-    ScatterMomentum(m, p, ph, I, S, x, out, f);
-    *MassRow(m, f, I, ph) += S * out[OUT_DM + ph] - m->stage.dt * (G[0] * out[VectorAt(OUT_FLUX, ph, 0)] +
-                                                                   G[1] * out[VectorAt(OUT_FLUX, ph, 1)]);
-  }
+  f[k] += take[TAKE_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt + take[TAKE_C + 1] + take[TAKE_HEAT];
 }
 
-/* Rows (21). */
-static void ScatterHeat(const Model *m, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
+/* What the particles added becomes rows of the nodes. */
+static void NodeLoop(const Model *m, const double *x, double *f)
 {
   const FieldSet *fs = &m->c->fields;
 
-  for (int a = 0; a < r->n; a++) {
-    const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    const double *take = &m->take[TAKE_COUNT * I];
 
-    f[k] += r->S[a] * (out[OUT_C] * (x[k] - m->stage.x_star[k]) / m->stage.dt + out[OUT_Q]) +
-            r->G[a][0] * out[OUT_HEAT] + r->G[a][1] * out[OUT_HEAT + 1];
+    if (fs->solid)
+      SolidRow(m, I, x, take, f);
+    for (int ph = 0; ph < PHASE_COUNT; ph++) {
+      if (fs->phase[ph])
+        FluidRows(m, ph, I, x, take, f);
+    }
+    if (fs->heat)
+      HeatRow(m, I, x, take, f);
   }
-}
-
-static void Scatter(const Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT], double *f)
-{
-  const FieldSet *fs = &m->c->fields;
-
-  if (fs->solid)
-    ScatterSolid(m, r, x, out, f);
-  for (int ph = 0; ph < PHASE_COUNT; ph++) {
-    if (fs->phase[ph])
-      ScatterFluid(m, p, ph, r, x, out, f);
-  }
-  if (fs->heat)
-    ScatterHeat(m, r, x, out, f);
 }
 
 static void ParticleLoop(Model *m, const double *x, double *f)
@@ -106,9 +202,10 @@ static void ParticleLoop(Model *m, const double *x, double *f)
     if (ParticleEvaluate(m, p, x, false, &r, in, &state, &o) != CL_OK)
       return;
     m->limited += state.limited;
-    Scatter(m, p, &r, x, o.out, f);
+    Scatter(m, p, &r, x, o.out);
     LumpResidual(m, p, &r, x, f);
   }
+  NodeLoop(m, x, f);
 }
 
 static void FaceLoop(const Model *m, const double *x, double *f)
@@ -195,8 +292,10 @@ static PetscErrorCode Rows(Model *m, Vec X)
     PetscCall(PetscArrayzero(m->mass_row, m->map.n_local * PHASE_COUNT));
   if (m->fluid)
     PetscCall(PetscArrayzero(m->fluid, m->map.n_local * PHASE_COUNT));
+  PetscCall(PetscArrayzero(m->take, m->map.n_local * TAKE_COUNT));
   PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
   PetscCall(PlatesPosition(m, m->x));
+  ModelGive(m, m->x);
   ParticleLoop(m, m->x, m->f);
   FaceLoop(m, m->x, m->f);
   StabilisationResidual(m, m->x, m->f);

@@ -1,48 +1,66 @@
 /* Rows of the tangent in the unknowns of all nodes of a particle or face. */
 #include "gather.h"
 
-#define TOGETHER 4 /* rows that are read in one go */
-#define LANES 8
+#define TOGETHER 4                /* sums that go on side by side: each row is read once for all of them */
+#define TILE (LANES == 8 ? 5 : 2) /* Lanes of each that registers hold */
 
-/* Rows are whole numbers of these, and begin where one may; the compiler has instructions for them or takes smaller
-   ones. */
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
-
-INLINE void SumInto(const RowSum *s, int n, double *out)
+/* `count` of the sums from the k-th on, n Lanes from the j-th on. */
+INLINE void SumTile(const RowSum *s, int k, int count, int j, int n, bool first, double *const *out)
 {
-  Lanes *to = (Lanes *)out;
+  const Lanes none = {0.0};
+  Lanes       sum[TOGETHER][TILE];
 
-  for (int k = 0; k < s->n; k += TOGETHER) {
-    const Lanes *r0 = (const Lanes *)s->row[k], *r1 = (const Lanes *)s->row[k + 1], *r2 = (const Lanes *)s->row[k + 2],
-                *r3 = (const Lanes *)s->row[k + 3];
-    const double f0 = s->factor[k], f1 = s->factor[k + 1], f2 = s->factor[k + 2], f3 = s->factor[k + 3];
+#pragma GCC unroll 4
+  for (int c = 0; c < count; c++) {
+#pragma GCC unroll 5
+    for (int l = 0; l < n; l++)
+      sum[c][l] = first ? none : ((const Lanes *)out[k + c])[j + l];
+  }
+  for (int q = 0; q < s->n; q++) {
+    const Lanes *row = (const Lanes *)s->row[q] + j;
 
-    for (int j = 0; j < n; j++)
-      to[j] += (f0 * r0[j] + f1 * r1[j]) + (f2 * r2[j] + f3 * r3[j]);
+#pragma GCC unroll 4
+    for (int c = 0; c < count; c++) {
+#pragma GCC unroll 5
+      for (int l = 0; l < n; l++)
+        sum[c][l] += s->factor[q][k + c] * row[l];
+    }
+  }
+#pragma GCC unroll 4
+  for (int c = 0; c < count; c++) {
+#pragma GCC unroll 5
+    for (int l = 0; l < n; l++)
+      ((Lanes *)out[k + c])[j + l] = sum[c][l];
   }
 }
 
-void RowSumInto(RowSum *s, int length, double *out)
+INLINE void SumStrip(const RowSum *s, int sums, int j, int n, bool first, double *const *out)
 {
-  for (; s->n % TOGETHER != 0; s->n++) {
-    s->factor[s->n] = 0.0;
-    s->row[s->n]    = s->row[0];
-  }
-  switch (length / LANES) {
-  case 5:
-    SumInto(s, 5, out);
-    return;
-  case 11:
-    SumInto(s, 11, out);
-    return;
-  default:
-    SumInto(s, length / LANES, out);
-  }
+  int k = 0;
+
+  for (; k + TOGETHER <= sums; k += TOGETHER)
+    SumTile(s, k, TOGETHER, j, n, first, out);
+  for (; k < sums; k++)
+    SumTile(s, k, 1, j, n, first, out);
 }
 
-void SlopesBegin(int unknowns, Slopes *s)
+void RowSumInto(const RowSum *s, int sums, int length, bool first, double *const *out)
 {
-  s->length = RowLength(unknowns);
+  const int lanes = length / LANES;
+  int       j     = 0;
+
+  for (; j + TILE <= lanes; j += TILE)
+    SumStrip(s, sums, j, TILE, first, out);
+  for (; j < lanes; j++)
+    SumStrip(s, sums, j, 1, first, out);
+}
+
+void SlopesBegin(int unknowns, bool anew, Slopes *s)
+{
+  if (!anew && s->unknowns == unknowns)
+    return;
+  s->unknowns = unknowns;
+  s->length   = RowLength(unknowns);
   for (int k = 0; k < IN_COUNT; k++)
     memset(s->in[k], 0, (size_t)s->length * sizeof(double));
 }
@@ -89,17 +107,29 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
   }
 }
 
-void SlopesApply(const Slopes *s, const double D[IN_COUNT], double *row)
+void SlopesApply(const Slopes *s, int n, const double *const *D, double *const *row)
 {
-  RowSum sum;
+  for (int k = 0; k < n; k += TOGETHER) {
+    const int     some           = n - k < TOGETHER ? n - k : TOGETHER;
+    double        size[IN_COUNT] = {0.0};
+    const double *of[TOGETHER];
+    RowSum        sum;
 
-  sum.n = 0;
-  memset(row, 0, (size_t)s->length * sizeof(double));
-  for (int k = 0; k < IN_COUNT; k++) {
-    if (D[k] != 0.0)
-      RowSumAdd(&sum, D[k], s->in[k]);
+    sum.n = 0;
+    for (int c = 0; c < TOGETHER; c++) {
+      of[c] = D[k + (c < some ? c : 0)];
+      for (int q = 0; q < IN_COUNT; q++)
+        size[q] += fabs(of[c][q]);
+    }
+    for (int q = 0; q < IN_COUNT; q++) {
+      if (size[q] == 0.0)
+        continue;
+      double *factor = RowSumAdd(&sum, s->in[q]);
+      for (int c = 0; c < TOGETHER; c++)
+        factor[c] = of[c][q];
+    }
+    RowSumInto(&sum, some, s->length, true, row + k);
   }
-  RowSumInto(&sum, s->length, row);
 }
 
 /* A constant number of unknowns lets the compiler unroll the blocks of the largest sets. */
@@ -134,10 +164,7 @@ void PatchAt(const Model *m, const Assembly *to, const Reach *r, Patch *s)
   if (s->n == r->n && memcmp(s->node, r->node, (size_t)r->n * sizeof(*r->node)) == 0)
     return;
   PatchAdd(m, to, s);
-  s->n = r->n;
+  s->n     = r->n;
+  s->fresh = true;
   memcpy(s->node, r->node, (size_t)r->n * sizeof(*r->node));
-  for (int a = 0; a < s->n; a++) {
-    for (int i = 0; i < to->fs.n; i++)
-      memset(s->v[a][i], 0, (size_t)RowLength(s->n * to->fs.n) * sizeof(double));
-  }
 }

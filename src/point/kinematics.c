@@ -24,22 +24,24 @@ static double AtanhRatio(double y, double *dg)
 }
 
 /* ln V_L = 1/2 ln J_2 1 + 1/2 f (b - m 1), f = atanh(r/m)/r, with m, r the mean and radius of b = F F^T (7). */
-static void LogStrain(double J2, const double dJ2[4], Kinematics *k)
+INLINE void LogStrain(const Stretch *b, bool slopes, Kinematics *k)
 {
   const double(*F)[2] = k->F;
-  const Stretch b     = StretchOf(F[0][0], F[0][1], F[1][0], F[1][1]);
-  const double  o = b.off, m = b.m, d = b.d, y = b.y;
-  double        dg, g = AtanhRatio(y, &dg);
-  const double  f = g / m, lnJ = 0.5 * log(J2);
+  const double o = b->off, m = b->m, d = b->d, y = b->y, J2 = k->cof_hoop;
+  double       dg, g = AtanhRatio(y, &dg);
+  const double f = g / m, lnJ = 0.5 * log(J2);
 
   LogStrainOf(lnJ, 0.5 * f * d, 0.5 * f * o, k->e);
   k->e[3] = log(k->lambda);
+  if (!slopes)
+    return;
   for (int c = 0; c < 4; c++) {
     const int    i = c / 2, j = c % 2;
+    const double dJ2  = k->dJ[c] / k->lambda;
     const double dbxx = i == 0 ? 2.0 * F[0][j] : 0.0, dbyy = i == 1 ? 2.0 * F[1][j] : 0.0;
     const double dm = 0.5 * (dbxx + dbyy), dd = 0.5 * (dbxx - dbyy), dO = F[1 - i][j];
     const double dy = 2.0 * (d * dd + o * dO) / (m * m) - 2.0 * y * dm / m;
-    const double df = dg * dy / m - f * dm / m, dlnJ = 0.5 * dJ2[c] / J2;
+    const double df = dg * dy / m - f * dm / m, dlnJ = 0.5 * dJ2 / J2;
 
     k->de[0][c] = dlnJ + 0.5 * (df * d + f * dd);
     k->de[1][c] = dlnJ - 0.5 * (df * d + f * dd);
@@ -51,7 +53,7 @@ static void LogStrain(double J2, const double dJ2[4], Kinematics *k)
 }
 
 /* cof = lambda cof F_2 of (6), linear in F_2 and in lambda. */
-static void Cofactor(Kinematics *k)
+INLINE void Cofactor(bool slopes, Kinematics *k)
 {
   static const double sign[2][2] = {{1.0, -1.0}, {-1.0, 1.0}};
 
@@ -60,20 +62,22 @@ static void Cofactor(Kinematics *k)
       const double plane = sign[i][j] * k->F[1 - i][1 - j];
 
       k->cof[i][j] = k->lambda * plane;
-      for (int c = 0; c < 4; c++)
+      for (int c = 0; slopes && c < 4; c++)
         k->dcof[i][j][c] = c == VectorAt(0, 1 - i, 1 - j) ? k->lambda * sign[i][j] : 0.0;
-      k->dcof[i][j][MOTION_HOOP] = plane;
-      k->dJ[VectorAt(0, i, j)]   = k->cof[i][j];
+      if (slopes) {
+        k->dcof[i][j][MOTION_HOOP] = plane;
+        k->dJ[VectorAt(0, i, j)]   = k->cof[i][j];
+      }
     }
   }
-  k->dJ[MOTION_HOOP] = k->cof_hoop;
+  if (slopes)
+    k->dJ[MOTION_HOOP] = k->cof_hoop;
 }
 
-bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k)
+INLINE bool Evaluate(const double motion[MOTION_COUNT], bool slopes, Kinematics *k)
 {
   // cppcheck-suppress ctuuninitvar ; the address only: k is filled here
   double(*F)[2] = k->F;
-  double dJ2[4];
 
   for (int i = 0; i < CL_DIM; i++) {
     for (int j = 0; j < CL_DIM; j++)
@@ -84,19 +88,29 @@ bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k)
   k->J        = k->cof_hoop * k->lambda;
   if (!(k->J > 0.0) || !(k->lambda > 0.0) || !isfinite(k->J))
     return false;
-  Cofactor(k);
-  for (int c = 0; c < 4; c++)
-    dJ2[c] = k->dJ[c] / k->lambda;
+  Cofactor(slopes, k);
 
   const Stretch of = StretchOf(F[0][0], F[0][1], F[1][0], F[1][1]);
-  const double  a = of.along, b = of.turn, n = a * a + b * b;
-  const double  co = a / sqrt(n), si = b / sqrt(n);
+  const double  a = of.along, b = of.turn, n = a * a + b * b, root = sqrt(n);
 
-  k->theta     = atan2(b, a);
-  k->dtheta[0] = k->dtheta[3] = -b / n;
-  k->dtheta[1]                = -a / n;
-  k->dtheta[2]                = a / n;
-  StretchDiagonal(co, si, F[0][0], F[0][1], F[1][0], F[1][1], k->stretch);
-  LogStrain(k->cof_hoop, dJ2, k);
+  k->c = a / root;
+  k->s = b / root;
+  if (slopes) {
+    k->dtheta[0] = k->dtheta[3] = -b / n;
+    k->dtheta[1]                = -a / n;
+    k->dtheta[2]                = a / n;
+  }
+  StretchDiagonal(k->c, k->s, F[0][0], F[0][1], F[1][0], F[1][1], k->stretch);
+  LogStrain(&of, slopes, k);
   return true;
+}
+
+bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k)
+{
+  return Evaluate(motion, true, k);
+}
+
+bool KinematicsValues(const double motion[MOTION_COUNT], Kinematics *k)
+{
+  return Evaluate(motion, false, k);
 }

@@ -1,13 +1,9 @@
 /* Stress, fluxes and their consistent tangent; docs/equations.md (14)-(21). */
 #include "state.h"
-#include "clathra/point_flow.h"
-#include "clathra/point_heat.h"
-#include "clathra/point_reaction.h"
-#include "clathra/point_state.h"
 #include "clathra/tensor.h"
 
 /* Row of the tangent for a scalar output c * jet: J spreads over grad u. */
-static void AddJet(double D[IN_COUNT], double c, const Jet *a, const Kinematics *k)
+INLINE void AddJet(double D[IN_COUNT], double c, const Jet *a, const Kinematics *k)
 {
   for (int i = 0; i < MOTION_COUNT; i++)
     D[IN_GRADU + i] += c * a->d[JET_J] * k->dJ[i];
@@ -22,7 +18,7 @@ typedef struct {
 } Stress;
 
 /* Tangent of a number of the skeleton with its derivatives d, in the inputs of the particle. */
-static void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const ScalarState *s, const Jet *thermal,
+INLINE void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const ScalarState *s, const Jet *thermal,
                         const Jet *kept, double row[IN_COUNT])
 {
   static const int component[4] = {0, 1, 3, 2}; /* of Kinematics.e */
@@ -41,14 +37,14 @@ static void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const 
 }
 
 /* Effective stress and its tangent; e_zz is the hoop strain, zero in plane strain. */
-static ClStatus EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
+INLINE ClStatus EffectiveStress(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
                                 double T, bool tangent, SkeletonState *state, SkeletonStage *end, Stress *out,
                                 const char **why)
 {
   const Jet       thermal = JetScale(1.0 / 3.0, JetMul(s->beta, JetVariable(T - h->T_n, JET_T)));
   double          dE;
-  SkeletonStep    d    = {.c       = cos(k->theta),
-                          .s       = sin(k->theta),
+  SkeletonStep    d    = {.c       = k->c,
+                          .s       = k->s,
                           .e       = {k->e[0], k->e[1], k->e[3], k->e[2]},
                           .thermal = thermal.v,
                           .E       = s->E.v,
@@ -78,7 +74,7 @@ typedef struct {
   double p, g[2];
 } AmbientState;
 
-static AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const ScalarState *s,
+INLINE AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const ScalarState *s,
                               const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   const double x[2] = {h->x[0] + in[IN_U], h->x[1] + in[IN_U + 1]};
@@ -96,7 +92,7 @@ static AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const 
 }
 
 /* out = V_n (sigma' - (p - p_a) 1) cof F, in the plane and around the axis (30) (momentum of the mixture). */
-static void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
+INLINE void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
                           const AmbientState *a, bool tangent, PointOutput *o)
 {
   const double     p = s->p.v - a->p, hoop = st->s[ZZ] - p;
@@ -135,14 +131,14 @@ static void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
 }
 
 /* v := A v, with beds (306). */
-static inline void Drive(const PointHistory *h, double v[2])
+INLINE void Drive(const PointHistory *h, double v[2])
 {
   if (h->beds)
     BedsDrive(h->beds, v);
 }
 
 /* out = V_n A cof F g_pi (momentum of a fluid); its columns likewise. */
-static void FluidForces(const PointHistory *h, const Kinematics *k, int f, const double in[IN_COUNT], bool tangent,
+INLINE void FluidForces(const PointHistory *h, const Kinematics *k, int f, const double in[IN_COUNT], bool tangent,
                         PointOutput *o)
 {
   const double *g  = &in[VectorAt(IN_GP, f, 0)];
@@ -174,7 +170,7 @@ typedef struct {
   double K[2][2], d[2][2][MOTION_COUNT];
 } Metric;
 
-static void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
+INLINE void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
 {
   for (int i = 0; i < CL_DIM; i++) {
     for (int j = 0; j < CL_DIM; j++) {
@@ -189,7 +185,7 @@ static void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
 }
 
 /* (200): adds V_n rho D K (g_g - g_w). */
-static void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
+INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
                    const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   const double c[2] = {in[VectorAt(IN_GP, PHASE_G, 0)] - in[IN_GP], in[VectorAt(IN_GP, PHASE_G, 1)] - in[IN_GP + 1]},
@@ -216,7 +212,7 @@ static void Spread(const PointHistory *h, const Kinematics *k, const Metric *met
 }
 
 /* Phi = V_n rho [ cof^T J + tau K (Pi g - g) ] (19), (309). */
-static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
+INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
                  const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
 {
   const double(*K)[2] = metric->K;
@@ -259,7 +255,7 @@ static void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
 }
 
 /* (352): adds V_n H p_g cof^T J_w, the methane that the water carries. */
-static void CarriedFlux(const Material *mat, const PointHistory *h, const Kinematics *k, const double in[IN_COUNT],
+INLINE void CarriedFlux(const Material *mat, const PointHistory *h, const Kinematics *k, const double in[IN_COUNT],
                         bool tangent, PointOutput *o)
 {
   const double H = mat->gas.carried, c = DissolvedMethane(H, in[IN_P + PHASE_G]), *J = &in[IN_J];
@@ -281,7 +277,7 @@ static void CarriedFlux(const Material *mat, const PointHistory *h, const Kinema
 }
 
 /* Conduction: V kappa F^-1 F^-T g_T, and what carries heat with the flow, (293) on the configuration at t_n. */
-static void Conduction(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s,
+INLINE void Conduction(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s,
                        const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   for (int i = 0; i < CL_DIM; i++) {
@@ -300,7 +296,7 @@ static void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
   }
 }
 
-static void PutScalar(int r, Jet value, const Kinematics *k, bool tangent, PointOutput *o)
+INLINE void PutScalar(int r, Jet value, const Kinematics *k, bool tangent, PointOutput *o)
 {
   o->out[r] = value.v;
   if (tangent)
@@ -308,7 +304,7 @@ static void PutScalar(int r, Jet value, const Kinematics *k, bool tangent, Point
 }
 
 /* Scalars of one fluid tested with S_I: mass, inertia, drag, what hydrate gives. */
-static void FluidScalars(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
+INLINE void FluidScalars(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
                          bool tangent, PointOutput *o)
 {
   const Jet    mass = s->m[f];
@@ -326,22 +322,21 @@ static void FluidScalars(const Material *mat, const PointHistory *h, const Kinem
 }
 
 /* Heat stored, released and advected, c Phi . g_T; needs the fluxes. */
-static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
+INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
                  const ScalarState *s, const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   PutScalar(OUT_C, s->capacity, k, tangent, o);
   PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent, o);
+#pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++) {
     const double c_f = SpecificHeat(mat, f);
 
     if (!fs->phase[f])
       continue;
-    for (int i = 0; i < CL_DIM; i++) {
+    o->out[OUT_Q] += AdvectedHeat(c_f, &o->out[VectorAt(OUT_FLUX, f, 0)], &in[IN_GT]);
+    for (int i = 0; tangent && i < CL_DIM; i++) {
       const int r = VectorAt(OUT_FLUX, f, i);
 
-      o->out[OUT_Q] += c_f * o->out[r] * in[IN_GT + i];
-      if (!tangent)
-        continue;
       for (int q = 0; q < IN_COUNT; q++)
         o->D[OUT_Q][q] += c_f * in[IN_GT + i] * o->D[r][q];
       o->D[OUT_Q][IN_GT + i] += c_f * o->out[r];
@@ -352,7 +347,7 @@ static void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
 }
 
 /* (290) of one fluid: what its compression and throttling take of OUT_Q; needs its flux. */
-static void CompressionHeat(const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
+INLINE void CompressionHeat(const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
                             const double in[IN_COUNT], bool tangent, PointState *state, PointOutput *o)
 {
   const Jet        p = JetVariable(in[IN_P + f], JET_PW + f), rho = s->rho[f];
@@ -361,20 +356,20 @@ static void CompressionHeat(const PointHistory *h, const Kinematics *k, const Sc
   const Throttling t      = ThrottlingOf(s->warm[f].v, rho.v);
   const Jet        share  = JetChain2(t.v, t.warm, s->warm[f], t.rho, rho);
   const double    *g = &in[VectorAt(IN_GP, f, 0)], *flux = &o->out[VectorAt(OUT_FLUX, f, 0)], *b = h->gravity;
-  double          *D = o->D[OUT_Q], sum = rise.v;
+  const double     fall[CL_DIM] = {k->F[0][0] * b[0] + k->F[1][0] * b[1], k->F[0][1] * b[0] + k->F[1][1] * b[1]};
+  const double     sum          = rise.v + ThrottledHeat(share.v, flux, g, fall);
+  double          *D            = o->D[OUT_Q];
 
-  for (int i = 0; i < CL_DIM; i++) {
-    const double head = share.v * g[i] - k->F[0][i] * b[0] - k->F[1][i] * b[1];
+  for (int i = 0; tangent && i < CL_DIM; i++) {
+    const double head = share.v * g[i] - fall[i];
 
-    sum += flux[i] * head;
-    for (int q = 0; tangent && q < IN_COUNT; q++)
+    for (int q = 0; q < IN_COUNT; q++)
       D[q] += head * o->D[VectorAt(OUT_FLUX, f, i)][q];
-    for (int j = 0; tangent && j < CL_DIM; j++) {
+    for (int j = 0; j < CL_DIM; j++) {
       o->wide_q[f][j] += head * o->wide[f][i][j];
       D[VectorAt(IN_GRADU, j, i)] -= flux[i] * b[j];
     }
-    if (tangent)
-      D[VectorAt(IN_GP, f, i)] += flux[i] * share.v;
+    D[VectorAt(IN_GP, f, i)] += flux[i] * share.v;
   }
   o->out[OUT_Q] += sum;
   state->squeezed -= sum;
@@ -385,7 +380,7 @@ static void CompressionHeat(const PointHistory *h, const Kinematics *k, const Sc
 }
 
 /* (69) */
-static void PlasticHeat(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
+INLINE void PlasticHeat(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
                         const Stress *st, bool tangent, PointOutput *o)
 {
   const double share = -mat->plasticity.heat / h->dt;
@@ -400,7 +395,7 @@ static void PlasticHeat(const Material *mat, const PointHistory *h, const Kinema
     o->D[OUT_Q][q] += share * s->V.v * st->dwork[q];
 }
 
-static void FillState(const FieldSet *fs, const ScalarState *s, PointState *state)
+INLINE void FillState(const FieldSet *fs, const ScalarState *s, PointState *state)
 {
   state->V        = s->V.v;
   state->phi      = s->phi.v;
@@ -413,16 +408,18 @@ static void FillState(const FieldSet *fs, const ScalarState *s, PointState *stat
   state->p        = s->p.v;
   state->limited  = s->limited;
   state->squeezed = 0.0;
+#pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++)
     state->rho[f] = fs->phase[f] ? s->rho[f].v : 0.0;
 }
 
-static ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char **why)
+INLINE ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char **why)
 {
   double sum = 0.0; /* of the rows that every set's outputs lead into */
 
   for (int r = OUT_FLUX; fs->fluid && r < OUT_HEAT; r++)
     sum += fs->phase[(r - OUT_FLUX) / 2] ? o->out[r] : 0.0;
+#pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++)
     sum += fs->phase[f]
                ? o->out[VectorAt(OUT_G, f, 0)] + o->out[VectorAt(OUT_G, f, 1)] + o->out[OUT_D + f] + o->out[OUT_DM + f]
@@ -444,11 +441,12 @@ static const Kinematics at_rest = {
     .J        = 1.0,
     .cof      = {{1.0, 0.0}, {0.0, 1.0}},
     .cof_hoop = 1.0,
+    .c        = 1.0,
     .stretch  = {1.0, 1.0},
 };
 
-ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
-                       bool tangent, PointState *state, PointOutput *o, const char **why)
+INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
+                         bool tangent, PointState *state, PointOutput *o, const char **why)
 {
   Kinematics        moved;
   const Kinematics *k = &at_rest;
@@ -456,8 +454,9 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   Metric            metric;
   Stress            st;
 
+  st.work = 0.0;
   if (fs->solid) {
-    if (!KinematicsEvaluate(&in[IN_GRADU], &moved)) {
+    if (!(tangent ? KinematicsEvaluate(&in[IN_GRADU], &moved) : KinematicsValues(&in[IN_GRADU], &moved))) {
       *why = "volume ratio of the step is not positive";
       return CL_DOMAIN;
     }
@@ -488,6 +487,7 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
     state->F[i / 2][i % 2] = k->F[i / 2][i % 2];
   if (fs->fluid || fs->heat)
     MetricEvaluate(k, tangent, &metric);
+#pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
@@ -501,12 +501,20 @@ ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHisto
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
     Heat(fs, mat, h, k, &s, in, tangent, o);
-    for (int f = 0; h->compression && f < PHASE_COUNT; f++) {
-      if (fs->phase[f])
+#pragma GCC unroll 2
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      if (h->compression && fs->phase[f])
         CompressionHeat(h, k, &s, f, in, tangent, state, o);
     }
     if (fs->solid)
       PlasticHeat(mat, h, k, &s, &st, tangent, o);
   }
   return CheckFinite(fs, o, why);
+}
+
+/* The residual pays for no slope: each form is compiled by itself. */
+ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
+                       bool tangent, PointState *state, PointOutput *o, const char **why)
+{
+  return tangent ? Evaluate(fs, mat, h, in, true, state, o, why) : Evaluate(fs, mat, h, in, false, state, o, why);
 }

@@ -1,25 +1,271 @@
-/* Private to point/: the scalar state of a particle with its tangent in (J, p_w, p_g, T). */
+/* Private to point/: densities, saturations, hydrate and masses of a particle; docs/equations.md (8)-(10).  Taken in
+   whole, so that slopes that nobody reads cost nothing. */
 #pragma once
 
-#include "clathra/jet.h"
-#include "clathra/point.h"
+#include "clathra/point_flow.h"
+#include "clathra/point_heat.h"
+#include "clathra/point_state.h"
+#include "reaction.h"
 
-typedef struct {
-  Jet  V, Vp, phi, Sh, sw, sg, p;
-  Jet  m_h, m[PHASE_COUNT]; /* masses, kg */
-  Jet  gain; /* m_h - m_h*, kg, as the reaction makes it: the difference would round what m_h* is the large part of */
-  Jet  rho[PHASE_COUNT];                     /* intrinsic densities */
-  Jet  resist[PHASE_COUNT], kr[PHASE_COUNT]; /* mu/k_a, Pa s/m^2; relative permeability */
-  Jet  capacity, kappa;                      /* V C_m (J/K); kappa_m (W/m/K) */
-  Jet  latent;                               /* J/kg */
-  Jet  warm[PHASE_COUNT];                    /* beta T_K of the fluids, where compression counts */
-  Jet  E;                                    /* Young's modulus, Pa */
-  Jet  beta;                                 /* mean volumetric expansivity of the skeleton, 1/K */
-  bool limited;
-} ScalarState;
+INLINE Jet LiquidJet(const Liquid *law, Jet p, Jet T)
+{
+  double       dp, dT;
+  const double rho = LiquidDensity(law, p.v, T.v, &dp, &dT);
 
-/* Only what the fields of the set need is filled. */
-ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, double J,
-                             const double in[IN_COUNT], ScalarState *s, const char **why);
-/* m_h and its gain, from p, shares and pores of s and the temperature (reaction.c). */
-void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s);
+  return JetChain2(rho, dp, p, dT, T);
+}
+
+/* Methane that water holds (101): where there is one pressure, none. */
+INLINE double Trace(const FieldSet *fs, const Material *mat)
+{
+  return fs->one_pressure ? 0.0 : mat->gas.trace;
+}
+
+INLINE Jet FluidJet(const Material *mat, int phase, Jet p, Jet T)
+{
+  double       dp, dT;
+  const double rho = FluidDensity(mat, phase, p.v, T.v, &dp, &dT);
+
+  return JetChain2(rho, dp, p, dT, T);
+}
+
+/* k_r of a fluid among two, of its share of the open pores or of all of them. */
+INLINE Jet RelPermJet(const RelPerm *law, int phase, const ScalarState *s)
+{
+  const Jet        share = phase == PHASE_W ? s->sw : s->sg;
+  const KrArgument a     = KrArgumentOf(law->of_pores, share.v, s->Sh.v);
+  const Jet        x     = JetChain2(a.v, a.share, share, a.Sh, s->Sh);
+  double           d;
+  const double     kr = phase == PHASE_W ? RelPermWater(law, x.v, &d) : RelPermGas(law, x.v, &d);
+
+  return JetChain(KrFloored(kr), kr < CL_MOBILITY_FLOOR ? 0.0 : d, x);
+}
+
+INLINE Jet ViscosityJet(const Material *mat, int phase, Jet rho, Jet T)
+{
+  double       dT, drho = 0.0;
+  const double mu =
+      phase == PHASE_W ? WaterViscosity(&mat->mu_w, T.v, &dT) : GasViscosity(&mat->mu_g, rho.v, T.v, &drho, &dT);
+
+  return JetChain2(mu, drho, rho, dT, T);
+}
+
+/* mu/k_a and k_r of the phases that flow. */
+INLINE void Mobility(const FieldSet *fs, const Material *mat, Jet T, ScalarState *s)
+{
+  double       dphi, dSh;
+  const double k  = PermeabilityEvaluate(&mat->permeability, s->phi.v, s->Sh.v, &dphi, &dSh);
+  const Jet    ka = JetChain2(k, dphi, s->phi, dSh, s->Sh);
+
+#pragma GCC unroll 2
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (!fs->phase[f])
+      continue; /* a lone fluid fills the pores: k_r = 1 */
+    s->kr[f]     = fs->phase[PHASE_G] ? RelPermJet(&mat->relperm, f, s) : JetConstant(1.0);
+    s->resist[f] = JetDiv(ViscosityJet(mat, f, s->rho[f], T), ka);
+  }
+}
+
+INLINE void Thermal(const Material *mat, const PointHistory *h, Jet T, ScalarState *s)
+{
+  const double kappa[4] = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g};
+  double       dphi, dSh, dsw, dL;
+  const double k = MixtureAverage(s->phi.v, s->Sh.v, s->sw.v, kappa, &dphi, &dSh, &dsw);
+  const double L = LatentHeatEvaluate(&mat->latent, T.v, &dL);
+
+  s->kappa    = JetAdd(JetChain2(k, dphi, s->phi, dSh, s->Sh), JetChain(0.0, dsw, s->sw));
+  s->capacity = JetChain3(HeatCapacity(mat, h->m_s, s->m_h.v, s->m[PHASE_W].v, s->m[PHASE_G].v), mat->c_h, s->m_h,
+                          mat->c_w, s->m[PHASE_W], mat->c_g, s->m[PHASE_G]);
+  s->latent   = JetChain(L, dL, T);
+}
+
+/* beta T_K of a fluid (291). */
+INLINE Jet ExpansionJet(const Material *mat, int phase, Jet p, Jet T)
+{
+  const Jet TK = JetShift(T, CL_ZERO_CELSIUS);
+  double    dp, dT;
+
+  if (phase == PHASE_W)
+    return JetScale(mat->water.beta, TK);
+  const double beta = GasExpansion(&mat->gas, p.v, T.v, &dp, &dT);
+  return JetMul(JetChain2(beta, dp, p, dT, T), TK);
+}
+
+/* Young's modulus and the expansivity of skeleton and hydrate. */
+INLINE void Skeleton(const Material *mat, ScalarState *s)
+{
+  double            dE;
+  const double      E = ElasticityYoung(&mat->elasticity, s->Sh.v, &dE);
+  const Expansivity b = SolidExpansivity(mat, s->phi.v, s->Sh.v);
+
+  s->E    = JetChain(E, dE, s->Sh);
+  s->beta = JetChain2(b.v, b.phi, s->phi, b.Sh, s->Sh);
+}
+
+/* Shares of two fluids in the open pores and their mean pressure (10). */
+INLINE void Share(Jet sg, Jet pw, Jet pg, ScalarState *s)
+{
+  const PorePressure m = PorePressureOf(sg.v, pw.v, pg.v);
+
+  s->sg = sg;
+  s->sw = JetSub(JetConstant(1.0), sg);
+  s->p  = JetChain3(m.v, m.sg, sg, m.pw, pw, m.pg, pg);
+}
+
+/* (320) */
+INLINE Jet GasShareJet(const Retention *law, Jet pc, Jet Sh)
+{
+  double       dpc, dSh;
+  const double sg = RetentionGasShare(law, pc.v, Sh.v, &dpc, &dSh);
+
+  return JetChain2(sg, dpc, pc, dSh, Sh);
+}
+
+/* (321): what the reaction makes of S_h if the fluids share the pores as at this S_h, less S_h itself, with its slope;
+   all else is fixed. */
+INLINE double HydrateBalance(const Material *mat, const PointHistory *h, double Sh, double pw, double pg, double T,
+                             double rho_h, const ScalarState *s, double *slope)
+{
+  ScalarState  trial = {.V = JetConstant(s->V.v), .Vp = JetConstant(s->Vp.v)};
+  double       dpc, dSh;
+  const double sg = RetentionGasShare(&mat->retention, pg - pw, Sh, &dpc, &dSh), full = rho_h * s->Vp.v;
+
+  Share(JetVariable(sg, JET_J), JetConstant(pw), JetConstant(pg), &trial); /* the place of J is free for s_g */
+  HydrateMass(mat, h, JetConstant(T), JetConstant(rho_h), &trial);
+  *slope = trial.m_h.d[JET_J] * dSh / full - 1.0;
+  return trial.m_h.v / full - Sh;
+}
+
+#define ROUNDING 4e-16 /* of S_h */
+
+/* (321) by Newton inside a bracket: S_h, with what is left of the balance and its slope there. */
+INLINE double SolveHydrate(const Material *mat, const PointHistory *h, double pw, double pg, double T, double rho_h,
+                           const ScalarState *s, double *f, double *slope)
+{
+  double lo = 0.0, hi = 1.0, Sh = fmin(fmax(h->m_star[0] / (rho_h * s->Vp.v), lo), hi);
+
+  for (int it = 0; it < 100; it++) {
+    *f                      = HydrateBalance(mat, h, Sh, pw, pg, T, rho_h, s, slope);
+    *(*f > 0.0 ? &lo : &hi) = Sh;
+    if (fabs(*f) <= ROUNDING || hi - lo <= ROUNDING)
+      break;
+    const double next = Sh - *f / *slope;
+
+    Sh = next > lo && next < hi && it % 3 ? next : 0.5 * (lo + hi); /* a kink of the law would hold Newton up */
+  }
+  return Sh;
+}
+
+/* The slopes follow from the implicit function theorem; of the mass of hydrate what the reaction says where it is slow,
+   what S_h says where it is fast, which is one Newton step more in either. */
+INLINE void ShareWithHydrate(const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T, Jet rho_h,
+                             ScalarState *s)
+{
+  const Jet    full = JetMul(rho_h, s->Vp), pc = JetSub(pg, pw);
+  double       f, slope;
+  const double found = SolveHydrate(mat, h, pw.v, pg.v, T.v, rho_h.v, s, &f, &slope);
+
+  Share(GasShareJet(&mat->retention, pc, JetConstant(found)), pw, pg, s);
+  HydrateMass(mat, h, T, rho_h, s);
+  const Jet    Sh = JetChain(found - f / slope, -1.0 / slope, JetDiv(s->m_h, full)), m_h = JetMul(Sh, full);
+  const double more = -(slope + 1.0) * f / slope * full.v;
+
+  Share(GasShareJet(&mat->retention, pc, Sh), pw, pg, s);
+  s->m_h  = (Jet){s->m_h.v + more, m_h.d};
+  s->gain = (Jet){s->gain.v + more, m_h.d};
+}
+
+/* Shares of the fluids in the open pores, their mean pressure, and hydrate. */
+INLINE void Saturations(const FieldSet *fs, const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T,
+                        Jet rho_h, ScalarState *s)
+{
+  if (!fs->phase[PHASE_G]) {
+    s->sw = JetConstant(fs->phase[PHASE_W] ? 1.0 : 0.0);
+    s->sg = JetConstant(0.0);
+    s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
+  } else if (fs->one_pressure) {
+    Share(JetConstant(1.0 - h->sw_n), pw, pg, s);
+  } else if (mat->retention.hydrate > 0.0) {
+    ShareWithHydrate(mat, h, pw, pg, T, rho_h, s);
+    return;
+  } else {
+    Share(GasShareJet(&mat->retention, JetSub(pg, pw), JetConstant(0.0)), pw, pg, s);
+  }
+  HydrateMass(mat, h, T, rho_h, s);
+}
+
+INLINE ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
+{
+  const bool finite = isfinite(in[IN_T]) && (!fs->phase[PHASE_W] || isfinite(in[IN_P])) &&
+                      (!fs->phase[PHASE_G] || isfinite(in[IN_P + 1]));
+
+  if (!finite) {
+    *why = "pressure or temperature is not finite";
+    return CL_NONFINITE;
+  }
+  if (fs->solid && !isfinite(in[IN_U] + in[IN_U + 1])) {
+    *why = "a displacement is not finite";
+    return CL_NONFINITE;
+  }
+  if (in[IN_T] <= -CL_ZERO_CELSIUS) {
+    *why = "temperature fell to absolute zero";
+    return CL_DOMAIN;
+  }
+  if (fs->phase[PHASE_G] && mat->gas.trace == 0.0 && in[IN_P + 1] <= 0.0) {
+    *why = "gas pressure fell to zero; without_gas: yes lets gas vanish";
+    return CL_DOMAIN;
+  }
+  return CL_OK;
+}
+
+/* Only what the fields of the set need is filled, the rest is zero. */
+INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, double J,
+                                    const double in[IN_COUNT], ScalarState *s, const char **why)
+{
+  const Jet pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
+            T    = JetVariable(in[IN_T], JET_T);
+  const Jet zero = JetConstant(0.0), pressure[PHASE_COUNT] = {pw, pg};
+  const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
+
+  const ClStatus status = CheckInputs(fs, mat, in, why);
+  if (status != CL_OK)
+    return status;
+  *s     = (ScalarState){.V = JetScale(h->V, JetVariable(J, JET_J))};
+  s->Vp  = VolumeLeftJet(s->V, JetConstant(h->m_s), rho_s);
+  s->phi = JetDiv(s->Vp, s->V);
+  if (!(s->phi.v > 0.0)) {
+    *why = "porosity fell to zero";
+    return CL_DOMAIN;
+  }
+  Saturations(fs, mat, h, pw, pg, T, rho_h, s);
+
+  const Jet Vf = VolumeLeftJet(s->Vp, s->m_h, rho_h);
+  if (!(Vf.v > 0.0)) {
+    *why = "hydrate fills the pore space";
+    return CL_DOMAIN;
+  }
+  s->Sh         = PoreShareJet(s->m_h, rho_h, s->Vp);
+  s->m[PHASE_W] = s->m[PHASE_G] = zero;
+  if (fs->phase[PHASE_W]) {
+    s->rho[PHASE_W] = FluidJet(mat, PHASE_W, pw, T);
+    const Content c = WaterContent(s->sg.v, s->rho[PHASE_W].v);
+    s->m[PHASE_W]   = JetMul(Vf, JetChain2(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_W]));
+  }
+  if (fs->phase[PHASE_G]) {
+    s->rho[PHASE_G] = FluidJet(mat, PHASE_G, pg, T);
+    const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
+    s->m[PHASE_G]   = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
+  }
+  if (fs->fluid)
+    Mobility(fs, mat, T, s);
+  if (fs->heat)
+    Thermal(mat, h, T, s);
+#pragma GCC unroll 2
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (fs->heat && h->compression && fs->phase[f])
+      s->warm[f] = ExpansionJet(mat, f, pressure[f], T);
+  }
+  if (fs->solid)
+    Skeleton(mat, s);
+  return CL_OK;
+}

@@ -29,22 +29,13 @@ static double NextEvent(const Stepper *s, void *ctx)
   return fmin(NextSnapshot(c, t), fmin(NextMultiple(c, c->probe_every, t), NextMultiple(c, c->checkpoint_every, t)));
 }
 
-/* "3.5 s" in units that read well. */
-static PetscErrorCode Time(double seconds, double scale, char text[32])
-{
-  const TimeUnit *unit = StepperTimeUnit(scale);
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(text, 32, "%.6g %s", seconds / unit->s, unit->name));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
 {
   const Case  *c       = StepperCase(s);
   const double t_begin = c->scene.t_begin;
   double       done, left;
-  char cuts[32] = "", error[64] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32], rest[32];
+  char         cuts[32] = "", error[64] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32];
+  char         rest[48] = "time left not known yet";
 
   PetscFunctionBeginUser;
   if (run->quiet || !WatchLine(&run->watch, CaseAtEnd(c, s->state.t) || s->stop))
@@ -52,16 +43,15 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   StageLogProgress(run->log, s, &done, &left);
   StepperStageWords(s, stage);
   if (t_begin > 0.0) {
-    PetscCall(Time(t_begin, t_begin, now));
+    StepperTime(t_begin, t_begin, 6, now);
     PetscCall(PetscSNPrintf(begin, sizeof(begin), "%s + ", now));
   }
-  PetscCall(Time(s->state.t - t_begin, c->t_end - t_begin, now));
-  PetscCall(Time(info->dt, info->dt, dt));
-  if (isnan(left))
-    PetscCall(PetscSNPrintf(rest, sizeof(rest), "time left not known yet"));
-  else
-    PetscCall(PetscSNPrintf(rest, sizeof(rest), "%.3g %s left", round(left) / StepperTimeUnit(left)->s,
-                            StepperTimeUnit(left)->name));
+  StepperTime(s->state.t - t_begin, c->t_end - t_begin, 6, now);
+  StepperTime(info->dt, info->dt, 6, dt);
+  if (!isnan(left)) {
+    StepperTime(round(left), left, 3, rest);
+    PetscCall(PetscStrlcat(rest, " left", sizeof(rest)));
+  }
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));

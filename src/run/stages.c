@@ -92,7 +92,7 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   if (s->state.t >= log->kink) {
     log->kink = BcNextKink(s->model->c, s->state.t);
     if (!log->even)
-      LearntBegin(&log->learnt, s->state.t, Wall() - log->clock);
+      LearntBegin(&log->learnt, s->state.t, Wall() - log->clock, s->state.t - s->model->c->t_begin);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

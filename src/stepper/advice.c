@@ -13,7 +13,7 @@ const char *StepperStatusName(ClStatus st)
 static bool HybridMayHelp(const Stepper *s, ClStatus status)
 {
   return (status == CL_TOO_FAR || status == CL_SOLVER) && !s->explicit && !s->auto_.on &&
-         !SceneNeedsImplicit(s->model->c);
+         !CaseNeedsImplicit(StepperCase(s));
 }
 
 /* Does gas lie in layers, of which one may hold it fast, without (332)? */

@@ -243,7 +243,7 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
 
   PetscFunctionBeginUser;
   PetscCall(PetscStrcmp(STEPPER_AUTO, c->stepper, &chosen));
-  s->auto_.on = chosen && s->adaptive && !SceneNeedsImplicit(&c->scene);
+  s->auto_.on = chosen && s->adaptive && !CaseNeedsImplicit(c);
   if (!chosen)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (z->kind == AUTO_UNDECIDED) {
@@ -256,7 +256,11 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
   if (z->kind == AUTO_HYBRID)
     s->scheme = &StepperScheme_Hybrid;
   PetscCall(
-      PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s\n", s->scheme->name, s->auto_.on ? ", for now" : ""));
+      PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s", s->scheme->name, s->auto_.on ? ", for now" : ""));
+  const char *word;
+  for (int k = 0; s->auto_.on && (word = SceneStabilisesImplicit(&c->scene, k)); k++)
+    PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", k ? ", " : "; hybrid goes without ", word));
+  PetscCall(PetscPrintf(s->model->grid.comm, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -111,7 +111,7 @@ PetscErrorCode StepperForecast(Stepper *s)
   *f = (Forecast){.hybrid_steps = INFINITY, .hybrid_seconds = INFINITY};
   for (int k = 0; k < LIMIT_COUNT; k++)
     f->limit.each[k] = INFINITY;
-  if (!SceneNeedsImplicit(&c->scene))
+  if (!CaseNeedsImplicit(c))
     PetscCall(StepperHybridLimit(s, &f->limit));
   if (f->limit.dt > 0.0) {
     f->hybrid_steps   = fmax(ceil(left / StepperHybridStep(c, &f->limit)), 1.0);
@@ -126,28 +126,25 @@ PetscErrorCode StepperForecast(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-const TimeUnit *StepperTimeUnit(double seconds)
+void StepperTime(double seconds, double scale, int digits, char text[32])
 {
-  static const TimeUnit unit[] = {{3.15576e7, "years"}, {86400.0, "days"}, {3600.0, "h"}, {60.0, "min"}, {1.0, "s"}};
-  int                   k      = 0;
+  static const struct {
+    double      s;
+    const char *name;
+  } unit[] = {{3.15576e7, "years"}, {86400.0, "days"}, {3600.0, "h"}, {60.0, "min"}, {1.0, "s"}};
+  int k    = 0, n;
 
-  while (k < 4 && seconds < 2.0 * unit[k].s)
+  while (k < 4 && scale < 2.0 * unit[k].s)
     k++;
-  return &unit[k];
-}
-
-/* "12 s", "3.4 h", "20 years". */
-static void Duration(double seconds, char text[32])
-{
-  const TimeUnit *unit = StepperTimeUnit(seconds);
-
-  snprintf(text, 32, "%.2g %s", seconds / unit->s, unit->name);
+  n = snprintf(text, 32, "%.*g %s", digits, seconds / unit[k].s, unit[k].name);
+  if (strncmp(text, "1 ", 2) == 0 && unit[k].s >= 86400.0)
+    text[n - 1] = '\0'; /* 1 year */
 }
 
 PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
-  const char     *why = SceneNeedsImplicit(s->model->c);
+  const char     *why = CaseNeedsImplicit(StepperCase(s));
   char            hybrid[128], time[32], stage[80];
 
   PetscFunctionBeginUser;
@@ -156,10 +153,10 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
   } else if (!(f->limit.dt > 0.0)) {
     PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid has no stable step"));
   } else {
-    Duration(f->hybrid_seconds, time);
+    StepperTime(f->hybrid_seconds, f->hybrid_seconds, 2, time);
     PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %.2g steps, %s", f->hybrid_steps, time));
   }
-  Duration(f->implicit_seconds, time);
+  StepperTime(f->implicit_seconds, f->implicit_seconds, 2, time);
   StepperStageWords(s, stage);
   PetscCall(PetscPrintf(s->model->grid.comm, "  %sforecast: %s; implicit about %.2g steps, %s; %s is the cheaper one\n",
                         stage, hybrid, f->implicit_steps, time, f->hybrid ? "hybrid" : "implicit"));

@@ -13,12 +13,15 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "verification"))
 from common import CASES, binary, check, check_true, finish, launch, scratch  # noqa: E402
 
+import clathra  # noqa: E402  scripts/, which common puts on the path
+
 COLUMN = HERE.parent / "verification" / "cases" / "geostatic.yaml"  # in balance, two layers, 20 m
 COLUMN_OF_GAS = HERE.parent / "verification" / "cases" / "rest_hydrostatic.yaml"  # water and next to no gas, 1 m
 CLIFF = HERE.parent / "verification" / "cases" / "slope.yaml"  # hybrid
 BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
+HEATER = HERE.parent / "verification" / "cases" / "heater.yaml"  # 60 degC beside hydrate of 10
 WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "rises": "gas starts out of balance with gravity", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
-         "capillary": "touch and start with p_g - p_w"}
+         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps"}
 
 
 def warned(done, case):
@@ -122,6 +125,19 @@ comes("gas that would warm the sediment by 0.4 K", [], said(BLOCK, *both(pressur
 comes("... and by 0.6 K", ["gas"], said(BLOCK, *both(pressure=f"{p_e(2.9):.0f} Pa")))
 comes("gas that does not react", [], said(BLOCK, *both(pressure="5 MPa"), "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"))
 
+# ---------------------------------------------------------------- heat beside hydrate (344)
+COLD = ("-region_layer_pressure", "6.9 MPa")  # where hydrate is nearly in equilibrium: no other warning
+text = comes("a heater of 60 degC", ["heat"], said(HEATER, *COLD))
+T, colder, share = numbers(text, "heater brings")[:3]
+water = 0.4 * 0.5 * 1000 * 4200
+heat = 0.6 * 2650 * 800 + 0.4 * 0.4 * 900 * 2010 + water  # the gas has 0.5 % of it
+check_true("... its temperature, and how much colder the hydrate is", (T, colder) == (60, 50), (T, colder))
+check("... the hydrate it melts", abs(share / (heat * 50 / (0.4 * 900 * (473632 - 140.117 * 283.15))) - 1), 0.02)
+comes("... with the reaction by nodes", [], said(HEATER, *COLD, "-stabilisation_reaction", "yes"))
+comes("... of 25 degC", [], said(HEATER, *COLD, "-bc_heater_temperature", "25 degC"))
+comes("... without kinetics", [], said(HEATER, *COLD, "-mat_sand_kinetics_active", "no"))
+check_true("... the same on 2 ranks", text in "\n".join(said(HEATER, *COLD, ranks=2)))
+
 # ---------------------------------------------------------------- capillary pressure: (223) inverted, m = 0.5
 STILL = [*both(pressure="3.8 MPa", Sh="0"), "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"]
 shares = lambda left, right: [o for r, g in (("left", left), ("right", right)) for o in (f"-region_{r}_Sg", f"{g}", f"-region_{r}_Sw", f"{1 - g}")]
@@ -136,4 +152,21 @@ check_true("... the same on 2 ranks", text in "\n".join(said(BLOCK, *STILL, *sha
 comes("two that do not touch", [], said(BLOCK, *STILL, *shares(0.2, 0.6), "-region_right_lower", "0.6 m, 0 m"))
 text = comes("one without gas", ["capillary"], said(BLOCK, *STILL, *shares(0, 0.2)))
 check_true("... which is said", "(no gas) and" in text, text)
+check_true("... and what is in balance", "in balance: Sg: 0 in both or neither" in text, text)
+finer = scratch() / "finer.yaml"  # the right half of three times the p_0, with hydrate; no reaction
+finer.write_text(BLOCK.read_text().replace("materials: [core]", "materials: [core, fine]").replace("regions: [left", "mat_fine: {like: core, retention: {p0: 30 kPa, m: 0.5, Swr: 0.1, Sgr: 0.01}, kinetics: {active: no}}\nregions: [left")
+                 .replace("Sh: 0, Sw: 0.6666667, Sg: 0.3333333", "Sh: 0.3, Sw: 0.5, Sg: 0.2").replace("0.04 m], particles_per_cell: [2, 1], material: core, pressure: 2.84 MPa,\n    temperature: 2.3 degC, Sh: 0.3", "0.04 m], particles_per_cell: [2, 1], material: fine, pressure: 2.84 MPa,\n    temperature: 2.3 degC, Sh: 0.3"))
+CALM = ("-mat_core_kinetics_active", "no", "-mat_fine_kinetics_active", "no")
+text = comes("a finer half with as much gas", ["capillary"], said(finer, *CALM))
+low, high = map(float, re.search(r"p_g - p_w of ([\d.]+) kPa and ([\d.]+) kPa", text).groups())
+share, where = re.search(r"in balance: Sg: ([\d.]+) in (\w+),", text).groups()
+check_true("... what the finer one holds in balance is said (346)", where == "right", where)
+held = lambda pc: 1 - 0.1 - 0.89 * (1 + (pc / 30) ** 2) ** -0.5  # (223) of the finer half, m = 0.5
+check("... the gas share of (223) there, but for its smooth corner", abs(float(share) / (0.7 * held(low)) - 1), 0.02)
+comes("... and with that gas", [], said(finer, *CALM, "-region_right_Sg", share, "-region_right_Sw", f"{0.7 - float(share):.9g}"))
+done = launch(binary(), finer, "-quiet", "-stepper_max_steps", 0, *CALM, "-region_right_Sg", share, "-region_right_Sw", f"{0.7 - float(share):.9g}", out=scratch() / "balanced")
+run = clathra.Run(scratch() if done.returncode else Path(done.args[-1]))
+p = run.particles(run.times[0])
+pc = (p["p_g"] - p["p_w"]).ravel()
+check("... p_g - p_w is one all over, of the jump before", np.ptp(pc) / (1e3 * (high - low)), 1e-3)
 finish()

@@ -143,7 +143,7 @@ static bool Numbers(void *ctx, double x, double y[RIDDERS_ROWS])
     y[K_E + c]   = k.e[c];
   }
   y[K_HOOP]  = k.cof_hoop;
-  y[K_THETA] = k.theta;
+  y[K_THETA] = atan2(k.s, k.c);
   return true;
 }
 
@@ -182,7 +182,7 @@ static void TestKinematics(void **state)
 
     Check(KinematicsEvaluate(motion, &k));
     Check(fabs(k.J - s * s * s) < 1e-14 && fabs(k.cof[0][0] - s * s) < 1e-14 && fabs(k.cof[1][1] - s * s) < 1e-14 &&
-          fabs(k.cof_hoop - s * s) < 1e-14 && k.cof[0][1] == 0.0 && k.cof[1][0] == 0.0 && k.theta == 0.0);
+          fabs(k.cof_hoop - s * s) < 1e-14 && k.cof[0][1] == 0.0 && k.cof[1][0] == 0.0 && atan2(k.s, k.c) == 0.0);
     Check(fabs(k.e[0] - log(s)) < 1e-14 && fabs(k.e[1] - log(s)) < 1e-14 && fabs(k.e[3] - log(s)) < 1e-14 &&
           fabs(k.e[2]) < 1e-15 && fabs(k.stretch[0] - s) < 1e-14 && fabs(k.stretch[1] - s) < 1e-14);
   }

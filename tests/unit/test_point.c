@@ -185,7 +185,7 @@ static bool KinematicsRows(void *ctx, double x, double y[RIDDERS_ROWS])
   g[c->which] = x;
   if (!KinematicsEvaluate(g, &k))
     return false;
-  y[0] = k.theta;
+  y[0] = atan2(k.s, k.c);
   y[1] = k.J;
   for (int i = 0; i < 4; i++) {
     y[2 + i] = k.e[i];
@@ -250,7 +250,7 @@ static void TestKinematicsValues(void **state)
     for (int i = 0; i < 4; i++)
       g[i] = V[i / 2][0] * R[0][i % 2] + V[i / 2][1] * R[1][i % 2] - (i == 0 || i == 3);
     assert_true(KinematicsEvaluate(g, &k));
-    angle = remainder(k.theta - t, 2.0 * PI);
+    angle = remainder(atan2(k.s, k.c) - t, 2.0 * PI);
     for (int i = 0; i < 3; i++)
       worst = fmax(worst, fabs(k.e[i] - e[i]));
     worst = fmax(fmax(worst, fabs(angle)), fabs(k.J - e1 * e2));

@@ -10,8 +10,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
 import _files  # noqa: E402
-from _auto import EXACT, PHASES, Q, TIMES, WATCHED, column  # noqa: E402
-from common import check, check_true, finish, order, scratch, table  # noqa: E402
+from _auto import CASE, EXACT, PHASES, Q, TIMES, WATCHED, column  # noqa: E402
+from common import binary, check, check_true, finish, launch, order, scratch, table  # noqa: E402
 
 def errors(run):
     """{curve: largest error over its range in each phase}."""
@@ -47,6 +47,17 @@ lines = re.findall(r"^  (sdirk2|hybrid) from \S+ s to \S+ s, \d+ steps", (run.ou
 check_true("a line for each in summary.txt", lines == ["sdirk2", "hybrid", "sdirk2"], str(lines))
 fixed = column("auto", "-stepper_adapt", "no", "-stepper_dt", "0.5 s")
 check_true("with a fixed step it stays with what it chose", not changes(fixed) and "integrator chosen: sdirk2\n" in fixed.output)
+
+# ---------------------------------------------------------------------- stabilisations that only implicit steps know
+STABILISED = ("-stabilisation_upstream", "yes")
+with_it, alone_with = column("auto", *STABILISED, cells=13), column("sdirk2", *STABILISED, cells=13)
+begun, back = (c[0] for c in changes(with_it))
+early = with_it.probes["time_s"] < begun
+check_true("upstream weights are those of auto's implicit steps, hybrid carries the wave without them", early.sum() > 30 and [c[1:] for c in changes(with_it)] == [c[1:] for c in found], str(changes(with_it)))
+check_true("... until the change bit for bit sdirk2 with them", np.array_equal(with_it.probe("middle")["p_Pa"][early], alone_with.probe("middle")["p_Pa"][early]))
+check_true("... the start says so", "hybrid goes without stabilisation_upstream" in with_it.output and "hybrid goes without" not in run.output)
+refused = launch(binary(), CASE, "-stepper_type", "hybrid", *STABILISED, "-case_check", out=scratch() / "out")
+check_true("... and hybrid alone refuses them", refused.returncode == 2 and "hybrid does not know stabilisation_upstream" in refused.stdout)
 
 # ------------------------------------------------------------------------------- a change leaves everything as it was
 rows = run.balance["time_s"]

@@ -54,6 +54,16 @@ check_true("without it there is more than a tenth", np.max(S_0) / S_0[-1] > 1.1,
 judge("fronts", "(265): hydrate that is left, with and without", abs(np.sum(S) / np.sum(S_0) - 1), 0.15)
 for name in ("water_error", "methane_error"):
     judge("fronts", f"(265): {name}", np.max(np.abs(nodes.balance[name])), 1e-12)
+PLACES = np.arange(11) / 10
+PROBES = ["-probes", ",".join(f"x{k}" for k in range(11)), *(w for k, x in enumerate(PLACES) for w in (f"-probe_x{k}_at", f"{x:g} m,0.05 m"))]
+FIELDS = lambda r, k, column: np.array([v[k].ravel() for _, v in r.snapshots()] if column is None else [r.probe(f"x{i}")[column] for i in range(11)])
+hourly = heater("yes", "-output_every", "1 h", *PROBES)[0]
+own, seen, S, S_seen = (FIELDS(hourly, k, c) for k, c in (("T", None), ("T", "T_degC"), ("S_h", None), ("S_h", "S_h")))
+judge("fronts", "(265): a particle warmer than the heater or colder than the start, any hour, K", max(own.max() - 60, 10 - own.min(), 0), 1e-6, 1, "K")
+judge("fronts", "... a probe", max(seen.max() - 60, 10 - seen.min(), 0), 1e-3, 1, "K")
+judge("fronts", "(265): S_h that falls towards the far end, any hour", max(np.max(-np.diff(S.reshape(len(S), 2, -1)[:, 0], axis=1)), 0.0), 1e-3)
+judge("fronts", "... S_h of probes outside the particles' range", max(-S_seen.min(), S_seen.max() - S.max(), 0), 1e-6)
+check_true("... which see all of the front", S_seen[0].min() == 0 and S_seen[-1].min() > 0.399)
 one, two = (heater("yes", "-time_end", "1 h", ranks=n)[1] for n in (1, 2))
 judge("fronts", "(265): 1 and 2 ranks, S_h", np.max(np.abs(two - one)), 1e-8)
 finish()

@@ -7,6 +7,7 @@ drives it; errors are held against finer runs and exact solutions.
 import math
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 from _extremes import CELL, SCENE, attempt, difference, scene, stable_step
@@ -93,6 +94,31 @@ def falling():
         judge(ROW, f"falling block, {kind}: displacement", error, bar)
 
 
+def sudden():
+    """10 MPa on the end at once, or the outlet's pressure to less than a third: errors over the largest change, that of p over the load too, against
+    quasi-static steps of a third of the tolerance.  To 0.5 MPa, at once or within 1 s, is too far: p overshoots within the last cell, and the run says so."""
+    still = ["-inertia", "no"]
+    load, fall = ["-bc_load_normal", "17 MPa", "-bc_outlet_pressure", "7 MPa"], ["-bc_load_normal", "7 MPa", "-bc_outlet_pressure"]
+    loads = {  # name: (options, {kind: (options, bar of p, of all)})
+        "load of 10 MPa, k = 1e-11 m2": ([*scene(k=1e-11), *load], {"sdirk2": ([], 0.004, 0.08), "sdirk2, quasi-static": (still, 1e-3, 0.01)}),
+        "load of 10 MPa, k = 1e-14 m2": ([*scene(), *load], {"euler": (["-stepper_type", "euler"], 1e-3, 0.05), "sdirk2, quasi-static": (still, 1e-3, 0.01)}),
+        "outlet to 2 MPa": ([*scene(), *fall, "2 MPa"], {"sdirk2": ([], 1e-3, 2e-3)})}  # fmt: skip
+    for name, (options, kinds) in loads.items():
+        fine = ends(f"{name} at once, fine", attempt([*options, *UNTIL(100.0), *still, "-stepper_tol", "3e-4"]))
+        for kind, (more, bar_p, bar) in kinds.items():
+            done = ends(f"{name} at once, {kind}", attempt([*options, *UNTIL(100.0), *more]))
+            if fine.kind == done.kind == "finished":
+                error = difference(done.folder, fine.folder, 10e6 if "load" in name else 5e6)
+                judge(ROW, f"{name} at once, {kind}: error of p over the load", error["p"], bar_p)
+                judge(ROW, f"{name} at once, {kind}: largest error of any field", max(error.values()), bar)
+    gone = ends("outlet to 0.5 MPa at once", attempt([*scene(), *UNTIL(100.0), *fall, "0.5 MPa"]), "stopped")
+    check_true("... because of Newton's method, in the last cell", "Newton's method did not converge" in gone.said and "near (0.18" in gone.said, gone.said)
+    with h5py.File(gone.folder / "checkpoint.h5", "r") as file:
+        x, p = (file["particles"][k][()] for k in ("position", "p_w"))
+    inner, last = (p.ravel()[(x[:, 0] > low) & (x[:, 0] < low + CELL)].max() for low in (0.16, 0.18))
+    check_true("... where p overshoots: more at the outlet than a cell from it", last > 1.5 * inner, f"{last:.3g} Pa, {inner:.3g} Pa")
+
+
 def crawl():
     """Steps that shrink to nothing end the run, and it says why."""
     ends("0.1 MPa", attempt(scene(p=0.1e6)))
@@ -107,6 +133,7 @@ if __name__ == "__main__":
     refusals()
     energy()
     falling()
+    sudden()
     crawl()
     table(("run", "ended", "steps", "kinetic energy late/early", "balance"), rows)
     finish()

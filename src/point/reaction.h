@@ -1,9 +1,11 @@
-/* The reaction of one particle with its tangent; docs/equations.md (11)-(13). */
+/* Private to point/: the reaction of one particle with its slopes; docs/equations.md (11)-(13). */
+#pragma once
+
 #include "clathra/point_reaction.h"
-#include "state.h"
+#include "scalars.h"
 
 /* Hydrate that goes, (12). */
-static void Dissociate(const Material *mat, double from, Jet growth, Jet rho_h, ScalarState *s)
+INLINE void Dissociate(const Material *mat, double from, Jet growth, Jet rho_h, ScalarState *s)
 {
   double       slope;
   const Jet    a    = JetScale(-mat->kinetics.A_geo, JetDiv(growth, rho_h));
@@ -13,7 +15,7 @@ static void Dissociate(const Material *mat, double from, Jet growth, Jet rho_h, 
 }
 
 /* m_h* + growth A_s - S rho_h V_p as a function of S for formation (13); decreasing in S. */
-static double FormationBalance(const Kinetics *k, double S, double sw, double m0, double growth, double pore,
+INLINE double FormationBalance(const Kinetics *k, double S, double sw, double m0, double growth, double pore,
                                double *dS)
 {
   double       dw, dA;
@@ -24,7 +26,7 @@ static double FormationBalance(const Kinetics *k, double S, double sw, double m0
 }
 
 /* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
-static void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, ScalarState *s)
+INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, ScalarState *s)
 {
   const Kinetics *k      = &mat->kinetics;
   const Jet       growth = JetMul(s->V, per_area);
@@ -60,9 +62,9 @@ static void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Scalar
   s->gain.v = (growth.v * A - steep * grown) / (1.0 - steep);
 }
 
-/* The reaction sees p and T of the nodal fields, not the particle's own: those differ by what nodes cannot see (and so
-   never correct), which a fast reaction would turn into hydrate. */
-void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s)
+/* m_h and its gain, from p, shares and pores of s.  The reaction sees p and T of the nodal fields, not the particle's
+   own: those differ by what nodes cannot see (and so never correct), which a fast reaction would turn into hydrate. */
+INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s)
 {
   const Kinetics *k   = &mat->kinetics;
   const double    m0  = fmax(h->m_star[0], 0.0);
