@@ -84,6 +84,18 @@ INLINE Tau TauOf(double kr, double resist, double rho, double per_dt)
   return (Tau){v, resist / (sum * sum), -v / sum, -v * v * per_dt};
 }
 
+/* (353): share of what a particle's pressure differs by from its nodes' that flow within the cell takes away in
+   dt (s); mobility: sum over the fluids of k_a k_r/mu, m^2/(Pa s); storage per volume of sediment, 1/Pa; half-lengths
+   l, m. */
+INLINE double ExchangeShare(double mobility, double storage, const double l[CL_DIM], double dt)
+{
+  double sum = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    sum += 0.5 / (l[d] * l[d]);
+  return -expm1(-dt * sum * mobility / storage);
+}
+
 /* (18) along one axis, kg m/s: Darcy flux J and projected less own gradient, both on the configuration at t_n. */
 INLINE double MassFlux(double V, double rho, double rho_tau, double J, double gradient)
 {

@@ -47,6 +47,7 @@ typedef struct {
   Points   along;    /* or those on this line */
 } Meter;
 
+enum { EXCHANGE_AUTO = 0, EXCHANGE_YES, EXCHANGE_NO };
 enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
@@ -57,6 +58,7 @@ typedef struct {
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
   double ghost_storage;       /* g_s, 0 = off (default) */
   double pressure_projection; /* alpha, 0 = off; default 1 */
+  int    exchange;            /* EXCHANGE_... (353); default auto */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
@@ -222,6 +224,13 @@ static inline bool SceneHasBeds(const Scene *c)
 static inline bool SceneSharesFlow(const Scene *c)
 {
   return SceneHasBeds(c) || SceneContrast(c) > 1.0;
+}
+
+/* Do pressures even out within cells (353)?  By itself where layers differ in permeability. */
+static inline bool SceneExchanges(const Scene *c)
+{
+  return c->fields.fluid && (c->stabilisation.exchange == EXCHANGE_YES ||
+                             (c->stabilisation.exchange == EXCHANGE_AUTO && SceneContrast(c) > 1.0));
 }
 
 /* First condition that the integrators without a matrix do not know, or NULL. */

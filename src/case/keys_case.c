@@ -33,6 +33,7 @@ static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "exp
 static const char *const surface_word[]     = {"free", "tied", "velocities_free", NULL}; /* SURFACE_... */
 static const char *const share_word[]       = {"nodes", "particles", "relative", NULL};  /* PRESSURES_... */
 static const char *const ice_word[]         = {"warn", "stop", NULL};                    /* ICE_... */
+static const char *const exchange_word[]    = {"auto", "yes", "no", NULL};               /* EXCHANGE_... */
 static const char *const without_gas_word[] = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
 
 const Key case_key[] = {
@@ -144,6 +145,10 @@ const Key case_key[] = {
          "the same on pressures' changes, for undrained bodies; 0 = off"),
     REAL(Case, "stabilisation_pressure_projection", scene.stabilisation.pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
+    CHOICE(
+        Case, "stabilisation_exchange", scene.stabilisation.exchange, "auto", exchange_word,
+        "sdirk2, euler: pressures of a cell's particles even out as fast as fluids flow between them, which nodes do "
+        "not see; auto: where layers differ in permeability"),
     BOOLEAN(Case, "stabilisation_flux_interpolation", scene.stabilisation.flux_interpolation, "yes",
             "momentum-interpolated mass flux"),
     BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",

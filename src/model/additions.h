@@ -36,14 +36,22 @@ typedef struct {
   double kr;         /* k^_r,p at t_n (334) */
 } Donor;
 
+/* What evens out the pressures of a cell's particles (353). */
+typedef struct {
+  double mobility, storage;  /* at t_n: of all fluids, m^2/(Pa s); per volume and pressure, 1/Pa */
+  double share[PHASE_COUNT]; /* s_w, s_g at t_n */
+  double change;             /* of the particle's pressures at the end of the step, Pa */
+} Exchange;
+
 struct Additions {
   PetscInt        nghost, ncell;
   GhostLine      *ghost; /* [nghost] */
   ProjectionCell *cell;  /* [ncell] (23) */
-  double *up;    /* [n_local][2][3] upstream weights of drag (35): direction of flow, factor (0: none); NULL when off */
-  Donor  *donor; /* [n] (332); NULL when off */
-  double *source; /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
-  double *spread; /* [n][2] (200); NULL when off */
-  double *upwind; /* [n][3] (293); NULL when off */
-  Lump   *lump;   /* [n] (265); NULL when off */
+  double   *up; /* [n_local][2][3] upstream weights of drag (35): direction of flow, factor (0: none); NULL when off */
+  Donor    *donor;    /* [n] (332); NULL when off */
+  Exchange *exchange; /* [n] (353); NULL when off */
+  double   *source;   /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
+  double   *spread;   /* [n][2] (200); NULL when off */
+  double   *upwind;   /* [n][3] (293); NULL when off */
+  Lump     *lump;     /* [n] (265); NULL when off */
 };

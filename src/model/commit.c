@@ -314,7 +314,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
   for (int k = 0; k < 3; k++) { /* p_w, p_g, T */
     if (!f[P_PW + k])
       continue;
-    f[P_PW + k][p] = in[IN_P + k];
+    f[P_PW + k][p] = in[IN_P + k] + (m->added->exchange && k < PHASE_COUNT ? m->added->exchange[p].change : 0.0);
     for (int d = 0; d < CL_DIM; d++)
       f[gradient[k] + d][p] = in[(k < 2 ? VectorAt(IN_GP, k, 0) : IN_GT) + d];
   }
@@ -339,6 +339,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
 
   PetscFunctionBeginUser;
   PetscCall(ModelProjectGradients(m, x, false, m->proj));
+  PetscCall(ExchangeBuild(m));
   ModelGive(m, x);
   m->released = 0.0;
   for (PetscInt p = 0; p < m->P.n; p++) {

@@ -483,6 +483,9 @@ void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, d
 void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (332)-(334): where each particle's gas comes from at t_n, all ranks. */
 PetscErrorCode DonorBuild(Model *m);
+/* (353), (354): what they need of a particle at t_n; the change at the end of the step. */
+void           ExchangeSet(const Model *m, PetscInt p, const PointProperties *q);
+PetscErrorCode ExchangeBuild(Model *m);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, double *f);

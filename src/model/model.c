@@ -50,6 +50,7 @@ PetscErrorCode FreeParticleArrays(Model *m)
   PetscCall(PetscFree(m->order));
   PetscCall(PetscFree(m->wide));
   PetscCall(PetscFree(m->added->donor));
+  PetscCall(PetscFree(m->added->exchange));
   PetscCall(PetscFree(m->added->spread));
   PetscCall(PetscFree(m->added->upwind));
   PetscCall(PetscFree(m->added->lump));

@@ -45,6 +45,10 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscFree(m->beds));
   else if (!m->beds)
     PetscCall(PetscMalloc1(m->stencil_cap, &m->beds));
+  if (!SceneExchanges(m->c))
+    PetscCall(PetscFree(m->added->exchange));
+  else if (!m->added->exchange)
+    PetscCall(PetscMalloc1(m->stencil_cap, &m->added->exchange));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Stencil *s = &m->stencil[p];
 
@@ -263,6 +267,8 @@ static PetscErrorCode Project(Model *m)
       m->added->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
     if (m->added->upwind)
       UpwindOf(m, p, &q, &m->added->upwind[3 * p]);
+    if (m->added->exchange)
+      ExchangeSet(m, p, &q);
     m->conduct[p] = shared ? SceneConductance(m->c, ParticleMaterial(m, p), m->P.f[P_SH][p]) : 1.0;
     ReachExpand(m, p, &r);
     Deposit(m, p, &r, &q, sum);
