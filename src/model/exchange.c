@@ -1,7 +1,7 @@
 /* What the nodes do not see of the particles' pressures evens out within the cells; docs/equations.md, section 7. */
 #include "gather.h"
 
-#define PASSES 4
+#define PASSES 6
 
 void ExchangeSet(const Model *m, PetscInt p, const PointProperties *q)
 {
