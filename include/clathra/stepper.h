@@ -9,7 +9,7 @@
  * for bit). */
 typedef struct {
   PetscInt step;          /* steps done */
-  PetscInt hold;          /* steps during which dt may not grow */
+  PetscInt hold;          /* steps during which dt may not grow; -1: a fixed step that was cut grows back */
   PetscInt fresh;         /* 1: no rates of a previous step (start, or just past a kink of a schedule) */
   PetscInt next_snapshot; /* its number */
   PetscInt stage;         /* of the case; t may have reached its end */

@@ -257,7 +257,7 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
     s->scheme = &StepperScheme_Hybrid;
   PetscCall(
       PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s", s->scheme->name, s->auto_.on ? ", for now" : ""));
-  const char *word;
+  const char *word; /* stabilisations that implicit steps have alone */
   for (int k = 0; s->auto_.on && (word = SceneStabilisesImplicit(&c->scene, k)); k++)
     PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", k ? ", " : "; hybrid goes without ", word));
   PetscCall(PetscPrintf(s->model->grid.comm, "\n"));

@@ -3,6 +3,7 @@
 
 #define CUT_FAILED 0.25 /* after a step that could not be taken */
 #define HOLD 5          /* steps without growth after that */
+#define RETURNS (-1)    /* of `hold`: a fixed step that was cut grows back */
 #define CUT_AT_KINK 0.1 /* first step behind a kink of a schedule */
 #define EASY_NEWTON 6   /* growth only while Newton needs no more iterations a stage */
 #define CRAWL 1e7       /* a run that needs so many more steps at its present length ... */
@@ -212,6 +213,8 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
   z->fresh   = kink;
   if (z->hold > 0)
     z->hold--;
+  if (z->hold <= 0 && !s->adaptive)
+    z->hold = z->dt < StepperCase(s)->dt ? RETURNS : 0;
   PetscCall(StepperAccept(s, a, &info));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

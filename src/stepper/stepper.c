@@ -82,7 +82,7 @@ PetscErrorCode StepperReady(Stepper *s, bool *ok)
   *ok = true;
   PetscCall(StepperTakeStage(s, s->state.stage));
   if (!s->adaptive && s->state.hold == 0)
-    s->state.dt = StepperCase(s)->dt; /* a fixed step is the case's, also after a restart */
+    s->state.dt = StepperCase(s)->dt; /* a fixed step is the case's, also after a restart, but on its way back to it */
   if (StepperStageDone(s) && !StepperDone(s))
     PetscCall(StepperNextStage(s));
   PetscCall(Look(s));

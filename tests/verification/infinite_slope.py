@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, check_true, finish, judge, table
+from common import Run, check, check_true, finish, judge, scratch, table
 
 CASE = Path(__file__).parent / "cases" / "infinite_slope.yaml"
 G, BETA, PHI, SEA, TOP, LENGTH = 9.81, np.radians(10), np.radians(25), 3.75e6, 8.0, 20.0
@@ -26,10 +26,10 @@ IMPLICIT = ("-stepper_type", "sdirk2", "-stepper_adapt", "no", "-stepper_dt", "0
 MASSES = ("mass_solid", "mass_hydrate", "mass_water", "mass_gas")
 
 
-def run(h, *options):
+def run(h, *options, **keywords):
     """Snapshots [(t, fields)] on cells of h (m)."""
     return Run.of_case(CASE, "-quiet", "-grid_cells", f"{round((LENGTH + 8) / h)},{round(12 / h)}", "-region_slab_lower", f"0 m, {h:.12g} m",
-                       "-region_weak_upper", f"{LENGTH} m, {h:.12g} m", *options).snapshots()  # fmt: skip
+                       "-region_weak_upper", f"{LENGTH} m, {h:.12g} m", *options, **keywords).snapshots()  # fmt: skip
 
 
 def motion(snapshots, h, share=1.0):
@@ -60,6 +60,25 @@ def errors(found):
     return found[1] - (1 - EARLY), found[2] / found[3] - 1 if found[3] else np.inf
 
 
+def changed():
+    """sdirk2 until the slab is about to fail, then hybrid: F and speed, two ranks, and restarts right before and after the change."""
+    stages = ("-stages", "quiet,slide", "-stage_quiet_end", "4 s", "-stage_slide_end", "5 s", *(f"-stage_quiet_{o[1:]}" if "stepper" in o else o for o in IMPLICIT))
+    kept = scratch() / "whole"
+    whole = run(2.0, *stages, out=kept)
+    b = Run(kept, 0, "").balance
+    change = int(b["step"][b["time_s"] <= 4][-1])
+    last = whole[-1][1]
+    found = errors(onset(*motion(whole, 2.0)))
+    judge("slopes", "infinite slope, sdirk2 and then hybrid: F when it fails against limit equilibrium", abs(found[0]), 0.035)
+    two = run(2.0, *stages, ranks=2)[-1][1]
+    check("... 2 ranks against 1, of the largest value", max(np.max(np.abs(v - two[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield"), 1e-6)
+    for what, cut in (("before", change - 1), ("at", change), ("after", int(b["step"][b["time_s"] > 4][0]))):
+        out = scratch() / what
+        run(2.0, *stages, "-stepper_max_steps", cut, out=out)
+        again = run(2.0, *stages, "-restart", out / "checkpoint.h5", out=out)[-1][1]
+        check_true(f"... a restart {what} the change, bit for bit", all(np.array_equal(v, again[k], equal_nan=True) for k, v in last.items()))
+
+
 if __name__ == "__main__":
     rows, found, coarse = [], {}, run(2.0)
     for name, options in (("hybrid", ()), ("sdirk2", IMPLICIT)):
@@ -72,6 +91,7 @@ if __name__ == "__main__":
         judge("slopes", f"infinite slope, hydrate lost at its base, {name}, three meshes: F when it fails against limit equilibrium", max(f for f, _ in all_meshes), 0.035)
         judge("slopes", "... on the finest", all_meshes[-1][0], 0.01)
         judge("slopes", "... speed 0.8 s later against Newmark's block", max(v for _, v in all_meshes), 0.05, 0.01, "%")
+    changed()
     weaker = errors(onset(*motion(run(2.0, "-mat_weak_plasticity_friction_peak", "15 deg"), 2.0)))
     less = errors(onset(*motion(coarse, 2.0, 0.9)))
     table(["planted", "error of F", "of the speed"], [["friction of 15 deg", *weaker], ["a tenth less excess pressure", *less]])
