@@ -258,7 +258,7 @@ WARMING = """
 | 14° | the same, 8.2 m between 100 and 110 years; stopped after 116 |
 
 So `auto` does not see every slide: steps of months that Newton's method solves go over it, the estimate of `sdirk2` being small against displacements of metres (section 15 of [equations.md](equations.md)). And after a slide it is the implicit steps
-that do not get going: 18 of 342 particles stand at the apex of their yield surface, Newton's method needs 6 to 30 iterations a stage with new Jacobians and fails above a minute or two, with `stepper_relaxation` and a ghost penalty of 0.1 too (there steps of 2 h).
+that do not get going: 18 of 342 particles stand at the apex of their yield surface, Newton's method needs 6 to 26 iterations a stage with new Jacobians and fails above a minute or two, with `stepper_relaxation` and a ghost penalty of 0.1 too (there steps of 2 h).
 With dilation (2° to 0°) the slide of 12.5 m cells takes weeks instead of seconds, since suction holds it; `hybrid` from there agrees: 0.3 m in the first seconds, then next to nothing in a minute.
 
 *Sediment without gas* is another matter. A column of six cells is enough to see it: 2 x 2 particles a cell,
