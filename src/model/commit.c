@@ -271,21 +271,27 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   SkeletonKeep(&store, p, &s->skeleton);
 }
 
-/* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). */
+/* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). Without inertia
+   velocities have no memory: those of the nodes (355). */
 static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r)
 {
-  const FieldSet *fs = &m->c->fields;
+  const FieldSet *fs   = &m->c->fields;
+  const double    from = fs->inertia ? 1.0 : 0.0;
 
   for (int q = F_VSX; q < F_PW; q++) {
-    for (int a = 0; fs->at[q] >= 0 && a < r->n; a++) {
-      const PetscInt I = r->node[a], k = I * fs->n + fs->at[q];
-      const PetscInt vs   = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
-      const double   dv   = x[k] - m->x_n[k];
-      const double   slip = q < F_VWX ? 0.0 : fs->solid ? dv - (x[vs] - m->x_n[vs]) : dv;
+    if (fs->at[q] < 0)
+      continue;
+    double v = from * m->P.f[P_VS + q][p];
 
-      m->P.f[P_VS + q][p] +=
-          r->S[a] * (dv + ((q < F_VWX ? 1.0 : FlowWeight(m, p, I, (q - F_VWX) / CL_DIM)) - 1.0) * slip);
+    for (int a = 0; a < r->n; a++) {
+      const PetscInt I = r->node[a], k = I * fs->n + fs->at[q],
+                     vs = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
+      const double dv   = x[k] - from * m->x_n[k];
+      const double slip = q < F_VWX ? 0.0 : fs->solid ? dv - (x[vs] - from * m->x_n[vs]) : dv;
+
+      v += r->S[a] * (dv + ((q < F_VWX ? 1.0 : FlowWeight(m, p, I, (q - F_VWX) / CL_DIM)) - 1.0) * slip);
     }
+    m->P.f[P_VS + q][p] = v;
   }
 }
 

@@ -71,6 +71,12 @@ for y in (3, 3.2):
     judge(ROW, f"border at {y} m: water balance", abs(runs[y, ()].balance["water_error"][-1]), 1e-13)
 plain = runs[3, ()]
 last = lambda run: run.snapshots()[-1][1]
+# without inertia velocities of particles are means of their nodes' (355)
+(_, nodes), (_, bodies) = plain.snapshots("grid")[-1], plain.snapshots()[-1]
+at = [int(v) for v in np.floor(bodies["position"][:, 1] / 0.5)], bodies["position"][:, 1] / 0.5 % 1
+column = np.mean(nodes["v_s"].reshape(13, 3, 2)[..., 1], axis=1)
+between = column[at[0]] * (1 - at[1]) + column[np.array(at[0]) + 1] * at[1]
+judge(ROW, "quasi-static: velocities of particles against those of their nodes", largest_difference(bodies["v_s"][:, 1], between), 0.3)
 judge(ROW, "axes swapped: p_w", largest_difference(np.sort(last(settled(*SWAPPED))["p_w"], axis=0), np.sort(last(plain)["p_w"], axis=0), 7e6), 1e-9)
 judge(ROW, "7 MPa more everywhere: p_w", largest_difference(last(settled(*HIGHER))["p_w"] - 7e6, last(plain)["p_w"], 7e6), 1e-2)
 judge(ROW, "2 ranks against 1: p_w", largest_difference(last(settled(ranks=2))["p_w"], last(plain)["p_w"], 7e6), 1e-9)
