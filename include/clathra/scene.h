@@ -58,7 +58,7 @@ typedef struct {
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
   double ghost_storage;       /* g_s, 0 = off (default) */
   double pressure_projection; /* alpha, 0 = off; default 1 */
-  int    exchange;            /* EXCHANGE_... (353); default auto */
+  int    exchange;            /* EXCHANGE_... (353); default no */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
@@ -226,7 +226,7 @@ static inline bool SceneSharesFlow(const Scene *c)
   return SceneHasBeds(c) || SceneContrast(c) > 1.0;
 }
 
-/* Do pressures even out within cells (353)?  By itself where layers differ in permeability. */
+/* Do pressures even out within cells (353)?  EXCHANGE_AUTO: where layers differ in permeability. */
 static inline bool SceneExchanges(const Scene *c)
 {
   return c->fields.fluid && (c->stabilisation.exchange == EXCHANGE_YES ||

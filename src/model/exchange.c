@@ -57,7 +57,7 @@ PetscErrorCode ExchangeBuild(Model *m)
   double *sum;
 
   PetscFunctionBeginUser;
-  if (!m->added->exchange)
+  if (!SceneExchanges(m->c)) /* a rank without particles has no list, but is asked for sums */
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < m->P.n; p++)
     m->added->exchange[p].change = Exchanged(m, p);
