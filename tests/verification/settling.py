@@ -65,8 +65,8 @@ steps = lambda run: float(len(run.balance["time_s"]))
 runs = {(y, off): settled(*BORDER(y), *off) for y in (3, 3.2) for off in ((), OFF)}
 table(("border at", "exchange", "lowest p_w at 3 d (MPa)", "at 30 d", "steps"), [(f"{y} m", "no" if off else "yes", lowest(r, 3), lowest(r, 30), steps(r)) for (y, off), r in runs.items()])
 for y in (3, 3.2):
-    judge(ROW, f"border at {y} m: p_w below that of the drain at 3 days", 4 - lowest(runs[y, ()], 3), 0.1, unit="MPa")
-    judge(ROW, f"border at {y} m: p_w below that of the drain at 30 days", 4 - lowest(runs[y, ()], 30), 0.03, unit="MPa")
+    judge(ROW, f"border at {y} m: p_w below that of the drain at 3 days", 4 - lowest(runs[y, ()], 3), 0.15, unit="MPa")
+    judge(ROW, f"border at {y} m: p_w below that of the drain at 30 days", 4 - lowest(runs[y, ()], 30), 0.05, unit="MPa")
     judge(ROW, f"border at {y} m: steps over those without", steps(runs[y, ()]) / steps(runs[y, OFF]), 1.3)
     judge(ROW, f"border at {y} m: water balance", abs(runs[y, ()].balance["water_error"][-1]), 1e-13)
 plain = runs[3, ()]
