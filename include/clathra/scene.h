@@ -253,7 +253,8 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
   } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
                {c->stabilisation.donor, "stabilisation_donor"},
                {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
-               {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
+               {c->stabilisation.lumped_reaction, "stabilisation_reaction"},
+               {SceneExchanges(c), "stabilisation_exchange"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
     if (known[i].on && k-- == 0)

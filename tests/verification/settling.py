@@ -8,7 +8,7 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "integration"))
 from _files import different  # noqa: E402
-from common import Run, check_true, finish, judge, largest_difference, scratch, table  # noqa: E402
+from common import Run, binary, check_true, finish, judge, largest_difference, launch, scratch, table  # noqa: E402
 
 CASE = Path(__file__).parent / "cases" / "settling.yaml"
 ROW = "settling"
@@ -85,4 +85,6 @@ Run.of_case(CASE, "-quiet", "-stepper_max_steps", "40", out=out, exit_code=(0, 3
 Run.of_case(CASE, "-quiet", "-restart", out / "checkpoint.h5", out=out)
 names = different(plain.out, out)
 check_true("cut in two by a restart: the same bit for bit", not names, ", ".join(names[:5]))
+refused = launch(binary(), rows_case, "-stabilisation_exchange", "yes", "-fields", "hm", "-inertia", "yes", "-stepper_type", "hybrid", out=scratch() / "hybrid")
+check_true("hybrid refuses the exchange by its name", refused.returncode == 2 and "stabilisation_exchange" in refused.stdout, refused.stdout[-200:] if refused.returncode != 2 else "")
 finish()
