@@ -146,9 +146,9 @@ const Key case_key[] = {
     REAL(Case, "stabilisation_pressure_projection", scene.stabilisation.pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
     CHOICE(
-        Case, "stabilisation_exchange", scene.stabilisation.exchange, "no", exchange_word,
+        Case, "stabilisation_exchange", scene.stabilisation.exchange, "auto", exchange_word,
         "sdirk2, euler: pressures of a cell's particles even out as fast as fluids flow between them, which nodes do "
-        "not see; auto: where layers differ in permeability"),
+        "not see; auto: where layers differ in permeability; hybrid refuses yes and has its own way"),
     BOOLEAN(Case, "stabilisation_flux_interpolation", scene.stabilisation.flux_interpolation, "yes",
             "momentum-interpolated mass flux"),
     BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",

@@ -1,7 +1,8 @@
 /* What the nodes do not see of the particles' pressures evens out within the cells; docs/equations.md, section 7. */
 #include "gather.h"
 
-#define PASSES 6
+#define HIDDEN 1e-8 /* of the moments of y, what (354) may leave */
+#define MOST_ITERATIONS 200
 
 void ExchangeSet(const Model *m, PetscInt p, const PointProperties *q)
 {
@@ -29,8 +30,18 @@ static double Exchanged(const Model *m, PetscInt p)
   return ExchangeShare(e->mobility, e->storage, l, m->stage.ahead) * apart;
 }
 
-/* (354): takes away what the nodes see of it. */
-static PetscErrorCode Hide(Model *m, double *sum)
+static double Seen(const Reach *r, const double *x)
+{
+  double v = 0.0;
+
+  for (int a = 0; a < r->n; a++)
+    v += r->S[a] * x[r->node[a]];
+  return v;
+}
+
+/* [n_local] sum_p V S_I v_p over all ranks, for owned nodes: v = y, or v = sum_J S_J x_J where there is an x [n_local].
+ */
+static PetscErrorCode Moments(Model *m, const double *x, double *sum)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(sum, m->map.n_local));
@@ -38,32 +49,110 @@ static PetscErrorCode Hide(Model *m, double *sum)
     Reach r;
 
     ReachExpand(m, p, &r);
+    const double v = m->P.f[P_V][p] * (x ? Seen(&r, x) : m->added->exchange[p].change);
     for (int a = 0; a < r.n; a++)
-      sum[r.node[a]] += m->P.f[P_V][p] * r.S[a] * m->added->exchange[p].change;
+      sum[r.node[a]] += r.S[a] * v;
   }
-  PetscCall(NodeMapSum(&m->map, sum, 1));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach r;
+  PetscCall(NodeMapReduce(&m->map, sum, 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    ReachExpand(m, p, &r);
-    for (int a = 0; a < r.n; a++)
-      m->added->exchange[p].change -= r.S[a] * sum[r.node[a]] / m->V[r.node[a]];
-  }
+/* [n_local] of a vector over the owned nodes, ghosts included. */
+static PetscErrorCode Nodal(Model *m, Vec X, double *x)
+{
+  const double *owned;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(X, &owned));
+  PetscCall(PetscArraycpy(x, owned, m->map.n_owned));
+  PetscCall(VecRestoreArrayRead(X, &owned));
+  PetscCall(NodeMapBroadcast(&m->map, x, 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MassMult(Mat A, Vec X, Vec Y)
+{
+  Model  *m;
+  double *x, *sum, *y;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &m));
+  PetscCall(PetscMalloc2(m->map.n_local, &x, m->map.n_local, &sum));
+  PetscCall(Nodal(m, X, x));
+  PetscCall(Moments(m, x, sum));
+  PetscCall(VecGetArrayWrite(Y, &y));
+  PetscCall(PetscArraycpy(y, sum, m->map.n_owned));
+  PetscCall(VecRestoreArrayWrite(Y, &y));
+  PetscCall(PetscFree2(x, sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The lumped matrix, which preconditions. */
+static PetscErrorCode MassDiagonal(Mat A, Vec D)
+{
+  Model  *m;
+  double *d;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(A, &m));
+  PetscCall(VecGetArrayWrite(D, &d));
+  PetscCall(PetscArraycpy(d, m->V, m->map.n_owned));
+  PetscCall(VecRestoreArrayWrite(D, &d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The nodal field of (354): [n_local], in place of the moments of y. */
+static PetscErrorCode Project(Model *m, double *x)
+{
+  const PetscInt n = m->map.n_owned, N = m->map.n_global;
+  Mat            A;
+  Vec            X, B;
+  KSP            ksp;
+  PC             pc;
+  double        *b;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateShell(m->grid.comm, n, n, N, N, m, &A));
+  PetscCall(MatShellSetOperation(A, MATOP_MULT, (void (*)(void))MassMult));
+  PetscCall(MatShellSetOperation(A, MATOP_GET_DIAGONAL, (void (*)(void))MassDiagonal));
+  PetscCall(MatSetOption(A, MAT_SPD, PETSC_TRUE));
+  PetscCall(MatCreateVecs(A, &X, &B));
+  PetscCall(VecGetArrayWrite(B, &b));
+  PetscCall(PetscArraycpy(b, x, n));
+  PetscCall(VecRestoreArrayWrite(B, &b));
+  PetscCall(KSPCreate(m->grid.comm, &ksp));
+  PetscCall(KSPSetType(ksp, KSPCG));
+  PetscCall(KSPSetOperators(ksp, A, A));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCJACOBI));
+  PetscCall(KSPSetTolerances(ksp, HIDDEN, PETSC_DEFAULT, PETSC_DEFAULT, MOST_ITERATIONS));
+  PetscCall(KSPSolve(ksp, B, X));
+  PetscCall(Nodal(m, X, x));
+  PetscCall(KSPDestroy(&ksp));
+  PetscCall(VecDestroy(&X));
+  PetscCall(VecDestroy(&B));
+  PetscCall(MatDestroy(&A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ExchangeBuild(Model *m)
 {
-  double *sum;
+  double *x;
 
   PetscFunctionBeginUser;
   if (!SceneExchanges(m->c)) /* a rank without particles has no list, but is asked for sums */
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < m->P.n; p++)
     m->added->exchange[p].change = Exchanged(m, p);
-  PetscCall(PetscMalloc1(m->map.n_local, &sum));
-  for (int k = 0; k < PASSES; k++)
-    PetscCall(Hide(m, sum));
-  PetscCall(PetscFree(sum));
+  PetscCall(PetscMalloc1(m->map.n_local, &x));
+  PetscCall(Moments(m, NULL, x));
+  PetscCall(Project(m, x));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Reach r;
+
+    ReachExpand(m, p, &r);
+    m->added->exchange[p].change -= Seen(&r, x);
+  }
+  PetscCall(PetscFree(x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
