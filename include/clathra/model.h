@@ -134,6 +134,7 @@ typedef struct {
   double  *plate_K;             /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
+  double   keeps;               /* share of their motion against the nodes that particles keep (357), dimensionless */
 
   Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (265), (293) */
   Solver    *solver;  /* of the stages */

@@ -237,6 +237,12 @@ PetscErrorCode StepperAutoBegin(Stepper *s);
 PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool last, bool *yes);
 /* After every step: goes over to the other integrator where that pays. */
 PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok);
+/* auto, after an attempt of length dt (s) that Newton's method solved: a step over a slide is refused, a->status
+   CL_TOO_FAR (356).  Collective. */
+PetscErrorCode StepperCheckEquilibrium(Stepper *s, double dt, Attempt *a);
+/* Share of their motion against the nodes that particles keep over an implicit step of length dt (s) (357). Collective.
+ */
+PetscErrorCode StepperKeeps(Stepper *s, double dt, double *keeps);
 
 /* Shared by the schemes. */
 /* The next time (s) that a step must hit: a kink of a schedule, an event, the end. */

@@ -272,11 +272,11 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
 }
 
 /* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). Without inertia
-   velocities have no memory: those of the nodes (355). */
+   velocities have no memory: those of the nodes (355); between the two (357). */
 static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r)
 {
   const FieldSet *fs   = &m->c->fields;
-  const double    from = fs->inertia ? 1.0 : 0.0;
+  const double    from = fs->inertia ? m->keeps : 0.0;
 
   for (int q = F_VSX; q < F_PW; q++) {
     if (fs->at[q] < 0)

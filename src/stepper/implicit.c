@@ -205,6 +205,7 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
   const StepInfo info = {.dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts, .rules = a->rules};
 
   PetscFunctionBeginUser;
+  PetscCall(StepperKeeps(s, dt, &s->model->keeps));
   PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates));
   z->step++;
   z->t += dt;
@@ -291,6 +292,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     PetscCall(s->scheme->step(s, dt, &a));
     s->auto_.newton += a.newton;
     s->auto_.dt = dt;
+    if (a.status == CL_OK)
+      PetscCall(StepperCheckEquilibrium(s, dt, &a));
     if (a.status == CL_OK && s->adaptive)
       Judge(s, dt, dt_inaccurate, err_inaccurate, &a);
     if (a.status == CL_OK) {

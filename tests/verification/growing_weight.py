@@ -1,0 +1,51 @@
+#!/usr/bin/python3
+"""stepper_type: auto on a cut whose weight grows over months (cases/growing_weight.yaml): implicit steps of days, hybrid for the seconds of the slide, implicit
+steps of days again to the end.  sdirk2 alone steps over the slide; ground that holds never leaves sdirk2; a change and restarts around it leave everything as it was."""
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
+import _files  # noqa: E402
+from common import Run, check, check_true, finish, scratch  # noqa: E402
+
+CASE = Path(__file__).parent / "cases" / "growing_weight.yaml"
+DAY, FIRM = 86400.0, ("-mat_soil_plasticity_cohesion_max", "3 kPa")
+
+
+def cut(kind, *options, **keywords):
+    return Run.of_case(CASE, "-quiet", "-stepper_type", kind, *options, **keywords)
+
+
+def changes(run):
+    return [(float(t), a, b) for t, a, b in re.findall(r"^t = (\S+) s: (\w+) -> (\w+):", run.output, re.M)]
+
+
+run, over = cut("auto"), cut("sdirk2")
+found, t, dt = changes(run), run.balance["time_s"], run.balance["dt_s"]
+check_true("implicit, hybrid for the slide, implicit again", [c[1:] for c in found] == [("sdirk2", "hybrid"), ("hybrid", "sdirk2")], str(found))
+first, second = (int(np.argmin(np.abs(t - c[0]))) + 1 for c in found)  # advances until each change
+check("steps before the slide", first, 100)
+check("steps after it, which last 50 days", t.size - second, 100)
+check_true("... and come to days again", dt[second:].max() > DAY, f"{dt[second:].max():.3g} s")
+check("the slide lasts (s)", t[second - 1] - t[first - 1], (1.0, 100.0))
+E_k = run.balance["kinetic_energy_J"]
+check_true("it is one: E_k during it and after it", E_k.max() > 100 and E_k[-1] < 1e-6 * E_k.max(), f"{E_k.max():.3g}, {E_k[-1]:.3g} J")
+check_true("sdirk2 alone steps over it", over.code == 0 and over.balance["dt_s"].min() > 60, f"{over.balance['dt_s'].min():.3g} s")
+held, alone = cut("auto", *FIRM), cut("sdirk2", *FIRM)
+names = [n for n in _files.different(held.out, alone.out, ("probes.csv", "balance.csv")) if n.startswith(("fields", "probes", "balance"))]
+check_true("ground that holds: sdirk2 bit for bit", not changes(held) and not names, ", ".join(names[:5]))
+
+for what, cut_at in {"at the change": first, "three steps after the change back": second + 3}.items():
+    out = scratch() / "out"
+    cut("auto", "-stepper_max_steps", cut_at, out=out)
+    cut("auto", "-restart", out / "checkpoint.h5", out=out)
+    names = _files.different(run.out, out)
+    check_true(f"cut {what}: the same bit for bit", not names, ", ".join(names[:5]))
+two = changes(cut("auto", "-stepper_max_steps", first + 1, ranks=2))
+check_true("2 ranks go over to hybrid at the same step", [c[1:] for c in two] == [("sdirk2", "hybrid")] and np.isclose(two[0][0], found[0][0], rtol=1e-6), str(two))
+mass = [np.sum(p["mass_solid"]) for _, p in run.snapshots()]
+check("mass", np.ptp(mass) / mass[0], 1e-14)
+finish()
