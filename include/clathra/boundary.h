@@ -113,6 +113,7 @@ static inline double FacePressure(const Face *f, int phase, const double in[IN_C
 typedef struct {
   double out[F_COUNT], D[F_COUNT][IN_COUNT];
   double outflow[PHASE_COUNT], heat_in;
+  double enthalpy;           /* (364): W that what flows out takes along */
   double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
 } FaceOutput;
 /* Sh: of its particle at t_n; velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */

@@ -57,6 +57,7 @@ typedef struct {
   double out[PHASE_COUNT];                      /* kg/s */
   double heat_in, heat_source, heat_rate;       /* W: through the boundary; latent and squeezed less advected; stored */
   double squeezed;                              /* W: of compression and throttling of the fluids (290) */
+  double enthalpy_out;                          /* W: with the fluids (364) */
   double left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg/s: in the mass rows, and what they exchange (277) */
   double meter[CL_METERS][METER_COUNT];
   double work[WORK_RATES]; /* W; zero without mechanics */
@@ -219,6 +220,7 @@ typedef struct {
   double gas;                            /* free gas, kg */
   double V;
   double capacity; /* J/K */
+  double enthalpy; /* J, (363); 0 without heat */
 } ModelTotals;
 /* Of the particles as they are.  Collective; the same on all ranks. */
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);

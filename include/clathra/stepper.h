@@ -28,11 +28,12 @@ typedef struct {
   double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source; /* J since t = 0 */
   double   squeezed;                        /* of the heat source: compression and throttling (290), J since t = 0 */
-  double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* (277), kg since t = 0 */
-  double   meter[CL_METERS][METER_COUNT];         /* (33): kg of water and gas, J, outwards since t = 0 */
-  double   work[WORK_COUNT];                      /* (90), J since t = 0 */
-  double   energy[ENERGY_COUNT];                  /* J, as the particles hold them now */
-  double   water0, methane0, capacity0;           /* totals at t = 0, kg, J/K */
+  double   enthalpy_out;                    /* with the fluids (364), J since t = 0 */
+  double   left[PHASE_COUNT], moved[PHASE_COUNT];  /* (277), kg since t = 0 */
+  double   meter[CL_METERS][METER_COUNT];          /* (33): kg of water and gas, J, outwards since t = 0 */
+  double   work[WORK_COUNT];                       /* (90), J since t = 0 */
+  double   energy[ENERGY_COUNT];                   /* J, as the particles hold them now */
+  double   water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
   double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
   double   scale_p, scale_T, scale_u; /* largest change of pressure or stress (Pa), temperature (K) and displacement (m)
                                          so far: what errors are   relative to */
@@ -66,7 +67,7 @@ typedef struct {
   double   loose;                                 /* ... when it is accepted above 1; else 0 */
   double   out[PHASE_COUNT];                      /* kg over the step */
   double   heat_gain, heat_in, heat_source;       /* J over the step */
-  double   squeezed;                              /* J over the step */
+  double   squeezed, enthalpy_out;                /* J over the step */
   double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg over the step (277) */
   double   meter[CL_METERS][METER_COUNT];         /* kg, J over the step */
   double   work[WORK_RATES];                      /* J over the step */

@@ -1,5 +1,6 @@
 /* The table of conditions; what a face adds to its nodes; Dirichlet values of nodes. */
 #include "terms.h"
+#include "clathra/point_heat.h"
 #include "clathra/shape.h"
 
 /* ---------------------------------------------------------------- faces */
@@ -19,6 +20,16 @@ static void Area(FaceState *x)
   x->area = hypot(x->s[0], x->s[1]);
   for (int k = 0; k < MOTION_COUNT; k++)
     x->darea[k] = (x->s[0] * x->ds[0][k] + x->s[1] * x->ds[1][k]) / x->area;
+}
+
+/* (364): of the temperature at the face, whichever way the fluids flow. */
+static double CarriedOut(const FaceState *x, const double outflow[PHASE_COUNT])
+{
+  double sum = 0.0;
+
+  for (int phase = 0; x->c->fields.heat && phase < PHASE_COUNT; phase++)
+    sum += SpecificHeat(x->mat, phase) * outflow[phase];
+  return sum * x->T;
 }
 
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
@@ -55,6 +66,7 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
     if (f->bc[kind] >= 0 && cl_condition[kind].face && (c->fields.has & cl_condition[kind].has))
       cl_condition[kind].face(&x, f->bc[kind], o);
   }
+  o->enthalpy = CarriedOut(&x, o->outflow);
 }
 
 /* ---------------------------------------------------------------- nodes */

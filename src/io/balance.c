@@ -27,6 +27,8 @@ void BalanceHeader(const Case *c, FILE *f)
              "hydrate_kg,heat_J,heat_in_J,heat_source_J,heat_error,kinetic_energy_J");
   if (c->scene.compression_heat)
     fprintf(f, ",compression_heat_J");
+  if (c->scene.fields.heat)
+    fprintf(f, ",enthalpy_J,enthalpy_out_J,enthalpy_error_J");
   for (size_t k = 0; c->scene.fields.solid && k < sizeof(column) / sizeof(*column); k++)
     fprintf(f, ",%s", column[k].name);
   fprintf(f, "%s\n", c->nstage ? ",stage" : "");
@@ -44,6 +46,14 @@ static void WriteEnergies(const Model *m, const StepperState *s, FILE *f)
 
   for (size_t k = 0; m->c->fields.solid && k < sizeof(column) / sizeof(*column); k++)
     fprintf(f, ",%.17g", from[column[k].source][column[k].place]);
+}
+
+/* (364) */
+static void WriteEnthalpy(const StepperState *s, double now, FILE *f)
+{
+  const double given = s->heat_in + s->squeezed + s->work[WORK_HEAT];
+
+  fprintf(f, ",%.17g,%.17g,%.17g", now, s->enthalpy_out, now - s->enthalpy0 + s->enthalpy_out - given);
 }
 
 static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, const StepInfo *info,
@@ -66,6 +76,8 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
   fprintf(f, ",%.17g", s->energy[ENERGY_KINETIC]);
   if (c->scene.compression_heat)
     fprintf(f, ",%.17g", s->squeezed);
+  if (c->scene.fields.heat)
+    WriteEnthalpy(s, now->enthalpy, f);
   WriteEnergies(m, s, f);
   if (c->nstage)
     fprintf(f, ",%" PetscInt_FMT, s->stage + 1);

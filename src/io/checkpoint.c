@@ -37,10 +37,11 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(since),        REAL(spent),
                                      REAL(work),         REAL(energy),
                                      REAL(squeezed),     REAL(left),
-                                     REAL(moved),        {NULL, 0, 0, false}};
-/* Fourteen integers, twenty-three reals, the meters, works and energies. */
+                                     REAL(moved),        REAL(enthalpy0),
+                                     REAL(enthalpy_out), {NULL, 0, 0, false}};
+/* Fourteen integers, twenty-five reals, the meters, works and energies. */
 _Static_assert(sizeof(StepperState) ==
-                   14 * sizeof(PetscInt) + (23 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
+                   14 * sizeof(PetscInt) + (25 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 typedef struct {

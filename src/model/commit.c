@@ -58,6 +58,7 @@ void ModelCountFace(const Scene *c, const Face *face, double weight, const FaceO
   for (int ph = 0; ph < PHASE_COUNT; ph++)
     rates->out[ph] += weight * o->outflow[ph];
   rates->heat_in += weight * o->heat_in;
+  rates->enthalpy_out += weight * o->enthalpy;
   for (PetscInt k = 0; k < c->nmeter; k++) {
     if (!(face->meters >> k & 1))
       continue;

@@ -116,9 +116,17 @@ double ModelKineticEnergy(const Particles *P, PetscInt p)
   return sum;
 }
 
+/* (363) */
+static double Enthalpy(const Material *mat, double capacity, double mh, double T)
+{
+  double slope;
+
+  return capacity * T - (mat->reacts ? mh * LatentHeatEvaluate(&mat->latent, 0.0, &slope) : 0.0);
+}
+
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
 {
-  double sum[7] = {0.0};
+  double sum[8] = {0.0};
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->P.n; p++) {
@@ -134,15 +142,20 @@ PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
     sum[3] += ms;
     sum[4] += m->P.f[P_V][p];
     sum[6] += mg;
-    sum[5] += HeatCapacity(mat, ms, mh, mw, mg);
+    const double capacity = HeatCapacity(mat, ms, mh, mw, mg);
+
+    sum[5] += capacity;
+    if (m->c->fields.heat)
+      sum[7] += Enthalpy(mat, capacity, mh, m->P.f[P_T][p]);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   *t = (ModelTotals){.water    = sum[0],
                      .methane  = sum[1],
                      .hydrate  = sum[2],
                      .solid    = sum[3],
                      .gas      = sum[6],
                      .V        = sum[4],
-                     .capacity = sum[5]};
+                     .capacity = sum[5],
+                     .enthalpy = sum[7]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -64,6 +64,7 @@ void StepperCount(const Scene *c, const StageRates *rates, double weight, Attemp
   a->heat_in += weight * rates->heat_in;
   a->heat_source += weight * rates->heat_source;
   a->squeezed += weight * rates->squeezed;
+  a->enthalpy_out += weight * rates->enthalpy_out;
   for (PetscInt k = 0; k < c->nmeter; k++) {
     for (int q = 0; q < METER_COUNT; q++)
       a->meter[k][q] += weight * rates->meter[k][q];
@@ -94,6 +95,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
   z->heat_in += a->heat_in;
   z->heat_source += a->heat_source;
   z->squeezed += a->squeezed;
+  z->enthalpy_out += a->enthalpy_out;
   for (PetscInt k = 0; k < s->model->c->nmeter; k++) {
     for (int q = 0; q < METER_COUNT; q++)
       z->meter[k][q] += a->meter[k][q];

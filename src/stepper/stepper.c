@@ -13,6 +13,7 @@ PetscErrorCode StepperStart(Stepper *s)
   s->state.water0    = t.water;
   s->state.methane0  = t.methane;
   s->state.capacity0 = t.capacity;
+  s->state.enthalpy0 = t.enthalpy;
   PetscCall(StepperEnergyStart(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,8 +2,12 @@
 """Enthalpy of a closed, insulated column, added up from masses and temperatures of its particles, while hydrate dissociates in one half and water
 and gas flow from it to the other: with Kirchhoff's law (130) H = sum m c (T - T_ref) - m_h L(T_ref) is a function of the state and stays.  The rows of
 heat in balance.csv, which sum what each step gave, are not asked.
+
+Of the same column, open at its cold end and heated at its warm one, balance.csv has (363) and (364).
 """
 from pathlib import Path
+
+import numpy as np
 
 from common import Run, check_true, finish, judge, table
 
@@ -37,4 +41,27 @@ for k, bar in enumerate((3e-4, 2e-4, 1.2e-4, 3e-4, 5e-5, 3e-5)):
 judge("fluids", "closed column: enthalpy lost on two ranks, apart from one", abs(rows[3][1] - rows[0][1]), 1e-9)
 check_true("falls with h", error[0] > error[1] > error[2], str(error[:3]))
 judge("fluids", "closed column with (235), whose heat depends on the way: lost, of the heat of reaction", error[6], (0.02, 0.1))
+
+
+OPEN = ("-boundaries", "out,warm", "-bc_out_type", "pressure", "-bc_out_side", "right", "-bc_out_pressure", "2.9 MPa", "-bc_out_saturation", "free",
+        "-bc_warm_type", "heat_flux", "-bc_warm_side", "left", "-bc_warm_flux", "2 kW/m^2", *SHORT)  # fmt: skip
+
+
+def opened(name, *options, ranks=1):
+    """What is missing in the open column, over what left with the fluids; the column of enthalpy against the particles."""
+    run = Run.of_case(CASE, "-quiet", *OPEN, *options, ranks=ranks)
+    b, last = run.balance, enthalpy(run.snapshots()[-1][1])
+    judge("fluids", f"open column, {name}: enthalpy_J against the particles", abs(b["enthalpy_J"][-1] / last - 1), 1e-9)
+    kept = b["enthalpy_J"] + b["enthalpy_out_J"] - b["heat_in_J"] - b["enthalpy_error_J"]
+    judge("fluids", f"open column, {name}: enthalpy_error_J is what is missing", np.ptp(kept) / abs(last), 1e-12)
+    return b["enthalpy_error_J"][-1] / b["enthalpy_out_J"][-1], b["enthalpy_out_J"][-1] / abs(last)
+
+
+HYBRID = ("-stepper_type", "hybrid", "-stepper_adapt", "yes")
+found = [(name, *opened(name, *options, ranks=ranks)) for name, ranks, options in (
+    ("10 cells", 1, ()), ("20 cells", 1, ("-grid_cells", "20,1")), ("2 ranks", 2, ()), ("hybrid", 1, HYBRID))]  # fmt: skip
+table(("open", "missing, of what left", "what left, of the enthalpy"), found)
+for name, missing, _ in found:
+    judge("fluids", f"open column, {name}: enthalpy of the state missing, of what left with the fluids", abs(missing), 0.01)
+judge("fluids", "open column: enthalpy missing on two ranks, apart from one", abs(found[2][1] - found[0][1]), 1e-6)
 finish()
