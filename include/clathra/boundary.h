@@ -20,12 +20,13 @@ typedef struct {
   double   N[CL_NODES];               /* weights, in the order of StencilExpand */
   double   Nr[CL_NODES];              /* (195): those of Darcy fluxes along x */
   double   Nm[PHASE_COUNT][CL_NODES]; /* (109): those in the rows of mass */
-  double   ring[2];           /* (197), (198): what is lost between face and body in a ring, in 2 pi k and kappa */
-  double   skin[PHASE_COUNT]; /* the same as a resistance to a fluid, Pa s/m^3 */
-  PetscInt bc[BC_FACES];      /* by kind: index into Case.bc, -1 = none */
-  double   moved[CL_DIM];     /* displacement since the start, m */
-  double   a0;                /* area at the start, m^2 */
-  double   K;                 /* stiffness of its plate's spring, N/m; see PlateStiffness */
+  double   ring[2];             /* (197), (198): what is lost between face and body in a ring, in 2 pi k and kappa */
+  double   skin[PHASE_COUNT];   /* the same as a resistance to a fluid, Pa s/m^3 */
+  bool     leaves[PHASE_COUNT]; /* has the fluid that crosses the body's density (365)? */
+  PetscInt bc[BC_FACES];        /* by kind: index into Case.bc, -1 = none */
+  double   moved[CL_DIM];       /* displacement since the start, m */
+  double   a0;                  /* area at the start, m^2 */
+  double   K;                   /* stiffness of its plate's spring, N/m; see PlateStiffness */
   bool     touches; /* its plate takes part in the last tangent: always, or where one that separates touches */
   unsigned meters;  /* bit k: Case.meter[k] counts it */
 } Face;
@@ -36,6 +37,12 @@ static inline double FaceWeight(const Face *f, int a, int q)
   if (q == F_PW || q == F_PG)
     return f->Nm[q - F_PW][a];
   return q == F_VWX || q == F_VGX ? f->Nr[a] : f->N[a];
+}
+
+/* (365): which way a fluid crosses the face by its Darcy flux J there, m/s. */
+static inline void FaceDirection(const Scene *c, Face *f, int phase, const double J[CL_DIM])
+{
+  f->leaves[phase] = c->stabilisation.outflow && J[0] * f->n[0] + J[1] * f->n[1] > 0.0;
 }
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */

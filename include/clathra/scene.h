@@ -58,9 +58,10 @@ typedef struct {
   double ghost_penalty;       /* g, 0 = off; default 0.1 */
   double ghost_storage;       /* g_s, 0 = off (default) */
   double pressure_projection; /* alpha, 0 = off; default 1 */
-  int    exchange;            /* EXCHANGE_... (353); default no */
+  int    exchange;            /* EXCHANGE_... (353); default auto */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
+  bool   outflow;             /* (365): what leaves has the body's density; default false */
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind;   /* (200); default false */
   bool   heat_upwind;         /* (293); default false */

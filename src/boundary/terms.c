@@ -47,27 +47,33 @@ typedef struct {
   double p[PHASE_COUNT], dpc[PHASE_COUNT], du[CL_DIM];
 } Outside;
 
-/* Open face: outflow rho J . a, and in the fluid's momentum what the pressure outside differs from the fluid's own
-   there, which is extrapolated from the particle.  A closed face adds nothing. */
+/* Open face: rho J . a with the density outside or, where (365) has it leave, the body's own, and in the fluid's
+   momentum what the pressure outside differs from the fluid's own there, which is extrapolated from the particle.  A
+   closed face adds nothing. */
 static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutput *o)
 {
   double        dp, dT;
   const Face   *f  = x->f;
   const double *in = x->in, *a = x->a, dt = x->dt;
   const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = J[0] * a[0] + J[1] * a[1], skin = f->skin[phase];
-  const double  p = outside->p[phase], jump = p + skin * Ja - FacePressure(f, phase, in),
-               rho = FluidDensity(x->mat, phase, p, in[IN_T], &dp, &dT);
-  double *D        = o->D[F_PW + phase];
+  const double  p = outside->p[phase], own = FacePressure(f, phase, in), jump = p + skin * Ja - own;
+  const bool    leaves = f->leaves[phase];
+  const double  rho    = FluidDensity(x->mat, phase, leaves ? own : p, in[IN_T], &dp, &dT);
+  const double  inside = leaves ? dp : 0.0, beyond = leaves ? 0.0 : dp; /* slopes by p of either side */
+  double       *D = o->D[F_PW + phase];
 
   o->out[F_PW + phase] += dt * rho * Ja;
   o->outflow[phase] += rho * Ja;
+  D[IN_P + phase] += dt * inside * Ja;
+  for (int j = 0; j < CL_DIM; j++)
+    D[VectorAt(IN_GP, phase, j)] += dt * inside * f->r[j] * Ja;
   D[IN_T] += dt * dT * Ja;
   for (int j = 0; j < CL_DIM; j++)
     D[VectorAt(IN_J, phase, j)] += dt * rho * a[j];
   for (int k = 0; k < MOTION_COUNT; k++)
     D[k] += dt * rho * (J[0] * x->da[0][k] + J[1] * x->da[1][k]);
   for (int d = 0; d < CL_DIM; d++)
-    D[IN_U + d] += dt * dp * outside->du[d] * Ja;
+    D[IN_U + d] += dt * beyond * outside->du[d] * Ja;
   for (int i = 0; i < CL_DIM; i++) {
     double *row = o->D[VectorAt(F_VWX, phase, i)];
 
@@ -85,7 +91,7 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
     const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
 
-    D[IN_P + k] += dt * dp * dpk * Ja;
+    D[IN_P + k] += dt * beyond * dpk * Ja;
     for (int i = 0; i < CL_DIM; i++)
       o->D[VectorAt(F_VWX, phase, i)][IN_P + k] += dpk * a[i];
   }

@@ -219,6 +219,8 @@ void FacesRates(Explicit *e, double dt, StageRates *rates)
     Reach(e, f, false, &r);
     Inputs(e, f, in);
     Fluxes(e, f, &r, in);
+    for (int ph = 0; ph < s.fluids; ph++)
+      FaceDirection(e->m->c, f, ph, &in[VectorAt(IN_J, ph, 0)]);
     Evaluate(e, f, in, dt, &o);
     for (int a = 0; a < r.n; a++) {
       double *row = &e->R[r.node[a] * width];

@@ -358,6 +358,26 @@ static void InflowFace(const Model *m, Face *f)
   FaceInflow(f, r.n, r.S, q.kr);
 }
 
+/* (365): by the flux at t_n. */
+static void FaceDirections(const Model *m, Face *f)
+{
+  Reach r;
+
+  ReachExpand(m, f->particle, &r);
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    double sum[CL_DIM] = {0.0}, J[CL_DIM];
+
+    if (!m->c->fields.phase[k])
+      continue;
+    for (int a = 0; a < r.n; a++) {
+      DarcyFlux(m, r.node[a], k, &m->x_n[r.node[a] * m->c->fields.n], J);
+      for (int d = 0; d < CL_DIM; d++)
+        sum[d] += FaceWeight(f, a, VectorAt(F_VWX, k, d)) * FaceShare(m, f->particle, r.node[a], k) * J[d];
+    }
+    FaceDirection(m->c, f, k, sum);
+  }
+}
+
 #define TILE 16 /* nodes along x whose rows of J2 stay in the cache */
 
 /* Particles by their first node, tile by tile. */
@@ -412,6 +432,8 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     for (PetscInt k = 0; k < m->nface; k++) {
       RadialFace(m, &m->face[k]);
       InflowFace(m, &m->face[k]);
+      if (m->c->stabilisation.outflow)
+        FaceDirections(m, &m->face[k]);
     }
     for (PetscInt k = 0; m->plates && k < m->nface; k++) {
       if (m->face[k].bc[BC_PLATE] >= 0)

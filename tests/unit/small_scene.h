@@ -74,6 +74,7 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
                 .scene.stabilisation.ghost_penalty       = 0.1,
                 .scene.stabilisation.ghost_storage       = 0.2,
                 .scene.stabilisation.pressure_projection = 1.0,
+                .scene.stabilisation.outflow             = true,
                 .scene.stabilisation.flux_interpolation  = true};
   Check(FieldSetMake(has, inertia, one_pressure, &s->c.scene.fields));
   s->mat                 = SedimentMaterial();

@@ -118,6 +118,9 @@ def sudden():
         x, p = (file["particles"][k][()] for k in ("position", "p_w"))
     inner, last = (p.ravel()[(x[:, 0] > low) & (x[:, 0] < low + CELL)].max() for low in (0.16, 0.18))
     check_true("... where p overshoots: more at the outlet than a cell from it", last > 1.5 * inner, f"{last:.3g} Pa, {inner:.3g} Pa")
+    done = ends("outlet to 0.5 MPa at once, what leaves as dense as the body", attempt([*scene(), *UNTIL(100.0), *fall, "0.5 MPa", "-stabilisation_outflow", "yes"]))
+    p = read_snapshots(done.folder)[-1][1]["p"]
+    check_true("... p at the end between the outlet and a quarter of what there was", 0.5e6 <= p.min() and p.max() < 1.75e6, f"{p.min():.4g} to {p.max():.4g} Pa")
     options = scene()
     at = options.index("-bc_outlet_pressure")
     del options[at : at + 2]
