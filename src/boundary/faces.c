@@ -141,6 +141,7 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil 
   Weights(c, g, P, stencil, half, f);
   Ring(c, g, P, f);
   f->skin[PHASE_W] = f->skin[PHASE_G] = 0.0;
+  f->leaves[PHASE_W] = f->leaves[PHASE_G] = false;
 }
 
 #define MOBILE 1e-3 /* k_r from which on what is let in can flow on */
