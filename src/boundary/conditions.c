@@ -50,6 +50,11 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
                  .s     = {f->s[0], f->s[1]}};
 
   *o = (FaceOutput){0};
+  if (f->share > 0.0) {
+    FaceWell(&x, f->bc[BC_WELL], o);
+    o->enthalpy = CarriedOut(&x, o->outflow);
+    return;
+  }
   if (f->n[0] == 0.0 && f->n[1] == 0.0)
     return; /* on the axis */
   if (c->fields.solid) {
