@@ -39,7 +39,7 @@ static inline double FaceWeight(const Face *f, int a, int q)
 {
   if (q == F_PW || q == F_PG)
     return f->Nm[q - F_PW][a];
-  return q == F_VWX || q == F_VGX ? f->Nr[a] : f->N[a];
+  return q == F_VW || q == F_VG ? f->Nr[a] : f->N[a];
 }
 
 /* (365): which way a fluid crosses the face by its Darcy flux J there, m/s. */

@@ -79,9 +79,9 @@ static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const
 static void Weights(const Scene *c, const Grid *g, const Particles *P, const Stencil *st, const double half[CL_DIM],
                     Face *f)
 {
-  const Axis *x = &st->axis[0], *y = &st->axis[1];
-  double      w[CL_DIM][3];
-  int         n = 0;
+  double    w[CL_DIM][3];
+  int       at[CL_NODES][CL_DIM];
+  const int n = StencilNodes(st, at);
 
   for (int d = 0; d < CL_DIM; d++) {
     Axis a = st->axis[d];
@@ -89,19 +89,16 @@ static void Weights(const Scene *c, const Grid *g, const Particles *P, const Ste
     if (c->basis != BASIS_LINEAR)
       AxisWeights(c, g, P, f, d, half[d], &a);
     for (int k = 0; k < 3; k++) {
-      const PetscInt at = st->axis[d].base + k - a.base;
+      const PetscInt i = st->axis[d].base + k - a.base;
 
-      w[d][k] = at >= 0 && at < 3 ? a.S[at] : 0.0;
+      w[d][k] = i >= 0 && i < 3 ? a.S[i] : 0.0;
     }
   }
-  for (int b = 0; b < 3; b++) {
-    for (int a = 0; a < 3; a++) {
-      if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0)) {
-        f->N[n] = f->Nr[n] = w[0][a] * w[1][b];
-        f->Nm[PHASE_W][n] = f->Nm[PHASE_G][n] = f->N[n];
-        n++;
-      }
-    }
+  for (int a = 0; a < n; a++) {
+    f->N[a] = 1.0;
+    for (int d = 0; d < CL_DIM; d++)
+      f->N[a] *= w[d][at[a][d]];
+    f->Nr[a] = f->Nm[PHASE_W][a] = f->Nm[PHASE_G][a] = f->N[a];
   }
 }
 

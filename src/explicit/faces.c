@@ -150,14 +150,14 @@ void FacesForces(Explicit *e, double dt)
     Evaluate(e, f, in, dt, &o);
     const double conduct = Conductance(e, s, f->particle);
     for (int d = 0; s.solid && d < CL_DIM; d++)
-      e->pull[k][d] = -o.out[F_VSX + d];
+      e->pull[k][d] = -o.out[F_VS + d];
     if (f->bc[BC_PLATE] >= 0)
       PlatesDeposit(e, f, r.n, r.node);
     for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
       const double p = FacePressure(f, ph, in);
 
       for (int d = 0; d < CL_DIM; d++)
-        force[ph][d] = -o.out[VectorAt(F_VWX, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
+        force[ph][d] = -o.out[VectorAt(F_VW, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
     }
     for (int ph = 0; s.beds && ph < s.fluids; ph++) {
       const Beds A = BedsAt(e, f->particle);

@@ -419,11 +419,11 @@ static void DragOfTheSea(void **state)
   s.face.n[0] = 0.0; /* Evaluate moves the face by (0.02, -0.01) m/s */
   s.face.n[1] = -3.0;
   Evaluate(&s, in, &o);
-  assert_true(o.out[F_VSX] == 0.0);
-  assert_true(fabs(o.out[F_VSY] / (0.5 * s.c.ambient_density * s.c.ambient_drag * 1e-4 * -3.0) - 1.0) < 1e-14);
+  assert_true(o.out[F_VS] == 0.0);
+  assert_true(fabs(o.out[F_VS + 1] / (0.5 * s.c.ambient_density * s.c.ambient_drag * 1e-4 * -3.0) - 1.0) < 1e-14);
   s.face.n[1] = 3.0;
   Evaluate(&s, in, &o);
-  assert_true(o.out[F_VSX] == 0.0 && o.out[F_VSY] == 0.0);
+  assert_true(o.out[F_VS] == 0.0 && o.out[F_VS + 1] == 0.0);
 }
 
 /* (31): whatever p_c is, the mean outside is the prescribed one; free takes the particle's p_c, held the initial one.
@@ -443,7 +443,7 @@ static void MeanPressure(void **state)
       memset(in, 0, MOTION_COUNT * sizeof(*in)); /* a = n */
       Evaluate(&s, in, &o);
       for (int ph = 0; ph < PHASE_COUNT; ph++)
-        p[ph] = o.out[F_VWX + 2 * ph] / s.face.n[0] -
+        p[ph] = o.out[F_VW + 2 * ph] / s.face.n[0] -
                 s.face.skin[ph] * (in[IN_J + 2 * ph] * s.face.n[0] + in[IN_J + 2 * ph + 1] * s.face.n[1]) +
                 in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
                 in[IN_GP + 2 * ph + 1] * s.face.r[1]; /* the row has what it differs from the body's own */
@@ -516,10 +516,10 @@ static void PlateForces(void **state)
 
       lifted += off;
       assert_true(fabs(o.plate[PLATE_FORCE] - (off ? 0.0 : gap)) <= 1e-6);
-      assert_true(fabs(o.out[F_VSX + d] - (off ? 0.0 : along)) <= 1e-6);
-      assert_true(fabs(o.out[F_VSY - d] - (kind == 1 ? s.face.K * (s.face.moved[1 - d] + in[IN_U + 1 - d]) : 0.0)) <=
+      assert_true(fabs(o.out[F_VS + d] - (off ? 0.0 : along)) <= 1e-6);
+      assert_true(fabs(o.out[F_VS + 1 - d] - (kind == 1 ? s.face.K * (s.face.moved[1 - d] + in[IN_U + 1 - d]) : 0.0)) <=
                   1e-6);
-      assert_true(o.plate[PLATE_SHEAR] == -o.out[F_VSY - d]);
+      assert_true(o.plate[PLATE_SHEAR] == -o.out[F_VS + 1 - d]);
       assert_true(fabs(o.plate[PLATE_AREA] - (off ? 0.0 : (d == 0 ? 1.0 : -1.0) * (1.0 + in[IN_GRADU + 4]) * cof)) <=
                   1e-12);
     }
@@ -575,8 +575,8 @@ static void Share(void **state)
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       assert_true(fabs(part.outflow[ph] - 0.7 * whole.outflow[ph]) <= 1e-14 * fabs(whole.outflow[ph]));
     assert_true(fabs(part.heat_in - 0.7 * whole.heat_in) <= 1e-14 * fabs(whole.heat_in));
-    assert_true(part.out[F_VSX] == whole.out[F_VSX] && part.out[F_VSX + 1] == whole.out[F_VSX + 1] &&
-                whole.out[F_VSX] != 0.0);
+    assert_true(part.out[F_VS] == whole.out[F_VS] && part.out[F_VS + 1] == whole.out[F_VS + 1] &&
+                whole.out[F_VS] != 0.0);
   }
 }
 
