@@ -301,7 +301,7 @@ static inline double *UpstreamAt(const Model *m, PetscInt I, int f)
 static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
   if (!m->c->stabilisation.upstream)
-    return S * LayerWeight(m, p, I);
+    return Donated(m, f) ? S : S * LayerWeight(m, p, I);
   const double *u = UpstreamAt(m, I, f);
 
   return u[UP_FACTOR] > 0.0 ? S * u[UP_FACTOR] * fmax(Upstream(m, p, I, u), 0.0) : S;

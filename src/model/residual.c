@@ -6,10 +6,10 @@ typedef struct {
   double S[TAKE_GRAD], G[CL_DIM][TAKE_COUNT - TAKE_GRAD];
 } Shares;
 
-/* (35) is no share of the particle's own. */
-static bool LayerRoot(const Model *m)
+/* (35) and (359) are no shares of the particle's own. */
+static bool LayerRoot(const Model *m, int f)
 {
-  return !m->c->stabilisation.upstream;
+  return !m->c->stabilisation.upstream && !Donated(m, f);
 }
 
 static void SharesOf(const Model *m, PetscInt p, const double out[OUT_COUNT], Shares *s)
@@ -30,7 +30,7 @@ static void SharesOf(const Model *m, PetscInt p, const double out[OUT_COUNT], Sh
       continue;
     s->S[TAKE_M + 1 + f] = out[OUT_M + 1 + f];
     s->S[TAKE_DM + f]    = out[OUT_DM + f];
-    s->S[TAKE_ROOT + f]  = m->fluid && LayerRoot(m) ? c * m->P.f[P_V][p] * out[OUT_ROOT + f] : 0.0;
+    s->S[TAKE_ROOT + f]  = m->fluid && LayerRoot(m, f) ? c * m->P.f[P_V][p] * out[OUT_ROOT + f] : 0.0;
     of[FLUID_MI]         = c * out[OUT_MI + f];
     of[FLUID_MI2]        = c * of[FLUID_MI];
     of[FLUID_D]          = c * out[OUT_D + f];
@@ -83,7 +83,7 @@ static void ScatterFluid(Model *m, PetscInt p, const Reach *r, int f, const doub
     const PetscInt I    = r->node[a];
     double        *node = &m->take[TAKE_COUNT * I];
 
-    if (m->fluid && !LayerRoot(m))
+    if (m->fluid && !LayerRoot(m, f))
       node[TAKE_ROOT + f] += MobilityWeight(m, p, I, f, r->S[a]) * m->P.f[P_V][p] * out[OUT_ROOT + f];
     if (!Donated(m, f))
       continue;
@@ -130,7 +130,7 @@ static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f] && m->beds)
       ScatterBeds(m, p, r, x, f, out);
-    if (fs->phase[f] && (Donated(m, f) || !LayerRoot(m)))
+    if (fs->phase[f] && !LayerRoot(m, f))
       ScatterFluid(m, p, r, f, out, &s);
   }
   const Lanes *S = (const Lanes *)s.S;
@@ -176,7 +176,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
     row[i] += share * (share * of[FLUID_MI2] * rate[i] - of[FLUID_MI] * m->bc.gravity[i] + of[FLUID_G + i]);
   if (at) {
     at->D += share * of[FLUID_D];
-    at->root += (LayerRoot(m) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
+    at->root += (LayerRoot(m, ph) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);

@@ -213,7 +213,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
       c[NC_RHO + k] += VS * q->rho[k];
       c[NC_STORAGE + k] += VS * q->storage[k];
       c[NC_DRAG + k] += VSk * q->resist[k];
-      c[NC_KR + k] += VSk * sqrt(q->kr[k]);
+      c[NC_KR + k] += (Donated(m, k) ? VS : VSk) * sqrt(q->kr[k]);
     }
   }
 }
@@ -239,7 +239,7 @@ static void Average(Model *m, const double *sum)
       c[k] /= V;
     for (int k = 0; k < PHASE_COUNT; k++) { /* (350), (108) */
       c[NC_DRAG + k] *= m->flow[I];
-      c[NC_KR + k] = PetscSqr(c[NC_KR + k] * m->flow[I]);
+      c[NC_KR + k] = PetscSqr(c[NC_KR + k] * (Donated(m, k) ? 1.0 : m->flow[I]));
     }
   }
 }

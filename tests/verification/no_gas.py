@@ -182,7 +182,31 @@ def seal():
     check("... two ranks, p_g, largest difference (Pa)", np.max(np.abs(one - two)), 1.0)
 
 
+def clay():
+    """Drained sand between clays without gas: gas that sand has does not carry off, over its share of a node in the clay (359), what the clay's water holds."""
+    case, early, end = CASES / "no_gas_clay.yaml", 0.3 * 86400, 30 * 86400
+    run = Run.of_case(case)
+    two = Run.of_case(case, "-time_end", "0.3 d", "-output_times", "0.3 d", ranks=2).snapshot(early)
+    first, v = run.snapshots()[0][1], run.snapshot(early)
+    rows = {}
+    for t in (early, end):
+        v = run.snapshot(t)
+        y = first["position"][:, 1]
+        inside = (y < 3) | (y > 10)  # a cell and more from the sand
+        settled = np.max(np.abs(v["displacement"][:, 1]))
+        kept = (v["mass_gas"][inside] / v["mass_water"][inside] / (first["mass_gas"][inside] / first["mass_water"][inside]))[:, 0]
+        rows[t] = (t / 86400, settled, kept.min(), kept.max(), (v["p_g"] - v["p_w"])[inside, 0].min() / 1e3)
+    print("\ndrained sand between clays without gas")
+    table(("days", "settlement (m)", "methane of the clay's water, least", "most", "p_c, least (kPa)"), list(rows.values()))
+    judge("gas", "drained sand between clays without gas: methane in the clay's water a cell away after 7 hours, least, over that at the start", rows[early][2], (0.97, 1.03))
+    judge("gas", "... steps of 30 days", float(len(run.balance["time_s"])), 200.0)
+    check("... p_c there, least (kPa)", rows[early][4], (-100.0, 100.0))
+    check("... methane", np.max(np.abs(run.balance["methane_error"])), 1e-12)
+    check("... two ranks, p_g, largest difference (Pa)", np.max(np.abs(np.sort(two["p_g"], 0) - np.sort(run.snapshot(early)["p_g"], 0))), 1e3)
+
+
 if __name__ == "__main__":
+    clay()
     inflow()
     seal()
     appears()
