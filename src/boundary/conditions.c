@@ -48,6 +48,11 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
     x.s[d] = f->s[d];
   }
   *o = (FaceOutput){0};
+  if (f->share > 0.0) {
+    FaceWell(&x, f->bc[BC_WELL], o);
+    o->enthalpy = CarriedOut(&x, o->outflow);
+    return;
+  }
   if (VectorDot(f->n, f->n) == 0.0)
     return; /* on the axis */
   if (c->fields.solid) {

@@ -365,6 +365,16 @@ static void InflowFace(const Model *m, Face *f)
   FaceInflow(f, r.n, r.S, q.kr);
 }
 
+/* (367): k_a/mu and k_r of t_n. */
+static void WellFace(const Model *m, Face *f)
+{
+  PointProperties q;
+  const char     *why;
+
+  if (f->share > 0.0 && ModelParticleProperties(m, f->particle, &q, &why) == CL_OK)
+    WellProperties(&q, f);
+}
+
 /* (365): by the flux at t_n. */
 static void FaceDirections(const Model *m, Face *f)
 {
@@ -442,6 +452,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     for (PetscInt k = 0; k < m->nface; k++) {
       RadialFace(m, &m->face[k]);
       InflowFace(m, &m->face[k]);
+      WellFace(m, &m->face[k]);
       if (m->c->stabilisation.outflow)
         FaceDirections(m, &m->face[k]);
     }
