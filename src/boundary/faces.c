@@ -115,6 +115,25 @@ static void Ring(const Scene *c, const Grid *g, const Particles *P, Face *f)
   f->ring[1] = hole && f->bc[BC_FACE_TEMPERATURE] >= 0 ? FaceRing(c, g, f->x[0], l, FACE_PENALTY) : 0.0;
 }
 
+/* Mean pore pressure at the face as the particle's own values and gradients have it, Pa. */
+static double FacePore(const Scene *c, const Particles *P, const Face *f)
+{
+  const PetscInt p = f->particle;
+  double         pore;
+
+  if (!c->fields.phase[PHASE_W])
+    return 0.0;
+  const double sg = P->f[P_SW] ? 1.0 - P->f[P_SW][p] / (1.0 - P->f[P_SH][p]) : 0.0;
+
+  pore = ParticlePressure(P, p);
+  for (int d = 0; d < CL_DIM; d++) {
+    const double gw = P->f[P_GW + d][p], gg = P->f[P_GG] ? P->f[P_GG + d][p] : gw;
+
+    pore += ((1.0 - sg) * gw + sg * gg) * (f->x[d] - P->f[P_X + d][p]);
+  }
+  return pore;
+}
+
 void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
 {
   const PetscInt p    = f->particle;
@@ -141,6 +160,7 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil 
   Weights(c, g, P, stencil, half, f);
   Ring(c, g, P, f);
   f->skin[PHASE_W] = f->skin[PHASE_G] = 0.0;
+  f->pore                             = FacePore(c, P, f);
   f->leaves[PHASE_W] = f->leaves[PHASE_G] = false;
 }
 
