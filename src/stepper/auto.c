@@ -266,6 +266,7 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
 
 PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool last, bool *yes)
 {
+  const bool slide = status == CL_TOO_FAR; /* steps will not grow again before it rests */
   StableStep limit;
   double     implicit, hybrid;
 
@@ -275,8 +276,8 @@ PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool 
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepperHybridLimit(s, &limit));
   PetscCall(CostHybrid(s, &limit, &hybrid));
-  PetscCall(CostImplicit(s, 2.0 * STEPPER_NEWTON, dt, &implicit));
-  *yes = isfinite(hybrid) && (last || implicit > MARGIN * hybrid);
+  PetscCall(CostImplicit(s, 2.0 * STEPPER_NEWTON, slide ? s->state.dt : dt, &implicit));
+  *yes = isfinite(hybrid) && (last || implicit > (slide ? 1.0 : MARGIN) * hybrid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
