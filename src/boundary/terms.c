@@ -172,8 +172,7 @@ static bool Gives(const FaceState *x, PetscInt k, int phase)
 {
   double gradient[CL_DIM];
 
-  return phase == PHASE_W || !isinf(x->v->value[k]) ||
-         x->f->pore > AmbientPressure(&x->v->ambient, x->f->x, gradient);
+  return phase == PHASE_W || !isinf(x->v->value[k]) || x->f->pore > AmbientPressure(&x->v->ambient, x->f->x, gradient);
 }
 
 void FacePressures(const FaceState *x, PetscInt k, FaceOutput *o)

@@ -571,12 +571,11 @@ static void Share(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Tangents),         cmocka_unit_test(MeanPressure),
-                                     cmocka_unit_test(FaceTemperature),  cmocka_unit_test(DragOfTheSea),
-                                     cmocka_unit_test(PlateForces),      cmocka_unit_test(MassRows),
-                                     cmocka_unit_test(TrueArea),         cmocka_unit_test(Convection),
-                                     cmocka_unit_test(DensityOfOutflow),
-                                     cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(Tangents),        cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
+      cmocka_unit_test(DragOfTheSea),    cmocka_unit_test(PlateForces),  cmocka_unit_test(MassRows),
+      cmocka_unit_test(TrueArea),        cmocka_unit_test(Convection),   cmocka_unit_test(DensityOfOutflow),
+      cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
