@@ -62,6 +62,7 @@ SECTION = {  # beside that table
     "settling": "Exchange within cells: its rate; sand that is drained under clay, whose border settles into the cells",
     "fronts": "Sharp fronts: heat behind an inlet, saturations beside a pressure, hydrate ahead of a heater",
     "wells": "Wells about an axis against Thiem, in cells up to twenty times their radius",
+    "plane_wells": "A well in the plane against Thiem and Theis, anywhere in its cell",
     "graded": "Cells that differ: patch tests, rest, free fall, Terzaghi with fine cells at the drain, a well of 0.1 m in 100 m",
     "energy": "Mechanical energy: what is left of its balance",
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",

@@ -4,7 +4,7 @@
 #include "clathra/scene.h"
 #include "clathra/grid.h"
 
-#define CL_NODES 9 /* nodes a particle can reach: 3 per axis */
+enum { CL_NODES = CL_DIM == 2 ? 9 : 27 }; /* nodes a particle can reach: 3 per axis */
 
 /* Of a cell: a domain edge so close to a grid line lies on it; a thinner sliver drowns in round-off. */
 #define BASIS_SNAP 1e-6
@@ -110,6 +110,9 @@ double AxisCentroid(const Axis *a, const GridLines *line);
    about an axis only). */
 double CellGradient(const double h[CL_DIM], bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
 
+/* Those nodes of a stencil that carry a weight or a gradient, x running fastest: how far each is from the first one
+   along each axis, 0 to 2; returns how many. */
+int StencilNodes(const Stencil *s, int k[CL_NODES][CL_DIM]);
 /* Local active numbers of the nodes, their weights S and gradients G (1/m), and about an axis (r > 0) H (1/m), the
    weights of u_r/r; returns how many (nodes of zero weight and gradient are left out). */
 int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt node[CL_NODES], double S[CL_NODES],

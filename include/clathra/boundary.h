@@ -30,6 +30,9 @@ typedef struct {
   double   K;                   /* stiffness of its plate's spring, N/m; see PlateStiffness */
   bool     touches; /* its plate takes part in the last tangent: always, or where one that separates touches */
   unsigned meters;  /* bit k: Case.meter[k] counts it */
+  double   share;   /* of a well: omega_p (366); such a face is a particle inside the body and has no area */
+  double   draws;   /* C sqrt(r) omega_p of (367), dimensionless */
+  double   conducts[PHASE_COUNT], kr[PHASE_COUNT]; /* k_a/mu (m^2/(Pa s)) and k_r at t_n */
 } Face;
 
 /* Weight of a node in what a face adds to row q, and takes from its Darcy fluxes; dimensionless. */
@@ -37,7 +40,7 @@ static inline double FaceWeight(const Face *f, int a, int q)
 {
   if (q == F_PW || q == F_PG)
     return f->Nm[q - F_PW][a];
-  return q == F_VWX || q == F_VGX ? f->Nr[a] : f->N[a];
+  return q == F_VW || q == F_VG ? f->Nr[a] : f->N[a];
 }
 
 /* (365): which way a fluid crosses the face by its Darcy flux J there, m/s. */
@@ -56,6 +59,21 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil 
 /* (109): weights of an inflow of fluids that cannot move yet.  S: n weights of the face's particle (-), in the order of
    StencilExpand; kr: its relative permeabilities at t_n (-). */
 void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT]);
+
+/* The place of a well in the plane, in cells of the grid; on each axis its particles tile from `first` on with `width`,
+   and its weights sum up to `sum`. */
+typedef struct {
+  GridLines line[CL_DIM];
+  double    place[CL_DIM], first[CL_DIM], width[CL_DIM], sum[CL_DIM];
+} Well;
+/* Of condition b; false if no region has particles there. */
+bool WellPlace(const Scene *c, const Bc *b, Well *w);
+/* (366): of a particle at x0 (m) with half-lengths l (m), all at the start; dimensionless. */
+double WellShare(const Well *w, const double x0[CL_DIM], const double l[CL_DIM]);
+/* C of (369), dimensionless; 0 if there is none: the well is too wide for its cells. */
+double WellIndex(const Scene *c, const Bc *b, const Well *w);
+/* What a face of a well has of its particle's properties at t_n. */
+void WellProperties(const PointProperties *q, Face *f);
 
 #define FACE_PENALTY 20.0 /* gamma of (199) */
 
@@ -91,7 +109,7 @@ PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *
 /* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
    start, which its owner fills in where the force is prescribed. */
 typedef struct {
-  double *value, *shear, *phase[PHASE_COUNT]; /* [Scene.nbc] */
+  double *value, *shear, *phase[PHASE_COUNT]; /* [Scene.nbc]; of a well rates and T of what enters */
   double  gravity[CL_DIM];
   Ambient ambient;
 } BcValues;

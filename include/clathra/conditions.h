@@ -26,8 +26,9 @@ typedef struct {
 /* Which integrators know a kind; the others refuse it by name. */
 enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit; without a matrix */
 
-/* On faces, which move with the body.
-   X(kind, word, fields any of which it needs, integrators, its terms in src/boundary/terms.c, what it prescribes) */
+/* On faces, which move with the body; a well has some without area inside.
+   X(kind, word, fields any of which it needs, integrators, its terms in src/boundary/terms.c or well.c, what it
+   prescribes) */
 #define CL_FACE_CONDITIONS(X)                                                                                          \
   X(TRACTION, "traction", HAS_SOLID, BY_ALL, FaceTraction, "total normal (compression-positive) and shear stress, Pa") \
   X(PRESSURE, "pressure", HAS_WATER, BY_ALL, FacePressures, "mean pore pressure, or p_w and p_g, Pa, or the initial")  \
@@ -35,7 +36,8 @@ enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit
   X(CONVECTION, "convection", HAS_HEAT, BY_ALL, FaceConvection, "alpha (T_a - T), W/m^2")                              \
   X(FACE_TEMPERATURE, "face_temperature", HAS_HEAT, BY_ALL, FaceTemperature, "T, degC")                                \
   X(INFLOW, "inflow", HAS_WATER, BY_ALL, FaceInflows, "volume of water and gas into the body, m/s")                    \
-  X(PLATE, "plate", HAS_SOLID, BY_ALL, NULL, "a rigid plate: velocity, displacement or force (plates.c)")
+  X(PLATE, "plate", HAS_SOLID, BY_ALL, NULL, "a rigid plate: velocity, displacement or force (plates.c)")              \
+  X(WELL, "well", HAS_WATER, BY_ALL, FaceWell, "a line normal to the plane: its pressure, Pa, or rates, kg/s (well.c)")
 
 enum { ON_FACES = 1, ON_PLANE, IN_REGION };
 /* On nodes: of a grid plane, or in the initial shape of a region.  X(kind, word, fields, integrators, its values in
@@ -98,4 +100,7 @@ typedef struct {
   bool       rough, separates; /* plate: holds the tangential displacement; takes no tension */
   double     stiffness;        /* plate: of its springs, in units of the constrained modulus over a cell */
   double     alpha;            /* convection coefficient, W/(m^2 K) */
+  /* well: initial position, m; radius, m; skin; mass of water and gas into the body, kg/s; T of what enters, degC */
+  double   at[CL_DIM], radius, skin;
+  Schedule rate[PHASE_COUNT], heated;
 } Bc;

@@ -5,8 +5,10 @@
 #include <stdbool.h>
 #include "clathra/dimension.h"
 
-enum { F_VSX = 0, F_VSY, F_VWX, F_VWY, F_VGX, F_VGY, F_PW, F_PG, F_T, F_COUNT };
 enum { PHASE_W = 0, PHASE_G = 1, PHASE_COUNT };
+#define CL_FLUID_VECTORS (PHASE_COUNT * CL_DIM) /* numbers of a vector of each fluid */
+/* Unknowns of a node: first components of the velocities, then the scalars. */
+enum { F_VS = 0, F_VW = CL_DIM, F_VG = 2 * CL_DIM, F_PW = 3 * CL_DIM, F_PG, F_T, F_COUNT };
 
 typedef struct {
   const char *name, *unit, *equation;
@@ -47,12 +49,12 @@ unsigned FieldSetByName(const char *name);
 /* Place of the first component of the skeleton velocity among a node's unknowns; -1 without a solid. */
 static inline int PlaceVs(const FieldSet *fs)
 {
-  return fs->at[F_VSX];
+  return fs->at[F_VS];
 }
 /* ... of a fluid's velocity; -1 where the fluid is not there or has no unknown. */
 static inline int PlaceV(const FieldSet *fs, int phase) /* velocity of a fluid */
 {
-  return fs->at[VectorAt(F_VWX, phase, 0)];
+  return fs->at[VectorAt(F_VW, phase, 0)];
 }
 /* ... of a fluid's pressure; -1 likewise; one place for both where they have one pressure. */
 static inline int PlaceP(const FieldSet *fs, int phase)

@@ -57,10 +57,53 @@ static inline double GridHighest2At(const Grid *g, const double x[CL_DIM])
   return k2;
 }
 
-/* Place of node (i, j) in arrays over this rank's nodes and ghosts. */
-static inline PetscInt GridPadded(const Grid *g, PetscInt i, PetscInt j)
+/* Place of ij in an array over a box of nodes (or cells, ranks) from `lower` on, x running fastest. */
+static inline PetscInt BoxPlace(const PetscInt lower[CL_DIM], const PetscInt size[CL_DIM], const PetscInt ij[CL_DIM])
 {
-  return (j - g->gs[1]) * g->gm[0] + (i - g->gs[0]);
+  PetscInt at = 0;
+
+  for (int d = CL_DIM - 1; d >= 0; d--)
+    at = at * size[d] + ij[d] - lower[d];
+  return at;
+}
+
+/* What stands at such a place. */
+static inline void BoxAt(const PetscInt lower[CL_DIM], const PetscInt size[CL_DIM], PetscInt at, PetscInt ij[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; at /= size[d++])
+    ij[d] = lower[d] + at % size[d];
+}
+
+/* How many places a box has. */
+static inline PetscInt BoxSize(const PetscInt size[CL_DIM])
+{
+  PetscInt n = 1;
+
+  for (int d = 0; d < CL_DIM; d++)
+    n *= size[d];
+  return n;
+}
+
+/* Is ij in the box? */
+static inline bool BoxHolds(const PetscInt lower[CL_DIM], const PetscInt size[CL_DIM], const PetscInt ij[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++) {
+    if (ij[d] < lower[d] || ij[d] >= lower[d] + size[d])
+      return false;
+  }
+  return true;
+}
+
+/* Place of node ij in arrays over this rank's nodes and ghosts. */
+static inline PetscInt GridPadded(const Grid *g, const PetscInt ij[CL_DIM])
+{
+  return BoxPlace(g->gs, g->gm, ij);
+}
+
+/* How many places these have. */
+static inline PetscInt GridPaddedSize(const Grid *g)
+{
+  return BoxSize(g->gm);
 }
 
 #define CL_NODE_DOUBLES 40 /* at most, of a node in one exchange */

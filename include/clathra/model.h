@@ -25,8 +25,8 @@ typedef struct {
 typedef struct {
   double        *m;   /* [n][3] m_h; m_w, m_g less what Newton left in the rows (28), kg */
   double        *y;   /* [n][4] p_w, p_g, T, S_h */
-  double        *u;   /* [n][2] displacement of the step so far, m */
-  double        *v;   /* [n][2] skeleton velocity, m/s */
+  double        *u;   /* [n][CL_DIM] displacement of the step so far, m */
+  double        *v;   /* [n][CL_DIM] skeleton velocity, m/s */
   SkeletonStage *end; /* [n] of the skeleton; null where it holds no history */
   double        *s;   /* [n][5] eps_d_p and stress xx yy zz xy; null without plasticity */
   double        *k;   /* [n][5] their rates at the end of the step, the scheme's to fill; likewise */
@@ -89,6 +89,11 @@ typedef struct {
   double root;      /* mean of sqrt(k_r) (108) */
 } FluidNode;
 
+/* What the rows of a particle see of the projected gradients: as of PointOutput. */
+typedef struct {
+  double flux[PHASE_COUNT][CL_DIM][CL_DIM], q[PHASE_COUNT][CL_DIM];
+} Wide;
+
 typedef struct {
   const Scene  *c;
   Grid          grid;
@@ -126,9 +131,9 @@ typedef struct {
   double    *mass_row;    /* [n_local][2] mass balances of water and gas, one pressure only; kg */
   FluidNode *fluid;       /* [n_local][2] where there are two */
   bool       evaluated;   /* x and fluid are those of a residual of this stage */
-  double    *proj;        /* [n_local][4] projected pressure gradients Pi g, Pa/m */
+  double    *proj;        /* [n_local][PHASE_COUNT][CL_DIM] projected pressure gradients Pi g, Pa/m */
   double    *give, *take; /* [n_local][...] what nodes hold for their particles, what these add (src/model/gather.h) */
-  double    *wide;        /* [n][12] particle coefficients of the wide part (27) */
+  Wide      *wide;        /* [n] of the wide part (27) */
   StageRates rates;       /* of the last stage */
   PetscInt   plates;      /* their number */
   double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */

@@ -14,36 +14,36 @@
 
 /* What the interpolation gives a particle; the tangent is taken with respect to these numbers in this order. */
 enum {
-  IN_GRADU = 0,  /* [i][j], on the configuration at t_n */
-  IN_HOOP  = 4,  /* u_r/r; zero in the plane */
-  IN_P     = 5,  /* p_w, p_g, Pa */
-  IN_T     = 7,  /* degC */
-  IN_GP    = 8,  /* gradient of p_w (2), of p_g (2), Pa/m */
-  IN_GT    = 12, /* gradient of T (2), K/m */
-  IN_J     = 14, /* Darcy flux of water (2), of gas (2), m/s */
-  IN_U     = 18, /* displacement of the step (2), m */
-  IN_COUNT = 20
+  IN_GRADU = 0,                        /* [i][j], on the configuration at t_n */
+  IN_HOOP  = IN_GRADU + MOTION_HOOP,   /* u_r/r; zero in the plane */
+  IN_P     = IN_GRADU + MOTION_COUNT,  /* p_w, p_g, Pa */
+  IN_T     = IN_P + PHASE_COUNT,       /* degC */
+  IN_GP    = IN_T + 1,                 /* [pi][i] gradients of p_w, p_g, Pa/m */
+  IN_GT    = IN_GP + CL_FLUID_VECTORS, /* [i] gradient of T, K/m */
+  IN_J     = IN_GT + CL_DIM,           /* [pi][i] Darcy fluxes of water, gas, m/s */
+  IN_U     = IN_J + CL_FLUID_VECTORS,  /* [i] displacement of the step, m */
+  IN_COUNT = IN_U + CL_DIM
 };
 
 /* What a particle writes to its nodes. */
 enum {
   /* tested with G_I */
-  OUT_P    = 0, /* [i][j] V_n (sigma' - (p - p_a) 1) cof F, N m/m */
-  OUT_FLUX = 4, /* [pi][j] mass flux Phi, kg m/s (18) */
-  OUT_HEAT = 8, /* [j] conducted heat, W m */
+  OUT_P    = 0,                           /* [i][j] V_n (sigma' - (p - p_a) 1) cof F, N m/m */
+  OUT_FLUX = OUT_P + CL_DIM * CL_DIM,     /* [pi][j] mass flux Phi, kg m/s (18) */
+  OUT_HEAT = OUT_FLUX + CL_FLUID_VECTORS, /* [j] conducted heat, W m */
   /* tested with H_I, in the radial row */
-  OUT_HOOP = 10, /* V_n (sigma'_tt - (p - p_a)) det F_2, N m */
+  OUT_HOOP = OUT_HEAT + CL_DIM, /* V_n (sigma'_tt - (p - p_a)) det F_2, N m */
   /* tested with S_I */
-  OUT_G     = 11, /* [pi][i] V_n cof F g_pi, N: force of a fluid's pressure gradient */
-  OUT_M     = 15, /* m_s + m_h, m_w, m_g, kg */
-  OUT_MI    = 18, /* [pi] V rho_pi, kg */
-  OUT_D     = 20, /* [pi] V mu/k_a, Pa s m: drag per Darcy flux where k_r = 1 */
-  OUT_ROOT  = 22, /* [pi] sqrt(k_r) (108) */
-  OUT_DM    = 24, /* [pi] mass gained minus released by hydrate, kg */
-  OUT_C     = 26, /* heat capacity, J/K */
-  OUT_Q     = 27, /* advected minus released heat, less what compression and throttling of the fluids give, W */
-  OUT_A     = 28, /* [i] V grad p_a, N; where there is an ambient pressure */
-  OUT_COUNT = 30
+  OUT_G    = OUT_HOOP + 1,             /* [pi][i] V_n cof F g_pi, N: force of a fluid's pressure gradient */
+  OUT_M    = OUT_G + CL_FLUID_VECTORS, /* m_s + m_h, m_w, m_g, kg */
+  OUT_MI   = OUT_M + 1 + PHASE_COUNT,  /* [pi] V rho_pi, kg */
+  OUT_D    = OUT_MI + PHASE_COUNT,     /* [pi] V mu/k_a, Pa s m: drag per Darcy flux where k_r = 1 */
+  OUT_ROOT = OUT_D + PHASE_COUNT,      /* [pi] sqrt(k_r) (108) */
+  OUT_DM   = OUT_ROOT + PHASE_COUNT,   /* [pi] mass gained minus released by hydrate, kg */
+  OUT_C    = OUT_DM + PHASE_COUNT,     /* heat capacity, J/K */
+  OUT_Q, /* advected minus released heat, less what compression and throttling of the fluids give, W */
+  OUT_A, /* [i] V grad p_a, N; where there is an ambient pressure */
+  OUT_COUNT = OUT_A + CL_DIM
 };
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
@@ -61,12 +61,12 @@ typedef struct {
   double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   bool   compression; /* heat of compression and throttling (290); then also ... */
   double p_star[PHASE_COUNT];                 /* ... starred p_w, p_g, Pa */
-  double gravity[2];                          /* ... m/s^2 */
+  double gravity[CL_DIM];                     /* ... m/s^2 */
   double dt;                                  /* dt' of the stage */
   const Beds    *beds;                        /* at t_n; NULL: none; then also ... */
   double         weight[PHASE_COUNT][CL_DIM]; /* ... rho b of the fluids at t_n, N/m^3 */
   const Ambient *ambient;                     /* at the end of the stage; NULL: no pressure around the body */
-  double         x[2]; /* where the particle's values belong at t_n, m; for the ambient pressure */
+  double         x[CL_DIM]; /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
 /* State at the end of the stage. */
@@ -74,8 +74,8 @@ typedef struct {
   double        V, phi, Sh, Sw, Sg, m_h, m_w, m_g, p;
   SkeletonState skeleton;
   SkeletonStage end; /* ... as the body lay at t_n */
-  double        stretch[2];
-  double        F[2][2]; /* of the step, in the plane */
+  double        stretch[CL_DIM];
+  double        F[CL_DIM][CL_DIM]; /* of the step, in the plane */
   double        rho[PHASE_COUNT], tau[PHASE_COUNT];
   bool          limited;  /* hydrate positivity limiter acted */
   double        squeezed; /* heat of compression and throttling (290), W */

@@ -45,6 +45,7 @@ typedef struct {
   PetscInt region;   /* -1: all */
   double   from, to; /* m, along the side */
   Points   along;    /* or those on this line */
+  PetscInt well;     /* or the particles of this well, its place in the list of the case; -1: none */
 } Meter;
 
 enum { EXCHANGE_AUTO = 0, EXCHANGE_YES, EXCHANGE_NO };
@@ -165,9 +166,9 @@ static inline bool SceneLetsGasIn(const Scene *c)
   bool enters = false;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
-    const Schedule *gas = &c->bc[k].phase[PHASE_G];
+    const Schedule *gas = c->bc[k].type == BC_WELL ? &c->bc[k].rate[PHASE_G] : &c->bc[k].phase[PHASE_G];
 
-    for (PetscInt i = 0; c->bc[k].type == BC_INFLOW && i < gas->n; i++)
+    for (PetscInt i = 0; (c->bc[k].type == BC_INFLOW || c->bc[k].type == BC_WELL) && i < gas->n; i++)
       enters = enters || gas->y[i] > 0.0;
   }
   return enters && SceneStartsWithoutGas(c);

@@ -57,6 +57,7 @@ void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, dou
    drawn LINE_REACH particle spacings out and in from the centre of the initial face, meets it. */
 #define LINE_REACH 0.6
 #define BcFaces(b)                                                                                                     \
-  ((Meter){.side = (b)->side, .region = (b)->region, .from = (b)->from, .to = (b)->to, .along = (b)->along})
-/* x: centre of the initial face, m; side: SIDE_... of the particle, region: its region. */
+  ((Meter){.side = (b)->side, .region = (b)->region, .from = (b)->from, .to = (b)->to, .along = (b)->along, .well = -1})
+/* x: centre of the initial face, m; side: SIDE_... of the particle, SIDE_COUNT of a well, which no
+   side names; region: its region. */
 bool FaceNamed(const Scene *c, const Meter *m, PetscInt region, const double x[], int side);

@@ -6,6 +6,8 @@
 #include "clathra/inline.h"
 
 enum { XX = 0, YY, ZZ, XY, YZ, XZ };
+/* Place of row i, column j. */
+static const int voigt[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
 
 /* xx + yy + zz. */
 static inline double Trace6(const double s[6])

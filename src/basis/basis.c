@@ -160,24 +160,79 @@ double AxisCentroid(const Axis *a, const GridLines *line)
   return line->lower + line->h * ((double)a->base * (a->S[0] + a->S[1] + a->S[2]) + a->S[1] + 2.0 * a->S[2]);
 }
 
+static bool Reached(const Axis *a, int k)
+{
+  return a->S[k] != 0.0 || a->dS[k] != 0.0;
+}
+
+/* Nodes that differ in x alone: how far the row is from the first one along the other axes, and the products of their
+   weights. */
+typedef struct {
+  int    k[CL_DIM];
+  double S, G[CL_DIM];
+} Row;
+
+/* Row number `row` of a stencil; false if it carries nothing. */
+static inline bool RowOf(const Stencil *s, int row, Row *r)
+{
+  r->S = 1.0;
+  for (int d = 1; d < CL_DIM; d++)
+    r->G[d] = 1.0;
+  for (int d = 1; d < CL_DIM; row /= 3, d++) {
+    const Axis *a = &s->axis[d];
+    const int   k = r->k[d] = row % 3;
+
+    if (!Reached(a, k))
+      return false;
+    r->S *= a->S[k];
+    for (int j = 1; j < CL_DIM; j++)
+      r->G[j] *= j == d ? a->dS[k] : a->S[k];
+  }
+  return true;
+}
+
+int StencilNodes(const Stencil *s, int k[CL_NODES][CL_DIM])
+{
+  int n = 0;
+
+  for (int row = 0; row < CL_NODES / 3; row++) {
+    Row r;
+
+    for (int a = 0; RowOf(s, row, &r) && a < 3; a++) {
+      if (!Reached(&s->axis[0], a))
+        continue;
+      r.k[0] = a;
+      memcpy(k[n++], r.k, sizeof(r.k));
+    }
+  }
+  return n;
+}
+
 int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt node[CL_NODES], double S[CL_NODES],
                   double G[CL_NODES][CL_DIM], double H[CL_NODES])
 {
-  const Axis *x = &s->axis[0], *y = &s->axis[1];
+  const Axis *x = &s->axis[0];
   int         n = 0;
 
-  for (int b = 0; b < 3; b++) {
-    if (y->S[b] == 0.0 && y->dS[b] == 0.0)
+  for (int row = 0; row < CL_NODES / 3; row++) {
+    Row      r;
+    PetscInt first[CL_DIM] = {x->base};
+
+    if (!RowOf(s, row, &r))
       continue;
+    for (int d = 1; d < CL_DIM; d++)
+      first[d] = s->axis[d].base + r.k[d];
+    const PetscInt *index = &map->index[GridPadded(g, first)];
     for (int a = 0; a < 3; a++) {
-      if (x->S[a] == 0.0 && x->dS[a] == 0.0)
+      if (!Reached(x, a))
         continue;
-      node[n] = map->index[GridPadded(g, x->base + a, y->base + b)];
-      S[n]    = x->S[a] * y->S[b];
-      G[n][0] = x->dS[a] * y->S[b];
-      G[n][1] = x->S[a] * y->dS[b];
+      node[n] = index[a];
+      S[n]    = x->S[a] * r.S;
+      G[n][0] = x->dS[a] * r.S;
+      for (int d = 1; d < CL_DIM; d++)
+        G[n][d] = x->S[a] * r.G[d];
       if (s->r > 0.0)
-        H[n] = s->hoop[a] * y->S[b];
+        H[n] = s->hoop[a] * r.S;
       n++;
     }
   }

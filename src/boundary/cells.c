@@ -6,7 +6,7 @@
 /* Cells that particles fill in part, on all ranks; a cell's particles are on one. */
 static PetscErrorCode CutCells(const Grid *g, const Scene *c, const Particles *P, PetscInt *cut)
 {
-  const PetscInt n = g->gm[0] * g->gm[1];
+  const PetscInt n = GridPaddedSize(g);
   double        *filled; /* share of each cell */
 
   PetscFunctionBeginUser;
@@ -19,8 +19,7 @@ static PetscErrorCode CutCells(const Grid *g, const Scene *c, const Particles *P
       continue;
     const double h[CL_DIM] = {LinesWidth(&g->line[0], cell[0]), LinesWidth(&g->line[1], cell[1])};
     const double middle    = LinesFrom(&g->line[0], (double)cell[0] + 0.5);
-    filled[GridPadded(g, cell[0], cell[1])] +=
-        P->f[P_V][p] / (h[0] * h[1] * (c->axisymmetric ? 2.0 * M_PI * middle : 1.0));
+    filled[GridPadded(g, cell)] += P->f[P_V][p] / (h[0] * h[1] * (c->axisymmetric ? 2.0 * M_PI * middle : 1.0));
   }
   *cut = 0;
   for (PetscInt k = 0; k < n; k++)

@@ -50,6 +50,11 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
                  .s     = {f->s[0], f->s[1]}};
 
   *o = (FaceOutput){0};
+  if (f->share > 0.0) {
+    FaceWell(&x, f->bc[BC_WELL], o);
+    o->enthalpy = CarriedOut(&x, o->outflow);
+    return;
+  }
   if (f->n[0] == 0.0 && f->n[1] == 0.0)
     return; /* on the axis */
   if (c->fields.solid) {
@@ -91,7 +96,7 @@ static bool InRegion(const Scene *c, const Grid *g, const Bc *b, const PetscInt 
 /* Prescribes the velocities along axis d: of the skeleton, and of the fluids unless they are free to cross. */
 static void Hold(const FieldSet *fs, int d, double velocity, bool drained, unsigned *mask, double *value)
 {
-  static const int first[3] = {F_VSX, F_VWX, F_VGX};
+  static const int first[3] = {F_VS, F_VW, F_VG};
 
   for (int i = 0; i < (drained ? 1 : 3); i++) {
     const int k = fs->at[first[i] + d];

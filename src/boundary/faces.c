@@ -79,9 +79,9 @@ static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const
 static void Weights(const Scene *c, const Grid *g, const Particles *P, const Stencil *st, const double half[CL_DIM],
                     Face *f)
 {
-  const Axis *x = &st->axis[0], *y = &st->axis[1];
-  double      w[CL_DIM][3];
-  int         n = 0;
+  double    w[CL_DIM][3];
+  int       at[CL_NODES][CL_DIM];
+  const int n = StencilNodes(st, at);
 
   for (int d = 0; d < CL_DIM; d++) {
     Axis a = st->axis[d];
@@ -89,19 +89,16 @@ static void Weights(const Scene *c, const Grid *g, const Particles *P, const Ste
     if (c->basis != BASIS_LINEAR)
       AxisWeights(c, g, P, f, d, half[d], &a);
     for (int k = 0; k < 3; k++) {
-      const PetscInt at = st->axis[d].base + k - a.base;
+      const PetscInt i = st->axis[d].base + k - a.base;
 
-      w[d][k] = at >= 0 && at < 3 ? a.S[at] : 0.0;
+      w[d][k] = i >= 0 && i < 3 ? a.S[i] : 0.0;
     }
   }
-  for (int b = 0; b < 3; b++) {
-    for (int a = 0; a < 3; a++) {
-      if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0)) {
-        f->N[n] = f->Nr[n] = w[0][a] * w[1][b];
-        f->Nm[PHASE_W][n] = f->Nm[PHASE_G][n] = f->N[n];
-        n++;
-      }
-    }
+  for (int a = 0; a < n; a++) {
+    f->N[a] = 1.0;
+    for (int d = 0; d < CL_DIM; d++)
+      f->N[a] *= w[d][at[a][d]];
+    f->Nr[a] = f->Nm[PHASE_W][a] = f->Nm[PHASE_G][a] = f->N[a];
   }
 }
 
@@ -134,8 +131,30 @@ static double FacePore(const Scene *c, const Particles *P, const Face *f)
   return pore;
 }
 
+/* A well takes from its particle, wherever that is. */
+static void PlaceInside(const Particles *P, const Stencil *st, Face *f)
+{
+  const Axis *x = &st->axis[0], *y = &st->axis[1];
+  int         n = 0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    f->x[d] = P->f[P_X + d][f->particle];
+  for (int b = 0; b < 3; b++) {
+    for (int a = 0; a < 3; a++) {
+      if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0)) {
+        f->N[n] = f->Nr[n] = f->Nm[PHASE_W][n] = f->Nm[PHASE_G][n] = x->S[a] * y->S[b];
+        n++;
+      }
+    }
+  }
+}
+
 void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
 {
+  if (f->share > 0.0) {
+    PlaceInside(P, stencil, f);
+    return;
+  }
   const PetscInt p    = f->particle;
   const int      axis = SideAxis(f->side), tangent = 1 - axis;
   const double   sign    = SideSign(f->side);
@@ -187,15 +206,71 @@ static void MakeFace(const Scene *c, const Grid *g, const Particles *P, const St
 {
   f->particle    = p;
   f->side        = side;
+  f->share       = 0.0;
+  f->draws       = 0.0;
   f->region      = P->i[PI_REGION][p];
   f->x0[0]       = ParticleInitialX(P, p, 0);
   f->x0[1]       = ParticleInitialX(P, p, 1);
   f->bc[BC_NONE] = -1;
   for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
-    f->bc[kind] = FindCondition(c, (BcType)kind, f);
+    f->bc[kind] = kind == BC_WELL ? -1 : FindCondition(c, (BcType)kind, f);
   f->meters = FindMeters(c, f);
   FaceNormal(c, f->region, f->x0, side, f->n0);
   FacePlace(c, g, P, &stencil[p], f);
+}
+
+static double ShareOf(const Scene *c, const Particles *P, const Well *well, PetscInt p)
+{
+  const double x0[CL_DIM] = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)};
+  double       l[CL_DIM];
+
+  ParticlesInitialHalfLength(c, P->i[PI_REGION][p], x0, l);
+  return WellShare(well, x0, l);
+}
+
+static void MakeWellFace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p,
+                         PetscInt k, double share, Face *f)
+{
+  *f = (Face){.particle = p,
+              .side     = SIDE_COUNT,
+              .region   = P->i[PI_REGION][p],
+              .x0       = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)},
+              .share    = share};
+  for (int kind = 0; kind < BC_FACES; kind++)
+    f->bc[kind] = kind == BC_WELL ? k : -1;
+  for (PetscInt i = 0; i < c->nmeter; i++)
+    f->meters |= (unsigned)(c->meter[i].well == c->bc[k].number) << i;
+  FacePlace(c, g, P, &stencil[p], f);
+}
+
+/* Adds the particles of condition k, a well, to n faces of so many that there is room for. */
+static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt k,
+                                PetscInt *n, Face **face)
+{
+  PetscInt count = 0, at = *n;
+  Well     well;
+
+  PetscFunctionBeginUser;
+  if (!WellPlace(c, &c->bc[k], &well))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < P->n; p++)
+    count += ShareOf(c, P, &well, p) > 0.0;
+  if (!count)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  const double C = c->bc[k].value.n ? WellIndex(c, &c->bc[k], &well) : 0.0;
+  PetscCall(PetscRealloc((size_t)(at + count) * sizeof(Face), face));
+  for (PetscInt p = 0; p < P->n; p++) {
+    const double share = ShareOf(c, P, &well, p);
+
+    if (share > 0.0) {
+      const Material *mat = &c->material[c->region[P->i[PI_REGION][p]].material];
+
+      MakeWellFace(c, g, P, stencil, p, k, share, &(*face)[at]);
+      (*face)[at++].draws = C * sqrt(mat->permeability.ratio) * share; /* (367) */
+    }
+  }
+  *n = at;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
@@ -219,6 +294,10 @@ PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, con
       if ((P->i[PI_FACES][p] >> side) & 1)
         MakeFace(c, g, P, stencil, p, side, &(*face)[count++]);
     }
+  }
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    if (c->bc[k].type == BC_WELL)
+      PetscCall(WellFaces(c, g, P, stencil, k, n, face));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,12 +38,12 @@ void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[
   if (b->separates && gap <= 0.0)
     return;
   o->plate[PLATE_FORCE] = f->K * gap;
-  o->out[F_VSX + d] += n * f->K * gap;
-  o->D[F_VSX + d][IN_U + d] += f->K;
+  o->out[F_VS + d] += n * f->K * gap;
+  o->D[F_VS + d][IN_U + d] += f->K;
   if (b->rough) {
     o->plate[PLATE_SHEAR] = -f->K * (f->moved[t] + in[IN_U + t]);
-    o->out[F_VSX + t] -= o->plate[PLATE_SHEAR];
-    o->D[F_VSX + t][IN_U + t] += f->K;
+    o->out[F_VS + t] -= o->plate[PLATE_SHEAR];
+    o->D[F_VS + t][IN_U + t] += f->K;
   }
   if (KinematicsValues(&in[IN_GRADU], &k))
     o->plate[PLATE_AREA] = n * (k.cof[d][0] * f->n[0] + k.cof[d][1] * f->n[1]);

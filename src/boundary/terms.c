@@ -8,11 +8,11 @@ void FaceTraction(const FaceState *x, PetscInt k, FaceOutput *o)
 {
   const double q = x->v->value[k], s = x->v->shear[k];
 
-  o->out[F_VSX] += q * x->a[0] + s * x->a[1];
-  o->out[F_VSY] += q * x->a[1] - s * x->a[0];
+  o->out[F_VS] += q * x->a[0] + s * x->a[1];
+  o->out[F_VS + 1] += q * x->a[1] - s * x->a[0];
   for (int j = 0; j < MOTION_COUNT; j++) {
-    o->D[F_VSX][j] += q * x->da[0][j] + s * x->da[1][j];
-    o->D[F_VSY][j] += q * x->da[1][j] - s * x->da[0][j];
+    o->D[F_VS][j] += q * x->da[0][j] + s * x->da[1][j];
+    o->D[F_VS + 1][j] += q * x->da[1][j] - s * x->da[0][j];
   }
 }
 
@@ -26,9 +26,9 @@ void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o)
   if (w <= 0.0 || C == 0.0)
     return;
   for (int i = 0; i < CL_DIM; i++) {
-    double *row = o->D[F_VSX + i];
+    double *row = o->D[F_VS + i];
 
-    o->out[F_VSX + i] += q * a[i];
+    o->out[F_VS + i] += q * a[i];
     for (int d = 0; d < CL_DIM; d++)
       row[IN_U + d] += 2.0 * C * w * a[d] / x->dt * a[i];
     for (int k = 0; k < MOTION_COUNT; k++) {
@@ -75,9 +75,9 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   for (int d = 0; d < CL_DIM; d++)
     D[IN_U + d] += dt * beyond * outside->du[d] * Ja;
   for (int i = 0; i < CL_DIM; i++) {
-    double *row = o->D[VectorAt(F_VWX, phase, i)];
+    double *row = o->D[VectorAt(F_VW, phase, i)];
 
-    o->out[VectorAt(F_VWX, phase, i)] += jump * a[i];
+    o->out[VectorAt(F_VW, phase, i)] += jump * a[i];
     row[IN_P + phase] -= a[i];
     for (int d = 0; d < CL_DIM; d++)
       row[IN_U + d] += outside->du[d] * a[i];
@@ -93,7 +93,7 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
 
     D[IN_P + k] += dt * beyond * dpk * Ja;
     for (int i = 0; i < CL_DIM; i++)
-      o->D[VectorAt(F_VWX, phase, i)][IN_P + k] += dpk * a[i];
+      o->D[VectorAt(F_VW, phase, i)][IN_P + k] += dpk * a[i];
   }
 }
 

@@ -18,11 +18,11 @@ void BcValuesEvaluate(const Scene *c, double t, BcValues *v)
     const double at = t - c->bc[k].zero;
 
     v->value[k] = ScheduleValue(&c->bc[k].value, at);
-    v->shear[k] = ScheduleValue(&c->bc[k].shear, at);
+    v->shear[k] = ScheduleValue(c->bc[k].type == BC_WELL ? &c->bc[k].heated : &c->bc[k].shear, at);
     if (c->bc[k].type == BC_PLATE)
       v->value[k] = PlatePosition(&c->bc[k], t);
     for (int ph = 0; ph < PHASE_COUNT; ph++)
-      v->phase[ph][k] = ScheduleValue(&c->bc[k].phase[ph], at);
+      v->phase[ph][k] = ScheduleValue(c->bc[k].type == BC_WELL ? &c->bc[k].rate[ph] : &c->bc[k].phase[ph], at);
   }
   for (int d = 0; d < CL_DIM; d++) {
     const double ramp = c->gravity_ramp, from = c->gravity_before[d], at = t - c->t_begin;
@@ -38,9 +38,10 @@ static double NextKink(const Bc *b, double t)
   const double at   = t - b->zero + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
   double       next = fmin(ScheduleNextKink(&b->value, at), ScheduleNextKink(&b->shear, at));
 
+  next = fmin(next, ScheduleNextKink(&b->heated, at));
   next = fmin(next, fmin(ScheduleNextKink(&b->displacement, at), ScheduleNextKink(&b->force, at)));
   for (int ph = 0; ph < PHASE_COUNT; ph++)
-    next = fmin(next, ScheduleNextKink(&b->phase[ph], at));
+    next = fmin(next, fmin(ScheduleNextKink(&b->phase[ph], at), ScheduleNextKink(&b->rate[ph], at)));
   return b->zero + next;
 }
 
@@ -51,7 +52,8 @@ double BcNextMark(const Scene *c, double t)
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc       *b     = &c->bc[k];
     const double    at    = t - b->zero + 4.0 * PETSC_MACHINE_EPSILON * fabs(t);
-    const Schedule *own[] = {&b->value, &b->shear, &b->displacement, &b->force, &b->phase[0], &b->phase[1]};
+    const Schedule *own[] = {&b->value,    &b->shear,   &b->displacement, &b->force, &b->phase[0],
+                             &b->phase[1], &b->rate[0], &b->rate[1],      &b->heated};
 
     for (size_t i = 0; i < sizeof(own) / sizeof(*own); i++)
       next = fmin(next, b->zero + ScheduleNextMark(own[i], at));

@@ -213,7 +213,9 @@ void           CheckPlate(Reader *r, const Case *c, const Bc *b);
 void           CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
 void           CheckReduction(Reader *r, const Case *c);                     /* strength_factor */
 void           CheckFlow(Reader *r, const Scene *c, const Bc *b);            /* flow.c: pressure and inflow */
-void           CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
+/* A well in the plane: its place, its radius, what drives it. */
+void CheckWell(Reader *r, const Case *c, const Bc *b);         /* wells.c */
+void CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
 void RegionsFinish(Scene *c); /* once all keys are read */
 void CheckShape(Reader *r, const Case *c, PetscInt region);

@@ -148,6 +148,17 @@ static void CheckPlane(Reader *r, const Scene *c, const Bc *b)
             LinesAt(&lines, (PetscInt)round(line)));
 }
 
+static void CheckMeter(Reader *r, const Scene *c, const Meter *m)
+{
+  if (m->well < 0)
+    CheckFaces(r, c, GROUP_METER, m->name, m);
+  else if (c->bc[m->well].type != BC_WELL)
+    FAIL_AT(GROUP_METER, m->name, "well", "names %s, which is not a well but a %s", c->bc[m->well].name,
+            cl_condition[c->bc[m->well].type].word);
+  else if (m->side != SIDE_COUNT || m->along.n)
+    FAIL_AT(GROUP_METER, m->name, "well", "and %s are two things to count: give one", m->along.n ? "along" : "side");
+}
+
 void CaseCheck(Reader *r, Case *c)
 {
   const bool *bad = r->bad;
@@ -171,7 +182,9 @@ void CaseCheck(Reader *r, Case *c)
     const Bc *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;
 
-    if (where == ON_FACES) {
+    if (b->type == BC_WELL) {
+      CheckWell(r, c, b);
+    } else if (where == ON_FACES) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
         CheckFaces(r, &c->scene, GROUP_BC, b->name, &BcFaces(b));
       CheckFlow(r, &c->scene, b);
@@ -189,7 +202,7 @@ void CaseCheck(Reader *r, Case *c)
   for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
     CheckProbe(r, &c->scene, &c->probe[i]);
   for (PetscInt i = 0; i < c->scene.nmeter && !bad[GROUP_METER] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
-    CheckFaces(r, &c->scene, GROUP_METER, c->scene.meter[i].name, &c->scene.meter[i]);
+    CheckMeter(r, &c->scene, &c->scene.meter[i]);
   if (c->scene.nmeter > CL_METERS)
     FAIL_AT(GROUP_CASE, "", "meters", "lists %d names, at most %d are allowed", (int)c->scene.nmeter, CL_METERS);
 }

@@ -17,6 +17,10 @@ static bool NeedsTemperature(const void *p)
 {
   return ((const Bc *)p)->type != BC_INFLOW;
 }
+static bool WellNeedsRadius(const void *p)
+{
+  return ((const Bc *)p)->value.n > 0;
+}
 static bool BcNeedsSide(const void *p)
 {
   return !((const Bc *)p)->along.n;
@@ -39,19 +43,24 @@ static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* O
 #define PLANE(kind, word, has, by, term, where, doc) | ((where) == ON_PLANE ? TYPE(BC_##kind) : 0u)
 enum { FACES = 0u CL_FACE_CONDITIONS(ON_FACE), PLANES = 0u CL_NODE_CONDITIONS(PLANE) CL_NODE_FORMS(PLANE) };
 
+/* those on the surface */
+enum { SIDES = FACES & ~TYPE(BC_WELL) };
+
 const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_NONE + 1),
     BOOLEAN(Bc, "clock", of_stage, "run", "what times of its values count from: the begin of the run, or of each stage",
             .choices = clock_word),
     POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",
-           .types = FACES & ~TYPE(BC_PLATE)),
+           .types = SIDES & ~TYPE(BC_PLATE)),
     CHOICE(Bc, "side", side, "none", case_side, "side of the body, moves with it",
-           WHEN(BcNeedsSide, "along is not given"), .types = FACES),
+           WHEN(BcNeedsSide, "along is not given"), .types = SIDES),
     NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
-         .types = FACES | TYPE(BC_REGION_TEMPERATURE)),
+         .types = SIDES | TYPE(BC_REGION_TEMPERATURE)),
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
-         .types = FACES),
-    REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = FACES),
+         .types = SIDES),
+    REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = SIDES),
+    REALS(Bc, 2, "at", at, "m", "", NULL, "where the line is at the start; it goes with the body",
+          .types = TYPE(BC_WELL)),
     CHOICE(Bc, "axis", axis, NULL, axis_word, "axis normal to the grid plane", .types = PLANES),
     REAL(Bc, "position", position, "m", "", NULL, "coordinate of the plane; must be a grid line", .types = PLANES),
     BOOLEAN(Bc, "holds", drained, "all", "all phases, or the skeleton alone: a porous plate",
@@ -79,6 +88,17 @@ const Key bc_key[] = {
             .choices = capillary_word, .types = TYPE(BC_PRESSURE)),
     CHOICE(Bc, "phases", open, "both", phases_word, "fluids for which the face is open; closed for the other",
            .types = TYPE(BC_PRESSURE)),
+    SCHEDULE("bottom_pressure", value, "Pa", "(0,1e10]", "", TYPE(BC_WELL),
+             "mean pore pressure in the well; water and gas leave as the body's own mobilities let them"),
+    REAL(Bc, "radius", radius, "m", "(0,1e3]", "none", "of the well, at most half a cell",
+         WHEN(WellNeedsRadius, "bottom_pressure is given"), .word = "none", .types = TYPE(BC_WELL)),
+    REAL(Bc, "skin", skin, "", "[-5,1e4]", "0", "of the well: resistance at its wall, in mu/(2 pi k) (368)",
+         .types = TYPE(BC_WELL)),
+    SCHEDULE("water_flow", rate[PHASE_W], "kg/s", "[-1e6,1e6]", "", TYPE(BC_WELL),
+             "mass into the body per metre of thickness, instead of bottom_pressure; negative = out"),
+    SCHEDULE("gas_flow", rate[PHASE_G], "kg/s", "[-1e6,1e6]", "", TYPE(BC_WELL), "the same for gas"),
+    SCHEDULE("inflow_temperature", heated, "degC", "(-273.15,1000]", "", TYPE(BC_WELL),
+             "of what enters from the well, by default the body's own"),
     SCHEDULE("water", phase[PHASE_W], "m/s", "[-1e3,1e3]", "0 m/s", TYPE(BC_INFLOW),
              "volume into the body per time and area, at the face's pressure and temperature; negative = out"),
     SCHEDULE("gas", phase[PHASE_G], "m/s", "[-1e3,1e3]", "0 m/s", TYPE(BC_INFLOW), "the same for gas"),

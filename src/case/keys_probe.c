@@ -9,7 +9,7 @@ static bool NeedsPlace(const void *p)
 }
 static bool MeterNeedsSide(const void *p)
 {
-  return !((const Meter *)p)->along.n;
+  return !((const Meter *)p)->along.n && ((const Meter *)p)->well < 0;
 }
 
 const Key probe_key[] = {
@@ -33,9 +33,11 @@ const Key probe_key[] = {
 };
 
 const Key meter_key[] = {
+    NAME(Meter, "well", well, "none", GROUP_BC, "a boundary of type well, instead of a part of the surface",
+         .word = "none"),
     POINTS(Meter, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side"),
     CHOICE(Meter, "side", side, "none", case_side, "side of the body, moves with it",
-           WHEN(MeterNeedsSide, "along is not given")),
+           WHEN(MeterNeedsSide, "neither along nor well is given")),
     NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
     REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),
     REAL(Meter, "to", to, "m", "", "end", "... to here", .word = "end"),

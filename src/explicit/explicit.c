@@ -186,7 +186,7 @@ static PetscErrorCode Sort(Explicit *e)
   for (PetscInt p = 0; p < P->n; p++)
     rank[p] = p;
   PetscCall(PetscSortIntWithArray(P->n, e->order, rank));
-  PetscInt *at, cells = g->gm[0] * g->gm[1];
+  PetscInt *at, cells = GridPaddedSize(g);
   PetscCall(PetscCalloc1(cells + 1, &at));
   for (PetscInt p = 0; p < P->n; p++)
     at[e->key[p] + 1]++;

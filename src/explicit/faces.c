@@ -44,12 +44,15 @@ int FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES])
 PetscErrorCode FacesBegin(Explicit *e)
 {
   Stencil *stencil;
-  PetscInt n = 0;
+  PetscInt n     = 0;
+  bool     wells = false;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(e->m->P.n, &stencil));
+  for (PetscInt k = 0; k < e->m->c->nbc; k++)
+    wells = wells || e->m->c->bc[k].type == BC_WELL;
   for (PetscInt p = 0; p < e->m->P.n; p++) {
-    if (e->m->P.i[PI_FACES][p])
+    if (wells || e->m->P.i[PI_FACES][p])
       Place(e, p, &stencil[p]);
   }
   PetscCall(FacesBuild(e->m->c, &e->m->grid, &e->m->P, stencil, &e->nface, &e->face));
@@ -82,8 +85,10 @@ static void Reach(const Explicit *e, Face *f, bool place, Nodes *r)
   if (!place)
     return;
   FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
-  if (f->bc[BC_INFLOW] >= 0 && ModelParticleProperties(e->m, f->particle, &q, &why) == CL_OK)
-    FaceInflow(f, r->n, S, q.kr);
+  if ((f->bc[BC_INFLOW] < 0 && f->share == 0.0) || ModelParticleProperties(e->m, f->particle, &q, &why) != CL_OK)
+    return;
+  FaceInflow(f, r->n, S, q.kr);
+  WellProperties(&q, f);
 }
 
 /* Inputs of a face at t_n: the particle's own values and gradients. */
@@ -120,7 +125,8 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   for (int d = 0; e->set.solid && d < CL_DIM; d++)
     velocity[d] = e->m->P.f[P_VS + d][f->particle];
   ModelInitialAtFace(e->m, f, p0);
-  if (f->bc[BC_FACE_TEMPERATURE] >= 0 || mat->retention.hydrate > 0.0) /* who else asks for conductivity or S_h? */
+  if (f->bc[BC_FACE_TEMPERATURE] >= 0 || f->share > 0.0 ||
+      mat->retention.hydrate > 0.0) /* who else asks for conductivity or S_h? */
     ModelParticleProperties(e->m, f->particle, &q, &why);
   FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, q.Sh, in, velocity, q.kappa, dt, o);
 }
@@ -138,18 +144,20 @@ void FacesForces(Explicit *e, double dt)
     double     in[IN_COUNT], force[PHASE_COUNT][CL_DIM] = {{0.0}};
 
     Reach(e, f, true, &r);
+    if (f->share > 0.0)
+      continue; /* a well pulls at nothing */
     Inputs(e, f, in);
     Evaluate(e, f, in, dt, &o);
     const double conduct = Conductance(e, s, f->particle);
     for (int d = 0; s.solid && d < CL_DIM; d++)
-      e->pull[k][d] = -o.out[F_VSX + d];
+      e->pull[k][d] = -o.out[F_VS + d];
     if (f->bc[BC_PLATE] >= 0)
       PlatesDeposit(e, f, r.n, r.node);
     for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
       const double p = FacePressure(f, ph, in);
 
       for (int d = 0; d < CL_DIM; d++)
-        force[ph][d] = -o.out[VectorAt(F_VWX, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
+        force[ph][d] = -o.out[VectorAt(F_VW, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
     }
     for (int ph = 0; s.beds && ph < s.fluids; ph++) {
       const Beds A = BedsAt(e, f->particle);
@@ -205,6 +213,25 @@ static void Fluxes(const Explicit *e, const Face *f, const Nodes *r, double in[I
   }
 }
 
+/* (367): a well sees the fields of the nodes at t_n, as the flow to it does. */
+static void NodalInputs(const Explicit *e, const Nodes *r, const double N[CL_NODES], double in[IN_COUNT])
+{
+  const Set s              = e->set;
+  const int width          = LANES * Rows(B_Count(s));
+  double    p[PHASE_COUNT] = {0.0}, T = 0.0;
+
+  for (int a = 0; a < r->n; a++) {
+    const double *b = &e->B[r->node[a] * width];
+
+    T += s.heat ? N[a] * b[B_T(s)] : 0.0;
+    for (int k = 0; k < s.fluids; k++)
+      p[k] += N[a] * b[B_P(s, k)];
+  }
+  in[IN_T] = s.heat ? T : in[IN_T];
+  for (int k = 0; k < s.fluids; k++)
+    in[IN_P + k] = p[k];
+}
+
 void FacesRates(Explicit *e, double dt, StageRates *rates)
 {
   const Set s     = e->set;
@@ -219,6 +246,8 @@ void FacesRates(Explicit *e, double dt, StageRates *rates)
     Reach(e, f, false, &r);
     Inputs(e, f, in);
     Fluxes(e, f, &r, in);
+    if (f->share > 0.0)
+      NodalInputs(e, &r, f->N, in);
     for (int ph = 0; ph < s.fluids; ph++)
       FaceDirection(e->m->c, f, ph, &in[VectorAt(IN_J, ph, 0)]);
     Evaluate(e, f, in, dt, &o);

@@ -28,9 +28,9 @@ static PetscErrorCode Allocate(Explicit *e)
   e->B = e->G + n * A;
   e->R = e->B + n * B;
   e->C = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
-  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node,
-                         e->m->grid.gm[0] * e->m->grid.gm[1], &e->slot));
-  for (PetscInt q = 0; q < e->m->grid.gm[0] * e->m->grid.gm[1]; q++)
+  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node, GridPaddedSize(&e->m->grid),
+                         &e->slot));
+  for (PetscInt q = 0; q < GridPaddedSize(&e->m->grid); q++)
     e->slot[q] = (int)(e->map.index[q] >= 0 ? e->map.index[q] : e->map.n_local);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -66,14 +66,14 @@ PetscErrorCode NodesRebuild(Explicit *e)
   bool           changed;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(g->gm[0] * g->gm[1], &flag));
+  PetscCall(PetscCalloc1(GridPaddedSize(g), &flag));
   for (PetscInt p = 0; p < e->m->P.n; p++) {
     for (int b = 0; b < 3; b++) {
       for (int a = 0; a < 3; a++) {
         const PetscInt i = e->base[0][p] + a, j = e->base[1][p] + b;
 
         if (i >= 0 && i <= g->cells[0] && j >= 0 && j <= g->cells[1])
-          flag[GridPadded(g, i, j)] = 1;
+          flag[GridPadded(g, (PetscInt[CL_DIM]){i, j})] = 1;
       }
     }
   }

@@ -39,7 +39,7 @@ static PetscErrorCode Answers(Explicit *e, double dt)
       e->answer[I][d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], d) +
                         (mix[MIX_M] > 0.0 ? mix[MIX_VX + d] / mix[MIX_M] : 0.0);
       e->answer[I][CL_DIM + d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], CL_DIM + d);
-      if (Held(e, I, F_VSX + d, &value)) {
+      if (Held(e, I, F_VS + d, &value)) {
         e->answer[I][d]          = value;
         e->answer[I][CL_DIM + d] = 0.0;
       }

@@ -173,11 +173,11 @@ INLINE double Mean(const Explicit *e, PetscInt I, int unknown, double before, do
    fluid that is held moves as it must. */
 INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, int d, const Balance *b, const double v[3])
 {
-  const double mean = Mean(e, I, F_VSX + d, b->v, v[0]);
+  const double mean = Mean(e, I, F_VS + d, b->v, v[0]);
   double       sum  = 0.0, held;
 
   for (int k = 0; k < s.fluids; k++) {
-    const int    at   = VectorAt(F_VWX, k, d);
+    const int    at   = VectorAt(F_VW, k, d);
     const double end  = Held(e, I, at, &held) ? held : v[1 + k];
     const double slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
 
@@ -213,7 +213,7 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
   b[1] = b[0];
   for (int d = 0; d < CL_DIM; d++) {
     ReadForces(e, s, a, d, &b[d]);
-    held[d] = s.solid && Held(e, I, F_VSX + d, &value[d]);
+    held[d] = s.solid && Held(e, I, F_VS + d, &value[d]);
     if (!(s.beds && s.solid))
       Solve(e, s, &b[d], dt, held[d], value[d], v[d]);
   }
@@ -227,11 +227,11 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance *w, const double v[3], double dt)
 {
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->nplate ? e->push[I] : NULL;
-  const double  scale = e->o.mass_scaling, mean = Mean(e, I, F_VSX + d, w->v, v[0]), gravity = e->m->bc.gravity[d];
+  const double  scale = e->o.mass_scaling, mean = Mean(e, I, F_VS + d, w->v, v[0]), gravity = e->m->bc.gravity[d];
   double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double own = Mean(e, I, VectorAt(F_VWX, k, d), w->vf[k], v[1 + k]), flow = w->w[k] * (own - mean);
+    const double own = Mean(e, I, VectorAt(F_VW, k, d), w->vf[k], v[1 + k]), flow = w->w[k] * (own - mean);
 
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
@@ -243,7 +243,7 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
   e->work[WORK_PRESSURE] += dt * pressure;
   if (push)
     e->work[WORK_PLATES] += dt * push[d] * v[0];
-  if (Held(e, I, F_VSX + d, &value))
+  if (Held(e, I, F_VS + d, &value))
     e->work[WORK_PLATES] += (scale * gained - dt * w->f) * value;
 }
 
@@ -269,7 +269,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 
     ReadForces(e, s, a, d, &w);
     v[0] = s.solid ? w.v + Blended(e, I, e->node[I].own_v, 6, e->inc, d) : 0.0;
-    if (s.solid && Held(e, I, F_VSX + d, &value))
+    if (s.solid && Held(e, I, F_VS + d, &value))
       v[0] = value;
     if (s.solid) {
       b[d]            = v[0];
@@ -280,7 +280,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       double       *bf = &b[B_Fluid(s, k)];
 
       v[1 + k] = FluidVelocity(e, s, I, &w, k, d, v[0]);
-      if (Held(e, I, VectorAt(F_VWX, k, d), &value))
+      if (Held(e, I, VectorAt(F_VW, k, d), &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -w.flow * f[FL_GX + d] * per_V;

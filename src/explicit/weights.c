@@ -97,7 +97,7 @@ void WeightsOf(const Explicit *e, Run r, Weights *w)
     Nodes(e, r, d, base[d], w);
   }
   for (int q = 0; q < r.n; q++)
-    w->first[q] = (int)GridPadded(g, x[q], y[q]);
+    w->first[q] = (int)GridPadded(g, (PetscInt[CL_DIM]){x[q], y[q]});
   if (TakesCellMean(e))
     Cells(e, r, base, w);
 }

@@ -5,15 +5,15 @@
 #include <strings.h>
 
 const FieldInfo cl_field[F_COUNT] = {
-    {"v_s,x", "m/s", "mixture momentum, x"},
+    [F_VS] = {"v_s,x", "m/s", "mixture momentum, x"},
     {"v_s,y", "m/s", "mixture momentum, y"},
-    {"v_w,x", "m/s", "water momentum, x"},
+    [F_VW] = {"v_w,x", "m/s", "water momentum, x"},
     {"v_w,y", "m/s", "water momentum, y"},
-    {"v_g,x", "m/s", "gas momentum, x"},
+    [F_VG] = {"v_g,x", "m/s", "gas momentum, x"},
     {"v_g,y", "m/s", "gas momentum, y"},
-    {"p_w", "Pa", "water mass"},
-    {"p_g", "Pa", "gas mass"},
-    {"T", "degC", "energy"},
+    [F_PW] = {"p_w", "Pa", "water mass"},
+    [F_PG] = {"p_g", "Pa", "gas mass"},
+    [F_T]  = {"T", "degC", "energy"},
 };
 
 const char *const cl_field_word[] = {"solid", "water", "gas", "heat", NULL};
@@ -39,8 +39,7 @@ static const struct {
 
 bool FieldSetMake(unsigned has, bool inertia, bool one_pressure, FieldSet *fs)
 {
-  static const unsigned needs[F_COUNT] = {HAS_SOLID, HAS_SOLID, HAS_WATER, HAS_WATER, HAS_GAS,
-                                          HAS_GAS,   HAS_WATER, HAS_GAS,   HAS_HEAT};
+  static const unsigned velocity[] = {HAS_SOLID, HAS_WATER, HAS_GAS}, scalar[] = {HAS_WATER, HAS_GAS, HAS_HEAT};
 
   *fs              = (FieldSet){.has     = has,
                                 .solid   = has & HAS_SOLID,
@@ -53,7 +52,7 @@ bool FieldSetMake(unsigned has, bool inertia, bool one_pressure, FieldSet *fs)
     fs->has |= HAS_GAS_PRESSURE;
   for (int q = 0; q < F_COUNT; q++) {
     fs->at[q] = -1;
-    if (!(has & needs[q]))
+    if (!(has & (q < F_PW ? velocity[q / CL_DIM] : scalar[q - F_PW])))
       continue;
     if (q == F_PG && fs->one_pressure) {
       fs->at[q] = fs->at[F_PW];

@@ -4,63 +4,58 @@
 /* Flags of the padded local array, made the same on all ranks that see a node. */
 static PetscErrorCode ShareFlags(const Grid *g, const unsigned char *flag, unsigned char *shared)
 {
-  Vec      local, global;
-  double **a;
-  PetscInt x0, y0, nx, ny;
+  Vec           local, global;
+  double       *a;
+  const double *seen;
+  PetscInt      first[3], size[3], ij[CL_DIM];
 
   PetscFunctionBeginUser;
   PetscCall(DMGetLocalVector(g->da, &local));
   PetscCall(DMGetGlobalVector(g->da, &global));
-  PetscCall(DMDAGetGhostCorners(g->da, &x0, &y0, NULL, &nx, &ny, NULL));
+  PetscCall(DMDAGetGhostCorners(g->da, &first[0], &first[1], &first[2], &size[0], &size[1], &size[2]));
   PetscCall(VecSet(global, 0.0));
-  PetscCall(DMDAVecGetArray(g->da, local, &a));
-  for (PetscInt j = y0; j < y0 + ny; j++) {
-    for (PetscInt i = x0; i < x0 + nx; i++)
-      a[j][i] = flag[GridPadded(g, i, j)];
+  PetscCall(VecGetArrayWrite(local, &a));
+  for (PetscInt k = 0; k < BoxSize(size); k++) {
+    BoxAt(first, size, k, ij);
+    a[k] = flag[GridPadded(g, ij)];
   }
-  PetscCall(DMDAVecRestoreArray(g->da, local, &a));
+  PetscCall(VecRestoreArrayWrite(local, &a));
   PetscCall(DMLocalToGlobal(g->da, local, ADD_VALUES, global));
   PetscCall(DMGlobalToLocal(g->da, global, INSERT_VALUES, local));
-  PetscCall(PetscArrayzero(shared, g->gm[0] * g->gm[1]));
-  PetscCall(DMDAVecGetArrayRead(g->da, local, &a));
-  for (PetscInt j = y0; j < y0 + ny; j++) {
-    for (PetscInt i = x0; i < x0 + nx; i++)
-      shared[GridPadded(g, i, j)] = a[j][i] > 0.0;
+  PetscCall(PetscArrayzero(shared, GridPaddedSize(g)));
+  PetscCall(VecGetArrayRead(local, &seen));
+  for (PetscInt k = 0; k < BoxSize(size); k++) {
+    BoxAt(first, size, k, ij);
+    shared[GridPadded(g, ij)] = seen[k] > 0.0;
   }
-  PetscCall(DMDAVecRestoreArrayRead(g->da, local, &a));
+  PetscCall(VecRestoreArrayRead(local, &seen));
   PetscCall(DMRestoreLocalVector(g->da, &local));
   PetscCall(DMRestoreGlobalVector(g->da, &global));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static bool Owned(const Grid *g, PetscInt i, PetscInt j)
-{
-  return i >= g->xs[0] && i < g->xs[0] + g->xm[0] && j >= g->xs[1] && j < g->xs[1] + g->xm[1];
-}
-
 static PetscErrorCode Number(const Grid *g, const unsigned char *shared, NodeMap *map)
 {
-  const PetscInt n = g->gm[0] * g->gm[1];
+  const PetscInt n = GridPaddedSize(g);
   PetscInt       k = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &map->index));
   PetscCall(PetscMalloc1(n, &map->ij));
   for (int pass = 0; pass < 2; pass++) { /* owned nodes, then ghosts */
-    for (PetscInt j = g->gs[1]; j < g->gs[1] + g->gm[1]; j++) {
-      for (PetscInt i = g->gs[0]; i < g->gs[0] + g->gm[0]; i++) {
-        const PetscInt q = GridPadded(g, i, j);
+    for (PetscInt q = 0; q < n; q++) {
+      PetscInt ij[CL_DIM];
 
-        if (!shared[q]) {
-          map->index[q] = -1;
-          continue;
-        }
-        if (Owned(g, i, j) != (pass == 0))
-          continue;
-        map->ij[k][0] = i;
-        map->ij[k][1] = j;
-        map->index[q] = k++;
+      if (!shared[q]) {
+        map->index[q] = -1;
+        continue;
       }
+      BoxAt(g->gs, g->gm, q, ij);
+      if (BoxHolds(g->xs, g->xm, ij) != (pass == 0))
+        continue;
+      for (int d = 0; d < CL_DIM; d++)
+        map->ij[k][d] = ij[d];
+      map->index[q] = k++;
     }
     if (pass == 0)
       map->n_owned = k;
@@ -76,10 +71,11 @@ static PetscErrorCode Number(const Grid *g, const unsigned char *shared, NodeMap
 /* Global numbers of ghosts travel as doubles in a DMDA vector (exact below 2^53). */
 static PetscErrorCode NumberGhosts(const Grid *g, NodeMap *map)
 {
-  Vec          local, global;
-  double     **a;
-  PetscSFNode *remote;
-  PetscInt    *first;
+  Vec           local, global;
+  double       *a;
+  const double *seen;
+  PetscSFNode  *remote;
+  PetscInt     *first, corner[3], size[3];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(PetscMax(map->n_local, 1), &map->global));
@@ -88,21 +84,22 @@ static PetscErrorCode NumberGhosts(const Grid *g, NodeMap *map)
   PetscCallMPI(MPI_Allgather(&map->first, 1, MPIU_INT, first, 1, MPIU_INT, g->comm));
   PetscCall(DMGetLocalVector(g->da, &local));
   PetscCall(DMGetGlobalVector(g->da, &global));
-  PetscCall(DMDAVecGetArray(g->da, global, &a));
+  PetscCall(VecGetArray(global, &a));
   for (PetscInt k = 0; k < map->n_owned; k++)
-    a[map->ij[k][1]][map->ij[k][0]] = (double)(map->first + k);
-  PetscCall(DMDAVecRestoreArray(g->da, global, &a));
+    a[BoxPlace(g->xs, g->xm, map->ij[k])] = (double)(map->first + k);
+  PetscCall(VecRestoreArray(global, &a));
   PetscCall(DMGlobalToLocal(g->da, global, INSERT_VALUES, local));
-  PetscCall(DMDAVecGetArrayRead(g->da, local, &a));
+  PetscCall(DMDAGetGhostCorners(g->da, &corner[0], &corner[1], &corner[2], &size[0], &size[1], &size[2]));
+  PetscCall(VecGetArrayRead(local, &seen));
   for (PetscInt k = 0; k < map->n_local; k++) {
-    map->global[k] = (PetscInt)a[map->ij[k][1]][map->ij[k][0]];
+    map->global[k] = (PetscInt)seen[BoxPlace(corner, size, map->ij[k])];
     if (k >= map->n_owned) {
       const PetscMPIInt owner        = GridCellOwner(g, map->ij[k]);
       remote[k - map->n_owned].rank  = owner;
       remote[k - map->n_owned].index = map->global[k] - first[owner];
     }
   }
-  PetscCall(DMDAVecRestoreArrayRead(g->da, local, &a));
+  PetscCall(VecRestoreArrayRead(local, &seen));
   PetscCall(DMRestoreLocalVector(g->da, &local));
   PetscCall(DMRestoreGlobalVector(g->da, &global));
   PetscCall(PetscFree(first));
@@ -115,7 +112,7 @@ static PetscErrorCode NumberGhosts(const Grid *g, NodeMap *map)
 
 PetscErrorCode NodeMapUpdate(const Grid *g, const unsigned char *flag, NodeMap *map, bool *changed)
 {
-  const PetscInt n = g->gm[0] * g->gm[1];
+  const PetscInt n = GridPaddedSize(g);
   unsigned char *shared;
   PetscMPIInt    same = map->index != NULL;
 

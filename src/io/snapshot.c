@@ -7,8 +7,8 @@
    step started from (projections of the particles).  A file each, for a file that is rewritten may be lost with all. */
 #include "io_private.h"
 
-const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VSX, 2}, {"v_w", "m/s", F_VWX, 2}, {"v_g", "m/s", F_VGX, 2},
-                                  {"p_w", "Pa", F_PW, 1},   {"p_g", "Pa", F_PG, 1},   {"T", "degC", F_T, 1},
+const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VS, 2}, {"v_w", "m/s", F_VW, 2}, {"v_g", "m/s", F_VG, 2},
+                                  {"p_w", "Pa", F_PW, 1},  {"p_g", "Pa", F_PG, 1},  {"T", "degC", F_T, 1},
                                   {NULL, NULL, 0, 0}};
 
 const char *const io_whole[WHOLE_COUNT] = {"region", "id", "vertex"};

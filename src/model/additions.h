@@ -15,8 +15,8 @@ typedef struct {
 
 /* Pressure projection of one cell. */
 typedef struct {
-  PetscInt node[4];
-  double   K[4][4];                          /* m^2/Pa */
+  PetscInt node[CL_CORNERS];
+  double   K[CL_CORNERS][CL_CORNERS];        /* m^2/Pa */
   double   t_inertia;                        /* of (275), s */
   double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
 } ProjectionCell;
@@ -43,15 +43,18 @@ typedef struct {
   double change;             /* of the particle's pressures at the end of the step, Pa */
 } Exchange;
 
+/* Of a fluid at a node (35): direction of its flow, and a factor (0: none). */
+enum { UP_FACTOR = CL_DIM, UP_COUNT };
+
 struct Additions {
   PetscInt        nghost, ncell;
-  GhostLine      *ghost; /* [nghost] */
-  ProjectionCell *cell;  /* [ncell] (23) */
-  double   *up; /* [n_local][2][3] upstream weights of drag (35): direction of flow, factor (0: none); NULL when off */
-  Donor    *donor;    /* [n] (332); NULL when off */
-  Exchange *exchange; /* [n] (353); NULL when off */
-  double   *source;   /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
-  double   *spread;   /* [n][2] (200); NULL when off */
-  double   *upwind;   /* [n][3] (293); NULL when off */
-  Lump     *lump;     /* [n] (265); NULL when off */
+  GhostLine      *ghost;    /* [nghost] */
+  ProjectionCell *cell;     /* [ncell] (23) */
+  double         *up;       /* [n_local][PHASE_COUNT][UP_COUNT] upstream weights of drag (35); NULL when off */
+  Donor          *donor;    /* [n] (332); NULL when off */
+  Exchange       *exchange; /* [n] (353); NULL when off */
+  double         *source;   /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
+  double         *spread;   /* [n][2] (200); NULL when off */
+  double         *upwind;   /* [n][3] (293); NULL when off */
+  Lump           *lump;     /* [n] (265); NULL when off */
 };

@@ -13,30 +13,30 @@ void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
   /* eliminated fluids push the mixture as they are accelerated (173) */
   to->force = m->bc.ambient.on || (to->eliminated && fs->inertia);
   if (fs->solid) {
-    Add(to, OUT_P, 4);
+    Add(to, OUT_P, CL_DIM * CL_DIM);
     Add(to, OUT_M, 1);
     if (m->c->axisymmetric)
       Add(to, OUT_HOOP, 1);
     if (to->force)
-      Add(to, OUT_A, 2);
+      Add(to, OUT_A, CL_DIM);
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    Add(to, VectorAt(OUT_FLUX, f, 0), 2);
+    Add(to, VectorAt(OUT_FLUX, f, 0), CL_DIM);
     Add(to, OUT_DM + f, 1);
     if (fs->solid)
       Add(to, OUT_M + 1 + f, 1);
     if (to->eliminated)
       continue;
-    Add(to, VectorAt(OUT_G, f, 0), 2);
+    Add(to, VectorAt(OUT_G, f, 0), CL_DIM);
     Add(to, OUT_MI + f, 1);
     Add(to, OUT_D + f, 1);
     if (m->fluid)
       Add(to, OUT_ROOT + f, 1);
   }
   if (fs->heat) {
-    Add(to, OUT_HEAT, 2);
+    Add(to, OUT_HEAT, CL_DIM);
     Add(to, OUT_C, 2); /* and OUT_Q */
   }
 }

@@ -24,7 +24,8 @@ static void Velocity(const Model *m, PetscInt p, const double *x, double v[CL_DI
   const FieldSet *fs = &m->c->fields;
   Reach           r;
 
-  v[0] = v[1] = 0.0;
+  for (int d = 0; d < CL_DIM; d++)
+    v[d] = 0.0;
   if (!fs->solid)
     return;
   ReachExpand(m, p, &r);
@@ -258,13 +259,19 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   double         u[CL_DIM];
 
   Displacement(m, p, r, x, u);
-  const double log_J          = log(s->V / f[P_V][p]),
-               H[2][2]        = {{s->F[0][0] - 1.0, s->F[0][1]}, {s->F[1][0], s->F[1][1] - 1.0}};
-  const bool           grows  = m->c->basis == BASIS_CPGIMP;
-  const ParticleMotion motion = {.u       = {&u[0], &u[1]},
-                                 .H       = {{&H[0][0], &H[0][1]}, {&H[1][0], &H[1][1]}},
-                                 .log_J   = &log_J,
-                                 .stretch = {grows ? &s->stretch[0] : NULL, grows ? &s->stretch[1] : NULL}};
+  const double   log_J  = log(s->V / f[P_V][p]);
+  const bool     grows  = m->c->basis == BASIS_CPGIMP;
+  ParticleMotion motion = {.log_J = &log_J};
+  double         H[CL_DIM][CL_DIM];
+
+  for (int i = 0; i < CL_DIM; i++) {
+    motion.u[i]       = &u[i];
+    motion.stretch[i] = grows ? &s->stretch[i] : NULL;
+    for (int j = 0; j < CL_DIM; j++) {
+      H[i][j]        = s->F[i][j] - (i == j);
+      motion.H[i][j] = &H[i][j];
+    }
+  }
   ParticlesKeep(&m->P, p, 1, &motion);
   f[P_V][p] = s->V;
 
@@ -279,7 +286,7 @@ static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *
   const FieldSet *fs   = &m->c->fields;
   const double    from = fs->inertia ? m->keeps : 0.0;
 
-  for (int q = F_VSX; q < F_PW; q++) {
+  for (int q = F_VS; q < F_PW; q++) {
     if (fs->at[q] < 0)
       continue;
     double v = from * m->P.f[P_VS + q][p];
@@ -288,9 +295,9 @@ static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *
       const PetscInt I = r->node[a], k = I * fs->n + fs->at[q],
                      vs = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
       const double dv   = x[k] - from * m->x_n[k];
-      const double slip = q < F_VWX ? 0.0 : fs->solid ? dv - (x[vs] - from * m->x_n[vs]) : dv;
+      const double slip = q < F_VW ? 0.0 : fs->solid ? dv - (x[vs] - from * m->x_n[vs]) : dv;
 
-      v += r->S[a] * (dv + ((q < F_VWX ? 1.0 : FlowWeight(m, p, I, (q - F_VWX) / CL_DIM)) - 1.0) * slip);
+      v += r->S[a] * (dv + ((q < F_VW ? 1.0 : FlowWeight(m, p, I, (q - F_VW) / CL_DIM)) - 1.0) * slip);
     }
     m->P.f[P_VS + q][p] = v;
   }

@@ -16,7 +16,7 @@ static bool Direction(const Model *m, PetscInt p, const Reach *r, double e[CL_DI
     const PetscInt I  = r->node[a];
     const double   pI = m->x_n[I * fs->n + PlaceP(fs, PHASE_G)];
 
-    terms += hypot(r->G[a][0], r->G[a][1]) * fabs(pI);
+    terms += VectorLength(r->G[a]) * fabs(pI);
     rho += r->S[a] * m->coef[I * NC_COUNT + NC_RHO + PHASE_G];
     for (int d = 0; d < CL_DIM; d++)
       e[d] -= r->G[a][d] * pI;
@@ -25,7 +25,7 @@ static bool Direction(const Model *m, PetscInt p, const Reach *r, double e[CL_DI
     e[d] += rho * m->bc.gravity[d];
   if (m->beds)
     BedsDrive(&m->beds[p].A, e);
-  const double size = hypot(e[0], e[1]);
+  const double size = VectorLength(e);
   if (size <= ROUND_OFF * terms)
     return false;
   for (int d = 0; d < CL_DIM; d++)

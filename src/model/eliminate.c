@@ -49,8 +49,9 @@ static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f
 {
   for (int i = 0; i < CL_DIM + fs->heat; i++) {
     const double *wide = i < CL_DIM ? o->wide[f][i] : o->wide_q[f];
-    double       *D = o->D[i < CL_DIM ? VectorAt(OUT_FLUX, f, i) : OUT_Q], slope[CL_DIM] = {wide[0], wide[1]};
+    double       *D    = o->D[i < CL_DIM ? VectorAt(OUT_FLUX, f, i) : OUT_Q], slope[CL_DIM];
 
+    memcpy(slope, wide, sizeof(slope));
     if (A)
       BedsDrive(A, slope);
     for (int j = 0; j < CL_DIM; j++)
@@ -61,17 +62,24 @@ static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f
 /* (174): what the mass rows lose to a skeleton that gives way to the pressures. */
 static void FixedStress(const FieldSet *fs, PointOutput *o)
 {
-  const double *P0 = o->D[OUT_P], *P1 = o->D[OUT_P + 3];
-  const double  M = 0.5 * (P0[IN_GRADU] + P1[IN_GRADU + 3]);
+  double M = 0.0;
 
+  for (int i = 0; i < CL_DIM; i++)
+    M += o->D[VectorAt(OUT_P, i, i)][VectorAt(IN_GRADU, i, i)] / CL_DIM;
   for (int f = 0; f < PHASE_COUNT && M > 0.0; f++) {
-    double *D = o->D[OUT_DM + f];
+    double *D = o->D[OUT_DM + f], dV = 0.0;
 
     if (!fs->phase[f])
       continue;
-    const double dV = 0.5 * (D[IN_GRADU] + D[IN_GRADU + 3]);
-    for (int q = IN_P; q <= IN_T; q++)
-      D[q] -= dV * 0.5 * (P0[q] + P1[q]) / M;
+    for (int i = 0; i < CL_DIM; i++)
+      dV += D[VectorAt(IN_GRADU, i, i)] / CL_DIM;
+    for (int q = IN_P; q <= IN_T; q++) {
+      double P = 0.0;
+
+      for (int i = 0; i < CL_DIM; i++)
+        P += o->D[VectorAt(OUT_P, i, i)][q] / CL_DIM;
+      D[q] -= dV * P / M;
+    }
   }
 }
 
@@ -121,7 +129,7 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
     }
     for (int i = 0; i < CL_DIM; i++) {
       const double  J     = D[VectorAt(IN_J, f, i)];
-      const double *force = o->D[VectorAt(F_VWX, f, i)];
+      const double *force = o->D[VectorAt(F_VW, f, i)];
 
       D[VectorAt(IN_GP, f, i)] -= J * own;
       for (int q = 0; q < IN_COUNT; q++)

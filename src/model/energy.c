@@ -30,7 +30,7 @@ PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT])
 
 /* Velocities of skeleton, water and gas at a particle, and V div v_s. */
 typedef struct {
-  double v[3][2], expansion;
+  double v[1 + PHASE_COUNT][CL_DIM], expansion;
 } Motion;
 
 static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x, const PointState *s, Motion *o)
@@ -46,7 +46,7 @@ static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x
 
     for (int k = 0; k < 3; k++) {
       for (int i = 0; there[k] && i < CL_DIM; i++)
-        o->v[k][i] += r->S[a] * xI[fs->at[VectorAt(F_VSX, k, 0)] + i];
+        o->v[k][i] += r->S[a] * xI[fs->at[VectorAt(F_VS, k, 0)] + i];
     }
     for (int i = 0; i < CL_DIM; i++)
       u[a][i] = xI[PlaceVs(fs) + i];
@@ -65,7 +65,7 @@ static double InertiaPower(const Model *m, const Reach *r, const double *x, cons
 
   for (int k = 0; k < 3; k++) {
     for (int a = 0; there[k] && a < r->n; a++) {
-      const PetscInt q = r->node[a] * fs->n + fs->at[VectorAt(F_VSX, k, 0)];
+      const PetscInt q = r->node[a] * fs->n + fs->at[VectorAt(F_VS, k, 0)];
 
       for (int i = 0; i < CL_DIM; i++)
         sum += out[OUT_M + k] * r->S[a] * (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt * x[q + i];
@@ -110,10 +110,10 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
     for (int i = 0; i < CL_DIM; i++)
       power[WORK_PRESSURE] -= out[VectorAt(OUT_G, f, i)] * in[VectorAt(IN_J, f, i)];
     for (int a = 0; !m->fluid && a < r->n; a++) {
-      double J[2];
+      double J[CL_DIM];
 
       DarcyFlux(m, r->node[a], f, &x[r->node[a] * fs->n], J);
-      power[WORK_DRAG] += r->S[a] * FlowWeight(m, p, r->node[a], f) * out[OUT_D + f] * (J[0] * J[0] + J[1] * J[1]);
+      power[WORK_DRAG] += r->S[a] * FlowWeight(m, p, r->node[a], f) * out[OUT_D + f] * VectorDot(J, J);
     }
   }
   if (!m->bc.ambient.on)
@@ -121,8 +121,10 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
   double at[CL_DIM], gradient[CL_DIM];
   for (int d = 0; d < CL_DIM; d++)
     at[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]) + in[IN_U + d];
-  power[WORK_LOADS] -=
-      AmbientPressure(&m->bc.ambient, at, gradient) * k.expansion + out[OUT_A] * k.v[0][0] + out[OUT_A + 1] * k.v[0][1];
+  double sum = AmbientPressure(&m->bc.ambient, at, gradient) * k.expansion;
+  for (int d = 0; d < CL_DIM; d++)
+    sum += out[OUT_A + d] * k.v[0][d];
+  power[WORK_LOADS] -= sum;
 }
 
 void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
@@ -138,19 +140,19 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
       const double v    = f->N[a] * xI[PlaceVs(fs) + d];
       const bool   over = f->bc[BC_PLATE] >= 0 && d == SideAxis(f->side);
 
-      force -= o->out[F_VSX + d] * v;
+      force -= o->out[F_VS + d] * v;
       if (f->bc[BC_PLATE] >= 0)
         plate += (over ? -SideSign(f->side) * o->plate[PLATE_FORCE] : o->plate[PLATE_SHEAR]) * v;
     }
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
-      double J[2];
+      double J[CL_DIM];
 
       if (!fs->phase[ph])
         continue;
       DarcyFlux(m, r->node[a], ph, xI, J);
       for (int d = 0; d < CL_DIM; d++)
-        power[WORK_PRESSURE] -= FaceWeight(f, a, VectorAt(F_VWX, ph, d)) * FaceShare(m, f->particle, r->node[a], ph) *
-                                o->out[VectorAt(F_VWX, ph, d)] * J[d];
+        power[WORK_PRESSURE] -= FaceWeight(f, a, VectorAt(F_VW, ph, d)) * FaceShare(m, f->particle, r->node[a], ph) *
+                                o->out[VectorAt(F_VW, ph, d)] * J[d];
     }
   }
   power[WORK_PLATES] += plate;
@@ -165,10 +167,10 @@ double DragPower(const Model *m, const double *x)
   for (PetscInt I = 0; m->fluid && I < m->map.n_owned; I++) {
     for (int f = 0; f < PHASE_COUNT; f++) {
       const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
-      double           J[2];
+      double           J[CL_DIM];
 
       DarcyFlux(m, I, f, &x[I * m->c->fields.n], J);
-      sum += at->D * (J[0] * J[0] + J[1] * J[1]) / PetscSqr(at->root);
+      sum += at->D * VectorDot(J, J) / PetscSqr(at->root);
     }
   }
   return sum;

@@ -44,7 +44,8 @@ static void GatherMotion(const Model *m, PetscInt p, const Reach *r, double in[I
 /* (333): gas that comes from where it is. */
 static void GatherDonated(const Model *m, PetscInt p, const Reach *r, const double *x, double J[CL_DIM])
 {
-  J[0] = J[1] = 0.0;
+  for (int d = 0; d < CL_DIM; d++)
+    J[d] = 0.0;
   for (int a = 0; a < r->n; a++) {
     const double w = r->S[a] * FlowWeight(m, p, r->node[a], PHASE_G);
     double       at[CL_DIM];
@@ -106,7 +107,7 @@ static void GatherFace(const Model *m, PetscInt p, const Reach *r, const double 
       for (int d = 0; d < CL_DIM; d++) {
         const int at = VectorAt(IN_J, f, d);
 
-        in[at] = (a ? in[at] : 0.0) + FaceWeight(face, a, VectorAt(F_VWX, f, d)) * FaceShare(m, p, I, f) * J[d];
+        in[at] = (a ? in[at] : 0.0) + FaceWeight(face, a, VectorAt(F_VW, f, d)) * FaceShare(m, p, I, f) * J[d];
       }
     }
   }
@@ -143,10 +144,10 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   for (int k = 0; k < 3; k++)
     h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
   h->compression = m->c->compression_heat;
-  for (int k = 0; h->compression && k < PHASE_COUNT; k++) {
-    h->p_star[k]  = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
-    h->gravity[k] = m->bc.gravity[k];
-  }
+  for (int k = 0; h->compression && k < PHASE_COUNT; k++)
+    h->p_star[k] = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
+  for (int d = 0; h->compression && d < CL_DIM; d++)
+    h->gravity[d] = m->bc.gravity[d];
   h->beds = m->beds ? &m->beds[p].A : NULL;
   for (int f = 0; m->beds && f < PHASE_COUNT; f++)
     BedsWeight(m, p, f, h->weight[f]);
@@ -223,17 +224,19 @@ void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]
 static void FaceBeds(const Beds *A, const FieldSet *fs, FaceOutput *o)
 {
   for (int f = 0; f < PHASE_COUNT; f++) {
-    const int at = F_VWX + CL_DIM * f;
+    const int at = F_VW + CL_DIM * f;
 
     if (!fs->phase[f])
       continue;
     BedsDrive(A, &o->out[at]);
     for (int q = 0; q < IN_COUNT; q++) {
-      double slope[CL_DIM] = {o->D[at][q], o->D[at + 1][q]};
+      double slope[CL_DIM];
 
+      for (int d = 0; d < CL_DIM; d++)
+        slope[d] = o->D[at + d][q];
       BedsDrive(A, slope);
-      o->D[at][q]     = slope[0];
-      o->D[at + 1][q] = slope[1];
+      for (int d = 0; d < CL_DIM; d++)
+        o->D[at + d][q] = slope[d];
     }
   }
 }

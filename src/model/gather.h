@@ -16,17 +16,25 @@ typedef struct {
 /* (160), then (88) */
 static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
 {
-  const Stencil *s            = &m->stencil[p];
-  const bool     ring         = m->c->axisymmetric;
-  const PetscInt cell[CL_DIM] = {s->axis[0].base + s->cell[0], s->axis[1].base + s->cell[1]};
-  const double   h[CL_DIM]    = {LinesWidth(&m->grid.line[0], cell[0]), LinesWidth(&m->grid.line[1], cell[1])};
-  const double   radius = GridNode(&m->grid, 0, cell[0]), share = m->c->mean_strain;
-  const double   mean = m->c->mean_dilatation ? (1.0 - share) / (ring ? 3.0 : 2.0) : 0.0;
+  const Stencil *s    = &m->stencil[p];
+  const bool     ring = m->c->axisymmetric;
+  PetscInt       cell[CL_DIM];
+  double         h[CL_DIM];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    cell[d] = s->axis[d].base + s->cell[d];
+    h[d]    = LinesWidth(&m->grid.line[d], cell[d]);
+  }
+  const double radius = GridNode(&m->grid, 0, cell[0]), share = m->c->mean_strain;
+  const double mean = m->c->mean_dilatation ? (1.0 - share) / (ring ? CL_DIM + 1 : CL_DIM) : 0.0;
 
   for (int a = 0; a < r->n; a++) {
-    const PetscInt i[CL_DIM] = {m->map.ij[r->node[a]][0] - cell[0], m->map.ij[r->node[a]][1] - cell[1]};
-    double         Q[CL_DIM];
-    const double   hoop = CellGradient(h, ring, i, radius, Q), beyond = ring ? hoop - r->H[a] : 0.0;
+    PetscInt i[CL_DIM];
+    double   Q[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++)
+      i[d] = m->map.ij[r->node[a]][d] - cell[d];
+    const double hoop = CellGradient(h, ring, i, radius, Q), beyond = ring ? hoop - r->H[a] : 0.0;
 
     for (int d = 0; d < CL_DIM; d++) {
       r->mixed[a][d] = r->G[a][d] + share * (Q[d] - r->G[a][d]);
@@ -63,10 +71,10 @@ static inline void MotionGradient(const Model *m, const Reach *r, double (*u)[CL
     if (m->c->axisymmetric)
       g[MOTION_HOOP] += u[a][0] * r->K[a];
     if (m->c->mean_dilatation)
-      more += u[a][0] * r->B[a][0] + u[a][1] * r->B[a][1];
+      more += VectorDot(u[a], r->B[a]);
   }
-  g[0] += more;
-  g[3] += more;
+  for (int d = 0; d < CL_DIM; d++)
+    g[VectorAt(0, d, d)] += more;
   if (m->c->axisymmetric)
     g[MOTION_HOOP] += more;
 }
@@ -104,37 +112,36 @@ static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias, aligned(sizeof(double))));
 
 /* Model.give, what a node holds for its particles: they sum it with S, what stands from GIVE_GRAD on with G. */
+/* So many numbers in whole Lanes, whatever their width. */
+#define WHOLE_LANES(n) (((n) + 7) / 8 * 8)
 enum {
-  GIVE_SCALAR = 0,  /* p_w, p_g (Pa), T (K) less those at t_n */
-  GIVE_START  = 3,  /* those at t_n */
-  GIVE_U      = 6,  /* displacement of the step, m */
-  GIVE_J      = 8,  /* Darcy fluxes times V/Vk (350), m/s */
-  GIVE_PROJ   = 12, /* projected pressure gradients, Pa/m */
-  GIVE_GRAD   = 16,
-  GIVE_MOTION = GIVE_GRAD + 3, /* after p_w, p_g, T: displacement */
-  GIVE_COUNT  = 24
+  GIVE_SCALARS = PHASE_COUNT + 1,
+  GIVE_SCALAR  = 0,                          /* p_w, p_g (Pa), T (K) less those at t_n */
+  GIVE_START   = GIVE_SCALAR + GIVE_SCALARS, /* those at t_n */
+  GIVE_U       = GIVE_START + GIVE_SCALARS,  /* displacement of the step, m */
+  GIVE_J       = GIVE_U + CL_DIM,            /* Darcy fluxes times V/Vk (350), m/s */
+  GIVE_PROJ    = GIVE_J + CL_FLUID_VECTORS,  /* projected pressure gradients, Pa/m */
+  GIVE_GRAD    = WHOLE_LANES(GIVE_PROJ + CL_FLUID_VECTORS),
+  GIVE_MOTION  = GIVE_GRAD + GIVE_SCALARS, /* after p_w, p_g, T: displacement */
+  GIVE_COUNT   = WHOLE_LANES(GIVE_MOTION + CL_DIM)
 };
+
+/* Of a fluid: OUT_MI, once more with the weight, OUT_G, OUT_D. */
+enum { FLUID_MI = 0, FLUID_MI2, FLUID_G, FLUID_D = FLUID_G + CL_DIM, FLUID_COUNT };
 
 /* Model.take, what particles have added at a node: with S, what stands from TAKE_GRAD on with G. */
 enum {
-  TAKE_M     = 0,  /* OUT_M */
-  TAKE_DM    = 3,  /* OUT_DM */
-  TAKE_C     = 5,  /* OUT_C, OUT_Q */
-  TAKE_ROOT  = 7,  /* OUT_ROOT with V and the layer's weight (108) */
-  TAKE_A     = 9,  /* OUT_A */
-  TAKE_FLUID = 11, /* of each fluid FLUID_... with the layer's weight (350), or (333) */
-  TAKE_GRAD  = 24, /* what is tested with G in the rows of v_s ... */
-  TAKE_MASS  = 26, /* ... of the fluids' masses ... */
-  TAKE_HEAT  = 28, /* ... and of T */
-  TAKE_COUNT = 32
+  TAKE_M     = 0,                        /* OUT_M */
+  TAKE_DM    = TAKE_M + 1 + PHASE_COUNT, /* OUT_DM */
+  TAKE_C     = TAKE_DM + PHASE_COUNT,    /* OUT_C, OUT_Q */
+  TAKE_ROOT  = TAKE_C + 2,               /* OUT_ROOT with V and the layer's weight (108) */
+  TAKE_A     = TAKE_ROOT + PHASE_COUNT,  /* OUT_A */
+  TAKE_FLUID = TAKE_A + CL_DIM,          /* of each fluid FLUID_... with the layer's weight (350), or (333) */
+  TAKE_GRAD  = WHOLE_LANES(TAKE_FLUID + PHASE_COUNT * FLUID_COUNT), /* tested with G in the rows of v_s ... */
+  TAKE_MASS  = TAKE_GRAD + CL_DIM,                                  /* ... of the fluids' masses ... */
+  TAKE_HEAT  = TAKE_MASS + PHASE_COUNT,                             /* ... and of T */
+  TAKE_COUNT = WHOLE_LANES(TAKE_HEAT + 1)
 };
-enum {
-  FLUID_MI = 0,
-  FLUID_MI2,
-  FLUID_G,
-  FLUID_D = 4,
-  FLUID_COUNT
-}; /* OUT_MI, once more with the weight, OUT_G, OUT_D */
 
 /* How far a particle lies upstream of a node, against the direction of flow there, m; negative downstream. */
 static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const double direction[CL_DIM])
@@ -230,15 +237,15 @@ static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
 {
   const bool mass = q == F_PW || q == F_PG;
 
-  if (m->fluid && q >= F_VWX && q <= F_VGY)
-    return &m->fluid[PHASE_COUNT * I + (q - F_VWX) / CL_DIM].F[(q - F_VWX) % CL_DIM];
+  if (m->fluid && q >= F_VW && q < F_PW)
+    return &m->fluid[PHASE_COUNT * I + (q - F_VW) / CL_DIM].F[(q - F_VW) % CL_DIM];
   return mass ? MassRow(m, f, I, q - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[q]];
 }
 
 /* What a face of particle p at node I adds to row q is weighted with besides: (350) in (16). */
 static inline double FaceFlow(const Model *m, PetscInt p, PetscInt I, int q)
 {
-  return q >= F_VWX && q <= F_VGY ? FlowWeight(m, p, I, (q - F_VWX) / CL_DIM) : 1.0;
+  return q >= F_VW && q < F_PW ? FlowWeight(m, p, I, (q - F_VW) / CL_DIM) : 1.0;
 }
 
 static inline double RowWeightOf(const Model *m, PetscInt I, int q)
@@ -258,18 +265,25 @@ static inline double NodeVolume(const Model *m, PetscInt I)
 {
   const PetscInt *ij = m->map.ij[I];
   const double    h0 = LinesAround(&m->grid.line[0], ij[0]), r = GridNode(&m->grid, 0, ij[0]);
+  double          V = h0;
 
-  return h0 * LinesAround(&m->grid.line[1], ij[1]) * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
+  for (int d = 1; d < CL_DIM; d++)
+    V *= LinesAround(&m->grid.line[d], ij[d]);
+  return V * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
 }
 
 /* The smallest cell width at a node, m. */
 static inline double NodeWidth(const Model *m, PetscInt I)
 {
-  return fmin(LinesLess(&m->grid.line[0], m->map.ij[I][0]), LinesLess(&m->grid.line[1], m->map.ij[I][1]));
+  double h = INFINITY;
+
+  for (int d = 0; d < CL_DIM; d++)
+    h = fmin(h, LinesLess(&m->grid.line[d], m->map.ij[I][d]));
+  return h;
 }
 
 /* Darcy flux of a fluid at a node (19). */
-static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI, double J[2])
+static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI, double J[CL_DIM])
 {
   const FieldSet *fs = &m->c->fields;
   const double    w = m->w[PHASE_COUNT * I + f], *v = &xI[PlaceV(fs, f)];
@@ -278,14 +292,19 @@ static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI
     J[i] = w * (fs->solid ? v[i] - xI[PlaceVs(fs) + i] : v[i]);
 }
 
+static inline double *UpstreamAt(const Model *m, PetscInt I, int f)
+{
+  return &m->added->up[UP_COUNT * (PHASE_COUNT * I + f)];
+}
+
 /* Weight of a particle in k_r of a node (108): (350), or what looks upstream (35). */
 static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
   if (!m->c->stabilisation.upstream)
     return S * LayerWeight(m, p, I);
-  const double *u = &m->added->up[6 * I + 3 * f];
+  const double *u = UpstreamAt(m, I, f);
 
-  return u[2] > 0.0 ? S * u[2] * fmax(Upstream(m, p, I, u), 0.0) : S;
+  return u[UP_FACTOR] > 0.0 ? S * u[UP_FACTOR] * fmax(Upstream(m, p, I, u), 0.0) : S;
 }
 
 /* ... of all in the node's k_r (108). */
@@ -295,7 +314,7 @@ static inline double MobilityShare(const Model *m, PetscInt p, PetscInt I, int f
 }
 
 /* Acceleration of the velocity at place k of a node's block; quasi-static: none. */
-static inline void Rate(const Model *m, PetscInt I, const double *x, int k, double rate[2])
+static inline void Rate(const Model *m, PetscInt I, const double *x, int k, double rate[CL_DIM])
 {
   const PetscInt q = I * m->c->fields.n + k;
 
@@ -304,7 +323,7 @@ static inline void Rate(const Model *m, PetscInt I, const double *x, int k, doub
 }
 
 /* ... weighted, less gravity. */
-static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double weight, double acc[2])
+static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double weight, double acc[CL_DIM])
 {
   Rate(m, I, x, k, acc);
   for (int i = 0; i < CL_DIM; i++)
@@ -312,10 +331,10 @@ static inline void Acceleration(const Model *m, PetscInt I, const double *x, int
 }
 
 /* What of the skeleton's acceleration less gravity beds take off a fluid (308): (A - 1) of it. */
-static inline void BedsHold(const Model *m, PetscInt p, PetscInt I, const double *x, double across[2])
+static inline void BedsHold(const Model *m, PetscInt p, PetscInt I, const double *x, double across[CL_DIM])
 {
   const FieldSet *fs = &m->c->fields;
-  double          s[2];
+  double          s[CL_DIM];
 
   for (int i = 0; i < CL_DIM; i++)
     s[i] = -m->bc.gravity[i];
@@ -329,9 +348,9 @@ static inline void BedsHold(const Model *m, PetscInt p, PetscInt I, const double
 }
 
 /* ... of a fluid of particle p with (310). */
-static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, const double *x, int f, double acc[2])
+static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, const double *x, int f, double acc[CL_DIM])
 {
-  double across[2];
+  double across[CL_DIM];
 
   Acceleration(m, I, x, PlaceV(&m->c->fields, f), FlowWeight(m, p, I, f), acc);
   if (!m->beds)
@@ -364,23 +383,26 @@ static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
 /* Nodes that one couples with: within two of it, itself in the middle. */
 #define RADIUS 2
 #define WIDTH (2 * RADIUS + 1)
-#define NEIGHBOURS (WIDTH * WIDTH)
+enum { NEIGHBOURS = CL_DIM == 2 ? WIDTH * WIDTH : WIDTH * WIDTH * WIDTH };
 
 /* Local number of neighbour k; -1 where there is none that this rank knows. */
 static inline PetscInt ModelNeighbour(const Model *m, PetscInt I, int k)
 {
-  const Grid    *g = &m->grid;
-  const PetscInt i = m->map.ij[I][0] + k % WIDTH - RADIUS, j = m->map.ij[I][1] + k / WIDTH - RADIUS;
+  PetscInt ij[CL_DIM];
 
-  if (i < g->gs[0] || j < g->gs[1] || i >= g->gs[0] + g->gm[0] || j >= g->gs[1] + g->gm[1])
-    return -1;
-  return m->map.index[GridPadded(g, i, j)];
+  for (int d = 0; d < CL_DIM; k /= WIDTH, d++)
+    ij[d] = m->map.ij[I][d] + k % WIDTH - RADIUS;
+  return BoxHolds(m->grid.gs, m->grid.gm, ij) ? m->map.index[GridPadded(&m->grid, ij)] : -1;
 }
 
 /* Which neighbour of I is K? */
 static inline PetscInt ModelOffset(const Model *m, PetscInt I, PetscInt K)
 {
-  return (m->map.ij[K][1] - m->map.ij[I][1] + RADIUS) * WIDTH + m->map.ij[K][0] - m->map.ij[I][0] + RADIUS;
+  PetscInt k = 0;
+
+  for (int d = CL_DIM - 1; d >= 0; d--)
+    k = k * WIDTH + m->map.ij[K][d] - m->map.ij[I][d] + RADIUS;
+  return k;
 }
 
 /* What a Jacobian is assembled for. */
@@ -405,11 +427,11 @@ static inline double *AssemblyBlock(const Model *m, const Assembly *to, PetscInt
 
 /* Rows of the tangent as long as the unknowns of all nodes of a particle or face, node by node, zeros up to a multiple
    of 8, so that sums of them are vector code whatever the number of fields. */
-#define ROW_MOST ((CL_NODES * F_COUNT + 7) / 8 * 8)
+#define ROW_MOST WHOLE_LANES(CL_NODES *F_COUNT)
 
 static inline int RowLength(int unknowns)
 {
-  return (unknowns + 7) / 8 * 8;
+  return WHOLE_LANES(unknowns);
 }
 
 /* One node as a particle or face sees it; NS (by fluid and component) and NU stand for S in the Darcy fluxes, where it
@@ -472,8 +494,8 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o);
 /* Momenta of two fluids (16) at X, on all local nodes; costs a residual only where the last one was elsewhere. */
 PetscErrorCode ModelFluidsAt(Model *m, Vec X);
-/* Projected pressure gradients (20), (309) of the nodal pressures x into proj (n_local x 4), all ranks; slope: what a
-   change x of them makes. */
+/* Projected pressure gradients (20), (309) of the nodal pressures x into proj (n_local x PHASE_COUNT x CL_DIM), all
+   ranks; slope: what a change x of them makes. */
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);

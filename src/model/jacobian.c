@@ -4,11 +4,11 @@
 
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
-  double acc[3][2], own[PHASE_COUNT][CL_DIM], J[PHASE_COUNT][CL_DIM], Tdot; /* own: in (16), (310) */
-  double weight[PHASE_COUNT];                                               /* RowWeight */
-  double kr[PHASE_COUNT];                                                   /* of the node (108) */
-  double flow[PHASE_COUNT], share[PHASE_COUNT];                             /* (350), (333), and without S */
-  double rise[PHASE_COUNT][CL_DIM]; /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
+  double acc[1 + PHASE_COUNT][CL_DIM], own[PHASE_COUNT][CL_DIM], J[PHASE_COUNT][CL_DIM], Tdot; /* own: in (16), (310) */
+  double weight[PHASE_COUNT];                                                                  /* RowWeight */
+  double kr[PHASE_COUNT];                                                                      /* of the node (108) */
+  double flow[PHASE_COUNT], share[PHASE_COUNT]; /* (350), (333), and without S */
+  double rise[PHASE_COUNT][CL_DIM];             /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
 } NodeFactors;
 
 static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, double S, NodeFactors *n)
@@ -79,8 +79,8 @@ static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const 
     if (m->c->axisymmetric && i == 0)
       TERM(OUT_HOOP, r->K[a]);
     if (m->c->mean_dilatation) {
-      TERM(OUT_P, r->B[a][i]);
-      TERM(OUT_P + 3, r->B[a][i]);
+      for (int d = 0; d < CL_DIM; d++)
+        TERM(VectorAt(OUT_P, d, d), r->B[a][i]);
       if (m->c->axisymmetric)
         TERM(OUT_HOOP, r->B[a][i]);
     }
@@ -227,16 +227,18 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
   SlopesBegin(fs->n * r->n, m->c->mean_dilatation, slopes);
   for (int b = 0; b < r->n; b++) {
     Factors(m, p, r->node[b], x, r->S[b], &factor[b]);
-    const NodeWeights at = {
-        .S  = r->S[b],
-        .NS = {{factor[b].flow[PHASE_W], factor[b].flow[PHASE_W]}, {factor[b].flow[PHASE_G], factor[b].flow[PHASE_G]}},
-        .NU = MotionWeight(m, p, r, b),
-        .K  = axisymmetric ? r->K[b] : 0.0,
-        .G  = r->G[b],
-        .M  = r->M[b],
-        .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-        .w  = &m->w[PHASE_COUNT * r->node[b]]};
+    NodeWeights at = {.S  = r->S[b],
+                      .NU = MotionWeight(m, p, r, b),
+                      .K  = axisymmetric ? r->K[b] : 0.0,
+                      .G  = r->G[b],
+                      .M  = r->M[b],
+                      .B  = m->c->mean_dilatation ? r->B[b] : NULL,
+                      .w  = &m->w[PHASE_COUNT * r->node[b]]};
 
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      for (int d = 0; d < CL_DIM; d++)
+        at.NS[f][d] = factor[b].flow[f];
+    }
     SlopesAdd(fs, axisymmetric, m->stage.dt, &at, b * fs->n, slopes);
   }
   for (int k = 0; k < to->nout; k++) {
@@ -246,19 +248,21 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
   SlopesApply(slopes, to->nout, D, row);
   NodeRows(m, to, r, factor, DB, slopes->length, patch);
   for (int a = 0; a < r->n; a++) {
-    Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[2 * r->node[a]], &patch->v[a][0][a * fs->n], ROW_MOST);
+    Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[PHASE_COUNT * r->node[a]], &patch->v[a][0][a * fs->n],
+             ROW_MOST);
     if (m->beds && fs->solid && fs->inertia)
       DiagonalBeds(fs, &m->beds[p].A, o->out, &factor[a], m->stage.dt, &patch->v[a][0][a * fs->n], ROW_MOST);
   }
 }
 
-static void KeepWide(const FieldSet *fs, const PointOutput *o, double *wide)
+static void KeepWide(const FieldSet *fs, const PointOutput *o, Wide *w)
 {
   for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int k = 0; fs->phase[f] && k < 4; k++)
-      wide[4 * f + k] = o->wide[f][k / 2][k % 2];
-    for (int j = 0; fs->phase[f] && fs->heat && j < CL_DIM; j++)
-      wide[8 + 2 * f + j] = o->wide_q[f][j];
+    if (!fs->phase[f])
+      continue;
+    memcpy(w->flux[f], o->wide[f], sizeof(w->flux[f]));
+    if (fs->heat)
+      memcpy(w->q[f], o->wide_q[f], sizeof(w->q[f]));
   }
 }
 
@@ -280,7 +284,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
     if (ParticleEvaluate(m, p, x, true, &r, in, &state, &o) != CL_OK)
       continue; /* the residual said so */
     if (m->wide)
-      KeepWide(&m->c->fields, &o, &m->wide[12 * p]);
+      KeepWide(&m->c->fields, &o, &m->wide[p]);
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
         EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
@@ -296,7 +300,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
 /* Factor of what a face puts into the row of any unknown: k_r in (16). */
 static double MobilityOf(const Model *m, PetscInt I, int q)
 {
-  return m->fluid && q >= F_VWX && q <= F_VGY ? PetscSqr(m->fluid[PHASE_COUNT * I + (q - F_VWX) / CL_DIM].root) : 1.0;
+  return m->fluid && q >= F_VW && q < F_PW ? PetscSqr(m->fluid[PHASE_COUNT * I + (q - F_VW) / CL_DIM].root) : 1.0;
 }
 
 /* Rows of a face's nodes: all are weighted with N. */
@@ -308,17 +312,18 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
   slopes.unknowns = 0;
   SlopesBegin(fs->n * r->n, true, &slopes);
   for (int b = 0; b < r->n; b++) {
-    const double water   = FaceShare(m, face->particle, r->node[b], PHASE_W),
-                 gas     = FaceShare(m, face->particle, r->node[b], PHASE_G);
-    const NodeWeights at = {.S  = r->S[b],
-                            .NS = {{water * face->Nr[b], water * face->N[b]}, {gas * face->Nr[b], gas * face->N[b]}},
-                            .NU = face->N[b],
-                            .K  = m->c->axisymmetric ? r->K[b] : 0.0,
-                            .G  = r->G[b],
-                            .M  = r->M[b],
-                            .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                            .w  = &m->w[PHASE_COUNT * r->node[b]]};
+    NodeWeights at = {.S  = r->S[b],
+                      .NU = face->N[b],
+                      .K  = m->c->axisymmetric ? r->K[b] : 0.0,
+                      .G  = r->G[b],
+                      .M  = r->M[b],
+                      .B  = m->c->mean_dilatation ? r->B[b] : NULL,
+                      .w  = &m->w[PHASE_COUNT * r->node[b]]};
 
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      for (int d = 0; d < CL_DIM; d++)
+        at.NS[f][d] = FaceShare(m, face->particle, r->node[b], f) * FaceWeight(face, b, VectorAt(F_VW, f, d));
+    }
     SlopesAdd(fs, m->c->axisymmetric, m->stage.dt, &at, b * fs->n, &slopes);
   }
   for (int k = 0; k < F_COUNT; k++) {

@@ -26,17 +26,17 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
     at[f] = PlaceP(fs, fs->phase[f] ? f : 1 - f);
   if (!fs->fluid || !m->c->stabilisation.flux_interpolation)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(proj, 4 * m->map.n_local));
+  PetscCall(PetscArrayzero(proj, CL_FLUID_VECTORS * m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double Vk   = ConductingVolume(m, p);
-    double       g[4] = {0.0};
+    const double Vk                  = ConductingVolume(m, p);
+    double       g[CL_FLUID_VECTORS] = {0.0};
     Reach        r;
 
     ReachExpand(m, p, &r);
     for (int a = 0; a < r.n; a++) {
       const double *xI = &x[r.node[a] * fs->n], pI[PHASE_COUNT] = {xI[at[PHASE_W]], xI[at[PHASE_G]]};
 
-      for (int k = 0; k < 4; k++)
+      for (int k = 0; k < CL_FLUID_VECTORS; k++)
         g[k] += r.G[a][k % CL_DIM] * pI[k / CL_DIM];
     }
     for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
@@ -50,14 +50,14 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
       const double VS    = Vk * r.S[a];
       const double of[2] = {VS, donor ? VS * DonorShare(m, p, r.node[a]) : VS};
 
-      for (int k = 0; k < 4; k++)
-        proj[4 * r.node[a] + k] += of[k / CL_DIM] * g[k];
+      for (int k = 0; k < CL_FLUID_VECTORS; k++)
+        proj[CL_FLUID_VECTORS * r.node[a] + k] += of[k / CL_DIM] * g[k];
     }
   }
-  PetscCall(NodeMapSum(&m->map, proj, 4));
+  PetscCall(NodeMapSum(&m->map, proj, CL_FLUID_VECTORS));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    for (int k = 0; k < 4; k++)
-      proj[4 * I + k] /= Donated(m, k / CL_DIM) ? m->added->source[2 * I + 1] : m->Vk[I];
+    for (int k = 0; k < CL_FLUID_VECTORS; k++)
+      proj[CL_FLUID_VECTORS * I + k] /= Donated(m, k / CL_DIM) ? m->added->source[2 * I + 1] : m->Vk[I];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

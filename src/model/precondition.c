@@ -25,14 +25,14 @@ static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[
 
   PetscFunctionBeginUser;
   *count = 0;
-  PetscCall(PetscCalloc1(g->gm[0] * g->gm[1], &seen));
+  PetscCall(PetscCalloc1(GridPaddedSize(g), &seen));
   for (PetscInt p = 0; p < m->P.n; p++) {
     const double x[CL_DIM] = {m->P.f[P_X][p], m->P.f[P_X + 1][p]};
     PetscInt     cell[CL_DIM];
 
     if (!GridCell(g, x, cell))
       continue;
-    unsigned char *here = &seen[GridPadded(g, cell[0], cell[1])];
+    unsigned char *here = &seen[GridPadded(g, cell)];
     *count += !*here;
     *here = 1;
     for (int d = 0; d < CL_DIM; d++) {

@@ -28,7 +28,7 @@ static void Unknowns(const FieldSet *fs, Reduced *r)
     const int q = fs->field[k];
 
     place[k] = -1;
-    if (q >= F_VWX && q <= F_VGY)
+    if (q >= F_VW && q < F_PW)
       continue;
     place[k]               = r->fs.n;
     r->full[r->fs.n]       = k;
@@ -430,7 +430,7 @@ static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
     const int q = fs->field[k % fs->n];
 
-    if (q >= F_VWX && q <= F_VGY)
+    if (q >= F_VW && q < F_PW)
       x[k] = (a[k] - s[k]) / d[k];
   }
   PetscCall(VecRestoreArray(Y, &x));

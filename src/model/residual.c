@@ -39,28 +39,38 @@ static void SharesOf(const Model *m, PetscInt p, const double out[OUT_COUNT], Sh
       s->G[d][TAKE_MASS - TAKE_GRAD + f] = -dt * out[VectorAt(OUT_FLUX, f, d)];
     }
   }
-  for (int d = 0; fs->heat && d < CL_DIM; d++) {
-    s->S[TAKE_C + d]               = out[OUT_C + d];
+  if (!fs->heat)
+    return;
+  s->S[TAKE_C]     = out[OUT_C];
+  s->S[TAKE_C + 1] = out[OUT_Q];
+  for (int d = 0; d < CL_DIM; d++)
     s->G[d][TAKE_HEAT - TAKE_GRAD] = out[OUT_HEAT + d];
-  }
 }
 
 /* Where motion has weights of its own: about an axis, over cells. */
 static void ScatterMotion(Model *m, const Reach *r, const double out[OUT_COUNT], Shares *s)
 {
-  const double mean = out[OUT_P] + out[OUT_P + 3] + (m->c->axisymmetric ? out[OUT_HOOP] : 0.0);
+  double mean = out[OUT_P];
+
+  for (int d = 1; d < CL_DIM; d++)
+    mean += out[VectorAt(OUT_P, d, d)];
+  if (m->c->axisymmetric)
+    mean += out[OUT_HOOP];
 
   for (int i = 0; i < CL_DIM; i++) {
     for (int a = 0; a < r->n; a++) {
-      double *row = &m->take[TAKE_COUNT * r->node[a] + TAKE_GRAD + i];
+      double *row = &m->take[TAKE_COUNT * r->node[a] + TAKE_GRAD + i], sum = r->M[a][0] * s->G[0][i];
 
-      *row += r->M[a][0] * s->G[0][i] + r->M[a][1] * s->G[1][i];
+      for (int d = 1; d < CL_DIM; d++)
+        sum += r->M[a][d] * s->G[d][i];
+      *row += sum;
       if (m->c->axisymmetric && i == 0)
         *row += r->K[a] * out[OUT_HOOP];
       if (m->c->mean_dilatation)
         *row += r->B[a][i] * mean;
     }
-    s->G[0][i] = s->G[1][i] = 0.0;
+    for (int d = 0; d < CL_DIM; d++)
+      s->G[d][i] = 0.0;
   }
 }
 
@@ -99,6 +109,16 @@ static void ScatterBeds(Model *m, PetscInt p, const Reach *r, const double *x, i
   }
 }
 
+/* Sum over the axes of g times the k-th Lanes of G. */
+static inline Lanes LanesAlong(const double g[CL_DIM], const double G[CL_DIM][TAKE_COUNT - TAKE_GRAD], int k)
+{
+  Lanes sum = g[0] * ((const Lanes *)G[0])[k];
+
+  for (int d = 1; d < CL_DIM; d++)
+    sum += g[d] * ((const Lanes *)G[d])[k];
+  return sum;
+}
+
 static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT])
 {
   const FieldSet *fs = &m->c->fields;
@@ -113,14 +133,14 @@ static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const
     if (fs->phase[f] && (Donated(m, f) || !LayerRoot(m)))
       ScatterFluid(m, p, r, f, out, &s);
   }
-  const Lanes *S = (const Lanes *)s.S, *Gx = (const Lanes *)s.G[0], *Gy = (const Lanes *)s.G[1];
+  const Lanes *S = (const Lanes *)s.S;
   for (int a = 0; a < r->n; a++) {
     Lanes *node = (Lanes *)&m->take[TAKE_COUNT * r->node[a]];
 
     for (int k = 0; k < TAKE_GRAD / LANES; k++)
       node[k] += r->S[a] * S[k];
     for (int k = 0; k < (TAKE_COUNT - TAKE_GRAD) / LANES; k++)
-      node[TAKE_GRAD / LANES + k] += r->G[a][0] * Gx[k] + r->G[a][1] * Gy[k];
+      node[TAKE_GRAD / LANES + k] += LanesAlong(r->G[a], s.G, k);
   }
 }
 
@@ -128,7 +148,7 @@ static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const
 static void SolidRow(const Model *m, PetscInt I, const double *x, const double *take, double *f)
 {
   const FieldSet *fs = &m->c->fields;
-  double         *fI = &f[I * fs->n + PlaceVs(fs)], acc[2];
+  double         *fI = &f[I * fs->n + PlaceVs(fs)], acc[CL_DIM];
 
   for (int k = 0; k < 1 + PHASE_COUNT; k++) {
     if (k > 0 && !fs->phase[k - 1])
@@ -147,7 +167,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   const FieldSet *fs    = &m->c->fields;
   const double   *of    = &take[TAKE_FLUID + FLUID_COUNT * ph];
   FluidNode      *at    = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
-  double         *row   = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], rate[2], J[2];
+  double         *row   = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], rate[CL_DIM], J[CL_DIM];
   const double    share = NodeShare(m, I, ph);
 
   *MassRow(m, f, I, ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
@@ -237,7 +257,7 @@ static PetscErrorCode MomentumRows(Model *m, const double *x)
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       const FluidNode *at = &m->fluid[PHASE_COUNT * I + ph];
-      double           J[2];
+      double           J[CL_DIM];
 
       DarcyFlux(m, I, ph, &x[I * fs->n], J);
       for (int i = 0; i < CL_DIM; i++)

@@ -78,8 +78,8 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
       in[IN_HOOP][vs] = dt * b->K;
     if (!b->B)
       continue;
-    in[IN_GRADU][vs + i] += dt * b->B[i];
-    in[IN_GRADU + 3][vs + i] += dt * b->B[i];
+    for (int d = 0; d < CL_DIM; d++)
+      in[VectorAt(IN_GRADU, d, d)][vs + i] += dt * b->B[i];
     if (axisymmetric)
       in[IN_HOOP][vs + i] += dt * b->B[i];
   }
@@ -151,10 +151,10 @@ void PatchAdd(const Model *m, const Assembly *to, const Patch *s)
 {
   if (to->fs.n == F_COUNT)
     AddBlocks(m, to, F_COUNT, s);
-  else if (to->fs.n == 5)
-    AddBlocks(m, to, 5, s);
-  else if (to->fs.n == 2)
-    AddBlocks(m, to, 2, s);
+  else if (to->fs.n == CL_DIM + 3) /* v_s, p_w, p_g, T */
+    AddBlocks(m, to, CL_DIM + 3, s);
+  else if (to->fs.n == CL_DIM)
+    AddBlocks(m, to, CL_DIM, s);
   else
     AddBlocks(m, to, to->fs.n, s);
 }

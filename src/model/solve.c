@@ -158,7 +158,7 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
     PetscCall(FieldNorms(m, dX, update));
   for (int q = F_PW; q <= F_T; q++)
     residual[q] *= CONSERVATION;
-  for (int q = F_VWX; q <= F_VGY; q++)
+  for (int q = F_VW; q < F_PW; q++)
     residual[q] *= SLAVED, update[q] = 0.0; /* slaved to the pressures by (16): their residual says it all */
   const double r = Largest(residual, &fr), u = Largest(update, &fu);
   PetscCall(PetscInfo(snes, "Newton %" PetscInt_FMT ": largest residual %.3e (%s), largest update %.3e (%s)\n", it, r,

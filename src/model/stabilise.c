@@ -4,13 +4,29 @@
 #define SLIVER 1e-6 /* of a cell */
 #define FULL 0.75   /* cells filled less, or with a surface inside, are cut */
 
-static PetscInt CellIndex(const Model *m, PetscInt i, PetscInt j)
+/* A cell is named after its lowest node; -1: this rank does not know it. */
+static PetscInt CellIndex(const Model *m, const PetscInt cell[CL_DIM])
 {
   const Grid *g = &m->grid;
 
-  if (i < g->gs[0] || j < g->gs[1] || i >= g->gs[0] + g->gm[0] || j >= g->gs[1] + g->gm[1])
-    return -1;
-  return m->map.index[GridPadded(g, i, j)]; /* a cell is named after its lower left node */
+  return BoxHolds(g->gs, g->gm, cell) ? m->map.index[GridPadded(g, cell)] : -1;
+}
+
+/* The one so many cells on along an axis. */
+static PetscInt CellBeside(const Model *m, const PetscInt cell[CL_DIM], int d, PetscInt by)
+{
+  PetscInt beside[CL_DIM];
+
+  memcpy(beside, cell, sizeof(beside));
+  beside[d] += by;
+  return CellIndex(m, beside);
+}
+
+/* Corner k of a cell, or cell k of those about a node. */
+static void Corner(const PetscInt lowest[CL_DIM], int k, PetscInt ij[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    ij[d] = lowest[d] + (k >> d) % 2;
 }
 
 /* Share of [x-l, x+l] in its first cell; slivers to either side of a grid line do not count. */
@@ -25,9 +41,13 @@ static double FirstShare(const GridLines *line, double x, double l, PetscInt *fi
   return share > 1.0 - SLIVER ? 1.0 : share;
 }
 
-static double CellVolume(const Model *m, PetscInt i, PetscInt j)
+static double CellVolume(const Model *m, const PetscInt cell[CL_DIM])
 {
-  return LinesWidth(&m->grid.line[0], i) * LinesWidth(&m->grid.line[1], j);
+  double V = LinesWidth(&m->grid.line[0], cell[0]);
+
+  for (int d = 1; d < CL_DIM; d++)
+    V *= LinesWidth(&m->grid.line[d], cell[d]);
+  return V;
 }
 
 static void FillCells(const Model *m, double *fill)
@@ -43,12 +63,16 @@ static void FillCells(const Model *m, double *fill)
 
       share[d] = FirstShare(line, x, BasisReach(line, x, m->P.f[P_L + d][p]), &first[d]);
     }
-    for (int k = 0; k < 4; k++) {
-      const double   w = (k % 2 ? 1.0 - share[0] : share[0]) * (k / 2 ? 1.0 - share[1] : share[1]);
-      const PetscInt I = w > 0.0 ? CellIndex(m, first[0] + k % 2, first[1] + k / 2) : -1;
+    for (int k = 0; k < CL_CORNERS; k++) {
+      PetscInt cell[CL_DIM];
+      double   w = 1.0;
 
+      Corner(first, k, cell);
+      for (int d = 0; d < CL_DIM; d++)
+        w *= (k >> d) % 2 ? 1.0 - share[d] : share[d];
+      const PetscInt I = w > 0.0 ? CellIndex(m, cell) : -1;
       if (I >= 0)
-        fill[2 * I] += w * m->P.f[P_V][p] / (ring * CellVolume(m, first[0] + k % 2, first[1] + k / 2));
+        fill[2 * I] += w * m->P.f[P_V][p] / (ring * CellVolume(m, cell));
     }
   }
 }
@@ -59,25 +83,48 @@ static void MarkSurface(const Model *m, double *fill)
   for (PetscInt k = 0; k < m->nface; k++) {
     const Face *f    = &m->face[k];
     const int   axis = fabs(f->n[0]) > fabs(f->n[1]) ? 0 : 1;
+    PetscInt    cell[CL_DIM];
     double      s[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
       s[d] = LinesPlace(&m->grid.line[d], f->x[d]);
-    if (fabs(s[axis] - round(s[axis])) < 1e-6 || (f->n[0] == 0.0 && f->n[1] == 0.0))
+    if (fabs(s[axis] - round(s[axis])) < 1e-6 || VectorDot(f->n, f->n) == 0.0)
       continue; /* on a grid line, or the axis: nothing is cut */
-    const PetscInt I = CellIndex(m, (PetscInt)floor(s[0]), (PetscInt)floor(s[1]));
+    for (int d = 0; d < CL_DIM; d++)
+      cell[d] = (PetscInt)floor(s[d]);
+    const PetscInt I = CellIndex(m, cell);
     if (I >= 0)
       fill[2 * I + 1] = 1.0;
   }
 }
 
 /* A line belongs to a face whose two cells are active and one of which is cut or next to a cut one. */
-static bool FaceNeedsPenalty(const Model *m, const double *fill, const unsigned char *near, PetscInt i, PetscInt j,
+static bool FaceNeedsPenalty(const Model *m, const double *fill, const unsigned char *near, const PetscInt cell[CL_DIM],
                              int d)
 {
-  const PetscInt I = CellIndex(m, i, j), K = CellIndex(m, i - (d == 0), j - (d == 1));
+  const PetscInt I = CellIndex(m, cell), K = CellBeside(m, cell, d, -1);
 
   return I >= 0 && K >= 0 && fill[2 * I] > 0.0 && fill[2 * K] > 0.0 && (near[I] || near[K]);
+}
+
+/* Area of those of the faces about a node across an axis, per metre of thickness. */
+static double PenaltyArea(const Model *m, const double *fill, const unsigned char *near, PetscInt I, int d)
+{
+  double area = 0.0;
+
+  for (int k = 0; k < CL_CORNERS; k++) {
+    PetscInt cell[CL_DIM];
+    double   A = 1.0;
+
+    if ((k >> d) % 2)
+      continue;
+    for (int e = 0; e < CL_DIM; e++) {
+      cell[e] = m->map.ij[I][e] - (k >> e) % 2;
+      A *= e == d ? 1.0 : LinesWidth(&m->grid.line[e], cell[e]);
+    }
+    area += FaceNeedsPenalty(m, fill, near, cell, d) ? A : 0.0;
+  }
+  return area;
 }
 
 static bool IsCut(const double *fill, PetscInt I)
@@ -93,24 +140,20 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
   PetscCall(PetscFree(m->added->ghost));
   PetscCall(PetscMalloc1(2 * PetscMax(m->map.n_owned, 1), &m->added->ghost));
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    const PetscInt i = m->map.ij[I][0], j = m->map.ij[I][1];
-
     for (int d = 0; d < CL_DIM; d++) {
-      const GridLines *line = &m->grid.line[d], *across = &m->grid.line[1 - d];
-      const PetscInt   k = d ? j : i, l = d ? i : j;
-      const PetscInt   lo = CellIndex(m, i - (d == 0), j - (d == 1)), hi = CellIndex(m, i + (d == 0), j + (d == 1));
-      const bool       right = FaceNeedsPenalty(m, fill, near, i, j, d),
-                 left        = FaceNeedsPenalty(m, fill, near, i - (d == 1), j - (d == 0), d);
-      const double A         = LinesAround(across, l),
-                   sides     = ((right ? LinesWidth(across, l) : 0.0) + (left ? LinesWidth(across, l - 1) : 0.0)) / A;
-      const double *c        = &m->coef[I * NC_COUNT];
+      const GridLines *line = &m->grid.line[d];
+      const PetscInt   k    = m->map.ij[I][d];
+      const PetscInt   lo = CellBeside(m, m->map.ij[I], d, -1), hi = CellBeside(m, m->map.ij[I], d, 1);
+      const double     area = PenaltyArea(m, fill, near, I, d), *c = &m->coef[I * NC_COUNT];
+      double           A = 1.0;
 
-      if (!(right || left) || lo < 0 || hi < 0)
+      if (area == 0.0 || lo < 0 || hi < 0)
         continue;
-      const double h     = LinesAround(line, k);
-      const double depth = NodeVolume(m, I) / (d ? A * h : h * A); /* 1, or around the axis */
+      for (int e = 0; e < CL_DIM; e++)
+        A *= e == d ? 1.0 : LinesAround(&m->grid.line[e], m->map.ij[I][e]);
+      const double h = LinesAround(line, k), depth = NodeVolume(m, I) / (A * h); /* 1, or around the axis */
       const double below = h / LinesWidth(line, k - 1), above = h / LinesWidth(line, k);
-      const double ratio = 0.5 * sides * depth * A / h; /* A/h */
+      const double ratio = area / A / (CL_CORNERS / 2) * depth * A / h; /* A/h */
       GhostLine   *ghost = &m->added->ghost[n++];
 
       *ghost = (GhostLine){.node   = {lo, I, hi},
@@ -138,10 +181,10 @@ static PetscErrorCode BuildGhost(Model *m)
   MarkSurface(m, fill);
   PetscCall(NodeMapSum(&m->map, fill, 2));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const PetscInt i = m->map.ij[I][0], j = m->map.ij[I][1];
-
-    near[I] = IsCut(fill, I) || IsCut(fill, CellIndex(m, i - 1, j)) || IsCut(fill, CellIndex(m, i + 1, j)) ||
-              IsCut(fill, CellIndex(m, i, j - 1)) || IsCut(fill, CellIndex(m, i, j + 1));
+    near[I] = IsCut(fill, I);
+    for (int d = 0; d < CL_DIM; d++)
+      near[I] =
+          near[I] || IsCut(fill, CellBeside(m, m->map.ij[I], d, -1)) || IsCut(fill, CellBeside(m, m->map.ij[I], d, 1));
   }
   PetscCall(BuildGhostLines(m, fill, near));
   PetscCall(PetscFree2(fill, near));
@@ -150,7 +193,7 @@ static PetscErrorCode BuildGhost(Model *m)
 
 /* Sums over the particles of one cell. */
 typedef struct {
-  double w, wN[4], wNN[4][4];
+  double w, wN[CL_CORNERS], wNN[CL_CORNERS][CL_CORNERS];
   double V, mass, compliance, s[PHASE_COUNT], rho[PHASE_COUNT]; /* compliance: V/G */
 } CellSums;
 
@@ -166,15 +209,20 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
     r[d] = LinesPlace(&m->grid.line[d], m->P.f[P_X + d][p]) - (double)cell[d];
 
   const double V = m->P.f[P_V][p], w = V * m->c->stabilisation.pressure_projection / (2.0 * q.G);
-  const double N[4] = {(1 - r[0]) * (1 - r[1]), r[0] * (1 - r[1]), (1 - r[0]) * r[1], r[0] * r[1]};
+  double       N[CL_CORNERS];
 
+  for (int a = 0; a < CL_CORNERS; a++) {
+    N[a] = 1.0;
+    for (int d = 0; d < CL_DIM; d++)
+      N[a] *= (a >> d) % 2 ? r[d] : 1.0 - r[d];
+  }
   c->w += w;
   c->V += V;
   c->compliance += V / q.G;
   c->mass += m->P.f[P_MS][p] + m->P.f[P_MH][p];
-  for (int a = 0; a < 4; a++) {
+  for (int a = 0; a < CL_CORNERS; a++) {
     c->wN[a] += w * N[a];
-    for (int b = 0; b < 4; b++)
+    for (int b = 0; b < CL_CORNERS; b++)
       c->wNN[a][b] += w * N[a] * N[b];
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
@@ -186,21 +234,24 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
 
 static bool FinishCell(const Model *m, const PetscInt cell[], const CellSums *c, ProjectionCell *k)
 {
-  const double h[CL_DIM] = {LinesWidth(&m->grid.line[0], cell[0]), LinesWidth(&m->grid.line[1], cell[1])};
-  const double h2        = 1.0 / (1.0 / PetscSqr(h[0]) + 1.0 / PetscSqr(h[1]));
+  PetscInt corner[CL_DIM];
+  double   k2 = 0.0;
 
-  for (int a = 0; a < 4; a++) {
-    k->node[a] = CellIndex(m, cell[0] + a % 2, cell[1] + a / 2);
+  for (int d = 0; d < CL_DIM; d++)
+    k2 += 1.0 / PetscSqr(LinesWidth(&m->grid.line[d], cell[d]));
+  for (int a = 0; a < CL_CORNERS; a++) {
+    Corner(cell, a, corner);
+    k->node[a] = CellIndex(m, corner);
     if (k->node[a] < 0)
       return false;
-    for (int b = 0; b < 4; b++)
+    for (int b = 0; b < CL_CORNERS; b++)
       k->K[a][b] = c->wNN[a][b] - c->wN[a] * c->wN[b] / c->w;
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
     k->s[f]   = c->s[f] / c->V;
     k->rho[f] = c->rho[f] / c->V;
   }
-  k->t_inertia = m->c->fields.inertia ? sqrt(c->mass / c->V * c->compliance / c->V * h2 / 15.0) : 0.0;
+  k->t_inertia = m->c->fields.inertia ? sqrt(c->mass / c->V * c->compliance / c->V * (1.0 / k2) / 15.0) : 0.0;
   return true;
 }
 
@@ -211,24 +262,23 @@ static PetscErrorCode BuildProjection(Model *m)
   PetscInt    n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(g->gm[0] * g->gm[1], &sum));
+  PetscCall(PetscCalloc1(GridPaddedSize(g), &sum));
   for (PetscInt p = 0; p < m->P.n; p++) {
     const double x[CL_DIM] = {m->P.f[P_X][p], m->P.f[P_X + 1][p]};
     PetscInt     cell[CL_DIM];
 
     if (GridCell(g, x, cell))
-      AddParticle(m, p, cell, &sum[GridPadded(g, cell[0], cell[1])]);
+      AddParticle(m, p, cell, &sum[GridPadded(g, cell)]);
   }
   PetscCall(PetscFree(m->added->cell));
-  PetscCall(PetscMalloc1(g->xm[0] * g->xm[1], &m->added->cell));
-  for (PetscInt j = g->xs[1]; j < g->xs[1] + g->xm[1]; j++) {
-    for (PetscInt i = g->xs[0]; i < g->xs[0] + g->xm[0]; i++) {
-      const PetscInt  cell[CL_DIM] = {i, j};
-      const CellSums *s            = &sum[GridPadded(g, i, j)];
+  PetscCall(PetscMalloc1(BoxSize(g->xm), &m->added->cell));
+  for (PetscInt k = 0; k < BoxSize(g->xm); k++) {
+    PetscInt cell[CL_DIM];
 
-      if (s->w > 0.0 && FinishCell(m, cell, s, &m->added->cell[n]))
-        n++;
-    }
+    BoxAt(g->xs, g->xm, k, cell);
+    const CellSums *s = &sum[GridPadded(g, cell)];
+    if (s->w > 0.0 && FinishCell(m, cell, s, &m->added->cell[n]))
+      n++;
   }
   m->added->ncell = n;
   PetscCall(PetscFree(sum));
@@ -254,8 +304,8 @@ static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, dou
 
   for (int k = 0; k < F_COUNT; k++)
     c[k] = 0.0;
-  if (fs->solid)
-    c[F_VSX] = c[F_VSY] = g->a * g->M * dt;
+  for (int d = 0; fs->solid && d < CL_DIM; d++)
+    c[F_VS + d] = g->a * g->M * dt;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f])
       c[F_PW + f] =
@@ -301,7 +351,7 @@ double GhostPower(const Model *m, const double *x)
     const GhostLine *g = &m->added->ghost[k];
 
     for (int d = 0; d < CL_DIM; d++)
-      power += g->a * g->M * m->stage.dt * PetscSqr(Jump(m, g, x, F_VSX + d));
+      power += g->a * g->M * m->stage.dt * PetscSqr(Jump(m, g, x, F_VS + d));
   }
   return power;
 }
@@ -314,11 +364,11 @@ static double ProjectionShare(const Model *m, const ProjectionCell *c)
 
 static void ProjectionResidual(const Model *m, const ProjectionCell *c, const double *x, double *f)
 {
-  const FieldSet *fs    = &m->c->fields;
-  const double    share = ProjectionShare(m, c);
-  double          dp[4] = {0.0};
+  const FieldSet *fs             = &m->c->fields;
+  const double    share          = ProjectionShare(m, c);
+  double          dp[CL_CORNERS] = {0.0};
 
-  for (int b = 0; b < 4; b++) {
+  for (int b = 0; b < CL_CORNERS; b++) {
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       const PetscInt k = c->node[b] * fs->n + PlaceP(fs, ph);
 
@@ -326,10 +376,10 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
         dp[b] += c->s[ph] * (x[k] - m->stage.x_star[k]);
     }
   }
-  for (int a = 0; a < 4; a++) {
+  for (int a = 0; a < CL_CORNERS; a++) {
     double Kdp = 0.0;
 
-    for (int b = 0; b < 4; b++)
+    for (int b = 0; b < CL_CORNERS; b++)
       Kdp += c->K[a][b] * dp[b];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       if (fs->phase[ph])
@@ -368,13 +418,13 @@ static void ProjectionBlock(const Model *m, const Assembly *to, const Projection
   const FieldSet *fs    = &to->fs;
   const double    share = ProjectionShare(m, c);
 
-  for (int a = 0; a < 4; a++) {
+  for (int a = 0; a < CL_CORNERS; a++) {
     for (int r = 0; r < PHASE_COUNT; r++) {
       if (!fs->phase[r])
         continue;
       const double w = RowWeight(m, c->node[a], r) * c->rho[r] * c->s[r] * share;
 
-      for (int b = 0; b < 4; b++) {
+      for (int b = 0; b < CL_CORNERS; b++) {
         double *row = AssemblyBlock(m, to, c->node[a], c->node[b]) + PlaceP(fs, r) * fs->n;
 
         for (int q = 0; q < PHASE_COUNT; q++) {

@@ -22,6 +22,7 @@ static bool InsideGrid(const Grid *g, const Stencil *s)
 static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
 {
   const Grid *g = &m->grid;
+  int         n, k[CL_NODES][CL_DIM];
 
   PetscFunctionBeginUser;
   if (m->P.n > m->stencil_cap) {
@@ -31,7 +32,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscMalloc1(m->stencil_cap, &m->conduct));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->order));
     if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
-      PetscCall(PetscCalloc1(12 * m->stencil_cap, &m->wide));
+      PetscCall(PetscCalloc1(m->stencil_cap, &m->wide));
     if (SceneDonor(m->c))
       PetscCall(PetscMalloc1(m->stencil_cap, &m->added->donor));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
@@ -66,14 +67,13 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
       ModelNoteFailure(m, CL_LEFT_GRID, "a particle's domain leaves the background grid", p);
       continue;
     }
-    for (int b = 0; b < 3; b++) {
-      for (int a = 0; a < 3; a++) {
-        const bool x = s->axis[0].S[a] != 0.0 || s->axis[0].dS[a] != 0.0,
-                   y = s->axis[1].S[b] != 0.0 || s->axis[1].dS[b] != 0.0;
+    n = StencilNodes(s, k);
+    for (int a = 0; a < n; a++) {
+      PetscInt ij[CL_DIM];
 
-        if (x && y)
-          flag[GridPadded(g, s->axis[0].base + a, s->axis[1].base + b)] = 1;
-      }
+      for (int d = 0; d < CL_DIM; d++)
+        ij[d] = s->axis[d].base + k[a][d];
+      flag[GridPadded(g, ij)] = 1;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,7 +87,11 @@ static inline double Carried(const Model *m, PetscInt p, int value, int gradient
 {
   double *const *f = (double *const *)m->P.f;
 
-  return f[value][p] + f[gradient][p] * d[0] + f[gradient + 1][p] * d[1];
+  double v = f[value][p];
+
+  for (int i = 0; i < CL_DIM; i++)
+    v += f[gradient + i][p] * d[i];
+  return v;
 }
 
 static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_DIM], const PointProperties *q,
@@ -107,7 +111,7 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
 
     s[SUM_M + k] += S * mass;
     for (int i = 0; i < CL_DIM; i++)
-      s[SUM_X + fs->at[VectorAt(F_VSX, k, 0)] + i] += S * mass * f[velocity[k] + i][p];
+      s[SUM_X + fs->at[VectorAt(F_VS, k, 0)] + i] += S * mass * f[velocity[k] + i][p];
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
@@ -181,9 +185,10 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
   for (int a = 0; a < r->n; a++) {
     const PetscInt I = r->node[a];
     const double   S = r->S[a], VS = V * S, VSk = VS * weight;
-    const double   d[2] = {GridNode(g, 0, m->map.ij[I][0]) - at[0], GridNode(g, 1, m->map.ij[I][1]) - at[1]};
-    double        *c    = &m->coef[I * NC_COUNT];
+    double         d[CL_DIM], *c = &m->coef[I * NC_COUNT];
 
+    for (int k = 0; k < CL_DIM; k++)
+      d[k] = GridNode(g, k, m->map.ij[I][k]) - at[k];
     DepositNode(m, p, S, d, q, &sum[I * width]);
     m->V[I] += VS;
     m->Vk[I] += VSk;
@@ -224,7 +229,7 @@ static void Average(Model *m, const double *sum)
     m->flow[I] = V / m->Vk[I];
     for (int k = 0; k < fs->n; k++) {
       const int    q      = fs->field[k];
-      const double weight = q < F_PW ? s[SUM_M + q / 2] : q < F_T ? V : c[NC_CAPACITY];
+      const double weight = q < F_PW ? s[SUM_M + q / CL_DIM] : q < F_T ? V : c[NC_CAPACITY];
 
       x[k] = weight > 0.0 ? s[SUM_X + k] / weight : 0.0;
     }
@@ -291,33 +296,35 @@ static PetscErrorCode UpstreamWeights(Model *m)
   PetscFunctionBeginUser;
   if (!m->c->stabilisation.upstream)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(m->added->up, 6 * m->map.n_local));
+  PetscCall(PetscArrayzero(m->added->up, PHASE_COUNT * UP_COUNT * m->map.n_local));
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int f = 0; f < PHASE_COUNT; f++) {
-      double J[2] = {0.0, 0.0};
+      double J[CL_DIM] = {0.0};
 
       if (fs->phase[f])
         DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
-      const double size = hypot(J[0], J[1]);
+      const double size = VectorLength(J);
       for (int d = 0; d < CL_DIM && size > 0.0; d++)
-        m->added->up[6 * I + 3 * f + d] = J[d] / size;
+        UpstreamAt(m, I, f)[d] = J[d] / size;
     }
   }
-  PetscCall(PetscCalloc1(2 * m->map.n_local, &sum));
+  PetscCall(PetscCalloc1(PHASE_COUNT * m->map.n_local, &sum));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach r;
 
     ReachExpand(m, p, &r);
     for (int a = 0; a < r.n; a++) {
       for (int f = 0; f < PHASE_COUNT; f++)
-        sum[2 * r.node[a] + f] +=
-            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], &m->added->up[6 * r.node[a] + 3 * f]), 0.0);
+        sum[PHASE_COUNT * r.node[a] + f] +=
+            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], UpstreamAt(m, r.node[a], f)), 0.0);
     }
   }
-  PetscCall(NodeMapSum(&m->map, sum, 2));
-  for (PetscInt k = 0; k < 2 * m->map.n_local; k++) {
-    if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, k / 2) * m->V[k / 2])
-      m->added->up[3 * k + 2] = m->V[k / 2] / sum[k];
+  PetscCall(NodeMapSum(&m->map, sum, PHASE_COUNT));
+  for (PetscInt k = 0; k < PHASE_COUNT * m->map.n_local; k++) {
+    const PetscInt I = k / PHASE_COUNT;
+
+    if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, I) * m->V[I])
+      m->added->up[UP_COUNT * k + UP_FACTOR] = m->V[I] / sum[k];
   }
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -326,7 +333,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
 /* (195), (197): about an axis the flux through a face goes with 1/r. */
 static void RadialFace(const Model *m, Face *f)
 {
-  const double area              = hypot(f->n[0], f->n[1]);
+  const double area              = VectorLength(f->n);
   double       drag[PHASE_COUNT] = {0.0}, sum = 0.0;
   Reach        r;
 
@@ -358,6 +365,16 @@ static void InflowFace(const Model *m, Face *f)
   FaceInflow(f, r.n, r.S, q.kr);
 }
 
+/* (367): k_a/mu and k_r of t_n. */
+static void WellFace(const Model *m, Face *f)
+{
+  PointProperties q;
+  const char     *why;
+
+  if (f->share > 0.0 && ModelParticleProperties(m, f->particle, &q, &why) == CL_OK)
+    WellProperties(&q, f);
+}
+
 /* (365): by the flux at t_n. */
 static void FaceDirections(const Model *m, Face *f)
 {
@@ -372,7 +389,7 @@ static void FaceDirections(const Model *m, Face *f)
     for (int a = 0; a < r.n; a++) {
       DarcyFlux(m, r.node[a], k, &m->x_n[r.node[a] * m->c->fields.n], J);
       for (int d = 0; d < CL_DIM; d++)
-        sum[d] += FaceWeight(f, a, VectorAt(F_VWX, k, d)) * FaceShare(m, f->particle, r.node[a], k) * J[d];
+        sum[d] += FaceWeight(f, a, VectorAt(F_VW, k, d)) * FaceShare(m, f->particle, r.node[a], k) * J[d];
     }
     FaceDirection(m->c, f, k, sum);
   }
@@ -384,16 +401,19 @@ static void FaceDirections(const Model *m, Face *f)
 static PetscErrorCode Order(Model *m)
 {
   const Grid    *g    = &m->grid;
-  const PetscInt keys = (g->gm[0] / TILE + 1) * TILE * g->gm[1];
+  const PetscInt keys = (g->gm[0] / TILE + 1) * TILE * (GridPaddedSize(g) / g->gm[0]);
   PetscInt      *first;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(keys + 1, &first));
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt p = 0; p < m->P.n; p++) {
-      const Axis    *a = m->stencil[p].axis;
-      const PetscInt i = a[0].base - g->gs[0], j = a[1].base - g->gs[1];
-      const PetscInt k = (i / TILE * g->gm[1] + j) * TILE + i % TILE;
+      const PetscInt i = m->stencil[p].axis[0].base - g->gs[0];
+      PetscInt       k = 0;
+
+      for (int d = CL_DIM - 1; d > 0; d--)
+        k = k * g->gm[d] + m->stencil[p].axis[d].base - g->gs[d];
+      k = (i / TILE * (GridPaddedSize(g) / g->gm[0]) + k) * TILE + i % TILE;
 
       if (pass == 0)
         first[k + 1]++;
@@ -416,7 +436,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   PetscCall(PetscLogEventBegin(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));
   m->failure.status = CL_OK;
   PreconditionerRenew(m);
-  PetscCall(PetscCalloc1(m->grid.gm[0] * m->grid.gm[1], &flag));
+  PetscCall(PetscCalloc1(GridPaddedSize(&m->grid), &flag));
   PetscCall(BuildStencils(m, flag));
   PetscCall(ModelReduceStatus(m, status));
   if (*status == CL_OK) {
@@ -432,6 +452,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     for (PetscInt k = 0; k < m->nface; k++) {
       RadialFace(m, &m->face[k]);
       InflowFace(m, &m->face[k]);
+      WellFace(m, &m->face[k]);
       if (m->c->stabilisation.outflow)
         FaceDirections(m, &m->face[k]);
     }

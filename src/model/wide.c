@@ -5,28 +5,30 @@
 static void WideParticle(const Model *m, PetscInt p, const double *proj, double *f)
 {
   const FieldSet *fs = &m->c->fields;
-  const double   *W = &m->wide[12 * p], dt = m->stage.dt;
+  const Wide     *W  = &m->wide[p];
+  const double    dt = m->stage.dt;
   Reach           r;
 
   ReachExpand(m, p, &r);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
-    double g[2] = {0.0};
+    double g[CL_DIM] = {0.0}, flux[CL_DIM];
 
     if (!fs->phase[ph])
       continue;
     for (int a = 0; a < r.n; a++) {
       const double share = ProjectedShare(m, p, r.node[a], ph, r.S[a]);
 
-      g[0] += share * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, 0)];
-      g[1] += share * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, 1)];
+      for (int d = 0; d < CL_DIM; d++)
+        g[d] += share * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, d)];
     }
-    const double flux[2] = {W[4 * ph] * g[0] + W[4 * ph + 1] * g[1], W[4 * ph + 2] * g[0] + W[4 * ph + 3] * g[1]};
-    const double q       = fs->heat ? W[8 + 2 * ph] * g[0] + W[8 + 2 * ph + 1] * g[1] : 0.0;
+    for (int d = 0; d < CL_DIM; d++)
+      flux[d] = VectorDot(W->flux[ph][d], g);
+    const double q = fs->heat ? VectorDot(W->q[ph], g) : 0.0;
 
     for (int a = 0; a < r.n; a++) {
       double *fI = &f[r.node[a] * fs->n];
 
-      fI[PlaceP(fs, ph)] -= RowWeight(m, r.node[a], ph) * dt * (r.G[a][0] * flux[0] + r.G[a][1] * flux[1]);
+      fI[PlaceP(fs, ph)] -= RowWeight(m, r.node[a], ph) * dt * VectorDot(r.G[a], flux);
       if (fs->heat)
         fI[PlaceT(fs)] += r.S[a] * q;
     }
@@ -40,7 +42,7 @@ static PetscErrorCode WideApply(Model *m, bool wide, Vec X, Vec Y)
   double        *y, *x, *f, *proj;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n * nf, &x, n * nf, &f, n * 4, &proj));
+  PetscCall(PetscMalloc3(n * nf, &x, n * nf, &f, n * CL_FLUID_VECTORS, &proj));
   PetscCall(ModelUnscale(m, X, x));
   PetscCall(PetscArrayzero(f, n * nf));
   if (wide)

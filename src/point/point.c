@@ -1,6 +1,7 @@
 /* Stress, fluxes and their consistent tangent; docs/equations.md (14)-(21). */
 #include "state.h"
 #include "clathra/tensor.h"
+#include <string.h>
 
 /* Row of the tangent for a scalar output c * jet: J spreads over grad u. */
 INLINE void AddJet(double D[IN_COUNT], double c, const Jet *a, const Kinematics *k)
@@ -71,17 +72,19 @@ INLINE ClStatus EffectiveStress(const Material *mat, const PointHistory *h, cons
 
 /* Ambient pressure at the particle, with the force V grad p_a that its weight is (42). */
 typedef struct {
-  double p, g[2];
+  double p, g[CL_DIM];
 } AmbientState;
 
 INLINE AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const ScalarState *s,
                               const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double x[2] = {h->x[0] + in[IN_U], h->x[1] + in[IN_U + 1]};
-  AmbientState a    = {0.0, {0.0, 0.0}};
+  AmbientState a = {0.0, {0.0}};
+  double       x[CL_DIM];
 
   if (!h->ambient)
     return a;
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = h->x[d] + in[IN_U + d];
   a.p = AmbientPressure(h->ambient, x, a.g);
   for (int i = 0; i < CL_DIM; i++) {
     o->out[OUT_A + i] = s->V.v * a.g[i];
@@ -91,20 +94,52 @@ INLINE AmbientState AmbientAt(const PointHistory *h, const Kinematics *k, const 
   return a;
 }
 
+/* d(cof v)_i, row i of the cofactor against v, by number q of the motion. */
+INLINE double CofactorSlope(const Kinematics *k, int i, int q, const double v[CL_DIM])
+{
+  double sum = k->dcof[i][0][q] * v[0];
+
+  for (int j = 1; j < CL_DIM; j++)
+    sum += k->dcof[i][j][q] * v[j];
+  return sum;
+}
+
+/* (cof^T v)_i, and its slope likewise. */
+INLINE double AlongCofactor(const Kinematics *k, int i, const double v[CL_DIM])
+{
+  double sum = k->cof[0][i] * v[0];
+
+  for (int j = 1; j < CL_DIM; j++)
+    sum += k->cof[j][i] * v[j];
+  return sum;
+}
+
+INLINE double AlongCofactorSlope(const Kinematics *k, int i, int q, const double v[CL_DIM])
+{
+  double sum = k->dcof[0][i][q] * v[0];
+
+  for (int j = 1; j < CL_DIM; j++)
+    sum += k->dcof[j][i][q] * v[j];
+  return sum;
+}
+
 /* out = V_n (sigma' - (p - p_a) 1) cof F, in the plane and around the axis (30) (momentum of the mixture). */
 INLINE void MixtureForces(const PointHistory *h, const Kinematics *k, const ScalarState *s, const Stress *st,
                           const AmbientState *a, bool tangent, PointOutput *o)
 {
-  const double     p = s->p.v - a->p, hoop = st->s[ZZ] - p;
-  const double     total[2][2] = {{st->s[XX] - p, st->s[XY]}, {st->s[XY], st->s[YY] - p}};
-  static const int voigt[2][2] = {{XX, XY}, {XY, YY}};
+  const double p = s->p.v - a->p, hoop = st->s[ZZ] - p;
+  double       total[CL_DIM][CL_DIM];
 
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      total[i][j] = st->s[voigt[i][j]] - (i == j ? p : 0.0);
+  }
   o->out[OUT_HOOP] = h->V * hoop * k->cof_hoop;
   for (int i = 0; i < CL_DIM; i++) {
     for (int j = 0; j < CL_DIM; j++) {
       const int row = VectorAt(OUT_P, i, j);
 
-      o->out[row] = h->V * (total[i][0] * k->cof[0][j] + total[i][1] * k->cof[1][j]);
+      o->out[row] = h->V * AlongCofactor(k, j, total[i]);
       for (int m = 0; tangent && m < CL_DIM; m++) {
         const double *ds = st->ds[voigt[i][m]], c = h->V * k->cof[m][j];
 
@@ -131,7 +166,7 @@ INLINE void MixtureForces(const PointHistory *h, const Kinematics *k, const Scal
 }
 
 /* v := A v, with beds (306). */
-INLINE void Drive(const PointHistory *h, double v[2])
+INLINE void Drive(const PointHistory *h, double v[CL_DIM])
 {
   if (h->beds)
     BedsDrive(h->beds, v);
@@ -147,55 +182,75 @@ INLINE void FluidForces(const PointHistory *h, const Kinematics *k, int f, const
   for (int i = 0; i < CL_DIM; i++) {
     const int row = at + i;
 
-    o->out[row] = h->V * (k->cof[i][0] * g[0] + k->cof[i][1] * g[1]);
+    o->out[row] = h->V * VectorDot(k->cof[i], g);
     if (!tangent)
       continue;
     for (int j = 0; j < CL_DIM; j++)
       o->D[row][VectorAt(IN_GP, f, j)] += h->V * k->cof[i][j];
     for (int q = 0; q < MOTION_COUNT; q++)
-      o->D[row][q] += h->V * (k->dcof[i][0][q] * g[0] + k->dcof[i][1][q] * g[1]);
+      o->D[row][q] += h->V * CofactorSlope(k, i, q, g);
   }
   Drive(h, &o->out[at]);
   for (int q = 0; tangent && h->beds && q < IN_J; q++) {
-    double slope[2] = {o->D[at][q], o->D[at + 1][q]};
+    double slope[CL_DIM];
 
+    for (int d = 0; d < CL_DIM; d++)
+      slope[d] = o->D[at + d][q];
     BedsDrive(h->beds, slope);
-    o->D[at][q]     = slope[0];
-    o->D[at + 1][q] = slope[1];
+    for (int d = 0; d < CL_DIM; d++)
+      o->D[at + d][q] = slope[d];
   }
 }
 
 /* K = cof^T cof / J (symmetric, from V F^-1 F^-T) and its derivatives. */
 typedef struct {
-  double K[2][2], d[2][2][MOTION_COUNT];
+  double K[CL_DIM][CL_DIM], d[CL_DIM][CL_DIM][MOTION_COUNT];
 } Metric;
 
 INLINE void MetricEvaluate(const Kinematics *k, bool tangent, Metric *g)
 {
   for (int i = 0; i < CL_DIM; i++) {
     for (int j = 0; j < CL_DIM; j++) {
-      g->K[i][j] = (k->cof[0][i] * k->cof[0][j] + k->cof[1][i] * k->cof[1][j]) / k->J;
+      double c = k->cof[0][i] * k->cof[0][j];
+
+      for (int m = 1; m < CL_DIM; m++)
+        c += k->cof[m][i] * k->cof[m][j];
+      g->K[i][j] = c / k->J;
       for (int q = 0; tangent && q < MOTION_COUNT; q++) {
-        const double dc = k->dcof[0][i][q] * k->cof[0][j] + k->cof[0][i] * k->dcof[0][j][q] +
-                          k->dcof[1][i][q] * k->cof[1][j] + k->cof[1][i] * k->dcof[1][j][q];
+        double dc = k->dcof[0][i][q] * k->cof[0][j] + k->cof[0][i] * k->dcof[0][j][q];
+
+        for (int m = 1; m < CL_DIM; m++)
+          dc += k->dcof[m][i][q] * k->cof[m][j] + k->cof[m][i] * k->dcof[m][j][q];
         g->d[i][j][q] = (dc - g->K[i][j] * k->dJ[q]) / k->J;
       }
     }
   }
 }
 
+/* d(K v)_i by number q of the motion. */
+INLINE double MetricSlope(const Metric *g, int i, int q, const double v[CL_DIM])
+{
+  double sum = g->d[i][0][q] * v[0];
+
+  for (int j = 1; j < CL_DIM; j++)
+    sum += g->d[i][j][q] * v[j];
+  return sum;
+}
+
 /* (200): adds V_n rho D K (g_g - g_w). */
 INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
                    const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double c[2] = {in[VectorAt(IN_GP, PHASE_G, 0)] - in[IN_GP], in[VectorAt(IN_GP, PHASE_G, 1)] - in[IN_GP + 1]},
-               VD   = h->V * h->spread[f];
-  const Jet rho     = s->rho[f];
+  const double VD  = h->V * h->spread[f];
+  const Jet    rho = s->rho[f];
+  double       c[CL_DIM];
 
   if (VD == 0.0)
     return;
+  for (int i = 0; i < CL_DIM; i++)
+    c[i] = in[VectorAt(IN_GP, PHASE_G, i)] - in[VectorAt(IN_GP, PHASE_W, i)];
   for (int i = 0; i < CL_DIM; i++) {
-    const double Kc = metric->K[i][0] * c[0] + metric->K[i][1] * c[1];
+    const double Kc = VectorDot(metric->K[i], c);
     double      *D  = o->D[VectorAt(OUT_FLUX, f, i)];
 
     o->out[VectorAt(OUT_FLUX, f, i)] += VD * rho.v * Kc;
@@ -203,7 +258,7 @@ INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *met
       continue;
     AddJet(D, VD * Kc, &rho, k);
     for (int q = 0; q < MOTION_COUNT; q++)
-      D[q] += VD * rho.v * (metric->d[i][0][q] * c[0] + metric->d[i][1][q] * c[1]);
+      D[q] += VD * rho.v * MetricSlope(metric, i, q, c);
     for (int j = 0; j < CL_DIM; j++) {
       D[VectorAt(IN_GP, PHASE_G, j)] += VD * rho.v * metric->K[i][j];
       D[VectorAt(IN_GP, PHASE_W, j)] -= VD * rho.v * metric->K[i][j];
@@ -215,23 +270,26 @@ INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *met
 INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
                  const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
 {
-  const double(*K)[2] = metric->K;
-  const Jet     rho   = s->rho[f];
-  const Jet     kr    = f == PHASE_G && h->mobility > 0.0 ? JetConstant(h->mobility) : s->kr[f];
-  const Tau     t     = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
-  const Jet     tau   = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
-  const Jet     rt    = JetScale(h->bracket, JetMul(rho, tau));
-  const double *J     = &in[VectorAt(IN_J, f, 0)];
-  double        g[]   = {in[VectorAt(IN_GP, f, 0)], in[VectorAt(IN_GP, f, 1)]};
+  const double(*K)[CL_DIM] = metric->K;
+  const Jet     rho        = s->rho[f];
+  const Jet     kr         = f == PHASE_G && h->mobility > 0.0 ? JetConstant(h->mobility) : s->kr[f];
+  const Tau     t          = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
+  const Jet     tau        = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
+  const Jet     rt         = JetScale(h->bracket, JetMul(rho, tau));
+  const double *J          = &in[VectorAt(IN_J, f, 0)];
+  double        g[CL_DIM], b[CL_DIM];
 
+  for (int i = 0; i < CL_DIM; i++)
+    g[i] = in[VectorAt(IN_GP, f, i)];
   if (h->beds)
     BedsDriveMoving(h->beds, h->weight[f], g);
-  const double b[2] = {h->proj[f][0] - g[0], h->proj[f][1] - g[1]};
+  for (int i = 0; i < CL_DIM; i++)
+    b[i] = h->proj[f][i] - g[i];
 
   *tau_out = tau.v;
   for (int i = 0; i < CL_DIM; i++) {
     const int    row = VectorAt(OUT_FLUX, f, i);
-    const double cJ = k->cof[0][i] * J[0] + k->cof[1][i] * J[1], Kb = K[i][0] * b[0] + K[i][1] * b[1];
+    const double cJ = AlongCofactor(k, i, J), Kb = VectorDot(K[i], b);
 
     o->out[row] = MassFlux(h->V, rho.v, rt.v, cJ, Kb);
     if (!tangent)
@@ -240,11 +298,12 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
     AddJet(D, h->V * cJ, &rho, k);
     AddJet(D, h->V * Kb, &rt, k);
     for (int q = 0; q < MOTION_COUNT; q++) {
-      D[q] += h->V * rho.v * (k->dcof[0][i][q] * J[0] + k->dcof[1][i][q] * J[1]);
-      D[q] += h->V * rt.v * (metric->d[i][0][q] * b[0] + metric->d[i][1][q] * b[1]);
+      D[q] += h->V * rho.v * AlongCofactorSlope(k, i, q, J);
+      D[q] += h->V * rt.v * MetricSlope(metric, i, q, b);
     }
-    double slope[2] = {h->V * rt.v * K[i][0], h->V * rt.v * K[i][1]};
+    double slope[CL_DIM];
     for (int j = 0; j < CL_DIM; j++) {
+      slope[j] = h->V * rt.v * K[i][j];
       D[VectorAt(IN_J, f, j)] += h->V * rho.v * k->cof[j][i];
       o->wide[f][i][j] = slope[j];
     }
@@ -262,7 +321,7 @@ INLINE void CarriedFlux(const Material *mat, const PointHistory *h, const Kinema
 
   for (int i = 0; i < CL_DIM; i++) {
     const int    row = VectorAt(OUT_FLUX, PHASE_G, i);
-    const double cJ  = k->cof[0][i] * J[0] + k->cof[1][i] * J[1];
+    const double cJ  = AlongCofactor(k, i, J);
     double      *D   = o->D[row];
 
     o->out[row] += MassFlux(h->V, c, 0.0, cJ, 0.0);
@@ -270,7 +329,7 @@ INLINE void CarriedFlux(const Material *mat, const PointHistory *h, const Kinema
       continue;
     D[IN_P + PHASE_G] += h->V * H * cJ;
     for (int q = 0; q < MOTION_COUNT; q++)
-      D[q] += h->V * c * (k->dcof[0][i][q] * J[0] + k->dcof[1][i][q] * J[1]);
+      D[q] += h->V * c * AlongCofactorSlope(k, i, q, J);
     for (int j = 0; j < CL_DIM; j++)
       D[IN_J + j] += h->V * c * k->cof[j][i];
   }
@@ -281,16 +340,16 @@ INLINE void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
                        const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   for (int i = 0; i < CL_DIM; i++) {
-    const double Kg    = metric->K[i][0] * in[IN_GT] + metric->K[i][1] * in[IN_GT + 1];
-    const double up[2] = {i ? h->upwind[2] : h->upwind[0], i ? h->upwind[1] : h->upwind[2]};
+    const double Kg         = VectorDot(metric->K[i], &in[IN_GT]);
+    const double up[CL_DIM] = {i ? h->upwind[2] : h->upwind[0], i ? h->upwind[1] : h->upwind[2]};
 
-    o->out[OUT_HEAT + i] = h->V * (s->kappa.v * Kg + up[0] * in[IN_GT] + up[1] * in[IN_GT + 1]);
+    o->out[OUT_HEAT + i] = h->V * (s->kappa.v * Kg + VectorDot(up, &in[IN_GT]));
     if (!tangent)
       continue;
     double *D = o->D[OUT_HEAT + i];
     AddJet(D, h->V * Kg, &s->kappa, k);
     for (int q = 0; q < MOTION_COUNT; q++)
-      D[q] += h->V * s->kappa.v * (metric->d[i][0][q] * in[IN_GT] + metric->d[i][1][q] * in[IN_GT + 1]);
+      D[q] += h->V * s->kappa.v * MetricSlope(metric, i, q, &in[IN_GT]);
     for (int j = 0; j < CL_DIM; j++)
       D[IN_GT + j] += h->V * (s->kappa.v * metric->K[i][j] + up[j]);
   }
@@ -341,8 +400,13 @@ INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
         o->D[OUT_Q][q] += c_f * in[IN_GT + i] * o->D[r][q];
       o->D[OUT_Q][IN_GT + i] += c_f * o->out[r];
     }
-    for (int j = 0; tangent && j < CL_DIM; j++)
-      o->wide_q[f][j] = c_f * (o->wide[f][0][j] * in[IN_GT] + o->wide[f][1][j] * in[IN_GT + 1]);
+    for (int j = 0; tangent && j < CL_DIM; j++) {
+      double sum = o->wide[f][0][j] * in[IN_GT];
+
+      for (int i = 1; i < CL_DIM; i++)
+        sum += o->wide[f][i][j] * in[IN_GT + i];
+      o->wide_q[f][j] = c_f * sum;
+    }
   }
 }
 
@@ -356,10 +420,14 @@ INLINE void CompressionHeat(const PointHistory *h, const Kinematics *k, const Sc
   const Throttling t      = ThrottlingOf(s->warm[f].v, rho.v);
   const Jet        share  = JetChain2(t.v, t.warm, s->warm[f], t.rho, rho);
   const double    *g = &in[VectorAt(IN_GP, f, 0)], *flux = &o->out[VectorAt(OUT_FLUX, f, 0)], *b = h->gravity;
-  const double     fall[CL_DIM] = {k->F[0][0] * b[0] + k->F[1][0] * b[1], k->F[0][1] * b[0] + k->F[1][1] * b[1]};
-  const double     sum          = rise.v + ThrottledHeat(share.v, flux, g, fall);
-  double          *D            = o->D[OUT_Q];
+  double           fall[CL_DIM], *D = o->D[OUT_Q];
 
+  for (int i = 0; i < CL_DIM; i++) {
+    fall[i] = k->F[0][i] * b[0];
+    for (int j = 1; j < CL_DIM; j++)
+      fall[i] += k->F[j][i] * b[j];
+  }
+  const double sum = rise.v + ThrottledHeat(share.v, flux, g, fall);
   for (int i = 0; tangent && i < CL_DIM; i++) {
     const double head = share.v * g[i] - fall[i];
 
@@ -376,7 +444,7 @@ INLINE void CompressionHeat(const PointHistory *h, const Kinematics *k, const Sc
   if (!tangent)
     return;
   AddJet(D, 1.0, &rise, k);
-  AddJet(D, flux[0] * g[0] + flux[1] * g[1], &share, k);
+  AddJet(D, VectorDot(flux, g), &share, k);
 }
 
 /* (69) */
@@ -418,13 +486,13 @@ INLINE ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char
   double sum = 0.0; /* of the rows that every set's outputs lead into */
 
   for (int r = OUT_FLUX; fs->fluid && r < OUT_HEAT; r++)
-    sum += fs->phase[(r - OUT_FLUX) / 2] ? o->out[r] : 0.0;
+    sum += fs->phase[(r - OUT_FLUX) / CL_DIM] ? o->out[r] : 0.0;
 #pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++)
     sum += fs->phase[f]
                ? o->out[VectorAt(OUT_G, f, 0)] + o->out[VectorAt(OUT_G, f, 1)] + o->out[OUT_D + f] + o->out[OUT_DM + f]
                : 0.0;
-  for (int r = OUT_P; fs->solid && r < OUT_P + 4; r++)
+  for (int r = OUT_P; fs->solid && r < OUT_P + CL_DIM * CL_DIM; r++)
     sum += o->out[r];
   if (fs->heat)
     sum += o->out[OUT_HEAT] + o->out[OUT_HEAT + 1] + o->out[OUT_C] + o->out[OUT_Q];
@@ -483,8 +551,7 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
     for (int d = 0; d < CL_DIM; d++)
       state->stretch[d] = k->stretch[d];
   }
-  for (int i = 0; i < 4; i++)
-    state->F[i / 2][i % 2] = k->F[i / 2][i % 2];
+  memcpy(state->F, k->F, sizeof(state->F));
   if (fs->fluid || fs->heat)
     MetricEvaluate(k, tangent, &metric);
 #pragma GCC unroll 2

@@ -398,6 +398,8 @@ static bool OnLine(const Scene *c, const Points *line, PetscInt region, const do
 
 bool FaceNamed(const Scene *c, const Meter *m, PetscInt region, const double x[], int side)
 {
+  if (side >= SIDE_COUNT)
+    return false;
   const double along = x[1 - SideAxis(side)];
 
   if (m->region >= 0 && m->region != region)

@@ -15,6 +15,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 BASE = open(os.path.join(HERE, "..", "..", "cases", "bp2", "case.yaml")).read()
 M = "mat_sediment_"
 METER = lambda keys: ("basis: cpgimp", f"basis: cpgimp\nmeters: [outlet]\nmeter: {{outlet: {{{keys}}}}}")
+WELL = lambda keys: [("cells: [52, 1]", "cells: [52, 2]"), ("load, drain]\nbc:\n", "load, drain, well]\nbc:\n  well: {type: well, " + keys + "}\n")]
 PLATE = lambda keys: ("base: {type: fixed, axis: x, position: 0 m", "base: {type: plate, " + keys)
 STAGES = lambda a, b: ("time: {end: 2000 s}", f"stages: [a, b]\nstage:\n  a: {{{a}}}\n  b: {{{b}}}")
 SEDIMENT = {"porosity": "0.15", "solid_density": "2600 kg/m^3", "solid_heat_capacity": "800 J/(kg K)", "solid_conductivity": "3 W/(m K)",
@@ -389,6 +390,22 @@ CASES = [
     ("inflow with a pressure", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, pressure: 3 MPa}")],
      ["bc_drain_pressure", "type inflow"], []),
     # --- meters
+    # --- a well in the plane; the column is two cells high, so one on the middle line has a cell of body around it
+    ("well outside the body", WELL("at: [1.02 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_at", "outside the body", "1.02 m"], []),
+    ("well beside the surface", WELL("at: [0.5 m, 0.015 m], radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_at", "within a cell", "ends nearer"], []),
+    ("well that nothing drives", WELL("at: [0.5 m, 0.01 m]"), ["bc_well_bottom_pressure", "is missing", "water_flow"], []),
+    ("well that two things drive", WELL("at: [0.5 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa, water_flow: 1 kg/s"), ["bc_well_water_flow", "two ways to drive a well"], []),
+    ("well without a radius", WELL("at: [0.5 m, 0.01 m], bottom_pressure: 2 MPa"), ["bc_well_radius", "is missing", "bottom_pressure is given"], []),
+    ("well without a place", WELL("radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_at", "is missing"], []),
+    ("well wider than its cells", WELL("at: [0.5 m, 0.01 m], radius: 6 mm, bottom_pressure: 2 MPa"), ["bc_well_radius", "0.006 m", "half a cell (0.01 m)"], []),
+    ("well that draws too well", WELL("at: [0.5 m, 0.01 m], radius: 5 mm, skin: -5, bottom_pressure: 2 MPa"), ["bc_well_skin", "-5", "yield"], []),
+    ("well of gas where there is none", NO_GAS + WELL("at: [0.5 m, 0.01 m], gas_flow: -1 kg/s"), ["bc_well_gas_flow", "needs gas", "solid,water,heat"], []),
+    ("well on a side", WELL("at: [0.5 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa, side: left"), ["bc_well_side", "is not a key of a boundary of type well"], []),
+    ("well about an axis", WELL("at: [0.5 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_type", "about an axis", "side: left"], ["-geometry", "axisymmetric"]),
+    ("well in the paper's bare form", WELL("at: [0.5 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_type", "stepper_pressures: particles"],
+     ["-stepper_type", "hybrid", "-inertia", "yes", "-stepper_pressures", "particles", "-stepper_surface", "free"]),
+    ("meter of a well that is a plane", [METER("well: base")], ["meter_outlet_well", "base", "is not a well but a fixed"], []),
+    ("meter of a well and a side", WELL("at: [0.5 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa") + [METER("well: well, side: left")], ["meter_outlet_well", "side", "give one"], []),
     ("meter without a side", [METER("from: 0 m")], ["meter_outlet_side", "is missing"], []),
     ("meter on no side", [METER("side: east")], ["meter_outlet_side", "left | right"], []),
     ("meter of an unknown region", [METER("side: right, region: core")], ["meter_outlet_region", "column"], []),

@@ -290,7 +290,7 @@ static inline void RandomUnknowns(const Model *m, double dt, int seed, double *x
 
     for (int k = 0; k < fs->n; k++) {
       const int    q    = fs->field[k];
-      const double size = q < F_VWX ? 2e-4 / dt : q < F_PW ? 1e-4 : q == F_PW ? 2e5 : q == F_PG ? 2e4 : 1.0;
+      const double size = q < F_VW ? 2e-4 / dt : q < F_PW ? 1e-4 : q == F_PW ? 2e5 : q == F_PG ? 2e4 : 1.0;
 
       x[I * fs->n + k] = m->x_n[I * fs->n + k] + size * Noise(seed, node, q);
       if (q == F_PG)

@@ -177,7 +177,7 @@ static void MakeMap(const Grid *g, NodeMap *map)
   Call(PetscCalloc1(g->gm[0] * g->gm[1], &flag));
   for (PetscInt j = g->xs[1]; j < g->xs[1] + g->xm[1]; j++) {
     for (PetscInt i = g->xs[0]; i < g->xs[0] + g->xm[0]; i++)
-      flag[GridPadded(g, i, j)] = Active(i, j);
+      flag[GridPadded(g, (PetscInt[]){i, j})] = Active(i, j);
   }
   memset(map, 0, sizeof(*map));
   Call(NodeMapUpdate(g, flag, map, &changed));
@@ -204,7 +204,7 @@ static void TestNodeMap(void **state)
   for (PetscInt k = 0; k < map.n_local; k++) {
     const PetscInt *ij = map.ij[k];
 
-    Check(Active(ij[0], ij[1]) && map.index[GridPadded(&g, ij[0], ij[1])] == k);
+    Check(Active(ij[0], ij[1]) && map.index[GridPadded(&g, ij)] == k);
     Check(map.global[k] >= 0 && map.global[k] < count);
     Check((GridCellOwner(&g, ij) == g.rank) == (k < map.n_owned));
     if (k < map.n_owned) {
@@ -217,7 +217,7 @@ static void TestNodeMap(void **state)
     Check(seen[map.global[k]] == 1 + map.ij[k][0] + 100 * map.ij[k][1]);
   for (PetscInt j = g.gs[1]; j < g.gs[1] + g.gm[1]; j++) { /* every active node in reach has a number, no other */
     for (PetscInt i = g.gs[0]; i < g.gs[0] + g.gm[0]; i++)
-      Check((map.index[GridPadded(&g, i, j)] >= 0) == Active(i, j));
+      Check((map.index[GridPadded(&g, (PetscInt[]){i, j})] >= 0) == Active(i, j));
   }
   Call(NodeMapDestroy(&map));
   Call(GridDestroy(&g));

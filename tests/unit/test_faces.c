@@ -238,6 +238,45 @@ static void LoosePlate(SmallScene *s, Rng *r)
   s->bc[0].separates = true;
 }
 
+/* A particle of a well. */
+static void Drives(SmallScene *s, Rng *r)
+{
+  s->face.bc[BC_WELL]       = 0;
+  s->face.share             = 0.3;
+  s->face.draws             = 0.9;
+  s->face.conducts[PHASE_W] = 1e-9;
+  s->face.conducts[PHASE_G] = 1e-7;
+  s->face.r[0] = s->face.r[1] = 0.0;
+  s->bc[0].type               = BC_WELL;
+}
+
+static void WellDraws(SmallScene *s, Rng *r)
+{
+  Drives(s, r);
+  s->bc[0].value = s->given;
+  s->value[0]    = RngBetween(r, 1e6, 1.9e6);
+}
+
+static void WellFills(SmallScene *s, Rng *r)
+{
+  Drives(s, r);
+  s->bc[0].value  = s->given;
+  s->bc[0].heated = s->given;
+  s->value[0]     = RngBetween(r, 4.5e6, 6e6);
+  s->shear[0]     = RngBetween(r, 1.0, 60.0);
+}
+
+static void WellRates(SmallScene *s, Rng *r)
+{
+  Drives(s, r);
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    s->bc[0].rate[ph] = s->given;
+    s->phase[ph][0]   = RngBetween(r, -1e-3, 1e-3);
+  }
+  s->bc[0].heated = s->given;
+  s->shear[0]     = RngBetween(r, 1.0, 60.0);
+}
+
 static void Drag(SmallScene *s, Rng *r)
 {
   s->c.ambient_density = RngBetween(r, 900.0, 1100.0);
@@ -271,6 +310,9 @@ static const struct {
                  {"heat flux", HeatFlux},
                  {"drag", Drag},
                  {"all at once", Everything},
+                 {"well, out", WellDraws},
+                 {"well, in", WellFills},
+                 {"well, rates", WellRates},
                  {"plate", Plate},
                  {"plate, rough", RoughPlate},
                  {"plate, separates", LoosePlate}};
@@ -408,11 +450,11 @@ static void DragOfTheSea(void **state)
   s.face.n[0] = 0.0; /* Evaluate moves the face by (0.02, -0.01) m/s */
   s.face.n[1] = -3.0;
   Evaluate(&s, in, &o);
-  assert_true(o.out[F_VSX] == 0.0);
-  assert_true(fabs(o.out[F_VSY] / (0.5 * s.c.ambient_density * s.c.ambient_drag * 1e-4 * -3.0) - 1.0) < 1e-14);
+  assert_true(o.out[F_VS] == 0.0);
+  assert_true(fabs(o.out[F_VS + 1] / (0.5 * s.c.ambient_density * s.c.ambient_drag * 1e-4 * -3.0) - 1.0) < 1e-14);
   s.face.n[1] = 3.0;
   Evaluate(&s, in, &o);
-  assert_true(o.out[F_VSX] == 0.0 && o.out[F_VSY] == 0.0);
+  assert_true(o.out[F_VS] == 0.0 && o.out[F_VS + 1] == 0.0);
 }
 
 /* (31): whatever p_c is, the mean outside is the prescribed one; free takes the particle's p_c, held the initial one.
@@ -432,7 +474,7 @@ static void MeanPressure(void **state)
       memset(in, 0, MOTION_COUNT * sizeof(*in)); /* a = n */
       Evaluate(&s, in, &o);
       for (int ph = 0; ph < PHASE_COUNT; ph++)
-        p[ph] = o.out[F_VWX + 2 * ph] / s.face.n[0] -
+        p[ph] = o.out[F_VW + 2 * ph] / s.face.n[0] -
                 s.face.skin[ph] * (in[IN_J + 2 * ph] * s.face.n[0] + in[IN_J + 2 * ph + 1] * s.face.n[1]) +
                 in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
                 in[IN_GP + 2 * ph + 1] * s.face.r[1]; /* the row has what it differs from the body's own */
@@ -505,10 +547,10 @@ static void PlateForces(void **state)
 
       lifted += off;
       assert_true(fabs(o.plate[PLATE_FORCE] - (off ? 0.0 : gap)) <= 1e-6);
-      assert_true(fabs(o.out[F_VSX + d] - (off ? 0.0 : along)) <= 1e-6);
-      assert_true(fabs(o.out[F_VSY - d] - (kind == 1 ? s.face.K * (s.face.moved[1 - d] + in[IN_U + 1 - d]) : 0.0)) <=
+      assert_true(fabs(o.out[F_VS + d] - (off ? 0.0 : along)) <= 1e-6);
+      assert_true(fabs(o.out[F_VS + 1 - d] - (kind == 1 ? s.face.K * (s.face.moved[1 - d] + in[IN_U + 1 - d]) : 0.0)) <=
                   1e-6);
-      assert_true(o.plate[PLATE_SHEAR] == -o.out[F_VSY - d]);
+      assert_true(o.plate[PLATE_SHEAR] == -o.out[F_VS + 1 - d]);
       assert_true(fabs(o.plate[PLATE_AREA] - (off ? 0.0 : (d == 0 ? 1.0 : -1.0) * (1.0 + in[IN_GRADU + 4]) * cof)) <=
                   1e-12);
     }
@@ -564,8 +606,44 @@ static void Share(void **state)
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       assert_true(fabs(part.outflow[ph] - 0.7 * whole.outflow[ph]) <= 1e-14 * fabs(whole.outflow[ph]));
     assert_true(fabs(part.heat_in - 0.7 * whole.heat_in) <= 1e-14 * fabs(whole.heat_in));
-    assert_true(part.out[F_VSX] == whole.out[F_VSX] && part.out[F_VSX + 1] == whole.out[F_VSX + 1] &&
-                whole.out[F_VSX] != 0.0);
+    assert_true(part.out[F_VS] == whole.out[F_VS] && part.out[F_VS + 1] == whole.out[F_VS + 1] &&
+                whole.out[F_VS] != 0.0);
+  }
+}
+
+/* (367): both fluids leave as the mean pressure drives them, each by its own mobility and density, water with its
+   methane; what enters has the density of the pressure in the well.  (370): shares of a rate. */
+static void WellFlows(void **state)
+{
+  Rng r = {.s = 367};
+
+  for (int n = 0; n < STATES; n++) {
+    SmallScene s;
+    FaceOutput o;
+    double     in[IN_COUNT], d, e;
+
+    SceneInit(&s, &r);
+    (n % 2 ? WellFills : WellDraws)(&s, &r);
+    Inputs(&r, in);
+    Evaluate(&s, in, &o);
+    const double pc = in[IN_P + 1] - in[IN_P], sg = GasShareOf(&s.mat, pc, s.Sh),
+                 head = in[IN_P] + sg * pc - s.value[0], less = n % 2 ? head : 0.0; /* below the body's own */
+    const double w = 0.9 * 1e-9 *
+                     RelPermWater(&s.mat.relperm, s.mat.relperm.of_pores ? (1.0 - s.Sh) * (1.0 - sg) : 1.0 - sg, &d) *
+                     head,
+                 g = 0.9 * 1e-7 * RelPermGas(&s.mat.relperm, s.mat.relperm.of_pores ? (1.0 - s.Sh) * sg : sg, &d) *
+                     head;
+    const double rho_w = LiquidDensity(&s.mat.water, in[IN_P] - less, in[IN_T], &d, &e),
+                 rho_g = GasDensity(&s.mat.gas, in[IN_P + 1] - less, in[IN_T], &d, &e);
+
+    assert_true(fabs(o.outflow[PHASE_W] - rho_w * w) <= 1e-13 * fabs(rho_w * w) && w != 0.0);
+    assert_true(fabs(o.outflow[PHASE_G] - rho_g * g - 3e-7 * in[IN_P + 1] * w) <= 1e-13 * (fabs(rho_g * g) + fabs(w)));
+    assert_true((o.outflow[PHASE_W] > 0.0) == (n % 2 == 0));
+    WellRates(&s, &r);
+    s.bc[0].value = (Schedule){.n = 0};
+    Evaluate(&s, in, &o);
+    for (int ph = 0; ph < PHASE_COUNT; ph++)
+      assert_true(o.outflow[ph] == -0.3 * s.phase[ph][0]);
   }
 }
 
@@ -575,7 +653,7 @@ int main(void)
       cmocka_unit_test(Tangents),        cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
       cmocka_unit_test(DragOfTheSea),    cmocka_unit_test(PlateForces),  cmocka_unit_test(MassRows),
       cmocka_unit_test(TrueArea),        cmocka_unit_test(Convection),   cmocka_unit_test(DensityOfOutflow),
-      cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share)};
+      cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share),        cmocka_unit_test(WellFlows)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -181,7 +181,7 @@ static void AddNodes(IoScene *s)
   for (PetscInt j = 0; j < 2; j++) {
     for (PetscInt i = 0; i <= g->cells[0]; i++) {
       if (i >= g->xs[0] && i < g->xs[0] + g->xm[0] && j >= g->xs[1] && j < g->xs[1] + g->xm[1])
-        flag[GridPadded(g, i, j)] = 1;
+        flag[GridPadded(g, (PetscInt[]){i, j})] = 1;
     }
   }
   Call(NodeMapUpdate(g, flag, &s->m.map, &changed));

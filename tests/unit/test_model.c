@@ -289,7 +289,7 @@ static double RestVelocity(SmallScene *s, double *scale)
   for (PetscInt k = 0; k < m->map.n_owned * F_COUNT; k++) {
     if (k % F_COUNT < F_PW)
       worst = fmax(worst, fabs(x[k]) / fmax(m->col_scale[k], m->col_scale[k - k % F_COUNT]));
-    if (k % F_COUNT < F_VWX)
+    if (k % F_COUNT < F_VW)
       *scale = fmax(*scale, m->col_scale[k]);
   }
   Call(PetscFree(x));
@@ -474,17 +474,17 @@ static void TestDarcy(void **state)
   const double v = -k * RelPermWater(&mat->relperm, sw, &d) / mat->mu_w.mu * slope / (0.3 * sw);
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
-    s->m.x_n[I * F_COUNT + F_VWX] = s->stage.x_star[I * F_COUNT + F_VWX] = v;
+    s->m.x_n[I * F_COUNT + F_VW] = s->stage.x_star[I * F_COUNT + F_VW] = v;
   Call(PetscArraycpy(x, s->m.x_n, s->m.map.n_local * F_COUNT));
   Call(ModelBeginStage(&s->m, &s->stage));
-  const double force = ResidualAt(s, x, F_VWX, F_VGX);
+  const double force = ResidualAt(s, x, F_VW, F_VG);
   double       scale = 0.0; /* kg; what flows through a square metre in the step is 1e3 s x 1e3 kg/m^3 x J */
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
     scale = fmax(scale, s->m.row_scale[I * F_COUNT + F_PW]);
   const double mass = ResidualAt(s, x, F_PW, F_PG) * scale / (1e6 * fabs(v) * 0.3 * sw * s->m.grid.line[1].h);
   for (PetscInt I = 0; I < s->m.map.n_local; I++)
-    x[I * F_COUNT + F_VWX] *= 1.001; /* the rows do see the velocity */
-  const double seen = ResidualAt(s, x, F_VWX, F_VGX);
+    x[I * F_COUNT + F_VW] *= 1.001; /* the rows do see the velocity */
+  const double seen = ResidualAt(s, x, F_VW, F_VG);
   Say("uniform Darcy flow, v_w = %.6e m/s: momentum of water %.1e, mass %.1e (with 0.1 %% more velocity: %.1e)\n", v,
       force, mass, seen);
   Check(force < 1e-13 && mass < 1e-13 && seen > 1e-5);

@@ -67,7 +67,7 @@ static double RecoveryError(Model *m, Vec R, Vec Y)
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
     const int q = fs->field[k % fs->n];
 
-    if (q < F_VWX || q > F_VGY)
+    if (q < F_VW || q >= F_PW)
       continue;
     worst = fmax(worst, fabs(a[k] - r[k]));
     size  = fmax(size, fabs(r[k]));
