@@ -40,13 +40,13 @@ static inline double FaceWeight(const Face *f, int a, int q)
 {
   if (q == F_PW || q == F_PG)
     return f->Nm[q - F_PW][a];
-  return q == F_VW || q == F_VG ? f->Nr[a] : f->N[a];
+  return (q == F_VW || q == F_VG) ? f->Nr[a] : f->N[a];
 }
 
 /* (365): which way a fluid crosses the face by its Darcy flux J there, m/s. */
 static inline void FaceDirection(const Scene *c, Face *f, int phase, const double J[CL_DIM])
 {
-  f->leaves[phase] = c->stabilisation.outflow && J[0] * f->n[0] + J[1] * f->n[1] > 0.0;
+  f->leaves[phase] = c->stabilisation.outflow && VectorDot(J, f->n) > 0.0;
 }
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
@@ -128,9 +128,11 @@ enum { PLATE_POSITION = 0, PLATE_FORCE, PLATE_SHEAR, PLATE_AREA, PLATE_COUNT };
 /* A fluid's own pressure at a face, extrapolated from its particle, Pa. */
 static inline double FacePressure(const Face *f, int phase, const double in[IN_COUNT])
 {
-  const double *g = &in[VectorAt(IN_GP, phase, 0)];
+  double p = in[IN_P + phase];
 
-  return in[IN_P + phase] + g[0] * f->r[0] + g[1] * f->r[1];
+  for (int d = 0; d < CL_DIM; d++)
+    p += in[VectorAt(IN_GP, phase, d)] * f->r[d];
+  return p;
 }
 
 /* What a face adds to the nine rows of a node per unit of N_I, with the tangent in the particle's inputs, where Darcy

@@ -9,10 +9,10 @@
 
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
 #define CL_PARTICLE_TABLE(X)                                                                                           \
-  X(P_X, HAS_ALL, "position", 2, "m", "centre")                                                                        \
-  X(P_U, HAS_SOLID, "displacement", 2, "m", "from the initial position, or since a stage reset it")                    \
-  X(P_L, HAS_ALL, "half_length", 2, "m", "of the GIMP domain")                                                         \
-  X(P_F, HAS_SOLID, "deformation_gradient", 4, "-", "in the plane, since the start: xx xy yx yy")                      \
+  X(P_X, HAS_ALL, "position", CL_DIM, "m", "centre")                                                                   \
+  X(P_U, HAS_SOLID, "displacement", CL_DIM, "m", "from the initial position, or since a stage reset it")               \
+  X(P_L, HAS_ALL, "half_length", CL_DIM, "m", "of the GIMP domain")                                                    \
+  X(P_F, HAS_SOLID, "deformation_gradient", CL_DIM *CL_DIM, "-", "in the plane, since the start: xx xy yx yy")         \
   X(P_V, HAS_ALL, "volume", 1, "m^3", "current, per metre of thickness or of the full ring")                           \
   X(P_LOGJ, HAS_SOLID, "log_J", 1, "-", "logarithm of the volume ratio V/V_0")                                         \
   X(P_MS, HAS_ALL, "mass_solid", 1, "kg", "grains")                                                                    \
@@ -22,12 +22,12 @@
   X(P_PW, HAS_WATER, "p_w", 1, "Pa", "water pressure")                                                                 \
   X(P_PG, HAS_GAS_PRESSURE, "p_g", 1, "Pa", "gas pressure")                                                            \
   X(P_T, HAS_HEAT, "T", 1, "degC", "temperature")                                                                      \
-  X(P_GW, HAS_WATER, "grad_p_w", 2, "Pa/m", "at the end of the last step")                                             \
-  X(P_GG, HAS_GAS_PRESSURE, "grad_p_g", 2, "Pa/m", "")                                                                 \
-  X(P_GT, HAS_HEAT, "grad_T", 2, "K/m", "")                                                                            \
-  X(P_VS, HAS_SOLID, "v_s", 2, "m/s", "skeleton velocity")                                                             \
-  X(P_VW, HAS_WATER, "v_w", 2, "m/s", "water velocity")                                                                \
-  X(P_VG, HAS_GAS, "v_g", 2, "m/s", "gas velocity")                                                                    \
+  X(P_GW, HAS_WATER, "grad_p_w", CL_DIM, "Pa/m", "at the end of the last step")                                        \
+  X(P_GG, HAS_GAS_PRESSURE, "grad_p_g", CL_DIM, "Pa/m", "")                                                            \
+  X(P_GT, HAS_HEAT, "grad_T", CL_DIM, "K/m", "")                                                                       \
+  X(P_VS, HAS_SOLID, "v_s", CL_DIM, "m/s", "skeleton velocity")                                                        \
+  X(P_VW, HAS_WATER, "v_w", CL_DIM, "m/s", "water velocity")                                                           \
+  X(P_VG, HAS_GAS, "v_g", CL_DIM, "m/s", "gas velocity")                                                               \
   X(P_SIG, HAS_SOLID, "stress", 6, "Pa", "effective, tension-positive: xx yy zz xy yz xz")                             \
   X(P_SIG0, HAS_SOLID, "stress_initial", 6, "Pa", "initial effective stress, rotated with the body")                   \
   X(P_PW0, HAS_WATER, "p_w_initial", 1, "Pa", "initial water pressure")                                                \
@@ -36,7 +36,7 @@
   X(P_RATE_PG, HAS_WATER | HAS_HEAT, "rate_p_g", 1, "Pa/s", "")                                                        \
   X(P_RATE_T, HAS_WATER | HAS_HEAT, "rate_T", 1, "K/s", "")                                                            \
   X(P_RATE_SH, HAS_WATER | HAS_HEAT, "rate_S_h", 1, "1/s", "")                                                         \
-  X(P_X0, HAS_SOLID, "initial_position", 2, "m", "where it was seeded")                                                \
+  X(P_X0, HAS_SOLID, "initial_position", CL_DIM, "m", "where it was seeded")                                           \
   X(P_SH, HAS_ALL, "S_h", 1, "-", "hydrate saturation")                                                                \
   CL_SKELETON_TABLE(X)                                                                                                 \
   X(P_SW, HAS_WATER, "S_w", 1, "-", "water saturation")                                                                \

@@ -21,7 +21,7 @@ INLINE double HeatCapacity(const Material *mat, double m_s, double m_h, double m
 /* What a flux of mass takes along (21), W: c in J/(kg K), the flux in kg m/s, the gradient of T in K/m. */
 INLINE double AdvectedHeat(double c, const double flux[CL_DIM], const double gT[CL_DIM])
 {
-  return c * (flux[0] * gT[0] + flux[1] * gT[1]);
+  return c * VectorDot(flux, gT);
 }
 
 /* Number with slopes in phi and S_h. */

@@ -115,7 +115,7 @@ static inline double SceneTimeSlack(const Scene *c, double t)
 /* Its magnitude once the ramp is over, m/s^2. */
 static inline double SceneGravity(const Scene *c) /* m/s^2 */
 {
-  return hypot(c->gravity[0], c->gravity[1]);
+  return VectorLength(c->gravity);
 }
 
 /* Coordinate against gravity, m; 0 without gravity. */
@@ -123,7 +123,7 @@ static inline double SceneHeight(const Scene *c, const double x[])
 {
   const double g = SceneGravity(c);
 
-  return g > 0.0 ? -(x[0] * c->gravity[0] + x[1] * c->gravity[1]) / g : 0.0;
+  return g > 0.0 ? -VectorDot(x, c->gravity) / g : 0.0;
 }
 
 /* Axis that gravity points along, -1 if it is oblique or zero. */

@@ -224,10 +224,11 @@ typedef struct {
   double begin, end, kink[AHEAD_KINKS]; /* s: of the stage; of the kinks that are left */
   int    kinks;
   double stretch; /* mean time between two stops, s: a step is no longer */
-  bool   even;    /* steps are all alike: a stable or a fixed step, or too many kinks */
+  bool   more;    /* there are more kinks than are listed */
+  bool   even;    /* steps are all alike: a stable or a fixed step, or more kinks */
 } Ahead;
-/* false: there are more kinks than are listed. */
-bool StepperAhead(const Stepper *s, Ahead *a);
+/* From the present time on. */
+void StepperAhead(const Stepper *s, Ahead *a);
 /* What the way to the end will cost, s, (318), (319), (345); NAN: nothing is known yet. */
 double LearntLeft(const Learnt *l, const Ahead *a);
 

@@ -5,21 +5,24 @@
 
 /* ---------------------------------------------------------------- faces */
 /* An area vector goes with the motion: a = cof(F) n. */
-static void Carry(const Kinematics *k, const double n[2], double a[2], double da[2][MOTION_COUNT])
+static void Carry(const Kinematics *k, const double n[CL_DIM], double a[CL_DIM], double da[CL_DIM][MOTION_COUNT])
 {
   for (int i = 0; i < CL_DIM; i++) {
-    a[i] = k->cof[i][0] * n[0] + k->cof[i][1] * n[1];
-    for (int q = 0; q < MOTION_COUNT; q++)
-      da[i][q] = k->dcof[i][0][q] * n[0] + k->dcof[i][1][q] * n[1];
+    a[i] = VectorDot(k->cof[i], n);
+    for (int q = 0; q < MOTION_COUNT; q++) {
+      da[i][q] = k->dcof[i][0][q] * n[0];
+      for (int j = 1; j < CL_DIM; j++)
+        da[i][q] += k->dcof[i][j][q] * n[j];
+    }
   }
 }
 
 /* Area over which fluxes per area act, of the true surface (70), and its slopes. */
 static void Area(FaceState *x)
 {
-  x->area = hypot(x->s[0], x->s[1]);
+  x->area = VectorLength(x->s);
   for (int k = 0; k < MOTION_COUNT; k++)
-    x->darea[k] = (x->s[0] * x->ds[0][k] + x->s[1] * x->ds[1][k]) / x->area;
+    x->darea[k] = AlongSlope(x->s, x->ds, k) / x->area;
 }
 
 /* (364): of the temperature at the face, whichever way the fluids flow. */
@@ -36,26 +39,21 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
                   double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
                   FaceOutput *o)
 {
-  FaceState x = {.c     = c,
-                 .f     = f,
-                 .v     = v,
-                 .mat   = mat,
-                 .p0    = p0,
-                 .in    = in,
-                 .Sh    = Sh,
-                 .kappa = kappa,
-                 .dt    = dt,
-                 .T     = in[IN_T] + in[IN_GT] * f->r[0] + in[IN_GT + 1] * f->r[1],
-                 .a     = {f->n[0], f->n[1]},
-                 .s     = {f->s[0], f->s[1]}};
+  FaceState x = {
+      .c = c, .f = f, .v = v, .mat = mat, .p0 = p0, .in = in, .Sh = Sh, .kappa = kappa, .dt = dt, .T = in[IN_T]};
 
+  for (int d = 0; d < CL_DIM; d++) {
+    x.T += in[IN_GT + d] * f->r[d];
+    x.a[d] = f->n[d];
+    x.s[d] = f->s[d];
+  }
   *o = (FaceOutput){0};
   if (f->share > 0.0) {
     FaceWell(&x, f->bc[BC_WELL], o);
     o->enthalpy = CarriedOut(&x, o->outflow);
     return;
   }
-  if (f->n[0] == 0.0 && f->n[1] == 0.0)
+  if (VectorDot(f->n, f->n) == 0.0)
     return; /* on the axis */
   if (c->fields.solid) {
     Kinematics k;
@@ -83,9 +81,12 @@ static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 /* Does the node lie in the initial shape of the condition's region? */
 static bool InRegion(const Scene *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
 {
-  const double slack[CL_DIM] = {1e-6 * g->line[0].h, 1e-6 * g->line[1].h};
-  const double x[CL_DIM]     = {GridNode(g, 0, ij[0]), GridNode(g, 1, ij[1])};
+  double slack[CL_DIM], x[CL_DIM];
 
+  for (int d = 0; d < CL_DIM; d++) {
+    slack[d] = 1e-6 * g->line[d].h;
+    x[d]     = GridNode(g, d, ij[d]);
+  }
   for (PetscInt k = 0; k < c->nregion; k++) {
     if ((b->region < 0 || b->region == k) && RegionReaches(c, k, x, slack))
       return true;

@@ -20,7 +20,7 @@ void FaceTraction(const FaceState *x, PetscInt k, FaceOutput *o)
 void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o)
 {
   const double *a     = x->a;
-  const double  area2 = a[0] * a[0] + a[1] * a[1], w = velocity[0] * a[0] + velocity[1] * a[1];
+  const double  area2 = VectorDot(a, a), w = VectorDot(velocity, a);
   const double  C = 0.5 * x->c->ambient_density * x->c->ambient_drag / area2, q = C * w * w;
 
   if (w <= 0.0 || C == 0.0)
@@ -32,8 +32,7 @@ void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o)
     for (int d = 0; d < CL_DIM; d++)
       row[IN_U + d] += 2.0 * C * w * a[d] / x->dt * a[i];
     for (int k = 0; k < MOTION_COUNT; k++) {
-      const double dw     = velocity[0] * x->da[0][k] + velocity[1] * x->da[1][k],
-                   darea2 = 2.0 * (a[0] * x->da[0][k] + a[1] * x->da[1][k]);
+      const double dw = AlongSlope(velocity, x->da, k), darea2 = 2.0 * AlongSlope(a, x->da, k);
 
       row[k] += (2.0 * C * w * dw - q * darea2 / area2) * a[i] + q * x->da[i][k];
     }
@@ -55,7 +54,7 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   double        dp, dT;
   const Face   *f  = x->f;
   const double *in = x->in, *a = x->a, dt = x->dt;
-  const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = J[0] * a[0] + J[1] * a[1], skin = f->skin[phase];
+  const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = VectorDot(J, a), skin = f->skin[phase];
   const double  p = outside->p[phase], own = FacePressure(f, phase, in), jump = p + skin * Ja - own;
   const bool    leaves = f->leaves[phase];
   const double  rho    = FluidDensity(x->mat, phase, leaves ? own : p, in[IN_T], &dp, &dT);
@@ -71,7 +70,7 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   for (int j = 0; j < CL_DIM; j++)
     D[VectorAt(IN_J, phase, j)] += dt * rho * a[j];
   for (int k = 0; k < MOTION_COUNT; k++)
-    D[k] += dt * rho * (J[0] * x->da[0][k] + J[1] * x->da[1][k]);
+    D[k] += dt * rho * AlongSlope(J, x->da, k);
   for (int d = 0; d < CL_DIM; d++)
     D[IN_U + d] += dt * beyond * outside->du[d] * Ja;
   for (int i = 0; i < CL_DIM; i++) {
@@ -86,7 +85,7 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
     for (int j = 0; j < CL_DIM; j++)
       row[VectorAt(IN_J, phase, j)] += skin * a[j] * a[i];
     for (int k = 0; k < MOTION_COUNT; k++)
-      row[k] += jump * x->da[i][k] + skin * (J[0] * x->da[0][k] + J[1] * x->da[1][k]) * a[i];
+      row[k] += jump * x->da[i][k] + skin * AlongSlope(J, x->da, k) * a[i];
   }
   for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
     const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];
@@ -100,7 +99,7 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
 /* (352): the methane of the water that flows through an open face.  The fluid around the body holds none. */
 static void Dissolved(const FaceState *x, bool ambient, FaceOutput *o)
 {
-  const double H = x->mat->gas.carried, dt = x->dt, *a = x->a, *J = &x->in[IN_J], Ja = J[0] * a[0] + J[1] * a[1],
+  const double H = x->mat->gas.carried, dt = x->dt, *a = x->a, *J = &x->in[IN_J], Ja = VectorDot(J, a),
                c = DissolvedMethane(H, FacePressure(x->f, PHASE_G, x->in));
   double *D      = o->D[F_PG];
 
@@ -114,14 +113,17 @@ static void Dissolved(const FaceState *x, bool ambient, FaceOutput *o)
     D[IN_J + j] += dt * c * a[j];
   }
   for (int k = 0; k < MOTION_COUNT; k++)
-    D[k] += dt * c * (J[0] * x->da[0][k] + J[1] * x->da[1][k]);
+    D[k] += dt * c * AlongSlope(J, x->da, k);
 }
 
 /* Prescribed mean pressure of a face; that of the ambient fluid depends on where the face is. */
 static double MeanOutside(const FaceState *s, PetscInt k, double du[CL_DIM])
 {
-  const double value = s->v->value[k], x[CL_DIM] = {s->f->x[0] + s->in[IN_U], s->f->x[1] + s->in[IN_U + 1]};
+  const double value = s->v->value[k];
+  double       x[CL_DIM];
 
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = s->f->x[d] + s->in[IN_U + d];
   return isinf(value) ? AmbientPressure(&s->v->ambient, x, du) : value;
 }
 
@@ -268,9 +270,9 @@ void FaceConvection(const FaceState *x, PetscInt k, FaceOutput *o)
 /* (199): what the body conducts to the face, and a penalty. */
 void FaceTemperature(const FaceState *x, PetscInt k, FaceOutput *o)
 {
-  const double *g = &x->in[IN_GT], strong = FACE_PENALTY / hypot(x->f->r[0], x->f->r[1]);
+  const double *g = &x->in[IN_GT], strong = FACE_PENALTY / VectorLength(x->f->r);
   const double  conducts = x->kappa / (1.0 + strong * x->f->ring[1] * x->f->x[0]);
-  const double  arrives  = conducts * (g[0] * x->s[0] + g[1] * x->s[1]);
+  const double  arrives  = conducts * VectorDot(g, x->s);
 
   LetIn(x, strong * conducts * (x->v->value[k] - x->T), strong * conducts, o);
   o->heat_in += arrives;
@@ -278,5 +280,5 @@ void FaceTemperature(const FaceState *x, PetscInt k, FaceOutput *o)
   for (int j = 0; j < CL_DIM; j++)
     o->D[F_T][IN_GT + j] -= conducts * x->s[j];
   for (int j = 0; j < MOTION_COUNT; j++)
-    o->D[F_T][j] -= conducts * (g[0] * x->ds[0][j] + g[1] * x->ds[1][j]);
+    o->D[F_T][j] -= conducts * AlongSlope(g, x->ds, j);
 }

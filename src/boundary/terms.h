@@ -18,6 +18,16 @@ struct FaceState {
   double          area, darea[MOTION_COUNT];           /* |s|: over which fluxes per area act */
 };
 
+/* Sum over the axes of v_i d a_i, by input k. */
+static inline double AlongSlope(const double v[CL_DIM], const double da[CL_DIM][MOTION_COUNT], int k)
+{
+  double sum = v[0] * da[0][k];
+
+  for (int i = 1; i < CL_DIM; i++)
+    sum += v[i] * da[i][k];
+  return sum;
+}
+
 /* Each adds what condition Case.bc[k] does at the face. */
 void FaceTraction(const FaceState *x, PetscInt k, FaceOutput *o);
 void FacePressures(const FaceState *x, PetscInt k, FaceOutput *o);

@@ -7,7 +7,7 @@ Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM])
 
   for (int d = 0; d < CL_DIM; d++)
     a.weight[d] = c->ambient_density * gravity[d];
-  a.head = -hypot(a.weight[0], a.weight[1]) * ScheduleValue(&c->ambient_level, t);
+  a.head = -VectorLength(a.weight) * ScheduleValue(&c->ambient_level, t);
   a.on   = a.pressure != 0.0 || c->ambient_density > 0.0;
   return a;
 }

@@ -85,15 +85,16 @@ PetscErrorCode ModelResizeNodal(Model *m)
 
   PetscFunctionBeginUser;
   PetscCall(DestroyNodal(m));
-  PetscCall(PetscCalloc6(n * nf, &m->x_n, n * 2, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
+  PetscCall(
+      PetscCalloc6(n * nf, &m->x_n, n * PHASE_COUNT, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
   PetscCall(PetscCalloc3(n, &m->material, n, &m->most, n, &m->hydrate));
   if (m->c->stabilisation.upstream)
-    PetscCall(PetscCalloc1(n * 6, &m->added->up));
+    PetscCall(PetscCalloc1(n * PHASE_COUNT * UP_COUNT, &m->added->up));
   if (SceneDonor(m->c))
     PetscCall(PetscCalloc1(n * 2, &m->added->source));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
-  PetscCall(
-      PetscCalloc5(n * nf, &m->x, n * nf, &m->f, n * 4, &m->proj, n * GIVE_COUNT, &m->give, n * TAKE_COUNT, &m->take));
+  PetscCall(PetscCalloc5(n * nf, &m->x, n * nf, &m->f, n * CL_FLUID_VECTORS, &m->proj, n * GIVE_COUNT, &m->give,
+                         n * TAKE_COUNT, &m->take));
   if (m->c->fields.one_pressure)
     PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->mass_row));
   if (m->c->fields.phase[PHASE_W] && m->c->fields.phase[PHASE_G])

@@ -82,12 +82,14 @@ static void MarkSurface(const Model *m, double *fill)
 {
   for (PetscInt k = 0; k < m->nface; k++) {
     const Face *f    = &m->face[k];
-    const int   axis = fabs(f->n[0]) > fabs(f->n[1]) ? 0 : 1;
+    int         axis = CL_DIM - 1;
     PetscInt    cell[CL_DIM];
     double      s[CL_DIM];
 
-    for (int d = 0; d < CL_DIM; d++)
+    for (int d = CL_DIM - 1; d >= 0; d--) {
+      axis = fabs(f->n[d]) > fabs(f->n[axis]) ? d : axis;
       s[d] = LinesPlace(&m->grid.line[d], f->x[d]);
+    }
     if (fabs(s[axis] - round(s[axis])) < 1e-6 || VectorDot(f->n, f->n) == 0.0)
       continue; /* on a grid line, or the axis: nothing is cut */
     for (int d = 0; d < CL_DIM; d++)

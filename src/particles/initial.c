@@ -131,8 +131,8 @@ PetscErrorCode ParticleInitialState(const Scene *c, PetscInt region, Particles *
     Set(P, p, P_GG + d, s.grad_p[d]);
     Set(P, p, P_GT + d, s.grad_T[d]);
   }
-  Set(P, p, P_F, 1.0);
-  Set(P, p, P_F + 3, 1.0);
+  for (int d = 0; d < CL_DIM; d++)
+    Set(P, p, VectorAt(P_F, d, d), 1.0);
   P->f[P_V][p]   = V;
   P->f[P_PHI][p] = mat->porosity;
   P->f[P_SH][p]  = r->Sh;

@@ -14,28 +14,24 @@ void ParticlesInitialHalfLength(const Scene *c, PetscInt region, const double x[
 static PetscErrorCode VisitRegion(const Scene *c, const Grid *g, PetscInt region, PetscInt *id, SiteVisit visit,
                                   void *ctx)
 {
-  Lattice  lattice;
-  PetscInt ij[CL_DIM];
-  double   x[CL_DIM], l[CL_DIM];
+  static const PetscInt first[CL_DIM] = {0};
+  Lattice               lattice;
+  PetscInt              ij[CL_DIM];
+  Site                  site = {.region = region};
 
   PetscFunctionBeginUser;
   if (RegionEmpty(&c->region[region]))
     PetscFunctionReturn(PETSC_SUCCESS);
   RegionLattice(c, region, &lattice);
-  for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
-    for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
-      if (!RegionPlace(c, region, &lattice, ij, x))
-        continue;
-      for (int d = 0; d < CL_DIM; d++)
-        l[d] = 0.5 * LatticeWidth(&lattice, d, x[d]);
-      const Site site = {.id     = (*id)++,
-                         .region = region,
-                         .faces  = RegionFaces(c, region, &lattice, ij),
-                         .x      = {x[0], x[1]},
-                         .l      = {l[0], l[1]}};
-
-      PetscCall(visit(c, g, &site, ctx));
-    }
+  for (PetscInt k = 0; k < BoxSize(lattice.n); k++) {
+    BoxAt(first, lattice.n, k, ij);
+    if (!RegionPlace(c, region, &lattice, ij, site.x))
+      continue;
+    for (int d = 0; d < CL_DIM; d++)
+      site.l[d] = 0.5 * LatticeWidth(&lattice, d, site.x[d]);
+    site.id    = (*id)++;
+    site.faces = RegionFaces(c, region, &lattice, ij);
+    PetscCall(visit(c, g, &site, ctx));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -20,7 +20,7 @@ struct StageLog {
   Entry   *entry;
   Learnt   learnt; /* since then */
   double   kink;   /* the next one, s */
-  bool     even;   /* too many of them to begin anew at each */
+  bool     many;   /* too many of them to begin anew at each */
 };
 
 static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
@@ -33,10 +33,11 @@ static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
   if (log->n == 0 || log->entry[log->n - 1].stage != s->state.stage) {
     Ahead ahead;
 
+    StepperAhead(s, &ahead);
     log->from   = from;
     log->clock  = Wall();
     log->kink   = BcNextKink(s->model->c, from);
-    log->even   = !StepperAhead(s, &ahead);
+    log->many   = ahead.more;
     log->learnt = (Learnt){.origin = from};
   }
   log->entry[log->n++] =
@@ -91,7 +92,7 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   LearntAdd(&log->learnt, s->state.t, Wall() - log->clock);
   if (s->state.t >= log->kink) {
     log->kink = BcNextKink(s->model->c, s->state.t);
-    if (!log->even)
+    if (!log->many)
       LearntBegin(&log->learnt, s->state.t, Wall() - log->clock, s->state.t - s->model->c->t_begin);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -106,7 +107,7 @@ void StageLogProgress(const StageLog *log, const Stepper *s, double *done, doubl
   if (*left == 0.0 || *done < UNKNOWN)
     return;
   StepperAhead(s, &ahead);
-  ahead.even = ahead.even || log->even;
+  ahead.even = ahead.even || log->many;
   *left      = LearntLeft(&log->learnt, &ahead);
 }
 

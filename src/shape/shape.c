@@ -1,6 +1,7 @@
 /* What a region holds: a box, a polygon, what lies below a line, or a circle, inside its bounds, without others. */
 #include "clathra/shape.h"
 #include "clathra/geometry.h"
+#include <string.h>
 
 /* Points are judged a little off their place (of a cell), so that round-off decides nothing: a point on an edge goes
    to the region above or to the right of it. */
@@ -26,7 +27,10 @@ static void Bounds(const Points *points, double lower[], double upper[])
 
 void RegionBound(const Scene *c, Region *r)
 {
-  double lower[CL_DIM] = {c->lower[0], c->lower[1]}, upper[CL_DIM] = {c->upper[0], c->upper[1]};
+  double lower[CL_DIM], upper[CL_DIM];
+
+  memcpy(lower, c->lower, sizeof(lower));
+  memcpy(upper, c->upper, sizeof(upper));
 
   if (r->shape == SHAPE_POLYGON)
     Bounds(&r->polygon, lower, upper);
@@ -49,10 +53,14 @@ void RegionBound(const Scene *c, Region *r)
 /* The region's own shape, before `minus`. */
 static bool Holds(const Scene *c, const Region *r, const double x[])
 {
-  const GridLines line[CL_DIM] = {SceneLines(c, 0), SceneLines(c, 1)};
-  const double    y[CL_DIM]    = {x[0] + NUDGE * LinesWidthAt(&line[0], x[0]),
-                                  x[1] + 0.618 * NUDGE * LinesWidthAt(&line[1], x[1])};
+  static const double share[CL_DIM] = {1.0, 0.618};
+  double              y[CL_DIM];
 
+  for (int d = 0; d < CL_DIM; d++) {
+    const GridLines line = SceneLines(c, d);
+
+    y[d] = x[d] + share[d] * NUDGE * LinesWidthAt(&line, x[d]);
+  }
   for (int d = 0; d < CL_DIM; d++) {
     if (!(y[d] >= r->lower[d] && y[d] < r->upper[d]))
       return false;
@@ -254,8 +262,14 @@ static bool Covers(const Scene *c, PetscInt region, const double x[], const doub
 
   if (RegionEmpty(r))
     return false;
-  if (RegionWhole(r) && (x[0] >= r->lower[0] && x[0] <= r->upper[0] && x[1] >= r->lower[1] && x[1] <= r->upper[1]))
-    return true;
+  if (RegionWhole(r)) {
+    bool in = true;
+
+    for (int d = 0; d < CL_DIM; d++)
+      in = in && x[d] >= r->lower[d] && x[d] <= r->upper[d];
+    if (in)
+      return true;
+  }
   if (RegionWhole(r) && of_box)
     return false;
   if (RegionHolds(c, region, next))
@@ -273,10 +287,14 @@ PetscInt RegionFaces(const Scene *c, PetscInt region, const Lattice *lattice, co
 
   (void)RegionPlace(c, region, lattice, ij, x);
   for (int side = 0; side < SIDE_COUNT; side++) {
-    const int      d = SideAxis(side), sign = (int)SideSign(side);
-    const PetscInt beside[CL_DIM] = {ij[0] + (d == 0 ? sign : 0), ij[1] + (d == 1 ? sign : 0)};
-    double         next[CL_DIM], outside[CL_DIM] = {x[0], x[1]};
-    bool           covered = RegionPlace(c, region, lattice, beside, next);
+    const int d = SideAxis(side), sign = (int)SideSign(side);
+    PetscInt  beside[CL_DIM];
+    double    next[CL_DIM], outside[CL_DIM];
+
+    memcpy(beside, ij, sizeof(beside));
+    memcpy(outside, x, sizeof(outside));
+    beside[d] += sign;
+    bool covered = RegionPlace(c, region, lattice, beside, next);
 
     outside[d] += sign * 1.001 * (0.5 * LatticeWidth(lattice, d, x[d]));
     for (PetscInt k = 0; k < c->nregion && !covered; k++)
@@ -371,7 +389,10 @@ void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, dou
     for (PetscInt k = 0; k < r->minus.n; k++)
       TryShape(&w, &c->region[r->minus.i[k]]);
   }
-  const double steps = copysign(fabs(w.n[0]) + fabs(w.n[1]), sign * w.n[d]);
+  double sum = 0.0;
+  for (int i = 0; i < CL_DIM; i++)
+    sum += fabs(w.n[i]);
+  const double steps = copysign(sum, sign * w.n[d]);
 
   for (int i = 0; i < CL_DIM; i++)
     n[i] = w.n[i] / steps;

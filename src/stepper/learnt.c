@@ -120,7 +120,7 @@ double LearntLeft(const Learnt *l, const Ahead *a)
   return left;
 }
 
-bool StepperAhead(const Stepper *s, Ahead *a)
+void StepperAhead(const Stepper *s, Ahead *a)
 {
   const Case *c    = StepperCase(s);
   double      kink = BcNextKink(&c->scene, s->state.t);
@@ -128,8 +128,8 @@ bool StepperAhead(const Stepper *s, Ahead *a)
   *a = (Ahead){.begin = c->scene.t_begin, .end = c->t_end, .stretch = INFINITY};
   for (; kink < c->t_end && a->kinks < AHEAD_KINKS; kink = BcNextKink(&c->scene, kink))
     a->kink[a->kinks++] = kink;
-  a->even = s->explicit || !s->adaptive || kink < c->t_end;
+  a->more = kink < c->t_end;
+  a->even = s->explicit || !s->adaptive || a->more;
   if (!a->even)
     a->stretch = (c->t_end - s->state.t) / StepperStops(s, c->t_end - s->state.t, NULL);
-  return !(kink < c->t_end);
 }
