@@ -204,14 +204,11 @@ void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT])
 static void MakeFace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
                      Face *f)
 {
-  f->particle    = p;
-  f->side        = side;
-  f->share       = 0.0;
-  f->draws       = 0.0;
-  f->region      = P->i[PI_REGION][p];
-  f->x0[0]       = ParticleInitialX(P, p, 0);
-  f->x0[1]       = ParticleInitialX(P, p, 1);
-  f->bc[BC_NONE] = -1;
+  *f = (Face){.particle = p,
+              .side     = side,
+              .region   = P->i[PI_REGION][p],
+              .x0       = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)},
+              .bc       = {[BC_NONE] = -1}};
   for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
     f->bc[kind] = kind == BC_WELL ? -1 : FindCondition(c, (BcType)kind, f);
   f->meters = FindMeters(c, f);
