@@ -293,13 +293,11 @@ static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *
 
     for (int a = 0; a < r->n; a++) {
       const PetscInt I = r->node[a], k = I * fs->n + fs->at[q],
-                     vs   = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
-      const double change = x[k] - from * m->x_n[k], solid = fs->solid ? x[vs] - from * m->x_n[vs] : 0.0;
-      double       own = change;
+                     vs = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
+      const double dv   = x[k] - from * m->x_n[k];
+      const double slip = q < F_VW ? 0.0 : fs->solid ? dv - (x[vs] - from * m->x_n[vs]) : dv;
 
-      if (q >= F_VW)
-        own += (FlowWeight(m, p, I, (q - F_VW) / CL_DIM) - 1.0) * (change - solid);
-      v += r->S[a] * own;
+      v += r->S[a] * (dv + ((q < F_VW ? 1.0 : FlowWeight(m, p, I, (q - F_VW) / CL_DIM)) - 1.0) * slip);
     }
     m->P.f[P_VS + q][p] = v;
   }

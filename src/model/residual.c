@@ -109,14 +109,14 @@ static void ScatterBeds(Model *m, PetscInt p, const Reach *r, const double *x, i
   }
 }
 
-/* Sum over the axes of g times the k-th Lanes of G. */
-static inline Lanes LanesAlong(const double g[CL_DIM], const double G[CL_DIM][TAKE_COUNT - TAKE_GRAD], int k)
+/* Adds the sum over the axes of g times the k-th Lanes of G; a vector that is returned has no place everywhere. */
+static inline void LanesAlong(const double g[CL_DIM], const double G[CL_DIM][TAKE_COUNT - TAKE_GRAD], int k, Lanes *to)
 {
   Lanes sum = g[0] * ((const Lanes *)G[0])[k];
 
   for (int d = 1; d < CL_DIM; d++)
     sum += g[d] * ((const Lanes *)G[d])[k];
-  return sum;
+  *to += sum;
 }
 
 static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT])
@@ -140,7 +140,7 @@ static void Scatter(Model *m, PetscInt p, const Reach *r, const double *x, const
     for (int k = 0; k < TAKE_GRAD / LANES; k++)
       node[k] += r->S[a] * S[k];
     for (int k = 0; k < (TAKE_COUNT - TAKE_GRAD) / LANES; k++)
-      node[TAKE_GRAD / LANES + k] += LanesAlong(r->G[a], s.G, k);
+      LanesAlong(r->G[a], s.G, k, &node[TAKE_GRAD / LANES + k]);
   }
 }
 
