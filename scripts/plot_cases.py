@@ -256,15 +256,15 @@ def slope_warming(run, *axes):
         axes[3].plot(b["time_s"] / year - settled, 100 * b["hydrate_kg"] / b["hydrate_kg"][0], color=colour, label=what)
     axes[3].set(xlabel="years", ylabel="hydrate left (%)", ylim=(0, 105))
     axes[3].legend()
-    weak = run("-stage_warm_materials", "slope,weak", "-stage_warm_end", "125 a")
+    weak = run("-stage_warm_materials", "slope,weak")
     end = weak.snapshots[-1][1]
     body(axes[4], end["eps_d_p"][:, 0], end, "$\\epsilon_d^p$")
-    axes[4].set_title("weak ground after 105 years")
+    axes[4].set_title("weak ground after 150 years")
     b, p = weak.csv("balance"), weak.csv("probes")
-    late = b["time_s"] > 100 * year
+    late = b["time_s"] > 130 * year
     row, moved = np.arange(late.sum()), np.interp(b["time_s"][late], p["time_s"], p["face.u_x_m"])
     axes[5].semilogy(row, b["dt_s"][late], color=COLOURS[0])
-    axes[5].set(xlabel="rows of balance.csv from 80 years on", ylabel="step (s)", title="weak ground: steps, and way of the face")
+    axes[5].set(xlabel="rows of balance.csv from 110 years on", ylabel="step (s)", title="weak ground: steps, and way of the face")
     beside = axes[5].twinx()
     beside.plot(row, moved, color=COLOURS[1])
     beside.set_ylabel("m", color=COLOURS[1])

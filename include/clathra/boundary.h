@@ -23,6 +23,7 @@ typedef struct {
   double   ring[2];             /* (197), (198): what is lost between face and body in a ring, in 2 pi k and kappa */
   double   skin[PHASE_COUNT];   /* the same as a resistance to a fluid, Pa s/m^3 */
   bool     leaves[PHASE_COUNT]; /* has the fluid that crosses the body's density (365)? */
+  double   pore;                /* mean pore pressure at t_n, Pa (358) */
   PetscInt bc[BC_FACES];        /* by kind: index into Case.bc, -1 = none */
   double   moved[CL_DIM];       /* displacement since the start, m */
   double   a0;                  /* area at the start, m^2 */

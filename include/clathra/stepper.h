@@ -235,8 +235,9 @@ double LearntLeft(const Learnt *l, const Ahead *a);
 /* ---- auto.c: docs/equations.md, section 15 */
 /* The integrator a stage begins with, or a restart goes on with. */
 PetscErrorCode StepperAutoBegin(Stepper *s);
-/* After an attempt of length dt (s) failed so, the last one allowed or not: is it time for hybrid? */
-PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool last, bool *yes);
+/* After this attempt of length dt (s) failed, the last one allowed or not: is it time for hybrid?  After one that (356)
+   refused the next, of state.dt with as many Newton iterations, is what hybrid has to be cheaper than. */
+PetscErrorCode StepperAutoGivesWay(Stepper *s, const Attempt *a, double dt, bool last, bool *yes);
 /* After every step: goes over to the other integrator where that pays. */
 PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok);
 /* auto, after an attempt of length dt (s) that Newton's method solved: a step over a slide is refused, a->status

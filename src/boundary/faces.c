@@ -112,6 +112,25 @@ static void Ring(const Scene *c, const Grid *g, const Particles *P, Face *f)
   f->ring[1] = hole && f->bc[BC_FACE_TEMPERATURE] >= 0 ? FaceRing(c, g, f->x[0], l, FACE_PENALTY) : 0.0;
 }
 
+/* Mean pore pressure at the face as the particle's own values and gradients have it, Pa. */
+static double FacePore(const Scene *c, const Particles *P, const Face *f)
+{
+  const PetscInt p = f->particle;
+  double         pore;
+
+  if (!c->fields.phase[PHASE_W])
+    return 0.0;
+  const double sg = P->f[P_SW] ? 1.0 - P->f[P_SW][p] / (1.0 - P->f[P_SH][p]) : 0.0;
+
+  pore = ParticlePressure(P, p);
+  for (int d = 0; d < CL_DIM; d++) {
+    const double gw = P->f[P_GW + d][p], gg = P->f[P_GG] ? P->f[P_GG + d][p] : gw;
+
+    pore += ((1.0 - sg) * gw + sg * gg) * (f->x[d] - P->f[P_X + d][p]);
+  }
+  return pore;
+}
+
 /* A well takes from its particle, wherever that is. */
 static void PlaceInside(const Particles *P, const Stencil *st, Face *f)
 {
@@ -160,6 +179,7 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil 
   Weights(c, g, P, stencil, half, f);
   Ring(c, g, P, f);
   f->skin[PHASE_W] = f->skin[PHASE_G] = 0.0;
+  f->pore                             = FacePore(c, P, f);
   f->leaves[PHASE_W] = f->leaves[PHASE_G] = false;
 }
 
@@ -184,14 +204,11 @@ void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT])
 static void MakeFace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
                      Face *f)
 {
-  f->particle    = p;
-  f->side        = side;
-  f->share       = 0.0;
-  f->draws       = 0.0;
-  f->region      = P->i[PI_REGION][p];
-  f->x0[0]       = ParticleInitialX(P, p, 0);
-  f->x0[1]       = ParticleInitialX(P, p, 1);
-  f->bc[BC_NONE] = -1;
+  *f = (Face){.particle = p,
+              .side     = side,
+              .region   = P->i[PI_REGION][p],
+              .x0       = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)},
+              .bc       = {[BC_NONE] = -1}};
   for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
     f->bc[kind] = kind == BC_WELL ? -1 : FindCondition(c, (BcType)kind, f);
   f->meters = FindMeters(c, f);

@@ -169,13 +169,21 @@ static bool Opens(const Bc *b, int phase)
   return b->open == OPEN_BOTH || (b->open == OPEN_WATER) == (phase == PHASE_W);
 }
 
+/* (358): the fluid around the body is water; gas leaves into it, but none comes back. */
+static bool Gives(const FaceState *x, PetscInt k, int phase)
+{
+  double gradient[CL_DIM];
+
+  return phase == PHASE_W || !isinf(x->v->value[k]) || x->f->pore > AmbientPressure(&x->v->ambient, x->f->x, gradient);
+}
+
 void FacePressures(const FaceState *x, PetscInt k, FaceOutput *o)
 {
   Outside outside;
 
   OutsidePressures(x, k, &outside);
   for (int phase = 0; phase < PHASE_COUNT; phase++) {
-    if (x->c->fields.phase[phase] && Opens(&x->c->bc[k], phase))
+    if (x->c->fields.phase[phase] && Opens(&x->c->bc[k], phase) && Gives(x, k, phase))
       Open(x, phase, &outside, o);
   }
   if ((x->c->fields.has & HAS_GAS_PRESSURE) && Opens(&x->c->bc[k], PHASE_W))

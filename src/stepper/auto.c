@@ -264,19 +264,21 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StepperAutoGivesWay(Stepper *s, ClStatus status, double dt, bool last, bool *yes)
+PetscErrorCode StepperAutoGivesWay(Stepper *s, const Attempt *a, double dt, bool last, bool *yes)
 {
-  StableStep limit;
-  double     implicit, hybrid;
+  const bool   slide  = a->status == CL_TOO_FAR; /* steps will not grow again before it rests */
+  const double newton = slide ? (double)a->newton : 2.0 * STEPPER_NEWTON;
+  StableStep   limit;
+  double       implicit, hybrid;
 
   PetscFunctionBeginUser;
   *yes = false;
-  if (!s->auto_.on || (status == CL_INACCURATE && !last))
+  if (!s->auto_.on || (a->status == CL_INACCURATE && !last))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepperHybridLimit(s, &limit));
   PetscCall(CostHybrid(s, &limit, &hybrid));
-  PetscCall(CostImplicit(s, 2.0 * STEPPER_NEWTON, dt, &implicit));
-  *yes = isfinite(hybrid) && (last || implicit > MARGIN * hybrid);
+  PetscCall(CostImplicit(s, newton, slide ? s->state.dt : dt, &implicit));
+  *yes = isfinite(hybrid) && (last || implicit > (slide ? 1.0 : MARGIN) * hybrid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -317,7 +317,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
                             s->state.dt));
     }
     const bool last = cuts >= s->max_failures || small;
-    PetscCall(StepperAutoGivesWay(s, a.status, dt, last, &s->auto_.give_way));
+    PetscCall(StepperAutoGivesWay(s, &a, dt, last, &s->auto_.give_way));
     if (s->auto_.give_way)
       PetscFunctionReturn(PETSC_SUCCESS);
     if (last) {

@@ -332,6 +332,7 @@ static void Tangents(void **state)
       condition[k].set(&s, &r);
       s.face.leaves[PHASE_W] = n & 1;
       s.face.leaves[PHASE_G] = n >> 1 & 1;
+      s.face.pore            = n & 1 ? INFINITY : 0.0;
       Inputs(&r, in);
       worst = fmax(worst, WorstTangent(&s, in));
     }
@@ -403,6 +404,36 @@ static void DensityOfOutflow(void **state)
     const double  Ja_w = in[IN_J] * n[0] + in[IN_J + 1] * n[1], Ja_g = in[IN_J + 2] * n[0] + in[IN_J + 3] * n[1];
     assert_true(fabs(o.outflow[PHASE_W] / (water * Ja_w) - 1.0) < 1e-14);
     assert_true(fabs(o.outflow[PHASE_G] / (gas * Ja_g + 3e-7 * 3.1e6 * Ja_w) - 1.0) < 1e-14);
+  }
+}
+
+/* (358): the sea lets gas out of a body whose pore pressure is above its own, and none into it; water crosses either
+   way.  A reservoir's given pressure does not ask. */
+static void NoGasFromTheSea(void **state)
+{
+  Rng r = {.s = 358};
+
+  for (int n = 0; n < STATES; n++) {
+    for (int natural = 0; natural < 2; natural++) {
+      SmallScene s;
+      FaceOutput o[2];
+      double     in[IN_COUNT], d[CL_DIM];
+
+      SceneInit(&s, &r);
+      AmbientFluid(&s, &r, natural);
+      Inputs(&r, in);
+      for (int k = 0; k < 2; k++) {
+        s.face.pore = AmbientPressure(&s.v.ambient, s.face.x, d) + (k ? 1.0 : -1.0);
+        Evaluate(&s, in, &o[k]);
+        assert_true(o[k].out[F_PW] != 0.0 && o[k].out[F_PW] == o[0].out[F_PW] && o[k].out[F_VW] == o[0].out[F_VW]);
+      }
+      assert_true(o[0].out[F_VG] == 0.0 && o[0].out[F_VG + 1] == 0.0 && o[1].out[F_VG] != 0.0);
+      assert_true(fabs(o[1].out[F_PG] - o[0].out[F_PG]) > 0.0);
+      s.value[0]  = 3e6;
+      s.face.pore = 0.0;
+      Evaluate(&s, in, &o[0]);
+      assert_true(o[0].out[F_VG] != 0.0);
+    }
   }
 }
 
@@ -619,10 +650,10 @@ static void WellFlows(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(Tangents),     cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
-      cmocka_unit_test(DragOfTheSea), cmocka_unit_test(PlateForces),  cmocka_unit_test(MassRows),
-      cmocka_unit_test(TrueArea),     cmocka_unit_test(Convection),   cmocka_unit_test(DensityOfOutflow),
-      cmocka_unit_test(Share),        cmocka_unit_test(WellFlows)};
+      cmocka_unit_test(Tangents),        cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
+      cmocka_unit_test(DragOfTheSea),    cmocka_unit_test(PlateForces),  cmocka_unit_test(MassRows),
+      cmocka_unit_test(TrueArea),        cmocka_unit_test(Convection),   cmocka_unit_test(DensityOfOutflow),
+      cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share),        cmocka_unit_test(WellFlows)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

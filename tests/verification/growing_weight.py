@@ -25,14 +25,15 @@ def changes(run):
 
 run, over = cut("auto"), cut("sdirk2")
 found, t, dt = changes(run), run.balance["time_s"], run.balance["dt_s"]
+E_k = run.balance["kinetic_energy_J"]
 check_true("implicit, hybrid for the slide, implicit again", [c[1:] for c in found] == [("sdirk2", "hybrid"), ("hybrid", "sdirk2")], str(found))
 bursts = np.flatnonzero(np.diff(run.balance["step"]) > 1) + 1  # rows of hybrid
 first, second = int(bursts[0]), int(bursts[-1]) + 1  # advances until each change, a row each
 check("steps before the slide", first, 100)
 check("steps after it, which last 50 days", t.size - second, 100)
 check_true("... and come to days again", dt[second:].max() > DAY, f"{dt[second:].max():.3g} s")
+check_true("hybrid has all of it: the step before it is of hours", dt[first - 1] > 3600.0 and E_k[first - 1] < 1e-6 * E_k.max(), f"{dt[first - 1]:.3g} s, {E_k[first - 1]:.3g} J")
 check("the slide lasts (s)", t[second - 1] - t[first - 1], (1.0, 100.0))
-E_k = run.balance["kinetic_energy_J"]
 check_true("it is one: E_k during it and after it", E_k.max() > 100 and E_k[-1] < 1e-6 * E_k.max(), f"{E_k.max():.3g}, {E_k[-1]:.3g} J")
 check_true("sdirk2 alone steps over it", over.code == 0 and over.balance["dt_s"].min() > 60, f"{over.balance['dt_s'].min():.3g} s")
 held, alone = cut("auto", *FIRM), cut("sdirk2", *FIRM)

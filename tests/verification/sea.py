@@ -179,10 +179,37 @@ def sinks():
     check("sinking block: hybrid against sdirk2", abs(ends[1] / ends[0] - 1), 5e-3)
 
 
+SWAPPED = ("-grid_upper", "1.2 m,0.1 m", "-grid_cells", "12,1", "-region_body_upper", "1 m,0.1 m", "-bc_base_axis", "x", "-bc_left_axis", "y", "-bc_right_axis", "y",
+           "-bc_top_side", "right")  # fmt: skip
+
+
+def gas():
+    """The sea lets gas out and none in (358): a column whose gas a rising sea compresses takes in water alone, until p_g V is again what it was; a falling
+    one draws off as much as a given pressure does."""
+    run = lambda kind, *options, ranks=1: Run.of_case(CASES / "sea_gas.yaml", "-quiet", "-stepper_type", kind, *options, ranks=ranks)
+    rises, falls = ("-ambient_pressure_ramp", "1 MPa,1.5 MPa,0 s,0.5 s"), ("-ambient_pressure_ramp", "1 MPa,0.7 MPa,0 s,0.5 s")
+    given = ("-bc_top_pressure_ramp", "1 MPa,0.7 MPa,0 s,0.5 s")
+    for kind in ("sdirk2", "hybrid"):
+        up, down, outlet = run(kind, *rises), run(kind, *falls), run(kind, *given, *falls)
+        methane, water = up.balance["methane_kg"], up.balance["water_kg"]
+        judge(ROW, f"gas under a sea that rises by half, {kind}: methane that comes in, of what is there", np.max(np.abs(methane / methane[0] - 1)), 1e-4)
+        before, after = up.snapshots()[0][1], up.snapshots()[-1][1]
+        pV = lambda v: np.sum(v["p_g"][:, 0] * (v["S_g"] * v["porosity"] * v["volume"])[:, 0])
+        judge(ROW, f"... {kind}: p_g times the room that gas has, over that before", pV(after) / pV(before), (0.999, 1.001))
+        check_true(f"... {kind}: water comes in", water[-1] > 1.1 * water[0], f"{water[-1] / water[0] - 1:.3f} of what was there")
+        left = [1 - r.balance["methane_kg"][-1] / r.balance["methane_kg"][0] for r in (down, outlet)]
+        judge(ROW, f"gas under a sea that falls, {kind}: what leaves, over what a given pressure draws", left[0] / left[1], (0.98, 1.02))
+        check_true(f"... {kind}: gas leaves", left[0] > 0.2, f"{left[0]:.3f}")
+    p = last(run("sdirk2", *rises))["p_g"]
+    check("gas under a rising sea: axes swapped", np.max(np.abs(np.sort(last(run("sdirk2", *rises, *SWAPPED))["p_g"], 0) / np.sort(p, 0) - 1)), 1e-9)
+    check("gas under a rising sea: 2 ranks", np.max(np.abs(last(run("sdirk2", *rises, ranks=2))["p_g"] / p - 1)), 1e-9)
+
+
 rest()
 deeper()
 leaning()
 falling()
 slope()
 sinks()
+gas()
 finish()
