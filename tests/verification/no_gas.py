@@ -186,7 +186,8 @@ def clay():
     """Drained sand between clays without gas: gas that sand has does not carry off, over its share of a node in the clay (359), what the clay's water holds."""
     case, early, end = CASES / "no_gas_clay.yaml", 0.3 * 86400, 30 * 86400
     run = Run.of_case(case)
-    two = Run.of_case(case, "-time_end", "0.3 d", "-output_times", "0.3 d", ranks=2).snapshot(early)
+    short = ("-time_end", "0.3 d", "-output_times", "0.3 d")
+    one, two = (np.sort(Run.of_case(case, *short, ranks=n).snapshot(early)["p_g"][:, 0]) for n in (1, 2))
     first, v = run.snapshots()[0][1], run.snapshot(early)
     rows = {}
     for t in (early, end):
@@ -202,7 +203,7 @@ def clay():
     judge("gas", "... steps of 30 days", float(len(run.balance["time_s"])), 200.0)
     check("... p_c there, least (kPa)", rows[early][4], (-100.0, 100.0))
     check("... methane", np.max(np.abs(run.balance["methane_error"])), 1e-12)
-    check("... two ranks, p_g, largest difference (Pa)", np.max(np.abs(np.sort(two["p_g"], 0) - np.sort(run.snapshot(early)["p_g"], 0))), 1e3)
+    check("... two ranks, p_g, largest difference (Pa)", np.max(np.abs(one - two)), 1.0)
 
 
 if __name__ == "__main__":
