@@ -113,6 +113,7 @@ typedef struct {
   double capacity, kappa;                      /* V C_m (J/K), W/(m K) */
   double M, G;                                 /* constrained and shear modulus, Pa */
   double storage[PHASE_COUNT];                 /* d(phi S_pi rho_pi)/dp_pi / rho_pi, 1/Pa */
+  double cross[PHASE_COUNT];                   /* ... /dp of the other fluid / rho_pi, 1/Pa */
   double compressibility;                      /* sum over pi of that in a pressure that both have, 1/Pa */
   double reaction, reaction_heat;              /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
 } PointProperties;

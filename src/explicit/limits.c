@@ -17,22 +17,19 @@ typedef struct {
   int fluids;
 } Spectrum;
 
-/* Change of pressure per change of the volume of each fluid, C^-1 (1/Pa)^-1. */
-static void Stiffness(const Set s, const Material *mat, const PointProperties *q, double pc, double C[2][2])
+/* Change of pressure per change of the volume of each fluid, C^-1 (1/Pa)^-1.  Gas that dissolves makes C lopsided. */
+static void Stiffness(const Set s, const PointProperties *q, double C[2][2])
 {
   if (s.fluids == 1) {
     C[0][0] = 1.0 / q->storage[PHASE_W];
     return;
   }
-  double       ds, ds_dSh;
-  const double open = q->phi * (1.0 - q->Sh);
-
-  RetentionGasShare(&mat->retention, pc, q->Sh, &ds, &ds_dSh);
-  const double c = open * ds, det = q->storage[PHASE_W] * q->storage[PHASE_G] - c * c;
+  const double det = q->storage[PHASE_W] * q->storage[PHASE_G] - q->cross[PHASE_W] * q->cross[PHASE_G];
 
   C[0][0] = q->storage[PHASE_G] / det;
   C[1][1] = q->storage[PHASE_W] / det;
-  C[0][1] = C[1][0] = c / det;
+  C[0][1] = -q->cross[PHASE_W] / det;
+  C[1][0] = -q->cross[PHASE_G] / det;
 }
 
 /* (150) in the form of (38), where velocities are free: k^2 of the thinnest sliver of a particle's domain; linear
@@ -74,7 +71,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
   *w  = (Spectrum){.fluids = s.fluids};
   rho = (f[P_MS][p] + f[P_MH][p]) / f[P_V][p];
   if (s.fluids)
-    Stiffness(s, mat, &q, s.fluids == 2 ? f[P_PG][p] - f[P_PW][p] : 0.0, C);
+    Stiffness(s, &q, C);
   skeleton     = q.M;
   double total = rho;
   for (int i = 0; i < s.fluids; i++) {

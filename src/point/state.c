@@ -81,6 +81,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     const Jet mobility   = JetDiv(s.kr[f], s.resist[f]);
     r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
     r->storage[f]        = m->d[JET_PW + f] / (V * s.rho[f].v);
+    r->cross[f]          = m->d[JET_PW + PHASE_G - f] / (V * s.rho[f].v);
     r->compressibility += (m->d[JET_PW] + m->d[JET_PG]) / (V * s.rho[f].v);
   }
   if (fs->heat) {
