@@ -169,12 +169,13 @@ static bool Opens(const Bc *b, int phase)
   return b->open == OPEN_BOTH || (b->open == OPEN_WATER) == (phase == PHASE_W);
 }
 
-/* (358): the fluid around the body is water; gas leaves into it, but none comes back. */
+/* (358): the fluid around the body is water; gas leaves into it freely, but none comes back. */
 static bool Gives(const FaceState *x, PetscInt k, int phase)
 {
   double gradient[CL_DIM];
 
-  return phase == PHASE_W || !isinf(x->v->value[k]) || x->f->pore > AmbientPressure(&x->v->ambient, x->f->x, gradient);
+  return phase == PHASE_W || !isinf(x->v->value[k]) || !x->c->bc[k].natural ||
+         x->f->pore > AmbientPressure(&x->v->ambient, x->f->x, gradient);
 }
 
 void FacePressures(const FaceState *x, PetscInt k, FaceOutput *o)
