@@ -71,7 +71,7 @@ bool WellPlace(const Scene *c, const Bc *b, Well *w);
 /* (366): of a particle at x0 (m) with half-lengths l (m), all at the start; dimensionless. */
 double WellShare(const Well *w, const double x0[CL_DIM], const double l[CL_DIM]);
 /* C of (369), dimensionless; 0 if there is none: the well is too wide for its cells. */
-double WellIndex(const Scene *c, const Bc *b, const Well *w);
+PetscErrorCode WellIndex(const Scene *c, const Bc *b, const Well *w, double *C);
 /* What a face of a well has of its particle's properties at t_n. */
 void WellProperties(const PointProperties *q, Face *f);
 

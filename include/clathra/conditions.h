@@ -102,5 +102,6 @@ typedef struct {
   double     alpha;            /* convection coefficient, W/(m^2 K) */
   /* well: initial position, m; radius, m; skin; mass of water and gas into the body, kg/s; T of what enters, degC */
   double   at[CL_DIM], radius, skin;
+  double   index; /* C of (369), for this grid; 0 without a bottom pressure */
   Schedule rate[PHASE_COUNT], heated;
 } Bc;

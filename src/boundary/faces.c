@@ -74,14 +74,25 @@ static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const
     BasisAxis(BASIS_UGIMP, x, l, line, a);
 }
 
-/* Products of the axes' weights, in the order of StencilExpand.  A linear particle does not reach the nodes of its
-   face, which then acts at the particle. */
+/* Products of the axes' weights, in the order of StencilExpand. */
+static void SpreadWeights(const Stencil *st, double w[CL_DIM][3], Face *f)
+{
+  int       at[CL_NODES][CL_DIM];
+  const int n = StencilNodes(st, at);
+
+  for (int a = 0; a < n; a++) {
+    f->N[a] = 1.0;
+    for (int d = 0; d < CL_DIM; d++)
+      f->N[a] *= w[d][at[a][d]];
+    f->Nr[a] = f->Nm[PHASE_W][a] = f->Nm[PHASE_G][a] = f->N[a];
+  }
+}
+
+/* A linear particle does not reach the nodes of its face, which then acts at the particle. */
 static void Weights(const Scene *c, const Grid *g, const Particles *P, const Stencil *st, const double half[CL_DIM],
                     Face *f)
 {
-  double    w[CL_DIM][3];
-  int       at[CL_NODES][CL_DIM];
-  const int n = StencilNodes(st, at);
+  double w[CL_DIM][3];
 
   for (int d = 0; d < CL_DIM; d++) {
     Axis a = st->axis[d];
@@ -94,12 +105,7 @@ static void Weights(const Scene *c, const Grid *g, const Particles *P, const Ste
       w[d][k] = i >= 0 && i < 3 ? a.S[i] : 0.0;
     }
   }
-  for (int a = 0; a < n; a++) {
-    f->N[a] = 1.0;
-    for (int d = 0; d < CL_DIM; d++)
-      f->N[a] *= w[d][at[a][d]];
-    f->Nr[a] = f->Nm[PHASE_W][a] = f->Nm[PHASE_G][a] = f->N[a];
-  }
+  SpreadWeights(st, w, f);
 }
 
 /* (197), (198): of the faces of a hole about the axis on which something is prescribed. */
@@ -134,19 +140,14 @@ static double FacePore(const Scene *c, const Particles *P, const Face *f)
 /* A well takes from its particle, wherever that is. */
 static void PlaceInside(const Particles *P, const Stencil *st, Face *f)
 {
-  const Axis *x = &st->axis[0], *y = &st->axis[1];
-  int         n = 0;
+  double w[CL_DIM][3];
 
-  for (int d = 0; d < CL_DIM; d++)
+  for (int d = 0; d < CL_DIM; d++) {
     f->x[d] = P->f[P_X + d][f->particle];
-  for (int b = 0; b < 3; b++) {
-    for (int a = 0; a < 3; a++) {
-      if ((x->S[a] != 0.0 || x->dS[a] != 0.0) && (y->S[b] != 0.0 || y->dS[b] != 0.0)) {
-        f->N[n] = f->Nr[n] = f->Nm[PHASE_W][n] = f->Nm[PHASE_G][n] = x->S[a] * y->S[b];
-        n++;
-      }
-    }
+    for (int k = 0; k < 3; k++)
+      w[d][k] = st->axis[d].S[k];
   }
+  SpreadWeights(st, w, f);
 }
 
 void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
@@ -254,7 +255,6 @@ static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *
     count += ShareOf(c, P, &well, p) > 0.0;
   if (!count)
     PetscFunctionReturn(PETSC_SUCCESS);
-  const double C = c->bc[k].value.n ? WellIndex(c, &c->bc[k], &well) : 0.0;
   PetscCall(PetscRealloc((size_t)(at + count) * sizeof(Face), face));
   for (PetscInt p = 0; p < P->n; p++) {
     const double share = ShareOf(c, P, &well, p);
@@ -263,7 +263,7 @@ static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *
       const Material *mat = &c->material[c->region[P->i[PI_REGION][p]].material];
 
       MakeWellFace(c, g, P, stencil, p, k, share, &(*face)[at]);
-      (*face)[at++].draws = C * sqrt(mat->permeability.ratio) * share; /* (367) */
+      (*face)[at++].draws = c->bc[k].index * sqrt(mat->permeability.ratio) * share; /* (367) */
     }
   }
   *n = at;

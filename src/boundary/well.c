@@ -6,6 +6,8 @@
 #include "clathra/point_state.h"
 #include "clathra/shape.h"
 
+#include <petscmat.h>
+
 /* ---------------------------------------------------------------- its particles */
 static double Tent(double t)
 {
@@ -66,7 +68,6 @@ double WellShare(const Well *w, const double x0[CL_DIM], const double l[CL_DIM])
 #define RIM 2                    /* of them at each end hold the logarithm */
 #define INSIDE (LINES - 2 * RIM) /* unknown */
 #define SIZE (INSIDE * INSIDE)
-#define BAND (2 * INSIDE + 2) /* a particle couples nodes two apart */
 
 /* Sums of one axis: V G G, V S S, V G S over its places, and the well's weights omega S. */
 typedef struct {
@@ -150,8 +151,8 @@ typedef struct {
   Beds   A;
   double root, radius, skin, at[CL_DIM]; /* sqrt(r); r_w'; s; the well, m */
   Column column[CL_DIM];
-  double K[SIZE][BAND + 1], load[SIZE];       /* without the well: lower band, right side */
-  double L[SIZE][BAND + 1], P[SIZE], N[SIZE]; /* its factor with the well, solution, sums of S over the rim */
+  Mat    K, W;          /* without the well; sums of sqrt(r) omega S S over the well's particles */
+  Vec    load, draw, P; /* without the well; sums of sqrt(r) omega S; the solution */
 } Flow;
 
 /* (368): P at a node, per flow of one. */
@@ -181,37 +182,38 @@ static double Entry(const Flow *f, int i, int j, int k, int l)
          f->A.xy * (x->GS[i][k] * y->GS[l][j] + x->GS[k][i] * y->GS[j][l]);
 }
 
-static void Assemble(Flow *f)
+static PetscErrorCode Assemble(Flow *f)
 {
+  PetscFunctionBeginUser;
   for (int j = RIM; j < LINES - RIM; j++) {
     for (int i = RIM; i < LINES - RIM; i++) {
-      const int row = Number(i, j);
-
       for (int l = j - 2; l <= j + 2; l++) {
         for (int k = i - 2; k <= i + 2; k++) {
           const double a = Entry(f, i, j, k, l);
 
-          if (!Unknown(k, l))
-            f->load[row] -= a * Thiem(f, k, l);
-          else if (Number(k, l) <= row)
-            f->K[row][row - Number(k, l)] = a;
+          if (Unknown(k, l))
+            PetscCall(MatSetValue(f->K, Number(i, j), Number(k, l), a, ADD_VALUES));
+          else
+            PetscCall(VecSetValue(f->load, Number(i, j), -a * Thiem(f, k, l), ADD_VALUES));
         }
       }
     }
   }
+  PetscCall(MatAssemblyBegin(f->K, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(f->K, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Visits the particles of the well: adds C sqrt(r) omega S S to the band, or sums the flow. */
-static double Draw(Flow *f, double C, bool assemble)
+static PetscErrorCode AssembleWell(Flow *f)
 {
   const Column *x = &f->column[0], *y = &f->column[1];
-  double        flow = 0.0;
 
+  PetscFunctionBeginUser;
   for (int b = 0; b < y->n; b++) {
     for (int a = 0; a < x->n; a++) {
-      const double draws          = C * f->root * x->omega[a] * y->omega[b];
-      int          node[CL_NODES] = {0}, n = 0;
-      double       S[CL_NODES] = {0.0};
+      const double draws          = f->root * x->omega[a] * y->omega[b];
+      PetscInt     node[CL_NODES] = {0}, n = 0;
+      double       S[CL_NODES] = {0.0}, SS[CL_NODES * CL_NODES];
 
       for (int j = RIM; j < LINES - RIM; j++) {
         for (int i = RIM; i < LINES - RIM && y->S[b][j] != 0.0; i++) {
@@ -221,74 +223,61 @@ static double Draw(Flow *f, double C, bool assemble)
           }
         }
       }
-      for (int k = 0; k < n; k++) {
-        flow += assemble ? 0.0 : draws * S[k] * f->P[node[k]];
-        for (int l = 0; assemble && l <= k; l++)
-          f->L[node[k]][node[k] - node[l]] += draws * S[k] * S[l];
+      for (PetscInt k = 0; k < n; k++) {
+        PetscCall(VecSetValue(f->draw, node[k], draws * S[k], ADD_VALUES));
+        for (PetscInt l = 0; l < n; l++)
+          SS[k * n + l] = draws * S[k] * S[l];
       }
+      PetscCall(MatSetValues(f->W, n, node, n, node, SS, ADD_VALUES));
     }
   }
-  return flow;
-}
-
-/* Cholesky in the band, and the solution. */
-static void Solve(Flow *f)
-{
-  for (int i = 0; i < SIZE; i++) {
-    const int from = PetscMax(0, i - BAND);
-
-    for (int j = from; j <= i; j++) {
-      double sum = f->L[i][i - j];
-
-      for (int k = PetscMax(from, j - BAND); k < j; k++)
-        sum -= f->L[i][i - k] * f->L[j][j - k];
-      f->L[i][i - j] = j < i ? sum / f->L[j][0] : sqrt(sum);
-    }
-  }
-  for (int i = 0; i < SIZE; i++) {
-    f->P[i] = f->load[i];
-    for (int k = PetscMax(0, i - BAND); k < i; k++)
-      f->P[i] -= f->L[i][i - k] * f->P[k];
-    f->P[i] /= f->L[i][0];
-  }
-  for (int i = SIZE - 1; i >= 0; i--) {
-    for (int k = i + 1; k < PetscMin(SIZE, i + BAND + 1); k++)
-      f->P[i] -= f->L[k][k - i] * f->P[k];
-    f->P[i] /= f->L[i][0];
-  }
+  PetscCall(MatAssemblyBegin(f->W, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(f->W, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What is left of 1/Q - 1 with 1/C. */
-static double Miss(Flow *f, double inverse)
+static PetscErrorCode Miss(Flow *f, double inverse, double *miss)
 {
-  for (int i = 0; i < SIZE; i++) {
-    for (int k = 0; k <= BAND; k++)
-      f->L[i][k] = f->K[i][k];
-  }
-  (void)Draw(f, 1.0 / inverse, true);
-  Solve(f);
-  return 1.0 / Draw(f, 1.0 / inverse, false) - 1.0;
+  Mat    L;
+  double flow;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDuplicate(f->K, MAT_COPY_VALUES, &L));
+  PetscCall(MatAXPY(L, 1.0 / inverse, f->W, SAME_NONZERO_PATTERN));
+  PetscCall(MatSetOption(L, MAT_SPD, PETSC_TRUE));
+  PetscCall(MatCholeskyFactor(L, NULL, NULL));
+  PetscCall(MatSolve(L, f->load, f->P));
+  PetscCall(VecDot(f->draw, f->P, &flow));
+  PetscCall(MatDestroy(&L));
+  *miss = inverse / flow - 1.0;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 #define LEAST 1e-3 /* of 1/C */
 #define SECANTS 30
 
 /* (369): 1/Q is all but linear in 1/C. */
-static double Index(Flow *f)
+static PetscErrorCode Index(Flow *f, double *C)
 {
-  double a = LEAST, at_a = Miss(f, a), b = 0.1, at_b = Miss(f, b);
+  double a = LEAST, b = 0.1, at_a, at_b;
 
+  PetscFunctionBeginUser;
+  *C = 0.0;
+  PetscCall(Miss(f, a, &at_a));
+  PetscCall(Miss(f, b, &at_b));
   if (!(at_a < 0.0 && at_a > -1.0)) /* the cells alone resist more than the well may, or it sucks against its skin */
-    return 0.0;
+    PetscFunctionReturn(PETSC_SUCCESS);
   for (int n = 0; n < SECANTS && fabs(at_b) > 1e-12; n++) {
     const double next = fmax(b - at_b * (b - a) / (at_b - at_a), LEAST);
 
     a    = b;
     at_a = at_b;
     b    = next;
-    at_b = Miss(f, b);
+    PetscCall(Miss(f, b, &at_b));
   }
-  return 1.0 / b;
+  *C = 1.0 / b;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* (306) of the material at the well, at the start. */
@@ -308,15 +297,11 @@ static double RatioAt(const Scene *c, const Bc *b, Beds *A)
   return 1.0;
 }
 
-double WellIndex(const Scene *c, const Bc *b, const Well *w)
+static PetscErrorCode FlowCreate(const Scene *c, const Bc *b, const Well *w, Flow *f)
 {
-  Flow  *f;
-  double C = 0.0;
-
-  if (PetscCalloc1(1, &f) != PETSC_SUCCESS)
-    return 0.0;
   const double ratio = RatioAt(c, b, &f->A), fourth = pow(ratio, 0.25);
 
+  PetscFunctionBeginUser;
   f->root   = sqrt(ratio);
   f->radius = 0.5 * b->radius * (fourth + 1.0 / fourth);
   f->skin   = b->skin;
@@ -324,9 +309,37 @@ double WellIndex(const Scene *c, const Bc *b, const Well *w)
     f->at[d] = b->at[d];
     FillColumn(c, w, d, &f->column[d]);
   }
-  Assemble(f);
-  C = Index(f);
-  return PetscFree(f) == PETSC_SUCCESS ? C : 0.0;
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, SIZE, SIZE, NULL, &f->K));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, SIZE, SIZE, NULL, &f->W));
+  PetscCall(MatCreateVecs(f->K, &f->load, &f->P));
+  PetscCall(VecDuplicate(f->load, &f->draw));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FlowDestroy(Flow **f)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&(*f)->K));
+  PetscCall(MatDestroy(&(*f)->W));
+  PetscCall(VecDestroy(&(*f)->load));
+  PetscCall(VecDestroy(&(*f)->draw));
+  PetscCall(VecDestroy(&(*f)->P));
+  PetscCall(PetscFree(*f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode WellIndex(const Scene *c, const Bc *b, const Well *w, double *C)
+{
+  Flow *f;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(1, &f));
+  PetscCall(FlowCreate(c, b, w, f));
+  PetscCall(Assemble(f));
+  PetscCall(AssembleWell(f));
+  PetscCall(Index(f, C));
+  PetscCall(FlowDestroy(&f));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------------------------------------------------------------- what a particle of it yields */
@@ -392,16 +405,15 @@ static Rate Volume(const FaceState *x, int phase, const Rate *head)
 }
 
 /* (367): mass of a fluid that leaves, kg/s. */
-static Rate Mass(const FaceState *x, PetscInt k, int phase, const Rate *q)
+static Rate Mass(const FaceState *x, int phase, const Rate *head, const Rate *q)
 {
-  const Rate   head   = Head(x, k, phase);
-  const bool   enters = head.v < 0.0;
+  const bool   enters = head->v < 0.0;
   double       dp, dT;
-  const double rho = FluidDensity(x->mat, phase, x->in[IN_P + phase] - (enters ? head.v : 0.0), x->in[IN_T], &dp, &dT);
+  const double rho = FluidDensity(x->mat, phase, x->in[IN_P + phase] - (enters ? head->v : 0.0), x->in[IN_T], &dp, &dT);
   Rate         m   = {rho * q->v, {0.0, 0.0, dT * q->v}};
 
   for (int j = 0; j < PHASE_COUNT; j++)
-    m.d[j] = rho * q->d[j] + dp * ((j == phase ? 1.0 : 0.0) - (enters ? head.d[j] : 0.0)) * q->v;
+    m.d[j] = rho * q->d[j] + dp * ((j == phase ? 1.0 : 0.0) - (enters ? head->d[j] : 0.0)) * q->v;
   return m;
 }
 
@@ -447,7 +459,7 @@ void FaceWell(const FaceState *x, PetscInt k, FaceOutput *o)
     if (!x->c->fields.phase[phase])
       continue;
     const Rate head = Head(x, k, phase), q = Volume(x, phase, &head);
-    const Rate m = held ? Mass(x, k, phase, &q) : (Rate){.v = -x->f->share * x->v->phase[phase][k]};
+    const Rate m = held ? Mass(x, phase, &head, &q) : (Rate){.v = -x->f->share * x->v->phase[phase][k]};
 
     Leave(x, phase, &m, o);
     Warm(x, k, phase, &m, o);

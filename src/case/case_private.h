@@ -212,9 +212,11 @@ PetscErrorCode PlateForm(Reader *r, Bc *b);
 void           CheckPlate(Reader *r, const Case *c, const Bc *b);
 void           CheckPlasticity(Reader *r, const Case *c, const Material *m); /* plastic.c */
 void           CheckReduction(Reader *r, const Case *c);                     /* strength_factor */
-void           CheckFlow(Reader *r, const Scene *c, const Bc *b);            /* flow.c: pressure and inflow */
-/* A well in the plane: its place, its radius, what drives it. */
-void CheckWell(Reader *r, const Case *c, const Bc *b);         /* wells.c */
+/* flow.c: pressure and inflow; a key that needs any of these fields */
+void CheckFlow(Reader *r, const Scene *c, const Bc *b);
+void CheckField(Reader *r, const Scene *c, const Bc *b, const char *key, unsigned needs, bool given);
+/* A well in the plane: its place, its radius, what drives it; finds its index. */
+void CheckWell(Reader *r, const Case *c, Bc *b);               /* wells.c */
 void CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
 void RegionsFinish(Scene *c); /* once all keys are read */

@@ -179,7 +179,7 @@ void CaseCheck(Reader *r, Case *c)
   if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
     PetscCallVoid(RegionsCut(r, c));
   for (PetscInt i = 0; i < c->scene.nbc && !bad[GROUP_BC]; i++) {
-    const Bc *b     = &c->scene.bc[i];
+    Bc       *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;
 
     if (b->type == BC_WELL) {

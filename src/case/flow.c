@@ -3,8 +3,7 @@
 
 #define FAIL(b, key, ...) FAIL_AT(GROUP_BC, (b)->name, key, __VA_ARGS__)
 
-/* A key of a field that the scene has not. */
-static void CheckField(Reader *r, const Scene *c, const Bc *b, const char *key, unsigned needs, bool given)
+void CheckField(Reader *r, const Scene *c, const Bc *b, const char *key, unsigned needs, bool given)
 {
   char words[64];
 

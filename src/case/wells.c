@@ -33,7 +33,7 @@ static double Shares(const Scene *c, const Well *w)
   return sum;
 }
 
-static void CheckPlace(Reader *r, const Scene *c, const Bc *b)
+static void CheckPlace(Reader *r, const Scene *c, Bc *b)
 {
   Well   w;
   double h = INFINITY;
@@ -45,31 +45,24 @@ static void CheckPlace(Reader *r, const Scene *c, const Bc *b)
   for (int d = 0; d < CL_DIM; d++)
     h = fmin(h, LinesLeastAt(&w.line[d], b->at[d]));
   const double sum = Shares(c, &w);
-  if (fabs(sum - 1.0) > WHOLE)
+  if (fabs(sum - 1.0) > WHOLE) {
     FAIL(b, "at",
          "(%g m, %g m): a well draws from the particles within a cell of it, and those of the body have %.6g of its "
          "weights: the body ends nearer than that, or regions that differ in particles_per_cell meet there",
          b->at[0], b->at[1], sum);
-  else if (b->value.n && b->radius > 0.5 * h * (1.0 + WHOLE))
+  } else if (b->value.n && b->radius > 0.5 * h * (1.0 + WHOLE)) {
     FAIL(b, "radius",
          "%g m is more than half a cell (%g m): cut such a well out of the body and give its wall a pressure",
          b->radius, h);
-  else if (b->value.n && !(WellIndex(c, b, &w) > 0.0))
-    FAIL(b, "skin", "%g with radius %g m is more than the cells about the well can yield (%g m wide)", b->skin,
-         b->radius, h);
+  } else if (b->value.n) {
+    PetscCallVoid(WellIndex(c, b, &w, &b->index));
+    if (!(b->index > 0.0))
+      FAIL(b, "skin", "%g with radius %g m is more than the cells about the well can yield (%g m wide)", b->skin,
+           b->radius, h);
+  }
 }
 
-static void CheckField(Reader *r, const Scene *c, const Bc *b, const char *key, unsigned needs, bool given)
-{
-  char words[64];
-
-  if (!given || (c->fields.has & needs))
-    return;
-  FieldsWords(needs, words);
-  FAIL(b, key, "needs %s, which is not among the fields of the scene (%s)", words, CaseOf(c)->fields_wanted);
-}
-
-void CheckWell(Reader *r, const Case *c, const Bc *b)
+void CheckWell(Reader *r, const Case *c, Bc *b)
 {
   const bool rate = b->rate[PHASE_W].n || b->rate[PHASE_G].n;
 
