@@ -213,12 +213,23 @@ static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT
   }
 }
 
+/* Of the node's place b, where displacement counts with NU; the fluxes' weights NS are the caller's. */
+static inline NodeWeights WeightsAt(const Model *m, const Reach *r, int b, double NU)
+{
+  return (NodeWeights){.S  = r->S[b],
+                       .NU = NU,
+                       .K  = m->c->axisymmetric ? r->K[b] : 0.0,
+                       .G  = r->G[b],
+                       .M  = r->M[b],
+                       .B  = m->c->mean_dilatation ? r->B[b] : NULL,
+                       .w  = &m->w[PHASE_COUNT * r->node[b]]};
+}
+
 /* What a particle adds to the blocks between its nodes. */
 static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const double *x,
                           const PointOutput *o, Slopes *slopes, Patch *patch)
 {
-  const FieldSet *fs           = &to->fs;
-  const bool      axisymmetric = m->c->axisymmetric;
+  const FieldSet *fs = &to->fs;
   NodeFactors     factor[CL_NODES];
   const double   *D[OUT_COUNT];
   double         *row[OUT_COUNT];
@@ -227,19 +238,13 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
   SlopesBegin(fs->n * r->n, m->c->mean_dilatation, slopes);
   for (int b = 0; b < r->n; b++) {
     Factors(m, p, r->node[b], x, r->S[b], &factor[b]);
-    NodeWeights at = {.S  = r->S[b],
-                      .NU = MotionWeight(m, p, r, b),
-                      .K  = axisymmetric ? r->K[b] : 0.0,
-                      .G  = r->G[b],
-                      .M  = r->M[b],
-                      .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                      .w  = &m->w[PHASE_COUNT * r->node[b]]};
+    NodeWeights at = WeightsAt(m, r, b, MotionWeight(m, p, r, b));
 
     for (int f = 0; f < PHASE_COUNT; f++) {
       for (int d = 0; d < CL_DIM; d++)
         at.NS[f][d] = factor[b].flow[f];
     }
-    SlopesAdd(fs, axisymmetric, m->stage.dt, &at, b * fs->n, slopes);
+    SlopesAdd(fs, m->c->axisymmetric, m->stage.dt, &at, b * fs->n, slopes);
   }
   for (int k = 0; k < to->nout; k++) {
     D[k]   = o->D[to->out[k]];
@@ -312,13 +317,7 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
   slopes.unknowns = 0;
   SlopesBegin(fs->n * r->n, true, &slopes);
   for (int b = 0; b < r->n; b++) {
-    NodeWeights at = {.S  = r->S[b],
-                      .NU = face->N[b],
-                      .K  = m->c->axisymmetric ? r->K[b] : 0.0,
-                      .G  = r->G[b],
-                      .M  = r->M[b],
-                      .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                      .w  = &m->w[PHASE_COUNT * r->node[b]]};
+    NodeWeights at = WeightsAt(m, r, b, face->N[b]);
 
     for (int f = 0; f < PHASE_COUNT; f++) {
       for (int d = 0; d < CL_DIM; d++)
