@@ -4,6 +4,7 @@
 
 #include "clathra/inline.h"
 #include "clathra/laws.h"
+#include "clathra/point_state.h"
 
 /* Share with its slope in the mass. */
 typedef struct {
@@ -21,10 +22,26 @@ typedef struct {
   double v, p, T;
 } Growth;
 
-/* (11) per surface: -dt' M_h K_d (p_e - p); p in Pa, K_d and p_e with their slopes in T. */
-INLINE Growth ReactionGrowth(const Kinetics *k, double dt, double p, double Kd, double dKd_dT, double pe, double dpe_dT)
+/* Pressure of the pores as the reaction sees it; forms: it is above p_e; idle: but the gas is not. */
+typedef struct {
+  PorePressure p;
+  bool         forms, idle;
+} Driving;
+
+/* (371); trace is H of (101), s_g dimensionless, pressures in Pa. */
+INLINE Driving ReactionDriving(double trace, double sg, double pw, double pg, double pe)
 {
-  const double c = dt * k->M_h, drive = pe - p;
+  const PorePressure mean  = PorePressureOf(sg, pw, pg);
+  const bool         forms = mean.v > pe, scarce = forms && trace > 0.0 && pg < pw;
+
+  return (Driving){scarce ? (PorePressure){pg, 0.0, 0.0, 1.0} : mean, forms, scarce && pg <= pe};
+}
+
+/* (11) per surface: -dt' M_h K_d (p_e - p); K_d and p_e (Pa) with their slopes in T. */
+INLINE Growth ReactionGrowth(const Kinetics *k, double dt, const Driving *d, double Kd, double dKd_dT, double pe,
+                             double dpe_dT)
+{
+  const double c = d->idle ? 0.0 : dt * k->M_h, drive = pe - d->p.v;
 
   return (Growth){-c * Kd * drive, c * Kd, -c * (dKd_dT * drive + Kd * dpe_dT)};
 }

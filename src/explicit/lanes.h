@@ -145,8 +145,9 @@ enum {
   T_SLOPE = T_EOS + PHASE_COUNT,    /* [2][3] their slopes in p_w, p_g, T */
   T_WARM =
       T_SLOPE + 3 * PHASE_COUNT, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
-  T_GAIN = T_WARM + PHASE_COUNT, /* hydrate: gain at the old p and T, slopes in p and T */
-  T_GAIN_P,
+  T_GAIN = T_WARM + PHASE_COUNT, /* hydrate: gain at the old p and T, slopes in p_w, p_g and T */
+  T_GAIN_W,
+  T_GAIN_G,
   T_GAIN_T,
   T_MISS, /* bare form: [2] masses missing, then [2][3] what increments of p_w, p_g, T make of them */
   T_LOCAL = T_MISS + PHASE_COUNT,

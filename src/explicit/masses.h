@@ -10,16 +10,15 @@
 INLINE void GainOf(const Explicit *e, const Set s, Run r, const Gathered *g, double *restrict wanted,
                    double *restrict gain)
 {
-  const double *restrict gain_0 = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p,
-                         *restrict gain_T = e->t[T_GAIN_T] + r.p;
-  const double *restrict sg = e->t[T_SG] + r.p, *restrict mh = e->m->P.f[P_MH] + r.p;
+  const double *restrict gain_0 = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
+                         *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p,
+                         *restrict mh = e->m->P.f[P_MH] + r.p;
 
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double dp = (1.0 - sg[q]) * g->value[q][0] + sg[q] * g->value[q][1];
-
-    wanted[q] = gain_0[q] + gain_p[q] * dp + (s.heat ? gain_T[q] * g->value[q][2] : 0.0);
-    gain[q]   = Largest(wanted[q], -mh[q]);
+    wanted[q] = gain_0[q] + gain_w[q] * g->value[q][0] + gain_g[q] * g->value[q][1] +
+                (s.heat ? gain_T[q] * g->value[q][2] : 0.0);
+    gain[q] = Largest(wanted[q], -mh[q]);
   }
 }
 

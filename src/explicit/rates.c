@@ -181,19 +181,19 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
                      const Volumes *v)
 {
   const Kinetics k          = r.mat->kinetics;
+  const double   H          = r.mat->gas.trace;
   double *const *f          = e->m->P.f;
   const bool     own        = e->o.particle_pressures;
   const double *restrict sg = e->t[T_SG] + r.p, *restrict V = e->t[T_V] + r.p, *restrict mh = f[P_MH] + r.p;
   const double *restrict own_w = f[P_PW] + r.p, *restrict own_g = f[P_PG] + r.p;
-  double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_p = e->t[T_GAIN_P] + r.p,
-                   *restrict gain_T = e->t[T_GAIN_T] + r.p;
-  double p_r[BLOCK], sw[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK], area[BLOCK];
+  double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
+                   *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
+  double pw[BLOCK], pg[BLOCK], sw[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK], area[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
-    const double pw = own ? own_w[q] : g->value[q][B_P(s, 0)], pg = own ? own_g[q] : g->value[q][B_P(s, 1)];
-
     sw[q]  = 1.0 - sg[q];
-    p_r[q] = PorePressureOf(sg[q], pw, pg).v;
+    pw[q]  = own ? own_w[q] : g->value[q][B_P(s, 0)];
+    pg[q]  = own ? own_g[q] : g->value[q][B_P(s, 1)];
     T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
   }
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
@@ -201,14 +201,15 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
   KineticsFormationAreaBatch(&k, r.n, sw, v->Sh, area);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const Growth growth = ReactionGrowth(&k, dt, p_r[q], Kd[q], dK[q], pe[q], dpe[q]);
-    const bool   goes   = p_r[q] <= pe[q];
-    double       slope;
-    const double per_mass = k.A_geo / v->rho_h[q], to = V[q] * area[q],
-                 gone = ReactionDissociated(mh[q], -per_mass * growth.v, &slope), by = goes ? -per_mass * slope : to;
+    const Driving d      = ReactionDriving(H, sg[q], pw[q], pg[q], pe[q]);
+    const Growth  growth = ReactionGrowth(&k, dt, &d, Kd[q], dK[q], pe[q], dpe[q]);
+    double        slope;
+    const double  per_mass = k.A_geo / v->rho_h[q], to = V[q] * area[q],
+                 gone = ReactionDissociated(mh[q], -per_mass * growth.v, &slope), by = d.forms ? to : -per_mass * slope;
 
-    gain[q]   = goes ? gone : to * growth.v;
-    gain_p[q] = by * growth.p;
+    gain[q]   = d.forms ? to * growth.v : gone;
+    gain_w[q] = by * growth.p * d.p.pw;
+    gain_g[q] = by * growth.p * d.p.pg;
     gain_T[q] = by * growth.T;
   }
 }
@@ -371,14 +372,14 @@ INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
   }
 }
 
-/* What the reaction adds to all rows: gain = gain_0 + gain_p (s . dp) + gain_T dT. */
+/* What the reaction adds to all rows: gain = gain_0 + gain_w dp_w + gain_g dp_g + gain_T dT. */
 INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, Given *o)
 {
   const Kinetics *k               = &r.mat->kinetics;
   const int       n               = Scalars(s);
   const double    nu[PHASE_COUNT] = {KineticsWater(k), KineticsMethane(k)};
-  const double *restrict sg = e->t[T_SG] + r.p, *restrict gain = e->t[T_GAIN] + r.p,
-                         *restrict gain_p = e->t[T_GAIN_P] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
+  const double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
+                         *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
   double held[PHASE_COUNT][BLOCK], L[BLOCK];
 
   LatentHeatBatch(&r.mat->latent, r.n, T, L);
@@ -390,8 +391,8 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
       double      *a = &o->value[q][R_Matrix(s) + row * n];
 
       o->value[q][row] -= c * gain[q];
-      a[PHASE_W] += c * gain_p[q] * (1.0 - sg[q]);
-      a[PHASE_G] += c * gain_p[q] * sg[q];
+      a[PHASE_W] += c * gain_w[q];
+      a[PHASE_G] += c * gain_g[q];
       if (s.heat)
         a[s.fluids] += c * gain_T[q];
     }

@@ -20,15 +20,14 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
     own[F_PW + f] = m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + Shift(m, p, &r, F_PW + f);
 
   const double pe = EquilibriumPressure(&k->equilibrium, own[F_T], &slope), Kd = KineticsRateConstant(k, own[F_T], &dK);
-  const PorePressure p_r    = PorePressureOf(q->s[PHASE_G], own[F_PW], own[F_PG]);
-  const Growth       growth = ReactionGrowth(k, 1.0, p_r.v, Kd, dK, pe, slope); /* kg/(m^2 s) */
-  const double       area =
-      p_r.v <= pe ? k->A_geo * q->phi * q->Sh : KineticsFormationArea(k, q->s[PHASE_W], q->Sh, &dw, &dA);
+  const Driving d      = ReactionDriving(mat->gas.trace, q->s[PHASE_G], own[F_PW], own[F_PG], pe);
+  const Growth  growth = ReactionGrowth(k, 1.0, &d, Kd, dK, pe, slope); /* kg/(m^2 s) */
+  const double  area   = d.forms ? KineticsFormationArea(k, q->s[PHASE_W], q->Sh, &dw, &dA) : k->A_geo * q->phi * q->Sh;
 
   l->rate        = m->P.f[P_V][p] * growth.p * area;
-  l->decay       = p_r.v < pe && q->Sh > 0.0 ? -growth.v * k->A_geo / mat->hydrate.rho0 : 0.0;
-  l->drive[F_PW] = -p_r.pw;
-  l->drive[F_PG] = -p_r.pg;
+  l->decay       = !d.forms && q->Sh > 0.0 ? -growth.v * k->A_geo / mat->hydrate.rho0 : 0.0;
+  l->drive[F_PW] = -d.p.pw;
+  l->drive[F_PG] = -d.p.pg;
   l->drive[F_T]  = slope;
   l->gain[F_PW]  = KineticsWater(k);
   l->gain[F_PG]  = KineticsMethane(k);

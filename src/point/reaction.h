@@ -62,14 +62,15 @@ INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Scalar
   s->gain.v = (growth.v * A - steep * grown) / (1.0 - steep);
 }
 
-/* m_h and its gain, from p, shares and pores of s.  The reaction sees p and T of the nodal fields, not the particle's
-   own: those differ by what nodes cannot see (and so never correct), which a fast reaction would turn into hydrate. */
-INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet rho_h, ScalarState *s)
+/* m_h and its gain, from pressures, shares and pores of s.  The reaction sees p and T of the nodal fields, not the
+   particle's own: those differ by what nodes cannot see (and so never correct), which a fast reaction would turn into
+   hydrate. */
+INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T, Jet rho_h, ScalarState *s)
 {
-  const Kinetics *k   = &mat->kinetics;
-  const double    m0  = fmax(h->m_star[0], 0.0);
-  const Jet       T_r = JetShift(T, h->shift[2]);
-  const Jet       p_r = JetAdd(s->p, JetAdd(JetScale(h->shift[0], s->sw), JetScale(h->shift[1], s->sg)));
+  const Kinetics *k    = &mat->kinetics;
+  const double    m0   = fmax(h->m_star[0], 0.0);
+  const Jet       T_r  = JetShift(T, h->shift[2]);
+  const Jet       pw_r = JetShift(pw, h->shift[0]), pg_r = JetShift(pg, h->shift[1]);
   double          dK, dpe;
 
   s->limited = mat->reacts && h->m_star[0] < 0.0;
@@ -78,14 +79,16 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet T, Jet r
     s->m_h  = JetConstant(h->m_star[0]);
     return;
   }
-  const double Kd = KineticsRateConstant(k, T_r.v, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe);
-  const Growth g      = ReactionGrowth(k, h->dt, p_r.v, Kd, dK, pe, dpe);
-  const Jet    growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
+  const double  Kd = KineticsRateConstant(k, T_r.v, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe);
+  const Driving d      = ReactionDriving(mat->gas.trace, s->sg.v, pw_r.v, pg_r.v, pe);
+  const Growth  g      = ReactionGrowth(k, h->dt, &d, Kd, dK, pe, dpe);
+  const Jet     p_r    = JetChain3(d.p.v, d.p.sg, s->sg, d.p.pw, pw_r, d.p.pg, pg_r);
+  const Jet     growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
 
-  if (p_r.v <= pe)
-    Dissociate(mat, m0, growth, rho_h, s);
-  else
+  if (d.forms)
     Form(mat, m0, growth, rho_h, s);
+  else
+    Dissociate(mat, m0, growth, rho_h, s);
   s->gain = JetShift(s->gain, m0 - h->m_star[0]);
   s->m_h  = JetShift(s->gain, h->m_star[0]);
 }

@@ -131,7 +131,7 @@ INLINE double HydrateBalance(const Material *mat, const PointHistory *h, double 
   const double sg = RetentionGasShare(&mat->retention, pg - pw, Sh, &dpc, &dSh), full = rho_h * s->Vp.v;
 
   Share(JetVariable(sg, JET_J), JetConstant(pw), JetConstant(pg), &trial); /* the place of J is free for s_g */
-  HydrateMass(mat, h, JetConstant(T), JetConstant(rho_h), &trial);
+  HydrateMass(mat, h, JetConstant(pw), JetConstant(pg), JetConstant(T), JetConstant(rho_h), &trial);
   *slope = trial.m_h.d[JET_J] * dSh / full - 1.0;
   return trial.m_h.v / full - Sh;
 }
@@ -166,7 +166,7 @@ INLINE void ShareWithHydrate(const Material *mat, const PointHistory *h, Jet pw,
   const double found = SolveHydrate(mat, h, pw.v, pg.v, T.v, rho_h.v, s, &f, &slope);
 
   Share(GasShareJet(&mat->retention, pc, JetConstant(found)), pw, pg, s);
-  HydrateMass(mat, h, T, rho_h, s);
+  HydrateMass(mat, h, pw, pg, T, rho_h, s);
   const Jet    Sh = JetChain(found - f / slope, -1.0 / slope, JetDiv(s->m_h, full)), m_h = JetMul(Sh, full);
   const double more = -(slope + 1.0) * f / slope * full.v;
 
@@ -191,7 +191,7 @@ INLINE void Saturations(const FieldSet *fs, const Material *mat, const PointHist
   } else {
     Share(GasShareJet(&mat->retention, JetSub(pg, pw), JetConstant(0.0)), pw, pg, s);
   }
-  HydrateMass(mat, h, T, rho_h, s);
+  HydrateMass(mat, h, pw, pg, T, rho_h, s);
 }
 
 INLINE ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)

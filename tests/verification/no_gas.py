@@ -120,6 +120,25 @@ def disappears():
     judge("gas", "gas goes, hybrid against sdirk2: S_g, of the first", np.max(np.abs(one["S_g"] - other["S_g"])) / 0.05, 5e-3)
 
 
+def runs_short():
+    """Gas that hydrate takes from S_gr = 2 % down: nothing forms below p_g = p_e(T) (371), and (223) says what gas that leaves."""
+    p0, Sgr, law = 5e5, 0.02, exact.masuda_cell(p=8e6, T=2.3, phi=PHI, Sh=0.1, Sw=0.85, Sg=0.05)  # p_0: a tail of S_g down to p_e
+    scarce = (*FORMS, "-mat_core_retention_Sgr", Sgr, "-mat_core_retention_p0", f"{p0} Pa")
+    run = Run.of_case(CELL, *scarce, "-time_end", "400 s", "-output_probe_every", "20 s", "-stepper_dt_max", "20 s")
+    end = {k: run.probe("middle")[c][-1] for k, c in (("p_w", "p_w_Pa"), ("p_g", "p_g_Pa"), ("T", "T_degC"), ("S_w", "S_w"), ("S_g", "S_g"))}
+    left = exact.Retention(p0=p0, m=0.5, Swr=0.1, Sgr=Sgr).gas_share(end["p_g"] - end["p_w"])
+    judge("gas", "gas runs short, sdirk2: p_g over p_e(T) at the end, less one", abs(end["p_g"] / law.equilibrium_pressure(end["T"]) - 1), 2e-4)
+    judge("gas", "gas runs short, sdirk2: what is left of it, relative error", abs(end["S_g"] / (end["S_g"] + end["S_w"]) / left - 1), 1e-3)
+    check("... of the gas there was", end["S_g"] / 0.05, (1e-5, 0.1))
+    check("... steps refused", run.output.count("refused ("), 2)
+    balances("gas runs short, sdirk2", run)
+    short = ("-time_end", "60 s", "-output_probe_every", "10 s")
+    one, other = (Run.of_case(CELL, *scarce, *short, *o).probe("middle") for o in ((), ("-stepper_type", "hybrid", "-stepper_adapt", "yes")))
+    table(("time (s)", "S_g sdirk2", "hybrid", "p_g", "hybrid"), zip(range(0, 70, 10), one["S_g"], other["S_g"], one["p_g_Pa"], other["p_g_Pa"]))
+    judge("gas", "gas runs short, hybrid against sdirk2: S_g, of the first", np.max(np.abs(one["S_g"] - other["S_g"])) / 0.05, 5e-3)
+    judge("gas", "gas runs short, hybrid against sdirk2: p_g, relative", np.max(np.abs(one["p_g_Pa"] / other["p_g_Pa"] - 1)), 1e-2)
+
+
 def column():
     case = CASES / "no_gas_column.yaml"
     keys = [f"{p}.{q}" for p in ("hydrate", "free") for q in ("p_Pa", "T_degC", "S_h", "S_g")]
@@ -222,5 +241,6 @@ if __name__ == "__main__":
     carried()
     dissolves()
     disappears()
+    runs_short()
     column()
     finish()
