@@ -3,7 +3,7 @@
 
 /* Limits of one update, so that no law is evaluated far outside its range. */
 #define LIMIT_T 5.0 /* K */
-#define LIMIT_P 0.5 /* of the pressure of a gas that is there (371) or appears */
+#define LIMIT_P 0.5 /* of the pressure of a gas that is there (349) or appears */
 
 #define REACH 25.0         /* of p_0 below p_w: where no gas is left */
 #define LARGEST_SHARE 0.05 /* of the open pores: what gas gains or loses in one update */
@@ -82,7 +82,7 @@ static double NodeLimit(const Model *m, PetscInt I, const double *x, const doubl
       cut = fmin(cut, LIMIT_T / dT);
   }
   if (fs->phase[PHASE_G] && HoldsGas(m, I, x, y)) {
-    const int    g   = PlaceP(fs, PHASE_G); /* (371) */
+    const int    g   = PlaceP(fs, PHASE_G); /* (349) */
     const double dpg = fabs(y[g]), pg = fmax(fabs(x[g]), m->coef[I * NC_COUNT + NC_P + PHASE_G] / s[g]);
 
     if (dpg > LIMIT_P * pg)
