@@ -23,10 +23,10 @@ PROGRAM = [  # option, value, default, meaning
      "meters, stages); times, integrator, outputs and solver may differ; in the folder of the run that wrote it, or in a "
      "new one"),
     ("-quiet", "", "", "no line per step; refused steps and the summary are still printed"),
-    ("-progress", "s", "1", "seconds of the clock on the wall between lines of progress, at least; 0 = a line for every step"),
-    ("-time_limit", "s", "none", "seconds of the clock on the wall after which the run must have ended: it does so before two more steps as "
+    ("-progress", "s", "1", "of the clock on the wall between lines of progress, at least; 0 = a line for every step"),
+    ("-time_limit", "s", "none", "of the clock on the wall (a number, or with a unit), after which the run must have ended: it does so before two more steps as "
      "long as its longest would pass them, with a checkpoint and exit code 4"),
-    ("-checkpoint_wall", "s", "300", "seconds of the clock on the wall between checkpoints, beside those of `checkpoint_every`; 0 = none"),
+    ("-checkpoint_wall", "s", "300", "of the clock on the wall between checkpoints, beside those of `checkpoint_every`; 0 = none"),
     ("-overwrite", "", "", "write into an output folder that holds the results of another case"),
     ("-stepper_max_steps", "N", "no limit", "stop after N more steps, with a checkpoint and exit code 0"),
     ("-newton_tol_residual", "x", "1e-9", "Newton stops when every scaled row of the residual is below this, rows of "

@@ -159,7 +159,8 @@ enum {
   NC_REACTION_HEAT,
   NC_DRAG,
   NC_KR   = NC_DRAG + PHASE_COUNT,
-  NC_RING = NC_KR + PHASE_COUNT, /* 1/r */
+  NC_P    = NC_KR + PHASE_COUNT, /* of the particles' pressures */
+  NC_RING = NC_P + PHASE_COUNT,  /* 1/r */
   NC_AXIS,                       /* of what was seeded at the axis: 1 */
   NC_COUNT
 };

@@ -62,7 +62,7 @@ typedef struct {
   int    exchange;            /* EXCHANGE_... (353); default auto */
   bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
   bool   upstream;            /* drag of the fluids from upstream; default false */
-  bool   outflow;             /* (365): what leaves has the body's density; default false */
+  bool   outflow;             /* (365): what leaves has the body's density; default true */
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind;   /* (200); default false */
   bool   heat_upwind;         /* (293); default false */

@@ -154,9 +154,9 @@ const Key case_key[] = {
     BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",
             "relative permeabilities from upstream, for sharp fronts of saturation"),
     BOOLEAN(
-        Case, "stabilisation_outflow", scene.stabilisation.outflow, "no",
-        "what leaves through an open face has the body's density at the face, not that of the pressure outside: for "
-        "outlets far below the pressure of a coarse cell of gas"),
+        Case, "stabilisation_outflow", scene.stabilisation.outflow, "yes",
+        "what leaves through an open face has the body's density at the face; no: that of the pressure outside, with "
+        "which a coarse cell of gas cannot drain to an outlet far below its pressure"),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
             "gas has the mobility of the nodes it comes from, so that sediment without mobile gas gives none: for sand "
             "with gas beside clay"),

@@ -280,6 +280,7 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
   memset(c, 0, sizeof *c);
   PetscCall(ReaderLoad(&r, path));
   strcpy(c->file, r.file);
+  PetscCall(ProgramRead(&r));
   if (!r.nerror) {
     for (Group g = GROUP_MATERIAL; g < GROUP_COUNT; g++)
       PetscCall(NamesRead(&r, c, g));

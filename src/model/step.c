@@ -211,6 +211,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
         continue;
       c[NC_LAMBDA + k] += VS * q->rho[k] * q->kr[k] / q->resist[k];
       c[NC_RHO + k] += VS * q->rho[k];
+      c[NC_P + k] += VS * m->P.f[k == PHASE_G && !m->c->fields.one_pressure ? P_PG : P_PW][p];
       c[NC_STORAGE + k] += VS * q->storage[k];
       c[NC_DRAG + k] += VSk * q->resist[k];
       c[NC_KR + k] += (Donated(m, k) ? VS : VSk) * sqrt(q->kr[k]);
@@ -496,7 +497,7 @@ static double FluidScale(const Model *m, PetscInt I, int phase, double h)
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6;
   const double    sliver = sqrt(2.0 * NodeVolume(m, I) / m->V[I]);
   const double    kr     = c[NC_KR + phase];
-  double          row    = kr * P / h * fmax(1.0, ROUND_OFF * sliver), v;
+  double          row    = kr / h * fmax(P, ROUND_OFF * sliver * fmax(P, fabs(c[NC_P + phase]))), v;
 
   if (!fs->solid)
     return row;

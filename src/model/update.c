@@ -3,7 +3,7 @@
 
 /* Limits of one update, so that no law is evaluated far outside its range. */
 #define LIMIT_T 5.0 /* K */
-#define LIMIT_P 0.5 /* of the pressure of a gas that is there or appears */
+#define LIMIT_P 0.5 /* of the pressure of a gas that is there (349) or appears */
 
 #define REACH 25.0         /* of p_0 below p_w: where no gas is left */
 #define LARGEST_SHARE 0.05 /* of the open pores: what gas gains or loses in one update */
@@ -82,9 +82,10 @@ static double NodeLimit(const Model *m, PetscInt I, const double *x, const doubl
       cut = fmin(cut, LIMIT_T / dT);
   }
   if (fs->phase[PHASE_G] && HoldsGas(m, I, x, y)) {
-    const double dpg = fabs(y[PlaceP(fs, PHASE_G)]), pg = fabs(x[PlaceP(fs, PHASE_G)]);
+    const int    g   = PlaceP(fs, PHASE_G); /* (349) */
+    const double dpg = fabs(y[g]), pg = fmax(fabs(x[g]), m->coef[I * NC_COUNT + NC_P + PHASE_G] / s[g]);
 
-    if (dpg > LIMIT_P * pg && pg > 0.0)
+    if (dpg > LIMIT_P * pg)
       cut = fmin(cut, LIMIT_P * pg / dpg);
   }
   for (int d = 0; fs->solid && d < CL_DIM; d++) {
@@ -97,27 +98,91 @@ static double NodeLimit(const Model *m, PetscInt I, const double *x, const doubl
   return cut;
 }
 
-PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
+/* Y with the updates of (104); false, and no vector, where no rank has any. */
+static PetscErrorCode FollowAll(const Model *m, Vec X, Vec Y, Vec *followed)
 {
-  Model          *m  = (Model *)model;
-  const FieldSet *fs = &m->c->fields;
-  const double   *x;
-  double         *y, cut[2] = {1.0, 1.0}; /* of the update; 0 where a node's own has changed */
+  const PetscInt n = m->c->fields.n;
+  const double  *x;
+  double        *y;
+  int            any = 0;
 
   PetscFunctionBeginUser;
-  (void)ls;
+  *followed = NULL;
+  if (!(m->c->fields.has & HAS_GAS_PRESSURE))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(Y, followed));
+  PetscCall(VecCopy(Y, *followed));
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArray(Y, &y));
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    if ((fs->has & HAS_GAS_PRESSURE) && Follow(m, I, &x[I * fs->n], &y[I * fs->n]))
-      cut[1] = 0.0;
-    cut[0] = fmin(cut[0], NodeLimit(m, I, &x[I * fs->n], &y[I * fs->n]));
-  }
+  PetscCall(VecGetArray(*followed, &y));
+  for (PetscInt I = 0; I < m->map.n_owned; I++)
+    any |= Follow(m, I, &x[I * n], &y[I * n]);
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscCall(VecRestoreArray(Y, &y));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cut, 2, MPI_DOUBLE, MPI_MIN, m->grid.comm));
-  *changed = fmin(cut[0], cut[1]) < 1.0 ? PETSC_TRUE : PETSC_FALSE;
-  if (cut[0] < 1.0)
-    PetscCall(VecScale(Y, cut[0]));
+  PetscCall(VecRestoreArray(*followed, &y));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, m->grid.comm));
+  if (!any)
+    PetscCall(VecDestroy(followed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All of Y by the least share that a node's may be. */
+static PetscErrorCode Shorten(const Model *m, Vec X, Vec Y, bool *shorter)
+{
+  const PetscInt n = m->c->fields.n;
+  const double  *x, *y;
+  double         cut = 1.0;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayRead(Y, &y));
+  for (PetscInt I = 0; I < m->map.n_owned; I++)
+    cut = fmin(cut, NodeLimit(m, I, &x[I * n], &y[I * n]));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(VecRestoreArrayRead(Y, &y));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &cut, 1, MPI_DOUBLE, MPI_MIN, m->grid.comm));
+  *shorter = cut < 1.0;
+  if (*shorter)
+    PetscCall(VecScale(Y, cut));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Residual that an update leaves; NaN outside the range of a law. */
+static PetscErrorCode Leaves(SNESLineSearch ls, Vec X, Vec Y, double *norm)
+{
+  SNES snes;
+  Vec  at, R;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESLineSearchGetSNES(ls, &snes));
+  PetscCall(VecDuplicate(X, &at));
+  PetscCall(VecDuplicate(X, &R));
+  PetscCall(VecWAXPY(at, -1.0, Y, X));
+  PetscCall(SNESComputeFunction(snes, at, R));
+  PetscCall(VecNorm(R, NORM_2, norm));
+  PetscCall(VecDestroy(&at));
+  PetscCall(VecDestroy(&R));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
+{
+  const Model *m = (const Model *)model;
+  Vec          followed;
+  bool         shorter, shorter_followed;
+  double       plain, other;
+
+  PetscFunctionBeginUser;
+  PetscCall(FollowAll(m, X, Y, &followed));
+  PetscCall(Shorten(m, X, Y, &shorter));
+  *changed = shorter;
+  if (!followed)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Shorten(m, X, followed, &shorter_followed));
+  PetscCall(Leaves(ls, X, Y, &plain));
+  PetscCall(Leaves(ls, X, followed, &other));
+  if (!(plain <= other)) { /* or plain is no number */
+    PetscCall(VecCopy(followed, Y));
+    *changed = PETSC_TRUE;
+  }
+  PetscCall(VecDestroy(&followed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

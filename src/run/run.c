@@ -401,7 +401,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
   Model       model;
   Stepper     stepper;
   PetscBool   quiet = PETSC_FALSE;
-  bool        ok;
   PetscInt    unknown;
   PetscMPIInt size;
 
@@ -418,11 +417,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(WatchStart(comm, &run.watch, &ok));
-  if (!ok) {
-    *exit_code = CL_EXIT_INPUT;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  PetscCall(WatchStart(&run.watch));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (!GridFits(size, c->scene.cells)) {
     PetscCall(PetscFPrintf(comm, stderr,

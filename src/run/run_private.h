@@ -17,7 +17,7 @@ typedef struct {
   double begun, saved, before, said, longest; /* when; the longest step so far */
   bool   over;                                /* it was time to end */
 } Watch;
-PetscErrorCode WatchStart(MPI_Comm comm, Watch *w, bool *ok);
+PetscErrorCode WatchStart(Watch *w);
 /* After a step: is it time for a checkpoint; would two steps more, as long as the longest, pass the limit?  Collective.
  */
 PetscErrorCode WatchStep(MPI_Comm comm, Watch *w, bool *save, bool *end);

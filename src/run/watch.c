@@ -13,7 +13,7 @@ double Wall(void)
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-PetscErrorCode WatchStart(MPI_Comm comm, Watch *w, bool *ok)
+PetscErrorCode WatchStart(Watch *w)
 {
   const double now = Wall();
 
@@ -23,11 +23,6 @@ PetscErrorCode WatchStart(MPI_Comm comm, Watch *w, bool *ok)
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-time_limit", &w->limit, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-checkpoint_wall", &w->often, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-progress", &w->line, NULL));
-  *ok = w->limit > 0.0 && w->often >= 0.0 && w->line >= 0.0;
-  if (!*ok)
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: command line: -time_limit must be positive, -checkpoint_wall and -progress not "
-                           "negative; they are seconds of the clock on the wall\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,9 +26,13 @@ def check_limit():
     run(binary(), *BP2, "-quiet", "-time_end", end, out=straight)
     same = [f for f in ("probes.csv", "balance.csv") if (out / f).read_bytes() == (straight / f).read_bytes()]
     check_true("... with a restart it is the straight run, bit for bit", len(same) == 2, f"{same} from {t} s")
-    for option, value in (("-time_limit", "0"), ("-checkpoint_wall", "-1"), ("-progress", "-1")):
+    refused = {"-time_limit": ("0", "20x", "5 m"), "-checkpoint_wall": ("-1", "often"), "-progress": ("-1",), "-stepper_max_steps": ("2.5", "1 s"),
+               "-newton_refactor": ("-1",), "-newton_tol_residual": ("1",), "-newton_tol_update": ("tight",), "-newton_keep_jacobian": ("1.5",)}  # fmt: skip
+    for option, value in ((o, v) for o, values in refused.items() for v in values):
         done = launch(binary(), *BP2, option, value, out=scratch() / "none")
-        check_true(f"{option} {value} is refused", done.returncode == 2 and option in done.stdout and "clock on the wall" in done.stdout)
+        check_true(f"{option} {value} is refused", done.returncode == 2 and f"command line: {option} = '{value}" in done.stdout and "PETSC ERROR" not in done.stdout)
+    done = launch(binary(), *BP2, "-time_end", "2000 s", "-quiet", "-time_limit", "0.03 min", out=scratch() / "minutes")
+    check_true("-time_limit 0.03 min", done.returncode == 4 and "before -time_limit 1.8 s" in done.stdout, done.stdout[-200:])
 
 
 def check_checkpoints():

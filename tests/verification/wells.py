@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """A pressure and a temperature on the wall of a well, in cells from half its radius to twenty times that: Thiem's steady flow
-and its heat, with the grid beginning at the wall and at the axis, where the wall cuts a cell; two ranks; both schemes."""
+and its heat, with the grid beginning at the wall and at the axis, where the wall cuts a cell; two ranks; both schemes.
+A well between clays without gas, past the time at which the hydrate beside it is used up."""
 from pathlib import Path
 
 import numpy as np
 
-from common import Run, finish, judge, largest_difference, table
+from common import Run, check, finish, judge, largest_difference, table
 
 CASE = Path(__file__).parent / "cases" / "boundaries.yaml"
 R_W, R, K, MU, BULK, KAPPA = 0.1, 20.1, 1e-12, 1e-3, 2.2e9, 0.7 * 3.0 + 0.3 * 0.044  # of the case; m, m^2, Pa s, Pa, W/(m K)
@@ -68,4 +69,11 @@ judge("wells", "stiff skeleton: rate off Thiem's", abs(rate(solid, "water") / 0.
 one, two = (well(0.5, 0.0, "water", "-stepper_type", "sdirk2", ranks=n) for n in (1, 2))
 judge("wells", "1 and 2 ranks: pressures", largest_difference(two.probe("left")["p_Pa"], one.probe("left")["p_Pa"]), 1e-10)
 judge("wells", "sdirk2: rate off Thiem's", abs(rate(one, "water") / 0.5 - 1), 5e-4)
+
+wet = Run.of_case(CASE.parent / "wet_clays_well.yaml")
+p_w = wet.snapshot(1.3 * 86400)["p_w"]
+judge("wells", "between clays without gas, 1.3 days: steps", float(len(wet.balance["time_s"])), 200.0)
+check("... lowest p_w over the 4 MPa of the well", p_w.min() / 4e6, (0.99, 1.1))
+for name in ("water_error", "methane_error"):
+    check(f"... {name}", np.max(np.abs(wet.balance[name])), 1e-12)
 finish()

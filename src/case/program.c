@@ -1,0 +1,38 @@
+/* program: numbers of the options that are the program's own and no case file holds. */
+#include "case_private.h"
+#include <math.h>
+#include <stdio.h>
+
+static const struct {
+  const char *name, *unit, *range;
+  bool        whole;
+} program_number[] = {
+    {"-time_limit", "s", "(0,inf)", false},       {"-checkpoint_wall", "s", "[0,inf)", false},
+    {"-progress", "s", "[0,inf)", false},         {"-stepper_max_steps", "", "[0,1e9]", true},
+    {"-newton_refactor", "", "[0,1e9]", true},    {"-newton_keep_jacobian", "", "[0,1)", false},
+    {"-newton_tol_residual", "", "(0,1)", false}, {"-newton_tol_update", "", "(0,1)", false},
+};
+
+PetscErrorCode ProgramRead(Reader *r)
+{
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof program_number / sizeof *program_number; k++) {
+    const char *name = program_number[k].name, *unit = program_number[k].unit, *end;
+    char        text[96], full[128];
+    double      value;
+    PetscBool   given;
+
+    PetscCall(PetscOptionsGetString(NULL, NULL, name, text, sizeof text, &given));
+    if (!given)
+      continue;
+    const bool plain = NumberParse(text, &value, &end) && !*end;
+    snprintf(full, sizeof full, "%s%s%s", text, plain && *unit ? " " : "", plain ? unit : "");
+    if (!RealRead(r, name, full, unit, program_number[k].range, &value))
+      continue;
+    if (program_number[k].whole && value != floor(value))
+      ReaderError(r, name, text, "must be a whole number");
+    snprintf(full, sizeof full, "%.17g", value);
+    PetscCall(PetscOptionsSetValue(NULL, name, full));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
