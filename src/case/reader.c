@@ -26,24 +26,36 @@ static PetscInt KeyLine(const Reader *r, const char *name)
   return 0;
 }
 
+/* Is it the command line that gives this key? */
+static bool Commanded(const char *key)
+{
+  char      option[256];
+  PetscBool given = PETSC_FALSE;
+
+  snprintf(option, sizeof option, "-%s", key);
+  PetscCallAbort(PETSC_COMM_SELF, PetscOptionsHasName(NULL, NULL, option, &given));
+  return given;
+}
+
 void ReaderError(Reader *r, const char *key, const char *value, const char *format, ...)
 {
   char    what[1024], where[PETSC_MAX_PATH_LEN + 16], *text;
   size_t  size;
   va_list args;
-  bool    on_line = key && !strncmp(key, "line ", 5), command_line = key && *key == '-';
+  bool    on_line = key && !strncmp(key, "line ", 5), dashed = key && *key == '-',
+       commanded = key && *key && !on_line && !dashed && Commanded(key);
 
   va_start(args, format);
   vsnprintf(what, sizeof what, format, args);
   va_end(args);
-  snprintf(where, sizeof where, "%s", command_line ? "command line" : r->file);
+  snprintf(where, sizeof where, "%s", dashed || commanded ? "command line" : r->file);
   if (on_line)
     snprintf(where, sizeof where, "%s:%s", r->file, key + 5);
-  else if (key && *key && KeyLine(r, key))
+  else if (key && *key && !commanded && KeyLine(r, key))
     snprintf(where, sizeof where, "%s:%d", r->file, (int)KeyLine(r, key));
   size = strlen(where) + strlen(what) + (key ? strlen(key) : 0) + (value ? strnlen(value, 80) : 0) + 16;
   text = malloc(size);
-  snprintf(text, size, "%s: %s", where, on_line || !key || !*key ? "" : key);
+  snprintf(text, size, "%s: %s%s", where, commanded ? "-" : "", on_line || !key || !*key ? "" : key);
   if (value)
     snprintf(text + strlen(text), size - strlen(text), " = '%.80s'", value);
   snprintf(text + strlen(text), size - strlen(text), "%s%s", on_line || !key || !*key ? "" : ": ", what);

@@ -6,6 +6,17 @@
 #include <string.h>
 #include <strings.h>
 
+/* What stands between the brackets of "[a, b]", as a case file has it; the text itself without them. */
+static char *Inside(char *text)
+{
+  char *open = text + strspn(text, " \t"), *close = strrchr(text, ']');
+
+  if (*open != '[' || !close || close[1 + strspn(close + 1, " \t")] || strpbrk(open + 1, "[]") != close)
+    return text;
+  *close = 0;
+  return open + 1;
+}
+
 void ListCreate(const char *text, List *list)
 {
   char *p;
@@ -13,7 +24,7 @@ void ListCreate(const char *text, List *list)
   list->n    = 0;
   list->text = strdup(text);
   list->item = calloc(strlen(text) + 1, sizeof *list->item);
-  for (p = list->text; *p;) {
+  for (p = Inside(list->text); *p;) {
     char *end = p + strcspn(p, ","), *stop = end;
     bool  last = !*end;
     while (isspace((unsigned char)*p) && p < end)

@@ -468,6 +468,8 @@ CASES = [
     ("stage's tolerance out of range", [STAGES("end: 10 s", "end: 2000 s")], ["-stage_b_stepper_tol", "out of range"], ["-stage_b_stepper_tol", "2"]),
     ("bad clock", [("initial: yes}", "initial: yes, clock: wall}")], ["bc_drain_clock", "run | stage"], []),
     # --- command line
+    ("a bracket that stays open on the command line", [], ["command line: -grid_cells = '[10'", "whole number"], ["-grid_cells", "[10,1"]),
+    ("a list of the command line that disagrees with the rest", [], ["command line: -output_times: has 3000 s after time_end"], ["-output_times", "[1 s, 3000 s]", "-time_end", "2000 s"]),
     ("option without unit", [], ["-region_column_pressure", "needs the unit"], ["-region_column_pressure", "3e6"]),
     ("option out of range", [], ["-" + M + "porosity", "out of range"], ["-" + M + "porosity", "2"]),
     ("option misspelt", [], ["-" + M + "porosty", "did you mean " + M + "porosity"], ["-" + M + "porosty", "0.2"]),

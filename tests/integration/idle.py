@@ -90,6 +90,7 @@ check_true("a scene without hydrate is no hmc", "fields: solid, water, gas;" in 
 # ---------------------------------------------------------------- lists of names on the command line
 says("a probe of the command line beside those of the file", {}, CASES / "terzaghi", "-probes", "base,end,more", "-probe_more_at", "0.5 m,0.01 m")
 says("... in their place: the file's are left out", {}, CASES / "terzaghi", "-probes", "more", "-probe_more_at", "0.5 m,0.01 m")
+says("a list in brackets, as in a file", {}, CASES / "terzaghi", "-output_times", "[1 h, 2 h]")
 says("a function of time on the command line", {}, CASES / "terzaghi", "-bc_drain_initial", "no", "-bc_drain_pressure", "{ramp: [1 kPa, 2 kPa, 0 s, 10 days]}")
 wrong = launch(binary(), CASES / "terzaghi", "-case_check", "-probe_more_at", "0.5 m,0.01 m")
 check_true("one that is in no list is refused", wrong.returncode == 2 and "'more' is not listed in probes" in wrong.stdout, wrong.stdout[-200:])
