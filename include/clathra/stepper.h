@@ -131,7 +131,8 @@ struct Stepper {
   int                  crawl; /* steps in a row at whose length the run would not end */
   Explicit *explicit;         /* hybrid, explicit: the integrator and the last good state */
   Particles  good;
-  StableStep limit; /* at the last look */
+  StableStep limit;    /* at the last look */
+  double     dt_begin; /* hybrid, explicit: the first step of the visit, s (372) */
   Auto       auto_;
   Forecast   forecast;
   /* called after every accepted step */

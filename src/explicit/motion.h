@@ -4,6 +4,7 @@
 #include "clathra/point_strain.h"
 #include "gathered.h"
 
+#define MOST_MOVED 0.5     /* of a cell, in a step */
 #define LARGEST_STRAIN 0.1 /* of one step: beyond it the series below lose digits, and the step is no small one */
 
 typedef struct {
@@ -60,24 +61,52 @@ static inline PetscInt Strained(Run r, const Strain *n)
   return Worst(r, size);
 }
 
-/* The particle of a block that moves farthest, in cells, or stands outside the grid. */
-static inline PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+/* The particle of a block that moves farthest, in cells; `most`: how far. */
+static inline PetscInt Farthest(const Explicit *e, const Set s, Run r, const Gathered *g, double dt, double *most)
 {
-  const Grid *grid = &e->m->grid;
-  double      size[BLOCK];
+  double size[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
     size[q] = 0.0;
     for (int d = 0; d < CL_DIM; d++) {
-      const GridLines *line = &grid->line[d];
-      const double     x = LinesPlace(line, e->m->P.f[P_X + d][r.p + q]), u = dt * g->value[q][C_Vs(s) + d];
+      const double u     = dt * g->value[q][C_Vs(s) + d];
+      const double cells = fabs(u) / LinesLeastAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q] - u);
 
-      size[q] = fmax(size[q], fabs(u) / LinesLeastAt(line, e->m->P.f[P_X + d][r.p + q] - u));
-      if (!(x >= 0.0 && x <= (double)grid->cells[d]))
-        size[q] = NAN;
+      size[q] = cells > size[q] || isnan(cells) ? cells : size[q];
     }
   }
-  return Worst(r, size);
+  const PetscInt worst = Worst(r, size);
+
+  *most = size[worst - r.p];
+  return worst;
+}
+
+/* A particle of a block that stands outside the grid; -1: none does. */
+static inline PetscInt Outside(const Explicit *e, Run r)
+{
+  const Grid *grid = &e->m->grid;
+
+  for (int q = 0; q < r.n; q++) {
+    for (int d = 0; d < CL_DIM; d++) {
+      const double x = LinesPlace(&grid->line[d], e->m->P.f[P_X + d][r.p + q]);
+
+      if (!(x >= 0.0 && x <= (double)grid->cells[d]))
+        return r.p + q;
+    }
+  }
+  return -1;
+}
+
+/* Where a particle crosses half a cell a shorter step may help, where it crosses the edge of the grid none does. */
+static inline void NoteStray(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
+{
+  double         most;
+  const PetscInt far = Farthest(e, s, r, g, dt, &most), out = Outside(e, r);
+
+  if (most < MOST_MOVED && out >= 0)
+    ModelNoteFailure(e->m, CL_LEFT_GRID, "a particle leaves the background grid", out);
+  else
+    ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step", far);
 }
 
 /* Does a particle, now at x, come from more than half a cell away, or leave the grid? */
@@ -88,11 +117,12 @@ INLINE Wrong Strays(const GridLines *line, int n, const double *restrict u, cons
 
   if (!line->x) {
     for (int q = 0; q < n; q++)
-      far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * h) & (x[q] >= lower) & (x[q] <= upper));
+      far |= WRONG_UNLESS((fabs(u[q]) < MOST_MOVED * h) & (x[q] >= lower) & (x[q] <= upper));
     return far;
   }
   for (int q = 0; q < n; q++)
-    far |= WRONG_UNLESS((fabs(u[q]) < 0.5 * LinesLeastAt(line, x[q] - u[q])) & (x[q] >= lower) & (x[q] <= upper));
+    far |=
+        WRONG_UNLESS((fabs(u[q]) < MOST_MOVED * LinesLeastAt(line, x[q] - u[q])) & (x[q] >= lower) & (x[q] <= upper));
   return far;
 }
 

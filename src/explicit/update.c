@@ -133,8 +133,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
       Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], LANES);
   }
   if (!Move(e, s, r, &g, &n, dt))
-    ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step, or leaves the grid",
-                     Farthest(e, s, r, &g, dt));
+    NoteStray(e, s, r, &g, dt);
 }
 
 MAKE_LOOPS(UpdateRun)

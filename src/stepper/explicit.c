@@ -5,6 +5,7 @@
 #define BURST 256 /* steps between two estimates of the stable step, and at most lost by a failure */
 #define CUT 0.5   /* of the step after a burst that failed */
 #define HOLD 8    /* bursts at the smaller step after that */
+#define GONE 1e-6 /* of the step that a visit began with (372) */
 
 #define LAYERED 2.0 /* ratio of permeabilities from which on layers count */
 
@@ -93,6 +94,12 @@ static PetscErrorCode Check(const Stepper *s, bool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The step to take, but for stops. */
+static double Free(const Stepper *s)
+{
+  return s->adaptive ? fmin(StepperCase(s)->cfl * s->limit.dt, s->dt_max) : StepperCase(s)->dt;
+}
+
 static PetscErrorCode Ready(Stepper *s, bool *ok)
 {
   char     text[512];
@@ -111,17 +118,21 @@ static PetscErrorCode Ready(Stepper *s, bool *ok)
                         "  stable step %.4g s:%s; %s rules; the reaction is implicit and sets no bound\n", s->limit.dt,
                         text, cl_limit_word[s->limit.rules]));
   PetscCall(Check(s, ok));
+  s->dt_begin = Free(s);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ... after a burst that failed, without stops. */
+static double Wanted(const Stepper *s)
+{
+  return s->state.hold > 0 ? fmin(s->state.dt, Free(s)) : Free(s);
 }
 
 /* Steps to take until the next stop, and their length. */
 static PetscInt Plan(const Stepper *s, double stop, double *dt)
 {
-  const StepperState *z    = &s->state;
-  const double        left = stop - z->t, share = StepperCase(s)->cfl * s->limit.dt;
-  const double        free_ = s->adaptive ? fmin(share, s->dt_max) : StepperCase(s)->dt,
-               wanted       = z->hold > 0 ? fmin(z->dt, free_) : free_;
-  const double n            = fmax(ceil(left / wanted - 1e-9), 1.0);
+  const double left = stop - s->state.t, wanted = Wanted(s);
+  const double n = fmax(ceil(left / wanted - 1e-9), 1.0);
 
   *dt = n <= BURST || s->adaptive ? left / n : wanted;
   return (PetscInt)fmin(n, BURST);
@@ -192,6 +203,21 @@ static PetscErrorCode Limit(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A run whose steps have shrunk to nothing is ended (372), for it would not end by itself. */
+static PetscErrorCode CheckGone(const Stepper *s, bool *ok)
+{
+  PetscFunctionBeginUser;
+  if (Wanted(s) >= GONE * s->dt_begin)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  *ok = false;
+  PetscCall(PetscPrintf(s->model->grid.comm,
+                        "Given up at t = %g s: the step of %s has come down from %.2g s to %.2g s (%s rules%s)\n",
+                        s->state.t, s->scheme->name, s->dt_begin, Wanted(s), cl_limit_word[s->limit.rules],
+                        s->state.hold > 0 ? ", and steps were refused" : ""));
+  PetscCall(StepperAdvise(s, CL_TOO_FAR));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Advance(Stepper *s, bool *ok)
 {
   Model         *m   = s->model;
@@ -217,6 +243,9 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
                             s->state.t));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
+    PetscCall(CheckGone(s, ok));
+    if (!*ok)
+      PetscFunctionReturn(PETSC_SUCCESS);
     const PetscInt n = Plan(s, stop, &dt);
     if (a.status == CL_OK)
       PetscCall(Burst(s, n, dt, &a));
@@ -225,12 +254,15 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     PetscCall(ParticlesCopy(&s->good, &m->P));
-    s->state.dt   = CUT * dt;
-    s->state.hold = HOLD;
-    PetscCall(PetscPrintf(
-        m->grid.comm, "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-        s->state.t, n, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1], s->state.dt));
-    if (cuts >= s->max_failures) {
+    s->state.dt    = CUT * dt;
+    s->state.hold  = HOLD;
+    const bool out = a.status == CL_LEFT_GRID; /* as it would with any step */
+    if (!out)
+      PetscCall(PetscPrintf(
+          m->grid.comm,
+          "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n", s->state.t,
+          n, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1], s->state.dt));
+    if (out || cuts >= s->max_failures) {
       *ok = false;
       PetscCall(StepperGiveUp(s, cuts + 1, a.status));
       PetscFunctionReturn(PETSC_SUCCESS);

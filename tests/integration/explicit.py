@@ -87,6 +87,18 @@ punched = launch(binary(), CASE, *LOAD, "-quiet", "-stepper_type", "hybrid", "-s
 place = re.search(r"Given up at .*no open pores are left .*near \((\S+), (\S+)\) m", punched.stdout)
 check_true("punched: says where, under the load", punched.returncode == 3 and place and 0.4 <= float(place[1]) <= 0.5 and float(place[2]) > 0.65, punched.stdout[-400:])
 
+# what ends with ever shorter steps is ended: at the edge of the grid at once, elsewhere by (372)
+flying = Path(__file__).resolve().parents[1] / "verification" / "cases" / "flying.yaml"
+for ranks in (1, 2):
+    gone = launch(binary(), flying, "-quiet", "-time_end", "2 s", "-output_times", "2 s", out=scratch() / f"gone{ranks}", ranks=ranks)
+    check_true(f"a block falls off the grid, {ranks} rank(s): given up by name, at once", gone.returncode == 3 and "refused (" not in gone.stdout
+               and "a particle leaves the background grid (left the grid)" in gone.stdout and "a larger grid" in gone.stdout, gone.stdout[-400:])  # fmt: skip
+out_shrunk = scratch() / "shrunk"
+shrunk = launch(binary(), CASE, *LOAD, "-stepper_type", "hybrid", "-stepper_max_failures", "1000", "-bc_load_normal_ramp", "4 GPa,4 GPa,0 s,1 s",
+                "-bc_load_from", "0.4 m", "-bc_load_to", "0.5 m", out=out_shrunk)  # fmt: skip
+check_true("pores that close for good: given up once the step is a millionth", shrunk.returncode == 3 and "the step of hybrid has come down from" in shrunk.stdout
+           and shrunk.stdout.count("refused (") < 60 and (out_shrunk / "checkpoint.h5").exists(), f"{shrunk.stdout.count('refused (')} refused")  # fmt: skip
+
 with h5py.File(out / "checkpoint.h5", "r") as file:
     check_true("forced: the saved state is finite", all(np.all(np.isfinite(v[()])) for v in file["particles"].values()))
 finish()
