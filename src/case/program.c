@@ -9,7 +9,7 @@ static const struct {
 } program_number[] = {
     {"-time_limit", "s", "(0,inf)", false},       {"-checkpoint_wall", "s", "[0,inf)", false},
     {"-progress", "s", "[0,inf)", false},         {"-stepper_max_steps", "", "[0,1e9]", true},
-    {"-newton_refactor", "", "[0,1e9]", true},    {"-newton_keep_jacobian", "", "[0,1)", false},
+    {"-newton_refactor", "", "[0,1e9]", true},    {"-newton_keep_jacobian", "", "[0,inf)", false},
     {"-newton_tol_residual", "", "(0,1)", false}, {"-newton_tol_update", "", "(0,1)", false},
 };
 
