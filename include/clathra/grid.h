@@ -16,6 +16,7 @@ typedef struct {
   PetscInt   *start[CL_DIM];          /* first node of each column/row of ranks, and the end */
   PetscInt    xs[CL_DIM], xm[CL_DIM]; /* owned nodes */
   PetscInt    gs[CL_DIM], gm[CL_DIM]; /* padded local range: gs = xs - 2, gm = xm + 4 */
+  PetscInt    shared;                 /* how often it was shared out: whatever follows the layout is of one such time */
 } Grid;
 
 /* Can a grid of so many cells be shared among so many ranks?  GridCreate fails if not. */
@@ -26,6 +27,22 @@ PetscErrorCode GridCreateOn(MPI_Comm comm, const GridLines line[CL_DIM], Grid *g
 PetscErrorCode GridCreate(MPI_Comm comm, const double lower[], const double upper[], const PetscInt cells[], Grid *g);
 /* Frees the layout; the lines stay their owner's.  Collective. */
 PetscErrorCode GridDestroy(Grid *g);
+/* Takes a way to share `size` ranks among the axes, with the nodes along its seams; may end the search by an error. */
+typedef PetscErrorCode GridShareFn(const PetscInt nproc[], double seam, void *ctx);
+/* Gives `take` every way that leaves a rank three nodes along an axis. */
+PetscErrorCode GridShares(PetscMPIInt size, const PetscInt cells[], GridShareFn *take, void *ctx);
+/* Borders along an axis of so many cells, start[nproc + 1], that part the load of its columns of cells (NULL: the same
+   in each) as evenly as whole columns and three nodes a rank allow. */
+void GridEvenBorders(PetscInt cells, const PetscInt *load, PetscInt nproc, PetscInt *start);
+/* Are these borders of all ranks, with three nodes for each along a shared axis? */
+bool GridSound(const Grid *g, const PetscInt nproc[], PetscInt *const start[]);
+/* Shares the grid out anew, start[CL_DIM][nproc + 1] being the first nodes of the boxes of ranks and the end:
+   particles, numbering and whatever else follows the layout are to be made anew by the caller.  Collective. */
+PetscErrorCode GridShare(Grid *g, const PetscInt nproc[], PetscInt *const start[]);
+/* ... in equal boxes with the least seams.  Collective. */
+PetscErrorCode GridShareEvenly(Grid *g);
+/* The rank that would own a cell with these borders. */
+PetscMPIInt GridBoxOwner(const PetscInt nproc[], PetscInt *const start[], const PetscInt cell[]);
 /* Cell of a point x (m); false outside the grid.  Points on the upper edge belong to the last cell. */
 bool GridCell(const Grid *g, const double x[], PetscInt cell[]);
 /* The rank that owns a cell, as its lower left node is owned. */

@@ -170,6 +170,11 @@ enum {
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m);
 /* Frees all but the scene.  Collective. */
 PetscErrorCode ModelDestroy(Model *m);
+/* Between steps: moves the borders between ranks where their particles have become uneven.  Collective. */
+PetscErrorCode ModelBalance(Model *m);
+/* Before the first step: shares the grid out as a checkpoint says (GridShare); the particles are the caller's.
+   Collective. */
+PetscErrorCode ModelShare(Model *m, const PetscInt nproc[], PetscInt *const start[]);
 /* Will implicit steps have the reduced preconditioner (170) rather than factors of the whole matrix? */
 bool ModelReduces(const Model *m);
 /* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */

@@ -205,6 +205,11 @@ void ParticlesInitialHalfLength(const Scene *c, PetscInt region, const double x[
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);
+/* Particles of a rank on average, and those of the fullest one over that mean (dimensionless, 1: even).  Collective. */
+PetscErrorCode ParticlesFullest(const Grid *g, const Particles *P, double *mean, double *most);
+/* Where one rank has more than 1.1 times the mean and other borders make it less, shares the grid out anew and sends
+   the particles to their new owners; the same particles on the same grid always give the same borders.  Collective. */
+PetscErrorCode ParticlesBalance(Grid *g, Particles *P, bool *moved);
 /* At the end of a step (or burst of steps) of length `time` (s): what grew of the plastic strain since the last call,
    averaged over neighbours, joins P_NONLOCAL, for materials with a nonlocal_length; particles of the others go on with
    their own.  docs/equations.md (85).  Collective. */

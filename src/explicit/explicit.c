@@ -272,6 +272,7 @@ static PetscErrorCode Agree(Explicit *e, ClStatus *status)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
   PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
+  PetscCall(ModelBalance(m));
   PetscCall(Ready(e));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

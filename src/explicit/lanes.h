@@ -174,6 +174,7 @@ struct Explicit {
   int            *base[CL_DIM]; /* first node along each axis, as at the last look */
   PetscInt       *order, *key;  /* work space of the sort */
   NodeMap         map;
+  PetscInt        shared;            /* Grid.shared that it is of */
   int            *slot;              /* padded grid node -> row */
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */

@@ -66,6 +66,10 @@ PetscErrorCode NodesRebuild(Explicit *e)
   bool           changed;
 
   PetscFunctionBeginUser;
+  if (e->shared != g->shared) {
+    e->shared = g->shared;
+    PetscCall(NodeMapDestroy(&e->map));
+  }
   PetscCall(PetscCalloc1(GridPaddedSize(g), &flag));
   for (PetscInt p = 0; p < e->m->P.n; p++) {
     for (int b = 0; b < 3; b++) {

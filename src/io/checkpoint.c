@@ -4,7 +4,9 @@
      /state/<field>      StepperState
      /scene              text: CaseWriteState
      /particles/<name>   cl_particle_variable (n x components); id, region, faces; rank and place: where the particle
-   was, so that on as many ranks a restart finds the same order and goes on bit for bit; attribute ranks */
+   was, so that on as many ranks a restart finds the same order and goes on bit for bit; attribute ranks
+     /borders            of their boxes: how many along x, y, and the first nodes of each along x and the end, along y
+ */
 #include "io_private.h"
 
 #include <stddef.h>
@@ -79,11 +81,30 @@ static PetscErrorCode WriteScene(hid_t file, const Case *c)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Start(Writer *w, const Case *c, const StepperState *s, PetscMPIInt ranks)
+static PetscErrorCode WriteBorders(hid_t file, const Grid *g)
+{
+  PetscInt *border;
+  hsize_t   n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(CL_DIM * (g->size + 2), &border));
+  for (int d = 0; d < CL_DIM; d++)
+    border[n++] = g->nproc[d];
+  for (int d = 0; d < CL_DIM; d++) {
+    for (PetscInt r = 0; r <= g->nproc[d]; r++)
+      border[n++] = g->start[d][r];
+  }
+  PetscCall(H5Write(file, "borders", H5T_NATIVE_INT, 1, &n, border, NULL, false));
+  PetscCall(PetscFree(border));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Start(Writer *w, const Case *c, const StepperState *s, const Grid *g)
 {
   PetscFunctionBeginUser;
   PetscCall(H5ImageCreate(SEAL_BYTES, &w->file));
-  PetscCall(H5WriteInt(w->file, "ranks", ranks));
+  PetscCall(H5WriteInt(w->file, "ranks", g->size));
+  PetscCall(WriteBorders(w->file, g));
   PetscCall(WriteState(w->file, s));
   PetscCall(WriteScene(w->file, c));
   PetscCall(H5Group(w->file, "/particles", &w->group));
@@ -139,7 +160,7 @@ PetscErrorCode CheckpointWrite(const Model *m, const StepperState *s, uint64_t r
   PetscFunctionBeginUser;
   PetscCheck(strlen(path) + 8 < PETSC_MAX_PATH_LEN, grid->comm, PETSC_ERR_ARG_SIZ, "the path %s is too long", path);
   if (grid->rank == 0)
-    w.ierr = Start(&w, CaseOf(m->c), s, grid->size);
+    w.ierr = Start(&w, CaseOf(m->c), s, grid);
   PetscCall(GatherCreate(m, &g));
   PetscCall(GatherVariables(&g, &m->P, false, w.group, &w.ierr));
   PetscCall(WriteInts(&w, &m->P, &g));

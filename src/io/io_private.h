@@ -180,7 +180,7 @@ PetscErrorCode GatherVariables(Gather *g, const Particles *P, bool compress, hid
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
-#define CHECKPOINT_VERSION 11
+#define CHECKPOINT_VERSION 12
 /* The user block: version, case, run, length of the file and a checksum of it; data[bytes] is what follows the block.
  */
 void SealMake(char block[SEAL_BYTES], uint64_t fingerprint, uint64_t run, const void *data, size_t bytes);

@@ -7,12 +7,13 @@
 
 typedef struct {
   StepperState s;
-  Particles    P;            /* all, by id */
-  PetscInt     ranks;        /* of the run that wrote it */
-  PetscInt    *rank, *place; /* where each particle was */
-  uint64_t     run;          /* that wrote it */
-  bool         initial;      /* as the initial state of a run */
-  char         why[512];     /* reason of a refusal */
+  Particles    P;                /* all, by id */
+  PetscInt     ranks;            /* of the run that wrote it */
+  PetscInt     nborder, *border; /* /borders; none unless there are as many here */
+  PetscInt    *rank, *place;     /* where each particle was */
+  uint64_t     run;              /* that wrote it */
+  bool         initial;          /* as the initial state of a run */
+  char         why[512];         /* reason of a refusal */
 } Loaded;
 
 #define Refuse(L, ...)                                                                                                 \
@@ -115,6 +116,39 @@ static PetscErrorCode CheckParticles(const Model *m, Loaded *L)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The parts of /borders; false if it has none such. */
+static bool Borders(PetscInt n, PetscInt *border, PetscInt *start[CL_DIM])
+{
+  PetscInt at = CL_DIM;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    if (border[d] < 1 || border[d] >= n)
+      return false;
+    start[d] = border + at;
+    at += border[d] + 1;
+  }
+  return at == n;
+}
+
+/* The borders of as many ranks as run now; others choose their own. */
+static PetscErrorCode LoadBorders(const Grid *g, hid_t file, Loaded *L)
+{
+  PetscInt *start[CL_DIM];
+  hsize_t   n = 0;
+
+  PetscFunctionBeginUser;
+  if (L->ranks != g->size)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!H5Rows(file, "borders", &n) || n < CL_DIM || n > CL_DIM * ((hsize_t)g->size + 2))
+    Refuse(L, "/borders is missing or of wrong size");
+  L->nborder = (PetscInt)n;
+  PetscCall(PetscMalloc1(L->nborder, &L->border));
+  if (!H5Read(file, "borders", H5T_NATIVE_INT, 1, &n, L->border) || !Borders((PetscInt)n, L->border, start) ||
+      !GridSound(g, L->border, start))
+    Refuse(L, "/borders are impossible");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
 {
   hsize_t n = 0;
@@ -122,6 +156,9 @@ static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
   PetscFunctionBeginUser;
   if (!H5ReadInt(file, "ranks", &L->ranks))
     Refuse(L, "the attribute ranks is missing");
+  PetscCall(LoadBorders(&m->grid, file, L));
+  if (L->why[0])
+    PetscFunctionReturn(PETSC_SUCCESS);
   if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
     Refuse(L, "/particles/id is missing or of wrong size");
   PetscCall(LoadState(file, L));
@@ -284,6 +321,25 @@ static PetscErrorCode Deal(const Grid *g, const Loaded *L, Particles *P)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ranks own what they owned when the file was written. */
+static PetscErrorCode TakeBorders(Model *m, const Loaded *L)
+{
+  PetscInt n = L->nborder, *border, *start[CL_DIM];
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, 0, m->grid.comm));
+  if (n == 0)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n, &border));
+  if (m->grid.rank == 0)
+    PetscCall(PetscArraycpy(border, L->border, n));
+  PetscCallMPI(MPI_Bcast(border, (PetscMPIInt)n, MPIU_INT, 0, m->grid.comm));
+  PetscCheck(Borders(n, border, start), m->grid.comm, PETSC_ERR_PLIB, "impossible borders were not noticed");
+  PetscCall(ModelShare(m, border, start));
+  PetscCall(PetscFree(border));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* s NULL: as an initial state. */
 static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok)
 {
@@ -305,6 +361,7 @@ static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origi
     Particles P;
 
     PetscCall(ParticlesCreate(m->c->fields.has, &P));
+    PetscCall(TakeBorders(m, &L));
     PetscCall(Deal(g, &L, &P));
     PetscCallMPI(MPI_Bcast(&L.s, sizeof(L.s), MPI_BYTE, 0, g->comm));
     PetscCallMPI(MPI_Bcast(&L.run, 1, MPI_UINT64_T, 0, g->comm));
@@ -316,6 +373,7 @@ static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origi
   }
   PetscCall(ParticlesDestroy(&L.P));
   PetscCall(PetscFree2(L.rank, L.place));
+  PetscCall(PetscFree(L.border));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

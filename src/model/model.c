@@ -78,6 +78,35 @@ PetscErrorCode ModelDestroy(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The numbering of nodes and the faces were those of other borders. */
+static PetscErrorCode ForgetLayout(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapDestroy(&m->map));
+  PetscCall(PetscFree(m->face));
+  m->nface = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelBalance(Model *m)
+{
+  bool moved;
+
+  PetscFunctionBeginUser;
+  PetscCall(ParticlesBalance(&m->grid, &m->P, &moved));
+  if (moved)
+    PetscCall(ForgetLayout(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelShare(Model *m, const PetscInt nproc[], PetscInt *const start[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(GridShare(&m->grid, nproc, start));
+  PetscCall(ForgetLayout(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Everything whose size follows the active nodes; the solver is made anew when first needed. */
 PetscErrorCode ModelResizeNodal(Model *m)
 {

@@ -139,7 +139,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char text[2560], above[64] = "", local[512], left[128], loose[256], ice[256], yields[256], gaps[256], *stages, *all;
+  char text[2560], above[64] = "", local[512], left[128], loose[256], ice[256], yields[256], gaps[256], ranks[128],
+                   *stages, *all;
   ModelTotals t;
   bool        ok;
 
@@ -153,6 +154,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscCall(LeftSummary(s, left));
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(IceSummary(s, ice));
+  PetscCall(RanksSummary(s->model, ranks));
   PetscCall(PetscSNPrintf(
       text, sizeof(text),
       "%s: %s at t = %g s\n"
@@ -160,7 +162,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       " Newton iterations, %.2f s%s\n%s"
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
       "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-      "%s%s%s%s%s  results in %s\n",
+      "%s%s%s%s%s%s  results in %s\n",
       StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", z->t,
       StepperCase(s)->nstage ? "by stage"
       : s->auto_.on          ? STEPPER_AUTO
@@ -169,7 +171,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
       Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
       Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, left, yields,
-      loose, gaps, ice, StepperCase(s)->output_dir));
+      loose, gaps, ice, ranks, StepperCase(s)->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);

@@ -55,6 +55,7 @@ PetscErrorCode LeftSummary(const Stepper *s, char text[128]);  /* what Newton's 
 PetscErrorCode LooseSummary(const Stepper *s, char text[256]); /* errors that were put up with */
 PetscErrorCode LongSummary(const Model *m, char text[256]);    /* domains longer than a cell; collective */
 PetscErrorCode IceSummary(const Stepper *s, char text[256]);   /* water below its melting point */
+PetscErrorCode RanksSummary(const Model *m, char text[128]);   /* how evenly ranks share the particles; collective */
 
 /* ---------------------------------------------------------------- phases.c */
 /* Curve and pressure of equilibrium of each region that reacts, at its temperature. */

@@ -75,3 +75,20 @@ PetscErrorCode LongSummary(const Model *m, char text[256])
         n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* The borders of the start are the first. */
+PetscErrorCode RanksSummary(const Model *m, char text[128])
+{
+  double mean, most;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (m->grid.size == 1)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ParticlesFullest(&m->grid, &m->P, &mean, &most));
+  PetscCall(PetscSNPrintf(
+      text, 128,
+      "  %d ranks: the fullest has %.3g times the mean of %.4g particles; borders moved %" PetscInt_FMT " times\n",
+      m->grid.size, most, mean, m->grid.shared - 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -98,13 +98,14 @@ static PetscErrorCode ByNumber(const Particles *P, PetscInt **id, PetscInt **pla
 }
 
 /* Since the last burst began; particles that changed ranks in it are left out. */
-static PetscErrorCode MotionOf(const Stepper *s, Motion *sum)
+static PetscErrorCode MotionOf(Stepper *s, Motion *sum)
 {
   const Particles *P = &s->model->P, *then = &s->good;
-  PetscInt        *id, *place, *id_then, *place_then;
+  PetscInt        *id, *place, *id_then, *place_then, left;
 
   PetscFunctionBeginUser;
   *sum = (Motion){.n = 0.0};
+  PetscCall(ParticlesMigrate(&s->model->grid, &s->good, &left)); /* borders may have moved */
   PetscCall(ByNumber(P, &id, &place));
   PetscCall(ByNumber(then, &id_then, &place_then));
   for (PetscInt p = 0, q = 0; p < P->n; p++) {
@@ -133,7 +134,7 @@ static bool Waves(const Stepper *s, const Motion *sum)
 }
 
 /* (100); 0 where waves count. */
-static PetscErrorCode StepThatWouldDo(const Stepper *s, double *dt)
+static PetscErrorCode StepThatWouldDo(Stepper *s, double *dt)
 {
   const StepperState *z            = &s->state;
   const double        scale[RATES] = {z->scale_p, z->scale_p,        z->scale_T, STEPPER_SCALE_SH,

@@ -218,6 +218,18 @@ static PetscErrorCode CheckGone(const Stepper *s, bool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The particles as they were before the burst, with their owners of now. */
+static PetscErrorCode GoBack(Stepper *s)
+{
+  Model   *m = s->model;
+  PetscInt left;
+
+  PetscFunctionBeginUser;
+  PetscCall(ParticlesCopy(&s->good, &m->P));
+  PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Advance(Stepper *s, bool *ok)
 {
   Model         *m   = s->model;
@@ -253,7 +265,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
       PetscCall(Accept(s, n, dt, stop, s->state.t + (double)n * dt >= stop - 0.5 * dt, &a, cuts));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
-    PetscCall(ParticlesCopy(&s->good, &m->P));
+    PetscCall(GoBack(s));
     s->state.dt    = CUT * dt;
     s->state.hold  = HOLD;
     const bool out = a.status == CL_LEFT_GRID; /* as it would with any step */

@@ -121,8 +121,10 @@ PetscErrorCode StepperRun(Stepper *s, bool *ok)
   for (PetscInt n = 0; *ok && !s->stop && !s->broken && n < s->max_steps && !StepperDone(s); n++) {
     if (StepperStageDone(s))
       PetscCall(Change(s, ok));
-    if (*ok)
+    if (*ok) {
+      PetscCall(ModelBalance(s->model));
       PetscCall(s->scheme->advance(s, ok));
+    }
     if (*ok && !StepperStageDone(s))
       PetscCall(StepperAutoDecide(s, ok));
   }

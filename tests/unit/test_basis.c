@@ -573,6 +573,52 @@ static void TestLeaving(void **state)
   Call(GridDestroy(&g));
 }
 
+/* ---------------------------------------------------------------- borders between ranks */
+/* Each rank's load is the mean but for a column; columns without load are nobody's burden. */
+static void TestEvenBorders(void **state)
+{
+  enum { CELLS = 60 };
+  Rng rng = {11};
+
+  (void)state;
+  for (int trial = 0; trial < 200; trial++) {
+    PetscInt       load[CELLS], start[7], total = 0, most = 0;
+    const PetscInt nproc = 1 + RngPick(&rng, 6), empty = RngPick(&rng, 20);
+
+    for (PetscInt k = 0; k < CELLS; k++) {
+      load[k] = k < empty ? 0 : 1 + RngPick(&rng, 9);
+      total += load[k];
+      most = PetscMax(most, load[k]);
+    }
+    GridEvenBorders(CELLS, load, nproc, start);
+    Check(start[0] == 0 && start[nproc] == CELLS + 1);
+    for (PetscInt r = 0; r < nproc; r++) {
+      PetscInt share = 0;
+
+      for (PetscInt k = start[r]; k < PetscMin(start[r + 1], CELLS); k++)
+        share += load[k];
+      Check(start[r + 1] - start[r] >= 3);
+      Check(fabs((double)share - (double)total / (double)nproc) <= (double)most);
+    }
+  }
+}
+
+/* All load in one column: whoever has it, the others keep their three nodes. */
+static void TestLonelyColumn(void **state)
+{
+  PetscInt load[12] = {0}, start[5];
+
+  (void)state;
+  for (int k = 0; k < 12; k++) {
+    load[k] = 1000;
+    GridEvenBorders(12, load, 4, start);
+    for (int r = 0; r < 4; r++)
+      Check(start[r + 1] - start[r] >= 3);
+    Check(start[0] == 0 && start[4] == 13);
+    load[k] = 0;
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -581,6 +627,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestNodeSums),     cmocka_unit_test(TestStencilExpand),
       cmocka_unit_test(TestCellGradient), cmocka_unit_test(TestSeed),
       cmocka_unit_test(TestMigrate),      cmocka_unit_test(TestLeaving),
+      cmocka_unit_test(TestEvenBorders),  cmocka_unit_test(TestLonelyColumn),
   };
 
   return RunTests(argc, argv, tests, NULL, NULL);

@@ -637,6 +637,13 @@ static void Spoil(const char *path, uint64_t fingerprint, int kind)
   }
   if (kind == 6)
     Check(H5Adelete(f, "ranks") >= 0);
+  if (kind == 7 || kind == 8) {
+    const int     wrong[6] = {1, 1, 0, 3, 0, 100000};
+    const hsize_t six = 6, five = 5;
+
+    Check(H5Ldelete(f, "/borders", H5P_DEFAULT) >= 0);
+    Call(H5Write(f, "/borders", H5T_NATIVE_INT, 1, kind == 7 ? &six : &five, wrong, NULL, false));
+  }
   Check(H5Fclose(f) >= 0);
   Reseal(path, fingerprint);
 }
@@ -649,14 +656,16 @@ static void WrongInsidesAreRefused(void **state)
                                        "/state/t is missing or of wrong size",
                                        "/particles/T is not finite",
                                        "belongs to no region",
-                                       "ranks is missing"};
+                                       "ranks is missing",
+                                       "/borders are impossible",
+                                       "/borders are impossible"};
   IoScene                  s;
   const StepperState       z = SomeState();
   char                     path[512];
 
   SceneCreate(&s, PETSC_COMM_WORLD, 4);
   PathOf(path, "spoilt.h5");
-  for (int k = 0; k < 7; k++) {
+  for (int k = 0; k < 9; k++) {
     WriteCheckpoint(&s.m, &z, path);
     if (world_rank == 0)
       Spoil(path, CaseFingerprint(&s.c), k);
