@@ -174,7 +174,7 @@ static double Controller(const Stepper *s, double dt, const Attempt *a)
 }
 
 /* The step to take: dt as wanted, but never across a kink, an event or the end; what is left before those is shared out
-   evenly over the last three steps so that no sliver remains. */
+   evenly over the last three steps so that no sliver remains, but for fixed steps that none has cut. */
 static double NextStep(const Stepper *s, bool *kink)
 {
   const double wanted = s->state.dt, left = StepperNextStop(s, kink) - s->state.t, n = ceil(left / wanted - 1e-9);
@@ -182,7 +182,7 @@ static double NextStep(const Stepper *s, bool *kink)
   *kink = *kink && n <= 1.0;
   if (n <= 1.0)
     return left;
-  return s->adaptive && n <= 3.0 ? left / n : wanted;
+  return (s->adaptive || s->state.hold != 0) && n <= 3.0 ? left / n : wanted;
 }
 
 /* dt for the next step, after a step of length dt was accepted. */
