@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 
 import bench_explicit
+import bench_ranks
 
 ROOT = Path(__file__).resolve().parent.parent
 CASE = ROOT / "cases" / "bp2" / "case.yaml"
@@ -161,7 +162,7 @@ A mature C++ code takes 0.20 s for an implicit mechanics-only step of 10,000 nod
 3.5 Newton iterations); the dry block above is of that size and takes {dry:.2f} s. A six-field step has 9 unknowns a node instead of 2; scaled with
 (9/2)^2 the 0.20 s become 4.05 s. A step of the block above, with 10,000 nodes and 40,000 particles, takes {direct:.1f} s with the reduced preconditioner, the default at that size, and {krylov:.1f} s\nwith options/krylov.opts: {direct / 4.05:.1f} and {krylov / 4.05:.1f} times that.
 """
-    text += explicit_section(binary)
+    text += explicit_section(binary) + bench_ranks.sections(binary)
     if len(sys.argv) > 2:
         Path(sys.argv[2]).write_text(text)
     print(text)
