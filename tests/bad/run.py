@@ -249,6 +249,7 @@ CASES = [
     ("bad surface", [("type: sdirk2", "type: hybrid, surface: loose")], ["stepper_surface", "tied"], []),
     ("bad sharing of pressures", [("type: sdirk2", "type: hybrid, pressures: cells")], ["stepper_pressures", "particles"], []),
     ("relative pressures without a gas", [*NO_GAS, ("type: sdirk2", "type: hybrid, pressures: relative")], ["stepper_pressures", "pressure of the gas"], []),
+    ("relative pressures of no material", [("materials: [sediment]\n", ""), ("type: sdirk2", "type: hybrid, pressures: relative")], ["materials"], []),
     ("relative pressures where some sediment has no gas", [("type: sdirk2", "type: auto, pressures: relative"), ("Sw: 0.6\n    Sg: 0.4\n", "Sw: 1\n    Sg: 0\n")], ["stepper_pressures", "all of the sediment holds"], []),
     ("hybrid about an axis", [("basis: cpgimp", "basis: cpgimp\ngeometry: axisymmetric"), ("type: sdirk2", "type: hybrid")], ["hybrid does not know geometry: axisymmetric"], []),
     ("steps out of order", [("dt: 1 s,", "dt: 100 s,")], ["stepper_dt", "stepper_dt_max"], []),
