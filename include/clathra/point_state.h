@@ -53,6 +53,14 @@ INLINE PorePressure PorePressureOf(double sg, double pw, double pg)
   return (PorePressure){pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg};
 }
 
+#define CL_GAS_FLOWS 0.1 /* of p_w: with less p_g a pore has no gas that could flow (323) */
+
+/* (323): is it this part of p_w that sets the density with which gas flows?  H as in Gas.trace, kg/(m^3 Pa); Pa. */
+INLINE bool GasFlowsByWater(double H, double pw, double pg)
+{
+  return H > 0.0 && pg < CL_GAS_FLOWS * pw;
+}
+
 /* Mass in a unit of open pore volume, kg/m^3, with slopes in s_g, in the fluid's density and, apart from it, in its own
    pressure. */
 typedef struct {

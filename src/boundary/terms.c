@@ -46,26 +46,38 @@ typedef struct {
   double p[PHASE_COUNT], dpc[PHASE_COUNT], du[CL_DIM];
 } Outside;
 
+/* Which pressure sets the density of what leaves, and which part of it (323). */
+static int SetsDensity(const FaceState *x, int phase, double *part)
+{
+  const double H = x->c->fields.one_pressure ? 0.0 : x->mat->gas.trace;
+  const bool   water =
+      phase == PHASE_G && GasFlowsByWater(H, FacePressure(x->f, PHASE_W, x->in), FacePressure(x->f, PHASE_G, x->in));
+
+  *part = water ? CL_GAS_FLOWS : 1.0;
+  return water ? PHASE_W : phase;
+}
+
 /* Open face: rho J . a with the density outside or, where (365) has it leave, the body's own, and in the fluid's
    momentum what the pressure outside differs from the fluid's own there, which is extrapolated from the particle.  A
    closed face adds nothing. */
 static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutput *o)
 {
-  double        dp, dT;
+  double        dp, dT, part;
   const Face   *f  = x->f;
   const double *in = x->in, *a = x->a, dt = x->dt;
   const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = VectorDot(J, a), skin = f->skin[phase];
   const double  p = outside->p[phase], own = FacePressure(f, phase, in), jump = p + skin * Ja - own;
   const bool    leaves = f->leaves[phase];
-  const double  rho    = FluidDensity(x->mat, phase, leaves ? own : p, in[IN_T], &dp, &dT);
-  const double  inside = leaves ? dp : 0.0, beyond = leaves ? 0.0 : dp; /* slopes by p of either side */
+  const int     sets   = SetsDensity(x, phase, &part);
+  const double  rho    = FluidDensity(x->mat, phase, leaves ? part * FacePressure(f, sets, in) : p, in[IN_T], &dp, &dT);
+  const double  inside = leaves ? part * dp : 0.0, beyond = leaves ? 0.0 : dp; /* slopes by p of either side */
   double       *D = o->D[F_PW + phase];
 
   o->out[F_PW + phase] += dt * rho * Ja;
   o->outflow[phase] += rho * Ja;
-  D[IN_P + phase] += dt * inside * Ja;
+  D[IN_P + sets] += dt * inside * Ja;
   for (int j = 0; j < CL_DIM; j++)
-    D[VectorAt(IN_GP, phase, j)] += dt * inside * f->r[j] * Ja;
+    D[VectorAt(IN_GP, sets, j)] += dt * inside * f->r[j] * Ja;
   D[IN_T] += dt * dT * Ja;
   for (int j = 0; j < CL_DIM; j++)
     D[VectorAt(IN_J, phase, j)] += dt * rho * a[j];

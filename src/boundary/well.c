@@ -408,12 +408,16 @@ static Rate Volume(const FaceState *x, int phase, const Rate *head)
 static Rate Mass(const FaceState *x, int phase, const Rate *head, const Rate *q)
 {
   const bool   enters = head->v < 0.0;
+  const double H      = x->c->fields.one_pressure || enters || phase == PHASE_W ? 0.0 : x->mat->gas.trace;
+  const int    sets   = GasFlowsByWater(H, x->in[IN_P], x->in[IN_P + PHASE_G]) ? PHASE_W : phase;
+  const double part   = sets == phase ? 1.0 : CL_GAS_FLOWS; /* (323) */
   double       dp, dT;
-  const double rho = FluidDensity(x->mat, phase, x->in[IN_P + phase] - (enters ? head->v : 0.0), x->in[IN_T], &dp, &dT);
-  Rate         m   = {rho * q->v, {0.0, 0.0, dT * q->v}};
+  const double rho =
+      FluidDensity(x->mat, phase, part * x->in[IN_P + sets] - (enters ? head->v : 0.0), x->in[IN_T], &dp, &dT);
+  Rate m = {rho * q->v, {0.0, 0.0, dT * q->v}};
 
   for (int j = 0; j < PHASE_COUNT; j++)
-    m.d[j] = rho * q->d[j] + dp * ((j == phase ? 1.0 : 0.0) - (enters ? head->d[j] : 0.0)) * q->v;
+    m.d[j] = rho * q->d[j] + dp * ((j == sets ? part : 0.0) - (enters ? head->d[j] : 0.0)) * q->v;
   return m;
 }
 

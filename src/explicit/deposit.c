@@ -9,6 +9,24 @@ typedef struct {
   double resist[PHASE_COUNT][BLOCK], kr[PHASE_COUNT][BLOCK]; /* mu/k_a, k_r */
 } Fluids;
 
+/* (323): where no pressure of water sets it, the density of the gas in the pores. */
+static void FlowingGas(const Material *mat, int n, const double *pw, const double *pg, const double *T,
+                       const double *restrict held, double *restrict rho)
+{
+  double p[BLOCK], slope[2][BLOCK];
+  bool   by_water = false;
+
+  for (int q = 0; q < n; q++) {
+    const bool here = GasFlowsByWater(mat->gas.trace, pw[q], pg[q]);
+
+    p[q]   = here ? CL_GAS_FLOWS * pw[q] : pg[q];
+    rho[q] = held[q];
+    by_water |= here;
+  }
+  if (by_water)
+    GasDensityBatch(&mat->gas, n, p, T, rho, slope[0], slope[1]);
+}
+
 /* Shares, densities and drags at t_n (8)-(10), (16). */
 INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Fluids *w)
 {
@@ -51,7 +69,8 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
     RetentionGasShareBatch(&mat->retention, r.n, pc, w->Sh, sg, ds);
-    GasDensityBatch(&mat->gas, r.n, pg, T, w->rho[PHASE_G], e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
+    GasDensityBatch(&mat->gas, r.n, pg, T, e->t[T_HELD] + r.p, e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
+    FlowingGas(mat, r.n, pw, pg, T, e->t[T_HELD] + r.p, w->rho[PHASE_G]);
     for (int q = 0; q < r.n; q++) {
       w->sw[q]      = 1.0 - sg[q];
       w->p[q]       = PorePressureOf(sg[q], pw[q], pg[q]).v;

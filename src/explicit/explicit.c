@@ -81,7 +81,7 @@ static bool Needs(const Explicit *e, int k)
     return Scalars(s) > 0;
   if (k >= T_MISS)
     return e->o.particle_pressures && s.fluids > 0;
-  if (k == T_SG || k == T_DS || k == T_GAS || k == T_GAS + 1 || k >= T_GAIN)
+  if (k == T_SG || k == T_DS || k == T_GAS || k == T_GAS + 1 || k == T_HELD || k >= T_GAIN)
     return s.fluids == 2;
   return s.fluids > 0; /* those of the gas, too: few, and the pointers stay simple */
 }

@@ -135,9 +135,10 @@ enum {
   T_T = 0, /* degC, where heat has no field */
   T_SG,    /* share of gas and its slope */
   T_DS,
-  T_RHO,                            /* [2] densities of the fluids */
+  T_RHO,                            /* [2] densities with which the fluids flow */
   T_GAS     = T_RHO + PHASE_COUNT,  /* [2] slopes of that of the gas in p_g and T */
-  T_DRAG    = T_GAS + 2,            /* [2] mu/(k_a k_r) */
+  T_HELD    = T_GAS + 2,            /* density of the gas in the pores (323) */
+  T_DRAG    = T_HELD + 1,           /* [2] mu/(k_a k_r) */
   T_CONDUCT = T_DRAG + PHASE_COUNT, /* weight of its flow at t_n (350); with layers */
   T_BEDS,                           /* [3] A at t_n (306): xx, yy, xy; with beds */
   T_V = T_BEDS + 3,                 /* volume at the end of the step */
@@ -384,7 +385,7 @@ INLINE void PerHydrateVolume(const Explicit *e, Run r, const double *restrict pw
                              double held[PHASE_COUNT][BLOCK])
 {
   const double *restrict sg = e->t[T_SG] + r.p, *restrict rho_w = e->t[T_RHO] + r.p,
-                         *restrict rho_g = e->t[T_RHO + 1] + r.p, *restrict ds = e->t[T_DS] + r.p;
+                         *restrict rho_g = e->t[T_HELD] + r.p, *restrict ds = e->t[T_DS] + r.p;
   const double H = r.mat->gas.trace, n = r.mat->retention.hydrate;
 
   for (int q = 0; q < r.n; q++) {

@@ -164,7 +164,7 @@ INLINE void WaterMasses(Explicit *e, const Set s, Run r, const Volumes *v)
 
 INLINE void MethaneMasses(Explicit *e, Run r, const Volumes *v)
 {
-  const double *sg = e->t[T_SG] + r.p, *ds = e->t[T_DS] + r.p, *rho = e->t[T_RHO + 1] + r.p, *rho_p = e->t[T_GAS] + r.p,
+  const double *sg = e->t[T_SG] + r.p, *ds = e->t[T_DS] + r.p, *rho = e->t[T_HELD] + r.p, *rho_p = e->t[T_GAS] + r.p,
                *rho_T = e->t[T_GAS + 1] + r.p, *pg = e->m->P.f[P_PG] + r.p, H = r.mat->gas.trace;
   const MassArrays o = MassArraysOf(e, r, PHASE_G);
 

@@ -255,6 +255,8 @@ INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, con
     s->rho[PHASE_G] = FluidJet(mat, PHASE_G, pg, T);
     const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
     s->m[PHASE_G]   = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
+    if (GasFlowsByWater(Trace(fs, mat), pw.v, pg.v))
+      s->rho[PHASE_G] = FluidJet(mat, PHASE_G, JetScale(CL_GAS_FLOWS, pw), T);
   }
   if (fs->fluid)
     Mobility(fs, mat, T, s);

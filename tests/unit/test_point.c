@@ -795,6 +795,36 @@ static void ClosedCell(double p0, double pc, const char *what)
   assert_true(old < 1e-3);
 }
 
+/* (323): without gas, methane flows from the higher p_g to the lower, also where both are below zero. */
+static void TestFlowOfTrace(void **state)
+{
+  static const double pg[] = {3e6, 1e5, -1e5, -3e7, -5e10};
+  const char         *why;
+
+  (void)state;
+  for (size_t k = 0; k < sizeof(pg) / sizeof(*pg); k++) {
+    Particle    q = {.mat = SedimentMaterial(), .h = {.V = 1e-4, .dt = 1e7, .T_n = 4.0, .bracket = 1.0}};
+    PointState  s;
+    PointOutput o;
+
+    q.mat.gas.trace     = GasTrace(&q.mat.gas);
+    q.in[IN_T]          = 4.0;
+    q.in[IN_P]          = 5e6;
+    q.in[IN_P + 1]      = pg[k];
+    q.in[IN_J + CL_DIM] = 1e-9; /* of the gas, along x */
+    InitialMasses(&q.mat, q.h.V, 0.3, 0.1, q.in[IN_P], q.in[IN_P + 1], 4.0, &q.h.m_s, &q.h.m_star[0], &q.h.m_star[1],
+                  &q.h.m_star[2]);
+    q.h.Sh_n = 0.1;
+    assert_int_equal(PointEvaluate(AllFields(), &q.mat, &q.h, q.in, true, &s, &o, &why), CL_OK);
+    const double flux = o.out[VectorAt(OUT_FLUX, PHASE_G, 0)];
+    printf("  p_g = %g Pa: flux of methane %g kg m/s, of which the gradient makes %g\n", pg[k], flux,
+           o.D[VectorAt(OUT_FLUX, PHASE_G, 0)][VectorAt(IN_GP, PHASE_G, 0)]);
+    assert_true(flux > 0.0 && s.rho[PHASE_G] > 3.0);
+    assert_true(o.D[VectorAt(OUT_FLUX, PHASE_G, 0)][VectorAt(IN_GP, PHASE_G, 0)] < 0.0);
+    assert_true(pg[k] > 0.0 || s.m_g < 0.0); /* the mass says what is missing */
+  }
+}
+
 /* A reaction ten times as slow makes a tenth of the hydrate, to round-off of what it makes rather than of what there
    is: methane of pores without gas is far below that. */
 static void TestSlowReaction(void **state)
@@ -1023,6 +1053,7 @@ int main(void)
       cmocka_unit_test(TestSimpleShear),
       cmocka_unit_test(TestHydrateBounds),
       cmocka_unit_test(TestHydrateEquation),
+      cmocka_unit_test(TestFlowOfTrace),
       cmocka_unit_test(TestSlowReaction),
       cmocka_unit_test(TestStiffKinetics),
       cmocka_unit_test(TestReactionConserves),
