@@ -164,6 +164,7 @@ PetscErrorCode ParticlesDestroy(Particles *P);
 PetscErrorCode ParticlesResize(Particles *P, PetscInt n); /* keeps the first min(n, old n) */
 /* All variables of `from`; `to` holds the same fields and takes its size. */
 PetscErrorCode ParticlesCopy(const Particles *from, Particles *to);
+PetscErrorCode ParticlesPermute(Particles *P, const PetscInt order[]); /* the k-th becomes what order[k] was */
 
 #include "clathra/grid.h"
 
@@ -202,6 +203,9 @@ PetscErrorCode ParticleInitialState(const Scene *c, PetscInt region, Particles *
                                     const double l[]);
 /* Half-lengths of a region's particles at the start, m. */
 void ParticlesInitialHalfLength(const Scene *c, PetscInt region, const double x[CL_DIM], double l[CL_DIM]);
+/* Sends particle p to rank owner[p].  key NULL: those that stay keep their order, behind them come those of other
+   ranks, by rank; else in the order of key[p] (>= 0), whatever rank they come from.  Collective. */
+PetscErrorCode ParticlesSend(MPI_Comm comm, const PetscMPIInt owner[], const PetscInt key[], Particles *P);
 /* Sends every particle to the owner of its cell; *left counts those outside the grid (nothing is moved then), globally.
    Collective. */
 PetscErrorCode ParticlesMigrate(const Grid *g, Particles *P, PetscInt *left);

@@ -46,11 +46,6 @@ _Static_assert(sizeof(StepperState) ==
                    14 * sizeof(PetscInt) + (25 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
-typedef struct {
-  hid_t          file, group; /* rank 0 */
-  PetscErrorCode ierr;        /* rank 0: first error; the gathering goes on */
-} Writer;
-
 static PetscErrorCode WriteState(hid_t file, const StepperState *s)
 {
   hid_t group;
@@ -58,10 +53,8 @@ static PetscErrorCode WriteState(hid_t file, const StepperState *s)
   PetscFunctionBeginUser;
   PetscCall(H5Group(file, "/state", &group));
   for (const StateField *f = io_state_field; f->name; f++) {
-    const hsize_t n = (hsize_t)f->n;
-
-    PetscCall(H5Write(group, f->name, f->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, 1, &n,
-                      (const char *)s + f->offset, NULL, false));
+    PetscCall(H5Write(group, f->name, f->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, (hsize_t)f->n,
+                      (const char *)s + f->offset, NULL));
   }
   H5Check(H5Gclose(group));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -69,14 +62,12 @@ static PetscErrorCode WriteState(hid_t file, const StepperState *s)
 
 static PetscErrorCode WriteScene(hid_t file, const Case *c)
 {
-  char   *text;
-  size_t  size;
-  hsize_t n;
+  char  *text;
+  size_t size;
 
   PetscFunctionBeginUser;
   PetscCall(CaseText(c, CaseWriteState, &text, &size));
-  n = size;
-  PetscCall(H5Write(file, "scene", H5T_NATIVE_CHAR, 1, &n, text, NULL, false));
+  PetscCall(H5Write(file, "scene", H5T_NATIVE_CHAR, size, text, NULL));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -94,84 +85,80 @@ static PetscErrorCode WriteBorders(hid_t file, const Grid *g)
     for (PetscInt r = 0; r <= g->nproc[d]; r++)
       border[n++] = g->start[d][r];
   }
-  PetscCall(H5Write(file, "borders", H5T_NATIVE_INT, 1, &n, border, NULL, false));
+  PetscCall(H5Write(file, "borders", H5T_NATIVE_INT, n, border, NULL));
   PetscCall(PetscFree(border));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Start(Writer *w, const Case *c, const StepperState *s, const Grid *g)
+static PetscErrorCode WriteInts(const Grid *grid, const Particles *P, Slab *s, hid_t group)
 {
-  PetscFunctionBeginUser;
-  PetscCall(H5ImageCreate(SEAL_BYTES, &w->file));
-  PetscCall(H5WriteInt(w->file, "ranks", g->size));
-  PetscCall(WriteBorders(w->file, g));
-  PetscCall(WriteState(w->file, s));
-  PetscCall(WriteScene(w->file, c));
-  PetscCall(H5Group(w->file, "/particles", &w->group));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode WriteInts(Writer *w, const Particles *P, Gather *g)
-{
-  const hsize_t n      = (hsize_t)g->total;
-  PetscInt     *data   = (PetscInt *)g->data;
-  const char   *name[] = {"id", "region", "faces", "rank", "place"};
+  PetscInt *rank, *place;
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < 5; k++) {
-    if (k < PI_COUNT)
-      PetscCall(GatherInts(g, P->i[k], data));
-    if (g->rank > 0 || w->ierr)
-      continue;
-    for (PetscInt p = 0; k >= PI_COUNT && p < g->total; p++) {
-      PetscMPIInt r = 0;
-
-      while (r + 1 < g->size && g->order[p] >= g->start[r + 1])
-        r++;
-      data[p] = k == PI_COUNT ? r : g->order[p] - g->start[r];
-    }
-    w->ierr = H5Write(w->group, name[k], H5T_NATIVE_INT, 1, &n, data, NULL, false);
+  PetscCall(PetscMalloc2(P->n, &rank, P->n, &place));
+  for (PetscInt p = 0; p < P->n; p++) {
+    rank[p]  = grid->rank;
+    place[p] = p;
   }
+  const struct {
+    const char     *name;
+    const PetscInt *data;
+  } integer[] = {
+      {"id", P->i[PI_ID]}, {"region", P->i[PI_REGION]}, {"faces", P->i[PI_FACES]}, {"rank", rank}, {"place", place}};
+
+  for (int k = 0; k < 5; k++) {
+    PetscCall(SlabInts(s, integer[k].data));
+    PetscCall(SlabWriteInts(s, group, integer[k].name, NULL, false));
+  }
+  PetscCall(PetscFree2(rank, place));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Finish(Writer *w, const Case *c, uint64_t run, const char *path, bool *ok)
+static PetscErrorCode WriteAll(const Model *m, const StepperState *state, Slab *s, hid_t file)
 {
-  char    block[SEAL_BYTES];
-  IoPiece image;
+  hid_t group;
 
   PetscFunctionBeginUser;
-  H5Check(H5Gclose(w->group));
-  PetscCall(H5ImageBytes(w->file, &image));
-  image.data = (const char *)image.data + SEAL_BYTES;
-  image.bytes -= SEAL_BYTES;
-  SealMake(block, CaseFingerprint(c), run, image.data, image.bytes);
-  *ok = IoReplace(path, true, 2, (IoPiece[]){{block, SEAL_BYTES}, image});
+  PetscCall(H5WriteInt(file, "ranks", m->grid.size));
+  PetscCall(WriteBorders(file, &m->grid));
+  PetscCall(WriteState(file, state));
+  PetscCall(WriteScene(file, CaseOf(m->c)));
+  PetscCall(H5Group(file, "/particles", &group));
+  PetscCall(SlabWriteVariables(s, &m->P, false, group));
+  PetscCall(WriteInts(&m->grid, &m->P, s, group));
+  H5Check(H5Gclose(group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+typedef struct {
+  uint64_t fingerprint, run;
+} Owner;
+
+static void SealIt(uint64_t sum, uint64_t bytes, const void *ctx, char *block)
+{
+  const Owner *o = ctx;
+
+  SealMake(block, o->fingerprint, o->run, bytes, sum);
+}
+
+#define ROOM_STATE ((size_t)1 << 20) /* bytes that are no particles': state, scene, groups */
 
 PetscErrorCode CheckpointWrite(const Model *m, const StepperState *s, uint64_t run, const char *path, bool *ok)
 {
-  const Grid *grid = &m->grid;
-  Gather      g;
-  Writer      w    = {.file = -1, .group = -1};
-  int         good = 1;
+  const Owner owner = {CaseFingerprint(CaseOf(m->c)), run};
+  SharedFile  f;
+  Slab        slab;
+  size_t      room;
 
   PetscFunctionBeginUser;
-  PetscCheck(strlen(path) + 8 < PETSC_MAX_PATH_LEN, grid->comm, PETSC_ERR_ARG_SIZ, "the path %s is too long", path);
-  if (grid->rank == 0)
-    w.ierr = Start(&w, CaseOf(m->c), s, grid);
-  PetscCall(GatherCreate(m, &g));
-  PetscCall(GatherVariables(&g, &m->P, false, w.group, &w.ierr));
-  PetscCall(WriteInts(&w, &m->P, &g));
-  if (grid->rank == 0 && !w.ierr) {
-    w.ierr = Finish(&w, CaseOf(m->c), run, path, ok);
-    good   = *ok;
-    PetscCall(H5FileClose(&w.file));
+  PetscCheck(strlen(path) + 8 < PETSC_MAX_PATH_LEN, m->grid.comm, PETSC_ERR_ARG_SIZ, "the path %s is too long", path);
+  PetscCall(SlabParticles(m, &slab));
+  room = ROOM_STATE + SlabRoomVariables(&slab, &m->P) + H5Room(&slab.part, 5, 5);
+  PetscCall(SharedCreate(m->grid.comm, path, SEAL_BYTES, room, &f, ok));
+  if (*ok) {
+    PetscCall(WriteAll(m, s, &slab, f.file));
+    PetscCall(SharedFinish(&f, true, SealIt, &owner, ok));
   }
-  PetscCall(IoAgree(grid->comm, w.ierr));
-  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, grid->comm));
-  *ok = good;
-  PetscCall(GatherDestroy(&g));
+  PetscCall(SlabDestroy(&slab));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

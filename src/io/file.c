@@ -98,20 +98,14 @@ static bool KeepOld(const char *path)
   return (errno == EPERM || errno == ENOTSUP || errno == EMLINK) && rename(path, old) == 0; /* no links here */
 }
 
-bool IoReplace(const char *path, bool keep_old, int n, const IoPiece piece[])
+void IoAside(const char *path, char aside[IO_PATH + 8])
 {
-  char   aside[IO_PATH + 8];
-  size_t bytes = 0;
-  int    fd;
-  bool   good;
+  snprintf(aside, IO_PATH + 8, "%s.tmp", path);
+}
 
-  snprintf(aside, sizeof(aside), "%s.tmp", path);
-  fd   = open(aside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  good = fd >= 0;
-  for (int k = 0; k < n; k++) {
-    bytes += piece[k].bytes;
-    good = good && WriteAll(fd, piece[k].data, piece[k].bytes);
-  }
+/* What was written aside, as far as it was good, takes its place: closed, on the disk, renamed. */
+static bool Settle(const char *path, const char *aside, bool keep_old, int fd, bool good, size_t bytes)
+{
   good = good && Sync(fd);
   if (fd >= 0) {
     const int why = errno;
@@ -129,6 +123,33 @@ bool IoReplace(const char *path, bool keep_old, int n, const IoPiece piece[])
   }
   SyncFolder(path);
   return true;
+}
+
+bool IoAdopt(const char *path, bool keep_old, const IoPiece *block)
+{
+  char aside[IO_PATH + 8];
+  int  fd;
+
+  IoAside(path, aside);
+  fd = open(aside, O_WRONLY | O_CLOEXEC);
+  return Settle(path, aside, keep_old, fd, fd >= 0 && (!block || WriteAll(fd, block->data, block->bytes)), 0);
+}
+
+bool IoReplace(const char *path, bool keep_old, int n, const IoPiece piece[])
+{
+  char   aside[IO_PATH + 8];
+  size_t bytes = 0;
+  int    fd;
+  bool   good;
+
+  IoAside(path, aside);
+  fd   = open(aside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  good = fd >= 0;
+  for (int k = 0; k < n; k++) {
+    bytes += piece[k].bytes;
+    good = good && WriteAll(fd, piece[k].data, piece[k].bytes);
+  }
+  return Settle(path, aside, keep_old, fd, good, bytes);
 }
 
 bool IoRename(const char *from, const char *to)

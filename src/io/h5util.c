@@ -4,6 +4,7 @@
 
 #define COMPRESS_FROM 65536 /* bytes; smaller datasets are written plain */
 #define CHUNK_ROWS 16384
+#define CHUNK_NODES 128 /* along each axis */
 
 #define GROW ((size_t)1 << 22) /* bytes by which an image grows */
 
@@ -17,33 +18,59 @@ static PetscErrorCode Access(hid_t *access)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Create(const char *name, hsize_t user_block, hid_t access, hid_t *file)
+{
+  hid_t create;
+
+  PetscFunctionBeginUser;
+  H5Check(create = H5Pcreate(H5P_FILE_CREATE));
+  if (user_block > 0)
+    H5Check(H5Pset_userblock(create, user_block));
+  H5Check(*file = H5Fcreate(name, H5F_ACC_TRUNC, create, access));
+  H5Check(H5Pclose(create));
+  H5Check(H5Pclose(access));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file)
 {
-  hid_t access, create;
+  hid_t access;
 
   PetscFunctionBeginUser;
   PetscCall(Access(&access));
   H5Check(H5Pset_fapl_core(access, GROW, 0));
-  H5Check(create = H5Pcreate(H5P_FILE_CREATE));
-  if (user_block > 0)
-    H5Check(H5Pset_userblock(create, user_block));
-  H5Check(*file = H5Fcreate("image", H5F_ACC_TRUNC, create, access));
-  H5Check(H5Pclose(create));
-  H5Check(H5Pclose(access));
+  PetscCall(Create("image", user_block, access, file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5SharedCreate(MPI_Comm comm, const char *path, hsize_t user_block, hid_t *file)
+{
+  hid_t access;
+
+  PetscFunctionBeginUser;
+  PetscCall(Access(&access));
+  H5Check(H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL));
+  H5Check(H5Pset_coll_metadata_write(access, 1));
+  PetscCall(Create(path, user_block, access, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode H5ImageBytes(hid_t image, IoPiece *piece)
 {
   void   *handle;
-  hsize_t bytes;
+  hid_t   create;
+  hsize_t block;
+  ssize_t bytes; /* that are used behind the user block; room is taken in steps of GROW */
 
   PetscFunctionBeginUser;
   H5Check(H5Fflush(image, H5F_SCOPE_GLOBAL));
-  H5Check(H5Fget_filesize(image, &bytes));
+  H5Check(bytes = H5Fget_file_image(image, NULL, 0));
+  H5Check(create = H5Fget_create_plist(image));
+  H5Check(H5Pget_userblock(create, &block));
+  H5Check(H5Pclose(create));
   H5Check(H5Fget_vfd_handle(image, H5P_DEFAULT, &handle));
   piece->data  = *(void **)handle;
-  piece->bytes = (size_t)bytes;
+  piece->bytes = (size_t)block + (size_t)bytes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,39 +110,119 @@ PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Layout(hid_t type, int nd, const hsize_t dims[], bool compress, hid_t *create)
+static PetscErrorCode Layout(hid_t type, const H5Part *part, int nc, bool compress, hid_t *create)
 {
-  hsize_t chunk[4], bytes = H5Tget_size(type);
+  hsize_t       chunk[3] = {0, 0, 0}, bytes = H5Tget_size(type) * (hsize_t)nc;
+  const hsize_t most = part->nd > 1 ? CHUNK_NODES : CHUNK_ROWS;
 
   PetscFunctionBeginUser;
   H5Check(*create = H5Pcreate(H5P_DATASET_CREATE));
-  for (int d = 0; d < nd; d++) {
-    bytes *= dims[d];
-    chunk[d] = d == 0 && dims[d] > CHUNK_ROWS ? CHUNK_ROWS : dims[d];
+  for (int d = 0; d < part->nd; d++) {
+    bytes *= part->all[d];
+    chunk[d] = part->all[d] > most ? most : part->all[d];
   }
+  chunk[part->nd] = (hsize_t)nc;
   if (compress && bytes >= COMPRESS_FROM && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
-    H5Check(H5Pset_chunk(*create, nd, chunk));
+    H5Check(H5Pset_chunk(*create, part->nd + (nc > 1), chunk));
     H5Check(H5Pset_shuffle(*create));
     H5Check(H5Pset_deflate(*create, 4));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], const void *data,
-                       const char *unit, bool compress)
+size_t H5Room(const H5Part *part, int n, int components)
 {
-  hid_t space, create, set;
+  const hsize_t most = part->nd > 1 ? CHUNK_NODES : CHUNK_ROWS;
+  size_t        all  = sizeof(double) * (size_t)components;
+
+  for (int d = 0; d < part->nd; d++)
+    all *= part->all[d] > most ? (part->all[d] / most + 1) * most : part->all[d];
+  return all + 4096 * (size_t)n;
+}
+
+/* Of memory and of the file; nothing of either where this rank has no part. */
+static PetscErrorCode Spaces(const H5Part *part, int nc, hid_t *memory, hid_t *space)
+{
+  hsize_t all[3], start[3] = {0, 0, 0}, count[3], here = 1;
 
   PetscFunctionBeginUser;
-  PetscCall(Layout(type, nd, dims, compress, &create));
-  H5Check(space = H5Screate_simple(nd, dims, NULL));
+  all[part->nd] = count[part->nd] = (hsize_t)nc;
+  for (int d = 0; d < part->nd; d++) {
+    all[d]   = part->all[d];
+    start[d] = part->start[d];
+    count[d] = part->count[d];
+    here *= count[d];
+  }
+  H5Check(*space = H5Screate_simple(part->nd + (nc > 1), all, NULL));
+  H5Check(*memory = H5Screate_simple(part->nd + (nc > 1), count, NULL));
+  if (here > 0)
+    H5Check(H5Sselect_hyperslab(*space, H5S_SELECT_SET, start, NULL, count, NULL));
+  else {
+    H5Check(H5Sselect_none(*space));
+    H5Check(H5Sselect_none(*memory));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Was the file opened by several ranks? */
+static PetscErrorCode Shared(hid_t where, bool *shared)
+{
+  hid_t file, access;
+
+  PetscFunctionBeginUser;
+  H5Check(file = H5Iget_file_id(where));
+  H5Check(access = H5Fget_access_plist(file));
+  *shared = H5Pget_driver(access) == H5FD_MPIO;
+  H5Check(H5Pclose(access));
+  H5Check(H5Fclose(file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Transfer(hid_t where, hid_t *transfer)
+{
+  bool shared;
+
+  PetscFunctionBeginUser;
+  PetscCall(Shared(where, &shared));
+  H5Check(*transfer = H5Pcreate(H5P_DATASET_XFER));
+  if (shared)
+    H5Check(H5Pset_dxpl_mpio(*transfer, H5FD_MPIO_COLLECTIVE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5WritePart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, const void *data,
+                           const char *unit, bool compress)
+{
+  hid_t memory, space, create, transfer = H5P_DEFAULT, set;
+
+  PetscFunctionBeginUser;
+  PetscCall(Layout(type, part, nc, compress, &create));
+  PetscCall(Spaces(part, nc, &memory, &space));
+  PetscCall(Transfer(where, &transfer));
   H5Check(set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT));
-  H5Check(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
+  H5Check(H5Dwrite(set, type, memory, space, transfer, data));
   if (unit)
     PetscCall(H5WriteText(set, "unit", unit));
   H5Check(H5Dclose(set));
+  H5Check(H5Pclose(transfer));
   H5Check(H5Sclose(space));
+  H5Check(H5Sclose(memory));
   H5Check(H5Pclose(create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, hsize_t n, const void *data, const char *unit)
+{
+  H5Part      part = {.nd = 1, .all = {n}, .count = {n}};
+  PetscMPIInt rank;
+  bool        shared;
+
+  PetscFunctionBeginUser;
+  PetscCall(Shared(where, &shared));
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  if (shared && rank > 0)
+    part.count[0] = 0;
+  PetscCall(H5WritePart(where, name, type, &part, 1, data, unit, false));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,9 +305,10 @@ static int Shape(hid_t set, hsize_t dims[2])
   return ok ? nd : 0;
 }
 
-bool H5Read(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], void *data)
+bool H5ReadPart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, void *data)
 {
-  bool ok = false;
+  const int nd = part->nd + (nc > 1);
+  bool      ok = false;
 
   H5E_BEGIN_TRY
   {
@@ -209,17 +317,25 @@ bool H5Read(hid_t where, const char *name, hid_t type, int nd, const hsize_t dim
 
     if (set >= 0) {
       const hid_t stored = H5Dget_type(set);
+      hid_t       memory = -1, space = -1;
 
-      ok = Shape(set, has) == nd && H5Tget_class(stored) == H5Tget_class(type);
-      for (int d = 0; ok && d < nd; d++)
-        ok = has[d] == dims[d];
-      ok = ok && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+      ok = Shape(set, has) == nd && H5Tget_class(stored) == H5Tget_class(type) && has[0] == part->all[0] &&
+           (nd == 1 || has[1] == (hsize_t)nc);
+      ok = ok && Spaces(part, nc, &memory, &space) == PETSC_SUCCESS &&
+           H5Dread(set, type, memory, space, H5P_DEFAULT, data) >= 0;
+      H5Sclose(memory);
+      H5Sclose(space);
       H5Tclose(stored);
       H5Dclose(set);
     }
   }
   H5E_END_TRY
   return ok;
+}
+
+bool H5Read(hid_t where, const char *name, hid_t type, hsize_t n, void *data)
+{
+  return H5ReadPart(where, name, type, &(H5Part){.nd = 1, .all = {n}, .count = {n}}, 1, data);
 }
 
 bool H5Rows(hid_t where, const char *name, hsize_t *rows)

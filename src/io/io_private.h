@@ -1,6 +1,7 @@
-/* io_private: shared by the files of src/io.  HDF5 runs on rank 0 alone: data are gathered there, in the order of the
-   particles' ids, one variable at a time, so that files do not depend on the number of ranks.  Limit: rank 0 must hold
-   all of them (0.4 kB a particle): a file is made in memory before any of it is written. */
+/* io_private: shared by the files of src/io.  Snapshots and checkpoints are written by all ranks: each gets a slab of
+   the particles in the order of their ids and a strip of the nodes, one variable at a time, and puts it into the file
+   at its place, so that files do not depend on the number of ranks and no rank holds all of them.  Tables, lists and
+   whatever else is small are written by rank 0. */
 #pragma once
 
 #include "clathra/io.h"
@@ -74,6 +75,9 @@ PetscErrorCode IoAgree(MPI_Comm comm, PetscErrorCode ierr);
 bool           IoFailed(const char *path, size_t bytes); /* says what errno means; false */
 /* A whole new file in the place of PATH, or PATH as it was; keep_old: the one before becomes PATH.old. */
 bool IoReplace(const char *path, bool keep_old, int n, const IoPiece piece[]);
+/* The file aside, PATH.tmp, as IoReplace would have written it, into the place of PATH; block: what it begins with. */
+bool IoAdopt(const char *path, bool keep_old, const IoPiece *block);
+void IoAside(const char *path, char aside[IO_PATH + 8]);
 bool IoRename(const char *from, const char *to);
 bool IoMakeFolder(const char *dir); /* with all above it */
 int  IoOpenEnd(const char *path);   /* < 0: it was said why not */
@@ -142,50 +146,94 @@ void                     XdmfPrint(FILE *f, const Output *out, const Grid *g, Xd
 /* ---------------------------------------------------------------- h5util.c */
 #define H5Check(expr) PetscCheck((expr) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s", #expr)
 
-PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file);      /* a file in memory */
+PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file); /* a file in memory */
+/* A file that all ranks write; the calls that make groups, attributes and datasets of it are collective. */
+PetscErrorCode H5SharedCreate(MPI_Comm comm, const char *path, hsize_t user_block, hid_t *file);
 PetscErrorCode H5ImageBytes(hid_t image, IoPiece *piece);           /* valid until it is closed; user block and all */
 PetscErrorCode H5FileOpen(const char *path, hid_t *file);           /* to read; *file < 0: it cannot be opened */
 PetscErrorCode H5FileClose(hid_t *file);                            /* also an image, also one that is not open */
 PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group); /* with all above it */
-/* dims has nd entries; unit NULL = none; compressed when large and `compress`. */
-PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], const void *data,
-                       const char *unit, bool compress);
+/* The part of a dataset that this rank writes or reads: along the first one (rows) or two (nodes) axes. */
+typedef struct {
+  int     nd;
+  hsize_t all[2], start[2], count[2];
+} H5Part;
+/* nc components an entry, those of one as the last axis; unit NULL: none; compressed when large and `compress`.
+   Collective if the file is. */
+PetscErrorCode H5WritePart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, const void *data,
+                           const char *unit, bool compress);
+/* Most bytes of n such datasets of `components` reals an entry in all, whole chunks and what describes them included.
+ */
+size_t H5Room(const H5Part *part, int n, int components);
+/* n numbers; those of rank 0 where several write. */
+PetscErrorCode H5Write(hid_t where, const char *name, hid_t type, hsize_t n, const void *data, const char *unit);
 PetscErrorCode H5WriteReal(hid_t where, const char *attribute, double value);
 PetscErrorCode H5WriteInt(hid_t where, const char *attribute, PetscInt value);
 PetscErrorCode H5WriteText(hid_t where, const char *attribute, const char *value);
 bool           H5ReadReal(hid_t where, const char *attribute, double *value);
 bool           H5ReadInt(hid_t where, const char *attribute, PetscInt *value);
-/* Reads a dataset that must have these dimensions and hold integers or reals as `type` does. */
-bool H5Read(hid_t where, const char *name, hid_t type, int nd, const hsize_t dims[], void *data);
+/* Reads from a dataset that must have these dimensions and hold integers or reals as `type` does. */
+bool H5ReadPart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, void *data);
+bool H5Read(hid_t where, const char *name, hid_t type, hsize_t n, void *data); /* all of one of n numbers */
 /* Number of rows of a dataset; false if there is no such dataset. */
 bool H5Rows(hid_t where, const char *name, hsize_t *rows);
 
-/* ---------------------------------------------------------------- gather.c */
-/* Particles of all ranks on rank 0, sorted by id. */
+/* ---------------------------------------------------------------- shared.c */
+/* A file that all ranks write together.  One rank makes it in memory; several write it aside, PATH.tmp, in room that
+   was taken for it beforehand, so that HDF5 sees no full disk: it does not outlive one. */
 typedef struct {
-  MPI_Comm    comm;
-  PetscMPIInt rank, size, *count, *start; /* rank 0: of each rank */
-  PetscInt    n, total;                   /* local; all (rank 0) */
-  PetscInt   *order, *id;                 /* rank 0: order of arrival of the k-th by id; its id */
-  void       *buffer;                     /* rank 0: one component */
-  double     *data;                       /* rank 0: one variable of up to P_MOST components */
-} Gather;
-PetscErrorCode GatherCreate(const Model *m, Gather *g);
-PetscErrorCode GatherDestroy(Gather *g);
-/* sorted[k * stride] on rank 0; elsewhere sorted may be NULL. */
-PetscErrorCode GatherReals(Gather *g, const double *local, PetscInt stride, double *sorted);
-PetscErrorCode GatherInts(Gather *g, const PetscInt *local, PetscInt *sorted);
-/* All variables of the particles into an HDF5 group of rank 0; *ierr: first error there, the gathering goes on. */
-PetscErrorCode GatherVariables(Gather *g, const Particles *P, bool compress, hid_t group, PetscErrorCode *ierr);
+  MPI_Comm comm;
+  hid_t    file;
+  char     path[IO_PATH];
+  bool     image;
+} SharedFile;
+/* sum: a checksum of all behind the user block (seal.c), bytes: the length of the whole file. */
+typedef void (*SharedSeal)(uint64_t sum, uint64_t bytes, const void *ctx, char *block);
+/* block: bytes of the user block; room: most bytes of the file.  *ok = false (on all ranks): it was said why not.
+   Collective. */
+PetscErrorCode SharedCreate(MPI_Comm comm, const char *path, hsize_t block, size_t room, SharedFile *f, bool *ok);
+/* Closes it and puts it in the place of PATH as IoReplace does; seal fills the user block, NULL: there is none.
+   Collective. */
+PetscErrorCode SharedFinish(SharedFile *f, bool keep_old, SharedSeal seal, const void *ctx, bool *ok);
+
+/* ---------------------------------------------------------------- slab.c */
+/* Numbers of particles or nodes, wherever they are, on the ranks that write them: particles in the order of their ids,
+   nodes as they lie on the grid, an equal share on each rank. */
+typedef struct {
+  PetscSF     sf; /* from what is here to the slots of what this rank writes */
+  PetscMPIInt size;
+  PetscInt    n, n_slots; /* items here; slots */
+  PetscInt    total;      /* items of all ranks */
+  PetscInt    rows, *row; /* written by this rank: the slot of each, NULL: as they come */
+  void       *out, *come; /* one component: of the items here, in the slots */
+  double     *data;       /* one variable of up to P_MOST components, by row */
+  H5Part      part;
+} Slab;
+PetscErrorCode SlabParticles(const Model *m, Slab *s);
+PetscErrorCode SlabNodes(const Model *m, Slab *s); /* without items: slots that get nothing stay NaN */
+PetscErrorCode SlabDestroy(Slab *s);
+/* Component c of nc of the rows from local[p * stride]. */
+PetscErrorCode SlabReals(Slab *s, const double *local, PetscInt stride, int c, int nc);
+PetscErrorCode SlabInts(Slab *s, const PetscInt *local);
+/* The rows as a dataset; of integers after SlabInts. */
+PetscErrorCode SlabWrite(const Slab *s, hid_t group, const char *name, int nc, const char *unit, bool compress);
+PetscErrorCode SlabWriteInts(const Slab *s, hid_t group, const char *name, const char *unit, bool compress);
+/* All variables of the particles into a group. */
+PetscErrorCode SlabWriteVariables(Slab *s, const Particles *P, bool compress, hid_t group);
+size_t         SlabRoomVariables(const Slab *s, const Particles *P); /* as H5Room */
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
-#define CHECKPOINT_VERSION 12
-/* The user block: version, case, run, length of the file and a checksum of it; data[bytes] is what follows the block.
- */
-void SealMake(char block[SEAL_BYTES], uint64_t fingerprint, uint64_t run, const void *data, size_t bytes);
-/* Is the file a whole, undamaged checkpoint of this version?  Else the reason. */
-PetscErrorCode SealCheck(const char *path, uint64_t *fingerprint, uint64_t *run, bool *ok, char *why, size_t size);
+#define CHECKPOINT_VERSION 13
+/* Checksum of what follows the user block: of data[bytes], and of a file, each rank reading its share (collective;
+ *good = false: it cannot be read). */
+uint64_t       SealSum(const void *data, size_t bytes);
+PetscErrorCode SealSumFile(MPI_Comm comm, const char *path, size_t block, uint64_t *sum, uint64_t *bytes, bool *good);
+/* The user block: version, case, run, length of the file and a checksum of it and of the block. */
+void SealMake(char block[SEAL_BYTES], uint64_t fingerprint, uint64_t run, uint64_t bytes, uint64_t sum);
+/* Is the file a whole, undamaged checkpoint of this version?  Else the reason.  Collective, the same on all ranks. */
+PetscErrorCode SealCheck(MPI_Comm comm, const char *path, uint64_t *fingerprint, uint64_t *run, bool *ok, char *why,
+                         size_t size);
 
 /* ---------------------------------------------------------------- checkpoint.c: fields of StepperState */
 typedef struct {

@@ -1,5 +1,5 @@
-/* Reading a checkpoint: rank 0 checks all of it, then deals the particles out to the owners of their cells.  To go on
-   with the same case, or as the initial state of another one. */
+/* Reading a checkpoint: each rank reads and checks an equal share of the particles, then sends them to the owners of
+   their cells.  To go on with the same case, or as the initial state of another one. */
 #include "io_private.h"
 
 #include <stdlib.h>
@@ -7,7 +7,8 @@
 
 typedef struct {
   StepperState s;
-  Particles    P;                /* all, by id */
+  Particles    P;                /* this rank's share, by id */
+  H5Part       part;             /* its rows */
   PetscInt     ranks;            /* of the run that wrote it */
   PetscInt     nborder, *border; /* /borders; none unless there are as many here */
   PetscInt    *rank, *place;     /* where each particle was */
@@ -35,12 +36,11 @@ static PetscErrorCode LoadState(hid_t file, Loaded *L)
 {
   PetscFunctionBeginUser;
   for (const StateField *f = io_state_field; f->name; f++) {
-    const hsize_t n  = (hsize_t)f->n;
-    void         *to = (char *)&L->s + f->offset;
-    char          name[64];
+    void *to = (char *)&L->s + f->offset;
+    char  name[64];
 
     snprintf(name, sizeof(name), "/state/%s", f->name);
-    if (!H5Read(file, name, f->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, 1, &n, to))
+    if (!H5Read(file, name, f->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, (hsize_t)f->n, to))
       Refuse(L, "%s is missing or of wrong size", name);
     if (!f->integer && !Finite(to, f->n))
       Refuse(L, "%s is not finite", name);
@@ -58,11 +58,9 @@ static PetscErrorCode LoadReals(hid_t group, Loaded *L)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(PetscMax(n, 1) * P_MOST, &data));
   for (const ParticleVariable *v = cl_particle_variable; v->name && !L->why[0]; v++) {
-    const hsize_t dims[2] = {(hsize_t)n, (hsize_t)v->nc};
-
     if (!ParticlesHold(&L->P, v))
       continue;
-    if (!H5Read(group, v->name, H5T_NATIVE_DOUBLE, v->nc > 1 ? 2 : 1, dims, data)) {
+    if (!H5ReadPart(group, v->name, H5T_NATIVE_DOUBLE, &L->part, v->nc, data)) {
       snprintf(L->why, sizeof(L->why), "/particles/%s is missing or of wrong size", v->name);
     } else if (!Finite(data, n * v->nc)) {
       snprintf(L->why, sizeof(L->why), "/particles/%s is not finite", v->name);
@@ -79,20 +77,19 @@ static PetscErrorCode LoadReals(hid_t group, Loaded *L)
 
 static PetscErrorCode LoadInts(hid_t group, Loaded *L)
 {
-  const hsize_t n      = (hsize_t)L->P.n;
-  const char   *name[] = {"id", "region", "faces", "rank", "place"};
-  PetscInt     *to[]   = {L->P.i[PI_ID], L->P.i[PI_REGION], L->P.i[PI_FACES], L->rank, L->place};
+  const char *name[] = {"id", "region", "faces", "rank", "place"};
+  PetscInt   *to[]   = {L->P.i[PI_ID], L->P.i[PI_REGION], L->P.i[PI_FACES], L->rank, L->place};
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) {
-    if (!H5Read(group, name[k], H5T_NATIVE_INT, 1, &n, to[k]))
+    if (!H5ReadPart(group, name[k], H5T_NATIVE_INT, &L->part, 1, to[k]))
       Refuse(L, "/particles/%s is missing or of wrong size", name[k]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What no running program can have written. */
-static PetscErrorCode CheckParticles(const Model *m, Loaded *L)
+/* What no running program can have written; before: id of the particle before the first, -1 if there is none. */
+static PetscErrorCode CheckParticles(const Model *m, PetscInt before, Loaded *L)
 {
   const Particles *P = &L->P;
 
@@ -102,7 +99,7 @@ static PetscErrorCode CheckParticles(const Model *m, Loaded *L)
     const double   x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
     PetscInt       cell[CL_DIM];
 
-    if (id < 0 || (p > 0 && id <= P->i[PI_ID][p - 1]))
+    if (id <= (p > 0 ? P->i[PI_ID][p - 1] : before))
       Refuse(L, "its particles are not in order");
     if (region < 0 || region >= m->c->nregion)
       Refuse(L, "particle %d belongs to no region", (int)id);
@@ -143,39 +140,62 @@ static PetscErrorCode LoadBorders(const Grid *g, hid_t file, Loaded *L)
     Refuse(L, "/borders is missing or of wrong size");
   L->nborder = (PetscInt)n;
   PetscCall(PetscMalloc1(L->nborder, &L->border));
-  if (!H5Read(file, "borders", H5T_NATIVE_INT, 1, &n, L->border) || !Borders((PetscInt)n, L->border, start) ||
+  if (!H5Read(file, "borders", H5T_NATIVE_INT, n, L->border) || !Borders((PetscInt)n, L->border, start) ||
       !GridSound(g, L->border, start))
     Refuse(L, "/borders are impossible");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The share of this rank of n particles, and the id before it. */
+static PetscErrorCode TakeShare(const Grid *g, hid_t file, hsize_t n, Loaded *L, PetscInt *before)
+{
+  const hsize_t share = n / (hsize_t)g->size + 1, first = PetscMin((hsize_t)g->rank * share, n);
+  H5Part        one = {.nd = 1, .all = {n}, .start = {first - 1}, .count = {1}};
+
+  PetscFunctionBeginUser;
+  L->part = (H5Part){.nd = 1, .all = {n}, .start = {first}, .count = {PetscMin(share, n - first)}};
+  *before = -1;
+  if (first > 0 && !H5ReadPart(file, "/particles/id", H5T_NATIVE_INT, &one, 1, before))
+    Refuse(L, "/particles/id is missing or of wrong size");
+  PetscCall(ParticlesResize(&L->P, (PetscInt)L->part.count[0]));
+  PetscCall(PetscMalloc2(L->P.n, &L->rank, L->P.n, &L->place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadParticles(const Model *m, hid_t file, Loaded *L)
+{
+  hsize_t  n = 0;
+  PetscInt before;
+  hid_t    group;
+
+  PetscFunctionBeginUser;
+  if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
+    Refuse(L, "/particles/id is missing or of wrong size");
+  PetscCall(TakeShare(&m->grid, file, n, L, &before));
+  if (L->why[0])
+    PetscFunctionReturn(PETSC_SUCCESS);
+  H5Check(group = H5Gopen2(file, "/particles", H5P_DEFAULT));
+  PetscCall(LoadInts(group, L));
+  if (!L->why[0])
+    PetscCall(LoadReals(group, L));
+  if (!L->why[0])
+    PetscCall(CheckParticles(m, before, L));
+  H5Check(H5Gclose(group));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode LoadFile(const Model *m, hid_t file, Loaded *L)
 {
-  hsize_t n = 0;
-
   PetscFunctionBeginUser;
   if (!H5ReadInt(file, "ranks", &L->ranks))
     Refuse(L, "the attribute ranks is missing");
   PetscCall(LoadBorders(&m->grid, file, L));
-  if (L->why[0])
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
-    Refuse(L, "/particles/id is missing or of wrong size");
-  PetscCall(LoadState(file, L));
+  if (!L->why[0])
+    PetscCall(LoadState(file, L));
   if (!L->why[0] && !L->initial && L->s.stage >= PetscMax(CaseOf(m->c)->nstage, 1))
     Refuse(L, "the case has no stage %d", (int)L->s.stage + 1);
-  PetscCall(ParticlesResize(&L->P, (PetscInt)n));
-  PetscCall(PetscMalloc2((PetscInt)n, &L->rank, (PetscInt)n, &L->place));
-
-  const hid_t group = H5Gopen2(file, "/particles", H5P_DEFAULT);
-
   if (!L->why[0])
-    PetscCall(LoadInts(group, L));
-  if (!L->why[0])
-    PetscCall(LoadReals(group, L));
-  if (!L->why[0])
-    PetscCall(CheckParticles(m, L));
-  H5Check(H5Gclose(group));
+    PetscCall(LoadParticles(m, file, L));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -214,7 +234,7 @@ static PetscErrorCode CheckScene(const Model *m, hid_t file, Loaded *L)
   if (!H5Rows(file, "scene", &n) || n > PETSC_MAX_INT / 8)
     Refuse(L, "/scene is missing or of wrong size");
   PetscCall(PetscCalloc1((PetscInt)n + 1, &theirs));
-  if (!H5Read(file, "scene", H5T_NATIVE_CHAR, 1, &n, theirs))
+  if (!H5Read(file, "scene", H5T_NATIVE_CHAR, n, theirs))
     snprintf(L->why, sizeof(L->why), "/scene is no text");
   else {
     PetscCall(CaseText(CaseOf(m->c), CaseWriteState, &ours, &size));
@@ -225,7 +245,7 @@ static PetscErrorCode CheckScene(const Model *m, hid_t file, Loaded *L)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On rank 0.  L->why stays empty if all is well. */
+/* L->why stays empty if all is well with what this rank reads. */
 static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
 {
   uint64_t fingerprint;
@@ -233,7 +253,7 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   bool     ok;
 
   PetscFunctionBeginUser;
-  PetscCall(SealCheck(path, &fingerprint, &L->run, &ok, L->why, sizeof(L->why)));
+  PetscCall(SealCheck(m->grid.comm, path, &fingerprint, &L->run, &ok, L->why, sizeof(L->why)));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (!L->initial && fingerprint != CaseFingerprint(CaseOf(m->c))) {
@@ -251,127 +271,80 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------------------------------------------------------------- dealing out */
-typedef struct {
-  PetscMPIInt owner;
-  PetscInt    key, p; /* order on its rank; index by id */
-} Card;
-
-static int CompareCards(const void *a, const void *b)
+/* The reason of the first rank that has one is that of all. */
+static PetscErrorCode Agree(const Grid *g, Loaded *L)
 {
-  const Card *x = a, *y = b;
-
-  if (x->owner != y->owner)
-    return x->owner < y->owner ? -1 : 1;
-  if (x->key != y->key)
-    return x->key < y->key ? -1 : 1;
-  return x->p < y->p ? -1 : x->p > y->p;
-}
-
-static PetscErrorCode Shuffle(const Grid *g, const Loaded *L, Card *card, PetscMPIInt *count)
-{
-  const bool same = L->ranks == g->size;
+  PetscMPIInt first = L->why[0] ? g->rank : g->size;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, g->comm));
+  if (first < g->size)
+    PetscCallMPI(MPI_Bcast(L->why, sizeof(L->why), MPI_CHAR, first, g->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------------------------------------------------------------- dealing out */
+/* To the owners of their cells: on as many ranks in the order they had, else by id. */
+static PetscErrorCode Deal(const Grid *g, Loaded *L)
+{
+  const bool     same  = L->ranks == g->size;
+  const PetscInt total = (PetscInt)L->part.all[0], first = (PetscInt)L->part.start[0];
+  PetscMPIInt   *owner;
+  PetscInt      *key;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(L->P.n, &owner, L->P.n, &key));
   for (PetscInt p = 0; p < L->P.n; p++) {
     const double x[CL_DIM] = {L->P.f[P_X][p], L->P.f[P_X + 1][p]};
     PetscInt     cell[CL_DIM];
 
     PetscCheck(GridCell(g, x, cell), PETSC_COMM_SELF, PETSC_ERR_PLIB, "a particle outside the grid was not noticed");
-    card[p].owner = GridCellOwner(g, cell);
-    card[p].key   = same && L->rank[p] == card[p].owner ? L->place[p] : p;
-    card[p].p     = p;
-    count[card[p].owner]++;
+    owner[p] = GridCellOwner(g, cell);
+    key[p]   = same && L->rank[p] == owner[p] ? L->place[p] : total + first + p;
   }
-  qsort(card, (size_t)L->P.n, sizeof(*card), CompareCards);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Deal(const Grid *g, const Loaded *L, Particles *P)
-{
-  PetscMPIInt   *count, *start, n;
-  Card          *card;
-  double        *real;
-  PetscInt      *integer;
-  const PetscInt total = L->P.n; /* 0 but on rank 0 */
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(g->size, &count, g->size, &start));
-  PetscCall(PetscMalloc3(total, &card, total, &real, total, &integer));
-  if (g->rank == 0)
-    PetscCall(Shuffle(g, L, card, count));
-  for (PetscMPIInt r = 1; r < g->size; r++)
-    start[r] = start[r - 1] + count[r - 1];
-  PetscCallMPI(MPI_Scatter(count, 1, MPI_INT, &n, 1, MPI_INT, 0, g->comm));
-  PetscCall(ParticlesResize(P, n));
-  for (int k = 0; k < P_COUNT; k++) {
-    if (!P->f[k])
-      continue;
-    for (PetscInt p = 0; p < total; p++)
-      real[p] = L->P.f[k][card[p].p];
-    PetscCallMPI(MPI_Scatterv(real, count, start, MPI_DOUBLE, P->f[k], n, MPI_DOUBLE, 0, g->comm));
-  }
-  for (int k = 0; k < PI_COUNT; k++) {
-    for (PetscInt p = 0; p < total; p++)
-      integer[p] = L->P.i[k][card[p].p];
-    PetscCallMPI(MPI_Scatterv(integer, count, start, MPIU_INT, P->i[k], n, MPIU_INT, 0, g->comm));
-  }
-  PetscCall(PetscFree3(card, real, integer));
-  PetscCall(PetscFree2(count, start));
+  PetscCall(ParticlesSend(g->comm, owner, key, &L->P));
+  PetscCall(PetscFree2(owner, key));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Ranks own what they owned when the file was written. */
 static PetscErrorCode TakeBorders(Model *m, const Loaded *L)
 {
-  PetscInt n = L->nborder, *border, *start[CL_DIM];
+  PetscInt *start[CL_DIM];
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, 0, m->grid.comm));
-  if (n == 0)
+  if (L->nborder == 0)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(n, &border));
-  if (m->grid.rank == 0)
-    PetscCall(PetscArraycpy(border, L->border, n));
-  PetscCallMPI(MPI_Bcast(border, (PetscMPIInt)n, MPIU_INT, 0, m->grid.comm));
-  PetscCheck(Borders(n, border, start), m->grid.comm, PETSC_ERR_PLIB, "impossible borders were not noticed");
-  PetscCall(ModelShare(m, border, start));
-  PetscCall(PetscFree(border));
+  PetscCheck(Borders(L->nborder, L->border, start), m->grid.comm, PETSC_ERR_PLIB,
+             "impossible borders were not noticed");
+  PetscCall(ModelShare(m, L->border, start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* s NULL: as an initial state. */
 static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok)
 {
-  const Grid *g    = &m->grid;
-  Loaded      L    = {.initial = s == NULL};
-  int         good = 1;
+  const Grid *g = &m->grid;
+  Loaded      L = {.initial = s == NULL};
 
   PetscFunctionBeginUser;
   PetscCall(ParticlesCreate(m->c->fields.has, &L.P));
-  if (g->rank == 0) {
-    PetscCall(Load(m, path, &L));
-    good = L.why[0] == '\0';
-    if (!good)
-      fprintf(stderr, "%s: cannot %s this file: %s\n", path, s ? "restart from" : "start from the state of", L.why);
-  }
-  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, g->comm));
-  *ok = good != 0;
-  if (good) {
-    Particles P;
-
-    PetscCall(ParticlesCreate(m->c->fields.has, &P));
+  PetscCall(Load(m, path, &L));
+  PetscCall(Agree(g, &L));
+  *ok = L.why[0] == '\0';
+  if (*ok) {
     PetscCall(TakeBorders(m, &L));
-    PetscCall(Deal(g, &L, &P));
-    PetscCallMPI(MPI_Bcast(&L.s, sizeof(L.s), MPI_BYTE, 0, g->comm));
-    PetscCallMPI(MPI_Bcast(&L.run, 1, MPI_UINT64_T, 0, g->comm));
+    PetscCall(Deal(g, &L));
     PetscCall(ParticlesDestroy(&m->P));
-    m->P = P;
+    m->P = L.P;
     if (s)
       *s = L.s;
     *origin = (Origin){.run = L.run, .t = L.s.t};
+  } else {
+    if (g->rank == 0)
+      fprintf(stderr, "%s: cannot %s this file: %s\n", path, s ? "restart from" : "start from the state of", L.why);
+    PetscCall(ParticlesDestroy(&L.P));
   }
-  PetscCall(ParticlesDestroy(&L.P));
   PetscCall(PetscFree2(L.rank, L.place));
   PetscCall(PetscFree(L.border));
   PetscFunctionReturn(PETSC_SUCCESS);

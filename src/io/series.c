@@ -126,13 +126,12 @@ static PetscErrorCode LinesWrite(hid_t file, const Grid *g)
   PetscFunctionBeginUser;
   PetscCall(H5Group(file, "/lines", &group));
   for (int d = 0; d < CL_DIM; d++) {
-    const hsize_t n = (hsize_t)g->cells[d] + 1;
-    double       *x;
+    double *x;
 
     PetscCall(PetscMalloc1(g->cells[d] + 1, &x));
     for (PetscInt i = 0; i <= g->cells[d]; i++)
       x[i] = GridNode(g, d, i);
-    PetscCall(H5Write(group, d ? "y" : "x", H5T_NATIVE_DOUBLE, 1, &n, x, "m", false));
+    PetscCall(H5Write(group, d ? "y" : "x", H5T_NATIVE_DOUBLE, (hsize_t)g->cells[d] + 1, x, "m"));
     PetscCall(PetscFree(x));
   }
   H5Check(H5Gclose(group));

@@ -13,175 +13,140 @@ const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VS, 2}, {"v_w", "m/s", F_VW, 
 
 const char *const io_whole[WHOLE_COUNT] = {"region", "id", "vertex"};
 
-typedef struct {
-  hid_t          file, group; /* rank 0 */
-  PetscErrorCode ierr;        /* rank 0: first error; the gathering goes on */
-} Writer;
-
-static PetscErrorCode StartGroup(Writer *w, const char *kind, const StepperState *s)
+static PetscErrorCode OpenGroup(hid_t file, const char *kind, const StepperState *s, hid_t *group)
 {
   PetscFunctionBeginUser;
-  PetscCall(H5Group(w->file, kind, &w->group));
-  PetscCall(H5WriteReal(w->group, "time", s->t));
+  PetscCall(H5Group(file, kind, group));
+  PetscCall(H5WriteReal(*group, "time", s->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode StartFile(Writer *w, const StepperState *s)
+static bool Has(const Model *m, const DerivedQuantity *v)
 {
-  PetscFunctionBeginUser;
-  PetscCall(H5ImageCreate(0, &w->file));
-  PetscCall(H5WriteText(w->file, "format", "clathra fields"));
-  PetscCall(H5WriteInt(w->file, "format_version", IO_FORMAT_VERSION));
-  PetscCall(H5WriteReal(w->file, "time", s->t));
-  PetscCall(StartGroup(w, "/particles", s));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return v->snapshots && (m->P.has & v->has);
 }
 
-static PetscErrorCode WriteDerived(Writer *w, const Model *m, Gather *g)
+static PetscErrorCode WriteDerived(const Model *m, Slab *s, hid_t group)
 {
-  const hsize_t n = (hsize_t)g->total;
-  double       *local;
+  double *local;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(m->P.n, &local));
   for (const DerivedQuantity *v = io_derived; v->name; v++) {
-    if (!v->snapshots || !(m->P.has & v->has))
+    if (!Has(m, v))
       continue;
     for (PetscInt p = 0; p < m->P.n; p++)
       local[p] = v->of(m, p);
-    PetscCall(GatherReals(g, local, 1, g->data));
-    if (g->rank == 0 && !w->ierr)
-      w->ierr = H5Write(w->group, v->name, H5T_NATIVE_DOUBLE, 1, &n, g->data, v->unit, true);
+    PetscCall(SlabReals(s, local, 1, 0, 1));
+    PetscCall(SlabWrite(s, group, v->name, 1, v->unit, true));
   }
   PetscCall(PetscFree(local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteWhole(Writer *w, const Particles *P, Gather *g)
+static PetscErrorCode WriteWhole(const Particles *P, Slab *s, hid_t group)
 {
-  const hsize_t n     = (hsize_t)g->total;
-  PetscInt     *whole = (PetscInt *)g->data;
+  PetscInt *vertex = (PetscInt *)s->data;
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < WHOLE_COUNT; k++) {
-    if (k == WHOLE_REGION)
-      PetscCall(GatherInts(g, P->i[PI_REGION], whole));
-    if (g->rank > 0 || w->ierr)
-      continue;
-    for (PetscInt p = 0; p < g->total && k != WHOLE_REGION; p++)
-      whole[p] = k == WHOLE_ID ? g->id[p] : p;
-    w->ierr = H5Write(w->group, io_whole[k], H5T_NATIVE_INT, 1, &n, whole, "-", true);
-  }
+  PetscCall(SlabInts(s, P->i[PI_REGION]));
+  PetscCall(SlabWriteInts(s, group, io_whole[WHOLE_REGION], "-", true));
+  PetscCall(SlabInts(s, P->i[PI_ID]));
+  PetscCall(SlabWriteInts(s, group, io_whole[WHOLE_ID], "-", true));
+  for (PetscInt k = 0; k < s->rows; k++)
+    vertex[k] = (PetscInt)s->part.start[0] + k;
+  PetscCall(SlabWriteInts(s, group, io_whole[WHOLE_VERTEX], "-", true));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Owned nodes of all ranks, on rank 0: their place in the full grid and values. */
-static PetscErrorCode GatherNodes(const Model *m, PetscInt *n, PetscInt **place, double **x)
+static PetscErrorCode WriteNodes(const Model *m, Slab *s, hid_t group)
 {
-  const Grid       *g     = &m->grid;
-  const PetscMPIInt nf    = m->c->fields.n;
-  const PetscMPIInt owned = m->x_n ? (PetscMPIInt)m->map.n_owned : 0;
-  PetscMPIInt      *count, *start;
-  PetscInt         *mine;
+  const FieldSet *fs = &m->c->fields;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(g->size, &count, g->size, &start, owned, &mine));
-  for (PetscInt k = 0; k < owned; k++)
-    mine[k] = m->map.ij[k][1] * (g->cells[0] + 1) + m->map.ij[k][0];
-  PetscCallMPI(MPI_Allgather(&owned, 1, MPI_INT, count, 1, MPI_INT, g->comm));
-  *n = 0;
-  for (PetscMPIInt r = 0; r < g->size; r++) {
-    start[r] = (PetscMPIInt)*n;
-    *n += count[r];
-  }
-  PetscCall(PetscMalloc1(g->rank == 0 ? *n : 0, place));
-  PetscCall(PetscMalloc1(g->rank == 0 ? *n * nf : 0, x));
-  PetscCallMPI(MPI_Gatherv(mine, owned, MPIU_INT, *place, count, start, MPIU_INT, 0, g->comm));
-  for (PetscMPIInt r = 0; r < g->size; r++) {
-    start[r] *= nf;
-    count[r] *= nf;
-  }
-  PetscCallMPI(MPI_Gatherv(m->x_n, owned * nf, MPI_DOUBLE, *x, count, start, MPI_DOUBLE, 0, g->comm));
-  PetscCall(PetscFree3(count, start, mine));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode WriteNodes(Writer *w, const Grid *g, const FieldSet *fs, const StepperState *s, PetscInt n,
-                                 const PetscInt *place, const double *x)
-{
-  const hsize_t  rows = (hsize_t)g->cells[1] + 1, columns = (hsize_t)g->cells[0] + 1;
-  const PetscInt nodes = (PetscInt)(rows * columns);
-  double        *full;
-
-  PetscFunctionBeginUser;
-  H5Check(H5Gclose(w->group));
-  PetscCall(StartGroup(w, "/grid", s));
-  PetscCall(PetscMalloc1(2 * nodes, &full));
   for (const NodalVariable *v = io_nodal; v->name; v++) {
-    const hsize_t dims[3] = {rows, columns, (hsize_t)v->nc};
-
     if (fs->at[v->first] < 0)
       continue;
-    for (PetscInt k = 0; k < nodes * v->nc; k++)
-      full[k] = NAN;
-    for (PetscInt k = 0; k < n; k++) {
-      for (int c = 0; c < v->nc; c++)
-        full[place[k] * v->nc + c] = x[k * fs->n + fs->at[v->first] + c];
-    }
-    PetscCall(H5Write(w->group, v->name, H5T_NATIVE_DOUBLE, v->nc > 1 ? 3 : 2, dims, full, v->unit, true));
+    for (int c = 0; c < v->nc; c++)
+      PetscCall(SlabReals(s, m->x_n ? m->x_n + fs->at[v->first] + c : NULL, fs->n, c, v->nc));
+    PetscCall(SlabWrite(s, group, v->name, v->nc, v->unit, true));
   }
-  PetscCall(PetscFree(full));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteAll(const Model *m, const StepperState *state, Slab *particles, Slab *nodes, hid_t file)
+{
+  hid_t group;
+
+  PetscFunctionBeginUser;
+  PetscCall(H5WriteText(file, "format", "clathra fields"));
+  PetscCall(H5WriteInt(file, "format_version", IO_FORMAT_VERSION));
+  PetscCall(H5WriteReal(file, "time", state->t));
+  PetscCall(OpenGroup(file, "/particles", state, &group));
+  PetscCall(SlabWriteVariables(particles, &m->P, true, group));
+  PetscCall(WriteDerived(m, particles, group));
+  PetscCall(WriteWhole(&m->P, particles, group));
+  H5Check(H5Gclose(group));
+  if (nodes->total > 0) {
+    PetscCall(OpenGroup(file, "/grid", state, &group));
+    PetscCall(WriteNodes(m, nodes, group));
+    H5Check(H5Gclose(group));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static size_t Room(const Model *m, const Slab *particles, const Slab *nodes)
+{
+  int derived = WHOLE_COUNT;
+
+  for (const DerivedQuantity *v = io_derived; v->name; v++)
+    derived += Has(m, v);
+  return ((size_t)1 << 16) + SlabRoomVariables(particles, &m->P) + H5Room(&particles->part, derived, derived) +
+         (nodes->total ? H5Room(&nodes->part, (int)m->c->fields.n, (int)m->c->fields.n) : 0);
+}
+
+static PetscErrorCode Write(const Model *m, const StepperState *s, const char *path, SnapshotEntry *entry, bool *ok)
+{
+  Slab       particles, nodes;
+  SharedFile f;
+
+  PetscFunctionBeginUser;
+  PetscCall(SlabParticles(m, &particles));
+  PetscCall(SlabNodes(m, &nodes));
+  *entry = (SnapshotEntry){.number = s->next_snapshot, .n = particles.total, .t = s->t, .grid = nodes.total > 0};
+  PetscCall(SharedCreate(m->grid.comm, path, 0, Room(m, &particles, &nodes), &f, ok));
+  if (*ok) {
+    PetscCall(WriteAll(m, s, &particles, &nodes, f.file));
+    PetscCall(SharedFinish(&f, false, NULL, NULL, ok));
+  }
+  PetscCall(SlabDestroy(&particles));
+  PetscCall(SlabDestroy(&nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The file first, then what lists it: a run that is killed between them leaves no link to what is not there. */
-static PetscErrorCode Finish(Writer *w, Output *out, const Grid *g, const SnapshotEntry *entry)
-{
-  char    path[IO_PATH], name[64];
-  IoPiece image;
-
-  PetscFunctionBeginUser;
-  H5Check(H5Gclose(w->group));
-  PetscCall(H5ImageBytes(w->file, &image));
-  snprintf(name, sizeof(name), SNAPSHOT_NAME, (int)entry->number);
-  PetscCall(IoPath(out->dir, name, path));
-  if (!out->failed)
-    out->failed = !IoReplace(path, false, 1, &image);
-  PetscCall(H5FileClose(&w->file)); /* one image at a time */
-  if (!out->failed)
-    PetscCall(SeriesAdd(out, entry));
-  PetscCall(SeriesWrite(out, g));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode OutputSnapshot(Output *out, const Model *m, const StepperState *s)
 {
-  const Grid *grid = &m->grid;
-  Gather      g;
-  Writer      w = {.file = -1, .group = -1};
-  PetscInt    nodes, *place;
-  double     *x;
+  PetscErrorCode ierr = PETSC_SUCCESS;
+  SnapshotEntry  entry;
+  char           path[IO_PATH], name[64];
+  bool           ok;
 
   PetscFunctionBeginUser;
-  if (grid->rank == 0)
-    w.ierr = StartFile(&w, s);
-  PetscCall(GatherCreate(m, &g));
-  PetscCall(GatherVariables(&g, &m->P, true, w.group, &w.ierr));
-  PetscCall(WriteDerived(&w, m, &g));
-  PetscCall(WriteWhole(&w, &m->P, &g));
-  PetscCall(GatherNodes(m, &nodes, &place, &x));
-  if (grid->rank == 0) {
-    const SnapshotEntry entry = {.number = s->next_snapshot, .n = g.total, .t = s->t, .grid = nodes > 0};
-
-    if (!w.ierr && nodes > 0)
-      w.ierr = WriteNodes(&w, grid, &m->c->fields, s, nodes, place, x);
-    if (!w.ierr)
-      w.ierr = Finish(&w, out, grid, &entry);
-    PetscCall(H5FileClose(&w.file));
+  PetscCall(OutputGood(out, m->grid.comm, &ok));
+  if (!ok)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  snprintf(name, sizeof(name), SNAPSHOT_NAME, (int)s->next_snapshot);
+  PetscCall(IoPath(out->dir, name, path));
+  PetscCall(Write(m, s, path, &entry, &ok));
+  if (!ok)
+    out->failed = true;
+  if (m->grid.rank == 0) {
+    if (ok)
+      ierr = SeriesAdd(out, &entry);
+    if (!ierr)
+      ierr = SeriesWrite(out, &m->grid);
   }
-  PetscCall(IoAgree(grid->comm, w.ierr));
-  PetscCall(PetscFree(place));
-  PetscCall(PetscFree(x));
-  PetscCall(GatherDestroy(&g));
+  PetscCall(IoAgree(m->grid.comm, ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -55,3 +55,26 @@ PetscErrorCode ParticlesCopy(const Particles *from, Particles *to)
     PetscCall(PetscArraycpy(to->i[k], from->i[k], from->n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode ParticlesPermute(Particles *P, const PetscInt order[])
+{
+  double   *real;
+  PetscInt *integer;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(P->n, &real, P->n, &integer));
+  for (int k = 0; k < P_COUNT; k++) {
+    if (!P->f[k])
+      continue;
+    for (PetscInt p = 0; p < P->n; p++)
+      real[p] = P->f[k][order[p]];
+    PetscCall(PetscArraycpy(P->f[k], real, P->n));
+  }
+  for (int k = 0; k < PI_COUNT; k++) {
+    for (PetscInt p = 0; p < P->n; p++)
+      integer[p] = P->i[k][order[p]];
+    PetscCall(PetscArraycpy(P->i[k], integer, P->n));
+  }
+  PetscCall(PetscFree2(real, integer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

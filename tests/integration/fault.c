@@ -5,6 +5,7 @@
      FAULT_HOW=gone     from there on nothing can be changed (read-only)
      FAULT_HOW=once     that call alone fails (input/output error)
      FAULT_HOW=wait     that call takes a minute
+     FAULT_HOW=room     that request for room in a file fails (they alone are counted)
      FAULT_COUNT=FILE   the number of calls goes there at the end */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -21,7 +22,7 @@
 #include <sys/types.h>
 #include <unistd.h>
 
-static long calls;
+static long calls, requests;
 
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
@@ -115,6 +116,20 @@ ssize_t pwrite64(int fd, const void *data, size_t n, off64_t at)
 ssize_t pwrite(int fd, const void *data, size_t n, off_t at)
 {
   return pwrite64(fd, data, n, at);
+}
+
+int posix_fallocate64(int fd, off64_t at, off64_t n)
+{
+  const char *how = getenv("FAULT_HOW"), *which = getenv("FAULT_AT");
+
+  if (how && which && !strcmp(how, "room") && HereFd(fd) && ++requests == atol(which))
+    return ENOSPC;
+  return REAL(posix_fallocate64)(fd, at, n);
+}
+
+int posix_fallocate(int fd, off_t at, off_t n)
+{
+  return posix_fallocate64(fd, at, n);
 }
 
 int ftruncate64(int fd, off64_t size)

@@ -599,7 +599,7 @@ static void Reseal(const char *path, uint64_t fingerprint)
   size_t n;
   char  *data = ReadBytes(path, &n);
 
-  SealMake(data, fingerprint, RUN, data + SEAL_BYTES, n - SEAL_BYTES);
+  SealMake(data, fingerprint, RUN, n, SealSum(data + SEAL_BYTES, n - SEAL_BYTES));
   WriteBytes(path, data, n);
   free(data);
 }
@@ -622,7 +622,7 @@ static void Spoil(const char *path, uint64_t fingerprint, int kind)
     Check(H5Ldelete(f, "/particles", H5P_DEFAULT) >= 0);
   if (kind == 2 || kind == 3) {
     Check(H5Ldelete(f, kind == 2 ? "/particles/T" : "/state/t", H5P_DEFAULT) >= 0);
-    Call(H5Write(f, kind == 2 ? "/particles/T" : "/state/t", H5T_NATIVE_DOUBLE, 1, &three, x, NULL, false));
+    Call(H5Write(f, kind == 2 ? "/particles/T" : "/state/t", H5T_NATIVE_DOUBLE, three, x, NULL));
   }
   if (kind == 4 || kind == 5) { /* one value */
     set    = H5Dopen2(f, kind == 4 ? "/particles/T" : "/particles/region", H5P_DEFAULT);
@@ -642,7 +642,7 @@ static void Spoil(const char *path, uint64_t fingerprint, int kind)
     const hsize_t six = 6, five = 5;
 
     Check(H5Ldelete(f, "/borders", H5P_DEFAULT) >= 0);
-    Call(H5Write(f, "/borders", H5T_NATIVE_INT, 1, kind == 7 ? &six : &five, wrong, NULL, false));
+    Call(H5Write(f, "/borders", H5T_NATIVE_INT, kind == 7 ? six : five, wrong, NULL));
   }
   Check(H5Fclose(f) >= 0);
   Reseal(path, fingerprint);
