@@ -73,7 +73,8 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
 
 int main(int argc, char **argv)
 {
-  int exit_code = CL_EXIT_BUG;
+  int         exit_code = CL_EXIT_BUG;
+  PetscMPIInt size;
 
   ProcessPrepare(argv);
   for (int k = 1; k < argc; k++) {
@@ -83,8 +84,12 @@ int main(int argc, char **argv)
   if (PetscInitialize(&argc, &argv, NULL, help))
     return CL_EXIT_BUG;
   ProcessListen();
-  if (Main(argc, argv, &exit_code))
+  if (Main(argc, argv, &exit_code)) {
+    MPI_Comm_size(PETSC_COMM_WORLD, &size);
+    if (size > 1) /* others may wait for this rank for ever */
+      MPI_Abort(PETSC_COMM_WORLD, CL_EXIT_BUG);
     exit_code = CL_EXIT_BUG;
+  }
   if (PetscFinalize())
     return CL_EXIT_BUG;
   return exit_code;

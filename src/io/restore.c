@@ -169,7 +169,7 @@ static PetscErrorCode LoadParticles(const Model *m, hid_t file, Loaded *L)
   hid_t    group;
 
   PetscFunctionBeginUser;
-  if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 8)
+  if (!H5Rows(file, "/particles/id", &n) || n > PETSC_MAX_INT / 2)
     Refuse(L, "/particles/id is missing or of wrong size");
   PetscCall(TakeShare(&m->grid, file, n, L, &before));
   if (L->why[0])

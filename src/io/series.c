@@ -51,10 +51,9 @@ static bool RemoveFrom(const char *dir, PetscInt next)
   if (!d)
     return errno == ENOENT || IoFailed(dir, 0);
   while (good && (e = readdir(d))) {
-    char         path[2 * IO_PATH];
-    const size_t n = strlen(e->d_name);
+    char path[2 * IO_PATH];
 
-    if (NumberOf(e->d_name) < next && (n < 7 || strcmp(e->d_name + n - 7, ".h5.tmp")))
+    if (NumberOf(e->d_name) < next && !strstr(e->d_name, ".h5.tmp"))
       continue;
     snprintf(path, sizeof(path), "%s/%s", dir, e->d_name);
     good = unlink(path) == 0 || IoFailed(path, 0);

@@ -703,7 +703,8 @@ static const char script[] =
     "    assert 'region' in g\n"
     "n = h['grid/%06d' % (count - 1)]\n"
     "assert n['v_w'].shape == (5, 61, 2) and n['T'].shape == (5, 61)\n"
-    "assert n['v_w'][1, 7, 1] == 3107 and n['T'][0, 60] == 8060\n"
+    "assert (n['v_w'][:2, :, 1] == 3000 + 100 * np.arange(2)[:, None] + np.arange(61)).all() and n['T'][0, 60] == "
+    "8060\n"
     "assert np.isnan(n['T'][2:]).all() and not np.isnan(n['T'][:2]).any()\n"
     "trees = [ET.parse(run + '/' + kind + '.xdmf').getroot() for kind in ('particles', 'grid')]\n"
     "series = {s.get('Name'): s.findall('Grid') for tree in trees for s in tree.find('Domain').findall('Grid')}\n"
@@ -740,6 +741,86 @@ static void TakeSteps(Output *out, const Model *m, StepperState *z, int n)
     Call(OutputSnapshot(out, m, z));
     z->next_snapshot++;
   }
+}
+
+/* Nodes dealt out to the ranks in any way, all but every fifth: each rank's strip has the values of its nodes. */
+static void NodesComeToTheirStrips(void **state)
+{
+  static const PetscInt cells[][CL_DIM] = {{5, 40}, {40, 5}, {1, 1}, {0, 30}};
+
+  for (size_t c = 0; c < sizeof(cells) / sizeof(*cells); c++) {
+    Model          m  = {.grid = {.comm = PETSC_COMM_WORLD, .rank = world_rank, .size = world_size}};
+    const PetscInt nx = cells[c][0] + 1, nodes = nx * (cells[c][1] + 1);
+    PetscInt       found = 0;
+    Slab           s;
+
+    PetscInt(*ij)[CL_DIM] = malloc((size_t)nodes * sizeof(*ij));
+    double *x             = malloc((size_t)nodes * sizeof(double));
+    for (int d = 0; d < CL_DIM; d++)
+      m.grid.cells[d] = cells[c][d];
+    for (PetscInt k = 0; k < nodes; k++) {
+      if (k % 5 == 3 || (k * 7 + k / 3) % world_size != world_rank)
+        continue;
+      ij[m.map.n_owned][0] = k % nx;
+      ij[m.map.n_owned][1] = k / nx;
+      x[m.map.n_owned++]   = (double)k;
+    }
+    m.map.ij = ij;
+    m.x_n    = x;
+    Call(SlabNodes(&m, &s));
+    Check(s.total == nodes - (nodes + 1) / 5);
+    Call(SlabReals(&s, x, 1, 0, 1));
+    for (hsize_t j = 0; j < s.part.count[0]; j++) {
+      for (hsize_t i = 0; i < s.part.count[1]; i++) {
+        const PetscInt k = (PetscInt)((s.part.start[0] + j) * (hsize_t)nx + s.part.start[1] + i);
+        const double   v = s.data[j * s.part.count[1] + i];
+
+        Check(k % 5 == 3 ? isnan(v) : v == (double)k);
+        found++;
+      }
+    }
+    Check(found == s.rows);
+    Call(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+    Check(found == nodes);
+    Call(SlabDestroy(&s));
+    free(ij);
+    free(x);
+  }
+}
+
+/* Particles in any order on any rank, their ids with gaps: rows in the order of ids, shares of equal ranges. */
+static void ParticlesComeInOrder(void **state)
+{
+  enum { N = 101 };
+  PetscInt id[N], last = -1, total, before = 0, *come;
+  double   x[N];
+  Model    m = {.grid = {.comm = PETSC_COMM_WORLD, .rank = world_rank, .size = world_size}};
+  Slab     s;
+
+  for (int k = 0; k < N; k++) {
+    const int q = k * 37 % N;
+
+    if (q % 3 == 2 || q % 7 % world_size != world_rank)
+      continue;
+    id[m.P.n]  = q * q;
+    x[m.P.n++] = sqrt(2.0 + q);
+  }
+  m.P.i[PI_ID] = id;
+  Call(SlabParticles(&m, &s));
+  Call(MPI_Allreduce(&m.P.n, &total, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  Check(s.total == total && (PetscInt)s.part.all[0] == total && (PetscInt)s.part.count[0] == s.rows);
+  Call(MPI_Exscan(&s.rows, &before, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
+  Check((PetscInt)s.part.start[0] == before);
+  Call(SlabInts(&s, id));
+  come = malloc((size_t)(s.rows + 1) * sizeof(*come));
+  memcpy(come, s.data, (size_t)s.rows * sizeof(*come));
+  Call(SlabReals(&s, x, 1, 1, 3));
+  for (PetscInt k = 0; k < s.rows; k++) {
+    Check(come[k] > last && s.data[3 * k + 1] == sqrt(2.0 + sqrt((double)come[k])));
+    last = come[k];
+  }
+  free(come);
+  Call(SlabDestroy(&s));
 }
 
 /* A run of five steps with a state in its middle. */
@@ -867,7 +948,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(ProbesReproduceLinearFields),  cmocka_unit_test(ProbesDropADirectionWithoutExtent),
       cmocka_unit_test(CheckpointComesBackBitForBit), cmocka_unit_test(CheckpointGoesToOtherRanks),
       cmocka_unit_test(DamagedFilesAreRefused),       cmocka_unit_test(ForeignFilesAreRefused),
-      cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(FilesAreCutBackAtARestart),
+      cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(NodesComeToTheirStrips),
+      cmocka_unit_test(ParticlesComeInOrder),         cmocka_unit_test(FilesAreCutBackAtARestart),
       cmocka_unit_test(FilesThatDoNotFitAreKeptAside)};
 
   return RunTests(argc, argv, tests, MakeFolder, RemoveFolder);
