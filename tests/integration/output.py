@@ -51,7 +51,7 @@ def check_fields():
 
 
 def check_xdmf(kind, times):
-    """One time series a file, as every reader of ParaView takes it: tests/studies/paraview_readers.py asks them themselves."""
+    """One time series a file, as every reader of ParaView takes it: in_paraview.py asks them themselves."""
     root, items, bad = xml.parse(good.out / f"{kind}.xdmf").getroot(), 0, []
     for item in root.iter("DataItem"):
         if item.get("Format") != "HDF":
