@@ -5,7 +5,8 @@
 - the options read in src/ and the options of that page are the same
 - files and functions that README and docs name exist
 - commands in README and docs, and presets, use options that exist; presets hold no physics and nothing unread
-- the case in README is valid
+- links to headings find them
+- the cases in README and docs/cases_reference.md are valid
 """
 import importlib.util
 import re
@@ -17,6 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
+EXAMPLES = (ROOT / "README.md", ROOT / "docs" / "cases_reference.md")  # whose YAML blocks are whole cases
 PRESETS = sorted((ROOT / "options").glob("*.opts"))
 FOLDERS = ("cases", "docs", "include", "options", "scripts", "src", "tests")
 
@@ -87,6 +89,19 @@ def exists(path):
     return any(path.parent.glob(path.name)) if "*" in path.name else path.exists()
 
 
+def anchors(page):
+    """What links into a page may end with: its headings in small letters, words joined by hyphens."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.M | re.S)
+    return {re.sub(r"[^\w\- ]", "", h.strip().lower()).replace(" ", "-") for h in re.findall(r"^#+ (.*)$", text, re.M)}
+
+
+def check_anchors(page):
+    for target, heading in re.findall(r"\]\(([^)#\s]*)#([^)\s]+)\)", page.read_text()):
+        there = page.parent / target if target else page
+        if "://" not in target and there.suffix == ".md" and there.is_file() and heading not in anchors(there):
+            yield f"{page.relative_to(ROOT)}: {target or 'the page'} has no heading #{heading}"
+
+
 def check_files(page):
     for word, path, function in named_files(page):
         if not exists(path):
@@ -144,17 +159,17 @@ def check_preset(binary, preset, known):
     yield from (f"{name}: nobody reads {o}" for o in left)
 
 
-def check_example(binary):
-    blocks = [text for language, text in fences(ROOT / "README.md") if language == "yaml"]
+def check_example(binary, page):
+    blocks = [text for language, text in fences(page) if language == "yaml"]
     if not blocks:
-        yield "README.md has no case"
+        yield f"{page.name} has no case"
     for text in blocks:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "case.yaml"
             path.write_text(text)
             run = subprocess.run([binary, path, "-case_check"], capture_output=True, text=True, timeout=60)
             if run.returncode != 0:
-                yield f"README.md: the case is not valid: {run.stderr}"
+                yield f"{page.name}: the case is not valid: {run.stderr}"
 
 
 def main(binary):
@@ -163,9 +178,9 @@ def main(binary):
     known = lambda word: word in program or PETSC.fullmatch(word) or case.fullmatch(word)
     planted = ["-stepper_typ", "-mat_sand_porosty", "-newton_tol", "-grid", "-ksptype"]
     found = [f"self-test: {word} was taken for an option" for word in planted if known(word)]
-    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_example(binary)]
+    found += [*check_table(), *check_page(binary), *check_laws(binary), *(f for page in EXAMPLES for f in check_example(binary, page))]
     for page in PAGES:
-        found += [*check_files(page), *check_commands(page, known)]
+        found += [*check_files(page), *check_anchors(page), *check_commands(page, known)]
     for preset in PRESETS:
         found += check_preset(binary, preset, known)
     count = sum(1 for page in PAGES for _ in named_files(page)), sum(1 for page in PAGES for _ in commands(page))

@@ -8,7 +8,7 @@
     run.meters["well.gas_std_m3"], run.balance["water_error"]
     run.case["mat_sand_porosity"]          # as it ran: numbers in SI units, words, lists
 
-Quantities and units are those of the files (README, What a run writes).  Needs numpy, and h5py for snapshots.
+Quantities and units are those of the files (docs/running.md, What a run writes).  Needs numpy, and h5py for snapshots.
 """
 from .case import read_case
 from .run import NoRun, Run

@@ -384,7 +384,7 @@ def page(data):
         "## Basis and particles per cell", "", "![basis](figures/tradeoff_basis.png)", "",
         "Consolidation under 1 MPa, 5 % of strain, so that particles cross cells. Error: against four times as many cells with cpgimp. Ringing: "
         "root mean square of the difference between a particle's pressure and the mean of its neighbours, at the end. With `linear` a closed face under "
-        "pressure is not in balance (1 MPa here), as README says.", "", *about_basis(data["basis"]),
+        "pressure is not in balance (1 MPa here), as [limits](limits.md) says.", "", *about_basis(data["basis"]),
     ]  # fmt: skip
 
 
