@@ -191,7 +191,8 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 {
   return fmin(c->cfl * limit->dt, c->dt_max);
 }
-/* A line with what to try after a run was given up for this cause. */
+/* The line that follows every "Given up": these words, or those for the cause. */
+PetscErrorCode StepperTry(const Stepper *s, const char *words);
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
 /* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
 PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);

@@ -32,6 +32,7 @@ static PetscErrorCode UpdateScales(Stepper *s)
     PetscCall(PetscPrintf(m->grid.comm,
                           "Given up at t = %g s: a pressure, stress, temperature or displacement is not a number\n",
                           s->state.t));
+    PetscCall(StepperAdvise(s, CL_NONFINITE));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   s->state.scale_p = top[0];

@@ -25,6 +25,13 @@ static bool DonorMayHelp(const Stepper *s, ClStatus status)
          SceneTwoPressures(c) && SceneContrast(c) > 1.0;
 }
 
+PetscErrorCode StepperTry(const Stepper *s, const char *words)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s (docs/giving_up.md)\n", words));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
 {
   static const char *const advice[] = {
@@ -44,13 +51,16 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
           "finer cells there",
       [CL_INACCURATE] = "stepper_tol ten times larger; a ramp instead of a jump; finer cells where fields are steep"};
   const char *what = status >= 0 && status <= CL_INACCURATE ? advice[status] : NULL;
+  char        words[512];
 
   PetscFunctionBeginUser;
-  if (what)
-    PetscCall(PetscPrintf(
-        s->model->grid.comm, "  What to try, in this order: %s%s%s (docs/giving_up.md)\n",
+  if (what) {
+    PetscCall(PetscSNPrintf(
+        words, sizeof(words), "%s%s%s",
         DonorMayHelp(s, status) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "", what,
         HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : ""));
+    PetscCall(StepperTry(s, words));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

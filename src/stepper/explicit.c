@@ -253,6 +253,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
       *ok = false;
       PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: the fixed step is above the stable one by now\n",
                             s->state.t));
+      PetscCall(StepperTry(s, "stepper_adapt: yes, which follows the stable step; a shorter stepper_dt"));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     PetscCall(CheckGone(s, ok));

@@ -275,8 +275,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   PetscCall(ModelBeginStep(m, &status));
   if (status != CL_OK) {
     *ok = false;
-    PetscCall(PetscPrintf(m->grid.comm, "t = %.10g s: %s near (%.12g, %.12g) m; no smaller step can help\n", s->state.t,
-                          why->why, why->where[0], why->where[1]));
+    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %.10g s: %s near (%.12g, %.12g) m; no smaller step can help\n",
+                          s->state.t, why->why, why->where[0], why->where[1]));
     PetscCall(StepperAdvise(s, status));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -191,6 +191,8 @@ def check_refusals():
          "grid_cells = 3, 1", "use fewer ranks")  # fmt: skip
     says("no such case", launch(binary(), "/nowhere/case.yaml", out=out), 2, "/nowhere/case.yaml")
     says("no case", launch(binary(), "-quiet"), 2, "name a case")
+    says("a misspelt option of PETSc's: the run ends with a warning that nobody read it", launch(binary(), BP2, *OPTIONS, "-stepper_max_steps", "1",
+         "-ksp_typ", "gmres", out=scratch() / "spelt"), 0, "warning: option -ksp_typ was not used")  # fmt: skip
     check_true("none of them wrote anything", not out.exists())
     blocked = scratch() / "file"
     blocked.write_text("in the way")

@@ -277,6 +277,57 @@ static void AStateThatIsNoNumberIsNotGoneOnWith(void **state)
   }
 }
 
+/* What the stepper says, to PETSC_STDOUT, while this runs. */
+static void Said(char *text, size_t size, PetscErrorCode (*call)(int), int n)
+{
+  FILE *kept = PETSC_STDOUT, *file = tmpfile();
+
+  assert_non_null(file);
+  PETSC_STDOUT = file;
+  GOOD(call(n));
+  PETSC_STDOUT = kept;
+  rewind(file);
+  text[fread(text, 1, size - 1, file)] = '\0';
+  fclose(file);
+}
+
+static PetscErrorCode GiveUp(int status)
+{
+  return StepperGiveUp(&s, 3, (ClStatus)status);
+}
+
+static PetscErrorCode AcceptSpoilt(int unused)
+{
+  const Attempt  a    = {.status = CL_OK};
+  const StepInfo info = {.dt = 1.0};
+
+  m.P.f[P_PW][0] = NAN;
+  return StepperAccept(&s, &a, &info);
+}
+
+/* Whatever a run gives up for, the next line says what to try. */
+static void EveryEndSaysWhatToTry(void **state)
+{
+  int  rank;
+  char text[1024];
+
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  for (int k = CL_DOMAIN; k <= CL_INACCURATE + 1; k++) { /* the last: a state that is no number */
+    if (k <= CL_INACCURATE)
+      Said(text, sizeof(text), GiveUp, k);
+    else
+      Said(text, sizeof(text), AcceptSpoilt, 0);
+    if (rank)
+      continue; /* the first rank speaks */
+    const char *end = strstr(text, "Given up"), *line = end ? strchr(end, '\n') : NULL;
+
+    assert_non_null(line);
+    if (strncmp(line + 1, "  What to try, in this order: ", 30) != 0)
+      fail_msg("%s", text);
+    assert_true(strlen(line) > 60 && strstr(line, "docs/giving_up.md"));
+  }
+}
+
 static int Seven(void)
 {
   return 7;
@@ -299,6 +350,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(AnErrorThatIsNoNumberIsLarge, Start, End),
                                      cmocka_unit_test_setup_teardown(TheExponentSeesAFront, Start, End),
                                      cmocka_unit_test_setup_teardown(AStateThatIsNoNumberIsNotGoneOnWith, Start, End),
+                                     cmocka_unit_test_setup_teardown(EveryEndSaysWhatToTry, Start, End),
                                      cmocka_unit_test_setup_teardown(ASignalStopsAfterTheStep, Start, End),
                                      cmocka_unit_test_setup_teardown(TemperatureCountsByItsChange, Start, End),
                                      cmocka_unit_test(TimeLeftIsLearnt),

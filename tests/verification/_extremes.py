@@ -72,7 +72,7 @@ def late_growth(b):
 
 def reason(code, text):
     """(kind, reason) from exit code and output."""
-    given_up = re.findall(r"^(?:Given up at.*|t = .*no smaller step can help|.*stopped.*: .*)$", text, re.M)
+    given_up = re.findall(r"^(?:Given up at.*|.*stopped.*: .*)$", text, re.M)
     if code == 0:
         return "finished", ""
     if code == 2:
