@@ -205,7 +205,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   PetscFunctionBeginUser;
   *rates            = (StageRates){0};
   m->failure.status = CL_OK;
-  ModelGive(m, x);
+  ModelGive(m, x, false);
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  s;
@@ -354,7 +354,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
   PetscFunctionBeginUser;
   PetscCall(ModelProjectGradients(m, x, false, m->proj));
   PetscCall(ExchangeBuild(m));
-  ModelGive(m, x);
+  ModelGive(m, x, false);
   m->released = 0.0;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;

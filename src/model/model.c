@@ -5,7 +5,7 @@
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m)
 {
   static const char *const name[EVENT_COUNT] = {"ClBeginStep", "ClResidual",      "ClJacobian",
-                                                "ClWidePart",  "ClReducedMatrix", "ClReducedApply"};
+                                                "ClWidePart",  "ClReducedMatrix", "ClReducedApply", "ClProduct"};
   PetscClassId             id;
 
   PetscFunctionBeginUser;

@@ -15,7 +15,7 @@ struct Reduced {
   Mat      block[GROUPS][GROUPS], nest, whole;
   KSP      ksp;
   Vec      b, y;             /* owned nodes: flow of all, then motion of all */
-  Vec      slaved, diagonal; /* of the scene's set: J2 y, diagonal of J2 */
+  Vec      slaved, diagonal; /* of the scene's set, rows (16) of the Jacobian: times y, their diagonal */
 };
 
 static void Unknowns(const FieldSet *fs, Reduced *r)
@@ -175,7 +175,8 @@ PetscErrorCode ReducedCreate(Model *m)
   Unknowns(&m->c->fields, r);
   PetscCall(CreateMatrices(m, r));
   PetscCall(MatCreateVecs(r->nest, &r->y, &r->b));
-  PetscCall(MatCreateVecs(m->solver->J2, &r->slaved, &r->diagonal));
+  PetscCall(VecDuplicate(m->solver->X, &r->slaved));
+  PetscCall(VecDuplicate(m->solver->X, &r->diagonal));
   PetscCall(ReducedPreferences(r->count[FLOW] > 0, r->count[MOTION] > 0));
   PetscCall(CreateSolver(r));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -356,7 +357,10 @@ PetscErrorCode ReducedSetUp(Model *m)
 PetscErrorCode ReducedFollow(Model *m)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatGetDiagonal(m->solver->J2, m->solver->reduced->diagonal));
+  if (m->solver->product)
+    PetscCall(ProductDiagonal(m, m->solver->reduced->diagonal));
+  else
+    PetscCall(MatGetDiagonal(m->solver->J2, m->solver->reduced->diagonal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -413,7 +417,7 @@ static PetscErrorCode Prolong(const Model *m, const Reduced *r, Vec R, Vec Y)
 }
 
 /* (175): their rows couple them with nothing but themselves and what has just been found. */
-static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y)
+static PetscErrorCode RecoverVelocities(Model *m, Reduced *r, Vec R, Vec Y)
 {
   const FieldSet *fs = &m->c->fields;
   const double   *a, *s, *d;
@@ -422,7 +426,10 @@ static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y
   PetscFunctionBeginUser;
   if (r->fs.n == fs->n)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(m->solver->J2, Y, r->slaved));
+  if (m->solver->product)
+    PetscCall(ProductMult(m, true, Y, r->slaved));
+  else
+    PetscCall(MatMult(m->solver->J2, Y, r->slaved));
   PetscCall(VecGetArrayRead(R, &a));
   PetscCall(VecGetArrayRead(r->slaved, &s));
   PetscCall(VecGetArrayRead(r->diagonal, &d));
