@@ -68,7 +68,7 @@ void ModelGive(Model *m, const double *x, bool slope)
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     const double *now = &x[I * fs->n];
-    double       *to = &m->give[GIVE_COUNT * I];
+    double       *to  = &m->give[GIVE_COUNT * I];
 
     for (int q = F_PW; q <= F_T; q++) {
       const int k = fs->at[q];

@@ -1,6 +1,6 @@
 /* Products of the exact Jacobian with a change of the unknowns, particle by particle: the tangents of particles and
-   faces, as each has them, are kept instead of a matrix.  What a change makes of the residual (15)-(23) is found the way
-   the residual is: nodes give to particles, particles add to nodes, rows are made of the sums. */
+   faces, as each has them, are kept instead of a matrix.  What a change makes of the residual (15)-(23) is found the
+   way the residual is: nodes give to particles, particles add to nodes, rows are made of the sums. */
 #include "solver.h"
 
 /* Of a node at X: what this rank's particles have added (TAKE_...), and of two fluids the sums of all ranks (16). */
@@ -10,18 +10,22 @@ typedef struct {
 } AtNode;
 
 struct Product {
-  int rows, row[OUT_COUNT];           /* outputs with slopes, those of the fluids' momentum last ... */
-  int momentum;                       /* ... from this one on */
-  int first[OUT_COUNT + 1];           /* of each row: its first slope; last: their number */
-  int in[OUT_COUNT * IN_COUNT];       /* input of a slope */
-  double   *value, *MI;               /* [n][first[rows]] slopes; [n][PHASE_COUNT] OUT_MI, with beds */
-  PetscInt  cap;                      /* particles they have room for */
-  double (*face)[F_COUNT][IN_COUNT];  /* [nface] FaceOutput.D */
-  PetscInt  nface;                    /* faces it has room for */
-  double   *x, *dx;                   /* [n_local][fields.n] unknowns, their change */
-  double   *diagonal;                 /* [n_local][PHASE_COUNT] of rows (16), unscaled */
-  AtNode   *node;                     /* [n_local] */
+  int      rows, row[OUT_COUNT];     /* outputs with slopes, those of the fluids' momentum last ... */
+  int      momentum;                 /* ... from this one on */
+  int      first[OUT_COUNT + 1];     /* of each row: its first slope; last: their number */
+  int      in[OUT_COUNT * IN_COUNT]; /* input of a slope */
+  int      width;                    /* numbers of a particle: slopes, d det F/d motion */
+  double  *value, *MI;               /* [n][width]; [n][PHASE_COUNT] OUT_MI, with beds */
+  PetscInt cap;                      /* particles they have room for */
+  double (*face)[F_COUNT][IN_COUNT]; /* [nface] FaceOutput.D */
+  PetscInt nface;                    /* faces it has room for */
+  double  *x, *dx;                   /* [n_local][fields.n] unknowns, their change */
+  double  *diagonal;                 /* [n_local][PHASE_COUNT] of rows (16), unscaled */
+  AtNode  *node;                     /* [n_local] */
 };
+
+/* A change of the volume counts as one more input: motion reaches scalars through it alone. */
+enum { IN_VOLUME = IN_COUNT, IN_ALL };
 
 static bool InPhase(int k, int first, int phase)
 {
@@ -46,6 +50,11 @@ static int PhaseOf(int out)
       return f;
   }
   return -1;
+}
+
+static bool IsScalar(int out)
+{
+  return out >= OUT_M && out <= OUT_C;
 }
 
 /* Do the scene's rows read it? */
@@ -73,7 +82,9 @@ static bool Depends(const Model *m, int out, int in)
   const bool      flux = out >= OUT_FLUX && out < OUT_HEAT, force = out >= OUT_G && out < OUT_M;
 
   if (in < IN_P)
-    return fs->solid && (in < IN_HOOP || m->c->axisymmetric);
+    return fs->solid && !IsScalar(out) && (in < IN_HOOP || m->c->axisymmetric);
+  if (in == IN_VOLUME)
+    return fs->solid && IsScalar(out);
   if (in < IN_T)
     return fs->phase[in - IN_P] && !force;
   if (in == IN_T)
@@ -107,13 +118,14 @@ static void Pattern(const Model *m, Product *t)
         continue;
       t->first[t->rows] = n;
       t->row[t->rows++] = out;
-      for (int in = 0; in < IN_COUNT; in++) {
+      for (int in = 0; in < IN_ALL; in++) {
         if (Depends(m, out, in))
           t->in[n++] = in;
       }
     }
   }
   t->first[t->rows] = n;
+  t->width          = n + MOTION_COUNT;
 }
 
 PetscErrorCode ProductCreate(Model *m)
@@ -144,15 +156,14 @@ PetscErrorCode ProductDestroy(Product **product)
 
 static PetscErrorCode MakeRoom(const Model *m, Product *t)
 {
-  const int was = t->first[t->rows];
+  const int was = t->width;
 
   PetscFunctionBeginUser;
   Pattern(m, t); /* a stage may bring another ambient pressure */
-  const int now = t->first[t->rows];
-  if (m->P.n > t->cap || now > was || (m->beds && !t->MI)) {
+  if (m->P.n > t->cap || t->width > was || (m->beds && !t->MI)) {
     PetscCall(PetscFree2(t->value, t->MI));
     t->cap = m->P.n;
-    PetscCall(PetscMalloc2((size_t)t->cap * (size_t)now, &t->value, m->beds ? t->cap * PHASE_COUNT : 0, &t->MI));
+    PetscCall(PetscMalloc2((size_t)t->cap * (size_t)t->width, &t->value, m->beds ? t->cap * PHASE_COUNT : 0, &t->MI));
   }
   if (m->nface > t->nface) {
     PetscCall(PetscFree(t->face));
@@ -195,12 +206,18 @@ PetscErrorCode ProductBegin(Model *m)
 void ProductKeep(Model *m, PetscInt p, const PointOutput *o)
 {
   Product *t = m->solver->product;
-  double  *v = &t->value[(size_t)p * (size_t)t->first[t->rows]];
+  double  *v = &t->value[(size_t)p * (size_t)t->width];
+  int      q = 0; /* of the motion: what changes the volume most */
 
+  for (int k = 1; k < MOTION_COUNT; k++)
+    q = fabs(o->dJ[k]) > fabs(o->dJ[q]) ? k : q;
   for (int k = 0; k < t->rows; k++) {
+    const double *D = o->D[t->row[k]];
+
     for (int j = t->first[k]; j < t->first[k + 1]; j++)
-      v[j] = o->D[t->row[k]][t->in[j]];
+      v[j] = t->in[j] == IN_VOLUME ? D[IN_GRADU + q] / o->dJ[q] : D[t->in[j]];
   }
+  memcpy(&v[t->first[t->rows]], o->dJ, sizeof(o->dJ));
   for (int f = 0; m->beds && f < PHASE_COUNT; f++)
     t->MI[PHASE_COUNT * p + f] = m->c->fields.phase[f] ? o->out[OUT_MI + f] : 0.0;
 }
@@ -254,11 +271,14 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
   double         out[OUT_COUNT] = {0.0};
 
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double *v = &t->value[(size_t)p * (size_t)t->first[t->rows]];
-    double        in[IN_COUNT], proj[PHASE_COUNT][CL_DIM];
+    const double *v = &t->value[(size_t)p * (size_t)t->width], *dJ = &v[t->first[t->rows]];
+    double        in[IN_ALL], proj[PHASE_COUNT][CL_DIM];
     Reach         r;
 
     ParticleChange(m, p, dx, &r, in, proj);
+    in[IN_VOLUME] = 0.0;
+    for (int k = 0; k < MOTION_COUNT; k++)
+      in[IN_VOLUME] += dJ[k] * in[IN_GRADU + k];
     for (int k = momentum ? t->momentum : 0; k < t->rows; k++) {
       double sum = 0.0;
 
@@ -337,8 +357,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   const AtNode   *at    = &m->solver->product->node[I];
   const double   *of    = &take[TAKE_FLUID + FLUID_COUNT * ph];
   FluidNode      *fluid = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
-  double         *row = fluid ? fluid->F : &f[I * fs->n + PlaceV(fs, ph)], rate[CL_DIM], change[CL_DIM], J[CL_DIM],
-         dJ[CL_DIM];
+  double *row = fluid ? fluid->F : &f[I * fs->n + PlaceV(fs, ph)], rate[CL_DIM], change[CL_DIM], J[CL_DIM], dJ[CL_DIM];
   const double share = NodeShare(m, I, ph);
 
   *MassRow(m, f, I, ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];

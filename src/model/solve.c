@@ -6,7 +6,7 @@
 PetscErrorCode SolverCreate(Solver **out)
 {
   static const char *const kind[] = {"auto", "whole", "reduced"}, *const apply[] = {"auto", "assembled", "particles"};
-  Solver                  *s;
+  Solver *s;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
@@ -158,8 +158,8 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscFunctionBeginUser;
   m->solver->refactor = true;
   PetscCall(PreconditionerChooseKind(m, &small));
-  const bool particles = m->solver->apply == OPERATOR_PARTICLES ||
-                         (m->solver->apply == OPERATOR_AUTO && m->solver->reduces);
+  const bool particles =
+      m->solver->apply == OPERATOR_PARTICLES || (m->solver->apply == OPERATOR_AUTO && m->solver->reduces);
   if (particles)
     PetscCall(ProductCreate(m));
   if (!particles || !m->solver->reduces)

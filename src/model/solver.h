@@ -75,6 +75,7 @@ PetscErrorCode  ReducedDestroy(Reduced **reduced);
 const FieldSet *ReducedFields(const Model *m);        /* its unknowns */
 PetscErrorCode  ReducedBegin(Model *m, Assembly *to); /* empties it; to: of its unknowns, marked as going there */
 PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
+PetscErrorCode  ReducedRest(Reduced *r);              /* until the next set-up, which a step begins with */
 PetscErrorCode  ReducedFollow(Model *m);              /* the Jacobian is a new one */
 PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
