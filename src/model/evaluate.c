@@ -208,7 +208,7 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
 }
 
 void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, double in[IN_COUNT],
-                    double proj[PHASE_COUNT][CL_DIM])
+                    double proj[CL_FLUID_VECTORS])
 {
   Sums sums;
 
@@ -216,7 +216,7 @@ void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, doubl
   Sum(m, r, &sums);
   GatherInputs(m, p, r, x, &sums, in);
   for (int f = 0; f < PHASE_COUNT; f++)
-    GatherProjected(m, p, r, &sums, f, proj[f]);
+    GatherProjected(m, p, r, &sums, f, &proj[VectorAt(0, f, 0)]);
 }
 
 void FaceChange(const Model *m, const Face *face, const double *x, Reach *r, double in[IN_COUNT])

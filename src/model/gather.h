@@ -502,7 +502,7 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
 /* Changes of the inputs of a particle and of its projected gradients, and of the inputs of a face, that a change x of
    the nodal values makes. */
 void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, double in[IN_COUNT],
-                    double proj[PHASE_COUNT][CL_DIM]);
+                    double proj[CL_FLUID_VECTORS]);
 void FaceChange(const Model *m, const Face *face, const double *x, Reach *r, double in[IN_COUNT]);
 /* Adds the outputs of a particle, or changes of them, to what its nodes have taken (TAKE_...); x: of BedsHold. */
 void ParticleScatter(Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT]);

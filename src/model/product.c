@@ -2,6 +2,7 @@
    faces, as each has them, are kept instead of a matrix.  What a change makes of the residual (15)-(23) is found the
    way the residual is: nodes give to particles, particles add to nodes, rows are made of the sums. */
 #include "solver.h"
+#include <stddef.h>
 
 /* Of a node at X: what this rank's particles have added (TAKE_...), and of two fluids the sums of all ranks (16). */
 typedef struct {
@@ -9,13 +10,18 @@ typedef struct {
   FluidNode fluid[PHASE_COUNT];
 } AtNode;
 
+/* More inputs: projected gradients (27), and a change of the volume, through which alone motion reaches scalars. */
+enum { IN_PROJ = IN_COUNT, IN_VOLUME = IN_PROJ + CL_FLUID_VECTORS, IN_ALL };
+
 struct Product {
-  int      rows, row[OUT_COUNT];     /* outputs with slopes, those of the fluids' momentum last ... */
-  int      momentum;                 /* ... from this one on */
+  int      rows, row[OUT_COUNT];     /* outputs with slopes: storage, ... */
+  int      storage, momentum;        /* ... others from the first on, the fluids' momentum from the second */
   int      first[OUT_COUNT + 1];     /* of each row: its first slope; last: their number */
-  int      in[OUT_COUNT * IN_COUNT]; /* input of a slope */
-  int      width;                    /* numbers of a particle: slopes, d det F/d motion */
-  double  *value, *MI;               /* [n][width]; [n][PHASE_COUNT] OUT_MI, with beds */
+  int      in[OUT_COUNT * IN_ALL];   /* input of a slope ... */
+  int      at[OUT_COUNT * IN_ALL];   /* ... and its place in PointOutput; of the volume: of IN_GRADU's */
+  int      width, store;             /* numbers of a particle in ... */
+  float   *value;                    /* [n][width] slopes */
+  double  *stored, *MI;              /* [n][store] those of storage, d det F; [n][PHASE_COUNT] OUT_MI, beds */
   PetscInt cap;                      /* particles they have room for */
   double (*face)[F_COUNT][IN_COUNT]; /* [nface] FaceOutput.D */
   PetscInt nface;                    /* faces it has room for */
@@ -23,9 +29,6 @@ struct Product {
   double  *diagonal;                 /* [n_local][PHASE_COUNT] of rows (16), unscaled */
   AtNode  *node;                     /* [n_local] */
 };
-
-/* A change of the volume counts as one more input: motion reaches scalars through it alone. */
-enum { IN_VOLUME = IN_COUNT, IN_ALL };
 
 static bool InPhase(int k, int first, int phase)
 {
@@ -85,6 +88,11 @@ static bool Depends(const Model *m, int out, int in)
     return fs->solid && !IsScalar(out) && (in < IN_HOOP || m->c->axisymmetric);
   if (in == IN_VOLUME)
     return fs->solid && IsScalar(out);
+  if (in >= IN_PROJ) {
+    const int of = (in - IN_PROJ) / CL_DIM;
+
+    return m->c->stabilisation.flux_interpolation && fs->phase[of] && (out == OUT_Q || (flux && of == phase));
+  }
   if (in < IN_T)
     return fs->phase[in - IN_P] && !force;
   if (in == IN_T)
@@ -99,10 +107,27 @@ static bool Depends(const Model *m, int out, int in)
   return fs->solid && m->bc.ambient.on && (out < OUT_FLUX || out == OUT_HOOP);
 }
 
-/* Of a fluid's rows (16)? */
-static bool OfMomentum(int out)
+/* Storage keeps all digits: its slopes with both pressures nearly cancel where these rise together.  Then the rest,
+   last the rows (16) of the fluids. */
+static int Kind(int out)
 {
-  return (out >= OUT_G && out < OUT_M) || (out >= OUT_MI && out < OUT_DM);
+  if (out >= OUT_DM && out < OUT_C)
+    return 0;
+  return (out >= OUT_G && out < OUT_M) || (out >= OUT_MI && out < OUT_DM) ? 2 : 1;
+}
+
+static int PlaceOf(int out, int in)
+{
+  const size_t row = (size_t)out, k = (size_t)in, of = k - IN_PROJ;
+  size_t       at;
+
+  if (in < IN_PROJ || in == IN_VOLUME)
+    at = offsetof(PointOutput, D[0][0]) / sizeof(double) + row * IN_COUNT + (in == IN_VOLUME ? (size_t)IN_GRADU : k);
+  else if (out == OUT_Q)
+    at = offsetof(PointOutput, wide_q[0][0]) / sizeof(double) + of;
+  else
+    at = offsetof(PointOutput, wide[0][0][0]) / sizeof(double) + (row - OUT_FLUX) * CL_DIM + of % CL_DIM;
+  return (int)at;
 }
 
 static void Pattern(const Model *m, Product *t)
@@ -110,22 +135,25 @@ static void Pattern(const Model *m, Product *t)
   int n = 0;
 
   t->rows = 0;
-  for (int momentum = 0; momentum < 2; momentum++) {
-    if (momentum)
-      t->momentum = t->rows;
+  for (int kind = 0; kind < 3; kind++) {
+    if (kind > 0)
+      *(kind == 1 ? &t->storage : &t->momentum) = t->rows;
     for (int out = 0; out < OUT_COUNT; out++) {
-      if (OfMomentum(out) != (momentum > 0) || !Reads(m, out))
+      if (Kind(out) != kind || !Reads(m, out))
         continue;
       t->first[t->rows] = n;
       t->row[t->rows++] = out;
       for (int in = 0; in < IN_ALL; in++) {
-        if (Depends(m, out, in))
-          t->in[n++] = in;
+        if (!Depends(m, out, in))
+          continue;
+        t->at[n]   = PlaceOf(out, in);
+        t->in[n++] = in;
       }
     }
   }
   t->first[t->rows] = n;
-  t->width          = n + MOTION_COUNT;
+  t->width          = n - t->first[t->storage];
+  t->store          = t->first[t->storage] + MOTION_COUNT;
 }
 
 PetscErrorCode ProductCreate(Model *m)
@@ -147,7 +175,7 @@ PetscErrorCode ProductDestroy(Product **product)
   PetscFunctionBeginUser;
   if (!t)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2(t->value, t->MI));
+  PetscCall(PetscFree3(t->value, t->stored, t->MI));
   PetscCall(PetscFree(t->face));
   PetscCall(PetscFree4(t->x, t->dx, t->diagonal, t->node));
   PetscCall(PetscFree(*product));
@@ -161,9 +189,10 @@ static PetscErrorCode MakeRoom(const Model *m, Product *t)
   PetscFunctionBeginUser;
   Pattern(m, t); /* a stage may bring another ambient pressure */
   if (m->P.n > t->cap || t->width > was || (m->beds && !t->MI)) {
-    PetscCall(PetscFree2(t->value, t->MI));
+    PetscCall(PetscFree3(t->value, t->stored, t->MI));
     t->cap = m->P.n;
-    PetscCall(PetscMalloc2((size_t)t->cap * (size_t)t->width, &t->value, m->beds ? t->cap * PHASE_COUNT : 0, &t->MI));
+    PetscCall(PetscMalloc3((size_t)t->cap * (size_t)t->width, &t->value, (size_t)t->cap * (size_t)t->store, &t->stored,
+                           m->beds ? t->cap * PHASE_COUNT : 0, &t->MI));
   }
   if (m->nface > t->nface) {
     PetscCall(PetscFree(t->face));
@@ -205,19 +234,24 @@ PetscErrorCode ProductBegin(Model *m)
 
 void ProductKeep(Model *m, PetscInt p, const PointOutput *o)
 {
-  Product *t = m->solver->product;
-  double  *v = &t->value[(size_t)p * (size_t)t->width];
-  int      q = 0; /* of the motion: what changes the volume most */
+  Product      *t    = m->solver->product;
+  const double *from = (const double *)o;
+  float        *v    = &t->value[(size_t)p * (size_t)t->width];
+  double       *d    = &t->stored[(size_t)p * (size_t)t->store];
+  const int     n    = t->first[t->storage];
+  int           q    = 0; /* of the motion: what changes the volume most */
 
   for (int k = 1; k < MOTION_COUNT; k++)
     q = fabs(o->dJ[k]) > fabs(o->dJ[q]) ? k : q;
-  for (int k = 0; k < t->rows; k++) {
-    const double *D = o->D[t->row[k]];
+  for (int j = 0; j < t->first[t->rows]; j++) {
+    const double slope = t->in[j] == IN_VOLUME ? from[t->at[j] + q] / o->dJ[q] : from[t->at[j]];
 
-    for (int j = t->first[k]; j < t->first[k + 1]; j++)
-      v[j] = t->in[j] == IN_VOLUME ? D[IN_GRADU + q] / o->dJ[q] : D[t->in[j]];
+    if (j < n)
+      d[j] = slope;
+    else
+      v[j - n] = (float)slope;
   }
-  memcpy(&v[t->first[t->rows]], o->dJ, sizeof(o->dJ));
+  memcpy(&d[n], o->dJ, sizeof(o->dJ));
   for (int f = 0; m->beds && f < PHASE_COUNT; f++)
     t->MI[PHASE_COUNT * p + f] = m->c->fields.phase[f] ? o->out[OUT_MI + f] : 0.0;
 }
@@ -249,46 +283,42 @@ static void BedsChange(Model *m, PetscInt p, const Reach *r, const double *dx)
   }
 }
 
-/* (27) */
-static void WideChange(const Model *m, PetscInt p, double proj[PHASE_COUNT][CL_DIM], double out[OUT_COUNT])
+/* Changes of a particle's outputs; momentum: only of those that the fluids' rows (16) read. */
+static void OutputChange(const Product *t, PetscInt p, bool momentum, double in[IN_ALL], double out[OUT_COUNT])
 {
-  const Wide *w = &m->wide[p];
+  const float  *v = &t->value[(size_t)p * (size_t)t->width];
+  const double *d = &t->stored[(size_t)p * (size_t)t->store], *dJ = &d[t->first[t->storage]];
 
-  for (int f = 0; f < PHASE_COUNT; f++) {
-    if (!m->c->fields.phase[f])
-      continue;
-    for (int d = 0; d < CL_DIM; d++)
-      out[VectorAt(OUT_FLUX, f, d)] += VectorDot(w->flux[f][d], proj[f]);
-    if (m->c->fields.heat)
-      out[OUT_Q] += VectorDot(w->q[f], proj[f]);
+  in[IN_VOLUME] = 0.0;
+  for (int k = 0; k < MOTION_COUNT; k++)
+    in[IN_VOLUME] += dJ[k] * in[IN_GRADU + k];
+  for (int k = 0; k < t->storage && !momentum; k++) {
+    double sum = 0.0;
+
+    for (int j = t->first[k]; j < t->first[k + 1]; j++)
+      sum += d[j] * in[t->in[j]];
+    out[t->row[k]] = sum;
+  }
+  for (int k = momentum ? t->momentum : t->storage; k < t->rows; k++) {
+    double sum = 0.0;
+
+    for (int j = t->first[k]; j < t->first[k + 1]; j++)
+      sum += (double)v[j - t->first[t->storage]] * in[t->in[j]];
+    out[t->row[k]] = sum;
   }
 }
 
-/* momentum: only what the fluids' rows (16) read. */
 static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
 {
-  const Product *t              = m->solver->product;
-  double         out[OUT_COUNT] = {0.0};
+  double out[OUT_COUNT] = {0.0};
 
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double *v = &t->value[(size_t)p * (size_t)t->width], *dJ = &v[t->first[t->rows]];
-    double        in[IN_ALL], proj[PHASE_COUNT][CL_DIM];
-    Reach         r;
+    double in[IN_ALL];
+    Reach  r;
 
-    ParticleChange(m, p, dx, &r, in, proj);
-    in[IN_VOLUME] = 0.0;
-    for (int k = 0; k < MOTION_COUNT; k++)
-      in[IN_VOLUME] += dJ[k] * in[IN_GRADU + k];
-    for (int k = momentum ? t->momentum : 0; k < t->rows; k++) {
-      double sum = 0.0;
-
-      for (int j = t->first[k]; j < t->first[k + 1]; j++)
-        sum += v[j] * in[t->in[j]];
-      out[t->row[k]] = sum;
-    }
-    if (!momentum && m->wide)
-      WideChange(m, p, proj, out);
-    ParticleScatter(m, p, &r, t->x, out);
+    ParticleChange(m, p, dx, &r, in, &in[IN_PROJ]);
+    OutputChange(m->solver->product, p, momentum, in, out);
+    ParticleScatter(m, p, &r, m->solver->product->x, out);
     if (m->beds)
       BedsChange(m, p, &r, dx);
     if (!momentum)

@@ -111,7 +111,7 @@ static PetscErrorCode CreateMatrices(Model *m, Reduced *r)
 {
   Mat        a[GROUPS * GROUPS];
   const bool both = r->count[FLOW] > 0 && r->count[MOTION] > 0;
-  bool       all = true;
+  bool       all  = true;
 
   PetscFunctionBeginUser;
   PetscCall(ReadsAll(&all));

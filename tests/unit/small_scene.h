@@ -500,7 +500,7 @@ static inline double ProductApart(SmallScene *s, Vec D, Vec JD)
   return worst;
 }
 
-#define MOST_PRODUCT_APART 1e-11
+#define MOST_PRODUCT_APART 1e-6 /* slopes are kept as float, but those of storage */
 
 /* Largest |J D - difference| of each equation over the largest difference of that equation, in random directions;
    J D is the same assembled and particle by particle. */
