@@ -64,7 +64,16 @@ typedef struct {
 } StageRates;
 
 /* PETSc's log events. */
-enum { EVENT_BEGIN_STEP = 0, EVENT_RESIDUAL, EVENT_JACOBIAN, EVENT_WIDE, EVENT_SETUP, EVENT_REDUCED, EVENT_COUNT };
+enum {
+  EVENT_BEGIN_STEP = 0,
+  EVENT_RESIDUAL,
+  EVENT_JACOBIAN,
+  EVENT_WIDE,
+  EVENT_SETUP,
+  EVENT_REDUCED,
+  EVENT_PRODUCT,
+  EVENT_COUNT
+};
 
 /* A particle with beds at t_n. */
 typedef struct {

@@ -84,13 +84,14 @@ typedef struct {
 typedef struct {
   double out[OUT_COUNT];
   double D[OUT_COUNT][IN_COUNT];            /* d out / d in */
+  double dJ[MOTION_COUNT];                  /* d det F / d in[IN_GRADU], ...: motion changes scalars through it alone */
   double wide[PHASE_COUNT][CL_DIM][CL_DIM]; /* d flux[pi][i] / d proj[pi][j] (27) */
   double wide_q[PHASE_COUNT][CL_DIM];       /* d q / d proj[pi][j] */
 } PointOutput;
 
 /* Evaluates (8)-(21) at a particle for the fields of the set, in SI units with T in degC; inputs of other fields are
    not read (but p_g = p_w and T as given where gas and heat have no field), outputs and columns of other fields are not
-   written.  tangent = false leaves D and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing
+   written.  tangent = false leaves D, dJ and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing
    to a sentence. */
 ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
                        bool tangent, PointState *state, PointOutput *o, const char **why);

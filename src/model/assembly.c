@@ -75,7 +75,7 @@ static PetscErrorCode Places(Model *m, Mat A, bool own, const PetscInt *number)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode MatrixPlaces(Model *m)
+static PetscErrorCode AllPlaces(Model *m)
 {
   const PetscInt  n = m->c->fields.n, ghosts = m->map.n_local - m->map.n_owned;
   const PetscInt *number;
@@ -96,6 +96,56 @@ PetscErrorCode MatrixPlaces(Model *m)
   PetscCall(Places(m, other, false, number));
   for (PetscInt k = 0; k < ghosts * NEIGHBOURS; k++)
     m->solver->place[m->map.n_owned * NEIGHBOURS + k] = &m->solver->foreign[(size_t)k * n * n];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Block pattern: all active nodes within radius 2, so that it holds whatever the particles do. */
+PetscErrorCode MatrixCreate(Model *m)
+{
+  const NodeMap         *map = &m->map;
+  const PetscInt         n   = m->c->fields.n;
+  PetscInt              *dnz, *onz;
+  ISLocalToGlobalMapping l2g;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(map->n_owned, &dnz, map->n_owned, &onz));
+  for (PetscInt I = 0; I < map->n_owned; I++) {
+    for (int k = 0; k < NEIGHBOURS; k++) {
+      const PetscInt K = ModelNeighbour(m, I, k);
+
+      if (K >= 0)
+        (K < map->n_owned ? dnz : onz)[I]++;
+    }
+  }
+  PetscCall(MatCreateBAIJ(m->grid.comm, n, map->n_owned * n, map->n_owned * n, PETSC_DETERMINE, PETSC_DETERMINE, 0, dnz,
+                          0, onz, &m->solver->J2));
+  PetscCall(ISLocalToGlobalMappingCreate(m->grid.comm, n, map->n_local, map->global, PETSC_COPY_VALUES, &l2g));
+  PetscCall(MatSetLocalToGlobalMapping(m->solver->J2, l2g, l2g));
+  PetscCall(ISLocalToGlobalMappingDestroy(&l2g));
+  PetscCall(PetscFree2(dnz, onz));
+  for (PetscInt I = 0; I < map->n_owned; I++) {
+    const double zero[F_COUNT * F_COUNT] = {0.0}; /* n x n of it */
+
+    for (int k = 0; k < NEIGHBOURS; k++) {
+      const PetscInt K = ModelNeighbour(m, I, k);
+
+      if (K >= 0)
+        PetscCall(MatSetValuesBlockedLocal(m->solver->J2, 1, &I, 1, &K, zero, INSERT_VALUES));
+    }
+  }
+  PetscCall(MatAssemblyBegin(m->solver->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->solver->J2, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatSetOption(m->solver->J2, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  PetscCall(AllPlaces(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MatrixDestroy(Solver *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&s->J2));
+  PetscCall(PetscFree(s->place));
+  PetscCall(PetscFree(s->foreign));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,5 @@
 /* End of a stage and of a step: the only place of the implicit integrators that writes history. */
-#include "gather.h"
+#include "solver.h"
 
 #define MAX_MOVE 0.5   /* cells per step */
 #define MAX_SHARE 0.05 /* change of the share of water per step, one pressure */
@@ -205,7 +205,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   PetscFunctionBeginUser;
   *rates            = (StageRates){0};
   m->failure.status = CL_OK;
-  ModelGive(m, x);
+  ModelGive(m, x, false);
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;
     PointState  s;
@@ -354,7 +354,8 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
   PetscFunctionBeginUser;
   PetscCall(ModelProjectGradients(m, x, false, m->proj));
   PetscCall(ExchangeBuild(m));
-  ModelGive(m, x);
+  PetscCall(ReducedRest(m->solver->reduced));
+  ModelGive(m, x, false);
   m->released = 0.0;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach       r;

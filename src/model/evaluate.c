@@ -56,7 +56,7 @@ static void GatherDonated(const Model *m, PetscInt p, const Reach *r, const doub
   }
 }
 
-/* Inputs (1), (5), (19) of particle p. */
+/* Inputs (1), (5), (19) of particle p as far as nodes give them: of p_w, p_g, T what they add to its own at t_n. */
 static void GatherInputs(const Model *m, PetscInt p, const Reach *r, const double *x, const Sums *s,
                          double in[IN_COUNT])
 {
@@ -64,7 +64,7 @@ static void GatherInputs(const Model *m, PetscInt p, const Reach *r, const doubl
 
   for (int q = 0; q < IN_COUNT; q++)
     in[q] = 0.0;
-  in[IN_T] = ParticleT(m->c, &m->P, p) + s->S[GIVE_SCALAR + F_T - F_PW];
+  in[IN_T] = s->S[GIVE_SCALAR + F_T - F_PW];
   for (int d = 0; d < CL_DIM; d++) {
     in[IN_GT + d] = s->G[d][F_T - F_PW];
     in[IN_U + d]  = s->S[GIVE_U + d];
@@ -76,13 +76,31 @@ static void GatherInputs(const Model *m, PetscInt p, const Reach *r, const doubl
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    in[IN_P + f] = m->P.f[HeldPressure(fs, P_PW, f)][p] + s->S[GIVE_SCALAR + f];
+    in[IN_P + f] = s->S[GIVE_SCALAR + f];
     for (int d = 0; d < CL_DIM; d++) {
       in[VectorAt(IN_GP, f, d)] = s->G[d][f];
       in[VectorAt(IN_J, f, d)]  = m->conduct[p] * s->S[VectorAt(GIVE_J, f, d)];
     }
     if (Donated(m, f))
       GatherDonated(m, p, r, x, &in[VectorAt(IN_J, f, 0)]);
+  }
+}
+
+/* The particle's own. */
+static void AddOwn(const Model *m, PetscInt p, double in[IN_COUNT])
+{
+  in[IN_T] += ParticleT(m->c, &m->P, p);
+  for (int f = 0; f < PHASE_COUNT; f++)
+    in[IN_P + f] += m->c->fields.phase[f] ? m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] : 0.0;
+}
+
+/* (Pi g)_p of a fluid. */
+static void GatherProjected(const Model *m, PetscInt p, const Reach *r, const Sums *s, int f, double proj[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++) {
+    proj[d] = Donated(m, f) ? 0.0 : s->S[VectorAt(GIVE_PROJ, f, d)];
+    for (int a = 0; Donated(m, f) && a < r->n; a++)
+      proj[d] += ProjectedShare(m, p, r->node[a], f, r->S[a]) * m->proj[VectorAt(0, PHASE_COUNT * r->node[a] + f, d)];
   }
 }
 
@@ -165,14 +183,8 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
     if (m->stage.k_star)
       h->skeleton.from = m->stage.k_star[p];
   }
-  for (int f = 0; f < PHASE_COUNT; f++) {
-    for (int d = 0; d < CL_DIM; d++) {
-      h->proj[f][d] = Donated(m, f) ? 0.0 : s->S[VectorAt(GIVE_PROJ, f, d)];
-      for (int a = 0; Donated(m, f) && a < r->n; a++)
-        h->proj[f][d] +=
-            ProjectedShare(m, p, r->node[a], f, r->S[a]) * m->proj[VectorAt(0, PHASE_COUNT * r->node[a] + f, d)];
-    }
-  }
+  for (int f = 0; f < PHASE_COUNT; f++)
+    GatherProjected(m, p, r, s, f, h->proj[f]);
 }
 
 ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
@@ -185,6 +197,7 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   ReachExpand(m, p, r);
   Sum(m, r, &sums);
   GatherInputs(m, p, r, x, &sums, in);
+  AddOwn(m, p, in);
   GatherHistory(m, p, r, &sums, &h);
   const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
   if (status != CL_OK)
@@ -192,6 +205,28 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   else if (m->P.f[P_HEAT] && m->c->fields.heat)
     o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* (69) */
   return status;
+}
+
+void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, double in[IN_COUNT],
+                    double proj[CL_FLUID_VECTORS])
+{
+  Sums sums;
+
+  ReachExpand(m, p, r);
+  Sum(m, r, &sums);
+  GatherInputs(m, p, r, x, &sums, in);
+  for (int f = 0; f < PHASE_COUNT; f++)
+    GatherProjected(m, p, r, &sums, f, &proj[VectorAt(0, f, 0)]);
+}
+
+void FaceChange(const Model *m, const Face *face, const double *x, Reach *r, double in[IN_COUNT])
+{
+  Sums sums;
+
+  ReachExpand(m, face->particle, r);
+  Sum(m, r, &sums);
+  GatherInputs(m, face->particle, r, x, &sums, in);
+  GatherFace(m, face->particle, r, x, face, in);
 }
 
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why)
@@ -245,12 +280,9 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
 {
   const PetscInt p = face->particle;
   double         in[IN_COUNT], p0[PHASE_COUNT], velocity[CL_DIM] = {0.0}, kappa = 0.0, sum = 0.0;
-  Sums           sums;
 
-  ReachExpand(m, p, r);
-  Sum(m, r, &sums);
-  GatherInputs(m, p, r, x, &sums, in);
-  GatherFace(m, p, r, x, face, in);
+  FaceChange(m, face, x, r, in);
+  AddOwn(m, p, in);
   for (int q = F_PW; q <= F_T; q++)
     in[q == F_T ? IN_T : IN_P + q - F_PW] += Shift(m, p, r, q);
   ModelInitialAtFace(m, face, p0);

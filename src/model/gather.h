@@ -166,6 +166,12 @@ static inline bool Donated(const Model *m, int f)
   return m->added->donor && f == PHASE_G;
 }
 
+/* Is a particle's share in the root of k_r at its nodes (108) that of the layer's weight, not (35) or (359)? */
+static inline bool LayerRoot(const Model *m, int f)
+{
+  return !m->c->stabilisation.upstream && !Donated(m, f);
+}
+
 /* The node's factor in both. */
 static inline double NodeShare(const Model *m, PetscInt I, int f)
 {
@@ -484,16 +490,27 @@ typedef struct {
 void PatchAt(const Model *m, const Assembly *to, const Reach *r, Patch *s);
 void PatchAdd(const Model *m, const Assembly *to, const Patch *s);
 
-/* What nodes hold for their particles at the nodal values x; before ParticleEvaluate and FaceAt. */
-void ModelGive(Model *m, const double *x);
+/* What nodes hold for their particles at the nodal values x; before ParticleEvaluate and FaceAt.  slope: what a change
+   x of them makes; before ParticleChange and FaceChange. */
+void ModelGive(Model *m, const double *x, bool slope);
 /* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
  * model. */
 ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
                           PointState *s, PointOutput *o);
 /* The same for a surface face. */
 void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOutput *o);
-/* Momenta of two fluids (16) at X, on all local nodes; costs a residual only where the last one was elsewhere. */
-PetscErrorCode ModelFluidsAt(Model *m, Vec X);
+/* Changes of the inputs of a particle and of its projected gradients, and of the inputs of a face, that a change x of
+   the nodal values makes. */
+void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, double in[IN_COUNT],
+                    double proj[CL_FLUID_VECTORS]);
+void FaceChange(const Model *m, const Face *face, const double *x, Reach *r, double in[IN_COUNT]);
+/* Adds the outputs of a particle, or changes of them, to what its nodes have taken (TAKE_...); x: of BedsHold. */
+void ParticleScatter(Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT]);
+/* What the nodes have taken at X, and the momenta of two fluids (16) on all of them; costs a residual only where the
+   last one was elsewhere. */
+PetscErrorCode ModelNodesAt(Model *m, Vec X);
+/* (34): the balances of both fluids make one of volume, added to the rows f of the owned nodes. */
+PetscErrorCode ModelSumMassRows(Model *m, double *f);
 /* Projected pressure gradients (20), (309) of the nodal pressures x into proj (n_local x PHASE_COUNT x CL_DIM), all
    ranks; slope: what a change x of them makes. */
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);
@@ -510,7 +527,7 @@ void           ExchangeSet(const Model *m, PetscInt p, const PointProperties *q)
 PetscErrorCode ExchangeBuild(Model *m);
 /* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
-void           StabilisationResidual(const Model *m, const double *x, double *f);
+void           StabilisationResidual(const Model *m, const double *x, bool slope, double *f); /* slope: of a change x */
 void           StabilisationJacobian(Model *m, const Assembly *to);
 /* Makes ready to assemble for the unknowns `fs`: those of the scene, or what is left without fluid velocities. */
 void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to);

@@ -1,5 +1,5 @@
-/* The Jacobian assembled from particles and faces: J2 with all unknowns, and what (170) leaves when the fluid
-   velocities are eliminated. */
+/* The Jacobian from particles and faces: assembled as J2 with all unknowns, and as what (170) leaves when the fluid
+   velocities are eliminated; or only their tangents kept for products (product.c). */
 #include "solver.h"
 
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
@@ -290,6 +290,8 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
       continue; /* the residual said so */
     if (m->wide)
       KeepWide(&m->c->fields, &o, &m->wide[p]);
+    if (m->solver->product)
+      ProductKeep(m, p, &o);
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
         EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
@@ -354,6 +356,8 @@ static void FaceLoop(Model *m, const double *x, int ntarget, const Assembly *tar
     FaceOutput o;
 
     FaceAt(m, &m->face[k], x, &r, &o);
+    if (m->solver->product)
+      ProductKeepFace(m, k, &o);
     for (int t = 0; t < ntarget; t++) {
       if (target[t].reduced)
         EliminateFace(m, &m->face[k], &r, &o);
@@ -362,34 +366,27 @@ static void FaceLoop(Model *m, const double *x, int ntarget, const Assembly *tar
   }
 }
 
-PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
+/* What is assembled: J2 for the operator, or where it preconditions at a renewal, and at one the reduced matrix. */
+static PetscErrorCode Targets(Model *m, bool renew, int *n, Assembly *target)
 {
-  Model   *m = (Model *)model;
-  Assembly target[2];
-  bool     renew;
-  int      n = 1;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscLogEventBegin(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
-  PetscCall(PreconditionerChoose(m, snes, &renew));
-  PetscCall(ModelFluidsAt(m, X));
-  PetscCall(ModelUnscale(m, X, m->x));
-  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
-  ModelGive(m, m->x);
-  PetscCall(MatrixBegin(m));
-  PetscCall(PlatesPosition(m, m->x));
-  PlatesMark(m, m->x);
-  AssemblyOf(m, &m->c->fields, &target[0]);
-  if (renew && m->solver->reduces) {
-    AssemblyOf(m, ReducedFields(m), &target[1]);
-    PetscCall(ReducedBegin(m, &target[1]));
-    n = 2;
+  *n = 0;
+  if (m->solver->J2 && (!m->solver->product || renew)) {
+    PetscCall(MatrixBegin(m));
+    AssemblyOf(m, &m->c->fields, &target[(*n)++]);
   }
-  ParticleLoop(m, m->x, n, target);
-  FaceLoop(m, m->x, n, target);
-  for (int k = 0; k < n; k++)
-    StabilisationJacobian(m, &target[k]);
-  PetscCall(MatrixFinish(m));
+  if (!renew || !m->solver->reduces)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  AssemblyOf(m, ReducedFields(m), &target[*n]);
+  PetscCall(ReducedBegin(m, &target[(*n)++]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Finish(Model *m, bool renew, int n, const Assembly *target, Mat A, Mat P)
+{
+  PetscFunctionBeginUser;
+  if (n > 0 && !target[0].reduced)
+    PetscCall(MatrixFinish(m));
   if (m->solver->reduces)
     PetscCall(ReducedFollow(m));
   if (renew && m->solver->reduces) {
@@ -397,12 +394,39 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
     PetscCall(ReducedSetUp(m));
     PetscCall(PetscLogEventEnd(m->event[EVENT_SETUP], 0, 0, 0, 0));
   }
-  if (renew && P != m->solver->J2)
+  if (renew && m->solver->J2 && P != m->solver->J2)
     PetscCall(MatConvert(m->solver->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
-  if (A != P) {
-    PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
-  }
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
+{
+  Model   *m = (Model *)model;
+  Assembly target[2];
+  bool     renew;
+  int      n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
+  PetscCall(PreconditionerChoose(m, snes, &renew));
+  PetscCall(ModelNodesAt(m, X));
+  PetscCall(ModelUnscale(m, X, m->x));
+  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
+  ModelGive(m, m->x, false);
+  PetscCall(PlatesPosition(m, m->x));
+  PlatesMark(m, m->x);
+  if (m->solver->product)
+    PetscCall(ProductBegin(m));
+  else if (!m->wide && m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
+    PetscCall(PetscCalloc1(m->stencil_cap, &m->wide));
+  PetscCall(Targets(m, renew, &n, target));
+  ParticleLoop(m, m->x, n, target);
+  FaceLoop(m, m->x, n, target);
+  for (int k = 0; k < n; k++)
+    StabilisationJacobian(m, &target[k]);
+  PetscCall(Finish(m, renew, n, target, A, P));
   PetscCall(PetscLogEventEnd(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

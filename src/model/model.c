@@ -4,8 +4,8 @@
 
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m)
 {
-  static const char *const name[EVENT_COUNT] = {"ClBeginStep", "ClResidual",      "ClJacobian",
-                                                "ClWidePart",  "ClReducedMatrix", "ClReducedApply"};
+  static const char *const name[EVENT_COUNT] = {"ClBeginStep",     "ClResidual",     "ClJacobian", "ClWidePart",
+                                                "ClReducedMatrix", "ClReducedApply", "ClProduct"};
   PetscClassId             id;
 
   PetscFunctionBeginUser;

@@ -62,25 +62,27 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ModelGive(Model *m, const double *x)
+void ModelGive(Model *m, const double *x, bool slope)
 {
   const FieldSet *fs = &m->c->fields;
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const double *now = &x[I * fs->n], *start = &m->x_n[I * fs->n];
-    double       *to = &m->give[GIVE_COUNT * I];
+    const double *now = &x[I * fs->n];
+    double       *to  = &m->give[GIVE_COUNT * I];
 
     for (int q = F_PW; q <= F_T; q++) {
       const int k = fs->at[q];
 
       if (k < 0)
         continue;
-      to[GIVE_SCALAR + q - F_PW] = now[k] - start[k];
-      to[GIVE_START + q - F_PW]  = start[k];
+      const double start         = slope ? 0.0 : m->x_n[I * fs->n + k];
+      to[GIVE_SCALAR + q - F_PW] = now[k] - start;
+      to[GIVE_START + q - F_PW]  = start;
       to[GIVE_GRAD + q - F_PW]   = now[k];
     }
     for (int d = 0; fs->solid && d < CL_DIM; d++)
-      to[GIVE_U + d] = to[GIVE_MOTION + d] = m->stage.u_star[I * CL_DIM + d] + m->stage.dt * now[PlaceVs(fs) + d];
+      to[GIVE_U + d] = to[GIVE_MOTION + d] =
+          (slope ? 0.0 : m->stage.u_star[I * CL_DIM + d]) + m->stage.dt * now[PlaceVs(fs) + d];
     for (int f = 0; f < PHASE_COUNT; f++) {
       double *J = &to[VectorAt(GIVE_J, f, 0)];
 

@@ -229,6 +229,10 @@ PetscErrorCode PreconditionerFallBack(Model *m)
   PetscCall(KSPSetPC(ksp, pc));
   PetscCall(PCDestroy(&pc));
   m->solver->reduces = false;
+  if (m->solver->J2)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatrixCreate(m));
+  PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->J2, ModelJacobian, m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,5 +248,9 @@ PetscErrorCode PreconditionerReturn(Model *m)
   PetscCall(PCDestroy(&m->solver->set_aside));
   m->solver->reduces  = true;
   m->solver->refactor = true;
+  if (!m->solver->product)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->A, ModelJacobian, m));
+  PetscCall(MatrixDestroy(m->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

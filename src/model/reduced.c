@@ -7,15 +7,16 @@
 enum { FLOW = 0, MOTION, GROUPS };
 
 struct Reduced {
-  FieldSet fs;                           /* unknowns of a node */
-  int      first[GROUPS], count[GROUPS]; /* their places */
-  int      full[F_COUNT];                /* place in the block of the scene's set */
-  double  *value;                        /* [n_local][NEIGHBOURS][fs.n][fs.n]; null between two renewals */
-  double   row[F_COUNT], col[F_COUNT];   /* units of rows and columns: each one number for the whole body */
-  Mat      block[GROUPS][GROUPS], nest, whole;
-  KSP      ksp;
-  Vec      b, y;             /* owned nodes: flow of all, then motion of all */
-  Vec      slaved, diagonal; /* of the scene's set: J2 y, diagonal of J2 */
+  FieldSet fs;                                 /* unknowns of a node */
+  int      first[GROUPS], count[GROUPS];       /* their places */
+  int      full[F_COUNT];                      /* place in the block of the scene's set */
+  double  *value;                              /* [n_local][NEIGHBOURS][fs.n][fs.n]; null between two renewals */
+  double   row[F_COUNT], col[F_COUNT];         /* units of rows and columns: each one number for the whole body */
+  Mat      block[GROUPS][GROUPS], nest, whole; /* whole: what wants one matrix, as anything but a split does */
+  KSP      ksp;                                /* null between steps */
+  bool     split;                              /* its preconditioner is PCFIELDSPLIT */
+  Vec      b, y;                               /* owned nodes: flow of all, then motion of all */
+  Vec      slaved, diagonal; /* of the scene's set, rows (16) of the Jacobian: times y, their diagonal */
 };
 
 static void Unknowns(const FieldSet *fs, Reduced *r)
@@ -94,15 +95,29 @@ static PetscErrorCode RigidMotions(Model *m, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A split that solves for the flow and then for the motion never reads what motion does to the flow. */
+static PetscErrorCode ReadsAll(bool *all)
+{
+  PetscBool type, split;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-reduced_pc_type", &type));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-reduced_pc_fieldsplit_type", &split));
+  *all = type || split;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateMatrices(Model *m, Reduced *r)
 {
   Mat        a[GROUPS * GROUPS];
   const bool both = r->count[FLOW] > 0 && r->count[MOTION] > 0;
+  bool       all  = true;
 
   PetscFunctionBeginUser;
+  PetscCall(ReadsAll(&all));
   for (int s = 0; s < GROUPS; s++) {
     for (int t = 0; t < GROUPS; t++) {
-      if (r->count[s] > 0 && r->count[t] > 0)
+      if (r->count[s] > 0 && r->count[t] > 0 && (all || s != FLOW || t != MOTION))
         PetscCall(CreateBlock(m, r->count[s], r->count[t], &r->block[s][t]));
       a[GROUPS * s + t] = r->block[s][t];
     }
@@ -135,23 +150,13 @@ static PetscErrorCode CreateSplit(Reduced *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Anything but a split wants one matrix. */
-static PetscErrorCode IsSplit(const Reduced *r, bool *split)
-{
-  PetscBool same;
-  PC        pc;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPGetPC(r->ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCFIELDSPLIT, &same));
-  *split = same;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A new one at every renewal: what multigrid keeps from set-up to set-up would make a run depend on where it was last
    restarted. */
 static PetscErrorCode CreateSolver(Reduced *r)
 {
+  PetscBool split;
+  PC        pc;
+
   PetscFunctionBeginUser;
   PetscCall(KSPDestroy(&r->ksp));
   PetscCall(KSPCreate(PetscObjectComm((PetscObject)r->nest), &r->ksp));
@@ -162,6 +167,9 @@ static PetscErrorCode CreateSolver(Reduced *r)
     PetscCall(
         KSPSetOptionsPrefix(r->ksp, r->count[FLOW] > 0 ? "reduced_fieldsplit_flow_" : "reduced_fieldsplit_motion_"));
   PetscCall(KSPSetFromOptions(r->ksp));
+  PetscCall(KSPGetPC(r->ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCFIELDSPLIT, &split));
+  r->split = split;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,9 +183,18 @@ PetscErrorCode ReducedCreate(Model *m)
   Unknowns(&m->c->fields, r);
   PetscCall(CreateMatrices(m, r));
   PetscCall(MatCreateVecs(r->nest, &r->y, &r->b));
-  PetscCall(MatCreateVecs(m->solver->J2, &r->slaved, &r->diagonal));
+  PetscCall(VecDuplicate(m->solver->X, &r->slaved));
+  PetscCall(VecDuplicate(m->solver->X, &r->diagonal));
   PetscCall(ReducedPreferences(r->count[FLOW] > 0, r->count[MOTION] > 0));
   PetscCall(CreateSolver(r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedRest(Reduced *r)
+{
+  PetscFunctionBeginUser;
+  if (r)
+    PetscCall(KSPDestroy(&r->ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,13 +251,12 @@ const FieldSet *ReducedFields(const Model *m)
 
 PetscErrorCode ReducedBegin(Model *m, Assembly *to)
 {
-  Reduced *r     = m->solver->reduced;
-  bool     split = false;
+  Reduced *r = m->solver->reduced;
 
   PetscFunctionBeginUser;
-  PetscCall(IsSplit(r, &split));
+  PetscCall(KSPDestroy(&r->ksp)); /* not beside what is gathered now */
   to->reduced      = true;
-  to->fixed_stress = split;
+  to->fixed_stress = r->split;
   PetscCall(Units(m, r));
   PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS * r->fs.n * r->fs.n, &r->value));
   to->place = NULL;
@@ -326,9 +342,8 @@ static PetscErrorCode FillMatrices(Model *m, Reduced *r)
 
 PetscErrorCode ReducedSetUp(Model *m)
 {
-  Reduced *r     = m->solver->reduced;
-  bool     split = false;
-  Mat      A     = r->nest;
+  Reduced *r = m->solver->reduced;
+  Mat      A = r->nest;
 
   PetscFunctionBeginUser;
   for (int k = 0; k < GROUPS * GROUPS; k++) {
@@ -340,8 +355,7 @@ PetscErrorCode ReducedSetUp(Model *m)
   if (r->nest != r->block[FLOW][FLOW] && r->nest != r->block[MOTION][MOTION]) {
     PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
-    PetscCall(IsSplit(r, &split));
-    if (!split) {
+    if (!r->split) {
       PetscCall(MatConvert(r->nest, MATAIJ, r->whole ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &r->whole));
       A = r->whole;
     }
@@ -356,7 +370,10 @@ PetscErrorCode ReducedSetUp(Model *m)
 PetscErrorCode ReducedFollow(Model *m)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatGetDiagonal(m->solver->J2, m->solver->reduced->diagonal));
+  if (m->solver->product)
+    PetscCall(ProductDiagonal(m, m->solver->reduced->diagonal));
+  else
+    PetscCall(MatGetDiagonal(m->solver->J2, m->solver->reduced->diagonal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -413,7 +430,7 @@ static PetscErrorCode Prolong(const Model *m, const Reduced *r, Vec R, Vec Y)
 }
 
 /* (175): their rows couple them with nothing but themselves and what has just been found. */
-static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y)
+static PetscErrorCode RecoverVelocities(Model *m, Reduced *r, Vec R, Vec Y)
 {
   const FieldSet *fs = &m->c->fields;
   const double   *a, *s, *d;
@@ -422,7 +439,10 @@ static PetscErrorCode RecoverVelocities(const Model *m, Reduced *r, Vec R, Vec Y
   PetscFunctionBeginUser;
   if (r->fs.n == fs->n)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(m->solver->J2, Y, r->slaved));
+  if (m->solver->product)
+    PetscCall(ProductMult(m, true, Y, r->slaved));
+  else
+    PetscCall(MatMult(m->solver->J2, Y, r->slaved));
   PetscCall(VecGetArrayRead(R, &a));
   PetscCall(VecGetArrayRead(r->slaved, &s));
   PetscCall(VecGetArrayRead(r->diagonal, &d));

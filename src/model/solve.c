@@ -5,8 +5,8 @@
 
 PetscErrorCode SolverCreate(Solver **out)
 {
-  static const char *const kind[] = {"auto", "whole", "reduced"};
-  Solver                  *s;
+  static const char *const kind[] = {"auto", "whole", "reduced"}, *const apply[] = {"auto", "assembled", "particles"};
+  Solver *s;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
@@ -17,6 +17,7 @@ PetscErrorCode SolverCreate(Solver **out)
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", s->pmat_type, sizeof(s->pmat_type), NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &s->poor, NULL));
   PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &s->preconditioner, NULL));
+  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_operator", apply, 3, &s->apply, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_keep_jacobian", &s->keep_jacobian, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &s->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &s->tol_update, NULL));
@@ -27,9 +28,8 @@ PetscErrorCode SolverCreate(Solver **out)
 PetscErrorCode SolverReset(Solver *s)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatDestroy(&s->J2));
-  PetscCall(PetscFree(s->place));
-  PetscCall(PetscFree(s->foreign));
+  PetscCall(MatrixDestroy(s));
+  PetscCall(ProductDestroy(&s->product));
   PetscCall(MatDestroy(&s->A));
   PetscCall(MatDestroy(&s->Pmat));
   PetscCall(VecDestroy(&s->X));
@@ -46,47 +46,6 @@ PetscErrorCode SolverDestroy(Solver **s)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SolverReset(*s));
   PetscCall(PetscFree(*s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Block pattern: all active nodes within radius 2, so that it holds whatever the particles do. */
-static PetscErrorCode CreateJ2(Model *m)
-{
-  const NodeMap         *map = &m->map;
-  const PetscInt         n   = m->c->fields.n;
-  PetscInt              *dnz, *onz;
-  ISLocalToGlobalMapping l2g;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(map->n_owned, &dnz, map->n_owned, &onz));
-  for (PetscInt I = 0; I < map->n_owned; I++) {
-    for (int k = 0; k < NEIGHBOURS; k++) {
-      const PetscInt K = ModelNeighbour(m, I, k);
-
-      if (K >= 0)
-        (K < map->n_owned ? dnz : onz)[I]++;
-    }
-  }
-  PetscCall(MatCreateBAIJ(m->grid.comm, n, map->n_owned * n, map->n_owned * n, PETSC_DETERMINE, PETSC_DETERMINE, 0, dnz,
-                          0, onz, &m->solver->J2));
-  PetscCall(ISLocalToGlobalMappingCreate(m->grid.comm, n, map->n_local, map->global, PETSC_COPY_VALUES, &l2g));
-  PetscCall(MatSetLocalToGlobalMapping(m->solver->J2, l2g, l2g));
-  PetscCall(ISLocalToGlobalMappingDestroy(&l2g));
-  PetscCall(PetscFree2(dnz, onz));
-  for (PetscInt I = 0; I < map->n_owned; I++) {
-    const double zero[F_COUNT * F_COUNT] = {0.0}; /* n x n of it */
-
-    for (int k = 0; k < NEIGHBOURS; k++) {
-      const PetscInt K = ModelNeighbour(m, I, k);
-
-      if (K >= 0)
-        PetscCall(MatSetValuesBlockedLocal(m->solver->J2, 1, &I, 1, &K, zero, INSERT_VALUES));
-    }
-  }
-  PetscCall(MatAssemblyBegin(m->solver->J2, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(m->solver->J2, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatSetOption(m->solver->J2, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
-  PetscCall(MatrixPlaces(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,15 +158,20 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscFunctionBeginUser;
   m->solver->refactor = true;
   PetscCall(PreconditionerChooseKind(m, &small));
-  PetscCall(CreateJ2(m));
+  const bool particles =
+      m->solver->apply == OPERATOR_PARTICLES || (m->solver->apply == OPERATOR_AUTO && m->solver->reduces);
+  if (particles)
+    PetscCall(ProductCreate(m));
+  if (!particles || !m->solver->reduces)
+    PetscCall(MatrixCreate(m));
   PetscCall(WideCreate(m, &m->solver->A));
-  PetscCall(MatCreateVecs(m->solver->J2, &m->solver->X, &m->solver->R));
+  PetscCall(MatCreateVecs(m->solver->A, &m->solver->X, &m->solver->R));
   PetscCall(PetscStrcmp(m->solver->pmat_type[0] ? m->solver->pmat_type : small ? "aij" : "baij", "aij", &aij));
-  if (aij) {
+  if (m->solver->J2 && aij) {
     PetscCall(MatConvert(m->solver->J2, MATAIJ, MAT_INITIAL_MATRIX, &m->solver->Pmat));
   } else {
-    PetscCall(PetscObjectReference((PetscObject)m->solver->J2));
-    m->solver->Pmat = m->solver->J2;
+    m->solver->Pmat = m->solver->J2 ? m->solver->J2 : m->solver->A;
+    PetscCall(PetscObjectReference((PetscObject)m->solver->Pmat));
   }
   PetscCall(SNESCreate(m->grid.comm, &m->solver->snes));
   PetscCall(SNESSetFunction(m->solver->snes, m->solver->R, ModelResidual, m));

@@ -7,6 +7,10 @@
  */
 enum { PRECONDITIONER_AUTO = 0, PRECONDITIONER_WHOLE, PRECONDITIONER_REDUCED };
 
+/* How the exact Jacobian is applied: J2 assembled with its wide part, or by products particle by particle.  Auto: these
+   with the reduced preconditioner. */
+enum { OPERATOR_AUTO = 0, OPERATOR_ASSEMBLED, OPERATOR_PARTICLES };
+
 /* Which of them the run has, and why: (330), of the particles as seeded, or by an option of the user. */
 typedef struct {
   double      across; /* mean number of cells across the body */
@@ -22,16 +26,19 @@ typedef struct {
 } Renewal;
 
 typedef struct Reduced Reduced; /* reduced.c */
+typedef struct Product Product; /* product.c */
 
 struct Solver {
   double **place;   /* [n_local][NEIGHBOURS] blocks of J2: neighbours of a node; of ghosts in `foreign` */
   double  *foreign; /* [ghosts][NEIGHBOURS][fields.n][fields.n] for other ranks' rows */
-  Mat      J2, A;   /* assembled radius-2 Jacobian (BAIJ), exact Jacobian (shell) */
+  Mat      J2, A;   /* assembled radius-2 Jacobian (BAIJ; null where nothing needs it), exact Jacobian (shell) */
+  Product *product; /* null: A is J2 and its wide part */
   Mat      Pmat;    /* the preconditioner's */
   Vec      X, R;    /* scaled unknowns and residual */
   SNES     snes;
 
   PetscInt   preconditioner; /* PRECONDITIONER_... as asked for (option -newton_preconditioner) */
+  PetscInt   apply;          /* OPERATOR_... as asked for (option -newton_operator) */
   SolverPlan plan;
   bool       reduces;         /* GMRES has the reduced one */
   Reduced   *reduced;         /* null: factors of the whole or what PETSc's options say */
@@ -54,9 +61,10 @@ struct Solver {
 PetscErrorCode SolverCreate(Solver **s);
 PetscErrorCode SolverReset(Solver *s);
 PetscErrorCode SolverDestroy(Solver **s);
-/* J2: where its blocks are, once for a pattern; empties it; scales what was added, with Dirichlet rows, and assembles.
- */
-PetscErrorCode MatrixPlaces(Model *m);
+/* J2: made with the places of its blocks, once for a pattern; ended; emptied; what was added scaled, with Dirichlet
+   rows, and assembled. */
+PetscErrorCode MatrixCreate(Model *m);
+PetscErrorCode MatrixDestroy(Solver *s);
 PetscErrorCode MatrixBegin(Model *m);
 PetscErrorCode MatrixFinish(Model *m);
 /* The reduced matrix and its solver (reduced.c). */
@@ -67,7 +75,8 @@ PetscErrorCode  ReducedDestroy(Reduced **reduced);
 const FieldSet *ReducedFields(const Model *m);        /* its unknowns */
 PetscErrorCode  ReducedBegin(Model *m, Assembly *to); /* empties it; to: of its unknowns, marked as going there */
 PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
-PetscErrorCode  ReducedFollow(Model *m);              /* J2 is a new one */
+PetscErrorCode  ReducedRest(Reduced *r);              /* until the next set-up, which a step begins with */
+PetscErrorCode  ReducedFollow(Model *m);              /* the Jacobian is a new one */
 PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
 PetscErrorCode PreconditionerPlan(Model *m);                    /* (330), of the particles that were just seeded */
@@ -80,3 +89,12 @@ PetscErrorCode PreconditionerFallBack(Model *m);
 PetscErrorCode PreconditionerReturn(Model *m);
 /* The exact Jacobian. */
 PetscErrorCode WideCreate(Model *m, Mat *A);
+/* Its products particle by particle: what they need of the nodes at Model.x, after ModelNodesAt; the tangents of each
+   particle and face there; Y = A X on scaled, owned vectors, momentum: its rows (16) alone; the diagonal of these. */
+PetscErrorCode ProductCreate(Model *m);
+PetscErrorCode ProductDestroy(Product **product);
+PetscErrorCode ProductBegin(Model *m);
+void           ProductKeep(Model *m, PetscInt p, const PointOutput *o);
+void           ProductKeepFace(Model *m, PetscInt k, const FaceOutput *o);
+PetscErrorCode ProductMult(Model *m, bool momentum, Vec X, Vec Y);
+PetscErrorCode ProductDiagonal(const Model *m, Vec d);

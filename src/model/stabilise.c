@@ -328,7 +328,7 @@ static double Jump(const Model *m, const GhostLine *g, const double *x, int k)
   return jump;
 }
 
-static void GhostResidual(const Model *m, const GhostLine *g, const double *x, double *f)
+static void GhostResidual(const Model *m, const GhostLine *g, const double *x, bool slope, double *f)
 {
   double c[F_COUNT];
 
@@ -338,7 +338,7 @@ static void GhostResidual(const Model *m, const GhostLine *g, const double *x, d
       continue;
     double pull = c[k] * Jump(m, g, x, k);
 
-    if (k == F_PW || k == F_PG) /* (351) is on the change from p* */
+    if (!slope && (k == F_PW || k == F_PG)) /* (351) is on the change from p* */
       pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);
     for (int a = 0; a < 3; a++)
       *RowOf(m, f, g->node[a], k) += pull * g->second[a];
@@ -364,7 +364,7 @@ static double ProjectionShare(const Model *m, const ProjectionCell *c)
   return 1.0 / (1.0 + PetscSqr(c->t_inertia / m->stage.dt));
 }
 
-static void ProjectionResidual(const Model *m, const ProjectionCell *c, const double *x, double *f)
+static void ProjectionResidual(const Model *m, const ProjectionCell *c, const double *x, bool slope, double *f)
 {
   const FieldSet *fs             = &m->c->fields;
   const double    share          = ProjectionShare(m, c);
@@ -375,7 +375,7 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
       const PetscInt k = c->node[b] * fs->n + PlaceP(fs, ph);
 
       if (fs->phase[ph])
-        dp[b] += c->s[ph] * (x[k] - m->stage.x_star[k]);
+        dp[b] += c->s[ph] * (x[k] - (slope ? 0.0 : m->stage.x_star[k]));
     }
   }
   for (int a = 0; a < CL_CORNERS; a++) {
@@ -390,12 +390,12 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
   }
 }
 
-void StabilisationResidual(const Model *m, const double *x, double *f)
+void StabilisationResidual(const Model *m, const double *x, bool slope, double *f)
 {
   for (PetscInt k = 0; k < m->added->nghost; k++)
-    GhostResidual(m, &m->added->ghost[k], x, f);
+    GhostResidual(m, &m->added->ghost[k], x, slope, f);
   for (PetscInt k = 0; k < m->added->ncell; k++)
-    ProjectionResidual(m, &m->added->cell[k], x, f);
+    ProjectionResidual(m, &m->added->cell[k], x, slope, f);
 }
 
 static void GhostBlock(const Model *m, const Assembly *to, const GhostLine *g)

@@ -31,8 +31,6 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscMalloc1(m->stencil_cap, &m->stencil));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->conduct));
     PetscCall(PetscMalloc1(m->stencil_cap, &m->order));
-    if (m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
-      PetscCall(PetscCalloc1(m->stencil_cap, &m->wide));
     if (SceneDonor(m->c))
       PetscCall(PetscMalloc1(m->stencil_cap, &m->added->donor));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)

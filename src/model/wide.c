@@ -68,6 +68,12 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
+  if (m->solver->product) {
+    PetscCall(PetscLogEventBegin(m->event[EVENT_PRODUCT], 0, 0, 0, 0));
+    PetscCall(ProductMult(m, false, X, Y));
+    PetscCall(PetscLogEventEnd(m->event[EVENT_PRODUCT], 0, 0, 0, 0));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(MatMult(m->solver->J2, X, Y));
   const bool wide = m->c->stabilisation.flux_interpolation && m->c->fields.fluid;
   if (wide || PlatesCouple(m)) {
@@ -84,6 +90,7 @@ PetscErrorCode WideCreate(Model *m, Mat *A)
 
   PetscFunctionBeginUser;
   PetscCall(MatCreateShell(m->grid.comm, n, n, N, N, m, A));
+  PetscCall(MatSetBlockSize(*A, m->c->fields.n));
   PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))WideMult));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -538,6 +538,7 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
       for (int q = 0; q < IN_COUNT; q++)
         o->D[r][q] = 0.0;
     }
+    memcpy(o->dJ, k->dJ, sizeof(o->dJ));
   }
   FillState(fs, &s, state);
   PutScalar(OUT_M, JetShift(s.m_h, h->m_s), k, tangent, o);

@@ -51,6 +51,7 @@ typedef struct {
   Region   half[2];
   Model    m;
   Stage    stage;
+  Product *product; /* of PrepareJacobian, where the solver's operator is assembled */
 } SmallScene;
 
 static bool one_pressure; /* of the scenes to come */
@@ -191,6 +192,7 @@ static inline void StageStart(SmallScene *s, double dt)
 static inline void SceneDestroy(SmallScene *s)
 {
   Call(PetscFree3(s->stage.x_star, s->stage.u_star, s->stage.m_star));
+  Call(ProductDestroy(&s->product));
   Call(ModelDestroy(&s->m));
 }
 
@@ -461,9 +463,47 @@ static inline void PrepareJacobian(SmallScene *s, Vec *X, Vec *D, Vec *JD)
     Say("  inadmissible: %s\n", m->failure.why);
   Check(m->failure.status == CL_OK);
   Call(ModelJacobian(m->solver->snes, *X, m->solver->A, m->solver->Pmat, m));
+  if (m->solver->product)
+    return;
+  Call(ProductDestroy(&s->product));
+  Call(ProductCreate(m));
+  Call(ModelJacobian(m->solver->snes, *X, m->solver->A, m->solver->Pmat, m));
+  s->product         = m->solver->product;
+  m->solver->product = NULL;
 }
 
-/* Largest |J D - difference| of each equation over the largest difference of that equation, in random directions. */
+/* Largest difference of the product particle by particle from the assembled one JD, of each equation over its largest
+   row. */
+static inline double ProductApart(SmallScene *s, Vec D, Vec JD)
+{
+  Model        *m              = &s->m;
+  const int     nf             = m->c->fields.n;
+  double        error[F_COUNT] = {0.0}, size[F_COUNT] = {0.0}, worst = 0.0;
+  const double *a, *b;
+  Vec           product;
+
+  Call(VecDuplicate(JD, &product));
+  m->solver->product = s->product;
+  Call(MatMult(m->solver->A, D, product));
+  m->solver->product = NULL;
+  Call(VecGetArrayRead(product, &a));
+  Call(VecGetArrayRead(JD, &b));
+  for (PetscInt k = 0; k < m->map.n_owned * nf; k++) {
+    error[k % nf] = fmax(error[k % nf], fabs(a[k] - b[k]));
+    size[k % nf]  = fmax(size[k % nf], fabs(b[k]));
+  }
+  Call(VecRestoreArrayRead(product, &a));
+  Call(VecRestoreArrayRead(JD, &b));
+  Call(VecDestroy(&product));
+  for (int q = 0; q < nf; q++)
+    worst = fmax(worst, Largest(error[q]) / Largest(size[q]));
+  return worst;
+}
+
+#define MOST_PRODUCT_APART 1e-6 /* slopes are kept as float, but those of storage */
+
+/* Largest |J D - difference| of each equation over the largest difference of that equation, in random directions;
+   J D is the same assembled and particle by particle. */
 static inline double DirectionError(SmallScene *s, int directions)
 {
   Model         *m  = &s->m;
@@ -482,6 +522,13 @@ static inline double DirectionError(SmallScene *s, int directions)
       d[i] = Noise(40 + k, m->map.ij[i / nf][0] + 100 * m->map.ij[i / nf][1], m->c->fields.field[i % nf]);
     Call(VecRestoreArrayWrite(D, &d));
     Call(MatMult(m->solver->A, D, JD));
+    if (s->product) {
+      const double apart = ProductApart(s, D, JD);
+
+      if (!(apart < MOST_PRODUCT_APART))
+        Say("  product particle by particle off the assembled one by %.1e\n", apart);
+      Check(apart < MOST_PRODUCT_APART);
+    }
     Difference(m, X, D, 4e-3, dy);
     Call(VecGetArrayRead(JD, &a));
     for (PetscInt i = 0; i < n; i++) {

@@ -1,0 +1,523 @@
+/* Products of the exact Jacobian with a change of the unknowns, particle by particle: the tangents of particles and
+   faces, as each has them, are kept instead of a matrix.  What a change makes of the residual (15)-(23) is found the
+   way the residual is: nodes give to particles, particles add to nodes, rows are made of the sums. */
+#include "solver.h"
+#include <stddef.h>
+
+/* Of a node at X: what this rank's particles have added (TAKE_...), and of two fluids the sums of all ranks (16). */
+typedef struct {
+  double    M[1 + PHASE_COUNT], MI2[PHASE_COUNT], D[PHASE_COUNT], C;
+  FluidNode fluid[PHASE_COUNT];
+} AtNode;
+
+/* More inputs: projected gradients (27), and a change of the volume, through which alone motion reaches scalars. */
+enum { IN_PROJ = IN_COUNT, IN_VOLUME = IN_PROJ + CL_FLUID_VECTORS, IN_ALL };
+
+struct Product {
+  int      rows, row[OUT_COUNT];     /* outputs with slopes: storage, ... */
+  int      storage, momentum;        /* ... others from the first on, the fluids' momentum from the second */
+  int      first[OUT_COUNT + 1];     /* of each row: its first slope; last: their number */
+  int      in[OUT_COUNT * IN_ALL];   /* input of a slope ... */
+  int      at[OUT_COUNT * IN_ALL];   /* ... and its place in PointOutput; of the volume: of IN_GRADU's */
+  int      width, store;             /* numbers of a particle in ... */
+  float   *value;                    /* [n][width] slopes */
+  double  *stored, *MI;              /* [n][store] those of storage, d det F; [n][PHASE_COUNT] OUT_MI, beds */
+  PetscInt cap;                      /* particles they have room for */
+  double (*face)[F_COUNT][IN_COUNT]; /* [nface] FaceOutput.D */
+  PetscInt nface;                    /* faces it has room for */
+  double  *x, *dx;                   /* [n_local][fields.n] unknowns, their change */
+  double  *diagonal;                 /* [n_local][PHASE_COUNT] of rows (16), unscaled */
+  AtNode  *node;                     /* [n_local] */
+};
+
+static bool InPhase(int k, int first, int phase)
+{
+  return k >= VectorAt(first, phase, 0) && k < VectorAt(first, phase + 1, 0);
+}
+
+static bool Carries(const Scene *c)
+{
+  for (PetscInt k = 0; k < c->nmaterial; k++) {
+    if (c->material[k].gas.carried > 0.0)
+      return true;
+  }
+  return false;
+}
+
+/* Phase of an output of one fluid; -1: of none. */
+static int PhaseOf(int out)
+{
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    if (InPhase(out, OUT_FLUX, f) || InPhase(out, OUT_G, f) || out == OUT_M + 1 + f || out == OUT_MI + f ||
+        out == OUT_D + f || out == OUT_ROOT + f || out == OUT_DM + f)
+      return f;
+  }
+  return -1;
+}
+
+static bool IsScalar(int out)
+{
+  return out >= OUT_M && out <= OUT_C;
+}
+
+/* Do the scene's rows read it? */
+static bool Reads(const Model *m, int out)
+{
+  const FieldSet *fs    = &m->c->fields;
+  const int       phase = PhaseOf(out);
+
+  if (phase >= 0)
+    return fs->phase[phase] && (out != OUT_ROOT + phase || m->fluid) && (out != OUT_M + 1 + phase || fs->solid);
+  if (out >= OUT_A)
+    return m->bc.ambient.on && fs->solid;
+  if (out == OUT_HOOP)
+    return m->c->axisymmetric && fs->solid;
+  if (out == OUT_C || out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM))
+    return fs->heat;
+  return fs->solid; /* OUT_P, OUT_M */
+}
+
+/* Can the slope of an output with an input differ from zero? */
+static bool Depends(const Model *m, int out, int in)
+{
+  const FieldSet *fs    = &m->c->fields;
+  const int       phase = PhaseOf(out), other = in < IN_J ? (in - IN_GP) / CL_DIM : (in - IN_J) / CL_DIM;
+  const bool      flux = out >= OUT_FLUX && out < OUT_HEAT, force = out >= OUT_G && out < OUT_M;
+
+  if (in < IN_P)
+    return fs->solid && !IsScalar(out) && (in < IN_HOOP || m->c->axisymmetric);
+  if (in == IN_VOLUME)
+    return fs->solid && IsScalar(out);
+  if (in >= IN_PROJ) {
+    const int of = (in - IN_PROJ) / CL_DIM;
+
+    return m->c->stabilisation.flux_interpolation && fs->phase[of] && (out == OUT_Q || (flux && of == phase));
+  }
+  if (in < IN_T)
+    return fs->phase[in - IN_P] && !force;
+  if (in == IN_T)
+    return fs->heat && !force;
+  if (in < IN_GT)
+    return fs->phase[other] && (out == OUT_Q || ((flux || force) && other == phase) || (flux && m->added->spread));
+  if (in < IN_J)
+    return fs->heat && (out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM));
+  if (in < IN_U)
+    return fs->phase[other] &&
+           (out == OUT_Q || (flux && (other == phase || (other == PHASE_W && Carries(m->c))))); /* (352) */
+  return fs->solid && m->bc.ambient.on && (out < OUT_FLUX || out == OUT_HOOP);
+}
+
+/* Storage keeps all digits: its slopes with both pressures nearly cancel where these rise together.  Then the rest,
+   last the rows (16) of the fluids. */
+static int Kind(int out)
+{
+  if (out >= OUT_DM && out < OUT_C)
+    return 0;
+  return (out >= OUT_G && out < OUT_M) || (out >= OUT_MI && out < OUT_DM) ? 2 : 1;
+}
+
+static int PlaceOf(int out, int in)
+{
+  const size_t row = (size_t)out, k = (size_t)in, of = k - IN_PROJ;
+  size_t       at;
+
+  if (in < IN_PROJ || in == IN_VOLUME)
+    at = offsetof(PointOutput, D[0][0]) / sizeof(double) + row * IN_COUNT + (in == IN_VOLUME ? (size_t)IN_GRADU : k);
+  else if (out == OUT_Q)
+    at = offsetof(PointOutput, wide_q[0][0]) / sizeof(double) + of;
+  else
+    at = offsetof(PointOutput, wide[0][0][0]) / sizeof(double) + (row - OUT_FLUX) * CL_DIM + of % CL_DIM;
+  return (int)at;
+}
+
+static void Pattern(const Model *m, Product *t)
+{
+  int n = 0;
+
+  t->rows = 0;
+  for (int kind = 0; kind < 3; kind++) {
+    if (kind > 0)
+      *(kind == 1 ? &t->storage : &t->momentum) = t->rows;
+    for (int out = 0; out < OUT_COUNT; out++) {
+      if (Kind(out) != kind || !Reads(m, out))
+        continue;
+      t->first[t->rows] = n;
+      t->row[t->rows++] = out;
+      for (int in = 0; in < IN_ALL; in++) {
+        if (!Depends(m, out, in))
+          continue;
+        t->at[n]   = PlaceOf(out, in);
+        t->in[n++] = in;
+      }
+    }
+  }
+  t->first[t->rows] = n;
+  t->width          = n - t->first[t->storage];
+  t->store          = t->first[t->storage] + MOTION_COUNT;
+}
+
+PetscErrorCode ProductCreate(Model *m)
+{
+  const PetscInt n = PetscMax(m->map.n_local, 1), nf = m->c->fields.n;
+  Product       *t;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&t));
+  PetscCall(PetscMalloc4(n * nf, &t->x, n * nf, &t->dx, n * PHASE_COUNT, &t->diagonal, n, &t->node));
+  m->solver->product = t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ProductDestroy(Product **product)
+{
+  Product *t = *product;
+
+  PetscFunctionBeginUser;
+  if (!t)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree3(t->value, t->stored, t->MI));
+  PetscCall(PetscFree(t->face));
+  PetscCall(PetscFree4(t->x, t->dx, t->diagonal, t->node));
+  PetscCall(PetscFree(*product));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeRoom(const Model *m, Product *t)
+{
+  const int was = t->width;
+
+  PetscFunctionBeginUser;
+  Pattern(m, t); /* a stage may bring another ambient pressure */
+  if (m->P.n > t->cap || t->width > was || (m->beds && !t->MI)) {
+    PetscCall(PetscFree3(t->value, t->stored, t->MI));
+    t->cap = m->P.n;
+    PetscCall(PetscMalloc3((size_t)t->cap * (size_t)t->width, &t->value, (size_t)t->cap * (size_t)t->store, &t->stored,
+                           m->beds ? t->cap * PHASE_COUNT : 0, &t->MI));
+  }
+  if (m->nface > t->nface) {
+    PetscCall(PetscFree(t->face));
+    t->nface = m->nface;
+    PetscCall(PetscMalloc1(t->nface, &t->face));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ProductBegin(Model *m)
+{
+  const FieldSet *fs     = &m->c->fields;
+  Product        *t      = m->solver->product;
+  const double    per_dt = fs->inertia ? 1.0 / m->stage.dt : 0.0;
+
+  PetscFunctionBeginUser;
+  PetscCall(MakeRoom(m, t));
+  PetscCall(PetscArraycpy(t->x, m->x, m->map.n_local * fs->n));
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    const double *take = &m->take[TAKE_COUNT * I];
+    AtNode       *at   = &t->node[I];
+
+    memcpy(at->M, &take[TAKE_M], sizeof(at->M));
+    at->C = take[TAKE_C];
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      const double *of = &take[TAKE_FLUID + FLUID_COUNT * f], share = fs->fluid ? NodeShare(m, I, f) : 0.0;
+      const double  root = m->fluid ? m->fluid[PHASE_COUNT * I + f].root : 1.0;
+
+      at->MI2[f] = share * share * of[FLUID_MI2];
+      at->D[f]   = share * of[FLUID_D];
+      if (m->fluid)
+        at->fluid[f] = m->fluid[PHASE_COUNT * I + f];
+      t->diagonal[PHASE_COUNT * I + f] = per_dt * root * root * at->MI2[f] + at->D[f] * m->w[PHASE_COUNT * I + f];
+    }
+  }
+  PetscCall(NodeMapReduce(&m->map, t->diagonal, PHASE_COUNT));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void ProductKeep(Model *m, PetscInt p, const PointOutput *o)
+{
+  Product      *t    = m->solver->product;
+  const double *from = (const double *)o;
+  float        *v    = &t->value[(size_t)p * (size_t)t->width];
+  double       *d    = &t->stored[(size_t)p * (size_t)t->store];
+  const int     n    = t->first[t->storage];
+  int           q    = 0; /* of the motion: what changes the volume most */
+
+  for (int k = 1; k < MOTION_COUNT; k++)
+    q = fabs(o->dJ[k]) > fabs(o->dJ[q]) ? k : q;
+  for (int j = 0; j < t->first[t->rows]; j++) {
+    const double slope = t->in[j] == IN_VOLUME ? from[t->at[j] + q] / o->dJ[q] : from[t->at[j]];
+
+    if (j < n)
+      d[j] = slope;
+    else
+      v[j - n] = (float)slope;
+  }
+  memcpy(&d[n], o->dJ, sizeof(o->dJ));
+  for (int f = 0; m->beds && f < PHASE_COUNT; f++)
+    t->MI[PHASE_COUNT * p + f] = m->c->fields.phase[f] ? o->out[OUT_MI + f] : 0.0;
+}
+
+void ProductKeepFace(Model *m, PetscInt k, const FaceOutput *o)
+{
+  memcpy(m->solver->product->face[k], o->D, sizeof(o->D));
+}
+
+/* Fluids feel the skeleton's acceleration across beds (308). */
+static void BedsChange(Model *m, PetscInt p, const Reach *r, const double *dx)
+{
+  const FieldSet *fs = &m->c->fields;
+  const double   *MI = &m->solver->product->MI[PHASE_COUNT * p];
+
+  for (int a = 0; fs->solid && fs->inertia && a < r->n; a++) {
+    const PetscInt I = r->node[a];
+    double         across[CL_DIM];
+
+    memcpy(across, &dx[I * fs->n + PlaceVs(fs)], sizeof(across));
+    BedsDrive(&m->beds[p].A, across);
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      const double weight = fs->phase[f] ? r->S[a] * FlowWeight(m, p, I, f) / NodeShare(m, I, f) * MI[f] : 0.0;
+
+      for (int d = 0; d < CL_DIM; d++)
+        m->take[TAKE_COUNT * I + TAKE_FLUID + FLUID_COUNT * f + FLUID_G + d] +=
+            weight * (across[d] - dx[I * fs->n + PlaceVs(fs) + d]) / m->stage.dt;
+    }
+  }
+}
+
+/* Changes of a particle's outputs; momentum: only of those that the fluids' rows (16) read. */
+static void OutputChange(const Product *t, PetscInt p, bool momentum, double in[IN_ALL], double out[OUT_COUNT])
+{
+  const float  *v = &t->value[(size_t)p * (size_t)t->width];
+  const double *d = &t->stored[(size_t)p * (size_t)t->store], *dJ = &d[t->first[t->storage]];
+
+  in[IN_VOLUME] = 0.0;
+  for (int k = 0; k < MOTION_COUNT; k++)
+    in[IN_VOLUME] += dJ[k] * in[IN_GRADU + k];
+  for (int k = 0; k < t->storage && !momentum; k++) {
+    double sum = 0.0;
+
+    for (int j = t->first[k]; j < t->first[k + 1]; j++)
+      sum += d[j] * in[t->in[j]];
+    out[t->row[k]] = sum;
+  }
+  for (int k = momentum ? t->momentum : t->storage; k < t->rows; k++) {
+    double sum = 0.0;
+
+    for (int j = t->first[k]; j < t->first[k + 1]; j++)
+      sum += (double)v[j - t->first[t->storage]] * in[t->in[j]];
+    out[t->row[k]] = sum;
+  }
+}
+
+static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
+{
+  double out[OUT_COUNT] = {0.0};
+
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    double in[IN_ALL];
+    Reach  r;
+
+    ParticleChange(m, p, dx, &r, in, &in[IN_PROJ]);
+    OutputChange(m->solver->product, p, momentum, in, out);
+    ParticleScatter(m, p, &r, m->solver->product->x, out);
+    if (m->beds)
+      BedsChange(m, p, &r, dx);
+    if (!momentum)
+      LumpResidual(m, p, &r, dx, f);
+  }
+}
+
+static void FaceLoop(const Model *m, const double *dx, double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (PetscInt k = 0; k < m->nface; k++) {
+    const Face *face = &m->face[k];
+    double      in[IN_COUNT];
+    Reach       r;
+
+    FaceChange(m, face, dx, &r, in);
+    for (int q = 0; q < F_COUNT; q++) {
+      const double *D   = m->solver->product->face[k][q];
+      double        out = 0.0;
+
+      if (fs->at[q] < 0)
+        continue;
+      for (int i = 0; i < IN_COUNT; i++)
+        out += D[i] * in[i];
+      for (int a = 0; a < r.n; a++)
+        *RowOf(m, f, r.node[a], q) += FaceWeight(face, a, q) * FaceFlow(m, face->particle, r.node[a], q) * out;
+    }
+  }
+}
+
+/* Change of an acceleration (Rate). */
+static void RateChange(const Model *m, PetscInt I, const double *dx, int k, double rate[CL_DIM])
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int i = 0; i < CL_DIM; i++)
+    rate[i] = fs->inertia ? dx[I * fs->n + k + i] / m->stage.dt : 0.0;
+}
+
+/* Row (15) */
+static void SolidRow(const Model *m, PetscInt I, const double *x, const double *dx, const double *take, double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+  double         *fI = &f[I * fs->n + PlaceVs(fs)], acc[CL_DIM], change[CL_DIM];
+
+  for (int k = 0; k < 1 + PHASE_COUNT; k++) {
+    const int place = k > 0 ? PlaceV(fs, k - 1) : PlaceVs(fs);
+
+    if (k > 0 && !fs->phase[k - 1])
+      continue;
+    Acceleration(m, I, x, place, 1.0, acc);
+    RateChange(m, I, dx, place, change);
+    for (int i = 0; i < CL_DIM; i++)
+      fI[i] += take[TAKE_M + k] * acc[i] + m->solver->product->node[I].M[k] * change[i];
+  }
+  for (int i = 0; i < CL_DIM; i++)
+    fI[i] += take[TAKE_GRAD + i] + take[TAKE_A + i];
+}
+
+/* Rows (16) and (17) of a fluid at a node. */
+static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const double *dx, const double *take,
+                      double *f)
+{
+  const FieldSet *fs    = &m->c->fields;
+  const AtNode   *at    = &m->solver->product->node[I];
+  const double   *of    = &take[TAKE_FLUID + FLUID_COUNT * ph];
+  FluidNode      *fluid = m->fluid ? &m->fluid[PHASE_COUNT * I + ph] : NULL;
+  double *row = fluid ? fluid->F : &f[I * fs->n + PlaceV(fs, ph)], rate[CL_DIM], change[CL_DIM], J[CL_DIM], dJ[CL_DIM];
+  const double share = NodeShare(m, I, ph);
+
+  *MassRow(m, f, I, ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
+  Rate(m, I, x, PlaceV(fs, ph), rate);
+  RateChange(m, I, dx, PlaceV(fs, ph), change);
+  for (int i = 0; i < CL_DIM; i++)
+    row[i] += share * (share * of[FLUID_MI2] * rate[i] - of[FLUID_MI] * m->bc.gravity[i] + of[FLUID_G + i]) +
+              at->MI2[ph] * change[i];
+  if (fluid) {
+    fluid->D += share * of[FLUID_D];
+    fluid->root += (LayerRoot(m, ph) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
+    return;
+  }
+  DarcyFlux(m, I, ph, &x[I * fs->n], J);
+  DarcyFlux(m, I, ph, &dx[I * fs->n], dJ);
+  for (int i = 0; i < CL_DIM; i++)
+    row[i] += share * of[FLUID_D] * J[i] + at->D[ph] * dJ[i];
+}
+
+static void NodeLoop(const Model *m, const double *x, const double *dx, double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    const double *take = &m->take[TAKE_COUNT * I];
+
+    if (fs->solid)
+      SolidRow(m, I, x, dx, take, f);
+    for (int ph = 0; ph < PHASE_COUNT; ph++) {
+      if (fs->phase[ph])
+        FluidRows(m, ph, I, x, dx, take, f);
+    }
+    if (fs->heat) { /* row (21) */
+      const PetscInt k = I * fs->n + PlaceT(fs);
+
+      f[k] += (take[TAKE_C] * (x[k] - m->stage.x_star[k]) + m->solver->product->node[I].C * dx[k]) / m->stage.dt +
+              take[TAKE_C + 1] + take[TAKE_HEAT];
+    }
+  }
+}
+
+/* (16) of two fluids: k_r F + D J. */
+static PetscErrorCode MomentumRows(Model *m, const double *x, const double *dx, double *f)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapReduce(&m->map, (double *)m->fluid, PHASE_COUNT * sizeof(FluidNode) / sizeof(double)));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int ph = 0; ph < PHASE_COUNT; ph++) {
+      const FluidNode *change = &m->fluid[PHASE_COUNT * I + ph], *at = &m->solver->product->node[I].fluid[ph];
+      double           J[CL_DIM], dJ[CL_DIM];
+
+      DarcyFlux(m, I, ph, &x[I * fs->n], J);
+      DarcyFlux(m, I, ph, &dx[I * fs->n], dJ);
+      for (int i = 0; i < CL_DIM; i++)
+        f[I * fs->n + PlaceV(fs, ph) + i] = 2.0 * at->root * change->root * at->F[i] +
+                                            at->root * at->root * change->F[i] + change->D * J[i] + at->D * dJ[i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Scaled rows; those of prescribed unknowns are the unknowns. */
+static PetscErrorCode Finish(const Model *m, const double *f, Vec X, Vec Y)
+{
+  const PetscInt n = m->c->fields.n;
+  const double  *x;
+  double        *y;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(Y, &y));
+  for (PetscInt k = 0; k < m->map.n_owned * n; k++)
+    y[k] = (m->mask[k / n] >> (k % n)) & 1u ? x[k] : f[k] / m->row_scale[k];
+  PetscCall(VecRestoreArrayWrite(Y, &y));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ProductMult(Model *m, bool momentum, Vec X, Vec Y)
+{
+  const PetscInt nf = m->c->fields.n, n = m->map.n_local;
+  Product       *t = m->solver->product;
+
+  PetscFunctionBeginUser;
+  m->evaluated = false; /* what the last residual left with the nodes is overwritten */
+  PetscCall(ModelUnscale(m, X, t->dx));
+  PetscCall(PetscArrayzero(m->f, n * nf));
+  if (m->mass_row)
+    PetscCall(PetscArrayzero(m->mass_row, n * PHASE_COUNT));
+  if (m->fluid)
+    PetscCall(PetscArrayzero(m->fluid, n * PHASE_COUNT));
+  PetscCall(PetscArrayzero(m->take, n * TAKE_COUNT));
+  if (!momentum)
+    PetscCall(ModelProjectGradients(m, t->dx, true, m->proj));
+  ModelGive(m, t->dx, true);
+  ParticleLoop(m, momentum, t->dx, m->f);
+  NodeLoop(m, t->x, t->dx, m->f);
+  FaceLoop(m, t->dx, m->f);
+  if (!momentum) {
+    StabilisationResidual(m, t->dx, true, m->f);
+    if (PlatesCouple(m))
+      PetscCall(PlatesMult(m, t->dx, m->f));
+  }
+  PetscCall(NodeMapReduce(&m->map, m->f, nf));
+  if (m->mass_row)
+    PetscCall(ModelSumMassRows(m, m->f));
+  if (m->fluid)
+    PetscCall(MomentumRows(m, t->x, t->dx, m->f));
+  PetscCall(Finish(m, m->f, X, Y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ProductDiagonal(const Model *m, Vec d)
+{
+  const FieldSet *fs = &m->c->fields;
+  double         *a;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetArrayWrite(d, &a));
+  for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
+    const int  q    = fs->field[k % fs->n];
+    const bool free = !((m->mask[k / fs->n] >> (k % fs->n)) & 1u);
+
+    a[k] = free && q >= F_VW && q < F_PW
+               ? m->solver->product->diagonal[PHASE_COUNT * (k / fs->n) + (q - F_VW) / CL_DIM] * m->col_scale[k] /
+                     m->row_scale[k]
+               : 1.0;
+  }
+  PetscCall(VecRestoreArrayWrite(d, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
