@@ -26,12 +26,19 @@ GAS = 0.016 / 0.124  # kg of methane per kg of hydrate
 STANDARD = 0.6789  # kg/m3, methane at 101.4 kPa and 15.56 degC
 
 
+def of_all(snapshots):
+    """The snapshots without the particles that had left the grid by the last of them."""
+    stay = snapshots[-1][1]["id"]
+    return [(t, p if len(p["id"]) == len(stay) else {k: v[np.isin(p["id"], stay)] for k, v in p.items()}) for t, p in snapshots]
+
+
 class Run:
-    """Snapshots and balance of a run.  cell: size (m) of a cell along y, from 2 x 2 particles, or `across` of them."""
+    """Snapshots and balance of a run.  cell: size (m) of a cell along y, from 2 x 2 particles, or `across` of them; gone: particles that left the grid."""
 
     def __init__(self, folder, loaded=10.0, across=2):
         self.folder = Path(folder)
-        self.snapshots = read_snapshots(folder)
+        self.snapshots = of_all(whole := read_snapshots(folder))
+        self.gone = len(whole[0][1]["id"]) - len(self.snapshots[0][1]["id"])
         self.balance = read_csv(self.folder / "balance.csv")
         self.time = np.array([t for t, _ in self.snapshots])
         first = self.snapshots[0][1]
@@ -213,10 +220,11 @@ def measure(run):
     mean = [np.average(np.hypot(*p["v_s"][failed].T), weights=p["mass_solid"][failed, 0]) if failed.any() else 0.0 for _, p in run.snapshots]
     fastest = [np.quantile(np.hypot(*p["v_s"].T), 0.999) for _, p in run.snapshots]
     slab = run.end["volume"][failed, 0]
-    lost = b["hydrate_kg"][0] - b["hydrate_kg"][-1]
+    lost = b["hydrate_kg"][0] - b["hydrate_kg"][-1] - b["removed_hydrate_kg"][-1]
     scarp = run.start[run.top & failed, 0]
     return {
         "end_s": float(run.time[-1]),
+        "particles_gone": run.gone,
         "onset_s": crossing(run.time, share, STARTED),
         "rise_of_kinetic_energy_s": crossing(t[after], e[after], RISEN * e[quiet].max()) if quiet.any() else None,
         "failed_volume_m2": float(slab.sum()),
@@ -252,6 +260,8 @@ def words(m, found):
            f"{m['peak_kinetic_energy_J']:.3g} J per metre at {m['peak_kinetic_energy_s']:.1f} s, peaks at {tops} s")  # fmt: skip
     yield (f"  hydrate lost {m['hydrate_lost_kg']:.0f} kg ({100 * m['hydrate_lost_share']:.2f} %), gas released {m['gas_released_kg']:.0f} kg = "
            f"{m['gas_released_std_m3']:.0f} m3 at 101.4 kPa and 15.56 degC, per metre")  # fmt: skip
+    if m["particles_gone"]:
+        yield f"  {m['particles_gone']} particles left the grid and count in nothing of this but energy and hydrate"
     yield f"  {len(found)} shear bands" + (": time, angle to the base, from and to (where it was at the start), eps_d_p" if found else "")
     for b in found:
         yield (f"    {b['time_s']:6.1f} s  {b['angle_deg']:3.0f} deg, rises {b['rises']:9s}  ({b['x_low_m']:.0f}, {b['y_low_m']:.0f}) to ({b['x_high_m']:.0f}, {b['y_high_m']:.0f}) m  "

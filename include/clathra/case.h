@@ -40,6 +40,7 @@ typedef struct {
 } Probe;
 
 enum { ICE_WARN = 0, ICE_STOP };
+enum { LEAVING_STOP = 0, LEAVING_REMOVE };
 enum { SURFACE_FREE = 0, SURFACE_TIED, SURFACE_VELOCITIES_FREE }; /* (41): nothing, all, p and T alone */
 enum { PRESSURES_NODES = 0, PRESSURES_PARTICLES, PRESSURES_RELATIVE };
 
@@ -49,6 +50,7 @@ typedef struct Case {
   char  title[256];
   char  fields_wanted[64]; /* auto, or the words of cl_field_word, or the name of a set */
   int   ice;               /* ICE_... */
+  int   leaving;           /* LEAVING_...: what becomes of particles that leave the grid (373) */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
   char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | auto */

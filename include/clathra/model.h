@@ -103,6 +103,49 @@ typedef struct {
   double flux[PHASE_COUNT][CL_DIM][CL_DIM], q[PHASE_COUNT][CL_DIM];
 } Wide;
 
+/* Sums over all particles. */
+typedef struct {
+  double water, methane, hydrate, solid; /* kg; water and methane include what the hydrate holds */
+  double gas;                            /* free gas, kg */
+  double V;
+  double capacity; /* J/K */
+  double enthalpy; /* J, (363); 0 without heat */
+} ModelTotals;
+
+/* Energies of the mechanical balance (90) that the particles hold, J; zero without mechanics.  Sums over all ranks. */
+enum {
+  ENERGY_KINETIC = 0,
+  ENERGY_ELASTIC,  /* (89), over that of the initial stress */
+  ENERGY_PLASTIC,  /* dissipated so far */
+  ENERGY_HEAT,     /* the share of it that became heat */
+  ENERGY_RELEASED, /* Model.released */
+  ENERGY_COUNT
+};
+
+/* Sums over particles that were taken out of the run (373). */
+enum {
+  REMOVED_N = 0,
+  REMOVED_SOLID, /* kg, as the next three: those of ModelTotals */
+  REMOVED_HYDRATE,
+  REMOVED_WATER,
+  REMOVED_METHANE,
+  REMOVED_ENTHALPY,                           /* J, (363) */
+  REMOVED_MOMENTUM,                           /* of all phases, N s */
+  REMOVED_ENERGY = REMOVED_MOMENTUM + CL_DIM, /* ENERGY_..., J */
+  REMOVED_COUNT  = REMOVED_ENERGY + ENERGY_COUNT
+};
+/* One of them: when and where it left, and the mass of all that it held. */
+typedef struct {
+  double id, region, t, x[CL_DIM], mass; /* whole numbers; s, m, kg */
+} Leaver;
+/* Particles of this rank that left in the last step or burst. */
+typedef struct {
+  bool     removes; /* they are taken out; else the step is refused */
+  PetscInt n, cap;
+  Leaver  *one; /* [n] */
+  double   sum[REMOVED_COUNT];
+} Leaving;
+
 typedef struct {
   const Scene  *c;
   Grid          grid;
@@ -150,6 +193,7 @@ typedef struct {
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
   double   keeps;               /* share of their motion against the nodes that particles keep (357), dimensionless */
+  Leaving  leaving;             /* particles that crossed the edge of the grid (373) */
 
   Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (265), (293) */
   Solver    *solver;  /* of the stages */
@@ -234,29 +278,22 @@ void ModelCountFace(const Scene *c, const Face *face, double weight, const FaceO
 /* Same status on all ranks (the worst), with its reason and place on all ranks. */
 PetscErrorCode ModelReduceStatus(Model *m, ClStatus *status);
 
-/* Sums over all particles. */
-typedef struct {
-  double water, methane, hydrate, solid; /* kg; water and methane include what the hydrate holds */
-  double gas;                            /* free gas, kg */
-  double V;
-  double capacity; /* J/K */
-  double enthalpy; /* J, (363); 0 without heat */
-} ModelTotals;
 /* Of the particles as they are.  Collective; the same on all ranks. */
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t);
+/* What one particle adds to them. */
+void ModelAddTotals(const Model *m, PetscInt p, ModelTotals *t);
 
-/* Energies of the mechanical balance (90) that the particles hold, J; zero without mechanics.  Sums over all ranks. */
-enum {
-  ENERGY_KINETIC = 0,
-  ENERGY_ELASTIC,  /* (89), over that of the initial stress */
-  ENERGY_PLASTIC,  /* dissipated so far */
-  ENERGY_HEAT,     /* the share of it that became heat */
-  ENERGY_RELEASED, /* Model.released */
-  ENERGY_COUNT
-};
 double ModelKineticEnergy(const Particles *P, PetscInt p); /* of all phases of a particle, J */
 /* Fills all of ENERGY_..., J.  Collective; the same on all ranks. */
 PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT]);
+/* What one particle adds to all but the released one, J. */
+void ModelAddEnergies(const Model *m, PetscInt p, double energy[ENERGY_COUNT]);
+
+/* Takes the particles that stand outside the grid at t (s) out of the run and notes them in Model.leaving, if that is
+   wished. */
+PetscErrorCode ModelTakeOut(Model *m, double t);
+/* Nothing has left in this step or burst. */
+void ModelForgetLeavers(Model *m);
 
 /* SNES callbacks, exposed for tests. */
 PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model);

@@ -32,6 +32,7 @@ typedef struct {
   double   left[PHASE_COUNT], moved[PHASE_COUNT];  /* (277), kg since t = 0 */
   double   meter[CL_METERS][METER_COUNT];          /* (33): kg of water and gas, J, outwards since t = 0 */
   double   work[WORK_COUNT];                       /* (90), J since t = 0 */
+  double   removed[REMOVED_COUNT];                 /* particles that left the grid (373), since t = 0 */
   double   energy[ENERGY_COUNT];                   /* J, as the particles hold them now */
   double   water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
   double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
@@ -254,6 +255,13 @@ PetscErrorCode StepperKeeps(Stepper *s, double dt, double *keeps);
 double StepperNextStop(const Stepper *s, bool *kink);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
 void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
+/* leave.c: what left the grid in the accepted step or burst goes into the state, and a line says so for each particle;
+   a run that has none left is broken.  Collective. */
+PetscErrorCode StepperBookLeavers(Stepper *s);
+/* What is missing, of the initial mass of water and methane (of nothing: kg) and of the heat that warms the body by 1
+ * K.
+ */
+void StepperErrors(const StepperState *z, const ModelTotals *now, double error[3]);
 /* Adds up what an accepted step found, and calls the monitor; t and dt are the scheme's to set. */
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info);
 /* The advance of schemes that have a `step`: attempts, control of their length, commit.  Collective. */

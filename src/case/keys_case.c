@@ -33,6 +33,7 @@ static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "exp
 static const char *const surface_word[]     = {"free", "tied", "velocities_free", NULL}; /* SURFACE_... */
 static const char *const share_word[]       = {"nodes", "particles", "relative", NULL};  /* PRESSURES_... */
 static const char *const ice_word[]         = {"warn", "stop", NULL};                    /* ICE_... */
+static const char *const leaving_word[]     = {"stop", "remove", NULL};                  /* LEAVING_... */
 static const char *const exchange_word[]    = {"auto", "yes", "no", NULL};               /* EXCHANGE_... */
 static const char *const without_gas_word[] = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
 
@@ -97,6 +98,9 @@ const Key case_key[] = {
     CHOICE(Case, "ice", ice, "warn", ice_word,
            "when pore water is colder than its melting point, of which no equation knows: say so and go on, or end the "
            "run"),
+    CHOICE(Case, "particles_leaving", leaving, "stop", leaving_word,
+           "when particles cross the edge of the grid: end the run, or take them out of it and count what they held",
+           .has = HAS_SOLID),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
          WHEN(NeedsEnd, "there are no stages"), .kept = true),
     TEXT(Case, "stepper_type", stepper, "sdirk2",

@@ -253,23 +253,24 @@ PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
 }
 
 /* Agreement of all ranks on how the step went, and what follows from where the particles are now. */
-static PetscErrorCode Agree(Explicit *e, ClStatus *status)
+static PetscErrorCode Agree(Explicit *e, double t, ClStatus *status)
 {
   Model   *m       = e->m;
-  int      flag[3] = {ModelFailure(m)->status != CL_OK, e->stale, e->strays};
+  int      flag[4] = {ModelFailure(m)->status != CL_OK, e->stale, e->strays, e->gone};
   PetscInt left;
 
   PetscFunctionBeginUser;
   *status = ModelFailure(m)->status;
   if (m->grid.size > 1) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 3, MPI_INT, MPI_MAX, m->grid.comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 4, MPI_INT, MPI_MAX, m->grid.comm));
     if (flag[0])
       PetscCall(ModelReduceStatus(m, status));
   }
   e->stale  = flag[1];
   e->strays = flag[2];
-  if (*status != CL_OK || !e->strays || m->grid.size == 1)
+  if (*status != CL_OK || !(flag[3] || (e->strays && m->grid.size > 1)))
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelTakeOut(m, t));
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
   PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
   PetscCall(ModelBalance(m));
@@ -332,7 +333,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   BcValuesEvaluate(m->c, t + dt, &m->bc);
   if (e->stale)
     PetscCall(NodesRebuild(e));
-  e->stale = e->strays = false;
+  e->stale = e->strays = e->gone = false;
   PetscCall(Momentum(e, t + dt, dt));
   PetscCall(MassAndHeat(e, dt, sum));
   PetscCall(PetscLogEventBegin(e->event[STEP_UPDATE], 0, 0, 0, 0));
@@ -344,7 +345,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
     sum->work[k] += e->work[k];
   PetscCall(PetscLogEventBegin(e->event[STEP_ORDER], 0, 0, 0, 0));
   Look(e);
-  PetscCall(Agree(e, status));
+  PetscCall(Agree(e, t + dt, status));
   PetscCall(PetscLogEventEnd(e->event[STEP_ORDER], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

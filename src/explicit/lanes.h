@@ -196,16 +196,16 @@ struct Explicit {
   double (*spring)[CL_DIM];         /* [rows] stiffness of the springs at a node, N/m */
   double (*answer)[2 * CL_DIM];     /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
   double (*push)[CL_DIM];           /* [rows] force of the plates, N */
-  bool   stale, strays;             /* a particle reaches other nodes; a particle left this rank's cells */
-  bool   resize;                    /* rows of nodes have another length */
-  double latent, advected;          /* J over the step */
-  double squeezed;                  /* (290), J over the step */
-  double heat_in, warmed;  /* J over the step: what prescribed temperatures take, and all that warms the nodes */
-  double ahead;            /* of the end of the step, since ExplicitBegin, s */
-  double straight;         /* STRAIGHT p_0, the least of all materials, Pa */
-  double work[WORK_RATES]; /* J over the step (92), this rank */
-  double (*pull)[CL_DIM];  /* [nface] force of the tractions, N */
-  double added, acting;    /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  bool   stale, strays, gone; /* a particle reaches other nodes; left this rank's cells; left the grid, see (373) */
+  bool   resize;              /* rows of nodes have another length */
+  double latent, advected;    /* J over the step */
+  double squeezed;            /* (290), J over the step */
+  double heat_in, warmed;     /* J over the step: what prescribed temperatures take, and all that warms the nodes */
+  double ahead;               /* of the end of the step, since ExplicitBegin, s */
+  double straight;            /* STRAIGHT p_0, the least of all materials, Pa */
+  double work[WORK_RATES];    /* J over the step (92), this rank */
+  double (*pull)[CL_DIM];     /* [nface] force of the tractions, N */
+  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
 };

@@ -103,37 +103,44 @@ static inline void NoteStray(Explicit *e, const Set s, Run r, const Gathered *g,
   double         most;
   const PetscInt far = Farthest(e, s, r, g, dt, &most), out = Outside(e, r);
 
-  if (most < MOST_MOVED && out >= 0)
+  if (most < MOST_MOVED && out >= 0 && !e->m->leaving.removes)
     ModelNoteFailure(e->m, CL_LEFT_GRID, "a particle leaves the background grid", out);
   else
     ModelNoteFailure(e->m, CL_TOO_FAR, "a particle moves more than half a cell in one step", far);
 }
 
-/* Does a particle, now at x, come from more than half a cell away, or leave the grid? */
+/* Does a particle, now at x, come from more than half a cell away? */
 INLINE Wrong Strays(const GridLines *line, int n, const double *restrict u, const double *restrict x)
 {
-  const double h = line->h, lower = line->lower, upper = LinesAt(line, line->cells);
+  const double h   = line->h;
   Wrong        far = 0;
 
-  if (!line->x) {
-    for (int q = 0; q < n; q++)
-      far |= WRONG_UNLESS((fabs(u[q]) < MOST_MOVED * h) & (x[q] >= lower) & (x[q] <= upper));
-    return far;
-  }
-  for (int q = 0; q < n; q++)
-    far |=
-        WRONG_UNLESS((fabs(u[q]) < MOST_MOVED * LinesLeastAt(line, x[q] - u[q])) & (x[q] >= lower) & (x[q] <= upper));
+  for (int q = 0; q < n && !line->x; q++)
+    far |= WRONG_UNLESS(fabs(u[q]) < MOST_MOVED * h);
+  for (int q = 0; q < n && line->x; q++)
+    far |= WRONG_UNLESS(fabs(u[q]) < MOST_MOVED * LinesLeastAt(line, x[q] - u[q]));
   return far;
 }
 
-/* Makes the motion history; false if a particle crosses half a cell or leaves the grid. */
+/* Has a particle, now at x, left the grid? */
+INLINE Wrong Leaves(const GridLines *line, int n, const double *restrict x)
+{
+  const double lower = line->lower, upper = LinesAt(line, line->cells);
+  Wrong        out = 0;
+
+  for (int q = 0; q < n; q++)
+    out |= WRONG_UNLESS((x[q] >= lower) & (x[q] <= upper));
+  return out;
+}
+
+/* Makes the motion history; false if a particle crosses half a cell, or leaves a grid that none may leave (373). */
 INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strain *n, double dt)
 {
   const Grid    *grid   = &e->m->grid;
   const bool     grows  = e->m->c->basis == BASIS_CPGIMP;
   ParticleMotion motion = {.log_J = n->log_J};
   double         u[CL_DIM][BLOCK];
-  Wrong          far = 0;
+  Wrong          far = 0, out = 0;
 
   for (int d = 0; d < CL_DIM; d++) {
     for (int q = 0; q < r.n; q++)
@@ -146,6 +153,8 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
   ParticlesKeep(&e->m->P, r.p, r.n, &motion);
   for (int d = 0; d < CL_DIM; d++) {
     far |= Strays(&grid->line[d], r.n, u[d], e->m->P.f[P_X + d] + r.p);
+    out |= Leaves(&grid->line[d], r.n, e->m->P.f[P_X + d] + r.p);
   }
-  return !far;
+  e->gone = e->gone || out;
+  return !far && (!out || e->m->leaving.removes);
 }

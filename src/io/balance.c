@@ -1,8 +1,8 @@
 /* balance.csv: what the body holds, what went through its boundary, and what is missing. */
 #include "io_private.h"
 
-/* Columns of the mechanical balance (90), in scenes with a solid. */
-typedef enum { OF_RATE, OF_ENERGY, OF_WORK } Source;
+/* Columns of the mechanical balance (90) and of what left the grid (373), in scenes with a solid. */
+typedef enum { OF_RATE, OF_ENERGY, OF_WORK, OF_REMOVED } Source;
 static const struct {
   const char *name;
   Source      source;
@@ -19,7 +19,18 @@ static const struct {
               {"damping_work_J", OF_WORK, WORK_DAMPING},
               {"elastic_released_J", OF_WORK, WORK_RELEASED},
               {"kinetic_lost_J", OF_WORK, WORK_LOST},
-              {"energy_remainder_J", OF_WORK, WORK_REMAINDER}};
+              {"energy_remainder_J", OF_WORK, WORK_REMAINDER},
+              {"removed_particles", OF_REMOVED, REMOVED_N},
+              {"removed_solid_kg", OF_REMOVED, REMOVED_SOLID},
+              {"removed_hydrate_kg", OF_REMOVED, REMOVED_HYDRATE},
+              {"removed_water_kg", OF_REMOVED, REMOVED_WATER},
+              {"removed_methane_kg", OF_REMOVED, REMOVED_METHANE},
+              {"removed_enthalpy_J", OF_REMOVED, REMOVED_ENTHALPY},
+              {"removed_momentum_x_Ns", OF_REMOVED, REMOVED_MOMENTUM},
+              {"removed_momentum_y_Ns", OF_REMOVED, REMOVED_MOMENTUM + 1},
+              {"removed_kinetic_J", OF_REMOVED, REMOVED_ENERGY + ENERGY_KINETIC},
+              {"removed_elastic_J", OF_REMOVED, REMOVED_ENERGY + ENERGY_ELASTIC},
+              {"removed_plastic_J", OF_REMOVED, REMOVED_ENERGY + ENERGY_PLASTIC}};
 
 void BalanceHeader(const Case *c, FILE *f)
 {
@@ -34,15 +45,10 @@ void BalanceHeader(const Case *c, FILE *f)
   fprintf(f, "%s\n", c->nstage ? ",stage" : "");
 }
 
-/* Relative to the initial store; absolute where there was none. */
-static double Relative(double missing, double store)
-{
-  return store > 0.0 ? missing / store : missing;
-}
-
 static void WriteEnergies(const Model *m, const StepperState *s, FILE *f)
 {
-  const double *from[] = {[OF_RATE] = m->rates.work, [OF_ENERGY] = s->energy, [OF_WORK] = s->work};
+  const double *from[] = {
+      [OF_RATE] = m->rates.work, [OF_ENERGY] = s->energy, [OF_WORK] = s->work, [OF_REMOVED] = s->removed};
 
   for (size_t k = 0; m->c->fields.solid && k < sizeof(column) / sizeof(*column); k++)
     fprintf(f, ",%.17g", from[column[k].source][column[k].place]);
@@ -53,26 +59,26 @@ static void WriteEnthalpy(const StepperState *s, double now, FILE *f)
 {
   const double given = s->heat_in + s->squeezed + s->work[WORK_HEAT];
 
-  fprintf(f, ",%.17g,%.17g,%.17g", now, s->enthalpy_out, now - s->enthalpy0 + s->enthalpy_out - given);
+  fprintf(f, ",%.17g,%.17g,%.17g", now, s->enthalpy_out,
+          now - s->enthalpy0 + s->enthalpy_out + s->removed[REMOVED_ENTHALPY] - given);
 }
 
 static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, const StepInfo *info,
                                const ModelTotals *now)
 {
-  const Case  *c       = CaseOf(m->c);
-  const double water   = Relative(now->water + s->out[PHASE_W] - s->water0, s->water0);
-  const double methane = Relative(now->methane + s->out[PHASE_G] - s->methane0, s->methane0);
-  const double heat    = Relative(s->heat_gain - s->heat_in - s->heat_source, s->capacity0 * 1.0); /* of 1 K */
-  FILE        *f;
+  const Case *c = CaseOf(m->c);
+  double      error[3];
+  FILE       *f;
 
   PetscFunctionBeginUser;
+  StepperErrors(s, now, error);
   PetscCall(RowBegin(out, &f));
   fprintf(f, "%" PetscInt_FMT ",", s->step);
   IoTime(c, f, s->t);
   fprintf(f, ",%.12e,%" PetscInt_FMT, info ? info->dt : 0.0, info ? info->newton : 0);
-  fprintf(f, ",%.17g,%.17g,%.12e", now->water, s->out[PHASE_W], water);
-  fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], methane);
-  fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, heat);
+  fprintf(f, ",%.17g,%.17g,%.12e", now->water, s->out[PHASE_W], error[0]);
+  fprintf(f, ",%.17g,%.17g,%.12e", now->methane, s->out[PHASE_G], error[1]);
+  fprintf(f, ",%.17g,%.17g,%.17g,%.17g,%.12e", now->hydrate, s->heat_gain, s->heat_in, s->heat_source, error[2]);
   fprintf(f, ",%.17g", s->energy[ENERGY_KINETIC]);
   if (c->scene.compression_heat)
     fprintf(f, ",%.17g", s->squeezed);

@@ -49,7 +49,7 @@ static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
 
     if (fabs(u[d]) > MAX_MOVE * LinesLeastAt(line, m->P.f[P_X + d][p]))
       ModelNoteFailure(m, CL_TOO_FAR, "a particle moves more than half a cell in one step", p);
-    else if (to < m->grid.lower[d] || to > upper)
+    else if (!m->leaving.removes && (to < m->grid.lower[d] || to > upper))
       ModelNoteFailure(m, CL_LEFT_GRID, "a particle leaves the background grid", p);
   }
 }
@@ -379,6 +379,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
       m->released += Released(m, p, &s);
     WriteHistory(m, p, x, &r, in, &s);
   }
+  PetscCall(ModelTakeOut(m, m->stage.t));
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
   PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");
   PetscCall(ParticlesNonlocal(m->c, &m->grid, m->stage.ahead, &m->P));

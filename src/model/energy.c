@@ -1,28 +1,33 @@
 /* Mechanical energy: what the particles hold (89), and the powers of an implicit stage (91). */
 #include "gather.h"
 
+void ModelAddEnergies(const Model *m, PetscInt p, double energy[ENERGY_COUNT])
+{
+  const Particles *P   = &m->P;
+  const Material  *mat = ParticleMaterial(m, p);
+  SkeletonHistory  h;
+  double           dE;
+
+  energy[ENERGY_KINETIC] += ModelKineticEnergy(P, p);
+  if (!m->c->fields.solid)
+    return;
+  const SkeletonStore store = ParticlesSkeleton(P, 0, 0.0);
+
+  SkeletonTake(&store, p, &h);
+  energy[ENERGY_ELASTIC] +=
+      P->f[P_V][p] * SkeletonEnergy(&mat->elasticity, ElasticityYoung(&mat->elasticity, P->f[P_SH][p], &dE), &h);
+  if (P->f[P_WP]) {
+    energy[ENERGY_PLASTIC] += P->f[P_WP][p];
+    energy[ENERGY_HEAT] += mat->plasticity.heat * P->f[P_WP][p];
+  }
+}
+
 PetscErrorCode ModelEnergies(const Model *m, double energy[ENERGY_COUNT])
 {
-  const Particles *P = &m->P;
-
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(energy, ENERGY_COUNT));
-  for (PetscInt p = 0; p < P->n; p++)
-    energy[ENERGY_KINETIC] += ModelKineticEnergy(P, p);
-  const SkeletonStore store = ParticlesSkeleton(P, 0, 0.0);
-  for (PetscInt p = 0; m->c->fields.solid && p < P->n; p++) {
-    const Material *mat = ParticleMaterial(m, p);
-    SkeletonHistory h;
-    double          dE;
-
-    SkeletonTake(&store, p, &h);
-    energy[ENERGY_ELASTIC] +=
-        P->f[P_V][p] * SkeletonEnergy(&mat->elasticity, ElasticityYoung(&mat->elasticity, P->f[P_SH][p], &dE), &h);
-    if (P->f[P_WP]) {
-      energy[ENERGY_PLASTIC] += P->f[P_WP][p];
-      energy[ENERGY_HEAT] += mat->plasticity.heat * P->f[P_WP][p];
-    }
-  }
+  for (PetscInt p = 0; p < m->P.n; p++)
+    ModelAddEnergies(m, p, energy);
   energy[ENERGY_RELEASED] = m->released;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, ENERGY_COUNT, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);

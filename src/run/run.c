@@ -129,29 +129,26 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Relative to the initial store; absolute where there was none. */
-static double Relative(double missing, double store)
-{
-  return store > 0.0 ? missing / store : missing;
-}
-
 static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char text[2560], above[64] = "", local[512], left[128], loose[256], ice[256], yields[256], gaps[256], ranks[128],
-                   *stages, *all;
+  char text[3072], gone[512], above[64] = "", local[512], left[128], loose[256], ice[256], yields[256], gaps[256],
+                              ranks[128], *stages, *all;
   ModelTotals t;
+  double      error[3];
   bool        ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
+  StepperErrors(z, &t, error);
   PetscCall(LocalSummary(s, local));
   PetscCall(YieldSummary(s->model, yields));
   PetscCall(LooseSummary(s, loose));
   if (z->loose_total)
     PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
   PetscCall(LeftSummary(s, left));
+  GoneSummary(z, gone);
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(IceSummary(s, ice));
   PetscCall(RanksSummary(s->model, ranks));
@@ -162,16 +159,13 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       " Newton iterations, %.2f s%s\n%s"
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
       "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-      "%s%s%s%s%s%s  results in %s\n",
+      "%s%s%s%s%s%s%s  results in %s\n",
       StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", z->t,
       StepperCase(s)->nstage ? "by stage"
       : s->auto_.on          ? STEPPER_AUTO
                              : s->scheme->name,
-      z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local,
-      Relative(t.water + z->out[PHASE_W] - z->water0, z->water0),
-      Relative(t.methane + z->out[PHASE_G] - z->methane0, z->methane0),
-      Relative(z->heat_gain - z->heat_in - z->heat_source, z->capacity0), t.hydrate, z->limited_total, left, yields,
-      loose, gaps, ice, ranks, StepperCase(s)->output_dir));
+      z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local, error[0], error[1],
+      error[2], t.hydrate, z->limited_total, left, yields, gone, loose, gaps, ice, ranks, StepperCase(s)->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);

@@ -50,12 +50,13 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
    is nothing to say */
-PetscErrorCode LocalSummary(const Stepper *s, char text[512]); /* of an integrator without matrices */
-PetscErrorCode LeftSummary(const Stepper *s, char text[128]);  /* what Newton's method left (277) */
-PetscErrorCode LooseSummary(const Stepper *s, char text[256]); /* errors that were put up with */
-PetscErrorCode LongSummary(const Model *m, char text[256]);    /* domains longer than a cell; collective */
-PetscErrorCode IceSummary(const Stepper *s, char text[256]);   /* water below its melting point */
-PetscErrorCode RanksSummary(const Model *m, char text[128]);   /* how evenly ranks share the particles; collective */
+PetscErrorCode LocalSummary(const Stepper *s, char text[512]);     /* of an integrator without matrices */
+PetscErrorCode LeftSummary(const Stepper *s, char text[128]);      /* what Newton's method left (277) */
+void           GoneSummary(const StepperState *z, char text[512]); /* particles that left the grid (373) */
+PetscErrorCode LooseSummary(const Stepper *s, char text[256]);     /* errors that were put up with */
+PetscErrorCode LongSummary(const Model *m, char text[256]);        /* domains longer than a cell; collective */
+PetscErrorCode IceSummary(const Stepper *s, char text[256]);       /* water below its melting point */
+PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */
 
 /* ---------------------------------------------------------------- phases.c */
 /* Curve and pressure of equilibrium of each region that reacts, at its temperature. */

@@ -37,6 +37,21 @@ PetscErrorCode LeftSummary(const Stepper *s, char text[128])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void GoneSummary(const StepperState *z, char text[512])
+{
+  const double *r = z->removed;
+
+  text[0] = '\0';
+  if (r[REMOVED_N] > 0.0)
+    snprintf(
+        text, 512,
+        "  %.0f particles left the grid and were taken out, with %.4g kg of solid, %.4g kg of hydrate, %.4g kg of "
+        "water and %.4g kg of methane (both with what hydrate holds), a momentum of (%.3g, %.3g) N s and a kinetic "
+        "energy of %.3g J\n",
+        r[REMOVED_N], r[REMOVED_SOLID], r[REMOVED_HYDRATE], r[REMOVED_WATER], r[REMOVED_METHANE], r[REMOVED_MOMENTUM],
+        r[REMOVED_MOMENTUM + 1], r[REMOVED_ENERGY + ENERGY_KINETIC]);
+}
+
 /* Errors that were put up with. */
 PetscErrorCode LooseSummary(const Stepper *s, char text[256])
 {

@@ -74,11 +74,27 @@ void StepperCount(const Scene *c, const StageRates *rates, double weight, Attemp
     a->work[k] += weight * rates->work[k];
 }
 
+/* Relative to the initial store; absolute where there was none. */
+static double Missing(double missing, double store)
+{
+  return store > 0.0 ? missing / store : missing;
+}
+
+void StepperErrors(const StepperState *z, const ModelTotals *now, double error[3])
+{
+  error[0] = Missing(now->water + z->out[PHASE_W] + z->removed[REMOVED_WATER] - z->water0, z->water0);
+  error[1] = Missing(now->methane + z->out[PHASE_G] + z->removed[REMOVED_METHANE] - z->methane0, z->methane0);
+  error[2] = Missing(z->heat_gain - z->heat_in - z->heat_source, z->capacity0 * 1.0); /* of 1 K */
+}
+
 PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
 {
   StepperState *z = &s->state;
 
   PetscFunctionBeginUser;
+  PetscCall(StepperBookLeavers(s));
+  if (s->broken)
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(UpdateScales(s));
   if (s->broken)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -102,6 +118,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
       z->meter[k][q] += a->meter[k][q];
   }
   PetscCall(StepperEnergyStep(s, a->work));
+  ModelForgetLeavers(s->model);
   if (s->monitor)
     PetscCall(s->monitor(s, info, s->monitor_ctx));
   PetscFunctionReturn(PETSC_SUCCESS);

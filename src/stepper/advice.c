@@ -42,7 +42,7 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
                        "conditions one by one",
       [CL_LEFT_GRID] =
           "a larger grid, for the body must stay inside it; a roller or fixed line where the body should be "
-          "held",
+          "held; particles: {leaving: remove} for what may go",
       [CL_TOO_FAR] = "gravity_ramp or a ramp of the load; stress: {geostatic: K0} for a body that starts unstressed; "
                      "inertia: yes where it slides",
       [CL_SOLVER] =

@@ -17,7 +17,7 @@ PetscErrorCode StepperEnergyStep(Stepper *s, const double work[WORK_RATES])
   PetscFunctionBeginUser;
   PetscCall(ModelEnergies(s->model, now));
   for (int k = 0; k < ENERGY_COUNT; k++) {
-    gain[k]      = now[k] - z->energy[k];
+    gain[k]      = now[k] + s->model->leaving.sum[REMOVED_ENERGY + k] - z->energy[k]; /* what left gained it before */
     z->energy[k] = now[k];
   }
   if (!c->scene.fields.solid)

@@ -53,6 +53,8 @@ PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
   s->tol          = c->tol;
   s->max_failures = c->max_failures;
   s->crawl        = 0;
+
+  s->model->leaving.removes = c->leaving == LEAVING_REMOVE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
