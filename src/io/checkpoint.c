@@ -40,10 +40,12 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(work),         REAL(energy),
                                      REAL(squeezed),     REAL(left),
                                      REAL(moved),        REAL(enthalpy0),
-                                     REAL(enthalpy_out), {NULL, 0, 0, false}};
-/* Fourteen integers, twenty-five reals, the meters, works and energies. */
+                                     REAL(enthalpy_out), REAL(peak),
+                                     REAL(peak_of),      REAL(peak_t),
+                                     REAL(peak_at),      {NULL, 0, 0, false}};
+/* Fourteen integers, thirty reals, the meters, works and energies. */
 _Static_assert(sizeof(StepperState) ==
-                   14 * sizeof(PetscInt) + (25 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
+                   14 * sizeof(PetscInt) + (30 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 static PetscErrorCode WriteState(hid_t file, const StepperState *s)
