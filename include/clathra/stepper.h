@@ -25,10 +25,11 @@ typedef struct {
   double   err_old;     /* error of the last accepted step relative to the tolerance */
   double   ice_coldest; /* how far at most, K */
   double   err_worst;   /* largest error of the steps in loose_total */
-  double   out[PHASE_COUNT];                /* water and methane gone through the boundary since t = 0, kg */
-  double   heat_gain, heat_in, heat_source; /* J since t = 0 */
-  double   squeezed;                        /* of the heat source: compression and throttling (290), J since t = 0 */
-  double   enthalpy_out;                    /* with the fluids (364), J since t = 0 */
+  double   peak, peak_of, peak_t, peak_at[CL_DIM]; /* largest Peak of any step, when it was taken (s), and where (m) */
+  double   out[PHASE_COUNT];                       /* water and methane gone through the boundary since t = 0, kg */
+  double   heat_gain, heat_in, heat_source;        /* J since t = 0 */
+  double   squeezed;     /* of the heat source: compression and throttling (290), J since t = 0 */
+  double   enthalpy_out; /* with the fluids (364), J since t = 0 */
   double   left[PHASE_COUNT], moved[PHASE_COUNT];  /* (277), kg since t = 0 */
   double   meter[CL_METERS][METER_COUNT];          /* (33): kg of water and gas, J, outwards since t = 0 */
   double   work[WORK_COUNT];                       /* (90), J since t = 0 */
@@ -40,12 +41,20 @@ typedef struct {
                                          so far: what errors are   relative to */
 } StepperState;
 
+/* The particle whose estimated error is largest, relative to the tolerance; of is an index of stepper_error_word. */
+typedef struct {
+  double err;
+  int    of;
+  double at[CL_DIM]; /* m */
+} Peak;
+
 /* Numbers of the step just taken, for monitors. */
 typedef struct {
   double   dt, err; /* s; error relative to the tolerance (fixed steps: 0) */
   PetscInt newton;
   PetscInt cuts;  /* failures before it succeeded */
   int      rules; /* whose error err is: stepper_error_word */
+  Peak     peak;
 } StepInfo;
 
 /* Work space of a step, sized for the particles and nodes of this configuration. */
@@ -65,6 +74,7 @@ typedef struct {
   PetscInt newton, limited;
   double   err;                                   /* relative to the tolerance */
   int      rules;                                 /* whose error that is: stepper_error_word */
+  Peak     peak;                                  /* behind the mean */
   double   loose;                                 /* ... when it is accepted above 1; else 0 */
   double   out[PHASE_COUNT];                      /* kg over the step */
   double   heat_gain, heat_in, heat_source;       /* J over the step */
@@ -291,5 +301,5 @@ void StepperStarSkeleton(Stepper *s, double c);
    errors from the weights of k_n, k_1, k_2 (25), (26). */
 void StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weight[3]);
 /* Dimensionless, over the tolerances.  Collective; e [n][4] (Pa, Pa, K, 1), eu [n][2] (m); a->rules says which error it
- * is. */
+ * is, a->peak where the largest of any field is. */
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a);

@@ -41,11 +41,13 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(squeezed),     REAL(left),
                                      REAL(moved),        REAL(enthalpy0),
                                      REAL(enthalpy_out), REAL(removed),
+                                     REAL(peak),         REAL(peak_of),
+                                     REAL(peak_t),       REAL(peak_at),
                                      {NULL, 0, 0, false}};
-/* Fourteen integers, twenty-five reals, the meters, works, energies and what left. */
+/* Fourteen integers, thirty reals, the meters, works, energies and what left. */
 _Static_assert(sizeof(StepperState) ==
                    14 * sizeof(PetscInt) +
-                       (25 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT + REMOVED_COUNT) * sizeof(double),
+                       (30 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT + REMOVED_COUNT) * sizeof(double),
                "a new field of StepperState must join io_state_field");
 
 static PetscErrorCode WriteState(hid_t file, const StepperState *s)

@@ -34,7 +34,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   const Case  *c       = StepperCase(s);
   const double t_begin = c->scene.t_begin;
   double       done, left;
-  char         cuts[32] = "", error[64] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32];
+  char         cuts[32] = "", error[160] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32];
   char         rest[48] = "time left not known yet";
 
   PetscFunctionBeginUser;
@@ -60,8 +60,10 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   else
     PetscCall(PetscSNPrintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton));
   if (s->adaptive && !s->explicit)
-    PetscCall(PetscSNPrintf(error, sizeof(error), ", error %.2g of tolerance (%s)", info->err,
-                            stepper_error_word[info->rules]));
+    PetscCall(PetscSNPrintf(error, sizeof(error),
+                            ", error %.2g of tolerance (%s), at worst %.2g (%s near (%.4g, %.4g) m)", info->err,
+                            stepper_error_word[info->rules], info->peak.err, stepper_error_word[info->peak.of],
+                            info->peak.at[0], info->peak.at[1]));
   PetscCall(PetscPrintf(s->model->grid.comm, "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s\n",
                         stage, s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -133,7 +135,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char text[3072], gone[512], above[64] = "", local[512], left[128], loose[256], ice[256], yields[256], gaps[256],
+  char text[3072], gone[512], above[64] = "", local[512], left[128], loose[512], ice[256], yields[256], gaps[256],
                               ranks[128], *stages, *all;
   ModelTotals t;
   double      error[3];

@@ -53,7 +53,7 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
 PetscErrorCode LocalSummary(const Stepper *s, char text[512]);     /* of an integrator without matrices */
 PetscErrorCode LeftSummary(const Stepper *s, char text[128]);      /* what Newton's method left (277) */
 void           GoneSummary(const StepperState *z, char text[512]); /* particles that left the grid (373) */
-PetscErrorCode LooseSummary(const Stepper *s, char text[256]);     /* errors that were put up with */
+PetscErrorCode LooseSummary(const Stepper *s, char text[512]);     /* largest error, and those put up with */
 PetscErrorCode LongSummary(const Model *m, char text[256]);        /* domains longer than a cell; collective */
 PetscErrorCode IceSummary(const Stepper *s, char text[256]);       /* water below its melting point */
 PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */

@@ -52,15 +52,24 @@ void GoneSummary(const StepperState *z, char text[512])
         r[REMOVED_MOMENTUM + 1], r[REMOVED_ENERGY + ENERGY_KINETIC]);
 }
 
-/* Errors that were put up with. */
-PetscErrorCode LooseSummary(const Stepper *s, char text[256])
+/* The largest estimated error of any particle, and errors that were put up with. */
+PetscErrorCode LooseSummary(const Stepper *s, char text[512])
 {
-  const StepperState *z = &s->state;
+  const StepperState *z       = &s->state;
+  char                now[32] = "";
 
   PetscFunctionBeginUser;
   text[0] = '\0';
+  if (z->peak > 0.0) {
+    StepperTime(z->peak_t, z->peak_t, 4, now);
+    PetscCall(PetscSNPrintf(
+        text, 512,
+        "  largest error of a step at any particle: %.3g of the tolerance, of %s near (%.4g, %.4g) m at t = %s\n",
+        z->peak, stepper_error_word[(int)z->peak_of], z->peak_at[0], z->peak_at[1], now));
+  }
+  const size_t told = strlen(text);
   if (z->loose_total)
-    PetscCall(PetscSNPrintf(text, 256,
+    PetscCall(PetscSNPrintf(text + told, 512 - told,
                             "  %" PetscInt_FMT
                             " steps were accepted above the tolerance, with an estimated error of up "
                             "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",

@@ -100,6 +100,12 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
     PetscFunctionReturn(PETSC_SUCCESS);
   z->loose_total += a->loose > 0.0;
   z->err_worst = fmax(z->err_worst, a->loose);
+  if (s->adaptive && a->peak.err > z->peak) {
+    z->peak    = a->peak.err;
+    z->peak_of = a->peak.of;
+    z->peak_t  = z->t;
+    PetscCall(PetscArraycpy(z->peak_at, a->peak.at, CL_DIM));
+  }
   z->newton_total += a->newton;
   z->failures_total += info->cuts;
   z->limited_total += a->limited;

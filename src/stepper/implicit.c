@@ -123,6 +123,23 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 const char *const stepper_error_word[STEPPER_ERRORS] = {"p_w",   "p_g", "T", "S_h", "displacement", "plastic strain",
                                                         "stress"};
 
+/* The largest of all ranks; collective. */
+static PetscErrorCode SharePeak(MPI_Comm comm, Peak *peak)
+{
+  struct {
+    double err;
+    int    rank;
+  } best      = {.err = peak->err};
+  double of[] = {peak->of, peak->at[0], peak->at[1]};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &best.rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCallMPI(MPI_Bcast(of, 1 + CL_DIM, MPI_DOUBLE, best.rank, comm));
+  *peak = (Peak){.err = best.err, .of = (int)of[0], .at = {of[1], of[2]}};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* (292) */
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a)
 {
@@ -130,8 +147,9 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
   const double scale[STEPPER_ERRORS]   = {s->state.scale_p, s->state.scale_p,  s->state.scale_T, STEPPER_SCALE_SH,
                                           s->state.scale_u, STEPPER_SCALE_EPS, s->state.scale_p};
   const double half                    = 0.5 * CaseOf(m->c)->error_exponent;
-  double       sum[STEPPER_ERRORS + 1] = {0.0}, worst = 0.0;
+  double       sum[STEPPER_ERRORS + 1] = {0.0}, worst = 0.0, top = 0.0;
 
+  a->peak = (Peak){.err = 0.0};
   for (PetscInt p = 0; p < m->P.n; p++) {
     double square[STEPPER_ERRORS] = {0.0};
 
@@ -140,11 +158,19 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
     square[4] = PetscSqr(eu[CL_DIM * p]) + PetscSqr(eu[CL_DIM * p + 1]);
     for (int k = 0; s->work.e_plastic && k < 5; k++)
       square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
-    for (int k = 0; k < STEPPER_ERRORS; k++)
-      sum[k] += pow(square[k] / PetscSqr(s->tol * scale[k]), half);
+    for (int k = 0; k < STEPPER_ERRORS; k++) {
+      const double one = ClSize(square[k] / PetscSqr(s->tol * scale[k]));
+
+      sum[k] += pow(one, half);
+      if (one > top) {
+        top     = one;
+        a->peak = (Peak){.err = sqrt(one), .of = k, .at = {m->P.f[P_X][p], m->P.f[P_X + 1][p]}};
+      }
+    }
   }
   sum[STEPPER_ERRORS] = (double)m->P.n;
-  if (MPI_Allreduce(MPI_IN_PLACE, sum, STEPPER_ERRORS + 1, MPI_DOUBLE, MPI_SUM, m->grid.comm))
+  if (SharePeak(m->grid.comm, &a->peak) ||
+      MPI_Allreduce(MPI_IN_PLACE, sum, STEPPER_ERRORS + 1, MPI_DOUBLE, MPI_SUM, m->grid.comm))
     return NAN;
   a->rules = 0;
   for (int k = 0; k < STEPPER_ERRORS; k++) {
@@ -202,7 +228,8 @@ static double WantedStep(const Stepper *s, double dt, bool kink, const Attempt *
 static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a, PetscInt cuts)
 {
   StepperState  *z    = &s->state;
-  const StepInfo info = {.dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts, .rules = a->rules};
+  const StepInfo info = {
+      .dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts, .rules = a->rules, .peak = a->peak};
 
   PetscFunctionBeginUser;
   PetscCall(StepperKeeps(s, dt, &s->model->keeps));
