@@ -22,7 +22,6 @@
   #define PETSC_SUCCESS 0
 #endif
 
-#define CL_GAS_CONSTANT 8.314  /* J/(mol K), as in the paper's tables */
 #define CL_ZERO_CELSIUS 273.15 /* K */
 
 /* Exit codes of the program. */
@@ -37,13 +36,12 @@ enum {
 /* What a particle, a residual or a step can report.  Everything but OK and FATAL is mended by a smaller step. */
 typedef enum {
   CL_OK = 0,
-  CL_DOMAIN,     /* a state left the admissible box: J <= 0, porosity outside (0,1), hydrate fills the pores */
-  CL_NONFINITE,  /* NaN or infinity */
-  CL_LEFT_GRID,  /* a particle left the background grid */
-  CL_TOO_FAR,    /* a particle moved half a cell or more */
-  CL_SOLVER,     /* SNES or KSP gave up */
-  CL_INACCURATE, /* the error estimate is above the tolerance */
-  CL_FATAL
+  CL_DOMAIN,    /* a state left the admissible box: J <= 0, porosity outside (0,1), hydrate fills the pores */
+  CL_NONFINITE, /* NaN or infinity */
+  CL_LEFT_GRID, /* a particle left the background grid */
+  CL_TOO_FAR,   /* a particle moved half a cell or more */
+  CL_SOLVER,    /* SNES or KSP gave up */
+  CL_INACCURATE /* the error estimate is above the tolerance */
 } ClStatus;
 
 /* |x| for maxima: NaN counts as infinite, for fmax and MPI_MAX pass NaN by; in the unit of x. */
@@ -62,10 +60,4 @@ static inline uint64_t HashBytes(uint64_t hash, const void *data, size_t bytes)
   for (size_t k = 0; k < bytes; k++)
     hash = (hash ^ c[k]) * UINT64_C(1099511628211);
   return hash;
-}
-
-/* degC to K. */
-static inline double ClCelsiusToKelvin(double T)
-{
-  return T + CL_ZERO_CELSIUS;
 }

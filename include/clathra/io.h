@@ -29,11 +29,8 @@ PetscErrorCode FolderRelease(Folder *folder);
 /* Does the folder hold nothing, or results of the case whose resolved form this is?  Otherwise a sentence.  Collective.
  */
 PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool *ok);
-/* A text file of the folder in one piece, on rank 0: whole, or as it was.  Collective. */
-PetscErrorCode FolderWriteText(MPI_Comm comm, const char *dir, const char *name, const char *text, size_t bytes,
-                               bool *ok);
-
-/* Adds to the end of a text file of the folder; fresh: a new file in its place.  Collective. */
+/* Adds to the end of a text file of the folder, on rank 0; fresh: a new file in its place, whole, or as it was.
+   Collective. */
 PetscErrorCode FolderAppendText(MPI_Comm comm, const char *dir, const char *name, bool fresh, const char *text,
                                 size_t bytes, bool *ok);
 

@@ -61,12 +61,6 @@ static inline double LinesLess(const GridLines *a, PetscInt i)
 /* Cell of a place of unequal lines, also beyond their ends as far as lines are known there. */
 PetscInt LinesFind(const GridLines *a, double x);
 
-/* The same of any lines. */
-static inline PetscInt LinesCell(const GridLines *a, double x)
-{
-  return a->x ? LinesFind(a, x) : (PetscInt)floor((x - a->lower) / a->h);
-}
-
 /* Width of the cell at x, of the smallest of it and its two neighbours, and the largest of all, m. */
 static inline double LinesWidthAt(const GridLines *a, double x)
 {

@@ -147,31 +147,29 @@ PetscErrorCode NodeMapDestroy(NodeMap *map)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Type of nc numbers a node; null on one rank, which has nobody to tell. */
 static PetscErrorCode Unit(NodeMap *map, PetscInt nc, MPI_Datatype *unit)
 {
+  PetscMPIInt size;
+
   PetscFunctionBeginUser;
-  if (nc == 1) {
-    *unit = MPIU_REAL;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (!map->unit[nc]) {
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)map->sf), &size));
+  if (size > 1 && nc > 1 && !map->unit[nc]) {
     PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)nc, MPIU_REAL, &map->unit[nc]));
     PetscCallMPI(MPI_Type_commit(&map->unit[nc]));
   }
-  *unit = map->unit[nc];
+  *unit = size == 1 ? MPI_DATATYPE_NULL : nc == 1 ? MPIU_REAL : map->unit[nc];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode NodeMapReduce(NodeMap *map, double *a, PetscInt nc)
 {
   MPI_Datatype unit;
-  PetscMPIInt  size;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)map->sf), &size));
-  if (size == 1)
-    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Unit(map, nc, &unit));
+  if (unit == MPI_DATATYPE_NULL)
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSFReduceBegin(map->sf, unit, a + map->n_owned * nc, a, MPI_SUM));
   PetscCall(PetscSFReduceEnd(map->sf, unit, a + map->n_owned * nc, a, MPI_SUM));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -180,13 +178,11 @@ PetscErrorCode NodeMapReduce(NodeMap *map, double *a, PetscInt nc)
 PetscErrorCode NodeMapBroadcast(NodeMap *map, double *a, PetscInt nc)
 {
   MPI_Datatype unit;
-  PetscMPIInt  size;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)map->sf), &size));
-  if (size == 1)
-    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Unit(map, nc, &unit));
+  if (unit == MPI_DATATYPE_NULL)
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSFBcastBegin(map->sf, unit, a, a + map->n_owned * nc, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(map->sf, unit, a, a + map->n_owned * nc, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);

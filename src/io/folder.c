@@ -255,20 +255,3 @@ PetscErrorCode FolderAppendText(MPI_Comm comm, const char *dir, const char *name
   *ok = good;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-PetscErrorCode FolderWriteText(MPI_Comm comm, const char *dir, const char *name, const char *text, size_t bytes,
-                               bool *ok)
-{
-  char        path[IO_PATH];
-  PetscMPIInt rank;
-  int         good = 1;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(IoPath(dir, name, path));
-  if (rank == 0)
-    good = IoReplace(path, false, 1, &(IoPiece){text, bytes});
-  PetscCallMPI(MPI_Bcast(&good, 1, MPI_INT, 0, comm));
-  *ok = good;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -31,16 +31,4 @@ INLINE double Young(const Elasticity *law, double Sh, double *dE_dSh)
   return law->E0 + a * f;
 }
 
-double ElasticityYoung(const Elasticity *law, double Sh, double *dE_dSh)
-{
-  return Young(law, Sh, dE_dSh);
-}
-
-void ElasticityYoungBatch(const Elasticity *law, int n, const double *restrict Sh, double *restrict E)
-{
-  const Elasticity l = *law;
-  double           d;
-
-  for (int q = 0; q < n; q++)
-    E[q] = Young(&l, Sh[q], &d);
-}
+LAW_OF_ONE(ElasticityYoung, ElasticityYoungBatch, Elasticity, Young)

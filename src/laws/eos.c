@@ -156,23 +156,8 @@ static const GasLaw       gas_laws[]       = {Gas_PengRobinson, Gas_Ideal};
 static const ExpansionLaw expansion_laws[] = {Expansion_PengRobinson, Expansion_Ideal};
 _Static_assert(sizeof gas_names / sizeof *gas_names == sizeof gas_laws / sizeof *gas_laws + 1, "a name for every law");
 
-const char *const *GasTypes(void)
-{
-  return gas_names;
-}
-
-/* Sets the function and the name; constants stay.  False, and nothing set, for an unknown name. */
-bool GasSetType(Gas *law, const char *type)
-{
-  const int i = LawFind(gas_names, type);
-
-  if (i < 0)
-    return false;
-  law->density   = gas_laws[i];
-  law->expansion = expansion_laws[i];
-  law->type      = gas_names[i];
-  return true;
-}
+LAW_CHOICE(GasTypes, GasSetType, Gas, gas_names, law->density = gas_laws[i], law->expansion = expansion_laws[i],
+           law->type = gas_names[i])
 
 void GasDensityBatch(const Gas *law, int n, const double *p, const double *T, double *rho, double *drho_dp,
                      double *drho_dT)

@@ -126,20 +126,5 @@ void EquilibriumPressureBatch(const Equilibrium *law, int n, const double *T, do
   law->pressure_loop(law, n, T, pe, dpe_dT);
 }
 
-const char *const *EquilibriumTypes(void)
-{
-  return names;
-}
-
-/* Sets the function and the name; A1, A2, A3 stay.  False, and nothing set, for an unknown name. */
-bool EquilibriumSetType(Equilibrium *law, const char *type)
-{
-  const int i = LawFind(names, type);
-
-  if (i < 0)
-    return false;
-  law->pressure      = laws[i];
-  law->pressure_loop = loops[i];
-  law->type          = names[i];
-  return true;
-}
+LAW_CHOICE(EquilibriumTypes, EquilibriumSetType, Equilibrium, names, law->pressure = laws[i],
+           law->pressure_loop = loops[i], law->type = names[i])

@@ -25,9 +25,40 @@ static inline int LawFind(const char *const names[], const char *name)
   return -1;
 }
 
+/* Types(): the names of the laws of a kind.  Set(law, type): the law by name, where `...` sets it to number i of the
+   list, parameters stay; false, and nothing set, for an unknown name. */
+#define LAW_CHOICE(Types, Set, Law, names, ...)                                                                        \
+  const char *const *Types(void)                                                                                       \
+  {                                                                                                                    \
+    return names;                                                                                                      \
+  }                                                                                                                    \
+  bool Set(Law *law, const char *type)                                                                                 \
+  {                                                                                                                    \
+    const int i = LawFind(names, type);                                                                                \
+                                                                                                                       \
+    if (i >= 0) {                                                                                                      \
+      __VA_ARGS__;                                                                                                     \
+    }                                                                                                                  \
+    return i >= 0;                                                                                                     \
+  }
+
 /* A law is one formula without branches on the state, written as an INLINE function that gives value and slopes.  One
    state at a time it is called as it is; over arrays a loop calls it, which the compiler makes vector code of, without
-   the slopes that the loop drops. */
+   the slopes that the loop drops.  Here those of one number: formula(law, x, &slope) as One and as
+   Batch. */
+#define LAW_OF_ONE(One, Batch, Law, formula)                                                                           \
+  double One(const Law *law, double x, double *slope)                                                                  \
+  {                                                                                                                    \
+    return formula(law, x, slope);                                                                                     \
+  }                                                                                                                    \
+  void Batch(const Law *law, int n, const double *restrict x, double *restrict y)                                      \
+  {                                                                                                                    \
+    const Law l = *law;                                                                                                \
+    double    slope;                                                                                                   \
+                                                                                                                       \
+    for (int q = 0; q < n; q++)                                                                                        \
+      y[q] = formula(&l, x[q], &slope);                                                                                \
+  }
 
 /* glibc's vector versions of these, which it declares under -ffast-math only. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)

@@ -103,38 +103,9 @@ POROSITY_LAWS(LOOP)
 HYDRATE_LAWS(LOOP)
 static const FactorLoop porosity_loops[] = {POROSITY_LAWS(LOOP_NAME)}, hydrate_loops[] = {HYDRATE_LAWS(LOOP_NAME)};
 
-const char *const *PermeabilityHydrateTypes(void)
-{
-  return hydrate_names;
-}
-
-const char *const *PermeabilityPorosityTypes(void)
-{
-  return porosity_names;
-}
-
-/* Sets f_Sh by name; false, and nothing set, for an unknown name. */
-bool PermeabilitySetHydrateType(Permeability *law, const char *type)
-{
-  const int i = LawFind(hydrate_names, type);
-
-  if (i < 0)
-    return false;
-  law->hydrate_factor = hydrate_laws[i];
-  law->hydrate_loop   = hydrate_loops[i];
-  law->hydrate_type   = hydrate_names[i];
-  return true;
-}
-
-/* Sets f_phi by name; false, and nothing set, for an unknown name. */
-bool PermeabilitySetPorosityType(Permeability *law, const char *type)
-{
-  const int i = LawFind(porosity_names, type);
-
-  if (i < 0)
-    return false;
-  law->porosity_factor = porosity_laws[i];
-  law->porosity_loop   = porosity_loops[i];
-  law->porosity_type   = porosity_names[i];
-  return true;
-}
+LAW_CHOICE(PermeabilityHydrateTypes, PermeabilitySetHydrateType, Permeability, hydrate_names,
+           law->hydrate_factor = hydrate_laws[i], law->hydrate_loop = hydrate_loops[i],
+           law->hydrate_type = hydrate_names[i])
+LAW_CHOICE(PermeabilityPorosityTypes, PermeabilitySetPorosityType, Permeability, porosity_names,
+           law->porosity_factor = porosity_laws[i], law->porosity_loop = porosity_loops[i],
+           law->porosity_type = porosity_names[i])

@@ -22,32 +22,7 @@ INLINE double OfGas(const RelPerm *law, double sg, double *dkr)
   return Corey(sg, law->Sgr, 1.0 - law->Swr - law->Sgr, law->ng, dkr);
 }
 
-/* k_rw (-) of the water share s_w of the fluid-filled pore space (or of the whole: of_pores), and dk_rw/ds_w. */
-double RelPermWater(const RelPerm *law, double sw, double *dkr_dsw)
-{
-  return OfWater(law, sw, dkr_dsw);
-}
-
-/* k_rg (-) of the gas share s_g of the fluid-filled pore space, and dk_rg/ds_g. */
-double RelPermGas(const RelPerm *law, double sg, double *dkr_dsg)
-{
-  return OfGas(law, sg, dkr_dsg);
-}
-
-void RelPermWaterBatch(const RelPerm *law, int n, const double *restrict sw, double *restrict kr)
-{
-  const RelPerm l = *law;
-  double        d;
-
-  for (int q = 0; q < n; q++)
-    kr[q] = OfWater(&l, sw[q], &d);
-}
-
-void RelPermGasBatch(const RelPerm *law, int n, const double *restrict sg, double *restrict kr)
-{
-  const RelPerm l = *law;
-  double        d;
-
-  for (int q = 0; q < n; q++)
-    kr[q] = OfGas(&l, sg[q], &d);
-}
+/* k_rw (-) of the water share s_w of the fluid-filled pore space (or of the whole: of_pores), and dk_rw/ds_w; k_rg
+   likewise. */
+LAW_OF_ONE(RelPermWater, RelPermWaterBatch, RelPerm, OfWater)
+LAW_OF_ONE(RelPermGas, RelPermGasBatch, RelPerm, OfGas)

@@ -173,20 +173,5 @@ bool RetentionNoGas(const Retention *law, double Sh, double *pc)
   return !clamped || law->Sgr == 0.0;
 }
 
-const char *const *RetentionTypes(void)
-{
-  return names;
-}
-
-/* Sets the function and the name; parameters stay.  False, and nothing set, for an unknown name. */
-bool RetentionSetType(Retention *law, const char *type)
-{
-  const int i = LawFind(names, type);
-
-  if (i < 0)
-    return false;
-  law->gas_share      = laws[i];
-  law->gas_share_loop = loops[i];
-  law->type           = names[i];
-  return true;
-}
+LAW_CHOICE(RetentionTypes, RetentionSetType, Retention, names, law->gas_share = laws[i], law->gas_share_loop = loops[i],
+           law->type = names[i])

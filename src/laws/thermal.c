@@ -12,19 +12,7 @@ INLINE double Latent(const LatentHeat *law, double T, double *dL_dT)
   return law->C0 - law->C1 * (at + LAW_ZERO_CELSIUS) + (law->kirchhoff ? law->dc * (T - at) : 0.0);
 }
 
-double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT)
-{
-  return Latent(law, T, dL_dT);
-}
-
-void LatentHeatBatch(const LatentHeat *law, int n, const double *restrict T, double *restrict L)
-{
-  const LatentHeat l = *law;
-  double           d;
-
-  for (int q = 0; q < n; q++)
-    L[q] = Latent(&l, T[q], &d);
-}
+LAW_OF_ONE(LatentHeatEvaluate, LatentHeatBatch, LatentHeat, Latent)
 
 /* (236): X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)], s_g = 1 - s_w; X in the order solid,
    hydrate, water, gas.  (P29). */

@@ -15,87 +15,67 @@ typedef struct {
 } Curve;
 enum { SCALE_NONE = 0, SCALE_P0 };
 
+static double none[3]; /* slopes, which no curve shows */
+
 static void Retention_(const Material *m, double pc, double y[MOST])
 {
-  double d, dSh;
-
-  y[0] = RetentionGasShare(&m->retention, pc, 0.0, &d, &dSh);
+  y[0] = RetentionGasShare(&m->retention, pc, 0.0, &none[0], &none[1]);
   y[1] = 1.0 - y[0];
 }
 
 static void RelPerm_(const Material *m, double sw, double y[MOST])
 {
-  double d;
-
-  y[0] = RelPermWater(&m->relperm, sw, &d);
-  y[1] = RelPermGas(&m->relperm, 1.0 - sw, &d);
+  y[0] = RelPermWater(&m->relperm, sw, &none[0]);
+  y[1] = RelPermGas(&m->relperm, 1.0 - sw, &none[0]);
 }
 
 static void WithHydrate(const Material *m, double Sh, double y[MOST])
 {
-  double dp, dS;
-
-  y[0] = PermeabilityEvaluate(&m->permeability, m->permeability.phi0, Sh, &dp, &dS) / m->permeability.k0;
+  y[0] = PermeabilityEvaluate(&m->permeability, m->permeability.phi0, Sh, &none[0], &none[1]) / m->permeability.k0;
 }
 
 static void WithPorosity(const Material *m, double phi, double y[MOST])
 {
-  double dp, dS;
-
-  y[0] = PermeabilityEvaluate(&m->permeability, phi, 0.0, &dp, &dS) / m->permeability.k0;
+  y[0] = PermeabilityEvaluate(&m->permeability, phi, 0.0, &none[0], &none[1]) / m->permeability.k0;
 }
 
 static void Equilibrium_(const Material *m, double T, double y[MOST])
 {
-  double d;
-
-  y[0] = EquilibriumPressure(&m->kinetics.equilibrium, T, &d);
+  y[0] = EquilibriumPressure(&m->kinetics.equilibrium, T, &none[0]);
 }
 
 static void RateConstant(const Material *m, double T, double y[MOST])
 {
-  double d;
-
-  y[0] = KineticsRateConstant(&m->kinetics, T, &d);
+  y[0] = KineticsRateConstant(&m->kinetics, T, &none[0]);
 }
 
 static void Surface(const Material *m, double sw, double y[MOST])
 {
-  double dw, dS;
-
-  y[0] = KineticsFormationArea(&m->kinetics, sw, 0.0, &dw, &dS);
-  y[1] = KineticsFormationArea(&m->kinetics, sw, 0.4, &dw, &dS);
+  y[0] = KineticsFormationArea(&m->kinetics, sw, 0.0, &none[0], &none[1]);
+  y[1] = KineticsFormationArea(&m->kinetics, sw, 0.4, &none[0], &none[1]);
 }
 
 static void Latent(const Material *m, double T, double y[MOST])
 {
-  double d;
-
-  y[0] = LatentHeatEvaluate(&m->latent, T, &d);
+  y[0] = LatentHeatEvaluate(&m->latent, T, &none[0]);
 }
 
 static void GasRho(const Material *m, double p, double y[MOST])
 {
-  double dp, dT;
-
-  y[0] = GasDensity(&m->gas, p, 4.0, &dp, &dT);
-  y[1] = GasDensity(&m->gas, p, 20.0, &dp, &dT);
+  y[0] = GasDensity(&m->gas, p, 4.0, &none[0], &none[1]);
+  y[1] = GasDensity(&m->gas, p, 20.0, &none[0], &none[1]);
 }
 
 static void WaterRho(const Material *m, double p, double y[MOST])
 {
-  double dp, dT;
-
-  y[0] = LiquidDensity(&m->water, p, 4.0, &dp, &dT);
-  y[1] = LiquidDensity(&m->water, p, 20.0, &dp, &dT);
+  y[0] = LiquidDensity(&m->water, p, 4.0, &none[0], &none[1]);
+  y[1] = LiquidDensity(&m->water, p, 20.0, &none[0], &none[1]);
 }
 
 static void Viscosities(const Material *m, double T, double y[MOST])
 {
-  double dp, dT, d;
-
-  y[0] = WaterViscosity(&m->mu_w, T, &d);
-  y[1] = GasViscosity(&m->mu_g, GasDensity(&m->gas, 1e7, T, &dp, &dT), T, &d, &dT);
+  y[0] = WaterViscosity(&m->mu_w, T, &none[0]);
+  y[1] = GasViscosity(&m->mu_g, GasDensity(&m->gas, 1e7, T, &none[0], &none[1]), T, &none[0], &none[1]);
 }
 
 static void Melting(const Material *m, double p, double y[MOST])
@@ -105,18 +85,15 @@ static void Melting(const Material *m, double p, double y[MOST])
 
 static void Young(const Material *m, double Sh, double y[MOST])
 {
-  double d;
-
-  y[0] = ElasticityYoung(&m->elasticity, Sh, &d);
+  y[0] = ElasticityYoung(&m->elasticity, Sh, &none[0]);
 }
 
 static void Conductivity(const Material *m, double sw, double y[MOST])
 {
   const double kappa[4] = {m->kappa_s, m->kappa_h, m->kappa_w, m->kappa_g};
-  double       d[3];
 
-  y[0] = MixtureAverage(m->porosity, 0.0, sw, kappa, &d[0], &d[1], &d[2]);
-  y[1] = MixtureAverage(m->porosity, 0.4, sw, kappa, &d[0], &d[1], &d[2]);
+  y[0] = MixtureAverage(m->porosity, 0.0, sw, kappa, &none[0], &none[1], &none[2]);
+  y[1] = MixtureAverage(m->porosity, 0.4, sw, kappa, &none[0], &none[1], &none[2]);
 }
 
 static void Softening(const Material *m, double eps, double y[MOST])

@@ -172,7 +172,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);
   PetscCall(PetscPrintf(comm, "%s%s", text, stages));
-  PetscCall(FolderWriteText(comm, StepperCase(s)->output_dir, "summary.txt", all, strlen(all), &ok));
+  PetscCall(FolderAppendText(comm, StepperCase(s)->output_dir, "summary.txt", true, all, strlen(all), &ok));
   run->lost = run->lost || !ok;
   PetscCall(PetscFree(stages));
   PetscCall(PetscFree(all));
@@ -188,7 +188,7 @@ static PetscErrorCode WriteCase(MPI_Comm comm, const Case *c, Run *run)
 
   PetscFunctionBeginUser;
   PetscCall(CaseText(c, CaseWriteResolved, &text, &size));
-  PetscCall(FolderWriteText(comm, c->output_dir, "case.yaml", text, size, &ok));
+  PetscCall(FolderAppendText(comm, c->output_dir, "case.yaml", true, text, size, &ok));
   free(text);
   run->lost = run->lost || !ok;
   PetscFunctionReturn(PETSC_SUCCESS);
