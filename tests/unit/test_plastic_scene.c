@@ -128,7 +128,7 @@ static double Yielding(SmallScene *s)
 
   Call(PetscMalloc1(s->m.map.n_local * s->c.scene.fields.n, &x));
   RandomUnknowns(&s->m, s->stage.dt, 30, x);
-  ModelGive(&s->m, x);
+  ModelGive(&s->m, x, false);
   for (PetscInt p = 0; p < s->m.P.n; p++) {
     Reach       r;
     PointState  state;
