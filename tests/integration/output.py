@@ -157,6 +157,12 @@ def check_loose():
                summary and " 0 refused" in summary, summary)  # fmt: skip
     check_true("... and beside the steps and refusals", f"; {steps} steps above the tolerance" in summary, summary)
     check_true("... and progress names the field that rules", "of tolerance (" in loose.output)
+    place = r"\(([\w ]+) near \(([-\d.e+]+), ([-\d.e+]+)\) m\)"
+    told = re.search(r"largest error of a step at any particle: (\S+) of the tolerance, of (\S+) near \((\S+), (\S+)\) m at t = ", summary)
+    steps_told = [(float(e), float(x)) for e, _, x, _ in re.findall(r"at worst (\S+) " + place, loose.output)]
+    check_true("the worst particle is named, in the summary and in each line of progress", told is not None and len(steps_told) > 3, summary)
+    check_true("... within the body, and no line of progress has more", 0 <= float(told[3]) <= 1 and 0 <= float(told[4]) <= 0.1
+               and max(steps_told)[0] <= float(told[1]) * 1.06 and all(0 <= x <= 1 for _, x in steps_told), f"{told[0]}, {max(steps_told)}")  # fmt: skip
     check_true("... a run within it says nothing", "accepted above" not in (good.out / "summary.txt").read_text())
 
 

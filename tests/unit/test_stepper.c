@@ -62,16 +62,23 @@ static void TheExponentSeesAFront(void **state)
   e[4 * 2]                = s.tol * s.state.scale_p;
   eu[2 * 1]               = 0.3 * s.tol * s.state.scale_u;
   eu[2 * 1 + 1]           = -0.4 * s.tol * s.state.scale_u;
+  m.P.f[P_X][2]           = 7.0;
+  m.P.f[P_X + 1][2]       = -2.0;
+  m.P.f[P_X][1]           = 3.0;
   const double exponent[] = {1.0, 2.0, 8.0, 16.0};
   for (int k = 0; k < 4; k++) {
     c.error_exponent = exponent[k];
     assert_true(fabs(StepperErrorNorm(&s, e, eu, &a) / pow(3.0, -1.0 / exponent[k]) - 1.0) < 1e-12);
     assert_string_equal(stepper_error_word[a.rules], "p_w");
   }
+  assert_true(a.peak.err == 1.0 && a.peak.of == 0 && a.peak.at[0] == 7.0 && a.peak.at[1] == -2.0);
   e[4 * 2] = 0.0;
   assert_true(fabs(StepperErrorNorm(&s, e, eu, &a) / (0.5 * pow(3.0, -1.0 / 16.0)) - 1.0) < 1e-12);
+  assert_true(fabs(a.peak.err - 0.5) < 1e-12 && a.peak.at[0] == 3.0);
+  assert_string_equal(stepper_error_word[a.peak.of], "displacement");
   e[4 * 2] = NAN;
   assert_true(isinf(StepperErrorNorm(&s, e, eu, &a)));
+  assert_true(isinf(a.peak.err) && a.peak.at[0] == 7.0);
   c.error_exponent = 2.0;
 }
 
