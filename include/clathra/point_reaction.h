@@ -6,6 +6,9 @@
 #include "clathra/laws.h"
 #include "clathra/point_state.h"
 
+/* kg: (12) halves hydrate for ever; what is less than this is none, long before 1/m overflows. */
+#define HYDRATE_GONE 1e-100
+
 /* Share with its slope in the mass. */
 typedef struct {
   double v, m;
@@ -14,7 +17,7 @@ typedef struct {
 /* k of (93): what is still there of the hydrate `from` (kg) when m is left. */
 INLINE Kept KeptHydrate(double from, double m)
 {
-  return m < from ? (Kept){m / from, 1.0 / from} : (Kept){m > 0.0 ? 1.0 : 0.0, 0.0};
+  return from > HYDRATE_GONE && m < from ? (Kept){m / from, 1.0 / from} : (Kept){m > 0.0 ? 1.0 : 0.0, 0.0};
 }
 
 /* Hydrate that a step adds to its surface, kg/m^2, with slopes in p (1/Pa) and T (1/K). */
@@ -48,10 +51,11 @@ INLINE Growth ReactionGrowth(const Kinetics *k, double dt, const Driving *d, dou
 /* (12): what a particle that holds `from` (kg) gains, with its slope in a = dt' M_h K_d A_geo (p_e - p)/rho_h >= 0. */
 INLINE double ReactionDissociated(double from, double a, double *slope)
 {
-  const double per = 1.0 / (1.0 + a);
+  const double per  = 1.0 / (1.0 + a);
+  const bool   gone = from * per < HYDRATE_GONE;
 
-  *slope = -from * per * per;
-  return -from * (a / (1.0 + a)); /* never more than there is */
+  *slope = gone ? 0.0 : -from * per * per;
+  return gone ? -from : -from * (a / (1.0 + a)); /* never more than there is */
 }
 
 /* dm/dm_h of (37), (40): mass of a fluid that a kg of hydrate takes the place of; held: of a unit of open pores,

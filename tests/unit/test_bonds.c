@@ -1,11 +1,13 @@
 /* Unit tests of hydrate that bears a stress of its own (docs/equations.md (93), (94)): a closed path, its order under
    the stages of SDIRK2, cycles of hydrate at constant load, turned bodies, shares of a plastic stress, blocks. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <cmocka.h>
+#include "clathra/point_reaction.h"
 #include "clathra/skeleton.h"
 #include "random.h"
 
@@ -341,11 +343,30 @@ static void TestBlock(void **state)
   assert_true(worst < 1e-8 && yield > 200);
 }
 
+/* Hydrate that melts by half and half again is none in the end, and what it bears keeps slopes that are numbers. */
+static void HydrateComesToItsEnd(void **state)
+{
+  double m = 1.0;
+  int    n = 0;
+
+  for (; m > 0.0 && n < 2000; n++) {
+    double       slope;
+    const double gain = ReactionDissociated(m, 1.0, &slope);
+    const Kept   k    = KeptHydrate(m, m + gain);
+
+    assert_true(isfinite(slope) && isfinite(k.v) && isfinite(k.m) && k.v >= 0.0 && k.v <= 0.5);
+    assert_true(m < 1e-99 || (slope == -0.25 * m && gain == -0.5 * m && k.m * m == 1.0));
+    m += gain;
+  }
+  assert_true(m == 0.0 && n < 350);
+  assert_true(isfinite(KeptHydrate(1e-311, 0.0).m)); /* of an older checkpoint */
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestLoss), cmocka_unit_test(TestCycles),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestLoss),    cmocka_unit_test(TestCycles),
                                      cmocka_unit_test(TestTurning), cmocka_unit_test(TestShares),
-                                     cmocka_unit_test(TestBlock)};
+                                     cmocka_unit_test(TestBlock),   cmocka_unit_test(HydrateComesToItsEnd)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
