@@ -1,6 +1,6 @@
 /* Products of the exact Jacobian with a change of the unknowns, particle by particle: the tangents of particles and
    faces, as each has them, are kept instead of a matrix.  What a change makes of the residual (15)-(23) is found the
-   way the residual is: nodes give to particles, particles add to nodes, rows are made of the sums. */
+   way the residual is (401): nodes give to particles, particles add to nodes, rows are made of the sums. */
 #include "solver.h"
 #include <stddef.h>
 
