@@ -29,17 +29,26 @@ typedef struct {
   double lo, hi, width[2], length, gradient_length;
 } BasisSpan;
 
-/* Half-length that a domain acts with: a longer one would reach four nodes; all in m. */
-static inline double BasisHalfLength(double l, double h)
+/* Of a cell: the thinnest half-length, that of ten particles along a cell (374). */
+#define BASIS_THINNEST 0.05
+
+/* Half-length that a domain acts with: a longer one would reach four nodes, and what a motion has made thin has slivers
+   that bound the explicit step (150), so it is widened, but not over the edge of the grid, which is `room` away (374);
+   all in m. */
+static inline double BasisHalfLength(BasisType type, double l, double h, double room)
 {
-  return l < 0.5 * h ? l : 0.5 * h;
+  const double thinnest = BASIS_THINNEST * h < room ? BASIS_THINNEST * h : room;
+  const double r        = type == BASIS_CPGIMP && l < thinnest ? thinnest : l;
+
+  return r < 0.5 * h ? r : 0.5 * h;
 }
 
 /* Domain of a particle at x with half length l (m) along an axis of so many cells of width h (m) from `lower` on, cut
    where it would leave the grid. */
-static inline BasisDomain BasisDomainOf(double x, double l, double lower, double h, double cells)
+static inline BasisDomain BasisDomainOf(BasisType type, double x, double l, double lower, double h, double cells)
 {
-  const double s = (x - lower) / h, r = BasisHalfLength(l, h) / h, from = BasisSnap(s - r), to = BasisSnap(s + r);
+  const double s = (x - lower) / h, room = s < cells - s ? s : cells - s;
+  const double r = BasisHalfLength(type, l, h, room * h) / h, from = BasisSnap(s - r), to = BasisSnap(s + r);
   const bool   clipped = (s >= 0.0) & (s <= cells) & ((from < 0.0) | (to > cells));
   const double lo = clipped & (from < 0.0) ? 0.0 : from, hi = clipped & (to > cells) ? cells : to;
 
@@ -91,10 +100,10 @@ void BasisRadius(BasisType type, double x, double l, const GridLines *line, Axis
 /* Hat functions at a point: a surface face along its normal; x in m. */
 void BasisHat(double x, const GridLines *line, Axis *a);
 
-/* Half-length that a domain acts with at x, m (302). */
-double BasisReach(const GridLines *line, double x, double l);
+/* Half-length that a domain acts with at x, m (302), (374). */
+double BasisReach(BasisType type, const GridLines *line, double x, double l);
 /* The domain where cells differ. */
-BasisSpan BasisSpanOf(const GridLines *line, double x, double l);
+BasisSpan BasisSpanOf(BasisType type, const GridLines *line, double x, double l);
 
 /* The particle's cell along an axis, from its first node on. */
 static inline int BasisCellAt(const GridLines *line, double x, const Axis *a)

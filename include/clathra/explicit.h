@@ -23,6 +23,7 @@ typedef struct {
 typedef enum {
   LIMIT_NONE = 0,
   LIMIT_WAVE,      /* waves in the mixture */
+  LIMIT_THIN,      /* waves in slivers of thin domains (150) */
   LIMIT_WATER,     /* waves in the water */
   LIMIT_GAS,       /* waves in the gas */
   LIMIT_DIFFUSION, /* diffusion of pressure */

@@ -37,14 +37,16 @@ static double LocalWidth(const GridLines *line, PetscInt cell, double x)
   return h + 0.5 * fabs(t) * (beside - h);
 }
 
-double BasisReach(const GridLines *line, double x, double l)
+double BasisReach(BasisType type, const GridLines *line, double x, double l)
 {
-  return BasisHalfLength(l, line->x ? LocalWidth(line, LinesFind(line, x), x) : line->h);
+  const double room = fmin(x - line->lower, LinesAt(line, line->cells) - x);
+
+  return BasisHalfLength(type, l, line->x ? LocalWidth(line, LinesFind(line, x), x) : line->h, room);
 }
 
-BasisSpan BasisSpanOf(const GridLines *line, double x, double l)
+BasisSpan BasisSpanOf(BasisType type, const GridLines *line, double x, double l)
 {
-  const double   cells = (double)line->cells, r = BasisReach(line, x, l), s = LinesPlace(line, x);
+  const double   cells = (double)line->cells, r = BasisReach(type, line, x, l), s = LinesPlace(line, x);
   const double   from = BasisSnap(LinesPlace(line, x - r)), to = BasisSnap(LinesPlace(line, x + r));
   const bool     clipped = (s >= 0.0) & (s <= cells) & ((from < 0.0) | (to > cells));
   BasisSpan      d       = {.lo = clipped ? fmax(from, 0.0) : from, .hi = clipped ? fmin(to, cells) : to};
@@ -64,14 +66,14 @@ void BasisAxis(BasisType type, double x, double l, const GridLines *line, Axis *
     return;
   }
   if (line->x) {
-    const BasisSpan d    = BasisSpanOf(line, x, l);
+    const BasisSpan d    = BasisSpanOf(type, line, x, l);
     const double    base = floor(d.lo);
 
     a->base = (PetscInt)base;
     BasisAverage(d.lo - base, d.hi - base, d.width[0], d.width[1], d.length, d.gradient_length, a->S, a->dS);
     return;
   }
-  const BasisDomain d    = BasisDomainOf(x, l, line->lower, line->h, (double)line->cells);
+  const BasisDomain d    = BasisDomainOf(type, x, l, line->lower, line->h, (double)line->cells);
   const double      base = floor(d.lo), lo = d.lo - base, hi = d.hi - base;
 
   a->base = (PetscInt)base;
@@ -88,9 +90,9 @@ static double HatMoment(double s)
 
 /* (29) where cells differ: over the part of the domain in each cell N and r are linear, so r N has its exact mean by
    Simpson's rule. */
-static void RadiusUnequal(const GridLines *line, double x, double l, Axis *a, double hoop[3], double *r)
+static void RadiusUnequal(BasisType type, const GridLines *line, double x, double l, Axis *a, double hoop[3], double *r)
 {
-  const BasisSpan d  = BasisSpanOf(line, x, l);
+  const BasisSpan d  = BasisSpanOf(type, line, x, l);
   const double    lo = LinesFrom(line, d.lo), hi = LinesFrom(line, d.hi), radius = 0.5 * (lo + hi);
   double          S[3] = {0.0}, edge[3] = {0.0};
 
@@ -128,11 +130,11 @@ void BasisRadius(BasisType type, double x, double l, const GridLines *line, Axis
     return;
   }
   if (line->x) {
-    RadiusUnequal(line, x, l, a, hoop, r);
+    RadiusUnequal(type, line, x, l, a, hoop, r);
     return;
   }
   const double      h    = line->h;
-  const BasisDomain d    = BasisDomainOf(x, l, line->lower, h, (double)line->cells);
+  const BasisDomain d    = BasisDomainOf(type, x, l, line->lower, h, (double)line->cells);
   const double      axis = -line->lower / h, mid = 0.5 * (d.lo + d.hi), radius = mid - axis,
                length = d.hi - d.lo; /* in cells */
 

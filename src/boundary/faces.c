@@ -37,12 +37,13 @@ static unsigned FindMeters(const Scene *c, const Face *f)
 
 /* Along one axis what is inside the particle's domain of a face that spans 2 t about s: its middle and half-length, m,
    and how many cells it spans. */
-static double Inside(const GridLines *line, const Particles *P, const Face *f, int d, double t, double *x, double *l)
+static double Inside(BasisType type, const GridLines *line, const Particles *P, const Face *f, int d, double t,
+                     double *x, double *l)
 {
   const double p = P->f[P_X + d][f->particle], half = P->f[P_L + d][f->particle], s = f->x[d];
 
   if (line->x) {
-    const BasisSpan dom = BasisSpanOf(line, p, half);
+    const BasisSpan dom = BasisSpanOf(type, line, p, half);
     const double    lo  = fmin(fmax(LinesPlace(line, s - t), dom.lo), dom.hi),
                  hi     = fmin(fmax(LinesPlace(line, s + t), dom.lo), dom.hi);
 
@@ -51,7 +52,7 @@ static double Inside(const GridLines *line, const Particles *P, const Face *f, i
     return hi - lo;
   }
   const double      h = line->h, lower = line->lower, at = (s - lower) / h, r = t / h;
-  const BasisDomain dom = BasisDomainOf(p, half, lower, h, (double)line->cells);
+  const BasisDomain dom = BasisDomainOf(type, p, half, lower, h, (double)line->cells);
   const double      lo = fmin(fmax(at - r, dom.lo), dom.hi), hi = fmin(fmax(at + r, dom.lo), dom.hi);
 
   *x = lower + 0.5 * (lo + hi) * h;
@@ -66,7 +67,7 @@ static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const
   const GridLines *line = &g->line[d];
   double           hoop[3], r, x, l;
 
-  if (Inside(line, P, f, d, t, &x, &l) < POINT)
+  if (Inside(c->basis, line, P, f, d, t, &x, &l) < POINT)
     BasisHat(x, line, a);
   else if (d == 0 && c->axisymmetric)
     BasisRadius(BASIS_UGIMP, x, l, line, a, hoop, &r);

@@ -122,8 +122,8 @@ static void Look(Explicit *e)
     for (PetscInt p = 0; p < m->P.n; p++) {
       const double s   = LinesPlace(line, x[p]);
       const double lo  = linear    ? BasisSnap(s)
-                         : line->x ? BasisSpanOf(line, x[p], l[p]).lo
-                                   : BasisDomainOf(x[p], l[p], lower, h, cells).lo;
+                         : line->x ? BasisSpanOf(m->c->basis, line, x[p], l[p]).lo
+                                   : BasisDomainOf(m->c->basis, x[p], l[p], lower, h, cells).lo;
       const int    now = (int)floor(lo);
 
       changed |= now != base[p];

@@ -3,6 +3,7 @@
 
 const char *const cl_limit_word[LIMIT_COUNT] = {"none",
                                                 "waves in the mixture",
+                                                "waves in thin domains",
                                                 "waves in the water",
                                                 "waves in the gas",
                                                 "diffusion of pressure",
@@ -36,10 +37,15 @@ static void Stiffness(const Set s, const PointProperties *q, double C[2][2])
    functions have none. */
 static double Sliver(const Explicit *e, PetscInt p)
 {
-  double k2 = 0.0;
+  const BasisType type = e->m->c->basis;
+  double          k2   = 0.0;
 
-  for (int d = 0; e->o.velocities_free && d < CL_DIM && e->m->c->basis != BASIS_LINEAR; d++)
-    k2 = Largest(k2, 2.0 / (e->m->P.f[P_L + d][p] * LinesLeastAt(&e->m->grid.line[d], e->m->P.f[P_X + d][p])));
+  for (int d = 0; e->o.velocities_free && d < CL_DIM && type != BASIS_LINEAR; d++) {
+    const GridLines *line = &e->m->grid.line[d];
+    const double     x    = e->m->P.f[P_X + d][p];
+
+    k2 = Largest(k2, 2.0 / (BasisReach(type, line, x, e->m->P.f[P_L + d][p]) * LinesLeastAt(line, x)));
+  }
   return k2;
 }
 
@@ -140,7 +146,8 @@ static void Lower(double *bound, double by)
 /* Each kind alone, for the reader; a fluid whose drag damps the wave within a step diffuses. */
 static void Each(const Spectrum *w, bool implicit, double each[LIMIT_COUNT])
 {
-  Lower(&each[LIMIT_WAVE], 2.0 / sqrt(Largest(w->wave, w->sliver)));
+  Lower(&each[LIMIT_WAVE], 2.0 / sqrt(w->wave));
+  Lower(&each[LIMIT_THIN], 2.0 / sqrt(w->sliver));
   Lower(&each[LIMIT_HEAT], 2.0 / w->heat);
   for (int i = 0; i < w->fluids; i++) {
     const double lambda = w->drag[i], square = w->fluid[i];

@@ -5,6 +5,7 @@
 INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *restrict base)
 {
   const GridLines *line  = &e->m->grid.line[d];
+  const BasisType  type  = e->m->c->basis;
   const double     lower = line->lower, h = line->h, cells = (double)line->cells;
   const double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict l = e->m->P.f[P_L + d] + r.p;
 
@@ -21,7 +22,7 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
       D[0]        = -1.0 / h;
       D[1]        = 1.0 / h;
     } else {
-      const BasisDomain b = BasisDomainOf(x[q], l[q], lower, h, cells);
+      const BasisDomain b = BasisDomainOf(type, x[q], l[q], lower, h, cells);
 
       first           = floor(b.lo);
       const double lo = b.lo - first, hi = b.hi - first;

@@ -61,7 +61,7 @@ static void FillCells(const Model *m, double *fill)
       const GridLines *line = &m->grid.line[d];
       const double     x    = m->P.f[P_X + d][p];
 
-      share[d] = FirstShare(line, x, BasisReach(line, x, m->P.f[P_L + d][p]), &first[d]);
+      share[d] = FirstShare(line, x, BasisReach(m->c->basis, line, x, m->P.f[P_L + d][p]), &first[d]);
     }
     for (int k = 0; k < CL_CORNERS; k++) {
       PetscInt cell[CL_DIM];

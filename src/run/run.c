@@ -269,8 +269,12 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   const double   t                 = s->state.t;
   const char    *why               = run->lost ? "not all could be written; see to it" : "the state is not finite";
   char           advice[CL_ADVICE] = "";
+  PetscInt       rest              = s->model->P.n;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &rest, 1, MPIU_INT, MPI_SUM, comm));
+  if (rest == 0 && !run->lost)
+    why = "no particle is left in the grid";
   if ((run->lost || s->broken) && run->saved[0]) {
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: stopped at t = %g s: %s.  The last checkpoint, of t = %g s, is whole: go on with "

@@ -89,7 +89,8 @@ PetscErrorCode LongSummary(const Model *m, char text[256])
     bool cut = false;
 
     for (int d = 0; d < CL_DIM; d++)
-      cut = cut || BasisReach(&m->grid.line[d], m->P.f[P_X + d][p], INFINITY) * (1.0 + BASIS_SNAP) < m->P.f[P_L + d][p];
+      cut = cut || BasisReach(m->c->basis, &m->grid.line[d], m->P.f[P_X + d][p], INFINITY) * (1.0 + BASIS_SNAP) <
+                       m->P.f[P_L + d][p];
     n += cut;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, m->grid.comm));

@@ -82,7 +82,7 @@ static void Look(const GridLines *line, BasisType basis, double x, double l, Wor
   Axis a;
 
   BasisAxis(basis, x, l, line, &a);
-  const double reach = basis == BASIS_LINEAR ? 0.0 : BasisReach(line, x, l), h = LinesWidthAt(line, x);
+  const double reach = basis == BASIS_LINEAR ? 0.0 : BasisReach(basis, line, x, l), h = LinesWidthAt(line, x);
   const double lo = fmax(x - reach, line->lower), hi = fmin(x + reach, line->upper), mid = 0.5 * (lo + hi);
   double       one = -1.0, zero = 0.0, linear = -mid, slope = -1.0;
 
@@ -185,12 +185,13 @@ static void TestReach(void **state)
     const double step = 1e-4 * line.h;
 
     for (double x = line.lower; x + step < line.upper; x += 97.3 * step) {
-      const double a = BasisReach(&line, x, 1e9), b = BasisReach(&line, x + step, 1e9);
+      const double a = BasisReach(BASIS_UGIMP, &line, x, 1e9), b = BasisReach(BASIS_UGIMP, &line, x + step, 1e9);
 
       jump = fmax(jump, fabs(b - a) / step);
     }
     for (PetscInt i = 0; i < CELLS; i++)
-      Check(fabs(BasisReach(&line, 0.5 * (line.x[i] + line.x[i + 1]), 1e9) - 0.5 * LinesWidth(&line, i)) < 1e-14);
+      Check(fabs(BasisReach(BASIS_UGIMP, &line, 0.5 * (line.x[i] + line.x[i + 1]), 1e9) - 0.5 * LinesWidth(&line, i)) <
+            1e-14);
     Call(LinesDestroy(&line));
   }
   Say("slope of the half-length that acts: %.3g, below 1\n", jump);
@@ -207,7 +208,7 @@ static void TestRadius(void **state)
   for (int n = 0; n < 5000; n++) {
     GridLines    line = RandomLines(&r, n % 2 ? 0.0 : RngBetween(&r, 0.1, 3.0));
     const double l = RngBetween(&r, 0.01, 0.1), x = line.lower + l + (line.upper - line.lower - 2.0 * l) * RngUnit(&r);
-    const double reach = BasisReach(&line, x, l), lo = x - reach, hi = x + reach;
+    const double reach = BasisReach(BASIS_CPGIMP, &line, x, l), lo = x - reach, hi = x + reach;
     double       H[3], radius, sum = 0.0, u = 0.0, gradient = 0.0;
     Axis         a;
 
@@ -272,7 +273,8 @@ static void TestPlaces(void **state)
       ParticlesInitialHalfLength(&c, 0, x, l);
       fill = fmax(fill, fabs(x[0] - l[0] - end) / c.upper[0]);
       end  = x[0] + l[0];
-      Check(BasisReach(&c.line[0], x[0], l[0]) > (i == 0 || i + 1 == lattice.n[0] ? 0.9 : 1.0 - 1e-12) * l[0]);
+      Check(BasisReach(BASIS_UGIMP, &c.line[0], x[0], l[0]) >
+            (i == 0 || i + 1 == lattice.n[0] ? 0.9 : 1.0 - 1e-12) * l[0]);
       Check((RegionFaces(&c, 0, &lattice, ij) & 3) == ((i == 0) | (i + 1 == lattice.n[0]) << 1));
     }
     fill = fmax(fill, fabs(end - region.upper[0]) / c.upper[0]);
