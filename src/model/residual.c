@@ -223,7 +223,6 @@ static void ParticleLoop(Model *m, const double *x, double *f)
       return;
     m->limited += state.limited;
     Scatter(m, p, &r, x, o.out);
-    LumpResidual(m, p, &r, x, f);
   }
   NodeLoop(m, x, f);
 }
