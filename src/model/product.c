@@ -322,7 +322,6 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
     if (m->beds)
       BedsChange(m, p, &r, dx);
     if (!momentum)
-      LumpResidual(m, p, &r, dx, f);
   }
 }
 

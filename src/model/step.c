@@ -1,4 +1,5 @@
 /* Start of a step: stencils, active nodes and nodal start values on the configuration at t_n. */
+#include "clathra/point_reaction.h"
 #include "clathra/point_heat.h"
 #include "solver.h"
 
@@ -37,8 +38,8 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
       PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->added->spread));
     if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
       PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->added->upwind));
-    if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
-      PetscCall(PetscCalloc1(m->stencil_cap, &m->added->lump));
+    if (SceneHoldsReaction(m->c))
+      PetscCall(PetscMalloc1(m->stencil_cap, &m->added->held));
   }
   if (!SceneHasBeds(m->c)) /* a stage may bring other materials */
     PetscCall(PetscFree(m->beds));
@@ -158,6 +159,17 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   HeatUpwind(q->kappa, a, h, K);
 }
 
+/* (265) with the faster of both ways at t_n. */
+static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
+{
+  const double g[CL_DIM] = {m->P.f[P_GT][p], m->P.f[P_GT + 1][p]};
+  double       h[CL_DIM], slope;
+
+  EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
+  CellWidths(m, p, h);
+  return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));
+}
+
 /* Did the particle's domain begin at the axis? */
 static bool SeededAtAxis(const Model *m, PetscInt p)
 {
@@ -271,6 +283,8 @@ static PetscErrorCode Project(Model *m)
       m->added->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
     if (m->added->upwind)
       UpwindOf(m, p, &q, &m->added->upwind[3 * p]);
+    if (m->added->held)
+      m->added->held[p] = HeldOf(m, p, &q);
     if (m->added->exchange)
       ExchangeSet(m, p, &q);
     m->conduct[p] = shared ? SceneConductance(m->c, ParticleMaterial(m, p), m->P.f[P_SH][p]) : 1.0;
@@ -462,7 +476,6 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamWeights(m));
     PetscCall(DonorBuild(m));
-    LumpBuild(m);
   }
   PetscCall(PetscFree(flag));
   PetscCall(PetscLogEventEnd(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));

@@ -81,7 +81,7 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
   }
   const double  Kd = KineticsRateConstant(k, T_r.v, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe);
   const Driving d      = ReactionDriving(mat->gas.trace, s->sg.v, pw_r.v, pg_r.v, pe);
-  const Growth  g      = ReactionGrowth(k, h->dt, &d, Kd, dK, pe, dpe);
+  const Growth  g      = ReactionGrowth(k, h->dt, h->held, &d, Kd, dK, pe, dpe);
   const Jet     p_r    = JetChain3(d.p.v, d.p.sg, s->sg, d.p.pw, pw_r, d.p.pg, pg_r);
   const Jet     growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
 
