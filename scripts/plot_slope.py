@@ -103,7 +103,8 @@ def energy(name, runs, measures, out):
         for ax, y in zip(axes.flat, (e, P, R, 100 * (1 - run.balance["hydrate_kg"] / run.balance["hydrate_kg"][0]))):
             ax.plot(t, y, style, color=colour, label=label, lw=1.2)
         lines.append(f"{label}: onset {m['onset_s'] or float('nan'):.1f} s, failed {m['failed_volume_m2']:.0f} m³/m, runout {m['runout_m']:.1f} m, "
-                     f"retrogression {m['retrogression_m']:.0f} m, up to {m['peak_mean_velocity_m_s']:.2f} m/s, gas {m['gas_released_kg']:.0f} kg/m")  # fmt: skip
+                     f"retrogression {m['retrogression_m']:.0f} m, up to {m['peak_mean_velocity_m_s']:.2f} m/s, {m['peak_kinetic_energy_J']:.3g} J/m at {m['peak_kinetic_energy_s']:.0f} s, "
+                     f"hydrate lost {100 * m['hydrate_lost_share']:.2f} %, gas {m['gas_released_kg']:.0f} kg/m")  # fmt: skip
     for ax, title in zip(axes.flat, ("$E_k$ (J/m)", "$P_k = dE_k/dt$ (W/m)", "$R_k = d^2E_k/dt^2$ (W/(s m))", "hydrate lost (%)")):
         ax.set(xlabel="t (s)", title=title)
     axes[1, 1].legend()
