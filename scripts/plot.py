@@ -186,13 +186,15 @@ def plot_film(run, times, snapshots, quantities):
 
 
 def arrows(axes, p, fluid):
-    """Velocity of a fluid in the pores against the skeleton, at particles that lie evenly; the longest arrow's speed."""
+    """Velocity of a fluid in the pores against the skeleton, at particles that lie evenly, as long as the root of its speed; the largest speed."""
     x, v = p["position"], p[fluid] - p.get("v_s", 0.0)
     size = np.ptp(x, axis=0).max() / ARROWS
     at = np.unique(np.floor((x - x.min(0)) / size) @ [10000, 1], return_index=True)[1]
     longest = np.nanmax(np.hypot(*v[at].T))
     if longest > 0:
-        axes.quiver(*x[at].T, *v[at].T, angles="xy", scale_units="xy", scale=longest / (1.6 * size), width=0.004, color="0.1", alpha=0.8)
+        speed = np.hypot(*v[at].T)
+        along = v[at] / np.sqrt(np.maximum(speed, 1e-4 * longest) * longest)[:, None]  # the root of the speed: slow flow is seen, too
+        axes.quiver(*x[at].T, *along.T, angles="xy", scale_units="xy", scale=1 / (1.6 * size), width=0.006, pivot="mid", color="w", ec="0.1", lw=0.4)
     return longest
 
 

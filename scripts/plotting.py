@@ -63,7 +63,7 @@ def wrapped(label, inches):
 def boxes(axes, particles, values, low=None, high=None, first=None):
     """Particles as what they fill, deformed since `first` (the same particles at the start), coloured by values (n,) from low to
     high; returns the collection."""
-    found = PolyCollection(corners(particles, first or particles), array=values, cmap="viridis", lw=0.15, edgecolor="face")
+    found = PolyCollection(corners(particles, first or particles), array=values, cmap="viridis", lw=0.6, edgecolor="face")  # wide enough to leave no seams
     found.set_clim(low, high)
     axes.add_collection(found)
     axes.autoscale_view()
