@@ -18,7 +18,6 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   PetscCall(ModelPlatesCreate(m));
   m->failure.why[0] = '?';
-  m->keeps          = 1.0;
   PetscCall(PetscNew(&m->added));
   PetscCall(SolverCreate(&m->solver));
   PetscCall(PreconditionerPlan(m));
@@ -156,36 +155,25 @@ static double Enthalpy(const Material *mat, double capacity, double mh, double T
 
 PetscErrorCode ModelComputeTotals(const Model *m, ModelTotals *t)
 {
-  double sum[8] = {0.0};
-
   PetscFunctionBeginUser;
+  *t = (ModelTotals){0};
   for (PetscInt p = 0; p < m->P.n; p++) {
     const Material *mat = ParticleMaterial(m, p);
     const Kinetics *k   = &mat->kinetics;
     const double    ms = m->P.f[P_MS][p], mh = m->P.f[P_MH][p];
-    const double    mw = m->c->fields.phase[PHASE_W] ? m->P.f[P_MW][p] : 0.0;
-    const double    mg = m->c->fields.phase[PHASE_G] ? m->P.f[P_MG][p] : 0.0;
+    const double    mw       = m->c->fields.phase[PHASE_W] ? m->P.f[P_MW][p] : 0.0;
+    const double    mg       = m->c->fields.phase[PHASE_G] ? m->P.f[P_MG][p] : 0.0;
+    const double    capacity = HeatCapacity(mat, ms, mh, mw, mg);
 
-    sum[0] += mw + (mat->reacts ? mh * KineticsWater(k) : 0.0);
-    sum[1] += mg + (mat->reacts ? mh * KineticsMethane(k) : 0.0);
-    sum[2] += mh;
-    sum[3] += ms;
-    sum[4] += m->P.f[P_V][p];
-    sum[6] += mg;
-    const double capacity = HeatCapacity(mat, ms, mh, mw, mg);
-
-    sum[5] += capacity;
-    if (m->c->fields.heat)
-      sum[7] += Enthalpy(mat, capacity, mh, m->P.f[P_T][p]);
+    t->water += mw + (mat->reacts ? mh * KineticsWater(k) : 0.0);
+    t->methane += mg + (mat->reacts ? mh * KineticsMethane(k) : 0.0);
+    t->hydrate += mh;
+    t->solid += ms;
+    t->gas += mg;
+    t->V += m->P.f[P_V][p];
+    t->capacity += capacity;
+    t->enthalpy += m->c->fields.heat ? Enthalpy(mat, capacity, mh, m->P.f[P_T][p]) : 0.0;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 8, MPI_DOUBLE, MPI_SUM, m->grid.comm));
-  *t = (ModelTotals){.water    = sum[0],
-                     .methane  = sum[1],
-                     .hydrate  = sum[2],
-                     .solid    = sum[3],
-                     .gas      = sum[6],
-                     .V        = sum[4],
-                     .capacity = sum[5],
-                     .enthalpy = sum[7]};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, t, sizeof(*t) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
