@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The one-way rule: a file includes only headers of layers above its own, and within a folder no two files call each
-other, directly or in a circle.  Usage: layers.py [root of the tree].
+other, directly or in a circle; and no file outside of src/model names what Model keeps to itself.
+Usage: layers.py [root of the tree].
 
 It also judges a table of made-up files, some with planted violations, and fails if it misses one.
 """
@@ -119,6 +120,25 @@ def circles(root):
     return found
 
 
+MODEL = re.compile(r"typedef struct \{(?:(?!typedef struct).)*\} Model;", re.S)
+PRIVATE_FROM = "seen by src/model alone"
+
+
+def private_members(header):
+    """Names of the members of Model that stand behind the mark."""
+    body = MODEL.search(header).group(0).split(PRIVATE_FROM, 1)[1].split("*/", 1)[1].rsplit("}", 1)[0]
+    parts = re.split(r"[;,]", re.sub(r"\[.*?\]", "", COMMENT.sub(" ", body)))
+    return {re.findall(r"\w+", part)[-1] for part in parts if part.strip()}
+
+
+def peeks_of(path, text, private):
+    """Sentences on private members of Model that a file below src/model names; src/case has none, its m are materials."""
+    if not path.startswith("src/") or rank_of(path) <= RANK_OF_FOLDER["model"] or rank_of(path) == RANK_OF_FOLDER["case"]:
+        return []
+    named = set(re.findall(r"\b(?:m|model)(?:->|\.)(\w+)", COMMENT.sub(" ", text)))
+    return [f"{path}: {name} of Model is src/model's own" for name in sorted(private & named)]
+
+
 PLANTED = {  # path: text, whether it is wrong
     ("include/clathra/point.h", '#include "clathra/grid.h"\n'): True,
     ("include/clathra/laws.h", '#include "clathra/base.h"\n'): True,
@@ -144,6 +164,11 @@ def self_test():
     rings = {"a.c": "void A(void)\n{\n  C();\n}\n", "b.c": "int B(int x)\n{\n  A(); /* C */\n}\n", "c.c": "void C(void)\n{\n  D();\n}\n"}
     if circle_of(rings) or len(circle_of({**rings, "d.c": "void D(void)\n{\n  B(1);\n}\n"})) != 4:
         wrong.append("files in a circle")
+    header = "typedef struct {\n  Grid grid; /* coef */\n  /* seen by src/model alone */\n  double *coef, *x; /* [n] */\n  double (*plate)[4];\n} Model;\n"
+    private = private_members(header)
+    peeks = {("src/io/a.c", "e->m->coef[0] = s->model.x;"): 2, ("src/io/a.c", "m->grid; a->x; /* m->x */"): 0, ("src/model/a.c", "m->x"): 0}
+    if private != {"coef", "x", "plate"} or any(len(peeks_of(path, text, private)) != n for (path, text), n in peeks.items()):
+        wrong.append("private members of Model")
     for path in wrong:
         print(f"self-test: a planted case was judged wrongly: {path}")
     return len(wrong)
@@ -154,6 +179,8 @@ def main():
     files = sorted(p for folder in ("src", "include") for p in (root / folder).rglob("*.[ch]"))
     found = [v for p in files for v in violations_of(p.relative_to(root).as_posix(), p.read_text())]
     found += circles(root)
+    private = private_members((root / "include/clathra/model.h").read_text())
+    found += [v for p in files for v in peeks_of(p.relative_to(root).as_posix(), p.read_text(), private)]
     print("\n".join(found + [f"{len(files)} files, {len(found)} violations, {len(PLANTED)} planted cases tried"]))
     return 1 if self_test() or found or not files else 0
 

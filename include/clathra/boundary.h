@@ -50,11 +50,13 @@ static inline void FaceDirection(const Scene *c, Face *f, int phase, const doubl
 }
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
-PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
-                          Face **face);
+PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, PetscInt *n, Face **face);
+
+/* Weights of particle p where it is now. */
+void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt p, Stencil *s);
 
 /* Where the face is and how it distributes, for its particle's present position and weights. */
-void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f);
+void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f);
 
 /* (109): weights of an inflow of fluids that cannot move yet.  S: n weights of the face's particle (-), in the order of
    StencilExpand; kr: its relative permeabilities at t_n (-). */
@@ -162,6 +164,13 @@ static inline double PlateGap(const Face *f, double position, const double u[CL_
 
   return SideSign(f->side) * (f->moved[d] - position + u[d]);
 }
+/* Is the force of any plate prescribed? */
+bool PlatesForced(const Scene *c);
+/* (73): positions `value` (m since the start) of the plates that bear a prescribed force at time t (s); answer: what
+   each face's spring bears along the axis with the plate where it was at the start (N), and how much less for every
+   metre that the plate gives way (N/m).  K, if wanted: that of all that touch, N/m.  Collective. */
+PetscErrorCode PlatesSeek(const Scene *c, MPI_Comm comm, PetscInt nface, const Face *face, const double (*answer)[2],
+                          double t, double *value, double *K);
 /* Adds the plate's spring to what a face adds to its nodes, with the tangent. */
 void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o);
 /* CL_OK, or why the plate cannot go to `position` (m) in this step; the sentence goes to text. */

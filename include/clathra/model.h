@@ -147,10 +147,20 @@ typedef struct {
 } Leaving;
 
 typedef struct {
-  const Scene  *c;
-  Grid          grid;
-  Particles     P;
-  NodeMap       map;
+  /* Every integrator's: the body and what is counted of it. */
+  const Scene *c;
+  Grid         grid;
+  Particles    P;
+  NodeMap      map; /* of the last implicit step */
+  BcValues     bc;
+  StageRates   rates;           /* of the last stage, means over a burst */
+  PetscInt     plates;          /* their number */
+  double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */
+  double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
+  PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
+  Leaving  leaving;             /* particles that crossed the edge of the grid (373) */
+
+  /* The implicit system's: what stands from here on is seen by src/model alone (tests/layers.py). */
   PetscLogEvent event[EVENT_COUNT];
 
   /* on the configuration at t_n, built by ModelBeginStep */
@@ -174,9 +184,8 @@ typedef struct {
   Face            *face;
 
   /* of the stage, built by ModelBeginStage */
-  Stage    stage;
-  BcValues bc;
-  double  *row_scale, *col_scale; /* [n_local][fields.n] */
+  Stage   stage;
+  double *row_scale, *col_scale; /* [n_local][fields.n] */
 
   /* of the last evaluation */
   double    *x, *f;       /* [n_local][fields.n] unscaled unknowns, residual */
@@ -186,14 +195,7 @@ typedef struct {
   double    *proj;        /* [n_local][PHASE_COUNT][CL_DIM] projected pressure gradients Pi g, Pa/m */
   double    *give, *take; /* [n_local][...] what nodes hold for their particles, what these add (src/model/gather.h) */
   Wide      *wide;        /* [n] of the wide part (27) */
-  StageRates rates;       /* of the last stage */
-  PetscInt   plates;      /* their number */
-  double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */
-  double  *plate_K;             /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
-  double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
-  PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
-  double   keeps;               /* share of their motion against the nodes that particles keep (357), dimensionless */
-  Leaving  leaving;             /* particles that crossed the edge of the grid (373) */
+  double    *plate_K;     /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
 
   Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (265), (293) */
   Solver    *solver;  /* of the stages */
@@ -245,6 +247,8 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status);
 /* Can the plates go where they must in this stage? */
 PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status);
+/* Model.plate of all ranks from what each has added, with the positions.  Collective. */
+PetscErrorCode ModelPlatesSum(Model *m);
 /* Sets Face.K from the particle's present properties. */
 void ModelPlateStiffness(const Model *m, Face *f);
 /* The skeleton of particle p at t_n, where a first stage starts. */
@@ -256,11 +260,14 @@ static inline SkeletonStage ModelSkeletonStart(const Model *m, PetscInt p)
   SkeletonTake(&store, 0, &h);
   return h.from;
 }
+/* Nodal values at t_n ([n_local][fields.n], SI units) as ModelBeginStep projects them (2); NULL before the first. */
+const double *ModelStart(const Model *m);
 /* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v, m/s. */
 void ModelStartVelocity(const Model *m, double *v);
 /* Makes the trial state of the last stage the history, with rates (n x 4, of p_w, p_g, T, S_h: Pa/s, K/s, 1/s), moves
- * the particles and migrates them. */
-PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates);
+   the particles and migrates them.  keeps: share of their motion against the nodes that particles keep (357),
+   dimensionless. */
+PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates, double keeps);
 /* Notes why particle p cannot go on; the first reason of this rank stays. */
 void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p);
 /* Why the last evaluation failed, and where; the words stay when the status is cleared. */
@@ -273,6 +280,9 @@ void ModelExplain(Model *m, const char *why);
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
+/* What flows into the body and wells need of the particle of a face (109), (367); S: its weights at its n nodes,
+   dimensionless. */
+void ModelFaceProperties(const Model *m, Face *f, int n, const double S[]);
 /* Adds a face's rates, weighted with `weight`, to those of the whole boundary and of the meters that cover it. */
 void ModelCountFace(const Scene *c, const Face *face, double weight, const FaceOutput *o, StageRates *rates);
 /* Same status on all ranks (the worst), with its reason and place on all ranks. */

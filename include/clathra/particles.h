@@ -62,7 +62,7 @@ CL_SKELETON_HISTORY(CL_OWN_CHECK)
 _Static_assert(P_PG0 == P_PW0 + 1, "initial p_w, p_g");
 _Static_assert(P_RATE_PG == P_RATE + 1 && P_RATE_T == P_RATE + 2 && P_RATE_SH == P_RATE + 3, "rates: p_w, p_g, T, S_h");
 _Static_assert(P_VW == P_VS + CL_DIM && P_VG == P_VW + CL_DIM, "velocities: skeleton, water, gas");
-_Static_assert(P_GG == P_GW + CL_DIM, "gradients of p_w, p_g");
+_Static_assert(P_GG == P_GW + CL_DIM && P_GT == P_GG + CL_DIM, "gradients of p_w, p_g, T");
 
 typedef struct {
   const char *name, *unit, *doc;

@@ -151,10 +151,28 @@ static void PlaceInside(const Particles *P, const Stencil *st, Face *f)
   SpreadWeights(st, w, f);
 }
 
-void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, Face *f)
+void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt p, Stencil *s)
 {
+  s->r = 0.0;
+  for (int d = 0; d < CL_DIM; d++) {
+    const GridLines *line = &g->line[d];
+    const double     x = P->f[P_X + d][p], l = P->f[P_L + d][p];
+
+    if (d == 0 && c->axisymmetric)
+      BasisRadius(c->basis, x, l, line, &s->axis[d], s->hoop, &s->r);
+    else
+      BasisAxis(c->basis, x, l, line, &s->axis[d]);
+    s->cell[d] = BasisCellAt(line, x, &s->axis[d]);
+  }
+}
+
+void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f)
+{
+  Stencil s;
+
+  ParticleStencil(c, g, P, f->particle, &s);
   if (f->share > 0.0) {
-    PlaceInside(P, stencil, f);
+    PlaceInside(P, &s, f);
     return;
   }
   const PetscInt p    = f->particle;
@@ -167,7 +185,7 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil 
     F[k / 2][k % 2] = P->f[P_F + k][p];
   for (int d = 0; d < CL_DIM; d++) {
     f->x[d]     = P->f[P_X + d][p] + sign * F[d][axis] * l[axis];
-    f->r[d]     = f->x[d] - AxisCentroid(&stencil->axis[d], &g->line[d]);
+    f->r[d]     = f->x[d] - AxisCentroid(&s.axis[d], &g->line[d]);
     half[d]     = fabs(F[d][tangent]) * l[tangent];
     f->moved[d] = f->x[d] - f->x0[d] - (d == axis ? sign * l[axis] : 0.0);
   }
@@ -178,7 +196,7 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, const Stencil 
   f->a0          = 2.0 * l[tangent] * (c->axisymmetric ? 2.0 * M_PI * (f->x[0] - f->moved[0]) : 1.0);
   f->s[0]        = fabs(A) * (F[1][1] * f->n0[0] - F[1][0] * f->n0[1]);
   f->s[1]        = fabs(A) * (F[0][0] * f->n0[1] - F[0][1] * f->n0[0]);
-  Weights(c, g, P, stencil, half, f);
+  Weights(c, g, P, &s, half, f);
   Ring(c, g, P, f);
   f->skin[PHASE_W] = f->skin[PHASE_G] = 0.0;
   f->pore                             = FacePore(c, P, f);
@@ -203,8 +221,7 @@ void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT])
   }
 }
 
-static void MakeFace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p, int side,
-                     Face *f)
+static void MakeFace(const Scene *c, const Grid *g, const Particles *P, PetscInt p, int side, Face *f)
 {
   *f = (Face){.particle = p,
               .side     = side,
@@ -215,7 +232,7 @@ static void MakeFace(const Scene *c, const Grid *g, const Particles *P, const St
     f->bc[kind] = kind == BC_WELL ? -1 : FindCondition(c, (BcType)kind, f);
   f->meters = FindMeters(c, f);
   FaceNormal(c, f->region, f->x0, side, f->n0);
-  FacePlace(c, g, P, &stencil[p], f);
+  FacePlace(c, g, P, f);
 }
 
 static double ShareOf(const Scene *c, const Particles *P, const Well *well, PetscInt p)
@@ -227,8 +244,8 @@ static double ShareOf(const Scene *c, const Particles *P, const Well *well, Pets
   return WellShare(well, x0, l);
 }
 
-static void MakeWellFace(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt p,
-                         PetscInt k, double share, Face *f)
+static void MakeWellFace(const Scene *c, const Grid *g, const Particles *P, PetscInt p, PetscInt k, double share,
+                         Face *f)
 {
   *f = (Face){.particle = p,
               .side     = SIDE_COUNT,
@@ -239,12 +256,11 @@ static void MakeWellFace(const Scene *c, const Grid *g, const Particles *P, cons
     f->bc[kind] = kind == BC_WELL ? k : -1;
   for (PetscInt i = 0; i < c->nmeter; i++)
     f->meters |= (unsigned)(c->meter[i].well == c->bc[k].number) << i;
-  FacePlace(c, g, P, &stencil[p], f);
+  FacePlace(c, g, P, f);
 }
 
 /* Adds the particles of condition k, a well, to n faces of so many that there is room for. */
-static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt k,
-                                PetscInt *n, Face **face)
+static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *P, PetscInt k, PetscInt *n, Face **face)
 {
   PetscInt count = 0, at = *n;
   Well     well;
@@ -263,7 +279,7 @@ static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *
     if (share > 0.0) {
       const Material *mat = &c->material[c->region[P->i[PI_REGION][p]].material];
 
-      MakeWellFace(c, g, P, stencil, p, k, share, &(*face)[at]);
+      MakeWellFace(c, g, P, p, k, share, &(*face)[at]);
       (*face)[at++].draws = c->bc[k].index * sqrt(mat->permeability.ratio) * share; /* (367) */
     }
   }
@@ -271,8 +287,7 @@ static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, const Stencil *stencil, PetscInt *n,
-                          Face **face)
+PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, PetscInt *n, Face **face)
 {
   PetscInt count = 0;
 
@@ -290,12 +305,12 @@ PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, con
   for (PetscInt p = 0; p < P->n; p++) {
     for (int side = 0; side < SIDE_COUNT; side++) {
       if ((P->i[PI_FACES][p] >> side) & 1)
-        MakeFace(c, g, P, stencil, p, side, &(*face)[count++]);
+        MakeFace(c, g, P, p, side, &(*face)[count++]);
     }
   }
   for (PetscInt k = 0; k < c->nbc; k++) {
     if (c->bc[k].type == BC_WELL)
-      PetscCall(WellFaces(c, g, P, stencil, k, n, face));
+      PetscCall(WellFaces(c, g, P, k, n, face));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -49,6 +49,62 @@ void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[
     o->plate[PLATE_AREA] = n * (k.cof[d][0] * f->n[0] + k.cof[d][1] * f->n[1]);
 }
 
+bool PlatesForced(const Scene *c)
+{
+  bool any = false;
+
+  for (PetscInt k = 0; k < c->nbc; k++)
+    any = any || c->bc[k].force.n;
+  return any;
+}
+
+/* One pass of (73): sums over the faces that touch a plate at its present position (all of them at first) of what they
+   bear, of what that falls by, and their number. */
+static void SumSprings(const Scene *c, PetscInt nface, const Face *face, const double (*answer)[2], bool first,
+                       const double *value, double (*sum)[3])
+{
+  for (PetscInt k = 0; k < nface; k++) {
+    const PetscInt which = face[k].bc[BC_PLATE];
+
+    if (which < 0 || !c->bc[which].force.n)
+      continue;
+    const double n = SideSign(face[k].side), bears = n * answer[k][0];
+    if (c->bc[which].separates && !first && bears <= answer[k][1] * n * value[which])
+      continue;
+    sum[which][0] += bears;
+    sum[which][1] += answer[k][1];
+    sum[which][2] += 1.0;
+  }
+}
+
+PetscErrorCode PlatesSeek(const Scene *c, MPI_Comm comm, PetscInt nface, const Face *face, const double (*answer)[2],
+                          double t, double *value, double *K)
+{
+  bool again = PlatesForced(c);
+  double(*sum)[3], *touching;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(c->nbc, &sum, c->nbc, &touching));
+  /* fewer and fewer faces touch: the force is a convex function of the position, met from the left */
+  for (bool first = true; again; first = false) {
+    again = false;
+    PetscCall(PetscArrayzero(sum, c->nbc));
+    SumSprings(c, nface, face, answer, first, value, sum);
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(3 * c->nbc), MPI_DOUBLE, MPI_SUM, comm));
+    for (PetscInt k = 0; k < c->nbc; k++) {
+      if (!c->bc[k].force.n || sum[k][2] == 0.0 || (!first && sum[k][2] == touching[k]))
+        continue;
+      value[k]    = SideSign(c->bc[k].side) * (sum[k][0] - PlateForce(&c->bc[k], t)) / sum[k][1];
+      touching[k] = sum[k][2];
+      again       = again || c->bc[k].separates;
+      if (K)
+        K[k] = sum[k][1];
+    }
+  }
+  PetscCall(PetscFree2(sum, touching));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Has the plate met a plane that holds the body along its axis, or the plane a plate? */
 static const Bc *Met(const Scene *c, const Grid *g, const Face *f, double position)
 {

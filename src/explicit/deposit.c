@@ -1,8 +1,8 @@
 /* First pass: masses, momenta, forces, pressures and temperature of the particles to their nodes; docs/equations.md,
  * section 12. */
-#include "lanes.h"
 #include "clathra/laws_batch.h"
 #include "clathra/tensor.h"
+#include "gathered.h"
 
 typedef struct {
   double phi[BLOCK], Sh[BLOCK], open[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
@@ -97,15 +97,9 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
 }
 
-/* A block's values, one row of numbers for each particle; x, y: what is multiplied with the node's place in the 3 x 3
-   patch (carried values) and with the gradients (forces). */
-typedef struct {
-  double value[BLOCK][5 * LANES], carry[CL_DIM][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
-} Values;
-
 /* V (p + g . (x_I - x_p)) at the lowest left node of the patch, and its growth from node to node (2). */
 INLINE void Carried(Run r, int lane, const double *restrict weight, const double *restrict y,
-                    const double *const g[CL_DIM], const Weights *w, Values *v)
+                    const double *const g[CL_DIM], const Weights *w, Given *v)
 {
   for (int q = 0; q < r.n; q++) {
     double at = y[q];
@@ -141,7 +135,7 @@ INLINE void AmbientAt(const Explicit *e, Run r, Around *a)
   }
 }
 
-INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w, Values *v)
+INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w, Given *v)
 {
   double *const *f = e->m->P.f;
   Around         a;
@@ -166,7 +160,7 @@ INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w
   }
 }
 
-INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Fluids *w, Values *v)
+INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Fluids *w, Given *v)
 {
   double *const *f  = e->m->P.f;
   const int      at = A_Fluid(s, k), vel = VectorAt(P_VW, k, 0), grad = VectorAt(P_GW, k, 0);
@@ -197,7 +191,7 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
 }
 
 /* (306) as the beds lie now. */
-INLINE void BedsValues(Explicit *e, const Set s, Run r, Values *v)
+INLINE void BedsValues(Explicit *e, const Set s, Run r, Given *v)
 {
   for (int q = 0; s.beds && q < r.n; q++) {
     const PetscInt p  = r.p + q;
@@ -213,38 +207,8 @@ INLINE void BedsValues(Explicit *e, const Set s, Run r, Values *v)
   }
 }
 
-INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Values *v)
-{
-  const int rows = Rows(A_Count(s)), stride = (int)e->m->grid.gm[0];
-
-  for (int q = 0; q < r.n; q++) {
-    const int   *slot  = &e->slot[w->first[q]];
-    const Lanes *value = (const Lanes *)v->value[q];
-    const Lanes  cx = *(const Lanes *)v->carry[0][q], cy = *(const Lanes *)v->carry[1][q];
-    const Lanes  fx = *(const Lanes *)v->force[0][q], fy = *(const Lanes *)v->force[1][q];
-
-    const double x[3] = {0.0, 1.0, w->third[0][q]}, y[3] = {0.0, 1.0, w->third[1][q]};
-
-    for (int b = 0; b < 3; b++) {
-      const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
-
-      for (int a = 0; a < 3; a++) {
-        const double S = w->S[0][a][q] * Sy, Gx = w->D[0][a][q] * Sy, Gy = w->S[0][a][q] * Dy;
-        Lanes       *row   = (Lanes *)e->A + (size_t)slot[b * stride + a] * (size_t)rows;
-        Lanes        first = value[0];
-
-        if (Scalars(s))
-          first += cx * x[a] + cy * y[b];
-        row[0] += s.solid ? first * S + fx * Gx + fy * Gy : first * S;
-        for (int z = 1; z < rows; z++)
-          row[z] += value[z] * S;
-      }
-    }
-  }
-}
-
 /* (160), (88): part of the stress acts through the mean motion of the particle's cell. */
-INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const Weights *w, Values *v)
+INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const Weights *w, Given *v)
 {
   const int width = LANES * Rows(A_Count(s)), at = A_Mix(s);
 
@@ -294,23 +258,19 @@ INLINE void WeakForces(Explicit *e, const Set s, Run r, const Weights *w)
 
 INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
 {
-  _Alignas(64) Values v;
-  Weights             w;
-  Fluids              state;
-  CellMean            mean;
-  double *const      *f = e->m->P.f;
-  const double       *T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p, *restrict V = f[P_V] + r.p;
-  double              C[BLOCK];
+  _Alignas(64) Given v;
+  Weights            w;
+  Fluids             state;
+  CellMean           mean;
+  double *const     *f = e->m->P.f;
+  const double      *T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p, *restrict V = f[P_V] + r.p;
+  double             C[BLOCK];
 
   (void)dt;
   WeightsOf(e, r, &w);
-  for (int q = 0; q < r.n; q++) {
-    for (int k = 0; k < LANES; k++)
-      v.carry[0][q][k] = v.carry[1][q][k] = v.force[0][q][k] = v.force[1][q][k] = 0.0;
-    for (int k = A_Count(s); k < LANES * Rows(A_Count(s)); k++)
-      v.value[q][k] = 0.0;
+  GiveNothing(r, A_Count(s), &v);
+  for (int q = 0; q < r.n; q++)
     v.value[q][A_V(s)] = V[q];
-  }
   State(e, s, r, T, &state);
   for (int q = 0; s.layers && q < r.n; q++)
     v.value[q][A_K(s)] = V[q] * Conductance(e, s, r.p + q);
@@ -340,14 +300,12 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     }
     WeakForces(e, s, r, &w);
   }
-  Scatter(e, s, r, &w, &v);
+  Scatter(e, e->A, A_Count(s), Scalars(s) > 0, s.solid, r, &w, &v);
 }
 
 MAKE_LOOPS(DepositRun)
 
 void Deposit(Explicit *e)
 {
-  static const LoopTable table = LOOPS(DepositRun);
-
-  ForRuns(e, table, 0.0);
+  ForRuns(e, DepositRun_loops, 0.0);
 }

@@ -26,7 +26,6 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   e->straight = INFINITY;
   for (PetscInt k = 0; k < m->c->nmaterial && m->c->material[k].gas.trace > 0.0; k++)
     e->straight = PetscMin(e->straight, STRAIGHT * m->c->material[k].retention.p0);
-  PetscCall(PlatesCreate(e));
   PetscCall(PetscClassIdRegister("Clathra explicit", &id));
   for (int k = 0; k < STEP_PARTS; k++)
     PetscCall(PetscLogEventRegister(part[k], id, &e->event[k]));
@@ -58,7 +57,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
   PetscCall(PetscFree(e->pull));
-  PetscCall(PlatesDestroy(e));
+  PetscCall(PetscFree3(e->spring, e->answer, e->push));
   PetscCall(PetscFree(e));
   *out = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -293,7 +292,7 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   FacesForces(e, dt);
   PetscCall(NodeMapSum(&e->map, e->A, width));
   PetscCall(NodesPrepare(e));
-  if (e->nplate)
+  if (e->m->plates)
     PetscCall(PlatesForces(e, t, dt));
   PetscCall(NodesVelocities(e, dt));
   FacesWork(e, dt);

@@ -12,50 +12,31 @@ static bool Acts(const Scene *c, const Face *f)
   return acts;
 }
 
-/* Weights of a face's particle where it is now. */
-static void Place(const Explicit *e, PetscInt p, Stencil *s)
-{
-  const Grid *g = &e->m->grid;
-
-  s->r = 0.0;
-  for (int d = 0; d < CL_DIM; d++)
-    BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][p], e->m->P.f[P_L + d][p], &g->line[d], &s->axis[d]);
-}
-
-void FacesPlace(const Explicit *e, Face *f)
+/* Nodes of a face's particle with their weights there; their number. */
+static int Reach(const Explicit *e, const Face *f, PetscInt node[CL_NODES], double S[CL_NODES])
 {
   Stencil s;
+  double  G[CL_NODES][CL_DIM], H[CL_NODES];
 
-  Place(e, f->particle, &s);
-  FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
+  ParticleStencil(e->m->c, &e->m->grid, &e->m->P, f->particle, &s);
+  return StencilExpand(&s, &e->m->grid, &e->map, node, S, G, H);
 }
 
 int FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES])
 {
-  Stencil s;
-  double  S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
+  double S[CL_NODES];
 
-  Place(e, f->particle, &s);
-  return StencilExpand(&s, &e->m->grid, &e->map, node, S, G, H);
+  return Reach(e, f, node, S);
 }
 
 /* The faces on which something is prescribed or counted; the rest are closed, adiabatic and free by themselves, but in
    the bare form, whose forces by parts end there. */
 PetscErrorCode FacesBegin(Explicit *e)
 {
-  Stencil *stencil;
-  PetscInt n     = 0;
-  bool     wells = false;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(e->m->P.n, &stencil));
-  for (PetscInt k = 0; k < e->m->c->nbc; k++)
-    wells = wells || e->m->c->bc[k].type == BC_WELL;
-  for (PetscInt p = 0; p < e->m->P.n; p++) {
-    if (wells || e->m->P.i[PI_FACES][p])
-      Place(e, p, &stencil[p]);
-  }
-  PetscCall(FacesBuild(e->m->c, &e->m->grid, &e->m->P, stencil, &e->nface, &e->face));
+  PetscCall(FacesBuild(e->m->c, &e->m->grid, &e->m->P, &e->nface, &e->face));
   for (PetscInt k = 0; k < e->nface; k++) {
     if (e->o.particle_pressures || Acts(e->m->c, &e->face[k]))
       e->face[n++] = e->face[k];
@@ -63,32 +44,7 @@ PetscErrorCode FacesBegin(Explicit *e)
   e->nface = n;
   PetscCall(PetscFree(e->pull));
   PetscCall(PetscCalloc1(n, &e->pull));
-  PetscCall(PetscFree(stencil));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-typedef struct {
-  int      n;
-  PetscInt node[CL_NODES];
-} Nodes;
-
-/* A face with its nodes, in the order of its weights. */
-static void Reach(const Explicit *e, Face *f, bool place, Nodes *r)
-{
-  Stencil         s;
-  PointProperties q;
-  const char     *why;
-  double          S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES];
-
-  Place(e, f->particle, &s);
-  r->n = StencilExpand(&s, &e->m->grid, &e->map, r->node, S, G, H);
-  if (!place)
-    return;
-  FacePlace(e->m->c, &e->m->grid, &e->m->P, &s, f);
-  if ((f->bc[BC_INFLOW] < 0 && f->share == 0.0) || ModelParticleProperties(e->m, f->particle, &q, &why) != CL_OK)
-    return;
-  FaceInflow(f, r->n, S, q.kr);
-  WellProperties(&q, f);
 }
 
 /* Inputs of a face at t_n: the particle's own values and gradients. */
@@ -139,11 +95,14 @@ void FacesForces(Explicit *e, double dt)
 
   for (PetscInt k = 0; k < e->nface; k++) {
     Face      *f = &e->face[k];
-    Nodes      r;
     FaceOutput o;
     double     in[IN_COUNT], force[PHASE_COUNT][CL_DIM] = {{0.0}};
+    PetscInt   node[CL_NODES];
+    double     S[CL_NODES];
+    const int  n = Reach(e, f, node, S);
 
-    Reach(e, f, true, &r);
+    FacePlace(e->m->c, &e->m->grid, &e->m->P, f);
+    ModelFaceProperties(e->m, f, n, S);
     if (f->share > 0.0)
       continue; /* a well pulls at nothing */
     Inputs(e, f, in);
@@ -152,7 +111,7 @@ void FacesForces(Explicit *e, double dt)
     for (int d = 0; s.solid && d < CL_DIM; d++)
       e->pull[k][d] = -o.out[F_VS + d];
     if (f->bc[BC_PLATE] >= 0)
-      PlatesDeposit(e, f, r.n, r.node);
+      PlatesDeposit(e, f, n, node);
     for (int ph = 0; ph < s.fluids; ph++) { /* the bare form's forces by parts end at the face */
       const double p = FacePressure(f, ph, in);
 
@@ -164,8 +123,8 @@ void FacesForces(Explicit *e, double dt)
 
       BedsDrive(&A, force[ph]);
     }
-    for (int a = 0; a < r.n; a++) {
-      double *row = &e->A[r.node[a] * width];
+    for (int a = 0; a < n; a++) {
+      double *row = &e->A[node[a] * width];
 
       for (int d = 0; d < CL_DIM; d++) {
         if (s.solid)
@@ -184,13 +143,13 @@ void FacesWork(Explicit *e, double dt)
 
   for (PetscInt k = 0; s.solid && k < e->nface; k++) {
     const double *pull = e->pull[k];
-    Nodes         r;
+    PetscInt      node[CL_NODES];
 
     if (pull[0] == 0.0 && pull[1] == 0.0)
       continue;
-    Reach(e, &e->face[k], false, &r);
-    for (int a = 0; a < r.n; a++) {
-      const double *b = &e->B[r.node[a] * width];
+    const int n = FaceNodes(e, &e->face[k], node);
+    for (int a = 0; a < n; a++) {
+      const double *b = &e->B[node[a] * width];
 
       for (int d = 0; d < CL_DIM; d++)
         e->work[WORK_LOADS] += dt * pull[d] * e->face[k].N[a] * b[d];
@@ -198,38 +157,28 @@ void FacesWork(Explicit *e, double dt)
   }
 }
 
-/* Darcy fluxes at the face (19), with its own weights. */
-static void Fluxes(const Explicit *e, const Face *f, const Nodes *r, double in[IN_COUNT])
+/* What the nodes say at a face with its weights: Darcy fluxes (19), and to a well, as to the flow to it, the fields at
+   t_n (367). */
+static void NodalInputs(const Explicit *e, const Face *f, int n, const PetscInt node[], double in[IN_COUNT])
 {
   const Set    s       = e->set;
   const int    width   = LANES * Rows(B_Count(s));
   const double conduct = Conductance(e, s, f->particle);
+  const bool   well    = f->share > 0.0;
 
-  for (int a = 0; a < r->n; a++) {
-    for (int ph = 0; ph < s.fluids; ph++) {
+  for (int k = 0; well && k < s.fluids; k++)
+    in[IN_P + k] = 0.0;
+  in[IN_T] = well && s.heat ? 0.0 : in[IN_T];
+  for (int a = 0; a < n; a++) {
+    const double *b = &e->B[node[a] * width];
+
+    in[IN_T] += well && s.heat ? f->N[a] * b[B_T(s)] : 0.0;
+    for (int k = 0; k < s.fluids; k++) {
+      in[IN_P + k] += well ? f->N[a] * b[B_P(s, k)] : 0.0;
       for (int d = 0; d < CL_DIM; d++)
-        in[VectorAt(IN_J, ph, d)] += conduct * f->N[a] * e->B[r->node[a] * width + B_Fluid(s, ph) + B_J + d];
+        in[VectorAt(IN_J, k, d)] += conduct * f->N[a] * b[B_Fluid(s, k) + B_J + d];
     }
   }
-}
-
-/* (367): a well sees the fields of the nodes at t_n, as the flow to it does. */
-static void NodalInputs(const Explicit *e, const Nodes *r, const double N[CL_NODES], double in[IN_COUNT])
-{
-  const Set s              = e->set;
-  const int width          = LANES * Rows(B_Count(s));
-  double    p[PHASE_COUNT] = {0.0}, T = 0.0;
-
-  for (int a = 0; a < r->n; a++) {
-    const double *b = &e->B[r->node[a] * width];
-
-    T += s.heat ? N[a] * b[B_T(s)] : 0.0;
-    for (int k = 0; k < s.fluids; k++)
-      p[k] += N[a] * b[B_P(s, k)];
-  }
-  in[IN_T] = s.heat ? T : in[IN_T];
-  for (int k = 0; k < s.fluids; k++)
-    in[IN_P + k] = p[k];
 }
 
 void FacesRates(Explicit *e, double dt, StageRates *rates)
@@ -239,20 +188,18 @@ void FacesRates(Explicit *e, double dt, StageRates *rates)
 
   for (PetscInt k = 0; k < e->nface; k++) {
     Face      *f = &e->face[k];
-    Nodes      r;
     FaceOutput o;
     double     in[IN_COUNT], weight = 0.0;
+    PetscInt   node[CL_NODES];
+    const int  n = FaceNodes(e, f, node);
 
-    Reach(e, f, false, &r);
     Inputs(e, f, in);
-    Fluxes(e, f, &r, in);
-    if (f->share > 0.0)
-      NodalInputs(e, &r, f->N, in);
+    NodalInputs(e, f, n, node, in);
     for (int ph = 0; ph < s.fluids; ph++)
       FaceDirection(e->m->c, f, ph, &in[VectorAt(IN_J, ph, 0)]);
     Evaluate(e, f, in, dt, &o);
-    for (int a = 0; a < r.n; a++) {
-      double *row = &e->R[r.node[a] * width];
+    for (int a = 0; a < n; a++) {
+      double *row = &e->R[node[a] * width];
 
       weight += f->N[a];
       for (int ph = 0; ph < s.fluids; ph++)

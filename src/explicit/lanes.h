@@ -26,10 +26,12 @@ typedef struct {
   int beds;                /* 0/1: (306), with layers */
 } Set;
 
-INLINE int Scalars(Set s) /* unknowns of mass and heat: p_w, p_g, T */
-{
-  return s.fluids + s.heat;
-}
+#define PLACE(name, number)                                                                                            \
+  INLINE int name(Set s)                                                                                               \
+  {                                                                                                                    \
+    return number;                                                                                                     \
+  }
+PLACE(Scalars, s.fluids + s.heat) /* unknowns of mass and heat: p_w, p_g, T */
 INLINE int Rows(int n)
 {
   return (n + LANES - 1) / LANES;
@@ -39,54 +41,24 @@ INLINE int Rows(int n)
  * and each fluid, and with layers V k_p, with beds that times A - 1. */
 enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
 enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
-INLINE int A_V(Set s)
-{
-  return Scalars(s);
-}
-INLINE int A_C(Set s)
-{
-  return Scalars(s) + 1;
-}
-INLINE int A_Mix(Set s)
-{
-  return Scalars(s) + 1 + s.heat;
-}
-INLINE int FluidLanesAlike(Set s) /* a lone fluid has no k_r */
-{
-  return s.fluids == 2 ? FL_ROOT + 1 : FL_ROOT;
-}
-INLINE int FL_Inertia(Set s) /* of one fluid (310); without layers that of its weight */
-{
-  return s.layers ? FluidLanesAlike(s) : FL_MI;
-}
-INLINE int FluidLanes(Set s)
-{
-  return FluidLanesAlike(s) + s.layers;
-}
+PLACE(A_V, Scalars(s))
+PLACE(A_C, Scalars(s) + 1)
+PLACE(A_Mix, Scalars(s) + 1 + s.heat)
+PLACE(FluidLanesAlike, s.fluids == 2 ? FL_ROOT + 1 : FL_ROOT) /* a lone fluid has no k_r */
+PLACE(FL_Inertia, s.layers ? FluidLanesAlike(s) : FL_MI) /* of one fluid (310); without layers that of its weight */
+PLACE(FluidLanes, FluidLanesAlike(s) + s.layers)
 INLINE int A_Fluid(Set s, int f)
 {
   return A_Mix(s) + MIX_COUNT * s.solid + FluidLanes(s) * f;
 }
-INLINE int A_K(Set s)
-{
-  return A_Fluid(s, s.fluids);
-}
-INLINE int A_Beds(Set s) /* xx, yy, xy */
-{
-  return A_K(s) + s.layers;
-}
-INLINE int A_Count(Set s)
-{
-  return A_Beds(s) + 3 * s.beds;
-}
+PLACE(A_K, A_Fluid(s, s.fluids))
+PLACE(A_Beds, A_K(s) + s.layers) /* xx, yy, xy */
+PLACE(A_Count, A_Beds(s) + 3 * s.beds)
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
    and velocity; increment of v_s. */
 enum { B_J = 0, B_PROJ = 2, B_DV = 4, B_VEL = 6, B_PER_FLUID = 8 };
-INLINE int B_T(Set s)
-{
-  return CL_DIM * s.solid;
-}
+PLACE(B_T, CL_DIM *s.solid)
 INLINE int B_P(Set s, int f)
 {
   return CL_DIM * s.solid + s.heat + f;
@@ -95,40 +67,19 @@ INLINE int B_Fluid(Set s, int f)
 {
   return CL_DIM * s.solid + s.heat + s.fluids + B_PER_FLUID * f;
 }
-INLINE int B_DVs(Set s)
-{
-  return B_Fluid(s, s.fluids);
-}
-INLINE int B_Count(Set s)
-{
-  return B_DVs(s) + CL_DIM * s.solid;
-}
+PLACE(B_DVs, B_Fluid(s, s.fluids))
+PLACE(B_Count, B_DVs(s) + CL_DIM * s.solid)
 
 /* ... and to nodes: what is missing of each scalar, then the matrix that says what a change of the scalars makes of it.
  */
-INLINE int R_Matrix(Set s)
-{
-  return Scalars(s);
-}
-INLINE int R_Count(Set s)
-{
-  return Scalars(s) * (Scalars(s) + 1);
-}
+PLACE(R_Matrix, Scalars(s))
+PLACE(R_Count, Scalars(s) * (Scalars(s) + 1))
 
 /* Third pass, from nodes: increments of the scalars, their end values (gradients), v_s; a dry body has its increment of
  * v_s here. */
-INLINE int C_End(Set s)
-{
-  return Scalars(s);
-}
-INLINE int C_Vs(Set s)
-{
-  return 2 * Scalars(s);
-}
-INLINE int C_DVs(Set s)
-{
-  return C_Vs(s) + 2;
-}
+PLACE(C_End, Scalars(s))
+PLACE(C_Vs, 2 * Scalars(s))
+PLACE(C_DVs, C_Vs(s) + 2)
 
 /* What a step keeps per particle between its passes. */
 enum {
@@ -191,20 +142,18 @@ struct Explicit {
   double   *fixed;        /* ... and their values, [nheld][fields.n] */
   PetscInt  nface;
   Face     *face;
-  PetscInt  nplate;
-  double (*plate_sum)[PLATE_COUNT]; /* [Scene.nlisted] what this rank's faces bear at the end of the step */
-  double (*spring)[CL_DIM];         /* [rows] stiffness of the springs at a node, N/m */
-  double (*answer)[2 * CL_DIM];     /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
-  double (*push)[CL_DIM];           /* [rows] force of the plates, N */
-  bool   stale, strays, gone; /* a particle reaches other nodes; left this rank's cells; left the grid, see (373) */
-  bool   resize;              /* rows of nodes have another length */
-  double latent, advected;    /* J over the step */
-  double squeezed;            /* (290), J over the step */
-  double heat_in, warmed;     /* J over the step: what prescribed temperatures take, and all that warms the nodes */
-  double ahead;               /* of the end of the step, since ExplicitBegin, s */
-  double straight;            /* STRAIGHT p_0, the least of all materials, Pa */
-  double work[WORK_RATES];    /* J over the step (92), this rank */
-  double (*pull)[CL_DIM];     /* [nface] force of the tractions, N */
+  double (*spring)[CL_DIM];     /* [rows] stiffness of the springs at a node, N/m */
+  double (*answer)[2 * CL_DIM]; /* [rows] velocity without the plates; what its own springs, pulled by 1 m, add */
+  double (*push)[CL_DIM];       /* [rows] force of the plates, N */
+  bool   stale, strays, gone;   /* a particle reaches other nodes; left this rank's cells; left the grid, see (373) */
+  bool   resize;                /* rows of nodes have another length */
+  double latent, advected;      /* J over the step */
+  double squeezed;              /* (290), J over the step */
+  double heat_in, warmed;       /* J over the step: what prescribed temperatures take, and all that warms the nodes */
+  double ahead;                 /* of the end of the step, since ExplicitBegin, s */
+  double straight;              /* STRAIGHT p_0, the least of all materials, Pa */
+  double work[WORK_RATES];      /* J over the step (92), this rank */
+  double (*pull)[CL_DIM];       /* [nface] force of the tractions, N */
   double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
@@ -310,16 +259,6 @@ typedef void (*Loop)(Explicit *e, Run r, double dt);
 typedef Loop LoopTable[2][3][2]; /* [solid][fluids][heat] */
 void         ForRuns(Explicit *e, const LoopTable table, double dt);
 void         ForNodes(Explicit *e, const LoopTable table, double dt);
-#define LOOPS(f)                                                                                                       \
-  {                                                                                                                    \
-    {{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}},                                                         \
-    {                                                                                                                  \
-      {f##_100, f##_101}, {f##_110, f##_111},                                                                          \
-      {                                                                                                                \
-        f##_120, f##_121                                                                                               \
-      }                                                                                                                \
-    }                                                                                                                  \
-  }
 #define MAKE_LOOP(f, solid, fluids, heat)                                                                              \
   static void f##_##solid##fluids##heat(Explicit *e, Run r, double dt)                                                 \
   {                                                                                                                    \
@@ -330,6 +269,7 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
     else                                                                                                               \
       f(e, (Set){solid, fluids, heat, 0, 0}, r, dt);                                                                   \
   }
+/* A loop f for each set, and their table f_loops. */
 #define MAKE_LOOPS(f)                                                                                                  \
   MAKE_LOOP(f, 0, 0, 1)                                                                                                \
   MAKE_LOOP(f, 0, 1, 0)                                                                                                \
@@ -341,7 +281,9 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
   MAKE_LOOP(f, 1, 1, 0)                                                                                                \
   MAKE_LOOP(f, 1, 1, 1)                                                                                                \
   MAKE_LOOP(f, 1, 2, 0)                                                                                                \
-  MAKE_LOOP(f, 1, 2, 1)
+  MAKE_LOOP(f, 1, 2, 1)                                                                                                \
+  static const LoopTable f##_##loops = {{{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}},                     \
+                                        {{f##_100, f##_101}, {f##_110, f##_111}, {f##_120, f##_121}}};
 
 /* Node side. */
 PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */
@@ -352,13 +294,9 @@ void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 void           FacesWork(Explicit *e, double dt); /* of the tractions, with the new velocities */
 PetscErrorCode FacesBegin(Explicit *e);
-void           FacesPlace(const Explicit *e, Face *f);                               /* where it is now */
 int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */
 
 /* Plates (plates.c, plate_forces.c). */
-PetscErrorCode PlatesCreate(Explicit *e);
-PetscErrorCode PlatesAllocate(Explicit *e);
-PetscErrorCode PlatesDestroy(Explicit *e);
 PetscErrorCode PlatesStart(Explicit *e);                                          /* of a step */
 void           PlatesDeposit(Explicit *e, Face *f, int n, const PetscInt node[]); /* springs of a face to its nodes */
 /* Forces at the end of the step, time t, into the balances of the nodes.  Collective. */

@@ -20,7 +20,9 @@ static PetscErrorCode Allocate(Explicit *e)
   PetscCall(PetscFree(e->raw));
   PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
   e->rows = n;
-  PetscCall(PlatesAllocate(e));
+  PetscCall(PetscFree3(e->spring, e->answer, e->push));
+  if (e->m->plates)
+    PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
   PetscCall(PetscCalloc1(n * (2 * A + B + R + C) + LANES, &e->raw));
   at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
   e->A = at;

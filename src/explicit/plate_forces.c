@@ -65,43 +65,13 @@ static void FaceAnswer(const Explicit *e, const Face *f, int n, const PetscInt n
   *pull = *k * (f->moved[d] + dt * v);
 }
 
-/* (73) with the answers of the nodes: position outwards of plate `which` such that its springs bear F. */
-static PetscErrorCode Position(Explicit *e, PetscInt which, double F, const double (*face)[2])
-{
-  const Bc    *b  = &e->m->c->bc[which];
-  const double n  = SideSign(b->side);
-  double       at = 0.0, touching = 0.0;
-  bool         again = true;
-
-  PetscFunctionBeginUser;
-  for (bool first = true; again; first = false) {
-    double sum[3] = {0.0};
-
-    for (PetscInt k = 0; k < e->nface; k++) {
-      if (e->face[k].bc[BC_PLATE] != which || (b->separates && !first && n * face[k][0] <= face[k][1] * at))
-        continue;
-      sum[0] += n * face[k][0];
-      sum[1] += face[k][1];
-      sum[2] += 1.0;
-    }
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
-    again = b->separates && sum[2] > 0.0 && (first || sum[2] != touching);
-    if (sum[2] > 0.0 && (first || again)) {
-      at       = (sum[0] - F) / sum[1];
-      touching = sum[2];
-    }
-  }
-  e->m->bc.value[which] = n * at;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Force of a face's plate to its nodes, and to what is said of the plate. */
 static void Push(Explicit *e, const Face *f, double dt, const double answer[2])
 {
   const Bc    *b = &e->m->c->bc[f->bc[BC_PLATE]];
   const int    d = SideAxis(f->side);
   const double n = SideSign(f->side), bears = n * (answer[0] - answer[1] * e->m->bc.value[f->bc[BC_PLATE]]);
-  double       force[CL_DIM] = {0.0}, *sum = e->plate_sum[b->number], pull, k;
+  double       force[CL_DIM] = {0.0}, *sum = e->m->plate[b->number], pull, k;
   PetscInt     node[CL_NODES];
   const int    nodes = FaceNodes(e, f, node);
 
@@ -139,7 +109,6 @@ static PetscErrorCode Add(Explicit *e)
 
 PetscErrorCode PlatesForces(Explicit *e, double t, double dt)
 {
-  const Scene *c = e->m->c;
   double(*face)[2];
 
   PetscFunctionBeginUser;
@@ -155,10 +124,7 @@ PetscErrorCode PlatesForces(Explicit *e, double t, double dt)
       FaceAnswer(e, f, n, node, SideAxis(f->side), dt, &face[k][0], &face[k][1]);
     }
   }
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type == BC_PLATE && c->bc[k].force.n)
-      PetscCall(Position(e, k, PlateForce(&c->bc[k], t), (const double(*)[2])face));
-  }
+  PetscCall(PlatesSeek(e->m->c, e->m->grid.comm, e->nface, e->face, face, t, e->m->bc.value, NULL));
   for (PetscInt k = 0; k < e->nface; k++) {
     if (e->face[k].bc[BC_PLATE] >= 0 && e->face[k].touches)
       Push(e, &e->face[k], dt, face[k]);
@@ -178,25 +144,18 @@ static void Areas(Explicit *e)
 
     if (f->bc[BC_PLATE] < 0)
       continue;
-    FacesPlace(e, f);
+    FacePlace(e->m->c, &e->m->grid, &e->m->P, f);
     if (!e->m->c->bc[f->bc[BC_PLATE]].separates || PlateGap(f, e->m->bc.value[f->bc[BC_PLATE]], zero) > 0.0)
-      e->plate_sum[e->m->c->bc[f->bc[BC_PLATE]].number][PLATE_AREA] += SideSign(f->side) * f->n[SideAxis(f->side)];
+      e->m->plate[e->m->c->bc[f->bc[BC_PLATE]].number][PLATE_AREA] += SideSign(f->side) * f->n[SideAxis(f->side)];
   }
 }
 
 PetscErrorCode PlatesEnd(Explicit *e)
 {
-  Model *m = e->m;
-
   PetscFunctionBeginUser;
-  if (!e->nplate)
+  if (!e->m->plates)
     PetscFunctionReturn(PETSC_SUCCESS);
   Areas(e);
-  PetscCallMPI(MPI_Allreduce(e->plate_sum, m->plate, (PetscMPIInt)(PLATE_COUNT * m->c->nlisted), MPI_DOUBLE, MPI_SUM,
-                             m->grid.comm));
-  for (PetscInt k = 0; k < m->c->nbc; k++) {
-    if (m->c->bc[k].type == BC_PLATE)
-      m->plate[m->c->bc[k].number][PLATE_POSITION] = m->bc.value[k];
-  }
+  PetscCall(ModelPlatesSum(e->m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

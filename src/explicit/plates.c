@@ -5,39 +5,14 @@
    might) */
 #define NEAR 0.1
 
-PetscErrorCode PlatesCreate(Explicit *e)
-{
-  PetscFunctionBeginUser;
-  e->nplate = e->m->plates;
-  PetscCall(PetscCalloc1(e->m->c->nlisted, &e->plate_sum));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode PlatesAllocate(Explicit *e)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(e->spring, e->answer, e->push));
-  if (e->nplate)
-    PetscCall(PetscCalloc3(e->rows, &e->spring, e->rows, &e->answer, e->rows, &e->push));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode PlatesDestroy(Explicit *e)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(e->spring, e->answer, e->push));
-  PetscCall(PetscFree(e->plate_sum));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode PlatesStart(Explicit *e)
 {
   PetscFunctionBeginUser;
-  if (!e->nplate)
+  if (!e->m->plates)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(e->spring, e->rows));
   PetscCall(PetscArrayzero(e->push, e->rows));
-  PetscCall(PetscArrayzero(e->plate_sum, e->m->c->nlisted));
+  PetscCall(PetscArrayzero(e->m->plate, e->m->c->nlisted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

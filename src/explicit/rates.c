@@ -1,40 +1,8 @@
 /* Second pass: from the new nodal velocities the rates of mass and heat at every particle, and what a change of
    pressure and temperature makes of them; docs/equations.md, section 12. */
-#include "lanes.h"
 #include "clathra/laws_batch.h"
 #include "clathra/point_reaction.h"
-
-typedef struct {
-  double value[BLOCK][3 * LANES], dx[BLOCK][LANES], dy[BLOCK][LANES]; /* at the particle; gradients of the first row */
-} Gathered;
-
-INLINE void Gather(const Explicit *e, const Set s, Run r, const Weights *w, Gathered *g)
-{
-  const int rows = Rows(B_Count(s)), stride = (int)e->m->grid.gm[0];
-
-  for (int q = 0; q < r.n; q++) {
-    const int *slot = &e->slot[w->first[q]];
-    Lanes      v[3] = {{0.0}, {0.0}, {0.0}}, x = {0.0}, y = {0.0};
-
-    for (int b = 0; b < 3; b++) {
-      const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
-
-      for (int a = 0; a < 3; a++) {
-        const Lanes *row = (const Lanes *)e->B + (size_t)slot[b * stride + a] * (size_t)rows;
-        const double S   = w->S[0][a][q] * Sy;
-
-        x += row[0] * (w->D[0][a][q] * Sy);
-        y += row[0] * (w->S[0][a][q] * Dy);
-        for (int z = 0; z < rows; z++)
-          v[z] += row[z] * S;
-      }
-    }
-    for (int z = 0; z < rows; z++)
-      *(Lanes *)&g->value[q][z * LANES] = v[z];
-    *(Lanes *)g->dx[q] = x;
-    *(Lanes *)g->dy[q] = y;
-  }
-}
+#include "gathered.h"
 
 /* (313): with layers nodes give the slip per permeability, and what it changes by. */
 INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
@@ -54,22 +22,16 @@ INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
 
 INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
 {
-  const int width = 3 * LANES;
-
   if (s.layers)
     Slips(e, s, r, g);
   for (int d = 0; d < CL_DIM; d++) {
     if (s.solid)
-      Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], width);
+      Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], GATHERED);
     for (int k = 0; k < s.fluids; k++)
       Blend(e->o.flip, r.n, e->m->P.f[VectorAt(P_VW, k, d)] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
-            &g->value[0][B_Fluid(s, k) + B_VEL + d], width);
+            &g->value[0][B_Fluid(s, k) + B_VEL + d], GATHERED);
   }
 }
-
-typedef struct {
-  double value[BLOCK][2 * LANES], force[CL_DIM][BLOCK][LANES];
-} Given;
 
 /* Volumes of a block's particles at the end of the step, with the hydrate of t_n. */
 typedef struct {
@@ -127,52 +89,28 @@ INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T,
     SharesOf(e, r, rho_s, o);
 }
 
-/* Where the mass of a fluid and its slopes stand. */
-typedef struct {
-  double *v, *slope[3]; /* in p_w, p_g, T */
-} MassArrays;
-
-INLINE MassArrays MassArraysOf(const Explicit *e, Run r, int k)
-{
-  double *const *slope = &e->t[T_SLOPE + 3 * k];
-
-  return (MassArrays){e->t[T_EOS + k] + r.p, {slope[0] + r.p, slope[1] + r.p, slope[2] + r.p}};
-}
-
-INLINE void KeepMass(const MassArrays *o, int q, int own, FluidMass m)
-{
-  o->v[q]              = m.v;
-  o->slope[own][q]     = m.own;
-  o->slope[1 - own][q] = m.other;
-  o->slope[2][q]       = m.T;
-}
-
-/* The masses the laws give in these volumes at the old pressures, with their slopes. */
-INLINE void WaterMasses(Explicit *e, const Set s, Run r, const Volumes *v)
+/* The mass of a fluid that the laws give in these volumes at the old pressures, with its slopes in p_w, p_g, T. */
+INLINE void Masses(Explicit *e, const Set s, Run r, int k, const Volumes *v)
 {
   const double none[BLOCK] = {0.0}, *sg = s.fluids == 2 ? e->t[T_SG] + r.p : none,
-               *ds = s.fluids == 2 ? e->t[T_DS] + r.p : none, *rho = e->t[T_RHO] + r.p;
-  const double     per_K = 1.0 / r.mat->water.K, beta = r.mat->water.beta;
-  const MassArrays o = MassArraysOf(e, r, PHASE_W);
+               *ds = s.fluids == 2 ? e->t[T_DS] + r.p : none, *pg = k ? e->m->P.f[P_PG] + r.p : none;
+  const double *rho = e->t[k ? T_HELD : T_RHO] + r.p, *rho_p = k ? e->t[T_GAS] + r.p : none,
+               *rho_T = k ? e->t[T_GAS + 1] + r.p : none;
+  const double   H = r.mat->gas.trace, per_K = 1.0 / r.mat->water.K, beta = r.mat->water.beta;
+  double *const *slope = &e->t[T_SLOPE + 3 * k];
+  double *mass = e->t[T_EOS + k] + r.p, *own = slope[k] + r.p, *other = slope[1 - k] + r.p, *in_T = slope[2] + r.p;
 
 #pragma GCC ivdep
-  for (int q = 0; q < r.n; q++)
-    KeepMass(&o, q, PHASE_W,
-             MassOf(WaterContent(sg[q], rho[q]), v->open[q], v->open_T[q], -ds[q], v->sg_T[q], per_K * rho[q],
-                    -beta * rho[q]));
-}
+  for (int q = 0; q < r.n; q++) {
+    const Content   c = k ? MethaneContent(H, sg[q], rho[q], pg[q]) : WaterContent(sg[q], rho[q]);
+    const FluidMass m = MassOf(c, v->open[q], v->open_T[q], k ? ds[q] : -ds[q], v->sg_T[q],
+                               k ? rho_p[q] : per_K * rho[q], k ? rho_T[q] : -beta * rho[q]);
 
-INLINE void MethaneMasses(Explicit *e, Run r, const Volumes *v)
-{
-  const double *sg = e->t[T_SG] + r.p, *ds = e->t[T_DS] + r.p, *rho = e->t[T_HELD] + r.p, *rho_p = e->t[T_GAS] + r.p,
-               *rho_T = e->t[T_GAS + 1] + r.p, *pg = e->m->P.f[P_PG] + r.p, H = r.mat->gas.trace;
-  const MassArrays o = MassArraysOf(e, r, PHASE_G);
-
-#pragma GCC ivdep
-  for (int q = 0; q < r.n; q++)
-    KeepMass(&o, q, PHASE_G,
-             MassOf(MethaneContent(H, sg[q], rho[q], pg[q]), v->open[q], v->open_T[q], ds[q], v->sg_T[q], rho_p[q],
-                    rho_T[q]));
+    mass[q]  = m.v;
+    own[q]   = m.own;
+    other[q] = m.other;
+    in_T[q]  = m.T;
+  }
 }
 
 /* (265) with the faster of both ways; zero where it is off. */
@@ -444,30 +382,6 @@ INLINE void RelativeColumns(const Explicit *e, const Set s, Run r, Given *o)
   }
 }
 
-INLINE void Scatter(Explicit *e, const Set s, Run r, const Weights *w, const Given *o)
-{
-  const int rows = Rows(R_Count(s)), stride = (int)e->m->grid.gm[0];
-
-  for (int q = 0; q < r.n; q++) {
-    const int   *slot  = &e->slot[w->first[q]];
-    const Lanes *value = (const Lanes *)o->value[q], fx = *(const Lanes *)o->force[0][q],
-                fy = *(const Lanes *)o->force[1][q];
-
-    for (int b = 0; b < 3; b++) {
-      const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
-
-      for (int a = 0; a < 3; a++) {
-        const double S   = w->S[0][a][q] * Sy;
-        Lanes       *row = (Lanes *)e->R + (size_t)slot[b * stride + a] * (size_t)rows;
-
-        row[0] += value[0] * S + fx * (w->D[0][a][q] * Sy) + fy * (w->S[0][a][q] * Dy);
-        for (int z = 1; z < rows; z++)
-          row[z] += value[z] * S;
-      }
-    }
-  }
-}
-
 /* Divergence of a fluid's Darcy flux at the particle, 1/s. */
 INLINE double Divergence(const Explicit *e, const Set s, const Weights *w, int q, int k)
 {
@@ -520,21 +434,16 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
 
   const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
-  Gather(e, s, r, &w, &g);
+  Gather(e, e->B, Rows(B_Count(s)), r, &w, &g);
   for (int q = 0; q < r.n && shared; q++)
     MeanMotion(e, &mean, &w, q, e->B, LANES * Rows(B_Count(s)), g.dx[q], g.dy[q]);
   Velocities(e, s, r, &g);
-  for (int q = 0; q < r.n; q++) {
-    for (int k = 0; k < LANES; k++)
-      o.force[0][q][k] = o.force[1][q][k] = 0.0;
-    for (int k = R_Count(s); k < LANES * Rows(R_Count(s)); k++)
-      o.value[q][k] = 0.0;
-  }
+  GiveNothing(r, R_Count(s), &o);
   VolumesOf(e, s, r, T, &g, dt, &v);
   if (s.fluids)
-    WaterMasses(e, s, r, &v);
+    Masses(e, s, r, PHASE_W, &v);
   if (s.fluids == 2)
-    MethaneMasses(e, r, &v);
+    Masses(e, s, r, PHASE_G, &v);
   for (int k = 0; k < s.fluids; k++)
     FluidRow(e, s, r, k, &g, dt, &o);
   BedsWork(e, s, r, &g, dt);
@@ -552,14 +461,12 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     Keep(e, s, r, dt, &w, &o);
   if (Relative(e, s))
     RelativeColumns(e, s, r, &o);
-  Scatter(e, s, r, &w, &o);
+  Scatter(e, e->R, R_Count(s), false, true, r, &w, &o);
 }
 
 MAKE_LOOPS(RatesRun)
 
 void Rates(Explicit *e, double dt)
 {
-  static const LoopTable table = LOOPS(RatesRun);
-
-  ForRuns(e, table, dt);
+  ForRuns(e, RatesRun_loops, dt);
 }

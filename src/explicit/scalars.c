@@ -133,17 +133,15 @@ MAKE_LOOPS(WriteRun)
 
 PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
 {
-  static const LoopTable solve = LOOPS(ScalarsRun), write = LOOPS(WriteRun);
-
   PetscFunctionBeginUser;
   e->heat_in = e->warmed = 0.0;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     if (e->node[I].root != (int)I)
       Join(e, I);
   }
-  ForNodes(e, solve, 0.0);
+  ForNodes(e, ScalarsRun_loops, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->gain, 3));
-  ForNodes(e, write, 0.0);
+  ForNodes(e, WriteRun_loops, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
   rates->heat_in += e->heat_in;
   rates->heat_rate += e->warmed;

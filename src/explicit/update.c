@@ -58,13 +58,12 @@ static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
 /* p_w, p_g, T and their gradients; false if one leaves its range. */
 INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
 {
-  static const int grad[3] = {P_GW, P_GG, P_GT};
-  Wrong            out     = 0;
+  Wrong out = 0;
 
   for (int k = 0; k < Scalars(s); k++) {
     const int field    = k < s.fluids ? k : 2;
-    double *restrict y = e->m->P.f[P_PW + field] + r.p, *restrict gx = e->m->P.f[grad[field]] + r.p,
-                     *restrict gy = e->m->P.f[grad[field] + 1] + r.p;
+    double *restrict y = e->m->P.f[P_PW + field] + r.p, *restrict gx = e->m->P.f[VectorAt(P_GW, field, 0)] + r.p,
+                     *restrict gy = e->m->P.f[VectorAt(P_GW, field, 1)] + r.p;
     const double least            = Least(r.mat, field);
 
     for (int q = 0; q < r.n; q++) {
@@ -104,7 +103,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     kept[q] = 1.0;
   const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
-  Gather(e, r, &w, &g);
+  Gather(e, e->C, 1, r, &w, &g);
   for (int q = 0; q < r.n && shared; q++)
     MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], LANES, &g.dx[q][C_Vs(s)], &g.dy[q][C_Vs(s)]);
   if (s.fluids && e->o.particle_pressures)
@@ -130,7 +129,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   StressOf(e, s, r, &g, &n, T, kept);
   if (!Scalars(s)) {
     for (int d = 0; d < CL_DIM; d++)
-      Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], LANES);
+      Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], GATHERED);
   }
   if (!Move(e, s, r, &g, &n, dt))
     NoteStray(e, s, r, &g, dt);
@@ -140,7 +139,5 @@ MAKE_LOOPS(UpdateRun)
 
 void Update(Explicit *e, double dt)
 {
-  static const LoopTable table = LOOPS(UpdateRun);
-
-  ForRuns(e, table, dt);
+  ForRuns(e, UpdateRun_loops, dt);
 }

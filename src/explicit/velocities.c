@@ -226,7 +226,7 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 /* (92): works at a node along d with the means of its velocities (skeleton, water, gas; v at the end) over the step. */
 INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance *w, const double v[3], double dt)
 {
-  const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->nplate ? e->push[I] : NULL;
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->m->plates ? e->push[I] : NULL;
   const double  scale = e->o.mass_scaling, mean = Mean(e, I, F_VS + d, w->v, v[0]), gravity = e->m->bc.gravity[d];
   double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
 
@@ -334,17 +334,15 @@ PetscErrorCode NodesPrepare(Explicit *e)
 
 PetscErrorCode NodesVelocities(Explicit *e, double dt)
 {
-  static const LoopTable solve = LOOPS(VelocitiesRun), write = LOOPS(WriteRun);
-
   PetscFunctionBeginUser;
   e->added = 0.0;
-  ForNodes(e, solve, dt);
+  ForNodes(e, VelocitiesRun_loops, dt);
   if (e->o.mass_scaling > 1.0) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
     e->worst_scaling = Largest(e->worst_scaling, e->acting > 0.0 ? sqrt(e->added / e->acting) : 0.0);
   }
   PetscCall(NodeMapBroadcast(&e->map, e->inc, 6));
-  ForNodes(e, write, dt);
+  ForNodes(e, WriteRun_loops, dt);
   PetscCall(NodeMapBroadcast(&e->map, e->B, LANES * Rows(B_Count(e->set))));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

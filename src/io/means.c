@@ -62,28 +62,6 @@ static void AddFace(const Model *m, const Face *f, double value[PROBE_COUNT], do
     value[PROBE_X + d] += area * (f->x[d] - P->f[P_X + d][p]);
 }
 
-static PetscErrorCode BuildFaces(const Model *m, PetscInt *n, Face **face)
-{
-  const Grid *g = &m->grid;
-  Stencil    *s;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->P.n, &s));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    for (int d = 0; m->P.i[PI_FACES][p] && d < CL_DIM; d++) {
-      const double x = m->P.f[P_X + d][p], l = m->P.f[P_L + d][p];
-
-      if (d == 0 && m->c->axisymmetric)
-        BasisRadius(m->c->basis, x, l, &g->line[d], &s[p].axis[d], s[p].hoop, &s[p].r);
-      else
-        BasisAxis(m->c->basis, x, l, &g->line[d], &s[p].axis[d]);
-    }
-  }
-  PetscCall(FacesBuild(m->c, g, &m->P, s, n, face));
-  PetscCall(PetscFree(s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode MeansAdd(const Model *m, double value[][PROBE_COUNT], double *weight)
 {
   const Case *c    = CaseOf(m->c);
@@ -98,7 +76,7 @@ PetscErrorCode MeansAdd(const Model *m, double value[][PROBE_COUNT], double *wei
     any = any || (ProbeIsMean(&c->probe[k]) && c->probe[k].over < 0);
   }
   if (any)
-    PetscCall(BuildFaces(m, &n, &face));
+    PetscCall(FacesBuild(m->c, &m->grid, &m->P, &n, &face));
   for (PetscInt i = 0; i < n; i++) {
     for (PetscInt k = 0; k < c->nprobe; k++) {
       const Probe *b = &c->probe[k];

@@ -82,7 +82,7 @@ PetscErrorCode SlabNodes(const Model *m, Slab *s)
   PetscInt      *at, mine[CL_DIM] = {width[0], width[1]};
 
   PetscFunctionBeginUser;
-  *s         = (Slab){.n = m->x_n ? m->map.n_owned : 0};
+  *s         = (Slab){.n = ModelStart(m) ? m->map.n_owned : 0};
   mine[d]    = PetscMin(share, width[d] - first);
   s->n_slots = s->rows = mine[0] * mine[1];
   PetscCall(PetscMalloc2(s->n, &to, s->n, &at));

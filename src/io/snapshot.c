@@ -62,13 +62,14 @@ static PetscErrorCode WriteWhole(const Particles *P, Slab *s, hid_t group)
 static PetscErrorCode WriteNodes(const Model *m, Slab *s, hid_t group)
 {
   const FieldSet *fs = &m->c->fields;
+  const double   *x  = ModelStart(m);
 
   PetscFunctionBeginUser;
   for (const NodalVariable *v = io_nodal; v->name; v++) {
     if (fs->at[v->first] < 0)
       continue;
     for (int c = 0; c < v->nc; c++)
-      PetscCall(SlabReals(s, m->x_n ? m->x_n + fs->at[v->first] + c : NULL, fs->n, c, v->nc));
+      PetscCall(SlabReals(s, x ? x + fs->at[v->first] + c : NULL, fs->n, c, v->nc));
     PetscCall(SlabWrite(s, group, v->name, v->nc, v->unit, true));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -35,6 +35,11 @@ static void Velocity(const Model *m, PetscInt p, const double *x, double v[CL_DI
   }
 }
 
+const double *ModelStart(const Model *m)
+{
+  return m->x_n;
+}
+
 void ModelStartVelocity(const Model *m, double *v)
 {
   for (PetscInt p = 0; p < m->P.n; p++)
@@ -281,10 +286,10 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
 
 /* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). Without inertia
    velocities have no memory: those of the nodes (355); between the two (357). */
-static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r)
+static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r, double keeps)
 {
   const FieldSet *fs   = &m->c->fields;
-  const double    from = fs->inertia ? m->keeps : 0.0;
+  const double    from = fs->inertia ? keeps : 0.0;
 
   for (int q = F_VS; q < F_PW; q++) {
     if (fs->at[q] < 0)
@@ -318,19 +323,18 @@ static double Released(const Model *m, PetscInt p, const PointState *s)
 }
 
 static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
-                         const PointState *s)
+                         const PointState *s, double keeps)
 {
-  static const int gradient[3] = {P_GW, P_GG, P_GT};
-  const FieldSet  *fs          = &m->c->fields;
-  double *const   *f           = m->P.f;
+  const FieldSet *fs = &m->c->fields;
+  double *const  *f  = m->P.f;
 
-  WriteVelocities(m, p, x, r);
+  WriteVelocities(m, p, x, r, keeps);
   for (int k = 0; k < 3; k++) { /* p_w, p_g, T */
     if (!f[P_PW + k])
       continue;
     f[P_PW + k][p] = in[IN_P + k] + (m->added->exchange && k < PHASE_COUNT ? m->added->exchange[p].change : 0.0);
     for (int d = 0; d < CL_DIM; d++)
-      f[gradient[k] + d][p] = in[(k < 2 ? VectorAt(IN_GP, k, 0) : IN_GT) + d];
+      f[VectorAt(P_GW, k, d)][p] = in[k < PHASE_COUNT ? VectorAt(IN_GP, k, d) : IN_GT + d];
   }
   if (fs->solid)
     WriteMotion(m, p, x, r, s);
@@ -347,7 +351,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
     f[P_MG][p] = s->m_g;
 }
 
-PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates)
+PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates, double keeps)
 {
   PetscInt left;
 
@@ -377,7 +381,7 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
     }
     if (m->c->fields.solid)
       m->released += Released(m, p, &s);
-    WriteHistory(m, p, x, &r, in, &s);
+    WriteHistory(m, p, x, &r, in, &s, keeps);
   }
   PetscCall(ModelTakeOut(m, m->stage.t));
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));

@@ -18,7 +18,6 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));
   PetscCall(ModelPlatesCreate(m));
   m->failure.why[0] = '?';
-  m->keeps          = 1.0;
   PetscCall(PetscNew(&m->added));
   PetscCall(SolverCreate(&m->solver));
   PetscCall(PreconditionerPlan(m));

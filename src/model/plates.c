@@ -43,64 +43,29 @@ static double FaceMotion(const Model *m, const Face *f, const double *x)
   return u;
 }
 
-/* One pass of (73): sums of K s and K over the faces that touch a plate at its present position (all of them at first),
-   and their number. */
-static void SumSprings(const Model *m, const double *u, bool first, double (*sum)[3])
+bool PlatesCouple(const Model *m)
 {
-  for (PetscInt k = 0; k < m->nface; k++) {
-    const Face *f = &m->face[k];
-    const Bc   *b = f->bc[BC_PLATE] >= 0 ? &m->c->bc[f->bc[BC_PLATE]] : NULL;
-
-    if (!b || !b->force.n)
-      continue;
-    const double s = SideSign(f->side) * (f->moved[SideAxis(f->side)] + u[k]);
-    if (b->separates && !first && s <= SideSign(f->side) * m->bc.value[f->bc[BC_PLATE]])
-      continue;
-    sum[f->bc[BC_PLATE]][0] += f->K * s;
-    sum[f->bc[BC_PLATE]][1] += f->K;
-    sum[f->bc[BC_PLATE]][2] += 1.0;
-  }
-}
-
-static bool AnyForce(const Scene *c)
-{
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].force.n)
-      return true;
-  }
-  return false;
+  return PlatesForced(m->c);
 }
 
 PetscErrorCode PlatesPosition(Model *m, const double *x)
 {
-  const Scene *c     = m->c;
-  bool         again = true;
-  double      *u, (*sum)[3], *touching;
+  double(*answer)[2];
 
   PetscFunctionBeginUser;
-  if (!m->plates || !AnyForce(c))
+  if (!PlatesCouple(m))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc3(m->nface, &u, c->nbc, &sum, c->nbc, &touching));
+  PetscCall(PetscCalloc1(m->nface, &answer));
   for (PetscInt k = 0; k < m->nface; k++) {
-    if (m->face[k].bc[BC_PLATE] >= 0)
-      u[k] = FaceMotion(m, &m->face[k], x);
+    const Face *f = &m->face[k];
+
+    if (f->bc[BC_PLATE] < 0)
+      continue;
+    answer[k][0] = f->K * (f->moved[SideAxis(f->side)] + FaceMotion(m, f, x));
+    answer[k][1] = f->K;
   }
-  /* fewer and fewer faces touch: the force is a convex function of the position, met from the left */
-  for (bool first = true; again; first = false) {
-    again = false;
-    PetscCall(PetscArrayzero(sum, c->nbc));
-    SumSprings(m, u, first, sum);
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(3 * c->nbc), MPI_DOUBLE, MPI_SUM, m->grid.comm));
-    for (PetscInt k = 0; k < c->nbc; k++) {
-      if (!c->bc[k].force.n || sum[k][2] == 0.0 || (!first && sum[k][2] == touching[k]))
-        continue;
-      m->bc.value[k] = SideSign(c->bc[k].side) * (sum[k][0] - PlateForce(&c->bc[k], m->stage.t)) / sum[k][1];
-      m->plate_K[k]  = sum[k][1];
-      touching[k]    = sum[k][2];
-      again          = again || c->bc[k].separates;
-    }
-  }
-  PetscCall(PetscFree3(u, sum, touching));
+  PetscCall(PlatesSeek(m->c, m->grid.comm, m->nface, m->face, answer, m->stage.t, m->bc.value, m->plate_K));
+  PetscCall(PetscFree(answer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,11 +115,6 @@ PetscErrorCode PlatesMult(const Model *m, const double *x, double *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-bool PlatesCouple(const Model *m)
-{
-  return m->plates && AnyForce(m->c);
-}
-
 PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status)
 {
   char why[CL_WHY];
@@ -177,6 +137,18 @@ PetscErrorCode ModelPlatesCheck(Model *m, ClStatus *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ModelPlatesSum(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, m->plate, (PetscMPIInt)(PLATE_COUNT * m->c->nlisted), MPI_DOUBLE, MPI_SUM,
+                             m->grid.comm));
+  for (PetscInt k = 0; k < m->c->nbc; k++) {
+    if (m->c->bc[k].type == BC_PLATE)
+      m->plate[m->c->bc[k].number][PLATE_POSITION] = m->bc.value[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode PlatesReport(Model *m, const double *x)
 {
   PetscFunctionBeginUser;
@@ -194,11 +166,6 @@ PetscErrorCode PlatesReport(Model *m, const double *x)
     for (int q = PLATE_FORCE; q < PLATE_COUNT; q++)
       m->plate[m->c->bc[m->face[k].bc[BC_PLATE]].number][q] += o.plate[q];
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, m->plate, (PetscMPIInt)(PLATE_COUNT * m->c->nlisted), MPI_DOUBLE, MPI_SUM,
-                             m->grid.comm));
-  for (PetscInt k = 0; k < m->c->nbc; k++) {
-    if (m->c->bc[k].type == BC_PLATE)
-      m->plate[m->c->bc[k].number][PLATE_POSITION] = m->bc.value[k];
-  }
+  PetscCall(ModelPlatesSum(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

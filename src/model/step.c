@@ -52,16 +52,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
   for (PetscInt p = 0; p < m->P.n; p++) {
     Stencil *s = &m->stencil[p];
 
-    s->r = 0.0;
-    for (int d = 0; d < CL_DIM; d++) {
-      const double x = m->P.f[P_X + d][p], l = m->P.f[P_L + d][p];
-
-      if (d == 0 && m->c->axisymmetric)
-        BasisRadius(m->c->basis, x, l, &g->line[d], &s->axis[d], s->hoop, &s->r);
-      else
-        BasisAxis(m->c->basis, x, l, &g->line[d], &s->axis[d]);
-      s->cell[d] = BasisCellAt(&g->line[d], x, &s->axis[d]);
-    }
+    ParticleStencil(m->c, g, &m->P, p, s);
     if (!InsideGrid(g, s)) {
       ModelNoteFailure(m, CL_LEFT_GRID, "a particle's domain leaves the background grid", p);
       continue;
@@ -96,11 +87,10 @@ static inline double Carried(const Model *m, PetscInt p, int value, int gradient
 static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_DIM], const PointProperties *q,
                         double *s)
 {
-  static const int velocity[3] = {P_VS, P_VW, P_VG}, gradient[2] = {P_GW, P_GG};
-  const FieldSet  *fs       = &m->c->fields;
-  double *const   *f        = (double *const *)m->P.f;
-  const double     VS       = f[P_V][p] * S;
-  const bool       there[3] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
+  const FieldSet *fs       = &m->c->fields;
+  double *const  *f        = (double *const *)m->P.f;
+  const double    VS       = f[P_V][p] * S;
+  const bool      there[3] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
 
   for (int k = 0; k < 3; k++) {
     if (!there[k])
@@ -110,13 +100,13 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
 
     s[SUM_M + k] += S * mass;
     for (int i = 0; i < CL_DIM; i++)
-      s[SUM_X + fs->at[VectorAt(F_VS, k, 0)] + i] += S * mass * f[velocity[k] + i][p];
+      s[SUM_X + fs->at[VectorAt(F_VS, k, 0)] + i] += S * mass * f[VectorAt(P_VS, k, i)][p];
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
     if (k == PHASE_W || !fs->one_pressure)
-      s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, HeldPressure(fs, P_PW, k), gradient[k], d);
+      s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, HeldPressure(fs, P_PW, k), VectorAt(P_GW, k, 0), d);
     s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
   }
   if (fs->heat)
@@ -126,14 +116,13 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
 /* Diffusion of p_c that carries the saturations of a fluid with its flow (200). */
 static double SpreadOf(const Model *m, PetscInt p, int phase, const PointProperties *q)
 {
-  static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
-  const double     w = q->kr[PHASE_W] / q->resist[PHASE_W], o = q->kr[PHASE_G] / q->resist[PHASE_G];
-  const double     both = w > 0.0 && o > 0.0 ? w * o / (w + o) : 0.0;
-  double           g[CL_DIM], h[CL_DIM], hg = 0.0;
+  const double w = q->kr[PHASE_W] / q->resist[PHASE_W], o = q->kr[PHASE_G] / q->resist[PHASE_G];
+  const double both = w > 0.0 && o > 0.0 ? w * o / (w + o) : 0.0;
+  double       g[CL_DIM], h[CL_DIM], hg = 0.0;
 
   CellWidths(m, p, h);
   for (int d = 0; d < CL_DIM; d++)
-    g[d] = m->P.f[gradient[phase] + d][p] - q->rho[phase] * m->c->gravity[d];
+    g[d] = m->P.f[VectorAt(P_GW, phase, d)][p] - q->rho[phase] * m->c->gravity[d];
   Drive(m, p, g);
   for (int d = 0; d < CL_DIM; d++)
     hg += h[d] * fabs(g[d]);
@@ -145,14 +134,13 @@ static double SpreadOf(const Model *m, PetscInt p, int phase, const PointPropert
 /* Conductivity that carries heat with the flow of t_n (293). */
 static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[3])
 {
-  static const int gradient[PHASE_COUNT] = {P_GW, P_GG};
-  const Material  *mat                   = ParticleMaterial(m, p);
-  double           a[CL_DIM]             = {0.0}, h[CL_DIM];
+  const Material *mat       = ParticleMaterial(m, p);
+  double          a[CL_DIM] = {0.0}, h[CL_DIM];
 
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
       a[d] -= SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
-              (m->P.f[m->c->fields.one_pressure ? P_GW + d : gradient[k] + d][p] - q->rho[k] * m->c->gravity[d]);
+              (m->P.f[VectorAt(P_GW, m->c->fields.one_pressure ? PHASE_W : k, d)][p] - q->rho[k] * m->c->gravity[d]);
   }
   Drive(m, p, a);
   CellWidths(m, p, h);
@@ -344,17 +332,15 @@ static PetscErrorCode UpstreamWeights(Model *m)
 }
 
 /* (195), (197): about an axis the flux through a face goes with 1/r. */
-static void RadialFace(const Model *m, Face *f)
+static void RadialFace(const Model *m, const Reach *r, Face *f)
 {
   const double area              = VectorLength(f->n);
   double       drag[PHASE_COUNT] = {0.0}, sum = 0.0;
-  Reach        r;
 
   if (!m->c->axisymmetric || !(f->x[0] > 0.0))
     return;
-  ReachExpand(m, f->particle, &r);
-  for (int a = 0; a < r.n; a++) {
-    const double *c = &m->coef[r.node[a] * NC_COUNT];
+  for (int a = 0; a < r->n; a++) {
+    const double *c = &m->coef[r->node[a] * NC_COUNT];
 
     f->Nr[a] = f->N[a] / (c[NC_RING] * f->x[0]);
     sum += f->N[a];
@@ -365,44 +351,29 @@ static void RadialFace(const Model *m, Face *f)
     f->skin[k] = f->ring[0] * f->x[0] * drag[k] / (sum * area);
 }
 
-/* (109) */
-static void InflowFace(const Model *m, Face *f)
+void ModelFaceProperties(const Model *m, Face *f, int n, const double S[])
 {
   PointProperties q;
   const char     *why;
-  Reach           r;
 
-  if (f->bc[BC_INFLOW] < 0 || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
+  if ((f->bc[BC_INFLOW] < 0 && f->share == 0.0) || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
     return;
-  ReachExpand(m, f->particle, &r);
-  FaceInflow(f, r.n, r.S, q.kr);
-}
-
-/* (367): k_a/mu and k_r of t_n. */
-static void WellFace(const Model *m, Face *f)
-{
-  PointProperties q;
-  const char     *why;
-
-  if (f->share > 0.0 && ModelParticleProperties(m, f->particle, &q, &why) == CL_OK)
-    WellProperties(&q, f);
+  FaceInflow(f, n, S, q.kr);
+  WellProperties(&q, f);
 }
 
 /* (365): by the flux at t_n. */
-static void FaceDirections(const Model *m, Face *f)
+static void FaceDirections(const Model *m, const Reach *r, Face *f)
 {
-  Reach r;
-
-  ReachExpand(m, f->particle, &r);
   for (int k = 0; k < PHASE_COUNT; k++) {
     double sum[CL_DIM] = {0.0}, J[CL_DIM];
 
     if (!m->c->fields.phase[k])
       continue;
-    for (int a = 0; a < r.n; a++) {
-      DarcyFlux(m, r.node[a], k, &m->x_n[r.node[a] * m->c->fields.n], J);
+    for (int a = 0; a < r->n; a++) {
+      DarcyFlux(m, r->node[a], k, &m->x_n[r->node[a] * m->c->fields.n], J);
       for (int d = 0; d < CL_DIM; d++)
-        sum[d] += FaceWeight(f, a, VectorAt(F_VW, k, d)) * FaceShare(m, f->particle, r.node[a], k) * J[d];
+        sum[d] += FaceWeight(f, a, VectorAt(F_VW, k, d)) * FaceShare(m, f->particle, r->node[a], k) * J[d];
     }
     FaceDirection(m->c, f, k, sum);
   }
@@ -461,17 +432,18 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(ModelReduceStatus(m, status));
   }
   if (*status == CL_OK) {
-    PetscCall(FacesBuild(m->c, &m->grid, &m->P, m->stencil, &m->nface, &m->face));
+    PetscCall(FacesBuild(m->c, &m->grid, &m->P, &m->nface, &m->face));
     for (PetscInt k = 0; k < m->nface; k++) {
-      RadialFace(m, &m->face[k]);
-      InflowFace(m, &m->face[k]);
-      WellFace(m, &m->face[k]);
+      Face *f = &m->face[k];
+      Reach r;
+
+      ReachExpand(m, f->particle, &r);
+      RadialFace(m, &r, f);
+      ModelFaceProperties(m, f, r.n, r.S);
       if (m->c->stabilisation.outflow)
-        FaceDirections(m, &m->face[k]);
-    }
-    for (PetscInt k = 0; m->plates && k < m->nface; k++) {
-      if (m->face[k].bc[BC_PLATE] >= 0)
-        ModelPlateStiffness(m, &m->face[k]);
+        FaceDirections(m, &r, f);
+      if (f->bc[BC_PLATE] >= 0)
+        ModelPlateStiffness(m, f);
     }
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamWeights(m));

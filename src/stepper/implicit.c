@@ -77,7 +77,7 @@ PetscErrorCode StepperStartFromHistory(Stepper *s)
   StepperWork *w = &s->work;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(w->x_star, m->x_n, m->map.n_local * m->c->fields.n));
+  PetscCall(PetscArraycpy(w->x_star, ModelStart(m), m->map.n_local * m->c->fields.n));
   PetscCall(PetscArrayzero(w->u_star, m->map.n_local * CL_DIM));
   for (PetscInt p = 0; p < m->P.n; p++) {
     for (int k = 0; k < 3; k++)
@@ -230,10 +230,11 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
   StepperState  *z    = &s->state;
   const StepInfo info = {
       .dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts, .rules = a->rules, .peak = a->peak};
+  double keeps;
 
   PetscFunctionBeginUser;
-  PetscCall(StepperKeeps(s, dt, &s->model->keeps));
-  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates));
+  PetscCall(StepperKeeps(s, dt, &keeps));
+  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates, keeps));
   z->step++;
   z->t += dt;
   z->dt      = WantedStep(s, dt, kink, a);
@@ -314,7 +315,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     const double dt = NextStep(s, &kink);
     Attempt      a  = {.status = CL_OK};
 
-    PetscCall(PetscArraycpy(s->work.x, m->x_n, m->map.n_local * m->c->fields.n));
+    PetscCall(PetscArraycpy(s->work.x, ModelStart(m), m->map.n_local * m->c->fields.n));
     s->work.drain = 1.0 / dt;
     PetscCall(s->scheme->step(s, dt, &a));
     s->auto_.newton += a.newton;

@@ -9,13 +9,13 @@ static void Star(Stepper *s, double dt)
   const Model    *m  = s->model;
   const FieldSet *fs = &m->c->fields;
   StepperWork    *w  = &s->work;
-  const double    c  = (1.0 - GAMMA) / GAMMA;
+  const double    c = (1.0 - GAMMA) / GAMMA, *x_n = ModelStart(m);
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int q = 0; q < fs->n; q++) {
       const PetscInt k = I * fs->n + q;
 
-      w->x_star[k] = m->x_n[k] + c * (w->x[k] - m->x_n[k]);
+      w->x_star[k] = x_n[k] + c * (w->x[k] - x_n[k]);
     }
     for (int d = 0; fs->solid && d < CL_DIM; d++)
       w->u_star[I * CL_DIM + d] = (1.0 - GAMMA) * dt * w->x[I * fs->n + PlaceVs(fs) + d];
