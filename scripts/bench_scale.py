@@ -194,6 +194,10 @@ always quiet: differences below a fifth mean nothing. Equation numbers are those
 One Euler step of 10 s of BP2 as a block with six fields and 4 particles a cell, and three of the dry block, from a cold start. The reduced preconditioner made once a step and where (176) says (*kept*), or at every
 Newton iteration (*fresh*); LU for comparison. A solve is one Newton iteration.
 
+Rows of the reduced preconditioner with six fields to 100 cells across, and the kept one with 200, are of products particle by particle (401) and were run beside other work, which made them some 1.5 times slower;
+those fresh with 200 and of 350 are older, with J2 assembled. The best of two in turn at 100 cells, kept,
+the whole program: 4.0 s of user time and 411 MB assembled, 3.1 s and 282 MB particle by particle.
+
 {bench.markdown(head, size_rows(store))}
 
 ## Where it begins to pay
@@ -216,7 +220,7 @@ User seconds of the step and MB.
 
 {bench.markdown(["scene", "assembled: solves", "mean", "s", "MB", "particles: solves", "mean", "s", "MB", "differences: solves", "mean", "s", "MB", ""], operator_rows)}
 
-With six fields differences cost more than either product and lose solves. A particle of six fields keeps 0.8 kB: 187 slopes as floats, 8 of storage and those of det F as doubles; J2 has 25 blocks of 81 a node, 4.1 kB a particle
+With six fields differences cost more than either product and lose solves. A particle of six fields keeps 0.8 kB: slopes as floats, but those of storage and of det F as doubles; J2 has 25 blocks of 81 a node, 4.1 kB a particle
 with 4 a cell, and its assembly is most of a Jacobian. With all of them doubles the same iterations took 0.7 kB a particle more and up to a tenth more time. Tangents evaluated anew in every product would take no memory,
 but a tangent costs two residuals, a product of kept ones half of one, and an iteration of GMRES needs two products.
 """

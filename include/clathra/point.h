@@ -92,8 +92,8 @@ typedef struct {
 
 /* Evaluates (8)-(21) at a particle for the fields of the set, in SI units with T in degC; inputs of other fields are
    not read (but p_g = p_w and T as given where gas and heat have no field), outputs and columns of other fields are not
-   written.  tangent = false leaves D, dJ and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why pointing
-   to a sentence. */
+   written.  tangent = false leaves D, dJ and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why
+   pointing to a sentence. */
 ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
                        bool tangent, PointState *state, PointOutput *o, const char **why);
 

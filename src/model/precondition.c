@@ -232,7 +232,7 @@ PetscErrorCode PreconditionerFallBack(Model *m)
   if (m->solver->J2)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatrixCreate(m));
-  PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->J2, ModelJacobian, m));
+  PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->J2, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -250,7 +250,7 @@ PetscErrorCode PreconditionerReturn(Model *m)
   m->solver->refactor = true;
   if (!m->solver->product)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->A, ModelJacobian, m));
+  PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->A, NULL, NULL));
   PetscCall(MatrixDestroy(m->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
