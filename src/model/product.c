@@ -308,7 +308,7 @@ static void OutputChange(const Product *t, PetscInt p, bool momentum, double in[
   }
 }
 
-static void ParticleLoop(Model *m, bool momentum, const double *dx)
+static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
 {
   double out[OUT_COUNT] = {0.0};
 
@@ -321,6 +321,7 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx)
     ParticleScatter(m, p, &r, m->solver->product->x, out);
     if (m->beds)
       BedsChange(m, p, &r, dx);
+    if (!momentum)
   }
 }
 
@@ -483,7 +484,7 @@ PetscErrorCode ProductMult(Model *m, bool momentum, Vec X, Vec Y)
   if (!momentum)
     PetscCall(ModelProjectGradients(m, t->dx, true, m->proj));
   ModelGive(m, t->dx, true);
-  ParticleLoop(m, momentum, t->dx);
+  ParticleLoop(m, momentum, t->dx, m->f);
   NodeLoop(m, t->x, t->dx, m->f);
   FaceLoop(m, t->dx, m->f);
   if (!momentum) {
