@@ -57,7 +57,7 @@ typedef struct {
   double          upwind[3];           /* (293), xx, yy, xy, W/(m K) */
   double proj[PHASE_COUNT][CL_DIM];    /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
-  double held;        /* (265), at t_n; 0: the reaction is as fast as its law */
+  double held;        /* (381), at t_n; 0: the reaction is as fast as its law */
   double mobility;    /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
   double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   bool   compression; /* heat of compression and throttling (290); then also ... */

@@ -25,14 +25,14 @@ typedef struct {
   double v, p, T;
 } Growth;
 
-/* (265): what a cell's conduction holds of a reaction whose heat is q (W/(m^3 Pa)), over what it lets through;
+/* (381): what a cell's conduction holds of a reaction whose heat is q (W/(m^3 Pa)), over what it lets through;
    dpe_dT (Pa/K), kappa (W/(m K)), h2: square of the cell's width (m^2). */
 INLINE double ReactionHeld(double q, double dpe_dT, double kappa, double h2)
 {
   return q * dpe_dT * h2 / (6.0 * kappa);
 }
 
-/* (266): h2 of cells h wide, in the direction in which T has the gradient g (K/m). */
+/* (382): h2 of cells h wide, in the direction in which T has the gradient g (K/m). */
 INLINE double ReactionWidth(const double h[CL_DIM], const double g[CL_DIM])
 {
   double sum = 0.0, weights = 0.0;

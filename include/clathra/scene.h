@@ -66,7 +66,8 @@ typedef struct {
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind;   /* (200); default false */
   bool   heat_upwind;         /* (293); default false */
-  bool   held_reaction;       /* (265); default false */
+  bool   lumped_reaction;     /* (265); default false */
+  bool   held_reaction;       /* (381); default false */
 } Stabilisation;
 
 typedef struct Scene {
@@ -245,7 +246,7 @@ static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
   return NULL;
 }
 
-/* Does (265) act? */
+/* Does (381) act? */
 static inline bool SceneHoldsReaction(const Scene *c)
 {
   return c->stabilisation.held_reaction && c->fields.heat && c->fields.phase[PHASE_G];
@@ -261,6 +262,7 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
   } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
                {c->stabilisation.donor, "stabilisation_donor"},
                {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
+               {c->stabilisation.lumped_reaction, "stabilisation_reaction"},
                {c->stabilisation.exchange == EXCHANGE_YES, "stabilisation_exchange"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {

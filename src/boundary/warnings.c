@@ -220,7 +220,8 @@ static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Partic
   const Bc *b       = Hottest(c, &T);
 
   PetscFunctionBeginUser;
-  if (!b || !c->fields.heat || !c->fields.phase[PHASE_G] || c->stabilisation.held_reaction)
+  if (!b || !c->fields.heat || !c->fields.phase[PHASE_G] || c->stabilisation.lumped_reaction ||
+      c->stabilisation.held_reaction)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < P->n; p++) {
     const Material *m   = &c->material[c->region[P->i[PI_REGION][p]].material];
@@ -238,7 +239,8 @@ static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Partic
         comm, stderr,
         "clathra: warning: %s brings %.4g degC to hydrate that is up to %.3g K colder, heat to melt %.2g of the pores "
         "full of it: ahead of such a front S_h of neighbouring particles alternates with implicit steps and coarse "
-        "cells (stabilisation_reaction: yes keeps it smooth)\n",
+        "cells (stabilisation_reaction_heat: yes keeps it smooth, stabilisation_reaction: yes too, but hydrate goes "
+        "early)\n",
         b->name, T, most[1], most[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

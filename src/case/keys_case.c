@@ -170,7 +170,10 @@ const Key case_key[] = {
         Case, "stabilisation_heat", scene.stabilisation.heat_upwind, "no",
         "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
         "conducted"),
-    BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.held_reaction, "no",
+    BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
+            "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
+            "front of heat"),
+    BOOLEAN(Case, "stabilisation_reaction_heat", scene.stabilisation.held_reaction, "no",
             "the reaction is no faster than a cell conducts its heat away: no alternating hydrate at fronts of a fast "
             "reaction"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),

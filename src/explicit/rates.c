@@ -113,7 +113,7 @@ INLINE void Masses(Explicit *e, const Set s, Run r, int k, const Volumes *v)
   }
 }
 
-/* (265) with the faster of both ways; zero where it is off. */
+/* (381) with the faster of both ways; zero where it is off. */
 INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, const double *restrict T,
                  const double *restrict Kd, const double *restrict dpe, const double *restrict forms, const Volumes *v,
                  double *restrict held)

@@ -524,6 +524,10 @@ PetscErrorCode ModelSumMassRows(Model *m, double *f);
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
+/* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
+void LumpBuild(Model *m);
+void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (332)-(334): where each particle's gas comes from at t_n, all ranks. */
 PetscErrorCode DonorBuild(Model *m);
 /* (353), (354): what they need of a particle at t_n; the change at the end of the step. */

@@ -53,6 +53,7 @@ PetscErrorCode FreeParticleArrays(Model *m)
   PetscCall(PetscFree(m->added->exchange));
   PetscCall(PetscFree(m->added->spread));
   PetscCall(PetscFree(m->added->upwind));
+  PetscCall(PetscFree(m->added->lump));
   PetscCall(PetscFree(m->added->held));
   PetscCall(PetscFree(m->beds));
   m->stencil_cap = 0;

@@ -38,6 +38,8 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
       PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->added->spread));
     if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
       PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->added->upwind));
+    if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
+      PetscCall(PetscCalloc1(m->stencil_cap, &m->added->lump));
     if (SceneHoldsReaction(m->c))
       PetscCall(PetscMalloc1(m->stencil_cap, &m->added->held));
   }
@@ -147,7 +149,7 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   HeatUpwind(q->kappa, a, h, K);
 }
 
-/* (265) with the faster of both ways at t_n. */
+/* (381) with the faster of both ways at t_n. */
 static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
 {
   const double g[CL_DIM] = {m->P.f[P_GT][p], m->P.f[P_GT + 1][p]};
@@ -448,6 +450,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamWeights(m));
     PetscCall(DonorBuild(m));
+    LumpBuild(m);
   }
   PetscCall(PetscFree(flag));
   PetscCall(PetscLogEventEnd(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));

@@ -368,6 +368,7 @@ static inline void JacobianCase(SmallScene *s, unsigned has, bool inertia, bool 
   s->c.scene.gravity[0]                       = axisymmetric ? 0.0 : 2.0;
   s->c.scene.gravity[1]                       = -9.81;
   s->c.scene.stabilisation.flux_interpolation = !(set == 1 && !reacts);
+  s->c.scene.stabilisation.lumped_reaction    = reacts;
   s->c.scene.stabilisation.held_reaction      = reacts;
   s->c.scene.compression_heat                 = s->c.scene.fields.heat && s->c.scene.fields.fluid && set != 1;
   s->region.pressure                          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */

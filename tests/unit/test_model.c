@@ -15,7 +15,7 @@
    with the mobility of where it comes from in the second set of conditions. */
 static void UpstreamScene(SmallScene *s, BasisType basis, bool reacts, int set)
 {
-  double upstream = 0.0, held = 0.0, donor = 0.0;
+  double upstream = 0.0, lumped = 0.0, held = 0.0, donor = 0.0;
 
   JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
   s->c.scene.stabilisation.upstream = reacts;
@@ -25,10 +25,13 @@ static void UpstreamScene(SmallScene *s, BasisType basis, bool reacts, int set)
   for (PetscInt k = 0; k < 2 * s->m.map.n_owned; k++)
     upstream += s->m.added->up && s->m.added->up[3 * k + 2] > 0.0; /* no storage where it is off */
   for (PetscInt p = 0; p < s->m.P.n; p++)
+    lumped += s->m.added->lump && s->m.added->lump[p].rate > 0.0;
+  for (PetscInt p = 0; p < s->m.P.n; p++)
     held += s->m.added->held && s->m.added->held[p] > 0.0;
   for (PetscInt p = 0; p < s->m.P.n; p++)
     donor += s->m.added->donor && s->m.added->donor[p].base < 1.0;
-  Check((Sum(upstream) > 0.0) == reacts && (Sum(held) > 0.0) == reacts && (Sum(donor) > 0.0) == (set > 0));
+  Check((Sum(upstream) > 0.0) == reacts && (Sum(lumped) > 0.0) == reacts && (Sum(held) > 0.0) == reacts &&
+        (Sum(donor) > 0.0) == (set > 0));
 }
 
 static void TestJacobian(void **state)
