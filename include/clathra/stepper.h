@@ -202,8 +202,9 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 {
   return fmin(c->cfl * limit->dt, c->dt_max);
 }
-/* The line that follows every "Given up": these words, or those for the cause. */
+/* The line that follows every "Given up": try these words. */
 PetscErrorCode StepperTry(const Stepper *s, const char *words);
+/* The same, with the words for this cause. */
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
 /* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
 PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
