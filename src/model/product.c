@@ -322,6 +322,7 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
     if (m->beds)
       BedsChange(m, p, &r, dx);
     if (!momentum)
+      LumpResidual(m, p, &r, dx, f);
   }
 }
 
