@@ -280,7 +280,7 @@ static inline double NodeVolume(const Model *m, PetscInt I)
 
 #define TIE_MOST 100.0 /* with it a sliver's pressure is what its neighbours make of it, to a few hundredths */
 
-/* (374): the tie of pressures where a line ends on a node that sees `share` of what the one before it does. */
+/* (375): the tie of pressures where a line ends on a node that sees `share` of what the one before it does. */
 static inline double SliverTie(double share)
 {
   return fmin(TIE_MOST, PetscSqr(fmax(1.0, 0.5 / share)));

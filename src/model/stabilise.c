@@ -134,7 +134,7 @@ static bool IsCut(const double *fill, PetscInt I)
   return I >= 0 && fill[2 * I] > 0.0 && (fill[2 * I] < FULL || fill[2 * I + 1] > 0.0);
 }
 
-/* (374) on a line. */
+/* (375) on a line. */
 static double Tie(const Model *m, PetscInt lo, PetscInt mid, PetscInt hi)
 {
   const double end = fmin(m->V[lo] / NodeVolume(m, lo), m->V[hi] / NodeVolume(m, hi));
@@ -317,7 +317,7 @@ static double GhostTau(const FieldSet *fs, double lambda, double dt)
   return 1.0 / (1.0 / lambda + (fs->inertia ? 1.0 / dt : 0.0));
 }
 
-/* Coefficient of the penalties (22), (351), (374) on each of the nine unknowns, zero where the set has none; none on
+/* Coefficient of the penalties (22), (351), (375) on each of the nine unknowns, zero where the set has none; none on
    the fluid velocities, which carry the boundary pressure. */
 static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, double c[F_COUNT])
 {

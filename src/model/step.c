@@ -500,7 +500,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
   const FieldSet *fs = &m->c->fields;
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6, V = m->V[I];
   const double    full = NodeVolume(m, I), V_row = fmax(V, SLIVER * full);
-  const double    V_mass = fmax(V, SLIVER * SliverTie(V / full) * full); /* the tie (374) is in these rows, too */
+  const double    V_mass = fmax(V, SLIVER * SliverTie(V / full) * full); /* the tie (375) is in these rows, too */
 
   for (int d = 0; d < CL_DIM; d++) {
     if (fs->solid) {

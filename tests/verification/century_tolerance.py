@@ -42,7 +42,7 @@ judge(ROW, "cells of 5 m: largest error in time over the tolerance, 1e-1 to 1e-5
 stiff = study("small strain, cells of 5 m", tols, 2000, *ROWS_5M, *STIFF)
 judge(ROW, "a thousandth of the strain, cells of 5 m: error in time at 1e-5 over that at 1e-1", stiff[-1] / stiff[0], 0.2)
 
-# on cells of 1 m the surface crosses three of them.  Without (374) the answer depended on the number of steps while it left a cell, whatever the
+# on cells of 1 m the surface crosses three of them.  Without (375) the answer depended on the number of steps while it left a cell, whatever the
 # tolerance: 1.6e-3, 1.6e-3, 1.6e-3, 1.4e-3.  To 1e-3 the growth of the steps from an hour on and the rows of the probes rule, not the tolerance
 # (54, 62, 89 steps); at 1e-4 it does, and at 1e-5 (2700 steps, not run here) 3e-5 is left: a thirty-fourth over four decades
 fine = study("large strain, cells of 1 m", (1e-1, 1e-2, 1e-3, 1e-4), 800, "-output_probe_every", f"{C.end / 20:.17g} s", plateau=True)
