@@ -38,8 +38,13 @@ PROGRAM = [  # option, value, default, meaning
      "otherwise; reduced: multigrid on what is left without the fluid velocities (docs/equations.md, section 9), where it "
      "breaks down LU of the whole for that stage; auto: reduced where the cells across times the unknowns a node exceed 250 (1000 without fluids), "
      "unless -pc_type, -ksp_type or -model_pmat_type is given"),
+    ("-newton_operator", "auto, assembled, particles", "auto", "the exact Jacobian that GMRES multiplies with: assembled, with its wide part particle by "
+     "particle (27); particles: all of it from the tangents that each particle keeps (docs/equations.md, section 9), half the memory; auto: particles with "
+     "the reduced preconditioner, assembled with factors of the whole"),
     ("-reduced_pc_type", "PETSc's", "fieldsplit", "solver of the reduced matrix: fieldsplit, its two groups of unknowns in "
      "turn; lu, all of it factorised"),
+    ("-reduced_pc_fieldsplit_type", "PETSc's", "multiplicative", "how the groups follow each other: flow (p_w, p_g, T), then motion (v_s); where it is given, "
+     "what motion does to the flow is stored, too"),
     ("-newton_refactor", "N", "by its cost", "the preconditioner is made once a step, and anew after a linear solve of more "
      "than N iterations, or where N is not given when solves have lost as many iterations as a new one costs; a stage that "
      "fails is tried again with a new one at every Newton iteration"),
@@ -58,7 +63,6 @@ PETSC = [  # the ones worth knowing, with this program's defaults
     ("-ksp_rtol", "1e-4", "... with the reduced preconditioner"),
     ("-ksp_max_it", "200", "... with the reduced preconditioner"),
     ("-pc_type", "lu", "preconditioner of the whole: lu, ilu, asm, bjacobi ..."),
-    ("-reduced_pc_fieldsplit_type", "multiplicative", "how the groups follow each other: flow (p_w, p_g, T), then motion (v_s)"),
     ("-reduced_fieldsplit_flow_pc_type", "gamg", "of p_w, p_g, T: aggregation, smoothed by ILU (-reduced_fieldsplit_flow_mg_levels_...)"),
     ("-reduced_fieldsplit_motion_pc_type", "hypre", "of v_s: BoomerAMG; gamg without hypre"),
     ("-pc_factor_mat_solver_type", "umfpack up to 4000 unknowns on one rank, else mumps", "who factorises"),
@@ -66,7 +70,7 @@ PETSC = [  # the ones worth knowing, with this program's defaults
     ("-snes_monitor, -ksp_converged_reason", "", "watch Newton's method and the linear solver"),
     ("-options_left", "", "at the end, lists options that nobody read: finds misspelt ones"),
     ("-log_view", "", "where the time went; this program's own events are ClBeginStep, ClResidual, ClJacobian, "
-     "ClWidePart, ClReducedMatrix, ClReducedApply"),
+     "ClWidePart, ClReducedMatrix, ClReducedApply, ClProduct"),
 ]  # fmt: skip
 
 HEAD = """\
