@@ -3,14 +3,14 @@
 
 void ModelAddEnergies(const Model *m, PetscInt p, double energy[ENERGY_COUNT])
 {
-  const Particles *P   = &m->P;
-  const Material  *mat = ParticleMaterial(m, p);
+  const Particles *P = &m->P;
   SkeletonHistory  h;
   double           dE;
 
   energy[ENERGY_KINETIC] += ModelKineticEnergy(P, p);
   if (!m->c->fields.solid)
     return;
+  const Material     *mat   = ParticleMaterial(m, p);
   const SkeletonStore store = ParticlesSkeleton(P, 0, 0.0);
 
   SkeletonTake(&store, p, &h);

@@ -23,7 +23,8 @@ static void RadialErrors(BasisType basis, double x, double l, double lower, doub
   const GridLines line = LinesEqual(lower, lower + (double)cells * h, cells);
 
   BasisRadius(basis, x, l, &line, &a, H, &r);
-  const double lo = fmax(x - l, lower), hi = fmin(x + l, lower + (double)cells * h), mid = 0.5 * (lo + hi);
+  const double half = BasisReach(basis, &line, x, l);
+  const double lo = fmax(x - half, lower), hi = fmin(x + half, lower + (double)cells * h), mid = 0.5 * (lo + hi);
   for (int k = 0; k < 3; k++) {
     const double rk = lower + (double)(a.base + k) * h;
 
