@@ -92,6 +92,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
   StepperState *z = &s->state;
 
   PetscFunctionBeginUser;
+  s->broken = false;
   PetscCall(StepperBookLeavers(s));
   if (s->broken)
     PetscFunctionReturn(PETSC_SUCCESS);
