@@ -10,8 +10,6 @@ typedef struct {
   double   a;                   /* g A/h */
   double   M, kappa;            /* Pa, W/(m K) */
   double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
-  double   least[PHASE_COUNT];  /* of the three nodes, s ... */
-  double   tie;                 /* ... which counts so many times more (375) */
   double   store[PHASE_COUNT];  /* g_s A h rho s, kg/Pa */
 } GhostLine;
 

@@ -278,14 +278,6 @@ static inline double NodeVolume(const Model *m, PetscInt I)
   return V * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
 }
 
-#define TIE_MOST 100.0 /* with it a sliver's pressure is what its neighbours make of it, to a few hundredths */
-
-/* (375): the tie of pressures where a line ends on a node that sees `share` of what the one before it does. */
-static inline double SliverTie(double share)
-{
-  return fmin(TIE_MOST, PetscSqr(fmax(1.0, 0.5 / share)));
-}
-
 /* The smallest cell width at a node, m. */
 static inline double NodeWidth(const Model *m, PetscInt I)
 {

@@ -134,14 +134,6 @@ static bool IsCut(const double *fill, PetscInt I)
   return I >= 0 && fill[2 * I] > 0.0 && (fill[2 * I] < FULL || fill[2 * I + 1] > 0.0);
 }
 
-/* (375) on a line. */
-static double Tie(const Model *m, PetscInt lo, PetscInt mid, PetscInt hi)
-{
-  const double end = fmin(m->V[lo] / NodeVolume(m, lo), m->V[hi] / NodeVolume(m, hi));
-
-  return SliverTie(end / (m->V[mid] / NodeVolume(m, mid))) - 1.0;
-}
-
 static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsigned char *near)
 {
   PetscInt n = 0;
@@ -169,16 +161,11 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
       *ghost = (GhostLine){.node   = {lo, I, hi},
                            .second = {below, -(below + above), above},
                            .a      = m->c->stabilisation.ghost_penalty * ratio,
-                           .tie    = Tie(m, lo, I, hi),
                            .M      = c[NC_M],
                            .kappa  = c[NC_KAPPA],
                            .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
-      for (int f = 0; f < PHASE_COUNT; f++) {
-        ghost->least[f] = c[NC_LAMBDA + f];
-        for (int a = 0; a < 3; a += 2)
-          ghost->least[f] = fmin(ghost->least[f], m->coef[ghost->node[a] * NC_COUNT + NC_LAMBDA + f]);
+      for (int f = 0; f < PHASE_COUNT; f++)
         ghost->store[f] = m->c->stabilisation.ghost_storage * ratio * h * h * c[NC_RHO + f] * c[NC_STORAGE + f];
-      }
     }
   }
   m->added->nghost = n;
@@ -311,14 +298,8 @@ PetscErrorCode StabilisationBuild(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rho tau, s */
-static double GhostTau(const FieldSet *fs, double lambda, double dt)
-{
-  return 1.0 / (1.0 / lambda + (fs->inertia ? 1.0 / dt : 0.0));
-}
-
-/* Coefficient of the penalties (22), (351), (375) on each of the nine unknowns, zero where the set has none; none on
-   the fluid velocities, which carry the boundary pressure. */
+/* Coefficient of the penalties (22), (351) on each of the nine unknowns, zero where the set has none; none on the fluid
+   velocities, which carry the boundary pressure. */
 static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, double c[F_COUNT])
 {
   const FieldSet *fs = &m->c->fields;
@@ -329,21 +310,21 @@ static void GhostCoefficients(const Model *m, const GhostLine *g, double dt, dou
     c[F_VS + d] = g->a * g->M * dt;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f])
-      c[F_PW + f] = g->store[f] + g->a * dt * (GhostTau(fs, g->lambda[f], dt) + g->tie * GhostTau(fs, g->least[f], dt));
+      c[F_PW + f] =
+          g->store[f] + g->a * dt / (1.0 / g->lambda[f] + (fs->inertia ? 1.0 / dt : 0.0)); /* and dt' rho tau */
   }
   if (fs->heat)
     c[F_T] = g->a * g->kappa;
 }
 
-/* Second difference of unknown k of the nodal values x; of differences, so that it is exactly zero where x is even. */
+/* Second difference of unknown k of the nodal values x. */
 static double Jump(const Model *m, const GhostLine *g, const double *x, int k)
 {
   const FieldSet *fs   = &m->c->fields;
-  const double   *at   = &x[fs->at[k]];
   double          jump = 0.0;
 
-  for (int a = 0; a < 3; a += 2)
-    jump += g->second[a] * (at[g->node[a] * fs->n] - at[g->node[1] * fs->n]);
+  for (int a = 0; a < 3; a++)
+    jump += g->second[a] * x[g->node[a] * fs->n + fs->at[k]];
   return jump;
 }
 

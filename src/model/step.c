@@ -499,8 +499,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
 {
   const FieldSet *fs = &m->c->fields;
   const double   *c = &m->coef[I * NC_COUNT], dt = m->stage.dt, P = 1e6, V = m->V[I];
-  const double    full = NodeVolume(m, I), V_row = fmax(V, SLIVER * full);
-  const double    V_mass = fmax(V, SLIVER * SliverTie(V / full) * full); /* the tie (375) is in these rows, too */
+  const double    V_row = fmax(V, SLIVER * NodeVolume(m, I));
 
   for (int d = 0; d < CL_DIM; d++) {
     if (fs->solid) {
@@ -519,7 +518,7 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
-    const double mass  = RowWeight(m, I, k) * V_mass * MassScale(fs, c, k, m->w[PHASE_COUNT * I + k], dt, h);
+    const double mass  = RowWeight(m, I, k) * V_row * MassScale(fs, c, k, m->w[PHASE_COUNT * I + k], dt, h);
     col[PlaceP(fs, k)] = P;
     row[PlaceP(fs, k)] = k == PHASE_G && fs->one_pressure ? row[PlaceP(fs, k)] + mass : mass;
   }

@@ -474,8 +474,7 @@ def breaks(study, found):
         "- *Reaction constants from 1e6 times on.* The last bit of a pressure makes hydrate and heat beyond the tolerance of (17) and (21). Their rows are measured by the "
         "reaction too.",
         "- *Slivers.* On a node that sees a depth d of the next cell, forces shrink with d and its volume with d². An edge within 1e-6 of a cell moves onto the grid line "
-        "(1e-9 before), and rows of (16) are measured by the forces that the pressure has there. A node that sees but a part of a cell has its pressure tied to its neighbours (375): with the end 0.1 cells beyond a grid line quasi-static steps at a tolerance of 1e-4 were given "
-        "up after 0.46 ms and now reach 100 s in 193, which `sdirk2` without inertia meets to 0.08 % and `euler` to 0.74 % ([stability.py](../tests/verification/stability.py)). The runs of the tables on this page were made before (375).",
+        "(1e-9 before), and rows of (16) are measured by the forces that the pressure has there.",
         "- *Outlets at a tenth of the pressure, hydrate far from equilibrium at 0.1 MPa and less.* What left a coarse cell of gas did so with the density outside, so that the cell could "
         "not drain and p overshot; it has the body's (365). Then the node behind the surface, where p_g goes on with its fall below zero, held Newton's method up, which took half of that node's "
         "own p_g at a time; it takes half of what particles have (349). At 0.1 MPa: "

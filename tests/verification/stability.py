@@ -62,13 +62,6 @@ def slivers():
         done = ends(f"sliver of {depth:g} cells", attempt([*options, "-region_column_upper", f"{0.2 + depth * CELL!r} m, 0.02 m"]))
         if done.kind == "finished":
             judge(ROW, f"a sliver of {depth:g} cells: largest change of any field", max(difference(done.folder, whole.folder, 1e6).values()), 0.03)
-    tenth = [*scene(), *UNTIL(100.0), "-region_column_upper", f"{0.2 + 0.1 * CELL!r} m, 0.02 m"]  # without (375) the first is given up at 0.5 ms
-    fine = ends("a tenth of a cell, quasi-static, fine", attempt([*tenth, "-inertia", "no", "-stepper_tol", "1e-4"]))
-    judge(ROW, "the end 0.1 cells beyond a grid line, quasi-static, tolerance 1e-4: steps", float(fine.steps), 250.0)
-    for kind, more, bar in (("sdirk2, quasi-static", ["-inertia", "no"], 2e-3), ("euler", ["-stepper_type", "euler"], 0.012)):
-        done = ends(f"a tenth of a cell, {kind}", attempt([*tenth, *more]))
-        if fine.kind == done.kind == "finished":
-            judge(ROW, f"the end 0.1 cells beyond a grid line, {kind}: largest error of any field", max(difference(done.folder, fine.folder, 1e6).values()), bar)
 
 
 def refusals():
