@@ -1,0 +1,37 @@
+#!/usr/bin/env python3
+"""(395): at the corners of a heater, where the nodes' T is bilinear, its particles stay between what they start from and what
+the heater has; implicit and hybrid, in equal cells and others; heat is conserved, ranks agree.
+"""
+from pathlib import Path
+
+import numpy as np
+
+from common import Run, check, finish, judge, table
+
+CASES = Path(__file__).parent / "cases"
+START, HEATER = 11.0, 60.0
+
+
+def field(name, *more, **keywords):
+    run = Run.of_case(CASES / name, *more, **keywords)
+    return run, np.array([fields["T"][:, 0] for _, fields in run.snapshots()])
+
+
+rows = []
+GRADED = ("-grid_cells", "auto,auto", "-grid_spacing_x", "{table: [0 m, 0.8 m, 2 m, 0.25 m, 3 m, 0.25 m, 5 m, 0.8 m]}", "-grid_spacing_y", "0.5 m")
+WAYS = {"sdirk2": (), "euler": ("-stepper_type", "euler"), "hybrid": ("-stepper_type", "hybrid"), "sdirk2, graded": GRADED,
+        "hybrid, graded": ("-stepper_type", "hybrid", *GRADED)}  # fmt: skip
+found = {}
+for way, options in WAYS.items():
+    run, T = found[way] = field("heater_corners.yaml", *options)
+    rows.append((way, T.min(), T.max()))
+    judge("corners", f"{way}: particles warmer than the heater, K", max(T.max() - HEATER, 0.0), 0.05)
+    judge("corners", f"{way}: balance of heat, of 1 K of the body", np.max(np.abs(run.balance["heat_error"])), 1e-8)
+    check(f"{way}: particles colder than the start, of 49 K", max(START - T.min(), 0.0) / (HEATER - START), 0.02)
+table(("integrator, cells", "coldest, degC", "warmest, degC"), rows)
+for cells in ("", ", graded"):
+    apart = np.max(np.abs(found["hybrid" + cells][1][-1] - found["sdirk2" + cells][1][-1]))
+    judge("corners", f"hybrid against sdirk2 after 5 d{cells}, K", apart, 0.05)
+two = field("heater_corners.yaml", ranks=2)[1]
+judge("corners", "2 ranks against 1, K", np.max(np.abs(two - found["sdirk2"][1])), 1e-6)
+finish()
