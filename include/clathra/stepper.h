@@ -8,7 +8,7 @@
 /* Extremes of particles: mean pore pressure, Pa, and temperature, degC. */
 enum { LOWEST_P = 0, HIGHEST_P, LOWEST_T, HIGHEST_T, EXTREMES };
 typedef struct {
-  double value, t, at[CL_DIM]; /* when, s, and where, m; value INFINITY, or its negative: no such field */
+  double value, t, at[CL_DIM]; /* when, s, and where, m; all zero without the field */
 } Extreme;
 
 /* Everything besides the particles that a run carries from step to step (in the checkpoint, so that a restart is bit

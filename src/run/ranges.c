@@ -92,7 +92,8 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
     const char *name, *unit;
     double      per;
     int         low;
-  } of[]      = {{"p", "MPa", 1e6, LOWEST_P}, {"T", "degC", 1.0, LOWEST_T}};
+    unsigned    has;
+  } of[]      = {{"p", "MPa", 1e6, LOWEST_P, HAS_WATER}, {"T", "degC", 1.0, LOWEST_T, HAS_HEAT}};
   size_t told = 0;
 
   PetscFunctionBeginUser;
@@ -101,7 +102,7 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
     const Extreme *low = &s->state.extreme[of[k].low];
     char           from[96], to[96];
 
-    if (!isfinite(low[0].value))
+    if (!(s->model->c->fields.has & of[k].has))
       continue;
     PetscCall(Place(&low[0], from));
     PetscCall(Place(&low[1], to));
@@ -123,7 +124,7 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
                slack = fmax(LEAST_T, isfinite(high - low) ? BEYOND * (high - low) : 0.0);
 
   PetscFunctionBeginUser;
-  for (int k = LOWEST_T; k <= HIGHEST_T && isfinite(z->extreme[LOWEST_T].value); k++) {
+  for (int k = LOWEST_T; c->fields.heat && k <= HIGHEST_T; k++) {
     const bool     warm  = k == HIGHEST_T;
     const Extreme *e     = &z->extreme[k];
     const double   limit = warm ? bound.high : bound.low, beyond = warm ? e->value - limit : limit - e->value;
@@ -182,7 +183,7 @@ static PetscErrorCode NotePressures(const Stepper *s)
 {
   const StepperState *z     = &s->state;
   const Extreme      *e     = &z->extreme[LOWEST_P];
-  const double        least = isfinite(e->value) ? LowestPressure(s) : NAN, beyond = least - e->value;
+  const double        least = s->model->c->fields.phase[PHASE_W] ? LowestPressure(s) : NAN, beyond = least - e->value;
   char                place[96];
 
   PetscFunctionBeginUser;

@@ -257,8 +257,8 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
     PetscCall(OutputMeters(run->out, m, &s->state));
     PetscCall(OutputSnapshot(run->out, m, &s->state));
     s->state.next_snapshot++;
-    run->t_shown = s->state.t;
   }
+  run->t_shown = s->state.t; /* or there is nothing newer to show */
   PetscCall(OutputGood(run->out, m->grid.comm, &ok));
   run->lost = run->lost || !ok;
   PetscCall(WriteLog(c, m->grid.comm, run));

@@ -52,6 +52,8 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start)
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, EXTREMES * CL_DIM, MPI_DOUBLE, MPI_SUM, m->grid.comm));
   for (int k = 0; k < EXTREMES; k++) {
+    if (!isfinite(best[k].value)) /* no such field; a particle whose value is no number is UpdateScales's */
+      continue;
     if (start)
       z->begin[k] = sign[k] * best[k].value;
     if (start || best[k].value < sign[k] * z->extreme[k].value)
