@@ -104,8 +104,8 @@ def check_phases():
     even = (sixth[shown.spread(61, 6)] / period + 1e-9) % 1.0
     taken, wide = shown.spread_phases(sixth, 6, period)
     phases = np.round(sixth[taken] / period % 1.0, 6) % 1.0
-    check_true("evenly spaced times are all of one phase", np.ptp(even) < 1e-6, even)
-    check_true("those of profiles are not, first and last among them", len(set(phases)) >= 5 and wide > 0.4 and taken[0] == 0 and taken[-1] == 60 and len(taken) == 6, phases)
+    check_true("evenly spaced times are all of one phase", np.ptp(even) < 1e-6, list(even))
+    check_true("those of profiles are not, first and last among them", len(set(phases)) >= 5 and wide > 0.4 and taken[0] == 0 and taken[-1] == 60 and len(taken) == 6, list(phases))
     check_true("where there is one phase only, that is seen", shown.spread_phases(np.arange(11) * period, 6, period)[1] < plot.ONE_PHASE)
     check_true("few snapshots", shown.spread_phases([0.0], 6, period)[0] == [0] and shown.spread_phases([0.0, period], 6, period)[0] == [0, 1] and shown.spread_phases(sixth[:4], 6, period)[0] == [0, 1, 2, 3])
 
