@@ -81,6 +81,25 @@ def appears(more=(), solubility=TRACE, dissolves=""):
         check("steps refused or over tolerance", run.output.count("refused ("), 2 if name.startswith("sdirk2") else 0)
 
 
+def melts():
+    """Hydrate beneath water at 8 MPa that holds less methane than the equilibrium at 7.5 MPa melts into it, without gas, until p_g = p_e (371)."""
+    case = ("-without_gas", "yes", "-boundaries", "sea", *WATER, "-region_cell_pressure", "8 MPa", "-region_cell_temperature", "8.13 degC",
+            "-mat_core_gas_solubility", f"{HENRY} mol/(m^3 Pa)", "-mat_core_retention_p_trap", "50 kPa", "-time_end", "20 s", "-output_times", "0 s,20 s")  # fmt: skip
+    law, kept = exact.masuda_cell(p=8e6, T=8.13, phi=PHI, Sh=0.5, Sw=0.5, Sg=0.0), {}
+    for name, options in (("sdirk2", ()), ("hybrid", ("-stepper_type", "hybrid"))):
+        run = Run.of_case(CELL, *case, *options)
+        (_, first), (_, last) = run.snapshots()
+        pe = np.array([law.equilibrium_pressure(T) for T in last["T"][:, 0]])
+        gave = (first["mass_hydrate"].sum() - last["mass_hydrate"].sum()) * 0.016 / 0.124 - run.balance["methane_out_kg"][-1]
+        before, after = (PHI * 0.01 * 0.016 * HENRY * np.mean((1 - v["S_h"]) * v["p_g"]) for v in (first, last))
+        judge("gas", f"hydrate melts into water, {name}: p_g over p_e(T), less one", np.max(np.abs(last["p_g"][:, 0] / pe - 1)), 1e-5)
+        judge("gas", f"hydrate melts into water, {name}: methane it gave, and what came in with water, over what water took, less one", abs(gave / (after - before) - 1), 1e-5)
+        judge("gas", f"hydrate melts into water, {name}: largest S_g", np.max(last["S_g"]), 1e-6)
+        balances(f"hydrate melts into water, {name}", run)
+        kept[name] = last["p_g"].mean()
+    judge("gas", "hydrate melts into water: p_g, hybrid against sdirk2", abs(kept["hybrid"] / kept["sdirk2"] - 1), 1e-5)
+
+
 def carried():
     """Methane over water in what leaves a column whose water holds H p_g (352)."""
     case, held = CASES / "no_gas_flow.yaml", 0.016 * HENRY * 8e6 / 1000.0
@@ -238,6 +257,7 @@ if __name__ == "__main__":
     seal()
     appears()
     appears(("-mat_core_gas_solubility", f"{HENRY} mol/(m^3 Pa)"), 0.016 * HENRY, ", methane dissolves")
+    melts()
     carried()
     dissolves()
     disappears()
