@@ -291,7 +291,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
     if (m->wide)
       KeepWide(&m->c->fields, &o, &m->wide[p]);
     if (m->solver->product)
-      ProductKeep(m, p, &o);
+      ProductKeep(m, q, &o);
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
         EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
