@@ -412,10 +412,6 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(PetscLogEventBegin(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
   PetscCall(PreconditionerChoose(m, snes, &renew));
   PetscCall(ModelNodesAt(m, X));
-  PetscCall(ModelUnscale(m, X, m->x));
-  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
-  ModelGive(m, m->x, false);
-  PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);
   if (m->solver->product)
     PetscCall(ProductBegin(m));

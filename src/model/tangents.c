@@ -109,7 +109,7 @@ static void Pattern(const Model *m, Tangents *t)
 {
   int n = 0;
 
-  t->rows = 0;
+  t->rows = t->volumes = 0;
   for (int kind = 0; kind < 3; kind++) {
     if (kind > 0)
       *(kind == 1 ? &t->storage : &t->momentum) = t->rows;
@@ -121,6 +121,8 @@ static void Pattern(const Model *m, Tangents *t)
       for (int in = 0; in < IN_ALL; in++) {
         if (!Depends(m, out, in))
           continue;
+        if (in == IN_VOLUME)
+          t->volume[t->volumes++] = n;
         t->at[n]   = PlaceOf(out, in);
         t->in[n++] = in;
       }
@@ -165,18 +167,31 @@ static double *Stored(const Tangents *t, PetscInt group)
   return &t->stored[(size_t)group * (size_t)t->store * LANES];
 }
 
-void TangentsKeep(Tangents *t, PetscInt q, const PointOutput *o)
+/* The number of the motion that changes the volume most. */
+static int MostVolume(const double dJ[MOTION_COUNT])
 {
-  const double *from   = (const double *)o;
-  float        *v      = Values(t, q / LANES) + q % LANES;
-  double       *d      = Stored(t, q / LANES) + q % LANES;
-  const int     n      = t->first[t->storage];
-  int           motion = 0; /* of the motion: what changes the volume most */
+  int q = 0;
 
   for (int k = 1; k < MOTION_COUNT; k++)
-    motion = fabs(o->dJ[k]) > fabs(o->dJ[motion]) ? k : motion;
-  for (int j = 0; j < t->first[t->rows]; j++) {
-    const double slope = t->in[j] == IN_VOLUME ? from[t->at[j] + motion] / o->dJ[motion] : from[t->at[j]];
+    q = fabs(dJ[k]) > fabs(dJ[q]) ? k : q;
+  return q;
+}
+
+void TangentsKeep(Tangents *t, PetscInt q, const PointOutput *o)
+{
+  const int     motion = MostVolume(o->dJ);
+  const double *from   = (const double *)o;
+  const int     n = t->first[t->storage], all = t->first[t->rows];
+  float        *v = Values(t, q / LANES) + q % LANES;
+  double       *d = Stored(t, q / LANES) + q % LANES;
+
+  for (int j = 0; j < n; j++)
+    d[j * LANES] = from[t->at[j]];
+  for (int j = n; j < all; j++)
+    v[(j - n) * LANES] = (float)from[t->at[j]];
+  for (int k = 0; k < t->volumes; k++) {
+    const int    j     = t->volume[k];
+    const double slope = from[t->at[j] + motion] / o->dJ[motion];
 
     if (j < n)
       d[j * LANES] = slope;

@@ -9,15 +9,16 @@ enum { IN_PROJ = IN_COUNT, IN_VOLUME = IN_PROJ + CL_FLUID_VECTORS, IN_ALL };
 /* So many particles side by side, so that products are vector code whatever the fields: the q-th particle of
    Model.order is number q % LANES of group q / LANES. */
 typedef struct {
-  int      rows, row[OUT_COUNT];   /* outputs with slopes: storage, ... */
-  int      storage, momentum;      /* ... others from the first on, the fluids' momentum from the second */
-  int      first[OUT_COUNT + 1];   /* of each row: its first slope; last: their number */
-  int      in[OUT_COUNT * IN_ALL]; /* input of a slope ... */
-  int      at[OUT_COUNT * IN_ALL]; /* ... and its place in PointOutput; of the volume: of IN_GRADU's */
-  int      width, store;           /* numbers of a particle in ... */
-  float   *value;                  /* [groups][width][LANES] slopes */
-  double  *stored;                 /* [groups][store][LANES] those of storage, then d det F */
-  PetscInt cap;                    /* groups they have room for */
+  int      rows, row[OUT_COUNT];       /* outputs with slopes: storage, ... */
+  int      storage, momentum;          /* ... others from the first on, the fluids' momentum from the second */
+  int      first[OUT_COUNT + 1];       /* of each row: its first slope; last: their number */
+  int      in[OUT_COUNT * IN_ALL];     /* input of a slope ... */
+  int      at[OUT_COUNT * IN_ALL];     /* ... and its place in PointOutput; of the volume: of IN_GRADU's */
+  int      volumes, volume[OUT_COUNT]; /* slopes with IN_VOLUME */
+  int      width, store;               /* numbers of a particle in ... */
+  float   *value;                      /* [groups][width][LANES] slopes */
+  double  *stored;                     /* [groups][store][LANES] those of storage, then d det F */
+  PetscInt cap;                        /* groups they have room for */
 } Tangents;
 
 /* Pattern and room for the tangents of this rank's particles. */
