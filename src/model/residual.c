@@ -160,6 +160,7 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
 static PetscErrorCode Give(Model *m, Vec X)
 {
   PetscFunctionBeginUser;
+  m->evaluated = false;
   PetscCall(ModelUnscale(m, X, m->x));
   PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
   PetscCall(PlatesPosition(m, m->x));
