@@ -89,7 +89,8 @@ for what, cut in {"before the change to hybrid": first - 1, "at it": first, "aft
     column("auto", "-restart", out / "checkpoint.h5", out=out)
     names = _files.different(run.out, out)
     check_true(f"cut {what}: the same bit for bit", not names, ", ".join(names[:5]))
-two = column("auto", ranks=2)
-check_true("2 ranks change at the same steps", [c[1:] for c in changes(two)] == [c[1:] for c in found] and np.allclose([c[0] for c in changes(two)], [c[0] for c in found], rtol=1e-6), str(changes(two)))
-check("2 ranks against 1, p over its range", np.max(np.abs(two.probe("middle")["p_Pa"] - run.probe("middle")["p_Pa"])) / Q, 1e-6)
+for ranks in (2, 4):
+    many = column("auto", ranks=ranks)
+    check_true(f"{ranks} ranks change at the same steps", [c[1:] for c in changes(many)] == [c[1:] for c in found] and np.allclose([c[0] for c in changes(many)], [c[0] for c in found], rtol=1e-6), str(changes(many)))
+    check(f"{ranks} ranks against 1, p over its range", np.max(np.abs(many.probe("middle")["p_Pa"] - run.probe("middle")["p_Pa"])) / Q, 1e-6)
 finish()
