@@ -72,6 +72,7 @@ ROWS = {
     "C8_theta_0": ("c", "cells of 8 m, θ = 0", f"{LONG_8} {COLD}"),
     "C16": ("c", "cells of 16 m, θ = 0.5", CELLS_16),
     "C16_sdirk2": ("c", "cells of 16 m, sdirk2", f"{CELLS_16} {IMPLICIT_STEPS}"),
+    "C16_sdirk2_free": ("c", "cells of 16 m, sdirk2, ghost_penalty 1e-3", f"{CELLS_16} {IMPLICIT_STEPS} -stabilisation_ghost_penalty 1e-3"),
 } | slope_warming.ROWS
 
 
@@ -131,7 +132,7 @@ def closing(balance):
 
 
 ENERGY = (("gravity_work_J", "gravity"), ("load_work_J", "sea's pressure"), ("pressure_work_J", "pore fluids"), ("kinetic_energy_J", "kinetic"), ("elastic_energy_J", "elastic"),
-          ("elastic_released_J", "released with hydrate"), ("plastic_work_J", "plastic"), ("drag_work_J", "drag"), ("kinetic_lost_J", "lost between particles and nodes"), ("energy_remainder_J", "left over"))  # fmt: skip
+          ("elastic_released_J", "released with hydrate"), ("plastic_work_J", "plastic"), ("drag_work_J", "drag"), ("damping_work_J", "ghost penalty"), ("kinetic_lost_J", "lost between particles and nodes"), ("energy_remainder_J", "left over"))  # fmt: skip
 
 
 # ---------------------------------------------------------------- page
@@ -142,7 +143,7 @@ def energy(kept):
         if name in kept and "energy_remainder_J" in kept[name].get("balance", ()):
             m = kept[name]
             b = m["balance"]
-            rows.append((f"{case.upper()}: {label}, {m['end_s']:.0f} s", *(f"{b[k] / 1e6:.4g}" for k, _ in ENERGY), f"{100 * abs(b['energy_remainder_J'] / b['gravity_work_J']):.2g} %"))
+            rows.append((f"{case.upper()}: {label}, {m['end_s']:.0f} s", *(f"{b.get(k, 0.0) / 1e6:.4g}" for k, _ in ENERGY), f"{100 * abs(b['energy_remainder_J'] / b['gravity_work_J']):.2g} %"))
     return ["## Balance of energy", "", "MJ per metre: works of the first three, and where they went. All close to less than 1 % of the work of gravity. With velocities of nearly empty nodes tied to their",
             "neighbours, a tie that gives power where a surface tears, and works of held nodes that missed half the slip over the base, a fifth was left over in B and C ((41), (92), (150) of [equations.md](equations.md)).", "",
             *table(rows)]  # fmt: skip
