@@ -49,7 +49,7 @@ check("the wave's error falls with h", max(off["auto", 26]["p(H/2)"]) / max(off[
 check_true("sdirk2 alone damps the wave away at this tolerance", max(off["sdirk2", 26]["p(H/2)"]) > 5 * max(off["auto", 26]["p(H/2)"]))
 check_true("auto takes less than half of hybrid's steps", runs["auto", 26].balance["step"][-1] < 0.5 * runs["hybrid", 26].balance["step"][-1])
 check("water", np.max(np.abs(run.balance["water_error"])), 1e-13)
-lines = re.findall(r"^  (sdirk2|hybrid) from \S+ s to \S+ s, \d+ steps", (run.out / "summary.txt").read_text(), re.M)
+lines = re.findall(r"^  (sdirk2|hybrid) from \S+ s to \S+ s \([\d.]+ \w+\), \d+ steps", (run.out / "summary.txt").read_text(), re.M)
 check_true("a line for each in summary.txt", lines == ["sdirk2", "hybrid", "sdirk2"], str(lines))
 fixed = column("auto", "-stepper_adapt", "no", "-stepper_dt", "0.5 s")
 check_true("with a fixed step it stays with what it chose", not changes(fixed) and "integrator chosen: sdirk2\n" in fixed.output)
