@@ -21,7 +21,7 @@ INLINE double Drained(const Retention *law, double p, double *dp)
 {
   double       slope;
   const double x = LawWhereAbove0(p, law->p0), n = 1.0 / (1.0 - law->m);
-  const double s = -law->m * Softplus(n * (log(x) - log(law->p0)), &slope);
+  const double s = -law->m * Softplus(n * log(x / law->p0), &slope);
 
   *dp = p <= 0.0 ? 0.0 : law->m * n * exp(s) * (slope / x);
   return p <= 0.0 ? 0.0 : -expm1(s);

@@ -159,29 +159,48 @@ PetscErrorCode MatrixBegin(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Scaled, rows of prescribed unknowns 1 on the diagonal; v by rows, into `out` by columns, which may be v. */
-static void Finished(const Model *m, PetscInt I, PetscInt K, const double *v, double *out)
+/* Factors of a node's rows: none of prescribed unknowns. */
+static void RowFactors(const Model *m, PetscInt I, double row[F_COUNT])
 {
-  const int     n   = m->c->fields.n;
-  const double *col = &m->col_scale[K * n];
-  double        row[F_COUNT], t[F_COUNT * F_COUNT] = {0.0};
+  const int n = m->c->fields.n;
 
   for (int s = 0; s < n; s++)
     row[s] = (m->mask[I] >> s) & 1u ? 0.0 : 1.0 / m->row_scale[I * n + s];
+}
+
+INLINE void Scale(int n, const double *row, const double *col, const double *v, double *out)
+{
+  double t[F_COUNT * F_COUNT];
+
+  memcpy(t, v, (size_t)(n * n) * sizeof(double));
   for (int q = 0; q < n; q++) {
     for (int s = 0; s < n; s++)
-      t[q * n + s] = v[s * n + q] * (row[s] * col[q]);
+      out[q * n + s] = t[s * n + q] * (row[s] * col[q]);
   }
-  memcpy(out, t, (size_t)(n * n) * sizeof(double));
+}
+
+/* Scaled; v by rows, into `out` by columns, which may be v.  A constant number of unknowns lets the compiler unroll. */
+static void Finished(const Model *m, const double row[F_COUNT], PetscInt K, const double *v, double *out)
+{
+  const int     n   = m->c->fields.n;
+  const double *col = &m->col_scale[K * n];
+
+  if (n == F_COUNT)
+    Scale(F_COUNT, row, col, v, out);
+  else if (n == CL_DIM)
+    Scale(CL_DIM, row, col, v, out);
+  else
+    Scale(n, row, col, v, out);
 }
 
 PetscErrorCode MatrixFinish(Model *m)
 {
   const int n = m->c->fields.n;
-  double    block[F_COUNT * F_COUNT];
+  double    block[F_COUNT * F_COUNT], row[F_COUNT];
 
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < m->map.n_local; I++) {
+    RowFactors(m, I, row);
     for (int k = 0; k < NEIGHBOURS; k++) {
       const PetscInt K = ModelNeighbour(m, I, k);
       double        *v = m->solver->place[I * NEIGHBOURS + k];
@@ -189,10 +208,10 @@ PetscErrorCode MatrixFinish(Model *m)
       if (K < 0 || !v)
         continue;
       if (I < m->map.n_owned) {
-        Finished(m, I, K, v, v);
+        Finished(m, row, K, v, v);
         continue;
       }
-      Finished(m, I, K, v, block);
+      Finished(m, row, K, v, block);
       PetscCall(MatSetValuesBlockedLocal(m->solver->J2, 1, &I, 1, &K, block, ADD_VALUES));
     }
   }

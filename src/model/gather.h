@@ -506,8 +506,8 @@ void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, doubl
 void FaceChange(const Model *m, const Face *face, const double *x, Reach *r, double in[IN_COUNT]);
 /* Adds the outputs of a particle, or changes of them, to what its nodes have taken (TAKE_...); x: of BedsHold. */
 void ParticleScatter(Model *m, PetscInt p, const Reach *r, const double *x, const double out[OUT_COUNT]);
-/* What the nodes have taken at X, and the momenta of two fluids (16) on all of them; costs a residual only where the
-   last one was elsewhere. */
+/* Model.x and what nodes hold for their particles at X; where products or two fluids need it, what they have taken and
+   the momenta (16) on all of them.  Costs something only where the last residual was elsewhere. */
 PetscErrorCode ModelNodesAt(Model *m, Vec X);
 /* (34): the balances of both fluids make one of volume, added to the rows f of the owned nodes. */
 PetscErrorCode ModelSumMassRows(Model *m, double *f);

@@ -291,7 +291,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
     if (m->wide)
       KeepWide(&m->c->fields, &o, &m->wide[p]);
     if (m->solver->product)
-      ProductKeep(m, p, &o);
+      ProductKeep(m, q, &o);
     for (int k = 0; k < ntarget; k++) {
       if (target[k].reduced)
         EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
@@ -412,10 +412,6 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PetscCall(PetscLogEventBegin(m->event[EVENT_JACOBIAN], 0, 0, 0, 0));
   PetscCall(PreconditionerChoose(m, snes, &renew));
   PetscCall(ModelNodesAt(m, X));
-  PetscCall(ModelUnscale(m, X, m->x));
-  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
-  ModelGive(m, m->x, false);
-  PetscCall(PlatesPosition(m, m->x));
   PlatesMark(m, m->x);
   if (m->solver->product)
     PetscCall(ProductBegin(m));

@@ -2,7 +2,7 @@
    faces, as each has them, are kept instead of a matrix.  What a change makes of the residual (15)-(23) is found the
    way the residual is (401): nodes give to particles, particles add to nodes, rows are made of the sums. */
 #include "solver.h"
-#include <stddef.h>
+#include "tangents.h"
 
 /* Of a node at X: what this rank's particles have added (TAKE_...), and of two fluids the sums of all ranks (16). */
 typedef struct {
@@ -10,151 +10,16 @@ typedef struct {
   FluidNode fluid[PHASE_COUNT];
 } AtNode;
 
-/* More inputs: projected gradients (27), and a change of the volume, through which alone motion reaches scalars. */
-enum { IN_PROJ = IN_COUNT, IN_VOLUME = IN_PROJ + CL_FLUID_VECTORS, IN_ALL };
-
 struct Product {
-  int      rows, row[OUT_COUNT];     /* outputs with slopes: storage, ... */
-  int      storage, momentum;        /* ... others from the first on, the fluids' momentum from the second */
-  int      first[OUT_COUNT + 1];     /* of each row: its first slope; last: their number */
-  int      in[OUT_COUNT * IN_ALL];   /* input of a slope ... */
-  int      at[OUT_COUNT * IN_ALL];   /* ... and its place in PointOutput; of the volume: of IN_GRADU's */
-  int      width, store;             /* numbers of a particle in ... */
-  float   *value;                    /* [n][width] slopes */
-  double  *stored, *MI;              /* [n][store] those of storage, d det F; [n][PHASE_COUNT] OUT_MI, beds */
-  PetscInt cap;                      /* particles they have room for */
+  Tangents tangents;
+  double  *MI;                       /* [n][PHASE_COUNT] OUT_MI as Model.order has them; beds */
+  PetscInt cap;                      /* particles it has room for */
   double (*face)[F_COUNT][IN_COUNT]; /* [nface] FaceOutput.D */
   PetscInt nface;                    /* faces it has room for */
   double  *x, *dx;                   /* [n_local][fields.n] unknowns, their change */
   double  *diagonal;                 /* [n_local][PHASE_COUNT] of rows (16), unscaled */
   AtNode  *node;                     /* [n_local] */
 };
-
-static bool InPhase(int k, int first, int phase)
-{
-  return k >= VectorAt(first, phase, 0) && k < VectorAt(first, phase + 1, 0);
-}
-
-static bool Carries(const Scene *c)
-{
-  for (PetscInt k = 0; k < c->nmaterial; k++) {
-    if (c->material[k].gas.carried > 0.0)
-      return true;
-  }
-  return false;
-}
-
-/* Phase of an output of one fluid; -1: of none. */
-static int PhaseOf(int out)
-{
-  for (int f = 0; f < PHASE_COUNT; f++) {
-    if (InPhase(out, OUT_FLUX, f) || InPhase(out, OUT_G, f) || out == OUT_M + 1 + f || out == OUT_MI + f ||
-        out == OUT_D + f || out == OUT_ROOT + f || out == OUT_DM + f)
-      return f;
-  }
-  return -1;
-}
-
-static bool IsScalar(int out)
-{
-  return out >= OUT_M && out <= OUT_C;
-}
-
-/* Do the scene's rows read it? */
-static bool Reads(const Model *m, int out)
-{
-  const FieldSet *fs    = &m->c->fields;
-  const int       phase = PhaseOf(out);
-
-  if (phase >= 0)
-    return fs->phase[phase] && (out != OUT_ROOT + phase || m->fluid) && (out != OUT_M + 1 + phase || fs->solid);
-  if (out >= OUT_A)
-    return m->bc.ambient.on && fs->solid;
-  if (out == OUT_HOOP)
-    return m->c->axisymmetric && fs->solid;
-  if (out == OUT_C || out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM))
-    return fs->heat;
-  return fs->solid; /* OUT_P, OUT_M */
-}
-
-/* Can the slope of an output with an input differ from zero? */
-static bool Depends(const Model *m, int out, int in)
-{
-  const FieldSet *fs    = &m->c->fields;
-  const int       phase = PhaseOf(out), other = in < IN_J ? (in - IN_GP) / CL_DIM : (in - IN_J) / CL_DIM;
-  const bool      flux = out >= OUT_FLUX && out < OUT_HEAT, force = out >= OUT_G && out < OUT_M;
-
-  if (in < IN_P)
-    return fs->solid && !IsScalar(out) && (in < IN_HOOP || m->c->axisymmetric);
-  if (in == IN_VOLUME)
-    return fs->solid && IsScalar(out);
-  if (in >= IN_PROJ) {
-    const int of = (in - IN_PROJ) / CL_DIM;
-
-    return m->c->stabilisation.flux_interpolation && fs->phase[of] && (out == OUT_Q || (flux && of == phase));
-  }
-  if (in < IN_T)
-    return fs->phase[in - IN_P] && !force;
-  if (in == IN_T)
-    return fs->heat && !force;
-  if (in < IN_GT)
-    return fs->phase[other] && (out == OUT_Q || ((flux || force) && other == phase) || (flux && m->added->spread));
-  if (in < IN_J)
-    return fs->heat && (out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM));
-  if (in < IN_U)
-    return fs->phase[other] &&
-           (out == OUT_Q || (flux && (other == phase || (other == PHASE_W && Carries(m->c))))); /* (352) */
-  return fs->solid && m->bc.ambient.on && (out < OUT_FLUX || out == OUT_HOOP);
-}
-
-/* Storage keeps all digits: its slopes with both pressures nearly cancel where these rise together.  Then the rest,
-   last the rows (16) of the fluids. */
-static int Kind(int out)
-{
-  if (out >= OUT_DM && out < OUT_C)
-    return 0;
-  return (out >= OUT_G && out < OUT_M) || (out >= OUT_MI && out < OUT_DM) ? 2 : 1;
-}
-
-static int PlaceOf(int out, int in)
-{
-  const size_t row = (size_t)out, k = (size_t)in, of = k - IN_PROJ;
-  size_t       at;
-
-  if (in < IN_PROJ || in == IN_VOLUME)
-    at = offsetof(PointOutput, D[0][0]) / sizeof(double) + row * IN_COUNT + (in == IN_VOLUME ? (size_t)IN_GRADU : k);
-  else if (out == OUT_Q)
-    at = offsetof(PointOutput, wide_q[0][0]) / sizeof(double) + of;
-  else
-    at = offsetof(PointOutput, wide[0][0][0]) / sizeof(double) + (row - OUT_FLUX) * CL_DIM + of % CL_DIM;
-  return (int)at;
-}
-
-static void Pattern(const Model *m, Product *t)
-{
-  int n = 0;
-
-  t->rows = 0;
-  for (int kind = 0; kind < 3; kind++) {
-    if (kind > 0)
-      *(kind == 1 ? &t->storage : &t->momentum) = t->rows;
-    for (int out = 0; out < OUT_COUNT; out++) {
-      if (Kind(out) != kind || !Reads(m, out))
-        continue;
-      t->first[t->rows] = n;
-      t->row[t->rows++] = out;
-      for (int in = 0; in < IN_ALL; in++) {
-        if (!Depends(m, out, in))
-          continue;
-        t->at[n]   = PlaceOf(out, in);
-        t->in[n++] = in;
-      }
-    }
-  }
-  t->first[t->rows] = n;
-  t->width          = n - t->first[t->storage];
-  t->store          = t->first[t->storage] + MOTION_COUNT;
-}
 
 PetscErrorCode ProductCreate(Model *m)
 {
@@ -175,7 +40,8 @@ PetscErrorCode ProductDestroy(Product **product)
   PetscFunctionBeginUser;
   if (!t)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree3(t->value, t->stored, t->MI));
+  PetscCall(TangentsEnd(&t->tangents));
+  PetscCall(PetscFree(t->MI));
   PetscCall(PetscFree(t->face));
   PetscCall(PetscFree4(t->x, t->dx, t->diagonal, t->node));
   PetscCall(PetscFree(*product));
@@ -184,15 +50,12 @@ PetscErrorCode ProductDestroy(Product **product)
 
 static PetscErrorCode MakeRoom(const Model *m, Product *t)
 {
-  const int was = t->width;
-
   PetscFunctionBeginUser;
-  Pattern(m, t); /* a stage may bring another ambient pressure */
-  if (m->P.n > t->cap || t->width > was || (m->beds && !t->MI)) {
-    PetscCall(PetscFree3(t->value, t->stored, t->MI));
+  PetscCall(TangentsBegin(m, &t->tangents));
+  if (m->beds && m->P.n > t->cap) {
+    PetscCall(PetscFree(t->MI));
     t->cap = m->P.n;
-    PetscCall(PetscMalloc3((size_t)t->cap * (size_t)t->width, &t->value, (size_t)t->cap * (size_t)t->store, &t->stored,
-                           m->beds ? t->cap * PHASE_COUNT : 0, &t->MI));
+    PetscCall(PetscMalloc1(t->cap * PHASE_COUNT, &t->MI));
   }
   if (m->nface > t->nface) {
     PetscCall(PetscFree(t->face));
@@ -232,28 +95,13 @@ PetscErrorCode ProductBegin(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ProductKeep(Model *m, PetscInt p, const PointOutput *o)
+void ProductKeep(Model *m, PetscInt q, const PointOutput *o)
 {
-  Product      *t    = m->solver->product;
-  const double *from = (const double *)o;
-  float        *v    = &t->value[(size_t)p * (size_t)t->width];
-  double       *d    = &t->stored[(size_t)p * (size_t)t->store];
-  const int     n    = t->first[t->storage];
-  int           q    = 0; /* of the motion: what changes the volume most */
+  Product *t = m->solver->product;
 
-  for (int k = 1; k < MOTION_COUNT; k++)
-    q = fabs(o->dJ[k]) > fabs(o->dJ[q]) ? k : q;
-  for (int j = 0; j < t->first[t->rows]; j++) {
-    const double slope = t->in[j] == IN_VOLUME ? from[t->at[j] + q] / o->dJ[q] : from[t->at[j]];
-
-    if (j < n)
-      d[j] = slope;
-    else
-      v[j - n] = (float)slope;
-  }
-  memcpy(&d[n], o->dJ, sizeof(o->dJ));
+  TangentsKeep(&t->tangents, q, o);
   for (int f = 0; m->beds && f < PHASE_COUNT; f++)
-    t->MI[PHASE_COUNT * p + f] = m->c->fields.phase[f] ? o->out[OUT_MI + f] : 0.0;
+    t->MI[PHASE_COUNT * q + f] = m->c->fields.phase[f] ? o->out[OUT_MI + f] : 0.0;
 }
 
 void ProductKeepFace(Model *m, PetscInt k, const FaceOutput *o)
@@ -262,10 +110,11 @@ void ProductKeepFace(Model *m, PetscInt k, const FaceOutput *o)
 }
 
 /* Fluids feel the skeleton's acceleration across beds (308). */
-static void BedsChange(Model *m, PetscInt p, const Reach *r, const double *dx)
+static void BedsChange(Model *m, PetscInt q, const Reach *r, const double *dx)
 {
   const FieldSet *fs = &m->c->fields;
-  const double   *MI = &m->solver->product->MI[PHASE_COUNT * p];
+  const PetscInt  p  = m->order[q];
+  const double   *MI = &m->solver->product->MI[PHASE_COUNT * q];
 
   for (int a = 0; fs->solid && fs->inertia && a < r->n; a++) {
     const PetscInt I = r->node[a];
@@ -283,46 +132,34 @@ static void BedsChange(Model *m, PetscInt p, const Reach *r, const double *dx)
   }
 }
 
-/* Changes of a particle's outputs; momentum: only of those that the fluids' rows (16) read. */
-static void OutputChange(const Product *t, PetscInt p, bool momentum, double in[IN_ALL], double out[OUT_COUNT])
-{
-  const float  *v = &t->value[(size_t)p * (size_t)t->width];
-  const double *d = &t->stored[(size_t)p * (size_t)t->store], *dJ = &d[t->first[t->storage]];
-
-  in[IN_VOLUME] = 0.0;
-  for (int k = 0; k < MOTION_COUNT; k++)
-    in[IN_VOLUME] += dJ[k] * in[IN_GRADU + k];
-  for (int k = 0; k < t->storage && !momentum; k++) {
-    double sum = 0.0;
-
-    for (int j = t->first[k]; j < t->first[k + 1]; j++)
-      sum += d[j] * in[t->in[j]];
-    out[t->row[k]] = sum;
-  }
-  for (int k = momentum ? t->momentum : t->storage; k < t->rows; k++) {
-    double sum = 0.0;
-
-    for (int j = t->first[k]; j < t->first[k + 1]; j++)
-      sum += (double)v[j - t->first[t->storage]] * in[t->in[j]];
-    out[t->row[k]] = sum;
-  }
-}
-
 static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
 {
-  double out[OUT_COUNT] = {0.0};
+  Lanes in[IN_ALL] = {{0.0}}, out[OUT_COUNT] = {{0.0}};
+  Reach r[LANES];
 
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    double in[IN_ALL];
-    Reach  r;
+  for (PetscInt first = 0; first < m->P.n; first += LANES) {
+    const int count = (int)PetscMin(m->P.n - first, LANES);
 
-    ParticleChange(m, p, dx, &r, in, &in[IN_PROJ]);
-    OutputChange(m->solver->product, p, momentum, in, out);
-    ParticleScatter(m, p, &r, m->solver->product->x, out);
-    if (m->beds)
-      BedsChange(m, p, &r, dx);
-    if (!momentum)
-      LumpResidual(m, p, &r, dx, f);
+    for (int c = 0; c < count; c++) {
+      double of[IN_ALL];
+
+      ParticleChange(m, m->order[first + c], dx, &r[c], of, &of[IN_PROJ]);
+      for (int k = 0; k < IN_VOLUME; k++)
+        in[k][c] = of[k];
+    }
+    TangentsApply(&m->solver->product->tangents, first / LANES, momentum, in, out);
+    for (int c = 0; c < count; c++) {
+      const PetscInt p = m->order[first + c];
+      double         of[OUT_COUNT];
+
+      for (int k = 0; k < OUT_COUNT; k++)
+        of[k] = out[k][c];
+      ParticleScatter(m, p, &r[c], m->solver->product->x, of);
+      if (m->beds)
+        BedsChange(m, first + c, &r[c], dx);
+      if (!momentum)
+        LumpResidual(m, p, &r[c], dx, f);
+    }
   }
 }
 

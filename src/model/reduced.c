@@ -11,7 +11,8 @@ struct Reduced {
   int      first[GROUPS], count[GROUPS];       /* their places */
   int      full[F_COUNT];                      /* place in the block of the scene's set */
   double  *value;                              /* [n_local][NEIGHBOURS][fs.n][fs.n]; null between two renewals */
-  double   row[F_COUNT], col[F_COUNT];         /* units of rows and columns: each one number for the whole body */
+  double   row[F_COUNT], col[F_COUNT];         /* units of rows and columns: each one number for the whole body ... */
+  double   unit[F_COUNT][F_COUNT];             /* ... columns over rows */
   Mat      block[GROUPS][GROUPS], nest, whole; /* whole: what wants one matrix, as anything but a split does */
   KSP      ksp;                                /* null between steps */
   bool     split;                              /* its preconditioner is PCFIELDSPLIT */
@@ -42,25 +43,56 @@ static void Unknowns(const FieldSet *fs, Reduced *r)
   r->count[FLOW]                    = r->fs.n - r->first[FLOW];
 }
 
+/* Which neighbours a node has, and their numbers, in the order of their columns. */
+static int RowNodes(const Model *m, PetscInt I, int k[NEIGHBOURS], PetscInt number[NEIGHBOURS])
+{
+  int n = 0;
+
+  for (int q = 0; q < NEIGHBOURS; q++) {
+    const PetscInt K = ModelNeighbour(m, I, q);
+    int            at;
+
+    if (K < 0)
+      continue;
+    for (at = n++; at > 0 && number[at - 1] > m->map.global[K]; at--) {
+      number[at] = number[at - 1];
+      k[at]      = k[at - 1];
+    }
+    number[at] = m->map.global[K];
+    k[at]      = q;
+  }
+  return n;
+}
+
+/* With its pattern: all neighbours that are there. */
 static PetscErrorCode CreateBlock(Model *m, int rows, int cols, Mat *A)
 {
-  const NodeMap *map = &m->map;
-  PetscInt      *dnz, *onz;
+  const PetscInt n = m->map.n_owned;
+  PetscInt      *start, *col, nz = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(map->n_owned * rows, &dnz, map->n_owned * rows, &onz));
-  for (PetscInt I = 0; I < map->n_owned; I++) {
-    for (int k = 0; k < NEIGHBOURS; k++) {
-      const PetscInt K = ModelNeighbour(m, I, k);
+  PetscCall(PetscMalloc2(n * rows + 1, &start, n * rows * NEIGHBOURS * cols, &col));
+  for (PetscInt I = 0; I < n; I++) {
+    PetscInt  number[NEIGHBOURS];
+    int       k[NEIGHBOURS];
+    const int count = RowNodes(m, I, k, number);
 
-      for (int q = 0; K >= 0 && q < rows; q++)
-        (K < map->n_owned ? dnz : onz)[I * rows + q] += cols;
+    for (int i = 0; i < rows; i++) {
+      start[I * rows + i] = nz;
+      for (int b = 0; b < count; b++) {
+        for (int j = 0; j < cols; j++)
+          col[nz++] = number[b] * cols + j;
+      }
     }
   }
-  PetscCall(MatCreateAIJ(m->grid.comm, map->n_owned * rows, map->n_owned * cols, PETSC_DETERMINE, PETSC_DETERMINE, 0,
-                         dnz, 0, onz, A));
+  start[n * rows] = nz;
+  PetscCall(MatCreate(m->grid.comm, A));
+  PetscCall(MatSetSizes(*A, n * rows, n * cols, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(*A, MATAIJ));
   PetscCall(MatSetBlockSizes(*A, rows, cols));
-  PetscCall(PetscFree2(dnz, onz));
+  PetscCall(MatSeqAIJSetPreallocationCSR(*A, start, col, NULL)); /* does nothing where there are several ranks ... */
+  PetscCall(MatMPIAIJSetPreallocationCSR(*A, start, col, NULL)); /* ... or one */
+  PetscCall(PetscFree2(start, col));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,6 +273,10 @@ static PetscErrorCode Units(Model *m, Reduced *r)
     r->row[k] = sum[k];
     r->col[k] = sum[F_COUNT + k];
   }
+  for (int s = 0; s < r->fs.n; s++) {
+    for (int t = 0; t < r->fs.n; t++)
+      r->unit[s][t] = r->col[t] / r->row[s];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -275,36 +311,90 @@ static void Scaled(const Model *m, const Reduced *r, PetscInt I, PetscInt K, dou
   const int nf = r->fs.n;
 
   for (int s = 0; s < nf; s++) {
-    for (int t = 0; t < nf; t++) {
-      const bool keep = I == K && s == t;
-
-      v[s * nf + t] *= !keep && (Held(m, r, I, s) || Held(m, r, K, t)) ? 0.0 : r->col[t] / r->row[s];
+    for (int t = 0; t < nf; t++)
+      v[s * nf + t] *= r->unit[s][t];
+    for (int t = 0; (m->mask[I] || m->mask[K]) && t < nf; t++) {
+      if ((I != K || s != t) && (Held(m, r, I, s) || Held(m, r, K, t)))
+        v[s * nf + t] = 0.0;
     }
   }
 }
 
-/* Rows of one node into the matrix of groups s, t. */
-static PetscErrorCode Insert(const Model *m, const Reduced *r, PetscInt I, int s, int t, int n, const int *k)
+/* Rows of a node in the matrix of groups s, t. */
+static const double *RowsOf(const Reduced *r, PetscInt I, int k, int s, int t)
 {
-  const int rows = r->count[s], cols = r->count[t], nf = r->fs.n;
-  PetscInt  row[F_COUNT], col[NEIGHBOURS * F_COUNT];
-  double    v[F_COUNT * NEIGHBOURS * F_COUNT];
+  return &r->value[((size_t)(I * NEIGHBOURS + k) * r->fs.n + r->first[s]) * r->fs.n + r->first[t]];
+}
+
+/* Values of this rank's rows, whose columns are owned nodes or others, as its pattern has them. */
+static PetscErrorCode WriteOwned(Model *m, const Reduced *r, int s, int t, bool own, Mat A)
+{
+  const int cols = r->count[t], nf = r->fs.n;
+  double   *to, *a;
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < rows; i++) {
-    row[i] = m->map.global[I] * rows + i;
-    for (int b = 0; b < n; b++) {
-      const double *from = &r->value[(size_t)(I * NEIGHBOURS + k[b]) * nf * nf + (r->first[s] + i) * nf + r->first[t]];
+  PetscCall(MatSeqAIJGetArray(A, &a));
+  to = a;
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    const double *from[NEIGHBOURS];
+    PetscInt      number[NEIGHBOURS];
+    int           k[NEIGHBOURS], n = 0;
+    const int     all = RowNodes(m, I, k, number);
 
-      for (int j = 0; j < cols; j++)
-        v[(i * n + b) * cols + j] = from[j];
+    for (int b = 0; b < all; b++) {
+      if ((ModelNeighbour(m, I, k[b]) < m->map.n_owned) == own)
+        from[n++] = RowsOf(r, I, k[b], s, t);
+    }
+    for (int i = 0; i < r->count[s]; i++) {
+      for (int b = 0; b < n; b++) {
+        for (int j = 0; j < cols; j++)
+          *to++ = from[b][i * nf + j];
+      }
     }
   }
-  for (int b = 0; b < n; b++) {
-    for (int j = 0; j < cols; j++)
-      col[b * cols + j] = m->map.global[ModelNeighbour(m, I, k[b])] * cols + j;
+  PetscCall(MatSeqAIJRestoreArray(A, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What was found for rows of other ranks. */
+static PetscErrorCode SendForeign(Model *m, const Reduced *r, int s, int t)
+{
+  const int rows = r->count[s], cols = r->count[t], nf = r->fs.n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt I = m->map.n_owned; I < m->map.n_local; I++) {
+    PetscInt  row[F_COUNT], col[NEIGHBOURS * F_COUNT], number[NEIGHBOURS];
+    double    v[F_COUNT * NEIGHBOURS * F_COUNT];
+    int       k[NEIGHBOURS];
+    const int n = RowNodes(m, I, k, number);
+
+    for (int i = 0; i < rows; i++) {
+      row[i] = m->map.global[I] * rows + i;
+      for (int b = 0; b < n * cols; b++)
+        v[i * n * cols + b] = RowsOf(r, I, k[b / cols], s, t)[i * nf + b % cols];
+    }
+    for (int b = 0; b < n * cols; b++)
+      col[b] = number[b / cols] * cols + b % cols;
+    PetscCall(MatSetValues(r->block[s][t], rows, row, n * cols, col, v, ADD_VALUES));
   }
-  PetscCall(MatSetValues(r->block[s][t], rows, row, n * cols, col, v, ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FillMatrix(Model *m, const Reduced *r, int s, int t)
+{
+  Mat       own = r->block[s][t], other = NULL;
+  PetscBool one;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)own, MATSEQAIJ, &one));
+  if (!one)
+    PetscCall(MatMPIAIJGetSeqAIJ(r->block[s][t], &own, &other, NULL));
+  PetscCall(WriteOwned(m, r, s, t, true, own));
+  if (other)
+    PetscCall(WriteOwned(m, r, s, t, false, other));
+  PetscCall(SendForeign(m, r, s, t));
+  PetscCall(MatAssemblyBegin(r->block[s][t], MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(r->block[s][t], MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -312,30 +402,16 @@ static PetscErrorCode FillMatrices(Model *m, Reduced *r)
 {
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    int k[NEIGHBOURS], n = 0;
-
     for (int q = 0; q < NEIGHBOURS; q++) {
       const PetscInt K = ModelNeighbour(m, I, q);
 
-      if (K < 0)
-        continue;
-      k[n++] = q;
-      Scaled(m, r, I, K, &r->value[(size_t)(I * NEIGHBOURS + q) * r->fs.n * r->fs.n]);
-    }
-    for (int s = 0; s < GROUPS; s++) {
-      for (int t = 0; t < GROUPS; t++) {
-        if (r->block[s][t])
-          PetscCall(Insert(m, r, I, s, t, n, k));
-      }
+      if (K >= 0)
+        Scaled(m, r, I, K, &r->value[(size_t)(I * NEIGHBOURS + q) * r->fs.n * r->fs.n]);
     }
   }
-  for (int k = 0; k < 2 * GROUPS * GROUPS; k++) {
-    Mat A = r->block[k / GROUPS % GROUPS][k % GROUPS];
-
-    if (A && k < GROUPS * GROUPS)
-      PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
-    else if (A)
-      PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  for (int k = 0; k < GROUPS * GROUPS; k++) {
+    if (r->block[k / GROUPS][k % GROUPS])
+      PetscCall(FillMatrix(m, r, k / GROUPS, k % GROUPS));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -346,10 +422,6 @@ PetscErrorCode ReducedSetUp(Model *m)
   Mat      A = r->nest;
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < GROUPS * GROUPS; k++) {
-    if (r->block[k / GROUPS][k % GROUPS])
-      PetscCall(MatZeroEntries(r->block[k / GROUPS][k % GROUPS]));
-  }
   PetscCall(FillMatrices(m, r));
   PetscCall(PetscFree(r->value));
   if (r->nest != r->block[FLOW][FLOW] && r->nest != r->block[MOTION][MOTION]) {

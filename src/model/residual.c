@@ -156,22 +156,31 @@ static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What nodes hold for their particles at X. */
+static PetscErrorCode Give(Model *m, Vec X)
+{
+  PetscFunctionBeginUser;
+  m->evaluated = false;
+  PetscCall(ModelUnscale(m, X, m->x));
+  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
+  PetscCall(PlatesPosition(m, m->x));
+  ModelGive(m, m->x, false);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Unscaled rows of the owned nodes at X. */
 static PetscErrorCode Rows(Model *m, Vec X)
 {
   PetscFunctionBeginUser;
   m->failure.status = CL_OK;
   m->limited        = 0;
-  PetscCall(ModelUnscale(m, X, m->x));
+  PetscCall(Give(m, X));
   PetscCall(PetscArrayzero(m->f, m->map.n_local * m->c->fields.n));
   if (m->mass_row)
     PetscCall(PetscArrayzero(m->mass_row, m->map.n_local * PHASE_COUNT));
   if (m->fluid)
     PetscCall(PetscArrayzero(m->fluid, m->map.n_local * PHASE_COUNT));
   PetscCall(PetscArrayzero(m->take, m->map.n_local * TAKE_COUNT));
-  PetscCall(ModelProjectGradients(m, m->x, false, m->proj));
-  PetscCall(PlatesPosition(m, m->x));
-  ModelGive(m, m->x, false);
   ParticleLoop(m, m->x, m->f);
   FaceLoop(m, m->x, m->f);
   StabilisationResidual(m, m->x, false, m->f);
@@ -203,12 +212,10 @@ PetscErrorCode ModelNodesAt(Model *m, Vec X)
   bool same;
 
   PetscFunctionBeginUser;
-  if (!m->fluid && !m->solver->product)
-    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Evaluated(m, X, &same));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_C_BOOL, MPI_LAND, m->grid.comm));
   if (!same)
-    PetscCall(Rows(m, X));
+    PetscCall(m->fluid || m->solver->product ? Rows(m, X) : Give(m, X));
   if (m->fluid)
     PetscCall(NodeMapBroadcast(&m->map, (double *)m->fluid, PHASE_COUNT * sizeof(FluidNode) / sizeof(double)));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -94,7 +94,7 @@ PetscErrorCode WideCreate(Model *m, Mat *A);
 PetscErrorCode ProductCreate(Model *m);
 PetscErrorCode ProductDestroy(Product **product);
 PetscErrorCode ProductBegin(Model *m);
-void           ProductKeep(Model *m, PetscInt p, const PointOutput *o);
+void           ProductKeep(Model *m, PetscInt q, const PointOutput *o); /* of the q-th of Model.order */
 void           ProductKeepFace(Model *m, PetscInt k, const FaceOutput *o);
 PetscErrorCode ProductMult(Model *m, bool momentum, Vec X, Vec Y);
 PetscErrorCode ProductDiagonal(const Model *m, Vec d);

@@ -463,6 +463,8 @@ static inline void PrepareJacobian(SmallScene *s, Vec *X, Vec *D, Vec *JD)
   if (m->failure.status != CL_OK)
     Say("  inadmissible: %s\n", m->failure.why);
   Check(m->failure.status == CL_OK);
+  Call(VecAXPBY(*D, 0.999, 0.0, *X)); /* elsewhere, so that the Jacobian has nothing from the last residual */
+  Call(ModelResidual(NULL, *D, *JD, m));
   Call(ModelJacobian(m->solver->snes, *X, m->solver->A, m->solver->Pmat, m));
   if (m->solver->product)
     return;
