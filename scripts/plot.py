@@ -21,6 +21,7 @@ from clathra.units import duration, durations
 from plotting import COLOURS, STYLES, Plain, boxes, plt, save, set_style, steady_limits, wrapped
 
 FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
+ONE_PHASE = 0.1  # of a period: times whose phases are no farther apart show one phase of a periodic load
 PICTURES = ("probes", "meters", "balance", "profiles", "particles", "maps")
 ARROWS = 18  # along the longer side
 
@@ -126,7 +127,7 @@ def plot_balance(run):
     return True
 
 
-def plot_profiles(run, times, snapshots, axis):
+def plot_profiles(run, times, snapshots, axis, beats=""):
     """Profiles along the strip against the current position, one colour a snapshot; along y with y upright."""
     keys = ("p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y", "s_xx" if axis == 0 else "s_yy")
     quantities = [q for q in shown.shown(snapshots) if q.key in keys]
@@ -147,7 +148,7 @@ def plot_profiles(run, times, snapshots, axis):
     if axis == 1:
         grid[0][0].set_ylabel("y (m)")
     grid[0][-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), title="time")
-    figure.suptitle(head(run, "profiles of the particles"), x=0.01, ha="left")
+    figure.suptitle(head(run, "profiles of the particles" + beats), x=0.01, ha="left")
     save(figure, run.folder / "figures", "profiles")
     return True
 
@@ -222,10 +223,15 @@ def plot_body(run):
         return False
     first = shown.drawn(run, times[0])
     axis = shown.strip_axis(first["position"])
-    times = times[shown.spread(len(times), 4 if axis is None else 6)]
+    period, taken, wide, beats = shown.period(run.case), shown.spread(len(times), 4 if axis is None else 6), 1.0, ""
+    if period:
+        taken, wide = shown.spread_phases(times, 4 if axis is None else 6, period)
+    if wide < ONE_PHASE:
+        beats = f"; all at one phase of the load, whose period is {duration(period)}"
+    times = times[taken]
     snapshots = [first, *(shown.drawn(run, t) for t in times[1:])]
     if axis is not None:
-        return plot_profiles(run, times, snapshots, axis)
+        return plot_profiles(run, times, snapshots, axis, beats)
     changing = shown.shown(snapshots)
     rows = [q for q in changing if q.key in FIRST][:4]
     if rows:

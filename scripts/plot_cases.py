@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+import slide
 from plotting import COLOURS, MM, PA, boxes, plt, save, set_style
 from clathra import read_csv, read_snapshots
 
@@ -259,12 +260,14 @@ def slope_warming(run, *axes):
     weak = run("-stage_warm_materials", "slope,weak")
     end = weak.snapshots[-1][1]
     body(axes[4], end["eps_d_p"][:, 0], end, "$\\epsilon_d^p$")
-    axes[4].set_title("weak ground after 150 years")
+    m = slide.measure(slide.Run(weak.out))
+    axes[4].set_title(f"weak ground after 150 years: failed {m['failed_volume_m2']:.0f} m³/m,\nrunout {m['runout_m']:.0f} m, retrogression {m['retrogression_m']:.0f} m", fontsize=8)
     b, p = weak.csv("balance"), weak.csv("probes")
-    late = b["time_s"] > 130 * year
+    late = b["time_s"] > 129 * year
     row, moved = np.arange(late.sum()), np.interp(b["time_s"][late], p["time_s"], p["face.u_x_m"])
     axes[5].semilogy(row, b["dt_s"][late], color=COLOURS[0])
-    axes[5].set(xlabel="rows of balance.csv from 110 years on", ylabel="step (s)", title="weak ground: steps, and way of the face")
+    axes[5].set(xlabel="rows of balance.csv from 109 years on", ylabel="step (s)", ylim=(1e-3, None))
+    axes[5].set_title("weak ground: steps, way of the face; slides after\n" + ", ".join(f"{(s['from_s'] - 20 * year) / year:.1f} a: {s['lasts_s']:.0f} s, {s['kinetic_energy_J'] / 1e6:.1f} MJ/m" for s in m["slides"]), fontsize=8)
     beside = axes[5].twinx()
     beside.plot(row, moved, color=COLOURS[1])
     beside.set_ylabel("m", color=COLOURS[1])

@@ -15,7 +15,7 @@ from matplotlib.collections import PolyCollection
 import slide
 from plotting import COLOURS, PA, STYLES, plt, save, set_style
 
-TIMES = {"slope_a": (25, 250), "slope_b": (15, 18, 30, 42, 72, 250), "slope_c": (17, 30, 41, 56, 77, 100, 250)}  # s, of the paper's maps
+TIMES = {"slope_a": (25, 100, 200), "slope_b": (15, 18, 30, 42, 72, 250), "slope_c": (17, 30, 41, 56, 77, 100, 250)}  # s, of the paper's maps
 POINTS = {"A": (165, 1), "B": (113, 53)}  # m, places at the start
 MAPS = (  # title, value of a particle, limits
     ("temperature T (°C)", lambda run, p: p["T"][:, 0], (-2, 8)),
@@ -128,7 +128,7 @@ def picture_bands(name, runs, found, out):
             ax.plot((b["x_low_m"], b["x_high_m"]), (b["y_low_m"], b["y_high_m"]), color=colour, lw=1.5)
             if b["y_high_m"] - b["y_low_m"] < 0.6 * height:
                 continue
-            ax.annotate(f"{b['time_s']:.0f} s, {b['angle_deg']:.0f}°", (b["x_high_m"], b["y_high_m"]), color=colour, fontsize=8, ha="center", va="bottom")
+            ax.annotate(f"{b['time_s']:.0f} s, {b['angle_deg']:.0f}°", (b["x_high_m"], b["y_high_m"]), (0, 4), textcoords="offset points", color=colour, fontsize=8, ha="center", va="bottom")
         ax.set(xlim=(0, length), ylim=(0, 1.15 * height), aspect="equal", title=f"{label}: $\\epsilon_d^p$ at {run.time[-1]:.0f} s where particles were at the start, bands found")
         ax.grid(False)
         figure.colorbar(shown, ax=ax, fraction=0.02, pad=0.01)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """What a slide did: slide.py FOLDER
 
-FOLDER is a run of cases/slope_a, slope_b or slope_c.  Measures the slide and its shear bands from snapshots and balance.csv, writes FOLDER/slide.json and
-puts the measures at the end of FOLDER/summary.txt.  docs/slopes.md says how each of them is defined.
+FOLDER is a run of cases/slope_a, slope_b, slope_c or slope_warming: what moves is counted from the end of its first stage.  Measures the slide and its shear bands
+from snapshots and balance.csv, writes FOLDER/slide.json and puts the measures at the end of FOLDER/summary.txt.  docs/slopes.md says how each of them is defined.
 """
 import json
 import sys
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clathra import read_csv, read_snapshots
+from clathra import read_case, read_csv, read_snapshots, time_unit
 
 MOVED = 0.01  # of the height: what has moved farther has failed
 STARTED = 0.01  # failed share of the body at the onset
@@ -23,6 +23,7 @@ CONTRAST = 2.0  # of a band's strain to that beside it
 LONG, SHORT = 0.6, 0.4  # of the height: the shortest band as it forms, and at the end
 SEARCH = 2.0  # s between two searches
 GAS = 0.016 / 0.124  # kg of methane per kg of hydrate
+MASSES = ("mass_solid", "mass_hydrate", "mass_water", "mass_gas")
 STANDARD = 0.6789  # kg/m3, methane at 101.4 kPa and 15.56 degC
 
 
@@ -33,13 +34,16 @@ def of_all(snapshots):
 
 
 class Run:
-    """Snapshots and balance of a run.  cell: size (m) of a cell along y, from 2 x 2 particles, or `across` of them; gone: particles that left the grid."""
+    """Snapshots, balance and probes of a run.  loaded: when its first stage ended, s; cell: size (m) of a cell along y, from 2 x 2 particles, or `across` of them;
+    gone: particles that left the grid."""
 
-    def __init__(self, folder, loaded=10.0, across=2):
+    def __init__(self, folder, across=2):
         self.folder = Path(folder)
+        case = read_case(self.folder / "case.yaml")
+        self.loaded = case[f"stage_{case['stages'][0]}_end"]
         self.snapshots = of_all(whole := read_snapshots(folder))
         self.gone = len(whole[0][1]["id"]) - len(self.snapshots[0][1]["id"])
-        self.balance = read_csv(self.folder / "balance.csv")
+        self.balance, self.probes = read_csv(self.folder / "balance.csv"), read_csv(self.folder / "probes.csv")
         self.time = np.array([t for t, _ in self.snapshots])
         first = self.snapshots[0][1]
         self.start, self.end = first["initial_position"], self.snapshots[-1][1]
@@ -50,8 +54,7 @@ class Run:
         self.crest = self.start[top, 0].max() + self.spacing[0] / 2
         self.toe = self.start[:, 0].max() + self.spacing[0] / 2
         self.top = top
-        self.loaded = loaded
-        self.rest = self.at(loaded)["displacement"]
+        self.rest = self.at(self.loaded)["position"]
 
     def at(self, time):
         """The snapshot nearest to a time."""
@@ -59,7 +62,7 @@ class Run:
 
     def moved(self, particles):
         """Distance (m) of each particle from where the loading left it."""
-        return np.hypot(*(particles["displacement"] - self.rest).T)
+        return np.hypot(*(particles["position"] - self.rest).T)
 
     def failed(self, particles):
         return self.moved(particles) > MOVED * self.height
@@ -185,13 +188,22 @@ def describe(run, eps, when, where):
             "eps_d_p": float(np.median(run.end["eps_d_p"][members, 0]))}  # fmt: skip
 
 
+def searches(time):
+    """Times of snapshots at least SEARCH apart, and the last."""
+    kept = [time[0]]
+    for t in time[1:]:
+        if t >= kept[-1] + SEARCH * (1 - 1e-9):
+            kept.append(t)
+    return kept if kept[-1] == time[-1] else [*kept, time[-1]]
+
+
 def bands(run):
     """Shear bands in order of time: straight strips of sheared particles in the initial configuration.  Long ones as they form, looked for every SEARCH seconds, then
     what is left at the end; the strongest first, and each particle in one band, with those two and a half cells from it and two cells beyond its ends."""
     x, when, taken, found = run.start, passed(run, SHEARED), run.start[:, 1] < 2.5 * run.cell, []
-    times = [*np.arange(run.time[0], run.time[-1], SEARCH), run.time[-1]]
+    times = searches(run.time)
     for k, time in enumerate(times):
-        if k < len(times) - 1 and not ((when <= time) & (when > time - 2 * SEARCH) & ~taken).any():
+        if k < len(times) - 1 and not ((when <= time) & (when > times[max(k - 2, 0)]) & ~taken).any():
             continue
         eps = run.at(time)["eps_d_p"][:, 0]
         least = (LONG if k < len(times) - 1 else SHORT) * run.height
@@ -204,6 +216,25 @@ def bands(run):
 
 
 # ---------------------------------------------------------------- measures
+def slides(run, mass):
+    """What `hybrid` carried in a run that `auto` made: when, how long (s), steps, largest E_k (J) and the speed that is of the failed mass (kg), way of each probe (m)."""
+    b, found = run.balance, []
+    carried = (b["newton"] == 0) & (b["time_s"] > run.loaded)
+    if not carried.any() or (b["newton"] > 0).sum() < 2:
+        return found
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], carried, [0]])))
+    for first, last in zip(ends[::2], ends[1::2] - 1):
+        t = b["time_s"][[first - 1, last]]
+        e = b["kinetic_energy_J"][first : last + 1].max()
+        ways = {}
+        for column in (c for c in run.probes if c.endswith(".u_x_m")):
+            x, y = (np.interp(t, run.probes["time_s"], run.probes[column[:-5] + k]) for k in ("u_x_m", "u_y_m"))
+            ways[column[:-6]] = float(np.hypot(x[1] - x[0], y[1] - y[0]))
+        found.append({"from_s": float(t[0]), "lasts_s": float(t[1] - t[0]), "steps": int(b["step"][last] - b["step"][first - 1]), "kinetic_energy_J": float(e),
+                      "velocity_m_s": float(np.sqrt(2 * e / mass)) if mass > 0 else 0.0, "probes_m": ways})  # fmt: skip
+    return found
+
+
 def measure(run):
     """The measures of the slide, with units in their names."""
     total = run.snapshots[0][1]["volume"].sum()
@@ -222,6 +253,7 @@ def measure(run):
     slab = run.end["volume"][failed, 0]
     lost = b["hydrate_kg"][0] - b["hydrate_kg"][-1] - b["removed_hydrate_kg"][-1]
     scarp = run.start[run.top & failed, 0]
+    heavy = sum(run.end[k][failed, 0].sum() for k in MASSES)
     return {
         "end_s": float(run.time[-1]),
         "particles_gone": run.gone,
@@ -245,26 +277,34 @@ def measure(run):
         "hydrate_lost_share": float(lost / b["hydrate_kg"][0]),
         "gas_released_kg": float(GAS * lost),
         "gas_released_std_m3": float(GAS * lost / STANDARD),
+        "slides": slides(run, heavy),
     }  # fmt: skip
 
 
 def words(m, found):
-    """The measures as lines of summary.txt."""
-    time = lambda s: "never" if s is None else f"{s:.1f} s"
-    yield f"slide, to t = {m['end_s']:.0f} s (scripts/slide.py):"
+    """The measures as lines of summary.txt, times in the unit that suits the run's end."""
+    unit, size = time_unit(m["end_s"])
+    number = lambda s: f"{s / size:.{0 if size == 1 else 1}f}"
+    time = lambda s: "(never)" if s is None else f"{s / size:.1f} {unit}"
+    yield f"slide, to t = {m['end_s'] / size:.0f} {unit} (scripts/slide.py):"
     yield f"  onset {time(m['onset_s'])}, kinetic energy rises at {time(m['rise_of_kinetic_energy_s'])}"
     yield (f"  failed {m['failed_volume_m2']:.0f} m3 per metre ({100 * m['failed_share']:.0f} % of the body), moved by {m['mean_displacement_m']:.1f} m in the mean and "
            f"up to {m['largest_displacement_m']:.1f} m; runout {m['runout_m']:.1f} m, retrogression {m['retrogression_m']:.0f} m behind the crest")  # fmt: skip
-    tops = ", ".join(f"{t:.0f}" for t in m["peaks_of_kinetic_energy_s"]) or "none"
-    yield (f"  largest mean velocity of what failed {m['peak_mean_velocity_m_s']:.2f} m/s, of all but one particle in a thousand {m['peak_velocity_m_s']:.1f} m/s; kinetic energy up to "
-           f"{m['peak_kinetic_energy_J']:.3g} J per metre at {m['peak_kinetic_energy_s']:.1f} s, peaks at {tops} s")  # fmt: skip
+    tops = ", ".join(number(t) for t in m["peaks_of_kinetic_energy_s"])
+    yield (f"  largest mean velocity of what failed {m['peak_mean_velocity_m_s']:.3g} m/s, of all but one particle in a thousand {m['peak_velocity_m_s']:.2g} m/s{' (at the snapshots)' if m['slides'] else ''}; "
+           f"kinetic energy up to {m['peak_kinetic_energy_J']:.3g} J per metre at {time(m['peak_kinetic_energy_s'])}, {f'peaks at {tops} {unit}' if tops else 'no peak'}")  # fmt: skip
     yield (f"  hydrate lost {m['hydrate_lost_kg']:.0f} kg ({100 * m['hydrate_lost_share']:.2f} %), gas released {m['gas_released_kg']:.0f} kg = "
            f"{m['gas_released_std_m3']:.0f} m3 at 101.4 kPa and 15.56 degC, per metre")  # fmt: skip
     if m["particles_gone"]:
         yield f"  {m['particles_gone']} particles left the grid and count in nothing of this but energy and hydrate"
+    if m["slides"]:
+        yield f"  hybrid carried {len(m['slides'])}: from, for how long, kinetic energy and speed of what failed at most, way of the probes"
+    for s in m["slides"]:
+        ways = ", ".join(f"{k} {v:.2f} m" for k, v in s["probes_m"].items())
+        yield f"    {time(s['from_s'])}  {s['lasts_s']:.3g} s, {s['steps']} steps  {s['kinetic_energy_J']:.3g} J, {s['velocity_m_s']:.2g} m/s  {ways}"
     yield f"  {len(found)} shear bands" + (": time, angle to the base, from and to (where it was at the start), eps_d_p" if found else "")
     for b in found:
-        yield (f"    {b['time_s']:6.1f} s  {b['angle_deg']:3.0f} deg, rises {b['rises']:9s}  ({b['x_low_m']:.0f}, {b['y_low_m']:.0f}) to ({b['x_high_m']:.0f}, {b['y_high_m']:.0f}) m  "
+        yield (f"    {b['time_s'] / size:6.1f} {unit}  {b['angle_deg']:3.0f} deg, rises {b['rises']:9s}  ({b['x_low_m']:.0f}, {b['y_low_m']:.0f}) to ({b['x_high_m']:.0f}, {b['y_high_m']:.0f}) m  "
                f"{b['eps_d_p']:.2f}")  # fmt: skip
 
 

@@ -25,6 +25,7 @@
   X(P_GW, HAS_WATER, "grad_p_w", CL_DIM, "Pa/m", "at the end of the last step")                                        \
   X(P_GG, HAS_GAS_PRESSURE, "grad_p_g", CL_DIM, "Pa/m", "")                                                            \
   X(P_GT, HAS_HEAT, "grad_T", CL_DIM, "K/m", "")                                                                       \
+  X(P_BT, HAS_HEAT, "mixed_T", 1, "K/m^2", "d2T/dx dy, at the end of the last step (395)")                             \
   X(P_VS, HAS_SOLID, "v_s", CL_DIM, "m/s", "skeleton velocity")                                                        \
   X(P_VW, HAS_WATER, "v_w", CL_DIM, "m/s", "water velocity")                                                           \
   X(P_VG, HAS_GAS, "v_g", CL_DIM, "m/s", "gas velocity")                                                               \

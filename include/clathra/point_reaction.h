@@ -46,26 +46,25 @@ INLINE double ReactionWidth(const double h[CL_DIM], const double g[CL_DIM])
   return sum / weights;
 }
 
-/* Pressure of the pores as the reaction sees it; forms: it is above p_e; idle: but the gas is not. */
+/* Pressure that drives the reaction; forms: it is above p_e. */
 typedef struct {
   PorePressure p;
-  bool         forms, idle;
+  bool         forms;
 } Driving;
 
-/* (371); trace is H of (101), s_g dimensionless, pressures in Pa. */
+/* (10), and (371) where there is no gas phase; trace is H of (101), s_g dimensionless, pressures in Pa. */
 INLINE Driving ReactionDriving(double trace, double sg, double pw, double pg, double pe)
 {
-  const PorePressure mean  = PorePressureOf(sg, pw, pg);
-  const bool         forms = mean.v > pe, scarce = forms && trace > 0.0 && pg < pw;
+  const PorePressure p = trace > 0.0 && pg < pw ? (PorePressure){pg, 0.0, 0.0, 1.0} : PorePressureOf(sg, pw, pg);
 
-  return (Driving){scarce ? (PorePressure){pg, 0.0, 0.0, 1.0} : mean, forms, scarce && pg <= pe};
+  return (Driving){p, p.v > pe};
 }
 
 /* (11) per surface: -dt' M_h K_d (p_e - p)/(1 + held); K_d and p_e (Pa) with their slopes in T. */
 INLINE Growth ReactionGrowth(const Kinetics *k, double dt, double held, const Driving *d, double Kd, double dKd_dT,
                              double pe, double dpe_dT)
 {
-  const double c = d->idle ? 0.0 : dt * k->M_h / (1.0 + held), drive = pe - d->p.v;
+  const double c = dt * k->M_h / (1.0 + held), drive = pe - d->p.v;
 
   return (Growth){-c * Kd * drive, c * Kd, -c * (dKd_dT * drive + Kd * dpe_dT)};
 }

@@ -5,6 +5,12 @@
 #include "clathra/case.h"
 #include "clathra/explicit.h"
 
+/* Extremes of particles: mean pore pressure, Pa, and temperature, degC. */
+enum { LOWEST_P = 0, HIGHEST_P, LOWEST_T, HIGHEST_T, EXTREMES };
+typedef struct {
+  double value, t, at[CL_DIM]; /* when, s, and where, m; all zero without the field */
+} Extreme;
+
 /* Everything besides the particles that a run carries from step to step (in the checkpoint, so that a restart is bit
  * for bit). */
 typedef struct {
@@ -34,6 +40,8 @@ typedef struct {
   double   meter[CL_METERS][METER_COUNT];          /* (33): kg of water and gas, J, outwards since t = 0 */
   double   work[WORK_COUNT];                       /* (90), J since t = 0 */
   double   removed[REMOVED_COUNT];                 /* particles that left the grid (373), since t = 0 */
+  double   begin[EXTREMES];                        /* extremes at the start */
+  Extreme  extreme[EXTREMES];                      /* ... and of the run so far */
   double   energy[ENERGY_COUNT];                   /* J, as the particles hold them now */
   double   water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
   double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
@@ -149,7 +157,8 @@ struct Stepper {
   /* called after every accepted step */
   PetscErrorCode (*monitor)(Stepper *s, const StepInfo *info, void *ctx);
   void *monitor_ctx;
-  bool  broken;             /* the state is not finite any more: not to be kept */
+  bool  broken;             /* the state is not finite any more, or empty: not to be kept */
+  bool  empty;              /* the last particle has left the grid */
   bool  stop;               /* ends the run after this step; the monitor may set it */
   int (*interrupted)(void); /* signal that asks for the end, 0 for none; may be NULL */
   int signal;               /* ... on any rank, which set stop */
@@ -264,6 +273,9 @@ PetscErrorCode StepperKeeps(Stepper *s, double dt, double *keeps);
 /* Shared by the schemes. */
 /* The next time (s) that a step must hit: a kink of a schedule, an event, the end. */
 double StepperNextStop(const Stepper *s, bool *kink);
+/* extremes.c: those of the particles as they are go into the state; at the start, after every accepted step or burst.
+   Collective. */
+PetscErrorCode StepperExtremes(Stepper *s, bool start);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
 void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
 /* leave.c: what left the grid in the accepted step or burst goes into the state, and a line says so for each particle;

@@ -196,3 +196,24 @@ def stage_axis(balance):
 def spread(count, most):
     """Indices of at most `most` of `count` things, first and last among them."""
     return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist()))
+
+
+def period(case):
+    """The longest period (s) of the sines that act in a case (Run.case), below a third of it; None without."""
+    found = [wave for key, value in case.items() if isinstance(value, dict) for wave in value.get("sine", [])[2::3]]
+    return max((p for p in found if p < case.get("time_end", np.inf) / 3), default=None)
+
+
+def spread_phases(times, most, period):
+    """Like spread, but of the times (s) about each evenly spaced one that is taken whose phase in the period (s) is farthest from
+    those taken before: evenly spaced times may all be of one phase.  Also the largest distance of phases among them, 0 to 0.5."""
+    even, phase = spread(len(times), most), np.asarray(times, float) / period % 1.0
+    apart = lambda a, b: np.abs((a - b + 0.5) % 1.0 - 0.5)
+    taken = [even[0], even[-1]] if len(even) > 1 else list(even)
+    for k in range(1, len(even) - 1):
+        from_, to = (even[k - 1] + even[k]) // 2 + 1, (even[k] + even[k + 1]) // 2
+        among = [j for j in range(from_, max(to, from_) + 1) if j not in taken] or [even[k]]
+        least = [min(apart(phase[j], phase[i]) for i in taken) for j in among]
+        taken.append(among[int(np.argmax(np.round(least, 9)))])
+    taken = sorted(set(taken))
+    return taken, max(float(apart(phase[a], phase[b])) for a in taken for b in taken)

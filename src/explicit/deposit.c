@@ -113,6 +113,23 @@ INLINE void Carried(Run r, int lane, const double *restrict weight, const double
   }
 }
 
+/* Likewise V b (x_I - x_p) (y_I - y_p) (395), on top of that. */
+INLINE void CarriedCross(Run r, int lane, const double *restrict weight, const double *restrict b, const Weights *w,
+                         Given *v)
+{
+  for (int q = 0; q < r.n; q++) {
+    const double more = weight[q] * b[q];
+    double       x[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++)
+      x[d] = (w->S[d][1][q] + w->third[d][q] * w->S[d][2][q]) * w->unit[d][q];
+    v->value[q][lane] += more * x[0] * x[1];
+    v->carry[0][q][lane] -= more * x[1] * w->unit[0][q];
+    v->carry[1][q][lane] -= more * x[0] * w->unit[1][q];
+    v->cross[q][lane] = more * w->unit[0][q] * w->unit[1][q];
+  }
+}
+
 /* (42): ambient pressure and V times its gradient at the particles of a block. */
 typedef struct {
   double p[BLOCK], weight[CL_DIM][BLOCK];
@@ -288,6 +305,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     for (int q = 0; q < r.n; q++)
       v.value[q][A_C(s)] = C[q];
     Carried(r, s.fluids, C, T, g, &w, &v);
+    CarriedCross(r, s.fluids, C, f[P_BT] + r.p, &w, &v);
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
@@ -300,7 +318,11 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     }
     WeakForces(e, s, r, &w);
   }
-  Scatter(e, e->A, A_Count(s), Scalars(s) > 0, s.solid, r, &w, &v);
+  Scatter(e, e->A, A_Count(s),
+          s.heat           ? CARRY_BILINEAR
+          : Scalars(s) > 0 ? CARRY_LINEAR
+                           : CARRY_NOTHING,
+          s.solid, r, &w, &v);
 }
 
 MAKE_LOOPS(DepositRun)

@@ -18,9 +18,9 @@ typedef struct {
 } Gathered;
 
 /* A block's values, one row of numbers for each particle; x, y: what is multiplied with the node's place in the 3 x 3
-   patch (carried values) and with the gradients (forces). */
+   patch (carried values), with both its places (cross) and with the gradients (forces). */
 typedef struct {
-  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
+  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], cross[BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
 } Given;
 
 /* From nodes that hold `rows` rows of lanes each. */
@@ -59,14 +59,29 @@ INLINE void GiveNothing(Run r, int count, Given *v)
 {
   for (int q = 0; q < r.n; q++) {
     for (int k = 0; k < LANES; k++)
-      v->carry[0][q][k] = v->carry[1][q][k] = v->force[0][q][k] = v->force[1][q][k] = 0.0;
+      v->carry[0][q][k] = v->carry[1][q][k] = v->cross[q][k] = v->force[0][q][k] = v->force[1][q][k] = 0.0;
     for (int k = count; k < LANES * Rows(count); k++)
       v->value[q][k] = 0.0;
   }
 }
 
-/* To nodes that hold `count` numbers each; carries, forces: is there something to carry, are there forces? */
-INLINE void Scatter(const Explicit *e, double *nodes, int count, bool carries, bool forces, Run r, const Weights *w,
+/* Mixed second derivative at particle q of a number that nodes hold in their rows, `width` numbers long (395). */
+INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Weights *w, int q)
+{
+  const int *slot = &e->slot[w->first[q]], stride = (int)e->m->grid.gm[0];
+  double     sum = 0.0;
+
+  for (int b = 0; b < 3; b++) {
+    for (int a = 0; a < 3; a++)
+      sum += w->D[0][a][q] * w->D[1][b][q] * nodes[slot[b * stride + a] * width];
+  }
+  return sum;
+}
+
+/* What is carried to the nodes besides the value itself: nothing, by gradients, by a mixed derivative, too. */
+enum { CARRY_NOTHING = 0, CARRY_LINEAR, CARRY_BILINEAR };
+/* To nodes that hold `count` numbers each; forces: are there any? */
+INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bool forces, Run r, const Weights *w,
                     const Given *v)
 {
   const int rows = Rows(count), stride = (int)e->m->grid.gm[0];
@@ -88,6 +103,8 @@ INLINE void Scatter(const Explicit *e, double *nodes, int count, bool carries, b
 
         if (carries)
           first += cx * x[a] + cy * y[b];
+        if (carries == CARRY_BILINEAR)
+          first += *(const Lanes *)v->cross[q] * (x[a] * y[b]);
         row[0] += forces ? first * S + fx * Gx + fy * Gy : first * S;
         for (int z = 1; z < rows; z++)
           row[z] += value[z] * S;

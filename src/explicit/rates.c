@@ -461,7 +461,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     Keep(e, s, r, dt, &w, &o);
   if (Relative(e, s))
     RelativeColumns(e, s, r, &o);
-  Scatter(e, e->R, R_Count(s), false, true, r, &w, &o);
+  Scatter(e, e->R, R_Count(s), CARRY_NOTHING, true, r, &w, &o);
 }
 
 MAKE_LOOPS(RatesRun)

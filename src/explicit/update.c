@@ -56,7 +56,7 @@ static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
 }
 
 /* p_w, p_g, T and their gradients; false if one leaves its range. */
-INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
+INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gathered *g)
 {
   Wrong out = 0;
 
@@ -73,6 +73,8 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Gathered *g)
       out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
   }
+  for (int q = 0; s.heat && q < r.n; q++)
+    e->m->P.f[P_BT][r.p + q] = Mixed(e, e->C + C_End(s) + s.fluids, LANES, w, q);
   return !out;
 }
 
@@ -110,7 +112,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     OwnPressures(e, s, r, &g);
   if (Relative(e, s))
     Pressures(e, r, &g);
-  if (!Fields(e, s, r, &g))
+  if (!Fields(e, s, r, &w, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
   MassesOf(e, s, r, &g, kept, &e->m->limited);
   if (s.heat && e->m->c->compression_heat)

@@ -15,7 +15,7 @@
 
 #define REAL(field)                                                                                                    \
   {                                                                                                                    \
-    #field, offsetof(StepperState, field), sizeof(((StepperState *)0)->field) / sizeof(double), false                  \
+    #field, offsetof(StepperState, field), sizeof(((StepperState *)0)->field) / (sizeof(double)), false                \
   }
 #define INT(field)                                                                                                     \
   {                                                                                                                    \
@@ -43,11 +43,14 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(enthalpy_out), REAL(removed),
                                      REAL(peak),         REAL(peak_of),
                                      REAL(peak_t),       REAL(peak_at),
+                                     REAL(begin),        REAL(extreme),
                                      {NULL, 0, 0, false}};
-/* Fourteen integers, thirty reals, the meters, works, energies and what left. */
+/* Fourteen integers, thirty reals, the meters, works, energies, what left, and extremes. */
 _Static_assert(sizeof(StepperState) ==
                    14 * sizeof(PetscInt) +
-                       (30 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT + REMOVED_COUNT) * sizeof(double),
+                       (30 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT + REMOVED_COUNT + EXTREMES) *
+                           sizeof(double) +
+                       EXTREMES * sizeof(Extreme),
                "a new field of StepperState must join io_state_field");
 
 static PetscErrorCode WriteState(hid_t file, const StepperState *s)

@@ -322,6 +322,21 @@ static double Released(const Model *m, PetscInt p, const PointState *s)
                                  s->m_h < old ? s->m_h / old : 1.0, &h);
 }
 
+/* (395) of T. */
+static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const double *x)
+{
+  const FieldSet *fs   = &m->c->fields;
+  const Axis     *axis = m->stencil[p].axis;
+  double          b    = 0.0;
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt *ij = m->map.ij[r->node[a]];
+
+    b += axis[0].dS[ij[0] - axis[0].base] * axis[1].dS[ij[1] - axis[1].base] * x[r->node[a] * fs->n + PlaceT(fs)];
+  }
+  return b;
+}
+
 static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
                          const PointState *s, double keeps)
 {
@@ -336,6 +351,8 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
     for (int d = 0; d < CL_DIM; d++)
       f[VectorAt(P_GW, k, d)][p] = in[k < PHASE_COUNT ? VectorAt(IN_GP, k, d) : IN_GT + d];
   }
+  if (fs->heat)
+    f[P_BT][p] = MixedDerivative(m, p, r, x);
   if (fs->solid)
     WriteMotion(m, p, x, r, s);
   else

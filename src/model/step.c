@@ -112,7 +112,7 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
     s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
   }
   if (fs->heat)
-    s[SUM_X + PlaceT(fs)] += S * q->capacity * Carried(m, p, P_T, P_GT, d);
+    s[SUM_X + PlaceT(fs)] += S * q->capacity * (Carried(m, p, P_T, P_GT, d) + f[P_BT][p] * d[0] * d[1]); /* (395) */
 }
 
 /* Diffusion of p_c that carries the saturations of a fluid with its flow (200). */

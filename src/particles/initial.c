@@ -51,16 +51,26 @@ double InitialWaterPressure(const Scene *c, const Region *r, double pressure, co
   return pressure - water->K * log1p(weight / water->K * exp((pressure - water->p_ref) / water->K)); /* (82) */
 }
 
+/* (103): p_g where there is no gas, from p_c (Pa) at which the law leaves none; hydrate is in equilibrium with what water
+   holds of its methane. */
+static double InitialGasPressure(const Region *r, const Material *mat, double pc, const InitialScalars *s)
+{
+  double dT;
+
+  return mat->reacts && r->Sh > 0.0 ? fmin(s->pw + pc, EquilibriumPressure(&mat->kinetics.equilibrium, s->T, &dT))
+                                    : s->pw + pc;
+}
+
 /* Pressures of the phases from their mean (10). */
 static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Material *mat, const double x[],
                                        InitialScalars *s)
 {
-  const bool two = c->fields.has & HAS_GAS_PRESSURE;
+  const bool two = c->fields.has & HAS_GAS_PRESSURE, none = two && r->Sg == 0.0 && mat->gas.trace > 0.0;
   double     pc  = 0.0, d[2];
 
   PetscFunctionBeginUser;
   s->sg = r->Sg / (1.0 - r->Sh);
-  if (two && s->sg == 0.0 && mat->gas.trace > 0.0) /* (103) */
+  if (none)
     PetscCheck(RetentionNoGas(&mat->retention, r->Sh, &pc), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "region %s: the retention law leaves gas at any pressure", r->name);
   else if (two)
@@ -69,7 +79,7 @@ static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Ma
   s->pw = r->pressure - s->sg * pc;
   if (r->hydrostatic)
     s->pw = InitialWaterPressure(c, r, s->pw, x);
-  s->pg = s->pw + pc;
+  s->pg = none ? InitialGasPressure(r, mat, pc, s) : s->pw + pc;
   s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   if (two) { /* to the last digit what the law makes of these pressures */
     s->sg = RetentionGasShare(&mat->retention, s->pg - s->pw, r->Sh, &d[0], &d[1]);

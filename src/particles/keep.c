@@ -40,7 +40,8 @@ static void Deform(const Particles *P, PetscInt p, PetscInt n, const ParticleMot
     log_J[q] += more[q];
 }
 
-/* Gradients on the configuration at the begin of the step, brought to that at its end: F^-T g. */
+/* Gradients on the configuration at the begin of the step, brought to that at its end: F^-T g; and the mixed derivative
+   of T, xy of F^-T B F^-1 (395). */
 static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const ParticleMotion *m)
 {
   static const int grad[3]   = {P_GW, P_GG, P_GT};
@@ -57,6 +58,11 @@ static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const Par
       gx[q] = (Fyy * x - Hyx[q] * y) * per;
       gy[q] = (Fxx * y - Hxy[q] * x) * per;
     }
+  }
+  for (PetscInt q = 0; P->f[P_BT] && q < n; q++) {
+    const double Fxx = 1.0 + Hxx[q], Fyy = 1.0 + Hyy[q], turn = Hxy[q] * Hyx[q], det = Fxx * Fyy - turn;
+
+    P->f[P_BT][p + q] *= (Fxx * Fyy + turn) / (det * det);
   }
 }
 

@@ -13,6 +13,7 @@ typedef struct {
   char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   char      restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];  /* -restart, -restart_as_initial */
   double    t_saved;                                                   /* of that */
+  double    t_shown;                                                   /* of the last snapshot, s */
   double    clock_start;                                               /* s of the wall */
   bool      check;                                                     /* ends before anything is written */
   bool      quiet, restarted;
@@ -120,6 +121,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   if (AtSnapshot(c, t) || last) {
     PetscCall(OutputSnapshot(run->out, s->model, &s->state));
     s->state.next_snapshot++;
+    run->t_shown = t;
     PetscCall(WriteLog(c, s->model->grid.comm, run));
   }
   PetscCall(OutputGood(run->out, s->model->grid.comm, &ok));
@@ -135,8 +137,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char text[3072], gone[512], above[64] = "", local[512], left[128], loose[512], ice[256], yields[256], gaps[256],
-                              ranks[128], *stages, *all;
+  char text[4096], ranges[512], gone[512], above[64] = "", local[512], left[128], loose[512], ice[256], yields[256],
+                                           gaps[256], ranks[128], *stages, *all;
   ModelTotals t;
   double      error[3];
   bool        ok;
@@ -153,6 +155,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   GoneSummary(z, gone);
   PetscCall(LongSummary(s->model, gaps));
   PetscCall(IceSummary(s, ice));
+  PetscCall(RangeSummary(s, ranges));
   PetscCall(RanksSummary(s->model, ranks));
   PetscCall(PetscSNPrintf(
       text, sizeof(text),
@@ -161,13 +164,14 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
       " Newton iterations, %.2f s%s\n%s"
       "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
       "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-      "%s%s%s%s%s%s%s  results in %s\n",
+      "%s%s%s%s%s%s%s%s  results in %s\n",
       StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", z->t,
       StepperCase(s)->nstage ? "by stage"
       : s->auto_.on          ? STEPPER_AUTO
                              : s->scheme->name,
       z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local, error[0], error[1],
-      error[2], t.hydrate, z->limited_total, left, yields, gone, loose, gaps, ice, ranks, StepperCase(s)->output_dir));
+      error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, gaps, ice, ranks,
+      StepperCase(s)->output_dir));
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);
@@ -254,6 +258,7 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
     PetscCall(OutputSnapshot(run->out, m, &s->state));
     s->state.next_snapshot++;
   }
+  run->t_shown = s->state.t; /* or there is nothing newer to show */
   PetscCall(OutputGood(run->out, m->grid.comm, &ok));
   run->lost = run->lost || !ok;
   PetscCall(WriteLog(c, m->grid.comm, run));
@@ -267,14 +272,12 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
 {
   const MPI_Comm comm              = s->model->grid.comm;
   const double   t                 = s->state.t;
-  const char    *why               = run->lost ? "not all could be written; see to it" : "the state is not finite";
+  const char    *why               = run->lost  ? "not all could be written; see to it"
+                                     : s->empty ? "no particle is left in the grid"
+                                                : "the state is not finite";
   char           advice[CL_ADVICE] = "";
-  PetscInt       rest              = s->model->P.n;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &rest, 1, MPIU_INT, MPI_SUM, comm));
-  if (rest == 0 && !run->lost)
-    why = "no particle is left in the grid";
   if ((run->lost || s->broken) && run->saved[0]) {
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: stopped at t = %g s: %s.  The last checkpoint, of t = %g s, is whole: go on with "
@@ -302,6 +305,21 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A run that is ended on its way leaves a snapshot of its last state, behind its last checkpoint, which knows nothing
+   of it: a restart takes it back. */
+static PetscErrorCode ShowEnd(const Stepper *s, Run *run)
+{
+  bool ok;
+
+  PetscFunctionBeginUser;
+  if (run->lost || s->broken || run->t_shown == s->state.t)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OutputSnapshot(run->out, s->model, &s->state));
+  PetscCall(OutputGood(run->out, s->model->grid.comm, &ok));
+  run->lost = run->lost || !ok;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
 {
   bool ok = true, closed;
@@ -312,11 +330,13 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   if (!run->lost &&
       !(run->written && run->t_saved == s->state.t)) /* after a loss it would promise rows that are not there */
     PetscCall(Save(s, run));
+  PetscCall(ShowEnd(s, run));
   PetscCall(Summary(s, run));
   PetscCall(StageLogDestroy(&run->log));
   PetscCall(OutputDestroy(&run->out, s->model->grid.comm, &closed));
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
+  PetscCall(EndWarnings(s));
   PetscCall(WriteLog(StepperCase(s), s->model->grid.comm, run));
   if (run->lost || run->frozen || !ok)
     *exit_code = CL_EXIT_FAILED;

@@ -58,6 +58,12 @@ PetscErrorCode LongSummary(const Model *m, char text[256]);        /* domains lo
 PetscErrorCode IceSummary(const Stepper *s, char text[256]);       /* water below its melting point */
 PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */
 
+/* ---------------------------------------------------------------- ranges.c */
+/* Lines of the summary: the extremes of p and T. */
+PetscErrorCode RangeSummary(const Stepper *s, char text[512]);
+/* The last lines of a run: what lies outside of what started and acted, and errors far above the tolerance. */
+PetscErrorCode EndWarnings(const Stepper *s);
+
 /* ---------------------------------------------------------------- phases.c */
 /* Curve and pressure of equilibrium of each region that reacts, at its temperature. */
 PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm);

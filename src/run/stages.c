@@ -140,20 +140,21 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
   PetscCall(PetscCalloc1(line * (size_t)log->n, text));
   for (PetscInt k = 0; k < log->n; k++) {
     const Entry *e  = &log->entry[k];
-    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[200];
+    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[200], lasted[32];
 
     if (e->steps == 0 || (c->nstage == 0 && log->n == 1))
       continue;
     if (CaseInStage(c, e->stage)->mass_scaling > 1.0 && e->scaling > 0.0)
       PetscCall(PetscSNPrintf(scaled, sizeof(scaled), ", mass scaling added up to %.2g of the forces", e->scaling));
     PetscCall(LimitWords(e, limit));
+    StepperTime(e->to - e->from, e->to - e->from, 3, lasted);
     if (c->nstage)
       PetscCall(PetscSNPrintf(stage, sizeof(stage), "stage %s: ", c->stage[e->stage].name));
     PetscCall(PetscSNPrintf(at, line,
-                            "  %s%s from %g s to %g s, %" PetscInt_FMT " steps, %" PetscInt_FMT
+                            "  %s%s from %g s to %g s (%s), %" PetscInt_FMT " steps, %" PetscInt_FMT
                             " refused, %" PetscInt_FMT " Newton iterations, %.2f s%s%s\n",
-                            stage, e->integrator, e->from, e->to, e->steps, e->refused, e->newton, e->spent, limit,
-                            scaled));
+                            stage, e->integrator, e->from, e->to, lasted, e->steps, e->refused, e->newton, e->spent,
+                            limit, scaled));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -99,6 +99,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
   PetscCall(UpdateScales(s));
   if (s->broken)
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StepperExtremes(s, false));
   z->loose_total += a->loose > 0.0;
   z->err_worst = fmax(z->err_worst, a->loose);
   if (s->adaptive && a->peak.err > z->peak) {

@@ -141,6 +141,17 @@ void StepperTime(double seconds, double scale, int digits, char text[32])
     text[n - 1] = '\0'; /* 1 year */
 }
 
+/* Does hydrate react while a step is chosen by its error?  Its fronts, which nobody knows yet, then rule steps. */
+static bool FrontsRule(const Stepper *s)
+{
+  const Scene *c      = s->model->c;
+  bool         reacts = false;
+
+  for (PetscInt k = 0; k < c->nmaterial; k++)
+    reacts = reacts || c->material[k].reacts;
+  return s->adaptive && reacts && c->fields.heat && c->fields.phase[PHASE_G];
+}
+
 PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
@@ -158,7 +169,9 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
   }
   StepperTime(f->implicit_seconds, f->implicit_seconds, 2, time);
   StepperStageWords(s, stage);
-  PetscCall(PetscPrintf(s->model->grid.comm, "  %sforecast: %s; implicit about %.2g steps, %s; %s is the cheaper one\n",
-                        stage, hybrid, f->implicit_steps, time, f->hybrid ? "hybrid" : "implicit"));
+  PetscCall(PetscPrintf(s->model->grid.comm,
+                        "  %sforecast: %s; implicit about %.2g steps, %s; %s is the cheaper one%s\n", stage, hybrid,
+                        f->implicit_steps, time, f->hybrid ? "hybrid" : "implicit",
+                        FrontsRule(s) ? " (fronts of hydrate may ask for several times as many implicit steps)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -66,7 +66,12 @@ PetscErrorCode StepperBookLeavers(Stepper *s)
   PetscCall(Tell(m));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &rest, 1, MPIU_INT, MPI_SUM, m->grid.comm));
   s->broken = rest == 0;
-  if (s->broken)
-    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: the last particle has left the grid\n", s->state.t));
+  s->empty  = rest == 0;
+  if (!s->empty)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: the last particle has left the grid\n", s->state.t));
+  PetscCall(StepperTry(s,
+                       "a larger grid, for nothing of the body stayed in it; a roller or fixed line where it should be "
+                       "held; an earlier time_end; the units of velocities and loads"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

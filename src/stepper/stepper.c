@@ -15,6 +15,7 @@ PetscErrorCode StepperStart(Stepper *s)
   s->state.capacity0 = t.capacity;
   s->state.enthalpy0 = t.enthalpy;
   PetscCall(StepperEnergyStart(s));
+  PetscCall(StepperExtremes(s, true));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

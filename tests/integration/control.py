@@ -104,6 +104,43 @@ def check_advice():
     check_true("gas of where it comes from (332) is tried first in layers, unless it is on, and not in one material", tried == [True, False] and "stabilisation_donor" not in text, tried)
 
 
+def snapshots(out):
+    import clathra  # noqa: PLC0415, from scripts, which common puts on the path
+
+    return clathra.Run(out)
+
+
+def check_end():
+    """A run that is ended on its way shows its last state; going on from it leaves what the straight run has."""
+    whole, out = scratch() / "whole", scratch() / "out"
+    every = (*BP2, "-quiet", "-time_end", "1 s", "-output_every", "0.5 s")
+    run(binary(), *every, out=whole)
+    for ranks in (1, 2):
+        done = launch(binary(), *every, "-stepper_max_steps", "13", out=out, ranks=ranks)
+        last = snapshots(out)
+        at = last.balance["time_s"][-1]
+        check_true(f"ended after 13 steps, {ranks} rank(s): the last snapshot is of then", done.returncode == 0 and abs(last.times[-1] - at) < 1e-9 and len(last.times) == 3, f"{last.times}, {at} s")
+    launch(binary(), *every, "-stepper_max_steps", "13", out=out)
+    run(binary(), *every, "-restart", out / "checkpoint.h5", out=out)
+    names = [sorted(f.name for f in (o / "fields").iterdir()) for o in (out, whole)]
+    check_true("... gone on with, the straight run's snapshots and no others", names[0] == names[1] and list(snapshots(out).times) == list(snapshots(whole).times), names)
+    done = launch(binary(), *BP2, "-quiet", "-time_end", "2000 s", "-time_limit", "1.5", "-overwrite", out=out)
+    check_true("so does -time_limit", done.returncode == 4 and abs(snapshots(out).times[-1] - snapshots(out).balance["time_s"][-1]) < 1e-9)
+    done = launch(binary(), *BP2[:5], "-quiet", "-time_end", "60 s", "-stepper_dt_min", "1e-3 s", "-bc_load_normal", "{table: [0 s, 3.25 MPa, 1 s, 3.25 MPa, 1.01 s, 1e5 MPa]}", "-overwrite", out=out)
+    check_true("... and what is given up", done.returncode == 3 and 0 < snapshots(out).times[-1] == snapshots(out).balance["time_s"][-1], done.stdout[-300:])
+
+
+def check_last_lines():
+    """What a run accepted above its tolerance stands in its last lines, in the log and so in the report."""
+    loose = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-quiet", "-time_end", "5 s", "-stepper_dt", "1 s")
+    for tol, least, told in (("1e-7", "1 s", True), ("1e-2", "1e-6 s", False)):
+        out = scratch() / "out"
+        last = launch(binary(), *loose, "-stepper_tol", tol, "-stepper_dt_min", least, out=out).stdout.splitlines()[-1]
+        check_true(f"steps accepted far above the tolerance are told last: {told}", ("warning: 5 of 5 steps were accepted above the tolerance" in last) == told and ("steps were accepted above" in (out / "log.txt").read_text()) == told, last)
+        text = (out / "summary.txt").read_text()
+        check_true("... and the extremes of p and T in the summary", "  p of particles from " in text and "  T of particles from " in text, text)
+
+
 def check_words():
     """A function of time in one word, and a probe that the case does not have."""
     read = lambda *options: (run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", *options, out=scratch() / "out").out / "case.yaml").read_text()
@@ -125,6 +162,8 @@ def main():
     check_progress()
     check_folder()
     check_advice()
+    check_end()
+    check_last_lines()
     finish()
 
 

@@ -90,6 +90,7 @@ check("rolled back: water that left and is left", np.max(abs(crushed.balance["wa
 for kind, ranks in (("sdirk2", 1), ("hybrid", 2)):
     empty = launch(binary(), CASE, "-quiet", "-stepper_type", kind, *STEPS[kind], "-time_end", "0.8 s", "-output_times", "0.8 s", ranks=ranks, out=scratch() / "empty")
     check_true(f"{kind}, {ranks} rank(s): the last one ends the run", empty.returncode == 3 and "the last particle has left the grid" in empty.stdout and "no particle is left in the grid.  The last checkpoint" in empty.stdout, empty.stdout[-400:])
+    check_true(f"{kind}, {ranks} rank(s): ... with what to try", "What to try, in this order: a larger grid" in empty.stdout[empty.stdout.index("the last particle has left") :], empty.stdout[-400:])
 stop = launch(binary(), CASE, "-quiet", "-particles_leaving", "stop", out=scratch() / "stop")
 check_true("by default what leaves ends the run, and the advice names the key", stop.returncode == 3 and "left the grid" in stop.stdout and "particles: {leaving: remove}" in stop.stdout, stop.stdout[-400:])
 finish()

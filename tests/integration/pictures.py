@@ -94,7 +94,24 @@ def check_words():
     check_true("a unit stays with the word before it", wrapped("water saturation S_w (-)", 1.9) == "water saturation\n$S_w$\N{NO-BREAK SPACE}(-)", wrapped("water saturation S_w (-)", 1.9))
 
 
+def check_phases():
+    """Profiles under a periodic load: times of several phases; where all snapshots are of one phase, words that say so."""
+    period = 12.42 * 3600
+    case = {"bc_floor_pressure": {"sine": [1.1e7, 2e4, period, 0.0]}, "time_end": 10 * period}
+    check_true("the period of a load; none without a sine, nor of one that hardly acts", shown.period(case) == period and shown.period({"time_end": 1e6, "x": {"ramp": [0.0, 1.0]}}) is None
+               and shown.period({**case, "time_end": 2 * period}) is None)  # fmt: skip
+    sixth = np.arange(61) * period / 6
+    even = (sixth[shown.spread(61, 6)] / period + 1e-9) % 1.0
+    taken, wide = shown.spread_phases(sixth, 6, period)
+    phases = np.round(sixth[taken] / period % 1.0, 6) % 1.0
+    check_true("evenly spaced times are all of one phase", np.ptp(even) < 1e-6, list(even))
+    check_true("those of profiles are not, first and last among them", len(set(phases)) >= 5 and wide > 0.4 and taken[0] == 0 and taken[-1] == 60 and len(taken) == 6, list(phases))
+    check_true("where there is one phase only, that is seen", shown.spread_phases(np.arange(11) * period, 6, period)[1] < plot.ONE_PHASE)
+    check_true("few snapshots", shown.spread_phases([0.0], 6, period)[0] == [0] and shown.spread_phases([0.0, period], 6, period)[0] == [0, 1] and shown.spread_phases(sixth[:4], 6, period)[0] == [0, 1, 2, 3])
+
+
 def main():
+    check_phases()
     block, failed, upright = scratch() / "block", scratch() / "failed", scratch() / "upright"
     run(binary(), CASES / "shear_box", "-grid_cells", "32,5", "-meters", "top", "-meter_top_side", "top", out=block)
     body = clathra.Run(block)

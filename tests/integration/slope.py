@@ -1,19 +1,24 @@
 #!/usr/bin/env python3
-"""Slope A on cells of 8 m as it begins to slide, by hybrid: the same on 1 and 2 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
-step; pressures that tend to the nodes' lose what no node sees and no mass; and what scripts/slide.py finds: onset, failed part, and the bands of strains that are known.
+"""Slope A on cells of 8 m as it begins to slide, by hybrid: the same on 1, 2 and 4 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
+step; pressures that tend to the nodes' lose what no node sees and no mass; and what scripts/slide.py finds: onset, failed part, the bands of strains and the slides of a balance that are
+known; rows of docs/slopes.md are runs of today's cases.
 """
+import json
 import re
+import shlex
 import sys
+from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import Run, check, check_true, finish, scratch  # noqa: E402
+from common import CASES, Run, binary, check, check_true, finish, launch, scratch  # noqa: E402
 from clathra import read_snapshots  # noqa: E402
 
 import slide  # noqa: E402  scripts/, which common puts on the path
+import slopes  # noqa: E402
 
 COARSE = ("-quiet", "-grid_cells", "75,15", "-gravity_ramp", "3 s", "-stage_load_end", "3 s", "-stage_slide_end", "7 s", "-output_every", "0.5 s")
 
@@ -22,11 +27,23 @@ def slope(*options, **keywords):
     return Run.of_case("slope_a", *COARSE, *options, **keywords)
 
 
+def cells(particles, h):
+    """{cell: number of particles in it} on cells of h (m)."""
+    return Counter(map(tuple, np.floor(particles["position"] / h).astype(int)))
+
+
 def torn():
-    """Slope C on cells of 20 m, as far as its blocks have torn loose: velocities that are free at the surface leave the balance of energy closed; the tie (41) leaves 6 %."""
+    """Slope C on cells of 20 m, as far as its blocks have torn loose: velocities that are free at the surface leave the balance of energy closed; the tie (41) leaves 6 %.  It has single
+    particles in cells, cells that emptied and points at the apex by then, and no step is refused."""
     run = Run.of_case("slope_c", "-quiet", "-grid_cells", "100,8", "-gravity_ramp", "5 s", "-stage_load_end", "5 s", "-stage_slide_end", "40 s", "-output_every", "0 s")
     check("slope C: work of gravity, J", run.balance["gravity_work_J"][-1], (1e10, 3e10))
     check("slope C: what the balance of energy leaves of it", abs(run.balance["energy_remainder_J"][-1] / run.balance["gravity_work_J"][-1]), 0.01)
+    (_, first), *_, (_, last) = run.snapshots()
+    before, after = cells(first, 20), cells(last, 20)
+    check("slope C: cells with a single particle in them", sum(n == 1 for n in after.values()), (5, 100))
+    check("slope C: cells that emptied", len(set(before) - set(after)), (10, 100))
+    check("slope C: particles at the apex", int(re.search(r"(\d+) at the apex", run.output)[1]), (10, 500))
+    check_true("slope C: no step refused, nobody left", ", 0 refused" in run.output and len(first["id"]) == len(last["id"]))
 
 
 def known_bands():
@@ -55,11 +72,36 @@ def known_bands():
         check(f"band of {angle} deg: distance of its low end from the line, m", abs(b["y_low_m"] - abs(np.tan(np.radians(angle)) * (b["x_low_m"] - foot))), 4.0)
 
 
+def known_slides():
+    """Two phases of hybrid between implicit steps, in a balance and with a probe that are known."""
+    newton, t = np.array([3, 2, 4, 0, 0, 5, 3, 0, 2.0]), np.array([1.0, 10, 100, 101, 103, 200, 300, 307, 400])
+    energy = np.array([0, 0, 1.0, 50, 8, 0, 0, 2, 0])
+    balance = {"newton": newton, "time_s": t, "kinetic_energy_J": energy, "step": np.array([1.0, 2, 3, 259, 515, 516, 517, 773, 774])}
+    probes = {"time_s": t, "face.u_x_m": np.interp(t, (100, 103, 300, 307), (0.0, 3, 3, 4)), "face.u_y_m": np.interp(t, (100, 103), (0.0, -4))}
+    run = SimpleNamespace(balance=balance, probes=probes, loaded=5.0)
+    found = slide.slides(run, 100.0)
+    check_true("two phases of hybrid: from, how long, steps, energy", [(s["from_s"], s["lasts_s"], s["steps"], s["kinetic_energy_J"]) for s in found] == [(100.0, 3.0, 512, 50.0), (300.0, 7.0, 256, 2.0)], found)
+    check("... speed of a mass of 100 kg", abs(found[0]["velocity_m_s"] - 1.0), 1e-12)
+    check("... way of the probe", abs(found[0]["probes_m"]["face"] - 5.0) + abs(found[1]["probes_m"]["face"] - 1.0), 1e-12)
+    balance["newton"] = np.zeros(9)
+    check_true("... none in a run that is hybrid's all the way", slide.slides(run, 100.0) == [])
+
+
+def rows_of_the_page():
+    """Every row that docs/slopes.json keeps is one that scripts/slopes.py can run, and its options are such that the program takes them."""
+    kept = json.loads(slopes.KEPT.read_text())
+    check_true("rows of the page are rows of the script", set(kept) <= set(slopes.ROWS), set(kept) - set(slopes.ROWS))
+    for name, (case, _, options) in slopes.ROWS.items():
+        done = launch(binary(), CASES / f"slope_{case}", *shlex.split(options), "-case_check")
+        check_true(f"options of {name}", done.returncode == 0, "" if done.returncode == 0 else done.stdout[-300:])
+
+
 one = slope()
 last = one.snapshots()[-1][1]
-two = slope(ranks=2).snapshots()[-1][1]
-worst = max(np.max(np.abs(v - two[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield")
-check("2 ranks against 1", worst, 1e-6)
+for ranks in (2, 4):
+    many = slope(ranks=ranks).snapshots()[-1][1]
+    worst = max(np.max(np.abs(v - many[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield")
+    check(f"{ranks} ranks against 1", worst, 1e-6)
 check_true("no particle is lost", np.array_equal(last["id"], one.snapshots()[0][1]["id"]) and all(np.isfinite(v).all() for v in last.values()))
 check("what the balance of energy leaves, of the work of gravity", abs(one.balance["energy_remainder_J"][-1] / one.balance["gravity_work_J"][-1]), 0.02)
 for what in ("water", "methane"):
@@ -74,7 +116,7 @@ check_true("a restart in the slide, bit for bit", all(np.array_equal(v, again[k]
 
 summary = (one.out / "summary.txt").read_text()
 check_true("the summary says which limits set the step of each stage", len(re.findall(r"hybrid .*stable step \S+ s to \S+ s \((waves in the mixture|waves in thin domains) [\d.]+ %", summary)) == 2, summary[-900:])
-run = slide.Run(one.out, loaded=3.0)
+run = slide.Run(one.out)
 m = slide.measure(run)
 slide.write(run, m, slide.bands(run))
 slide.write(run, m, slide.bands(run))
@@ -103,4 +145,6 @@ for what in ("water", "methane"):
     check(f"{what} kept where pressures relax", np.max(np.abs(relaxed.balance[f"{what}_error"])), 1e-12)
 torn()
 known_bands()
+known_slides()
+rows_of_the_page()
 finish()

@@ -413,7 +413,8 @@ static void TestTangent(void **state)
   (void)state;
   printf("tangent against differences, worst of 400 random states: 29 x 17 entries | wide part, relative to the row\n");
   for (int regime = 0; regime < REGIMES; regime++) {
-    const double step = regime == JUST_ABOVE || regime == JUST_BELOW ? 2e-4 : 5e-3;
+    /* where there is no gas the digits of p_e - p_g tell more than the law's curvature */
+    const double step = regime == JUST_ABOVE || regime == JUST_BELOW ? 2e-4 : regime == NO_GAS ? 2e-2 : 5e-3;
     Worst        row = {0.0, 0, 0}, wide = {0.0, 0, 0};
 
     for (int n = 0; n < 400; n++) {

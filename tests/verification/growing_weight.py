@@ -40,14 +40,15 @@ held, alone = cut("auto", *FIRM), cut("sdirk2", *FIRM)
 names = [n for n in _files.different(held.out, alone.out, ("probes.csv", "balance.csv")) if n.startswith(("fields", "probes", "balance"))]
 check_true("ground that holds: sdirk2 bit for bit", not changes(held) and not names, ", ".join(names[:5]))
 
-for what, cut_at in {"at the change": first, "three steps after the change back": second + 3}.items():
+for what, cut_at in {"before the change": first - 1, "at the change": first, "after it": first + 1, "at the change back": second, "three steps after it": second + 3}.items():
     out = scratch() / "out"
     cut("auto", "-stepper_max_steps", cut_at, out=out)
     cut("auto", "-restart", out / "checkpoint.h5", out=out)
     names = _files.different(run.out, out)
     check_true(f"cut {what}: the same bit for bit", not names, ", ".join(names[:5]))
-two = changes(cut("auto", "-stepper_max_steps", first + 8, ranks=2))
-check_true("2 ranks go over to hybrid", [c[1:] for c in two] == [("sdirk2", "hybrid")] and np.isclose(two[0][0], found[0][0], rtol=1e-6), str(two))
+for ranks in (2, 4):
+    many = changes(cut("auto", "-stepper_max_steps", first + 8, ranks=ranks))
+    check_true(f"{ranks} ranks go over to hybrid", [c[1:] for c in many] == [("sdirk2", "hybrid")] and np.isclose(many[0][0], found[0][0], rtol=1e-6), str(many))
 mass = [np.sum(p["mass_solid"]) for _, p in run.snapshots()]
 check("mass", np.ptp(mass) / mass[0], 1e-14)
 finish()

@@ -26,6 +26,8 @@ ON, on, within = fronts("yes")
 rows.append(("sdirk2", "yes", on.min(), on.max()))
 check_true("without it temperatures leave their bounds", beyond > 0.5, f"{beyond:.3g} K")
 judge("fronts", "sdirk2: beyond 10 and 20 degC, K", within, 0.02)
+WARNS = "stabilisation_heat: yes, where flow carries the heat"
+check_true("a run without it ends with a warning that names it, one with it does not", WARNS in OFF.output.splitlines()[-1] + OFF.output.splitlines()[-2] and "than start" not in ON.output, OFF.output[-300:])
 HYBRID = ("-stepper_type", "hybrid", "-inertia", "yes", "-mat_sand_water_bulk_modulus", "1 MPa", "-time_end", "12 h", "-output_times", "0 s, 12 h")
 _, hy, hybrid = fronts("yes", *HYBRID)
 _, free, _ = fronts("no", *HYBRID)

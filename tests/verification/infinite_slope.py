@@ -61,7 +61,7 @@ def errors(found):
 
 
 def changed():
-    """sdirk2 until the slab is about to fail, then hybrid: F and speed, two ranks, and restarts right before and after the change."""
+    """sdirk2 until the slab is about to fail, then hybrid: F and speed, two and four ranks, and restarts right before and after the change."""
     stages = ("-stages", "quiet,slide", "-stage_quiet_end", "4 s", "-stage_slide_end", "5 s", *(f"-stage_quiet_{o[1:]}" if "stepper" in o else o for o in IMPLICIT))
     kept = scratch() / "whole"
     whole = run(2.0, *stages, out=kept)
@@ -70,8 +70,9 @@ def changed():
     last = whole[-1][1]
     found = errors(onset(*motion(whole, 2.0)))
     judge("slopes", "infinite slope, sdirk2 and then hybrid: F when it fails against limit equilibrium", abs(found[0]), 0.035)
-    two = run(2.0, *stages, ranks=2)[-1][1]
-    check("... 2 ranks against 1, of the largest value", max(np.max(np.abs(v - two[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield"), 1e-6)
+    for ranks in (2, 4):
+        many = run(2.0, *stages, ranks=ranks)[-1][1]
+        check(f"... {ranks} ranks against 1, of the largest value", max(np.max(np.abs(v - many[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield"), 1e-6)
     for what, cut in (("before", change - 1), ("at", change), ("after", int(b["step"][b["time_s"] > 4][0]))):
         out = scratch() / what
         run(2.0, *stages, "-stepper_max_steps", cut, out=out)

@@ -1,0 +1,119 @@
+"""What the page of the slopes (scripts/slopes.py) says of runs of cases/slope_warming: a sea that warms over decades, and slides of seconds in it."""
+import re
+from pathlib import Path
+
+import numpy as np
+
+YEAR = 31557600.0
+LOOKS = (30, 50, 100, 150)  # years of warming at which hydrate is looked at
+WEAK = "-stage_warm_materials slope,weak"
+ROWS = {  # name: (case, what the row is called, options)
+    "W": ("warming", "1e-16 m² (the case)", ""),
+    "W_falls": ("warming", "the same, and the sea falls by 20 m", "-ambient_level '{ramp: [461.5 m, 441.5 m, 20 a, 120 a]}'"),
+    "W_k15": ("warming", "1e-15 m²", "-mat_sand_permeability_k0 1e-15m^2"),
+    "W_k14": ("warming", "1e-14 m²", "-mat_sand_permeability_k0 1e-14m^2"),
+    "W_16": ("warming", "16°", f"{WEAK} -mat_weak_plasticity_friction_peak 16deg"),
+    "W_15": ("warming", "15° (the case)", WEAK),
+    "W_14": ("warming", "14°", f"{WEAK} -mat_weak_plasticity_friction_peak 14deg"),
+    "W_14_ppc9": ("warming", "14°, 3 x 3 particles", f"{WEAK} -mat_weak_plasticity_friction_peak 14deg -region_slope_particles_per_cell 3,3"),
+    "W_12": ("warming", "12°", f"{WEAK} -mat_weak_plasticity_friction_peak 12deg"),
+}
+
+
+def measure(run, folder):
+    """What the page needs besides the measures of the slide.  run: slide.Run of the folder."""
+    b, warm = run.balance, run.balance["time_s"] > run.loaded * (1 + 1e-9)
+    implicit = b["newton"] > 0
+    summary, log = ((Path(folder) / name).read_text() for name in ("summary.txt", "log.txt"))
+    phases = re.findall(r"^  stage (\w+): (\w+) from .*?, (\d+) steps, (\d+) refused", summary, re.M)
+    count = lambda k, stages, kinds: sum(int(p[k]) for p in phases if p[0] in stages and p[1] in kinds)
+    forecast = re.findall(r"stage warm: forecast: hybrid (\S+) steps, ([^;]+);", log)
+    return {
+        "steps": count(2, ("settle", "warm"), ("euler", "sdirk2")), "refused": count(3, ("settle", "warm"), ("euler", "sdirk2")),
+        "warm_steps": count(2, ("warm",), ("sdirk2",)), "warm_refused": count(3, ("warm",), ("sdirk2",)), "settle_steps": count(2, ("settle",), ("euler",)),
+        "hybrid_steps": count(2, ("warm",), ("hybrid",)),
+        "median_step_days": float(np.median(b["dt_s"][warm & implicit]) / 86400),
+        "hydrate_left": [float(np.interp(run.loaded + y * YEAR, b["time_s"], b["hydrate_kg"]) / b["hydrate_kg"][0]) for y in LOOKS],
+        "least_p_c_Pa": float((run.end["p_g"] - run.end["p_w"]).min()),
+        "largest_plastic_strain": float(run.end["eps_d_p"].max()),
+        "implicit_kinetic_energy_J": float(b["kinetic_energy_J"][warm & implicit].max()),
+        "errors": {k: float(abs(b[f"{k}_error"]).max()) for k in ("water", "methane", "heat")},
+        "loaded_s": run.loaded,
+        "hybrid_alone": list(forecast[0]),
+    }  # fmt: skip
+
+
+def percent(shares):
+    return ", ".join(f"{100 * s:.0f}" for s in shares) + " %"
+
+
+def table(rows):
+    return ["| " + " | ".join(map(str, rows[0])) + " |", "|" + "---|" * len(rows[0])] + ["| " + " | ".join(map(str, r)) + " |" for r in rows[1:]]
+
+
+def ground(kept, names):
+    """Rows of runs that hold: what is left of the hydrate, steps, and how far they move."""
+    rows = [("k_0", "hydrate left after 30, 50, 100, 150 years", "implicit steps of the warming (refused), median", "failed (m³/m)", "largest movement", "least p_g - p_w at the end")]
+    for m, w, label in ((kept[n], kept[n]["warming"], ROWS[n][1]) for n in names if n in kept):
+        rows.append((label, percent(w["hydrate_left"]), f"{w['warm_steps']} ({w['warm_refused']}), {w['median_step_days']:.0f} days", f"{m['failed_volume_m2']:.0f}",
+                     f"{m['largest_displacement_m']:.2f} m", f"{w['least_p_c_Pa'] / 1e6:.2f} MPa"))  # fmt: skip
+    return table(rows)
+
+
+def slides(kept, names):
+    """Rows of weak ground: every phase that hybrid carried."""
+    rows = [("friction at peak", "years of warming: how long, E_k and speed at most, way of the face", "implicit steps (refused)", "of `hybrid`", "E_k that implicit steps see", "failed (m³/m)", "hydrate left", "water, methane, heat closed to")]
+    for m, w, label in ((kept[n], kept[n]["warming"], ROWS[n][1]) for n in names if n in kept):
+        said = "<br>".join(f"{(s['from_s'] - w['loaded_s']) / YEAR:.1f}: {s['lasts_s']:.2g} s, {s['kinetic_energy_J'] / 1e6:.2g} MJ/m, {s['velocity_m_s']:.2g} m/s, {s['probes_m']['face']:.1f} m" for s in m["slides"])
+        rows.append((label, said or "holds", f"{w['steps']} ({w['refused']})", w["hybrid_steps"], f"{w['implicit_kinetic_energy_J']:.2g} J/m", f"{m['failed_volume_m2']:.0f}", f"{100 * w['hydrate_left'][-1]:.0f} %",
+                     ", ".join(f"{w['errors'][k]:.0e}" for k in ("water", "methane", "heat"))))  # fmt: skip
+    return table(rows)
+
+
+def section(kept):
+    """The section of the page."""
+    forecast = kept["W"]["warming"]["hybrid_alone"]
+    return [*BEFORE, *ground(kept, ("W", "W_falls", "W_k15", "W_k14")), *GROUND.format(steps=forecast[0]).split("\n"), *slides(kept, ("W_16", "W_15", "W_14", "W_14_ppc9", "W_12")), *AFTER]
+
+
+BEFORE = """
+## A sea that warms
+
+[slope_warming](../cases/slope_warming/README.md): the body of A, the sea warmer by 3 K in 100 years. From hydrate, gas and water at equilibrium everywhere `auto` goes through 170 years in implicit steps of months and, with the paper's strength, the slope holds.
+
+![hydrate under a warming sea](figures/case_slope_warming.png)
+
+Cells of 16 m; k_0 by `-mat_sand_permeability_k0`, the sea's level as the case's README says. With 1e-15 m² and more all is elastic, as gas and pressure leave:
+""".split("\n")
+GROUND = """
+`hybrid` alone would take {steps} steps for the same years.
+
+With 1e-15 m² and more gas rises out of the foot, hydrate that forms there takes the rest, until p_g = p_e, (371) of [equations.md](equations.md), and the next row with it; 1e-16 m² never gets there. With 1e-14 m² so much gas is
+used up that steps of a year would overshoot p_g below zero; the density of gas there is that of a tenth of p_w, (323). The twenty years of settling take 564 steps of `euler` at 1e-14 m² (106 at 1e-16).
+
+**Ground that fails** (cohesion 300 to 10, residual 5 kPa, friction to 4°, no dilation, η_s = 20: `-stage_warm_materials slope,weak`). `auto` sees that equilibrium is lost, (356) of [equations.md](equations.md), goes over
+to `hybrid` at the state before the slide, and after it particles lose what `hybrid` left against their nodes (357), so that implicit steps grow again. Every phase that `hybrid` carried; speed is that of the failed mass with all of E_k:
+"""
+AFTER = """
+A phase of 1e-2 MJ/m and less right after a slide is its last creep: implicit steps took over, found equilibrium lost once more, and `hybrid` let it settle. Twice implicit steps of 5 s have some of a motion: the beginning (12 s) of the first slide of 14° with
+3 x 3 particles, up to 0.23 of its 1.3 MJ/m, and all of one of 0.04 MJ/m after 100.0 years in the ground of 12°. The front of 14° with 3 x 3 particles ends at 545 m, farther than with 2 x 2 (425 m); so what comes of a slide that goes on for decades is known to a factor of two at best.
+
+Two things made this possible. *Who carries the slide*: before, three implicit steps in a row had to be dearer than `hybrid`, and those of seconds had most of the motion, with a sixth of its energy (0.079 instead of 0.46 MJ/m in the
+first slide of the 14° ground as it was then). *The sea gives no gas* (358): torn ground under the sea, pulled apart faster than water comes in, had taken gas through its open faces, ten times what it held, swelled until it was lighter than water
+and rose out of the grid; with it the 14° ground went to and fro at 126 years and the 12° one stopped at 110.
+
+The onset moves with what the state before holds, and with it what comes later: 15° failed after 116.5 years, and twice more, 14° after 107.4 and without an end, when what left through the floor had the density of the sea's pressure
+instead of the body's (365) and Newton's updates were bound by nodes instead of particles (349); the third slide of 12° came after 147.7 instead of 142.1 years in an earlier form of the program. Steps there are of half a year. The first slide of each ground and what it moves are the same within a tenth.
+With dilation (2° to 0°) the slide of 12.5 m cells took weeks instead of seconds, since suction holds it; `hybrid` from there agreed: 0.3 m in the first seconds, then next to nothing in a minute.
+
+*Sediment without gas* is another matter. A column of six cells is enough to see it: 2 x 2 particles a cell,
+100 m of sediment with S_h = 0.4 and no gas (k_0 = 1e-15 m², p_0 = 10 kPa, S_gr = 0.3), the sea's pressure and a temperature that rises by 0.03 K a year on its top. It ends, but refuses 31 of 201 steps, in bursts: whenever
+hydrate in one more row of particles begins to go, steps fall from years to hours or minutes. Neither a surface across cells nor small shares of a cell are needed for it:
+
+- Hydrate that becomes water alone takes less room, so as long as a pore has no gas phase, dissociation lowers p_w and drives itself on: 580 Pa per kg in a particle of 100 m³, which for a reaction as fast as this one is 1700 times what it takes to stop
+  it. The tangent of a pore without gas therefore has the wrong sign, and Newton's first update lets hydrate form (p_g to -1e10 Pa). The solution lies beyond the kink of (101), where 0.05 kg of hydrate give the gas that holds the pressure.
+- From guesses with gas (5 % of the pores) Newton's method does go to that solution, but by one p_trap of p_c an iteration, since s_g is exponential in p_c < 0; and guesses by nodes change the particles of the cell that hold gas already.
+- While hydrate could form, it takes what methane water holds: p_g falls to 1.1 MPa below p_w, and next to a particle with gas nodes stand at p_c = +0.3 and -0.9 MPa. Drive by p_g where there is no gas, the methane's own pressure, takes this
+  away and was worse: the dissociation of traces refuses steps from the start.
+- The matrix (101) of neighbouring nodes alternates p_g from node to node; lumped, it no longer does, but refused steps are as many.
+""".split("\n")

@@ -1,0 +1,221 @@
+/* What a run says at its end of the range of its pressures and temperatures, beside what it started from and what acted
+   on it; and of steps that were accepted above the tolerance. */
+#include "run_private.h"
+
+#define BEYOND 0.02   /* of the range, and ... */
+#define LEAST_T 0.1   /* ... K or ... */
+#define LEAST_P 1e4   /* ... Pa, that is worth a word */
+#define DOUBTFUL 10.0 /* times the tolerance, from which errors that were put up with are warned of */
+
+typedef struct {
+  double low, high;
+} Span;
+
+static void Add(Span *span, const Schedule *s)
+{
+  for (PetscInt k = 0; k < s->n; k++) {
+    span->low  = fmin(span->low, s->y[k] - ScheduleSwing(s));
+    span->high = fmax(span->high, s->y[k] + ScheduleSwing(s));
+  }
+}
+
+/* Temperatures that nothing but the reaction leads out of, degC: heat is conducted and carried between those of the
+   start and of the conditions.  Sources open it upwards, sinks downwards. */
+static Span Temperatures(const Stepper *s)
+{
+  const Case *c    = StepperCase(s);
+  Span        span = {s->state.begin[LOWEST_T], s->state.begin[HIGHEST_T]};
+
+  for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++) {
+    const Scene *scene = &CaseInStage(c, k)->scene;
+
+    for (PetscInt i = 0; i < scene->nbc; i++) {
+      const Bc *b    = &scene->bc[i];
+      Span      flux = {0.0, 0.0};
+
+      if (b->type == BC_HEAT_FLUX)
+        Add(&flux, &b->value);
+      else if (b->type == BC_WELL)
+        Add(&span, &b->heated);
+      else if (b->type == BC_CONVECTION || b->type == BC_FACE_TEMPERATURE || b->type == BC_INFLOW ||
+               b->type == BC_TEMPERATURE || b->type == BC_REGION_TEMPERATURE)
+        Add(&span, &b->value);
+      span.low  = flux.low < 0.0 ? -INFINITY : span.low;
+      span.high = flux.high > 0.0 ? INFINITY : span.high;
+    }
+    if (scene->compression_heat)
+      span = (Span){-INFINITY, INFINITY};
+    if (scene->fields.has & HAS_PLASTIC)
+      span.high = INFINITY;
+  }
+  return span;
+}
+
+/* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
+   the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
+static double Reaction(const Scene *c, double from, double p, bool warm)
+{
+  double out = from;
+
+  for (PetscInt k = 0; k < c->nmaterial; k++) {
+    const Material *m   = &c->material[k];
+    double          low = -50.0, high = 60.0, d;
+
+    if (!m->reacts || !c->fields.phase[PHASE_G])
+      continue;
+    while (high - low > 1e-6) {
+      const double middle = 0.5 * (low + high);
+
+      if (EquilibriumPressure(&m->kinetics.equilibrium, middle, &d) < p)
+        low = middle;
+      else
+        high = middle;
+    }
+    out = warm ? fmax(out, low) : fmin(out, low);
+  }
+  return out;
+}
+
+static PetscErrorCode Place(const Extreme *e, char text[96])
+{
+  char when[32];
+
+  PetscFunctionBeginUser;
+  StepperTime(e->t, e->t, 4, when);
+  PetscCall(PetscSNPrintf(text, 96, "near (%.4g, %.4g) m at t = %s", e->at[0], e->at[1], when));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RangeSummary(const Stepper *s, char text[512])
+{
+  static const struct {
+    const char *name, *unit;
+    double      per;
+    int         low;
+    unsigned    has;
+  } of[]      = {{"p", "MPa", 1e6, LOWEST_P, HAS_WATER}, {"T", "degC", 1.0, LOWEST_T, HAS_HEAT}};
+  size_t told = 0;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  for (int k = 0; k < 2; k++) {
+    const Extreme *low = &s->state.extreme[of[k].low];
+    char           from[96], to[96];
+
+    if (!(s->model->c->fields.has & of[k].has))
+      continue;
+    PetscCall(Place(&low[0], from));
+    PetscCall(Place(&low[1], to));
+    PetscCall(PetscSNPrintf(text + told, 512 - told, "  %s of particles from %.5g %s, %s, to %.5g, %s\n", of[k].name,
+                            low[0].value / of[k].per, of[k].unit, from, low[1].value / of[k].per, to));
+    told = strlen(text);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WarnOfTemperatures(const Stepper *s)
+{
+  const StepperState *z      = &s->state;
+  const Scene        *c      = s->model->c;
+  const Span          acted  = Temperatures(s);
+  bool                reacts = false;
+  const Span          bound  = {Reaction(c, acted.low, z->extreme[LOWEST_P].value, false),
+                                Reaction(c, acted.high, z->extreme[HIGHEST_P].value, true)};
+  const double low = fmin(bound.low, z->extreme[LOWEST_T].value), high = fmax(bound.high, z->extreme[HIGHEST_T].value),
+               slack = fmax(LEAST_T, isfinite(high - low) ? BEYOND * (high - low) : 0.0);
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->nmaterial; k++)
+    reacts = reacts || (c->material[k].reacts && c->fields.phase[PHASE_G]);
+  for (int k = LOWEST_T; c->fields.heat && k <= HIGHEST_T; k++) {
+    const bool     warm  = k == HIGHEST_T;
+    const Extreme *e     = &z->extreme[k];
+    const double   limit = warm ? bound.high : bound.low, beyond = warm ? e->value - limit : limit - e->value;
+    char           place[96];
+
+    if (!(beyond > slack))
+      continue;
+    PetscCall(Place(e, place));
+    PetscCall(PetscFPrintf(
+        s->model->grid.comm, stderr,
+        "clathra: warning: a particle had %.4g degC, %s: %.2g K %s than start, conditions%s can make it (%.4g degC), "
+        "so "
+        "it is the grid's doing.  What to try, in this order: %s%sfiner cells there; a ramp instead of a jump "
+        "(docs/giving_up.md)\n",
+        e->value, place, beyond, warm ? "warmer" : "colder",
+        limit == (warm ? acted.high : acted.low) ? "" : " and hydrate", limit,
+        reacts && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
+            ? "stabilisation_reaction_heat: yes, beside hydrate; "
+            : "",
+        c->fields.fluid && !c->stabilisation.heat_upwind ? "stabilisation_heat: yes, where flow carries the heat; "
+                                                         : ""));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where nothing presses but pressures, the lowest of these and the start's, Pa; NAN: something else acts. */
+static double LowestPressure(const Stepper *s)
+{
+  const Case *c    = StepperCase(s);
+  Span        span = {s->state.begin[LOWEST_P], s->state.begin[HIGHEST_P]};
+
+  for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++) {
+    const Scene *scene = &CaseInStage(c, k)->scene;
+
+    if (SceneGravity(scene) > 0.0 || scene->ambient_density > 0.0 || scene->ambient_pressure.n > 1 ||
+        ScheduleValue(&scene->ambient_pressure, 0.0) != 0.0)
+      return NAN;
+    for (PetscInt i = 0; i < scene->nbc; i++) {
+      const Bc *b = &scene->bc[i];
+
+      if (b->type == BC_PLATE || b->type == BC_PLATE_LINE || b->type == BC_INFLOW || b->type == BC_WELL)
+        return NAN;
+      if (b->type != BC_PRESSURE)
+        continue;
+      Add(&span, &b->value);
+      for (int ph = 0; ph < PHASE_COUNT; ph++)
+        Add(&span, &b->phase[ph]);
+    }
+  }
+  return span.low;
+}
+
+/* A pressure below all may be physics (what melts or cools takes less room, what is unloaded more), so this is no more
+   than a note. */
+static PetscErrorCode NotePressures(const Stepper *s)
+{
+  const StepperState *z     = &s->state;
+  const Extreme      *e     = &z->extreme[LOWEST_P];
+  const double        least = s->model->c->fields.phase[PHASE_W] ? LowestPressure(s) : NAN, beyond = least - e->value;
+  char                place[96];
+
+  PetscFunctionBeginUser;
+  if (!(beyond > fmax(LEAST_P, BEYOND * (z->extreme[HIGHEST_P].value - least))))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Place(e, place));
+  PetscCall(PetscFPrintf(
+      s->model->grid.comm, stderr,
+      "clathra: note: the pressure of a particle was %.4g MPa, %s: %.3g MPa below that of the start and of all "
+      "conditions.  Melting hydrate, cooling or unloading may do that; at a border of layers that has "
+      "left the grid's lines it is one row of particles, and pictures have the nodes' mean "
+      "(docs/limits.md)\n",
+      1e-6 * e->value, place, 1e-6 * beyond));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode EndWarnings(const Stepper *s)
+{
+  const StepperState *z = &s->state;
+
+  PetscFunctionBeginUser;
+  PetscCall(WarnOfTemperatures(s));
+  PetscCall(NotePressures(s));
+  if (z->loose_total && z->err_worst > DOUBTFUL)
+    PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
+                           "clathra: warning: %" PetscInt_FMT " of %" PetscInt_FMT
+                           " steps were accepted above the tolerance, with an estimated error of up to %.3g of it: no "
+                           "shorter step lowered it (particles that change cells, a jump), or stepper_dt_min did not "
+                           "let it; finer cells or a ramp there, and a look at balance.csv's dt_s\n",
+                           z->loose_total, z->step, z->err_worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
