@@ -140,7 +140,7 @@ typedef struct {
   double p_ref, T_ref;
 } Liquid; /* rho = rho0 exp((p - p_ref)/K - beta (T - T_ref)); also solid and hydrate, with K infinite */
 /* rho at p (Pa) and T (degC), kg/m^3, with slopes, kg/(m^3 Pa) and kg/(m^3 K). */
-double             LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT);
+double LiquidDensity(const Liquid *law, double p, double T, double *drho_dp, double *drho_dT);
 #define GAS_SOLUBILITY 1.9e-5 /* methane's in water at 10 degC, mol/(m^3 Pa): Sander 2015 */
 typedef struct Gas Gas;
 struct Gas {

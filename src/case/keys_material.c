@@ -134,7 +134,8 @@ const Key material_key[] = {
     REAL(Material, "gas_molar_mass", gas.M, "kg/mol", "(0,10]", "0.016 kg/mol", "methane by default",
          .has = HAS_GAS | HAS_HYDRATE, BINDS(HAS_ALL)),
     REAL(Material, "gas_solubility", gas.henry, "mol/(m^3 Pa)", "[0,1]", "auto",
-         "Henry's: what water holds of it in equilibrium with p_g; auto: methane's at 10 degC, 1.9e-5, where sediment may "
+         "Henry's: what water holds of it in equilibrium with p_g; auto: methane's at 10 degC, 1.9e-5, where sediment "
+         "may "
          "be free of gas (without_gas), else 0",
          .word = "auto", .has = HAS_GAS_PRESSURE, BINDS(HAS_GAS)),
     LAWKEY("gas_eos", "peng_robinson", law_Gas, "density; ideal is M p/(R T), the paper's", BINDS(HAS_GAS)),

@@ -227,7 +227,7 @@ static PetscErrorCode Derive(Reader *r, Case *c)
     if (isinf(m->gas.henry)) /* compression_heat takes all methane for gas */
       m->gas.henry = without && !c->scene.compression_heat ? GAS_SOLUBILITY : 0.0;
     m->gas.carried = c->scene.fields.has & HAS_GAS_PRESSURE ? m->gas.M * m->gas.henry : 0.0;
-    m->gas.trace    = m->gas.carried > 0.0 ? m->gas.carried : without ? GasTrace(&m->gas) : 0.0; /* (102) */
+    m->gas.trace   = m->gas.carried > 0.0 ? m->gas.carried : without ? GasTrace(&m->gas) : 0.0; /* (102) */
     DeriveFluids(m);
     m->plasticity.factor = c->scene.strength_factor;
     m->plasticity.cell   = sqrt((c->scene.upper[0] - c->scene.lower[0]) / c->scene.cells[0] *

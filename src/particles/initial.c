@@ -51,8 +51,8 @@ double InitialWaterPressure(const Scene *c, const Region *r, double pressure, co
   return pressure - water->K * log1p(weight / water->K * exp((pressure - water->p_ref) / water->K)); /* (82) */
 }
 
-/* (103): p_g where there is no gas, from p_c (Pa) at which the law leaves none; hydrate is in equilibrium with what water
-   holds of its methane. */
+/* (103): p_g where there is no gas, from p_c (Pa) at which the law leaves none; hydrate is in equilibrium with what
+   water holds of its methane. */
 static double InitialGasPressure(const Region *r, const Material *mat, double pc, const InitialScalars *s)
 {
   double dT;
@@ -66,7 +66,7 @@ static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Ma
                                        InitialScalars *s)
 {
   const bool two = c->fields.has & HAS_GAS_PRESSURE, none = two && r->Sg == 0.0 && mat->gas.trace > 0.0;
-  double     pc  = 0.0, d[2];
+  double     pc = 0.0, d[2];
 
   PetscFunctionBeginUser;
   s->sg = r->Sg / (1.0 - r->Sh);

@@ -202,7 +202,8 @@ static int Changes(const Variant *v, const char *stepper, bool slips, Held held[
 /* Not compared: what the next step starts with alone, and each integrator keeps in its own way. */
 static bool Compared(const ParticleVariable *q, bool slips)
 {
-  static const int own[] = {P_RATE, P_RATE_PG, P_RATE_T, P_RATE_SH, P_GW, P_GG, P_GT, P_BT, P_KP, P_NONLOCAL_RATE, P_HEAT};
+  static const int own[] = {P_RATE, P_RATE_PG, P_RATE_T, P_RATE_SH,       P_GW,  P_GG,
+                            P_GT,   P_BT,      P_KP,     P_NONLOCAL_RATE, P_HEAT};
 
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     if (q->first == own[k])
