@@ -61,7 +61,7 @@ def difference(a, b):
     """Largest difference of the last snapshots over the size of each variable (of the stress for the distance to yield, which is round-off in flow), and which."""
     x, y = a.snapshots()[-1][1], b.snapshots()[-1][1]
     size = {n: np.max(np.abs(x["stress" if n == "yield_distance" else n])) or 1.0 for n in x}
-    worst = {n: np.max(np.abs(x[n] - y[n])) / size[n] for n in x if n != "yield" and not n.startswith(("v_", "grad", "rate"))}
+    worst = {n: np.max(np.abs(x[n] - y[n])) / size[n] for n in x if n != "yield" and not n.startswith(("v_", "grad", "mixed", "rate"))}
     name = max(worst, key=worst.get)
     return worst[name], name
 

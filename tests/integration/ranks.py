@@ -59,6 +59,8 @@ def snapshot_difference(a, b):
                 scale = size(name.removeprefix("rate_")) / dt
             elif name.startswith("grad_"):  # what it makes over a particle
                 scale = size(name.removeprefix("grad_")) / (2 * np.max(x["half_length"]))
+            elif name.startswith("mixed_"):
+                scale = size(name.removeprefix("mixed_")) / (2 * np.max(x["half_length"])) ** 2
             worst = max(worst, (np.max(np.abs(x[name] - y[name])) / scale, f"{name} at {t:g} s"))
     return worst
 

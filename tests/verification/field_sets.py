@@ -49,6 +49,8 @@ def difference(a, b, leave_out=()):
             continue
         if name.startswith("grad_"):
             size = np.max(np.abs(x[name.removeprefix("grad_")])) / (2 * np.max(x["half_length"]))
+        if name.startswith("mixed_"):
+            size = np.max(np.abs(x[name.removeprefix("mixed_")])) / (2 * np.max(x["half_length"])) ** 2
         if name in ("v_s", "v_w", "v_g"):
             size = max(np.max(np.abs(s[v])) for _, s in a.snapshots() for v in ("v_s", "v_w", "v_g") if v in s) or 1.0  # over the run: what drains comes to rest
         worst, names = max(worst, (float(np.max(np.abs(x[name] - y[name])) / size), name)), names + 1
