@@ -267,7 +267,7 @@ def slope_warming(run, *axes):
     row, moved = np.arange(late.sum()), np.interp(b["time_s"][late], p["time_s"], p["face.u_x_m"])
     axes[5].semilogy(row, b["dt_s"][late], color=COLOURS[0])
     axes[5].set(xlabel="rows of balance.csv from 109 years on", ylabel="step (s)", ylim=(1e-3, None))
-    axes[5].set_title("weak ground: steps, way of the face; slides after\n" + ", ".join(f"{(s['from_s'] - 20 * year) / year:.1f} a: {s['lasts_s']:.0f} s, {s['kinetic_energy_J'] / 1e6:.1f} MJ/m" for s in m["slides"]), fontsize=8)
+    axes[5].set_title("weak ground: steps, way of the face; slides after\n" + ", ".join(f"{(s['from_s'] - 20 * year) / year:.1f} a: {s['lasts_s']:.0f} s, {s['kinetic_energy_J'] / 1e6:.1f} MJ/m" for s in m["slides"] if s["kinetic_energy_J"] > 0.1 * m["peak_kinetic_energy_J"]), fontsize=8)
     beside = axes[5].twinx()
     beside.plot(row, moved, color=COLOURS[1])
     beside.set_ylabel("m", color=COLOURS[1])
