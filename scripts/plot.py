@@ -2,7 +2,7 @@
 """Pictures of any run: plot.py FOLDER [FOLDER ...] writes FOLDER/figures/*.png
 
 probes.png     histories at the probes
-meters.png     what meters and plates count, free gas in the body
+meters.png     what meters and plates count, methane that is not in hydrate
 balance.png    errors of the water, methane and energy balance, length of the steps
 profiles.png   a strip one cell wide: profiles along it at up to six snapshots; upright if the strip is
 particles.png  any other body, deformed: p, T, S_h, S_w (or what else changes) at up to four snapshots

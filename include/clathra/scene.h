@@ -151,6 +151,16 @@ static inline double RegionK0(const Scene *c, const Region *r)
   return r->consolidated ? 1.0 - sin(MaterialFrictionAngle(&c->material[r->material])) : r->K0;
 }
 
+/* Does hydrate form or melt anywhere? */
+static inline bool SceneReacts(const Scene *c)
+{
+  bool reacts = false;
+
+  for (PetscInt k = 0; k < c->nmaterial; k++)
+    reacts = reacts || c->material[k].reacts;
+  return reacts;
+}
+
 /* Does a region start without gas where there are two pressures (section 19 of docs/equations.md)? */
 static inline bool SceneStartsWithoutGas(const Scene *c)
 {

@@ -150,7 +150,7 @@ def production(meters, names):
         curves = [(n, meters[f"{n}.{column}"]) for n in names if f"{n}.{column}" in meters]
         found += [(label, curves)] if any(v.any() for _, v in curves) else []
     if np.ptp(meters.get("free_gas_std_m3", np.zeros(1))) > 0:
-        found.append(("free gas in the body (standard m³)", [("body", meters["free_gas_std_m3"])]))
+        found.append(("methane not in hydrate (standard m³)", [("body", meters["free_gas_std_m3"])]))
     return found
 
 

@@ -140,7 +140,11 @@ static PetscErrorCode Balanced(const Scene *c, const Region *r[2], const double 
   const int finer = c->material[r[1]->material].retention.p0 > c->material[r[0]->material].retention.p0;
 
   PetscFunctionBeginUser;
-  if (r[0]->Sg == 0.0 || r[1]->Sg == 0.0)
+  if (r[0]->Sg == 0.0 && r[1]->Sg == 0.0)
+    PetscCall(PetscSNPrintf(text, 256,
+                            "the same retention_p_trap in both: p_g starts 20 of it below p_w, beside hydrate at its "
+                            "equilibrium; a small one for the finer, 1 kPa, says least"));
+  else if (r[0]->Sg == 0.0 || r[1]->Sg == 0.0)
     PetscCall(PetscSNPrintf(text, 256, "Sg: 0 in both or neither"));
   else
     PetscCall(PetscSNPrintf(text, 256,

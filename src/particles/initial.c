@@ -51,14 +51,14 @@ double InitialWaterPressure(const Scene *c, const Region *r, double pressure, co
   return pressure - water->K * log1p(weight / water->K * exp((pressure - water->p_ref) / water->K)); /* (82) */
 }
 
-/* (103): p_g where there is no gas, from p_c (Pa) at which the law leaves none; hydrate is in equilibrium with what
-   water holds of its methane. */
+/* (103): p_g where there is no gas, from p_c (Pa) at which the law leaves none; water holds some methane, and hydrate
+   is in equilibrium with it. */
 static double InitialGasPressure(const Region *r, const Material *mat, double pc, const InitialScalars *s)
 {
-  double dT;
+  const double pg = fmax(s->pw + pc, CL_GAS_FLOWS * s->pw);
+  double       dT;
 
-  return mat->reacts && r->Sh > 0.0 ? fmin(s->pw + pc, EquilibriumPressure(&mat->kinetics.equilibrium, s->T, &dT))
-                                    : s->pw + pc;
+  return mat->reacts && r->Sh > 0.0 ? fmin(pg, EquilibriumPressure(&mat->kinetics.equilibrium, s->T, &dT)) : pg;
 }
 
 /* Pressures of the phases from their mean (10). */
