@@ -115,18 +115,15 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
 
 static PetscErrorCode WarnOfTemperatures(const Stepper *s)
 {
-  const StepperState *z      = &s->state;
-  const Scene        *c      = s->model->c;
-  const Span          acted  = Temperatures(s);
-  bool                reacts = false;
-  const Span          bound  = {Reaction(c, acted.low, z->extreme[LOWEST_P].value, false),
-                                Reaction(c, acted.high, z->extreme[HIGHEST_P].value, true)};
+  const StepperState *z     = &s->state;
+  const Scene        *c     = s->model->c;
+  const Span          acted = Temperatures(s);
+  const Span          bound = {Reaction(c, acted.low, z->extreme[LOWEST_P].value, false),
+                               Reaction(c, acted.high, z->extreme[HIGHEST_P].value, true)};
   const double low = fmin(bound.low, z->extreme[LOWEST_T].value), high = fmax(bound.high, z->extreme[HIGHEST_T].value),
                slack = fmax(LEAST_T, isfinite(high - low) ? BEYOND * (high - low) : 0.0);
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < c->nmaterial; k++)
-    reacts = reacts || (c->material[k].reacts && c->fields.phase[PHASE_G]);
   for (int k = LOWEST_T; c->fields.heat && k <= HIGHEST_T; k++) {
     const bool     warm  = k == HIGHEST_T;
     const Extreme *e     = &z->extreme[k];
@@ -144,7 +141,8 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
         "(docs/giving_up.md)\n",
         e->value, place, beyond, warm ? "warmer" : "colder",
         limit == (warm ? acted.high : acted.low) ? "" : " and hydrate", limit,
-        reacts && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
+        SceneReacts(c) && c->fields.phase[PHASE_G] && !c->stabilisation.held_reaction &&
+                !c->stabilisation.lumped_reaction
             ? "stabilisation_reaction_heat: yes, beside hydrate; "
             : "",
         c->fields.fluid && !c->stabilisation.heat_upwind ? "stabilisation_heat: yes, where flow carries the heat; "
