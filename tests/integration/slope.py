@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import CASES, Run, binary, check, check_true, finish, launch, scratch  # noqa: E402
+from common import CASES, Run, binary, check, check_true, finish, judge, launch, scratch  # noqa: E402
 from clathra import read_snapshots  # noqa: E402
 
 import slide  # noqa: E402  scripts/, which common puts on the path
@@ -37,7 +37,7 @@ def torn():
     particles in cells, cells that emptied and points at the apex by then, and no step is refused."""
     run = Run.of_case("slope_c", "-quiet", "-grid_cells", "100,8", "-gravity_ramp", "5 s", "-stage_load_end", "5 s", "-stage_slide_end", "40 s", "-output_every", "0 s")
     check("slope C: work of gravity, J", run.balance["gravity_work_J"][-1], (1e10, 3e10))
-    check("slope C: what the balance of energy leaves of it", abs(run.balance["energy_remainder_J"][-1] / run.balance["gravity_work_J"][-1]), 0.01)
+    judge("slopes", "slope C on 20 m until its blocks have torn loose: what the balance of energy leaves of the work of gravity", abs(run.balance["energy_remainder_J"][-1] / run.balance["gravity_work_J"][-1]), 0.01)
     (_, first), *_, (_, last) = run.snapshots()
     before, after = cells(first, 20), cells(last, 20)
     check("slope C: cells with a single particle in them", sum(n == 1 for n in after.values()), (5, 100))
@@ -101,9 +101,9 @@ last = one.snapshots()[-1][1]
 for ranks in (2, 4):
     many = slope(ranks=ranks).snapshots()[-1][1]
     worst = max(np.max(np.abs(v - many[k])) / (np.max(np.abs(v)) or 1.0) for k, v in last.items() if k != "yield")
-    check(f"{ranks} ranks against 1", worst, 1e-6)
+    judge("slopes", f"slope A on 8 m as it begins to slide, hybrid, {ranks} ranks against 1: any field, of its largest value", worst, 1e-6)
 check_true("no particle is lost", np.array_equal(last["id"], one.snapshots()[0][1]["id"]) and all(np.isfinite(v).all() for v in last.values()))
-check("what the balance of energy leaves, of the work of gravity", abs(one.balance["energy_remainder_J"][-1] / one.balance["gravity_work_J"][-1]), 0.02)
+judge("slopes", "... what the balance of energy leaves, of the work of gravity", abs(one.balance["energy_remainder_J"][-1] / one.balance["gravity_work_J"][-1]), 0.02)
 for what in ("water", "methane"):
     check(f"{what} kept, of the mass at the start", np.max(np.abs(one.balance[f"{what}_error"])), 1e-12)
 

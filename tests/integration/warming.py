@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import CASES, Run, binary, check, check_true, finish, launch, scratch  # noqa: E402
+from common import CASES, Run, binary, check, check_true, finish, judge, launch, scratch  # noqa: E402
 
 YEAR = 31557600.0
 COARSE = ("-quiet", "-grid_upper", "500 m, 125 m", "-grid_cells", "20,5", "-stage_settle_end", "10 a", "-stage_warm_end", "45 a",
@@ -40,14 +40,14 @@ check_true("implicit for as long as the slope holds", "-> hybrid" not in run.out
 check("mean step from five years after the beginning on, days", steps.mean(), (20.0, 1000.0))
 cold = slope(sea=COLD)
 check_true("eight pieces of sea floor", len(BEGIN) == 8)
-check("hydrate that the warmth takes in 35 years, share of all", left(cold) - left(run), (0.02, 0.06))
+judge("slopes", "slope_warming on 25 m: hydrate that the warmth takes in 35 years, share of all", left(cold) - left(run), (0.02, 0.06))
 check("T of the crest, 8 m below the sea floor, above that under a cold sea (K)", *warmer(run, cold))
 for what in ("water", "methane"):
-    check(f"{what} kept", np.max(np.abs(run.balance[f"{what}_error"])), 1e-12)
+    judge("slopes", f"... {what}, largest error of any step", np.max(np.abs(run.balance[f"{what}_error"])), 1e-12)
 alone = slope("-stage_warm_stepper_type", "sdirk2").snapshots()[-1][1]
 check_true("the particles of sdirk2 alone, bit for bit", all(np.array_equal(v, alone[k]) for k, v in last.items()))
 two = slope(ranks=2).snapshots()[-1][1]
-check("2 ranks against 1, S_h", np.max(np.abs(last["S_h"] - two["S_h"])), 1e-4)
+judge("slopes", "... 2 ranks against 1, S_h", np.max(np.abs(last["S_h"] - two["S_h"])), 1e-4)
 refused = launch(binary(), CASES / "slope_warming", "-stage_warm_stepper_type", "hybrid", "-case_check", out=scratch() / "out")
 check_true("hybrid alone refuses its stabilisations", refused.returncode == 2 and "hybrid does not know stabilisation_donor" in refused.stdout, refused.stdout[-300:])
 finish()

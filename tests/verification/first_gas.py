@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 
-from common import ROOT, Run, check, finish, judge, scratch, table
+from common import ROOT, Run, finish, judge, scratch, table
 
 sys.path.insert(0, str(ROOT / "scripts"))
 from tutorial import case_text  # noqa: E402
@@ -38,10 +38,10 @@ def sound(name, run, steps, pressure, temperature):
     taken, refused = map(int, re.search(r"(\d+) steps, (\d+) refused", run.output).groups())
     table(("", "steps", "refused", "p (MPa)", "", "T (degC)", "", "S_g"), [(name, taken, refused, least("p") / 1e6, most("p") / 1e6, least("T"), most("T"), most("S_g"))])
     judge("gas", f"first gas, {name}: steps", float(taken), float(steps))
-    check(f"{name}: steps refused", refused, 30)
-    check(f"{name}: lowest pore pressure (MPa)", least("p") / 1e6, (pressure - 0.35, 12))  # a particle of clay beside the casing, docs/limits.md
-    check(f"{name}: warmest (degC)", most("T"), temperature + 0.1)
-    check(f"{name}: largest S_g", most("S_g"), (0.02, 0.8))
+    judge("gas", f"first gas, {name}: steps refused", float(refused), 30.0)
+    judge("gas", f"first gas, {name}: lowest pore pressure, MPa", least("p") / 1e6, (pressure - 0.35, 12))  # a particle of clay beside the casing, docs/limits.md
+    judge("gas", f"first gas, {name}: warmest, degC", most("T"), temperature + 0.1)
+    judge("gas", f"first gas, {name}: largest S_g", most("S_g"), (0.02, 0.8))
     for what in ("water", "methane"):
         judge("gas", f"first gas, {name}: {what}, largest error of any step", np.max(np.abs(run.balance[f"{what}_error"])), 1e-12)
 

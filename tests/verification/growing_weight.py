@@ -9,7 +9,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
 import _files  # noqa: E402
-from common import Run, check, check_true, finish, scratch  # noqa: E402
+from common import Run, check_true, finish, judge, scratch  # noqa: E402
 
 CASE = Path(__file__).parent / "cases" / "growing_weight.yaml"
 DAY, FIRM = 86400.0, ("-mat_soil_plasticity_cohesion_max", "3 kPa")
@@ -29,11 +29,11 @@ E_k = run.balance["kinetic_energy_J"]
 check_true("implicit, hybrid for the slide, implicit again", [c[1:] for c in found] == [("sdirk2", "hybrid"), ("hybrid", "sdirk2")], str(found))
 bursts = np.flatnonzero(np.diff(run.balance["step"]) > 1) + 1  # rows of hybrid
 first, second = int(bursts[0]), int(bursts[-1]) + 1  # advances until each change, a row each
-check("steps before the slide", first, 100)
-check("steps after it, which last 50 days", t.size - second, 100)
+judge("slopes", "a cut whose weight grows over months: steps of auto before the slide", float(first), 100.0)
+judge("slopes", "... after it, which last 50 days", float(t.size - second), 100.0)
 check_true("... and come to days again", dt[second:].max() > DAY, f"{dt[second:].max():.3g} s")
 check_true("hybrid has all of it: the step before it is of hours", dt[first - 1] > 3600.0 and E_k[first - 1] < 1e-6 * E_k.max(), f"{dt[first - 1]:.3g} s, {E_k[first - 1]:.3g} J")
-check("the slide lasts (s)", t[second - 1] - t[first - 1], (1.0, 100.0))
+judge("slopes", "... the slide that hybrid carries lasts, s", t[second - 1] - t[first - 1], (1.0, 100.0))
 check_true("it is one: E_k during it and after it", E_k.max() > 100 and E_k[-1] < 1e-6 * E_k.max(), f"{E_k.max():.3g}, {E_k[-1]:.3g} J")
 check_true("sdirk2 alone steps over it", over.code == 0 and over.balance["dt_s"].min() > 60, f"{over.balance['dt_s'].min():.3g} s")
 held, alone = cut("auto", *FIRM), cut("sdirk2", *FIRM)
@@ -50,5 +50,5 @@ for ranks in (2, 4):
     many = changes(cut("auto", "-stepper_max_steps", first + 8, ranks=ranks))
     check_true(f"{ranks} ranks go over to hybrid", [c[1:] for c in many] == [("sdirk2", "hybrid")] and np.isclose(many[0][0], found[0][0], rtol=1e-6), str(many))
 mass = [np.sum(p["mass_solid"]) for _, p in run.snapshots()]
-check("mass", np.ptp(mass) / mass[0], 1e-14)
+judge("slopes", "... mass of the solid, largest change", np.ptp(mass) / mass[0], 1e-14)
 finish()
