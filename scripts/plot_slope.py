@@ -2,7 +2,7 @@
 """Slopes after Figures 20 to 31 of the paper: plot_slope.py NAME WITH WITHOUT OUT
 
 NAME is slope_a, slope_b or slope_c; WITH and WITHOUT (or -) are runs of it with and without heat from plastic work.  Measures both (scripts/slide.py) and writes
-case_NAME.png, NAME_points.png, NAME_energy.png, NAME_bands.png and the film NAME.mp4 (NAME.gif where there is no ffmpeg) into OUT.
+case_NAME.png, NAME_fields.png (slope_b, slope_c), NAME_points.png, NAME_energy.png, NAME_bands.png and the film NAME.mp4 (NAME.gif where there is no ffmpeg) into OUT.
 """
 import shutil
 import sys
@@ -25,6 +25,12 @@ MAPS = (  # title, value of a particle, limits
     ("excess pore pressure (MPa)", lambda run, p: (p["p"] - run.snapshots[0][1]["p"])[:, 0] * PA, (-3, 3)),
     ("displacement since the loading (m)", lambda run, p: run.moved(p), (0, None)),
 )
+STRAIN = MAPS[2]
+FIELDS = {  # s, and maps of both runs: Figures 25 and 31
+    "slope_b": (250, (STRAIN, ("displacement along the base $u_x$ (m)", lambda run, p: since(run, p)[:, 0], (0, None)), ("displacement normal to it $u_y$ (m)", lambda run, p: since(run, p)[:, 1], (-80, 0)))),
+    "slope_c": (100, (MAPS[0], MAPS[4], ("hydrate left (–)", lambda run, p: (p["mass_hydrate"] / run.snapshots[0][1]["mass_hydrate"])[:, 0], (0, 1)),
+                      ("displacement normal to the base $u_y$ (m)", lambda run, p: since(run, p)[:, 1], (-80, 0)))),
+}  # fmt: skip
 CURVES = (  # label, value of every particle at every snapshot
     ("temperature T (°C)", lambda run: run.rows("T")),
     ("deviatoric plastic strain $\\epsilon_d^p$ (–)", lambda run: run.rows("eps_d_p")),
@@ -35,6 +41,11 @@ CURVES = (  # label, value of every particle at every snapshot
     ("hydrate lost (%)", lambda run: 100 * (1 - run.rows("mass_hydrate") / run.rows("mass_hydrate")[0])),
 )
 FRAMES = 10  # a second of the film
+
+
+def since(run, particles):
+    """Displacement (m) of every particle since the loading."""
+    return particles["position"] - run.rest
 
 
 def deviator(run):
@@ -78,6 +89,23 @@ def maps(name, run, out):
         ax.set_title(f"{title}, t = {t:g} s", fontsize=9)
         figure.colorbar(bar, ax=ax, fraction=0.02, pad=0.01)
     save(figure, out, f"case_{name}")
+
+
+def fields(name, runs, out):
+    """Maps of both runs below each other, on one scale each."""
+    time, shown = FIELDS[name]
+    length = max(run.end["position"][:, 0].max() for run in runs.values())
+    height = next(iter(runs.values())).height
+    figure, axes = plt.subplots(len(shown) * len(runs), 1, figsize=(13, len(shown) * len(runs) * (13 * height / length + 0.6)), squeeze=False, sharex=True, sharey=True)
+    rows = [(*m, *r) for m in shown for r in runs.items()]
+    for ax, (title, value, (low, high), label, run) in zip(axes.flat, rows):
+        now = run.at(time)
+        top = high if high is not None else max(float(value(r, r.at(time)).max()) for r in runs.values())
+        bar = body(ax, run, now, value(run, now), (low, top))
+        ax.set(xlim=(0, length + 5), title=f"{label}: {title}, t = {run.time[np.argmin(abs(run.time - time))]:.0f} s")
+        ax.title.set_fontsize(9)
+        figure.colorbar(bar, ax=ax, fraction=0.02, pad=0.01)
+    save(figure, out, f"{name}_fields")
 
 
 def points(name, run, out):
@@ -176,6 +204,8 @@ def main(name, heated, unheated, out):
         print(f"{label}: " + "\n".join(slide.words(measures[-1], found[-1])))
     first = runs["θ = 0.5"]
     maps(name, first, out)
+    if name in FIELDS:
+        fields(name, runs, out)
     points(name, first, out)
     energy(name, runs, measures, out)
     picture_bands(name, runs, found, out)

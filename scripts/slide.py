@@ -33,17 +33,24 @@ def of_all(snapshots):
     return [(t, p if len(p["id"]) == len(stay) else {k: v[np.isin(p["id"], stay)] for k, v in p.items()}) for t, p in snapshots]
 
 
-class Run:
-    """Snapshots, balance and probes of a run.  loaded: when its first stage ended, s; cell: size (m) of a cell along y, from 2 x 2 particles, or `across` of them;
-    gone: particles that left the grid."""
+def rows_until(columns, end):
+    """The rows of a CSV until a time."""
+    keep = columns["time_s"] <= end
+    return {k: v[keep] for k, v in columns.items()}
 
-    def __init__(self, folder, across=2):
+
+class Run:
+    """Snapshots, balance and probes of a run, as far as `until` (s) if that is given.  loaded: when its first stage ended, s; cell: size (m) of a cell along y, from
+    2 x 2 particles, or `across` of them; gone: particles that left the grid."""
+
+    def __init__(self, folder, across=2, until=None):
         self.folder = Path(folder)
         case = read_case(self.folder / "case.yaml")
         self.loaded = case[f"stage_{case['stages'][0]}_end"]
-        self.snapshots = of_all(whole := read_snapshots(folder))
+        end = (np.inf if until is None else until) * (1 + 1e-9)
+        self.snapshots = of_all(whole := [(t, p) for t, p in read_snapshots(folder) if t <= end])
         self.gone = len(whole[0][1]["id"]) - len(self.snapshots[0][1]["id"])
-        self.balance, self.probes = read_csv(self.folder / "balance.csv"), read_csv(self.folder / "probes.csv")
+        self.balance, self.probes = (rows_until(read_csv(self.folder / name), end) for name in ("balance.csv", "probes.csv"))
         self.time = np.array([t for t, _ in self.snapshots])
         first = self.snapshots[0][1]
         self.start, self.end = first["initial_position"], self.snapshots[-1][1]

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""The page of the slopes: slopes.py run PROGRAM FOLDER [NAME...], slopes.py add NAME FOLDER, slopes.py page
+"""The page of the slopes: slopes.py run PROGRAM FOLDER [NAME...], slopes.py add NAME FOLDER [UNTIL], slopes.py page
 
-`run` makes the runs of the page that are named (all of them: some hours of a core) in FOLDER/NAME and adds each; `add` measures a run (scripts/slide.py) and keeps what
+`run` makes the runs of the page that are named (all of them: some hours of a core) in FOLDER/NAME and adds each; `add` measures a run (scripts/slide.py; as if it had ended at UNTIL s) and keeps what
 the page needs as docs/slopes.json[NAME]; `page` writes docs/slopes.md from that file alone.  NAME is one of ROWS.
 """
 import json
@@ -29,6 +29,7 @@ COLD = "-mat_sand_plasticity_heat 0"
 LENGTH = "-mat_sand_plasticity_softening_length 4m"
 NONLOCAL = "-mat_sand_plasticity_nonlocal_length 8m"
 SHORT = "-stage_slide_end 40s"
+LONG = "-stage_slide_end 250s"
 CELLS_2, CELLS_3, CELLS_8 = "-grid_cells 300,60", "-grid_cells 200,40", "-grid_cells 75,15"
 LONG_8 = "-grid_cells 250,20"
 # On cells of 2 m the nodes of a second row at the temperature that is halfway up a heated cell of 4 m.
@@ -41,9 +42,9 @@ CELLS_16 = "-grid_cells 125,10"
 # name: (case, what the row is called, options).  The order is that of the page.
 ROWS = {
     "A": ("a", "θ = 0.5", ""),
-    "A_250": ("a", "the same to 250 s", "-stage_slide_end 250s"),
+    "A_250": ("a", "the same to 250 s", LONG),
     "A_theta_0": ("a", "θ = 0", COLD),
-    "A_printed": ("a", "K_0 = 3.6e4, as printed", f"{PRINTED} -stage_slide_end 250s"),
+    "A_printed": ("a", "K_0 = 3.6e4, as printed", f"{PRINTED} {LONG}"),
     "A_half": ("a", "half the step (cfl 0.4)", f"-stepper_cfl 0.4 {SHORT}"),
     "A_ranks": ("a", "2 ranks", SHORT),
     "A_ppc9": ("a", "3 x 3 particles", f"{NINE} {SHORT}"),
@@ -61,15 +62,21 @@ ROWS = {
     "A_2m_layer_nl": ("a", "the same, nonlocal_length 8 m", f"{CELLS_2} {LAYER} {NONLOCAL} {SHORT}"),
     "A8_sdirk2": ("a", "cells of 8 m, sdirk2, ghost_penalty 1e-2", f"{CELLS_8} {IMPLICIT_STEPS} {HELD} {SHORT}"),
     "A8_sdirk2_free": ("a", "cells of 8 m, sdirk2", f"{CELLS_8} {IMPLICIT_STEPS} {SHORT}"),
+    "A8_sdirk2_half": ("a", "cells of 8 m, sdirk2, steps of 0.05 s", f"{CELLS_8} {IMPLICIT_STEPS} -stepper_dt_max 0.05s {SHORT}"),
     "A_sdirk2": ("a", "sdirk2", f"{IMPLICIT_STEPS} {SHORT}"),
     "B": ("b", "θ = 0.5", ""),
     "B_theta_0": ("b", "θ = 0", COLD),
     "B8": ("b", "cells of 8 m, θ = 0.5", LONG_8),
+    "B8_250": ("b", "cells of 8 m, θ = 0.5, to 250 s", f"{LONG_8} {LONG}"),
     "B8_theta_0": ("b", "cells of 8 m, θ = 0", f"{LONG_8} {COLD}"),
     "B8_printed": ("b", "cells of 8 m, K_0 = 3.6e4, as printed", f"{LONG_8} {PRINTED}"),
+    "B16": ("b", "cells of 16 m, θ = 0.5", CELLS_16),
+    "B16_sdirk2": ("b", "cells of 16 m, sdirk2", f"{CELLS_16} {IMPLICIT_STEPS}"),
     "C": ("c", "θ = 0.5", ""),
+    "C_250": ("c", "the same to 250 s", LONG),
     "C_theta_0": ("c", "θ = 0", COLD),
     "C8": ("c", "cells of 8 m, θ = 0.5", LONG_8),
+    "C8_250": ("c", "cells of 8 m, θ = 0.5, to 250 s", f"{LONG_8} {LONG}"),
     "C8_theta_0": ("c", "cells of 8 m, θ = 0", f"{LONG_8} {COLD}"),
     "C16": ("c", "cells of 16 m, θ = 0.5", CELLS_16),
     "C16_sdirk2": ("c", "cells of 16 m, sdirk2, ghost_penalty 1e-2", f"{CELLS_16} {IMPLICIT_STEPS} {HELD}"),
@@ -88,15 +95,16 @@ def run(program, folder, *names):
                               env=os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}).returncode  # fmt: skip
         if code not in (0, 3, 4):
             sys.exit(f"{name}: the program ended with code {code}")
-        add(name, out, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+        add(name, out, processor_s=resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
 
 
-def add(name, folder, processor_s=None):
-    slid = slide.Run(folder, across=3 if NINE in ROWS[name][2] else 2)
+def add(name, folder, until=None, processor_s=None):
+    slid = slide.Run(folder, across=3 if NINE in ROWS[name][2] else 2, until=until and float(until))
     m, bands = slide.measure(slid), slide.bands(slid)
-    slide.write(slid, m, bands)
+    if until is None:
+        slide.write(slid, m, bands)
     m["bands"] = bands
-    m["took"], m["processor_s"] = took_of(folder), processor_s
+    m["took"], m["processor_s"] = f"{int(slid.balance['step'][-1])} steps" if until else took_of(folder), processor_s
     m |= {"warming": slope_warming.measure(slid, folder)} if ROWS[name][0] == "warming" else curves(slid, name)
     kept = json.loads(KEPT.read_text()) if KEPT.is_file() else {}
     kept[name] = m
@@ -268,25 +276,36 @@ def scenario_c(kept):
 C_SAYS = ("agrees", "agrees", "agrees of the tall ones; all of them are as many", "agrees")
 
 
-IMPLICIT = (  # hybrid and sdirk2 with the ghost penalty of 1e-2 and of 1e-3, what they are called, and when they are looked at (s)
-    ("A_8m", "A8_sdirk2", "A8_sdirk2_free", "A, cells of 8 m", (11, 12, 14, 16, 20, 25, 30, 40)),
-    ("C16", "C16_sdirk2", "C16_sdirk2_free", "C, cells of 16 m", (12, 15, 20, 30, 40, 50, 60, 80, 100)),
+PENALTIES = ("`hybrid`", "`sdirk2`, 1e-2", "`sdirk2`, 1e-3")
+IMPLICIT = (  # what they are called, when they are looked at (s), runs and their integrator with its ghost penalty
+    ("A, cells of 8 m", (11, 12, 14, 16, 20, 25, 30, 40), dict(zip(("A_8m", "A8_sdirk2", "A8_sdirk2_free", "A8_sdirk2_half"), (*PENALTIES, "1e-3, 0.05 s")))),
+    ("A, cells of 4 m", (11, 12, 14, 16, 20, 25, 30, 40), {"A": PENALTIES[0], "A_sdirk2": PENALTIES[2]}),
+    ("B, cells of 16 m", (12, 15, 20, 30, 40, 50, 60, 80, 100), {"B16": PENALTIES[0], "B16_sdirk2": PENALTIES[2]}),
+    ("C, cells of 16 m", (12, 15, 20, 30, 40, 50, 60, 80, 100), dict(zip(("C16", "C16_sdirk2", "C16_sdirk2_free"), PENALTIES))),
 )
+
+
+def looked_at(m, t):
+    """E_k (J/m), failed share and hydrate lost (%) at a time, in words; nothing after the run's end."""
+    if t > m["end_s"] + 0.5:
+        return ("–",) * 3
+    e, failed = (np.interp(t, m["series"][at], m["series"][key]) for at, key in (("t", "E_k"), ("shown", "failed")))
+    return f"{e:.3g}", f"{failed:.1f}", f"{lost(m, t):.2f}"
 
 
 def implicit(kept):
     """sdirk2 against hybrid on the same mesh."""
-    lines = ["", "## By implicit steps", ""]
-    for *names, label, looks in IMPLICIT:
-        runs = [kept[n] for n in names]
-        rows = [(f"{label}: t (s)", "E_k, `hybrid` (J/m)", "`sdirk2`, 1e-2", "1e-3", "failed, `hybrid` (%)", "1e-2", "1e-3", "hydrate lost, `hybrid` (%)", "1e-2", "1e-3")]
+    lines, shown = ["", "## By implicit steps", ""], [(label, looks, {n: k for n, k in runs.items() if n in kept}) for label, looks, runs in IMPLICIT]
+    shown = [entry for entry in shown if len(entry[2]) > 1]
+    for label, looks, runs in shown:
+        head = [f"{what}, {kind}" if not k else kind for what in ("E_k (J/m)", "failed (%)", "hydrate lost (%)") for k, kind in enumerate(runs.values())]
+        rows = [(f"{label}: t (s)", *head)]
         for t in looks:
-            values = [(np.interp(t, m["series"]["t"], m["series"]["E_k"]), np.interp(t, m["series"]["shown"], m["series"]["failed"]), lost(m, t)) for m in runs]
-            rows.append((f"{t:g}", *(form.format(v[k]) for k, form in enumerate(("{:.3g}", "{:.1f}", "{:.2f}")) for v in values)))
+            rows.append((f"{t:g}", *(v for values in zip(*(looked_at(kept[n], t) for n in runs)) for v in values)))
         lines += [*table(rows), ""]
     rows = [("", "onset (s)", "moved (m)", "runout (m)", "bands", "ghost penalty took, of gravity's work", "took")]
-    for *names, label, _ in IMPLICIT:
-        for m, kind in ((kept[n], kind) for n, kind in zip(names, ("`hybrid`", "`sdirk2`, 1e-2", "`sdirk2`, 1e-3"))):
+    for label, _, runs in shown:
+        for m, kind in ((kept[n], kind) for n, kind in runs.items()):
             rows.append((f"{label}, {kind}", seconds(m["onset_s"]), f"{m['mean_displacement_m']:.1f}", f"{m['runout_m']:.1f}", len(m["bands"]),
                          f"{100 * m['balance'].get('damping_work_J', 0) / m['balance']['gravity_work_J']:.1f} %", m["took"]))  # fmt: skip
     return lines + [*table(rows), ""] + NOTES_IMPLICIT
