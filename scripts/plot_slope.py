@@ -16,7 +16,6 @@ import slide
 from plotting import COLOURS, PA, STYLES, plt, save, set_style
 
 TIMES = {"slope_a": (25, 100, 200), "slope_b": (15, 18, 30, 42, 72, 250), "slope_c": (17, 30, 41, 56, 77, 100, 250)}  # s, of the paper's maps
-POINTS = {"A": (165, 1), "B": (113, 53)}  # m, places at the start
 MAPS = (  # title, value of a particle, limits
     ("temperature T (°C)", lambda run, p: p["T"][:, 0], (-2, 8)),
     ("hydrate saturation $S_h$ (–)", lambda run, p: p["S_h"][:, 0], (0, 0.45)),
@@ -109,13 +108,14 @@ def fields(name, runs, out):
 
 
 def points(name, run, out):
-    """Histories of the particles nearest to the points."""
+    """Histories of the particles nearest to the probes."""
     figure, axes = plt.subplots(2, 4, figsize=(13, 5.6))
-    index = {k: int(np.argmin(np.hypot(*(run.start - place).T))) for k, place in POINTS.items()}
+    places = {k: (p["x_m"], p["y_m"]) for k, p in slide.probed(run).items()}
+    index = {k: int(np.argmin(np.hypot(*(run.start - place).T))) for k, place in places.items()}
     for ax, (label, values) in zip(axes.flat, CURVES):
         found = values(run)
         for (k, i), colour, style in zip(index.items(), COLOURS, STYLES):
-            ax.plot(run.time, found[:, i], style, color=colour, label=f"{k} ({POINTS[k][0]}, {POINTS[k][1]}) m")
+            ax.plot(run.time, found[:, i], style, color=colour, label=f"{k} ({places[k][0]:.0f}, {places[k][1]:.0f}) m")
         ax.set(xlabel="t (s)", title=label)
     axes.flat[0].legend()
     axes.flat[-1].axis("off")
@@ -142,7 +142,7 @@ def energy(name, runs, measures, out):
 
 
 def picture_bands(name, runs, found, out):
-    """Plastic strain at the end, in the initial configuration, with the bands that were found."""
+    """Plastic strain at the end, in the initial configuration, with the bands that were found and the probes by name."""
     first = next(iter(runs.values()))
     length, height = first.toe, first.height
     figure, axes = plt.subplots(len(runs), 1, figsize=(13, len(runs) * (12 * height / length + 0.7)), squeeze=False)
@@ -157,6 +157,9 @@ def picture_bands(name, runs, found, out):
             if b["y_high_m"] - b["y_low_m"] < 0.6 * height:
                 continue
             ax.annotate(f"{b['time_s']:.0f} s, {b['angle_deg']:.0f}°", (b["x_high_m"], b["y_high_m"]), (0, 4), textcoords="offset points", color=colour, fontsize=8, ha="center", va="bottom")
+        for k, p in slide.probed(run).items():
+            ax.plot(p["x_m"], p["y_m"], "k+", ms=6)
+            ax.annotate(k, (p["x_m"], p["y_m"]), (3, 2), textcoords="offset points", fontsize=8)
         ax.set(xlim=(0, length), ylim=(0, 1.15 * height), aspect="equal", title=f"{label}: $\\epsilon_d^p$ at {run.time[-1]:.0f} s where particles were at the start, bands found")
         ax.grid(False)
         figure.colorbar(shown, ax=ax, fraction=0.02, pad=0.01)

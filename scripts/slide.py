@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clathra import read_case, read_csv, read_snapshots, time_unit
+from clathra import probe_names, read_case, read_csv, read_snapshots, time_unit
 
 MOVED = 0.01  # of the height: what has moved farther has failed
 STARTED = 0.01  # failed share of the body at the onset
@@ -242,6 +242,21 @@ def slides(run, mass):
     return found
 
 
+def probed(run):
+    """{name of each probe at a point: place at the start, way since the loading, pore pressure over that of the start (largest, last), T, S_h and strain}, m, Pa, degC."""
+    t, found = run.probes["time_s"], {}
+    for name in probe_names(run.probes):
+        of = lambda key: run.probes.get(f"{name}.{key}")
+        if of("x_m") is None or of("u_x_m") is None:
+            continue
+        way = [of(f"u_{axis}_m")[-1] - np.interp(run.loaded, t, of(f"u_{axis}_m")) for axis in "xy"]
+        found[name] = {"x_m": float(of("x_m")[0]), "y_m": float(of("y_m")[0]), "moved_m": float(np.hypot(*way))}
+        if of("p_Pa") is not None:
+            found[name] |= {"excess_pressure_most_Pa": float((of("p_Pa") - of("p_Pa")[0]).max()), "excess_pressure_Pa": float(of("p_Pa")[-1] - of("p_Pa")[0])}
+        found[name] |= {key: float(of(key)[-1]) for key in ("T_degC", "S_h", "eps_d_p") if of(key) is not None}
+    return found
+
+
 def measure(run):
     """The measures of the slide, with units in their names."""
     total = run.snapshots[0][1]["volume"].sum()
@@ -285,6 +300,7 @@ def measure(run):
         "gas_released_kg": float(GAS * lost),
         "gas_released_std_m3": float(GAS * lost / STANDARD),
         "slides": slides(run, heavy),
+        "probes": probed(run),
     }  # fmt: skip
 
 
@@ -309,6 +325,12 @@ def words(m, found):
     for s in m["slides"]:
         ways = ", ".join(f"{k} {v:.2f} m" for k, v in s["probes_m"].items())
         yield f"    {time(s['from_s'])}  {s['lasts_s']:.3g} s, {s['steps']} steps  {s['kinetic_energy_J']:.3g} J, {s['velocity_m_s']:.2g} m/s  {ways}"
+    if m["probes"]:
+        yield "  probes: where at the start, moved since the loading, pore pressure over that at the start (at most; at the end), T, S_h and eps_d_p at the end"
+    for name, p in m["probes"].items():
+        pressure = f"  {p['excess_pressure_most_Pa'] / 1e6:.2f}; {p['excess_pressure_Pa'] / 1e6:.2f} MPa" if "excess_pressure_Pa" in p else ""
+        last = "".join(f"  {form.format(p[key])}" for key, form in (("T_degC", "{:.2f} degC"), ("S_h", "{:.3f}"), ("eps_d_p", "{:.2f}")) if key in p)
+        yield f"    {name:6s}  ({p['x_m']:.0f}, {p['y_m']:.0f}) m  {p['moved_m']:.2f} m{pressure}{last}"
     yield f"  {len(found)} shear bands" + (": time, angle to the base, from and to (where it was at the start), eps_d_p" if found else "")
     for b in found:
         yield (f"    {b['time_s'] / size:6.1f} {unit}  {b['angle_deg']:3.0f} deg, rises {b['rises']:9s}  ({b['x_low_m']:.0f}, {b['y_low_m']:.0f}) to ({b['x_high_m']:.0f}, {b['y_high_m']:.0f}) m  "

@@ -21,7 +21,7 @@ from slope_warming import table
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 KEPT = DOCS / "slopes.json"
-POINTS = {"A": (165, 1), "B": (113, 53)}  # m, of scripts/plot_slope.py
+POINTS = {"A": (165, 1), "B": (113, 53)}  # m, probes of cases/slope_a
 SERIES = {"T": "T", "eps_d_p": "eps_d_p", "log_J": "log_J", "p": "p", "S_h": "S_h", "m_h": "mass_hydrate"}
 
 PRINTED = "-mat_sand_kinetics_K0 '3.6e4 mol/(m^2 Pa s)'"

@@ -121,6 +121,13 @@ m = slide.measure(run)
 slide.write(run, m, slide.bands(run))
 slide.write(run, m, slide.bands(run))
 check_true("the slide stands once at the end of the summary", (one.out / "summary.txt").read_text().startswith(summary) and (one.out / "summary.txt").read_text().count("slide, to t =") == 1)
+said = {k: tuple(map(float, v)) for k, *v in re.findall(r"^    (\w+) +\((\d+), (\d+)\) m  ([\d.]+) m  (-?[\d.]+); (-?[\d.]+) MPa  (-?[\d.]+) degC  ([\d.]+)  ([\d.]+)$", (one.out / "summary.txt").read_text(), re.M)}
+check_true("the probes by name, where the case has them", {k: v[:2] for k, v in said.items()} == {"A": (165, 1), "B": (113, 53)}, said)
+for name, (*_, way, most, pressure, T, Sh, strain) in said.items():
+    of, start = one.probe(name), np.searchsorted(one.probes["time_s"], 3.0)  # the loading ends
+    check(f"... {name}: way since the loading, m", abs(way - np.hypot(of["u_x_m"][-1] - of["u_x_m"][start], of["u_y_m"][-1] - of["u_y_m"][start])), 0.006)
+    over = (of["p_Pa"] - of["p_Pa"][0]) / 1e6
+    check(f"... {name}: pore pressure, T, S_h, strain", max(abs(most - over.max()), abs(pressure - over[-1]), abs(T - of["T_degC"][-1]), abs(Sh - of["S_h"][-1]), abs(strain - of["eps_d_p"][-1])), 0.006)
 half = slide.Run(one.out, until=5.0)
 check_true("a run looked at as far as 5 s", half.time[-1] == 5.0 and max(half.balance["time_s"][-1], half.probes["time_s"][-1]) <= 5.0 + 1e-6 and half.balance["time_s"][-1] > 4.9)
 check("... its onset is the whole run's", abs(slide.measure(half)["onset_s"] - m["onset_s"]), 1e-12)
