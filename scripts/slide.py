@@ -242,6 +242,14 @@ def slides(run, mass):
     return found
 
 
+def speed_at_end(run):
+    """Mean speed (m/s) of what failed, from the places of the last two snapshots: those follow the nodes, velocities hold what no node sees besides."""
+    (before, then), (now, last) = run.snapshots[-2:]
+    failed = run.failed(last)
+    way = np.hypot(*(last["position"] - then["position"]).T)
+    return float(np.average(way[failed], weights=last["mass_solid"][failed, 0]) / (now - before)) if failed.any() else 0.0
+
+
 def probed(run):
     """{name of each probe at a point: place at the start, way since the loading, pore pressure over that of the start (largest, last), T, S_h and strain}, m, Pa, degC."""
     t, found = run.probes["time_s"], {}
@@ -295,6 +303,7 @@ def measure(run):
         "peaks_of_R_k_s": [float(time) for _, time in bursts],
         "base_sheared_at_its_upper_end_s": float(np.median(base)) if len(base) and np.isfinite(np.median(base)) else None,
         "kinetic_energy_at_end_J": float(e[-1]),
+        "mean_velocity_at_end_m_s": speed_at_end(run),
         "hydrate_lost_kg": float(lost),
         "hydrate_lost_share": float(lost / b["hydrate_kg"][0]),
         "gas_released_kg": float(GAS * lost),
@@ -314,7 +323,7 @@ def words(m, found):
     yield (f"  failed {m['failed_volume_m2']:.0f} m3 per metre ({100 * m['failed_share']:.0f} % of the body), moved by {m['mean_displacement_m']:.1f} m in the mean and "
            f"up to {m['largest_displacement_m']:.1f} m; runout {m['runout_m']:.1f} m, retrogression {m['retrogression_m']:.0f} m behind the crest")  # fmt: skip
     tops = ", ".join(number(t) for t in m["peaks_of_kinetic_energy_s"])
-    yield (f"  largest mean velocity of what failed {m['peak_mean_velocity_m_s']:.3g} m/s, of all but one particle in a thousand {m['peak_velocity_m_s']:.2g} m/s{' (at the snapshots)' if m['slides'] else ''}; "
+    yield (f"  largest mean velocity of what failed {m['peak_mean_velocity_m_s']:.3g} m/s, of all but one particle in a thousand {m['peak_velocity_m_s']:.2g} m/s{' (at the snapshots)' if m['slides'] else ''}, at the end {m['mean_velocity_at_end_m_s']:.2g} m/s; "
            f"kinetic energy up to {m['peak_kinetic_energy_J']:.3g} J per metre at {time(m['peak_kinetic_energy_s'])}, {f'peaks at {tops} {unit}' if tops else 'no peak'}")  # fmt: skip
     yield (f"  hydrate lost {m['hydrate_lost_kg']:.0f} kg ({100 * m['hydrate_lost_share']:.2f} %), gas released {m['gas_released_kg']:.0f} kg = "
            f"{m['gas_released_std_m3']:.0f} m3 at 101.4 kPa and 15.56 degC, per metre")  # fmt: skip

@@ -128,6 +128,9 @@ for name, (*_, way, most, pressure, T, Sh, strain) in said.items():
     check(f"... {name}: way since the loading, m", abs(way - np.hypot(of["u_x_m"][-1] - of["u_x_m"][start], of["u_y_m"][-1] - of["u_y_m"][start])), 0.006)
     over = (of["p_Pa"] - of["p_Pa"][0]) / 1e6
     check(f"... {name}: pore pressure, T, S_h, strain", max(abs(most - over.max()), abs(pressure - over[-1]), abs(T - of["T_degC"][-1]), abs(Sh - of["S_h"][-1]), abs(strain - of["eps_d_p"][-1])), 0.006)
+(before, then), (now, late) = one.snapshots()[-2:]
+fell = np.hypot(*(late["position"] - then["position"]).T) / (now - before)
+check("mean speed at the end between that of the slowest and the fastest particle, m/s", m["mean_velocity_at_end_m_s"], (0.01, fell.max()))
 half = slide.Run(one.out, until=5.0)
 check_true("a run looked at as far as 5 s", half.time[-1] == 5.0 and max(half.balance["time_s"][-1], half.probes["time_s"][-1]) <= 5.0 + 1e-6 and half.balance["time_s"][-1] > 4.9)
 check("... its onset is the whole run's", abs(slide.measure(half)["onset_s"] - m["onset_s"]), 1e-12)
