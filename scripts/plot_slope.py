@@ -158,8 +158,8 @@ def picture_bands(name, runs, found, out):
                 continue
             ax.annotate(f"{b['time_s']:.0f} s, {b['angle_deg']:.0f}°", (b["x_high_m"], b["y_high_m"]), (0, 4), textcoords="offset points", color=colour, fontsize=8, ha="center", va="bottom")
         for k, p in slide.probed(run).items():
-            ax.plot(p["x_m"], p["y_m"], "k+", ms=6)
-            ax.annotate(k, (p["x_m"], p["y_m"]), (3, 2), textcoords="offset points", fontsize=8)
+            ax.plot(p["x_m"], p["y_m"], "o", ms=4, mfc="white", mec="black", mew=0.8, zorder=5)
+            ax.annotate(k, (p["x_m"], p["y_m"]), (4, 4), textcoords="offset points", fontsize=8, bbox={"fc": "white", "ec": "none", "pad": 0.5})
         ax.set(xlim=(0, length), ylim=(0, 1.15 * height), aspect="equal", title=f"{label}: $\\epsilon_d^p$ at {run.time[-1]:.0f} s where particles were at the start, bands found")
         ax.grid(False)
         figure.colorbar(shown, ax=ax, fraction=0.02, pad=0.01)

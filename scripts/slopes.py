@@ -350,6 +350,8 @@ NOTES_B = """- To 100 s without a step refused: gas that expands in what tears l
 
 ![plastic strain](figures/case_slope_b.png)
 
+![strain and displacement with and without heat](figures/slope_b_fields.png)
+
 ![energy](figures/slope_b_energy.png)
 
 ![bands](figures/slope_b_bands.png)
@@ -360,6 +362,8 @@ NOTES_C = """- The statements without a mesh are of the paper's cells of 4 m. On
 - The block in the middle stays whole, for 100 s; the paper's breaks into horsts and grabens everywhere.
 
 ![plastic strain](figures/case_slope_c.png)
+
+![temperature, pressure, hydrate and displacement with and without heat](figures/slope_c_fields.png)
 
 ![energy](figures/slope_c_energy.png)
 
