@@ -7,6 +7,7 @@
 - commands in README and docs, and presets, use options that exist; presets hold no physics and nothing unread
 - links to headings find them
 - the cases in README and docs/cases_reference.md are valid
+- every verification test that measures stands in docs/verification.md, and its lines are as many as that page says
 """
 import importlib.util
 import re
@@ -172,13 +173,25 @@ def check_example(binary, page):
                 yield f"{page.name}: the case is not valid: {run.stderr}"
 
 
+def check_verification():
+    """Tests whose numbers are not on the page of the verification, and numbers that it counts but does not show."""
+    text = (ROOT / "docs" / "verification.md").read_text()
+    rows = len(re.findall(r"^\| (?!what \|).*\.py\)[^|]* \|$", text, re.M))
+    said = re.search(r"^(\d+) numbers, ", text, re.M)
+    if not said or int(said[1]) != rows:
+        yield f"docs/verification.md says {said and said[1]} numbers and shows {rows}"
+    for test in sorted((ROOT / "tests" / "verification").glob("[!_]*.py")):
+        if test.stem not in ("common", "exact") and re.search(r"^[^#\n]*\b(judge|record)\(", test.read_text(), re.M) and f"verification/{test.name})" not in text:
+            yield f"docs/verification.md has no number of {test.name}: run scripts/verification.py --only {test.stem}"
+
+
 def main(binary):
     binary = str(Path(binary).resolve())
     case, program = case_patterns(binary), {o for o, *_ in options_doc.PROGRAM}
     known = lambda word: word in program or PETSC.fullmatch(word) or case.fullmatch(word)
     planted = ["-stepper_typ", "-mat_sand_porosty", "-newton_tol", "-grid", "-ksptype"]
     found = [f"self-test: {word} was taken for an option" for word in planted if known(word)]
-    found += [*check_table(), *check_page(binary), *check_laws(binary), *(f for page in EXAMPLES for f in check_example(binary, page))]
+    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_verification(), *(f for page in EXAMPLES for f in check_example(binary, page))]
     for page in PAGES:
         found += [*check_files(page), *check_anchors(page), *check_commands(page, known)]
     for preset in PRESETS:
