@@ -16,6 +16,7 @@ MOVED = 0.01  # of the height: what has moved farther has failed
 STARTED = 0.01  # failed share of the body at the onset
 RISEN = 3.0  # kinetic energy at the rise, of the largest during the loading
 PROMINENT = 0.02  # of the largest kinetic energy: how far it falls between two peaks
+REST = 0.01  # of the largest mean speed: what is slower is over
 SMOOTH = 1.0  # s: half the window of means and slopes in time
 HEATED = 150.0  # m: where the heated base begins
 SHEARED = 0.15  # eps_d_p of a sheared particle
@@ -242,12 +243,20 @@ def slides(run, mass):
     return found
 
 
-def speed_at_end(run):
-    """Mean speed (m/s) of what failed, from the places of the last two snapshots: those follow the nodes, velocities hold what no node sees besides."""
-    (before, then), (now, last) = run.snapshots[-2:]
-    failed = run.failed(last)
-    way = np.hypot(*(last["position"] - then["position"]).T)
-    return float(np.average(way[failed], weights=last["mass_solid"][failed, 0]) / (now - before)) if failed.any() else 0.0
+def speeds(run):
+    """Mean speed (m/s) between snapshots of what failed in the end, from places: those follow the nodes, velocities hold what no node sees besides."""
+    failed = run.failed(run.end)
+    if not failed.any():
+        return np.zeros(len(run.time) - 1)
+    weight = run.end["mass_solid"][failed, 0]
+    ways = [np.hypot(*(b["position"] - a["position"])[failed].T) for (_, a), (_, b) in zip(run.snapshots, run.snapshots[1:])]
+    return np.array([np.average(way, weights=weight) for way in ways]) / np.diff(run.time)
+
+
+def rests(run, speed):
+    """Time (s) from which the mean speed between snapshots stays below REST of its largest; None if it does not, or never moves."""
+    moves = np.flatnonzero(speed > REST * speed.max(initial=0.0))
+    return float(run.time[moves[-1] + 1]) if len(moves) and moves[-1] + 1 < len(speed) else None
 
 
 def probed(run):
@@ -283,6 +292,7 @@ def measure(run):
     slab = run.end["volume"][failed, 0]
     lost = b["hydrate_kg"][0] - b["hydrate_kg"][-1] - b["removed_hydrate_kg"][-1]
     scarp = run.start[run.top & failed, 0]
+    speed = speeds(run)
     heavy = sum(run.end[k][failed, 0].sum() for k in MASSES)
     return {
         "end_s": float(run.time[-1]),
@@ -303,7 +313,8 @@ def measure(run):
         "peaks_of_R_k_s": [float(time) for _, time in bursts],
         "base_sheared_at_its_upper_end_s": float(np.median(base)) if len(base) and np.isfinite(np.median(base)) else None,
         "kinetic_energy_at_end_J": float(e[-1]),
-        "mean_velocity_at_end_m_s": speed_at_end(run),
+        "mean_velocity_at_end_m_s": float(speed[-1]) if len(speed) else 0.0,
+        "at_rest_s": rests(run, speed),
         "hydrate_lost_kg": float(lost),
         "hydrate_lost_share": float(lost / b["hydrate_kg"][0]),
         "gas_released_kg": float(GAS * lost),
@@ -319,7 +330,7 @@ def words(m, found):
     number = lambda s: f"{s / size:.{0 if size == 1 else 1}f}"
     time = lambda s: "(never)" if s is None else f"{s / size:.1f} {unit}"
     yield f"slide, to t = {m['end_s'] / size:.0f} {unit} (scripts/slide.py):"
-    yield f"  onset {time(m['onset_s'])}, kinetic energy rises at {time(m['rise_of_kinetic_energy_s'])}"
+    yield f"  onset {time(m['onset_s'])}, kinetic energy rises at {time(m['rise_of_kinetic_energy_s'])}, at rest from {time(m['at_rest_s']).replace('(never)', '(not by the end)')} on"
     yield (f"  failed {m['failed_volume_m2']:.0f} m3 per metre ({100 * m['failed_share']:.0f} % of the body), moved by {m['mean_displacement_m']:.1f} m in the mean and "
            f"up to {m['largest_displacement_m']:.1f} m; runout {m['runout_m']:.1f} m, retrogression {m['retrogression_m']:.0f} m behind the crest")  # fmt: skip
     tops = ", ".join(number(t) for t in m["peaks_of_kinetic_energy_s"])

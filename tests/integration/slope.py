@@ -131,6 +131,11 @@ for name, (*_, way, most, pressure, T, Sh, strain) in said.items():
 (before, then), (now, late) = one.snapshots()[-2:]
 fell = np.hypot(*(late["position"] - then["position"]).T) / (now - before)
 check("mean speed at the end between that of the slowest and the fastest particle, m/s", m["mean_velocity_at_end_m_s"], (0.01, fell.max()))
+times, places = np.arange(0, 11.0), np.array([0, 0, 0, 8, 18, 24, 25, 25.05, 25.06, 25.06, 25.06])
+slid = SimpleNamespace(time=times, end={"mass_solid": np.ones((2, 1))}, snapshots=[(t, {"position": np.array([[x, 0.0], [0.0, x]])}) for t, x in zip(times, places)], failed=lambda p: np.array([True, True]))
+speed = slide.speeds(slid)
+check_true("a slide that is known: its speeds, at rest from 6 s on", np.allclose(speed, np.diff(places)) and slide.rests(slid, speed) == 6.0, (speed, slide.rests(slid, speed)))
+check_true("... one that goes on is not at rest", slide.rests(slid, speed[:6]) is None and slide.rests(slid, np.zeros(10)) is None)
 half = slide.Run(one.out, until=5.0)
 check_true("a run looked at as far as 5 s", half.time[-1] == 5.0 and max(half.balance["time_s"][-1], half.probes["time_s"][-1]) <= 5.0 + 1e-6 and half.balance["time_s"][-1] > 4.9)
 check("... its onset is the whole run's", abs(slide.measure(half)["onset_s"] - m["onset_s"]), 1e-12)
