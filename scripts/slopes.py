@@ -440,7 +440,7 @@ Rows of `slope_warming`, and those to 250 s, are by the present program, the oth
   are taken out, and so on. A band's time is the median of the times at which its particles pass 0.15; its angle is that of the main axis of their places at that time, weighted with strain, against the base.
 - *Gas released*: what the hydrate lost gave, per metre of thickness; all of it stays in the closed body.
 
-The same measures stand at the end of `summary.txt` after `./run slope_a` (`slope_b`, `slope_c`, `slope_warming`), the list of bands with them, and above the picture of the energy.
+The same measures stand at the end of `summary.txt` after `./run slope_a` (`slope_b`, `slope_c`, `slope_warming`), with the probes by name and the list of bands, and above the picture of the energy.
 """
 
 
