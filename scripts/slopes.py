@@ -153,7 +153,7 @@ def energy(kept):
             m = kept[name]
             b = {"damping_work_J": 0.0} | m["balance"]
             rows.append((f"{case.upper()}: {label}, {m['end_s']:.0f} s", *(f"{b[k] / 1e6:.4g}" for k, _ in ENERGY), f"{100 * abs(b['energy_remainder_J'] / b['gravity_work_J']):.2g} %"))
-    return ["## Balance of energy", "", "MJ per metre: works of the first three, and where they went. All close to less than 1 % of the work of gravity, C by `hybrid` on cells of 16 m to 1.4 %. With velocities of nearly empty nodes tied to their",
+    return ["## Balance of energy", "", "MJ per metre: works of the first three, and where they went. All close to less than 1 % of the work of gravity, B and C by `hybrid` on cells of 16 m to 1.4 %. With velocities of nearly empty nodes tied to their",
             "neighbours, a tie that gives power where a surface tears, and works of held nodes that missed half the slip over the base, a fifth was left over in B and C ((41), (92), (150) of [equations.md](equations.md)).", "",
             *table(rows)]  # fmt: skip
 
@@ -276,9 +276,10 @@ def scenario_c(kept):
     yield ("second and third V at 30 s, at the top and in the middle, two grabens", near(m, 27, 1), "at the top at 27 s; none in the middle")
     yield ("sub-bands in the grabens at 41 s", near(m, 41, 4), "agrees")
     yield ("fourth and fifth at 56 to 60 s", near(m, 54, 6), "at 50 and 59 s; they follow each other from the head of the slide down")
-    yield ("last one at 77 s", near(m, 86, 4), "at 82 and 89 s")
-    yield ("angles of 47 to 51°", f"bands through 60 % of the height: {min(tops):.0f} to {max(tops):.0f}°, mean {np.mean(tops):.0f}°", "four of seven of 49 to 53°, the last three 56 to 58°")
-    yield ("seven bands", f"{len(tall(m))} through 60 % of the height, {len(m['bands'])} in all", "agrees")
+    yield ("last one at 77 s", near(m, 85, 5), "at 81 and 88 s")
+    yield ("angles of 47 to 51°", f"bands through 60 % of the height: {min(tops):.0f} to {max(tops):.0f}°, mean {np.mean(tops):.0f}°", "four of six of 49 to 53°, the last two 56 and 58°")
+    short = [b for b in m["bands"] if 55 < b["y_high_m"] - b["y_low_m"] < 60]
+    yield ("seven bands", f"{len(tall(m))} through 60 % of the height, {len(m['bands'])} in all" + "".join(f"; one of {b['y_high_m'] - b['y_low_m']:.0f} m at {b['time_s']:.0f} s, {b['angle_deg']:.0f}°" for b in short), "agrees")
     yield ("runout 600 m", f"{m['runout_m']:.0f} m at {m['end_s']:.0f} s", "**farther**")
     yield ("one very high peak of E_k, higher than in B", f"{m['peak_kinetic_energy_J']:.2g} J/m at {m['peak_kinetic_energy_s']:.0f} s" + f"; B {kept['B']['peak_kinetic_energy_J']:.2g}", "one peak, but **lower** than in B")
     yield ("R_k peaks as bands form", "peaks of R_k at " + ", ".join(f"{t:.0f}" for t in m["peaks_of_R_k_s"]) + " s", "some; many more than bands")
@@ -291,7 +292,7 @@ def scenario_c(kept):
     yield ("by 250 s largely come to a halt", said, "agrees" if still else "**differs**")
 
 
-C_SAYS = ("agrees", "agrees", "agrees of the tall ones; all of them are as many", "agrees")
+C_SAYS = ("agrees", "agrees", "not on 4 m, by a band that is just too short; on 8 m; all of them are as many", "agrees")
 
 
 PENALTIES = ("`hybrid`", "`sdirk2`, 1e-2", "`sdirk2`, 1e-3")
@@ -334,7 +335,7 @@ def section(kept, title, statements, notes):
 
 
 NOTES_IMPLICIT = """- *A and C go through, to rest and to 100 s* (`-stepper_type sdirk2 -stepper_tol 1e-2`), in steps of 0.1 s, those of the probes, with 4 to 7 Newton iterations, C with blocks that tear loose and slide for hundreds of metres.
-- *B gives up at 38.9 s*, just past its largest E_k (36 GJ/m at 38 s, `hybrid` 44 at 39 s; E_k 11 to 19 % lower until 30 s, with hydrate lost within 0.2 %): in the tear at (700, 19) m gas of a particle is stretched to zero pressure, where sediment is to have gas, and no shorter step helps. `hybrid` goes by it with shares of the pressure (151), which implicit steps do not have.
+- *B gives up at 38.9 s*, just past its largest E_k (36 GJ/m at 38 s, `hybrid` 44 at 39 s; E_k 11 to 19 % lower until 30 s, with hydrate lost within 0.2 %): in the tear at (700, 19) m gas of a particle is stretched to zero pressure, where sediment is to have gas, and no shorter step helps. With `without_gas: yes` (and `stepper_pressures: nodes`) it goes to 42.9 s, through the peak (36 GJ/m at 39 s), until Newton's method finds no solution in the same tear. `hybrid` goes by it with shares of the pressure (151), which implicit steps do not have.
 - *The ghost penalty holds them back.* (22) resists each step's motion where the surface cuts cells, also that of two pieces beside a tear. With 1e-2 it takes a quarter of gravity's work in C, which then has two fifths of `hybrid`'s kinetic energy; with 1e-3, which these cases
   now have, it takes 4 %, and E_k, the way and what fails come within 13, 5 and 1 %. `hybrid` has no (22). The default, 0.1, is for bodies that stay whole ([a blow between two bars](../tests/verification/meeting.py): it takes 90 % of the energy, 1e-3 takes 3 %).
 - *A* by `sdirk2` has 10 % less E_k at its first peak and moves 4.4 instead of 5.5 m. It is not the step: with halves of it (0.05 s) E_k rises by 2 %, and it moves 4.4 m all the same. Nor the ghost penalty of 1e-3 (0.5 % of gravity's work) or the pressure projection (without it 3.65 instead of
@@ -362,8 +363,8 @@ NOTES_B = """- To 100 s without a step refused: gas that expands in what tears l
 ![bands](figures/slope_b_bands.png)
 
 *Pictures of B and C are of cells of 8 m.*""".split("\n")
-NOTES_C = """- The statements without a mesh are of the paper's cells of 4 m. On 8 m the heated layer is twice as thick (9.8 instead of 6.9 % of the hydrate lost), bands come within 2 s of the same times at the same places until 30 s, and E_k, runout and failed volume differ by 1 to 8 %.
-- The row of θ = 0.5 on 4 m is of the program before (374), which took 111,318 steps; on 8 m (374) took 21,738 steps instead of 26,564, E_k is 0.3 % lower, the way 0.6 % and the runout 1.7 % longer.
+NOTES_C = """- The statements without a mesh are of the paper's cells of 4 m. On 8 m the heated layer is twice as thick (9.8 instead of 6.9 % of the hydrate lost), bands come within 2 s of the same times at the same places until 30 s, and E_k, way, runout and failed volume differ by 1 to 6 %.
+- θ = 0.5 on 4 m took 111,318 steps before (374) instead of 56,451, with E_k of 9.23 instead of 9.40 GJ/m, 472 instead of 487 m moved, a front at 711 instead of 727 m and the same bands within 1 s, the last of them, at 89 s, as the seventh tall one; on 8 m (374) took 21,738 steps instead of 26,564, E_k is 0.3 % lower, the way 0.6 % and the runout 1.7 % longer. At 100 s what failed still moves by 1.3 m/s on 4 m and 0.7 m/s on 8 m, which ends within 2 s there.
 - The block in the middle stays whole, for 100 s; the paper's breaks into horsts and grabens everywhere.
 
 ![plastic strain](figures/case_slope_c.png)
@@ -397,7 +398,7 @@ With friction the two differ unless pore water bears the sea's pressure inside (
 NOT_RUN = """
 ## What was not run
 
-C on 4 m by `hybrid` beyond its row, and B there beyond 100 s (on cells of 8 m both have come to rest by then and stay so to 250 s); B and C by sdirk2 on cells finer than 16 m. On cells of 8 m two and four ranks agree with one to 3e-12 into the slide, and a restart there is bit for bit: [tests/integration/slope.py](../tests/integration/slope.py).
+B and C on 4 m beyond 100 s (on cells of 8 m they have come to rest by 65 and 102 s and stay so to 250 s); B and C by sdirk2 on cells finer than 16 m. On cells of 8 m two and four ranks agree with one to 3e-12 into the slide, and a restart there is bit for bit: [tests/integration/slope.py](../tests/integration/slope.py).
 """.split("\n")
 NOTES_A = """- *Later peaks.* The paper's further peaks of E_k, without new bands, are put down to creep as hydrate goes on dissociating. Here the hydrate of the heated row of cells is
   gone by then (point A: all of it by 100 s), the block rests on the stump of the base left of 150 m, and 2 % of all hydrate is lost for good. With K_0 = 3.6e4, the rate as printed, the
