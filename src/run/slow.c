@@ -35,11 +35,13 @@ PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, cons
   StepperTime(s->state.t - s->model->c->t_begin, s->state.t - s->model->c->t_begin, 3, now);
   StepperTime(info->dt, info->dt, 2, time);
   StepperTime(pace->left * pace->step, pace->left * pace->step, 2, rest);
-  PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
-                         "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
-                         " refused) have come to %s, %.3g %%; the forecast was %.2g for all, and at this pace %.2g are "
-                         "left, %s.  dt = %s, %s\n",
-                         pace->taken, slow->refused, now, 100.0 * pace->done, forecast, pace->left, rest, time, rules));
+  PetscCall(PetscFPrintf(
+      s->model->grid.comm, stderr,
+      "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
+      " refused) have come to %s, %.3g %%; the forecast was %.2g for all, and by their growth so far %.2g are "
+      "left, %s; with the present dt of %s it would be %.2g.  dt is %s\n",
+      pace->taken, slow->refused, now, 100.0 * pace->done, forecast, pace->left, rest, time,
+      (StepperCase(s)->t_end - s->state.t) / info->dt, rules));
   PetscCall(StepperAdviseSlow(s, s->state.hold > 0));
   slow->next = 2.0 * pace->taken;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -132,9 +132,15 @@ static double Above(double z)
   return 0.5 * erfc(z / M_SQRT2);
 }
 
+/* In units of the spread. */
+static double Beyond(double forecast, double n)
+{
+  return log(fmax(n, 1e-3) / forecast) / SPREAD;
+}
+
 double LearntMedian(double forecast, double n)
 {
-  const double z   = log(fmax(n, 1e-3) / forecast) / SPREAD;
+  const double z   = Beyond(forecast, n);
   double       low = z, high = fmax(z, 0.0) + 1.0;
 
   if (z > 6.0) /* where the tail is exponential */
@@ -153,11 +159,12 @@ double LearntMedian(double forecast, double n)
 double LearntSteps(const Learnt *l, const Ahead *a)
 {
   const double pace = LearntPace(l, a), share = (l->origin + Last(l) - a->from) / (a->end - a->from);
-  const double weight = share / (share + TRUST);
 
   if (a->even || !(a->forecast > 0.0))
     return pace;
-  const double median = LearntMedian(a->forecast, l->all);
+  const double median = LearntMedian(a->forecast, l->all); /* (411) */
+  const double stands = fmin(Above(Beyond(a->forecast, l->all)) / Above(1.0), 1.0),
+               weight = share / (share + TRUST * stands);
 
   return isnan(pace) ? median : pow(pace, weight) * pow(median, 1.0 - weight); /* (412) */
 }

@@ -224,6 +224,10 @@ static void TimeLeftIsLearnt(void **state)
   };
   Learnt l = {.n = 0};
 
+  assert_true(fabs(LearntMedian(100.0, 0.0) - 100.0) < 0.1); /* (411): all is left, ... */
+  assert_true(fabs(LearntMedian(100.0, 100.0) / (100.0 * (exp2(0.6744897501960817) - 1.0)) - 1.0) <
+              1e-6);                                                                   /* a quarter */
+  assert_true(fabs(LearntMedian(1.0, 63.99) / LearntMedian(1.0, 64.01) - 1.0) < 0.05); /* where the tail takes over */
   assert_true(isnan(LearntLeft(&l, &run[1].ahead)));
   LearntAdd(&l, 1.0, 1.0, 1.0);
   assert_true(isnan(LearntLeft(&l, &run[1].ahead)));
