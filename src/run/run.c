@@ -117,7 +117,7 @@ static PetscErrorCode LookAtPace(const Stepper *s, const StepInfo *info, Run *ru
     SlowBegin(&run->slow, s);
   run->stage = s->state.stage;
   StageLogPace(run->log, s, &pace);
-  if (!run->quiet && !CaseAtEnd(StepperCase(s), s->state.t))
+  if (!CaseAtEnd(StepperCase(s), s->state.t))
     PetscCall(SlowLook(&run->slow, s, info, &pace));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
