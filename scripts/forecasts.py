@@ -18,7 +18,7 @@ MARKS = (5, 10, 25, 50)
 UNIT = {"s": 1, "min": 60, "h": 3600, "day": 86400, "days": 86400, "year": 31557600, "years": 31557600}
 HEATER = "\nbc_heater: {type: face_temperature, side: left, from: 3 m, to: 7 m, temperature: {ramp: [14.4 degC, 60 degC, 0 d, 1 d]}}\n"
 HEATED = ("-bc_well_pressure", "11 MPa", "-stabilisation_reaction", "yes")
-CASES = ("terzaghi", "mcwhorter_sunada", "buckley_leverett", "stefan_front", "bp2", "masuda", "century", "century_hydrate", "slope_warming", "biaxial")
+CASES = ("terzaghi", "mcwhorter_sunada", "buckley_leverett", "stefan_front", "bp2", "masuda", "century", "century_hydrate", "slope_warming")
 
 
 def heated(text):
