@@ -255,12 +255,14 @@ typedef struct {
 } Ahead;
 /* From the present time on. */
 void StepperAhead(const Stepper *s, Ahead *a);
-/* Steps to the end by what the run has shown, (318), (319), (345); NAN: nothing is known yet. */
+/* Number of steps to the end (dimensionless) by what the run has shown, (318), (319), (345); NAN: nothing is known yet.
+ */
 double LearntPace(const Learnt *l, const Ahead *a);
-/* Steps that are left, as often more as less, of those forecast, when n are taken, (411). */
+/* Number of steps that are left (dimensionless), as often more as less, of those forecast, when n are taken, (411). */
 double LearntMedian(double forecast, double n);
-/* Steps to the end by both (412); and the seconds of the wall that they take. */
+/* Number of steps to the end (dimensionless) by both (412); NAN: nothing is known yet. */
 double LearntSteps(const Learnt *l, const Ahead *a);
+/* The time of the wall that they take, s; NAN: nothing is known yet. */
 double LearntLeft(const Learnt *l, const Ahead *a);
 
 /* ---- auto.c: docs/equations.md, section 15 */

@@ -46,7 +46,7 @@ void ProcessPrepare(char **argv)
 
 PetscErrorCode ProcessQuietPipe(void)
 {
-  signal(SIGPIPE, SIG_IGN);
+  signal(SIGPIPE, SIG_DFL);                                      /* ends without a word, as others do */
   return PetscOptionsSetValue(NULL, "-no_signal_handler", NULL); /* before PetscInitialize, which would take it */
 }
 

@@ -263,6 +263,8 @@ static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *ru
   if (run->restart[0])
     PetscFunctionReturn(PETSC_SUCCESS);
   if (!run->initial[0])
+    PetscCall(FreeSidesWarning(m->grid.comm, m->c));
+  if (!run->initial[0])
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
   PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P, c->t_end - c->scene.t_begin));
   PetscCall(CellMeansWarning(&m->grid, m->c, &m->P, HybridTraction(c)));
