@@ -52,11 +52,12 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   StepperTime(s->state.t - t_begin, c->t_end - t_begin, 6, now);
   StepperTime(info->dt, info->dt, 6, dt);
   if (!isnan(left)) {
-    char time[32];
+    char time[32], count[16];
 
     StepperTime(left, left, left < 10.0 ? 2 : 3, time);
+    StepperCount2(fmax(steps, 1.0), count);
     if (steps > 0.0)
-      PetscCall(PetscSNPrintf(rest, sizeof(rest), "about %.2g steps, %s left", fmax(round(steps), 1.0), time));
+      PetscCall(PetscSNPrintf(rest, sizeof(rest), "about %s steps, %s left", count, time));
     else
       PetscCall(PetscSNPrintf(rest, sizeof(rest), "%s left", time));
   }

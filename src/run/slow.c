@@ -25,7 +25,7 @@ static PetscErrorCode Rules(const Stepper *s, const StepInfo *info, char text[12
 PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, const Pace *pace)
 {
   const double forecast = s->forecast.implicit_steps;
-  char         rules[128], now[32], time[32], rest[32];
+  char         rules[128], now[32], time[32], rest[32], all[16], grown[16], flat[16];
 
   PetscFunctionBeginUser;
   slow->refused += info->cuts;
@@ -35,13 +35,15 @@ PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, cons
   StepperTime(s->state.t - s->model->c->t_begin, s->state.t - s->model->c->t_begin, 3, now);
   StepperTime(info->dt, info->dt, 2, time);
   StepperTime(pace->left * pace->step, pace->left * pace->step, 2, rest);
-  PetscCall(PetscFPrintf(
-      s->model->grid.comm, stderr,
-      "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
-      " refused) have come to %s, %.3g %%; the forecast was %.2g for all, and by their growth so far %.2g are "
-      "left, %s; with the present dt of %s it would be %.2g.  dt is %s\n",
-      pace->taken, slow->refused, now, 100.0 * pace->done, forecast, pace->left, rest, time,
-      (StepperCase(s)->t_end - s->state.t) / info->dt, rules));
+  StepperCount2(forecast, all);
+  StepperCount2(pace->left, grown);
+  StepperCount2((StepperCase(s)->t_end - s->state.t) / info->dt, flat);
+  PetscCall(
+      PetscFPrintf(s->model->grid.comm, stderr,
+                   "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
+                   " refused) have come to %s, %.3g %%; the forecast was %s for all, and by their growth so far %s are "
+                   "left, %s; with the present dt of %s it would be %s.  dt is %s\n",
+                   pace->taken, slow->refused, now, 100.0 * pace->done, all, grown, rest, time, flat, rules));
   PetscCall(StepperAdviseSlow(s, s->state.hold > 0));
   slow->next = 2.0 * pace->taken;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -152,11 +152,18 @@ void StepperTime(double seconds, double scale, int digits, char text[32])
     text[n - 1] = '\0'; /* 1 year */
 }
 
+void StepperCount2(double n, char text[16])
+{
+  const double unit = n >= 100.0 ? pow(10.0, floor(log10(n)) - 1.0) : 1.0;
+
+  snprintf(text, 16, n < 1e5 ? "%.0f" : "%.2g", unit * round(n / unit));
+}
+
 PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
   const char     *why = CaseNeedsImplicit(StepperCase(s));
-  char            hybrid[128], time[32], stage[80];
+  char            hybrid[128], time[32], stage[80], count[16];
 
   PetscFunctionBeginUser;
   if (why) {
@@ -165,13 +172,14 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
     PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid has no stable step"));
   } else {
     StepperTime(f->hybrid_seconds, f->hybrid_seconds, 2, time);
-    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %.2g steps, %s", f->hybrid_steps, time));
+    StepperCount2(f->hybrid_steps, count);
+    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %s steps, %s", count, time));
   }
   StepperTime(f->implicit_seconds, f->implicit_seconds, 2, time);
+  StepperCount2(f->implicit_steps, count);
   StepperStageWords(s, stage);
-  PetscCall(PetscPrintf(s->model->grid.comm,
-                        "  %sforecast: %s; implicit about %.2g steps, %s%s; %s is the cheaper one\n", stage, hybrid,
-                        f->implicit_steps, time, s->adaptive ? " (most take half to twice that)" : "",
+  PetscCall(PetscPrintf(s->model->grid.comm, "  %sforecast: %s; implicit about %s steps, %s%s; %s is the cheaper one\n",
+                        stage, hybrid, count, time, s->adaptive ? " (most take half to twice that)" : "",
                         f->hybrid ? "hybrid" : "implicit"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
