@@ -228,7 +228,7 @@ def facts(run):
             ruled[word[1]] = ruled.get(word[1], 0) + 1
     commands = [line[2:] for line in lines if line.startswith("$ ")]
     return {
-        "warnings": [line for line in lines if "warning" in line.lower() or line.startswith("Given up")],
+        "warnings": [line for line in lines if "warning" in line.lower() or line.startswith(("Given up", "clathra: note:"))],
         "forecast": [line.strip().replace("forecast: ", "") for line in lines if "forecast: " in line],
         "fact": took[1] if took else "the run has not ended",
         "refused": sorted(refused.items(), key=lambda r: -r[1]), "ruled": sorted(ruled.items(), key=lambda r: -r[1]),

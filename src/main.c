@@ -79,7 +79,9 @@ int main(int argc, char **argv)
   ProcessPrepare(argv);
   for (int k = 1; k < argc; k++) {
     if (strcmp(argv[k], "--help") == 0)
-      argv[k]++; /* PETSc knows -help */
+      argv[k]++;                                             /* PETSc knows -help */
+    if (strcmp(argv[k], "-help") == 0 && ProcessQuietPipe()) /* a pager that ends is no crash */
+      return CL_EXIT_BUG;
   }
   if (PetscInitialize(&argc, &argv, NULL, help))
     return CL_EXIT_BUG;

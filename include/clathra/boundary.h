@@ -104,6 +104,10 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
    between regions (342), or whose hydrate is heated (344), on rank 0.  Collective. */
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
+/* Warns of sides that nothing bears though the pores behind them do, on rank 0. */
+PetscErrorCode FreeSidesWarning(MPI_Comm comm, const Scene *c);
+/* Warns of a pressure or an inflow on a line that a condition closes for the fluids, on rank 0. */
+PetscErrorCode ClosedWarning(MPI_Comm comm, const Scene *c);
 /* The same about particles whose pore pressure is far from hydrostatic (341), whose gas gravity moves within the `span`
    of the run (s) (315), whose hydrate is not stable, or whose gas becomes hydrate. */
 PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span);

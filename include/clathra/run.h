@@ -9,6 +9,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
 
 /* Before PETSc is initialised, and after: see src/run/process.c. */
 void ProcessPrepare(char **argv); /* may start the program again, with one thread for BLAS */
+/* Before PetscInitialize: a reader of the output that goes away is no crash. */
+PetscErrorCode ProcessQuietPipe(void);
 /* Signals that ask for the end are noted from here on. */
 void ProcessListen(void);
 int  ProcessSignal(void); /* the signal that asked this rank to end; 0: none */

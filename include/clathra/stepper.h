@@ -215,10 +215,14 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 PetscErrorCode StepperTry(const Stepper *s, const char *words);
 /* The same, with the words for this cause. */
 PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
+/* The same of steps that are far shorter than the forecast hoped for; newton: steps that it refused shorten them. */
+PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton);
 /* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
 PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
 /* "12 s", "3.4 h", "1 year": a time (s) with so many digits, in the largest unit of which `scale` (s) holds two. */
 void StepperTime(double seconds, double scale, int digits, char text[32]);
+/* A number of steps (dimensionless) in two digits: "140", "2.4e+11". */
+void StepperCount2(double n, char text[16]);
 /* Steps that kinks of the loads, output times and dt_max ask for in the last `left` (s) of the stage, at least;
  *kinks (or NULL): how many of them end at a kink. */
 double StepperStops(const Stepper *s, double left, double *kinks);
@@ -227,24 +231,25 @@ PetscErrorCode StepperPrintForecast(const Stepper *s);
 
 /* ---- learnt.c */
 #define LEARNT 400
-/* What it cost (s) to come to times t (s) since the origin, the last kink of a load or the begin, thinned out. */
+/* Steps that it took to come to times t (s) since the origin, the last kink of a load or the begin, thinned out. */
 typedef struct {
-  int    n;
-  double t[LEARNT], cost[LEARNT];
-  double origin, spent; /* s of the scene, cost up to it, s */
-  double step, dt;      /* cost of a step of late, s; the last one, s of the scene */
-  double kink;          /* t_k of (345), s: how long after the stage's begin the origin is; 0: it is the begin */
-  double doubling;      /* C_k of (345), s, as known at the origin; 0: not at all */
+  int    n, told; /* times kept; times told in all */
+  double t[LEARNT], steps[LEARNT];
+  double origin, before; /* s of the scene, and the steps up to it */
+  double all, spent;     /* steps, and seconds of the wall, up to now */
+  double step, dt;       /* time of a step of late, s of the wall; the last one, s of the scene */
+  double kink;           /* t_k of (345), s: how long after the stage's begin the origin is; 0: it is the begin */
+  double doubling;       /* n_k of (345), as known at the origin; 0: not at all */
 } Learnt;
-/* From time t (s) on, to which it cost so much to come (s), times count anew: behind a kink so long (s) after the
-   stage's begin. */
-void LearntBegin(Learnt *l, double t, double cost, double kink);
-/* To come to time t (s) has cost so much since the start, s. */
-void LearntAdd(Learnt *l, double t, double cost);
+/* From time t (s) on times count anew: behind a kink so long (s) after the stage's begin. */
+void LearntBegin(Learnt *l, double t, double kink);
+/* To come to time t (s) has taken so many steps and seconds of the wall since the start. */
+void LearntAdd(Learnt *l, double t, double steps, double spent);
 #define AHEAD_KINKS 20
 /* What is known of the rest of a stage. */
 typedef struct {
   double begin, end, kink[AHEAD_KINKS]; /* s: of the stage; of the kinks that are left */
+  double from, forecast; /* s: since when steps are counted; how many were forecast from there to the end, 0: none */
   int    kinks;
   double stretch; /* mean time between two stops, s: a step is no longer */
   bool   more;    /* there are more kinks than are listed */
@@ -252,7 +257,14 @@ typedef struct {
 } Ahead;
 /* From the present time on. */
 void StepperAhead(const Stepper *s, Ahead *a);
-/* What the way to the end will cost, s, (318), (319), (345); NAN: nothing is known yet. */
+/* Number of steps to the end (dimensionless) by what the run has shown, (318), (319), (345); NAN: nothing is known yet.
+ */
+double LearntPace(const Learnt *l, const Ahead *a);
+/* Number of steps that are left (dimensionless), as often more as less, of those forecast, when n are taken, (411). */
+double LearntMedian(double forecast, double n);
+/* Number of steps to the end (dimensionless) by both (412); NAN: nothing is known yet. */
+double LearntSteps(const Learnt *l, const Ahead *a);
+/* The time of the wall that they take, s; NAN: nothing is known yet. */
 double LearntLeft(const Learnt *l, const Ahead *a);
 
 /* ---- auto.c: docs/equations.md, section 15 */

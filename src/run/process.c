@@ -44,6 +44,12 @@ void ProcessPrepare(char **argv)
     deaf[k] = sigaction(asks[k], NULL, &before) == 0 && before.sa_handler == SIG_IGN;
 }
 
+PetscErrorCode ProcessQuietPipe(void)
+{
+  signal(SIGPIPE, SIG_DFL);                                      /* ends without a word, as others do */
+  return PetscOptionsSetValue(NULL, "-no_signal_handler", NULL); /* before PetscInitialize, which would take it */
+}
+
 void ProcessListen(void)
 {
   struct sigaction act = {.sa_handler = Hear, .sa_flags = SA_RESTART};

@@ -5,6 +5,8 @@
 #define BEYOND 0.02   /* of the range, and ... */
 #define LEAST_T 0.1   /* ... K or ... */
 #define LEAST_P 1e4   /* ... Pa, that is worth a word */
+#define ABOVE 0.1     /* of the highest pressure, likewise: what is heated in closed ground has more */
+#define HEAVY 2700.0  /* kg/m^3: no ground is heavier */
 #define DOUBTFUL 10.0 /* times the tolerance, from which errors that were put up with are warned of */
 
 typedef struct {
@@ -128,19 +130,24 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
     const bool     warm  = k == HIGHEST_T;
     const Extreme *e     = &z->extreme[k];
     const double   limit = warm ? bound.high : bound.low, beyond = warm ? e->value - limit : limit - e->value;
-    char           place[96];
+    const double   plain = warm ? acted.high : acted.low;
+    char           place[96], hydrate[96] = "none reacts";
 
     if (!(beyond > slack))
       continue;
     PetscCall(Place(e, place));
+    if (SceneReacts(c) && c->fields.phase[PHASE_G])
+      PetscCall(
+          PetscSNPrintf(hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
+                        Reaction(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
+                        1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value));
     PetscCall(PetscFPrintf(
         s->model->grid.comm, stderr,
-        "clathra: warning: a particle had %.4g degC, %s: %.2g K %s than start, conditions%s can make it (%.4g degC), "
-        "so "
-        "it is the grid's doing.  What to try, in this order: %s%sfiner cells there; a ramp instead of a jump "
-        "(docs/giving_up.md)\n",
-        e->value, place, beyond, warm ? "warmer" : "colder",
-        limit == (warm ? acted.high : acted.low) ? "" : " and hydrate", limit,
+        "clathra: warning: a particle had %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it "
+        "(start "
+        "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing.  What to try, in this order: %s%sfiner "
+        "cells there; a ramp instead of a jump (docs/giving_up.md)\n",
+        e->value, place, beyond, warm ? "warmer" : "colder", plain, hydrate,
         SceneReacts(c) && c->fields.phase[PHASE_G] && !c->stabilisation.held_reaction &&
                 !c->stabilisation.lumped_reaction
             ? "stabilisation_reaction_heat: yes, beside hydrate; "
@@ -151,53 +158,94 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where nothing presses but pressures, the lowest of these and the start's, Pa; NAN: something else acts. */
-static double LowestPressure(const Stepper *s)
+/* What a condition may make of pore pressures, Pa; opens the span where that is not known. */
+static void AddPressures(Span *span, const Bc *b)
 {
-  const Case *c    = StepperCase(s);
-  Span        span = {s->state.begin[LOWEST_P], s->state.begin[HIGHEST_P]};
+  if (b->type == BC_PLATE || b->type == BC_PLATE_LINE || b->type == BC_INFLOW)
+    *span = (Span){-INFINITY, INFINITY};
+  if (b->type == BC_WELL && (b->rate[PHASE_W].n || b->rate[PHASE_G].n))
+    *span = (Span){-INFINITY, INFINITY};
+  if (b->type == BC_PRESSURE || b->type == BC_WELL)
+    Add(span, &b->value);
+  for (int ph = 0; b->type == BC_PRESSURE && ph < PHASE_COUNT; ph++)
+    Add(span, &b->phase[ph]);
+}
+
+/* How far the tractions (Pa) change at most, and the highest; undrained ground takes them on. */
+static void Tractions(const Scene *c, double *most, double *change)
+{
+  for (PetscInt i = 0; i < c->nbc; i++) {
+    Span load = {INFINITY, -INFINITY};
+
+    if (c->bc[i].type != BC_TRACTION)
+      continue;
+    Add(&load, &c->bc[i].value);
+    *most   = fmax(*most, load.high);
+    *change = fmax(*change, load.high - load.low);
+  }
+}
+
+/* Pore pressures that start, conditions, loads, weight and hydrate in equilibrium can make, Pa; open where something
+   acts of which that is not known. */
+static Span Pressures(const Stepper *s)
+{
+  const StepperState *z    = &s->state;
+  const Case         *c    = StepperCase(s);
+  Span                span = {z->begin[LOWEST_P], z->begin[HIGHEST_P]};
 
   for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++) {
     const Scene *scene = &CaseInStage(c, k)->scene;
+    const double tall  = fmax(scene->upper[0] - scene->lower[0], scene->upper[1] - scene->lower[1]);
+    const double heavy = SceneGravity(scene) * scene->ambient_density;
+    Span         level = {INFINITY, -INFINITY};
+    double       most = 0.0, change = 0.0;
 
-    if (SceneGravity(scene) > 0.0 || scene->ambient_density > 0.0 || scene->ambient_pressure.n > 1 ||
-        ScheduleValue(&scene->ambient_pressure, 0.0) != 0.0)
-      return NAN;
-    for (PetscInt i = 0; i < scene->nbc; i++) {
-      const Bc *b = &scene->bc[i];
-
-      if (b->type == BC_PLATE || b->type == BC_PLATE_LINE || b->type == BC_INFLOW || b->type == BC_WELL)
-        return NAN;
-      if (b->type != BC_PRESSURE)
-        continue;
-      Add(&span, &b->value);
-      for (int ph = 0; ph < PHASE_COUNT; ph++)
-        Add(&span, &b->phase[ph]);
-    }
+    for (PetscInt i = 0; i < scene->nbc; i++)
+      AddPressures(&span, &scene->bc[i]);
+    if (scene->ambient_pressure.n > 1 || ScheduleValue(&scene->ambient_pressure, 0.0) != 0.0)
+      Add(&span, &scene->ambient_pressure);
+    Add(&level, &scene->ambient_level);
+    if (heavy > 0.0 && level.high > level.low)
+      change = heavy * (level.high - level.low);
+    Tractions(scene, &most, &change);
+    span.low  = span.low - change;
+    span.high = fmax(span.high, most) + (scene->fields.inertia ? change : 0.0);
+    if (SceneGravity(scene) > 0.0) /* of all that may lie above */
+      span.high += (HEAVY + scene->ambient_density) * SceneGravity(scene) * tall;
+    if (scene->fields.has & HAS_PLASTIC) /* sheared ground makes its own */
+      span = (Span){-INFINITY, INFINITY};
   }
-  return span.low;
+  return span;
 }
 
-/* A pressure below all may be physics (what melts or cools takes less room, what is unloaded more), so this is no more
-   than a note. */
+/* A pressure beyond all may be physics (what melts or cools takes less room, what is heated or loaded more), so this is
+   no more than a note. */
 static PetscErrorCode NotePressures(const Stepper *s)
 {
   const StepperState *z     = &s->state;
-  const Extreme      *e     = &z->extreme[LOWEST_P];
-  const double        least = s->model->c->fields.phase[PHASE_W] ? LowestPressure(s) : NAN, beyond = least - e->value;
-  char                place[96];
+  const Scene        *c     = s->model->c;
+  const Span          bound = Pressures(s);
+  const double        range = z->extreme[HIGHEST_P].value - z->extreme[LOWEST_P].value;
 
   PetscFunctionBeginUser;
-  if (!(beyond > fmax(LEAST_P, BEYOND * (z->extreme[HIGHEST_P].value - least))))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Place(e, place));
-  PetscCall(PetscFPrintf(
-      s->model->grid.comm, stderr,
-      "clathra: note: the pressure of a particle was %.4g MPa, %s: %.3g MPa below that of the start and of all "
-      "conditions.  Melting hydrate, cooling or unloading may do that; at a border of layers that has "
-      "left the grid's lines it is one row of particles, and pictures have the nodes' mean "
-      "(docs/limits.md)\n",
-      1e-6 * e->value, place, 1e-6 * beyond));
+  for (int k = LOWEST_P; c->fields.phase[PHASE_W] && k <= HIGHEST_P; k++) {
+    const bool     high  = k == HIGHEST_P;
+    const Extreme *e     = &z->extreme[k];
+    const double   limit = high ? bound.high : bound.low, beyond = high ? e->value - limit : limit - e->value;
+    char           place[96];
+
+    if (!(beyond > fmax(LEAST_P, high ? ABOVE * fabs(limit) : BEYOND * range)))
+      continue;
+    PetscCall(Place(e, place));
+    PetscCall(PetscFPrintf(
+        s->model->grid.comm, stderr,
+        "clathra: note: the pressure of a particle was %.4g MPa, %s: %.3g MPa %s that of the start "
+        "and of all conditions and loads (%.4g MPa).  %s may do that; at a border of layers that has "
+        "left the grid's lines it is one row of particles, and pictures have the nodes' mean; "
+        "beside it neighbours that alternate are the grid's doing (docs/limits.md)\n",
+        1e-6 * e->value, place, 1e-6 * beyond, high ? "above" : "below", 1e-6 * limit,
+        high ? "Melting hydrate that is closed in, heating or squeezing" : "Melting hydrate, cooling or unloading"));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

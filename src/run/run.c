@@ -10,6 +10,8 @@ typedef struct {
   Folder    folder;
   Watch     watch;
   StageLog *log;
+  Slow      slow;
+  PetscInt  stage;                                                     /* that slow is of */
   char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   char      restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];  /* -restart, -restart_as_initial */
   double    t_saved;                                                   /* of that */
@@ -34,14 +36,14 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
 {
   const Case  *c       = StepperCase(s);
   const double t_begin = c->scene.t_begin;
-  double       done, left;
+  double       done, steps, left;
   char         cuts[32] = "", error[160] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32];
-  char         rest[48] = "time left not known yet";
+  char         rest[64] = "time left not known yet";
 
   PetscFunctionBeginUser;
   if (run->quiet || !WatchLine(&run->watch, CaseAtEnd(c, s->state.t) || s->stop))
     PetscFunctionReturn(PETSC_SUCCESS);
-  StageLogProgress(run->log, s, &done, &left);
+  StageLogProgress(run->log, s, &done, &steps, &left);
   StepperStageWords(s, stage);
   if (t_begin > 0.0) {
     StepperTime(t_begin, t_begin, 6, now);
@@ -50,8 +52,14 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   StepperTime(s->state.t - t_begin, c->t_end - t_begin, 6, now);
   StepperTime(info->dt, info->dt, 6, dt);
   if (!isnan(left)) {
-    StepperTime(round(left), left, 3, rest);
-    PetscCall(PetscStrlcat(rest, " left", sizeof(rest)));
+    char time[32], count[16];
+
+    StepperTime(left, left, left < 10.0 ? 2 : 3, time);
+    StepperCount2(fmax(steps, 1.0), count);
+    if (steps > 0.0)
+      PetscCall(PetscSNPrintf(rest, sizeof(rest), "about %s steps, %s left", count, time));
+    else
+      PetscCall(PetscSNPrintf(rest, sizeof(rest), "%s left", time));
   }
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
@@ -100,6 +108,21 @@ static PetscErrorCode Save(Stepper *s, Run *run)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says so where the stage takes far more steps than was forecast. */
+static PetscErrorCode LookAtPace(const Stepper *s, const StepInfo *info, Run *run)
+{
+  Pace pace;
+
+  PetscFunctionBeginUser;
+  if (run->stage != s->state.stage)
+    SlowBegin(&run->slow, s);
+  run->stage = s->state.stage;
+  StageLogPace(run->log, s, &pace);
+  if (!CaseAtEnd(StepperCase(s), s->state.t))
+    PetscCall(SlowLook(&run->slow, s, info, &pace));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* After every accepted step: ledger, probes, meters, snapshot, checkpoint, progress. */
 static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
 {
@@ -112,6 +135,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   PetscFunctionBeginUser;
   PetscCall(WatchStep(s->model->grid.comm, &run->watch, &save, &end));
   PetscCall(StageLogStep(run->log, s, info));
+  PetscCall(LookAtPace(s, info, run));
   PetscCall(IceLook(s, &run->frozen));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
   if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
@@ -235,8 +259,12 @@ static const Bc *HybridTraction(const Case *c)
 static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *run)
 {
   PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++)
+    PetscCall(ClosedWarning(m->grid.comm, &CaseInStage(c, k)->scene));
   if (run->restart[0])
     PetscFunctionReturn(PETSC_SUCCESS);
+  if (!run->initial[0])
+    PetscCall(FreeSidesWarning(m->grid.comm, m->c));
   if (!run->initial[0])
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
   PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P, c->t_end - c->scene.t_begin));
@@ -264,6 +292,8 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(WriteLog(c, m->grid.comm, run));
   run->clock_start = Wall();
   PetscCall(StageLogCreate(s, &run->log));
+  run->stage = s->state.stage;
+  SlowBegin(&run->slow, s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

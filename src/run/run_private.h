@@ -42,11 +42,28 @@ typedef struct StageLog StageLog;
 PetscErrorCode          StageLogCreate(const Stepper *s, StageLog **log);
 PetscErrorCode          StageLogDestroy(StageLog **log);
 PetscErrorCode          StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info); /* an accepted step */
-/* Share of the stage that is done, and the seconds the rest of it will take; NAN: not known yet. */
-void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left);
+/* Share of the stage that is done, and the steps and seconds the rest of it will take; NAN: not known yet. */
+void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *steps, double *left);
+/* How a stage goes: share of it that is done, steps taken in it by this process, steps left as the run itself shows
+   (NAN: not known), s of the wall for one. */
+typedef struct {
+  double   done, left, step;
+  PetscInt taken;
+} Pace;
+void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace);
 /* A line for every stage that was entered and every integrator that worked in it; empty where there was one only.
    PetscFree it. */
 PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **text);
+
+/* ---------------------------------------------------------------- slow.c */
+typedef struct {
+  double   next; /* steps of the stage before which nothing is said */
+  PetscInt refused;
+} Slow;
+/* At the begin of a run or stage. */
+void SlowBegin(Slow *slow, const Stepper *s);
+/* After a step: a line if the stage takes far longer than was forecast, again when it has taken twice as many steps. */
+PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, const Pace *pace);
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
    is nothing to say */

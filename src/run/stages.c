@@ -17,8 +17,9 @@ typedef struct {
 struct StageLog {
   PetscInt n, cap, step; /* entries, allocated, steps at the last look */
   double   from, clock;  /* when the stage began: s of the scene in this process, of the wall */
+  PetscInt taken;        /* steps since then */
   Entry   *entry;
-  Learnt   learnt; /* since then */
+  Learnt   learnt; /* since then, or since the integrator changed */
   double   kink;   /* the next one, s */
   bool     many;   /* too many of them to begin anew at each */
 };
@@ -38,7 +39,10 @@ static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
     log->clock  = Wall();
     log->kink   = BcNextKink(s->model->c, from);
     log->many   = ahead.more;
+    log->taken  = 0;
     log->learnt = (Learnt){.origin = from};
+  } else { /* its steps are others */
+    log->learnt = (Learnt){.origin = from, .before = log->taken, .all = log->taken, .spent = Wall() - log->clock};
   }
   log->entry[log->n++] =
       (Entry){.integrator = s->scheme->name, .stage = s->state.stage, .from = from, .to = from, .clock = Wall()};
@@ -88,27 +92,49 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   e->steps += s->state.step - log->step;
   e->refused += info->cuts;
   e->newton += info->newton;
+  log->taken += s->state.step - log->step;
   log->step = s->state.step;
-  LearntAdd(&log->learnt, s->state.t, Wall() - log->clock);
+  LearntAdd(&log->learnt, s->state.t, log->taken, Wall() - log->clock);
   if (s->state.t >= log->kink) {
     log->kink = BcNextKink(s->model->c, s->state.t);
     if (!log->many)
-      LearntBegin(&log->learnt, s->state.t, Wall() - log->clock, s->state.t - s->model->c->t_begin);
+      LearntBegin(&log->learnt, s->state.t, s->state.t - s->model->c->t_begin);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *left)
+/* The rest of the stage. */
+static void Look(const StageLog *log, const Stepper *s, Ahead *ahead)
+{
+  StepperAhead(s, ahead);
+  ahead->from = log->from;
+  ahead->even = ahead->even || log->many;
+  if (s->auto_.on) /* of one integrator alone */
+    ahead->forecast = 0.0;
+}
+
+void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *steps, double *left)
 {
   Ahead ahead;
 
-  *done = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from);
-  *left = CaseAtEnd(StepperCase(s), s->state.t) ? 0.0 : NAN;
+  *done  = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from);
+  *steps = *left = CaseAtEnd(StepperCase(s), s->state.t) ? 0.0 : NAN;
   if (*left == 0.0 || *done < UNKNOWN)
     return;
-  StepperAhead(s, &ahead);
-  ahead.even = ahead.even || log->many;
-  *left      = LearntLeft(&log->learnt, &ahead);
+  Look(log, s, &ahead);
+  *steps = LearntSteps(&log->learnt, &ahead);
+  *left  = LearntLeft(&log->learnt, &ahead);
+}
+
+void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace)
+{
+  Ahead ahead;
+
+  Look(log, s, &ahead);
+  *pace = (Pace){.done  = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from),
+                 .left  = LearntPace(&log->learnt, &ahead),
+                 .step  = log->learnt.step,
+                 .taken = log->taken};
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */

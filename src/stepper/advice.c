@@ -64,6 +64,30 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
+{
+  const Scene *c      = s->model->c;
+  const bool   reacts = SceneReacts(c) && c->fields.phase[PHASE_G];
+  char         words[768];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(
+      words, sizeof(words), "%s%s%s%s%s",
+      reacts && c->fields.heat && !c->stabilisation.lumped_reaction
+          ? "stabilisation_reaction: yes, where hydrate is heated; "
+          : "",
+      SceneTwoPressures(c) && !c->stabilisation.saturation_upwind
+          ? "stabilisation_saturation: yes, where saturations alternate; "
+          : "",
+      DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
+      newton
+          ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
+          : "stepper_tol ten times larger; ",
+      "a ramp instead of a jump; finer cells near that place"));
+  PetscCall(StepperTry(s, words));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status)
 {
   const Model *m = s->model;

@@ -12,7 +12,9 @@
 #define FACTOR_POWER 1.3
 #define REDUCED 5.0e-6      /* s an unknown and Jacobian: GMRES with the reduced preconditioner */
 #define SMOOTH_STEPS 1e2    /* (317): an adaptive run whose loads are slow, at ... */
-#define SMOOTH_TOL 1e-3     /* ... this tolerance */
+#define SMOOTH_TOL 1e-3     /* ... this tolerance, ... */
+#define REACTS 1.75         /* ... times as many where hydrate reacts: its fronts rule steps then */
+#define NEWTON_REACTS 2.3   /* Jacobians a stage there */
 #define BEHIND_KINK 12.0    /* steps that a kink adds */
 #define MOST_STRETCHES 2000 /* ... looked at */
 #define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
@@ -59,6 +61,14 @@ double StepperStops(const Stepper *s, double left, double *kinks)
   return steps * share;
 }
 
+/* Does hydrate react while a step is chosen by its error?  Its fronts, which nobody knows yet, then rule steps. */
+static bool FrontsRule(const Stepper *s)
+{
+  const Scene *c = s->model->c;
+
+  return s->adaptive && SceneReacts(c) && c->fields.heat && c->fields.phase[PHASE_G];
+}
+
 /* Steps of an implicit run: as fixed, or few unless waves have to be resolved, events come often or loads have kinks.
  */
 static double ImplicitSteps(const Stepper *s, double left)
@@ -72,8 +82,9 @@ static double ImplicitSteps(const Stepper *s, double left)
   const double transits =
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
 
-  const double stops = StepperStops(s, left, &kinks);
-  const double steps = fmax(SMOOTH_STEPS * cbrt(SMOOTH_TOL / s->tol), stops + BEHIND_KINK * kinks); /* (317) */
+  const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * cbrt(SMOOTH_TOL / s->tol);
+  const double stops  = StepperStops(s, left, &kinks);
+  const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* (317) */
 
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
 }
@@ -117,9 +128,9 @@ PetscErrorCode StepperForecast(Stepper *s)
     f->hybrid_steps   = fmax(ceil(left / StepperHybridStep(c, &f->limit)), 1.0);
     f->hybrid_seconds = StepperHybridWork(m, f->hybrid_steps);
   }
-  f->implicit_steps = ImplicitSteps(s, left);
-  f->implicit_seconds =
-      StepperImplicitWork(m, f->implicit_steps * s->scheme->stages * STEPPER_NEWTON, f->implicit_steps);
+  f->implicit_steps   = ImplicitSteps(s, left);
+  f->implicit_seconds = StepperImplicitWork(
+      m, f->implicit_steps * s->scheme->stages * (FrontsRule(s) ? NEWTON_REACTS : STEPPER_NEWTON), f->implicit_steps);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->hybrid_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->implicit_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   f->hybrid = f->hybrid_seconds < f->implicit_seconds;
@@ -141,22 +152,18 @@ void StepperTime(double seconds, double scale, int digits, char text[32])
     text[n - 1] = '\0'; /* 1 year */
 }
 
-/* Does hydrate react while a step is chosen by its error?  Its fronts, which nobody knows yet, then rule steps. */
-static bool FrontsRule(const Stepper *s)
+void StepperCount2(double n, char text[16])
 {
-  const Scene *c      = s->model->c;
-  bool         reacts = false;
+  const double unit = n >= 100.0 ? pow(10.0, floor(log10(n)) - 1.0) : 1.0;
 
-  for (PetscInt k = 0; k < c->nmaterial; k++)
-    reacts = reacts || c->material[k].reacts;
-  return s->adaptive && reacts && c->fields.heat && c->fields.phase[PHASE_G];
+  snprintf(text, 16, n < 1e5 ? "%.0f" : "%.2g", unit * round(n / unit));
 }
 
 PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
   const char     *why = CaseNeedsImplicit(StepperCase(s));
-  char            hybrid[128], time[32], stage[80];
+  char            hybrid[128], time[32], stage[80], count[16];
 
   PetscFunctionBeginUser;
   if (why) {
@@ -165,13 +172,14 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
     PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid has no stable step"));
   } else {
     StepperTime(f->hybrid_seconds, f->hybrid_seconds, 2, time);
-    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %.2g steps, %s", f->hybrid_steps, time));
+    StepperCount2(f->hybrid_steps, count);
+    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %s steps, %s", count, time));
   }
   StepperTime(f->implicit_seconds, f->implicit_seconds, 2, time);
+  StepperCount2(f->implicit_steps, count);
   StepperStageWords(s, stage);
-  PetscCall(PetscPrintf(s->model->grid.comm,
-                        "  %sforecast: %s; implicit about %.2g steps, %s; %s is the cheaper one%s\n", stage, hybrid,
-                        f->implicit_steps, time, f->hybrid ? "hybrid" : "implicit",
-                        FrontsRule(s) ? " (fronts of hydrate may ask for several times as many implicit steps)" : ""));
+  PetscCall(PetscPrintf(s->model->grid.comm, "  %sforecast: %s; implicit about %s steps, %s%s; %s is the cheaper one\n",
+                        stage, hybrid, count, time, s->adaptive ? " (most take half to twice that)" : "",
+                        f->hybrid ? "hybrid" : "implicit"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,6 +14,7 @@ sys.path.insert(0, str(HERE.parent / "verification"))
 from common import CASES, binary, check, check_true, finish, launch, scratch  # noqa: E402
 
 import clathra  # noqa: E402  scripts/, which common puts on the path
+import tutorial  # noqa: E402
 
 COLUMN = HERE.parent / "verification" / "cases" / "geostatic.yaml"  # in balance, two layers, 20 m
 COLUMN_OF_GAS = HERE.parent / "verification" / "cases" / "rest_hydrostatic.yaml"  # water and next to no gas, 1 m
@@ -21,7 +22,7 @@ CLIFF = HERE.parent / "verification" / "cases" / "slope.yaml"  # hybrid
 BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
 HEATER = HERE.parent / "verification" / "cases" / "heater.yaml"  # 60 degC beside hydrate of 10
 WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "rises": "gas starts out of balance with gravity", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
-         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps"}
+         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps", "closed": "nothing flows through them", "free": "nothing bears the pore pressure"}
 
 
 def warned(done, case):
@@ -56,6 +57,27 @@ def numbers(text, words):
 SETTLES = {"slope_warming": ["stress", "rises"]}  # its first twenty years are for that: no reaction, an elastic skeleton
 for path in sorted(CASES.glob("*/case.yaml")):
     comes(f"cases/{path.parent.name}", SETTLES.get(path.parent.name, []), said(path.parent))
+
+# ---------------------------------------------------------------- a roller that closes a well
+well = scratch() / "well.yaml"
+well.write_text(tutorial.case_text())
+comes("the tutorial's well", [], said(well))
+text = comes("... without `holds: skeleton` on its casing", ["closed"], said(well, "-bc_casing_holds", "all"))
+check_true("... which two and where is said, and what mends it", "boundary casing holds" in text and "at x = 0.1 m" in text and "boundary well" in text and "bc_casing_holds: skeleton" in text, text)
+comes("a roller on the other side", [], said(well, "-bc_far_holds", "all"))
+comes("a roller on another line", [], said(well, "-bc_well_side", "top", "-bc_well_from", "1 m", "-bc_casing_holds", "all"))
+done = launch(binary(), well, "-quiet", "-bc_casing_holds", "all", "-time_end", "1 d", "-output_every", "1 d", out=(closed := scratch() / "closed"))
+moved = clathra.Run(closed).meter("well")
+check("... and it is true: nothing comes out", max(abs(moved["water_kg"][-1]), abs(moved["gas_kg"][-1])), 1e-3)
+
+# ---------------------------------------------------------------- a side that nothing bears
+text = comes("... without its burden", ["free"], said(well, "-boundaries", "base,casing,far,well"))
+E, nu = 50e6, 0.3
+check("... the strain by which it would swell, %", abs(numbers(text, "swells by some")[0] / (100 * 11e6 / (E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)))) - 1), 0.05)
+check_true("... which side, what pressure, and what keeps it", "of 11 MPa at the body's top" in text and "normal: 11 MPa" in text and text.count("nothing bears") == 1, text)
+check_true("... each of three that are free", "\n".join(said(well, "-boundaries", "casing,well")).count("nothing bears") == 3)
+comes("... with an ambient pressure", [], said(well, "-boundaries", "base,casing,far,well", "-ambient_pressure", "11 MPa"))
+comes("... ten thousand times stiffer", [], said(well, "-boundaries", "base,casing,far,well", "-mat_clay_elasticity_E0", "500 GPa"))
 
 # ---------------------------------------------------------------- pressure
 UNIFORM = [o for r in ("deep", "shallow") for o in (f"-region_{r}_hydrostatic", "no", f"-region_{r}_pressure", "0.3 MPa")]

@@ -3,12 +3,14 @@
 
 The scene is BP2 on 13 cells.
 """
+import re
+import subprocess
 import sys
 import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import CASES, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
+from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
 
@@ -141,6 +143,41 @@ def check_last_lines():
         check_true("... and the extremes of p and T in the summary", "  p of particles from " in text and "  T of particles from " in text, text)
 
 
+CLOSED = """title: water that is heated in a closed box
+inertia: no
+fields: [water, heat]
+grid: {lower: [0 m, 0 m], upper: [0.4 m, 0.1 m], cells: [4, 1]}
+materials: [sand]
+mat_sand: {porosity: 0.4, solid: {density: 2650 kg/m^3, heat_capacity: 800 J/(kg K), conductivity: 3 W/(m K)}, permeability: {k0: 1e-12 m^2}, water: {expansion: 3e-4 1/K}}
+regions: [box]
+region_box: {lower: [0 m, 0 m], upper: [0.4 m, 0.1 m], material: sand, pressure: 5 MPa, temperature: 10 degC}
+boundaries: [warm]
+bc_warm: {type: face_temperature, side: left, temperature: {ramp: [10 degC, 30 degC, 0 h, 1 h]}}
+time: {end: 12 h}
+output: {every: 12 h}
+"""
+
+
+def check_pressures():
+    """A pressure beyond all that started and acted is noted, above as below, and stands in the report; one that a condition makes is not."""
+    case, out = scratch() / "closed.yaml", scratch() / "out"
+    case.write_text(CLOSED)
+    note = re.compile(r"note: the pressure of a particle was ([\d.]+) MPa, near .*?: ([\d.]+) MPa (above|below) that of the start and of all conditions and loads \(([\d.]+) MPa\)")
+    done = launch(binary(), case, "-quiet", out=out)
+    found = note.findall(done.stdout)
+    check_true("heated in a closed box: the pressure above all is noted", len(found) == 1 and found[0][2:] == ("above", "5") and float(found[0][0]) > 5.5, done.stdout[-600:])
+    check("... by how much", abs(float(found[0][0]) - 5 - float(found[0][1])), 0.01)
+    check_true("... in the summary's lowest and highest, too", f"to {float(found[0][0]):.5g}"[:7] in (out / "summary.txt").read_text(), found)
+    page = subprocess.run([sys.executable, ROOT / "scripts" / "report.py", out], capture_output=True, text=True)
+    check_true("... and among the report's warnings", "note: the pressure of a particle" in (out / "report.html").read_text().split('"warnings": [')[1][:3000], page.stderr)
+    cooled = launch(binary(), case, "-quiet", "-bc_warm_temperature", "{ramp: [10 degC, 5 degC, 0 h, 1 h]}", out=scratch() / "cooled")
+    check_true("cooled: the pressure below all", [f[2:] for f in note.findall(cooled.stdout)] == [("below", "5")], cooled.stdout[-600:])
+    drained = launch(binary(), case, "-quiet", "-boundaries", "warm,open", "-bc_open_type", "pressure", "-bc_open_side", "right", "-bc_open_pressure", "5 MPa", out=scratch() / "drained")
+    check_true("with a way out: nothing", drained.returncode == 0 and not note.findall(drained.stdout), drained.stdout[-600:])
+    pressed = launch(binary(), case, "-quiet", "-boundaries", "warm,open", "-bc_open_type", "pressure", "-bc_open_side", "right", "-bc_open_pressure", "{ramp: [5 MPa, 20 MPa, 0 h, 1 h]}", out=scratch() / "pressed")
+    check_true("pressed by a condition: nothing", pressed.returncode == 0 and not note.findall(pressed.stdout), pressed.stdout[-600:])
+
+
 def check_words():
     """A function of time in one word, and a probe that the case does not have."""
     read = lambda *options: (run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", *options, out=scratch() / "out").out / "case.yaml").read_text()
@@ -164,6 +201,7 @@ def main():
     check_advice()
     check_end()
     check_last_lines()
+    check_pressures()
     finish()
 
 

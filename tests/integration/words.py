@@ -27,6 +27,9 @@ def check_help():
     check_true("... which there are", all(f"`{name}`" in known or f"`-{name}`" in known for name in ten), ten)
     for what, text in (("-help", texts[0]), ("README", (ROOT / "README.md").read_text())):
         check_true(f"{what} cites the paper with its title", TITLE in " ".join(text.split()))
+    for word in ("-help", "--help"):
+        piped = subprocess.run(["bash", "-c", f'"$0" {word} | head -1', binary()], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        check_true(f"{word} into a pager that ends early is no crash", piped.stdout == texts[0].splitlines(True)[0] and piped.stderr == "", piped.stderr[:200])
     script = subprocess.run([ROOT / "run", "--help"], capture_output=True, text=True, stdin=subprocess.DEVNULL).stdout
     check_true("./run --help has ten that matter", "the ten that matter" in script and all(f"-{name}" in script for name in ten), script[:200])
 

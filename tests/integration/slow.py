@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""A run that neither ends nor gives up says so on its way, with what rules its steps and what to try; one that goes as forecast does not."""
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from common import binary, check, check_true, finish, launch, scratch  # noqa: E402
+
+import forecasts  # noqa: E402
+from tutorial import case_text  # noqa: E402
+
+LINE = re.compile(r"clathra: note: slow: (\d+) steps \((\d+) refused\) have come to (.*?), ([\d.]+) %; the forecast was ([\d.e+]+) for all, and by their growth so far ([\d.e+]+) are left, "
+                  r".*?; with the present dt of .*? it would be ([\d.e+]+)\.  dt is ruled by (.*)\n  What to try, in this order: (.*) \(docs/giving_up\.md\)")  # fmt: skip
+
+
+def main():
+    """The heater of verification/first_gas without the key that its start names: at its corner error control asks for steps of a minute, for the rest of ten days."""
+    case = scratch() / "heater.yaml"
+    case.write_text(forecasts.heated(forecasts.without_gas(case_text())))
+    options = ("-bc_well_pressure", "11 MPa", "-time_end", "10 d", "-output_every", "2 d", "-quiet")
+    done = launch(binary(), case, *options, "-stepper_max_steps", "220", out=scratch() / "stands")
+    said = LINE.findall(done.stdout)
+    check_true("a run that stands says so, once until it has taken twice as many steps", len(said) == 1 and done.stdout.count("note: slow") == 1, done.stdout[-2000:])
+    taken, refused, now, share, forecast, grown, flat, rules, advice = said[0]
+    check("... after twice the forecast", int(taken) / float(forecast), (2, 3.7))
+    check("... with more than ten times the forecast left, by either way to count", min(float(grown), float(flat)) / float(forecast), (10, 1e5))
+    check("... at a share of its time", float(share), (0.1, 30))
+    check_true("... how many were refused", int(refused) < int(taken) and "h" in now, f"{refused}, {now}")
+    check_true("... with what rules the step and where", re.match(r"(the error of \w+, largest near \([\d.]+, [\d.]+\) m|Newton's method)", rules) is not None, rules)
+    check_true("... and the key that mends it first", advice.startswith("stabilisation_reaction: yes"), advice)
+    plain = scratch() / "well.yaml"
+    plain.write_text(case_text())
+    goes = forecasts.Told(binary(), plain, (), scratch() / "goes")
+    text = "".join(goes.log)
+    check_true("a run that goes as forecast says nothing of the kind", "note: slow" not in text and "finished" in text, text[-500:])
+    check_true("its forecast of steps is within a factor of two", forecasts.within(goes.forecast[0], goes.took[0]), f"{goes.forecast[0]} and {goes.took[0]}")
+    left = {mark: goes.at(mark)[:2] for mark in forecasts.MARKS}
+    check_true("... and the steps that it says are left, at 5, 10, 25 and 50 %", all(forecasts.within(*v) for v in left.values()), left)
+    cells = forecasts.row("well", goes)
+    check_true("docs/forecast.md has this row", "| ".join(["", *(c.split(",")[0] for c in cells[1:2])]) in forecasts.PAGE.read_text(), cells)
+    finish()
+
+
+main()
