@@ -100,7 +100,7 @@ typedef struct {
 
 /* What the rows of a particle see of the projected gradients: as of PointOutput. */
 typedef struct {
-  double flux[PHASE_COUNT][CL_DIM][CL_DIM], q[PHASE_COUNT][CL_DIM];
+  double flux[PHASE_COUNT][PHASE_COUNT][CL_DIM][CL_DIM], q[PHASE_COUNT][CL_DIM];
 } Wide;
 
 /* Sums over all particles. */

@@ -84,10 +84,10 @@ typedef struct {
 
 typedef struct {
   double out[OUT_COUNT];
-  double D[OUT_COUNT][IN_COUNT];            /* d out / d in */
-  double dJ[MOTION_COUNT];                  /* d det F / d in[IN_GRADU], ...: motion changes scalars through it alone */
-  double wide[PHASE_COUNT][CL_DIM][CL_DIM]; /* d flux[pi][i] / d proj[pi][j] (27) */
-  double wide_q[PHASE_COUNT][CL_DIM];       /* d q / d proj[pi][j] */
+  double D[OUT_COUNT][IN_COUNT]; /* d out / d in */
+  double dJ[MOTION_COUNT];       /* d det F / d in[IN_GRADU], ...: motion changes scalars through it alone */
+  double wide[PHASE_COUNT][PHASE_COUNT][CL_DIM][CL_DIM]; /* d flux[pi][i] / d proj[of][j] (27), (352) */
+  double wide_q[PHASE_COUNT][CL_DIM];                    /* d q / d proj[of][j] */
 } PointOutput;
 
 /* Evaluates (8)-(21) at a particle for the fields of the set, in SI units with T in degC; inputs of other fields are

@@ -79,6 +79,12 @@ INLINE double DissolvedMethane(double H, double pg)
   return H * pg;
 }
 
+/* (352): mass of methane that goes with a unit mass of water; H as in Gas.carried, kg/(m^3 Pa), p_g in Pa, kg/m^3. */
+INLINE double CarriedShare(double H, double pg, double rho_w)
+{
+  return DissolvedMethane(H, pg) / rho_w;
+}
+
 /* (101); H as in Gas.trace, kg/(m^3 Pa); s_g dimensionless, rho in kg/m^3, p_g in Pa. */
 INLINE Content MethaneContent(double H, double sg, double rho, double pg)
 {

@@ -183,16 +183,15 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
 }
 
 /* (352): what the water carries, with p_g of t_n. */
-INLINE void CarriedFlux(const Explicit *e, const Set s, Run r, const Gathered *g, double dt, Given *o)
+INLINE void CarriedFlux(const Explicit *e, Run r, Given *o)
 {
-  const double *restrict V = e->m->P.f[P_V] + r.p, *restrict pg = e->m->P.f[P_PG] + r.p;
-  const int at = B_Fluid(s, PHASE_W) + B_J;
+  const double *restrict pg = e->m->P.f[P_PG] + r.p, *restrict rho = e->t[T_RHO + PHASE_W] + r.p;
 
   for (int q = 0; q < r.n; q++) {
-    const double c = DissolvedMethane(r.mat->gas.carried, pg[q]), conduct = Conductance(e, s, r.p + q);
+    const double share = CarriedShare(r.mat->gas.carried, pg[q], rho[q]);
 
     for (int d = 0; d < CL_DIM; d++)
-      o->force[d][q][PHASE_G] += MassFlux(dt * V[q], c, 0.0, conduct * g->value[q][at + d], 0.0);
+      o->force[d][q][PHASE_G] += share * o->force[d][q][PHASE_W];
   }
 }
 
@@ -220,7 +219,7 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
     o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + 1], v[at + B_PROJ + 1] - own[1]);
   }
   if (k == PHASE_G && r.mat->gas.carried > 0.0)
-    CarriedFlux(e, s, r, g, dt, o);
+    CarriedFlux(e, r, o);
   for (int i = 0; i < n; i++) {
     const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
 

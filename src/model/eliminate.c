@@ -47,9 +47,10 @@ static void Follow(double *D, int f, const double dJ[CL_DIM][IN_COUNT])
 /* (172): with Pi g = g the bracket of (19) has no slope with respect to g. */
 static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f)
 {
-  for (int i = 0; i < CL_DIM + fs->heat; i++) {
-    const double *wide = i < CL_DIM ? o->wide[f][i] : o->wide_q[f];
-    double       *D    = o->D[i < CL_DIM ? VectorAt(OUT_FLUX, f, i) : OUT_Q], slope[CL_DIM];
+  for (int i = 0; i < PHASE_COUNT * CL_DIM + fs->heat; i++) {
+    const bool    heat = i == PHASE_COUNT * CL_DIM;
+    const double *wide = heat ? o->wide_q[f] : o->wide[i / CL_DIM][f][i % CL_DIM];
+    double       *D    = o->D[heat ? OUT_Q : OUT_FLUX + i], slope[CL_DIM];
 
     memcpy(slope, wide, sizeof(slope));
     if (A)

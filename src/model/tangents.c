@@ -19,6 +19,12 @@ static bool Carries(const Scene *c)
   return false;
 }
 
+/* Does the flux of a phase go with what drives another: itself, or gas with the water (352)? */
+static bool Follows(const Scene *c, int phase, int other)
+{
+  return other == phase || (other == PHASE_W && Carries(c));
+}
+
 /* Phase of an output of one fluid; -1: of none. */
 static int PhaseOf(int out)
 {
@@ -66,19 +72,20 @@ static bool Depends(const Model *m, int out, int in)
   if (in >= IN_PROJ) {
     const int of = (in - IN_PROJ) / CL_DIM;
 
-    return m->c->stabilisation.flux_interpolation && fs->phase[of] && (out == OUT_Q || (flux && of == phase));
+    return m->c->stabilisation.flux_interpolation && fs->phase[of] &&
+           (out == OUT_Q || (flux && Follows(m->c, phase, of)));
   }
   if (in < IN_T)
     return fs->phase[in - IN_P] && !force;
   if (in == IN_T)
     return fs->heat && !force;
   if (in < IN_GT)
-    return fs->phase[other] && (out == OUT_Q || ((flux || force) && other == phase) || (flux && m->added->spread));
+    return fs->phase[other] &&
+           (out == OUT_Q || (force && other == phase) || (flux && (Follows(m->c, phase, other) || m->added->spread)));
   if (in < IN_J)
     return fs->heat && (out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM));
   if (in < IN_U)
-    return fs->phase[other] &&
-           (out == OUT_Q || (flux && (other == phase || (other == PHASE_W && Carries(m->c))))); /* (352) */
+    return fs->phase[other] && (out == OUT_Q || (flux && Follows(m->c, phase, other)));
   return fs->solid && m->bc.ambient.on && (out < OUT_FLUX || out == OUT_HOOP);
 }
 
@@ -101,7 +108,8 @@ static int PlaceOf(int out, int in)
   else if (out == OUT_Q)
     at = offsetof(PointOutput, wide_q[0][0]) / sizeof(double) + of;
   else
-    at = offsetof(PointOutput, wide[0][0][0]) / sizeof(double) + (row - OUT_FLUX) * CL_DIM + of % CL_DIM;
+    at = offsetof(PointOutput, wide[(row - OUT_FLUX) / CL_DIM][of / CL_DIM][(row - OUT_FLUX) % CL_DIM][of % CL_DIM]) /
+         sizeof(double);
   return (int)at;
 }
 

@@ -4,26 +4,31 @@
 /* What one particle's rows see of the projected gradients. */
 static void WideParticle(const Model *m, PetscInt p, const double *proj, double *f)
 {
-  const FieldSet *fs = &m->c->fields;
-  const Wide     *W  = &m->wide[p];
-  const double    dt = m->stage.dt;
+  const FieldSet *fs                     = &m->c->fields;
+  const Wide     *W                      = &m->wide[p];
+  const double    dt                     = m->stage.dt;
+  double          g[PHASE_COUNT][CL_DIM] = {{0.0}};
   Reach           r;
 
   ReachExpand(m, p, &r);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
-    double g[CL_DIM] = {0.0}, flux[CL_DIM];
-
-    if (!fs->phase[ph])
-      continue;
-    for (int a = 0; a < r.n; a++) {
+    for (int a = 0; fs->phase[ph] && a < r.n; a++) {
       const double share = ProjectedShare(m, p, r.node[a], ph, r.S[a]);
 
       for (int d = 0; d < CL_DIM; d++)
-        g[d] += share * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, d)];
+        g[ph][d] += share * proj[VectorAt(0, PHASE_COUNT * r.node[a] + ph, d)];
     }
-    for (int d = 0; d < CL_DIM; d++)
-      flux[d] = VectorDot(W->flux[ph][d], g);
-    const double q = fs->heat ? VectorDot(W->q[ph], g) : 0.0;
+  }
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
+    double flux[CL_DIM] = {0.0};
+
+    if (!fs->phase[ph])
+      continue;
+    for (int of = 0; of < PHASE_COUNT; of++) {
+      for (int d = 0; d < CL_DIM; d++)
+        flux[d] += VectorDot(W->flux[ph][of][d], g[of]);
+    }
+    const double q = fs->heat ? VectorDot(W->q[ph], g[ph]) : 0.0;
 
     for (int a = 0; a < r.n; a++) {
       double *fI = &f[r.node[a] * fs->n];

@@ -305,7 +305,7 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
     for (int j = 0; j < CL_DIM; j++) {
       slope[j] = h->V * rt.v * K[i][j];
       D[VectorAt(IN_J, f, j)] += h->V * rho.v * k->cof[j][i];
-      o->wide[f][i][j] = slope[j];
+      o->wide[f][f][i][j] = slope[j];
     }
     Drive(h, slope); /* A is symmetric */
     for (int j = 0; j < CL_DIM; j++)
@@ -313,25 +313,24 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   }
 }
 
-/* (352): adds V_n H p_g cof^T J_w, the methane that the water carries. */
-INLINE void CarriedFlux(const Material *mat, const PointHistory *h, const Kinematics *k, const double in[IN_COUNT],
+/* (352): adds H p_g/rho_w Phi_w, the methane that the water carries. */
+INLINE void CarriedFlux(const Material *mat, const Kinematics *k, const ScalarState *s, const double in[IN_COUNT],
                         bool tangent, PointOutput *o)
 {
-  const double H = mat->gas.carried, c = DissolvedMethane(H, in[IN_P + PHASE_G]), *J = &in[IN_J];
+  const Jet share = JetDiv(JetScale(mat->gas.carried, JetVariable(in[IN_P + PHASE_G], JET_PG)), s->rho[PHASE_W]);
 
   for (int i = 0; i < CL_DIM; i++) {
-    const int    row = VectorAt(OUT_FLUX, PHASE_G, i);
-    const double cJ  = AlongCofactor(k, i, J);
-    double      *D   = o->D[row];
+    const int    row = VectorAt(OUT_FLUX, PHASE_G, i), of = VectorAt(OUT_FLUX, PHASE_W, i);
+    const double water = o->out[of];
 
-    o->out[row] += MassFlux(h->V, c, 0.0, cJ, 0.0);
+    o->out[row] += share.v * water;
     if (!tangent)
       continue;
-    D[IN_P + PHASE_G] += h->V * H * cJ;
-    for (int q = 0; q < MOTION_COUNT; q++)
-      D[q] += h->V * c * AlongCofactorSlope(k, i, q, J);
+    AddJet(o->D[row], water, &share, k);
+    for (int q = 0; q < IN_COUNT; q++)
+      o->D[row][q] += share.v * o->D[of][q];
     for (int j = 0; j < CL_DIM; j++)
-      D[IN_J + j] += h->V * c * k->cof[j][i];
+      o->wide[PHASE_G][PHASE_W][i][j] = share.v * o->wide[PHASE_W][PHASE_W][i][j];
   }
 }
 
@@ -400,12 +399,9 @@ INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
         o->D[OUT_Q][q] += c_f * in[IN_GT + i] * o->D[r][q];
       o->D[OUT_Q][IN_GT + i] += c_f * o->out[r];
     }
-    for (int j = 0; tangent && j < CL_DIM; j++) {
-      double sum = o->wide[f][0][j] * in[IN_GT];
-
-      for (int i = 1; i < CL_DIM; i++)
-        sum += o->wide[f][i][j] * in[IN_GT + i];
-      o->wide_q[f][j] = c_f * sum;
+    for (int of = 0; tangent && of < PHASE_COUNT; of++) {
+      for (int j = 0; j < CL_DIM; j++)
+        o->wide_q[of][j] += AdvectedHeat(c_f, (double[]){o->wide[f][of][0][j], o->wide[f][of][1][j]}, &in[IN_GT]);
     }
   }
 }
@@ -434,7 +430,8 @@ INLINE void CompressionHeat(const PointHistory *h, const Kinematics *k, const Sc
     for (int q = 0; q < IN_COUNT; q++)
       D[q] += head * o->D[VectorAt(OUT_FLUX, f, i)][q];
     for (int j = 0; j < CL_DIM; j++) {
-      o->wide_q[f][j] += head * o->wide[f][i][j];
+      for (int of = 0; of < PHASE_COUNT; of++)
+        o->wide_q[of][j] += head * o->wide[f][of][i][j];
       D[VectorAt(IN_GRADU, j, i)] -= flux[i] * b[j];
     }
     D[VectorAt(IN_GP, f, i)] += flux[i] * share.v;
@@ -539,6 +536,8 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
         o->D[r][q] = 0.0;
     }
     memcpy(o->dJ, k->dJ, sizeof(o->dJ));
+    memset(o->wide, 0, sizeof(o->wide));
+    memset(o->wide_q, 0, sizeof(o->wide_q));
   }
   FillState(fs, &s, state);
   PutScalar(OUT_M, JetShift(s.m_h, h->m_s), k, tangent, o);
@@ -565,7 +564,7 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
     FluidScalars(mat, h, k, &s, f, tangent, o);
   }
   if (fs->phase[PHASE_W] && fs->phase[PHASE_G] && mat->gas.carried > 0.0)
-    CarriedFlux(mat, h, k, in, tangent, o);
+    CarriedFlux(mat, k, &s, in, tangent, o);
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
     Heat(fs, mat, h, k, &s, in, tangent, o);

@@ -395,7 +395,10 @@ static void CheckWide(const Particle *q, Worst *worst)
 
     c.which = &c.q.h.proj[f][j];
     for (int i = 0; i < 2; i++)
-      exact[OUT_FLUX + 2 * f + i] = o.wide[f][i][j];
+      exact[OUT_FLUX + 2 * f + i] = o.wide[f][f][i][j];
+    if (f == PHASE_W) /* (352) */
+      for (int i = 0; i < 2; i++)
+        exact[OUT_FLUX + 2 * PHASE_G + i] = o.wide[PHASE_G][PHASE_W][i][j];
     exact[OUT_Q] = o.wide_q[f][j];
     assert_true(Ridders(OutputRows, &c, *c.which, 1e5, OUT_COUNT, dy, err));
     for (int i = 0; i < OUT_COUNT; i++) {
@@ -966,7 +969,7 @@ static void TestNeverNan(void **state)
     for (int f = 0; f < PHASE_COUNT; f++) {
       assert_true(s.rho[f] > 0.0 && s.tau[f] > 0.0 && isfinite(s.rho[f]) && isfinite(s.tau[f]));
       for (int k = 0; k < 4; k++)
-        assert_true(isfinite(o.wide[f][k / 2][k % 2]) && isfinite(o.wide_q[f][k % 2]));
+        assert_true(isfinite(o.wide[f][f][k / 2][k % 2]) && isfinite(o.wide_q[f][k % 2]));
     }
   }
 }
