@@ -114,15 +114,20 @@ static bool Touches(const Scene *c, const Particles *P, PetscInt a, PetscInt b)
   return false;
 }
 
-/* p_c = p_g - p_w that a region starts with, Pa; it is the same all over it. */
-static PetscErrorCode StartCapillary(const Scene *c, const Region *r, double *pc)
+/* p_c = p_g - p_w that two regions start with, Pa, as the materials and shares of both say it of the place between
+   them. */
+static PetscErrorCode StartCapillary(const Scene *c, const Region *const r[2], double pc[2])
 {
-  const double   middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
   InitialScalars s;
+  double         between[CL_DIM];
 
   PetscFunctionBeginUser;
-  PetscCall(InitialScalarsAt(c, r, middle, &s));
-  *pc = s.pg - s.pw;
+  for (int d = 0; d < CL_DIM; d++)
+    between[d] = 0.25 * (r[0]->lower[d] + r[0]->upper[d] + r[1]->lower[d] + r[1]->upper[d]);
+  for (int k = 0; k < 2; k++) {
+    PetscCall(InitialScalarsAt(c, r[k], between, &s));
+    pc[k] = s.pg - s.pw;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -141,9 +146,10 @@ static PetscErrorCode Balanced(const Scene *c, const Region *r[2], const double 
 
   PetscFunctionBeginUser;
   if (r[0]->Sg == 0.0 && r[1]->Sg == 0.0)
-    PetscCall(PetscSNPrintf(text, 256,
-                            "the same retention_p_trap in both: p_g starts 20 of it below p_w, beside hydrate at its "
-                            "equilibrium; a small one for the finer, 1 kPa, says least"));
+    PetscCall(
+        PetscSNPrintf(text, 256,
+                      "the same retention_p_trap in both: p_g starts 20 of it below p_w, or at the equilibrium of "
+                      "hydrate; a small one for the finer, 1 kPa, says least"));
   else if (r[0]->Sg == 0.0 || r[1]->Sg == 0.0)
     PetscCall(PetscSNPrintf(text, 256, "Sg: 0 in both or neither"));
   else
@@ -165,8 +171,7 @@ static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, Pe
   char          balanced[256];
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < 2; k++)
-    PetscCall(StartCapillary(c, r[k], &pc[k]));
+  PetscCall(StartCapillary(c, r, pc));
   if (fabs(pc[0] - pc[1]) <= fmax(LEAST_JUMP, JUMP * p0))
     PetscFunctionReturn(PETSC_SUCCESS);
   touch = Touches(c, P, a, b);

@@ -205,6 +205,10 @@ static void DeriveFluids(Material *m)
   m->latent.dc                  = KineticsWater(k) * m->c_w + KineticsMethane(k) * m->c_g - m->c_h;
 }
 
+/* Pa, the largest retention_p_trap that is taken by itself where sediment starts without gas: 20 of it below p_w, water
+   is to hold more methane than hydrate anywhere in its stability zone asks for (103). */
+#define TRAPPED 5e4
+
 static PetscErrorCode Derive(Reader *r, Case *c)
 {
   const bool starts  = c->scene.without_gas == WITHOUT_GAS_AUTO && SceneStartsWithoutGas(&c->scene);
@@ -224,6 +228,8 @@ static PetscErrorCode Derive(Reader *r, Case *c)
     Material *m     = &c->scene.material[i];
     Liquid   *l[]   = {&m->solid, &m->hydrate};
     m->kinetics.M_g = m->gas.M;
+    if (isinf(m->retention.p_trap)) /* (103) */
+      m->retention.p_trap = starts ? fmin(m->retention.p0, TRAPPED) : m->retention.p0;
     if (isinf(m->gas.henry)) /* compression_heat takes all methane for gas */
       m->gas.henry = without && !c->scene.compression_heat ? GAS_SOLUBILITY : 0.0;
     m->gas.carried = c->scene.fields.has & HAS_GAS_PRESSURE ? m->gas.M * m->gas.henry : 0.0;

@@ -51,14 +51,22 @@ double InitialWaterPressure(const Scene *c, const Region *r, double pressure, co
   return pressure - water->K * log1p(weight / water->K * exp((pressure - water->p_ref) / water->K)); /* (82) */
 }
 
-/* (103): p_g where there is no gas, from p_c (Pa) at which the law leaves none; water holds some methane, and hydrate
-   is in equilibrium with it. */
-static double InitialGasPressure(const Region *r, const Material *mat, double pc, const InitialScalars *s)
+/* Whether a region starts with hydrate that reacts and with no gas. */
+static bool HasHydrateAlone(const Scene *c, const Region *r)
 {
-  const double pg = fmax(s->pw + pc, CL_GAS_FLOWS * s->pw);
-  double       dT;
+  return r->material >= 0 && c->material[r->material].reacts && r->Sh > 0.0 && r->Sg == 0.0;
+}
 
-  return mat->reacts && r->Sh > 0.0 ? fmin(pg, EquilibriumPressure(&mat->kinetics.equilibrium, s->T, &dT)) : pg;
+/* (103): p_g where there is no gas, from p_c (Pa) at which the law leaves none.  Water holds some methane; what hydrate
+   started with, it has long shared with the water of all layers. */
+static double InitialGasPressure(const Scene *c, double pc, const InitialScalars *s)
+{
+  double pg = fmax(s->pw + pc, CL_GAS_FLOWS * s->pw), dT;
+
+  for (PetscInt k = 0; k < c->nregion; k++)
+    if (HasHydrateAlone(c, &c->region[k]))
+      pg = fmin(pg, EquilibriumPressure(&c->material[c->region[k].material].kinetics.equilibrium, s->T, &dT));
+  return pg;
 }
 
 /* Pressures of the phases from their mean (10). */
@@ -79,7 +87,7 @@ static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Ma
   s->pw = r->pressure - s->sg * pc;
   if (r->hydrostatic)
     s->pw = InitialWaterPressure(c, r, s->pw, x);
-  s->pg = none ? InitialGasPressure(r, mat, pc, s) : s->pw + pc;
+  s->pg = none ? InitialGasPressure(c, pc, s) : s->pw + pc;
   s->p  = PorePressureOf(s->sg, s->pw, s->pg).v;
   if (two) { /* to the last digit what the law makes of these pressures */
     s->sg = RetentionGasShare(&mat->retention, s->pg - s->pw, r->Sh, &d[0], &d[1]);
