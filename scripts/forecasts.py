@@ -10,32 +10,14 @@ import sys
 import time
 from pathlib import Path
 
-from tutorial import case_text
+from tutorial import case_text, heated, tidal, without_gas
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "forecast.md"
 MARKS = (5, 10, 25, 50)
 UNIT = {"s": 1, "min": 60, "h": 3600, "day": 86400, "days": 86400, "year": 31557600, "years": 31557600}
-HEATER = "\nbc_heater: {type: face_temperature, side: left, from: 3 m, to: 7 m, temperature: {ramp: [14.4 degC, 60 degC, 0 d, 1 d]}}\n"
 HEATED = ("-bc_well_pressure", "11 MPa", "-stabilisation_reaction", "yes")
 CASES = ("terzaghi", "mcwhorter_sunada", "buckley_leverett", "stefan_front", "bp2", "masuda", "century", "century_hydrate", "slope_warming")
-
-
-def heated(text):
-    return text.replace("boundaries: [", "boundaries: [heater, ") + HEATER
-
-
-def without_gas(text):
-    """The tutorial's layers full of water."""
-    changed = text.replace("Sh: 0, Sw: 0.9, Sg: 0.1", "Sh: 0, Sw: 1, Sg: 0").replace("Sh: 0.4, Sw: 0.5, Sg: 0.1", "Sh: 0.4, Sw: 0.6, Sg: 0")
-    if changed.count("Sg: 0}") != 3:
-        raise ValueError("the tutorial's regions are not those that this script changes")
-    return changed
-
-
-def tidal(text):
-    sea = "bc_floor: {type: pressure, side: top, pressure: ambient}\nambient: {pressure: {sine: [11 MPa, 20 kPa, 12.42 h, 0 h]}}"
-    return text.replace("bc_burden: {type: traction, side: top, normal: 11 MPa}", sea).replace("burden", "floor")
 
 
 def scenes(folder):

@@ -20,6 +20,29 @@ def case_text():
     return "\n".join(re.findall(r"^```yaml\n(.*?)^```", PAGE.read_text(), re.M | re.S))
 
 
+def quoted(key):
+    """A line of the page's last section, by its key."""
+    return next(w for w in PAGE.read_text().split("`") if w.startswith(key + ":"))
+
+
+def heated(text):
+    """The case with the page's heater."""
+    return text.replace("boundaries: [", "boundaries: [heater, ") + f"\n{quoted('bc_heater')}\n"
+
+
+def tidal(text):
+    """The case with the page's tide in place of the burden."""
+    return text.replace("burden, well]", "floor, well]").replace("bc_burden", "#") + f"\n{quoted('ambient')}\n{quoted('bc_floor')}\n"
+
+
+def without_gas(text):
+    """The layers full of water, or of hydrate and water."""
+    changed = text.replace("Sh: 0, Sw: 0.9, Sg: 0.1", "Sh: 0, Sw: 1, Sg: 0").replace("Sh: 0.4, Sw: 0.5, Sg: 0.1", "Sh: 0.4, Sw: 0.6, Sg: 0")
+    if changed.count("Sg: 0}") != 3:
+        raise ValueError("the page's regions are not those that this changes")
+    return changed
+
+
 def photograph(report):
     """A picture of each section, as a reader sees it; the film at the last time, hydrate chosen."""
     sys.path.insert(0, str(ROOT / "tests" / "integration"))

@@ -103,7 +103,8 @@ PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE]);
 PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P, char text[CL_ADVICE]);
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
    between regions (342), or whose hydrate is heated (344), on rank 0.  Collective. */
-PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
+PetscErrorCode           InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
+extern const char *const cl_side[]; /* words of Side, and none */
 /* Warns of sides that nothing bears though the pores behind them do, on rank 0. */
 PetscErrorCode FreeSidesWarning(MPI_Comm comm, const Scene *c);
 /* Warns of a pressure or an inflow on a line that a condition closes for the fluids, on rank 0. */

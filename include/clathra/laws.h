@@ -234,6 +234,12 @@ static inline double ElasticityLameFactor(const Elasticity *law)
   return law->nu / ((1.0 + law->nu) * (1.0 - 2.0 * law->nu));
 }
 
+/* Constrained modulus over E, dimensionless. */
+static inline double ElasticityConstrainedFactor(const Elasticity *law)
+{
+  return 2.0 * ElasticityShearFactor(law) + ElasticityLameFactor(law);
+}
+
 /* ---------------------------------------------------------------- strength: Mohr-Coulomb with hydrate and softening
    Principal effective stresses y[0] >= y[1] >= y[2], tension-positive, Pa; angles in rad but for those that a case
    gives. */

@@ -139,6 +139,16 @@ static inline bool RegionGeostatic(const Region *r)
   return r->consolidated || (r->K0 > 0.0 && !isinf(r->K0));
 }
 
+/* Does it start without a stress? */
+static inline bool RegionUnstressed(const Region *r)
+{
+  bool without = !RegionGeostatic(r);
+
+  for (int i = 0; i < 6; i++)
+    without = without && r->stress[i] == 0.0;
+  return without;
+}
+
 /* Friction angle of a material, rad; NAN for one that has none. */
 static inline double MaterialFrictionAngle(const Material *m)
 {

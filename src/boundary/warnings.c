@@ -23,9 +23,7 @@ static PetscErrorCode Unstressed(const Scene *c, const Region *r, bool *unstress
   InitialScalars    s;
 
   PetscFunctionBeginUser;
-  *unstressed = !RegionGeostatic(r);
-  for (int i = 0; i < 6; i++)
-    *unstressed = *unstressed && r->stress[i] == 0.0;
+  *unstressed = RegionUnstressed(r);
   if (!*unstressed)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(InitialScalarsAt(c, r, middle, &s));
@@ -33,8 +31,7 @@ static PetscErrorCode Unstressed(const Scene *c, const Region *r, bool *unstress
     water = LiquidDensity(&c->material[r->material].water, s.pw, s.T, &dp, &dT);
   *unstressed = fabs(s.density - water) > NEGLIGIBLE * s.density;
   *weight     = (s.density - water) * g * height;
-  *sinks      = 0.5 * *weight * height * (1.0 + el->nu) * (1.0 - 2.0 * el->nu) /
-           ((1.0 - el->nu) * ElasticityYoung(el, r->Sh, &dE));
+  *sinks      = 0.5 * *weight * height / (ElasticityConstrainedFactor(el) * ElasticityYoung(el, r->Sh, &dE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "case_private.h"
+#include "clathra/boundary.h"
 #include <stddef.h>
 
 /* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
@@ -43,9 +44,8 @@
 #define OFLAW(condition, words) WHEN(condition, words), ACTS(condition, words)
 
 /* Rows, ended by one without a name. */
-extern const Key         case_key[], stage_key[];  /* keys_case.c */
-extern const Key         material_key[];           /* keys_material.c */
-extern const Key         region_key[];             /* keys_region.c */
-extern const Key         bc_key[];                 /* keys_bc.c */
-extern const Key         probe_key[], meter_key[]; /* keys_probe.c */
-extern const char *const case_side[];              /* words of Side, and none; keys_bc.c */
+extern const Key case_key[], stage_key[];  /* keys_case.c */
+extern const Key material_key[];           /* keys_material.c */
+extern const Key region_key[];             /* keys_region.c */
+extern const Key bc_key[];                 /* keys_bc.c */
+extern const Key probe_key[], meter_key[]; /* keys_probe.c */

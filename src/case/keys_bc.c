@@ -26,7 +26,6 @@ static bool BcNeedsSide(const void *p)
   return !((const Bc *)p)->along.n;
 }
 
-const char *const case_side[] = {"left", "right", "bottom", "top", "none", NULL}; /* Side */
 #define BC_WORD(kind, word, ...) word,
 const char *const case_bc_type[] = {CL_FACE_CONDITIONS(BC_WORD) CL_NODE_CONDITIONS(BC_WORD) NULL,
                                     CL_NODE_FORMS(BC_WORD)};
@@ -52,7 +51,7 @@ const Key bc_key[] = {
             .choices = clock_word),
     POINTS(Bc, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side",
            .types = SIDES & ~TYPE(BC_PLATE)),
-    CHOICE(Bc, "side", side, "none", case_side, "side of the body, moves with it",
+    CHOICE(Bc, "side", side, "none", cl_side, "side of the body, moves with it",
            WHEN(BcNeedsSide, "along is not given"), .types = SIDES),
     NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
          .types = SIDES | TYPE(BC_REGION_TEMPERATURE)),

@@ -20,7 +20,7 @@ const Key probe_key[] = {
     POINTS(Probe, "along", surface.along,
            "[[x, y], ...]: the mean over the faces on this line, in the initial configuration, weighted with current "
            "areas"),
-    CHOICE(Probe, "side", surface.side, "none", case_side, "the mean over this side of the body, by area"),
+    CHOICE(Probe, "side", surface.side, "none", cl_side, "the mean over this side of the body, by area"),
     NAME(Probe, "region", surface.region, "all", GROUP_REGION, "with side or along: one of regions, or all"),
     REAL(Probe, "from", surface.from, "m", "", "start", "with side: only the part from here ...", .word = "-start"),
     REAL(Probe, "to", surface.to, "m", "", "end", "... to here", .word = "end"),
@@ -36,7 +36,7 @@ const Key meter_key[] = {
     NAME(Meter, "well", well, "none", GROUP_BC, "a boundary of type well, instead of a part of the surface",
          .word = "none"),
     POINTS(Meter, "along", along, "[[x, y], ...]: faces on this line, in the initial configuration, instead of a side"),
-    CHOICE(Meter, "side", side, "none", case_side, "side of the body, moves with it",
+    CHOICE(Meter, "side", side, "none", cl_side, "side of the body, moves with it",
            WHEN(MeterNeedsSide, "neither along nor well is given")),
     NAME(Meter, "region", region, "all", GROUP_REGION, "one of regions, or all"),
     REAL(Meter, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start"),

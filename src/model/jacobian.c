@@ -265,8 +265,7 @@ static void KeepWide(const FieldSet *fs, const PointOutput *o, Wide *w)
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    for (int of = 0; of < PHASE_COUNT; of++)
-      memcpy(w->flux[f][of], o->wide[f][of], sizeof(w->flux[f][of]));
+    memcpy(w->flux[f], o->wide[f], sizeof(w->flux[f]));
     if (fs->heat)
       memcpy(w->q[f], o->wide_q[f], sizeof(w->q[f]));
   }

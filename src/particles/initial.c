@@ -63,9 +63,10 @@ static double InitialGasPressure(const Scene *c, double pc, const InitialScalars
 {
   double pg = fmax(s->pw + pc, CL_GAS_FLOWS * s->pw), dT;
 
-  for (PetscInt k = 0; k < c->nregion; k++)
+  for (PetscInt k = 0; k < c->nregion; k++) {
     if (HasHydrateAlone(c, &c->region[k]))
       pg = fmin(pg, EquilibriumPressure(&c->material[c->region[k].material].kinetics.equilibrium, s->T, &dT));
+  }
   return pg;
 }
 

@@ -317,7 +317,10 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
 INLINE void CarriedFlux(const Material *mat, const Kinematics *k, const ScalarState *s, const double in[IN_COUNT],
                         bool tangent, PointOutput *o)
 {
-  const Jet share = JetDiv(JetScale(mat->gas.carried, JetVariable(in[IN_P + PHASE_G], JET_PG)), s->rho[PHASE_W]);
+  const double H = mat->gas.carried, pg = in[IN_P + PHASE_G];
+  const Jet    rho   = s->rho[PHASE_W];
+  const double c     = CarriedShare(H, pg, rho.v);
+  const Jet    share = JetChain2(c, H / rho.v, JetVariable(pg, JET_PG), -c / rho.v, rho);
 
   for (int i = 0; i < CL_DIM; i++) {
     const int    row = VectorAt(OUT_FLUX, PHASE_G, i), of = VectorAt(OUT_FLUX, PHASE_W, i);

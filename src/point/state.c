@@ -89,7 +89,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->kappa    = s.kappa.v;
   }
   if (fs->solid) {
-    r->M = s.E.v * (2.0 * ElasticityShearFactor(&mat->elasticity) + ElasticityLameFactor(&mat->elasticity));
+    r->M = s.E.v * ElasticityConstrainedFactor(&mat->elasticity);
     r->G = s.E.v * ElasticityShearFactor(&mat->elasticity);
   }
   if (mat->reacts)

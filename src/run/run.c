@@ -11,7 +11,6 @@ typedef struct {
   Watch     watch;
   StageLog *log;
   Slow      slow;
-  PetscInt  stage;                                                     /* that slow is of */
   char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   char      restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];  /* -restart, -restart_as_initial */
   double    t_saved;                                                   /* of that */
@@ -108,21 +107,6 @@ static PetscErrorCode Save(Stepper *s, Run *run)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says so where the stage takes far more steps than was forecast. */
-static PetscErrorCode LookAtPace(const Stepper *s, const StepInfo *info, Run *run)
-{
-  Pace pace;
-
-  PetscFunctionBeginUser;
-  if (run->stage != s->state.stage)
-    SlowBegin(&run->slow, s);
-  run->stage = s->state.stage;
-  StageLogPace(run->log, s, &pace);
-  if (!CaseAtEnd(StepperCase(s), s->state.t))
-    PetscCall(SlowLook(&run->slow, s, info, &pace));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* After every accepted step: ledger, probes, meters, snapshot, checkpoint, progress. */
 static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
 {
@@ -135,7 +119,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   PetscFunctionBeginUser;
   PetscCall(WatchStep(s->model->grid.comm, &run->watch, &save, &end));
   PetscCall(StageLogStep(run->log, s, info));
-  PetscCall(LookAtPace(s, info, run));
+  PetscCall(SlowLook(&run->slow, s, info, run->log));
   PetscCall(IceLook(s, &run->frozen));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
   if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
@@ -263,10 +247,10 @@ static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *ru
     PetscCall(ClosedWarning(m->grid.comm, &CaseInStage(c, k)->scene));
   if (run->restart[0])
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (!run->initial[0])
+  if (!run->initial[0]) {
     PetscCall(FreeSidesWarning(m->grid.comm, m->c));
-  if (!run->initial[0])
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
+  }
   PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P, c->t_end - c->scene.t_begin));
   PetscCall(CellMeansWarning(&m->grid, m->c, &m->P, HybridTraction(c)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -292,7 +276,6 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(WriteLog(c, m->grid.comm, run));
   run->clock_start = Wall();
   PetscCall(StageLogCreate(s, &run->log));
-  run->stage = s->state.stage;
   SlowBegin(&run->slow, s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

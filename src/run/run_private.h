@@ -44,11 +44,12 @@ PetscErrorCode          StageLogDestroy(StageLog **log);
 PetscErrorCode          StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info); /* an accepted step */
 /* Share of the stage that is done, and the steps and seconds the rest of it will take; NAN: not known yet. */
 void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *steps, double *left);
-/* How a stage goes: share of it that is done, steps taken in it by this process, steps left as the run itself shows
-   (NAN: not known), s of the wall for one. */
+/* Steps taken in the stage by this process. */
+PetscInt StageLogTaken(const StageLog *log);
+/* How a stage goes: share of it that is done, steps left as the run itself shows (NAN: not known), s of the wall for
+   one. */
 typedef struct {
-  double   done, left, step;
-  PetscInt taken;
+  double done, left, step;
 } Pace;
 void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace);
 /* A line for every stage that was entered and every integrator that worked in it; empty where there was one only.
@@ -58,12 +59,13 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
 /* ---------------------------------------------------------------- slow.c */
 typedef struct {
   double   next; /* steps of the stage before which nothing is said */
-  PetscInt refused;
+  PetscInt stage, refused;
 } Slow;
-/* At the begin of a run or stage. */
+/* At the begin of a run. */
 void SlowBegin(Slow *slow, const Stepper *s);
-/* After a step: a line if the stage takes far longer than was forecast, again when it has taken twice as many steps. */
-PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, const Pace *pace);
+/* After a step that the log knows: a line if the stage takes far longer than was forecast, again when it has taken
+   twice as many steps. */
+PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, const StageLog *log);
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
    is nothing to say */

@@ -131,10 +131,14 @@ void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace)
   Ahead ahead;
 
   Look(log, s, &ahead);
-  *pace = (Pace){.done  = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from),
-                 .left  = LearntPace(&log->learnt, &ahead),
-                 .step  = log->learnt.step,
-                 .taken = log->taken};
+  *pace = (Pace){.done = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from),
+                 .left = LearntPace(&log->learnt, &ahead),
+                 .step = log->learnt.step};
+}
+
+PetscInt StageLogTaken(const StageLog *log)
+{
+  return log->taken;
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */

@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import binary, check, check_true, finish, launch, scratch  # noqa: E402
 
 import forecasts  # noqa: E402
-from tutorial import case_text  # noqa: E402
+from tutorial import case_text, heated, without_gas  # noqa: E402
 
 LINE = re.compile(r"clathra: note: slow: (\d+) steps \((\d+) refused\) have come to (.*?), ([\d.]+) %; the forecast was ([\d.e+]+) for all, and by their growth so far ([\d.e+]+) are left, "
                   r".*?; with the present dt of .*? it would be ([\d.e+]+)\.  dt is ruled by (.*)\n  What to try, in this order: (.*) \(docs/giving_up\.md\)")  # fmt: skip
@@ -17,7 +17,7 @@ LINE = re.compile(r"clathra: note: slow: (\d+) steps \((\d+) refused\) have come
 def main():
     """The heater of verification/first_gas without the key that its start names: at its corner error control asks for steps of a minute, for the rest of ten days."""
     case = scratch() / "heater.yaml"
-    case.write_text(forecasts.heated(forecasts.without_gas(case_text())))
+    case.write_text(heated(without_gas(case_text())))
     options = ("-bc_well_pressure", "11 MPa", "-time_end", "10 d", "-output_every", "2 d", "-quiet")
     done = launch(binary(), case, *options, "-stepper_max_steps", "220", out=scratch() / "stands")
     said = LINE.findall(done.stdout)

@@ -22,12 +22,9 @@ def main():
     check_true("gas and water come to the well, the more the longer", all((v[1:] - v[:-1] > 0).all() for v in (
         run.meter("well")["gas_kg"], run.meter("well")["water_kg"])), run.meter("well")["gas_kg"][-1])  # fmt: skip
     check("water and methane are kept, of the store", max(abs(run.balance[k]).max() for k in ("water_error", "methane_error")), 1e-12)
-    words = tutorial.PAGE.read_text().split("`")
-    heater, tide, floor = (next(w for w in words if w.startswith(k)) for k in ("bc_heater:", "ambient:", "bc_floor:"))
     text = case.read_text()
-    for what, changed in (("heater", text.replace("burden, well]", "burden, well, heater]") + heater),
-                          ("tide", text.replace("burden, well]", "floor, well]").replace("bc_burden", "#") + tide + "\n" + floor)):  # fmt: skip
-        case.write_text(changed + "\n")
+    for what, changed in (("heater", tutorial.heated(text)), ("tide", tutorial.tidal(text))):
+        case.write_text(changed)
         done = launch(binary(), case, "-stepper_max_steps", "1", "-quiet", out=scratch() / what)
         check_true(f"the {what} of the last section takes a step", done.returncode == 0, done.stdout[-300:])
     case.write_text(text)
