@@ -134,10 +134,13 @@ def drained():
     bare = ("-stabilisation_exchange", "no", "-stabilisation_pressure_projection", "0", "-stabilisation_ghost_penalty", "0")
     blow = ("-inertia", "yes", "-time_end", "0.2 s", "-output_every", "0.2 s", "-bc_well_pressure", "7.8 MPa")
     border = ("-region_sand_upper", "4.1 m, 1.7 m", "-region_clay_lower", "0.1 m, 1.7 m")
+    shears = ("-grid_lower", "-1.9 m, -1 m", "-grid_upper", "6.1 m, 5 m", "-grid_cells", "16, 12", "-boundaries", "base,well", "-bc_base_type", "fixed", "-ambient_pressure", "8 MPa",
+              "-gravity", "9 m/s^2, 0 m/s^2", "-mat_sand_elasticity_E0", "0.3 MPa", "-mat_clay_elasticity_E0", "0.3 MPa")  # fmt: skip
+    hybrid = ("-stepper_type", "hybrid", "-mat_sand_water_bulk_modulus", "1e11 Pa", *blow)
     rows = []
     for name, bar, options in (("sdirk2", 1e-7, bare), ("euler", 1e-7, ("-stepper_type", "euler", *bare)), ("about an axis", 1e-7, ("-geometry", "axisymmetric", *bare)),
                                ("a border across cells", 1e-7, (*border, *bare)), ("sdirk2 with inertia", 1e-7, (*blow, *bare)),
-                               ("hybrid", 1e-5, ("-stepper_type", "hybrid", "-mat_sand_water_bulk_modulus", "1e11 Pa", *blow)),
+                               ("hybrid", 1e-5, hybrid), ("hybrid, sheared by 0.2 off the grid's lines", 1e-5, (*hybrid, *shears)),
                                ("with all that is on by itself", 0.01, ()), ("... a border across cells", 0.01, border)):  # fmt: skip
         (_, first), *_, (_, last) = Run.of_case(CASES / "no_gas_drained.yaml", *options).snapshots()
         off = np.max(np.abs(last["p_g"] / np.mean(first["p_g"]) - 1))
