@@ -35,7 +35,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     if (SceneDonor(m->c))
       PetscCall(PetscMalloc1(m->stencil_cap, &m->added->donor));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
-      PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->added->spread));
+      PetscCall(PetscCalloc1(m->stencil_cap, &m->added->spread));
     if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
       PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->added->upwind));
     if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
@@ -115,21 +115,25 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
     s[SUM_X + PlaceT(fs)] += S * q->capacity * (Carried(m, p, P_T, P_GT, d) + f[P_BT][p] * d[0] * d[1]); /* (395) */
 }
 
-/* Diffusion of p_c that carries the saturations of a fluid with its flow (200). */
-static double SpreadOf(const Model *m, PetscInt p, int phase, const PointProperties *q)
+/* Diffusion of p_c that carries the saturations with the flow (200). */
+static double SpreadOf(const Model *m, PetscInt p, const PointProperties *q)
 {
-  const double w = q->kr[PHASE_W] / q->resist[PHASE_W], o = q->kr[PHASE_G] / q->resist[PHASE_G];
-  const double both = w > 0.0 && o > 0.0 ? w * o / (w + o) : 0.0;
-  double       g[CL_DIM], h[CL_DIM], hg = 0.0;
+  const double l[PHASE_COUNT] = {q->kr[PHASE_W] / q->resist[PHASE_W], q->kr[PHASE_G] / q->resist[PHASE_G]},
+               all = l[PHASE_W] + l[PHASE_G], both = all > 0.0 ? l[PHASE_W] * l[PHASE_G] / all : 0.0;
+  double h[CL_DIM], Pe                             = 0.0;
 
+  if (both == 0.0)
+    return 0.0;
   CellWidths(m, p, h);
-  for (int d = 0; d < CL_DIM; d++)
-    g[d] = m->P.f[VectorAt(P_GW, phase, d)][p] - q->rho[phase] * m->c->gravity[d];
-  Drive(m, p, g);
-  for (int d = 0; d < CL_DIM; d++)
-    hg += h[d] * fabs(g[d]);
-  const double Pe = 0.5 * hg * fabs(q->mobility_slope[phase]) / both;
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    double g[CL_DIM];
 
+    for (int d = 0; d < CL_DIM; d++)
+      g[d] = m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d];
+    Drive(m, p, g);
+    for (int d = 0; d < CL_DIM; d++)
+      Pe += 0.5 * h[d] * fabs(g[d] * q->mobility_slope[k]) / both * (1.0 - l[k] / all);
+  }
   return Pe > 1e-4 ? both * (Pe / tanh(Pe) - 1.0) : 0.0;
 }
 
@@ -269,8 +273,8 @@ static PetscErrorCode Project(Model *m)
     }
     if (m->beds)
       m->beds[p] = (Bedding){ParticleBeds(m->c, &m->P, p), {q.rho[PHASE_W], q.rho[PHASE_G]}};
-    for (int k = 0; m->added->spread && k < PHASE_COUNT; k++)
-      m->added->spread[PHASE_COUNT * p + k] = (k == PHASE_W ? 1.0 : -1.0) * SpreadOf(m, p, k, &q);
+    if (m->added->spread)
+      m->added->spread[p] = SpreadOf(m, p, &q);
     if (m->added->upwind)
       UpwindOf(m, p, &q, &m->added->upwind[3 * p]);
     if (m->added->held)

@@ -237,11 +237,11 @@ INLINE double MetricSlope(const Metric *g, int i, int q, const double v[CL_DIM])
   return sum;
 }
 
-/* (200): adds V_n rho D K (g_g - g_w). */
+/* (200): adds V_n rho D K (g_g - g_w) for water, takes it off for gas. */
 INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
                    const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double VD  = h->V * h->spread[f];
+  const double VD  = (f == PHASE_W ? h->V : -h->V) * h->spread;
   const Jet    rho = s->rho[f];
   double       c[CL_DIM];
 
