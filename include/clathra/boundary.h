@@ -21,7 +21,6 @@ typedef struct {
   double   Nr[CL_NODES];              /* (195): those of Darcy fluxes along x */
   double   Nm[PHASE_COUNT][CL_NODES]; /* (109): those in the rows of mass */
   double   ring[2];             /* (197), (198): what is lost between face and body in a ring, in 2 pi k and kappa */
-  double   skin[PHASE_COUNT];   /* the same as a resistance to a fluid, Pa s/m^3 */
   bool     leaves[PHASE_COUNT]; /* has the fluid that crosses the body's density (365)? */
   double   pore;                /* mean pore pressure at t_n, Pa (358) */
   PetscInt bc[BC_FACES];        /* by kind: index into Case.bc, -1 = none */

@@ -94,7 +94,7 @@ typedef struct {
 /* One of two fluids at a node (16). */
 typedef struct {
   double F[CL_DIM]; /* inertia, pressure gradient and faces, N */
-  double D;         /* sum of V S mu/k_a, Pa s m */
+  double D[CL_DIM]; /* sum of V S mu/k_a, Pa s m; along x with what a well's wall adds (197) */
   double root;      /* mean of sqrt(k_r) (108) */
 } FluidNode;
 
@@ -188,6 +188,7 @@ typedef struct {
   double *row_scale, *col_scale; /* [n_local][fields.n] */
 
   /* of the last evaluation */
+  double    *wall;        /* [n_local][PHASE_COUNT] drag at the wall of a well (197), Pa s m; null: in the plane */
   double    *x, *f;       /* [n_local][fields.n] unscaled unknowns, residual */
   double    *mass_row;    /* [n_local][2] mass balances of water and gas, one pressure only; kg */
   FluidNode *fluid;       /* [n_local][2] where there are two */

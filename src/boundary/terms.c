@@ -65,8 +65,8 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
   double        dp, dT, part;
   const Face   *f  = x->f;
   const double *in = x->in, *a = x->a, dt = x->dt;
-  const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = VectorDot(J, a), skin = f->skin[phase];
-  const double  p = outside->p[phase], own = FacePressure(f, phase, in), jump = p + skin * Ja - own;
+  const double *J = &in[VectorAt(IN_J, phase, 0)], Ja = VectorDot(J, a);
+  const double  p = outside->p[phase], jump = p - FacePressure(f, phase, in);
   const bool    leaves = f->leaves[phase];
   const int     sets   = SetsDensity(x, phase, &part);
   const double  rho    = FluidDensity(x->mat, phase, leaves ? part * FacePressure(f, sets, in) : p, in[IN_T], &dp, &dT);
@@ -94,10 +94,8 @@ static void Open(const FaceState *x, int phase, const Outside *outside, FaceOutp
       row[IN_U + d] += outside->du[d] * a[i];
     for (int j = 0; j < CL_DIM; j++)
       row[VectorAt(IN_GP, phase, j)] -= a[i] * f->r[j];
-    for (int j = 0; j < CL_DIM; j++)
-      row[VectorAt(IN_J, phase, j)] += skin * a[j] * a[i];
     for (int k = 0; k < MOTION_COUNT; k++)
-      row[k] += jump * x->da[i][k] + skin * AlongSlope(J, x->da, k) * a[i];
+      row[k] += jump * x->da[i][k];
   }
   for (int k = 0; k < PHASE_COUNT; k++) { /* through p_c = p_g - p_w */
     const double dpk = (k == PHASE_G ? 1.0 : -1.0) * outside->dpc[phase];

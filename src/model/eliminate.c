@@ -122,8 +122,9 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
       continue;
     for (int a = 0; a < r->n; a++) {
       const double *c = &m->coef[r->node[a] * NC_COUNT], w = m->w[PHASE_COUNT * r->node[a] + f];
-      const double  kr = c[NC_KR + f], resist = c[NC_DRAG + f] * w + inertia * kr * c[NC_RHO + f];
-      const double  mobile = resist > 0.0 ? w * kr / resist : 0.0;
+      const double kr = c[NC_KR + f], resist = (c[NC_DRAG + f] + WallDrag(m, r->node[a], f, 0) / m->V[r->node[a]]) * w +
+                                               inertia * kr * c[NC_RHO + f];
+      const double mobile = resist > 0.0 ? w * kr / resist : 0.0;
 
       own += face->N[a] * mobile;
       given += face->N[a] * face->N[a] * mobile / m->V[r->node[a]];

@@ -175,7 +175,8 @@ double DragPower(const Model *m, const double *x)
       double           J[CL_DIM];
 
       DarcyFlux(m, I, f, &x[I * m->c->fields.n], J);
-      sum += at->D * VectorDot(J, J) / PetscSqr(at->root);
+      for (int d = 0; d < CL_DIM; d++)
+        sum += at->D[d] * PetscSqr(J[d] / at->root);
     }
   }
   return sum;

@@ -185,6 +185,12 @@ static inline double FaceShare(const Model *m, PetscInt p, PetscInt I, int f)
   return m->conduct[p] * NodeShare(m, I, f);
 }
 
+/* (197): what the wall of a well adds to the drag of a node's flow along axis i, of this rank's faces, Pa s m. */
+static inline double WallDrag(const Model *m, PetscInt I, int f, int i)
+{
+  return m->wall && i == 0 ? m->wall[PHASE_COUNT * I + f] : 0.0;
+}
+
 /* W_Ip/S_I of a fluid: (350), of gas (333). */
 static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I, int f)
 {
@@ -555,5 +561,12 @@ double GhostPower(const Model *m, const double *x); /* that the penalty on v_s t
 /* What Newton's update may change at once: before every line search. */
 #define CL_LIMIT_J 0.5 /* volumetric strain of a step */
 PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);
+/* Where gas may vanish (slave.c): do fluid velocities follow (16)?  X with those that do; W = X - share Y with them and
+   the norm of the scaled residual there; how far an update goes. */
+bool           ModelSlaves(const Model *m);
+PetscErrorCode ModelSlave(Model *m, Vec X);
+PetscErrorCode ModelLeaves(SNES snes, Model *m, Vec X, double share, Vec Y, Vec W, double *norm);
+PetscErrorCode ModelTryUpdate(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y, PetscBool *changed_W,
+                              void *model);
 PetscErrorCode ModelResizeNodal(Model *m);
 PetscErrorCode FreeParticleArrays(Model *m); /* of the configuration at t_n */

@@ -349,6 +349,25 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
   }
 }
 
+/* (197) couples a node only with itself. */
+static void WallBlocks(const Model *m, const Assembly *to)
+{
+  const FieldSet *fs = &to->fs;
+
+  for (PetscInt k = 0; m->wall && k < m->map.n_local * PHASE_COUNT; k++) {
+    const PetscInt I = k / PHASE_COUNT;
+    const int      f = k % PHASE_COUNT, v = fs->phase[f] ? PlaceV(fs, f) : -1;
+
+    if (m->wall[k] == 0.0 || v < 0)
+      continue;
+    double *row = AssemblyBlock(m, to, I, I) + v * fs->n;
+
+    row[v] += m->wall[k] * m->w[k];
+    if (fs->solid)
+      row[PlaceVs(fs)] -= m->wall[k] * m->w[k];
+  }
+}
+
 static void FaceLoop(Model *m, const double *x, int ntarget, const Assembly *target)
 {
   for (PetscInt k = 0; k < m->nface; k++) {
@@ -364,6 +383,8 @@ static void FaceLoop(Model *m, const double *x, int ntarget, const Assembly *tar
       FaceBlock(m, &target[t], &m->face[k], &r, &o);
     }
   }
+  for (int t = 0; t < ntarget; t++)
+    WallBlocks(m, &target[t]);
 }
 
 /* What is assembled: J2 for the operator, or where it preconditions at a renewal, and at one the reduced matrix. */

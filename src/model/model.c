@@ -31,6 +31,7 @@ static PetscErrorCode DestroyNodal(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree6(m->x_n, m->w, m->V, m->Vk, m->flow, m->coef));
+  PetscCall(PetscFree(m->wall));
   PetscCall(PetscFree3(m->material, m->most, m->hydrate));
   PetscCall(PetscFree(m->added->up));
   PetscCall(PetscFree(m->added->source));
@@ -118,6 +119,8 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(
       PetscCalloc6(n * nf, &m->x_n, n * PHASE_COUNT, &m->w, n, &m->V, n, &m->Vk, n, &m->flow, n * NC_COUNT, &m->coef));
   PetscCall(PetscCalloc3(n, &m->material, n, &m->most, n, &m->hydrate));
+  if (m->c->axisymmetric && m->c->fields.fluid)
+    PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->wall));
   if (m->c->stabilisation.upstream)
     PetscCall(PetscCalloc1(n * PHASE_COUNT * UP_COUNT, &m->added->up));
   if (SceneDonor(m->c))

@@ -17,7 +17,7 @@ struct Product {
   double (*face)[F_COUNT][IN_COUNT]; /* [nface] FaceOutput.D */
   PetscInt nface;                    /* faces it has room for */
   double  *x, *dx;                   /* [n_local][fields.n] unknowns, their change */
-  double  *diagonal;                 /* [n_local][PHASE_COUNT] of rows (16), unscaled */
+  double  *diagonal;                 /* [n_local][CL_FLUID_VECTORS] of rows (16), unscaled */
   AtNode  *node;                     /* [n_local] */
 };
 
@@ -28,7 +28,7 @@ PetscErrorCode ProductCreate(Model *m)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&t));
-  PetscCall(PetscMalloc4(n * nf, &t->x, n * nf, &t->dx, n * PHASE_COUNT, &t->diagonal, n, &t->node));
+  PetscCall(PetscMalloc4(n * nf, &t->x, n * nf, &t->dx, n * CL_FLUID_VECTORS, &t->diagonal, n, &t->node));
   m->solver->product = t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,10 +88,12 @@ PetscErrorCode ProductBegin(Model *m)
       at->D[f]   = share * of[FLUID_D];
       if (m->fluid)
         at->fluid[f] = m->fluid[PHASE_COUNT * I + f];
-      t->diagonal[PHASE_COUNT * I + f] = per_dt * root * root * at->MI2[f] + at->D[f] * m->w[PHASE_COUNT * I + f];
+      for (int d = 0; d < CL_DIM; d++)
+        t->diagonal[VectorAt(CL_FLUID_VECTORS * I, f, d)] =
+            per_dt * root * root * at->MI2[f] + (at->D[f] + WallDrag(m, I, f, d)) * m->w[PHASE_COUNT * I + f];
     }
   }
-  PetscCall(NodeMapReduce(&m->map, t->diagonal, PHASE_COUNT));
+  PetscCall(NodeMapReduce(&m->map, t->diagonal, CL_FLUID_VECTORS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,14 +236,15 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
     row[i] += share * (share * of[FLUID_MI2] * rate[i] - of[FLUID_MI] * m->bc.gravity[i] + of[FLUID_G + i]) +
               at->MI2[ph] * change[i];
   if (fluid) {
-    fluid->D += share * of[FLUID_D];
+    for (int i = 0; i < CL_DIM; i++)
+      fluid->D[i] += share * of[FLUID_D];
     fluid->root += (LayerRoot(m, ph) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);
   DarcyFlux(m, I, ph, &dx[I * fs->n], dJ);
   for (int i = 0; i < CL_DIM; i++)
-    row[i] += share * of[FLUID_D] * J[i] + at->D[ph] * dJ[i];
+    row[i] += share * of[FLUID_D] * J[i] + (at->D[ph] + WallDrag(m, I, ph, i)) * dJ[i];
 }
 
 static void NodeLoop(const Model *m, const double *x, const double *dx, double *f)
@@ -282,7 +285,7 @@ static PetscErrorCode MomentumRows(Model *m, const double *x, const double *dx, 
       DarcyFlux(m, I, ph, &dx[I * fs->n], dJ);
       for (int i = 0; i < CL_DIM; i++)
         f[I * fs->n + PlaceV(fs, ph) + i] = 2.0 * at->root * change->root * at->F[i] +
-                                            at->root * at->root * change->F[i] + change->D * J[i] + at->D * dJ[i];
+                                            at->root * at->root * change->F[i] + change->D[i] * J[i] + at->D[i] * dJ[i];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -350,10 +353,9 @@ PetscErrorCode ProductDiagonal(const Model *m, Vec d)
     const int  q    = fs->field[k % fs->n];
     const bool free = !((m->mask[k / fs->n] >> (k % fs->n)) & 1u);
 
-    a[k] = free && q >= F_VW && q < F_PW
-               ? m->solver->product->diagonal[PHASE_COUNT * (k / fs->n) + (q - F_VW) / CL_DIM] * m->col_scale[k] /
-                     m->row_scale[k]
-               : 1.0;
+    a[k] = free && q >= F_VW && q < F_PW ? m->solver->product->diagonal[CL_FLUID_VECTORS * (k / fs->n) + q - F_VW] *
+                                               m->col_scale[k] / m->row_scale[k]
+                                         : 1.0;
   }
   PetscCall(VecRestoreArrayWrite(d, &a));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -32,13 +32,14 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   for (int i = 0; i < CL_DIM; i++)
     row[i] += share * (share * of[FLUID_MI2] * rate[i] - of[FLUID_MI] * m->bc.gravity[i] + of[FLUID_G + i]);
   if (at) {
-    at->D += share * of[FLUID_D];
+    for (int i = 0; i < CL_DIM; i++)
+      at->D[i] += share * of[FLUID_D] + WallDrag(m, I, ph, i);
     at->root += (LayerRoot(m, ph) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);
   for (int i = 0; i < CL_DIM; i++)
-    row[i] += share * of[FLUID_D] * J[i];
+    row[i] += (share * of[FLUID_D] + WallDrag(m, I, ph, i)) * J[i];
 }
 
 /* Row (21) at a node. */
@@ -118,7 +119,7 @@ static PetscErrorCode MomentumRows(Model *m, const double *x)
 
       DarcyFlux(m, I, ph, &x[I * fs->n], J);
       for (int i = 0; i < CL_DIM; i++)
-        m->f[I * fs->n + PlaceV(fs, ph) + i] = at->root * at->root * at->F[i] + at->D * J[i];
+        m->f[I * fs->n + PlaceV(fs, ph) + i] = at->root * at->root * at->F[i] + at->D[i] * J[i];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -207,13 +208,21 @@ static PetscErrorCode Evaluated(const Model *m, Vec X, bool *same)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ... on all ranks? */
+static PetscErrorCode EvaluatedByAll(const Model *m, Vec X, bool *same)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Evaluated(m, X, same));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, same, 1, MPI_C_BOOL, MPI_LAND, m->grid.comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ModelNodesAt(Model *m, Vec X)
 {
   bool same;
 
   PetscFunctionBeginUser;
-  PetscCall(Evaluated(m, X, &same));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_C_BOOL, MPI_LAND, m->grid.comm));
+  PetscCall(EvaluatedByAll(m, X, &same));
   if (!same)
     PetscCall(m->fluid || m->solver->product ? Rows(m, X) : Give(m, X));
   if (m->fluid)
@@ -224,11 +233,14 @@ PetscErrorCode ModelNodesAt(Model *m, Vec X)
 PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model)
 {
   Model *m = (Model *)model;
+  bool   same;
 
   PetscFunctionBeginUser;
   (void)snes;
   PetscCall(PetscLogEventBegin(m->event[EVENT_RESIDUAL], 0, 0, 0, 0));
-  PetscCall(Rows(m, X));
+  PetscCall(EvaluatedByAll(m, X, &same));
+  if (!same)
+    PetscCall(Rows(m, X));
   PetscCall(Finish(m, m->x, m->f, R));
   PetscCall(PetscLogEventEnd(m->event[EVENT_RESIDUAL], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

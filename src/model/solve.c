@@ -89,6 +89,8 @@ static PetscErrorCode JacobianChoose(SNES snes, PetscInt it, double residual, Mo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define NEARLY                                                                                                         \
+  0.5 /* of the last residual: with more left than that the second half of the iterations is not worth it */
 #define SLAVED 0.1 /* fluid momentum: where a phase hardly moves, round-off of its drag stands at 1e-9 */
 
 /* Converged when every field's residual and update are small in units of 1 MPa and 1 K. */
@@ -124,7 +126,7 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
                       cl_field[fr].equation, u, cl_field[fu].name));
   if (r <= m->solver->tol_residual && u <= m->solver->tol_update)
     *reason = it == 0 ? SNES_CONVERGED_FNORM_ABS : SNES_CONVERGED_SNORM_RELATIVE;
-  else if (it >= max_it)
+  else if (it >= max_it || (2 * it >= max_it && r > NEARLY * m->solver->residual))
     *reason = SNES_DIVERGED_MAX_IT;
   if (*reason == SNES_CONVERGED_ITERATING)
     PetscCall(JacobianChoose(snes, it, r, m));
@@ -176,11 +178,12 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESCreate(m->grid.comm, &m->solver->snes));
   PetscCall(SNESSetFunction(m->solver->snes, m->solver->R, ModelResidual, m));
   PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->Pmat, ModelJacobian, m));
-  PetscCall(SNESSetTolerances(m->solver->snes, 0.0, 0.0, 0.0, 15, 10000));
+  PetscCall(SNESSetTolerances(m->solver->snes, 0.0, 0.0, 0.0, 30, 10000));
   PetscCall(SNESSetConvergenceTest(m->solver->snes, Converged, m, NULL));
   PetscCall(SNESGetLineSearch(m->solver->snes, &ls));
   PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
   PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
+  PetscCall(SNESLineSearchSetPostCheck(ls, ModelTryUpdate, m));
   PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPFGMRES)); /* keeps what the preconditioner gave, where GMRES applies it once more */
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->solver->tol_residual, PETSC_DEFAULT, 60));
@@ -290,6 +293,7 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
       PetscCall(PreconditionerFallBack(m));
     PetscCall(SNESSetMaxLinearSolveFailures(m->solver->snes, attempt == attempts - 1 ? 4 : 1));
     PetscCall(FirstGuess(m, x));
+    PetscCall(ModelSlave(m, m->solver->X));
     m->solver->kept = 0;
     PetscCall(SNESSolve(m->solver->snes, NULL, m->solver->X));
     PetscCall(SNESGetConvergedReason(m->solver->snes, &reason));
@@ -299,7 +303,7 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
       PetscCall(ModelReduceStatus(m, &m->failure.status));
     if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK))
       break;
-    if (attempt == 1 && reason != SNES_DIVERGED_LINEAR_SOLVE)
+    if ((attempt == 1 || m->solver->kept == 0) && reason != SNES_DIVERGED_LINEAR_SOLVE)
       break;
   }
   if (reason < 0) {

@@ -337,11 +337,24 @@ static PetscErrorCode UpstreamWeights(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (195), (197): about an axis the flux through a face goes with 1/r. */
-static void RadialFace(const Model *m, const Reach *r, Face *f)
+/* (197): of a face whose nodes have the drag `drag` per volume and k_r, Pa s/m^2. */
+static void AddWall(Model *m, const Reach *r, const Face *f, int phase, double drag)
 {
-  const double area              = VectorLength(f->n);
-  double       drag[PHASE_COUNT] = {0.0}, sum = 0.0;
+  const double lost = f->ring[0] * f->x[0] * PetscSqr(f->n[0]) / VectorLength(f->n) * drag;
+
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt I     = r->node[a];
+    const double   share = f->N[a] > 0.0 ? PetscSqr(f->Nr[a]) / f->N[a] : 0.0;
+
+    m->wall[PHASE_COUNT * I + phase] +=
+        lost * share * FaceFlow(m, f->particle, I, VectorAt(F_VW, phase, 0)) * FaceShare(m, f->particle, I, phase);
+  }
+}
+
+/* (195), (197): about an axis the flux through a face goes with 1/r. */
+static void RadialFace(Model *m, const Reach *r, Face *f)
+{
+  double drag[PHASE_COUNT] = {0.0}, sum = 0.0;
 
   if (!m->c->axisymmetric || !(f->x[0] > 0.0))
     return;
@@ -351,10 +364,10 @@ static void RadialFace(const Model *m, const Reach *r, Face *f)
     f->Nr[a] = f->N[a] / (c[NC_RING] * f->x[0]);
     sum += f->N[a];
     for (int k = 0; k < PHASE_COUNT; k++)
-      drag[k] += f->N[a] * c[NC_DRAG + k] / c[NC_KR + k];
+      drag[k] += f->N[a] * c[NC_DRAG + k];
   }
-  for (int k = 0; k < PHASE_COUNT; k++)
-    f->skin[k] = f->ring[0] * f->x[0] * drag[k] / (sum * area);
+  for (int k = 0; m->wall && k < PHASE_COUNT; k++)
+    AddWall(m, r, f, k, drag[k] / sum);
 }
 
 void ModelFaceProperties(const Model *m, Face *f, int n, const double S[])
@@ -439,6 +452,8 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   }
   if (*status == CL_OK) {
     PetscCall(FacesBuild(m->c, &m->grid, &m->P, &m->nface, &m->face));
+    if (m->wall)
+      PetscCall(PetscArrayzero(m->wall, PHASE_COUNT * m->map.n_local));
     for (PetscInt k = 0; k < m->nface; k++) {
       Face *f = &m->face[k];
       Reach r;

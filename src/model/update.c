@@ -145,30 +145,13 @@ static PetscErrorCode Shorten(const Model *m, Vec X, Vec Y, bool *shorter)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Residual that an update leaves; NaN outside the range of a law. */
-static PetscErrorCode Leaves(SNESLineSearch ls, Vec X, Vec Y, double *norm)
-{
-  SNES snes;
-  Vec  at, R;
-
-  PetscFunctionBeginUser;
-  PetscCall(SNESLineSearchGetSNES(ls, &snes));
-  PetscCall(VecDuplicate(X, &at));
-  PetscCall(VecDuplicate(X, &R));
-  PetscCall(VecWAXPY(at, -1.0, Y, X));
-  PetscCall(SNESComputeFunction(snes, at, R));
-  PetscCall(VecNorm(R, NORM_2, norm));
-  PetscCall(VecDestroy(&at));
-  PetscCall(VecDestroy(&R));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
 {
-  const Model *m = (const Model *)model;
-  Vec          followed;
-  bool         shorter, shorter_followed;
-  double       plain, other;
+  Model *m = (Model *)model;
+  Vec    followed, at;
+  SNES   snes;
+  bool   shorter, shorter_followed;
+  double plain, other;
 
   PetscFunctionBeginUser;
   PetscCall(FollowAll(m, X, Y, &followed));
@@ -177,8 +160,11 @@ PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *chan
   if (!followed)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Shorten(m, X, followed, &shorter_followed));
-  PetscCall(Leaves(ls, X, Y, &plain));
-  PetscCall(Leaves(ls, X, followed, &other));
+  PetscCall(SNESLineSearchGetSNES(ls, &snes));
+  PetscCall(VecDuplicate(X, &at));
+  PetscCall(ModelLeaves(snes, m, X, 1.0, Y, at, &plain));
+  PetscCall(ModelLeaves(snes, m, X, 1.0, followed, at, &other));
+  PetscCall(VecDestroy(&at));
   if (!(plain <= other)) { /* or plain is no number */
     PetscCall(VecCopy(followed, Y));
     *changed = PETSC_TRUE;

@@ -49,12 +49,10 @@ static void SceneInit(SmallScene *s, Rng *r)
   s->face = (Face){.side = SIDE_XMAX, .n = {2.0, 0.3}, .s = {1.4, 0.6}, .x = {1.0, 2.0}, .r = {0.01, 0.002}};
   for (int kind = 0; kind < BC_FACES; kind++)
     s->face.bc[kind] = -1;
-  s->face.K             = 1e9;
-  s->face.moved[0]      = 3e-3;
-  s->face.moved[1]      = -2e-3;
-  s->face.ring[1]       = 0.1;
-  s->face.skin[PHASE_W] = 1e9;
-  s->face.skin[PHASE_G] = 3e8;
+  s->face.K        = 1e9;
+  s->face.moved[0] = 3e-3;
+  s->face.moved[1] = -2e-3;
+  s->face.ring[1]  = 0.1;
 }
 
 /* Inputs of a particle: a motion of some percent, pressures, gradients, fluxes. */
@@ -484,9 +482,7 @@ static void MeanPressure(void **state)
       memset(in, 0, MOTION_COUNT * sizeof(*in)); /* a = n */
       Evaluate(&s, in, &o);
       for (int ph = 0; ph < PHASE_COUNT; ph++)
-        p[ph] = o.out[F_VW + 2 * ph] / s.face.n[0] -
-                s.face.skin[ph] * (in[IN_J + 2 * ph] * s.face.n[0] + in[IN_J + 2 * ph + 1] * s.face.n[1]) +
-                in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
+        p[ph] = o.out[F_VW + 2 * ph] / s.face.n[0] + in[IN_P + ph] + in[IN_GP + 2 * ph] * s.face.r[0] +
                 in[IN_GP + 2 * ph + 1] * s.face.r[1]; /* the row has what it differs from the body's own */
       const double pc = natural ? in[IN_P + 1] - in[IN_P] : s.p0[1] - s.p0[0];
       const double sg = GasShareOf(&s.mat, pc, s.Sh);
