@@ -1,4 +1,4 @@
-/* Fluid velocities that follow the pressures, and how far Newton's update goes, where gas may vanish: (413), (414) of
+/* Fluid velocities that follow the pressures, and how far Newton's update goes, where gas may vanish: (414), (415) of
    docs/equations.md. */
 #include "solver.h"
 
