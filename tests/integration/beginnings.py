@@ -76,6 +76,8 @@ E, nu = 50e6, 0.3
 check("... the strain by which it would swell, %", abs(numbers(text, "swells by some")[0] / (100 * 11e6 / (E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)))) - 1), 0.05)
 check_true("... which side, what pressure, and what keeps it", "of 11 MPa at the body's top" in text and "normal: 11 MPa" in text and text.count("nothing bears") == 1, text)
 check_true("... each of three that are free", "\n".join(said(well, "-boundaries", "casing,well")).count("nothing bears") == 3)
+text = comes("... with its burden, but nothing at its far side", ["free"], said(well, "-boundaries", "base,casing,well,burden"))
+check_true("... which it does not bear", "at the body's right" in text and text.count("nothing bears") == 1, text)
 comes("... with an ambient pressure", [], said(well, "-boundaries", "base,casing,far,well", "-ambient_pressure", "11 MPa"))
 comes("... ten thousand times stiffer", [], said(well, "-boundaries", "base,casing,far,well", "-mat_clay_elasticity_E0", "500 GPa"))
 

@@ -4,7 +4,8 @@ hybrid and implicit, rough and smooth; Cox's circle on a coarse grid; what volum
 what the other locking, of ground that dilates, does without mean strain.
 
 The plate pushes the node at its edge, and the ground follows over the next cell: a load too large by h/2 of the half-width, of
-first order.  Nc and Nq are within 3 % at h = a/8, Prandtl's strip at a/16.  Finer grids: docs/plasticity.md.
+first order.  Nc and Nq are within 3 % at h = a/8, Prandtl's strip is at a/16, and here within twice that at a/8; the circle is within
+6 % at R/8, and here within 8/6 of that at R/6.  Those finer grids, of many minutes, are tests/studies/plasticity.py's (docs/plasticity.md).
 """
 import numpy as np
 
@@ -36,9 +37,9 @@ def family(name, rough, implicit, grids, finest, extrapolated, *more):
     return load
 
 
-strong = family("Prandtl", True, True, (4, 8, 16), (0.0, 0.03), 0.015)
+strong = family("Prandtl", True, True, (4, 8), (0.0, 0.06), 0.015)
 free = family("Prandtl", True, False, (4, 8), None, 0.015)
-check("Prandtl: hybrid against implicit", np.abs(free / strong[:2] - 1).max(), 0.01)
+check("Prandtl: hybrid against implicit", np.abs(free / strong - 1).max(), 0.01)
 wet = [measured("Prandtl", 4, True, implicit=i, what="undrained", case=saturated())[0] for i in (True, False)]
 check("Prandtl on saturated ground, undrained: the same load, both integrators", np.abs(wet / np.array([strong[0], free[0]]) - 1).max(), 1e-3)
 last = strip_run("Prandtl", 4, True, case=saturated()).snapshots()
@@ -55,12 +56,12 @@ load, growth = measured("Nq, 30 deg", 4, False)
 judge("strength", "Nq, 30 deg, smooth, hybrid: collapse load at h = a/4", load / exact("Nq, 30 deg") - 1, (0.0, 0.03), 0.01, "%")
 load, growth = measured("Nq, 30 deg", 4, False, "-mean_strain", "0", what="locks")
 check("... without mean strain: over the exact load", load / exact("Nq, 30 deg") - 1, (0.15, 0.3))
-found = {(n, s): circle(n, s) for n, s in ((4, 0.99), (8, 0.99), (4, 0))}
+found = {(n, s): circle(n, s, end=end) for n, s, end in ((4, 0.99, 1.0), (6, 0.99, 0.85), (4, 0, 1.0))}
 for (n, s), (load, growth) in found.items():
     rows.append(["Cox's circle", "smooth", "implicit", f"R/{n}", 141 * load, 100 * (load - 1), 100 * growth, "" if s else "locks"])
-coarse, fine = (found[n, 0.99] for n in (4, 8))
-judge("strength", "Cox's circle on heavy ground, 30 deg, h = R/8", fine[0] - 1, (0.0, 0.06), 0.01, "%")
-check("... order in h", order([1 / 4, 1 / 8], [coarse[0], fine[0]], 1)[0], (0.8, 1.5))
+coarse, fine = (found[n, 0.99] for n in (4, 6))
+judge("strength", "Cox's circle on heavy ground, 30 deg, h = R/6", fine[0] - 1, (0.0, 0.08), 0.01, "%")
+check("... order in h", order([1 / 4, 1 / 6], [coarse[0], fine[0]], 1)[0], (0.8, 1.5))
 check("... growth over the last fifth", max(coarse[1], fine[1]), 0.01)
 check("... without mean strain: over the exact load", found[4, 0][0] - 1, (0.4, 1.0))
 for top, warns in ((1.5, False), (1.45, True)):
