@@ -128,6 +128,9 @@ const Key case_key[] = {
          "hybrid, explicit: time over which pressures and temperature of a particle tend to those of the nodes, which "
          "do not see what differs within a cell; or the word none",
          .word = "none"),
+    INTEGERS(Case, 1, "stepper_passes", passes, "[0,100]", "0",
+             "hybrid, explicit: further passes in which changes of pressure come to be those of fluids that stay in "
+             "their particle, as in implicit steps; 0 leaves them spread over three cells (lumped storage)"),
     REAL(
         Case, "stepper_damping", damping, "", "[0,1)", "0",
         "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
