@@ -63,7 +63,7 @@ typedef struct Case {
   double cfl;          /* step as a share of the stable one */
   bool   force_dt;     /* take a fixed step above the stable one all the same */
   double flip;         /* 1: FLIP, 0: PIC */
-  PetscInt passes;     /* further ones of (37) */
+  PetscInt passes;     /* of (413), beyond the first */
   double relaxation;   /* s: pressures and temperature of particles tend to those of the nodes; INFINITY: never */
   double damping;      /* local damping */
   double mass_scaling; /* factor on inertia */

@@ -134,9 +134,9 @@ struct Explicit {
   double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it; of
                      fluids with layers the flow per permeability (311) */
   double *gain;   /* [rows][3] the same of the scalars */
-  double *left, *given, *total; /* [rows][LANES] what the balances of mass and heat still lack (37), what particles give
-                                   to that, and the increments so far; with passes */
-  int     pass;                 /* of (37), from 0 */
+  double *left, *given, *total; /* [rows][LANES] (413): what the balances of mass and heat still lack, what particles
+                                   store of it, the increments so far */
+  int     pass;                 /* of (413), from 0 */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
   NodeInfo *node; /* [rows] */

@@ -1,8 +1,7 @@
 /* Second pass: from the new nodal velocities the rates of mass and heat at every particle, and what a change of
    pressure and temperature makes of them; docs/equations.md, section 12. */
 #include "clathra/laws_batch.h"
-#include "clathra/point_reaction.h"
-#include "gathered.h"
+#include "gains.h"
 
 /* (313): with layers nodes give the slip per permeability, and what it changes by. */
 INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
@@ -339,22 +338,6 @@ INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
   }
 }
 
-/* What a kg of hydrate gained takes off every row: kg of the fluids, and with the sign of the heat that it gives, J. */
-INLINE void PerGain(const Explicit *e, const Set s, Run r, const double *restrict T, const double *restrict rho_h,
-                    double c[3][BLOCK])
-{
-  const Kinetics *k               = &r.mat->kinetics;
-  const double    nu[PHASE_COUNT] = {KineticsWater(k), KineticsMethane(k)};
-  double          held[PHASE_COUNT][BLOCK], L[BLOCK];
-
-  LatentHeatBatch(&r.mat->latent, r.n, T, L);
-  PerHydrateVolume(e, r, e->m->P.f[P_PW] + r.p, e->m->P.f[P_PG] + r.p, held);
-  for (int row = 0; row < Scalars(s); row++) {
-    for (int q = 0; q < r.n; q++)
-      c[row][q] = row < s.fluids ? nu[row] + Displaced(held[row][q], rho_h[q]) : -L[q];
-  }
-}
-
 /* What the reaction adds to all rows: gain = gain_0 + gain_w dp_w + gain_g dp_g + gain_T dT. */
 INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, Given *o)
 {
@@ -480,58 +463,4 @@ MAKE_LOOPS(RatesRun)
 void Rates(Explicit *e, double dt)
 {
   ForRuns(e, RatesRun_loops, dt);
-}
-
-/* What the increments of a pass, as the particles see them, take up of what each row lacked; the heat capacity, which
-   nodes have by themselves, aside. */
-INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
-{
-  _Alignas(64) Gathered g;
-  _Alignas(64) Given    o;
-  Weights               w;
-  const double         *T         = s.heat ? e->m->P.f[P_T] + r.p : e->t[T_T] + r.p;
-  double                c[3][BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
-  const int             n         = Scalars(s);
-
-  (void)dt;
-  WeightsOf(e, r, &w);
-  Gather(e, e->C, 1, r, &w, &g);
-  GiveNothing(r, n, &o);
-  for (int q = 0; q < r.n; q++)
-    memset(o.value[q], 0, sizeof(Lanes));
-  for (int q = 0; q < r.n && Relative(e, s); q++) {
-    const double y[2] = {g.value[q][0], g.value[q][1]};
-
-    PressuresOf(e->m->P.f[P_PG][r.p + q], y, g.value[q]);
-  }
-  for (int k = 0; k < s.fluids; k++) {
-    for (int i = 0; i < n; i++) {
-      const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
-
-      for (int q = 0; q < r.n; q++)
-        o.value[q][k] += slope[q] * g.value[q][i];
-    }
-    for (int q = 0; q < r.n && s.heat && e->m->c->compression_heat; q++)
-      o.value[q][s.fluids] -= e->t[T_WARM + k][r.p + q] * g.value[q][k];
-  }
-  if (s.fluids == 2 && r.mat->reacts) {
-    LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
-    PerGain(e, s, r, T, rho_h, c);
-    for (int q = 0; q < r.n; q++) {
-      const PetscInt p    = r.p + q;
-      const double   gain = e->t[T_GAIN_W][p] * g.value[q][0] + e->t[T_GAIN_G][p] * g.value[q][1] +
-                          (s.heat ? e->t[T_GAIN_T][p] * g.value[q][2] : 0.0);
-
-      for (int row = 0; row < n; row++)
-        o.value[q][row] += c[row][q] * gain;
-    }
-  }
-  Scatter(e, e->given, n, CARRY_NOTHING, false, r, &w, &o);
-}
-
-MAKE_LOOPS(StoredRun)
-
-void Stored(Explicit *e)
-{
-  ForRuns(e, StoredRun_loops, 0.0);
 }

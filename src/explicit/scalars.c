@@ -154,7 +154,8 @@ MAKE_LOOPS(ScalarsRun)
 MAKE_LOOPS(WriteRun)
 MAKE_LOOPS(EndsRun)
 
-/* Solves the nodes' rows as they stand for the increments of this pass, which the particles can read then. */
+/* Solves the rows as they stand for the increments of this pass, which the particles can read then.  The heat that
+   held temperatures take is that of all passes, since what their rows lacked is in the last one's, too. */
 static PetscErrorCode Pass(Explicit *e)
 {
   PetscFunctionBeginUser;
@@ -169,38 +170,48 @@ static PetscErrorCode Pass(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Right sides of the rows, n numbers each, to or from an array of rows of LANES. */
-static void TakeSides(Explicit *e, double *to)
+/* What the balances lack, n numbers a row, as they come from the particles. */
+static void KeepSides(Explicit *e)
 {
   const int n = Scalars(e->set), width = LANES * Rows(R_Count(e->set));
 
   for (PetscInt I = 0; I < e->rows; I++) {
     for (int k = 0; k < n; k++)
-      to[I * LANES + k] = e->R[I * width + k];
+      e->left[I * LANES + k] = e->R[I * width + k];
   }
 }
 
-static PetscErrorCode Passes(Explicit *e)
+/* (413): what they still lack after the increments of the last pass, to the rows. */
+static PetscErrorCode StillLacking(Explicit *e)
 {
-  const Set      s = e->set;
-  const int      n = Scalars(s), width = LANES * Rows(R_Count(s)), wide = LANES * Rows(A_Count(s));
+  const Set s = e->set;
+  const int n = Scalars(s), width = LANES * Rows(R_Count(s)), wide = LANES * Rows(A_Count(s));
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
+  PetscCall(PetscArrayzero(e->given, e->rows * LANES));
+  Stored(e);
+  PetscCall(NodeMapSum(&e->map, e->given, LANES));
+  for (PetscInt I = 0; I < e->map.n_local; I++) {
+    double *left = &e->left[I * LANES];
+
+    AddRow(left, -1.0, &e->given[I * LANES], n);
+    if (s.heat)
+      left[s.fluids] -= e->A[I * wide + A_C(s)] * e->C[I * LANES + s.fluids];
+    for (int k = 0; k < n; k++)
+      e->R[I * width + k] = left[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FurtherPasses(Explicit *e)
+{
   const PetscInt all = e->rows * LANES;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(e->total, e->C, all));
   for (e->pass = 1; e->pass <= e->o.passes; e->pass++) {
-    PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
-    PetscCall(PetscArrayzero(e->given, all));
-    Stored(e);
-    PetscCall(NodeMapSum(&e->map, e->given, LANES));
-    for (PetscInt I = 0; I < e->map.n_local; I++) {
-      for (int k = 0; k < n; k++)
-        e->left[I * LANES + k] -= e->given[I * LANES + k];
-      if (s.heat)
-        e->left[I * LANES + s.fluids] -= e->A[I * wide + A_C(s)] * e->C[I * LANES + s.fluids];
-      for (int k = 0; k < n; k++)
-        e->R[I * width + k] = e->left[I * LANES + k];
-    }
+    PetscCall(StillLacking(e));
     PetscCall(Pass(e));
     for (PetscInt k = 0; k < all; k++)
       e->total[k] += e->C[k];
@@ -215,10 +226,10 @@ PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
   PetscFunctionBeginUser;
   e->warmed = 0.0;
   if (e->o.passes > 0)
-    TakeSides(e, e->left);
+    KeepSides(e);
   PetscCall(Pass(e));
   if (e->o.passes > 0)
-    PetscCall(Passes(e));
+    PetscCall(FurtherPasses(e));
   ForNodes(e, EndsRun_loops, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
   rates->heat_in += e->heat_in;
