@@ -341,7 +341,7 @@ INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
 /* What the reaction adds to all rows: gain = gain_0 + gain_w dp_w + gain_g dp_g + gain_T dT. */
 INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, Given *o)
 {
-  const int n                  = Scalars(s);
+  const int n                 = Scalars(s);
   const double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
                          *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
   double c[3][BLOCK];

@@ -105,7 +105,7 @@ PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)
                              .flip          = 1.0,
                              .relaxation    = INFINITY,
                              .mass_scaling  = StepperCase(s)->mass_scaling};
-  Explicit *e;
+  Explicit             *e;
 
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &e));

@@ -73,7 +73,7 @@ def slope(passes, *options, ranks=1):
     loaded, end = run.snapshot(10.0), run.snapshots()[-1][1]
     methane, hydrate = ({at: s["mass_gas"][:, 0] * gas + s["mass_hydrate"][:, 0] * SHARE for at, s in (("loaded", loaded), ("end", end))} for gas in (1, 0))
     for what in ("water", "methane", "heat"):
-        judge(ROW, f"heated slope, {passes} passes{''.join(options)}: {what} balance", np.max(np.abs(run.balance[f"{what}_error"])), 1e-11)
+        judge(ROW, f"heated slope, {passes} passes{', increments of p_g' if options else ''}, {ranks} ranks: {what} balance", np.max(np.abs(run.balance[f"{what}_error"])), 1e-11)
     return run, np.abs(methane["end"] - methane["loaded"]).sum() / 2 / np.maximum(0, hydrate["loaded"] - hydrate["end"]).sum()
 
 
