@@ -60,15 +60,16 @@ typedef struct Case {
   double   error_exponent;     /* of its mean over the particles (292) */
   PetscInt max_failures;       /* cuts in a row before the run is given up */
   /* hybrid and explicit */
-  double cfl;          /* step as a share of the stable one */
-  bool   force_dt;     /* take a fixed step above the stable one all the same */
-  double flip;         /* 1: FLIP, 0: PIC */
-  double relaxation;   /* s: pressures and temperature of particles tend to those of the nodes; INFINITY: never */
-  double damping;      /* local damping */
-  double mass_scaling; /* factor on inertia */
-  int    surface;      /* SURFACE_...: what of nearly empty nodes follows their fullest neighbour in part */
-  int    pressures;    /* PRESSURES_...: rates of pressure shared over nodes, by the particle (the paper's form), or
-                          shared, p_g's in proportion */
+  double   cfl;          /* step as a share of the stable one */
+  bool     force_dt;     /* take a fixed step above the stable one all the same */
+  double   flip;         /* 1: FLIP, 0: PIC */
+  PetscInt passes;       /* of (413), beyond the first */
+  double   relaxation;   /* s: pressures and temperature of particles tend to those of the nodes; INFINITY: never */
+  double   damping;      /* local damping */
+  double   mass_scaling; /* factor on inertia */
+  int      surface;      /* SURFACE_...: what of nearly empty nodes follows their fullest neighbour in part */
+  int      pressures;    /* PRESSURES_...: rates of pressure shared over nodes, by the particle (the paper's form), or
+                            shared, p_g's in proportion */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */

@@ -13,6 +13,7 @@ typedef struct {
   bool relative_gas;       /* changes of p_g in proportion to it (151) */
   bool particle_pressures; /* the paper's bare form (P72): rates of pressure by the particle, not shared over nodes
                             */
+  int    passes;           /* of (413), beyond the first */
   double flip;             /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
   double relaxation;       /* s, (97); INFINITY: none */
   double damping;          /* local damping of the mixture's out-of-balance force, [0,1) */

@@ -128,6 +128,11 @@ const Key case_key[] = {
          "hybrid, explicit: time over which pressures and temperature of a particle tend to those of the nodes, which "
          "do not see what differs within a cell; or the word none",
          .word = "none"),
+    INTEGERS(
+        Case, 1, "stepper_storage_passes", passes, "[0,100]", "0",
+        "hybrid, explicit: passes that take changes of pressure from lumped storage, which spreads them over three "
+        "cells, to the consistent storage of implicit steps; 3 do most of it, for undrained bodies with layers or "
+        "bands of a cell's width"),
     REAL(
         Case, "stepper_damping", damping, "", "[0,1)", "0",
         "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
@@ -235,6 +240,8 @@ const Key stage_key[] = {
     REAL(CaseStage, "stepper_relaxation", c.relaxation, "s", "(0,inf]", CASES,
          "hybrid, explicit: time over which particles take up the nodes' pressures and temperature", .kept = true,
          .word = "none"),
+    INTEGERS(CaseStage, 1, "stepper_storage_passes", c.passes, "[0,100]", CASES,
+             "hybrid, explicit: passes from lumped to consistent storage", .kept = true),
     REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),
     REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES,
          "hybrid, explicit: factor on all inertia", .kept = true),

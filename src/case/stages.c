@@ -77,6 +77,9 @@ void CheckTimes(Reader *r, const Case *c, const char *stage)
       !((c->scene.fields.has & HAS_GAS_PRESSURE) && c->scene.material[0].gas.trace == 0.0))
     Fail(r, stage, "stepper_pressures",
          "relative is for scenes with a pressure of the gas that all of the sediment holds");
+  if (c->pressures == PRESSURES_PARTICLES && c->passes > 0)
+    Fail(r, stage, "stepper_storage_passes",
+         "is not known with stepper_pressures: particles, where nodes share no pressure");
   if (Local(c) && c->dt > c->dt_max) {
     snprintf(what, sizeof what, "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
     Fail(r, stage, "stepper_dt", what);

@@ -131,9 +131,12 @@ struct Explicit {
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */
   double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;    /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it; of
-                     fluids with layers the flow per permeability (311) */
-  double *gain;   /* [rows][3] the same of the scalars */
+  double *inc;  /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it; of
+                   fluids with layers the flow per permeability (311) */
+  double *gain; /* [rows][3] the same of the scalars */
+  double *left, *given, *total; /* [rows][LANES] (413): what the balances of mass and heat still lack, what particles
+                                   store of it, the increments so far */
+  int     pass;                 /* of (413), from 0 */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
   NodeInfo *node; /* [rows] */
@@ -253,6 +256,7 @@ INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, i
 
 void Deposit(Explicit *e);
 void Rates(Explicit *e, double dt);
+void Stored(Explicit *e); /* what the increments of a pass store, to Explicit.given */
 void Update(Explicit *e, double dt);
 /* Calls the loop made for the set of the scene on every run of particles, or on the nodes of this rank. */
 typedef void (*Loop)(Explicit *e, Run r, double dt);

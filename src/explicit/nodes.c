@@ -23,13 +23,18 @@ static PetscErrorCode Allocate(Explicit *e)
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
-  PetscCall(PetscCalloc1(n * (2 * A + B + R + C) + LANES, &e->raw));
+  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + 3 * (e->o.passes > 0 ? LANES : 0)) + LANES, &e->raw));
   at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
   e->A = at;
   e->G = e->A + n * A;
   e->B = e->G + n * A;
   e->R = e->B + n * B;
   e->C = Scalars(s) ? e->R + n * R : e->B; /* a dry body goes from the first pass to the third */
+  if (e->o.passes > 0) {
+    e->left  = at + n * (2 * A + B + R + C);
+    e->given = e->left + n * LANES;
+    e->total = e->given + n * LANES;
+  }
   PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node, GridPaddedSize(&e->m->grid),
                          &e->slot));
   for (PetscInt q = 0; q < GridPaddedSize(&e->m->grid); q++)

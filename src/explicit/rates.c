@@ -1,8 +1,7 @@
 /* Second pass: from the new nodal velocities the rates of mass and heat at every particle, and what a change of
    pressure and temperature makes of them; docs/equations.md, section 12. */
 #include "clathra/laws_batch.h"
-#include "clathra/point_reaction.h"
-#include "gathered.h"
+#include "gains.h"
 
 /* (313): with layers nodes give the slip per permeability, and what it changes by. */
 INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
@@ -342,26 +341,22 @@ INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
 /* What the reaction adds to all rows: gain = gain_0 + gain_w dp_w + gain_g dp_g + gain_T dT. */
 INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, Given *o)
 {
-  const Kinetics *k               = &r.mat->kinetics;
-  const int       n               = Scalars(s);
-  const double    nu[PHASE_COUNT] = {KineticsWater(k), KineticsMethane(k)};
+  const int n                 = Scalars(s);
   const double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
                          *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
-  double held[PHASE_COUNT][BLOCK], L[BLOCK];
+  double c[3][BLOCK];
 
-  LatentHeatBatch(&r.mat->latent, r.n, T, L);
-  PerHydrateVolume(e, r, e->m->P.f[P_PW] + r.p, e->m->P.f[P_PG] + r.p, held);
+  PerGain(e, s, r, T, v->rho_h, c);
   for (int row = 0; row < n; row++) {
 #pragma GCC ivdep
     for (int q = 0; q < r.n; q++) {
-      const double c = row < s.fluids ? nu[row] + Displaced(held[row][q], v->rho_h[q]) : -L[q];
-      double      *a = &o->value[q][R_Matrix(s) + row * n];
+      double *a = &o->value[q][R_Matrix(s) + row * n];
 
-      o->value[q][row] -= c * gain[q];
-      a[PHASE_W] += c * gain_w[q];
-      a[PHASE_G] += c * gain_g[q];
+      o->value[q][row] -= c[row][q] * gain[q];
+      a[PHASE_W] += c[row][q] * gain_w[q];
+      a[PHASE_G] += c[row][q] * gain_g[q];
       if (s.heat)
-        a[s.fluids] += c * gain_T[q];
+        a[s.fluids] += c[row][q] * gain_T[q];
     }
   }
 }

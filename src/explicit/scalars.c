@@ -48,7 +48,7 @@ INLINE void NodeScalars(Explicit *e, const Set s, PetscInt I)
   if (held) {
     for (int j = 0; j < n; j++)
       A[(n - 1) * n + j] = j == n - 1;
-    b[n - 1] = T - a[s.fluids] / a[A_C(s)];
+    b[n - 1] = e->pass > 0 ? 0.0 : T - a[s.fluids] / a[A_C(s)];
   }
   SolveSmall(n, A, b, &e->gain[3 * I]);
   if (held && e->node[I].root == (int)I)
@@ -65,6 +65,10 @@ static void Join(Explicit *e, PetscInt I)
   const double *from = &e->R[I * width], *a = &e->A[I * LANES * Rows(A_Count(s))];
   double       *to = &e->R[e->node[I].root * width], T;
 
+  if (e->pass > 0) { /* the matrix has it */
+    AddRow(to, share, from, s.heat && Held(e, I, F_T, &T) ? s.fluids : n);
+    return;
+  }
   if (!s.heat || !Held(e, I, F_T, &T)) {
     AddRow(to, share, from, width);
     return;
@@ -77,19 +81,28 @@ static void Join(Explicit *e, PetscInt I)
   }
 }
 
-/* Row that the particles read: increments, end values, velocity of the skeleton. */
+/* Increments of this pass. */
 INLINE void WriteScalars(Explicit *e, const Set s, PetscInt I)
 {
   const int     n = Scalars(s);
-  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)], *r = &e->R[I * LANES * Rows(R_Count(s))];
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], *r = &e->R[I * LANES * Rows(R_Count(s))];
   double       *c = &e->C[I * LANES], T;
 
   for (int k = 0; k < n; k++)
     c[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
   if (s.heat && e->node[I].root != (int)I && Held(e, I, F_T, &T)) {
-    c[s.fluids] = T - a[s.fluids] / a[A_C(s)];
+    c[s.fluids] = e->pass > 0 ? 0.0 : T - a[s.fluids] / a[A_C(s)];
     e->heat_in += Lacking(s, r, s.fluids, c);
   }
+}
+
+/* Row that the particles read: increments, end values, velocity of the skeleton. */
+INLINE void WriteEnds(Explicit *e, const Set s, PetscInt I)
+{
+  const int     n = Scalars(s);
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
+  double       *c = &e->C[I * LANES];
+
   for (int k = 0; k < n; k++)
     c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
   if (Relative(e, s)) {
@@ -128,13 +141,25 @@ INLINE void WriteRun(Explicit *e, const Set s, Run r, double dt)
   }
 }
 
+INLINE void EndsRun(Explicit *e, const Set s, Run r, double dt)
+{
+  (void)dt;
+  for (PetscInt I = r.p; I < r.p + r.n; I++) {
+    if (Volume(e, s, I) > 0.0)
+      WriteEnds(e, s, I);
+  }
+}
+
 MAKE_LOOPS(ScalarsRun)
 MAKE_LOOPS(WriteRun)
+MAKE_LOOPS(EndsRun)
 
-PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
+/* Solves the rows as they stand for the increments of this pass, which the particles can read then.  The heat that
+   held temperatures take is that of all passes, since what their rows lacked is in the last one's, too. */
+static PetscErrorCode Pass(Explicit *e)
 {
   PetscFunctionBeginUser;
-  e->heat_in = e->warmed = 0.0;
+  e->heat_in = 0.0;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     if (e->node[I].root != (int)I)
       Join(e, I);
@@ -142,6 +167,70 @@ PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
   ForNodes(e, ScalarsRun_loops, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->gain, 3));
   ForNodes(e, WriteRun_loops, 0.0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the balances lack, n numbers a row, as they come from the particles. */
+static void KeepSides(Explicit *e)
+{
+  const int n = Scalars(e->set), width = LANES * Rows(R_Count(e->set));
+
+  for (PetscInt I = 0; I < e->rows; I++) {
+    for (int k = 0; k < n; k++)
+      e->left[I * LANES + k] = e->R[I * width + k];
+  }
+}
+
+/* (413): what they still lack after the increments of the last pass, to the rows. */
+static PetscErrorCode StillLacking(Explicit *e)
+{
+  const Set s = e->set;
+  const int n = Scalars(s), width = LANES * Rows(R_Count(s)), wide = LANES * Rows(A_Count(s));
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
+  PetscCall(PetscArrayzero(e->given, e->rows * LANES));
+  Stored(e);
+  PetscCall(NodeMapSum(&e->map, e->given, LANES));
+  for (PetscInt I = 0; I < e->map.n_local; I++) {
+    double *left = &e->left[I * LANES];
+
+    AddRow(left, -1.0, &e->given[I * LANES], n);
+    if (s.heat)
+      left[s.fluids] -= e->A[I * wide + A_C(s)] * e->C[I * LANES + s.fluids];
+    for (int k = 0; k < n; k++)
+      e->R[I * width + k] = left[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FurtherPasses(Explicit *e)
+{
+  const PetscInt all = e->rows * LANES;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(e->total, e->C, all));
+  for (e->pass = 1; e->pass <= e->o.passes; e->pass++) {
+    PetscCall(StillLacking(e));
+    PetscCall(Pass(e));
+    for (PetscInt k = 0; k < all; k++)
+      e->total[k] += e->C[k];
+  }
+  PetscCall(PetscArraycpy(e->C, e->total, all));
+  e->pass = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
+{
+  PetscFunctionBeginUser;
+  e->warmed = 0.0;
+  if (e->o.passes > 0)
+    KeepSides(e);
+  PetscCall(Pass(e));
+  if (e->o.passes > 0)
+    PetscCall(FurtherPasses(e));
+  ForNodes(e, EndsRun_loops, 0.0);
   PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
   rates->heat_in += e->heat_in;
   rates->heat_rate += e->warmed;

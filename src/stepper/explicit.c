@@ -34,6 +34,7 @@ static PetscErrorCode Create(Stepper *s)
                              .velocities_free    = c->surface != SURFACE_TIED,
                              .relative_gas       = c->pressures == PRESSURES_RELATIVE,
                              .particle_pressures = c->pressures == PRESSURES_PARTICLES,
+                             .passes             = (int)c->passes,
                              .flip               = c->flip,
                              .relaxation         = c->relaxation,
                              .damping            = c->damping,

@@ -248,6 +248,8 @@ CASES = [
     ("mass scaling below 1", [("type: sdirk2", "type: explicit, mass_scaling: 0.5")], ["stepper_mass_scaling", "[1,1e12]"], []),
     ("bad surface", [("type: sdirk2", "type: hybrid, surface: loose")], ["stepper_surface", "tied"], []),
     ("bad sharing of pressures", [("type: sdirk2", "type: hybrid, pressures: cells")], ["stepper_pressures", "particles"], []),
+    ("passes in the bare form", [("type: sdirk2", "type: hybrid, pressures: particles, storage_passes: 2")], ["stepper_storage_passes", "stepper_pressures: particles"], []),
+    ("passes below 0", [("type: sdirk2", "type: hybrid, storage_passes: -1")], ["stepper_storage_passes", "[0,100]"], []),
     ("relative pressures without a gas", [*NO_GAS, ("type: sdirk2", "type: hybrid, pressures: relative")], ["stepper_pressures", "pressure of the gas"], []),
     ("relative pressures of no material", [("materials: [sediment]\n", ""), ("type: sdirk2", "type: hybrid, pressures: relative")], ["materials"], []),
     ("relative pressures where some sediment has no gas", [("type: sdirk2", "type: auto, pressures: relative"), ("Sw: 0.6\n    Sg: 0.4\n", "Sw: 1\n    Sg: 0\n")], ["stepper_pressures", "all of the sediment holds"], []),

@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""What a layer of a sealed body keeps of its own pressure (413): a stiff layer in soft ground, loaded without drainage, against Skempton's share of the load in each; cells of a layer's width, a half and a quarter.
+
+In the continuum no water moves and p = load K/(K + M) with K = K_w/phi in each layer.  Nodes share p, so a layer as wide as a cell cannot have all of it: with lumped storage (`hybrid`) half is lost to the cells beside it, with
+passes as much as with the consistent storage of implicit steps.  Then a slope that is heated at its base, with gas, hydrate and heat: passes leave the balances closed and keep more methane where it was; two ranks.
+"""
+import numpy as np
+
+from common import Run, check_true, finish, judge, largest_difference, scratch, table
+
+ROW = "sealed layers"
+PHI, BULK, LOAD, E_SOFT, E_STIFF, NU = 0.4, 2.2e9, 1e6, 0.25e9, 25e9, 0.25
+LOW, HIGH, LENGTH = 4.5, 5.0, 10.0  # m: the layer, the column
+CASE = f"""title: a stiff layer in soft ground, sealed
+fields: hm
+grid: {{lower: [0 m, 0 m], upper: [{LENGTH} m, 0.5 m], cells: [20, 1]}}
+materials: [soft, stiff]
+mat:
+  soft: {{porosity: {PHI}, solid: {{density: 2650 kg/m^3}}, water: {{bulk_modulus: {BULK} Pa}}, permeability: {{k0: 1e-24 m^2}}, elasticity: {{E0: {E_SOFT} Pa, nu: {NU}}}}}
+  stiff: {{porosity: {PHI}, solid: {{density: 2650 kg/m^3}}, water: {{bulk_modulus: {BULK} Pa}}, permeability: {{k0: 1e-24 m^2}}, elasticity: {{E0: {E_STIFF} Pa, nu: {NU}}}}}
+regions: [near, layer, far]
+region:
+  near: {{lower: [0 m, 0 m], upper: [{LOW} m, 0.5 m], material: soft, pressure: 1 MPa, temperature: 10 degC}}
+  layer: {{lower: [{LOW} m, 0 m], upper: [{HIGH} m, 0.5 m], material: stiff, pressure: 1 MPa, temperature: 10 degC}}
+  far: {{lower: [{HIGH} m, 0 m], upper: [{LENGTH} m, 0.5 m], material: soft, pressure: 1 MPa, temperature: 10 degC}}
+boundaries: [base, lower, upper, load]
+bc:
+  base: {{type: roller, axis: x, position: 0 m}}
+  lower: {{type: roller, axis: y, position: 0 m}}
+  upper: {{type: roller, axis: y, position: 0.5 m}}
+  load: {{type: traction, side: right, normal: {{table: [0 s, 1 MPa, 0.1 s, 2 MPa]}}}}
+time: {{end: 0.12 s}}
+stepper: {{type: hybrid, damping: 0.2}}
+stabilisation: {{pressure_projection: 0}}
+output: {{times: [0.12 s]}}
+"""
+case = scratch() / "layers.yaml"
+case.write_text(CASE)
+M = lambda E: E * (1 - NU) / ((1 + NU) * (1 - 2 * NU))
+K = BULK / PHI
+soft, stiff = (LOAD * K / (K + M(E)) for E in (E_SOFT, E_STIFF))
+
+
+def column(name, cells, *options):
+    """What the layer's p lacks of its exact difference from the ground's, in parts of that."""
+    run = Run.of_case(case, "-quiet", "-grid_cells", f"{20 * cells},{cells}", *options)
+    (_, start), (_, end) = run.snapshots()[0], run.snapshots()[-1]
+    layer = (start["position"][:, 0] > LOW) & (start["position"][:, 0] < HIGH)
+    p = np.mean(end["p_w"][layer]) - 1e6
+    far = np.abs(start["position"][:, 0] - 8) < 1
+    judge(ROW, f"{name}, {cells} cells in the layer: p far from it, relative", abs(np.mean(end["p_w"][far] - 1e6) / soft - 1), 2e-3)
+    judge(ROW, f"{name}, {cells} cells in the layer: water balance", abs(run.balance["water_error"][-1]), 1e-12)
+    return (p - stiff) / (soft - stiff)
+
+
+IMPLICIT = ("-stepper_type", "sdirk2", "-stepper_dt", "0.002s", "-stepper_adapt", "no")
+WAYS = {"lumped": (), "1 pass": ("-stepper_storage_passes", "1"), "30 passes": ("-stepper_storage_passes", "30"), "sdirk2": IMPLICIT}
+lost = {name: [column(name, n, *options) for n in (1, 2, 4)] for name, options in WAYS.items()}
+table(("difference of the layer that is lost", "1 cell in the layer", "2", "4"), list((k, *v) for k, v in lost.items()))
+for k, cells in enumerate((1, 2, 4)):
+    judge(ROW, f"{cells} cells in the layer, 30 passes: what is lost, against that of sdirk2", abs(lost["30 passes"][k] - lost["sdirk2"][k]), 2e-3)
+    check_true(f"{cells} cells in the layer: each pass keeps more", lost["lumped"][k] > lost["1 pass"][k] + 0.05 > lost["30 passes"][k] + 0.05)
+judge(ROW, "4 cells in the layer, 30 passes: lost of its difference from the ground", lost["30 passes"][2], 0.1)
+judge(ROW, "4 cells in the layer, lumped: over what is lost with 30 passes", lost["lumped"][2] / lost["30 passes"][2], (1.8, 2.5))
+
+# ---------------------------------------------------------------- gas, hydrate and heat: a slope that is heated at its base
+SHARE = 0.016 / 0.124  # of methane in hydrate
+
+
+def slope(passes, *options, ranks=1):
+    """(run, methane that is in other particles than at the start of the heating over what came of hydrate)"""
+    run = Run.of_case("slope_a", "-quiet", "-grid_cells", "30,6", "-stage_slide_end", "11.5s", "-output_every", "0.5s", "-stepper_storage_passes", passes, *options, ranks=ranks)
+    loaded, end = run.snapshot(10.0), run.snapshots()[-1][1]
+    methane, hydrate = ({at: s["mass_gas"][:, 0] * gas + s["mass_hydrate"][:, 0] * SHARE for at, s in (("loaded", loaded), ("end", end))} for gas in (1, 0))
+    for what in ("water", "methane", "heat"):
+        judge(ROW, f"heated slope, {passes} passes{', increments of p_g' if options else ''}, {ranks} ranks: {what} balance", np.max(np.abs(run.balance[f"{what}_error"])), 1e-11)
+    return run, np.abs(methane["end"] - methane["loaded"]).sum() / 2 / np.maximum(0, hydrate["loaded"] - hydrate["end"]).sum()
+
+
+(_, lumped), (_, some), (one, shared) = slope(0), slope(3), slope(3, "-stepper_pressures", "nodes")
+print(f"methane in other particles over what hydrate has given: {lumped:.3g} lumped, {some:.3g} with 3 passes, {shared:.3g} with increments of p_g")
+judge(ROW, "heated slope: methane in other particles with 3 passes over that without", some / lumped, 0.6)
+judge(ROW, "heated slope: the same with increments of p_g", shared / lumped, 0.6)
+two, _ = slope(3, "-stepper_pressures", "nodes", ranks=2)
+judge(ROW, "heated slope, 3 passes: 2 ranks against 1, largest difference of any field", max(largest_difference(two.snapshots()[-1][1][k], one.snapshots()[-1][1][k]) for k in ("p_w", "p_g", "T", "S_h", "position", "stress")), 1e-8)
+finish()
