@@ -58,20 +58,13 @@ def scratch():
     return folder
 
 
-def many_ranks(ranks, *preload):
-    """What stands before a command to run it on so many ranks, which sleep while they wait (tests/waiting.c); preload: other libraries."""
-    waiting = Path(binary()).resolve().parent / "tests" / "libwaiting.so"
-    libraries = [*map(str, preload), *([str(waiting)] if waiting.is_file() else [])]
-    return ["mpiexec", "-n", str(ranks), *(["-x", f"LD_PRELOAD={':'.join(libraries)}"] if libraries else [])]
-
-
 def launch(program, case, *options, ranks=1, out=None, timeout=800):
     """Runs the program without judging it; returns subprocess.CompletedProcess (stdout holds both streams)."""
     command = [str(program), str(case), *map(str, options)]
     if out is not None:
         command += ["-output_dir", str(out)]
     if ranks > 1:
-        command = [*many_ranks(ranks), *command]
+        command = ["mpiexec", "-n", str(ranks), *command]
     return subprocess.run(
         command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, timeout=timeout, text=True, errors="replace",
