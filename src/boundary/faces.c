@@ -198,7 +198,7 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f)
   f->s[1]        = fabs(A) * (F[0][0] * f->n0[1] - F[0][1] * f->n0[0]);
   Weights(c, g, P, &s, half, f);
   Ring(c, g, P, f);
-  f->pore                             = FacePore(c, P, f);
+  f->pore            = FacePore(c, P, f);
   f->leaves[PHASE_W] = f->leaves[PHASE_G] = false;
 }
 

@@ -158,7 +158,8 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
   h->held     = m->added->held ? m->added->held[p] : 0.0;
   h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
-  h->spread   = m->added->spread ? m->added->spread[p] : 0.0;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < 3; k++)
     h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
   h->compression = m->c->compression_heat;

@@ -35,7 +35,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     if (SceneDonor(m->c))
       PetscCall(PetscMalloc1(m->stencil_cap, &m->added->donor));
     if (m->c->stabilisation.saturation_upwind && m->c->fields.phase[PHASE_G] && !m->c->fields.one_pressure)
-      PetscCall(PetscCalloc1(m->stencil_cap, &m->added->spread));
+      PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &m->added->spread));
     if (m->c->stabilisation.heat_upwind && m->c->fields.heat && m->c->fields.fluid)
       PetscCall(PetscCalloc1(3 * m->stencil_cap, &m->added->upwind));
     if (m->c->stabilisation.lumped_reaction && m->c->fields.phase[PHASE_G])
@@ -115,26 +115,30 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
     s[SUM_X + PlaceT(fs)] += S * q->capacity * (Carried(m, p, P_T, P_GT, d) + f[P_BT][p] * d[0] * d[1]); /* (395) */
 }
 
-/* Diffusion of p_c that carries the saturations with the flow (200). */
-static double SpreadOf(const Model *m, PetscInt p, const PointProperties *q)
+/* (200): diffusion of p_c that carries the saturations with the flow of both fluids, or that of one that flows alone.
+ */
+static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, double D[PHASE_COUNT])
 {
   const double l[PHASE_COUNT] = {q->kr[PHASE_W] / q->resist[PHASE_W], q->kr[PHASE_G] / q->resist[PHASE_G]},
                all = l[PHASE_W] + l[PHASE_G], both = all > 0.0 ? l[PHASE_W] * l[PHASE_G] / all : 0.0;
-  double h[CL_DIM], Pe                             = 0.0;
+  double h[CL_DIM], Pe[PHASE_COUNT] = {0.0}, shared = 0.0;
 
-  if (both == 0.0)
-    return 0.0;
   CellWidths(m, p, h);
-  for (int k = 0; k < PHASE_COUNT; k++) {
+  for (int k = 0; both > 0.0 && k < PHASE_COUNT; k++) {
     double g[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
       g[d] = m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d];
     Drive(m, p, g);
     for (int d = 0; d < CL_DIM; d++)
-      Pe += 0.5 * h[d] * fabs(g[d] * q->mobility_slope[k]) / both * (1.0 - l[k] / all);
+      Pe[k] += 0.5 * h[d] * fabs(g[d] * q->mobility_slope[k]) / both;
+    shared += (1.0 - l[k] / all) * Pe[k];
   }
-  return Pe > 1e-4 ? both * (Pe / tanh(Pe) - 1.0) : 0.0;
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const double most = both > 0.0 ? fmax(shared, l[k] / all * Pe[k]) : 0.0;
+
+    D[k] = most > 1e-4 ? both * (most / tanh(most) - 1.0) : 0.0;
+  }
 }
 
 /* Conductivity that carries heat with the flow of t_n (293). */
@@ -274,7 +278,7 @@ static PetscErrorCode Project(Model *m)
     if (m->beds)
       m->beds[p] = (Bedding){ParticleBeds(m->c, &m->P, p), {q.rho[PHASE_W], q.rho[PHASE_G]}};
     if (m->added->spread)
-      m->added->spread[p] = SpreadOf(m, p, &q);
+      SpreadOf(m, p, &q, &m->added->spread[PHASE_COUNT * p]);
     if (m->added->upwind)
       UpwindOf(m, p, &q, &m->added->upwind[3 * p]);
     if (m->added->held)

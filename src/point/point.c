@@ -241,7 +241,7 @@ INLINE double MetricSlope(const Metric *g, int i, int q, const double v[CL_DIM])
 INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
                    const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double VD  = (f == PHASE_W ? h->V : -h->V) * h->spread;
+  const double VD  = (f == PHASE_W ? h->V : -h->V) * h->spread[f];
   const Jet    rho = s->rho[f];
   double       c[CL_DIM];
 

@@ -111,9 +111,10 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
 
   q->mat      = RandomMaterial(r, regime);
   q->in[IN_T] = RngBetween(r, 2.0, 15.0);
-  q->h      = (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .bracket = RngPick(r, 4) ? 1.0 : 0.0, .spread = 3e-13};
-  q->h.T_n  = q->in[IN_T] + RngBetween(r, -2.0, 2.0);
-  q->h.Sh_n = Sh * RngBetween(r, 0.8, 1.2);
+  q->h =
+      (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .bracket = RngPick(r, 4) ? 1.0 : 0.0, .spread = {3e-13, 2e-12}};
+  q->h.T_n      = q->in[IN_T] + RngBetween(r, -2.0, 2.0);
+  q->h.Sh_n     = Sh * RngBetween(r, 0.8, 1.2);
   q->h.shift[0] = q->h.shift[1] = RngBetween(r, -5e4, 5e4);
   if (regime != JUST_BELOW && regime != JUST_ABOVE)
     q->h.shift[1] += RngBetween(r, -2e4, 2e4);
