@@ -10,32 +10,30 @@ from common import Run, check_true, finish, judge, largest_difference, scratch, 
 
 ROW = "sealed layers"
 PHI, BULK, LOAD, E_SOFT, E_STIFF, NU = 0.4, 2.2e9, 1e6, 0.25e9, 25e9, 0.25
-LOW, HIGH, LENGTH = 4.5, 5.0, 10.0  # m: the layer, the column
+LOW, HIGH, LENGTH, WIDTH = 4.5, 5.0, 10.0, 0.5  # m: the layer, the column; its width, a cell wide
 CASE = f"""title: a stiff layer in soft ground, sealed
 fields: hm
-grid: {{lower: [0 m, 0 m], upper: [{LENGTH} m, 0.5 m], cells: [20, 1]}}
+grid: {{lower: [0 m, 0 m], upper: [{LENGTH} m, WIDTH m], cells: [20, 1]}}
 materials: [soft, stiff]
 mat:
   soft: {{porosity: {PHI}, solid: {{density: 2650 kg/m^3}}, water: {{bulk_modulus: {BULK} Pa}}, permeability: {{k0: 1e-24 m^2}}, elasticity: {{E0: {E_SOFT} Pa, nu: {NU}}}}}
   stiff: {{porosity: {PHI}, solid: {{density: 2650 kg/m^3}}, water: {{bulk_modulus: {BULK} Pa}}, permeability: {{k0: 1e-24 m^2}}, elasticity: {{E0: {E_STIFF} Pa, nu: {NU}}}}}
 regions: [near, layer, far]
 region:
-  near: {{lower: [0 m, 0 m], upper: [{LOW} m, 0.5 m], material: soft, pressure: 1 MPa, temperature: 10 degC}}
-  layer: {{lower: [{LOW} m, 0 m], upper: [{HIGH} m, 0.5 m], material: stiff, pressure: 1 MPa, temperature: 10 degC}}
-  far: {{lower: [{HIGH} m, 0 m], upper: [{LENGTH} m, 0.5 m], material: soft, pressure: 1 MPa, temperature: 10 degC}}
+  near: {{lower: [0 m, 0 m], upper: [{LOW} m, WIDTH m], material: soft, pressure: 1 MPa, temperature: 10 degC}}
+  layer: {{lower: [{LOW} m, 0 m], upper: [{HIGH} m, WIDTH m], material: stiff, pressure: 1 MPa, temperature: 10 degC}}
+  far: {{lower: [{HIGH} m, 0 m], upper: [{LENGTH} m, WIDTH m], material: soft, pressure: 1 MPa, temperature: 10 degC}}
 boundaries: [base, lower, upper, load]
 bc:
   base: {{type: roller, axis: x, position: 0 m}}
   lower: {{type: roller, axis: y, position: 0 m}}
-  upper: {{type: roller, axis: y, position: 0.5 m}}
+  upper: {{type: roller, axis: y, position: WIDTH m}}
   load: {{type: traction, side: right, normal: {{table: [0 s, 1 MPa, 0.5 s, 2 MPa]}}}}
 time: {{end: 0.6 s}}
 stepper: {{type: hybrid, damping: 0.2}}
 stabilisation: {{pressure_projection: 0}}
 output: {{times: [0.6 s]}}
 """
-case = scratch() / "layers.yaml"
-case.write_text(CASE)
 M = lambda E: E * (1 - NU) / ((1 + NU) * (1 - 2 * NU))
 K = BULK / PHI
 soft, stiff = (LOAD * K / (K + M(E)) for E in (E_SOFT, E_STIFF))
@@ -43,7 +41,9 @@ soft, stiff = (LOAD * K / (K + M(E)) for E in (E_SOFT, E_STIFF))
 
 def column(name, cells, *options):
     """What the layer's p lacks of its exact difference from the ground's, in parts of that."""
-    run = Run.of_case(case, "-quiet", "-grid_cells", f"{20 * cells},{cells}", *options)
+    case = scratch() / "layers.yaml"
+    case.write_text(CASE.replace("WIDTH", str(WIDTH / cells)))
+    run = Run.of_case(case, "-quiet", "-grid_cells", f"{20 * cells},1", *options)
     (_, start), (_, end) = run.snapshots()[0], run.snapshots()[-1]
     layer = (start["position"][:, 0] > LOW) & (start["position"][:, 0] < HIGH)
     p = np.mean(end["p_w"][layer]) - 1e6
