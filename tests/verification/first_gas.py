@@ -38,7 +38,12 @@ def sound(name, run, steps, pressure, temperature):
     table(("", "steps", "refused", "p (MPa)", "", "T (degC)", "", "S_g"), [(name, taken, refused, least("p") / 1e6, most("p") / 1e6, least("T"), most("T"), most("S_g"))])
     judge("gas", f"first gas, {name}: steps", float(taken), float(steps))
     judge("gas", f"first gas, {name}: steps refused", float(refused), 30.0)
-    judge("gas", f"first gas, {name}: lowest pore pressure, MPa", least("p") / 1e6, (pressure - 0.35, 12))  # a particle of clay beside the casing, docs/limits.md
+    sand = min(v["p"][(v["initial_position"][:, 1] > 3) & (v["initial_position"][:, 1] < 7)].min() for v in states)
+    nodes = min(np.nanmin(v["p_w"]) for _, v in run.snapshots("grid")[1:])
+    judge("gas", f"first gas, {name}: lowest pore pressure of the sand, MPa", sand / 1e6, (pressure - 0.1, 12))
+    judge("gas", f"first gas, {name}: lowest p_w of a node, MPa", nodes / 1e6, (pressure - 0.1, 12))
+    # A row of clay whose border has left the grid's lines, between its neighbours in a cell: 5.2 to 5.8 MPa over tolerances and versions, docs/limits.md.
+    judge("gas", f"first gas, {name}: lowest pore pressure of a particle, MPa", least("p") / 1e6, (pressure - 0.8, 12))
     judge("gas", f"first gas, {name}: warmest, degC", most("T"), temperature + 0.1)
     judge("gas", f"first gas, {name}: largest S_g", most("S_g"), (0.02, 0.8))
     for what in ("water", "methane"):
