@@ -213,6 +213,29 @@ static void TestJacobian(void **state)
   }
 }
 
+/* The same with a pressure on the wall of a hole, whose drag (197) is the nodes'. */
+static void TestWallJacobian(void **state)
+{
+  (void)state;
+  for (int v = 0; v < 4; v++) {
+    SmallScene *s    = malloc(sizeof(*s));
+    double      wall = 0.0;
+
+    JacobianCase(s, v % 2 ? HAS_ALL : HAS_SOLID | HAS_WATER, v / 2, true, BASIS_CPGIMP, 0.3, 0.13, false, 0);
+    AddFace(s, BC_PRESSURE, SIDE_XMIN, 3e6, 0.0);
+    JacobianState(s);
+    for (PetscInt k = 0; k < s->m.map.n_local * PHASE_COUNT; k++)
+      wall = fmax(wall, s->m.wall[k]);
+    const double worst = DirectionError(s, 3), entry = ColumnError(s);
+    Say("exact Jacobian beside a well, %s, inertia %s: directions %.1e, entries %.1e; drag of the wall up to %.1e Pa s "
+        "m\n",
+        v % 2 ? "all fields" : "one fluid", v / 2 ? "on" : "off", worst, entry, Largest(wall));
+    Check(worst < 1e-6 && entry < 1e-6 && Largest(wall) > 0.0);
+    SceneDestroy(s);
+    free(s);
+  }
+}
+
 /* ---------------------------------------------------------------- equilibrium */
 /* Uniform pore pressure and effective stress (rr = tt) with their tractions on all sides, on the grid's lines and
    across them, hollow and about the axis: no force anywhere, no flow. */
@@ -367,8 +390,8 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(TestRadialWeights), cmocka_unit_test(TestRadialQuadrature), cmocka_unit_test(TestKinematics),
-      cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestUniformStress),    cmocka_unit_test(TestHomogeneous),
-      cmocka_unit_test(TestAxialHeat),
+      cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestWallJacobian),     cmocka_unit_test(TestUniformStress),
+      cmocka_unit_test(TestHomogeneous),   cmocka_unit_test(TestAxialHeat),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);

@@ -575,6 +575,63 @@ static void TestNewtonOrder(void **state)
   free(s);
 }
 
+/* (414): fluid velocities of a random state that follow the pressures meet their rows (16), wall of a well and layers
+   included; the other unknowns stay.  With inertia they have a memory and stay, too. */
+static void TestSlaved(void **state)
+{
+  const double lower[2] = {0.0, 0.0}, upper[2] = {0.47, 0.29};
+
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    const bool   ring = k % 2, inertia = k > 1;
+    SmallScene  *s = malloc(sizeof(*s));
+    Model       *m = &s->m;
+    double      *x, changed = 0.0, kept = 0.0, wall = 0.0;
+    Vec          before;
+    const double start = ring ? 0.1 : 0.0;
+
+    SceneInit(s, HAS_ALL, inertia, ring, BASIS_CPGIMP, start, lower, upper);
+    SetSolubility(&s->mat.gas, 1.9e-5); /* gas may vanish */
+    SceneLayers(s, 1, 0.16, 1e-3);
+    AddFace(s, BC_PRESSURE, SIDE_XMIN, 3e6, 0.0);
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, m));
+    RandomHistory(s, 0.2);
+    RandomStage(s, 20.0);
+    for (PetscInt i = 0; m->wall && i < m->map.n_local * PHASE_COUNT; i++)
+      wall = fmax(wall, m->wall[i]);
+    Call(PetscMalloc1(m->map.n_local * F_COUNT, &x));
+    RandomUnknowns(m, s->stage.dt, 30, x);
+    const double rest = ResidualAt(s, x, F_VW, F_PW);
+    Call(VecDuplicate(m->solver->X, &before));
+    Call(VecCopy(m->solver->X, before));
+    Call(ModelSlave(m, m->solver->X));
+    Call(VecAXPY(before, -1.0, m->solver->X));
+    const double *d, *a;
+    Call(VecGetArrayRead(before, &d));
+    for (PetscInt i = 0; i < m->map.n_owned * F_COUNT; i++) {
+      const bool slave = i % F_COUNT >= F_VW && i % F_COUNT < F_PW;
+
+      changed = fmax(changed, slave ? fabs(d[i]) : 0.0);
+      kept    = fmax(kept, slave ? 0.0 : fabs(d[i]));
+    }
+    Call(VecRestoreArrayRead(before, &d));
+    Call(ModelResidual(NULL, m->solver->X, m->solver->R, m));
+    double left = 0.0;
+    Call(VecGetArrayRead(m->solver->R, &a));
+    for (PetscInt i = 0; i < m->map.n_owned * F_COUNT; i++)
+      left = fmax(left, i % F_COUNT >= F_VW && i % F_COUNT < F_PW ? fabs(a[i]) : 0.0);
+    Call(VecRestoreArrayRead(m->solver->R, &a));
+    Say("fluid velocities that follow (16), %s%s: residual %.1e, before %.1e; wall's drag up to %.1e Pa s m\n",
+        ring ? "about an axis" : "plane", inertia ? ", inertia" : "", Largest(left), rest, Largest(wall));
+    Check(ModelSlaves(m) == !inertia && Largest(kept) == 0.0 && (Largest(wall) > 0.0) == ring);
+    Check(inertia ? Largest(changed) == 0.0 : rest > 1e-3 && Largest(left) < 1e-12 * rest);
+    Call(VecDestroy(&before));
+    Call(PetscFree(x));
+    SceneDestroy(s);
+    free(s);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -582,6 +639,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestBedsTurn),  cmocka_unit_test(TestPlates),         cmocka_unit_test(TestMassRows),
       cmocka_unit_test(TestTwoLayers), cmocka_unit_test(TestHydrostatic),    cmocka_unit_test(TestUniformStress),
       cmocka_unit_test(TestDarcy),     cmocka_unit_test(TestHeatFlux),       cmocka_unit_test(TestNewtonOrder),
+      cmocka_unit_test(TestSlaved),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);
