@@ -164,10 +164,26 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
   power[WORK_LOADS] += force - plate;
 }
 
-/* Drag of two fluids (16): D |J|^2/k_r. */
-double DragPower(const Model *m, const double *x)
+/* Of a lone fluid at the wall of a well (197): its other drag is that of the particles. */
+static double WallPower(const Model *m, const double *x)
 {
   double sum = 0.0;
+
+  for (PetscInt k = 0; m->wall && k < m->map.n_local * PHASE_COUNT; k++) {
+    double J[CL_DIM];
+
+    if (m->wall[k] == 0.0 || !m->c->fields.phase[k % PHASE_COUNT])
+      continue;
+    DarcyFlux(m, k / PHASE_COUNT, k % PHASE_COUNT, &x[k / PHASE_COUNT * m->c->fields.n], J);
+    sum += m->wall[k] * PetscSqr(J[0]);
+  }
+  return sum;
+}
+
+/* Drag of two fluids (16): D |J|^2/k_r; of one what the particles do not have. */
+double DragPower(const Model *m, const double *x)
+{
+  double sum = m->fluid ? 0.0 : WallPower(m, x);
 
   for (PetscInt I = 0; m->fluid && I < m->map.n_owned; I++) {
     for (int f = 0; f < PHASE_COUNT; f++) {

@@ -556,7 +556,7 @@ void   ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x
 void   FacePower(const Model *m, const Face *f, const Reach *r, const double *x, const FaceOutput *o,
                  double power[WORK_RATES]);
 double HeldPower(const Model *m);
-double DragPower(const Model *m, const double *x);  /* of two fluids, this rank's nodes */
+double DragPower(const Model *m, const double *x);  /* of two fluids, of one at a well's wall; this rank's share */
 double GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
 /* What Newton's update may change at once: before every line search. */
 #define CL_LIMIT_J 0.5 /* volumetric strain of a step */

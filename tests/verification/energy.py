@@ -6,7 +6,7 @@ import numpy as np
 
 from _integrators import adaptive, consolidation, fixed
 from _shear_block import roof, saturated
-from common import Run, check_true, finish, judge, order, table
+from common import Run, check_true, finish, judge, order, scratch, table
 
 CASES = Path(__file__).parent / "cases"
 FOOTING = Path(__file__).resolve().parents[1] / "integration" / "cases" / "footing.yaml"
@@ -49,6 +49,37 @@ def flies():
         judge("energy", f"flying block, {name}: kinetic energy over gravity's work", abs(b["kinetic_energy"] / b["gravity_work"] - 1), 1e-5)
     for k, (what, bar) in enumerate((("volume", 1e-5), ("velocity", 1e-6))):
         judge("energy", f"flying block: {what}, 0.15 against 0.5 of a cell", abs(places[1][k] / places[0][k] - 1), bar)
+
+
+WELL = """title: a well in sand that settles
+fields: FIELDS
+geometry: axisymmetric
+inertia: no
+grid: {lower: [0.1 m, 0 m], upper: [8.1 m, 1 m], cells: [16, 2]}
+materials: [sand]
+mat_sand: {porosity: 0.4, solid: {density: 2650 kg/m^3}, permeability: {k0: 1e-12 m^2}, elasticity: {E0: 100 MPa, nu: 0.3}FLUIDS}
+regions: [sand]
+region_sand: {lower: [0.1 m, 0 m], upper: [8.1 m, 1 m], material: sand, pressure: 5 MPa, temperature: 10 degC, STATE}
+boundaries: [casing, rim, base, roof, well, far]
+bc_casing: {type: roller, axis: x, position: 0.1 m, holds: skeleton}
+bc_rim: {type: roller, axis: x, position: 8.1 m, holds: skeleton}
+bc_base: {type: roller, axis: y, position: 0 m}
+bc_roof: {type: roller, axis: y, position: 1 m}
+bc_well: {type: pressure, side: left, pressure: {ramp: [5 MPa, 4 MPa, 0 s, 100 s]}}
+bc_far: {type: pressure, side: right, initial: yes}
+time: {end: 300 s}
+stepper: {tol: 1e-3}
+"""
+
+
+def wells():
+    """A well about an axis takes what pressure gives as drag, that of its wall (197) included: of one fluid and of two."""
+    case = scratch() / "well.yaml"
+    two = ", retention: {p0: 20 kPa, m: 0.5, Swr: 0.2, Sgr: 0.02}, relperm: {nw: 4, ng: 2}"
+    for fields, state, fluids in (("[solid, water]", "Sh: 0, Sw: 1, Sg: 0", ""), ("[solid, water, gas]", "Sh: 0, Sw: 0.6, Sg: 0.4", two)):
+        case.write_text(WELL.replace("FIELDS", fields).replace("STATE", state).replace("FLUIDS", fluids))
+        _, b = go(f"well, {fields}", "sdirk2", case)
+        judge("energy", f"well, {fields}: remainder over the work of drag", abs(b["energy_remainder"]) / b["drag_work"], 1e-3)
 
 
 def waves():
@@ -173,6 +204,7 @@ if __name__ == "__main__":
     plates()
     around()
     hydrate()
+    wells()
     rigid()
     layers()
     table(["scene", "integrator", *(k.replace("_energy_J", "").replace("_J", "") for k in ("kinetic_energy_J", *COLUMNS))], rows)
