@@ -174,6 +174,7 @@ typedef struct {
   double *conduct; /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
   double *Vk;      /* [n_local] sum of V S times it, m^3 */
   double *flow;    /* [n_local] V/Vk (350) */
+  double *wall;    /* [n_local][2] this rank's drag at the wall of a well (197), Pa s m; NULL in the plane */
   double *coef;    /* [n_local][NC_COUNT] nodal means, places NC_... */
   const Material **material; /* [n_local] of most of what this rank has at the node */
   double          *most;     /* [n_local] ... volume of the particle that it is of, times S, m^3 */
@@ -188,7 +189,6 @@ typedef struct {
   double *row_scale, *col_scale; /* [n_local][fields.n] */
 
   /* of the last evaluation */
-  double    *wall;        /* [n_local][PHASE_COUNT] drag at the wall of a well (197), Pa s m; null: in the plane */
   double    *x, *f;       /* [n_local][fields.n] unscaled unknowns, residual */
   double    *mass_row;    /* [n_local][2] mass balances of water and gas, one pressure only; kg */
   FluidNode *fluid;       /* [n_local][2] where there are two */

@@ -10,8 +10,8 @@ bool ModelSlaves(const Model *m)
   return m->fluid && !m->c->fields.inertia && !m->c->fields.one_pressure && m->c->material[0].gas.trace > 0.0;
 }
 
-/* Those of an owned node. */
-static void FollowPressures(const Model *m, PetscInt I, double *x)
+/* Those of an owned node to its scaled unknowns a, after an evaluation there. */
+static void FollowPressures(const Model *m, PetscInt I, double *a)
 {
   const FieldSet *fs = &m->c->fields;
 
@@ -19,19 +19,19 @@ static void FollowPressures(const Model *m, PetscInt I, double *x)
     const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
 
     for (int d = 0; d < CL_DIM; d++) {
-      const int    v = PlaceV(fs, f) + d;
-      const double J = -at->root * at->root * at->F[d] / at->D[d];
+      const int    v    = PlaceV(fs, f) + d;
+      const double J    = -at->root * at->root * at->F[d] / at->D[d];
+      const double slip = J / m->w[PHASE_COUNT * I + f], v_s = fs->solid ? m->x[I * fs->n + PlaceVs(fs) + d] : 0.0;
 
       if (!((m->mask[I] >> v) & 1u))
-        x[v] = (fs->solid ? m->x[I * fs->n + PlaceVs(fs) + d] : 0.0) + J / m->w[PHASE_COUNT * I + f];
+        a[v] = (v_s + slip) / m->col_scale[I * fs->n + v];
     }
   }
 }
 
 PetscErrorCode ModelSlave(Model *m, Vec X)
 {
-  const PetscInt n = m->c->fields.n;
-  double        *a;
+  double *a;
 
   PetscFunctionBeginUser;
   if (!ModelSlaves(m))
@@ -40,17 +40,8 @@ PetscErrorCode ModelSlave(Model *m, Vec X)
   if (m->failure.status != CL_OK)
     PetscFunctionReturn(PETSC_SUCCESS); /* X is outside the range of a law, and its residual says so */
   PetscCall(VecGetArray(X, &a));
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    double x[F_COUNT];
-
-    for (PetscInt k = 0; k < n; k++)
-      x[k] = a[I * n + k] * m->col_scale[I * n + k];
-    FollowPressures(m, I, x);
-    for (int f = 0; f < PHASE_COUNT; f++) {
-      for (int k = PlaceV(&m->c->fields, f); k < PlaceV(&m->c->fields, f) + CL_DIM; k++)
-        a[I * n + k] = x[k] / m->col_scale[I * n + k];
-    }
-  }
+  for (PetscInt I = 0; I < m->map.n_owned; I++)
+    FollowPressures(m, I, &a[I * m->c->fields.n]);
   PetscCall(VecRestoreArray(X, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -89,8 +89,7 @@ static PetscErrorCode JacobianChoose(SNES snes, PetscInt it, double residual, Mo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define NEARLY                                                                                                         \
-  0.5 /* of the last residual: with more left than that the second half of the iterations is not worth it */
+#define NEARLY 0.5 /* of the last residual: what an iteration of the second half may leave at most */
 #define SLAVED 0.1 /* fluid momentum: where a phase hardly moves, round-off of its drag stands at 1e-9 */
 
 /* Converged when every field's residual and update are small in units of 1 MPa and 1 K. */

@@ -120,11 +120,14 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
 static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, double D[PHASE_COUNT])
 {
   const double l[PHASE_COUNT] = {q->kr[PHASE_W] / q->resist[PHASE_W], q->kr[PHASE_G] / q->resist[PHASE_G]},
-               all = l[PHASE_W] + l[PHASE_G], both = all > 0.0 ? l[PHASE_W] * l[PHASE_G] / all : 0.0;
+               all = l[PHASE_W] + l[PHASE_G], both = l[PHASE_W] * l[PHASE_G] / all;
   double h[CL_DIM], Pe[PHASE_COUNT] = {0.0}, shared = 0.0;
 
+  D[PHASE_W] = D[PHASE_G] = 0.0;
+  if (!(both > 0.0))
+    return;
   CellWidths(m, p, h);
-  for (int k = 0; both > 0.0 && k < PHASE_COUNT; k++) {
+  for (int k = 0; k < PHASE_COUNT; k++) {
     double g[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
@@ -135,9 +138,10 @@ static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, doubl
     shared += (1.0 - l[k] / all) * Pe[k];
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
-    const double most = both > 0.0 ? fmax(shared, l[k] / all * Pe[k]) : 0.0;
+    const double most = fmax(shared, l[k] / all * Pe[k]);
 
-    D[k] = most > 1e-4 ? both * (most / tanh(most) - 1.0) : 0.0;
+    if (most > 1e-4)
+      D[k] = both * (most / tanh(most) - 1.0);
   }
 }
 
@@ -341,7 +345,7 @@ static PetscErrorCode UpstreamWeights(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (197): of a face whose nodes have the drag `drag` per volume and k_r, Pa s/m^2. */
+/* (197) of a face; drag: mean mu/k_a of its nodes at t_n, Pa s/m^2. */
 static void AddWall(Model *m, const Reach *r, const Face *f, int phase, double drag)
 {
   const double lost = f->ring[0] * f->x[0] * PetscSqr(f->n[0]) / VectorLength(f->n) * drag;
