@@ -3,7 +3,7 @@
 
 The tutorial's well in three layers with `Sg: 0` in all of them, 30 days; the same with a heater of 60 degC beside a well that keeps its pressure, 10 days.
 Either ends in few steps: with a diffusion (200) of its own for each fluid the heater takes 151, and the well 113 with the k_r of t_n in the drag (197) of its wall.
-Neither gets past its first gas where only a trace of methane is in the water (102) and the water's pressure drives the reaction.
+Neither got past its first gas where only a trace of methane is in the water (102) and the water's pressure drives the reaction.
 """
 import re
 import sys

@@ -141,6 +141,7 @@ def drained():
     for name, bar, options in (("sdirk2", 1e-7, bare), ("euler", 1e-7, ("-stepper_type", "euler", *bare)), ("about an axis", 1e-7, ("-geometry", "axisymmetric", *bare)),
                                ("a border across cells", 1e-7, (*border, *bare)), ("sdirk2 with inertia", 1e-7, (*blow, *bare)),
                                ("hybrid", 1e-5, hybrid), ("hybrid, sheared by 0.2 off the grid's lines", 1e-5, (*hybrid, *shears)),
+                               ("hybrid, so sheared, 3 storage passes", 1e-5, (*hybrid, *shears, "-stepper_storage_passes", "3")),
                                ("with all that is on by itself", 0.01, ()), ("... a border across cells", 0.01, border)):  # fmt: skip
         (_, first), *_, (_, last) = Run.of_case(CASES / "no_gas_drained.yaml", *options).snapshots()
         off = np.max(np.abs(last["p_g"] / np.mean(first["p_g"]) - 1))
