@@ -558,15 +558,14 @@ void   FacePower(const Model *m, const Face *f, const Reach *r, const double *x,
 double HeldPower(const Model *m);
 double DragPower(const Model *m, const double *x);  /* of two fluids, of one at a well's wall; this rank's share */
 double GhostPower(const Model *m, const double *x); /* that the penalty on v_s takes (22) */
-/* What Newton's update may change at once: before every line search. */
+/* What Newton's update may change at once, and how far it goes (415): before every line search. */
 #define CL_LIMIT_J 0.5 /* volumetric strain of a step */
 PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);
-/* Where gas may vanish (slave.c): do fluid velocities follow (16)?  X with those that do; W = X - share Y with them and
-   the norm of the scaled residual there; how far an update goes. */
+/* Where gas may vanish (slave.c): do fluid velocities follow (16)?  X with those that do; what an update led to, with
+   them. */
 bool           ModelSlaves(const Model *m);
 PetscErrorCode ModelSlave(Model *m, Vec X);
-PetscErrorCode ModelLeaves(SNES snes, Model *m, Vec X, double share, Vec Y, Vec W, double *norm);
-PetscErrorCode ModelTryUpdate(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y, PetscBool *changed_W,
-                              void *model);
+PetscErrorCode ModelSlaveUpdated(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y, PetscBool *changed_W,
+                                 void *model);
 PetscErrorCode ModelResizeNodal(Model *m);
 PetscErrorCode FreeParticleArrays(Model *m); /* of the configuration at t_n */

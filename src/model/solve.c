@@ -182,7 +182,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESGetLineSearch(m->solver->snes, &ls));
   PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
   PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
-  PetscCall(SNESLineSearchSetPostCheck(ls, ModelTryUpdate, m));
+  PetscCall(SNESLineSearchSetPostCheck(ls, ModelSlaveUpdated, m));
   PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPFGMRES)); /* keeps what the preconditioner gave, where GMRES applies it once more */
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->solver->tol_residual, PETSC_DEFAULT, 60));
