@@ -225,3 +225,34 @@ PetscErrorCode MatrixFinish(Model *m)
   PetscCall(MatAssemblyEnd(m->solver->J2, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode MatrixCopy(const Model *m, Mat P)
+{
+  const PetscInt  n = m->c->fields.n;
+  const PetscInt *ia, *ja, *first, *column;
+  PetscInt        blocks, rows;
+  PetscBool       done;
+  double         *v, *out;
+  Mat             J2 = m->solver->J2;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetRowIJ(J2, 0, PETSC_FALSE, PETSC_TRUE, &blocks, &ia, &ja, &done));
+  PetscCall(MatGetRowIJ(P, 0, PETSC_FALSE, PETSC_FALSE, &rows, &first, &column, &done));
+  PetscCheck(rows == blocks * n && first[rows] == ia[blocks] * n * n, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "the copy of J2 has another pattern");
+  PetscCall(MatSeqBAIJGetArray(J2, &v));
+  PetscCall(MatSeqAIJGetArrayWrite(P, &out));
+  for (PetscInt I = 0; I < blocks; I++) {
+    for (PetscInt k = ia[I]; k < ia[I + 1]; k++) {
+      for (PetscInt s = 0; s < n; s++) {
+        for (PetscInt q = 0; q < n; q++)
+          out[first[I * n + s] + (k - ia[I]) * n + q] = v[(k * n + q) * n + s];
+      }
+    }
+  }
+  PetscCall(MatSeqAIJRestoreArrayWrite(P, &out));
+  PetscCall(MatSeqBAIJRestoreArray(J2, &v));
+  PetscCall(MatRestoreRowIJ(P, 0, PETSC_FALSE, PETSC_FALSE, &rows, &first, &column, &done));
+  PetscCall(MatRestoreRowIJ(J2, 0, PETSC_FALSE, PETSC_TRUE, &blocks, &ia, &ja, &done));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
