@@ -168,14 +168,16 @@ static void RowFactors(const Model *m, PetscInt I, double row[F_COUNT])
     row[s] = (m->mask[I] >> s) & 1u ? 0.0 : 1.0 / m->row_scale[I * n + s];
 }
 
+/* Pair by pair about the diagonal, so that `out` may be v. */
 INLINE void Scale(int n, const double *row, const double *col, const double *v, double *out)
 {
-  double t[F_COUNT * F_COUNT];
-
-  memcpy(t, v, (size_t)(n * n) * sizeof(double));
   for (int q = 0; q < n; q++) {
-    for (int s = 0; s < n; s++)
-      out[q * n + s] = t[s * n + q] * (row[s] * col[q]);
+    for (int s = 0; s <= q; s++) {
+      const double below = v[q * n + s], above = v[s * n + q];
+
+      out[q * n + s] = above * (row[s] * col[q]);
+      out[s * n + q] = below * (row[q] * col[s]);
+    }
   }
 }
 
