@@ -310,7 +310,7 @@ static double MobilityOf(const Model *m, PetscInt I, int q)
   return m->fluid && q >= F_VW && q < F_PW ? PetscSqr(m->fluid[PHASE_COUNT * I + (q - F_VW) / CL_DIM].root) : 1.0;
 }
 
-/* Most faces have no condition that an unknown changes, and none changes all rows. */
+/* Few conditions change with an unknown, and none changes all rows. */
 static bool NoSlope(const double D[IN_COUNT])
 {
   double size = 0.0;
@@ -384,6 +384,8 @@ static void FaceLoop(Model *m, const double *x, int ntarget, const Assembly *tar
     Reach      r;
     FaceOutput o;
 
+    if (!FaceActs(m->c, &m->face[k]))
+      continue;
     FaceAt(m, &m->face[k], x, &r, &o);
     if (m->solver->product)
       ProductKeepFace(m, k, &o);
