@@ -168,6 +168,8 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(WideCreate(m, &m->solver->A));
   PetscCall(MatCreateVecs(m->solver->A, &m->solver->X, &m->solver->R));
   PetscCall(PetscStrcmp(m->solver->pmat_type[0] ? m->solver->pmat_type : small ? "aij" : "baij", "aij", &aij));
+  PetscCheck(!aij || m->grid.size == 1, m->grid.comm, PETSC_ERR_SUP,
+             "-model_pmat_type aij is for one rank; leave it out, or give baij");
   if (m->solver->J2 && aij) {
     PetscCall(MatConvert(m->solver->J2, MATAIJ, MAT_INITIAL_MATRIX, &m->solver->Pmat));
   } else {
