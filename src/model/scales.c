@@ -14,6 +14,26 @@ static double MassScale(const FieldSet *fs, const double c[NC_COUNT], int phase,
   return fmax(fmin(moved, c[NC_RHO + phase] * w), ROUND_OFF_P * moved);
 }
 
+/* The least p_0 of the scene where gas may vanish, else infinity. */
+static double LeastEntry(const Scene *c)
+{
+  double least = INFINITY;
+
+  for (PetscInt k = 0; k < c->nmaterial; k++) {
+    if (c->material[k].gas.trace > 0.0)
+      least = fmin(least, c->material[k].retention.p0);
+  }
+  return least;
+}
+
+/* Gas that may come within the step is known to the round-off of p_c over p_0, of all that the pores hold. */
+static double ComingGas(const Model *m, PetscInt I)
+{
+  const double pores = m->w[PHASE_COUNT * I + PHASE_W] + m->w[PHASE_COUNT * I + PHASE_G];
+
+  return ROUND_OFF_P * 1e6 / LeastEntry(m->c) * m->coef[I * NC_COUNT + NC_RHO + PHASE_G] * pores;
+}
+
 #define SLIVER 0.05 /* of a cell: emptier nodes are held by the ghost penalty, whose rows do not shrink with them */
 
 #define ROUND_OFF 1e-5 /* of the terms of a fluid's momentum, times Newton's tolerance, with a margin */
@@ -62,7 +82,10 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
-    const double mass  = RowWeight(m, I, k) * V_row * MassScale(fs, c, k, m->w[PHASE_COUNT * I + k], dt, h);
+    double mass = MassScale(fs, c, k, m->w[PHASE_COUNT * I + k], dt, h);
+    if (k == PHASE_G)
+      mass = fmax(mass, ComingGas(m, I));
+    mass *= RowWeight(m, I, k) * V_row;
     col[PlaceP(fs, k)] = P;
     row[PlaceP(fs, k)] = k == PHASE_G && fs->one_pressure ? row[PlaceP(fs, k)] + mass : mass;
   }
