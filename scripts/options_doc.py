@@ -48,7 +48,7 @@ PROGRAM = [  # option, value, default, meaning
     ("-newton_refactor", "N", "by its cost", "the preconditioner is made once a step, and anew after a linear solve of more "
      "than N iterations, or where N is not given when solves have lost as many iterations as a new one costs; a stage that "
      "fails is tried again with a new one at every Newton iteration"),
-    ("-model_pmat_type", "aij, baij", "aij with UMFPACK, else baij", "storage of the matrix that the preconditioner "
+    ("-model_pmat_type", "aij, baij", "aij with UMFPACK, else baij", "storage (aij: on one rank) of the matrix that the preconditioner "
      "sees; UMFPACK needs aij, ILU by blocks of nine needs baij; goes with the solver of the same preset"),
 ]  # fmt: skip
 

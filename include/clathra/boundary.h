@@ -150,6 +150,8 @@ typedef struct {
   double enthalpy;           /* (364): W that what flows out takes along */
   double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
 } FaceOutput;
+/* Is something prescribed on it, or counted?  Else FaceEvaluate finds nothing: most of a surface is left alone. */
+bool FaceActs(const Scene *c, const Face *f);
 /* Sh: of its particle at t_n; velocity: of the skeleton at the face, m/s, which changes with in[IN_U] as 1/dt. */
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,

@@ -35,6 +35,17 @@ static double CarriedOut(const FaceState *x, const double outflow[PHASE_COUNT])
   return sum * x->T;
 }
 
+bool FaceActs(const Scene *c, const Face *f)
+{
+  bool acts = c->ambient_drag > 0.0 && c->fields.solid;
+
+  for (PetscInt k = 0; k < c->nmeter; k++)
+    acts = acts || (f->meters >> k & 1);
+  for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
+    acts = acts || f->bc[kind] >= 0;
+  return acts;
+}
+
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
                   FaceOutput *o)

@@ -1,17 +1,6 @@
 /* Surface faces: forces in the first pass, what crosses them in the second; docs/equations.md, sections 6 and 12. */
 #include "lanes.h"
 
-static bool Acts(const Scene *c, const Face *f)
-{
-  bool acts = c->ambient_drag > 0.0 && c->fields.solid;
-
-  for (PetscInt k = 0; k < c->nmeter; k++)
-    acts = acts || (f->meters >> k & 1);
-  for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
-    acts = acts || f->bc[kind] >= 0;
-  return acts;
-}
-
 /* Nodes of a face's particle with their weights there; their number. */
 static int Reach(const Explicit *e, const Face *f, PetscInt node[CL_NODES], double S[CL_NODES])
 {
@@ -29,8 +18,8 @@ int FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES])
   return Reach(e, f, node, S);
 }
 
-/* The faces on which something is prescribed or counted; the rest are closed, adiabatic and free by themselves, but in
-   the bare form, whose forces by parts end there. */
+/* The faces that act; the rest are closed, adiabatic and free by themselves, but in the bare form, whose forces by
+   parts end there. */
 PetscErrorCode FacesBegin(Explicit *e)
 {
   PetscInt n = 0;
@@ -38,7 +27,7 @@ PetscErrorCode FacesBegin(Explicit *e)
   PetscFunctionBeginUser;
   PetscCall(FacesBuild(e->m->c, &e->m->grid, &e->m->P, &e->nface, &e->face));
   for (PetscInt k = 0; k < e->nface; k++) {
-    if (e->o.particle_pressures || Acts(e->m->c, &e->face[k]))
+    if (e->o.particle_pressures || FaceActs(e->m->c, &e->face[k]))
       e->face[n++] = e->face[k];
   }
   e->nface = n;

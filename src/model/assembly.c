@@ -168,14 +168,16 @@ static void RowFactors(const Model *m, PetscInt I, double row[F_COUNT])
     row[s] = (m->mask[I] >> s) & 1u ? 0.0 : 1.0 / m->row_scale[I * n + s];
 }
 
+/* Pair by pair about the diagonal, so that `out` may be v. */
 INLINE void Scale(int n, const double *row, const double *col, const double *v, double *out)
 {
-  double t[F_COUNT * F_COUNT];
-
-  memcpy(t, v, (size_t)(n * n) * sizeof(double));
   for (int q = 0; q < n; q++) {
-    for (int s = 0; s < n; s++)
-      out[q * n + s] = t[s * n + q] * (row[s] * col[q]);
+    for (int s = 0; s <= q; s++) {
+      const double below = v[q * n + s], above = v[s * n + q];
+
+      out[q * n + s] = above * (row[s] * col[q]);
+      out[s * n + q] = below * (row[q] * col[s]);
+    }
   }
 }
 
@@ -223,5 +225,36 @@ PetscErrorCode MatrixFinish(Model *m)
   }
   PetscCall(MatAssemblyBegin(m->solver->J2, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(m->solver->J2, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MatrixCopy(const Model *m, Mat P)
+{
+  const PetscInt  n = m->c->fields.n;
+  const PetscInt *ia, *ja, *first, *column;
+  PetscInt        blocks, rows;
+  PetscBool       done;
+  double         *v, *out;
+  Mat             J2 = m->solver->J2;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetRowIJ(J2, 0, PETSC_FALSE, PETSC_TRUE, &blocks, &ia, &ja, &done));
+  PetscCall(MatGetRowIJ(P, 0, PETSC_FALSE, PETSC_FALSE, &rows, &first, &column, &done));
+  PetscCheck(rows == blocks * n && first[rows] == ia[blocks] * n * n, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "the copy of J2 has another pattern");
+  PetscCall(MatSeqBAIJGetArray(J2, &v));
+  PetscCall(MatSeqAIJGetArrayWrite(P, &out));
+  for (PetscInt I = 0; I < blocks; I++) {
+    for (PetscInt k = ia[I]; k < ia[I + 1]; k++) {
+      for (PetscInt s = 0; s < n; s++) {
+        for (PetscInt q = 0; q < n; q++)
+          out[first[I * n + s] + (k - ia[I]) * n + q] = v[(k * n + q) * n + s];
+      }
+    }
+  }
+  PetscCall(MatSeqAIJRestoreArrayWrite(P, &out));
+  PetscCall(MatSeqBAIJRestoreArray(J2, &v));
+  PetscCall(MatRestoreRowIJ(P, 0, PETSC_FALSE, PETSC_FALSE, &rows, &first, &column, &done));
+  PetscCall(MatRestoreRowIJ(J2, 0, PETSC_FALSE, PETSC_TRUE, &blocks, &ia, &ja, &done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -310,6 +310,16 @@ static double MobilityOf(const Model *m, PetscInt I, int q)
   return m->fluid && q >= F_VW && q < F_PW ? PetscSqr(m->fluid[PHASE_COUNT * I + (q - F_VW) / CL_DIM].root) : 1.0;
 }
 
+/* Few conditions change with an unknown, and none changes all rows. */
+static bool NoSlope(const double D[IN_COUNT])
+{
+  double size = 0.0;
+
+  for (int q = 0; q < IN_COUNT; q++)
+    size += fabs(D[q]);
+  return size == 0.0;
+}
+
 /* Rows of a face's nodes: all are weighted with N. */
 static void FaceBlock(const Model *m, const Assembly *to, const Face *face, const Reach *r, const FaceOutput *o)
 {
@@ -332,7 +342,7 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
     const double *D      = o->D[k];
     double       *to_row = row;
 
-    if (fs->at[k] < 0)
+    if (fs->at[k] < 0 || NoSlope(D))
       continue;
     SlopesApply(&slopes, 1, &D, &to_row);
     for (int a = 0; a < r->n; a++) {
@@ -374,6 +384,8 @@ static void FaceLoop(Model *m, const double *x, int ntarget, const Assembly *tar
     Reach      r;
     FaceOutput o;
 
+    if (!FaceActs(m->c, &m->face[k]))
+      continue;
     FaceAt(m, &m->face[k], x, &r, &o);
     if (m->solver->product)
       ProductKeepFace(m, k, &o);
@@ -416,7 +428,7 @@ static PetscErrorCode Finish(Model *m, bool renew, int n, const Assembly *target
     PetscCall(PetscLogEventEnd(m->event[EVENT_SETUP], 0, 0, 0, 0));
   }
   if (renew && m->solver->J2 && P != m->solver->J2)
-    PetscCall(MatConvert(m->solver->J2, MATAIJ, MAT_REUSE_MATRIX, &P));
+    PetscCall(MatrixCopy(m, P));
   PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);

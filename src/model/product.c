@@ -14,7 +14,7 @@ struct Product {
   Tangents tangents;
   double  *MI;                       /* [n][PHASE_COUNT] OUT_MI as Model.order has them; beds */
   PetscInt cap;                      /* particles it has room for */
-  double (*face)[F_COUNT][IN_COUNT]; /* [nface] FaceOutput.D */
+  double (*face)[F_COUNT][IN_COUNT]; /* [nface] FaceOutput.D of those that act */
   PetscInt nface;                    /* faces it has room for */
   double  *x, *dx;                   /* [n_local][fields.n] unknowns, their change */
   double  *diagonal;                 /* [n_local][CL_FLUID_VECTORS] of rows (16), unscaled */
@@ -174,6 +174,8 @@ static void FaceLoop(const Model *m, const double *dx, double *f)
     double      in[IN_COUNT];
     Reach       r;
 
+    if (!FaceActs(m->c, face))
+      continue;
     FaceChange(m, face, dx, &r, in);
     for (int q = 0; q < F_COUNT; q++) {
       const double *D   = m->solver->product->face[k][q];

@@ -95,6 +95,8 @@ static void FaceLoop(const Model *m, const double *x, double *f)
     Reach       r;
     FaceOutput  o;
 
+    if (!FaceActs(m->c, face))
+      continue;
     FaceAt(m, face, x, &r, &o);
     for (int a = 0; a < r.n; a++) {
       for (int q = 0; q < F_COUNT; q++) {

@@ -44,6 +44,7 @@ INLINE void SumStrip(const RowSum *s, int sums, int j, int n, bool first, double
     SumTile(s, k, 1, j, n, first, out);
 }
 
+/* Of what is left, too, as many Lanes at a time as there are: one by one each would wait for the sum before it. */
 void RowSumInto(const RowSum *s, int sums, int length, bool first, double *const *out)
 {
   const int lanes = length / LANES;
@@ -51,7 +52,13 @@ void RowSumInto(const RowSum *s, int sums, int length, bool first, double *const
 
   for (; j + TILE <= lanes; j += TILE)
     SumStrip(s, sums, j, TILE, first, out);
-  for (; j < lanes; j++)
+  if (lanes - j == 4)
+    SumStrip(s, sums, j, 4, first, out);
+  else if (lanes - j == 3)
+    SumStrip(s, sums, j, 3, first, out);
+  else if (lanes - j == 2)
+    SumStrip(s, sums, j, 2, first, out);
+  else if (lanes - j == 1)
     SumStrip(s, sums, j, 1, first, out);
 }
 

@@ -1,9 +1,5 @@
-/* Fluid velocities that follow the pressures, and how far Newton's update goes, where gas may vanish: (414), (415) of
-   docs/equations.md. */
-#include "solver.h"
-
-#define HALVINGS 4   /* at most; what is left then is tried: a kink may lie in the way */
-#define DESCENT 1e-4 /* of the residual, for a whole update (Armijo) */
+/* Fluid velocities that follow the pressures where gas may vanish: (414) of docs/equations.md. */
+#include "gather.h"
 
 bool ModelSlaves(const Model *m)
 {
@@ -46,40 +42,17 @@ PetscErrorCode ModelSlave(Model *m, Vec X)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelLeaves(SNES snes, Model *m, Vec X, double share, Vec Y, Vec W, double *norm)
-{
-  Vec R;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecWAXPY(W, -share, Y, X));
-  PetscCall(ModelSlave(m, W));
-  PetscCall(VecDuplicate(X, &R));
-  PetscCall(SNESComputeFunction(snes, W, R));
-  PetscCall(VecNorm(R, NORM_2, norm));
-  PetscCall(VecDestroy(&R));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ModelTryUpdate(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y, PetscBool *changed_W,
-                              void *model)
+PetscErrorCode ModelSlaveUpdated(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y, PetscBool *changed_W,
+                                 void *model)
 {
   Model *m = (Model *)model;
-  SNES   snes;
-  double from, norm, share = 1.0;
 
   PetscFunctionBeginUser;
+  (void)ls;
+  (void)X;
+  (void)Y;
   *changed_Y = PETSC_FALSE;
-  *changed_W = PETSC_FALSE;
-  if (!ModelSlaves(m))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESLineSearchGetSNES(ls, &snes));
-  PetscCall(SNESGetFunctionNorm(snes, &from));
-  for (int k = 0;; k++, share *= 0.5) {
-    PetscCall(ModelLeaves(snes, m, X, share, Y, W, &norm));
-    if (norm <= (1.0 - DESCENT * share) * from || k == HALVINGS)
-      break;
-  }
-  PetscCall(PetscInfo(snes, "update: share %g leaves %.3e of %.3e\n", share, norm, from));
-  *changed_W = PETSC_TRUE;
+  *changed_W = ModelSlaves(m) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ModelSlave(m, W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -168,6 +168,8 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(WideCreate(m, &m->solver->A));
   PetscCall(MatCreateVecs(m->solver->A, &m->solver->X, &m->solver->R));
   PetscCall(PetscStrcmp(m->solver->pmat_type[0] ? m->solver->pmat_type : small ? "aij" : "baij", "aij", &aij));
+  PetscCheck(!aij || m->grid.size == 1, m->grid.comm, PETSC_ERR_SUP,
+             "-model_pmat_type aij is for one rank; leave it out, or give baij");
   if (m->solver->J2 && aij) {
     PetscCall(MatConvert(m->solver->J2, MATAIJ, MAT_INITIAL_MATRIX, &m->solver->Pmat));
   } else {
@@ -182,7 +184,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESGetLineSearch(m->solver->snes, &ls));
   PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
   PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
-  PetscCall(SNESLineSearchSetPostCheck(ls, ModelTryUpdate, m));
+  PetscCall(SNESLineSearchSetPostCheck(ls, ModelSlaveUpdated, m));
   PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPFGMRES)); /* keeps what the preconditioner gave, where GMRES applies it once more */
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->solver->tol_residual, PETSC_DEFAULT, 60));

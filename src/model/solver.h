@@ -62,11 +62,12 @@ PetscErrorCode SolverCreate(Solver **s);
 PetscErrorCode SolverReset(Solver *s);
 PetscErrorCode SolverDestroy(Solver **s);
 /* J2: made with the places of its blocks, once for a pattern; ended; emptied; what was added scaled, with Dirichlet
-   rows, and assembled. */
+   rows, and assembled; its values in P, AIJ with the same pattern, on one rank. */
 PetscErrorCode MatrixCreate(Model *m);
 PetscErrorCode MatrixDestroy(Solver *s);
 PetscErrorCode MatrixBegin(Model *m);
 PetscErrorCode MatrixFinish(Model *m);
+PetscErrorCode MatrixCopy(const Model *m, Mat P);
 /* The reduced matrix and its solver (reduced.c). */
 /* Types of the solvers of the groups that are there, behind -reduced_..., which options of the user win over. */
 PetscErrorCode  ReducedPreferences(bool flow, bool motion);

@@ -10,6 +10,9 @@
 #define CURVED 0.5         /* of the linear change of methane: what the law may differ from it */
 #define STRAIGHT 0.002     /* of p_0: change of p_c over which any law is straight */
 
+#define HALVINGS 6   /* at most; what leaves the least is tried then: a kink may lie in the way */
+#define DESCENT 1e-4 /* of the residual, for a whole update (Armijo) */
+
 /* (104): where the law bends, p_g to where a node holds as much methane as the linear update d of both pressures says,
    but no more of it than that; p_w keeps a share of the pressure there is, for gas that appears holds it.  False where
    the law is nearly straight. */
@@ -145,30 +148,71 @@ static PetscErrorCode Shorten(const Model *m, Vec X, Vec Y, bool *shorter)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
+/* Norm of the scaled residual that a share of Y leaves, fluid velocities with the pressures. */
+static PetscErrorCode Leaves(SNES snes, Model *m, Vec X, double share, Vec Y, Vec at, Vec R, double *norm)
 {
-  Model *m = (Model *)model;
-  Vec    followed, at;
-  SNES   snes;
-  bool   shorter, shorter_followed;
-  double plain, other;
+  PetscFunctionBeginUser;
+  PetscCall(VecWAXPY(at, -share, Y, X));
+  PetscCall(ModelSlave(m, at));
+  PetscCall(SNESComputeFunction(snes, at, R));
+  PetscCall(VecNorm(R, NORM_2, norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (415): which of the updates, the first of them being Newton's, and what share of it. */
+static PetscErrorCode Choose(SNES snes, Model *m, Vec X, const Vec update[2], int *chosen, double *share)
+{
+  const int halvings = ModelSlaves(m) ? HALVINGS : 0;
+  double    from, norm, least = INFINITY, trial = 1.0;
+  Vec       at, R;
 
   PetscFunctionBeginUser;
-  PetscCall(FollowAll(m, X, Y, &followed));
+  *chosen = 0;
+  *share  = 1.0;
+  PetscCall(VecDuplicate(X, &at));
+  PetscCall(VecDuplicate(X, &R));
+  PetscCall(SNESGetFunctionNorm(snes, &from));
+  for (int k = 0; k <= halvings && !(least <= (1.0 - DESCENT * trial) * from); k++) {
+    trial = ldexp(1.0, -k);
+    for (int of = 0; of < 2 && update[of]; of++) {
+      PetscCall(Leaves(snes, m, X, trial, update[of], at, R, &norm));
+      if (norm < least) { /* not so where it is no number */
+        least   = norm;
+        *chosen = of;
+        *share  = trial;
+      }
+    }
+  }
+  PetscCall(
+      PetscInfo(snes, "update%s: share %g leaves %.3e of %.3e\n", *chosen ? " of methane" : "", *share, least, from));
+  PetscCall(VecDestroy(&at));
+  PetscCall(VecDestroy(&R));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model)
+{
+  Model *m         = (Model *)model;
+  Vec    update[2] = {Y};
+  bool   shorter;
+  SNES   snes;
+  double share;
+  int    chosen;
+
+  PetscFunctionBeginUser;
+  PetscCall(FollowAll(m, X, Y, &update[1]));
   PetscCall(Shorten(m, X, Y, &shorter));
   *changed = shorter;
-  if (!followed)
+  if (!update[1] && !ModelSlaves(m))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Shorten(m, X, followed, &shorter_followed));
+  if (update[1])
+    PetscCall(Shorten(m, X, update[1], &shorter));
   PetscCall(SNESLineSearchGetSNES(ls, &snes));
-  PetscCall(VecDuplicate(X, &at));
-  PetscCall(ModelLeaves(snes, m, X, 1.0, Y, at, &plain));
-  PetscCall(ModelLeaves(snes, m, X, 1.0, followed, at, &other));
-  PetscCall(VecDestroy(&at));
-  if (!(plain <= other)) { /* or plain is no number */
-    PetscCall(VecCopy(followed, Y));
-    *changed = PETSC_TRUE;
-  }
-  PetscCall(VecDestroy(&followed));
+  PetscCall(Choose(snes, m, X, update, &chosen, &share));
+  if (chosen)
+    PetscCall(VecCopy(update[1], Y));
+  PetscCall(VecScale(Y, share));
+  *changed |= chosen || share < 1.0;
+  PetscCall(VecDestroy(&update[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -343,6 +343,29 @@ static void Tangents(void **state)
   }
 }
 
+/* A face that is passed over gives nothing, and changes nothing; each condition, and the drag, makes it count. */
+static void IdleFaces(void **state)
+{
+  static const FaceOutput nothing = {0};
+  Rng                     r       = {.s = 15};
+
+  for (size_t k = 0; k < sizeof(condition) / sizeof(*condition); k++) {
+    SmallScene s;
+    FaceOutput o;
+    double     in[IN_COUNT];
+
+    SceneInit(&s, &r);
+    condition[k].set(&s, &r);
+    Inputs(&r, in);
+    Evaluate(&s, in, &o);
+    assert_int_equal(FaceActs(&s.c, &s.face), condition[k].set != Closed);
+    assert_true(FaceActs(&s.c, &s.face) || memcmp(&o, &nothing, sizeof(o)) == 0);
+    s.face.meters = 1;
+    s.c.nmeter    = 1;
+    assert_true(FaceActs(&s.c, &s.face));
+  }
+}
+
 /* (199): at the prescribed temperature a face conducts as the body does; off it, it gives heat. */
 static void FaceTemperature(void **state)
 {
@@ -659,7 +682,8 @@ int main(void)
       cmocka_unit_test(Tangents),        cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
       cmocka_unit_test(DragOfTheSea),    cmocka_unit_test(PlateForces),  cmocka_unit_test(MassRows),
       cmocka_unit_test(TrueArea),        cmocka_unit_test(Convection),   cmocka_unit_test(DensityOfOutflow),
-      cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share),        cmocka_unit_test(WellFlows)};
+      cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share),        cmocka_unit_test(WellFlows),
+      cmocka_unit_test(IdleFaces)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,6 +53,48 @@ static void TestJacobian(void **state)
   }
 }
 
+/* What is factorised row by row holds the blocks of J2, which is not symmetric; on one rank. */
+static void TestCopyByRows(void **state)
+{
+  static const unsigned has[3] = {HAS_SOLID, HAS_SOLID | HAS_WATER, HAS_ALL};
+
+  (void)state;
+  if (Sum(1.0) > 1.0)
+    skip();
+  Call(PetscOptionsSetValue(NULL, "-model_pmat_type", "aij"));
+  for (int k = 0; k < 3; k++) {
+    SmallScene *s = malloc(sizeof(*s));
+    Vec         X, D, JD;
+    Mat         rows, turned;
+    double      largest, apart, skew;
+
+    JacobianCase(s, has[k], true, false, BASIS_CPGIMP, 0.0, 0.0, false, 0);
+    JacobianState(s);
+    PrepareJacobian(s, &X, &D, &JD);
+    Check(s->m.solver->Pmat != s->m.solver->J2);
+    PreconditionerRenew(&s->m);
+    Call(ModelJacobian(s->m.solver->snes, X, s->m.solver->A, s->m.solver->Pmat, &s->m));
+    Call(MatConvert(s->m.solver->J2, MATAIJ, MAT_INITIAL_MATRIX, &rows));
+    Call(MatTranspose(rows, MAT_INITIAL_MATRIX, &turned));
+    Call(MatNorm(rows, NORM_FROBENIUS, &largest));
+    Call(MatAXPY(turned, -1.0, rows, DIFFERENT_NONZERO_PATTERN));
+    Call(MatNorm(turned, NORM_FROBENIUS, &skew));
+    Call(MatAXPY(rows, -1.0, s->m.solver->Pmat, DIFFERENT_NONZERO_PATTERN));
+    Call(MatNorm(rows, NORM_FROBENIUS, &apart));
+    Say("copy of J2 by rows, %d unknowns a node: differs by %.1e, its transpose by %.1e of %.1e\n", s->c.scene.fields.n,
+        apart, skew, largest);
+    Check(apart == 0.0 && skew > 1e-3 * largest);
+    Call(MatDestroy(&rows));
+    Call(MatDestroy(&turned));
+    Call(VecDestroy(&X));
+    Call(VecDestroy(&D));
+    Call(VecDestroy(&JD));
+    SceneDestroy(s);
+    free(s);
+  }
+  Call(PetscOptionsClearValue(NULL, "-model_pmat_type"));
+}
+
 /* Two layers whose permeabilities differ a thousandfold (350), with one fluid and with two. */
 static void TestLayersJacobian(void **state)
 {
@@ -639,7 +681,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestBedsTurn),  cmocka_unit_test(TestPlates),         cmocka_unit_test(TestMassRows),
       cmocka_unit_test(TestTwoLayers), cmocka_unit_test(TestHydrostatic),    cmocka_unit_test(TestUniformStress),
       cmocka_unit_test(TestDarcy),     cmocka_unit_test(TestHeatFlux),       cmocka_unit_test(TestNewtonOrder),
-      cmocka_unit_test(TestSlaved),
+      cmocka_unit_test(TestSlaved),    cmocka_unit_test(TestCopyByRows),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);

@@ -1,0 +1,270 @@
+/* Private to model/: what a particle counts at its nodes, and nodal values that several files ask for. */
+#pragma once
+
+#include "reach.h"
+
+static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
+{
+  return &m->c->material[m->c->region[m->P.i[PI_REGION][p]].material];
+}
+
+/* Weight of the projection (20): volume times permeability. */
+static inline double ConductingVolume(const Model *m, PetscInt p)
+{
+  return m->P.f[P_V][p] * m->conduct[p];
+}
+
+/* (350) over S_I: 1 where all particles of the node are as permeable. */
+static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
+{
+  return m->conduct[p] * m->flow[I];
+}
+
+/* How far a particle lies upstream of a node, against the direction of flow there, m; negative downstream. */
+static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const double direction[CL_DIM])
+{
+  double s = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    s += direction[d] * (GridNode(&m->grid, d, m->map.ij[I][d]) - m->P.f[P_X + d][p]);
+  return s;
+}
+
+/* omega_Ip (332): 1 where all nodes of the particle are as mobile. */
+static inline double DonorShare(const Model *m, PetscInt p, PetscInt I)
+{
+  const Donor *at = &m->added->donor[p];
+
+  return at->base + fmax(-Upstream(m, p, I, at->up), 0.0);
+}
+
+static inline bool Donated(const Model *m, int f)
+{
+  return m->added->donor && f == PHASE_G;
+}
+
+/* Is a particle's share in the root of k_r at its nodes (108) that of the layer's weight, not (35) or (359)? */
+static inline bool LayerRoot(const Model *m, int f)
+{
+  return !m->c->stabilisation.upstream && !Donated(m, f);
+}
+
+/* The node's factor in both. */
+static inline double NodeShare(const Model *m, PetscInt I, int f)
+{
+  return Donated(m, f) ? m->added->source[2 * I] : m->flow[I];
+}
+
+/* Share of a node's flux of a fluid that goes through an open face of the particle: (350), of gas (333) without
+   omega. */
+static inline double FaceShare(const Model *m, PetscInt p, PetscInt I, int f)
+{
+  return m->conduct[p] * NodeShare(m, I, f);
+}
+
+/* (197): what the wall of a well adds to the drag of a node's flow along axis i, of this rank's faces, Pa s m. */
+static inline double WallDrag(const Model *m, PetscInt I, int f, int i)
+{
+  return m->wall && i == 0 ? m->wall[PHASE_COUNT * I + f] : 0.0;
+}
+
+/* W_Ip/S_I of a fluid: (350), of gas (333). */
+static inline double FlowWeight(const Model *m, PetscInt p, PetscInt I, int f)
+{
+  return Donated(m, f) ? DonorShare(m, p, I) * FaceShare(m, p, I, f) : LayerWeight(m, p, I);
+}
+
+/* Weight of a node's projected gradient in the bracket of (19): S_I, of gas (334). */
+static inline double ProjectedShare(const Model *m, PetscInt p, PetscInt I, int f, double S)
+{
+  return Donated(m, f) ? S * DonorShare(m, p, I) * m->coef[I * NC_COUNT + NC_KR + f] / m->added->donor[p].kr : S;
+}
+
+/* v := A v where particle p has beds (306). */
+static inline void Drive(const Model *m, PetscInt p, double v[CL_DIM])
+{
+  if (m->beds)
+    BedsDrive(&m->beds[p].A, v);
+}
+
+/* rho b of a fluid of particle p with beds at t_n, N/m^3. */
+static inline void BedsWeight(const Model *m, PetscInt p, int f, double w[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    w[d] = m->beds[p].rho[f] * m->bc.gravity[d];
+}
+
+/* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */
+static inline int HeldPressure(const FieldSet *fs, int first, int f)
+{
+  return fs->one_pressure ? first : first + f;
+}
+
+/* Share of water in the open pores at t_n. */
+static inline double ParticleSw(const Model *m, PetscInt p)
+{
+  return m->P.f[P_SW] ? m->P.f[P_SW][p] / (1.0 - m->P.f[P_SH][p]) : 0.0;
+}
+
+/* Weight of a fluid's mass balance in its row: 1, or with one pressure 1/rho_pi, so that the sum is the balance of
+   volume (34). */
+static inline double RowWeight(const Model *m, PetscInt I, int phase)
+{
+  return m->c->fields.one_pressure ? 1.0 / m->coef[I * NC_COUNT + NC_RHO + phase] : 1.0;
+}
+
+/* Where the mass balance of a fluid at a node is gathered. */
+static inline double *MassRow(const Model *m, double *f, PetscInt I, int phase)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  return fs->one_pressure ? &m->mass_row[PHASE_COUNT * I + phase] : &f[I * fs->n + PlaceP(fs, phase)];
+}
+
+/* The same for the row of any unknown. */
+static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
+{
+  const bool mass = q == F_PW || q == F_PG;
+
+  if (m->fluid && q >= F_VW && q < F_PW)
+    return &m->fluid[PHASE_COUNT * I + (q - F_VW) / CL_DIM].F[(q - F_VW) % CL_DIM];
+  return mass ? MassRow(m, f, I, q - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[q]];
+}
+
+/* What a face of particle p at node I adds to row q is weighted with besides: (350) in (16). */
+static inline double FaceFlow(const Model *m, PetscInt p, PetscInt I, int q)
+{
+  return q >= F_VW && q < F_PW ? FlowWeight(m, p, I, (q - F_VW) / CL_DIM) : 1.0;
+}
+
+static inline double RowWeightOf(const Model *m, PetscInt I, int q)
+{
+  return q == F_PW || q == F_PG ? RowWeight(m, I, q - F_PW) : 1.0;
+}
+
+/* Widths of a particle's cell, m. */
+static inline void CellWidths(const Model *m, PetscInt p, double h[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    h[d] = LinesWidth(&m->grid.line[d], m->stencil[p].axis[d].base + m->stencil[p].cell[d]);
+}
+
+/* Volume of a full cell about a node, m^3. */
+static inline double NodeVolume(const Model *m, PetscInt I)
+{
+  const PetscInt *ij = m->map.ij[I];
+  const double    h0 = LinesAround(&m->grid.line[0], ij[0]), r = GridNode(&m->grid, 0, ij[0]);
+  double          V = h0;
+
+  for (int d = 1; d < CL_DIM; d++)
+    V *= LinesAround(&m->grid.line[d], ij[d]);
+  return V * (m->c->axisymmetric ? 2.0 * M_PI * fmax(r, 0.25 * h0) : 1.0);
+}
+
+/* The smallest cell width at a node, m. */
+static inline double NodeWidth(const Model *m, PetscInt I)
+{
+  double h = INFINITY;
+
+  for (int d = 0; d < CL_DIM; d++)
+    h = fmin(h, LinesLess(&m->grid.line[d], m->map.ij[I][d]));
+  return h;
+}
+
+/* Darcy flux of a fluid at a node (19). */
+static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI, double J[CL_DIM])
+{
+  const FieldSet *fs = &m->c->fields;
+  const double    w = m->w[PHASE_COUNT * I + f], *v = &xI[PlaceV(fs, f)];
+
+  for (int i = 0; i < CL_DIM; i++)
+    J[i] = w * (fs->solid ? v[i] - xI[PlaceVs(fs) + i] : v[i]);
+}
+
+static inline double *UpstreamAt(const Model *m, PetscInt I, int f)
+{
+  return &m->added->up[UP_COUNT * (PHASE_COUNT * I + f)];
+}
+
+/* Weight of a particle in k_r of a node (108): (350), or what looks upstream (35). */
+static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
+{
+  if (!m->c->stabilisation.upstream)
+    return Donated(m, f) ? S : S * LayerWeight(m, p, I);
+  const double *u = UpstreamAt(m, I, f);
+
+  return u[UP_FACTOR] > 0.0 ? S * u[UP_FACTOR] * fmax(Upstream(m, p, I, u), 0.0) : S;
+}
+
+/* ... of all in the node's k_r (108). */
+static inline double MobilityShare(const Model *m, PetscInt p, PetscInt I, int f, double S)
+{
+  return MobilityWeight(m, p, I, f, S) * m->P.f[P_V][p] / m->V[I];
+}
+
+/* Acceleration of the velocity at place k of a node's block; quasi-static: none. */
+static inline void Rate(const Model *m, PetscInt I, const double *x, int k, double rate[CL_DIM])
+{
+  const PetscInt q = I * m->c->fields.n + k;
+
+  for (int i = 0; i < CL_DIM; i++)
+    rate[i] = m->c->fields.inertia ? (x[q + i] - m->stage.x_star[q + i]) / m->stage.dt : 0.0;
+}
+
+/* ... weighted, less gravity. */
+static inline void Acceleration(const Model *m, PetscInt I, const double *x, int k, double weight, double acc[CL_DIM])
+{
+  Rate(m, I, x, k, acc);
+  for (int i = 0; i < CL_DIM; i++)
+    acc[i] = weight * acc[i] - m->bc.gravity[i];
+}
+
+/* What of the skeleton's acceleration less gravity beds take off a fluid (308): (A - 1) of it. */
+static inline void BedsHold(const Model *m, PetscInt p, PetscInt I, const double *x, double across[CL_DIM])
+{
+  const FieldSet *fs = &m->c->fields;
+  double          s[CL_DIM];
+
+  for (int i = 0; i < CL_DIM; i++)
+    s[i] = -m->bc.gravity[i];
+  if (fs->solid)
+    Acceleration(m, I, x, PlaceVs(fs), 1.0, s);
+  for (int i = 0; i < CL_DIM; i++)
+    across[i] = s[i];
+  BedsDrive(&m->beds[p].A, across);
+  for (int i = 0; i < CL_DIM; i++)
+    across[i] -= s[i];
+}
+
+/* ... of a fluid of particle p with (310). */
+static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, const double *x, int f, double acc[CL_DIM])
+{
+  double across[CL_DIM];
+
+  Acceleration(m, I, x, PlaceV(&m->c->fields, f), FlowWeight(m, p, I, f), acc);
+  if (!m->beds)
+    return;
+  BedsHold(m, p, I, x, across);
+  for (int i = 0; i < CL_DIM; i++)
+    acc[i] += across[i];
+}
+
+/* Own value at t_n of unknown q = F_PW, F_PG, F_T. */
+static inline double OwnValue(const Model *m, PetscInt p, int q)
+{
+  return m->P.f[q == F_T ? P_T : HeldPressure(&m->c->fields, P_PW, q - F_PW)][p];
+}
+
+/* Nodal less own value at t_n of unknown q = F_PW, F_PG, F_T. */
+static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
+{
+  const FieldSet *fs = &m->c->fields;
+  double          shift;
+
+  if (fs->at[q] < 0)
+    return 0.0;
+  shift = -OwnValue(m, p, q);
+  for (int a = 0; a < r->n; a++)
+    shift += r->S[a] * m->x_n[r->node[a] * fs->n + fs->at[q]];
+  return shift;
+}
