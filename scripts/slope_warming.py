@@ -83,7 +83,7 @@ BEFORE = """
 
 ![hydrate under a warming sea](figures/case_slope_warming.png)
 
-Cells of 16 m; k_0 by `-mat_sand_permeability_k0`, the sea's level as the case's README says. With 1e-15 m² and more all is elastic, as gas and pressure leave:
+(Picture and all rows but the first by the program when (351) tied every line near the surface.) Cells of 16 m; k_0 by `-mat_sand_permeability_k0`, the sea's level as the case's README says. With 1e-15 m² and more all is elastic, as gas and pressure leave:
 """.split("\n")
 GROUND = """
 `hybrid` alone would take {steps} steps for the same years, 1.9 years of a core at the 0.25 ms that a step takes here ([tradeoff](tradeoff.md#a-run-that-changes-its-integrator)).

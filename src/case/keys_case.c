@@ -151,7 +151,7 @@ const Key case_key[] = {
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
          "at free surfaces; 0 = off"),
     REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",
-         "the same on pressures' changes, for undrained bodies; 0 = off"),
+         "on changes of pressure in slivers of cells, for undrained bodies; 0 = off"),
     REAL(Case, "stabilisation_pressure_projection", scene.stabilisation.pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
     CHOICE(

@@ -10,7 +10,7 @@ typedef struct {
   double   a;                   /* g A/h */
   double   M, kappa;            /* Pa, W/(m K) */
   double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
-  double   store[PHASE_COUNT];  /* g_s A h rho s, kg/Pa */
+  double   store[PHASE_COUNT];  /* g_s w V rho s, kg/Pa */
 } GhostLine;
 
 /* Pressure projection of one cell. */

@@ -134,6 +134,21 @@ static bool IsCut(const double *fill, PetscInt I)
   return I >= 0 && fill[2 * I] > 0.0 && (fill[2 * I] < FULL || fill[2 * I + 1] > 0.0);
 }
 
+/* w V_i (351), m^3: what the least filled of three nodes has, less as it comes to a quarter of what the fullest has:
+   half of it is the edge of filled cells. */
+static double TieVolume(const Model *m, const PetscInt node[3])
+{
+  double least = INFINITY, most = 0.0;
+
+  for (int a = 0; a < 3; a++) {
+    const double fill = m->V[node[a]] / NodeVolume(m, node[a]);
+
+    least = fmin(least, fill);
+    most  = fmax(most, fill);
+  }
+  return least > 0.0 ? fmax(1.0 - 4.0 * least / most, 0.0) * least * NodeVolume(m, node[1]) : 0.0;
+}
+
 static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsigned char *near)
 {
   PetscInt n = 0;
@@ -149,7 +164,11 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
       const double     area = PenaltyArea(m, fill, near, I, d), *c = &m->coef[I * NC_COUNT];
       double           A = 1.0;
 
-      if (area == 0.0 || lo < 0 || hi < 0)
+      if (lo < 0 || hi < 0)
+        continue;
+      const PetscInt node[3] = {lo, I, hi};
+      const double   tied    = m->c->stabilisation.ghost_storage > 0.0 ? TieVolume(m, node) : 0.0;
+      if (area == 0.0 && tied == 0.0)
         continue;
       for (int e = 0; e < CL_DIM; e++)
         A *= e == d ? 1.0 : LinesAround(&m->grid.line[e], m->map.ij[I][e]);
@@ -165,7 +184,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
                            .kappa  = c[NC_KAPPA],
                            .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
       for (int f = 0; f < PHASE_COUNT; f++)
-        ghost->store[f] = m->c->stabilisation.ghost_storage * ratio * h * h * c[NC_RHO + f] * c[NC_STORAGE + f];
+        ghost->store[f] = m->c->stabilisation.ghost_storage * tied * c[NC_RHO + f] * c[NC_STORAGE + f];
     }
   }
   m->added->nghost = n;
