@@ -72,7 +72,7 @@ PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(
-      words, sizeof(words), "%s%s%s%s%s",
+      words, sizeof(words), "%s%s%s%s%s%s",
       reacts && c->fields.heat && !c->stabilisation.lumped_reaction
           ? "stabilisation_reaction: yes, where hydrate is heated; "
           : "",
@@ -80,6 +80,9 @@ PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
           ? "stabilisation_saturation: yes, where saturations alternate; "
           : "",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
+      newton && SceneTwoPressures(c) && !c->stabilisation.upstream
+          ? "stabilisation_upstream: yes, where gas comes and goes; "
+          : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",
