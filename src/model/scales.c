@@ -26,12 +26,16 @@ static double LeastEntry(const Scene *c)
   return least;
 }
 
+/* Over Newton's tolerance of masses: round-off of p_c, 4e-9 Pa at 10 MPa, times the steepest p_0 ds_g/dp_c, 0.3, with a
+   margin. */
+#define ROUND_OFF_PC 50.0 /* Pa */
+
 /* Gas that may come within the step is known to the round-off of p_c over p_0, of all that the pores hold. */
 static double ComingGas(const Model *m, PetscInt I)
 {
   const double pores = m->w[PHASE_COUNT * I + PHASE_W] + m->w[PHASE_COUNT * I + PHASE_G];
 
-  return ROUND_OFF_P * 1e6 / LeastEntry(m->c) * m->coef[I * NC_COUNT + NC_RHO + PHASE_G] * pores;
+  return ROUND_OFF_PC / LeastEntry(m->c) * m->coef[I * NC_COUNT + NC_RHO + PHASE_G] * pores;
 }
 
 #define SLIVER 0.05 /* of a cell: emptier nodes are held by the ghost penalty, whose rows do not shrink with them */
