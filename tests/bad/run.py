@@ -507,8 +507,9 @@ CASES = [
 
 
 def run(program, folder, options):
-    env = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", ASAN_OPTIONS="detect_leaks=0", PETSC_OPTIONS="")
-    done = subprocess.run([program, folder, "-case_check"] + options, cwd=folder, env=env, capture_output=True, timeout=120)
+    with tempfile.TemporaryDirectory() as sessions:  # of MPI: of two runs that share one, the first to end may remove what the other has just made
+        env = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", ASAN_OPTIONS="detect_leaks=0", PETSC_OPTIONS="", OMPI_MCA_orte_tmpdir_base=sessions)
+        done = subprocess.run([program, folder, "-case_check"] + options, cwd=folder, env=env, capture_output=True, timeout=120)
     return done.returncode, (done.stdout + done.stderr).decode("utf-8", "replace")
 
 
