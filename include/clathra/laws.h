@@ -129,8 +129,13 @@ static inline double KineticsFluid(const Kinetics *law, int phase)
 }
 /* K_d = K0 exp(-dE/(R T_K)), mol/(m^2 Pa s), at T (degC), and its slope per K. */
 double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT);
-/* Formation surface A_geo s_w s_g (1-S_h)^3 (S_w S_g (1-S_h) with S = (1-S_h) s), 1/m. */
-double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh);
+/* A surface, 1/m, with its slopes. */
+typedef struct {
+  double v, sw, wet, Sh;
+} FormationArea;
+/* Surface on which hydrate forms, A_geo s_w (s_g + W) (1-S_h)^3 (S_w S_g (1-S_h) where W = 0), 1/m; W (dimensionless):
+   of the hydrate that is there, in water that holds methane (418). */
+FormationArea KineticsFormationArea(const Kinetics *law, double sw, double wet, double Sh);
 
 /* ---------------------------------------------------------------- equations of state, kg/m^3 */
 typedef struct {

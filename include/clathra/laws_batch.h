@@ -31,9 +31,9 @@ void EquilibriumPressureBatch(const Equilibrium *law, int n, const double *T, do
 /* K_d at T, mol/(m^2 Pa s), and its slope. */
 void KineticsRateConstantBatch(const Kinetics *law, int n, const double *restrict T, double *restrict Kd,
                                double *restrict dKd_dT);
-/* Surface on which hydrate forms, 1/m, at the water share s_w and S_h. */
-void KineticsFormationAreaBatch(const Kinetics *law, int n, const double *restrict sw, const double *restrict Sh,
-                                double *restrict A);
+/* Surface on which hydrate forms, 1/m, at the water share s_w, W of (418) and S_h. */
+void KineticsFormationAreaBatch(const Kinetics *law, int n, const double *restrict sw, const double *restrict wet,
+                                const double *restrict Sh, double *restrict A);
 /* Mean of a property by volume; X: of solid, hydrate, water, gas. */
 void MixtureAverageBatch(int n, const double *restrict phi, const double *restrict Sh, const double *restrict sw,
                          const double X[4], double *restrict mean);

@@ -79,6 +79,15 @@ INLINE double ReactionDissociated(double from, double a, double *slope)
   return gone ? -from : -from * (a / (1.0 + a)); /* never more than there is */
 }
 
+/* (418): W, the surface of hydrate in water that holds methane (trace: H of (101)) over A_geo s_w (1 - S_h)^3: with it
+   (13) begins at p_e with the surface of (12). */
+INLINE double ReactionWet(double trace, double phi, double Sh)
+{
+  const double v = 1.0 - Sh;
+
+  return trace > 0.0 && v > 0.0 ? phi * Sh / (v * v * v) : 0.0;
+}
+
 /* dm/dm_h of (37), (40): mass of a fluid that a kg of hydrate takes the place of; held: of a unit of open pores,
  * kg/m^3.
  */

@@ -153,18 +153,19 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
   const double *restrict own_w = f[P_PW] + r.p, *restrict own_g = f[P_PG] + r.p;
   double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
                    *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
-  double pw[BLOCK], pg[BLOCK], sw[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK], area[BLOCK],
-      held[BLOCK];
+  double pw[BLOCK], pg[BLOCK], sw[BLOCK], wet[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK],
+      area[BLOCK], held[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
     sw[q]  = 1.0 - sg[q];
+    wet[q] = ReactionWet(H, v->phi[q], v->Sh[q]);
     pw[q]  = own ? own_w[q] : g->value[q][B_P(s, 0)];
     pg[q]  = own ? own_g[q] : g->value[q][B_P(s, 1)];
     T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
   }
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
   EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);
-  KineticsFormationAreaBatch(&k, r.n, sw, v->Sh, area);
+  KineticsFormationAreaBatch(&k, r.n, sw, wet, v->Sh, area);
   Held(e, s, r, g, T_r, Kd, dpe, area, v, held);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {

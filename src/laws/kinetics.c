@@ -31,27 +31,25 @@ void KineticsRateConstantBatch(const Kinetics *law, int n, const double *restric
     Kd[q] = RateConstant(&l, T[q], &dKd_dT[q]);
 }
 
-/* (234): A_s = A_geo S_w S_g (1 - S_h) = A_geo s_w s_g (1 - S_h)^3, 1/m, with s_g = 1 - s_w; and its derivatives. */
-INLINE double FormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh)
+/* (234), (418): A_s = A_geo s_w (s_g + W) (1 - S_h)^3 with s_g = 1 - s_w: S_w S_g (1 - S_h) where W = 0. */
+INLINE FormationArea Formation(const Kinetics *law, double sw, double wet, double Sh)
 {
-  const double v = 1.0 - Sh, film = law->A_geo * sw * (1.0 - sw);
+  const double v = 1.0 - Sh, open = law->A_geo * v * v, sg = 1.0 - sw;
 
-  *dA_dsw = law->A_geo * (1.0 - 2.0 * sw) * v * v * v;
-  *dA_dSh = -3.0 * film * v * v;
-  return film * v * v * v;
+  return (FormationArea){open * v * sw * (sg + wet), open * v * (sg + wet - sw), open * v * sw,
+                         -3.0 * open * sw * (sg + wet)};
 }
 
-double KineticsFormationArea(const Kinetics *law, double sw, double Sh, double *dA_dsw, double *dA_dSh)
+FormationArea KineticsFormationArea(const Kinetics *law, double sw, double wet, double Sh)
 {
-  return FormationArea(law, sw, Sh, dA_dsw, dA_dSh);
+  return Formation(law, sw, wet, Sh);
 }
 
-void KineticsFormationAreaBatch(const Kinetics *law, int n, const double *restrict sw, const double *restrict Sh,
-                                double *restrict A)
+void KineticsFormationAreaBatch(const Kinetics *law, int n, const double *restrict sw, const double *restrict wet,
+                                const double *restrict Sh, double *restrict A)
 {
   const Kinetics l = *law;
-  double         dw, dSh;
 
   for (int q = 0; q < n; q++)
-    A[q] = FormationArea(&l, sw[q], Sh[q], &dw, &dSh);
+    A[q] = Formation(&l, sw[q], wet[q], Sh[q]).v;
 }

@@ -11,7 +11,7 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
 {
   const Material *mat = ParticleMaterial(m, p);
   const Kinetics *k   = &mat->kinetics;
-  double          own[F_COUNT], slope, dK, dw, dA;
+  double          own[F_COUNT], slope, dK, dw;
   Reach           r;
 
   ReachExpand(m, p, &r);
@@ -23,9 +23,11 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   const Driving d = ReactionDriving(mat->gas.trace, q->s[PHASE_G], own[F_PW], own[F_PG], pe);
   const Growth  growth =
       ReactionGrowth(k, 1.0, m->added->held ? m->added->held[p] : 0.0, &d, Kd, dK, pe, slope); /* kg/(m^2 s) */
-  const double area = d.forms ? KineticsFormationArea(k, q->s[PHASE_W], q->Sh, &dw, &dA) : k->A_geo * q->phi * q->Sh;
+  const double wet  = ReactionWet(mat->gas.trace, q->phi, q->Sh),
+               area = d.forms ? KineticsFormationArea(k, q->s[PHASE_W], wet, q->Sh).v : k->A_geo * q->phi * q->Sh;
+  const bool gas    = !(mat->gas.trace > 0.0 && own[F_PG] < own[F_PW]);
 
-  l->rate        = m->P.f[P_V][p] * growth.p * area;
+  l->rate        = gas ? m->P.f[P_V][p] * growth.p * area : 0.0;
   l->decay       = !d.forms && q->Sh > 0.0 ? -growth.v * k->A_geo / mat->hydrate.rho0 : 0.0;
   l->drive[F_PW] = -d.p.pw;
   l->drive[F_PG] = -d.p.pg;

@@ -15,14 +15,19 @@ INLINE void Dissociate(const Material *mat, double from, Jet growth, Jet rho_h, 
 }
 
 /* m_h* + growth A_s - S rho_h V_p as a function of S for formation (13); decreasing in S. */
-INLINE double FormationBalance(const Kinetics *k, double S, double sw, double m0, double growth, double pore,
-                               double *dS)
+INLINE double FormationBalance(FormationArea A, double S, double m0, double growth, double pore, double *dS)
 {
-  double       dw, dA;
-  const double A = KineticsFormationArea(k, sw, S, &dw, &dA);
+  *dS = growth * A.Sh - pore;
+  return m0 + growth * A.v - pore * S;
+}
 
-  *dS = growth * dA - pore;
-  return m0 + growth * A - pore * S;
+/* W of (418) for the hydrate of the step's start, m0 of the `pore` kg that would fill the pores. */
+INLINE Jet Wet(const Material *mat, double m0, Jet pore, const ScalarState *s)
+{
+  const Jet    phi = JetDiv(s->Vp, s->V), S = JetDiv(JetConstant(m0), pore);
+  const double W = ReactionWet(mat->gas.trace, phi.v, S.v);
+
+  return W == 0.0 ? JetConstant(0.0) : JetChain2(W, W / phi.v, phi, W * (1.0 / S.v + 3.0 / (1.0 - S.v)), S);
 }
 
 /* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
@@ -30,11 +35,11 @@ INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Scalar
 {
   const Kinetics *k      = &mat->kinetics;
   const Jet       growth = JetMul(s->V, per_area);
-  const Jet       pore   = JetMul(rho_h, s->Vp);
-  double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0, dw, dA;
+  const Jet       pore = JetMul(rho_h, s->Vp), wet = Wet(mat, m0, pore, s);
+  double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0;
 
   for (int it = 0; it < 100; it++) {
-    const double f = FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
+    const double f = FormationBalance(KineticsFormationArea(k, s->sw.v, wet.v, S), S, m0, growth.v, pore.v, &dS);
 
     if (f > 0.0)
       lo = S;
@@ -49,17 +54,17 @@ INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Scalar
     }
     S = next;
   }
-  FormationBalance(k, S, s->sw.v, m0, growth.v, pore.v, &dS);
+  const FormationArea A = KineticsFormationArea(k, s->sw.v, wet.v, S);
+  FormationBalance(A, S, m0, growth.v, pore.v, &dS);
 
-  /* dS = -(df/dq)/(df/dS) dq with f = m0 + growth A(sw, S) - pore S */
-  const double A  = KineticsFormationArea(k, s->sw.v, S, &dw, &dA);
-  const Jet    fq = JetSub(JetMul(growth, JetChain(A, dw, s->sw)), JetScale(S, pore));
-  const Jet    Sj = JetChain(S, -1.0 / dS, fq);
+  /* dS = -(df/dq)/(df/dS) dq with f = m0 + growth A(sw, W, S) - pore S */
+  const Jet fq = JetSub(JetMul(growth, JetChain2(A.v, A.sw, s->sw, A.wet, wet)), JetScale(S, pore));
+  const Jet Sj = JetChain(S, -1.0 / dS, fq);
 
   /* growth A = pore S - m0 = gain; where little grows the left is exact, where much does the right */
-  const double grown = pore.v * S - m0, steep = growth.v * dA / pore.v;
+  const double grown = pore.v * S - m0, steep = growth.v * A.Sh / pore.v;
   s->gain   = JetMul(Sj, pore);
-  s->gain.v = (growth.v * A - steep * grown) / (1.0 - steep);
+  s->gain.v = (growth.v * A.v - steep * grown) / (1.0 - steep);
 }
 
 /* m_h and its gain, from pressures, shares and pores of s.  The reaction sees p and T of the nodal fields, not the

@@ -50,12 +50,13 @@ double PointGasPressure(const Material *mat, double want, double Sh, double pw, 
 static void ReactionProperties(const Material *mat, const ScalarState *s, double T, PointProperties *r)
 {
   const Kinetics *k = &mat->kinetics;
-  double          d[2];
-  const double    forms = KineticsFormationArea(k, s->sw.v, s->Sh.v, &d[0], &d[1]);
+  double          d;
+  const double    wet   = ReactionWet(mat->gas.trace, s->phi.v, s->Sh.v);
+  const double    forms = KineticsFormationArea(k, s->sw.v, wet, s->Sh.v).v;
   const double    area  = fmax(forms, k->A_geo * s->phi.v * s->Sh.v);
 
-  r->reaction      = k->M_h * KineticsRateConstant(k, T, &d[0]) * area;
-  r->reaction_heat = r->reaction * LatentHeatEvaluate(&mat->latent, T, &d[0]);
+  r->reaction      = k->M_h * KineticsRateConstant(k, T, &d) * area;
+  r->reaction_heat = r->reaction * LatentHeatEvaluate(&mat->latent, T, &d);
 }
 
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,

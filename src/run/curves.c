@@ -51,8 +51,8 @@ static void RateConstant(const Material *m, double T, double y[MOST])
 
 static void Surface(const Material *m, double sw, double y[MOST])
 {
-  y[0] = KineticsFormationArea(&m->kinetics, sw, 0.0, &none[0], &none[1]);
-  y[1] = KineticsFormationArea(&m->kinetics, sw, 0.4, &none[0], &none[1]);
+  y[0] = KineticsFormationArea(&m->kinetics, sw, 0.0, 0.0).v;
+  y[1] = KineticsFormationArea(&m->kinetics, sw, 0.0, 0.4).v;
 }
 
 static void Latent(const Material *m, double T, double y[MOST])

@@ -144,7 +144,12 @@ static double F_Rate(const Row *r, Set *s, const double *x, double *d)
 }
 static double F_Area(const Row *r, Set *s, const double *x, double *d)
 {
-  return KineticsFormationArea(&s->kin, x[0], x[1], &d[0], &d[1]);
+  const FormationArea A = KineticsFormationArea(&s->kin, x[0], x[1], x[2]);
+
+  d[0] = A.sw;
+  d[1] = A.wet;
+  d[2] = A.Sh;
+  return A.v;
 }
 static double F_Liquid(const Row *r, Set *s, const double *x, double *d)
 {
@@ -339,7 +344,7 @@ static const Row rows[] = {
     {"equilibrium", "kamath", F_Equilibrium, 1, {-50}, {150}, L_Kelvin, K_Kamath, 1e3, 1e12, 1},
     {"equilibrium", "masuda", F_Equilibrium, 1, {-50}, {150}, L_Kelvin, NULL, 1e2, 1e13, 1},
     {"rate constant", NULL, F_Rate, 1, {-50}, {150}, L_Kelvin, K_Rate, 0, 1e6, 1},
-    {"formation area", NULL, F_Area, 2, {0, 0}, {1, 1}, L_Fraction, NULL, 0, 2.5e6, 0},
+    {"formation area", NULL, F_Area, 3, {0, 0, 0}, {1, 1, 1}, L_Fraction, NULL, 0, 1e7, 0},
     {"liquid density", NULL, F_Liquid, 2, {1, -50}, {1e9, 150}, L_Liquid, K_Liquid, 1e-90, INFINITY, 1},
     {"gas density", "ideal", F_GasDensity, 2, {1, -50}, {1e9, 150}, L_GasDensity, NULL, 0, INFINITY, 1},
     {"gas density", "peng_robinson", F_GasDensity, 2, {1, -50}, {1e9, 150}, L_GasDensity, NULL, 0, INFINITY, 1},

@@ -201,9 +201,9 @@ static void TestReaction(void **state)
     assert_true(Worst(N, a, b) < 1e-13 && Worst(N, da, db) < 1e-11);
     for (int q = 0; q < N; q++)
       y[q] = RandomIn(0.0, 1.0);
-    KineticsFormationAreaBatch(&law, N, y, y, a);
+    KineticsFormationAreaBatch(&law, N, y, x, y, a);
     for (int q = 0; q < N; q++)
-      b[q] = KineticsFormationArea(&law, y[q], y[q], &d, &db[q]);
+      b[q] = KineticsFormationArea(&law, y[q], x[q], y[q]).v;
     assert_true(Worst(N, a, b) < 1e-15);
     LatentHeatBatch(&latent, N, x, a);
     for (int q = 0; q < N; q++)

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <cmocka.h>
 #include "clathra/laws.h"
+#include "clathra/point_reaction.h"
 
 #define COUNT(a) (sizeof(a) / sizeof *(a))
 
@@ -186,9 +187,12 @@ static void KineticsValues(void **state)
   Near(Kd * masuda.A_geo * (pe - 2.84e6) * masuda.M_h / 900, 4.7161e-3, 1e-5);
   Near(EquilibriumPressure(&masuda.equilibrium, 2.081, &e), 3.5798e6, 1e-4); /* closed adiabatic cell */
   assert_true(KineticsRateConstant(&bp2, -50, &d) == 2.5e-10 && d == 0);
-  Near(KineticsFormationArea(&bp2, 0.6, 0.5, &d, &e), 1e6 * 0.3 * 0.2 * 0.5, 1e-14);
-  assert_true(KineticsFormationArea(&bp2, 0.6, 1, &d, &e) == 0 && d == 0);
-  assert_true(KineticsFormationArea(&bp2, 1, 0.3, &d, &e) == 0 && KineticsFormationArea(&bp2, 0, 0.3, &d, &e) == 0);
+  Near(KineticsFormationArea(&bp2, 0.6, 0, 0.5).v, 1e6 * 0.3 * 0.2 * 0.5, 1e-14);
+  assert_true(KineticsFormationArea(&bp2, 0.6, 0, 1).v == 0 && KineticsFormationArea(&bp2, 0.6, 0, 1).sw == 0);
+  assert_true(KineticsFormationArea(&bp2, 1, 0, 0.3).v == 0 && KineticsFormationArea(&bp2, 0, 2, 0.3).v == 0);
+  /* (418): full of water, the surface of hydrate that goes */
+  Near(KineticsFormationArea(&bp2, 1, ReactionWet(1e-9, 0.4, 0.3), 0.3).v, 1e6 * 0.4 * 0.3, 1e-14);
+  assert_true(ReactionWet(0, 0.4, 0.3) == 0);
 }
 
 static void StateAndHeatValues(void **state)

@@ -697,6 +697,19 @@ static void TestHydrateBounds(void **state)
 }
 
 /* The integral of the rate: m_h satisfies (11)-(13), (371), checked against an independent bisection in S_h. */
+/* What pores that hold S of hydrate lack of what the reaction leaves them, kg: (11)-(13), (371), (418). */
+static double Lacks(const Particle *q, const PointState *s, double S, double rho, double pe, double rate)
+{
+  const double pc = q->in[IN_P + 1] - q->in[IN_P], sg = GasShareOf(&q->mat, pc, S), pore = s->phi * s->V * rho;
+  const double pw = q->in[IN_P] + q->h.shift[0], pg = q->in[IN_P + 1] + q->h.shift[1]; /* of the nodal fields */
+  const bool   holds = q->mat.gas.trace > 0.0;
+  const double p = holds && pg < pw ? pg : (1.0 - sg) * pw + sg * pg, S0 = q->h.m_star[0] / pore;
+  const double wet  = holds ? s->phi * S0 * pow((1.0 - S) / (1.0 - S0), 3.0) : 0.0;
+  const double area = p <= pe ? s->phi * S : (1.0 - sg) * (sg * pow(1.0 - S, 3.0) + wet);
+
+  return q->h.m_star[0] - rate * (pe - p) * area - pore * S;
+}
+
 static void TestHydrateEquation(void **state)
 {
   Rng    r     = {108};
@@ -714,25 +727,16 @@ static void TestHydrateEquation(void **state)
     assert_int_equal(Evaluate(&q, false, &s, &o), CL_OK);
     const Kinetics *k = &q.mat.kinetics;
     const double    T = q.in[IN_T] + q.h.shift[2], pe = EquilibriumPressure(&k->equilibrium, T, &d1);
-    const double    rho = LiquidDensity(&q.mat.hydrate, 0.0, q.in[IN_T], &d1, &d2), pore = s.phi * s.V * rho;
-    const double    pc   = q.in[IN_P + 1] - q.in[IN_P];
+    const double    rho  = LiquidDensity(&q.mat.hydrate, 0.0, q.in[IN_T], &d1, &d2);
     const double    rate = q.h.dt * s.V * k->M_h * KineticsRateConstant(k, T, &d1) * k->A_geo;
     for (int it = 0; it < 200; it++) {
-      const double S = 0.5 * (lo + hi), sg = GasShareOf(&q.mat, pc, S);
-      const double p   = q.in[IN_P] + sg * pc + (1.0 - sg) * q.h.shift[0] + sg * q.h.shift[1]; /* of the nodal fields */
-      const double own = q.in[IN_P + 1] + q.h.shift[1];                                        /* of the gas (371) */
-      const bool   scarce = q.mat.gas.trace > 0.0 && p > pe && own < q.in[IN_P] + q.h.shift[0];
-      const double met    = scarce ? fmax(own, pe) : p;
-      const double c = rate * (pe - met), A = p <= pe ? s.phi * S : (1.0 - sg) * sg * pow(1.0 - S, 3.0);
+      const double S = 0.5 * (lo + hi);
 
-      if (pore * S - q.h.m_star[0] + c * A > 0.0)
-        hi = S;
-      else
-        lo = S;
+      *(Lacks(&q, &s, S, rho, pe, rate) < 0.0 ? &hi : &lo) = S;
     }
     worst = fmax(worst, fabs(s.Sh - lo));
   }
-  printf("hydrate equation (11)-(13), (371) against bisection: S_h within %.1e\n", worst);
+  printf("hydrate equation (11)-(13), (371), (418) against bisection: S_h within %.1e\n", worst);
   assert_true(worst < 1e-13); /* p_e - p cancels to a thousandth: 1e-16/1e-3 */
 }
 

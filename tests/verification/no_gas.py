@@ -100,6 +100,37 @@ def melts():
     judge("gas", "hydrate melts into water: p_g, hybrid against sdirk2", abs(kept["hybrid"] / kept["sdirk2"] - 1), 1e-5)
 
 
+def grows():
+    """Water in equilibrium with hydrate is cooled by 1 K at once and kept there: what it then holds too much of grows on the hydrate, without gas (418).
+    Its course against the ordinary differential equation of the cell's p_g."""
+    T0, T, rate, times = 7.0, 6.0, 360.0, (30, 100, 300)  # degC; mol/(m^2 Pa s): a hundredth; s
+    case = ("-grid_cells", "6, 6", "-without_gas", "yes", "-region_cell_pressure", "8 MPa", "-region_cell_temperature", f"{T0} degC", "-mat_core_gas_solubility", f"{HENRY} mol/(m^3 Pa)", "-mat_core_retention_p_trap", "50 kPa",
+            "-mat_core_kinetics_K0", f"{rate} mol/(m^2 Pa s)", "-boundaries", "cold", "-bc_cold_type", "region_temperature", "-bc_cold_region", "cell", "-bc_cold_temperature", f"{{ramp: [{T0} degC, {T} degC, 0 s, 0.1 s]}}",
+            "-time_end", f"{times[-1]} s", "-output_times", ",".join(f"{t} s" for t in (0, *times)))  # fmt: skip
+    law = exact.masuda_cell(p=8e6, T=T, phi=PHI, Sh=0.5, Sw=0.5, Sg=0.0)
+    pe, Kd, held = law.equilibrium_pressure(T), rate * math.exp(-78151 / (8.314 * (T + exact.ZERO_C))), 0.016 * HENRY
+
+    def course(m0, pg0, ends, n=20000):  # of a m^3: kg of hydrate by the mid-point rule; methane is that of the start
+        pg_of = lambda m: ((PHI - m0 / 900) * held * pg0 - (m - m0) * 0.016 / 0.124) / ((PHI - m / 900) * held)  # noqa: E731
+        slope = lambda m: 0.124 * Kd * 7.5e5 * m / 900 * (pg_of(m) - pe)  # noqa: E731
+        m, dt, found = m0, ends[-1] / n, []
+        for i in range(1, n + 1):
+            m += dt * slope(m + 0.5 * dt * slope(m))
+            if any(abs(i * dt - t) < 0.5 * dt for t in ends):
+                found.append(pg_of(m))
+        return np.array(found)
+
+    for name, options in (("sdirk2", ()), ("sdirk2, 2 ranks", ()), ("hybrid", ("-stepper_type", "hybrid", "-stepper_adapt", "yes", "-grid_cells", "2, 2"))):
+        run = Run.of_case(CELL, *case, *options, ranks=2 if "ranks" in name else 1)
+        states = [v for _, v in run.snapshots()]
+        got = np.array([v["p_g"].mean() for v in states])
+        want = course(PHI * 0.5 * 900.0, got[0], times)
+        table(("s", "p_g (MPa)", "exact", "of p_e (MPa)"), [(t, f"{a / 1e6:.5f}", f"{b / 1e6:.5f}", f"{pe / 1e6:.5f}") for t, a, b in zip(times, got[1:], want)])
+        judge("gas", f"hydrate grows from water, {name}: p_g, largest error over what it falls by", np.max(np.abs(got[1:] - want)) / (got[0] - pe), 0.004)
+        judge("gas", f"hydrate grows from water, {name}: largest S_g", max(np.max(v["S_g"]) for v in states), 1e-6)
+        balances(f"hydrate grows from water, {name}", run)
+
+
 def rests():
     """Hydrate beneath water at 8 MPa that holds what hydrate is in equilibrium with, 5.9 MPa at 6 degC (103): nothing happens."""
     case = ("-without_gas", "yes", "-region_cell_pressure", "8 MPa", "-region_cell_temperature", "6 degC", "-mat_core_gas_solubility", "auto", "-time_end", "20 s", "-output_times", "0 s,20 s")
@@ -295,6 +326,7 @@ if __name__ == "__main__":
     appears()
     appears(("-mat_core_gas_solubility", f"{HENRY} mol/(m^3 Pa)"), 0.016 * HENRY, ", methane dissolves")
     melts()
+    grows()
     rests()
     carried()
     drained()
