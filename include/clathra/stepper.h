@@ -231,15 +231,26 @@ PetscErrorCode StepperPrintForecast(const Stepper *s);
 
 /* ---- learnt.c */
 #define LEARNT 400
-/* Steps that it took to come to times t (s) since the origin, the last kink of a load or the begin, thinned out. */
+/* Steps that it took to come to times t (s) since the origin, thinned out. */
 typedef struct {
-  int    n, told; /* times kept; times told in all */
+  int    n;
   double t[LEARNT], steps[LEARNT];
   double origin, before; /* s of the scene, and the steps up to it */
-  double all, spent;     /* steps, and seconds of the wall, up to now */
-  double step, dt;       /* time of a step of late, s of the wall; the last one, s of the scene */
-  double kink;           /* t_k of (345), s: how long after the stage's begin the origin is; 0: it is the begin */
-  double doubling;       /* n_k of (345), as known at the origin; 0: not at all */
+} Trace;
+#define LATE 10
+typedef struct {
+  double t, steps, spent; /* s of the scene, number, s of the wall */
+} Mark;
+/* What a run has learnt since the last kink of a load, or the begin; `late` holds the last steps, the oldest first. */
+typedef struct {
+  Trace  trace, slump; /* since then, and since steps fell far below what they were (420); n = 0: they did not */
+  Mark   late[LATE + 1];
+  int    told, marks; /* times told in all; those in `late` */
+  double longest;     /* mean of LATE steps in a row, at most, s: since the origin or the slump */
+  double all, spent;  /* steps, and seconds of the wall, up to now */
+  double step, dt;    /* time of a step of late, s of the wall; the last one, s of the scene */
+  double kink;        /* t_k of (345), s: how long after the stage's begin the origin is; 0: it is the begin */
+  double doubling;    /* n_k of (345), as known at the origin; 0: not at all */
 } Learnt;
 /* From time t (s) on times count anew: behind a kink so long (s) after the stage's begin. */
 void LearntBegin(Learnt *l, double t, double kink);
@@ -266,6 +277,8 @@ double LearntMedian(double forecast, double n);
 double LearntSteps(const Learnt *l, const Ahead *a);
 /* The time of the wall that they take, s; NAN: nothing is known yet. */
 double LearntLeft(const Learnt *l, const Ahead *a);
+/* The time of the wall to the end, s, if time went on as in the last steps, (421); NAN: there are too few. */
+double LearntFlat(const Learnt *l, const Ahead *a);
 
 /* ---- auto.c: docs/equations.md, section 15 */
 /* The integrator a stage begins with, or a restart goes on with. */
