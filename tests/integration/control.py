@@ -178,6 +178,35 @@ def check_pressures():
     check_true("pressed by a condition: nothing", pressed.returncode == 0 and not note.findall(pressed.stdout), pressed.stdout[-600:])
 
 
+COLUMN = """title: a column under a sea that rises
+inertia: no
+fields: [solid, water]
+grid: {lower: [0 m, 0 m], upper: [1 m, 25 m], cells: [1, 25]}
+ambient: {pressure: {ramp: [8 MPa, 9 MPa, 0 d, 4 d]}}
+materials: [silt]
+mat_silt: {porosity: 0.45, solid: {density: 2700 kg/m^3}, permeability: {k0: 1e-15 m^2, hydrate_law: none}, elasticity: {E0: 1.5 GPa, nu: 0.3}}
+regions: [bed]
+region_bed: {lower: [0 m, 0 m], upper: [1 m, 24 m], material: silt, pressure: 8 MPa, temperature: 6 degC}
+boundaries: [base, left, right, floor]
+bc_base: {type: roller, axis: y, position: 0 m}
+bc_left: {type: roller, axis: x, position: 0 m}
+bc_right: {type: roller, axis: x, position: 1 m}
+bc_floor: {type: pressure, side: top, pressure: ambient}
+time: {end: 4 d}
+"""
+
+
+def check_retries():
+    """Right behind the start the error falls with dt, not with its cube: two attempts show it, (422), and the third meets the tolerance with little to spare."""
+    case, out = scratch() / "rises.yaml", scratch() / "out"
+    case.write_text(COLUMN)
+    done = launch(binary(), case, "-progress", "0", "-stepper_tol", "1e-4", "-stepper_dt", "4 h", "-stepper_max_steps", "1", out=out)
+    step = re.search(r"error ([\d.e+-]+) of tolerance.*after (\d+) refused", done.stdout)
+    check_true("a first step of 4 h where 40 s would do: refused", step is not None, done.stdout[-400:])
+    check("... so often", int(step[2]), (1, 2))
+    check("... and then its error, of the tolerance", float(step[1]), (0.7, 1.0))
+
+
 def check_words():
     """A function of time in one word, and a probe that the case does not have."""
     read = lambda *options: (run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", *options, out=scratch() / "out").out / "case.yaml").read_text()
@@ -195,6 +224,7 @@ def main():
     check_words()
     check_limit()
     check_slivers()
+    check_retries()
     check_checkpoints()
     check_progress()
     check_folder()
