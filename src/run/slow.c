@@ -62,7 +62,7 @@ static PetscErrorCode Say(const Slow *slow, const Stepper *s, const StepInfo *in
                          "growth so far %s are left, %s; with the present dt of %s it would be %s",
                          taken, slow->refused, spent, now, 100.0 * pace->done, all, promised, grown, rest, time, even));
   if (!isnan(pace->flat))
-    PetscCall(PetscFPrintf(s->model->grid.comm, stderr, ", %s as the last %d went", flat, LATE));
+    PetscCall(PetscFPrintf(s->model->grid.comm, stderr, ", %s as the last %d went", flat, LEARNT_LATE));
   PetscCall(PetscFPrintf(s->model->grid.comm, stderr, ".  dt is %s\n", rules));
   PetscCall(StepperAdviseSlow(s, s->state.hold > 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -90,20 +90,20 @@ void LearntBegin(Learnt *l, double t, double kink)
 static void Slump(Learnt *l)
 {
   const Mark  *m    = l->late;
-  const double mean = (m[LATE].t - m[0].t) / (m[LATE].steps - m[0].steps);
+  const double mean = (m[LEARNT_LATE].t - m[0].t) / (m[LEARNT_LATE].steps - m[0].steps);
   int          from = 1;
 
   if (mean >= SLUMP * l->longest) {
     l->longest = fmax(l->longest, mean);
     return;
   }
-  for (int k = 2; k <= LATE / 2; k++) {
+  for (int k = 2; k <= LEARNT_LATE / 2; k++) {
     if (m[k].t - m[k - 1].t > m[from].t - m[from - 1].t)
       from = k;
   }
   l->longest = mean;
   l->slump   = (Trace){.origin = m[from].t, .before = m[from].steps};
-  for (int k = from + 1; k < LATE; k++)
+  for (int k = from + 1; k < LEARNT_LATE; k++)
     TraceAdd(&l->slump, m[k].t, m[k].steps);
 }
 
@@ -119,10 +119,10 @@ void LearntAdd(Learnt *l, double t, double steps, double spent)
   l->all   = steps;
   l->spent = spent;
   TraceAdd(&l->trace, t, steps);
-  if (l->marks > LATE)
+  if (l->marks > LEARNT_LATE)
     memmove(l->late, l->late + 1, sizeof(Mark) * (size_t)--l->marks);
   l->late[l->marks++] = (Mark){t, steps, spent};
-  if (l->marks > LATE)
+  if (l->marks > LEARNT_LATE)
     Slump(l);
   if (l->slump.n)
     TraceAdd(&l->slump, t, steps);
@@ -236,7 +236,7 @@ double LearntFlat(const Learnt *l, const Ahead *a)
 {
   const Mark *now = &l->late[l->marks - 1];
 
-  if (l->marks <= LATE)
+  if (l->marks <= LEARNT_LATE)
     return NAN;
   return (a->end - now->t) * (now->spent - l->late[0].spent) / (now->t - l->late[0].t);
 }
