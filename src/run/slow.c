@@ -4,7 +4,7 @@
 
 #define FAR 10.0     /* times the forecast are left, by the run's own pace, ... */
 #define PATIENCE 2.0 /* ... after so many times the forecast */
-#define SOON 10.0    /* s of the wall before which nothing is slow */
+#define SOON 10.0    /* s of the wall that are not long, spent or left */
 
 void SlowBegin(Slow *slow, const Stepper *s)
 {
@@ -35,7 +35,7 @@ static bool Due(const Slow *slow, PetscInt taken, double spent)
 
 bool SlowIs(const Slow *slow, const Forecast *f, PetscInt taken, const Pace *pace)
 {
-  return Due(slow, taken, pace->spent) &&
+  return Due(slow, taken, pace->spent) && pace->left * pace->step > SOON &&
          (pace->left > FAR * f->implicit_steps ||
           (pace->spent >= slow->clock && pace->left * pace->step > FAR * f->implicit_seconds));
 }

@@ -300,6 +300,8 @@ static void SlowBySteps(void **state)
   assert_false(SlowIs(&slow, &f, 160, &p));
   p.left = NAN;
   assert_false(SlowIs(&slow, &f, 160, &p));
+  p = (Pace){.left = 801.0, .step = 0.01, .spent = 1.6};
+  assert_false(SlowIs(&slow, &f, 160, &p)); /* it is over in seconds */
 }
 
 static void SlowByTheClock(void **state)
