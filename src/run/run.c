@@ -259,6 +259,7 @@ static const Bc *HybridTraction(const Case *c)
 static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *run)
 {
   PetscFunctionBeginUser;
+  PetscCall(EveryNotes(m->grid.comm, c));
   for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++)
     PetscCall(ClosedWarning(m->grid.comm, &CaseInStage(c, k)->scene));
   if (run->restart[0])

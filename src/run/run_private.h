@@ -33,8 +33,10 @@ PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok);
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
 double NextMultiple(const Case *c, double every, double t);
 double NextSnapshot(const Case *c, double t);
-bool   AtMultiple(const Case *c, double every, double t);
-bool   AtSnapshot(const Case *c, double t);
+/* Notes of times between outputs that are longer than the run or a stage. */
+PetscErrorCode EveryNotes(MPI_Comm comm, const Case *c);
+bool           AtMultiple(const Case *c, double every, double t);
+bool           AtSnapshot(const Case *c, double t);
 
 /* ---------------------------------------------------------------- stages.c */
 /* What each stage took in this process. */

@@ -83,7 +83,13 @@ def check_folder():
     check_true("stale files do not stand beside new ones", not (out / "meters.csv").exists() and not (out / "report.html").exists())
     moved = scratch() / "moved.yaml"
     moved.write_text(other.read_text())
-    check_true("nor does a case that has moved", launch(binary(), moved, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
+    check_true("nor does a case that was copied", launch(binary(), moved, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
+    third = scratch() / "third.yaml"
+    third.write_text(moved.read_text().replace("porosity: 0.3", "porosity: 0.31").replace("\nregions:", "\n# another\nregions:"))
+    done = launch(binary(), third, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out)
+    check_true("another case of the same title is refused while the first one is there", done.returncode == 2 and "holds the results of another case" in done.stdout, done.stdout[-300:])
+    moved.unlink()
+    check_true("... and one that has moved, and changed, is not", launch(binary(), third, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
 
 
 def check_advice():
@@ -207,6 +213,20 @@ def check_retries():
     check("... and then its error, of the tolerance", float(step[1]), (0.4, 1.0))
 
 
+def check_notes():
+    """Outputs that are asked for beyond the end are told, those at it are not; a temperature that is no field is no ice."""
+    case = scratch() / "rises.yaml"
+    case.write_text(COLUMN)
+    said = lambda *options: launch(binary(), case, "-case_check", *options, out=scratch() / "out").stdout
+    check_true("output_every beyond the end is noted", "note: output_every (10 days) is longer than the run (4 days)" in said("-output_every", "10 d"))
+    check_true("... of probes, too", "note: output_probe_every (5 days) is longer" in said("-output_probe_every", "5 d"))
+    check_true("... and one that ends with it is not", "is longer than" not in said("-output_every", "4 d", "-output_probe_every", "4 d"))
+    stages = said("-stages", "a,b", "-stage_a_end", "1 d", "-stage_b_end", "4 d", "-stage_a_output_every", "2 d", "-output_every", "2 d", "-stage_b_output_every", "5 d")
+    check_true("... by stage", "note: b: output_every (5 days) is longer than the stage (3 days)" in stages and stages.count("is longer than") == 1, stages)
+    done = launch(binary(), case, "-region_bed_temperature", "-3 degC", "-stepper_max_steps", "2", "-quiet", out=scratch() / "out")
+    check_true("a scene without heat has no ice", "melting point" not in done.stdout and "2 steps" in done.stdout, done.stdout[-300:])
+
+
 def check_words():
     """A function of time in one word, and a probe that the case does not have."""
     read = lambda *options: (run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", *options, out=scratch() / "out").out / "case.yaml").read_text()
@@ -225,6 +245,7 @@ def main():
     check_limit()
     check_slivers()
     check_retries()
+    check_notes()
     check_checkpoints()
     check_progress()
     check_folder()
