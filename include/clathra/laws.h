@@ -101,6 +101,8 @@ static inline double EquilibriumPressure(const Equilibrium *law, double T, doubl
 {
   return law->pressure(law, T, dpe_dT);
 }
+/* The temperature (degC, -50 to 60) at which hydrate is in equilibrium with p (Pa), to 1e-6 K. */
+double EquilibriumTemperature(const Equilibrium *law, double p);
 
 /* ---------------------------------------------------------------- Kim-Bishnoi kinetics
    R = K_d(T) A_s (p_e - p), mol/(m^3 s), positive for dissociation (P33)-(P37). */

@@ -106,7 +106,7 @@ typedef struct {
 /* Sums over all particles. */
 typedef struct {
   double water, methane, hydrate, solid; /* kg; water and methane include what the hydrate holds */
-  double gas;                            /* free gas, kg */
+  double gas, dissolved;                 /* methane in the pores, and what of it water holds (101), kg */
   double V;
   double capacity; /* J/K */
   double enthalpy; /* J, (363); 0 without heat */

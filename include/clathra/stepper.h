@@ -5,8 +5,9 @@
 #include "clathra/case.h"
 #include "clathra/explicit.h"
 
-/* Extremes of particles: mean pore pressure, Pa, and temperature, degC. */
-enum { LOWEST_P = 0, HIGHEST_P, LOWEST_T, HIGHEST_T, EXTREMES };
+/* Extremes of particles: mean pore pressure, Pa, and temperature, degC; K above equilibrium to which a held reaction
+   keeps hydrate (423). */
+enum { LOWEST_P = 0, HIGHEST_P, LOWEST_T, HIGHEST_T, MOST_HELD, EXTREMES };
 typedef struct {
   double value, t, at[CL_DIM]; /* when, s, and where, m; all zero without the field */
 } Extreme;
@@ -36,17 +37,19 @@ typedef struct {
   double   heat_gain, heat_in, heat_source;        /* J since t = 0 */
   double   squeezed;     /* of the heat source: compression and throttling (290), J since t = 0 */
   double   enthalpy_out; /* with the fluids (364), J since t = 0 */
-  double   left[PHASE_COUNT], moved[PHASE_COUNT];  /* (277), kg since t = 0 */
-  double   meter[CL_METERS][METER_COUNT];          /* (33): kg of water and gas, J, outwards since t = 0 */
-  double   work[WORK_COUNT];                       /* (90), J since t = 0 */
-  double   removed[REMOVED_COUNT];                 /* particles that left the grid (373), since t = 0 */
-  double   begin[EXTREMES];                        /* extremes at the start */
-  Extreme  extreme[EXTREMES];                      /* ... and of the run so far */
-  double   energy[ENERGY_COUNT];                   /* J, as the particles hold them now */
-  double   water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
-  double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
-  double   scale_p, scale_T, scale_u; /* largest change of pressure or stress (Pa), temperature (K) and displacement (m)
-                                         so far: what errors are   relative to */
+  double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* (277), kg since t = 0 */
+  double   meter[CL_METERS][METER_COUNT];         /* (33): kg of water and gas, J, outwards since t = 0 */
+  double   work[WORK_COUNT];                      /* (90), J since t = 0 */
+  double   removed[REMOVED_COUNT];                /* particles that left the grid (373), since t = 0 */
+  double   begin[EXTREMES];                       /* extremes at the start */
+  Extreme  extreme[EXTREMES];                     /* ... and of the run so far */
+  double   held_for,
+      held_look; /* s: how long hydrate was STEPPER_HELD or more above, in MOST_HELD's sense; the last look */
+  double energy[ENERGY_COUNT];                   /* J, as the particles hold them now */
+  double water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
+  double since, spent;              /* auto: s of the last change, and seconds of the forecast's machine spent since */
+  double scale_p, scale_T, scale_u; /* largest change of pressure or stress (Pa), temperature (K) and displacement (m)
+                                       so far: what errors are   relative to */
 } StepperState;
 
 /* The particle whose estimated error is largest, relative to the tolerance; of is an index of stepper_error_word. */
@@ -92,6 +95,7 @@ typedef struct {
   double   work[WORK_RATES];                      /* J over the step */
 } Attempt;
 
+#define STEPPER_HELD 5     /* K by which hydrate is late */
 #define STEPPER_NEWTON 1.6 /* Jacobians a stage that a forecast counts on */
 #define STEPPER_ERRORS 7   /* p_w, p_g, T, S_h, position, plastic strain, stress */
 extern const char *const stepper_error_word[STEPPER_ERRORS];
@@ -231,15 +235,26 @@ PetscErrorCode StepperPrintForecast(const Stepper *s);
 
 /* ---- learnt.c */
 #define LEARNT 400
-/* Steps that it took to come to times t (s) since the origin, the last kink of a load or the begin, thinned out. */
+/* Steps that it took to come to times t (s) since the origin, thinned out. */
 typedef struct {
-  int    n, told; /* times kept; times told in all */
+  int    n;
   double t[LEARNT], steps[LEARNT];
   double origin, before; /* s of the scene, and the steps up to it */
-  double all, spent;     /* steps, and seconds of the wall, up to now */
-  double step, dt;       /* time of a step of late, s of the wall; the last one, s of the scene */
-  double kink;           /* t_k of (345), s: how long after the stage's begin the origin is; 0: it is the begin */
-  double doubling;       /* n_k of (345), as known at the origin; 0: not at all */
+} Trace;
+#define LEARNT_LATE 10
+typedef struct {
+  double t, steps, spent; /* s of the scene, number, s of the wall */
+} Mark;
+/* What a run has learnt since the last kink of a load, or the begin; `late` holds the last steps, the oldest first. */
+typedef struct {
+  Trace  trace, slump; /* since then, and since steps fell far below what they were (420); n = 0: they did not */
+  Mark   late[LEARNT_LATE + 1];
+  int    told, marks; /* times told in all; those in `late` */
+  double longest;     /* mean of LEARNT_LATE steps in a row, at most, s: since the origin or the slump */
+  double all, spent;  /* steps, and seconds of the wall, up to now */
+  double step, dt;    /* time of a step of late, s of the wall; the last one, s of the scene */
+  double kink;        /* t_k of (345), s: how long after the stage's begin the origin is; 0: it is the begin */
+  double doubling;    /* n_k of (345), as known at the origin; 0: not at all */
 } Learnt;
 /* From time t (s) on times count anew: behind a kink so long (s) after the stage's begin. */
 void LearntBegin(Learnt *l, double t, double kink);
@@ -266,6 +281,8 @@ double LearntMedian(double forecast, double n);
 double LearntSteps(const Learnt *l, const Ahead *a);
 /* The time of the wall that they take, s; NAN: nothing is known yet. */
 double LearntLeft(const Learnt *l, const Ahead *a);
+/* The time of the wall to the end, s, if time went on as in the last steps, (421); NAN: there are too few. */
+double LearntFlat(const Learnt *l, const Ahead *a);
 
 /* ---- auto.c: docs/equations.md, section 15 */
 /* The integrator a stage begins with, or a restart goes on with. */

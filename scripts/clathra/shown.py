@@ -144,14 +144,13 @@ METERS = {"gas_std_m3": "gas out (standard m³)", "gas_kg_s": "gas out, rate (kg
 
 
 def production(meters, names):
-    """[(label, [(meter, values)])] of what the meters `names` count that is not zero always, and of the free gas in the body."""
+    """[(label, [(meter, values)])] of what the meters `names` count that is not zero always, and of the methane in the body's pores, free and dissolved."""
     found = []
     for column, label in METERS.items():
         curves = [(n, meters[f"{n}.{column}"]) for n in names if f"{n}.{column}" in meters]
         found += [(label, curves)] if any(v.any() for _, v in curves) else []
-    if np.ptp(meters.get("free_gas_std_m3", np.zeros(1))) > 0:
-        found.append(("methane not in hydrate (standard m³)", [("body", meters["free_gas_std_m3"])]))
-    return found
+    pores = [(name, meters[f"{name}_gas_std_m3"]) for name in ("free", "dissolved") if np.ptp(meters.get(f"{name}_gas_std_m3", np.zeros(1))) > 0]
+    return [*found, ("methane in the body's pores (standard m³)", pores)] if pores else found
 
 
 def half_edges(particles, first):

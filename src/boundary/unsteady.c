@@ -223,22 +223,6 @@ static PetscErrorCode GravityWarnings(MPI_Comm comm, const Scene *c, const Parti
 }
 
 /* ---------------------------------------------------------------- hydrate */
-/* Temperature (degC) of equilibrium at a pressure, by halving; p_e grows with T. */
-static double EquilibriumTemperature(const Equilibrium *law, double p)
-{
-  double low = -50.0, high = 50.0, d;
-
-  for (int k = 0; k < 60; k++) {
-    const double T = 0.5 * (low + high);
-
-    if (EquilibriumPressure(law, T, &d) < p)
-      low = T;
-    else
-      high = T;
-  }
-  return 0.5 * (low + high);
-}
-
 static PetscErrorCode HydrateWarning(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   Most   worst   = {.value = 0.0};

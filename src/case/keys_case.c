@@ -96,8 +96,8 @@ const Key case_key[] = {
            "sediment may be or become free of gas: water then holds 1e-7 of what gas would; auto: where a region has "
            "Sg: 0"),
     CHOICE(Case, "ice", ice, "warn", ice_word,
-           "when pore water is colder than its melting point, of which no equation knows: say so and go on, or end the "
-           "run"),
+           "in scenes with heat or hydrate that reacts, when pore water is colder than its melting point, of which no "
+           "equation knows: say so and go on, or end the run"),
     CHOICE(Case, "particles_leaving", leaving, "stop", leaving_word,
            "when particles cross the edge of the grid: end the run, or take them out of it and count what they held",
            .has = HAS_SOLID),

@@ -73,10 +73,9 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
       out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
   }
-  const bool mixed = s.heat && !SceneReacts(e->m->c);
-
-  for (int q = 0; mixed && q < r.n; q++)
-    e->m->P.f[P_BT][r.p + q] = Mixed(e, e->C + C_End(s) + s.fluids, LANES, w, q);
+  for (int q = 0; s.heat && q < r.n; q++)
+    e->m->P.f[P_BT][r.p + q] =
+        ParticleBends(e->m->c, &e->m->P, r.p + q) ? Mixed(e, e->C + C_End(s) + s.fluids, LANES, w, q) : 0.0;
   return !out;
 }
 

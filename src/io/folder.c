@@ -146,6 +146,7 @@ static bool Join(const char *dir, const Origin *from, History *h)
   return false;
 }
 
+#define MARK "# " /* before the path */
 /* The first lines of a resolved case say of which file it is (1) and its title (2). */
 static void Head(FILE *f, char line[3][HEAD])
 {
@@ -156,7 +157,25 @@ static void Head(FILE *f, char line[3][HEAD])
     fclose(f);
 }
 
-/* A case may have moved to another place with its folder: then its title tells. */
+/* Do both files exist and hold the same? */
+static bool SameFile(const char *a, const char *b)
+{
+  FILE *f = fopen(a, "r"), *g = fopen(b, "r");
+  bool  same = f && g;
+
+  for (int c = 0; same && c != EOF;) {
+    c    = getc(f);
+    same = c == getc(g);
+  }
+  if (f)
+    fclose(f);
+  if (g)
+    fclose(g);
+  return same;
+}
+
+/* A case may have moved to another place with its folder, or have been copied: then its title tells, unless its old
+   file is still there and says something else. */
 static bool HoldsOther(const char *dir, char *resolved, size_t bytes)
 {
   char path[IO_PATH], held[3][HEAD], ours[3][HEAD];
@@ -164,12 +183,14 @@ static bool HoldsOther(const char *dir, char *resolved, size_t bytes)
   snprintf(path, sizeof(path), "%s/case.yaml", dir);
   Head(fopen(path, "r"), held);
   Head(fmemopen(resolved, bytes, "r"), ours);
+  const bool there = access(held[1] + strlen(MARK), R_OK) == 0, titled = strcmp(ours[2], "title: ''") != 0;
+
   if (strcmp(held[0], ours[0]) || !strcmp(held[1], ours[1]) ||
-      (strcmp(ours[2], "title: ''") && !strcmp(held[2], ours[2])))
+      (titled && !strcmp(held[2], ours[2]) && (!there || SameFile(held[1] + strlen(MARK), ours[1] + strlen(MARK)))))
     return false;
   fprintf(stderr,
           "clathra: %s holds the results of another case, %s; give another -output_dir, or -overwrite to lose them\n",
-          dir, held[1] + 2);
+          dir, held[1] + strlen(MARK));
   return true;
 }
 

@@ -43,11 +43,11 @@ void MetersHeader(const Case *c, FILE *f)
       PlateHeader(&c->scene.listed[k], f);
   }
   if (fs->phase[PHASE_G])
-    fprintf(f, ",free_gas_kg,free_gas_std_m3");
+    fprintf(f, ",free_gas_kg,free_gas_std_m3,dissolved_gas_kg,dissolved_gas_std_m3");
   fprintf(f, "\n");
 }
 
-static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, double gas)
+static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *s, const ModelTotals *now)
 {
   const Case     *c  = CaseOf(m->c);
   const FieldSet *fs = &c->scene.fields;
@@ -71,7 +71,9 @@ static PetscErrorCode WriteRow(Output *out, const Model *m, const StepperState *
       PlateRow(&c->scene.listed[k], m->plate[k], f);
   }
   if (fs->phase[PHASE_G])
-    fprintf(f, ",%.17g,%.12e", gas, gas / c->standard_gas_density);
+    fprintf(f, ",%.17g,%.12e,%.17g,%.12e", now->gas - now->dissolved,
+            (now->gas - now->dissolved) / c->standard_gas_density, now->dissolved,
+            now->dissolved / c->standard_gas_density);
   fprintf(f, "\n");
   PetscCall(RowEnd(out, TABLE_METERS));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,7 +89,7 @@ PetscErrorCode OutputMeters(Output *out, const Model *m, const StepperState *s)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelComputeTotals(m, &now));
   if (m->grid.rank == 0)
-    ierr = WriteRow(out, m, s, now.gas);
+    ierr = WriteRow(out, m, s, &now);
   PetscCall(IoAgree(m->grid.comm, ierr));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -126,5 +126,21 @@ void EquilibriumPressureBatch(const Equilibrium *law, int n, const double *T, do
   law->pressure_loop(law, n, T, pe, dpe_dT);
 }
 
+/* By halving: p_e grows with T. */
+double EquilibriumTemperature(const Equilibrium *law, double p)
+{
+  double low = -50.0, high = 60.0, slope;
+
+  while (high - low > 1e-6) {
+    const double middle = 0.5 * (low + high);
+
+    if (EquilibriumPressure(law, middle, &slope) < p)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 LAW_CHOICE(EquilibriumTypes, EquilibriumSetType, Equilibrium, names, law->pressure = laws[i],
            law->pressure_loop = loops[i], law->type = names[i])

@@ -352,7 +352,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
       f[VectorAt(P_GW, k, d)][p] = in[k < PHASE_COUNT ? VectorAt(IN_GP, k, d) : IN_GT + d];
   }
   if (fs->heat)
-    f[P_BT][p] = SceneReacts(m->c) ? 0.0 : MixedDerivative(m, p, r, x);
+    f[P_BT][p] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x) : 0.0;
   if (fs->solid)
     WriteMotion(m, p, x, r, s);
   else

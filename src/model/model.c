@@ -158,6 +158,15 @@ static double Enthalpy(const Material *mat, double capacity, double mh, double T
   return capacity * T - (mat->reacts ? mh * LatentHeatEvaluate(&mat->latent, 0.0, &slope) : 0.0);
 }
 
+/* Of a particle's methane in the pores (kg) what its water holds (101), kg. */
+static double Dissolved(const Model *m, PetscInt p, double mg)
+{
+  double *const *f = m->P.f;
+  const double   H = m->c->fields.one_pressure ? 0.0 : ParticleMaterial(m, p)->gas.trace;
+
+  return H > 0.0 && f[P_PG] ? fmin(f[P_PHI][p] * f[P_V][p] * f[P_SW][p] * DissolvedMethane(H, f[P_PG][p]), mg) : 0.0;
+}
+
 void ModelAddTotals(const Model *m, PetscInt p, ModelTotals *t)
 {
   const Material *mat = ParticleMaterial(m, p);
@@ -172,6 +181,7 @@ void ModelAddTotals(const Model *m, PetscInt p, ModelTotals *t)
   t->hydrate += mh;
   t->solid += ms;
   t->gas += mg;
+  t->dissolved += Dissolved(m, p, mg);
   t->V += m->P.f[P_V][p];
   t->capacity += capacity;
   if (m->c->fields.heat)

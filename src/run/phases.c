@@ -55,6 +55,9 @@ PetscErrorCode IceLook(Stepper *s, bool *ends)
   Cold          cold;
 
   PetscFunctionBeginUser;
+  *ends = false;
+  if (!s->model->c->fields.heat && !SceneReacts(s->model->c)) /* T is a number that densities are taken at */
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Look(s->model, &cold));
   *ends = cold.n > 0 && StepperCase(s)->ice == ICE_STOP;
   if (cold.n == 0)

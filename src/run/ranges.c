@@ -7,6 +7,7 @@
 #define LEAST_P 1e4   /* ... Pa, that is worth a word */
 #define ABOVE 0.1     /* of the highest pressure, likewise: what is heated in closed ground has more */
 #define HEAVY 2700.0  /* kg/m^3: no ground is heavier */
+#define LONG 0.1      /* share of the run from which held hydrate is worth a warning */
 #define DOUBTFUL 10.0 /* times the tolerance, from which errors that were put up with are warned of */
 
 typedef struct {
@@ -60,20 +61,13 @@ static double Reaction(const Scene *c, double from, double p, bool warm)
   double out = from;
 
   for (PetscInt k = 0; k < c->nmaterial; k++) {
-    const Material *m   = &c->material[k];
-    double          low = -50.0, high = 60.0, d;
+    const Material *m = &c->material[k];
 
     if (!m->reacts || !c->fields.phase[PHASE_G])
       continue;
-    while (high - low > 1e-6) {
-      const double middle = 0.5 * (low + high);
+    const double T = EquilibriumTemperature(&m->kinetics.equilibrium, p);
 
-      if (EquilibriumPressure(&m->kinetics.equilibrium, middle, &d) < p)
-        low = middle;
-      else
-        high = middle;
-    }
-    out = warm ? fmax(out, low) : fmin(out, low);
+    out = warm ? fmax(out, T) : fmin(out, T);
   }
   return out;
 }
@@ -111,6 +105,16 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
     PetscCall(PetscSNPrintf(text + told, 512 - told, "  %s of particles from %.5g %s, %s, to %.5g, %s\n", of[k].name,
                             low[0].value / of[k].per, of[k].unit, from, low[1].value / of[k].per, to));
     told = strlen(text);
+  }
+  if (s->state.extreme[MOST_HELD].value > 0.0) {
+    char at[96], held[32];
+
+    PetscCall(Place(&s->state.extreme[MOST_HELD], at));
+    StepperTime(s->state.held_for, s->state.held_for, 3, held);
+    PetscCall(PetscSNPrintf(text + told, 512 - told,
+                            "  stabilisation_reaction_heat held hydrate up to %.3g K above its equilibrium, %s; by "
+                            "%d K or more for %s\n",
+                            s->state.extreme[MOST_HELD].value, at, STEPPER_HELD, held));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -249,6 +253,30 @@ static PetscErrorCode NotePressures(const Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* (423) */
+static PetscErrorCode WarnOfHeld(const Stepper *s)
+{
+  const Extreme *e   = &s->state.extreme[MOST_HELD];
+  const double   run = s->state.t - StepperCase(s)->scene.t_begin;
+  char           place[96], held[32], all[32];
+
+  PetscFunctionBeginUser;
+  if (!(s->state.held_for > LONG * run))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Place(e, place));
+  StepperTime(s->state.held_for, s->state.held_for, 3, held);
+  StepperTime(run, run, 3, all);
+  PetscCall(PetscFPrintf(
+      s->model->grid.comm, stderr,
+      "clathra: warning: hydrate was %.3g K warmer than its equilibrium, %s, and %d K or more for %s of %s, for no "
+      "other "
+      "reason than stabilisation_reaction_heat, which holds the reaction to what a cell conducts: there it melts late, "
+      "whatever its K0.  What to try, in this order: cells half as wide, which let it melt four times as fast; "
+      "stabilisation_reaction: yes in its place, with which it melts early (docs/giving_up.md)\n",
+      e->value, place, STEPPER_HELD, held, all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode EndWarnings(const Stepper *s)
 {
   const StepperState *z = &s->state;
@@ -256,6 +284,7 @@ PetscErrorCode EndWarnings(const Stepper *s)
   PetscFunctionBeginUser;
   PetscCall(WarnOfTemperatures(s));
   PetscCall(NotePressures(s));
+  PetscCall(WarnOfHeld(s));
   if (z->loose_total && z->err_worst > DOUBTFUL)
     PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
                            "clathra: warning: %" PetscInt_FMT " of %" PetscInt_FMT

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define STANDS 10.0 /* times the time that is left, if steps stay as they are: a line says so */
+
 typedef struct {
   Output   *out;
   Folder    folder;
@@ -31,18 +33,41 @@ static double NextEvent(const Stepper *s, void *ctx)
   return fmin(NextSnapshot(c, t), fmin(NextMultiple(c, c->probe_every, t), NextMultiple(c, c->checkpoint_every, t)));
 }
 
+/* "about 80 steps, 2 min left"; where that counts on steps that grow again, also how long without. */
+static PetscErrorCode LeftWords(const Left *left, char words[128])
+{
+  char time[32], count[16];
+
+  PetscFunctionBeginUser;
+  if (isnan(left->time))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  StepperTime(left->time, left->time, left->time < 10.0 ? 2 : 3, time);
+  StepperCount2(fmax(left->steps, 1.0), count);
+  if (left->steps > 0.0)
+    PetscCall(PetscSNPrintf(words, 128, "about %s steps, %s left", count, time));
+  else
+    PetscCall(PetscSNPrintf(words, 128, "%s left", time));
+  if (left->flat > STANDS * left->time) {
+    StepperTime(left->flat, left->flat, 2, time);
+    PetscCall(PetscStrlcat(words, " if steps grow again, ", 128));
+    PetscCall(PetscStrlcat(words, time, 128));
+    PetscCall(PetscStrlcat(words, " if not", 128));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
 {
   const Case  *c       = StepperCase(s);
   const double t_begin = c->scene.t_begin;
-  double       done, steps, left;
+  Left         left;
   char         cuts[32] = "", error[160] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32];
-  char         rest[64] = "time left not known yet";
+  char         rest[128] = "time left not known yet";
 
   PetscFunctionBeginUser;
   if (run->quiet || !WatchLine(&run->watch, CaseAtEnd(c, s->state.t) || s->stop))
     PetscFunctionReturn(PETSC_SUCCESS);
-  StageLogProgress(run->log, s, &done, &steps, &left);
+  StageLogProgress(run->log, s, &left);
   StepperStageWords(s, stage);
   if (t_begin > 0.0) {
     StepperTime(t_begin, t_begin, 6, now);
@@ -50,16 +75,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   }
   StepperTime(s->state.t - t_begin, c->t_end - t_begin, 6, now);
   StepperTime(info->dt, info->dt, 6, dt);
-  if (!isnan(left)) {
-    char time[32], count[16];
-
-    StepperTime(left, left, left < 10.0 ? 2 : 3, time);
-    StepperCount2(fmax(steps, 1.0), count);
-    if (steps > 0.0)
-      PetscCall(PetscSNPrintf(rest, sizeof(rest), "about %s steps, %s left", count, time));
-    else
-      PetscCall(PetscSNPrintf(rest, sizeof(rest), "%s left", time));
-  }
+  PetscCall(LeftWords(&left, rest));
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
     PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
@@ -73,7 +89,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
                             stepper_error_word[info->rules], info->peak.err, stepper_error_word[info->peak.of],
                             info->peak.at[0], info->peak.at[1]));
   PetscCall(PetscPrintf(s->model->grid.comm, "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s\n",
-                        stage, s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
+                        stage, s->state.step, begin, now, 100.0 * left.done, dt, solved, error, cuts, yields, rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -243,6 +259,7 @@ static const Bc *HybridTraction(const Case *c)
 static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *run)
 {
   PetscFunctionBeginUser;
+  PetscCall(EveryNotes(m->grid.comm, c));
   for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++)
     PetscCall(ClosedWarning(m->grid.comm, &CaseInStage(c, k)->scene));
   if (run->restart[0])

@@ -33,8 +33,10 @@ PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok);
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
 double NextMultiple(const Case *c, double every, double t);
 double NextSnapshot(const Case *c, double t);
-bool   AtMultiple(const Case *c, double every, double t);
-bool   AtSnapshot(const Case *c, double t);
+/* Notes of times between outputs that are longer than the run or a stage. */
+PetscErrorCode EveryNotes(MPI_Comm comm, const Case *c);
+bool           AtMultiple(const Case *c, double every, double t);
+bool           AtSnapshot(const Case *c, double t);
 
 /* ---------------------------------------------------------------- stages.c */
 /* What each stage took in this process. */
@@ -42,14 +44,19 @@ typedef struct StageLog StageLog;
 PetscErrorCode          StageLogCreate(const Stepper *s, StageLog **log);
 PetscErrorCode          StageLogDestroy(StageLog **log);
 PetscErrorCode          StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info); /* an accepted step */
-/* Share of the stage that is done, and the steps and seconds the rest of it will take; NAN: not known yet. */
-void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *steps, double *left);
-/* Steps taken in the stage by this process. */
-PetscInt StageLogTaken(const StageLog *log);
-/* How a stage goes: share of it that is done, steps left as the run itself shows (NAN: not known), s of the wall for
-   one. */
+/* Share of the stage that is done; steps and s of the wall that the rest of it will take, and the latter if time went
+   on as in the last steps (421); NAN: not known yet, as before 5 % unless the stage has taken all of its forecast. */
 typedef struct {
-  double done, left, step;
+  double done, steps, time, flat;
+} Left;
+void StageLogProgress(const StageLog *log, const Stepper *s, Left *left);
+/* Steps taken in the stage by this process, and s of the wall. */
+PetscInt StageLogTaken(const StageLog *log);
+double   StageLogSpent(const StageLog *log);
+/* How a stage goes: share of it that is done, steps left as the run itself shows (NAN: not known), s of the wall for
+   one, so far, and to the end if time went on as in the last steps (NAN: not known). */
+typedef struct {
+  double done, left, step, spent, flat;
 } Pace;
 void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace);
 /* A line for every stage that was entered and every integrator that worked in it; empty where there was one only.
@@ -58,13 +65,16 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
 
 /* ---------------------------------------------------------------- slow.c */
 typedef struct {
-  double   next; /* steps of the stage before which nothing is said */
+  double   next, clock; /* steps of the stage, and s of the wall, before which nothing is said */
   PetscInt stage, refused;
+  bool     said;
 } Slow;
 /* At the begin of a run. */
 void SlowBegin(Slow *slow, const Stepper *s);
-/* After a step that the log knows: a line if the stage takes far longer than was forecast, again when it has taken
-   twice as many steps. */
+/* Is far more left than was forecast, in steps or s of the wall, after far more than was forecast? */
+bool SlowIs(const Slow *slow, const Forecast *f, PetscInt taken, const Pace *pace);
+/* After a step that the log knows: a line if the stage takes far more steps, or longer, than was forecast, again when
+   it has taken twice as many steps and twice as long. */
 PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, const StageLog *log);
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there

@@ -1,12 +1,16 @@
-/* A note while a run is on its way that takes far more steps than was forecast: neither ends soon nor gives up. */
+/* A note while a run is on its way that takes far more steps, or longer, than was forecast: neither ends soon nor gives
+   up. */
 #include "run_private.h"
 
 #define FAR 10.0     /* times the forecast are left, by the run's own pace, ... */
 #define PATIENCE 2.0 /* ... after so many times the forecast */
+#define SOON 10.0    /* s of the wall that are not long, spent or left */
 
 void SlowBegin(Slow *slow, const Stepper *s)
 {
-  *slow = (Slow){.next = PATIENCE * s->forecast.implicit_steps, .stage = s->state.stage};
+  *slow = (Slow){.next  = PATIENCE * s->forecast.implicit_steps,
+                 .clock = fmax(PATIENCE * s->forecast.implicit_seconds, SOON),
+                 .stage = s->state.stage};
 }
 
 /* What shortens the steps: the last one's field and place, or Newton's method. */
@@ -21,36 +25,66 @@ static PetscErrorCode Rules(const Stepper *s, const StepInfo *info, char text[12
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is it time for a word?  The first one after so many steps or so long, the next after both. */
+static bool Due(const Slow *slow, PetscInt taken, double spent)
+{
+  const bool many = taken >= slow->next, late = spent >= slow->clock;
+
+  return slow->said ? many && late : many || late;
+}
+
+bool SlowIs(const Slow *slow, const Forecast *f, PetscInt taken, const Pace *pace)
+{
+  return Due(slow, taken, pace->spent) && pace->left * pace->step > SOON &&
+         (pace->left > FAR * f->implicit_steps ||
+          (pace->spent >= slow->clock && pace->left * pace->step > FAR * f->implicit_seconds));
+}
+
+static PetscErrorCode Say(const Slow *slow, const Stepper *s, const StepInfo *info, PetscInt taken, const Pace *pace)
+{
+  const double t = s->state.t - s->model->c->t_begin, left = StepperCase(s)->t_end - s->state.t;
+  char         rules[128], now[32], time[32], rest[32], spent[32], promised[32], flat[32], all[16], grown[16], even[16];
+
+  PetscFunctionBeginUser;
+  PetscCall(Rules(s, info, rules));
+  StepperTime(t, t, 3, now);
+  StepperTime(info->dt, info->dt, 2, time);
+  StepperTime(pace->left * pace->step, pace->left * pace->step, 2, rest);
+  StepperTime(pace->spent, pace->spent, 2, spent);
+  StepperTime(pace->flat, pace->flat, 2, flat);
+  StepperTime(s->forecast.implicit_seconds, s->forecast.implicit_seconds, 2, promised);
+  StepperCount2(s->forecast.implicit_steps, all);
+  StepperCount2(pace->left, grown);
+  StepperCount2(left / info->dt, even);
+  PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
+                         "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
+                         " refused), %s, have come to %s, %.3g %%; the forecast was %s, %s, for all, and by their "
+                         "growth so far %s are left, %s; with the present dt of %s it would be %s",
+                         taken, slow->refused, spent, now, 100.0 * pace->done, all, promised, grown, rest, time, even));
+  if (!isnan(pace->flat))
+    PetscCall(PetscFPrintf(s->model->grid.comm, stderr, ", %s as the last %d went", flat, LEARNT_LATE));
+  PetscCall(PetscFPrintf(s->model->grid.comm, stderr, ".  dt is %s\n", rules));
+  PetscCall(StepperAdviseSlow(s, s->state.hold > 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, const StageLog *log)
 {
-  const double   forecast = s->forecast.implicit_steps;
-  const PetscInt taken    = StageLogTaken(log);
-  char           rules[128], now[32], time[32], rest[32], all[16], grown[16], flat[16];
+  const PetscInt taken = StageLogTaken(log);
   Pace           pace;
 
   PetscFunctionBeginUser;
   if (slow->stage != s->state.stage)
     SlowBegin(slow, s);
   slow->refused += info->cuts;
-  if (s->explicit || !s->adaptive || taken < slow->next || CaseAtEnd(StepperCase(s), s->state.t))
+  if (s->explicit || !s->adaptive || !Due(slow, taken, StageLogSpent(log)) || CaseAtEnd(StepperCase(s), s->state.t))
     PetscFunctionReturn(PETSC_SUCCESS);
   StageLogPace(log, s, &pace);
-  if (!(pace.left > FAR * forecast))
+  if (!SlowIs(slow, &s->forecast, taken, &pace))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Rules(s, info, rules));
-  StepperTime(s->state.t - s->model->c->t_begin, s->state.t - s->model->c->t_begin, 3, now);
-  StepperTime(info->dt, info->dt, 2, time);
-  StepperTime(pace.left * pace.step, pace.left * pace.step, 2, rest);
-  StepperCount2(forecast, all);
-  StepperCount2(pace.left, grown);
-  StepperCount2((StepperCase(s)->t_end - s->state.t) / info->dt, flat);
-  PetscCall(
-      PetscFPrintf(s->model->grid.comm, stderr,
-                   "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
-                   " refused) have come to %s, %.3g %%; the forecast was %s for all, and by their growth so far %s are "
-                   "left, %s; with the present dt of %s it would be %s.  dt is %s\n",
-                   taken, slow->refused, now, 100.0 * pace.done, all, grown, rest, time, flat, rules));
-  PetscCall(StepperAdviseSlow(s, s->state.hold > 0));
-  slow->next = 2.0 * taken;
+  PetscCall(Say(slow, s, info, taken, &pace));
+  slow->next  = 2.0 * taken;
+  slow->clock = 2.0 * pace.spent;
+  slow->said  = true;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -40,9 +40,10 @@ static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
     log->kink   = BcNextKink(s->model->c, from);
     log->many   = ahead.more;
     log->taken  = 0;
-    log->learnt = (Learnt){.origin = from};
+    log->learnt = (Learnt){.trace.origin = from};
   } else { /* its steps are others */
-    log->learnt = (Learnt){.origin = from, .before = log->taken, .all = log->taken, .spent = Wall() - log->clock};
+    log->learnt =
+        (Learnt){.trace = {.origin = from, .before = log->taken}, .all = log->taken, .spent = Wall() - log->clock};
   }
   log->entry[log->n++] =
       (Entry){.integrator = s->scheme->name, .stage = s->state.stage, .from = from, .to = from, .clock = Wall()};
@@ -113,17 +114,28 @@ static void Look(const StageLog *log, const Stepper *s, Ahead *ahead)
     ahead->forecast = 0.0;
 }
 
-void StageLogProgress(const StageLog *log, const Stepper *s, double *done, double *steps, double *left)
+/* Has the stage taken as many steps, or as long, as was forecast for all of it? */
+static bool PastForecast(const StageLog *log, const Stepper *s)
 {
-  Ahead ahead;
+  const Forecast *f = &s->forecast;
 
-  *done  = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from);
-  *steps = *left = CaseAtEnd(StepperCase(s), s->state.t) ? 0.0 : NAN;
-  if (*left == 0.0 || *done < UNKNOWN)
-    return;
-  Look(log, s, &ahead);
-  *steps = LearntSteps(&log->learnt, &ahead);
-  *left  = LearntLeft(&log->learnt, &ahead);
+  return !s->explicit && s->adaptive && (log->taken >= f->implicit_steps || log->learnt.spent >= f->implicit_seconds);
+}
+
+void StageLogProgress(const StageLog *log, const Stepper *s, Left *left)
+{
+  Ahead        ahead;
+  const double done = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from);
+
+  *left = (Left){.done = done, .steps = NAN, .time = NAN, .flat = NAN};
+  if (CaseAtEnd(StepperCase(s), s->state.t))
+    left->steps = left->time = left->flat = 0.0;
+  else if (done >= UNKNOWN || PastForecast(log, s)) {
+    Look(log, s, &ahead);
+    left->steps = LearntSteps(&log->learnt, &ahead);
+    left->time  = LearntLeft(&log->learnt, &ahead);
+    left->flat  = LearntFlat(&log->learnt, &ahead);
+  }
 }
 
 void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace)
@@ -131,14 +143,21 @@ void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace)
   Ahead ahead;
 
   Look(log, s, &ahead);
-  *pace = (Pace){.done = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from),
-                 .left = LearntPace(&log->learnt, &ahead),
-                 .step = log->learnt.step};
+  *pace = (Pace){.done  = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from),
+                 .left  = LearntPace(&log->learnt, &ahead),
+                 .step  = log->learnt.step,
+                 .spent = log->learnt.spent,
+                 .flat  = LearntFlat(&log->learnt, &ahead)};
 }
 
 PetscInt StageLogTaken(const StageLog *log)
 {
   return log->taken;
+}
+
+double StageLogSpent(const StageLog *log)
+{
+  return log->learnt.spent;
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */

@@ -1,7 +1,44 @@
-/* The lowest and highest pressure and temperature of any particle so far, with when and where. */
+/* The lowest and highest pressure and temperature of any particle so far, with when and where, and how far hydrate was
+   above its equilibrium because its reaction was held. */
 #include "clathra/stepper.h"
+#include "clathra/point_reaction.h"
 
-static const double sign[EXTREMES] = {1.0, -1.0, 1.0, -1.0}; /* the lowest of sign times the value is looked for */
+#define HYDRATE 0.01 /* S_h: what is less goes on for ever, (12) */
+
+static const double sign[EXTREMES] = {1.0, -1.0, 1.0, -1.0, -1.0}; /* the lowest of sign times the value is sought */
+
+/* (381) of a particle as it is. */
+static double HeldNow(const Model *m, PetscInt p, double dpe_dT)
+{
+  const Particles *P         = &m->P;
+  const double     g[CL_DIM] = {P->f[P_GT][p], P->f[P_GT + 1][p]};
+  double           h[CL_DIM];
+  PointProperties  q;
+  const char      *why;
+
+  if (ModelParticleProperties(m, p, &q, &why) != CL_OK)
+    return 0.0;
+  for (int d = 0; d < CL_DIM; d++)
+    h[d] = LinesWidthAt(&m->grid.line[d], P->f[P_X + d][p]);
+  return ReactionHeld(q.reaction_heat, dpe_dT, q.kappa, ReactionWidth(h, g));
+}
+
+/* (423), K, if it may be more than `least` (K, >= 0); else 0. */
+static double HeldWarmth(const Model *m, PetscInt p, double least)
+{
+  const Particles *P   = &m->P;
+  const Material  *mat = &m->c->material[m->c->region[P->i[PI_REGION][p]].material];
+  const double     T = P->f[P_T][p], at = ParticlePressure(P, p);
+  double           slope;
+
+  if (!mat->reacts || P->f[P_SH][p] < HYDRATE ||
+      EquilibriumPressure(&mat->kinetics.equilibrium, T - least, &slope) <= at)
+    return 0.0;
+  EquilibriumPressure(&mat->kinetics.equilibrium, T, &slope);
+  const double held = HeldNow(m, p, slope);
+
+  return (T - EquilibriumTemperature(&mat->kinetics.equilibrium, at)) * held / (1.0 + held);
+}
 
 /* Of the particles of this rank: sign times the value, INFINITY where there is none, and the particle. */
 static void Find(const Model *m, double low[EXTREMES], PetscInt who[EXTREMES])
@@ -12,8 +49,16 @@ static void Find(const Model *m, double low[EXTREMES], PetscInt who[EXTREMES])
     low[k] = INFINITY;
     who[k] = 0;
   }
+  if (SceneHoldsReaction(m->c))
+    low[MOST_HELD] = 0.0;
   for (PetscInt p = 0; p < P->n; p++) {
-    for (int k = 0; k < EXTREMES; k++) {
+    const double held = SceneHoldsReaction(m->c) ? HeldWarmth(m, p, -low[MOST_HELD]) : -INFINITY;
+
+    if (-held < low[MOST_HELD]) {
+      low[MOST_HELD] = -held;
+      who[MOST_HELD] = p;
+    }
+    for (int k = 0; k < MOST_HELD; k++) {
       const bool heat = k >= LOWEST_T;
 
       if (!P->f[heat ? P_T : P_PW])
@@ -51,6 +96,9 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start)
       at[k][d] = m->P.f[P_X + d][who[k]];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, EXTREMES * CL_DIM, MPI_DOUBLE, MPI_SUM, m->grid.comm));
+  if (-best[MOST_HELD].value >= STEPPER_HELD) /* since the last look */
+    z->held_for += z->t - z->held_look;
+  z->held_look = z->t;
   for (int k = 0; k < EXTREMES; k++) {
     if (!isfinite(best[k].value)) /* no such field; a particle whose value is no number is UpdateScales's */
       continue;

@@ -6,6 +6,9 @@
 #define RETURNS (-1)    /* of `hold`: a fixed step that was cut grows back */
 #define CUT_AT_KINK 0.1 /* first step behind a kink of a schedule */
 #define EASY_NEWTON 6   /* growth only while Newton needs no more iterations a stage */
+#define SAFE 0.9        /* of the step that would just meet the tolerance */
+#define LEAST_CUT 0.2   /* a step is cut to at once, by its error, ... */
+#define LEAST_RETRY 0.1 /* ... and when two attempts have shown how that falls */
 #define CRAWL 1e7       /* a run that needs so many more steps at its present length ... */
 #define CRAWL_STEPS 100 /* ... and that for so many in a row, will not end */
 
@@ -193,10 +196,10 @@ static double Controller(const Stepper *s, double dt, const Attempt *a)
   const bool   hard      = a->newton > EASY_NEWTON * s->scheme->stages || s->state.hold > 0;
   const bool   cut_short = dt < 0.999 * s->state.dt; /* by an event: err_old says nothing about growth */
   const double gain      = cut_short ? pow(err, -1.0 / q) : pow(err, -0.7 / q) * pow(old, 0.4 / q);
-  const double fit       = blind ? INFINITY : 0.9 * dt * gain;
+  const double fit       = blind ? INFINITY : SAFE * dt * gain;
   const double most      = hard ? fmax(dt, s->state.dt) : 2.0 * fmax(dt, s->state.dt);
 
-  return fmax(0.2 * dt, fmin(fit, most));
+  return fmax(LEAST_CUT * dt, fmin(fit, most));
 }
 
 /* The step to take: dt as wanted, but never across a kink, an event or the end; what is left before those is shared out
@@ -270,6 +273,20 @@ static void Judge(Stepper *s, double dt, double dt_old, double err_old, Attempt 
   }
 }
 
+/* dt after an attempt with such an error, which the one before shows how to fall with dt, if it was refused for its
+   error too: right behind a start or a kink, where a front sets out, it does so by an order less than the estimate's
+   (422). */
+static double Retry(const Stepper *s, double dt, double err, double dt_old, double err_old)
+{
+  const double order = s->scheme->error_order;
+
+  if (!(err_old > err))
+    return dt * fmax(LEAST_CUT, SAFE * pow(err, -1.0 / order));
+  const double falls = log(err_old / err) / log(dt_old / dt);
+
+  return dt * fmax(LEAST_RETRY, pow(SAFE / err, 1.0 / fmin(falls, order)));
+}
+
 /* An adaptive run whose steps have shrunk to nothing is ended, for it would not end by itself. */
 static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
 {
@@ -334,9 +351,9 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       PetscCall(PetscSNPrintf(text, sizeof(text), "the error estimate, of %s, stays above the tolerance",
                               stepper_error_word[a.rules]));
       ModelExplain(m, text);
+      s->state.dt    = fmax(Retry(s, dt, a.err, dt_inaccurate, err_inaccurate), s->dt_min);
       dt_inaccurate  = dt;
       err_inaccurate = a.err;
-      s->state.dt    = fmax(dt * fmax(0.2, 0.9 * pow(a.err, -1.0 / s->scheme->error_order)), s->dt_min);
     } else {
       s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
       s->state.hold = HOLD;

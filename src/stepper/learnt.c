@@ -1,5 +1,5 @@
-/* What a run has learnt of its own steps: how many are left, and the time they take; (318), (319), (345), (411) and
-   (412) of docs/equations.md, section 15. */
+/* What a run has learnt of its own steps: how many are left, and the time they take; (318), (319), (345), (411),
+   (412), (420) and (421) of docs/equations.md, section 15. */
 #include "clathra/stepper.h"
 
 #define APART 1.02   /* times that are kept are so far apart */
@@ -10,30 +10,55 @@
 #define BEHIND 0.1   /* of a step: the first one behind a kink */
 #define RISE 3.0     /* order of the error that step control sees (26) */
 #define SPREAD M_LN2 /* (411): two of three forecasts are off by less than a factor of two */
+#define SLUMP 0.1    /* (420): steps this much shorter than before begin anew */
 #define TRUST 0.1    /* (412): share of the stage from which on the run knows more than the forecast */
 
 /* Up to time t since the origin, linear between what is kept, from nothing at 0 on. */
-static double StepsAt(const Learnt *l, double t)
+static double StepsAt(const Trace *r, double t)
 {
   double t0 = 0.0, n0 = 0.0;
 
-  for (int k = 0; k < l->n; k++) {
-    if (t <= l->t[k])
-      return n0 + (l->steps[k] - n0) * (t - t0) / (l->t[k] - t0);
-    t0 = l->t[k];
-    n0 = l->steps[k];
+  for (int k = 0; k < r->n; k++) {
+    if (t <= r->t[k])
+      return n0 + (r->steps[k] - n0) * (t - t0) / (r->t[k] - t0);
+    t0 = r->t[k];
+    n0 = r->steps[k];
   }
   return n0;
 }
 
-static double Last(const Learnt *l)
+static double Last(const Trace *r)
 {
-  return l->n ? l->t[l->n - 1] : 0.0;
+  return r->n ? r->t[r->n - 1] : 0.0;
 }
 
-static bool Known(const Learnt *l)
+/* Of the doubling that ends at t. */
+static double LastDoubling(const Trace *r, double t)
 {
-  return l->n >= FEW && Last(l) > SHORT * l->t[0];
+  return StepsAt(r, t) - StepsAt(r, 0.5 * t);
+}
+
+static bool Known(const Trace *r)
+{
+  return r->n >= FEW && Last(r) > SHORT * r->t[0];
+}
+
+/* To come to time t (s) has taken so many steps since the start. */
+static void TraceAdd(Trace *r, double t, double steps)
+{
+  const double now = t - r->origin;
+
+  if (r->n > 1 && now < APART * r->t[r->n - 2])
+    r->n--; /* the last one was for the moment */
+  if (r->n == LEARNT) {
+    for (int k = 0; 2 * k < LEARNT; k++) {
+      r->t[k]     = r->t[2 * k];
+      r->steps[k] = r->steps[2 * k];
+    }
+    r->n = (LEARNT + 1) / 2;
+  }
+  r->t[r->n]       = now;
+  r->steps[r->n++] = steps - r->before;
 }
 
 /* (345): share of n_k that a doubling around tau takes behind a kink at t_k; 1 where there was none. */
@@ -45,47 +70,69 @@ static double Rise(double tau, double kink)
 /* n_k of (345), as far as it is known by now. */
 static double Doubling(const Learnt *l)
 {
-  const double t = Last(l);
+  const double t = Last(&l->trace);
 
-  return Known(l) ? (StepsAt(l, t) - StepsAt(l, 0.5 * t)) / Rise(t, l->kink) : l->doubling;
+  return Known(&l->trace) ? LastDoubling(&l->trace, t) / Rise(t, l->kink) : l->doubling;
 }
 
 void LearntBegin(Learnt *l, double t, double kink)
 {
   l->doubling = Doubling(l);
-  l->n        = 0;
-  l->origin   = t;
-  l->before   = l->all;
+  l->trace    = (Trace){.origin = t, .before = l->all};
+  l->slump.n  = 0;
+  l->late[0]  = (Mark){t, l->all, l->spent};
+  l->marks    = 1;
+  l->longest  = 0.0;
   l->kink     = kink;
+}
+
+/* (420): have steps fallen far below what they were?  Times count anew, too, from the end of the longest of them on. */
+static void Slump(Learnt *l)
+{
+  const Mark  *m    = l->late;
+  const double mean = (m[LEARNT_LATE].t - m[0].t) / (m[LEARNT_LATE].steps - m[0].steps);
+  int          from = 1;
+
+  if (mean >= SLUMP * l->longest) {
+    l->longest = fmax(l->longest, mean);
+    return;
+  }
+  for (int k = 2; k <= LEARNT_LATE / 2; k++) {
+    if (m[k].t - m[k - 1].t > m[from].t - m[from - 1].t)
+      from = k;
+  }
+  l->longest = mean;
+  l->slump   = (Trace){.origin = m[from].t, .before = m[from].steps};
+  for (int k = from + 1; k < LEARNT_LATE; k++)
+    TraceAdd(&l->slump, m[k].t, m[k].steps);
 }
 
 void LearntAdd(Learnt *l, double t, double steps, double spent)
 {
-  const double now = t - l->origin, since = steps - l->all;
+  const double since = steps - l->all;
 
-  l->dt = (now - Last(l)) / since;
+  if (l->marks == 0)
+    l->late[l->marks++] = (Mark){l->trace.origin, l->all, l->spent};
+  l->dt = (t - l->trace.origin - Last(&l->trace)) / since;
   l->told++;
   l->step += fmax(RECENT, 1.0 / l->told) * ((spent - l->spent) / since - l->step);
   l->all   = steps;
   l->spent = spent;
-  if (l->n > 1 && now < APART * l->t[l->n - 2])
-    l->n--; /* the last one was for the moment */
-  if (l->n == LEARNT) {
-    for (int k = 0; 2 * k < LEARNT; k++) {
-      l->t[k]     = l->t[2 * k];
-      l->steps[k] = l->steps[2 * k];
-    }
-    l->n = (LEARNT + 1) / 2;
-  }
-  l->t[l->n]       = now;
-  l->steps[l->n++] = steps - l->before;
+  TraceAdd(&l->trace, t, steps);
+  if (l->marks > LEARNT_LATE)
+    memmove(l->late, l->late + 1, sizeof(Mark) * (size_t)--l->marks);
+  l->late[l->marks++] = (Mark){t, steps, spent};
+  if (l->marks > LEARNT_LATE)
+    Slump(l);
+  if (l->slump.n)
+    TraceAdd(&l->slump, t, steps);
 }
 
 /* (318) from the last known time t since the origin on, up to `until`; least: steps of a second that stops ask for. */
-static double Doublings(const Learnt *l, double t, double until, double least)
+static double Doublings(const Trace *r, double t, double until, double least, double most)
 {
-  const double last = StepsAt(l, t) - StepsAt(l, 0.5 * t), before = StepsAt(l, 0.5 * t) - StepsAt(l, 0.25 * t);
-  const double grows = fmin(fmax(last / before, 1.0), GROWTH);
+  const double last = LastDoubling(r, t), before = LastDoubling(r, 0.5 * t);
+  const double grows = fmin(fmax(last / before, 1.0), most);
   double       left  = 0.0;
 
   for (double from = t, n = grows * last; from < until; from *= 2.0, n *= grows)
@@ -103,19 +150,30 @@ static double Behind(double doubling, double kink, double from, double until, do
   return left;
 }
 
+/* To `until` (s of the scene), before which no kink is, by what one trace shows; NAN: nothing yet. */
+static double Stretch(const Learnt *l, const Trace *r, double until, double least)
+{
+  const double t = Last(r), doubling = Doubling(l);
+
+  if (Known(r))
+    return Doublings(r, t, until - r->origin, least, r == &l->trace ? GROWTH : 1.0);
+  if (doubling > 0.0)
+    return Behind(doubling, r == &l->trace ? l->kink : 0.0, fmax(t, BEHIND * l->dt), until - r->origin, least);
+  return NAN;
+}
+
 double LearntPace(const Learnt *l, const Ahead *a)
 {
-  const double t = Last(l), least = 1.0 / a->stretch, doubling = Doubling(l);
-  double       begin = l->origin, until = (a->kinks ? a->kink[0] : a->end) - begin, left;
+  const Trace *r = &l->trace;
+  const double t = Last(r), least = 1.0 / a->stretch, doubling = Doubling(l);
+  double       begin = r->origin, until = (a->kinks ? a->kink[0] : a->end), left;
 
   if (a->even) /* (319) */
-    return l->n ? (a->end - l->origin - t) * (StepsAt(l, t) - StepsAt(l, 0.5 * t)) / (0.5 * t) : NAN;
-  if (Known(l))
-    left = Doublings(l, t, until, least);
-  else if (doubling > 0.0)
-    left = Behind(doubling, l->kink, fmax(t, BEHIND * l->dt), until, least);
-  else
-    return NAN;
+    return r->n ? (a->end - r->origin - t) * LastDoubling(r, t) / (0.5 * t) : NAN;
+  left = Stretch(l, r, until, least);
+  if (l->slump.n) /* (420) */
+    left = fmax(left, Stretch(l, &l->slump, until, least));
+  until -= begin;
   for (int k = 0; k < a->kinks; k++) {
     const double dt = fmin(t > 0.0 ? l->dt * until / t : l->dt, a->stretch);
 
@@ -158,9 +216,9 @@ double LearntMedian(double forecast, double n)
 
 double LearntSteps(const Learnt *l, const Ahead *a)
 {
-  const double pace = LearntPace(l, a), share = (l->origin + Last(l) - a->from) / (a->end - a->from);
+  const double pace = LearntPace(l, a), share = (l->trace.origin + Last(&l->trace) - a->from) / (a->end - a->from);
 
-  if (a->even || !(a->forecast > 0.0))
+  if (a->even || !(a->forecast > 0.0)) /* no forecast knew of a slump */
     return pace;
   const double median = LearntMedian(a->forecast, l->all); /* (411) */
   const double stands = fmin(Above(Beyond(a->forecast, l->all)) / Above(1.0), 1.0),
@@ -172,6 +230,15 @@ double LearntSteps(const Learnt *l, const Ahead *a)
 double LearntLeft(const Learnt *l, const Ahead *a)
 {
   return LearntSteps(l, a) * l->step;
+}
+
+double LearntFlat(const Learnt *l, const Ahead *a)
+{
+  const Mark *now = &l->late[l->marks - 1];
+
+  if (l->marks <= LEARNT_LATE)
+    return NAN;
+  return (a->end - now->t) * (now->spent - l->late[0].spent) / (now->t - l->late[0].t);
 }
 
 void StepperAhead(const Stepper *s, Ahead *a)

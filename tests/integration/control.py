@@ -83,7 +83,13 @@ def check_folder():
     check_true("stale files do not stand beside new ones", not (out / "meters.csv").exists() and not (out / "report.html").exists())
     moved = scratch() / "moved.yaml"
     moved.write_text(other.read_text())
-    check_true("nor does a case that has moved", launch(binary(), moved, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
+    check_true("nor does a case that was copied", launch(binary(), moved, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
+    third = scratch() / "third.yaml"
+    third.write_text(moved.read_text().replace("porosity: 0.3", "porosity: 0.31").replace("\nregions:", "\n# another\nregions:"))
+    done = launch(binary(), third, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out)
+    check_true("another case of the same title is refused while the first one is there", done.returncode == 2 and "holds the results of another case" in done.stdout, done.stdout[-300:])
+    moved.unlink()
+    check_true("... and one that has moved, and changed, is not", launch(binary(), third, *BP2[1:], "-quiet", "-time_end", "0.2 s", out=out).returncode == 0)
 
 
 def check_advice():
@@ -178,6 +184,49 @@ def check_pressures():
     check_true("pressed by a condition: nothing", pressed.returncode == 0 and not note.findall(pressed.stdout), pressed.stdout[-600:])
 
 
+COLUMN = """title: a column under a sea that rises
+inertia: no
+fields: [solid, water]
+grid: {lower: [0 m, 0 m], upper: [1 m, 25 m], cells: [1, 25]}
+ambient: {pressure: {ramp: [8 MPa, 9 MPa, 0 d, 4 d]}}
+materials: [silt]
+mat_silt: {porosity: 0.45, solid: {density: 2700 kg/m^3}, permeability: {k0: 1e-15 m^2, hydrate_law: none}, elasticity: {E0: 1.5 GPa, nu: 0.3}}
+regions: [bed]
+region_bed: {lower: [0 m, 0 m], upper: [1 m, 24 m], material: silt, pressure: 8 MPa, temperature: 6 degC}
+boundaries: [base, left, right, floor]
+bc_base: {type: roller, axis: y, position: 0 m}
+bc_left: {type: roller, axis: x, position: 0 m}
+bc_right: {type: roller, axis: x, position: 1 m}
+bc_floor: {type: pressure, side: top, pressure: ambient}
+time: {end: 4 d}
+"""
+
+
+def check_retries():
+    """Right behind the start the error falls with dt, not with its cube: two attempts show it, (422), and the next meets the tolerance without much to spare."""
+    case, out = scratch() / "rises.yaml", scratch() / "out"
+    case.write_text(COLUMN)
+    done = launch(binary(), case, "-progress", "0", "-stepper_tol", "1e-4", "-stepper_dt", "4 h", "-stepper_max_steps", "1", out=out)
+    step = re.search(r"error ([\d.e+-]+) of tolerance.*after (\d+) refused", done.stdout)
+    check_true("a first step of 4 h where 40 s would do: refused", step is not None, done.stdout[-400:])
+    check("... so often, five times with the order of the estimate", int(step[2]), (1, 3))
+    check("... and then its error, of the tolerance", float(step[1]), (0.4, 1.0))
+
+
+def check_notes():
+    """Outputs that are asked for beyond the end are told, those at it are not; a temperature that is no field is no ice."""
+    case = scratch() / "rises.yaml"
+    case.write_text(COLUMN)
+    said = lambda *options: launch(binary(), case, "-case_check", *options, out=scratch() / "out").stdout
+    check_true("output_every beyond the end is noted", "note: output_every (10 days) is longer than the run (4 days)" in said("-output_every", "10 d"))
+    check_true("... of probes, too", "note: output_probe_every (5 days) is longer" in said("-output_probe_every", "5 d"))
+    check_true("... and one that ends with it is not", "is longer than" not in said("-output_every", "4 d", "-output_probe_every", "4 d"))
+    stages = said("-stages", "a,b", "-stage_a_end", "1 d", "-stage_b_end", "4 d", "-stage_a_output_every", "2 d", "-output_every", "2 d", "-stage_b_output_every", "5 d")
+    check_true("... by stage", "note: b: output_every (5 days) is longer than the stage (3 days)" in stages and stages.count("is longer than") == 1, stages)
+    done = launch(binary(), case, "-region_bed_temperature", "-3 degC", "-stepper_max_steps", "2", "-quiet", out=scratch() / "out")
+    check_true("a scene without heat has no ice", "melting point" not in done.stdout and "2 steps" in done.stdout, done.stdout[-300:])
+
+
 def check_words():
     """A function of time in one word, and a probe that the case does not have."""
     read = lambda *options: (run(binary(), *BP2, "-quiet", "-time_end", "0.1 s", *options, out=scratch() / "out").out / "case.yaml").read_text()
@@ -195,6 +244,8 @@ def main():
     check_words()
     check_limit()
     check_slivers()
+    check_retries()
+    check_notes()
     check_checkpoints()
     check_progress()
     check_folder()

@@ -10,6 +10,7 @@
 #include "clathra/stepper.h"
 #include "ranks.h"
 #include "recorded_runs.h"
+#include "../../src/run/run_private.h"
 
 #define N 3
 #define GOOD(call) assert_int_equal((call), 0)
@@ -222,7 +223,7 @@ static void TimeLeftIsLearnt(void **state)
       {"an early and a late kink", Kinked, {.end = 1e6, .stretch = INFINITY, .kinks = 2, .kink = {3e4, 4e5}}},
       {"two late kinks", Kinked, {.end = 1e6, .stretch = INFINITY, .kinks = 2, .kink = {3e5, 6e5}}},
   };
-  Learnt l = {.n = 0};
+  Learnt l = {.told = 0};
 
   assert_true(fabs(LearntMedian(100.0, 0.0) - 100.0) < 0.1); /* (411): all is left, ... */
   assert_true(fabs(LearntMedian(100.0, 100.0) / (100.0 * (exp2(0.6744897501960817) - 1.0)) - 1.0) <
@@ -237,6 +238,89 @@ static void TimeLeftIsLearnt(void **state)
     printf("time left after 5 %%, %-26s off by a factor of %.3f at most\n", run[k].what, worst);
     assert_true(worst < 2.0);
   }
+}
+
+/* Steps in proportion to time, until at a share `fell` of the run gas comes: then so many steps of 1e-7 of it, from
+   where they grow back by 15 %.  What is said to be left of it `at` steps behind, over what is. */
+static double SlumpOff(double fell, int stood, int at, double *flat)
+{
+  const double end = 1e6, fall = fell * end;
+  double       all = 0.0, off = NAN;
+
+  for (int count = 1; count >= 0; count--) {
+    Told   r    = {.ahead = {.end = end, .stretch = INFINITY, .forecast = 80.0}};
+    double dt   = 1.0;
+    int    late = 0;
+
+    for (double t = 0.0; t < 0.999999 * end;) {
+      late += t >= fall;
+      dt = late == 0 ? fmax(1.0, 0.1 * t) : late <= stood ? 1e-7 * end : fmin(1.15 * dt, 0.1 * t);
+      t += fmin(dt, end - t);
+      Tell(&r, t, 1.0);
+      if (late == at && !count) {
+        off   = Off(&r, all);
+        *flat = LearntFlat(&r.l, &r.ahead) / (all - r.spent);
+      }
+    }
+    all = r.spent;
+  }
+  return off;
+}
+
+/* (420) and (421): steps that fall by orders of magnitude between two kinks, as where the first gas comes. */
+static void ASlumpIsSeen(void **state)
+{
+  static const double fell[]  = {0.2, 0.7};
+  static const int    stood[] = {15, 40}, at[] = {12, 15, 40, 60};
+  double              flat;
+
+  for (int k = 0; k < 16; k++) {
+    const int    n = stood[k / 4 % 2], i = at[k % 4];
+    const double off = SlumpOff(fell[k / 8], n, i, &flat);
+
+    printf("at %.1f %d steps of a ten-millionth, %d later: left %.2f of what is, %.3g if they stay\n", fell[k / 8], n,
+           i, off, flat);
+    assert_true(off > 0.5 && off < 3.0);
+    assert_true(i > n || flat > 1e4);
+  }
+  SlumpOff(0.2, 15, 5, &flat);
+  assert_true(flat < 3.0); /* it counts the last ten steps */
+}
+
+/* Slow is what has taken twice the forecast, of steps or on the clock, and has ten times as much left. */
+static void SlowBySteps(void **state)
+{
+  const Forecast f    = {.implicit_steps = 80.0, .implicit_seconds = 22.0};
+  Slow           slow = {.next = 160.0, .clock = 44.0};
+  Pace           p    = {.left = 801.0, .step = 0.1, .spent = 16.0};
+
+  assert_true(SlowIs(&slow, &f, 160, &p));
+  assert_false(SlowIs(&slow, &f, 159, &p));
+  p.left = 799.0;
+  assert_false(SlowIs(&slow, &f, 160, &p));
+  p.left = NAN;
+  assert_false(SlowIs(&slow, &f, 160, &p));
+  p = (Pace){.left = 801.0, .step = 0.01, .spent = 1.6};
+  assert_false(SlowIs(&slow, &f, 160, &p)); /* it is over in seconds */
+}
+
+static void SlowByTheClock(void **state)
+{
+  const Forecast f    = {.implicit_steps = 80.0, .implicit_seconds = 22.0};
+  Slow           slow = {.next = 160.0, .clock = 44.0};
+  Pace           p    = {.left = 60.0, .step = 4.3, .spent = 45.0};
+
+  assert_true(SlowIs(&slow, &f, 10, &p));
+  p.step = 3.0;
+  assert_false(SlowIs(&slow, &f, 10, &p)); /* a slow machine is no slow run */
+  p = (Pace){.left = 60.0, .step = 4.3, .spent = 43.0};
+  assert_false(SlowIs(&slow, &f, 10, &p));
+  slow    = (Slow){.next = 20.0, .clock = 90.0, .said = true};
+  p.spent = 91.0;
+  assert_false(SlowIs(&slow, &f, 19, &p));
+  assert_true(SlowIs(&slow, &f, 20, &p));
+  p.spent = 89.0;
+  assert_false(SlowIs(&slow, &f, 20, &p));
 }
 
 /* Recorded runs, wells and heaters in hydrate among them: of the lines after 5 % this share is within a factor of two,
@@ -381,6 +465,9 @@ int main(int argc, char **argv)
                                      cmocka_unit_test_setup_teardown(ASignalStopsAfterTheStep, Start, End),
                                      cmocka_unit_test_setup_teardown(TemperatureCountsByItsChange, Start, End),
                                      cmocka_unit_test(TimeLeftIsLearnt),
+                                     cmocka_unit_test(ASlumpIsSeen),
+                                     cmocka_unit_test(SlowBySteps),
+                                     cmocka_unit_test(SlowByTheClock),
                                      cmocka_unit_test(TimeLeftOfRecordedRuns)};
 
   return RunTests(argc, argv, tests, NULL, NULL);

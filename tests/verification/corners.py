@@ -44,6 +44,9 @@ judge("corners", "a heater in hydrate, coarse, without stabilisation_reaction_he
 check_true("... said at the end, with the key that mends it first", "colder than start, conditions and hydrate" in bare.output and "in this order: stabilisation_reaction_heat: yes" in bare.output, bare.output[-600:])
 check_true("... and in the summary", "  T of particles from " in (bare.out / "summary.txt").read_text())
 judge("corners", "a heater in hydrate with stabilisation_reaction_heat: colder than the start, K", max(14.4 - mended.min(), 0.0), 0.5)
-judge("corners", "... warmer than the heater, K: (395) rests where hydrate reacts", max(mended.max() - HEATER, 0.0), 5.0)
+judge("corners", "... warmer than the heater, K: (395) rests where hydrate still is", max(mended.max() - HEATER, 0.0), 5.0)
 check_true("... which the end says, and nothing of the cold", "warmer than start, conditions" in held.output and "colder than start" not in held.output, held.output[-300:])
+_, gone = field(*ROD, "-stabilisation_reaction", "yes")  # no hydrate is left in the heater's cells: (395) is back
+judge("corners", "a heater in hydrate with stabilisation_reaction: warmer than the heater, K", max(gone.max() - HEATER, 0.0), 1.0)
+judge("corners", "... colder than the start, K", max(14.4 - gone.min(), 0.0), 1.0)
 finish()

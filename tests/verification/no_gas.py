@@ -319,6 +319,20 @@ def clay():
     check("... two ranks, p_g, largest difference (Pa)", np.max(np.abs(one - two)), 1.0)
 
 
+def metered():
+    """meters.csv tells methane in water from free gas: a heater melts hydrate in sand that starts without gas."""
+    run = Run.of_case(CASES / "heater.yaml", "-quiet", "-region_layer_Sw", 0.6, "-region_layer_Sg", 0, "-stabilisation_reaction_heat", "yes", "-meters", "left", "-meter_left_side", "left",
+                      "-time_end", "12 h", "-output_every", "12 h", "-mat_sand_gas_eos", "ideal")  # fmt: skip
+    m = run.csv("meters.csv")
+    for row, (t, v) in zip((0, -1), run.snapshots()):
+        pores = v["porosity"] * v["volume"]
+        dissolved, free = np.sum(pores * v["S_w"] * HENRY * 0.016 * v["p_g"]), np.sum(pores * v["S_g"] * v["p_g"] * 0.016 / (8.314 * (v["T"] + 273.15)))
+        judge("gas", f"meters at {t / 3600:g} h: dissolved methane against Henry's law, relative", abs(m["dissolved_gas_kg"][row] / dissolved - 1), 1e-6)
+        judge("gas", f"... free gas, {free / dissolved:.2g} of that, against the ideal gas law, of both", abs(m["free_gas_kg"][row] - free) / (free + dissolved), 1e-3)
+        judge("gas", "... both against the masses of the particles, relative", abs((m["free_gas_kg"][row] + m["dissolved_gas_kg"][row]) / np.sum(v["mass_gas"]) - 1), 1e-12)
+    judge("gas", "... standard volumes, relative", np.max(np.abs(m["dissolved_gas_std_m3"] * 0.6789 / m["dissolved_gas_kg"] - 1)), 1e-11)
+
+
 if __name__ == "__main__":
     clay()
     inflow()
@@ -334,4 +348,5 @@ if __name__ == "__main__":
     disappears()
     runs_short()
     column()
+    metered()
     finish()
