@@ -154,10 +154,29 @@ static void TestExpands(void **state)
   Free(s);
 }
 
+/* Heat of compression (290) counts from the pressures that the stage starts from: none at its starred values, where
+   only what flows is left. */
+static void TestCompression(void **state)
+{
+  SmallScene  *s    = Make(false, 0, false);
+  double       from = 0.0, to = 0.0;
+  const double dt = 1e-6; /* s: what flows adds next to nothing */
+
+  (void)state;
+  s->m.stage.dt = dt;
+  for (PetscInt p = 0; p < s->m.P.n; p++) {
+    from = fmax(from, fabs(Evaluated(s, p, s->stage.x_star, true).state.squeezed) * dt);
+    to   = fmax(to, fabs(Evaluated(s, p, s->m.x_n, true).state.squeezed) * dt);
+  }
+  Say("heat of compression at the starred pressures %.1e J, of those at t_n %.1e\n", Largest(from), Largest(to));
+  Check(Largest(to) > 0.0 && Largest(from) < 1e-6 * Largest(to));
+  Free(s);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestJacobian), cmocka_unit_test(TestShare),
-                                     cmocka_unit_test(TestExpands)};
+                                     cmocka_unit_test(TestExpands), cmocka_unit_test(TestCompression)};
 
   return RunTests(argc, argv, tests, SolveWell, NULL);
 }
