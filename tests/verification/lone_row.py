@@ -17,7 +17,7 @@ HEAVY = ("-gravity", "0 m/s^2,-9.81 m/s^2", "-mat_sand_permeability_k0", "1e-14 
 rows, ends = [], {}
 for name, more in (("light", ()), ("heavy", HEAVY)):
     for scheme, ranks in (("sdirk2", 1), ("sdirk2", 2), ("hybrid", 1)):
-        run, who = Run.of_case(CASE, *ROW, *more, "-stepper_type", scheme, ranks=ranks), f"{name}, {scheme}, {ranks} ranks"
+        run, who = Run.of_case(CASE, *ROW, *more, "-stepper_type", scheme, ranks=ranks), f"a row of particles, {name}, {scheme}, {ranks} ranks"
         first, last = run.snapshots()[0][1], run.snapshots()[-1][1]
         check_true(f"{who}: goes to the end", abs(run.balance["time_s"][-1] - 0.1) < 1e-9)
         volume = last["volume"] * last["porosity"] * (1 - last["S_w"]) / (first["volume"] * first["porosity"] * (1 - first["S_w"]))
@@ -30,9 +30,9 @@ for name, more in (("light", ()), ("heavy", HEAVY)):
         judge("gas", f"{who}: methane, of the mass at the start", np.max(np.abs(run.balance["methane_error"])), 1e-13)
         judge("gas", f"{who}: water, of the mass at the start", np.max(np.abs(run.balance["water_error"])), 1e-13)
         if scheme == "sdirk2":
-            judge("row", f"{who}: gradient of pressures across it (Pa/m)", across, 1e3)
+            judge("gas", f"{who}: gradient of pressures across it (Pa/m)", across, 1e3)
             check(f"{who}: Newton iterations a step", newton, (0, 4))
-    judge("gas", f"{name}: p_g of two ranks against one", np.max(np.abs(ends[name, "sdirk2", 2] / ends[name, "sdirk2", 1] - 1)), 1e-9)
-    judge("gas", f"{name}: p_g of sdirk2 against hybrid", np.max(np.abs(ends[name, "sdirk2", 1] / ends[name, "hybrid", 1] - 1)), 5e-3)
+    judge("gas", f"a row of particles, {name}: p_g of two ranks against one", np.max(np.abs(ends[name, "sdirk2", 2] / ends[name, "sdirk2", 1] - 1)), 1e-9)
+    judge("gas", f"a row of particles, {name}: p_g of sdirk2 against hybrid", np.max(np.abs(ends[name, "sdirk2", 1] / ends[name, "hybrid", 1] - 1)), 5e-3)
 table(["bar", "integrator", "ranks", "p V off", "gradient across (Pa/m)", "Newton iterations a step"], rows)
 finish()
