@@ -257,11 +257,11 @@ def slope_warming(run, *axes):
         axes[3].plot(b["time_s"] / year - settled, 100 * b["hydrate_kg"] / b["hydrate_kg"][0], color=colour, label=what)
     axes[3].set(xlabel="years", ylabel="hydrate left (%)", ylim=(0, 105))
     axes[3].legend()
-    weak = run("-stage_warm_materials", "slope,weak")
+    weak = run("-stage_warm_materials", "slope,weak", "-stage_warm_end", "165a")
     end = weak.snapshots[-1][1]
     body(axes[4], end["eps_d_p"][:, 0], end, "$\\epsilon_d^p$")
     m = slide.measure(slide.Run(weak.out))
-    axes[4].set_title(f"weak ground after 150 years: failed {m['failed_volume_m2']:.0f} m³/m,\nrunout {m['runout_m']:.0f} m, retrogression {m['retrogression_m']:.0f} m", fontsize=8)
+    axes[4].set_title(f"weak ground after {weak.snapshots[-1][0] / year - settled:.0f} years: failed {m['failed_volume_m2']:.0f} m³/m,\nrunout {m['runout_m']:.0f} m, retrogression {m['retrogression_m']:.0f} m", fontsize=8)
     b, p = weak.csv("balance"), weak.csv("probes")
     late = b["time_s"] > 129 * year
     row, moved = np.arange(late.sum()), np.interp(b["time_s"][late], p["time_s"], p["face.u_x_m"])

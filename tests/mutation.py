@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "tests" / "verification"))
 from common import ENVIRONMENT  # noqa: E402
 
 # The quick tests, in the order in which they are asked: seconds in all.
-UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene",
+UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "unseen", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene",
         "fieldsets", "turning")  # fmt: skip
 FIRST = {"laws": "laws_values", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
@@ -69,6 +69,10 @@ FAULTS = [
     ("the tangent has 1 % less of every fourth term", MODEL + "rows.c", [("sum[c][l] += s->factor[q][k + c]", "sum[c][l] += (q % 4 == 3 ? 0.99 : 1.0) * s->factor[q][k + c]")]),
     ("the tangent does not know the cell's mean strain (88)", MODEL + "rows.c", [("in[VectorAt(IN_GRADU, d, d)][vs + i] += dt * b->B[i]", "in[VectorAt(IN_GRADU, d, d)][vs + i] += 0.0 * dt * b->B[i]"), ("in[IN_HOOP][vs + i] += dt * b->B[i]", "in[IN_HOOP][vs + i] += 0.0 * dt * b->B[i]")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("= m->c->stabilisation.ghost_penalty * ratio", "= 10.0 * m->c->stabilisation.ghost_penalty * ratio")]),
+    ("slivers are tied until they hold half of what is beside them (351)", MODEL + "stabilise.c", [("fmax(1.0 - 4.0 * least / most, 0.0) * least", "fmax(1.0 - 2.0 * least / most, 0.0) * least")]),
+    ("the tie (351) is that of whole pressures, not of what they change by", MODEL + "stabilise.c", [("pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);", "pull -= 0.0 * g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);")]),
+    ("a row of particles is tied by what both nodes share (417)", MODEL + "unseen.c", [("A * B / (A + B) : 0.0", "both : 0.0")]),
+    ("a thin gas takes its share, its water all (416)", MODEL + "evaluate.c", [("    in[IN_P + f] -= withheld;", "    in[IN_P + f] -= f == PHASE_G ? withheld : 0.0;"), ("less * (o->D[k][IN_P + PHASE_W] + o->D[k][IN_P + PHASE_G])", "less * o->D[k][IN_P + PHASE_G]")]),
     ("hybrid's particle of a layer takes the flow of its nodes (350)", EXPLICIT + "rates.c", [("rt, conduct * v[at + B_J], v", "rt, (1.0 + 0.0 * conduct) * v[at + B_J], v"), ("rt, conduct * v[at + B_J + 1], v", "rt, (1.0 + 0.0 * conduct) * v[at + B_J + 1], v")]),
     ("inertia of hybrid's fluids in layers without its weight (310)", EXPLICIT + "velocities.c", [("PetscSqr(b->flow) * f[FL_Inertia(s)]", "b->flow * f[FL_MI]")]),
     ("a node's flow is shared as if there were no hydrate (350)", MODEL + "step.c", [("ParticleMaterial(m, p), m->P.f[P_SH][p])", "ParticleMaterial(m, p), 0.0)")]),

@@ -159,6 +159,7 @@ typedef struct {
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
   Leaving  leaving;             /* particles that crossed the edge of the grid (373) */
+  bool     relative_gas;        /* changes of p_g in proportion to it, by implicit steps (416) */
 
   /* The implicit system's: what stands from here on is seen by src/model alone (tests/layers.py). */
   PetscLogEvent event[EVENT_COUNT];

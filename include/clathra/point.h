@@ -56,15 +56,18 @@ typedef struct {
   double          spread[PHASE_COUNT]; /* (200) at t_n, m^2/(Pa s) */
   double          upwind[3];           /* (293), xx, yy, xy, W/(m K) */
   double proj[PHASE_COUNT][CL_DIM];    /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
-  double shift[3];    /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
-  double held;        /* (381), at t_n; 0: the reaction is as fast as its law */
-  double mobility;    /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
-  double bracket;     /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
-  bool   compression; /* heat of compression and throttling (290); then also ... */
-  double p_star[PHASE_COUNT];                 /* ... starred p_w, p_g, Pa */
-  double gravity[CL_DIM];                     /* ... m/s^2 */
-  double dt;                                  /* dt' of the stage */
-  const Beds    *beds;                        /* at t_n; NULL: none; then also ... */
+  double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
+  double
+      withheld; /* (1 - a)/a (416): both pressures lack so much of what p_g has changed by since p_g,n; then also ... */
+  double         pg_n;                /* ... the particle's p_g at t_n, Pa */
+  double         held;                /* (381), at t_n; 0: the reaction is as fast as its law */
+  double         mobility;            /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
+  double         bracket;             /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
+  bool           compression;         /* heat of compression and throttling (290); then also ... */
+  double         p_star[PHASE_COUNT]; /* ... starred p_w, p_g, Pa */
+  double         gravity[CL_DIM];     /* ... m/s^2 */
+  double         dt;                  /* dt' of the stage */
+  const Beds    *beds;                /* at t_n; NULL: none; then also ... */
   double         weight[PHASE_COUNT][CL_DIM]; /* ... rho b of the fluids at t_n, N/m^3 */
   const Ambient *ambient;                     /* at the end of the stage; NULL: no pressure around the body */
   double         x[CL_DIM]; /* where the particle's values belong at t_n, m; for the ambient pressure */

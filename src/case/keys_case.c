@@ -145,13 +145,14 @@ const Key case_key[] = {
         "pressures and temperature alone, which leaves the balance of energy as it is"),
     CHOICE(
         Case, "stepper_pressures", pressures, "nodes", share_word,
-        "hybrid, explicit: changes of pressure shared over nodes; likewise, but those of p_g in proportion to the p_g "
-        "that each particle has (relative), for gas in what tears; or by each particle alone (particles: the paper's "
-        "form, which rings)"),
+        "changes of pressure shared over nodes; likewise, but those of p_g in proportion to the p_g that each particle "
+        "has (relative), for gas in what tears; or, hybrid and explicit, by each particle alone (particles: the "
+        "paper's form, which rings)"),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
          "at free surfaces; 0 = off"),
     REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",
-         "on changes of pressure in slivers of cells, for undrained bodies; 0 = off"),
+         "on changes of pressure in slivers of cells and where particles do not see them, for undrained bodies; 0 = "
+         "off"),
     REAL(Case, "stabilisation_pressure_projection", scene.stabilisation.pressure_projection, "", "[0,100]", "1",
          "undrained limit; 0 = off"),
     CHOICE(

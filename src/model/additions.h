@@ -3,7 +3,8 @@
 
 #include "clathra/model.h"
 
-/* Second difference of the ghost penalties (22), (351): a node with its neighbours along one axis. */
+/* Second difference of the ghost penalties (22), (351): a node with its neighbours along one axis; or the difference
+   (417) of two. */
 typedef struct {
   PetscInt node[3];
   double   second[3];           /* h times the jump of the gradient (303); 1, -2, 1 where cells are equal */

@@ -86,6 +86,33 @@ static void GatherInputs(const Model *m, PetscInt p, const Reach *r, const doubl
   }
 }
 
+#define MOST_SHARE 2.0 /* of what its nodes change by: where they hold less than half of a particle's gas, or none */
+
+/* (416): 1 - a. */
+static double Withheld(const Model *m, PetscInt p, const Sums *s)
+{
+  const double own = OwnValue(m, p, F_PG), nodal = s->S[GIVE_START + F_PG - F_PW];
+
+  if (!(own > 0.0))
+    return 0.0;
+  return 1.0 - (own < MOST_SHARE * nodal ? own / nodal : MOST_SHARE);
+}
+
+/* (416): inputs, or with them the slopes of all outputs. */
+static void WithholdInputs(double less, double in[IN_COUNT])
+{
+  const double withheld = less * in[IN_P + PHASE_G];
+
+  for (int f = 0; f < PHASE_COUNT; f++)
+    in[IN_P + f] -= withheld;
+}
+
+static void WithholdSlopes(double less, PointOutput *o)
+{
+  for (int k = 0; k < OUT_COUNT; k++)
+    o->D[k][IN_P + PHASE_G] -= less * (o->D[k][IN_P + PHASE_W] + o->D[k][IN_P + PHASE_G]);
+}
+
 /* The particle's own. */
 static void AddOwn(const Model *m, PetscInt p, double in[IN_COUNT])
 {
@@ -131,11 +158,11 @@ static void GatherFace(const Model *m, PetscInt p, const Reach *r, const double 
   }
 }
 
-/* (1) of the pressure that the stage starts from, Pa. */
-static double StarredPressure(const Model *m, PetscInt p, const Reach *r, int f)
+/* What nodes add to a pressure until the stage starts, Pa. */
+static double StarredChange(const Model *m, const Reach *r, int f)
 {
   const FieldSet *fs  = &m->c->fields;
-  double          sum = m->P.f[HeldPressure(fs, P_PW, f)][p];
+  double          sum = 0.0;
 
   for (int a = 0; a < r->n; a++) {
     const PetscInt k = r->node[a] * fs->n + PlaceP(fs, f);
@@ -145,7 +172,15 @@ static double StarredPressure(const Model *m, PetscInt p, const Reach *r, int f)
   return sum;
 }
 
-static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums *s, PointHistory *h)
+/* (1), (416) of the pressure that the stage starts from, Pa. */
+static double StarredPressure(const Model *m, PetscInt p, const Reach *r, int f, double less)
+{
+  const double withheld = less != 0.0 ? less * StarredChange(m, r, PHASE_G) : 0.0;
+
+  return m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + StarredChange(m, r, f) - withheld;
+}
+
+static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums *s, double less, PointHistory *h)
 {
   const FieldSet *fs = &m->c->fields;
 
@@ -158,13 +193,15 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
   h->held     = m->added->held ? m->added->held[p] : 0.0;
   h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
+  h->withheld = less / (1.0 - less);
+  h->pg_n     = less != 0.0 ? OwnValue(m, p, F_PG) : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < 3; k++)
     h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
   h->compression = m->c->compression_heat;
   for (int k = 0; h->compression && k < PHASE_COUNT; k++)
-    h->p_star[k] = fs->phase[k] ? StarredPressure(m, p, r, k) : 0.0;
+    h->p_star[k] = fs->phase[k] ? StarredPressure(m, p, r, k, less) : 0.0;
   for (int d = 0; h->compression && d < CL_DIM; d++)
     h->gravity[d] = m->bc.gravity[d];
   h->beds = m->beds ? &m->beds[p].A : NULL;
@@ -197,14 +234,19 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
 
   ReachExpand(m, p, r);
   Sum(m, r, &sums);
+  const double less = m->relative_gas ? Withheld(m, p, &sums) : 0.0;
   GatherInputs(m, p, r, x, &sums, in);
+  if (less != 0.0)
+    WithholdInputs(less, in);
   AddOwn(m, p, in);
-  GatherHistory(m, p, r, &sums, &h);
+  GatherHistory(m, p, r, &sums, less, &h);
   const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
   if (status != CL_OK)
     ModelNoteFailure(m, status, why, p);
   else if (m->P.f[P_HEAT] && m->c->fields.heat)
     o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* (69) */
+  if (tangent && less != 0.0)
+    WithholdSlopes(less, o);
   return status;
 }
 

@@ -69,6 +69,14 @@ static inline PetscInt ModelOffset(const Model *m, PetscInt I, PetscInt K)
   return k;
 }
 
+/* rho s of a fluid at a node at t_n, kg/(m^3 Pa). */
+static inline double StoredAt(const Model *m, PetscInt I, int f)
+{
+  const double *c = &m->coef[I * NC_COUNT];
+
+  return c[NC_RHO + f] * c[NC_STORAGE + f];
+}
+
 /* What a Jacobian is assembled for. */
 typedef struct {
   FieldSet       fs;                   /* unknowns and rows */
@@ -183,8 +191,9 @@ PetscErrorCode DonorBuild(Model *m);
 /* (353), (354): what they need of a particle at t_n; the change at the end of the step. */
 void           ExchangeSet(const Model *m, PetscInt p, const PointProperties *q);
 PetscErrorCode ExchangeBuild(Model *m);
-/* (22) and (23): lists on the configuration at t_n, residual, Jacobian. */
+/* (22) and (23): lists on the configuration at t_n, residual, Jacobian; the ties (417) join the lines of (22). */
 PetscErrorCode StabilisationBuild(Model *m);
+PetscErrorCode UnseenBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, bool slope, double *f); /* slope: of a change x */
 void           StabilisationJacobian(Model *m, const Assembly *to);
 /* Makes ready to assemble for the unknowns `fs`: those of the scene, or what is left without fluid velocities. */

@@ -1,4 +1,5 @@
-/* Ghost penalty (22) and pressure projection (23): both sum to zero over the nodes. */
+/* Ghost penalty (22) with the ties (351), (417) of changes of pressure, and pressure projection (23): all sum to zero
+   over the nodes. */
 #include "gather.h"
 
 #define SLIVER 1e-6 /* of a cell */
@@ -155,7 +156,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(m->added->ghost));
-  PetscCall(PetscMalloc1(2 * PetscMax(m->map.n_owned, 1), &m->added->ghost));
+  PetscCall(PetscMalloc1(2 * CL_DIM * PetscMax(m->map.n_owned, 1), &m->added->ghost)); /* of them half for (417) */
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
     for (int d = 0; d < CL_DIM; d++) {
       const GridLines *line = &m->grid.line[d];
@@ -184,7 +185,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
                            .kappa  = c[NC_KAPPA],
                            .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
       for (int f = 0; f < PHASE_COUNT; f++)
-        ghost->store[f] = m->c->stabilisation.ghost_storage * tied * c[NC_RHO + f] * c[NC_STORAGE + f];
+        ghost->store[f] = m->c->stabilisation.ghost_storage * tied * StoredAt(m, I, f);
     }
   }
   m->added->nghost = n;
@@ -208,6 +209,8 @@ static PetscErrorCode BuildGhost(Model *m)
           near[I] || IsCut(fill, CellBeside(m, m->map.ij[I], d, -1)) || IsCut(fill, CellBeside(m, m->map.ij[I], d, 1));
   }
   PetscCall(BuildGhostLines(m, fill, near));
+  if (m->c->stabilisation.ghost_storage > 0.0 && m->c->fields.fluid)
+    PetscCall(UnseenBuild(m));
   PetscCall(PetscFree2(fill, near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

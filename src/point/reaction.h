@@ -75,7 +75,8 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
   const Kinetics *k    = &mat->kinetics;
   const double    m0   = fmax(h->m_star[0], 0.0);
   const Jet       T_r  = JetShift(T, h->shift[2]);
-  const Jet       pw_r = JetShift(pw, h->shift[0]), pg_r = JetShift(pg, h->shift[1]);
+  const Jet       held = JetScale(h->withheld, JetShift(pg, -h->pg_n)); /* (416) */
+  const Jet       pw_r = JetAdd(JetShift(pw, h->shift[0]), held), pg_r = JetAdd(JetShift(pg, h->shift[1]), held);
   double          dK, dpe;
 
   s->limited = mat->reacts && h->m_star[0] < 0.0;

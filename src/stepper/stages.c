@@ -55,6 +55,7 @@ PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
   s->crawl        = 0;
 
   s->model->leaving.removes = c->leaving == LEAVING_REMOVE;
+  s->model->relative_gas    = c->pressures == PRESSURES_RELATIVE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
