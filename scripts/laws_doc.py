@@ -30,7 +30,7 @@ LAWS = [
      (231, 232, 122, 123, 125), r"kinetics_(equilibrium|A\d)|water_salinity", "Sloan; Moridis (2003); Kamath (1984); Masuda (1999); Dickens and Quinby-Hunt (1994)"),
     ("Rate of the reaction", "rate_constant", [("dE = 0", "kinetics_K0 1e-11 kinetics_dE 0"), ("dE = 81 kJ/mol", "kinetics_K0 8.06e3 kinetics_dE 81084.2")],
      (11, 12, 13, 371, 233), r"kinetics_(active|K0|dE)|hydrate_(number|molar_mass)|water_molar_mass", "Kim, Bishnoi, Heidemann and Rizvi (1987)"),
-    ("Surface on which hydrate forms", "formation_surface", [("", "")], (234,), r"porosity|kinetics_A_geo", "the paper"),
+    ("Surface on which hydrate forms", "formation_surface", [("", "")], (234, 418), r"porosity|kinetics_A_geo", "the paper; (418) ours, where water holds methane"),
     ("Heat of dissociation", "latent_heat", [("linear", "latent_heat_law linear"), ("kirchhoff", "latent_heat_law kirchhoff")], (235, 130), r"latent_heat_\w+", "the paper; Kirchhoff (1858)"),
     ("Density of gas", "gas_density", [("peng_robinson", "gas_eos peng_robinson"), ("ideal", "gas_eos ideal")], (222, 120), r"gas_(molar_mass|eos|critical_\w+|acentric_factor)", "Peng and Robinson (1976)"),
     ("Density of water, grains and hydrate", "water_density", [("expansion 0", "water_expansion 0"), ("expansion 2e-4 1/K", "water_expansion 2e-4"), ("salinity 0.035", "water_expansion 0 water_salinity 0.035")],

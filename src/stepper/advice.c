@@ -64,25 +64,28 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is there sediment without gas, where methane in water has the pressure that gas would have (101)? */
+static bool LacksGas(const Scene *c)
+{
+  return c->material[0].gas.trace > 0.0;
+}
+
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 {
-  const Scene *c      = s->model->c;
-  const bool   reacts = SceneReacts(c) && c->fields.phase[PHASE_G];
-  char         words[768];
+  static const char *const saturation[2] = {"stabilisation_saturation: yes, where saturations alternate; ",
+                                            "stabilisation_saturation: no, where gas comes and goes; "};
+  const Scene             *c             = s->model->c;
+  const bool reacts = SceneReacts(c) && c->fields.phase[PHASE_G], upwind = c->stabilisation.saturation_upwind;
+  char       words[768];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(
-      words, sizeof(words), "%s%s%s%s%s%s",
-      reacts && c->fields.heat && !c->stabilisation.lumped_reaction
-          ? "stabilisation_reaction: yes, where hydrate is heated; "
+      words, sizeof(words), "%s%s%s%s%s",
+      reacts && c->fields.heat && !c->stabilisation.held_reaction
+          ? "stabilisation_reaction_heat: yes, where hydrate reacts fast; "
           : "",
-      SceneTwoPressures(c) && !c->stabilisation.saturation_upwind
-          ? "stabilisation_saturation: yes, where saturations alternate; "
-          : "",
+      SceneTwoPressures(c) && upwind == LacksGas(c) ? saturation[upwind] : "",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
-      newton && SceneTwoPressures(c) && !c->stabilisation.upstream
-          ? "stabilisation_upstream: yes, where gas comes and goes; "
-          : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",

@@ -60,18 +60,18 @@ def starts(well):
 
 
 def fast():
-    """Coarse cells, p_0 of 15 kPa and a reaction that holds T at equilibrium: it goes as far as most of the ramp (30 days: docs/limits.md).
+    """Coarse cells, p_0 of 15 kPa and a reaction that holds T at equilibrium, 30 days: as wide cells can have it, (381), with gas of donors, (332).
     Steps were cut to seconds where Newton's method had to take the update of methane (104) or nothing, and where rows of gas were held to less than their round-off."""
     case = ROOT / "tests" / "verification" / "cases" / "fast_well.yaml"
-    run = Run.of_case(case, "-time_end", "1.5 d", "-output_times", "1.5 d")
+    run = Run.of_case(case)
     taken, refused = map(int, re.search(r"(\d+) steps, (\d+) refused", run.output).groups())
-    judge("gas", "first gas, a fast reaction in coarse cells: steps", float(taken), 90.0)
-    judge("gas", "first gas, a fast reaction in coarse cells: steps refused", float(refused), 12.0)
+    judge("gas", "first gas, a fast reaction in coarse cells: steps", float(taken), 75.0)
+    judge("gas", "first gas, a fast reaction in coarse cells: steps refused", float(refused), 6.0)
     v = run.snapshots()[-1][1]
     sand = (v["initial_position"][:, 1] > 4) & (v["initial_position"][:, 1] < 8)
     p = (v["S_w"] * v["p_w"] + v["S_g"] * v["p_g"]) / (1 - v["S_h"])
-    judge("gas", "first gas, a fast reaction in coarse cells: lowest pore pressure of the sand, MPa", p[sand].min() / 1e6, (6.9, 13))  # the well's: 7
-    judge("gas", "first gas, a fast reaction in coarse cells: coldest, degC", v["T"].min(), (9.5, 13))  # of hydrate at 7 MPa: 9.7
+    judge("gas", "first gas, a fast reaction in coarse cells: lowest pore pressure of the sand, MPa", p[sand].min() / 1e6, (4.8, 13))  # the well's: 5
+    judge("gas", "first gas, a fast reaction in coarse cells: coldest, degC", v["T"].min(), (6.7, 13))  # of hydrate at 5 MPa: 6.8
     judge("gas", "first gas, a fast reaction in coarse cells: largest S_h, which started at 0.6", v["S_h"].max(), 0.63)
     for what in ("water", "methane"):
         judge("gas", f"first gas, a fast reaction in coarse cells: {what}, largest error of any step", np.max(np.abs(run.balance[f"{what}_error"])), 1e-12)
