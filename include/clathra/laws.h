@@ -29,6 +29,11 @@ const char *const *RetentionTypes(void); /* NULL-terminated */
 double RetentionNarrowing(const Retention *law, double Sh);
 /* Slope of s_g in S_h, of that in p_c (1/Pa), (320). */
 double RetentionHydrateSlope(const Retention *law, double pc, double Sh, double ds_dpc);
+/* Pressure scale of trapped gas, Pa: p_trap, or p_0 where that is zero or unset. */
+static inline double RetentionTrapScale(const Retention *law)
+{
+  return law->p_trap > 0.0 ? law->p_trap : law->p0;
+}
 /* s_g at p_c (Pa) in pores that hydrate fills to S_h, with its slopes, 1/Pa and -. */
 static inline double RetentionGasShare(const Retention *law, double pc, double Sh, double *ds_dpc, double *ds_dSh)
 {

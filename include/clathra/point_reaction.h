@@ -79,13 +79,19 @@ INLINE double ReactionDissociated(double from, double a, double *slope)
   return gone ? -from : -from * (a / (1.0 + a)); /* never more than there is */
 }
 
-/* (418): W, the surface of hydrate in water that holds methane (trace: H of (101)) over A_geo s_w (1 - S_h)^3: with it
-   (13) begins at p_e with the surface of (12). */
-INLINE double ReactionWet(double trace, double phi, double Sh)
-{
-  const double v = 1.0 - Sh;
+/* W of (418) with its slope in p_c (1/Pa). */
+typedef struct {
+  double v, pc;
+} Wetted;
 
-  return trace > 0.0 && v > 0.0 ? phi * Sh / (v * v * v) : 0.0;
+/* (418): W, the surface of hydrate in water that holds methane over A_geo s_w (1 - S_h)^3: with it (13) begins at p_e
+   with the surface of (12); it is the film's where there is gas.  H (trace) of (101), p_c = p_g - p_w (Pa). */
+INLINE Wetted ReactionWet(const Material *mat, double phi, double Sh, double pc)
+{
+  const double v = 1.0 - Sh, scale = RetentionTrapScale(&mat->retention);
+  const double W = mat->gas.trace > 0.0 && v > 0.0 ? phi * Sh / (v * v * v) : 0.0, left = exp(-fmax(pc, 0.0) / scale);
+
+  return (Wetted){W * left, pc > 0.0 ? -W * left / scale : 0.0};
 }
 
 /* dm/dm_h of (37), (40): mass of a fluid that a kg of hydrate takes the place of; held: of a unit of open pores,

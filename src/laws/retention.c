@@ -33,7 +33,7 @@ INLINE double Drained(const Retention *law, double p, double *dp)
 INLINE double Retention_VanGenuchten(const Retention *law, double pc, double *ds_dpc)
 {
   const double ps = law->p_smooth > 0.0 ? law->p_smooth : LAW_SMOOTH * law->p0;
-  const double pt = law->p_trap > 0.0 ? law->p_trap : law->p0, Sgr = LawAtLeast(law->Sgr, LAW_TRAPPED_MIN);
+  const double pt = RetentionTrapScale(law), Sgr = LawAtLeast(law->Sgr, LAW_TRAPPED_MIN);
   double       up, down, drained_dp;
   const double plus = ps * Softplus(pc / ps, &up), minus = -ps * Softplus(-pc / ps, &down);
   const double trapped = Sgr * exp(minus / pt), room = 1.0 - law->Swr - Sgr;
@@ -168,7 +168,7 @@ bool RetentionNoGas(const Retention *law, double Sh, double *pc)
   const bool clamped = Plateau(law, pc);
 
   if (!clamped)
-    *pc = -VANISHED * (law->p_trap > 0.0 ? law->p_trap : law->p0);
+    *pc = -VANISHED * RetentionTrapScale(law);
   *pc /= RetentionNarrowing(law, Sh);
   return !clamped || law->Sgr == 0.0;
 }

@@ -22,20 +22,21 @@ INLINE double FormationBalance(FormationArea A, double S, double m0, double grow
 }
 
 /* W of (418) for the hydrate of the step's start, m0 of the `pore` kg that would fill the pores. */
-INLINE Jet Wet(const Material *mat, double m0, Jet pore, const ScalarState *s)
+INLINE Jet Wet(const Material *mat, double m0, Jet pore, Jet pc, const ScalarState *s)
 {
   const Jet    phi = JetDiv(s->Vp, s->V), S = JetDiv(JetConstant(m0), pore);
-  const double W = ReactionWet(mat->gas.trace, phi.v, S.v);
+  const Wetted W = ReactionWet(mat, phi.v, S.v, pc.v);
 
-  return W == 0.0 ? JetConstant(0.0) : JetChain2(W, W / phi.v, phi, W * (1.0 / S.v + 3.0 / (1.0 - S.v)), S);
+  return W.v == 0.0 ? JetConstant(0.0)
+                    : JetChain3(W.v, W.v / phi.v, phi, W.v * (1.0 / S.v + 3.0 / (1.0 - S.v)), S, W.pc, pc);
 }
 
 /* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
-INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, ScalarState *s)
+INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Jet pc, ScalarState *s)
 {
   const Kinetics *k      = &mat->kinetics;
   const Jet       growth = JetMul(s->V, per_area);
-  const Jet       pore = JetMul(rho_h, s->Vp), wet = Wet(mat, m0, pore, s);
+  const Jet       pore = JetMul(rho_h, s->Vp), wet = Wet(mat, m0, pore, pc, s);
   double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0;
 
   for (int it = 0; it < 100; it++) {
@@ -92,7 +93,7 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
   const Jet     growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
 
   if (d.forms)
-    Form(mat, m0, growth, rho_h, s);
+    Form(mat, m0, growth, rho_h, JetSub(pg_r, pw_r), s);
   else
     Dissociate(mat, m0, growth, rho_h, s);
   s->gain = JetShift(s->gain, m0 - h->m_star[0]);

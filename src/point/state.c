@@ -47,11 +47,11 @@ double PointGasPressure(const Material *mat, double want, double Sh, double pw, 
 }
 
 /* Rate of the reaction for 1 Pa off equilibrium, whichever way it goes. */
-static void ReactionProperties(const Material *mat, const ScalarState *s, double T, PointProperties *r)
+static void ReactionProperties(const Material *mat, const ScalarState *s, double pc, double T, PointProperties *r)
 {
   const Kinetics *k = &mat->kinetics;
   double          d;
-  const double    wet   = ReactionWet(mat->gas.trace, s->phi.v, s->Sh.v);
+  const double    wet   = ReactionWet(mat, s->phi.v, s->Sh.v, pc).v;
   const double    forms = KineticsFormationArea(k, s->sw.v, wet, s->Sh.v).v;
   const double    area  = fmax(forms, k->A_geo * s->phi.v * s->Sh.v);
 
@@ -94,6 +94,6 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->G = s.E.v * ElasticityShearFactor(&mat->elasticity);
   }
   if (mat->reacts)
-    ReactionProperties(mat, &s, T, r);
+    ReactionProperties(mat, &s, pg - pw, T, r);
   return CL_OK;
 }

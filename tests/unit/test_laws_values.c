@@ -183,6 +183,8 @@ static void KineticsValues(void **state)
   EquilibriumSetType(&masuda.equilibrium, "sloan");
   const double Kd = KineticsRateConstant(&masuda, 2.3, &d), pe = EquilibriumPressure(&masuda.equilibrium, 2.3, &e);
 
+  Material wet         = {.gas.trace = 1e-9};
+  wet.retention.p_trap = 1e4;
   Near(Kd, 5.44118333753e-11, 1e-11);
   Near(Kd * masuda.A_geo * (pe - 2.84e6) * masuda.M_h / 900, 4.7161e-3, 1e-5);
   Near(EquilibriumPressure(&masuda.equilibrium, 2.081, &e), 3.5798e6, 1e-4); /* closed adiabatic cell */
@@ -191,8 +193,10 @@ static void KineticsValues(void **state)
   assert_true(KineticsFormationArea(&bp2, 0.6, 0, 1).v == 0 && KineticsFormationArea(&bp2, 0.6, 0, 1).sw == 0);
   assert_true(KineticsFormationArea(&bp2, 1, 0, 0.3).v == 0 && KineticsFormationArea(&bp2, 0, 2, 0.3).v == 0);
   /* (418): full of water, the surface of hydrate that goes */
-  Near(KineticsFormationArea(&bp2, 1, ReactionWet(1e-9, 0.4, 0.3), 0.3).v, 1e6 * 0.4 * 0.3, 1e-14);
-  assert_true(ReactionWet(0, 0.4, 0.3) == 0);
+  Near(KineticsFormationArea(&bp2, 1, ReactionWet(&wet, 0.4, 0.3, -1e5).v, 0.3).v, 1e6 * 0.4 * 0.3, 1e-14);
+  Near(ReactionWet(&wet, 0.4, 0.3, 2e4).v / ReactionWet(&wet, 0.4, 0.3, 0.0).v, 0.1353352832366127, 1e-14);
+  wet.gas.trace = 0.0;
+  assert_true(ReactionWet(&wet, 0.4, 0.3, 0.0).v == 0.0);
 }
 
 static void StateAndHeatValues(void **state)

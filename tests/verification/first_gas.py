@@ -53,7 +53,7 @@ def sound(name, run, steps, pressure, temperature):
 def starts(well):
     """Clay of another p_0 without hydrate: its water starts in equilibrium with the hydrate of the sand (103), and a fast reaction finds nothing to do."""
     cold = [o for r in ("lower", "layer", "upper") for o in (f"-region_{r}_temperature", "12 degC")]
-    (_, first), (_, last) = Run.of_case(well, *cold, "-mat_clay_retention_p0", "1 MPa", "-mat_sand_kinetics_K0", "3.6e4 mol/(m^2 Pa s)", "-boundaries", "base,casing,far,burden",
+    (_, first), (_, last) = Run.of_case(well, *cold, "-mat_clay_retention_p0", "1 MPa", "-mat_sand_kinetics_K0", "3.6e4 mol/(m^2 Pa s)", "-mat_sand_kinetics_dE", "81 kJ/mol", "-boundaries", "base,casing,far,burden",
                                         "-time_end", "1 h", "-output_times", "0 h, 1 h").snapshots()  # fmt: skip
     judge("gas", "first gas, clay beside hydrate: p_g of the start, largest over smallest, less one", np.max(first["p_g"]) / np.min(first["p_g"]) - 1, 1e-12)
     judge("gas", "first gas, clay beside hydrate: largest change of S_h in an hour", np.max(np.abs(last["S_h"] - first["S_h"])), 1e-7)
