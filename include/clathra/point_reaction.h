@@ -84,12 +84,12 @@ typedef struct {
   double v, pc;
 } Wetted;
 
-/* (418): W, the surface of hydrate in water that holds methane over A_geo s_w (1 - S_h)^3: with it (13) begins at p_e
-   with the surface of (12); it is the film's where there is gas.  H (trace) of (101), p_c = p_g - p_w (Pa). */
+/* (418): W, the surface of hydrate in water that holds methane over A_geo s_w (1 - S_h)^3; where there is gas the film
+   is the surface.  H (trace) of (101), p_c = p_g - p_w (Pa). */
 INLINE Wetted ReactionWet(const Material *mat, double phi, double Sh, double pc)
 {
-  const double v = 1.0 - Sh, scale = RetentionTrapScale(&mat->retention);
-  const double W = mat->gas.trace > 0.0 && v > 0.0 ? phi * Sh / (v * v * v) : 0.0, left = exp(-fmax(pc, 0.0) / scale);
+  const double scale = RetentionTrapScale(&mat->retention), left = exp(-fmax(pc, 0.0) / scale);
+  const double W = mat->gas.trace > 0.0 ? phi * Sh : 0.0;
 
   return (Wetted){W * left, pc > 0.0 ? -W * left / scale : 0.0};
 }

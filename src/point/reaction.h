@@ -27,8 +27,7 @@ INLINE Jet Wet(const Material *mat, double m0, Jet pore, Jet pc, const ScalarSta
   const Jet    phi = JetDiv(s->Vp, s->V), S = JetDiv(JetConstant(m0), pore);
   const Wetted W = ReactionWet(mat, phi.v, S.v, pc.v);
 
-  return W.v == 0.0 ? JetConstant(0.0)
-                    : JetChain3(W.v, W.v / phi.v, phi, W.v * (1.0 / S.v + 3.0 / (1.0 - S.v)), S, W.pc, pc);
+  return W.v == 0.0 ? JetConstant(0.0) : JetChain3(W.v, W.v / phi.v, phi, W.v / S.v, S, W.pc, pc);
 }
 
 /* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */

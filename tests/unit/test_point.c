@@ -705,7 +705,7 @@ static double Lacks(const Particle *q, const PointState *s, double S, double rho
   const bool   holds = q->mat.gas.trace > 0.0;
   const double p = holds && pg < pw ? pg : (1.0 - sg) * pw + sg * pg, S0 = q->h.m_star[0] / pore;
   const double gas  = fmax(pg - pw, 0.0) / RetentionTrapScale(&q->mat.retention);
-  const double wet  = holds ? s->phi * S0 * pow((1.0 - S) / (1.0 - S0), 3.0) * exp(-gas) : 0.0;
+  const double wet  = holds ? s->phi * S0 * pow(1.0 - S, 3.0) * exp(-gas) : 0.0;
   const double area = p <= pe ? s->phi * S : (1.0 - sg) * (sg * pow(1.0 - S, 3.0) + wet);
 
   return q->h.m_star[0] - rate * (pe - p) * area - pore * S;
