@@ -196,12 +196,18 @@ def scene(seed):
 
 
 # ---------------------------------------------------------------------------------------- running and judging
+def environment(sessions):
+    """With a folder of MPI's own sessions: of two runs that share one, the first to end may remove what the other has just made."""
+    return {**os.environ, **ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": str(sessions)}
+
+
 class Server:
     """tests/soak/many.c on some ranks: cases one after another in one process, as long as it lives."""
 
     def __init__(self, program, ranks):
         command = [str(program)] if ranks == 1 else ["mpiexec", "-n", str(ranks), str(program)]
-        self.job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        self.sessions = tempfile.TemporaryDirectory()
+        self.job = subprocess.Popen(command, env=environment(self.sessions.name), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                     stderr=subprocess.STDOUT, start_new_session=True)  # fmt: skip
         self.left = 100  # a new process now and then: what one leaks is not the other's
 
@@ -270,8 +276,13 @@ class Soak:
         command = [self.program, *self.words(case, out, options)]
         if ranks > 1:
             command = ["mpiexec", "-n", str(ranks), *command]
-        job = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)  # fmt: skip
+        with tempfile.TemporaryDirectory() as sessions:
+            job = subprocess.Popen(command, env=environment(sessions), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True)  # fmt: skip
+            return self.waited(job, ranks)
+
+    def waited(self, job, ranks):
+        """(exit code, what was said) of a run; None: it hangs."""
         try:
             text = job.communicate(timeout=2 * self.limit * ranks)[0]
         except subprocess.TimeoutExpired:

@@ -37,7 +37,7 @@ FAULTS = [
     ("k_r of gas leaves out the water's residual", LAWS + "relperm.c", [("Corey(sg, law->Sgr, 1.0 - law->Swr - law->Sgr", "Corey(sg, law->Sgr, 1.0 - law->Sgr")]),
     ("hydrate clogs with mh + 0.1", LAWS + "permeability.c", [("LawToePower(1.0 - Sh, law->mh", "LawToePower(1.0 - Sh, law->mh + 0.1")]),
     ("formation on (1 - S_h)^2", LAWS + "kinetics.c", [("open = law->A_geo * v * v, sg", "open = law->A_geo * v, sg"), ("-3.0 * open", "-2.0 * open")]),
-    ("hydrate grows on gas alone (418)", HEADER + "point_reaction.h", [("W = mat->gas.trace > 0.0 ?", "W = mat->gas.trace > 1e9 ?")]),
+    ("hydrate grows on gas alone (418)", HEADER + "point_reaction.h", [("if (!(mat->gas.trace > 0.0))\n    return (Wetted)", "if (!(mat->gas.trace > 1e9))\n    return (Wetted)")]),
     ("latent heat takes degC for kelvin", LAWS + "thermal.c", [("(at + LAW_ZERO_CELSIUS)", "at")]),
     ("hydrate conducts like water", LAWS + "thermal.c", [("Sh * X[1] +", "Sh * X[2] +"), ("(X[1] - fluid)", "(X[2] - fluid)")]),
     ("Masuda's equilibrium 2 % low", LAWS + "equilibrium.c", [("return 1.15 * e", "return 1.127 * e"), ("1.15 * de", "1.127 * de")]),

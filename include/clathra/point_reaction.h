@@ -88,8 +88,10 @@ typedef struct {
    is the surface.  H (trace) of (101), p_c = p_g - p_w (Pa). */
 INLINE Wetted ReactionWet(const Material *mat, double phi, double Sh, double pc)
 {
-  const double scale = RetentionTrapScale(&mat->retention), left = exp(-fmax(pc, 0.0) / scale);
-  const double W = mat->gas.trace > 0.0 ? phi * Sh : 0.0;
+  if (!(mat->gas.trace > 0.0))
+    return (Wetted){0.0, 0.0};
+
+  const double scale = RetentionTrapScale(&mat->retention), left = exp(-fmax(pc, 0.0) / scale), W = phi * Sh;
 
   return (Wetted){W * left, pc > 0.0 ? -W * left / scale : 0.0};
 }
