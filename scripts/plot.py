@@ -89,7 +89,7 @@ def plot_meters(run):
     figure, grid = plt.subplots(rows, wide, figsize=(4.9 * wide, 3.5 * rows), squeeze=False)
     for axes in grid.flat[len(panels) :]:
         axes.remove()
-    colours = {**dict(zip(names, COLOURS * len(names))), "body": "0.3"}
+    colours = {**dict(zip(names, COLOURS * len(names))), "free": "0.3", "dissolved": "0.65"}  # the last two: of the body
     for axes, (label, curves) in zip(grid.flat, panels):
         for name, values in curves:
             axes.plot(stages[0](time) if stages else time / seconds, values, color=colours[name])

@@ -126,6 +126,9 @@ def main():
     run(binary(), CASES / "gravity_column", out=upright)
     names, _ = draw(upright)
     check_true("pictures of a strip", "profiles" in names and "particles" not in names and "meters" not in names, names)
+    gas = scratch() / "gas"
+    run(binary(), ROOT / "tests" / "verification" / "cases" / "no_gas_cell.yaml", "-time_end", "2 s", "-meters", "side", "-meter_side_side", "right", out=gas)
+    check_true("... of gas that comes: what pores hold of it beside what a meter counts", "meters" in draw(gas)[0])
     check_words()
     finish()
 
