@@ -8,38 +8,11 @@
 #include <stdio.h>
 #include <math.h>
 #include <cmocka.h>
-#include "small_scene.h"
+#include "tied_scene.h"
 #include "model/additions.h"
 #include "model/gather.h"
 
-#define H 0.1   /* m, cells */
-#define G_S 0.3 /* g_s */
-#define N 6     /* cells along an axis */
 #define NODES ((N + 1) * (N + 1))
-
-/* A body on a grid of 6 x 6 cells of 0.1 m. */
-static SmallScene *Make(unsigned has, bool axisymmetric, BasisType basis, const double lower[2], const double upper[2],
-                        double g_s)
-{
-  SmallScene *s = malloc(sizeof(*s));
-
-  SceneInit(s, has, false, axisymmetric, basis, 0.0, lower, upper);
-  s->c.scene.upper[1]                          = N * H;
-  s->c.scene.cells[1]                          = N;
-  s->c.scene.stabilisation.ghost_penalty       = 0.0;
-  s->c.scene.stabilisation.pressure_projection = 0.0;
-  s->c.scene.stabilisation.ghost_storage       = g_s;
-  s->mat.reacts                                = false;
-  s->mat.permeability.k0                       = 1e-30; /* m^2: undrained */
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
-  return s;
-}
-
-static void Free(SmallScene *s)
-{
-  SceneDestroy(s);
-  free(s);
-}
 
 /* ---------------------------------------------------------------- the weight */
 /* Weight of every line, W[axis][y][x] of its middle node, over that of a full cell: g_s = 1 ties like V_I rho s. */
@@ -60,11 +33,11 @@ static void Weights(SmallScene *s, double W[CL_DIM][N + 1][N + 1])
 
 static void WeightsOf(const double lower[2], const double upper[2], double W[CL_DIM][N + 1][N + 1])
 {
-  SmallScene *s = Make(HAS_WATER, false, BASIS_CPGIMP, lower, upper, G_S);
+  SmallScene *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, lower, upper, G_S);
 
   StageStart(s, 1.0);
   Weights(s, W);
-  Free(s);
+  TiedFree(s);
 }
 
 /* From wall to wall, the last of three rows filled to f: nodes f^2/2, 1/2 + f - f^2/2 and 1, half of that at the walls.
@@ -165,59 +138,21 @@ static void TestPlace(void **state)
 }
 
 /* ---------------------------------------------------------------- what it must not change */
-/* Sum of the rows of both fluids over that of their sizes, and the largest row; of a change of the given kind. */
-enum { CONSTANT = 0, LINEAR, RANDOM };
-static double Rows(SmallScene *s, int kind, double *sum)
-{
-  Model          *m  = &s->m;
-  const FieldSet *fs = &m->c->fields;
-  double         *x, *f, worst = 0.0, size = 0.0;
-
-  Call(PetscMalloc1(m->map.n_local * fs->n, &x));
-  Call(PetscCalloc1(m->map.n_local * fs->n, &f));
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const PetscInt *ij = m->map.ij[I];
-
-    for (int k = 0; k < fs->n; k++) {
-      const double by = kind == CONSTANT ? 1.0
-                        : kind == LINEAR ? 0.3 * (double)ij[0] - 0.2 * (double)ij[1]
-                                         : Noise(3, ij[0] + 100 * ij[1], k);
-
-      x[I * fs->n + k] = m->stage.x_star[I * fs->n + k] + 1e5 * by;
-    }
-  }
-  StabilisationResidual(m, x, false, f);
-  Call(NodeMapReduce(&m->map, f, fs->n));
-  *sum = 0.0;
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int q = 0; q < PHASE_COUNT; q++) {
-      const double a = f[I * fs->n + PlaceP(fs, q)];
-
-      *sum += a;
-      size += fabs(a);
-      worst = fmax(worst, fabs(a));
-    }
-  }
-  *sum = Sum(*sum) / fmax(Sum(size), 1e-300);
-  Call(PetscFree(x));
-  Call(PetscFree(f));
-  return Largest(worst);
-}
-
 static void TestRows(void **state)
 {
   (void)state;
   for (int k = 0; k < 2; k++) {
-    SmallScene *s = Make(HAS_ALL, k, BASIS_CPGIMP, block[0], block[1], G_S);
+    SmallScene *s = TiedScene(HAS_ALL, k, BASIS_CPGIMP, 2, block[0], block[1], G_S);
     double      constant, linear, random;
 
     RandomHistory(s, 0.2);
     RandomStage(s, 20.0);
-    const double none = Rows(s, CONSTANT, &constant), bent = Rows(s, LINEAR, &linear), any = Rows(s, RANDOM, &random);
+    const double none = TiedRows(s, CONSTANT, &constant), bent = TiedRows(s, LINEAR, &linear),
+                 any = TiedRows(s, RANDOM, &random);
     Say("rows of the tie, %s: of a constant change %.1e, of a linear one %.1e, of any their sum %.1e\n",
         k ? "about an axis" : "plane", none / any, bent / any, fabs(random));
     Check(any > 0.0 && none < 1e-9 * any && bent < 1e-9 * any && fabs(random) < 1e-14);
-    Free(s);
+    TiedFree(s);
   }
 }
 
@@ -232,7 +167,7 @@ typedef struct {
 static Change Sealed(double f, bool outermost, double g_s)
 {
   const double lower[2] = {0.0, 0.0}, upper[2] = {N * H, (3.0 + f) * H}, made = 1e5;
-  SmallScene  *s = Make(HAS_WATER, false, BASIS_CPGIMP, lower, upper, g_s);
+  SmallScene  *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, lower, upper, g_s);
   Model       *m = &s->m;
   Change       c = {0.0, 0.0, 0.0};
   double      *x;
@@ -265,7 +200,7 @@ static Change Sealed(double f, bool outermost, double g_s)
     c.down = fmin(c.down, dp);
   }
   Call(PetscFree(x));
-  Free(s);
+  TiedFree(s);
   return (Change){Largest(c.node), Largest(c.up), -Largest(-c.down)};
 }
 

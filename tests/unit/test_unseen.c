@@ -7,38 +7,11 @@
 #include <stdio.h>
 #include <math.h>
 #include <cmocka.h>
-#include "small_scene.h"
+#include "tied_scene.h"
 #include "model/additions.h"
 #include "model/gather.h"
 
-#define H 0.1   /* m, cells */
-#define G_S 0.3 /* g_s */
-#define N 6     /* cells along an axis */
 #define SIZE (N + 1)
-
-/* A body with so many particles a cell on a grid of 6 x 6 cells of 0.1 m. */
-static SmallScene *Make(unsigned has, int ppc, const double lower[2], const double upper[2], double g_s)
-{
-  SmallScene *s = malloc(sizeof(*s));
-
-  SceneInit(s, has, false, false, BASIS_CPGIMP, 0.0, lower, upper);
-  s->c.scene.upper[1]                          = N * H;
-  s->c.scene.cells[1]                          = N;
-  s->c.scene.stabilisation.ghost_penalty       = 0.0;
-  s->c.scene.stabilisation.pressure_projection = 0.0;
-  s->c.scene.stabilisation.ghost_storage       = g_s;
-  s->region.ppc[0] = s->region.ppc[1] = ppc;
-  s->mat.reacts                       = false;
-  s->mat.permeability.k0              = 1e-30; /* m^2: undrained */
-  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
-  return s;
-}
-
-static void Free(SmallScene *s)
-{
-  SceneDestroy(s);
-  free(s);
-}
 
 /* ---------------------------------------------------------------- where it is */
 typedef double Ties[CL_DIM][SIZE][SIZE];
@@ -46,7 +19,7 @@ typedef double Ties[CL_DIM][SIZE][SIZE];
 /* Of every pair of neighbours, W[axis][y][x] of the lower one: the tie over g_s h^2 rho s. */
 static void TiesOf(int ppc, const double lower[2], const double upper[2], Ties W)
 {
-  SmallScene  *s = Make(HAS_WATER, ppc, lower, upper, G_S);
+  SmallScene  *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, ppc, lower, upper, G_S);
   const Model *m = &s->m;
 
   StageStart(s, 1.0);
@@ -60,7 +33,7 @@ static void TiesOf(int ppc, const double lower[2], const double upper[2], Ties W
           g->store[PHASE_W] / (G_S * H * H * 0.5 * (StoredAt(m, g->node[0], 0) + StoredAt(m, g->node[1], 0)));
   }
   Call(MPI_Allreduce(MPI_IN_PLACE, W, CL_DIM * SIZE * SIZE, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
-  Free(s);
+  TiedFree(s);
 }
 
 static double Most(Ties W, int d)
@@ -125,7 +98,7 @@ static void TestFilled(void **state)
 static double TieOfTwo(double apart)
 {
   const double     lower[2] = {0.0, 2.05 * H}, upper[2] = {N * H, 3.05 * H};
-  SmallScene      *s   = Make(HAS_WATER, 2, lower, upper, G_S);
+  SmallScene      *s   = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, lower, upper, G_S);
   const Particles *P   = &s->m.P;
   double           tie = 0.0;
 
@@ -141,7 +114,7 @@ static double TieOfTwo(double apart)
     if (g->node[1] == g->node[2] && ij[0] == 3 && ij[1] == 2)
       tie += g->store[PHASE_W];
   }
-  Free(s);
+  TiedFree(s);
   return Sum(tie);
 }
 
@@ -166,51 +139,18 @@ static void TestFades(void **state)
 /* ---------------------------------------------------------------- what it must not change */
 static const double row[2][2] = {{0.117, 0.234}, {0.408, 0.284}};
 
-/* Sum of the rows of both fluids over that of their sizes, and the largest row; of a change that is constant, or any.
- */
-static double Rows(SmallScene *s, bool any, double *sum)
-{
-  Model          *m  = &s->m;
-  const FieldSet *fs = &m->c->fields;
-  double         *x, *f, worst = 0.0, size = 0.0;
-
-  Call(PetscMalloc1(m->map.n_local * fs->n, &x));
-  Call(PetscCalloc1(m->map.n_local * fs->n, &f));
-  for (PetscInt k = 0; k < m->map.n_local * fs->n; k++) {
-    const PetscInt *ij = m->map.ij[k / fs->n];
-
-    x[k] = m->stage.x_star[k] + 1e5 * (any ? Noise(3, ij[0] + 100 * ij[1], k % fs->n) : 1.0);
-  }
-  StabilisationResidual(m, x, false, f);
-  Call(NodeMapReduce(&m->map, f, fs->n));
-  *sum = 0.0;
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int q = 0; q < PHASE_COUNT; q++) {
-      const double a = f[I * fs->n + PlaceP(fs, q)];
-
-      *sum += a;
-      size += fabs(a);
-      worst = fmax(worst, fabs(a));
-    }
-  }
-  *sum = Sum(*sum) / fmax(Sum(size), 1e-300);
-  Call(PetscFree(x));
-  Call(PetscFree(f));
-  return Largest(worst);
-}
-
 static void TestRows(void **state)
 {
-  SmallScene *s = Make(HAS_ALL, 2, row[0], row[1], G_S);
+  SmallScene *s = TiedScene(HAS_ALL, false, BASIS_CPGIMP, 2, row[0], row[1], G_S);
   double      constant, sum;
 
   (void)state;
   RandomHistory(s, 0.2);
   RandomStage(s, 20.0);
-  const double none = Rows(s, false, &constant), any = Rows(s, true, &sum);
+  const double none = TiedRows(s, CONSTANT, &constant), any = TiedRows(s, RANDOM, &sum);
   Say("rows of the tie: of a constant change %.1e, of any their sum %.1e\n", none / any, fabs(sum));
   Check(any > 0.0 && none < 1e-9 * any && fabs(sum) < 1e-14);
-  Free(s);
+  TiedFree(s);
 }
 
 /* ---------------------------------------------------------------- what it is for */
@@ -219,7 +159,7 @@ static void TestRows(void **state)
    from 1. */
 static double Sealed(double g_s, double *apart)
 {
-  SmallScene  *s = Make(HAS_WATER, 2, row[0], row[1], g_s);
+  SmallScene  *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, row[0], row[1], g_s);
   Model       *m = &s->m;
   const int    n = m->c->fields.n, at = PlaceP(&m->c->fields, PHASE_W);
   const double made = 1e5;
@@ -252,7 +192,7 @@ static double Sealed(double g_s, double *apart)
   }
   *apart = Largest(*apart);
   Call(PetscFree(x));
-  Free(s);
+  TiedFree(s);
   return Largest(most);
 }
 
