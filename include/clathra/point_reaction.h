@@ -46,18 +46,19 @@ INLINE double ReactionWidth(const double h[CL_DIM], const double g[CL_DIM])
   return sum / weights;
 }
 
-/* Pressure that drives the reaction; forms: it is above p_e. */
+/* Pressure that drives the reaction; forms: it is above p_e; wet: it is that of methane in water, without gas. */
 typedef struct {
   PorePressure p;
-  bool         forms;
+  bool         forms, wet;
 } Driving;
 
 /* (10), and (371) where there is no gas phase; trace is H of (101), s_g dimensionless, pressures in Pa. */
 INLINE Driving ReactionDriving(double trace, double sg, double pw, double pg, double pe)
 {
-  const PorePressure p = trace > 0.0 && pg < pw ? (PorePressure){pg, 0.0, 0.0, 1.0} : PorePressureOf(sg, pw, pg);
+  const bool         wet = trace > 0.0 && pg < pw;
+  const PorePressure p   = wet ? (PorePressure){pg, 0.0, 0.0, 1.0} : PorePressureOf(sg, pw, pg);
 
-  return (Driving){p, p.v > pe};
+  return (Driving){p, p.v > pe, wet};
 }
 
 /* (11) per surface: -dt' M_h K_d (p_e - p)/(1 + held); K_d and p_e (Pa) with their slopes in T. */

@@ -157,14 +157,12 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
       area[BLOCK], held[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
-    sw[q] = 1.0 - sg[q];
-
+    sw[q]  = 1.0 - sg[q];
     pw[q]  = own ? own_w[q] : g->value[q][B_P(s, 0)];
     pg[q]  = own ? own_g[q] : g->value[q][B_P(s, 1)];
     T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
-    wet[q] = 0.0;
   }
-  for (int q = 0; H > 0.0 && q < r.n; q++)
+  for (int q = 0; q < r.n; q++)
     wet[q] = ReactionWet(r.mat, v->phi[q], v->Sh[q], pg[q] - pw[q]).v;
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
   EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);

@@ -147,6 +147,7 @@ static bool Join(const char *dir, const Origin *from, History *h)
 }
 
 #define MARK "# " /* before the path */
+
 /* The first lines of a resolved case say of which file it is (1) and its title (2). */
 static void Head(FILE *f, char line[3][HEAD])
 {

@@ -23,11 +23,10 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   const Driving d = ReactionDriving(mat->gas.trace, q->s[PHASE_G], own[F_PW], own[F_PG], pe);
   const Growth  growth =
       ReactionGrowth(k, 1.0, m->added->held ? m->added->held[p] : 0.0, &d, Kd, dK, pe, slope); /* kg/(m^2 s) */
-  const double pc = own[F_PG] - own[F_PW], wet = ReactionWet(mat, q->phi, q->Sh, pc).v,
+  const double wet  = ReactionWet(mat, q->phi, q->Sh, own[F_PG] - own[F_PW]).v,
                area = d.forms ? KineticsFormationArea(k, q->s[PHASE_W], wet, q->Sh).v : k->A_geo * q->phi * q->Sh;
-  const bool gas    = !(mat->gas.trace > 0.0 && pc < 0.0);
 
-  l->rate        = gas ? m->P.f[P_V][p] * growth.p * area : 0.0;
+  l->rate        = d.wet ? 0.0 : m->P.f[P_V][p] * growth.p * area;
   l->decay       = !d.forms && q->Sh > 0.0 ? -growth.v * k->A_geo / mat->hydrate.rho0 : 0.0;
   l->drive[F_PW] = -d.p.pw;
   l->drive[F_PG] = -d.p.pg;

@@ -269,8 +269,8 @@ static PetscErrorCode WarnOfHeld(const Stepper *s)
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
       "clathra: warning: hydrate was %.3g K warmer than its equilibrium, %s, and %d K or more for %s of %s, for no "
-      "other "
-      "reason than stabilisation_reaction_heat, which holds the reaction to what a cell conducts: there it melts late, "
+      "other reason than stabilisation_reaction_heat, which holds the reaction to what a cell conducts: there it melts "
+      "late, "
       "whatever its K0.  What to try, in this order: cells half as wide, which let it melt four times as fast; "
       "stabilisation_reaction: yes in its place, with which it melts early (docs/giving_up.md)\n",
       e->value, place, STEPPER_HELD, held, all));
