@@ -277,10 +277,10 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
   }
   if (*status == CL_OK) {
     PetscCall(FacesBuild(m->c, &m->grid, &m->P, &m->nface, &m->face));
+    PetscCall(DonorBuild(m)); /* before the faces: the wall of a well has its shares (197) */
     PetscCall(FacesStart(m));
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamBuild(m));
-    PetscCall(DonorBuild(m));
     LumpBuild(m);
   }
   PetscCall(PetscFree(flag));

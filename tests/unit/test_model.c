@@ -674,6 +674,40 @@ static void TestSlaved(void **state)
   }
 }
 
+/* (197) with (333): what a well's wall adds is of the state at t_n, not of the donors of the step before: the step
+   begun again has the same. */
+static void TestWallOfDonors(void **state)
+{
+  const double lower[2] = {0.0, 0.0}, upper[2] = {0.47, 0.29};
+  SmallScene  *s = malloc(sizeof(*s));
+  Model       *m = &s->m;
+  double      *first, gas = 0.0, apart = 0.0;
+  ClStatus     status;
+
+  (void)state;
+  SceneInit(s, HAS_ALL, false, true, BASIS_CPGIMP, 0.1, lower, upper);
+  s->c.scene.stabilisation.donor = true;
+  SceneLayers(s, 1, 0.16, 1e-3);
+  AddFace(s, BC_PRESSURE, SIDE_XMIN, 3e6, 0.0);
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, m));
+  RandomHistory(s, 0.2);
+  RandomStage(s, 20.0);
+  const PetscInt n = m->map.n_local * PHASE_COUNT;
+  Call(PetscMalloc1(n, &first));
+  Call(PetscArraycpy(first, m->wall, n));
+  Call(ModelBeginStep(m, &status));
+  Check(status == CL_OK && m->map.n_local * PHASE_COUNT == n);
+  for (PetscInt i = PHASE_G; i < n; i += PHASE_COUNT) {
+    gas   = fmax(gas, m->wall[i]);
+    apart = fmax(apart, fabs(first[i] - m->wall[i]));
+  }
+  Say("wall of a well, gas of donors: drag up to %.3e Pa s m, begun again %.1e apart\n", Largest(gas), Largest(apart));
+  Check(Largest(gas) > 0.0 && Largest(apart) == 0.0);
+  Call(PetscFree(first));
+  SceneDestroy(s);
+  free(s);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -681,7 +715,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(TestBedsTurn),  cmocka_unit_test(TestPlates),         cmocka_unit_test(TestMassRows),
       cmocka_unit_test(TestTwoLayers), cmocka_unit_test(TestHydrostatic),    cmocka_unit_test(TestUniformStress),
       cmocka_unit_test(TestDarcy),     cmocka_unit_test(TestHeatFlux),       cmocka_unit_test(TestNewtonOrder),
-      cmocka_unit_test(TestSlaved),    cmocka_unit_test(TestCopyByRows),
+      cmocka_unit_test(TestSlaved),    cmocka_unit_test(TestCopyByRows),     cmocka_unit_test(TestWallOfDonors),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);
