@@ -43,13 +43,12 @@ typedef struct {
   double   removed[REMOVED_COUNT];                /* particles that left the grid (373), since t = 0 */
   double   begin[EXTREMES];                       /* extremes at the start */
   Extreme  extreme[EXTREMES];                     /* ... and of the run so far */
-  double   held_for,
-      held_look; /* s: how long hydrate was STEPPER_HELD or more above, in MOST_HELD's sense; the last look */
-  double energy[ENERGY_COUNT];                   /* J, as the particles hold them now */
-  double water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
-  double since, spent;              /* auto: s of the last change, and seconds of the forecast's machine spent since */
-  double scale_p, scale_T, scale_u; /* largest change of pressure or stress (Pa), temperature (K) and displacement (m)
-                                       so far: what errors are   relative to */
+  double   held_for, held_look;  /* s: how long hydrate was StepperHeldLevel or more above; the last look */
+  double   energy[ENERGY_COUNT]; /* J, as the particles hold them now */
+  double   water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
+  double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
+  double   scale_p, scale_T, scale_u; /* largest change of pressure or stress (Pa), temperature (K) and displacement (m)
+                                         so far: what errors are   relative to */
 } StepperState;
 
 /* The particle whose estimated error is largest, relative to the tolerance; of is an index of stepper_error_word. */
@@ -95,7 +94,6 @@ typedef struct {
   double   work[WORK_RATES];                      /* J over the step */
 } Attempt;
 
-#define STEPPER_HELD 5     /* K by which hydrate is late */
 #define STEPPER_NEWTON 1.6 /* Jacobians a stage that a forecast counts on */
 #define STEPPER_ERRORS 7   /* p_w, p_g, T, S_h, position, plastic strain, stress */
 extern const char *const stepper_error_word[STEPPER_ERRORS];
@@ -305,6 +303,11 @@ double StepperNextStop(const Stepper *s, bool *kink);
 /* extremes.c: those of the particles as they are go into the state; at the start, after every accepted step or burst.
    Collective. */
 PetscErrorCode StepperExtremes(Stepper *s, bool start);
+/* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
+   the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
+double StepperEquilibrium(const Scene *c, double from, double p, bool warm);
+/* (419): K above equilibrium from which hydrate counts as held, a fifth of what the run has had to melt it with. */
+double StepperHeldLevel(const Stepper *s);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
 void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
 /* leave.c: what left the grid in the accepted step or burst goes into the state, and a line says so for each particle;

@@ -198,8 +198,7 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The condition that brings the highest temperature, at any time, degC; NULL: none prescribes one. */
-static const Bc *Hottest(const Scene *c, double *T)
+const Bc *BcHottest(const Scene *c, double *T)
 {
   const unsigned heats = 1u << BC_CONVECTION | 1u << BC_FACE_TEMPERATURE | 1u << BC_TEMPERATURE |
                          1u << BC_REGION_TEMPERATURE | 1u << BC_INFLOW;
@@ -223,7 +222,7 @@ static const Bc *Hottest(const Scene *c, double *T)
 static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   double    most[2] = {0.0, 0.0}, T, slope; /* share of the pores; K */
-  const Bc *b       = Hottest(c, &T);
+  const Bc *b       = BcHottest(c, &T);
 
   PetscFunctionBeginUser;
   if (!b || !c->fields.heat || !c->fields.phase[PHASE_G] || c->stabilisation.lumped_reaction ||

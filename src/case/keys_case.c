@@ -179,9 +179,10 @@ const Key case_key[] = {
     BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),
-    BOOLEAN(Case, "stabilisation_reaction_heat", scene.stabilisation.held_reaction, "no",
-            "the reaction is no faster than a cell conducts its heat away: no alternating hydrate at fronts of a fast "
-            "reaction"),
+    BOOLEAN(
+        Case, "stabilisation_reaction_heat", scene.stabilisation.held_reaction, "no",
+        "the reaction is no faster than a cell conducts its heat away: no alternating hydrate at fronts of heat; where "
+        "pressure falls hydrate melts late"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

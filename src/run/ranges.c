@@ -54,24 +54,6 @@ static Span Temperatures(const Stepper *s)
   return span;
 }
 
-/* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
-   the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
-static double Reaction(const Scene *c, double from, double p, bool warm)
-{
-  double out = from;
-
-  for (PetscInt k = 0; k < c->nmaterial; k++) {
-    const Material *m = &c->material[k];
-
-    if (!m->reacts || !c->fields.phase[PHASE_G])
-      continue;
-    const double T = EquilibriumTemperature(&m->kinetics.equilibrium, p);
-
-    out = warm ? fmax(out, T) : fmin(out, T);
-  }
-  return out;
-}
-
 static PetscErrorCode Place(const Extreme *e, char text[96])
 {
   char when[32];
@@ -113,8 +95,8 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
     StepperTime(s->state.held_for, s->state.held_for, 3, held);
     PetscCall(PetscSNPrintf(text + told, 512 - told,
                             "  stabilisation_reaction_heat held hydrate up to %.3g K above its equilibrium, %s; by "
-                            "%d K or more for %s\n",
-                            s->state.extreme[MOST_HELD].value, at, STEPPER_HELD, held));
+                            "%.3g K or more, a fifth of what may melt it, for %s\n",
+                            s->state.extreme[MOST_HELD].value, at, StepperHeldLevel(s), held));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -124,8 +106,8 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
   const StepperState *z     = &s->state;
   const Scene        *c     = s->model->c;
   const Span          acted = Temperatures(s);
-  const Span          bound = {Reaction(c, acted.low, z->extreme[LOWEST_P].value, false),
-                               Reaction(c, acted.high, z->extreme[HIGHEST_P].value, true)};
+  const Span          bound = {StepperEquilibrium(c, acted.low, z->extreme[LOWEST_P].value, false),
+                               StepperEquilibrium(c, acted.high, z->extreme[HIGHEST_P].value, true)};
   const double low = fmin(bound.low, z->extreme[LOWEST_T].value), high = fmax(bound.high, z->extreme[HIGHEST_T].value),
                slack = fmax(LEAST_T, isfinite(high - low) ? BEYOND * (high - low) : 0.0);
 
@@ -141,10 +123,10 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
       continue;
     PetscCall(Place(e, place));
     if (SceneReacts(c) && c->fields.phase[PHASE_G])
-      PetscCall(
-          PetscSNPrintf(hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
-                        Reaction(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
-                        1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value));
+      PetscCall(PetscSNPrintf(
+          hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
+          StepperEquilibrium(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
+          1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value));
     PetscCall(PetscFPrintf(
         s->model->grid.comm, stderr,
         "clathra: warning: a particle had %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it "
@@ -268,12 +250,12 @@ static PetscErrorCode WarnOfHeld(const Stepper *s)
   StepperTime(run, run, 3, all);
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
-      "clathra: warning: hydrate was %.3g K warmer than its equilibrium, %s, and %d K or more for %s of %s, for no "
+      "clathra: warning: hydrate was %.3g K warmer than its equilibrium, %s, and %.3g K or more for %s of %s, for no "
       "other reason than stabilisation_reaction_heat, which holds the reaction to what a cell conducts: there it melts "
-      "late, "
-      "whatever its K0.  What to try, in this order: cells half as wide, which let it melt four times as fast; "
-      "stabilisation_reaction: yes in its place, with which it melts early (docs/giving_up.md)\n",
-      e->value, place, STEPPER_HELD, held, all));
+      "late, and its gas comes late, whatever its K0.  What to try, in this order: without it, where hydrate melts "
+      "because pressure falls; cells half as wide, which let it melt four times as fast; stabilisation_reaction: yes "
+      "in its place, with which it melts early (docs/giving_up.md)\n",
+      e->value, place, StepperHeldLevel(s), held, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -70,22 +70,31 @@ static bool LacksGas(const Scene *c)
   return c->material[0].gas.trace > 0.0;
 }
 
+/* Does a condition heat hydrate?  There (381) smooths its front; where pressure falls it takes the gas of it. */
+static bool HeatsHydrate(const Stepper *s)
+{
+  const Scene *c = s->model->c;
+  double       T;
+
+  return SceneReacts(c) && c->fields.phase[PHASE_G] && c->fields.heat && BcHottest(c, &T) &&
+         T > s->state.begin[HIGHEST_T];
+}
+
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 {
   static const char *const saturation[2] = {"stabilisation_saturation: yes, where saturations alternate; ",
                                             "stabilisation_saturation: no, where gas comes and goes; "};
   const Scene             *c             = s->model->c;
-  const bool reacts = SceneReacts(c) && c->fields.phase[PHASE_G], upwind = c->stabilisation.saturation_upwind;
-  char       words[768];
+  const bool               upwind        = c->stabilisation.saturation_upwind;
+  char                     words[768];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(
       words, sizeof(words), "%s%s%s%s%s",
-      reacts && c->fields.heat && !c->stabilisation.held_reaction
-          ? "stabilisation_reaction_heat: yes, where hydrate reacts fast; "
-          : "",
-      SceneTwoPressures(c) && upwind == LacksGas(c) ? saturation[upwind] : "",
+      HeatsHydrate(s) && !c->stabilisation.held_reaction ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
+                                                         : "",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
+      SceneTwoPressures(c) && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",

@@ -73,6 +73,31 @@ static void Find(const Model *m, double low[EXTREMES], PetscInt who[EXTREMES])
   }
 }
 
+double StepperEquilibrium(const Scene *c, double from, double p, bool warm)
+{
+  double out = from;
+
+  for (PetscInt k = 0; k < c->nmaterial; k++) {
+    const Material *m = &c->material[k];
+
+    if (!m->reacts || !c->fields.phase[PHASE_G])
+      continue;
+    const double T = EquilibriumTemperature(&m->kinetics.equilibrium, p);
+
+    out = warm ? fmax(out, T) : fmin(out, T);
+  }
+  return out;
+}
+
+#define HELD 0.2 /* of what may melt hydrate (419) */
+
+double StepperHeldLevel(const Stepper *s)
+{
+  const Extreme *of = s->state.extreme;
+
+  return HELD * (of[HIGHEST_T].value - StepperEquilibrium(s->model->c, INFINITY, of[LOWEST_P].value, false));
+}
+
 PetscErrorCode StepperExtremes(Stepper *s, bool start)
 {
   const Model  *m = s->model;
@@ -96,9 +121,6 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start)
       at[k][d] = m->P.f[P_X + d][who[k]];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, EXTREMES * CL_DIM, MPI_DOUBLE, MPI_SUM, m->grid.comm));
-  if (-best[MOST_HELD].value >= STEPPER_HELD) /* since the last look */
-    z->held_for += z->t - z->held_look;
-  z->held_look = z->t;
   for (int k = 0; k < EXTREMES; k++) {
     if (!isfinite(best[k].value)) /* no such field; a particle whose value is no number is UpdateScales's */
       continue;
@@ -107,5 +129,8 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start)
     if (start || best[k].value < sign[k] * z->extreme[k].value)
       z->extreme[k] = (Extreme){.value = sign[k] * best[k].value, .t = z->t, .at = {at[k][0], at[k][1]}};
   }
+  if (-best[MOST_HELD].value > 0.0 && -best[MOST_HELD].value >= StepperHeldLevel(s)) /* since the last look */
+    z->held_for += z->t - z->held_look;
+  z->held_look = z->t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -315,6 +315,7 @@ static void SlowByTheClock(void **state)
   assert_false(SlowIs(&slow, &f, 10, &p)); /* a slow machine is no slow run */
   p = (Pace){.left = 60.0, .step = 4.3, .spent = 43.0};
   assert_false(SlowIs(&slow, &f, 10, &p));
+  assert_false(SlowIs(&slow, &f, 160, &p)); /* twice the steps, but neither ten times as many nor twice the time */
   slow    = (Slow){.next = 20.0, .clock = 90.0, .said = true};
   p.spent = 91.0;
   assert_false(SlowIs(&slow, &f, 19, &p));
