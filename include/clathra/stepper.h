@@ -58,12 +58,28 @@ typedef struct {
   double at[CL_DIM]; /* m */
 } Peak;
 
+#define STEPPER_ERRORS 7 /* p_w, p_g, T, S_h, position, plastic strain, stress */
+extern const char *const stepper_error_word[STEPPER_ERRORS];
+/* What bounds an implicit step: the error of a field (an index of stepper_error_word), or one of these. */
+enum {
+  BOUND_GROWTH = STEPPER_ERRORS,
+  BOUND_NEWTON,
+  BOUND_REFUSED,
+  BOUND_STOP,
+  BOUND_BEGIN,
+  BOUND_MOST,
+  BOUND_LEAST,
+  BOUND_FIXED,
+  BOUNDS
+};
+
 /* Numbers of the step just taken, for monitors. */
 typedef struct {
   double   dt, err; /* s; error relative to the tolerance (fixed steps: 0) */
   PetscInt newton;
   PetscInt cuts;  /* failures before it succeeded */
   int      rules; /* whose error err is: stepper_error_word */
+  int      bound; /* what bounded dt of an implicit step: BOUND_... */
   Peak     peak;
 } StepInfo;
 
@@ -95,8 +111,6 @@ typedef struct {
 } Attempt;
 
 #define STEPPER_NEWTON 1.6 /* Jacobians a stage that a forecast counts on */
-#define STEPPER_ERRORS 7   /* p_w, p_g, T, S_h, position, plastic strain, stress */
-extern const char *const stepper_error_word[STEPPER_ERRORS];
 /* Changes that count as one in a step's error besides those of pressure, temperature and displacement. */
 #define STEPPER_SCALE_SH 0.1
 #define STEPPER_SCALE_EPS 0.1 /* of plastic strain */
@@ -150,6 +164,7 @@ struct Stepper {
   double               dt_min, dt_max, tol;
   PetscInt             max_failures, max_steps;
   int                  crawl; /* steps in a row at whose length the run would not end */
+  int                  bound; /* what bounds state.dt: BOUND_... */
   Explicit *explicit;         /* hybrid, explicit: the integrator and the last good state */
   Particles  good;
   StableStep limit;    /* at the last look */
@@ -199,6 +214,8 @@ bool StepperDone(const Stepper *s);
 double StepperFloorU(const Stepper *s);
 /* "stage NAME: ", empty without stages. */
 void StepperStageWords(const Stepper *s, char words[80]);
+/* "error of T", "growth from step to step", ...: BOUND_... in words. */
+void StepperBoundWords(int bound, char words[48]);
 
 /* Fills Stepper.forecast from the state as it is.  Collective. */
 PetscErrorCode StepperForecast(Stepper *s);

@@ -1,6 +1,7 @@
 /* What each stage of a run took, and in it each integrator that auto chose: for the progress and the summary. */
 #include "run_private.h"
 
+#define WORDS 640    /* characters of what bounded the steps, at most */
 #define UNKNOWN 0.05 /* of the stage, before which no time left is named */
 
 typedef struct {
@@ -9,9 +10,11 @@ typedef struct {
   double      from, to;           /* s of the scene, in this process */
   double      clock, spent;       /* s of the wall: when it began, so far */
   double      scaling;            /* error of mass scaling so far */
-  double      least, most;        /* stable step, s */
+  double      least, most;        /* stable step, or implicit ones, s */
   double      ruled[LIMIT_COUNT]; /* s of the scene, by what bounded the step */
+  PetscInt    held[BOUNDS];       /* implicit steps, by what bounded them */
   PetscInt    steps, refused, newton;
+  bool        implicit;
 } Entry;
 
 struct StageLog {
@@ -77,6 +80,15 @@ static void NoteLimit(Entry *e, const Stepper *s)
   e->ruled[limit->rules] += s->state.t - e->to;
 }
 
+/* Length of the implicit step just taken, and what bounded it. */
+static void NoteBound(Entry *e, const StepInfo *info)
+{
+  e->implicit = true;
+  e->least    = e->most > 0.0 ? fmin(e->least, info->dt) : info->dt;
+  e->most     = fmax(e->most, info->dt);
+  e->held[info->bound]++;
+}
+
 PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info)
 {
   Entry *e = &log->entry[log->n - 1];
@@ -87,6 +99,8 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   e = &log->entry[log->n - 1];
   if (s->explicit)
     NoteLimit(e, s);
+  else
+    NoteBound(e, info);
   e->to      = s->state.t;
   e->spent   = Wall() - e->clock;
   e->scaling = s->explicit ? ExplicitMassScalingError(s->explicit) : 0.0;
@@ -160,42 +174,65 @@ double StageLogSpent(const StageLog *log)
   return log->learnt.spent;
 }
 
-/* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)" where there is one. */
-static PetscErrorCode LimitWords(const Entry *e, char words[200])
+/* " (WHAT 12 %" or ", WHAT 12 %" behind what is there. */
+static PetscErrorCode AddShare(const char *what, double share, char words[WORDS])
 {
+  const size_t n = strlen(words);
+
+  PetscFunctionBeginUser;
+  if (share > 0.0)
+    PetscCall(
+        PetscSNPrintf(words + n, WORDS - n, "%s%s %.3g %%", strchr(words, '(') ? ", " : " (", what, 100.0 * share));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)", of the time; ", steps of 0.01 s to 0.1 s (error of T
+   80 %, times to be hit 20 %)", of the steps. */
+static PetscErrorCode LimitWords(const Entry *e, char words[WORDS])
+{
+  char what[48], least[32], most[32];
+
   PetscFunctionBeginUser;
   words[0] = '\0';
   if (!(e->most > 0.0))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(words, 200, ", stable step %.3g s to %.3g s", e->least, e->most));
-  for (int k = 0; k < LIMIT_COUNT; k++) {
-    const size_t n = strlen(words);
-
-    if (e->ruled[k] > 0.0)
-      PetscCall(PetscSNPrintf(words + n, 200 - n, "%s%s %.3g %%", strchr(words, '(') ? ", " : " (", cl_limit_word[k],
-                              100.0 * e->ruled[k] / (e->to - e->from)));
+  StepperTime(e->least, e->least, 3, least);
+  StepperTime(e->most, e->most, 3, most);
+  if (e->implicit)
+    PetscCall(PetscSNPrintf(words, WORDS, ", steps of %s to %s", least, most));
+  else
+    PetscCall(PetscSNPrintf(words, WORDS, ", stable step %.3g s to %.3g s", e->least, e->most));
+  for (int k = 0; k < LIMIT_COUNT; k++)
+    PetscCall(AddShare(cl_limit_word[k], e->ruled[k] / (e->to - e->from), words));
+  for (int k = 0; k < BOUNDS; k++) {
+    StepperBoundWords(k, what);
+    PetscCall(AddShare(what, (double)e->held[k] / (double)e->steps, words));
   }
   if (strchr(words, '('))
-    PetscCall(PetscStrlcat(words, ")", 200));
+    PetscCall(PetscStrlcat(words, ")", WORDS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **text)
 {
   const Case  *c    = StepperCase(s);
-  const size_t line = 520;
+  const size_t line = 960;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(line * (size_t)log->n, text));
   for (PetscInt k = 0; k < log->n; k++) {
     const Entry *e  = &log->entry[k];
-    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[200], lasted[32];
+    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[WORDS], lasted[32];
 
-    if (e->steps == 0 || (c->nstage == 0 && log->n == 1))
+    if (e->steps == 0)
       continue;
+    PetscCall(LimitWords(e, limit));
+    if (c->nstage == 0 && log->n == 1) { /* the rest is the run's */
+      PetscCall(PetscSNPrintf(at, line, limit[0] ? "  %s\n" : "", &limit[2]));
+      continue;
+    }
     if (CaseInStage(c, e->stage)->mass_scaling > 1.0 && e->scaling > 0.0)
       PetscCall(PetscSNPrintf(scaled, sizeof(scaled), ", mass scaling added up to %.2g of the forces", e->scaling));
-    PetscCall(LimitWords(e, limit));
     StepperTime(e->to - e->from, e->to - e->from, 3, lasted);
     if (c->nstage)
       PetscCall(PetscSNPrintf(stage, sizeof(stage), "stage %s: ", c->stage[e->stage].name));

@@ -187,9 +187,26 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
   return worst;
 }
 
-/* Gustafsson's PI controller: the step that would just meet the tolerance, as far as the wanted step may grow at once.
- */
-static double Controller(const Stepper *s, double dt, const Attempt *a)
+void StepperBoundWords(int bound, char words[48])
+{
+  static const char *const word[BOUNDS] = {[BOUND_GROWTH]  = "growth from step to step",
+                                           [BOUND_NEWTON]  = "Newton's method",
+                                           [BOUND_REFUSED] = "refused steps",
+                                           [BOUND_STOP]    = "times to be hit",
+                                           [BOUND_BEGIN]   = "begin or kink",
+                                           [BOUND_MOST]    = "stepper_dt_max",
+                                           [BOUND_LEAST]   = "stepper_dt_min",
+                                           [BOUND_FIXED]   = "stepper_dt"};
+
+  if (bound < STEPPER_ERRORS)
+    snprintf(words, 48, "error of %s", stepper_error_word[bound]);
+  else
+    snprintf(words, 48, "%s", word[bound]);
+}
+
+/* Gustafsson's PI controller: the step that would just meet the tolerance, as far as the wanted step may grow at once;
+   which of the two it is. */
+static double Controller(const Stepper *s, double dt, const Attempt *a, int *bound)
 {
   const double q = s->scheme->error_order, err = fmax(a->err, 1e-4), old = fmax(s->state.err_old, 1e-4);
   const bool   blind     = s->state.fresh && s->scheme == &StepperScheme_Euler; /* no estimate yet */
@@ -199,6 +216,12 @@ static double Controller(const Stepper *s, double dt, const Attempt *a)
   const double fit       = blind ? INFINITY : SAFE * dt * gain;
   const double most      = hard ? fmax(dt, s->state.dt) : 2.0 * fmax(dt, s->state.dt);
 
+  if (fit < most)
+    *bound = a->rules;
+  else if (hard)
+    *bound = s->state.hold > 0 ? BOUND_REFUSED : BOUND_NEWTON;
+  else
+    *bound = BOUND_GROWTH;
   return fmax(LEAST_CUT * dt, fmin(fit, most));
 }
 
@@ -214,33 +237,53 @@ static double NextStep(const Stepper *s, bool *kink)
   return (s->adaptive || s->state.hold != 0) && n <= 3.0 ? left / n : wanted;
 }
 
-/* dt for the next step, after a step of length dt was accepted. */
-static double WantedStep(const Stepper *s, double dt, bool kink, const Attempt *a)
+/* dt for the next step, after a step of length dt was accepted, and what bounds it. */
+static double WantedStep(const Stepper *s, double dt, bool kink, const Attempt *a, int *bound)
 {
   const StepperState *z = &s->state;
   double              next;
 
-  if (!s->adaptive)
-    return z->hold > 0 ? z->dt : fmin(2.0 * z->dt, StepperCase(s)->dt); /* back to the fixed step after a cut */
-  next = Controller(s, dt, a);
+  if (!s->adaptive) { /* back to the fixed step after a cut */
+    next   = z->hold > 0 ? z->dt : fmin(2.0 * z->dt, StepperCase(s)->dt);
+    *bound = next < StepperCase(s)->dt ? BOUND_REFUSED : BOUND_FIXED;
+    return next;
+  }
+  next = Controller(s, dt, a, bound);
   if (kink)
     next *= CUT_AT_KINK;
+  if (next > s->dt_max)
+    *bound = BOUND_MOST;
+  else if (next < s->dt_min)
+    *bound = BOUND_LEAST;
   return fmin(fmax(next, s->dt_min), s->dt_max);
+}
+
+/* What bounds the step that is taken, of length dt where `wanted` was. */
+static int Bound(const Stepper *s, double dt, double wanted, PetscInt cuts)
+{
+  if (dt < 0.999 * wanted)
+    return BOUND_STOP;
+  return s->state.fresh && s->adaptive && !cuts ? BOUND_BEGIN : s->bound;
 }
 
 static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a, PetscInt cuts)
 {
   StepperState  *z    = &s->state;
-  const StepInfo info = {
-      .dt = dt, .err = a->err, .newton = a->newton, .cuts = cuts, .rules = a->rules, .peak = a->peak};
-  double keeps;
+  const StepInfo info = {.dt     = dt,
+                         .err    = a->err,
+                         .newton = a->newton,
+                         .cuts   = cuts,
+                         .rules  = a->rules,
+                         .bound  = Bound(s, dt, z->dt, cuts),
+                         .peak   = a->peak};
+  double         keeps;
 
   PetscFunctionBeginUser;
   PetscCall(StepperKeeps(s, dt, &keeps));
   PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates, keeps));
   z->step++;
   z->t += dt;
-  z->dt      = WantedStep(s, dt, kink, a);
+  z->dt      = WantedStep(s, dt, kink, a, &s->bound);
   z->err_old = a->err;
   z->fresh   = kink;
   if (z->hold > 0)
@@ -352,11 +395,13 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
                               stepper_error_word[a.rules]));
       ModelExplain(m, text);
       s->state.dt    = fmax(Retry(s, dt, a.err, dt_inaccurate, err_inaccurate), s->dt_min);
+      s->bound       = s->state.dt > s->dt_min ? a.rules : BOUND_LEAST;
       dt_inaccurate  = dt;
       err_inaccurate = a.err;
     } else {
       s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
       s->state.hold = HOLD;
+      s->bound      = BOUND_REFUSED;
       PetscCall(PetscPrintf(m->grid.comm, "t = %g s: step of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
                             s->state.t, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1],
                             s->state.dt));

@@ -53,6 +53,7 @@ PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
   s->tol          = c->tol;
   s->max_failures = c->max_failures;
   s->crawl        = 0;
+  s->bound        = s->adaptive ? BOUND_BEGIN : BOUND_FIXED; /* of the first step, also behind a restart */
 
   s->model->leaving.removes = c->leaving == LEAVING_REMOVE;
   s->model->relative_gas    = c->pressures == PRESSURES_RELATIVE;
