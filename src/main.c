@@ -9,6 +9,7 @@ static const char help[] =
     "Ten options that matter:\n"
     "  -case_check                 read and check the case and its start, forecast and warnings included; write "
     "nothing\n"
+    "                              (with -help, too, which lists the solver's options for this CASE)\n"
     "  -case_keys                  print every key of a case file (needs no CASE)\n"
     "  -output_dir FOLDER          where the results go; results/NAME of the case\n"
     "  -overwrite                  ... though the results of another case are there\n"
@@ -43,6 +44,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscCall(PetscOptionsHasHelp(NULL, &help_asked));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", &keys, NULL));
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_check", &check, NULL));
+  check = check || help_asked;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_curves", &curves, NULL));
   *exit_code = CL_EXIT_OK;
   if (keys || (help_asked && argc < 3)) {

@@ -236,6 +236,9 @@ PetscErrorCode ModelShare(Model *m, const PetscInt nproc[], PetscInt *const star
 bool ModelReduces(const Model *m);
 /* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */
 PetscErrorCode ModelPrintSolver(Model *m);
+/* Makes the solver of implicit steps if there is none; it reads its options and, with -help, lists them.  Collective;
+   after ModelBeginStep. */
+PetscErrorCode ModelReadySolver(Model *m);
 /* Stencils, active nodes, projections, faces and stabilisation on the configuration at t_n.  Collective; *status is the
    same on all ranks. */
 PetscErrorCode ModelBeginStep(Model *m, ClStatus *status);

@@ -195,6 +195,14 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode ModelReadySolver(Model *m)
+{
+  PetscFunctionBeginUser;
+  if (!m->solver->snes)
+    PetscCall(CreateSolver(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Equation and place of the largest scaled residual. */
 static PetscErrorCode FindWorst(Model *m, int *field)
 {
@@ -282,8 +290,7 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
   PetscInt            its;
 
   PetscFunctionBeginUser;
-  if (!m->solver->snes)
-    PetscCall(CreateSolver(m));
+  PetscCall(ModelReadySolver(m));
   *newton = 0;
   /* With an old preconditioner where it serves, else with a new one at every iteration, at last with LU; then a linear
      solve that stops early still gives a good direction. */

@@ -382,6 +382,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
   const char *restart = run->restart;
   Origin      origin;
   bool        ok = true;
+  PetscBool   help;
 
   PetscFunctionBeginUser;
   *exit_code = CL_EXIT_INPUT;
@@ -406,6 +407,9 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StartWarnings(c, s->model, run));
   if (run->check) {
+    PetscCall(PetscOptionsHasHelp(NULL, &help));
+    if (help && (s->scheme->step || s->auto_.on))
+      PetscCall(ModelReadySolver(s->model));
     *exit_code = CL_EXIT_OK;
     PetscFunctionReturn(PETSC_SUCCESS);
   }

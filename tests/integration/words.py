@@ -27,6 +27,10 @@ def check_help():
     check_true("... which there are", all(f"`{name}`" in known or f"`-{name}`" in known for name in ten), ten)
     for what, text in (("-help", texts[0]), ("README", (ROOT / "README.md").read_text())):
         check_true(f"{what} cites the paper with its title", TITLE in " ".join(text.split()))
+    for of, options in (("sdirk2", ()), ("hybrid", ("-stepper_type", "hybrid"))):
+        done = subprocess.run([binary(), CASES / "bp2", "--help", "-output_dir", scratch() / "none", *options], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=60)
+        check_true(f"CASE --help, {of}, checks the case and ends, with the options of its solver and nothing written",
+                   done.returncode == 0 and done.stdout.startswith(head) and "the case is valid" in done.stdout and ("-ksp_rtol" in done.stdout) == (of == "sdirk2") and not (scratch() / "none").exists(), done.stdout[-300:] + done.stderr[-300:])  # fmt: skip
     for word in ("-help", "--help"):
         piped = subprocess.run(["bash", "-c", f'"$0" {word} | head -1', binary()], capture_output=True, text=True, stdin=subprocess.DEVNULL)
         check_true(f"{word} into a pager that ends early is no crash", piped.stdout == texts[0].splitlines(True)[0] and piped.stderr == "", piped.stderr[:200])
