@@ -22,7 +22,7 @@ CLIFF = HERE.parent / "verification" / "cases" / "slope.yaml"  # hybrid
 BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
 HEATER = HERE.parent / "verification" / "cases" / "heater.yaml"  # 60 degC beside hydrate of 10
 WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "rises": "gas starts out of balance with gravity", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
-         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps", "closed": "nothing flows through them", "free": "nothing bears the pore pressure"}
+         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps", "closed": "nothing flows through them", "free": "nothing bears the pore pressure", "rate": "have been measured"}
 
 
 def warned(done, case):
@@ -54,7 +54,20 @@ def numbers(text, words):
     return [float(x) for x in re.findall(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?", text[text.index(words) + len(words):])]
 
 
+
+def check_rate():
+    """A constant of Kim and Bishnoi without its activation energy, and an energy in the wrong unit.  The scene melts from the start, and is warned of for that, too."""
+    rate = lambda K0, dE: said(BLOCK, "-mat_core_kinetics_K0", f"{K0:g} mol/(m^2 Pa s)", "-mat_core_kinetics_dE", f"{dE:g} J/mol")
+    plain = comes("K0 with its dE", ["hydrate"], rate(3.6e4, 81e3))
+    text = comes("K0 without dE", ["hydrate", "rate"], rate(3.6e4, 0))
+    check_true("... with keys, numbers and what goes together", all(w in text for w in ("mat_core_kinetics_K0 = 36000 mol/(m^2 Pa s)", "mat_core_kinetics_dE = 0 J/mol", "K_d = 3.6e+04", "at once", "78 to 81 kJ/mol")), text)
+    comes("dE of J for kJ", ["hydrate", "rate"], rate(3.6e4, 78))
+    check_true("dE ten times too large", "never reacts" in comes("dE ten times too large", ["hydrate", "rate"], rate(3.6e4, 810e3)) and "K_d" not in plain)
+    comes("K0 as K_d, without dE", ["hydrate"], rate(2.5e-10, 0))
+
+
 SETTLES = {"slope_warming": ["stress", "rises"]}  # its first twenty years are for that: no reaction, an elastic skeleton
+check_rate()
 for path in sorted(CASES.glob("*/case.yaml")):
     comes(f"cases/{path.parent.name}", SETTLES.get(path.parent.name, []), said(path.parent))
 
