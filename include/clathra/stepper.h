@@ -323,6 +323,8 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start);
 /* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
    the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
 double StepperEquilibrium(const Scene *c, double from, double p, bool warm);
+/* Does a condition heat hydrate?  There (381) smooths its front; where pressure falls it takes the gas of it. */
+bool StepperHeatsHydrate(const Stepper *s);
 /* (419): K above equilibrium from which hydrate counts as held, a fifth of what the run has had to melt it with. */
 double StepperHeldLevel(const Stepper *s);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */

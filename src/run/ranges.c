@@ -134,8 +134,7 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
         "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing.  What to try, in this order: %s%sfiner "
         "cells there; a ramp instead of a jump (docs/giving_up.md)\n",
         e->value, place, beyond, warm ? "warmer" : "colder", plain, hydrate,
-        SceneReacts(c) && c->fields.phase[PHASE_G] && !c->stabilisation.held_reaction &&
-                !c->stabilisation.lumped_reaction
+        StepperHeatsHydrate(s) && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
             ? "stabilisation_reaction_heat: yes, beside hydrate; "
             : "",
         c->fields.fluid && !c->stabilisation.heat_upwind ? "stabilisation_heat: yes, where flow carries the heat; "

@@ -70,14 +70,26 @@ static bool LacksGas(const Scene *c)
   return c->material[0].gas.trace > 0.0;
 }
 
-/* Does a condition heat hydrate?  There (381) smooths its front; where pressure falls it takes the gas of it. */
-static bool HeatsHydrate(const Stepper *s)
+#define HEATER 1.0 /* W/m^2: ten times and more what the earth gives */
+
+static bool HasHeater(const Scene *c)
+{
+  bool has = false;
+
+  for (PetscInt k = 0; k < c->nbc; k++) {
+    for (PetscInt i = 0; c->bc[k].type == BC_HEAT_FLUX && i < c->bc[k].value.n; i++)
+      has = has || c->bc[k].value.y[i] + ScheduleSwing(&c->bc[k].value) > HEATER;
+  }
+  return has;
+}
+
+bool StepperHeatsHydrate(const Stepper *s)
 {
   const Scene *c = s->model->c;
   double       T;
 
-  return SceneReacts(c) && c->fields.phase[PHASE_G] && c->fields.heat && BcHottest(c, &T) &&
-         T > s->state.begin[HIGHEST_T];
+  return SceneReacts(c) && c->fields.phase[PHASE_G] && c->fields.heat &&
+         (HasHeater(c) || (BcHottest(c, &T) && T > s->state.begin[HIGHEST_T]));
 }
 
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
@@ -91,8 +103,9 @@ PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(
       words, sizeof(words), "%s%s%s%s%s",
-      HeatsHydrate(s) && !c->stabilisation.held_reaction ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
-                                                         : "",
+      StepperHeatsHydrate(s) && !c->stabilisation.held_reaction
+          ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
+          : "",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
       SceneTwoPressures(c) && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton

@@ -19,8 +19,9 @@ static PetscErrorCode Keep(FILE *to, const char format[], va_list list)
   return PETSC_SUCCESS;
 }
 
-/* Hydrate at 13 degC in sand beside clay of a thousandth of its permeability, and a well; beside it T (degC). */
-static const char *Advised(double T, bool donor)
+/* Hydrate at 13 degC in sand beside clay of a thousandth of its permeability, and a well; beside it T (degC), and q
+   (W/m^2) from below. */
+static const char *Advised(double T, double q, bool donor)
 {
   const double lower[2] = {0.0, 0.0}, upper[2] = {0.6, 0.32};
   SmallScene  *s       = malloc(sizeof(*s));
@@ -32,6 +33,7 @@ static const char *Advised(double T, bool donor)
   s->c.scene.stabilisation.donor = donor;
   AddFace(s, BC_PRESSURE, SIDE_XMIN, 5e6, 0.0);
   AddFace(s, BC_FACE_TEMPERATURE, SIDE_XMIN, T, 0.0);
+  AddFace(s, BC_HEAT_FLUX, SIDE_YMIN, q, 0.0);
   s->m.c                                                       = &s->c.scene;
   s->m.grid.comm                                               = PETSC_COMM_WORLD;
   stepper->model                                               = &s->m;
@@ -58,11 +60,12 @@ static void HeldReactionIsForHeaters(void **state)
 {
   if (PetscGlobalRank > 0) /* the words are rank 0's */
     return;
-  assert_non_null(strstr(Advised(60.0, false), "stabilisation_reaction_heat"));
+  assert_non_null(strstr(Advised(60.0, 0.0, false), "stabilisation_reaction_heat"));
   assert_true(Starts("stabilisation_reaction_heat: yes"));
-  assert_null(strstr(Advised(13.0, false), "stabilisation_reaction_heat"));
+  assert_non_null(strstr(Advised(13.0, 500.0, false), "stabilisation_reaction_heat"));
+  assert_null(strstr(Advised(13.0, 0.1, false), "stabilisation_reaction_heat"));
   assert_true(Starts("stabilisation_donor: yes"));
-  assert_null(strstr(Advised(13.0, true), "stabilisation_donor"));
+  assert_null(strstr(Advised(13.0, 0.1, true), "stabilisation_donor"));
 }
 
 int main(int argc, char **argv)
