@@ -140,6 +140,11 @@ double KineticsRateConstant(const Kinetics *law, double T, double *dKd_dT);
 typedef struct {
   double v, sw, wet, Sh;
 } FormationArea;
+/* Surface on which hydrate melts, A_geo phi S_h, 1/m (12). */
+static inline double KineticsMeltingArea(const Kinetics *law, double phi, double Sh)
+{
+  return law->A_geo * phi * Sh;
+}
 /* Surface on which hydrate forms, A_geo s_w (s_g + W) (1-S_h)^3 (S_w S_g (1-S_h) where W = 0), 1/m; W
    (dimensionless): of the hydrate that is there, in water that holds methane (418). */
 FormationArea KineticsFormationArea(const Kinetics *law, double sw, double wet, double Sh);

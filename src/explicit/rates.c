@@ -130,8 +130,9 @@ INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, const
   LatentHeatBatch(&mat->latent, r.n, T, L);
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
   for (int q = 0; q < r.n; q++) {
-    const double g_T[CL_DIM] = {g->dx[q][B_T(s)], g->dy[q][B_T(s)]}, melts = mat->kinetics.A_geo * v->phi[q] * v->Sh[q];
-    double       h[CL_DIM];
+    const double g_T[CL_DIM] = {g->dx[q][B_T(s)], g->dy[q][B_T(s)]},
+                 melts       = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
+    double h[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);

@@ -24,7 +24,8 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   const Growth  growth =
       ReactionGrowth(k, 1.0, m->added->held ? m->added->held[p] : 0.0, &d, Kd, dK, pe, slope); /* kg/(m^2 s) */
   const double wet  = ReactionWet(mat, q->phi, q->Sh, own[F_PG] - own[F_PW]).v,
-               area = d.forms ? KineticsFormationArea(k, q->s[PHASE_W], wet, q->Sh).v : k->A_geo * q->phi * q->Sh;
+               area = d.forms ? KineticsFormationArea(k, q->s[PHASE_W], wet, q->Sh).v
+                              : KineticsMeltingArea(k, q->phi, q->Sh);
 
   l->rate        = d.wet ? 0.0 : m->P.f[P_V][p] * growth.p * area;
   l->decay       = !d.forms && q->Sh > 0.0 ? -growth.v * k->A_geo / mat->hydrate.rho0 : 0.0;

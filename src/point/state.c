@@ -53,7 +53,7 @@ static void ReactionProperties(const Material *mat, const ScalarState *s, double
   double          d;
   const double    wet   = ReactionWet(mat, s->phi.v, s->Sh.v, pc).v;
   const double    forms = KineticsFormationArea(k, s->sw.v, wet, s->Sh.v).v;
-  const double    area  = fmax(forms, k->A_geo * s->phi.v * s->Sh.v);
+  const double    area  = fmax(forms, KineticsMeltingArea(k, s->phi.v, s->Sh.v));
 
   r->reaction      = k->M_h * KineticsRateConstant(k, T, &d) * area;
   r->reaction_heat = r->reaction * LatentHeatEvaluate(&mat->latent, T, &d);
