@@ -59,7 +59,7 @@ static PetscErrorCode LeftWords(const Left *left, char words[128])
 static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
 {
   const Case  *c       = StepperCase(s);
-  const double t_begin = c->scene.t_begin;
+  const double t_begin = c->scene.t_begin, done = (s->state.t - t_begin) / (c->t_end - t_begin);
   Left         left;
   char         cuts[32] = "", error[160] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32];
   char         rest[128] = "time left not known yet";
@@ -89,7 +89,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
                             stepper_error_word[info->rules], info->peak.err, stepper_error_word[info->peak.of],
                             info->peak.at[0], info->peak.at[1]));
   PetscCall(PetscPrintf(s->model->grid.comm, "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s\n",
-                        stage, s->state.step, begin, now, 100.0 * left.done, dt, solved, error, cuts, yields, rest));
+                        stage, s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -44,10 +44,10 @@ typedef struct StageLog StageLog;
 PetscErrorCode          StageLogCreate(const Stepper *s, StageLog **log);
 PetscErrorCode          StageLogDestroy(StageLog **log);
 PetscErrorCode          StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info); /* an accepted step */
-/* Share of the stage that is done; steps and s of the wall that the rest of it will take, and the latter if time went
+/* Steps and s of the wall that the rest of it will take, and the latter if time went
    on as in the last steps (421); NAN: not known yet, as before 5 % unless the stage has taken all of its forecast. */
 typedef struct {
-  double done, steps, time, flat;
+  double steps, time, flat;
 } Left;
 void StageLogProgress(const StageLog *log, const Stepper *s, Left *left);
 /* Steps taken in the stage by this process, and s of the wall. */

@@ -141,7 +141,7 @@ void StageLogProgress(const StageLog *log, const Stepper *s, Left *left)
   Ahead        ahead;
   const double done = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from);
 
-  *left = (Left){.done = done, .steps = NAN, .time = NAN, .flat = NAN};
+  *left = (Left){.steps = NAN, .time = NAN, .flat = NAN};
   if (CaseAtEnd(StepperCase(s), s->state.t))
     left->steps = left->time = left->flat = 0.0;
   else if (done >= UNKNOWN || PastForecast(log, s)) {

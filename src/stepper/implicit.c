@@ -198,9 +198,10 @@ void StepperBoundWords(int bound, char words[48])
                                            [BOUND_LEAST]   = "stepper_dt_min",
                                            [BOUND_FIXED]   = "stepper_dt"};
 
+  words[0] = '\0';
   if (bound < STEPPER_ERRORS)
     snprintf(words, 48, "error of %s", stepper_error_word[bound]);
-  else
+  else if (bound < BOUNDS)
     snprintf(words, 48, "%s", word[bound]);
 }
 

@@ -15,6 +15,15 @@ from common import CASES, ROOT, binary, check, check_true, finish, launch, run, 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
 
 
+def check_share():
+    """A line of progress counts the share of the run, behind a restart, too."""
+    out = scratch() / "share"
+    run(binary(), *BP2, "-quiet", "-time_end", "1 s", "-stepper_max_steps", "10", out=out)
+    said = run(binary(), *BP2, "-progress", "0", "-time_end", "1 s", "-restart", out / "checkpoint.h5", out=out).output
+    shares = re.findall(r"^step +(\d+): t = .*? \(([\d.]+) %\)", said, re.M)
+    check_true("a restart in the middle goes on with 55 % of the run", shares and shares[0] == ("11", "55.0") and shares[-1] == ("20", "100.0"), shares[:2])
+
+
 def check_limit():
     """A run that is ended by the clock goes on to what the straight run gives, bit for bit."""
     out, straight = scratch() / "out", scratch() / "straight"
@@ -242,6 +251,7 @@ def check_words():
 
 def main():
     check_words()
+    check_share()
     check_limit()
     check_slivers()
     check_retries()
