@@ -95,8 +95,8 @@ ties) so much gas is used up that steps of a year would overshoot p_g below zero
 to `hybrid` at the state before the slide, and after it particles lose what `hybrid` left against their nodes (357), so that implicit steps grow again. Every phase that `hybrid` carried; speed is that of the failed mass with all of E_k:
 """
 AFTER = """
-A smaller phase right after a slide is the rest of it: implicit steps took over, found equilibrium lost once more, and `hybrid` let it settle. Most of the way is creep, in implicit steps of months: 5 m of the face's before the first slide, 57 m between it and the second, 57 m between the third and the last. Between the slides
-implicit steps of seconds have at most 0.098 MJ/m. The row ends after 141 years: behind the last slide implicit steps stay at 12 s (48 s are refused, in the momentum of torn ground at (336, 48) m), three hours of the slope took 592 of them, and it was stopped. `hybrid` is not called there: its 1024 steps carry 3 s. Other strengths
+A smaller phase right after a slide is the rest of it: implicit steps took over, found equilibrium lost once more, and `hybrid` let it settle. Most of the way is creep, in implicit steps of months: 5 m of the face's before the first slide, 52 m between it and the second, 21 m to the third and 53 m to the last. Between the slides
+implicit steps of seconds have at most 0.098 MJ/m. The row ends after 141 years: behind the last slide implicit steps stay at 12 s (48 s are refused, in the momentum of torn ground at (336, 48) m), three hours of the slope took 592 of them, and it was stopped (so there is no time of rest: snapshots are ten years apart). `hybrid` is not called there: its 1024 steps carry 3 s. Other strengths
 (16°, 14°, 12°) were not run with today's program.
 
 Two things made this possible. *Who carries the slide*: before, three implicit steps in a row had to be dearer than `hybrid`, and those of seconds had most of the motion, with a sixth of its energy. *The sea gives no gas* (358): torn ground under the sea, pulled apart faster than water comes in, had taken
