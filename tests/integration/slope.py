@@ -12,11 +12,13 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from PIL import Image, ImageSequence
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import CASES, Run, binary, check, check_true, finish, judge, launch, scratch  # noqa: E402
 from clathra import read_snapshots  # noqa: E402
 
+import plot_slope  # noqa: E402
 import slide  # noqa: E402  scripts/, which common puts on the path
 import slopes  # noqa: E402
 
@@ -87,6 +89,23 @@ def known_slides():
     check_true("... none in a run that is hybrid's all the way", slide.slides(run, 100.0) == [])
 
 
+def film(run):
+    """The film of a run: a frame for each snapshot since the loading and the last one five times, each at its time."""
+    out, which = scratch(), plot_slope.shutil.which
+    plot_slope.shutil.which = lambda program: None  # a gif, which Pillow reads
+    plot_slope.film("slide", run, out)
+    plot_slope.shutil.which = which
+    with Image.open(out / "slide.gif") as gif:
+        frames, lasts = [], 0
+        for frame in ImageSequence.Iterator(gif):
+            frames.append(np.asarray(frame.convert("L"), dtype=int))
+            lasts += frame.info["duration"]
+    n = len(run.snapshots)
+    check("film: frames that differ, of its snapshots", sum(np.any(a != b) for a, b in zip(frames, frames[1:])) + 1, (n, n))
+    check("... lasts, ms, the end five times", lasts, (0.9 * 1000 * (n + 4) / plot_slope.FRAMES, 1.1 * 1000 * (n + 4) / plot_slope.FRAMES))
+    check("... first and last frame: pixels that differ, %", 100 * np.mean(abs(frames[0] - frames[-1]) > 40), (0.2, 60))
+
+
 def rows_of_the_page():
     """Every row that docs/slopes.json keeps is one that scripts/slopes.py can run, and its options are such that the program takes them."""
     kept = json.loads(slopes.KEPT.read_text())
@@ -117,6 +136,7 @@ check_true("a restart in the slide, bit for bit", all(np.array_equal(v, again[k]
 summary = (one.out / "summary.txt").read_text()
 check_true("the summary says which limits set the step of each stage", len(re.findall(r"hybrid .*stable step \S+ s to \S+ s \((waves in the mixture|waves in thin domains) [\d.]+ %", summary)) == 2, summary[-900:])
 run = slide.Run(one.out)
+film(run)
 m = slide.measure(run)
 slide.write(run, m, slide.bands(run))
 slide.write(run, m, slide.bands(run))
