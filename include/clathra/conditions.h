@@ -105,3 +105,10 @@ typedef struct {
   double   index; /* C of (369), for this grid; 0 without a bottom pressure */
   Schedule rate[PHASE_COUNT], heated;
 } Bc;
+
+/* Is the condition's value a temperature, of the body or of what touches or enters it, degC? */
+static inline bool BcPrescribesT(const Bc *b)
+{
+  return b->type == BC_CONVECTION || b->type == BC_FACE_TEMPERATURE || b->type == BC_INFLOW ||
+         b->type == BC_TEMPERATURE || b->type == BC_REGION_TEMPERATURE;
+}

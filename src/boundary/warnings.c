@@ -200,15 +200,13 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
 
 const Bc *BcHottest(const Scene *c, double *T)
 {
-  const unsigned heats = 1u << BC_CONVECTION | 1u << BC_FACE_TEMPERATURE | 1u << BC_TEMPERATURE |
-                         1u << BC_REGION_TEMPERATURE | 1u << BC_INFLOW;
   const Bc *hottest = NULL;
 
   *T = -INFINITY;
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Schedule *q = &c->bc[k].value;
 
-    for (PetscInt i = 0; (heats >> c->bc[k].type & 1u) && i < q->n; i++) {
+    for (PetscInt i = 0; BcPrescribesT(&c->bc[k]) && i < q->n; i++) {
       if (q->y[i] + ScheduleSwing(q) > *T) {
         hottest = &c->bc[k];
         *T      = q->y[i] + ScheduleSwing(q);
@@ -250,11 +248,11 @@ static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Partic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K_d at RATE_AT: measured are 1e-11 to 1e-9 (Kim et al. 1987, Clarke and Bishnoi 2001); equilibrium at once needs no
-   more than SWIFT of a code that must resolve it, and nothing happens below SLOW. */
+/* K_d at RATE_AT has been measured between 1e-11 and 1e-9 (Kim et al. 1987, Clarke and Bishnoi 2001).  Above SWIFT all
+   is at equilibrium at once, below SLOW nothing happens in any time of a run. */
 #define RATE_AT 10.0 /* degC */
 #define SWIFT 1e-6   /* mol/(m^2 Pa s) */
-#define SLOW 1e-16
+#define SLOW 1e-16   /* mol/(m^2 Pa s) */
 
 static PetscErrorCode RateWarning(MPI_Comm comm, const Scene *c)
 {

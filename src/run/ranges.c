@@ -40,8 +40,7 @@ static Span Temperatures(const Stepper *s)
         Add(&flux, &b->value);
       else if (b->type == BC_WELL)
         Add(&span, &b->heated);
-      else if (b->type == BC_CONVECTION || b->type == BC_FACE_TEMPERATURE || b->type == BC_INFLOW ||
-               b->type == BC_TEMPERATURE || b->type == BC_REGION_TEMPERATURE)
+      else if (BcPrescribesT(b))
         Add(&span, &b->value);
       span.low  = flux.low < 0.0 ? -INFINITY : span.low;
       span.high = flux.high > 0.0 ? INFINITY : span.high;

@@ -70,23 +70,25 @@ PetscErrorCode StageLogDestroy(StageLog **log)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static void NoteRange(Entry *e, double dt)
+{
+  e->least = e->most > 0.0 ? fmin(e->least, dt) : dt;
+  e->most  = fmax(e->most, dt);
+}
+
 /* Stable step of the step just taken, and for how long which limit set it. */
 static void NoteLimit(Entry *e, const Stepper *s)
 {
-  const StableStep *limit = &s->limit;
-
-  e->least = e->most > 0.0 ? fmin(e->least, limit->dt) : limit->dt;
-  e->most  = fmax(e->most, limit->dt);
-  e->ruled[limit->rules] += s->state.t - e->to;
+  NoteRange(e, s->limit.dt);
+  e->ruled[s->limit.rules] += s->state.t - e->to;
 }
 
 /* Length of the implicit step just taken, and what bounded it. */
 static void NoteBound(Entry *e, const StepInfo *info)
 {
   e->implicit = true;
-  e->least    = e->most > 0.0 ? fmin(e->least, info->dt) : info->dt;
-  e->most     = fmax(e->most, info->dt);
   e->held[info->bound]++;
+  NoteRange(e, info->dt);
 }
 
 PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *info)
@@ -228,7 +230,8 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
       continue;
     PetscCall(LimitWords(e, limit));
     if (c->nstage == 0 && log->n == 1) { /* the rest is the run's */
-      PetscCall(PetscSNPrintf(at, line, limit[0] ? "  %s\n" : "", &limit[2]));
+      if (limit[0])
+        PetscCall(PetscSNPrintf(at, line, "  %s\n", &limit[2])); /* without its comma */
       continue;
     }
     if (CaseInStage(c, e->stage)->mass_scaling > 1.0 && e->scaling > 0.0)

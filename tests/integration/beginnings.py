@@ -54,7 +54,6 @@ def numbers(text, words):
     return [float(x) for x in re.findall(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?", text[text.index(words) + len(words):])]
 
 
-
 def check_rate():
     """A constant of Kim and Bishnoi without its activation energy, and an energy in the wrong unit.  The scene melts from the start, and is warned of for that, too."""
     rate = lambda K0, dE: said(BLOCK, "-mat_core_kinetics_K0", f"{K0:g} mol/(m^2 Pa s)", "-mat_core_kinetics_dE", f"{dE:g} J/mol")

@@ -10,6 +10,7 @@ import sys
 from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 from PIL import Image, ImageSequence
@@ -91,10 +92,9 @@ def known_slides():
 
 def film(run):
     """The film of a run: a frame for each snapshot since the loading and the last one five times, each at its time."""
-    out, which = scratch(), plot_slope.shutil.which
-    plot_slope.shutil.which = lambda program: None  # a gif, which Pillow reads
-    plot_slope.film("slide", run, out)
-    plot_slope.shutil.which = which
+    out = scratch()
+    with mock.patch.object(plot_slope.shutil, "which", return_value=None):  # without ffmpeg a gif, which Pillow reads
+        plot_slope.film("slide", run, out)
     with Image.open(out / "slide.gif") as gif:
         frames, lasts = [], 0
         for frame in ImageSequence.Iterator(gif):
