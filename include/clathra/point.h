@@ -61,6 +61,7 @@ typedef struct {
       withheld; /* (1 - a)/a (416): both pressures lack so much of what p_g has changed by since p_g,n; then also ... */
   double         pg_n;                /* ... the particle's p_g at t_n, Pa */
   double         held;                /* (381), at t_n; 0: the reaction is as fast as its law */
+  double         chord;               /* (424), at t_n, Pa */
   double         mobility;            /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
   double         bracket;             /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   bool           compression;         /* heat of compression and throttling (290); then also ... */

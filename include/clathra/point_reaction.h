@@ -52,6 +52,13 @@ typedef struct {
   bool         forms, wet;
 } Driving;
 
+/* (424): what the chords of p_e (Pa) lie above it, between nodes whose T and p have these covariances (K Pa) at the
+   particle, p of (10) or (371) with its slopes; curvature p_e''/p_e' in 1/K. */
+INLINE double ReactionChord(double curvature, const PorePressure *p, const double covariance[PHASE_COUNT])
+{
+  return 0.5 * curvature * (p->pw * covariance[PHASE_W] + p->pg * covariance[PHASE_G]);
+}
+
 /* (10), and (371) where there is no gas phase; trace is H of (101), s_g dimensionless, pressures in Pa. */
 INLINE Driving ReactionDriving(double trace, double sg, double pw, double pg, double pe)
 {

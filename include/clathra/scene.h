@@ -68,6 +68,7 @@ typedef struct {
   bool   heat_upwind;         /* (293); default false */
   bool   lumped_reaction;     /* (265); default false */
   bool   held_reaction;       /* (381); default false */
+  bool   chords;              /* (424); default true */
 } Stabilisation;
 
 typedef struct Scene {
@@ -270,6 +271,12 @@ static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
 static inline bool SceneHoldsReaction(const Scene *c)
 {
   return c->stabilisation.held_reaction && c->fields.heat && c->fields.phase[PHASE_G];
+}
+
+/* Does (424) act? */
+static inline bool SceneTakesChords(const Scene *c)
+{
+  return c->stabilisation.chords && c->fields.heat && c->fields.phase[PHASE_G];
 }
 
 /* The k-th of the stabilisations that are on and that steps without a matrix go without, as the case says it; NULL:

@@ -78,6 +78,23 @@ INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Wei
   return sum;
 }
 
+/* sum S (u - u_q) (v - v_q) of two numbers that nodes hold in their rows and particle q has got from them (g). */
+INLINE double Covariance(const Explicit *e, const double *nodes, int width, int u, int v, const Weights *w,
+                         const Gathered *g, int q)
+{
+  const int *slot = &e->slot[w->first[q]], stride = (int)e->m->grid.gm[0];
+  double     sum = 0.0;
+
+  for (int b = 0; b < 3; b++) {
+    for (int a = 0; a < 3; a++) {
+      const double *row = &nodes[slot[b * stride + a] * width];
+
+      sum += w->S[0][a][q] * w->S[1][b][q] * (row[u] - g->value[q][u]) * (row[v] - g->value[q][v]);
+    }
+  }
+  return sum;
+}
+
 /* What is carried to the nodes besides the value itself: nothing, by gradients, by a mixed derivative, too. */
 enum { CARRY_NOTHING = 0, CARRY_LINEAR, CARRY_BILINEAR };
 /* To nodes that hold `count` numbers each; forces: are there any? */

@@ -141,10 +141,34 @@ INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, const
   }
 }
 
+/* (424) of t_n; in the bare form particles see no nodes. */
+INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, const Weights *w, const double *restrict T,
+                   const double *restrict dpe, const double *restrict pw, const double *restrict pg,
+                   double *restrict pe)
+{
+  const Equilibrium *law    = &r.mat->kinetics.equilibrium;
+  const double *restrict sg = e->t[T_SG] + r.p;
+  double warmer[BLOCK], beyond[BLOCK], none[BLOCK];
+
+  if (!SceneTakesChords(e->m->c) || e->o.particle_pressures)
+    return;
+  for (int q = 0; q < r.n; q++)
+    warmer[q] = T[q] + CL_CURVES;
+  EquilibriumPressureBatch(law, r.n, warmer, none, beyond);
+  for (int q = 0; q < r.n; q++) {
+    const Driving d = ReactionDriving(r.mat->gas.trace, sg[q], pw[q], pg[q], pe[q]);
+    double        covariance[PHASE_COUNT];
+
+    for (int f = 0; f < PHASE_COUNT; f++)
+      covariance[f] = Covariance(e, e->B, LANES * Rows(B_Count(s)), B_T(s), B_P(s, f), w, g, q);
+    pe[q] += ReactionChord(EquilibriumCurvatureOf(dpe[q], beyond[q]), &d.p, covariance);
+  }
+}
+
 /* Gain of hydrate over the step at the nodal p and T, and its slopes: dissociation implicit in S_h, formation
    on the surface at t_n. */
-INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict T,
-                     const Volumes *v)
+INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, const Weights *w, double dt,
+                     const double *restrict T, const Volumes *v)
 {
   const Kinetics k          = r.mat->kinetics;
   const double   H          = r.mat->gas.trace;
@@ -167,6 +191,7 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, double 
     wet[q] = ReactionWet(r.mat, v->phi[q], v->Sh[q], pg[q] - pw[q]).v;
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
   EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);
+  Chords(e, s, r, g, w, T_r, dpe, pw, pg, pe);
   KineticsFormationAreaBatch(&k, r.n, sw, wet, v->Sh, area);
   Held(e, s, r, g, T_r, Kd, dpe, area, v, held);
 #pragma GCC ivdep
@@ -451,7 +476,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   if (s.heat && s.solid && r.mat->plasticity.heat > 0.0)
     PlasticHeat(e, s, r, &o);
   if (s.fluids == 2 && r.mat->reacts) {
-    Reaction(e, s, r, &g, dt, T, &v);
+    Reaction(e, s, r, &g, &w, dt, T, &v);
     ReactionRows(e, s, r, T, &v, &o);
   }
   if (s.fluids && e->o.particle_pressures)

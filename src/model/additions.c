@@ -22,6 +22,8 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));
   if (SceneHoldsReaction(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->held));
+  if (SceneTakesChords(m->c))
+    PetscCall(PetscMalloc1(m->stencil_cap, &to->chord));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -59,4 +59,5 @@ struct Additions {
   double         *upwind;   /* [n][3] (293); NULL when off */
   Lump           *lump;     /* [n] (265); NULL when off */
   double         *held;     /* [n] (381); NULL when off */
+  double         *chord;    /* [n] (424), Pa; NULL when off */
 };

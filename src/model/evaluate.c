@@ -192,6 +192,7 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->dt       = m->stage.dt;
   h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
   h->held     = m->added->held ? m->added->held[p] : 0.0;
+  h->chord    = ParticleChord(m, p);
   h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
   h->withheld = less / (1.0 - less);
   h->pg_n     = less != 0.0 ? OwnValue(m, p, F_PG) : 0.0;

@@ -182,6 +182,8 @@ PetscErrorCode ModelSumMassRows(Model *m, double *f);
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
+/* (424) at t_n; before LumpBuild. */
+void ChordsBuild(Model *m);
 /* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
 void LumpBuild(Model *m);
 void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);

@@ -19,7 +19,8 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   for (int f = 0; f < PHASE_COUNT; f++)
     own[F_PW + f] = m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + Shift(m, p, &r, F_PW + f);
 
-  const double pe = EquilibriumPressure(&k->equilibrium, own[F_T], &slope), Kd = KineticsRateConstant(k, own[F_T], &dK);
+  const double pe = EquilibriumPressure(&k->equilibrium, own[F_T], &slope) + ParticleChord(m, p),
+               Kd = KineticsRateConstant(k, own[F_T], &dK);
   const Driving d = ReactionDriving(mat->gas.trace, q->s[PHASE_G], own[F_PW], own[F_PG], pe);
   const Growth  growth =
       ReactionGrowth(k, 1.0, m->added->held ? m->added->held[p] : 0.0, &d, Kd, dK, pe, slope); /* kg/(m^2 s) */

@@ -281,6 +281,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(FacesStart(m));
     PetscCall(StabilisationBuild(m));
     PetscCall(UpstreamBuild(m));
+    ChordsBuild(m);
     LumpBuild(m);
   }
   PetscCall(PetscFree(flag));

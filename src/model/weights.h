@@ -249,6 +249,12 @@ static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, con
     acc[i] += across[i];
 }
 
+/* (424), Pa. */
+static inline double ParticleChord(const Model *m, PetscInt p)
+{
+  return m->added->chord ? m->added->chord[p] : 0.0;
+}
+
 /* Own value at t_n of unknown q = F_PW, F_PG, F_T. */
 static inline double OwnValue(const Model *m, PetscInt p, int q)
 {

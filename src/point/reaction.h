@@ -85,7 +85,8 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
     s->m_h  = JetConstant(h->m_star[0]);
     return;
   }
-  const double  Kd = KineticsRateConstant(k, T_r.v, &dK), pe = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe);
+  const double Kd      = KineticsRateConstant(k, T_r.v, &dK),
+               pe      = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe) + h->chord; /* (424) */
   const Driving d      = ReactionDriving(mat->gas.trace, s->sg.v, pw_r.v, pg_r.v, pe);
   const Growth  g      = ReactionGrowth(k, h->dt, h->held, &d, Kd, dK, pe, dpe);
   const Jet     p_r    = JetChain3(d.p.v, d.p.sg, s->sg, d.p.pw, pw_r, d.p.pg, pg_r);

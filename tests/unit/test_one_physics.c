@@ -23,6 +23,9 @@ typedef struct {
   double      narrows;  /* exponent of (320) */
 } Variant;
 
+/* TestChords: p and T vary; (424) is on. */
+static bool tilts, chords;
+
 static const Variant variants[] = {
     {"dissociates", HAS_ALL, 2.6e6, "van_genuchten", "power", "kozeny_carman", STIFFNESS_BOTH, 1.0, 1.0, false, false,
      false, 0.0, 0.0, 0.0},
@@ -113,6 +116,36 @@ static void SetState(SmallScene *s, bool slips)
   }
 }
 
+static const double warmer[2] = {10.0, -6.0}, denser[2] = {8e5, 5e5}; /* K/m, Pa/m */
+#define SHORT 6e4                                                     /* Pa below equilibrium in the middle */
+
+/* p and T that vary evenly, out of equilibrium by little in the middle of the body. */
+static void Tilt(SmallScene *s)
+{
+  double *const *f = s->m.P.f;
+  double         d;
+
+  for (PetscInt p = 0; p < s->m.P.n; p++) {
+    double T = s->region.temperature, over = 0.0;
+
+    for (int k = 0; k < CL_DIM; k++) {
+      const double x = f[P_X + k][p] - 0.5 * (box[0][k] + box[1][k]);
+
+      T += warmer[k] * x;
+      over += denser[k] * x;
+      f[P_GT + k][p] = warmer[k];
+      f[P_GW + k][p] = f[P_GG + k][p] = denser[k];
+    }
+    const double pe = EquilibriumPressure(&s->mat.kinetics.equilibrium, s->region.temperature, &d);
+    f[P_T][p]       = T;
+    f[P_PW][p]      = pe - SHORT + over - GasShareOf(&s->mat, CAPILLARY, 0.2) * CAPILLARY;
+    f[P_PG][p]      = f[P_PW][p] + CAPILLARY;
+    for (int k = 0; k < 6; k++)
+      f[P_VS + k][p] = 0.0; /* strain would change p by as much as (424) */
+    Refill(s, p, 0.2);
+  }
+}
+
 /* In the middle cell.  A velocity averaged to nodes is not even at the surface, which consistent masses spread inwards.
  */
 static bool Inside(const SmallScene *s, PetscInt p)
@@ -158,6 +191,9 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   s->m.solver->tol_residual = s->m.solver->tol_update = 1e-11;
   SetState(s, slips);
+  s->c.scene.stabilisation.chords = chords;
+  if (tilts)
+    Tilt(s);
 }
 
 /* What one step changes on the particles inside; returns their number on this rank.  They are of one cell, so that
@@ -254,9 +290,61 @@ static void TestOnePhysics(void **state)
   }
 }
 
+/* (424) of a particle, Pa, by hand: p and T are linear, a particle stands at a quarter of its cell, whose weights are
+   those of its corners. */
+static double ChordByHand(const Held *held, const SmallScene *s)
+{
+  const double T = held->before[P_T], step = 1e-3;
+  double       covariance = 0.0, slope[3];
+
+  for (int d = 0; d < CL_DIM; d++) {
+    const double h = s->c.scene.upper[d] / (double)s->c.scene.cells[d];
+
+    covariance += warmer[d] * denser[d] * h * h * 3.0 / 16.0;
+  }
+  for (int k = 0; k < 3; k++)
+    EquilibriumPressure(&s->mat.kinetics.equilibrium, T + (k - 1) * step, &slope[k]);
+  return 0.5 * (slope[2] - slope[0]) / (2.0 * step * slope[1]) * covariance;
+}
+
+/* Hydrate melts by (424) faster in both integrators: by as much as p_e is larger. */
+static void TestChords(void **state)
+{
+  const Variant    *v = &variants[0];
+  SmallScene *const s = malloc(sizeof(*s));
+  double            d;
+
+  (void)state;
+  tilts = true;
+  Make(s, v, "euler", false);
+  for (int k = 0; k < 2; k++) {
+    const char *stepper = k ? "hybrid" : "euler";
+    Held        a[4], b[4];
+    double      worst = 0.0;
+
+    chords      = false;
+    const int n = Changes(v, stepper, false, a);
+    chords      = true;
+    Check(Changes(v, stepper, false, b) == n);
+    for (int i = 0; i < n; i++) {
+      const double own  = a[i].before[P_PW] + GasShareOf(&s->mat, CAPILLARY, 0.2) * CAPILLARY,
+                   lack = EquilibriumPressure(&s->mat.kinetics.equilibrium, a[i].before[P_T], &d) - own,
+                   more = (b[i].change[P_MH] / a[i].change[P_MH] - 1.0) * lack, chord = ChordByHand(&a[i], s);
+
+      Check(chord > 200.0);
+      worst = fmax(worst, fabs(more / chord - 1.0));
+    }
+    Say("%-11s: (424) by what melts against by hand, relative: %.1e\n", stepper, worst = Largest(worst));
+    Check(worst < 2e-3);
+  }
+  tilts = chords = false;
+  SceneDestroy(s);
+  free(s);
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestOnePhysics)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestOnePhysics), cmocka_unit_test(TestChords)};
 
   return RunTests(argc, argv, tests, SolveWell, NULL);
 }

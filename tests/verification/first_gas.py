@@ -87,6 +87,21 @@ def released(width, most, *options):
     return sum(v.values()), LATE in run.output
 
 
+def falls(*options):
+    """By how much S_h falls outwards in that row from one particle to the next, more than 1 m from its axis, where it rises with the temperature."""
+    v = Run.of_case(CASES / "fast_row.yaml", *options).snapshots()[-1][1]
+    place = v["initial_position"]
+    lower = np.flatnonzero(place[:, 1] < 0.5)
+    out = lower[np.argsort(place[lower, 0])]
+    return np.max(-np.diff(v["S_h"][out, 0])[place[out[1:], 0] > 1])
+
+
+def even():
+    """Between nodes at equilibrium particles are at equilibrium, (424)."""
+    judge("gas", "first gas, a fast reaction in a row: S_h falls outwards by", max(falls(), 0.0), 0.005)
+    judge("gas", "first gas, a fast reaction in a row: ... planted: without (424)", falls("-stabilisation_equilibrium", "no"), (0.03, 0.1))
+
+
 def row():
     """What a reaction that is held to what cells conduct, (381), takes from a well, whose hydrate melts because pressure falls; and that its run says so, (423)."""
     (fine, _), (coarse, _), (donor, _) = released(0.1, 0.25), released(0.4, 4), released(0.4, 4, "-stabilisation_donor", "yes")
@@ -106,6 +121,7 @@ def main():
     # What rises forms anew below the upper clay: 0.616 in cells half as wide.
     fast("a fast reaction in coarse cells, not held", 6.6, 0.64, "-time_end", "4 d", "-output_every", "1 d")
     row()
+    even()
     one = Run.of_case(well)
     sound("well", one, 110, 6.0, 14.4)
     sound("heater", Run.of_case(heater, *HEATER), 140, 11.0, 60.0)
