@@ -173,7 +173,7 @@ static void TestTurn(void **state)
 
   (void)state;
   for (size_t k = 0; k < sizeof(body) / sizeof(*body); k++) {
-    for (int a = 0; a < 3 && body[k].degrees[a] > 0.0; a++) {
+    for (int a = 0; a < (world_size > 1 ? 1 : 3) && body[k].degrees[a] > 0.0; a++) { /* ranks: one angle */
       const double t = 1.17 * body[k].degrees[a] * M_PI / 180.0 / OMEGA;
       double       x = 0.0, stress = 0.0, angle;
 
