@@ -59,13 +59,24 @@ INLINE double ReactionChord(double curvature, const PorePressure *p, const doubl
   return 0.5 * curvature * (p->pw * covariance[PHASE_W] + p->pg * covariance[PHASE_G]);
 }
 
-/* (10), and (371) where there is no gas phase; trace is H of (101), s_g dimensionless, pressures in Pa. */
+/* Is there no gas phase (371)?  trace is H of (101), pressures in Pa. */
+INLINE bool ReactionWithoutGas(double trace, double pw, double pg)
+{
+  return trace > 0.0 && pg < pw;
+}
+
+/* (10), and (371) where there is no gas phase; s_g dimensionless. */
+INLINE PorePressure ReactionPressure(double trace, double sg, double pw, double pg)
+{
+  return ReactionWithoutGas(trace, pw, pg) ? (PorePressure){pg, 0.0, 0.0, 1.0} : PorePressureOf(sg, pw, pg);
+}
+
+/* What drives it where p_e is this, Pa. */
 INLINE Driving ReactionDriving(double trace, double sg, double pw, double pg, double pe)
 {
-  const bool         wet = trace > 0.0 && pg < pw;
-  const PorePressure p   = wet ? (PorePressure){pg, 0.0, 0.0, 1.0} : PorePressureOf(sg, pw, pg);
+  const PorePressure p = ReactionPressure(trace, sg, pw, pg);
 
-  return (Driving){p, p.v > pe, wet};
+  return (Driving){p, p.v > pe, ReactionWithoutGas(trace, pw, pg)};
 }
 
 /* (11) per surface: -dt' M_h K_d (p_e - p)/(1 + held); K_d and p_e (Pa) with their slopes in T. */

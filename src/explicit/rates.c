@@ -148,20 +148,20 @@ INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, con
 {
   const Equilibrium *law    = &r.mat->kinetics.equilibrium;
   const double *restrict sg = e->t[T_SG] + r.p;
-  double warmer[BLOCK], beyond[BLOCK], none[BLOCK];
+  double warmer[BLOCK], pe_warmer[BLOCK], beyond[BLOCK];
 
   if (!SceneTakesChords(e->m->c) || e->o.particle_pressures)
     return;
   for (int q = 0; q < r.n; q++)
     warmer[q] = T[q] + CL_CURVES;
-  EquilibriumPressureBatch(law, r.n, warmer, none, beyond);
+  EquilibriumPressureBatch(law, r.n, warmer, pe_warmer, beyond);
   for (int q = 0; q < r.n; q++) {
-    const Driving d = ReactionDriving(r.mat->gas.trace, sg[q], pw[q], pg[q], pe[q]);
-    double        covariance[PHASE_COUNT];
+    const PorePressure seen = ReactionPressure(r.mat->gas.trace, sg[q], pw[q], pg[q]);
+    double             covariance[PHASE_COUNT];
 
     for (int f = 0; f < PHASE_COUNT; f++)
       covariance[f] = Covariance(e, e->B, LANES * Rows(B_Count(s)), B_T(s), B_P(s, f), w, g, q);
-    pe[q] += ReactionChord(EquilibriumCurvatureOf(dpe[q], beyond[q]), &d.p, covariance);
+    pe[q] += ReactionChord(EquilibriumCurvatureOf(dpe[q], beyond[q]), &seen, covariance);
   }
 }
 

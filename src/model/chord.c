@@ -10,7 +10,7 @@ static double ChordOf(const Model *m, PetscInt p)
   const FieldSet *fs         = &m->c->fields;
   const Material *mat        = ParticleMaterial(m, p);
   const int       at[SEEN]   = {PlaceP(fs, PHASE_W), PlaceP(fs, PHASE_G), PlaceT(fs)};
-  double          mean[SEEN] = {0.0}, covariance[PHASE_COUNT] = {0.0}, dpe;
+  double          mean[SEEN] = {0.0}, covariance[PHASE_COUNT] = {0.0};
   Reach           r;
 
   ReachExpand(m, p, &r);
@@ -24,9 +24,8 @@ static double ChordOf(const Model *m, PetscInt p)
     for (int f = 0; f < PHASE_COUNT; f++)
       covariance[f] += r.S[a] * warmer * (x[at[f]] - mean[f]);
   }
-  const double  pe = EquilibriumPressure(&mat->kinetics.equilibrium, mean[2], &dpe);
-  const Driving d  = ReactionDriving(mat->gas.trace, 1.0 - ParticleSw(m, p), mean[0], mean[1], pe);
-  return ReactionChord(EquilibriumCurvature(&mat->kinetics.equilibrium, mean[2]), &d.p, covariance);
+  const PorePressure seen = ReactionPressure(mat->gas.trace, 1.0 - ParticleSw(m, p), mean[0], mean[1]);
+  return ReactionChord(EquilibriumCurvature(&mat->kinetics.equilibrium, mean[2]), &seen, covariance);
 }
 
 void ChordsBuild(Model *m)
