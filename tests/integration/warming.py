@@ -40,7 +40,7 @@ check_true("implicit for as long as the slope holds", "-> hybrid" not in run.out
 check("mean step from five years after the beginning on, days", steps.mean(), (20.0, 1000.0))
 cold = slope(sea=COLD)
 check_true("eight pieces of sea floor", len(BEGIN) == 8)
-judge("slopes", "slope_warming on 25 m: hydrate that the warmth takes in 35 years, share of all", left(cold) - left(run), (0.02, 0.10))  # by (424) 0.063; cells of 16 m lose 0.10 in 30 years
+judge("slopes", "slope_warming on 25 m: hydrate that the warmth takes in 35 years, share of all", left(cold) - left(run), (0.04, 0.08))  # without (424) 0.047; cells of 12.5 m: 0.19
 check("T of the crest, 8 m below the sea floor, above that under a cold sea (K)", *warmer(run, cold))
 for what in ("water", "methane"):
     judge("slopes", f"... {what}, largest error of any step", np.max(np.abs(run.balance[f"{what}_error"])), 1e-12)
