@@ -1,9 +1,9 @@
 /* forms: the ways to write a function of time.
      key: 3 MPa                                constant
-     key: {table: [t0, v0, t1, v1, ...]}       straight lines between the points
+     key: {table: [t0, v0, t1, v1, ...]}       straight lines between the points; also [[t0, v0], [t1, v1], ...]
      key: {ramp: [v0, v1, t0, t1]}             from v0 at t0 to v1 at t1
      key: {rate: [v0, rate, t0, t1]}           from v0 at t0 with this rate until t1
-     key: {piecewise: [t0, v0, t1, v1, ...]}   each value holds until the next time
+     key: {piecewise: [t0, v0, t1, v1, ...]}   each value holds until the next time; pairs as above
      key: {sine: [mean, amplitude, period, begin, ...]}   waves (267)
      key: {csv: [FILE, COLUMN]}                straight lines between the rows of a file (csv.c)
    On the command line -key_ramp "v0, v1, t0, t1" or -key "{ramp: [v0, v1, t0, t1]}".
@@ -141,6 +141,18 @@ static bool ScheduleParse(Reader *r, const char *shown, const char *text, const 
   return ok;
 }
 
+/* The numbers of a list up to the brace that ends the form, without the brackets that pair them; false if more than
+   that follows. */
+static bool ListInBraces(const char *p, char *inner)
+{
+  for (; *p && *p != '}'; p++) {
+    if (*p != '[' && *p != ']')
+      *inner++ = *p;
+  }
+  *inner = 0;
+  return *p && !p[1 + strspn(p + 1, " ")];
+}
+
 int FormInBraces(const char *text, char *inner)
 {
   const char *p = text + 1 + strspn(text + 1, " ");
@@ -151,10 +163,7 @@ int FormInBraces(const char *text, char *inner)
 
     if (strncasecmp(p, name, n) || p[colon] != ':')
       continue;
-    p += colon + 1;
-    strcpy(inner, p + strspn(p, " ["));
-    inner[strcspn(inner, "]}")] = 0;
-    return f;
+    return ListInBraces(p + colon + 1, inner) ? f : -1;
   }
   return -1;
 }
@@ -173,6 +182,8 @@ static PetscErrorCode ScheduleGiven(Reader *r, const char *shown, const char *te
                   "is no function of time: {table: [t0, v0, t1, v1, ...]}, {ramp: [v0, v1, t0, t1]}, {rate: ...}, "
                   "{piecewise: ...}, {sine: [mean, amplitude, period, begin]}, {csv: [FILE, COLUMN]}");
   }
+  for (char *q = inner; (form == FORM_TABLE || form == FORM_PIECEWISE) && *q; q++)
+    *q = *q == ';' ? ',' : *q; /* pairs of the file */
   if (form == FORM_CSV)
     PetscCall(ScheduleCsv(r, shown, inner, k, s, &ok));
   else if (form >= 0)

@@ -534,7 +534,7 @@ static void write_awkward(const char *path)
       "  e: {type: temperature, axis: x, position: -0.1 m, temperature: {piecewise: [3 s, 1.1 degC]}}\n"
       "  f: {type: heat_flux, side: bottom, flux: 1 mW/cm^2}\n"
       "  g: {type: face_temperature, side: bottom, to: 0.3 m, temperature: 275.4 K}\n"
-      "  h: {type: plate, side: right, force: {table: [0 s, 1 kN, 0.2 d, 3.3 kN]}, rough: yes, holds: skeleton}\n"
+      "  h: {type: plate, side: right, force: {table: [[0 s, 1 kN], [0.2 d, 3.3 kN]]}, rough: yes, holds: skeleton}\n"
       "  i: {type: plate, side: left, region: low, displacement: {ramp: [0 m, -1.1 mm, 0 s, 1 h]}, separates: yes,\n"
       "    stiffness: 330}\n"
       "time: {end: 0.7 d}\noutput: {times: [0.1 h, 1.7 h], every: 1.1 h, dir: 'a \"strange\" dir'}\n"
