@@ -116,8 +116,8 @@ PetscErrorCode ClosedWarning(MPI_Comm comm, const Scene *c);
    of the run (s) (315), whose hydrate is not stable, or whose gas becomes hydrate. */
 PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span);
 
-/* Prescribed values of all conditions at one time, and gravity then.  Of a plate `value` is the position since the
-   start, which its owner fills in where the force is prescribed. */
+/* Prescribed values of all conditions at one time, at height 0 where they vary with depth, and gravity then.  Of a
+   plate `value` is the position since the start, which its owner fills in where the force is prescribed. */
 typedef struct {
   double *value, *shear, *phase[PHASE_COUNT]; /* [Scene.nbc]; of a well rates and T of what enters */
   double  gravity[CL_DIM];
@@ -126,7 +126,13 @@ typedef struct {
 /* (42): the fluid around the body at time t (s), gravity (m/s^2) being what it is then. */
 Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM]);
 /* Fills v, whose arrays are there, with what holds at time t (s). */
-void   BcValuesEvaluate(const Scene *c, double t, BcValues *v);
+void BcValuesEvaluate(const Scene *c, double t, BcValues *v);
+/* (425): what a condition prescribes at x (m), and its gradient, `value` being its BcValues; only temperatures vary in
+   space, degC and K/m. */
+double BcValueAt(const Scene *c, const Bc *b, double value, const double x[CL_DIM], double gradient[CL_DIM]);
+/* Lowest and highest temperature that it prescribes over the height of the body, at any time, degC; infinite, -infinite
+   where it has no schedule. */
+void   BcTemperatureSpan(const Scene *c, const Bc *b, double *low, double *high);
 double BcNextKink(const Scene *c, double t); /* first kink of any schedule after t, s; INFINITY if none */
 double BcNextMark(const Scene *c,
                   double       t); /* first time after t that a step must not cross for the waves of a schedule, s */

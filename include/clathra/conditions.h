@@ -97,9 +97,10 @@ typedef struct {
   bool       natural; /* pressure: the particle's own capillary pressure instead of the face's initial one (31) */
   OpenPhases open;    /* pressure */
   bool       drained; /* roller, fixed, plate: holds the skeleton alone, fluids cross the plane */
-  bool       rough, separates; /* plate: holds the tangential displacement; takes no tension */
-  double     stiffness;        /* plate: of its springs, in units of the constrained modulus over a cell */
-  double     alpha;            /* convection coefficient, W/(m^2 K) */
+  bool       rough, separates;  /* plate: holds the tangential displacement; takes no tension */
+  double     stiffness;         /* plate: of its springs, in units of the constrained modulus over a cell */
+  double     alpha;             /* convection coefficient, W/(m^2 K) */
+  double     with_depth, datum; /* of a temperature (425): K/m; m, where it is `value`; infinite: top of the body */
   /* well: initial position, m; radius, m; skin; mass of water and gas into the body, kg/s; T of what enters, degC */
   double   at[CL_DIM], radius, skin;
   double   index; /* C of (369), for this grid; 0 without a bottom pressure */

@@ -38,6 +38,8 @@ double RegionHighest(const Region *r, const double direction[]);
 void RegionExtreme(const Scene *c, const Region *g, double sign, double x[CL_DIM]);
 /* Height of the highest point of the regions, m; 0 without gravity. */
 double SceneTop(const Scene *c);
+/* Height of their lowest point, m; 0 without gravity. */
+double SceneFoot(const Scene *c);
 
 /* A box is cut into whole spacings: ppc per cell where it follows the grid, the nearest number elsewhere; other shapes,
    and boxes where cells differ, take the places of a regular filling of the grid's cells. */

@@ -142,15 +142,18 @@ void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const Pet
                      unsigned *mask, double *value)
 {
   const FieldSet *fs = &c->fields;
+  double          x[CL_DIM], gradient[CL_DIM];
 
-  if (at_axis && GridNode(g, 0, ij[0]) < 1e-6 * g->line[0].h)
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = GridNode(g, d, ij[d]);
+  if (at_axis && x[0] < 1e-6 * g->line[0].h)
     Hold(fs, 0, 0.0, false, mask, value); /* nothing crosses the axis */
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc        *b    = &c->bc[k];
     const Condition *kind = &cl_condition[b->type];
 
     if (kind->node && (kind->where == IN_REGION ? InRegion(c, g, b, ij) : OnPlane(g, b, ij)))
-      kind->node(fs, b, v->value[k], mask, value);
+      kind->node(fs, b, BcValueAt(c, b, v->value[k], x, gradient), mask, value);
   }
 }
 

@@ -126,14 +126,20 @@ static void Dissolved(const FaceState *x, bool ambient, FaceOutput *o)
     D[k] += dt * c * AlongSlope(J, x->da, k);
 }
 
+/* Where the face is at the end of the step, m. */
+static void PlaceOfFace(const FaceState *s, double x[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = s->f->x[d] + s->in[IN_U + d];
+}
+
 /* Prescribed mean pressure of a face; that of the ambient fluid depends on where the face is. */
 static double MeanOutside(const FaceState *s, PetscInt k, double du[CL_DIM])
 {
   const double value = s->v->value[k];
   double       x[CL_DIM];
 
-  for (int d = 0; d < CL_DIM; d++)
-    x[d] = s->f->x[d] + s->in[IN_U + d];
+  PlaceOfFace(s, x);
   return isinf(value) ? AmbientPressure(&s->v->ambient, x, du) : value;
 }
 
@@ -271,25 +277,34 @@ void FaceHeatFlux(const FaceState *x, PetscInt k, FaceOutput *o)
   LetIn(x, x->v->value[k], 0.0, o);
 }
 
-void FaceConvection(const FaceState *x, PetscInt k, FaceOutput *o)
+/* alpha (T^ - T) into the body, T^ as (425) has it where the face is. */
+static void Draw(const FaceState *x, PetscInt k, double alpha, FaceOutput *o)
 {
-  const double alpha = x->c->bc[k].alpha;
+  double at[CL_DIM], gradient[CL_DIM];
 
-  LetIn(x, alpha * (x->v->value[k] - x->T), alpha, o);
+  PlaceOfFace(x, at);
+  LetIn(x, alpha * (BcValueAt(x->c, &x->c->bc[k], x->v->value[k], at, gradient) - x->T), alpha, o);
+  for (int d = 0; d < CL_DIM; d++)
+    o->D[F_T][IN_U + d] -= alpha * gradient[d] * x->area;
 }
 
-/* (199): what the body conducts to the face, and a penalty. */
+void FaceConvection(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  Draw(x, k, x->c->bc[k].alpha, o);
+}
+
+/* (199): what the body conducts to the face, through its steps, and a penalty over the true surface. */
 void FaceTemperature(const FaceState *x, PetscInt k, FaceOutput *o)
 {
   const double *g = &x->in[IN_GT], strong = FACE_PENALTY / VectorLength(x->f->r);
   const double  conducts = x->kappa / (1.0 + strong * x->f->ring[1] * x->f->x[0]);
-  const double  arrives  = conducts * VectorDot(g, x->s);
+  const double  arrives  = conducts * VectorDot(g, x->a);
 
-  LetIn(x, strong * conducts * (x->v->value[k] - x->T), strong * conducts, o);
+  Draw(x, k, strong * conducts, o);
   o->heat_in += arrives;
   o->out[F_T] -= arrives;
   for (int j = 0; j < CL_DIM; j++)
-    o->D[F_T][IN_GT + j] -= conducts * x->s[j];
+    o->D[F_T][IN_GT + j] -= conducts * x->a[j];
   for (int j = 0; j < MOTION_COUNT; j++)
-    o->D[F_T][j] -= conducts * AlongSlope(g, x->ds, j);
+    o->D[F_T][j] -= conducts * AlongSlope(g, x->da, j);
 }

@@ -1,5 +1,6 @@
 /* Prescribed values of all conditions, gravity and the fluid around the body as functions of time. */
 #include "clathra/boundary.h"
+#include "clathra/shape.h"
 
 Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM])
 {
@@ -12,12 +13,18 @@ Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM])
   return a;
 }
 
+/* (425): what depth adds to a temperature at height 0. */
+static double AtZero(const Scene *c, const Bc *b)
+{
+  return b->with_depth == 0.0 ? 0.0 : b->with_depth * (isinf(b->datum) ? SceneTop(c) : b->datum);
+}
+
 void BcValuesEvaluate(const Scene *c, double t, BcValues *v)
 {
   for (PetscInt k = 0; k < c->nbc; k++) {
     const double at = t - c->bc[k].zero;
 
-    v->value[k] = ScheduleValue(&c->bc[k].value, at);
+    v->value[k] = ScheduleValue(&c->bc[k].value, at) + AtZero(c, &c->bc[k]);
     v->shear[k] = ScheduleValue(c->bc[k].type == BC_WELL ? &c->bc[k].heated : &c->bc[k].shear, at);
     if (c->bc[k].type == BC_PLATE)
       v->value[k] = PlatePosition(&c->bc[k], t);
@@ -30,6 +37,28 @@ void BcValuesEvaluate(const Scene *c, double t, BcValues *v)
     v->gravity[d] = at < ramp ? from + (c->gravity[d] - from) * at / ramp : c->gravity[d];
   }
   v->ambient = AmbientOf(c, t, v->gravity);
+}
+
+double BcValueAt(const Scene *c, const Bc *b, double value, const double x[CL_DIM], double gradient[CL_DIM])
+{
+  const double per = b->with_depth == 0.0 ? 0.0 : b->with_depth / SceneGravity(c);
+
+  for (int d = 0; d < CL_DIM; d++)
+    gradient[d] = per * c->gravity[d];
+  return per == 0.0 ? value : value - b->with_depth * SceneHeight(c, x);
+}
+
+void BcTemperatureSpan(const Scene *c, const Bc *b, double *low, double *high)
+{
+  const double swing = ScheduleSwing(&b->value), top = AtZero(c, b) - b->with_depth * SceneTop(c),
+               foot = AtZero(c, b) - b->with_depth * SceneFoot(c);
+
+  *low  = INFINITY;
+  *high = -INFINITY;
+  for (PetscInt k = 0; k < b->value.n; k++) {
+    *low  = fmin(*low, b->value.y[k] - swing + fmin(top, foot));
+    *high = fmax(*high, b->value.y[k] + swing + fmax(top, foot));
+  }
 }
 
 /* First kink of the condition after t, which round-off may have left short of one. */

@@ -204,13 +204,12 @@ const Bc *BcHottest(const Scene *c, double *T)
 
   *T = -INFINITY;
   for (PetscInt k = 0; k < c->nbc; k++) {
-    const Schedule *q = &c->bc[k].value;
+    double low, high;
 
-    for (PetscInt i = 0; BcPrescribesT(&c->bc[k]) && i < q->n; i++) {
-      if (q->y[i] + ScheduleSwing(q) > *T) {
-        hottest = &c->bc[k];
-        *T      = q->y[i] + ScheduleSwing(q);
-      }
+    BcTemperatureSpan(c, &c->bc[k], &low, &high);
+    if (BcPrescribesT(&c->bc[k]) && high > *T) {
+      hottest = &c->bc[k];
+      *T      = high;
     }
   }
   return hottest;

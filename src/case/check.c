@@ -148,6 +148,20 @@ static void CheckPlane(Reader *r, const Scene *c, const Bc *b)
             LinesAt(&lines, (PetscInt)round(line)));
 }
 
+/* (425) needs depth, and leaves absolute temperatures positive. */
+static void CheckDepth(Reader *r, const Scene *c, const Bc *b)
+{
+  double low, high;
+
+  if (b->with_depth == 0.0)
+    return;
+  BcTemperatureSpan(c, b, &low, &high);
+  if (SceneGravity(c) == 0.0)
+    FAIL_AT(GROUP_BC, b->name, "with_depth", "is given but gravity, which says where depth is, is zero");
+  else if (low <= -CL_ZERO_CELSIUS)
+    FAIL_AT(GROUP_BC, b->name, "with_depth", "makes the temperature %g degC at the top or foot of the body", low);
+}
+
 static void CheckMeter(Reader *r, const Scene *c, const Meter *m)
 {
   if (m->well < 0)
@@ -182,6 +196,8 @@ void CaseCheck(Reader *r, Case *c)
     Bc       *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;
 
+    if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
+      CheckDepth(r, &c->scene, b);
     if (b->type == BC_WELL) {
       CheckWell(r, c, b);
     } else if (where == ON_FACES) {

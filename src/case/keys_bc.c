@@ -17,6 +17,10 @@ static bool NeedsTemperature(const void *p)
 {
   return ((const Bc *)p)->type != BC_INFLOW;
 }
+static bool GrowsWithDepth(const void *p)
+{
+  return ((const Bc *)p)->with_depth != 0.0;
+}
 static bool WellNeedsRadius(const void *p)
 {
   return ((const Bc *)p)->value.n > 0;
@@ -42,7 +46,8 @@ static const char *const phases_word[]    = {"both", "water", "gas", NULL}; /* O
 #define PLANE(kind, word, has, by, term, where, doc) | ((where) == ON_PLANE ? TYPE(BC_##kind) : 0u)
 enum { FACES = 0u CL_FACE_CONDITIONS(ON_FACE), PLANES = 0u CL_NODE_CONDITIONS(PLANE) CL_NODE_FORMS(PLANE) };
 
-/* those on the surface */
+/* those that hold or offer a temperature, and those on the surface */
+enum { WARM = TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_CONVECTION) | TYPE(BC_TEMPERATURE) | TYPE(BC_REGION_TEMPERATURE) };
 enum { SIDES = FACES & ~TYPE(BC_WELL) };
 
 const Key bc_key[] = {
@@ -106,6 +111,11 @@ const Key bc_key[] = {
     SCHEDULE("temperature", value, "degC", "(-273.15,1000]", "",
              TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE) | TYPE(BC_REGION_TEMPERATURE) | TYPE(BC_INFLOW),
              "inflow: of what flows in, by default the body's own", WHEN(NeedsTemperature, "type is not inflow")),
+    REAL(Bc, "with_depth", with_depth, "K/m", "[-1e4,1e4]", "0 K/m",
+         "growth of that temperature with depth: of a sea over its floor, of ground along a side", .types = WARM),
+    REAL(Bc, "datum", datum, "m", "", "top",
+         "coordinate against gravity where the temperature is the one given; top of the body", .word = "top",
+         ACTS(GrowsWithDepth, "with_depth is not 0"), .types                                         = WARM),
     SCHEDULE("displacement", displacement, "m", "[-1e6,1e6]", "", TYPE(BC_PLATE),
              "since the start, along the axis normal to the side, positive in its direction"),
     SCHEDULE(

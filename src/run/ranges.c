@@ -40,8 +40,12 @@ static Span Temperatures(const Stepper *s)
         Add(&flux, &b->value);
       else if (b->type == BC_WELL)
         Add(&span, &b->heated);
-      else if (BcPrescribesT(b))
-        Add(&span, &b->value);
+      else if (BcPrescribesT(b)) {
+        Span own;
+
+        BcTemperatureSpan(scene, b, &own.low, &own.high);
+        span = (Span){fmin(span.low, own.low), fmax(span.high, own.high)};
+      }
       span.low  = flux.low < 0.0 ? -INFINITY : span.low;
       span.high = flux.high > 0.0 ? INFINITY : span.high;
     }

@@ -137,19 +137,30 @@ void RegionExtreme(const Scene *c, const Region *g, double sign, double x[CL_DIM
     x[d] = up[d] * reach;
 }
 
-double SceneTop(const Scene *c)
+/* Height of the body's highest point (sign 1), or minus that of its lowest (-1). */
+static double SceneReach(const Scene *c, double sign)
 {
-  double top = -INFINITY, x[CL_DIM];
+  double reach = -INFINITY, x[CL_DIM];
 
   if (SceneGravity(c) == 0.0)
     return 0.0;
   for (PetscInt i = 0; i < c->nregion; i++) {
     if (RegionEmpty(&c->region[i]))
       continue;
-    RegionExtreme(c, &c->region[i], 1.0, x);
-    top = fmax(top, SceneHeight(c, x));
+    RegionExtreme(c, &c->region[i], sign, x);
+    reach = fmax(reach, sign * SceneHeight(c, x));
   }
-  return top;
+  return reach;
+}
+
+double SceneTop(const Scene *c)
+{
+  return SceneReach(c, 1.0);
+}
+
+double SceneFoot(const Scene *c)
+{
+  return -SceneReach(c, -1.0);
 }
 
 /* ---------------------------------------------------------------- places */

@@ -31,6 +31,8 @@ NO_GAS = [("basis: cpgimp", "basis: cpgimp\nfields: thm"), ("active: yes", "acti
 GRAVITY = ("title: BP2", "gravity: [0 m/s^2, -9.81 m/s^2]\ntitle: BP2")
 STRESS = lambda value: ("    Sh: 0\n", f"    Sh: 0\n    stress: {value}\n")
 
+SEA = lambda keys: ("load, drain]\nbc:\n", "load, drain, sea]\nbc:\n  sea: {side: right, " + keys + "}\n")
+
 STRENGTH = lambda keys: [("    elasticity:", "    plasticity: {law: mohr_coulomb, " + keys + "}\n    elasticity:")]
 
 SPACING = lambda value, cells="auto, 1": [("cells: [52, 1]", f"cells: [{cells}]\n  spacing: {{{value}}}")]
@@ -232,6 +234,11 @@ CASES = [
     ("geothermal without heat", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30 K/km\n"), *NO_GAS, ("fields: thm", "fields: hm")],
      ["region_column_geothermal", "needs heat"], []),
     ("geothermal without unit", [GRAVITY, ("    Sh: 0\n", "    Sh: 0\n    geothermal: 30\n")], ["region_column_geothermal", "K/m"], []),
+    ("a temperature with depth, without gravity", [SEA("type: face_temperature, temperature: 4 degC, with_depth: 20 K/km")], ["bc_sea_with_depth", "gravity"], []),
+    ("... below absolute zero", [("title: BP2", "gravity: [9.81 m/s^2, 0 m/s^2]\ntitle: BP2"), SEA("type: face_temperature, temperature: 4 degC, with_depth: -1e3 K/m")],
+     ["bc_sea_with_depth", "degC at the top or foot"], []),
+    ("... without unit", [GRAVITY, SEA("type: convection, alpha: 1 W/(m^2 K), ambient: 4 degC, with_depth: 20")], ["bc_sea_with_depth", "K/m"], []),
+    ("... of what flows in", [GRAVITY, SEA("type: inflow, temperature: 4 degC, water: 1e-9 m/s, with_depth: 20 K/km")], ["bc_sea_with_depth", "inflow"], []),
     ("a point and a mean in one", [("at: [0.6 m, 0.01 m]", "at: [0.6 m, 0.01 m], over: column")], ["probe_p06_at", "one of three"], []),
     ("a region and a surface in one", [("at: [0.6 m, 0.01 m]", "over: column, side: right")], ["probe_p06_over", "one of three"], []),
     ("a mean over nothing that is known", [("at: [0.6 m, 0.01 m]", "over: colum")], ["probe_p06_over", "column"], []),
@@ -292,6 +299,9 @@ CASES = [
     ("schedule without pairs", [("2000 s, 3.25 MPa]}", "2000 s]}")], ["bc_load_normal_table", "pairs"], []),
     ("schedule with units swapped", [("[0 s, 3.25 MPa, 1000 s", "[3.25 MPa, 0 s, 1000 s")], ["bc_load_normal_table", "a time"], []),
     ("two forms", [("normal: {table:", "normal: {ramp: [0 Pa, 1 Pa, 0 s, 1 s], table:")], ["bc_load_normal", "two forms"], []),
+    ("more behind a form", [], ["bc_load_normal", "no function of time"], ["-bc_load_normal", "{ramp: [0 Pa, 1 MPa, 0 s, 1 s]} x"]),
+    ("a form without its end", [], ["bc_load_normal", "no function of time"], ["-bc_load_normal", "{ramp: [0 Pa, 1 MPa, 0 s, 1 s]"]),
+    ("pairs that lack a value", [], ["bc_load_normal", "needs pairs"], ["-bc_load_normal", "{table: [[0 s, 1 MPa], [1 s]]}"]),
     ("ramp backwards", [("{table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}", "{ramp: [0 Pa, 1 MPa, 10 s, 0 s]}")],
      ["bc_load_normal_ramp", "end after"], []),
     ("rate unit", [("{table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}", "{rate: [0 Pa, 1 MPa, 0 s, 10 s]}")],

@@ -350,7 +350,7 @@ static inline void AddConditions(SmallScene *s, int set)
     AddFace(s, BC_PRESSURE, SIDE_YMAX, 3.6e6, 0.0);
   if (fs->heat) {
     AddPlane(s, BC_TEMPERATURE, 0, x0, 5.0);
-    AddFace(s, BC_FACE_TEMPERATURE, SIDE_YMAX, 6.0, 0.0);
+    AddFace(s, BC_FACE_TEMPERATURE, SIDE_YMAX, 6.0, 0.0)->with_depth = 3e3;
     AddFace(s, BC_HEAT_FLUX, SIDE_XMAX, -200.0, 0.0);
     AddFace(s, BC_CONVECTION, SIDE_XMAX, 8.0, 0.0);
   }

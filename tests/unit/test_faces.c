@@ -281,6 +281,17 @@ static void Drag(SmallScene *s, Rng *r)
   s->c.ambient_drag    = RngBetween(r, 0.5, 2.0);
 }
 
+/* (425): temperatures that grow with depth. */
+static void Depth(SmallScene *s, Rng *r)
+{
+  s->c.gravity[0]           = 1.7;
+  s->c.gravity[1]           = -9.66;
+  s->face.bc[BC_CONVECTION] = s->face.bc[BC_FACE_TEMPERATURE] = 2;
+  s->bc[2].alpha                                              = 15.0;
+  s->value[2]                                                 = 12.0;
+  s->bc[2].with_depth                                         = RngBetween(r, 0.5, 2.0);
+}
+
 static void Everything(SmallScene *s, Rng *r)
 {
   Drag(s, r);
@@ -307,6 +318,7 @@ static const struct {
                  {"ambient, free", AmbientFree},
                  {"heat flux", HeatFlux},
                  {"drag", Drag},
+                 {"T with depth", Depth},
                  {"all at once", Everything},
                  {"well, out", WellDraws},
                  {"well, in", WellFills},
@@ -366,7 +378,8 @@ static void IdleFaces(void **state)
   }
 }
 
-/* (199): at the prescribed temperature a face conducts as the body does; off it, it gives heat. */
+/* (199): at the prescribed temperature a face conducts as the body does, through all of a step; off it, it gives heat,
+   over the area that the step stands for. */
 static void FaceTemperature(void **state)
 {
   Rng        r = {.s = 19};
@@ -382,11 +395,38 @@ static void FaceTemperature(void **state)
   s.value[2]                     = 10.0;
   in[IN_T]                       = 10.0 - in[IN_GT] * s.face.r[0] - in[IN_GT + 1] * s.face.r[1];
   Evaluate(&s, in, &o);
-  assert_true(fabs(o.heat_in - KAPPA * (in[IN_GT] * s.face.s[0] + in[IN_GT + 1] * s.face.s[1])) < 1e-12);
+  assert_true(fabs(o.heat_in - KAPPA * (in[IN_GT] * s.face.n[0] + in[IN_GT + 1] * s.face.n[1])) < 1e-12);
   in[IN_T] -= 1.0;
   const double before = o.heat_in, given = FACE_PENALTY * KAPPA / hypot(s.face.r[0], s.face.r[1]);
   Evaluate(&s, in, &o);
   assert_true(fabs((o.heat_in - before) / (given * hypot(s.face.s[0], s.face.s[1])) - 1.0) < 1e-12);
+}
+
+/* (425): a face that is moved down sees as much more as the depth that it gained; one that is moved along a level sees
+   what it saw. */
+static void WithDepth(void **state)
+{
+  Rng        r = {.s = 425};
+  SmallScene s;
+  FaceOutput o, down, level;
+  double     in[IN_COUNT] = {[IN_T] = 8.0};
+
+  SceneInit(&s, &r);
+  Depth(&s, &r);
+  s.face.bc[BC_FACE_TEMPERATURE] = -1;
+  Evaluate(&s, in, &o);
+  const double g     = hypot(s.c.gravity[0], s.c.gravity[1]);
+  const double depth = (s.face.x[0] * s.c.gravity[0] + s.face.x[1] * s.c.gravity[1]) / g;
+  const double alpha = 15.0 * hypot(s.face.s[0], s.face.s[1]);
+  assert_true(fabs(o.heat_in / (alpha * (12.0 + s.bc[2].with_depth * depth - 8.0)) - 1.0) < 1e-14);
+  for (int d = 0; d < CL_DIM; d++)
+    in[IN_U + d] = 3.0 * s.c.gravity[d] / g;
+  Evaluate(&s, in, &down);
+  assert_true(fabs((down.heat_in - o.heat_in) / (alpha * 3.0 * s.bc[2].with_depth) - 1.0) < 1e-13);
+  in[IN_U]     = 3.0 * s.c.gravity[1] / g;
+  in[IN_U + 1] = -3.0 * s.c.gravity[0] / g;
+  Evaluate(&s, in, &level);
+  assert_true(fabs(level.heat_in / o.heat_in - 1.0) < 1e-14);
 }
 
 /* A face exchanges heat by its own temperature, not by that of its particle. */
@@ -628,6 +668,7 @@ static void Share(void **state)
     s.bc[2].alpha                                                                                                = 15.0;
     s.value[2]                                                                                                   = 12.0;
     Inputs(&r, in);
+    in[IN_GT] = in[IN_GT + 1] = 0.0; /* what is conducted to a given temperature goes through the whole step */
     Evaluate(&s, in, &whole);
     for (int d = 0; d < CL_DIM; d++)
       s.face.s[d] *= 0.7;
@@ -679,11 +720,11 @@ static void WellFlows(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(Tangents),        cmocka_unit_test(MeanPressure), cmocka_unit_test(FaceTemperature),
-      cmocka_unit_test(DragOfTheSea),    cmocka_unit_test(PlateForces),  cmocka_unit_test(MassRows),
-      cmocka_unit_test(TrueArea),        cmocka_unit_test(Convection),   cmocka_unit_test(DensityOfOutflow),
-      cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share),        cmocka_unit_test(WellFlows),
-      cmocka_unit_test(IdleFaces)};
+      cmocka_unit_test(Tangents),         cmocka_unit_test(MeanPressure),    cmocka_unit_test(FaceTemperature),
+      cmocka_unit_test(WithDepth),        cmocka_unit_test(DragOfTheSea),    cmocka_unit_test(PlateForces),
+      cmocka_unit_test(MassRows),         cmocka_unit_test(TrueArea),        cmocka_unit_test(Convection),
+      cmocka_unit_test(DensityOfOutflow), cmocka_unit_test(NoGasFromTheSea), cmocka_unit_test(Share),
+      cmocka_unit_test(WellFlows),        cmocka_unit_test(IdleFaces)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
