@@ -162,6 +162,19 @@ static void CheckDepth(Reader *r, const Scene *c, const Bc *b)
     FAIL_AT(GROUP_BC, b->name, "with_depth", "makes the temperature %g degC at the top or foot of the body", low);
 }
 
+/* In each stage, whose gravity may differ; the first that fails tells. */
+static void CheckDepths(Reader *r, const Case *c)
+{
+  const PetscInt errors = r->nerror;
+
+  for (PetscInt k = 0; k < PetscMax(c->nstage, 1) && r->nerror == errors; k++) {
+    const Scene *scene = &CaseInStage(c, k)->scene;
+
+    for (PetscInt i = 0; i < scene->nbc; i++)
+      CheckDepth(r, scene, &scene->bc[i]);
+  }
+}
+
 static void CheckMeter(Reader *r, const Scene *c, const Meter *m)
 {
   if (m->well < 0)
@@ -196,8 +209,6 @@ void CaseCheck(Reader *r, Case *c)
     Bc       *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;
 
-    if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
-      CheckDepth(r, &c->scene, b);
     if (b->type == BC_WELL) {
       CheckWell(r, c, b);
     } else if (where == ON_FACES) {
@@ -215,6 +226,8 @@ void CaseCheck(Reader *r, Case *c)
         CheckPlate(r, c, b);
     }
   }
+  if (!bad[GROUP_CASE] && !bad[GROUP_REGION] && !bad[GROUP_BC] && !bad[GROUP_STAGE])
+    CheckDepths(r, c);
   for (PetscInt i = 0; i < c->nprobe && !bad[GROUP_PROBE] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)
     CheckProbe(r, &c->scene, &c->probe[i]);
   for (PetscInt i = 0; i < c->scene.nmeter && !bad[GROUP_METER] && !bad[GROUP_CASE] && !bad[GROUP_REGION]; i++)

@@ -237,6 +237,8 @@ CASES = [
     ("a temperature with depth, without gravity", [SEA("type: face_temperature, temperature: 4 degC, with_depth: 20 K/km")], ["bc_sea_with_depth", "gravity"], []),
     ("... below absolute zero", [("title: BP2", "gravity: [9.81 m/s^2, 0 m/s^2]\ntitle: BP2"), SEA("type: face_temperature, temperature: 4 degC, with_depth: -1e3 K/m")],
      ["bc_sea_with_depth", "degC at the top or foot"], []),
+    ("... in a stage without gravity", [GRAVITY, SEA("type: face_temperature, temperature: 4 degC, with_depth: 20 K/km"), STAGES("end: 1000 s", "end: 2000 s, gravity: [0 m/s^2, 0 m/s^2]")],
+     ["bc_sea_with_depth", "is zero"], []),
     ("... without unit", [GRAVITY, SEA("type: convection, alpha: 1 W/(m^2 K), ambient: 4 degC, with_depth: 20")], ["bc_sea_with_depth", "K/m"], []),
     ("... of what flows in", [GRAVITY, SEA("type: inflow, temperature: 4 degC, water: 1e-9 m/s, with_depth: 20 K/km")], ["bc_sea_with_depth", "inflow"], []),
     ("a point and a mean in one", [("at: [0.6 m, 0.01 m]", "at: [0.6 m, 0.01 m], over: column")], ["probe_p06_at", "one of three"], []),
