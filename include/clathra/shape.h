@@ -40,6 +40,8 @@ void RegionExtreme(const Scene *c, const Region *g, double sign, double x[CL_DIM
 double SceneTop(const Scene *c);
 /* Height of their lowest point, m; 0 without gravity. */
 double SceneFoot(const Scene *c);
+/* A height that a key gives, m; infinite, which stands for its word: the top. */
+double SceneDatum(const Scene *c, double datum);
 
 /* A box is cut into whole spacings: ppc per cell where it follows the grid, the nearest number elsewhere; other shapes,
    and boxes where cells differ, take the places of a regular filling of the grid's cells. */

@@ -84,20 +84,19 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
 }
 
 /* ---------------------------------------------------------------- nodes */
-static bool OnPlane(const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
+/* Of the node at x (m). */
+static bool OnPlane(const Grid *g, const Bc *b, const double x[CL_DIM])
 {
-  return fabs(GridNode(g, b->axis, ij[b->axis]) - b->position) < 1e-6 * g->line[b->axis].h;
+  return fabs(x[b->axis] - b->position) < 1e-6 * g->line[b->axis].h;
 }
 
 /* Does the node lie in the initial shape of the condition's region? */
-static bool InRegion(const Scene *c, const Grid *g, const Bc *b, const PetscInt ij[CL_DIM])
+static bool InRegion(const Scene *c, const Grid *g, const Bc *b, const double x[CL_DIM])
 {
-  double slack[CL_DIM], x[CL_DIM];
+  double slack[CL_DIM];
 
-  for (int d = 0; d < CL_DIM; d++) {
+  for (int d = 0; d < CL_DIM; d++)
     slack[d] = 1e-6 * g->line[d].h;
-    x[d]     = GridNode(g, d, ij[d]);
-  }
   for (PetscInt k = 0; k < c->nregion; k++) {
     if ((b->region < 0 || b->region == k) && RegionReaches(c, k, x, slack))
       return true;
@@ -152,7 +151,7 @@ void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const Pet
     const Bc        *b    = &c->bc[k];
     const Condition *kind = &cl_condition[b->type];
 
-    if (kind->node && (kind->where == IN_REGION ? InRegion(c, g, b, ij) : OnPlane(g, b, ij)))
+    if (kind->node && (kind->where == IN_REGION ? InRegion(c, g, b, x) : OnPlane(g, b, x)))
       kind->node(fs, b, BcValueAt(c, b, v->value[k], x, gradient), mask, value);
   }
 }

@@ -16,7 +16,7 @@ Ambient AmbientOf(const Scene *c, double t, const double gravity[CL_DIM])
 /* (425): what depth adds to a temperature at height 0. */
 static double AtZero(const Scene *c, const Bc *b)
 {
-  return b->with_depth == 0.0 ? 0.0 : b->with_depth * (isinf(b->datum) ? SceneTop(c) : b->datum);
+  return b->with_depth == 0.0 ? 0.0 : b->with_depth * SceneDatum(c, b->datum);
 }
 
 void BcValuesEvaluate(const Scene *c, double t, BcValues *v)
@@ -50,15 +50,12 @@ double BcValueAt(const Scene *c, const Bc *b, double value, const double x[CL_DI
 
 void BcTemperatureSpan(const Scene *c, const Bc *b, double *low, double *high)
 {
-  const double swing = ScheduleSwing(&b->value), top = AtZero(c, b) - b->with_depth * SceneTop(c),
-               foot = AtZero(c, b) - b->with_depth * SceneFoot(c);
+  const double top  = AtZero(c, b) - b->with_depth * SceneTop(c);
+  const double foot = AtZero(c, b) - b->with_depth * SceneFoot(c);
 
-  *low  = INFINITY;
-  *high = -INFINITY;
-  for (PetscInt k = 0; k < b->value.n; k++) {
-    *low  = fmin(*low, b->value.y[k] - swing + fmin(top, foot));
-    *high = fmax(*high, b->value.y[k] + swing + fmax(top, foot));
-  }
+  ScheduleSpan(&b->value, low, high);
+  *low += fmin(top, foot);
+  *high += fmax(top, foot);
 }
 
 /* First kink of the condition after t, which round-off may have left short of one. */

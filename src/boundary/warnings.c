@@ -206,8 +206,10 @@ const Bc *BcHottest(const Scene *c, double *T)
   for (PetscInt k = 0; k < c->nbc; k++) {
     double low, high;
 
+    if (!BcPrescribesT(&c->bc[k]))
+      continue;
     BcTemperatureSpan(c, &c->bc[k], &low, &high);
-    if (BcPrescribesT(&c->bc[k]) && high > *T) {
+    if (high > *T) {
       hottest = &c->bc[k];
       *T      = high;
     }

@@ -34,10 +34,9 @@ static void CheckGeothermal(Reader *r, const Scene *c, const Region *g)
     return;
   }
   for (int sign = -1; sign <= 1; sign += 2) {
-    const double datum = isinf(g->geothermal_datum) ? SceneTop(c) : g->geothermal_datum;
-
     RegionExtreme(c, g, sign, x);
-    coldest = fmin(coldest, g->temperature + g->geothermal * fmax(datum - SceneHeight(c, x), 0.0));
+    coldest = fmin(coldest,
+                   g->temperature + g->geothermal * fmax(SceneDatum(c, g->geothermal_datum) - SceneHeight(c, x), 0.0));
   }
   if (coldest <= -CL_ZERO_CELSIUS)
     FAIL(g->name, "geothermal", "makes the temperature %g degC at its top or foot", coldest);

@@ -3,15 +3,10 @@
 #include "clathra/shape.h"
 #include "clathra/point.h"
 
-static double GeothermalDatum(const Scene *c, const Region *r)
-{
-  return isinf(r->geothermal_datum) ? SceneTop(c) : r->geothermal_datum;
-}
-
 /* (81): grad is null where the temperature does not grow with depth. */
 static double InitialTemperature(const Scene *c, const Region *r, const double x[], double grad[CL_DIM])
 {
-  const double depth = GeothermalDatum(c, r) - SceneHeight(c, x);
+  const double depth = SceneDatum(c, r->geothermal_datum) - SceneHeight(c, x);
 
   for (int d = 0; d < CL_DIM; d++)
     grad[d] = 0.0;
@@ -34,7 +29,7 @@ double ParticleInitialT(const Scene *c, const Particles *P, PetscInt p)
 static double ThermalHeight(const Scene *c, const Region *r, double z)
 {
   const Liquid *water = &c->material[r->material].water;
-  const double  above = z - GeothermalDatum(c, r), rate = water->beta * r->geothermal;
+  const double  above = z - SceneDatum(c, r->geothermal_datum), rate = water->beta * r->geothermal;
   const double  e = exp(-water->beta * (r->temperature - water->T_ref));
 
   return above >= 0.0 || rate == 0.0 ? e * above : -e * -expm1(rate * above) / rate;

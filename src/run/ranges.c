@@ -14,12 +14,18 @@ typedef struct {
   double low, high;
 } Span;
 
+static void Widen(Span *span, Span by)
+{
+  span->low  = fmin(span->low, by.low);
+  span->high = fmax(span->high, by.high);
+}
+
 static void Add(Span *span, const Schedule *s)
 {
-  for (PetscInt k = 0; k < s->n; k++) {
-    span->low  = fmin(span->low, s->y[k] - ScheduleSwing(s));
-    span->high = fmax(span->high, s->y[k] + ScheduleSwing(s));
-  }
+  Span own;
+
+  ScheduleSpan(s, &own.low, &own.high);
+  Widen(span, own);
 }
 
 /* Temperatures that nothing but the reaction leads out of, degC: heat is conducted and carried between those of the
@@ -44,7 +50,7 @@ static Span Temperatures(const Stepper *s)
         Span own;
 
         BcTemperatureSpan(scene, b, &own.low, &own.high);
-        span = (Span){fmin(span.low, own.low), fmax(span.high, own.high)};
+        Widen(&span, own);
       }
       span.low  = flux.low < 0.0 ? -INFINITY : span.low;
       span.high = flux.high > 0.0 ? INFINITY : span.high;

@@ -46,6 +46,18 @@ double ScheduleSwing(const Schedule *s)
   return sum;
 }
 
+void ScheduleSpan(const Schedule *s, double *low, double *high)
+{
+  const double swing = ScheduleSwing(s);
+
+  *low  = INFINITY;
+  *high = -INFINITY;
+  for (PetscInt k = 0; k < s->n; k++) {
+    *low  = fmin(*low, s->y[k] - swing);
+    *high = fmax(*high, s->y[k] + swing);
+  }
+}
+
 static double Points(const Schedule *s, double t)
 {
   const PetscInt i = ScheduleFind(s, t);

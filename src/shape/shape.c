@@ -163,6 +163,11 @@ double SceneFoot(const Scene *c)
   return -SceneReach(c, -1.0);
 }
 
+double SceneDatum(const Scene *c, double datum)
+{
+  return isinf(datum) ? SceneTop(c) : datum;
+}
+
 /* ---------------------------------------------------------------- places */
 /* Where cells differ the places are those of a regular filling of the cells, by which domains end on lines; a box cuts
    or stretches the outermost to its sides. */
