@@ -46,6 +46,9 @@ def main():
         ("longest", (*rest, "-stepper_dt_max", "3 s"), "stepper_dt_max", 60),
         ("shortest", ("-time_end", "20 s", "-stepper_tol", "1e-9", "-stepper_dt_min", "1 s", "-stepper_dt", "1 s"), "stepper_dt_min", 60),
         ("growth", ("-time_end", "5 s", "-stepper_tol", "0.1", "-stepper_dt", "1e-6 s"), "growth from step to step", 50),
+        # three iterations are too few for some steps; half of Newton's update takes a dozen a stage
+        ("refused", ("-time_end", "100 s", "-stepper_tol", "0.1", "-snes_max_it", "3"), "refused steps", 50),
+        ("newton", ("-time_end", "0.1 s", "-stepper_tol", "0.1", "-stepper_dt", "1e-3 s", "-snes_linesearch_type", "basic", "-snes_linesearch_damping", "0.5"), "Newton's method", 90),
         ("fixed", ("-time_end", "40 s", "-stepper_adapt", "no", "-stepper_dt", "2 s"), "stepper_dt", 90),
     ):
         shares, span, dt, _ = bounds(name, *options)
