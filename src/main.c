@@ -58,8 +58,10 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(LogStart(PETSC_COMM_WORLD));
   PetscCall(CaseRead(PETSC_COMM_WORLD, argv[1], &c, &ok));
   if (!ok) {
+    PetscCall(LogEnd());
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -70,6 +72,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   if (check && *exit_code == CL_EXIT_OK)
     PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: the case is valid\n", c.file));
   PetscCall(CaseDestroy(&c));
+  PetscCall(LogEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -94,7 +94,7 @@ PetscErrorCode CellMeansWarning(const Grid *g, const Scene *c, const Particles *
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */
 PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P);
-#define CL_ADVICE 600
+#define CL_ADVICE 800
 /* Where pore pressure above the stiffness of the skeleton is held by tractions: what to do instead; else empty. */
 PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE]);
 /* Where p_g - p_w of two regions that touch jumps at the start (342), the first that do: what to do about it; else

@@ -7,6 +7,10 @@
    check: says and refuses what the run would up to its first step, and writes nothing.  Collective. */
 PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code);
 
+/* What PETSc's printer says is kept for log.txt from here on, from the command to the end (src/run/log.c). */
+PetscErrorCode LogStart(MPI_Comm comm);
+PetscErrorCode LogEnd(void);
+
 /* Before PETSc is initialised, and after: see src/run/process.c. */
 void ProcessPrepare(char **argv); /* may start the program again, with one thread for BLAS */
 /* Before PetscInitialize: a reader of the output that goes away is no crash. */

@@ -86,11 +86,11 @@ PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE])
     beyond = s.p - AmbientPressure(&around, middle, gradient);
     if (beyond < E || !Pushed(c, E))
       continue;
-    PetscCall(PetscSNPrintf(text, CL_ADVICE,
-                            "the pores of region %s bear %.3g Pa, %.3g times its stiffness, against tractions on its "
-                            "faces: what the two differ by, as faces move, may tear it apart; let ambient: {pressure: "
-                            "...} bear what they have in common, and give tractions beyond it",
-                            r->name, beyond, beyond / E));
+    snprintf(text, CL_ADVICE,
+             "the pores of region %s bear %.3g Pa, %.3g times its stiffness, against tractions on its "
+             "faces: what the two differ by, as faces move, may tear it apart; let ambient: {pressure: "
+             "...} bear what they have in common, and give tractions beyond it",
+             r->name, beyond, beyond / E);
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,25 +136,24 @@ static double ShareAt(const Scene *c, const Region *r, double pc)
   return (1.0 - r->Sh) * RetentionGasShare(&c->material[r->material].retention, pc, r->Sh, &d[0], &d[1]);
 }
 
+#define BALANCED 320 /* characters */
+
 /* How two regions that are not in balance could start so. */
-static PetscErrorCode Balanced(const Scene *c, const Region *r[2], const double pc[2], char text[256])
+static void Balanced(const Scene *c, const Region *r[2], const double pc[2], char text[BALANCED])
 {
   const int finer = c->material[r[1]->material].retention.p0 > c->material[r[0]->material].retention.p0;
 
-  PetscFunctionBeginUser;
   if (r[0]->Sg == 0.0 && r[1]->Sg == 0.0)
-    PetscCall(
-        PetscSNPrintf(text, 256,
-                      "the same retention_p_trap in both: p_g starts 20 of it below p_w, or at the equilibrium of "
-                      "hydrate; a small one for the finer, 1 kPa, says least"));
+    snprintf(text, BALANCED,
+             "the same retention_p_trap in both: p_g starts 20 of it below p_w, or at the equilibrium of "
+             "hydrate; a small one for the finer, 1 kPa, says least");
   else if (r[0]->Sg == 0.0 || r[1]->Sg == 0.0)
-    PetscCall(PetscSNPrintf(text, 256, "Sg: 0 in both or neither"));
+    snprintf(text, BALANCED, "Sg: 0 in both or neither");
   else
-    PetscCall(PetscSNPrintf(text, 256,
-                            "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; or the same p0 and gas "
-                            "share Sg/(1 - Sh) in both, though the finer may not have so much",
-                            ShareAt(c, r[finer], pc[!finer]), r[finer]->name, r[!finer]->name));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    snprintf(text, BALANCED,
+             "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; or the same p0 and gas "
+             "share Sg/(1 - Sh) in both, though the finer may not have so much",
+             ShareAt(c, r[finer], pc[!finer]), r[finer]->name, r[!finer]->name);
 }
 
 /* (342) between two regions, in words: the same on all ranks; empty where there is no jump. */
@@ -165,7 +164,7 @@ static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, Pe
   const double  p0    = fmin(c->material[r[0]->material].retention.p0, c->material[r[1]->material].retention.p0);
   double        pc[2] = {0.0, 0.0};
   int           touch;
-  char          balanced[256];
+  char          balanced[BALANCED];
 
   PetscFunctionBeginUser;
   PetscCall(StartCapillary(c, r, pc));
@@ -175,13 +174,13 @@ static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, Pe
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &touch, 1, MPI_INT, MPI_LOR, comm));
   if (!touch)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Balanced(c, r, pc, balanced));
-  PetscCall(PetscSNPrintf(
+  Balanced(c, r, pc, balanced);
+  snprintf(
       text, CL_ADVICE,
       "regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between them "
       "at once, the faster the larger their permeability (in balance: %s)",
       r[0]->name, r[1]->name, 1e-3 * pc[0], r[0]->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1],
-      r[1]->Sg == 0.0 ? " (no gas)" : "", balanced));
+      r[1]->Sg == 0.0 ? " (no gas)" : "", balanced);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

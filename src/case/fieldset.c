@@ -115,7 +115,7 @@ static PetscErrorCode PeekSchedule(Reader *r, const char *instance, const char *
     char        name[64], option[256];
     bool        found, from_file;
 
-    PetscCall(PetscSNPrintf(name, sizeof name, "%s%s", key, case_schedule_form[f]));
+    snprintf(name, sizeof name, "%s%s", key, case_schedule_form[f]);
     KeyOption(option, sizeof option, GROUP_BC, instance, name);
     PetscCall(ReaderFind(r, option, &text, &found, &from_file));
     *given = *given || (text && (f > 0 || zero || strtod(text, NULL) != 0.0));

@@ -49,9 +49,9 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c)
   if (n > SHOWN)
     fprintf(f, " and %d more", (int)(n - SHOWN));
   fclose(f);
-  if (n && r->rank == 0)
-    fprintf(stderr, "%s: note: %d key%s nothing in this scene (%s): %s\n", r->file, (int)n, n > 1 ? "s do" : " does",
-            c->fields_wanted, text);
+  if (n)
+    PetscCall(PetscFPrintf(r->comm, stderr, "%s: note: %d key%s nothing in this scene (%s): %s\n", r->file, (int)n,
+                           n > 1 ? "s do" : " does", c->fields_wanted, text));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -85,10 +85,11 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
          "spacing");
   if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
     CheckSnapBack(r, m);
-  if (p->psi_max > p->phi_peak && r->rank == 0)
-    fprintf(stderr,
-            "clathra: warning: material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)\n",
-            m->name, p->psi_max, p->phi_peak);
+  if (p->psi_max > p->phi_peak)
+    PetscCallVoid(PetscFPrintf(
+        r->comm, stderr,
+        "clathra: warning: material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)\n",
+        m->name, p->psi_max, p->phi_peak));
 }
 
 /* With a factor of their own stages soften by other amounts. */
@@ -117,13 +118,14 @@ void CheckReduction(Reader *r, const Case *c)
   if (!strong)
     FAIL_AT(GROUP_CASE, "", "strength_factor", "needs a material with a plasticity_law: nothing here has a strength");
   CheckStages(r, c);
-  for (PetscInt k = 0; k < c->scene.nmaterial && r->rank == 0; k++) {
+  for (PetscInt k = 0; k < c->scene.nmaterial; k++) {
     const Plasticity *p = &c->scene.material[k].plasticity;
 
     if (p->type != PLASTICITY_NONE && p->psi_max == 0.0 && p->phi_peak > 0.0)
-      fprintf(stderr,
-              "clathra: warning: strength_factor with a dilation of 0 deg (material %s): the factor at which a body "
-              "fails then depends on the grid, even without softening; compare grids\n",
-              c->scene.material[k].name);
+      PetscCallVoid(PetscFPrintf(
+          r->comm, stderr,
+          "clathra: warning: strength_factor with a dilation of 0 deg (material %s): the factor at which a body "
+          "fails then depends on the grid, even without softening; compare grids\n",
+          c->scene.material[k].name));
   }
 }

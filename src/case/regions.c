@@ -204,9 +204,10 @@ static PetscErrorCode Cut(const Reader *r, Case *c, PetscInt i, PetscInt j)
     if (c->stage[k].c.scene.region != c->scene.region)
       c->stage[k].c.scene.region[i].minus = *minus;
   }
-  if (r->rank == 0)
-    fprintf(stderr, "%s: note: region %s lies over region %s, which is cut out there: the later one in regions wins\n",
-            r->file, c->scene.region[j].name, g->name);
+  PetscCall(
+      PetscFPrintf(r->comm, stderr,
+                   "%s: note: region %s lies over region %s, which is cut out there: the later one in regions wins\n",
+                   r->file, c->scene.region[j].name, g->name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -27,7 +27,7 @@ PetscErrorCode GridCreateOn(MPI_Comm comm, const GridLines line[CL_DIM], Grid *g
     g->line[d]  = line[d];
     g->lower[d] = line[d].lower;
     g->cells[d] = line[d].cells;
-    PetscCall(PetscSNPrintf(size + n, sizeof(size) - n, "%s%" PetscInt_FMT, d ? " x " : "", g->cells[d]));
+    snprintf(size + n, sizeof(size) - n, "%s%" PetscInt_FMT, d ? " x " : "", g->cells[d]);
   }
   PetscCheck(GridFits(g->size, g->cells), comm, PETSC_ERR_ARG_SIZ,
              "a grid of %s cells is too small for %d ranks: use fewer ranks", size, g->size);

@@ -131,9 +131,9 @@ static bool Join(const char *dir, const Origin *from, History *h)
     if (k + 1 < h->n && h->run[k + 1].t < from->t) {
       fprintf(
           stderr,
-          "clathra: the checkpoint, of t = %g s, does not belong to the files in %s any more: a later run has gone on "
-          "there from t = %g s; restart from a checkpoint of that one, or give another -output_dir\n",
-          from->t, dir, h->run[k + 1].t);
+          "clathra: the checkpoint, of t = %s, does not belong to the files in %s any more: a later run has gone on "
+          "there from t = %s; restart from a checkpoint of that one, or give another -output_dir\n",
+          TimeAt(from->t).s, dir, TimeAt(h->run[k + 1].t).s);
       return false;
     }
     h->n = k + 1;

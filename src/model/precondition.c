@@ -105,21 +105,19 @@ PetscErrorCode ModelPrintSolver(Model *m)
   if (!type[0])
     PetscCall(PetscStrncpy(type, plan->reduced ? "multigrid" : PCLU, sizeof(type)));
   if (plan->asked)
-    PetscCall(PetscSNPrintf(why, sizeof(why), "as %s asks", plan->asked));
+    snprintf(why, sizeof(why), "as %s asks", plan->asked);
   else
-    PetscCall(PetscSNPrintf(why, sizeof(why), "%.3g cells across, %d unknowns a node (lu up to %.3g across)",
-                            plan->across, m->c->fields.n, AcrossLU(&m->c->fields)));
+    snprintf(why, sizeof(why), "%.3g cells across, %d unknowns a node (lu up to %.3g across)", plan->across,
+             m->c->fields.n, AcrossLU(&m->c->fields));
   PetscCall(PetscPrintf(m->grid.comm, "  preconditioner: %s of the %s matrix: %s\n", type,
                         plan->reduced ? "reduced" : "whole", why));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PreconditionerChooseKind(Model *m, bool *small)
+void PreconditionerChooseKind(Model *m, bool *small)
 {
-  PetscFunctionBeginUser;
   m->solver->reduces = m->solver->plan.reduced;
   *small             = !m->solver->reduces && m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ApplyReduced(PC pc, Vec R, Vec Y)
@@ -219,8 +217,8 @@ PetscErrorCode PreconditionerFallBack(Model *m)
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   why = reason == KSP_DIVERGED_ITS ? "too many iterations" : KSPConvergedReasons[reason];
   PetscCall(PetscPrintf(m->grid.comm,
-                        "t = %g s: the reduced preconditioner broke down (%s); LU of the whole solves this stage\n",
-                        m->stage.t, why));
+                        "t = %s: the reduced preconditioner broke down (%s); LU of the whole solves this stage\n",
+                        TimeAt(m->stage.t).s, why));
   PetscCall(KSPGetPC(ksp, &m->solver->set_aside));
   PetscCall(PetscObjectReference((PetscObject)m->solver->set_aside));
   PetscCall(PCCreate(m->grid.comm, &pc));

@@ -19,7 +19,7 @@ static PetscErrorCode PreferFor(const char *group, const char *name, const char 
   char full[128];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "-reduced_fieldsplit_%s_%s", group, name));
+  snprintf(full, sizeof(full), "-reduced_fieldsplit_%s_%s", group, name);
   PetscCall(Prefer(full, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,7 +29,7 @@ static PetscErrorCode IsGiven(const char *group, PetscBool *given)
   char full[128];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "-reduced_fieldsplit_%s_pc_type", group));
+  snprintf(full, sizeof(full), "-reduced_fieldsplit_%s_pc_type", group);
   PetscCall(PetscOptionsHasName(NULL, NULL, full, given));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

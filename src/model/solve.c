@@ -158,7 +158,7 @@ static PetscErrorCode CreateSolver(Model *m)
 
   PetscFunctionBeginUser;
   m->solver->refactor = true;
-  PetscCall(PreconditionerChooseKind(m, &small));
+  PreconditionerChooseKind(m, &small);
   const bool particles =
       m->solver->apply == OPERATOR_PARTICLES || (m->solver->apply == OPERATOR_AUTO && m->solver->reduces);
   if (particles)
@@ -247,9 +247,8 @@ static PetscErrorCode Explain(Model *m)
   PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPGetConvergedReason(ksp, &linear));
   PetscCall(FindWorst(m, &field));
-  PetscCall(PetscSNPrintf(m->failure.why, sizeof(m->failure.why), "%s, largest residual in the equation of %s",
-                          linear < 0 ? "the linear solver failed" : "Newton's method did not converge",
-                          cl_field[field].equation));
+  snprintf(m->failure.why, sizeof(m->failure.why), "%s, largest residual in the equation of %s",
+           linear < 0 ? "the linear solver failed" : "Newton's method did not converge", cl_field[field].equation);
   m->failure.status = CL_SOLVER;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

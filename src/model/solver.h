@@ -81,7 +81,7 @@ PetscErrorCode  ReducedFollow(Model *m);              /* the Jacobian is a new o
 PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
 PetscErrorCode PreconditionerPlan(Model *m);                    /* (330), of the particles that were just seeded */
-PetscErrorCode PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
+void           PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
 PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);
 void           PreconditionerRenew(Model *m); /* at the next Jacobian */
 PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew);

@@ -15,7 +15,7 @@ PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm)
       continue;
     const Equilibrium *law = &m->kinetics.equilibrium;
     if (m->salinity > 0.0)
-      PetscCall(PetscSNPrintf(salt, sizeof(salt), ", salinity %g (%.3g K colder)", m->salinity, law->shift));
+      snprintf(salt, sizeof(salt), ", salinity %g (%.3g K colder)", m->salinity, law->shift);
     PetscCall(PetscPrintf(comm, "  region %s: equilibrium of hydrate by %s%s: p_e = %.6g Pa at %g degC\n", r->name,
                           law->type, salt, EquilibriumPressure(law, r->temperature, &d), r->temperature));
   }
@@ -68,23 +68,21 @@ PetscErrorCode IceLook(Stepper *s, bool *ends)
   if (first || *ends)
     PetscCall(
         PetscFPrintf(s->model->grid.comm, stderr,
-                     "clathra: %s at t = %g s: the water of %" PetscInt_FMT
+                     "clathra: %s at t = %s: the water of %" PetscInt_FMT
                      " particles is colder than the melting point of ice, by up to %.3g K; ice is not modelled%s\n",
-                     *ends ? "stopped" : "warning", z->t, cold.n, cold.coldest,
+                     *ends ? "stopped" : "warning", TimeAt(z->t).s, cold.n, cold.coldest,
                      *ends ? " (ice: stop); -ice warn goes on" : " (ice: stop would end the run here)"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode IceSummary(const Stepper *s, char text[256])
+void IceSummary(const Stepper *s, char text[256])
 {
   const StepperState *z = &s->state;
 
-  PetscFunctionBeginUser;
   text[0] = '\0';
   if (z->ice_total)
-    PetscCall(PetscSNPrintf(text, 256,
-                            "  water was colder than the melting point of ice at %" PetscInt_FMT
-                            " looks, in up to %" PetscInt_FMT " particles and by up to %.3g K: ice is not modelled\n",
-                            z->ice_total, z->ice_most, z->ice_coldest));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    snprintf(text, 256,
+             "  water was colder than the melting point of ice at %" PetscInt_FMT " looks, in up to %" PetscInt_FMT
+             " particles and by up to %.3g K: ice is not modelled\n",
+             z->ice_total, z->ice_most, z->ice_coldest);
 }

@@ -15,7 +15,7 @@ PetscErrorCode PrintStrength(const Scene *c, MPI_Comm comm)
     if (!p || p->type != PLASTICITY_MOHR_COULOMB || !c->fields.solid)
       continue;
     if (c->strength_factor != 1.0)
-      PetscCall(PetscSNPrintf(reduced, sizeof(reduced), ", strength_factor %g", c->strength_factor));
+      snprintf(reduced, sizeof(reduced), ", strength_factor %g", c->strength_factor);
     StrengthEvaluate(p, r->Sh, 0.0, &s);
     PetscCall(PetscPrintf(
         comm, "  region %s starts with cohesion %.6g Pa, friction %.4g deg, dilation %.4g deg (S_h = %g%s)\n", r->name,
@@ -64,10 +64,10 @@ PetscErrorCode YieldText(const Model *m, char text[128])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Count(m, &y));
   if (y.apex > TEARING * y.all)
-    PetscCall(PetscSNPrintf(tears, sizeof(tears), ", %.0f at the apex (tearing; eps_d_p %.2g, up to %.2g)", y.apex,
-                            y.behind / y.apex, y.torn));
+    snprintf(tears, sizeof(tears), ", %.0f at the apex (tearing; eps_d_p %.2g, up to %.2g)", y.apex, y.behind / y.apex,
+             y.torn);
   if (y.yield > 0.0)
-    PetscCall(PetscSNPrintf(text, 128, ", %.0f particles yield%s", y.yield, tears));
+    snprintf(text, 128, ", %.0f particles yield%s", y.yield, tears);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,11 +82,10 @@ PetscErrorCode YieldSummary(const Model *m, char text[256])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Count(m, &y));
   if (y.apex > 0.0)
-    PetscCall(PetscSNPrintf(tears, sizeof(tears), " (eps_d_p %.2g, up to %.2g)", y.behind / y.apex, y.torn));
-  PetscCall(
-      PetscSNPrintf(text, 256,
-                    "  plastic: %.0f of %.0f particles yield at the end, %.0f at the apex%s; eps_d_p up to %.3g, %.6g "
-                    "J dissipated\n",
-                    y.yield, y.all, y.apex, tears, y.eps, y.work));
+    snprintf(tears, sizeof(tears), " (eps_d_p %.2g, up to %.2g)", y.behind / y.apex, y.torn);
+  snprintf(text, 256,
+           "  plastic: %.0f of %.0f particles yield at the end, %.0f at the apex%s; eps_d_p up to %.3g, %.6g "
+           "J dissipated\n",
+           y.yield, y.all, y.apex, tears, y.eps, y.work);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

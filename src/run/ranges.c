@@ -63,14 +63,10 @@ static Span Temperatures(const Stepper *s)
   return span;
 }
 
-static PetscErrorCode Place(const Extreme *e, char text[96])
+static void Place(const Extreme *e, char text[96])
 {
-  char when[32];
 
-  PetscFunctionBeginUser;
-  StepperTime(e->t, e->t, 4, when);
-  PetscCall(PetscSNPrintf(text, 96, "near (%.4g, %.4g) m at t = %s", e->at[0], e->at[1], when));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  snprintf(text, 96, "near (%.4g, %.4g) m at t = %s", e->at[0], e->at[1], TimeWords(e->t, 4).s);
 }
 
 PetscErrorCode RangeSummary(const Stepper *s, char text[512])
@@ -91,21 +87,21 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
 
     if (!(s->model->c->fields.has & of[k].has))
       continue;
-    PetscCall(Place(&low[0], from));
-    PetscCall(Place(&low[1], to));
-    PetscCall(PetscSNPrintf(text + told, 512 - told, "  %s of particles from %.5g %s, %s, to %.5g, %s\n", of[k].name,
-                            low[0].value / of[k].per, of[k].unit, from, low[1].value / of[k].per, to));
+    Place(&low[0], from);
+    Place(&low[1], to);
+    snprintf(text + told, 512 - told, "  %s of particles from %.5g %s, %s, to %.5g, %s\n", of[k].name,
+             low[0].value / of[k].per, of[k].unit, from, low[1].value / of[k].per, to);
     told = strlen(text);
   }
   if (s->state.extreme[MOST_HELD].value > 0.0) {
-    char at[96], held[32];
+    char at[96];
 
-    PetscCall(Place(&s->state.extreme[MOST_HELD], at));
-    StepperTime(s->state.held_for, s->state.held_for, 3, held);
-    PetscCall(PetscSNPrintf(text + told, 512 - told,
-                            "  stabilisation_reaction_heat held hydrate up to %.3g K above its equilibrium, %s; by "
-                            "%.3g K or more, a fifth of what may melt it, for %s\n",
-                            s->state.extreme[MOST_HELD].value, at, StepperHeldLevel(s), held));
+    Place(&s->state.extreme[MOST_HELD], at);
+    snprintf(text + told, 512 - told,
+             "  stabilisation_reaction_heat held hydrate up to %.3g K above its "
+             "equilibrium, %s; by "
+             "%.3g K or more, a fifth of what may melt it, for %s\n",
+             s->state.extreme[MOST_HELD].value, at, StepperHeldLevel(s), TimeWords(s->state.held_for, 3).s);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -130,12 +126,11 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
 
     if (!(beyond > slack))
       continue;
-    PetscCall(Place(e, place));
+    Place(e, place);
     if (SceneReacts(c) && c->fields.phase[PHASE_G])
-      PetscCall(PetscSNPrintf(
-          hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
-          StepperEquilibrium(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
-          1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value));
+      snprintf(hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
+               StepperEquilibrium(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
+               1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value);
     PetscCall(PetscFPrintf(
         s->model->grid.comm, stderr,
         "clathra: warning: a particle had %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it "
@@ -230,7 +225,7 @@ static PetscErrorCode NotePressures(const Stepper *s)
 
     if (!(beyond > fmax(LEAST_P, high ? ABOVE * fabs(limit) : BEYOND * range)))
       continue;
-    PetscCall(Place(e, place));
+    Place(e, place);
     PetscCall(PetscFPrintf(
         s->model->grid.comm, stderr,
         "clathra: note: the pressure of a particle was %.4g MPa, %s: %.3g MPa %s that of the start "
@@ -248,14 +243,12 @@ static PetscErrorCode WarnOfHeld(const Stepper *s)
 {
   const Extreme *e   = &s->state.extreme[MOST_HELD];
   const double   run = s->state.t - StepperCase(s)->scene.t_begin;
-  char           place[96], held[32], all[32];
+  char           place[96];
 
   PetscFunctionBeginUser;
   if (!(s->state.held_for > LONG * run))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Place(e, place));
-  StepperTime(s->state.held_for, s->state.held_for, 3, held);
-  StepperTime(run, run, 3, all);
+  Place(e, place);
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
       "clathra: warning: hydrate was %.3g K warmer than its equilibrium, %s, and %.3g K or more for %s of %s, for no "
@@ -263,7 +256,7 @@ static PetscErrorCode WarnOfHeld(const Stepper *s)
       "late, and its gas comes late, whatever its K0.  What to try, in this order: without it, where hydrate melts "
       "because pressure falls; cells half as wide, which let it melt four times as fast; stabilisation_reaction: yes "
       "in its place, with which it melts early (docs/giving_up.md)\n",
-      e->value, place, StepperHeldLevel(s), held, all));
+      e->value, place, StepperHeldLevel(s), TimeWords(s->state.held_for, 3).s, TimeWords(run, 3).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,15 +13,15 @@ typedef struct {
   Watch     watch;
   StageLog *log;
   Slow      slow;
-  char      checkpoint[PETSC_MAX_PATH_LEN], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
-  char      restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];  /* -restart, -restart_as_initial */
-  double    t_saved;                                                   /* of that */
-  double    t_shown;                                                   /* of the last snapshot, s */
-  double    clock_start;                                               /* s of the wall */
-  bool      check;                                                     /* ends before anything is written */
-  bool      quiet, restarted;
-  bool      frozen;        /* ended for ice */
-  bool      written, lost; /* a checkpoint by this run; not all could be written */
+  char   checkpoint[PETSC_MAX_PATH_LEN + 16], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
+  char   restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];       /* -restart, -restart_as_initial */
+  double t_saved;                                                        /* of that */
+  double t_shown;                                                        /* of the last snapshot, s */
+  double clock_start;                                                    /* s of the wall */
+  bool   check;                                                          /* ends before anything is written */
+  bool   quiet, restarted;
+  bool   frozen;        /* ended for ice */
+  bool   written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
 static double NextEvent(const Stepper *s, void *ctx)
@@ -36,21 +36,19 @@ static double NextEvent(const Stepper *s, void *ctx)
 /* "about 80 steps, 2 min left"; where that counts on steps that grow again, also how long without. */
 static PetscErrorCode LeftWords(const Left *left, char words[128])
 {
-  char time[32], count[16];
+  char count[16];
 
   PetscFunctionBeginUser;
   if (isnan(left->time))
     PetscFunctionReturn(PETSC_SUCCESS);
-  StepperTime(left->time, left->time, left->time < 10.0 ? 2 : 3, time);
   StepperCount2(fmax(left->steps, 1.0), count);
   if (left->steps > 0.0)
-    PetscCall(PetscSNPrintf(words, 128, "about %s steps, %s left", count, time));
+    snprintf(words, 128, "about %s steps, %s left", count, TimeWords(left->time, left->time < 10.0 ? 2 : 3).s);
   else
-    PetscCall(PetscSNPrintf(words, 128, "%s left", time));
+    snprintf(words, 128, "%s left", TimeWords(left->time, left->time < 10.0 ? 2 : 3).s);
   if (left->flat > STANDS * left->time) {
-    StepperTime(left->flat, left->flat, 2, time);
     PetscCall(PetscStrlcat(words, " if steps grow again, ", 128));
-    PetscCall(PetscStrlcat(words, time, 128));
+    PetscCall(PetscStrlcat(words, TimeWords(left->flat, 2).s, 128));
     PetscCall(PetscStrlcat(words, " if not", 128));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -61,7 +59,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   const Case  *c       = StepperCase(s);
   const double t_begin = c->scene.t_begin, done = (s->state.t - t_begin) / (c->t_end - t_begin);
   Left         left;
-  char         cuts[32] = "", error[160] = "", solved[48], stage[80], begin[48] = "", yields[128], now[32], dt[32];
+  char         cuts[32] = "", error[160] = "", solved[48], stage[80], begin[48] = "", yields[128];
   char         rest[128] = "time left not known yet";
 
   PetscFunctionBeginUser;
@@ -70,26 +68,23 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   StageLogProgress(run->log, s, &left);
   StepperStageWords(s, stage);
   if (t_begin > 0.0) {
-    StepperTime(t_begin, t_begin, 6, now);
-    PetscCall(PetscSNPrintf(begin, sizeof(begin), "%s + ", now));
+    snprintf(begin, sizeof(begin), "%s + ", TimeWords(t_begin, 6).s);
   }
-  StepperTime(s->state.t - t_begin, c->t_end - t_begin, 6, now);
-  StepperTime(info->dt, info->dt, 6, dt);
   PetscCall(LeftWords(&left, rest));
   PetscCall(YieldText(s->model, yields));
   if (info->cuts)
-    PetscCall(PetscSNPrintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts));
+    snprintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts);
   if (s->explicit)
-    PetscCall(PetscSNPrintf(solved, sizeof(solved), "%s rules", cl_limit_word[s->limit.rules]));
+    snprintf(solved, sizeof(solved), "%s rules", cl_limit_word[s->limit.rules]);
   else
-    PetscCall(PetscSNPrintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton));
+    snprintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton);
   if (s->adaptive && !s->explicit)
-    PetscCall(PetscSNPrintf(error, sizeof(error),
-                            ", error %.2g of tolerance (%s), at worst %.2g (%s near (%.4g, %.4g) m)", info->err,
-                            stepper_error_word[info->rules], info->peak.err, stepper_error_word[info->peak.of],
-                            info->peak.at[0], info->peak.at[1]));
+    snprintf(error, sizeof(error), ", error %.2g of tolerance (%s), at worst %.2g (%s near (%.4g, %.4g) m)", info->err,
+             stepper_error_word[info->rules], info->peak.err, stepper_error_word[info->peak.of], info->peak.at[0],
+             info->peak.at[1]);
   PetscCall(PetscPrintf(s->model->grid.comm, "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s\n",
-                        stage, s->state.step, begin, now, 100.0 * done, dt, solved, error, cuts, yields, rest));
+                        stage, s->state.step, begin, TimeWordsAs(s->state.t - t_begin, c->t_end - t_begin, 6).s,
+                        100.0 * done, TimeWords(info->dt, 6).s, solved, error, cuts, yields, rest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -161,8 +156,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char text[4096], ranges[512], gone[512], above[64] = "", local[512], left[128], loose[512], ice[256], yields[256],
-                                           gaps[256], ranks[128], *stages, *all;
+  char                text[PETSC_MAX_PATH_LEN + 4096], ranges[512], gone[512],
+      above[64] = "", local[512], left[128], loose[512], ice[256], yields[256], gaps[256], ranks[128], *stages, *all;
   ModelTotals t;
   double      error[3];
   bool        ok;
@@ -170,32 +165,31 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   StepperErrors(z, &t, error);
-  PetscCall(LocalSummary(s, local));
+  LocalSummary(s, local);
   PetscCall(YieldSummary(s->model, yields));
-  PetscCall(LooseSummary(s, loose));
+  LooseSummary(s, loose);
   if (z->loose_total)
-    PetscCall(PetscSNPrintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total));
-  PetscCall(LeftSummary(s, left));
+    snprintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total);
+  LeftSummary(s, left);
   GoneSummary(z, gone);
   PetscCall(LongSummary(s->model, gaps));
-  PetscCall(IceSummary(s, ice));
+  IceSummary(s, ice);
   PetscCall(RangeSummary(s, ranges));
   PetscCall(RanksSummary(s->model, ranks));
-  PetscCall(PetscSNPrintf(
-      text, sizeof(text),
-      "%s: %s at t = %g s\n"
-      "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-      " Newton iterations, %.2f s%s\n%s"
-      "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
-      "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-      "%s%s%s%s%s%s%s%s  results in %s\n",
-      StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", z->t,
-      StepperCase(s)->nstage ? "by stage"
-      : s->auto_.on          ? STEPPER_AUTO
-                             : s->scheme->name,
-      z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local, error[0], error[1],
-      error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, gaps, ice, ranks,
-      StepperCase(s)->output_dir));
+  snprintf(text, sizeof(text),
+           "%s: %s at t = %s\n"
+           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
+           " Newton iterations, %.2f s%s\n%s"
+           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
+           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
+           "%s%s%s%s%s%s%s%s  results in %s\n",
+           StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", TimeAt(z->t).s,
+           StepperCase(s)->nstage ? "by stage"
+           : s->auto_.on          ? STEPPER_AUTO
+                                  : s->scheme->name,
+           z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local, error[0], error[1],
+           error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, gaps, ice, ranks,
+           StepperCase(s)->output_dir);
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
   strcpy(stpcpy(all, text), stages);
@@ -310,19 +304,19 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   PetscFunctionBeginUser;
   if ((run->lost || s->broken) && run->saved[0]) {
     PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: stopped at t = %g s: %s.  The last checkpoint, of t = %g s, is whole: go on with "
+                           "clathra: stopped at t = %s: %s.  The last checkpoint, of t = %s, is whole: go on with "
                            "-restart %s\n",
-                           t, why, run->t_saved, run->saved));
+                           TimeAt(t).s, why, TimeAt(run->t_saved).s, run->saved));
   } else if (run->lost || s->broken) {
     PetscCall(PetscFPrintf(
-        comm, stderr, "clathra: stopped at t = %g s: %s, and there is no checkpoint of this run yet: start it anew\n",
-        t, why));
+        comm, stderr, "clathra: stopped at t = %s: %s, and there is no checkpoint of this run yet: start it anew\n",
+        TimeAt(t).s, why));
   } else if (s->signal && !StepperDone(s)) {
-    PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %g s; go on with -restart %s\n", s->signal,
-                          strsignal(s->signal), t, run->saved));
+    PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %s; go on with -restart %s\n", s->signal,
+                          strsignal(s->signal), TimeAt(t).s, run->saved));
   } else if (run->watch.over && !run->frozen && ok && !StepperDone(s)) {
-    PetscCall(PetscPrintf(comm, "Ended at t = %g s, before -time_limit %g s is over; go on with -restart %s\n", t,
-                          run->watch.limit, run->saved));
+    PetscCall(PetscPrintf(comm, "Ended at t = %s, before -time_limit %g s is over; go on with -restart %s\n",
+                          TimeAt(t).s, run->watch.limit, run->saved));
   } else if (!ok || run->frozen) {
     if (!run->frozen)
       PetscCall(AmbientAdvice(s->model->c, advice));
@@ -330,7 +324,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
       PetscCall(CapillaryAdvice(comm, s->model->c, &s->model->P, advice));
     if (advice[0])
       PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
-    PetscCall(PetscPrintf(comm, "The last good state (t = %g s) is saved in %s\n", t, run->saved));
+    PetscCall(PetscPrintf(comm, "The last good state (t = %s) is saved in %s\n", TimeAt(t).s, run->saved));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -416,7 +410,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
   PetscCall(FolderTake(s->model->grid.comm, c->output_dir, restart[0] ? &origin : NULL, &run->folder, exit_code));
   if (*exit_code != CL_EXIT_OK)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir));
+  snprintf(run->checkpoint, sizeof(run->checkpoint), "%s/checkpoint.h5", c->output_dir);
   PetscCall(Begin(c, s, run, restart[0] != '\0'));
   PetscCall(Advance(s, run, exit_code));
   PetscCall(FolderRelease(&run->folder));
@@ -483,7 +477,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(LogStart(comm)); /* until LogEnd, which every way out from here passes */
   PetscCall(ModelCreate(comm, &c->scene, &CaseInStage(c, 0)->scene, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
@@ -499,10 +492,10 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     FieldSetPrint(&c->scene.fields, fields, sizeof(fields));
     PetscCall(PetscPrintf(comm,
                           "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT
-                          " cells%s, %s, to t = %g s\n  fields: %s; %d unknowns "
+                          " cells%s, %s, to t = %s\n  fields: %s; %d unknowns "
                           "a node\n",
                           c->title, c->scene.cells[0], c->scene.cells[1], c->scene.axisymmetric ? " about an axis" : "",
-                          c->nstage ? "in stages" : c->stepper, c->t_end, fields, c->scene.fields.n));
+                          c->nstage ? "in stages" : c->stepper, TimeAt(c->t_end).s, fields, c->scene.fields.n));
     PetscCall(PrintStrength(&c->scene, comm));
     PetscCall(PrintEquilibrium(&c->scene, comm));
     PetscCall(Go(c, &stepper, &run, exit_code));
@@ -511,6 +504,5 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
   }
   PetscCall(StepperDestroy(&stepper));
   PetscCall(ModelDestroy(&model));
-  PetscCall(LogEnd());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

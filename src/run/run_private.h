@@ -5,10 +5,8 @@
 #include "clathra/run.h"
 
 /* ---------------------------------------------------------------- log.c: log.txt */
-PetscErrorCode LogStart(MPI_Comm comm); /* keeps what is said from here on */
 /* What was said since the last time goes into the folder; append: after what a run before wrote.  Collective. */
 PetscErrorCode LogWrite(MPI_Comm comm, const char *dir, bool append, bool *ok);
-PetscErrorCode LogEnd(void);
 
 /* ---------------------------------------------------------------- watch.c: seconds of the clock on the wall */
 double Wall(void); /* now, s */
@@ -79,12 +77,12 @@ PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, cons
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
    is nothing to say */
-PetscErrorCode LocalSummary(const Stepper *s, char text[512]);     /* of an integrator without matrices */
-PetscErrorCode LeftSummary(const Stepper *s, char text[128]);      /* what Newton's method left (277) */
+void           LocalSummary(const Stepper *s, char text[512]);     /* of an integrator without matrices */
+void           LeftSummary(const Stepper *s, char text[128]);      /* what Newton's method left (277) */
 void           GoneSummary(const StepperState *z, char text[512]); /* particles that left the grid (373) */
-PetscErrorCode LooseSummary(const Stepper *s, char text[512]);     /* largest error, and those put up with */
+void           LooseSummary(const Stepper *s, char text[512]);     /* largest error, and those put up with */
 PetscErrorCode LongSummary(const Model *m, char text[256]);        /* domains longer than a cell; collective */
-PetscErrorCode IceSummary(const Stepper *s, char text[256]);       /* water below its melting point */
+void           IceSummary(const Stepper *s, char text[256]);       /* water below its melting point */
 PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */
 
 /* ---------------------------------------------------------------- ranges.c */

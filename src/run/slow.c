@@ -14,15 +14,13 @@ void SlowBegin(Slow *slow, const Stepper *s)
 }
 
 /* What shortens the steps: the last one's field and place, or Newton's method. */
-static PetscErrorCode Rules(const Stepper *s, const StepInfo *info, char text[128])
+static void Rules(const Stepper *s, const StepInfo *info, char text[128])
 {
-  PetscFunctionBeginUser;
   if (s->state.hold > 0)
-    PetscCall(PetscSNPrintf(text, 128, "ruled by Newton's method, which refused a step shortly before"));
+    snprintf(text, 128, "ruled by Newton's method, which refused a step shortly before");
   else
-    PetscCall(PetscSNPrintf(text, 128, "ruled by the error of %s, largest near (%.4g, %.4g) m",
-                            stepper_error_word[info->rules], info->peak.at[0], info->peak.at[1]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    snprintf(text, 128, "ruled by the error of %s, largest near (%.4g, %.4g) m", stepper_error_word[info->rules],
+             info->peak.at[0], info->peak.at[1]);
 }
 
 /* Is it time for a word?  The first one after so many steps or so long, the next after both. */
@@ -43,16 +41,10 @@ bool SlowIs(const Slow *slow, const Forecast *f, PetscInt taken, const Pace *pac
 static PetscErrorCode Say(const Slow *slow, const Stepper *s, const StepInfo *info, PetscInt taken, const Pace *pace)
 {
   const double t = s->state.t - s->model->c->t_begin, left = StepperCase(s)->t_end - s->state.t;
-  char         rules[128], now[32], time[32], rest[32], spent[32], promised[32], flat[32], all[16], grown[16], even[16];
+  char         rules[128], all[16], grown[16], even[16];
 
   PetscFunctionBeginUser;
-  PetscCall(Rules(s, info, rules));
-  StepperTime(t, t, 3, now);
-  StepperTime(info->dt, info->dt, 2, time);
-  StepperTime(pace->left * pace->step, pace->left * pace->step, 2, rest);
-  StepperTime(pace->spent, pace->spent, 2, spent);
-  StepperTime(pace->flat, pace->flat, 2, flat);
-  StepperTime(s->forecast.implicit_seconds, s->forecast.implicit_seconds, 2, promised);
+  Rules(s, info, rules);
   StepperCount2(s->forecast.implicit_steps, all);
   StepperCount2(pace->left, grown);
   StepperCount2(left / info->dt, even);
@@ -60,9 +52,12 @@ static PetscErrorCode Say(const Slow *slow, const Stepper *s, const StepInfo *in
                          "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
                          " refused), %s, have come to %s, %.3g %%; the forecast was %s, %s, for all, and by their "
                          "growth so far %s are left, %s; with the present dt of %s it would be %s",
-                         taken, slow->refused, spent, now, 100.0 * pace->done, all, promised, grown, rest, time, even));
+                         taken, slow->refused, TimeWords(pace->spent, 2).s, TimeWords(t, 3).s, 100.0 * pace->done, all,
+                         TimeWords(s->forecast.implicit_seconds, 2).s, grown, TimeWords(pace->left * pace->step, 2).s,
+                         TimeWords(info->dt, 2).s, even));
   if (!isnan(pace->flat))
-    PetscCall(PetscFPrintf(s->model->grid.comm, stderr, ", %s as the last %d went", flat, LEARNT_LATE));
+    PetscCall(
+        PetscFPrintf(s->model->grid.comm, stderr, ", %s as the last %d went", TimeWords(pace->flat, 2).s, LEARNT_LATE));
   PetscCall(PetscFPrintf(s->model->grid.comm, stderr, ".  dt is %s\n", rules));
   PetscCall(StepperAdviseSlow(s, s->state.hold > 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -177,38 +177,33 @@ double StageLogSpent(const StageLog *log)
 }
 
 /* " (WHAT 12 %" or ", WHAT 12 %" behind what is there. */
-static PetscErrorCode AddShare(const char *what, double share, char words[WORDS])
+static void AddShare(const char *what, double share, char words[WORDS])
 {
   const size_t n = strlen(words);
 
-  PetscFunctionBeginUser;
   if (share > 0.0)
-    PetscCall(
-        PetscSNPrintf(words + n, WORDS - n, "%s%s %.3g %%", strchr(words, '(') ? ", " : " (", what, 100.0 * share));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    snprintf(words + n, WORDS - n, "%s%s %.3g %%", strchr(words, '(') ? ", " : " (", what, 100.0 * share);
 }
 
 /* ", stable step 0.004 s to 0.006 s (waves in the mixture 100 %)", of the time; ", steps of 0.01 s to 0.1 s (error of T
    80 %, times to be hit 20 %)", of the steps. */
 static PetscErrorCode LimitWords(const Entry *e, char words[WORDS])
 {
-  char what[48], least[32], most[32];
+  char what[48];
 
   PetscFunctionBeginUser;
   words[0] = '\0';
   if (!(e->most > 0.0))
     PetscFunctionReturn(PETSC_SUCCESS);
-  StepperTime(e->least, e->least, 3, least);
-  StepperTime(e->most, e->most, 3, most);
   if (e->implicit)
-    PetscCall(PetscSNPrintf(words, WORDS, ", steps of %s to %s", least, most));
+    snprintf(words, WORDS, ", steps of %s to %s", TimeWords(e->least, 3).s, TimeWords(e->most, 3).s);
   else
-    PetscCall(PetscSNPrintf(words, WORDS, ", stable step %.3g s to %.3g s", e->least, e->most));
+    snprintf(words, WORDS, ", stable step %.3g s to %.3g s", e->least, e->most);
   for (int k = 0; k < LIMIT_COUNT; k++)
-    PetscCall(AddShare(cl_limit_word[k], e->ruled[k] / (e->to - e->from), words));
+    AddShare(cl_limit_word[k], e->ruled[k] / (e->to - e->from), words);
   for (int k = 0; k < BOUNDS; k++) {
     StepperBoundWords(k, what);
-    PetscCall(AddShare(what, (double)e->held[k] / (double)e->steps, words));
+    AddShare(what, (double)e->held[k] / (double)e->steps, words);
   }
   if (strchr(words, '('))
     PetscCall(PetscStrlcat(words, ")", WORDS));
@@ -224,26 +219,25 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
   PetscCall(PetscCalloc1(line * (size_t)log->n, text));
   for (PetscInt k = 0; k < log->n; k++) {
     const Entry *e  = &log->entry[k];
-    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[WORDS], lasted[32];
+    char        *at = *text + strlen(*text), scaled[80] = "", stage[80] = "", limit[WORDS];
 
     if (e->steps == 0)
       continue;
     PetscCall(LimitWords(e, limit));
     if (c->nstage == 0 && log->n == 1) { /* the rest is the run's */
       if (limit[0])
-        PetscCall(PetscSNPrintf(at, line, "  %s\n", &limit[2])); /* without its comma */
+        snprintf(at, line, "  %s\n", &limit[2]); /* without its comma */
       continue;
     }
     if (CaseInStage(c, e->stage)->mass_scaling > 1.0 && e->scaling > 0.0)
-      PetscCall(PetscSNPrintf(scaled, sizeof(scaled), ", mass scaling added up to %.2g of the forces", e->scaling));
-    StepperTime(e->to - e->from, e->to - e->from, 3, lasted);
+      snprintf(scaled, sizeof(scaled), ", mass scaling added up to %.2g of the forces", e->scaling);
     if (c->nstage)
-      PetscCall(PetscSNPrintf(stage, sizeof(stage), "stage %s: ", c->stage[e->stage].name));
-    PetscCall(PetscSNPrintf(at, line,
-                            "  %s%s from %g s to %g s (%s), %" PetscInt_FMT " steps, %" PetscInt_FMT
-                            " refused, %" PetscInt_FMT " Newton iterations, %.2f s%s%s\n",
-                            stage, e->integrator, e->from, e->to, lasted, e->steps, e->refused, e->newton, e->spent,
-                            limit, scaled));
+      snprintf(stage, sizeof(stage), "stage %s: ", c->stage[e->stage].name);
+    snprintf(at, line,
+             "  %s%s from %g s to %g s (%s), %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
+             " Newton iterations, %.2f s%s%s\n",
+             stage, e->integrator, e->from, e->to, TimeWords(e->to - e->from, 3).s, e->steps, e->refused, e->newton,
+             e->spent, limit, scaled);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,6 +38,6 @@ PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok)
   if (!*ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepperStart(s));
-  PetscCall(PetscPrintf(comm, "  starts from the state of %s, t = %g s there\n", path, origin.t));
+  PetscCall(PetscPrintf(comm, "  starts from the state of %s, t = %s there\n", path, TimeAt(origin.t).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,39 +2,34 @@
 #include "run_private.h"
 
 /* What an integrator without matrices has to say at the end. */
-PetscErrorCode LocalSummary(const Stepper *s, char text[512])
+void LocalSummary(const Stepper *s, char text[512])
 {
   const double scaling     = StepperCase(s)->mass_scaling;
   char         scaled[128] = "";
 
-  PetscFunctionBeginUser;
   text[0] = '\0';
   if (!s->explicit)
-    PetscFunctionReturn(PETSC_SUCCESS);
+    return;
   if (scaling > 1.0)
-    PetscCall(PetscSNPrintf(scaled, sizeof(scaled), "; mass scaling %g added inertia of up to %.2g of the forces",
-                            scaling, ExplicitMassScalingError(s->explicit)));
-  PetscCall(PetscSNPrintf(text, 512, "  stable step %.4g s at the end (%s rules); %.0f B a particle%s\n", s->limit.dt,
-                          cl_limit_word[s->limit.rules], ExplicitBytesPerParticle(s->explicit), scaled));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    snprintf(scaled, sizeof(scaled), "; mass scaling %g added inertia of up to %.2g of the forces", scaling,
+             ExplicitMassScalingError(s->explicit));
+  snprintf(text, 512, "  stable step %.4g s at the end (%s rules); %.0f B a particle%s\n", s->limit.dt,
+           cl_limit_word[s->limit.rules], ExplicitBytesPerParticle(s->explicit), scaled);
 }
 
 /* What Newton's method left in the balances of mass: it goes back to the particles (28), so the ledger does not show
  * it. */
-PetscErrorCode LeftSummary(const Stepper *s, char text[128])
+void LeftSummary(const Stepper *s, char text[128])
 {
   const StepperState *z        = &s->state;
   double              share[2] = {0.0};
 
-  PetscFunctionBeginUser;
   text[0] = '\0';
   for (int ph = 0; ph < PHASE_COUNT; ph++)
     share[ph] = z->moved[ph] > 0.0 ? z->left[ph] / z->moved[ph] : 0.0;
   if (z->moved[PHASE_W] + z->moved[PHASE_G] > 0.0 && !s->model->c->fields.one_pressure)
-    PetscCall(PetscSNPrintf(text, 128,
-                            "  left in the balances by Newton's method: water %.2e, gas %.2e of what moved\n",
-                            share[PHASE_W], share[PHASE_G]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    snprintf(text, 128, "  left in the balances by Newton's method: water %.2e, gas %.2e of what moved\n",
+             share[PHASE_W], share[PHASE_G]);
 }
 
 void GoneSummary(const StepperState *z, char text[512])
@@ -53,28 +48,22 @@ void GoneSummary(const StepperState *z, char text[512])
 }
 
 /* The largest estimated error of any particle, and errors that were put up with. */
-PetscErrorCode LooseSummary(const Stepper *s, char text[512])
+void LooseSummary(const Stepper *s, char text[512])
 {
-  const StepperState *z       = &s->state;
-  char                now[32] = "";
+  const StepperState *z = &s->state;
 
-  PetscFunctionBeginUser;
   text[0] = '\0';
   if (z->peak > 0.0) {
-    StepperTime(z->peak_t, z->peak_t, 4, now);
-    PetscCall(PetscSNPrintf(
-        text, 512,
-        "  largest error of a step at any particle: %.3g of the tolerance, of %s near (%.4g, %.4g) m at t = %s\n",
-        z->peak, stepper_error_word[(int)z->peak_of], z->peak_at[0], z->peak_at[1], now));
+    snprintf(text, 512,
+             "  largest error of a step at any particle: %.3g of the tolerance, of %s near (%.4g, %.4g) m at t = %s\n",
+             z->peak, stepper_error_word[(int)z->peak_of], z->peak_at[0], z->peak_at[1], TimeWords(z->peak_t, 4).s);
   }
   const size_t told = strlen(text);
   if (z->loose_total)
-    PetscCall(PetscSNPrintf(text + told, 512 - told,
-                            "  %" PetscInt_FMT
-                            " steps were accepted above the tolerance, with an estimated error of up "
-                            "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",
-                            z->loose_total, z->err_worst));
-  PetscFunctionReturn(PETSC_SUCCESS);
+    snprintf(text + told, 512 - told,
+             "  %" PetscInt_FMT " steps were accepted above the tolerance, with an estimated error of up "
+             "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",
+             z->loose_total, z->err_worst);
 }
 
 /* Domains that act shorter than they are (BasisHalfLength). */
@@ -95,9 +84,8 @@ PetscErrorCode LongSummary(const Model *m, char text[256])
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, m->grid.comm));
   if (n)
-    PetscCall(PetscSNPrintf(
-        text, 256, "  %" PetscInt_FMT " particles are longer than a cell and leave gaps: take more of them in a cell\n",
-        n));
+    snprintf(text, 256,
+             "  %" PetscInt_FMT " particles are longer than a cell and leave gaps: take more of them in a cell\n", n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,9 +99,8 @@ PetscErrorCode RanksSummary(const Model *m, char text[128])
   if (m->grid.size == 1)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ParticlesFullest(&m->grid, &m->P, &mean, &most));
-  PetscCall(PetscSNPrintf(
-      text, 128,
-      "  %d ranks: the fullest has %.3g times the mean of %.4g particles; borders moved %" PetscInt_FMT " times\n",
-      m->grid.size, most, mean, m->grid.shared - 1));
+  snprintf(text, 128,
+           "  %d ranks: the fullest has %.3g times the mean of %.4g particles; borders moved %" PetscInt_FMT " times\n",
+           m->grid.size, most, mean, m->grid.shared - 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

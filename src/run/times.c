@@ -12,16 +12,13 @@ double NextMultiple(const Case *c, double every, double t)
 static PetscErrorCode EveryNote(MPI_Comm comm, const Case *c, const char *stage, const char *key, double every)
 {
   const double length = c->t_end - c->scene.t_begin;
-  char         time[32], all[32];
 
   PetscFunctionBeginUser;
   if (!(every > length * (1.0 + 1e-9)))
     PetscFunctionReturn(PETSC_SUCCESS);
-  StepperTime(every, every, 4, time);
-  StepperTime(length, length, 4, all);
-  PetscCall(PetscFPrintf(comm, stderr,
-                         "clathra: note: %s%s%s (%s) is longer than the %s (%s): it asks for nothing before its end\n",
-                         stage, stage[0] ? ": " : "", key, time, stage[0] ? "stage" : "run", all));
+  PetscCall(PetscFPrintf(
+      comm, stderr, "clathra: note: %s%s%s (%s) is longer than the %s (%s): it asks for nothing before its end\n",
+      stage, stage[0] ? ": " : "", key, TimeWords(every, 4).s, stage[0] ? "stage" : "run", TimeWords(length, 4).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,8 +30,8 @@ static PetscErrorCode UpdateScales(Stepper *s)
   s->broken = !isfinite(top[0] + top[1] + top[2]);
   if (s->broken) {
     PetscCall(PetscPrintf(m->grid.comm,
-                          "Given up at t = %g s: a pressure, stress, temperature or displacement is not a number\n",
-                          s->state.t));
+                          "Given up at t = %s: a pressure, stress, temperature or displacement is not a number\n",
+                          TimeAt(s->state.t).s));
     PetscCall(StepperAdvise(s, CL_NONFINITE));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

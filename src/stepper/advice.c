@@ -55,10 +55,9 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
 
   PetscFunctionBeginUser;
   if (what) {
-    PetscCall(PetscSNPrintf(
-        words, sizeof(words), "%s%s%s",
-        DonorMayHelp(s, status) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "", what,
-        HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : ""));
+    snprintf(words, sizeof(words), "%s%s%s",
+             DonorMayHelp(s, status) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
+             what, HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : "");
     PetscCall(StepperTry(s, words));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,7 +100,7 @@ PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
   char                     words[768];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(
+  snprintf(
       words, sizeof(words), "%s%s%s%s%s",
       StepperHeatsHydrate(s) && !c->stabilisation.held_reaction
           ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
@@ -111,7 +110,7 @@ PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",
-      "a ramp instead of a jump; finer cells near that place"));
+      "a ramp instead of a jump; finer cells near that place");
   PetscCall(StepperTry(s, words));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,10 +120,10 @@ PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus statu
   const Model *m = s->model;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscPrintf(
-      m->grid.comm, "Given up at t = %g s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
-      s->state.t, attempts, ModelFailure(m)->why, StepperStatusName(status), ModelFailure(m)->where[0],
-      ModelFailure(m)->where[1]));
+  PetscCall(PetscPrintf(m->grid.comm,
+                        "Given up at t = %s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
+                        TimeAt(s->state.t).s, attempts, ModelFailure(m)->why, StepperStatusName(status),
+                        ModelFailure(m)->where[0], ModelFailure(m)->where[1]));
   PetscCall(StepperAdvise(s, status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -205,10 +205,10 @@ static PetscErrorCode FromImplicit(Stepper *s, bool *ok)
   if (!s->auto_.give_way && z->votes < LOOKS_IMPLICIT)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "t = %g s: %s -> hybrid: a second takes %.2g s by implicit steps of %.2g s (%s), %.2g s by "
+                        "t = %s: %s -> hybrid: a second takes %.2g s by implicit steps of %s (%s), %.2g s by "
                         "hybrid's\n",
-                        z->t, s->scheme->name, implicit, dt, s->auto_.give_way ? "which fail" : "that do not grow",
-                        hybrid));
+                        TimeAt(z->t).s, s->scheme->name, implicit, TimeWords(dt, 2).s,
+                        s->auto_.give_way ? "which fail" : "that do not grow", hybrid));
   s->auto_.give_way = false;
   LearnFromVisit(z, hybrid);
   PetscCall(GoOver(s, AUTO_HYBRID, z->dt, ok));
@@ -229,9 +229,9 @@ static PetscErrorCode FromHybrid(Stepper *s, bool *ok)
   if (z->votes < LOOKS_HYBRID * z->patience)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "t = %g s: hybrid -> sdirk2: a second takes %.2g s by hybrid's steps, %.2g s by implicit ones "
-                        "of %.2g s that would do\n",
-                        z->t, hybrid, implicit, dt));
+                        "t = %s: hybrid -> sdirk2: a second takes %.2g s by hybrid's steps, %.2g s by implicit ones "
+                        "of %s that would do\n",
+                        TimeAt(z->t).s, hybrid, implicit, TimeWords(dt, 2).s));
   PetscCall(GoOver(s, AUTO_IMPLICIT, START * dt, ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -200,8 +200,8 @@ static PetscErrorCode Limit(Stepper *s)
   PetscFunctionBeginUser;
   PetscCall(ExplicitStableStep(s->explicit, &s->limit));
   if (s->limit.rules != before && before != LIMIT_NONE)
-    PetscCall(PetscPrintf(s->model->grid.comm, "t = %g s: %s rules now, stable step %.4g s (%s before)\n", s->state.t,
-                          cl_limit_word[s->limit.rules], s->limit.dt, cl_limit_word[before]));
+    PetscCall(PetscPrintf(s->model->grid.comm, "t = %s: %s rules now, stable step %.4g s (%s before)\n",
+                          TimeAt(s->state.t).s, cl_limit_word[s->limit.rules], s->limit.dt, cl_limit_word[before]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,8 +213,8 @@ static PetscErrorCode CheckGone(const Stepper *s, bool *ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   *ok = false;
   PetscCall(PetscPrintf(s->model->grid.comm,
-                        "Given up at t = %g s: the step of %s has come down from %.2g s to %.2g s (%s rules%s)\n",
-                        s->state.t, s->scheme->name, s->dt_begin, Wanted(s), cl_limit_word[s->limit.rules],
+                        "Given up at t = %s: the step of %s has come down from %.2g s to %.2g s (%s rules%s)\n",
+                        TimeAt(s->state.t).s, s->scheme->name, s->dt_begin, Wanted(s), cl_limit_word[s->limit.rules],
                         s->state.hold > 0 ? ", and steps were refused" : ""));
   PetscCall(StepperAdvise(s, CL_TOO_FAR));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -253,8 +253,8 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     PetscCall(CheckFixed(s, &stable));
     if (!stable) {
       *ok = false;
-      PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: the fixed step is above the stable one by now\n",
-                            s->state.t));
+      PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %s: the fixed step is above the stable one by now\n",
+                            TimeAt(s->state.t).s));
       PetscCall(StepperTry(s, "stepper_adapt: yes, which follows the stable step; a shorter stepper_dt"));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
@@ -274,9 +274,9 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     const bool out = a.status == CL_LEFT_GRID; /* as it would with any step */
     if (!out)
       PetscCall(PetscPrintf(
-          m->grid.comm,
-          "t = %g s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n", s->state.t,
-          n, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1], s->state.dt));
+          m->grid.comm, "t = %s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
+          TimeAt(s->state.t).s, n, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1],
+          s->state.dt));
     if (out || cuts >= s->max_failures) {
       *ok = false;
       PetscCall(StepperGiveUp(s, cuts + 1, a.status));

@@ -140,21 +140,6 @@ PetscErrorCode StepperForecast(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void StepperTime(double seconds, double scale, int digits, char text[32])
-{
-  static const struct {
-    double      s;
-    const char *name;
-  } unit[] = {{3.15576e7, "years"}, {86400.0, "days"}, {3600.0, "h"}, {60.0, "min"}, {1.0, "s"}};
-  int k    = 0, n;
-
-  while (k < 4 && scale < 2.0 * unit[k].s)
-    k++;
-  n = snprintf(text, 32, "%.*g %s", digits, seconds / unit[k].s, unit[k].name);
-  if (strncmp(text, "1 ", 2) == 0 && unit[k].s >= 86400.0)
-    text[n - 1] = '\0'; /* 1 year */
-}
-
 void StepperCount2(double n, char text[16])
 {
   const double unit = n >= 100.0 ? pow(10.0, floor(log10(n)) - 1.0) : 1.0;
@@ -166,23 +151,21 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
   const char     *why = CaseNeedsImplicit(StepperCase(s));
-  char            hybrid[128], time[32], stage[80], count[16];
+  char            hybrid[128], stage[80], count[16];
 
   PetscFunctionBeginUser;
   if (why) {
-    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid does not know %s", why));
+    snprintf(hybrid, sizeof(hybrid), "hybrid does not know %s", why);
   } else if (!(f->limit.dt > 0.0)) {
-    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid has no stable step"));
+    snprintf(hybrid, sizeof(hybrid), "hybrid has no stable step");
   } else {
-    StepperTime(f->hybrid_seconds, f->hybrid_seconds, 2, time);
     StepperCount2(f->hybrid_steps, count);
-    PetscCall(PetscSNPrintf(hybrid, sizeof(hybrid), "hybrid %s steps, %s", count, time));
+    snprintf(hybrid, sizeof(hybrid), "hybrid %s steps, %s", count, TimeWords(f->hybrid_seconds, 2).s);
   }
-  StepperTime(f->implicit_seconds, f->implicit_seconds, 2, time);
   StepperCount2(f->implicit_steps, count);
   StepperStageWords(s, stage);
   PetscCall(PetscPrintf(s->model->grid.comm, "  %sforecast: %s; implicit about %s steps, %s%s; %s is the cheaper one\n",
-                        stage, hybrid, count, time, s->adaptive ? " (most take half to twice that)" : "",
-                        f->hybrid ? "hybrid" : "implicit"));
+                        stage, hybrid, count, TimeWords(f->implicit_seconds, 2).s,
+                        s->adaptive ? " (most take half to twice that)" : "", f->hybrid ? "hybrid" : "implicit"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

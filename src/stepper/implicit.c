@@ -341,10 +341,10 @@ static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
   if (s->crawl < CRAWL_STEPS)
     PetscFunctionReturn(PETSC_SUCCESS);
   *ok = false;
-  PetscCall(PetscPrintf(
-      s->model->grid.comm,
-      "Given up at t = %g s: for %d steps dt has been about %.2g s, at which the rest would take %.1g steps\n",
-      s->state.t, CRAWL_STEPS, dt, left / dt));
+  PetscCall(
+      PetscPrintf(s->model->grid.comm,
+                  "Given up at t = %s: for %d steps dt has been about %s, at which the rest would take %.1g steps\n",
+                  TimeAt(s->state.t).s, CRAWL_STEPS, TimeWords(dt, 2).s, left / dt));
   PetscCall(StepperAdvise(s, CL_INACCURATE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -364,8 +364,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   PetscCall(ModelBeginStep(m, &status));
   if (status != CL_OK) {
     *ok = false;
-    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %.10g s: %s near (%.12g, %.12g) m; no smaller step can help\n",
-                          s->state.t, why->why, why->where[0], why->where[1]));
+    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %s: %s near (%.12g, %.12g) m; no smaller step can help\n",
+                          TimeAt(s->state.t).s, why->why, why->where[0], why->where[1]));
     PetscCall(StepperAdvise(s, status));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -392,8 +392,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
     }
     const bool small = dt <= s->dt_min * (1.0 + 1e-9);
     if (a.status == CL_INACCURATE) {
-      PetscCall(PetscSNPrintf(text, sizeof(text), "the error estimate, of %s, stays above the tolerance",
-                              stepper_error_word[a.rules]));
+      snprintf(text, sizeof(text), "the error estimate, of %s, stays above the tolerance", stepper_error_word[a.rules]);
       ModelExplain(m, text);
       s->state.dt    = fmax(Retry(s, dt, a.err, dt_inaccurate, err_inaccurate), s->dt_min);
       s->bound       = s->state.dt > s->dt_min ? a.rules : BOUND_LEAST;
@@ -403,9 +402,9 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
       s->state.hold = HOLD;
       s->bound      = BOUND_REFUSED;
-      PetscCall(PetscPrintf(m->grid.comm, "t = %g s: step of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-                            s->state.t, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1],
-                            s->state.dt));
+      PetscCall(PetscPrintf(m->grid.comm, "t = %s: step of %s refused (%s: %s near (%g, %g) m); trying %s\n",
+                            TimeAt(s->state.t).s, TimeWords(dt, 4).s, StepperStatusName(a.status), why->why,
+                            why->where[0], why->where[1], TimeWords(s->state.dt, 4).s));
     }
     const bool last = cuts >= s->max_failures || small;
     PetscCall(StepperAutoGivesWay(s, &a, dt, last, &s->auto_.give_way));

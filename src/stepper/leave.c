@@ -15,9 +15,10 @@ static PetscErrorCode Say(const Model *m, const Leaver *one, PetscInt n)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n && k < SHOWN; k++)
-    PetscCall(PetscPrintf(
-        PETSC_COMM_SELF, "t = %.10g s: particle %.0f of %s left the grid at (%g, %g) m and is taken out, %g kg\n",
-        one[k].t, one[k].id, m->c->region[(PetscInt)one[k].region].name, one[k].x[0], one[k].x[1], one[k].mass));
+    PetscCall(PetscPrintf(PETSC_COMM_SELF,
+                          "t = %s: particle %.0f of %s left the grid at (%g, %g) m and is taken out, %g kg\n",
+                          TimeAt(one[k].t).s, one[k].id, m->c->region[(PetscInt)one[k].region].name, one[k].x[0],
+                          one[k].x[1], one[k].mass));
   if (n > SHOWN)
     PetscCall(PetscPrintf(PETSC_COMM_SELF, "... and %" PetscInt_FMT " more\n", n - SHOWN));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -69,7 +70,8 @@ PetscErrorCode StepperBookLeavers(Stepper *s)
   s->empty  = rest == 0;
   if (!s->empty)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %g s: the last particle has left the grid\n", s->state.t));
+  PetscCall(
+      PetscPrintf(m->grid.comm, "Given up at t = %s: the last particle has left the grid\n", TimeAt(s->state.t).s));
   PetscCall(StepperTry(s,
                        "a larger grid, for nothing of the body stayed in it; a roller or fixed line where it should be "
                        "held; an earlier time_end; the units of velocities and loads"));

@@ -100,6 +100,8 @@ for path in sorted(CASES.glob("*/case.yaml")):
     says(f"cases/{path.parent.name}", {}, path.parent)
 done = launch(binary(), FOLDER / "hm.yaml", "-quiet", "-stepper_max_steps", 0, "-mat_a_gas_viscosity", "1e-5 Pa s", "-mat_a_permeability_mh", 3, out=FOLDER / "out")
 check_true("a run says it too", "mat_a_gas_viscosity (no gas)" in done.stdout, done.stdout[-300:])
+log = (FOLDER / "out" / "log.txt").read_text()
+check_true("... and so does its log.txt", "mat_a_gas_viscosity (no gas)" in log, log[:300])
 says("... and the case as it ran has none", {}, FOLDER / "out" / "case.yaml")
 done = launch(binary(), FOLDER / "hm.yaml", "-quiet", "-restart", FOLDER / "out" / "checkpoint.h5", "-stepper_max_steps", 1, out=FOLDER / "out")
 check_true("a restart does not mind an idle key that is gone", done.returncode == 0, done.stdout[-300:])

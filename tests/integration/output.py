@@ -77,6 +77,11 @@ def check_xdmf(kind, times):
 
 
 # ------------------------------------------------------------------------------------------ text files
+def bad_ends(text):
+    """Numbers with a point and nothing behind it, before a unit."""
+    return re.findall(r"\d+\. (?:s|m|Pa|MPa|degC|K|kg)\b", text)
+
+
 def check_tables():
     columns = ["time_s"] + [f"{probe}.{q}" for probe in ("p06", "surface") for q in QUANTITIES]
     check_true("probes.csv: columns", list(good.probes) == columns)
@@ -95,6 +100,9 @@ def check_tables():
     log = (good.out / "log.txt").read_text().splitlines()
     check_true("log.txt: the command, then all that was said", log[0].startswith("# ") and "bp2 -progress 0 -grid_cells 13,1 -time_end '60 s'" in log[1]
                and sorted(log[2:]) == sorted(good.output.splitlines()), log[1])  # fmt: skip
+    check_true("numbers end with a digit, and a time has the unit it is read in", not bad_ends(good.output) and "to t = 60 s" in good.output, bad_ends(good.output))
+    long = run(binary(), CASES / "bp2", "-time_end", "60 days", "-output_times", "0 s", "-stepper_max_steps", "1")
+    check_true("... days are days", "to t = 60 days" in long.output and not bad_ends(long.output), long.output[:300])
     steps = [s for s in good.output.splitlines() if s.startswith("step")]
     check_true("a line a step with percentage and time left", len(steps) == len(b["step"]) and "(100.0 %)" in steps[-1]
                and steps[-1].endswith(" 0 s left"), steps[-1])  # fmt: skip
