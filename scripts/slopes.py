@@ -282,11 +282,11 @@ def scenario_c(kept):
     yield ("first band near the front at 17 s", near(m, 19, 1), "agrees but for 2 s; here a V")
     yield ("second and third V at 30 s, at the top and in the middle, two grabens", near(m, 27, 1), "at the top at 27 s; none in the middle")
     yield ("sub-bands in the grabens at 41 s", near(m, 41, 4), "agrees")
-    yield ("fourth and fifth at 56 to 60 s", near(m, 54, 6), "at 50 and 59 s; they follow each other from the head of the slide down")
-    yield ("last one at 77 s", near(m, 85, 5), "at 81 and 88 s")
-    yield ("angles of 47 to 51°", f"bands through 60 % of the height: {min(tops):.0f} to {max(tops):.0f}°, mean {np.mean(tops):.0f}°", "four of six of 49 to 53°, the last two 56 and 58°")
+    yield ("fourth and fifth at 56 to 60 s", near(m, 54, 6), "at 50 and 57 to 59 s; they follow each other from the head of the slide down")
+    yield ("last one at 77 s", near(m, 85, 5), "at 89 s")
+    yield ("angles of 47 to 51°", f"bands through 60 % of the height: {min(tops):.0f} to {max(tops):.0f}°, mean {np.mean(tops):.0f}°", "four of seven of 49 to 53°, the last three 56 to 59°")
     short = [b for b in m["bands"] if 55 < b["y_high_m"] - b["y_low_m"] < 60 and b["time_s"] > 77]
-    yield ("seven bands", f"{len(tall(m))} through 60 % of the height, {len(m['bands'])} in all" + "".join(f"; one of {b['y_high_m'] - b['y_low_m']:.0f} m at {b['time_s']:.0f} s, {b['angle_deg']:.0f}°" for b in short), "agrees, with one that is just too short")
+    yield ("seven bands", f"{len(tall(m))} through 60 % of the height, {len(m['bands'])} in all" + "".join(f"; one of {b['y_high_m'] - b['y_low_m']:.0f} m at {b['time_s']:.0f} s, {b['angle_deg']:.0f}°" for b in short), "agrees")
     yield ("runout 600 m", f"{m['runout_m']:.0f} m at {m['end_s']:.0f} s", "**farther**")
     yield ("one very high peak of E_k, higher than in B", f"{m['peak_kinetic_energy_J']:.2g} J/m at {m['peak_kinetic_energy_s']:.0f} s" + f"; B {kept['B']['peak_kinetic_energy_J']:.2g}", "one peak, but **lower** than in B")
     yield ("R_k peaks as bands form", "peaks of R_k at " + ", ".join(f"{t:.0f}" for t in m["peaks_of_R_k_s"]) + " s", "some; many more than bands")
@@ -299,7 +299,7 @@ def scenario_c(kept):
     yield ("by 250 s largely come to a halt", said, "agrees" if still else "**differs**")
 
 
-C_SAYS = ("agrees", "agrees", "not on 4 m, by a band that is just too short; on 8 m; all of them are as many", "agrees")
+C_SAYS = ("agrees", "agrees", "agrees; on 4 m all of them are as many", "agrees")
 
 
 IMPLICIT = (  # what they are called, when they are looked at (s), runs and their integrator with its ghost penalty
@@ -344,8 +344,8 @@ NOTES_IMPLICIT = """- *All three go through* (`-stepper_type sdirk2 -stepper_tol
 - *B stopped by itself before*, at 56.2 or 56.9 s: two causes. Where one row of particles is left across a cell (near (960, 3) m) nothing held changes of the nodes' pressures that it does not see; they came to hundreds of MPa, and no step had a solution. (417) ties them: from the state at 55 s, 3 s take 60 steps and 294 Newton iterations, none refused,
   where 40 steps to 56.2 s took 374, 2 refused. With it alone the run stopped at 64.6 s, in the tear at (398, 13) m: a particle's gas at 0.1 MPa fell by what its nodes fell by, beside others at 2.6 MPa, until it had none. (416) lets it fall in proportion, as (151) does in `hybrid`.
   Small scenes: [lone_row.py](../tests/verification/lone_row.py), [torn_gas.py](../tests/verification/torn_gas.py).
-  On 16 m B comes to rest from 77 s on (`hybrid` 70, with 12 passes 72), on a grid 240 m longer, for its front passes the 2000 m of the case: 923 m runout and 710 m moved where `hybrid` has 855 and 682, with 12 passes 853 and 672. The largest E_k is 40.3 GJ/m at 39 s (44.3 and 42.7 at 39 and 40 s); from 30 to 50 s it is within 6 % of 12 passes,
-  at 15 s 24 % and at 60 s 46 % more, the hydrate lost at most 7 % less, and 0.12 % of gravity's work is left over (1.4 %).
+  On 16 m B comes to rest from 78 s on (`hybrid` 70, with 12 passes 72), on a grid 240 m longer, for its front passes the 2000 m of the case: 935 m runout and 715 m moved where `hybrid` has 855 and 682, with 12 passes 853 and 672. The largest E_k is 40.4 GJ/m at 39 s (44.3 and 42.7 at 39 and 40 s); from 30 to 50 s it is within 6 % of 12 passes,
+  at 15 s 24 % and at 60 s 48 % more, the hydrate lost at most 7 % less, and 0.11 % of gravity's work is left over (1.4 %).
 - *The ghost penalty holds them back.* (22) resists each step's motion where the surface cuts cells, also that of two pieces beside a tear. With 1e-3, which these cases have, it takes 3 and 4 % of gravity's work in B and C. `hybrid` has no (22). The default, 0.1, is for bodies that stay whole ([a blow between two bars](../tests/verification/meeting.py): it takes 90 % of the energy, 1e-3 takes 3 %).
 - *C*: the largest E_k is 8.4 GJ/m at 58.5 s, 435 m moved, runout 748 m, 12.9 % of the hydrate lost; `hybrid` with 12 passes 8.2 at 59.5 s, 420 m, 727 m, 13.1 %, as it is 10.4 at 55.3 s, 462 m, 833 m, 14.9 %.
 - *A: lumped storage in `hybrid`*, (37): the heated row is at the apex of the yield surface from 11 s on (no shear stress is left by 14 s), the block floats on it, and what holds it are suction and tension where it tears from the slope above: E_k is a hundredth of gravity's work, a small difference of large works, and what pressure is lost to the cells beside counts.
@@ -359,7 +359,7 @@ NOTES_IMPLICIT = """- *All three go through* (`-stepper_type sdirk2 -stepper_tol
   more than six steps do not grow. `stabilisation: {ghost_storage: 0.1}`, (351), ties the changes to those of the nodes beside: from the same state 5 ms became 0.1 s within 17 steps, and as (351) is now A goes from 10 to 12 s in 45 steps, while without it 128 steps come to 10.18 s. [A test](../tests/verification/slivers.py) does so on cells of 15 m. `hybrid` has its own tie (41) and knows neither.""".split("\n")
 NOTES_B = """- To 100 s without a step refused: gas that expands in what tears loses shares of its pressure, not pascals ((151) of [equations.md](equations.md), `stepper_pressures: relative`). With increments of p_g
   shared among particles a single one reached zero pressure at 27 s and the run gave up; with `stepper_relaxation` of 1 s at 42.7 s.
-- *The step* falls from 6.2 to 2 ms as particles in the tears become thin; bounds by waves in thin domains set it 99.4 % of the time. With (374), by which domains act with at least a twentieth of a cell, 4 m take 48,394 steps to 100 s (70,241 to 49 s before).
+- *The step* falls from 6.2 to 2 ms as particles in the tears become thin; bounds by waves in thin domains set it 99.4 % of the time. With (374), by which domains act with at least a twentieth of a cell, 4 m take 48,289 steps to 100 s (70,241 to 49 s before).
 - *What is left of E_k* after the slide, 1 to 3 % of its peak, is in particles of what tore that swing against each other: a motion that the grid does not see (FLIP). At 100 s on 8 m it is 1.4e9 J/m, of which the nodes
   have 2e4: single particles at up to 39 m/s where nodes move by 4 cm/s. It moves nothing, as in A.
 - On cells of 8 m the heated layer is twice as thick as the paper's: 6.7 instead of 5.0 % of the hydrate goes, and the front comes 837 instead of 699 m far; E_k is 13 % lower, and the graben reaches to x = 327 m instead of 277.
@@ -377,7 +377,7 @@ NOTES_B = """- To 100 s without a step refused: gas that expands in what tears l
 
 *Pictures of B and C are of cells of 8 m.*""".split("\n")
 NOTES_C = """- The statements without a mesh are of the paper's cells of 4 m. On 8 m the heated layer is twice as thick (9.8 instead of 6.9 % of the hydrate lost), bands come within 2 s of the same times at the same places until 30 s, and E_k, way, runout and failed volume differ by 1 to 6 %.
-- θ = 0.5 on 4 m took 111,318 steps before (374) instead of 56,451, with E_k of 9.23 instead of 9.40 GJ/m, 472 instead of 487 m moved, a front at 711 instead of 727 m and the same bands within 1 s, the last of them, at 89 s, as the seventh tall one; on 8 m (374) took 21,738 steps instead of 26,564, E_k is 0.3 % lower, the way 0.6 % and the runout 1.7 % longer. At 100 s what failed still moves by 1.3 m/s on 4 m and 0.7 m/s on 8 m, which ends within 2 s there.
+- θ = 0.5 on 4 m took 111,318 steps before (374) instead of 56,451, with E_k of 9.23 instead of 9.40 GJ/m, 472 instead of 487 m moved, a front at 711 instead of 727 m and the same bands within 1 s, the last of them, at 89 s, as the seventh tall one (both as of then); on 8 m (374) took 21,738 steps instead of 26,564, E_k is 0.3 % lower, the way 0.6 % and the runout 1.7 % longer. At 100 s what failed still moves by 1.3 m/s on 4 m and 0.7 m/s on 8 m, which ends within 2 s there.
 - The block in the middle stays whole, for 100 s; the paper's breaks into horsts and grabens everywhere.
 
 ![plastic strain](figures/case_slope_c.png)
@@ -439,8 +439,9 @@ Section 5.2 of the paper, by [slope_a](../cases/slope_a/README.md){others}, with
 `docs/slopes.json`, into which `scripts/slopes.py run` (or `add`, of a run that is there) puts what [scripts/slide.py](../scripts/slide.py) measures of a run; the options of every row stand in that script. A run without a word on cells has those
 of the paper, 4 m with 2 x 2 particles.
 
-Rows by `sdirk2` have the ties (351) and (417) of [equations.md](equations.md), which `hybrid` has not; A, B and C go without (424), as the paper does. By the present program are all of `slope_warming` and, A on 4 m by `sdirk2` and, by `hybrid`, A with both θ, to 250 s, with K_0 as printed and on 8 m, B and C on 8 m with both θ to 100 s: E_k, way, runout and hydrate lost
-of these are within 0.07 % of what earlier states had, and bands the same, so the other rows, which are by those states, were not run anew (that methane goes with all of the water's flux, (352), came after most of them, that hydrate grows in water, (418), after all).
+Rows by `sdirk2` have the ties (351) and (417) of [equations.md](equations.md), which `hybrid` has not; A, B and C go without (424), as the paper does. All rows are by the present program. Against earlier states, without methane that goes with all of the water's flux (352)
+and hydrate that grows in water (418), E_k, way, runout and hydrate lost are within 0.2 %, but for three rows that are as sensitive as that to anything: A on 2 m with a heated layer of 4 m (34.5 instead of 34.1 m moved), B on 16 m by `sdirk2` (715 instead of 710 m) and C on 4 m
+(runout 733 instead of 727 m; a seventh band is 60 % of the height long now, with θ = 0 still six).
 
 ## What is measured
 
