@@ -9,6 +9,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
 
 /* What PETSc's printer says is kept for log.txt from here on, from the command to the end (src/run/log.c). */
 PetscErrorCode LogStart(MPI_Comm comm);
+/* It is kept no longer; what was not written is lost. */
 PetscErrorCode LogEnd(void);
 
 /* Before PETSc is initialised, and after: see src/run/process.c. */
