@@ -9,11 +9,10 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import CASES, binary, check, check_true, finish, run, scratch  # noqa: E402
+from common import CASES, binary, check, check_true, finish, run, scratch, seconds  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-output_probe_every", "0 s", "-quiet")
 LINE = re.compile(r"^  (stable step|steps of) (\S+ \S+) to (\S+ \S+) \((.*)\)$", re.M)
-UNIT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0, "days": 86400.0}
 
 
 def bounds(name, *options, ranks=1):
@@ -24,7 +23,7 @@ def bounds(name, *options, ranks=1):
     if not found:
         check_true(f"{name}: the summary says what bounded the steps", False, done.stdout[-800:])
         sys.exit(finish())
-    span = [float(n) * UNIT[u] for n, u in (w.split() for w in found.group(2, 3))]
+    span = [seconds(w) for w in found.group(2, 3)]
     rows = list(csv.DictReader(l for l in (out / "balance.csv").read_text().splitlines() if not l.startswith("#")))
     shares = {w: float(v) for w, v in re.findall(r"([^,(][^,(]*?) ([\d.e+-]+) %", found[4])}
     return {w.strip(): v for w, v in shares.items()}, span, [float(r["dt_s"]) for r in rows if float(r["dt_s"]) > 0], found[1]

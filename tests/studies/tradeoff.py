@@ -26,7 +26,7 @@ import _auto as slow_fast  # noqa: E402
 import _integrators as scenes  # noqa: E402
 import exact  # noqa: E402
 from _integrators import EULER, EXPLICIT, SDIRK2, adaptive, apart, fixed, integrators, steps_of, timed  # noqa: E402
-from common import CASES, read_csv  # noqa: E402
+from common import CASES, changes, read_csv, seconds  # noqa: E402
 from field_sets import select  # noqa: E402
 
 PAGE, DATA, FIGURES = ROOT / "docs" / "tradeoff.md", ROOT / "docs" / "tradeoff.json", ROOT / "docs" / "figures"
@@ -79,8 +79,8 @@ def point(scene, kind, setting, options, reference, **given):
 
 
 def reached(run):
-    said = re.search(r"stopped at t = (\S+) s", run.output)
-    return float(said[1]) if said else 0.0
+    said = re.search(r"stopped at t = (\S+ \w+)", run.output)
+    return seconds(said[1]) if said else 0.0
 
 
 def work_precision(scene, reference, cells, steps, tols=(), kinds=None):
@@ -164,7 +164,7 @@ def bp2_explicit(case, kind, cells, setting, extra, bursts=40):
     """The faster case to its end (its error), and `bursts` of the case as it is (time a step and step, extrapolated to 2000 s)."""
     fast, slow = scenes.bp2(case, 1000, every=0.1), scenes.bp2(case, every=100.0)
     part, cpu = Clock.of(slow, *adaptive(kind), *extra, "-stepper_max_steps", bursts, cells=cells)
-    steps, t = steps_of(part), float(re.search(r"(?:finished|stopped) at t = (\S+) s", part.output)[1])
+    steps, t = steps_of(part), seconds(re.search(r"(?:finished|stopped) at t = (\S+ \w+)", part.output)[1])
     whole = cpu * slow.end / t
     budget = () if kind == "hybrid" else ("-stepper_max_steps", 100)  # a step of a microsecond: no end in sight
     run, fast_cpu = Clock.of(fast, *adaptive(kind), *extra, *budget, cells=cells)
@@ -223,11 +223,11 @@ def cheapest(scene, kind, want, bar, bursts=60):
     """The longest step of a row of settings that keeps the bar; explicit ones whose end is far are extrapolated."""
     if kind in EXPLICIT:
         run, cpu = Clock.of(scene, *adaptive(kind), "-stepper_max_steps", bursts)
-        said = re.search(r"(finished|stopped) at t = (\S+) s", run.output)
+        said = re.search(r"(finished|stopped) at t = (\S+ \w+)", run.output)
         if run.code or not said:
             return {"kind": kind, "code": run.code, "why": why(run)}
         steps, off = steps_of(run), None
-        t = scene.end if said[1] == "finished" else float(said[2])
+        t = scene.end if said[1] == "finished" else seconds(said[2])
         if t < scene.end and cpu * scene.end / t < 15.0:
             run, cpu = Clock.of(scene, *adaptive(kind))
             steps, t = steps_of(run), scene.end
@@ -340,7 +340,7 @@ def change():
             else:
                 run, cpu = Clock.of(SlowFast, kind, slow)
                 off = [np.max(np.abs(run.at(*slow_fast.WATCHED[name][:2], t) - exactly[name])) / np.ptp(slow_fast.EXACT[name]) for name in exactly]
-                record.update(cpu=cpu, steps=steps_of(run), error=max(off), changes=len(re.findall(r"^t = \S+ s: \w+ -> \w+:", run.output, re.M)))
+                record.update(cpu=cpu, steps=steps_of(run), error=max(off), changes=len(changes(run)))
                 whole = record if kind == "hybrid" else whole
             found.append(record)
             print("  ", record, flush=True)

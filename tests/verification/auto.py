@@ -12,7 +12,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
 import _files  # noqa: E402
 from _auto import CASE, EXACT, PHASES, Q, TIMES, WATCHED, column  # noqa: E402
-from common import binary, check_true, finish, judge, launch, scratch, table  # noqa: E402
+from common import binary, changes, check_true, finish, judge, launch, scratch, table  # noqa: E402
 
 def errors(run):
     """{curve: largest error over its range in each phase}."""
@@ -21,10 +21,6 @@ def errors(run):
         off = np.abs(run.at(probe, quantity, TIMES) - EXACT[name]) / np.ptp(EXACT[name])
         found[name] = [float(np.max(off[(TIMES > a) & (TIMES <= b)])) for a, b in PHASES]
     return found
-
-
-def changes(run):
-    return [(float(t), a, b) for t, a, b in re.findall(r"^t = (\S+) s: (\w+) -> (\w+):", run.output, re.M)]
 
 
 def particles(run):

@@ -14,6 +14,7 @@ import atexit
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -135,6 +136,21 @@ class Run:
             if math.isclose(t, time, rel_tol=1e-9, abs_tol=1e-9):
                 return variables
         raise KeyError(f"no {kind} snapshot at {time} s in {self.out}")
+
+
+UNIT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0, "day": 86400.0, "days": 86400.0, "year": 31557600.0, "years": 31557600.0}
+CHANGE = re.compile(r"^t = (\S+ \w+): (\w+) -> (\w+):", re.M)  # of the integrator, as a run says it
+
+
+def seconds(words):
+    """A time as the program says it ("3.4 h"), s."""
+    number, unit = words.split()
+    return float(number) * UNIT[unit]
+
+
+def changes(run):
+    """[(time in s, from, to)] of the changes of the integrator that a run said."""
+    return [(seconds(t), a, b) for t, a, b in CHANGE.findall(run.output)]
 
 
 def run(program, case, *options, ranks=1, out=None, exit_code=0, timeout=800):

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """stepper_type: auto on a cut whose weight grows over months (cases/growing_weight.yaml): implicit steps of days, hybrid for the seconds of the slide, implicit
 steps of days again to the end.  sdirk2 alone steps over the slide; ground that holds never leaves sdirk2; a change and restarts around it leave everything as it was."""
-import re
 import sys
 from pathlib import Path
 
@@ -9,7 +8,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
 import _files  # noqa: E402
-from common import Run, check_true, finish, judge, scratch  # noqa: E402
+from common import Run, changes, check_true, finish, judge, scratch  # noqa: E402
 
 CASE = Path(__file__).parent / "cases" / "growing_weight.yaml"
 DAY, FIRM = 86400.0, ("-mat_soil_plasticity_cohesion_max", "3 kPa")
@@ -17,10 +16,6 @@ DAY, FIRM = 86400.0, ("-mat_soil_plasticity_cohesion_max", "3 kPa")
 
 def cut(kind, *options, **keywords):
     return Run.of_case(CASE, "-quiet", "-stepper_type", kind, *options, **keywords)
-
-
-def changes(run):
-    return [(float(t), a, b) for t, a, b in re.findall(r"^t = (\S+) s: (\w+) -> (\w+):", run.output, re.M)]
 
 
 run, over = cut("auto"), cut("sdirk2")
