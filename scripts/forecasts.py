@@ -10,15 +10,14 @@ import sys
 import time
 from pathlib import Path
 
+from clathra.units import SECONDS
 from tutorial import case_text, heated, tidal, without_gas
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "forecast.md"
 MARKS = (5, 10, 25, 50)
-UNIT = {"s": 1, "min": 60, "h": 3600, "day": 86400, "days": 86400, "year": 31557600, "years": 31557600}
 HEATED = ("-bc_well_pressure", "11 MPa", "-stabilisation_reaction", "yes")
 CASES = ("terzaghi", "mcwhorter_sunada", "buckley_leverett", "stefan_front", "bp2", "masuda", "century", "century_hydrate", "slope_warming")
-
 
 def scenes(folder):
     """(name, case, options) of each."""
@@ -49,10 +48,10 @@ class Told:
                 now = time.monotonic()
                 self.log.append(line)
                 if said := re.search(r"implicit about ([\d.e+-]+) steps, ([\d.e+-]+) (\w+)", line):
-                    self.forecast, begun, self.lines = (float(said[1]), float(said[2]) * UNIT[said[3]]), now, []
+                    self.forecast, begun, self.lines = (float(said[1]), float(said[2]) * SECONDS[said[3]]), now, []
                 if step := re.match(r"(?:stage \w+: )?step +(\d+): .*?\(([\d.]+) %\)", line):
                     left = re.search(r"about ([\d.e+-]+) steps, ([\d.e+-]+) (\w+) left", line)
-                    self.lines.append((float(step[2]), int(step[1]), *((float(left[1]), float(left[2]) * UNIT[left[3]]) if left else (None, None)), now - begun))
+                    self.lines.append((float(step[2]), int(step[1]), *((float(left[1]), float(left[2]) * SECONDS[left[3]]) if left else (None, None)), now - begun))
         if run.returncode or not self.lines:
             raise RuntimeError(f"{case}: exit code {run.returncode}\n{''.join(self.log[-5:])}")
         self.first = self.lines[0][1] - 1

@@ -3,6 +3,15 @@
 TIMES = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", 3.15576e7))
 
 
+SECONDS = {name: size for n, size in (("us", 1e-6), ("ms", 1e-3), *TIMES) for name in {n, n.removesuffix("s") if n in ("days", "years") else n}}
+
+
+def seconds(words):
+    """A time as the program says it ("3.4 h", "1 day"), s."""
+    number, unit = words.split()
+    return float(number) * SECONDS[unit]
+
+
 def time_unit(end):
     """(name, seconds) of the unit in which times up to `end` (s) read well."""
     return next((u for u in reversed(TIMES) if end >= 5 * u[1] and (u[0] != "min" or end >= 7200)), TIMES[0])

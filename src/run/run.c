@@ -156,11 +156,11 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char                text[PETSC_MAX_PATH_LEN + 4096], ranges[512], gone[512],
-      above[64] = "", local[512], left[128], loose[512], ice[256], yields[256], gaps[256], ranks[128], *stages, *all;
-  ModelTotals t;
-  double      error[3];
-  bool        ok;
+  char                text[PETSC_MAX_PATH_LEN + 4096], ranges[512], gone[512], local[512], loose[512];
+  char                above[64] = "", left[128], ice[256], yields[256], gaps[256], ranks[128], *stages, *all;
+  ModelTotals         t;
+  double              error[3];
+  bool                ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));

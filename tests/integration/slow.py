@@ -26,7 +26,7 @@ def main():
     check_true("a run that stands says so, once until it has taken twice as many steps", steps and len(said) == done.stdout.count("note: slow")
                and all(b >= 2 * a for a, b in zip(steps, steps[1:])), f"{steps}\n{done.stdout[-2000:]}")  # fmt: skip
     taken, refused, spent, unit, now, share, forecast, promised, grown, flat, long, rules, advice = said[0]
-    check_true("... after twice the forecast's steps, or ten seconds", 2 <= int(taken) / float(forecast) < 3.7 or float(spent) * forecasts.UNIT[unit] >= 10, said[0])
+    check_true("... after twice the forecast's steps, or ten seconds", 2 <= int(taken) / float(forecast) < 3.7 or float(spent) * forecasts.SECONDS[unit] >= 10, said[0])
     check_true("... with how long it has taken, was said to take, and would as its last steps went", unit == "s" and promised.endswith(" s") and all(re.fullmatch(r"|[\d.e+]+ (s|min|h|days|years)", line[10]) for line in said) and any(line[10] for line in said), said)
     check_true("... and the time left is named with what it counts on", re.search(r"about [\d.e+]+ steps, [\d.e+]+ \w+ left if steps grow again, [\d.e+]+ \w+ if not", done.stdout), done.stdout[-300:])
     check("... with more than ten times the forecast left, by either way to count", min(float(grown), float(flat)) / float(forecast), (9.5 if int(taken) >= 2 * float(forecast) else 1, 1e5))  # printed with two digits

@@ -26,6 +26,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 from clathra import probe_names, read_csv, read_snapshots  # noqa: E402
+from clathra.units import seconds  # noqa: E402
 
 CASES = ROOT / "cases"
 ENVIRONMENT = {
@@ -138,14 +139,7 @@ class Run:
         raise KeyError(f"no {kind} snapshot at {time} s in {self.out}")
 
 
-UNIT = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0, "h": 3600.0, "day": 86400.0, "days": 86400.0, "year": 31557600.0, "years": 31557600.0}
 CHANGE = re.compile(r"^t = (\S+ \w+): (\w+) -> (\w+):", re.M)  # of the integrator, as a run says it
-
-
-def seconds(words):
-    """A time as the program says it ("3.4 h"), s."""
-    number, unit = words.split()
-    return float(number) * UNIT[unit]
 
 
 def changes(run):
