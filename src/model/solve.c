@@ -283,14 +283,12 @@ static PetscErrorCode FirstGuess(Model *m, const double *x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status)
+/* Solves from the first guess x, adding to the iterations. */
+static PetscErrorCode Attempts(Model *m, const double *x, PetscInt *newton, SNESConvergedReason *reason)
 {
-  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
-  PetscInt            its;
+  PetscInt its;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelReadySolver(m));
-  *newton = 0;
   /* With an old preconditioner where it serves, else with a new one at every iteration, at last with LU; then a linear
      solve that stops early still gives a good direction. */
   const int attempts = m->solver->reduces ? 3 : 2;
@@ -303,15 +301,31 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
     PetscCall(ModelSlave(m, m->solver->X));
     m->solver->kept = 0;
     PetscCall(SNESSolve(m->solver->snes, NULL, m->solver->X));
-    PetscCall(SNESGetConvergedReason(m->solver->snes, &reason));
+    PetscCall(SNESGetConvergedReason(m->solver->snes, reason));
     PetscCall(SNESGetIterationNumber(m->solver->snes, &its));
     *newton += its - m->solver->kept;
-    if (reason == SNES_DIVERGED_FNORM_NAN)
+    if (*reason == SNES_DIVERGED_FNORM_NAN)
       PetscCall(ModelReduceStatus(m, &m->failure.status));
-    if (reason > 0 || (reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK))
+    if (*reason > 0 || (*reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK))
       break;
-    if ((attempt == 1 || m->solver->kept == 0) && reason != SNES_DIVERGED_LINEAR_SOLVE)
+    if ((attempt == 1 || m->solver->kept == 0) && *reason != SNES_DIVERGED_LINEAR_SOLVE)
       break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *status)
+{
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelReadySolver(m));
+  *newton             = 0;
+  m->solver->searches = false;
+  PetscCall(Attempts(m, x, newton, &reason));
+  if (reason == SNES_DIVERGED_MAX_IT && !ModelSlaves(m)) { /* (426) */
+    m->solver->searches = true;
+    PetscCall(Attempts(m, x, newton, &reason));
   }
   if (reason < 0) {
     PetscCall(Explain(m));

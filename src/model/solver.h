@@ -52,6 +52,7 @@ struct Solver {
 
   double   tol_residual, tol_update; /* Newton's tolerances on scaled rows and updates, inf-norm */
   double   residual;                 /* largest scaled one of the last iteration */
+  bool     searches;                 /* updates are shortened, (426) */
   double   keep_jacobian;            /* (343), option -newton_keep_jacobian */
   PetscInt kept;                     /* iterations of the solve that took the Jacobian of the last */
 };

@@ -1,5 +1,6 @@
 /* What Newton's update may change at once, node by node. */
 #include "gather.h"
+#include "solver.h"
 
 /* Limits of one update, so that no law is evaluated far outside its range. */
 #define LIMIT_T 5.0 /* K */
@@ -148,6 +149,12 @@ static PetscErrorCode Shorten(const Model *m, Vec X, Vec Y, bool *shorter)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Are updates shortened until the residual falls? */
+static bool Searches(const Model *m)
+{
+  return ModelSlaves(m) || m->solver->searches; /* (426) */
+}
+
 /* Norm of the scaled residual that a share of Y leaves, fluid velocities with the pressures. */
 static PetscErrorCode Leaves(SNES snes, Model *m, Vec X, double share, Vec Y, Vec at, Vec R, double *norm)
 {
@@ -162,7 +169,7 @@ static PetscErrorCode Leaves(SNES snes, Model *m, Vec X, double share, Vec Y, Ve
 /* (415): which of the updates, the first of them being Newton's, and what share of it. */
 static PetscErrorCode Choose(SNES snes, Model *m, Vec X, const Vec update[2], int *chosen, double *share)
 {
-  const int halvings = ModelSlaves(m) ? HALVINGS : 0;
+  const int halvings = Searches(m) ? HALVINGS : 0;
   double    from, norm, least = INFINITY, trial = 1.0;
   Vec       at, R;
 
@@ -203,7 +210,7 @@ PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *chan
   PetscCall(FollowAll(m, X, Y, &update[1]));
   PetscCall(Shorten(m, X, Y, &shorter));
   *changed = shorter;
-  if (!update[1] && !ModelSlaves(m))
+  if (!update[1] && !Searches(m))
     PetscFunctionReturn(PETSC_SUCCESS);
   if (update[1])
     PetscCall(Shorten(m, X, update[1], &shorter));
