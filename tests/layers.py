@@ -12,7 +12,7 @@ from pathlib import Path
 # From the top down.  Each row: layer, headers of include/clathra/ (without .h) that belong to it, folders of src/.
 LAYERS = [
     ("dimension", ["dimension"], []),
-    ("base", ["base"], ["base"]),
+    ("base", ["base", "words"], ["base"]),
     ("tensor", ["inline", "tensor", "jet", "fields"], ["tensor", "fields"]),
     ("laws", ["laws"], ["laws"]),
     ("material", ["material"], ["material"]),

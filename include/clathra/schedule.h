@@ -31,14 +31,3 @@ double ScheduleSwing(const Schedule *s);
 void ScheduleSpan(const Schedule *s, double *low, double *high);
 /* Frees its points and waves; it is empty then. */
 void ScheduleDestroy(Schedule *s);
-
-/* A few words, to be printed where they are made: TimeAt(t).s. */
-typedef struct {
-  char s[32];
-} Words;
-/* "12 s", "3.4 h", "1 year": a time (s) with so many digits, in the largest unit of which `scale` (s) holds two ... */
-Words TimeWordsAs(double seconds, double scale, int digits);
-/* ... or it does itself. */
-Words TimeWords(double seconds, int digits);
-/* A time of the scene (s). */
-Words TimeAt(double t);

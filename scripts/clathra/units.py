@@ -1,4 +1,4 @@
-"""Units in which times read well."""
+"""Units in which times and pressures read well."""
 
 TIMES = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", 3.15576e7))
 
@@ -10,6 +10,15 @@ def seconds(words):
     """A time as the program says it ("3.4 h", "1 day"), s."""
     number, unit = words.split()
     return float(number) * SECONDS[unit]
+
+
+PASCALS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+
+
+def pascals(words):
+    """A pressure as the program says it ("3.96 MPa"), Pa."""
+    number, unit = words.split()
+    return float(number) * PASCALS[unit]
 
 
 def time_unit(end):

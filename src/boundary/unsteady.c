@@ -2,6 +2,7 @@
    gas where hydrate is (docs/equations.md, section 13). */
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
+#include "clathra/words.h"
 
 #define FAR 0.1         /* of the weight of the water from top to foot */
 #define NOTICEABLE 0.01 /* of the largest pressure */
@@ -102,12 +103,12 @@ static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Parti
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "clathra: warning: the pore pressure starts far from hydrostatic: region %s at (%g m, %g m) has %.3g Pa "
-      "more beyond water at rest than region %s at (%g m, %g m), and the water weighs %.3g Pa from top to "
+      "clathra: warning: the pore pressure starts far from hydrostatic: region %s at (%g m, %g m) has %s "
+      "more beyond water at rest than region %s at (%g m, %g m), and the water weighs %s from top to "
       "foot: it will flow from the start (hydrostatic: yes with one datum, or -restart_as_initial of a run "
       "that came to rest, starts in balance)\n",
-      c->region[high.region].name, high.x[0], high.x[1], apart, c->region[low.region].name, low.x[0], low.x[1],
-      w->weight));
+      c->region[high.region].name, high.x[0], high.x[1], PressureWords(apart, 3).s, c->region[low.region].name,
+      low.x[0], low.x[1], PressureWords(w->weight, 3).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,11 +199,12 @@ static PetscErrorCode BuoyancyWarning(MPI_Comm comm, const Scene *c, const Parti
       continue;
     PetscCall(PetscFPrintf(
         comm, stderr,
-        "clathra: warning: gas starts out of balance with gravity: in region %s it has %.3g Pa more at (%g m, %g m) "
+        "clathra: warning: gas starts out of balance with gravity: in region %s it has %s more at (%g m, %g m) "
         "than gas at rest would, seen from (%g m, %g m), and moves there from the start, by up to some %.2g m a day "
         "(a gas share Sg/(1 - Sh) at which it has no relative permeability, layers with the more gas the higher they "
         "lie, or -restart_as_initial of a run that came to rest, starts in balance)\n",
-        c->region[k].name, apart, b.high.x[0], b.high.x[1], b.low.x[0], b.low.x[1], b.fastest * apart / away * DAY));
+        c->region[k].name, PressureWords(apart, 3).s, b.high.x[0], b.high.x[1], b.low.x[0], b.low.x[1],
+        b.fastest * apart / away * DAY));
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -250,10 +252,11 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Scene *c, const Partic
   PetscCall(PetscFPrintf(
       comm, stderr,
       "clathra: warning: hydrate starts outside its stability zone, %.3g %% of it; most in region %s at (%g m, %g m): "
-      "at %.4g degC it needs %.4g Pa and has %.4g Pa, where it is stable up to %.4g degC: it dissociates from the "
+      "at %.4g degC it needs %s and has %s, where it is stable up to %.4g degC: it dissociates from the "
       "start (more pressure, a lower temperature, or a first stage with kinetics_active: no)\n",
       100.0 * mass[0] / mass[1], c->region[worst.region].name, worst.x[0], worst.x[1], worst.T,
-      EquilibriumPressure(law, worst.T, &d), worst.p, EquilibriumTemperature(law, worst.p)));
+      PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s,
+      EquilibriumTemperature(law, worst.p)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -282,11 +285,11 @@ static PetscErrorCode FormationWarning(MPI_Comm comm, const Scene *c, const Part
   PetscCall(PetscFPrintf(
       comm, stderr,
       "clathra: warning: free gas starts where hydrate is stable, most in region %s at (%g m, %g m): at %.4g degC "
-      "hydrate forms above %.4g Pa and there are %.4g Pa, up to %.4g degC: gas and water turn into hydrate from the "
+      "hydrate forms above %s and there are %s, up to %.4g degC: gas and water turn into hydrate from the "
       "start (Sg: 0, less pressure or a higher temperature starts in balance, or a first stage with kinetics_active: "
       "no)\n",
-      c->region[worst.region].name, worst.x[0], worst.x[1], worst.T, EquilibriumPressure(law, worst.T, &d), worst.p,
-      worst.T + worst.value));
+      c->region[worst.region].name, worst.x[0], worst.x[1], worst.T,
+      PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s, worst.T + worst.value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,6 +4,7 @@
 #include "clathra/boundary.h"
 #include "clathra/point_heat.h"
 #include "clathra/shape.h"
+#include "clathra/words.h"
 
 #define LEAST_JUMP 10e3 /* Pa, of (342) */
 #define JUMP 0.5        /* of the smaller p_0 */
@@ -87,10 +88,10 @@ PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE])
     if (beyond < E || !Pushed(c, E))
       continue;
     snprintf(text, CL_ADVICE,
-             "the pores of region %s bear %.3g Pa, %.3g times its stiffness, against tractions on its "
+             "the pores of region %s bear %s, %.3g times its stiffness, against tractions on its "
              "faces: what the two differ by, as faces move, may tear it apart; let ambient: {pressure: "
              "...} bear what they have in common, and give tractions beyond it",
-             r->name, beyond, beyond / E);
+             r->name, PressureWords(beyond, 3).s, beyond / E);
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -302,18 +303,18 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P
       continue;
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: warning: gravity acts on an unstressed body: region %s starts without the stress "
-                           "that carries its weight, %.3g Pa from top to foot, and will move, by some %.3g m held at "
+                           "that carries its weight, %s from top to foot, and will move, by some %.3g m held at "
                            "its sides (stress: {geostatic: K0} gives it one, gravity_ramp lets the weight grow, "
                            "-restart_as_initial begins with a body that has settled)\n",
-                           c->region[k].name, weight, sinks));
+                           c->region[k].name, PressureWords(weight, 3).s, sinks));
     break;
   }
   if (SceneVertical(c) >= 0)
     PetscCall(LargestTension(comm, c, P, &tension, &scale));
   if (tension > NEGLIGIBLE * scale)
     PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: warning: the geostatic stress is a tension of up to %.4g Pa: the load on the "
+                           "clathra: warning: the geostatic stress is a tension of up to %s: the load on the "
                            "body's top is less than the pore pressure there, or the top cuts a cell of the grid\n",
-                           tension));
+                           PressureWords(tension, 4).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,6 +8,7 @@
    later.
  */
 #include "io_private.h"
+#include "clathra/words.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,5 +1,6 @@
 /* Which preconditioner GMRES has, when it is made anew, and what takes over where it breaks down. */
 #include "solver.h"
+#include "clathra/words.h"
 
 /* UMFPACK's factorisation beats MUMPS only on small problems: 3.3 against 3.9 ms for a strip of 900 unknowns, 4.1
    against 0.36 s for a block of 10,000. */

@@ -1,6 +1,7 @@
 /* What a run says of phases: where hydrate is stable at the start, and ice, of which no equation knows. */
 #include "run_private.h"
 #include "clathra/shape.h"
+#include "clathra/words.h"
 
 PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm)
 {
@@ -16,8 +17,9 @@ PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm)
     const Equilibrium *law = &m->kinetics.equilibrium;
     if (m->salinity > 0.0)
       snprintf(salt, sizeof(salt), ", salinity %g (%.3g K colder)", m->salinity, law->shift);
-    PetscCall(PetscPrintf(comm, "  region %s: equilibrium of hydrate by %s%s: p_e = %.6g Pa at %g degC\n", r->name,
-                          law->type, salt, EquilibriumPressure(law, r->temperature, &d), r->temperature));
+    PetscCall(PetscPrintf(comm, "  region %s: equilibrium of hydrate by %s%s: p_e = %s at %g degC\n", r->name,
+                          law->type, salt, PressureWords(EquilibriumPressure(law, r->temperature, &d), 6).s,
+                          r->temperature));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

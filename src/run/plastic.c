@@ -1,5 +1,6 @@
 /* What a run says of a skeleton that yields: its strength at the start, how many particles yield or tear. */
 #include "plastic.h"
+#include "clathra/words.h"
 
 #define TEARING 0.01 /* share of the particles at the apex that is worth a word while the run goes on */
 
@@ -17,9 +18,9 @@ PetscErrorCode PrintStrength(const Scene *c, MPI_Comm comm)
     if (c->strength_factor != 1.0)
       snprintf(reduced, sizeof(reduced), ", strength_factor %g", c->strength_factor);
     StrengthEvaluate(p, r->Sh, 0.0, &s);
-    PetscCall(PetscPrintf(
-        comm, "  region %s starts with cohesion %.6g Pa, friction %.4g deg, dilation %.4g deg (S_h = %g%s)\n", r->name,
-        s.c, s.phi * 180.0 / M_PI, s.psi * 180.0 / M_PI, r->Sh, reduced));
+    PetscCall(
+        PetscPrintf(comm, "  region %s starts with cohesion %s, friction %.4g deg, dilation %.4g deg (S_h = %g%s)\n",
+                    r->name, PressureWords(s.c, 6).s, s.phi * 180.0 / M_PI, s.psi * 180.0 / M_PI, r->Sh, reduced));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

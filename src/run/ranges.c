@@ -1,6 +1,7 @@
 /* What a run says at its end of the range of its pressures and temperatures, beside what it started from and what acted
    on it; and of steps that were accepted above the tolerance. */
 #include "run_private.h"
+#include "clathra/words.h"
 
 #define BEYOND 0.02   /* of the range, and ... */
 #define LEAST_T 0.1   /* ... K or ... */

@@ -1,6 +1,7 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
 #include "run_private.h"
 #include "plastic.h"
+#include "clathra/words.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

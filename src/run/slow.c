@@ -1,6 +1,7 @@
 /* A note while a run is on its way that takes far more steps, or longer, than was forecast: neither ends soon nor gives
    up. */
 #include "run_private.h"
+#include "clathra/words.h"
 
 #define FAR 10.0     /* times the forecast are left, by the run's own pace, ... */
 #define PATIENCE 2.0 /* ... after so many times the forecast */

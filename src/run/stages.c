@@ -1,5 +1,6 @@
 /* What each stage of a run took, and in it each integrator that auto chose: for the progress and the summary. */
 #include "run_private.h"
+#include "clathra/words.h"
 
 #define WORDS 640    /* characters of what bounded the steps, at most */
 #define UNKNOWN 0.05 /* of the stage, before which no time left is named */

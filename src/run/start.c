@@ -1,5 +1,6 @@
 /* start: a run that begins with the state which another one ended in. */
 #include "run_private.h"
+#include "clathra/words.h"
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 /* Lines of the summary that not every run has. */
 #include "run_private.h"
+#include "clathra/words.h"
 
 /* What an integrator without matrices has to say at the end. */
 void LocalSummary(const Stepper *s, char text[512])

@@ -1,5 +1,6 @@
 /* The times at which a run writes.  Steps end exactly on them, so t is one of them or is not. */
 #include "run_private.h"
+#include "clathra/words.h"
 
 double NextMultiple(const Case *c, double every, double t)
 {

@@ -1,5 +1,6 @@
 /* What all schemes do with a step: where it must end, what it adds up once it is accepted. */
 #include "clathra/stepper.h"
+#include "clathra/words.h"
 
 /* What errors are relative to: the largest change since the start; of pore pressure or stress, temperature and
    position.  With them ranks agree on a signal. */

@@ -1,5 +1,6 @@
 /* What a user may try when a run gives up, for its cause, the likeliest first; docs/giving_up.md says more. */
 #include "clathra/stepper.h"
+#include "clathra/words.h"
 
 const char *StepperStatusName(ClStatus st)
 {

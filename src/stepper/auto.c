@@ -1,6 +1,7 @@
 /* auto: which integrator takes the run on, decided at any time from what the next second would cost by either;
    docs/equations.md, section 15.  Work is counted, not clocked: a run repeats and restarts bit for bit. */
 #include "clathra/stepper.h"
+#include "clathra/words.h"
 
 #define MARGIN 2.0         /* of cost, to be worth a change */
 #define LOOKS_IMPLICIT 3   /* in a row that ask for hybrid ... */

@@ -1,6 +1,7 @@
 /* hybrid and explicit: many small steps without a matrix between two looks at the clock; docs/equations.md, section 12.
  */
 #include "clathra/stepper.h"
+#include "clathra/words.h"
 
 #define BURST 256 /* steps between two estimates of the stable step, and at most lost by a failure */
 #define CUT 0.5   /* of the step after a burst that failed */

@@ -1,5 +1,6 @@
 /* What the run would cost by either kind of integrator; docs/equations.md, section 15. */
 #include "clathra/stepper.h"
+#include "clathra/words.h"
 
 /* Measured on one core of a 2024 server, within a factor of 1.8 for 18 scenes of 80 to 16 000 particles (hybrid: 8);
    what counts is their ratio. */

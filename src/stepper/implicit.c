@@ -1,5 +1,6 @@
 /* Implicit schemes: attempts at a step with ever smaller dt until one is accepted; error norm and step control. */
 #include "clathra/stepper.h"
+#include "clathra/words.h"
 
 #define CUT_FAILED 0.25 /* after a step that could not be taken */
 #define HOLD 5          /* steps without growth after that */

@@ -1,5 +1,6 @@
 /* Particles that left the grid and were taken out of the run (373): into the state, and into words. */
 #include "clathra/stepper.h"
+#include "clathra/words.h"
 
 #define SHOWN 100 /* lines of one step or burst */
 #define WIDE (sizeof(Leaver) / sizeof(double))

@@ -11,7 +11,7 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "verification"))
-from common import CASES, binary, check, check_true, finish, launch, scratch  # noqa: E402
+from common import CASES, binary, check, check_true, finish, launch, pascals, scratch  # noqa: E402
 
 import clathra  # noqa: E402  scripts/, which common puts on the path
 import tutorial  # noqa: E402
@@ -50,8 +50,9 @@ def comes(what, expected, lines):
 
 
 def numbers(text, words):
-    """The numbers that follow the words."""
-    return [float(x) for x in re.findall(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?", text[text.index(words) + len(words):])]
+    """The numbers that follow the words, pressures in Pa."""
+    found = re.findall(r"([-+]?\d+\.?\d*(?:e[-+]?\d+)?)(?: ([kM]Pa)\b)?", text[text.index(words) + len(words):])
+    return [pascals(f"{x} {unit or 'Pa'}") for x, unit in found]
 
 
 def check_rate():
@@ -98,13 +99,13 @@ UNIFORM = [o for r in ("deep", "shallow") for o in (f"-region_{r}_hydrostatic", 
 comes("a column in balance", [], said(COLUMN))
 text = comes("a uniform pressure", ["pressure"], said(COLUMN, *UNIFORM))
 weight = 1000 * 9.81 * 20
-apart, region = re.search(r"has ([\d.e+]+) Pa more beyond water at rest than region (\w+)", text).groups()
-check("... by the weight between the highest and the lowest particle", abs(float(apart) / (1000 * 9.81 * 19) - 1), 0.01)
+apart, region = re.search(r"has (\S+ [kM]?Pa) more beyond water at rest than region (\w+)", text).groups()
+check("... by the weight between the highest and the lowest particle", abs(pascals(apart) / (1000 * 9.81 * 19) - 1), 0.01)
 check_true("... highest in the upper layer, lowest in the lower", "region shallow at" in text and region == "deep")
 check("... the water's weight", abs(numbers(text, "the water weighs")[0] / weight - 1), 0.01)
 check_true("... the same on 2 ranks", text in "\n".join(said(COLUMN, *UNIFORM, ranks=2)))
 text = comes("layers of two levels", ["pressure"], said(COLUMN, "-region_deep_datum", "45 m"))
-check("... which differ by 5 m of water", abs(float(re.search(r"has ([\d.e+]+) Pa", text).group(1)) / 49050 - 1), 0.02)
+check("... which differ by 5 m of water", abs(pascals(re.search(r"has (\S+ [kM]?Pa)", text).group(1)) / 49050 - 1), 0.02)
 comes("layers half a metre apart", [], said(COLUMN, "-region_deep_datum", "40.5 m"))
 comes("a uniform pressure in gravity that grows", [], said(COLUMN, *UNIFORM, "-gravity_ramp", "1 s", "-region_deep_stress_geostatic", "no", "-region_shallow_stress_geostatic", "no"))
 comes("water that expands, in a steep geotherm", [], said(COLUMN, "-mat_clay_water_bulk_modulus", "1 GPa", "-mat_sand_water_expansion", "1e-3 1/K", "-mat_clay_water_expansion", "1e-3 1/K"))
@@ -117,10 +118,10 @@ def gas(share, *options, **kwargs):
 
 WIDE = ("-grid_cells", "3,10")
 text = comes("gas that can move, with the gradient of water", ["rises"], gas(0.3, *WIDE))
-apart, speed = map(float, re.search(r"has ([\d.e+]+) Pa more .* some ([\d.e+-]+) m a day", text).groups())
+apart, speed = re.search(r"has (\S+ [kM]?Pa) more .* some ([\d.e+-]+) m a day", text).groups()
 buoyancy = (1000 - 0.1e6 / (8.314 / 1.6 * 283.15)) * 9.81  # a heavy gas
-check("... by the weight of the water less that of the gas", abs(apart / (buoyancy * 0.9) - 1), 0.02)
-check("... as fast as its mobility says", abs(speed / (1e-13 * (0.25 / 0.85) ** 2 / (1e-5 * 0.4 * 0.3) * buoyancy * 86400) - 1), 0.05)
+check("... by the weight of the water less that of the gas", abs(pascals(apart) / (buoyancy * 0.9) - 1), 0.02)
+check("... as fast as its mobility says", abs(float(speed) / (1e-13 * (0.25 / 0.85) ** 2 / (1e-5 * 0.4 * 0.3) * buoyancy * 86400) - 1), 0.05)
 check_true("... the same on 2 ranks", text in "\n".join(gas(0.3, *WIDE, ranks=2)))
 comes("... but slowly in so short a run", [], gas(0.1))
 comes("... and in a longer one", ["rises"], gas(0.1, "-time_end", "1 h"))
@@ -134,9 +135,9 @@ same("a cliff by hybrid, whose means and tractions do not go together", CLIFF)
 
 # ---------------------------------------------------------------- stress
 text = comes("no stress", ["stress"], said(COLUMN, "-region_deep_stress_geostatic", "no"))
-pascal, metres = re.search(r"weight, ([\d.e+]+) Pa from top to foot, and will move, by some ([\d.e+-]+) m", text).groups()
+weight, metres = re.search(r"weight, (\S+ [kM]?Pa) from top to foot, and will move, by some ([\d.e+-]+) m", text).groups()
 buoyant = 0.6 * (2650 - 1000) * 9.81 * 8
-check("... its weight under water", abs(float(pascal) / buoyant - 1), 0.01)
+check("... its weight under water", abs(pascals(weight) / buoyant - 1), 0.01)
 check("... how far it would sink", abs(float(metres) / (buoyant * 8 / 2 / (50e6 * 0.7 / (1.3 * 0.4))) - 1), 0.01)
 
 # ---------------------------------------------------------------- hydrate

@@ -19,7 +19,7 @@ ADVICE = "14.3 times its stiffness, against tractions"
 held, free = (scratch() / name for name in ("held", "free"))
 torn = launch(binary(), SOFT, "-quiet", out=free)
 check_true("held by tractions alone: warned, and given up with the cause", torn.returncode == 3
-           and f"warning: the pores of region body bear 1.7e+07 Pa, {ADVICE}" in torn.stdout and "A likely cause: the pores" in torn.stdout, torn.stdout[-300:])  # fmt: skip
+           and f"warning: the pores of region body bear 17 MPa, {ADVICE}" in torn.stdout and "A likely cause: the pores" in torn.stdout, torn.stdout[-300:])  # fmt: skip
 done = launch(binary(), SOFT, "-quiet", "-ambient_pressure", "17.037 MPa", "-bc_sea_normal", "-1 Pa", out=held)
 check_true("held by ambient: no warning, finished", done.returncode == 0 and "warning" not in done.stdout, done.stdout[-300:])
 if done.returncode == 0:

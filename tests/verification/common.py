@@ -26,7 +26,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 from clathra import probe_names, read_csv, read_snapshots  # noqa: E402
-from clathra.units import seconds  # noqa: E402
+from clathra.units import pascals, seconds  # noqa: E402
 
 CASES = ROOT / "cases"
 ENVIRONMENT = {

@@ -1,5 +1,5 @@
-/* Times in words, for what a run says. */
-#include "clathra/schedule.h"
+#include "clathra/words.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -28,4 +28,20 @@ Words TimeWords(double seconds, int digits)
 Words TimeAt(double t)
 {
   return TimeWords(t, 6);
+}
+
+Words PressureWords(double pascals, int digits)
+{
+  static const struct {
+    double      Pa;
+    const char *name;
+  } unit[]           = {{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}, {1.0, "Pa"}};
+  Words        words = {""};
+  const double least = 1.0 - 0.5 * pow(10.0, -digits); /* 999.9 kPa to three digits is 1 MPa */
+  int          k     = 0;
+
+  while (k < 3 && fabs(pascals) < least * unit[k].Pa)
+    k++;
+  snprintf(words.s, sizeof(words.s), "%.*g %s", digits, pascals / unit[k].Pa, unit[k].name);
+  return words;
 }

@@ -1,0 +1,15 @@
+/* words: numbers with the unit in which they read well, for what a run says. */
+#pragma once
+
+/* A few words, to be printed where they are made: TimeAt(t).s. */
+typedef struct {
+  char s[32];
+} Words;
+/* "12 s", "3.4 h", "1 year": a time (s) with so many digits, in the largest unit of which `scale` (s) holds two ... */
+Words TimeWordsAs(double seconds, double scale, int digits);
+/* ... or a time (s) does itself. */
+Words TimeWords(double seconds, int digits);
+/* A time of the scene (s). */
+Words TimeAt(double t);
+/* "4.1 MPa", "30 kPa", "12 Pa": a pressure or stress (Pa) with so many digits. */
+Words PressureWords(double pascals, int digits);
