@@ -53,7 +53,7 @@ PROGRAM = [  # option, value, default, meaning
 ]  # fmt: skip
 
 PETSC = [  # the ones worth knowing, with this program's defaults
-    ("-snes_max_it", "30", "Newton iterations of a stage before the step is cut; from half of them on only while each halves the residual; then once more with updates shortened until it falls"),
+    ("-snes_max_it", "30", "Newton iterations of a stage before the step is cut; from half of them on only while each halves the residual; then, where the skeleton yields, once more with updates shortened until it falls"),
     ("-ksp_type", "fgmres", "Krylov method on the exact Jacobian"),
     ("-ksp_pc_side", "right", "so that it stops on the residual of the rows themselves"),
     ("-ksp_rtol", "1e-6", "its relative tolerance"),

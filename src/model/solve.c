@@ -323,7 +323,7 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
   *newton             = 0;
   m->solver->searches = false;
   PetscCall(Attempts(m, x, newton, &reason));
-  if (reason == SNES_DIVERGED_MAX_IT && !ModelSlaves(m)) { /* (426) */
+  if (reason == SNES_DIVERGED_MAX_IT && (m->c->fields.has & HAS_PLASTIC) && !ModelSlaves(m)) { /* (426) */
     m->solver->searches = true;
     PetscCall(Attempts(m, x, newton, &reason));
   }
