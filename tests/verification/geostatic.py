@@ -6,6 +6,7 @@ compresses nor expands: at rest to round-off with every basis, along y and along
 pressure, wherever layers and surface cut the grid's cells.  Compressible water leaves velocities that fall with h.
 The profiles are held against sums and integrals made here.
 """
+import re
 from pathlib import Path
 
 import numpy as np
@@ -189,7 +190,7 @@ check_true("gravity on an unstressed body: one warning", say().count("gravity ac
 check_true("none when gravity grows", "unstressed" not in say("-gravity_ramp", "1 s"))
 check_true("none when all is stressed", "unstressed" not in say("-region_deep_stress", "0 Pa,-1 kPa,0 Pa,0 Pa,0 Pa,0 Pa", "-region_shallow_stress", "0 Pa,-1 kPa,0 Pa,0 Pa,0 Pa,0 Pa"))
 loadless = Run.of_case(CASE, "-quiet", *CALM, "-bc_sea_normal", "0 Pa")
-check_true("pore pressure without a load on top: a warning", "the geostatic stress is a tension of up to 2.9" in loadless.output)
+check_true("pore pressure without a load on top: a warning", re.search(r"the geostatic stress is a tension of up to 29\d[.\d]* kPa", loadless.output))
 # ---------------------------------------------------------------- normally consolidated: K0 = 1 - sin 30 deg where there is strength
 STRONG = ("    elasticity:", "    plasticity: {law: mohr_coulomb, cohesion_max: 1 MPa, friction_peak: 30 deg}\n    elasticity:")
 loose = variant("loose", STRONG, ("geostatic: 0.5", "normally_consolidated: yes"), ("geostatic: 0.8", "normally_consolidated: yes"))
