@@ -19,6 +19,7 @@ MARKS = (5, 10, 25, 50)
 HEATED = ("-bc_well_pressure", "11 MPa", "-stabilisation_reaction", "yes")
 CASES = ("terzaghi", "mcwhorter_sunada", "buckley_leverett", "stefan_front", "bp2", "masuda", "century", "century_hydrate", "slope_warming")
 
+
 def scenes(folder):
     """(name, case, options) of each."""
     text = case_text()

@@ -2,23 +2,24 @@
 
 TIMES = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", 3.15576e7))
 
-
 SECONDS = {name: size for n, size in (("us", 1e-6), ("ms", 1e-3), *TIMES) for name in {n, n.removesuffix("s") if n in ("days", "years") else n}}
+PASCALS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+
+
+def read(words, sizes):
+    """A number with one of the units in `sizes`, in the unit whose size is 1."""
+    number, unit = words.split()
+    return float(number) * sizes[unit]
 
 
 def seconds(words):
     """A time as the program says it ("3.4 h", "1 day"), s."""
-    number, unit = words.split()
-    return float(number) * SECONDS[unit]
-
-
-PASCALS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
+    return read(words, SECONDS)
 
 
 def pascals(words):
     """A pressure as the program says it ("3.96 MPa"), Pa."""
-    number, unit = words.split()
-    return float(number) * PASCALS[unit]
+    return read(words, PASCALS)
 
 
 def time_unit(end):
