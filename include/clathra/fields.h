@@ -21,9 +21,16 @@ enum { HAS_SOLID = 1, HAS_WATER = 2, HAS_GAS = 4, HAS_HEAT = 8, HAS_ALL = 15 };
 extern const char *const cl_field_word[]; /* solid, water, gas, heat; NULL ends it */
 /* What a particle variable may need besides: a gas pressure of its own (set with gas unless the scene has one
    pressure), a skeleton that yields, one whose hydrate bears a stress of its own, one whose strength follows the
-   plastic strain of its neighbours. */
+   plastic strain of its neighbours, one whose tears close before they bear (HAS_TEARS). */
 /* ... and what only a key may need: hydrate, at the start or by reaction. */
-enum { HAS_GAS_PRESSURE = 16, HAS_PLASTIC = 32, HAS_BONDS = 64, HAS_NONLOCAL = 128, HAS_HYDRATE = 256 };
+enum {
+  HAS_GAS_PRESSURE = 16,
+  HAS_PLASTIC      = 32,
+  HAS_BONDS        = 64,
+  HAS_NONLOCAL     = 128,
+  HAS_HYDRATE      = 256,
+  HAS_TEARS        = 512
+};
 #define HAS_HISTORY (HAS_PLASTIC | HAS_BONDS) /* a skeleton that holds history besides its stress */
 
 /* A field set.  A field that is not in it has no unknown, no row, no storage; its place is -1. */

@@ -33,12 +33,14 @@ typedef struct {
    xx yy zz xy, which turns with the body. */
 #define CL_SKELETON_HISTORY(X)                                                                                         \
   X(P_EPS, HAS_PLASTIC, "eps_d_p", 1, "-", "deviatoric plastic strain so far")                                         \
+  X(P_OPENING, HAS_TEARS, "opening", 1, "-", "ln J by which tears stand open (427)")                                   \
   X(P_BOND, HAS_BONDS, "stress_hydrate", 4, "Pa", "what hydrate bears of the effective stress: xx yy zz xy")
 
 /* All that a skeleton keeps: its history, and what is known of the last step. */
 #define CL_SKELETON_TABLE(X)                                                                                           \
   CL_SKELETON_HISTORY(X)                                                                                               \
-  X(P_YIELD, HAS_PLASTIC, "yield", 1, "-", "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension")       \
+  X(P_YIELD, HAS_PLASTIC, "yield", 1, "-",                                                                             \
+    "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension, 5 closing")                                   \
   X(P_WP, HAS_PLASTIC, "plastic_work", 1, "J", "dissipated by the particle so far")                                    \
   X(P_HEAT, HAS_PLASTIC, "plastic_heat", 1, "J", "hybrid: of the last step, which the next one gives to the nodes")    \
   X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")     \
@@ -76,7 +78,8 @@ typedef enum {
   RETURN_FACE,
   RETURN_EDGE,
   RETURN_APEX,
-  RETURN_TENSION /* at the cut-off */
+  RETURN_TENSION, /* at the cut-off */
+  RETURN_CLOSING  /* a tear gave way, nothing else (427) */
 } ReturnRegion;
 
 typedef struct {
@@ -126,10 +129,11 @@ const SkeletonLaw *SkeletonLawOf(const Material *mat);
 /* Rows of the tables that a material needs. */
 static inline unsigned SkeletonHas(const Material *mat)
 {
-  const bool nonlocal = mat->plasticity.type != PLASTICITY_NONE && mat->plasticity.nonlocal > 0.0;
+  const bool yields = mat->plasticity.type != PLASTICITY_NONE, nonlocal = yields && mat->plasticity.nonlocal > 0.0,
+             tears = yields && mat->plasticity.tears == TEARS_CLOSE;
 
   return SkeletonLawOf(mat)->has | (ElasticityHasBonds(&mat->elasticity) ? HAS_BONDS : 0u) |
-         (nonlocal ? HAS_NONLOCAL : 0u);
+         (nonlocal ? HAS_NONLOCAL : 0u) | (tears ? HAS_TEARS : 0u);
 }
 
 /* t may be null. */

@@ -1,112 +1,7 @@
-/* Mohr-Coulomb behind the interface of the skeleton: elastic trial, principal stresses in the plane, return, and back
-   with the tangent; docs/equations.md, section 14. */
+/* Mohr-Coulomb behind the interface of the skeleton, one particle at a time and over blocks. */
 #include "smooth.h"
 
-#define CHUNK 32        /* particles tested at once */
-#define NEAR_EQUAL 1e-8 /* principal stresses closer than this share of their size: limit of the spin part */
-
-/* In-plane principal stresses and direction of a stress xx yy zz xy; order[i]: 0, 1 in the plane, 2 out of it. */
-typedef struct {
-  double mean, radius, c2, s2; /* of Mohr's circle: xx - yy = 2 radius c2, xy = radius s2 */
-  int    order[3];             /* which principal stress is the largest, middle, smallest */
-  double y[3];                 /* falling */
-} Principal;
-
-static void PrincipalOf(const double sig[6], Principal *p)
-{
-  const double d = 0.5 * (sig[XX] - sig[YY]), o = sig[XY], r = sqrt(d * d + o * o), m = 0.5 * (sig[XX] + sig[YY]);
-  const double z = sig[ZZ], v[3] = {m + r, m - r, z};
-
-  p->mean     = m;
-  p->radius   = r;
-  p->c2       = r > 0.0 ? d / r : 1.0;
-  p->s2       = r > 0.0 ? o / r : 0.0;
-  p->order[0] = z > v[0] ? 2 : 0;
-  p->order[1] = z > v[0] ? 0 : z >= v[1] ? 2 : 1;
-  p->order[2] = z >= v[1] ? 1 : 2;
-  for (int i = 0; i < 3; i++)
-    p->y[i] = v[p->order[i]];
-}
-
-/* Stress from principal values v (in-plane upper, lower, out of plane) in the trial directions. */
-static void FromPrincipal(const Principal *p, const double v[3], double sig[6])
-{
-  const double m = 0.5 * (v[0] + v[1]), r = 0.5 * (v[0] - v[1]);
-
-  sig[XX] = m + r * p->c2;
-  sig[YY] = m - r * p->c2;
-  sig[ZZ] = v[2];
-  sig[XY] = r * p->s2;
-}
-
-static void Unsort(const Principal *p, const double y[3], double v[3])
-{
-  for (int i = 0; i < 3; i++)
-    v[p->order[i]] = y[i];
-}
-
-/* d(stress)/d(trial stress) of xx yy zz xy from the slopes of principal values, and the columns of E and S_h. */
-static void StressSlopes(const Principal *p, const Returned *r, double C[4][4], double by_E[4], double by_S[4])
-{
-  double v[3], D[3][3], e[3], h[3];
-
-  Unsort(p, r->y, v);
-  for (int i = 0; i < 3; i++) {
-    e[p->order[i]] = r->dy[i][BY_E];
-    h[p->order[i]] = r->dy[i][BY_SH];
-    for (int j = 0; j < 3; j++)
-      D[p->order[i]][p->order[j]] = r->dy[i][j];
-  }
-  const double size = fabs(p->mean) + p->radius;
-  const double spin =
-      p->radius > NEAR_EQUAL * size ? 0.5 * (v[0] - v[1]) / p->radius : 0.5 * (D[0][0] - D[0][1] - D[1][0] + D[1][1]);
-  const double dir[3][4] = {{0.5 * (1.0 + p->c2), 0.5 * (1.0 - p->c2), 0.0, p->s2},
-                            {0.5 * (1.0 - p->c2), 0.5 * (1.0 + p->c2), 0.0, -p->s2},
-                            {0.0, 0.0, 1.0, 0.0}}; /* dv/d(xx yy zz xy) */
-  const double out[3][4] = {{dir[0][0], dir[0][1], 0.0, 0.5 * p->s2},
-                            {dir[1][0], dir[1][1], 0.0, -0.5 * p->s2},
-                            {0.0, 0.0, 1.0, 0.0}};      /* d(xx yy zz xy)/dv */
-  const double turn[4]   = {-p->s2, p->s2, 0.0, p->c2}; /* d(c2, s2) as the circle turns: (xx - yy)/2 and xy */
-
-  for (int a = 0; a < 4; a++) {
-    by_E[a] = by_S[a] = 0.0;
-    for (int i = 0; i < 3; i++) {
-      by_E[a] += out[i][a] * e[i];
-      by_S[a] += out[i][a] * h[i];
-    }
-    for (int b = 0; b < 4; b++) {
-      C[a][b] = spin * turn[a] * (b == 3 ? turn[b] : 0.5 * turn[b]);
-      for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++)
-          C[a][b] += out[i][a] * D[i][j] * dir[j][b];
-      }
-    }
-  }
-}
-
-static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, double nonlocal, const Principal *p)
-{
-  const Elasticity *el = &mat->elasticity;
-
-  return (Trial3){.law      = &mat->plasticity,
-                  .G2       = 2.0 * ElasticityShearFactor(el),
-                  .lame     = ElasticityLameFactor(el),
-                  .E        = StageModulus(el, d),
-                  .Sh       = d->Sh,
-                  .eps      = eps,
-                  .nonlocal = nonlocal,
-                  .y        = {p->y[0], p->y[1], p->y[2]}};
-}
-
-static bool Yields(const Plasticity *law, double Sh, double eps, double nonlocal, const double y[3])
-{
-  Strength k;
-  double   dy[3], dphi;
-
-  StrengthOf(law, Sh, eps, nonlocal, &k);
-  const double round_off = YIELD_ROUND_OFF * k.c + 1e-2 * YIELD_ROUND_OFF * (fabs(y[0]) + fabs(y[2]));
-  return MohrCoulombYield(k.phi, k.c, y, dy, &dphi) > round_off || y[0] > StrengthCutoff(law) + round_off;
-}
+#define CHUNK 32 /* particles tested at once */
 
 /* - F of (63), or what is left to the tension cut-off. */
 double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory *h)
@@ -121,95 +16,27 @@ double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory 
   return fmin(-MohrCoulombYield(k.phi, k.c, p.y, dy, &dphi), StrengthCutoff(law) - p.y[0]);
 }
 
-static bool ReturnToYield(const Trial3 *t, bool slopes, Returned *r)
+/* The whole way of a trial state. */
+static bool Return(const Returning *r, Landed *l, const char **why)
 {
-  return t->law->flow == FLOW_MOHR_COULOMB ? ReturnPlanes(t, slopes, r) : ReturnSmooth(t, slopes, r);
-}
-
-/* sigma : e, with the shear on both sides of the diagonal. */
-static double Double(const double a[4], const double b[4])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3];
-}
-
-/* Tangent of the trial state turned into that of the returned one; the work is sigma : D^-1 (trial - sigma), with
-   StageModulus in D. */
-static void PlasticTangent(const Elasticity *el, const SkeletonStep *d, const Principal *p, const Returned *r,
-                           const double sig[4], const double e[4], SkeletonTangent *t)
-{
-  const double E = StageModulus(el, d);
-  double       C[4][4], by_E[4], by_S[4], trial[4][SKELETON_IN];
-
-  StressSlopes(p, r, C, by_E, by_S);
-  for (int a = 0; a < 4; a++) {
-    for (int q = 0; q < SKELETON_IN; q++)
-      trial[a][q] = t->d[a][q];
-  }
-  for (int q = 0; q < SKELETON_IN; q++) {
-    const double dE = StageModulusSlope(el, d, q);
-    double       over[4], de[4], ds[4];
-
-    for (int a = 0; a < 4; a++) {
-      ds[a] = by_E[a] * dE + (q == SKELETON_SH ? by_S[a] : 0.0);
-      for (int b = 0; b < 4; b++)
-        ds[a] += C[a][b] * trial[b][q];
-      t->d[a][q] = ds[a];
-      over[a]    = trial[a][q] - ds[a];
-    }
-    PlasticStrain(el, E, over, de);
-    t->d[SKELETON_WORK][q] = Double(ds, e) + Double(sig, de) - Double(sig, e) * dE / E;
-  }
-}
-
-/* Takes the returned state r into s; what that takes off the trial stress in `over`, with the plastic strain e. */
-static void TakeReturned(const Material *mat, double E, const Principal *p, const Returned *r, SkeletonState *s,
-                         double over[4], double e[4])
-{
-  double v[3];
-
-  for (int k = 0; k < 4; k++)
-    over[k] = s->sig[k];
-  Unsort(p, r->y, v);
-  FromPrincipal(p, v, s->sig);
-  for (int k = 0; k < 4; k++)
-    over[k] -= s->sig[k];
-  PlasticStrain(&mat->elasticity, E, over, e);
-  s->own[OWN_P_EPS] = r->eps;
-  s->region         = r->region;
-  s->work           = Double(s->sig, e);
-}
-
-/* From the trial stress in s, with principal stresses p, to the yield surface; over, e as above. */
-static bool Return(const Material *mat, const SkeletonStep *d, double nonlocal, const Principal *p, SkeletonState *s,
-                   SkeletonTangent *t, double over[4], double e[4], const char **why)
-{
-  Returned r;
-
-  if (!Yields(&mat->plasticity, d->Sh, s->own[OWN_P_EPS], nonlocal, p->y))
-    return true;
-  const Trial3 at = TrialOf(mat, d, s->own[OWN_P_EPS], nonlocal, p);
-  if (!ReturnToYield(&at, t != NULL, &r)) {
-    *why = "no stress on the yield surface was found for the strain of this step";
-    return false;
-  }
-  TakeReturned(mat, at.E, p, &r, s, over, e);
-  if (t)
-    PlasticTangent(&mat->elasticity, d, p, &r, s->sig, e, t);
-  return true;
+  return r->mat->plasticity.tears == TEARS_CLOSE ? ReturnWithTears(r, l, why) : ReturnRaised(r, 0.0, l, why);
 }
 
 bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                         SkeletonTangent *t, const char **why)
 {
-  double    over[4], e[4];
-  Principal p;
+  const Returning r = {.mat = mat, .d = d, .nonlocal = h->nonlocal, .trial = s, .slopes = t};
+  Landed          l;
 
   TrialState(&mat->elasticity, h, d, s, t);
-  PrincipalOf(s->sig, &p);
-  if (!Return(mat, d, h->nonlocal, &p, s, t, over, e, why))
-    return false;
-  if (s->region != RETURN_ELASTIC)
-    ReturnEnd(&mat->elasticity, h, d, over, e, s);
+  const bool found = Return(&r, &l, why);
+
+  *s = l.s;
+  if (!found || s->region == RETURN_ELASTIC)
+    return found;
+  if (t)
+    *t = l.t;
+  ReturnEnd(&mat->elasticity, h, d, l.over, l.e, s);
   return true;
 }
 
@@ -223,7 +50,7 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
                cp = part * law->c_min * cos(peak), cr = part * law->c_res * cos(res), cutoff = StrengthCutoff(law);
   const int     own = law->nonlocal == 0.0; /* strength follows the particle's own strain */
   const double *xx = f->sig[XX] + q, *yy = f->sig[YY] + q, *zz = f->sig[ZZ] + q, *xy = f->sig[XY] + q,
-               *eps = f->own[OWN_P_EPS] + q;
+               *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] ? f->own[OWN_P_OPENING] + q : NULL;
 
   for (int k = 0; k < n; k++) {
     const double d = 0.5 * (xx[k] - yy[k]), m = 0.5 * (xx[k] + yy[k]), r = sqrt(d * d + xy[k] * xy[k]);
@@ -233,6 +60,8 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
 
     may[k] = (unsigned char)!((hi <= cutoff) & (fresh | worn));
   }
+  for (int k = 0; open && k < n; k++)
+    may[k] |= open[k] > 0.0;
 }
 
 /* A particle of a block at its trial stress. */
@@ -251,6 +80,8 @@ static void TakeYielding(const SkeletonBlock *b, int q, Yielding *y)
   y->d = (SkeletonStep){.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
   y->s = (SkeletonState){.sig            = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]},
                          .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
+  if (f->own[OWN_P_OPENING])
+    y->s.own[OWN_P_OPENING] = f->own[OWN_P_OPENING][q];
   PrincipalOf(y->s.sig, &y->p);
 }
 
@@ -265,6 +96,8 @@ static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yiel
   if (y->s.region == RETURN_ELASTIC)
     return;
   f->own[OWN_P_EPS][y->q] = y->s.own[OWN_P_EPS];
+  if (f->own[OWN_P_OPENING])
+    f->own[OWN_P_OPENING][y->q] = y->s.own[OWN_P_OPENING];
   for (int k = 0; k < 4; k++) {
     f->sig[k][y->q] = y->s.sig[k];
     if (share != 0.0)
@@ -274,10 +107,12 @@ static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yiel
 
 static bool ReturnOne(const Material *mat, const SkeletonBlock *b, Yielding *y, const char **why)
 {
-  double     over[4], e[4];
-  const bool found = Return(mat, &y->d, SkeletonNonlocal(&b->store, y->q), &y->p, &y->s, NULL, over, e, why);
+  const Returning r = {.mat = mat, .d = &y->d, .nonlocal = SkeletonNonlocal(&b->store, y->q), .trial = &y->s};
+  Landed          l;
+  const bool      found = Return(&r, &l, why);
 
-  KeepYielding(mat, b, y, over);
+  y->s = l.s;
+  KeepYielding(mat, b, y, l.over);
   if (!found)
     b->work[y->q] = NAN;
   return found;
@@ -308,9 +143,11 @@ static bool ReturnLanes(const Material *mat, const SkeletonBlock *b, const int *
     const Returned r = {.y = {l.y[0][i], l.y[1][i], l.y[2][i]}, .eps = l.eps[i], .region = RETURN_FACE};
     double         over[4], e[4];
 
-    if (l.elastic[i])
+    const bool open = y[i].s.own[OWN_P_OPENING] > 0.0;
+
+    if (l.elastic[i] && !open)
       continue;
-    if (!l.found[i]) {
+    if (!l.found[i] || open) {
       found = ReturnOne(mat, b, &y[i], why) && found;
       continue;
     }

@@ -42,6 +42,41 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r); /* flow: mohr_coul
 /* To the apex c/tan(phi); false if the trial state lies more than `slack`, Pa, below it. */
 bool ReturnApex(const Trial3 *t, double slack, bool slopes, Returned *r);
 
+/* ---------------------------------------------------------------- a trial state, principal.c */
+/* In-plane principal stresses and direction of a stress xx yy zz xy; order[i]: 0, 1 in the plane, 2 out of it. */
+typedef struct {
+  double mean, radius, c2, s2; /* of Mohr's circle: xx - yy = 2 radius c2, xy = radius s2 */
+  int    order[3];             /* which principal stress is the largest, middle, smallest */
+  double y[3];                 /* falling */
+} Principal;
+void PrincipalOf(const double sig[6], Principal *p);
+/* Takes the returned state r into s; what that takes off the trial stress in `over`, with the plastic strain e. */
+void TakeReturned(const Material *mat, double E, const Principal *p, const Returned *r, SkeletonState *s,
+                  double over[4], double e[4]);
+
+/* A trial state on its way to the yield surface. */
+typedef struct {
+  const Material        *mat;
+  const SkeletonStep    *d;
+  double                 nonlocal;
+  const SkeletonState   *trial;
+  const SkeletonTangent *slopes; /* of the trial state; null: none are wanted */
+} Returning;
+
+/* Where it lands: what that takes off the trial stress, the plastic strain of it; where they are wanted, slopes in the
+   numbers of the step and in a mean stress by which the trial state is raised. */
+typedef struct {
+  SkeletonState   s;
+  double          over[4], e[4];
+  SkeletonTangent t;
+  double          per[SKELETON_OUT];
+} Landed;
+
+/* Returns the trial state with `raise`, Pa, more of mean stress. */
+bool ReturnRaised(const Returning *r, double raise, Landed *l, const char **why);
+/* The same with as much of it as tears that close take up (427). */
+bool ReturnWithTears(const Returning *r, Landed *l, const char **why);
+
 bool   Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                           SkeletonTangent *t, const char **why);
 double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory *h);

@@ -568,7 +568,7 @@ static inline double ColumnError(SmallScene *s)
     Call(VecAssemblyBegin(D));
     Call(VecAssemblyEnd(D));
     Call(MatMult(m->solver->A, D, JD));
-    Difference(m, X, D, m->c->fields.field[c % nf] < F_PW ? 1e-1 : 2e-2, dy);
+    Difference(m, X, D, m->c->fields.field[c % nf] < F_PW ? 1e-2 : 2e-2, dy);
     Call(VecGetArrayRead(JD, &a));
     for (PetscInt k = 0; k < n; k++) {
       error[k] = fmax(error[k], fabs(a[k] - dy[k]));

@@ -57,6 +57,10 @@ static void RandomPoint(Rng *r, Point *q)
     q->h.skeleton.from.plastic[k] = RngBetween(r, -1e-3, 1e-3);
   }
   q->h.skeleton.from.own[OWN_P_EPS] = RngBetween(r, 0.0, 0.2);
+  if (RngPick(r, 2)) {
+    q->mat.plasticity.tears               = TEARS_CLOSE;
+    q->h.skeleton.from.own[OWN_P_OPENING] = RngLog(r, 1e-4, 1e-1);
+  }
   for (int k = 0; k < IN_COUNT; k++)
     q->in[k] = RngBetween(r, -1.0, 1.0) * (k < IN_HOOP ? 0.02 : k == IN_HOOP ? 0.02 * q->axis : k < IN_GT ? 1e4 : 0.0);
   q->in[IN_P]     = q->fs.phase[PHASE_W] ? pw : 0.0;
@@ -103,7 +107,7 @@ static void TestParticle(void **state)
   for (int k = 0; k < 2 * SETS; k++) {
     Rng    r         = {500 + (uint64_t)k};
     double worst     = 0.0;
-    int    region[5] = {0};
+    int    region[6] = {0};
 
     for (int n = 0; n < 150; n++) {
       Point        q = {.axis = k >= SETS};
@@ -114,8 +118,8 @@ static void TestParticle(void **state)
       worst = fmax(worst, TangentError(&q, &where));
       region[where]++;
     }
-    Say("particle, %-4s %s: tangent %.1e; %d elastic, %d face, %d edge, %d apex\n", sets[k % SETS].name,
-        k < SETS ? "plane" : "axis ", worst, region[0], region[1], region[2], region[3]);
+    Say("particle, %-4s %s: tangent %.1e; %d elastic, %d face, %d edge, %d apex, %d closing\n", sets[k % SETS].name,
+        k < SETS ? "plane" : "axis ", worst, region[0], region[1], region[2], region[3], region[RETURN_CLOSING]);
     Check(worst < 1e-7 && region[RETURN_FACE] > 50);
   }
 }
@@ -158,8 +162,11 @@ static void TestJacobian(void **state)
     s->c.scene.mean_strain     = strain ? 0.7 : 0.0;
     s->mat.elasticity.change   = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
     s->mat.plasticity          = WeakPlasticity(k % 2, 0.7);
+    s->mat.plasticity.tears    = k % 4 == 1 ? TEARS_CLOSE : TEARS_STAY;
     s->c.scene.fields.has |= SkeletonHas(&s->mat);
     JacobianState(s);
+    for (PetscInt p = 0; s->mat.plasticity.tears == TEARS_CLOSE && p < s->m.P.n; p++)
+      s->m.P.f[P_OPENING][p] = 0.01 * (1.0 + Noise(72, s->m.P.i[PI_ID][p], 0));
     for (PetscInt p = 0; p < s->m.P.n; p++)
       s->m.P.f[P_EPS][p] = 0.1 * (1.0 + Noise(70, s->m.P.i[PI_ID][p], 0));
     for (PetscInt p = 0; bonds && p < s->m.P.n; p++) {

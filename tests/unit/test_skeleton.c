@@ -73,12 +73,12 @@ static void TestBlock(void **state)
 {
   Rng    r      = {301};
   double worst  = 0.0;
-  int    yields = 0;
+  int    yields = 0, closing = 0;
 
   (void)state;
   for (int run = 0; run < 200; run++) {
     Sample        q[N];
-    double        a[9][N], sig[12][N], work[N], eps[N], yield[N];
+    double        a[9][N], sig[12][N], work[N], eps[N], opening[N], yield[N];
     const bool    plastic = run % 2;
     const char   *why     = NULL;
     SkeletonBlock b       = {.n       = 1 + RngPick(&r, N),
@@ -92,17 +92,20 @@ static void TestBlock(void **state)
                              .E       = a[7],
                              .Sh      = a[8],
                              .work    = plastic ? work : NULL,
-                             .store   = {.own[OWN_P_EPS] = eps, .yield = yield}};
+                             .store   = {.own = {[OWN_P_EPS] = eps, [OWN_P_OPENING] = opening}, .yield = yield}};
 
     for (int k = 0; k < N; k++) {
       q[k]     = RandomSample(&r);
       q[k].mat = q[0].mat;
       if (plastic)
         MakePlastic(&r, &q[k]);
-      eps[k]                       = q[k].h.from.own[OWN_P_EPS];
-      q[k].in[SKELETON_STRAIN + 2] = 0.0;
-      const SkeletonStep d         = StepOf(q[k].in, q[k].E_n);
-      const double       row[9]    = {d.c, d.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
+      q[k].mat.plasticity.tears      = run % 4 == 3 ? TEARS_CLOSE : TEARS_STAY;
+      q[k].h.from.own[OWN_P_OPENING] = run % 4 == 3 && k % 2 ? RngBetween(&r, 0.0, 5e-3) : 0.0;
+      opening[k]                     = q[k].h.from.own[OWN_P_OPENING];
+      eps[k]                         = q[k].h.from.own[OWN_P_EPS];
+      q[k].in[SKELETON_STRAIN + 2]   = 0.0;
+      const SkeletonStep d           = StepOf(q[k].in, q[k].E_n);
+      const double       row[9]      = {d.c, d.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
 
       for (int i = 0; i < 9; i++)
         a[i][k] = row[i];
@@ -127,13 +130,15 @@ static void TestBlock(void **state)
       }
       if (plastic && k < b.n) {
         worst = fmax(worst, 1e7 * fmax(fabs(eps[k] - s.own[OWN_P_EPS]), fabs(work[k] - s.work) / 1e5));
+        worst = fmax(worst, 1e7 * fabs(opening[k] - s.own[OWN_P_OPENING]));
         assert_true((int)yield[k] == (int)s.region);
+        closing += s.own[OWN_P_OPENING] < q[k].h.from.own[OWN_P_OPENING];
         yields += s.region != RETURN_ELASTIC;
       }
     }
   }
   printf("block against single form: worst %.1e Pa of 1e7; %d yield\n", worst, yields);
-  assert_true(worst < 1e-7 && yields > 500);
+  assert_true(worst < 1e-7 && yields > 500 && closing > 50);
 }
 
 static bool Rows(void *ctx, double x, double y[RIDDERS_ROWS])
