@@ -21,7 +21,7 @@ enum { HAS_SOLID = 1, HAS_WATER = 2, HAS_GAS = 4, HAS_HEAT = 8, HAS_ALL = 15 };
 extern const char *const cl_field_word[]; /* solid, water, gas, heat; NULL ends it */
 /* What a particle variable may need besides: a gas pressure of its own (set with gas unless the scene has one
    pressure), a skeleton that yields, one whose hydrate bears a stress of its own, one whose strength follows the
-   plastic strain of its neighbours, one whose tears close before they bear (HAS_TEARS). */
+   plastic strain of its neighbours, one whose tears close before they bear (last). */
 /* ... and what only a key may need: hydrate, at the start or by reaction. */
 enum {
   HAS_GAS_PRESSURE = 16,
