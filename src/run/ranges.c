@@ -239,6 +239,32 @@ static PetscErrorCode NotePressures(const Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define VACUUM 101325.0 /* Pa below nothing: water in pores boils before, or lets its gas out */
+
+/* A mean pore pressure that no water bears. */
+static PetscErrorCode WarnOfTension(const Stepper *s)
+{
+  const Scene   *c = s->model->c;
+  const Extreme *e = &s->state.extreme[LOWEST_P];
+  char           place[96];
+
+  PetscFunctionBeginUser;
+  if (!c->fields.phase[PHASE_W] || !(e->value < -VACUUM))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  Place(e, place);
+  PetscCall(PetscFPrintf(
+      s->model->grid.comm, stderr,
+      "clathra: warning: the pressure of a particle was %s, a tension, %s: water in pores boils or lets its gas out "
+      "before, which is not modelled, and stresses there are not those of ground.  What to try, in this order: %sfiner "
+      "cells, shorter steps there (-stepper_tol); a higher pressure at the start, if it was given over that of the air "
+      "(docs/giving_up.md)\n",
+      PressureWords(e->value, 4).s, place,
+      c->fields.has & HAS_PLASTIC ? "mean_dilatation: yes, and plasticity: {tears: close} where ground works in its "
+                                    "tears; "
+                                  : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* (423) */
 static PetscErrorCode WarnOfHeld(const Stepper *s)
 {
@@ -268,6 +294,7 @@ PetscErrorCode EndWarnings(const Stepper *s)
   PetscFunctionBeginUser;
   PetscCall(WarnOfTemperatures(s));
   PetscCall(NotePressures(s));
+  PetscCall(WarnOfTension(s));
   PetscCall(WarnOfHeld(s));
   if (z->loose_total && z->err_worst > DOUBTFUL)
     PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
