@@ -283,34 +283,54 @@ static PetscErrorCode FirstGuess(Model *m, const double *x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves from the first guess x, adding to the iterations. */
-static PetscErrorCode Attempts(Model *m, const double *x, PetscInt *newton, SNESConvergedReason *reason)
+/* What a stage is tried with, in this order: an old preconditioner where it serves, a new one at every iteration, LU;
+   then (426), and that with LU. */
+enum { WITH_OLD = 0, WITH_NEW, WITH_LU, SEARCHED, SEARCHED_WITH_LU, ATTEMPTS };
+
+/* Is it this one's turn, after one that ended for a reason? */
+static bool IsDue(const Model *m, int attempt, SNESConvergedReason reason)
 {
-  PetscInt its;
+  const Solver *s      = m->solver;
+  const bool    linear = reason == SNES_DIVERGED_LINEAR_SOLVE;
+
+  switch (attempt) {
+  case WITH_OLD:
+    return true;
+  case WITH_NEW:
+    return linear || s->kept > 0;
+  case WITH_LU:
+    return linear && s->reduces;
+  case SEARCHED:
+    return reason == SNES_DIVERGED_MAX_IT && (m->c->fields.has & HAS_PLASTIC) && !ModelSlaves(m);
+  default:
+    return s->searches && linear && s->reduces;
+  }
+}
+
+/* Solves once from the first guess x, adding to the iterations. */
+static PetscErrorCode Attempt(Model *m, int attempt, const double *x, PetscInt *newton, SNESConvergedReason *reason)
+{
+  Solver    *s  = m->solver;
+  const bool lu = attempt == WITH_LU || attempt == SEARCHED_WITH_LU;
+  /* where nothing better is left, a linear solve that stops early still gives a good direction */
+  const bool last = lu || (!s->reduces && attempt != WITH_OLD);
+  PetscInt   its;
 
   PetscFunctionBeginUser;
-  /* With an old preconditioner where it serves, else with a new one at every iteration, at last with LU; then a linear
-     solve that stops early still gives a good direction. */
-  const int attempts = m->solver->reduces ? 3 : 2;
-  for (int attempt = 0; attempt < attempts; attempt++) {
-    m->solver->always_refactor = attempt > 0;
-    if (attempt == 2)
-      PetscCall(PreconditionerFallBack(m));
-    PetscCall(SNESSetMaxLinearSolveFailures(m->solver->snes, attempt == attempts - 1 ? 4 : 1));
-    PetscCall(FirstGuess(m, x));
-    PetscCall(ModelSlave(m, m->solver->X));
-    m->solver->kept = 0;
-    PetscCall(SNESSolve(m->solver->snes, NULL, m->solver->X));
-    PetscCall(SNESGetConvergedReason(m->solver->snes, reason));
-    PetscCall(SNESGetIterationNumber(m->solver->snes, &its));
-    *newton += its - m->solver->kept;
-    if (*reason == SNES_DIVERGED_FNORM_NAN)
-      PetscCall(ModelReduceStatus(m, &m->failure.status));
-    if (*reason > 0 || (*reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK))
-      break;
-    if ((attempt == 1 || m->solver->kept == 0) && *reason != SNES_DIVERGED_LINEAR_SOLVE)
-      break;
-  }
+  s->always_refactor = attempt != WITH_OLD;
+  s->searches        = attempt >= SEARCHED;
+  s->kept            = 0;
+  if (lu)
+    PetscCall(PreconditionerFallBack(m));
+  PetscCall(SNESSetMaxLinearSolveFailures(s->snes, last ? 4 : 1));
+  PetscCall(FirstGuess(m, x));
+  PetscCall(ModelSlave(m, s->X));
+  PetscCall(SNESSolve(s->snes, NULL, s->X));
+  PetscCall(SNESGetConvergedReason(s->snes, reason));
+  PetscCall(SNESGetIterationNumber(s->snes, &its));
+  *newton += its - s->kept;
+  if (*reason == SNES_DIVERGED_FNORM_NAN)
+    PetscCall(ModelReduceStatus(m, &m->failure.status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -322,10 +342,11 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
   PetscCall(ModelReadySolver(m));
   *newton             = 0;
   m->solver->searches = false;
-  PetscCall(Attempts(m, x, newton, &reason));
-  if (reason == SNES_DIVERGED_MAX_IT && (m->c->fields.has & HAS_PLASTIC) && !ModelSlaves(m)) { /* (426) */
-    m->solver->searches = true;
-    PetscCall(Attempts(m, x, newton, &reason));
+  for (int attempt = 0; attempt < ATTEMPTS && reason <= 0; attempt++) {
+    if (reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK)
+      break; /* a particle said why */
+    if (IsDue(m, attempt, reason))
+      PetscCall(Attempt(m, attempt, x, newton, &reason));
   }
   if (reason < 0) {
     PetscCall(Explain(m));
