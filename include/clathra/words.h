@@ -5,7 +5,8 @@
 typedef struct {
   char s[32];
 } Words;
-/* "12 s", "3.4 h", "1 year": a time (s) with so many digits, in the largest unit of which `scale` (s) holds two ... */
+/* "12 s", "3.4 h", "1 year": a time (s) with so many digits, in the largest unit of which `scale` (s) holds two, or in
+   its own below a hundredth of that ... */
 Words TimeWordsAs(double seconds, double scale, int digits);
 /* ... or a time (s) does itself. */
 Words TimeWords(double seconds, int digits);

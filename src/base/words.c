@@ -3,6 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#define SMALL 0.01 /* of a unit: what is less reads better in its own */
+
 Words TimeWordsAs(double seconds, double scale, int digits)
 {
   static const struct {
@@ -14,6 +16,8 @@ Words TimeWordsAs(double seconds, double scale, int digits)
 
   while (k < 4 && scale < 2.0 * unit[k].s)
     k++;
+  if (k < 4 && seconds != 0.0 && fabs(seconds) < SMALL * unit[k].s)
+    return TimeWordsAs(seconds, fabs(seconds), digits);
   n = snprintf(words.s, sizeof(words.s), "%.*g %s", digits, seconds / unit[k].s, unit[k].name);
   if (strncmp(words.s, "1 ", 2) == 0 && unit[k].s >= 86400.0)
     words.s[n - 1] = '\0'; /* 1 year */

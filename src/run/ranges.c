@@ -259,9 +259,7 @@ static PetscErrorCode WarnOfTension(const Stepper *s)
       "cells, shorter steps there (-stepper_tol); a higher pressure at the start, if it was given over that of the air "
       "(docs/giving_up.md)\n",
       PressureWords(e->value, 4).s, place,
-      c->fields.has & HAS_PLASTIC ? "mean_dilatation: yes, and plasticity: {tears: close} where ground works in its "
-                                    "tears; "
-                                  : ""));
+      c->fields.has & HAS_PLASTIC ? "plasticity: {tears: close} where ground works in its tears; " : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

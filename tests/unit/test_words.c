@@ -14,6 +14,9 @@ static void TestTimes(void **state)
   assert_string_equal(TimeWords(3.0 * 86400.0, 3).s, "3 days");
   assert_string_equal(TimeWordsAs(86400.0, 3.0 * 86400.0, 3).s, "1 day");
   assert_string_equal(TimeWordsAs(3.15576e7, 1e9, 3).s, "1 year");
+  assert_string_equal(TimeWordsAs(600.0, 1e9, 3).s, "10 min");
+  assert_string_equal(TimeWordsAs(0.0, 1e9, 3).s, "0 years");
+  assert_string_equal(TimeWordsAs(-7200.0, 1e9, 3).s, "-2 h");
   assert_string_equal(TimeAt(1.5 * 3.15576e9).s, "150 years");
 }
 
