@@ -257,7 +257,7 @@ def slope_warming(run, *axes):
         axes[3].plot(b["time_s"] / year - settled, 100 * b["hydrate_kg"] / b["hydrate_kg"][0], color=colour, label=what)
     axes[3].set(xlabel="years", ylabel="hydrate left (%)", ylim=(0, 105))
     axes[3].legend()
-    weak = run("-stage_warm_materials", "slope,weak", "-stage_warm_end", "132 a")
+    weak = run("-stage_warm_materials", "slope,weak")
     end = weak.snapshots[-1][1]
     body(axes[4], end["eps_d_p"][:, 0], end, "$\\epsilon_d^p$")
     m = slide.measure(slide.Run(weak.out))

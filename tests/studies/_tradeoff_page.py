@@ -355,7 +355,7 @@ def about_years():
     kept = json.loads((Path(__file__).resolve().parents[2] / "docs" / "slopes.json").read_text())["W_12"]
     w = kept["warming"]
     steps, alone = float(w["hybrid_alone"][0]), float(w["hybrid_alone"][0]) * STEP_OF_HYBRID
-    return [f"Years and seconds in one run, `cases/slope_warming` with the weak ground ({kept['end_s'] / 3.15576e7 - 20:.0f} years of warming, the slide of the whole face in 25 s and small ones after it; 1406 particles): {w['processor_s']:.0f} s of processor time by "
+    return [f"Years and seconds in one run, `cases/slope_warming` with the weak ground ({kept['end_s'] / 3.15576e7 - 20:.0f} years of warming, a slide of seconds and creep behind it; 1406 particles): {w['processor_s']:.0f} s of processor time by "
             f"`auto` ({w['steps']} implicit steps, {w['hybrid_steps']} of `hybrid`) against {alone / 3.15576e7:.2g} years of `hybrid` alone ({steps:.2g} steps at {1e3 * STEP_OF_HYBRID:.2g} ms, measured over 1.3e5 of them and "
             f"extrapolated; {alone / w['processor_s']:.1g} times as long)."]  # fmt: skip
 
