@@ -3,7 +3,8 @@
 #include "plastic.h"
 
 #define SEARCHES 100
-#define ROUND_OFF 1e-14 /* of the stresses: a mean stress that is none */
+#define ROUND_OFF 5e-16 /* of the stresses: a mean stress that is none */
+#define NEAR 64.0       /* of that: how near to a raise there is another */
 
 /* What decides about the raise c, the part of the trial mean stress that closing takes up. */
 enum { NOTHING_CLOSES, ALL_COMPRESSION, ALL_THAT_IS_OPEN, NO_MEAN_STRESS };
@@ -49,20 +50,28 @@ static Closing Begin(const Returning *r)
    ends at with c. */
 static bool Search(const Returning *r, double none, double below, Closing *c, Landed *l, const char **why)
 {
-  double lo = c->c, hi = c->all, above;
+  const double near = NEAR * none;
+  double       lo = c->c, hi = c->all, above;
+  bool         probed = false;
 
   if (!ReturnRaised(r, hi, l, why))
     return false;
   above = Mean(l->s.sig);
-  c->by = above < -none ? ALL_THAT_IS_OPEN : NO_MEAN_STRESS;
   c->c  = hi;
-  for (int k = 0; c->by == NO_MEAN_STRESS && k < SEARCHES && hi - lo > none; k++) {
-    const double share = k % 3 < 2 && above > none ? -below / (above - below) : 0.5, at = lo + share * (hi - lo);
+  c->by = above < -none ? ALL_THAT_IS_OPEN : NO_MEAN_STRESS;
+  if (c->by == ALL_THAT_IS_OPEN)
+    return true;
+  for (int k = 0; k < SEARCHES && hi - lo > 2.0 * near; k++) {
+    const bool   found = above <= none, probes = found && !probed; /* is there none right below, too: at an apex? */
+    const double at = probes                ? hi - near
+                      : found || k % 3 == 2 ? 0.5 * (lo + hi)
+                                            : lo - below / (above - below) * (hi - lo);
 
     if (!ReturnRaised(r, at, l, why))
       return false;
     const double mean = Mean(l->s.sig);
 
+    probed |= probes;
     if (mean < -none) {
       lo    = at;
       below = mean;
@@ -70,10 +79,8 @@ static bool Search(const Returning *r, double none, double below, Closing *c, La
       hi = c->c = at;
       above     = mean;
     }
-    if (fabs(mean) <= none && below > -100.0 * none)
-      break;
   }
-  return c->c == hi && c->by == ALL_THAT_IS_OPEN ? true : ReturnRaised(r, c->c, l, why);
+  return ReturnRaised(r, c->c, l, why);
 }
 
 /* Slopes of c in the numbers of the step, and what they make of those of the landed state, whose c was held. */
@@ -105,7 +112,7 @@ static void End(const Closing *c, Landed *l)
     l->over[k] -= c->c;
     l->e[k] -= c->c / (3.0 * c->K);
   }
-  l->s.work -= mean * c->c / c->K;
+  l->s.work -= fmin(mean, 0.0) * c->c / c->K; /* above nothing by round-off alone */
   l->s.own[OWN_P_OPENING] = fmax((c->all - c->c - fmax(mean, 0.0)) / c->K, 0.0);
   if (l->s.region == RETURN_ELASTIC && c->c > 0.0)
     l->s.region = RETURN_CLOSING;

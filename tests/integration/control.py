@@ -70,7 +70,9 @@ def check_progress():
     check("lines in a run of about a second, at most one a second", len(lines(few)), (2, 20))
     check_true("the last step is told", "step   40:" in lines(few)[-1] and "(100.0 %)" in lines(few)[-1], lines(few)[-1])
     slow = run(binary(), CASES / "century", "-progress", "0", "-stepper_max_steps", "2", out=scratch() / "out").output
-    check_true("times in the unit of the run", " years (" in lines(slow)[-1], lines(slow)[-1])
+    check_true("times far below the unit of the run in their own", "t = 3 h (" in lines(slow)[-1], lines(slow)[-1])
+    wide = run(binary(), CASES / "century", "-progress", "0", "-stepper_max_steps", "1", "-stepper_adapt", "no", "-stepper_dt", "3 a", out=scratch() / "out").output
+    check_true("times in the unit of the run", " years (" in lines(wide)[-1], lines(wide)[-1])
 
 
 def check_folder():

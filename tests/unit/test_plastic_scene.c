@@ -57,10 +57,6 @@ static void RandomPoint(Rng *r, Point *q)
     q->h.skeleton.from.plastic[k] = RngBetween(r, -1e-3, 1e-3);
   }
   q->h.skeleton.from.own[OWN_P_EPS] = RngBetween(r, 0.0, 0.2);
-  if (RngPick(r, 2)) {
-    q->mat.plasticity.tears               = TEARS_CLOSE;
-    q->h.skeleton.from.own[OWN_P_OPENING] = RngLog(r, 1e-4, 1e-1);
-  }
   for (int k = 0; k < IN_COUNT; k++)
     q->in[k] = RngBetween(r, -1.0, 1.0) * (k < IN_HOOP ? 0.02 : k == IN_HOOP ? 0.02 * q->axis : k < IN_GT ? 1e4 : 0.0);
   q->in[IN_P]     = q->fs.phase[PHASE_W] ? pw : 0.0;
@@ -68,14 +64,52 @@ static void RandomPoint(Rng *r, Point *q)
   q->in[IN_T]     = T;
 }
 
+/* The same with a tear that stands open and closes before it bears. */
+static void MakeTorn(Rng *r, Point *q)
+{
+  q->mat.plasticity.tears               = TEARS_CLOSE;
+  q->h.skeleton.from.own[OWN_P_OPENING] = RngLog(r, 1e-4, 1e-1);
+}
+
+/* Where the input now varied leads: on the yield surface, and what tears do on the way. */
+static int Branch(const Point *q, double x)
+{
+  const double open = q->h.skeleton.from.own[OWN_P_OPENING];
+  PointState   state;
+  PointOutput  o;
+  const char  *why;
+  double       in[IN_COUNT];
+
+  memcpy(in, q->in, sizeof in);
+  in[q->column] = x;
+  if (PointEvaluate(&q->fs, &q->mat, &q->h, in, false, &state, &o, &why) != CL_OK)
+    return -1;
+  const double left = state.skeleton.own[OWN_P_OPENING],
+               mean = Trace6(state.skeleton.sig) / 3.0; /* none while tears take up what dilates */
+
+  return (int)state.skeleton.region + 10 * (left == 0.0) + 20 * (left < open) + 40 * (fabs(mean) < 1.0);
+}
+
+/* No tear begins or ends to close within a step to either side, nor is an edge reached on the way. */
+static bool NoTearTurns(const Point *q, double step)
+{
+  const double x    = q->in[q->column];
+  bool         same = true;
+
+  for (int k = -4; k <= 4 && q->mat.plasticity.tears == TEARS_CLOSE; k++)
+    same = same && Branch(q, x + 0.25 * k * step) == Branch(q, x);
+  return same;
+}
+
 /* Worst entry of the tangent over its row; rows of the stress and of the heat alone: what plasticity touches. */
 static double TangentError(Point *q, ReturnRegion *region)
 {
   static const int rows[] = {OUT_P, OUT_P + 1, OUT_P + 2, OUT_P + 3, OUT_HOOP, OUT_Q};
-  PointState       state;
-  PointOutput      o;
-  const char      *why;
-  double           worst = 0.0;
+  const double strain = q->mat.plasticity.tears == TEARS_CLOSE ? 4e-4 : 1e-4; /* against the round-off of the raise */
+  PointState   state;
+  PointOutput  o;
+  const char  *why;
+  double       worst = 0.0;
 
   Check(PointEvaluate(&q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) == CL_OK);
   *region = state.skeleton.region;
@@ -85,12 +119,13 @@ static double TangentError(Point *q, ReturnRegion *region)
     if (rows[k] == OUT_Q && !q->fs.heat)
       continue;
     for (int c = 0; c < IN_J; c++) {
-      const double unit = c < IN_P ? 1e-4 : c < IN_T ? 1e3 : c == IN_T ? 0.05 : c < IN_GT ? 1e3 : 1.0;
+      const double unit = c < IN_P ? strain : c < IN_T ? 1e3 : c == IN_T ? 0.05 : c < IN_GT ? 1e3 : 1.0;
       double       dy[RIDDERS_ROWS], err[RIDDERS_ROWS];
 
       q->column = c;
       if ((c == IN_HOOP && !q->axis) || (c >= IN_P && c < IN_T && !q->fs.phase[c - IN_P]) || c > IN_T ||
-          (c == IN_T && !q->fs.heat) || !Ridders(Outputs, q, q->in[c], unit, OUT_COUNT, dy, err))
+          (c == IN_T && !q->fs.heat) || !NoTearTurns(q, unit) ||
+          !Ridders(Outputs, q, q->in[c], unit, OUT_COUNT, dy, err))
         continue;
       size  = fmax(size, unit * fmax(fabs(dy[rows[k]]), fabs(o.D[rows[k]][c])));
       error = fmax(error, unit * (fabs(o.D[rows[k]][c] - dy[rows[k]]) - 10.0 * err[rows[k]]));
@@ -101,9 +136,9 @@ static double TangentError(Point *q, ReturnRegion *region)
   return worst;
 }
 
-static void TestParticle(void **state)
+/* Torn ones are known less well: at no mean stress the raise (427) follows from the return's own round-off. */
+static void TryParticles(bool torn, double bar)
 {
-  (void)state;
   for (int k = 0; k < 2 * SETS; k++) {
     Rng    r         = {500 + (uint64_t)k};
     double worst     = 0.0;
@@ -115,13 +150,23 @@ static void TestParticle(void **state)
 
       Check(FieldSetMake(sets[k % SETS].has, true, false, &q.fs));
       RandomPoint(&r, &q);
+      if (torn)
+        MakeTorn(&r, &q);
       worst = fmax(worst, TangentError(&q, &where));
       region[where]++;
     }
-    Say("particle, %-4s %s: tangent %.1e; %d elastic, %d face, %d edge, %d apex, %d closing\n", sets[k % SETS].name,
-        k < SETS ? "plane" : "axis ", worst, region[0], region[1], region[2], region[3], region[RETURN_CLOSING]);
-    Check(worst < 1e-7 && region[RETURN_FACE] > 50);
+    Say("%s, %-4s %s: tangent %.1e; %d elastic, %d face, %d edge, %d apex, %d closing\n",
+        torn ? "torn particle" : "particle", sets[k % SETS].name, k < SETS ? "plane" : "axis ", worst, region[0],
+        region[1], region[2], region[3], region[RETURN_CLOSING]);
+    Check(worst < bar && region[RETURN_FACE] > 50 && (region[RETURN_CLOSING] > 3) == torn);
   }
+}
+
+static void TestParticle(void **state)
+{
+  (void)state;
+  TryParticles(false, 1e-7);
+  TryParticles(true, 1e-6);
 }
 
 /* ---------------------------------------------------------------- the assembled Jacobian */
