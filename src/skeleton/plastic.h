@@ -64,7 +64,7 @@ typedef struct {
 } Returning;
 
 /* Where it lands: what that takes off the trial stress, the plastic strain of it; where they are wanted, slopes in the
-   numbers of the step and in a mean stress by which the trial state is raised. */
+   numbers of the step and, of a law whose tears close, in a mean stress by which the trial state is raised. */
 typedef struct {
   SkeletonState   s;
   double          over[4], e[4];

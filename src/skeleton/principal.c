@@ -189,10 +189,12 @@ bool ReturnRaised(const Returning *r, double raise, Landed *l, const char **why)
   TakeReturned(mat, at.E, &p, &found, &l->s, l->over, l->e);
   if (!r->slopes)
     return true;
+  PlasticTangent(&mat->elasticity, r->d, &p, &found, l->s.sig, l->e, &l->t);
+  if (mat->plasticity.tears != TEARS_CLOSE)
+    return true;
   SkeletonTangent raised = {0}; /* its first column: a trial state that is raised by 1 Pa */
   for (int k = XX; k <= ZZ; k++)
     raised.d[k][0] = 1.0;
-  PlasticTangent(&mat->elasticity, r->d, &p, &found, l->s.sig, l->e, &l->t);
   PlasticTangent(&mat->elasticity, r->d, &p, &found, l->s.sig, l->e, &raised);
   for (int k = 0; k < SKELETON_OUT; k++)
     l->per[k] = raised.d[k][0];

@@ -19,7 +19,7 @@ typedef struct {
 
 static double Mean(const double sig[6])
 {
-  return (sig[XX] + sig[YY] + sig[ZZ]) / 3.0;
+  return Trace6(sig) / 3.0;
 }
 
 static double MeanSlope(const SkeletonTangent *t, int q)
