@@ -18,7 +18,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from _files import different, hashes  # noqa: E402
-from common import CASES, ENVIRONMENT, ROOT, Run, binary, check_true, finish, launch, scratch  # noqa: E402
+from common import CASES, ENVIRONMENT, ROOT, Run, binary, check_true, finish, launch, mpiexec, scratch  # noqa: E402
 
 OPTIONS = ("-quiet", "-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-checkpoint_every",
            "20 s", "-stepper_dt_max", "5 s", "-meters", "outlet", "-meter_outlet_side", "right")  # fmt: skip
@@ -124,7 +124,7 @@ def check_limit():
 def two_ranks(how="", at=0):
     """The same run on two ranks, disturbed on both; its folder."""
     out = scratch() / "out"
-    job = subprocess.run(["mpiexec", "-n", "2", *command(out, *map(str, TWO))], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    job = subprocess.run([*mpiexec(2), *command(out, *map(str, TWO))], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                          stderr=subprocess.STDOUT, text=True, timeout=300, env={**os.environ, **ENVIRONMENT, "FAULT_DIR": str(out),
                          "FAULT_HOW": how, "FAULT_AT": str(at), **({"LD_PRELOAD": str(LIBRARY)} if how else {})})  # fmt: skip
     return out, job

@@ -60,13 +60,18 @@ def scratch():
     return folder
 
 
+def mpiexec(ranks):
+    """The beginning of a command on several ranks, which share one core."""
+    return [sys.executable, "-S", str(ROOT / "tests" / "one_core.py"), "mpiexec", "-n", str(ranks)]
+
+
 def launch(program, case, *options, ranks=1, out=None, timeout=800):
     """Runs the program without judging it; returns subprocess.CompletedProcess (stdout holds both streams)."""
     command = [str(program), str(case), *map(str, options)]
     if out is not None:
         command += ["-output_dir", str(out)]
     if ranks > 1:
-        command = ["mpiexec", "-n", str(ranks), *command]
+        command = [*mpiexec(ranks), *command]
     return subprocess.run(
         command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, timeout=timeout, text=True, errors="replace",
