@@ -7,7 +7,6 @@ as long, four up to forty; all on one core they take the sum of their work, and 
 import fcntl
 import os
 import sys
-import tempfile
 from pathlib import Path
 
 
@@ -15,7 +14,7 @@ def take():
     """(core, its lock): a core of this process that nobody holds, as long as the lock is open; one of all where all are held."""
     cores = sorted(os.sched_getaffinity(0))
     for core in cores:
-        lock = open(Path(tempfile.gettempdir()) / f"clathra-core-{os.getuid()}-{core}", "w")
+        lock = open(Path("/tmp") / f"clathra-core-{os.getuid()}-{core}", "w")
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
             return core, lock

@@ -65,13 +65,13 @@ def collapse(u, load):
     return load[late].mean(), load[-1] / load[late][0] - 1
 
 
-def circle(cells, strain, softer=1, end=1.0, timeout=800):
+def circle(cells, strain, softer=1, end=1.0, timeout=800, kind="euler"):
     """Load over Cox's, and its growth over the last fifth of the settlement; cells over the radius, E and the penalty as in the file or softer, to
     the share `end` of the settlement; the ground as deep as in the file or to the next line of the grid."""
     deep = f"4 m, {np.ceil(1.75 * cells) / cells:.15g} m"
     soft = ("-mat_soil_elasticity_E0", f"{16 / softer} GPa", "-bc_plate_velocity", f"{-6e-5 * softer} m/s", "-stabilisation_ghost_penalty", 1e-6 * softer)
     run = Run.of_case(CIRCLE, "-quiet", "-grid_cells", f"{4 * cells},{2 * cells}", "-region_ground_upper", deep, "-mean_strain", strain, "-time_end", f"{end} s",
-                      "-output_times", f"{end} s", *(soft if softer != 1 else ()), exit_code=(0, 3), timeout=timeout)  # fmt: skip
+                      "-output_times", f"{end} s", "-stepper_type", kind, *(soft if softer != 1 else ()), exit_code=(0, 3), timeout=timeout)  # fmt: skip
     m = run.csv("meters.csv")
     u, load = -m["plate.position_m"], m["plate.force_N"] / np.pi / COX
     return load[-1], load[-1] / np.interp(0.8 * u[-1], u, load) - 1
