@@ -131,10 +131,10 @@ def main():
     key = "well.gas_kg"
     judge("gas", "first gas, well: gas of five hours, two ranks against one, relative", abs(b[key][-1] / a[key][-1] - 1), 1e-6)
     gas, water = (one.csv("meters.csv")[k][-1] for k in ("well.gas_kg", "well.water_kg"))
-    finer = Run.of_case(well, "-stepper_tol", "3e-3", "-time_end", "3 d")
+    finer = Run.of_case(well, "-stepper_tol", "3e-3", "-time_end", "6 d")
     coarse = one.csv("meters.csv")
-    at = np.argmin(np.abs(coarse["time_s"] - 3 * DAY))
-    judge("gas", "first gas, well: gas after 3 days, against a third of the tolerance", abs(coarse["well.gas_kg"][at] / finer.csv("meters.csv")["well.gas_kg"][-1] - 1), 0.05, 0.01, "%")
+    at = np.argmin(np.abs(coarse["time_s"] - 6 * DAY))
+    judge("gas", "first gas, well: gas after 6 days, against a third of the tolerance", abs(coarse["well.gas_kg"][at] / finer.csv("meters.csv")["well.gas_kg"][-1] - 1), 0.05, 0.01, "%")
     print(f"30 days: {gas / 1e3:.3g} t of gas, {water / 1e3:.4g} t of water")
 
 
