@@ -13,7 +13,7 @@ from pathlib import Path
 LAYERS = [
     ("dimension", ["dimension"], []),
     ("base", ["base", "words"], ["base"]),
-    ("tensor", ["inline", "tensor", "jet", "fields"], ["tensor", "fields"]),
+    ("tensor", ["inline", "tensor", "eigen", "jet", "fields"], ["tensor", "fields"]),
     ("laws", ["laws"], ["laws"]),
     ("material", ["material"], ["material"]),
     ("skeleton", ["skeleton"], ["skeleton"]),

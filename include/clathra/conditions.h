@@ -5,7 +5,8 @@
 #include "clathra/fields.h"
 #include "clathra/schedule.h"
 
-typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT } Side; /* left right bottom top */
+/* left right bottom top, in space then back front */
+typedef enum { SIDE_XMIN = 0, SIDE_XMAX, SIDE_YMIN, SIDE_YMAX, SIDE_COUNT = 2 * CL_DIM } Side;
 
 /* Axis and sign of a side's outward normal. */
 static inline int SideAxis(int side)

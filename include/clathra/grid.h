@@ -74,43 +74,6 @@ static inline double GridHighest2At(const Grid *g, const double x[CL_DIM])
   return k2;
 }
 
-/* Place of ij in an array over a box of nodes (or cells, ranks) from `lower` on, x running fastest. */
-static inline PetscInt BoxPlace(const PetscInt lower[CL_DIM], const PetscInt size[CL_DIM], const PetscInt ij[CL_DIM])
-{
-  PetscInt at = 0;
-
-  for (int d = CL_DIM - 1; d >= 0; d--)
-    at = at * size[d] + ij[d] - lower[d];
-  return at;
-}
-
-/* What stands at such a place. */
-static inline void BoxAt(const PetscInt lower[CL_DIM], const PetscInt size[CL_DIM], PetscInt at, PetscInt ij[CL_DIM])
-{
-  for (int d = 0; d < CL_DIM; at /= size[d++])
-    ij[d] = lower[d] + at % size[d];
-}
-
-/* How many places a box has. */
-static inline PetscInt BoxSize(const PetscInt size[CL_DIM])
-{
-  PetscInt n = 1;
-
-  for (int d = 0; d < CL_DIM; d++)
-    n *= size[d];
-  return n;
-}
-
-/* Is ij in the box? */
-static inline bool BoxHolds(const PetscInt lower[CL_DIM], const PetscInt size[CL_DIM], const PetscInt ij[CL_DIM])
-{
-  for (int d = 0; d < CL_DIM; d++) {
-    if (ij[d] < lower[d] || ij[d] >= lower[d] + size[d])
-      return false;
-  }
-  return true;
-}
-
 /* Place of node ij in arrays over this rank's nodes and ghosts. */
 static inline PetscInt GridPadded(const Grid *g, const PetscInt ij[CL_DIM])
 {

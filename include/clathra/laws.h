@@ -225,9 +225,9 @@ typedef struct {
 } LatentHeat;
 /* L at T (degC), J/kg, with its slope, J/(kg K). */
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
-/* (293): conductivity K (xx, yy, xy; W/(m K)) beside kappa that carries heat with the flow: a is the heat capacity that
-   flows (W/(m^2 K)), h the size of a cell (m). */
-void HeatUpwind(double kappa, const double a[2], const double h[2], double K[3]);
+/* (293): conductivity K (as cl_symmetric; W/(m K)) beside kappa that carries heat with the flow: a is the heat capacity
+   that flows (W/(m^2 K)), h the size of a cell (m). */
+void HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC]);
 /* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity
    (X = kappa, W/(m K)) and, with X = rho c, for the heat capacity (J/(m^3 K)); derivatives with respect to phi, S_h and
    s_w. */

@@ -21,6 +21,7 @@ typedef struct {
   SkeletonStage *k_star; /* [n] starred state of the skeleton; null: that of t_n */
 } Stage;
 
+enum { TRIAL_PLASTIC = 1 + CL_TENSOR };
 /* Result of a stage on the particles, before any commit. */
 typedef struct {
   double        *m;   /* [n][3] m_h; m_w, m_g less what Newton left in the rows (28), kg */
@@ -28,8 +29,8 @@ typedef struct {
   double        *u;   /* [n][CL_DIM] displacement of the step so far, m */
   double        *v;   /* [n][CL_DIM] skeleton velocity, m/s */
   SkeletonStage *end; /* [n] of the skeleton; null where it holds no history */
-  double        *s;   /* [n][5] eps_d_p and stress xx yy zz xy; null without plasticity */
-  double        *k;   /* [n][5] their rates at the end of the step, the scheme's to fill; likewise */
+  double        *s;   /* [n][TRIAL_PLASTIC] eps_d_p and stress xx yy zz xy; null without plasticity */
+  double        *k;   /* [n][TRIAL_PLASTIC] their rates at the end of the step, the scheme's to fill; likewise */
 } Trial;
 
 /* What a meter counts, outwards: kg/s of water and gas, W. */

@@ -25,7 +25,7 @@
   X(P_GW, HAS_WATER, "grad_p_w", CL_DIM, "Pa/m", "at the end of the last step")                                        \
   X(P_GG, HAS_GAS_PRESSURE, "grad_p_g", CL_DIM, "Pa/m", "")                                                            \
   X(P_GT, HAS_HEAT, "grad_T", CL_DIM, "K/m", "")                                                                       \
-  X(P_BT, HAS_HEAT, "mixed_T", 1, "K/m^2", "d2T/dx dy, at the end of the last step (395)")                             \
+  X(P_BT, HAS_HEAT, "mixed_T", CL_PAIRS, "K/m^2", "d2T/dx dy, at the end of the last step (395)")                      \
   X(P_VS, HAS_SOLID, "v_s", CL_DIM, "m/s", "skeleton velocity")                                                        \
   X(P_VW, HAS_WATER, "v_w", CL_DIM, "m/s", "water velocity")                                                           \
   X(P_VG, HAS_GAS, "v_g", CL_DIM, "m/s", "gas velocity")                                                               \
@@ -99,14 +99,28 @@ static inline double ParticleInitialX(const Particles *P, PetscInt p, int d)
   return P->f[P_X0] ? P->f[P_X0 + d][p] : P->f[P_X + d][p]; /* a rigid body stays */
 }
 
+/* Its place now, m. */
+static inline void ParticlePlace(const Particles *P, PetscInt p, double x[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = P->f[P_X + d][p];
+}
+
+/* Its place in the initial configuration, m. */
+static inline void ParticleInitialPlace(const Particles *P, PetscInt p, double x[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = ParticleInitialX(P, p, d);
+}
+
 /* What drives its fluids through the beds as they lie now (306). */
 static inline Beds ParticleBeds(const Scene *c, const Particles *P, PetscInt p)
 {
-  const Permeability *law  = &c->material[c->region[P->i[PI_REGION][p]].material].permeability;
-  double              F[4] = {1.0, 0.0, 0.0, 1.0};
+  const Permeability *law               = &c->material[c->region[P->i[PI_REGION][p]].material].permeability;
+  double              F[CL_DIM][CL_DIM] = CL_IDENTITY;
 
-  for (int k = 0; P->f[P_F] && k < 4; k++)
-    F[k] = P->f[P_F + k][p];
+  for (int k = 0; P->f[P_F] && k < CL_DIM * CL_DIM; k++)
+    F[k / CL_DIM][k % CL_DIM] = P->f[P_F + k][p];
   return BedsOf(law->ratio, law->dip * M_PI / 180.0, F);
 }
 

@@ -53,9 +53,9 @@ typedef struct {
   double          T_n, Sh_n; /* at t_n */
   double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   SkeletonHistory skeleton;
-  double          spread[PHASE_COUNT]; /* (200) at t_n, m^2/(Pa s) */
-  double          upwind[3];           /* (293), xx, yy, xy, W/(m K) */
-  double proj[PHASE_COUNT][CL_DIM];    /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
+  double          spread[PHASE_COUNT];  /* (200) at t_n, m^2/(Pa s) */
+  double          upwind[CL_SYMMETRIC]; /* (293), W/(m K) */
+  double proj[PHASE_COUNT][CL_DIM];     /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
   double
       withheld; /* (1 - a)/a (416): both pressures lack so much of what p_g has changed by since p_g,n; then also ... */

@@ -9,33 +9,48 @@
 
 #define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
 
-/* A of (306), what drives a fluid per gradient in units of k_a: xx, yy, xy; 1 without beds. */
+/* A of (306), what drives a fluid per gradient in units of k_a, by cl_symmetric; 1 without beds. */
 typedef struct {
-  double xx, yy, xy;
+  double A[CL_SYMMETRIC];
 } Beds;
 
-/* (306), (307) of a material whose beds dip by `dip` (rad) from x towards y and lay like that where the deformation
-   gradient F (xx, xy, yx, yy) was 1; ratio of k across them to k along them. */
-INLINE Beds BedsOf(double ratio, double dip, const double F[4])
+/* (306), (307) of a material whose beds dip by `dip` (rad) from x towards y (in space they hold z) and lay like that
+   where the deformation gradient F was 1; ratio of k across them to k along them. */
+INLINE Beds BedsOf(double ratio, double dip, const double F[CL_DIM][CL_DIM])
 {
-  const double n0[2] = {-sin(dip), cos(dip)}, n[2] = {F[3] * n0[0] - F[2] * n0[1], F[0] * n0[1] - F[1] * n0[0]};
-  const double c = (1.0 - ratio) / (n[0] * n[0] + n[1] * n[1]);
+  const double n0[CL_DIM] = {-sin(dip), cos(dip)};
+  double       cof[CL_DIM][CL_DIM], n[CL_DIM];
+  Beds         beds;
 
-  return (Beds){1.0 - c * n[0] * n[0], 1.0 - c * n[1] * n[1], -c * n[0] * n[1]};
+  CofactorOf(F, cof);
+  for (int i = 0; i < CL_DIM; i++)
+    n[i] = VectorDot(cof[i], n0);
+  const double c = (1.0 - ratio) / VectorDot(n, n);
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = i; j < CL_DIM; j++)
+      beds.A[cl_symmetric[i][j]] = (i == j ? 1.0 : 0.0) - c * n[i] * n[j];
+  }
+  return beds;
 }
 
 /* v := A v; A dimensionless. */
-INLINE void BedsDrive(const Beds *A, double v[2])
+INLINE void BedsDrive(const Beds *beds, double v[CL_DIM])
 {
-  const double x = v[0], y = v[1];
+  double x[CL_DIM];
 
-  v[0] = A->xx * x + A->xy * y;
-  v[1] = A->xy * x + A->yy * y;
+  for (int i = 0; i < CL_DIM; i++) {
+    x[i] = beds->A[cl_symmetric[i][0]] * v[0];
+    for (int j = 1; j < CL_DIM; j++)
+      x[i] += beds->A[cl_symmetric[i][j]] * v[j];
+  }
+  for (int i = 0; i < CL_DIM; i++)
+    v[i] = x[i];
 }
 
 /* (309): what drives a fluid whose weight is w (rho b, Pa/m) like the gradient g of its pressure (Pa/m): g itself where
    it is at rest. */
-INLINE void BedsDriveMoving(const Beds *A, const double w[2], double g[2])
+INLINE void BedsDriveMoving(const Beds *A, const double w[CL_DIM], double g[CL_DIM])
 {
   for (int d = 0; d < CL_DIM; d++)
     g[d] -= w[d];
@@ -44,12 +59,17 @@ INLINE void BedsDriveMoving(const Beds *A, const double w[2], double g[2])
     g[d] += w[d];
 }
 
-/* J . (A^-1 - 1) J: what drag takes more than along the beds. */
-INLINE double BedsDrag(const Beds *A, const double J[2])
+/* J . (A^-1 - 1) J: what drag takes more than along the beds; (J J - J A J)/r with the ratio r = tr A - tr 1 + 1. */
+INLINE double BedsDrag(const Beds *beds, const double J[CL_DIM])
 {
-  const double det = A->xx * A->yy - A->xy * A->xy;
+  double AJ[CL_DIM], r = 1.0;
 
-  return (A->yy * J[0] * J[0] - 2.0 * A->xy * J[0] * J[1] + A->xx * J[1] * J[1]) / det - J[0] * J[0] - J[1] * J[1];
+  for (int d = 0; d < CL_DIM; d++) {
+    AJ[d] = J[d];
+    r += beds->A[d] - 1.0;
+  }
+  BedsDrive(beds, AJ);
+  return (VectorDot(J, J) - VectorDot(J, AJ)) / r;
 }
 
 /* What k_r is a function of, with slopes in the fluid's share of the open pores and in S_h. */

@@ -56,5 +56,9 @@ INLINE Throttling ThrottlingOf(double warm, double rho)
    Pa/m, gravity b in m/s^2. */
 INLINE double ThrottledHeat(double share, const double flux[CL_DIM], const double g[CL_DIM], const double b[CL_DIM])
 {
-  return flux[0] * (share * g[0] - b[0]) + flux[1] * (share * g[1] - b[1]);
+  double sum = flux[0] * (share * g[0] - b[0]);
+
+  for (int d = 1; d < CL_DIM; d++)
+    sum += flux[d] * (share * g[d] - b[d]);
+  return sum;
 }

@@ -2,7 +2,7 @@
    (point_state.h). */
 #pragma once
 
-#include "clathra/inline.h"
+#include "clathra/tensor.h"
 
 /* Of F in the plane: tan theta = turn/along; b = F F^T = m 1 + (d, off; off, -d), its radius sqrt(y) m. */
 typedef struct {
@@ -25,11 +25,10 @@ INLINE void StretchDiagonal(double c, double s, double xx, double xy, double yx,
   U[1] = -s * xy + c * yy;
 }
 
-/* Logarithmic strain (7) in the plane, xx, yy, xy: half of ln J, and half of atanh(sqrt y)/sqrt y times d/m and off/m.
- */
-INLINE void LogStrainOf(double half_ln_J, double d, double off, double e[3])
+/* Logarithmic strain (7) in the plane: half of ln J, and half of atanh(sqrt y)/sqrt y times d/m and off/m; zz stays. */
+INLINE void LogStrainOf(double half_ln_J, double d, double off, double e[CL_TENSOR])
 {
-  e[0] = half_ln_J + d;
-  e[1] = half_ln_J - d;
-  e[2] = off;
+  e[XX] = half_ln_J + d;
+  e[YY] = half_ln_J - d;
+  e[XY] = off;
 }

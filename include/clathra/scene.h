@@ -11,6 +11,7 @@ typedef struct {
   PetscInt n, *i; /* indices into a list of the case */
 } Names;
 
+/* In space polygons, lines and circles are prisms along z. */
 typedef enum { SHAPE_BOX = 0, SHAPE_POLYGON, SHAPE_BELOW, SHAPE_CIRCLE } ShapeKind;
 
 typedef struct {
@@ -43,7 +44,7 @@ typedef struct {
   char     name[64];
   Side     side;
   PetscInt region;   /* -1: all */
-  double   from, to; /* m, along the side */
+  double   from, to; /* m, along the side, in the plane */
   Points   along;    /* or those on this line */
   PetscInt well;     /* or the particles of this well, its place in the list of the case; -1: none */
 } Meter;
@@ -128,10 +129,32 @@ static inline double SceneHeight(const Scene *c, const double x[])
   return g > 0.0 ? -VectorDot(x, c->gravity) / g : 0.0;
 }
 
+/* Unit vector against gravity times `sign`, both dimensionless; not without gravity. */
+static inline void SceneUp(const Scene *c, double sign, double up[CL_DIM])
+{
+  const double g = SceneGravity(c);
+
+  for (int d = 0; d < CL_DIM; d++)
+    up[d] = -sign * c->gravity[d] / g;
+}
+
 /* Axis that gravity points along, -1 if it is oblique or zero. */
 static inline int SceneVertical(const Scene *c)
 {
-  return (c->gravity[0] != 0.0) == (c->gravity[1] != 0.0) ? -1 : c->gravity[0] != 0.0 ? 0 : 1;
+  int axis = -1, count = 0;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    axis = c->gravity[d] != 0.0 ? d : axis;
+    count += c->gravity[d] != 0.0;
+  }
+  return count == 1 ? axis : -1;
+}
+
+/* Middle of a region's bounds, m. */
+static inline void RegionMiddle(const Region *r, double x[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = 0.5 * (r->lower[d] + r->upper[d]);
 }
 
 /* Does the stress of the region follow from the weight above it? */
@@ -306,6 +329,7 @@ static inline const char *SceneNeedsImplicit(const Scene *c)
   const Bc *b = SceneBcNeedsMatrix(c);
 
   return b                   ? b->name
+         : CL_DIM == 3       ? "three dimensions"
          : c->axisymmetric   ? "geometry: axisymmetric"
          : c->one_pressure   ? "pressures: one"
          : !c->inertia       ? "inertia: no"

@@ -11,30 +11,30 @@
 
 /* What a step does to the skeleton; the tangent is taken with respect to these numbers in this order. */
 enum {
-  SKELETON_THETA = 0,                     /* rotation of the step, rad */
-  SKELETON_STRAIN,                        /* logarithmic strain of the step (7): xx yy zz xy */
-  SKELETON_THERMAL = SKELETON_STRAIN + 4, /* linear thermal strain beta_sh (T - T_n)/3 */
-  SKELETON_E,                             /* Young's modulus now, Pa */
-  SKELETON_SH,                            /* hydrate saturation now */
-  SKELETON_KEPT,                          /* share of the stage's first hydrate that is still there */
+  SKELETON_THETA   = 0,                           /* rotation of the step, rad, about the axes of Spin6 */
+  SKELETON_STRAIN  = SKELETON_THETA + CL_SPINS,   /* logarithmic strain of the step (7): xx yy zz xy (yz xz) */
+  SKELETON_THERMAL = SKELETON_STRAIN + CL_TENSOR, /* linear thermal strain beta_sh (T - T_n)/3 */
+  SKELETON_E,                                     /* Young's modulus now, Pa */
+  SKELETON_SH,                                    /* hydrate saturation now */
+  SKELETON_KEPT,                                  /* share of the stage's first hydrate that is still there */
   SKELETON_IN
 };
 typedef struct {
-  double c, s;    /* cosine and sine of the rotation */
-  double e[4];    /* logarithmic strain xx yy zz xy (tensor component) */
-  double thermal; /* beta_sh (T - T_n)/3 */
-  double E_n, E;  /* Young's modulus at t_n and now, Pa */
-  double Sh;      /* hydrate saturation now */
-  double kept;    /* min(1, m_h/m_h*); only with bonds (93) */
+  Rotation turn;         /* of the step */
+  double   e[CL_TENSOR]; /* logarithmic strain xx yy zz xy (tensor component) */
+  double   thermal;      /* beta_sh (T - T_n)/3 */
+  double   E_n, E;       /* Young's modulus at t_n and now, Pa */
+  double   Sh;           /* hydrate saturation now */
+  double   kept;         /* min(1, m_h/m_h*); only with bonds (93) */
 } SkeletonStep;
 
 /* History that the laws hold besides the stress: X(enum, what a material must have, HDF5 name, components, unit,
-   meaning), rows of the particles' table.  Zero at the start unless the law has a `start`; four components are a tensor
-   xx yy zz xy, which turns with the body. */
+   meaning), rows of the particles' table.  Zero at the start unless the law has a `start`; CL_TENSOR components are a
+   tensor xx yy zz xy (yz xz), which turns with the body. */
 #define CL_SKELETON_HISTORY(X)                                                                                         \
   X(P_EPS, HAS_PLASTIC, "eps_d_p", 1, "-", "deviatoric plastic strain so far")                                         \
   X(P_OPENING, HAS_TEARS, "opening", 1, "-", "ln J by which tears stand open (427)")                                   \
-  X(P_BOND, HAS_BONDS, "stress_hydrate", 4, "Pa", "what hydrate bears of the effective stress: xx yy zz xy")
+  X(P_BOND, HAS_BONDS, "stress_hydrate", CL_TENSOR, "Pa", "what hydrate bears of the effective stress: xx yy zz xy")
 
 /* All that a skeleton keeps: its history, and what is known of the last step. */
 #define CL_SKELETON_TABLE(X)                                                                                           \
@@ -43,7 +43,8 @@ typedef struct {
     "end of the last step: 0 elastic, 1 face, 2 edge, 3 apex, 4 tension, 5 closing")                                   \
   X(P_WP, HAS_PLASTIC, "plastic_work", 1, "J", "dissipated by the particle so far")                                    \
   X(P_HEAT, HAS_PLASTIC, "plastic_heat", 1, "J", "hybrid: of the last step, which the next one gives to the nodes")    \
-  X(P_KP, HAS_PLASTIC, "rate_plastic", 5, "1/s", "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")     \
+  X(P_KP, HAS_PLASTIC, "rate_plastic", 1 + CL_TENSOR, "1/s",                                                           \
+    "of eps_d_p and stress xx yy zz xy (Pa/s), end of the last step")                                                  \
   X(P_NONLOCAL, HAS_NONLOCAL, "eps_d_p_nonlocal", 1, "-", "sum of its averages over neighbours, what softens")         \
   X(P_NONLOCAL_RATE, HAS_NONLOCAL, "rate_nonlocal", 1, "1/s", "of eps_d_p_nonlocal, mean of the last step")            \
   X(P_AVERAGED, HAS_NONLOCAL, "eps_d_p_averaged", 1, "-", "eps_d_p at the last average")
@@ -60,10 +61,10 @@ enum { SKELETON_HISTORY = 0 CL_SKELETON_HISTORY(CL_OWN_ONE) }; /* variables, not
 /* What a stage starts from, or ends with: as the body lay at t_n, starred in a second stage (24). */
 typedef struct {
   double own[OWN_COUNT];
-  double plastic[4]; /* plastic strain since t_n, xx yy zz xy */
-  double strain[4];  /* strain since t_n less the thermal one */
-  double sig[4];     /* effective stress xx yy zz xy, Pa */
-  double work;       /* dissipated since t_n, J */
+  double plastic[CL_TENSOR]; /* plastic strain since t_n, xx yy zz xy */
+  double strain[CL_TENSOR];  /* strain since t_n less the thermal one */
+  double sig[CL_TENSOR];     /* effective stress xx yy zz xy, Pa */
+  double work;               /* dissipated since t_n, J */
 } SkeletonStage;
 
 typedef struct {
@@ -84,9 +85,9 @@ typedef enum {
 
 typedef struct {
   double       sig[6], sig0[6];
-  double       own[OWN_COUNT]; /* history at the end of the stage, as the body lies then */
-  double       plastic[4];     /* as in SkeletonStage */
-  double       work;           /* dissipated in the stage, J per m^3 */
+  double       own[OWN_COUNT];     /* history at the end of the stage, as the body lies then */
+  double       plastic[CL_TENSOR]; /* as in SkeletonStage */
+  double       work;               /* dissipated in the stage, J per m^3 */
   ReturnRegion region;
 } SkeletonState;
 
@@ -189,7 +190,9 @@ static inline double SkeletonNonlocal(const SkeletonStore *f, ptrdiff_t q)
 static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
 {
   SkeletonTakeStress(f, q, h);
-  h->from = (SkeletonStage){.sig = {h->sig[0], h->sig[1], h->sig[2], h->sig[3]}};
+  h->from = (SkeletonStage){0};
+  for (int k = 0; k < CL_TENSOR; k++)
+    h->from.sig[k] = h->sig[k];
   for (int k = 0; k < OWN_COUNT; k++)
     h->from.own[k] = f->own[k] ? f->own[k][q] : 0.0;
   h->nonlocal = SkeletonNonlocal(f, q);
@@ -230,7 +233,7 @@ static inline double SkeletonEnergy(const Elasticity *el, double E, const Skelet
   const double E_h = E - el->E0, *own = h->from.own + OWN_P_BOND;
   double       bond[6] = {0.0}, both[6], over[6];
 
-  for (int k = 0; bonds && k < 4; k++)
+  for (int k = 0; bonds && k < CL_TENSOR; k++)
     bond[k] = own[k];
   for (int k = 0; k < 6; k++) {
     both[k] = h->sig[k] - bond[k] + h->sig0[k];
@@ -247,7 +250,7 @@ static inline double SkeletonReleased(const Elasticity *el, double E_n, double E
   SkeletonHistory left = *h;
 
   if (ElasticityHasBonds(el)) {
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < CL_TENSOR; k++) {
       left.from.own[OWN_P_BOND + k] *= kept;
       left.sig[k] -= (1.0 - kept) * h->from.own[OWN_P_BOND + k];
     }

@@ -1,11 +1,14 @@
-/* tensor: symmetric 3x3 tensors as six numbers xx yy zz xy yz xz, and the 2x2 algebra of a plane motion.  Units: those
-   of the components. */
+/* tensor: symmetric 3x3 tensors as six numbers xx yy zz xy yz xz, and how they turn: in the plane about z.  Units:
+   those of the components. */
 #pragma once
 
 #include <math.h>
+#include "clathra/dimension.h"
 #include "clathra/inline.h"
 
 enum { XX = 0, YY, ZZ, XY, YZ, XZ };
+/* Those that a motion along the axes can fill, and the axes it can turn about: in the plane z alone. */
+enum { CL_TENSOR = CL_DIM == 2 ? 4 : 6, CL_SPINS = CL_DIM == 2 ? 1 : 3 };
 /* Place of row i, column j. */
 static const int voigt[3][3] = {{XX, XY, XZ}, {XY, YY, YZ}, {XZ, YZ, ZZ}};
 
@@ -36,13 +39,90 @@ INLINE void Turn6(const double s[6], double c, double n, double r[6])
   r[YZ] = n * xz + c * yz;
 }
 
-/* d(R s R^T)/dtheta = W r - r W with W = [0 -1; 1 0], of the turned tensor r. */
-static inline void Spin6(const double r[6], double dr[6])
+/* d(R s R^T)/dtheta = W r - r W about the axis z, x or y (spin 0, 1, 2), of the turned tensor r: W turns the first of
+   the two other axes into the second. */
+static inline void Spin6(const double r[6], int spin, double dr[6])
 {
-  dr[XX] = -2.0 * r[XY];
-  dr[YY] = 2.0 * r[XY];
-  dr[XY] = r[XX] - r[YY];
-  dr[ZZ] = 0.0;
-  dr[XZ] = -r[YZ];
-  dr[YZ] = r[XZ];
+  const int a = spin, b = (spin + 1) % 3, n = (spin + 2) % 3;
+
+  dr[voigt[a][a]] = -2.0 * r[voigt[a][b]];
+  dr[voigt[b][b]] = 2.0 * r[voigt[a][b]];
+  dr[voigt[a][b]] = r[voigt[a][a]] - r[voigt[b][b]];
+  dr[voigt[n][n]] = 0.0;
+  dr[voigt[a][n]] = -r[voigt[b][n]];
+  dr[voigt[b][n]] = r[voigt[a][n]];
+}
+
+#if CL_DIM == 2
+/* A rotation about z: cosine and sine. */
+typedef struct {
+  double c, s;
+} Rotation;
+
+  #define ROTATION_NONE                                                                                                \
+    {                                                                                                                  \
+      1.0, 0.0                                                                                                         \
+    }
+
+/* r = R s R^T. */
+INLINE void Rotate6(const double s[6], Rotation R, double r[6])
+{
+  Turn6(s, R.c, R.s, r);
+}
+
+/* The other way round. */
+INLINE Rotation RotationBack(Rotation R)
+{
+  return (Rotation){R.c, -R.s};
+}
+#else
+/* A rotation: its matrix. */
+typedef struct {
+  double R[3][3];
+} Rotation;
+  #define ROTATION_NONE                                                                                                \
+    {                                                                                                                  \
+      CL_IDENTITY                                                                                                      \
+    }
+
+/* r = R s R^T. */
+INLINE void Rotate6(const double s[6], Rotation R, double r[6])
+{
+  double half[3][3];
+
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++)
+      half[i][j] = R.R[i][0] * s[voigt[0][j]] + R.R[i][1] * s[voigt[1][j]] + R.R[i][2] * s[voigt[2][j]];
+  }
+  for (int i = 0; i < 3; i++) {
+    for (int j = i; j < 3; j++)
+      r[voigt[i][j]] = half[i][0] * R.R[j][0] + half[i][1] * R.R[j][1] + half[i][2] * R.R[j][2];
+  }
+}
+
+/* The other way round. */
+INLINE Rotation RotationBack(Rotation R)
+{
+  Rotation back;
+
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++)
+      back.R[i][j] = R.R[j][i];
+  }
+  return back;
+}
+#endif
+
+/* Turns those of CL_TENSOR numbers. */
+INLINE void Rotate(const double a[CL_TENSOR], Rotation R, double r[CL_TENSOR])
+{
+  double a6[6] = {0.0}, r6[6];
+
+#pragma GCC unroll 6
+  for (int k = 0; k < CL_TENSOR; k++)
+    a6[k] = a[k];
+  Rotate6(a6, R, r6);
+#pragma GCC unroll 6
+  for (int k = 0; k < CL_TENSOR; k++)
+    r[k] = r6[k];
 }

@@ -1,6 +1,8 @@
 /* words: numbers with the unit in which they read well, for what a run says. */
 #pragma once
 
+#include "clathra/dimension.h"
+
 /* A few words, to be printed where they are made: TimeAt(t).s. */
 typedef struct {
   char s[32];
@@ -10,6 +12,11 @@ typedef struct {
 Words TimeWordsAs(double seconds, double scale, int digits);
 /* ... or a time (s) does itself. */
 Words TimeWords(double seconds, int digits);
+typedef struct {
+  char s[64];
+} Place;
+/* "(3, 4) m": a place, m. */
+Place PlaceWords(const double x[CL_DIM]);
 /* A time of the scene (s). */
 Words TimeAt(double t);
 /* "4.1 MPa", "30 kPa", "12 Pa": a pressure or stress (Pa) with so many digits. */

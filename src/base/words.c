@@ -24,6 +24,17 @@ Words TimeWordsAs(double seconds, double scale, int digits)
   return words;
 }
 
+Place PlaceWords(const double x[CL_DIM])
+{
+  Place words = {"("};
+  int   n     = 1;
+
+  for (int d = 0; d < CL_DIM; d++)
+    n += snprintf(words.s + n, sizeof(words.s) - (size_t)n, "%s%.4g", d ? ", " : "", x[d]);
+  snprintf(words.s + n, sizeof(words.s) - (size_t)n, ") m");
+  return words;
+}
+
 Words TimeWords(double seconds, int digits)
 {
   return TimeWordsAs(seconds, seconds, digits);

@@ -243,11 +243,16 @@ int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt 
 
 double CellGradient(const double h[CL_DIM], bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM])
 {
-  Q[0] = Q[1] = 0.0;
-  if (i[0] < 0 || i[0] > 1 || i[1] < 0 || i[1] > 1)
+  bool beside = false;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    Q[d]   = 0.0;
+    beside = beside || i[d] < 0 || i[d] > 1;
+  }
+  if (beside)
     return 0.0;
-  Q[0] = (i[0] ? 0.5 : -0.5) / h[0];
-  Q[1] = (i[1] ? 0.5 : -0.5) / h[1];
+  for (int d = 0; d < CL_DIM; d++)
+    Q[d] = (i[d] ? 2.0 : -2.0) / (CL_CORNERS * h[d]);
   if (!axisymmetric)
     return 0.0;
   const double ring = r * h[0] + 0.5 * h[0] * h[0], outer = 0.5 * r * h[0] + h[0] * h[0] / 3.0; /* int r, int r N dr */

@@ -12,14 +12,18 @@ static PetscErrorCode CutCells(const Grid *g, const Scene *c, const Particles *P
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n, &filled));
   for (PetscInt p = 0; p < P->n; p++) {
-    const double x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
-    PetscInt     cell[CL_DIM];
+    double   x[CL_DIM], share = P->f[P_V][p];
+    PetscInt cell[CL_DIM];
 
+    for (int d = 0; d < CL_DIM; d++)
+      x[d] = P->f[P_X + d][p];
     if (!GridCell(g, x, cell))
       continue;
-    const double h[CL_DIM] = {LinesWidth(&g->line[0], cell[0]), LinesWidth(&g->line[1], cell[1])};
-    const double middle    = LinesFrom(&g->line[0], (double)cell[0] + 0.5);
-    filled[GridPadded(g, cell)] += P->f[P_V][p] / (h[0] * h[1] * (c->axisymmetric ? 2.0 * M_PI * middle : 1.0));
+    for (int d = 0; d < CL_DIM; d++)
+      share /= LinesWidth(&g->line[d], cell[d]);
+    if (c->axisymmetric)
+      share /= 2.0 * M_PI * LinesFrom(&g->line[0], (double)cell[0] + 0.5);
+    filled[GridPadded(g, cell)] += share;
   }
   *cut = 0;
   for (PetscInt k = 0; k < n; k++)

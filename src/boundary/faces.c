@@ -1,6 +1,7 @@
 /* Surface faces: their geometry, and which conditions act on them. */
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
+#include <string.h>
 
 /* Last condition of a type on this face; later ones in the case win. */
 static PetscInt FindCondition(const Scene *c, BcType type, const Face *f)
@@ -18,7 +19,9 @@ static PetscInt FindCondition(const Scene *c, BcType type, const Face *f)
 
 double FaceLoad(const Scene *c, Side side, PetscInt region, const double x[CL_DIM], double t)
 {
-  const Face     f = {.side = (int)side, .region = region, .x0 = {x[0], x[1]}};
+  Face f = {.side = (int)side, .region = region};
+
+  memcpy(f.x0, x, sizeof(f.x0));
   const PetscInt k = FindCondition(c, BC_TRACTION, &f);
 
   return k < 0 ? 0.0 : ScheduleValue(&c->bc[k].value, t);
@@ -175,27 +178,30 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f)
     PlaceInside(P, &s, f);
     return;
   }
-  const PetscInt p    = f->particle;
-  const int      axis = SideAxis(f->side), tangent = 1 - axis;
-  const double   sign    = SideSign(f->side);
-  double         F[2][2] = {{1.0, 0.0}, {0.0, 1.0}}, l[CL_DIM], half[CL_DIM];
+  const PetscInt p         = f->particle;
+  const int      axis      = SideAxis(f->side);
+  const double   sign      = SideSign(f->side);
+  double F[CL_DIM][CL_DIM] = CL_IDENTITY, cof[CL_DIM][CL_DIM], l[CL_DIM], half[CL_DIM], A = 1.0; /* of the face, m^2 */
 
   ParticlesInitialHalfLength(c, f->region, f->x0, l);
-  for (int k = 0; P->f[P_F] && k < 4; k++)
-    F[k / 2][k % 2] = P->f[P_F + k][p];
+  for (int k = 0; P->f[P_F] && k < CL_DIM * CL_DIM; k++)
+    F[k / CL_DIM][k % CL_DIM] = P->f[P_F + k][p];
+  CofactorOf(F, cof);
   for (int d = 0; d < CL_DIM; d++) {
     f->x[d]     = P->f[P_X + d][p] + sign * F[d][axis] * l[axis];
     f->r[d]     = f->x[d] - AxisCentroid(&s.axis[d], &g->line[d]);
-    half[d]     = fabs(F[d][tangent]) * l[tangent];
     f->moved[d] = f->x[d] - f->x0[d] - (d == axis ? sign * l[axis] : 0.0);
+    half[d]     = 0.0;
+    for (int t = 0; t < CL_DIM; t++)
+      half[d] += t == axis ? 0.0 : fabs(F[d][t]) * l[t];
+    A *= d == axis ? 1.0 : 2.0 * l[d];
   }
-  /* a <- cof(F) a: the normal of the side goes along as F^-T, its length as the tangent */
-  const double A = 2.0 * l[tangent] * sign * (c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0);
-  f->n[axis]     = A * F[tangent][tangent];
-  f->n[tangent]  = -A * F[axis][tangent];
-  f->a0          = 2.0 * l[tangent] * (c->axisymmetric ? 2.0 * M_PI * (f->x[0] - f->moved[0]) : 1.0);
-  f->s[0]        = fabs(A) * (F[1][1] * f->n0[0] - F[1][0] * f->n0[1]);
-  f->s[1]        = fabs(A) * (F[0][0] * f->n0[1] - F[0][1] * f->n0[0]);
+  f->a0 = A * (c->axisymmetric ? 2.0 * M_PI * (f->x[0] - f->moved[0]) : 1.0);
+  A *= c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0;
+  for (int i = 0; i < CL_DIM; i++) { /* a <- cof(F) a */
+    f->n[i] = sign * A * cof[i][axis];
+    f->s[i] = A * VectorDot(cof[i], f->n0);
+  }
   Weights(c, g, P, &s, half, f);
   Ring(c, g, P, f);
   f->pore            = FacePore(c, P, f);
@@ -222,11 +228,8 @@ void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT])
 
 static void MakeFace(const Scene *c, const Grid *g, const Particles *P, PetscInt p, int side, Face *f)
 {
-  *f = (Face){.particle = p,
-              .side     = side,
-              .region   = P->i[PI_REGION][p],
-              .x0       = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)},
-              .bc       = {[BC_NONE] = -1}};
+  *f = (Face){.particle = p, .side = side, .region = P->i[PI_REGION][p], .bc = {[BC_NONE] = -1}};
+  ParticleInitialPlace(P, p, f->x0);
   for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
     f->bc[kind] = kind == BC_WELL ? -1 : FindCondition(c, (BcType)kind, f);
   f->meters = FindMeters(c, f);
@@ -236,9 +239,9 @@ static void MakeFace(const Scene *c, const Grid *g, const Particles *P, PetscInt
 
 static double ShareOf(const Scene *c, const Particles *P, const Well *well, PetscInt p)
 {
-  const double x0[CL_DIM] = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)};
-  double       l[CL_DIM];
+  double x0[CL_DIM], l[CL_DIM];
 
+  ParticleInitialPlace(P, p, x0);
   ParticlesInitialHalfLength(c, P->i[PI_REGION][p], x0, l);
   return WellShare(well, x0, l);
 }
@@ -246,11 +249,8 @@ static double ShareOf(const Scene *c, const Particles *P, const Well *well, Pets
 static void MakeWellFace(const Scene *c, const Grid *g, const Particles *P, PetscInt p, PetscInt k, double share,
                          Face *f)
 {
-  *f = (Face){.particle = p,
-              .side     = SIDE_COUNT,
-              .region   = P->i[PI_REGION][p],
-              .x0       = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)},
-              .share    = share};
+  *f = (Face){.particle = p, .side = SIDE_COUNT, .region = P->i[PI_REGION][p], .share = share};
+  ParticleInitialPlace(P, p, f->x0);
   for (int kind = 0; kind < BC_FACES; kind++)
     f->bc[kind] = kind == BC_WELL ? k : -1;
   for (PetscInt i = 0; i < c->nmeter; i++)

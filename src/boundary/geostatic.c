@@ -6,21 +6,24 @@
 
 #define SINGULAR 1e-9 /* pivot over diagonal: a cell whose particles are ruled by its neighbour */
 
+enum { ACROSS = CL_DIM - 1 }; /* axes across the vertical one */
+
 /* One site of the body; its weights along the vertical axis, per unit of area across it. */
 typedef struct {
   Site     site;
-  double   height;         /* m */
-  double   weight, load;   /* of itself; of what acts on its top face, Pa */
-  double   p, ambient;     /* mean pore pressure, ambient pressure, Pa */
-  double   S[3], force[3]; /* nodes base ... base + 2: shares of the weight, forces of a unit of stress */
-  double   N[3];           /* ... of the load */
+  double   at[ACROSS], half[ACROSS]; /* its place and half-lengths across, m */
+  double   height;                   /* m */
+  double   weight, load;             /* of itself; of what acts on its top face, Pa */
+  double   p, ambient;               /* mean pore pressure, ambient pressure, Pa */
+  double   S[3], force[3];           /* nodes base ... base + 2: shares of the weight, forces of a unit of stress */
+  double   N[3];                     /* ... of the load */
   PetscInt base, hat;
   double   total; /* vertical stress of the mixture beyond the ambient, Pa */
 } Cell;
 
 typedef struct {
-  int      vertical, up; /* axis; +1 where gravity points down along it, else -1 */
-  double   from, to;     /* m, across: where this rank has particles */
+  int      vertical, up;             /* axis; +1 where gravity points down along it, else -1 */
+  double   from[ACROSS], to[ACROSS]; /* m, across: where this rank has particles */
   PetscInt n, cap;
   Cell    *cell, **order; /* in the order of numbers; by stripes: across, region, from the top down */
 } Sites;
@@ -32,6 +35,12 @@ typedef struct {
   double  *row, *diag, *off, *load; /* [nodes] */
   bool    *seen;                    /* [regions] */
 } Column;
+
+/* The k-th axis across the vertical one. */
+static int AcrossAxis(int vertical, int k)
+{
+  return k < vertical ? k : k + 1;
+}
 
 static PetscErrorCode FillCell(const Scene *c, const Grid *g, const Site *site, Sites *s, Cell *a)
 {
@@ -52,6 +61,10 @@ static PetscErrorCode FillCell(const Scene *c, const Grid *g, const Site *site, 
   a->weight  = 2.0 * l * (q.density * SceneGravity(c) + s->up * gradient[v]);
   if ((site->faces >> side) & 1)
     a->load = FaceLoad(c, (Side)side, site->region, site->x, 0.0);
+  for (int k = 0; k < ACROSS; k++) {
+    a->at[k]   = site->x[AcrossAxis(v, k)];
+    a->half[k] = site->l[AcrossAxis(v, k)];
+  }
   for (int k = 0; k < 3; k++) {
     a->S[k]     = axis.S[k];
     a->force[k] = 2.0 * l * axis.dS[k];
@@ -62,12 +75,15 @@ static PetscErrorCode FillCell(const Scene *c, const Grid *g, const Site *site, 
 
 static PetscErrorCode Collect(const Scene *c, const Grid *g, const Site *site, void *sites)
 {
-  Sites       *s = (Sites *)sites;
-  const double x = site->x[1 - s->vertical], l = site->l[1 - s->vertical];
+  Sites *s = (Sites *)sites;
 
   PetscFunctionBeginUser;
-  if (x + l < s->from || x - l > s->to)
-    PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < ACROSS; k++) {
+    const double x = site->x[AcrossAxis(s->vertical, k)], l = site->l[AcrossAxis(s->vertical, k)];
+
+    if (x + l < s->from[k] || x - l > s->to[k])
+      PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (s->n == s->cap) {
     s->cap = 2 * s->cap + 64;
     PetscCall(PetscRealloc((size_t)s->cap * sizeof(*s->cell), &s->cell));
@@ -81,9 +97,14 @@ static int Order(double a, double b)
   return (a > b) - (a < b);
 }
 
-static double Across(const Cell *a, int vertical)
+/* By their place across: 0 on one line along the vertical axis. */
+static int Beside(const Cell *a, const Cell *b)
 {
-  return a->site.x[1 - vertical];
+  int order = 0;
+
+  for (int k = 0; k < ACROSS && !order; k++)
+    order = Order(a->at[k], b->at[k]);
+  return order;
 }
 
 static int FromTop(const void *a, const void *b)
@@ -91,18 +112,10 @@ static int FromTop(const void *a, const void *b)
   return Order((*(Cell *const *)b)->height, (*(Cell *const *)a)->height);
 }
 
-static int ByStripeX(const void *p, const void *q) /* vertical axis x */
+static int ByStripe(const void *p, const void *q)
 {
   const Cell *a = *(Cell *const *)p, *b = *(Cell *const *)q;
-  const int   x = Order(Across(a, 0), Across(b, 0)), region = (int)(a->site.region - b->site.region);
-
-  return x ? x : region ? region : FromTop(p, q);
-}
-
-static int ByStripeY(const void *p, const void *q)
-{
-  const Cell *a = *(Cell *const *)p, *b = *(Cell *const *)q;
-  const int   x = Order(Across(a, 1), Across(b, 1)), region = (int)(a->site.region - b->site.region);
+  const int   x = Beside(a, b), region = (int)(a->site.region - b->site.region);
 
   return x ? x : region ? region : FromTop(p, q);
 }
@@ -113,24 +126,32 @@ static PetscInt StripeEnd(const Sites *s, PetscInt first)
   const Cell *a   = s->order[first];
   PetscInt    end = first + 1;
 
-  while (end < s->n && s->order[end]->site.region == a->site.region &&
-         Across(s->order[end], s->vertical) == Across(a, s->vertical))
+  while (end < s->n && s->order[end]->site.region == a->site.region && !Beside(s->order[end], a))
     end++;
   return end;
 }
 
-/* Everything above and below one place across: of each region the stripe that holds it. */
-static void Gather(const Scene *c, const Sites *s, double x, Column *col)
+/* Does the stripe of `a` hold what lies over and under `x`? */
+static bool Holds(const Cell *a, const Cell *x)
+{
+  bool holds = true;
+
+  for (int k = 0; k < ACROSS; k++)
+    holds = holds && fabs(x->at[k] - a->at[k]) <= a->half[k] * (1.0 + 1e-9);
+  return holds;
+}
+
+/* Everything above and below a cell: of each region the stripe that holds it. */
+static void Gather(const Scene *c, const Sites *s, const Cell *x, Column *col)
 {
   col->n = 0;
   for (PetscInt r = 0; r < c->nregion; r++)
     col->seen[r] = false;
   for (PetscInt first = 0, end; first < s->n; first = end) {
-    const Cell  *a = s->order[first];
-    const double l = a->site.l[1 - s->vertical] * (1.0 + 1e-9);
+    const Cell *a = s->order[first];
 
     end = StripeEnd(s, first);
-    if (col->seen[a->site.region] || fabs(x - Across(a, s->vertical)) > l)
+    if (col->seen[a->site.region] || !Holds(a, x))
       continue;
     col->seen[a->site.region] = true;
     for (PetscInt k = first; k < end; k++)
@@ -225,7 +246,7 @@ static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, Sites *s)
   PetscCall(PetscMalloc1(s->n, &total));
   for (PetscInt first = 0, end; first < s->n; first = end) {
     end = StripeEnd(s, first);
-    Gather(c, s, Across(s->order[first], s->vertical), &col);
+    Gather(c, s, s->order[first], &col);
     FirstGuess(s, &col);
     if (c->basis != BASIS_LINEAR) { /* particles beside a cell's edge are not shared: what they miss is no stress */
       AddLoads(s, &col);
@@ -274,20 +295,20 @@ PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P)
     wanted = wanted || RegionGeostatic(&c->region[r]);
   if (!wanted || !c->fields.solid || !P->n)
     PetscFunctionReturn(PETSC_SUCCESS);
-  const int    across = 1 - v;
-  const double slack = 1e-6 * g->line[across].h, lower = GridNode(g, across, g->xs[across]);
-  Sites        s = {.vertical = v,
-                    .up       = c->gravity[v] < 0.0 ? 1 : -1,
-                    .from     = lower - slack,
-                    .to       = (g->line[across].x ? GridNode(g, across, g->xs[across] + g->xm[across])
-                                                   : lower + (double)g->xm[across] * g->line[across].h) +
-                          slack};
+  Sites s = {.vertical = v, .up = c->gravity[v] < 0.0 ? 1 : -1};
 
+  for (int k = 0; k < ACROSS; k++) {
+    const int    d     = AcrossAxis(v, k);
+    const double slack = 1e-6 * g->line[d].h, lower = GridNode(g, d, g->xs[d]);
+
+    s.from[k] = lower - slack;
+    s.to[k]   = (g->line[d].x ? GridNode(g, d, g->xs[d] + g->xm[d]) : lower + (double)g->xm[d] * g->line[d].h) + slack;
+  }
   PetscCall(SitesVisit(c, g, Collect, &s));
   PetscCall(PetscMalloc1(s.n, &s.order));
   for (PetscInt k = 0; k < s.n; k++)
     s.order[k] = &s.cell[k];
-  qsort(s.order, (size_t)s.n, sizeof(*s.order), v == 0 ? ByStripeX : ByStripeY);
+  qsort(s.order, (size_t)s.n, sizeof(*s.order), ByStripe);
   PetscCall(SolveColumns(c, g, &s));
   PetscCall(Assign(c, &s, P));
   PetscCall(PetscFree(s.order));

@@ -31,7 +31,7 @@ double PlateStiffness(const Bc *b, const Face *f, const PointProperties *q, doub
 /* (72) */
 void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o)
 {
-  const int    d = SideAxis(f->side), t = 1 - d;
+  const int    d = SideAxis(f->side);
   const double n = SideSign(f->side), gap = PlateGap(f, position, &in[IN_U]);
   Kinematics   k;
 
@@ -40,13 +40,16 @@ void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[
   o->plate[PLATE_FORCE] = f->K * gap;
   o->out[F_VS + d] += n * f->K * gap;
   o->D[F_VS + d][IN_U + d] += f->K;
-  if (b->rough) {
-    o->plate[PLATE_SHEAR] = -f->K * (f->moved[t] + in[IN_U + t]);
-    o->out[F_VS + t] -= o->plate[PLATE_SHEAR];
+  for (int i = 1; b->rough && i < CL_DIM; i++) {
+    const int    t     = (d + i) % CL_DIM;
+    const double shear = -f->K * (f->moved[t] + in[IN_U + t]);
+
+    o->plate[PLATE_SHEAR] += shear;
+    o->out[F_VS + t] -= shear;
     o->D[F_VS + t][IN_U + t] += f->K;
   }
   if (KinematicsValues(&in[IN_GRADU], &k))
-    o->plate[PLATE_AREA] = n * (k.cof[d][0] * f->n[0] + k.cof[d][1] * f->n[1]);
+    o->plate[PLATE_AREA] = n * VectorDot(k.cof[d], f->n);
 }
 
 bool PlatesForced(const Scene *c)

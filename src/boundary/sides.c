@@ -6,7 +6,11 @@
 #define ON_LINE 1e-9 /* of the coordinate's size */
 #define SWELLS 5e-3  /* strain of the skeleton that is worth a word */
 
+#if CL_DIM == 2
 const char *const cl_side[] = {"left", "right", "bottom", "top", "none", NULL};
+#else
+const char *const cl_side[] = {"left", "right", "bottom", "top", "back", "front", "none", NULL};
+#endif
 
 /* How far the body reaches on a side, m; region: it alone, if not below zero. */
 static double SideLine(const Scene *c, PetscInt region, int side)
@@ -77,16 +81,16 @@ static PetscErrorCode Swells(const Scene *c, int side, double at, double *strain
   PetscFunctionBeginUser;
   *strain = *pressure = 0.0;
   for (PetscInt k = 0; k < c->nregion; k++) {
-    const Region  *r              = &c->region[k];
-    const double   middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
+    const Region  *r = &c->region[k];
     InitialScalars s;
-    double         dE;
+    double         dE, middle[CL_DIM];
 
     if (RegionEmpty(r) || !RegionUnstressed(r) || SideLine(c, k, side) != at)
       continue;
     const Elasticity *el = &c->material[r->material].elasticity;
     const double      M  = ElasticityConstrainedFactor(el) * ElasticityYoung(el, r->Sh, &dE);
 
+    RegionMiddle(r, middle);
     PetscCall(InitialScalarsAt(c, r, middle, &s));
     if (s.p / M > *strain) {
       *strain   = s.p / M;

@@ -3,16 +3,18 @@
 #include "clathra/point_heat.h"
 #include "clathra/point_state.h"
 
-/* Total traction: -q a + s a_perp; row v_s loses it. */
+/* Total traction: -q a + s a_perp; row v_s loses it.  Shear is the plane's: a_perp is a turned about z. */
 void FaceTraction(const FaceState *x, PetscInt k, FaceOutput *o)
 {
-  const double q = x->v->value[k], s = x->v->shear[k];
+  const double q = x->v->value[k], s = x->v->shear[k], perp[2] = {s, -s};
 
-  o->out[F_VS] += q * x->a[0] + s * x->a[1];
-  o->out[F_VS + 1] += q * x->a[1] - s * x->a[0];
-  for (int j = 0; j < MOTION_COUNT; j++) {
-    o->D[F_VS][j] += q * x->da[0][j] + s * x->da[1][j];
-    o->D[F_VS + 1][j] += q * x->da[1][j] - s * x->da[0][j];
+  for (int i = 0; i < CL_DIM; i++) {
+    const double along = i < 2 ? perp[i] : 0.0;
+    const int    other = i < 2 ? 1 - i : i;
+
+    o->out[F_VS + i] += q * x->a[i] + along * x->a[other];
+    for (int j = 0; j < MOTION_COUNT; j++)
+      o->D[F_VS + i][j] += q * x->da[i][j] + along * x->da[other][j];
   }
 }
 

@@ -22,9 +22,10 @@ static void MostTake(Most *m, const Scene *c, const Particles *P, PetscInt i, do
 {
   const int region = (int)P->i[PI_REGION][i];
 
-  if (value > m->value)
-    *m = (Most){
-        .value = value, .x = {P->f[P_X][i], P->f[P_X + 1][i]}, .p = p, .T = ParticleT(c, P, i), .region = region};
+  if (value > m->value) {
+    *m = (Most){.value = value, .p = p, .T = ParticleT(c, P, i), .region = region};
+    ParticlePlace(P, i, m->x);
+  }
 }
 
 static PetscErrorCode MostOfAll(MPI_Comm comm, Most *m)
@@ -57,9 +58,14 @@ static PetscErrorCode ColumnOf(MPI_Comm comm, const Scene *c, const Particles *P
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
-    const Region *r   = &c->region[P->i[PI_REGION][p]];
-    const double  x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, z = SceneHeight(c, x), T = ParticleT(c, P, p);
-    const double  reach = fmax(P->f[P_L][p], P->f[P_L + 1][p]);
+    const Region *r = &c->region[P->i[PI_REGION][p]];
+    const double  T = ParticleT(c, P, p);
+    double        x[CL_DIM], reach = 0.0;
+
+    ParticlePlace(P, p, x);
+    for (int d = 0; d < CL_DIM; d++)
+      reach = fmax(reach, P->f[P_L + d][p]);
+    const double z = SceneHeight(c, x);
 
     sum[0] += P->f[P_V][p];
     sum[1] += P->f[P_V][p] * LiquidDensity(&c->material[r->material].water, P->f[P_PW][p], T, &dp, &dT);
@@ -89,8 +95,11 @@ static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Parti
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
-    const double x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, pw = P->f[P_PW][p],
-                 beyond = pw + w->rho * SceneGravity(c) * SceneHeight(c, x);
+    const double pw = P->f[P_PW][p];
+    double       x[CL_DIM];
+
+    ParticlePlace(P, p, x);
+    const double beyond = pw + w->rho * SceneGravity(c) * SceneHeight(c, x);
 
     MostTake(&high, c, P, p, beyond, pw);
     MostTake(&low, c, P, p, -beyond, pw);
@@ -103,12 +112,12 @@ static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Parti
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "clathra: warning: the pore pressure starts far from hydrostatic: region %s at (%g m, %g m) has %s "
-      "more beyond water at rest than region %s at (%g m, %g m), and the water weighs %s from top to "
+      "clathra: warning: the pore pressure starts far from hydrostatic: region %s at %s has %s "
+      "more beyond water at rest than region %s at %s, and the water weighs %s from top to "
       "foot: it will flow from the start (hydrostatic: yes with one datum, or -restart_as_initial of a run "
       "that came to rest, starts in balance)\n",
-      c->region[high.region].name, high.x[0], high.x[1], PressureWords(apart, 3).s, c->region[low.region].name,
-      low.x[0], low.x[1], PressureWords(w->weight, 3).s));
+      c->region[high.region].name, PlaceWords(high.x).s, PressureWords(apart, 3).s, c->region[low.region].name,
+      PlaceWords(low.x).s, PressureWords(w->weight, 3).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,8 +169,10 @@ static PetscErrorCode BuoyancyOf(MPI_Comm comm, const Scene *c, const Particles 
   PetscFunctionBeginUser;
   *b = (Buoyancy){.high = {.value = -INFINITY}, .low = {.value = -INFINITY}};
   for (PetscInt p = 0; p < P->n; p++) {
-    double       rho;
-    const double x[] = {P->f[P_X][p], P->f[P_X + 1][p]}, pg = P->f[P_PG] ? P->f[P_PG][p] : P->f[P_PW][p];
+    double       rho, x[CL_DIM];
+    const double pg = P->f[P_PG] ? P->f[P_PG][p] : P->f[P_PW][p];
+
+    ParticlePlace(P, p, x);
     const double moves = P->i[PI_REGION][p] == region ? GasMoves(c, P, p, &rho) : 0.0;
     const double e     = pg + mean * SceneGravity(c) * SceneHeight(c, x);
 
@@ -175,6 +186,15 @@ static PetscErrorCode BuoyancyOf(MPI_Comm comm, const Scene *c, const Particles 
   PetscCall(MostOfAll(comm, &b->low));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->fastest, 1, MPI_DOUBLE, MPI_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static double Apart(const double a[CL_DIM], const double b[CL_DIM])
+{
+  double between[CL_DIM];
+
+  for (int d = 0; d < CL_DIM; d++)
+    between[d] = a[d] - b[d];
+  return VectorLength(between);
 }
 
 /* (315) of the first region where it holds; span: the time of the run, s. */
@@ -193,17 +213,17 @@ static PetscErrorCode BuoyancyWarning(MPI_Comm comm, const Scene *c, const Parti
     if (!(mean > 0.0))
       continue;
     PetscCall(BuoyancyOf(comm, c, P, k, least, mean, &b));
-    const double apart = b.high.value + b.low.value, away = hypot(b.high.x[0] - b.low.x[0], b.high.x[1] - b.low.x[1]);
+    const double apart = b.high.value + b.low.value, away = Apart(b.high.x, b.low.x);
 
     if (!FarApart(w, apart))
       continue;
     PetscCall(PetscFPrintf(
         comm, stderr,
-        "clathra: warning: gas starts out of balance with gravity: in region %s it has %s more at (%g m, %g m) "
-        "than gas at rest would, seen from (%g m, %g m), and moves there from the start, by up to some %.2g m a day "
+        "clathra: warning: gas starts out of balance with gravity: in region %s it has %s more at %s "
+        "than gas at rest would, seen from %s, and moves there from the start, by up to some %.2g m a day "
         "(a gas share Sg/(1 - Sh) at which it has no relative permeability, layers with the more gas the higher they "
         "lie, or -restart_as_initial of a run that came to rest, starts in balance)\n",
-        c->region[k].name, PressureWords(apart, 3).s, b.high.x[0], b.high.x[1], b.low.x[0], b.low.x[1],
+        c->region[k].name, PressureWords(apart, 3).s, PlaceWords(b.high.x).s, PlaceWords(b.low.x).s,
         b.fastest * apart / away * DAY));
     break;
   }
@@ -251,10 +271,10 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Scene *c, const Partic
 
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "clathra: warning: hydrate starts outside its stability zone, %.3g %% of it; most in region %s at (%g m, %g m): "
+      "clathra: warning: hydrate starts outside its stability zone, %.3g %% of it; most in region %s at %s: "
       "at %.4g degC it needs %s and has %s, where it is stable up to %.4g degC: it dissociates from the "
       "start (more pressure, a lower temperature, or a first stage with kinetics_active: no)\n",
-      100.0 * mass[0] / mass[1], c->region[worst.region].name, worst.x[0], worst.x[1], worst.T,
+      100.0 * mass[0] / mass[1], c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
       PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s,
       EquilibriumTemperature(law, worst.p)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -284,11 +304,11 @@ static PetscErrorCode FormationWarning(MPI_Comm comm, const Scene *c, const Part
 
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "clathra: warning: free gas starts where hydrate is stable, most in region %s at (%g m, %g m): at %.4g degC "
+      "clathra: warning: free gas starts where hydrate is stable, most in region %s at %s: at %.4g degC "
       "hydrate forms above %s and there are %s, up to %.4g degC: gas and water turn into hydrate from the "
       "start (Sg: 0, less pressure or a higher temperature starts in balance, or a first stage with kinetics_active: "
       "no)\n",
-      c->region[worst.region].name, worst.x[0], worst.x[1], worst.T,
+      c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
       PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s, worst.T + worst.value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,15 +15,16 @@
    how far it would sink under that, held at its sides, m. */
 static PetscErrorCode Unstressed(const Scene *c, const Region *r, bool *unstressed, double *weight, double *sinks)
 {
-  const double g = SceneGravity(c), up[CL_DIM] = {-c->gravity[0] / g, -c->gravity[1] / g},
-               down[CL_DIM]        = {-up[0], -up[1]};
-  const double      height         = RegionHighest(r, up) + RegionHighest(r, down);
-  const double      middle[CL_DIM] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
-  const Elasticity *el             = &c->material[r->material].elasticity;
-  double            water          = 0.0, dp, dT, dE;
+  const Elasticity *el    = &c->material[r->material].elasticity;
+  double            water = 0.0, dp, dT, dE, up[CL_DIM], down[CL_DIM], middle[CL_DIM];
   InitialScalars    s;
 
   PetscFunctionBeginUser;
+  SceneUp(c, 1.0, up);
+  SceneUp(c, -1.0, down);
+  RegionMiddle(r, middle);
+  const double g = SceneGravity(c), height = RegionHighest(r, up) + RegionHighest(r, down);
+
   *unstressed = RegionUnstressed(r);
   if (!*unstressed)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -74,15 +75,15 @@ PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE])
   PetscFunctionBeginUser;
   text[0] = '\0';
   for (PetscInt k = 0; c->fields.solid && c->fields.fluid && k < c->nregion; k++) {
-    const Region  *r         = &c->region[k];
-    const double   middle[2] = {0.5 * (r->lower[0] + r->upper[0]), 0.5 * (r->lower[1] + r->upper[1])};
-    const Ambient  around    = AmbientOf(c, c->t_begin, c->gravity);
-    double         E, beyond, gradient[CL_DIM], dE;
+    const Region  *r      = &c->region[k];
+    const Ambient  around = AmbientOf(c, c->t_begin, c->gravity);
+    double         E, beyond, gradient[CL_DIM], dE, middle[CL_DIM];
     InitialScalars s;
 
     if (RegionEmpty(r))
       continue;
     E = ElasticityYoung(&c->material[r->material].elasticity, r->Sh, &dE);
+    RegionMiddle(r, middle);
     PetscCall(InitialScalarsAt(c, r, middle, &s));
     beyond = s.p - AmbientPressure(&around, middle, gradient);
     if (beyond < E || !Pushed(c, E))
@@ -102,8 +103,10 @@ static bool Touches(const Scene *c, const Particles *P, PetscInt a, PetscInt b)
 {
   for (PetscInt p = 0; p < P->n; p++) {
     for (int side = 0; P->i[PI_REGION][p] == a && side < 2 * CL_DIM; side++) {
-      double y[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
+      double y[CL_DIM];
 
+      for (int d = 0; d < CL_DIM; d++)
+        y[d] = P->f[P_X + d][p];
       y[side / 2] += (side % 2 ? 1.5 : -1.5) * P->f[P_L + side / 2][p];
       if (RegionHolds(c, b, y))
         return true;

@@ -159,7 +159,7 @@ typedef struct {
 static double Thiem(const Flow *f, int i, int j)
 {
   const double x = LinesAt(&f->column[0].line, i) - f->at[0], y = LinesAt(&f->column[1].line, j) - f->at[1];
-  const double rho2 = (f->A.yy * x * x - 2.0 * f->A.xy * x * y + f->A.xx * y * y) / f->root; /* det A = r */
+  const double rho2 = (f->A.A[1] * x * x - 2.0 * f->A.A[2] * x * y + f->A.A[0] * y * y) / f->root; /* det A = r */
 
   return (0.5 * log(rho2) - log(f->radius) + f->skin) / (2.0 * M_PI * f->root);
 }
@@ -178,8 +178,8 @@ static double Entry(const Flow *f, int i, int j, int k, int l)
 {
   const Column *x = &f->column[0], *y = &f->column[1];
 
-  return f->A.xx * x->GG[i][k] * y->SS[j][l] + f->A.yy * x->SS[i][k] * y->GG[j][l] +
-         f->A.xy * (x->GS[i][k] * y->GS[l][j] + x->GS[k][i] * y->GS[j][l]);
+  return f->A.A[0] * x->GG[i][k] * y->SS[j][l] + f->A.A[1] * x->SS[i][k] * y->GG[j][l] +
+         f->A.A[2] * (x->GS[i][k] * y->GS[l][j] + x->GS[k][i] * y->GS[j][l]);
 }
 
 static PetscErrorCode Assemble(Flow *f)
@@ -283,7 +283,7 @@ static PetscErrorCode Index(Flow *f, double *C)
 /* (306) of the material at the well, at the start. */
 static double RatioAt(const Scene *c, const Bc *b, Beds *A)
 {
-  static const double one[4] = {1.0, 0.0, 0.0, 1.0};
+  static const double one[CL_DIM][CL_DIM] = CL_IDENTITY;
 
   for (PetscInt k = 0; k < c->nregion; k++) {
     if (RegionEmpty(&c->region[k]) || !RegionHolds(c, k, b->at))
@@ -293,7 +293,7 @@ static double RatioAt(const Scene *c, const Bc *b, Beds *A)
     *A = BedsOf(law->ratio, law->dip * M_PI / 180.0, one);
     return law->ratio;
   }
-  *A = (Beds){1.0, 1.0, 0.0};
+  *A = BedsOf(1.0, 0.0, one);
   return 1.0;
 }
 

@@ -19,7 +19,7 @@ static void CheckCase(Reader *r, const Case *c)
     CheckTimes(r, c, NULL);
   for (int d = 0; d < CL_DIM; d++)
     if (c->scene.upper[d] <= c->scene.lower[d])
-      FAIL_AT(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on both axes (%g m <= %g m)", c->scene.upper[d],
+      FAIL_AT(GROUP_CASE, "", "grid_upper", "must lie above grid_lower on all axes (%g m <= %g m)", c->scene.upper[d],
               c->scene.lower[d]);
   if (c->scene.axisymmetric)
     CheckRadius(r, &c->scene);
@@ -28,13 +28,16 @@ static void CheckCase(Reader *r, const Case *c)
             c->fields_wanted);
   else if (c->scene.compression_heat && c->pressures == PRESSURES_PARTICLES)
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes is not known with stepper_pressures: particles");
-  if (c->scene.ambient_density > 0.0 && c->scene.gravity[0] == 0.0 && c->scene.gravity[1] == 0.0)
+  if (c->scene.ambient_density > 0.0 && SceneGravity(&c->scene) == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)",
             c->scene.ambient_density);
   if (c->scene.ambient_drag > 0.0 && c->scene.ambient_density == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_drag", "(%g) is that of a fluid with a density: give ambient_density",
             c->scene.ambient_drag);
-  if ((double)c->scene.cells[0] * c->scene.cells[1] > 1e8)
+  double cells = 1.0;
+  for (int d = 0; d < CL_DIM; d++)
+    cells *= (double)c->scene.cells[d];
+  if (cells > 1e8)
     FAIL_AT(GROUP_CASE, "", "grid_cells", "has more than 1e8 cells in all");
   if (c->ntimes && c->times[c->ntimes - 1] > c->t_end && !(c->nstage && r->bad[GROUP_STAGE]))
     FAIL_AT(GROUP_CASE, "", "output_times", "has %g s after time_end, %g s", c->times[c->ntimes - 1], c->t_end);
@@ -119,12 +122,15 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
     r->bad[GROUP_REGION] = true; /* nothing more can be said about places */
   if (RegionEmpty(g))
     return;
-  if (g->ppc[0] * g->ppc[1] < 2)
+  PetscInt many = 1;
+  for (int d = 0; d < CL_DIM; d++)
+    many *= g->ppc[d];
+  if (many < 2)
     FAIL_AT(GROUP_REGION, g->name, "particles_per_cell",
             "must make at least 2 particles a cell: one does not see a cell's hourglass modes");
   CheckSaturations(r, &c->scene, g);
   CheckGas(r, &c->scene, g);
-  if (!r->bad[GROUP_MATERIAL] && c->scene.material[g->material].plasticity.type != PLASTICITY_NONE &&
+  if (CL_DIM == 2 && !r->bad[GROUP_MATERIAL] && c->scene.material[g->material].plasticity.type != PLASTICITY_NONE &&
       (g->stress[4] != 0.0 || g->stress[5] != 0.0))
     FAIL_AT(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
             g->stress[5], "plasticity_law does not know");
@@ -186,6 +192,34 @@ static void CheckMeter(Reader *r, const Scene *c, const Meter *m)
     FAIL_AT(GROUP_METER, m->name, "well", "and %s are two things to count: give one", m->along.n ? "along" : "side");
 }
 
+static bool BcShears(const Bc *b)
+{
+  bool shears = false;
+
+  for (PetscInt k = 0; b->type == BC_TRACTION && k < b->shear.n; k++)
+    shears = shears || b->shear.y[k] != 0.0 || ScheduleSwing(&b->shear) != 0.0;
+  return shears;
+}
+
+/* What the plane alone knows. */
+static void CheckSpace(Reader *r, const Case *c)
+{
+  if (c->scene.axisymmetric)
+    FAIL_AT(GROUP_CASE, "", "geometry",
+            "axisymmetric is a geometry of the plane, as clathra has it; this is clathra3d");
+  for (PetscInt i = 0; i < c->scene.nbc && !r->bad[GROUP_BC]; i++) {
+    const Bc *b = &c->scene.bc[i];
+
+    if (b->type == BC_WELL)
+      FAIL_AT(GROUP_BC, b->name, "type", "well is a line normal to the plane, which clathra3d does not know");
+    if (BcShears(b))
+      FAIL_AT(GROUP_BC, b->name, "shear", "has one direction in the plane alone; clathra3d does not know it");
+    if (isfinite(b->from) || isfinite(b->to))
+      FAIL_AT(GROUP_BC, b->name, isfinite(b->from) ? "from" : "to",
+              "goes along the one direction of a side in the plane; in space name a region whose side it is");
+  }
+}
+
 void CaseCheck(Reader *r, Case *c)
 {
   const bool *bad = r->bad;
@@ -200,7 +234,10 @@ void CaseCheck(Reader *r, Case *c)
     CheckPlasticity(r, c, &c->scene.material[i]);
   if (!bad[GROUP_CASE] && !bad[GROUP_MATERIAL])
     CheckReduction(r, c);
-  r->bad[GROUP_CASE] |= c->scene.upper[0] <= c->scene.lower[0] || c->scene.upper[1] <= c->scene.lower[1];
+  for (int d = 0; d < CL_DIM; d++)
+    r->bad[GROUP_CASE] |= c->scene.upper[d] <= c->scene.lower[d];
+  if (CL_DIM == 3)
+    CheckSpace(r, c);
   for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->scene.nregion && all; i++)
     CheckRegion(r, c, i);
   if (!bad[GROUP_CASE] && !bad[GROUP_REGION])

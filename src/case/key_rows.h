@@ -5,6 +5,19 @@
 #include "clathra/boundary.h"
 #include <stddef.h>
 
+/* A default for every axis, and how an example of such a list is written. */
+#if CL_DIM == 2
+  #define EACH(word) word ", " word
+  #define AXES_WORDS "x and y"
+  #define PLANE_WORD "plane"
+  #define IN_SPACE(...)
+#else
+  #define EACH(word) word ", " word ", " word
+  #define AXES_WORDS "x, y and z"
+  #define PLANE_WORD "space"
+  #define IN_SPACE(...) __VA_ARGS__
+#endif
+
 /* Rows: name, member, [unit, range,] default, meaning, then whatever is special about the key. */
 #define ROW(T, name_, kind_, member_, count_, unit_, range_, def_, doc_, ...)                                          \
   {                                                                                                                    \

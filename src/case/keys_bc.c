@@ -35,7 +35,7 @@ const char *const case_bc_type[] = {CL_FACE_CONDITIONS(BC_WORD) CL_NODE_CONDITIO
                                     CL_NODE_FORMS(BC_WORD)};
 #undef BC_WORD
 
-static const char *const axis_word[]      = {"x", "y", NULL};
+static const char *const axis_word[]      = {"x", "y", IN_SPACE("z", ) NULL};
 static const char *const capillary_word[] = {"held", "free", NULL};
 static const char *const holds_word[]     = {"all", "skeleton", NULL};
 static const char *const clock_word[]     = {"run", "stage", NULL};
@@ -63,7 +63,7 @@ const Key bc_key[] = {
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
          .types = SIDES),
     REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = SIDES),
-    REALS(Bc, 2, "at", at, "m", "", NULL, "where the line is at the start; it goes with the body",
+    REALS(Bc, CL_DIM, "at", at, "m", "", NULL, "where the line is at the start; it goes with the body",
           .types = TYPE(BC_WELL)),
     CHOICE(Bc, "axis", axis, NULL, axis_word, "axis normal to the grid plane", .types = PLANES),
     REAL(Bc, "position", position, "m", "", NULL, "coordinate of the plane; must be a grid line", .types = PLANES),

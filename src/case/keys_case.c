@@ -1,25 +1,25 @@
 /* keys_case: the grid, the surroundings, numerics, time and output; and what of it a stage may have of its own. */
 #include "key_rows.h"
 
-static bool HasSpacingX(const void *p)
-{
-  return ((const Case *)p)->scene.spacing[0][0];
-}
-static bool HasSpacingY(const void *p)
-{
-  return ((const Case *)p)->scene.spacing[1][0];
-}
-static bool HasTableX(const void *p)
-{
-  return ((const Case *)p)->scene.table[0][0];
-}
-static bool HasTableY(const void *p)
-{
-  return ((const Case *)p)->scene.table[1][0];
-}
+#define HAS_SPACING(axis, d)                                                                                           \
+  static bool HasSpacing##axis(const void *p)                                                                          \
+  {                                                                                                                    \
+    return ((const Case *)p)->scene.spacing[d][0];                                                                     \
+  }                                                                                                                    \
+  static bool HasTable##axis(const void *p)                                                                            \
+  {                                                                                                                    \
+    return ((const Case *)p)->scene.table[d][0];                                                                       \
+  }
+HAS_SPACING(X, 0)
+HAS_SPACING(Y, 1)
+IN_SPACE(HAS_SPACING(Z, 2))
 static bool HasEqualAxis(const void *p)
 {
-  return !(HasSpacingX(p) || HasTableX(p)) || !(HasSpacingY(p) || HasTableY(p));
+  bool equal = false;
+
+  for (int d = 0; d < CL_DIM; d++)
+    equal = equal || !(((const Case *)p)->scene.spacing[d][0] || ((const Case *)p)->scene.table[d][0]);
+  return equal;
 }
 static bool NeedsEnd(const void *p)
 {
@@ -28,7 +28,7 @@ static bool NeedsEnd(const void *p)
 
 static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
 static const char *const pressures_word[]   = {"two", "one", NULL};
-static const char *const geometry_word[]    = {"plane", "axisymmetric", NULL};
+static const char *const geometry_word[]    = {PLANE_WORD, "axisymmetric", NULL};
 static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
 static const char *const surface_word[]     = {"free", "tied", "velocities_free", NULL}; /* SURFACE_... */
 static const char *const share_word[]       = {"nodes", "particles", "relative", NULL};  /* PRESSURES_... */
@@ -39,10 +39,10 @@ static const char *const without_gas_word[] = {"auto", "yes", "no", NULL};      
 
 const Key case_key[] = {
     TEXT(Case, "title", title, "", "one line"),
-    REALS(Case, 2, "grid_lower", scene.lower, "m", "", NULL, "lower left corner of the background grid",
+    REALS(Case, CL_DIM, "grid_lower", scene.lower, "m", "", NULL, "lower left corner of the background grid",
           BINDS(HAS_ALL)),
-    REALS(Case, 2, "grid_upper", scene.upper, "m", "", NULL, "upper right corner; the body must not leave the grid",
-          BINDS(HAS_ALL)),
+    REALS(Case, CL_DIM, "grid_upper", scene.upper, "m", "", NULL,
+          "upper right corner; the body must not leave the grid", BINDS(HAS_ALL)),
     TEXT(Case, "grid_spacing_x", scene.spacing[0], "",
          "sizes of the cells along x: one size (0.5 m), or first size, largest size and growth from cell to cell, "
          "from the lower end on ([0.05 m, 2 m, growth 1.15])",
@@ -55,10 +55,14 @@ const Key case_key[] = {
          BINDS(HAS_ALL)),
     TEXT(Case, "grid_spacing_y_table", scene.table[1], "", "likewise along y", ACTS(HasTableY, "it is given"),
          BINDS(HAS_ALL)),
-    INTEGERS(Case, 2, "grid_cells", scene.cells, "[1,100000]", "auto, auto",
-             "cells along x and y; auto: as many as the spacing of that axis makes",
-             WHEN(HasEqualAxis, "an axis has no spacing"), .word = "auto", BINDS(HAS_ALL)),
-    BOOLEAN(Case, "geometry", scene.axisymmetric, "plane", "axisymmetric: x is the radius, y runs along the axis",
+    IN_SPACE(TEXT(Case, "grid_spacing_z", scene.spacing[2], "", "likewise along z", ACTS(HasSpacingZ, "it is given"),
+                  BINDS(HAS_ALL)),
+             TEXT(Case, "grid_spacing_z_table", scene.table[2], "", "likewise along z", ACTS(HasTableZ, "it is given"),
+                  BINDS(HAS_ALL)), )
+        INTEGERS(Case, CL_DIM, "grid_cells", scene.cells, "[1,100000]", EACH("auto"),
+                 "cells along " AXES_WORDS "; auto: as many as the spacing of that axis makes",
+                 WHEN(HasEqualAxis, "an axis has no spacing"), .word = "auto", BINDS(HAS_ALL)),
+    BOOLEAN(Case, "geometry", scene.axisymmetric, PLANE_WORD, "axisymmetric: x is the radius, y runs along the axis",
             .choices = geometry_word, BINDS(HAS_ALL)),
     TEXT(Case, "fields", fields_wanted, "auto",
          "what the scene needs: a list of solid, water, gas, heat, or a set's name (thmc, thc, hmc, thm, hm, m, ...); "
@@ -77,7 +81,8 @@ const Key case_key[] = {
     REAL(Case, "mean_strain", scene.mean_strain, "", "[0,1]", "0",
          "share of the mean motion of its cell in the strain of a particle: a skeleton that yields flows more freely; "
          "1 leaves modes without stiffness, 0.95 does for collapse loads"),
-    REALS(Case, 2, "gravity", scene.gravity, "m/s^2", "[-1e4,1e4]", "0 m/s^2, 0 m/s^2", "e.g. [0 m/s^2, -9.81 m/s^2]"),
+    REALS(Case, CL_DIM, "gravity", scene.gravity, "m/s^2", "[-1e4,1e4]", EACH("0 m/s^2"),
+          "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", scene.gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
     REAL(
@@ -222,7 +227,8 @@ const Key stage_key[] = {
     TEXT(CaseStage, "materials", materials, "",
          "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay",
          .made = true),
-    REALS(CaseStage, 2, "gravity", c.scene.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along x and y", .kept = true),
+    REALS(CaseStage, CL_DIM, "gravity", c.scene.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along " AXES_WORDS,
+          .kept = true),
     REAL(CaseStage, "gravity_ramp", c.scene.gravity_ramp, "s", "[0,inf)", CASES,
          "gravity goes from that of the stage before to that of this one over this time", .kept = true),
     REAL(CaseStage, "strength_factor", c.scene.strength_factor, "", "(0,1e3]", CASES,

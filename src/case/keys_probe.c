@@ -24,7 +24,7 @@ const Key probe_key[] = {
     NAME(Probe, "region", surface.region, "all", GROUP_REGION, "with side or along: one of regions, or all"),
     REAL(Probe, "from", surface.from, "m", "", "start", "with side: only the part from here ...", .word = "-start"),
     REAL(Probe, "to", surface.to, "m", "", "end", "... to here", .word = "end"),
-    REALS(Probe, 2, "at", x, "m", "", "none, none", "a point: initial position, inside a region",
+    REALS(Probe, CL_DIM, "at", x, "m", "", EACH("none"), "a point: initial position, inside a region",
           WHEN(NeedsPlace, "over, side and along are not given"), .word = "none"),
     BOOLEAN(Probe, "fixed", fixed, "no",
             "a point stays there in space, otherwise it follows the body; a mean is over what is in the region's shape "

@@ -209,6 +209,16 @@ static void DeriveFluids(Material *m)
    is to hold more methane than hydrate anywhere in its stability zone asks for (103). */
 #define TRAPPED 5e4
 
+/* Side of a square or cube as large as a mean cell, m. */
+static double CellSize(const Scene *c)
+{
+  double size = 1.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    size *= (c->upper[d] - c->lower[d]) / c->cells[d];
+  return CL_DIM == 2 ? sqrt(size) : cbrt(size);
+}
+
 static PetscErrorCode Derive(Reader *r, Case *c)
 {
   const bool starts  = c->scene.without_gas == WITHOUT_GAS_AUTO && SceneStartsWithoutGas(&c->scene);
@@ -236,8 +246,7 @@ static PetscErrorCode Derive(Reader *r, Case *c)
     m->gas.trace   = m->gas.carried > 0.0 ? m->gas.carried : without ? GasTrace(&m->gas) : 0.0; /* (102) */
     DeriveFluids(m);
     m->plasticity.factor = c->scene.strength_factor;
-    m->plasticity.cell   = sqrt((c->scene.upper[0] - c->scene.lower[0]) / c->scene.cells[0] *
-                                (c->scene.upper[1] - c->scene.lower[1]) / c->scene.cells[1]);
+    m->plasticity.cell   = CellSize(&c->scene);
     for (int j = 0; j < 2; j++) {
       l[j]->K     = INFINITY;
       l[j]->p_ref = m->water.p_ref;

@@ -2,6 +2,7 @@
 #include "case_private.h"
 #include "clathra/geometry.h"
 #include "clathra/shape.h"
+#include "clathra/words.h"
 #include <string.h>
 
 static const char *const shape_key[] = {"lower", "polygon", "below", "circle"};
@@ -79,15 +80,15 @@ static void CheckBounds(Reader *r, const Scene *c, const Region *g)
     const double slack = 1e-12 * (fabs(c->upper[d]) + fabs(c->lower[d]));
 
     if (g->upper[d] <= g->lower[d] && g->shape == SHAPE_BOX)
-      FAIL_AT(GROUP_REGION, g->name, "upper", "must lie above lower on both axes (%g m <= %g m)", g->upper[d],
+      FAIL_AT(GROUP_REGION, g->name, "upper", "must lie above lower on all axes (%g m <= %g m)", g->upper[d],
               g->lower[d]);
     else if (g->upper[d] <= g->lower[d])
-      FAIL_AT(GROUP_REGION, g->name, key, "nothing of it lies between lower and upper along %c", "xy"[d]);
+      FAIL_AT(GROUP_REGION, g->name, key, "nothing of it lies between lower and upper along %c", "xyz"[d]);
     else if (!r->bad[GROUP_CASE] && c->upper[d] > c->lower[d] &&
              (g->lower[d] < c->lower[d] - slack || g->upper[d] > c->upper[d] + slack))
       FAIL_AT(GROUP_REGION, g->name, g->shape == SHAPE_BOX && g->upper[d] > c->upper[d] ? "upper" : key,
-              "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xy"[d], g -> lower[d], g -> upper[d],
-              c -> lower[d], c -> upper[d]);
+              "the region leaves the grid along %c: %g..%g m is not in %g..%g m", "xyz"[d], g -> lower[d],
+              g -> upper[d], c -> lower[d], c -> upper[d]);
   }
 }
 
@@ -144,29 +145,29 @@ typedef struct {
   const Lattice  *lattice;
   const PetscInt *ij;
   const double   *x;
-} Place;
+} Spot;
 
 /* Is there a particle that `is` says yes to?  NULL: any. */
-static bool AnyPlace(const Scene *c, PetscInt region, bool (*is)(const Place *, const void *), const void *context)
+static bool AnyPlace(const Scene *c, PetscInt region, bool (*is)(const Spot *, const void *), const void *context)
 {
-  Lattice     lattice;
-  PetscInt    ij[CL_DIM];
-  double      x[CL_DIM];
-  const Place place = {c, region, &lattice, ij, x};
+  static const PetscInt first[CL_DIM] = {0};
+  Lattice               lattice;
+  PetscInt              ij[CL_DIM];
+  double                x[CL_DIM];
+  const Spot            place = {c, region, &lattice, ij, x};
 
   if (RegionEmpty(&c->region[region]))
     return false;
   RegionLattice(c, region, &lattice);
-  for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
-    for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
-      if (RegionPlace(c, region, &lattice, ij, x) && (!is || is(&place, context)))
-        return true;
-    }
+  for (PetscInt k = 0; k < BoxSize(lattice.n); k++) {
+    BoxAt(first, lattice.n, k, ij);
+    if (RegionPlace(c, region, &lattice, ij, x) && (!is || is(&place, context)))
+      return true;
   }
   return false;
 }
 
-static bool IsInside(const Place *place, const void *other)
+static bool IsInside(const Spot *place, const void *other)
 {
   return RegionHolds(place->c, *(const PetscInt *)other, place->x);
 }
@@ -233,7 +234,7 @@ PetscErrorCode RegionsCut(Reader *r, Case *c)
 }
 
 /* ---------------------------------------------------------------- faces */
-static bool HasNamed(const Place *p, const void *meters)
+static bool HasNamed(const Spot *p, const void *meters)
 {
   const Meter *const *m    = (const Meter *const *)meters;
   const PetscInt      bits = RegionFaces(p->c, p->region, p->lattice, p->ij);
@@ -300,7 +301,7 @@ void CheckHeld(Reader *r, const Scene *c, const Bc *b)
     const Region *g = &c->region[i];
     GridLines     line[CL_DIM];
     double        slack[CL_DIM], x[CL_DIM];
-    PetscInt      from[CL_DIM], to[CL_DIM];
+    PetscInt      from[CL_DIM], nodes[CL_DIM], at[CL_DIM], all;
 
     if (b->region >= 0 && b->region != i)
       continue;
@@ -308,15 +309,15 @@ void CheckHeld(Reader *r, const Scene *c, const Bc *b)
       line[d]  = SceneLines(c, d);
       slack[d] = 1e-6 * line[d].h;
       from[d]  = (PetscInt)ceil(LinesPlace(&line[d], g->lower[d]) - 1e-6);
-      to[d]    = (PetscInt)floor(LinesPlace(&line[d], g->upper[d]) + 1e-6);
+      nodes[d] = PetscMax((PetscInt)floor(LinesPlace(&line[d], g->upper[d]) + 1e-6) - from[d] + 1, 0);
     }
-    for (PetscInt n = from[1]; n <= to[1]; n++) {
-      for (PetscInt m = from[0]; m <= to[0]; m++) {
-        x[0] = LinesAt(&line[0], m);
-        x[1] = LinesAt(&line[1], n);
-        if (RegionReaches(c, i, x, slack))
-          return;
-      }
+    all = BoxSize(nodes);
+    for (PetscInt k = 0; k < all; k++) {
+      BoxAt(from, nodes, k, at);
+      for (int d = 0; d < CL_DIM; d++)
+        x[d] = LinesAt(&line[d], at[d]);
+      if (RegionReaches(c, i, x, slack))
+        return;
     }
   }
   FAIL_AT(GROUP_BC, b->name, "region",
@@ -334,7 +335,7 @@ static void CheckPoint(Reader *r, const Scene *c, const Probe *p)
     if (!RegionEmpty(&c->region[i]) && RegionReaches(c, i, p->x, slack))
       return;
   }
-  FAIL_AT(GROUP_PROBE, p->name, "at", "(%g m, %g m) lies in no region", p->x[0], p->x[1]);
+  FAIL_AT(GROUP_PROBE, p->name, "at", "%s lies in no region", PlaceWords(p->x).s);
 }
 
 typedef struct {
@@ -342,7 +343,7 @@ typedef struct {
   PetscInt     region;
 } Within;
 
-static bool LiesWithin(const Place *p, const void *context)
+static bool LiesWithin(const Spot *p, const void *context)
 {
   const Within *w = (const Within *)context;
 

@@ -136,8 +136,9 @@ void KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance)
     WriteReals(f, k, (const double *)place, k->count);
     break;
   case KEY_INT:
-    fprintf(f, k->count > 1 ? "[%d, %d]" : "%d", (int)((const PetscInt *)place)[0],
-            (int)((const PetscInt *)place)[k->count - 1]);
+    for (int i = 0; i < k->count; i++)
+      fprintf(f, "%s%d", i ? ", " : k->count > 1 ? "[" : "", (int)((const PetscInt *)place)[i]);
+    fputs(k->count > 1 ? "]" : "", f);
     break;
   case KEY_BOOL:
     if (k->choices)

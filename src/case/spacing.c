@@ -201,7 +201,7 @@ static void Count(Reader *r, Scene *c, int d, PetscInt cells)
 {
   if (c->cells[d] && c->cells[d] != cells)
     FAIL_AT(GROUP_CASE, "", "grid_cells", "names %d cells along %c, but the spacing makes %d: auto takes those",
-            (int)c->cells[d], "xy"[d], (int)cells);
+            (int)c->cells[d], "xyz"[d], (int)cells);
   c->cells[d] = cells;
 }
 
@@ -227,9 +227,9 @@ static PetscErrorCode TakeAxis(Reader *r, Scene *c, int d)
   bool        equal = true;
 
   PetscFunctionBeginUser;
-  snprintf(key, sizeof key, "grid_spacing_%c%s", "xy"[d], own ? "_table" : "");
+  snprintf(key, sizeof key, "grid_spacing_%c%s", "xyz"[d], own ? "_table" : "");
   if (own && c->spacing[d][0])
-    FAIL_AT(GROUP_CASE, "", key, "and grid_spacing_%c are two ways to say the same: give one", "xy"[d]);
+    FAIL_AT(GROUP_CASE, "", key, "and grid_spacing_%c are two ways to say the same: give one", "xyz"[d]);
   PetscCall(PetscMalloc1(MOST + 1, &m.place));
   m.place[0] = m.lower;
   ListCreate(table ? table : c->spacing[d], &list);
@@ -252,7 +252,7 @@ PetscErrorCode CaseSpacing(Reader *r, Scene *c)
     if (c->spacing[d][0] || c->table[d][0])
       PetscCall(TakeAxis(r, c, d));
     else if (!c->cells[d])
-      FAIL_AT(GROUP_CASE, "", "grid_cells", "is auto along %c, which needs grid_spacing_%c", "xy"[d], "xy"[d]);
+      FAIL_AT(GROUP_CASE, "", "grid_cells", "is auto along %c, which needs grid_spacing_%c", "xyz"[d], "xyz"[d]);
   }
   r->bad[GROUP_CASE] |= r->nerror > before;
   for (int d = 0; d < CL_DIM; d++)

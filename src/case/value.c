@@ -46,14 +46,22 @@ static bool KeyInt(Reader *r, const char *shown, const char *text, const Key *k,
   return true;
 }
 
+/* A list with a number for each axis of the other program. */
+static const char *OtherAxes(PetscInt n, int count)
+{
+  if (count != CL_DIM || n != 5 - CL_DIM)
+    return "";
+  return CL_DIM == 2 ? "; three axes are clathra3d's" : "; this is clathra3d, two axes are clathra's";
+}
+
 static void KeyNumbers(Reader *r, const char *shown, const char *text, const Key *k, char *place)
 {
   List list;
 
   ListCreate(text, &list);
   if (list.n != k->count)
-    ReaderError(r, shown, text, "has %d value%s, needs %d%s%s", (int)list.n, list.n == 1 ? "" : "s", k->count,
-                *k->unit ? ", e.g. in " : "", k->unit);
+    ReaderError(r, shown, text, "has %d value%s, needs %d%s%s%s", (int)list.n, list.n == 1 ? "" : "s", k->count,
+                *k->unit ? ", e.g. in " : "", k->unit, OtherAxes(list.n, k->count));
   else
     for (PetscInt i = 0; i < list.n; i++) {
       bool ok = k->kind == KEY_INT ? KeyInt(r, shown, list.item[i], k, (PetscInt *)place + i)

@@ -215,12 +215,12 @@ INLINE void BedsValues(Explicit *e, const Set s, Run r, Given *v)
     const Beds     A  = ParticleBeds(e->m->c, &e->m->P, p);
     const double   Vk = e->m->P.f[P_V][p] * Conductance(e, s, p);
 
-    e->t[T_BEDS][p]            = A.xx;
-    e->t[T_BEDS + 1][p]        = A.yy;
-    e->t[T_BEDS + 2][p]        = A.xy;
-    v->value[q][A_Beds(s)]     = Vk * (A.xx - 1.0);
-    v->value[q][A_Beds(s) + 1] = Vk * (A.yy - 1.0);
-    v->value[q][A_Beds(s) + 2] = Vk * A.xy;
+    e->t[T_BEDS][p]            = A.A[0];
+    e->t[T_BEDS + 1][p]        = A.A[1];
+    e->t[T_BEDS + 2][p]        = A.A[2];
+    v->value[q][A_Beds(s)]     = Vk * (A.A[0] - 1.0);
+    v->value[q][A_Beds(s) + 1] = Vk * (A.A[1] - 1.0);
+    v->value[q][A_Beds(s) + 2] = Vk * A.A[2];
   }
 }
 

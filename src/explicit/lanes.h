@@ -171,7 +171,7 @@ INLINE double Conductance(const Explicit *e, Set s, PetscInt p)
 /* A of a particle (306). */
 INLINE Beds BedsAt(const Explicit *e, PetscInt p)
 {
-  return (Beds){e->t[T_BEDS][p], e->t[T_BEDS + 1][p], e->t[T_BEDS + 2][p]};
+  return (Beds){{e->t[T_BEDS][p], e->t[T_BEDS + 1][p], e->t[T_BEDS + 2][p]}};
 }
 
 /* (309): what drives a fluid of density rho like the gradient g of its pressure, with beds. */

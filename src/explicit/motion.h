@@ -29,15 +29,15 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
         2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 / 11.0)))));
     const double ratio =
         1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
-    double e[3], U[CL_DIM];
+    double e[CL_TENSOR], U[CL_DIM];
 
     large |= WRONG_UNLESS((fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0));
     o->c[q] = c;
     o->s[q] = si;
     LogStrainOf(0.5 * lnJ, 0.5 * ratio * of.d / of.m, 0.5 * ratio * of.off / of.m, e);
-    o->xx[q]      = e[0];
-    o->yy[q]      = e[1];
-    o->xy[q]      = e[2];
+    o->xx[q]      = e[XX];
+    o->yy[q]      = e[YY];
+    o->xy[q]      = e[XY];
     o->H[0][0][q] = Hxx;
     o->H[0][1][q] = Fxy;
     o->H[1][0][q] = Fyx;

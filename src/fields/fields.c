@@ -4,16 +4,19 @@
 #include <string.h>
 #include <strings.h>
 
+#define AXIS(name, equation, axis)                                                                                     \
+  {                                                                                                                    \
+    name "," axis, "m/s", equation ", " axis                                                                           \
+  }
+#if CL_DIM == 2
+  #define AXES(name, equation) AXIS(name, equation, "x"), AXIS(name, equation, "y")
+#else
+  #define AXES(name, equation) AXIS(name, equation, "x"), AXIS(name, equation, "y"), AXIS(name, equation, "z")
+#endif
 const FieldInfo cl_field[F_COUNT] = {
-    [F_VS] = {"v_s,x", "m/s", "mixture momentum, x"},
-    {"v_s,y", "m/s", "mixture momentum, y"},
-    [F_VW] = {"v_w,x", "m/s", "water momentum, x"},
-    {"v_w,y", "m/s", "water momentum, y"},
-    [F_VG] = {"v_g,x", "m/s", "gas momentum, x"},
-    {"v_g,y", "m/s", "gas momentum, y"},
-    [F_PW] = {"p_w", "Pa", "water mass"},
-    [F_PG] = {"p_g", "Pa", "gas mass"},
-    [F_T]  = {"T", "degC", "energy"},
+    [F_VS] = AXES("v_s", "mixture momentum"), [F_VW] = AXES("v_w", "water momentum"),
+    [F_VG] = AXES("v_g", "gas momentum"),     [F_PW] = {"p_w", "Pa", "water mass"},
+    [F_PG] = {"p_g", "Pa", "gas mass"},       [F_T] = {"T", "degC", "energy"},
 };
 
 const char *const cl_field_word[] = {"solid", "water", "gas", "heat", NULL};

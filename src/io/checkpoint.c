@@ -46,10 +46,10 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(begin),        REAL(extreme),
                                      REAL(held_for),     REAL(held_look),
                                      {NULL, 0, 0, false}};
-/* Fourteen integers, thirty-two reals, the meters, works, energies, what left, and extremes. */
+/* Fourteen integers, thirty reals and a place, the meters, works, energies, what left, and extremes. */
 _Static_assert(sizeof(StepperState) ==
                    14 * sizeof(PetscInt) +
-                       (32 + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT + REMOVED_COUNT + EXTREMES) *
+                       (30 + CL_DIM + CL_METERS * METER_COUNT + WORK_COUNT + ENERGY_COUNT + REMOVED_COUNT + EXTREMES) *
                            sizeof(double) +
                        EXTREMES * sizeof(Extreme),
                "a new field of StepperState must join io_state_field");

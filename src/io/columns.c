@@ -9,11 +9,17 @@
   {                                                                                                                    \
     NULL, 0, quantity, COMPUTED + (row)                                                                                \
   }
-/* One row for a number, four for a tensor. */
+#if CL_DIM == 2
+  #define IN_SPACE(...)
+#else
+  #define IN_SPACE(...) __VA_ARGS__
+#endif
+/* One row for a number, CL_TENSOR for a tensor. */
 #define COLUMN_1(id, has, name, quantity) {name, has, quantity, id},
-#define COLUMN_4(id, has, name, quantity)                                                                              \
+#define COLUMN_CL_TENSOR(id, has, name, quantity)                                                                      \
   {name "_xx", has, quantity, id}, {name "_yy", has, quantity, id + 1}, {name "_zz", has, quantity, id + 2},           \
-      {name "_xy", has, quantity, id + 3},
+      {name "_xy", has, quantity, id + 3},                                                                             \
+      IN_SPACE({name "_yz", has, quantity, id + 4}, {name "_xz", has, quantity, id + 5}, )
 #define HISTORY_COLUMN(id, has, name, nc, unit, doc) COLUMN_##nc(id, has, name, QUANTITY_HISTORY + PLACE_##id)
 #define HISTORY_PLACE(id, has, name, nc, unit, doc) PLACE_##id,
 #define HISTORY_UNIT(id, has, name, nc, unit, doc) unit,
@@ -23,28 +29,30 @@ static const struct {
   const char *name;
   unsigned    has; /* fields it goes with */
   int         quantity, component;
-} column[PROBE_COUNT] = {[PROBE_P] = DERIVED(DERIVED_P, QUANTITY_P),
-                         {"p_w_Pa", HAS_WATER, QUANTITY_PW, P_PW},
-                         {"p_g_Pa", HAS_GAS_PRESSURE, QUANTITY_PG, P_PG},
-                         {"T_degC", HAS_HEAT, QUANTITY_T, P_T},
-                         {"S_h", HAS_ALL, QUANTITY_SH, P_SH},
-                         {"S_w", HAS_WATER, QUANTITY_SW, P_SW},
-                         [PROBE_SG] = DERIVED(DERIVED_SG, QUANTITY_SG),
-                         {"u_x_m", HAS_SOLID, QUANTITY_U, P_U},
-                         {"u_y_m", HAS_SOLID, QUANTITY_U, P_U + 1},
-                         {"sxx_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG},
-                         {"syy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 1},
-                         {"szz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 2},
-                         {"sxy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 3},
-                         {"x_m", HAS_ALL, QUANTITY_X, P_X},
-                         {"y_m", HAS_ALL, QUANTITY_X, P_X + 1},
-                         [PROBE_HISTORY] = CL_SKELETON_HISTORY(HISTORY_COLUMN)[PROBE_MEAN] =
-                             DERIVED(DERIVED_MEAN, QUANTITY_MEAN),
-                         [PROBE_Q]      = DERIVED(DERIVED_Q, QUANTITY_Q),
-                         [PROBE_STRAIN] = {"eps_v", HAS_PLASTIC, QUANTITY_STRAIN, P_LOGJ},
-                         [PROBE_SHEAR]  = DERIVED(DERIVED_SHEAR, QUANTITY_STRAIN),
-                         [PROBE_MARGIN] = DERIVED(DERIVED_MARGIN, QUANTITY_YIELD),
-                         [PROBE_YIELDS] = DERIVED(DERIVED_YIELDS, QUANTITY_YIELD)};
+} column[PROBE_COUNT] = {
+    [PROBE_P] = DERIVED(DERIVED_P, QUANTITY_P),
+    {"p_w_Pa", HAS_WATER, QUANTITY_PW, P_PW},
+    {"p_g_Pa", HAS_GAS_PRESSURE, QUANTITY_PG, P_PG},
+    {"T_degC", HAS_HEAT, QUANTITY_T, P_T},
+    {"S_h", HAS_ALL, QUANTITY_SH, P_SH},
+    {"S_w", HAS_WATER, QUANTITY_SW, P_SW},
+    [PROBE_SG] = DERIVED(DERIVED_SG, QUANTITY_SG),
+    {"u_x_m", HAS_SOLID, QUANTITY_U, P_U},
+    {"u_y_m", HAS_SOLID, QUANTITY_U, P_U + 1},
+    IN_SPACE({"u_z_m", HAS_SOLID, QUANTITY_U, P_U + 2}, ){"sxx_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG},
+    {"syy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 1},
+    {"szz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 2},
+    {"sxy_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 3},
+    IN_SPACE({"syz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 4},
+             {"sxz_Pa", HAS_SOLID, QUANTITY_STRESS, P_SIG + 5}, ){"x_m", HAS_ALL, QUANTITY_X, P_X},
+    {"y_m", HAS_ALL, QUANTITY_X, P_X + 1},
+    IN_SPACE({"z_m", HAS_ALL, QUANTITY_X, P_X + 2}, )[PROBE_HISTORY] = CL_SKELETON_HISTORY(HISTORY_COLUMN)[PROBE_MEAN] =
+        DERIVED(DERIVED_MEAN, QUANTITY_MEAN),
+    [PROBE_Q]      = DERIVED(DERIVED_Q, QUANTITY_Q),
+    [PROBE_STRAIN] = {"eps_v", HAS_PLASTIC, QUANTITY_STRAIN, P_LOGJ},
+    [PROBE_SHEAR]  = DERIVED(DERIVED_SHEAR, QUANTITY_STRAIN),
+    [PROBE_MARGIN] = DERIVED(DERIVED_MARGIN, QUANTITY_YIELD),
+    [PROBE_YIELDS] = DERIVED(DERIVED_YIELDS, QUANTITY_YIELD)};
 
 static const DerivedQuantity *Derived(int q)
 {

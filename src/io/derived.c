@@ -4,6 +4,7 @@
 
 #include "clathra/kinematics.h"
 #include "clathra/point.h"
+#include <string.h>
 
 static double Pressure(const Model *m, PetscInt p)
 {
@@ -43,15 +44,20 @@ static double Deviator(const Model *m, PetscInt p)
 static double Shear(const Model *m, PetscInt p)
 {
   const Particles *P               = &m->P;
-  double           u[MOTION_COUNT] = {P->f[P_F][p] - 1.0, P->f[P_F + 1][p], P->f[P_F + 2][p], P->f[P_F + 3][p] - 1.0};
+  double           u[MOTION_COUNT] = {0.0}, e[6] = {0.0};
   Kinematics       k;
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      u[VectorAt(0, i, j)] = P->f[VectorAt(P_F, i, j)][p] - (i == j ? 1.0 : 0.0);
+  }
 
   if (m->c->axisymmetric)
     u[MOTION_HOOP] = P->f[P_X][p] / P->f[P_X0][p] - 1.0;
   if (!KinematicsValues(u, &k))
     return NAN;
-  const double mean = (k.e[0] + k.e[1] + k.e[3]) / 3.0, x = k.e[0] - mean, y = k.e[1] - mean, z = k.e[3] - mean;
-  return sqrt(2.0 / 3.0 * (x * x + y * y + z * z + 2.0 * k.e[2] * k.e[2]));
+  memcpy(e, k.e, sizeof(k.e));
+  return 2.0 / 3.0 * Mises6(e);
 }
 
 /* Distance to yield; NaN for a particle that cannot. */

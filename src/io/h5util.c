@@ -112,7 +112,7 @@ PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group)
 
 static PetscErrorCode Layout(hid_t type, const H5Part *part, int nc, bool compress, hid_t *create)
 {
-  hsize_t       chunk[3] = {0, 0, 0}, bytes = H5Tget_size(type) * (hsize_t)nc;
+  hsize_t       chunk[CL_DIM + 1] = {0}, bytes = H5Tget_size(type) * (hsize_t)nc;
   const hsize_t most = part->nd > 1 ? CHUNK_NODES : CHUNK_ROWS;
 
   PetscFunctionBeginUser;
@@ -143,7 +143,7 @@ size_t H5Room(const H5Part *part, int n, int components)
 /* Of memory and of the file; nothing of either where this rank has no part. */
 static PetscErrorCode Spaces(const H5Part *part, int nc, hid_t *memory, hid_t *space)
 {
-  hsize_t all[3], start[3] = {0, 0, 0}, count[3], here = 1;
+  hsize_t all[CL_DIM + 1], start[CL_DIM + 1] = {0}, count[CL_DIM + 1], here = 1;
 
   PetscFunctionBeginUser;
   all[part->nd] = count[part->nd] = (hsize_t)nc;

@@ -104,8 +104,8 @@ enum {
   PROBE_P       = 0,
   PROBE_PW      = 1, /* p_w, p_g, T */
   PROBE_SG      = 6,
-  PROBE_X       = 13,
-  PROBE_HISTORY = 15, /* of the skeleton, component by component */
+  PROBE_X       = 7 + CL_DIM + CL_TENSOR, /* behind displacement and stress */
+  PROBE_HISTORY = PROBE_X + CL_DIM,       /* of the skeleton, component by component */
   PROBE_MEAN    = PROBE_HISTORY + OWN_COUNT,
   PROBE_Q,
   PROBE_STRAIN,
@@ -153,10 +153,10 @@ PetscErrorCode H5ImageBytes(hid_t image, IoPiece *piece);           /* valid unt
 PetscErrorCode H5FileOpen(const char *path, hid_t *file);           /* to read; *file < 0: it cannot be opened */
 PetscErrorCode H5FileClose(hid_t *file);                            /* also an image, also one that is not open */
 PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group); /* with all above it */
-/* The part of a dataset that this rank writes or reads: along the first one (rows) or two (nodes) axes. */
+/* The part of a dataset that this rank writes or reads: along the first one (rows) or as many as space has (nodes). */
 typedef struct {
   int     nd;
-  hsize_t all[2], start[2], count[2];
+  hsize_t all[CL_DIM], start[CL_DIM], count[CL_DIM];
 } H5Part;
 /* nc components an entry, those of one as the last axis; unit NULL: none; compressed when large and `compress`.
    Collective if the file is. */

@@ -7,8 +7,8 @@
 /* Does the mean take particle p?  A region without particles is a shape: whatever was in it first, or is in it now. */
 static bool Takes(const Model *m, const Probe *b, PetscInt p)
 {
-  const Particles *P    = &m->P;
-  double           x[2] = {0.0};
+  const Particles *P = &m->P;
+  double           x[CL_DIM];
 
   if (!b->fixed && !RegionEmpty(&m->c->region[b->over]))
     return P->i[PI_REGION][p] == b->over;
@@ -38,14 +38,18 @@ static void AddRegion(const Model *m, const Probe *b, double value[PROBE_COUNT],
 /* What a value of the particle changes by on the way to its face, along its gradient. */
 static double Along(const Particles *P, const Face *f, int gradient)
 {
-  return P->f[gradient] ? P->f[gradient][f->particle] * f->r[0] + P->f[gradient + 1][f->particle] * f->r[1] : 0.0;
+  double sum = 0.0;
+
+  for (int d = 0; P->f[gradient] && d < CL_DIM; d++)
+    sum += P->f[gradient + d][f->particle] * f->r[d];
+  return sum;
 }
 
 static void AddFace(const Model *m, const Face *f, double value[PROBE_COUNT], double *weight)
 {
   const Particles *P    = &m->P;
   const PetscInt   p    = f->particle;
-  const double     area = hypot(f->s[0], f->s[1]);
+  const double     area = VectorLength(f->s);
   const double     gw = Along(P, f, P_GW), gg = P->f[P_GG] ? Along(P, f, P_GG) : gw;
 
   AddParticle(m, p, area, value);

@@ -1,9 +1,10 @@
 /* probes.csv: affine least-squares values at points of the body or of space, and means (means.c). */
 #include "io_private.h"
+#include "clathra/eigen.h"
 #include <string.h>
 
 /* Moments of the weights about the probe: sum of w, w d_i, w d_i d_j. */
-enum { M_1 = 0, M_X, M_Y, M_XX, M_XY, M_YY, M_COUNT };
+enum { M_1 = 0, M_X, M_XX = M_X + CL_DIM, M_COUNT = M_XX + CL_DIM * CL_DIM };
 
 /* Variance along a direction, in units of the reach squared, below which the neighbours say nothing about it. */
 #define DEGENERATE 1e-3
@@ -51,31 +52,57 @@ static void AddMoments(const Fit *f, const Particles *P, double M[M_COUNT])
     if (w == 0.0)
       continue;
     M[M_1] += w;
-    M[M_X] += w * d[0];
-    M[M_Y] += w * d[1];
-    M[M_XX] += w * d[0] * d[0];
-    M[M_XY] += w * d[0] * d[1];
-    M[M_YY] += w * d[1] * d[1];
+    for (int i = 0; i < CL_DIM; i++) {
+      M[M_X + i] += w * d[i];
+      for (int j = 0; j < CL_DIM; j++)
+        M[VectorAt(M_XX, i, j)] += w * d[i] * d[j];
+    }
   }
+}
+
+/* Principal axes (rows) of a covariance, and the variances along them. */
+static void PrincipalAxes(const double C[CL_DIM][CL_DIM], double axis[CL_DIM][CL_DIM], double lambda[CL_DIM])
+{
+#if CL_DIM == 2
+  const double a = C[0][0], b = C[0][1], c = C[1][1], r = hypot(0.5 * (a - c), b), angle = 0.5 * atan2(2.0 * b, a - c);
+
+  lambda[0]  = 0.5 * (a + c) + r;
+  lambda[1]  = 0.5 * (a + c) - r;
+  axis[0][0] = axis[1][1] = cos(angle);
+  axis[0][1]              = sin(angle);
+  axis[1][0]              = -axis[0][1];
+#else
+  EigenValues e;
+
+  memcpy(e.Q, C, sizeof(e.Q));
+  (void)Eigen(&e);
+  for (int k = 0; k < 3; k++) {
+    lambda[k] = e.y[k];
+    for (int i = 0; i < 3; i++)
+      axis[k][i] = e.Q[i][k];
+  }
+#endif
 }
 
 /* Solves the normal equations by the principal axes of the neighbours' covariance; axes without extent are dropped. */
 static void Solve(Fit *f, const double M[M_COUNT])
 {
+  double C[CL_DIM][CL_DIM], axis[CL_DIM][CL_DIM], lambda[CL_DIM];
+
   f->total = M[M_1];
-  f->g[0] = f->g[1] = f->mean[0] = f->mean[1] = 0.0;
+  for (int d = 0; d < CL_DIM; d++)
+    f->g[d] = f->mean[d] = 0.0;
   if (f->total == 0.0)
     return;
-  f->mean[0] = M[M_X] / M[M_1];
-  f->mean[1] = M[M_Y] / M[M_1];
-
-  const double a = M[M_XX] / M[M_1] - f->mean[0] * f->mean[0], c = M[M_YY] / M[M_1] - f->mean[1] * f->mean[1];
-  const double b = M[M_XY] / M[M_1] - f->mean[0] * f->mean[1], r = hypot(0.5 * (a - c), b);
-  const double angle = 0.5 * atan2(2.0 * b, a - c), lambda[2] = {0.5 * (a + c) + r, 0.5 * (a + c) - r};
-  const double axis[2][2] = {{cos(angle), sin(angle)}, {-sin(angle), cos(angle)}};
-
-  for (int k = 0; k < 2; k++) {
-    const double s = axis[k][0] * f->mean[0] + axis[k][1] * f->mean[1];
+  for (int d = 0; d < CL_DIM; d++)
+    f->mean[d] = M[M_X + d] / M[M_1];
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      C[i][j] = M[VectorAt(M_XX, i, j)] / M[M_1] - f->mean[i] * f->mean[j];
+  }
+  PrincipalAxes(C, axis, lambda);
+  for (int k = 0; k < CL_DIM; k++) {
+    const double s = VectorDot(axis[k], f->mean);
 
     if (lambda[k] < DEGENERATE)
       continue;
@@ -94,8 +121,11 @@ static void AddValues(const Model *m, const Fit *f, double value[PROBE_COUNT])
 
     if (w == 0.0)
       continue;
-    const double share = w / f->total * (1.0 - f->g[0] * (d[0] - f->mean[0]) - f->g[1] * (d[1] - f->mean[1]));
+    double share = 1.0;
 
+    for (int i = 0; i < CL_DIM; i++)
+      share -= f->g[i] * (d[i] - f->mean[i]);
+    share *= w / f->total;
     for (int q = 0; q < PROBE_COUNT; q++) {
       if (ProbeWanted(CaseOf(m->c), q))
         value[q] += share * ProbeQuantity(m, p, q);
@@ -145,8 +175,10 @@ static double Share(double value, double mean, const double top[2])
    from 0 to 1. */
 static void Limit(const Scene *c, const Range *r, const double mean[LIMITED], double value[PROBE_COUNT])
 {
-  const bool among = fmin(r->far[0], r->far[1]) >= 0.0 && fmin(r->far[2], r->far[3]) >= 0.0;
+  bool among = true;
 
+  for (int i = 0; i < 2 * CL_DIM; i++)
+    among = among && r->far[i] >= 0.0;
   for (int k = 0, first = 0; k < GROUPS; first = group_end[k++]) {
     static const double saturation[2] = {1.0, 0.0};
     double              share = 1.0, end = 0.0;
@@ -208,7 +240,8 @@ static PetscErrorCode FitAll(Output *out, const Model *m, Fit *fit)
     again = false;
     PetscCall(PetscArrayzero(M, c->nprobe * M_COUNT));
     for (PetscInt k = 0; k < c->nprobe; k++) {
-      fit[k] = (Fit){.x = {c->probe[k].x[0], c->probe[k].x[1]}, .fixed = c->probe[k].fixed};
+      fit[k] = (Fit){.fixed = c->probe[k].fixed};
+      memcpy(fit[k].x, c->probe[k].x, sizeof(fit[k].x));
       Reach(&c->scene, &m->grid, fit[k].x, out->reach[k], fit[k].reach);
       if (ProbeIsMean(&c->probe[k]))
         continue;

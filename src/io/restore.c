@@ -96,8 +96,10 @@ static PetscErrorCode CheckParticles(const Model *m, PetscInt before, Loaded *L)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
     const PetscInt id = P->i[PI_ID][p], region = P->i[PI_REGION][p], faces = P->i[PI_FACES][p];
-    const double   x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
+    double         x[CL_DIM];
     PetscInt       cell[CL_DIM];
+
+    ParticlePlace(P, p, x);
 
     if (id <= (p > 0 ? P->i[PI_ID][p - 1] : before))
       Refuse(L, "its particles are not in order");
@@ -295,9 +297,10 @@ static PetscErrorCode Deal(const Grid *g, Loaded *L)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(L->P.n, &owner, L->P.n, &key));
   for (PetscInt p = 0; p < L->P.n; p++) {
-    const double x[CL_DIM] = {L->P.f[P_X][p], L->P.f[P_X + 1][p]};
-    PetscInt     cell[CL_DIM];
+    double   x[CL_DIM];
+    PetscInt cell[CL_DIM];
 
+    ParticlePlace(&L->P, p, x);
     PetscCheck(GridCell(g, x, cell), PETSC_COMM_SELF, PETSC_ERR_PLIB, "a particle outside the grid was not noticed");
     owner[p] = GridCellOwner(g, cell);
     key[p]   = same && L->rank[p] == owner[p] ? L->place[p] : total + first + p;

@@ -117,7 +117,7 @@ static PetscErrorCode Link(hid_t group, PetscInt number, const char *kind)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* /lines/x, /lines/y: where the lines of the grid are. */
+/* /lines/x, /lines/y (, /lines/z): where the lines of the grid are. */
 static PetscErrorCode LinesWrite(hid_t file, const Grid *g)
 {
   hid_t group;
@@ -125,12 +125,13 @@ static PetscErrorCode LinesWrite(hid_t file, const Grid *g)
   PetscFunctionBeginUser;
   PetscCall(H5Group(file, "/lines", &group));
   for (int d = 0; d < CL_DIM; d++) {
-    double *x;
+    const char name[] = {"xyz"[d], '\0'};
+    double    *x;
 
     PetscCall(PetscMalloc1(g->cells[d] + 1, &x));
     for (PetscInt i = 0; i <= g->cells[d]; i++)
       x[i] = GridNode(g, d, i);
-    PetscCall(H5Write(group, d ? "y" : "x", H5T_NATIVE_DOUBLE, (hsize_t)g->cells[d] + 1, x, "m"));
+    PetscCall(H5Write(group, name, H5T_NATIVE_DOUBLE, (hsize_t)g->cells[d] + 1, x, "m"));
     PetscCall(PetscFree(x));
   }
   H5Check(H5Gclose(group));

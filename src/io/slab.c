@@ -71,36 +71,43 @@ PetscErrorCode SlabParticles(const Model *m, Slab *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Strips across the axis with more nodes; datasets are rows (y) x columns (x). */
+/* Strips across the axis with most nodes; datasets are (layers (z) x) rows (y) x columns (x). */
 PetscErrorCode SlabNodes(const Model *m, Slab *s)
 {
-  const Grid    *g     = &m->grid;
-  const int      d     = g->cells[0] > g->cells[1] ? 0 : 1;
-  const PetscInt share = g->cells[d] / g->size + 1, first = PetscMin(g->rank * share, g->cells[d] + 1);
-  const PetscInt width[CL_DIM] = {g->cells[0] + 1, g->cells[1] + 1};
-  PetscMPIInt   *to;
-  PetscInt      *at, mine[CL_DIM] = {width[0], width[1]};
+  const Grid  *g = &m->grid;
+  int          d = CL_DIM - 1;
+  PetscMPIInt *to;
+  PetscInt    *at, width[CL_DIM], mine[CL_DIM], lower[CL_DIM] = {0};
 
   PetscFunctionBeginUser;
+  for (int e = CL_DIM - 1; e >= 0; e--) {
+    d        = g->cells[e] > g->cells[d] ? e : d;
+    width[e] = mine[e] = g->cells[e] + 1;
+  }
+  const PetscInt share = g->cells[d] / g->size + 1, first = PetscMin(g->rank * share, g->cells[d] + 1);
+
   *s         = (Slab){.n = ModelStart(m) ? m->map.n_owned : 0};
   mine[d]    = PetscMin(share, width[d] - first);
-  s->n_slots = s->rows = mine[0] * mine[1];
+  s->n_slots = s->rows = BoxSize(mine);
   PetscCall(PetscMalloc2(s->n, &to, s->n, &at));
   for (PetscInt k = 0; k < s->n; k++) {
-    const PetscInt owner   = m->map.ij[k][d] / share,
-                   columns = d == 0 ? PetscMin(share, width[0] - owner * share) : width[0];
+    const PetscInt owner = m->map.ij[k][d] / share;
+    PetscInt       box[CL_DIM];
 
-    to[k] = (PetscMPIInt)owner;
-    at[k] = (m->map.ij[k][1] - (d == 1 ? owner * share : 0)) * columns + m->map.ij[k][0] - (d == 0 ? owner * share : 0);
+    memcpy(box, width, sizeof(box));
+    lower[d] = owner * share;
+    box[d]   = PetscMin(share, width[d] - lower[d]);
+    to[k]    = (PetscMPIInt)owner;
+    at[k]    = BoxPlace(lower, box, m->map.ij[k]);
   }
   PetscCall(Connect(g->comm, s, to, at));
   PetscCall(PetscFree2(to, at));
   PetscCallMPI(MPI_Allreduce(&s->n, &s->total, 1, MPIU_INT, MPI_SUM, g->comm));
-  s->part              = (H5Part){.nd = 2};
-  s->part.start[1 - d] = (hsize_t)first;
+  s->part                       = (H5Part){.nd = CL_DIM};
+  s->part.start[CL_DIM - 1 - d] = (hsize_t)first;
   for (int e = 0; e < CL_DIM; e++) {
-    s->part.all[1 - e]   = (hsize_t)width[e];
-    s->part.count[1 - e] = (hsize_t)mine[e];
+    s->part.all[CL_DIM - 1 - e]   = (hsize_t)width[e];
+    s->part.count[CL_DIM - 1 - e] = (hsize_t)mine[e];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,14 +1,19 @@
 /* A snapshot, fields/000000.h5: the particles, sorted by id, and the nodal fields.
 
      /particles/<variable>   n x components; those of cl_particle_variable, io_derived and io_whole; `vertex` = 0, 1, 2,
-   ... /grid/<field>           rows (y) x columns (x) of all grid nodes (x components), NaN where inactive
+   ... /grid/<field>           (layers (z) x) rows (y) x columns (x) of all grid nodes (x components), NaN where
+   inactive
 
    with the attribute `time` (s) on file and groups and `unit` on each dataset.  The nodal fields are those the last
    step started from (projections of the particles).  A file each, for a file that is rewritten may be lost with all. */
 #include "io_private.h"
 
-const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VS, 2}, {"v_w", "m/s", F_VW, 2}, {"v_g", "m/s", F_VG, 2},
-                                  {"p_w", "Pa", F_PW, 1},  {"p_g", "Pa", F_PG, 1},  {"T", "degC", F_T, 1},
+const NodalVariable io_nodal[] = {{"v_s", "m/s", F_VS, CL_DIM},
+                                  {"v_w", "m/s", F_VW, CL_DIM},
+                                  {"v_g", "m/s", F_VG, CL_DIM},
+                                  {"p_w", "Pa", F_PW, 1},
+                                  {"p_g", "Pa", F_PG, 1},
+                                  {"T", "degC", F_T, 1},
                                   {NULL, NULL, 0, 0}};
 
 const char *const io_whole[WHOLE_COUNT] = {"region", "id", "vertex"};

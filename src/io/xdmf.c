@@ -29,16 +29,16 @@ static void Attribute(FILE *f, const char *points, int nc, bool integer, const c
 
 static void ParticleGrid(FILE *f, const FieldSet *fs, const SnapshotEntry *e)
 {
-  char n[32], n2[48];
+  char n[32], places[48];
 
   snprintf(n, sizeof(n), "%d", (int)e->n);
-  snprintf(n2, sizeof(n2), "%s 2", n);
+  snprintf(places, sizeof(places), "%s %d", n, CL_DIM);
   fprintf(f, "      <Grid Name=\"particles_%06d\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n",
           (int)e->number, e->t);
   fprintf(f, "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%s\" NodesPerElement=\"1\">", n);
   Item(f, n, true, "particles", e->number, io_whole[WHOLE_VERTEX]);
-  fprintf(f, "</Topology>\n        <Geometry GeometryType=\"XY\">");
-  Item(f, n2, false, "particles", e->number, "position");
+  fprintf(f, "</Topology>\n        <Geometry GeometryType=\"%s\">", CL_DIM == 2 ? "XY" : "XYZ");
+  Item(f, places, false, "particles", e->number, "position");
   fprintf(f, "</Geometry>\n");
   for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
     if (v->first != P_X && (fs->has & v->has))
@@ -55,42 +55,56 @@ static void ParticleGrid(FILE *f, const FieldSet *fs, const SnapshotEntry *e)
   fprintf(f, "      </Grid>\n");
 }
 
-static void Equal(FILE *f, const Grid *g, const char *n)
+/* Three numbers, z y x, of which the plane has no first. */
+static void Three(FILE *f, double none, const double v[CL_DIM])
 {
-  fprintf(f, "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"%s\"/>\n", n);
-  fprintf(f, "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">");
-  fprintf(f, "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">0 %.17g %.17g</DataItem>",
-          g->lower[1], g->lower[0]);
-  fprintf(f,
-          "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">1 %.17g "
-          "%.17g</DataItem></Geometry>\n",
-          g->line[1].h, g->line[0].h);
+  fprintf(f, "<DataItem Dimensions=\"3\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">");
+  for (int d = 2; d >= 0; d--)
+    fprintf(f, d ? "%.17g " : "%.17g</DataItem>", d < CL_DIM ? v[d < CL_DIM ? d : 0] : none);
 }
 
-/* Places of the lines, x, y and the one layer. */
+static void Equal(FILE *f, const Grid *g, const char *n)
+{
+  double h[CL_DIM];
+
+  for (int d = 0; d < CL_DIM; d++)
+    h[d] = g->line[d].h;
+  fprintf(f, "        <Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"%s\"/>\n", n);
+  fprintf(f, "        <Geometry GeometryType=\"ORIGIN_DXDYDZ\">");
+  Three(f, 0.0, g->lower);
+  fprintf(f, "\n");
+  Three(f, 1.0, h);
+  fprintf(f, "</Geometry>\n");
+}
+
+/* Places of the lines, x, y and z, or the one layer. */
 static void Lines(FILE *f, const Grid *g, const char *n)
 {
   fprintf(f, "        <Topology TopologyType=\"3DRectMesh\" Dimensions=\"%s\"/>\n", n);
   fprintf(f, "        <Geometry GeometryType=\"VXVYVZ\">");
-  for (int d = 0; d < CL_DIM; d++) {
-    fprintf(f, "<DataItem Dimensions=\"%d\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">",
-            (int)g->cells[d] + 1);
-    for (PetscInt i = 0; i <= g->cells[d]; i++)
-      fprintf(f, "%s%.17g", i ? " " : "", GridNode(g, d, i));
+  for (int d = 0; d < 3; d++) {
+    const PetscInt cells = d < CL_DIM ? g->cells[d < CL_DIM ? d : 0] : 0;
+
+    fprintf(f, "<DataItem Dimensions=\"%d\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">", (int)cells + 1);
+    for (PetscInt i = 0; i <= cells; i++)
+      fprintf(f, "%s%.17g", i ? " " : "", d < CL_DIM ? GridNode(g, d < CL_DIM ? d : 0, i) : 0.0);
     fprintf(f, "</DataItem>");
   }
-  fprintf(f,
-          "<DataItem Dimensions=\"1\" NumberType=\"Float\" Precision=\"8\" Format=\"XML\">0</DataItem></Geometry>\n");
+  fprintf(f, "</Geometry>\n");
 }
 
 static void NodeGrid(FILE *f, const FieldSet *fs, const Grid *g, const SnapshotEntry *e)
 {
   char n[64];
+  bool unequal = false;
 
-  snprintf(n, sizeof(n), "1 %d %d", (int)g->cells[1] + 1, (int)g->cells[0] + 1);
+  for (int d = 0; d < CL_DIM; d++)
+    unequal = unequal || g->line[d].x;
+  snprintf(n, sizeof(n), "%d %d %d", CL_DIM == 2 ? 1 : (int)g->cells[CL_DIM - 1] + 1, (int)g->cells[1] + 1,
+           (int)g->cells[0] + 1);
   fprintf(f, "      <Grid Name=\"grid_%06d\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n", (int)e->number,
           e->t);
-  if (g->line[0].x || g->line[1].x)
+  if (unequal)
     Lines(f, g, n);
   else
     Equal(f, g, n);

@@ -42,12 +42,16 @@ void MixtureAverageBatch(int n, const double *restrict phi, const double *restri
 }
 
 /* (293) */
-void HeatUpwind(double kappa, const double a[2], const double h[2], double K[3])
+void HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC])
 {
-  const double square = a[0] * a[0] + a[1] * a[1], half = 0.5 * (h[0] * fabs(a[0]) + h[1] * fabs(a[1]));
-  const double c = half > kappa ? (half - kappa) / square : 0.0;
+  double half = 0.5 * h[0] * fabs(a[0]);
 
-  K[0] = c * a[0] * a[0];
-  K[1] = c * a[1] * a[1];
-  K[2] = c * a[0] * a[1];
+  for (int d = 1; d < CL_DIM; d++)
+    half += 0.5 * h[d] * fabs(a[d]);
+  const double c = half > kappa ? (half - kappa) / VectorDot(a, a) : 0.0;
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = i; j < CL_DIM; j++)
+      K[cl_symmetric[i][j]] = c * a[i] * a[j];
+  }
 }

@@ -17,7 +17,7 @@ PetscErrorCode AdditionsReserve(Model *m)
   if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G] && !fs->one_pressure)
     PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
   if (m->c->stabilisation.heat_upwind && fs->heat && fs->fluid)
-    PetscCall(PetscCalloc1(3 * m->stencil_cap, &to->upwind));
+    PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (m->c->stabilisation.lumped_reaction && fs->phase[PHASE_G])
     PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));
   if (SceneHoldsReaction(m->c))
@@ -68,7 +68,7 @@ static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, doubl
 }
 
 /* Conductivity that carries heat with the flow of t_n (293). */
-static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[3])
+static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[CL_SYMMETRIC])
 {
   const Material *mat       = ParticleMaterial(m, p);
   double          a[CL_DIM] = {0.0}, h[CL_DIM];
@@ -86,9 +86,10 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
 /* (381) with the faster of both ways at t_n. */
 static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
 {
-  const double g[CL_DIM] = {m->P.f[P_GT][p], m->P.f[P_GT + 1][p]};
-  double       h[CL_DIM], slope;
+  double g[CL_DIM], h[CL_DIM], slope;
 
+  for (int d = 0; d < CL_DIM; d++)
+    g[d] = m->P.f[P_GT + d][p];
   EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
   CellWidths(m, p, h);
   return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));
@@ -101,7 +102,7 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
   if (to->spread)
     SpreadOf(m, p, q, &to->spread[PHASE_COUNT * p]);
   if (to->upwind)
-    UpwindOf(m, p, q, &to->upwind[3 * p]);
+    UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
   if (to->held)
     to->held[p] = HeldOf(m, p, q);
   if (to->exchange)

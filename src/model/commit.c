@@ -112,8 +112,9 @@ static void CountMoved(const Model *m, PetscInt p, const double out[OUT_COUNT], 
   CellWidths(m, p, h);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     if (m->c->fields.phase[ph])
-      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt + fabs(out[VectorAt(OUT_FLUX, ph, 0)]) / h[0] +
-                          fabs(out[VectorAt(OUT_FLUX, ph, 1)]) / h[1];
+      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt;
+    for (int d = 0; m->c->fields.phase[ph] && d < CL_DIM; d++)
+      rates->moved[ph] += fabs(out[VectorAt(OUT_FLUX, ph, d)]) / h[d];
   }
 }
 
@@ -200,9 +201,9 @@ static void HeatRates(const Model *m, const Reach *r, const double *x, const Poi
 
 static void PlasticState(PetscInt p, const SkeletonState *k, Trial *trial)
 {
-  trial->s[5 * p] = k->own[OWN_P_EPS];
-  for (int c = 0; c < 4; c++)
-    trial->s[5 * p + 1 + c] = k->sig[c];
+  trial->s[TRIAL_PLASTIC * p] = k->own[OWN_P_EPS];
+  for (int c = 0; c < CL_TENSOR; c++)
+    trial->s[TRIAL_PLASTIC * p + 1 + c] = k->sig[c];
 }
 
 PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates *rates, ClStatus *status)
@@ -322,8 +323,8 @@ static double Released(const Model *m, PetscInt p, const PointState *s)
                                  s->m_h < old ? s->m_h / old : 1.0, &h);
 }
 
-/* (395) of T. */
-static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const double *x)
+/* (395) of T along a pair of axes. */
+static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const double *x, const int pair[2])
 {
   const FieldSet *fs   = &m->c->fields;
   const Axis     *axis = m->stencil[p].axis;
@@ -332,7 +333,14 @@ static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const 
   for (int a = 0; a < r->n; a++) {
     const PetscInt *ij = m->map.ij[r->node[a]];
 
-    b += axis[0].dS[ij[0] - axis[0].base] * axis[1].dS[ij[1] - axis[1].base] * x[r->node[a] * fs->n + PlaceT(fs)];
+    double w = x[r->node[a] * fs->n + PlaceT(fs)];
+
+    for (int d = 0; d < CL_DIM; d++) {
+      const PetscInt k = ij[d] - axis[d].base;
+
+      w *= d == pair[0] || d == pair[1] ? axis[d].dS[k] : axis[d].S[k];
+    }
+    b += w;
   }
   return b;
 }
@@ -351,8 +359,8 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
     for (int d = 0; d < CL_DIM; d++)
       f[VectorAt(P_GW, k, d)][p] = in[k < PHASE_COUNT ? VectorAt(IN_GP, k, d) : IN_GT + d];
   }
-  if (fs->heat)
-    f[P_BT][p] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x) : 0.0;
+  for (int k = 0; fs->heat && k < CL_PAIRS; k++)
+    f[P_BT + k][p] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, cl_pair[k]) : 0.0;
   if (fs->solid)
     WriteMotion(m, p, x, r, s);
   else
@@ -393,8 +401,8 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
     if (trial->s) {
       m->P.f[P_WP][p] += trial->end[p].work;
       m->P.f[P_HEAT][p] = 0.0; /* the stages gave it */
-      for (int k = 0; k < 5; k++)
-        m->P.f[P_KP + k][p] = trial->k[5 * p + k];
+      for (int k = 0; k < TRIAL_PLASTIC; k++)
+        m->P.f[P_KP + k][p] = trial->k[TRIAL_PLASTIC * p + k];
     }
     if (m->c->fields.solid)
       m->released += Released(m, p, &s);

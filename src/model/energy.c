@@ -42,8 +42,8 @@ static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x
 {
   const FieldSet *fs      = &m->c->fields;
   const bool      there[] = {fs->solid, fs->phase[PHASE_W], fs->phase[PHASE_G]};
-  const double(*F)[2] = s->F, det = F[0][0] * F[1][1] - F[0][1] * F[1][0], lambda = s->V / (m->P.f[P_V][p] * det);
-  double u[CL_NODES][CL_DIM], g[MOTION_COUNT];
+  double          u[CL_NODES][CL_DIM], g[MOTION_COUNT], cof[CL_DIM][CL_DIM];
+  const double    det = CofactorOf(s->F, cof), lambda = s->V / (m->P.f[P_V][p] * det);
 
   *o = (Motion){0};
   for (int a = 0; a < r->n; a++) {
@@ -57,8 +57,9 @@ static void MotionAt(const Model *m, PetscInt p, const Reach *r, const double *x
       u[a][i] = xI[PlaceVs(fs) + i];
   }
   MotionGradient(m, r, u, g);
-  o->expansion =
-      s->V * ((F[1][1] * g[0] - F[1][0] * g[1] - F[0][1] * g[2] + F[0][0] * g[3]) / det + g[MOTION_HOOP] / lambda);
+  o->expansion = s->V * g[MOTION_HOOP] / lambda;
+  for (int i = 0; i < CL_DIM; i++)
+    o->expansion += s->V * VectorDot(cof[i], &g[VectorAt(0, i, 0)]) / det;
 }
 
 /* Of the mass of a phase in the inertia of the rows: M a . v over the nodes. */

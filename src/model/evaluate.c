@@ -198,8 +198,8 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->pg_n     = less != 0.0 ? OwnValue(m, p, F_PG) : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
-  for (int k = 0; k < 3; k++)
-    h->upwind[k] = m->added->upwind ? m->added->upwind[3 * p + k] : 0.0;
+  for (int k = 0; k < CL_SYMMETRIC; k++)
+    h->upwind[k] = m->added->upwind ? m->added->upwind[CL_SYMMETRIC * p + k] : 0.0;
   h->compression = m->c->compression_heat;
   for (int k = 0; h->compression && k < PHASE_COUNT; k++)
     h->p_star[k] = fs->phase[k] ? StarredPressure(m, p, r, k, less) : 0.0;

@@ -201,14 +201,13 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
 static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT_COUNT], const NodeFactors *k,
                          double dt, double *block, int ld)
 {
-  const double less[2][2] = {{A->xx - 1.0, A->xy}, {A->xy, A->yy - 1.0}};
-
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f] || PlaceV(fs, f) < 0)
       continue;
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++)
-        block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] += k->flow[f] * k->kr[f] * out[OUT_MI + f] * less[i][j] / dt;
+        block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] +=
+            k->flow[f] * k->kr[f] * out[OUT_MI + f] * (A->A[cl_symmetric[i][j]] - (i == j ? 1.0 : 0.0)) / dt;
     }
   }
 }

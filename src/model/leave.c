@@ -3,8 +3,10 @@
 
 static bool Outside(const Model *m, PetscInt p)
 {
-  const double x[CL_DIM] = {m->P.f[P_X][p], m->P.f[P_X + 1][p]};
-  PetscInt     cell[CL_DIM];
+  double x[CL_DIM];
+
+  ParticlePlace(&m->P, p, x);
+  PetscInt cell[CL_DIM];
 
   return !GridCell(&m->grid, x, cell);
 }

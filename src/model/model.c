@@ -4,6 +4,8 @@
 
 PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Model *m)
 {
+  GridLines line[CL_DIM];
+
   static const char *const name[EVENT_COUNT] = {"ClBeginStep",     "ClResidual",     "ClJacobian", "ClWidePart",
                                                 "ClReducedMatrix", "ClReducedApply", "ClProduct"};
   PetscClassId             id;
@@ -11,7 +13,9 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(m, sizeof(*m)));
   m->c = c;
-  PetscCall(GridCreateOn(comm, (GridLines[CL_DIM]){SceneLines(c, 0), SceneLines(c, 1)}, &m->grid));
+  for (int d = 0; d < CL_DIM; d++)
+    line[d] = SceneLines(c, d);
+  PetscCall(GridCreateOn(comm, line, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
   PetscCall(ParticlesSeed(first, &m->grid, &m->P));
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
@@ -145,8 +149,8 @@ double ModelKineticEnergy(const Particles *P, PetscInt p)
   for (int k = 0; k < 3; k++) {
     const int v = P_VS + k * CL_DIM;
 
-    if (P->f[v])
-      sum += 0.5 * m[k] * (PetscSqr(P->f[v][p]) + PetscSqr(P->f[v + 1][p]));
+    for (int d = 0; P->f[v] && d < CL_DIM; d++)
+      sum += 0.5 * m[k] * PetscSqr(P->f[v + d][p]);
   }
   return sum;
 }

@@ -20,17 +20,20 @@
 /* Cells that hold particles: their number, and the box about them. */
 static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[CL_DIM])
 {
-  const Grid    *g               = &m->grid;
-  PetscInt       end[2 * CL_DIM] = {PETSC_MIN_INT, PETSC_MIN_INT, PETSC_MIN_INT, PETSC_MIN_INT};
+  const Grid    *g = &m->grid;
+  PetscInt       end[2 * CL_DIM];
   unsigned char *seen;
 
   PetscFunctionBeginUser;
   *count = 0;
+  for (int k = 0; k < 2 * CL_DIM; k++)
+    end[k] = PETSC_MIN_INT;
   PetscCall(PetscCalloc1(GridPaddedSize(g), &seen));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double x[CL_DIM] = {m->P.f[P_X][p], m->P.f[P_X + 1][p]};
-    PetscInt     cell[CL_DIM];
+    double   x[CL_DIM];
+    PetscInt cell[CL_DIM];
 
+    ParticlePlace(&m->P, p, x);
     if (!GridCell(g, x, cell))
       continue;
     unsigned char *here = &seen[GridPadded(g, cell)];
@@ -73,13 +76,24 @@ static double AcrossLU(const FieldSet *fs)
   return (fs->fluid ? ACROSS_LU : ACROSS_LU_DRY) / fs->n;
 }
 
+/* Mean number of cells across the body: how many along its longest axis share a layer; in space layers are faces, whose
+   LU costs as the square of that. */
+static double Across(PetscInt cells, const PetscInt extent[CL_DIM])
+{
+  PetscInt longest = extent[0];
+
+  for (int d = 1; d < CL_DIM; d++)
+    longest = PetscMax(longest, extent[d]);
+  return (double)cells / (double)longest;
+}
+
 PetscErrorCode PreconditionerPlan(Model *m)
 {
   PetscInt cells, extent[CL_DIM];
 
   PetscFunctionBeginUser;
   PetscCall(Occupied(m, &cells, extent));
-  m->solver->plan.across = (double)cells / (double)PetscMax(extent[0], extent[1]);
+  m->solver->plan.across = Across(cells, extent);
   m->solver->plan.reduced =
       m->solver->preconditioner == PRECONDITIONER_REDUCED ||
       (m->solver->preconditioner == PRECONDITIONER_AUTO && m->solver->plan.across > AcrossLU(&m->c->fields));

@@ -212,7 +212,7 @@ static PetscErrorCode FindWorst(Model *m, int *field)
   } local          = {-1.0, m->grid.rank}, worst;
   const PetscInt n = m->c->fields.n;
   const double  *a;
-  double         at[3] = {0.0};
+  double         at[CL_DIM + 1] = {0.0}; /* and the field */
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(m->solver->R, &a));
@@ -222,14 +222,14 @@ static PetscErrorCode FindWorst(Model *m, int *field)
     local.value = fabs(a[k]);
     for (int d = 0; d < CL_DIM; d++)
       at[d] = GridNode(&m->grid, d, m->map.ij[k / n][d]);
-    at[2] = (double)m->c->fields.field[k % n];
+    at[CL_DIM] = (double)m->c->fields.field[k % n];
   }
   PetscCall(VecRestoreArrayRead(m->solver->R, &a));
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->grid.comm));
-  PetscCallMPI(MPI_Bcast(at, 3, MPI_DOUBLE, worst.rank, m->grid.comm));
+  PetscCallMPI(MPI_Bcast(at, CL_DIM + 1, MPI_DOUBLE, worst.rank, m->grid.comm));
   for (int d = 0; d < CL_DIM; d++)
     m->failure.where[d] = at[d];
-  *field = (int)at[2];
+  *field = (int)at[CL_DIM];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

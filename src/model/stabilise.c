@@ -288,8 +288,10 @@ static PetscErrorCode BuildProjection(Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(GridPaddedSize(g), &sum));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double x[CL_DIM] = {m->P.f[P_X][p], m->P.f[P_X + 1][p]};
-    PetscInt     cell[CL_DIM];
+    double x[CL_DIM];
+
+    ParticlePlace(&m->P, p, x);
+    PetscInt cell[CL_DIM];
 
     if (GridCell(g, x, cell))
       AddParticle(m, p, cell, &sum[GridPadded(g, cell)]);

@@ -97,17 +97,19 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
     s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
   }
   if (fs->heat)
-    s[SUM_X + PlaceT(fs)] += S * q->capacity * (Carried(m, p, P_T, P_GT, d) + f[P_BT][p] * d[0] * d[1]); /* (395) */
+    s[SUM_X + PlaceT(fs)] += S * q->capacity * Carried(m, p, P_T, P_GT, d);
+  for (int k = 0; fs->heat && k < CL_PAIRS; k++) /* (395) */
+    s[SUM_X + PlaceT(fs)] += S * q->capacity * f[P_BT + k][p] * d[cl_pair[k][0]] * d[cl_pair[k][1]];
 }
 
 /* Did the particle's domain begin at the axis? */
 static bool SeededAtAxis(const Model *m, PetscInt p)
 {
-  double l[CL_DIM];
+  double x[CL_DIM], l[CL_DIM];
 
   if (!m->c->axisymmetric)
     return false;
-  const double x[CL_DIM] = {ParticleInitialX(&m->P, p, 0), ParticleInitialX(&m->P, p, 1)};
+  ParticleInitialPlace(&m->P, p, x);
   ParticlesInitialHalfLength(m->c, m->P.i[PI_REGION][p], x, l);
   return x[0] < l[0] * (1.0 + AT_AXIS);
 }

@@ -16,7 +16,9 @@ typedef struct {
 
 static bool CellOf(const Search *s, PetscInt p, PetscInt cell[CL_DIM])
 {
-  const double x[CL_DIM] = {s->P->f[P_X][p], s->P->f[P_X + 1][p]};
+  double x[CL_DIM];
+
+  ParticlePlace(s->P, p, x);
 
   return GridCell(s->g, x, cell);
 }

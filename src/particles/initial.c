@@ -128,11 +128,12 @@ PetscErrorCode ParticleInitialState(const Scene *c, PetscInt region, Particles *
 {
   const Region   *r   = &c->region[region];
   const Material *mat = &c->material[r->material];
-  const double    V   = 4.0 * l[0] * l[1] * (c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0);
   InitialScalars  s;
-  double          m[4];
+  double          m[4], V = c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0;
 
   PetscFunctionBeginUser;
+  for (int d = 0; d < CL_DIM; d++)
+    V *= 2.0 * l[d];
   PetscCall(InitialScalarsAt(c, r, x, &s));
   Masses(c, r, &s, V, m);
   for (int k = 0; k < P_COUNT; k++)
@@ -184,7 +185,7 @@ void ParticlesBecomeInitial(Particles *P)
   Zero(P, P_LOGJ, 1);
   for (PetscInt p = 0; p < P->n; p++) {
     for (int i = 0; P->f[P_SIG0] && i < 6; i++)
-      P->f[P_SIG0 + i][p] = P->f[P_SIG + i][p] - (P->f[P_BOND] && i < 4 ? P->f[P_BOND + i][p] : 0.0);
+      P->f[P_SIG0 + i][p] = P->f[P_SIG + i][p] - (P->f[P_BOND] && i < CL_TENSOR ? P->f[P_BOND + i][p] : 0.0);
     for (int f = 0; f < PHASE_COUNT; f++)
       Set(P, p, P_PW0 + f, P->f[P_PW + f] ? P->f[P_PW + f][p] : 0.0);
   }

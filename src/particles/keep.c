@@ -23,46 +23,81 @@ static void Deform(const Particles *P, PetscInt p, PetscInt n, const ParticleMot
 {
   double *restrict log_J      = P->f[P_LOGJ] + p;
   const double *restrict more = m->log_J;
-  const double *restrict Hxx = m->H[0][0], *restrict Hxy = m->H[0][1], *restrict Hyx = m->H[1][0],
-                         *restrict Hyy = m->H[1][1];
 
   for (int j = 0; j < CL_DIM; j++) {
-    double *restrict x = P->f[P_F + j] + p, *restrict y = P->f[P_F + 2 + j] + p;
-
+#pragma GCC ivdep
     for (PetscInt q = 0; q < n; q++) {
-      const double a = Hxx[q] * x[q] + Hxy[q] * y[q], b = Hyx[q] * x[q] + Hyy[q] * y[q];
+      double x[CL_DIM];
 
-      x[q] += a;
-      y[q] += b;
+      for (int i = 0; i < CL_DIM; i++)
+        x[i] = P->f[VectorAt(P_F, i, j)][p + q];
+      for (int i = 0; i < CL_DIM; i++) {
+        double sum = m->H[i][0][q] * x[0];
+
+        for (int k = 1; k < CL_DIM; k++)
+          sum += m->H[i][k][q] * x[k];
+        P->f[VectorAt(P_F, i, j)][p + q] = x[i] + sum;
+      }
     }
   }
   for (PetscInt q = 0; q < n; q++)
     log_J[q] += more[q];
 }
 
-/* Gradients on the configuration at the begin of the step, brought to that at its end: F^-T g; and the mixed derivative
-   of T, xy of F^-T B F^-1 (395). */
+/* F^-T of particle q of a motion. */
+INLINE void InverseTransposed(const ParticleMotion *m, PetscInt q, double A[CL_DIM][CL_DIM])
+{
+  double F[CL_DIM][CL_DIM];
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      F[i][j] = (i == j ? 1.0 : 0.0) + m->H[i][j][q];
+  }
+  const double per = 1.0 / CofactorOf(F, A);
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      A[i][j] *= per;
+  }
+}
+
+/* Gradients on the configuration at the begin of the step, brought to that at its end: F^-T g; and the mixed
+   derivatives of T, xy (yz, xz) of F^-T B F^-1 (395). */
 static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const ParticleMotion *m)
 {
-  static const int grad[3]   = {P_GW, P_GG, P_GT};
-  const double *restrict Hxx = m->H[0][0], *restrict Hxy = m->H[0][1], *restrict Hyx = m->H[1][0],
-                         *restrict Hyy = m->H[1][1];
+  static const int grad[3] = {P_GW, P_GG, P_GT};
 
   for (int k = 0; k < 3; k++) {
-    double *restrict gx = P->f[grad[k]] + p, *restrict gy = P->f[grad[k] + 1] + p;
+    const PetscInt held = P->f[grad[k]] ? n : 0;
 
-    for (PetscInt q = 0; P->f[grad[k]] && q < n; q++) {
-      const double Fxx = 1.0 + Hxx[q], Fyy = 1.0 + Hyy[q], per = 1.0 / (Fxx * Fyy - Hxy[q] * Hyx[q]);
-      const double x = gx[q], y = gy[q];
+#pragma GCC ivdep
+    for (PetscInt q = 0; q < held; q++) {
+      double A[CL_DIM][CL_DIM], g[CL_DIM];
 
-      gx[q] = (Fyy * x - Hyx[q] * y) * per;
-      gy[q] = (Fxx * y - Hxy[q] * x) * per;
+      InverseTransposed(m, q, A);
+      for (int d = 0; d < CL_DIM; d++)
+        g[d] = P->f[grad[k] + d][p + q];
+      for (int d = 0; d < CL_DIM; d++)
+        P->f[grad[k] + d][p + q] = VectorDot(A[d], g);
     }
   }
   for (PetscInt q = 0; P->f[P_BT] && q < n; q++) {
-    const double Fxx = 1.0 + Hxx[q], Fyy = 1.0 + Hyy[q], turn = Hxy[q] * Hyx[q], det = Fxx * Fyy - turn;
+    double A[CL_DIM][CL_DIM], B[CL_PAIRS];
 
-    P->f[P_BT][p + q] *= (Fxx * Fyy + turn) / (det * det);
+    InverseTransposed(m, q, A);
+    for (int k = 0; k < CL_PAIRS; k++)
+      B[k] = P->f[P_BT + k][p + q];
+    for (int k = 0; k < CL_PAIRS; k++) {
+      const double *a = A[cl_pair[k][0]], *b = A[cl_pair[k][1]];
+      double        sum = 0.0;
+
+      for (int o = 0; o < CL_PAIRS; o++) {
+        const int i = cl_pair[o][0], j = cl_pair[o][1];
+
+        sum += B[o] * (a[i] * b[j] + a[j] * b[i]);
+      }
+      P->f[P_BT + k][p + q] = sum;
+    }
   }
 }
 

@@ -35,8 +35,10 @@ static PetscErrorCode FindOwners(const Grid *g, const Particles *P, PetscMPIInt 
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
-    const double x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
-    PetscInt     cell[CL_DIM];
+    double x[CL_DIM];
+
+    ParticlePlace(P, p, x);
+    PetscInt cell[CL_DIM];
 
     if (GridCell(g, x, cell))
       owner[p] = GridCellOwner(g, cell);

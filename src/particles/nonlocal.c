@@ -2,12 +2,13 @@
    Once a step (hybrid: once a burst), so pairs of particles are gone through and no list is kept.  Neighbours on other
    ranks and behind planes of symmetry come as copies of what the average needs. */
 #include "clathra/particles.h"
+#include <string.h>
 
-#define REACH 3.0 /* lengths beyond which weights are below 1e-3 of the largest */
-#define IMAGES 4  /* of a place: itself and what two perpendicular planes mirror */
+#define REACH 3.0            /* lengths beyond which weights are below 1e-3 of the largest */
+#define IMAGES (1 << CL_DIM) /* of a place: itself and what perpendicular planes mirror */
 
 /* What a neighbour tells. */
-enum { N_X = 0, N_Y, N_VOLUME, N_GROWTH, N_MATERIAL, N_COUNT };
+enum { N_X = 0, N_VOLUME = CL_DIM, N_GROWTH, N_MATERIAL, N_COUNT };
 typedef struct {
   double v[N_COUNT];
 } Neighbour;
@@ -44,16 +45,14 @@ static int Images(const Scene *c, const double x[CL_DIM], double reach, double i
 {
   int n = 1;
 
-  image[0][0] = x[0];
-  image[0][1] = x[1];
+  memcpy(image[0], x, sizeof(image[0]));
   for (PetscInt k = 0; k < c->nbc; k++) {
     const Bc *b = &c->bc[k];
 
     if (b->type != BC_ROLLER || fabs(x[b->axis] - b->position) >= reach)
       continue;
     for (int i = 0, had = n; i < had && n < IMAGES; i++, n++) {
-      image[n][0]       = image[i][0];
-      image[n][1]       = image[i][1];
+      memcpy(image[n], image[i], sizeof(image[n]));
       image[n][b->axis] = 2.0 * b->position - image[i][b->axis];
     }
   }
@@ -63,9 +62,11 @@ static int Images(const Scene *c, const double x[CL_DIM], double reach, double i
 /* Is x within reach of the cells of rank r? */
 static bool Reaches(const Grid *g, PetscMPIInt r, const double x[CL_DIM], double reach)
 {
-  const PetscInt at[CL_DIM] = {r % g->nproc[0], r / g->nproc[0]};
-  double         d2         = 0.0;
+  static const PetscInt first[CL_DIM] = {0};
+  PetscInt              at[CL_DIM];
+  double                d2 = 0.0;
 
+  BoxAt(first, g->nproc, r, at);
   for (int d = 0; d < CL_DIM; d++) {
     const double lo = GridNode(g, d, g->start[d][at[d]]), hi = GridNode(g, d, g->start[d][at[d] + 1]);
 
@@ -81,15 +82,19 @@ static PetscInt Tell(const Scene *c, const Grid *g, const Particles *P, PetscMPI
 
   for (PetscInt p = 0; p < P->n; p++) {
     const PetscInt material = MaterialOf(c, P, p);
-    const double   reach = REACH * LengthOf(c, material), x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
-    double         image[IMAGES][CL_DIM];
+    const double   reach    = REACH * LengthOf(c, material);
+    double         x[CL_DIM], image[IMAGES][CL_DIM];
 
+    ParticlePlace(P, p, x);
     for (int i = 0, images = reach > 0.0 ? Images(c, x, reach, image) : 0; i < images; i++) {
       if (!Reaches(g, r, image[i], reach))
         continue;
-      if (to)
-        to[n] = (Neighbour){
-            {image[i][0], image[i][1], P->f[P_V][p], P->f[P_EPS][p] - P->f[P_AVERAGED][p], (double)material}};
+      if (to) {
+        memcpy(to[n].v, image[i], sizeof(image[i]));
+        to[n].v[N_VOLUME]   = P->f[P_V][p];
+        to[n].v[N_GROWTH]   = P->f[P_EPS][p] - P->f[P_AVERAGED][p];
+        to[n].v[N_MATERIAL] = (double)material;
+      }
       n++;
     }
   }
@@ -131,6 +136,17 @@ static PetscInt CellOf(const Cells *k, int d, double x)
   return (PetscInt)PetscMin(PetscMax((x - k->lower[d]) / k->size, 0.0), (double)(k->cells[d] - 1));
 }
 
+static const PetscInt origin[CL_DIM] = {0};
+
+static PetscInt CellAt(const Cells *k, const double x[CL_DIM])
+{
+  PetscInt at[CL_DIM];
+
+  for (int d = 0; d < CL_DIM; d++)
+    at[d] = CellOf(k, d, x[d]);
+  return BoxPlace(origin, k->cells, at);
+}
+
 /* Sorts n neighbours into cells; takes them over. */
 static PetscErrorCode CellsCreate(double size, PetscInt n, Neighbour *all, Cells *k)
 {
@@ -138,22 +154,23 @@ static PetscErrorCode CellsCreate(double size, PetscInt n, Neighbour *all, Cells
   PetscInt *at, cells;
 
   PetscFunctionBeginUser;
-  *k = (Cells){.size = size, .n = n, .lower = {PETSC_MAX_REAL, PETSC_MAX_REAL}};
+  *k = (Cells){.size = size, .n = n};
   for (int d = 0; d < CL_DIM; d++) {
-    upper[d] = PETSC_MIN_REAL;
+    k->lower[d] = PETSC_MAX_REAL;
+    upper[d]    = PETSC_MIN_REAL;
     for (PetscInt q = 0; q < n; q++) {
       k->lower[d] = fmin(k->lower[d], all[q].v[N_X + d]);
       upper[d]    = fmax(upper[d], all[q].v[N_X + d]);
     }
     k->cells[d] = n ? 1 + (PetscInt)((upper[d] - k->lower[d]) / size) : 1;
   }
-  cells = k->cells[0] * k->cells[1];
+  cells = BoxSize(k->cells);
   PetscCall(PetscCalloc2(cells + 2, &k->first, cells, &k->grows));
   PetscCall(PetscMalloc1(n, &k->of));
   at = k->first + 1; /* counts, then where the next one goes: in the end first[k + 1] */
   for (int pass = 0; pass < 2; pass++) {
     for (PetscInt q = 0; q < n; q++) {
-      const PetscInt cell = CellOf(k, 1, all[q].v[N_Y]) * k->cells[0] + CellOf(k, 0, all[q].v[N_X]);
+      const PetscInt cell = CellAt(k, &all[q].v[N_X]);
 
       if (pass == 0)
         at[cell + 1]++;
@@ -176,30 +193,47 @@ static PetscErrorCode CellsDestroy(Cells *k)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Place of the first cell of the j-th row along x of a box of cells. */
+static PetscInt Row(const Cells *k, const PetscInt lo[CL_DIM], const PetscInt rows[CL_DIM], PetscInt j)
+{
+  PetscInt at[CL_DIM];
+
+  BoxAt(lo, rows, j, at);
+  at[0] = 0;
+  return BoxPlace(origin, k->cells, at);
+}
+
 /* (85) at x for a material; own is the particle's growth, which counts where it has no neighbours. */
 static double Average(const Cells *k, const double x[CL_DIM], double material, double length, double own)
 {
   const double reach = REACH * length;
   double       sum = 0.0, weights = 0.0;
   bool         grows = false;
-  PetscInt     lo[CL_DIM], hi[CL_DIM];
+  PetscInt     lo[CL_DIM], hi[CL_DIM], rows[CL_DIM] = {1};
 
   for (int d = 0; d < CL_DIM; d++) {
     lo[d] = CellOf(k, d, x[d] - reach);
     hi[d] = CellOf(k, d, x[d] + reach);
   }
-  for (PetscInt j = lo[1]; j <= hi[1]; j++) {
+  for (int d = 1; d < CL_DIM; d++)
+    rows[d] = hi[d] - lo[d] + 1;
+  for (PetscInt j = 0; j < BoxSize(rows) && !grows; j++) {
+    const PetscInt row = Row(k, lo, rows, j);
+
     for (PetscInt i = lo[0]; i <= hi[0]; i++)
-      grows = grows || k->grows[j * k->cells[0] + i];
+      grows = grows || k->grows[row + i];
   }
   if (!grows)
     return 0.0;
-  for (PetscInt j = lo[1]; j <= hi[1]; j++) {
-    const PetscInt row = j * k->cells[0];
+  for (PetscInt j = 0; j < BoxSize(rows); j++) {
+    const PetscInt row = Row(k, lo, rows, j);
 
     for (PetscInt q = k->first[row + lo[0]]; q < k->first[row + hi[0] + 1]; q++) {
-      const double *v = k->of[q].v, r2 = PetscSqr(v[N_X] - x[0]) + PetscSqr(v[N_Y] - x[1]);
+      const double *v  = k->of[q].v;
+      double        r2 = 0.0;
 
+      for (int d = 0; d < CL_DIM; d++)
+        r2 += PetscSqr(v[N_X + d] - x[d]);
       if (r2 >= reach * reach || v[N_MATERIAL] != material)
         continue;
       const double r = sqrt(r2) / length, w = v[N_VOLUME] * r * exp(-r * r);
@@ -223,10 +257,13 @@ PetscErrorCode ParticlesNonlocal(const Scene *c, const Grid *g, double time, Par
   PetscCall(Exchange(c, g, P, &n, &all));
   PetscCall(CellsCreate(LargestLength(c), n, all, &k));
   for (PetscInt p = 0; p < P->n; p++) {
-    const double   x[CL_DIM] = {f[P_X][p], f[P_X + 1][p]}, own = f[P_EPS][p] - f[P_AVERAGED][p];
+    const double   own      = f[P_EPS][p] - f[P_AVERAGED][p];
     const PetscInt material = MaterialOf(c, P, p);
-    const double   length   = LengthOf(c, material),
-                 grown      = length > 0.0 ? Average(&k, x, (double)material, length, own) : own;
+    const double   length   = LengthOf(c, material);
+    double         x[CL_DIM];
+
+    ParticlePlace(P, p, x);
+    const double grown = length > 0.0 ? Average(&k, x, (double)material, length, own) : own;
 
     f[P_NONLOCAL][p] += grown;
     f[P_NONLOCAL_RATE][p] = time > 0.0 ? grown / time : 0.0;

@@ -3,6 +3,7 @@
 
 #include "clathra/tensor.h"
 #include "tangent.h"
+#include <string.h>
 
 typedef struct {
   double s[6], ds[6][IN_COUNT];
@@ -13,14 +14,13 @@ typedef struct {
 INLINE void SkeletonRow(const double d[SKELETON_IN], const Kinematics *k, const ScalarState *s, const Jet *thermal,
                         const Jet *kept, double row[IN_COUNT])
 {
-  static const int component[4] = {0, 1, 3, 2}; /* of Kinematics.e */
-
   for (int i = 0; i < IN_COUNT; i++)
     row[i] = 0.0;
   for (int i = 0; i < MOTION_COUNT; i++) {
-    row[IN_GRADU + i] = i < MOTION_HOOP ? d[SKELETON_THETA] * k->dtheta[i] : 0.0;
-    for (int c = 0; c < 4; c++)
-      row[IN_GRADU + i] += d[SKELETON_STRAIN + c] * k->de[component[c]][i];
+    for (int c = 0; i < MOTION_HOOP && c < CL_SPINS; c++)
+      row[IN_GRADU + i] += d[SKELETON_THETA + c] * k->dtheta[c][i];
+    for (int c = 0; c < CL_TENSOR; c++)
+      row[IN_GRADU + i] += d[SKELETON_STRAIN + c] * k->de[c][i];
   }
   AddJet(row, d[SKELETON_E], &s->E, k);
   AddJet(row, d[SKELETON_SH], &s->Sh, k);
@@ -35,16 +35,12 @@ INLINE ClStatus EffectiveStress(const Material *mat, const PointHistory *h, cons
 {
   const Jet       thermal = JetScale(1.0 / 3.0, JetMul(s->beta, JetVariable(T - h->T_n, JET_T)));
   double          dE;
-  SkeletonStep    d    = {.c       = k->c,
-                          .s       = k->s,
-                          .e       = {k->e[0], k->e[1], k->e[3], k->e[2]},
-                          .thermal = thermal.v,
-                          .E       = s->E.v,
-                          .Sh      = s->Sh.v};
+  SkeletonStep    d    = {.turn = k->turn, .thermal = thermal.v, .E = s->E.v, .Sh = s->Sh.v};
   const Kept      k_h  = ElasticityHasBonds(&mat->elasticity) ? KeptHydrate(h->m_star[0], s->m_h.v) : (Kept){1.0, 0.0};
   const Jet       kept = JetChain(k_h.v, k_h.m, s->m_h);
   SkeletonTangent t;
 
+  memcpy(d.e, k->e, sizeof(d.e));
   d.E_n  = ElasticityYoung(&mat->elasticity, h->Sh_n, &dE);
   d.kept = kept.v;
   if (!SkeletonUpdate(mat, &h->skeleton, &d, state, tangent ? &t : NULL, why))

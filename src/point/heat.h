@@ -8,9 +8,11 @@ INLINE void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
                        const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   for (int i = 0; i < CL_DIM; i++) {
-    const double Kg         = VectorDot(metric->K[i], &in[IN_GT]);
-    const double up[CL_DIM] = {i ? h->upwind[2] : h->upwind[0], i ? h->upwind[1] : h->upwind[2]};
+    const double Kg = VectorDot(metric->K[i], &in[IN_GT]);
+    double       up[CL_DIM];
 
+    for (int j = 0; j < CL_DIM; j++)
+      up[j] = h->upwind[cl_symmetric[i][j]];
     o->out[OUT_HEAT + i] = h->V * (s->kappa.v * Kg + VectorDot(up, &in[IN_GT]));
     if (!tangent)
       continue;
@@ -44,8 +46,13 @@ INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h,
       o->D[OUT_Q][IN_GT + i] += c_f * o->out[r];
     }
     for (int of = 0; tangent && of < PHASE_COUNT; of++) {
-      for (int j = 0; j < CL_DIM; j++)
-        o->wide_q[of][j] += AdvectedHeat(c_f, (double[]){o->wide[f][of][0][j], o->wide[f][of][1][j]}, &in[IN_GT]);
+      for (int j = 0; j < CL_DIM; j++) {
+        double flux[CL_DIM];
+
+        for (int i = 0; i < CL_DIM; i++)
+          flux[i] = o->wide[f][of][i][j];
+        o->wide_q[of][j] += AdvectedHeat(c_f, flux, &in[IN_GT]);
+      }
     }
   }
 }

@@ -45,13 +45,12 @@ INLINE ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char
 
 /* The motion of a particle that does not move. */
 static const Kinematics at_rest = {
-    .F        = {{1.0, 0.0}, {0.0, 1.0}},
+    .F        = CL_IDENTITY,
     .lambda   = 1.0,
     .J        = 1.0,
-    .cof      = {{1.0, 0.0}, {0.0, 1.0}},
+    .cof      = CL_IDENTITY,
     .cof_hoop = 1.0,
-    .c        = 1.0,
-    .stretch  = {1.0, 1.0},
+    .turn     = ROTATION_NONE,
 };
 
 INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],
@@ -92,9 +91,9 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
       return strained;
     const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);
     MixtureForces(h, k, &s, &st, &a, tangent, o);
-    for (int d = 0; d < CL_DIM; d++)
-      state->stretch[d] = k->stretch[d];
   }
+  for (int d = 0; d < CL_DIM; d++)
+    state->stretch[d] = fs->solid ? k->stretch[d] : 1.0;
   memcpy(state->F, k->F, sizeof(state->F));
   if (fs->fluid || fs->heat)
     MetricEvaluate(k, tangent, &metric);

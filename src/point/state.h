@@ -203,7 +203,7 @@ INLINE ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const doubl
     *why = "pressure or temperature is not finite";
     return CL_NONFINITE;
   }
-  if (fs->solid && !isfinite(in[IN_U] + in[IN_U + 1])) {
+  if (fs->solid && !isfinite(VectorDot(&in[IN_U], &in[IN_U]))) {
     *why = "a displacement is not finite";
     return CL_NONFINITE;
   }

@@ -64,10 +64,10 @@ static Span Temperatures(const Stepper *s)
   return span;
 }
 
-static void Place(const Extreme *e, char text[96])
+static void PlaceOf(const Extreme *e, char text[128])
 {
 
-  snprintf(text, 96, "near (%.4g, %.4g) m at t = %s", e->at[0], e->at[1], TimeWords(e->t, 4).s);
+  snprintf(text, 128, "near %s at t = %s", PlaceWords(e->at).s, TimeWords(e->t, 4).s);
 }
 
 PetscErrorCode RangeSummary(const Stepper *s, char text[512])
@@ -84,20 +84,20 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
   text[0] = '\0';
   for (int k = 0; k < 2; k++) {
     const Extreme *low = &s->state.extreme[of[k].low];
-    char           from[96], to[96];
+    char           from[128], to[128];
 
     if (!(s->model->c->fields.has & of[k].has))
       continue;
-    Place(&low[0], from);
-    Place(&low[1], to);
+    PlaceOf(&low[0], from);
+    PlaceOf(&low[1], to);
     snprintf(text + told, 512 - told, "  %s of particles from %.5g %s, %s, to %.5g, %s\n", of[k].name,
              low[0].value / of[k].per, of[k].unit, from, low[1].value / of[k].per, to);
     told = strlen(text);
   }
   if (s->state.extreme[MOST_HELD].value > 0.0) {
-    char at[96];
+    char at[128];
 
-    Place(&s->state.extreme[MOST_HELD], at);
+    PlaceOf(&s->state.extreme[MOST_HELD], at);
     snprintf(text + told, 512 - told,
              "  stabilisation_reaction_heat held hydrate up to %.3g K above its "
              "equilibrium, %s; by "
@@ -123,11 +123,11 @@ static PetscErrorCode WarnOfTemperatures(const Stepper *s)
     const Extreme *e     = &z->extreme[k];
     const double   limit = warm ? bound.high : bound.low, beyond = warm ? e->value - limit : limit - e->value;
     const double   plain = warm ? acted.high : acted.low;
-    char           place[96], hydrate[96] = "none reacts";
+    char           place[128], hydrate[96] = "none reacts";
 
     if (!(beyond > slack))
       continue;
-    Place(e, place);
+    PlaceOf(e, place);
     if (SceneReacts(c) && c->fields.phase[PHASE_G])
       snprintf(hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
                StepperEquilibrium(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
@@ -185,10 +185,12 @@ static Span Pressures(const Stepper *s)
 
   for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++) {
     const Scene *scene = &CaseInStage(c, k)->scene;
-    const double tall  = fmax(scene->upper[0] - scene->lower[0], scene->upper[1] - scene->lower[1]);
     const double heavy = SceneGravity(scene) * scene->ambient_density;
     Span         level = {INFINITY, -INFINITY};
-    double       most = 0.0, change = 0.0;
+    double       most = 0.0, change = 0.0, tall = 0.0;
+
+    for (int d = 0; d < CL_DIM; d++)
+      tall = fmax(tall, scene->upper[d] - scene->lower[d]);
 
     for (PetscInt i = 0; i < scene->nbc; i++)
       AddPressures(&span, &scene->bc[i]);
@@ -222,11 +224,11 @@ static PetscErrorCode NotePressures(const Stepper *s)
     const bool     high  = k == HIGHEST_P;
     const Extreme *e     = &z->extreme[k];
     const double   limit = high ? bound.high : bound.low, beyond = high ? e->value - limit : limit - e->value;
-    char           place[96];
+    char           place[128];
 
     if (!(beyond > fmax(LEAST_P, high ? ABOVE * fabs(limit) : BEYOND * range)))
       continue;
-    Place(e, place);
+    PlaceOf(e, place);
     PetscCall(PetscFPrintf(
         s->model->grid.comm, stderr,
         "clathra: note: the pressure of a particle was %.4g MPa, %s: %.3g MPa %s that of the start "
@@ -246,12 +248,12 @@ static PetscErrorCode WarnOfTension(const Stepper *s)
 {
   const Scene   *c = s->model->c;
   const Extreme *e = &s->state.extreme[LOWEST_P];
-  char           place[96];
+  char           place[128];
 
   PetscFunctionBeginUser;
   if (!c->fields.phase[PHASE_W] || !(e->value < -VACUUM))
     PetscFunctionReturn(PETSC_SUCCESS);
-  Place(e, place);
+  PlaceOf(e, place);
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
       "clathra: warning: the pressure of a particle was %s, a tension, %s: water in pores boils or lets its gas out "
@@ -268,12 +270,12 @@ static PetscErrorCode WarnOfHeld(const Stepper *s)
 {
   const Extreme *e   = &s->state.extreme[MOST_HELD];
   const double   run = s->state.t - StepperCase(s)->scene.t_begin;
-  char           place[96];
+  char           place[128];
 
   PetscFunctionBeginUser;
   if (!(s->state.held_for > LONG * run))
     PetscFunctionReturn(PETSC_SUCCESS);
-  Place(e, place);
+  PlaceOf(e, place);
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
       "clathra: warning: hydrate was %.3g K warmer than its equilibrium, %s, and %.3g K or more for %s of %s, for no "

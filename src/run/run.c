@@ -80,9 +80,9 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
   else
     snprintf(solved, sizeof(solved), "%2" PetscInt_FMT " Newton iterations", info->newton);
   if (s->adaptive && !s->explicit)
-    snprintf(error, sizeof(error), ", error %.2g of tolerance (%s), at worst %.2g (%s near (%.4g, %.4g) m)", info->err,
-             stepper_error_word[info->rules], info->peak.err, stepper_error_word[info->peak.of], info->peak.at[0],
-             info->peak.at[1]);
+    snprintf(error, sizeof(error), ", error %.2g of tolerance (%s), at worst %.2g (%s near %s)", info->err,
+             stepper_error_word[info->rules], info->peak.err, stepper_error_word[info->peak.of],
+             PlaceWords(info->peak.at).s);
   PetscCall(PetscPrintf(s->model->grid.comm, "%sstep %4" PetscInt_FMT ": t = %s%s (%.1f %%), dt = %s, %s%s%s%s, %s\n",
                         stage, s->state.step, begin, TimeWordsAs(s->state.t - t_begin, c->t_end - t_begin, 6).s,
                         100.0 * done, TimeWords(info->dt, 6).s, solved, error, cuts, yields, rest));
@@ -446,6 +446,17 @@ static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* "52 x 1": cells along each axis. */
+static Place CellsWords(const Scene *c, const char *between)
+{
+  Place words = {""};
+  int   n     = 0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    n += snprintf(words.s + n, sizeof(words.s) - (size_t)n, "%s%" PetscInt_FMT, d ? between : "", c->cells[d]);
+  return words;
+}
+
 PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
 {
   Run         run = {0};
@@ -472,9 +483,9 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (!GridFits(size, c->scene.cells)) {
     PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: %s: grid_cells = %" PetscInt_FMT ", %" PetscInt_FMT
-                           ": too few for %d ranks (each needs a part of at least 3 x 3 nodes); use fewer ranks\n",
-                           c->file, c->scene.cells[0], c->scene.cells[1], (int)size));
+                           "clathra: %s: grid_cells = %s: too few for %d ranks (each needs a part of at least 3 nodes "
+                           "along every axis that is shared); use fewer ranks\n",
+                           c->file, CellsWords(&c->scene, ", ").s, (int)size));
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -491,11 +502,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     char fields[128];
 
     FieldSetPrint(&c->scene.fields, fields, sizeof(fields));
-    PetscCall(PetscPrintf(comm,
-                          "%s\n  %" PetscInt_FMT " x %" PetscInt_FMT
-                          " cells%s, %s, to t = %s\n  fields: %s; %d unknowns "
-                          "a node\n",
-                          c->title, c->scene.cells[0], c->scene.cells[1], c->scene.axisymmetric ? " about an axis" : "",
+    PetscCall(PetscPrintf(comm, "%s\n  %s cells%s, %s, to t = %s\n  fields: %s; %d unknowns a node\n", c->title,
+                          CellsWords(&c->scene, " x ").s, c->scene.axisymmetric ? " about an axis" : "",
                           c->nstage ? "in stages" : c->stepper, TimeAt(c->t_end).s, fields, c->scene.fields.n));
     PetscCall(PrintStrength(&c->scene, comm));
     PetscCall(PrintEquilibrium(&c->scene, comm));

@@ -20,8 +20,8 @@ static void Rules(const Stepper *s, const StepInfo *info, char text[128])
   if (s->state.hold > 0)
     snprintf(text, 128, "ruled by Newton's method, which refused a step shortly before");
   else
-    snprintf(text, 128, "ruled by the error of %s, largest near (%.4g, %.4g) m", stepper_error_word[info->rules],
-             info->peak.at[0], info->peak.at[1]);
+    snprintf(text, 128, "ruled by the error of %s, largest near %s", stepper_error_word[info->rules],
+             PlaceWords(info->peak.at).s);
 }
 
 /* Is it time for a word?  The first one after so many steps or so long, the next after both. */

@@ -55,9 +55,8 @@ void LooseSummary(const Stepper *s, char text[512])
 
   text[0] = '\0';
   if (z->peak > 0.0) {
-    snprintf(text, 512,
-             "  largest error of a step at any particle: %.3g of the tolerance, of %s near (%.4g, %.4g) m at t = %s\n",
-             z->peak, stepper_error_word[(int)z->peak_of], z->peak_at[0], z->peak_at[1], TimeWords(z->peak_t, 4).s);
+    snprintf(text, 512, "  largest error of a step at any particle: %.3g of the tolerance, of %s near %s at t = %s\n",
+             z->peak, stepper_error_word[(int)z->peak_of], PlaceWords(z->peak_at).s, TimeWords(z->peak_t, 4).s);
   }
   const size_t told = strlen(text);
   if (z->loose_total)
@@ -70,8 +69,11 @@ void LooseSummary(const Stepper *s, char text[512])
 /* Domains that act shorter than they are (BasisHalfLength). */
 PetscErrorCode LongSummary(const Model *m, char text[256])
 {
-  const bool changes = m->c->basis == BASIS_CPGIMP || m->grid.line[0].x || m->grid.line[1].x; /* length, or cells */
-  PetscInt   n       = 0;
+  bool     changes = m->c->basis == BASIS_CPGIMP; /* length, or cells */
+  PetscInt n       = 0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    changes = changes || m->grid.line[d].x;
 
   PetscFunctionBeginUser;
   text[0] = '\0';

@@ -15,7 +15,7 @@
 
 static void Bounds(const Points *points, double lower[], double upper[])
 {
-  for (int d = 0; d < CL_DIM; d++) {
+  for (int d = 0; d < 2; d++) {
     lower[d] = INFINITY;
     upper[d] = -INFINITY;
     for (PetscInt k = 0; k < points->n; k++) {
@@ -39,7 +39,7 @@ void RegionBound(const Scene *c, Region *r)
     lower[1] = c->lower[1];
   }
   for (int d = 0; d < CL_DIM; d++) {
-    if (r->shape == SHAPE_CIRCLE) {
+    if (r->shape == SHAPE_CIRCLE && d < 2) {
       lower[d] = r->circle[d] - r->circle[2];
       upper[d] = r->circle[d] + r->circle[2];
     }
@@ -53,7 +53,7 @@ void RegionBound(const Scene *c, Region *r)
 /* The region's own shape, before `minus`. */
 static bool Holds(const Scene *c, const Region *r, const double x[])
 {
-  static const double share[CL_DIM] = {1.0, 0.618};
+  static const double share[] = {1.0, 0.618, 0.382};
   double              y[CL_DIM];
 
   for (int d = 0; d < CL_DIM; d++) {
@@ -101,8 +101,11 @@ bool RegionReaches(const Scene *c, PetscInt region, const double x[], const doub
   if (RegionWhole(r) || RegionHolds(c, region, x))
     return true;
   for (int k = 0; k < 16; k++) { /* in all directions, as a boundary has no side to prefer */
-    const double y[CL_DIM] = {x[0] + slack[0] * cos(k * M_PI / 8.0), x[1] + slack[1] * sin(k * M_PI / 8.0)};
+    const double turn[] = {cos(k * M_PI / 8.0), sin(k * M_PI / 8.0), 0.0};
+    double       y[CL_DIM];
 
+    for (int d = 0; d < CL_DIM; d++)
+      y[d] = x[d] + slack[d] * turn[d];
     if (RegionHolds(c, region, y))
       return true;
   }
@@ -113,10 +116,12 @@ double RegionHighest(const Region *r, const double direction[])
 {
   const Points *points = r->shape == SHAPE_POLYGON ? &r->polygon : &r->below;
   const double  foot   = fmax(direction[0] * r->lower[0], direction[0] * r->upper[0]) + direction[1] * r->lower[1];
-  double        box = 0.0, shape = r->shape == SHAPE_BELOW ? foot : -INFINITY;
+  double        box = 0.0, along = 0.0, shape = r->shape == SHAPE_BELOW ? foot : -INFINITY;
 
   for (int d = 0; d < CL_DIM; d++)
     box += fmax(direction[d] * r->lower[d], direction[d] * r->upper[d]);
+  for (int d = 2; d < CL_DIM; d++) /* of a prism */
+    along += fmax(direction[d] * r->lower[d], direction[d] * r->upper[d]);
   if (r->shape == SHAPE_BOX)
     return box;
   for (PetscInt k = 0; k < points->n; k++)
@@ -124,14 +129,15 @@ double RegionHighest(const Region *r, const double direction[])
   if (r->shape == SHAPE_CIRCLE)
     shape =
         r->circle[0] * direction[0] + r->circle[1] * direction[1] + r->circle[2] * hypot(direction[0], direction[1]);
-  return fmin(box, shape);
+  return fmin(box, shape + along);
 }
 
 void RegionExtreme(const Scene *c, const Region *g, double sign, double x[CL_DIM])
 {
-  const double gravity    = SceneGravity(c),
-               up[CL_DIM] = {-sign * c->gravity[0] / gravity, -sign * c->gravity[1] / gravity};
-  const double reach      = RegionHighest(g, up);
+  double up[CL_DIM];
+
+  SceneUp(c, sign, up);
+  const double reach = RegionHighest(g, up);
 
   for (int d = 0; d < CL_DIM; d++)
     x[d] = up[d] * reach;
@@ -394,11 +400,13 @@ void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, dou
   const Region *r    = &c->region[region];
   const int     d    = SideAxis(side);
   const double  sign = SideSign(side);
-  WayOut        w    = {.c = c, .region = region, .a = {x[0], x[1]}, .b = {x[0], x[1]}, .t = INFINITY};
+  WayOut        w    = {.c = c, .region = region, .t = INFINITY};
   Lattice       lattice;
 
+  memcpy(w.a, x, sizeof(w.a));
+  memcpy(w.b, x, sizeof(w.b));
   w.n[d] = sign;
-  if (!RegionWhole(r)) {
+  if (!RegionWhole(r) && d < 2) { /* along z a shape is a prism */
     RegionLattice(c, region, &lattice);
     w.b[d] += sign * LatticeWidth(&lattice, d, x[d]);
     TryShape(&w, r);
@@ -416,10 +424,12 @@ void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, dou
 
 static bool OnLine(const Scene *c, const Points *line, PetscInt region, const double x[], int side)
 {
-  const int d         = SideAxis(side);
-  double    a[CL_DIM] = {x[0], x[1]}, b[CL_DIM] = {x[0], x[1]}, t;
+  const int d = SideAxis(side);
+  double    a[CL_DIM], b[CL_DIM], t;
   Lattice   lattice;
 
+  memcpy(a, x, sizeof(a));
+  memcpy(b, x, sizeof(b));
   RegionLattice(c, region, &lattice);
   const double width = LatticeWidth(&lattice, d, x[d]);
 
@@ -437,7 +447,7 @@ bool FaceNamed(const Scene *c, const Meter *m, PetscInt region, const double x[]
 {
   if (side >= SIDE_COUNT)
     return false;
-  const double along = x[1 - SideAxis(side)];
+  const double along = x[SideAxis(side) == 0 ? 1 : 0];
 
   if (m->region >= 0 && m->region != region)
     return false;

@@ -13,65 +13,61 @@ INLINE bool Relaxation(const Elasticity *el, double E, double E_n, double *r)
 }
 
 /* Stress per Young's modulus of a strain xx yy zz xy. */
-INLINE void UnitStress(const Elasticity *el, const double e[4], double s[4])
+INLINE void UnitStress(const Elasticity *el, const double e[CL_TENSOR], double s[CL_TENSOR])
 {
   const double G2 = 2.0 * ElasticityShearFactor(el), tr = ElasticityLameFactor(el) * (e[0] + e[1] + e[2]);
 
-  s[0] = G2 * e[0] + tr;
-  s[1] = G2 * e[1] + tr;
-  s[2] = G2 * e[2] + tr;
-  s[3] = G2 * e[3];
+#pragma GCC unroll 6
+  for (int k = 0; k < CL_TENSOR; k++)
+    s[k] = G2 * e[k] + (k <= ZZ ? tr : 0.0);
 }
 
-/* Turns the plane part of a tensor xx yy zz xy. */
-INLINE void Turn4(const double a[4], double c, double s, double r[4])
+/* Strain of the step less the thermal one. */
+INLINE void BareStrain(const SkeletonStep *d, double e[CL_TENSOR])
 {
-  const double a6[6] = {a[0], a[1], a[2], a[3], 0.0, 0.0};
-  double       r6[6];
-
-  Turn6(a6, c, s, r6);
-#pragma GCC unroll 4
-  for (int k = 0; k < 4; k++)
-    r[k] = r6[k];
+#pragma GCC unroll 6
+  for (int k = 0; k < CL_TENSOR; k++)
+    e[k] = d->e[k] - (k <= ZZ ? d->thermal : 0.0);
 }
 
 /* (14).  No branches and no loops that remain: compiles to vector code inside a loop over particles. */
 INLINE void ElasticStress(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *o)
 {
-  const double e[4] = {d->e[0] - d->thermal, d->e[1] - d->thermal, d->e[2] - d->thermal, d->e[3]};
-  double       unit[4], over[6], rot[6], r;
+  double e[CL_TENSOR], unit[CL_TENSOR], over[6], rot[6], r;
 
+  BareStrain(d, e);
   Relaxation(el, d->E, d->E_n, &r);
   UnitStress(el, e, unit);
 #pragma GCC unroll 6
   for (int k = 0; k < 6; k++)
     over[k] = h->sig[k] - h->sig0[k];
-  Turn6(over, d->c, d->s, rot);
-  Turn6(h->sig0, d->c, d->s, o->sig0);
+  Rotate6(over, d->turn, rot);
+  Rotate6(h->sig0, d->turn, o->sig0);
 #pragma GCC unroll 6
   for (int k = 0; k < 6; k++)
-    o->sig[k] = o->sig0[k] + r * rot[k] + (k < 4 ? d->E * unit[k < 4 ? k : 0] : 0.0);
+    o->sig[k] = o->sig0[k] + r * rot[k] + (k < CL_TENSOR ? d->E * unit[k < CL_TENSOR ? k : 0] : 0.0);
 }
 
 /* (93): hydrate's part in o->own.  Vector code, too. */
 INLINE void BondedStress(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *o)
 {
   const double *from = h->from.own + OWN_P_BOND, E_h = d->E - el->E0;
-  double        e[4], start[4], bond[4], bare[4], unit[4];
+  double        e[CL_TENSOR], start[CL_TENSOR], bond[CL_TENSOR], bare[CL_TENSOR], unit[CL_TENSOR];
 
-  Turn4(h->from.strain, d->c, d->s, start);
-  Turn4(from, d->c, d->s, bond);
-#pragma GCC unroll 4
-  for (int k = 0; k < 4; k++) {
-    e[k]    = d->e[k] - (k < 3 ? d->thermal : 0.0) - start[k];
+  BareStrain(d, e);
+  Rotate(h->from.strain, d->turn, start);
+  Rotate(from, d->turn, bond);
+#pragma GCC unroll 6
+  for (int k = 0; k < CL_TENSOR; k++) {
+    e[k]    = e[k] - start[k];
     bare[k] = h->from.sig[k] - from[k];
   }
   UnitStress(el, e, unit);
-  Turn4(bare, d->c, d->s, start);
-  Turn6(h->sig, d->c, d->s, o->sig);
-  Turn6(h->sig0, d->c, d->s, o->sig0);
-#pragma GCC unroll 4
-  for (int k = 0; k < 4; k++) {
+  Rotate(bare, d->turn, start);
+  Rotate6(h->sig, d->turn, o->sig);
+  Rotate6(h->sig0, d->turn, o->sig0);
+#pragma GCC unroll 6
+  for (int k = 0; k < CL_TENSOR; k++) {
     o->own[OWN_P_BOND + k] = d->kept * (bond[k] + E_h * unit[k]);
     o->sig[k]              = start[k] + el->E0 * unit[k] + o->own[OWN_P_BOND + k];
   }
@@ -84,7 +80,7 @@ INLINE void ElasticEnd(const SkeletonHistory *h, SkeletonState *o)
   o->region = RETURN_ELASTIC;
   for (int k = 0; k < OWN_COUNT; k++)
     o->own[k] = h->from.own[k];
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < CL_TENSOR; k++)
     o->plastic[k] = h->from.plastic[k];
 }
 
@@ -106,10 +102,10 @@ static inline double StageModulusSlope(const Elasticity *el, const SkeletonStep 
 void TrialState(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                 SkeletonTangent *t);
 /* Plastic strain xx yy zz xy that takes a stress off by `over`. */
-void PlasticStrain(const Elasticity *el, double E, const double over[4], double e[4]);
+void PlasticStrain(const Elasticity *el, double E, const double over[CL_TENSOR], double e[CL_TENSOR]);
 /* Takes a return's `over` off the hydrate's part too (94); e: plastic strain of the stage, as the body lies now. */
-void ReturnEnd(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, const double over[4],
-               const double e[4], SkeletonState *s);
+void ReturnEnd(const Elasticity *el, const SkeletonHistory *h, const SkeletonStep *d, const double over[CL_TENSOR],
+               const double e[CL_TENSOR], SkeletonState *s);
 /* Share of a return's `over` that is the hydrate's (94); zero without bonds. */
 INLINE double BondShare(const Elasticity *el, const SkeletonStep *d)
 {

@@ -43,16 +43,31 @@ bool ReturnPlanes(const Trial3 *t, bool slopes, Returned *r); /* flow: mohr_coul
 bool ReturnApex(const Trial3 *t, double slack, bool slopes, Returned *r);
 
 /* ---------------------------------------------------------------- a trial state, principal.c */
-/* In-plane principal stresses and direction of a stress xx yy zz xy; order[i]: 0, 1 in the plane, 2 out of it. */
+#define NEAR_EQUAL 1e-8 /* principal stresses closer than this share of their size: limit of the spin part */
+
+/* Principal stresses y of a stress, falling, and their directions. */
+#if CL_DIM == 2
 typedef struct {
   double mean, radius, c2, s2; /* of Mohr's circle: xx - yy = 2 radius c2, xy = radius s2 */
-  int    order[3];             /* which principal stress is the largest, middle, smallest */
-  double y[3];                 /* falling */
+  int    order[3];             /* of y: 0, 1 in the plane, 2 out of it */
+  double y[3];
 } Principal;
+#else
+typedef struct {
+  double Q[3][3]; /* directions in columns */
+  double y[3];
+} Principal;
+#endif
 void PrincipalOf(const double sig[6], Principal *p);
+/* The stress with principal values y in the directions of p. */
+void FromPrincipal(const Principal *p, const double y[3], double sig[6]);
 /* Takes the returned state r into s; what that takes off the trial stress in `over`, with the plastic strain e. */
 void TakeReturned(const Material *mat, double E, const Principal *p, const Returned *r, SkeletonState *s,
-                  double over[4], double e[4]);
+                  double over[CL_TENSOR], double e[CL_TENSOR]);
+
+/* d(stress)/d(trial stress) from the slopes of principal values, and the columns of E and S_h. */
+void StressSlopes(const Principal *p, const Returned *r, double C[CL_TENSOR][CL_TENSOR], double by_E[CL_TENSOR],
+                  double by_S[CL_TENSOR]);
 
 /* A trial state on its way to the yield surface. */
 typedef struct {
@@ -67,7 +82,7 @@ typedef struct {
    numbers of the step and, of a law whose tears close, in a mean stress by which the trial state is raised. */
 typedef struct {
   SkeletonState   s;
-  double          over[4], e[4];
+  double          over[CL_TENSOR], e[CL_TENSOR];
   SkeletonTangent t;
   double          per[SKELETON_OUT];
 } Landed;
@@ -76,6 +91,9 @@ typedef struct {
 bool ReturnRaised(const Returning *r, double raise, Landed *l, const char **why);
 /* The same with as much of it as tears that close take up (427). */
 bool ReturnWithTears(const Returning *r, Landed *l, const char **why);
+
+/* The whole way of a trial state. */
+bool ReturnTrial(const Returning *r, Landed *l, const char **why);
 
 bool   Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                           SkeletonTangent *t, const char **why);

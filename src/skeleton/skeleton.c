@@ -2,12 +2,19 @@
 #include "elastic.h"
 #include "plastic.h"
 
+/* Blocks are the integrators' without a matrix, which the plane alone has. */
+#if CL_DIM == 2
+  #define BLOCK(law) Block_##law
+#else
+  #define BLOCK(law) NULL
+#endif
+
 /* By PLASTICITY_... */
-static const SkeletonLaw laws[] = {{.name = "none", .update = Update_Elastic, .block = Block_Elastic},
+static const SkeletonLaw laws[] = {{.name = "none", .update = Update_Elastic, .block = BLOCK(Elastic)},
                                    {.name   = "mohr_coulomb",
                                     .has    = HAS_PLASTIC,
                                     .update = Update_MohrCoulomb,
-                                    .block  = Block_MohrCoulomb,
+                                    .block  = BLOCK(MohrCoulomb),
                                     .margin = Margin_MohrCoulomb}};
 
 const SkeletonLaw *SkeletonLawOf(const Material *mat)
@@ -23,20 +30,22 @@ static const struct {
 void SkeletonEndStage(const SkeletonHistory *h, const SkeletonStep *d, const SkeletonState *s, double V,
                       SkeletonStage *end)
 {
-  const double e[4] = {d->e[0] - d->thermal, d->e[1] - d->thermal, d->e[2] - d->thermal, d->e[3]};
+  const Rotation back = RotationBack(d->turn);
+  double         e[CL_TENSOR];
 
   for (size_t i = 0; i < sizeof(own) / sizeof(*own); i++) {
     const double *from = s->own + own[i].first;
     double       *to   = end->own + own[i].first;
 
-    if (own[i].nc == 4)
-      Turn4(from, d->c, -d->s, to);
-    for (int k = 0; own[i].nc != 4 && k < own[i].nc; k++)
+    if (own[i].nc == CL_TENSOR)
+      Rotate(from, back, to);
+    for (int k = 0; own[i].nc != CL_TENSOR && k < own[i].nc; k++)
       to[k] = from[k];
   }
-  Turn4(e, d->c, -d->s, end->strain);
-  Turn4(s->sig, d->c, -d->s, end->sig);
-  for (int k = 0; k < 4; k++)
+  BareStrain(d, e);
+  Rotate(e, back, end->strain);
+  Rotate(s->sig, back, end->sig);
+  for (int k = 0; k < CL_TENSOR; k++)
     end->plastic[k] = s->plastic[k];
   end->work = h->from.work + V * s->work;
 }

@@ -120,10 +120,11 @@ static void End(const Closing *c, Landed *l)
 
 bool ReturnWithTears(const Returning *r, Landed *l, const char **why)
 {
-  const double size =
-      fabs(r->trial->sig[XX]) + fabs(r->trial->sig[YY]) + fabs(r->trial->sig[ZZ]) + fabs(r->trial->sig[XY]);
-  Closing c = Begin(r);
+  Closing c    = Begin(r);
+  double  size = 0.0;
 
+  for (int k = 0; k < CL_TENSOR; k++)
+    size += fabs(r->trial->sig[k]);
   if (!ReturnRaised(r, c.c, l, why))
     return false;
   const double none = ROUND_OFF * (size + c.c), mean = Mean(l->s.sig);

@@ -122,9 +122,9 @@ PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus statu
 
   PetscFunctionBeginUser;
   PetscCall(PetscPrintf(m->grid.comm,
-                        "Given up at t = %s after %" PetscInt_FMT " attempts at this step: %s (%s), near (%g, %g) m\n",
+                        "Given up at t = %s after %" PetscInt_FMT " attempts at this step: %s (%s), near %s\n",
                         TimeAt(s->state.t).s, attempts, ModelFailure(m)->why, StepperStatusName(status),
-                        ModelFailure(m)->where[0], ModelFailure(m)->where[1]));
+                        PlaceWords(ModelFailure(m)->where).s));
   PetscCall(StepperAdvise(s, status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -275,9 +275,8 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     const bool out = a.status == CL_LEFT_GRID; /* as it would with any step */
     if (!out)
       PetscCall(PetscPrintf(
-          m->grid.comm, "t = %s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near (%g, %g) m); trying %g s\n",
-          TimeAt(s->state.t).s, n, dt, StepperStatusName(a.status), why->why, why->where[0], why->where[1],
-          s->state.dt));
+          m->grid.comm, "t = %s: up to %" PetscInt_FMT " steps of %g s refused (%s: %s near %s); trying %g s\n",
+          TimeAt(s->state.t).s, n, dt, StepperStatusName(a.status), why->why, PlaceWords(why->where).s, s->state.dt));
     if (out || cuts >= s->max_failures) {
       *ok = false;
       PetscCall(StepperGiveUp(s, cuts + 1, a.status));

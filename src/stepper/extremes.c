@@ -2,6 +2,7 @@
    above its equilibrium because its reaction was held. */
 #include "clathra/stepper.h"
 #include "clathra/point_reaction.h"
+#include <string.h>
 
 #define HYDRATE 0.01 /* S_h: what is less goes on for ever, (12) */
 
@@ -126,8 +127,10 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start)
       continue;
     if (start)
       z->begin[k] = sign[k] * best[k].value;
-    if (start || best[k].value < sign[k] * z->extreme[k].value)
-      z->extreme[k] = (Extreme){.value = sign[k] * best[k].value, .t = z->t, .at = {at[k][0], at[k][1]}};
+    if (!start && !(best[k].value < sign[k] * z->extreme[k].value))
+      continue;
+    z->extreme[k] = (Extreme){.value = sign[k] * best[k].value, .t = z->t};
+    memcpy(z->extreme[k].at, at[k], sizeof(at[k]));
   }
   if (-best[MOST_HELD].value > 0.0 && -best[MOST_HELD].value >= StepperHeldLevel(s)) /* since the last look */
     z->held_for += z->t - z->held_look;

@@ -1,6 +1,7 @@
 /* Implicit schemes: attempts at a step with ever smaller dt until one is accepted; error norm and step control. */
 #include "clathra/stepper.h"
 #include "clathra/words.h"
+#include <string.h>
 
 #define CUT_FAILED 0.25 /* after a step that could not be taken */
 #define HOLD 5          /* steps without growth after that */
@@ -48,11 +49,11 @@ static PetscErrorCode SizeWork(Stepper *s)
   for (int k = 0; k < 2 && (has & HAS_HISTORY); k++)
     PetscCall(PetscCalloc1(n, &w->trial[k].end));
   for (int k = 0; k < 2 && (has & HAS_PLASTIC); k++)
-    PetscCall(PetscCalloc2(5 * n, &w->trial[k].s, 5 * n, &w->trial[k].k));
+    PetscCall(PetscCalloc2(TRIAL_PLASTIC * n, &w->trial[k].s, TRIAL_PLASTIC * n, &w->trial[k].k));
   if (has & HAS_HISTORY)
     PetscCall(PetscCalloc1(n, &w->k_star));
   if (has & HAS_PLASTIC)
-    PetscCall(PetscCalloc1(5 * n, &w->e_plastic));
+    PetscCall(PetscCalloc1(TRIAL_PLASTIC * n, &w->e_plastic));
   w->cap_nodes     = N;
   w->cap_particles = n;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -133,14 +134,16 @@ static PetscErrorCode SharePeak(MPI_Comm comm, Peak *peak)
   struct {
     double err;
     int    rank;
-  } best      = {.err = peak->err};
-  double of[] = {peak->of, peak->at[0], peak->at[1]};
+  } best                = {.err = peak->err};
+  double of[1 + CL_DIM] = {peak->of};
 
   PetscFunctionBeginUser;
+  memcpy(&of[1], peak->at, sizeof(peak->at));
   PetscCallMPI(MPI_Comm_rank(comm, &best.rank));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
   PetscCallMPI(MPI_Bcast(of, 1 + CL_DIM, MPI_DOUBLE, best.rank, comm));
-  *peak = (Peak){.err = best.err, .of = (int)of[0], .at = {of[1], of[2]}};
+  *peak = (Peak){.err = best.err, .of = (int)of[0]};
+  memcpy(peak->at, &of[1], sizeof(peak->at));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -159,16 +162,17 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
 
     for (int k = 0; k < 4; k++)
       square[k] = PetscSqr(e[4 * p + k]);
-    square[4] = PetscSqr(eu[CL_DIM * p]) + PetscSqr(eu[CL_DIM * p + 1]);
-    for (int k = 0; s->work.e_plastic && k < 5; k++)
-      square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[5 * p + k]);
+    square[4] = VectorDot(&eu[CL_DIM * p], &eu[CL_DIM * p]);
+    for (int k = 0; s->work.e_plastic && k < TRIAL_PLASTIC; k++)
+      square[k ? 6 : 5] += PetscSqr(s->work.e_plastic[TRIAL_PLASTIC * p + k]);
     for (int k = 0; k < STEPPER_ERRORS; k++) {
       const double one = ClSize(square[k] / PetscSqr(s->tol * scale[k]));
 
       sum[k] += pow(one, half);
       if (one > top) {
         top     = one;
-        a->peak = (Peak){.err = sqrt(one), .of = k, .at = {m->P.f[P_X][p], m->P.f[P_X + 1][p]}};
+        a->peak = (Peak){.err = sqrt(one), .of = k};
+        ParticlePlace(&m->P, p, a->peak.at);
       }
     }
   }
@@ -365,8 +369,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   PetscCall(ModelBeginStep(m, &status));
   if (status != CL_OK) {
     *ok = false;
-    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %s: %s near (%.12g, %.12g) m; no smaller step can help\n",
-                          TimeAt(s->state.t).s, why->why, why->where[0], why->where[1]));
+    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %s: %s near %s; no smaller step can help\n",
+                          TimeAt(s->state.t).s, why->why, PlaceWords(why->where).s));
     PetscCall(StepperAdvise(s, status));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -403,9 +407,9 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       s->state.dt   = fmax(CUT_FAILED * dt, s->dt_min);
       s->state.hold = HOLD;
       s->bound      = BOUND_REFUSED;
-      PetscCall(PetscPrintf(m->grid.comm, "t = %s: step of %s refused (%s: %s near (%g, %g) m); trying %s\n",
+      PetscCall(PetscPrintf(m->grid.comm, "t = %s: step of %s refused (%s: %s near %s); trying %s\n",
                             TimeAt(s->state.t).s, TimeWords(dt, 4).s, StepperStatusName(a.status), why->why,
-                            why->where[0], why->where[1], TimeWords(s->state.dt, 4).s));
+                            PlaceWords(why->where).s, TimeWords(s->state.dt, 4).s));
     }
     const bool last = cuts >= s->max_failures || small;
     PetscCall(StepperAutoGivesWay(s, &a, dt, last, &s->auto_.give_way));

@@ -16,10 +16,9 @@ static PetscErrorCode Say(const Model *m, const Leaver *one, PetscInt n)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n && k < SHOWN; k++)
-    PetscCall(PetscPrintf(PETSC_COMM_SELF,
-                          "t = %s: particle %.0f of %s left the grid at (%g, %g) m and is taken out, %g kg\n",
-                          TimeAt(one[k].t).s, one[k].id, m->c->region[(PetscInt)one[k].region].name, one[k].x[0],
-                          one[k].x[1], one[k].mass));
+    PetscCall(PetscPrintf(PETSC_COMM_SELF, "t = %s: particle %.0f of %s left the grid at %s and is taken out, %g kg\n",
+                          TimeAt(one[k].t).s, one[k].id, m->c->region[(PetscInt)one[k].region].name,
+                          PlaceWords(one[k].x).s, one[k].mass));
   if (n > SHOWN)
     PetscCall(PetscPrintf(PETSC_COMM_SELF, "... and %" PetscInt_FMT " more\n", n - SHOWN));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -21,13 +21,14 @@ void StepperPlasticErrors(Stepper *s, double dt, double gamma, const double weig
   const int        last = s->scheme->stages - 1;
 
   for (PetscInt p = 0; w->e_plastic && p < P->n; p++) {
-    for (int q = 0; q < 5; q++) { /* eps_d_p, stress xx yy zz xy */
+    for (int q = 0; q < TRIAL_PLASTIC; q++) { /* eps_d_p, stress xx yy zz xy */
       const double y_n = P->f[q ? P_SIG + q - 1 : P_EPS][p], k_n = P->f[P_KP + q][p];
-      const double k_1 = (w->trial[0].s[5 * p + q] - y_n) / (gamma * dt);
-      const double k_2 = last ? (w->trial[1].s[5 * p + q] - y_n - (1.0 - gamma) * dt * k_1) / (gamma * dt) : 0.0;
+      const double k_1 = (w->trial[0].s[TRIAL_PLASTIC * p + q] - y_n) / (gamma * dt);
+      const double k_2 =
+          last ? (w->trial[1].s[TRIAL_PLASTIC * p + q] - y_n - (1.0 - gamma) * dt * k_1) / (gamma * dt) : 0.0;
 
-      w->e_plastic[5 * p + q]     = dt * (weight[0] * k_n + weight[1] * k_1 + weight[2] * k_2);
-      w->trial[last].k[5 * p + q] = last ? k_2 : k_1;
+      w->e_plastic[TRIAL_PLASTIC * p + q]     = dt * (weight[0] * k_n + weight[1] * k_1 + weight[2] * k_2);
+      w->trial[last].k[TRIAL_PLASTIC * p + q] = last ? k_2 : k_1;
     }
   }
 }

@@ -6,7 +6,11 @@ static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperSch
 
 double StepperFloorU(const Stepper *s)
 {
-  return 1e-3 * fmin(s->model->grid.line[0].h, s->model->grid.line[1].h);
+  double h = INFINITY;
+
+  for (int d = 0; d < CL_DIM; d++)
+    h = fmin(h, s->model->grid.line[d].h);
+  return 1e-3 * h;
 }
 
 void StepperStageWords(const Stepper *s, char words[80])

@@ -11,7 +11,7 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "verification"))
-from common import CASES, binary, check, check_true, finish, launch, pascals, scratch  # noqa: E402
+from common import CASES, binary, check, check_true, finish, launch, pascals, program_of, scratch  # noqa: E402
 
 import clathra  # noqa: E402  scripts/, which common puts on the path
 import tutorial  # noqa: E402
@@ -31,7 +31,7 @@ def warned(done, case):
 
 
 def said(case, *options, ranks=1):
-    return warned(launch(binary(), case, "-case_check", *options, ranks=ranks), case)
+    return warned(launch(program_of(case), case, "-case_check", *options, ranks=ranks), case)
 
 
 def same(what, case, *options, least=1):
@@ -154,7 +154,7 @@ comes("hydrate that does not react", [], said(BLOCK, "-mat_core_kinetics_K0", "0
 
 # ---------------------------------------------------------------- gas
 text = comes("gas far above the pressure of equilibrium", ["gas"], said(BLOCK, *both(pressure="5 MPa")))
-T, needs, has, up_to = numbers(text[text.index("): at") :], "at")[:4]
+T, needs, has, up_to = numbers(text[text.index(") m: at") :], "at")[:4]
 check("... hydrate forms above", abs(needs / p_e(T) - 1), 1e-3)
 check("... there are", abs(has / 5e6 - 1), 1e-3)
 check("... up to", abs(p_e(up_to) / has - 1), 1e-3)

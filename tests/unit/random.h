@@ -32,7 +32,7 @@ static inline int RngPick(Rng *r, int n)
   return (int)(RngUnit(r) * n);
 }
 
-#define RIDDERS_ROWS 32
+#define RIDDERS_ROWS 48
 #define RIDDERS_LEVELS 13
 
 /* d y/d x of a vector function at x: central differences with step, step/2, ..., extrapolated; each row keeps the entry

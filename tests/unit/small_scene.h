@@ -56,7 +56,10 @@ typedef struct {
 
 static bool one_pressure; /* of the scenes to come */
 
-/* Grid of 6 x 4 cells of 0.1 m x 0.08 m from x = `start`, with one region; conditions are added afterwards. */
+#define DEPTH 3 /* cells of 0.06 m along z, where there is one */
+
+/* Grid of 6 x 4 cells of 0.1 m x 0.08 m from x = `start`, with one region, which in space does not fill the grid along
+   z; conditions are added afterwards. */
 static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axisymmetric, BasisType basis,
                              double start, const double lower[2], const double upper[2])
 {
@@ -78,16 +81,24 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
                 .scene.stabilisation.outflow             = true,
                 .scene.stabilisation.flux_interpolation  = true};
   Check(FieldSetMake(has, inertia, one_pressure, &s->c.scene.fields));
+  for (int d = 2; d < CL_DIM; d++) {
+    s->c.scene.upper[d] = 0.06 * DEPTH;
+    s->c.scene.cells[d] = DEPTH;
+  }
   s->mat                 = SedimentMaterial();
   s->mat.kappa_w         = 0.6;
   s->mat.permeability.k0 = 1.53e-13;
   if (has & HAS_GAS_PRESSURE)
     SetSolubility(&s->mat.gas, 1.9e-5);
-  s->region    = (Region){.ppc         = {2, 2},
-                          .lower       = {start + lower[0], lower[1]},
-                          .upper       = {start + upper[0], upper[1]},
-                          .pressure    = 3.25e6,
-                          .temperature = 4.0};
+  s->region = (Region){.ppc         = {2, 2},
+                       .lower       = {start + lower[0], lower[1]},
+                       .upper       = {start + upper[0], upper[1]},
+                       .pressure    = 3.25e6,
+                       .temperature = 4.0};
+  for (int d = 2; d < CL_DIM; d++) {
+    s->region.upper[d] = 0.13;
+    s->region.ppc[d]   = 2;
+  }
   s->region.Sw = s->c.scene.fields.phase[PHASE_G] ? 0.6 : s->c.scene.fields.fluid ? 1.0 : 0.0;
   s->region.Sg = s->c.scene.fields.phase[PHASE_G] ? 0.4 : 0.0;
 }
@@ -261,15 +272,16 @@ static inline void RandomHistory(SmallScene *s, double Sh)
   for (PetscInt p = 0; p < s->m.P.n; p++) {
     const PetscInt id = s->m.P.i[PI_ID][p];
 
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < CL_DIM; d++) {
       f[P_X + d][p] += 0.2 * f[P_L + d][p] * Noise(1, id, d);
       f[P_L + d][p] *= 1.0 + 0.05 * Noise(2, id, d);
       AddNoise(f[P_GW + d], p, 2e5, Noise(3, id, d));
       AddNoise(f[P_GG + d], p, 2e5, Noise(4, id, d));
       AddNoise(f[P_GT + d], p, 5.0, Noise(5, id, d));
     }
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 3 * CL_DIM; k++)
       AddNoise(f[P_VS + k], p, 1e-4, Noise(6, id, k));
+    for (int k = 0; k < 6; k++) {
       AddNoise(f[P_SIG + k], p, 2e6, Noise(7, id, k));
       AddNoise(f[P_SIG0 + k], p, 1e6, Noise(8, id, k));
     }
@@ -281,6 +293,16 @@ static inline void RandomHistory(SmallScene *s, double Sh)
   }
 }
 
+/* The same number on any number of ranks. */
+static inline PetscInt NodeId(const Model *m, PetscInt I)
+{
+  PetscInt id = 0;
+
+  for (int d = CL_DIM - 1; d >= 0; d--)
+    id = 100 * id + m->map.ij[I][d];
+  return id;
+}
+
 /* Unknowns around the start values: strains of a percent or so, 0.2 MPa, 1 K; the capillary pressure moves by 20 kPa,
    which keeps it away from the threshold of gas mobility (a kink). */
 static inline void RandomUnknowns(const Model *m, double dt, int seed, double *x)
@@ -288,7 +310,7 @@ static inline void RandomUnknowns(const Model *m, double dt, int seed, double *x
   const FieldSet *fs = &m->c->fields;
 
   for (PetscInt I = 0; I < m->map.n_local; I++) {
-    const PetscInt node = m->map.ij[I][0] + 100 * m->map.ij[I][1];
+    const PetscInt node = NodeId(m, I);
 
     for (int k = 0; k < fs->n; k++) {
       const int    q    = fs->field[k];
@@ -309,7 +331,8 @@ static inline void RandomStage(SmallScene *s, double dt)
   RandomUnknowns(m, dt, 20, s->stage.x_star);
   for (PetscInt I = 0; I < m->map.n_local && s->c.scene.fields.solid; I++) {
     for (int d = 0; d < CL_DIM; d++)
-      s->stage.u_star[I * CL_DIM + d] = 2e-4 * Noise(21 + d, m->map.ij[I][0], m->map.ij[I][1]);
+      s->stage.u_star[I * CL_DIM + d] =
+          2e-4 * Noise(21 + d, CL_DIM == 2 ? m->map.ij[I][0] : NodeId(m, I), m->map.ij[I][1]);
   }
   for (PetscInt k = 0; k < 3 * m->P.n; k++)
     s->stage.m_star[k] *= 1.0 + 0.02 * Noise(23, m->P.i[PI_ID][k / 3], k % 3);
@@ -321,15 +344,22 @@ static inline void AddConditions(SmallScene *s, int set)
 {
   const FieldSet *fs    = &s->c.scene.fields;
   const bool      moves = fs->solid || fs->fluid;
+  const double    shear = CL_DIM == 2 ? 1.0 : 0.0; /* a traction's is the plane's */
   const double    x0 = s->c.scene.lower[0], axis = s->c.scene.axisymmetric && x0 == 0.0;
 
+  for (int d = 2; d < CL_DIM && moves; d++)
+    AddPlane(s, BC_ROLLER, d, 0.0, 0.0);
+  if (CL_DIM > 2 && fs->solid)
+    AddFace(s, BC_TRACTION, (Side)(SIDE_COUNT - 1), 3.5e6, 0.0);
+  if (CL_DIM > 2 && fs->fluid && set == 1)
+    AddFace(s, BC_PRESSURE, (Side)(SIDE_COUNT - 1), 3.2e6, 0.0);
   if (set == 0) {
     if (moves && !axis)
       AddPlane(s, BC_ROLLER, 0, x0, 0.0);
     if (moves)
       AddPlane(s, BC_FIXED, 1, 0.0, 0.0);
     if (fs->solid)
-      AddFace(s, BC_TRACTION, SIDE_XMAX, 3e6, 5e5);
+      AddFace(s, BC_TRACTION, SIDE_XMAX, 3e6, 5e5 * shear);
     if (fs->fluid)
       AddFace(s, BC_PRESSURE, SIDE_XMAX, 3e6, 0.0)->initial = true;
     if (fs->heat) {
@@ -343,8 +373,8 @@ static inline void AddConditions(SmallScene *s, int set)
   if (moves)
     AddPlane(s, BC_ROLLER, 1, 0.0, 0.0);
   if (fs->solid) {
-    AddFace(s, BC_TRACTION, SIDE_YMAX, 4e6, -7e5)->from = x0 + 0.2;
-    AddFace(s, BC_TRACTION, SIDE_XMIN, 2e6, 3e5);
+    AddFace(s, BC_TRACTION, SIDE_YMAX, 4e6, -7e5 * shear)->from = x0 + 0.2;
+    AddFace(s, BC_TRACTION, SIDE_XMIN, 2e6, 3e5 * shear);
   }
   if (fs->fluid)
     AddFace(s, BC_PRESSURE, SIDE_YMAX, 3.6e6, 0.0);
@@ -522,7 +552,7 @@ static inline double DirectionError(SmallScene *s, int directions)
 
     Call(VecGetArrayWrite(D, &d));
     for (PetscInt i = 0; i < n; i++)
-      d[i] = Noise(40 + k, m->map.ij[i / nf][0] + 100 * m->map.ij[i / nf][1], m->c->fields.field[i % nf]);
+      d[i] = Noise(40 + k, NodeId(m, i / nf), m->c->fields.field[i % nf]);
     Call(VecRestoreArrayWrite(D, &d));
     Call(MatMult(m->solver->A, D, JD));
     if (s->product) {

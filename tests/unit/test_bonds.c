@@ -38,8 +38,7 @@ static SkeletonState Stage(const Walk *w, const double e[4], double angle, doubl
   const char   *why;
 
   Turn6(e6, cos(angle), sin(angle), turned);
-  const SkeletonStep d = {.c    = cos(angle),
-                          .s    = sin(angle),
+  const SkeletonStep d = {.turn = {cos(angle), sin(angle)},
                           .e    = {turned[0], turned[1], turned[2], turned[3]},
                           .E_n  = ElasticityYoung(&w->mat.elasticity, w->Sh, &dE),
                           .E    = ElasticityYoung(&w->mat.elasticity, Sh, &dE),
@@ -306,15 +305,14 @@ static void TestBlock(void **state)
       double             dE;
       const double       Sh = RngBetween(&r, 0.1, 0.4), a = RngBetween(&r, -0.2, 0.2);
       const SkeletonStep d = {
-          .c       = cos(a),
-          .s       = sin(a),
+          .turn    = {cos(a), sin(a)},
           .thermal = RngBetween(&r, -1e-4, 1e-4),
           .E_n     = 1e8,
           .e       = {RngBetween(&r, -1e-3, 1e-3), RngBetween(&r, -1e-3, 1e-3), 0.0, RngBetween(&r, -1e-3, 1e-3)},
           .E       = ElasticityYoung(&mat.elasticity, Sh, &dE),
           .Sh      = Sh,
           .kept    = RngBetween(&r, 0.0, 1.0)};
-      const double row[10] = {d.c, d.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh, d.kept};
+      const double row[10] = {d.turn.c, d.turn.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh, d.kept};
 
       w[q].h = (SkeletonHistory){0};
       for (int i = 0; i < 10; i++)

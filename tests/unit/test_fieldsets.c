@@ -1,5 +1,5 @@
 /* Tests of field sets: what each holds, the tangent of a particle and the exact Jacobian for every named set, with and
-   without inertia, in the plane and about an axis. */
+   without inertia, in the plane and about an axis; in space with the same sources. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -9,12 +9,13 @@
 #include "small_scene.h"
 
 static const char *const set_names[] = {"thmc", "thc", "hmc", "hc", "thm", "hm", "th", "h", "tm", "m", "t"};
+#define GEOMETRIES (CL_DIM == 2 ? 4 : 2) /* plane and about an axis, or space; each quasi-static and with inertia */
 #define SETS ((int)(sizeof(set_names) / sizeof(*set_names)))
 
 static void TestSets(void **state)
 {
-  static const int unknowns[SETS] = {9, 7, 8, 6, 6, 5, 4, 3, 3, 2, 1};
-  int              can            = 0;
+  static const int vectors[SETS] = {3, 2, 3, 2, 2, 2, 1, 1, 1, 1, 0}, scalars[SETS] = {3, 3, 2, 2, 2, 1, 2, 1, 1, 0, 1};
+  int              can = 0;
   FieldSet         fs;
 
   (void)state;
@@ -22,7 +23,7 @@ static void TestSets(void **state)
     const unsigned has = FieldSetByName(set_names[k]);
     int            n   = 0;
 
-    Check(has && FieldSetMake(has, true, false, &fs) && fs.n == unknowns[k]);
+    Check(has && FieldSetMake(has, true, false, &fs) && fs.n == CL_DIM * vectors[k] + scalars[k]);
     for (int q = 0; q < F_COUNT; q++) {
       if (fs.at[q] < 0)
         continue;
@@ -67,13 +68,17 @@ typedef struct {
 
 static bool IsInput(const FieldSet *fs, bool axisymmetric, int q)
 {
-  const int fluid = q < IN_P ? -1 : q < IN_T ? q - IN_P : q < IN_GP ? -1 : q < IN_GT ? (q - IN_GP) / 2 : (q - IN_J) / 2;
+  const int fluid = q < IN_P    ? -1
+                    : q < IN_T  ? q - IN_P
+                    : q < IN_GP ? -1
+                    : q < IN_GT ? (q - IN_GP) / CL_DIM
+                                : (q - IN_J) / CL_DIM;
 
   if (q < IN_P)
     return fs->solid && (q < IN_HOOP || axisymmetric);
   if (q >= IN_U)
     return fs->solid;
-  if (q == IN_T || q == IN_GT || q == IN_GT + 1)
+  if (q == IN_T || (q >= IN_GT && q < IN_J))
     return fs->heat;
   return fs->phase[fluid];
 }
@@ -84,10 +89,10 @@ static bool IsOutput(const FieldSet *fs, int r)
     return fs->solid;
   if (r == OUT_M)
     return true;
-  if (r == OUT_HEAT || r == OUT_HEAT + 1 || r == OUT_C || r == OUT_Q)
+  if ((r >= OUT_HEAT && r < OUT_HOOP) || r == OUT_C || r == OUT_Q)
     return fs->heat;
   if (r < OUT_M)
-    return fs->phase[(r - (r < OUT_HEAT ? OUT_FLUX : OUT_G)) / 2];
+    return fs->phase[(r - (r < OUT_HEAT ? OUT_FLUX : OUT_G)) / CL_DIM];
   return fs->phase[r < OUT_MI ? r - OUT_M - 1 : (r - OUT_MI) % 2];
 }
 
@@ -130,8 +135,8 @@ static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
     q->h.skeleton.sig[k]  = RngBetween(r, -3e6, 3e6);
     q->h.skeleton.sig0[k] = RngBetween(r, -3e6, 3e6);
   }
-  for (int k = 0; k < 4; k++)
-    q->h.proj[k / 2][k % 2] = RngBetween(r, -2e5, 2e5);
+  for (int k = 0; k < CL_FLUID_VECTORS; k++)
+    q->h.proj[k / CL_DIM][k % CL_DIM] = RngBetween(r, -2e5, 2e5);
   q->h.shift[0] = RngBetween(r, -1e4, 1e4) * fs->phase[PHASE_W];
   q->h.shift[1] = RngBetween(r, -1e4, 1e4) * fs->phase[PHASE_G];
   q->h.shift[2] = RngBetween(r, -0.1, 0.1) * fs->heat;
@@ -194,9 +199,9 @@ static void TestTangent(void **state)
   (void)state;
   Say("tangent of a particle against differences: largest error of an entry over its row, 100 random states\n");
   for (int k = 0; k < SETS; k++) {
-    double worst[2][2];
+    double worst[2][2] = {{0.0}};
 
-    for (int v = 0; v < 4; v++) {
+    for (int v = 0; v < GEOMETRIES; v++) {
       Rng      r = {400 + (uint64_t)(10 * k + v)};
       FieldSet fs;
 
@@ -210,8 +215,8 @@ static void TestTangent(void **state)
       }
       Check(worst[v / 2][v % 2] < 1e-8);
     }
-    Say("  %-4s plane %.1e, quasi-static %.1e; about an axis %.1e, quasi-static %.1e\n", set_names[k], worst[0][1],
-        worst[0][0], worst[1][1], worst[1][0]);
+    Say("  %-4s plane or space %.1e, quasi-static %.1e; about an axis %.1e, quasi-static %.1e\n", set_names[k],
+        worst[0][1], worst[0][0], worst[1][1], worst[1][0]);
   }
 }
 
@@ -246,19 +251,21 @@ static void Jacobians(bool axisymmetric, bool entries)
   }
 }
 
-static void TestJacobianPlane(void **state)
+static void TestJacobian(void **state)
 {
   (void)state;
-  Say("exact Jacobian against differences, plane: random directions; every entry relative to the largest of its row\n");
-  Jacobians(false, true);
+  Say("exact Jacobian against differences: random directions; every entry relative to the largest of its row\n");
+  Jacobians(false, CL_DIM == 2);
 }
 
+#if CL_DIM == 2
 static void TestJacobianAxis(void **state)
 {
   (void)state;
   Say("exact Jacobian against differences, about an axis: random directions\n");
   Jacobians(true, false);
 }
+#endif
 
 /* (34): both mass balances in one row. */
 static void TestJacobianOnePressure(void **state)
@@ -266,17 +273,23 @@ static void TestJacobianOnePressure(void **state)
   (void)state;
   Say("exact Jacobian against differences, one pressure\n");
   one_pressure = true;
-  Jacobians(false, true);
-  Jacobians(true, false);
+  Jacobians(false, CL_DIM == 2);
+  if (CL_DIM == 2)
+    Jacobians(true, false);
   one_pressure = false;
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestSets),         cmocka_unit_test(TestStorage),
-      cmocka_unit_test(TestTangent),      cmocka_unit_test(TestJacobianPlane),
-      cmocka_unit_test(TestJacobianAxis), cmocka_unit_test(TestJacobianOnePressure),
+    cmocka_unit_test(TestSets),
+    cmocka_unit_test(TestStorage),
+    cmocka_unit_test(TestTangent),
+    cmocka_unit_test(TestJacobian),
+#if CL_DIM == 2
+    cmocka_unit_test(TestJacobianAxis),
+#endif
+    cmocka_unit_test(TestJacobianOnePressure),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);

@@ -22,8 +22,7 @@ typedef struct {
 static SkeletonStep StepOf(const Sample *q, const double in[SKELETON_IN])
 {
   return (SkeletonStep){
-      .c       = cos(in[SKELETON_THETA]),
-      .s       = sin(in[SKELETON_THETA]),
+      .turn    = {cos(in[SKELETON_THETA]), sin(in[SKELETON_THETA])},
       .e       = {in[SKELETON_STRAIN], in[SKELETON_STRAIN + 1], in[SKELETON_STRAIN + 2], in[SKELETON_STRAIN + 3]},
       .thermal = in[SKELETON_THERMAL],
       .E_n     = q->E_n,

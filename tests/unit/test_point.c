@@ -185,7 +185,7 @@ static bool KinematicsRows(void *ctx, double x, double y[RIDDERS_ROWS])
   g[c->which] = x;
   if (!KinematicsEvaluate(g, &k))
     return false;
-  y[0] = atan2(k.s, k.c);
+  y[0] = atan2(k.turn.s, k.turn.c);
   y[1] = k.J;
   for (int i = 0; i < 4; i++) {
     y[2 + i] = k.e[i];
@@ -214,7 +214,7 @@ static void TestKinematicsDerivatives(void **state)
       continue;
     for (c.which = 0; c.which < MOTION_COUNT; c.which++) {
       const bool hoop = c.which == MOTION_HOOP;
-      double     dy[RIDDERS_ROWS], err[RIDDERS_ROWS], exact[11] = {hoop ? 0.0 : k.dtheta[c.which], k.dJ[c.which]};
+      double     dy[RIDDERS_ROWS], err[RIDDERS_ROWS], exact[11] = {hoop ? 0.0 : k.dtheta[0][c.which], k.dJ[c.which]};
 
       for (int i = 0; i < 4; i++) {
         exact[2 + i] = k.de[i][c.which];
@@ -243,24 +243,24 @@ static void TestKinematicsValues(void **state)
     const double c = cos(a), s = sin(a), e1 = exp(s1), e2 = exp(s2);
     const double V[2][2] = {{c * c * e1 + s * s * e2, c * s * (e1 - e2)}, {c * s * (e1 - e2), s * s * e1 + c * c * e2}};
     const double R[2][2] = {{cos(t), -sin(t)}, {sin(t), cos(t)}};
-    const double e[3]    = {c * c * s1 + s * s * s2, s * s * s1 + c * c * s2, c * s * (s1 - s2)};
+    const double e[4]    = {c * c * s1 + s * s * s2, s * s * s1 + c * c * s2, 0.0, c * s * (s1 - s2)};
     double       g[MOTION_COUNT] = {0.0}, angle;
     Kinematics   k;
 
     for (int i = 0; i < 4; i++)
       g[i] = V[i / 2][0] * R[0][i % 2] + V[i / 2][1] * R[1][i % 2] - (i == 0 || i == 3);
     assert_true(KinematicsEvaluate(g, &k));
-    angle = remainder(atan2(k.s, k.c) - t, 2.0 * PI);
-    for (int i = 0; i < 3; i++)
+    angle = remainder(atan2(k.turn.s, k.turn.c) - t, 2.0 * PI);
+    for (int i = 0; i < 4; i++)
       worst = fmax(worst, fabs(k.e[i] - e[i]));
     worst = fmax(fmax(worst, fabs(angle)), fabs(k.J - e1 * e2));
 
     const double u[MOTION_COUNT] = {e1 - 1.0};
     assert_true(KinematicsEvaluate(u, &k));
-    uniaxial                     = fmax(fmax(uniaxial, fabs(k.e[0] - log(k.J))), fmax(fabs(k.e[1]), fabs(k.e[2])));
+    uniaxial                     = fmax(fmax(uniaxial, fabs(k.e[0] - log(k.J))), fmax(fabs(k.e[YY]), fabs(k.e[XY])));
     const double w[MOTION_COUNT] = {R[0][0] - 1.0, R[0][1], R[1][0], R[1][1] - 1.0};
     assert_true(KinematicsEvaluate(w, &k));
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 4; i++)
       rigid = fmax(rigid, fabs(k.e[i]));
     for (int i = 0; i < 2; i++)
       rigid = fmax(rigid, fabs(k.stretch[i] - 1.0));

@@ -21,8 +21,7 @@ typedef struct {
 static SkeletonStep StepOf(const double in[SKELETON_IN], double E_n)
 {
   return (SkeletonStep){
-      .c       = cos(in[SKELETON_THETA]),
-      .s       = sin(in[SKELETON_THETA]),
+      .turn    = {cos(in[SKELETON_THETA]), sin(in[SKELETON_THETA])},
       .e       = {in[SKELETON_STRAIN], in[SKELETON_STRAIN + 1], in[SKELETON_STRAIN + 2], in[SKELETON_STRAIN + 3]},
       .thermal = in[SKELETON_THERMAL],
       .E_n     = E_n,
@@ -105,7 +104,7 @@ static void TestBlock(void **state)
       eps[k]                         = q[k].h.from.own[OWN_P_EPS];
       q[k].in[SKELETON_STRAIN + 2]   = 0.0;
       const SkeletonStep d           = StepOf(q[k].in, q[k].E_n);
-      const double       row[9]      = {d.c, d.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
+      const double       row[9]      = {d.turn.c, d.turn.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
 
       for (int i = 0; i < 9; i++)
         a[i][k] = row[i];

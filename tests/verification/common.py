@@ -49,6 +49,11 @@ def binary():
     return sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "clathra")
 
 
+def program_of(case):
+    """The program that runs a case of cases/: that of space where the name ends in _3d."""
+    return Path(binary()).with_name("clathra3d") if Path(case).stem.endswith("_3d") else binary()
+
+
 MEMORY = Path("/dev/shm")
 
 
@@ -66,6 +71,11 @@ def scratch():
     if not keep:
         atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
+
+
+# Of MPI: of two runs that share one, the first to end may remove what the other has just made.
+_sessions = tempfile.TemporaryDirectory(prefix="clathra-mpi-")
+ENVIRONMENT["OMPI_MCA_orte_tmpdir_base"] = _sessions.name
 
 
 def mpiexec(ranks):

@@ -1,27 +1,7 @@
 /* Exact kinematics of one increment, in plane strain or about an axis, and its derivatives. */
+#include "atanh_ratio.h"
 #include "clathra/kinematics.h"
 #include "clathra/point_strain.h"
-#include <math.h>
-
-/* g(y) = atanh(sqrt y)/sqrt y and g'(y), by series where the closed form cancels. */
-static double AtanhRatio(double y, double *dg)
-{
-  if (y < 1e-2) {
-    double g = 0.0, d = 0.0;
-
-    for (int n = 8; n >= 0; n--) {
-      g = g * y + 1.0 / (2.0 * n + 1.0);
-      if (n > 0)
-        d = d * y + n / (2.0 * n + 1.0);
-    }
-    *dg = d;
-    return g;
-  }
-  const double x = sqrt(y), g = atanh(x) / x;
-
-  *dg = 0.5 * (1.0 / (1.0 - y) - g) / y;
-  return g;
-}
 
 /* ln V_L = 1/2 ln J_2 1 + 1/2 f (b - m 1), f = atanh(r/m)/r, with m, r the mean and radius of b = F F^T (7). */
 INLINE void LogStrain(const Stretch *b, bool slopes, Kinematics *k)
@@ -32,7 +12,7 @@ INLINE void LogStrain(const Stretch *b, bool slopes, Kinematics *k)
   const double f = g / m, lnJ = 0.5 * log(J2);
 
   LogStrainOf(lnJ, 0.5 * f * d, 0.5 * f * o, k->e);
-  k->e[3] = log(k->lambda);
+  k->e[ZZ] = log(k->lambda);
   if (!slopes)
     return;
   for (int c = 0; c < 4; c++) {
@@ -43,13 +23,13 @@ INLINE void LogStrain(const Stretch *b, bool slopes, Kinematics *k)
     const double dy = 2.0 * (d * dd + o * dO) / (m * m) - 2.0 * y * dm / m;
     const double df = dg * dy / m - f * dm / m, dlnJ = 0.5 * dJ2 / J2;
 
-    k->de[0][c] = dlnJ + 0.5 * (df * d + f * dd);
-    k->de[1][c] = dlnJ - 0.5 * (df * d + f * dd);
-    k->de[2][c] = 0.5 * (df * o + f * dO);
-    k->de[3][c] = 0.0;
+    k->de[XX][c] = dlnJ + 0.5 * (df * d + f * dd);
+    k->de[YY][c] = dlnJ - 0.5 * (df * d + f * dd);
+    k->de[XY][c] = 0.5 * (df * o + f * dO);
+    k->de[ZZ][c] = 0.0;
   }
-  for (int s = 0; s < 4; s++)
-    k->de[s][MOTION_HOOP] = s == 3 ? 1.0 / k->lambda : 0.0;
+  for (int s = 0; s < CL_TENSOR; s++)
+    k->de[s][MOTION_HOOP] = s == ZZ ? 1.0 / k->lambda : 0.0;
 }
 
 /* cof = lambda cof F_2 of (6), linear in F_2 and in lambda. */
@@ -74,7 +54,7 @@ INLINE void Cofactor(bool slopes, Kinematics *k)
     k->dJ[MOTION_HOOP] = k->cof_hoop;
 }
 
-INLINE bool Evaluate(const double motion[MOTION_COUNT], bool slopes, Kinematics *k)
+INLINE bool MotionOf(const double motion[MOTION_COUNT], bool slopes, Kinematics *k)
 {
   // cppcheck-suppress ctuuninitvar ; the address only: k is filled here
   double(*F)[2] = k->F;
@@ -93,24 +73,23 @@ INLINE bool Evaluate(const double motion[MOTION_COUNT], bool slopes, Kinematics 
   const Stretch of = StretchOf(F[0][0], F[0][1], F[1][0], F[1][1]);
   const double  a = of.along, b = of.turn, n = a * a + b * b, root = sqrt(n);
 
-  k->c = a / root;
-  k->s = b / root;
+  k->turn = (Rotation){a / root, b / root};
   if (slopes) {
-    k->dtheta[0] = k->dtheta[3] = -b / n;
-    k->dtheta[1]                = -a / n;
-    k->dtheta[2]                = a / n;
+    k->dtheta[0][0] = k->dtheta[0][3] = -b / n;
+    k->dtheta[0][1]                   = -a / n;
+    k->dtheta[0][2]                   = a / n;
   }
-  StretchDiagonal(k->c, k->s, F[0][0], F[0][1], F[1][0], F[1][1], k->stretch);
+  StretchDiagonal(k->turn.c, k->turn.s, F[0][0], F[0][1], F[1][0], F[1][1], k->stretch);
   LogStrain(&of, slopes, k);
   return true;
 }
 
 bool KinematicsEvaluate(const double motion[MOTION_COUNT], Kinematics *k)
 {
-  return Evaluate(motion, true, k);
+  return MotionOf(motion, true, k);
 }
 
 bool KinematicsValues(const double motion[MOTION_COUNT], Kinematics *k)
 {
-  return Evaluate(motion, false, k);
+  return MotionOf(motion, false, k);
 }

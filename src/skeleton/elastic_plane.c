@@ -1,0 +1,65 @@
+/* Linear elasticity (14) over blocks, as the integrators without a matrix take them. */
+#include "elastic.h"
+#include "plastic.h"
+
+INLINE SkeletonStep StepOf(const SkeletonBlock *B, int q)
+{
+  return (SkeletonStep){.turn    = {B->c[q], B->s[q]},
+                        .e       = {B->xx[q], B->yy[q], 0.0, B->xy[q]},
+                        .thermal = B->thermal[q],
+                        .E_n     = B->E_n[q],
+                        .E       = B->E[q],
+                        .Sh      = B->Sh[q]};
+}
+
+static void Block_Bonds(const Material *mat, const SkeletonBlock *b)
+{
+  const Elasticity    el = mat->elasticity;
+  const SkeletonBlock B  = *b;
+
+#pragma GCC ivdep
+  for (int q = 0; q < B.n; q++) {
+    SkeletonStep    d = StepOf(&B, q);
+    SkeletonHistory h;
+    SkeletonState   s;
+
+    d.kept = B.kept[q];
+    SkeletonTakeStress(&B.store, q, &h);
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++) {
+      h.from.sig[k]              = h.sig[k];
+      h.from.strain[k]           = 0.0;
+      h.from.own[OWN_P_BOND + k] = B.store.own[OWN_P_BOND + k][q];
+    }
+    BondedStress(&el, &h, &d, &s);
+    SkeletonKeepStress(&B.store, q, &s);
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++)
+      B.store.own[OWN_P_BOND + k][q] = s.own[OWN_P_BOND + k];
+  }
+}
+
+bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why)
+{
+  const Elasticity    el = mat->elasticity;
+  const SkeletonBlock B  = *b;
+
+  (void)why;
+  for (int q = 0; B.work && q < B.n; q++)
+    B.work[q] = 0.0;
+  if (ElasticityHasBonds(&el)) {
+    Block_Bonds(mat, b);
+    return true;
+  }
+#pragma GCC ivdep
+  for (int q = 0; q < B.n; q++) {
+    const SkeletonStep d = StepOf(&B, q);
+    SkeletonHistory    h;
+    SkeletonState      s;
+
+    SkeletonTakeStress(&B.store, q, &h);
+    ElasticStress(&el, &h, &d, &s);
+    SkeletonKeepStress(&B.store, q, &s);
+  }
+  return true;
+}

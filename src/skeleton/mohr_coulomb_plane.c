@@ -1,0 +1,155 @@
+/* Mohr-Coulomb over blocks, as the integrators without a matrix take them. */
+#include "smooth.h"
+
+#define CHUNK 32 /* particles tested at once */
+
+/* Which of n trial states from q on may yield, without exponentials or angles of their own: where nothing has flowed
+   yet (nor around it), friction is that of the peak and the cohesion c_min or more; where all normal stresses are
+   compressive, no strength is below the residual one.  All of them reduced (87).  Vector code. */
+static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n, unsigned char may[CHUNK])
+{
+  const double part = StrengthReduced(law, 1.0), peak = atan(part * tan(law->phi_peak * M_PI / 180.0)),
+               res = atan(part * tan(law->phi_res * M_PI / 180.0)), sp = sin(peak), sr = sin(res),
+               cp = part * law->c_min * cos(peak), cr = part * law->c_res * cos(res), cutoff = StrengthCutoff(law);
+  const int     own = law->nonlocal == 0.0; /* strength follows the particle's own strain */
+  const double *xx = f->sig[XX] + q, *yy = f->sig[YY] + q, *zz = f->sig[ZZ] + q, *xy = f->sig[XY] + q,
+               *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] ? f->own[OWN_P_OPENING] + q : NULL;
+
+  for (int k = 0; k < n; k++) {
+    const double d = 0.5 * (xx[k] - yy[k]), m = 0.5 * (xx[k] + yy[k]), r = sqrt(d * d + xy[k] * xy[k]);
+    const double hi = m + r > zz[k] ? m + r : zz[k], lo = m - r < zz[k] ? m - r : zz[k];
+    const double shear = 0.5 * (hi - lo), mean = 0.5 * (hi + lo);
+    const int fresh = own & (eps[k] == 0.0) & (shear + mean * sp <= cp), worn = (hi <= 0.0) & (shear + mean * sr <= cr);
+
+    may[k] = (unsigned char)!((hi <= cutoff) & (fresh | worn));
+  }
+  for (int k = 0; open && k < n; k++)
+    may[k] |= open[k] > 0.0;
+}
+
+/* A particle of a block at its trial stress. */
+typedef struct {
+  int           q;
+  SkeletonStep  d;
+  SkeletonState s;
+  Principal     p;
+} Yielding;
+
+static void TakeYielding(const SkeletonBlock *b, int q, Yielding *y)
+{
+  const SkeletonStore *f = &b->store;
+
+  y->q = q;
+  y->d = (SkeletonStep){.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
+  y->s = (SkeletonState){.sig            = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]},
+                         .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
+  if (f->own[OWN_P_OPENING])
+    y->s.own[OWN_P_OPENING] = f->own[OWN_P_OPENING][q];
+  PrincipalOf(y->s.sig, &y->p);
+}
+
+/* What the block keeps of a particle that yields. */
+static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yielding *y, const double over[CL_TENSOR])
+{
+  const SkeletonStore *f     = &b->store;
+  const double         share = BondShare(&mat->elasticity, &y->d);
+
+  b->work[y->q]  = y->s.work;
+  f->yield[y->q] = (double)y->s.region;
+  if (y->s.region == RETURN_ELASTIC)
+    return;
+  f->own[OWN_P_EPS][y->q] = y->s.own[OWN_P_EPS];
+  if (f->own[OWN_P_OPENING])
+    f->own[OWN_P_OPENING][y->q] = y->s.own[OWN_P_OPENING];
+  for (int k = 0; k < 4; k++) {
+    f->sig[k][y->q] = y->s.sig[k];
+    if (share != 0.0)
+      f->own[OWN_P_BOND + k][y->q] -= share * over[k];
+  }
+}
+
+static bool ReturnOne(const Material *mat, const SkeletonBlock *b, Yielding *y, const char **why)
+{
+  const Returning r = {.mat = mat, .d = &y->d, .nonlocal = SkeletonNonlocal(&b->store, y->q), .trial = &y->s};
+  Landed          l;
+  const bool      found = ReturnTrial(&r, &l, why);
+
+  y->s = l.s;
+  KeepYielding(mat, b, y, l.over);
+  if (!found)
+    b->work[y->q] = NAN;
+  return found;
+}
+
+/* The smooth return of up to SMOOTH_LANES particles at once; the hard ones one by one. */
+static bool ReturnLanes(const Material *mat, const SkeletonBlock *b, const int *list, int n, const char **why)
+{
+  const Elasticity *el    = &mat->elasticity;
+  bool              found = true;
+  Yielding          y[SMOOTH_LANES];
+  SmoothLanes       l;
+
+  for (int i = 0; i < n; i++)
+    TakeYielding(b, list[i], &y[i]);
+  for (int i = 0; i < SMOOTH_LANES; i++) {
+    const Yielding *from = &y[i < n ? i : 0];
+
+    for (int k = 0; k < 3; k++)
+      l.y[k][i] = from->p.y[k];
+    l.E[i]        = StageModulus(el, &from->d);
+    l.Sh[i]       = from->d.Sh;
+    l.eps[i]      = from->s.own[OWN_P_EPS];
+    l.nonlocal[i] = SkeletonNonlocal(&b->store, from->q);
+  }
+  ReturnSmoothLanes(&mat->plasticity, 2.0 * ElasticityShearFactor(el), ElasticityLameFactor(el), &l);
+  for (int i = 0; i < n; i++) {
+    const Returned r = {.y = {l.y[0][i], l.y[1][i], l.y[2][i]}, .eps = l.eps[i], .region = RETURN_FACE};
+    double         over[4], e[4];
+
+    const bool open = y[i].s.own[OWN_P_OPENING] > 0.0;
+
+    if (l.elastic[i] && !open)
+      continue;
+    if (!l.found[i] || open) {
+      found = ReturnOne(mat, b, &y[i], why) && found;
+      continue;
+    }
+    TakeReturned(mat, StageModulus(el, &y[i].d), &y[i].p, &r, &y[i].s, over, e);
+    KeepYielding(mat, b, &y[i], over);
+  }
+  return found;
+}
+
+/* Trial stresses of all first, then the returns of those that yield, both in vector code. */
+bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why)
+{
+  const Plasticity *law   = &mat->plasticity;
+  const bool        lanes = law->flow == FLOW_MENETREY_WILLAM && (law->factor == 0.0 || law->factor == 1.0);
+  bool              found = Block_Elastic(mat, b, why);
+  unsigned char     may[CHUNK];
+
+  for (int q = 0; q < b->n; q++)
+    b->store.yield[q] = (double)RETURN_ELASTIC; /* their work is zero already */
+  for (int q = 0; q < b->n; q += CHUNK) {
+    const int n = b->n - q < CHUNK ? b->n - q : CHUNK;
+    int       list[CHUNK], many = 0;
+
+    MayYield(law, &b->store, q, n, may);
+    for (int k = 0; k < n; k++) {
+      list[many] = q + k;
+      many += may[k];
+    }
+    for (int k = 0, group; k < many; k += group) {
+      group = !lanes || many - k == 1 ? 1 : many - k < SMOOTH_LANES ? many - k : SMOOTH_LANES;
+      if (group > 1) {
+        found = ReturnLanes(mat, b, list + k, group, why) && found;
+        continue;
+      }
+      Yielding y;
+
+      TakeYielding(b, list[k], &y);
+      found = ReturnOne(mat, b, &y, why) && found;
+    }
+  }
+  return found;
+}
