@@ -1,0 +1,375 @@
+#!/usr/bin/env python3
+"""Space: scenes of the plane, drawn out along any axis, give the plane's answers with clathra3d.
+
+A scene of the plane is one layer of cells thick, held by rollers on both sides of it: exact in the grid's functions, so that
+what differs is round-off, amplified by Newton's tolerances.  The axes are exchanged in a ring, so that each of the three is
+once the one along which nothing happens.
+"""
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from common import binary, check, finish, judge, launch, run, scratch, table
+
+SPACE = Path(binary()).with_name("clathra3d")
+DEEP = 0.1  # m, of the layer
+SIDES = (("left", "right"), ("bottom", "top"), ("back", "front"))
+TIGHT = ["-newton_tol_update", 1e-11]
+
+MATERIAL = {
+    "porosity": 0.3,
+    "solid": {"density": "2600 kg/m^3", "heat_capacity": "800 J/(kg K)", "conductivity": "3 W/(m K)", "expansion": "1e-5 1/K"},
+    "hydrate": {"density": "900 kg/m^3", "heat_capacity": "2010 J/(kg K)", "conductivity": "0.5 W/(m K)", "expansion": "1e-5 1/K",
+                "molar_mass": "0.124 kg/mol", "number": 6},
+    "water": {"density": "1000 kg/m^3", "bulk_modulus": "2.2 GPa", "viscosity": "1e-3 Pa s", "heat_capacity": "4200 J/(kg K)",
+              "conductivity": "0.5 W/(m K)", "expansion": "2e-4 1/K", "ref_pressure": "3.25 MPa", "ref_temperature": "4 degC",
+              "molar_mass": "0.018 kg/mol"},
+    "gas": {"eos": "peng_robinson", "molar_mass": "0.016 kg/mol", "viscosity": "1e-5 Pa s", "heat_capacity": "2100 J/(kg K)",
+            "conductivity": "0.044 W/(m K)"},
+    "retention": {"law": "van_genuchten", "p0": "50 kPa", "m": 0.3, "Swr": 0.2, "Sgr": 0.1},
+    "relperm": {"nw": 4, "ng": 2},
+    "permeability": {"k0": "1e-14 m^2", "porosity_law": "kozeny_carman", "hydrate_law": "power", "mh": 3},
+    "kinetics": {"active": "yes", "K0": "1e-8 mol/(m^2 Pa s)", "dE": "0 J/mol", "A_geo": "1e6 1/m", "equilibrium": "sloan",
+                 "A1": "1 kPa", "A2": 38.98, "A3": "8533.8 K"},
+    "latent_heat": {"C0": "473632 J/kg", "C1": "140.117 J/(kg K)"},
+    "elasticity": {"E0": "90 MPa", "Eh": "500 MPa", "ah": 1, "bh": 1, "nu": 0.3, "stiffness_change": "bonds"},
+}  # fmt: skip
+
+
+def block():
+    """A block that is loaded on a part of its top, drained at its right end and heated at its left: it shears and turns."""
+    half = lambda name, lower, upper: {"lower": lower, "upper": upper, "particles_per_cell": [2, 2], "material": "sediment",
+                                       "pressure": "3.25 MPa", "temperature": "4 degC", "Sw": 0.5, "Sg": 0.3, "Sh": 0.2}  # fmt: skip
+    return {
+        "title": "Block", "gravity": ["1 m/s^2", "-9.81 m/s^2"],
+        "grid": {"lower": ["0 m", "0 m"], "upper": ["0.8 m", "0.6 m"], "cells": [8, 6]},
+        "materials": ["sediment"], "mat": {"sediment": MATERIAL},
+        "regions": ["loaded", "free"],
+        "region": {"loaded": half("loaded", ["0 m", "0 m"], ["0.3 m", "0.5 m"]), "free": half("free", ["0.3 m", "0 m"], ["0.65 m", "0.5 m"])},
+        "boundaries": ["wall", "base", "load", "rest", "drain", "sun", "end"],
+        "bc": {
+            "wall": {"type": "roller", "axis": "x", "position": "0 m"},
+            "base": {"type": "roller", "axis": "y", "position": "0 m"},
+            "load": {"type": "traction", "side": "top", "region": "loaded", "normal": {"ramp": ["3.25 MPa", "5 MPa", "0 s", "100 s"]}},
+            "rest": {"type": "traction", "side": "top", "region": "free", "normal": "3.25 MPa"},
+            "end": {"type": "traction", "side": "right", "normal": "3.25 MPa"},
+            "drain": {"type": "pressure", "side": "right", "initial": "yes"},
+            "sun": {"type": "convection", "side": "top", "ambient": "12 degC", "alpha": "400 W/(m^2 K)"},
+        },
+        "time": {"end": "200 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "20 s"},
+        "stabilisation": {"ghost_storage": 0.1},
+        "output": {"times": ["200 s"]},
+    }  # fmt: skip
+
+
+def drawn_out(case, ring):
+    """The case in space: its x and y become axes ring, ring + 1, the third is the one without change."""
+    along = [ring % 3, (ring + 1) % 3, (ring + 2) % 3]  # of x, y and the new axis
+
+    def place(xy, z):
+        out = [None] * 3
+        for d, v in zip(along, (*xy, z)):
+            out[d] = v
+        return out
+
+    c = json.loads(json.dumps(case))
+    c["grid"] = {"lower": place(c["grid"]["lower"], "0 m"), "upper": place(c["grid"]["upper"], f"{DEEP} m"), "cells": place(c["grid"]["cells"], 1)}
+    if "gravity" in c:
+        c["gravity"] = place(c["gravity"], "0 m/s^2")
+    for r in c["region"].values():
+        r["lower"], r["upper"] = place(r["lower"], "0 m"), place(r["upper"], f"{DEEP} m")
+        r["particles_per_cell"] = place(r.get("particles_per_cell", [2, 2]), 2)
+    for b in c["bc"].values():
+        if "axis" in b:
+            b["axis"] = "xyz"[along["xy".index(b["axis"])]]
+        if "side" in b:
+            d, end = next((d, s.index(b["side"])) for d, s in enumerate(SIDES) if b["side"] in s)
+            b["side"] = SIDES[along[d]][end]
+    if "u" not in c.get("held", ""):
+        for name, at in (("one_face", "0 m"), ("other_face", f"{DEEP} m")):
+            c["boundaries"].append(name)
+            c["bc"][name] = {"type": "roller", "axis": "xyz"[along[2]], "position": at}
+    c["title"] += f" in space, {'xyz'[along[2]]} without change"
+    return c, along
+
+
+def written(case, name):
+    path = scratch() / f"{name}.yaml"
+    path.write_text(json.dumps(case))
+    return path
+
+
+def apart(plane, space, along):
+    """{variable: largest difference over the largest value}, particles paired by where they were first."""
+    t, p = plane.snapshots()[-1]
+    t3, s = space.snapshots()[-1]
+    assert abs(t - t3) < 1e-9 * t
+    start = lambda v: v["initial_position"] if "initial_position" in v else v["position"]
+    order = np.lexsort(np.round(start(p), 9).T)
+    key = np.round(start(s)[:, along[:2]], 9)
+    layer = [np.flatnonzero(np.round(start(s)[:, along[2]], 9) == z) for z in np.unique(np.round(start(s)[:, along[2]], 9))]
+    out = {}
+    voigt = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
+    for cells in layer:
+        cells = cells[np.lexsort(key[cells].T)]
+        for name, v in p.items():
+            a, b = v[order], s[name][cells]
+            if name in ("id", "region", "vertex", "rank"):
+                continue
+            if name in ("volume", "plastic_work", "plastic_heat") or name.startswith("mass"):  # per metre in the plane
+                b = b / (DEEP / len(layer))
+            elif name in ("stress", "stress_initial"):
+                b = b[:, [voigt[along[i], along[j]] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))]]
+            elif name == "stress_hydrate":
+                a, b = a, b[:, [voigt[along[i], along[j]] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1))]]
+            elif name == "deformation_gradient":
+                b = b.reshape(-1, 3, 3)[:, along[:2]][:, :, along[:2]].reshape(-1, 4)
+            elif name == "mixed_T":
+                b = b[:, [{(0, 1): 0, (1, 2): 1, (0, 2): 2}[tuple(sorted(along[:2]))]]]
+            elif name == "rate_plastic":
+                a, b = a[:, :1], b[:, :1]
+            elif a.shape[1] == 2:
+                b = b[:, along[:2]]
+            if a.shape != b.shape:
+                raise AssertionError(f"{name}: {a.shape} and {b.shape}")
+            top = np.max(np.abs(a))
+            if top > 0:
+                out[name] = max(out.get(name, 0.0), float(np.max(np.abs(a - b)) / top))
+    return out
+
+
+def compare(what, case, *options, rings=(0,), ranks=1, bar=1e-10):
+    """Judges the case in space by the plane; returns the runs in space."""
+    plane = run(binary(), written(case, "plane"), *TIGHT, *options)
+    runs = []
+    for ring in rings:
+        drawn, along = drawn_out(case, ring)
+        space = run(SPACE, written(drawn, "space"), *TIGHT, *options, ranks=ranks)
+        off = apart(plane, space, along)
+        rates = {k: off.pop(k) for k in list(off) if k.startswith(("rate", "v_", "grad", "mixed"))}
+        worst = max(off, key=off.get)
+        name = f"{what}, {'xyz'[along[2]]} without change" + (f", {ranks} ranks" if ranks > 1 else "")
+        print(f"{name}: " + ", ".join(f"{k} {v:.1e}" for k, v in sorted(off.items(), key=lambda kv: -kv[1])[:6]))
+        judge("space", f"{name}: farthest from the plane, relative ({worst})", off[worst], bar)
+        check("... of velocities, rates and gradients, which are differences of these", max(rates.values(), default=0.0), 100 * bar)
+        runs.append(space)
+    return runs
+
+
+def column():
+    """Terzaghi's column on 20 cells."""
+    soil = {k: v for k, v in MATERIAL.items() if k in ("porosity", "solid", "water")}
+    soil |= {"permeability": {"k0": "1e-15 m^2", "porosity_law": "none", "hydrate_law": "none"}, "elasticity": {"E0": "100 MPa", "nu": 0.2}}
+    return {
+        "title": "Terzaghi", "fields": ["solid", "water"],
+        "grid": {"lower": ["0 m", "0 m"], "upper": ["1 m", "0.05 m"], "cells": [20, 1]},
+        "materials": ["clay"], "mat": {"clay": soil}, "regions": ["column"],
+        "region": {"column": {"lower": ["0 m", "0 m"], "upper": ["1 m", "0.05 m"], "material": "clay", "pressure": "0.1 MPa", "temperature": "20 degC"}},
+        "boundaries": ["base", "bottom", "top", "load", "drain"],
+        "bc": {
+            "base": {"type": "roller", "axis": "x", "position": "0 m"},
+            "bottom": {"type": "roller", "axis": "y", "position": "0 m"},
+            "top": {"type": "roller", "axis": "y", "position": "0.05 m"},
+            "load": {"type": "traction", "side": "right", "normal": {"ramp": ["0.1 MPa", "1 MPa", "0 s", "10 s"]}},
+            "drain": {"type": "pressure", "side": "right", "initial": "yes"},
+        },
+        "time": {"end": "200 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "10 s"}, "output": {"times": ["200 s"]},
+    }  # fmt: skip
+
+
+def mandel():
+    """A quarter of Mandel's block under a plate that goes down at once and then slowly; drained at its side."""
+    rock = {k: v for k, v in MATERIAL.items() if k in ("porosity", "solid", "water")}
+    rock |= {"permeability": {"k0": "1e-17 m^2", "porosity_law": "none", "hydrate_law": "none"}, "elasticity": {"E0": "9 GPa", "nu": 0.2}}
+    return {
+        "title": "Mandel", "fields": ["solid", "water"], "inertia": "no",
+        "grid": {"lower": ["0 m", "0 m"], "upper": ["1.04 m", "0.5 m"], "cells": [13, 6]},
+        "materials": ["rock"], "mat": {"rock": rock}, "regions": ["block"],
+        "region": {"block": {"lower": ["0 m", "0 m"], "upper": ["1 m", "0.5 m"], "material": "rock", "pressure": "1 MPa", "temperature": "4 degC"}},
+        "boundaries": ["axis", "base", "plate", "side", "drain"],
+        "bc": {
+            "axis": {"type": "roller", "axis": "x", "position": "0 m"},
+            "base": {"type": "roller", "axis": "y", "position": "0 m"},
+            "plate": {"type": "plate", "side": "top", "displacement": {"table": ["0 s", "0 m", "100 s", "-1e-5 m", "2000 s", "-3e-5 m"]}},
+            "side": {"type": "traction", "side": "right", "normal": "1 MPa"},
+            "drain": {"type": "pressure", "side": "right", "initial": "yes"},
+        },
+        "time": {"end": "2000 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "100 s"}, "output": {"times": ["2000 s"]},
+    }  # fmt: skip
+
+
+def sample(flow):
+    """A corner of sand with hydrate between rough plates that yields, confined by the sea, whose pressure it also has in its pores."""
+    case, sand = block(), json.loads(json.dumps(MATERIAL))
+    sand["elasticity"] = {"E0": "600 MPa", "nu": 0.33}
+    sand["plasticity"] = {"law": "mohr_coulomb", "flow": flow, "cohesion_max": "1 MPa", "cohesion_min": "100 kPa", "cohesion_residual": "50 kPa",
+                          "friction_peak": "40 deg", "friction_residual": "30 deg", "dilation_max": "10 deg", "dilation_min": "5 deg",
+                          "eta_h": 5, "eta_s": 5, "Sh_max": 0.443, "heat": 0.9}  # fmt: skip
+    case |= {
+        "title": "Sand that yields", "gravity": ["0 m/s^2", "0 m/s^2"], "ambient": {"pressure": "3.25 MPa"}, "mat": {"sediment": sand},
+        "boundaries": ["wall", "base", "plate"],
+        "bc": {
+            "wall": {"type": "roller", "axis": "x", "position": "0 m"},
+            "base": {"type": "fixed", "axis": "y", "position": "0 m"},
+            "plate": {"type": "plate", "side": "top", "rough": "yes", "velocity": {"ramp": ["0 m/s", "-0.02 m/s", "0 s", "0.2 s"]}},
+        },
+        "time": {"end": "1 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "0.05 s"}, "output": {"times": ["1 s"]},
+    }  # fmt: skip
+    return case
+
+
+WITHOUT_GAS = [o for r in ("loaded", "free") for o in (f"-region_{r}_Sg", 0, f"-region_{r}_Sw", 1, f"-region_{r}_Sh", 0)] + ["-mat_sediment_kinetics_active", "no"]
+
+
+def drawn_out_scenes():
+    every = (0, 1, 2)
+    compare("Terzaghi's column", column(), rings=every)
+    compare("Mandel's block", mandel(), rings=every)
+    compare("block", block(), rings=every)
+    for ranks in (2, 4):
+        compare("block", block(), ranks=ranks)
+    compare("block, one pressure, euler", block(), "-pressures", "one", "-stepper_type", "euler", "-mat_sediment_kinetics_active", "no")
+    wet = block()
+    wet["boundaries"].remove("sun")
+    del wet["bc"]["sun"]
+    compare("block, hm, quasi-static", wet, "-fields", "solid,water", "-inertia", "no", *WITHOUT_GAS)
+    compare("block, half the cell's mean strain, saturations and heat carried, beds, heat of compression", block(), "-mean_strain", 0.5,
+            "-stabilisation_heat", "yes", "-stabilisation_saturation", "yes", "-mat_sediment_permeability_ratio", 0.1,
+            "-mat_sediment_permeability_dip", "20 deg", "-compression_heat", "yes", rings=(0,))  # fmt: skip
+    compare("block, reduced preconditioner", block(), "-newton_preconditioner", "reduced", rings=(0,))
+    for flow in ("menetrey_willam", "mohr_coulomb"):
+        compare(f"sand that yields, {flow}", sample(flow), rings=every, bar=1e-8)
+
+
+def cube(vertical):
+    """Wet ground of 1 m, a third axis of gravity at will, on the sea's floor: held at its base and sides, its top open to the sea."""
+    up = "xyz".index(vertical)
+    floor = [["0 m", "1 m"] for _ in range(3)]
+    soil = {k: v for k, v in MATERIAL.items() if k in ("porosity", "solid", "water")}
+    soil |= {"permeability": {"k0": "1e-14 m^2", "porosity_law": "none", "hydrate_law": "none"}, "elasticity": {"E0": "20 MPa", "nu": 0.3}}
+    soil["water"] = soil["water"] | {"bulk_modulus": "incompressible"}  # else nodes, linear between each other, have not quite its profile
+    case = {
+        "title": f"Cube under the sea, {vertical} upright", "fields": ["solid", "water"],
+        "gravity": [f"{-9.81 if d == up else 0.0} m/s^2" for d in range(3)],
+        "grid": {"lower": ["0 m"] * 3, "upper": ["1.2 m" if d == up else "1 m" for d in range(3)], "cells": [6 if d == up else 5 for d in range(3)]},
+        "ambient": {"pressure": "101325 Pa", "density": "1000 kg/m^3", "level": "300 m"},
+        "materials": ["soil"], "mat": {"soil": soil}, "regions": ["cube"],
+        "region": {"cube": {"lower": [f[0] for f in floor], "upper": [f[1] for f in floor], "material": "soil", "pressure": "101325 Pa",
+                            "hydrostatic": "yes", "datum": "300 m", "stress": {"geostatic": 0.5}, "temperature": "4 degC"}},
+        "boundaries": ["floor"], "bc": {"floor": {"type": "pressure", "side": SIDES[up][1], "pressure": "ambient"}},
+        "time": {"end": "10 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "1 s"}, "output": {"times": ["10 s"]},
+    }  # fmt: skip
+    for d in range(3):
+        for end, at in enumerate(("0 m", "1 m")):
+            if d == up and end == 1:
+                continue
+            case["boundaries"].append(SIDES[d][end])
+            case["bc"][SIDES[d][end]] = {"type": "roller", "axis": "xyz"[d], "position": at}
+    return case
+
+
+def at_rest():
+    """Weight, pore pressure and sea in balance in the grid's functions: nothing moves."""
+    for vertical in "xyz":
+        v = run(SPACE, written(cube(vertical), "cube"), *TIGHT).snapshot(10.0)
+        sinks = 0.5 * 700 * 9.81 / 20e6  # m, about what the weight alone would do
+        judge("space", f"cube under the sea, {vertical} upright: moves, of what its weight could do", np.max(np.abs(v["displacement"])) / sinks, 1e-8)
+        vertical_stress = v["stress"][:, "xyz".index(vertical)]
+        across = v["stress"][:, [k for k in range(3) if k != "xyz".index(vertical)]]
+        check("... horizontal over vertical stress, off K0", np.max(np.abs(across / vertical_stress[:, None] - 0.5)), 1e-6)
+
+
+def newmark(x, z, deep):
+    """Vertical stress over the load at (x, z) and `deep` (m) below a square of half width 1 m on a half space: four corners of rectangles."""
+    found = 0.0
+    for a in (1 - x, 1 + x):
+        for b in (1 - z, 1 + z):
+            m, n = a / deep, b / deep
+            root = np.sqrt(m * m + n * n + 1)
+            found = found + (np.arctan(m * n / root) + m * n / root * (1 / (m * m + 1) + 1 / (n * n + 1))) / (2 * np.pi)
+    return found
+
+
+DEEP_GROUND = 16  # m
+
+
+def footing(h):
+    """A quarter of a flexible square footing of 2 m on elastic ground, y upright, on cells of h (m) that grow away from it."""
+    soil = {"porosity": 0.4, "solid": {"density": "2600 kg/m^3"}, "elasticity": {"E0": "20 MPa", "nu": 0.3}}
+    side, deep = [0, h, 1, h, DEEP_GROUND, 4], [0, 4, DEEP_GROUND - 2, h, DEEP_GROUND, h]
+    metres = lambda v: {"table": [f"{x} m" for x in v]}
+    box = lambda lower, upper: {"lower": [f"{x} m" for x in lower], "upper": [f"{x} m" for x in upper], "material": "soil"}
+    return {
+        "title": "Square footing", "fields": ["solid"], "inertia": "no",
+        "grid": {"lower": ["0 m"] * 3, "upper": [f"{DEEP_GROUND} m"] * 3, "spacing": {"x": metres(side), "y": metres(deep), "z": metres(side)}},
+        "materials": ["soil"], "mat": {"soil": soil}, "regions": ["ground", "pad"],
+        "region": {"ground": box([0] * 3, [DEEP_GROUND] * 3), "pad": box([0, DEEP_GROUND - 1, 0], [1, DEEP_GROUND, 1])},
+        "boundaries": ["left", "back", "right", "front", "base", "load"],
+        "bc": {
+            "left": {"type": "roller", "axis": "x", "position": "0 m"}, "right": {"type": "roller", "axis": "x", "position": f"{DEEP_GROUND} m"},
+            "back": {"type": "roller", "axis": "z", "position": "0 m"}, "front": {"type": "roller", "axis": "z", "position": f"{DEEP_GROUND} m"},
+            "base": {"type": "fixed", "axis": "y", "position": "0 m"},
+            "load": {"type": "traction", "side": "top", "region": "pad", "normal": "20 kPa"},
+        },
+        "time": {"end": "1 s"}, "stepper": {"type": "euler", "adapt": "no", "dt": "1 s"}, "output": {"times": ["1 s"]},
+    }  # fmt: skip
+
+
+def under_a_footing():
+    """Stress near the axis, between half a metre and two below the load, against Newmark's integral of Boussinesq's solution."""
+    rows, errors = [], {}
+    for h in (0.5, 0.25):
+        case = run(SPACE, written(footing(h), "footing"))
+        v = case.snapshot(1.0)
+        x = v["initial_position"]
+        below = DEEP_GROUND - x[:, 1]
+        at = (x[:, 0] < 0.5) & (x[:, 2] < 0.5) & (below > 0.5) & (below < 2)
+        off = -v["stress"][at, 1] / 20e3 - newmark(x[at, 0], x[at, 2], below[at])
+        errors[h] = np.sqrt(np.mean(off**2))
+        rows.append((h, len(x), at.sum(), off.min(), off.max(), errors[h]))
+    table(("h (m)", "particles", "of them near the axis", "least error", "largest, of the load", "rms"), rows)
+    judge("space", "square footing, h = 0.25 m: stress below its middle, rms error of the load", errors[0.25], 0.03)
+    check("... over that on cells twice as large", errors[0.25] / errors[0.5], 0.6)
+
+
+def begun_again():
+    """A run that stops and goes on from its checkpoint, on two ranks then, ends as the one that does not stop."""
+    case = written(drawn_out(block(), 0)[0], "restart")
+    whole = run(SPACE, case, *TIGHT).snapshot(200.0)
+    half = run(SPACE, case, *TIGHT, "-time_end", "100 s", "-output_times", "100 s")
+    for ranks in (1, 2):
+        rest = run(SPACE, case, *TIGHT, "-restart", half.out / "checkpoint.h5", ranks=ranks).snapshot(200.0)
+        off = max(np.max(np.abs(rest[k] - v)) / np.max(np.abs(v)) for k, v in whole.items() if np.any(v) and k in ("p", "T", "S_h", "displacement", "stress"))
+        judge("space", f"block, begun again after half its time on {ranks} rank{'s' * (ranks > 1)}: farthest from the whole run", off, 1e-10 if ranks > 1 else 0.0)
+
+
+def refused():
+    """What is of the plane alone is refused by name, and a case of the plane by the program of space; the other way round, too."""
+    plane, (space, _) = block(), drawn_out(block(), 0)
+    sheared = json.loads(json.dumps(space))
+    sheared["bc"]["load"]["shear"] = "1 kPa"
+    for what, program, case, options, words in (
+        ("hybrid", SPACE, space, ["-stepper_type", "hybrid"], "three dimensions"),
+        ("axisymmetry", SPACE, space, ["-geometry", "axisymmetric"], "geometry"),
+        ("shear of a traction", SPACE, sheared, [], "bc_load_shear"),
+        ("part of a side", SPACE, space, ["-bc_load_to", "0.2 m"], "bc_load_to"),
+        ("a case of the plane", SPACE, plane, [], "clathra3d"),
+        ("a case of space in the plane", binary(), space, [], "clathra3d"),
+    ):
+        done = launch(program, written(case, "refused"), *options, out=scratch() / "out")
+        check(f"refused: {what}: exit code 2 and said by name", float(done.returncode == 2 and words in done.stdout), (1.0, 1.0))
+
+
+def main():
+    drawn_out_scenes()
+    at_rest()
+    under_a_footing()
+    begun_again()
+    refused()
+    finish()
+
+
+if __name__ == "__main__":
+    main()
