@@ -148,7 +148,7 @@ def plot_profiles(run, times, snapshots, axis, beats=""):
     if axis == 1:
         grid[0][0].set_ylabel("y (m)")
     grid[0][-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), title="time")
-    figure.suptitle(head(run, "profiles of the particles" + beats), x=0.01, ha="left")
+    figure.suptitle(head(run, "profiles of the particles" + beats + shown.where(run)), x=0.01, ha="left")
     save(figure, run.folder / "figures", "profiles")
     return True
 
@@ -182,7 +182,7 @@ def plot_film(run, times, snapshots, quantities):
             axes.set_title(f"t = {time}" if q is quantities[0] else "")
             tidy_axes(axes, width < 1.5)
         figure.colorbar(drawn, ax=list(row), label=wrapped(q.axis, height), format=Plain(), ticks=MaxNLocator(4 if height < 1.5 else 6), pad=0.01, aspect=15)
-    figure.suptitle(head(run, "the body at output times"), x=0.01, ha="left")
+    figure.suptitle(head(run, "the body at output times" + shown.where(run)), x=0.01, ha="left")
     save(figure, run.folder / "figures", "particles")
 
 
@@ -213,7 +213,7 @@ def plot_maps(run, time, particles, first, quantities):
         if q.key in ("v_w", "v_g"):
             arrows(axes, particles, q.key)
         tidy_axes(axes, width < 1.5)
-    figure.suptitle(head(run, f"t = {duration(time)}"), x=0.01, ha="left")
+    figure.suptitle(head(run, f"t = {duration(time)}" + shown.where(run)), x=0.01, ha="left")
     save(figure, run.folder / "figures", "maps")
 
 

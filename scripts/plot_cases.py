@@ -245,6 +245,50 @@ def sea_floor(run, *axes):
     right.legend(loc="center")
 
 
+MAGNIFIED = 20  # displacements of footing_3d
+
+
+def outside(v, axis, end):
+    """(n, 4, 3) corners, deformed, of the faces of the particles that were the outermost along `axis` at the start (end: 0 lower, 1 upper)."""
+    x, l = v["initial_position"], v["half_length"]
+    at = np.isclose(x[:, axis], x[:, axis].max() if end else x[:, axis].min())
+    a, b = (k for k in range(3) if k != axis)
+    corners = np.repeat((x + MAGNIFIED * v["displacement"])[at][:, None], 4, axis=1)
+    corners[:, :, axis] += (1 if end else -1) * l[at, axis][:, None]
+    for k, sign in ((a, (-1, 1, 1, -1)), (b, (-1, -1, 1, 1))):
+        corners[:, :, k] += np.array(sign) * l[at, k][:, None]
+    return corners, at
+
+
+def footing_3d(run, left, right):
+    """Settlement over time, and the quarter of the ground from its planes of symmetry."""
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    case = run()
+    q = case.csv("probes")
+    for colour, (name, label) in zip(COLOURS, (("middle", "middle of the footing"), ("corner", "its corner"), ("clay", "clay, 4 m below"))):
+        left.plot(q["time_s"] / 86400, -q[f"{name}.u_y_m"] * MM, color=colour, marker=".", ms=3, label=label)
+    left.set(xlabel="time (days)", ylabel="settlement (mm)", xscale="log", xlim=(0.3, None))
+    left.invert_yaxis()
+    left.legend()
+    figure, place = right.figure, right.get_subplotspec()
+    right.remove()
+    axes = figure.add_subplot(place, projection="3d", proj_type="ortho")
+    v = case.snapshots[-1][1]
+    s = v["stress"]
+    mises = PA * np.sqrt(0.5 * ((s[:, :3] - s[:, [1, 2, 0]]) ** 2).sum(1) + 3 * (s[:, 3:] ** 2).sum(1))
+    colours = plt.cm.ScalarMappable(plt.Normalize(0, mises.max()), "viridis")
+    for axis, end in ((1, 1), (0, 0), (2, 0)):
+        corners, at = outside(v, axis, end)
+        axes.add_collection3d(Poly3DCollection(corners[:, :, [0, 2, 1]], color=colours.to_rgba(mises[at]), lw=0.8))
+    high = v["initial_position"].max(0)
+    axes.set(xlim=(0, high[0]), ylim=(0, high[2]), zlim=(0, high[1]), xlabel="x (m)", ylabel="z (m)", zlabel="y (m)",
+             title=f"deviatoric stress q (MPa); displacements x {MAGNIFIED}")  # fmt: skip
+    axes.set_box_aspect(high[[0, 2, 1]])
+    axes.view_init(elev=28, azim=-132)
+    figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.1)
+
+
 def slope_warming(run, *axes):
     year, settled = 31557600.0, 20
     case, falling = run(), run("-ambient_level", "{ramp: [461.5 m, 441.5 m, 20 a, 120 a]}")
@@ -274,9 +318,10 @@ def slope_warming(run, *axes):
     beside.set_ylabel("m", color=COLOURS[1])
 
 
+SPACE = {"footing_3d"}  # run by clathra3d
 PANELS = {"century_hydrate": (1, 3), "sea_floor": (3, 2), "slope_warming": (3, 2)}  # rows and columns; one row of two without a word
 FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century,
-           century_hydrate, footing, shear_box, sea_floor, slope_warming]  # fmt: skip
+           century_hydrate, footing, footing_3d, shear_box, sea_floor, slope_warming]  # fmt: skip
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):
@@ -288,7 +333,8 @@ def main(program=str(ROOT / "build" / "clathra"), *names):
         with tempfile.TemporaryDirectory() as folder:
             rows, columns = PANELS.get(name, (1, 2))
             figure, axes = plt.subplots(rows, columns, figsize=(9.2, 3.4 if rows == 1 else 2.6 * rows))
-            draw(lambda *options: Case(program, folder, name, *options), *axes.flat)
+            runs = Path(program).with_name("clathra3d") if name in SPACE else program
+            draw(lambda *options: Case(runs, folder, name, *options), *axes.flat)
             save(figure, ROOT / "docs" / "figures", f"case_{name}")
 
 

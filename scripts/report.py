@@ -121,6 +121,8 @@ DULL = ("all", "start", "end", "run", "none", "no", "both")  # values that say n
 
 def places(run, keys, x, l):
     low, high = run.case["grid_lower"], run.case["grid_upper"]
+    if keys.get("axis") == "z":
+        return []
     if "axis" in keys:
         k = "xy".index(keys["axis"])
         ends = [low[1 - k], high[1 - k]]
@@ -152,10 +154,10 @@ def outermost(keys, x, l):
 def scene(run, first, last):
     corner = np.concatenate([shown.corners(p, first).reshape(-1, 2) for p in (first, last)])
     box = [run.case["grid_lower"], run.case["grid_upper"]]
-    return {"grid": [[number(v) for v in line] for line in run.lines], "box": [[number(v) for v in b] for b in box],
+    return {"grid": [[number(v) for v in line] for line in run.lines[:2]], "box": [[number(v) for v in b[:2]] for b in box],
             "body": [[number(v) for v in corner.min(0)], [number(v) for v in corner.max(0)]],
             "regions": run.names("regions"), "region": packed(first["region"], "u1"), "conditions": conditions(run, first),
-            "probes": [{"name": n, "at": [number(v) for v in run.case[f"probe_{n}_at"]]} for n in run.names("probes")
+            "probes": [{"name": n, "at": [number(v) for v in run.case[f"probe_{n}_at"][:2]]} for n in run.names("probes")
                        if isinstance(run.case.get(f"probe_{n}_at", [None])[0], float)]}  # fmt: skip
 
 
@@ -171,7 +173,7 @@ def film(run):
     """The body at the output times; None without snapshots."""
     if not len(run.times):
         return None
-    first = run.particles(run.times[0])
+    first = shown.plane(run, run.times[0])
     wanted = shown.shown([shown.drawn(run, t) for t in run.times[shown.spread(len(run.times), 8)]])
     frames, stride = chosen(run, len(first["id"]), 8 + len(wanted))
     ids = slice(None, None, stride)
@@ -239,13 +241,13 @@ def facts(run):
 def page(run):
     """The page of a run, HTML."""
     axis, pictures = time_axis(run), film(run)
-    data = {"title": run.title, "folder": str(run.folder.resolve()), "finished": run.finished, "summary": run.summary, **facts(run),
+    data = {"title": run.title + (shown.where(run) if pictures else ""), "folder": str(run.folder.resolve()), "finished": run.finished, "summary": run.summary, **facts(run),
             "film": pictures, "scene": None, "case": (run.folder / "case.yaml").read_text(), "log": run.log[-200_000:],
             "charts": {"production": meter_charts(run, axis), "probes": probe_charts(run, axis), "steps": step_charts(run, axis),
                        "balance": balance_charts(run, axis)}}  # fmt: skip
     if pictures:
-        data["scene"] = scene(run, run.particles(run.times[0]), run.particles())
-        data["scene"]["region"] = packed(run.particles(run.times[0])["region"][:: pictures["stride"]], "u1")
+        data["scene"] = scene(run, shown.plane(run, run.times[0]), shown.plane(run, None))
+        data["scene"]["region"] = packed(shown.plane(run, run.times[0])["region"][:: pictures["stride"]], "u1")
     text = json.dumps(data, allow_nan=False, ensure_ascii=False).replace("</", "<\\/")
     return TEMPLATE.read_text(encoding="utf-8").replace("{{title}}", html.escape(run.title)).replace("{{data}}", text)
 

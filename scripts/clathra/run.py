@@ -103,12 +103,18 @@ class Run:
 
     def grid(self, time=None):
         """{field: (rows, columns) array, of velocities (rows, columns, 2)} of the nodes, NaN where there is no sediment, with their
-        coordinates x (columns,) and y (rows,), m: what the step that ended at this time started from."""
-        x, y = self.lines
-        fields = {k: v.reshape(len(y), len(x), -1) for k, v in self._snapshot("grid", time).items()}
-        return {"x": x, "y": y, **{k: v[..., 0] if v.shape[2] == 1 else v for k, v in fields.items()}}
+        coordinates x (columns,) and y (rows,), m: what the step that ended at this time started from.  In space z comes first:
+        (layers, rows, columns)."""
+        lines = self.lines
+        fields = {k: v.reshape(*(len(x) for x in lines[::-1]), -1) for k, v in self._snapshot("grid", time).items()}
+        return {**dict(zip("xyz", lines)), **{k: v[..., 0] if v.shape[-1] == 1 else v for k, v in fields.items()}}
 
     @property
     def lines(self):
-        """Lines of the background grid: (x (m), y (m))."""
+        """Lines of the background grid: (x (m), y (m)), in space also z (m)."""
         return read_lines(self.folder)
+
+    @property
+    def in_space(self):
+        """Has it three axes?"""
+        return len(self.case["grid_lower"]) == 3

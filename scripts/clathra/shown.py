@@ -1,4 +1,5 @@
 """What pictures of a run show, whatever draws them: quantities of particles and histories, their labels and units."""
+import functools
 import re
 from typing import Callable, NamedTuple
 
@@ -84,17 +85,18 @@ HISTORIES = [
 
 def nodal_means(lines, particles, values):
     """(n, components) `values` of particles as the nodes of the grid see them, by volume and for each region by itself, linear between
-    the nodes.  lines: places (m) of the grid's lines along x and y."""
-    weights, nodes, below = [1.0], [0], len(lines[1])
-    for line, x, stride in zip(lines, particles["position"].T, (below, 1)):
+    the nodes.  lines: places (m) of the grid's lines along each axis."""
+    weights, nodes, stride = [1.0], [0], 1
+    for line, x in zip(lines, particles["position"].T):
         cell = np.clip(np.searchsorted(line, x, side="right") - 1, 0, len(line) - 2)
         share = np.clip((x - line[cell]) / (line[cell + 1] - line[cell]), 0.0, 1.0)
         weights = [w * s for w in weights for s in (1.0 - share, share)]
         nodes = [n + (cell + k) * stride for n in nodes for k in (0, 1)]
+        stride *= len(line)
     found = np.empty_like(values, dtype=float)
     for region in np.unique(particles["region"]):
         at = particles["region"] == region
-        mass, total = np.zeros(len(lines[0]) * below), np.zeros((len(lines[0]) * below, values.shape[1]))
+        mass, total = np.zeros(stride), np.zeros((stride, values.shape[1]))
         for w, n in zip(weights, nodes):
             np.add.at(mass, n[at], (w * particles["volume"])[at])
             np.add.at(total, n[at], ((w * particles["volume"])[:, None] * values)[at])
@@ -103,13 +105,50 @@ def nodal_means(lines, particles, values):
     return found
 
 
+@functools.lru_cache(maxsize=4)
+def cut(run):
+    """(z (m), mask of the particles that it goes through at the start) of the plane in which a run in space is shown: that of its first
+    probe, else the middle of the body; None in the plane."""
+    if not run.in_space:
+        return None
+    first = run.particles(run.times[0])
+    z, l = first["position"][:, 2], first["half_length"][:, 2]
+    at = next((p[2] for n in run.names("probes") if isinstance((p := run.case.get(f"probe_{n}_at", [None]))[0], float)), None)
+    at = 0.5 * ((z - l).min() + (z + l).max()) if at is None else float(np.clip(at, (z - l).min(), (z + l).max()))
+    inside = at + 1e-6 * l.min() * (1 if at < (z + l).max() - 1e-9 * l.min() else -1)  # on a border between particles: those behind it
+    return at, np.abs(z - inside) < l
+
+
+def plane(run, time):
+    """Particles at a time as pictures show them: those of the plane, in space those of cut() with what lies in that plane of vectors and
+    of the deformation gradient; stresses keep their six components."""
+    return _in_plane(run, run.particles(time))
+
+
+def _in_plane(run, particles):
+    if cut(run) is None:
+        return particles
+    held, found = cut(run)[1], {}
+    for name, v in particles.items():
+        v = v[held]
+        if name == "deformation_gradient":
+            v = v[:, [0, 1, 3, 4]]
+        found[name] = v[:, :2] if v.ndim == 2 and v.shape[1] == 3 else v
+    return found
+
+
 def drawn(run, time):
-    """Particles at a time as pictures show them: of stresses the nodal means.  Particles of a cell share its strain; where hydrate gives them
-    unlike stiffness their own stresses alternate, while the forces on the nodes, which are in balance, do not."""
+    """The same with the nodal means of stresses.  Particles of a cell share its strain; where hydrate gives them unlike stiffness their own
+    stresses alternate, while the forces on the nodes, which are in balance, do not."""
     particles = run.particles(time)
     if "stress" in particles:
         particles["stress"] = nodal_means(run.lines, particles, particles["stress"])
-    return particles
+    return _in_plane(run, particles)
+
+
+def where(run):
+    """Words that say which plane is shown, for a title; none in the plane."""
+    return "" if cut(run) is None else f", cut at z = {cut(run)[0]:.4g} m"
 
 
 def shown(snapshots):

@@ -30,11 +30,11 @@ def snapshot_times(folder, kind="particles"):
 
 
 def read_lines(folder):
-    """Places of the lines of the background grid, m: (x (columns,), y (rows,))."""
+    """Places of the lines of the background grid, m: (x (columns,), y (rows,)), in space also z (layers,)."""
     import h5py
 
     with h5py.File(Path(folder) / "fields.h5", "r") as h5:
-        return h5["lines/x"][()], h5["lines/y"][()]
+        return tuple(h5["lines"][d][()] for d in "xyz" if d in h5["lines"])
 
 
 def read_snapshot(folder, key, kind="particles"):
