@@ -28,11 +28,18 @@ def calculated(source, name, function):
     return found
 
 
+def axes(particles):
+    """How many the run has."""
+    return particles.PointData["half_length"].GetNumberOfComponents()
+
+
 def boxes(particles):
-    """Every particle as the rectangle of its half lengths, in the middle of which it lies."""
-    size = calculated(particles, "size", '2*"half_length_X"*iHat+2*"half_length_Y"*jHat+kHat')
-    found = Glyph(registrationName="body", Input=size, GlyphType="2D Glyph")
-    found.GlyphType.GlyphType, found.GlyphType.Filled = "Square", 1
+    """Every particle as the rectangle, in space the box, of its half lengths, in the middle of which it lies."""
+    space = axes(particles) == 3
+    size = calculated(particles, "size", '2*"half_length_X"*iHat+2*"half_length_Y"*jHat+' + ('2*"half_length_Z"*kHat' if space else "kHat"))
+    found = Glyph(registrationName="body", Input=size, GlyphType="Box" if space else "2D Glyph")
+    if not space:
+        found.GlyphType.GlyphType, found.GlyphType.Filled = "Square", 1
     found.OrientationArray, found.ScaleArray, found.VectorScaleMode = ["POINTS", "No orientation array"], ["POINTS", "size"], "Scale by Components"
     found.ScaleFactor, found.GlyphMode = 1.0, "All Points"
     return found
@@ -98,19 +105,21 @@ def show(folder, array=None):
     shown = particles
     for name in VECTORS:
         if name in particles.PointData.keys():
-            shown = calculated(shown, f"{name}_vector", f'"{name}_X"*iHat+"{name}_Y"*jHat')
+            shown = calculated(shown, f"{name}_vector", "+".join(f'"{name}_{a}"*{e}' for a, e in zip("XYZ"[: axes(particles)], ("iHat", "jHat", "kHat"))))
     display = Show(boxes(shown), view)
     display.SetRepresentationType("Surface")
     display.Ambient, display.Diffuse = 1.0, 0.0  # colours as the bar has them
     if len(times) > 1:  # the first snapshot has no grid
         wires(grid, view)
     view.Background, view.UseColorPaletteForBackground = [1, 1, 1], 0
-    view.OrientationAxesVisibility, view.InteractionMode = 0, "2D"
+    view.OrientationAxesVisibility, view.InteractionMode = int(axes(particles) == 3), f"{axes(particles)}D"
     scene = GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     scene.AnimationTime = view.ViewTime = times[-1]
     coloured(display, array or first(particles), view)
     words(view, folder, particles, times[-1])
+    if axes(particles) == 3:
+        view.CameraPosition, view.CameraFocalPoint, view.CameraViewUp = [-1.2, 0.8, -1.3], [0, 0, 0], [0, 1, 0]
     ResetCamera(view)
     Render(view)
     return view, shown, grid

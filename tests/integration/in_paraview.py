@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import CASES, binary, check, check_true, finish, run, scratch  # noqa: E402
+from common import CASES, check, check_true, finish, program_of, run, scratch  # noqa: E402
 
 import clathra  # noqa: E402
 from plotting import plt  # noqa: E402
@@ -22,6 +22,8 @@ INSIDE = Path(__file__).with_name("_in_paraview.py")
 READERS = ("XDMFReader", "Xdmf3ReaderS", "Xdmf3ReaderT")  # the last two are the new one, for files in space and in time
 BLOCK = ("shear_box", "-grid_cells", "16,5")
 GRADED = ("shear_box", "-grid_cells", "16,auto", "-grid_spacing_y", "{table: [0 m, 0.1 m, 1.25 m, 0.3 m]}")
+SPACE = ("footing_3d", "-time_end", "0.5 d", "-output_times", "0 d,0.25 d,0.5 d", "-grid_spacing_x_table", "0 m,2 m,10 m,2 m", "-grid_spacing_y_table", "0 m,2 m,7 m,1 m,8.5 m,0.75 m",
+         "-grid_spacing_z_table", "0 m,2 m,10 m,2 m")  # fmt: skip
 COLUMN = ("bp2", "-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s")
 
 
@@ -35,7 +37,7 @@ def check_reader(name, reader, kind, read, done):
     wanted = done.particles() if kind == "particles" else done.grid()
     times = done.times if kind == "particles" else done.times[1:]
     arrays = {k[6:]: v for k, v in read.items() if k.startswith("array:")}
-    names = set(wanted) - {"position", "vertex", "x", "y"}
+    names = set(wanted) - {"position", "vertex", "x", "y", "z"}
     what = f"{name}, {reader}, {kind}"
     check_true(f"{what}: its times", read["times"].tolist() == times.tolist(), read["times"].tolist())
     if reader == "XDMFReader":  # the others name none
@@ -44,8 +46,10 @@ def check_reader(name, reader, kind, read, done):
     check_true(f"{what}: {len(names)} named arrays", set(arrays) == names, sorted(set(arrays) ^ names))
     bad = [a for a in names & set(arrays) if not same(arrays[a], wanted[a])]
     check_true(f"{what}: values as the file holds them", not bad, bad)
-    places = wanted["position"] if kind == "particles" else np.stack(np.meshgrid(wanted["x"], wanted["y"]), -1).reshape(-1, 2)
-    there = read["points"].shape == (len(places), 3) and np.allclose(read["points"][:, :2], places, rtol=0, atol=1e-12) and not read["points"][:, 2].any()
+    lines = [wanted[d] for d in "zyx" if d in wanted]  # x runs fastest
+    places = wanted["position"] if kind == "particles" else np.stack(np.meshgrid(*lines, indexing="ij")[::-1], -1).reshape(-1, len(lines))
+    axes = places.shape[1]
+    there = read["points"].shape == (len(places), 3) and np.allclose(read["points"][:, :axes], places, rtol=0, atol=1e-12) and not read["points"][:, axes:].any()
     check_true(f"{what}: {len(places)} points in their places", there and str(read["kind"]) != "vtkMultiBlockDataSet", str(read["kind"]))
 
 
@@ -79,9 +83,9 @@ def main():
         print("SKIP no ParaView: python3-paraview, and xvfb where there is no screen, are not installed; what it reads was not looked at")
         finish()
         return
-    for name, (case, *options), ranks in (("block of graded cells", GRADED, 1), ("block on 2 ranks", BLOCK, 2), ("column on 2 ranks", COLUMN, 2)):
+    for name, (case, *options), ranks in (("block of graded cells", GRADED, 1), ("block on 2 ranks", BLOCK, 2), ("column on 2 ranks", COLUMN, 2), ("ground in space on 2 ranks", SPACE, 2)):
         out, found = scratch() / "out", scratch() / "found"
-        run(binary(), CASES / case, "-quiet", *options, out=out, ranks=ranks)
+        run(program_of(case), CASES / case, "-quiet", *options, out=out, ranks=ranks)
         found.mkdir(exist_ok=True)
         drawn = name == "block on 2 ranks"
         said = paraview(out, found, *([found / "picture.png"] if drawn else []))
