@@ -20,7 +20,7 @@ INLINE Beds BedsOf(double ratio, double dip, const double F[CL_DIM][CL_DIM])
 {
   const double n0[CL_DIM] = {-sin(dip), cos(dip)};
   double       cof[CL_DIM][CL_DIM], n[CL_DIM];
-  Beds         beds;
+  Beds         beds = {0};
 
   CofactorOf(F, cof);
   for (int i = 0; i < CL_DIM; i++)

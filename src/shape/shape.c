@@ -406,7 +406,7 @@ void FaceNormal(const Scene *c, PetscInt region, const double x[], int side, dou
   memcpy(w.a, x, sizeof(w.a));
   memcpy(w.b, x, sizeof(w.b));
   w.n[d] = sign;
-  if (!RegionWhole(r) && d < 2) { /* along z a shape is a prism */
+  if (!RegionWhole(r) && side <= SIDE_YMAX) { /* along z a shape is a prism */
     RegionLattice(c, region, &lattice);
     w.b[d] += sign * LatticeWidth(&lattice, d, x[d]);
     TryShape(&w, r);
