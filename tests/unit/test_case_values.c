@@ -161,6 +161,17 @@ static void Try(const char *resolved, Group g, const char *instance, const Key *
     fail_msg("%s = %s: the message names neither key nor line: %s", option, v ? v : "(long)", said);
 }
 
+/* Is it a case in space, which the other program reads? */
+static bool InSpace(const char *path)
+{
+  Case       c;
+  const bool reads = Read(path, &c);
+
+  if (reads)
+    GOOD(CaseDestroy(&c));
+  return !reads && strstr(said, "three axes are clathra3d's");
+}
+
 static char *Resolve(const char *path)
 {
   Case   c;
@@ -189,6 +200,8 @@ static void EveryKeyWithEveryValue(void **state)
   snprintf(pattern, sizeof pattern, "%s/*/case.yaml", cases);
   GOOD(glob(pattern, 0, NULL, &found));
   for (size_t n = 0; n < found.gl_pathc; n++) {
+    if (InSpace(found.gl_pathv[n]))
+      continue;
     char *resolved = Resolve(found.gl_pathv[n]);
     Case  c;
 
