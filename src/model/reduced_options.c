@@ -34,7 +34,9 @@ static PetscErrorCode IsGiven(const char *group, PetscBool *given)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Algebraic multigrid, unless the user wants something else. */
+/* Algebraic multigrid, unless the user wants something else.  GMRES needs no symmetric smoother: one sweep forward on
+   the way down and one backward on the way up cost half of hypre's default, for 5 % more iterations; in space a node's
+   row is five times as long, and a higher threshold thins the coarse levels out. */
 static PetscErrorCode PreferMotion(void)
 {
   PetscBool given;
@@ -45,7 +47,9 @@ static PetscErrorCode PreferMotion(void)
     PetscFunctionReturn(PETSC_SUCCESS);
 #if defined(PETSC_HAVE_HYPRE)
   PetscCall(PreferFor("motion", "pc_type", "hypre"));
-  PetscCall(PreferFor("motion", "pc_hypre_boomeramg_strong_threshold", "0.5"));
+  PetscCall(PreferFor("motion", "pc_hypre_boomeramg_strong_threshold", CL_DIM == 3 ? "0.7" : "0.5"));
+  PetscCall(PreferFor("motion", "pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi"));
+  PetscCall(PreferFor("motion", "pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi"));
 #else
   PetscCall(PreferFor("motion", "pc_type", "gamg"));
 #endif
