@@ -29,7 +29,7 @@ LAYERS = [
     ("basis", ["basis"], ["basis"]),
     ("particles", ["particles"], ["particles"]),
     ("boundary", ["boundary"], ["boundary"]),
-    ("model", ["model"], ["model"]),
+    ("model", ["model", "solver_words"], ["model"]),
     ("explicit", ["explicit"], ["explicit"]),
     ("settings", ["case"], []),
     ("stepper", ["stepper"], ["stepper"]),

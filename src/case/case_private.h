@@ -169,7 +169,8 @@ int  EditDistance(const char *a, const char *b);
 /* The words that a key may have, NULL: none are listed; an error that names them, and the nearest. */
 const char *const *KeyWords(const Key *k);
 void               WordError(Reader *r, const char *shown, const char *text, const char *const *words);
-/* program.c: numbers of the program's own options, with or without a unit; the options then hold them in SI. */
+/* program.c: words and numbers of the program's own options; numbers with or without a unit, the options then hold them
+   in SI. */
 PetscErrorCode ProgramRead(Reader *r);
 /* like.c: who is like whom; after the lists of names are read, before any other key.  A circle is refused. */
 PetscErrorCode CaseLike(Reader *r, const Case *c);

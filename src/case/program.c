@@ -1,7 +1,21 @@
-/* program: numbers of the options that are the program's own and no case file holds. */
+/* program: values of the options that are the program's own and no case file holds. */
 #include "case_private.h"
+#include "clathra/solver_words.h"
 #include <math.h>
 #include <stdio.h>
+#include <strings.h>
+
+static const char *const logical[] = {"yes", "no", "true", "false", "on", "off", "1", "0", NULL}; /* of PETSc */
+
+static const struct {
+  const char        *name;
+  const char *const *words;
+} program_word[] = {
+    {"-newton_preconditioner", solver_preconditioner},
+    {"-newton_operator", solver_operator},
+    {"-quiet", logical},
+    {"-overwrite", logical},
+};
 
 static const struct {
   const char *name, *unit, *range;
@@ -13,9 +27,27 @@ static const struct {
     {"-newton_tol_residual", "", "(0,1)", false}, {"-newton_tol_update", "", "(0,1)", false},
 };
 
+static PetscErrorCode WordsCheck(Reader *r)
+{
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < sizeof program_word / sizeof *program_word; k++) {
+    const char *const *word = program_word[k].words;
+    char               text[96];
+    PetscBool          given;
+
+    PetscCall(PetscOptionsGetString(NULL, NULL, program_word[k].name, text, sizeof text, &given));
+    while (given && *word && strcasecmp(*word, text))
+      word++;
+    if (!*word && (*text || program_word[k].words != logical)) /* a bare logical option says yes */
+      WordError(r, program_word[k].name, text, program_word[k].words);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ProgramRead(Reader *r)
 {
   PetscFunctionBeginUser;
+  PetscCall(WordsCheck(r));
   for (size_t k = 0; k < sizeof program_number / sizeof *program_number; k++) {
     const char *name = program_number[k].name, *unit = program_number[k].unit, *end;
     char        text[96], full[128];

@@ -1,11 +1,14 @@
 /* Newton-Krylov solution of one stage with PETSc's SNES. */
 #include "solver.h"
+#include "clathra/solver_words.h"
 
 #define CONSERVATION 20.0 /* mass and energy are solved that much tighter than momentum */
 
+const char *const solver_preconditioner[] = {"auto", "whole", "reduced", NULL};
+const char *const solver_operator[]       = {"auto", "assembled", "particles", NULL};
+
 PetscErrorCode SolverCreate(Solver **out)
 {
-  static const char *const kind[] = {"auto", "whole", "reduced"}, *const apply[] = {"auto", "assembled", "particles"};
   Solver *s;
 
   PetscFunctionBeginUser;
@@ -16,8 +19,10 @@ PetscErrorCode SolverCreate(Solver **out)
   s->keep_jacobian = 0.01;
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", s->pmat_type, sizeof(s->pmat_type), NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &s->poor, NULL));
-  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", kind, 3, &s->preconditioner, NULL));
-  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_operator", apply, 3, &s->apply, NULL));
+  PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", solver_preconditioner,
+                                 PRECONDITIONER_REDUCED + 1, &s->preconditioner, NULL));
+  PetscCall(
+      PetscOptionsGetEList(NULL, NULL, "-newton_operator", solver_operator, OPERATOR_PARTICLES + 1, &s->apply, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_keep_jacobian", &s->keep_jacobian, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &s->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &s->tol_update, NULL));
