@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import CASES, ROOT, binary, check_true, finish, launch, scratch  # noqa: E402
+from common import CASES, ROOT, binary, check_true, finish, launch, program_of, scratch  # noqa: E402
 
 FOLDER = scratch()
 
 
 def idle(case, *options):
     """{key: reason} of those that the program says do nothing; ends the test if the case is refused."""
-    done = launch(binary(), case, "-case_check", *options)
+    done = launch(program_of(case), case, "-case_check", *options)
     if done.returncode:
         print(done.stdout)
         sys.exit(f"{case}: refused")

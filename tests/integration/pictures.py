@@ -4,7 +4,6 @@ over others; numbers at ticks."""
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 from matplotlib.path import Path as Outline
@@ -78,9 +77,15 @@ def body(columns, rows, size, height):
     return [{**p, "p": 1e7 + 0 * share}, p]
 
 
+class Body:
+    """What pictures ask of a run beside its particles."""
+
+    title, folder, in_space = "a body", scratch(), False
+
+
 def check_words():
     set_style()
-    run = SimpleNamespace(title="a body", folder=scratch())
+    run = Body()
     flat, upright = body(40, 10, 0.1, 1.0), body(1, 40, 0.25, 10.0)
     rows = [q for q in shown.shown(flat) if q.key in plot.FIRST][:4]
     over = overlaps(plot.plot_film, run, (0.0, 3e5), flat, rows)
