@@ -1,8 +1,8 @@
 /* What the nodes do not see of the particles' pressures evens out within the cells; docs/equations.md, section 7. */
 #include "gather.h"
 
-#define HIDDEN 1e-8 /* of the moments of y, what (354) may leave */
-#define MOST_ITERATIONS 200
+#define HIDDEN 1e-8 /* of the moments of y, what (354) may leave, in the norm of r . r/(diagonal) */
+#define MOST_ITERATIONS 2000
 
 void ExchangeSet(const Model *m, PetscInt p, const PointProperties *q)
 {
@@ -19,11 +19,12 @@ void ExchangeSet(const Model *m, PetscInt p, const PointProperties *q)
 /* (353) as if nodes saw none of it. */
 static double Exchanged(const Model *m, PetscInt p)
 {
-  const Exchange *e         = &m->added->exchange[p];
-  const double    l[CL_DIM] = {m->P.f[P_L][p], m->P.f[P_L + 1][p]};
-  double          apart     = 0.0;
+  const Exchange *e     = &m->added->exchange[p];
+  double          apart = 0.0, l[CL_DIM];
   Reach           r;
 
+  for (int d = 0; d < CL_DIM; d++)
+    l[d] = m->P.f[P_L + d][p];
   ReachExpand(m, p, &r);
   for (int f = 0; f < PHASE_COUNT; f++)
     apart += e->share[f] != 0.0 ? e->share[f] * Shift(m, p, &r, F_PW + f) : 0.0;
@@ -87,29 +88,41 @@ static PetscErrorCode MassMult(Mat A, Vec X, Vec Y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The lumped matrix, which preconditions. */
+/* sum_p V S_I^2.  A node that sees next to nothing of its particles has S_I of its lumped mass left on the diagonal:
+   scaled by that mass conjugate gradients do not converge. */
 static PetscErrorCode MassDiagonal(Mat A, Vec D)
 {
   Model  *m;
-  double *d;
+  double *sum, *d;
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
+  PetscCall(PetscCalloc1(m->map.n_local, &sum));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Reach r;
+
+    ReachExpand(m, p, &r);
+    for (int a = 0; a < r.n; a++)
+      sum[r.node[a]] += m->P.f[P_V][p] * r.S[a] * r.S[a];
+  }
+  PetscCall(NodeMapReduce(&m->map, sum, 1));
   PetscCall(VecGetArrayWrite(D, &d));
-  PetscCall(PetscArraycpy(d, m->V, m->map.n_owned));
+  PetscCall(PetscArraycpy(d, sum, m->map.n_owned));
   PetscCall(VecRestoreArrayWrite(D, &d));
+  PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodal field of (354): [n_local], in place of the moments of y. */
-static PetscErrorCode Project(Model *m, double *x)
+/* The nodal field of (354): [n_local], in place of the moments of y; *found is false where that has not converged. */
+static PetscErrorCode Project(Model *m, double *x, bool *found)
 {
-  const PetscInt n = m->map.n_owned, N = m->map.n_global;
-  Mat            A;
-  Vec            X, B;
-  KSP            ksp;
-  PC             pc;
-  double        *b;
+  const PetscInt     n = m->map.n_owned, N = m->map.n_global;
+  Mat                A;
+  Vec                X, B;
+  KSP                ksp;
+  PC                 pc;
+  double            *b;
+  KSPConvergedReason why;
 
   PetscFunctionBeginUser;
   PetscCall(MatCreateShell(m->grid.comm, n, n, N, N, m, &A));
@@ -125,8 +138,11 @@ static PetscErrorCode Project(Model *m, double *x)
   PetscCall(KSPSetOperators(ksp, A, A));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCJACOBI));
+  PetscCall(KSPSetNormType(ksp, KSP_NORM_NATURAL));
   PetscCall(KSPSetTolerances(ksp, HIDDEN, PETSC_DEFAULT, PETSC_DEFAULT, MOST_ITERATIONS));
   PetscCall(KSPSolve(ksp, B, X));
+  PetscCall(KSPGetConvergedReason(ksp, &why));
+  *found = why > 0;
   PetscCall(Nodal(m, X, x));
   PetscCall(KSPDestroy(&ksp));
   PetscCall(VecDestroy(&X));
@@ -138,6 +154,7 @@ static PetscErrorCode Project(Model *m, double *x)
 PetscErrorCode ExchangeBuild(Model *m)
 {
   double *x;
+  bool    found = false;
 
   PetscFunctionBeginUser;
   if (!SceneExchanges(m->c)) /* a rank without particles has no list, but is asked for sums */
@@ -146,12 +163,12 @@ PetscErrorCode ExchangeBuild(Model *m)
     m->added->exchange[p].change = Exchanged(m, p);
   PetscCall(PetscMalloc1(m->map.n_local, &x));
   PetscCall(Moments(m, NULL, x));
-  PetscCall(Project(m, x));
+  PetscCall(Project(m, x, &found));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach r;
 
     ReachExpand(m, p, &r);
-    m->added->exchange[p].change -= Seen(&r, x);
+    m->added->exchange[p].change = found ? m->added->exchange[p].change - Seen(&r, x) : 0.0;
   }
   PetscCall(PetscFree(x));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -243,6 +243,38 @@ def drawn_out_scenes():
         compare(f"sand that yields, {flow}", sample(flow), rings=every, bar=1e-8)
 
 
+def turned():
+    """A body that no plane cuts out, its axes exchanged in a ring: layers that differ in permeability, so that (353) acts, loaded on
+    a part of its top and on its front, drained aside, warmer with depth."""
+    case = block()
+    clay = json.loads(json.dumps(MATERIAL))
+    clay["permeability"]["k0"] = "1e-17 m^2"
+    case |= {"materials": ["sediment", "clay"], "mat": {"sediment": MATERIAL, "clay": clay}, "title": "Turned"}
+    case["region"]["free"]["material"] = "clay"
+    del case["bc"]["sun"]
+    case["boundaries"].remove("sun")
+    for r in case["region"].values():
+        r |= {"geothermal": "0.5 K/m", "geothermal_datum": "0.5 m"}
+    case |= {"time": {"end": "100 s"}, "output": {"times": ["100 s"]}}
+    runs = []
+    for ring in (0, 1, 2):
+        c, along = drawn_out(case, ring)
+        c["grid"]["cells"][along[2]], c["grid"]["upper"][along[2]] = 3, "0.3 m"
+        for r in c["region"].values():
+            r["upper"][along[2]] = "0.2 m"
+        c["boundaries"].remove("other_face")
+        del c["bc"]["other_face"]
+        c["boundaries"].append("front_load")
+        c["bc"]["front_load"] = {"type": "traction", "side": SIDES[along[2]][1], "normal": {"ramp": ["3.25 MPa", "4 MPa", "0 s", "100 s"]}}
+        v = run(SPACE, written(c, "turned"), *TIGHT, "-stabilisation_exchange", "yes").snapshot(100.0)
+        order = np.lexsort(np.round(v["initial_position"][:, along], 9).T)
+        runs.append({"displacement": v["displacement"][order][:, along], **{k: v[k][order] for k in ("p_w", "p_g", "S_h", "volume", "T")}})
+    spread = lambda k, v: np.max(np.abs(v - (0 if k == "displacement" else np.mean(v))))
+    for n, r in enumerate(runs[1:], 1):
+        worst, k = max((np.max(np.abs(r[k] - v)) / spread(k, v), k) for k, v in runs[0].items())
+        judge("space", f"a body that no plane cuts out, its axes exchanged {n} times: farthest, of the spread ({k})", worst, 1e-8)
+
+
 def cube(vertical):
     """Wet ground of 1 m, a third axis of gravity at will, on the sea's floor: held at its base and sides, its top open to the sea."""
     up = "xyz".index(vertical)
@@ -364,6 +396,7 @@ def refused():
 
 def main():
     drawn_out_scenes()
+    turned()
     at_rest()
     under_a_footing()
     begun_again()
