@@ -109,7 +109,10 @@ static PetscErrorCode CheckParticles(const Model *m, PetscInt before, Loaded *L)
       Refuse(L, "particle %d has impossible faces", (int)id);
     if (!GridCell(&m->grid, x, cell))
       Refuse(L, "particle %d lies outside the grid", (int)id);
-    if (!(P->f[P_V][p] > 0.0 && P->f[P_L][p] > 0.0 && P->f[P_L + 1][p] > 0.0))
+    bool thick = P->f[P_V][p] > 0.0;
+    for (int d = 0; d < CL_DIM; d++)
+      thick = thick && P->f[P_L + d][p] > 0.0;
+    if (!thick)
       Refuse(L, "particle %d has no volume", (int)id);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -40,8 +40,8 @@ static PetscErrorCode Book(Model *m, PetscInt p, double t)
   l->one[l->n++] = (Leaver){.id     = (double)m->P.i[PI_ID][p],
                             .region = (double)m->P.i[PI_REGION][p],
                             .t      = t,
-                            .x      = {f[P_X][p], f[P_X + 1][p]},
                             .mass   = phase[0] + phase[1] + phase[2]};
+  ParticlePlace(&m->P, p, l->one[l->n - 1].x);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

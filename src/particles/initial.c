@@ -19,9 +19,9 @@ static double InitialTemperature(const Scene *c, const Region *r, const double x
 
 double ParticleInitialT(const Scene *c, const Particles *P, PetscInt p)
 {
-  const double x[CL_DIM] = {ParticleInitialX(P, p, 0), ParticleInitialX(P, p, 1)};
-  double       grad[CL_DIM];
+  double x[CL_DIM], grad[CL_DIM];
 
+  ParticleInitialPlace(P, p, x);
   return InitialTemperature(c, &c->region[P->i[PI_REGION][p]], x, grad);
 }
 

@@ -11,16 +11,17 @@ static const double sign[EXTREMES] = {1.0, -1.0, 1.0, -1.0, -1.0}; /* the lowest
 /* (381) of a particle as it is. */
 static double HeldNow(const Model *m, PetscInt p, double dpe_dT)
 {
-  const Particles *P         = &m->P;
-  const double     g[CL_DIM] = {P->f[P_GT][p], P->f[P_GT + 1][p]};
-  double           h[CL_DIM];
+  const Particles *P = &m->P;
+  double           g[CL_DIM], h[CL_DIM];
   PointProperties  q;
   const char      *why;
 
   if (ModelParticleProperties(m, p, &q, &why) != CL_OK)
     return 0.0;
-  for (int d = 0; d < CL_DIM; d++)
+  for (int d = 0; d < CL_DIM; d++) {
+    g[d] = P->f[P_GT + d][p];
     h[d] = LinesWidthAt(&m->grid.line[d], P->f[P_X + d][p]);
+  }
   return ReactionHeld(q.reaction_heat, dpe_dT, q.kappa, ReactionWidth(h, g));
 }
 
