@@ -42,10 +42,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCall(PetscOptionsHasHelp(NULL, &help_asked));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", &keys, NULL));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_check", &check, NULL));
-  check = check || help_asked;
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_curves", &curves, NULL));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-case_keys", &keys));
   *exit_code = CL_EXIT_OK;
   if (keys || (help_asked && argc < 3)) {
     if (rank == 0)
@@ -65,6 +62,9 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_check", &check, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_curves", &curves, NULL));
+  check = check || help_asked;
   if (curves && rank == 0)
     PetscCall(CasePrintCurves(&c.scene, stdout));
   if (check || !curves)

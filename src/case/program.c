@@ -13,6 +13,8 @@ static const struct {
 } program_word[] = {
     {"-newton_preconditioner", solver_preconditioner},
     {"-newton_operator", solver_operator},
+    {"-case_check", logical},
+    {"-case_curves", logical},
     {"-quiet", logical},
     {"-overwrite", logical},
 };
