@@ -13,9 +13,9 @@
 #define COST_LU 0.24
 
 /* Unknowns across the body from which the reduced one is the cheaper (330); without fluids none are eliminated, and LU
-   is faster as far as it was measured, to 400, but its memory grows. */
-#define ACROSS_LU 250.0
-#define ACROSS_LU_DRY 1000.0
+   in the plane is faster as far as it was measured, to 400, but its memory grows. */
+#define ACROSS_LU (CL_DIM == 3 ? 60.0 : 250.0)
+#define ACROSS_LU_DRY (CL_DIM == 3 ? 150.0 : 1000.0)
 
 /* Cells that hold particles: their number, and the box about them. */
 static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[CL_DIM])

@@ -7,19 +7,21 @@
 #define HYBRID_BASE 0.10e-6   /* s a particle and step: motion and stress */
 #define HYBRID_SCALAR 0.05e-6 /* ... each of p_w, p_g, T */
 #define HYBRID_COUPLED 0.01e-6
-#define PARTICLE 2.2e-6 /* s a particle and Jacobian: the residuals that go with it */
-#define TANGENT 0.9e-6  /* s a particle and unknown of a node: Jacobian */
-#define FACTOR 3.3e-7   /* s: factorisation of N unknowns, n to a node, and solves with it take FACTOR n N^1.3 */
-#define FACTOR_POWER 1.3
-#define REDUCED 5.0e-6      /* s an unknown and Jacobian: GMRES with the reduced preconditioner */
-#define SMOOTH_STEPS 1e2    /* (317): an adaptive run whose loads are slow, at ... */
-#define SMOOTH_TOL 1e-3     /* ... this tolerance, ... */
-#define REACTS 1.75         /* ... times as many where hydrate reacts: its fronts rule steps then */
-#define NEWTON_REACTS 2.3   /* Jacobians a stage there */
-#define BEHIND_KINK 12.0    /* steps that a kink adds */
-#define MOST_STRETCHES 2000 /* ... looked at */
-#define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
-#define PER_TRANSIT 40.0    /* ... and want so many steps each */
+/* In space of bodies of 200 to 22 000 particles, within a factor of 2. */
+#define PARTICLE (CL_DIM == 3 ? 8e-6 : 2.2e-6)  /* s a particle and Jacobian: the residuals that go with it */
+#define TANGENT (CL_DIM == 3 ? 0.5e-6 : 0.9e-6) /* s a particle and unknown of a node: Jacobian */
+#define FACTOR (CL_DIM == 3 ? 6e-7 : 3.3e-7)    /* s: factorisation of N unknowns, n to a node, and solves ... */
+#define FACTOR_POWER (CL_DIM == 3 ? 1.4 : 1.3)  /* ... with it take FACTOR n N^FACTOR_POWER */
+#define REDUCED (CL_DIM == 3 ? 40e-6 : 5.0e-6)  /* s an unknown and Jacobian: GMRES with the reduced one */
+#define SEEDED (CL_DIM == 3 ? 8.0 : 4.0)        /* particles a node */
+#define SMOOTH_STEPS 1e2                        /* (317): an adaptive run whose loads are slow, at ... */
+#define SMOOTH_TOL 1e-3                         /* ... this tolerance, ... */
+#define REACTS 1.75                             /* ... times as many where hydrate reacts: its fronts rule steps then */
+#define NEWTON_REACTS 2.3                       /* Jacobians a stage there */
+#define BEHIND_KINK 12.0                        /* steps that a kink adds */
+#define MOST_STRETCHES 2000                     /* ... looked at */
+#define TRANSITS 100.0   /* waves matter in a run that is no longer than so many of their transits ... */
+#define PER_TRANSIT 40.0 /* ... and want so many steps each */
 
 static double Extent(const Scene *c)
 {
@@ -93,7 +95,7 @@ static double ImplicitSteps(const Stepper *s, double left)
 /* As (99) with LU of the whole, (331) with the reduced preconditioner. */
 double StepperImplicitWork(const Model *m, double newton, double factors)
 {
-  const double n = m->c->fields.n, nodes = (double)m->P.n / 4.0, N = n * nodes;
+  const double n = m->c->fields.n, nodes = (double)m->P.n / SEEDED, N = n * nodes;
   const double solver = ModelReduces(m) ? newton * REDUCED * N : factors * FACTOR * n * pow(N, FACTOR_POWER);
 
   return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + solver;
