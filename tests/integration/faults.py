@@ -18,7 +18,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from _files import different, hashes  # noqa: E402
-from common import CASES, ENVIRONMENT, ROOT, Run, binary, check_true, finish, launch, mpiexec, scratch  # noqa: E402
+from common import CASES, ROOT, Run, binary, check_true, environment, finish, launch, mpiexec, scratch  # noqa: E402
 
 OPTIONS = ("-quiet", "-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-checkpoint_every",
            "20 s", "-stepper_dt_max", "5 s", "-meters", "outlet", "-meter_outlet_side", "right")  # fmt: skip
@@ -33,7 +33,7 @@ def command(out, *options):
 
 
 def start(out, *options, extra=None, **keywords):
-    return subprocess.Popen(command(out, *options), env={**os.environ, **ENVIRONMENT, **(extra or {})}, text=True,
+    return subprocess.Popen(command(out, *options), env=environment(**(extra or {})), text=True,
                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **keywords)  # fmt: skip
 
 
@@ -125,8 +125,8 @@ def two_ranks(how="", at=0):
     """The same run on two ranks, disturbed on both; its folder."""
     out = scratch() / "out"
     job = subprocess.run([*mpiexec(2), *command(out, *map(str, TWO))], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                         stderr=subprocess.STDOUT, text=True, timeout=300, env={**os.environ, **ENVIRONMENT, "FAULT_DIR": str(out),
-                         "FAULT_HOW": how, "FAULT_AT": str(at), **({"LD_PRELOAD": str(LIBRARY)} if how else {})})  # fmt: skip
+                         stderr=subprocess.STDOUT, text=True, timeout=300, env=environment(FAULT_DIR=str(out), FAULT_HOW=how,
+                         FAULT_AT=str(at), **({"LD_PRELOAD": str(LIBRARY)} if how else {})))  # fmt: skip
     return out, job
 
 
@@ -222,7 +222,7 @@ def check_streams():
         out = scratch() / "out"
         verbose[-1] = str(out)
         done = subprocess.run(["bash", "-c", f'"$@" {redirection}; exit ${{PIPESTATUS[0]}}', "-", *verbose], text=True,
-                              capture_output=True, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL)  # fmt: skip
+                              capture_output=True, env=environment(), stdin=subprocess.DEVNULL)  # fmt: skip
         names = different(straight.out, out) if done.returncode == 0 else ["all"]
         check_true(f"standard output {name}: the run goes on", not names, f"exit code {done.returncode}: {names[:3]}")
 
@@ -230,7 +230,7 @@ def check_streams():
 def check_threads():
     """BLAS takes one thread unless the environment says otherwise."""
     words = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
-    plain = {k: v for k, v in {**os.environ, **ENVIRONMENT}.items() if k not in words}
+    plain = {k: v for k, v in environment().items() if k not in words}
     for given, threads in (({}, "1"), ({"OMP_NUM_THREADS": "2"}, "2"), ({"OPENBLAS_NUM_THREADS": "2"}, None)):
         out = scratch() / "out"
         job = subprocess.Popen(command(out, *FINE), env={**plain, **given}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)

@@ -1,5 +1,4 @@
 """The scenes on which integrators of both kinds are held against each other: integrators.py and tests/studies/tradeoff.py."""
-import os
 import re
 import resource
 import subprocess
@@ -8,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import CASES, ENVIRONMENT, Run, binary
+from common import CASES, Run, binary, environment
 from exact import constrained_modulus
 from exact_dynamic import DynamicColumn
 
@@ -20,7 +19,7 @@ DAMPED = ("-stepper_damping", 0.1)  # without it the hybrid's waves grow into hy
 
 def integrators():
     """Stepper types of the program under test, implicit ones first."""
-    keys = subprocess.run([binary(), "-case_keys"], env={**os.environ, **ENVIRONMENT}, capture_output=True, text=True, check=True).stdout
+    keys = subprocess.run([binary(), "-case_keys"], env=environment(), capture_output=True, text=True, check=True).stdout
     names = re.search(r"^\| `stepper_type` \| ([\w, ]+) \|", keys, re.M)[1].split(", ")
     return sorted((n for n in names if n != "auto"), key=lambda n: (n in EXPLICIT, n))
 

@@ -73,9 +73,13 @@ def scratch():
     return folder
 
 
-# Of MPI: of two runs that share one, the first to end may remove what the other has just made.
 _sessions = tempfile.TemporaryDirectory(prefix="clathra-mpi-")
-ENVIRONMENT["OMPI_MCA_orte_tmpdir_base"] = _sessions.name
+
+
+def environment(**more):
+    """{name: value} for one run, with a folder of its own for MPI's session: of two runs that share one, the first to end may remove
+    what the other has just made."""
+    return {**os.environ, **ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": tempfile.mkdtemp(dir=_sessions.name), **more}
 
 
 def mpiexec(ranks):
@@ -91,7 +95,7 @@ def launch(program, case, *options, ranks=1, out=None, timeout=800):
     if ranks > 1:
         command = [*mpiexec(ranks), *command]
     return subprocess.run(
-        command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        command, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, timeout=timeout, text=True, errors="replace",
     )  # fmt: skip
 

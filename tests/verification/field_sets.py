@@ -4,7 +4,6 @@
 A field is superfluous where it is identically constant: the temperature of a body that is everywhere as warm, without
 reaction; the skeleton of a body that cannot move.  Fixed steps and tight tolerances leave only round-off.
 """
-import os
 import re
 import subprocess
 import sys
@@ -12,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import CASES, ENVIRONMENT, Run, binary, check, finish, judge, record, scratch, table
+from common import CASES, Run, binary, check, environment, finish, judge, record, scratch, table
 
 SCENE = Path(__file__).parent / "cases" / "field_sets.yaml"
 WORDS = {"t": ("heat",), "h": ("water",), "m": ("solid",), "c": ("gas",)}
@@ -135,10 +134,9 @@ def bp2_case1(fields, cells, steps, *options):
     command = [binary(), CASES / "bp2", "-fields", fields, "-mat_sediment_kinetics_active", "no", "-grid_cells", cells,
                "-stepper_adapt", "no", "-stepper_dt", "10 s", "-stepper_max_steps", steps, "-output_dir", out, *options]  # fmt: skip
     command = [str(c) for c in command]
-    environment = {**os.environ, **ENVIRONMENT}
     if "-ksp_view" in options:
-        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout, 0.0, 0.0
-    done = subprocess.run([sys.executable, "-c", MEASURE, *command], env=environment, capture_output=True, text=True, check=True)
+        return subprocess.run(command, env=environment(), capture_output=True, text=True, check=True).stdout, 0.0, 0.0
+    done = subprocess.run([sys.executable, "-c", MEASURE, *command], env=environment(), capture_output=True, text=True, check=True)
     seconds, memory = map(float, done.stdout.split())
     return "", seconds, memory / 1024
 
