@@ -284,6 +284,8 @@ void ModelClearFailure(Model *m);
 void ModelExplain(Model *m, const char *why);
 /* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
+/* (381) of a particle that reacts, as it is, dimensionless; 0 where its properties cannot be found. */
+double ModelHeld(const Model *m, PetscInt p);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
 /* What flows into the body and wells need of the particle of a face (109), (367); S: its weights at its n nodes,

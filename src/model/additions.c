@@ -83,16 +83,25 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   HeatUpwind(q->kappa, a, h, K);
 }
 
-/* (381) with the faster of both ways at t_n. */
+/* (381) with the faster of both ways at t_n; the cell's widths by the particle's place, as hybrid keeps no stencils. */
 static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
 {
   double g[CL_DIM], h[CL_DIM], slope;
 
-  for (int d = 0; d < CL_DIM; d++)
+  for (int d = 0; d < CL_DIM; d++) {
     g[d] = m->P.f[P_GT + d][p];
+    h[d] = LinesWidthAt(&m->grid.line[d], m->P.f[P_X + d][p]);
+  }
   EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
-  CellWidths(m, p, h);
   return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));
+}
+
+double ModelHeld(const Model *m, PetscInt p)
+{
+  PointProperties q;
+  const char     *why;
+
+  return ModelParticleProperties(m, p, &q, &why) == CL_OK ? HeldOf(m, p, &q) : 0.0;
 }
 
 void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)

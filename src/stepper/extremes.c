@@ -1,29 +1,11 @@
 /* The lowest and highest pressure and temperature of any particle so far, with when and where, and how far hydrate was
    above its equilibrium because its reaction was held. */
 #include "clathra/stepper.h"
-#include "clathra/point_reaction.h"
 #include <string.h>
 
 #define HYDRATE 0.01 /* S_h: what is less goes on for ever, (12) */
 
 static const double sign[EXTREMES] = {1.0, -1.0, 1.0, -1.0, -1.0}; /* the lowest of sign times the value is sought */
-
-/* (381) of a particle as it is. */
-static double HeldNow(const Model *m, PetscInt p, double dpe_dT)
-{
-  const Particles *P = &m->P;
-  double           g[CL_DIM], h[CL_DIM];
-  PointProperties  q;
-  const char      *why;
-
-  if (ModelParticleProperties(m, p, &q, &why) != CL_OK)
-    return 0.0;
-  for (int d = 0; d < CL_DIM; d++) {
-    g[d] = P->f[P_GT + d][p];
-    h[d] = LinesWidthAt(&m->grid.line[d], P->f[P_X + d][p]);
-  }
-  return ReactionHeld(q.reaction_heat, dpe_dT, q.kappa, ReactionWidth(h, g));
-}
 
 /* (423), K, if it may be more than `least` (K, >= 0); else 0. */
 static double HeldWarmth(const Model *m, PetscInt p, double least)
@@ -36,8 +18,7 @@ static double HeldWarmth(const Model *m, PetscInt p, double least)
   if (!mat->reacts || P->f[P_SH][p] < HYDRATE ||
       EquilibriumPressure(&mat->kinetics.equilibrium, T - least, &slope) <= at)
     return 0.0;
-  EquilibriumPressure(&mat->kinetics.equilibrium, T, &slope);
-  const double held = HeldNow(m, p, slope);
+  const double held = ModelHeld(m, p);
 
   return (T - EquilibriumTemperature(&mat->kinetics.equilibrium, at)) * held / (1.0 + held);
 }
