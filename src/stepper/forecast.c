@@ -13,7 +13,6 @@
 #define FACTOR (CL_DIM == 3 ? 6e-7 : 3.3e-7)    /* s: factorisation of N unknowns, n to a node, and solves ... */
 #define FACTOR_POWER (CL_DIM == 3 ? 1.4 : 1.3)  /* ... with it take FACTOR n N^FACTOR_POWER */
 #define REDUCED (CL_DIM == 3 ? 40e-6 : 5.0e-6)  /* s an unknown and Jacobian: GMRES with the reduced one */
-#define SEEDED (CL_DIM == 3 ? 8.0 : 4.0)        /* particles a node */
 #define SMOOTH_STEPS 1e2                        /* (317): an adaptive run whose loads are slow, at ... */
 #define SMOOTH_TOL 1e-3                         /* ... this tolerance, ... */
 #define REACTS 1.75                             /* ... times as many where hydrate reacts: its fronts rule steps then */
@@ -92,10 +91,11 @@ static double ImplicitSteps(const Stepper *s, double left)
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
 }
 
-/* As (99) with LU of the whole, (331) with the reduced preconditioner. */
+/* As (99) with LU of the whole, (331) with the reduced preconditioner; particles are seeded two along each axis of a
+   cell. */
 double StepperImplicitWork(const Model *m, double newton, double factors)
 {
-  const double n = m->c->fields.n, nodes = (double)m->P.n / SEEDED, N = n * nodes;
+  const double n = m->c->fields.n, nodes = (double)m->P.n / CL_CORNERS, N = n * nodes;
   const double solver = ModelReduces(m) ? newton * REDUCED * N : factors * FACTOR * n * pow(N, FACTOR_POWER);
 
   return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + solver;
