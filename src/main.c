@@ -42,7 +42,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCall(PetscOptionsHasHelp(NULL, &help_asked));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-case_keys", &keys));
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", &keys, NULL));
   *exit_code = CL_EXIT_OK;
   if (keys || (help_asked && argc < 3)) {
     if (rank == 0)

@@ -43,6 +43,8 @@ def check_limit():
     for option, value in ((o, v) for o, values in refused.items() for v in values):
         done = launch(binary(), *BP2, option, value, out=scratch() / "none")
         check_true(f"{option} {value} is refused", done.returncode == 2 and f"command line: {option} = '{value}" in done.stdout and "PETSC ERROR" not in done.stdout)
+    done = launch(binary(), *BP2, "-case_keys", "no", "-case_check")
+    check_true("-case_keys no prints none", done.returncode == 0 and "the case is valid" in done.stdout and "| `" not in done.stdout, done.stdout[-200:])
     done = launch(binary(), *BP2, "-time_end", "2000 s", "-quiet", "-time_limit", "0.03 min", out=scratch() / "minutes")
     check_true("-time_limit 0.03 min", done.returncode == 4 and "before -time_limit 1.8 s" in done.stdout, done.stdout[-200:])
 
