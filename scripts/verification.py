@@ -102,12 +102,12 @@ def run_test(path, program):
 
 def figures(program):
     """Both cases of BP2 and Masuda's core as they stand, then the figures."""
-    from common import ENVIRONMENT
+    from common import environment
 
     runs = {"bp2_case2": ("bp2",), "bp2_case1": ("bp2", "-mat_sediment_kinetics_active", "no"), "masuda": ("masuda",)}
     for name, (case, *options) in runs.items():
         command = [str(program), str(ROOT / "cases" / case), "-quiet", *options, "-output_dir", str(RESULTS / name)]
-        subprocess.run(command, env={**os.environ, **ENVIRONMENT}, check=True, stdin=subprocess.DEVNULL,
+        subprocess.run(command, env=environment(), check=True, stdin=subprocess.DEVNULL,
                        stdout=subprocess.DEVNULL)  # fmt: skip
     subprocess.run([sys.executable, str(ROOT / "scripts" / "plot_bp2.py"), str(RESULTS / "bp2_case1"),
                     str(RESULTS / "bp2_case2"), str(FIGURES)], check=True)  # fmt: skip

@@ -9,7 +9,6 @@ makes docs/mutation.md of it.  Some seconds each on a quiet core.
 """
 import argparse
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -19,7 +18,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "verification"))
-from common import ENVIRONMENT  # noqa: E402
+from common import environment  # noqa: E402
 
 # The quick tests, in the order in which they are asked: seconds in all.
 UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "unseen", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene",
@@ -122,7 +121,7 @@ def found_by(folder, path):
         if against:
             return "the compiler", against.splitlines()[-1]
         try:
-            done = subprocess.run(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+            done = subprocess.run(command, env=environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True,
                                   errors="replace", timeout=600)  # fmt: skip
         except subprocess.TimeoutExpired:
             return name, "not done in ten minutes"

@@ -24,7 +24,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
-from common import ENVIRONMENT  # noqa: E402
+from common import environment  # noqa: E402
 from masuda_run import BARS, REFERENCE, at_times, curves, differences, dissociated, gas_at_start  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
 
@@ -106,7 +106,7 @@ class Done:
 def execute(command, log):
     """Runs it; returns CPU seconds and peak memory in MB."""
     with open(log, "w") as stream:
-        process = subprocess.Popen(command, env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, stdout=stream,
+        process = subprocess.Popen(command, env=environment(), stdin=subprocess.DEVNULL, stdout=stream,
                                    stderr=subprocess.STDOUT)  # fmt: skip
         _, status, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
