@@ -65,7 +65,7 @@ SECTION = {  # beside that table
     "wells": "Wells about an axis against Thiem, in cells up to twenty times their radius",
     "plane_wells": "A well in the plane against Thiem and Theis, anywhere in its cell",
     "graded": "Cells that differ: patch tests, rest, free fall, Terzaghi with fine cells at the drain, a well of 0.1 m in 100 m",
-    "space": "Space (clathra3d): scenes of the plane drawn out along any axis, a cube at rest under the sea, a square footing, restart",
+    "space": "Space (clathra3d): scenes of the plane drawn out along any axis by all integrators, a cube at rest under the sea, a square footing, restart",
     "energy": "Mechanical energy: what is left of its balance",
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",

@@ -329,7 +329,6 @@ static inline const char *SceneNeedsImplicit(const Scene *c)
   const Bc *b = SceneBcNeedsMatrix(c);
 
   return b                   ? b->name
-         : CL_DIM == 3       ? "three dimensions"
          : c->axisymmetric   ? "geometry: axisymmetric"
          : c->one_pressure   ? "pressures: one"
          : !c->inertia       ? "inertia: no"

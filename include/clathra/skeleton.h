@@ -103,10 +103,11 @@ typedef struct {
   double  ahead; /* of the end of the stage, since the last average of neighbours, s */
 } SkeletonStore;
 
-/* n particles of one material; the history is replaced.  Strain and rotation as in SkeletonStep, e_zz = 0. */
+/* n particles of one material; the history is replaced.  Numbers of the rotation, strain and the rest as in
+   SkeletonStep; in the plane e_zz = 0. */
 typedef struct {
   int           n;
-  const double *c, *s, *xx, *yy, *xy, *thermal, *E_n, *E, *Sh;
+  const double *turn[CL_TURN], *e[CL_TENSOR], *thermal, *E_n, *E, *Sh;
   const double *kept; /* [n]; may be null without bonds */
   double       *work; /* [n], J/m^3; may be null for a law that dissipates nothing */
   SkeletonStore store;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <math.h>
+#include <stddef.h>
 #include "clathra/dimension.h"
 #include "clathra/inline.h"
 
@@ -58,6 +59,13 @@ static inline void Spin6(const double r[6], int spin, double dr[6])
 typedef struct {
   double c, s;
 } Rotation;
+enum { CL_TURN = 2 }; /* its numbers */
+
+/* That whose numbers stand at place q of arrays. */
+INLINE Rotation RotationAt(const double *const turn[CL_TURN], ptrdiff_t q)
+{
+  return (Rotation){turn[0][q], turn[1][q]};
+}
 
   #define ROTATION_NONE                                                                                                \
     {                                                                                                                  \
@@ -80,6 +88,17 @@ INLINE Rotation RotationBack(Rotation R)
 typedef struct {
   double R[3][3];
 } Rotation;
+enum { CL_TURN = 9 }; /* its numbers, row by row */
+
+/* That whose numbers stand at place q of arrays. */
+INLINE Rotation RotationAt(const double *const turn[CL_TURN], ptrdiff_t q)
+{
+  Rotation R;
+
+  for (int k = 0; k < CL_TURN; k++)
+    R.R[k / 3][k % 3] = turn[k][q];
+  return R;
+}
   #define ROTATION_NONE                                                                                                \
     {                                                                                                                  \
       CL_IDENTITY                                                                                                      \

@@ -113,20 +113,20 @@ INLINE void Carried(Run r, int lane, const double *restrict weight, const double
   }
 }
 
-/* Likewise V b (x_I - x_p) (y_I - y_p) (395), on top of that. */
-INLINE void CarriedCross(Run r, int lane, const double *restrict weight, const double *restrict b, const Weights *w,
-                         Given *v)
+/* Likewise V b (x_I - x_p) (y_I - y_p) (395) for a pair c of axes x, y, on top of that. */
+INLINE void CarriedCross(Run r, int lane, const double *restrict weight, const double *restrict b, int c,
+                         const Weights *w, Given *v)
 {
-  for (int q = 0; q < r.n; q++) {
-    const double more = weight[q] * b[q];
-    double       x[CL_DIM];
+  const int i = cl_pair[c][0], j = cl_pair[c][1];
 
-    for (int d = 0; d < CL_DIM; d++)
-      x[d] = (w->S[d][1][q] + w->third[d][q] * w->S[d][2][q]) * w->unit[d][q];
-    v->value[q][lane] += more * x[0] * x[1];
-    v->carry[0][q][lane] -= more * x[1] * w->unit[0][q];
-    v->carry[1][q][lane] -= more * x[0] * w->unit[1][q];
-    v->cross[q][lane] = more * w->unit[0][q] * w->unit[1][q];
+  for (int q = 0; q < r.n; q++) {
+    const double more = weight[q] * b[q], x = (w->S[i][1][q] + w->third[i][q] * w->S[i][2][q]) * w->unit[i][q],
+                 y = (w->S[j][1][q] + w->third[j][q] * w->S[j][2][q]) * w->unit[j][q];
+
+    v->value[q][lane] += more * x * y;
+    v->carry[i][q][lane] -= more * y * w->unit[i][q];
+    v->carry[j][q][lane] -= more * x * w->unit[j][q];
+    v->cross[c][q][lane] = more * w->unit[i][q] * w->unit[j][q];
   }
 }
 
@@ -140,12 +140,15 @@ INLINE void AmbientAt(const Explicit *e, Run r, Around *a)
   const Ambient *ambient = &e->m->bc.ambient;
   double *const *f       = e->m->P.f;
 
-  for (int q = 0; q < r.n; q++)
-    a->p[q] = a->weight[0][q] = a->weight[1][q] = 0.0;
+  for (int q = 0; q < r.n; q++) {
+    a->p[q] = 0.0;
+    for (int d = 0; d < CL_DIM; d++)
+      a->weight[d][q] = 0.0;
+  }
   for (int q = 0; ambient->on && q < r.n; q++) {
-    const double x[CL_DIM] = {f[P_X][r.p + q], f[P_X + 1][r.p + q]};
-    double       g[CL_DIM];
+    double x[CL_DIM], g[CL_DIM];
 
+    ParticlePlace(&e->m->P, r.p + q, x);
     a->p[q] = AmbientPressure(ambient, x, g);
     for (int d = 0; d < CL_DIM; d++)
       a->weight[d][q] = f[P_V][r.p + q] * g[d];
@@ -158,22 +161,19 @@ INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w
   Around         a;
   const int      at        = A_Mix(s);
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
-  const double *restrict vx = f[P_VS] + r.p, *restrict vy = f[P_VS + 1] + r.p;
-  const double *restrict xx = f[P_SIG + XX] + r.p, *restrict yy = f[P_SIG + YY] + r.p,
-                         *restrict xy = f[P_SIG + XY] + r.p;
+  double *const *sig = f + P_SIG;
 
   AmbientAt(e, r, &a);
   for (int q = 0; q < r.n; q++) {
     const double m = ms[q] + mh[q], p = w->p[q] - a.p[q];
 
-    v->value[q][at + MIX_FX]    = -a.weight[0][q];
-    v->value[q][at + MIX_FY]    = -a.weight[1][q];
-    v->value[q][at + MIX_M]     = m;
-    v->value[q][at + MIX_VX]    = m * vx[q];
-    v->value[q][at + MIX_VY]    = m * vy[q];
-    v->force[0][q][at + MIX_FX] = -V[q] * (xx[q] - p);
-    v->force[1][q][at + MIX_FX] = v->force[0][q][at + MIX_FY] = -V[q] * xy[q];
-    v->force[1][q][at + MIX_FY]                               = -V[q] * (yy[q] - p);
+    v->value[q][at + MIX_M] = m;
+    for (int i = 0; i < CL_DIM; i++) {
+      v->value[q][at + MIX_F + i] = -a.weight[i][q];
+      v->value[q][at + MIX_V + i] = m * f[P_VS + i][r.p + q];
+      for (int j = 0; j < CL_DIM; j++)
+        v->force[j][q][at + MIX_F + i] = -V[q] * (sig[voigt[i][j]][r.p + q] - (i == j ? p : 0.0));
+    }
   }
 }
 
@@ -182,21 +182,21 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
   double *const *f  = e->m->P.f;
   const int      at = A_Fluid(s, k), vel = VectorAt(P_VW, k, 0), grad = VectorAt(P_GW, k, 0);
   const double *restrict V = f[P_V] + r.p, *restrict m = f[P_MW + k] + r.p;
-  const double *restrict vx = f[vel] + r.p, *restrict vy = f[vel + 1] + r.p;
-  const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
   for (int q = 0; q < r.n; q++) {
     const double share = k ? 1.0 - w->sw[q] : w->sw[q], mass = Largest(m[q], 0.0); /* a trace may be none (101) */
     const double conduct = Conductance(e, s, r.p + q), Vk = V[q] * conduct;
 
-    v->value[q][at + FL_M]  = mass;
-    v->value[q][at + FL_VX] = mass * vx[q];
-    v->value[q][at + FL_VY] = mass * vy[q];
-    double g[CL_DIM]        = {gx[q], gy[q]};
+    double g[CL_DIM];
 
+    v->value[q][at + FL_M] = mass;
+    for (int d = 0; d < CL_DIM; d++) {
+      v->value[q][at + FL_V + d] = mass * f[vel + d][r.p + q];
+      g[d]                       = f[grad + d][r.p + q];
+    }
     Driven(e, s, r.p + q, w->rho[k][q], g);
-    v->value[q][at + FL_GX]   = -Vk * g[0];
-    v->value[q][at + FL_GY]   = -Vk * g[1];
+    for (int d = 0; d < CL_DIM; d++)
+      v->value[q][at + FL_G + d] = -Vk * g[d];
     v->value[q][at + FL_MI]   = Vk * w->rho[k][q];
     v->value[q][at + FL_DRAG] = Vk * w->resist[k][q];
     v->value[q][at + FL_W]    = w->open[q] * share;
@@ -215,36 +215,36 @@ INLINE void BedsValues(Explicit *e, const Set s, Run r, Given *v)
     const Beds     A  = ParticleBeds(e->m->c, &e->m->P, p);
     const double   Vk = e->m->P.f[P_V][p] * Conductance(e, s, p);
 
-    e->t[T_BEDS][p]            = A.A[0];
-    e->t[T_BEDS + 1][p]        = A.A[1];
-    e->t[T_BEDS + 2][p]        = A.A[2];
-    v->value[q][A_Beds(s)]     = Vk * (A.A[0] - 1.0);
-    v->value[q][A_Beds(s) + 1] = Vk * (A.A[1] - 1.0);
-    v->value[q][A_Beds(s) + 2] = Vk * A.A[2];
+    for (int k = 0; k < CL_SYMMETRIC; k++) {
+      e->t[T_BEDS + k][p]        = A.A[k];
+      v->value[q][A_Beds(s) + k] = Vk * (A.A[k] - (k < CL_DIM ? 1.0 : 0.0));
+    }
   }
 }
 
 /* (160), (88): part of the stress acts through the mean motion of the particle's cell. */
 INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const Weights *w, Given *v)
 {
-  const int width = LANES * Rows(A_Count(s)), at = A_Mix(s);
+  const int width = LANES * Rows(A_Count(s)), at = A_Mix(s) + MIX_F;
 
   for (int q = 0; q < r.n; q++) {
-    double      *fx = &v->force[0][q][at], *fy = &v->force[1][q][at];
-    const double more = c->volume * (fx[MIX_FX] + fy[MIX_FY]);
-    const double xx = c->strain * fx[MIX_FX] + more, yy = c->strain * fy[MIX_FY] + more, xy = c->strain * fx[MIX_FY];
+    double share[CL_DIM][CL_DIM], more = 0.0;
 
-    fx[MIX_FX] -= xx;
-    fy[MIX_FY] -= yy;
-    fx[MIX_FY] -= xy;
-    fy[MIX_FX] -= xy;
-    for (int a = 0; a < 4; a++) {
+    for (int i = 0; i < CL_DIM; i++)
+      more += c->volume * v->force[i][q][at + i];
+    for (int i = 0; i < CL_DIM; i++) {
+      for (int j = 0; j < CL_DIM; j++) {
+        share[i][j] = c->strain * v->force[j][q][at + i] + (i == j ? more : 0.0);
+        v->force[j][q][at + i] -= share[i][j];
+      }
+    }
+    for (int a = 0; a < CL_CORNERS; a++) {
       double *row = &e->A[CellNode(e, w, q, a) * width + at];
 
-      const double Qx = c->Q[a][0] * w->inverse[0][q], Qy = c->Q[a][1] * w->inverse[1][q];
-
-      row[MIX_FX] += Qx * xx + Qy * xy;
-      row[MIX_FY] += Qx * xy + Qy * yy;
+      for (int i = 0; i < CL_DIM; i++) {
+        for (int j = 0; j < CL_DIM; j++)
+          row[i] += c->Q[a][j] * w->inverse[j][q] * share[i][j];
+      }
     }
   }
 }
@@ -252,22 +252,21 @@ INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const
 /* The paper's (P60e) per unit of the fluid's volume: V p_p G, by parts; the bare form only. */
 INLINE void WeakForces(Explicit *e, const Set s, Run r, const Weights *w)
 {
-  const int width = LANES * Rows(A_Count(s)), stride = (int)e->m->grid.gm[0];
+  const int width = LANES * Rows(A_Count(s));
 
   for (int q = 0; q < r.n; q++) {
     const int *slot = &e->slot[w->first[q]];
 
-    for (int b = 0; b < 3; b++) {
-      for (int a = 0; a < 3; a++) {
-        const double G[CL_DIM] = {w->D[0][a][q] * w->S[1][b][q], w->S[0][a][q] * w->D[1][b][q]};
-        double      *row       = &e->A[slot[b * stride + a] * width];
+    for (int n = 0; n < CL_NODES; n++) {
+      const PatchRow at  = PatchRowOf(e, w, q, n / 3);
+      double        *row = &e->A[slot[at.at + n % 3] * width], G[CL_DIM];
 
-        for (int k = 0; k < s.fluids; k++) {
-          const double Vp = e->m->P.f[P_V][r.p + q] * e->m->P.f[P_PW + k][r.p + q];
+      PatchGradient(w, q, &at, n % 3, G);
+      for (int k = 0; k < s.fluids; k++) {
+        const double Vp = e->m->P.f[P_V][r.p + q] * e->m->P.f[P_PW + k][r.p + q];
 
-          for (int d = 0; d < CL_DIM; d++)
-            row[A_Fluid(s, k) + FL_GX + d] += Vp * G[d];
-        }
+        for (int d = 0; d < CL_DIM; d++)
+          row[A_Fluid(s, k) + FL_G + d] += Vp * G[d];
       }
     }
   }
@@ -293,19 +292,24 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     v.value[q][A_K(s)] = V[q] * Conductance(e, s, r.p + q);
   BedsValues(e, s, r, &v);
   for (int k = 0; k < s.fluids; k++) {
-    const double *g[CL_DIM] = {f[VectorAt(P_GW, k, 0)] + r.p, f[VectorAt(P_GW, k, 1)] + r.p};
+    const double *g[CL_DIM];
 
+    for (int d = 0; d < CL_DIM; d++)
+      g[d] = f[VectorAt(P_GW, k, d)] + r.p;
     Carried(r, k, V, f[P_PW + k] + r.p, g, &w, &v);
     FluidValues(e, s, r, k, &state, &v);
   }
   if (s.heat) {
-    const double *g[CL_DIM] = {f[P_GT] + r.p, f[P_GT + 1] + r.p};
+    const double *g[CL_DIM];
 
+    for (int d = 0; d < CL_DIM; d++)
+      g[d] = f[P_GT + d] + r.p;
     Capacities(e, s, r, C);
     for (int q = 0; q < r.n; q++)
       v.value[q][A_C(s)] = C[q];
     Carried(r, s.fluids, C, T, g, &w, &v);
-    CarriedCross(r, s.fluids, C, f[P_BT] + r.p, &w, &v);
+    for (int c = 0; c < CL_PAIRS; c++)
+      CarriedCross(r, s.fluids, C, f[P_BT + c] + r.p, c, &w, &v);
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
@@ -313,8 +317,10 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     CellForces(e, s, r, &mean, &w, &v);
   if (s.fluids && e->o.particle_pressures) {
     for (int q = 0; q < r.n; q++) {
-      for (int k = 0; k < s.fluids; k++)
-        v.value[q][A_Fluid(s, k) + FL_GX] = v.value[q][A_Fluid(s, k) + FL_GY] = 0.0;
+      for (int k = 0; k < s.fluids; k++) {
+        for (int d = 0; d < CL_DIM; d++)
+          v.value[q][A_Fluid(s, k) + FL_G + d] = 0.0;
+      }
     }
     WeakForces(e, s, r, &w);
   }

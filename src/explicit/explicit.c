@@ -37,7 +37,8 @@ static PetscErrorCode FreeParticles(Explicit *e)
   PetscFunctionBeginUser;
   for (int k = 0; k < T_COUNT; k++)
     PetscCall(PetscFree(e->t[k]));
-  PetscCall(PetscFree2(e->base[0], e->base[1]));
+  for (int d = 0; d < CL_DIM; d++)
+    PetscCall(PetscFree(e->base[d]));
   PetscCall(PetscFree2(e->order, e->key));
   e->cap = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -72,7 +73,7 @@ static bool Needs(const Explicit *e, int k)
     return !s.heat;
   if (k == T_CONDUCT)
     return s.layers;
-  if (k >= T_BEDS && k < T_BEDS + 3)
+  if (k >= T_BEDS && k < T_V)
     return s.beds;
   if (k == T_WARM || k == T_WARM + 1)
     return e->m->c->compression_heat;
@@ -97,7 +98,8 @@ static PetscErrorCode SizeParticles(Explicit *e)
     if (Needs(e, k))
       PetscCall(PetscCalloc1(n, &e->t[k]));
   }
-  PetscCall(PetscMalloc2(n, &e->base[0], n, &e->base[1]));
+  for (int d = 0; d < CL_DIM; d++)
+    PetscCall(PetscMalloc1(n, &e->base[d]));
   PetscCall(PetscMalloc2(n, &e->order, n, &e->key));
   e->cap = n;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -167,13 +169,14 @@ static PetscErrorCode Sort(Explicit *e)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < P->n; p++) {
-    const double x[CL_DIM] = {P->f[P_X][p], P->f[P_X + 1][p]};
-    PetscInt     cell[CL_DIM];
+    double   x[CL_DIM];
+    PetscInt cell[CL_DIM];
 
+    ParticlePlace(P, p, x);
     if (!GridCell(g, x, cell))
-      cell[0] = cell[1] = 0;
+      PetscCall(PetscArrayzero(cell, CL_DIM));
     e->order[p] = P->i[PI_ID][p];
-    e->key[p]   = (cell[1] - g->gs[1]) * g->gm[0] + cell[0] - g->gs[0];
+    e->key[p]   = GridPadded(g, cell);
     sorted      = sorted &&
              (p == 0 || e->key[p] > e->key[p - 1] || (e->key[p] == e->key[p - 1] && e->order[p] > e->order[p - 1]));
   }
@@ -228,10 +231,11 @@ static PetscErrorCode ActingForces(Explicit *e)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; e->set.solid && p < m->P.n; p++) {
-    const double h =
-        fmin(LinesWidthAt(&m->grid.line[0], m->P.f[P_X][p]), LinesWidthAt(&m->grid.line[1], m->P.f[P_X + 1][p]));
+    double       h    = INFINITY;
     const double pore = e->set.fluids ? m->P.f[P_PW][p] : 0.0, mass = m->P.f[P_MS][p] + m->P.f[P_MH][p];
 
+    for (int d = 0; d < CL_DIM; d++)
+      h = fmin(h, LinesWidthAt(&m->grid.line[d], m->P.f[P_X + d][p]));
     for (int d = 0; d < CL_DIM; d++)
       sum += PetscSqr(m->P.f[P_V][p] / h * (m->P.f[P_SIG + d][p] - pore)) + PetscSqr(mass * m->c->gravity[d]);
   }
@@ -377,7 +381,7 @@ double ExplicitMassScalingError(const Explicit *e)
 
 double ExplicitBytesPerParticle(const Explicit *e)
 {
-  double bytes = PI_COUNT * sizeof(PetscInt) + 4 * sizeof(int);
+  double bytes = (PI_COUNT + 2) * sizeof(PetscInt) + CL_DIM * sizeof(int); /* with what sorts them */
 
   for (int k = 0; k < P_COUNT; k++)
     bytes += e->m->P.f[k] ? sizeof(double) : 0;

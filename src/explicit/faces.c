@@ -117,9 +117,9 @@ void FacesForces(Explicit *e, double dt)
 
       for (int d = 0; d < CL_DIM; d++) {
         if (s.solid)
-          row[A_Mix(s) + MIX_FX + d] += f->N[a] * e->pull[k][d];
+          row[A_Mix(s) + MIX_F + d] += f->N[a] * e->pull[k][d];
         for (int ph = 0; ph < s.fluids; ph++)
-          row[A_Fluid(s, ph) + FL_GX + d] += conduct * f->N[a] * force[ph][d];
+          row[A_Fluid(s, ph) + FL_G + d] += conduct * f->N[a] * force[ph][d];
       }
     }
   }
@@ -134,7 +134,7 @@ void FacesWork(Explicit *e, double dt)
     const double *pull = e->pull[k];
     PetscInt      node[CL_NODES];
 
-    if (pull[0] == 0.0 && pull[1] == 0.0)
+    if (VectorDot(pull, pull) == 0.0)
       continue;
     const int n = FaceNodes(e, &e->face[k], node);
     for (int a = 0; a < n; a++) {

@@ -9,48 +9,92 @@ typedef int64_t Wrong;
 #define WRONG_UNLESS(condition) ((condition) ? (Wrong)0 : (Wrong)1)
 
 /* Rows of nodes are no longer than so many lanes where they are gathered, ... */
-#define GATHERED (3 * LANES)
+#define GATHERED ((CL_DIM == 2 ? 3 : 5) * LANES)
 /* ... and where particles give to them. */
-#define GIVEN (5 * LANES)
+#define GIVEN ((CL_DIM == 2 ? 5 : 6) * LANES)
+/* The numbers of a row whose gradients are gathered stand in its first so many lanes. */
+#define GRADED ((CL_DIM == 2 ? 1 : 2) * LANES)
 
 typedef struct {
-  double value[BLOCK][GATHERED], dx[BLOCK][LANES], dy[BLOCK][LANES]; /* at the particle; gradients of the first row */
+  double value[BLOCK][GATHERED], grad[CL_DIM][BLOCK][GRADED]; /* at the particle */
 } Gathered;
 
-/* A block's values, one row of numbers for each particle; x, y: what is multiplied with the node's place in the 3 x 3
-   patch (carried values), with both its places (cross) and with the gradients (forces). */
+/* A block's values, one row of numbers for each particle: what is multiplied with the node's place in the patch
+   (carried values), with pairs of its places (cross) and with the gradients (forces). */
 typedef struct {
-  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], cross[BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
+  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], cross[CL_PAIRS][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
 } Given;
 
-/* From nodes that hold `rows` rows of lanes each. */
-INLINE void Gather(const Explicit *e, const double *nodes, int rows, Run r, const Weights *w, Gathered *g)
+/* Gradient of number k at particle q. */
+INLINE void GradientOf(const Gathered *g, int q, int k, double G[CL_DIM])
 {
-  const int stride = (int)e->m->grid.gm[0];
+  for (int d = 0; d < CL_DIM; d++)
+    G[d] = g->grad[d][q][k];
+}
 
+/* From nodes that hold `rows` rows of lanes each; gradients of the first `graded` of them. */
+INLINE void Gather(const Explicit *e, const double *nodes, int rows, int graded, Run r, const Weights *w, Gathered *g)
+{
   for (int q = 0; q < r.n; q++) {
     const int *slot = &e->slot[w->first[q]];
-    Lanes      v[GATHERED / LANES], x = {0.0}, y = {0.0};
+    Lanes      v[GATHERED / LANES], grad[CL_DIM][GRADED / LANES];
 
     for (int z = 0; z < rows; z++)
       v[z] = (Lanes){0.0};
-    for (int b = 0; b < 3; b++) {
-      const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
+    for (int d = 0; d < CL_DIM; d++) {
+      for (int z = 0; z < graded; z++)
+        grad[d][z] = (Lanes){0.0};
+    }
+    for (int k = 0; k < PATCH_ROWS; k++) {
+      const PatchRow at = PatchRowOf(e, w, q, k);
 
       for (int a = 0; a < 3; a++) {
-        const Lanes *row = (const Lanes *)nodes + (size_t)slot[b * stride + a] * (size_t)rows;
-        const double S   = w->S[0][a][q] * Sy;
+        const Lanes *row = (const Lanes *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
+        const double S   = w->S[0][a][q] * at.S;
+        double       G[CL_DIM];
 
-        x += row[0] * (w->D[0][a][q] * Sy);
-        y += row[0] * (w->S[0][a][q] * Dy);
+        PatchGradient(w, q, &at, a, G);
+        for (int z = 0; z < graded; z++) {
+          for (int d = 0; d < CL_DIM; d++)
+            grad[d][z] += row[z] * G[d];
+        }
         for (int z = 0; z < rows; z++)
           v[z] += row[z] * S;
       }
     }
     for (int z = 0; z < rows; z++)
       *(Lanes *)&g->value[q][z * LANES] = v[z];
-    *(Lanes *)g->dx[q] = x;
-    *(Lanes *)g->dy[q] = y;
+    for (int d = 0; d < CL_DIM; d++) {
+      for (int z = 0; z < graded; z++)
+        *(Lanes *)&g->grad[d][q][z * LANES] = grad[d][z];
+    }
+  }
+}
+
+/* (160), (88): the gradient of a particle's velocity, which stands in g from number `at` on, as its cell's mean has it;
+   rows of nodal velocities, `width` numbers each, the velocity first. */
+INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, int q, const double *rows, int width,
+                       int at, Gathered *g)
+{
+  double beyond[CL_DIM][CL_DIM], more = 0.0;
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      beyond[i][j] = -g->grad[j][q][at + i];
+  }
+  for (int a = 0; a < CL_CORNERS; a++) {
+    const double *v = &rows[CellNode(e, w, q, a) * width];
+
+    for (int i = 0; i < CL_DIM; i++) {
+      for (int j = 0; j < CL_DIM; j++)
+        beyond[i][j] += c->Q[a][j] * w->inverse[j][q] * v[i];
+    }
+  }
+  for (int i = 0; i < CL_DIM; i++)
+    more += c->volume * beyond[i][i];
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      g->grad[j][q][at + i] += c->strain * beyond[i][j] + (i == j ? more : 0.0);
   }
 }
 
@@ -58,22 +102,32 @@ INLINE void Gather(const Explicit *e, const double *nodes, int rows, Run r, cons
 INLINE void GiveNothing(Run r, int count, Given *v)
 {
   for (int q = 0; q < r.n; q++) {
-    for (int k = 0; k < LANES; k++)
-      v->carry[0][q][k] = v->carry[1][q][k] = v->cross[q][k] = v->force[0][q][k] = v->force[1][q][k] = 0.0;
+    for (int k = 0; k < LANES; k++) {
+      for (int d = 0; d < CL_DIM; d++)
+        v->carry[d][q][k] = v->force[d][q][k] = 0.0;
+      for (int c = 0; c < CL_PAIRS; c++)
+        v->cross[c][q][k] = 0.0;
+    }
     for (int k = count; k < LANES * Rows(count); k++)
       v->value[q][k] = 0.0;
   }
 }
 
-/* Mixed second derivative at particle q of a number that nodes hold in their rows, `width` numbers long (395). */
-INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Weights *w, int q)
+/* Mixed second derivative along the pair c of axes at particle q of a number that nodes hold in their rows, `width`
+   numbers long (395). */
+INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Weights *w, int q, int c)
 {
-  const int *slot = &e->slot[w->first[q]], stride = (int)e->m->grid.gm[0];
-  double     sum = 0.0;
+  const int *slot = &e->slot[w->first[q]];
+  double     sum  = 0.0;
 
-  for (int b = 0; b < 3; b++) {
+  for (int k = 0; k < PATCH_ROWS; k++) {
+    const PatchRow at = PatchRowOf(e, w, q, k);
+    double         of = 1.0; /* of the axes beyond x */
+
+    for (int d = 1; d < CL_DIM; d++)
+      of *= d == cl_pair[c][0] || d == cl_pair[c][1] ? w->D[d][at.place[d]][q] : w->S[d][at.place[d]][q];
     for (int a = 0; a < 3; a++)
-      sum += w->D[0][a][q] * w->D[1][b][q] * nodes[slot[b * stride + a] * width];
+      sum += (cl_pair[c][0] == 0 ? w->D[0][a][q] : w->S[0][a][q]) * of * nodes[slot[at.at + a] * width];
   }
   return sum;
 }
@@ -82,14 +136,16 @@ INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Wei
 INLINE double Covariance(const Explicit *e, const double *nodes, int width, int u, int v, const Weights *w,
                          const Gathered *g, int q)
 {
-  const int *slot = &e->slot[w->first[q]], stride = (int)e->m->grid.gm[0];
-  double     sum = 0.0;
+  const int *slot = &e->slot[w->first[q]];
+  double     sum  = 0.0;
 
-  for (int b = 0; b < 3; b++) {
+  for (int k = 0; k < PATCH_ROWS; k++) {
+    const PatchRow at = PatchRowOf(e, w, q, k);
+
     for (int a = 0; a < 3; a++) {
-      const double *row = &nodes[slot[b * stride + a] * width];
+      const double *row = &nodes[slot[at.at + a] * width];
 
-      sum += w->S[0][a][q] * w->S[1][b][q] * (row[u] - g->value[q][u]) * (row[v] - g->value[q][v]);
+      sum += w->S[0][a][q] * at.S * (row[u] - g->value[q][u]) * (row[v] - g->value[q][v]);
     }
   }
   return sum;
@@ -101,28 +157,44 @@ enum { CARRY_NOTHING = 0, CARRY_LINEAR, CARRY_BILINEAR };
 INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bool forces, Run r, const Weights *w,
                     const Given *v)
 {
-  const int rows = Rows(count), stride = (int)e->m->grid.gm[0];
+  const int rows = Rows(count);
 
   for (int q = 0; q < r.n; q++) {
     const int   *slot  = &e->slot[w->first[q]];
     const Lanes *value = (const Lanes *)v->value[q];
-    const Lanes  cx = *(const Lanes *)v->carry[0][q], cy = *(const Lanes *)v->carry[1][q];
-    const Lanes  fx = *(const Lanes *)v->force[0][q], fy = *(const Lanes *)v->force[1][q];
-    const double x[3] = {0.0, 1.0, w->third[0][q]}, y[3] = {0.0, 1.0, w->third[1][q]};
+    Lanes        carry[CL_DIM], cross[CL_PAIRS], force[CL_DIM];
+    double       x[CL_DIM][3];
 
-    for (int b = 0; b < 3; b++) {
-      const double Sy = w->S[1][b][q], Dy = w->D[1][b][q];
+    for (int d = 0; d < CL_DIM; d++) {
+      carry[d] = *(const Lanes *)v->carry[d][q];
+      force[d] = *(const Lanes *)v->force[d][q];
+      x[d][0]  = 0.0;
+      x[d][1]  = 1.0;
+      x[d][2]  = w->third[d][q];
+    }
+    for (int c = 0; c < CL_PAIRS; c++)
+      cross[c] = *(const Lanes *)v->cross[c][q];
+    for (int k = 0; k < PATCH_ROWS; k++) {
+      const PatchRow at = PatchRowOf(e, w, q, k);
 
       for (int a = 0; a < 3; a++) {
-        const double S = w->S[0][a][q] * Sy, Gx = w->D[0][a][q] * Sy, Gy = w->S[0][a][q] * Dy;
-        Lanes       *row   = (Lanes *)nodes + (size_t)slot[b * stride + a] * (size_t)rows;
+        Lanes       *row   = (Lanes *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
         Lanes        first = value[0];
+        const double S     = w->S[0][a][q] * at.S;
+        double       G[CL_DIM], place[CL_DIM];
 
-        if (carries)
-          first += cx * x[a] + cy * y[b];
-        if (carries == CARRY_BILINEAR)
-          first += *(const Lanes *)v->cross[q] * (x[a] * y[b]);
-        row[0] += forces ? first * S + fx * Gx + fy * Gy : first * S;
+        PatchGradient(w, q, &at, a, G);
+        place[0] = x[0][a];
+        for (int d = 1; d < CL_DIM; d++)
+          place[d] = x[d][at.place[d]];
+        for (int d = 0; d < CL_DIM && carries; d++)
+          first += carry[d] * place[d];
+        for (int c = 0; c < CL_PAIRS && carries == CARRY_BILINEAR; c++)
+          first += cross[c] * (place[cl_pair[c][0]] * place[cl_pair[c][1]]);
+        first *= S;
+        for (int d = 0; d < CL_DIM && forces; d++)
+          first += force[d] * G[d];
+        row[0] += first;
         for (int z = 1; z < rows; z++)
           row[z] += value[z] * S;
       }

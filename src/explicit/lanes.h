@@ -39,8 +39,8 @@ INLINE int Rows(int n)
 
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
  * and each fluid, and with layers V k_p, with beds that times A - 1. */
-enum { MIX_FX = 0, MIX_FY, MIX_M, MIX_VX, MIX_VY, MIX_COUNT };
-enum { FL_M = 0, FL_VX, FL_VY, FL_GX, FL_GY, FL_MI, FL_DRAG, FL_W, FL_ROOT };
+enum { MIX_F = 0, MIX_M = MIX_F + CL_DIM, MIX_V, MIX_COUNT = MIX_V + CL_DIM };
+enum { FL_M = 0, FL_V, FL_G = FL_V + CL_DIM, FL_MI = FL_G + CL_DIM, FL_DRAG, FL_W, FL_ROOT };
 PLACE(A_V, Scalars(s))
 PLACE(A_C, Scalars(s) + 1)
 PLACE(A_Mix, Scalars(s) + 1 + s.heat)
@@ -52,12 +52,12 @@ INLINE int A_Fluid(Set s, int f)
   return A_Mix(s) + MIX_COUNT * s.solid + FluidLanes(s) * f;
 }
 PLACE(A_K, A_Fluid(s, s.fluids))
-PLACE(A_Beds, A_K(s) + s.layers) /* xx, yy, xy */
-PLACE(A_Count, A_Beds(s) + 3 * s.beds)
+PLACE(A_Beds, A_K(s) + s.layers) /* by cl_symmetric */
+PLACE(A_Count, A_Beds(s) + CL_SYMMETRIC * s.beds)
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
    and velocity; increment of v_s. */
-enum { B_J = 0, B_PROJ = 2, B_DV = 4, B_VEL = 6, B_PER_FLUID = 8 };
+enum { B_J = 0, B_PROJ = CL_DIM, B_DV = 2 * CL_DIM, B_VEL = 3 * CL_DIM, B_PER_FLUID = 4 * CL_DIM };
 PLACE(B_T, CL_DIM *s.solid)
 INLINE int B_P(Set s, int f)
 {
@@ -79,7 +79,9 @@ PLACE(R_Count, Scalars(s) * (Scalars(s) + 1))
  * v_s here. */
 PLACE(C_End, Scalars(s))
 PLACE(C_Vs, 2 * Scalars(s))
-PLACE(C_DVs, C_Vs(s) + 2)
+PLACE(C_DVs, C_Vs(s) + CL_DIM)
+PLACE(C_Count, Scalars(s) > 0 ? C_Vs(s) + CL_DIM * s.solid : B_Count(s))
+PLACE(C_Width, LANES *Rows(C_Count(s)))
 
 /* What a step keeps per particle between its passes. */
 enum {
@@ -91,8 +93,8 @@ enum {
   T_HELD    = T_GAS + 2,            /* density of the gas in the pores (323) */
   T_DRAG    = T_HELD + 1,           /* [2] mu/(k_a k_r) */
   T_CONDUCT = T_DRAG + PHASE_COUNT, /* weight of its flow at t_n (350); with layers */
-  T_BEDS,                           /* [3] A at t_n (306): xx, yy, xy; with beds */
-  T_V = T_BEDS + 3,                 /* volume at the end of the step */
+  T_BEDS,                           /* [CL_SYMMETRIC] A at t_n (306); with beds */
+  T_V = T_BEDS + CL_SYMMETRIC,      /* volume at the end of the step */
   T_EOS,                            /* [2] masses at that volume and the old pressures */
   T_SLOPE = T_EOS + PHASE_COUNT,    /* [2][3] their slopes in p_w, p_g, T */
   T_WARM =
@@ -105,6 +107,8 @@ enum {
   T_LOCAL = T_MISS + PHASE_COUNT,
   T_COUNT = T_LOCAL + 3 * PHASE_COUNT
 };
+
+enum { INC = 3 * CL_DIM }; /* skeleton, water, gas */
 
 typedef struct {
   int    root;  /* fuller node that this one follows; its own number if it stands for itself */
@@ -131,11 +135,11 @@ struct Explicit {
   PetscInt        rows;              /* n_local + 1: the last row takes what nobody needs */
   double         *raw;               /* memory of the arrays below */
   double         *A, *B, *R, *C, *G; /* [rows][8 n]; G: A of a leading node with what its followers gave it */
-  double *inc;  /* [rows][6] increments of velocity from a node's own balances, with what its followers gave it; of
+  double *inc;  /* [rows][INC] increments of velocity from a node's own balances, with what its followers gave it; of
                    fluids with layers the flow per permeability (311) */
   double *gain; /* [rows][3] the same of the scalars */
-  double *left, *given, *total; /* [rows][LANES] (413): what the balances of mass and heat still lack, what particles
-                                   store of it, the increments so far */
+  double *left, *given, *total; /* (413): what the balances of mass and heat still lack and what particles store of it,
+                                   [rows][LANES]; the increments so far, in rows like those of C */
   int     pass;                 /* of (413), from 0 */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
@@ -171,18 +175,23 @@ INLINE double Conductance(const Explicit *e, Set s, PetscInt p)
 /* A of a particle (306). */
 INLINE Beds BedsAt(const Explicit *e, PetscInt p)
 {
-  return (Beds){{e->t[T_BEDS][p], e->t[T_BEDS + 1][p], e->t[T_BEDS + 2][p]}};
+  Beds beds;
+
+  for (int k = 0; k < CL_SYMMETRIC; k++)
+    beds.A[k] = e->t[T_BEDS + k][p];
+  return beds;
 }
 
 /* (309): what drives a fluid of density rho like the gradient g of its pressure, with beds. */
 INLINE void Driven(const Explicit *e, Set s, PetscInt p, double rho, double g[CL_DIM])
 {
-  const double *b = e->m->bc.gravity;
+  double w[CL_DIM];
 
   if (!s.beds)
     return;
-  const Beds   A         = BedsAt(e, p);
-  const double w[CL_DIM] = {rho * b[0], rho * b[1]};
+  const Beds A = BedsAt(e, p);
+  for (int d = 0; d < CL_DIM; d++)
+    w[d] = rho * e->m->bc.gravity[d];
 
   BedsDriveMoving(&A, w, g);
 }
@@ -205,10 +214,44 @@ typedef struct {
 
 void WeightsOf(const Explicit *e, Run r, Weights *w);
 
+/* Three nodes of a particle's patch that follow each other along x: where the first stands from the patch's first on;
+   its places along the axes; the product of the other axes' weights, and the same with the derivative along d. */
+typedef struct {
+  int    at, place[CL_DIM];
+  double S, D[CL_DIM];
+} PatchRow;
+
+enum { PATCH_ROWS = CL_NODES / 3 };
+
+/* Row k of particle q's patch. */
+INLINE PatchRow PatchRowOf(const Explicit *e, const Weights *w, int q, int k)
+{
+  const PetscInt *gm = e->m->grid.gm;
+#if CL_DIM == 2
+  const double Sy = w->S[1][k][q], Dy = w->D[1][k][q];
+
+  return (PatchRow){.at = k * (int)gm[0], .place = {0, k}, .S = Sy, .D = {0.0, Dy}};
+#else
+  const int    b = k % 3, c = k / 3;
+  const double Sy = w->S[1][b][q], Dy = w->D[1][b][q], Sz = w->S[2][c][q], Dz = w->D[2][c][q];
+  const int    at = (int)((c * gm[1] + b) * gm[0]);
+
+  return (PatchRow){.at = at, .place = {0, b, c}, .S = Sy * Sz, .D = {0.0, Dy * Sz, Sy * Dz}};
+#endif
+}
+
+/* Gradient of the weight of its node a. */
+INLINE void PatchGradient(const Weights *w, int q, const PatchRow *row, int a, double G[CL_DIM])
+{
+  G[0] = w->D[0][a][q] * row->S;
+  for (int d = 1; d < CL_DIM; d++)
+    G[d] = w->S[0][a][q] * row->D[d];
+}
+
 /* (160), (88): what particles take of the mean over their cell: of its gradient, and of its divergence beyond that in
    each direction; the nodes of a cell, row by row, and their weights in its gradient. */
 typedef struct {
-  double strain, volume, Q[4][CL_DIM]; /* Q: of a cell of width 1 */
+  double strain, volume, Q[CL_CORNERS][CL_DIM]; /* Q: of a cell of width 1 */
 } CellMean;
 
 INLINE bool TakesCellMean(const Explicit *e)
@@ -221,37 +264,28 @@ INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
   if (!TakesCellMean(e))
     return false;
   c->strain = e->m->c->mean_strain;
-  c->volume = e->m->c->mean_dilatation ? 0.5 * (1.0 - c->strain) : 0.0;
-  for (int a = 0; a < 4; a++)
-    CellGradient((double[CL_DIM]){1.0, 1.0}, false, (PetscInt[CL_DIM]){a % 2, a / 2}, 0.0, c->Q[a]);
+  c->volume = e->m->c->mean_dilatation ? (1.0 - c->strain) / CL_DIM : 0.0;
+  for (int a = 0; a < CL_CORNERS; a++) {
+    double   h[CL_DIM];
+    PetscInt i[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++) {
+      h[d] = 1.0;
+      i[d] = a >> d & 1;
+    }
+    CellGradient(h, false, i, 0.0, c->Q[a]);
+  }
   return true;
 }
 
 INLINE int CellNode(const Explicit *e, const Weights *w, int q, int a)
 {
-  return e->slot[w->first[q] + w->cell[q] + a % 2 + a / 2 * (int)e->m->grid.gm[0]];
-}
+  const PetscInt *gm = e->m->grid.gm;
+  int             at = 0;
 
-/* Gradients dx, dy of a particle's velocity; rows of nodal velocities, `width` numbers each, the velocity first. */
-INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, int q, const double *rows, int width,
-                       double dx[CL_DIM], double dy[CL_DIM])
-{
-  double beyond[CL_DIM][CL_DIM] = {{-dx[0], -dy[0]}, {-dx[1], -dy[1]}};
-
-  for (int a = 0; a < 4; a++) {
-    const double *v = &rows[CellNode(e, w, q, a) * width];
-
-    for (int i = 0; i < CL_DIM; i++) {
-      beyond[i][0] += c->Q[a][0] * w->inverse[0][q] * v[i];
-      beyond[i][1] += c->Q[a][1] * w->inverse[1][q] * v[i];
-    }
-  }
-  const double more = c->volume * (beyond[0][0] + beyond[1][1]);
-
-  dx[0] += c->strain * beyond[0][0] + more;
-  dy[0] += c->strain * beyond[0][1];
-  dx[1] += c->strain * beyond[1][0];
-  dy[1] += c->strain * beyond[1][1] + more;
+  for (int d = CL_DIM - 1; d >= 0; d--)
+    at = at * (int)gm[d] + (a >> d & 1);
+  return e->slot[w->first[q] + w->cell[q] + at];
 }
 
 void Deposit(Explicit *e);

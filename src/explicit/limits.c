@@ -68,9 +68,10 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
   double *const  *f   = (double *const *)m->P.f;
   const char     *why;
   PointProperties q;
-  const double    k2      = GridHighest2At(&m->grid, (double[CL_DIM]){f[P_X][p], f[P_X + 1][p]});
-  double          C[2][2] = {{0.0}}, bulk = 0.0, skeleton, rho;
+  double          x[CL_DIM], C[2][2] = {{0.0}}, bulk = 0.0, skeleton, rho;
 
+  ParticlePlace(&m->P, p, x);
+  const double   k2     = GridHighest2At(&m->grid, x);
   const ClStatus status = ModelParticleProperties(m, p, &q, &why);
   if (status != CL_OK)
     return status;

@@ -8,9 +8,11 @@
 #define LARGEST_STRAIN 0.1 /* of one step: beyond it the series below lose digits, and the step is no small one */
 
 typedef struct {
-  double c[BLOCK], s[BLOCK], xx[BLOCK], yy[BLOCK], xy[BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK],
+  double turn[CL_TURN][BLOCK], e[CL_TENSOR][BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK],
       H[CL_DIM][CL_DIM][BLOCK];
 } Strain;
+
+#if CL_DIM == 2
 
 /* (7) without branches: rotation c, s and logarithmic strain 1/2 ln F F^T by series in small increments; false if one
  * is not small. */
@@ -20,8 +22,8 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
   Wrong     large = 0;
 
   for (int q = 0; q < n; q++) {
-    const double Hxx = dt * g->dx[q][at], Fxy = dt * g->dy[q][at], Fyx = dt * g->dx[q][at + 1],
-                 Hyy = dt * g->dy[q][at + 1], Fxx = 1.0 + Hxx, Fyy = 1.0 + Hyy;
+    const double Hxx = dt * g->grad[0][q][at], Fxy = dt * g->grad[1][q][at], Fyx = dt * g->grad[0][q][at + 1],
+                 Hyy = dt * g->grad[1][q][at + 1], Fxx = 1.0 + Hxx, Fyy = 1.0 + Hyy;
     const Stretch of = StretchOf(Fxx, Fxy, Fyx, Fyy);
     const double  a = of.along, b = of.turn, per = 1.0 / sqrt(a * a + b * b), c = a * per, si = b * per, y = of.y;
     const double  J = Fxx * Fyy - Fxy * Fyx, z = (J - 1.0) / (J + 1.0), z2 = z * z;
@@ -32,12 +34,13 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
     double e[CL_TENSOR], U[CL_DIM];
 
     large |= WRONG_UNLESS((fabs(J - 1.0) < LARGEST_STRAIN) & (y < LARGEST_STRAIN * LARGEST_STRAIN) & (a > 1.0));
-    o->c[q] = c;
-    o->s[q] = si;
+    o->turn[0][q] = c;
+    o->turn[1][q] = si;
     LogStrainOf(0.5 * lnJ, 0.5 * ratio * of.d / of.m, 0.5 * ratio * of.off / of.m, e);
-    o->xx[q]      = e[XX];
-    o->yy[q]      = e[YY];
-    o->xy[q]      = e[XY];
+    o->e[XX][q]   = e[XX];
+    o->e[YY][q]   = e[YY];
+    o->e[ZZ][q]   = 0.0;
+    o->e[XY][q]   = e[XY];
     o->H[0][0][q] = Hxx;
     o->H[0][1][q] = Fxy;
     o->H[1][0][q] = Fyx;
@@ -50,14 +53,52 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
   }
   return !large; /* NaN is wrong as well */
 }
+#else
+/* (432); false if a particle's is not small. */
+INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o)
+{
+  const int at    = C_Vs(s);
+  Wrong     large = 0;
+
+  #pragma GCC ivdep
+  for (int q = 0; q < n; q++) {
+    double H[3][3], F[3][3], cof[3][3], e[6], R[3][3], most = 0.0;
+
+  #pragma GCC unroll 9
+    for (int k = 0; k < 9; k++) {
+      H[k / 3][k % 3] = o->H[k / 3][k % 3][q] = dt * g->grad[k % 3][q][at + k / 3];
+      F[k / 3][k % 3]                         = H[k / 3][k % 3] + (k % 4 == 0 ? 1.0 : 0.0);
+    }
+    SmallStretch(H, e, R);
+    o->J[q]     = CofactorOf(F, cof);
+    o->log_J[q] = e[XX] + e[YY] + e[ZZ];
+  #pragma GCC unroll 6
+    for (int k = 0; k < 6; k++) {
+      o->e[k][q] = e[k];
+      most       = Largest(most, fabs(e[k]));
+    }
+  #pragma GCC unroll 9
+    for (int k = 0; k < 9; k++)
+      o->turn[k][q] = R[k / 3][k % 3];
+  #pragma GCC unroll 3
+    for (int d = 0; d < 3; d++) /* diag U = diag R^T F */
+      o->stretch[d][q] = R[0][d] * F[0][d] + R[1][d] * F[1][d] + R[2][d] * F[2][d];
+    large |= WRONG_UNLESS((fabs(o->J[q] - 1.0) < LARGEST_STRAIN) & (most < LARGEST_STRAIN));
+  }
+  return !large;
+}
+#endif
 
 /* The particle of a block that is strained most. */
 static inline PetscInt Strained(Run r, const Strain *n)
 {
   double size[BLOCK];
 
-  for (int q = 0; q < r.n; q++)
-    size[q] = n->xx[q] * n->xx[q] + n->yy[q] * n->yy[q] + 2.0 * n->xy[q] * n->xy[q];
+  for (int q = 0; q < r.n; q++) {
+    size[q] = 0.0;
+    for (int c = 0; c < CL_TENSOR; c++)
+      size[q] += (c > ZZ ? 2.0 : 1.0) * n->e[c][q] * n->e[c][q];
+  }
   return Worst(r, size);
 }
 
@@ -145,9 +186,9 @@ INLINE bool Move(Explicit *e, const Set s, Run r, const Gathered *g, const Strai
   for (int d = 0; d < CL_DIM; d++) {
     for (int q = 0; q < r.n; q++)
       u[d][q] = dt * g->value[q][C_Vs(s) + d];
-    motion.u[d]       = u[d];
-    motion.H[d][0]    = n->H[d][0];
-    motion.H[d][1]    = n->H[d][1];
+    motion.u[d] = u[d];
+    for (int j = 0; j < CL_DIM; j++)
+      motion.H[d][j] = n->H[d][j];
     motion.stretch[d] = grows ? n->stretch[d] : NULL;
   }
   ParticlesKeep(&e->m->P, r.p, r.n, &motion);

@@ -5,7 +5,7 @@
 #define MARGIN 1.01 /* among neighbours about as full the first stays, whatever the order of sums */
 #define HOPS 3      /* from a nearly empty node to one that is not */
 
-static const int step_to[4][CL_DIM] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+enum { DIRECTIONS = 2 * CL_DIM };
 
 /* ---------------------------------------------------------------- numbering */
 static PetscErrorCode Allocate(Explicit *e)
@@ -13,7 +13,7 @@ static PetscErrorCode Allocate(Explicit *e)
   const Set      s = e->set;
   const PetscInt n = e->map.n_local + 1;
   const PetscInt A = LANES * Rows(A_Count(s)), B = LANES * Rows(B_Count(s)), R = LANES * Rows(PetscMax(R_Count(s), 1)),
-                 C = LANES;
+                 C = C_Width(s);
   double *at;
 
   PetscFunctionBeginUser;
@@ -23,7 +23,7 @@ static PetscErrorCode Allocate(Explicit *e)
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
-  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + 3 * (e->o.passes > 0 ? LANES : 0)) + LANES, &e->raw));
+  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (e->o.passes > 0 ? 2 * LANES + C : 0)) + LANES, &e->raw));
   at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
   e->A = at;
   e->G = e->A + n * A;
@@ -35,7 +35,7 @@ static PetscErrorCode Allocate(Explicit *e)
     e->given = e->left + n * LANES;
     e->total = e->given + n * LANES;
   }
-  PetscCall(PetscCalloc5(6 * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node, GridPaddedSize(&e->m->grid),
+  PetscCall(PetscCalloc5(INC * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node, GridPaddedSize(&e->m->grid),
                          &e->slot));
   for (PetscInt q = 0; q < GridPaddedSize(&e->m->grid); q++)
     e->slot[q] = (int)(e->map.index[q] >= 0 ? e->map.index[q] : e->map.n_local);
@@ -79,13 +79,16 @@ PetscErrorCode NodesRebuild(Explicit *e)
   }
   PetscCall(PetscCalloc1(GridPaddedSize(g), &flag));
   for (PetscInt p = 0; p < e->m->P.n; p++) {
-    for (int b = 0; b < 3; b++) {
-      for (int a = 0; a < 3; a++) {
-        const PetscInt i = e->base[0][p] + a, j = e->base[1][p] + b;
+    for (int a = 0; a < CL_NODES; a++) {
+      PetscInt ij[CL_DIM];
+      bool     in = true;
 
-        if (i >= 0 && i <= g->cells[0] && j >= 0 && j <= g->cells[1])
-          flag[GridPadded(g, (PetscInt[CL_DIM]){i, j})] = 1;
+      for (int d = 0, rest = a; d < CL_DIM; d++, rest /= 3) {
+        ij[d] = e->base[d][p] + rest % 3;
+        in    = in && ij[d] >= 0 && ij[d] <= g->cells[d];
       }
+      if (in)
+        flag[GridPadded(g, ij)] = 1;
     }
   }
   PetscCall(NodeMapUpdate(g, flag, &e->map, &changed));
@@ -101,11 +104,15 @@ PetscErrorCode NodesRebuild(Explicit *e)
 /* ---------------------------------------------------------------- groups (41) */
 static int Neighbour(const Explicit *e, PetscInt I, int direction)
 {
-  const Grid    *g = &e->m->grid;
-  const PetscInt i = e->map.ij[I][0] + step_to[direction][0] - g->gs[0],
-                 j = e->map.ij[I][1] + step_to[direction][1] - g->gs[1];
+  const Grid *g    = &e->m->grid;
+  const int   axis = direction / 2;
+  PetscInt    ij[CL_DIM];
 
-  return i < 0 || j < 0 || i >= g->gm[0] || j >= g->gm[1] ? (int)e->rows - 1 : e->slot[j * g->gm[0] + i];
+  for (int d = 0; d < CL_DIM; d++)
+    ij[d] = e->map.ij[I][d];
+  ij[axis] += direction % 2 ? 1 : -1;
+  const PetscInt in = ij[axis] - g->gs[axis];
+  return in < 0 || in >= g->gm[axis] ? (int)e->rows - 1 : e->slot[GridPadded(g, ij)];
 }
 
 /* 1 + direction of the neighbour that node I follows, 0 if it stands for itself; own: the share of its own balances
@@ -115,7 +122,7 @@ static int Follows(const Explicit *e, PetscInt I, double *own)
   double best  = 0.0;
   int    found = 0;
 
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < DIRECTIONS; k++) {
     const double V = Volume(e, e->set, Neighbour(e, I, k));
 
     if (V > MARGIN * best) {

@@ -9,6 +9,27 @@ INLINE double Volume(const Explicit *e, const Set s, PetscInt I)
   return e->A[I * LANES * Rows(A_Count(s)) + A_V(s)];
 }
 
+/* x of the n x n system A x = b by elimination with the diagonal as pivots: storage and capacity outweigh what couples
+ * them. */
+INLINE void SolveSmall(int n, double *A, double *b, double *x)
+{
+  for (int k = 0; k < n; k++) {
+    for (int i = k + 1; i < n; i++) {
+      const double c = A[i * n + k] / A[k * n + k];
+
+      for (int j = k; j < n; j++)
+        A[i * n + j] -= c * A[k * n + j];
+      b[i] -= c * b[k];
+    }
+  }
+  for (int k = n - 1; k >= 0; k--) {
+    x[k] = b[k];
+    for (int j = k + 1; j < n; j++)
+      x[k] -= A[k * n + j] * x[j];
+    x[k] /= A[k * n + k];
+  }
+}
+
 /* Adds a share of n numbers. */
 static inline void AddRow(double *to, double share, const double *from, int n)
 {

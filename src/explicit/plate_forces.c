@@ -37,7 +37,7 @@ static PetscErrorCode Answers(Explicit *e, double dt)
       double value;
 
       e->answer[I][d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], d) +
-                        (mix[MIX_M] > 0.0 ? mix[MIX_VX + d] / mix[MIX_M] : 0.0);
+                        (mix[MIX_M] > 0.0 ? mix[MIX_V + d] / mix[MIX_M] : 0.0);
       e->answer[I][CL_DIM + d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], CL_DIM + d);
       if (Held(e, I, F_VS + d, &value)) {
         e->answer[I][d]          = value;
@@ -79,9 +79,11 @@ static void Push(Explicit *e, const Face *f, double dt, const double answer[2])
     return;
   force[d] = -n * bears;
   sum[PLATE_FORCE] += bears;
-  if (b->rough) {
-    FaceAnswer(e, f, nodes, node, 1 - d, dt, &pull, &k);
-    force[1 - d] = -pull;
+  for (int t = 0; t < CL_DIM && b->rough; t++) {
+    if (t == d)
+      continue;
+    FaceAnswer(e, f, nodes, node, t, dt, &pull, &k);
+    force[t] = -pull;
     sum[PLATE_SHEAR] -= pull;
   }
   for (int a = 0; a < nodes; a++)
@@ -91,7 +93,7 @@ static void Push(Explicit *e, const Face *f, double dt, const double answer[2])
 /* Sums the forces over ranks and adds them to the balances, those of followers as (41) says. */
 static PetscErrorCode Add(Explicit *e)
 {
-  const int width = LANES * Rows(A_Count(e->set)), at = A_Mix(e->set) + MIX_FX;
+  const int width = LANES * Rows(A_Count(e->set)), at = A_Mix(e->set) + MIX_F;
 
   PetscFunctionBeginUser;
   PetscCall(NodeMapSum(&e->map, &e->push[0][0], CL_DIM));

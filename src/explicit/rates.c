@@ -72,8 +72,15 @@ INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T,
   for (int q = 0; q < r.n; q++) {
     double J = 1.0;
 
-    if (s.solid)
-      J = (1.0 + dt * g->dx[q][0]) * (1.0 + dt * g->dy[q][1]) - dt * dt * g->dy[q][0] * g->dx[q][1];
+    if (s.solid) {
+      double F[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM];
+
+      for (int i = 0; i < CL_DIM; i++) {
+        for (int j = 0; j < CL_DIM; j++)
+          F[i][j] = (i == j ? 1.0 : 0.0) + dt * g->grad[j][q][i];
+      }
+      J = CofactorOf(F, cof);
+    }
     V_new[q]      = V[q] * J;
     const Pores v = PoresOf(V_new[q], ms[q], rho_s[q], mh[q], o->rho_h[q]);
 
@@ -130,10 +137,10 @@ INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, const
   LatentHeatBatch(&mat->latent, r.n, T, L);
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
   for (int q = 0; q < r.n; q++) {
-    const double g_T[CL_DIM] = {g->dx[q][B_T(s)], g->dy[q][B_T(s)]},
-                 melts       = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
-    double h[CL_DIM];
+    const double melts = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
+    double       h[CL_DIM], g_T[CL_DIM];
 
+    GradientOf(g, q, B_T(s), g_T);
     for (int d = 0; d < CL_DIM; d++)
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
     held[q] =
@@ -232,18 +239,19 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
                          *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
-  const double *restrict gx = f[grad] + r.p, *restrict gy = f[grad + 1] + r.p;
 
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau,
                  conduct = Conductance(e, s, r.p + q);
-    double own[CL_DIM]   = {gx[q], gy[q]};
+    double own[CL_DIM];
 
+    for (int d = 0; d < CL_DIM; d++)
+      own[d] = f[grad + d][r.p + q];
     Driven(e, s, r.p + q, rho[q], own);
-    o->value[q][k]    = m[q] - eos[q];
-    o->force[0][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J], v[at + B_PROJ] - own[0]);
-    o->force[1][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + 1], v[at + B_PROJ + 1] - own[1]);
+    o->value[q][k] = m[q] - eos[q];
+    for (int d = 0; d < CL_DIM; d++)
+      o->force[d][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + d], v[at + B_PROJ + d] - own[d]);
   }
   if (k == PHASE_G && r.mat->gas.carried > 0.0)
     CarriedFlux(e, r, o);
@@ -262,9 +270,12 @@ INLINE void BedsWork(Explicit *e, const Set s, Run r, const Gathered *g, double 
     for (int q = 0; q < r.n; q++) {
       const PetscInt p       = r.p + q;
       const double   conduct = Conductance(e, s, p), *v = &g->value[q][B_Fluid(s, k) + B_J];
-      const double   J[CL_DIM] = {conduct * v[0], conduct * v[1]};
-      const Beds     A         = BedsAt(e, p);
-      const double   work      = dt * e->m->P.f[P_V][p] * e->t[T_DRAG + k][p] * BedsDrag(&A, J);
+      const Beds     A = BedsAt(e, p);
+      double         J[CL_DIM];
+
+      for (int d = 0; d < CL_DIM; d++)
+        J[d] = conduct * v[d];
+      const double work = dt * e->m->P.f[P_V][p] * e->t[T_DRAG + k][p] * BedsDrag(&A, J);
 
       e->work[WORK_PRESSURE] += work;
       e->work[WORK_DRAG] += work;
@@ -280,7 +291,7 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
 
   for (int q = 0; q < r.n; q++) {
     const double V         = e->m->P.f[P_V][r.p + q];
-    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[3];
+    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[CL_SYMMETRIC];
 
     for (int d = 0; d < CL_DIM; d++)
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
@@ -289,9 +300,18 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
         a[d] += SpecificHeat(r.mat, k) * o->force[d][q][k] / (dt * V);
     }
     HeatUpwind(kappa[q], a, h, K);
-    o->force[0][q][row] -= dt * V * (K[0] * g->dx[q][at] + K[2] * g->dy[q][at]);
-    o->force[1][q][row] -= dt * V * (K[2] * g->dx[q][at] + K[1] * g->dy[q][at]);
+    for (int i = 0; i < CL_DIM; i++) {
+      for (int j = 0; j < CL_DIM; j++)
+        o->force[i][q][row] -= dt * V * K[cl_symmetric[i][j]] * g->grad[j][q][at];
+    }
   }
+}
+
+/* Flux of mass of a fluid through the particle over the step, kg m, that its row has. */
+INLINE void GivenFlux(const Given *o, int q, int k, double flux[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    flux[d] = o->force[d][q][k];
 }
 
 /* Row of heat (21): conduction, advection with the fluxes above, capacity. */
@@ -309,16 +329,18 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    const double gT[CL_DIM] = {g->dx[q][at], g->dy[q][at]};
+    double gT[CL_DIM], flux[CL_DIM];
 
+    GradientOf(g, q, at, gT);
     advected[q] = 0.0;
 #pragma GCC unroll 2
-    for (int k = 0; k < s.fluids; k++)
-      advected[q] +=
-          AdvectedHeat(SpecificHeat(&mat, k), (const double[CL_DIM]){o->force[0][q][k], o->force[1][q][k]}, gT);
-    o->value[q][row]                         = -advected[q];
-    o->force[0][q][row]                      = -dt * V[q] * kappa[q] * g->dx[q][at];
-    o->force[1][q][row]                      = -dt * V[q] * kappa[q] * g->dy[q][at];
+    for (int k = 0; k < s.fluids; k++) {
+      GivenFlux(o, q, k, flux);
+      advected[q] += AdvectedHeat(SpecificHeat(&mat, k), flux, gT);
+    }
+    o->value[q][row] = -advected[q];
+    for (int d = 0; d < CL_DIM; d++)
+      o->force[d][q][row] = -dt * V[q] * kappa[q] * gT[d];
     o->value[q][R_Matrix(s) + row * n + row] = C[q];
   }
   for (int i = 0; i < s.fluids; i++) {
@@ -342,10 +364,13 @@ INLINE void CompressionRow(Explicit *e, const Set s, Run r, const Gathered *g, c
     for (int q = 0; q < r.n; q++) {
       const PetscInt p   = r.p + q;
       const double   rho = e->t[T_RHO + k][p], TK = T[q] + CL_ZERO_CELSIUS;
-      const double   beta         = k == PHASE_W ? r.mat->water.beta : GasExpansionAt(&r.mat->gas, rho, T[q]);
-      const double   share        = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
-      const double   flux[CL_DIM] = {o->force[0][q][k], o->force[1][q][k]}, g_p[CL_DIM] = {g->dx[q][at], g->dy[q][at]};
-      const double   taken = ThrottledHeat(share, flux, g_p, b);
+      const double   beta  = k == PHASE_W ? r.mat->water.beta : GasExpansionAt(&r.mat->gas, rho, T[q]);
+      const double   share = rho > 0.0 ? ThrottlingOf(beta * TK, rho).v : 0.0;
+      double         flux[CL_DIM], g_p[CL_DIM];
+
+      GivenFlux(o, q, k, flux);
+      GradientOf(g, q, at, g_p);
+      const double taken = ThrottledHeat(share, flux, g_p, b);
 
       o->value[q][row] -= taken;
       e->squeezed -= taken;
@@ -407,16 +432,16 @@ INLINE void RelativeColumns(const Explicit *e, const Set s, Run r, Given *o)
 /* Divergence of a fluid's Darcy flux at the particle, 1/s. */
 INLINE double Divergence(const Explicit *e, const Set s, const Weights *w, int q, int k)
 {
-  const int  width = LANES * Rows(B_Count(s)), stride = (int)e->m->grid.gm[0], at = B_Fluid(s, k) + B_J;
+  const int  width = LANES * Rows(B_Count(s)), at = B_Fluid(s, k) + B_J;
   const int *slot = &e->slot[w->first[q]];
   double     div  = 0.0;
 
-  for (int b = 0; b < 3; b++) {
-    for (int a = 0; a < 3; a++) {
-      const double *J = &e->B[slot[b * stride + a] * width + at];
+  for (int n = 0; n < CL_NODES; n++) {
+    const PatchRow row = PatchRowOf(e, w, q, n / 3);
+    double         G[CL_DIM];
 
-      div += w->D[0][a][q] * w->S[1][b][q] * J[0] + w->S[0][a][q] * w->D[1][b][q] * J[1];
-    }
+    PatchGradient(w, q, &row, n % 3, G);
+    div += VectorDot(G, &e->B[slot[row.at + n % 3] * width + at]);
   }
   return div;
 }
@@ -438,7 +463,9 @@ INLINE void Keep(Explicit *e, const Set s, Run r, double dt, const Weights *w, G
         e->t[T_LOCAL + 3 * k + (i < s.fluids ? i : 2)][p] = row[i];
         row[i]                                            = i == k ? 1.0 : 0.0;
       }
-      o->value[q][k] = o->force[0][q][k] = o->force[1][q][k] = 0.0;
+      o->value[q][k] = 0.0;
+      for (int d = 0; d < CL_DIM; d++)
+        o->force[d][q][k] = 0.0;
       if (s.heat)
         o->value[q][R_Matrix(s) + s.fluids * n + k] = 0.0;
     }
@@ -456,9 +483,9 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
 
   const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
-  Gather(e, e->B, Rows(B_Count(s)), r, &w, &g);
+  Gather(e, e->B, Rows(B_Count(s)), 1, r, &w, &g);
   for (int q = 0; q < r.n && shared; q++)
-    MeanMotion(e, &mean, &w, q, e->B, LANES * Rows(B_Count(s)), g.dx[q], g.dy[q]);
+    MeanMotion(e, &mean, &w, q, e->B, LANES * Rows(B_Count(s)), 0, &g);
   Velocities(e, s, r, &g);
   GiveNothing(r, R_Count(s), &o);
   VolumesOf(e, s, r, T, &g, dt, &v);

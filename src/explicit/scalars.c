@@ -1,27 +1,6 @@
 /* Between the second and the third pass: increments of p_w, p_g, T at the nodes (37). */
 #include "nodes.h"
 
-/* x of the n x n system A x = b by elimination with the diagonal as pivots: storage and capacity outweigh what couples
- * them. */
-INLINE void SolveSmall(int n, double *A, double *b, double *x)
-{
-  for (int k = 0; k < n; k++) {
-    for (int i = k + 1; i < n; i++) {
-      const double c = A[i * n + k] / A[k * n + k];
-
-      for (int j = k; j < n; j++)
-        A[i * n + j] -= c * A[k * n + j];
-      b[i] -= c * b[k];
-    }
-  }
-  for (int k = n - 1; k >= 0; k--) {
-    x[k] = b[k];
-    for (int j = k + 1; j < n; j++)
-      x[k] -= A[k * n + j] * x[j];
-    x[k] /= A[k * n + k];
-  }
-}
-
 /* What the row of a balance k of (37), r, lacks with the increments d: kg, J. */
 INLINE double Lacking(const Set s, const double *r, int k, const double *d)
 {
@@ -86,7 +65,7 @@ INLINE void WriteScalars(Explicit *e, const Set s, PetscInt I)
 {
   const int     n = Scalars(s);
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], *r = &e->R[I * LANES * Rows(R_Count(s))];
-  double       *c = &e->C[I * LANES], T;
+  double       *c = &e->C[I * C_Width(s)], T;
 
   for (int k = 0; k < n; k++)
     c[k] = Blended(e, I, e->node[I].own, 3, e->gain, k);
@@ -101,7 +80,7 @@ INLINE void WriteEnds(Explicit *e, const Set s, PetscInt I)
 {
   const int     n = Scalars(s);
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
-  double       *c = &e->C[I * LANES];
+  double       *c = &e->C[I * C_Width(s)];
 
   for (int k = 0; k < n; k++)
     c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
@@ -137,7 +116,7 @@ INLINE void WriteRun(Explicit *e, const Set s, Run r, double dt)
     if (Volume(e, s, I) > 0.0)
       WriteScalars(e, s, I);
     else
-      memset(&e->C[I * LANES], 0, sizeof(Lanes));
+      memset(&e->C[I * C_Width(s)], 0, sizeof(Lanes));
   }
 }
 
@@ -188,7 +167,7 @@ static PetscErrorCode StillLacking(Explicit *e)
   const int n = Scalars(s), width = LANES * Rows(R_Count(s)), wide = LANES * Rows(A_Count(s));
 
   PetscFunctionBeginUser;
-  PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
+  PetscCall(NodeMapBroadcast(&e->map, e->C, C_Width(e->set)));
   PetscCall(PetscArrayzero(e->given, e->rows * LANES));
   Stored(e);
   PetscCall(NodeMapSum(&e->map, e->given, LANES));
@@ -197,7 +176,7 @@ static PetscErrorCode StillLacking(Explicit *e)
 
     AddRow(left, -1.0, &e->given[I * LANES], n);
     if (s.heat)
-      left[s.fluids] -= e->A[I * wide + A_C(s)] * e->C[I * LANES + s.fluids];
+      left[s.fluids] -= e->A[I * wide + A_C(s)] * e->C[I * C_Width(s) + s.fluids];
     for (int k = 0; k < n; k++)
       e->R[I * width + k] = left[k];
   }
@@ -206,7 +185,7 @@ static PetscErrorCode StillLacking(Explicit *e)
 
 static PetscErrorCode FurtherPasses(Explicit *e)
 {
-  const PetscInt all = e->rows * LANES;
+  const PetscInt all = e->rows * C_Width(e->set);
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(e->total, e->C, all));
@@ -231,7 +210,7 @@ PetscErrorCode NodesScalars(Explicit *e, StageRates *rates)
   if (e->o.passes > 0)
     PetscCall(FurtherPasses(e));
   ForNodes(e, EndsRun_loops, 0.0);
-  PetscCall(NodeMapBroadcast(&e->map, e->C, LANES));
+  PetscCall(NodeMapBroadcast(&e->map, e->C, C_Width(e->set)));
   rates->heat_in += e->heat_in;
   rates->heat_rate += e->warmed;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -43,7 +43,7 @@ INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
 
   (void)dt;
   WeightsOf(e, r, &w);
-  Gather(e, e->C, 1, r, &w, &g);
+  Gather(e, e->C, Rows(C_Count(s)), 0, r, &w, &g);
   GiveNothing(r, Scalars(s), &o);
   for (int q = 0; q < r.n; q++)
     memset(o.value[q], 0, sizeof(Lanes));

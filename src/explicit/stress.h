@@ -61,12 +61,12 @@ INLINE void ExpansionWork(Explicit *e, const Set s, Run r, const Gathered *g, co
     inside += mean * V[q] * (n->J[q] - 1.0);
   }
   for (int q = 0; ambient->on && q < r.n; q++) {
-    const double  x[CL_DIM] = {f[P_X][r.p + q], f[P_X + 1][r.p + q]};
-    const double *v         = &g->value[q][C_Vs(s)];
-    double        gradient[CL_DIM];
+    double x[CL_DIM], gradient[CL_DIM];
 
-    outside += V[q] * (AmbientPressure(ambient, x, gradient) * (n->J[q] - 1.0) +
-                       dt * (gradient[0] * v[0] + gradient[1] * v[1]));
+    ParticlePlace(&e->m->P, r.p + q, x);
+    const double p = AmbientPressure(ambient, x, gradient);
+
+    outside += V[q] * (p * (n->J[q] - 1.0) + dt * VectorDot(gradient, &g->value[q][C_Vs(s)]));
   }
   e->work[WORK_PRESSURE] += inside;
   e->work[WORK_LOADS] -= outside;
@@ -118,19 +118,18 @@ INLINE void StressOf(Explicit *e, const Set s, Run r, const Gathered *g, const S
     ModelNoteFailure(e->m, CL_DOMAIN, "no open pores are left", Worst(r, Sh)); /* S_h >= 1 */
   ElasticityYoungBatch(el, r.n, Sh, E);
   ThermalStrain(e, s, r, g, phi, thermal);
-  const SkeletonBlock block = {.n       = r.n,
-                               .c       = n->c,
-                               .s       = n->s,
-                               .xx      = n->xx,
-                               .yy      = n->yy,
-                               .xy      = n->xy,
-                               .thermal = thermal,
-                               .E_n     = E_old,
-                               .E       = E,
-                               .Sh      = Sh,
-                               .kept    = kept,
-                               .work    = yields ? work : NULL,
-                               .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
+  SkeletonBlock block = {.n       = r.n,
+                         .thermal = thermal,
+                         .E_n     = E_old,
+                         .E       = E,
+                         .Sh      = Sh,
+                         .kept    = kept,
+                         .work    = yields ? work : NULL,
+                         .store   = ParticlesSkeleton(&e->m->P, r.p, e->ahead)};
+  for (int k = 0; k < CL_TURN; k++)
+    block.turn[k] = n->turn[k];
+  for (int k = 0; k < CL_TENSOR; k++)
+    block.e[k] = n->e[k];
   e->m->released += Released(el, &block, e->m->P.f[P_V] + r.p);
   if (!SkeletonUpdateBlock(r.mat, &block, &why))
     ModelNoteFailure(e->m, CL_DOMAIN, why, Worst(r, work));

@@ -62,20 +62,24 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
 
   for (int k = 0; k < Scalars(s); k++) {
     const int field    = k < s.fluids ? k : 2;
-    double *restrict y = e->m->P.f[P_PW + field] + r.p, *restrict gx = e->m->P.f[VectorAt(P_GW, field, 0)] + r.p,
-                     *restrict gy = e->m->P.f[VectorAt(P_GW, field, 1)] + r.p;
-    const double least            = Least(r.mat, field);
+    double *restrict y = e->m->P.f[P_PW + field] + r.p;
+    const double least = Least(r.mat, field);
 
     for (int q = 0; q < r.n; q++) {
       y[q] += g->value[q][k];
-      gx[q] = g->dx[q][C_End(s) + k];
-      gy[q] = g->dy[q][C_End(s) + k];
       out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
+    for (int d = 0; d < CL_DIM; d++) {
+      for (int q = 0; q < r.n; q++)
+        e->m->P.f[VectorAt(P_GW, field, d)][r.p + q] = g->grad[d][q][C_End(s) + k];
+    }
   }
-  for (int q = 0; s.heat && q < r.n; q++)
-    e->m->P.f[P_BT][r.p + q] =
-        ParticleBends(e->m->c, &e->m->P, r.p + q) ? Mixed(e, e->C + C_End(s) + s.fluids, LANES, w, q) : 0.0;
+  for (int q = 0; s.heat && q < r.n; q++) {
+    const bool bends = ParticleBends(e->m->c, &e->m->P, r.p + q);
+
+    for (int c = 0; c < CL_PAIRS; c++)
+      e->m->P.f[P_BT + c][r.p + q] = bends ? Mixed(e, e->C + C_End(s) + s.fluids, C_Width(s), w, q, c) : 0.0;
+  }
   return !out;
 }
 
@@ -106,9 +110,9 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     kept[q] = 1.0;
   const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
-  Gather(e, e->C, 1, r, &w, &g);
+  Gather(e, e->C, Rows(C_Count(s)), Rows(C_Count(s)), r, &w, &g);
   for (int q = 0; q < r.n && shared; q++)
-    MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], LANES, &g.dx[q][C_Vs(s)], &g.dy[q][C_Vs(s)]);
+    MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], C_Width(s), C_Vs(s), &g);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (Relative(e, s))

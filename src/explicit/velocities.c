@@ -71,15 +71,15 @@ INLINE void ReadForces(const Explicit *e, const Set s, const double *a, int d, B
   const double *mix = &a[A_Mix(s)], gravity = e->m->bc.gravity[d];
   double        mass = b->M;
 
-  b->v = s.solid ? mix[MIX_VX + d] * b->per_M : 0.0;
+  b->v = s.solid ? mix[MIX_V + d] * b->per_M : 0.0;
   for (int k = 0; k < s.fluids; k++) {
     const double *f = &a[A_Fluid(s, k)];
 
-    b->vf[k] = b->m[k] > 0.0 ? f[FL_VX + d] * b->per_m[k] : b->v;
-    b->r[k]  = b->kr[k] * b->flow * (f[FL_GX + d] + f[FL_MI] * gravity);
+    b->vf[k] = b->m[k] > 0.0 ? f[FL_V + d] * b->per_m[k] : b->v;
+    b->r[k]  = b->kr[k] * b->flow * (f[FL_G + d] + f[FL_MI] * gravity);
     mass += b->m[k];
   }
-  b->f = s.solid ? mix[MIX_FX + d] + mass * gravity : 0.0;
+  b->f = s.solid ? mix[MIX_F + d] + mass * gravity : 0.0;
 }
 
 /* Local damping: a share of the force out of balance, against the motion, N. */
@@ -120,14 +120,13 @@ INLINE void Solve(const Explicit *e, const Set s, const Balance *b, double dt, b
     v[1 + k] = (b->A[k] * b->vf[k] + b->r[k] - DragAtStart(e, b, k) + DragAtEnd(e, b, k) * v[0]) * b->per_AB[k];
 }
 
-/* The same with beds: fluids feel the skeleton's acceleration along either axis (308), so both balances b are one
-   system (314).  v: [axis][3]. */
+/* The same with beds: fluids feel the skeleton's acceleration along every axis (308), so the balances b are one system
+   (314).  v: [axis][3]. */
 INLINE void SolveBeds(const Explicit *e, const Set s, const double *a, const Balance b[CL_DIM], double dt,
                       const bool held[CL_DIM], const double value[CL_DIM], double v[CL_DIM][3])
 {
   const double scale = e->o.mass_scaling / dt, per_k = 1.0 / a[A_K(s)], *X = &a[A_Beds(s)];
-  const double less[CL_DIM][CL_DIM] = {{X[0] * per_k, X[2] * per_k}, {X[2] * per_k, X[1] * per_k}};
-  double       L[CL_DIM][CL_DIM], rhs[CL_DIM], mass[PHASE_COUNT] = {0.0}, sum = 0.0;
+  double       less[CL_DIM][CL_DIM], L[CL_DIM][CL_DIM], rhs[CL_DIM], v_s[CL_DIM], mass[PHASE_COUNT] = {0.0}, sum = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
     mass[k] = scale * b[0].kr[k] * b[0].flow * a[A_Fluid(s, k) + FL_MI];
@@ -136,23 +135,23 @@ INLINE void SolveBeds(const Explicit *e, const Set s, const double *a, const Bal
   for (int i = 0; i < CL_DIM; i++) {
     rhs[i] = MixtureForce(e, s, &b[i], dt, e->o.damping);
     for (int j = 0; j < CL_DIM; j++) {
-      L[i][j] = (i == j ? b[i].lhs : 0.0) - sum * less[i][j];
+      less[i][j] = X[cl_symmetric[i][j]] * per_k;
+      L[i][j]    = (i == j ? b[i].lhs : 0.0) - sum * less[i][j];
       rhs[i] -= sum * less[i][j] * b[j].v;
     }
   }
   for (int i = 0; i < CL_DIM; i++) {
-    const int j = 1 - i;
-
-    if (held[i])
-      v[i][0] = value[i];
-    else if (held[j])
-      v[i][0] = (rhs[i] - L[i][j] * value[j]) / L[i][i];
-    else
-      v[i][0] = (L[j][j] * rhs[i] - L[i][j] * rhs[j]) / (L[0][0] * L[1][1] - L[0][1] * L[1][0]);
+    for (int j = 0; held[i] && j < CL_DIM; j++)
+      L[i][j] = i == j;
+    rhs[i] = held[i] ? value[i] : rhs[i];
   }
+  SolveSmall(CL_DIM, L[0], rhs, v_s);
   for (int i = 0; i < CL_DIM; i++) {
-    const double along = less[i][0] * (v[0][0] - b[0].v) + less[i][1] * (v[1][0] - b[1].v);
+    double along = 0.0;
 
+    v[i][0] = v_s[i];
+    for (int j = 0; j < CL_DIM; j++)
+      along += less[i][j] * (v_s[j] - b[j].v);
     for (int k = 0; k < s.fluids; k++)
       v[i][1 + k] = (b[i].A[k] * b[i].vf[k] + b[i].r[k] - DragAtStart(e, &b[i], k) + DragAtEnd(e, &b[i], k) * v[i][0] -
                      mass[k] * along) *
@@ -194,9 +193,9 @@ INLINE void KeepVelocities(Explicit *e, const Set s, PetscInt I, int d, const Ba
     e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, d, b, v);
   if (!held)
     e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(b, e->o.damping) * 0.5 * (v[0] + b->v);
-  e->inc[6 * I + d] = v[0] - b->v;
+  e->inc[INC * I + d] = v[0] - b->v;
   for (int k = 0; k < s.fluids; k++)
-    e->inc[6 * I + VectorAt(0, 1 + k, d)] = s.layers ? b->flow * (v[1 + k] - v[0]) : v[1 + k] - b->vf[k];
+    e->inc[INC * I + VectorAt(0, 1 + k, d)] = s.layers ? b->flow * (v[1 + k] - v[0]) : v[1 + k] - b->vf[k];
   if (!held) /* of the mixture, which moves with the skeleton but for seepage */
     e->added += PetscSqr((e->o.mass_scaling - 1.0) * b->M * (v[0] - b->v) / dt);
 }
@@ -210,7 +209,8 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
   bool          held[CL_DIM];
 
   ReadMasses(e, s, a, dt, &b[0]);
-  b[1] = b[0];
+  for (int d = 1; d < CL_DIM; d++)
+    b[d] = b[0];
   for (int d = 0; d < CL_DIM; d++) {
     ReadForces(e, s, a, d, &b[d]);
     held[d] = s.solid && Held(e, I, F_VS + d, &value[d]);
@@ -236,7 +236,7 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
     weight += w->m[k] * own;
-    pressure += w->flow * a[A_Fluid(s, k) + FL_GX + d] * flow;
+    pressure += w->flow * a[A_Fluid(s, k) + FL_G + d] * flow;
   }
   e->work[WORK_INERTIA] += scale * inertia;
   e->work[WORK_GRAVITY] += dt * gravity * weight;
@@ -251,7 +251,7 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
    permeability (311). */
 INLINE double FluidVelocity(const Explicit *e, const Set s, PetscInt I, const Balance *w, int k, int d, double v_s)
 {
-  const double shared = Blended(e, I, e->node[I].own_v, 6, e->inc, VectorAt(0, 1 + k, d));
+  const double shared = Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, d));
 
   return s.layers ? v_s + shared / w->flow : w->vf[k] + shared;
 }
@@ -268,7 +268,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
     double v[3] = {0.0}, value;
 
     ReadForces(e, s, a, d, &w);
-    v[0] = s.solid ? w.v + Blended(e, I, e->node[I].own_v, 6, e->inc, d) : 0.0;
+    v[0] = s.solid ? w.v + Blended(e, I, e->node[I].own_v, INC, e->inc, d) : 0.0;
     if (s.solid && Held(e, I, F_VS + d, &value))
       v[0] = value;
     if (s.solid) {
@@ -283,7 +283,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       if (Held(e, I, VectorAt(F_VW, k, d), &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
-      bf[B_PROJ + d] = -w.flow * f[FL_GX + d] * per_V;
+      bf[B_PROJ + d] = -w.flow * f[FL_G + d] * per_V;
       bf[B_DV + d]   = s.layers ? w.flow * (v[1 + k] - w.vf[k] - (v[0] - w.v)) : v[1 + k] - w.vf[k];
       bf[B_VEL + d]  = s.layers ? w.flow * (v[1 + k] - v[0]) : v[1 + k];
     }
@@ -341,7 +341,7 @@ PetscErrorCode NodesVelocities(Explicit *e, double dt)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &e->added, 1, MPI_DOUBLE, MPI_SUM, e->m->grid.comm));
     e->worst_scaling = Largest(e->worst_scaling, e->acting > 0.0 ? sqrt(e->added / e->acting) : 0.0);
   }
-  PetscCall(NodeMapBroadcast(&e->map, e->inc, 6));
+  PetscCall(NodeMapBroadcast(&e->map, e->inc, INC));
   ForNodes(e, WriteRun_loops, dt);
   PetscCall(NodeMapBroadcast(&e->map, e->B, LANES * Rows(B_Count(e->set))));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -65,14 +65,14 @@ INLINE void Nodes(const Explicit *e, Run r, int d, const int *restrict base, Wei
 }
 
 /* Places of the particles' cells from their first nodes on. */
-static void Cells(const Explicit *e, Run r, int *const base[CL_DIM], Weights *w)
+static void Cells(const Explicit *e, Run r, int base[CL_DIM][BLOCK], Weights *w)
 {
-  const Grid *g = &e->m->grid;
+  const Grid *g      = &e->m->grid;
+  int         stride = 1;
 
   for (int d = 0; d < CL_DIM; d++) {
     const GridLines *line    = &g->line[d];
     const double *restrict x = e->m->P.f[P_X + d] + r.p;
-    const int stride         = d ? (int)g->gm[0] : 1;
 
     for (int q = 0; q < r.n; q++) {
       const int second = BasisCell(LinesPlace(line, x[q]), (double)base[d][q], (double)line->cells);
@@ -80,13 +80,14 @@ static void Cells(const Explicit *e, Run r, int *const base[CL_DIM], Weights *w)
       w->cell[q]       = (d ? w->cell[q] : 0) + stride * second;
       w->inverse[d][q] = 1.0 / LinesWidth(line, base[d][q] + second);
     }
+    stride *= (int)g->gm[d];
   }
 }
 
 void WeightsOf(const Explicit *e, Run r, Weights *w)
 {
   const Grid *g = &e->m->grid;
-  int x[BLOCK], y[BLOCK], *const base[CL_DIM] = {x, y};
+  int         base[CL_DIM][BLOCK];
 
   for (int d = 0; d < CL_DIM; d++) {
     if (g->line[d].x)
@@ -97,8 +98,13 @@ void WeightsOf(const Explicit *e, Run r, Weights *w)
       Axes(e, r, d, false, w, base[d]);
     Nodes(e, r, d, base[d], w);
   }
-  for (int q = 0; q < r.n; q++)
-    w->first[q] = (int)GridPadded(g, (PetscInt[CL_DIM]){x[q], y[q]});
+  for (int q = 0; q < r.n; q++) {
+    PetscInt first[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++)
+      first[d] = base[d][q];
+    w->first[q] = (int)GridPadded(g, first);
+  }
   if (TakesCellMean(e))
     Cells(e, r, base, w);
 }

@@ -2,19 +2,12 @@
 #include "elastic.h"
 #include "plastic.h"
 
-/* Blocks are the integrators' without a matrix, which the plane alone has. */
-#if CL_DIM == 2
-  #define BLOCK(law) Block_##law
-#else
-  #define BLOCK(law) NULL
-#endif
-
 /* By PLASTICITY_... */
-static const SkeletonLaw laws[] = {{.name = "none", .update = Update_Elastic, .block = BLOCK(Elastic)},
+static const SkeletonLaw laws[] = {{.name = "none", .update = Update_Elastic, .block = Block_Elastic},
                                    {.name   = "mohr_coulomb",
                                     .has    = HAS_PLASTIC,
                                     .update = Update_MohrCoulomb,
-                                    .block  = BLOCK(MohrCoulomb),
+                                    .block  = Block_MohrCoulomb,
                                     .margin = Margin_MohrCoulomb}};
 
 const SkeletonLaw *SkeletonLawOf(const Material *mat)

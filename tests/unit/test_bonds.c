@@ -279,11 +279,8 @@ static void TestBlock(void **state)
       mat.plasticity.nonlocal = run % 8 == 3 ? 0.5 : 0.0;
     }
     SkeletonBlock b = {.n           = N,
-                       .c           = in[0],
-                       .s           = in[1],
-                       .xx          = in[2],
-                       .yy          = in[3],
-                       .xy          = in[4],
+                       .turn        = {in[0], in[1]},
+                       .e           = {[XX] = in[2], [YY] = in[3], [XY] = in[4]},
                        .thermal     = in[5],
                        .E_n         = in[6],
                        .E           = in[7],

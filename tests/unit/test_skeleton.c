@@ -81,11 +81,8 @@ static void TestBlock(void **state)
     const bool    plastic = run % 2;
     const char   *why     = NULL;
     SkeletonBlock b       = {.n       = 1 + RngPick(&r, N),
-                             .c       = a[0],
-                             .s       = a[1],
-                             .xx      = a[2],
-                             .yy      = a[3],
-                             .xy      = a[4],
+                             .turn    = {a[0], a[1]},
+                             .e       = {[XX] = a[2], [YY] = a[3], [XY] = a[4]},
                              .thermal = a[5],
                              .E_n     = a[6],
                              .E       = a[7],

@@ -3,6 +3,28 @@
 
 #define CHUNK 32 /* particles tested at once */
 
+/* What no principal stress of particle q exceeds, nor half the difference and the mean of the largest and the smallest
+   (in the plane they are these). */
+typedef struct {
+  double hi, shear, mean;
+} Bounds;
+
+INLINE Bounds BoundsOf(const SkeletonStore *f, ptrdiff_t q)
+{
+  const double xx = f->sig[XX][q], yy = f->sig[YY][q], zz = f->sig[ZZ][q], xy = f->sig[XY][q];
+#if CL_DIM == 2
+  const double d = 0.5 * (xx - yy), m = 0.5 * (xx + yy), r = sqrt(d * d + xy * xy);
+  const double hi = m + r > zz ? m + r : zz, lo = m - r < zz ? m - r : zz;
+
+  return (Bounds){hi, 0.5 * (hi - lo), 0.5 * (hi + lo)};
+#else
+  const double p = (xx + yy + zz) / 3.0, a = xx - p, b = yy - p, c = zz - p, yz = f->sig[YZ][q], xz = f->sig[XZ][q],
+               J = sqrt(0.5 * (a * a + b * b + c * c) + xy * xy + yz * yz + xz * xz), root = sqrt(3.0);
+
+  return (Bounds){p + 2.0 / root * J, J, p + 0.5 / root * J}; /* p + 2/sqrt(3) J cos of Lode's angle, and so on */
+#endif
+}
+
 /* Which of n trial states from q on may yield, without exponentials or angles of their own: where nothing has flowed
    yet (nor around it), friction is that of the peak and the cohesion c_min or more; where all normal stresses are
    compressive, no strength is below the residual one.  All of them reduced (87).  Vector code. */
@@ -12,13 +34,11 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
                res = atan(part * tan(law->phi_res * M_PI / 180.0)), sp = sin(peak), sr = sin(res),
                cp = part * law->c_min * cos(peak), cr = part * law->c_res * cos(res), cutoff = StrengthCutoff(law);
   const int     own = law->nonlocal == 0.0; /* strength follows the particle's own strain */
-  const double *xx = f->sig[XX] + q, *yy = f->sig[YY] + q, *zz = f->sig[ZZ] + q, *xy = f->sig[XY] + q,
-               *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] ? f->own[OWN_P_OPENING] + q : NULL;
+  const double *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] ? f->own[OWN_P_OPENING] + q : NULL;
 
   for (int k = 0; k < n; k++) {
-    const double d = 0.5 * (xx[k] - yy[k]), m = 0.5 * (xx[k] + yy[k]), r = sqrt(d * d + xy[k] * xy[k]);
-    const double hi = m + r > zz[k] ? m + r : zz[k], lo = m - r < zz[k] ? m - r : zz[k];
-    const double shear = 0.5 * (hi - lo), mean = 0.5 * (hi + lo);
+    const Bounds of = BoundsOf(f, q + k);
+    const double hi = of.hi, shear = of.shear, mean = of.mean;
     const int fresh = own & (eps[k] == 0.0) & (shear + mean * sp <= cp), worn = (hi <= 0.0) & (shear + mean * sr <= cr);
 
     may[k] = (unsigned char)!((hi <= cutoff) & (fresh | worn));
@@ -41,8 +61,9 @@ static void TakeYielding(const SkeletonBlock *b, int q, Yielding *y)
 
   y->q = q;
   y->d = (SkeletonStep){.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
-  y->s = (SkeletonState){.sig            = {f->sig[XX][q], f->sig[YY][q], f->sig[ZZ][q], f->sig[XY][q]},
-                         .own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
+  y->s = (SkeletonState){.own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
+  for (int k = 0; k < CL_TENSOR; k++)
+    y->s.sig[k] = f->sig[k][q];
   if (f->own[OWN_P_OPENING])
     y->s.own[OWN_P_OPENING] = f->own[OWN_P_OPENING][q];
   PrincipalOf(y->s.sig, &y->p);
@@ -61,7 +82,7 @@ static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yiel
   f->own[OWN_P_EPS][y->q] = y->s.own[OWN_P_EPS];
   if (f->own[OWN_P_OPENING])
     f->own[OWN_P_OPENING][y->q] = y->s.own[OWN_P_OPENING];
-  for (int k = 0; k < 4; k++) {
+  for (int k = 0; k < CL_TENSOR; k++) {
     f->sig[k][y->q] = y->s.sig[k];
     if (share != 0.0)
       f->own[OWN_P_BOND + k][y->q] -= share * over[k];
@@ -104,7 +125,7 @@ static bool ReturnLanes(const Material *mat, const SkeletonBlock *b, const int *
   ReturnSmoothLanes(&mat->plasticity, 2.0 * ElasticityShearFactor(el), ElasticityLameFactor(el), &l);
   for (int i = 0; i < n; i++) {
     const Returned r = {.y = {l.y[0][i], l.y[1][i], l.y[2][i]}, .eps = l.eps[i], .region = RETURN_FACE};
-    double         over[4], e[4];
+    double         over[CL_TENSOR], e[CL_TENSOR];
 
     const bool open = y[i].s.own[OWN_P_OPENING] > 0.0;
 

@@ -4,12 +4,13 @@
 
 INLINE SkeletonStep StepOf(const SkeletonBlock *B, int q)
 {
-  return (SkeletonStep){.turn    = {B->c[q], B->s[q]},
-                        .e       = {B->xx[q], B->yy[q], 0.0, B->xy[q]},
-                        .thermal = B->thermal[q],
-                        .E_n     = B->E_n[q],
-                        .E       = B->E[q],
-                        .Sh      = B->Sh[q]};
+  SkeletonStep d = {
+      .turn = RotationAt(B->turn, q), .thermal = B->thermal[q], .E_n = B->E_n[q], .E = B->E[q], .Sh = B->Sh[q]};
+
+#pragma GCC unroll 6
+  for (int k = 0; k < CL_TENSOR; k++)
+    d.e[k] = CL_DIM == 2 && k == ZZ ? 0.0 : B->e[k][q];
+  return d;
 }
 
 static void Block_Bonds(const Material *mat, const SkeletonBlock *b)
@@ -25,16 +26,16 @@ static void Block_Bonds(const Material *mat, const SkeletonBlock *b)
 
     d.kept = B.kept[q];
     SkeletonTakeStress(&B.store, q, &h);
-#pragma GCC unroll 4
-    for (int k = 0; k < 4; k++) {
+#pragma GCC unroll 6
+    for (int k = 0; k < CL_TENSOR; k++) {
       h.from.sig[k]              = h.sig[k];
       h.from.strain[k]           = 0.0;
       h.from.own[OWN_P_BOND + k] = B.store.own[OWN_P_BOND + k][q];
     }
     BondedStress(&el, &h, &d, &s);
     SkeletonKeepStress(&B.store, q, &s);
-#pragma GCC unroll 4
-    for (int k = 0; k < 4; k++)
+#pragma GCC unroll 6
+    for (int k = 0; k < CL_TENSOR; k++)
       B.store.own[OWN_P_BOND + k][q] = s.own[OWN_P_BOND + k];
   }
 }
