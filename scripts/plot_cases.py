@@ -289,6 +289,32 @@ def footing_3d(run, left, right):
     figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.1)
 
 
+def collapse_3d(run, left, right):
+    """Profiles over the radius, and the heap, its quarter mirrored."""
+    case = run()
+    bins = np.arange(0, 2.6, 1 / 16)
+    for colour, (t, v) in zip(COLOURS, (case.snapshots[k] for k in (0, 1, 3, 7))):
+        x = v["position"]
+        cell = np.digitize(np.hypot(x[:, 0], x[:, 1]), bins)
+        there = np.unique(cell)
+        left.plot(bins[there - 1] + 1 / 32, [x[cell == k, 2].max() for k in there], color=colour, label=f"{t:.1f} s", marker=".", ms=3, lw=0.8)
+    left.axvline(1 + 1.24, color="k", ls=":", lw=1)
+    left.text(2.22, 0.6, "experiments stop here", rotation=90, ha="right", va="center", fontsize=8)
+    left.set(xlabel="distance from the axis (m)", ylabel="height of the highest particles (m)", ylim=(0, 1.1), xlim=(0, 2.6))
+    left.legend()
+    figure, place = right.figure, right.get_subplotspec()
+    right.remove()
+    axes = figure.add_subplot(place, projection="3d", proj_type="ortho")
+    v = case.snapshots[-1][1]
+    x = np.concatenate([v["position"] * (a, b, 1) for a in (-1, 1) for b in (-1, 1)])
+    far = np.tile(np.linalg.norm(v["displacement"], axis=1), 4)
+    shown = axes.scatter(*x.T, c=far, s=4, cmap="viridis", lw=0, depthshade=False)
+    axes.set(xlim=(-2.3, 2.3), ylim=(-2.3, 2.3), zlim=(0, 1.0), xlabel="x (m)", ylabel="y (m)", zticks=(), title="all of it after 1.6 s: way of the particles (m)")
+    axes.set_box_aspect((4.6, 4.6, 1.0), zoom=1.1)
+    axes.view_init(elev=25, azim=-60)
+    figure.colorbar(shown, ax=axes, shrink=0.7, pad=0.15)
+
+
 def slope_warming(run, *axes):
     year, settled = 31557600.0, 20
     case, falling = run(), run("-ambient_level", "{ramp: [461.5 m, 441.5 m, 20 a, 120 a]}")
@@ -318,10 +344,10 @@ def slope_warming(run, *axes):
     beside.set_ylabel("m", color=COLOURS[1])
 
 
-SPACE = {"footing_3d"}  # run by clathra3d
+SPACE = {"footing_3d", "collapse_3d"}  # run by clathra3d
 PANELS = {"century_hydrate": (1, 3), "sea_floor": (3, 2), "slope_warming": (3, 2)}  # rows and columns; one row of two without a word
 FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century,
-           century_hydrate, footing, footing_3d, shear_box, sea_floor, slope_warming]  # fmt: skip
+           century_hydrate, footing, footing_3d, collapse_3d, shear_box, sea_floor, slope_warming]  # fmt: skip
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):

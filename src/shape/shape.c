@@ -98,14 +98,16 @@ bool RegionReaches(const Scene *c, PetscInt region, const double x[], const doub
     if (!(x[d] > r->lower[d] - slack[d] && x[d] < r->upper[d] + slack[d]))
       return false;
   }
-  if (RegionWhole(r) || RegionHolds(c, region, x))
+  if (RegionWhole(r))
+    return true;
+  double y[CL_DIM];
+  for (int d = 0; d < CL_DIM; d++) /* shapes are prisms: along z there is an inside */
+    y[d] = d < 2 ? x[d] : fmin(fmax(x[d], r->lower[d]), r->upper[d] - slack[d]);
+  if (RegionHolds(c, region, y))
     return true;
   for (int k = 0; k < 16; k++) { /* in all directions, as a boundary has no side to prefer */
-    const double turn[] = {cos(k * M_PI / 8.0), sin(k * M_PI / 8.0), 0.0};
-    double       y[CL_DIM];
-
-    for (int d = 0; d < CL_DIM; d++)
-      y[d] = x[d] + slack[d] * turn[d];
+    y[0] = x[0] + slack[0] * cos(k * M_PI / 8.0);
+    y[1] = x[1] + slack[1] * sin(k * M_PI / 8.0);
     if (RegionHolds(c, region, y))
       return true;
   }
