@@ -42,7 +42,7 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCall(PetscOptionsHasHelp(NULL, &help_asked));
-  PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", &keys, NULL));
+  PetscCall(CaseKeysAsked(&keys));
   *exit_code = CL_EXIT_OK;
   if (keys || (help_asked && argc < 3)) {
     if (rank == 0)

@@ -145,3 +145,6 @@ PetscErrorCode CaseDestroy(Case *c);
 /* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
  * -help. */
 PetscErrorCode CasePrintKeys(FILE *out);
+/* Is -case_keys given, and does it not say no?  A word that says neither yes nor no asks for nothing here: CaseRead
+   refuses it. */
+PetscErrorCode CaseKeysAsked(PetscBool *asked);

@@ -13,6 +13,7 @@ static const struct {
 } program_word[] = {
     {"-newton_preconditioner", solver_preconditioner},
     {"-newton_operator", solver_operator},
+    {"-case_keys", logical},
     {"-case_check", logical},
     {"-case_curves", logical},
     {"-quiet", logical},
@@ -29,20 +30,40 @@ static const struct {
     {"-newton_tol_residual", "", "(0,1)", false}, {"-newton_tol_update", "", "(0,1)", false},
 };
 
+/* May an option say this?  A bare logical one says yes. */
+static bool WordAllowed(const char *text, const char *const *words)
+{
+  const char *const *word = words;
+
+  while (*word && strcasecmp(*word, text))
+    word++;
+  return *word || (!*text && words == logical);
+}
+
 static PetscErrorCode WordsCheck(Reader *r)
 {
   PetscFunctionBeginUser;
   for (size_t k = 0; k < sizeof program_word / sizeof *program_word; k++) {
-    const char *const *word = program_word[k].words;
-    char               text[96];
-    PetscBool          given;
+    char      text[96];
+    PetscBool given;
 
     PetscCall(PetscOptionsGetString(NULL, NULL, program_word[k].name, text, sizeof text, &given));
-    while (given && *word && strcasecmp(*word, text))
-      word++;
-    if (!*word && (*text || program_word[k].words != logical)) /* a bare logical option says yes */
+    if (given && !WordAllowed(text, program_word[k].words))
       WordError(r, program_word[k].name, text, program_word[k].words);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode CaseKeysAsked(PetscBool *asked)
+{
+  char      text[96];
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  *asked = PETSC_FALSE;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-case_keys", text, sizeof text, &given));
+  if (given && WordAllowed(text, logical))
+    PetscCall(PetscOptionsGetBool(NULL, NULL, "-case_keys", asked, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
