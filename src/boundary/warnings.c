@@ -252,33 +252,6 @@ static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Partic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K_d at RATE_AT has been measured between 1e-11 and 1e-9 (Kim et al. 1987, Clarke and Bishnoi 2001).  Above SWIFT all
-   is at equilibrium at once, below SLOW nothing happens in any time of a run. */
-#define RATE_AT 10.0 /* degC */
-#define SWIFT 1e-6   /* mol/(m^2 Pa s) */
-#define SLOW 1e-16   /* mol/(m^2 Pa s) */
-
-static PetscErrorCode RateWarning(MPI_Comm comm, const Scene *c)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < c->nmaterial; k++) {
-    const Material *m = &c->material[k];
-    double          slope;
-    const double    K = KineticsRateConstant(&m->kinetics, RATE_AT, &slope);
-
-    if (!m->reacts || m->kinetics.K0 == 0.0 || (K >= SLOW && K <= SWIFT))
-      continue;
-    PetscCall(
-        PetscFPrintf(comm, stderr,
-                     "clathra: warning: mat_%s_kinetics_K0 = %.6g mol/(m^2 Pa s) and mat_%s_kinetics_dE = %.6g J/mol "
-                     "make K_d = %.2g mol/(m^2 Pa s) at %.3g degC, where 1e-11 to 1e-9 have been measured: hydrate "
-                     "%s (K0 of 3.6e4 goes with dE of 78 to 81 kJ/mol; without dE K0 is K_d itself)\n",
-                     m->name, m->kinetics.K0, m->name, m->kinetics.dE, K, RATE_AT,
-                     K > SWIFT ? "is in equilibrium at once, in steps that may be far shorter" : "never reacts"));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   double tension = 0.0, scale = 0.0;
@@ -292,7 +265,6 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P
   if (advice[0])
     PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
   PetscCall(HeatingWarning(comm, c, P));
-  PetscCall(RateWarning(comm, c));
   if (!c->fields.solid || SceneGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {

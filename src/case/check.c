@@ -62,6 +62,27 @@ static void CheckMaterial(Reader *r, const Scene *c, const Material *m)
             "(%g mol/(m^3 Pa)) is not known with compression_heat: yes, which takes all methane for gas", m->gas.henry);
 }
 
+/* K_d at RATE_AT has been measured between 1e-11 and 1e-9 (Kim et al. 1987, Clarke and Bishnoi 2001).  Above SWIFT all
+   is at equilibrium at once, below SLOW nothing happens in any time of a run. */
+#define RATE_AT 10.0 /* degC */
+#define SWIFT 1e-6   /* mol/(m^2 Pa s) */
+#define SLOW 1e-16   /* mol/(m^2 Pa s) */
+
+static void CheckRate(const Reader *r, const Material *m)
+{
+  double       slope;
+  const double K = KineticsRateConstant(&m->kinetics, RATE_AT, &slope);
+
+  if (!m->reacts || m->kinetics.K0 == 0.0 || (K >= SLOW && K <= SWIFT))
+    return;
+  WARN_AT(GROUP_MATERIAL, m->name, "kinetics_K0",
+          "mat_%s_kinetics_K0 = %.6g mol/(m^2 Pa s) and mat_%s_kinetics_dE = %.6g J/mol make K_d = %.2g mol/(m^2 Pa s) "
+          "at %.3g degC, where 1e-11 to 1e-9 have been measured: hydrate %s (K0 of 3.6e4 goes with dE of 78 to 81 "
+          "kJ/mol; without dE K0 is K_d itself)",
+          m->name, m->kinetics.K0, m->name, m->kinetics.dE, K, RATE_AT,
+          K > SWIFT ? "is in equilibrium at once, in steps that may be far shorter" : "never reacts");
+}
+
 static void CheckSaturations(Reader *r, const Scene *c, const Region *g)
 {
   const Material *m = &c->material[g->material];
@@ -228,6 +249,7 @@ void CaseCheck(Reader *r, Case *c)
     CheckCase(r, c);
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++) {
     CheckMaterial(r, &c->scene, &c->scene.material[i]);
+    CheckRate(r, &c->scene.material[i]);
     CheckBeds(r, c, &c->scene.material[i]);
   }
   for (PetscInt i = 0; i < c->scene.nmaterial && !bad[GROUP_MATERIAL]; i++)

@@ -86,10 +86,9 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
   if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
     CheckSnapBack(r, m);
   if (p->psi_max > p->phi_peak)
-    PetscCallVoid(PetscFPrintf(
-        r->comm, stderr,
-        "clathra: warning: material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)\n",
-        m->name, p->psi_max, p->phi_peak));
+    WARN_AT(GROUP_MATERIAL, m->name, "plasticity_dilation_max",
+            "material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)", m->name, p->psi_max,
+            p->phi_peak);
 }
 
 /* With a factor of their own stages soften by other amounts. */
@@ -122,10 +121,9 @@ void CheckReduction(Reader *r, const Case *c)
     const Plasticity *p = &c->scene.material[k].plasticity;
 
     if (p->type != PLASTICITY_NONE && p->psi_max == 0.0 && p->phi_peak > 0.0)
-      PetscCallVoid(PetscFPrintf(
-          r->comm, stderr,
-          "clathra: warning: strength_factor with a dilation of 0 deg (material %s): the factor at which a body "
-          "fails then depends on the grid, even without softening; compare grids\n",
-          c->scene.material[k].name));
+      WARN_AT(GROUP_CASE, "", "strength_factor",
+              "strength_factor with a dilation of 0 deg (material %s): the factor at which a body fails then depends "
+              "on the grid, even without softening; compare grids",
+              c->scene.material[k].name);
   }
 }

@@ -26,39 +26,73 @@ static PetscInt KeyLine(const Reader *r, const char *name)
   return 0;
 }
 
-/* Is it the command line that gives this key? */
+/* Is it the command line that gives this key of a case? */
 static bool Commanded(const char *key)
 {
   char      option[256];
   PetscBool given = PETSC_FALSE;
 
+  if (!key || !*key || *key == '-')
+    return false;
   snprintf(option, sizeof option, "-%s", key);
   PetscCallAbort(PETSC_COMM_SELF, PetscOptionsHasName(NULL, NULL, option, &given));
   return given;
 }
 
-void ReaderError(Reader *r, const char *key, const char *value, const char *format, ...)
+/* A key that is none: "line 12". */
+static bool IsLine(const char *key)
 {
-  char    what[1024], where[PETSC_MAX_PATH_LEN + 16], *text;
-  size_t  size;
+  return key && !strncmp(key, "line ", 5);
+}
+
+typedef struct {
+  char s[PETSC_MAX_PATH_LEN + 16];
+} Where;
+
+/* Where a key is given: "file:12", "file" if no line is known, or "command line". */
+static Where WhereGiven(const Reader *r, const char *key)
+{
+  Where where;
+
+  if (IsLine(key))
+    snprintf(where.s, sizeof where.s, "%s:%s", r->file, key + 5);
+  else if (Commanded(key) || (key && *key == '-'))
+    snprintf(where.s, sizeof where.s, "command line");
+  else if (key && *key && KeyLine(r, key))
+    snprintf(where.s, sizeof where.s, "%s:%d", r->file, (int)KeyLine(r, key));
+  else
+    snprintf(where.s, sizeof where.s, "%s", r->file);
+  return where;
+}
+
+void ReaderWarn(const Reader *r, const char *key, const char *format, ...)
+{
+  char    what[1024];
   va_list args;
-  bool    on_line = key && !strncmp(key, "line ", 5), dashed = key && *key == '-',
-       commanded = key && *key && !on_line && !dashed && Commanded(key);
 
   va_start(args, format);
   vsnprintf(what, sizeof what, format, args);
   va_end(args);
-  snprintf(where, sizeof where, "%s", dashed || commanded ? "command line" : r->file);
-  if (on_line)
-    snprintf(where, sizeof where, "%s:%s", r->file, key + 5);
-  else if (key && *key && !commanded && KeyLine(r, key))
-    snprintf(where, sizeof where, "%s:%d", r->file, (int)KeyLine(r, key));
-  size = strlen(where) + strlen(what) + (key ? strlen(key) : 0) + (value ? strnlen(value, 80) : 0) + 16;
+  PetscCallAbort(PETSC_COMM_SELF, PetscFPrintf(r->comm, stderr, "%s: warning: %s\n", WhereGiven(r, key).s, what));
+}
+
+void ReaderError(Reader *r, const char *key, const char *value, const char *format, ...)
+{
+  const Where where = WhereGiven(r, key);
+  const char *named = key && !IsLine(key) ? key : "";
+  char        what[1024], *text;
+  size_t      size;
+  va_list     args;
+
+  va_start(args, format);
+  vsnprintf(what, sizeof what, format, args);
+  va_end(args);
+  size = strlen(where.s) + strlen(what) + strlen(named) + (value ? strnlen(value, 80) : 0) + 16;
   text = malloc(size);
-  snprintf(text, size, "%s: %s%s", where, commanded ? "-" : "", on_line || !key || !*key ? "" : key);
+  snprintf(text, size, "%s: %s%s", where.s, *named && Commanded(named) ? "-" : "", named);
   if (value)
     snprintf(text + strlen(text), size - strlen(text), " = '%.80s'", value);
-  snprintf(text + strlen(text), size - strlen(text), "%s%s", on_line || !key || !*key ? "" : ": ", what);
+  snprintf(text + strlen(text), size - strlen(text), "%s%s", *named ? ": " : "", what);
   for (PetscInt i = 0; i < PetscMin(r->nerror, CASE_ERRORS); i++) {
     if (strcmp(r->error[i], text))
       continue;

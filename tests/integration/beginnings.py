@@ -61,9 +61,15 @@ def check_rate():
     plain = comes("K0 with its dE", ["hydrate"], rate(3.6e4, 81e3))
     text = comes("K0 without dE", ["hydrate", "rate"], rate(3.6e4, 0))
     check_true("... with keys, numbers and what goes together", all(w in text for w in ("mat_core_kinetics_K0 = 36000 mol/(m^2 Pa s)", "mat_core_kinetics_dE = 0 J/mol", "K_d = 3.6e+04", "at once", "78 to 81 kJ/mol")), text)
+    check_true("... and where they are given", text.count("command line: warning: mat_core_kinetics_K0") == 1, text)
     comes("dE of J for kJ", ["hydrate", "rate"], rate(3.6e4, 78))
     check_true("dE ten times too large", "never reacts" in comes("dE ten times too large", ["hydrate", "rate"], rate(3.6e4, 810e3)) and "K_d" not in plain)
     comes("K0 as K_d, without dE", ["hydrate"], rate(2.5e-10, 0))
+    path, text = scratch() / "swift.yaml", re.sub(r"dE: \d+", "dE: 78", BLOCK.read_text())
+    path.write_text(text)
+    line = next(i for i, words in enumerate(text.splitlines(), 1) if "dE: 78 " in words)
+    text = comes("K0 of a file", ["hydrate", "rate"], said(path))
+    check_true("... with its file and line", f"{path}:{line}: warning: mat_core_kinetics_K0" in text, text)
 
 
 SETTLES = {"slope_warming": ["stress", "rises"]}  # its first twenty years are for that: no reaction, an elastic skeleton
