@@ -23,7 +23,7 @@ from plotting import COLOURS, STYLES, Plain, boxes, plt, save, set_style, steady
 FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
 ONE_PHASE = 0.1  # of a period: times whose phases are no farther apart show one phase of a periodic load
 PICTURES = ("probes", "meters", "balance", "profiles", "particles", "maps")
-ARROWS = 18  # along the longer side
+ARROWS = 18  # along the longer side, at most
 
 
 def head(run, what):
@@ -187,16 +187,17 @@ def plot_film(run, times, snapshots, quantities):
 
 
 def arrows(axes, p, fluid):
-    """Velocity of a fluid in the pores against the skeleton, at particles that lie evenly, as long as the root of its speed; the largest speed."""
+    """Velocity of a fluid in the pores against the skeleton, at particles that lie evenly, as long as the root of its speed; drawn about its
+    particle and shorter than the way to the next one, none reaches another."""
     x, v = p["position"], p[fluid] - p.get("v_s", 0.0)
-    size = np.ptp(x, axis=0).max() / ARROWS
-    at = np.unique(np.floor((x - x.min(0)) / size) @ [10000, 1], return_index=True)[1]
-    longest = np.nanmax(np.hypot(*v[at].T))
-    if longest > 0:
-        speed = np.hypot(*v[at].T)
+    gap = np.ptp(x, axis=0).max() / ARROWS
+    at = shown.apart(x, gap)
+    speed = np.hypot(*v[at].T)
+    longest = np.nanmax(speed)
+    if longest > 0 and len(at) > 1:
         along = v[at] / np.sqrt(np.maximum(speed, 1e-4 * longest) * longest)[:, None]  # the root of the speed: slow flow is seen, too
-        axes.quiver(*x[at].T, *along.T, angles="xy", scale_units="xy", scale=1 / (1.6 * size), width=0.006, pivot="mid", color="w", ec="0.1", lw=0.4)
-    return longest
+        axes.quiver(*x[at].T, *along.T, angles="xy", scale_units="xy", scale=1 / min(1.6 * gap, 0.9 * shown.least_way(x[at])),
+                    width=0.006, pivot="mid", color="w", ec="0.1", lw=0.4)  # fmt: skip
 
 
 def plot_maps(run, time, particles, first, quantities):

@@ -178,7 +178,7 @@ def film(run):
     frames, stride = chosen(run, len(first["id"]), 8 + len(wanted))
     ids = slice(None, None, stride)
     edges, place, values, flows = [], [], [], []
-    at = evenly(first["position"][ids])
+    at = with_arrows(first["position"][ids])
     for k in frames:
         p = shown.drawn(run, run.times[k])
         edges.append(shown.half_edges(p, first)[ids].reshape(-1, 4))
@@ -191,7 +191,7 @@ def film(run):
     return {"times": durations(run.times[frames]), "n": place.shape[1], "stride": stride, "all": len(run.times),
             "strip": shown.strip_axis(first["position"]), "low": low.tolist(), "span": span.tolist(), "longest": float(longest),
             "place": packed(np.round((place - low) / span * 65535), "<u2"), "edges": packed(np.round(edges / longest * 127), "i1"),
-            "fields": [field(q, np.array([v[k] for v in values])) for k, q in enumerate(wanted)], "arrow_at": packed(at, "<u4"),
+            "fields": [field(q, np.array([v[k] for v in values])) for k, q in enumerate(wanted)], "arrow_at": packed(at, "<u4"), "arrow_way": number(min(map(shown.least_way, place[:, at]))),
             "arrows": [{"name": name, "v": packed([f[k] for f in flows], "<f4")}
                        for k, name in enumerate(n for v, n in FLUIDS.items() if v in first)]}  # fmt: skip
 
@@ -205,12 +205,10 @@ def field(q, values):
             "data": packed(np.where(np.isfinite(values), np.clip(levels, 0, 254), EMPTY), "u1")}  # fmt: skip
 
 
-def evenly(place):
-    """Indices of about ARROWS particles that lie evenly."""
-    extent = np.maximum(np.ptp(place, axis=0), 1e-300)
-    cells = np.sqrt(ARROWS * extent / extent[::-1]).round().clip(1, ARROWS)
-    cell = np.floor((place - place.min(0)) / extent * cells * 0.999)
-    return np.unique(cell @ [cells[1] + 1, 1], return_index=True)[1]
+def with_arrows(place):
+    """Indices of particles that lie evenly, no more than about ARROWS."""
+    extent = np.ptp(place, axis=0)
+    return shown.apart(place, max(np.sqrt(extent.prod() / ARROWS), extent.max() / ARROWS))
 
 
 # ---------------------------------------------------------------- words

@@ -213,6 +213,23 @@ def corners(particles, first):
     return np.stack([particles["position"] + s * a + t * b for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))], axis=1)
 
 
+def apart(position, gap):
+    """Indices of particles any two of which differ by `gap` (m) or more along an axis, in their order, as many as that leaves room for:
+    every how many-th row and column of a lattice."""
+    left, taken = np.arange(len(position)), []
+    while len(left):
+        taken.append(left[0])
+        left = left[1:][np.abs(position[left[1:]] - position[left[0]]).max(1) >= gap]
+    return np.array(taken, int)
+
+
+def least_way(position):
+    """The least distance (m) between two of a few places."""
+    ways = np.hypot(*(position[:, None] - position[None]).T)
+    np.fill_diagonal(ways, np.inf)
+    return ways.min()
+
+
 def strip_axis(position):
     """Axis (0 or 1) along which the body is a strip, at least eight times as long as wide and with no more than four rows of
     particles across; None if it is not one."""

@@ -99,6 +99,24 @@ def check_words():
     check_true("a unit stays with the word before it", wrapped("water saturation S_w (-)", 1.9) == "water saturation\n$S_w$\N{NO-BREAK SPACE}(-)", wrapped("water saturation S_w (-)", 1.9))
 
 
+def check_arrows():
+    """None reaches another, however strong the flow and however the particles lie; about a dozen and a half along the longer side, or every particle."""
+    chance = np.random.default_rng(1)
+    for what, columns, rows, tilt, noise in (("a lattice", 20, 22, 0.0, 0.0), ("a sheared one", 80, 40, 0.4, 0.0), ("places at random", 60, 60, 0.0, 1.0), ("few", 3, 2, 0.0, 0.0)):
+        p = body(columns, rows, 0.4, 0.48 * rows)[1]
+        x = p["position"]
+        x += np.c_[tilt * x[:, 1], 0 * x[:, 1]] + noise * chance.uniform(-0.3, 0.3, x.shape)
+        axes = plt.figure().add_axes([0, 0, 1, 1])
+        plot.arrows(axes, {**p, "v_w": np.ones(x.shape) / (0.1 + x[:, :1])}, "v_w")
+        flow = axes.collections[0]
+        place = np.c_[flow.X, flow.Y]
+        way = min(np.hypot(*(place - q).T)[np.arange(len(place)) != k].min() for k, q in enumerate(place))
+        check(f"{what}: the longest arrow, of the least way between two", np.hypot(flow.U, flow.V).max() / flow.scale / way, (0.1, 0.91))
+        check(f"{what}: arrows", len(place), (min(len(x), 80), 19**2))
+        plt.close(axes.figure)
+    check_true("a body of one particle", list(shown.apart(np.zeros((1, 2)), 0.0)) == [0])
+
+
 def check_phases():
     """Profiles under a periodic load: times of several phases; where all snapshots are of one phase, words that say so."""
     period = 12.42 * 3600
@@ -135,6 +153,7 @@ def main():
     run(binary(), ROOT / "tests" / "verification" / "cases" / "no_gas_cell.yaml", "-time_end", "2 s", "-meters", "side", "-meter_side_side", "right", out=gas)
     check_true("... of gas that comes: what pores hold of it beside what a meter counts", "meters" in draw(gas)[0])
     check_words()
+    check_arrows()
     finish()
 
 
