@@ -13,6 +13,7 @@ import numpy as np
 import slide
 from plotting import COLOURS, MM, PA, boxes, plt, save, set_style
 from clathra import read_csv, read_snapshots
+from clathra.units import YEAR
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "verification"))
@@ -141,14 +142,14 @@ def century(run, left, right):
     a = np.linspace(0, 40, 400)
     for colour, (t, v) in zip(COLOURS, [s for s in case.snapshots if s[0] > 0]):
         depth = C.H - (v["position"][:, 1] - v["displacement"][:, 1])
-        left.plot((v["p"][:, 0] - C.p0) / 1e6, depth, color=colour, label=f"{t / C.year:.0f} years", **DOTS)
+        left.plot((v["p"][:, 0] - C.p0) / 1e6, depth, color=colour, label=f"{t / YEAR:.0f} years", **DOTS)
         left.plot(C.pressure(a, t)[0] / 1e6, a, **EXACT)
     left.set(xlabel="excess pore pressure (MPa)", ylabel="depth at the start (m)", ylim=(40, 0))
     left.legend(loc="lower left")
     p = case.csv("probes")
     t = p["time_s"][1:]
-    right.plot(t / C.year, -p["top.u_y_m"][1:], color=COLOURS[0], **DOTS)
-    right.plot(t / C.year, C.settlement(t), **EXACT)
+    right.plot(t / YEAR, -p["top.u_y_m"][1:], color=COLOURS[0], **DOTS)
+    right.plot(t / YEAR, C.settlement(t), **EXACT)
     right.set(xlabel="time (years)", ylabel="settlement (m)")
 
 
@@ -157,7 +158,7 @@ def century_hydrate(run, left, middle, right):
     for colour, (t, v) in zip(COLOURS, [s for s in case.snapshots if s[0] > 0]):
         height, there = v["position"][:, 1] - v["displacement"][:, 1], v["S_h"][:, 0] > 0.05
         p_e = 1e3 * np.exp(38.98 - 8533.8 / (v["T"][:, 0] + 273.15))
-        left.plot((v["p"][:, 0] - 5e6) / 1e6, 100 - height, color=colour, label=f"{t / ladder.Century.year:.0f} years", **DOTS)
+        left.plot((v["p"][:, 0] - 5e6) / 1e6, 100 - height, color=colour, label=f"{t / YEAR:.0f} years", **DOTS)
         left.plot(np.where(there, (p_e - 5e6) / 1e6, np.nan), 100 - height, **EXACT)
         middle.plot(v["S_h"][:, 0], 100 - height, color=colour, **DOTS)
     left.plot([], [], **EXACT, label="$p_e(T)$ at hydrate")
@@ -165,10 +166,10 @@ def century_hydrate(run, left, middle, right):
     middle.legend(*left.get_legend_handles_labels(), loc="upper center")
     middle.set(xlabel="hydrate saturation (–)", ylim=(100, 0))
     p, b = case.csv("probes"), case.csv("balance")
-    right.plot(p["time_s"] / ladder.Century.year, p["top.u_y_m"], color=COLOURS[0], marker=".", ms=4)
+    right.plot(p["time_s"] / YEAR, p["top.u_y_m"], color=COLOURS[0], marker=".", ms=4)
     right.set(xlabel="time (years)", ylabel="sea floor (m)")
     other = right.twinx()
-    other.plot(b["time_s"] / ladder.Century.year, b["hydrate_kg"] / b["hydrate_kg"][0], color=COLOURS[1])
+    other.plot(b["time_s"] / YEAR, b["hydrate_kg"] / b["hydrate_kg"][0], color=COLOURS[1])
     other.set_ylabel("hydrate, of the start", color=COLOURS[1])
 
 
@@ -316,28 +317,28 @@ def collapse_3d(run, left, right):
 
 
 def slope_warming(run, *axes):
-    year, settled = 31557600.0, 20
+    settled = 20
     case, falling = run(), run("-ambient_level", "{ramp: [461.5 m, 441.5 m, 20 a, 120 a]}")
-    at = {round(t / year) - settled: v for t, v in case.snapshots}
+    at = {round(t / YEAR) - settled: v for t, v in case.snapshots}
     for panel, years in zip(axes, (30, 60, 150)):
         body(panel, at[years]["S_h"][:, 0], at[years], "$S_h$")
         panel.set_title(f"after {years} years")
     for what, shown, colour in (("a sea that warms", case, COLOURS[0]), ("... and falls by 20 m", falling, COLOURS[1])):
         b = shown.csv("balance")
-        axes[3].plot(b["time_s"] / year - settled, 100 * b["hydrate_kg"] / b["hydrate_kg"][0], color=colour, label=what)
+        axes[3].plot(b["time_s"] / YEAR - settled, 100 * b["hydrate_kg"] / b["hydrate_kg"][0], color=colour, label=what)
     axes[3].set(xlabel="years", ylabel="hydrate left (%)", ylim=(0, 105))
     axes[3].legend()
     weak = run("-stage_warm_materials", "slope,weak")
     end = weak.snapshots[-1][1]
     body(axes[4], end["eps_d_p"][:, 0], end, "$\\epsilon_d^p$")
     m = slide.measure(slide.Run(weak.out))
-    axes[4].set_title(f"weak ground after {weak.snapshots[-1][0] / year - settled:.0f} years: failed {m['failed_volume_m2']:.0f} m³/m,\nrunout {m['runout_m']:.0f} m, retrogression {m['retrogression_m']:.0f} m", fontsize=8)
+    axes[4].set_title(f"weak ground after {weak.snapshots[-1][0] / YEAR - settled:.0f} years: failed {m['failed_volume_m2']:.0f} m³/m,\nrunout {m['runout_m']:.0f} m, retrogression {m['retrogression_m']:.0f} m", fontsize=8)
     b, p = weak.csv("balance"), weak.csv("probes")
-    late = b["time_s"] > 120 * year
+    late = b["time_s"] > 120 * YEAR
     row, moved = np.arange(late.sum()), np.interp(b["time_s"][late], p["time_s"], p["face.u_x_m"])
     axes[5].semilogy(row, b["dt_s"][late], color=COLOURS[0])
     axes[5].set(xlabel="rows of balance.csv from 100 years on", ylabel="step (s)", ylim=(1e-3, None))
-    slid = [f"{(s['from_s'] - 20 * year) / year:.1f} a: {s['lasts_s']:.0f} s, {s['kinetic_energy_J'] / 1e6:.1f} MJ/m" for s in m["slides"] if s["kinetic_energy_J"] > 0.1 * m["peak_kinetic_energy_J"]]
+    slid = [f"{(s['from_s'] - 20 * YEAR) / YEAR:.1f} a: {s['lasts_s']:.0f} s, {s['kinetic_energy_J'] / 1e6:.1f} MJ/m" for s in m["slides"] if s["kinetic_energy_J"] > 0.1 * m["peak_kinetic_energy_J"]]
     axes[5].set_title("weak ground: steps, way of the face; slides after\n" + ",\n".join(", ".join(slid[k : k + 2]) for k in range(0, len(slid), 2)), fontsize=8)
     beside = axes[5].twinx()
     beside.plot(row, moved, color=COLOURS[1])

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-YEAR = 31557600.0
+from clathra.units import YEAR
+
 STEP_OF_HYBRID = 1.4e-3  # s of a core that a step of hybrid takes in cases/slope_warming, mean of 1.3e5
 LOOKS = (30, 50, 100, 150)  # years of warming at which hydrate is looked at
 # a line of summary.txt: stage, integrator, begin (s), steps, refused, processor time (s)

@@ -1,6 +1,7 @@
 """Units in which times and pressures read well."""
 
-TIMES = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", 3.15576e7))
+YEAR = 365.25 * 86400.0  # s, as the program counts
+TIMES = (("s", 1.0), ("min", 60.0), ("h", 3600.0), ("days", 86400.0), ("years", YEAR))
 
 SECONDS = {name: size for n, size in (("us", 1e-6), ("ms", 1e-3), *TIMES) for name in {n, n.removesuffix("s") if n in ("days", "years") else n}}
 PASCALS = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}

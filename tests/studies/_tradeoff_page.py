@@ -3,6 +3,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+from clathra.units import YEAR
 from plotting import COLOURS, plt, save, set_style
 from slope_warming import STEP_OF_HYBRID
 
@@ -15,7 +16,7 @@ EXPLICIT = ("explicit", "hybrid")
 # ----------------------------------------------------------------------------------------------------------- helpers
 def seconds(s):
     """A time of four digits at most, in the unit that suits it."""
-    for name, size in (("years", 3.15576e7), ("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
+    for name, size in (("years", YEAR), ("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
         if s >= 2 * size:
             return f"{s / size:.3g} {name}"
     return f"{s:.2g} s" if s >= 0.1 else f"{1e3 * s:.2g} ms" if s > 1e-4 else f"{s:.1e} s"
@@ -355,8 +356,8 @@ def about_years():
     kept = json.loads((Path(__file__).resolve().parents[2] / "docs" / "slopes.json").read_text())["W_12"]
     w = kept["warming"]
     steps, alone = float(w["hybrid_alone"][0]), float(w["hybrid_alone"][0]) * STEP_OF_HYBRID
-    return [f"Years and seconds in one run, `cases/slope_warming` with the weak ground ({kept['end_s'] / 3.15576e7 - 20:.0f} years of warming, a slide of seconds and creep behind it; 1406 particles): {w['processor_s']:.0f} s of processor time by "
-            f"`auto` ({w['steps']} implicit steps, {w['hybrid_steps']} of `hybrid`) against {alone / 3.15576e7:.2g} years of `hybrid` alone ({steps:.2g} steps at {1e3 * STEP_OF_HYBRID:.2g} ms, measured over 1.3e5 of them and "
+    return [f"Years and seconds in one run, `cases/slope_warming` with the weak ground ({kept['end_s'] / YEAR - 20:.0f} years of warming, a slide of seconds and creep behind it; 1406 particles): {w['processor_s']:.0f} s of processor time by "
+            f"`auto` ({w['steps']} implicit steps, {w['hybrid_steps']} of `hybrid`) against {alone / YEAR:.2g} years of `hybrid` alone ({steps:.2g} steps at {1e3 * STEP_OF_HYBRID:.2g} ms, measured over 1.3e5 of them and "
             f"extrapolated; {alone / w['processor_s']:.1g} times as long)."]  # fmt: skip
 
 

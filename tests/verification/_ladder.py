@@ -153,7 +153,7 @@ class Century:
     the load: J_t = c J_aa, c = k0 M/mu, J = exp(-q(t)/M) at the drain (depth a = 0), J_a = 0 at the base; q grows to Q until T1."""
 
     H, M, c, p0 = 100.0, 10e6, 1e-18 * 10e6 / 1e-3, 1e6
-    Q, T1, end, year = 3e6, 9.467e9, 1.5778e10, 3.15576e7
+    Q, T1, end = 3e6, 9.467e9, 1.5778e10
     depths = {"below_2m": 2.0, "below_5m": 5.0, "below_10m": 10.0, "below_20m": 20.0}  # of the probes, m
 
     @classmethod

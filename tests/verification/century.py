@@ -5,6 +5,8 @@ import numpy as np
 from _ladder import CASES, Century as C
 from common import Run, binary, check, check_true, finish, judge, launch, order, scratch, table
 
+from clathra.units import YEAR  # scripts/, which common puts on the path
+
 ROW = "century"
 
 
@@ -29,7 +31,7 @@ run = Run.of_case("century", "-quiet")
 u, p = errors(run)
 b = run.balance
 steps = len(b["time_s"])
-print(f"{steps} steps from {b['dt_s'].min():.3g} s to {b['dt_s'].max() / C.year:.3g} years, {int(b['newton'].sum())} Newton iterations;"
+print(f"{steps} steps from {b['dt_s'].min():.3g} s to {b['dt_s'].max() / YEAR:.3g} years, {int(b['newton'].sum())} Newton iterations;"
       f" settlement {-run.probe('top')['u_y_m'][-1]:.3f} m")  # fmt: skip
 judge(ROW, "settlement over 500 years, of the last", u, 1e-2, 0.01, "%")
 judge(ROW, "pore pressure at 2, 5, 10 and 20 m over 500 years, of the load", p, 1e-2, 0.01, "%")
