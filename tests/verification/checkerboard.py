@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import ROOT, binary, check_true, finish, judge, largest_difference, launch, run, scratch
+from common import ROOT, WARNS_OF_HELD, binary, check_true, finish, judge, largest_difference, launch, run, scratch
 
 CASES = Path(__file__).parent / "cases"
 case = scratch() / "case.yaml"
@@ -77,7 +77,6 @@ for name in ("water_error", "methane_error"):
     judge("fronts", f"(381): {name}", np.max(np.abs(held.balance[name])), 1e-12)
 # (423): what the limiter keeps above equilibrium, and for how long, against snapshots of every hour, which do not know its share B/(1 + B); a quarter as long in cells half as wide.
 LATE = re.compile(r"held hydrate up to ([\d.]+) K above its equilibrium, near \(.*\) m at t = .*; by ([\d.]+) K or more, a fifth of what may melt it, for ([\d.]+) (h|min)")
-WARNS = "for no other reason than stabilisation_reaction_heat"
 
 
 def late(done):
@@ -108,6 +107,6 @@ judge("fronts", "(423): hours of that or more, against every hour's", hours - np
 check_true("... on 2 ranks", np.allclose(late(two), (most, least, hours), rtol=0.01), f"{late(two)}, {most} K, {least} K, {hours} h")
 fine = [heater("yes", "-grid_cells", f"{n},1", way="reaction_heat")[0] for n in (20, 40)]
 judge("fronts", "(423): times as long in cells twice as wide", hours / late(fine[0])[2], (2.5, 6))
-check_true("a tenth of the run and more is warned of, less is not", WARNS in hourly.output and WARNS not in fine[1].output, hourly.output[-500:])
-check_true("nothing of it without the limiter", "held hydrate" not in particles.output and WARNS not in particles.output)
+check_true("a tenth of the run and more is warned of, less is not", WARNS_OF_HELD in hourly.output and WARNS_OF_HELD not in fine[1].output, hourly.output[-500:])
+check_true("nothing of it without the limiter", "held hydrate" not in particles.output and WARNS_OF_HELD not in particles.output)
 finish()

@@ -29,6 +29,7 @@ from clathra import probe_names, read_csv, read_snapshots  # noqa: E402
 from clathra.units import pascals, seconds  # noqa: E402
 
 CASES = ROOT / "cases"
+WARNS_OF_HELD = "for no other reason than stabilisation_reaction_heat"  # in the end's warning of hydrate that (381) keeps, (423)
 ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
@@ -172,6 +173,12 @@ CHANGE = re.compile(r"^t = (\S+ \w+): (\w+) -> (\w+):", re.M)  # of the integrat
 def changes(run):
     """[(time in s, from, to)] of the changes of the integrator that a run said."""
     return [(seconds(t), a, b) for t, a, b in CHANGE.findall(run.output)]
+
+
+def last_places(run):
+    """(n, axes) places (m) of a Run's particles at its last snapshot, in the order of their numbers, which ranks do not change."""
+    last = run.snapshots()[-1][1]
+    return last["position"][last["id"].ravel().argsort()]
 
 
 def run(program, case, *options, ranks=1, out=None, exit_code=0, timeout=800):
