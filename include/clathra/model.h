@@ -159,6 +159,7 @@ typedef struct {
   double (*plate)[PLATE_COUNT]; /* [Scene.nlisted] at the end of the last stage; zero where it is no plate */
   double   released;            /* J, this rank: elastic energy that stiffness took away in the last step or burst */
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
+  bool     uneven;              /* the last implicit step evened nothing out within cells: (354) was not found */
   Leaving  leaving;             /* particles that crossed the edge of the grid (373) */
   bool     relative_gas;        /* changes of p_g in proportion to it, by implicit steps (416) */
 

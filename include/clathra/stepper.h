@@ -21,17 +21,18 @@ typedef struct {
   PetscInt next_snapshot; /* its number */
   PetscInt stage;         /* of the case; t may have reached its end */
   PetscInt newton_total, failures_total, limited_total;
-  PetscInt loose_total; /* steps accepted with an error above the tolerance: at dt_min, or noise of the particles */
-  PetscInt ice_total;   /* looks (after a step, or a burst) that found water below its melting point ... */
-  PetscInt ice_most;    /* ... and in how many particles at most */
-  PetscInt kind;        /* auto: AUTO_... */
-  PetscInt votes;       /* auto: looks in a row that asked for the other one */
-  PetscInt patience;    /* auto: doubles with every visit of the implicit integrator that did not pay */
-  double   t;           /* s */
-  double   dt;          /* next step wanted by the controller, s */
-  double   err_old;     /* error of the last accepted step relative to the tolerance */
-  double   ice_coldest; /* how far at most, K */
-  double   err_worst;   /* largest error of the steps in loose_total */
+  PetscInt loose_total;  /* steps accepted with an error above the tolerance: at dt_min, or noise of the particles */
+  PetscInt uneven_total; /* steps that evened no pressures out within cells: (354) was not found */
+  PetscInt ice_total;    /* looks (after a step, or a burst) that found water below its melting point ... */
+  PetscInt ice_most;     /* ... and in how many particles at most */
+  PetscInt kind;         /* auto: AUTO_... */
+  PetscInt votes;        /* auto: looks in a row that asked for the other one */
+  PetscInt patience;     /* auto: doubles with every visit of the implicit integrator that did not pay */
+  double   t;            /* s */
+  double   dt;           /* next step wanted by the controller, s */
+  double   err_old;      /* error of the last accepted step relative to the tolerance */
+  double   ice_coldest;  /* how far at most, K */
+  double   err_worst;    /* largest error of the steps in loose_total */
   double   peak, peak_of, peak_t, peak_at[CL_DIM]; /* largest Peak of any step, when it was taken (s), and where (m) */
   double   out[PHASE_COUNT];                       /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source;        /* J since t = 0 */

@@ -113,7 +113,8 @@ static PetscErrorCode MassDiagonal(Mat A, Vec D)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodal field of (354): [n_local], in place of the moments of y; *found is false where that has not converged. */
+/* The nodal field of (354): [n_local], in place of the moments of y; *found is false where that has not converged.  Its
+   solver takes options -exchange_ksp_. */
 static PetscErrorCode Project(Model *m, double *x, bool *found)
 {
   const PetscInt     n = m->map.n_owned, N = m->map.n_global;
@@ -140,6 +141,8 @@ static PetscErrorCode Project(Model *m, double *x, bool *found)
   PetscCall(PCSetType(pc, PCJACOBI));
   PetscCall(KSPSetNormType(ksp, KSP_NORM_NATURAL));
   PetscCall(KSPSetTolerances(ksp, HIDDEN, PETSC_DEFAULT, PETSC_DEFAULT, MOST_ITERATIONS));
+  PetscCall(KSPSetOptionsPrefix(ksp, "exchange_"));
+  PetscCall(KSPSetFromOptions(ksp));
   PetscCall(KSPSolve(ksp, B, X));
   PetscCall(KSPGetConvergedReason(ksp, &why));
   *found = why > 0;
@@ -157,6 +160,7 @@ PetscErrorCode ExchangeBuild(Model *m)
   bool    found = false;
 
   PetscFunctionBeginUser;
+  m->uneven = false;
   if (!SceneExchanges(m->c)) /* a rank without particles has no list, but is asked for sums */
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < m->P.n; p++)
@@ -164,6 +168,7 @@ PetscErrorCode ExchangeBuild(Model *m)
   PetscCall(PetscMalloc1(m->map.n_local, &x));
   PetscCall(Moments(m, NULL, x));
   PetscCall(Project(m, x, &found));
+  m->uneven = !found;
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach r;
 

@@ -158,10 +158,10 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
   char                text[PETSC_MAX_PATH_LEN + 4096], ranges[512], gone[512], local[512], loose[512];
-  char                above[64] = "", left[128], ice[256], yields[256], gaps[256], ranks[128], *stages, *all;
-  ModelTotals         t;
-  double              error[3];
-  bool                ok;
+  char        above[64] = "", left[128], ice[256], yields[256], gaps[256], uneven[256], ranks[128], *stages, *all;
+  ModelTotals t;
+  double      error[3];
+  bool        ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
@@ -173,6 +173,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
     snprintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total);
   LeftSummary(s, left);
   GoneSummary(z, gone);
+  UnevenSummary(z, uneven);
   PetscCall(LongSummary(s->model, gaps));
   IceSummary(s, ice);
   PetscCall(RangeSummary(s, ranges));
@@ -183,13 +184,13 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
            " Newton iterations, %.2f s%s\n%s"
            "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
            "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-           "%s%s%s%s%s%s%s%s  results in %s\n",
+           "%s%s%s%s%s%s%s%s%s  results in %s\n",
            StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", TimeAt(z->t).s,
            StepperCase(s)->nstage ? "by stage"
            : s->auto_.on          ? STEPPER_AUTO
                                   : s->scheme->name,
            z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local, error[0], error[1],
-           error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, gaps, ice, ranks,
+           error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, uneven, gaps, ice, ranks,
            StepperCase(s)->output_dir);
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));

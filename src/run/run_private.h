@@ -77,12 +77,13 @@ PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, cons
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
    is nothing to say */
-void           LocalSummary(const Stepper *s, char text[512]);     /* of an integrator without matrices */
-void           LeftSummary(const Stepper *s, char text[128]);      /* what Newton's method left (277) */
-void           GoneSummary(const StepperState *z, char text[512]); /* particles that left the grid (373) */
-void           LooseSummary(const Stepper *s, char text[512]);     /* largest error, and those put up with */
-PetscErrorCode LongSummary(const Model *m, char text[256]);        /* domains longer than a cell; collective */
-void           IceSummary(const Stepper *s, char text[256]);       /* water below its melting point */
+void           LocalSummary(const Stepper *s, char text[512]);       /* of an integrator without matrices */
+void           LeftSummary(const Stepper *s, char text[128]);        /* what Newton's method left (277) */
+void           GoneSummary(const StepperState *z, char text[512]);   /* particles that left the grid (373) */
+void           LooseSummary(const Stepper *s, char text[512]);       /* largest error, and those put up with */
+void           UnevenSummary(const StepperState *z, char text[256]); /* steps without exchange within cells (353) */
+PetscErrorCode LongSummary(const Model *m, char text[256]);          /* domains longer than a cell; collective */
+void           IceSummary(const Stepper *s, char text[256]);         /* water below its melting point */
 PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */
 
 /* ---------------------------------------------------------------- ranges.c */

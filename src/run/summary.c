@@ -66,6 +66,17 @@ void LooseSummary(const Stepper *s, char text[512])
              z->loose_total, z->err_worst);
 }
 
+/* Steps without (353), for (354) did not converge. */
+void UnevenSummary(const StepperState *z, char text[256])
+{
+  text[0] = '\0';
+  if (z->uneven_total)
+    snprintf(text, 256,
+             "  %" PetscInt_FMT " steps evened no pressures out within cells: their projection was not found in "
+             "-exchange_ksp_max_it iterations\n",
+             z->uneven_total);
+}
+
 /* Domains that act shorter than they are (BasisHalfLength). */
 PetscErrorCode LongSummary(const Model *m, char text[256])
 {

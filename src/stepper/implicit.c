@@ -287,6 +287,7 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
   PetscFunctionBeginUser;
   PetscCall(StepperKeeps(s, dt, &keeps));
   PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates, keeps));
+  z->uneven_total += s->model->uneven;
   z->step++;
   z->t += dt;
   z->dt      = WantedStep(s, dt, kink, a, &s->bound);
