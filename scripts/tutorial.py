@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""The tutorial's case and pictures: tutorial.py CLATHRA [FOLDER]
+"""The tutorial's cases and pictures: tutorial.py CLATHRA [FOLDER]
 
-Puts the YAML blocks of docs/tutorial.md together, runs them into FOLDER (goes on there from a checkpoint; default: results/tutorial)
-and takes the pictures of docs/figures/tutorial_*.png from its report, with a headless browser.
+Puts the YAML blocks of docs/tutorial.md together, those of the ten steps and those of its heater by power, runs them into FOLDER (goes on there from
+a checkpoint; default: results/tutorial) and takes the pictures of docs/figures/tutorial_*.png from the reports, with a headless browser.
 """
 import base64
 import re
@@ -13,11 +13,18 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tutorial.md"
 FIGURES = {"scene": "s-scene", "film": "s-film", "production": "s-production"}  # picture: section of the report
+POWER = "A heater by power"
+
+
+def blocks(heading):
+    """The YAML blocks of a part of the page, one after the other; its ten steps stand before the first heading."""
+    parts = dict(part.split("\n", 1) for part in PAGE.read_text().split("\n## "))
+    return "\n".join(re.findall(r"^```yaml\n(.*?)^```", parts[heading], re.M | re.S))
 
 
 def case_text():
-    """The case of the page: its YAML blocks, one after the other."""
-    return "\n".join(re.findall(r"^```yaml\n(.*?)^```", PAGE.read_text(), re.M | re.S))
+    """The case that the ten steps build."""
+    return blocks(PAGE.read_text().split("\n", 1)[0])
 
 
 def quoted(key):
@@ -28,6 +35,15 @@ def quoted(key):
 def heated(text):
     """The case with the page's heater."""
     return text.replace("boundaries: [", "boundaries: [heater, ") + f"\n{quoted('bc_heater')}\n"
+
+
+def powered(text):
+    """The case with the page's heater by power: lines in place of those of their names, or new ones."""
+    for line in blocks(POWER).splitlines():
+        name = re.escape(line.split(":")[0])
+        text, found = re.subn(rf"^{name}:.*$", line, text, flags=re.M)
+        text += "" if found else f"\n{line}\n"
+    return text
 
 
 def tidal(text):
@@ -43,15 +59,15 @@ def without_gas(text):
     return changed
 
 
-def photograph(report):
-    """A picture of each section, as a reader sees it; the film at the last time, hydrate chosen."""
+def photograph(report, figures, quantity):
+    """A picture of each section, as a reader sees it; the film at the last time, of that quantity."""
     sys.path.insert(0, str(ROOT / "tests" / "integration"))
     import _browser
 
     page = _browser.Page(_browser.find(), f"file://{report}", 1240, 1000)
-    page.ask("(e => { e.value = film.fields.findIndex(f => f.key === 'S_h'); e.dispatchEvent(new Event('change')); })(document.getElementById('quantity'))")
+    page.ask(f"(e => {{ e.value = film.fields.findIndex(f => f.key === '{quantity}'); e.dispatchEvent(new Event('change')); }})(document.getElementById('quantity'))")
     page.ask("(e => { if (e.checked) e.click(); })(document.getElementById('arrows')); document.querySelector('nav').remove()")
-    for name, section in FIGURES.items():
+    for name, section in figures.items():
         box = page.ask(f"(r => [r.x + scrollX, r.y + scrollY, r.width, r.height])(document.getElementById('{section}').getBoundingClientRect())")
         clip = dict(zip(("x", "y", "width", "height"), box), scale=0.8)
         picture = page.call("Page.captureScreenshot", captureBeyondViewport=True, clip=clip)["data"]
@@ -60,15 +76,21 @@ def photograph(report):
     page.close()
 
 
-def main(program, folder=ROOT / "results" / "tutorial"):
-    folder = Path(folder).resolve()
+def pictured(program, folder, text, figures, quantity):
+    """Runs a case in a folder of its own and takes its pictures."""
     case = folder / "tutorial.yaml"
     folder.mkdir(parents=True, exist_ok=True)
-    case.write_text(case_text())
+    case.write_text(text)
     go_on = ["-restart", folder / "checkpoint.h5"] if (folder / "checkpoint.h5").is_file() else []
     subprocess.run([program, case, "-output_dir", folder, *go_on], check=True)
     subprocess.run([sys.executable, ROOT / "scripts" / "report.py", folder], check=True)
-    photograph(folder / "report.html")
+    photograph(folder / "report.html", figures, quantity)
+
+
+def main(program, folder=ROOT / "results" / "tutorial"):
+    folder = Path(folder).resolve()
+    pictured(program, folder, case_text(), FIGURES, "S_h")
+    pictured(program, folder / "heater", powered(case_text()), {"heater": "s-film"}, "T")
 
 
 if __name__ == "__main__":

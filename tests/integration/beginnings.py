@@ -91,7 +91,7 @@ check("... and it is true: nothing comes out", max(abs(moved["water_kg"][-1]), a
 
 # ---------------------------------------------------------------- a side that nothing bears
 text = comes("... without its burden", ["free"], said(well, "-boundaries", "base,casing,far,well"))
-E, nu = 50e6, 0.3
+E, nu = (clathra.Run(closed).case[f"mat_clay_elasticity_{k}"] for k in ("E0", "nu"))
 check("... the strain by which it would swell, %", abs(numbers(text, "swells by some")[0] / (100 * 11e6 / (E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)))) - 1), 0.05)
 check_true("... which side, what pressure, and what keeps it", "of 11 MPa at the body's top" in text and "normal: 11 MPa" in text and text.count("nothing bears") == 1, text)
 check_true("... each of three that are free", "\n".join(said(well, "-boundaries", "casing,well")).count("nothing bears") == 3)

@@ -1,14 +1,26 @@
 #!/usr/bin/python3
-"""The case that docs/tutorial.md builds is valid, starts, and produces; its heater and its tide run."""
+"""The case that docs/tutorial.md builds is valid, starts, produces, and ends without a warning, and so does its heater by power; its other heater and its tide run."""
 import re
 import sys
 from pathlib import Path
+
+import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import binary, check, check_true, finish, launch, scratch  # noqa: E402
 
 import clathra  # noqa: E402
 import tutorial  # noqa: E402
+
+
+def clean(what, text):
+    """A whole run, which has nothing to warn of."""
+    out, case = scratch() / "whole", scratch() / "whole.yaml"
+    case.write_text(text)
+    done = launch(binary(), case, "-quiet", out=out)
+    said = [line for line in done.stdout.splitlines() if "warning" in line or "note:" in line or "above the tolerance" in line]
+    check_true(f"{what} ends well, without a note or a warning", done.returncode == 0 and "finished at t = 30 days" in done.stdout and not said, said)
+    return clathra.Run(out)
 
 
 def main():
@@ -23,6 +35,14 @@ def main():
         run.meter("well")["gas_kg"], run.meter("well")["water_kg"])), run.meter("well")["gas_kg"][-1])  # fmt: skip
     check("water and methane are kept, of the store", max(abs(run.balance[k]).max() for k in ("water_error", "methane_error")), 1e-12)
     text = case.read_text()
+    run = clean("the case of the page", text)
+    check("gas of 30 days as the page says it, t", run.meter("well")["gas_kg"][-1] / 1e3, (9.6, 9.7))
+    run = clean("its heater by power", tutorial.powered(text))
+    kilowatt = 400 * 2 * np.pi * 0.1 * 4
+    check("heat that came in, over its power times time, less one", abs(-run.meter("well")["heat_J"][-1] / (kilowatt * 29.5 * 86400) - 1), 1e-5)
+    melts = -run.balance["heat_source_J"][-1] / run.balance["heat_in_J"][-1]
+    check("share of it that melts hydrate", melts, (0.75, 0.82))
+    check("hydrate that it melts, t", (run.balance["hydrate_kg"][0] - run.balance["hydrate_kg"][-1]) / 1e3, (4.4, 4.7))
     for what, changed in (("heater", tutorial.heated(text)), ("tide", tutorial.tidal(text))):
         case.write_text(changed)
         done = launch(binary(), case, "-stepper_max_steps", "1", "-quiet", out=scratch() / what)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What one writes first: hydrate in water, no gas anywhere, and a well or a heater that makes the first of it ((101)-(104), (352), (371)).
 
-The tutorial's well in three layers with `Sg: 0` in all of them, 30 days; the same with a heater of 60 degC beside a well that keeps its pressure, 10 days.
+The tutorial's well in three layers with `Sg: 0` in all of them, on softer ground, 30 days; the same with a heater of 60 degC beside a well that keeps its pressure, 10 days.
 Either ends in few steps: with a diffusion (200) of its own for each fluid the heater takes 151, and the well 113 with the k_r of t_n in the drag (197) of its wall.
 Neither got past its first gas where only a trace of methane is in the water (102) and the water's pressure drives the reaction.
 """
@@ -20,11 +20,20 @@ DAY = 86400.0
 HEATER = ("-bc_well_pressure", "11 MPa", "-stabilisation_reaction", "yes", "-time_end", "10 d", "-output_every", "2 d")
 
 
+def soft(text):
+    """The tutorial's case on ground half as stiff, which settles twice as far off the grid's lines, just within the stability of hydrate, and begun with the default step."""
+    for was, now in (("E0: 100 MPa, nu", "E0: 50 MPa, nu"), ("E0: 200 MPa, Eh", "E0: 100 MPa, Eh"), ("14.43 degC", "14.4 degC"), (", dt: 1 min}", "}")):
+        if was not in text:
+            raise ValueError(f"the tutorial's case has no {was}")
+        text = text.replace(was, now)
+    return text
+
+
 def scenes():
     """The two cases: tutorial's layers without gas, and a heater in them."""
-    well = without_gas(case_text())
+    well = soft(without_gas(case_text()))
     out = scratch()
-    for name, text in (("well", well), ("heater", heated(well))):
+    for name, text in (("well", well), ("heater", soft(heated(without_gas(case_text()))))):
         (out / f"{name}.yaml").write_text(text)
     return out / "well.yaml", out / "heater.yaml"
 
