@@ -239,8 +239,6 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton);
 /* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
 PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
-/* A number of steps (dimensionless) in two digits: "140", "2.4e+11". */
-void StepperCount2(double n, char text[16]);
 /* Steps that kinks of the loads, output times and dt_max ask for in the last `left` (s) of the stage, at least;
  *kinks (or NULL): how many of them end at a kink. */
 double StepperStops(const Stepper *s, double left, double *kinks);

@@ -21,3 +21,5 @@ Place PlaceWords(const double x[CL_DIM]);
 Words TimeAt(double t);
 /* "4.1 MPa", "30 kPa", "12 Pa": a pressure or stress (Pa) with so many digits. */
 Words PressureWords(double pascals, int digits);
+/* "35", "140", "2.4e+11": a number of steps (dimensionless), from 100 on in two digits. */
+Words CountWords(double n);

@@ -60,3 +60,12 @@ Words PressureWords(double pascals, int digits)
   snprintf(words.s, sizeof(words.s), "%.*g %s", digits, pascals / unit[k].Pa, unit[k].name);
   return words;
 }
+
+Words CountWords(double n)
+{
+  const double unit  = n >= 100.0 ? pow(10.0, floor(log10(n)) - 1.0) : 1.0;
+  Words        words = {""};
+
+  snprintf(words.s, sizeof(words.s), n < 1e5 ? "%.0f" : "%.2g", unit * round(n / unit));
+  return words;
+}

@@ -37,14 +37,12 @@ static double NextEvent(const Stepper *s, void *ctx)
 /* "about 80 steps, 2 min left"; where that counts on steps that grow again, also how long without. */
 static PetscErrorCode LeftWords(const Left *left, char words[128])
 {
-  char count[16];
-
   PetscFunctionBeginUser;
   if (isnan(left->time))
     PetscFunctionReturn(PETSC_SUCCESS);
-  StepperCount2(fmax(left->steps, 1.0), count);
   if (left->steps > 0.0)
-    snprintf(words, 128, "about %s steps, %s left", count, TimeWords(left->time, left->time < 10.0 ? 2 : 3).s);
+    snprintf(words, 128, "about %s steps, %s left", CountWords(fmax(left->steps, 1.0)).s,
+             TimeWords(left->time, left->time < 10.0 ? 2 : 3).s);
   else
     snprintf(words, 128, "%s left", TimeWords(left->time, left->time < 10.0 ? 2 : 3).s);
   if (left->flat > STANDS * left->time) {

@@ -42,20 +42,18 @@ bool SlowIs(const Slow *slow, const Forecast *f, PetscInt taken, const Pace *pac
 static PetscErrorCode Say(const Slow *slow, const Stepper *s, const StepInfo *info, PetscInt taken, const Pace *pace)
 {
   const double t = s->state.t - s->model->c->t_begin, left = StepperCase(s)->t_end - s->state.t;
-  char         rules[128], all[16], grown[16], even[16];
+  char         rules[128];
 
   PetscFunctionBeginUser;
   Rules(s, info, rules);
-  StepperCount2(s->forecast.implicit_steps, all);
-  StepperCount2(pace->left, grown);
-  StepperCount2(left / info->dt, even);
   PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
                          "clathra: note: slow: %" PetscInt_FMT " steps (%" PetscInt_FMT
                          " refused), %s, have come to %s, %.3g %%; the forecast was %s, %s, for all, and by their "
                          "growth so far %s are left, %s; with the present dt of %s it would be %s",
-                         taken, slow->refused, TimeWords(pace->spent, 2).s, TimeWords(t, 3).s, 100.0 * pace->done, all,
-                         TimeWords(s->forecast.implicit_seconds, 2).s, grown, TimeWords(pace->left * pace->step, 2).s,
-                         TimeWords(info->dt, 2).s, even));
+                         taken, slow->refused, TimeWords(pace->spent, 2).s, TimeWords(t, 3).s, 100.0 * pace->done,
+                         CountWords(s->forecast.implicit_steps).s, TimeWords(s->forecast.implicit_seconds, 2).s,
+                         CountWords(pace->left).s, TimeWords(pace->left * pace->step, 2).s, TimeWords(info->dt, 2).s,
+                         CountWords(left / info->dt).s));
   if (!isnan(pace->flat))
     PetscCall(
         PetscFPrintf(s->model->grid.comm, stderr, ", %s as the last %d went", TimeWords(pace->flat, 2).s, LEARNT_LATE));

@@ -143,18 +143,11 @@ PetscErrorCode StepperForecast(Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void StepperCount2(double n, char text[16])
-{
-  const double unit = n >= 100.0 ? pow(10.0, floor(log10(n)) - 1.0) : 1.0;
-
-  snprintf(text, 16, n < 1e5 ? "%.0f" : "%.2g", unit * round(n / unit));
-}
-
 PetscErrorCode StepperPrintForecast(const Stepper *s)
 {
   const Forecast *f   = &s->forecast;
   const char     *why = CaseNeedsImplicit(StepperCase(s));
-  char            hybrid[128], stage[80], count[16];
+  char            hybrid[128], stage[80];
 
   PetscFunctionBeginUser;
   if (why) {
@@ -162,13 +155,12 @@ PetscErrorCode StepperPrintForecast(const Stepper *s)
   } else if (!(f->limit.dt > 0.0)) {
     snprintf(hybrid, sizeof(hybrid), "hybrid has no stable step");
   } else {
-    StepperCount2(f->hybrid_steps, count);
-    snprintf(hybrid, sizeof(hybrid), "hybrid %s steps, %s", count, TimeWords(f->hybrid_seconds, 2).s);
+    snprintf(hybrid, sizeof(hybrid), "hybrid %s steps, %s", CountWords(f->hybrid_steps).s,
+             TimeWords(f->hybrid_seconds, 2).s);
   }
-  StepperCount2(f->implicit_steps, count);
   StepperStageWords(s, stage);
   PetscCall(PetscPrintf(s->model->grid.comm, "  %sforecast: %s; implicit about %s steps, %s%s; %s is the cheaper one\n",
-                        stage, hybrid, count, TimeWords(f->implicit_seconds, 2).s,
+                        stage, hybrid, CountWords(f->implicit_steps).s, TimeWords(f->implicit_seconds, 2).s,
                         s->adaptive ? " (most take half to twice that)" : "", f->hybrid ? "hybrid" : "implicit"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

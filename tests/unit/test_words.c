@@ -1,4 +1,4 @@
-/* Times and pressures in words. */
+/* Times, pressures and counts in words. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,9 +32,21 @@ static void TestPressures(void **state)
   assert_string_equal(PressureWords(2.2e9, 3).s, "2.2 GPa");
 }
 
+static void TestCounts(void **state)
+{
+  (void)state;
+  assert_string_equal(CountWords(0.4).s, "0");
+  assert_string_equal(CountWords(35.4).s, "35");
+  assert_string_equal(CountWords(99.6).s, "100");
+  assert_string_equal(CountWords(144.0).s, "140");
+  assert_string_equal(CountWords(98765.0).s, "99000");
+  assert_string_equal(CountWords(2.44e11).s, "2.4e+11");
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestTimes), cmocka_unit_test(TestPressures)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestTimes), cmocka_unit_test(TestPressures),
+                                     cmocka_unit_test(TestCounts)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
