@@ -40,21 +40,30 @@ static double Seen(const Reach *r, const double *x)
   return v;
 }
 
-/* [n_local] sum_p V S_I v_p over all ranks, for owned nodes: v = y, or v = sum_J S_J x_J where there is an x [n_local].
- */
-static PetscErrorCode Moments(Model *m, const double *x, double *sum)
+/* v_p of sum_p V S_I v_p: a particle's y, sum_J S_J x_J of a nodal field x, or S_I itself. */
+typedef enum { OF_CHANGE, OF_FIELD, OF_WEIGHT } Moment;
+
+/* sum_p V S_I v_p over all ranks, as a vector over the owned nodes; x is [n_local]. */
+static PetscErrorCode Moments(Model *m, Moment of, const double *x, Vec M)
 {
+  double *sum, *owned;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(sum, m->map.n_local));
+  PetscCall(PetscCalloc1(m->map.n_local, &sum));
   for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach r;
+    const double V = m->P.f[P_V][p];
+    Reach        r;
 
     ReachExpand(m, p, &r);
-    const double v = m->P.f[P_V][p] * (x ? Seen(&r, x) : m->added->exchange[p].change);
+    const double v = of == OF_FIELD ? Seen(&r, x) : m->added->exchange[p].change;
     for (int a = 0; a < r.n; a++)
-      sum[r.node[a]] += r.S[a] * v;
+      sum[r.node[a]] += r.S[a] * V * (of == OF_WEIGHT ? r.S[a] : v);
   }
   PetscCall(NodeMapReduce(&m->map, sum, 1));
+  PetscCall(VecGetArrayWrite(M, &owned));
+  PetscCall(PetscArraycpy(owned, sum, m->map.n_owned));
+  PetscCall(VecRestoreArrayWrite(M, &owned));
+  PetscCall(PetscFree(sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -74,17 +83,14 @@ static PetscErrorCode Nodal(Model *m, Vec X, double *x)
 static PetscErrorCode MassMult(Mat A, Vec X, Vec Y)
 {
   Model  *m;
-  double *x, *sum, *y;
+  double *x;
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
-  PetscCall(PetscMalloc2(m->map.n_local, &x, m->map.n_local, &sum));
+  PetscCall(PetscMalloc1(m->map.n_local, &x));
   PetscCall(Nodal(m, X, x));
-  PetscCall(Moments(m, x, sum));
-  PetscCall(VecGetArrayWrite(Y, &y));
-  PetscCall(PetscArraycpy(y, sum, m->map.n_owned));
-  PetscCall(VecRestoreArrayWrite(Y, &y));
-  PetscCall(PetscFree2(x, sum));
+  PetscCall(Moments(m, OF_FIELD, x, Y));
+  PetscCall(PetscFree(x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,29 +98,16 @@ static PetscErrorCode MassMult(Mat A, Vec X, Vec Y)
    scaled by that mass conjugate gradients do not converge. */
 static PetscErrorCode MassDiagonal(Mat A, Vec D)
 {
-  Model  *m;
-  double *sum, *d;
+  Model *m;
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(A, &m));
-  PetscCall(PetscCalloc1(m->map.n_local, &sum));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach r;
-
-    ReachExpand(m, p, &r);
-    for (int a = 0; a < r.n; a++)
-      sum[r.node[a]] += m->P.f[P_V][p] * r.S[a] * r.S[a];
-  }
-  PetscCall(NodeMapReduce(&m->map, sum, 1));
-  PetscCall(VecGetArrayWrite(D, &d));
-  PetscCall(PetscArraycpy(d, sum, m->map.n_owned));
-  PetscCall(VecRestoreArrayWrite(D, &d));
-  PetscCall(PetscFree(sum));
+  PetscCall(Moments(m, OF_WEIGHT, NULL, D));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodal field of (354): [n_local], in place of the moments of y; *found is false where that has not converged.  Its
-   solver takes options -exchange_ksp_. */
+/* The nodal field of (354), [n_local]; *found is false where that has not converged.  Its solver takes options
+   -exchange_ksp_. */
 static PetscErrorCode Project(Model *m, double *x, bool *found)
 {
   const PetscInt     n = m->map.n_owned, N = m->map.n_global;
@@ -122,7 +115,6 @@ static PetscErrorCode Project(Model *m, double *x, bool *found)
   Vec                X, B;
   KSP                ksp;
   PC                 pc;
-  double            *b;
   KSPConvergedReason why;
 
   PetscFunctionBeginUser;
@@ -131,9 +123,7 @@ static PetscErrorCode Project(Model *m, double *x, bool *found)
   PetscCall(MatShellSetOperation(A, MATOP_GET_DIAGONAL, (void (*)(void))MassDiagonal));
   PetscCall(MatSetOption(A, MAT_SPD, PETSC_TRUE));
   PetscCall(MatCreateVecs(A, &X, &B));
-  PetscCall(VecGetArrayWrite(B, &b));
-  PetscCall(PetscArraycpy(b, x, n));
-  PetscCall(VecRestoreArrayWrite(B, &b));
+  PetscCall(Moments(m, OF_CHANGE, NULL, B));
   PetscCall(KSPCreate(m->grid.comm, &ksp));
   PetscCall(KSPSetType(ksp, KSPCG));
   PetscCall(KSPSetOperators(ksp, A, A));
@@ -166,7 +156,6 @@ PetscErrorCode ExchangeBuild(Model *m)
   for (PetscInt p = 0; p < m->P.n; p++)
     m->added->exchange[p].change = Exchanged(m, p);
   PetscCall(PetscMalloc1(m->map.n_local, &x));
-  PetscCall(Moments(m, NULL, x));
   PetscCall(Project(m, x, &found));
   m->uneven = !found;
   for (PetscInt p = 0; p < m->P.n; p++) {
