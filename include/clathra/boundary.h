@@ -61,16 +61,27 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f);
    StencilExpand; kr: its relative permeabilities at t_n (-). */
 void FaceInflow(Face *f, int n, const double *S, const double kr[PHASE_COUNT]);
 
-/* The place of a well in the plane, in cells of the grid; on each axis its particles tile from `first` on with `width`,
-   and its weights sum up to `sum`. */
+/* The place of a well on the two axes across it, in cells of the grid; on each its particles tile from `first` on with
+   `width`, and its weights sum up to `sum`.  In space it is open from `lower` to `upper` (m) of the third axis,
+   `along`.
+ */
 typedef struct {
-  GridLines line[CL_DIM];
-  double    place[CL_DIM], first[CL_DIM], width[CL_DIM], sum[CL_DIM];
+  int       across[2], along;
+  GridLines line[2];
+  double    at[CL_DIM]; /* the middle of what is open, m */
+  double    place[2], first[2], width[2], sum[2], lower, upper;
 } Well;
+/* How long it is open, m; the plane has a metre of everything. */
+static inline double WellLength(const Well *w)
+{
+  return CL_DIM == 2 ? 1.0 : w->upper - w->lower;
+}
 /* Of condition b; false if no region has particles there. */
 bool WellPlace(const Scene *c, const Bc *b, Well *w);
 /* (366): of a particle at x0 (m) with half-lengths l (m), all at the start; dimensionless. */
 double WellShare(const Well *w, const double x0[CL_DIM], const double l[CL_DIM]);
+/* det A across the well of a material as it lies at the start (306), dimensionless. */
+double WellRatio(const Well *w, const Permeability *law);
 /* C of (369), dimensionless; 0 if there is none: the well is too wide for its cells. */
 PetscErrorCode WellIndex(const Scene *c, const Bc *b, const Well *w, double *C);
 /* What a face of a well has of its particle's properties at t_n. */

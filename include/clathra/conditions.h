@@ -38,7 +38,8 @@ enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit
   X(FACE_TEMPERATURE, "face_temperature", HAS_HEAT, BY_ALL, FaceTemperature, "T, degC")                                \
   X(INFLOW, "inflow", HAS_WATER, BY_ALL, FaceInflows, "volume of water and gas into the body, m/s")                    \
   X(PLATE, "plate", HAS_SOLID, BY_ALL, NULL, "a rigid plate: velocity, displacement or force (plates.c)")              \
-  X(WELL, "well", HAS_WATER, BY_ALL, FaceWell, "a line normal to the plane: its pressure, Pa, or rates, kg/s (well.c)")
+  X(WELL, "well", HAS_WATER, BY_ALL, FaceWell,                                                                         \
+    "a line normal to the plane, in space along an axis: its pressure, Pa, or rates, kg/s (well.c)")
 
 enum { ON_FACES = 1, ON_PLANE, IN_REGION };
 /* On nodes: of a grid plane, or in the initial shape of a region.  X(kind, word, fields, integrators, its values in
@@ -103,8 +104,8 @@ typedef struct {
   double     alpha;             /* convection coefficient, W/(m^2 K) */
   double     with_depth, datum; /* of a temperature (425): K/m; m, where it is `value`; infinite: top of the body */
   /* well: initial position, m; radius, m; skin; mass of water and gas into the body, kg/s; T of what enters, degC */
-  double   at[CL_DIM], radius, skin;
-  double   index; /* C of (369), for this grid; 0 without a bottom pressure */
+  double   at[CL_DIM], end[CL_DIM], radius, skin; /* end: in space */
+  double   index;                                 /* C of (369), for this grid; 0 without a bottom pressure */
   Schedule rate[PHASE_COUNT], heated;
 } Bc;
 

@@ -279,7 +279,8 @@ static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *
       const Material *mat = &c->material[c->region[P->i[PI_REGION][p]].material];
 
       MakeWellFace(c, g, P, p, k, share, &(*face)[at]);
-      (*face)[at++].draws = c->bc[k].index * sqrt(mat->permeability.ratio) * share; /* (367) */
+      (*face)[at++].draws =
+          c->bc[k].index * sqrt(WellRatio(&well, &mat->permeability)) * share * WellLength(&well); /* (367) */
     }
   }
   *n = at;

@@ -1,5 +1,5 @@
-/* A well in the plane: which particles it draws from, how it draws so that the grid has Thiem's flow, and what it adds
-   to the balances; docs/equations.md (366)-(370). */
+/* A well, a line along an axis or normal to the plane: which particles it draws from, how it draws so that the grid has
+   Thiem's flow, and what it adds to the balances; docs/equations.md (366)-(370). */
 #include "terms.h"
 #include "clathra/point_flow.h"
 #include "clathra/point_heat.h"
@@ -26,23 +26,54 @@ static double FirstPlace(const Well *w, int d)
   return floor((w->place[d] - 1.0 - w->first[d]) / w->width[d]) - 1.0;
 }
 
+/* Which way it goes, and what of that is open. */
+static void TakeAxes(const Bc *b, Well *w)
+{
+  w->along = 2;
+  for (int d = 0; d < CL_DIM; d++) {
+    const double end = CL_DIM == 2 ? b->at[d] : b->end[d];
+
+    w->at[d] = 0.5 * (b->at[d] + end);
+    w->along = end != b->at[d] ? d : w->along;
+  }
+  w->across[0] = (w->along + 1) % 3;
+  w->across[1] = (w->along + 2) % 3;
+  w->lower = w->upper = 0.0;
+#if CL_DIM == 3
+  w->lower = fmin(b->at[w->along], b->end[w->along]);
+  w->upper = fmax(b->at[w->along], b->end[w->along]);
+#endif
+}
+
+/* Share of what is open that lies in a particle at x0 with half-lengths l. */
+static double Open(const Well *w, const double x0[CL_DIM], const double l[CL_DIM])
+{
+  if (CL_DIM == 2)
+    return 1.0;
+  const double lower = fmax(w->lower, x0[w->along] - l[w->along]), upper = fmin(w->upper, x0[w->along] + l[w->along]);
+
+  return fmax(0.0, upper - lower) / (w->upper - w->lower);
+}
+
 bool WellPlace(const Scene *c, const Bc *b, Well *w)
 {
   PetscInt region = -1;
   Lattice  lattice;
 
+  TakeAxes(b, w);
   for (PetscInt k = 0; region < 0 && k < c->nregion; k++)
-    region = !RegionEmpty(&c->region[k]) && RegionHolds(c, k, b->at) ? k : -1;
+    region = !RegionEmpty(&c->region[k]) && RegionHolds(c, k, w->at) ? k : -1;
   if (region < 0)
     return false;
   RegionLattice(c, region, &lattice);
-  for (int d = 0; d < CL_DIM; d++) {
-    const GridLines *line = &lattice.line[d];
+  for (int d = 0; d < 2; d++) {
+    const int        axis = w->across[d];
+    const GridLines *line = &lattice.line[axis];
 
     w->line[d]  = *line;
-    w->place[d] = LinesPlace(line, b->at[d]);
-    w->first[d] = line->x ? 0.0 : LinesPlace(line, lattice.from[d]);
-    w->width[d] = line->x ? lattice.spacing[d] : lattice.spacing[d] / line->h;
+    w->place[d] = LinesPlace(line, w->at[axis]);
+    w->first[d] = line->x ? 0.0 : LinesPlace(line, lattice.from[axis]);
+    w->width[d] = line->x ? lattice.spacing[axis] : lattice.spacing[axis] / line->h;
     w->sum[d]   = 0.0;
     for (double i = FirstPlace(w, d); Middle(w, d, i) < w->place[d] + 1.0; i++)
       w->sum[d] += w->width[d] * Tent(Middle(w, d, i) - w->place[d]);
@@ -52,10 +83,11 @@ bool WellPlace(const Scene *c, const Bc *b, Well *w)
 
 double WellShare(const Well *w, const double x0[CL_DIM], const double l[CL_DIM])
 {
-  double share = 1.0;
+  double share = Open(w, x0, l);
 
-  for (int d = 0; d < CL_DIM; d++) {
-    const double lo = LinesPlace(&w->line[d], x0[d] - l[d]), hi = LinesPlace(&w->line[d], x0[d] + l[d]);
+  for (int d = 0; d < 2; d++) {
+    const int    axis = w->across[d];
+    const double lo = LinesPlace(&w->line[d], x0[axis] - l[axis]), hi = LinesPlace(&w->line[d], x0[axis] + l[axis]);
 
     share *= (hi - lo) * Tent(0.5 * (lo + hi) - w->place[d]) / w->sum[d]; /* (366) */
   }
@@ -148,9 +180,9 @@ static void FillColumn(const Scene *c, const Well *w, int d, Column *k)
 }
 
 typedef struct {
-  Beds   A;
-  double root, radius, skin, at[CL_DIM]; /* sqrt(r); r_w'; s; the well, m */
-  Column column[CL_DIM];
+  double A[3];                      /* (306) across the well: its axes, then both */
+  double root, radius, skin, at[2]; /* sqrt(r); r_w'; s; the well, m */
+  Column column[2];
   Mat    K, W;          /* without the well; sums of sqrt(r) omega S S over the well's particles */
   Vec    load, draw, P; /* without the well; sums of sqrt(r) omega S; the solution */
 } Flow;
@@ -159,7 +191,7 @@ typedef struct {
 static double Thiem(const Flow *f, int i, int j)
 {
   const double x = LinesAt(&f->column[0].line, i) - f->at[0], y = LinesAt(&f->column[1].line, j) - f->at[1];
-  const double rho2 = (f->A.A[1] * x * x - 2.0 * f->A.A[2] * x * y + f->A.A[0] * y * y) / f->root; /* det A = r */
+  const double rho2 = (f->A[1] * x * x - 2.0 * f->A[2] * x * y + f->A[0] * y * y) / f->root; /* det A = r */
 
   return (0.5 * log(rho2) - log(f->radius) + f->skin) / (2.0 * M_PI * f->root);
 }
@@ -178,8 +210,8 @@ static double Entry(const Flow *f, int i, int j, int k, int l)
 {
   const Column *x = &f->column[0], *y = &f->column[1];
 
-  return f->A.A[0] * x->GG[i][k] * y->SS[j][l] + f->A.A[1] * x->SS[i][k] * y->GG[j][l] +
-         f->A.A[2] * (x->GS[i][k] * y->GS[l][j] + x->GS[k][i] * y->GS[j][l]);
+  return f->A[0] * x->GG[i][k] * y->SS[j][l] + f->A[1] * x->SS[i][k] * y->GG[j][l] +
+         f->A[2] * (x->GS[i][k] * y->GS[l][j] + x->GS[k][i] * y->GS[j][l]);
 }
 
 static PetscErrorCode Assemble(Flow *f)
@@ -280,33 +312,40 @@ static PetscErrorCode Index(Flow *f, double *C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (306) of the material at the well, at the start. */
-static double RatioAt(const Scene *c, const Bc *b, Beds *A)
+/* (306) of a material across the well, as it lies at the start; returns det A. */
+static double Across(const Well *w, const Permeability *law, double A[3])
 {
   static const double one[CL_DIM][CL_DIM] = CL_IDENTITY;
+  const Beds          beds                = BedsOf(law->ratio, law->dip * M_PI / 180.0, one);
+  const int           i = w->across[0], j = w->across[1];
 
-  for (PetscInt k = 0; k < c->nregion; k++) {
-    if (RegionEmpty(&c->region[k]) || !RegionHolds(c, k, b->at))
-      continue;
-    const Permeability *law = &c->material[c->region[k].material].permeability;
+  A[0] = beds.A[cl_symmetric[i][i]];
+  A[1] = beds.A[cl_symmetric[j][j]];
+  A[2] = beds.A[cl_symmetric[i][j]];
+  return A[0] * A[1] - A[2] * A[2];
+}
 
-    *A = BedsOf(law->ratio, law->dip * M_PI / 180.0, one);
-    return law->ratio;
-  }
-  *A = BedsOf(1.0, 0.0, one);
-  return 1.0;
+double WellRatio(const Well *w, const Permeability *law)
+{
+  double A[3];
+
+  return Across(w, law, A);
 }
 
 static PetscErrorCode FlowCreate(const Scene *c, const Bc *b, const Well *w, Flow *f)
 {
-  const double ratio = RatioAt(c, b, &f->A), fourth = pow(ratio, 0.25);
+  PetscInt region = 0;
 
   PetscFunctionBeginUser;
-  f->root   = sqrt(ratio);
-  f->radius = 0.5 * b->radius * (fourth + 1.0 / fourth);
-  f->skin   = b->skin;
-  for (int d = 0; d < CL_DIM; d++) {
-    f->at[d] = b->at[d];
+  while (RegionEmpty(&c->region[region]) || !RegionHolds(c, region, w->at)) /* WellPlace has found one */
+    region++;
+  const double ratio  = Across(w, &c->material[c->region[region].material].permeability, f->A);
+  const double fourth = pow(ratio, 0.25);
+  f->root             = sqrt(ratio);
+  f->radius           = 0.5 * b->radius * (fourth + 1.0 / fourth);
+  f->skin             = b->skin;
+  for (int d = 0; d < 2; d++) {
+    f->at[d] = w->at[w->across[d]];
     FillColumn(c, w, d, &f->column[d]);
   }
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, SIZE, SIZE, NULL, &f->K));

@@ -231,8 +231,6 @@ static void CheckSpace(Reader *r, const Case *c)
   for (PetscInt i = 0; i < c->scene.nbc && !r->bad[GROUP_BC]; i++) {
     const Bc *b = &c->scene.bc[i];
 
-    if (b->type == BC_WELL)
-      FAIL_AT(GROUP_BC, b->name, "type", "well is a line normal to the plane, which clathra3d does not know");
     if (BcShears(b))
       FAIL_AT(GROUP_BC, b->name, "shear", "has one direction in the plane alone; clathra3d does not know it");
     if (isfinite(b->from) || isfinite(b->to))

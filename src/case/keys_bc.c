@@ -63,9 +63,13 @@ const Key bc_key[] = {
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
          .types = SIDES),
     REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = SIDES),
-    REALS(Bc, CL_DIM, "at", at, "m", "", NULL, "where the line is at the start; it goes with the body",
+    REALS(Bc, CL_DIM, "at", at, "m", "", NULL,
+          "where the line is at the start; it goes with the body (in space one end of what is open of it, `end` the "
+          "other, along an axis)",
           .types = TYPE(BC_WELL)),
-    CHOICE(Bc, "axis", axis, NULL, axis_word, "axis normal to the grid plane", .types = PLANES),
+    IN_SPACE(REALS(Bc, CL_DIM, "end", end, "m", "", NULL, "the other end of what is open, along an axis",
+                   .types = TYPE(BC_WELL)), )
+        CHOICE(Bc, "axis", axis, NULL, axis_word, "axis normal to the grid plane", .types = PLANES),
     REAL(Bc, "position", position, "m", "", NULL, "coordinate of the plane; must be a grid line", .types = PLANES),
     BOOLEAN(Bc, "holds", drained, "all", "all phases, or the skeleton alone: a porous plate",
             .types = TYPE(BC_ROLLER) | TYPE(BC_FIXED) | TYPE(BC_PLATE) | TYPE(BC_PLATE_LINE), .choices = holds_word),
@@ -98,8 +102,9 @@ const Key bc_key[] = {
          WHEN(WellNeedsRadius, "bottom_pressure is given"), .word = "none", .types = TYPE(BC_WELL)),
     REAL(Bc, "skin", skin, "", "[-5,1e4]", "0", "of the well: resistance at its wall, in mu/(2 pi k) (368)",
          .types = TYPE(BC_WELL)),
-    SCHEDULE("water_flow", rate[PHASE_W], "kg/s", "[-1e6,1e6]", "", TYPE(BC_WELL),
-             "mass into the body per metre of thickness, instead of bottom_pressure; negative = out"),
+    SCHEDULE(
+        "water_flow", rate[PHASE_W], "kg/s", "[-1e6,1e6]", "", TYPE(BC_WELL),
+        "mass into the body per metre of thickness (in space: all of it), instead of bottom_pressure; negative = out"),
     SCHEDULE("gas_flow", rate[PHASE_G], "kg/s", "[-1e6,1e6]", "", TYPE(BC_WELL), "the same for gas"),
     SCHEDULE("inflow_temperature", heated, "degC", "(-273.15,1000]", "", TYPE(BC_WELL),
              "of what enters from the well, by default the body's own"),

@@ -1,7 +1,8 @@
-/* wells: keys of a well in the plane that must agree with each other, with the grid and with the body. */
+/* wells: keys of a well that must agree with each other, with the grid and with the body. */
 #include "case_private.h"
 #include "clathra/boundary.h"
 #include "clathra/shape.h"
+#include "clathra/words.h"
 
 #define FAIL(b, key, ...) FAIL_AT(GROUP_BC, (b)->name, key, __VA_ARGS__)
 #define WHOLE 1e-6 /* of the sum of the weights (366), which is 1 inside a body */
@@ -13,21 +14,21 @@ static double Shares(const Scene *c, const Well *w)
 
   for (PetscInt k = 0; k < c->nregion; k++) {
     Lattice  lattice;
-    PetscInt ij[CL_DIM];
+    PetscInt none[CL_DIM] = {0};
 
     if (RegionEmpty(&c->region[k]))
       continue;
     RegionLattice(c, k, &lattice);
-    for (ij[1] = 0; ij[1] < lattice.n[1]; ij[1]++) {
-      for (ij[0] = 0; ij[0] < lattice.n[0]; ij[0]++) {
-        double x[CL_DIM], l[CL_DIM];
+    for (PetscInt at = 0; at < BoxSize(lattice.n); at++) {
+      PetscInt ij[CL_DIM];
+      double   x[CL_DIM], l[CL_DIM];
 
-        if (!RegionPlace(c, k, &lattice, ij, x))
-          continue;
-        for (int d = 0; d < CL_DIM; d++)
-          l[d] = 0.5 * LatticeWidth(&lattice, d, x[d]);
-        sum += WellShare(w, x, l);
-      }
+      BoxAt(none, lattice.n, at, ij);
+      if (!RegionPlace(c, k, &lattice, ij, x))
+        continue;
+      for (int d = 0; d < CL_DIM; d++)
+        l[d] = 0.5 * LatticeWidth(&lattice, d, x[d]);
+      sum += WellShare(w, x, l);
     }
   }
   return sum;
@@ -39,17 +40,17 @@ static void CheckPlace(Reader *r, const Scene *c, Bc *b)
   double h = INFINITY;
 
   if (!WellPlace(c, b, &w)) {
-    FAIL(b, "at", "lies outside the body: no region has particles at (%g m, %g m)", b->at[0], b->at[1]);
+    FAIL(b, "at", "lies outside the body: no region has particles at %s", PlaceWords(w.at).s);
     return;
   }
-  for (int d = 0; d < CL_DIM; d++)
-    h = fmin(h, LinesLeastAt(&w.line[d], b->at[d]));
+  for (int d = 0; d < 2; d++)
+    h = fmin(h, LinesLeastAt(&w.line[d], w.at[w.across[d]]));
   const double sum = Shares(c, &w);
   if (fabs(sum - 1.0) > WHOLE) {
     FAIL(b, "at",
-         "(%g m, %g m): a well draws from the particles within a cell of it, and those of the body have %.6g of its "
+         "%s: a well draws from the particles within a cell of it, and those of the body have %.6g of its "
          "weights: the body ends nearer than that, or regions that differ in particles_per_cell meet there",
-         b->at[0], b->at[1], sum);
+         PlaceWords(b->at).s, sum);
   } else if (b->value.n && b->radius > 0.5 * h * (1.0 + WHOLE)) {
     FAIL(b, "radius",
          "%g m is more than half a cell (%g m): cut such a well out of the body and give its wall a pressure",
@@ -62,6 +63,18 @@ static void CheckPlace(Reader *r, const Scene *c, Bc *b)
   }
 }
 
+#if CL_DIM == 3
+/* In space it runs along an axis. */
+static bool Runs(const Bc *b)
+{
+  int differ = 0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    differ += b->at[d] != b->end[d];
+  return differ == 1;
+}
+#endif
+
 void CheckWell(Reader *r, const Case *c, Bc *b)
 {
   const bool rate = b->rate[PHASE_W].n || b->rate[PHASE_G].n;
@@ -72,6 +85,11 @@ void CheckWell(Reader *r, const Case *c, Bc *b)
     FAIL(b, "type", "well is a line normal to the plane; about an axis a well is a pressure on side: left");
   else if (c->pressures == PRESSURES_PARTICLES)
     FAIL(b, "type", "well is not known with stepper_pressures: particles");
+#if CL_DIM == 3
+  else if (!Runs(b))
+    FAIL(b, "end", "must differ from at, %s, along one axis: a well runs along it, open between the two",
+         PlaceWords(b->at).s);
+#endif
   else if (rate && b->value.n)
     FAIL(b, b->rate[PHASE_W].n ? "water_flow" : "gas_flow",
          "and bottom_pressure are two ways to drive a well: give one");

@@ -406,7 +406,7 @@ CASES = [
      ["bc_drain_pressure", "type inflow"], []),
     # --- meters
     # --- a well in the plane; the column is two cells high, so one on the middle line has a cell of body around it
-    ("well outside the body", WELL("at: [1.02 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_at", "outside the body", "1.02 m"], []),
+    ("well outside the body", WELL("at: [1.02 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_at", "outside the body", "(1.02, 0.01) m"], []),
     ("well beside the surface", WELL("at: [0.5 m, 0.015 m], radius: 1 mm, bottom_pressure: 2 MPa"), ["bc_well_at", "within a cell", "ends nearer"], []),
     ("well that nothing drives", WELL("at: [0.5 m, 0.01 m]"), ["bc_well_bottom_pressure", "is missing", "water_flow"], []),
     ("well that two things drive", WELL("at: [0.5 m, 0.01 m], radius: 1 mm, bottom_pressure: 2 MPa, water_flow: 1 kg/s"), ["bc_well_water_flow", "two ways to drive a well"], []),

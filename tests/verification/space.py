@@ -84,6 +84,8 @@ def drawn_out(case, ring):
     for b in c["bc"].values():
         if "axis" in b:
             b["axis"] = "xyz"[along["xy".index(b["axis"])]]
+        if "at" in b:
+            b["at"], b["end"] = place(b["at"], "0 m"), place(b["at"], f"{DEEP} m")
         if "side" in b:
             d, end = next((d, s.index(b["side"])) for d, s in enumerate(SIDES) if b["side"] in s)
             b["side"] = SIDES[along[d]][end]
@@ -281,6 +283,57 @@ def without_matrix():
             "-basis", "cpgimp", bar=1e-8)  # fmt: skip
 
 
+def drilled(case):
+    """With a well that yields water, gas and heat."""
+    case = json.loads(json.dumps(case))
+    case["boundaries"].append("well")
+    case["bc"]["well"] = {"type": "well", "at": ["0.33 m", "0.24 m"], "bottom_pressure": "2.8 MPa", "radius": "2 cm"}
+    return case
+
+
+LAYERS = {"sand": ("3 m", "1e-12 m^2"), "silt": ("5 m", "1e-13 m^2"), "gravel": ("6 m", "1e-11 m^2")}  # their tops, from z = 0 on
+
+
+def ground(names):
+    """Rigid layers of wet ground, 10 m x 10 m, whose sides hold their pressure and in which a well stands."""
+    fluid = {"bulk_modulus": "2.2e18 Pa", "ref_pressure": "5 MPa"}
+    soil = lambda k: {"porosity": 0.3, "solid": {"density": "2650 kg/m^3"}, "water": fluid, "elasticity": {"E0": "rigid", "nu": 0.3},
+                      "permeability": {"k0": k, "porosity_law": "none", "hydrate_law": "none"}}  # fmt: skip
+    tops = [LAYERS[n][0] for n in names]
+    return {
+        "title": "Ground in layers", "fields": ["water"], "inertia": "no",
+        "grid": {"lower": ["0 m"] * 3, "upper": ["10 m", "10 m", tops[-1]], "cells": [10, 10, int(tops[-1].split()[0])]},
+        "materials": names, "mat": {n: soil(LAYERS[n][1]) for n in names}, "regions": names,
+        "region": {n: {"lower": ["0 m", "0 m", below], "upper": ["10 m", "10 m", top], "material": n, "pressure": "10 MPa"}
+                   for n, below, top in zip(names, ["0 m", *tops], tops)},
+        "boundaries": ["left", "right", "bottom", "top", "well"],
+        "bc": {s: {"type": "pressure", "side": s, "initial": "yes"} for s in ("left", "right", "bottom", "top")}
+        | {"well": {"type": "well", "at": ["5.25 m", "4.6 m", "0 m"], "end": ["5.25 m", "4.6 m", tops[-1]], "radius": "0.1 m", "bottom_pressure": "4 MPa"}},
+        "meters": ["well"], "meter": {"well": {"well": "well"}},
+        "time": {"end": "1e8 s"}, "stepper": {"type": "euler", "adapt": "no", "dt": "2e7 s"},
+    }  # fmt: skip
+
+
+def wells():
+    """Wells drawn out with their scene; one through layers, which yields what each of them would; one that is open in a part of them."""
+    compare("a well, water and gas with hydrate", drilled(block()), rings=(0, 1, 2))
+    compare("a well across beds", drilled(block()), "-mat_sediment_permeability_ratio", 0.3, "-mat_sediment_permeability_dip", "20 deg")
+    compare("a well, hybrid", drilled(hurried(block())), rings=(0, 1, 2))
+    rate = lambda case, *options, ranks=1: run(SPACE, written(case, "ground"), *options, ranks=ranks).csv("meters.csv")["well.water_kg_s"][-1]
+    names = list(LAYERS)
+    yields = {n: rate(ground([n])) / float(LAYERS[n][0].split()[0]) for n in names}  # kg/s a metre
+    whole = 3 * yields["sand"] + 2 * yields["silt"] + yields["gravel"]
+    judge("space", "a well through three layers: rate off the sum of theirs", abs(rate(ground(names)) / whole - 1), 1e-9)
+    judge("space", "... on 2 ranks", abs(rate(ground(names), ranks=2) / whole - 1), 1e-9)
+    part = ground(names)
+    part["bc"]["well"]["at"][2], part["bc"]["well"]["end"][2] = "5.9 m", "5.2 m"
+    tight = [o for n in ("sand", "silt") for o in (f"-mat_{n}_permeability_k0", "1e-19 m^2")]
+    # flow from above and below comes to that of what is open, up to all that the layer has
+    judge("space", "... open in 0.7 m of one of 1 m, the others tight: rate over that of 0.7 m", rate(part, *tight) / (0.7 * yields["gravel"]), (1.0, 1 / 0.7))
+    part["bc"]["well"] = {"type": "well", "at": ["5.25 m", "4.6 m", "0 m"], "end": ["5.25 m", "4.6 m", "6 m"], "water_flow": "-3 kg/s"}
+    judge("space", "... a rate that is given", abs(rate(part) / 3 - 1), 1e-12)
+
+
 def turned(hybrid=False):
     """A body that no plane cuts out, its axes exchanged in a ring: layers that differ in permeability, so that (353) acts, or with
     hybrid (350), loaded on a part of its top and on its front, drained aside, warmer with depth."""
@@ -431,11 +484,15 @@ def halved(what, case, middle, bar):
 def refused():
     """What is of the plane alone is refused by name, and a case of the plane by the program of space; the other way round, too."""
     plane, (space, _) = block(), drawn_out(block(), 0)
-    sheared = json.loads(json.dumps(space))
+    sheared, askew, beside = (json.loads(json.dumps(c)) for c in (space, drawn_out(drilled(block()), 0)[0], drawn_out(drilled(block()), 0)[0]))
     sheared["bc"]["load"]["shear"] = "1 kPa"
+    askew["bc"]["well"]["end"] = ["0.34 m", "0.24 m", "0.1 m"]
+    beside["bc"]["well"]["end"][2] = "0.12 m"
     for what, program, case, options, words in (
         ("axisymmetry", SPACE, space, ["-geometry", "axisymmetric"], "geometry"),
         ("shear of a traction", SPACE, sheared, [], "bc_load_shear"),
+        ("a well that runs along no axis", SPACE, askew, [], "bc_well_end"),
+        ("a well that is open beyond the body", SPACE, beside, [], "bc_well_at"),
         ("part of a side", SPACE, space, ["-bc_load_to", "0.2 m"], "bc_load_to"),
         ("a case of the plane", SPACE, plane, [], "clathra3d"),
         ("a case of space in the plane", binary(), space, [], "clathra3d"),
@@ -447,6 +504,7 @@ def refused():
 def main():
     drawn_out_scenes()
     without_matrix()
+    wells()
     turned()
     turned(hybrid=True)
     at_rest()
