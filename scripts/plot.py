@@ -128,9 +128,9 @@ def plot_balance(run):
 
 
 def plot_profiles(run, times, snapshots, axis, beats=""):
-    """Profiles along the strip against the current position, one colour a snapshot; along y with y upright."""
+    """Profiles along the strip against the current position, one colour a snapshot; along the second axis with that upright."""
     keys = ("p", "T", "S_h", "S_w", "u_x" if axis == 0 else "u_y", "s_xx" if axis == 0 else "s_yy")
-    quantities = [q for q in shown.shown(snapshots) if q.key in keys]
+    quantities = [q for q in shown.shown(snapshots, shown.names(run)) if q.key in keys]
     if not quantities:
         return False
     size = (3.4 * len(quantities) + 1, 3.8) if axis == 0 else (2.6 * len(quantities) + 1, 5.6)
@@ -146,7 +146,7 @@ def plot_profiles(run, times, snapshots, axis, beats=""):
         shows.set_major_formatter(Plain())
         shows.set_major_locator(MaxNLocator(6 if axis == 0 else 3))
     if axis == 1:
-        grid[0][0].set_ylabel("y (m)")
+        grid[0][0].set_ylabel(f"{shown.names(run)[1]} (m)")
     grid[0][-1].legend(loc="center left", bbox_to_anchor=(1.02, 0.5), title="time")
     figure.suptitle(head(run, "profiles of the particles" + beats + shown.where(run)), x=0.01, ha="left")
     save(figure, run.folder / "figures", "profiles")
@@ -160,9 +160,9 @@ def frame_size(snapshots, most=(3.4, 3.2)):
     return width, np.clip(width * extent[1] / extent[0], 0.8, most[1])
 
 
-def tidy_axes(axes, narrow):
+def tidy_axes(axes, narrow, up):
     axes.set_aspect("equal")
-    axes.set(xlabel="x (m)", ylabel="y (m)")
+    axes.set(xlabel="x (m)", ylabel=f"{up} (m)")
     axes.label_outer()
     if narrow:
         axes.tick_params(axis="x", labelrotation=90)
@@ -180,7 +180,7 @@ def plot_film(run, times, snapshots, quantities):
         for axes, time, p, v in zip(row, said, snapshots, values):
             drawn = boxes(axes, p, v, low, high, snapshots[0])
             axes.set_title(f"t = {time}" if q is quantities[0] else "")
-            tidy_axes(axes, width < 1.5)
+            tidy_axes(axes, width < 1.5, shown.names(run)[1])
         figure.colorbar(drawn, ax=list(row), label=wrapped(q.axis, height), format=Plain(), ticks=MaxNLocator(4 if height < 1.5 else 6), pad=0.01, aspect=15)
     figure.suptitle(head(run, "the body at output times" + shown.where(run)), x=0.01, ha="left")
     save(figure, run.folder / "figures", "particles")
@@ -213,7 +213,7 @@ def plot_maps(run, time, particles, first, quantities):
         axes.set_title(q.axis)
         if q.key in ("v_w", "v_g"):
             arrows(axes, particles, q.key)
-        tidy_axes(axes, width < 1.5)
+        tidy_axes(axes, width < 1.5, shown.names(run)[1])
     figure.suptitle(head(run, f"t = {duration(time)}" + shown.where(run)), x=0.01, ha="left")
     save(figure, run.folder / "figures", "maps")
 
@@ -233,7 +233,7 @@ def plot_body(run):
     snapshots = [first, *(shown.drawn(run, t) for t in times[1:])]
     if axis is not None:
         return plot_profiles(run, times, snapshots, axis, beats)
-    changing = shown.shown(snapshots)
+    changing = shown.shown(snapshots, shown.names(run))
     rows = [q for q in changing if q.key in FIRST][:4]
     if rows:
         plot_film(run, times, snapshots, rows)

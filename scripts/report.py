@@ -120,23 +120,24 @@ DULL = ("all", "start", "end", "run", "none", "no", "both")  # values that say n
 
 
 def places(run, keys, x, l):
-    low, high = run.case["grid_lower"], run.case["grid_upper"]
-    if keys.get("axis") == "z":
+    low, high = ([run.case[f"grid_{end}"][a] for a in shown.axes(run)] for end in ("lower", "upper"))
+    if "axis" in keys and keys["axis"] not in shown.names(run):
         return []
     if "axis" in keys:
-        k = "xy".index(keys["axis"])
+        k = shown.names(run).index(keys["axis"])
         ends = [low[1 - k], high[1 - k]]
         return [[keys["position"], ends[0], keys["position"], ends[1]] if k == 0 else [ends[0], keys["position"], ends[1], keys["position"]]]
     if isinstance(keys.get("along"), list):
         return [[*a, *b] for a, b in zip(keys["along"], keys["along"][1:])]
-    if keys.get("side") not in ("left", "right", "bottom", "top"):
-        return []
-    return outermost(keys, x, l)
+    sides = {side: (k, out) for k, name in enumerate(shown.names(run)) for side, out in zip(SIDES[name], (-1, 1))}
+    return outermost(keys, *sides[keys["side"]], x, l) if keys.get("side") in sides else []
 
 
-def outermost(keys, x, l):
-    """Faces of the outermost particles on a side, from `from` to `to`."""
-    k, out = {"left": (0, -1), "right": (0, 1), "bottom": (1, -1), "top": (1, 1)}[keys["side"]]
+SIDES = {"x": ("left", "right"), "y": ("bottom", "top"), "z": ("back", "front")}
+
+
+def outermost(keys, k, out, x, l):
+    """Faces of the outermost particles on the side out (-1, 1) along axis k, from `from` to `to`."""
     along = x[:, 1 - k]
     rows = np.floor(along / (2 * l[:, 1 - k].min())).astype(int)
     start, end = (keys.get(w) if isinstance(keys.get(w), float) else s * np.inf for w, s in (("from", -1), ("to", 1)))
@@ -153,11 +154,11 @@ def outermost(keys, x, l):
 
 def scene(run, first, last):
     corner = np.concatenate([shown.corners(p, first).reshape(-1, 2) for p in (first, last)])
-    box = [run.case["grid_lower"], run.case["grid_upper"]]
-    return {"grid": [[number(v) for v in line] for line in run.lines[:2]], "box": [[number(v) for v in b[:2]] for b in box],
+    box, axes = [run.case["grid_lower"], run.case["grid_upper"]], shown.axes(run)[:2]
+    return {"grid": [[number(v) for v in run.lines[a]] for a in axes], "box": [[number(b[a]) for a in axes] for b in box], "up": shown.names(run)[1],
             "body": [[number(v) for v in corner.min(0)], [number(v) for v in corner.max(0)]],
             "regions": run.names("regions"), "region": packed(first["region"], "u1"), "conditions": conditions(run, first),
-            "probes": [{"name": n, "at": [number(v) for v in run.case[f"probe_{n}_at"][:2]]} for n in run.names("probes")
+            "probes": [{"name": n, "at": [number(run.case[f"probe_{n}_at"][a]) for a in axes]} for n in run.names("probes")
                        if isinstance(run.case.get(f"probe_{n}_at", [None])[0], float)]}  # fmt: skip
 
 
@@ -174,7 +175,7 @@ def film(run):
     if not len(run.times):
         return None
     first = shown.plane(run, run.times[0])
-    wanted = shown.shown([shown.drawn(run, t) for t in run.times[shown.spread(len(run.times), 8)]])
+    wanted = shown.shown([shown.drawn(run, t) for t in run.times[shown.spread(len(run.times), 8)]], shown.names(run))
     frames, stride = chosen(run, len(first["id"]), 8 + len(wanted))
     ids = slice(None, None, stride)
     edges, place, values, flows = [], [], [], []

@@ -78,7 +78,7 @@ HISTORIES = [
     ("temperature T", "°C", [("T_degC", 1, "")], 0.1),
     ("hydrate saturation S_h", "–", [("S_h", 1, "")], 0.01),
     ("saturation", "–", [("S_w", 1, "water"), ("S_g", 1, "gas")], 0.01),
-    ("displacement", "mm", [("u_x_m", MM, "x"), ("u_y_m", MM, "y")], 0.01),
+    ("displacement", "mm", [("u_x_m", MM, "x"), ("u_y_m", MM, "y"), ("u_z_m", MM, "z")], 0.01),
     ("effective stress, tension +", "MPa", [("sxx_Pa", MPA, "xx"), ("syy_Pa", MPA, "yy"), ("sxy_Pa", MPA, "xy")], 0.01),
 ]
 
@@ -105,15 +105,26 @@ def nodal_means(lines, particles, values):
     return found
 
 
+def axes(run):
+    """The axes of a picture, to the right and up, then in space the one that it cuts across: x and y, but x and z where weight goes along z."""
+    weight = np.abs(run.case["gravity"]) if run.in_space else [0.0]
+    return ((0, 2, 1) if np.argmax(weight) == 2 else (0, 1, 2)) if run.in_space else (0, 1)
+
+
+def names(run):
+    """Their names, "xy" or "xz"."""
+    return "".join("xyz"[a] for a in axes(run)[:2])
+
+
 @functools.lru_cache(maxsize=4)
 def cut(run):
-    """(z (m), mask of the particles that it goes through at the start) of the plane in which a run in space is shown: that of its first
-    probe, else the middle of the body; None in the plane."""
+    """(place along the axis that it cuts across (m), mask of the particles that it goes through at the start) of the plane in which a run in
+    space is shown: that of its first probe, else the middle of the body; None in the plane."""
     if not run.in_space:
         return None
-    first = run.particles(run.times[0])
-    z, l = first["position"][:, 2], first["half_length"][:, 2]
-    at = next((p[2] for n in run.names("probes") if isinstance((p := run.case.get(f"probe_{n}_at", [None]))[0], float)), None)
+    first, across = run.particles(run.times[0]), axes(run)[2]
+    z, l = first["position"][:, across], first["half_length"][:, across]
+    at = next((p[across] for n in run.names("probes") if isinstance((p := run.case.get(f"probe_{n}_at", [None]))[0], float)), None)
     at = 0.5 * ((z - l).min() + (z + l).max()) if at is None else float(np.clip(at, (z - l).min(), (z + l).max()))
     inside = at + 1e-6 * l.min() * (1 if at < (z + l).max() - 1e-9 * l.min() else -1)  # on a border between particles: those behind it
     return at, np.abs(z - inside) < l
@@ -121,19 +132,24 @@ def cut(run):
 
 def plane(run, time):
     """Particles at a time as pictures show them: those of the plane, in space those of cut() with what lies in that plane of vectors and
-    of the deformation gradient; stresses keep their six components."""
+    of the deformation gradient; stresses keep their six components, in the order of these axes."""
     return _in_plane(run, run.particles(time))
 
 
 def _in_plane(run, particles):
     if cut(run) is None:
         return particles
-    held, found = cut(run)[1], {}
+    held, found, (a, b, c) = cut(run)[1], {}, axes(run)
+    voigt = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
     for name, v in particles.items():
         v = v[held]
         if name == "deformation_gradient":
-            v = v[:, [0, 1, 3, 4]]
-        found[name] = v[:, :2] if v.ndim == 2 and v.shape[1] == 3 else v
+            v = v[:, [3 * i + j for i in (a, b) for j in (a, b)]]
+        elif v.ndim == 2 and v.shape[1] == 6:
+            v = v[:, [voigt[pair] for pair in ((a, a), (b, b), (c, c), (a, b), (b, c), (a, c))]]
+        elif v.ndim == 2 and v.shape[1] == 3:
+            v = v[:, [a, b]]
+        found[name] = v
     return found
 
 
@@ -148,11 +164,16 @@ def drawn(run, time):
 
 def where(run):
     """Words that say which plane is shown, for a title; none in the plane."""
-    return "" if cut(run) is None else f", cut at z = {cut(run)[0]:.4g} m"
+    return "" if cut(run) is None else f", cut at {'xyz'[axes(run)[2]]} = {cut(run)[0]:.4g} m"
 
 
-def shown(snapshots):
-    """The quantities that the scene has and that are not the same everywhere and always, in order."""
+def _on(q, names):
+    """The quantity with its label on these axes."""
+    return q._replace(label=re.sub(r"\b[xy]{2}\b|(?<=_)[xy]\b", lambda m: "".join(names["xy".index(k)] for k in m[0]), q.label))
+
+
+def shown(snapshots, names="xy"):
+    """The quantities that the scene has and that are not the same everywhere and always, in order; names: of the axes."""
     found, first = [], snapshots[0]
     for q in QUANTITIES:
         if q.needs not in first or (q.key == "p_w" and "p_g" not in first):
@@ -160,7 +181,7 @@ def shown(snapshots):
         values = np.concatenate([q.of(p) for p in snapshots])
         values = values[np.isfinite(values)]
         if values.size and np.ptp(values) > 1e-9 * np.abs(values).max():
-            found.append(q)
+            found.append(_on(q, names))
     return found
 
 
