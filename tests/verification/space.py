@@ -89,7 +89,7 @@ def drawn_out(case, ring):
         if "side" in b:
             d, end = next((d, s.index(b["side"])) for d, s in enumerate(SIDES) if b["side"] in s)
             b["side"] = SIDES[along[d]][end]
-    if "u" not in c.get("held", ""):
+    if {"solid", "water"} & set(c.get("fields", ["solid"])):
         for name, at in (("one_face", "0 m"), ("other_face", f"{DEEP} m")):
             c["boundaries"].append(name)
             c["bc"][name] = {"type": "roller", "axis": "xyz"[along[2]], "position": at}
@@ -257,6 +257,28 @@ def hurried(case, dt="2e-5 s", end="0.02 s"):
     return case | {"time": {"end": end}, "output": {"times": [end]}, "stepper": {"type": "hybrid", "adapt": "no", "dt": dt}}
 
 
+SETS = ("solid", "heat", "water", "water,heat", "water,gas", "water,gas,heat", "solid,heat", "solid,water", "solid,water,heat", "solid,water,gas")
+
+
+def of_fields(case, fields):
+    """The scene with these fields alone, and what they know of its material, state and conditions."""
+    case, has = json.loads(json.dumps(case)), set(fields.split(","))
+    needs = {"sun": "heat", "drain": "water"}
+    case["boundaries"] = [b for b in case["boundaries"] if needs.get(b, "solid") in has]
+    case["bc"] = {b: case["bc"][b] for b in case["boundaries"]}
+    if "drain" in case["bc"]:
+        case["bc"]["drain"] = {"type": "pressure", "side": "right", "pressure": "3 MPa"}
+    sediment = case["mat"]["sediment"]
+    sediment["kinetics"] = {"active": "no"}
+    sediment["elasticity"] = {"E0": "90 MPa" if "solid" in has else "rigid", "nu": 0.3}
+    for r in case["region"].values():
+        del r["Sw"], r["Sg"], r["Sh"]
+        r |= {"Sw": 0.7, "Sg": 0.3} if "gas" in has else {"Sw": 1} if "water" in has else {}
+    if "heat" in has:
+        case["region"]["free"] |= {"geothermal": "5 K/m", "geothermal_datum": "0.5 m"}
+    return case | {"fields": fields.split(",")}
+
+
 def without_matrix():
     """The same of hybrid and explicit."""
     every, quick = (0, 1, 2), hurried(block())
@@ -273,6 +295,8 @@ def without_matrix():
     compare("block, hybrid, relative pressures, velocities free", within, "-stepper_pressures", "relative", "-stepper_surface", "velocities_free", rings=every)
     compare("block, hybrid, the paper's bare form", within, "-stepper_pressures", "particles", "-stepper_surface", "free", rings=every)
     compare("block, explicit", hurried(block(), end="0.002 s"), "-stepper_type", "explicit", "-mat_sediment_permeability_k0", "1e-10 m^2")
+    for fields in SETS:
+        compare(f"{fields}, hybrid", hurried(of_fields(block(), fields), end="0.004 s"))
     wet = json.loads(json.dumps(quick))
     wet["boundaries"].remove("sun")
     del wet["bc"]["sun"]
