@@ -316,6 +316,29 @@ def collapse_3d(run, left, right):
     figure.colorbar(shown, ax=axes, shrink=0.7, pad=0.15)
 
 
+def slope_3d(run, left, right):
+    """How far the front goes along the slope, heated in its middle and everywhere, and the body heated in its middle."""
+    middle, everywhere = run(), run("-region_heated_upper", "300 m,1 m,96 m")
+    for case, label, colour in ((everywhere, "heated everywhere", COLOURS[1]), (middle, "heated to z = 48 m", COLOURS[0])):
+        for (t, v), style in zip((case.snapshots[k] for k in (19, 39)), ("--", "-")):
+            z, far = v["initial_position"][:, 2], np.linalg.norm(v["displacement"], axis=1)
+            rows = np.unique(np.round(z, 6))
+            left.plot(rows, [np.quantile(far[np.isclose(z, row)], 0.95) for row in rows], style, color=colour, label=f"{label}, {t:.0f} s")
+    left.set(xlabel="z (m)", ylabel="way that 95 % stay below (m)", ylim=(0, None))
+    left.legend()
+    figure, place = right.figure, right.get_subplotspec()
+    right.remove()
+    axes = figure.add_subplot(place, projection="3d", proj_type="ortho")
+    v = middle.snapshots[-1][1]
+    x, far = v["position"], np.linalg.norm(v["displacement"], axis=1)
+    x, far = np.concatenate([x * (1, 1, side) for side in (-1, 1)]), np.tile(far, 2)
+    shown = axes.scatter(x[:, 0], x[:, 2], x[:, 1], c=far, s=3, cmap="viridis", lw=0, depthshade=False, vmax=4)
+    axes.set(xlim=(0, 320), ylim=(-96, 96), zlim=(0, 100), zticks=(0, 100), xlabel="x (m)", ylabel="z (m)", title="heated to z = 48 m, 40 s: way of the particles (m)")
+    axes.set_box_aspect((320, 192, 100))
+    axes.view_init(elev=28, azim=-48)
+    figure.colorbar(shown, ax=axes, shrink=0.7, pad=0.15, extend="max")
+
+
 def slope_warming(run, *axes):
     settled = 20
     case, falling = run(), run("-ambient_level", "{ramp: [461.5 m, 441.5 m, 20 a, 120 a]}")
@@ -345,10 +368,10 @@ def slope_warming(run, *axes):
     beside.set_ylabel("m", color=COLOURS[1])
 
 
-SPACE = {"footing_3d", "collapse_3d"}  # run by clathra3d
+SPACE = {"footing_3d", "collapse_3d", "slope_3d"}  # run by clathra3d
 PANELS = {"century_hydrate": (1, 3), "sea_floor": (3, 2), "slope_warming": (3, 2)}  # rows and columns; one row of two without a word
 FIGURES = [heat_slab, heat_advection, elastic_wave, gravity_column, terzaghi, buckley_leverett, mcwhorter_sunada, stefan_front, century,
-           century_hydrate, footing, footing_3d, collapse_3d, shear_box, sea_floor, slope_warming]  # fmt: skip
+           century_hydrate, footing, footing_3d, collapse_3d, shear_box, sea_floor, slope_warming, slope_3d]  # fmt: skip
 
 
 def main(program=str(ROOT / "build" / "clathra"), *names):
