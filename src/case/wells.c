@@ -63,7 +63,6 @@ static void CheckPlace(Reader *r, const Scene *c, Bc *b)
   }
 }
 
-#if CL_DIM == 3
 /* In space it runs along an axis. */
 static bool Runs(const Bc *b)
 {
@@ -73,7 +72,6 @@ static bool Runs(const Bc *b)
     differ += b->at[d] != b->end[d];
   return differ == 1;
 }
-#endif
 
 void CheckWell(Reader *r, const Case *c, Bc *b)
 {
@@ -85,11 +83,9 @@ void CheckWell(Reader *r, const Case *c, Bc *b)
     FAIL(b, "type", "well is a line normal to the plane; about an axis a well is a pressure on side: left");
   else if (c->pressures == PRESSURES_PARTICLES)
     FAIL(b, "type", "well is not known with stepper_pressures: particles");
-#if CL_DIM == 3
-  else if (!Runs(b))
+  else if (CL_DIM == 3 && !Runs(b))
     FAIL(b, "end", "must differ from at, %s, along one axis: a well runs along it, open between the two",
          PlaceWords(b->at).s);
-#endif
   else if (rate && b->value.n)
     FAIL(b, b->rate[PHASE_W].n ? "water_flow" : "gas_flow",
          "and bottom_pressure are two ways to drive a well: give one");

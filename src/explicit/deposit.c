@@ -97,6 +97,13 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
 }
 
+/* Of particle q from the first node of its patch along d, m: S_1 + third S_2 units on (weights reproduce the middle).
+ */
+INLINE double FromFirst(const Weights *w, int d, int q)
+{
+  return (w->S[d][1][q] + w->third[d][q] * w->S[d][2][q]) * w->unit[d][q];
+}
+
 /* V (p + g . (x_I - x_p)) at the lowest left node of the patch, and its growth from node to node (2). */
 INLINE void Carried(Run r, int lane, const double *restrict weight, const double *restrict y,
                     const double *const g[CL_DIM], const Weights *w, Given *v)
@@ -104,9 +111,8 @@ INLINE void Carried(Run r, int lane, const double *restrict weight, const double
   for (int q = 0; q < r.n; q++) {
     double at = y[q];
 
-    /* x_p from the first node: S_1 + third S_2 units on (weights reproduce the middle) */
     for (int d = 0; d < CL_DIM; d++) {
-      at -= g[d][q] * (w->S[d][1][q] + w->third[d][q] * w->S[d][2][q]) * w->unit[d][q];
+      at -= g[d][q] * FromFirst(w, d, q);
       v->carry[d][q][lane] = weight[q] * g[d][q] * w->unit[d][q];
     }
     v->value[q][lane] = weight[q] * at;
@@ -120,8 +126,7 @@ INLINE void CarriedCross(Run r, int lane, const double *restrict weight, const d
   const int i = cl_pair[c][0], j = cl_pair[c][1];
 
   for (int q = 0; q < r.n; q++) {
-    const double more = weight[q] * b[q], x = (w->S[i][1][q] + w->third[i][q] * w->S[i][2][q]) * w->unit[i][q],
-                 y = (w->S[j][1][q] + w->third[j][q] * w->S[j][2][q]) * w->unit[j][q];
+    const double more = weight[q] * b[q], x = FromFirst(w, i, q), y = FromFirst(w, j, q);
 
     v->value[q][lane] += more * x * y;
     v->carry[i][q][lane] -= more * y * w->unit[i][q];
