@@ -246,6 +246,13 @@ def sea_floor(run, *axes):
     right.legend(loc="center")
 
 
+def in_space(panel):
+    """Axes of three dimensions in its place."""
+    figure, place = panel.figure, panel.get_subplotspec()
+    panel.remove()
+    return figure.add_subplot(place, projection="3d", proj_type="ortho")
+
+
 MAGNIFIED = 20  # displacements of footing_3d
 
 
@@ -272,9 +279,7 @@ def footing_3d(run, left, right):
     left.set(xlabel="time (days)", ylabel="settlement (mm)", xscale="log", xlim=(0.3, None))
     left.invert_yaxis()
     left.legend()
-    figure, place = right.figure, right.get_subplotspec()
-    right.remove()
-    axes = figure.add_subplot(place, projection="3d", proj_type="ortho")
+    axes = in_space(right)
     v = case.snapshots[-1][1]
     s = v["stress"]
     mises = PA * np.sqrt(0.5 * ((s[:, :3] - s[:, [1, 2, 0]]) ** 2).sum(1) + 3 * (s[:, 3:] ** 2).sum(1))
@@ -287,7 +292,7 @@ def footing_3d(run, left, right):
              title=f"deviatoric stress q (MPa); displacements x {MAGNIFIED}")  # fmt: skip
     axes.set_box_aspect(high[[0, 2, 1]])
     axes.view_init(elev=28, azim=-132)
-    figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.1)
+    axes.figure.colorbar(colours, ax=axes, shrink=0.7, pad=0.1)
 
 
 def collapse_3d(run, left, right):
@@ -303,9 +308,7 @@ def collapse_3d(run, left, right):
     left.text(2.22, 0.6, "experiments stop here", rotation=90, ha="right", va="center", fontsize=8)
     left.set(xlabel="distance from the axis (m)", ylabel="height of the highest particles (m)", ylim=(0, 1.1), xlim=(0, 2.6))
     left.legend()
-    figure, place = right.figure, right.get_subplotspec()
-    right.remove()
-    axes = figure.add_subplot(place, projection="3d", proj_type="ortho")
+    axes = in_space(right)
     v = case.snapshots[-1][1]
     x = np.concatenate([v["position"] * (a, b, 1) for a in (-1, 1) for b in (-1, 1)])
     far = np.tile(np.linalg.norm(v["displacement"], axis=1), 4)
@@ -313,7 +316,7 @@ def collapse_3d(run, left, right):
     axes.set(xlim=(-2.3, 2.3), ylim=(-2.3, 2.3), zlim=(0, 1.0), xlabel="x (m)", ylabel="y (m)", zticks=(), title="all of it after 1.6 s: way of the particles (m)")
     axes.set_box_aspect((4.6, 4.6, 1.0), zoom=1.1)
     axes.view_init(elev=25, azim=-60)
-    figure.colorbar(shown, ax=axes, shrink=0.7, pad=0.15)
+    axes.figure.colorbar(shown, ax=axes, shrink=0.7, pad=0.15)
 
 
 def slope_3d(run, left, right):
@@ -326,9 +329,7 @@ def slope_3d(run, left, right):
             left.plot(rows, [np.quantile(far[np.isclose(z, row)], 0.95) for row in rows], style, color=colour, label=f"{label}, {t:.0f} s")
     left.set(xlabel="z (m)", ylabel="way that 95 % stay below (m)", ylim=(0, None))
     left.legend()
-    figure, place = right.figure, right.get_subplotspec()
-    right.remove()
-    axes = figure.add_subplot(place, projection="3d", proj_type="ortho")
+    axes = in_space(right)
     v = middle.snapshots[-1][1]
     x, far = v["position"], np.linalg.norm(v["displacement"], axis=1)
     x, far = np.concatenate([x * (1, 1, side) for side in (-1, 1)]), np.tile(far, 2)
@@ -336,7 +337,7 @@ def slope_3d(run, left, right):
     axes.set(xlim=(0, 320), ylim=(-96, 96), zlim=(0, 100), zticks=(0, 100), xlabel="x (m)", ylabel="z (m)", title="heated to z = 48 m, 40 s: way of the particles (m)")
     axes.set_box_aspect((320, 192, 100))
     axes.view_init(elev=28, azim=-48)
-    figure.colorbar(shown, ax=axes, shrink=0.7, pad=0.15, extend="max")
+    axes.figure.colorbar(shown, ax=axes, shrink=0.7, pad=0.15, extend="max")
 
 
 def slope_warming(run, *axes):

@@ -17,19 +17,23 @@ def thick(deep, cells, heated):
             "-region_heated_upper", f"300 m,1 m,{heated} m", "-bc_side_position", f"{deep} m")  # fmt: skip
 
 
-def rows(v, deep):
-    """Particles of each layer along z, in the order of their places at the start."""
-    x = np.round(v["initial_position"], 6)
-    for z in np.unique(x[:, 2]) if deep else [0]:
-        at = np.flatnonzero(x[:, 2] == z) if deep else np.arange(len(x))
-        yield at[np.lexsort(x[at, :2].T)]
+def in_order(place, at):
+    """Particles `at`, by where in the plane they were at the start."""
+    return at[np.lexsort(np.round(place[at, :2], 6).T)]
+
+
+def layers(place):
+    """Those of each layer along z."""
+    z = np.round(place[:, 2], 6)
+    return [in_order(place, np.flatnonzero(z == at)) for at in np.unique(z)]
 
 
 def main():
-    (flat,), plane = rows(v := run(binary(), PLANE, *COARSE, *STEPS).snapshots()[-1][1], False), v
+    plane = run(binary(), PLANE, *COARSE, *STEPS).snapshots()[-1][1]
+    flat = in_order(plane["initial_position"], np.arange(len(plane["T"])))
     for ranks in (1, 2):
         space = run(program_of(SPACE), SPACE, *thick(8, 1, 8), *STEPS, ranks=ranks).snapshots()[-1][1]
-        off = {k: max(np.max(np.abs(space[k][at][:, : plane[k].shape[1]] - plane[k][flat])) for at in rows(space, True)) / np.max(np.abs(plane[k])) for k in BARS}
+        off = {k: max(np.max(np.abs(space[k][at][:, : plane[k].shape[1]] - plane[k][flat])) for at in layers(space["initial_position"])) / np.max(np.abs(plane[k])) for k in BARS}
         table(["of the largest"], [(f"{k} {v:.1e}",) for k, v in off.items()])
         worst = max(off, key=lambda k: off[k] / BARS[k])
         judge("slopes", f"slope in space, a cell thick, {ranks} rank{'s' * (ranks > 1)}, against the plane, of the bar of each field ({worst})", off[worst] / BARS[worst], 1.0)
