@@ -24,10 +24,10 @@ PRESETS = sorted((ROOT / "options").glob("*.opts"))
 FOLDERS = ("cases", "docs", "include", "options", "scripts", "src", "tests")
 
 # PETSc's, without an object of ours in front.
-PETSC = re.compile(r"-(snes|ksp|pc|sub_pc|sub_ksp|sub|mat_mumps|mat_umfpack|log|vec)_\w+|"
+PETSC = re.compile(r"-(snes|ksp|pc|sub_pc|sub_ksp|sub|mat_mumps|mat_umfpack|log|vec|reduced_pc_factor)_\w+|"
                    r"-(help|options_file|options_left|info)")
 # Presets may choose solver and integrator.
-NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat)_\w+")
+NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat|reduced)_\w+")
 
 spec = importlib.util.spec_from_file_location("options_doc", ROOT / "scripts" / "options_doc.py")
 options_doc = importlib.util.module_from_spec(spec)

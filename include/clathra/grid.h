@@ -86,7 +86,7 @@ static inline PetscInt GridPaddedSize(const Grid *g)
   return BoxSize(g->gm);
 }
 
-#define CL_NODE_DOUBLES 40 /* at most, of a node in one exchange */
+#define CL_NODE_DOUBLES 40 /* of a node in one exchange, at most but for blocks */
 
 /* Active nodes: owned ones first (they are a Vec's local part), then ghosts. */
 typedef struct {
@@ -97,6 +97,8 @@ typedef struct {
   PetscInt    *global;                    /* local active number -> global number */
   PetscSF      sf;                        /* ghosts -> owners */
   MPI_Datatype unit[CL_NODE_DOUBLES + 1]; /* nc doubles, made on demand */
+  MPI_Datatype block;                     /* of more than those: in_block, one number the map's life long */
+  PetscInt     in_block;
 } NodeMap;
 
 /* Numbers the nodes whose flag (padded array) is set on any rank; *changed tells whether the map is a new one.

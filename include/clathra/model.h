@@ -234,8 +234,8 @@ PetscErrorCode ModelBalance(Model *m);
 /* Before the first step: shares the grid out as a checkpoint says (GridShare); the particles are the caller's.
    Collective. */
 PetscErrorCode ModelShare(Model *m, const PetscInt nproc[], PetscInt *const start[]);
-/* Will implicit steps have the reduced preconditioner (170) rather than factors of the whole matrix? */
-bool ModelReduces(const Model *m);
+/* Unknowns a node of the matrix that implicit steps factorise (330); 0: they have multigrid. */
+int ModelFactored(const Model *m);
 /* One line, once a run: which preconditioner implicit steps have, and why.  Collective. */
 PetscErrorCode ModelPrintSolver(Model *m);
 /* Makes the solver of implicit steps if there is none; it reads its options and, with -help, lists them.  Collective;

@@ -28,6 +28,7 @@ static const struct {
     {"-progress", "s", "[0,inf)", false},         {"-stepper_max_steps", "", "[0,1e9]", true},
     {"-newton_refactor", "", "[0,1e9]", true},    {"-newton_keep_jacobian", "", "[0,inf)", false},
     {"-newton_tol_residual", "", "(0,1)", false}, {"-newton_tol_update", "", "(0,1)", false},
+    {"-newton_drop", "", "[0,1)", false},
 };
 
 /* May an option say this?  A bare logical one says yes. */

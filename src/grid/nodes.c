@@ -143,22 +143,30 @@ PetscErrorCode NodeMapDestroy(NodeMap *map)
     if (map->unit[nc])
       PetscCallMPI(MPI_Type_free(&map->unit[nc]));
   }
+  if (map->block)
+    PetscCallMPI(MPI_Type_free(&map->block));
   PetscCall(PetscMemzero(map, sizeof(*map)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Type of nc numbers a node; null on one rank, which has nobody to tell. */
+/* Type of nc numbers a node; null on one rank, which has nobody to tell.  PETSc keeps types that it has seen, so they
+   last as long as the map. */
 static PetscErrorCode Unit(NodeMap *map, PetscInt nc, MPI_Datatype *unit)
 {
-  PetscMPIInt size;
+  const bool    many = nc > CL_NODE_DOUBLES;
+  MPI_Datatype *kept = many ? &map->block : &map->unit[nc];
+  PetscMPIInt   size;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)map->sf), &size));
-  if (size > 1 && nc > 1 && !map->unit[nc]) {
-    PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)nc, MPIU_REAL, &map->unit[nc]));
-    PetscCallMPI(MPI_Type_commit(&map->unit[nc]));
+  if (size > 1 && nc > 1 && !*kept) {
+    PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)nc, MPIU_REAL, kept));
+    PetscCallMPI(MPI_Type_commit(kept));
+    map->in_block = many ? nc : map->in_block;
   }
-  *unit = size == 1 ? MPI_DATATYPE_NULL : nc == 1 ? MPIU_REAL : map->unit[nc];
+  PetscCheck(size == 1 || !many || nc == map->in_block, PetscObjectComm((PetscObject)map->sf), PETSC_ERR_PLIB,
+             "blocks of %" PetscInt_FMT " and of %" PetscInt_FMT " numbers a node", nc, map->in_block);
+  *unit = size == 1 ? MPI_DATATYPE_NULL : nc == 1 ? MPIU_REAL : *kept;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,20 +2,14 @@
 #include "solver.h"
 #include "clathra/words.h"
 
-/* UMFPACK's factorisation beats MUMPS only on small problems: 3.3 against 3.9 ms for a strip of 900 unknowns, 4.1
-   against 0.36 s for a block of 10,000. */
-#define UMFPACK_MOST 4000
-
-/* What it costs to make one, in GMRES iterations, measured (docs/benchmark.md): the reduced one whatever the size; LU,
-   whose work grows faster than that of an iteration, by the square root of the number of unknowns. */
-#define COST_REDUCED 3.0
+/* What it costs to make one, in GMRES iterations, measured (docs/benchmark.md): multigrid whatever the size; LU, whose
+   work grows faster than that of an iteration, by the square root of the number of unknowns. */
+#define COST_MULTIGRID 3.0
 #define COST_LU_LEAST 10.0
 #define COST_LU 0.24
 
-/* Unknowns across the body from which the reduced one is the cheaper (330); without fluids none are eliminated, and LU
-   in the plane is faster as far as it was measured, to 400, but its memory grows. */
-#define ACROSS_LU (CL_DIM == 3 ? 60.0 : 250.0)
-#define ACROSS_LU_DRY (CL_DIM == 3 ? 150.0 : 1000.0)
+/* Unknowns of the reduced matrix across the body from which multigrid takes over from LU (330). */
+#define ACROSS_LU (CL_DIM == 3 ? 180.0 : 250.0)
 
 /* Cells that hold particles: their number, and the box about them. */
 static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[CL_DIM])
@@ -52,28 +46,73 @@ static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Options that ask for a solver of the whole. */
-static PetscErrorCode AskedFor(Model *m)
+/* Has the user given one of these options?  Then it chose. */
+static PetscErrorCode Given(SolverPlan *plan, int n, const char *const option[], bool *given)
 {
-  static const char *const whole[] = {"-pc_type", "-ksp_type", "-model_pmat_type"};
-
   PetscFunctionBeginUser;
-  m->solver->plan.asked = m->solver->preconditioner == PRECONDITIONER_AUTO ? NULL : "-newton_preconditioner";
-  for (size_t k = 0; k < sizeof(whole) / sizeof(*whole); k++) {
+  *given = false;
+  for (int k = 0; k < n && !*given; k++) {
     PetscBool own;
 
-    PetscCall(PetscOptionsHasName(NULL, NULL, whole[k], &own));
-    if (own && (k == 0 || !m->solver->plan.asked)) {
-      m->solver->plan.asked   = whole[k];
-      m->solver->plan.reduced = false;
-    }
+    PetscCall(PetscOptionsHasName(NULL, NULL, option[k], &own));
+    if (own)
+      plan->asked = option[k];
+    *given = own;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define COUNT(a) ((int)(sizeof(a) / sizeof(*(a))))
+
+/* Does the user ask for LU of the reduced matrix, or for something else of all of it, or for multigrid? */
+static PetscErrorCode FactorsAskedFor(SolverPlan *plan)
+{
+  static const char *const groups[] = {"-reduced_fieldsplit_flow_pc_type", "-reduced_fieldsplit_motion_pc_type",
+                                       "-reduced_pc_fieldsplit_type"};
+  char                     type[32];
+  PetscBool                all, split;
+  bool                     given;
+
+  PetscFunctionBeginUser;
+  PetscCall(Given(plan, COUNT(groups), groups, &given));
+  plan->factors = plan->factors && !given;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-reduced_pc_type", type, sizeof(type), &all));
+  if (!all)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcmp(type, PCFIELDSPLIT, &split));
+  plan->factors = !split;
+  plan->asked   = "-reduced_pc_type";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Options that ask for a solver; a matrix that the user names stays where Krylov's method alone is given. */
+static PetscErrorCode AskedFor(SolverPlan *plan, int matrix)
+{
+  static const char *const whole[] = {"-pc_type", "-ksp_type", "-model_pmat_type"};
+  bool                     given;
+
+  PetscFunctionBeginUser;
+  plan->asked = matrix == PRECONDITIONER_AUTO ? NULL : "-newton_preconditioner";
+  PetscCall(Given(plan, matrix == PRECONDITIONER_AUTO ? COUNT(whole) : 1, whole, &given));
+  plan->reduced = plan->reduced && !given;
+  if (plan->reduced)
+    PetscCall(FactorsAskedFor(plan));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What elimination leaves of a node's unknowns. */
+static int Left(const FieldSet *fs)
+{
+  int n = 0;
+
+  for (int k = 0; k < fs->n; k++)
+    n += fs->field[k] < F_VW || fs->field[k] >= F_PW;
+  return n;
+}
+
 static double AcrossLU(const FieldSet *fs)
 {
-  return (fs->fluid ? ACROSS_LU : ACROSS_LU_DRY) / fs->n;
+  return ACROSS_LU / Left(fs);
 }
 
 /* Mean number of cells across the body: how many along its longest axis share a layer; in space layers are faces, whose
@@ -89,21 +128,26 @@ static double Across(PetscInt cells, const PetscInt extent[CL_DIM])
 
 PetscErrorCode PreconditionerPlan(Model *m)
 {
-  PetscInt cells, extent[CL_DIM];
+  const int   matrix = m->solver->preconditioner;
+  SolverPlan *plan   = &m->solver->plan;
+  PetscInt    cells, extent[CL_DIM];
 
   PetscFunctionBeginUser;
   PetscCall(Occupied(m, &cells, extent));
-  m->solver->plan.across = Across(cells, extent);
-  m->solver->plan.reduced =
-      m->solver->preconditioner == PRECONDITIONER_REDUCED ||
-      (m->solver->preconditioner == PRECONDITIONER_AUTO && m->solver->plan.across > AcrossLU(&m->c->fields));
-  PetscCall(AskedFor(m));
+  plan->across  = Across(cells, extent);
+  plan->reduced = matrix != PRECONDITIONER_WHOLE;
+  plan->factors = plan->across <= AcrossLU(&m->c->fields);
+  PetscCall(AskedFor(plan, matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-bool ModelReduces(const Model *m)
+int ModelFactored(const Model *m)
 {
-  return m->solver->plan.reduced;
+  const SolverPlan *plan = &m->solver->plan;
+
+  if (!plan->reduced)
+    return m->c->fields.n;
+  return plan->factors ? Left(&m->c->fields) : 0;
 }
 
 PetscErrorCode ModelPrintSolver(Model *m)
@@ -118,21 +162,15 @@ PetscErrorCode ModelPrintSolver(Model *m)
   plan->said = true;
   PetscCall(PetscOptionsGetString(NULL, NULL, name, type, sizeof(type), NULL));
   if (!type[0])
-    PetscCall(PetscStrncpy(type, plan->reduced ? "multigrid" : PCLU, sizeof(type)));
+    PetscCall(PetscStrncpy(type, plan->reduced && !plan->factors ? "multigrid" : PCLU, sizeof(type)));
   if (plan->asked)
     snprintf(why, sizeof(why), "as %s asks", plan->asked);
   else
-    snprintf(why, sizeof(why), "%.3g cells across, %d unknowns a node (lu up to %.3g across)", plan->across,
-             m->c->fields.n, AcrossLU(&m->c->fields));
+    snprintf(why, sizeof(why), "%.3g cells across, %d of %d unknowns a node (lu up to %.3g across)", plan->across,
+             Left(&m->c->fields), m->c->fields.n, AcrossLU(&m->c->fields));
   PetscCall(PetscPrintf(m->grid.comm, "  preconditioner: %s of the %s matrix: %s\n", type,
                         plan->reduced ? "reduced" : "whole", why));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-void PreconditionerChooseKind(Model *m, bool *small)
-{
-  m->solver->reduces = m->solver->plan.reduced;
-  *small             = !m->solver->reduces && m->grid.size == 1 && m->map.n_global * m->c->fields.n <= UMFPACK_MOST;
 }
 
 static PetscErrorCode ApplyReduced(PC pc, Vec R, Vec Y)
@@ -149,8 +187,11 @@ static PetscErrorCode ApplyReduced(PC pc, Vec R, Vec Y)
 
 static double Cost(const Model *m)
 {
-  return m->solver->reduces ? COST_REDUCED
-                            : fmax(COST_LU_LEAST, COST_LU * sqrt((double)m->map.n_global * (double)m->c->fields.n));
+  const Solver *s = m->solver;
+
+  return s->reduces && !s->plan.factors
+             ? COST_MULTIGRID
+             : fmax(COST_LU_LEAST, COST_LU * sqrt((double)m->map.n_global * (double)m->c->fields.n));
 }
 
 /* (176): iterations per decade that the residual fell, with a new preconditioner and since. */
@@ -179,7 +220,7 @@ static PetscErrorCode CountIterations(KSP ksp, Vec R, Vec Y, void *model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp)
+PetscErrorCode PreconditionerCreate(Model *m, KSP ksp)
 {
   PC pc;
 
@@ -195,7 +236,7 @@ PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp)
     PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 200));
   } else {
     PetscCall(PCSetType(pc, PCLU));
-    PetscCall(PCFactorSetMatSolverType(pc, small ? MATSOLVERUMFPACK : MATSOLVERMUMPS));
+    PetscCall(PCFactorSetMatSolverType(pc, FactorsPackage(m, m->c->fields.n)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,24 +1,29 @@
 /* The reduced preconditioner (170)-(175): a matrix for v_s, p_w, p_g and T alone, of radius 2, and its solver.
-   Values are gathered node by node, each with its 25 neighbours, and handed to PETSc as two groups of unknowns, `flow`
-   (pressures, temperature) and `motion` (v_s), that PCFIELDSPLIT takes as they are.  Every option -reduced_... of the
-   solver wins over what stands here. */
+   Values are gathered node by node, each with its neighbours; what counts of them (433) is handed to PETSc as one
+   matrix, or as two groups of unknowns, `flow` (pressures, temperature) and `motion` (v_s), that PCFIELDSPLIT takes as
+   they are. Every option -reduced_... of the solver wins over what stands here. */
 #include "solver.h"
 
 enum { FLOW = 0, MOTION, GROUPS };
 
 struct Reduced {
-  FieldSet fs;                                 /* unknowns of a node */
-  int      first[GROUPS], count[GROUPS];       /* their places */
-  int      full[F_COUNT];                      /* place in the block of the scene's set */
-  double  *value;                              /* [n_local][NEIGHBOURS][fs.n][fs.n]; null between two renewals */
-  double   row[F_COUNT], col[F_COUNT];         /* units of rows and columns: each one number for the whole body ... */
-  double   unit[F_COUNT][F_COUNT];             /* ... columns over rows */
-  Mat      block[GROUPS][GROUPS], nest, whole; /* whole: what wants one matrix, as anything but a split does */
-  KSP      ksp;                                /* null between steps */
-  bool     split;                              /* its preconditioner is PCFIELDSPLIT */
-  Vec      b, y;                               /* owned nodes: flow of all, then motion of all */
-  Vec      slaved, diagonal; /* of the scene's set, rows (16) of the Jacobian: times y, their diagonal */
+  FieldSet     fs;                           /* unknowns of a node */
+  bool         split;                        /* flow, then motion, each with a solver of its own; else one of all */
+  int          groups;                       /* that have unknowns */
+  int          first[GROUPS], count[GROUPS]; /* their places */
+  const char  *prefix;                       /* of the options of the solver */
+  int          full[F_COUNT];                /* place in the block of the scene's set */
+  double      *value;                        /* [n_local][NEIGHBOURS][fs.n][fs.n]; null between two renewals */
+  double       row[F_COUNT], col[F_COUNT];   /* units of rows and columns: each one number for the whole body ... */
+  double       unit[F_COUNT][F_COUNT];       /* ... columns over rows */
+  Mat          block[GROUPS][GROUPS], A;     /* between two renewals: of the groups; all of it */
+  KSP          ksp;                          /* null between steps */
+  MatNullSpace rigid;                        /* null without motion */
+  Vec          b, y;                         /* owned nodes: all of a group, then all of the next */
+  Vec          slaved, diagonal; /* of the scene's set, rows (16) of the Jacobian: times y, their diagonal */
 };
+
+#define ROW_MOST_ENTRIES (NEIGHBOURS * F_COUNT)
 
 static void Unknowns(const FieldSet *fs, Reduced *r)
 {
@@ -38,9 +43,30 @@ static void Unknowns(const FieldSet *fs, Reduced *r)
   }
   for (int q = 0; q < F_COUNT; q++)
     r->fs.at[q] = fs->at[q] >= 0 ? place[fs->at[q]] : -1;
-  r->first[MOTION] = 0;
-  r->count[MOTION] = r->first[FLOW] = fs->solid ? CL_DIM : 0;
-  r->count[FLOW]                    = r->fs.n - r->first[FLOW];
+}
+
+static void AddGroup(Reduced *r, int first, int count)
+{
+  if (count == 0)
+    return;
+  r->first[r->groups]   = first;
+  r->count[r->groups++] = count;
+}
+
+/* Displacement comes first among the unknowns. */
+static void FindGroups(Reduced *r)
+{
+  const int motion = r->fs.solid ? CL_DIM : 0;
+
+  r->prefix = "reduced_";
+  if (!r->split) {
+    AddGroup(r, 0, r->fs.n);
+    return;
+  }
+  AddGroup(r, motion, r->fs.n - motion);
+  AddGroup(r, 0, motion);
+  if (r->groups == 1)
+    r->prefix = motion ? "reduced_fieldsplit_motion_" : "reduced_fieldsplit_flow_";
 }
 
 /* Which neighbours a node has, and their numbers, in the order of their columns. */
@@ -64,54 +90,20 @@ static int RowNodes(const Model *m, PetscInt I, int k[NEIGHBOURS], PetscInt numb
   return n;
 }
 
-/* With its pattern: all neighbours that are there. */
-static PetscErrorCode CreateBlock(Model *m, int rows, int cols, Mat *A)
-{
-  const PetscInt n = m->map.n_owned;
-  PetscInt      *start, *col, nz = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n * rows + 1, &start, n * rows * NEIGHBOURS * cols, &col));
-  for (PetscInt I = 0; I < n; I++) {
-    PetscInt  number[NEIGHBOURS];
-    int       k[NEIGHBOURS];
-    const int count = RowNodes(m, I, k, number);
-
-    for (int i = 0; i < rows; i++) {
-      start[I * rows + i] = nz;
-      for (int b = 0; b < count; b++) {
-        for (int j = 0; j < cols; j++)
-          col[nz++] = number[b] * cols + j;
-      }
-    }
-  }
-  start[n * rows] = nz;
-  PetscCall(MatCreate(m->grid.comm, A));
-  PetscCall(MatSetSizes(*A, n * rows, n * cols, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(*A, MATAIJ));
-  PetscCall(MatSetBlockSizes(*A, rows, cols));
-  PetscCall(MatSeqAIJSetPreallocationCSR(*A, start, col, NULL)); /* does nothing where there are several ranks ... */
-  PetscCall(MatMPIAIJSetPreallocationCSR(*A, start, col, NULL)); /* ... or one */
-  PetscCall(PetscFree2(start, col));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Rigid motions of the body, which algebraic multigrid must carry to its coarse grids. */
-static PetscErrorCode RigidMotions(Model *m, Mat A)
+static PetscErrorCode RigidMotions(const Model *m, MatNullSpace *null)
 {
   const NodeMap *map = &m->map;
-  MatNullSpace   null;
-  Vec            v[3], x;
+  Vec            x;
   double        *a;
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(A, &x, NULL));
+  PetscCall(VecCreateMPI(m->grid.comm, CL_DIM * map->n_owned, PETSC_DETERMINE, &x));
   PetscCall(VecSetBlockSize(x, CL_DIM));
   if (m->c->axisymmetric) { /* only along the axis */
     PetscCall(VecStrideSet(x, 1, 1.0));
     PetscCall(VecNormalize(x, NULL));
-    v[0] = x;
-    PetscCall(MatNullSpaceCreate(m->grid.comm, PETSC_FALSE, 1, v, &null));
+    PetscCall(MatNullSpaceCreate(m->grid.comm, PETSC_FALSE, 1, &x, null));
   } else {
     PetscCall(VecGetArrayWrite(x, &a));
     for (PetscInt I = 0; I < map->n_owned; I++) {
@@ -119,89 +111,63 @@ static PetscErrorCode RigidMotions(Model *m, Mat A)
         a[CL_DIM * I + d] = GridNode(&m->grid, d, map->ij[I][d]);
     }
     PetscCall(VecRestoreArrayWrite(x, &a));
-    PetscCall(MatNullSpaceCreateRigidBody(x, &null));
+    PetscCall(MatNullSpaceCreateRigidBody(x, null));
   }
-  PetscCall(MatSetNearNullSpace(A, null));
-  PetscCall(MatNullSpaceDestroy(&null));
   PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A split that solves for the flow and then for the motion never reads what motion does to the flow. */
-static PetscErrorCode ReadsAll(bool *all)
-{
-  PetscBool type, split;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-reduced_pc_type", &type));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-reduced_pc_fieldsplit_type", &split));
-  *all = type || split;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateMatrices(Model *m, Reduced *r)
-{
-  Mat        a[GROUPS * GROUPS];
-  const bool both = r->count[FLOW] > 0 && r->count[MOTION] > 0;
-  bool       all  = true;
-
-  PetscFunctionBeginUser;
-  PetscCall(ReadsAll(&all));
-  for (int s = 0; s < GROUPS; s++) {
-    for (int t = 0; t < GROUPS; t++) {
-      if (r->count[s] > 0 && r->count[t] > 0 && (all || s != FLOW || t != MOTION))
-        PetscCall(CreateBlock(m, r->count[s], r->count[t], &r->block[s][t]));
-      a[GROUPS * s + t] = r->block[s][t];
-    }
-  }
-  if (r->count[MOTION] > 0)
-    PetscCall(RigidMotions(m, r->block[MOTION][MOTION]));
-  if (both) {
-    PetscCall(MatCreateNest(m->grid.comm, GROUPS, NULL, GROUPS, NULL, a, &r->nest));
-  } else {
-    r->nest = r->block[r->count[FLOW] > 0 ? FLOW : MOTION][r->count[FLOW] > 0 ? FLOW : MOTION];
-    PetscCall(PetscObjectReference((PetscObject)r->nest));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateSplit(Reduced *r)
+static PetscErrorCode CreateSplit(const Reduced *r)
 {
   static const char *const name[GROUPS] = {"flow", "motion"};
   IS                       is[GROUPS];
   PC                       pc;
 
   PetscFunctionBeginUser;
-  PetscCall(KSPSetOptionsPrefix(r->ksp, "reduced_"));
   PetscCall(KSPGetPC(r->ksp, &pc));
   PetscCall(PCSetType(pc, PCFIELDSPLIT));
   PetscCall(PCFieldSplitSetType(pc, PC_COMPOSITE_MULTIPLICATIVE));
-  PetscCall(MatNestGetISs(r->nest, is, NULL));
+  PetscCall(MatNestGetISs(r->A, is, NULL));
   for (int s = 0; s < GROUPS; s++)
     PetscCall(PCFieldSplitSetIS(pc, name[s], is[s]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A new one at every renewal: what multigrid keeps from set-up to set-up would make a run depend on where it was last
-   restarted. */
-static PetscErrorCode CreateSolver(Reduced *r)
+static PetscErrorCode CreateFactors(const Model *m, const Reduced *r)
 {
-  PetscBool split;
-  PC        pc;
+  PC pc;
 
   PetscFunctionBeginUser;
-  PetscCall(KSPDestroy(&r->ksp));
-  PetscCall(KSPCreate(PetscObjectComm((PetscObject)r->nest), &r->ksp));
-  PetscCall(KSPSetType(r->ksp, KSPPREONLY));
-  if (r->count[FLOW] > 0 && r->count[MOTION] > 0)
-    PetscCall(CreateSplit(r));
-  else
-    PetscCall(
-        KSPSetOptionsPrefix(r->ksp, r->count[FLOW] > 0 ? "reduced_fieldsplit_flow_" : "reduced_fieldsplit_motion_"));
-  PetscCall(KSPSetFromOptions(r->ksp));
   PetscCall(KSPGetPC(r->ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCFIELDSPLIT, &split));
-  r->split = split;
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, FactorsPackage(m, r->fs.n)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new one at every renewal: what multigrid keeps from set-up to set-up would make a run depend on where it was last
+   restarted. */
+static PetscErrorCode CreateSolver(const Model *m, Reduced *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(KSPCreate(m->grid.comm, &r->ksp));
+  PetscCall(KSPSetType(r->ksp, KSPPREONLY));
+  PetscCall(KSPSetOptionsPrefix(r->ksp, r->prefix));
+  if (!r->split)
+    PetscCall(CreateFactors(m, r));
+  else if (r->groups > 1)
+    PetscCall(CreateSplit(r));
+  PetscCall(KSPSetOperators(r->ksp, r->A, r->A));
+  PetscCall(KSPSetFromOptions(r->ksp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroySolver(Reduced *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(KSPDestroy(&r->ksp));
+  PetscCall(MatDestroy(&r->A));
+  for (int k = 0; k < GROUPS * GROUPS; k++)
+    PetscCall(MatDestroy(&r->block[k / GROUPS][k % GROUPS]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -212,13 +178,17 @@ PetscErrorCode ReducedCreate(Model *m)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&r));
   m->solver->reduced = r;
+  r->split           = !m->solver->plan.factors;
   Unknowns(&m->c->fields, r);
-  PetscCall(CreateMatrices(m, r));
-  PetscCall(MatCreateVecs(r->nest, &r->y, &r->b));
+  FindGroups(r);
+  if (r->split && r->fs.solid)
+    PetscCall(RigidMotions(m, &r->rigid));
+  PetscCall(VecCreateMPI(m->grid.comm, r->fs.n * m->map.n_owned, PETSC_DETERMINE, &r->b));
+  PetscCall(VecDuplicate(r->b, &r->y));
   PetscCall(VecDuplicate(m->solver->X, &r->slaved));
   PetscCall(VecDuplicate(m->solver->X, &r->diagonal));
-  PetscCall(ReducedPreferences(r->count[FLOW] > 0, r->count[MOTION] > 0));
-  PetscCall(CreateSolver(r));
+  if (r->split)
+    PetscCall(ReducedPreferences(r->groups > 1 || !r->fs.solid, r->fs.solid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,7 +196,7 @@ PetscErrorCode ReducedRest(Reduced *r)
 {
   PetscFunctionBeginUser;
   if (r)
-    PetscCall(KSPDestroy(&r->ksp));
+    PetscCall(DestroySolver(r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -237,13 +207,8 @@ PetscErrorCode ReducedDestroy(Reduced **reduced)
   PetscFunctionBeginUser;
   if (!r)
     PetscFunctionReturn(PETSC_SUCCESS);
-  for (int s = 0; s < GROUPS; s++) {
-    for (int t = 0; t < GROUPS; t++)
-      PetscCall(MatDestroy(&r->block[s][t]));
-  }
-  PetscCall(MatDestroy(&r->nest));
-  PetscCall(MatDestroy(&r->whole));
-  PetscCall(KSPDestroy(&r->ksp));
+  PetscCall(DestroySolver(r));
+  PetscCall(MatNullSpaceDestroy(&r->rigid));
   PetscCall(VecDestroy(&r->b));
   PetscCall(VecDestroy(&r->y));
   PetscCall(VecDestroy(&r->slaved));
@@ -290,9 +255,9 @@ PetscErrorCode ReducedBegin(Model *m, Assembly *to)
   Reduced *r = m->solver->reduced;
 
   PetscFunctionBeginUser;
-  PetscCall(KSPDestroy(&r->ksp)); /* not beside what is gathered now */
+  PetscCall(DestroySolver(r)); /* not beside what is gathered now */
   to->reduced      = true;
-  to->fixed_stress = r->split;
+  to->fixed_stress = r->split && r->groups > 1;
   PetscCall(Units(m, r));
   PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS * r->fs.n * r->fs.n, &r->value));
   to->place = NULL;
@@ -320,120 +285,170 @@ static void Scaled(const Model *m, const Reduced *r, PetscInt I, PetscInt K, dou
   }
 }
 
-/* Rows of a node in the matrix of groups s, t. */
-static const double *RowsOf(const Reduced *r, PetscInt I, int k, int s, int t)
+/* Row i of a node against all unknowns of its neighbour k. */
+static const double *ReducedRow(const Reduced *r, PetscInt I, int k, int i)
 {
-  return &r->value[((size_t)(I * NEIGHBOURS + k) * r->fs.n + r->first[s]) * r->fs.n + r->first[t]];
+  return &r->value[((size_t)(I * NEIGHBOURS + k) * r->fs.n + i) * r->fs.n];
 }
 
-/* Values of this rank's rows, whose columns are owned nodes or others, as its pattern has them. */
-static PetscErrorCode WriteOwned(Model *m, const Reduced *r, int s, int t, bool own, Mat A)
+/* Entries of row i of node I in the columns of a group that are not zero, and the diagonal; of n neighbours. */
+static int RowEntries(const Reduced *r, PetscInt I, int i, int t, int n, const int *k, const PetscInt *number,
+                      PetscInt *col, double *v)
 {
-  const int cols = r->count[t], nf = r->fs.n;
-  double   *to, *a;
+  int count = 0;
 
-  PetscFunctionBeginUser;
-  PetscCall(MatSeqAIJGetArray(A, &a));
-  to = a;
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    const double *from[NEIGHBOURS];
-    PetscInt      number[NEIGHBOURS];
-    int           k[NEIGHBOURS], n = 0;
-    const int     all = RowNodes(m, I, k, number);
+  for (int b = 0; b < n; b++) {
+    const double *row = ReducedRow(r, I, k[b], i);
 
-    for (int b = 0; b < all; b++) {
-      if ((ModelNeighbour(m, I, k[b]) < m->map.n_owned) == own)
-        from[n++] = RowsOf(r, I, k[b], s, t);
-    }
-    for (int i = 0; i < r->count[s]; i++) {
-      for (int b = 0; b < n; b++) {
-        for (int j = 0; j < cols; j++)
-          *to++ = from[b][i * nf + j];
-      }
+    for (int j = r->first[t]; j < r->first[t] + r->count[t]; j++) {
+      if (row[j] == 0.0 && (k[b] != NEIGHBOURS / 2 || i != j))
+        continue;
+      col[count] = number[b] * r->count[t] + j - r->first[t];
+      v[count++] = row[j];
     }
   }
-  PetscCall(MatSeqAIJRestoreArray(A, &a));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return count;
 }
 
-/* What was found for rows of other ranks. */
-static PetscErrorCode SendForeign(Model *m, const Reduced *r, int s, int t)
+/* Entries of this rank's rows in columns of owned nodes and of others. */
+static PetscErrorCode CountEntries(Model *m, const Reduced *r, int s, int t, PetscInt *own, PetscInt *other)
 {
-  const int rows = r->count[s], cols = r->count[t], nf = r->fs.n;
+  const PetscInt from = m->map.first * r->count[t], end = from + m->map.n_owned * r->count[t];
 
   PetscFunctionBeginUser;
-  for (PetscInt I = m->map.n_owned; I < m->map.n_local; I++) {
-    PetscInt  row[F_COUNT], col[NEIGHBOURS * F_COUNT], number[NEIGHBOURS];
-    double    v[F_COUNT * NEIGHBOURS * F_COUNT];
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    PetscInt  number[NEIGHBOURS], col[ROW_MOST_ENTRIES];
+    double    v[ROW_MOST_ENTRIES];
     int       k[NEIGHBOURS];
     const int n = RowNodes(m, I, k, number);
 
-    for (int i = 0; i < rows; i++) {
-      row[i] = m->map.global[I] * rows + i;
-      for (int b = 0; b < n * cols; b++)
-        v[i * n * cols + b] = RowsOf(r, I, k[b / cols], s, t)[i * nf + b % cols];
+    for (int i = 0; i < r->count[s]; i++) {
+      const int count = RowEntries(r, I, r->first[s] + i, t, n, k, number, col, v);
+
+      own[I * r->count[s] + i] = 0;
+      for (int b = 0; b < count; b++)
+        own[I * r->count[s] + i] += col[b] >= from && col[b] < end;
+      other[I * r->count[s] + i] = count - own[I * r->count[s] + i];
     }
-    for (int b = 0; b < n * cols; b++)
-      col[b] = number[b / cols] * cols + b % cols;
-    PetscCall(MatSetValues(r->block[s][t], rows, row, n * cols, col, v, ADD_VALUES));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillMatrix(Model *m, const Reduced *r, int s, int t)
+static PetscErrorCode FillEntries(Model *m, const Reduced *r, int s, int t, Mat A)
 {
-  Mat       own = r->block[s][t], other = NULL;
-  PetscBool one;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscObjectTypeCompare((PetscObject)own, MATSEQAIJ, &one));
-  if (!one)
-    PetscCall(MatMPIAIJGetSeqAIJ(r->block[s][t], &own, &other, NULL));
-  PetscCall(WriteOwned(m, r, s, t, true, own));
-  if (other)
-    PetscCall(WriteOwned(m, r, s, t, false, other));
-  PetscCall(SendForeign(m, r, s, t));
-  PetscCall(MatAssemblyBegin(r->block[s][t], MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(r->block[s][t], MAT_FINAL_ASSEMBLY));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    PetscInt  number[NEIGHBOURS], col[ROW_MOST_ENTRIES];
+    double    v[ROW_MOST_ENTRIES];
+    int       k[NEIGHBOURS];
+    const int n = RowNodes(m, I, k, number);
+
+    for (int i = 0; i < r->count[s]; i++) {
+      const PetscInt row   = m->map.global[I] * r->count[s] + i;
+      const int      count = RowEntries(r, I, r->first[s] + i, t, n, k, number, col, v);
+
+      PetscCall(MatSetValues(A, 1, &row, count, col, v, INSERT_VALUES));
+    }
+  }
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillMatrices(Model *m, Reduced *r)
+static PetscErrorCode CreateBlock(Model *m, const Reduced *r, int s, int t, Mat *A)
 {
+  const PetscInt rows = m->map.n_owned * r->count[s];
+  PetscInt      *own, *other;
+
   PetscFunctionBeginUser;
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
+  PetscCall(PetscMalloc2(rows, &own, rows, &other));
+  PetscCall(CountEntries(m, r, s, t, own, other));
+  PetscCall(MatCreate(m->grid.comm, A));
+  PetscCall(MatSetSizes(*A, rows, m->map.n_owned * r->count[t], PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(*A, MATAIJ));
+  PetscCall(MatSetBlockSizes(*A, r->count[s], r->count[t]));
+  PetscCall(MatSeqAIJSetPreallocation(*A, 0, own));           /* does nothing where there are several ranks ... */
+  PetscCall(MatMPIAIJSetPreallocation(*A, 0, own, 0, other)); /* ... or one */
+  PetscCall(MatSetOption(*A, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscCall(PetscFree2(own, other));
+  PetscCall(FillEntries(m, r, s, t, *A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (433) in the rows of node I: what does not count becomes zero. */
+static void LeaveOut(const Reduced *r, PetscInt I, double drop)
+{
+  const int nf   = r->fs.n;
+  double   *node = &r->value[(size_t)I * NEIGHBOURS * nf * nf], most[F_COUNT] = {0.0};
+
+  for (int e = 0; e < NEIGHBOURS * nf; e++) {
+    double *row = &most[e % nf];
+
+    for (int j = 0; j < nf; j++)
+      *row = fabs(node[e * nf + j]) > *row ? fabs(node[e * nf + j]) : *row;
+  }
+  for (int e = 0; e < NEIGHBOURS * nf; e++) {
+    const double least = drop * most[e % nf];
+
+    for (int j = 0; j < nf; j++)
+      node[e * nf + j] = fabs(node[e * nf + j]) > least || e == NEIGHBOURS / 2 * nf + j ? node[e * nf + j] : 0.0;
+  }
+}
+
+/* The values scaled, those of this rank's nodes whole, as far as they count. */
+static PetscErrorCode ScaleValues(Model *m, const Reduced *r)
+{
+  const int size = r->fs.n * r->fs.n;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeMapReduce(&m->map, r->value, NEIGHBOURS * size));
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
     for (int q = 0; q < NEIGHBOURS; q++) {
       const PetscInt K = ModelNeighbour(m, I, q);
 
       if (K >= 0)
-        Scaled(m, r, I, K, &r->value[(size_t)(I * NEIGHBOURS + q) * r->fs.n * r->fs.n]);
+        Scaled(m, r, I, K, &r->value[(size_t)(I * NEIGHBOURS + q) * size]);
+    }
+    LeaveOut(r, I, m->solver->drop);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateMatrices(Model *m, Reduced *r)
+{
+  Mat       a[GROUPS * GROUPS];
+  PetscBool all;
+
+  PetscFunctionBeginUser;
+  /* a split that solves for the flow and then for the motion never reads what motion does to the flow */
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-reduced_pc_fieldsplit_type", &all));
+  for (int s = 0; s < r->groups; s++) {
+    for (int t = 0; t < r->groups; t++) {
+      if (all || s != FLOW || t != MOTION)
+        PetscCall(CreateBlock(m, r, s, t, &r->block[s][t]));
+      a[r->groups * s + t] = r->block[s][t];
     }
   }
-  for (int k = 0; k < GROUPS * GROUPS; k++) {
-    if (r->block[k / GROUPS][k % GROUPS])
-      PetscCall(FillMatrix(m, r, k / GROUPS, k % GROUPS));
+  if (r->rigid)
+    PetscCall(MatSetNearNullSpace(r->block[r->groups - 1][r->groups - 1], r->rigid));
+  if (r->groups > 1) {
+    PetscCall(MatCreateNest(m->grid.comm, r->groups, NULL, r->groups, NULL, a, &r->A));
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
+  r->A = a[0];
+  PetscCall(PetscObjectReference((PetscObject)r->A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ReducedSetUp(Model *m)
 {
   Reduced *r = m->solver->reduced;
-  Mat      A = r->nest;
 
   PetscFunctionBeginUser;
-  PetscCall(FillMatrices(m, r));
+  PetscCall(ScaleValues(m, r));
+  PetscCall(CreateMatrices(m, r));
   PetscCall(PetscFree(r->value));
-  if (r->nest != r->block[FLOW][FLOW] && r->nest != r->block[MOTION][MOTION]) {
-    PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
-    if (!r->split) {
-      PetscCall(MatConvert(r->nest, MATAIJ, r->whole ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &r->whole));
-      A = r->whole;
-    }
-  }
-  PetscCall(CreateSolver(r));
-  PetscCall(KSPSetOperators(r->ksp, A, A));
+  PetscCall(CreateSolver(m, r));
   PetscCall(KSPSetUp(r->ksp));
   PetscCall(KSPSetUpOnBlocks(r->ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -452,9 +467,12 @@ PetscErrorCode ReducedFollow(Model *m)
 /* Place of unknown k of owned node I in b and y. */
 static inline PetscInt Place(const Model *m, const Reduced *r, PetscInt I, int k)
 {
-  if (k < r->count[MOTION])
-    return m->map.n_owned * r->count[FLOW] + I * r->count[MOTION] + k;
-  return I * r->count[FLOW] + k - r->first[FLOW];
+  PetscInt before = 0;
+  int      s      = 0;
+
+  for (; s < r->groups - 1 && (k < r->first[s] || k >= r->first[s] + r->count[s]); s++)
+    before += m->map.n_owned * r->count[s];
+  return before + I * r->count[s] + k - r->first[s];
 }
 
 static PetscErrorCode Restrict(const Model *m, const Reduced *r, Vec R)

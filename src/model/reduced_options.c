@@ -75,12 +75,7 @@ static PetscErrorCode PreferFlow(void)
 
 PetscErrorCode ReducedPreferences(bool flow, bool motion)
 {
-  char type[32] = PCFIELDSPLIT;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-reduced_pc_type", type, sizeof(type), NULL));
-  if (strcmp(type, PCFIELDSPLIT) != 0)
-    PetscFunctionReturn(PETSC_SUCCESS);
   if (flow)
     PetscCall(PreferFlow());
   if (motion)

@@ -17,12 +17,14 @@ PetscErrorCode SolverCreate(Solver **out)
   s->tol_residual  = 1e-9;
   s->tol_update    = 1e-6;
   s->keep_jacobian = 0.01;
+  s->drop          = 1e-6;
   PetscCall(PetscOptionsGetString(NULL, NULL, "-model_pmat_type", s->pmat_type, sizeof(s->pmat_type), NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-newton_refactor", &s->poor, NULL));
   PetscCall(PetscOptionsGetEList(NULL, NULL, "-newton_preconditioner", solver_preconditioner,
                                  PRECONDITIONER_REDUCED + 1, &s->preconditioner, NULL));
   PetscCall(
       PetscOptionsGetEList(NULL, NULL, "-newton_operator", solver_operator, OPERATOR_PARTICLES + 1, &s->apply, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_drop", &s->drop, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_keep_jacobian", &s->keep_jacobian, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_residual", &s->tol_residual, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-newton_tol_update", &s->tol_update, NULL));
@@ -158,12 +160,11 @@ static PetscErrorCode CreateSolver(Model *m)
 {
   SNESLineSearch ls;
   PetscBool      aij;
-  bool           small;
   KSP            ksp;
 
   PetscFunctionBeginUser;
   m->solver->refactor = true;
-  PreconditionerChooseKind(m, &small);
+  m->solver->reduces  = m->solver->plan.reduced;
   const bool particles =
       m->solver->apply == OPERATOR_PARTICLES || (m->solver->apply == OPERATOR_AUTO && m->solver->reduces);
   if (particles)
@@ -172,7 +173,10 @@ static PetscErrorCode CreateSolver(Model *m)
     PetscCall(MatrixCreate(m));
   PetscCall(WideCreate(m, &m->solver->A));
   PetscCall(MatCreateVecs(m->solver->A, &m->solver->X, &m->solver->R));
-  PetscCall(PetscStrcmp(m->solver->pmat_type[0] ? m->solver->pmat_type : small ? "aij" : "baij", "aij", &aij));
+  PetscCall(PetscStrcmp(m->solver->pmat_type[0]                  ? m->solver->pmat_type
+                        : FactorsSmall(m, m->c->fields.n) ? "aij"
+                                                                 : "baij",
+                        "aij", &aij));
   PetscCheck(!aij || m->grid.size == 1, m->grid.comm, PETSC_ERR_SUP,
              "-model_pmat_type aij is for one rank; leave it out, or give baij");
   if (m->solver->J2 && aij) {
@@ -194,7 +198,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(KSPSetType(ksp, KSPFGMRES)); /* keeps what the preconditioner gave, where GMRES applies it once more */
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->solver->tol_residual, PETSC_DEFAULT, 60));
   PetscCall(KSPGMRESSetRestart(ksp, 60));
-  PetscCall(PreconditionerCreate(m, small, ksp));
+  PetscCall(PreconditionerCreate(m, ksp));
   PetscCall(SetSide(ksp));
   PetscCall(SNESSetFromOptions(m->solver->snes));
   PetscFunctionReturn(PETSC_SUCCESS);

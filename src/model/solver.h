@@ -3,18 +3,20 @@
 
 #include "gather.h"
 
-/* Whole: of J2 with all its unknowns, LU unless PETSc's options say otherwise.  Reduced: (170).  Auto: by size (330).
- */
+/* The matrix: J2 with all its unknowns, LU unless PETSc's options say otherwise; reduced (170), LU or multigrid by size
+   (330); auto: reduced, unless PETSc's options ask for a solver of the whole. */
 enum { PRECONDITIONER_AUTO = 0, PRECONDITIONER_WHOLE, PRECONDITIONER_REDUCED };
 
 /* How the exact Jacobian is applied: J2 assembled with its wide part, or by products particle by particle.  Auto: these
    with the reduced preconditioner. */
 enum { OPERATOR_AUTO = 0, OPERATOR_ASSEMBLED, OPERATOR_PARTICLES };
 
-/* Which of them the run has, and why: (330), of the particles as seeded, or by an option of the user. */
+/* What preconditions, and why: (330), of the particles as seeded, or by an option of the user. */
 typedef struct {
-  double      across; /* mean number of cells across the body */
-  bool        reduced, said;
+  double across;  /* mean number of cells across the body */
+  bool   reduced; /* the reduced matrix, else J2 */
+  bool   factors; /* LU of all of the reduced matrix, or what -reduced_pc_type says; else multigrid of its groups */
+  bool   said;
   const char *asked; /* the option that chose; null: by size */
 } SolverPlan;
 
@@ -46,6 +48,7 @@ struct Solver {
   bool       refactor;        /* made anew at the next Jacobian: once a step, and when it has become poor */
   bool       always_refactor; /* ... at every Jacobian: second attempt at a stage */
   double     factored_dt;     /* dt' it was made for, s */
+  double     drop;            /* share of a row's largest entry (433), option -newton_drop */
   Renewal    renewal;
   PetscInt   poor;          /* Krylov iterations that make it poor (option -newton_refactor); negative: as (176) says */
   char       pmat_type[16]; /* aij | baij of its matrix (option -model_pmat_type); empty: as the solver likes it */
@@ -80,10 +83,12 @@ PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
 PetscErrorCode  ReducedRest(Reduced *r);              /* until the next set-up, which a step begins with */
 PetscErrorCode  ReducedFollow(Model *m);              /* the Jacobian is a new one */
 PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
+/* LU of n unknowns a node (factors.c): is it small, on one rank; by which package. */
+bool          FactorsSmall(const Model *m, int n);
+MatSolverType FactorsPackage(const Model *m, int n);
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
-PetscErrorCode PreconditionerPlan(Model *m);                    /* (330), of the particles that were just seeded */
-void           PreconditionerChooseKind(Model *m, bool *small); /* small: UMFPACK */
-PetscErrorCode PreconditionerCreate(Model *m, bool small, KSP ksp);
+PetscErrorCode PreconditionerPlan(Model *m); /* (330), of the particles that were just seeded */
+PetscErrorCode PreconditionerCreate(Model *m, KSP ksp);
 void           PreconditionerRenew(Model *m); /* at the next Jacobian */
 PetscErrorCode PreconditionerChoose(Model *m, SNES snes, bool *renew);
 /* Where GMRES fails with the reduced one: LU of the whole, with a line that says so, until PreconditionerReturn. */

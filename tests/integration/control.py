@@ -38,7 +38,7 @@ def check_limit():
     same = [f for f in ("probes.csv", "balance.csv") if (out / f).read_bytes() == (straight / f).read_bytes()]
     check_true("... with a restart it is the straight run, bit for bit", len(same) == 2, f"{same} from {t} s")
     refused = {"-time_limit": ("0", "20x", "5 m"), "-checkpoint_wall": ("-1", "often"), "-progress": ("-1",), "-stepper_max_steps": ("2.5", "1 s"),
-               "-newton_refactor": ("-1",), "-newton_tol_residual": ("1",), "-newton_tol_update": ("tight",), "-newton_keep_jacobian": ("-0.1",),
+               "-newton_refactor": ("-1",), "-newton_tol_residual": ("1",), "-newton_tol_update": ("tight",), "-newton_keep_jacobian": ("-0.1",), "-newton_drop": ("1", "-1e-6"),
                "-newton_preconditioner": ("lu",), "-newton_operator": ("matrix",), "-quiet": ("maybe",), "-case_keys": ("maybe",), "-case_check": ("maybe",), "-case_curves": ("2",), "-overwrite": ("maybe",)}  # fmt: skip
     for option, value in ((o, v) for o, values in refused.items() for v in values):
         done = launch(binary(), *BP2, option, value, out=scratch() / "none")
