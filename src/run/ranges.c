@@ -1,10 +1,11 @@
-/* What a run says at its end of the range of its pressures and temperatures, beside what it started from and what acted
-   on it; and of steps that were accepted above the tolerance. */
+/* What a run says of the range of its pressures and temperatures, beside what it started from and what acted on it: at
+   its end, and of temperatures far beyond when it happens; and of steps that were accepted above the tolerance. */
 #include "run_private.h"
 #include "clathra/words.h"
 
 #define BEYOND 0.02   /* of the range, and ... */
 #define LEAST_T 0.1   /* ... K or ... */
+#define AT_ONCE 2.0   /* ... K from which it is not left to the end */
 #define LEAST_P 1e4   /* ... Pa, that is worth a word */
 #define ABOVE 0.1     /* of the highest pressure, likewise: what is heated in closed ground has more */
 #define HEAVY 2700.0  /* kg/m^3: no ground is heavier */
@@ -107,43 +108,85 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WarnOfTemperatures(const Stepper *s)
+/* How far the lowest or highest temperature so far is beyond all that leads there. */
+typedef struct {
+  double by, slack; /* K; what is not worth a word */
+  double acted;     /* degC: how far start and conditions lead, without hydrate */
+} Beyond;
+
+static Beyond BeyondOf(const Stepper *s, Span acted, int k)
 {
-  const StepperState *z     = &s->state;
-  const Scene        *c     = s->model->c;
-  const Span          acted = Temperatures(s);
-  const Span          bound = {StepperEquilibrium(c, acted.low, z->extreme[LOWEST_P].value, false),
-                               StepperEquilibrium(c, acted.high, z->extreme[HIGHEST_P].value, true)};
-  const double low = fmin(bound.low, z->extreme[LOWEST_T].value), high = fmax(bound.high, z->extreme[HIGHEST_T].value),
-               slack = fmax(LEAST_T, isfinite(high - low) ? BEYOND * (high - low) : 0.0);
+  const Extreme *e     = s->state.extreme;
+  const Scene   *c     = s->model->c;
+  const Span     bound = {StepperEquilibrium(c, acted.low, e[LOWEST_P].value, false),
+                          StepperEquilibrium(c, acted.high, e[HIGHEST_P].value, true)};
+  const double   range = fmax(bound.high, e[HIGHEST_T].value) - fmin(bound.low, e[LOWEST_T].value);
+
+  return (Beyond){.by    = k == HIGHEST_T ? e[k].value - bound.high : bound.low - e[k].value,
+                  .slack = fmax(LEAST_T, isfinite(range) ? BEYOND * range : 0.0),
+                  .acted = k == HIGHEST_T ? acted.high : acted.low};
+}
+
+/* `now`: while it happens, else at the end. */
+static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, bool now)
+{
+  const StepperState *z    = &s->state;
+  const Scene        *c    = s->model->c;
+  const Extreme      *e    = &z->extreme[k];
+  const bool          warm = k == HIGHEST_T;
+  char                place[128], hydrate[96] = "none reacts";
 
   PetscFunctionBeginUser;
-  for (int k = LOWEST_T; c->fields.heat && k <= HIGHEST_T; k++) {
-    const bool     warm  = k == HIGHEST_T;
-    const Extreme *e     = &z->extreme[k];
-    const double   limit = warm ? bound.high : bound.low, beyond = warm ? e->value - limit : limit - e->value;
-    const double   plain = warm ? acted.high : acted.low;
-    char           place[128], hydrate[96] = "none reacts";
+  PlaceOf(e, place);
+  if (SceneReacts(c) && c->fields.phase[PHASE_G])
+    snprintf(hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
+             StepperEquilibrium(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
+             1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value);
+  PetscCall(PetscFPrintf(
+      s->model->grid.comm, stderr,
+      "clathra: warning: a particle %s %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it (start "
+      "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing%s.  What to try, in this order: %s%sfiner "
+      "cells there; a ramp instead of a jump (docs/giving_up.md)\n",
+      now ? "has" : "had", e->value, place, beyond.by, warm ? "warmer" : "colder", beyond.acted, hydrate,
+      now ? " and may grow (said once on the way)" : "",
+      StepperHeatsHydrate(s) && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
+          ? "stabilisation_reaction_heat: yes, beside hydrate; "
+          : "",
+      c->fields.fluid && !c->stabilisation.heat_upwind ? "stabilisation_heat: yes, where flow carries the heat; "
+                                                       : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    if (!(beyond > slack))
-      continue;
-    PlaceOf(e, place);
-    if (SceneReacts(c) && c->fields.phase[PHASE_G])
-      snprintf(hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
-               StepperEquilibrium(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
-               1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value);
-    PetscCall(PetscFPrintf(
-        s->model->grid.comm, stderr,
-        "clathra: warning: a particle had %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it "
-        "(start "
-        "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing.  What to try, in this order: %s%sfiner "
-        "cells there; a ramp instead of a jump (docs/giving_up.md)\n",
-        e->value, place, beyond, warm ? "warmer" : "colder", plain, hydrate,
-        StepperHeatsHydrate(s) && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
-            ? "stabilisation_reaction_heat: yes, beside hydrate; "
-            : "",
-        c->fields.fluid && !c->stabilisation.heat_upwind ? "stabilisation_heat: yes, where flow carries the heat; "
-                                                         : ""));
+static PetscErrorCode WarnOfTemperatures(const Stepper *s)
+{
+  const Span acted = Temperatures(s);
+
+  PetscFunctionBeginUser;
+  for (int k = LOWEST_T; s->model->c->fields.heat && k <= HIGHEST_T; k++) {
+    const Beyond beyond = BeyondOf(s, acted, k);
+
+    if (beyond.by > beyond.slack)
+      PetscCall(WarnOfTemperature(s, k, beyond, false));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void RangesBegin(Ranges *r, const Stepper *s)
+{
+  const Span acted = Temperatures(s);
+
+  *r = (Ranges){.low = acted.low, .high = acted.high, .said = !s->model->c->fields.heat};
+}
+
+PetscErrorCode RangesLook(Ranges *r, const Stepper *s)
+{
+  PetscFunctionBeginUser;
+  for (int k = LOWEST_T; !r->said && k <= HIGHEST_T; k++) {
+    const Beyond beyond = BeyondOf(s, (Span){r->low, r->high}, k);
+
+    r->said = beyond.by > fmax(AT_ONCE, beyond.slack);
+    if (r->said)
+      PetscCall(WarnOfTemperature(s, k, beyond, true));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

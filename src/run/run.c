@@ -14,6 +14,7 @@ typedef struct {
   Watch     watch;
   StageLog *log;
   Slow      slow;
+  Ranges    ranges;
   char   checkpoint[PETSC_MAX_PATH_LEN + 16], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   char   restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];       /* -restart, -restart_as_initial */
   double t_saved;                                                        /* of that */
@@ -130,6 +131,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   PetscCall(WatchStep(s->model->grid.comm, &run->watch, &save, &end));
   PetscCall(StageLogStep(run->log, s, info));
   PetscCall(SlowLook(&run->slow, s, info, run->log));
+  PetscCall(RangesLook(&run->ranges, s));
   PetscCall(IceLook(s, &run->frozen));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
   if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
@@ -288,6 +290,7 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   run->clock_start = Wall();
   PetscCall(StageLogCreate(s, &run->log));
   SlowBegin(&run->slow, s);
+  RangesBegin(&run->ranges, s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -91,6 +91,15 @@ PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks
 PetscErrorCode RangeSummary(const Stepper *s, char text[512]);
 /* The last lines of a run: what lies outside of what started and acted, and errors far above the tolerance. */
 PetscErrorCode EndWarnings(const Stepper *s);
+/* Temperatures that start and conditions lead to, degC, and whether one beyond them and hydrate's was told of. */
+typedef struct {
+  double low, high;
+  bool   said;
+} Ranges;
+/* At the begin of a run. */
+void RangesBegin(Ranges *r, const Stepper *s);
+/* After a step: a warning, once, if a particle's temperature is some kelvin beyond. */
+PetscErrorCode RangesLook(Ranges *r, const Stepper *s);
 
 /* ---------------------------------------------------------------- phases.c */
 /* Curve and pressure of equilibrium of each region that reacts, at its temperature. */
