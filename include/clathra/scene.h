@@ -66,10 +66,11 @@ typedef struct {
   bool   outflow;             /* (365): what leaves has the body's density; default true */
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind;   /* (200); default false */
-  bool   heat_upwind;         /* (293); default false */
+  bool   heat_upwind;         /* (293) everywhere; default false */
   bool   lumped_reaction;     /* (265); default false */
   bool   held_reaction;       /* (381); default false */
   bool   chords;              /* (424); default true */
+  bool   heat_turns;          /* (440): (293) where T turns; default false */
 } Stabilisation;
 
 typedef struct Scene {

@@ -180,7 +180,9 @@ const Key case_key[] = {
     BOOLEAN(
         Case, "stabilisation_heat", scene.stabilisation.heat_upwind, "no",
         "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
-        "conducted"),
+        "conducted; everywhere, which smears them where they are smooth"),
+    BOOLEAN(Case, "stabilisation_heat_turns", scene.stabilisation.heat_turns, "no",
+            "... only where T turns from node to node; sdirk2, euler"),
     BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),

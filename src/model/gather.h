@@ -236,6 +236,7 @@ PetscErrorCode ModelResizeNodal(Model *m);
 PetscErrorCode AdditionsReserve(Model *m);
 PetscErrorCode AdditionsOfStage(Model *m);
 void           AdditionsSet(Model *m, PetscInt p, const PointProperties *q);
+PetscErrorCode UpwindLimit(Model *m);
 PetscErrorCode UpstreamBuild(Model *m);
 /* Model.face and Model.wall on the configuration at t_n (faces.c); Model.row_scale and col_scale of the stage. */
 PetscErrorCode FacesStart(Model *m);

@@ -282,6 +282,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(DonorBuild(m)); /* before the faces: the wall of a well has its shares (197) */
     PetscCall(FacesStart(m));
     PetscCall(StabilisationBuild(m));
+    PetscCall(UpwindLimit(m));
     PetscCall(UpstreamBuild(m));
     ChordsBuild(m);
     LumpBuild(m);

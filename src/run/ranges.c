@@ -127,6 +127,17 @@ static Beyond BeyondOf(const Stepper *s, Span acted, int k)
                   .acted = k == HIGHEST_T ? acted.high : acted.low};
 }
 
+/* The key with which flow carries heat better, (440) or (293). */
+static const char *CarriesBetter(const Stepper *s)
+{
+  const Scene *c = s->model->c;
+
+  if (!c->fields.fluid || c->stabilisation.heat_upwind)
+    return "";
+  return s->explicit || c->stabilisation.heat_turns ? "stabilisation_heat: yes, where flow carries the heat; "
+                                                    : "stabilisation_heat_turns: yes, where flow carries the heat; ";
+}
+
 /* `now`: while it happens, else at the end. */
 static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, bool now)
 {
@@ -152,8 +163,7 @@ static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, 
       StepperHeatsHydrate(s) && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
           ? "stabilisation_reaction_heat: yes, beside hydrate; "
           : "",
-      c->fields.fluid && !c->stabilisation.heat_upwind ? "stabilisation_heat: yes, where flow carries the heat; "
-                                                       : ""));
+      CarriesBetter(s)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
