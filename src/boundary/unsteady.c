@@ -1,6 +1,7 @@
 /* Starts that do not stay as they are: pore pressure far from hydrostatic, gas that rises, hydrate that is not stable,
    gas where hydrate is (docs/equations.md, section 13). */
 #include "clathra/boundary.h"
+#include "clathra/point_flow.h"
 #include "clathra/shape.h"
 #include "clathra/words.h"
 
@@ -122,8 +123,8 @@ static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Parti
 }
 
 /* ---------------------------------------------------------------- gas under gravity */
-/* (316): how fast gas moves for every Pa/m that drives it, m^2/(Pa s), and its density, kg/m^3; 0 without gas, or where
-   the state is no start. */
+/* (316): how fast gas moves for every Pa/m that drives it, m^2/(Pa s), and its density, kg/m^3; 0 where it has no
+   relative permeability of its own, or the state is no start. */
 static double GasMoves(const Scene *c, const Particles *P, PetscInt p, double *rho)
 {
   const Material *m = &c->material[c->region[P->i[PI_REGION][p]].material];
@@ -133,7 +134,7 @@ static double GasMoves(const Scene *c, const Particles *P, PetscInt p, double *r
 
   if (PointPropertiesEvaluate(&c->fields, m, P->f[P_V][p], P->f[P_MS][p], P->f[P_MH][p], pw, pg, ParticleT(c, P, p),
                               share, &q, &why) != CL_OK ||
-      !(q.s[PHASE_G] > 0.0))
+      !(q.kr[PHASE_G] > CL_MOBILITY_FLOOR))
     return 0.0;
   *rho = q.rho[PHASE_G];
   return q.kr[PHASE_G] / (q.resist[PHASE_G] * q.phi * (1.0 - q.Sh) * q.s[PHASE_G]);

@@ -20,6 +20,7 @@ COLUMN = HERE.parent / "verification" / "cases" / "geostatic.yaml"  # in balance
 COLUMN_OF_GAS = HERE.parent / "verification" / "cases" / "rest_hydrostatic.yaml"  # water and next to no gas, 1 m
 CLIFF = HERE.parent / "verification" / "cases" / "slope.yaml"  # hybrid
 BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
+CLAYS = HERE.parent / "verification" / "cases" / "no_gas_clay.yaml"  # a drained sand of hydrate between two
 HEATER = HERE.parent / "verification" / "cases" / "heater.yaml"  # 60 degC beside hydrate of 10
 WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "rises": "gas starts out of balance with gravity", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
          "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps", "closed": "nothing flows through them", "free": "nothing bears the pore pressure", "rate": "have been measured"}
@@ -132,6 +133,10 @@ check_true("... the same on 2 ranks", text in "\n".join(gas(0.3, *WIDE, ranks=2)
 comes("... but slowly in so short a run", [], gas(0.1))
 comes("... and in a longer one", ["rises"], gas(0.1, "-time_end", "1 h"))
 comes("gas that cannot move", [], gas(0.05, "-time_end", "10 d"))
+comes("... nor in a longer run", [], gas(0.05, "-time_end", "100000 d"))
+level = {"pressure": "13 MPa", "hydrostatic": "yes", "datum": "9 m", "geothermal": "60 K/km", "stress_geostatic": "0.5"}
+sealed = [o for r in ("lower", "layer", "upper") for name, value in level.items() for o in (f"-region_{r}_{name}", value)]
+comes("hydrate without gas under clay, each with the p_g of hydrate", [], said(CLAYS, *sealed, "-gravity", "0 m/s^2,-9.81 m/s^2", "-region_layer_Sg", "0", "-region_layer_Sw", "0.5", "-mat_clay_retention_p_trap", "50 kPa", "-mat_clay_retention_Sgr", "0.03"))
 comes("gas that can, and no gravity to speak of", [], gas(0.3, "-gravity", "0 m/s^2,-1e-3 m/s^2"))
 
 # ---------------------------------------------------------------- -case_check and the run
