@@ -135,10 +135,12 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok);
 PetscErrorCode CaseWriteResolved(const Case *c, FILE *out); /* SI, itself a case that runs to the same result */
 /* What a restart must find unchanged: all keys but names, outputs, and the numerics of time and of the solver. */
 uint64_t CaseFingerprint(const Case *c);
+/* The same in lines "key, tab, value", in SI; of a case with stages each begins with "in stage NAME: ". */
+PetscErrorCode CaseWriteBound(const Case *c, FILE *out);
 /* What a state of its particles needs to be the initial state of another case: lines "key: value" of the grid, regions
    and what their materials tie it to, in SI; both cases must have the same. */
 PetscErrorCode CaseWriteState(const Case *c, FILE *out);
-/* What CaseWriteResolved or CaseWriteState writes, to be freed. */
+/* What CaseWriteResolved, CaseWriteBound or CaseWriteState writes, to be freed. */
 PetscErrorCode CaseText(const Case *c, PetscErrorCode (*write)(const Case *c, FILE *out), char **text, size_t *size);
 /* Frees all that CaseRead made, and the stages. */
 PetscErrorCode CaseDestroy(Case *c);

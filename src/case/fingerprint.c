@@ -1,7 +1,8 @@
-/* fingerprint: a number that two cases share when a checkpoint of one can be continued by the other.  It runs over the
-   key table: a new key of the scene belongs to it by itself. */
+/* fingerprint: a number that two cases share when a checkpoint of one can be continued by the other, and what it is of
+   in words.  Both run over the key table: a new key of the scene belongs to them by itself. */
 #include "case_private.h"
 #include <stddef.h>
+#include <stdio.h>
 #include <string.h>
 
 _Static_assert(offsetof(Case, scene) == 0 && offsetof(Scene, stabilisation) + sizeof(Stabilisation) == sizeof(Scene),
@@ -79,22 +80,49 @@ uint64_t KeyHash(uint64_t h, const Key *k, const char *instance)
   return h;
 }
 
-static uint64_t HashScene(uint64_t h, const Case *c)
+/* Takes one key of an instance; k NULL: how many instances the group has. */
+typedef void (*Take)(void *ctx, const Case *c, Group g, const Key *k, const char *instance);
+
+/* All keys of a scene that a restart must find unchanged. */
+static void EachBound(const Case *c, Take take, void *ctx)
 {
-  h = HashBytes(h, &c->scene.fields.has, sizeof c->scene.fields.has);
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     const PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
 
     if (g == GROUP_PROBE || g == GROUP_STAGE)
       continue;
-    h = HashBytes(h, &n, sizeof n);
+    take(ctx, c, g, NULL, NULL);
     for (PetscInt i = 0; i < n; i++) {
       for (const Key *k = case_group[g].key; k->name; k++) {
         if (!k->like && KeyActs(k, c, GroupInstance(c, g, i)) && !KeyMayChange(k, g))
-          h = KeyHash(h, k, GroupInstance(c, g, i));
+          take(ctx, c, g, k, GroupInstance(c, g, i));
       }
     }
   }
+}
+
+/* ... and of a stage but those that its scene holds. */
+static void EachOfStage(const CaseStage *s, Take take, void *ctx)
+{
+  for (const Key *k = case_group[GROUP_STAGE].key; k->name; k++) {
+    if (!k->made && !KeyMayChange(k, GROUP_STAGE))
+      take(ctx, &s->c, GROUP_STAGE, k, (const char *)s);
+  }
+}
+
+/* ---------------------------------------------------------------- as a number */
+static void HashOne(void *ctx, const Case *c, Group g, const Key *k, const char *instance)
+{
+  uint64_t      *h = ctx;
+  const PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
+
+  *h = k ? KeyHash(*h, k, instance) : HashBytes(*h, &n, sizeof n);
+}
+
+static uint64_t HashScene(uint64_t h, const Case *c)
+{
+  h = HashBytes(h, &c->scene.fields.has, sizeof c->scene.fields.has);
+  EachBound(c, HashOne, &h);
   return h;
 }
 
@@ -110,10 +138,60 @@ uint64_t CaseFingerprint(const Case *c)
     const CaseStage *s = &c->stage[i];
 
     h = HashScene(HashReals(h, &s->c.scene.t_begin, 1), &s->c);
-    for (const Key *k = case_group[GROUP_STAGE].key; k->name; k++) {
-      if (!k->made && !KeyMayChange(k, GROUP_STAGE))
-        h = KeyHash(h, k, (const char *)s);
-    }
+    EachOfStage(s, HashOne, &h);
   }
   return h;
+}
+
+/* ---------------------------------------------------------------- in words */
+typedef struct {
+  FILE       *f;
+  const char *stage; /* "in stage NAME: " */
+} Bound;
+
+static void WriteOne(void *ctx, const Case *c, Group g, const Key *k, const char *instance)
+{
+  const Bound *b = ctx;
+  char         option[256];
+
+  if (k && KeyApplies(k, g, instance)) { /* others share the member of one that does */
+    KeyOption(option, sizeof option, g, instance, k->name);
+    fprintf(b->f, "%s%s\t", b->stage, option);
+    if (KeyEmpty(k, instance))
+      fputs("empty", b->f);
+    else
+      KeyWrite(b->f, c, k, instance);
+    fputc('\n', b->f);
+  } else if (!k && g != GROUP_CASE) {
+    fprintf(b->f, "%snumber of %s\t%" PetscInt_FMT "\n", b->stage, case_group[g].list, *GroupCount(c, g));
+  }
+}
+
+static void WriteScene(const Case *c, Bound *b)
+{
+  char fields[128];
+
+  FieldSetPrint(&c->scene.fields, fields, sizeof fields);
+  fprintf(b->f, "%sfields\t%s\n", b->stage, fields);
+  EachBound(c, WriteOne, b);
+}
+
+PetscErrorCode CaseWriteBound(const Case *c, FILE *f)
+{
+  Bound b = {f, ""};
+
+  PetscFunctionBeginUser;
+  if (!c->nstage)
+    WriteScene(c, &b);
+  for (PetscInt i = 0; i < c->nstage; i++) {
+    const CaseStage *s = &c->stage[i];
+    char             stage[160];
+
+    snprintf(stage, sizeof stage, "in stage %s: ", s->name);
+    b.stage = stage;
+    fprintf(f, "%sbegin\t%.17g s\n", stage, s->c.scene.t_begin);
+    WriteScene(&s->c, &b);
+    EachOfStage(s, WriteOne, &b);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,6 +3,7 @@
      512 bytes           the seal: see seal.c
      /state/<field>      StepperState
      /scene              text: CaseWriteState
+     /case               text: CaseWriteBound, by which a refusal names what differs
      /particles/<name>   cl_particle_variable (n x components); id, region, faces; rank and place: where the particle
    was, so that on as many ranks a restart finds the same order and goes on bit for bit; attribute ranks
      /borders            of their boxes: how many along x, y, and the first nodes of each along x and the end, along y
@@ -68,14 +69,15 @@ static PetscErrorCode WriteState(hid_t file, const StepperState *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WriteScene(hid_t file, const Case *c)
+static PetscErrorCode WriteText(hid_t file, const char *name, const Case *c,
+                                PetscErrorCode (*write)(const Case *, FILE *))
 {
   char  *text;
   size_t size;
 
   PetscFunctionBeginUser;
-  PetscCall(CaseText(c, CaseWriteState, &text, &size));
-  PetscCall(H5Write(file, "scene", H5T_NATIVE_CHAR, size, text, NULL));
+  PetscCall(CaseText(c, write, &text, &size));
+  PetscCall(H5Write(file, name, H5T_NATIVE_CHAR, size, text, NULL));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -130,7 +132,8 @@ static PetscErrorCode WriteAll(const Model *m, const StepperState *state, Slab *
   PetscCall(H5WriteInt(file, "ranks", m->grid.size));
   PetscCall(WriteBorders(file, &m->grid));
   PetscCall(WriteState(file, state));
-  PetscCall(WriteScene(file, CaseOf(m->c)));
+  PetscCall(WriteText(file, "scene", CaseOf(m->c), CaseWriteState));
+  PetscCall(WriteText(file, "case", CaseOf(m->c), CaseWriteBound));
   PetscCall(H5Group(file, "/particles", &group));
   PetscCall(SlabWriteVariables(s, &m->P, false, group));
   PetscCall(WriteInts(&m->grid, &m->P, s, group));

@@ -235,6 +235,10 @@ void SealMake(char block[SEAL_BYTES], uint64_t fingerprint, uint64_t run, uint64
 PetscErrorCode SealCheck(MPI_Comm comm, const char *path, uint64_t *fingerprint, uint64_t *run, bool *ok, char *why,
                          size_t size);
 
+/* ---------------------------------------------------------------- bound.c */
+/* Why the case that a checkpoint was written by is not c: its keys that differ, with both values, as far as it says. */
+PetscErrorCode BoundDiffers(hid_t file, const Case *c, char *why, size_t size);
+
 /* ---------------------------------------------------------------- checkpoint.c: fields of StepperState */
 typedef struct {
   const char *name;

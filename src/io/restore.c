@@ -14,7 +14,7 @@ typedef struct {
   PetscInt    *rank, *place;     /* where each particle was */
   uint64_t     run;              /* that wrote it */
   bool         initial;          /* as the initial state of a run */
-  char         why[512];         /* reason of a refusal */
+  char         why[1280];        /* reason of a refusal */
 } Loaded;
 
 #define Refuse(L, ...)                                                                                                 \
@@ -261,15 +261,13 @@ static PetscErrorCode Load(const Model *m, const char *path, Loaded *L)
   PetscCall(SealCheck(m->grid.comm, path, &fingerprint, &L->run, &ok, L->why, sizeof(L->why)));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (!L->initial && fingerprint != CaseFingerprint(CaseOf(m->c))) {
-    Refuse(L,
-           "it was written by another case (grid, regions, materials, boundary conditions, meters or stages differ)");
-  }
   PetscCall(H5FileOpen(path, &file));
   if (file < 0)
     Refuse(L, "HDF5 cannot read it");
   if (L->initial)
     PetscCall(CheckScene(m, file, L));
+  else if (fingerprint != CaseFingerprint(CaseOf(m->c)))
+    PetscCall(BoundDiffers(file, CaseOf(m->c), L->why, sizeof(L->why)));
   if (!L->why[0])
     PetscCall(LoadFile(m, file, L));
   PetscCall(H5FileClose(&file));

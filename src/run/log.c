@@ -47,18 +47,48 @@ static PetscErrorCode SayAndKeep(FILE *f, const char format[], va_list args)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A word of the command as a shell reads it. */
-static void KeepWord(const char *word)
+/* A word of the command as a shell reads it, behind a space. */
+static void PutWord(FILE *f, const char *word)
 {
   const bool plain = *word && !word[strcspn(word, " \t\n\"'\\$`&|;<>()[]{}*?#~!")];
 
-  Keep(" ", 1);
-  if (!plain)
-    Keep("'", 1);
+  fputs(plain ? " " : " '", f);
   for (; *word; word++)
-    Keep(*word == '\'' ? "'\\''" : word, *word == '\'' ? 4 : 1);
+    fputs(*word == '\'' ? "'\\''" : (char[]){*word, '\0'}, f);
   if (!plain)
-    Keep("'", 1);
+    fputc('\'', f);
+}
+
+/* Does this option say how a run begins, which a restart says otherwise? */
+static bool Begins(const char *word)
+{
+  static const char *const begins[] = {"-restart", "-restart_as_initial", "-overwrite"};
+
+  for (size_t k = 0; k < sizeof(begins) / sizeof(*begins); k++) {
+    if (!strcmp(word, begins[k]))
+      return true;
+  }
+  return false;
+}
+
+PetscErrorCode CommandOptions(char **text)
+{
+  char **argv;
+  int    argc;
+  size_t n;
+  FILE  *f = open_memstream(text, &n);
+
+  PetscFunctionBeginUser;
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscCall(PetscGetArgs(&argc, &argv));
+  for (int k = 2; k < argc; k++) { /* behind the program and its case */
+    if (!Begins(argv[k]))
+      PutWord(f, argv[k]);
+    else if (k + 1 < argc && argv[k + 1][0] != '-')
+      k++;
+  }
+  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LogStart(MPI_Comm comm)
@@ -66,23 +96,27 @@ PetscErrorCode LogStart(MPI_Comm comm)
   const time_t now = time(NULL);
   PetscMPIInt  size;
   int          argc;
-  char       **argv, text[128];
+  size_t       n;
+  char       **argv, day[64], *command;
   struct tm    local;
+  FILE        *f = open_memstream(&command, &n);
 
   PetscFunctionBeginUser;
+  PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscGetArgs(&argc, &argv));
-  strftime(text, sizeof(text), "# %Y-%m-%d %H:%M:%S\n$", localtime_r(&now, &local));
+  strftime(day, sizeof(day), "# %Y-%m-%d %H:%M:%S\n$", localtime_r(&now, &local));
+  fputs(day, f);
+  if (size > 1)
+    fprintf(f, " mpiexec -n %d", (int)size);
+  for (int k = 0; k < argc; k++)
+    PutWord(f, argv[k]);
+  fputc('\n', f);
+  PetscCheck(fclose(f) == 0, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
   heard.n     = 0;
   heard.fresh = true;
-  Keep(text, strlen(text));
-  if (size > 1) {
-    snprintf(text, sizeof(text), " mpiexec -n %d", (int)size);
-    Keep(text, strlen(text));
-  }
-  for (int k = 0; k < argc; k++)
-    KeepWord(argv[k]);
-  Keep("\n", 1);
+  Keep(command, n);
+  free(command);
   heard.print   = PetscVFPrintf;
   PetscVFPrintf = SayAndKeep;
   PetscFunctionReturn(PETSC_SUCCESS);

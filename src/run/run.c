@@ -15,15 +15,16 @@ typedef struct {
   StageLog *log;
   Slow      slow;
   Ranges    ranges;
-  char   checkpoint[PETSC_MAX_PATH_LEN + 16], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
-  char   restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];       /* -restart, -restart_as_initial */
-  double t_saved;                                                        /* of that */
-  double t_shown;                                                        /* of the last snapshot, s */
-  double clock_start;                                                    /* s of the wall */
-  bool   check;                                                          /* ends before anything is written */
-  bool   quiet, restarted;
-  bool   frozen;        /* ended for ice */
-  bool   written, lost; /* a checkpoint by this run; not all could be written */
+  char     checkpoint[PETSC_MAX_PATH_LEN + 16], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
+  char     restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];       /* -restart, -restart_as_initial */
+  double   t_saved;                                                        /* of that */
+  PetscInt taken;                                                          /* steps before this process */
+  double   t_shown;                                                        /* of the last snapshot, s */
+  double   clock_start;                                                    /* s of the wall */
+  bool     check;                                                          /* ends before anything is written */
+  bool     quiet, restarted;
+  bool     frozen;        /* ended for ice */
+  bool     written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
 static double NextEvent(const Stepper *s, void *ctx)
@@ -158,7 +159,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
   char                text[PETSC_MAX_PATH_LEN + 4096], ranges[512], gone[512], local[512], loose[512];
-  char        above[64] = "", left[128], ice[256], yields[256], gaps[256], uneven[256], ranks[128], *stages, *all;
+  char above[64] = "", since[64] = "", left[128], ice[256], yields[256], gaps[256], uneven[256], ranks[128], *stages,
+       *all;
   ModelTotals t;
   double      error[3];
   bool        ok;
@@ -169,6 +171,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   LocalSummary(s, local);
   PetscCall(YieldSummary(s->model, yields));
   LooseSummary(s, loose);
+  if (run->restarted)
+    snprintf(since, sizeof(since), " for the %" PetscInt_FMT " steps since the restart", z->step - run->taken);
   if (z->loose_total)
     snprintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total);
   LeftSummary(s, left);
@@ -181,7 +185,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   snprintf(text, sizeof(text),
            "%s: %s at t = %s\n"
            "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-           " Newton iterations, %.2f s%s\n%s"
+           " Newton iterations, %.2f s%s%s\n%s"
            "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
            "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
            "%s%s%s%s%s%s%s%s%s  results in %s\n",
@@ -189,8 +193,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
            StepperCase(s)->nstage ? "by stage"
            : s->auto_.on          ? STEPPER_AUTO
                                   : s->scheme->name,
-           z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, above, local, error[0], error[1],
-           error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, uneven, gaps, ice, ranks,
+           z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, since, above, local, error[0],
+           error[1], error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, uneven, gaps, ice, ranks,
            StepperCase(s)->output_dir);
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
@@ -302,24 +306,25 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   const char    *why               = run->lost  ? "not all could be written; see to it"
                                      : s->empty ? "no particle is left in the grid"
                                                 : "the state is not finite";
-  char           advice[CL_ADVICE] = "";
+  char           advice[CL_ADVICE] = "", *options;
 
   PetscFunctionBeginUser;
+  PetscCall(CommandOptions(&options));
   if ((run->lost || s->broken) && run->saved[0]) {
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: stopped at t = %s: %s.  The last checkpoint, of t = %s, is whole: go on with "
-                           "-restart %s\n",
-                           TimeAt(t).s, why, TimeAt(run->t_saved).s, run->saved));
+                           "-restart %s%s\n",
+                           TimeAt(t).s, why, TimeAt(run->t_saved).s, run->saved, options));
   } else if (run->lost || s->broken) {
     PetscCall(PetscFPrintf(
         comm, stderr, "clathra: stopped at t = %s: %s, and there is no checkpoint of this run yet: start it anew\n",
         TimeAt(t).s, why));
   } else if (s->signal && !StepperDone(s)) {
-    PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %s; go on with -restart %s\n", s->signal,
-                          strsignal(s->signal), TimeAt(t).s, run->saved));
+    PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %s; go on with -restart %s%s\n", s->signal,
+                          strsignal(s->signal), TimeAt(t).s, run->saved, options));
   } else if (run->watch.over && !run->frozen && ok && !StepperDone(s)) {
-    PetscCall(PetscPrintf(comm, "Ended at t = %s, before -time_limit %g s is over; go on with -restart %s\n",
-                          TimeAt(t).s, run->watch.limit, run->saved));
+    PetscCall(PetscPrintf(comm, "Ended at t = %s, before -time_limit %g s is over; go on with -restart %s%s\n",
+                          TimeAt(t).s, run->watch.limit, run->saved, options));
   } else if (!ok || run->frozen) {
     if (!run->frozen)
       PetscCall(AmbientAdvice(s->model->c, advice));
@@ -329,6 +334,7 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
       PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
     PetscCall(PetscPrintf(comm, "The last good state (t = %s) is saved in %s\n", TimeAt(t).s, run->saved));
   }
+  free(options);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -389,6 +395,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(PetscStrncpy(run->saved, restart, sizeof(run->saved)));
     run->t_saved   = s->state.t;
+    run->taken     = s->state.step;
     run->restarted = true;
   } else {
     run->t_saved = NAN;

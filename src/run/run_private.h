@@ -7,6 +7,9 @@
 /* ---------------------------------------------------------------- log.c: log.txt */
 /* What was said since the last time goes into the folder; append: after what a run before wrote.  Collective. */
 PetscErrorCode LogWrite(MPI_Comm comm, const char *dir, bool append, bool *ok);
+/* The options of the command as a shell reads them, each behind a space, but those that say how the run begins; to be
+   freed. */
+PetscErrorCode CommandOptions(char **text);
 
 /* ---------------------------------------------------------------- watch.c: seconds of the clock on the wall */
 double Wall(void); /* now, s */

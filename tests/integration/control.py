@@ -4,6 +4,7 @@
 The scene is BP2 on 13 cells.
 """
 import re
+import shlex
 import subprocess
 import sys
 import time
@@ -31,6 +32,13 @@ def check_limit():
     done = launch(binary(), *BP2, "-time_end", "2000 s", "-quiet", "-time_limit", "2", out=out)
     check("a run of 40 000 steps with -time_limit 2 s takes, on a busy machine too", time.monotonic() - begun, 60.0)
     check_true("... exit code 4, and how to go on", done.returncode == 4 and "before -time_limit 2" in done.stdout and f"-restart {out}" in done.stdout, done.stdout[-200:])
+    said = re.search(r"go on with (-restart .*)$", done.stdout, re.M)
+    words = shlex.split(said[1]) if said else []
+    check_true("... with the keys of its command line", all(w in words for w in (*BP2[1:], "2000 s")), words)
+    again = subprocess.run([binary(), str(BP2[0]), *words, "-stepper_max_steps", "1"], capture_output=True, text=True, timeout=600)
+    check_true("... and so it goes on", again.returncode == 0, again.stdout[-300:] + again.stderr[-300:])
+    summary = re.search(r"(\d+) steps, .* s for the (\d+) steps since the restart$", again.stdout, re.M)
+    check_true("... with the time of its own steps alone", summary and int(summary[1]) > int(summary[2]) == 1, again.stdout[-400:])
     t = float((out / "balance.csv").read_text().splitlines()[-1].split(",")[1])
     end = f"{round((t + 1) / 0.05) * 0.05:g} s"
     run(binary(), *BP2, "-quiet", "-time_end", end, "-restart", out / "checkpoint.h5", out=out)

@@ -587,6 +587,9 @@ static void ForeignFilesAreRefused(void **state)
   s.material.retention.type = "brooks_corey";
   ExpectRefused(&s, path, "another case");
   s.material.retention.type = "van_genuchten";
+  s.material.kappa_s += 1.0;
+  ExpectRefused(&s, path, "conductivity is ");
+  s.material.kappa_s -= 1.0;
   snprintf(s.c.title, sizeof(s.c.title), "another title");
   s.c.t_end = 7.0;
   Call(CheckpointRead(&s.m, &back, path, &origin, &ok));
@@ -644,6 +647,8 @@ static void Spoil(const char *path, uint64_t fingerprint, int kind)
     Check(H5Ldelete(f, "/borders", H5P_DEFAULT) >= 0);
     Call(H5Write(f, "/borders", H5T_NATIVE_INT, kind == 7 ? six : five, wrong, NULL));
   }
+  if (kind == 9)
+    Check(H5Ldelete(f, "/case", H5P_DEFAULT) >= 0);
   Check(H5Fclose(f) >= 0);
   Reseal(path, fingerprint);
 }
@@ -661,6 +666,8 @@ static void WrongInsidesAreRefused(void **state)
                                        "/borders are impossible"};
   IoScene                  s;
   const StepperState       z = SomeState();
+  StepperState             back;
+  bool                     ok;
   char                     path[512];
 
   SceneCreate(&s, PETSC_COMM_WORLD, 4);
@@ -671,6 +678,14 @@ static void WrongInsidesAreRefused(void **state)
       Spoil(path, CaseFingerprint(&s.c), k);
     ExpectRefused(&s, path, reason[k]);
   }
+  WriteCheckpoint(&s.m, &z, path);
+  if (world_rank == 0) /* of another case, and does not hold it in words, as one of before */
+    Spoil(path, CaseFingerprint(&s.c) ^ 1, 9);
+  ExpectRefused(&s, path, "another case (grid, regions,");
+  if (world_rank == 0)
+    Reseal(path, CaseFingerprint(&s.c));
+  Call(CheckpointRead(&s.m, &back, path, &origin, &ok));
+  Check(ok);
   if (world_rank == 0) { /* a sealed file that is not HDF5 */
     char *block = calloc(1, 4096);
 
