@@ -115,8 +115,8 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
  * where none prescribes one. */
 const Bc *BcHottest(const Scene *c, double *T);
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
-   between regions (342), whose hydrate is heated (344), or whose rate of reaction nobody has measured, on rank 0.
-   Collective. */
+   between regions (342), whose gas is less than its residual share, whose hydrate is heated (344), or whose rate of
+   reaction nobody has measured, on rank 0.  Collective. */
 PetscErrorCode           InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
 extern const char *const cl_side[]; /* words of Side, and none */
 /* Warns of sides that nothing bears though the pores behind them do, on rank 0. */

@@ -1,6 +1,6 @@
 /* What a user should know of a start that is out of balance with gravity (docs/equations.md, section 13), or whose pore
-   pressure is left to tractions (section 6), or where capillary pressure jumps (section 13); and of heat that is let in
-   beside hydrate (section 7). */
+   pressure is left to tractions (section 6), or where capillary pressure jumps or gas is trapped (section 13); and of
+   heat that is let in beside hydrate (section 7). */
 #include "clathra/boundary.h"
 #include "clathra/point_heat.h"
 #include "clathra/shape.h"
@@ -252,6 +252,35 @@ static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Partic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gas that starts below its residual share has p_g below p_w: (223) takes it for trapped and compressed. */
+static PetscErrorCode TrappedWarnings(MPI_Comm comm, const Scene *c)
+{
+  InitialScalars s;
+  double         middle[CL_DIM];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; (c->fields.has & HAS_GAS_PRESSURE) && k < c->nregion; k++) {
+    const Region   *r     = &c->region[k];
+    const Material *m     = &c->material[r->material];
+    const double    share = r->Sg / (1.0 - r->Sh);
+
+    if (RegionEmpty(r) || !(share > 0.0) || share >= m->retention.Sgr)
+      continue;
+    RegionMiddle(r, middle);
+    PetscCall(InitialScalarsAt(c, r, middle, &s));
+    if (s.pg >= s.pw)
+      continue;
+    PetscCall(PetscFPrintf(
+        comm, stderr,
+        "clathra: warning: gas starts below its residual share: region_%s_Sg = %.4g and "
+        "region_%s_Sh = %.4g are Sg/(1 - Sh) = %.4g of the open pores, mat_%s_retention_Sgr is %.4g: "
+        "it counts as trapped and compressed, with p_g %s below p_w (more Sg or a smaller Sgr starts "
+        "with gas that water has not trapped, Sg: 0 without)\n",
+        r->name, r->Sg, r->name, r->Sh, share, m->name, m->retention.Sgr, PressureWords(s.pw - s.pg, 3).s));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P)
 {
   double tension = 0.0, scale = 0.0;
@@ -264,6 +293,7 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P
   PetscCall(CapillaryAdvice(comm, c, P, advice));
   if (advice[0])
     PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
+  PetscCall(TrappedWarnings(comm, c));
   PetscCall(HeatingWarning(comm, c, P));
   if (!c->fields.solid || SceneGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);

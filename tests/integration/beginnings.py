@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Warnings of a start that does not stay as it is: they come where they should, with numbers, and in no shipped case but one that lets its body settle first.
+"""Warnings of a start that does not stay as it is: they come where they should, with numbers, and in no shipped case but one that lets its body settle first, and slopes whose gas is given as trapped.
 
-Unstressed bodies, pore pressures far from hydrostatic (341), gas that rises (315), capillary pressures that jump (342), hydrate outside its
+Unstressed bodies, pore pressures far from hydrostatic (341), gas that rises (315), capillary pressures that jump (342), gas below its residual share, hydrate outside its
 stability zone, gas inside it.  -case_check says them as a run does, and writes nothing."""
 import re
 import sys
@@ -23,7 +23,7 @@ BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydra
 CLAYS = HERE.parent / "verification" / "cases" / "no_gas_clay.yaml"  # a drained sand of hydrate between two
 HEATER = HERE.parent / "verification" / "cases" / "heater.yaml"  # 60 degC beside hydrate of 10
 WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "rises": "gas starts out of balance with gravity", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
-         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps", "closed": "nothing flows through them", "free": "nothing bears the pore pressure", "rate": "have been measured"}
+         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps", "closed": "nothing flows through them", "free": "nothing bears the pore pressure", "rate": "have been measured", "trapped": "gas starts below its residual share"}
 
 
 def warned(done, case):
@@ -73,10 +73,11 @@ def check_rate():
     check_true("... with its file and line", f"{path}:{line}: warning: mat_core_kinetics_K0" in text, text)
 
 
-SETTLES = {"slope_warming": ["stress", "rises"]}  # its first twenty years are for that: no reaction, an elastic skeleton
+STARTS = {"slope_warming": ["stress", "rises"]}  # its first twenty years are for that: no reaction, an elastic skeleton
+STARTS |= {f"slope_{k}": ["trapped"] for k in "abc"}  # S_g/(1 - S_h) is 0.2, S_gr 0.3
 check_rate()
 for path in sorted(CASES.glob("*/case.yaml")):
-    comes(f"cases/{path.parent.name}", SETTLES.get(path.parent.name, []), said(path.parent))
+    comes(f"cases/{path.parent.name}", STARTS.get(path.parent.name, []), said(path.parent))
 
 # ---------------------------------------------------------------- a roller that closes a well
 well = scratch() / "well.yaml"
@@ -192,6 +193,11 @@ STILL = [*both(pressure="3.8 MPa", Sh="0"), "-mat_core_kinetics_K0", "0 mol/(m^2
 shares = lambda left, right: [o for r, g in (("left", left), ("right", right)) for o in (f"-region_{r}_Sg", f"{g}", f"-region_{r}_Sw", f"{1 - g}")]
 pc = lambda share: 10 * np.sqrt((1 - (share - 0.01) / 0.89) ** -2 - 1)  # kPa, p0 10 kPa, Swr 0.1, Sgr 0.01
 comes("one gas share", [], said(BLOCK, *STILL, *shares(0.2, 0.2)))
+text = comes("gas below its residual share", ["trapped"], said(BLOCK, *STILL, *shares(0.03, 0.03), *both(Sh="0.2"), *both(Sw="0.77"), "-mat_core_retention_Sgr", "0.05"))
+check_true("... with keys and values, once for each region", all(text.count(f"region_{r}_Sg = 0.03 and region_{r}_Sh = 0.2 are Sg/(1 - Sh) = 0.0375 of the open pores, mat_core_retention_Sgr is 0.05") == 1 for r in ("left", "right")), text)
+check("... p_g below p_w, that of trapped gas (223)", abs(numbers(text, "with p_g")[0] / (10e3 * np.log(0.05 / 0.0375)) - 1), 0.05)
+check_true("... the same on 2 ranks", text in "\n".join(said(BLOCK, *STILL, *shares(0.03, 0.03), *both(Sh="0.2"), *both(Sw="0.77"), "-mat_core_retention_Sgr", "0.05", ranks=2)))
+comes("gas of its residual share", [], said(BLOCK, *STILL, *shares(0.05, 0.05), "-mat_core_retention_Sgr", "0.05"))
 comes("two whose p_g - p_w are less than 10 kPa apart", [], said(BLOCK, *STILL, *shares(0.2, 0.45)))
 text = comes("two that are further apart", ["capillary"], said(BLOCK, *STILL, *shares(0.2, 0.6)))
 low, high = map(float, re.search(r"p_g - p_w of ([\d.]+) kPa and ([\d.]+) kPa", text).groups())
