@@ -10,6 +10,7 @@
    Before the first time the first value holds, after the last time the last. */
 #include "case_private.h"
 #include "clathra/boundary.h"
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -110,6 +111,23 @@ static bool ScheduleWaves(Reader *r, const char *shown, const List *list, const 
   return true;
 }
 
+/* A word where a key takes a number or one word of its own: what it takes, and whether the word is a key beside it. */
+static void NoSuchWord(Reader *r, const char *shown, const char *text, const Key *k)
+{
+  const Key *beside = case_group[GROUP_BC].key;
+
+  while (beside->name && (beside->kind != KEY_BOOL || beside->choices || strcasecmp(beside->name, text)))
+    beside++;
+  if (beside->name)
+    ReaderError(r, shown, text,
+                "must be a number and a unit, e.g. 1 %s, a function of time or the word %s; %s is a key of its own: "
+                "%s: yes in place of %s",
+                k->unit, k->word, beside->name, beside->name, k->name);
+  else
+    ReaderError(r, shown, text, "must be a number and a unit, e.g. 1 %s, a function of time or the word %s", k->unit,
+                k->word);
+}
+
 static bool ScheduleParse(Reader *r, const char *shown, const char *text, const Key *k, int form, Schedule *s)
 {
   List   list;
@@ -123,7 +141,10 @@ static bool ScheduleParse(Reader *r, const char *shown, const char *text, const 
     ok = true;
     if (k->word && !strcasecmp(text, k->word))
       y = INFINITY; /* as for numbers: what the word stands for */
-    else
+    else if (k->word && isalpha((unsigned char)*text)) {
+      NoSuchWord(r, shown, text, k);
+      ok = false;
+    } else
       ok = RealRead(r, shown, text, k->unit, k->range, &y);
     SchedulePoint(s, 0, y);
   } else if (form == FORM_TABLE || form == FORM_PIECEWISE)

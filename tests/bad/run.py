@@ -131,6 +131,7 @@ CASES = [
     ("missing boundary value", [("    normal: {table: [0 s, 3.25 MPa, 1000 s, 13.25 MPa, 2000 s, 3.25 MPa]}\n", "")],
      ["bc_load_normal", "is missing"], []),
     ("pressure neither given nor initial", [(", initial: yes", "")], ["bc_drain_pressure", "is missing"], []),
+    ("initial as a pressure", [(", initial: yes", ", pressure: initial")], ["bc_drain_pressure", "1 Pa", "the word ambient", "initial: yes in place of pressure"], []),
     ("ambient on a face without a fluid around", [(", initial: yes", ", pressure: ambient")], ["bc_drain_pressure", "neither ambient_pressure"], []),
     ("ambient in a misspelt word", [(", initial: yes", ", pressure: ambiant"), ("basis: cpgimp", "ambient: {pressure: 1 MPa}")],
      ["bc_drain_pressure", "ambiant"], []),
