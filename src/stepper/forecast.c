@@ -18,6 +18,8 @@
 #define REACTS 1.75         /* ... times as many where hydrate reacts: its fronts rule steps then */
 #define NEWTON_REACTS 2.3   /* Jacobians a stage there */
 #define BEHIND_KINK 12.0    /* steps that a kink adds */
+#define PERIOD 30.0         /* steps in a period of a condition's waves, at SMOOTH_TOL */
+#define MARKS 8.0           /* ... in which so many of them are stops */
 #define MOST_STRETCHES 2000 /* ... looked at */
 #define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
 #define PER_TRANSIT 40.0    /* ... and want so many steps each */
@@ -63,6 +65,18 @@ double StepperStops(const Stepper *s, double left, double *kinks)
   return steps * share;
 }
 
+/* Periods of the waves of all conditions in what is left. */
+static double Periods(const Stepper *s, double left)
+{
+  const double t_end = StepperCase(s)->t_end, from = t_end - left;
+  double       t = BcNextMark(s->model->c, from);
+  int          n = 0;
+
+  for (; t < t_end && n < MOST_STRETCHES; n++)
+    t = BcNextMark(s->model->c, t);
+  return n / MARKS * (n < MOST_STRETCHES ? 1.0 : left / (t - from));
+}
+
 /* Does hydrate react while a step is chosen by its error?  Its fronts, which nobody knows yet, then rule steps. */
 static bool FrontsRule(const Stepper *s)
 {
@@ -84,8 +98,9 @@ static double ImplicitSteps(const Stepper *s, double left)
   const double transits =
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
 
-  const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * cbrt(SMOOTH_TOL / s->tol);
-  const double stops  = StepperStops(s, left, &kinks);
+  const double finer  = cbrt(SMOOTH_TOL / s->tol);
+  const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * finer;
+  const double stops  = fmax(StepperStops(s, left, &kinks), PERIOD * finer * Periods(s, left));
   const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* (317) */
 
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;

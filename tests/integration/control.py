@@ -3,6 +3,7 @@
 
 The scene is BP2 on 13 cells.
 """
+import math
 import re
 import shlex
 import subprocess
@@ -55,6 +56,42 @@ def check_limit():
     check_true("-case_keys no prints none", done.returncode == 0 and "the case is valid" in done.stdout and "| `" not in done.stdout, done.stdout[-200:])
     done = launch(binary(), *BP2, "-time_end", "2000 s", "-quiet", "-time_limit", "0.03 min", out=scratch() / "minutes")
     check_true("-time_limit 0.03 min", done.returncode == 4 and "before -time_limit 1.8 s" in done.stdout, done.stdout[-200:])
+
+
+TIDE = """\
+title: Tide over a column of 30 m
+fields: [solid, water]
+inertia: no
+grid: {lower: [0 m, 0 m], upper: [0.5 m, 31 m], cells: [1, 62]}
+ambient: {pressure: {sine: [10 MPa, 15 kPa, 12.42 h, 0 h]}}
+materials: [silt]
+mat_silt:
+  porosity: 0.5
+  solid: {density: 2650 kg/m^3}
+  permeability: {k0: 1e-15 m^2, hydrate_law: none}
+  elasticity: {E0: 2 GPa, nu: 0.3}
+regions: [column]
+region_column: {lower: [0 m, 0 m], upper: [0.5 m, 30 m], material: silt, pressure: 10 MPa}
+boundaries: [base, left, right, floor]
+bc_base: {type: roller, axis: y, position: 0 m}
+bc_left: {type: roller, axis: x, position: 0 m}
+bc_right: {type: roller, axis: x, position: 0.5 m}
+bc_floor: {type: pressure, side: top, pressure: ambient}
+time: {end: 124.2 h}
+output: {every: 12.42 h}
+"""
+
+
+def check_tide():
+    """Steps of a run of ten tides, by tolerance, within a factor of two of those forecast."""
+    case = scratch() / "tide.yaml"
+    case.write_text(TIDE)
+    for tol in ("1e-3", "1e-2"):
+        out = scratch() / f"tide{tol}"
+        said = run(binary(), case, "-stepper_tol", tol, out=out).output
+        forecast = float(re.search(r"implicit about ([\d.e+-]+) steps", said)[1])
+        came = int(re.search(r"(\d+) steps, \d+ refused", said)[1])
+        check(f"ten tides, tolerance {tol}: {came} steps came over those forecast, as a power of two", abs(math.log2(came / forecast)), 1.0)
 
 
 def check_slivers():
@@ -269,6 +306,7 @@ def check_words():
 def main():
     check_words()
     check_share()
+    check_tide()
     check_limit()
     check_slivers()
     check_retries()
