@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """The Python package clathra against the files themselves: BP2 for a minute on 1 and 2 ranks, and what is no run."""
+import re
 import sys
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import Run as Tested  # noqa: E402
-from common import check, check_true, finish, scratch  # noqa: E402
+from common import ROOT, check, check_true, finish, scratch  # noqa: E402
 
 import clathra  # noqa: E402  scripts/, which common puts on the path
 
@@ -24,6 +25,15 @@ def refuses(name, call, *words):
         check_true(name, all(w in str(error) for w in words), error)
     else:
         check_true(name, False, "nothing was refused")
+
+
+def check_units(run):
+    """The page's table of arrays and units against the file's own."""
+    rows = re.findall(r"^\| (\S+) \| (`.*) \|$", (ROOT / "docs" / "running.md").read_text().split("## In Python")[1].split("\n## ")[0], re.M)
+    page = {name: unit for unit, names in rows for name in re.findall(r"`(\w+)`", names)}
+    with h5py.File(run.folder / "fields" / "000000.h5") as file:
+        own = {name: np.asarray(data.attrs["unit"]).astype(str).item() for name, data in file["particles"].items()}
+    check_true("arrays and units of docs/running.md are those of the file", page == own, sorted(page.items() ^ own.items()))
 
 
 def check_snapshots(run):
@@ -70,6 +80,7 @@ def check_case(run):
 def main():
     one, two = (Tested.of_case("bp2", *OPTIONS, ranks=ranks) for ranks in (1, 2))
     run = clathra.Run(one.out)
+    check_units(run)
     check_snapshots(run)
     check_tables(run, one)
     check_case(run)
