@@ -172,4 +172,17 @@ check_true("... the ball is the later one's", 0 < np.count_nonzero(start["region
 check_true("an earlier one that is all covered is refused", runs["first"][0].returncode == 2 and "region_ball_minus" in runs["first"][0].stdout, runs["first"][0].stdout[-300:])
 again = Run.of_case(later.out / "case.yaml", "-quiet")
 check_true("the resolved case runs to the same", the_same(later, again))
+# A region without particles is a hole where minus names it, and nowhere else.
+ROD = HILL.parents[2] / "verification" / "cases" / "heater_rod.yaml"
+
+
+def inside_rod(*options):
+    run = Run.of_case(ROD, "-quiet", "-stepper_max_steps", 0, *options)
+    x = run.snapshots()[0][1]["position"]
+    return int(np.sum(np.all((x > (3.1, 4)) & (x < (4.1, 6)), axis=1)))
+
+
+there = inside_rod()
+check_true("a rod of no material, listed last: its particles stay", there > 0, there)
+check_true("... and are cut out where minus names it", inside_rod("-region_layer_minus", "rod") == 0)
 finish()
