@@ -314,6 +314,7 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
                {c->stabilisation.donor, "stabilisation_donor"},
                {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
                {c->stabilisation.lumped_reaction, "stabilisation_reaction"},
+               {c->stabilisation.heat_turns, "stabilisation_heat_turns"},
                {c->stabilisation.exchange == EXCHANGE_YES, "stabilisation_exchange"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
