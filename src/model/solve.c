@@ -173,9 +173,9 @@ static PetscErrorCode CreateSolver(Model *m)
     PetscCall(MatrixCreate(m));
   PetscCall(WideCreate(m, &m->solver->A));
   PetscCall(MatCreateVecs(m->solver->A, &m->solver->X, &m->solver->R));
-  PetscCall(PetscStrcmp(m->solver->pmat_type[0]                  ? m->solver->pmat_type
+  PetscCall(PetscStrcmp(m->solver->pmat_type[0]           ? m->solver->pmat_type
                         : FactorsSmall(m, m->c->fields.n) ? "aij"
-                                                                 : "baij",
+                                                          : "baij",
                         "aij", &aij));
   PetscCheck(!aij || m->grid.size == 1, m->grid.comm, PETSC_ERR_SUP,
              "-model_pmat_type aij is for one rank; leave it out, or give baij");
