@@ -74,7 +74,7 @@ def check_rate():
 
 
 STARTS = {"slope_warming": ["stress", "rises"]}  # its first twenty years are for that: no reaction, an elastic skeleton
-STARTS |= {f"slope_{k}": ["trapped"] for k in "abc"}  # S_g/(1 - S_h) is 0.2, S_gr 0.3
+STARTS |= {f"slope_{k}": ["trapped"] for k in ("a", "b", "c", "3d")}  # S_g/(1 - S_h) is 0.2, S_gr 0.3
 check_rate()
 for path in sorted(CASES.glob("*/case.yaml")):
     comes(f"cases/{path.parent.name}", STARTS.get(path.parent.name, []), said(path.parent))
