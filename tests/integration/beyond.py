@@ -10,7 +10,7 @@ from common import CASES, Run, check, check_true, finish, seconds  # noqa: E402
 # Cold water into sand at a cell Peclet number of 26, carried by central differences.
 SCENE = (CASES / "heat_advection", "-grid_cells", "20,1", "-time_end", "1 d", "-output_times", "0 s", "-stepper_adapt", "yes", "-mat_sand_solid_conductivity", "0.1 W/(m K)",
          "-mat_sand_water_conductivity", "0.03 W/(m K)", "-progress", "0")  # fmt: skip
-HOT, OFF = ("-stepper_dt", "1 min", "-stepper_dt_max", "15 min", "-region_body_temperature", "90 degC"), ()
+HOT = ("-stepper_dt", "1 min", "-stepper_dt_max", "15 min", "-region_body_temperature", "90 degC")
 SAID = re.compile(r"clathra: warning: a particle (has|had) (\S+) degC, near \((\S+), (\S+)\) m at t = (\S+ \S+): (\S+) K (colder|warmer) than start, conditions and hydrate can make it .*?What to try, in this order: (.*?); ")
 STEP = re.compile(r"^step +\d+: t = (\S+ \S+)", re.M)
 
@@ -21,7 +21,7 @@ def said(*options, **keywords):
 
 
 def main():
-    run, found = said(*HOT, *OFF)
+    run, found = said(*HOT)
     check_true("far beyond: told of on the way, once, and at the end", [w[1] for w in found] == ["has", "had"], run.output[-800:])
     if len(found) != 2:
         sys.exit(finish())
@@ -34,8 +34,8 @@ def main():
     check("... where it is: behind the inlet, m", float(first[3]), (0, 1))
     check_true("... with the key that mends it first", first[8] == last[8] == "stabilisation_heat_turns: yes, where flow carries the heat", first[8])
     words = lambda of: [(*w.groups()[:3], *w.groups()[4:]) for w in of]  # without y: both particles of a column are as cold
-    check_true("two ranks say the same", words(said(*HOT, *OFF, ranks=2)[1]) == words(found))
-    check_true("less than two kelvin: at the end alone", [w[1] for w in said(*OFF)[1]] == ["had"])
+    check_true("two ranks say the same", words(said(*HOT, ranks=2)[1]) == words(found))
+    check_true("less than two kelvin: at the end alone", [w[1] for w in said()[1]] == ["had"])
     check_true("with the key: nothing", not said(*HOT, "-stabilisation_heat_turns", "yes")[1])
     finish()
 
