@@ -519,20 +519,14 @@ static PetscErrorCode Prolong(const Model *m, const Reduced *r, Vec R, Vec Y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (175): their rows couple them with nothing but themselves and what has just been found. */
-static PetscErrorCode RecoverVelocities(Model *m, Reduced *r, Vec R, Vec Y)
+/* Fluid velocities of Y from their rows (16), which couple them with nothing but themselves and what `slaved` holds. */
+static PetscErrorCode SolveSlaved(const Model *m, const Reduced *r, Vec R, Vec Y)
 {
   const FieldSet *fs = &m->c->fields;
   const double   *a, *s, *d;
   double         *x;
 
   PetscFunctionBeginUser;
-  if (r->fs.n == fs->n)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (m->solver->product)
-    PetscCall(ProductMult(m, true, Y, r->slaved));
-  else
-    PetscCall(MatMult(m->solver->J2, Y, r->slaved));
   PetscCall(VecGetArrayRead(R, &a));
   PetscCall(VecGetArrayRead(r->slaved, &s));
   PetscCall(VecGetArrayRead(r->diagonal, &d));
@@ -547,6 +541,33 @@ static PetscErrorCode RecoverVelocities(Model *m, Reduced *r, Vec R, Vec Y)
   PetscCall(VecRestoreArrayRead(r->diagonal, &d));
   PetscCall(VecRestoreArrayRead(r->slaved, &s));
   PetscCall(VecRestoreArrayRead(R, &a));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* (175) */
+static PetscErrorCode RecoverVelocities(Model *m, Reduced *r, Vec R, Vec Y)
+{
+  PetscFunctionBeginUser;
+  if (r->fs.n == m->c->fields.n)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (m->solver->product)
+    PetscCall(ProductMult(m, true, Y, r->slaved));
+  else
+    PetscCall(MatMult(m->solver->J2, Y, r->slaved));
+  PetscCall(SolveSlaved(m, r, R, Y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ReducedGuess(Model *m, Vec R, Vec Y)
+{
+  Reduced *r = m->solver->reduced;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(Y, 0.0));
+  if (r->fs.n == m->c->fields.n)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecSet(r->slaved, 0.0));
+  PetscCall(SolveSlaved(m, r, R, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

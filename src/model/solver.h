@@ -82,7 +82,8 @@ PetscErrorCode  ReducedBegin(Model *m, Assembly *to); /* empties it; to: of its 
 PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
 PetscErrorCode  ReducedRest(Reduced *r);              /* until the next set-up, which a step begins with */
 PetscErrorCode  ReducedFollow(Model *m);              /* the Jacobian is a new one */
-PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) on scaled, owned vectors */
+PetscErrorCode  ReducedGuess(Model *m, Vec R, Vec Y); /* (441) on scaled, owned vectors */
+PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) */
 /* LU of n unknowns a node (factors.c): is it small, on one rank; by which package. */
 bool          FactorsSmall(const Model *m, int n);
 MatSolverType FactorsPackage(const Model *m, int n);
