@@ -2,7 +2,7 @@
 """Solvers of implicit steps against size and against properties.  Usage: bench_scale.py CLATHRA [--only REGEX] [--cells N,N,...] [--again] [--page]
 
 Every run is kept in docs/scale.json as soon as it is there and not run again (--again: the chosen ones are); docs/scale.md is written anew
-from all of them (--page: only that).  --only chooses runs by name ("size", "size block 50:", "extremes", "operator", "across"), --cells those of
+from all of them (--page: only that).  --only chooses runs by name ("size", "size block 50:", "extremes", "operator", "across", "long"), --cells those of
 the sizes (25 and 50 unless said; 100, 200 and 350 want minutes and up to 20 GB).
 
 Time is user time of the process less that of one without a step, so a busy machine hardly matters; memory is the resident set likewise.
@@ -24,7 +24,8 @@ STABILITY = ROOT / "tests" / "verification" / "cases" / "stability.yaml"
 FOOTING = ROOT / "tests" / "verification" / "cases" / "strip.yaml"
 FIELD_SETS = ROOT / "tests" / "verification" / "cases" / "field_sets.yaml"
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
-WHOLE, REDUCED = ("-newton_preconditioner", "whole"), ("-newton_preconditioner", "reduced")
+WHOLE, LU, MULTIGRID = ("-newton_preconditioner", "whole"), ("-reduced_pc_type", "lu"), ("-reduced_pc_type", "fieldsplit")
+KINDS = (("whole", WHOLE), ("LU", LU), ("multigrid", MULTIGRID))
 KEPT, FRESH = (), ("-newton_refactor", "0")
 
 
@@ -87,17 +88,17 @@ def fixed(dt):
 
 
 def sizes(cells):
-    """(name, maker of the case, options, ranks): the block and the dry block, preconditioner kept as (176) says and made at every iteration, and LU."""
+    """(name, maker of the case, options, ranks): the block and the dry block, multigrid kept as (176) says and made at every iteration, and LU."""
     for n in cells:
-        for name, make, steps, lu in (("block", broad, BLOCK, 100), ("dry", dry, (*bench.BLOCK, "-stepper_max_steps", 3), 200)):
-            yield f"size {name} {n}: kept", lambda f, n=n, make=make: make(f, n), (*steps, *REDUCED), 1
-            yield f"size {name} {n}: fresh", lambda f, n=n, make=make: make(f, n), (*steps, *REDUCED, *FRESH), 1
-            if n <= lu:
-                yield f"size {name} {n}: LU", lambda f, n=n, make=make: make(f, n), (*steps, *WHOLE), 1
+        for name, make, steps, most in (("block", broad, BLOCK, 100), ("dry", dry, (*bench.BLOCK, "-stepper_max_steps", 3), 200)):
+            yield f"size {name} {n}: kept", lambda f, n=n, make=make: make(f, n), (*steps, *MULTIGRID), 1
+            yield f"size {name} {n}: fresh", lambda f, n=n, make=make: make(f, n), (*steps, *MULTIGRID, *FRESH), 1
+            if n <= most:
+                yield f"size {name} {n}: LU", lambda f, n=n, make=make: make(f, n), (*steps, *LU), 1
 
 
 def extremes():
-    """Properties to their ends, each by LU and by the reduced preconditioner."""
+    """Properties to their ends, each by LU of the whole and by LU and multigrid of the reduced matrix."""
     rows = [(f"k_0 = {k:g} m2, {s}", s, {}, ["-mat_sand_permeability_k0", f"{k} m^2", *fixed(1)]) for s in ("thmc", "hm")
             for k in (1e-9, 1e-10, 1e-12, 1e-14, 1e-16, 1e-18, 1e-20, 1e-22)]
     rows += [(f"K_w = {K:g} Pa, k_0 = {k:g} m2, hm", "hm", {}, ["-mat_sand_water_bulk_modulus", f"{K} Pa", "-mat_sand_permeability_k0", f"{k} m^2", *fixed(1)])
@@ -106,9 +107,9 @@ def extremes():
     rows += [(f"cells 0.01 x {0.2 * a / 20:g} m, {s}", s, {"body": f"{0.2 * a:g} m"}, fixed(1)) for s in ("thmc", "hm") for a in (10, 0.1)]
     rows += [(f"loaded side at {c:g} of a cell, {s}", s, {"width": f"{0.19 + 0.01 * c:g} m"}, fixed(1)) for s in ("thmc", "hm") for c in (0.5, 0.1, 0.01)]
     for name, fields, shape, options in rows:
-        for kind, solver in (("LU", WHOLE), ("reduced", REDUCED)):
+        for kind, solver in KINDS:
             yield f"extremes {name}: {kind}", lambda f, fields=fields, shape=shape: extreme(f, fields, **shape), (*options, *solver), 1
-    for kind, solver in (("LU", WHOLE), ("reduced", REDUCED)):
+    for kind, solver in KINDS:
         yield f"extremes hydrate front (BP2, 25 x 25 cells, 20 steps): {kind}", lambda f: broad(f, 25), ("-stepper_max_steps", 20, *solver), 1
         yield f"extremes plastic zone under a strip footing: {kind}", lambda f: FOOTING, ("-stepper_type", "sdirk2", "-stepper_max_steps", 20, *solver), 1
 
@@ -118,22 +119,35 @@ def operator(cells):
     for n in cells:
         for name, make in (("block", broad), ("dry", dry)):
             for kind, options in (("assembled", ("-newton_operator", "assembled")), ("particles", ("-newton_operator", "particles")), ("differences", ("-snes_mf_operator",))):
-                yield f"operator {name} {n}: {kind}", lambda f, n=n, make=make: make(f, n), (*BLOCK, *REDUCED, *options), 1
+                yield f"operator {name} {n}: {kind}", lambda f, n=n, make=make: make(f, n), (*BLOCK, *MULTIGRID, *options), 1
 
 
 def across():
-    """Where the reduced preconditioner begins to pay."""
+    """Where multigrid begins to pay: scenes by the unknowns of the reduced matrix across the body, LU of the whole as far as that is quick."""
     strip = lambda f, n, b: bench.case_file(f, n + max(1, n // 25), b, 0.02 * b, "strip")  # noqa: E731
-    scenes = [(f"thmc, {n} x {b}", lambda f, n=n, b=b: strip(f, n, b), 9, b, ("-stepper_max_steps", 3)) for n, b in ((200, 1), (200, 4), (200, 8), (200, 16))]
-    scenes += [(f"thmc, {b} x {b}", lambda f, b=b: broad(f, b), 9, b, ("-stepper_max_steps", 3)) for b in (15, 25, 35, 50)]
-    scenes += [(f"{s}, {round(b * 1.65)} x {b}", lambda f, s=s, b=b: some_fields(f, s, b), n, b, ("-stepper_max_steps", 3)) for s, n, bs in (("hm", 5, (20, 40, 80)), ("th", 4, (30, 60, 120))) for b in bs]
+    scenes = [(f"thmc, {n} x {b}", lambda f, n=n, b=b: strip(f, n, b), 5, b, ("-stepper_max_steps", 3)) for n, b in ((200, 1), (200, 4), (200, 8), (200, 16))]
+    scenes += [(f"thmc, {b} x {b}", lambda f, b=b: broad(f, b), 5, b, ("-stepper_max_steps", 3)) for b in (15, 25, 35, 50, 75)]
+    scenes += [(f"{s}, {round(b * 1.65)} x {b}", lambda f, s=s, b=b: some_fields(f, s, b), n, b, ("-stepper_max_steps", 3)) for s, n, bs in (("hm", 3, (20, 40, 80)), ("th", 2, (30, 60, 120))) for b in bs]
     scenes += [(f"m, {b} x {b}", lambda f, b=b: dry(f, b), 2, b, (*bench.BLOCK, "-stepper_max_steps", 3)) for b in (50, 100, 200)]
     for name, make, n, b, options in scenes:
-        for kind, solver in (("LU", WHOLE), ("reduced", REDUCED)):
-            yield f"across n b = {n * b}: {name}, 1 rank: {kind}", make, (*options, *solver), 1
+        for kind, solver in KINDS if n * b < 200 else KINDS[1:]:
+            yield f"across n_r b = {n * b}: {name}, 1 rank: {kind}", make, (*options, *solver), 1
     for b in (25, 35, 50):
-        for kind, solver in (("LU", WHOLE), ("reduced", REDUCED)):
-            yield f"across n b = {9 * b}: thmc, {b} x {b}, 2 ranks: {kind}", lambda f, b=b: broad(f, b), ("-stepper_max_steps", 3, *solver), 2
+        for kind, solver in KINDS[1:]:
+            yield f"across n_r b = {5 * b}: thmc, {b} x {b}, 2 ranks: {kind}", lambda f, b=b: broad(f, b), ("-stepper_max_steps", 3, *solver), 2
+
+
+# name, case, options, particles, unknowns, steps by LU of the whole
+LONG = (("century, 200 cells across", "century", ("-grid_upper", "200 m,101 m", "-grid_cells", "200,101", "-region_layer_upper", "200 m,100 m", "-bc_right_position", "200 m"), 80000, 101505, 4),
+        ("masuda, 80 x 480 cells", "masuda", ("-grid_cells", "80,480"), 153600, 272727, 2))  # fmt: skip
+
+
+def longs():
+    """Whole runs on fine grids by the default, and their first steps by LU of the whole."""
+    for name, case, options, _, _, few in LONG:
+        yield f"long {name}: default", lambda f, case=case: ROOT / "cases" / case, options, 1
+        yield f"long {name}: whole", lambda f, case=case: ROOT / "cases" / case, (*options, "-stepper_max_steps", few, *WHOLE), 1
+        yield f"long {name}: begin", lambda f, case=case: ROOT / "cases" / case, (*options, "-stepper_max_steps", few), 1
 
 
 def empty(binary, store, again):
@@ -175,15 +189,23 @@ def size_rows(store):
 def page(store):
     base = store["nothing"]
     head = ["scene", "cells across", "unknowns", "preconditioner", "linear solves", "iterations, mean", "most", "times made", "s a step", "us a solve and unknown", "kB a particle", ""]
-    extreme_rows = [[name, lu["solves"], f"{lu['mean']:.1f}", lu["most"], outcome(lu), red["solves"], f"{red['mean']:.1f}", red["most"], outcome(red)]
-                    for name, (lu, red) in pairs(store, "extremes", ("LU", "reduced")).items()]  # fmt: skip
-    worse = [r for r in pairs(store, "extremes", ("LU", "reduced")).values() if r[1]["status"] != 0 and r[0]["status"] == 0]
-    back = sum(r[1]["lu"] for r in pairs(store, "extremes", ("LU", "reduced")).values())
-    across_rows = [[name, f"{lu['user'] - base['user']:.2f}", f"{red['user'] - base['user']:.2f}", f"{(lu['user'] - base['user']) / (red['user'] - base['user']):.2f}",
-                    f"{lu['memory'] / 1e6:.0f}", f"{red['memory'] / 1e6:.0f}", "; ".join(f"{k}: {outcome(r)}" for k, r in (("LU", lu), ("reduced", red)) if outcome(r))]
-                   for name, (lu, red) in sorted(pairs(store, "across", ("LU", "reduced")).items(), key=lambda v: float(re.search(r"= (\d+)", v[0])[1]))]  # fmt: skip
+    kinds = [kind for kind, _ in KINDS]
+    extreme = pairs(store, "extremes", kinds)
+    extreme_rows = [[name, *(v for r in runs for v in (r["solves"], f"{r['mean']:.1f}", r["most"], outcome(r)))] for name, runs in extreme.items()]
+    worse = [sum(runs[k]["status"] != 0 and runs[0]["status"] == 0 for runs in extreme.values()) for k in (1, 2)]
+    back = [sum(runs[k]["lu"] for runs in extreme.values()) for k in (1, 2)]
+    across_rows = []
+    for name, (lu, grid) in sorted(pairs(store, "across", kinds[1:]).items(), key=lambda v: float(re.search(r"= (\d+)", v[0])[1])):
+        whole = store.get(f"across {name}: whole")
+        took = [(r["user"] - base["user"]) if r else None for r in (whole, lu, grid)]
+        across_rows.append([name, *("-" if t is None else f"{t:.2f}" for t in took), f"{took[1] / took[2]:.2f}", *("-" if r is None else f"{r['memory'] / 1e6:.0f}" for r in (whole, lu, grid)),
+                            "; ".join(f"{k}: {outcome(r)}" for k, r in zip(kinds, (whole, lu, grid)) if r and outcome(r))])  # fmt: skip
     operator_rows = [[name, *(v for r in runs for v in (r["solves"], f"{r['mean']:.1f}", f"{r['user'] - base['user']:.2f}", f"{(r['memory'] - base['memory']) / 1e6:.0f}")), outcome(runs[-1])]
                      for name, runs in pairs(store, "operator", ("assembled", "particles", "differences")).items()]  # fmt: skip
+    ran = pairs(store, "long", ("default", "whole", "begin"))
+    each = lambda run: (run["user"] - base["user"]) / run["solves"]  # s a linear solve
+    long_rows = [[name, particles, unknowns, full["steps"], full["refused"], full["solves"], f"{full['mean']:.1f}", f"{full['user'] - base['user']:.0f}", f"{each(begin):.2f}", f"{each(whole):.2f}", f"{each(whole) / each(begin):.1f}", outcome(full)]
+                 for name, _, _, particles, unknowns, _ in LONG if name in ran for full, whole, begin in [ran[name]]]  # fmt: skip
     return f"""# Solvers of implicit steps
 
 Written by `scripts/bench_scale.py` from docs/scale.json, which holds every run; change it, not this page. User seconds of one process, less those of a run without a step, on machines that were not
@@ -191,35 +213,34 @@ always quiet: differences below a fifth mean nothing. Equation numbers are those
 
 ## Size
 
-One Euler step of 10 s of BP2 as a block with six fields and 4 particles a cell, and three of the dry block, from a cold start. The reduced preconditioner made once a step and where (176) says (*kept*), or at every
-Newton iteration (*fresh*); LU for comparison. A solve is one Newton iteration.
-
-Rows of the reduced preconditioner with six fields to 100 cells across, and the kept one with 200, are of products particle by particle (401) and were run beside other work, which made them some 1.5 times slower;
-those fresh with 200 and of 350 are older, with J2 assembled. The best of two in turn at 100 cells, kept,
-the whole program: 4.0 s of user time and 411 MB assembled, 3.1 s and 282 MB particle by particle.
-
-All rows are older than the smoother of the skeleton's multigrid, one sweep forward and one backward instead of two symmetric ones. With it the whole program takes 0.80 of the user time on the dry block of 100
-cells across (38 iterations become 40), 0.95 on the block of 50, 0.80 on water and solid with 80, 0.83 on cases/footing_3d (with its threshold in space); in Extremes the mean numbers change by less than 0.6 of an
-iteration, but for cells of 10:1 and 1:10 (up to 1.5 more).
+One Euler step of 10 s of BP2 as a block with six fields and 4 particles a cell, and three of the dry block, from a cold start. Multigrid made once a step and where (176) says (*kept*), or at every
+Newton iteration (*fresh*); LU of the same matrix for comparison. A solve is one Newton iteration.
 
 {bench.markdown(head, size_rows(store))}
 
 ## Where it begins to pay
 
-User time of the first steps (adaptive `sdirk2` of BP2 as strips and blocks; fixed steps of the scene of field_sets.py; Euler steps of the dry block), by n b of (330). On two ranks the sum over both with their waiting, memory of one.
+User time of the first steps (adaptive `sdirk2` of BP2 as strips and blocks; fixed steps of the scene of field_sets.py; Euler steps of the dry block), by n_r b of (330): LU of the whole (as far as it was tried), LU and multigrid of what is left
+without the fluid velocities. On two ranks the sum over both with their waiting, memory of one.
 
-{bench.markdown(["scene", "LU, s", "reduced, s", "LU over reduced", "LU, MB", "reduced, MB", ""], across_rows)}
+{bench.markdown(["scene", "whole, s", "LU, s", "multigrid, s", "LU over multigrid", "whole, MB", "LU, MB", "multigrid, MB", ""], across_rows)}
 
 ## Properties to their ends
 
 tests/verification/cases/stability.yaml as a block of 20 x 20 cells, loaded and drained at its right, three fixed Euler steps (1 s unless said); BP2 with its hydrate front; a strip footing at its collapse
-load. Iterations a linear solve. Runs that LU finishes and the reduced one does not: {len(worse)}. Times that LU took over: {back}.
+load. Iterations a linear solve. Runs that LU of the whole finishes and LU or multigrid of the reduced matrix do not: {worse[0]} and {worse[1]}. Times that LU of the whole took over: {back[0]} and {back[1]}.
 
-{bench.markdown(["scene", "LU: solves", "mean", "most", "", "reduced: solves", "mean", "most", ""], extreme_rows)}
+{bench.markdown(["scene", "whole: solves", "mean", "most", "", "LU: solves", "mean", "most", "", "multigrid: solves", "mean", "most", ""], extreme_rows)}
+
+## Long runs
+
+Shipped cases on fine grids, to their end, by the default; and their first steps by it and by LU of the whole. User seconds.
+
+{bench.markdown(["case", "particles", "unknowns", "steps", "refused", "solves", "iterations a solve", "s in all", "s a solve, first steps", "... LU of the whole", "ratio", ""], long_rows)}
 
 ## The exact operator
 
-J x of GMRES with the reduced preconditioner, one Euler step: assembled, J2 with its wide part (27); particle by particle from tangents that are kept (401), the default; differences of the residual (`-snes_mf_operator`).
+J x of GMRES with multigrid, one Euler step: assembled, J2 with its wide part (27); particle by particle from tangents that are kept (401), the default; differences of the residual (`-snes_mf_operator`).
 User seconds of the step and MB.
 
 {bench.markdown(["scene", "assembled: solves", "mean", "s", "MB", "particles: solves", "mean", "s", "MB", "differences: solves", "mean", "s", "MB", ""], operator_rows)}
@@ -241,11 +262,11 @@ def main():
     store = json.loads(STORE.read_text()) if STORE.exists() else {}
     cells = [int(n) for n in a.cells.split(",")]
     empty(a.binary, store, a.again and not a.only)
-    for name, make, options, ranks in (*across(), *extremes(), *operator(cells), *sizes(cells)):
+    for name, make, options, ranks in (*across(), *extremes(), *operator(cells), *sizes(cells), *longs()):
         if a.page or not re.search(a.only, name) or (name in store and not a.again):
             continue
         with tempfile.TemporaryDirectory() as folder:
-            store[name] = run(a.binary, make(folder), options, ranks)
+            store[name] = run(a.binary, make(folder), options, ranks, 7200)
         print(name, store[name], flush=True)
         STORE.write_text(json.dumps(store, indent=0) + "\n")
     PAGE.write_text(page(store))

@@ -34,16 +34,15 @@ PROGRAM = [  # option, value, default, meaning
     ("-newton_tol_update", "x", "1e-6", "... and every scaled update too, in units of 1 MPa and 1 K"),
     ("-newton_keep_jacobian", "x", "0.01", "an iteration that takes the largest scaled row to less than x of what it was leaves its Jacobian "
      "to the next; 0: a new one in every iteration"),
-    ("-newton_preconditioner", "auto, whole, reduced", "auto", "whole: of the whole matrix, LU unless -pc_type says "
-     "otherwise; reduced: multigrid on what is left without the fluid velocities (docs/equations.md, section 9), where it "
-     "breaks down LU of the whole for that stage; auto: reduced where the cells across times the unknowns a node exceed 250 (1000 without fluids), "
-     "unless -pc_type, -ksp_type or -model_pmat_type is given"),
+    ("-newton_preconditioner", "auto, whole, reduced", "auto", "reduced: of what is left without the fluid velocities (docs/equations.md, section 9), LU, or multigrid "
+     "where the cells across times the unknowns a node that are left exceed 250 (180 in space); where it breaks down LU of the whole for that stage; "
+     "whole: of the whole matrix, LU unless -pc_type says otherwise; auto: reduced, unless -pc_type, -ksp_type or -model_pmat_type is given"),
     ("-newton_drop", "x", "1e-6", "entries of a row of the reduced matrix that are below x of its largest are left out; 0: only zeros are"),
     ("-newton_operator", "auto, assembled, particles", "auto", "the exact Jacobian that GMRES multiplies with: assembled, with its wide part particle by "
      "particle (27); particles: all of it from the tangents that each particle keeps (docs/equations.md, section 9), half the memory; auto: particles with "
-     "the reduced preconditioner, assembled with factors of the whole"),
-    ("-reduced_pc_type", "PETSc's", "fieldsplit", "solver of the reduced matrix: fieldsplit, its two groups of unknowns in "
-     "turn; lu, all of it factorised"),
+     "the reduced preconditioner, assembled with one of the whole"),
+    ("-reduced_pc_type", "PETSc's", "by size", "solver of the reduced matrix: lu, all of it factorised; fieldsplit, its two groups of unknowns in "
+     "turn by multigrid"),
     ("-reduced_pc_fieldsplit_type", "PETSc's", "multiplicative", "how the groups follow each other: flow (p_w, p_g, T), then motion (v_s); where it is given, "
      "what motion does to the flow is stored, too"),
     ("-newton_refactor", "N", "by its cost", "the preconditioner is made once a step, and anew after a linear solve of more "
@@ -67,7 +66,7 @@ PETSC = [  # the ones worth knowing, with this program's defaults
     ("-reduced_fieldsplit_flow_pc_type", "gamg", "of p_w, p_g, T: aggregation, smoothed by ILU (-reduced_fieldsplit_flow_mg_levels_...)"),
     ("-reduced_fieldsplit_motion_pc_type", "hypre", "of v_s: BoomerAMG with one sweep of SOR down (forward) and up (backward), strong threshold 0.5 (0.7 in space); gamg without hypre"),
     ("-exchange_ksp_max_it", "2000", "conjugate gradients of (354) in a step before it evens no pressures out within cells, which the summary counts"),
-    ("-pc_factor_mat_solver_type", "umfpack up to 4000 unknowns on one rank, else mumps", "who factorises"),
+    ("-pc_factor_mat_solver_type", "umfpack up to 2500 unknowns on one rank, else mumps", "who factorises the whole (-reduced_pc_factor_mat_solver_type: the reduced matrix)"),
     ("-options_file", "", "reads options from a file, for example a preset of options/"),
     ("-snes_monitor, -ksp_converged_reason", "", "watch Newton's method and the linear solver"),
     ("-options_left", "", "at the end, lists options that nobody read: finds misspelt ones"),

@@ -8,10 +8,8 @@
 #define COST_LU_LEAST 10.0
 #define COST_LU 0.24
 
-/* Unknowns across the body from which the reduced one is the cheaper (330); without fluids none are eliminated, and LU
-   in the plane is faster as far as it was measured, to 400, but its memory grows. */
-#define ACROSS_LU (CL_DIM == 3 ? 60.0 : 250.0)
-#define ACROSS_LU_DRY (CL_DIM == 3 ? 150.0 : 1000.0)
+/* Unknowns of the reduced matrix across the body from which multigrid takes over from LU (330). */
+#define ACROSS_LU (CL_DIM == 3 ? 180.0 : 250.0)
 
 /* Cells that hold particles: their number, and the box about them. */
 static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[CL_DIM])
@@ -66,19 +64,24 @@ static PetscErrorCode Given(SolverPlan *plan, int n, const char *const option[],
 
 #define COUNT(a) ((int)(sizeof(a) / sizeof(*(a))))
 
-/* Does the user ask for LU of the reduced matrix, or for something else of all of it?  Else it has multigrid. */
+/* Does the user ask for LU of the reduced matrix, or for something else of all of it, or for multigrid? */
 static PetscErrorCode FactorsAskedFor(SolverPlan *plan)
 {
-  char      type[32];
-  PetscBool all, split;
+  static const char *const groups[] = {"-reduced_fieldsplit_flow_pc_type", "-reduced_fieldsplit_motion_pc_type",
+                                       "-reduced_pc_fieldsplit_type"};
+  char                     type[32];
+  PetscBool                all, split;
+  bool                     given;
 
   PetscFunctionBeginUser;
-  plan->factors = false;
+  PetscCall(Given(plan, COUNT(groups), groups, &given));
+  plan->factors = plan->factors && !given;
   PetscCall(PetscOptionsGetString(NULL, NULL, "-reduced_pc_type", type, sizeof(type), &all));
   if (!all)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscStrcmp(type, PCFIELDSPLIT, &split));
   plan->factors = !split;
+  plan->asked   = "-reduced_pc_type";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,7 +95,8 @@ static PetscErrorCode AskedFor(SolverPlan *plan, int matrix)
   plan->asked = matrix == PRECONDITIONER_AUTO ? NULL : "-newton_preconditioner";
   PetscCall(Given(plan, matrix == PRECONDITIONER_AUTO ? COUNT(whole) : 1, whole, &given));
   plan->reduced = plan->reduced && !given;
-  PetscCall(FactorsAskedFor(plan));
+  if (plan->reduced)
+    PetscCall(FactorsAskedFor(plan));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,7 +112,7 @@ static int Left(const FieldSet *fs)
 
 static double AcrossLU(const FieldSet *fs)
 {
-  return (fs->fluid ? ACROSS_LU : ACROSS_LU_DRY) / fs->n;
+  return ACROSS_LU / Left(fs);
 }
 
 /* Mean number of cells across the body: how many along its longest axis share a layer; in space layers are faces, whose
@@ -130,9 +134,9 @@ PetscErrorCode PreconditionerPlan(Model *m)
 
   PetscFunctionBeginUser;
   PetscCall(Occupied(m, &cells, extent));
-  plan->across = Across(cells, extent);
-  plan->reduced =
-      matrix == PRECONDITIONER_REDUCED || (matrix == PRECONDITIONER_AUTO && plan->across > AcrossLU(&m->c->fields));
+  plan->across  = Across(cells, extent);
+  plan->reduced = matrix != PRECONDITIONER_WHOLE;
+  plan->factors = plan->across <= AcrossLU(&m->c->fields);
   PetscCall(AskedFor(plan, matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,8 +166,8 @@ PetscErrorCode ModelPrintSolver(Model *m)
   if (plan->asked)
     snprintf(why, sizeof(why), "as %s asks", plan->asked);
   else
-    snprintf(why, sizeof(why), "%.3g cells across, %d unknowns a node (lu up to %.3g across)", plan->across,
-             m->c->fields.n, AcrossLU(&m->c->fields));
+    snprintf(why, sizeof(why), "%.3g cells across, %d of %d unknowns a node (lu up to %.3g across)", plan->across,
+             Left(&m->c->fields), m->c->fields.n, AcrossLU(&m->c->fields));
   PetscCall(PetscPrintf(m->grid.comm, "  preconditioner: %s of the %s matrix: %s\n", type,
                         plan->reduced ? "reduced" : "whole", why));
   PetscFunctionReturn(PETSC_SUCCESS);

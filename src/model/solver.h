@@ -3,8 +3,8 @@
 
 #include "gather.h"
 
-/* Whole: of J2 with all its unknowns, LU unless PETSc's options say otherwise.  Reduced: (170).  Auto: by size (330).
- */
+/* The matrix: J2 with all its unknowns, LU unless PETSc's options say otherwise; reduced (170), LU or multigrid by size
+   (330); auto: reduced, unless PETSc's options ask for a solver of the whole. */
 enum { PRECONDITIONER_AUTO = 0, PRECONDITIONER_WHOLE, PRECONDITIONER_REDUCED };
 
 /* How the exact Jacobian is applied: J2 assembled with its wide part, or by products particle by particle.  Auto: these

@@ -8,21 +8,21 @@
 #define HYBRID_SCALAR (CL_DIM == 3 ? 0.30e-6 : 0.05e-6) /* ... each of p_w, p_g, T */
 #define HYBRID_COUPLED (CL_DIM == 3 ? 0.0 : 0.01e-6)
 /* In space of bodies of 200 to 22 000 particles, within a factor of 2. */
-#define PARTICLE (CL_DIM == 3 ? 8e-6 : 2.2e-6)  /* s a particle and Jacobian: the residuals that go with it */
-#define TANGENT (CL_DIM == 3 ? 0.5e-6 : 0.9e-6) /* s a particle and unknown of a node: Jacobian */
-#define FACTOR (CL_DIM == 3 ? 6e-7 : 3.3e-7)    /* s: factorisation of N unknowns, n to a node, and solves ... */
-#define FACTOR_POWER (CL_DIM == 3 ? 1.4 : 1.3)  /* ... with it take FACTOR n N^FACTOR_POWER */
-#define REDUCED (CL_DIM == 3 ? 40e-6 : 5.0e-6)  /* s an unknown and Jacobian: GMRES with the reduced one */
-#define SMOOTH_STEPS 1e2                        /* (317): an adaptive run whose loads are slow, at ... */
-#define SMOOTH_TOL 1e-3                         /* ... this tolerance, ... */
-#define REACTS 1.75                             /* ... times as many where hydrate reacts: its fronts rule steps then */
-#define NEWTON_REACTS 2.3                       /* Jacobians a stage there */
-#define BEHIND_KINK 12.0                        /* steps that a kink adds */
-#define PERIOD 30.0                             /* steps in a period of a condition's waves, at SMOOTH_TOL */
-#define MARKS 8.0                               /* ... in which so many of them are stops */
-#define MOST_STRETCHES 2000                     /* ... looked at */
-#define TRANSITS 100.0   /* waves matter in a run that is no longer than so many of their transits ... */
-#define PER_TRANSIT 40.0 /* ... and want so many steps each */
+#define PARTICLE (CL_DIM == 3 ? 8e-6 : 2.2e-6)   /* s a particle and Jacobian: the residuals that go with it */
+#define TANGENT (CL_DIM == 3 ? 0.5e-6 : 0.7e-6)  /* s a particle and unknown of a node: Jacobian */
+#define FACTOR (CL_DIM == 3 ? 4e-7 : 2e-7)       /* s: factorisation of N unknowns, n to a node, and solves ... */
+#define FACTOR_POWER (CL_DIM == 3 ? 1.4 : 1.3)   /* ... with it take FACTOR n N^FACTOR_POWER */
+#define MULTIGRID (CL_DIM == 3 ? 20e-6 : 2.5e-6) /* s an unknown and Jacobian: GMRES with multigrid */
+#define SMOOTH_STEPS 1e2                         /* (317): an adaptive run whose loads are slow, at ... */
+#define SMOOTH_TOL 1e-3                          /* ... this tolerance, ... */
+#define REACTS 1.75         /* ... times as many where hydrate reacts: its fronts rule steps then */
+#define NEWTON_REACTS 2.3   /* Jacobians a stage there */
+#define BEHIND_KINK 12.0    /* steps that a kink adds */
+#define PERIOD 30.0         /* steps in a period of a condition's waves, at SMOOTH_TOL */
+#define MARKS 8.0           /* ... in which so many of them are stops */
+#define MOST_STRETCHES 2000 /* ... looked at */
+#define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
+#define PER_TRANSIT 40.0    /* ... and want so many steps each */
 
 static double Extent(const Scene *c)
 {
@@ -106,12 +106,11 @@ static double ImplicitSteps(const Stepper *s, double left)
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
 }
 
-/* As (99) with LU of the whole, (331) with the reduced preconditioner; particles are seeded two along each axis of a
-   cell. */
+/* As (99) with factors, (331) with multigrid; particles are seeded two along each axis of a cell. */
 double StepperImplicitWork(const Model *m, double newton, double factors)
 {
   const double n = m->c->fields.n, nodes = (double)m->P.n / CL_CORNERS, f = ModelFactored(m);
-  const double solver = f == 0.0 ? newton * REDUCED * n * nodes : factors * FACTOR * f * pow(f * nodes, FACTOR_POWER);
+  const double solver = f == 0.0 ? newton * MULTIGRID * n * nodes : factors * FACTOR * f * pow(f * nodes, FACTOR_POWER);
 
   return newton * (double)m->P.n * (PARTICLE + TANGENT * n) + solver;
 }

@@ -196,17 +196,24 @@ static double Sealed(double g_s, double *apart)
   return Largest(most);
 }
 
+/* LU of the whole leaves what no particle sees as it finds it; that of the reduced matrix happens to take it away. */
 static void TestSealed(void **state)
 {
-  double       bare_apart, apart;
-  const double bare = Sealed(0.0, &bare_apart), tied = Sealed(G_S, &apart);
+  static const char *const matrix[] = {"whole", "reduced"};
 
   (void)state;
-  Say("a sealed row: nodes change by %.3g without and %.3f with the tie of what particles do, particles off by %.1e "
-      "and "
-      "%.1e\n",
-      bare, tied, bare_apart, apart);
-  Check(bare > 3.0 && tied < 1.1 && apart < 0.01);
+  for (int k = 0; k < 2; k++) {
+    double bare_apart, apart;
+
+    Call(PetscOptionsSetValue(NULL, "-newton_preconditioner", matrix[k]));
+    const double bare = Sealed(0.0, &bare_apart), tied = Sealed(G_S, &apart);
+
+    Say("a sealed row, LU of the %s matrix: nodes change by %.3g without and %.3f with the tie of what particles do, "
+        "particles off by %.1e and %.1e\n",
+        matrix[k], bare, tied, bare_apart, apart);
+    Check((bare > 3.0 || k == 1) && tied < 1.1 && apart < 0.01);
+  }
+  Call(PetscOptionsClearValue(NULL, "-newton_preconditioner"));
 }
 
 int main(int argc, char **argv)

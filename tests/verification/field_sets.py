@@ -134,7 +134,7 @@ def bp2_case1(fields, cells, steps, *options):
     command = [binary(), CASES / "bp2", "-fields", fields, "-mat_sediment_kinetics_active", "no", "-grid_cells", cells,
                "-stepper_adapt", "no", "-stepper_dt", "10 s", "-stepper_max_steps", steps, "-output_dir", out, *options]  # fmt: skip
     command = [str(c) for c in command]
-    if "-ksp_view" in options:
+    if "-reduced_ksp_view" in options:
         return subprocess.run(command, env=environment(), capture_output=True, text=True, check=True).stdout, 0.0, 0.0
     done = subprocess.run([sys.executable, "-c", MEASURE, *command], env=environment(), capture_output=True, text=True, check=True)
     seconds, memory = map(float, done.stdout.split())
@@ -145,14 +145,14 @@ def cost():
     """Unknowns, matrix, time and memory of BP2 case 1 with the full and the smallest set."""
     found = {}
     for fields in ("thmc", "hmc"):
-        view = bp2_case1(fields, "52,1", 1, "-ksp_view")[0]
+        view = bp2_case1(fields, "52,1", 1, "-reduced_ksp_view")[0]
         n = int(re.search(r"(\d+) unknowns a node", view)[1])
-        matrix = re.search(r"rows=(\d+), cols=\d+, bs=\d+\s+total: nonzeros=(\d+)", view)
+        matrix = re.search(r"rows=(\d+), cols=\d+(?:, bs=\d+)?\s+total: nonzeros=(\d+)", view)
         few, many = (min(bp2_case1(fields, "52,1", n, "-quiet")[1] for _ in range(2)) for n in (5, 45))
         seconds = (many - few) / 40
         empty, full = (bp2_case1(fields, cells, 1, "-quiet")[2] for cells in ("13,1", "208,10"))
         found[fields] = (n, int(matrix[1]), int(matrix[2]), 1e3 * seconds, full - empty)
-    names = ("unknowns per node", "rows of the matrix", "its entries", "time per step (ms)", "memory above the program's own (MB)")
+    names = ("unknowns per node", "rows of the matrix that is factorised", "its entries", "time per step (ms)", "memory above the program's own (MB)")
     table(("BP2 case 1", "thmc", "hmc", "ratio"), [(w, a, b, b / a) for w, a, b in zip(names, *found.values())])
     for what, a, b in list(zip(names, *found.values()))[:3]:
         record("4.1", f"BP2 case 1, {what}: hmc over thmc", "-", f"{b} / {a} = {b / a:.2f}", True)
