@@ -50,6 +50,8 @@ typedef struct {
 } Meter;
 
 enum { EXCHANGE_AUTO = 0, EXCHANGE_YES, EXCHANGE_NO };
+/* How heat is carried: (293) where T alternates (440), everywhere, nowhere. */
+enum { HEAT_AUTO = 0, HEAT_UPWIND, HEAT_CENTRAL };
 enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
 
@@ -66,11 +68,10 @@ typedef struct {
   bool   outflow;             /* (365): what leaves has the body's density; default true */
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind;   /* (200); default false */
-  bool   heat_upwind;         /* (293) everywhere; default false */
+  int    heat;                /* HEAT_...; default auto */
   bool   lumped_reaction;     /* (265); default false */
   bool   held_reaction;       /* (381); default false */
   bool   chords;              /* (424); default true */
-  bool   heat_turns;          /* (440): (293) where T turns; default false */
 } Stabilisation;
 
 typedef struct Scene {
@@ -314,7 +315,6 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
                {c->stabilisation.donor, "stabilisation_donor"},
                {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
                {c->stabilisation.lumped_reaction, "stabilisation_reaction"},
-               {c->stabilisation.heat_turns, "stabilisation_heat_turns"},
                {c->stabilisation.exchange == EXCHANGE_YES, "stabilisation_exchange"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {

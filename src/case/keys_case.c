@@ -35,6 +35,7 @@ static const char *const share_word[]       = {"nodes", "particles", "relative",
 static const char *const ice_word[]         = {"warn", "stop", NULL};                    /* ICE_... */
 static const char *const leaving_word[]     = {"stop", "remove", NULL};                  /* LEAVING_... */
 static const char *const exchange_word[]    = {"auto", "yes", "no", NULL};               /* EXCHANGE_... */
+static const char *const heat_word[]        = {"auto", "yes", "no", NULL};               /* HEAT_... */
 static const char *const without_gas_word[] = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
 
 const Key case_key[] = {
@@ -177,12 +178,10 @@ const Key case_key[] = {
             "with gas beside clay"),
     BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
-    BOOLEAN(
-        Case, "stabilisation_heat", scene.stabilisation.heat_upwind, "no",
-        "carries heat with the flow: temperatures stay within their bounds where a cell's heat is carried rather than "
-        "conducted; everywhere, which smears them where they are smooth"),
-    BOOLEAN(Case, "stabilisation_heat_turns", scene.stabilisation.heat_turns, "no",
-            "... only where T turns from node to node; sdirk2, euler"),
+    CHOICE(Case, "stabilisation_heat", scene.stabilisation.heat, "auto", heat_word,
+           "carries heat with the flow, so that temperatures stay within their bounds where a cell's heat is carried "
+           "rather than conducted; auto: sdirk2 and euler where T alternates from node to node, hybrid nowhere; yes: "
+           "everywhere, which smears T where it is smooth"),
     BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),

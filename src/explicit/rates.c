@@ -348,7 +348,7 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
       o->value[q][R_Matrix(s) + row * n + i] = 0.0;
   }
   e->advected += Sum(r.n, advected);
-  if (e->m->c->stabilisation.heat_upwind)
+  if (e->m->c->stabilisation.heat == HEAT_UPWIND)
     UpwindHeat(e, s, r, g, dt, kappa, o);
 }
 

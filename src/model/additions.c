@@ -16,7 +16,7 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscMalloc1(m->stencil_cap, &to->donor));
   if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G] && !fs->one_pressure)
     PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
-  if ((m->c->stabilisation.heat_upwind || m->c->stabilisation.heat_turns) && fs->heat && fs->fluid)
+  if (m->c->stabilisation.heat != HEAT_CENTRAL && fs->heat && fs->fluid)
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (m->c->stabilisation.lumped_reaction && fs->phase[PHASE_G])
     PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));
@@ -116,78 +116,6 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
     to->held[p] = HeldOf(m, p, q);
   if (to->exchange)
     ExchangeSet(m, p, q);
-}
-
-/* How unlike the slopes of T on both sides of an owned node are along axis d (440): 0 within a factor of three, 1 where
-   T has an extreme; negative: it has no two neighbours. */
-static double Unlike(const Model *m, PetscInt I, int d)
-{
-  const Grid     *g  = &m->grid;
-  const FieldSet *fs = &m->c->fields;
-  PetscInt        at[CL_DIM], on[2];
-  double          slope[2];
-
-  for (int side = 0; side < 2; side++) {
-    PetscArraycpy(at, m->map.ij[I], CL_DIM);
-    at[d] += side ? 1 : -1;
-    on[side] = at[d] >= g->gs[d] && at[d] < g->gs[d] + g->gm[d] ? m->map.index[GridPadded(g, at)] : -1;
-    if (on[side] < 0)
-      return -1.0;
-    slope[side] = (side ? 1.0 : -1.0) * (m->x_n[on[side] * fs->n + fs->at[F_T]] - m->x_n[I * fs->n + fs->at[F_T]]) /
-                  LinesWidth(&g->line[d], side ? m->map.ij[I][d] : m->map.ij[I][d] - 1);
-  }
-  const double sum = fabs(slope[0]) + fabs(slope[1]);
-
-  return sum > 0.0 ? fmax(0.0, 2.0 * fabs(slope[1] - slope[0]) / sum - 1.0) : 0.0;
-}
-
-/* (440): of the conductivity (293) what the nodes' T asks for. */
-PetscErrorCode UpwindLimit(Model *m)
-{
-  enum { SHARE, KNOWN, BOTH };
-  double *node;
-
-  PetscFunctionBeginUser;
-  if (!m->added->upwind || m->c->stabilisation.heat_upwind)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(2 * CL_DIM * m->map.n_local, &node));
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int d = 0; d < CL_DIM; d++) {
-      const double unlike = Unlike(m, I, d);
-
-      node[(I * CL_DIM + d) * BOTH + SHARE] = fmax(unlike, 0.0);
-      node[(I * CL_DIM + d) * BOTH + KNOWN] = unlike >= 0.0;
-    }
-  }
-  PetscCall(NodeMapSum(&m->map, node, 2 * CL_DIM));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    double *K = &m->added->upwind[CL_SYMMETRIC * p];
-    double  h[CL_DIM], share = 0.0, all = 0.0;
-    Reach   r;
-
-    for (int d = 0; d < CL_DIM; d++)
-      all += K[cl_symmetric[d][d]];
-    if (!(all > 0.0))
-      continue;
-    all = 0.0;
-    CellWidths(m, p, h);
-    ReachExpand(m, p, &r);
-    for (int d = 0; d < CL_DIM; d++) {
-      const double w  = h[d] * sqrt(K[cl_symmetric[d][d]]);
-      double       of = 0.0, known = 0.0;
-
-      for (int a = 0; a < r.n; a++) {
-        of += r.S[a] * node[(r.node[a] * CL_DIM + d) * BOTH + SHARE];
-        known += r.S[a] * node[(r.node[a] * CL_DIM + d) * BOTH + KNOWN];
-      }
-      share += known > 0.0 ? w * of / known : 0.0;
-      all += w;
-    }
-    for (int k = 0; k < CL_SYMMETRIC; k++)
-      K[k] *= share / all;
-  }
-  PetscCall(PetscFree(node));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* (35): directions of flow at t_n, and the factors that keep the sum of the weights. */

@@ -132,10 +132,10 @@ static const char *CarriesBetter(const Stepper *s)
 {
   const Scene *c = s->model->c;
 
-  if (!c->fields.fluid || c->stabilisation.heat_upwind)
+  if (!c->fields.fluid || c->stabilisation.heat == HEAT_UPWIND)
     return "";
-  return s->explicit || c->stabilisation.heat_turns ? "stabilisation_heat: yes, where flow carries the heat; "
-                                                    : "stabilisation_heat_turns: yes, where flow carries the heat; ";
+  return s->explicit || c->stabilisation.heat == HEAT_AUTO ? "stabilisation_heat: yes, where flow carries the heat; "
+                                                           : "stabilisation_heat: auto, where flow carries the heat; ";
 }
 
 /* `now`: while it happens, else at the end. */

@@ -32,11 +32,11 @@ def main():
     check("... as soon as it is two kelvin: K on the way", float(first[6]), (1.95, 2.6))
     check("... and K at the end", float(last[6]), (float(first[6]), 20))
     check("... where it is: behind the inlet, m", float(first[3]), (0, 1))
-    check_true("... with the key that mends it first", first[8] == last[8] == "stabilisation_heat_turns: yes, where flow carries the heat", first[8])
+    check_true("... with the key that mends it first", first[8] == last[8] == "stabilisation_heat: auto, where flow carries the heat", first[8])
     words = lambda of: [(*w.groups()[:3], *w.groups()[4:]) for w in of]  # without y: both particles of a column are as cold
     check_true("two ranks say the same", words(said(*HOT, ranks=2)[1]) == words(found))
     check_true("less than two kelvin: at the end alone", [w[1] for w in said()[1]] == ["had"])
-    check_true("with the key: nothing", not said(*HOT, "-stabilisation_heat_turns", "yes")[1])
+    check_true("with the key: nothing", not said(*HOT, "-stabilisation_heat", "auto")[1])
     finish()
 
 

@@ -38,7 +38,7 @@ for name in ("water_error", "methane_error"):
     judge("fronts", f"{name}", np.max(np.abs(upwind.balance[name])), 1e-12)
 two = well("yes", ranks=2)
 judge("fronts", "1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], upwind.probe("middle")["p_Pa"]), 1e-7)
-for name in ("saturation", "reaction", "heat_turns"):
+for name in ("saturation", "reaction"):
     hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-stabilisation_saturation", "no", f"-stabilisation_{name}", "yes", "-case_check", out=scratch() / "out")
     check_true(f"hybrid refuses stabilisation_{name}", hybrid.returncode == 2 and f"stabilisation_{name}" in hybrid.stdout, hybrid.stdout)
 
