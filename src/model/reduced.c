@@ -1,29 +1,8 @@
 /* The reduced preconditioner (170)-(175): a matrix for v_s, p_w, p_g and T alone, of radius 2, and its solver.
-   Values are gathered node by node, each with its neighbours; what counts of them (433) is handed to PETSc as one
-   matrix, or as two groups of unknowns, `flow` (pressures, temperature) and `motion` (v_s), that PCFIELDSPLIT takes as
-   they are. Every option -reduced_... of the solver wins over what stands here. */
-#include "solver.h"
-
-enum { FLOW = 0, MOTION, GROUPS };
-
-struct Reduced {
-  FieldSet     fs;                           /* unknowns of a node */
-  bool         split;                        /* flow, then motion, each with a solver of its own; else one of all */
-  int          groups;                       /* that have unknowns */
-  int          first[GROUPS], count[GROUPS]; /* their places */
-  const char  *prefix;                       /* of the options of the solver */
-  int          full[F_COUNT];                /* place in the block of the scene's set */
-  double      *value;                        /* [n_local][NEIGHBOURS][fs.n][fs.n]; null between two renewals */
-  double       row[F_COUNT], col[F_COUNT];   /* units of rows and columns: each one number for the whole body ... */
-  double       unit[F_COUNT][F_COUNT];       /* ... columns over rows */
-  Mat          block[GROUPS][GROUPS], A;     /* between two renewals: of the groups; all of it */
-  KSP          ksp;                          /* null between steps */
-  MatNullSpace rigid;                        /* null without motion */
-  Vec          b, y;                         /* owned nodes: all of a group, then all of the next */
-  Vec          slaved, diagonal; /* of the scene's set, rows (16) of the Jacobian: times y, their diagonal */
-};
-
-#define ROW_MOST_ENTRIES (NEIGHBOURS * F_COUNT)
+   Values are gathered node by node, each with its neighbours; they become (reduced_matrix.c) one matrix, or two groups
+   of unknowns, `flow` (pressures, temperature) and `motion` (v_s), that PCFIELDSPLIT takes as they are. Every option
+   -reduced_... of the solver wins over what stands here. */
+#include "reduced.h"
 
 static void Unknowns(const FieldSet *fs, Reduced *r)
 {
@@ -67,27 +46,6 @@ static void FindGroups(Reduced *r)
   AddGroup(r, 0, motion);
   if (r->groups == 1)
     r->prefix = motion ? "reduced_fieldsplit_motion_" : "reduced_fieldsplit_flow_";
-}
-
-/* Which neighbours a node has, and their numbers, in the order of their columns. */
-static int RowNodes(const Model *m, PetscInt I, int k[NEIGHBOURS], PetscInt number[NEIGHBOURS])
-{
-  int n = 0;
-
-  for (int q = 0; q < NEIGHBOURS; q++) {
-    const PetscInt K = ModelNeighbour(m, I, q);
-    int            at;
-
-    if (K < 0)
-      continue;
-    for (at = n++; at > 0 && number[at - 1] > m->map.global[K]; at--) {
-      number[at] = number[at - 1];
-      k[at]      = k[at - 1];
-    }
-    number[at] = m->map.global[K];
-    k[at]      = q;
-  }
-  return n;
 }
 
 /* Rigid motions of the body, which algebraic multigrid must carry to its coarse grids. */
@@ -218,33 +176,6 @@ PetscErrorCode ReducedDestroy(Reduced **reduced)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows and columns of a field have one unit each, the mean of Newton's scales, so that what is smooth in the body is
-   smooth for multigrid. */
-static PetscErrorCode Units(Model *m, Reduced *r)
-{
-  double sum[2 * F_COUNT] = {0.0};
-
-  PetscFunctionBeginUser;
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int k = 0; k < r->fs.n; k++) {
-      const PetscInt q = I * m->c->fields.n + r->full[k];
-
-      sum[k] += m->row_scale[q] / (double)m->map.n_global;
-      sum[F_COUNT + k] += m->col_scale[q] / (double)m->map.n_global;
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2 * F_COUNT, MPI_DOUBLE, MPI_SUM, m->grid.comm));
-  for (int k = 0; k < r->fs.n; k++) {
-    r->row[k] = sum[k];
-    r->col[k] = sum[F_COUNT + k];
-  }
-  for (int s = 0; s < r->fs.n; s++) {
-    for (int t = 0; t < r->fs.n; t++)
-      r->unit[s][t] = r->col[t] / r->row[s];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 const FieldSet *ReducedFields(const Model *m)
 {
   return &m->solver->reduced->fs;
@@ -258,185 +189,10 @@ PetscErrorCode ReducedBegin(Model *m, Assembly *to)
   PetscCall(DestroySolver(r)); /* not beside what is gathered now */
   to->reduced      = true;
   to->fixed_stress = r->split && r->groups > 1;
-  PetscCall(Units(m, r));
+  PetscCall(ReducedUnits(m, r));
   PetscCall(PetscCalloc1((size_t)m->map.n_local * NEIGHBOURS * r->fs.n * r->fs.n, &r->value));
   to->place = NULL;
   to->value = r->value;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows and columns of prescribed unknowns stay empty but for what they would have on the diagonal. */
-static inline bool Held(const Model *m, const Reduced *r, PetscInt I, int k)
-{
-  return (m->mask[I] >> r->full[k]) & 1u;
-}
-
-static void Scaled(const Model *m, const Reduced *r, PetscInt I, PetscInt K, double *v)
-{
-  const int nf = r->fs.n;
-
-  for (int s = 0; s < nf; s++) {
-    for (int t = 0; t < nf; t++)
-      v[s * nf + t] *= r->unit[s][t];
-    for (int t = 0; (m->mask[I] || m->mask[K]) && t < nf; t++) {
-      if ((I != K || s != t) && (Held(m, r, I, s) || Held(m, r, K, t)))
-        v[s * nf + t] = 0.0;
-    }
-  }
-}
-
-/* Row i of a node against all unknowns of its neighbour k. */
-static const double *ReducedRow(const Reduced *r, PetscInt I, int k, int i)
-{
-  return &r->value[((size_t)(I * NEIGHBOURS + k) * r->fs.n + i) * r->fs.n];
-}
-
-/* Entries of row i of node I in the columns of a group that are not zero, and the diagonal; of n neighbours. */
-static int RowEntries(const Reduced *r, PetscInt I, int i, int t, int n, const int *k, const PetscInt *number,
-                      PetscInt *col, double *v)
-{
-  int count = 0;
-
-  for (int b = 0; b < n; b++) {
-    const double *row = ReducedRow(r, I, k[b], i);
-
-    for (int j = r->first[t]; j < r->first[t] + r->count[t]; j++) {
-      if (row[j] == 0.0 && (k[b] != NEIGHBOURS / 2 || i != j))
-        continue;
-      col[count] = number[b] * r->count[t] + j - r->first[t];
-      v[count++] = row[j];
-    }
-  }
-  return count;
-}
-
-/* Entries of this rank's rows in columns of owned nodes and of others. */
-static PetscErrorCode CountEntries(Model *m, const Reduced *r, int s, int t, PetscInt *own, PetscInt *other)
-{
-  const PetscInt from = m->map.first * r->count[t], end = from + m->map.n_owned * r->count[t];
-
-  PetscFunctionBeginUser;
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    PetscInt  number[NEIGHBOURS], col[ROW_MOST_ENTRIES];
-    double    v[ROW_MOST_ENTRIES];
-    int       k[NEIGHBOURS];
-    const int n = RowNodes(m, I, k, number);
-
-    for (int i = 0; i < r->count[s]; i++) {
-      const int count = RowEntries(r, I, r->first[s] + i, t, n, k, number, col, v);
-
-      own[I * r->count[s] + i] = 0;
-      for (int b = 0; b < count; b++)
-        own[I * r->count[s] + i] += col[b] >= from && col[b] < end;
-      other[I * r->count[s] + i] = count - own[I * r->count[s] + i];
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FillEntries(Model *m, const Reduced *r, int s, int t, Mat A)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    PetscInt  number[NEIGHBOURS], col[ROW_MOST_ENTRIES];
-    double    v[ROW_MOST_ENTRIES];
-    int       k[NEIGHBOURS];
-    const int n = RowNodes(m, I, k, number);
-
-    for (int i = 0; i < r->count[s]; i++) {
-      const PetscInt row   = m->map.global[I] * r->count[s] + i;
-      const int      count = RowEntries(r, I, r->first[s] + i, t, n, k, number, col, v);
-
-      PetscCall(MatSetValues(A, 1, &row, count, col, v, INSERT_VALUES));
-    }
-  }
-  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateBlock(Model *m, const Reduced *r, int s, int t, Mat *A)
-{
-  const PetscInt rows = m->map.n_owned * r->count[s];
-  PetscInt      *own, *other;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(rows, &own, rows, &other));
-  PetscCall(CountEntries(m, r, s, t, own, other));
-  PetscCall(MatCreate(m->grid.comm, A));
-  PetscCall(MatSetSizes(*A, rows, m->map.n_owned * r->count[t], PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(*A, MATAIJ));
-  PetscCall(MatSetBlockSizes(*A, r->count[s], r->count[t]));
-  PetscCall(MatSeqAIJSetPreallocation(*A, 0, own));           /* does nothing where there are several ranks ... */
-  PetscCall(MatMPIAIJSetPreallocation(*A, 0, own, 0, other)); /* ... or one */
-  PetscCall(MatSetOption(*A, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  PetscCall(PetscFree2(own, other));
-  PetscCall(FillEntries(m, r, s, t, *A));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* (433) in the rows of node I: what does not count becomes zero. */
-static void LeaveOut(const Reduced *r, PetscInt I, double drop)
-{
-  const int nf   = r->fs.n;
-  double   *node = &r->value[(size_t)I * NEIGHBOURS * nf * nf], most[F_COUNT] = {0.0};
-
-  for (int e = 0; e < NEIGHBOURS * nf; e++) {
-    double *row = &most[e % nf];
-
-    for (int j = 0; j < nf; j++)
-      *row = fabs(node[e * nf + j]) > *row ? fabs(node[e * nf + j]) : *row;
-  }
-  for (int e = 0; e < NEIGHBOURS * nf; e++) {
-    const double least = drop * most[e % nf];
-
-    for (int j = 0; j < nf; j++)
-      node[e * nf + j] = fabs(node[e * nf + j]) > least || e == NEIGHBOURS / 2 * nf + j ? node[e * nf + j] : 0.0;
-  }
-}
-
-/* The values scaled, those of this rank's nodes whole, as far as they count. */
-static PetscErrorCode ScaleValues(Model *m, const Reduced *r)
-{
-  const int size = r->fs.n * r->fs.n;
-
-  PetscFunctionBeginUser;
-  PetscCall(NodeMapReduce(&m->map, r->value, NEIGHBOURS * size));
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int q = 0; q < NEIGHBOURS; q++) {
-      const PetscInt K = ModelNeighbour(m, I, q);
-
-      if (K >= 0)
-        Scaled(m, r, I, K, &r->value[(size_t)(I * NEIGHBOURS + q) * size]);
-    }
-    LeaveOut(r, I, m->solver->drop);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateMatrices(Model *m, Reduced *r)
-{
-  Mat       a[GROUPS * GROUPS];
-  PetscBool all;
-
-  PetscFunctionBeginUser;
-  /* a split that solves for the flow and then for the motion never reads what motion does to the flow */
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-reduced_pc_fieldsplit_type", &all));
-  for (int s = 0; s < r->groups; s++) {
-    for (int t = 0; t < r->groups; t++) {
-      if (all || s != FLOW || t != MOTION)
-        PetscCall(CreateBlock(m, r, s, t, &r->block[s][t]));
-      a[r->groups * s + t] = r->block[s][t];
-    }
-  }
-  if (r->rigid)
-    PetscCall(MatSetNearNullSpace(r->block[r->groups - 1][r->groups - 1], r->rigid));
-  if (r->groups > 1) {
-    PetscCall(MatCreateNest(m->grid.comm, r->groups, NULL, r->groups, NULL, a, &r->A));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  r->A = a[0];
-  PetscCall(PetscObjectReference((PetscObject)r->A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -445,8 +201,7 @@ PetscErrorCode ReducedSetUp(Model *m)
   Reduced *r = m->solver->reduced;
 
   PetscFunctionBeginUser;
-  PetscCall(ScaleValues(m, r));
-  PetscCall(CreateMatrices(m, r));
+  PetscCall(ReducedMatrices(m, r));
   PetscCall(PetscFree(r->value));
   PetscCall(CreateSolver(m, r));
   PetscCall(KSPSetUp(r->ksp));
@@ -487,7 +242,7 @@ static PetscErrorCode Restrict(const Model *m, const Reduced *r, Vec R)
     for (int k = 0; k < r->fs.n; k++) {
       const PetscInt q = I * m->c->fields.n + r->full[k];
 
-      b[Place(m, r, I, k)] = Held(m, r, I, k) ? 0.0 : a[q] * m->row_scale[q] / r->row[k];
+      b[Place(m, r, I, k)] = ReducedHolds(m, r, I, k) ? 0.0 : a[q] * m->row_scale[q] / r->row[k];
     }
   }
   PetscCall(VecRestoreArrayWrite(r->b, &b));
@@ -510,7 +265,7 @@ static PetscErrorCode Prolong(const Model *m, const Reduced *r, Vec R, Vec Y)
     for (int k = 0; k < r->fs.n; k++) {
       const PetscInt q = I * m->c->fields.n + r->full[k];
 
-      x[q] = Held(m, r, I, k) ? a[q] : y[Place(m, r, I, k)] * r->col[k] / m->col_scale[q];
+      x[q] = ReducedHolds(m, r, I, k) ? a[q] : y[Place(m, r, I, k)] * r->col[k] / m->col_scale[q];
     }
   }
   PetscCall(VecRestoreArray(Y, &x));
