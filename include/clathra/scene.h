@@ -298,6 +298,12 @@ static inline bool SceneHoldsReaction(const Scene *c)
   return c->stabilisation.held_reaction && c->fields.heat && c->fields.phase[PHASE_G];
 }
 
+/* Is there more conductivity along a flow (293), at least somewhere? */
+static inline bool SceneCarriesHeat(const Scene *c)
+{
+  return c->stabilisation.heat != HEAT_CENTRAL && c->fields.heat && c->fields.fluid;
+}
+
 /* Does (424) act? */
 static inline bool SceneTakesChords(const Scene *c)
 {

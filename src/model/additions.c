@@ -16,7 +16,7 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscMalloc1(m->stencil_cap, &to->donor));
   if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G] && !fs->one_pressure)
     PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
-  if (m->c->stabilisation.heat != HEAT_CENTRAL && fs->heat && fs->fluid)
+  if (SceneCarriesHeat(m->c))
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (m->c->stabilisation.lumped_reaction && fs->phase[PHASE_G])
     PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));

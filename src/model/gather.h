@@ -49,6 +49,12 @@ enum {
 #define WIDTH (2 * RADIUS + 1)
 enum { NEIGHBOURS = CL_DIM == 2 ? WIDTH * WIDTH : WIDTH * WIDTH * WIDTH };
 
+/* The material of most of what this rank has at a node; the first one where it has nothing. */
+static inline const Material *NodeMaterial(const Model *m, PetscInt I)
+{
+  return m->material[I] ? m->material[I] : &m->c->material[0];
+}
+
 /* Local number of neighbour k; -1 where there is none that this rank knows. */
 static inline PetscInt ModelNeighbour(const Model *m, PetscInt I, int k)
 {

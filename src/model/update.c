@@ -38,12 +38,6 @@ static bool FollowMethane(const Material *mat, double Sh, const double p[PHASE_C
   return true;
 }
 
-/* The material of most of what this rank has at a node; the first one where it has nothing. */
-static const Material *NodeMaterial(const Model *m, PetscInt I)
-{
-  return m->material[I] ? m->material[I] : &m->c->material[0];
-}
-
 /* Does it to a node's update; false where nothing changes. */
 static bool Follow(const Model *m, PetscInt I, const double *x, double *y)
 {

@@ -1,5 +1,8 @@
 /* Where the conductivity that carries heat with the flow (293) is needed: (440) of docs/equations.md. */
+#include "clathra/point_heat.h"
 #include "gather.h"
+
+#define LEAST_T 1e-3 /* K from node to node: below it is what Newton's method and round-off leave */
 
 enum { SHARE, KNOWN, BOTH }; /* of a node along an axis; it has neighbours on both sides: 1, else 0 */
 
@@ -29,9 +32,12 @@ static double Bend(const Model *m, PetscInt I, int d, const PetscInt K[2])
   const GridLines *line = &m->grid.line[d];
   const PetscInt   i    = m->map.ij[I][d];
   const double     T    = m->x_n[I * fs->n + PlaceT(fs)],
-               before   = (T - m->x_n[K[0] * fs->n + PlaceT(fs)]) / LinesWidth(line, i - 1),
-               after    = (m->x_n[K[1] * fs->n + PlaceT(fs)] - T) / LinesWidth(line, i);
-  const double sum = fabs(before) + fabs(after), turn = sum > 0.0 ? 2.0 * fabs(after - before) / sum - 1.0 : 0.0;
+               d_T[2]   = {T - m->x_n[K[0] * fs->n + PlaceT(fs)], m->x_n[K[1] * fs->n + PlaceT(fs)] - T};
+  const double before = d_T[0] / LinesWidth(line, i - 1), after = d_T[1] / LinesWidth(line, i);
+
+  if (fabs(d_T[0]) + fabs(d_T[1]) < LEAST_T)
+    return 0.0;
+  const double turn = 2.0 * fabs(after - before) / (fabs(before) + fabs(after)) - 1.0;
 
   return turn > 0.0 ? copysign(turn, after - before) : 0.0;
 }
@@ -54,17 +60,38 @@ static PetscErrorCode FindBends(Model *m, double *node)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of the bend of a node what a neighbour bends the other way, or all of it beside the border. */
-static double Alternates(double *bend, PetscInt I, int d, const PetscInt K[2])
+/* Heat that the fluids carry along axis d at t_n, of any unit. */
+static double CarriedAlong(const Model *m, PetscInt I, int d)
+{
+  const FieldSet *fs  = &m->c->fields;
+  double          sum = 0.0;
+
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    double J[CL_DIM];
+
+    if (!fs->phase[f])
+      continue;
+    DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
+    sum += SpecificHeat(NodeMaterial(m, I), f) * m->coef[I * NC_COUNT + NC_RHO + f] * J[d];
+  }
+  return sum;
+}
+
+/* Harmonic mean of the bends of a node and of a neighbour that bends the other way, as a border does that the flow
+   comes from. */
+static double Alternates(const Model *m, double *bend, PetscInt I, int d, const PetscInt K[2])
 {
   const double own  = *At(bend, I, d, SHARE);
   double       most = 0.0;
 
+  if (own == 0.0)
+    return 0.0;
   for (int side = 0; side < 2; side++) {
-    const double other = *At(bend, K[side], d, KNOWN) > 0.0 ? *At(bend, K[side], d, SHARE) : -own;
+    const bool   known = *At(bend, K[side], d, KNOWN) > 0.0, enters = (side ? -1.0 : 1.0) * CarriedAlong(m, I, d) > 0.0;
+    const double other = known ? *At(bend, K[side], d, SHARE) : enters ? -own : 0.0;
 
     if (own * other < 0.0)
-      most = fmax(most, fmin(fabs(own), fabs(other)));
+      most = fmax(most, -2.0 * own * other / (fabs(own) + fabs(other)));
   }
   return most;
 }
@@ -80,7 +107,7 @@ static PetscErrorCode FindShares(Model *m, double *bend, double *node)
       if (!(*At(bend, I, d, KNOWN) > 0.0))
         continue;
       Beside(m, I, d, K);
-      *At(node, I, d, SHARE) = Alternates(bend, I, d, K);
+      *At(node, I, d, SHARE) = Alternates(m, bend, I, d, K);
       *At(node, I, d, KNOWN) = 1.0;
     }
   }
@@ -116,7 +143,7 @@ PetscErrorCode UpwindLimit(Model *m)
   double      *bend, *node;
 
   PetscFunctionBeginUser;
-  if (!m->added->upwind || m->c->stabilisation.heat != HEAT_AUTO)
+  if (!SceneCarriesHeat(m->c) || m->c->stabilisation.heat != HEAT_AUTO)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc2(size, &bend, size, &node));
   PetscCall(FindBends(m, bend));
