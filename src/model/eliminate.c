@@ -1,35 +1,61 @@
-/* Fluid velocities eliminated from the tangent of a particle or a face, as if each were alone with its nodes:
+/* Fluid velocities eliminated from the tangent of a particle or a face, as if its forces were those of its nodes:
    (171)-(174) of docs/equations.md.  What is left couples nodes only as far as a particle reaches. */
 #include "gather.h"
 
+/* (171): what a particle's flux of a fluid along each axis gains for a force on each of its nodes as on itself: w/R,
+   and with k_r of the nodes. */
+typedef struct {
+  double plain[CL_DIM], with_kr[CL_DIM];
+} Mobility;
+
+static void MobilityOf(const Model *m, PetscInt p, const Reach *r, int f, Mobility *of)
+{
+  const double inertia = m->c->fields.inertia ? 1.0 / m->stage.dt : 0.0;
+
+  *of = (Mobility){{0.0}, {0.0}};
+  for (int a = 0; a < r->n; a++) {
+    const PetscInt   I    = r->node[a];
+    const FluidNode *node = m->fluid ? &m->fluid[PHASE_COUNT * I + f] : NULL;
+    const double    *c = &m->coef[I * NC_COUNT], w = m->w[PHASE_COUNT * I + f], V = m->V[I];
+    const double kr = node ? PetscSqr(node->root) : 1.0, share = r->S[a] * FlowWeight(m, p, I, f) * V / m->P.f[P_V][p];
+
+    for (int i = 0; i < CL_DIM; i++) {
+      const double drag   = node ? node->D[i] : c[NC_DRAG + f] * V + WallDrag(m, I, f, i);
+      const double resist = drag * w + inertia * kr * c[NC_RHO + f] * V;
+
+      of->plain[i] += resist > 0.0 ? share * w / resist : 0.0;
+      of->with_kr[i] += resist > 0.0 ? share * w / resist * kr : 0.0;
+    }
+  }
+}
+
 /* (171): d J/d(inputs) of a particle's Darcy flux. */
-static void FluxResponse(const Model *m, const Reach *r, const double *x, const double in[IN_COUNT],
+static void FluxResponse(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
                          const PointOutput *o, int f, double dJ[CL_DIM][IN_COUNT])
 {
   const FieldSet *fs          = &m->c->fields;
-  const double    inertia     = fs->inertia ? 1.0 / m->stage.dt : 0.0;
-  double          acc[CL_DIM] = {0.0}, w = 0.0, kr = 0.0;
+  double          acc[CL_DIM] = {0.0}, kr = 0.0;
+  Mobility        mobile;
 
+  MobilityOf(m, p, r, f, &mobile);
   for (int a = 0; a < r->n; a++) {
     double at[CL_DIM];
 
     Acceleration(m, r->node[a], x, PlaceV(fs, f), 1.0, at);
-    w += r->S[a] * m->w[PHASE_COUNT * r->node[a] + f];
     kr += r->S[a] * (m->fluid ? PetscSqr(m->fluid[PHASE_COUNT * r->node[a] + f].root) : 1.0);
     for (int i = 0; i < CL_DIM; i++)
       acc[i] += r->S[a] * at[i];
   }
-  const double resist = o->out[OUT_D + f] * w + inertia * kr * o->out[OUT_MI + f];
-  const double mobile = resist > 0.0 ? -w / resist : 0.0;
   for (int i = 0; i < CL_DIM; i++) {
     const double *dG = o->D[VectorAt(OUT_G, f, i)], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f],
                  *dR = o->D[OUT_ROOT + f];
     const double F = o->out[VectorAt(OUT_G, f, i)] + acc[i] * o->out[OUT_MI + f], rise = 2.0 * sqrt(kr) * F;
 
     for (int q = 0; q < IN_COUNT; q++)
-      dJ[i][q] = mobile * (kr * (dG[q] + acc[i] * dM[q]) + rise * dR[q] + in[VectorAt(IN_J, f, i)] * dD[q]);
-    if (fs->solid)
-      dJ[i][IN_U + i] += mobile * inertia * kr * o->out[OUT_MI + f] / m->stage.dt;
+      dJ[i][q] = -mobile.with_kr[i] * (dG[q] + acc[i] * dM[q]) -
+                 mobile.plain[i] * (rise * dR[q] + in[VectorAt(IN_J, f, i)] * dD[q]);
+    if (fs->solid && fs->inertia)
+      dJ[i][IN_U + i] -= mobile.with_kr[i] * o->out[OUT_MI + f] / PetscSqr(m->stage.dt);
   }
 }
 
@@ -44,8 +70,23 @@ static void Follow(double *D, int f, const double dJ[CL_DIM][IN_COUNT])
   }
 }
 
+/* Share of the bracket's slope that the flux takes over. */
+static double BracketShare(const PointOutput *o, int f, const double dJ[CL_DIM][IN_COUNT])
+{
+  double flux = 0.0, bracket = 0.0;
+
+  for (int i = 0; i < CL_DIM; i++) {
+    const int row = VectorAt(OUT_FLUX, f, i);
+
+    for (int j = 0; j < CL_DIM; j++)
+      flux -= o->D[row][VectorAt(IN_J, f, j)] * dJ[j][VectorAt(IN_GP, f, i)];
+    bracket += o->wide[f][f][i][i];
+  }
+  return bracket > flux ? flux / bracket : 1.0;
+}
+
 /* (172): with Pi g = g the bracket of (19) has no slope with respect to g. */
-static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f)
+static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f, double share)
 {
   for (int i = 0; i < PHASE_COUNT * CL_DIM + fs->heat; i++) {
     const bool    heat = i == PHASE_COUNT * CL_DIM;
@@ -56,7 +97,7 @@ static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f
     if (A)
       BedsDrive(A, slope);
     for (int j = 0; j < CL_DIM; j++)
-      D[VectorAt(IN_GP, f, j)] += slope[j];
+      D[VectorAt(IN_GP, f, j)] += share * slope[j];
   }
 }
 
@@ -95,8 +136,8 @@ void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double 
 
     if (!fs->phase[f])
       continue;
-    FluxResponse(m, r, x, in, o, f, dJ);
-    DropBracket(fs, A, o, f);
+    FluxResponse(m, p, r, x, in, o, f, dJ);
+    DropBracket(fs, A, o, f, BracketShare(o, f, dJ));
     for (int row = OUT_FLUX; row < OUT_FLUX + PHASE_COUNT * CL_DIM; row++) /* gas goes with the water, too (352) */
       Follow(o->D[row], f, dJ);
     if (fs->heat)

@@ -135,8 +135,9 @@ PetscErrorCode PreconditionerPlan(Model *m)
   PetscFunctionBeginUser;
   PetscCall(Occupied(m, &cells, extent));
   plan->across  = Across(cells, extent);
-  plan->reduced = matrix != PRECONDITIONER_WHOLE;
   plan->factors = plan->across <= AcrossLU(&m->c->fields);
+  plan->reduced =
+      matrix == PRECONDITIONER_REDUCED || (matrix == PRECONDITIONER_AUTO && !(plan->factors && SceneDonor(m->c)));
   PetscCall(AskedFor(plan, matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -165,6 +166,8 @@ PetscErrorCode ModelPrintSolver(Model *m)
     PetscCall(PetscStrncpy(type, plan->reduced && !plan->factors ? "multigrid" : PCLU, sizeof(type)));
   if (plan->asked)
     snprintf(why, sizeof(why), "as %s asks", plan->asked);
+  else if (!plan->reduced)
+    snprintf(why, sizeof(why), "%.3g cells across, stabilisation_donor", plan->across);
   else
     snprintf(why, sizeof(why), "%.3g cells across, %d of %d unknowns a node (lu up to %.3g across)", plan->across,
              Left(&m->c->fields), m->c->fields.n, AcrossLU(&m->c->fields));
@@ -263,6 +266,7 @@ PetscErrorCode PreconditionerCreate(Model *m, KSP ksp)
     PetscCall(PCShellSetContext(pc, m));
     PetscCall(PCShellSetApply(pc, ApplyReduced));
     PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 200));
+    PetscCall(KSPGMRESSetRestart(ksp, 200));
     PetscCall(KSPSetPreSolve(ksp, Guess, m));
     PetscCall(KSPSetInitialGuessNonzero(ksp, PETSC_TRUE));
     PetscCall(KSPConvergedDefaultSetUIRNorm(ksp));
