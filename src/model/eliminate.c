@@ -71,16 +71,20 @@ static void Follow(double *D, int f, const double dJ[CL_DIM][IN_COUNT])
 }
 
 /* Share of the bracket's slope that the flux takes over. */
-static double BracketShare(const PointOutput *o, int f, const double dJ[CL_DIM][IN_COUNT])
+static double BracketShare(const Beds *A, const PointOutput *o, int f, const double dJ[CL_DIM][IN_COUNT])
 {
   double flux = 0.0, bracket = 0.0;
 
   for (int i = 0; i < CL_DIM; i++) {
     const int row = VectorAt(OUT_FLUX, f, i);
+    double    slope[CL_DIM];
 
     for (int j = 0; j < CL_DIM; j++)
       flux -= o->D[row][VectorAt(IN_J, f, j)] * dJ[j][VectorAt(IN_GP, f, i)];
-    bracket += o->wide[f][f][i][i];
+    memcpy(slope, o->wide[f][f][i], sizeof(slope));
+    if (A)
+      BedsDrive(A, slope);
+    bracket += slope[i];
   }
   return bracket > flux ? flux / bracket : 1.0;
 }
@@ -137,7 +141,7 @@ void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double 
     if (!fs->phase[f])
       continue;
     FluxResponse(m, p, r, x, in, o, f, dJ);
-    DropBracket(fs, A, o, f, BracketShare(o, f, dJ));
+    DropBracket(fs, A, o, f, BracketShare(A, o, f, dJ));
     for (int row = OUT_FLUX; row < OUT_FLUX + PHASE_COUNT * CL_DIM; row++) /* gas goes with the water, too (352) */
       Follow(o->D[row], f, dJ);
     if (fs->heat)
