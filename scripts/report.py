@@ -88,12 +88,17 @@ ENERGIES = {"kinetic_energy_J": "kinetic", "elastic_energy_J": "elastic", "plast
             "load_work_J": "loads' work", "plate_work_J": "plates' work", "pressure_work_J": "pressures' work", "drag_work_J": "drag",
             "damping_work_J": "damping", "energy_remainder_J": "remainder"}  # fmt: skip
 
+HEATS = {"heat_in_J": "conducted in", "enthalpy_out_J": "out with the fluids", "enthalpy_error_J": "missing"}
+
 
 def balance_charts(run, axis):
     b, charts = run.balance, []
     errors = [(name, b["time_s"], np.maximum(np.abs(b[f"{column}_error"]), 1e-18)) for column, name in
               (("water", "water"), ("methane", "methane"), ("heat", "energy (of 1 K)")) if b[f"{column}_error"].any()]  # fmt: skip
     charts += chart(axis, "what is missing, of the initial store (–)", errors, log=True)
+    if "enthalpy_J" in b and len(b["time_s"]):
+        heat = {"stored": b["enthalpy_J"] - b["enthalpy_J"][0]} | {name: b[c] for c, name in HEATS.items()}
+        charts += chart(axis, "enthalpy (J)", [(name, b["time_s"], v) for name, v in heat.items() if np.abs(v).max() > 0])
     largest = max((np.abs(b[c]).max() for c in ENERGIES if c in b and len(b[c])), default=0.0)
     energies = [(name, b["time_s"], b[c]) for c, name in ENERGIES.items() if c in b and len(b[c]) and np.abs(b[c]).max() > 1e-3 * largest]
     charts += chart(axis, "mechanical energy (J)", energies)

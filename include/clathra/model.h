@@ -58,6 +58,7 @@ typedef struct {
   double out[PHASE_COUNT];                      /* kg/s */
   double heat_in, heat_source, heat_rate;       /* W: through the boundary; latent and squeezed less advected; stored */
   double squeezed;                              /* W: of compression and throttling of the fluids (290) */
+  double beyond;                                /* W: heat of reaction beyond what the state stores (442) */
   double enthalpy_out;                          /* W: with the fluids (364) */
   double left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg/s: in the mass rows, and what they exchange (277) */
   double meter[CL_METERS][METER_COUNT];

@@ -37,6 +37,7 @@ typedef struct {
   double   out[PHASE_COUNT];                       /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source;        /* J since t = 0 */
   double   squeezed;     /* of the heat source: compression and throttling (290), J since t = 0 */
+  double   beyond;       /* of the heat source: of reaction, beyond what the state stores (442), J since t = 0 */
   double   enthalpy_out; /* with the fluids (364), J since t = 0 */
   double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* (277), kg since t = 0 */
   double   meter[CL_METERS][METER_COUNT];         /* (33): kg of water and gas, J, outwards since t = 0 */
@@ -105,7 +106,7 @@ typedef struct {
   double   loose;                                 /* ... when it is accepted above 1; else 0 */
   double   out[PHASE_COUNT];                      /* kg over the step */
   double   heat_gain, heat_in, heat_source;       /* J over the step */
-  double   squeezed, enthalpy_out;                /* J over the step */
+  double   squeezed, beyond, enthalpy_out;        /* J over the step */
   double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg over the step (277) */
   double   meter[CL_METERS][METER_COUNT];         /* kg, J over the step */
   double   work[WORK_RATES];                      /* J over the step */

@@ -330,7 +330,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
 
   PetscFunctionBeginUser;
   ModelClearFailure(m);
-  e->latent = e->advected = e->squeezed = 0.0;
+  e->latent = e->advected = e->squeezed = e->beyond = 0.0;
   e->ahead += dt;
   PetscCall(PetscArrayzero(e->work, WORK_RATES));
   BcValuesEvaluate(m->c, t + dt, &m->bc);
@@ -344,6 +344,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   PetscCall(PetscLogEventEnd(e->event[STEP_UPDATE], 0, 0, 0, 0));
   sum->heat_source += e->latent - e->advected + e->squeezed;
   sum->squeezed += e->squeezed;
+  sum->beyond += e->beyond;
   for (int k = 0; k < WORK_RATES; k++)
     sum->work[k] += e->work[k];
   PetscCall(PetscLogEventBegin(e->event[STEP_ORDER], 0, 0, 0, 0));

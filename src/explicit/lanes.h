@@ -155,7 +155,7 @@ struct Explicit {
   bool   stale, strays, gone;   /* a particle reaches other nodes; left this rank's cells; left the grid, see (373) */
   bool   resize;                /* rows of nodes have another length */
   double latent, advected;      /* J over the step */
-  double squeezed;              /* (290), J over the step */
+  double squeezed, beyond;      /* (290), (442), J over the step */
   double heat_in, warmed;       /* J over the step: what prescribed temperatures take, and all that warms the nodes */
   double ahead;                 /* of the end of the step, since ExplicitBegin, s */
   double straight;              /* STRAIGHT p_0, the least of all materials, Pa */

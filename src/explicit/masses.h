@@ -27,7 +27,7 @@ INLINE void HeatOf(Explicit *e, const Set s, Run r, const double *restrict T, co
                    const double *restrict gain)
 {
   double *restrict now = e->m->P.f[P_T] + r.p;
-  double L[BLOCK], C[BLOCK], heat[BLOCK];
+  double L[BLOCK], C[BLOCK], heat[BLOCK], beyond[BLOCK];
 
   LatentHeatBatch(&r.mat->latent, r.n, T, L);
   Capacities(e, s, r, C);
@@ -36,7 +36,10 @@ INLINE void HeatOf(Explicit *e, const Set s, Run r, const double *restrict T, co
     now[q] += L[q] * (gain[q] - wanted[q]) / C[q];
     heat[q] = L[q] * wanted[q];
   }
+  for (int q = 0; q < r.n; q++)
+    beyond[q] = LatentHeatBeyond(&r.mat->latent, T[q]) * wanted[q];
   e->latent += Sum(r.n, heat);
+  e->beyond += Sum(r.n, beyond);
 }
 
 /* Mass of hydrate, what the fluids and heat give for it (40). */

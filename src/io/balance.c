@@ -39,7 +39,7 @@ void BalanceHeader(const Case *c, FILE *f)
   if (c->scene.compression_heat)
     fprintf(f, ",compression_heat_J");
   if (c->scene.fields.heat)
-    fprintf(f, ",enthalpy_J,enthalpy_out_J,enthalpy_error_J");
+    fprintf(f, ",enthalpy_J,enthalpy_out_J,latent_beyond_J,enthalpy_error_J");
   for (size_t k = 0; c->scene.fields.solid && k < sizeof(column) / sizeof(*column); k++)
     fprintf(f, ",%s", column[k].name);
   fprintf(f, "%s\n", c->nstage ? ",stage" : "");
@@ -57,9 +57,9 @@ static void WriteEnergies(const Model *m, const StepperState *s, FILE *f)
 /* (364) */
 static void WriteEnthalpy(const StepperState *s, double now, FILE *f)
 {
-  const double given = s->heat_in + s->squeezed + s->work[WORK_HEAT];
+  const double given = s->heat_in + s->squeezed + s->beyond + s->work[WORK_HEAT];
 
-  fprintf(f, ",%.17g,%.17g,%.17g", now, s->enthalpy_out,
+  fprintf(f, ",%.17g,%.17g,%.17g,%.17g", now, s->enthalpy_out, s->beyond,
           now - s->enthalpy0 + s->enthalpy_out + s->removed[REMOVED_ENTHALPY] - given);
 }
 

@@ -192,6 +192,7 @@ static void HeatRates(const Model *m, const Reach *r, const double *x, const Poi
 
   rates->heat_source -= out[OUT_Q];
   rates->squeezed += s->squeezed;
+  rates->beyond += s->beyond;
   for (int a = 0; a < r->n; a++) {
     const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
 

@@ -66,6 +66,7 @@ void StepperCount(const Scene *c, const StageRates *rates, double weight, Attemp
   a->heat_in += weight * rates->heat_in;
   a->heat_source += weight * rates->heat_source;
   a->squeezed += weight * rates->squeezed;
+  a->beyond += weight * rates->beyond;
   a->enthalpy_out += weight * rates->enthalpy_out;
   for (PetscInt k = 0; k < c->nmeter; k++) {
     for (int q = 0; q < METER_COUNT; q++)
@@ -121,6 +122,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
   z->heat_in += a->heat_in;
   z->heat_source += a->heat_source;
   z->squeezed += a->squeezed;
+  z->beyond += a->beyond;
   z->enthalpy_out += a->enthalpy_out;
   for (PetscInt k = 0; k < s->model->c->nmeter; k++) {
     for (int q = 0; q < METER_COUNT; q++)

@@ -42,6 +42,19 @@ judge("fluids", "closed column: enthalpy lost on two ranks, apart from one", abs
 check_true("falls with h", error[0] > error[1] > error[2], str(error[:3]))
 judge("fluids", "closed column with (235), whose heat depends on the way: lost, of the heat of reaction", error[6], (0.02, 0.1))
 
+# (442): what (235) gives beyond what the state stores is known, and not missing
+HYBRID = ("-stepper_type", "hybrid", "-stepper_adapt", "yes")
+LINEAR = ("-mat_core_latent_heat_law", "linear", *SHORT)
+beyond = []
+for name, ranks, options in (("implicit", 1, ()), ("implicit, 2 ranks", 2, ()), ("hybrid", 1, HYBRID)):
+    b = Run.of_case(CASE, "-quiet", *LINEAR, *options, ranks=ranks).balance
+    heat = abs(b["heat_source_J"][-1])
+    beyond.append((name, b["latent_beyond_J"][-1] / heat, b["enthalpy_error_J"][-1] / heat))
+    judge("fluids", f"closed column with (235), {name}: missing of the enthalpy, of the heat of reaction", abs(beyond[-1][2]), 5e-5)
+    judge("fluids", f"closed column with (235), {name}: beyond what the state stores, of the heat of reaction", abs(beyond[-1][1]), (0.02, 0.1))
+table(("(235)", "beyond the state", "missing"), beyond)
+judge("fluids", "closed column with (235): beyond the state on two ranks, apart from one", abs(beyond[1][1] / beyond[0][1] - 1), 1e-9)
+
 
 OPEN = ("-boundaries", "out,warm", "-bc_out_type", "pressure", "-bc_out_side", "right", "-bc_out_pressure", "2.9 MPa", "-bc_out_saturation", "free",
         "-bc_warm_type", "heat_flux", "-bc_warm_side", "left", "-bc_warm_flux", "2 kW/m^2", *SHORT)  # fmt: skip
@@ -57,7 +70,6 @@ def opened(name, *options, ranks=1):
     return b["enthalpy_error_J"][-1] / b["enthalpy_out_J"][-1], b["enthalpy_out_J"][-1] / abs(last)
 
 
-HYBRID = ("-stepper_type", "hybrid", "-stepper_adapt", "yes")
 found = [(name, *opened(name, *options, ranks=ranks)) for name, ranks, options in (
     ("10 cells", 1, ()), ("20 cells", 1, ("-grid_cells", "20,1")), ("2 ranks", 2, ()), ("hybrid", 1, HYBRID))]  # fmt: skip
 table(("open", "missing, of what left", "what left, of the enthalpy"), found)
