@@ -6,7 +6,7 @@ meters.png     what meters and plates count, methane that is not in hydrate
 balance.png    errors of the water, methane and energy balance, length of the steps
 profiles.png   a strip one cell wide: profiles along it at up to six snapshots; upright if the strip is
 particles.png  any other body, deformed: p, T, S_h, S_w (or what else changes) at up to four snapshots
-maps.png       the same body at the last snapshot: everything else that changes, stress, strain, porosity, flow
+maps.png       the same body at the last snapshot: everything that changes, those and stress, strain, porosity, flow
 
 scripts/report.py makes one page of it all.
 """
@@ -93,7 +93,7 @@ def plot_meters(run):
     for axes, (label, curves) in zip(grid.flat, panels):
         for name, values in curves:
             axes.plot(stages[0](time) if stages else time / seconds, values, color=colours[name])
-        axes.set(xlabel=f"time ({unit})", ylabel=label)
+        axes.set(xlabel=f"time ({unit})", ylabel=wrapped(label, 3.0))
         axes.yaxis.set_major_formatter(Plain())
         if stages:
             stage_ticks(axes, stages[1])
@@ -237,9 +237,9 @@ def plot_body(run):
     rows = [q for q in changing if q.key in FIRST][:4]
     if rows:
         plot_film(run, times, snapshots, rows)
-    rest = [q for q in changing if q not in rows and np.nanmax(q.of(snapshots[-1])) > np.nanmin(q.of(snapshots[-1]))]
-    if rest and len(times) > 1:
-        plot_maps(run, times[-1], snapshots[-1], first, rest)
+    uneven = [q for q in changing if np.nanmax(q.of(snapshots[-1])) > np.nanmin(q.of(snapshots[-1]))]
+    if uneven and len(times) > 1:
+        plot_maps(run, times[-1], snapshots[-1], first, uneven)
     return bool(rows)
 
 

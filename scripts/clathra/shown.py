@@ -202,13 +202,29 @@ METERS = {"gas_std_m3": "gas out (standard m³)", "gas_kg_s": "gas out, rate (kg
           "heat_J": "heat out (J)", "heat_W": "heat out, rate (W)", "position_m": "plate, position (m)", "force_N": "plate, force (N)",
           "stress_Pa": "plate, mean stress (Pa)", "shear_N": "plate, shear force (N)"}  # fmt: skip
 
+LEAST_FLOW = 1e-3  # of the largest: less water than this has no ratio
+
+
+def gas_to_water(meters, name):
+    """Standard m3 of gas per m3 of water (of 1000 kg) that a meter counts, as both flow out; NaN elsewhere, None if it counts but one."""
+    columns = [meters.get(f"{name}.{c}") for c in ("gas_kg_s", "water_kg_s", "gas_std_m3", "gas_kg")]
+    if any(c is None or not c.any() for c in columns):
+        return None
+    gas, water, standard, kg = columns
+    outwards = (gas >= 0) & (water > LEAST_FLOW * np.max(np.abs(water)))
+    most = np.argmax(np.abs(kg))
+    return np.where(outwards, gas * standard[most] / kg[most] / np.where(outwards, water / 1000, 1.0), np.nan)
+
 
 def production(meters, names):
-    """[(label, [(meter, values)])] of what the meters `names` count that is not zero always, and of the methane in the body's pores, free and dissolved."""
+    """[(label, [(meter, values)])] of what the meters `names` count that is not zero always, of the ratio of gas to water, and of the methane in
+    the body's pores, free and dissolved."""
     found = []
     for column, label in METERS.items():
         curves = [(n, meters[f"{n}.{column}"]) for n in names if f"{n}.{column}" in meters]
         found += [(label, curves)] if any(v.any() for _, v in curves) else []
+    ratios = [(n, v) for n in names if (v := gas_to_water(meters, n)) is not None and np.isfinite(v).sum() > 1]
+    found += [("gas to water (std m³/m³)", ratios)] if ratios else []
     pores = [(name, meters[f"{name}_gas_std_m3"]) for name in ("free", "dissolved") if np.ptp(meters.get(f"{name}_gas_std_m3", np.zeros(1))) > 0]
     return [*found, ("methane in the body's pores (standard m³)", pores)] if pores else found
 

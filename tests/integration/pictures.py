@@ -53,14 +53,18 @@ def drawn(axis):
     return [t.label1 for t in axis.get_major_ticks() if t.label1.get_visible() and low - 1e-9 * (high - low) <= t.get_loc() <= high + 1e-9 * (high - low)]
 
 
-def overlaps(draw, *arguments):
-    """Pairs of words in a picture of plot.py one of which is drawn over the other."""
+def picture(draw, *arguments):
+    """A picture of plot.py and what measures its words."""
     kept = []
     plot.save = lambda figure, folder, name: kept.append(figure)
     draw(*arguments)
-    figure = kept[0]
-    figure.canvas.draw()
-    renderer = figure.canvas.get_renderer()
+    kept[0].canvas.draw()
+    return kept[0], kept[0].canvas.get_renderer()
+
+
+def overlaps(draw, *arguments):
+    """Pairs of words in a picture one of which is drawn over the other."""
+    figure, renderer = picture(draw, *arguments)
     words = [t for a in figure.axes for axis in (a.xaxis, a.yaxis) for t in (axis.label, axis.get_offset_text(), *drawn(axis))]
     words += [t for a in figure.axes for t in (a.title, a._left_title)]
     held = [(t.get_text(), t.get_window_extent(renderer)) for t in words if t.get_visible() and t.get_text().strip()]
@@ -117,6 +121,18 @@ def check_arrows():
     check_true("a body of one particle", list(shown.apart(np.zeros((1, 2)), 0.0)) == [0])
 
 
+def check_meters(run):
+    figure, renderer = picture(plot.plot_meters, run)
+    beyond = [a.get_ylabel() for a in figure.axes if a.yaxis.label.get_window_extent(renderer).height > a.get_window_extent(renderer).height]
+    check_true("words beside the curves of meters are no longer than their axes", figure.axes and not beyond, beyond)
+    plt.close(figure)
+    meters = {"well.gas_kg_s": np.array([0.0, 0.02, 0.02, 0.01]), "well.water_kg_s": np.array([0.0, 0.1, -0.1, 5e-5]), "well.gas_kg": np.array([0, 1.0, 3.0, 4.0]),
+              "well.gas_std_m3": np.array([0, 1.5, 4.5, 6.0])}  # fmt: skip
+    ratio = shown.gas_to_water(meters, "well")
+    check_true("gas to water: 300 m3/m3 where both flow out, nowhere else", list(np.isnan(ratio)) == [True, False, True, True] and abs(ratio[1] - 300) < 1e-9, list(ratio))
+    check_true("... and none where a meter counts no water", shown.gas_to_water({**meters, "well.water_kg_s": np.zeros(4)}, "well") is None)
+
+
 def check_phases():
     """Profiles under a periodic load: times of several phases; where all snapshots are of one phase, words that say so."""
     period = 12.42 * 3600
@@ -152,6 +168,7 @@ def main():
     gas = scratch() / "gas"
     run(binary(), ROOT / "tests" / "verification" / "cases" / "no_gas_cell.yaml", "-time_end", "2 s", "-meters", "side", "-meter_side_side", "right", out=gas)
     check_true("... of gas that comes: what pores hold of it beside what a meter counts", "meters" in draw(gas)[0])
+    check_meters(clathra.Run(gas))
     check_words()
     check_arrows()
     finish()
