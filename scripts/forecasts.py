@@ -51,7 +51,7 @@ class Told:
                 if said := re.search(r"implicit about ([\d.e+-]+) steps, ([\d.e+-]+) (\w+)", line):
                     self.forecast, begun, self.lines = (float(said[1]), float(said[2]) * SECONDS[said[3]]), now, []
                 if step := re.match(r"(?:stage \w+: )?step +(\d+): .*?\(([\d.]+) %\)", line):
-                    left = re.search(r"about ([\d.e+-]+) steps, ([\d.e+-]+) (\w+) left", line)
+                    left = re.search(r"about ([\d.e+-]+) steps?, ([\d.e+-]+) (\w+) left", line)
                     self.lines.append((float(step[2]), int(step[1]), *((float(left[1]), float(left[2]) * SECONDS[left[3]]) if left else (None, None)), now - begun))
         if run.returncode or not self.lines:
             raise RuntimeError(f"{case}: exit code {run.returncode}\n{''.join(self.log[-5:])}")

@@ -132,6 +132,8 @@ def places(run, keys, x, l):
         k = shown.names(run).index(keys["axis"])
         ends = [low[1 - k], high[1 - k]]
         return [[keys["position"], ends[0], keys["position"], ends[1]] if k == 0 else [ends[0], keys["position"], ends[1], keys["position"]]]
+    if keys["type"] in IN_REGION:
+        return edges(run, keys["region"])
     if isinstance(keys.get("along"), list):
         return [[*a, *b] for a, b in zip(keys["along"], keys["along"][1:])]
     sides = {side: (k, out) for k, name in enumerate(shown.names(run)) for side, out in zip(SIDES[name], (-1, 1))}
@@ -139,6 +141,17 @@ def places(run, keys, x, l):
 
 
 SIDES = {"x": ("left", "right"), "y": ("bottom", "top"), "z": ("back", "front")}
+
+
+IN_REGION = ("region_temperature", "heat_source")
+
+
+def edges(run, region):
+    """Of the box about a region, or of nothing where the condition acts on all of them."""
+    if f"region_{region}_lower" not in run.case:
+        return []
+    a, b, c, d = (run.case[f"region_{region}_{end}"][k] for k in shown.axes(run)[:2] for end in ("lower", "upper"))
+    return [[a, c, b, c], [b, c, b, d], [b, d, a, d], [a, d, a, c]]
 
 
 def outermost(keys, k, out, x, l):

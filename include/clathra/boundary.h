@@ -29,9 +29,10 @@ typedef struct {
   double   K;                   /* stiffness of its plate's spring, N/m; see PlateStiffness */
   bool     touches; /* its plate takes part in the last tangent: always, or where one that separates touches */
   unsigned meters;  /* bit k: Case.meter[k] counts it */
-  double   share;   /* of a well: omega_p (366); such a face is a particle inside the body and has no area */
-  double   draws;   /* C sqrt(r) omega_p of (367), dimensionless */
-  double   conducts[PHASE_COUNT], kr[PHASE_COUNT]; /* k_a/mu (m^2/(Pa s)) and k_r at t_n */
+  double   share;   /* of a well omega_p (366), of a heat source its volume at the start, m^3; such a face is a particle
+                       inside the body and has no area */
+  double draws;     /* C sqrt(r) omega_p of (367), dimensionless */
+  double conducts[PHASE_COUNT], kr[PHASE_COUNT]; /* k_a/mu (m^2/(Pa s)) and k_r at t_n */
 } Face;
 
 /* Weight of a node in what a face adds to row q, and takes from its Darcy fluxes; dimensionless. */

@@ -27,7 +27,7 @@ typedef struct {
 /* Which integrators know a kind; the others refuse it by name. */
 enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit; without a matrix */
 
-/* On faces, which move with the body; a well has some without area inside.
+/* On faces, which move with the body; a well and a heat source have some without area inside.
    X(kind, word, fields any of which it needs, integrators, its terms in src/boundary/terms.c or well.c, what it
    prescribes) */
 #define CL_FACE_CONDITIONS(X)                                                                                          \
@@ -39,7 +39,9 @@ enum { BY_MATRIX = 1, BY_STEPS = 2, BY_ALL = BY_MATRIX | BY_STEPS }; /* implicit
   X(INFLOW, "inflow", HAS_WATER, BY_ALL, FaceInflows, "volume of water and gas into the body, m/s")                    \
   X(PLATE, "plate", HAS_SOLID, BY_ALL, NULL, "a rigid plate: velocity, displacement or force (plates.c)")              \
   X(WELL, "well", HAS_WATER, BY_ALL, FaceWell,                                                                         \
-    "a line normal to the plane, in space along an axis: its pressure, Pa, or rates, kg/s (well.c)")
+    "a line normal to the plane, in space along an axis: its pressure, Pa, or rates, kg/s (well.c)")                   \
+  X(HEAT_SOURCE, "heat_source", HAS_HEAT, BY_ALL, FaceHeatSource,                                                      \
+    "in a region's particles, W/m^3 of their volume at the start")
 
 enum { ON_FACES = 1, ON_PLANE, IN_REGION };
 /* On nodes: of a grid plane, or in the initial shape of a region.  X(kind, word, fields, integrators, its values in

@@ -60,7 +60,10 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
   }
   *o = (FaceOutput){0};
   if (f->share > 0.0) {
-    FaceWell(&x, f->bc[BC_WELL], o);
+    if (f->bc[BC_HEAT_SOURCE] >= 0)
+      FaceHeatSource(&x, f->bc[BC_HEAT_SOURCE], o);
+    else
+      FaceWell(&x, f->bc[BC_WELL], o);
     o->enthalpy = CarriedOut(&x, o->outflow);
     return;
   }

@@ -141,7 +141,7 @@ static double FacePore(const Scene *c, const Particles *P, const Face *f)
   return pore;
 }
 
-/* A well takes from its particle, wherever that is. */
+/* A well or a source acts in its particle, wherever that is. */
 static void PlaceInside(const Particles *P, const Stencil *st, Face *f)
 {
   double w[CL_DIM][3];
@@ -231,57 +231,78 @@ static void MakeFace(const Scene *c, const Grid *g, const Particles *P, PetscInt
   *f = (Face){.particle = p, .side = side, .region = P->i[PI_REGION][p], .bc = {[BC_NONE] = -1}};
   ParticleInitialPlace(P, p, f->x0);
   for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
-    f->bc[kind] = kind == BC_WELL ? -1 : FindCondition(c, (BcType)kind, f);
+    f->bc[kind] = kind == BC_WELL || kind == BC_HEAT_SOURCE ? -1 : FindCondition(c, (BcType)kind, f);
   f->meters = FindMeters(c, f);
   FaceNormal(c, f->region, f->x0, side, f->n0);
   FacePlace(c, g, P, f);
 }
 
-static double ShareOf(const Scene *c, const Particles *P, const Well *well, PetscInt p)
+/* Volume of a particle at the start, m^3 (per metre of thickness in the plane), if a heat source is in it, else 0. */
+static double Heated(const Scene *c, const Particles *P, const Bc *b, PetscInt p)
+{
+  const PetscInt own = P->i[PI_REGION][p];
+  double         x0[CL_DIM], l[CL_DIM], V;
+
+  ParticleInitialPlace(P, p, x0);
+  if (b->region >= 0 && b->region != own && !(RegionEmpty(&c->region[b->region]) && RegionHolds(c, b->region, x0)))
+    return 0.0;
+  ParticlesInitialHalfLength(c, own, x0, l);
+  V = c->axisymmetric ? 2.0 * M_PI * x0[0] : 1.0;
+  for (int d = 0; d < CL_DIM; d++)
+    V *= 2.0 * l[d];
+  return V;
+}
+
+/* What a condition inside the body, a well or a heat source, has of particle p: Face.share. */
+static double ShareOf(const Scene *c, const Particles *P, const Bc *b, const Well *well, PetscInt p)
 {
   double x0[CL_DIM], l[CL_DIM];
 
+  if (b->type == BC_HEAT_SOURCE)
+    return Heated(c, P, b, p);
   ParticleInitialPlace(P, p, x0);
   ParticlesInitialHalfLength(c, P->i[PI_REGION][p], x0, l);
   return WellShare(well, x0, l);
 }
 
-static void MakeWellFace(const Scene *c, const Grid *g, const Particles *P, PetscInt p, PetscInt k, double share,
-                         Face *f)
+static void MakeInsideFace(const Scene *c, const Grid *g, const Particles *P, PetscInt p, PetscInt k, double share,
+                           Face *f)
 {
   *f = (Face){.particle = p, .side = SIDE_COUNT, .region = P->i[PI_REGION][p], .share = share};
   ParticleInitialPlace(P, p, f->x0);
   for (int kind = 0; kind < BC_FACES; kind++)
-    f->bc[kind] = kind == BC_WELL ? k : -1;
+    f->bc[kind] = kind == (int)c->bc[k].type ? k : -1;
   for (PetscInt i = 0; i < c->nmeter; i++)
     f->meters |= (unsigned)(c->meter[i].well == c->bc[k].number) << i;
   FacePlace(c, g, P, f);
 }
 
-/* Adds the particles of condition k, a well, to n faces of so many that there is room for. */
-static PetscErrorCode WellFaces(const Scene *c, const Grid *g, const Particles *P, PetscInt k, PetscInt *n, Face **face)
+/* Adds the particles of condition k, a well or a heat source, to n faces of so many that there is room for. */
+static PetscErrorCode InsideFaces(const Scene *c, const Grid *g, const Particles *P, PetscInt k, PetscInt *n,
+                                  Face **face)
 {
-  PetscInt count = 0, at = *n;
-  Well     well;
+  const Bc *b     = &c->bc[k];
+  PetscInt  count = 0, at = *n;
+  Well      well;
 
   PetscFunctionBeginUser;
-  if (!WellPlace(c, &c->bc[k], &well))
+  if (b->type == BC_WELL && !WellPlace(c, b, &well))
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < P->n; p++)
-    count += ShareOf(c, P, &well, p) > 0.0;
+    count += ShareOf(c, P, b, &well, p) > 0.0;
   if (!count)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscRealloc((size_t)(at + count) * sizeof(Face), face));
   for (PetscInt p = 0; p < P->n; p++) {
-    const double share = ShareOf(c, P, &well, p);
+    const double    share = ShareOf(c, P, b, &well, p);
+    const Material *mat   = &c->material[c->region[P->i[PI_REGION][p]].material];
 
-    if (share > 0.0) {
-      const Material *mat = &c->material[c->region[P->i[PI_REGION][p]].material];
-
-      MakeWellFace(c, g, P, p, k, share, &(*face)[at]);
-      (*face)[at++].draws =
-          c->bc[k].index * sqrt(WellRatio(&well, &mat->permeability)) * share * WellLength(&well); /* (367) */
-    }
+    if (!(share > 0.0))
+      continue;
+    MakeInsideFace(c, g, P, p, k, share, &(*face)[at]);
+    if (b->type == BC_WELL)
+      (*face)[at].draws = b->index * sqrt(WellRatio(&well, &mat->permeability)) * share * WellLength(&well); /* (367) */
+    at++;
   }
   *n = at;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -309,8 +330,8 @@ PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, Pet
     }
   }
   for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type == BC_WELL)
-      PetscCall(WellFaces(c, g, P, k, n, face));
+    if (c->bc[k].type == BC_WELL || c->bc[k].type == BC_HEAT_SOURCE)
+      PetscCall(InsideFaces(c, g, P, k, n, face));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

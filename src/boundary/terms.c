@@ -279,6 +279,15 @@ void FaceHeatFlux(const FaceState *x, PetscInt k, FaceOutput *o)
   LetIn(x, x->v->value[k], 0.0, o);
 }
 
+/* (443), of a particle inside. */
+void FaceHeatSource(const FaceState *x, PetscInt k, FaceOutput *o)
+{
+  const double heat = x->f->share * x->v->value[k];
+
+  o->heat_in += heat;
+  o->out[F_T] -= heat;
+}
+
 /* alpha (T^ - T) into the body, T^ as (425) has it where the face is. */
 static void Draw(const FaceState *x, PetscInt k, double alpha, FaceOutput *o)
 {

@@ -36,6 +36,7 @@ void FaceConvection(const FaceState *x, PetscInt k, FaceOutput *o);
 void FaceTemperature(const FaceState *x, PetscInt k, FaceOutput *o);
 void FaceInflows(const FaceState *x, PetscInt k, FaceOutput *o);
 void FaceWell(const FaceState *x, PetscInt k, FaceOutput *o);
+void FaceHeatSource(const FaceState *x, PetscInt k, FaceOutput *o);
 
 /* (152): the drag of the fluid around the body; velocity of the skeleton at the face, m/s. */
 void FaceDrag(const FaceState *x, const double velocity[CL_DIM], FaceOutput *o);

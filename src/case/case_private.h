@@ -238,6 +238,7 @@ void CheckShape(Reader *r, const Case *c, PetscInt region);
 PetscErrorCode RegionsCut(Reader *r, Case *c);
 bool           FacesShared(const Scene *c, const Meter *a, const Meter *b); /* has the body any that both name? */
 void           CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Meter *m);
+void           CheckSource(Reader *r, const Scene *c, const Bc *b);
 void           CheckHeld(Reader *r, const Scene *c, const Bc *b);
 void           CheckProbe(Reader *r, const Scene *c, const Probe *p);
 /* resolve.c: the value of a key as the resolved case gives it; keys that say nothing when they are empty */

@@ -268,6 +268,9 @@ void CaseCheck(Reader *r, Case *c)
 
     if (b->type == BC_WELL) {
       CheckWell(r, c, b);
+    } else if (b->type == BC_HEAT_SOURCE) {
+      if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
+        CheckSource(r, &c->scene, b);
     } else if (where == ON_FACES) {
       if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
         CheckFaces(r, &c->scene, GROUP_BC, b->name, &BcFaces(b));

@@ -48,7 +48,7 @@ enum { FACES = 0u CL_FACE_CONDITIONS(ON_FACE), PLANES = 0u CL_NODE_CONDITIONS(PL
 
 /* those that hold or offer a temperature, and those on the surface */
 enum { WARM = TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_CONVECTION) | TYPE(BC_TEMPERATURE) | TYPE(BC_REGION_TEMPERATURE) };
-enum { SIDES = FACES & ~TYPE(BC_WELL) };
+enum { SIDES = FACES & ~TYPE(BC_WELL) & ~TYPE(BC_HEAT_SOURCE) };
 
 const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_NONE + 1),
@@ -59,7 +59,7 @@ const Key bc_key[] = {
     CHOICE(Bc, "side", side, "none", cl_side, "side of the body, moves with it",
            WHEN(BcNeedsSide, "along is not given"), .types = SIDES),
     NAME(Bc, "region", region, "all", GROUP_REGION, "one of regions, or all",
-         .types = SIDES | TYPE(BC_REGION_TEMPERATURE)),
+         .types = SIDES | TYPE(BC_REGION_TEMPERATURE) | TYPE(BC_HEAT_SOURCE)),
     REAL(Bc, "from", from, "m", "", "start", "only the part of the side from here ...", .word = "-start",
          .types = SIDES),
     REAL(Bc, "to", to, "m", "", "end", "... to here", .word = "end", .types = SIDES),
@@ -112,6 +112,8 @@ const Key bc_key[] = {
              "volume into the body per time and area, at the face's pressure and temperature; negative = out"),
     SCHEDULE("gas", phase[PHASE_G], "m/s", "[-1e3,1e3]", "0 m/s", TYPE(BC_INFLOW), "the same for gas"),
     SCHEDULE("flux", value, "W/m^2", "[-1e12,1e12]", NULL, TYPE(BC_HEAT_FLUX), "into the body"),
+    SCHEDULE("power", value, "W/m^3", "[-1e12,1e12]", NULL, TYPE(BC_HEAT_SOURCE),
+             "heat into each m^3 that particles have at the start"),
     SCHEDULE("ambient", value, "degC", "(-273.15,1000]", NULL, TYPE(BC_CONVECTION), "temperature outside"),
     SCHEDULE("temperature", value, "degC", "(-273.15,1000]", "",
              TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_TEMPERATURE) | TYPE(BC_REGION_TEMPERATURE) | TYPE(BC_INFLOW),

@@ -20,7 +20,8 @@ const Key region_key[] = {
     LIKE(Region, GROUP_REGION,
          "another of regions, whose keys hold where this one's are not given, but for shape and minus"),
     NAME(Region, "material", material, NULL, GROUP_MATERIAL,
-         "one of materials, or none: only to be cut out of others, to hold a region_temperature, or for a probe's mean",
+         "one of materials, or none: only to be cut out of others, to hold a region_temperature or a heat_source, or "
+         "for a probe's mean",
          .word = "none", .shape = true),
     POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true, .own = true),
     POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true,

@@ -92,7 +92,7 @@ static void CheckBounds(Reader *r, const Scene *c, const Region *g)
   }
 }
 
-/* A shape without particles must be cut out of another region, hold temperatures or be what a mean is over. */
+/* A shape without particles must be cut out of another region, hold temperatures, be heated or what a mean is over. */
 static bool Serves(const Case *c, PetscInt region)
 {
   for (PetscInt k = 0; k < c->nprobe; k++) {
@@ -100,7 +100,9 @@ static bool Serves(const Case *c, PetscInt region)
       return true;
   }
   for (PetscInt k = 0; k < c->scene.nbc; k++) {
-    if (c->scene.bc[k].type == BC_REGION_TEMPERATURE && c->scene.bc[k].region == region)
+    const Bc *b = &c->scene.bc[k];
+
+    if ((b->type == BC_REGION_TEMPERATURE || b->type == BC_HEAT_SOURCE) && b->region == region)
       return true;
   }
   for (PetscInt k = 0; k < c->scene.nregion; k++) {
@@ -135,7 +137,8 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
   }
   if (RegionEmpty(g) && !Serves(c, region))
     FAIL_AT(GROUP_REGION, g->name, "material",
-            "is none, but no region has %s in its minus and no region_temperature or probe names it", g->name);
+            "is none, but no region has %s in its minus and no region_temperature, heat_source or probe names it",
+            g->name);
 }
 
 /* ---------------------------------------------------------------- their particles */
@@ -294,6 +297,17 @@ void CheckFaces(Reader *r, const Scene *c, Group g, const char *name, const Mete
 }
 
 /* ---------------------------------------------------------------- points */
+void CheckSource(Reader *r, const Scene *c, const Bc *b)
+{
+  for (PetscInt i = 0; i < c->nregion; i++) {
+    if (b->region < 0 || b->region == i ? AnyPlace(c, i, NULL, NULL)
+                                        : RegionEmpty(&c->region[b->region]) && AnyPlace(c, i, IsInside, &b->region))
+      return;
+  }
+  FAIL_AT(GROUP_BC, b->name, "region", "%s has no particle to heat: no centre of one lies inside",
+          c->region[b->region].name);
+}
+
 /* A region whose temperature is held must hold a node. */
 void CheckHeld(Reader *r, const Scene *c, const Bc *b)
 {

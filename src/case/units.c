@@ -86,6 +86,7 @@ static const struct {
     {"J/mol", "an energy per amount"},
     {"W/(m K)", "a thermal conductivity"},
     {"W/m^2", "a heat flux"},
+    {"W/m^3", "a heat source"},
     {"W/(m^2 K)", "a heat transfer coefficient"},
     {"Pa/s", "a pressure per time"},
     {"K/s", "a temperature per time"},

@@ -70,7 +70,7 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   for (int d = 0; e->set.solid && d < CL_DIM; d++)
     velocity[d] = e->m->P.f[P_VS + d][f->particle];
   ModelInitialAtFace(e->m, f, p0);
-  if (f->bc[BC_FACE_TEMPERATURE] >= 0 || f->share > 0.0 ||
+  if (f->bc[BC_FACE_TEMPERATURE] >= 0 || f->bc[BC_WELL] >= 0 ||
       mat->retention.hydrate > 0.0) /* who else asks for conductivity or S_h? */
     ModelParticleProperties(e->m, f->particle, &q, &why);
   FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, q.Sh, in, velocity, q.kappa, dt, o);
@@ -93,7 +93,7 @@ void FacesForces(Explicit *e, double dt)
     FacePlace(e->m->c, &e->m->grid, &e->m->P, f);
     ModelFaceProperties(e->m, f, n, S);
     if (f->share > 0.0)
-      continue; /* a well pulls at nothing */
+      continue; /* a well or a source pulls at nothing */
     Inputs(e, f, in);
     Evaluate(e, f, in, dt, &o);
     const double conduct = Conductance(e, s, f->particle);
@@ -153,7 +153,7 @@ static void NodalInputs(const Explicit *e, const Face *f, int n, const PetscInt 
   const Set    s       = e->set;
   const int    width   = LANES * Rows(B_Count(s));
   const double conduct = Conductance(e, s, f->particle);
-  const bool   well    = f->share > 0.0;
+  const bool   well    = f->bc[BC_WELL] >= 0;
 
   for (int k = 0; well && k < s.fluids; k++)
     in[IN_P + k] = 0.0;

@@ -20,7 +20,7 @@ static void RadialFace(Model *m, const Reach *r, Face *f)
 {
   double drag[PHASE_COUNT] = {0.0}, sum = 0.0;
 
-  if (!m->c->axisymmetric || !(f->x[0] > 0.0))
+  if (!m->c->axisymmetric || !(f->x[0] > 0.0) || f->share > 0.0)
     return;
   for (int a = 0; a < r->n; a++) {
     const double *c = &m->coef[r->node[a] * NC_COUNT];
@@ -39,7 +39,7 @@ void ModelFaceProperties(const Model *m, Face *f, int n, const double S[])
   PointProperties q;
   const char     *why;
 
-  if ((f->bc[BC_INFLOW] < 0 && f->share == 0.0) || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
+  if ((f->bc[BC_INFLOW] < 0 && f->bc[BC_WELL] < 0) || ModelParticleProperties(m, f->particle, &q, &why) != CL_OK)
     return;
   FaceInflow(f, n, S, q.kr);
   WellProperties(&q, f);

@@ -44,7 +44,7 @@ static Span Temperatures(const Stepper *s)
       const Bc *b    = &scene->bc[i];
       Span      flux = {0.0, 0.0};
 
-      if (b->type == BC_HEAT_FLUX)
+      if (b->type == BC_HEAT_FLUX || b->type == BC_HEAT_SOURCE)
         Add(&flux, &b->value);
       else if (b->type == BC_WELL)
         Add(&span, &b->heated);
@@ -352,9 +352,9 @@ PetscErrorCode EndWarnings(const Stepper *s)
   if (z->loose_total && z->err_worst > DOUBTFUL)
     PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
                            "clathra: warning: %" PetscInt_FMT " of %" PetscInt_FMT
-                           " steps were accepted above the tolerance, with an estimated error of up to %.3g of it: no "
+                           " steps %s accepted above the tolerance, with an estimated error of up to %.3g of it: no "
                            "shorter step lowered it (particles that change cells, a jump), or stepper_dt_min did not "
                            "let it; finer cells or a ramp there, and a look at balance.csv's dt_s\n",
-                           z->loose_total, z->step, z->err_worst));
+                           z->loose_total, z->step, z->loose_total == 1 ? "was" : "were", z->err_worst));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -43,7 +43,7 @@ static PetscErrorCode LeftWords(const Left *left, char words[128])
   if (isnan(left->time))
     PetscFunctionReturn(PETSC_SUCCESS);
   if (left->steps > 0.0)
-    snprintf(words, 128, "about %s steps, %s left", CountWords(fmax(left->steps, 1.0)).s,
+    snprintf(words, 128, "about %s step%s, %s left", CountWords(fmax(left->steps, 1.0)).s, left->steps < 1.5 ? "" : "s",
              TimeWords(left->time, left->time < 10.0 ? 2 : 3).s);
   else
     snprintf(words, 128, "%s left", TimeWords(left->time, left->time < 10.0 ? 2 : 3).s);

@@ -61,9 +61,9 @@ void LooseSummary(const Stepper *s, char text[512])
   const size_t told = strlen(text);
   if (z->loose_total)
     snprintf(text + told, 512 - told,
-             "  %" PetscInt_FMT " steps were accepted above the tolerance, with an estimated error of up "
+             "  %" PetscInt_FMT " step%s accepted above the tolerance, with an estimated error of up "
              "to %.3g of it (at stepper_dt_min, or noise of the particles)\n",
-             z->loose_total, z->err_worst);
+             z->loose_total, z->loose_total == 1 ? " was" : "s were", z->err_worst);
 }
 
 /* Steps without (353), for (354) did not converge. */

@@ -70,15 +70,18 @@ static bool LacksGas(const Scene *c)
   return c->material[0].gas.trace > 0.0;
 }
 
-#define HEATER 1.0 /* W/m^2: ten times and more what the earth gives */
+#define HEATER 1.0 /* W/m^2, W/m^3: ten times and more what the earth gives */
 
 static bool HasHeater(const Scene *c)
 {
   bool has = false;
 
   for (PetscInt k = 0; k < c->nbc; k++) {
-    for (PetscInt i = 0; c->bc[k].type == BC_HEAT_FLUX && i < c->bc[k].value.n; i++)
-      has = has || c->bc[k].value.y[i] + ScheduleSwing(&c->bc[k].value) > HEATER;
+    const Bc  *b     = &c->bc[k];
+    const bool heats = b->type == BC_HEAT_FLUX || b->type == BC_HEAT_SOURCE;
+
+    for (PetscInt i = 0; heats && i < b->value.n; i++)
+      has = has || b->value.y[i] + ScheduleSwing(&b->value) > HEATER;
   }
   return has;
 }
