@@ -281,36 +281,69 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Scene *c, const Partic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gas and water that become hydrate: where T_e(p) - T > WARMS. */
-static PetscErrorCode FormationWarning(MPI_Comm comm, const Scene *c, const Particles *P)
+static bool Forms(const Material *m)
 {
-  Most   worst = {.value = -INFINITY};
+  return m->reacts && m->kinetics.K0 > 0.0 && m->kinetics.A_geo > 0.0;
+}
+
+/* The first material whose hydrate forms, or NULL. */
+static const Material *AnyForms(const Scene *c)
+{
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    const Material *m = RegionEmpty(&c->region[k]) ? NULL : &c->material[c->region[k].material];
+
+    if (m && Forms(m))
+      return m;
+  }
+  return NULL;
+}
+
+/* Most of what T_e(p) - T > WARMS of gas that hydrate of its own material can form of, or only that beside it. */
+static PetscErrorCode FindForming(MPI_Comm comm, const Scene *c, const Particles *P, bool own, Most *worst)
+{
+  const Material *any = AnyForms(c);
+  double          d;
+
+  PetscFunctionBeginUser;
+  *worst = (Most){.value = -INFINITY};
+  for (PetscInt p = 0; any && c->fields.phase[PHASE_G] && p < P->n; p++) {
+    const Material    *m   = &c->material[c->region[P->i[PI_REGION][p]].material];
+    const Equilibrium *law = Forms(m) ? &m->kinetics.equilibrium : &any->kinetics.equilibrium;
+    const double       Sh = P->f[P_SH][p], Sw = P->f[P_SW][p], p_mean = ParticlePressure(P, p), T = ParticleT(c, P, p);
+
+    if (Forms(m) != own || !(Sw > 0.0) || !(1.0 - Sh - Sw > SOME_GAS) ||
+        EquilibriumPressure(law, T + WARMS, &d) >= p_mean)
+      continue;
+    MostTake(worst, c, P, p, EquilibriumTemperature(law, p_mean) - T, p_mean);
+  }
+  PetscCall(MostOfAll(comm, worst));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gas and water that become hydrate. */
+static PetscErrorCode FormationWarning(MPI_Comm comm, const Scene *c, const Particles *P, bool own)
+{
+  Most   worst;
   double d;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
-    const Material *m  = &c->material[c->region[P->i[PI_REGION][p]].material];
-    const Kinetics *k  = &m->kinetics;
-    const double    Sh = P->f[P_SH][p], Sw = P->f[P_SW][p], p_mean = ParticlePressure(P, p), T = ParticleT(c, P, p);
-
-    if (!m->reacts || k->K0 == 0.0 || k->A_geo == 0.0 || !(Sw > 0.0) || !(1.0 - Sh - Sw > SOME_GAS) ||
-        EquilibriumPressure(&k->equilibrium, T + WARMS, &d) >= p_mean)
-      continue;
-    MostTake(&worst, c, P, p, EquilibriumTemperature(&k->equilibrium, p_mean) - T, p_mean);
-  }
-  PetscCall(MostOfAll(comm, &worst));
+  PetscCall(FindForming(comm, c, P, own, &worst));
   if (!(worst.value > WARMS))
     PetscFunctionReturn(PETSC_SUCCESS);
-  const Equilibrium *law = &c->material[c->region[worst.region].material].kinetics.equilibrium;
+  const Material    *m   = &c->material[c->region[worst.region].material];
+  const Equilibrium *law = Forms(m) ? &m->kinetics.equilibrium : &AnyForms(c)->kinetics.equilibrium;
 
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "clathra: warning: free gas starts where hydrate is stable, most in region %s at %s: at %.4g degC "
-      "hydrate forms above %s and there are %s, up to %.4g degC: gas and water turn into hydrate from the "
-      "start (Sg: 0, less pressure or a higher temperature starts in balance, or a first stage with kinetics_active: "
-      "no)\n",
-      c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
-      PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s, worst.T + worst.value));
+      "clathra: %s: free gas starts where hydrate is stable, most in region %s at %s: at %.4g degC "
+      "hydrate forms above %s and there are %s, up to %.4g degC: %s\n",
+      own ? "warning" : "note", c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
+      PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s, worst.T + worst.value,
+      own ? "gas and water turn into hydrate from the start (Sg: 0, less pressure or a higher temperature starts in "
+            "balance, or a first stage with kinetics_active: no)"
+          : "nothing forms in it, for its material has no reaction, but where it comes to sediment that has one it "
+            "does, "
+            "from the start if they touch (in balance: Sg: 0, or below the stability zone)"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -319,6 +352,7 @@ PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *
   PetscFunctionBeginUser;
   PetscCall(GravityWarnings(comm, c, P, span));
   PetscCall(HydrateWarning(comm, c, P));
-  PetscCall(FormationWarning(comm, c, P));
+  PetscCall(FormationWarning(comm, c, P, true));
+  PetscCall(FormationWarning(comm, c, P, false));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

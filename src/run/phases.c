@@ -24,6 +24,27 @@ PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode PrintSolubility(const Scene *c, MPI_Comm comm)
+{
+  double least = INFINITY, most = 0.0;
+
+  PetscFunctionBeginUser;
+  if (!(c->fields.has & HAS_GAS_PRESSURE))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < c->nmaterial; k++) {
+    least = fmin(least, c->material[k].gas.henry);
+    most  = fmax(most, c->material[k].gas.henry);
+  }
+  if (most == 0.0)
+    PetscCall(
+        PetscPrintf(comm, "  water holds no methane (gas_solubility; by itself it does where a region has Sg: 0)\n"));
+  else if (least == most)
+    PetscCall(PetscPrintf(comm, "  water holds methane, %g mol/(m^3 Pa)\n", most));
+  else
+    PetscCall(PetscPrintf(comm, "  water holds methane, %g to %g mol/(m^3 Pa)\n", least, most));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Particles whose water is colder than its melting point, by how much at most, and one of them; all ranks. */
 typedef struct {
   double   coldest; /* K */

@@ -516,6 +516,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
                           c->nstage ? "in stages" : c->stepper, TimeAt(c->t_end).s, fields, c->scene.fields.n));
     PetscCall(PrintStrength(&c->scene, comm));
     PetscCall(PrintEquilibrium(&c->scene, comm));
+    PetscCall(PrintSolubility(&c->scene, comm));
     PetscCall(Go(c, &stepper, &run, exit_code));
     if (!check) /* the solver has read its own by now */
       PetscCall(CheckOptions(comm, false, &unknown));

@@ -107,6 +107,8 @@ PetscErrorCode RangesLook(Ranges *r, const Stepper *s);
 /* ---------------------------------------------------------------- phases.c */
 /* Curve and pressure of equilibrium of each region that reacts, at its temperature. */
 PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm);
+/* Methane in the water of the materials, mol/(m^3 Pa). */
+PetscErrorCode PrintSolubility(const Scene *c, MPI_Comm comm);
 /* Counts the particles below the melting point of their water, (127), after a step or a burst, and says so the first
    time; *ends: the case wants the run to end there.  Collective. */
 PetscErrorCode IceLook(Stepper *s, bool *ends);

@@ -15,14 +15,15 @@
 #define MULTIGRID (CL_DIM == 3 ? 20e-6 : 2.5e-6) /* s an unknown and Jacobian: GMRES with multigrid */
 #define SMOOTH_STEPS 1e2                         /* (317): an adaptive run whose loads are slow, at ... */
 #define SMOOTH_TOL 1e-3                          /* ... this tolerance, ... */
-#define REACTS 1.75         /* ... times as many where hydrate reacts: its fronts rule steps then */
-#define NEWTON_REACTS 2.3   /* Jacobians a stage there */
-#define BEHIND_KINK 12.0    /* steps that a kink adds */
-#define PERIOD 30.0         /* steps in a period of a condition's waves, at SMOOTH_TOL */
-#define MARKS 8.0           /* ... in which so many of them are stops */
-#define MOST_STRETCHES 2000 /* ... looked at */
-#define TRANSITS 100.0      /* waves matter in a run that is no longer than so many of their transits ... */
-#define PER_TRANSIT 40.0    /* ... and want so many steps each */
+#define REACTS 1.75              /* ... times as many where hydrate reacts: its fronts rule steps then */
+#define NEWTON_REACTS 2.3        /* Jacobians a stage there */
+#define BEHIND_KINK 12.0         /* steps that a kink adds */
+#define PERIOD 30.0              /* steps in a period of a condition's waves, at SMOOTH_TOL */
+#define MARKS 8.0                /* ... in which so many of them are stops */
+#define MOST_STRETCHES 2000      /* ... looked at */
+#define EULER_POWER (-1.0 / 6.0) /* of tol: n of order 1 goes with tol^(-1/2), of order 2 with tol^(-1/3) */
+#define TRANSITS 100.0           /* waves matter in a run that is no longer than so many of their transits ... */
+#define PER_TRANSIT 40.0         /* ... and want so many steps each */
 
 static double Extent(const Scene *c)
 {
@@ -99,8 +100,9 @@ static double ImplicitSteps(const Stepper *s, double left)
       m->c->fields.inertia && isfinite(s->forecast.limit.each[LIMIT_WAVE]) ? left * speed / Extent(m->c) : INFINITY;
 
   const double finer  = cbrt(SMOOTH_TOL / s->tol);
-  const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * finer;
-  const double stops  = fmax(StepperStops(s, left, &kinks), PERIOD * finer * Periods(s, left));
+  const double first  = s->scheme->stages == 1 ? pow(s->tol, EULER_POWER) : 1.0; /* order 1 wants more of them */
+  const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * finer * sqrt(first);
+  const double stops  = fmax(StepperStops(s, left, &kinks), PERIOD * finer * first * Periods(s, left));
   const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* (317) */
 
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
