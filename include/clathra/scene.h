@@ -69,6 +69,7 @@ typedef struct {
   bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind;   /* (200); default false */
   int    heat;                /* HEAT_...; default auto */
+  bool   thin_cells;          /* (444); default true */
   bool   lumped_reaction;     /* (265); default false */
   bool   held_reaction;       /* (381); default false */
   bool   chords;              /* (424); default true */
@@ -302,6 +303,12 @@ static inline bool SceneHoldsReaction(const Scene *c)
 static inline bool SceneCarriesHeat(const Scene *c)
 {
   return c->stabilisation.heat != HEAT_CENTRAL && c->fields.heat && c->fields.fluid;
+}
+
+/* Does (444) act? */
+static inline bool SceneThinCells(const Scene *c)
+{
+  return CL_DIM == 2 && c->stabilisation.thin_cells && c->fields.heat;
 }
 
 /* Does (424) act? */

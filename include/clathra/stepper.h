@@ -37,6 +37,7 @@ typedef struct {
   double   out[PHASE_COUNT];                       /* water and methane gone through the boundary since t = 0, kg */
   double   heat_gain, heat_in, heat_source;        /* J since t = 0 */
   double   squeezed;     /* of the heat source: compression and throttling (290), J since t = 0 */
+  double   hydrate0;     /* at the start, kg */
   double   beyond;       /* of the heat source: of reaction, beyond what the state stores (442), J since t = 0 */
   double   enthalpy_out; /* with the fluids (364), J since t = 0 */
   double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* (277), kg since t = 0 */

@@ -182,6 +182,9 @@ const Key case_key[] = {
            "carries heat with the flow, so that temperatures stay within their bounds where a cell's heat is carried "
            "rather than conducted; auto: sdirk2 and euler where T alternates from node to node, hybrid nowhere; yes: "
            "everywhere, which smears T where it is smooth"),
+    BOOLEAN(Case, "stabilisation_conduction", scene.stabilisation.thin_cells, "yes",
+            "no cold spots beside a heater where cells are longer than wide: sdirk2 and euler, in the plane and about "
+            "an axis"),
     BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),

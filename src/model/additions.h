@@ -57,6 +57,7 @@ struct Additions {
   double         *source;   /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
   double         *spread;   /* [n][2] (200); NULL when off */
   double         *upwind;   /* [n][3] (293); NULL when off */
+  double         *thin;     /* [n] (444), W m/K; NULL when off */
   Lump           *lump;     /* [n] (265); NULL when off */
   double         *held;     /* [n] (381); NULL when off */
   double         *chord;    /* [n] (424), Pa; NULL when off */

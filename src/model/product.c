@@ -159,8 +159,10 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
       ParticleScatter(m, p, &r[c], m->solver->product->x, of);
       if (m->beds)
         BedsChange(m, first + c, &r[c], dx);
-      if (!momentum)
+      if (!momentum) {
         LumpResidual(m, p, &r[c], dx, f);
+        ThinResidual(m, p, &r[c], dx, f);
+      }
     }
   }
 }
