@@ -18,7 +18,7 @@ from matplotlib.ticker import MaxNLocator
 import clathra
 from clathra import shown
 from clathra.units import duration, durations
-from plotting import COLOURS, STYLES, Plain, boxes, plt, save, set_style, steady_limits, wrapped
+from plotting import COLOURS, STYLES, colours, Plain, boxes, plt, save, set_style, steady_limits, wrapped
 
 FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
 ONE_PHASE = 0.1  # of a period: times whose phases are no farther apart show one phase of a periodic load
@@ -43,9 +43,9 @@ def history_panel(axes, run, stages, label, unit, columns, least):
     probes, values = run.probes, []
     name, seconds = clathra.time_unit(probes["time_s"][-1])
     x = stages[0](probes["time_s"]) if stages else probes["time_s"] / seconds
-    for colour, probe in zip(COLOURS * len(run.probe_names), run.probe_names):
+    for colour, probe in zip(colours(len(run.probe_names)), run.probe_names):
         for style, (column, factor, _) in zip(STYLES, columns):
-            values.append(probes[f"{probe}.{column}"] * factor)
+            values.append(shown.curve(probes, probe, column) * factor)
             axes.plot(x, values[-1], style, color=colour)
     steady_limits(axes, *values, least=least)
     axes.set(xlabel=f"time ({name})", ylabel=shown.tex(f"{label} ({unit})"))
@@ -69,7 +69,7 @@ def plot_probes(run):
         axes.remove()
     for axes, panel in zip(grid.flat, panels):
         history_panel(axes, run, stages, *panel)
-    handles = [plt.Line2D([], [], color=c, lw=2.5, label=n) for c, n in zip(COLOURS * len(run.probe_names), run.probe_names)]
+    handles = [plt.Line2D([], [], color=c, lw=2.5, label=n) for c, n in zip(colours(len(run.probe_names)), run.probe_names)]
     figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 0.95), title="probe")
     figure.suptitle(head(run, "histories at the probes"), x=0.01, ha="left")
     save(figure, run.folder / "figures", "probes")
@@ -89,15 +89,15 @@ def plot_meters(run):
     figure, grid = plt.subplots(rows, wide, figsize=(4.9 * wide, 3.5 * rows), squeeze=False)
     for axes in grid.flat[len(panels) :]:
         axes.remove()
-    colours = {**dict(zip(names, COLOURS * len(names))), "free": "0.3", "dissolved": "0.65"}  # the last two: of the body
+    colour = {**dict(zip(names, colours(len(names)))), "free": "0.3", "dissolved": "0.65"}  # the last two: of the body
     for axes, (label, curves) in zip(grid.flat, panels):
         for name, values in curves:
-            axes.plot(stages[0](time) if stages else time / seconds, values, color=colours[name])
+            axes.plot(stages[0](time) if stages else time / seconds, values, color=colour[name])
         axes.set(xlabel=f"time ({unit})", ylabel=wrapped(label, 3.0))
         axes.yaxis.set_major_formatter(Plain())
         if stages:
             stage_ticks(axes, stages[1])
-    handles = [plt.Line2D([], [], color=colours[n], lw=2.5, label=n) for n in dict.fromkeys(n for _, curves in panels for n, _ in curves)]
+    handles = [plt.Line2D([], [], color=colour[n], lw=2.5, label=n) for n in dict.fromkeys(n for _, curves in panels for n, _ in curves)]
     figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 0.95), title="meter")
     figure.suptitle(head(run, "what the meters count"), x=0.01, ha="left")
     save(figure, run.folder / "figures", "meters")

@@ -19,6 +19,11 @@ STYLES = ["-", "--", "-.", ":"]
 PA = MPA
 
 
+def colours(count):
+    """As many that can be told apart: of more things than COLOURS a row through the rainbow."""
+    return COLOURS[:count] if count <= len(COLOURS) else [plt.get_cmap("turbo")(k / (count - 1)) for k in range(count)]
+
+
 def set_style():
     plt.rcParams.update({
         "figure.dpi": 110, "savefig.dpi": 160, "savefig.bbox": "tight", "figure.constrained_layout.use": True,

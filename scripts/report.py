@@ -66,7 +66,7 @@ def chart(axis, label, series, title="", **more):
 def probe_charts(run, axis):
     names, charts = run.probe_names, []
     for label, unit, columns, least in shown.histories(run.probes, names):
-        series = [(f"{n} {c[2]}".strip(), run.probes["time_s"], run.probes[f"{n}.{c[0]}"] * c[1]) for n in names for c in columns]
+        series = [(f"{n} {c[2]}".strip(), run.probes["time_s"], shown.curve(run.probes, n, c[0]) * c[1]) for n in names for c in columns]
         charts += chart(axis, f"{label} ({unit})", series, least=least, group=len(columns))
     return charts
 

@@ -75,6 +75,7 @@ QUANTITIES = [
 # Histories at probes: label, unit, [(column, factor, name in the legend)], least width of the axis.
 HISTORIES = [
     ("pore pressure", "MPa", [("p_Pa", MPA, "mean"), ("p_w_Pa", MPA, "water"), ("p_g_Pa", MPA, "gas")], 0.01),
+    ("change of pore pressure", "kPa", [("p_rise_Pa", 1e-3, "")], 0.01),
     ("temperature T", "°C", [("T_degC", 1, "")], 0.1),
     ("hydrate saturation S_h", "–", [("S_h", 1, "")], 0.01),
     ("saturation", "–", [("S_w", 1, "water"), ("S_g", 1, "gas")], 0.01),
@@ -185,12 +186,39 @@ def shown(snapshots, names="xy"):
     return found
 
 
+NO_GAS = 1e-6  # of the pores: without more p_g says nothing
+SMALL = 0.02  # of the pressure: changes below are drawn by themselves, too
+
+
+def has(probes, name, column):
+    return f"{name}.{'p_Pa' if column == 'p_rise_Pa' else column}" in probes
+
+
+def curve(probes, name, column):
+    """Values of a probe: of a column of probes.csv, of p_g only where there is gas, or p_rise_Pa, how far p is from its first value."""
+    if column == "p_rise_Pa":
+        p = probes[f"{name}.p_Pa"]
+        return p - p[0]
+    values = probes[f"{name}.{column}"]
+    gas = probes.get(f"{name}.S_g") if column == "p_g_Pa" else None
+    return values if gas is None else np.where(gas > NO_GAS, values, np.nan)
+
+
+def _small(probes, names):
+    """Does pore pressure change, but by little of itself?"""
+    most = max(np.nanmax(np.abs(curve(probes, n, "p_rise_Pa"))) for n in names)
+    return 0 < most < SMALL * max(np.nanmax(np.abs(probes[f"{n}.p_Pa"])) for n in names)
+
+
 def histories(probes, names):
-    """The panels of HISTORIES that the probes `names` have, without saturations that never change and hydrate that is not there."""
+    """The panels of HISTORIES that the probes `names` have (curve), without saturations that never change, hydrate that is not there, and
+    changes of pressure that the pressures themselves show."""
     found = []
     for label, unit, columns, least in HISTORIES:
-        held = [c for c in columns if names and f"{names[0]}.{c[0]}" in probes]
-        curves = [probes[f"{n}.{c[0]}"] for n in names for c in held]
+        held = [c for c in columns if names and has(probes, names[0], c[0])]
+        if held and held[0][0] == "p_rise_Pa" and not _small(probes, names):
+            continue
+        curves = [curve(probes, n, c[0]) for n in names for c in held]
         idle = {"S_h": lambda v: not np.nan_to_num(v).any(), "S_w": lambda v: not np.ptp(np.nan_to_num(v))}.get(held[0][0] if held else "")
         if held and not (idle and all(map(idle, curves))):
             found.append((label, unit, held, least))

@@ -15,7 +15,7 @@ import clathra  # noqa: E402
 import plot  # noqa: E402
 from clathra import shown  # noqa: E402
 from clathra.units import durations  # noqa: E402
-from plotting import Plain, boxes, plt, set_style, wrapped  # noqa: E402
+from plotting import Plain, colours, boxes, plt, set_style, wrapped  # noqa: E402
 
 
 def draw(out):
@@ -133,6 +133,17 @@ def check_meters(run):
     check_true("... and none where a meter counts no water", shown.gas_to_water({**meters, "well.water_kg_s": np.zeros(4)}, "well") is None)
 
 
+def check_histories():
+    """Changes of pressure that its axis hides have a panel of their own; p_g is drawn where there is gas; no two probes of a dozen have one colour."""
+    tide = {"time_s": np.arange(4.0), "sea.p_Pa": 8e6 + 15e3 * np.array([0.0, 1, 0, -1]), "sea.p_w_Pa": np.full(4, 8e6), "sea.p_g_Pa": np.full(4, 3.6e6), "sea.S_g": np.array([0.0, 0, 0.1, 0.1])}
+    labels = lambda probes: [label for label, *_ in shown.histories(probes, ["sea"])]
+    check_true("a tide: its rise and fall by themselves", "change of pore pressure" in labels(tide) and list(shown.curve(tide, "sea", "p_rise_Pa")) == [0, 15e3, 0, -15e3], labels(tide))
+    check_true("... not those of a well, which the pressure shows", "change of pore pressure" not in labels({**tide, "sea.p_Pa": np.array([8e6, 7e6, 6e6, 5e6])}))
+    check_true("... nor where nothing changes", "change of pore pressure" not in labels({**tide, "sea.p_Pa": np.full(4, 8e6)}))
+    check_true("p_g where there is gas", list(np.isnan(shown.curve(tide, "sea", "p_g_Pa"))) == [True, True, False, False])
+    check_true("colours of two and of twelve probes", len(set(map(tuple, colours(12)))) == 12 and colours(2) == plot.COLOURS[:2])
+
+
 def check_phases():
     """Profiles under a periodic load: times of several phases; where all snapshots are of one phase, words that say so."""
     period = 12.42 * 3600
@@ -169,6 +180,7 @@ def main():
     run(binary(), ROOT / "tests" / "verification" / "cases" / "no_gas_cell.yaml", "-time_end", "2 s", "-meters", "side", "-meter_side_side", "right", out=gas)
     check_true("... of gas that comes: what pores hold of it beside what a meter counts", "meters" in draw(gas)[0])
     check_meters(clathra.Run(gas))
+    check_histories()
     check_words()
     check_arrows()
     finish()
