@@ -144,7 +144,8 @@ static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, 
   const StepperState *z    = &s->state;
   const Scene        *c    = s->model->c;
   const Extreme      *e    = &z->extreme[k];
-  const bool          warm = k == HIGHEST_T;
+  const bool          warm = k == HIGHEST_T, central = !s->explicit && c->stabilisation.heat == HEAT_CENTRAL;
+  const char         *better = CarriesBetter(s);
   char                place[128], hydrate[96] = "none reacts";
 
   PetscFunctionBeginUser;
@@ -157,13 +158,13 @@ static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, 
       s->model->grid.comm, stderr,
       "clathra: warning: a particle %s %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it (start "
       "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing%s.  What to try, in this order: %s%sfiner "
-      "cells there; a ramp instead of a jump (docs/giving_up.md)\n",
+      "cells there, about as high as wide at the end of a heater; %sa ramp instead of a jump (docs/giving_up.md)\n",
       now ? "has" : "had", e->value, place, beyond.by, warm ? "warmer" : "colder", beyond.acted, hydrate,
       now ? " and may grow (said once on the way)" : "",
       StepperHeatsHydrate(s) && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
           ? "stabilisation_reaction_heat: yes, beside hydrate; "
           : "",
-      CarriesBetter(s)));
+      central ? better : "", central ? "" : better));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

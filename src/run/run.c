@@ -159,8 +159,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
   char                text[PETSC_MAX_PATH_LEN + 4096], ranges[512], gone[512], local[512], loose[512];
-  char above[64] = "", since[64] = "", left[128], ice[256], yields[256], gaps[256], uneven[256], ranks[128], *stages,
-       *all;
+  char above[64] = "", since[64] = "", left[128], ice[256], yields[256], gaps[256], uneven[256], ranks[128],
+       hydrate[160], *stages, *all;
   ModelTotals t;
   double      error[3];
   bool        ok;
@@ -175,6 +175,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
     snprintf(since, sizeof(since), " for the %" PetscInt_FMT " steps since the restart", z->step - run->taken);
   if (z->loose_total)
     snprintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total);
+  HydrateSummary(z, t.hydrate, hydrate);
   LeftSummary(s, left);
   GoneSummary(z, gone);
   UnevenSummary(z, uneven);
@@ -187,14 +188,13 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
            "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
            " Newton iterations, %.2f s%s%s\n%s"
            "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
-           "  hydrate %.6e kg; hydrate positivity limiter acted %" PetscInt_FMT " times\n"
-           "%s%s%s%s%s%s%s%s%s  results in %s\n",
+           "%s%s%s%s%s%s%s%s%s%s  results in %s\n",
            StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", TimeAt(z->t).s,
            StepperCase(s)->nstage ? "by stage"
            : s->auto_.on          ? STEPPER_AUTO
                                   : s->scheme->name,
            z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, since, above, local, error[0],
-           error[1], error[2], t.hydrate, z->limited_total, left, ranges, yields, gone, loose, uneven, gaps, ice, ranks,
+           error[1], error[2], hydrate, left, ranges, yields, gone, loose, uneven, gaps, ice, ranks,
            StepperCase(s)->output_dir);
   PetscCall(StageLogSummary(run->log, s, &stages));
   PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));

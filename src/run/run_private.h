@@ -80,8 +80,9 @@ PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, cons
 
 /* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
    is nothing to say */
-void           LocalSummary(const Stepper *s, char text[512]);       /* of an integrator without matrices */
-void           LeftSummary(const Stepper *s, char text[128]);        /* what Newton's method left (277) */
+void           LocalSummary(const Stepper *s, char text[512]); /* of an integrator without matrices */
+void           LeftSummary(const Stepper *s, char text[128]);  /* what Newton's method left (277) */
+void           HydrateSummary(const StepperState *z, double now, char text[160]); /* now: kg in the body */
 void           GoneSummary(const StepperState *z, char text[512]);   /* particles that left the grid (373) */
 void           LooseSummary(const Stepper *s, char text[512]);       /* largest error, and those put up with */
 void           UnevenSummary(const StepperState *z, char text[256]); /* steps without exchange within cells (353) */

@@ -66,6 +66,20 @@ void LooseSummary(const Stepper *s, char text[512])
              z->loose_total, z->loose_total == 1 ? " was" : "s were", z->err_worst);
 }
 
+/* Hydrate there is, kg, and what has become of it. */
+void HydrateSummary(const StepperState *z, double now, char text[160])
+{
+  const double gone = z->hydrate0 - now;
+  const int    told = snprintf(text, 160, "  hydrate %.7g kg", now);
+
+  if (z->hydrate0 == 0.0 && now == 0.0)
+    text[0] = '\0';
+  else
+    snprintf(text + told, 160 - (size_t)told,
+             ", %.4g kg %s than at the start; hydrate positivity limiter acted %" PetscInt_FMT " times\n", fabs(gone),
+             gone < 0.0 ? "more" : "less", z->limited_total);
+}
+
 /* Steps without (353), for (354) did not converge. */
 void UnevenSummary(const StepperState *z, char text[256])
 {

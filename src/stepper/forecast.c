@@ -15,8 +15,10 @@
 #define MULTIGRID (CL_DIM == 3 ? 20e-6 : 2.5e-6) /* s an unknown and Jacobian: GMRES with multigrid */
 #define SMOOTH_STEPS 1e2                         /* (317): an adaptive run whose loads are slow, at ... */
 #define SMOOTH_TOL 1e-3                          /* ... this tolerance, ... */
-#define REACTS 1.75              /* ... times as many where hydrate reacts: its fronts rule steps then */
+#define REACTS 1.75              /* ... times as many where hydrate reacts: its fronts rule steps then ... */
+#define HEATED 2.7               /* ... and where it is heated in sediment without gas */
 #define NEWTON_REACTS 2.3        /* Jacobians a stage there */
+#define NEWTON_DONOR 5.0         /* ... with donors of gas (332), each with a factorisation of its own */
 #define BEHIND_KINK 12.0         /* steps that a kink adds */
 #define PERIOD 30.0              /* steps in a period of a condition's waves, at SMOOTH_TOL */
 #define MARKS 8.0                /* ... in which so many of them are stops */
@@ -86,6 +88,13 @@ static bool FrontsRule(const Stepper *s)
   return s->adaptive && SceneReacts(c) && c->fields.heat && c->fields.phase[PHASE_G];
 }
 
+static double SlowedByReaction(const Stepper *s)
+{
+  const double without = s->model->c->material[0].gas.trace;
+
+  return !FrontsRule(s) ? 1.0 : without > 0.0 && StepperHeatsHydrate(s) ? HEATED : REACTS;
+}
+
 /* Steps of an implicit run: as fixed, or few unless waves have to be resolved, events come often or loads have kinks.
  */
 static double ImplicitSteps(const Stepper *s, double left)
@@ -101,7 +110,7 @@ static double ImplicitSteps(const Stepper *s, double left)
 
   const double finer  = cbrt(SMOOTH_TOL / s->tol);
   const double first  = s->scheme->stages == 1 ? pow(s->tol, EULER_POWER) : 1.0; /* order 1 wants more of them */
-  const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * finer * sqrt(first);
+  const double smooth = SMOOTH_STEPS * SlowedByReaction(s) * finer * sqrt(first);
   const double stops  = fmax(StepperStops(s, left, &kinks), PERIOD * finer * first * Periods(s, left));
   const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* (317) */
 
@@ -151,8 +160,11 @@ PetscErrorCode StepperForecast(Stepper *s)
     f->hybrid_seconds = StepperHybridWork(m, f->hybrid_steps);
   }
   f->implicit_steps   = ImplicitSteps(s, left);
-  f->implicit_seconds = StepperImplicitWork(
-      m, f->implicit_steps * s->scheme->stages * (FrontsRule(s) ? NEWTON_REACTS : STEPPER_NEWTON), f->implicit_steps);
+  const double stages = f->implicit_steps * s->scheme->stages;
+  const bool   donor  = SceneDonor(m->c) && FrontsRule(s);
+  const double newton = stages * (donor ? NEWTON_DONOR : FrontsRule(s) ? NEWTON_REACTS : STEPPER_NEWTON);
+
+  f->implicit_seconds = StepperImplicitWork(m, newton, donor ? newton : f->implicit_steps);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->hybrid_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &f->implicit_seconds, 1, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   f->hybrid = f->hybrid_seconds < f->implicit_seconds;

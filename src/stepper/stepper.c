@@ -14,6 +14,7 @@ PetscErrorCode StepperStart(Stepper *s)
   s->state.methane0  = t.methane;
   s->state.capacity0 = t.capacity;
   s->state.enthalpy0 = t.enthalpy;
+  s->state.hydrate0  = t.hydrate;
   PetscCall(StepperEnergyStart(s));
   PetscCall(StepperExtremes(s, true));
   PetscFunctionReturn(PETSC_SUCCESS);
