@@ -58,7 +58,6 @@ void CheckFlow(Reader *r, const Scene *c, const Bc *b)
   if (b->type == BC_PRESSURE) {
     CheckAmbient(r, c, b);
     CheckField(r, c, b, "p_g", HAS_GAS, b->phase[PHASE_G].n);
-    CheckField(r, c, b, "saturation", HAS_GAS, b->natural);
     CheckField(r, c, b, "phases", HAS_GAS, b->open == OPEN_GAS);
     CheckPhases(r, c, b);
   } else if (b->type == BC_INFLOW) {

@@ -93,7 +93,7 @@ const Key bc_key[] = {
     BOOLEAN(Bc, "saturation", natural, "held",
             "capillary pressure outside, with pressure or initial: held is the face's initial one, free the body's own "
             "(natural outflow)",
-            .choices = capillary_word, .types = TYPE(BC_PRESSURE)),
+            .choices = capillary_word, .types = TYPE(BC_PRESSURE), .has = HAS_GAS),
     CHOICE(Bc, "phases", open, "both", phases_word, "fluids for which the face is open; closed for the other",
            .types = TYPE(BC_PRESSURE)),
     SCHEDULE("bottom_pressure", value, "Pa", "(0,1e10]", "", TYPE(BC_WELL),

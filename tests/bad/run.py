@@ -395,8 +395,6 @@ CASES = [
     ("bad phases", [("initial: yes}", "pressure: 3 MPa, phases: oil}")], ["bc_drain_phases", "both | water | gas"], []),
     ("p_g without a gas field", [("initial: yes}", "p_w: 3 MPa, p_g: 3 MPa}"), *NO_GAS], ["bc_drain_p_g", "needs gas"], []),
     ("open for a gas that is not there", [("initial: yes}", "pressure: 3 MPa, phases: gas}"), *NO_GAS], ["bc_drain_phases", "needs gas"], []),
-    ("free saturation without gas", [("initial: yes}", "pressure: 3 MPa, saturation: free}"), *NO_GAS],
-     ["bc_drain_saturation", "needs gas"], []),
     ("inflow of gas without a gas field", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, gas: 1e-6 m/s}"), *NO_GAS],
      ["bc_drain_gas", "needs gas"], []),
     ("inflow with a temperature, without heat", [("type: pressure, side: right, initial: yes}", "type: inflow, side: right, temperature: 3 degC}"),

@@ -59,6 +59,8 @@ check_true("kinetics and hydrate where none is and none forms", len(found) == 12
 found = idle(CASES / "bp2", "-fields", "thmc", "-mat_sediment_kinetics_active", "no", "-region_column_Sh", "0.1", "-region_column_Sw", "0.5")
 check_true("kinetics alone where hydrate does not react", set(found) == set(reaction), found)
 
+says("free saturation at a face of a scene without gas", {"-bc_drain_saturation": "no gas"}, CASES / "terzaghi", "-bc_drain_saturation", "free")
+
 # ---------------------------------------------------------------- fields: the fewest keys that a scene needs, and one more
 SCENE = """grid: {{lower: [0 m, 0 m], upper: [1 m, 1 m], cells: [4, 4]}}
 time: {{end: 1 s}}
