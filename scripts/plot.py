@@ -227,8 +227,8 @@ def plot_body(run):
     period, taken, wide, beats = shown.period(run.case), shown.spread(len(times), 4 if axis is None else 6), 1.0, ""
     if period:
         taken, wide = shown.spread_phases(times, 4 if axis is None else 6, period)
-    if wide < ONE_PHASE:
-        beats = f"; all at one phase of the load, whose period is {duration(period)}"
+    if period:
+        beats = f"; at {'one phase' if wide < ONE_PHASE else 'unlike phases'} of the load, whose period is {duration(period)}"
     times = times[taken]
     snapshots = [first, *(shown.drawn(run, t) for t in times[1:])]
     if axis is not None:

@@ -158,7 +158,7 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
   const MPI_Comm      comm = s->model->grid.comm;
   const StepperState *z    = &s->state;
-  char                text[PETSC_MAX_PATH_LEN + 4096], ranges[512], gone[512], local[512], loose[512];
+  char                text[PETSC_MAX_PATH_LEN + 4352], ranges[512], gone[512], local[512], loose[512];
   char above[64] = "", since[64] = "", left[128], ice[256], yields[256], gaps[256], uneven[256], ranks[128],
        hydrate[160], *stages, *all;
   ModelTotals t;
