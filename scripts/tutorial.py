@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tutorial.md"
-FIGURES = {"scene": "s-scene", "film": "s-film", "production": "s-production"}  # picture: section of the report
+FINE = ("-grid_cells", "10,44")  # the grid of the answer: in coarse cells S_h alternates from row to row
 POWER = "A heater by power"
 
 
@@ -76,20 +76,21 @@ def photograph(report, figures, quantity):
     page.close()
 
 
-def pictured(program, folder, text, figures, quantity):
-    """Runs a case in a folder of its own and takes its pictures."""
+def pictured(program, folder, text, figures, quantity, options=()):
+    """Runs a case in a folder of its own and takes its pictures, {name: section of the report}."""
     case = folder / "tutorial.yaml"
     folder.mkdir(parents=True, exist_ok=True)
     case.write_text(text)
     go_on = ["-restart", folder / "checkpoint.h5"] if (folder / "checkpoint.h5").is_file() else []
-    subprocess.run([program, case, "-output_dir", folder, *go_on], check=True)
+    subprocess.run([program, case, "-output_dir", folder, *options, *go_on], check=True)
     subprocess.run([sys.executable, ROOT / "scripts" / "report.py", folder], check=True)
     photograph(folder / "report.html", figures, quantity)
 
 
 def main(program, folder=ROOT / "results" / "tutorial"):
     folder = Path(folder).resolve()
-    pictured(program, folder, case_text(), FIGURES, "S_h")
+    pictured(program, folder, case_text(), {"scene": "s-scene"}, "S_h")
+    pictured(program, folder / "fine", case_text(), {"film": "s-film", "production": "s-production"}, "S_h", FINE)
     pictured(program, folder / "heater", powered(case_text()), {"heater": "s-film"}, "T")
 
 

@@ -2,7 +2,7 @@
 """Fields that alternate from cell to cell are judged by a number: zigzag, the smallest of three successive differences of
 alternating sign between the means of neighbouring cells in a row, the largest in the body, over the field's range.  It is 0 in
 smooth fields and at fronts, and the amplitude where cells alternate.  The shipped cases' final fields, of the pictures in docs,
-on shorter runs or larger cells where they are long, and the README's own case; stresses beside a heater, whose particles alternate and whose pictures do not.
+on shorter runs or larger cells where they are long, the README's own case and the tutorial's; stresses beside a heater, whose particles alternate and whose pictures do not.
 """
 import re
 from pathlib import Path
@@ -11,6 +11,7 @@ import numpy as np
 
 from common import CASES, ROOT, binary, check_true, finish, judge, run, scratch, table  # noqa: I001
 import clathra  # noqa: E402, from scripts, which common puts on the path
+import tutorial  # noqa: E402
 from clathra import shown  # noqa: E402
 
 SEEN = 0.02  # of the range of a picture's colours
@@ -109,6 +110,15 @@ central = measured(run(binary(), case, *FOUR_HOURS, "-stabilisation_saturation",
 check_true("README's case without (200): its checkerboard is seen", central["S_w"] > 0.1, central)
 rows += [("README's case", k, v) for k, v in found.items()]
 judge("fronts", "README's case: zigzag of any field over its range", max(found.values()), SEEN)
+
+# ---------------------------------------------------------------- the tutorial's film, on the grid of its picture and on one whose hydrate alternates
+case.write_text(tutorial.case_text())
+found = measured(run(binary(), case, "-quiet", *tutorial.FINE, "-output_every", "30 d").out)
+rows += [("tutorial's well", k, v) for k, v in found.items()]
+judge("fronts", "tutorial's picture: zigzag of S_h over its range", found["S_h"], 2 * SEEN)
+judge("fronts", "tutorial's picture: zigzag of any field over its range", max(found.values()), FRONT)
+coarse = measured(run(binary(), case, "-quiet", "-grid_cells", "10,22", "-output_every", "30 d").out)
+check_true("its hydrate in coarser cells is seen to alternate", coarse["S_h"] > 0.15, coarse)
 
 # ---------------------------------------------------------------- stresses that hydrate makes alternate within cells
 HEATER = text.replace("boundaries: [", "boundaries: [heater, ").replace("bc:\n", "bc:\n  heater: {type: face_temperature, side: left, from: 1 m, to: 3 m, temperature: {ramp: [10 degC, 60 degC, 0 h, 12 h]}}\n")
