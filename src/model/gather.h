@@ -194,8 +194,8 @@ void ChordsBuild(Model *m);
 void LumpBuild(Model *m);
 void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
 void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
-/* (444) at t_n over the volume: kappa (W/(m K)) by how much longer than wide the particle's cell is, W m/K; what it adds
-   to the rows of heat of the particle's nodes, and to their blocks. */
+/* (444) at t_n over the volume: kappa (W/(m K)) by how much longer than wide the particle's cell is, W m/K; what it
+   adds to the rows of heat of the particle's nodes, and to their blocks. */
 double ThinOf(const Model *m, PetscInt p, double kappa);
 void   ThinResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
 void   ThinBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
