@@ -64,6 +64,8 @@ typedef enum {
   CL_NODE_FORMS(CL_CONDITION_ID) BC_COUNT
 } BcType;
 enum { BC_FACES = BC_FACE_END_ }; /* kinds from BC_NONE + 1 to before this act on faces */
+/* Of these, bits 1 << BcType of those that act on particles inside the body. */
+enum { BC_INSIDE = 1u << BC_WELL | 1u << BC_HEAT_SOURCE };
 #undef CL_CONDITION_ID
 
 /* Bits 1 << BcType of those that the integrators without a matrix know. */

@@ -221,6 +221,9 @@ PetscErrorCode InitialScalarsAt(const Scene *c, const Region *r, const double x[
 /* Pressure (Pa) at x of the water that has `pressure` at the region's datum (82). */
 double InitialWaterPressure(const Scene *c, const Region *r, double pressure, const double x[]);
 
+/* Of a particle at x (m) with half-lengths l (m): m^3, in the plane per metre of thickness, about an axis of the ring.
+ */
+double ParticleInitialVolume(const Scene *c, const double x[], const double l[]);
 /* Everything of particle p of a region but its numbers: at x (m), with half-lengths l (m). */
 PetscErrorCode ParticleInitialState(const Scene *c, PetscInt region, Particles *P, PetscInt p, const double x[],
                                     const double l[]);

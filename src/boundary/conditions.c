@@ -46,6 +46,18 @@ bool FaceActs(const Scene *c, const Face *f)
   return acts;
 }
 
+/* What the conditions on a face add, and the enthalpy of what they let out. */
+static void Act(const FaceState *x, FaceOutput *o)
+{
+  for (int kind = BC_NONE + 1; kind < BC_FACES; kind++) {
+    const PetscInt k = x->f->bc[kind];
+
+    if (k >= 0 && cl_condition[kind].face && (x->c->fields.has & cl_condition[kind].has))
+      cl_condition[kind].face(x, k, o);
+  }
+  o->enthalpy = CarriedOut(x, o->outflow);
+}
+
 void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Material *mat, const double p0[PHASE_COUNT],
                   double Sh, const double in[IN_COUNT], const double velocity[CL_DIM], double kappa, double dt,
                   FaceOutput *o)
@@ -60,11 +72,7 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
   }
   *o = (FaceOutput){0};
   if (f->share > 0.0) {
-    if (f->bc[BC_HEAT_SOURCE] >= 0)
-      FaceHeatSource(&x, f->bc[BC_HEAT_SOURCE], o);
-    else
-      FaceWell(&x, f->bc[BC_WELL], o);
-    o->enthalpy = CarriedOut(&x, o->outflow);
+    Act(&x, o);
     return;
   }
   if (VectorDot(f->n, f->n) == 0.0)
@@ -79,11 +87,7 @@ void FaceEvaluate(const Scene *c, const Face *f, const BcValues *v, const Materi
     FaceDrag(&x, velocity, o);
   }
   Area(&x);
-  for (int kind = BC_NONE + 1; kind < BC_FACES; kind++) {
-    if (f->bc[kind] >= 0 && cl_condition[kind].face && (c->fields.has & cl_condition[kind].has))
-      cl_condition[kind].face(&x, f->bc[kind], o);
-  }
-  o->enthalpy = CarriedOut(&x, o->outflow);
+  Act(&x, o);
 }
 
 /* ---------------------------------------------------------------- nodes */

@@ -231,7 +231,7 @@ static void MakeFace(const Scene *c, const Grid *g, const Particles *P, PetscInt
   *f = (Face){.particle = p, .side = side, .region = P->i[PI_REGION][p], .bc = {[BC_NONE] = -1}};
   ParticleInitialPlace(P, p, f->x0);
   for (int kind = BC_NONE + 1; kind < BC_FACES; kind++)
-    f->bc[kind] = kind == BC_WELL || kind == BC_HEAT_SOURCE ? -1 : FindCondition(c, (BcType)kind, f);
+    f->bc[kind] = BC_INSIDE >> kind & 1u ? -1 : FindCondition(c, (BcType)kind, f);
   f->meters = FindMeters(c, f);
   FaceNormal(c, f->region, f->x0, side, f->n0);
   FacePlace(c, g, P, f);
@@ -241,16 +241,13 @@ static void MakeFace(const Scene *c, const Grid *g, const Particles *P, PetscInt
 static double Heated(const Scene *c, const Particles *P, const Bc *b, PetscInt p)
 {
   const PetscInt own = P->i[PI_REGION][p];
-  double         x0[CL_DIM], l[CL_DIM], V;
+  double         x0[CL_DIM], l[CL_DIM];
 
   ParticleInitialPlace(P, p, x0);
   if (b->region >= 0 && b->region != own && !(RegionEmpty(&c->region[b->region]) && RegionHolds(c, b->region, x0)))
     return 0.0;
   ParticlesInitialHalfLength(c, own, x0, l);
-  V = c->axisymmetric ? 2.0 * M_PI * x0[0] : 1.0;
-  for (int d = 0; d < CL_DIM; d++)
-    V *= 2.0 * l[d];
-  return V;
+  return ParticleInitialVolume(c, x0, l);
 }
 
 /* What a condition inside the body, a well or a heat source, has of particle p: Face.share. */
@@ -330,7 +327,7 @@ PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, Pet
     }
   }
   for (PetscInt k = 0; k < c->nbc; k++) {
-    if (c->bc[k].type == BC_WELL || c->bc[k].type == BC_HEAT_SOURCE)
+    if (BC_INSIDE >> c->bc[k].type & 1u)
       PetscCall(InsideFaces(c, g, P, k, n, face));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -48,7 +48,7 @@ enum { FACES = 0u CL_FACE_CONDITIONS(ON_FACE), PLANES = 0u CL_NODE_CONDITIONS(PL
 
 /* those that hold or offer a temperature, and those on the surface */
 enum { WARM = TYPE(BC_FACE_TEMPERATURE) | TYPE(BC_CONVECTION) | TYPE(BC_TEMPERATURE) | TYPE(BC_REGION_TEMPERATURE) };
-enum { SIDES = FACES & ~TYPE(BC_WELL) & ~TYPE(BC_HEAT_SOURCE) };
+enum { SIDES = FACES & ~(unsigned)BC_INSIDE };
 
 const Key bc_key[] = {
     CHOICE(Bc, "type", type, NULL, case_bc_type, "what is prescribed", .first = BC_NONE + 1),

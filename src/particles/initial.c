@@ -123,17 +123,25 @@ static void Set(Particles *P, PetscInt p, int component, double value)
     P->f[component][p] = value;
 }
 
+double ParticleInitialVolume(const Scene *c, const double x[], const double l[])
+{
+  double V = c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    V *= 2.0 * l[d];
+  return V;
+}
+
 PetscErrorCode ParticleInitialState(const Scene *c, PetscInt region, Particles *P, PetscInt p, const double x[],
                                     const double l[])
 {
   const Region   *r   = &c->region[region];
   const Material *mat = &c->material[r->material];
   InitialScalars  s;
-  double          m[4], V = c->axisymmetric ? 2.0 * M_PI * x[0] : 1.0;
+  const double    V = ParticleInitialVolume(c, x, l);
+  double          m[4];
 
   PetscFunctionBeginUser;
-  for (int d = 0; d < CL_DIM; d++)
-    V *= 2.0 * l[d];
   PetscCall(InitialScalarsAt(c, r, x, &s));
   Masses(c, r, &s, V, m);
   for (int k = 0; k < P_COUNT; k++)
