@@ -225,8 +225,11 @@ typedef struct {
 } LatentHeat;
 /* L at T (degC), J/kg, with its slope, J/(kg K). */
 double LatentHeatEvaluate(const LatentHeat *law, double T, double *dL_dT);
-/* (442): of it, J/kg, what no enthalpy of the state stores: zero with Kirchhoff's law. */
-double LatentHeatBeyond(const LatentHeat *law, double T);
+/* (442): of it, J/kg, what no enthalpy of the state stores, L(T) - L(0) - dc T: zero with Kirchhoff's law. */
+static inline double LatentHeatBeyond(const LatentHeat *law, double T)
+{
+  return law->kirchhoff ? 0.0 : -(law->C1 + law->dc) * T;
+}
 /* (293): conductivity K (as cl_symmetric; W/(m K)) beside kappa that carries heat with the flow: a is the heat capacity
    that flows (W/(m^2 K)), h the size of a cell (m). */
 void HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC]);

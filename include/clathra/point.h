@@ -84,7 +84,7 @@ typedef struct {
   double        rho[PHASE_COUNT], tau[PHASE_COUNT];
   bool          limited;  /* hydrate positivity limiter acted */
   double        squeezed; /* heat of compression and throttling (290), W */
-  double        beyond;   /* heat of reaction beyond what the state stores (442), W */
+  double        gain;     /* hydrate, by the reaction, kg */
 } PointState;
 
 typedef struct {

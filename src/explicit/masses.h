@@ -34,10 +34,9 @@ INLINE void HeatOf(Explicit *e, const Set s, Run r, const double *restrict T, co
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     now[q] += L[q] * (gain[q] - wanted[q]) / C[q];
-    heat[q] = L[q] * wanted[q];
-  }
-  for (int q = 0; q < r.n; q++)
+    heat[q]   = L[q] * wanted[q];
     beyond[q] = LatentHeatBeyond(&r.mat->latent, T[q]) * wanted[q];
+  }
   e->latent += Sum(r.n, heat);
   e->beyond += Sum(r.n, beyond);
 }

@@ -14,13 +14,6 @@ INLINE double Latent(const LatentHeat *law, double T, double *dL_dT)
 
 LAW_OF_ONE(LatentHeatEvaluate, LatentHeatBatch, LatentHeat, Latent)
 
-double LatentHeatBeyond(const LatentHeat *law, double T)
-{
-  double d;
-
-  return law->kirchhoff ? 0.0 : Latent(law, T, &d) - Latent(law, 0.0, &d) - law->dc * T;
-}
-
 /* (236): X = (1 - phi) X_s + phi [S_h X_h + (1 - S_h)(s_w X_w + s_g X_g)], s_g = 1 - s_w; X in the order solid,
    hydrate, water, gas.  (P29). */
 INLINE double Average(double phi, double Sh, double sw, const double X[4], double *d_dphi, double *d_dSh, double *d_dsw)

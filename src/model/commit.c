@@ -185,14 +185,14 @@ static void CheckShares(Model *m, const double *x, const double *masses)
   }
 }
 
-static void HeatRates(const Model *m, const Reach *r, const double *x, const PointState *s, const double out[OUT_COUNT],
-                      StageRates *rates)
+static void HeatRates(const Model *m, PetscInt p, const Reach *r, const double *x, double T, const PointState *s,
+                      const double out[OUT_COUNT], StageRates *rates)
 {
   const FieldSet *fs = &m->c->fields;
 
   rates->heat_source -= out[OUT_Q];
   rates->squeezed += s->squeezed;
-  rates->beyond += s->beyond;
+  rates->beyond += LatentHeatBeyond(&ParticleMaterial(m, p)->latent, T) * s->gain / m->stage.dt;
   for (int a = 0; a < r->n; a++) {
     const PetscInt k = r->node[a] * fs->n + PlaceT(fs);
 
@@ -237,7 +237,7 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
       PlasticState(p, &s.skeleton, trial);
     CountMoved(m, p, o.out, rates);
     if (m->c->fields.heat)
-      HeatRates(m, &r, x, &s, o.out, rates);
+      HeatRates(m, p, &r, x, in[IN_T], &s, o.out, rates);
     if (m->c->fields.solid)
       ParticlePower(m, p, &r, x, in, &s, o.out, rates->work);
   }

@@ -17,7 +17,7 @@ INLINE void FillState(const FieldSet *fs, const ScalarState *s, PointState *stat
   state->p        = s->p.v;
   state->limited  = s->limited;
   state->squeezed = 0.0;
-  state->beyond   = 0.0;
+  state->gain     = 0.0;
 #pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++)
     state->rho[f] = fs->phase[f] ? s->rho[f].v : 0.0;
@@ -112,8 +112,8 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
     Heat(fs, mat, h, k, &s, in, tangent, o);
-    if (!tangent && mat->reacts)
-      state->beyond = LatentHeatBeyond(&mat->latent, in[IN_T]) * s.gain.v / h->dt;
+    if (mat->reacts)
+      state->gain = s.gain.v;
 #pragma GCC unroll 2
     for (int f = 0; f < PHASE_COUNT; f++) {
       if (h->compression && fs->phase[f])
