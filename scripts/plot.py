@@ -18,7 +18,7 @@ from matplotlib.ticker import MaxNLocator
 import clathra
 from clathra import shown
 from clathra.units import duration, durations
-from plotting import COLOURS, STYLES, colours, Plain, boxes, plt, save, set_style, steady_limits, wrapped
+from plotting import COLOURS, STYLES, Plain, boxes, colours, plt, save, set_style, steady_limits, wrapped
 
 FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
 ONE_PHASE = 0.1  # of a period: times whose phases are no farther apart show one phase of a periodic load
@@ -224,10 +224,9 @@ def plot_body(run):
         return False
     first = shown.drawn(run, times[0])
     axis = shown.strip_axis(first["position"])
-    period, taken, wide, beats = shown.period(run.case), shown.spread(len(times), 4 if axis is None else 6), 1.0, ""
+    period, taken, beats = shown.period(run.case), shown.spread(len(times), 4 if axis is None else 6), ""
     if period:
         taken, wide = shown.spread_phases(times, 4 if axis is None else 6, period)
-    if period:
         beats = f"; at {'one phase' if wide < ONE_PHASE else 'unlike phases'} of the load, whose period is {duration(period)}"
     times = times[taken]
     snapshots = [first, *(shown.drawn(run, t) for t in times[1:])]

@@ -88,7 +88,7 @@ ENERGIES = {"kinetic_energy_J": "kinetic", "elastic_energy_J": "elastic", "plast
             "load_work_J": "loads' work", "plate_work_J": "plates' work", "pressure_work_J": "pressures' work", "drag_work_J": "drag",
             "damping_work_J": "damping", "energy_remainder_J": "remainder"}  # fmt: skip
 
-HEATS = {"heat_in_J": "conducted in", "enthalpy_out_J": "out with the fluids", "enthalpy_error_J": "missing"}
+HEATS = {"heat_in_J": "given by conditions", "enthalpy_out_J": "out with the fluids", "enthalpy_error_J": "missing"}
 
 
 def balance_charts(run, axis):

@@ -15,7 +15,7 @@ import clathra  # noqa: E402
 import plot  # noqa: E402
 from clathra import shown  # noqa: E402
 from clathra.units import durations  # noqa: E402
-from plotting import Plain, colours, boxes, plt, set_style, wrapped  # noqa: E402
+from plotting import Plain, boxes, colours, plt, set_style, wrapped  # noqa: E402
 
 
 def draw(out):

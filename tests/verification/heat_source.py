@@ -58,8 +58,7 @@ OTHERS = {"sdirk2": ("-stepper_dt", "1e-3 s"), "hybrid": ("-stepper_dt", "4e-5 s
 turned, rises = [], {}
 for kind, dt in OTHERS.items():
     for ranks in (1, 2):
-        water = saturated(0.1)
-        run = Run.of_case(SHEARED, "-quiet", *water, *HEATED, "-boundaries", "base,shear,left,right,top,heat", "-stepper_type", kind, *dt, ranks=ranks)
+        run = Run.of_case(SHEARED, "-quiet", *saturated(0.1), *HEATED, "-boundaries", "base,shear,left,right,top,heat", "-stepper_type", kind, *dt, ranks=ranks)
         (_, first), (_, v) = run.snapshots()[0], run.snapshots()[-1]
         upper = first["position"][:, 1] > 0.5
         rises[kind, ranks] = v["T"][:, 0] - first["T"][:, 0]
