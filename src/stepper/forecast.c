@@ -15,8 +15,7 @@
 #define MULTIGRID (CL_DIM == 3 ? 20e-6 : 2.5e-6) /* s an unknown and Jacobian: GMRES with multigrid */
 #define SMOOTH_STEPS 1e2                         /* (317): an adaptive run whose loads are slow, at ... */
 #define SMOOTH_TOL 1e-3                          /* ... this tolerance, ... */
-#define REACTS 1.75              /* ... times as many where hydrate reacts: its fronts rule steps then ... */
-#define HEATED 2.7               /* ... and where it is heated in sediment without gas */
+#define REACTS 1.75              /* ... times as many where hydrate reacts: its fronts rule steps then */
 #define NEWTON_REACTS 2.3        /* Jacobians a stage there */
 #define NEWTON_DONOR 5.0         /* ... with donors of gas (332), each with a factorisation of its own */
 #define BEHIND_KINK 12.0         /* steps that a kink adds */
@@ -88,13 +87,6 @@ static bool FrontsRule(const Stepper *s)
   return s->adaptive && SceneReacts(c) && c->fields.heat && c->fields.phase[PHASE_G];
 }
 
-static double SlowedByReaction(const Stepper *s)
-{
-  const double without = s->model->c->material[0].gas.trace;
-
-  return !FrontsRule(s) ? 1.0 : without > 0.0 && StepperHeatsHydrate(s) ? HEATED : REACTS;
-}
-
 /* Steps of an implicit run: as fixed, or few unless waves have to be resolved, events come often or loads have kinks.
  */
 static double ImplicitSteps(const Stepper *s, double left)
@@ -110,7 +102,7 @@ static double ImplicitSteps(const Stepper *s, double left)
 
   const double finer  = cbrt(SMOOTH_TOL / s->tol);
   const double first  = s->scheme->stages == 1 ? pow(s->tol, EULER_POWER) : 1.0; /* order 1 wants more of them */
-  const double smooth = SMOOTH_STEPS * SlowedByReaction(s) * finer * sqrt(first);
+  const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * finer * sqrt(first);
   const double stops  = fmax(StepperStops(s, left, &kinks), PERIOD * finer * first * Periods(s, left));
   const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* (317) */
 
