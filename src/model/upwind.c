@@ -87,8 +87,9 @@ static double Alternates(const Model *m, double *bend, PetscInt I, int d, const 
   if (own == 0.0)
     return 0.0;
   for (int side = 0; side < 2; side++) {
-    const bool   known = *At(bend, K[side], d, KNOWN) > 0.0, enters = (side ? -1.0 : 1.0) * CarriedAlong(m, I, d) > 0.0;
-    const double other = known ? *At(bend, K[side], d, SHARE) : enters ? -own : 0.0;
+    const bool   known  = *At(bend, K[side], d, KNOWN) > 0.0;
+    const bool   enters = !known && (side ? -1.0 : 1.0) * CarriedAlong(m, I, d) > 0.0;
+    const double other  = known ? *At(bend, K[side], d, SHARE) : enters ? -own : 0.0;
 
     if (own * other < 0.0)
       most = fmax(most, -2.0 * own * other / (fabs(own) + fabs(other)));
