@@ -12,7 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tutorial.md"
-FINE = ("-grid_cells", "10,44")  # the grid of the answer: in coarse cells S_h alternates from row to row
+FINE = ("-basis", "total", "-grid_cells", "10,44")  # those of the answer: in coarse cells S_h alternates from row to row
 POWER = "A heater by power"
 
 

@@ -52,8 +52,10 @@ static inline void FaceDirection(const Scene *c, Face *f, int phase, const doubl
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */
 PetscErrorCode FacesBuild(const Scene *c, const Grid *g, const Particles *P, PetscInt *n, Face **face);
 
-/* Weights of particle p where it is now. */
+/* Weights of particle p where the grid has it. */
 void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt p, Stencil *s);
+/* Where a linear function takes the value of these weights at t_n, m. */
+void ParticleCentroid(const Grid *g, const Particles *P, PetscInt p, const Stencil *s, double at[CL_DIM]);
 
 /* Where the face is and how it distributes, for its particle's present position and weights. */
 void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f);

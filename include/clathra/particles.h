@@ -83,6 +83,7 @@ enum {
 typedef struct {
   PetscInt  n, cap;     /* particles on this rank, allocated */
   unsigned  has;        /* fields of the scene */
+  bool      total;      /* the grid is that of the initial configuration (445) */
   double   *f[P_COUNT]; /* f[component][particle]; NULL for a variable of a field that the scene has not */
   PetscInt *i[PI_COUNT];
 } Particles;
@@ -113,14 +114,47 @@ static inline void ParticleInitialPlace(const Particles *P, PetscInt p, double x
     x[d] = ParticleInitialX(P, p, d);
 }
 
+/* Where the grid has it, m: its place in the configuration of the grid. */
+static inline double ParticleGridX(const Particles *P, PetscInt p, int d)
+{
+  return P->total ? ParticleInitialX(P, p, d) : P->f[P_X + d][p];
+}
+
+/* ... along all axes, m. */
+static inline void ParticleGridPlace(const Particles *P, PetscInt p, double x[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    x[d] = ParticleGridX(P, p, d);
+}
+
+/* Deformation gradient F from the initial configuration to that at t_n, dimensionless; 1 without a solid. */
+static inline void ParticleDeformation(const Particles *P, PetscInt p, double F[CL_DIM][CL_DIM])
+{
+  for (int k = 0; k < CL_DIM * CL_DIM; k++)
+    F[k / CL_DIM][k % CL_DIM] = P->f[P_F] ? P->f[P_F + k][p] : k / CL_DIM == k % CL_DIM;
+}
+
+/* A vector of the grid's configuration, v, at particle p as it is at t_n (445); m. */
+static inline void ParticleCarry(const Particles *P, PetscInt p, double v[CL_DIM])
+{
+  double F[CL_DIM][CL_DIM], at[CL_DIM];
+
+  if (!P->total)
+    return;
+  ParticleDeformation(P, p, F);
+  for (int i = 0; i < CL_DIM; i++)
+    at[i] = VectorDot(F[i], v);
+  for (int i = 0; i < CL_DIM; i++)
+    v[i] = at[i];
+}
+
 /* What drives its fluids through the beds as they lie now (306). */
 static inline Beds ParticleBeds(const Scene *c, const Particles *P, PetscInt p)
 {
-  const Permeability *law               = &c->material[c->region[P->i[PI_REGION][p]].material].permeability;
-  double              F[CL_DIM][CL_DIM] = CL_IDENTITY;
+  const Permeability *law = &c->material[c->region[P->i[PI_REGION][p]].material].permeability;
+  double              F[CL_DIM][CL_DIM];
 
-  for (int k = 0; P->f[P_F] && k < CL_DIM * CL_DIM; k++)
-    F[k / CL_DIM][k % CL_DIM] = P->f[P_F + k][p];
+  ParticleDeformation(P, p, F);
   return BedsOf(law->ratio, law->dip * M_PI / 180.0, F);
 }
 
@@ -178,6 +212,9 @@ typedef struct {
    and the gradients in that at its end.  Called once a step by both kinds of integrator; motion: NULL without a solid.
  */
 void ParticlesKeep(const Particles *P, PetscInt first, PetscInt n, const ParticleMotion *motion);
+
+/* Mixed derivatives B (395) after a motion with A = F^-T: xy (yz, xz) of A B A^T. */
+void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_PAIRS]);
 
 /* Particles of another run as those a run starts with (340). */
 void           ParticlesBecomeInitial(Particles *P);

@@ -53,7 +53,8 @@ enum { EXCHANGE_AUTO = 0, EXCHANGE_YES, EXCHANGE_NO };
 /* How heat is carried: (293) where T alternates (440), everywhere, nowhere. */
 enum { HEAT_AUTO = 0, HEAT_UPWIND, HEAT_CENTRAL };
 enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
-typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR } BasisType;
+/* BASIS_TOTAL: uGIMP on the initial configuration, whose cells deform with the body (445). */
+typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 
 #define SPACING 1024 /* characters */
 
@@ -343,10 +344,11 @@ static inline const char *SceneNeedsImplicit(const Scene *c)
 {
   const Bc *b = SceneBcNeedsMatrix(c);
 
-  return b                   ? b->name
-         : c->axisymmetric   ? "geometry: axisymmetric"
-         : c->one_pressure   ? "pressures: one"
-         : !c->inertia       ? "inertia: no"
-         : SceneLetsGasIn(c) ? "an inflow of gas where a region has Sg: 0"
-                             : NULL;
+  return b                         ? b->name
+         : c->axisymmetric         ? "geometry: axisymmetric"
+         : c->one_pressure         ? "pressures: one"
+         : !c->inertia             ? "inertia: no"
+         : c->basis == BASIS_TOTAL ? "basis: total"
+         : SceneLetsGasIn(c)       ? "an inflow of gas where a region has Sg: 0"
+                                   : NULL;
 }

@@ -40,10 +40,10 @@ static unsigned FindMeters(const Scene *c, const Face *f)
 
 /* Along one axis what is inside the particle's domain of a face that spans 2 t about s: its middle and half-length, m,
    and how many cells it spans. */
-static double Inside(BasisType type, const GridLines *line, const Particles *P, const Face *f, int d, double t,
-                     double *x, double *l)
+static double Inside(BasisType type, const GridLines *line, const Particles *P, const Face *f, int d, double s,
+                     double t, double *x, double *l)
 {
-  const double p = P->f[P_X + d][f->particle], half = P->f[P_L + d][f->particle], s = f->x[d];
+  const double p = ParticleGridX(P, f->particle, d), half = P->f[P_L + d][f->particle];
 
   if (line->x) {
     const BasisSpan dom = BasisSpanOf(type, line, p, half);
@@ -65,12 +65,13 @@ static double Inside(BasisType type, const GridLines *line, const Particles *P, 
 
 /* Weights along one axis: of the interval inside the particle's domain, whose nodes are the only ones it may use; a hat
    function where that is a point. */
-static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const Face *f, int d, double t, Axis *a)
+static void AxisWeights(const Scene *c, const Grid *g, const Particles *P, const Face *f, int d, double s, double t,
+                        Axis *a)
 {
   const GridLines *line = &g->line[d];
   double           hoop[3], r, x, l;
 
-  if (Inside(c->basis, line, P, f, d, t, &x, &l) < POINT)
+  if (Inside(c->basis, line, P, f, d, s, t, &x, &l) < POINT)
     BasisHat(x, line, a);
   else if (d == 0 && c->axisymmetric)
     BasisRadius(BASIS_UGIMP, x, l, line, a, hoop, &r);
@@ -92,9 +93,10 @@ static void SpreadWeights(const Stencil *st, double w[CL_DIM][3], Face *f)
   }
 }
 
-/* A linear particle does not reach the nodes of its face, which then acts at the particle. */
-static void Weights(const Scene *c, const Grid *g, const Particles *P, const Stencil *st, const double half[CL_DIM],
-                    Face *f)
+/* at, half: middle of the face in the grid's configuration and how far it reaches along each axis, m.  A linear
+   particle does not reach the nodes of its face, which then acts at the particle. */
+static void Weights(const Scene *c, const Grid *g, const Particles *P, const Stencil *st, const double at[CL_DIM],
+                    const double half[CL_DIM], Face *f)
 {
   double w[CL_DIM][3];
 
@@ -102,7 +104,7 @@ static void Weights(const Scene *c, const Grid *g, const Particles *P, const Ste
     Axis a = st->axis[d];
 
     if (c->basis != BASIS_LINEAR)
-      AxisWeights(c, g, P, f, d, half[d], &a);
+      AxisWeights(c, g, P, f, d, at[d], half[d], &a);
     for (int k = 0; k < 3; k++) {
       const PetscInt i = st->axis[d].base + k - a.base;
 
@@ -113,13 +115,13 @@ static void Weights(const Scene *c, const Grid *g, const Particles *P, const Ste
 }
 
 /* (197), (198): of the faces of a hole about the axis on which something is prescribed. */
-static void Ring(const Scene *c, const Grid *g, const Particles *P, Face *f)
+static void Ring(const Scene *c, const Grid *g, const Particles *P, double radius, Face *f)
 {
   const bool   hole = c->axisymmetric && f->side == SIDE_XMIN;
   const double l    = P->f[P_L][f->particle];
 
-  f->ring[0] = hole && f->bc[BC_PRESSURE] >= 0 ? FaceRing(c, g, f->x[0], l, 0.0) : 0.0;
-  f->ring[1] = hole && f->bc[BC_FACE_TEMPERATURE] >= 0 ? FaceRing(c, g, f->x[0], l, FACE_PENALTY) : 0.0;
+  f->ring[0] = hole && f->bc[BC_PRESSURE] >= 0 ? FaceRing(c, g, radius, l, 0.0) : 0.0;
+  f->ring[1] = hole && f->bc[BC_FACE_TEMPERATURE] >= 0 ? FaceRing(c, g, radius, l, FACE_PENALTY) : 0.0;
 }
 
 /* Mean pore pressure at the face as the particle's own values and gradients have it, Pa. */
@@ -159,7 +161,7 @@ void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt
   s->r = 0.0;
   for (int d = 0; d < CL_DIM; d++) {
     const GridLines *line = &g->line[d];
-    const double     x = P->f[P_X + d][p], l = P->f[P_L + d][p];
+    const double     x = ParticleGridX(P, p, d), l = P->f[P_L + d][p];
 
     if (d == 0 && c->axisymmetric)
       BasisRadius(c->basis, x, l, line, &s->axis[d], s->hoop, &s->r);
@@ -167,6 +169,19 @@ void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt
       BasisAxis(c->basis, x, l, line, &s->axis[d]);
     s->cell[d] = BasisCellAt(line, x, &s->axis[d]);
   }
+}
+
+void ParticleCentroid(const Grid *g, const Particles *P, PetscInt p, const Stencil *s, double at[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    at[d] = AxisCentroid(&s->axis[d], &g->line[d]);
+  if (!P->total)
+    return;
+  for (int d = 0; d < CL_DIM; d++)
+    at[d] -= ParticleGridX(P, p, d);
+  ParticleCarry(P, p, at);
+  for (int d = 0; d < CL_DIM; d++)
+    at[d] += P->f[P_X + d][p];
 }
 
 void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f)
@@ -178,23 +193,26 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f)
     PlaceInside(P, &s, f);
     return;
   }
-  const PetscInt p         = f->particle;
-  const int      axis      = SideAxis(f->side);
-  const double   sign      = SideSign(f->side);
-  double F[CL_DIM][CL_DIM] = CL_IDENTITY, cof[CL_DIM][CL_DIM], l[CL_DIM], half[CL_DIM], A = 1.0; /* of the face, m^2 */
+  const PetscInt p    = f->particle;
+  const int      axis = SideAxis(f->side);
+  const double   sign = SideSign(f->side);
+  double F[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM], l[CL_DIM], at[CL_DIM], half[CL_DIM], A = 1.0; /* of the face, m^2 */
 
   ParticlesInitialHalfLength(c, f->region, f->x0, l);
-  for (int k = 0; P->f[P_F] && k < CL_DIM * CL_DIM; k++)
-    F[k / CL_DIM][k % CL_DIM] = P->f[P_F + k][p];
+  ParticleDeformation(P, p, F);
   CofactorOf(F, cof);
+  ParticleCentroid(g, P, p, &s, at);
   for (int d = 0; d < CL_DIM; d++) {
     f->x[d]     = P->f[P_X + d][p] + sign * F[d][axis] * l[axis];
-    f->r[d]     = f->x[d] - AxisCentroid(&s.axis[d], &g->line[d]);
+    f->r[d]     = f->x[d] - at[d];
     f->moved[d] = f->x[d] - f->x0[d] - (d == axis ? sign * l[axis] : 0.0);
-    half[d]     = 0.0;
-    for (int t = 0; t < CL_DIM; t++)
-      half[d] += t == axis ? 0.0 : fabs(F[d][t]) * l[t];
     A *= d == axis ? 1.0 : 2.0 * l[d];
+  }
+  for (int d = 0; d < CL_DIM; d++) {
+    at[d]   = P->total ? f->x[d] - f->moved[d] : f->x[d];
+    half[d] = 0.0;
+    for (int t = 0; t < CL_DIM; t++)
+      half[d] += t == axis ? 0.0 : (P->total ? (d == t ? l[t] : 0.0) : fabs(F[d][t]) * l[t]);
   }
   f->a0 = A * (c->axisymmetric ? 2.0 * M_PI * (f->x[0] - f->moved[0]) : 1.0);
   A *= c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0;
@@ -202,8 +220,8 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f)
     f->n[i] = sign * A * cof[i][axis];
     f->s[i] = A * VectorDot(cof[i], f->n0);
   }
-  Weights(c, g, P, &s, half, f);
-  Ring(c, g, P, f);
+  Weights(c, g, P, &s, at, half, f);
+  Ring(c, g, P, at[0], f);
   f->pore            = FacePore(c, P, f);
   f->leaves[PHASE_W] = f->leaves[PHASE_G] = false;
 }

@@ -26,7 +26,7 @@ static bool NeedsEnd(const void *p)
   return ((const Case *)p)->nstage == 0;
 }
 
-static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", NULL}; /* BasisType */
+static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", "total", NULL}; /* BasisType */
 static const char *const pressures_word[]   = {"two", "one", NULL};
 static const char *const geometry_word[]    = {PLANE_WORD, "axisymmetric", NULL};
 static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
@@ -74,7 +74,10 @@ const Key case_key[] = {
             "one: p_g = p_w, saturations follow explicitly from the masses", .choices = pressures_word, BINDS(HAS_ALL)),
     BOOLEAN(Case, "compression_heat", scene.compression_heat, "no",
             "fluids warm as they are compressed and cool or warm as they are throttled (Joule-Thomson)"),
-    CHOICE(Case, "basis", scene.basis, "cpgimp", basis_word, "basis functions"),
+    CHOICE(Case, "basis", scene.basis, "cpgimp", basis_word,
+           "basis functions: averages over domains that follow the particles' stretch (cpgimp) or keep their size "
+           "(ugimp), at the particles (linear); total: of the initial configuration, whose cells deform with the body "
+           "(total Lagrangian), for bodies that settle or bend but do not flow: sdirk2 and euler"),
     BOOLEAN(
         Case, "mean_dilatation", scene.mean_dilatation, "no",
         "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "

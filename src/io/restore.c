@@ -99,7 +99,7 @@ static PetscErrorCode CheckParticles(const Model *m, PetscInt before, Loaded *L)
     double         x[CL_DIM];
     PetscInt       cell[CL_DIM];
 
-    ParticlePlace(P, p, x);
+    ParticleGridPlace(P, p, x);
 
     if (id <= (p > 0 ? P->i[PI_ID][p - 1] : before))
       Refuse(L, "its particles are not in order");
@@ -301,7 +301,7 @@ static PetscErrorCode Deal(const Grid *g, Loaded *L)
     double   x[CL_DIM];
     PetscInt cell[CL_DIM];
 
-    ParticlePlace(&L->P, p, x);
+    ParticleGridPlace(&L->P, p, x);
     PetscCheck(GridCell(g, x, cell), PETSC_COMM_SELF, PETSC_ERR_PLIB, "a particle outside the grid was not noticed");
     owner[p] = GridCellOwner(g, cell);
     key[p]   = same && L->rank[p] == owner[p] ? L->place[p] : total + first + p;
@@ -333,6 +333,7 @@ static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origi
 
   PetscFunctionBeginUser;
   PetscCall(ParticlesCreate(m->c->fields.has, &L.P));
+  L.P.total = m->P.total;
   PetscCall(Load(m, path, &L));
   PetscCall(Agree(g, &L));
   *ok = L.why[0] == '\0';

@@ -92,7 +92,7 @@ static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
 
   for (int d = 0; d < CL_DIM; d++) {
     g[d] = m->P.f[P_GT + d][p];
-    h[d] = LinesWidthAt(&m->grid.line[d], m->P.f[P_X + d][p]);
+    h[d] = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
   }
   EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
   return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));

@@ -46,9 +46,10 @@ void ModelStartVelocity(const Model *m, double *v)
     Velocity(m, p, m->x_n, &v[CL_DIM * p]);
 }
 
+/* Cells that move with the body are never left. */
 static void CheckMotion(Model *m, PetscInt p, const double u[CL_DIM])
 {
-  for (int d = 0; d < CL_DIM; d++) {
+  for (int d = 0; d < CL_DIM && !m->P.total; d++) {
     const GridLines *line = &m->grid.line[d];
     const double     to = m->P.f[P_X + d][p] + u[d], upper = LinesAt(line, line->cells);
 
@@ -324,7 +325,7 @@ static double Released(const Model *m, PetscInt p, const PointState *s)
                                  s->m_h < old ? s->m_h / old : 1.0, &h);
 }
 
-/* (395) of T along a pair of axes. */
+/* (395) of T along a pair of axes of the grid's configuration. */
 static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const double *x, const int pair[2])
 {
   const FieldSet *fs   = &m->c->fields;
@@ -346,6 +347,25 @@ static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const 
   return b;
 }
 
+/* (395) on the configuration at t_n. */
+static void WriteMixed(Model *m, PetscInt p, const double *x, const Reach *r)
+{
+  double B[CL_PAIRS], F[CL_DIM][CL_DIM], A[CL_DIM][CL_DIM];
+
+  for (int k = 0; k < CL_PAIRS; k++)
+    B[k] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, cl_pair[k]) : 0.0;
+  if (m->P.total) {
+    ParticleDeformation(&m->P, p, F);
+    const double per = 1.0 / CofactorOf(F, A);
+
+    for (int k = 0; k < CL_DIM * CL_DIM; k++)
+      A[k / CL_DIM][k % CL_DIM] *= per;
+    MixedCarry(A, B);
+  }
+  for (int k = 0; k < CL_PAIRS; k++)
+    m->P.f[P_BT + k][p] = B[k];
+}
+
 static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
                          const PointState *s, double keeps)
 {
@@ -360,8 +380,8 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
     for (int d = 0; d < CL_DIM; d++)
       f[VectorAt(P_GW, k, d)][p] = in[k < PHASE_COUNT ? VectorAt(IN_GP, k, d) : IN_GT + d];
   }
-  for (int k = 0; fs->heat && k < CL_PAIRS; k++)
-    f[P_BT + k][p] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, cl_pair[k]) : 0.0;
+  if (fs->heat)
+    WriteMixed(m, p, x, r);
   if (fs->solid)
     WriteMotion(m, p, x, r, s);
   else

@@ -125,8 +125,9 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
   if (!m->bc.ambient.on)
     return;
   double at[CL_DIM], gradient[CL_DIM];
+  ParticleCentroid(&m->grid, &m->P, p, &m->stencil[p], at);
   for (int d = 0; d < CL_DIM; d++)
-    at[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]) + in[IN_U + d];
+    at[d] += in[IN_U + d];
   double sum = AmbientPressure(&m->bc.ambient, at, gradient) * k.expansion;
   for (int d = 0; d < CL_DIM; d++)
     sum += out[OUT_A + d] * k.v[0][d];

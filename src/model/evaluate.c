@@ -209,8 +209,8 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   for (int f = 0; m->beds && f < PHASE_COUNT; f++)
     BedsWeight(m, p, f, h->weight[f]);
   h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
-  for (int d = 0; h->ambient && d < CL_DIM; d++)
-    h->x[d] = AxisCentroid(&m->stencil[p].axis[d], &m->grid.line[d]);
+  if (h->ambient)
+    ParticleCentroid(&m->grid, &m->P, p, &m->stencil[p], h->x);
   for (int k = 0; k < 3; k++) {
     h->m_star[k] = m->stage.m_star[3 * p + k];
     h->shift[k]  = fs->at[F_PW + k] >= 0 ? s->S[GIVE_START + k] - OwnValue(m, p, F_PW + k) : 0.0;

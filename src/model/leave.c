@@ -5,7 +5,7 @@ static bool Outside(const Model *m, PetscInt p)
 {
   double x[CL_DIM];
 
-  ParticlePlace(&m->P, p, x);
+  ParticleGridPlace(&m->P, p, x);
   PetscInt cell[CL_DIM];
 
   return !GridCell(&m->grid, x, cell);

@@ -27,7 +27,7 @@ static PetscErrorCode Occupied(const Model *m, PetscInt *count, PetscInt extent[
     double   x[CL_DIM];
     PetscInt cell[CL_DIM];
 
-    ParticlePlace(&m->P, p, x);
+    ParticleGridPlace(&m->P, p, x);
     if (!GridCell(g, x, cell))
       continue;
     unsigned char *here = &seen[GridPadded(g, cell)];

@@ -13,6 +13,25 @@ typedef struct {
   double mixed[CL_NODES][CL_DIM], mixed_hoop[CL_NODES];
 } Reach;
 
+/* (445): gradients on the configuration at t_n from those on the grid's. */
+static inline void CarryGradients(const Model *m, PetscInt p, Reach *r)
+{
+  double F[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM];
+
+  ParticleDeformation(&m->P, p, F);
+  const double per = 1.0 / CofactorOf(F, cof), hoop = m->c->axisymmetric ? m->stencil[p].r / m->P.f[P_X][p] : 0.0;
+
+  for (int a = 0; a < r->n; a++) {
+    double G[CL_DIM];
+
+    for (int i = 0; i < CL_DIM; i++)
+      G[i] = per * VectorDot(cof[i], r->G[a]);
+    memcpy(r->G[a], G, sizeof(G));
+    if (m->c->axisymmetric)
+      r->H[a] *= hoop;
+  }
+}
+
 /* (160), then (88) */
 static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
 {
@@ -50,6 +69,8 @@ static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
 static inline void ReachExpand(const Model *m, PetscInt p, Reach *r)
 {
   r->n = StencilExpand(&m->stencil[p], &m->grid, &m->map, r->node, r->S, r->G, r->H);
+  if (m->P.total)
+    CarryGradients(m, p, r);
   r->M = r->G;
   r->K = r->H;
   if (m->c->mean_dilatation || m->c->mean_strain > 0.0)
@@ -82,5 +103,5 @@ static inline void MotionGradient(const Model *m, const Reach *r, double (*u)[CL
 /* Weights that carry the particle's middle along: S in the plane, the plain average about an axis. */
 static inline double MotionWeight(const Model *m, PetscInt p, const Reach *r, int a)
 {
-  return m->c->axisymmetric ? r->H[a] * m->stencil[p].r : r->S[a];
+  return m->c->axisymmetric ? r->H[a] * (m->P.total ? m->P.f[P_X][p] : m->stencil[p].r) : r->S[a];
 }

@@ -51,16 +51,27 @@ static double CellVolume(const Model *m, const PetscInt cell[CL_DIM])
   return V;
 }
 
+/* Area of the particle in the plane over that in the grid's configuration. */
+static double Swollen(const Model *m, PetscInt p)
+{
+  double F[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM];
+
+  if (!m->P.total)
+    return 1.0;
+  ParticleDeformation(&m->P, p, F);
+  return CofactorOf(F, cof);
+}
+
 static void FillCells(const Model *m, double *fill)
 {
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double ring = m->c->axisymmetric ? 2.0 * M_PI * m->P.f[P_X][p] : 1.0;
+    const double ring = m->c->axisymmetric ? 2.0 * M_PI * m->P.f[P_X][p] : 1.0, J = Swollen(m, p);
     PetscInt     first[CL_DIM];
     double       share[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++) {
       const GridLines *line = &m->grid.line[d];
-      const double     x    = m->P.f[P_X + d][p];
+      const double     x    = ParticleGridX(&m->P, p, d);
 
       share[d] = FirstShare(line, x, BasisReach(m->c->basis, line, x, m->P.f[P_L + d][p]), &first[d]);
     }
@@ -73,7 +84,7 @@ static void FillCells(const Model *m, double *fill)
         w *= (k >> d) % 2 ? 1.0 - share[d] : share[d];
       const PetscInt I = w > 0.0 ? CellIndex(m, cell) : -1;
       if (I >= 0)
-        fill[2 * I] += w * m->P.f[P_V][p] / (ring * CellVolume(m, cell));
+        fill[2 * I] += w * m->P.f[P_V][p] / (J * ring * CellVolume(m, cell));
     }
   }
 }
@@ -230,7 +241,7 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
   if (ModelParticleProperties(m, p, &q, &why) != CL_OK)
     return; /* ModelBeginStep reported it */
   for (int d = 0; d < CL_DIM; d++)
-    r[d] = LinesPlace(&m->grid.line[d], m->P.f[P_X + d][p]) - (double)cell[d];
+    r[d] = LinesPlace(&m->grid.line[d], ParticleGridX(&m->P, p, d)) - (double)cell[d];
 
   const double V = m->P.f[P_V][p], w = V * m->c->stabilisation.pressure_projection / (2.0 * q.G);
   double       N[CL_CORNERS];
@@ -290,7 +301,7 @@ static PetscErrorCode BuildProjection(Model *m)
   for (PetscInt p = 0; p < m->P.n; p++) {
     double x[CL_DIM];
 
-    ParticlePlace(&m->P, p, x);
+    ParticleGridPlace(&m->P, p, x);
     PetscInt cell[CL_DIM];
 
     if (GridCell(g, x, cell))

@@ -131,6 +131,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
 
     for (int k = 0; k < CL_DIM; k++)
       d[k] = GridNode(g, k, m->map.ij[I][k]) - at[k];
+    ParticleCarry(&m->P, p, d);
     DepositNode(m, p, S, d, q, &sum[I * width]);
     m->V[I] += VS;
     m->Vk[I] += VSk;

@@ -23,11 +23,12 @@ static inline double LayerWeight(const Model *m, PetscInt p, PetscInt I)
 /* How far a particle lies upstream of a node, against the direction of flow there, m; negative downstream. */
 static inline double Upstream(const Model *m, PetscInt p, PetscInt I, const double direction[CL_DIM])
 {
-  double s = 0.0;
+  double way[CL_DIM];
 
   for (int d = 0; d < CL_DIM; d++)
-    s += direction[d] * (GridNode(&m->grid, d, m->map.ij[I][d]) - m->P.f[P_X + d][p]);
-  return s;
+    way[d] = GridNode(&m->grid, d, m->map.ij[I][d]) - ParticleGridX(&m->P, p, d);
+  ParticleCarry(&m->P, p, way);
+  return VectorDot(direction, way);
 }
 
 /* omega_Ip (332): 1 where all nodes of the particle are as mobile. */

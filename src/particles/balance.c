@@ -18,7 +18,7 @@ static bool CellOf(const Search *s, PetscInt p, PetscInt cell[CL_DIM])
 {
   double x[CL_DIM];
 
-  ParticlePlace(s->P, p, x);
+  ParticleGridPlace(s->P, p, x);
 
   return GridCell(s->g, x, cell);
 }

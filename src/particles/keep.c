@@ -1,6 +1,7 @@
 /* What a step makes of the history of particles, for either kind of integrator: a variable that follows from the
    motion and from the state at the end of the step is written here and nowhere else. */
 #include "clathra/particles.h"
+#include <string.h>
 
 /* Positions and domains. */
 static void Move(const Particles *P, PetscInt p, PetscInt n, const ParticleMotion *m)
@@ -61,6 +62,23 @@ INLINE void InverseTransposed(const ParticleMotion *m, PetscInt q, double A[CL_D
   }
 }
 
+void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_PAIRS])
+{
+  double from[CL_PAIRS];
+
+  memcpy(from, B, sizeof(from));
+  for (int k = 0; k < CL_PAIRS; k++) {
+    const double *a = A[cl_pair[k][0]], *b = A[cl_pair[k][1]];
+
+    B[k] = 0.0;
+    for (int o = 0; o < CL_PAIRS; o++) {
+      const int i = cl_pair[o][0], j = cl_pair[o][1];
+
+      B[k] += from[o] * (a[i] * b[j] + a[j] * b[i]);
+    }
+  }
+}
+
 /* Gradients on the configuration at the begin of the step, brought to that at its end: F^-T g; and the mixed
    derivatives of T, xy (yz, xz) of F^-T B F^-1 (395). */
 static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const ParticleMotion *m)
@@ -87,17 +105,9 @@ static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const Par
     InverseTransposed(m, q, A);
     for (int k = 0; k < CL_PAIRS; k++)
       B[k] = P->f[P_BT + k][p + q];
-    for (int k = 0; k < CL_PAIRS; k++) {
-      const double *a = A[cl_pair[k][0]], *b = A[cl_pair[k][1]];
-      double        sum = 0.0;
-
-      for (int o = 0; o < CL_PAIRS; o++) {
-        const int i = cl_pair[o][0], j = cl_pair[o][1];
-
-        sum += B[o] * (a[i] * b[j] + a[j] * b[i]);
-      }
-      P->f[P_BT + k][p + q] = sum;
-    }
+    MixedCarry(A, B);
+    for (int k = 0; k < CL_PAIRS; k++)
+      P->f[P_BT + k][p + q] = B[k];
   }
 }
 

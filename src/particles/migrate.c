@@ -37,7 +37,7 @@ static PetscErrorCode FindOwners(const Grid *g, const Particles *P, PetscMPIInt 
   for (PetscInt p = 0; p < P->n; p++) {
     double x[CL_DIM];
 
-    ParticlePlace(P, p, x);
+    ParticleGridPlace(P, p, x);
     PetscInt cell[CL_DIM];
 
     if (GridCell(g, x, cell))

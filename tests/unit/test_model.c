@@ -117,6 +117,33 @@ static void TestLayersJacobian(void **state)
   }
 }
 
+/* On the grid of the initial configuration (445), of a body that has been strained and turned. */
+static void TestTotalJacobian(void **state)
+{
+  static const unsigned has[4] = {HAS_SOLID, HAS_SOLID | HAS_WATER, HAS_ALL, HAS_ALL};
+
+  (void)state;
+  for (int k = 0; k < 4; k++) {
+    SmallScene *s = malloc(sizeof(*s));
+
+    JacobianCase(s, has[k], true, k == 3, BASIS_TOTAL, k == 3 ? 0.3 : 0.0, 0.0, false, 0);
+    Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
+    RandomHistory(s, 0.2);
+    for (PetscInt p = 0; p < s->m.P.n; p++) {
+      for (int c = 0; c < CL_DIM * CL_DIM; c++)
+        AddNoise(s->m.P.f[P_F + c], p, 0.2, Noise(11, s->m.P.i[PI_ID][p], c));
+    }
+    RandomStage(s, 20.0);
+    MakeSolver(s);
+    const double worst = DirectionError(s, 3), entry = ColumnError(s);
+    Say("  total, %d unknowns a node%s: directions %.1e, entries %.1e\n", s->c.scene.fields.n,
+        k == 3 ? ", about an axis" : "", worst, entry);
+    Check(worst < 1e-6 && entry < 1e-6);
+    SceneDestroy(s);
+    free(s);
+  }
+}
+
 /* Beds that dip (308), with one fluid and with two, in layers of unlike permeability. */
 static void TestBedsJacobian(void **state)
 {
@@ -711,11 +738,12 @@ static void TestWallOfDonors(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestJacobian),  cmocka_unit_test(TestLayersJacobian), cmocka_unit_test(TestBedsJacobian),
-      cmocka_unit_test(TestBedsTurn),  cmocka_unit_test(TestPlates),         cmocka_unit_test(TestMassRows),
-      cmocka_unit_test(TestTwoLayers), cmocka_unit_test(TestHydrostatic),    cmocka_unit_test(TestUniformStress),
-      cmocka_unit_test(TestDarcy),     cmocka_unit_test(TestHeatFlux),       cmocka_unit_test(TestNewtonOrder),
-      cmocka_unit_test(TestSlaved),    cmocka_unit_test(TestCopyByRows),     cmocka_unit_test(TestWallOfDonors),
+      cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestLayersJacobian), cmocka_unit_test(TestTotalJacobian),
+      cmocka_unit_test(TestBedsJacobian),  cmocka_unit_test(TestBedsTurn),       cmocka_unit_test(TestPlates),
+      cmocka_unit_test(TestMassRows),      cmocka_unit_test(TestTwoLayers),      cmocka_unit_test(TestHydrostatic),
+      cmocka_unit_test(TestUniformStress), cmocka_unit_test(TestDarcy),          cmocka_unit_test(TestHeatFlux),
+      cmocka_unit_test(TestNewtonOrder),   cmocka_unit_test(TestSlaved),         cmocka_unit_test(TestCopyByRows),
+      cmocka_unit_test(TestWallOfDonors),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);

@@ -1,0 +1,88 @@
+#!/usr/bin/env python3
+"""Total Lagrangian (445), `basis: total`: a block squeezed by 30 % stays uniform to round-off, in the plane and in a ring; a soft column converges to its exact
+settlement with second order; layers that settle off the grid's lines drain as those that do not; balance of water, two and four ranks, restart; what it does not
+know it refuses.  (Turns under pressure, a linear T under shear, tangents: tests/unit/test_turning.c, test_model.c.)"""
+from pathlib import Path
+
+import numpy as np
+
+from common import Run, check_true, finish, judge, largest_difference, order, table
+
+CASES = Path(__file__).parent / "cases"
+BLOCK, LAYERS = CASES / "squeezed_block.yaml", CASES / "settling_layers.yaml"
+ROW = "4.1"
+TOTAL = ("-basis", "total")
+
+
+def last(case, *options, **keywords):
+    run = Run.of_case(case, "-quiet", *options, **keywords)
+    return run, run.snapshots()[-1][1]
+
+
+# ---------------------------------------------------------------- homogeneous motion across many cells
+rows = []
+for name, options in (("plane", ()), ("ring", ("-geometry", "axisymmetric"))):
+    spread = {}
+    for basis in ("total", "cpgimp", "ugimp"):
+        _, v = last(BLOCK, *options, "-basis", basis)
+        J = np.exp(v["log_J"][:, 0])
+        spread[basis] = J.max() - J.min()
+        if basis == "total":
+            judge(ROW, f"total, block squeezed by 30 %, {name}: volume against exact", np.max(np.abs(J / 0.7 - 1)), 1e-7)
+            off = v["displacement"][:, 1] + 0.3 * v["initial_position"][:, 1]
+            judge(ROW, f"total, block squeezed by 30 %, {name}: displacement against exact", np.max(np.abs(off)), 1e-7, unit="m")
+    rows.append((name, *spread.values()))
+    check_true(f"... those of ugimp differ by {spread['ugimp']:.1e}, more than 1e-2", spread["ugimp"] > 1e-2)
+table(("squeezed block: largest less smallest J", "total", "cpgimp", "ugimp"), rows)
+
+# ---------------------------------------------------------------- a column under its own weight: u = int (exp(-rho g (H - Y)/M) - 1) dY
+DEPTH, M, WEIGHT = 10.0, 3e5, 1300 * 9.81
+exact = lambda Y: M / WEIGHT * np.exp(-WEIGHT * DEPTH / M) * (np.exp(WEIGHT * Y / M) - 1) - Y
+cells, off = (10, 20, 40), {"total": [], "cpgimp": []}
+for basis, error in off.items():
+    for n in cells:
+        _, v = last("gravity_column", "-basis", basis, "-grid_cells", f"1,{n}", "-grid_upper", f"{10 / n} m,10 m", "-region_column_upper", f"{10 / n} m,10 m", "-bc_right_position", f"{10 / n} m")
+        error.append(np.max(np.abs(v["displacement"][:, 1] - exact(v["initial_position"][:, 1]))) / abs(exact(DEPTH)))
+table(("soft column, cells", *(f"error, {b}" for b in off), "order, total"), [(n, *(e[k] for e in off.values()), "-" if k == 0 else f"{-order(cells, off['total'])[k - 1]:.2f}") for k, n in enumerate(cells)])
+judge(ROW, "total, soft column: error on 40 cells", off["total"][-1], 1e-3)
+check_true("... of second order", max(order(cells, off["total"])) < -1.8)
+
+# ---------------------------------------------------------------- borders of layers
+def clays(*options):
+    run, v = last(LAYERS, *options)
+    X, u, region = v["initial_position"], v["displacement"][:, 1], v["region"].ravel()
+    near = X[:, 0] < 0.4
+    end = lambda r, pick: u[near & (region == r)][pick(X[near & (region == r), 1])]
+    return -end(0, np.argmax), end(2, np.argmin) - end(2, np.argmax), run.csv("meters.csv")["well.water_kg"][-1], run
+
+
+rows, found = [], {}
+for basis in ("total", "cpgimp"):
+    lower, upper, water, run = found[basis] = clays("-basis", basis)
+    rows.append((basis, 1e3 * lower, 1e3 * upper, water / 1e3, len(run.balance["step"])))
+table(("sand between clays: mm of", "lower clay", "upper clay", "water, t", "steps"), rows)
+judge(ROW, "total, sand between clays: the clays' compression apart", abs(found["total"][0] / found["total"][1] - 1), 0.01, 0.01, "%")
+check_true("... on a fixed grid by more than a half", found["cpgimp"][0] / found["cpgimp"][1] > 1.5)
+run = found["total"][3]
+judge(ROW, "total, sand between clays: balance of water", np.max(np.abs(run.balance["water_error"])), 1e-13)
+
+# ---------------------------------------------------------------- ranks and restart
+SHORT = (*TOTAL, "-time_end", "3 d", "-output_times", "3 d")
+_, one = last(LAYERS, *SHORT)
+for ranks in (2, 4):
+    _, v = last(LAYERS, *SHORT, ranks=ranks)
+    judge(ROW, f"total, sand between clays: {ranks} ranks, displacement apart", largest_difference(v["displacement"], one["displacement"]), 1e-9, unit="m")
+half, _ = last(LAYERS, *TOTAL, "-time_end", "3 d", "-output_times", "1 d,3 d", "-stepper_max_steps", "8")
+_, v = last(LAYERS, *TOTAL, "-time_end", "3 d", "-output_times", "1 d,3 d", "-restart", str(half.out / "checkpoint.h5"))
+_, whole = last(LAYERS, *TOTAL, "-time_end", "3 d", "-output_times", "1 d,3 d")
+judge(ROW, "total, sand between clays: restarted, displacement apart", largest_difference(v["displacement"], whole["displacement"]), 1e-13, unit="m")
+
+# ---------------------------------------------------------------- what it does not know
+for options, words in ((("-inertia", "yes", "-stepper_type", "hybrid"), "hybrid does not know basis: total"), (("-mean_dilatation", "yes"), "total is not known with mean_dilatation: yes"),
+                       (("-mean_strain", "0.5"), "total is not known with a mean_strain")):  # fmt: skip
+    run = Run.of_case(BLOCK, "-quiet", *TOTAL, *options, exit_code=2)
+    check_true(f"refused: {words}", words in run.output, run.output[:300])
+for case, kind in (("footing", "plate"), (CASES / "plane_well.yaml", "well")):
+    run = Run.of_case(case, "-quiet", *TOTAL, exit_code=2)
+    check_true(f"refused: a {kind}", f"_type: {kind} is not known with basis: total" in run.output, run.output[:300])
+finish()
