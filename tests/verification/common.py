@@ -119,7 +119,7 @@ class Run:
     def of_case(case, *options, ranks=1, out=None, exit_code=0, timeout=800):
         """Runs cases/<case> (or a path) with the program under test."""
         folder = CASES / str(case)
-        return run(binary(), folder if folder.is_dir() else case, *options, ranks=ranks, out=out, exit_code=exit_code, timeout=timeout)
+        return run(program_of(case), folder if folder.is_dir() else case, *options, ranks=ranks, out=out, exit_code=exit_code, timeout=timeout)
 
     def csv(self, name):
         if name not in self._csv:

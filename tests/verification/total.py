@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Total Lagrangian (445), `basis: total`: a block squeezed by 30 % stays uniform to round-off, in the plane and in a ring; a soft column converges to its exact
+"""Total Lagrangian (445), `basis: total`: a block squeezed by 30 % stays uniform to round-off, in the plane, in a ring and in space; a soft column converges to its exact
 settlement with second order; layers that settle off the grid's lines drain as those that do not; balance of water, two and four ranks, restart; what it does not
 know it refuses.  (Turns under pressure, a linear T under shear, tangents: tests/unit/test_turning.c, test_model.c.)"""
 from pathlib import Path
@@ -21,10 +21,10 @@ def last(case, *options, **keywords):
 
 # ---------------------------------------------------------------- homogeneous motion across many cells
 rows = []
-for name, options in (("plane", ()), ("ring", ("-geometry", "axisymmetric"))):
+for name, block, options in (("plane", BLOCK, ()), ("ring", BLOCK, ("-geometry", "axisymmetric")), ("space", CASES / "squeezed_block_3d.yaml", ())):
     spread = {}
     for basis in ("total", "cpgimp", "ugimp"):
-        _, v = last(BLOCK, *options, "-basis", basis)
+        _, v = last(block, *options, "-basis", basis)
         J = np.exp(v["log_J"][:, 0])
         spread[basis] = J.max() - J.min()
         if basis == "total":
