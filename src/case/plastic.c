@@ -45,6 +45,8 @@ static void CheckNonlocal(Reader *r, const Scene *c, const Material *m)
   if (p->nonlocal < LEAST_CELLS * h * (1.0 - 1e-9))
     FAIL("plasticity_nonlocal_length", "= %g m is less than two cells; allowed [%g m,1e+06 m], or 0 m for none",
          p->nonlocal, LEAST_CELLS * h);
+  if (c->basis == BASIS_TOTAL)
+    FAIL("plasticity_nonlocal_length", "is not known with basis: total");
   if (p->length > 0.0)
     FAIL("plasticity_nonlocal_length", "and plasticity_softening_length correct for the same thing: give one of them");
   if (p->eta_s == 0.0 || (p->c_res == p->c_max && p->phi_res == p->phi_peak && p->psi_max == 0.0))

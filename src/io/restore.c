@@ -325,6 +325,19 @@ static PetscErrorCode TakeBorders(Model *m, const Loaded *L)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* (445): the run before may have stretched them. */
+static void InitialDomains(const Scene *c, Particles *P)
+{
+  for (PetscInt p = 0; P->total && p < P->n; p++) {
+    double X[CL_DIM], l[CL_DIM];
+
+    ParticleInitialPlace(P, p, X);
+    ParticlesInitialHalfLength(c, P->i[PI_REGION][p], X, l);
+    for (int d = 0; d < CL_DIM; d++)
+      P->f[P_L + d][p] = l[d];
+  }
+}
+
 /* s NULL: as an initial state. */
 static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origin *origin, bool *ok)
 {
@@ -342,6 +355,7 @@ static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origi
     PetscCall(Deal(g, &L));
     PetscCall(ParticlesDestroy(&m->P));
     m->P = L.P;
+    InitialDomains(m->c, &m->P);
     if (s)
       *s = L.s;
     *origin = (Origin){.run = L.run, .t = L.s.t};

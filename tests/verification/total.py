@@ -77,11 +77,17 @@ _, v = last(LAYERS, *TOTAL, "-time_end", "3 d", "-output_times", "1 d,3 d", "-re
 _, whole = last(LAYERS, *TOTAL, "-time_end", "3 d", "-output_times", "1 d,3 d")
 judge(ROW, "total, sand between clays: restarted, displacement apart", largest_difference(v["displacement"], whole["displacement"]), 1e-13, unit="m")
 
+half, _ = last(BLOCK, "-stepper_max_steps", "10")
+_, v = last(BLOCK, *TOTAL, "-restart_as_initial", str(half.out / "checkpoint.h5"), "-bc_load_normal", f"{0.5 * 480139.34761} Pa")
+judge(ROW, "total, block that cpgimp squeezed half of the way: displacement under the same load", np.max(np.abs(v["displacement"])), 1e-7, unit="m")
+
 # ---------------------------------------------------------------- what it does not know
 for options, words in ((("-inertia", "yes", "-stepper_type", "hybrid"), "hybrid does not know basis: total"), (("-mean_dilatation", "yes"), "total is not known with mean_dilatation: yes"),
                        (("-mean_strain", "0.5"), "total is not known with a mean_strain")):  # fmt: skip
     run = Run.of_case(BLOCK, "-quiet", *TOTAL, *options, exit_code=2)
     check_true(f"refused: {words}", words in run.output, run.output[:300])
+run = Run.of_case("biaxial", "-quiet", *TOTAL, "-mat_sand_plasticity_nonlocal_length", "0.05 m", exit_code=2)
+check_true("refused: nonlocal_length", "nonlocal_length: is not known with basis: total" in run.output, run.output[:300])
 for case, kind in (("footing", "plate"), (CASES / "plane_well.yaml", "well")):
     run = Run.of_case(case, "-quiet", *TOTAL, exit_code=2)
     check_true(f"refused: a {kind}", f"_type: {kind} is not known with basis: total" in run.output, run.output[:300])
