@@ -210,7 +210,10 @@ static void TestGradient(void **state)
   static const struct {
     const char *name, *stepper;
     BasisType   basis;
-  } kind[] = {{"euler", "euler", BASIS_CPGIMP}, {"hybrid", "hybrid", BASIS_CPGIMP}, {"total", "euler", BASIS_TOTAL}};
+    double      step; /* length of one, of the whole */
+  } kind[] = {{"euler", "euler", BASIS_CPGIMP, 1.0},
+              {"hybrid", "hybrid", BASIS_CPGIMP, 1.0},
+              {"total", "euler", BASIS_TOTAL, 0.5}};
 
   for (size_t k = 0; k < sizeof(kind) / sizeof(*kind); k++) {
     SmallScene *s = Make(HAS_SOLID | HAS_HEAT, kind[k].basis, kind[k].stepper, SURFACE_TIED, 0.0, 0.2, 1.0, dt);
@@ -218,8 +221,8 @@ static void TestGradient(void **state)
     double      worst = 0.0, checked = 0.0;
     bool        ok;
 
-    s->c.dt                 = dt;
-    s->mat.elasticity.E0    = 100.0; /* its waves go 0.03 mm */
+    s->c.dt                 = kind[k].step * dt; /* the second step of two begins on a strained body */
+    s->mat.elasticity.E0    = 100.0;             /* its waves go 0.03 mm */
     s->m.solver->tol_update = 1e-11;
     s->mat.kappa_s = s->mat.kappa_h = s->mat.kappa_w = s->mat.kappa_g = 0.0;
     for (PetscInt i = 0; i < s->m.P.n; i++) {
