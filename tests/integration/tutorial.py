@@ -37,6 +37,8 @@ def main():
     text = case.read_text()
     run = clean("the case of the page", text)
     check("gas of 30 days as the page says it, t", run.meter("well")["gas_kg"][-1] / 1e3, (9.6, 9.7))
+    run = clean("the same with basis: total", f"{text}\nbasis: total\n")
+    check("gas of 30 days as the page says it of that, t", run.meter("well")["gas_kg"][-1] / 1e3, (9.15, 9.25))
     run = clean("its heater by power", tutorial.powered(text))
     kilowatt = 400 * 2 * np.pi * 0.1 * 4
     check("heat that came in, over its power times time, less one", abs(-run.meter("well")["heat_J"][-1] / (kilowatt * 29.5 * 86400) - 1), 1e-5)
@@ -49,7 +51,7 @@ def main():
         check_true(f"the {what} of the last section takes a step", done.returncode == 0, done.stdout[-300:])
     case.write_text(text)
     more = dict(re.findall(r"^\| `(-[\w ,-]+?)` \|.*\|.*\|(.*)\|$", tutorial.PAGE.read_text(), re.M))
-    check_true("the page's variants are a tolerance and grids", len(more) == 3 and " ".join(tutorial.FINE) in more, str(more))
+    check_true("the page's variants are a tolerance, grids and a basis", len(more) == 6 and " ".join(tutorial.FINE) in more, str(more))
     for option in more:
         done = launch(binary(), case, *option.split(), "-case_check")
         check_true(f"{option} is one", done.returncode == 0, done.stdout[-300:])
