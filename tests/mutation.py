@@ -67,7 +67,7 @@ FAULTS = [
     ("pressure projection without inertia (275)", MODEL + "stabilise.c", [("return 1.0 / (1.0 + PetscSqr(c->t_inertia / m->stage.dt))", "return c->t_inertia >= 0.0 && m->stage.dt > 0.0 ? 1.0 : 0.0")]),
     ("the tangent has 1 % less of every fourth term", MODEL + "rows.c", [("sum[c][l] += s->factor[q][k + c]", "sum[c][l] += (q % 4 == 3 ? 0.99 : 1.0) * s->factor[q][k + c]")]),
     ("the tangent does not know the cell's mean strain (88)", MODEL + "rows.c", [("in[VectorAt(IN_GRADU, d, d)][vs + i] += dt * b->B[i]", "in[VectorAt(IN_GRADU, d, d)][vs + i] += 0.0 * dt * b->B[i]"), ("in[IN_HOOP][vs + i] += dt * b->B[i]", "in[IN_HOOP][vs + i] += 0.0 * dt * b->B[i]")]),
-    ("gradients of the initial configuration are taken for those of t_n (445)", MODEL + "reach.h", [("G[i] = per * VectorDot(cof[i], r->G[a]);", "G[i] = 0.0 * per + r->G[a][i];")]),
+    ("gradients of the initial configuration are taken for those of t_n (445)", MODEL + "reach.h", [("G[i] = VectorDot(A[i], r->G[a]);", "G[i] = r->G[a][i] + 0.0 * A[i][0];")]),
     ("the hoop's too", MODEL + "reach.h", [("r->H[a] *= hoop;", "r->H[a] *= 1.0 + 0.0 * hoop;")]),
     ("ways to the nodes are those of the start (445)", HEADER + "particles.h", [("    v[i] = at[i];\n}\n\n/* What drives", "    v[i] += 0.0 * at[i];\n}\n\n/* What drives")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("= m->c->stabilisation.ghost_penalty * ratio", "= 10.0 * m->c->stabilisation.ghost_penalty * ratio")]),

@@ -83,7 +83,7 @@ enum {
 typedef struct {
   PetscInt  n, cap;     /* particles on this rank, allocated */
   unsigned  has;        /* fields of the scene */
-  bool      total;      /* the grid is that of the initial configuration (445) */
+  bool      total;      /* the body moves, and the grid is that of its initial configuration (445) */
   double   *f[P_COUNT]; /* f[component][particle]; NULL for a variable of a field that the scene has not */
   PetscInt *i[PI_COUNT];
 } Particles;
@@ -132,6 +132,18 @@ static inline void ParticleDeformation(const Particles *P, PetscInt p, double F[
 {
   for (int k = 0; k < CL_DIM * CL_DIM; k++)
     F[k / CL_DIM][k % CL_DIM] = P->f[P_F] ? P->f[P_F + k][p] : k / CL_DIM == k % CL_DIM;
+}
+
+/* A = F^-T of it, which carries gradients (445); dimensionless. */
+static inline void ParticleInverse(const Particles *P, PetscInt p, double A[CL_DIM][CL_DIM])
+{
+  double F[CL_DIM][CL_DIM];
+
+  ParticleDeformation(P, p, F);
+  const double per = 1.0 / CofactorOf(F, A);
+
+  for (int k = 0; k < CL_DIM * CL_DIM; k++)
+    A[k / CL_DIM][k % CL_DIM] *= per;
 }
 
 /* A vector of the grid's configuration, v, at particle p as it is at t_n (445); m. */

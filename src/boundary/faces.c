@@ -212,7 +212,7 @@ void FacePlace(const Scene *c, const Grid *g, const Particles *P, Face *f)
     at[d]   = P->total ? f->x[d] - f->moved[d] : f->x[d];
     half[d] = 0.0;
     for (int t = 0; t < CL_DIM; t++)
-      half[d] += t == axis ? 0.0 : (P->total ? (d == t ? l[t] : 0.0) : fabs(F[d][t]) * l[t]);
+      half[d] += t == axis ? 0.0 : (P->total ? d == t : fabs(F[d][t])) * l[t];
   }
   f->a0 = A * (c->axisymmetric ? 2.0 * M_PI * (f->x[0] - f->moved[0]) : 1.0);
   A *= c->axisymmetric ? 2.0 * M_PI * f->x[0] : 1.0;

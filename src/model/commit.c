@@ -350,16 +350,12 @@ static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const 
 /* (395) on the configuration at t_n. */
 static void WriteMixed(Model *m, PetscInt p, const double *x, const Reach *r)
 {
-  double B[CL_PAIRS], F[CL_DIM][CL_DIM], A[CL_DIM][CL_DIM];
+  double B[CL_PAIRS], A[CL_DIM][CL_DIM];
 
   for (int k = 0; k < CL_PAIRS; k++)
     B[k] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, cl_pair[k]) : 0.0;
   if (m->P.total) {
-    ParticleDeformation(&m->P, p, F);
-    const double per = 1.0 / CofactorOf(F, A);
-
-    for (int k = 0; k < CL_DIM * CL_DIM; k++)
-      A[k / CL_DIM][k % CL_DIM] *= per;
+    ParticleInverse(&m->P, p, A);
     MixedCarry(A, B);
   }
   for (int k = 0; k < CL_PAIRS; k++)

@@ -17,7 +17,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
     line[d] = SceneLines(c, d);
   PetscCall(GridCreateOn(comm, line, &m->grid));
   PetscCall(ParticlesCreate(c->fields.has, &m->P));
-  m->P.total = c->basis == BASIS_TOTAL;
+  m->P.total = c->basis == BASIS_TOTAL && c->fields.solid;
   PetscCall(ParticlesSeed(first, &m->grid, &m->P));
   PetscCall(GeostaticStress(first, &m->grid, &m->P));
   PetscCall(PetscCalloc4(c->nbc, &m->bc.value, c->nbc, &m->bc.shear, c->nbc, &m->bc.phase[0], c->nbc, &m->bc.phase[1]));

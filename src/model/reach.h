@@ -16,16 +16,16 @@ typedef struct {
 /* (445): gradients on the configuration at t_n from those on the grid's. */
 static inline void CarryGradients(const Model *m, PetscInt p, Reach *r)
 {
-  double F[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM];
+  const double hoop = m->c->axisymmetric ? m->stencil[p].r / m->P.f[P_X][p] : 0.0;
+  double       A[CL_DIM][CL_DIM];
 
-  ParticleDeformation(&m->P, p, F);
-  const double per = 1.0 / CofactorOf(F, cof), hoop = m->c->axisymmetric ? m->stencil[p].r / m->P.f[P_X][p] : 0.0;
+  ParticleInverse(&m->P, p, A);
 
   for (int a = 0; a < r->n; a++) {
     double G[CL_DIM];
 
     for (int i = 0; i < CL_DIM; i++)
-      G[i] = per * VectorDot(cof[i], r->G[a]);
+      G[i] = VectorDot(A[i], r->G[a]);
     memcpy(r->G[a], G, sizeof(G));
     if (m->c->axisymmetric)
       r->H[a] *= hoop;

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from _shear_block import CASE as SHEARED, saturated
-from common import Run, binary, check_true, finish, judge, launch, order, program_of, run as finished, scratch, table
+from common import Run, binary, check_true, finish, judge, launch, order, scratch, table
 
 CASE = Path(__file__).parent / "cases" / "heat_source.yaml"
 ROW = "4.3"
@@ -41,7 +41,7 @@ for name, joules, options in (("plane", PLANE * 3 * 3600, RAMP), ("hybrid", PLAN
 # in space: the same rod, 0.2 m long in a wall of 0.3 m
 space = scratch() / "source_3d.yaml"
 space.write_text(re.sub(r"\[(\S+ m), (\S+ m)\]", lambda m: f"[{m[1]}, {m[2]}, {'0 m' if m[1] == '0 m' else '0.1 m' if m[1] == '0.2 m' else '0.3 m'}]", CASE.read_text()).replace("[10, 5]", "[10, 5, 3]"))
-run = finished(program_of(space), space, "-quiet", *CLOSED, *RAMP)
+run = Run.of_case(space, "-quiet", *CLOSED, *RAMP)
 judge(ROW, "closed wall, in space: heat that came in over q V t", abs(run.balance["heat_in_J"][-1] / (500 * PLANE * 0.2 * 3 * 3600) - 1), 1e-12)
 
 for what, options, words in (("a rod without a particle's middle", ("-region_rod_lower", "0.51 m,0.31 m", "-region_rod_upper", "0.52 m,0.32 m"), "bc_warm_region: rod has no particle to heat"),
