@@ -52,11 +52,11 @@ void RowSumInto(const RowSum *s, int sums, int length, bool first, double *const
 
   for (; j + TILE <= lanes; j += TILE)
     SumStrip(s, sums, j, TILE, first, out);
-  if (lanes - j == 4)
+  if (TILE > 4 && lanes - j == 4)
     SumStrip(s, sums, j, 4, first, out);
-  else if (lanes - j == 3)
+  else if (TILE > 3 && lanes - j == 3)
     SumStrip(s, sums, j, 3, first, out);
-  else if (lanes - j == 2)
+  else if (TILE > 2 && lanes - j == 2)
     SumStrip(s, sums, j, 2, first, out);
   else if (lanes - j == 1)
     SumStrip(s, sums, j, 1, first, out);
