@@ -147,6 +147,8 @@ PetscErrorCode ReducedCreate(Model *m)
   PetscCall(VecDuplicate(m->solver->X, &r->diagonal));
   if (r->split)
     PetscCall(ReducedPreferences(r->groups > 1 || !r->fs.solid, r->fs.solid));
+  else
+    PetscCall(ReducedFactorsPreferences());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

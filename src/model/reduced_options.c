@@ -73,6 +73,18 @@ static PetscErrorCode PreferFlow(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* MUMPS orders unknowns by approximate minimum degree: in the plane its factors are as good as those of nested
+   dissection up to the breadths that LU is for (330), and found in an eighth of the time, which is half of a numerical
+   factorisation; in space they cost a third more. */
+PetscErrorCode ReducedFactorsPreferences(void)
+{
+  PetscFunctionBeginUser;
+#if CL_DIM == 2
+  PetscCall(Prefer("-reduced_mat_mumps_icntl_7", "0"));
+#endif
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ReducedPreferences(bool flow, bool motion)
 {
   PetscFunctionBeginUser;

@@ -75,6 +75,7 @@ PetscErrorCode MatrixCopy(const Model *m, Mat P);
 /* The reduced matrix and its solver (reduced.c). */
 /* Types of the solvers of the groups that are there, behind -reduced_..., which options of the user win over. */
 PetscErrorCode  ReducedPreferences(bool flow, bool motion);
+PetscErrorCode  ReducedFactorsPreferences(void); /* of LU of the whole of it */
 PetscErrorCode  ReducedCreate(Model *m);
 PetscErrorCode  ReducedDestroy(Reduced **reduced);
 const FieldSet *ReducedFields(const Model *m);        /* its unknowns */
