@@ -1,5 +1,14 @@
 /* inline: functions that loops over arrays take in whole, so that they stay vector code and numbers that nobody reads
-   cost nothing. */
+   cost nothing; how many numbers a vector register of the machine holds. */
 #pragma once
 
 #define INLINE static inline __attribute__((always_inline))
+
+/* Numbers that are moved together are as many: of wider vectors the compiler keeps what it sums in memory. */
+#if defined(__AVX512F__)
+  #define CL_REGISTER 8
+#elif defined(__AVX__)
+  #define CL_REGISTER 4
+#else
+  #define CL_REGISTER 2
+#endif

@@ -32,24 +32,27 @@ INLINE void GradientOf(const Gathered *g, int q, int k, double G[CL_DIM])
     G[d] = g->grad[d][q][k];
 }
 
-/* From nodes that hold `rows` rows of lanes each; gradients of the first `graded` of them. */
-INLINE void Gather(const Explicit *e, const double *nodes, int rows, int graded, Run r, const Weights *w, Gathered *g)
+/* From nodes that hold so many eights of numbers each; gradients of the first of them. */
+INLINE void Gather(const Explicit *e, const double *nodes, int eights, int graded_eights, Run r, const Weights *w,
+                   Gathered *g)
 {
+  const int rows = eights * PIECES, graded = graded_eights * PIECES;
+
   for (int q = 0; q < r.n; q++) {
     const int *slot = &e->slot[w->first[q]];
-    Lanes      v[GATHERED / LANES], grad[CL_DIM][GRADED / LANES];
+    Piece      v[GATHERED / CL_REGISTER], grad[CL_DIM][GRADED / CL_REGISTER];
 
     for (int z = 0; z < rows; z++)
-      v[z] = (Lanes){0.0};
+      v[z] = (Piece){0.0};
     for (int d = 0; d < CL_DIM; d++) {
       for (int z = 0; z < graded; z++)
-        grad[d][z] = (Lanes){0.0};
+        grad[d][z] = (Piece){0.0};
     }
     for (int k = 0; k < PATCH_ROWS; k++) {
       const PatchRow at = PatchRowOf(e, w, q, k);
 
       for (int a = 0; a < 3; a++) {
-        const Lanes *row = (const Lanes *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
+        const Piece *row = (const Piece *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
         const double S   = w->S[0][a][q] * at.S;
         double       G[CL_DIM];
 
@@ -63,10 +66,10 @@ INLINE void Gather(const Explicit *e, const double *nodes, int rows, int graded,
       }
     }
     for (int z = 0; z < rows; z++)
-      *(Lanes *)&g->value[q][z * LANES] = v[z];
+      *(Piece *)&g->value[q][z * CL_REGISTER] = v[z];
     for (int d = 0; d < CL_DIM; d++) {
       for (int z = 0; z < graded; z++)
-        *(Lanes *)&g->grad[d][q][z * LANES] = grad[d][z];
+        *(Piece *)&g->grad[d][q][z * CL_REGISTER] = grad[d][z];
     }
   }
 }
@@ -157,45 +160,43 @@ enum { CARRY_NOTHING = 0, CARRY_LINEAR, CARRY_BILINEAR };
 INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bool forces, Run r, const Weights *w,
                     const Given *v)
 {
-  const int rows = Rows(count);
+  const int rows = Rows(count) * PIECES;
 
   for (int q = 0; q < r.n; q++) {
     const int   *slot  = &e->slot[w->first[q]];
-    const Lanes *value = (const Lanes *)v->value[q];
-    Lanes        carry[CL_DIM], cross[CL_PAIRS], force[CL_DIM];
+    const Piece *value = (const Piece *)v->value[q];
     double       x[CL_DIM][3];
 
     for (int d = 0; d < CL_DIM; d++) {
-      carry[d] = *(const Lanes *)v->carry[d][q];
-      force[d] = *(const Lanes *)v->force[d][q];
-      x[d][0]  = 0.0;
-      x[d][1]  = 1.0;
-      x[d][2]  = w->third[d][q];
+      x[d][0] = 0.0;
+      x[d][1] = 1.0;
+      x[d][2] = w->third[d][q];
     }
-    for (int c = 0; c < CL_PAIRS; c++)
-      cross[c] = *(const Lanes *)v->cross[c][q];
     for (int k = 0; k < PATCH_ROWS; k++) {
       const PatchRow at = PatchRowOf(e, w, q, k);
 
       for (int a = 0; a < 3; a++) {
-        Lanes       *row   = (Lanes *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
-        Lanes        first = value[0];
-        const double S     = w->S[0][a][q] * at.S;
+        Piece       *row = (Piece *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
+        const double S   = w->S[0][a][q] * at.S;
         double       G[CL_DIM], place[CL_DIM];
 
         PatchGradient(w, q, &at, a, G);
         place[0] = x[0][a];
         for (int d = 1; d < CL_DIM; d++)
           place[d] = x[d][at.place[d]];
-        for (int d = 0; d < CL_DIM && carries; d++)
-          first += carry[d] * place[d];
-        for (int c = 0; c < CL_PAIRS && carries == CARRY_BILINEAR; c++)
-          first += cross[c] * (place[cl_pair[c][0]] * place[cl_pair[c][1]]);
-        first *= S;
-        for (int d = 0; d < CL_DIM && forces; d++)
-          first += force[d] * G[d];
-        row[0] += first;
-        for (int z = 1; z < rows; z++)
+        for (int z = 0; z < PIECES; z++) {
+          Piece first = value[z];
+
+          for (int d = 0; d < CL_DIM && carries; d++)
+            first += ((const Piece *)v->carry[d][q])[z] * place[d];
+          for (int c = 0; c < CL_PAIRS && carries == CARRY_BILINEAR; c++)
+            first += ((const Piece *)v->cross[c][q])[z] * (place[cl_pair[c][0]] * place[cl_pair[c][1]]);
+          first *= S;
+          for (int d = 0; d < CL_DIM && forces; d++)
+            first += ((const Piece *)v->force[d][q])[z] * G[d];
+          row[z] += first;
+        }
+        for (int z = PIECES; z < rows; z++)
           row[z] += value[z] * S;
       }
     }

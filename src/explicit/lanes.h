@@ -17,7 +17,9 @@
 #define STRAIGHT 0.5      /* of p_0: change of p_c over which s_g(p_c) is nearly straight */
 #define PRESSURE_UNIT 1e6 /* Pa, of the unknowns of (151) */
 
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias));
+#define PIECES (LANES / CL_REGISTER) /* of eight lanes */
+typedef double Lanes[LANES];
+typedef double Piece __attribute__((vector_size(CL_REGISTER * sizeof(double)), may_alias));
 
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {

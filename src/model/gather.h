@@ -4,12 +4,8 @@
 #include "weights.h"
 
 /* What nodes and particles exchange, and rows of the tangent, are whole numbers of these, so that sums of them are
-   vector code whatever the fields.  As wide as a register: of wider ones the compiler keeps what it sums in memory. */
-#ifdef __AVX512F__
-  #define LANES 8
-#else
-  #define LANES 4
-#endif
+   vector code whatever the fields. */
+#define LANES CL_REGISTER
 typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias, aligned(sizeof(double))));
 
 /* Model.give, what a node holds for its particles: they sum it with S, what stands from GIVE_GRAD on with G. */
