@@ -1,15 +1,17 @@
 /* What the solvers of the reduced preconditioner are, unless the user gave options of theirs. */
 #include "gather.h"
 
-/* An option of the solver unless the user gave it. */
+/* An option of the solver unless the user gave it; nobody is told if nothing takes it. */
 static PetscErrorCode Prefer(const char *name, const char *value)
 {
   PetscBool given;
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
-  if (!given)
-    PetscCall(PetscOptionsSetValue(NULL, name, value));
+  if (given)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscOptionsSetValue(NULL, name, value));
+  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given)); /* used */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
