@@ -58,6 +58,10 @@ SETS = [
 ]
 
 
+# cells across, bursts: in the cache of a core, in that of the processor, in memory
+SIZES = ((32, 20), (71, 4), (224, 1))
+
+
 def stream_copy():
     """Bytes a second, read and written, of a copy far larger than the caches: the best of five."""
     a = np.ones(25_000_000)
@@ -106,16 +110,19 @@ def run(binary, kind, n, bursts):
 
 
 def table(binary):
-    """Rows of the table, with a stream copy of the same run."""
+    """Rows of the table, with a stream copy of the same run; and of each scene the share of the time in memory that goes when it fits the cache."""
     copy = stream_copy()
-    rows = []
+    rows, waits = [], []
     for kind in SETS:
-        for n, bursts in ((71, 4), (224, 1)):
+        rates = []
+        for n, bursts in SIZES:
             steps, events, memory, yields = run(binary, kind, n, bursts)
             particles, seconds = 4 * n * n, sum(events.values())
             rate = particles * steps / seconds
+            rates.append(rate)
             shares = [f"{100 * events.get(e, 0.0) / seconds:.0f} %" for e in PARTS]
             rows.append([kind[0] + (f", {100 * yields:.0f} % yield" if yields else ""), particles, f"{rate / 1e6:.2f}", *shares, f"{memory:.0f}", f"{100 * rate * traffic(kind[1]) / copy:.0f} %"])
             print(rows[-1], flush=True)
+        waits.append(1 - rates[-1] / rates[0])
     head = ["scene", "particles", "million particle-steps a second", *PARTS.values(), "B a particle", "traffic of a stream copy"]
-    return head, rows, copy
+    return head, rows, copy, waits
