@@ -26,6 +26,7 @@ UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bond
 FIRST = {"laws": "laws_values", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
         "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "total", "century_tolerance", "bp2_reference")  # fmt: skip
+SPACE = ("total",)  # of these with scenes in space
 
 # (name, file, [(what stands there, what is planted), ...])
 LAWS, POINT, MODEL, BOUNDARY, EXPLICIT, HEADER = "src/laws/", "src/point/", "src/model/", "src/boundary/", "src/explicit/", "include/clathra/"
@@ -92,9 +93,9 @@ def copy(folder):
             shutil.copy(ROOT / name, folder / name)
 
 
-def build(folder, target):
-    """What the compiler says against it; "" if nothing."""
-    done = subprocess.run(["ninja", "-C", str(folder / "build"), target], capture_output=True, text=True)
+def build(folder, targets):
+    """What the compiler says against them; "" if nothing."""
+    done = subprocess.run(["ninja", "-C", str(folder / "build"), *targets], capture_output=True, text=True)
     return "" if done.returncode == 0 else done.stdout[-1500:]
 
 
@@ -107,9 +108,9 @@ def tests(folder, path):
     """(name, what it needs, command) of the quick tests, those of the fault's folder first."""
     own = FIRST[Path(path).parts[1]]
     for name in sorted(UNIT, key=lambda u: u != own):
-        yield f"unit/test_{name}", f"tests/test_{name}", ["mpiexec", "-n", "1", str(folder / "build" / "tests" / f"test_{name}")]
+        yield f"unit/test_{name}", [f"tests/test_{name}"], ["mpiexec", "-n", "1", str(folder / "build" / "tests" / f"test_{name}")]
     for name in RUNS:
-        yield f"verification/{name}", "clathra", [sys.executable, str(folder / "tests" / "verification" / f"{name}.py"), str(folder / "build" / "clathra")]
+        yield f"verification/{name}", ["clathra", "clathra3d"] if name in SPACE else ["clathra"], [sys.executable, str(folder / "tests" / "verification" / f"{name}.py"), str(folder / "build" / "clathra")]
 
 
 def said(text):
@@ -120,8 +121,8 @@ def said(text):
 
 def found_by(folder, path):
     """(test, what it says) of the first quick test that fails; None: they all pass."""
-    for name, target, command in tests(folder, path):
-        against = build(folder, target)
+    for name, targets, command in tests(folder, path):
+        against = build(folder, targets)
         if against:
             return "the compiler", against.splitlines()[-1]
         try:
