@@ -123,6 +123,6 @@ def table(binary):
             shares = [f"{100 * events.get(e, 0.0) / seconds:.0f} %" for e in PARTS]
             rows.append([kind[0] + (f", {100 * yields:.0f} % yield" if yields else ""), particles, f"{rate / 1e6:.2f}", *shares, f"{memory:.0f}", f"{100 * rate * traffic(kind[1]) / copy:.0f} %"])
             print(rows[-1], flush=True)
-        waits.append(1 - rates[-1] / rates[0])
+        waits.append(1 - rates[-1] / max(rates))
     head = ["scene", "particles", "million particle-steps a second", *PARTS.values(), "B a particle", "traffic of a stream copy"]
     return head, rows, copy, waits
