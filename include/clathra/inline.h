@@ -1,5 +1,5 @@
 /* inline: functions that loops over arrays take in whole, so that they stay vector code and numbers that nobody reads
-   cost nothing; how many numbers a vector register of the machine holds. */
+   cost nothing; a vector register of the machine. */
 #pragma once
 
 #define INLINE static inline __attribute__((always_inline))
@@ -12,3 +12,4 @@
 #else
   #define CL_REGISTER 2
 #endif
+typedef double Register __attribute__((vector_size(CL_REGISTER * sizeof(double)), may_alias, aligned(sizeof(double))));

@@ -40,21 +40,21 @@ INLINE void Gather(const Explicit *e, const double *nodes, int eights, int grade
 
   for (int q = 0; q < r.n; q++) {
     const int *slot = &e->slot[w->first[q]];
-    Piece      v[GATHERED / CL_REGISTER], grad[CL_DIM][GRADED / CL_REGISTER];
+    Register   v[GATHERED / CL_REGISTER], grad[CL_DIM][GRADED / CL_REGISTER];
 
     for (int z = 0; z < rows; z++)
-      v[z] = (Piece){0.0};
+      v[z] = (Register){0.0};
     for (int d = 0; d < CL_DIM; d++) {
       for (int z = 0; z < graded; z++)
-        grad[d][z] = (Piece){0.0};
+        grad[d][z] = (Register){0.0};
     }
     for (int k = 0; k < PATCH_ROWS; k++) {
       const PatchRow at = PatchRowOf(e, w, q, k);
 
       for (int a = 0; a < 3; a++) {
-        const Piece *row = (const Piece *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
-        const double S   = w->S[0][a][q] * at.S;
-        double       G[CL_DIM];
+        const Register *row = (const Register *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
+        const double    S   = w->S[0][a][q] * at.S;
+        double          G[CL_DIM];
 
         PatchGradient(w, q, &at, a, G);
         for (int z = 0; z < graded; z++) {
@@ -66,10 +66,10 @@ INLINE void Gather(const Explicit *e, const double *nodes, int eights, int grade
       }
     }
     for (int z = 0; z < rows; z++)
-      *(Piece *)&g->value[q][z * CL_REGISTER] = v[z];
+      *(Register *)&g->value[q][z * CL_REGISTER] = v[z];
     for (int d = 0; d < CL_DIM; d++) {
       for (int z = 0; z < graded; z++)
-        *(Piece *)&g->grad[d][q][z * CL_REGISTER] = grad[d][z];
+        *(Register *)&g->grad[d][q][z * CL_REGISTER] = grad[d][z];
     }
   }
 }
@@ -163,9 +163,9 @@ INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bo
   const int rows = Rows(count) * PIECES;
 
   for (int q = 0; q < r.n; q++) {
-    const int   *slot  = &e->slot[w->first[q]];
-    const Piece *value = (const Piece *)v->value[q];
-    double       x[CL_DIM][3];
+    const int      *slot  = &e->slot[w->first[q]];
+    const Register *value = (const Register *)v->value[q];
+    double          x[CL_DIM][3];
 
     for (int d = 0; d < CL_DIM; d++) {
       x[d][0] = 0.0;
@@ -176,7 +176,7 @@ INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bo
       const PatchRow at = PatchRowOf(e, w, q, k);
 
       for (int a = 0; a < 3; a++) {
-        Piece       *row = (Piece *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
+        Register    *row = (Register *)nodes + (size_t)slot[at.at + a] * (size_t)rows;
         const double S   = w->S[0][a][q] * at.S;
         double       G[CL_DIM], place[CL_DIM];
 
@@ -185,15 +185,15 @@ INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bo
         for (int d = 1; d < CL_DIM; d++)
           place[d] = x[d][at.place[d]];
         for (int z = 0; z < PIECES; z++) {
-          Piece first = value[z];
+          Register first = value[z];
 
           for (int d = 0; d < CL_DIM && carries; d++)
-            first += ((const Piece *)v->carry[d][q])[z] * place[d];
+            first += ((const Register *)v->carry[d][q])[z] * place[d];
           for (int c = 0; c < CL_PAIRS && carries == CARRY_BILINEAR; c++)
-            first += ((const Piece *)v->cross[c][q])[z] * (place[cl_pair[c][0]] * place[cl_pair[c][1]]);
+            first += ((const Register *)v->cross[c][q])[z] * (place[cl_pair[c][0]] * place[cl_pair[c][1]]);
           first *= S;
           for (int d = 0; d < CL_DIM && forces; d++)
-            first += ((const Piece *)v->force[d][q])[z] * G[d];
+            first += ((const Register *)v->force[d][q])[z] * G[d];
           row[z] += first;
         }
         for (int z = PIECES; z < rows; z++)

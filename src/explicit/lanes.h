@@ -19,7 +19,6 @@
 
 #define PIECES (LANES / CL_REGISTER) /* of eight lanes */
 typedef double Lanes[LANES];
-typedef double Piece __attribute__((vector_size(CL_REGISTER * sizeof(double)), may_alias));
 
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {

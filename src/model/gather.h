@@ -6,7 +6,7 @@
 /* What nodes and particles exchange, and rows of the tangent, are whole numbers of these, so that sums of them are
    vector code whatever the fields. */
 #define LANES CL_REGISTER
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), may_alias, aligned(sizeof(double))));
+typedef Register Lanes;
 
 /* Model.give, what a node holds for its particles: they sum it with S, what stands from GIVE_GRAD on with G. */
 /* So many numbers in whole Lanes, whatever their width. */
