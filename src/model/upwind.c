@@ -2,13 +2,19 @@
 #include "clathra/point_heat.h"
 #include "gather.h"
 
+#define WHOLE 0.5    /* of a particle: the node's share is the particle's */
 #define LEAST_T 1e-3 /* K from node to node: below it is what Newton's method and round-off leave */
 
-enum { SHARE, KNOWN, BOTH }; /* of a node along an axis; it has neighbours on both sides: 1, else 0 */
+enum { BEND, KNOWN, BOTH }; /* of a node along an axis; it has neighbours on both sides: 1, else 0 */
 
-static inline double *At(double *node, PetscInt I, int d, int what)
+static inline double BendOf(const double *bend, PetscInt I, int d)
 {
-  return &node[(I * CL_DIM + d) * BOTH + what];
+  return bend[(I * CL_DIM + d) * BOTH + BEND];
+}
+
+static inline bool Known(const double *bend, PetscInt I, int d)
+{
+  return bend[(I * CL_DIM + d) * BOTH + KNOWN] > 0.0;
 }
 
 /* The neighbours of an owned node along axis d; negative: there is none. */
@@ -42,7 +48,7 @@ static double Bend(const Model *m, PetscInt I, int d, const PetscInt K[2])
   return turn > 0.0 ? copysign(turn, after - before) : 0.0;
 }
 
-static PetscErrorCode FindBends(Model *m, double *node)
+static PetscErrorCode FindBends(Model *m, double *bend)
 {
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
@@ -52,11 +58,11 @@ static PetscErrorCode FindBends(Model *m, double *node)
       Beside(m, I, d, K);
       if (K[0] < 0 || K[1] < 0)
         continue;
-      *At(node, I, d, SHARE) = Bend(m, I, d, K);
-      *At(node, I, d, KNOWN) = 1.0;
+      bend[(I * CL_DIM + d) * BOTH + BEND]  = Bend(m, I, d, K);
+      bend[(I * CL_DIM + d) * BOTH + KNOWN] = 1.0;
     }
   }
-  PetscCall(NodeMapSum(&m->map, node, BOTH * CL_DIM));
+  PetscCall(NodeMapSum(&m->map, bend, BOTH * CL_DIM));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,17 +85,19 @@ static double CarriedAlong(const Model *m, PetscInt I, int d)
 
 /* Harmonic mean of the bends of a node and of a neighbour that bends the other way, as a border does that the flow
    comes from. */
-static double Alternates(const Model *m, double *bend, PetscInt I, int d, const PetscInt K[2])
+static double Alternates(const Model *m, const double *bend, const double *found, PetscInt I, int d,
+                         const PetscInt K[2])
 {
-  const double own  = *At(bend, I, d, SHARE);
+  const double own  = BendOf(bend, I, d);
   double       most = 0.0;
 
+  (void)found;
   if (own == 0.0)
     return 0.0;
   for (int side = 0; side < 2; side++) {
-    const bool   known  = *At(bend, K[side], d, KNOWN) > 0.0;
+    const bool   known  = Known(bend, K[side], d);
     const bool   enters = !known && (side ? -1.0 : 1.0) * CarriedAlong(m, I, d) > 0.0;
-    const double other  = known ? *At(bend, K[side], d, SHARE) : enters ? -own : 0.0;
+    const double other  = known ? BendOf(bend, K[side], d) : enters ? -own : 0.0;
 
     if (own * other < 0.0)
       most = fmax(most, -2.0 * own * other / (fabs(own) + fabs(other)));
@@ -97,58 +105,69 @@ static double Alternates(const Model *m, double *bend, PetscInt I, int d, const 
   return most;
 }
 
-/* Shares of the nodes, from their bends. */
-static PetscErrorCode FindShares(Model *m, double *bend, double *node)
+/* ... or of a bend beside one that alternates: the next one that it will have. */
+static double Lent(const Model *m, const double *bend, const double *found, PetscInt I, int d, const PetscInt K[2])
+{
+  const double own = fabs(BendOf(bend, I, d)), beside = fmax(found[K[0] * CL_DIM + d], found[K[1] * CL_DIM + d]);
+
+  (void)m;
+  return fmax(found[I * CL_DIM + d], fmin(own, beside));
+}
+
+/* Of the nodes with neighbours on both sides along an axis: share[] from `of`, given to all ranks. */
+typedef double OfNode(const Model *m, const double *bend, const double *found, PetscInt I, int d, const PetscInt K[2]);
+
+static PetscErrorCode Shares(Model *m, OfNode *of, const double *bend, const double *found, double *share)
 {
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
     for (int d = 0; d < CL_DIM; d++) {
       PetscInt K[2];
 
-      if (!(*At(bend, I, d, KNOWN) > 0.0))
+      if (!Known(bend, I, d))
         continue;
       Beside(m, I, d, K);
-      *At(node, I, d, SHARE) = Alternates(m, bend, I, d, K);
-      *At(node, I, d, KNOWN) = 1.0;
+      share[I * CL_DIM + d] = of(m, bend, found, I, d, K);
     }
   }
-  PetscCall(NodeMapSum(&m->map, node, BOTH * CL_DIM));
+  PetscCall(NodeMapSum(&m->map, share, CL_DIM));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* theta of a particle whose heat is carried along the axis of K, a h-weighted mean over the axes. */
-static double ShareOf(const Model *m, PetscInt p, const double K[CL_SYMMETRIC], double *node)
+/* theta of a particle, a mean over the axes weighted with h_d |a_d|; K: its (293). */
+static double ShareOf(const Model *m, PetscInt p, const double K[CL_SYMMETRIC], const double *bend, const double *share)
 {
-  double h[CL_DIM], share = 0.0, all = 0.0;
+  double h[CL_DIM], sum = 0.0, all = 0.0;
   Reach  r;
 
   CellWidths(m, p, h);
   ReachExpand(m, p, &r);
   for (int d = 0; d < CL_DIM; d++) {
-    const double w  = h[d] * sqrt(K[cl_symmetric[d][d]]); /* h_d |a_d| */
+    const double w  = h[d] * sqrt(K[cl_symmetric[d][d]]);
     double       of = 0.0, known = 0.0;
 
     for (int a = 0; a < r.n; a++) {
-      of += r.S[a] * *At(node, r.node[a], d, SHARE);
-      known += r.S[a] * *At(node, r.node[a], d, KNOWN);
+      of += r.S[a] * share[r.node[a] * CL_DIM + d];
+      known += Known(bend, r.node[a], d) ? r.S[a] : 0.0;
     }
-    share += known > 0.0 ? w * of / known : 0.0;
+    sum += known > 0.0 ? w * fmin(1.0, of / (WHOLE * known)) : 0.0;
     all += w;
   }
-  return all > 0.0 ? share / all : 0.0;
+  return all > 0.0 ? sum / all : 0.0;
 }
 
 PetscErrorCode UpwindLimit(Model *m)
 {
-  const size_t size = (size_t)BOTH * CL_DIM * m->map.n_local;
-  double      *bend, *node;
+  const size_t size = (size_t)CL_DIM * m->map.n_local;
+  double      *bend, *found, *share;
 
   PetscFunctionBeginUser;
   if (!SceneCarriesHeat(m->c) || m->c->stabilisation.heat != HEAT_AUTO)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(size, &bend, size, &node));
+  PetscCall(PetscCalloc3(BOTH * size, &bend, size, &found, size, &share));
   PetscCall(FindBends(m, bend));
-  PetscCall(FindShares(m, bend, node));
+  PetscCall(Shares(m, Alternates, bend, NULL, found));
+  PetscCall(Shares(m, Lent, bend, found, share));
   for (PetscInt p = 0; p < m->P.n; p++) {
     double *K     = &m->added->upwind[CL_SYMMETRIC * p];
     double  trace = 0.0;
@@ -157,11 +176,11 @@ PetscErrorCode UpwindLimit(Model *m)
       trace += K[cl_symmetric[d][d]];
     if (!(trace > 0.0))
       continue;
-    const double share = ShareOf(m, p, K, node);
+    const double theta = ShareOf(m, p, K, bend, share);
 
     for (int k = 0; k < CL_SYMMETRIC; k++)
-      K[k] *= share;
+      K[k] *= theta;
   }
-  PetscCall(PetscFree2(bend, node));
+  PetscCall(PetscFree3(bend, found, share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,6 +12,8 @@
 #include "model/additions.h"
 #include "model/gather.h"
 
+#define CONDUCTIVITY 0.7 /* W/(m K) that is to be left or not */
+
 typedef double Field(const PetscInt ij[CL_DIM], int axis);
 
 static const double middle[CL_DIM] = {0.3, 0.16}, turn = 0.35; /* rad */
@@ -61,6 +63,14 @@ static double BesideBorder(const PetscInt ij[CL_DIM], int axis)
   return ij[axis] == 1 ? -0.5 : ij[axis] == 0 ? 0.0 : 0.5 * (double)ij[axis];
 }
 
+/* Alternates in nodes 1 to 3; node 4 is a corner whose next one bends nowhere. */
+static double Corner(const PetscInt ij[CL_DIM], int axis)
+{
+  static const double T[5] = {0.0, 0.0, -0.2, 0.2, 0.1};
+
+  return ij[axis] < 5 ? T[ij[axis]] : 0.1 - 5.0 * (double)(ij[axis] - 4);
+}
+
 static void Turn(SmallScene *s)
 {
   for (PetscInt i = 0; i < s->m.P.n; i++) {
@@ -94,19 +104,18 @@ static SmallScene *Make(bool turned)
 /* Least and largest share of the conductivity along `axis` that is left to a particle. */
 static void Shares(SmallScene *s, Field *field, int axis, double share[2])
 {
-  Model       *m = &s->m;
-  const double K = 0.7;
+  Model *m = &s->m;
 
   for (PetscInt I = 0; I < m->map.n_local; I++)
     m->x_n[I * m->c->fields.n + PlaceT(&m->c->fields)] = above + factor * field(m->map.ij[I], axis);
   Call(PetscArrayzero(m->added->upwind, CL_SYMMETRIC * m->P.n));
   for (PetscInt p = 0; p < m->P.n; p++)
-    m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]] = K;
+    m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]] = CONDUCTIVITY;
   Call(UpwindLimit(m));
   share[0] = -INFINITY;
   share[1] = -INFINITY;
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double of = m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]] / K;
+    const double of = m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]] / CONDUCTIVITY;
 
     share[0] = fmax(share[0], -of);
     share[1] = fmax(share[1], of);
@@ -175,6 +184,46 @@ static void TestNoise(void **state)
   free(s);
 }
 
+/* Least and largest share of the particles between nodes k and k + 1, after Shares. */
+static void Between(const SmallScene *s, int axis, PetscInt k, double share[2])
+{
+  const Model *m = &s->m;
+
+  share[0] = share[1] = -INFINITY;
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    const double x = ParticleGridX(&m->P, p, axis), of = m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]];
+
+    if (x < GridNode(&m->grid, axis, k) || x > GridNode(&m->grid, axis, k + 1))
+      continue;
+    share[0] = fmax(share[0], -of / CONDUCTIVITY);
+    share[1] = fmax(share[1], of / CONDUCTIVITY);
+  }
+  share[0] = -Largest(share[0]);
+  share[1] = Largest(share[1]);
+}
+
+/* A corner beside nodes that alternate is next to them; the straight slope behind it is not. */
+static void TestCorner(void **state)
+{
+  SmallScene *s = Make(false);
+
+  (void)state;
+  above  = 4.0;
+  factor = 1.0;
+  for (int axis = 0; axis < CL_DIM; axis++) {
+    double all[2], beside[2], beyond[2];
+
+    Shares(s, Corner, axis, all);
+    Between(s, axis, 4, beside);
+    Between(s, axis, 5, beyond);
+    Say("  behind a corner along %c: %.3g to %.3g, a cell further %.3g to %.3g\n", axis ? 'y' : 'x', beside[0],
+        beside[1], beyond[0], beyond[1]);
+    Check(beside[0] > 0.2 && beside[1] > 0.9 && beyond[1] < 1e-12);
+  }
+  SceneDestroy(s);
+  free(s);
+}
+
 /* The water flows along an axis at 1 m/s times `sign`. */
 static void Flow(SmallScene *s, int axis, double sign)
 {
@@ -212,7 +261,7 @@ static void TestBorder(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(TestWhere), cmocka_unit_test(TestNoise),
-                                     cmocka_unit_test(TestBorder)};
+                                     cmocka_unit_test(TestCorner), cmocka_unit_test(TestBorder)};
 
   return RunTests(argc, argv, tests, NULL, NULL);
 }

@@ -36,7 +36,7 @@ WARNS = "stabilisation_heat: auto, where flow carries the heat"
 check_true("a run by them ends with a warning that names it, one with (293) does not", WARNS in OFF.output.splitlines()[-1] + OFF.output.splitlines()[-2] and "than start" not in ON.output, OFF.output[-300:])
 AUTO, auto, beyond = fronts("auto")
 rows.append(("sdirk2", "auto", auto.min(), auto.max()))
-judge("fronts", "sdirk2, where T alternates: beyond 10 and 20 degC, K", beyond, 0.2)
+judge("fronts", "sdirk2, where T alternates: beyond 10 and 20 degC, K", beyond, 0.02)
 judge("fronts", "sdirk2, where T alternates: balance of heat, of 1 K of the body", np.max(np.abs(AUTO.balance["heat_error"])), 1e-8)
 HYBRID = ("-stepper_type", "hybrid", "-inertia", "yes", "-mat_sand_water_bulk_modulus", "1 MPa", "-time_end", "12 h", "-output_times", "0 s, 12 h")
 _, hy, hybrid = fronts("everywhere", *HYBRID)
@@ -64,7 +64,7 @@ def carried(word, **keywords):
 
 
 rows = []
-for word, warmer, off in (("central", (0.5, 3), (0.9, 3)), ("auto", 0.2, 0.05), ("everywhere", 0.05, 0.05)):
+for word, warmer, off in (("central", (0.5, 3), (0.9, 3)), ("auto", 0.05, 0.02), ("everywhere", 0.05, 0.05)):
     run, above, away = carried(word)
     rows.append((word, above, away))
     judge("fronts", f"into hydrate, {word}: warmer than what flows in and than hydrate in equilibrium, K", above, warmer)
