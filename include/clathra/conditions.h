@@ -66,8 +66,8 @@ typedef enum {
 enum { BC_FACES = BC_FACE_END_ }; /* kinds from BC_NONE + 1 to before this act on faces */
 /* Of these, bits 1 << BcType of those that act on particles inside the body. */
 enum { BC_INSIDE = 1u << BC_WELL | 1u << BC_HEAT_SOURCE };
-/* ... and those that count on a grid that stands still: not with BASIS_TOTAL. */
-enum { BC_CURRENT = 1u << BC_WELL | 1u << BC_PLATE | 1u << BC_PLATE_LINE };
+/* Those that count on a grid that stands still: not with BASIS_TOTAL. */
+enum { BC_CURRENT = 1u << BC_PLATE | 1u << BC_PLATE_LINE };
 #undef CL_CONDITION_ID
 
 /* Bits 1 << BcType of those that the integrators without a matrix know. */
