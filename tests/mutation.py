@@ -22,10 +22,10 @@ from common import environment  # noqa: E402
 
 # The quick tests, in the order in which they are asked: seconds in all.
 UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "unseen", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene",
-        "fieldsets", "turning")  # fmt: skip
+        "fieldsets", "turning", "upwind")  # fmt: skip
 FIRST = {"laws": "laws_values", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
-        "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "total", "century_tolerance", "bp2_reference")  # fmt: skip
+        "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "total", "century_tolerance", "thin_cells", "heat_source", "bp2_reference")  # fmt: skip
 SPACE = ("total",)  # of these with scenes in space
 
 # (name, file, [(what stands there, what is planted), ...])
@@ -72,6 +72,9 @@ FAULTS = [
     ("gradients of the initial configuration are taken for those of t_n (445)", MODEL + "reach.h", [("G[i] = VectorDot(A[i], r->G[a]);", "G[i] = r->G[a][i] + 0.0 * A[i][0];")]),
     ("the hoop's too", MODEL + "reach.h", [("r->H[a] *= hoop;", "r->H[a] *= 1.0 + 0.0 * hoop;")]),
     ("ways to the nodes are those of the start (445)", HEADER + "particles.h", [("    v[i] = at[i];\n}\n\n/* What drives", "    v[i] += 0.0 * at[i];\n}\n\n/* What drives")]),
+    ("a corner beside nodes that alternate carries heat as if it were alone (440)", MODEL + "upwind.c", [("fmin(own, beside)", "0.0 * fmin(own, beside)")]),
+    ("the twist of T in long cells counts two thirds (444)", MODEL + "thin.c", [("0.0) / 6.0;", "0.0) / 9.0;")]),
+    ("a heat source forgets its particle's volume at the start (443)", BOUNDARY + "faces.c", [("  return ParticleInitialVolume(c, x0, l);", "  return 0.0 * ParticleInitialVolume(c, x0, l) + P->f[P_V][p];")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("= m->c->stabilisation.ghost_penalty * ratio", "= 10.0 * m->c->stabilisation.ghost_penalty * ratio")]),
     ("slivers are tied until they hold half of what is beside them (351)", MODEL + "stabilise.c", [("fmax(1.0 - 4.0 * least / most, 0.0) * least", "fmax(1.0 - 2.0 * least / most, 0.0) * least")]),
     ("the tie (351) is that of whole pressures, not of what they change by", MODEL + "stabilise.c", [("pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);", "pull -= 0.0 * g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);")]),
