@@ -90,6 +90,10 @@ PetscErrorCode LongSummary(const Model *m, char text[256]);          /* domains 
 void           IceSummary(const Stepper *s, char text[256]);         /* water below its melting point */
 PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */
 
+/* ---------------------------------------------------------------- borders.c */
+/* At the end: borders of layers that have left the grid's lines; collective. */
+PetscErrorCode NoteBorders(const Stepper *s);
+
 /* ---------------------------------------------------------------- ranges.c */
 /* Lines of the summary: the extremes of p and T. */
 PetscErrorCode RangeSummary(const Stepper *s, char text[512]);

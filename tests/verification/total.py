@@ -63,6 +63,11 @@ for basis in ("total", "cpgimp"):
 table(("sand between clays: mm of", "lower clay", "upper clay", "water, t", "steps"), rows)
 judge(ROW, "total, sand between clays: the clays' compression apart", abs(found["total"][0] / found["total"][1] - 1), 0.01, 0.01, "%")
 check_true("... on a fixed grid by more than a half", found["cpgimp"][0] / found["cpgimp"][1] > 1.5)
+NOTE = "the border between clay and sand lay on a line of the grid and is"
+check_true("... whose run says so, and the other does not", NOTE in found["cpgimp"][3].output and "basis: total, where" in found["cpgimp"][3].output and "the border between" not in found["total"][3].output, found["cpgimp"][3].output[-600:])
+EARLY = ("-basis", "cpgimp", "-time_end", "0.5 d", "-output_times", "0.5 d")
+said = [[line for line in last(LAYERS, *EARLY, *more, ranks=n)[0].output.splitlines() if "the border between" in line] for n, *more in ((1,), (2,), (1, "-mat_clay_permeability_k0", "5e-15 m^2"))]
+check_true("... on 2 ranks the same, and nothing where they differ by 100", len(said[0]) == 1 and said[0] == said[1] and not said[2], str(said))
 run = found["total"][3]
 judge(ROW, "total, sand between clays: balance of water", np.max(np.abs(run.balance["water_error"])), 1e-13)
 
