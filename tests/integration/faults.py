@@ -6,7 +6,6 @@ fault.c) and then gone on with, from its last checkpoint or anew: what is left m
 for bit, and the disturbed run must have said in one sentence what could not be written (exit code 3).  A few calls of
 each kind are taken; CLATHRA_FAULTS=all takes all.
 """
-import concurrent.futures
 import os
 import resource
 import shutil
@@ -95,12 +94,11 @@ def check_calls():
     code, text, calls = disturbed("none", 0, straight.out)
     check_true("the undisturbed run", code == 0 and calls > 60, f"{calls} calls: {text[-200:] if code else ''}")
     every = 1 if ALL else max(1, calls // 6)
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        for k, how in enumerate(("kill", "full", "once", "gone")):
-            places = range(1 + (0 if ALL else k), calls + 1, every)
-            wrong = [w for w in pool.map(survive, [(how, at) for at in places]) if w]
-            check_true(f"{how}: said, and gone on with to the same bits, at {len(places)} of {calls} calls", not wrong,
-                       "; ".join(wrong[:5]))  # fmt: skip
+    for k, how in enumerate(("kill", "full", "once", "gone")):
+        places = range(1 + (0 if ALL else k), calls + 1, every)
+        wrong = [w for w in (survive((how, at)) for at in places) if w]
+        check_true(f"{how}: said, and gone on with to the same bits, at {len(places)} of {calls} calls", not wrong,
+                   "; ".join(wrong[:5]))  # fmt: skip
 
 
 def wait_for(path, job):
