@@ -73,10 +73,11 @@ def slope(passes, *options, loaded=10.0, end=11.5, ranks=1):
     """(run, methane that is in other particles than at the start of the heating over what came of hydrate)"""
     run = Run.of_case("slope_a", "-quiet", "-grid_cells", "30,6", "-gravity_ramp", f"{loaded} s", "-stage_load_end", f"{loaded} s", "-stage_slide_end", f"{end} s", "-output_every", "0.5s",
                       "-stepper_storage_passes", passes, *options, ranks=ranks)  # fmt: skip
+    how = (", increments of p_g" if options else "") + (f", loaded in {loaded:g} s" if loaded < 10 else "")
     loaded, end = run.snapshot(loaded), run.snapshots()[-1][1]
     methane, hydrate = ({at: s["mass_gas"][:, 0] * gas + s["mass_hydrate"][:, 0] * SHARE for at, s in (("loaded", loaded), ("end", end))} for gas in (1, 0))
     for what in ("water", "methane", "heat"):
-        judge(ROW, f"heated slope, {passes} passes{', increments of p_g' if options else ''}, {ranks} ranks: {what} balance", np.max(np.abs(run.balance[f"{what}_error"])), 1e-11)
+        judge(ROW, f"heated slope, {passes} passes{how}, {ranks} ranks: {what} balance", np.max(np.abs(run.balance[f"{what}_error"])), 1e-11)
     return run, np.abs(methane["end"] - methane["loaded"]).sum() / 2 / np.maximum(0, hydrate["loaded"] - hydrate["end"]).sum()
 
 
