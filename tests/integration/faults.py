@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from _files import different, hashes  # noqa: E402
-from common import CASES, ROOT, Run, binary, check_true, environment, finish, launch, mpiexec, scratch  # noqa: E402
+from common import CASES, GIVES_WAY, ROOT, Run, binary, check_true, environment, finish, launch, mpiexec, scratch  # noqa: E402
 
 OPTIONS = ("-quiet", "-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-checkpoint_every",
            "20 s", "-stepper_dt_max", "5 s", "-meters", "outlet", "-meter_outlet_side", "right")  # fmt: skip
@@ -32,7 +32,7 @@ def command(out, *options):
 
 
 def start(out, *options, extra=None, **keywords):
-    return subprocess.Popen(command(out, *options), env=environment(**(extra or {})), text=True,
+    return subprocess.Popen([*GIVES_WAY, *command(out, *options)], env=environment(**(extra or {})), text=True,
                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **keywords)  # fmt: skip
 
 
