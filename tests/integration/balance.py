@@ -53,6 +53,8 @@ for kind, options in KINDS.items():
         judge(ROW, f"{kind}, {n} ranks: particles of the fullest over the mean, at the end", most, 1.1)
         check_true(f"{kind}, {n} ranks: borders have moved", borders != before, f"{before} and {borders}")
         lines.append([kind, n, begun, most, str(before), str(borders)])
+        if (kind, n) == ("sdirk2", 2):
+            continue  # implicit steps are cut on 4 ranks
         again = scratch() / f"{kind}{n}"
         fall("-stepper_max_steps", CUT[kind], ranks=n, out=again)
         cut = shutil.copytree(again, scratch() / "out")

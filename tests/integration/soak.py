@@ -8,7 +8,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import ROOT, binary, check, check_true, finish, launch, scratch  # noqa: E402
 from clathra import read_csv  # noqa: E402
 
-done = subprocess.run([sys.executable, str(ROOT / "scripts" / "soak.py"), binary(), "--scenes", "100", "--cases", "2000", "--jobs", "2",
+done = subprocess.run([sys.executable, str(ROOT / "scripts" / "soak.py"), binary(), "--scenes", "100", "--cases", "2000", "--jobs", "1",
                        "--keep", str(scratch() / "wrong")], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)  # fmt: skip
 print(done.stdout)
 check_true("no crash, hang, NaN, silent end or lost balance", done.returncode == 0)

@@ -49,15 +49,15 @@ family("Prandtl", False, True, (8,), (0.0, 0.06), None)
 for name in ("Nc, 20 deg", "Nq, 20 deg"):
     free = family(name, False, False, (4, 8), (0.0, 0.03), 0.015)
     check(f"{name}: implicit against hybrid, a/4", measured(name, 4, False, implicit=True)[0] / free[0] - 1, (-0.04, 0.04))
-locked = [measured("Prandtl", n, True, "-mean_dilatation", "no", "-mean_strain", "0", "-bc_plate_velocity", "-0.03 m/s", implicit=True, what="locks") for n in (4, 8)]
-check("Prandtl without mean dilatation: over the exact load at a/8, and still growing", locked[1][0] / exact("Prandtl") - 1, (0.2, 1.0))
-check("... growth over the last fifth", locked[1][1], (0.02, 1.0))
+load, growth = measured("Prandtl", 8, True, "-mean_dilatation", "no", "-mean_strain", "0", "-bc_plate_velocity", "-0.03 m/s", implicit=True, what="locks")
+check("Prandtl without mean dilatation: over the exact load at a/8, and still growing", load / exact("Prandtl") - 1, (0.2, 1.0))
+check("... growth over the last fifth", growth, (0.02, 1.0))
 load, growth = measured("Nq, 30 deg", 4, False)
 judge("strength", "Nq, 30 deg, smooth, hybrid: collapse load at h = a/4", load / exact("Nq, 30 deg") - 1, (0.0, 0.03), 0.01, "%")
 load, growth = measured("Nq, 30 deg", 4, False, "-mean_strain", "0", what="locks")
 check("... without mean strain: over the exact load", load / exact("Nq, 30 deg") - 1, (0.15, 0.3))
 # sdirk2: the same load, with a quarter of euler's iterations
-found = {(n, s): circle(n, s, end=end, kind="sdirk2") for n, s, end in ((4, 0.99, 1.0), (6, 0.99, 0.85), (4, 0, 1.0))}
+found = {(n, s): circle(n, s, end=end, kind="sdirk2") for n, s, end in ((4, 0.99, 0.85), (6, 0.99, 0.85), (4, 0, 1.0))}
 for (n, s), (load, growth) in found.items():
     rows.append(["Cox's circle", "smooth", "implicit", f"R/{n}", 141 * load, 100 * (load - 1), 100 * growth, "" if s else "locks"])
 coarse, fine = (found[n, 0.99] for n in (4, 6))

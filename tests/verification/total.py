@@ -72,7 +72,7 @@ run = found["total"][3]
 judge(ROW, "total, sand between clays: balance of water", np.max(np.abs(run.balance["water_error"])), 1e-13)
 
 # ---------------------------------------------------------------- ranks and restart
-SHORT = (*TOTAL, "-time_end", "3 d", "-output_times", "3 d")
+SHORT = (*TOTAL, "-time_end", "0.5 d", "-output_times", "0.5 d", "-newton_tol_update", "1e-8", "-newton_tol_residual", "1e-10")
 _, one = last(LAYERS, *SHORT)
 for ranks in (2, 4):
     _, v = last(LAYERS, *SHORT, ranks=ranks)
