@@ -101,9 +101,8 @@ PetscErrorCode NoteBorders(const Stepper *s)
   PetscCall(PetscFPrintf(
       m->grid.comm, stderr,
       "clathra: note: the border between %s and %s lay on a line of the grid and is %.2g of a cell off it, near %s: "
-      "the "
-      "cell of %s beside it drains as %s does, and no tolerance shows it.  What to try, in this order: %sthinner cells "
-      "on the side of %s (docs/limits.md)\n",
+      "the cell of %s beside it drains as %s does, and no tolerance shows it.  What to try, in this order: %sthinner "
+      "cells on the side of %s (docs/limits.md)\n",
       c->material[b.tight].name, c->material[b.open].name, b.off, PlaceWords(b.at).s, c->material[b.tight].name,
       c->material[b.open].name, s->explicit ? "" : "basis: total, where the ground does not flow; ",
       c->material[b.tight].name));
