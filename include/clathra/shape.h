@@ -30,6 +30,8 @@ void RegionBound(const Scene *c, Region *r);
 /* Does the region hold x (m), without what `minus` takes away?  A point on an edge that two regions share belongs to
    one of them. */
 bool RegionHolds(const Scene *c, PetscInt region, const double x[]);
+/* The region with particles that holds x (m); -1: there is none. */
+PetscInt RegionAt(const Scene *c, const double x[]);
 /* ... or does its boundary pass within `slack` (m, along each axis)? */
 bool RegionReaches(const Scene *c, PetscInt region, const double x[], const double slack[]);
 /* Greatest coordinate (m) along a direction in the region, or a little more. */

@@ -57,12 +57,10 @@ static double Open(const Well *w, const double x0[CL_DIM], const double l[CL_DIM
 
 bool WellPlace(const Scene *c, const Bc *b, Well *w)
 {
-  PetscInt region = -1;
-  Lattice  lattice;
+  Lattice lattice;
 
   TakeAxes(b, w);
-  for (PetscInt k = 0; region < 0 && k < c->nregion; k++)
-    region = !RegionEmpty(&c->region[k]) && RegionHolds(c, k, w->at) ? k : -1;
+  const PetscInt region = RegionAt(c, w->at);
   if (region < 0)
     return false;
   RegionLattice(c, region, &lattice);
@@ -334,11 +332,9 @@ double WellRatio(const Well *w, const Permeability *law)
 
 static PetscErrorCode FlowCreate(const Scene *c, const Bc *b, const Well *w, Flow *f)
 {
-  PetscInt region = 0;
+  const PetscInt region = RegionAt(c, w->at); /* WellPlace has found one */
 
   PetscFunctionBeginUser;
-  while (RegionEmpty(&c->region[region]) || !RegionHolds(c, region, w->at)) /* WellPlace has found one */
-    region++;
   const double ratio  = Across(w, &c->material[c->region[region].material].permeability, f->A);
   const double fourth = pow(ratio, 0.25);
   f->root             = sqrt(ratio);

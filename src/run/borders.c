@@ -14,16 +14,6 @@ typedef struct {
   double   at[CL_DIM];
 } Border;
 
-/* Material at a place of the start; negative: there is none. */
-static PetscInt MaterialAt(const Scene *c, const double x[CL_DIM])
-{
-  for (PetscInt k = 0; k < c->nregion; k++) {
-    if (!RegionEmpty(&c->region[k]) && RegionHolds(c, k, x))
-      return c->region[k].material;
-  }
-  return -1;
-}
-
 static double OffLine(const GridLines *line, double x)
 {
   const double place = LinesPlace(line, x);
@@ -45,12 +35,13 @@ static void Look(const Model *m, PetscInt p, const double x0[CL_DIM], const doub
     return;
   for (int i = 0; i < CL_DIM; i++)
     beyond[i] = i == d ? x0[i] + 1.01 * side * l[i] : x0[i];
-  const PetscInt other = MaterialAt(m->c, beyond);
+  const PetscInt region = RegionAt(m->c, beyond);
 
-  if (other < 0)
+  if (region < 0)
     return;
-  const double k[2]  = {m->c->material[own].permeability.k0, m->c->material[other].permeability.k0};
-  const bool   tight = k[0] < k[1];
+  const PetscInt other = m->c->region[region].material;
+  const double   k[2]  = {m->c->material[own].permeability.k0, m->c->material[other].permeability.k0};
+  const bool     tight = k[0] < k[1];
 
   if (fmax(k[0], k[1]) < CONTRAST * fmin(k[0], k[1]))
     return;

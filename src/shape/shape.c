@@ -90,6 +90,15 @@ bool RegionHolds(const Scene *c, PetscInt region, const double x[])
   return true;
 }
 
+PetscInt RegionAt(const Scene *c, const double x[])
+{
+  for (PetscInt k = 0; k < c->nregion; k++) {
+    if (!RegionEmpty(&c->region[k]) && RegionHolds(c, k, x))
+      return k;
+  }
+  return -1;
+}
+
 bool RegionReaches(const Scene *c, PetscInt region, const double x[], const double slack[])
 {
   const Region *r = &c->region[region];
