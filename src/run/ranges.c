@@ -357,5 +357,6 @@ PetscErrorCode EndWarnings(const Stepper *s)
                            "shorter step lowered it (particles that change cells, a jump), or stepper_dt_min did not "
                            "let it; finer cells or a ramp there, and a look at balance.csv's dt_s\n",
                            z->loose_total, z->step, z->loose_total == 1 ? "was" : "were", z->err_worst));
+  PetscCall(NoteBorders(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

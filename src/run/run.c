@@ -370,7 +370,6 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
   PetscCall(EndWarnings(s));
-  PetscCall(NoteBorders(s));
   PetscCall(WriteLog(StepperCase(s), s->model->grid.comm, run));
   if (run->lost || run->frozen || !ok)
     *exit_code = CL_EXIT_FAILED;

@@ -91,13 +91,13 @@ void           IceSummary(const Stepper *s, char text[256]);         /* water be
 PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */
 
 /* ---------------------------------------------------------------- borders.c */
-/* At the end: borders of layers that have left the grid's lines; collective. */
+/* One of the last lines: borders of layers that have left the grid's lines; collective. */
 PetscErrorCode NoteBorders(const Stepper *s);
 
 /* ---------------------------------------------------------------- ranges.c */
 /* Lines of the summary: the extremes of p and T. */
 PetscErrorCode RangeSummary(const Stepper *s, char text[512]);
-/* The last lines of a run: what lies outside of what started and acted, and errors far above the tolerance. */
+/* The last lines of a run: what lies outside of what started and acted, errors far above the tolerance, borders. */
 PetscErrorCode EndWarnings(const Stepper *s);
 /* Temperatures that start and conditions lead to, degC, and whether one beyond them and hydrate's was told of. */
 typedef struct {
