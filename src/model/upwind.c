@@ -85,15 +85,11 @@ static double CarriedAlong(const Model *m, PetscInt I, int d)
 
 /* Harmonic mean of the bends of a node and of a neighbour that bends the other way, as a border does that the flow
    comes from. */
-static double Alternates(const Model *m, const double *bend, const double *found, PetscInt I, int d,
-                         const PetscInt K[2])
+static double Alternates(const Model *m, const double *bend, PetscInt I, int d, const PetscInt K[2])
 {
   const double own  = BendOf(bend, I, d);
   double       most = 0.0;
 
-  (void)found;
-  if (own == 0.0)
-    return 0.0;
   for (int side = 0; side < 2; side++) {
     const bool   known  = Known(bend, K[side], d);
     const bool   enters = !known && (side ? -1.0 : 1.0) * CarriedAlong(m, I, d) > 0.0;
@@ -105,29 +101,38 @@ static double Alternates(const Model *m, const double *bend, const double *found
   return most;
 }
 
-/* ... or of a bend beside one that alternates: the next one that it will have. */
-static double Lent(const Model *m, const double *bend, const double *found, PetscInt I, int d, const PetscInt K[2])
-{
-  const double own = fabs(BendOf(bend, I, d)), beside = fmax(found[K[0] * CL_DIM + d], found[K[1] * CL_DIM + d]);
-
-  (void)m;
-  return fmax(found[I * CL_DIM + d], fmin(own, beside));
-}
-
-/* Of the nodes with neighbours on both sides along an axis: share[] from `of`, given to all ranks. */
-typedef double OfNode(const Model *m, const double *bend, const double *found, PetscInt I, int d, const PetscInt K[2]);
-
-static PetscErrorCode Shares(Model *m, OfNode *of, const double *bend, const double *found, double *share)
+/* theta_I: what alternates. */
+static PetscErrorCode FindShares(Model *m, const double *bend, double *found)
 {
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
     for (int d = 0; d < CL_DIM; d++) {
       PetscInt K[2];
 
-      if (!Known(bend, I, d))
+      if (BendOf(bend, I, d) == 0.0)
         continue;
       Beside(m, I, d, K);
-      share[I * CL_DIM + d] = of(m, bend, found, I, d, K);
+      found[I * CL_DIM + d] = Alternates(m, bend, I, d, K);
+    }
+  }
+  PetscCall(NodeMapSum(&m->map, found, CL_DIM));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* t_I: a bend beside a node that alternates will be the next one. */
+static PetscErrorCode LendShares(Model *m, const double *bend, const double *found, double *share)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt I = 0; I < m->map.n_owned; I++) {
+    for (int d = 0; d < CL_DIM; d++) {
+      const double own = fabs(BendOf(bend, I, d));
+      PetscInt     K[2];
+
+      if (own == 0.0)
+        continue;
+      Beside(m, I, d, K);
+      const double beside   = fmax(found[K[0] * CL_DIM + d], found[K[1] * CL_DIM + d]);
+      share[I * CL_DIM + d] = fmax(found[I * CL_DIM + d], fmin(own, beside));
     }
   }
   PetscCall(NodeMapSum(&m->map, share, CL_DIM));
@@ -166,8 +171,8 @@ PetscErrorCode UpwindLimit(Model *m)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc3(BOTH * size, &bend, size, &found, size, &share));
   PetscCall(FindBends(m, bend));
-  PetscCall(Shares(m, Alternates, bend, NULL, found));
-  PetscCall(Shares(m, Lent, bend, found, share));
+  PetscCall(FindShares(m, bend, found));
+  PetscCall(LendShares(m, bend, found, share));
   for (PetscInt p = 0; p < m->P.n; p++) {
     double *K     = &m->added->upwind[CL_SYMMETRIC * p];
     double  trace = 0.0;
