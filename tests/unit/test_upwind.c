@@ -101,7 +101,26 @@ static SmallScene *Make(bool turned)
   return s;
 }
 
-/* Least and largest share of the conductivity along `axis` that is left to a particle. */
+/* Least and largest share of the conductivity along `axis` that is left to a particle with low <= x <= high, m. */
+static void Between(const SmallScene *s, int axis, double low, double high, double share[2])
+{
+  const Model *m = &s->m;
+
+  share[0] = share[1] = -INFINITY;
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    const double x  = ParticleGridX(&m->P, p, axis);
+    const double of = m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]] / CONDUCTIVITY;
+
+    if (x < low || x > high)
+      continue;
+    share[0] = fmax(share[0], -of);
+    share[1] = fmax(share[1], of);
+  }
+  share[0] = -Largest(share[0]);
+  share[1] = Largest(share[1]);
+}
+
+/* ... of all particles at a field of T. */
 static void Shares(SmallScene *s, Field *field, int axis, double share[2])
 {
   Model *m = &s->m;
@@ -112,17 +131,11 @@ static void Shares(SmallScene *s, Field *field, int axis, double share[2])
   for (PetscInt p = 0; p < m->P.n; p++)
     m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]] = CONDUCTIVITY;
   Call(UpwindLimit(m));
-  share[0] = -INFINITY;
-  share[1] = -INFINITY;
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    const double of = m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]] / CONDUCTIVITY;
-
-    share[0] = fmax(share[0], -of);
-    share[1] = fmax(share[1], of);
-  }
-  share[0] = -Largest(share[0]);
-  share[1] = Largest(share[1]);
+  Between(s, axis, -INFINITY, INFINITY, share);
 }
+
+/* What changes no share: T = above + factor field. */
+static const double added[3][2] = {{4.0, 1.0}, {300.0, -1.0}, {-50.0, 40.0}};
 
 static const struct {
   const char *name;
@@ -142,8 +155,6 @@ static const struct {
 
 static void TestWhere(void **state)
 {
-  static const double added[3][2] = {{4.0, 1.0}, {300.0, -1.0}, {-50.0, 40.0}};
-
   (void)state;
   for (int turned = 0; turned < 2; turned++) {
     SmallScene *s = Make(turned);
@@ -184,40 +195,24 @@ static void TestNoise(void **state)
   free(s);
 }
 
-/* Least and largest share of the particles between nodes k and k + 1, after Shares. */
-static void Between(const SmallScene *s, int axis, PetscInt k, double share[2])
-{
-  const Model *m = &s->m;
-
-  share[0] = share[1] = -INFINITY;
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    const double x = ParticleGridX(&m->P, p, axis), of = m->added->upwind[CL_SYMMETRIC * p + cl_symmetric[axis][axis]];
-
-    if (x < GridNode(&m->grid, axis, k) || x > GridNode(&m->grid, axis, k + 1))
-      continue;
-    share[0] = fmax(share[0], -of / CONDUCTIVITY);
-    share[1] = fmax(share[1], of / CONDUCTIVITY);
-  }
-  share[0] = -Largest(share[0]);
-  share[1] = Largest(share[1]);
-}
-
 /* A corner beside nodes that alternate is next to them; the straight slope behind it is not. */
 static void TestCorner(void **state)
 {
   SmallScene *s = Make(false);
 
   (void)state;
-  above  = 4.0;
-  factor = 1.0;
-  for (int axis = 0; axis < CL_DIM; axis++) {
-    double all[2], beside[2], beyond[2];
+  for (int v = 0; v < 3 * CL_DIM; v++) {
+    const int   axis = v % CL_DIM;
+    const Grid *g    = &s->m.grid;
+    double      all[2], beside[2], beyond[2];
 
+    above  = added[v / CL_DIM][0];
+    factor = added[v / CL_DIM][1];
     Shares(s, Corner, axis, all);
-    Between(s, axis, 4, beside);
-    Between(s, axis, 5, beyond);
-    Say("  behind a corner along %c: %.3g to %.3g, a cell further %.3g to %.3g\n", axis ? 'y' : 'x', beside[0],
-        beside[1], beyond[0], beyond[1]);
+    Between(s, axis, GridNode(g, axis, 4), GridNode(g, axis, 5), beside);
+    Between(s, axis, GridNode(g, axis, 5), GridNode(g, axis, 6), beyond);
+    Say("  %g + %g T behind a corner along %c: %.3g to %.3g, a cell further %.3g to %.3g\n", above, factor,
+        axis ? 'y' : 'x', beside[0], beside[1], beyond[0], beyond[1]);
     Check(beside[0] > 0.2 && beside[1] > 0.9 && beyond[1] < 1e-12);
   }
   SceneDestroy(s);

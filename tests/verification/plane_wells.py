@@ -109,11 +109,11 @@ for fluid in ("water_kg", "gas_kg"):
 FALLS = [*SQUEEZED, "-fields", "solid,water", "-mat_sand_elasticity_E0", "1e10 Pa", "-inertia", "yes", "-gravity", "4e-3 m/s^2,0 m/s^2", "-grid_lower", "-2 m,-2 m",
          "-grid_upper", "24 m,22 m", "-grid_cells", "26,24", *IMPLICIT, "-stepper_dt", "1 s", "-time_end", "25 s"]  # fmt: skip
 falls = well(PLACE, 0.1, *FALLS)
-rests = well(PLACE, 0.1, *FALLS, "-gravity", "0 m/s^2,0 m/s^2")
-rate = [run.csv("meters.csv")["well.water_kg_s"] for run in (falls, rests)]
-judge("plane_wells", "body that falls 1.25 cells: rate off that of one at rest", largest_difference(rate[0][1:], rate[1][1:]) / rate[1][-1], 1e-2)
-total = [well(PLACE, 0.1, *FALLS, "-basis", "total", "-gravity", f"{g} m/s^2,0 m/s^2").csv("meters.csv")["well.water_kg_s"] for g in ("4e-3", "0")]
-judge("plane_wells", "body that falls 1.25 cells, basis: total: rate off that of one at rest", largest_difference(total[0][1:], total[1][1:]) / total[1][-1], 1e-5)
+for basis, how, bar in (("cpgimp", "", 1e-2), ("total", ", basis: total", 1e-5)):
+    moves = falls if basis == "cpgimp" else well(PLACE, 0.1, *FALLS, "-basis", basis)
+    rests = well(PLACE, 0.1, *FALLS, "-basis", basis, "-gravity", "0 m/s^2,0 m/s^2")
+    rate = [run.csv("meters.csv")["well.water_kg_s"] for run in (moves, rests)]
+    judge("plane_wells", f"body that falls 1.25 cells{how}: rate off that of one at rest", largest_difference(rate[0][1:], rate[1][1:]) / rate[1][-1], bar)
 
 # sand squeezed by 7 %: the well where it is then, in a lower block, at the same drop of 10 kPa
 rows = []
