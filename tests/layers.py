@@ -139,6 +139,17 @@ def peeks_of(path, text, private):
     return [f"{path}: {name} of Model is src/model's own" for name in sorted(private & named)]
 
 
+CHECK = re.compile(r"\bCheck\w*\(([^;{)]*)\)\s*\n?\{")
+FILLED = re.compile(r"(?<!const )\b(?:Case|Scene|Bc|Region|Material|Probe|Meter|CaseStage) \*")
+
+
+def fillers_of(path, text):
+    """Sentences on checks of src/case that could fill a field of the case: what follows from keys is found before (derive.c)."""
+    if not path.startswith("src/case/"):
+        return []
+    return [f"{path}: a check takes ({arguments}), which it could fill" for arguments in CHECK.findall(COMMENT.sub(" ", text)) if FILLED.search(arguments)]
+
+
 PLANTED = {  # path: text, whether it is wrong
     ("include/clathra/point.h", '#include "clathra/grid.h"\n'): True,
     ("include/clathra/laws.h", '#include "clathra/base.h"\n'): True,
@@ -169,6 +180,9 @@ def self_test():
     peeks = {("src/io/a.c", "e->m->coef[0] = s->model.x;"): 2, ("src/io/a.c", "m->grid; a->x; /* m->x */"): 0, ("src/model/a.c", "m->x"): 0}
     if private != {"coef", "x", "plate"} or any(len(peeks_of(path, text, private)) != n for (path, text), n in peeks.items()):
         wrong.append("private members of Model")
+    checks = {"static void CheckWell(Reader *r, const Case *c, Bc *b)\n{\n": 1, "void CheckWell(Reader *r, const Case *c, const Bc *b)\n{\n": 0}
+    if any(len(fillers_of("src/case/a.c", text)) != n for text, n in checks.items()):
+        wrong.append("checks that fill")
     for path in wrong:
         print(f"self-test: a planted case was judged wrongly: {path}")
     return len(wrong)
@@ -181,6 +195,7 @@ def main():
     found += circles(root)
     private = private_members((root / "include/clathra/model.h").read_text())
     found += [v for p in files for v in peeks_of(p.relative_to(root).as_posix(), p.read_text(), private)]
+    found += [v for p in files for v in fillers_of(p.relative_to(root).as_posix(), p.read_text())]
     print("\n".join(found + [f"{len(files)} files, {len(found)} violations, {len(PLANTED)} planted cases tried"]))
     return 1 if self_test() or found or not files else 0
 

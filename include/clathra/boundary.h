@@ -173,6 +173,7 @@ typedef struct {
   double outflow[PHASE_COUNT], heat_in;
   double enthalpy;           /* (364): W that what flows out takes along */
   double plate[PLATE_COUNT]; /* what its plate gives; PLATE_POSITION is not used */
+  bool   acts[BC_FACES];     /* by kind: does its condition give anything? */
 } FaceOutput;
 /* Is something prescribed on it, or counted?  Else FaceEvaluate finds nothing: most of a surface is left alone. */
 bool FaceActs(const Scene *c, const Face *f);
@@ -219,6 +220,8 @@ typedef struct {
 } Condition;
 extern const Condition cl_condition[BC_COUNT]; /* by BcType */
 
+/* Is the node at x (m) one of those that condition b prescribes something at? */
+bool NodePrescribed(const Scene *c, const Grid *g, const Bc *b, const double x[CL_DIM]);
 /* Dirichlet values on grid planes, in regions and on the axis, where what the node sees was seeded there: sets bit k of
    mask and value[k] (m/s, Pa, degC) for every prescribed unknown, k its place in the field set, of grid node ij. */
 void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,

@@ -115,6 +115,8 @@ typedef struct {
   Schedule rate[PHASE_COUNT], heated;
 } Bc;
 
+#define CL_CONDITIONS 256 /* at most */
+
 /* Is the condition's value a temperature, of the body or of what touches or enters it, degC? */
 static inline bool BcPrescribesT(const Bc *b)
 {

@@ -53,6 +53,9 @@ enum {
   WORK_COUNT
 };
 
+/* What may act: the conditions of a case by their number, then its meters. */
+enum { ACTS_METER = CL_CONDITIONS, ACTS_COUNT = ACTS_METER + CL_METERS };
+
 /* Rates over the boundary and inside at the end of a stage, global sums. */
 typedef struct {
   double out[PHASE_COUNT];                      /* kg/s */
@@ -62,6 +65,7 @@ typedef struct {
   double enthalpy_out;                          /* W: with the fluids (364) */
   double left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg/s: in the mass rows, and what they exchange (277) */
   double meter[CL_METERS][METER_COUNT];
+  double acts[ACTS_COUNT]; /* zero: it gives nothing */
   double work[WORK_RATES]; /* W; zero without mechanics */
 } StageRates;
 

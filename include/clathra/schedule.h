@@ -27,6 +27,8 @@ double ScheduleNextKink(const Schedule *s, double t);
 double ScheduleNextMark(const Schedule *s, double t);
 /* Sum of the amplitudes: how far its waves leave what is left without them. */
 double ScheduleSwing(const Schedule *s);
+/* Is it zero at all times?  Also where it has no point. */
+bool ScheduleIsZero(const Schedule *s);
 /* Lowest and highest value at any time; infinite, -infinite where it has no point. */
 void ScheduleSpan(const Schedule *s, double *low, double *high);
 /* Frees its points and waves; it is empty then. */

@@ -42,6 +42,7 @@ typedef struct {
   double   enthalpy_out; /* with the fluids (364), J since t = 0 */
   double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* (277), kg since t = 0 */
   double   meter[CL_METERS][METER_COUNT];         /* (33): kg of water and gas, J, outwards since t = 0 */
+  double   acts[ACTS_COUNT];                      /* zero: it has given nothing since the stage began */
   double   work[WORK_COUNT];                      /* (90), J since t = 0 */
   double   removed[REMOVED_COUNT];                /* particles that left the grid (373), since t = 0 */
   double   begin[EXTREMES];                       /* extremes at the start */
@@ -110,6 +111,7 @@ typedef struct {
   double   squeezed, beyond, enthalpy_out;        /* J over the step */
   double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* kg over the step (277) */
   double   meter[CL_METERS][METER_COUNT];         /* kg, J over the step */
+  double   acts[ACTS_COUNT];                      /* zero: it has given nothing in the step */
   double   work[WORK_RATES];                      /* J over the step */
 } Attempt;
 

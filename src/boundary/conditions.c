@@ -46,14 +46,30 @@ bool FaceActs(const Scene *c, const Face *f)
   return acts;
 }
 
+/* Sum of the sizes of all that has been added. */
+static double Amount(const FaceOutput *o)
+{
+  double sum = fabs(o->heat_in);
+
+  for (int q = 0; q < F_COUNT; q++)
+    sum += fabs(o->out[q]);
+  for (int phase = 0; phase < PHASE_COUNT; phase++)
+    sum += fabs(o->outflow[phase]);
+  return sum;
+}
+
 /* What the conditions on a face add, and the enthalpy of what they let out. */
 static void Act(const FaceState *x, FaceOutput *o)
 {
   for (int kind = BC_NONE + 1; kind < BC_FACES; kind++) {
     const PetscInt k = x->f->bc[kind];
 
-    if (k >= 0 && cl_condition[kind].face && (x->c->fields.has & cl_condition[kind].has))
+    if (k >= 0 && cl_condition[kind].face && (x->c->fields.has & cl_condition[kind].has)) {
+      const double before = Amount(o);
+
       cl_condition[kind].face(x, k, o);
+      o->acts[kind] = Amount(o) != before;
+    }
   }
   o->enthalpy = CarriedOut(x, o->outflow);
 }
@@ -144,6 +160,13 @@ static void NodeTemperature(const FieldSet *fs, const Bc *b, double at, unsigned
   value[PlaceT(fs)] = at;
 }
 
+bool NodePrescribed(const Scene *c, const Grid *g, const Bc *b, const double x[CL_DIM])
+{
+  const Condition *kind = &cl_condition[b->type];
+
+  return kind->node && (kind->where == IN_REGION ? InRegion(c, g, b, x) : OnPlane(g, b, x));
+}
+
 void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const PetscInt ij[CL_DIM], bool at_axis,
                      unsigned *mask, double *value)
 {
@@ -155,11 +178,10 @@ void PlaneConditions(const Scene *c, const Grid *g, const BcValues *v, const Pet
   if (at_axis && x[0] < 1e-6 * g->line[0].h)
     Hold(fs, 0, 0.0, false, mask, value); /* nothing crosses the axis */
   for (PetscInt k = 0; k < c->nbc; k++) {
-    const Bc        *b    = &c->bc[k];
-    const Condition *kind = &cl_condition[b->type];
+    const Bc *b = &c->bc[k];
 
-    if (kind->node && (kind->where == IN_REGION ? InRegion(c, g, b, x) : OnPlane(g, b, x)))
-      kind->node(fs, b, BcValueAt(c, b, v->value[k], x, gradient), mask, value);
+    if (NodePrescribed(c, g, b, x))
+      cl_condition[b->type].node(fs, b, BcValueAt(c, b, v->value[k], x, gradient), mask, value);
   }
 }
 

@@ -2,6 +2,7 @@
    resolved case, the printed key list and the nearest-key search follow. */
 #pragma once
 
+#include "clathra/boundary.h"
 #include "clathra/case.h"
 #include <string.h>
 
@@ -51,6 +52,7 @@ typedef struct {
   PetscInt    nerror;
   char       *error[CASE_ERRORS];
   bool        bad[GROUP_COUNT];  /* some key of the group could not be read */
+  bool        misshapen;         /* bad[GROUP_REGION] is so for a shape alone */
   PetscInt   *like[GROUP_COUNT]; /* of each instance: whose keys hold where its own are not given, -1: nobody's */
 } Reader;
 
@@ -219,7 +221,11 @@ void ListDestroy(List *list);
 /* forms.c: "{ramp: [...]}" in one word, as the command line gives it: its place in case_schedule_form, and its values
    in `inner`, as long as the text; -1: it is none. */
 int  FormInBraces(const char *text, char *inner);
-void CaseCheck(Reader *r, Case *c); /* cuts regions that later ones lie over */
+/* derive.c: what follows from the keys of each group; then what follows from where regions and wells are.  Both before
+   stages copy the scene. */
+PetscErrorCode CaseDerive(Reader *r, Case *c);
+PetscErrorCode CaseDerivePlaces(Reader *r, Case *c);
+void           CaseCheck(Reader *r, const Case *c); /* no check fills a field of the case */
 /* plates.c: a plate without a side is one on a grid line; what its keys must agree in. */
 PetscErrorCode PlateForm(Reader *r, Bc *b);
 void           CheckPlate(Reader *r, const Case *c, const Bc *b);
@@ -228,12 +234,14 @@ void           CheckReduction(Reader *r, const Case *c);                     /* 
 /* flow.c: pressure and inflow; a key that needs any of these fields */
 void CheckFlow(Reader *r, const Scene *c, const Bc *b);
 void CheckField(Reader *r, const Scene *c, const Bc *b, const char *key, unsigned needs, bool given);
-/* A well in the plane: its place, its radius, what drives it; finds its index. */
-void CheckWell(Reader *r, const Case *c, Bc *b);               /* wells.c */
+/* wells.c: its place, its radius, what drives it; can an index be found of one that is wide as this in its cells? */
+void CheckWell(Reader *r, const Case *c, const Bc *b);
+bool WellFits(const Bc *b, const Well *w);
+bool WellRuns(const Scene *c, const Bc *b); /* along one axis in space; in the plane, not about an axis */
 void CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
 void RegionsFinish(Scene *c); /* once all keys are read */
-void CheckShape(Reader *r, const Case *c, PetscInt region);
+bool ShapesGood(Reader *r, const Case *c); /* else an error is said */
 /* Of good shapes: where two lie over each other the earlier one is cut; none is to be without particles. */
 PetscErrorCode RegionsCut(Reader *r, Case *c);
 bool           FacesShared(const Scene *c, const Meter *a, const Meter *b); /* has the body any that both name? */

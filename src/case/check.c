@@ -141,9 +141,6 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
   const Region  *g      = &c->scene.region[i];
   const PetscInt before = r->nerror;
 
-  CheckShape(r, c, i);
-  if (r->nerror > before)
-    r->bad[GROUP_REGION] = true; /* nothing more can be said about places */
   if (RegionEmpty(g))
     return;
   PetscInt many = 1;
@@ -159,7 +156,7 @@ static void CheckRegion(Reader *r, const Case *c, PetscInt i)
     FAIL_AT(GROUP_REGION, g->name, "stress", "has shear out of the plane (yz %g Pa, xz %g Pa), which %s", g->stress[4],
             g->stress[5], "plasticity_law does not know");
   const Case *first = r->bad[GROUP_STAGE] ? c : CaseInStage(c, 0);
-  if (r->nerror == before && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
+  if (r->nerror == before && !r->bad[GROUP_REGION] && !r->bad[GROUP_CASE] && !r->bad[GROUP_MATERIAL])
     CheckInitial(r, &first->scene, &first->scene.region[i]);
 }
 
@@ -216,15 +213,6 @@ static void CheckMeter(Reader *r, const Scene *c, const Meter *m)
     FAIL_AT(GROUP_METER, m->name, "well", "and %s are two things to count: give one", m->along.n ? "along" : "side");
 }
 
-static bool BcShears(const Bc *b)
-{
-  bool shears = false;
-
-  for (PetscInt k = 0; b->type == BC_TRACTION && k < b->shear.n; k++)
-    shears = shears || b->shear.y[k] != 0.0 || ScheduleSwing(&b->shear) != 0.0;
-  return shears;
-}
-
 /* What the plane alone knows. */
 static void CheckSpace(Reader *r, const Case *c)
 {
@@ -234,7 +222,7 @@ static void CheckSpace(Reader *r, const Case *c)
   for (PetscInt i = 0; i < c->scene.nbc && !r->bad[GROUP_BC]; i++) {
     const Bc *b = &c->scene.bc[i];
 
-    if (BcShears(b))
+    if (b->type == BC_TRACTION && !ScheduleIsZero(&b->shear))
       FAIL_AT(GROUP_BC, b->name, "shear", "has one direction in the plane alone; clathra3d does not know it");
     if (isfinite(b->from) || isfinite(b->to))
       FAIL_AT(GROUP_BC, b->name, isfinite(b->from) ? "from" : "to",
@@ -242,7 +230,7 @@ static void CheckSpace(Reader *r, const Case *c)
   }
 }
 
-void CaseCheck(Reader *r, Case *c)
+void CaseCheck(Reader *r, const Case *c)
 {
   const bool *bad = r->bad;
 
@@ -261,12 +249,10 @@ void CaseCheck(Reader *r, Case *c)
     r->bad[GROUP_CASE] |= c->scene.upper[d] <= c->scene.lower[d];
   if (CL_DIM == 3)
     CheckSpace(r, c);
-  for (PetscInt i = 0, all = !bad[GROUP_REGION]; i < c->scene.nregion && all; i++)
+  for (PetscInt i = 0, all = !bad[GROUP_REGION] || r->misshapen; i < c->scene.nregion && all; i++)
     CheckRegion(r, c, i);
-  if (!bad[GROUP_CASE] && !bad[GROUP_REGION])
-    PetscCallVoid(RegionsCut(r, c));
   for (PetscInt i = 0; i < c->scene.nbc && !bad[GROUP_BC]; i++) {
-    Bc       *b     = &c->scene.bc[i];
+    const Bc *b     = &c->scene.bc[i];
     const int where = cl_condition[b->type].where;
 
     if (c->scene.basis == BASIS_TOTAL && (BC_CURRENT >> b->type & 1u))

@@ -13,15 +13,6 @@ void CheckField(Reader *r, const Scene *c, const Bc *b, const char *key, unsigne
   FAIL(b, key, "needs %s, which is not among the fields of the scene (%s)", words, CaseOf(c)->fields_wanted);
 }
 
-static bool IsZero(const Schedule *s)
-{
-  for (PetscInt i = 0; i < s->n; i++) {
-    if (s->y[i] != 0.0)
-      return false;
-  }
-  return s->nwave == 0;
-}
-
 /* p_w and p_g stand for themselves, and both for a face that is open for both. */
 static void CheckPhases(Reader *r, const Scene *c, const Bc *b)
 {
@@ -49,7 +40,7 @@ static void CheckPhases(Reader *r, const Scene *c, const Bc *b)
 /* The word ambient wants a fluid around the body. */
 static void CheckAmbient(Reader *r, const Scene *c, const Bc *b)
 {
-  if (b->value.n == 1 && isinf(b->value.y[0]) && IsZero(&c->ambient_pressure) && c->ambient_density == 0.0)
+  if (b->value.n == 1 && isinf(b->value.y[0]) && ScheduleIsZero(&c->ambient_pressure) && c->ambient_density == 0.0)
     FAIL(b, "pressure", "is ambient, but the case has neither ambient_pressure nor ambient_density");
 }
 
@@ -61,7 +52,7 @@ void CheckFlow(Reader *r, const Scene *c, const Bc *b)
     CheckField(r, c, b, "phases", HAS_GAS, b->open == OPEN_GAS);
     CheckPhases(r, c, b);
   } else if (b->type == BC_INFLOW) {
-    CheckField(r, c, b, "gas", HAS_GAS, !IsZero(&b->phase[PHASE_G]));
+    CheckField(r, c, b, "gas", HAS_GAS, !ScheduleIsZero(&b->phase[PHASE_G]));
     CheckField(r, c, b, "temperature", HAS_HEAT, b->value.n);
   }
 }

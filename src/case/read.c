@@ -7,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-#define NAMES_MAX 256
+#define NAMES_MAX CL_CONDITIONS
 
 static bool NameValid(const char *name)
 {
@@ -173,89 +173,6 @@ static PetscErrorCode Leftovers(Reader *r, const Case *c)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------------------------------------------------------------- values that follow from others */
-/* bp2 for cases/bp2/case.yaml, else the file's name without .yaml. */
-static void CaseName(const char *file, char *name, size_t size)
-{
-  char  full[PATH_MAX], *base, *dot;
-  char *path = realpath(file, full) ? full : NULL;
-
-  snprintf(name, size, "case");
-  if (!path)
-    return;
-  base = strrchr(path, '/');
-  if (!strcmp(base, "/case.yaml") && base > path) {
-    *base = 0;
-    base  = strrchr(path, '/');
-  } else if ((dot = strrchr(base, '.')) && dot > base + 1)
-    *dot = 0;
-  if (base[1])
-    snprintf(name, size, "%s", base + 1);
-}
-
-/* What salt and heat capacities make of the laws. */
-static void DeriveFluids(Material *m)
-{
-  const Kinetics *k = &m->kinetics;
-
-  m->water.rho0                 = m->fresh + BrineExcessDensity(m->salinity, m->water.T_ref);
-  m->kinetics.equilibrium.shift = BrineEquilibriumShift(m->salinity);
-  m->mu_w.salinity              = m->salinity;
-  m->mu_g.M                     = m->gas.M;
-  m->latent.dc                  = KineticsWater(k) * m->c_w + KineticsMethane(k) * m->c_g - m->c_h;
-}
-
-/* Pa, the largest retention_p_trap that is taken by itself where sediment starts without gas: 20 of it below p_w, water
-   is to hold more methane than hydrate anywhere in its stability zone asks for (103). */
-#define TRAPPED 5e4
-
-/* Side of a square or cube as large as a mean cell, m. */
-static double CellSize(const Scene *c)
-{
-  double size = 1.0;
-
-  for (int d = 0; d < CL_DIM; d++)
-    size *= (c->upper[d] - c->lower[d]) / c->cells[d];
-  return CL_DIM == 2 ? sqrt(size) : cbrt(size);
-}
-
-static PetscErrorCode Derive(Reader *r, Case *c)
-{
-  const bool starts  = c->scene.without_gas == WITHOUT_GAS_AUTO && SceneStartsWithoutGas(&c->scene);
-  const bool without = (c->scene.fields.has & HAS_GAS_PRESSURE) && (starts || c->scene.without_gas == WITHOUT_GAS_YES);
-
-  PetscFunctionBeginUser;
-  c->scene.nlisted = c->scene.nbc;
-  c->scene.listed  = c->scene.bc;
-  if (!strcmp(c->output_dir, "results/<case name>")) {
-    char name[256];
-    CaseName(r->file, name, sizeof name);
-    PetscCallMPI(MPI_Bcast(name, sizeof name, MPI_CHAR, 0, r->comm));
-    snprintf(c->output_dir, sizeof c->output_dir, "results/%s", name);
-  }
-  RegionsFinish(&c->scene);
-  for (PetscInt i = 0; i < c->scene.nmaterial; i++) {
-    Material *m     = &c->scene.material[i];
-    Liquid   *l[]   = {&m->solid, &m->hydrate};
-    m->kinetics.M_g = m->gas.M;
-    if (isinf(m->retention.p_trap)) /* (103) */
-      m->retention.p_trap = starts ? fmin(m->retention.p0, TRAPPED) : m->retention.p0;
-    if (isinf(m->gas.henry)) /* compression_heat takes all methane for gas */
-      m->gas.henry = without && !c->scene.compression_heat ? GAS_SOLUBILITY : 0.0;
-    m->gas.carried = c->scene.fields.has & HAS_GAS_PRESSURE ? m->gas.M * m->gas.henry : 0.0;
-    m->gas.trace   = m->gas.carried > 0.0 ? m->gas.carried : without ? GasTrace(&m->gas) : 0.0; /* (102) */
-    DeriveFluids(m);
-    m->plasticity.factor = c->scene.strength_factor;
-    m->plasticity.cell   = CellSize(&c->scene);
-    for (int j = 0; j < 2; j++) {
-      l[j]->K     = INFINITY;
-      l[j]->p_ref = m->water.p_ref;
-      l[j]->T_ref = m->water.T_ref;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static void PrintErrors(const Reader *r)
 {
   PetscInt shown = PetscMin(r->nerror, CASE_ERRORS);
@@ -279,9 +196,10 @@ static PetscErrorCode KeysRead(Reader *r, Case *c)
   PetscCall(CaseFieldSet(r, c));
   for (Group g = GROUP_MATERIAL; g < GROUP_STAGE; g++)
     PetscCall(GroupRead(r, c, g));
-  PetscCall(Derive(r, c));
+  PetscCall(CaseDerive(r, c));
   CaseFieldSetFinish(r, c);
   CaseQuantities(r, c);
+  PetscCall(CaseDerivePlaces(r, c));
   PetscCall(CaseStages(r, c));
   PetscCall(Leftovers(r, c));
   CaseCheck(r, c);

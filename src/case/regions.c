@@ -114,7 +114,7 @@ static bool Serves(const Case *c, PetscInt region)
   return false;
 }
 
-void CheckShape(Reader *r, const Case *c, PetscInt region)
+static void CheckShape(Reader *r, const Case *c, PetscInt region)
 {
   const Region  *g      = &c->scene.region[region];
   const PetscInt before = r->nerror;
@@ -139,6 +139,15 @@ void CheckShape(Reader *r, const Case *c, PetscInt region)
     FAIL_AT(GROUP_REGION, g->name, "material",
             "is none, but no region has %s in its minus and no region_temperature, heat_source or probe names it",
             g->name);
+}
+
+bool ShapesGood(Reader *r, const Case *c)
+{
+  const PetscInt before = r->nerror;
+
+  for (PetscInt k = 0; k < c->scene.nregion; k++)
+    CheckShape(r, c, k);
+  return r->nerror == before;
 }
 
 /* ---------------------------------------------------------------- their particles */
@@ -204,10 +213,6 @@ static PetscErrorCode Cut(const Reader *r, Case *c, PetscInt i, PetscInt j)
   more[minus->n++] = j;
   PetscCall(PetscFree(minus->i));
   minus->i = more;
-  for (PetscInt k = 0; k < c->nstage; k++) {
-    if (c->stage[k].c.scene.region != c->scene.region)
-      c->stage[k].c.scene.region[i].minus = *minus;
-  }
   PetscCall(
       PetscFPrintf(r->comm, stderr,
                    "%s: note: region %s lies over region %s, which is cut out there: the later one in regions wins\n",

@@ -101,11 +101,17 @@ static void WritePoints(FILE *f, const Key *k, const Points *points)
   fputc(']', f);
 }
 
+/* The name that an instance refers to by its place in the case's list; a stage's own list of conditions is shorter. */
+static const char *Referred(const Case *c, Group g, PetscInt i)
+{
+  return g == GROUP_BC ? c->scene.listed[i].name : GroupInstance(c, g, i);
+}
+
 static void WriteNames(FILE *f, const Case *c, const Key *k, const Names *names)
 {
   fputc('[', f);
   for (PetscInt i = 0; i < names->n; i++)
-    fprintf(f, "%s%s", i ? ", " : "", GroupInstance(c, k->names, names->i[i]));
+    fprintf(f, "%s%s", i ? ", " : "", Referred(c, k->names, names->i[i]));
   fputc(']', f);
 }
 
@@ -157,7 +163,7 @@ void KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance)
     break;
   case KEY_NAME: {
     PetscInt i = *(const PetscInt *)place;
-    fputs(i >= 0 ? GroupInstance(c, k->names, i) : k->word ? k->word : k->def, f);
+    fputs(i >= 0 ? Referred(c, k->names, i) : k->word ? k->word : k->def, f);
     break;
   }
   case KEY_NAMES:

@@ -34,46 +34,51 @@ static double Shares(const Scene *c, const Well *w)
   return sum;
 }
 
-static void CheckPlace(Reader *r, const Scene *c, Bc *b)
+/* The smallest cell about the well, m. */
+static double Cell(const Well *w)
 {
-  Well   w;
-  double h = INFINITY;
+  return fmin(LinesLeastAt(&w->line[0], w->at[w->across[0]]), LinesLeastAt(&w->line[1], w->at[w->across[1]]));
+}
+
+bool WellFits(const Bc *b, const Well *w)
+{
+  return b->radius <= 0.5 * Cell(w) * (1.0 + WHOLE);
+}
+
+static void CheckPlace(Reader *r, const Scene *c, const Bc *b)
+{
+  Well w;
 
   if (!WellPlace(c, b, &w)) {
     FAIL(b, "at", "lies outside the body: no region has particles at %s", PlaceWords(w.at).s);
     return;
   }
-  for (int d = 0; d < 2; d++)
-    h = fmin(h, LinesLeastAt(&w.line[d], w.at[w.across[d]]));
   const double sum = Shares(c, &w);
   if (fabs(sum - 1.0) > WHOLE) {
     FAIL(b, "at",
          "%s: a well draws from the particles within a cell of it, and those of the body have %.6g of its "
          "weights: the body ends nearer than that, or regions that differ in particles_per_cell meet there",
          PlaceWords(b->at).s, sum);
-  } else if (b->value.n && b->radius > 0.5 * h * (1.0 + WHOLE)) {
+  } else if (b->value.n && !WellFits(b, &w)) {
     FAIL(b, "radius",
          "%g m is more than half a cell (%g m): cut such a well out of the body and give its wall a pressure",
-         b->radius, h);
-  } else if (b->value.n) {
-    PetscCallVoid(WellIndex(c, b, &w, &b->index));
-    if (!(b->index > 0.0))
-      FAIL(b, "skin", "%g with radius %g m is more than the cells about the well can yield (%g m wide)", b->skin,
-           b->radius, h);
+         b->radius, Cell(&w));
+  } else if (b->value.n && !(b->index > 0.0)) {
+    FAIL(b, "skin", "%g with radius %g m is more than the cells about the well can yield (%g m wide)", b->skin,
+         b->radius, Cell(&w));
   }
 }
 
-/* In space it runs along an axis. */
-static bool Runs(const Bc *b)
+bool WellRuns(const Scene *c, const Bc *b)
 {
   int differ = 0;
 
   for (int d = 0; d < CL_DIM; d++)
     differ += b->at[d] != b->end[d];
-  return differ == 1;
+  return CL_DIM == 3 ? differ == 1 : !c->axisymmetric;
 }
 
-void CheckWell(Reader *r, const Case *c, Bc *b)
+void CheckWell(Reader *r, const Case *c, const Bc *b)
 {
   const bool rate = b->rate[PHASE_W].n || b->rate[PHASE_G].n;
 
@@ -83,7 +88,7 @@ void CheckWell(Reader *r, const Case *c, Bc *b)
     FAIL(b, "type", "well is a line normal to the plane; about an axis a well is a pressure on side: left");
   else if (c->pressures == PRESSURES_PARTICLES)
     FAIL(b, "type", "well is not known with stepper_pressures: particles");
-  else if (CL_DIM == 3 && !Runs(b))
+  else if (!WellRuns(&c->scene, b))
     FAIL(b, "end", "must differ from at, %s, along one axis: a well runs along it, open between the two",
          PlaceWords(b->at).s);
   else if (rate && b->value.n)

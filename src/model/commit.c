@@ -80,6 +80,11 @@ void ModelCountFace(const Scene *c, const Face *face, double weight, const FaceO
     for (int ph = 0; ph < PHASE_COUNT; ph++)
       rates->meter[k][METER_WATER + ph] += weight * o->outflow[ph];
     rates->meter[k][METER_HEAT] -= weight * o->heat_in;
+    rates->acts[ACTS_METER + k] += weight * (fabs(o->outflow[PHASE_W]) + fabs(o->outflow[PHASE_G]) + fabs(o->heat_in));
+  }
+  for (int kind = BC_NONE + 1; kind < BC_FACES; kind++) {
+    if (o->acts[kind])
+      rates->acts[c->bc[face->bc[kind]].number] += weight;
   }
 }
 

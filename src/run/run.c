@@ -134,6 +134,7 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   PetscCall(SlowLook(&run->slow, s, info, run->log));
   PetscCall(RangesLook(&run->ranges, s));
   PetscCall(IceLook(s, &run->frozen));
+  PetscCall(StillLook(s));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
   if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));

@@ -94,6 +94,12 @@ PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks
 /* One of the last lines: borders of layers that have left the grid's lines; collective. */
 PetscErrorCode NoteBorders(const Stepper *s);
 
+/* ---------------------------------------------------------------- still.c */
+#define STILL_WORDS 2048
+/* After a step: at the end of a stage, or of a run without stages, a line with the conditions and meters of which
+   nothing came in all of it.  Collective. */
+PetscErrorCode StillLook(Stepper *s);
+
 /* ---------------------------------------------------------------- ranges.c */
 /* Lines of the summary: the extremes of p and T. */
 PetscErrorCode RangeSummary(const Stepper *s, char text[512]);

@@ -46,6 +46,15 @@ double ScheduleSwing(const Schedule *s)
   return sum;
 }
 
+bool ScheduleIsZero(const Schedule *s)
+{
+  for (PetscInt i = 0; i < s->n; i++) {
+    if (s->y[i] != 0.0)
+      return false;
+  }
+  return ScheduleSwing(s) == 0.0;
+}
+
 void ScheduleSpan(const Schedule *s, double *low, double *high)
 {
   const double swing = ScheduleSwing(s);

@@ -72,6 +72,8 @@ void StepperCount(const Scene *c, const StageRates *rates, double weight, Attemp
     for (int q = 0; q < METER_COUNT; q++)
       a->meter[k][q] += weight * rates->meter[k][q];
   }
+  for (int k = 0; k < ACTS_COUNT; k++)
+    a->acts[k] += weight * rates->acts[k];
   for (int k = 0; k < WORK_RATES; k++)
     a->work[k] += weight * rates->work[k];
 }
@@ -128,6 +130,8 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
     for (int q = 0; q < METER_COUNT; q++)
       z->meter[k][q] += a->meter[k][q];
   }
+  for (int k = 0; k < ACTS_COUNT; k++)
+    z->acts[k] += a->acts[k];
   PetscCall(StepperEnergyStep(s, a->work));
   ModelForgetLeavers(s->model);
   if (s->monitor)

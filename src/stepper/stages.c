@@ -96,6 +96,7 @@ PetscErrorCode StepperNextStage(Stepper *s)
   PetscCall(StepperTakeStage(s, z->stage));
   StepperForget(z, StepperCase(s)->dt);
   z->kind = AUTO_UNDECIDED;
+  PetscCall(PetscArrayzero(z->acts, ACTS_COUNT));
   if (StepperCase(s)->stage[z->stage].reset)
     ResetDisplacement(s);
   PetscCall(StepperEnergyChange(s));

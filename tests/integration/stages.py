@@ -97,7 +97,7 @@ for kind, end, step in (("sdirk2", 60, 10), ("hybrid", 0.03, 4e-5)):
         some = Run.of_case(BLOCK, *options, *more, "-stages", ",".join(f"s{k}" for k in range(3 - n, 3)), *stages[-2 * n :])
         names = [c for c in none.probes if c != "time_s" and not np.array_equal(none.probes[c], some.probes[c])]
         names += [c for c in none.balance if c != "time_s" and not np.array_equal(none.balance[c], some.balance[c])]
-        anew = "state/(stage|fresh|err_old|hold|t|next_snapshot)$|fields" if n > 1 else "^$"
+        anew = "state/(stage|fresh|err_old|hold|t|next_snapshot|acts)$|fields" if n > 1 else "^$"
         names += [c for c in different(none, some, ()) if not re.search(anew, c) and c != "checkpoint.h5:case"]  # that says which stages
         check_true(f"{kind}: {what} naming nothing: the case without", not names, ", ".join(names[:5]))
 
