@@ -98,21 +98,44 @@ INLINE double ReactionDissociated(double from, double a, double *slope)
   return gone ? -from : -from * (a / (1.0 + a)); /* never more than there is */
 }
 
-/* W of (418) with its slope in p_c (1/Pa). */
+/* W of (418) with its slopes in S_h (1), p_c and p - p_e (1/Pa). */
 typedef struct {
-  double v, pc;
+  double v, Sh, pc, over;
 } Wetted;
 
+#define WET_OVER 1e3  /* Pa above p_e over which W goes from the surface that melts to that of its own */
+#define WET_OPEN 1e-2 /* least 1 - S_h that counts there */
+
+/* theta of (418), (1 - exp(-x))/x, with its slope; x >= 0. */
+typedef struct {
+  double v, x;
+} Fade;
+INLINE Fade WetFade(double x)
+{
+  if (x < 1e-2)
+    return (Fade){1.0 - x * (1.0 / 2 - x * (1.0 / 6 - x * (1.0 / 24 - x / 120))),
+                  -1.0 / 2 + x * (1.0 / 3 - x * (1.0 / 8 - x * (1.0 / 30 - x / 144)))};
+  const double e = exp(-x);
+
+  return (Fade){(1.0 - e) / x, (e * (1.0 + x) - 1.0) / (x * x)};
+}
+
 /* (418): W, the surface of hydrate in water that holds methane over A_geo s_w (1 - S_h)^3; where there is gas the film
-   is the surface.  H (trace) of (101), p_c = p_g - p_w (Pa). */
-INLINE Wetted ReactionWet(const Material *mat, double phi, double Sh, double pc)
+   is the surface.  H (trace) of (101), p_c = p_g - p_w (Pa), over = p - p_e >= 0 (Pa). */
+INLINE Wetted ReactionWet(const Material *mat, double phi, double Sh, double pc, double over)
 {
   if (!(mat->gas.trace > 0.0))
-    return (Wetted){0.0, 0.0};
+    return (Wetted){.v = 0.0};
 
-  const double scale = RetentionTrapScale(&mat->retention), left = exp(-fmax(pc, 0.0) / scale), W = phi * Sh;
+  const double scale = RetentionTrapScale(&mat->retention), gas = exp(-fmax(pc, 0.0) / scale);
+  const double open = fmax(1.0 - Sh, WET_OPEN), whole = 1.0 / (open * open * open), steep = 3.0 * whole / open;
+  const Fade   fade = WetFade(over / WET_OVER);
+  const double more = 1.0 + (whole - 1.0) * fade.v, W = phi * Sh * more * gas;
 
-  return (Wetted){W * left, pc > 0.0 ? -W * left / scale : 0.0};
+  return (Wetted){.v    = W,
+                  .Sh   = phi * gas * (more + (1.0 - Sh > WET_OPEN ? Sh * steep * fade.v : 0.0)),
+                  .pc   = pc > 0.0 ? -W / scale : 0.0,
+                  .over = phi * Sh * gas * (whole - 1.0) * fade.x / WET_OVER};
 }
 
 /* dm/dm_h of (37), (40): mass of a fluid that a kg of hydrate takes the place of; held: of a unit of open pores,

@@ -194,11 +194,14 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, const W
     pg[q]  = own ? own_g[q] : g->value[q][B_P(s, 1)];
     T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
   }
-  for (int q = 0; q < r.n; q++)
-    wet[q] = ReactionWet(r.mat, v->phi[q], v->Sh[q], pg[q] - pw[q]).v;
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
   EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);
   Chords(e, s, r, g, w, T_r, dpe, pw, pg, pe);
+  for (int q = 0; q < r.n; q++) {
+    const double over = ReactionPressure(H, sg[q], pw[q], pg[q]).v - pe[q];
+
+    wet[q] = ReactionWet(r.mat, v->phi[q], v->Sh[q], pg[q] - pw[q], fmax(over, 0.0)).v; /* falls with p: at t_n */
+  }
   KineticsFormationAreaBatch(&k, r.n, sw, wet, v->Sh, area);
   Held(e, s, r, g, T_r, Kd, dpe, area, v, held);
 #pragma GCC ivdep

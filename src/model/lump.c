@@ -24,7 +24,7 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   const Driving d = ReactionDriving(mat->gas.trace, q->s[PHASE_G], own[F_PW], own[F_PG], pe);
   const Growth  growth =
       ReactionGrowth(k, 1.0, m->added->held ? m->added->held[p] : 0.0, &d, Kd, dK, pe, slope); /* kg/(m^2 s) */
-  const double wet  = ReactionWet(mat, q->phi, q->Sh, own[F_PG] - own[F_PW]).v,
+  const double wet  = ReactionWet(mat, q->phi, q->Sh, own[F_PG] - own[F_PW], fmax(d.p.v - pe, 0.0)).v,
                area = d.forms ? KineticsFormationArea(k, q->s[PHASE_W], wet, q->Sh).v
                               : KineticsMeltingArea(k, q->phi, q->Sh);
 

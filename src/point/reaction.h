@@ -22,20 +22,20 @@ INLINE double FormationBalance(FormationArea A, double S, double m0, double grow
 }
 
 /* W of (418) for the hydrate of the step's start, m0 of the `pore` kg that would fill the pores. */
-INLINE Jet Wet(const Material *mat, double m0, Jet pore, Jet pc, const ScalarState *s)
+INLINE Jet Wet(const Material *mat, double m0, Jet pore, Jet pc, Jet over, const ScalarState *s)
 {
   const Jet    phi = JetDiv(s->Vp, s->V), S = JetDiv(JetConstant(m0), pore);
-  const Wetted W = ReactionWet(mat, phi.v, S.v, pc.v);
+  const Wetted W = ReactionWet(mat, phi.v, S.v, pc.v, over.v);
 
-  return W.v == 0.0 ? JetConstant(0.0) : JetChain3(W.v, W.v / phi.v, phi, W.v / S.v, S, W.pc, pc);
+  return JetAdd(JetChain3(W.v, W.v / phi.v, phi, W.Sh, S, W.pc, pc), JetChain(0.0, W.over, over));
 }
 
 /* (13) by Newton inside a bracket; the tangent follows from the implicit function theorem. */
-INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Jet pc, ScalarState *s)
+INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Jet pc, Jet over, ScalarState *s)
 {
   const Kinetics *k      = &mat->kinetics;
   const Jet       growth = JetMul(s->V, per_area);
-  const Jet       pore = JetMul(rho_h, s->Vp), wet = Wet(mat, m0, pore, pc, s);
+  const Jet       pore = JetMul(rho_h, s->Vp), wet = Wet(mat, m0, pore, pc, over, s);
   double          lo = fmin(m0 / pore.v, 1.0), hi = 1.0, S = lo, dS = -1.0;
 
   for (int it = 0; it < 100; it++) {
@@ -93,7 +93,7 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
   const Jet     growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
 
   if (d.forms)
-    Form(mat, m0, growth, rho_h, JetSub(pg_r, pw_r), s);
+    Form(mat, m0, growth, rho_h, JetSub(pg_r, pw_r), JetChain2(p_r.v - pe, 1.0, p_r, -dpe, T_r), s);
   else
     Dissociate(mat, m0, growth, rho_h, s);
   s->gain = JetShift(s->gain, m0 - h->m_star[0]);

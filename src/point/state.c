@@ -51,7 +51,7 @@ static void ReactionProperties(const Material *mat, const ScalarState *s, double
 {
   const Kinetics *k = &mat->kinetics;
   double          d;
-  const double    wet   = ReactionWet(mat, s->phi.v, s->Sh.v, pc).v;
+  const double    wet   = ReactionWet(mat, s->phi.v, s->Sh.v, pc, 0.0).v;
   const double    forms = KineticsFormationArea(k, s->sw.v, wet, s->Sh.v).v;
   const double    area  = fmax(forms, KineticsMeltingArea(k, s->phi.v, s->Sh.v));
 

@@ -214,10 +214,13 @@ static void KineticsValues(void **state)
   assert_true(KineticsFormationArea(&bp2, 0.6, 0, 1).v == 0 && KineticsFormationArea(&bp2, 0.6, 0, 1).sw == 0);
   assert_true(KineticsFormationArea(&bp2, 1, 0, 0.3).v == 0 && KineticsFormationArea(&bp2, 0, 2, 0.3).v == 0);
   /* (418): A_geo phi S_h s_w (1 - S_h)^3 */
-  Near(KineticsFormationArea(&bp2, 1, ReactionWet(&wet, 0.4, 0.3, -1e5).v, 0.3).v, 1e6 * 0.4 * 0.3 * 0.343, 1e-14);
-  Near(ReactionWet(&wet, 0.4, 0.3, 2e4).v / ReactionWet(&wet, 0.4, 0.3, 0.0).v, 0.1353352832366127, 1e-14);
+  Near(KineticsFormationArea(&bp2, 1, ReactionWet(&wet, 0.4, 0.3, -1e5, 1e30).v, 0.3).v, 1e6 * 0.4 * 0.3 * 0.343,
+       1e-14);
+  Near(KineticsFormationArea(&bp2, 1, ReactionWet(&wet, 0.4, 0.3, -1e5, 0.0).v, 0.3).v,
+       KineticsMeltingArea(&bp2, 0.4, 0.3), 1e-14);
+  Near(ReactionWet(&wet, 0.4, 0.3, 2e4, 10.0).v / ReactionWet(&wet, 0.4, 0.3, 0.0, 10.0).v, 0.1353352832366127, 1e-14);
   wet.gas.trace = 0.0;
-  assert_true(ReactionWet(&wet, 0.4, 0.3, 0.0).v == 0.0);
+  assert_true(ReactionWet(&wet, 0.4, 0.3, 0.0, 0.0).v == 0.0);
 }
 
 static void StateAndHeatValues(void **state)

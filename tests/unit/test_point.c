@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <cmocka.h>
 #include "clathra/point.h"
+#include "clathra/point_reaction.h"
 #include "clathra/tensor.h"
 #include "random.h"
 #include "sediment.h"
@@ -704,8 +705,10 @@ static double Lacks(const Particle *q, const PointState *s, double S, double rho
   const double pw = q->in[IN_P] + q->h.shift[0], pg = q->in[IN_P + 1] + q->h.shift[1]; /* of the nodal fields */
   const bool   holds = q->mat.gas.trace > 0.0;
   const double p = holds && pg < pw ? pg : (1.0 - sg) * pw + sg * pg, S0 = q->h.m_star[0] / pore;
-  const double gas  = fmax(pg - pw, 0.0) / RetentionTrapScale(&q->mat.retention);
-  const double wet  = holds ? s->phi * S0 * pow(1.0 - S, 3.0) * exp(-gas) : 0.0;
+  const double gas = fmax(pg - pw, 0.0) / RetentionTrapScale(&q->mat.retention);
+  const double x = fmax(p - pe, 1e-12) / 1e3, whole = pow(fmax(1.0 - S0, 0.01), -3.0);
+  const double more = 1.0 + (whole - 1.0) * -expm1(-x) / x;
+  const double wet  = holds ? s->phi * S0 * more * pow(1.0 - S, 3.0) * exp(-gas) : 0.0;
   const double area = p <= pe ? s->phi * S : (1.0 - sg) * (sg * pow(1.0 - S, 3.0) + wet);
 
   return q->h.m_star[0] - rate * (pe - p) * area - pore * S;
@@ -796,7 +799,7 @@ static void ClosedCell(double p0, double pc, const char *what)
     assert_true(SolveClosedCell(&q, &s));
     const double p = pc < 0.0 ? q.in[IN_P + 1] : s.p, gap = fabs(p - pe);
     printf("  %s, K_d x %.0e: p - p_e = %12.5e Pa, S_h = %.8f\n", what, f, p - pe, s.Sh);
-    if (f > 1e3 && f < 1e9)
+    if ((pc < 0.0 ? old < 0.1 * WET_OVER : f > 1e3) && f < 1e9) /* (418) fades over WET_OVER */
       assert_true(fabs(gap * 100.0 / old - 1.0) < 0.05);
     assert_true(what[0] == 'f' ? s.Sh > 0.1 : s.Sh < 0.1);
     old = gap;

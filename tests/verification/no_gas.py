@@ -112,7 +112,11 @@ def grows():
 
     def course(m0, pg0, ends, n=20000):  # of a m^3: kg of hydrate by the mid-point rule; methane is that of the start
         pg_of = lambda m: ((PHI - m0 / 900) * held * pg0 - (m - m0) * 0.016 / 0.124) / ((PHI - m / 900) * held)  # noqa: E731
-        slope = lambda m: 0.124 * Kd * 7.5e5 * m / 900 * (1 - m / 900 / PHI) ** 3 * (pg_of(m) - pe)  # noqa: E731
+
+        def slope(m):
+            over, whole = pg_of(m) - pe, (1 - m / 900 / PHI) ** -3
+            return 0.124 * Kd * 7.5e5 * m / 900 / whole * (over + (whole - 1) * -math.expm1(-over / 1e3) * 1e3)
+
         m, dt, found = m0, ends[-1] / n, []
         for i in range(1, n + 1):
             m += dt * slope(m + 0.5 * dt * slope(m))
