@@ -187,8 +187,6 @@ def scene(seed):
         lines.append("gravity: [0 m/s^2, -9.81 m/s^2]")
     if r.random() < 0.1 and integrator in ("sdirk2", "euler"):
         lines.append("inertia: no")
-    if gas and r.random() < 0.1 and integrator in ("sdirk2", "euler"):
-        lines.append("pressures: one")
     middle = [0.5 * (a + b) for a, b in zip(*box)]
     lines += ["probes: [middle, top]", f"probe: {{middle: {{at: [{middle[0]!r} m, {middle[1]!r} m]}}, top: {{at: [{middle[0]!r} m, {box[1][1]!r} m]}}}}"]
     return "\n".join(lines) + "\n", {"integrator": integrator, "ranks": r.choices([1, 2], [92, 8])[0],

@@ -19,18 +19,10 @@ extern const FieldInfo cl_field[F_COUNT];
 /* What has fields of its own: bits that also say what a particle variable, a key or a condition needs. */
 enum { HAS_SOLID = 1, HAS_WATER = 2, HAS_GAS = 4, HAS_HEAT = 8, HAS_ALL = 15 };
 extern const char *const cl_field_word[]; /* solid, water, gas, heat; NULL ends it */
-/* What a particle variable may need besides: a gas pressure of its own (set with gas unless the scene has one
-   pressure), a skeleton that yields, one whose hydrate bears a stress of its own, one whose strength follows the
-   plastic strain of its neighbours, one whose tears close before they bear (last). */
+/* What a particle variable may need besides: a skeleton that yields, one whose hydrate bears a stress of its own, one
+   whose strength follows the plastic strain of its neighbours, one whose tears close before they bear (last). */
 /* ... and what only a key may need: hydrate, at the start or by reaction. */
-enum {
-  HAS_GAS_PRESSURE = 16,
-  HAS_PLASTIC      = 32,
-  HAS_BONDS        = 64,
-  HAS_NONLOCAL     = 128,
-  HAS_HYDRATE      = 256,
-  HAS_TEARS        = 512
-};
+enum { HAS_PLASTIC = 16, HAS_BONDS = 32, HAS_NONLOCAL = 64, HAS_HYDRATE = 128, HAS_TEARS = 256 };
 #define HAS_HISTORY (HAS_PLASTIC | HAS_BONDS) /* a skeleton that holds history besides its stress */
 
 /* A field set.  A field that is not in it has no unknown, no row, no storage; its place is -1. */
@@ -39,15 +31,13 @@ typedef struct {
   bool     solid, heat, fluid; /* moves; carries T; has a fluid at all */
   bool     phase[PHASE_COUNT]; /* fluids that are there */
   bool     inertia;            /* accelerations; false: quasi-static */
-  bool     one_pressure;       /* both fluids share the unknown p_w */
   int      n;                  /* unknowns of a node */
   int      at[F_COUNT];        /* place of each unknown in a node's block */
   int      field[F_COUNT];     /* unknown at each place */
 } FieldSet;
 
-/* From the bits; false for a set that cannot be (gas without water, nothing at all).  one_pressure: p_g = p_w,
- * docs/equations.md (34). */
-bool FieldSetMake(unsigned has, bool inertia, bool one_pressure, FieldSet *fs);
+/* From the bits; false for a set that cannot be (gas without water, nothing at all). */
+bool FieldSetMake(unsigned has, bool inertia, FieldSet *fs);
 /* "solid, water, gas, heat (thmc)"; the name of the set where the field has one. */
 void FieldSetPrint(const FieldSet *fs, char *text, int size);
 /* A set by its name (thmc, thc, hm, thm, m, ...); 0 for an unknown one. */
@@ -63,7 +53,7 @@ static inline int PlaceV(const FieldSet *fs, int phase) /* velocity of a fluid *
 {
   return fs->at[VectorAt(F_VW, phase, 0)];
 }
-/* ... of a fluid's pressure; -1 likewise; one place for both where they have one pressure. */
+/* ... of a fluid's pressure; -1 likewise. */
 static inline int PlaceP(const FieldSet *fs, int phase)
 {
   return fs->at[F_PW + phase];

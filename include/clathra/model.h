@@ -198,7 +198,6 @@ typedef struct {
 
   /* of the last evaluation */
   double    *x, *f;       /* [n_local][fields.n] unscaled unknowns, residual */
-  double    *mass_row;    /* [n_local][2] mass balances of water and gas, one pressure only; kg */
   FluidNode *fluid;       /* [n_local][2] where there are two */
   bool       evaluated;   /* x, proj, give, take and fluid are those of a residual of this stage */
   double    *proj;        /* [n_local][PHASE_COUNT][CL_DIM] projected pressure gradients Pi g, Pa/m */

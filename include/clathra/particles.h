@@ -20,10 +20,10 @@
   X(P_MW, HAS_WATER, "mass_water", 1, "kg", "")                                                                        \
   X(P_MG, HAS_GAS, "mass_gas", 1, "kg", "")                                                                            \
   X(P_PW, HAS_WATER, "p_w", 1, "Pa", "water pressure")                                                                 \
-  X(P_PG, HAS_GAS_PRESSURE, "p_g", 1, "Pa", "gas pressure")                                                            \
+  X(P_PG, HAS_GAS, "p_g", 1, "Pa", "gas pressure")                                                                     \
   X(P_T, HAS_HEAT, "T", 1, "degC", "temperature")                                                                      \
   X(P_GW, HAS_WATER, "grad_p_w", CL_DIM, "Pa/m", "at the end of the last step")                                        \
-  X(P_GG, HAS_GAS_PRESSURE, "grad_p_g", CL_DIM, "Pa/m", "")                                                            \
+  X(P_GG, HAS_GAS, "grad_p_g", CL_DIM, "Pa/m", "")                                                                     \
   X(P_GT, HAS_HEAT, "grad_T", CL_DIM, "K/m", "")                                                                       \
   X(P_BT, HAS_HEAT, "mixed_T", CL_PAIRS, "K/m^2", "d2T/dx dy, at the end of the last step (395)")                      \
   X(P_VS, HAS_SOLID, "v_s", CL_DIM, "m/s", "skeleton velocity")                                                        \
@@ -32,7 +32,7 @@
   X(P_SIG, HAS_SOLID, "stress", 6, "Pa", "effective, tension-positive: xx yy zz xy yz xz")                             \
   X(P_SIG0, HAS_SOLID, "stress_initial", 6, "Pa", "initial effective stress, rotated with the body")                   \
   X(P_PW0, HAS_WATER, "p_w_initial", 1, "Pa", "initial water pressure")                                                \
-  X(P_PG0, HAS_GAS_PRESSURE, "p_g_initial", 1, "Pa", "initial gas pressure")                                           \
+  X(P_PG0, HAS_GAS, "p_g_initial", 1, "Pa", "initial gas pressure")                                                    \
   X(P_RATE, HAS_WATER | HAS_HEAT, "rate_p_w", 1, "Pa/s", "at the end of the last step")                                \
   X(P_RATE_PG, HAS_WATER | HAS_HEAT, "rate_p_g", 1, "Pa/s", "")                                                        \
   X(P_RATE_T, HAS_WATER | HAS_HEAT, "rate_T", 1, "K/s", "")                                                            \

@@ -51,7 +51,6 @@ typedef struct {
   double          V, m_s;
   double          m_star[3]; /* m_h*, m_w*, m_g*, kg */
   double          T_n, Sh_n; /* at t_n */
-  double          sw_n;      /* share of water at t_n: held over the step where there is one pressure (34) */
   SkeletonHistory skeleton;
   double          spread[PHASE_COUNT];  /* (200) at t_n, m^2/(Pa s) */
   double          upwind[CL_SYMMETRIC]; /* (293), W/(m K) */
@@ -124,7 +123,7 @@ typedef struct {
   double compressibility;                      /* sum over pi of that in a pressure that both have, 1/Pa */
   double reaction, reaction_heat;              /* hydrate that the reaction makes or takes, kg/(m^3 s Pa), W/(m^3 Pa) */
 } PointProperties;
-/* At V (m^3), masses m_s, m_h (kg), p_w, p_g (Pa), T (degC) and the water share sw_n of t_n, which holds where there is
-   one pressure. Returns why the state is inadmissible, with a sentence in *why; r is not to be used then. */
+/* At V (m^3), masses m_s, m_h (kg), p_w, p_g (Pa), T (degC). Returns why the state is inadmissible, with a sentence in
+ * *why; r is not to be used then. */
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
-                                 double pg, double T, double sw_n, PointProperties *r, const char **why);
+                                 double pg, double T, PointProperties *r, const char **why);

@@ -84,7 +84,7 @@ typedef struct Scene {
   GridLines     line[CL_DIM];             /* of an axis with a spacing */
   BasisType     basis;
   bool          axisymmetric; /* x is the radius, y runs along the axis; all per full ring */
-  bool          inertia, one_pressure;
+  bool          inertia;
   bool          compression_heat;                /* heat of compression and throttling of the fluids (290) */
   FieldSet      fields;                          /* what the scene needs, as named or derived */
   double        gravity[CL_DIM];                 /* m/s^2 */
@@ -199,13 +199,13 @@ static inline bool SceneReacts(const Scene *c)
   return reacts;
 }
 
-/* Does a region start without gas where there are two pressures (section 19 of docs/equations.md)? */
+/* Does a region start without gas in a scene that has some (section 19 of docs/equations.md)? */
 static inline bool SceneStartsWithoutGas(const Scene *c)
 {
   bool without = false;
 
   for (PetscInt k = 0; k < c->nregion; k++) /* a region without material holds nothing: it names a place */
-    without = without || ((c->fields.has & HAS_GAS_PRESSURE) && c->region[k].material >= 0 && c->region[k].Sg == 0.0);
+    without = without || ((c->fields.has & HAS_GAS) && c->region[k].material >= 0 && c->region[k].Sg == 0.0);
   return without;
 }
 
@@ -223,16 +223,10 @@ static inline bool SceneLetsGasIn(const Scene *c)
   return enters && SceneStartsWithoutGas(c);
 }
 
-/* Water and gas, each with a pressure of its own. */
-static inline bool SceneTwoPressures(const Scene *c)
-{
-  return c->fields.phase[PHASE_W] && c->fields.phase[PHASE_G] && !c->fields.one_pressure;
-}
-
 /* Has gas the mobility of where it comes from (332)? */
 static inline bool SceneDonor(const Scene *c)
 {
-  return c->stabilisation.donor && SceneTwoPressures(c);
+  return c->stabilisation.donor && c->fields.phase[PHASE_G];
 }
 
 /* k_p of (350) over the first material's k0, at a saturation of hydrate. */
@@ -346,7 +340,6 @@ static inline const char *SceneNeedsImplicit(const Scene *c)
 
   return b                         ? b->name
          : c->axisymmetric         ? "geometry: axisymmetric"
-         : c->one_pressure         ? "pressures: one"
          : !c->inertia             ? "inertia: no"
          : c->basis == BASIS_TOTAL ? "basis: total"
          : SceneLetsGasIn(c)       ? "an inflow of gas where a region has Sg: 0"

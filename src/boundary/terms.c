@@ -51,7 +51,7 @@ typedef struct {
 /* Which pressure sets the density of what leaves, and which part of it (323). */
 static int SetsDensity(const FaceState *x, int phase, double *part)
 {
-  const double H = x->c->fields.one_pressure ? 0.0 : x->mat->gas.trace;
+  const double H = x->mat->gas.trace;
   const bool   water =
       phase == PHASE_G && GasFlowsByWater(H, FacePressure(x->f, PHASE_W, x->in), FacePressure(x->f, PHASE_G, x->in));
 
@@ -161,7 +161,7 @@ static void OutsidePressures(const FaceState *x, PetscInt k, Outside *o)
   }
   if (b->phase[PHASE_W].n || b->phase[PHASE_G].n || (b->initial && !b->natural))
     return;
-  if (!(x->c->fields.has & HAS_GAS_PRESSURE)) {
+  if (!(x->c->fields.has & HAS_GAS)) {
     o->p[PHASE_W] = o->p[PHASE_G] = b->initial ? p0[PHASE_W] : MeanOutside(x, k, o->du);
     return;
   }
@@ -205,14 +205,14 @@ void FacePressures(const FaceState *x, PetscInt k, FaceOutput *o)
     if (x->c->fields.phase[phase] && Opens(&x->c->bc[k], phase) && Gives(x, k, phase))
       Open(x, phase, &outside, o);
   }
-  if ((x->c->fields.has & HAS_GAS_PRESSURE) && Opens(&x->c->bc[k], PHASE_W))
+  if ((x->c->fields.has & HAS_GAS) && Opens(&x->c->bc[k], PHASE_W))
     Dissolved(x, isinf(x->v->value[k]), o);
 }
 
 /* (106): gas that enters where there is none has the pressure of the water before it. */
 static int InflowPressure(const FaceState *x, int phase)
 {
-  const bool two = x->c->fields.has & HAS_GAS_PRESSURE;
+  const bool two = x->c->fields.has & HAS_GAS;
 
   return two && phase == PHASE_G && FacePressure(x->f, PHASE_W, x->in) > FacePressure(x->f, PHASE_G, x->in) ? PHASE_W
                                                                                                             : phase;

@@ -192,7 +192,7 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
 {
   PetscFunctionBeginUser;
   text[0] = '\0';
-  for (PetscInt a = 0; (c->fields.has & HAS_GAS_PRESSURE) && a < c->nregion; a++) {
+  for (PetscInt a = 0; (c->fields.has & HAS_GAS) && a < c->nregion; a++) {
     for (PetscInt b = a + 1; !text[0] && b < c->nregion; b++) {
       if (!RegionEmpty(&c->region[a]) && !RegionEmpty(&c->region[b]))
         PetscCall(Jump(comm, c, P, a, b, text));
@@ -259,7 +259,7 @@ static PetscErrorCode TrappedWarnings(MPI_Comm comm, const Scene *c)
   double         middle[CL_DIM];
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; (c->fields.has & HAS_GAS_PRESSURE) && k < c->nregion; k++) {
+  for (PetscInt k = 0; (c->fields.has & HAS_GAS) && k < c->nregion; k++) {
     const Region   *r     = &c->region[k];
     const Material *m     = &c->material[r->material];
     const double    share = r->Sg / (1.0 - r->Sh);

@@ -397,7 +397,7 @@ static Rate Mobile(const FaceState *x, int phase)
   const Material *mat = x->mat;
   double          ds, dSh, slope;
 
-  if (!(x->c->fields.has & HAS_GAS_PRESSURE))
+  if (!(x->c->fields.has & HAS_GAS))
     return (Rate){.v = x->f->kr[phase]};
   const double pc      = x->in[IN_P + PHASE_G] - x->in[IN_P + PHASE_W],
                sg      = RetentionGasShare(&mat->retention, pc, x->Sh, &ds, &dSh);
@@ -416,7 +416,7 @@ static Rate Head(const FaceState *x, PetscInt k, int phase)
   Rate          r = {.d = {0.0}};
   double        ds, dSh;
 
-  if (!(x->c->fields.has & HAS_GAS_PRESSURE)) {
+  if (!(x->c->fields.has & HAS_GAS)) {
     r.v        = p[phase] - x->v->value[k];
     r.d[phase] = 1.0;
     return r;
@@ -443,7 +443,7 @@ static Rate Volume(const FaceState *x, int phase, const Rate *head)
 static Rate Mass(const FaceState *x, int phase, const Rate *head, const Rate *q)
 {
   const bool   enters = head->v < 0.0;
-  const double H      = x->c->fields.one_pressure || enters || phase == PHASE_W ? 0.0 : x->mat->gas.trace;
+  const double H      = enters || phase == PHASE_W ? 0.0 : x->mat->gas.trace;
   const int    sets   = GasFlowsByWater(H, x->in[IN_P], x->in[IN_P + PHASE_G]) ? PHASE_W : phase;
   const double part   = sets == phase ? 1.0 : CL_GAS_FLOWS; /* (323) */
   double       dp, dT;
@@ -502,7 +502,7 @@ void FaceWell(const FaceState *x, PetscInt k, FaceOutput *o)
 
     Leave(x, phase, &m, o);
     Warm(x, k, phase, &m, o);
-    if (held && phase == PHASE_W && (x->c->fields.has & HAS_GAS_PRESSURE)) {
+    if (held && phase == PHASE_W && (x->c->fields.has & HAS_GAS)) {
       const Rate methane = Dissolved(x, &q);
 
       Leave(x, PHASE_G, &methane, o);

@@ -55,7 +55,7 @@ static double CellSize(const Scene *c)
 PetscErrorCode CaseDerive(Reader *r, Case *c)
 {
   const bool starts  = c->scene.without_gas == WITHOUT_GAS_AUTO && SceneStartsWithoutGas(&c->scene);
-  const bool without = (c->scene.fields.has & HAS_GAS_PRESSURE) && (starts || c->scene.without_gas == WITHOUT_GAS_YES);
+  const bool without = (c->scene.fields.has & HAS_GAS) && (starts || c->scene.without_gas == WITHOUT_GAS_YES);
 
   PetscFunctionBeginUser;
   c->scene.nlisted = c->scene.nbc;
@@ -75,7 +75,7 @@ PetscErrorCode CaseDerive(Reader *r, Case *c)
       m->retention.p_trap = starts ? fmin(m->retention.p0, TRAPPED) : m->retention.p0;
     if (isinf(m->gas.henry)) /* compression_heat takes all methane for gas */
       m->gas.henry = without && !c->scene.compression_heat ? GAS_SOLUBILITY : 0.0;
-    m->gas.carried = c->scene.fields.has & HAS_GAS_PRESSURE ? m->gas.M * m->gas.henry : 0.0;
+    m->gas.carried = c->scene.fields.has & HAS_GAS ? m->gas.M * m->gas.henry : 0.0;
     m->gas.trace   = m->gas.carried > 0.0 ? m->gas.carried : without ? GasTrace(&m->gas) : 0.0; /* (102) */
     DeriveFluids(m);
     m->plasticity.factor = c->scene.strength_factor;

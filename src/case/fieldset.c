@@ -213,12 +213,11 @@ PetscErrorCode CaseFieldSet(Reader *r, Case *c)
     PetscCall(FieldsDerive(r, c, &has));
   else
     has = FieldsParse(r, c->fields_wanted);
-  if (!FieldSetMake(has, c->scene.inertia, c->scene.one_pressure, &c->scene.fields)) {
+  if (!FieldSetMake(has, c->scene.inertia, &c->scene.fields)) {
     if (r->nerror == before)
       ReaderError(r, "fields", c->fields_wanted, "has gas without water, which no scene here can have; must be %s",
                   FIELDS_ALLOWED);
-    FieldSetMake(HAS_ALL, c->scene.inertia, c->scene.one_pressure,
-                 &c->scene.fields); /* so that the rest of the case is read */
+    FieldSetMake(HAS_ALL, c->scene.inertia, &c->scene.fields); /* so that the rest of the case is read */
   }
   PetscCall(PeekHydrate(r, c, &hydrate));
   c->scene.fields.has |= hydrate ? HAS_HYDRATE : 0u;

@@ -22,10 +22,6 @@ static void CheckPhases(Reader *r, const Scene *c, const Bc *b)
 
   if (!given[PHASE_W] && !given[PHASE_G])
     return;
-  if (c->fields.one_pressure) {
-    FAIL(b, given[PHASE_G] ? "p_g" : "p_w", "is one fluid's own, but the scene has one pressure: give pressure");
-    return;
-  }
   if (b->value.n || b->initial)
     FAIL(b, given[PHASE_W] ? "p_w" : "p_g", "leaves nothing for %s to say: give the mean, or each fluid's own pressure",
          b->value.n ? "pressure" : "initial");

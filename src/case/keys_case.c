@@ -27,7 +27,6 @@ static bool NeedsEnd(const void *p)
 }
 
 static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", "total", NULL}; /* BasisType */
-static const char *const pressures_word[]   = {"two", "one", NULL};
 static const char *const geometry_word[]    = {PLANE_WORD, "axisymmetric", NULL};
 static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
 static const char *const surface_word[]     = {"free", "tied", "velocities_free", NULL}; /* SURFACE_... */
@@ -70,8 +69,6 @@ const Key case_key[] = {
          "auto drops what is identically zero",
          BINDS(HAS_ALL)),
     BOOLEAN(Case, "inertia", scene.inertia, "yes", "accelerations; no is quasi-static"),
-    BOOLEAN(Case, "pressures", scene.one_pressure, "two",
-            "one: p_g = p_w, saturations follow explicitly from the masses", .choices = pressures_word, BINDS(HAS_ALL)),
     BOOLEAN(Case, "compression_heat", scene.compression_heat, "no",
             "fluids warm as they are compressed and cool or warm as they are throttled (Joule-Thomson)"),
     CHOICE(Case, "basis", scene.basis, "cpgimp", basis_word,

@@ -138,7 +138,7 @@ const Key material_key[] = {
          "Henry's: what water holds of it in equilibrium with p_g; auto: methane's at 10 degC, 1.9e-5, where sediment "
          "may "
          "be free of gas (without_gas), else 0",
-         .word = "auto", .has = HAS_GAS_PRESSURE, BINDS(HAS_GAS)),
+         .word = "auto", .has = HAS_GAS, BINDS(HAS_GAS)),
     LAWKEY("gas_eos", "peng_robinson", law_Gas, "density; ideal is M p/(R T), the paper's", BINDS(HAS_GAS)),
     REAL(Material, "gas_critical_temperature", gas.Tc, "K", "(0,1e4]", "190.564 K", "peng_robinson; methane by default",
          .has = HAS_GAS, ACTS(IsCubic, "eos is peng_robinson"), BINDS(HAS_GAS)),
@@ -173,7 +173,7 @@ const Key material_key[] = {
          .word = "auto", .has = HAS_GAS, ACTS(IsSmooth, "law is van_genuchten"), BINDS(HAS_GAS)),
     REAL(Material, "retention_hydrate_exponent", retention.hydrate, "", "[0,20]", "0",
          "n of p_c = p_c(s_g)/(1 - Sh)^n: hydrate narrows the pores; (mh - 1)/2 by Leverett's scaling with power",
-         .has = HAS_GAS_PRESSURE, BINDS(HAS_GAS)),
+         .has = HAS_GAS, BINDS(HAS_GAS)),
     REAL(Material, "relperm_Swr", relperm.Swr, "", "[0,1)", "1 @retention_Swr", "residual water saturation of k_rw",
          .has = HAS_GAS),
     REAL(Material, "relperm_Sgr", relperm.Sgr, "", "[0,1)", "1 @retention_Sgr", "residual gas saturation of k_rg",

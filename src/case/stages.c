@@ -74,7 +74,7 @@ void CheckTimes(Reader *r, const Case *c, const char *stage)
   if (Local(c))
     CheckLocal(r, c, stage);
   if (c->pressures == PRESSURES_RELATIVE && c->scene.nmaterial > 0 &&
-      !((c->scene.fields.has & HAS_GAS_PRESSURE) && c->scene.material[0].gas.trace == 0.0))
+      !((c->scene.fields.has & HAS_GAS) && c->scene.material[0].gas.trace == 0.0))
     Fail(r, stage, "stepper_pressures",
          "relative is for scenes with a pressure of the gas that all of the sediment holds");
   if (c->pressures == PRESSURES_PARTICLES && c->passes > 0)

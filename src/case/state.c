@@ -24,7 +24,7 @@ static void WriteMaterial(FILE *f, const Case *c, const Region *g)
     if (k->binds || k->history)
       WriteLine(f, c, prefix, k, (const char *)m);
   }
-  if (c->scene.fields.has & HAS_GAS_PRESSURE)
+  if (c->scene.fields.has & HAS_GAS)
     fprintf(f, "%swithout_gas: %s\n", prefix, m->gas.trace > 0.0 ? "yes" : "no"); /* (102) */
   if (c->scene.fields.solid)
     fprintf(f, "%selasticity_stiffness_change: %s\n", prefix,

@@ -40,27 +40,20 @@ static const struct {
 };
 #define SETS ((int)(sizeof(set_name) / sizeof(*set_name)))
 
-bool FieldSetMake(unsigned has, bool inertia, bool one_pressure, FieldSet *fs)
+bool FieldSetMake(unsigned has, bool inertia, FieldSet *fs)
 {
   static const unsigned velocity[] = {HAS_SOLID, HAS_WATER, HAS_GAS}, scalar[] = {HAS_WATER, HAS_GAS, HAS_HEAT};
 
-  *fs              = (FieldSet){.has     = has,
-                                .solid   = has & HAS_SOLID,
-                                .heat    = has & HAS_HEAT,
-                                .fluid   = has & (HAS_WATER | HAS_GAS),
-                                .phase   = {has & HAS_WATER, has & HAS_GAS},
-                                .inertia = inertia};
-  fs->one_pressure = one_pressure && fs->phase[PHASE_G];
-  if (fs->phase[PHASE_G] && !fs->one_pressure)
-    fs->has |= HAS_GAS_PRESSURE;
+  *fs = (FieldSet){.has     = has,
+                   .solid   = has & HAS_SOLID,
+                   .heat    = has & HAS_HEAT,
+                   .fluid   = has & (HAS_WATER | HAS_GAS),
+                   .phase   = {has & HAS_WATER, has & HAS_GAS},
+                   .inertia = inertia};
   for (int q = 0; q < F_COUNT; q++) {
     fs->at[q] = -1;
     if (!(has & (q < F_PW ? velocity[q / CL_DIM] : scalar[q - F_PW])))
       continue;
-    if (q == F_PG && fs->one_pressure) {
-      fs->at[q] = fs->at[F_PW];
-      continue;
-    }
     fs->at[q]          = fs->n;
     fs->field[fs->n++] = q;
   }
@@ -82,8 +75,6 @@ void FieldSetPrint(const FieldSet *fs, char *text, int size)
     if (set_name[k].has == (fs->has & HAS_ALL) && (reacts || !gas) && n < size) /* c is for hydrate */
       n += snprintf(text + n, (size_t)(size - n), " (%s)", set_name[k].name);
   }
-  if (fs->one_pressure && n < size)
-    n += snprintf(text + n, (size_t)(size - n), ", one pressure");
   if (!fs->inertia && n < size)
     snprintf(text + n, (size_t)(size - n), ", quasi-static");
 }

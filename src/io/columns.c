@@ -32,7 +32,7 @@ static const struct {
 } column[PROBE_COUNT] = {
     [PROBE_P] = DERIVED(DERIVED_P, QUANTITY_P),
     {"p_w_Pa", HAS_WATER, QUANTITY_PW, P_PW},
-    {"p_g_Pa", HAS_GAS_PRESSURE, QUANTITY_PG, P_PG},
+    {"p_g_Pa", HAS_GAS, QUANTITY_PG, P_PG},
     {"T_degC", HAS_HEAT, QUANTITY_T, P_T},
     {"S_h", HAS_ALL, QUANTITY_SH, P_SH},
     {"S_w", HAS_WATER, QUANTITY_SW, P_SW},

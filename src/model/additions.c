@@ -14,7 +14,7 @@ PetscErrorCode AdditionsReserve(Model *m)
   PetscFunctionBeginUser;
   if (SceneDonor(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->donor));
-  if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G] && !fs->one_pressure)
+  if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G])
     PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
   if (SceneCarriesHeat(m->c))
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
@@ -78,7 +78,7 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
       a[d] -= SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
-              (m->P.f[VectorAt(P_GW, m->c->fields.one_pressure ? PHASE_W : k, d)][p] - q->rho[k] * m->c->gravity[d]);
+              (m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
   }
   Drive(m, p, a);
   CellWidths(m, p, h);

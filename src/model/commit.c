@@ -1,8 +1,7 @@
 /* End of a stage and of a step: the only place of the implicit integrators that writes history. */
 #include "solver.h"
 
-#define MAX_MOVE 0.5   /* cells per step */
-#define MAX_SHARE 0.05 /* change of the share of water per step, one pressure */
+#define MAX_MOVE 0.5 /* cells per step */
 
 static void Displacement(const Model *m, PetscInt p, const Reach *r, const double *x, double u[CL_DIM])
 {
@@ -132,12 +131,11 @@ static void CountMoved(const Model *m, PetscInt p, const double out[OUT_COUNT], 
   }
 }
 
-/* With one pressure the rest of a fluid's own row is no error (34). */
 static void CountLeft(const Model *m, StageRates *rates)
 {
-  for (int ph = 0; ph < PHASE_COUNT && !m->mass_row; ph++) {
+  for (int ph = 0; ph < PHASE_COUNT; ph++) {
     for (PetscInt I = 0; m->c->fields.phase[ph] && I < m->map.n_owned; I++)
-      rates->left[ph] += fabs(*MassRow(m, m->f, I, ph)) / m->stage.dt;
+      rates->left[ph] += fabs(*RowOf(m, m->f, I, F_PW + ph)) / m->stage.dt;
   }
 }
 
@@ -149,10 +147,7 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
   PetscFunctionBeginUser;
   if (!fs->fluid)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (m->mass_row)
-    PetscCall(NodeMapBroadcast(&m->map, m->mass_row, PHASE_COUNT));
-  else
-    PetscCall(NodeMapBroadcast(&m->map, m->f, fs->n));
+  PetscCall(NodeMapBroadcast(&m->map, m->f, fs->n));
   for (PetscInt p = 0; p < m->P.n; p++) {
     Reach r;
 
@@ -162,41 +157,11 @@ static PetscErrorCode KeepBalance(Model *m, double *masses)
 
       for (int ph = 0; ph < PHASE_COUNT; ph++) {
         if (fs->phase[ph])
-          masses[3 * p + 1 + ph] -= share * *MassRow(m, m->f, r.node[a], ph);
+          masses[3 * p + 1 + ph] -= share * *RowOf(m, m->f, r.node[a], F_PW + ph);
       }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* (34) */
-static double ShareOfWater(const PointState *s)
-{
-  const double w = s->m_w / s->rho[PHASE_W], g = s->m_g / s->rho[PHASE_G];
-
-  return w / (w + g);
-}
-
-/* With one pressure the saturations are explicit: they may not leave [0,1] nor change much in a step. */
-static void CheckShares(Model *m, const double *x, const double *masses)
-{
-  for (PetscInt p = 0; p < m->P.n && m->failure.status == CL_OK; p++) {
-    Reach       r;
-    PointState  s;
-    PointOutput o;
-    double      in[IN_COUNT];
-
-    if (ParticleEvaluate(m, p, x, false, &r, in, &s, &o) != CL_OK)
-      return;
-    s.m_w           = masses[3 * p + 1];
-    s.m_g           = masses[3 * p + 2];
-    const double sw = ShareOfWater(&s);
-    if (!(sw >= 0.0 && sw <= 1.0))
-      ModelNoteFailure(m, CL_DOMAIN, "a saturation leaves [0,1]; with one pressure saturations are explicit", p);
-    else if (fabs(sw - ParticleSw(m, p)) > MAX_SHARE)
-      ModelNoteFailure(m, CL_DOMAIN,
-                       "a saturation changes by more than 0.05 in a step; with one pressure they are explicit", p);
-  }
 }
 
 static void HeatRates(const Model *m, PetscInt p, const Reach *r, const double *x, double T, const PointState *s,
@@ -257,8 +222,6 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   }
   CountLeft(m, rates);
   PetscCall(KeepBalance(m, trial->m));
-  if (m->c->fields.one_pressure)
-    CheckShares(m, x, trial->m);
   BoundaryRates(m, x, rates);
   if (m->c->fields.solid) {
     rates->work[WORK_PLATES] += HeldPower(m);
@@ -400,7 +363,7 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
   f[P_PHI][p] = s->phi;
   if (fs->phase[PHASE_W]) {
     f[P_MW][p] = s->m_w;
-    f[P_SW][p] = fs->one_pressure ? (1.0 - s->Sh) * ShareOfWater(s) : s->Sw;
+    f[P_SW][p] = s->Sw;
   }
   if (fs->phase[PHASE_G])
     f[P_MG][p] = s->m_g;

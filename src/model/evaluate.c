@@ -118,7 +118,7 @@ static void AddOwn(const Model *m, PetscInt p, double in[IN_COUNT])
 {
   in[IN_T] += ParticleT(m->c, &m->P, p);
   for (int f = 0; f < PHASE_COUNT; f++)
-    in[IN_P + f] += m->c->fields.phase[f] ? m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] : 0.0;
+    in[IN_P + f] += m->c->fields.phase[f] ? m->P.f[P_PW + f][p] : 0.0;
 }
 
 /* (Pi g)_p of a fluid. */
@@ -177,7 +177,7 @@ static double StarredPressure(const Model *m, PetscInt p, const Reach *r, int f,
 {
   const double withheld = less != 0.0 ? less * StarredChange(m, r, PHASE_G) : 0.0;
 
-  return m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + StarredChange(m, r, f) - withheld;
+  return m->P.f[P_PW + f][p] + StarredChange(m, r, f) - withheld;
 }
 
 static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums *s, double less, PointHistory *h)
@@ -188,7 +188,6 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->m_s      = m->P.f[P_MS][p];
   h->T_n      = ParticleT(m->c, &m->P, p);
   h->Sh_n     = m->P.f[P_SH][p];
-  h->sw_n     = ParticleSw(m, p);
   h->dt       = m->stage.dt;
   h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
   h->held     = m->added->held ? m->added->held[p] : 0.0;
@@ -277,10 +276,10 @@ ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q,
 {
   const FieldSet *fs = &m->c->fields;
   const double    pw = fs->phase[PHASE_W] ? m->P.f[P_PW][p] : 0.0;
-  const double    pg = fs->phase[PHASE_G] ? m->P.f[HeldPressure(fs, P_PW, PHASE_G)][p] : 0.0;
+  const double    pg = fs->phase[PHASE_G] ? m->P.f[P_PG][p] : 0.0;
 
   return PointPropertiesEvaluate(fs, ParticleMaterial(m, p), m->P.f[P_V][p], m->P.f[P_MS][p], m->P.f[P_MH][p], pw, pg,
-                                 ParticleT(m->c, &m->P, p), ParticleSw(m, p), q, why);
+                                 ParticleT(m->c, &m->P, p), q, why);
 }
 
 /* (276) */
@@ -291,12 +290,11 @@ void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]
   double         weight = 0.0, rho = 0.0, dp, dT;
 
   if (r->hydrostatic && m->c->fields.phase[PHASE_W])
-    rho = LiquidDensity(&ParticleMaterial(m, p)->water, m->P.f[HeldPressure(&m->c->fields, P_PW0, PHASE_W)][p],
-                        ParticleInitialT(m->c, &m->P, p), &dp, &dT);
+    rho = LiquidDensity(&ParticleMaterial(m, p)->water, m->P.f[P_PW0][p], ParticleInitialT(m->c, &m->P, p), &dp, &dT);
   for (int d = 0; d < CL_DIM; d++)
     weight += rho * m->c->gravity[d] * face->r[d];
   for (int f = 0; f < PHASE_COUNT; f++)
-    p0[f] = m->c->fields.phase[f] ? m->P.f[HeldPressure(&m->c->fields, P_PW0, f)][p] + weight : 0.0;
+    p0[f] = m->c->fields.phase[f] ? m->P.f[P_PW0 + f][p] + weight : 0.0;
 }
 
 /* Pressures at a face drive a fluid like those in its particle (308). */

@@ -177,8 +177,6 @@ void ParticleScatter(Model *m, PetscInt p, const Reach *r, const double *x, cons
 /* Model.x and what nodes hold for their particles at X; where products or two fluids need it, what they have taken and
    the momenta (16) on all of them.  Costs something only where the last residual was elsewhere. */
 PetscErrorCode ModelNodesAt(Model *m, Vec X);
-/* (34): the balances of both fluids make one of volume, added to the rows f of the owned nodes. */
-PetscErrorCode ModelSumMassRows(Model *m, double *f);
 /* Projected pressure gradients (20), (309) of the nodal pressures x into proj (n_local x PHASE_COUNT x CL_DIM), all
    ranks; slope: what a change x of them makes. */
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);

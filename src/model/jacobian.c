@@ -5,7 +5,6 @@
 /* Nodal factors that multiply a particle's outputs: accelerations, Darcy fluxes, temperature rate, weights of drag. */
 typedef struct {
   double acc[1 + PHASE_COUNT][CL_DIM], own[PHASE_COUNT][CL_DIM], J[PHASE_COUNT][CL_DIM], Tdot; /* own: in (16), (310) */
-  double weight[PHASE_COUNT];                                                                  /* RowWeight */
   double kr[PHASE_COUNT];                                                                      /* of the node (108) */
   double flow[PHASE_COUNT], share[PHASE_COUNT]; /* (350), (333), and without S */
   double rise[PHASE_COUNT][CL_DIM];             /* d row (16)/d sqrt(k_r) of the particle, N; of two fluids */
@@ -23,10 +22,9 @@ static void Factors(const Model *m, PetscInt p, PetscInt I, const double *x, dou
     Acceleration(m, I, x, PlaceV(fs, f), 1.0, n->acc[1 + f]);
     FluidAcceleration(m, p, I, x, f, n->own[f]);
     DarcyFlux(m, I, f, &x[I * fs->n], n->J[f]);
-    n->share[f]  = FlowWeight(m, p, I, f);
-    n->flow[f]   = S * n->share[f];
-    n->kr[f]     = 1.0;
-    n->weight[f] = RowWeight(m, I, f);
+    n->share[f] = FlowWeight(m, p, I, f);
+    n->flow[f]  = S * n->share[f];
+    n->kr[f]    = 1.0;
     if (!m->fluid)
       continue;
     const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
@@ -89,8 +87,8 @@ static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const 
   }
 }
 
-static void MassRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k,
-                     const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+static void MassRows(const Model *m, const Assembly *to, const Reach *r, const double DB[OUT_COUNT][ROW_MOST],
+                     int length, Patch *patch)
 {
   const FieldSet *fs = &to->fs;
   const double   *S = r->S, dt = m->stage.dt;
@@ -100,11 +98,9 @@ static void MassRows(const Model *m, const Assembly *to, const Reach *r, const N
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
-    TERM(OUT_DM + f, k[a].weight[f] * S[a]);
+    TERM(OUT_DM + f, S[a]);
     for (int j = 0; j < CL_DIM; j++)
-      TERM(VectorAt(OUT_FLUX, f, j), -k[a].weight[f] * dt * r->G[a][j]);
-    if (f == PHASE_W && fs->one_pressure)
-      continue; /* one row for both */
+      TERM(VectorAt(OUT_FLUX, f, j), -dt * r->G[a][j]);
     RowOfNodes(patch, PlaceP(fs, f), r->n, row);
     RowSumInto(&sum, r->n, length, patch->fresh, row);
     sum.n = 0;
@@ -151,7 +147,7 @@ static void NodeRows(const Model *m, const Assembly *to, const Reach *r, const N
 
   if (fs->solid)
     SolidRows(m, to, r, k, DB, length, patch);
-  MassRows(m, to, r, k, DB, length, patch);
+  MassRows(m, to, r, DB, length, patch);
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f] && PlaceV(fs, f) >= 0)
       MomentumRows(m, to, r, f, k, DB, length, patch);
@@ -346,8 +342,8 @@ static void FaceBlock(const Model *m, const Assembly *to, const Face *face, cons
       continue;
     SlopesApply(&slopes, 1, &D, &to_row);
     for (int a = 0; a < r->n; a++) {
-      const double N = FaceWeight(face, a, k) * FaceFlow(m, face->particle, r->node[a], k) *
-                       RowWeightOf(m, r->node[a], k) * MobilityOf(m, r->node[a], k);
+      const double N =
+          FaceWeight(face, a, k) * FaceFlow(m, face->particle, r->node[a], k) * MobilityOf(m, r->node[a], k);
 
       for (int b = 0; b < r->n; b++) {
         double *block = AssemblyBlock(m, to, r->node[a], r->node[b]) + fs->at[k] * fs->n;

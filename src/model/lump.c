@@ -17,7 +17,7 @@ static void Coefficients(const Model *m, PetscInt p, const PointProperties *q, L
   ReachExpand(m, p, &r);
   own[F_T] = ParticleT(m->c, &m->P, p) + Shift(m, p, &r, F_T);
   for (int f = 0; f < PHASE_COUNT; f++)
-    own[F_PW + f] = m->P.f[HeldPressure(&m->c->fields, P_PW, f)][p] + Shift(m, p, &r, F_PW + f);
+    own[F_PW + f] = m->P.f[P_PW + f][p] + Shift(m, p, &r, F_PW + f);
 
   const double pe = EquilibriumPressure(&k->equilibrium, own[F_T], &slope) + ParticleChord(m, p),
                Kd = KineticsRateConstant(k, own[F_T], &dK);
@@ -98,8 +98,7 @@ void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r)
   for (int a = 0; a < r->n; a++) {
     for (int k = 0; k < DRIVEN; k++) {
       const int    row = driven[k];
-      const double w =
-          fs->at[row] < 0 ? 0.0 : Share(m, l) * r->S[a] * Gain(m, l, row) * RowWeightOf(m, r->node[a], row);
+      const double w   = fs->at[row] < 0 ? 0.0 : Share(m, l) * r->S[a] * Gain(m, l, row);
 
       for (int b = 0; w != 0.0 && b < r->n; b++) {
         double *out = AssemblyBlock(m, to, r->node[a], r->node[b]) + fs->at[row] * fs->n;

@@ -42,7 +42,6 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree(m->added->source));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree5(m->x, m->f, m->proj, m->give, m->take));
-  PetscCall(PetscFree(m->mass_row));
   PetscCall(PetscFree(m->fluid));
   PetscCall(SolverReset(m->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -135,8 +134,6 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));
   PetscCall(PetscCalloc5(n * nf, &m->x, n * nf, &m->f, n * CL_FLUID_VECTORS, &m->proj, n * GIVE_COUNT, &m->give,
                          n * TAKE_COUNT, &m->take));
-  if (m->c->fields.one_pressure)
-    PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->mass_row));
   if (m->c->fields.phase[PHASE_W] && m->c->fields.phase[PHASE_G])
     PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->fluid));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -169,7 +166,7 @@ static double Enthalpy(const Material *mat, double capacity, double mh, double T
 static double Dissolved(const Model *m, PetscInt p, double mg)
 {
   double *const *f = m->P.f;
-  const double   H = m->c->fields.one_pressure ? 0.0 : ParticleMaterial(m, p)->gas.trace;
+  const double   H = ParticleMaterial(m, p)->gas.trace;
 
   return H > 0.0 && f[P_PG] ? fmin(f[P_PHI][p] * f[P_V][p] * f[P_SW][p] * DissolvedMethane(H, f[P_PG][p]), mg) : 0.0;
 }

@@ -233,7 +233,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   double *row = fluid ? fluid->F : &f[I * fs->n + PlaceV(fs, ph)], rate[CL_DIM], change[CL_DIM], J[CL_DIM], dJ[CL_DIM];
   const double share = NodeShare(m, I, ph);
 
-  *MassRow(m, f, I, ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
+  *RowOf(m, f, I, F_PW + ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
   Rate(m, I, x, PlaceV(fs, ph), rate);
   RateChange(m, I, dx, PlaceV(fs, ph), change);
   for (int i = 0; i < CL_DIM; i++)
@@ -321,8 +321,6 @@ PetscErrorCode ProductMult(Model *m, bool momentum, Vec X, Vec Y)
   m->evaluated = false; /* what the last residual left with the nodes is overwritten */
   PetscCall(ModelUnscale(m, X, t->dx));
   PetscCall(PetscArrayzero(m->f, n * nf));
-  if (m->mass_row)
-    PetscCall(PetscArrayzero(m->mass_row, n * PHASE_COUNT));
   if (m->fluid)
     PetscCall(PetscArrayzero(m->fluid, n * PHASE_COUNT));
   PetscCall(PetscArrayzero(m->take, n * TAKE_COUNT));
@@ -338,8 +336,6 @@ PetscErrorCode ProductMult(Model *m, bool momentum, Vec X, Vec Y)
       PetscCall(PlatesMult(m, t->dx, m->f));
   }
   PetscCall(NodeMapReduce(&m->map, m->f, nf));
-  if (m->mass_row)
-    PetscCall(ModelSumMassRows(m, m->f));
   if (m->fluid)
     PetscCall(MomentumRows(m, t->x, t->dx, m->f));
   PetscCall(Finish(m, m->f, X, Y));

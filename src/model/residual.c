@@ -27,7 +27,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   double         *row   = at ? at->F : &f[I * fs->n + PlaceV(fs, ph)], rate[CL_DIM], J[CL_DIM];
   const double    share = NodeShare(m, I, ph);
 
-  *MassRow(m, f, I, ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
+  *RowOf(m, f, I, F_PW + ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
   Rate(m, I, x, PlaceV(fs, ph), rate); /* (310) */
   for (int i = 0; i < CL_DIM; i++)
     row[i] += share * (share * of[FLUID_MI2] * rate[i] - of[FLUID_MI] * m->bc.gravity[i] + of[FLUID_G + i]);
@@ -128,19 +128,6 @@ static PetscErrorCode MomentumRows(Model *m, const double *x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelSumMassRows(Model *m, double *f)
-{
-  const FieldSet *fs = &m->c->fields;
-
-  PetscFunctionBeginUser;
-  PetscCall(NodeMapReduce(&m->map, m->mass_row, PHASE_COUNT));
-  for (PetscInt I = 0; I < m->map.n_owned; I++) {
-    for (int ph = 0; ph < PHASE_COUNT; ph++)
-      f[I * fs->n + PlaceP(fs, ph)] += RowWeight(m, I, ph) * m->mass_row[PHASE_COUNT * I + ph];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Scaled rows; a prescribed unknown's row is x - x_hat. */
 static PetscErrorCode Finish(Model *m, const double *x, const double *f, Vec R)
 {
@@ -180,8 +167,6 @@ static PetscErrorCode Rows(Model *m, Vec X)
   m->limited        = 0;
   PetscCall(Give(m, X));
   PetscCall(PetscArrayzero(m->f, m->map.n_local * m->c->fields.n));
-  if (m->mass_row)
-    PetscCall(PetscArrayzero(m->mass_row, m->map.n_local * PHASE_COUNT));
   if (m->fluid)
     PetscCall(PetscArrayzero(m->fluid, m->map.n_local * PHASE_COUNT));
   PetscCall(PetscArrayzero(m->take, m->map.n_local * TAKE_COUNT));
@@ -189,8 +174,6 @@ static PetscErrorCode Rows(Model *m, Vec X)
   FaceLoop(m, m->x, m->f);
   StabilisationResidual(m, m->x, false, m->f);
   PetscCall(NodeMapReduce(&m->map, m->f, m->c->fields.n));
-  if (m->mass_row)
-    PetscCall(ModelSumMassRows(m, m->f));
   if (m->fluid)
     PetscCall(MomentumRows(m, m->x));
   m->evaluated = true;

@@ -89,9 +89,9 @@ static void NodeScales(const Model *m, PetscInt I, double h, double *row, double
     double mass = MassScale(fs, c, k, m->w[PHASE_COUNT * I + k], dt, h);
     if (k == PHASE_G)
       mass = fmax(mass, ComingGas(m, I));
-    mass *= RowWeight(m, I, k) * V_row;
+    mass *= V_row;
     col[PlaceP(fs, k)] = P;
-    row[PlaceP(fs, k)] = k == PHASE_G && fs->one_pressure ? row[PlaceP(fs, k)] + mass : mass;
+    row[PlaceP(fs, k)] = mass;
   }
   if (fs->heat) {
     col[PlaceT(fs)] = 1.0;

@@ -3,7 +3,7 @@
 
 bool ModelSlaves(const Model *m)
 {
-  return m->fluid && !m->c->fields.inertia && !m->c->fields.one_pressure && m->c->material[0].gas.trace > 0.0;
+  return m->fluid && !m->c->fields.inertia && m->c->material[0].gas.trace > 0.0;
 }
 
 /* Those of an owned node to its scaled unknowns a, after an evaluation there. */

@@ -420,7 +420,7 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
       Kdp += c->K[a][b] * dp[b];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       if (fs->phase[ph])
-        *MassRow(m, f, c->node[a], ph) += c->rho[ph] * c->s[ph] * share * Kdp;
+        *RowOf(m, f, c->node[a], F_PW + ph) += c->rho[ph] * c->s[ph] * share * Kdp;
     }
   }
 }
@@ -442,7 +442,7 @@ static void GhostBlock(const Model *m, const Assembly *to, const GhostLine *g)
   GhostCoefficients(m, g, m->stage.dt, c);
   for (int k = 0; k < F_COUNT; k++) {
     for (int a = 0; a < 3 && c[k] != 0.0; a++) {
-      const double w = c[k] * g->second[a] * RowWeightOf(m, g->node[a], k);
+      const double w = c[k] * g->second[a];
 
       for (int b = 0; b < 3; b++)
         AssemblyBlock(m, to, g->node[a], g->node[b])[at[k] * n + at[k]] += w * g->second[b];
@@ -459,7 +459,7 @@ static void ProjectionBlock(const Model *m, const Assembly *to, const Projection
     for (int r = 0; r < PHASE_COUNT; r++) {
       if (!fs->phase[r])
         continue;
-      const double w = RowWeight(m, c->node[a], r) * c->rho[r] * c->s[r] * share;
+      const double w = c->rho[r] * c->s[r] * share;
 
       for (int b = 0; b < CL_CORNERS; b++) {
         double *row = AssemblyBlock(m, to, c->node[a], c->node[b]) + PlaceP(fs, r) * fs->n;

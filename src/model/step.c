@@ -92,8 +92,7 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
-    if (k == PHASE_W || !fs->one_pressure)
-      s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, HeldPressure(fs, P_PW, k), VectorAt(P_GW, k, 0), d);
+    s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, P_PW + k, VectorAt(P_GW, k, 0), d);
     s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
   }
   if (fs->heat)
@@ -154,7 +153,7 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
         continue;
       c[NC_LAMBDA + k] += VS * q->rho[k] * q->kr[k] / q->resist[k];
       c[NC_RHO + k] += VS * q->rho[k];
-      c[NC_P + k] += VS * m->P.f[k == PHASE_G && !m->c->fields.one_pressure ? P_PG : P_PW][p];
+      c[NC_P + k] += VS * m->P.f[P_PW + k][p];
       c[NC_STORAGE + k] += VS * q->storage[k];
       c[NC_DRAG + k] += VSk * q->resist[k];
       c[NC_KR + k] += (Donated(m, k) ? VS : VSk) * sqrt(q->kr[k]);

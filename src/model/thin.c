@@ -44,7 +44,7 @@ void ThinBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r)
   if (!Twist(m, p, r, &stiff, twist))
     return;
   for (int a = 0; a < r->n; a++) {
-    const double w = stiff * twist[a] * RowWeightOf(m, r->node[a], F_T);
+    const double w = stiff * twist[a];
 
     for (int b = 0; w != 0.0 && b < r->n; b++)
       AssemblyBlock(m, to, r->node[a], r->node[b])[at * to->fs.n + at] += w * twist[b];

@@ -63,7 +63,7 @@ static bool HoldsGas(const Model *m, PetscInt I, const double *x, const double *
   const int       w = PlaceP(fs, PHASE_W), g = PlaceP(fs, PHASE_G);
   const double    pc = x[g] - x[w];
 
-  return fs->one_pressure || NodeMaterial(m, I)->gas.trace == 0.0 || (pc > 0.0 && pc - (y[g] - y[w]) > 0.0);
+  return NodeMaterial(m, I)->gas.trace == 0.0 || (pc > 0.0 && pc - (y[g] - y[w]) > 0.0);
 }
 
 /* Share of a node's update that stays in the trusted range. */
@@ -106,7 +106,7 @@ static PetscErrorCode FollowAll(const Model *m, Vec X, Vec Y, Vec *followed)
 
   PetscFunctionBeginUser;
   *followed = NULL;
-  if (!(m->c->fields.has & HAS_GAS_PRESSURE))
+  if (!(m->c->fields.has & HAS_GAS))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(Y, followed));
   PetscCall(VecCopy(Y, *followed));

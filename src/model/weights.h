@@ -95,52 +95,24 @@ static inline void BedsWeight(const Model *m, PetscInt p, int f, double w[CL_DIM
     w[d] = m->beds[p].rho[f] * m->bc.gravity[d];
 }
 
-/* Component of the store that holds the pressure of a fluid; first is that of the water, P_PW or P_PW0. */
-static inline int HeldPressure(const FieldSet *fs, int first, int f)
-{
-  return fs->one_pressure ? first : first + f;
-}
-
 /* Share of water in the open pores at t_n. */
 static inline double ParticleSw(const Model *m, PetscInt p)
 {
   return m->P.f[P_SW] ? m->P.f[P_SW][p] / (1.0 - m->P.f[P_SH][p]) : 0.0;
 }
 
-/* Weight of a fluid's mass balance in its row: 1, or with one pressure 1/rho_pi, so that the sum is the balance of
-   volume (34). */
-static inline double RowWeight(const Model *m, PetscInt I, int phase)
-{
-  return m->c->fields.one_pressure ? 1.0 / m->coef[I * NC_COUNT + NC_RHO + phase] : 1.0;
-}
-
-/* Where the mass balance of a fluid at a node is gathered. */
-static inline double *MassRow(const Model *m, double *f, PetscInt I, int phase)
-{
-  const FieldSet *fs = &m->c->fields;
-
-  return fs->one_pressure ? &m->mass_row[PHASE_COUNT * I + phase] : &f[I * fs->n + PlaceP(fs, phase)];
-}
-
-/* The same for the row of any unknown. */
+/* Where the row of an unknown at a node is gathered. */
 static inline double *RowOf(const Model *m, double *f, PetscInt I, int q)
 {
-  const bool mass = q == F_PW || q == F_PG;
-
   if (m->fluid && q >= F_VW && q < F_PW)
     return &m->fluid[PHASE_COUNT * I + (q - F_VW) / CL_DIM].F[(q - F_VW) % CL_DIM];
-  return mass ? MassRow(m, f, I, q - F_PW) : &f[I * m->c->fields.n + m->c->fields.at[q]];
+  return &f[I * m->c->fields.n + m->c->fields.at[q]];
 }
 
 /* What a face of particle p at node I adds to row q is weighted with besides: (350) in (16). */
 static inline double FaceFlow(const Model *m, PetscInt p, PetscInt I, int q)
 {
   return q >= F_VW && q < F_PW ? FlowWeight(m, p, I, (q - F_VW) / CL_DIM) : 1.0;
-}
-
-static inline double RowWeightOf(const Model *m, PetscInt I, int q)
-{
-  return q == F_PW || q == F_PG ? RowWeight(m, I, q - F_PW) : 1.0;
 }
 
 /* Widths of a particle's cell, m. */
@@ -259,7 +231,7 @@ static inline double ParticleChord(const Model *m, PetscInt p)
 /* Own value at t_n of unknown q = F_PW, F_PG, F_T. */
 static inline double OwnValue(const Model *m, PetscInt p, int q)
 {
-  return m->P.f[q == F_T ? P_T : HeldPressure(&m->c->fields, P_PW, q - F_PW)][p];
+  return m->P.f[q == F_T ? P_T : P_PW + q - F_PW][p];
 }
 
 /* Nodal less own value at t_n of unknown q = F_PW, F_PG, F_T. */

@@ -33,7 +33,7 @@ static void WideParticle(const Model *m, PetscInt p, const double *proj, double 
     for (int a = 0; a < r.n; a++) {
       double *fI = &f[r.node[a] * fs->n];
 
-      fI[PlaceP(fs, ph)] -= RowWeight(m, r.node[a], ph) * dt * VectorDot(r.G[a], flux);
+      fI[PlaceP(fs, ph)] -= dt * VectorDot(r.G[a], flux);
       if (fs->heat)
         fI[PlaceT(fs)] += r.S[a] * q;
     }

@@ -69,7 +69,7 @@ static double InitialGasPressure(const Scene *c, double pc, const InitialScalars
 static PetscErrorCode InitialPressures(const Scene *c, const Region *r, const Material *mat, const double x[],
                                        InitialScalars *s)
 {
-  const bool two = c->fields.has & HAS_GAS_PRESSURE, none = two && r->Sg == 0.0 && mat->gas.trace > 0.0;
+  const bool two = c->fields.has & HAS_GAS, none = two && r->Sg == 0.0 && mat->gas.trace > 0.0;
   double     pc = 0.0, d[2];
 
   PetscFunctionBeginUser;

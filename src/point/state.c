@@ -11,7 +11,7 @@ void PointInitialMasses(const FieldSet *fs, const Material *mat, double V, doubl
   *m_s = V * (1.0 - phi) * LiquidDensity(&mat->solid, 0.0, T, &d, &e);
   *m_h = V * phi * Sh * LiquidDensity(&mat->hydrate, 0.0, T, &d, &e);
   *m_w = fs->phase[PHASE_W] ? Vf * WaterContent(sg, FluidDensity(mat, PHASE_W, pw, T, &d, &e)).v : 0.0;
-  *m_g = gas ? Vf * MethaneContent(Trace(fs, mat), sg, FluidDensity(mat, PHASE_G, pg, T, &d, &e), pg).v : 0.0;
+  *m_g = gas ? Vf * MethaneContent(mat->gas.trace, sg, FluidDensity(mat, PHASE_G, pg, T, &d, &e), pg).v : 0.0;
 }
 
 double PointMethane(const Material *mat, double Sh, double pw, double pg, double T, double slope[PHASE_COUNT])
@@ -60,13 +60,12 @@ static void ReactionProperties(const Material *mat, const ScalarState *s, double
 }
 
 ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double V, double m_s, double m_h, double pw,
-                                 double pg, double T, double sw_n, PointProperties *r, const char **why)
+                                 double pg, double T, PointProperties *r, const char **why)
 {
-  const PointHistory h = {
-      .V = V, .m_s = m_s, .sw_n = sw_n, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
-  const double   in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
-  ScalarState    s;
-  const ClStatus status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
+  const PointHistory h = {.V = V, .m_s = m_s, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
+  const double       in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
+  ScalarState        s;
+  const ClStatus     status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
 
   if (status != CL_OK)
     return status;

@@ -15,12 +15,6 @@ INLINE Jet LiquidJet(const Liquid *law, Jet p, Jet T)
   return JetChain2(rho, dp, p, dT, T);
 }
 
-/* Methane that water holds (101): where there is one pressure, none. */
-INLINE double Trace(const FieldSet *fs, const Material *mat)
-{
-  return fs->one_pressure ? 0.0 : mat->gas.trace;
-}
-
 INLINE Jet FluidJet(const Material *mat, int phase, Jet p, Jet T)
 {
   double       dp, dT;
@@ -183,8 +177,6 @@ INLINE void Saturations(const FieldSet *fs, const Material *mat, const PointHist
     s->sw = JetConstant(fs->phase[PHASE_W] ? 1.0 : 0.0);
     s->sg = JetConstant(0.0);
     s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
-  } else if (fs->one_pressure) {
-    Share(JetConstant(1.0 - h->sw_n), pw, pg, s);
   } else if (mat->retention.hydrate > 0.0) {
     ShareWithHydrate(mat, h, pw, pg, T, rho_h, s);
     return;
@@ -253,9 +245,9 @@ INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, con
   }
   if (fs->phase[PHASE_G]) {
     s->rho[PHASE_G] = FluidJet(mat, PHASE_G, pg, T);
-    const Content c = MethaneContent(Trace(fs, mat), s->sg.v, s->rho[PHASE_G].v, pg.v);
+    const Content c = MethaneContent(mat->gas.trace, s->sg.v, s->rho[PHASE_G].v, pg.v);
     s->m[PHASE_G]   = JetMul(Vf, JetChain3(c.v, c.sg, s->sg, c.rho, s->rho[PHASE_G], c.p, pg));
-    if (GasFlowsByWater(Trace(fs, mat), pw.v, pg.v))
+    if (GasFlowsByWater(mat->gas.trace, pw.v, pg.v))
       s->rho[PHASE_G] = FluidJet(mat, PHASE_G, JetScale(CL_GAS_FLOWS, pw), T);
   }
   if (fs->fluid)

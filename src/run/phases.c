@@ -29,7 +29,7 @@ PetscErrorCode PrintSolubility(const Scene *c, MPI_Comm comm)
   double least = INFINITY, most = 0.0;
 
   PetscFunctionBeginUser;
-  if (!(c->fields.has & HAS_GAS_PRESSURE))
+  if (!(c->fields.has & HAS_GAS))
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < c->nmaterial; k++) {
     least = fmin(least, c->material[k].gas.henry);

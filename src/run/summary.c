@@ -28,7 +28,7 @@ void LeftSummary(const Stepper *s, char text[128])
   text[0] = '\0';
   for (int ph = 0; ph < PHASE_COUNT; ph++)
     share[ph] = z->moved[ph] > 0.0 ? z->left[ph] / z->moved[ph] : 0.0;
-  if (z->moved[PHASE_W] + z->moved[PHASE_G] > 0.0 && !s->model->c->fields.one_pressure)
+  if (z->moved[PHASE_W] + z->moved[PHASE_G] > 0.0)
     snprintf(text, 128, "  left in the balances by Newton's method: water %.2e, gas %.2e of what moved\n",
              share[PHASE_W], share[PHASE_G]);
 }

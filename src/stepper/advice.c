@@ -23,7 +23,7 @@ static bool DonorMayHelp(const Stepper *s, ClStatus status)
   const Scene *c = s->model->c;
 
   return (status == CL_SOLVER || status == CL_INACCURATE) && !s->explicit && !c->stabilisation.donor &&
-         SceneTwoPressures(c) && SceneContrast(c) > 1.0;
+         c->fields.phase[PHASE_G] && SceneContrast(c) > 1.0;
 }
 
 PetscErrorCode StepperTry(const Stepper *s, const char *words)
@@ -110,7 +110,7 @@ PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
           ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
           : "",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
-      SceneTwoPressures(c) && upwind == LacksGas(c) ? saturation[upwind] : "",
+      c->fields.phase[PHASE_G] && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",

@@ -70,7 +70,7 @@ static inline const FieldSet *AllFields(void)
   static FieldSet all;
 
   if (all.n == 0)
-    FieldSetMake(HAS_ALL, true, false, &all);
+    FieldSetMake(HAS_ALL, true, &all);
   return &all;
 }
 

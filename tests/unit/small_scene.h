@@ -54,8 +54,6 @@ typedef struct {
   Product *product; /* of PrepareJacobian, where the solver's operator is assembled */
 } SmallScene;
 
-static bool one_pressure; /* of the scenes to come */
-
 #define DEPTH 3 /* cells of 0.06 m along z, where there is one */
 
 /* Grid of 6 x 4 cells of 0.1 m x 0.08 m from x = `start`, with one region, which in space does not fill the grid along
@@ -80,7 +78,7 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
                 .scene.stabilisation.pressure_projection = 1.0,
                 .scene.stabilisation.outflow             = true,
                 .scene.stabilisation.flux_interpolation  = true};
-  Check(FieldSetMake(has, inertia, one_pressure, &s->c.scene.fields));
+  Check(FieldSetMake(has, inertia, &s->c.scene.fields));
   for (int d = 2; d < CL_DIM; d++) {
     s->c.scene.upper[d] = 0.06 * DEPTH;
     s->c.scene.cells[d] = DEPTH;
@@ -88,7 +86,7 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
   s->mat                 = SedimentMaterial();
   s->mat.kappa_w         = 0.6;
   s->mat.permeability.k0 = 1.53e-13;
-  if (has & HAS_GAS_PRESSURE)
+  if (has & HAS_GAS)
     SetSolubility(&s->mat.gas, 1.9e-5);
   s->region = (Region){.ppc         = {2, 2},
                        .lower       = {start + lower[0], lower[1]},

@@ -383,7 +383,7 @@ static void MakeCase(Scene *c, Material *mat, Region *region)
                       .region    = region,
                       .nmaterial = 1,
                       .nregion   = 2};
-  Check(FieldSetMake(HAS_ALL, true, false, &c->fields));
+  Check(FieldSetMake(HAS_ALL, true, &c->fields));
 }
 
 /* Ids 0..n-1 once each, on the right ranks, at places that the id alone decides; volumes and masses of the boxes. */

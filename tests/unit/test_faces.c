@@ -37,7 +37,7 @@ static void SceneInit(SmallScene *s, Rng *r)
   s->mat.retention.hydrate = 1.5;
   s->Sh                    = 0.3;
   s->given                 = (Schedule){.n = 1, .t = one, .y = one};
-  assert_true(FieldSetMake(HAS_ALL, true, false, &s->c.fields));
+  assert_true(FieldSetMake(HAS_ALL, true, &s->c.fields));
   s->c.bc             = s->bc;
   s->c.nbc            = 3;
   s->v.value          = s->value;

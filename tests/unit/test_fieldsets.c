@@ -23,7 +23,7 @@ static void TestSets(void **state)
     const unsigned has = FieldSetByName(set_names[k]);
     int            n   = 0;
 
-    Check(has && FieldSetMake(has, true, false, &fs) && fs.n == CL_DIM * vectors[k] + scalars[k]);
+    Check(has && FieldSetMake(has, true, &fs) && fs.n == CL_DIM * vectors[k] + scalars[k]);
     for (int q = 0; q < F_COUNT; q++) {
       if (fs.at[q] < 0)
         continue;
@@ -33,7 +33,7 @@ static void TestSets(void **state)
     Check(n == fs.n);
   }
   for (unsigned has = 0; has <= HAS_ALL; has++) /* gas needs water; something must be there: the eleven named ones */
-    can += FieldSetMake(has, true, false, &fs);
+    can += FieldSetMake(has, true, &fs);
   Check(can == SETS);
 }
 
@@ -45,7 +45,7 @@ static void TestStorage(void **state)
     FieldSet  fs;
     Particles P;
 
-    Check(FieldSetMake(FieldSetByName(set_names[k]), true, false, &fs));
+    Check(FieldSetMake(FieldSetByName(set_names[k]), true, &fs));
     Call(ParticlesCreate(fs.has, &P));
     Call(ParticlesResize(&P, 3));
     for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
@@ -205,7 +205,7 @@ static void TestTangent(void **state)
       Rng      r = {400 + (uint64_t)(10 * k + v)};
       FieldSet fs;
 
-      Check(FieldSetMake(FieldSetByName(set_names[k]), v % 2, false, &fs));
+      Check(FieldSetMake(FieldSetByName(set_names[k]), v % 2, &fs));
       worst[v / 2][v % 2] = 0.0;
       for (int n = 0; n < 100; n++) {
         Point q;
@@ -228,8 +228,6 @@ static void Jacobians(bool axisymmetric, bool entries)
     const unsigned has      = FieldSetByName(set_names[k]);
     double         worst[2] = {0.0}, entry = 0.0;
 
-    if (one_pressure && !(has & HAS_GAS))
-      continue;
     for (int v = 0; v < 8; v += CL_DIM == 2 ? 1 : 3) { /* basis changes with the set, so that all of them occur */
       SmallScene *s       = malloc(sizeof(*s));
       const int   inertia = v % 2, set = v / 2 % 2, reacts = v / 4 && (has & HAS_GAS);
@@ -267,18 +265,6 @@ static void TestJacobianAxis(void **state)
 }
 #endif
 
-/* (34): both mass balances in one row. */
-static void TestJacobianOnePressure(void **state)
-{
-  (void)state;
-  Say("exact Jacobian against differences, one pressure\n");
-  one_pressure = true;
-  Jacobians(false, CL_DIM == 2);
-  if (CL_DIM == 2)
-    Jacobians(true, false);
-  one_pressure = false;
-}
-
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -289,7 +275,6 @@ int main(int argc, char **argv)
 #if CL_DIM == 2
     cmocka_unit_test(TestJacobianAxis),
 #endif
-    cmocka_unit_test(TestJacobianOnePressure),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);

@@ -141,7 +141,7 @@ static void SceneCreate(IoScene *s, MPI_Comm comm, PetscInt across)
                                   {.x = {3.0, 0.02}}};
 
   memset(s, 0, sizeof(*s));
-  Check(FieldSetMake(HAS_ALL, true, false, &s->c.scene.fields));
+  Check(FieldSetMake(HAS_ALL, true, &s->c.scene.fields));
   s->c.scene.fields.has |= ~0u;
   memcpy(s->c.scene.lower, lower, sizeof(lower));
   memcpy(s->c.scene.upper, upper, sizeof(upper));

@@ -148,7 +148,7 @@ static void TryParticles(bool torn, int states, double bar)
       Point        q = {.axis = k >= SETS};
       ReturnRegion where;
 
-      Check(FieldSetMake(sets[k % SETS].has, true, false, &q.fs));
+      Check(FieldSetMake(sets[k % SETS].has, true, &q.fs));
       RandomPoint(&r, &q);
       if (torn)
         MakeTorn(&r, &q);

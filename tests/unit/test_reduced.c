@@ -1,5 +1,5 @@
 /* The reduced preconditioner, by LU and by multigrid: for every field set, with and without inertia, in the plane and
-   about an axis, with one pressure, GMRES with it solves the exact Jacobian and agrees with LU of the whole; the fluid
+   about an axis, GMRES with it solves the exact Jacobian and agrees with LU of the whole; the fluid
    velocities are recovered exactly; what it leaves out costs few iterations, and where it leaves out nothing none;
    large rows of the fluid velocities do not stand in for the others. */
 #include <setjmp.h>
@@ -146,12 +146,11 @@ static void TestSets(void **state)
     for (int v = 0; v < 4; v++) {
       const bool inertia = v % 2 == 0;
 
-      one_pressure = v == 3 && (has & HAS_GAS);
       if (!(has & (HAS_SOLID | HAS_WATER)) && v > 0)
         continue; /* heat alone has no inertia */
       const Found f = Compare(has, inertia, v / 2, v == 1 && (has & HAS_ALL) == HAS_ALL);
-      Say("  %-5s%s%s%s %3d", set_names[k], inertia ? ", inertia" : "", v / 2 ? ", about an axis" : "",
-          one_pressure ? ", one pressure" : "", (int)f.its[WHOLE]);
+      Say("  %-5s%s%s %3d", set_names[k], inertia ? ", inertia" : "", v / 2 ? ", about an axis" : "",
+          (int)f.its[WHOLE]);
       for (int q = FACTORS; q < KINDS; q++) {
         Say("; %3d  %.1e  %.1e", (int)f.its[q], f.apart[q], f.recovery[q]);
         Check(f.apart[q] < MOST_APART && f.recovery[q] < 1e-11 && f.its[q] <= f.its[WHOLE] + MORE_ITS);
@@ -159,7 +158,6 @@ static void TestSets(void **state)
       Say("\n");
     }
   }
-  one_pressure = false;
 }
 
 /* Without fluids nothing is left out (170): with factors of the matrix GMRES is done at once. */

@@ -101,7 +101,7 @@ static void SceneMake(SmallScene *s, PetscInt n, PetscInt nregion)
                    .region    = s->region,
                    .nmaterial = 1,
                    .nregion   = nregion};
-  Check(FieldSetMake(HAS_SOLID, true, false, &s->c.fields));
+  Check(FieldSetMake(HAS_SOLID, true, &s->c.fields));
   for (PetscInt k = 0; k < nregion; k++) {
     s->region[k] = (Region){.lower = {-INFINITY, -INFINITY}, .upper = {INFINITY, INFINITY}, .ppc = {2, 2}};
   }

@@ -231,7 +231,7 @@ def drawn_out_scenes():
     compare("Mandel's block", mandel(), rings=every)
     compare("block", block(), rings=every)
     compare("block", block(), ranks=4)
-    compare("block, one pressure, euler", block(), "-pressures", "one", "-stepper_type", "euler", "-mat_sediment_kinetics_active", "no")
+    compare("block, euler", block(), "-stepper_type", "euler", "-mat_sediment_kinetics_active", "no")
     wet = block()
     wet["boundaries"].remove("sun")
     del wet["bc"]["sun"]
