@@ -12,14 +12,15 @@ typedef struct {
   double   M, kappa;            /* Pa, W/(m K) */
   double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
   double   store[PHASE_COUNT];  /* g_s w V rho s, kg/Pa */
+  double   carried;             /* methane in a kg of water (352) */
 } GhostLine;
 
 /* Pressure projection of one cell. */
 typedef struct {
   PetscInt node[CL_CORNERS];
-  double   K[CL_CORNERS][CL_CORNERS];        /* m^2/Pa */
-  double   t_inertia;                        /* of (275), s */
-  double   s[PHASE_COUNT], rho[PHASE_COUNT]; /* shares and densities, cell means at t_n */
+  double   K[CL_CORNERS][CL_CORNERS];            /* m^2/Pa */
+  double   t_inertia;                            /* of (275), s */
+  double   s[PHASE_COUNT], content[PHASE_COUNT]; /* shares; rho s, of gas with what water holds of it (352): at t_n */
 } ProjectionCell;
 
 /* What shares a particle's reaction out among its nodes (265), at t_n. */

@@ -79,6 +79,14 @@ static inline double StoredAt(const Model *m, PetscInt I, int f)
   return c[NC_RHO + f] * c[NC_STORAGE + f];
 }
 
+/* Methane in a kg of the water at a node at t_n (352), dimensionless. */
+static inline double CarriedAt(const Model *m, PetscInt I)
+{
+  const double *c = &m->coef[I * NC_COUNT], H = NodeMaterial(m, I)->gas.carried;
+
+  return H > 0.0 ? CarriedShare(H, c[NC_P + PHASE_G], c[NC_RHO]) : 0.0;
+}
+
 /* What a Jacobian is assembled for. */
 typedef struct {
   FieldSet       fs;                   /* unknowns and rows */

@@ -189,12 +189,13 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
       const double ratio = area / A / (CL_CORNERS / 2) * depth * A / h; /* A/h */
       GhostLine   *ghost = &m->added->ghost[n++];
 
-      *ghost = (GhostLine){.node   = {lo, I, hi},
-                           .second = {below, -(below + above), above},
-                           .a      = m->c->stabilisation.ghost_penalty * ratio,
-                           .M      = c[NC_M],
-                           .kappa  = c[NC_KAPPA],
-                           .lambda = {c[NC_LAMBDA], c[NC_LAMBDA + 1]}};
+      *ghost = (GhostLine){.node    = {lo, I, hi},
+                           .second  = {below, -(below + above), above},
+                           .a       = m->c->stabilisation.ghost_penalty * ratio,
+                           .M       = c[NC_M],
+                           .kappa   = c[NC_KAPPA],
+                           .lambda  = {c[NC_LAMBDA], c[NC_LAMBDA + 1]},
+                           .carried = CarriedAt(m, I)};
       for (int f = 0; f < PHASE_COUNT; f++)
         ghost->store[f] = m->c->stabilisation.ghost_storage * tied * StoredAt(m, I, f);
     }
@@ -230,6 +231,7 @@ static PetscErrorCode BuildGhost(Model *m)
 typedef struct {
   double w, wN[CL_CORNERS], wNN[CL_CORNERS][CL_CORNERS];
   double V, mass, compliance, s[PHASE_COUNT], rho[PHASE_COUNT]; /* compliance: V/G */
+  double methane;                                               /* that water holds, kg */
 } CellSums;
 
 static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellSums *c)
@@ -260,6 +262,8 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
     for (int b = 0; b < CL_CORNERS; b++)
       c->wNN[a][b] += w * N[a] * N[b];
   }
+  if (m->c->fields.phase[PHASE_G])
+    c->methane += V * q.s[PHASE_W] * DissolvedMethane(ParticleMaterial(m, p)->gas.carried, m->P.f[P_PG][p]);
   for (int f = 0; f < PHASE_COUNT; f++) {
     c->s[f] += V * q.s[f];
     c->rho[f] += V * q.rho[f];
@@ -283,9 +287,10 @@ static bool FinishCell(const Model *m, const PetscInt cell[], const CellSums *c,
       k->K[a][b] = c->wNN[a][b] - c->wN[a] * c->wN[b] / c->w;
   }
   for (int f = 0; f < PHASE_COUNT; f++) {
-    k->s[f]   = c->s[f] / c->V;
-    k->rho[f] = c->rho[f] / c->V;
+    k->s[f]       = c->s[f] / c->V;
+    k->content[f] = k->s[f] * c->rho[f] / c->V;
   }
+  k->content[PHASE_G] += c->methane / c->V;
   k->t_inertia = m->c->fields.inertia ? sqrt(c->mass / c->V * c->compliance / c->V * (1.0 / k2) / 15.0) : 0.0;
   return true;
 }
@@ -375,8 +380,11 @@ static void GhostResidual(const Model *m, const GhostLine *g, const double *x, b
 
     if (!slope && (k == F_PW || k == F_PG)) /* (351) is on the change from p* */
       pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);
-    for (int a = 0; a < 3; a++)
+    for (int a = 0; a < 3; a++) {
       *RowOf(m, f, g->node[a], k) += pull * g->second[a];
+      if (k == F_PW && g->carried > 0.0)
+        *RowOf(m, f, g->node[a], F_PG) += g->carried * pull * g->second[a];
+    }
   }
 }
 
@@ -420,7 +428,7 @@ static void ProjectionResidual(const Model *m, const ProjectionCell *c, const do
       Kdp += c->K[a][b] * dp[b];
     for (int ph = 0; ph < PHASE_COUNT; ph++) {
       if (fs->phase[ph])
-        *RowOf(m, f, c->node[a], F_PW + ph) += c->rho[ph] * c->s[ph] * share * Kdp;
+        *RowOf(m, f, c->node[a], F_PW + ph) += c->content[ph] * share * Kdp;
     }
   }
 }
@@ -444,8 +452,13 @@ static void GhostBlock(const Model *m, const Assembly *to, const GhostLine *g)
     for (int a = 0; a < 3 && c[k] != 0.0; a++) {
       const double w = c[k] * g->second[a];
 
-      for (int b = 0; b < 3; b++)
-        AssemblyBlock(m, to, g->node[a], g->node[b])[at[k] * n + at[k]] += w * g->second[b];
+      for (int b = 0; b < 3; b++) {
+        double *block = AssemblyBlock(m, to, g->node[a], g->node[b]);
+
+        block[at[k] * n + at[k]] += w * g->second[b];
+        if (k == F_PW && g->carried > 0.0)
+          block[at[F_PG] * n + at[F_PW]] += g->carried * w * g->second[b];
+      }
     }
   }
 }
@@ -459,7 +472,7 @@ static void ProjectionBlock(const Model *m, const Assembly *to, const Projection
     for (int r = 0; r < PHASE_COUNT; r++) {
       if (!fs->phase[r])
         continue;
-      const double w = c->rho[r] * c->s[r] * share;
+      const double w = c->content[r] * share;
 
       for (int b = 0; b < CL_CORNERS; b++) {
         double *row = AssemblyBlock(m, to, c->node[a], c->node[b]) + PlaceP(fs, r) * fs->n;
