@@ -31,7 +31,6 @@ SOFT, NONLOCAL = "-mat_sand_plasticity_softening_length", "-mat_sand_plasticity_
 RUNS = {  # name: options of cases/biaxial
     "A": (), "B": B, "C": C, "hybrid": HYBRID, "B_hybrid": (*HYBRID, *B), "B_stiff": (*B, *HELD, *UNTIED, *SHORT), "B_held": (*B, *HELD, *SHORT), "B_ghost": (*B, *UNTIED, *SHORT), "C_hybrid": (*HYBRID, *C),
     "B_steps": (*B, *SHORT, "-stepper_dt_max", "0.0125 s"),
-    "B_bare": (*B, "-stabilisation_pressure_projection", "0", "-time_end", "1.65 s"),
     "B_hybrid_damped": (*HYBRID, *B, *SHORT, "-stepper_damping", "0.1"), "B_hybrid_stiffer": (*HYBRID, *B, *SHORT, "-mat_sand_elasticity_E0", "600.06 MPa"),
     "B_hybrid_free": (*HYBRID, *B, *SHORT, "-stepper_surface", "velocities_free"),
     "psi": ("-mat_sand_plasticity_dilation_max", "45 deg", "-mat_sand_plasticity_dilation_min", "30 deg"),

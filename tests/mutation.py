@@ -48,7 +48,7 @@ FAULTS = [
     ("half of the thermal strain again", POINT + "forces.h", [("JetScale(1.0 / 3.0, JetMul(s->beta", "JetScale(0.5, JetMul(s->beta")]),
     ("1 % more gas from hydrate", HEADER + "laws.h", [("return law->M_g / law->M_h;", "return 1.01 * law->M_g / law->M_h;")]),
     ("gas carries heat like water", HEADER + "point_heat.h", [("phase == PHASE_W ? mat->c_w : mat->c_g", "phase == PHASE_W ? mat->c_w : mat->c_w")]),
-    ("no flux interpolation (20)", POINT + "fluxes.h", [("JetScale(h->bracket, JetMul(rho, tau))", "JetScale(0.0, JetMul(rho, tau))")]),
+    ("no flux interpolation (20)", POINT + "fluxes.h", [("= JetMul(rho, tau);", "= JetScale(0.0, JetMul(rho, tau));")]),
     ("conduction without 1/J", POINT + "tangent.h", [("g->K[i][j] = c / k->J;", "g->K[i][j] = c;"), ("(dc - g->K[i][j] * k->dJ[q]) / k->J", "dc")]),
     ("no pore pressure around the axis", POINT + "forces.h", [("hoop = st->s[ZZ] - p;", "hoop = st->s[ZZ];"), ("AddJet(o->D[OUT_HOOP], -h->V * k->cof_hoop, &s->p, k);", ""), ("o->D[OUT_HOOP][IN_U + d] += h->V", "o->D[OUT_HOOP][IN_U + d] += 0.0")]),
     ("the sea's weight twice", POINT + "forces.h", [("o->out[OUT_A + i] = s->V.v * a.g[i]", "o->out[OUT_A + i] = 2.0 * s->V.v * a.g[i]"), ("AddJet(o->D[OUT_A + i], a.g[i], &s->V, k)", "AddJet(o->D[OUT_A + i], 2.0 * a.g[i], &s->V, k)")]),

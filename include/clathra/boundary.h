@@ -44,9 +44,9 @@ static inline double FaceWeight(const Face *f, int a, int q)
 }
 
 /* (365): which way a fluid crosses the face by its Darcy flux J there, m/s. */
-static inline void FaceDirection(const Scene *c, Face *f, int phase, const double J[CL_DIM])
+static inline void FaceDirection(Face *f, int phase, const double J[CL_DIM])
 {
-  f->leaves[phase] = c->stabilisation.outflow && VectorDot(J, f->n) > 0.0;
+  f->leaves[phase] = VectorDot(J, f->n) > 0.0;
 }
 
 /* Finds the faces of the local particles and the conditions on them; *face is reallocated. */

@@ -62,7 +62,6 @@ typedef struct {
   double         held;                /* (381), at t_n; 0: the reaction is as fast as its law */
   double         chord;               /* (424), at t_n, Pa */
   double         mobility;            /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
-  double         bracket;             /* 1: momentum-interpolated flux; 0: without the bracket of (19) */
   bool           compression;         /* heat of compression and throttling (290); then also ... */
   double         p_star[PHASE_COUNT]; /* ... starred p_w, p_g, Pa */
   double         gravity[CL_DIM];     /* ... m/s^2 */

@@ -49,7 +49,6 @@ typedef struct {
   PetscInt well;     /* or the particles of this well, its place in the list of the case; -1: none */
 } Meter;
 
-enum { EXCHANGE_AUTO = 0, EXCHANGE_YES, EXCHANGE_NO };
 /* How heat is carried: (293) where T alternates (440), everywhere, nowhere. */
 enum { HEAT_AUTO = 0, HEAT_UPWIND, HEAT_CENTRAL };
 enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
@@ -60,20 +59,15 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 
 /* Numerics of the model, which a restart may change. */
 typedef struct {
-  double ghost_penalty;       /* g, 0 = off; default 0.1 */
-  double ghost_storage;       /* g_s, 0 = off (default) */
-  double pressure_projection; /* alpha, 0 = off; default 1 */
-  int    exchange;            /* EXCHANGE_... (353); default auto */
-  bool   flux_interpolation;  /* momentum-interpolated mass flux; default true */
-  bool   upstream;            /* drag of the fluids from upstream; default false */
-  bool   outflow;             /* (365): what leaves has the body's density; default true */
-  bool   donor;               /* (332): gas has the mobility of where it comes from; default false */
-  bool   saturation_upwind;   /* (200); default false */
-  int    heat;                /* HEAT_...; default auto */
-  bool   thin_cells;          /* (444); default true */
-  bool   lumped_reaction;     /* (265); default false */
-  bool   held_reaction;       /* (381); default false */
-  bool   chords;              /* (424); default true */
+  double ghost_penalty;     /* g, 0 = off; default 0.1 */
+  double ghost_storage;     /* g_s, 0 = off (default) */
+  bool   upstream;          /* drag of the fluids from upstream; default false */
+  bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
+  bool   saturation_upwind; /* (200); default false */
+  int    heat;              /* HEAT_...; default auto */
+  bool   lumped_reaction;   /* (265); default false */
+  bool   held_reaction;     /* (381); default false */
+  bool   chords;            /* (424); default true */
 } Stabilisation;
 
 typedef struct Scene {
@@ -271,11 +265,10 @@ static inline bool SceneSharesFlow(const Scene *c)
   return SceneHasBeds(c) || SceneContrast(c) > 1.0;
 }
 
-/* Do pressures even out within cells (353)?  EXCHANGE_AUTO: where layers differ in permeability. */
+/* Do pressures even out within cells (353)?  Where layers differ in permeability. */
 static inline bool SceneExchanges(const Scene *c)
 {
-  return c->fields.fluid && (c->stabilisation.exchange == EXCHANGE_YES ||
-                             (c->stabilisation.exchange == EXCHANGE_AUTO && SceneContrast(c) > 1.0));
+  return SceneContrast(c) > 1.0;
 }
 
 /* First condition that the integrators without a matrix do not know, or NULL. */
@@ -303,7 +296,7 @@ static inline bool SceneCarriesHeat(const Scene *c)
 /* Does (444) act? */
 static inline bool SceneThinCells(const Scene *c)
 {
-  return CL_DIM == 2 && c->stabilisation.thin_cells && c->fields.heat;
+  return CL_DIM == 2 && c->fields.heat;
 }
 
 /* Does (424) act? */
@@ -322,8 +315,7 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
   } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
                {c->stabilisation.donor, "stabilisation_donor"},
                {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
-               {c->stabilisation.lumped_reaction, "stabilisation_reaction"},
-               {c->stabilisation.exchange == EXCHANGE_YES, "stabilisation_exchange"}};
+               {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
     if (known[i].on && k-- == 0)

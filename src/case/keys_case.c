@@ -33,7 +33,6 @@ static const char *const surface_word[]     = {"free", "tied", "velocities_free"
 static const char *const share_word[]       = {"nodes", "particles", "relative", NULL};  /* PRESSURES_... */
 static const char *const ice_word[]         = {"warn", "stop", NULL};                    /* ICE_... */
 static const char *const leaving_word[]     = {"stop", "remove", NULL};                  /* LEAVING_... */
-static const char *const exchange_word[]    = {"auto", "yes", "no", NULL};               /* EXCHANGE_... */
 static const char *const heat_word[]        = {"auto", "yes", "no", NULL};               /* HEAT_... */
 static const char *const without_gas_word[] = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
 
@@ -159,20 +158,8 @@ const Key case_key[] = {
     REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",
          "on changes of pressure in slivers of cells and where particles do not see them, for undrained bodies; 0 = "
          "off"),
-    REAL(Case, "stabilisation_pressure_projection", scene.stabilisation.pressure_projection, "", "[0,100]", "1",
-         "undrained limit; 0 = off"),
-    CHOICE(
-        Case, "stabilisation_exchange", scene.stabilisation.exchange, "auto", exchange_word,
-        "sdirk2, euler: pressures of a cell's particles even out as fast as fluids flow between them, which nodes do "
-        "not see; auto: where layers differ in permeability; hybrid refuses yes and has its own way"),
-    BOOLEAN(Case, "stabilisation_flux_interpolation", scene.stabilisation.flux_interpolation, "yes",
-            "momentum-interpolated mass flux"),
     BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",
             "relative permeabilities from upstream, for sharp fronts of saturation"),
-    BOOLEAN(
-        Case, "stabilisation_outflow", scene.stabilisation.outflow, "yes",
-        "what leaves through an open face has the body's density at the face; no: that of the pressure outside, with "
-        "which a coarse cell of gas cannot drain to an outlet far below its pressure"),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
             "gas has the mobility of the nodes it comes from, so that sediment without mobile gas gives none: for sand "
             "with gas beside clay"),
@@ -182,9 +169,6 @@ const Key case_key[] = {
            "carries heat with the flow, so that temperatures stay within their bounds where a cell's heat is carried "
            "rather than conducted; auto: sdirk2 and euler where T alternates from node to node, hybrid nowhere; yes: "
            "everywhere, which smears T where it is smooth"),
-    BOOLEAN(Case, "stabilisation_conduction", scene.stabilisation.thin_cells, "yes",
-            "no cold spots beside a heater where cells are longer than wide: sdirk2 and euler, in the plane and about "
-            "an axis"),
     BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),

@@ -185,7 +185,7 @@ void FacesRates(Explicit *e, double dt, StageRates *rates)
     Inputs(e, f, in);
     NodalInputs(e, f, n, node, in);
     for (int ph = 0; ph < s.fluids; ph++)
-      FaceDirection(e->m->c, f, ph, &in[VectorAt(IN_J, ph, 0)]);
+      FaceDirection(f, ph, &in[VectorAt(IN_J, ph, 0)]);
     Evaluate(e, f, in, dt, &o);
     for (int a = 0; a < n; a++) {
       double *row = &e->R[node[a] * width];

@@ -237,8 +237,7 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 {
   double *const *f  = e->m->P.f;
   const int      at = B_Fluid(s, k), n = Scalars(s), grad = VectorAt(P_GW, k, 0);
-  const double   bracket   = e->m->c->stabilisation.flux_interpolation && !e->o.particle_pressures ? 1.0 : 0.0,
-               scale       = e->o.mass_scaling / dt;
+  const double   bracket = e->o.particle_pressures ? 0.0 : 1.0, scale = e->o.mass_scaling / dt;
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
                          *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;

@@ -189,7 +189,6 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->T_n      = ParticleT(m->c, &m->P, p);
   h->Sh_n     = m->P.f[P_SH][p];
   h->dt       = m->stage.dt;
-  h->bracket  = m->c->stabilisation.flux_interpolation ? 1.0 : 0.0;
   h->held     = m->added->held ? m->added->held[p] : 0.0;
   h->chord    = ParticleChord(m, p);
   h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;

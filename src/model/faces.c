@@ -58,7 +58,7 @@ static void FaceDirections(const Model *m, const Reach *r, Face *f)
       for (int d = 0; d < CL_DIM; d++)
         sum[d] += FaceWeight(f, a, VectorAt(F_VW, k, d)) * FaceShare(m, f->particle, r->node[a], k) * J[d];
     }
-    FaceDirection(m->c, f, k, sum);
+    FaceDirection(f, k, sum);
   }
 }
 
@@ -74,8 +74,7 @@ PetscErrorCode FacesStart(Model *m)
     ReachExpand(m, f->particle, &r);
     RadialFace(m, &r, f);
     ModelFaceProperties(m, f, r.n, r.S);
-    if (m->c->stabilisation.outflow)
-      FaceDirections(m, &r, f);
+    FaceDirections(m, &r, f);
     if (f->bc[BC_PLATE] >= 0)
       ModelPlateStiffness(m, f);
   }

@@ -444,7 +444,7 @@ PetscErrorCode ModelJacobian(SNES snes, Vec X, Mat A, Mat P, void *model)
   PlatesMark(m, m->x);
   if (m->solver->product)
     PetscCall(ProductBegin(m));
-  else if (!m->wide && m->c->fields.fluid && m->c->stabilisation.flux_interpolation)
+  else if (!m->wide && m->c->fields.fluid)
     PetscCall(PetscCalloc1(m->stencil_cap, &m->wide));
   PetscCall(Targets(m, renew, &n, target));
   ParticleLoop(m, m->x, n, target);

@@ -24,7 +24,7 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
   PetscFunctionBeginUser;
   for (int f = 0; f < PHASE_COUNT; f++)
     at[f] = PlaceP(fs, fs->phase[f] ? f : 1 - f);
-  if (!fs->fluid || !m->c->stabilisation.flux_interpolation)
+  if (!fs->fluid)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(proj, CL_FLUID_VECTORS * m->map.n_local));
   for (PetscInt p = 0; p < m->P.n; p++) {

@@ -245,7 +245,7 @@ static void AddParticle(const Model *m, PetscInt p, const PetscInt cell[], CellS
   for (int d = 0; d < CL_DIM; d++)
     r[d] = LinesPlace(&m->grid.line[d], ParticleGridX(&m->P, p, d)) - (double)cell[d];
 
-  const double V = m->P.f[P_V][p], w = V * m->c->stabilisation.pressure_projection / (2.0 * q.G);
+  const double V = m->P.f[P_V][p], w = V / (2.0 * q.G);
   double       N[CL_CORNERS];
 
   for (int a = 0; a < CL_CORNERS; a++) {
@@ -333,7 +333,7 @@ PetscErrorCode StabilisationBuild(Model *m)
   m->added->nghost = m->added->ncell = 0;
   if (m->c->stabilisation.ghost_penalty > 0.0 || m->c->stabilisation.ghost_storage > 0.0)
     PetscCall(BuildGhost(m));
-  if (m->c->stabilisation.pressure_projection > 0.0 && m->c->fields.solid && m->c->fields.fluid)
+  if (m->c->fields.solid && m->c->fields.fluid)
     PetscCall(BuildProjection(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

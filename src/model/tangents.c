@@ -72,8 +72,7 @@ static bool Depends(const Model *m, int out, int in)
   if (in >= IN_PROJ) {
     const int of = (in - IN_PROJ) / CL_DIM;
 
-    return m->c->stabilisation.flux_interpolation && fs->phase[of] &&
-           (out == OUT_Q || (flux && Follows(m->c, phase, of)));
+    return fs->phase[of] && (out == OUT_Q || (flux && Follows(m->c, phase, of)));
   }
   if (in < IN_T)
     return fs->phase[in - IN_P] && !force;

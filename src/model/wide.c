@@ -80,7 +80,7 @@ static PetscErrorCode WideMult(Mat A, Vec X, Vec Y)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(MatMult(m->solver->J2, X, Y));
-  const bool wide = m->c->stabilisation.flux_interpolation && m->c->fields.fluid;
+  const bool wide = m->c->fields.fluid;
   if (wide || PlatesCouple(m)) {
     PetscCall(PetscLogEventBegin(m->event[EVENT_WIDE], 0, 0, 0, 0));
     PetscCall(WideApply(m, wide, X, Y));

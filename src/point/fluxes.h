@@ -41,7 +41,7 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
   const Jet     kr         = f == PHASE_G && h->mobility > 0.0 ? JetConstant(h->mobility) : s->kr[f];
   const Tau     t          = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
   const Jet     tau        = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
-  const Jet     rt         = JetScale(h->bracket, JetMul(rho, tau));
+  const Jet     rt         = JetMul(rho, tau);
   const double *J          = &in[VectorAt(IN_J, f, 0)];
   double        g[CL_DIM], b[CL_DIM];
 

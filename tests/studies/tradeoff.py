@@ -260,8 +260,6 @@ TERMS = (  # what is left out, options; on the dissociating block
     ("conduction of heat", tuple(w for p in ("solid", "hydrate", "water", "gas") for w in (f"{HEAD}{p}_conductivity", "0 W/(m K)"))),
     ("capillary pressure (`p0: 10 Pa`)", (f"{HEAD}retention_p0", "10 Pa")),
     ("ghost penalty", ("-stabilisation_ghost_penalty", 0)),
-    ("pressure projection", ("-stabilisation_pressure_projection", 0)),
-    ("interpolation of the flux", ("-stabilisation_flux_interpolation", "no")),
 )  # fmt: skip
 
 
@@ -269,8 +267,8 @@ def terms():
     scene, found, base = scenes.BLOCK, [], {}
     for kind in (SDIRK2, "hybrid") if "hybrid" in integrators() else (SDIRK2,):
         for name, options in TERMS:
-            if kind == "hybrid" and ("-inertia" in options or name in ("ghost penalty", "pressure projection")):
-                continue  # it lives by inertia, and has neither of these
+            if kind == "hybrid" and ("-inertia" in options or name == "ghost penalty"):
+                continue  # it lives by inertia, and has none of it
             here = replace(scene, case=select(scene.case)) if "thc" in options else scene  # without the load
             run, cpu = Clock.of(here, *adaptive(kind), *options)
             record = {"kind": kind, "left out": name, "cpu": cpu, "code": run.code, "why": why(run) if run.code else ""}

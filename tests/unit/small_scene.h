@@ -62,22 +62,19 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
                              double start, const double lower[2], const double upper[2])
 {
   memset(s, 0, sizeof(*s));
-  s->c = (Case){.scene.lower                             = {start, 0.0},
-                .scene.upper                             = {start + 0.6, 0.32},
-                .scene.cells                             = {6, 4},
-                .scene.basis                             = basis,
-                .scene.axisymmetric                      = axisymmetric,
-                .scene.inertia                           = inertia,
-                .scene.nmaterial                         = 1,
-                .scene.nregion                           = 1,
-                .scene.material                          = &s->mat,
-                .scene.region                            = &s->region,
-                .scene.bc                                = s->bc,
-                .scene.stabilisation.ghost_penalty       = 0.1,
-                .scene.stabilisation.ghost_storage       = 0.2,
-                .scene.stabilisation.pressure_projection = 1.0,
-                .scene.stabilisation.outflow             = true,
-                .scene.stabilisation.flux_interpolation  = true};
+  s->c = (Case){.scene.lower                       = {start, 0.0},
+                .scene.upper                       = {start + 0.6, 0.32},
+                .scene.cells                       = {6, 4},
+                .scene.basis                       = basis,
+                .scene.axisymmetric                = axisymmetric,
+                .scene.inertia                     = inertia,
+                .scene.nmaterial                   = 1,
+                .scene.nregion                     = 1,
+                .scene.material                    = &s->mat,
+                .scene.region                      = &s->region,
+                .scene.bc                          = s->bc,
+                .scene.stabilisation.ghost_penalty = 0.1,
+                .scene.stabilisation.ghost_storage = 0.2};
   Check(FieldSetMake(has, inertia, &s->c.scene.fields));
   for (int d = 2; d < CL_DIM; d++) {
     s->c.scene.upper[d] = 0.06 * DEPTH;
@@ -391,15 +388,14 @@ static inline void JacobianCase(SmallScene *s, unsigned has, bool inertia, bool 
   const double lower[2] = {gap, 0.0}, upper[2] = {0.47, 0.18};
 
   SceneInit(s, has, inertia, axisymmetric, basis, start, lower, upper);
-  s->mat.reacts                               = reacts;
-  s->mat.elasticity.change                    = set;
-  s->c.scene.gravity[0]                       = axisymmetric ? 0.0 : 2.0;
-  s->c.scene.gravity[1]                       = -9.81;
-  s->c.scene.stabilisation.flux_interpolation = !(set == 1 && !reacts);
-  s->c.scene.stabilisation.lumped_reaction    = reacts;
-  s->c.scene.stabilisation.held_reaction      = reacts;
-  s->c.scene.compression_heat                 = s->c.scene.fields.heat && s->c.scene.fields.fluid && set != 1;
-  s->region.pressure                          = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
+  s->mat.reacts                            = reacts;
+  s->mat.elasticity.change                 = set;
+  s->c.scene.gravity[0]                    = axisymmetric ? 0.0 : 2.0;
+  s->c.scene.gravity[1]                    = -9.81;
+  s->c.scene.stabilisation.lumped_reaction = reacts;
+  s->c.scene.stabilisation.held_reaction   = reacts;
+  s->c.scene.compression_heat              = s->c.scene.fields.heat && s->c.scene.fields.fluid && set != 1;
+  s->region.pressure                       = reacts && set ? 2.6e6 : 4.8e6; /* dissociating, forming */
   AddConditions(s, set);
 }
 

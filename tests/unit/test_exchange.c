@@ -55,7 +55,6 @@ static SmallScene *Make(BasisType basis, bool axisymmetric)
   SceneInit(s, HAS_ALL, true, axisymmetric, basis, 0.0, lower, upper);
   s->c.scene.cells[0] *= 2;
   s->c.scene.cells[1] *= 2;
-  s->c.scene.stabilisation.exchange = EXCHANGE_AUTO;
   SceneLayers(s, 1, 0.151, 1e-8);
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   for (PetscInt i = 0; i < s->m.P.n; i++) {

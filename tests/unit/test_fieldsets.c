@@ -126,7 +126,6 @@ static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
   q->h.T_n         = T + RngBetween(r, -1.0, 1.0) * fs->heat;
   q->h.Sh_n        = RngBetween(r, 0.05, 0.3);
   q->h.dt          = RngLog(r, 5.0, 500.0);
-  q->h.bracket     = 1.0;
   const double Sh0 = q->h.Sh_n * RngBetween(r, 0.9, 1.1);
   const double sg  = fs->phase[PHASE_G] ? GasShareOf(&q->mat, pg - pw, Sh0) : 0.0;
   PointInitialMasses(fs, &q->mat, q->h.V, 0.3, Sh0, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],

@@ -48,7 +48,7 @@ static void RandomPoint(Rng *r, Point *q)
   q->mat            = SedimentMaterial();
   q->mat.plasticity = WeakPlasticity(RngPick(r, 2), 0.7);
   q->mat.reacts     = gas && RngPick(r, 2);
-  q->h              = (PointHistory){.V = 2e-4, .T_n = T, .Sh_n = 0.2, .dt = RngLog(r, 0.1, 10.0), .bracket = 1.0};
+  q->h              = (PointHistory){.V = 2e-4, .T_n = T, .Sh_n = 0.2, .dt = RngLog(r, 0.1, 10.0)};
   const double sg   = gas ? GasShareOf(&q->mat, pg - pw, 0.21) : 0.0;
   PointInitialMasses(&q->fs, &q->mat, q->h.V, 0.3, 0.21, sg, pw, pg, T, &q->h.m_s, &q->h.m_star[0], &q->h.m_star[1],
                      &q->h.m_star[2]);

@@ -110,10 +110,9 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
 {
   const double V = RngLog(r, 1e-6, 1.0), phi = RngBetween(r, 0.25, 0.6), Sh = RngBetween(r, 0.02, 0.5);
 
-  q->mat      = RandomMaterial(r, regime);
-  q->in[IN_T] = RngBetween(r, 2.0, 15.0);
-  q->h =
-      (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .bracket = RngPick(r, 4) ? 1.0 : 0.0, .spread = {3e-13, 2e-12}};
+  q->mat        = RandomMaterial(r, regime);
+  q->in[IN_T]   = RngBetween(r, 2.0, 15.0);
+  q->h          = (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .spread = {3e-13, 2e-12}};
   q->h.T_n      = q->in[IN_T] + RngBetween(r, -2.0, 2.0);
   q->h.Sh_n     = Sh * RngBetween(r, 0.8, 1.2);
   q->h.shift[0] = q->h.shift[1] = RngBetween(r, -5e4, 5e4);
@@ -778,7 +777,7 @@ static bool SolveClosedCell(Particle *q, PointState *s)
    gas is scarce it is p_g that does (371). */
 static void ClosedCell(double p0, double pc, const char *what)
 {
-  Particle   q   = {.mat = SedimentMaterial(), .h = {.V = 1e-4, .dt = 10.0, .T_n = 4.0, .bracket = 1.0}};
+  Particle   q   = {.mat = SedimentMaterial(), .h = {.V = 1e-4, .dt = 10.0, .T_n = 4.0}};
   double     old = NAN, d;
   PointState s;
 
@@ -815,7 +814,7 @@ static void TestFlowOfTrace(void **state)
 
   (void)state;
   for (size_t k = 0; k < sizeof(pg) / sizeof(*pg); k++) {
-    Particle    q = {.mat = SedimentMaterial(), .h = {.V = 1e-4, .dt = 1e7, .T_n = 4.0, .bracket = 1.0}};
+    Particle    q = {.mat = SedimentMaterial(), .h = {.V = 1e-4, .dt = 1e7, .T_n = 4.0}};
     PointState  s;
     PointOutput o;
 

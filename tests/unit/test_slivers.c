@@ -147,6 +147,7 @@ static void TestRows(void **state)
 
     RandomHistory(s, 0.2);
     RandomStage(s, 20.0);
+    s->m.added->ncell = 0; /* (23) */
     const double none = TiedRows(s, CONSTANT, &constant), bent = TiedRows(s, LINEAR, &linear),
                  any = TiedRows(s, RANDOM, &random);
     Say("rows of the tie, %s: of a constant change %.1e, of a linear one %.1e, of any their sum %.1e\n",

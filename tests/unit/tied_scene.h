@@ -14,11 +14,10 @@ static inline SmallScene *TiedScene(unsigned has, bool axisymmetric, BasisType b
   SmallScene *s = malloc(sizeof(*s));
 
   SceneInit(s, has, false, axisymmetric, basis, 0.0, lower, upper);
-  s->c.scene.upper[1]                          = N * H;
-  s->c.scene.cells[1]                          = N;
-  s->c.scene.stabilisation.ghost_penalty       = 0.0;
-  s->c.scene.stabilisation.pressure_projection = 0.0;
-  s->c.scene.stabilisation.ghost_storage       = g_s;
+  s->c.scene.upper[1]                    = N * H;
+  s->c.scene.cells[1]                    = N;
+  s->c.scene.stabilisation.ghost_penalty = 0.0;
+  s->c.scene.stabilisation.ghost_storage = g_s;
   s->region.ppc[0] = s->region.ppc[1] = ppc;
   s->mat.reacts                       = false;
   s->mat.permeability.k0              = 1e-30; /* m^2: undrained */

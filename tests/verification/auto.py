@@ -6,13 +6,12 @@ import re
 import sys
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
 import _files  # noqa: E402
 from _auto import CASE, EXACT, PHASES, Q, TIMES, WATCHED, column  # noqa: E402
-from common import binary, changes, check_true, finish, judge, launch, scratch, table  # noqa: E402
+from common import changes, check_true, finish, judge, scratch, table  # noqa: E402
 
 def errors(run):
     """{curve: largest error over its range in each phase}."""
@@ -21,11 +20,6 @@ def errors(run):
         off = np.abs(run.at(probe, quantity, TIMES) - EXACT[name]) / np.ptp(EXACT[name])
         found[name] = [float(np.max(off[(TIMES > a) & (TIMES <= b)])) for a, b in PHASES]
     return found
-
-
-def particles(run):
-    with h5py.File(run.out / "checkpoint.h5", "r") as file:
-        return {k: v[()] for k, v in file["particles"].items() if k not in ("rank", "place")}
 
 
 # --------------------------------------------------------------------------------------------------- who works when
@@ -49,25 +43,6 @@ lines = re.findall(r"^  (sdirk2|hybrid) from \S+ s to \S+ s \([\d.]+ \w+\), \d+ 
 check_true("a line for each in summary.txt", lines == ["sdirk2", "hybrid", "sdirk2"], str(lines))
 fixed = column("auto", "-stepper_adapt", "no", "-stepper_dt", "0.5 s")
 check_true("with a fixed step it stays with what it chose", not changes(fixed) and "integrator chosen: sdirk2\n" in fixed.output)
-
-# ---------------------------------------------------------------------- stabilisations that only implicit steps know
-STABILISED = ("-stabilisation_exchange", "yes")  # it acts here: pressures within a cell even out
-with_it = column("auto", *STABILISED, cells=13)
-begun, back = (int(np.argmin(np.abs(with_it.balance["time_s"] - c[0]))) + 1 for c in changes(with_it))  # advances until each change
-held = {}
-for name, kind, more in (("auto", "auto", STABILISED), ("sdirk2", "sdirk2", STABILISED), ("without", "auto", ())):
-    held[name] = particles(column(kind, *more, "-stepper_max_steps", begun, cells=13, out=scratch() / name))
-apart = max(float(np.max(np.abs(v - held["without"][k]))) for k, v in held["auto"].items() if k == "p_w")
-check_true("exchange is auto's implicit steps', hybrid carries the wave without it", [c[1:] for c in changes(with_it)] == [c[1:] for c in found], str(changes(with_it)))
-check_true("... until the change all of a particle is that of sdirk2 with it, bit for bit", all(np.array_equal(v, held["sdirk2"][k]) for k, v in held["auto"].items()))
-check_true("... and not that of auto without it", apart > 1e-6, f"p_w {apart:.2g} Pa apart")
-out = scratch() / "back"
-column("auto", *STABILISED, "-stepper_max_steps", back, cells=13, out=out)
-after = [particles(column("auto", *more, "-restart", out / "checkpoint.h5", "-stepper_max_steps", 5, cells=13, out=scratch() / f"after{len(more)}"))["p_w"] for more in (STABILISED, ())]
-check_true("... it acts again after the change back", np.max(np.abs(after[0] - after[1])) > 1e-6, f"p_w {np.max(np.abs(after[0] - after[1])):.2g} Pa apart after five steps")
-check_true("... the start says so", "hybrid goes without stabilisation_exchange" in with_it.output and "hybrid goes without" not in run.output)
-refused = launch(binary(), CASE, "-stepper_type", "hybrid", *STABILISED, "-case_check", out=scratch() / "out")
-check_true("... and hybrid alone refuses it", refused.returncode == 2 and "hybrid does not know stabilisation_exchange" in refused.stdout)
 
 # ------------------------------------------------------------------------------- a change leaves everything as it was
 rows = run.balance["time_s"]

@@ -370,7 +370,7 @@ def turned(hybrid=False):
     for r in case["region"].values():
         r |= {"geothermal": "0.5 K/m", "geothermal_datum": "0.5 m"}
     case |= {"time": {"end": "100 s"}, "output": {"times": ["100 s"]}}
-    runs, options = [], ["-stabilisation_exchange", "yes"]
+    runs, options = [], []
     if hybrid:
         case, options = hurried(case), ["-mean_strain", 0.5, "-compression_heat", "yes"]
         options += [o for m in ("sediment", "clay") for o in (f"-mat_{m}_kinetics_active", "no")]  # T bends within a particle then (395)

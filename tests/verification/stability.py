@@ -7,7 +7,6 @@ drives it; errors are held against finer runs and exact solutions.
 import math
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from _extremes import CELL, SCENE, attempt, difference, scene, stable_step
@@ -115,8 +114,7 @@ def falling():
 
 def sudden():
     """10 MPa on the end at once, or the outlet's pressure to less than a third: errors over the largest change, that of p over the load too, against
-    quasi-static steps of a third of the tolerance.  To 0.5 MPa at once on four grids against cells of 5 mm; without (365) p overshoots in the last cell
-    there until a run gives up."""
+    quasi-static steps of a third of the tolerance.  To 0.5 MPa at once on four grids against cells of 5 mm."""
     still = ["-inertia", "no"]
     load, fall = ["-bc_load_normal", "17 MPa", "-bc_outlet_pressure", "7 MPa"], ["-bc_load_normal", "7 MPa", "-bc_outlet_pressure"]
     loads = {  # name: (options, {kind: (options, bar of p, of all)})
@@ -131,12 +129,6 @@ def sudden():
                 error = difference(done.folder, fine.folder, 10e6 if "load" in name else 5e6)
                 judge(ROW, f"{name} at once, {kind}: error of p over the load", error["p"], bar_p)
                 judge(ROW, f"{name} at once, {kind}: largest error of any field", max(error.values()), bar)
-    gone = ends("outlet to 0.5 MPa at once, what leaves as thin as outside",
-                attempt([*scene(), *UNTIL(100.0), *fall, "0.5 MPa", "-stabilisation_outflow", "no"]), "stopped")  # fmt: skip
-    with h5py.File(gone.folder / "checkpoint.h5", "r") as file:
-        x, p = (file["particles"][k][()] for k in ("position", "p_w"))
-    inner, last = (p.ravel()[(x[:, 0] > low) & (x[:, 0] < low + CELL)].max() for low in (0.16, 0.18))
-    check_true("... where p overshoots: more at the outlet than a cell from it", last > 1.2 * inner, f"{last:.3g} Pa, {inner:.3g} Pa")
     runs = {n: ends(f"outlet to 0.5 MPa at once, {n} cells", attempt([*scene(), *UNTIL(100.0), *fall, "0.5 MPa", "-grid_cells", f"{n},1"]))
             for n in (11, 16, 22, 44)}  # fmt: skip
     for n, bar in ((11, 0.003), (22, 7e-4)):
@@ -146,11 +138,9 @@ def sudden():
 
 def crawl():
     """Hydrate that dissociates at once where no gas can be dense, to an end: on the node behind the surface p_g extrapolates to less than
-    zero.  Steps that shrink to nothing end the run, and it says why."""
+    zero."""
     for p in (0.1e6, 0.03e6):
         ends(f"{p / 1e6:g} MPa", attempt(scene(p=p)))
-    done = ends("0.03 MPa, what leaves as thin as outside", attempt([*scene(p=0.03e6), "-stabilisation_outflow", "no"]), "stopped")
-    check_true("... given up because of its steps", "the rest would take" in done.said, done.said)
 
 
 if __name__ == "__main__":
