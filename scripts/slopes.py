@@ -361,7 +361,7 @@ NOTES_IMPLICIT = """- *All three go through* (`-stepper_type sdirk2 -stepper_tol
   particle makes up, and temperature is carried there by the heated row's gradient: 0.66 MPa beside 4.5, -6 °C beside 2 at (296, 16) m. Newton's first six updates were cut in every stage, 8 to 10 iterations each, and with
   more than six steps do not grow. (351) ties the changes to those of the nodes beside: from the same state 5 ms became 0.1 s within 17 steps, and as (351) is now A goes from 10 to 12 s in 45 steps, while without it 128 steps come to 10.18 s. [A test](../tests/verification/slivers.py) does so on cells of 15 m. `hybrid` has its own tie (41) and knows neither.""".split("\n")
 NOTES_B = """- To 100 s without a step refused: gas that expands in what tears loses shares of its pressure, not pascals ((151) of [equations.md](equations.md), `stepper_pressures: relative`). With increments of p_g
-  shared among particles a single one reached zero pressure at 27 s and the run gave up; with `stepper_relaxation` of 1 s at 42.7 s.
+  shared among particles a single one reached zero pressure at 27 s and the run gave up.
 - *The step* falls from 6.2 to 2 ms as particles in the tears become thin; bounds by waves in thin domains set it 99.4 % of the time. With (374), by which domains act with at least a twentieth of a cell, 4 m take 48,289 steps to 100 s (70,241 to 49 s before).
 - *What is left of E_k* after the slide, 1 to 3 % of its peak, is in particles of what tore that swing against each other: a motion that the grid does not see (FLIP). At 100 s on 8 m it is 1.4e9 J/m, of which the nodes
   have 2e4: single particles at up to 39 m/s where nodes move by 4 cm/s. It moves nothing, as in A.

@@ -64,7 +64,6 @@ typedef struct Case {
   bool     force_dt;     /* take a fixed step above the stable one all the same */
   double   flip;         /* 1: FLIP, 0: PIC */
   PetscInt passes;       /* of (413), beyond the first */
-  double   relaxation;   /* s: pressures and temperature of particles tend to those of the nodes; INFINITY: never */
   double   damping;      /* local damping */
   double   mass_scaling; /* factor on inertia */
   int      surface;      /* SURFACE_...: what of nearly empty nodes follows their fullest neighbour in part */

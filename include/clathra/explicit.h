@@ -15,7 +15,6 @@ typedef struct {
                             */
   int    passes;           /* of (413), beyond the first */
   double flip;             /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
-  double relaxation;       /* s, (97); INFINITY: none */
   double damping;          /* local damping of the mixture's out-of-balance force, [0,1) */
   double mass_scaling;     /* factor on every inertia, >= 1 */
 } ExplicitOptions;

@@ -129,10 +129,6 @@ const Key case_key[] = {
     REAL(Case, "stepper_flip", flip, "", "[0,1]", "1",
          "hybrid, explicit: particles take increments of nodal velocity (1, FLIP), the velocity itself (0, PIC), or a "
          "mixture"),
-    REAL(Case, "stepper_relaxation", relaxation, "s", "(0,inf]", "none",
-         "hybrid, explicit: time over which pressures and temperature of a particle tend to those of the nodes, which "
-         "do not see what differs within a cell; or the word none",
-         .word = "none"),
     INTEGERS(
         Case, 1, "stepper_storage_passes", passes, "[0,100]", "0",
         "hybrid, explicit: passes that take changes of pressure from lumped storage, which spreads them over three "
@@ -233,9 +229,6 @@ const Key stage_key[] = {
     BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES,
             "hybrid, explicit: take a fixed step above the stable one all the same", .kept = true),
     REAL(CaseStage, "stepper_flip", c.flip, "", "[0,1]", CASES, "hybrid, explicit: FLIP (1) to PIC (0)", .kept = true),
-    REAL(CaseStage, "stepper_relaxation", c.relaxation, "s", "(0,inf]", CASES,
-         "hybrid, explicit: time over which particles take up the nodes' pressures and temperature", .kept = true,
-         .word = "none"),
     INTEGERS(CaseStage, 1, "stepper_storage_passes", c.passes, "[0,100]", CASES,
              "hybrid, explicit: passes from lumped to consistent storage", .kept = true),
     REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),

@@ -83,19 +83,6 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
   return !out;
 }
 
-/* (97): p_w, p_g, T tend to what the nodes have at the particle. */
-INLINE void Relax(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
-{
-  const double share = -expm1(-dt / e->o.relaxation);
-
-  for (int k = 0; share > 0.0 && k < Scalars(s); k++) {
-    double *restrict y = e->m->P.f[P_PW + (k < s.fluids ? k : 2)] + r.p;
-
-    for (int q = 0; q < r.n; q++)
-      y[q] += share * (g->value[q][C_End(s) + k] - y[q]);
-  }
-}
-
 INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
 {
   _Alignas(64) Gathered g;
@@ -124,7 +111,6 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     CountCompression(e, s, r, &g);
   if (s.fluids == 2 && r.mat->gas.trace > 0.0)
     GasOfMethane(e, s, r, &g);
-  Relax(e, s, r, &g, dt);
   T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p;
   if (!s.solid) {
     ParticlesKeep(&e->m->P, r.p, r.n, NULL);

@@ -37,7 +37,6 @@ static PetscErrorCode Create(Stepper *s)
                              .particle_pressures = c->pressures == PRESSURES_PARTICLES,
                              .passes             = (int)c->passes,
                              .flip               = c->flip,
-                             .relaxation         = c->relaxation,
                              .damping            = c->damping,
                              .mass_scaling       = c->mass_scaling};
 

@@ -123,7 +123,6 @@ PetscErrorCode StepperHybridLimit(Stepper *s, StableStep *limit)
   const ExplicitOptions o = {.drag_implicit = true,
                              .passes        = (int)StepperCase(s)->passes,
                              .flip          = 1.0,
-                             .relaxation    = INFINITY,
                              .mass_scaling  = StepperCase(s)->mass_scaling};
   Explicit             *e;
 

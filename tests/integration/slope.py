@@ -185,22 +185,6 @@ check("runout (m)", m["runout_m"], (0.2, 20.0))
 check("gas released over hydrate lost", m["gas_released_kg"] / m["hydrate_lost_kg"], (0.016 / 0.124 - 1e-12, 0.016 / 0.124 + 1e-12))
 
 
-def rough(run):
-    """Mean distance of the particles' pressure from what the nodes' is between them, and mean pressure, Pa."""
-    particles, grid = (read_snapshots(run.out, kind)[-1][1] for kind in ("particles", "grid"))
-    nodes = grid["p_w"].reshape(16, 76)  # of 8 m, from (0, 0)
-    at = particles["position"] / 8
-    (i, j), (a, b) = np.floor(at).astype(int).T, (at % 1).T
-    between = (1 - b) * ((1 - a) * nodes[j, i] + a * nodes[j, i + 1]) + b * ((1 - a) * nodes[j + 1, i] + a * nodes[j + 1, i + 1])
-    return np.nanmean(abs(particles["p_w"][:, 0] - between)), particles["p"].mean()
-
-
-relaxed = slope("-stepper_relaxation", "0.2 s")
-(own, mean), (shared, same) = rough(one), rough(relaxed)
-check(f"distance of pressures from the nodes', relaxed over own ({own:.3g} Pa)", shared / own, (0.0, 0.5))
-check("mean pressure, relaxed against own", abs(same / mean - 1), 0.01)
-for what in ("water", "methane"):
-    check(f"{what} kept where pressures relax", np.max(np.abs(relaxed.balance[f"{what}_error"])), 1e-12)
 torn()
 implicit()
 known_bands()

@@ -184,7 +184,6 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
   s->c.error_exponent                = 2.0;
   s->c.tol                           = 1.0;
   s->c.flip = s->c.mass_scaling          = 1.0;
-  s->c.relaxation                        = INFINITY;
   s->c.scene.stabilisation.ghost_penalty = 0.0; /* nothing to stabilise, but it reaches far */
   s->c.surface                           = SURFACE_TIED;
   for (int side = 0; side < SIDE_COUNT && (v->has & HAS_SOLID); side++)
