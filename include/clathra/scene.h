@@ -59,14 +59,12 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 
 /* Numerics of the model, which a restart may change. */
 typedef struct {
-  double ghost_penalty;     /* g, 0 = off; default 0.1 */
-  bool   upstream;          /* drag of the fluids from upstream; default false */
-  bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
-  bool   saturation_upwind; /* (200); default false */
-  int    heat;              /* HEAT_...; default auto */
-  bool   lumped_reaction;   /* (265); default false */
-  bool   held_reaction;     /* (381); default false */
-  bool   chords;            /* (424); default true */
+  double ghost_penalty;   /* g, 0 = off; default 0.1 */
+  bool   donor;           /* (332): gas has the mobility of where it comes from; default false */
+  int    heat;            /* HEAT_...; default auto */
+  bool   lumped_reaction; /* (265); default false */
+  bool   held_reaction;   /* (381); default false */
+  bool   chords;          /* (424); default true */
 } Stabilisation;
 
 typedef struct Scene {
@@ -311,9 +309,7 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
   const struct {
     bool        on;
     const char *word;
-  } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
-               {c->stabilisation.donor, "stabilisation_donor"},
-               {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
+  } known[] = {{c->stabilisation.donor, "stabilisation_donor"},
                {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {

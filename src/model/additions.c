@@ -1,10 +1,8 @@
 /* What the scheme adds to the balances of particles, at t_n: diffusion that carries saturations and heat with the flow,
-   how fast the reaction is held, what looks upstream. */
+   how fast the reaction is held. */
 #include "clathra/point_heat.h"
 #include "clathra/point_reaction.h"
 #include "gather.h"
-
-#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its k_r stays central */
 
 PetscErrorCode AdditionsReserve(Model *m)
 {
@@ -14,8 +12,8 @@ PetscErrorCode AdditionsReserve(Model *m)
   PetscFunctionBeginUser;
   if (SceneDonor(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->donor));
-  if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G])
-    PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
+  if (fs->phase[PHASE_G])
+    PetscCall(PetscCalloc1(m->stencil_cap, &to->diffusion));
   if (SceneCarriesHeat(m->c))
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (SceneThinCells(m->c))
@@ -39,34 +37,29 @@ PetscErrorCode AdditionsOfStage(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (200): diffusion of p_c that carries the saturations with the flow of both fluids, or that of one that flows alone.
- */
-static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, double D[PHASE_COUNT])
+/* Widths of its cell by the particle's place, as hybrid keeps no stencils, m. */
+static void CellWidthsAt(const Model *m, PetscInt p, double h[CL_DIM])
 {
-  const double l[PHASE_COUNT] = {q->kr[PHASE_W] / q->resist[PHASE_W], q->kr[PHASE_G] / q->resist[PHASE_G]},
-               all = l[PHASE_W] + l[PHASE_G], both = l[PHASE_W] * l[PHASE_G] / all;
-  double h[CL_DIM], Pe[PHASE_COUNT] = {0.0}, shared = 0.0;
+  for (int d = 0; d < CL_DIM; d++)
+    h[d] = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
+}
 
-  D[PHASE_W] = D[PHASE_G] = 0.0;
-  if (!(both > 0.0))
-    return;
-  CellWidths(m, p, h);
+double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q)
+{
+  TwoFluids f;
+
   for (int k = 0; k < PHASE_COUNT; k++) {
-    double g[CL_DIM];
-
+    f.mobility[k] = q->kr[k] / q->resist[k];
+    f.slope[k]    = q->mobility_slope[k];
+    f.rho[k]      = q->rho[k];
     for (int d = 0; d < CL_DIM; d++)
-      g[d] = m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d];
-    Drive(m, p, g);
-    for (int d = 0; d < CL_DIM; d++)
-      Pe[k] += 0.5 * h[d] * fabs(g[d] * q->mobility_slope[k]) / both;
-    shared += (1.0 - l[k] / all) * Pe[k];
+      f.grad_p[k][d] = m->P.f[VectorAt(P_GW, k, d)][p];
   }
-  for (int k = 0; k < PHASE_COUNT; k++) {
-    const double most = fmax(shared, l[k] / all * Pe[k]);
-
-    if (most > 1e-4)
-      D[k] = both * (most / tanh(most) - 1.0);
-  }
+  CellWidthsAt(m, p, f.h);
+  for (int d = 0; d < CL_DIM; d++)
+    f.h[d] = CarryingWidth(f.h[d], m->P.f[P_L + d][p]);
+  const Beds beds = SceneHasBeds(m->c) ? ParticleBeds(m->c, &m->P, p) : (Beds){{0.0}};
+  return SaturationDiffusion(&f, m->c->gravity, SceneHasBeds(m->c) ? &beds : NULL);
 }
 
 /* Conductivity that carries heat with the flow of t_n (293). */
@@ -85,15 +78,14 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   HeatUpwind(q->kappa, a, h, K);
 }
 
-/* (381) with the faster of both ways at t_n; the cell's widths by the particle's place, as hybrid keeps no stencils. */
+/* (381) with the faster of both ways at t_n. */
 static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
 {
   double g[CL_DIM], h[CL_DIM], slope;
 
-  for (int d = 0; d < CL_DIM; d++) {
+  for (int d = 0; d < CL_DIM; d++)
     g[d] = m->P.f[P_GT + d][p];
-    h[d] = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
-  }
+  CellWidthsAt(m, p, h);
   EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
   return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));
 }
@@ -110,8 +102,8 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
 {
   Additions *to = m->added;
 
-  if (to->spread)
-    SpreadOf(m, p, q, &to->spread[PHASE_COUNT * p]);
+  if (to->diffusion)
+    to->diffusion[p] = ModelSaturationDiffusion(m, p, q);
   if (to->upwind)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
   if (to->thin)
@@ -120,47 +112,4 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
     to->held[p] = HeldOf(m, p, q);
   if (to->exchange)
     ExchangeSet(m, p, q);
-}
-
-/* (35): directions of flow at t_n, and the factors that keep the sum of the weights. */
-PetscErrorCode UpstreamBuild(Model *m)
-{
-  const FieldSet *fs = &m->c->fields;
-  double         *sum;
-
-  PetscFunctionBeginUser;
-  if (!m->c->stabilisation.upstream)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(m->added->up, PHASE_COUNT * UP_COUNT * m->map.n_local));
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
-    for (int f = 0; f < PHASE_COUNT; f++) {
-      double J[CL_DIM] = {0.0};
-
-      if (fs->phase[f])
-        DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
-      const double size = VectorLength(J);
-      for (int d = 0; d < CL_DIM && size > 0.0; d++)
-        UpstreamAt(m, I, f)[d] = J[d] / size;
-    }
-  }
-  PetscCall(PetscCalloc1(PHASE_COUNT * m->map.n_local, &sum));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach r;
-
-    ReachExpand(m, p, &r);
-    for (int a = 0; a < r.n; a++) {
-      for (int f = 0; f < PHASE_COUNT; f++)
-        sum[PHASE_COUNT * r.node[a] + f] +=
-            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], UpstreamAt(m, r.node[a], f)), 0.0);
-    }
-  }
-  PetscCall(NodeMapSum(&m->map, sum, PHASE_COUNT));
-  for (PetscInt k = 0; k < PHASE_COUNT * m->map.n_local; k++) {
-    const PetscInt I = k / PHASE_COUNT;
-
-    if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, I) * m->V[I])
-      m->added->up[UP_COUNT * k + UP_FACTOR] = m->V[I] / sum[k];
-  }
-  PetscCall(PetscFree(sum));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

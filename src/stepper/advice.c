@@ -64,12 +64,6 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is there sediment without gas, where methane in water has the pressure that gas would have (101)? */
-static bool LacksGas(const Scene *c)
-{
-  return c->material[0].gas.trace > 0.0;
-}
-
 #define HEATER 1.0 /* W/m^2, W/m^3: ten times and more what the earth gives */
 
 static bool HasHeater(const Scene *c)
@@ -97,20 +91,16 @@ bool StepperHeatsHydrate(const Stepper *s)
 
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 {
-  static const char *const saturation[2] = {"stabilisation_saturation: yes, where saturations alternate; ",
-                                            "stabilisation_saturation: no, where gas comes and goes; "};
-  const Scene             *c             = s->model->c;
-  const bool               upwind        = c->stabilisation.saturation_upwind;
-  char                     words[768];
+  const Scene *c = s->model->c;
+  char         words[768];
 
   PetscFunctionBeginUser;
   snprintf(
-      words, sizeof(words), "%s%s%s%s%s",
+      words, sizeof(words), "%s%s%s%s",
       StepperHeatsHydrate(s) && !c->stabilisation.held_reaction
           ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
           : "",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
-      c->fields.phase[PHASE_G] && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",
