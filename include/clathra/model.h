@@ -289,8 +289,8 @@ void ModelClearFailure(Model *m);
 void ModelExplain(Model *m, const char *why);
 /* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
-/* (200) of particle p with properties q at t_n, m^2/(Pa s); a scene with two pressures. */
-double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q);
+/* (200) of particle p with properties q at t_n, m^2/(Pa s); lumped: is storage?  A scene with two pressures. */
+double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q, bool lumped);
 /* (381) of a particle that reacts, as it is, dimensionless; 0 where its properties cannot be found. */
 double ModelHeld(const Model *m, PetscInt p);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */

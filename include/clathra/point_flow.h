@@ -122,13 +122,15 @@ typedef struct {
   double mobility[PHASE_COUNT], slope[PHASE_COUNT]; /* l = k_a k_r/mu, m^2/(Pa s); dl/dp_c, m^2/(Pa^2 s) */
   double rho[PHASE_COUNT];                          /* kg/m^3 */
   double grad_p[PHASE_COUNT][CL_DIM];               /* Pa/m */
-  double h[CL_DIM];                                 /* CarryingWidth of its cell, m */
+  double h[CL_DIM];                                 /* h* of its cell, m */
 } TwoFluids;
 
-/* h* of (200), m: width h of a cell times four times the mean product of its two nodes' weights over particles of
-   half-length l, the share that storage has in common with a neighbour.  h for one particle, 3/4 h for two. */
-INLINE double CarryingWidth(double h, double l)
+/* h* of (200), m: the width h of a cell where storage is lumped; else times four times the mean product of its two
+   nodes' weights over particles of half-length l, what storage has in common with a neighbour.  3/4 h for two. */
+INLINE double CarryingWidth(double h, double l, bool lumped)
 {
+  if (lumped)
+    return h;
   const double part = l < 0.5 * h ? l / h : 0.5;
 
   return h * (2.0 + 4.0 * part * part) / 3.0;

@@ -262,7 +262,7 @@ INLINE void SaturationDiffusions(Explicit *e, const Set s, Run r, const Fluids *
         two.grad_p[k][d] = f[VectorAt(P_GW, k, d)][p];
     }
     for (int d = 0; d < CL_DIM; d++)
-      two.h[d] = CarryingWidth(LinesWidthAt(&e->m->grid.line[d], f[P_X + d][p]), f[P_L + d][p]);
+      two.h[d] = CarryingWidth(LinesWidthAt(&e->m->grid.line[d], f[P_X + d][p]), f[P_L + d][p], e->o.passes == 0);
     e->t[T_DIFFUSION][p] = SaturationDiffusion(&two, e->m->c->gravity, s.beds ? &A : NULL);
   }
 }

@@ -98,7 +98,8 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
     }
   }
   if (s.fluids == 2 && !e->o.particle_pressures)
-    w->carried = (1 + e->o.passes) * k2 * ModelSaturationDiffusion(m, p, &q) * (C[0][0] - C[0][1] - C[1][0] + C[1][1]);
+    w->carried = (1 + e->o.passes) * k2 * ModelSaturationDiffusion(m, p, &q, e->o.passes == 0) *
+                 (C[0][0] - C[0][1] - C[1][0] + C[1][1]);
   if (s.solid) {
     const double square = Largest(skeleton / rho, (q.M + bulk) / total) / e->o.mass_scaling;
 

@@ -12,7 +12,7 @@ PetscErrorCode AdditionsReserve(Model *m)
   PetscFunctionBeginUser;
   if (SceneDonor(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->donor));
-  if (fs->phase[PHASE_G])
+  if (fs->phase[PHASE_W] && fs->phase[PHASE_G])
     PetscCall(PetscCalloc1(m->stencil_cap, &to->diffusion));
   if (SceneCarriesHeat(m->c))
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
@@ -44,7 +44,7 @@ static void CellWidthsAt(const Model *m, PetscInt p, double h[CL_DIM])
     h[d] = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
 }
 
-double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q)
+double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q, bool lumped)
 {
   TwoFluids f;
 
@@ -57,7 +57,7 @@ double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointPropertie
   }
   CellWidthsAt(m, p, f.h);
   for (int d = 0; d < CL_DIM; d++)
-    f.h[d] = CarryingWidth(f.h[d], m->P.f[P_L + d][p]);
+    f.h[d] = CarryingWidth(f.h[d], m->P.f[P_L + d][p], lumped);
   const Beds beds = SceneHasBeds(m->c) ? ParticleBeds(m->c, &m->P, p) : (Beds){{0.0}};
   return SaturationDiffusion(&f, m->c->gravity, SceneHasBeds(m->c) ? &beds : NULL);
 }
@@ -103,7 +103,7 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
   Additions *to = m->added;
 
   if (to->diffusion)
-    to->diffusion[p] = ModelSaturationDiffusion(m, p, q);
+    to->diffusion[p] = ModelSaturationDiffusion(m, p, q, false);
   if (to->upwind)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
   if (to->thin)

@@ -187,13 +187,14 @@ static void TestHybrid(void **state)
 {
   (void)state;
   for (int variant = 0; variant < 4; variant++) {
-    const ExplicitOptions hybrid = {.drag_implicit = true, .tied = true, .flip = 1.0, .mass_scaling = 1.0};
-    SmallScene           *s      = Make(variant % 2 ? HAS_ALL : HAS_WATER | HAS_GAS, variant);
-    StageRates            sum    = {0};
-    Explicit             *e;
-    ClStatus              status;
-    const char           *why;
-    double               *want, worst = 0.0, most = 0.0;
+    const ExplicitOptions hybrid = {
+        .drag_implicit = true, .tied = true, .flip = 1.0, .mass_scaling = 1.0, .passes = variant < 2 ? 0 : 3};
+    SmallScene *s   = Make(variant % 2 ? HAS_ALL : HAS_WATER | HAS_GAS, variant);
+    StageRates  sum = {0};
+    Explicit   *e;
+    ClStatus    status;
+    const char *why;
+    double     *want, worst = 0.0, most = 0.0;
 
     Call(ExplicitCreate(&s->m, &hybrid, &e));
     Call(ExplicitBegin(e, &status));
@@ -203,7 +204,7 @@ static void TestHybrid(void **state)
       PointProperties q;
 
       Check(ModelParticleProperties(&s->m, p, &q, &why) == CL_OK);
-      want[p] = ModelSaturationDiffusion(&s->m, p, &q);
+      want[p] = ModelSaturationDiffusion(&s->m, p, &q, variant < 2);
       most    = fmax(most, want[p]);
     }
     const PetscInt n = s->m.P.n;
