@@ -79,8 +79,8 @@ static bool Depends(const Model *m, int out, int in)
   if (in == IN_T)
     return fs->heat && !force;
   if (in < IN_GT)
-    return fs->phase[other] &&
-           (out == OUT_Q || (force && other == phase) || (flux && (Follows(m->c, phase, other) || m->added->diffusion)));
+    return fs->phase[other] && (out == OUT_Q || (force && other == phase) ||
+                                (flux && (Follows(m->c, phase, other) || m->added->diffusion)));
   if (in < IN_J)
     return fs->heat && (out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM));
   if (in < IN_U)
