@@ -139,7 +139,7 @@ static void TestOrder(void **state)
   }
 }
 
-/* Axes exchanged and mirrored; beds along which everything is as without. */
+/* Axes exchanged and mirrored; beds. */
 static void TestAxes(void **state)
 {
   (void)state;
@@ -161,6 +161,10 @@ static void TestAxes(void **state)
     }
     Check(fabs(SaturationDiffusion(&turned, turned_b, NULL) - D) <= 1e-13 * D);
     Check(SaturationDiffusion(&f, b, &even) == D);
+    even.A[1] = 0.1; /* as in cells a tenth as wide along y */
+    turned    = f;
+    turned.h[1] *= 0.1;
+    Check(fabs(SaturationDiffusion(&f, b, &even) - SaturationDiffusion(&turned, b, NULL)) <= 1e-13 * D);
   }
 }
 
