@@ -72,6 +72,18 @@ static inline void BasisAverage(double a, double b, double w0, double w1, double
   dS[2] = (third ? 1.0 - b2 : 0.0) / gradient_length;
 }
 
+/* Parts (0 to 1) of a domain [lo, hi] in the control volumes of three nodes, between which it passes the middles of two
+   cells; all in one unit: places, about an axis squares of radii. */
+static inline void BasisControlShares(double lo, double hi, const double middle[2], double share[3])
+{
+  const double below = (lo < middle[0] ? (hi < middle[0] ? hi : middle[0]) - lo : 0.0) / (hi - lo),
+               above = (hi > middle[1] ? hi - (lo > middle[1] ? lo : middle[1]) : 0.0) / (hi - lo);
+
+  share[0] = below;
+  share[1] = 1.0 - below - above;
+  share[2] = above;
+}
+
 /* Which of the two cells behind the first node of a stencil holds a particle: 0 or 1; s its place in cells, first the
    node, cells those of the grid along the axis. */
 static inline int BasisCell(double s, double first, double cells)
@@ -83,6 +95,7 @@ static inline int BasisCell(double s, double first, double cells)
 typedef struct {
   PetscInt base;
   double   S[3], dS[3]; /* -, 1/m */
+  double   part[3];     /* of the domain in the control volume of each node, -; not of BasisHat */
 } Axis;
 
 typedef struct {

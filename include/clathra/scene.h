@@ -59,12 +59,9 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 
 /* Numerics of the model, which a restart may change. */
 typedef struct {
-  double ghost_penalty;   /* g, 0 = off; default 0.1 */
-  bool   donor;           /* (332): gas has the mobility of where it comes from; default false */
-  int    heat;            /* HEAT_...; default auto */
-  bool   lumped_reaction; /* (265); default false */
-  bool   held_reaction;   /* (381); default false */
-  bool   chords;          /* (424); default true */
+  double ghost_penalty; /* g, 0 = off; default 0.1 */
+  bool   donor;         /* (332): gas has the mobility of where it comes from; default false */
+  int    heat;          /* HEAT_...; default auto */
 } Stabilisation;
 
 typedef struct Scene {
@@ -278,12 +275,6 @@ static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
   return NULL;
 }
 
-/* Does (381) act? */
-static inline bool SceneHoldsReaction(const Scene *c)
-{
-  return c->stabilisation.held_reaction && c->fields.heat && c->fields.phase[PHASE_G];
-}
-
 /* Is there more conductivity along a flow (293), at least somewhere? */
 static inline bool SceneCarriesHeat(const Scene *c)
 {
@@ -296,12 +287,6 @@ static inline bool SceneThinCells(const Scene *c)
   return CL_DIM == 2 && c->fields.heat;
 }
 
-/* Does (424) act? */
-static inline bool SceneTakesChords(const Scene *c)
-{
-  return c->stabilisation.chords && c->fields.heat && c->fields.phase[PHASE_G];
-}
-
 /* The k-th of the stabilisations that are on and that steps without a matrix go without, as the case says it; NULL:
    there are no more. */
 static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
@@ -309,8 +294,7 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
   const struct {
     bool        on;
     const char *word;
-  } known[] = {{c->stabilisation.donor, "stabilisation_donor"},
-               {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
+  } known[] = {{c->stabilisation.donor, "stabilisation_donor"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
     if (known[i].on && k-- == 0)

@@ -1,4 +1,5 @@
 /* Weights (3), (4) of a block of particles. */
+#include "clathra/point_reaction.h"
 #include "lanes.h"
 
 /* Where cells are equal. */
@@ -9,8 +10,10 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
   const double     lower = line->lower, h = line->h, cells = (double)line->cells;
   const double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict l = e->m->P.f[P_L + d] + r.p;
 
+  const double middle[2] = {0.5, 1.5};
+
   for (int q = 0; q < r.n; q++) {
-    double S[3], D[3], first;
+    double S[3], D[3], part[3], first;
 
     if (linear) {
       const double s = BasisSnap((x[q] - lower) / h);
@@ -21,16 +24,19 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
       S[2] = D[2] = 0.0;
       D[0]        = -1.0 / h;
       D[1]        = 1.0 / h;
+      BasisControlShares(fmax(s - first - l[q] / h, 0.0), fmin(s - first + l[q] / h, 1.0), middle, part);
     } else {
       const BasisDomain b = BasisDomainOf(type, x[q], l[q], lower, h, cells);
 
       first           = floor(b.lo);
       const double lo = b.lo - first, hi = b.hi - first;
       BasisAverage(lo, hi, 1.0, 1.0, hi - lo, b.length * h, S, D);
+      BasisControlShares(lo, hi, middle, part);
     }
     for (int k = 0; k < 3; k++) {
-      w->S[d][k][q] = S[k];
-      w->D[d][k][q] = D[k];
+      w->S[d][k][q]    = S[k];
+      w->D[d][k][q]    = D[k];
+      w->part[d][k][q] = part[k];
     }
     base[q] = (int)first;
   }
@@ -46,8 +52,9 @@ static void AxesUnequal(const Explicit *e, Run r, int d, Weights *w, int *restri
 
     BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][r.p + q], e->m->P.f[P_L + d][r.p + q], line, &a);
     for (int k = 0; k < 3; k++) {
-      w->S[d][k][q] = a.S[k];
-      w->D[d][k][q] = a.dS[k];
+      w->S[d][k][q]    = a.S[k];
+      w->D[d][k][q]    = a.dS[k];
+      w->part[d][k][q] = a.part[k];
     }
     base[q] = (int)a.base;
   }
@@ -107,4 +114,20 @@ void WeightsOf(const Explicit *e, Run r, Weights *w)
   }
   if (TakesCellMean(e))
     Cells(e, r, base, w);
+}
+
+void ReactionWeights(const Explicit *e, Run r, Weights *w)
+{
+  double *const *f = e->m->P.f;
+
+  for (int q = 0; q < r.n; q++) {
+    const PetscInt p = r.p + q;
+
+    if (!e->o.particle_pressures && !ReactionWithoutGas(r.mat->gas.trace, f[P_PW][p], f[P_PG][p]))
+      continue;
+    for (int d = 0; d < CL_DIM; d++) {
+      for (int k = 0; k < 3; k++)
+        w->part[d][k][q] = w->S[d][k][q];
+    }
+  }
 }

@@ -1,7 +1,6 @@
-/* What the scheme adds to the balances of particles, at t_n: diffusion that carries saturations and heat with the flow,
-   how fast the reaction is held. */
+/* What the scheme adds to the balances of particles, at t_n: diffusion that carries saturations and heat with the flow.
+ */
 #include "clathra/point_heat.h"
-#include "clathra/point_reaction.h"
 #include "gather.h"
 
 PetscErrorCode AdditionsReserve(Model *m)
@@ -18,12 +17,6 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (SceneThinCells(m->c))
     PetscCall(PetscCalloc1(m->stencil_cap, &to->thin));
-  if (m->c->stabilisation.lumped_reaction && fs->phase[PHASE_G])
-    PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));
-  if (SceneHoldsReaction(m->c))
-    PetscCall(PetscMalloc1(m->stencil_cap, &to->held));
-  if (SceneTakesChords(m->c))
-    PetscCall(PetscMalloc1(m->stencil_cap, &to->chord));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,26 +71,6 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   HeatUpwind(q->kappa, a, h, K);
 }
 
-/* (381) with the faster of both ways at t_n. */
-static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
-{
-  double g[CL_DIM], h[CL_DIM], slope;
-
-  for (int d = 0; d < CL_DIM; d++)
-    g[d] = m->P.f[P_GT + d][p];
-  CellWidthsAt(m, p, h);
-  EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
-  return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));
-}
-
-double ModelHeld(const Model *m, PetscInt p)
-{
-  PointProperties q;
-  const char     *why;
-
-  return ModelParticleProperties(m, p, &q, &why) == CL_OK ? HeldOf(m, p, &q) : 0.0;
-}
-
 void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
 {
   Additions *to = m->added;
@@ -108,8 +81,6 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
   if (to->thin)
     to->thin[p] = ThinOf(m, p, q->kappa);
-  if (to->held)
-    to->held[p] = HeldOf(m, p, q);
   if (to->exchange)
     ExchangeSet(m, p, q);
 }

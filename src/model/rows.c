@@ -95,7 +95,8 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
       continue;
     const int p = first + PlaceP(fs, f);
 
-    in[IN_P + f][p] = b->S;
+    in[IN_P + f][p]     = b->S;
+    in[IN_DRIVE + f][p] = b->R;
     for (int i = 0; i < CL_DIM; i++) {
       in[VectorAt(IN_GP, f, i)][p] = b->G[i];
       if (PlaceV(fs, f) < 0)
@@ -108,7 +109,8 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
   if (fs->heat) {
     const int T = first + PlaceT(fs);
 
-    in[IN_T][T] = b->S;
+    in[IN_T][T]                   = b->S;
+    in[IN_DRIVE + PHASE_COUNT][T] = b->R;
     for (int i = 0; i < CL_DIM; i++)
       in[IN_GT + i][T] = b->G[i];
   }

@@ -64,42 +64,13 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define HEATER 1.0 /* W/m^2, W/m^3: ten times and more what the earth gives */
-
-static bool HasHeater(const Scene *c)
-{
-  bool has = false;
-
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    const Bc  *b     = &c->bc[k];
-    const bool heats = b->type == BC_HEAT_FLUX || b->type == BC_HEAT_SOURCE;
-
-    for (PetscInt i = 0; heats && i < b->value.n; i++)
-      has = has || b->value.y[i] + ScheduleSwing(&b->value) > HEATER;
-  }
-  return has;
-}
-
-bool StepperHeatsHydrate(const Stepper *s)
-{
-  const Scene *c = s->model->c;
-  double       T;
-
-  return SceneReacts(c) && c->fields.phase[PHASE_G] && c->fields.heat &&
-         (HasHeater(c) || (BcHottest(c, &T) && T > s->state.begin[HIGHEST_T]));
-}
-
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 {
-  const Scene *c = s->model->c;
-  char         words[768];
+  char words[768];
 
   PetscFunctionBeginUser;
   snprintf(
-      words, sizeof(words), "%s%s%s%s",
-      StepperHeatsHydrate(s) && !c->stabilisation.held_reaction
-          ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
-          : "",
+      words, sizeof(words), "%s%s%s",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "

@@ -11,26 +11,26 @@
 #include "small_scene.h"
 
 /* ---------------------------------------------------------------- (a) Jacobian */
-/* A random state, with the reaction by nodes where hydrate reacts, and gas with the mobility of where it comes from in
-   the second set of conditions. */
+/* A random state, with gas that has the mobility of where it comes from in the second set of conditions. */
 static void RandomScene(SmallScene *s, BasisType basis, bool reacts, int set)
 {
-  double diffusion = 0.0, lumped = 0.0, held = 0.0, donor = 0.0;
+  double diffusion = 0.0, apart = 0.0, donor = 0.0;
 
   JacobianCase(s, HAS_ALL, true, false, basis, 0.0, 0.0, reacts, set);
   s->c.scene.stabilisation.donor = set;
   JacobianState(s);
   Check((PetscInt)Sum((double)s->m.added->nghost) > 0 && (PetscInt)Sum((double)s->m.added->ncell) > 0);
-  for (PetscInt p = 0; p < s->m.P.n; p++)
+  for (PetscInt p = 0; p < s->m.P.n; p++) {
+    Reach r;
+
+    ReachExpand(&s->m, p, &r);
+    ReachReaction(&s->m, p, &r);
+    for (int a = 0; a < r.n; a++)
+      apart += fabs(r.R[a] - r.S[a]) > 0.1;
     diffusion += s->m.added->diffusion[p] > 0.0;
-  for (PetscInt p = 0; p < s->m.P.n; p++)
-    lumped += s->m.added->lump && s->m.added->lump[p].rate > 0.0;
-  for (PetscInt p = 0; p < s->m.P.n; p++)
-    held += s->m.added->held && s->m.added->held[p] > 0.0;
-  for (PetscInt p = 0; p < s->m.P.n; p++)
     donor += s->m.added->donor && s->m.added->donor[p].base < 1.0;
-  Check(Sum(diffusion) > 0.0 && (Sum(lumped) > 0.0) == reacts && (Sum(held) > 0.0) == reacts &&
-        (Sum(donor) > 0.0) == (set > 0));
+  }
+  Check(Sum(diffusion) > 0.0 && Sum(apart) > 0.0 && (Sum(donor) > 0.0) == (set > 0));
 }
 
 static void TestJacobian(void **state)
