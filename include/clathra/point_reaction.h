@@ -78,10 +78,11 @@ typedef struct {
 #define WET_OVER 1e3  /* Pa above p_e over which W goes from the surface that melts to that of its own */
 #define WET_OPEN 1e-2 /* least 1 - S_h that counts there */
 
-/* theta of (418), (1 - exp(-x))/x, with its slope; x >= 0. */
+/* A number with its slope in x. */
 typedef struct {
   double v, x;
 } Fade;
+/* theta of (418), (1 - exp(-x))/x, with its slope; x >= 0, all dimensionless. */
 INLINE Fade WetFade(double x)
 {
   if (x < 1e-2)

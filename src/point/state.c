@@ -64,7 +64,7 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
 {
   const PointHistory h = {.V = V, .m_s = m_s, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
   const double       in[IN_COUNT] = {
-      [IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T, [IN_DRIVE] = pw, [IN_DRIVE + 1] = pg, [IN_DRIVE + 2] = T};
+            [IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T, [IN_DRIVE] = pw, [IN_DRIVE + 1] = pg, [IN_DRIVE + 2] = T};
   ScalarState    s;
   const ClStatus status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
 
