@@ -109,9 +109,9 @@ def terzaghi(run, left, right):
 
 def buckley_leverett(run, left, right):
     B = ladder.BuckleyLeverett
-    for axes, cells in ((left, 50), (right, 200)):
-        profiles(axes, run("-grid_cells", f"{cells},1", "-stepper_dt", f"{1500 / cells:g} s"), 0, lambda v: v["S_w"][:, 0], B.exact.saturation)
-        axes.set(xlabel="x (m)", ylabel="water saturation (–)", title=f"{cells} cells")
+    for axes, option, title in ((left, "yes", "drag from upstream"), (right, "no", "central drag")):
+        profiles(axes, run("-stabilisation_upstream", option), 0, lambda v: v["S_w"][:, 0], B.exact.saturation)
+        axes.set(xlabel="x (m)", ylabel="water saturation (–)", title=title)
 
 
 def mcwhorter_sunada(run, left, right):

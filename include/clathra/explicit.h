@@ -49,8 +49,6 @@ PetscErrorCode ExplicitDestroy(Explicit **e);
 PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status);
 /* Largest stable step on the present state (38), (39), (150).  Collective. */
 PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit);
-/* (200) of particle p as the last step had it, m^2/(Pa s); a scene with two fluids. */
-double ExplicitSaturationDiffusion(const Explicit *e, PetscInt p);
 /* One step from t to t + dt on the committed state; adds what crossed the boundary and what heat changed (integrals
    over the step: kg, J) to *sum.  A failed step leaves particles half-moved: the caller keeps a copy.  Collective. */
 PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status);

@@ -8,12 +8,10 @@
 
 /* s_g at p_c, and its slope. */
 void RetentionGasShareBatch(const Retention *law, int n, const double *pc, const double *Sh, double *s, double *ds_dpc);
-/* k_rw at s_w, and its slope. */
-void RelPermWaterBatch(const RelPerm *law, int n, const double *restrict sw, double *restrict kr,
-                       double *restrict dkr_dsw);
-/* k_rg at s_g, and its slope. */
-void RelPermGasBatch(const RelPerm *law, int n, const double *restrict sg, double *restrict kr,
-                     double *restrict dkr_dsg);
+/* k_rw at s_w. */
+void RelPermWaterBatch(const RelPerm *law, int n, const double *restrict sw, double *restrict kr);
+/* k_rg at s_g. */
+void RelPermGasBatch(const RelPerm *law, int n, const double *restrict sg, double *restrict kr);
 /* k_a at phi and S_h, m^2. */
 void PermeabilityBatch(const Permeability *law, int n, const double *phi, const double *Sh, double *k);
 /* rho at p and T. */

@@ -205,7 +205,7 @@ typedef struct {
   Wide      *wide;        /* [n] of the wide part (27) */
   double    *plate_K;     /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
 
-  Additions *added;   /* what the scheme adds to the balances (22), (23), (200), (293) */
+  Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (293) */
   Solver    *solver;  /* of the stages */
   Failure    failure; /* of the last evaluation */
 } Model;
@@ -289,8 +289,6 @@ void ModelClearFailure(Model *m);
 void ModelExplain(Model *m, const char *why);
 /* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
-/* (200) of particle p with properties q at t_n, m^2/(Pa s); lumped: is storage?  A scene with two pressures. */
-double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q, bool lumped);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
 /* What flows into the body and wells need of the particle of a face (109), (367); S: its weights at its n nodes,

@@ -56,7 +56,7 @@ typedef struct {
   double          m_star[3]; /* m_h*, m_w*, m_g*, kg */
   double          T_n, Sh_n; /* at t_n */
   SkeletonHistory skeleton;
-  double          diffusion;               /* of p_c (200) at t_n, m^2/(Pa s) */
+  double          spread[PHASE_COUNT];     /* (200) at t_n, m^2/(Pa s) */
   double          upwind[CL_SYMMETRIC];    /* (293), W/(m K) */
   double      proj[PHASE_COUNT][CL_DIM];   /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
   double      mobility;                    /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
@@ -112,7 +112,7 @@ double PointGasPressure(const Material *mat, double want, double Sh, double pw, 
 typedef struct {
   double rho[PHASE_COUNT];                     /* kg/m^3 */
   double resist[PHASE_COUNT], kr[PHASE_COUNT]; /* mu/k_a, Pa s/m^2; relative permeability */
-  double mobility_slope[PHASE_COUNT];          /* k_a/mu dk_r/dp_c, m^2/(Pa^2 s) */
+  double mobility_slope[PHASE_COUNT];          /* d(k_a k_r/mu)/dp_c, m^2/(Pa^2 s) */
   double s[PHASE_COUNT], phi, Sh;              /* s_w, s_g, porosity, hydrate saturation */
   double capacity, kappa;                      /* V C_m (J/K), W/(m K) */
   double M, G;                                 /* constrained and shear modulus, Pa */

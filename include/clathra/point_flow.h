@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdbool.h>
 #include "clathra/dimension.h"
-#include "clathra/fields.h"
 #include "clathra/inline.h"
 
 #define CL_MOBILITY_FLOOR 1e-9 /* of k_r: an immobile fluid has one pressure in all directions, and a velocity */
@@ -115,69 +114,6 @@ INLINE double ExchangeShare(double mobility, double storage, const double l[CL_D
   for (int d = 0; d < CL_DIM; d++)
     sum += 0.5 / (l[d] * l[d]);
   return -expm1(-dt * sum * mobility / storage);
-}
-
-/* Two fluids that flow through a particle at t_n. */
-typedef struct {
-  double mobility[PHASE_COUNT], slope[PHASE_COUNT]; /* l = k_a k_r/mu, m^2/(Pa s); dl/dp_c, m^2/(Pa^2 s) */
-  double rho[PHASE_COUNT];                          /* kg/m^3 */
-  double grad_p[PHASE_COUNT][CL_DIM];               /* Pa/m */
-  double h[CL_DIM];                                 /* h* of its cell, m */
-} TwoFluids;
-
-/* h* of (200), m: the width h of a cell where storage is lumped; else times four times the mean product of its two
-   nodes' weights over particles of half-length l, what storage has in common with a neighbour.  3/4 h for two. */
-INLINE double CarryingWidth(double h, double l, bool lumped)
-{
-  if (lumped)
-    return h;
-  const double part = l < 0.5 * h ? l / h : 0.5;
-
-  return h * (2.0 + 4.0 * part * part) / 3.0;
-}
-
-#define CL_PECLET_LEAST 1e-4 /* below, Pe coth Pe - 1 is Pe^2/3 to all digits */
-
-/* Share of what gravity drives heavier and lighter fluid past each other with that the gradient of p_c does not hold:
-   0 where they are at rest, 1 where p_c is uniform; dimensionless. */
-INLINE double Segregating(const TwoFluids *f, const double b[CL_DIM])
-{
-  const double heavier = f->rho[PHASE_W] - f->rho[PHASE_G], by_gravity = heavier * VectorDot(b, b);
-  double       held = 0.0;
-
-  if (by_gravity == 0.0)
-    return 0.0;
-  for (int d = 0; d < CL_DIM; d++)
-    held -= (f->grad_p[PHASE_G][d] - f->grad_p[PHASE_W][d]) * b[d];
-  const double share = 1.0 - held / by_gravity;
-  return share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
-}
-
-/* (200): diffusion of p_c that carries the saturations with the flow of both fluids together, m^2/(Pa s); gravity b,
-   m/s^2; beds: null where there are none. */
-INLINE double SaturationDiffusion(const TwoFluids *f, const double b[CL_DIM], const Beds *beds)
-{
-  const double lw = f->mobility[PHASE_W], lg = f->mobility[PHASE_G], all = lw + lg, both = lw * lg / all;
-  const double per_flow    = (f->slope[PHASE_W] * lg - lw * f->slope[PHASE_G]) / (all * all),
-               per_gravity = (f->slope[PHASE_W] * lg * lg + f->slope[PHASE_G] * lw * lw) / (all * all) *
-                             (f->rho[PHASE_W] - f->rho[PHASE_G]);
-  double c[CL_DIM], Pe = 0.0;
-
-  if (per_flow == 0.0 && per_gravity == 0.0)
-    return 0.0;
-  const double segregating = Segregating(f, b);
-  for (int d = 0; d < CL_DIM; d++) {
-    double J = 0.0;
-
-    for (int k = 0; k < PHASE_COUNT; k++)
-      J -= f->mobility[k] * (f->grad_p[k][d] - f->rho[k] * b[d]);
-    c[d] = per_flow * J + per_gravity * segregating * b[d];
-  }
-  if (beds)
-    BedsDrive(beds, c);
-  for (int d = 0; d < CL_DIM; d++)
-    Pe += f->h[d] * fabs(c[d]) / (2.0 * both);
-  return both * (Pe < CL_PECLET_LEAST ? Pe * Pe / 3.0 : Pe / tanh(Pe) - 1.0);
 }
 
 /* (18) along one axis, kg m/s: Darcy flux J and projected less own gradient, both on the configuration at t_n. */

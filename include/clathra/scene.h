@@ -59,9 +59,11 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 
 /* Numerics of the model, which a restart may change. */
 typedef struct {
-  double ghost_penalty; /* g, 0 = off; default 0.1 */
-  bool   donor;         /* (332): gas has the mobility of where it comes from; default false */
-  int    heat;          /* HEAT_...; default auto */
+  double ghost_penalty;     /* g, 0 = off; default 0.1 */
+  bool   upstream;          /* drag of the fluids from upstream; default false */
+  bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
+  bool   saturation_upwind; /* (200); default false */
+  int    heat;              /* HEAT_...; default auto */
 } Stabilisation;
 
 typedef struct Scene {
@@ -294,7 +296,9 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
   const struct {
     bool        on;
     const char *word;
-  } known[] = {{c->stabilisation.donor, "stabilisation_donor"}};
+  } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
+               {c->stabilisation.donor, "stabilisation_donor"},
+               {c->stabilisation.saturation_upwind, "stabilisation_saturation"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
     if (known[i].on && k-- == 0)

@@ -151,9 +151,13 @@ const Key case_key[] = {
         "paper's form, which rings)"),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
          "at free surfaces; 0 = off"),
+    BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",
+            "relative permeabilities from upstream, for sharp fronts of saturation"),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
             "gas has the mobility of the nodes it comes from, so that sediment without mobile gas gives none: for sand "
             "with gas beside clay"),
+    BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
+            "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
     CHOICE(Case, "stabilisation_heat", scene.stabilisation.heat, "auto", heat_word,
            "carries heat with the flow, so that temperatures stay within their bounds where a cell's heat is carried "
            "rather than conducted; auto: sdirk2 and euler where T alternates from node to node, hybrid nowhere; yes: "

@@ -6,7 +6,7 @@
 
 typedef struct {
   double phi[BLOCK], Sh[BLOCK], open[BLOCK], sw[BLOCK], rho[PHASE_COUNT][BLOCK], p[BLOCK];
-  double resist[PHASE_COUNT][BLOCK], kr[PHASE_COUNT][BLOCK], dkr[PHASE_COUNT][BLOCK]; /* mu/k_a, k_r, dk_r/dp_c */
+  double resist[PHASE_COUNT][BLOCK], kr[PHASE_COUNT][BLOCK]; /* mu/k_a, k_r */
 } Fluids;
 
 /* (323): where no pressure of water sets it, the density of the gas in the pores. */
@@ -25,29 +25,6 @@ static void FlowingGas(const Material *mat, int n, const double *pw, const doubl
   }
   if (by_water)
     GasDensityBatch(&mat->gas, n, p, T, rho, slope[0], slope[1]);
-}
-
-/* k_r of both fluids at s_w, S_h and their slopes in p_c. */
-INLINE void RelativePermeabilities(const Material *mat, int n, const double *restrict sg, const double *restrict ds,
-                                   Fluids *w)
-{
-  const bool of_pores = mat->relperm.of_pores;
-  double     x[PHASE_COUNT][BLOCK];
-
-  for (int q = 0; q < n; q++) {
-    x[PHASE_W][q] = KrArgumentOf(of_pores, w->sw[q], w->Sh[q]).v;
-    x[PHASE_G][q] = KrArgumentOf(of_pores, sg[q], w->Sh[q]).v;
-  }
-  RelPermWaterBatch(&mat->relperm, n, x[PHASE_W], w->kr[PHASE_W], w->dkr[PHASE_W]);
-  RelPermGasBatch(&mat->relperm, n, x[PHASE_G], w->kr[PHASE_G], w->dkr[PHASE_G]);
-  for (int k = 0; k < PHASE_COUNT; k++) {
-    for (int q = 0; q < n; q++) {
-      const double by = KrArgumentOf(of_pores, sg[q], w->Sh[q]).share * (k == PHASE_G ? ds[q] : -ds[q]);
-
-      w->dkr[k][q] *= w->kr[k][q] < CL_MOBILITY_FLOOR ? 0.0 : by;
-      w->kr[k][q] = KrFloored(w->kr[k][q]);
-    }
-  }
 }
 
 /* Shares, densities and drags at t_n (8)-(10), (16). */
@@ -86,7 +63,8 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
   if (s.fluids == 2) {
     const double *restrict pg = f[P_PG] + r.p;
-    double pc[BLOCK];
+    const bool of_pores       = mat->relperm.of_pores;
+    double     pc[BLOCK], x[PHASE_COUNT][BLOCK];
 
     for (int q = 0; q < r.n; q++)
       pc[q] = pg[q] - pw[q];
@@ -94,10 +72,17 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
     GasDensityBatch(&mat->gas, r.n, pg, T, e->t[T_HELD] + r.p, e->t[T_GAS] + r.p, e->t[T_GAS + 1] + r.p);
     FlowingGas(mat, r.n, pw, pg, T, e->t[T_HELD] + r.p, w->rho[PHASE_G]);
     for (int q = 0; q < r.n; q++) {
-      w->sw[q] = 1.0 - sg[q];
-      w->p[q]  = PorePressureOf(sg[q], pw[q], pg[q]).v;
+      w->sw[q]      = 1.0 - sg[q];
+      w->p[q]       = PorePressureOf(sg[q], pw[q], pg[q]).v;
+      x[PHASE_W][q] = KrArgumentOf(of_pores, w->sw[q], w->Sh[q]).v;
+      x[PHASE_G][q] = KrArgumentOf(of_pores, sg[q], w->Sh[q]).v;
     }
-    RelativePermeabilities(mat, r.n, sg, ds, w);
+    RelPermWaterBatch(&mat->relperm, r.n, x[PHASE_W], w->kr[PHASE_W]);
+    RelPermGasBatch(&mat->relperm, r.n, x[PHASE_G], w->kr[PHASE_G]);
+    for (int k = 0; k < PHASE_COUNT; k++) {
+      for (int q = 0; q < r.n; q++)
+        w->kr[k][q] = KrFloored(w->kr[k][q]);
+    }
     GasViscosityBatch(&mat->mu_g, r.n, w->rho[PHASE_G], T, mu);
     for (int q = 0; q < r.n; q++)
       w->resist[PHASE_G][q] = mu[q] / ka[q];
@@ -242,31 +227,6 @@ INLINE void BedsValues(Explicit *e, const Set s, Run r, Given *v)
   }
 }
 
-/* (200); in the bare form nothing carries saturations. */
-INLINE void SaturationDiffusions(Explicit *e, const Set s, Run r, const Fluids *w)
-{
-  double *const *f = e->m->P.f;
-
-  for (int q = 0; q < r.n && !e->o.particle_pressures; q++) {
-    const PetscInt p = r.p + q;
-    TwoFluids      two;
-    Beds           A;
-
-    if (s.beds)
-      A = BedsAt(e, p);
-    for (int k = 0; k < PHASE_COUNT; k++) {
-      two.mobility[k] = w->kr[k][q] / w->resist[k][q];
-      two.slope[k]    = w->dkr[k][q] / w->resist[k][q];
-      two.rho[k]      = w->rho[k][q];
-      for (int d = 0; d < CL_DIM; d++)
-        two.grad_p[k][d] = f[VectorAt(P_GW, k, d)][p];
-    }
-    for (int d = 0; d < CL_DIM; d++)
-      two.h[d] = CarryingWidth(LinesWidthAt(&e->m->grid.line[d], f[P_X + d][p]), f[P_L + d][p], e->o.passes == 0);
-    e->t[T_DIFFUSION][p] = SaturationDiffusion(&two, e->m->c->gravity, s.beds ? &A : NULL);
-  }
-}
-
 /* (160), (88): part of the stress acts through the mean motion of the particle's cell. */
 INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const Weights *w, Given *v)
 {
@@ -336,8 +296,6 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   for (int q = 0; s.layers && q < r.n; q++)
     v.value[q][A_K(s)] = V[q] * Conductance(e, s, r.p + q);
   BedsValues(e, s, r, &v);
-  if (s.fluids == 2)
-    SaturationDiffusions(e, s, r, &state);
   for (int k = 0; k < s.fluids; k++) {
     const double *g[CL_DIM];
 

@@ -324,11 +324,6 @@ static PetscErrorCode MassAndHeat(Explicit *e, double dt, StageRates *sum)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-double ExplicitSaturationDiffusion(const Explicit *e, PetscInt p)
-{
-  return e->t[T_DIFFUSION][p];
-}
-
 PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status)
 {
   Model *m = e->m;

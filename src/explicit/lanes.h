@@ -89,16 +89,15 @@ enum {
   T_T = 0, /* degC, where heat has no field */
   T_SG,    /* share of gas and its slope */
   T_DS,
-  T_RHO,                              /* [2] densities with which the fluids flow */
-  T_GAS       = T_RHO + PHASE_COUNT,  /* [2] slopes of that of the gas in p_g and T */
-  T_HELD      = T_GAS + 2,            /* density of the gas in the pores (323) */
-  T_DRAG      = T_HELD + 1,           /* [2] mu/(k_a k_r) */
-  T_DIFFUSION = T_DRAG + PHASE_COUNT, /* of p_c (200) */
-  T_CONDUCT,                          /* weight of its flow at t_n (350); with layers */
-  T_BEDS,                             /* [CL_SYMMETRIC] A at t_n (306); with beds */
-  T_V = T_BEDS + CL_SYMMETRIC,        /* volume at the end of the step */
-  T_EOS,                              /* [2] masses at that volume and the old pressures */
-  T_SLOPE = T_EOS + PHASE_COUNT,      /* [2][3] their slopes in p_w, p_g, T */
+  T_RHO,                            /* [2] densities with which the fluids flow */
+  T_GAS     = T_RHO + PHASE_COUNT,  /* [2] slopes of that of the gas in p_g and T */
+  T_HELD    = T_GAS + 2,            /* density of the gas in the pores (323) */
+  T_DRAG    = T_HELD + 1,           /* [2] mu/(k_a k_r) */
+  T_CONDUCT = T_DRAG + PHASE_COUNT, /* weight of its flow at t_n (350); with layers */
+  T_BEDS,                           /* [CL_SYMMETRIC] A at t_n (306); with beds */
+  T_V = T_BEDS + CL_SYMMETRIC,      /* volume at the end of the step */
+  T_EOS,                            /* [2] masses at that volume and the old pressures */
+  T_SLOPE = T_EOS + PHASE_COUNT,    /* [2][3] their slopes in p_w, p_g, T */
   T_WARM =
       T_SLOPE + 3 * PHASE_COUNT, /* [2] beta T_K times the fluids' volumes, m^3: heat of compression per Pa (290) */
   T_GAIN = T_WARM + PHASE_COUNT, /* hydrate: gain at the old p and T, slopes in p_w, p_g and T */

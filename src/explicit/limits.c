@@ -13,8 +13,8 @@ const char *const cl_limit_word[LIMIT_COUNT] = {"none",
 /* What one particle contributes: squares of the highest frequencies (1/s^2), rates of decay of relative motion (1/s).
  */
 typedef struct {
-  double wave, sliver, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT], heat,
-      carried; /* both: drag felt by fluid and skeleton; carried: decay of differences of p_c by (200), 1/s */
+  double wave, sliver, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT],
+      heat; /* both: drag felt by fluid and skeleton */
   int fluids;
 } Spectrum;
 
@@ -97,9 +97,6 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
       skeleton += (q.s[i] - share) * C[i][j] * (q.s[j] - other);
     }
   }
-  if (s.fluids == 2 && !e->o.particle_pressures)
-    w->carried = (1 + e->o.passes) * k2 * ModelSaturationDiffusion(m, p, &q, e->o.passes == 0) *
-                 (C[0][0] - C[0][1] - C[1][0] + C[1][1]);
   if (s.solid) {
     const double square = Largest(skeleton / rho, (q.M + bulk) / total) / e->o.mass_scaling;
 
@@ -114,7 +111,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
 /* Left side of (38); a step is stable while it is below 4. */
 static double Growth(const Spectrum *w, bool implicit, double dt)
 {
-  double sum = dt * dt * w->wave + 2.0 * dt * w->carried;
+  double sum = dt * dt * w->wave;
 
   for (int i = 0; i < w->fluids; i++)
     sum += implicit ? 2.0 * dt * dt * w->fluid[i] / (1.0 + dt * w->drag[i])
@@ -153,7 +150,6 @@ static void Each(const Spectrum *w, bool implicit, double each[LIMIT_COUNT])
   Lower(&each[LIMIT_WAVE], 2.0 / sqrt(w->wave));
   Lower(&each[LIMIT_THIN], 2.0 / sqrt(w->sliver));
   Lower(&each[LIMIT_HEAT], 2.0 / w->heat);
-  Lower(&each[LIMIT_DIFFUSION], 2.0 / w->carried);
   for (int i = 0; i < w->fluids; i++) {
     const double lambda = w->drag[i], square = w->fluid[i];
 

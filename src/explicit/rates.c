@@ -178,20 +178,6 @@ INLINE void CarriedFlux(const Explicit *e, Run r, Given *o)
   }
 }
 
-/* (200): adds V rho D (g_g - g_w) of t_n for water, takes it off for gas. */
-INLINE void DiffusionFlux(const Explicit *e, const Set s, Run r, int k, const Gathered *g, double dt, Given *o)
-{
-  const double *restrict V = e->m->P.f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
-                         *restrict D = e->t[T_DIFFUSION] + r.p;
-
-  for (int q = 0; q < r.n; q++) {
-    const double weight = (k == PHASE_W ? dt : -dt) * V[q] * rho[q] * D[q];
-
-    for (int d = 0; d < CL_DIM; d++)
-      o->force[d][q][k] += weight * (g->grad[d][q][B_P(s, PHASE_G)] - g->grad[d][q][B_P(s, PHASE_W)]);
-  }
-}
-
 /* Row of one fluid: mass missing, mass flux, matrix. */
 INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathered *g, double dt, Given *o)
 {
@@ -215,8 +201,6 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
     for (int d = 0; d < CL_DIM; d++)
       o->force[d][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + d], v[at + B_PROJ + d] - own[d]);
   }
-  if (s.fluids == 2 && !e->o.particle_pressures)
-    DiffusionFlux(e, s, r, k, g, dt, o);
   if (k == PHASE_G && r.mat->gas.carried > 0.0)
     CarriedFlux(e, r, o);
   for (int i = 0; i < n; i++) {

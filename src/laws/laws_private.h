@@ -60,20 +60,6 @@ static inline int LawFind(const char *const names[], const char *name)
       y[q] = formula(&l, x[q], &slope);                                                                                \
   }
 
-/* ... with Batch that keeps them. */
-#define LAW_OF_ONE_SLOPED(One, Batch, Law, formula)                                                                    \
-  double One(const Law *law, double x, double *slope)                                                                  \
-  {                                                                                                                    \
-    return formula(law, x, slope);                                                                                     \
-  }                                                                                                                    \
-  void Batch(const Law *law, int n, const double *restrict x, double *restrict y, double *restrict slope)              \
-  {                                                                                                                    \
-    const Law l = *law;                                                                                                \
-                                                                                                                       \
-    for (int q = 0; q < n; q++)                                                                                        \
-      y[q] = formula(&l, x[q], &slope[q]);                                                                             \
-  }
-
 /* glibc's vector versions of these, which it declares under -ffast-math only. */
 #if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
   #if __GLIBC_PREREQ(2, 35)

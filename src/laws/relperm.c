@@ -24,5 +24,5 @@ INLINE double OfGas(const RelPerm *law, double sg, double *dkr)
 
 /* k_rw (-) of the water share s_w of the fluid-filled pore space (or of the whole: of_pores), and dk_rw/ds_w; k_rg
    likewise. */
-LAW_OF_ONE_SLOPED(RelPermWater, RelPermWaterBatch, RelPerm, OfWater)
-LAW_OF_ONE_SLOPED(RelPermGas, RelPermGasBatch, RelPerm, OfGas)
+LAW_OF_ONE(RelPermWater, RelPermWaterBatch, RelPerm, OfWater)
+LAW_OF_ONE(RelPermGas, RelPermGasBatch, RelPerm, OfGas)

@@ -1,7 +1,9 @@
-/* What the scheme adds to the balances of particles, at t_n: diffusion that carries saturations and heat with the flow.
- */
+/* What the scheme adds to the balances of particles, at t_n: diffusion that carries saturations and heat with the flow,
+   what looks upstream. */
 #include "clathra/point_heat.h"
 #include "gather.h"
+
+#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its k_r stays central */
 
 PetscErrorCode AdditionsReserve(Model *m)
 {
@@ -11,8 +13,8 @@ PetscErrorCode AdditionsReserve(Model *m)
   PetscFunctionBeginUser;
   if (SceneDonor(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->donor));
-  if (fs->phase[PHASE_W] && fs->phase[PHASE_G])
-    PetscCall(PetscCalloc1(m->stencil_cap, &to->diffusion));
+  if (m->c->stabilisation.saturation_upwind && fs->phase[PHASE_G])
+    PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
   if (SceneCarriesHeat(m->c))
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (SceneThinCells(m->c))
@@ -30,29 +32,34 @@ PetscErrorCode AdditionsOfStage(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Widths of its cell by the particle's place, as hybrid keeps no stencils, m. */
-static void CellWidthsAt(const Model *m, PetscInt p, double h[CL_DIM])
+/* (200): diffusion of p_c that carries the saturations with the flow of both fluids, or that of one that flows alone.
+ */
+static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, double D[PHASE_COUNT])
 {
-  for (int d = 0; d < CL_DIM; d++)
-    h[d] = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
-}
+  const double l[PHASE_COUNT] = {q->kr[PHASE_W] / q->resist[PHASE_W], q->kr[PHASE_G] / q->resist[PHASE_G]},
+               all = l[PHASE_W] + l[PHASE_G], both = l[PHASE_W] * l[PHASE_G] / all;
+  double h[CL_DIM], Pe[PHASE_COUNT] = {0.0}, shared = 0.0;
 
-double ModelSaturationDiffusion(const Model *m, PetscInt p, const PointProperties *q, bool lumped)
-{
-  TwoFluids f;
-
+  D[PHASE_W] = D[PHASE_G] = 0.0;
+  if (!(both > 0.0))
+    return;
+  CellWidths(m, p, h);
   for (int k = 0; k < PHASE_COUNT; k++) {
-    f.mobility[k] = q->kr[k] / q->resist[k];
-    f.slope[k]    = q->mobility_slope[k];
-    f.rho[k]      = q->rho[k];
+    double g[CL_DIM];
+
     for (int d = 0; d < CL_DIM; d++)
-      f.grad_p[k][d] = m->P.f[VectorAt(P_GW, k, d)][p];
+      g[d] = m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d];
+    Drive(m, p, g);
+    for (int d = 0; d < CL_DIM; d++)
+      Pe[k] += 0.5 * h[d] * fabs(g[d] * q->mobility_slope[k]) / both;
+    shared += (1.0 - l[k] / all) * Pe[k];
   }
-  CellWidthsAt(m, p, f.h);
-  for (int d = 0; d < CL_DIM; d++)
-    f.h[d] = CarryingWidth(f.h[d], m->P.f[P_L + d][p], lumped);
-  const Beds beds = SceneHasBeds(m->c) ? ParticleBeds(m->c, &m->P, p) : (Beds){{0.0}};
-  return SaturationDiffusion(&f, m->c->gravity, SceneHasBeds(m->c) ? &beds : NULL);
+  for (int k = 0; k < PHASE_COUNT; k++) {
+    const double most = fmax(shared, l[k] / all * Pe[k]);
+
+    if (most > 1e-4)
+      D[k] = both * (most / tanh(most) - 1.0);
+  }
 }
 
 /* Conductivity that carries heat with the flow of t_n (293). */
@@ -75,12 +82,55 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
 {
   Additions *to = m->added;
 
-  if (to->diffusion)
-    to->diffusion[p] = ModelSaturationDiffusion(m, p, q, false);
+  if (to->spread)
+    SpreadOf(m, p, q, &to->spread[PHASE_COUNT * p]);
   if (to->upwind)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
   if (to->thin)
     to->thin[p] = ThinOf(m, p, q->kappa);
   if (to->exchange)
     ExchangeSet(m, p, q);
+}
+
+/* (35): directions of flow at t_n, and the factors that keep the sum of the weights. */
+PetscErrorCode UpstreamBuild(Model *m)
+{
+  const FieldSet *fs = &m->c->fields;
+  double         *sum;
+
+  PetscFunctionBeginUser;
+  if (!m->c->stabilisation.upstream)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(m->added->up, PHASE_COUNT * UP_COUNT * m->map.n_local));
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    for (int f = 0; f < PHASE_COUNT; f++) {
+      double J[CL_DIM] = {0.0};
+
+      if (fs->phase[f])
+        DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
+      const double size = VectorLength(J);
+      for (int d = 0; d < CL_DIM && size > 0.0; d++)
+        UpstreamAt(m, I, f)[d] = J[d] / size;
+    }
+  }
+  PetscCall(PetscCalloc1(PHASE_COUNT * m->map.n_local, &sum));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Reach r;
+
+    ReachExpand(m, p, &r);
+    for (int a = 0; a < r.n; a++) {
+      for (int f = 0; f < PHASE_COUNT; f++)
+        sum[PHASE_COUNT * r.node[a] + f] +=
+            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], UpstreamAt(m, r.node[a], f)), 0.0);
+    }
+  }
+  PetscCall(NodeMapSum(&m->map, sum, PHASE_COUNT));
+  for (PetscInt k = 0; k < PHASE_COUNT * m->map.n_local; k++) {
+    const PetscInt I = k / PHASE_COUNT;
+
+    if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, I) * m->V[I])
+      m->added->up[UP_COUNT * k + UP_FACTOR] = m->V[I] / sum[k];
+  }
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

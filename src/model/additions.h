@@ -39,14 +39,18 @@ typedef struct {
   double change;             /* of the particle's pressures at the end of the step, Pa */
 } Exchange;
 
+/* Of a fluid at a node (35): direction of its flow, and a factor (0: none). */
+enum { UP_FACTOR = CL_DIM, UP_COUNT };
+
 struct Additions {
   PetscInt        nghost, ncell;
-  GhostLine      *ghost;     /* [nghost] */
-  ProjectionCell *cell;      /* [ncell] (23) */
-  Donor          *donor;     /* [n] (332); NULL when off */
-  Exchange       *exchange;  /* [n] (353); NULL when off */
-  double         *source;    /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
-  double         *diffusion; /* [n] of p_c (200), m^2/(Pa s); NULL without two pressures */
-  double         *upwind;    /* [n][3] (293); NULL when off */
-  double         *thin;      /* [n] (444), W m/K; NULL when off */
+  GhostLine      *ghost;    /* [nghost] */
+  ProjectionCell *cell;     /* [ncell] (23) */
+  double         *up;       /* [n_local][PHASE_COUNT][UP_COUNT] upstream weights of drag (35); NULL when off */
+  Donor          *donor;    /* [n] (332); NULL when off */
+  Exchange       *exchange; /* [n] (353); NULL when off */
+  double         *source;   /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */
+  double         *spread;   /* [n][2] (200); NULL when off */
+  double         *upwind;   /* [n][3] (293); NULL when off */
+  double         *thin;     /* [n] (444), W m/K; NULL when off */
 };

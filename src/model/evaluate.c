@@ -201,13 +201,14 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
 {
   const FieldSet *fs = &m->c->fields;
 
-  h->V         = m->P.f[P_V][p];
-  h->m_s       = m->P.f[P_MS][p];
-  h->T_n       = ParticleT(m->c, &m->P, p);
-  h->Sh_n      = m->P.f[P_SH][p];
-  h->dt        = m->stage.dt;
-  h->mobility  = m->added->donor ? m->added->donor[p].kr : 0.0;
-  h->diffusion = m->added->diffusion ? m->added->diffusion[p] : 0.0;
+  h->V        = m->P.f[P_V][p];
+  h->m_s      = m->P.f[P_MS][p];
+  h->T_n      = ParticleT(m->c, &m->P, p);
+  h->Sh_n     = m->P.f[P_SH][p];
+  h->dt       = m->stage.dt;
+  h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
+  for (int f = 0; f < PHASE_COUNT; f++)
+    h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < CL_SYMMETRIC; k++)
     h->upwind[k] = m->added->upwind ? m->added->upwind[CL_SYMMETRIC * p + k] : 0.0;
   h->compression = m->c->compression_heat;

@@ -83,8 +83,8 @@ static bool Depends(const Model *m, int out, int in)
   if (in < IN_GP)
     return SceneReacts(m->c) && !force && (in == IN_DRIVE + PHASE_COUNT ? fs->heat : fs->phase[in - IN_DRIVE]);
   if (in < IN_GT)
-    return fs->phase[other] && (out == OUT_Q || (force && other == phase) ||
-                                (flux && (Follows(m->c, phase, other) || m->added->diffusion)));
+    return fs->phase[other] &&
+           (out == OUT_Q || (force && other == phase) || (flux && (Follows(m->c, phase, other) || m->added->spread)));
   if (in < IN_J)
     return fs->heat && (out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM));
   if (in < IN_U)

@@ -4,10 +4,10 @@
 #include "tangent.h"
 
 /* (200): adds V_n rho D K (g_g - g_w) for water, takes it off for gas. */
-INLINE void Diffusion(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
-                      const double in[IN_COUNT], bool tangent, PointOutput *o)
+INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *metric, const ScalarState *s, int f,
+                   const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
-  const double VD  = (f == PHASE_W ? h->V : -h->V) * h->diffusion;
+  const double VD  = (f == PHASE_W ? h->V : -h->V) * h->spread[f];
   const Jet    rho = s->rho[f];
   double       c[CL_DIM];
 

@@ -115,7 +115,7 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
       continue;
     FluidForces(h, k, f, in, tangent, o);
     Flux(fs, h, k, &metric, &s, f, in, tangent, o, &state->tau[f]);
-    Diffusion(h, k, &metric, &s, f, in, tangent, o);
+    Spread(h, k, &metric, &s, f, in, tangent, o);
     FluidScalars(h, k, &s, f, tangent, o);
   }
   if (fs->phase[PHASE_W] && fs->phase[PHASE_G] && mat->gas.carried > 0.0)

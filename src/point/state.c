@@ -79,7 +79,8 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
     r->rho[f]            = s.rho[f].v;
     r->resist[f]         = s.resist[f].v;
     r->kr[f]             = s.kr[f].v;
-    r->mobility_slope[f] = 0.5 * (s.kr[f].d[JET_PG] - s.kr[f].d[JET_PW]) / s.resist[f].v;
+    const Jet mobility   = JetDiv(s.kr[f], s.resist[f]);
+    r->mobility_slope[f] = 0.5 * (mobility.d[JET_PG] - mobility.d[JET_PW]);
     r->storage[f]        = m->d[JET_PW + f] / (V * s.rho[f].v);
     r->cross[f]          = m->d[JET_PW + PHASE_G - f] / (V * s.rho[f].v);
     r->compressibility += (m->d[JET_PW] + m->d[JET_PG]) / (V * s.rho[f].v);

@@ -64,14 +64,25 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is there sediment without gas, where methane in water has the pressure that gas would have (101)? */
+static bool LacksGas(const Scene *c)
+{
+  return c->material[0].gas.trace > 0.0;
+}
+
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 {
-  char words[768];
+  static const char *const saturation[2] = {"stabilisation_saturation: yes, where saturations alternate; ",
+                                            "stabilisation_saturation: no, where gas comes and goes; "};
+  const Scene             *c             = s->model->c;
+  const bool               upwind        = c->stabilisation.saturation_upwind;
+  char                     words[768];
 
   PetscFunctionBeginUser;
   snprintf(
-      words, sizeof(words), "%s%s%s",
+      words, sizeof(words), "%s%s%s%s",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
+      c->fields.phase[PHASE_G] && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",

@@ -57,21 +57,19 @@ static void TestRelPerm(void **state)
   (void)state;
   for (int k = 0; k < 2; k++) {
     const RelPerm law = {.Swr = 0.2, .Sgr = 0.05, .nw = k ? 4.0 : 1.5, .ng = k ? 2.0 : 1.0};
+    double        d;
 
     for (int q = 0; q < N; q++)
       x[q] = RandomIn(-0.1, 1.1);
-    RelPermWaterBatch(&law, N, x, a, da);
-    for (int q = 0; q < N; q++)
-      b[q] = RelPermWater(&law, x[q], &db[q]);
-    const double water = fmax(Worst(N, a, b), Worst(N, da, db));
-
-    RelPermGasBatch(&law, N, x, a, da);
-    for (int q = 0; q < N; q++)
-      b[q] = RelPermGas(&law, x[q], &db[q]);
-    const double gas = fmax(Worst(N, a, b), Worst(N, da, db));
-
-    printf("relative permeability and slope, exponents %g and %g: %.1e, %.1e\n", law.nw, law.ng, water, gas);
-    assert_true(water < 1e-12 && gas < 1e-12);
+    RelPermWaterBatch(&law, N, x, a);
+    RelPermGasBatch(&law, N, x, da);
+    for (int q = 0; q < N; q++) {
+      b[q]  = RelPermWater(&law, x[q], &d);
+      db[q] = RelPermGas(&law, x[q], &d);
+    }
+    printf("relative permeability, exponents %g and %g: %.1e, %.1e\n", law.nw, law.ng, Worst(N, a, b),
+           Worst(N, da, db));
+    assert_true(Worst(N, a, b) < 1e-12 && Worst(N, da, db) < 1e-12);
   }
 }
 

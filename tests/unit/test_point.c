@@ -122,7 +122,7 @@ static void RandomParticle(Rng *r, Regime regime, Particle *q)
 
   q->mat      = RandomMaterial(r, regime);
   q->in[IN_T] = RngBetween(r, 2.0, 15.0);
-  q->h        = (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .diffusion = 3e-13};
+  q->h        = (PointHistory){.V = V, .dt = RngLog(r, 1.0, 1e4), .spread = {3e-13, 2e-12}};
   q->h.T_n    = q->in[IN_T] + RngBetween(r, -2.0, 2.0);
   q->h.Sh_n   = Sh * RngBetween(r, 0.8, 1.2);
   q->apart[0] = q->apart[1] = RngBetween(r, -5e4, 5e4);

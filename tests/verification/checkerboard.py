@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The README's own case, on half its cells: no alternating saturations beside the end of the pressure face (365);
-water and methane; two ranks.  A heater of 60 degC in
+what stabilisation_saturation (200) must not change; water and methane; two ranks; hybrid refuses it.  A heater of 60 degC in
 hydrate: none forms ahead of the front (265), nor does S_h alternate, and no more melts than it should."""
 import re
 from pathlib import Path
@@ -15,8 +15,8 @@ case.write_text(re.search(r"```yaml\n(title: a hydrate layer is drawn down.*?)``
 ROW, OPTIONS = 20, ("-quiet", "-grid_cells", "10,6", "-time_end", "1 h", "-output_every", "1 h")
 
 
-def well(*more, **keywords):
-    return run(binary(), case, *OPTIONS, *more, **keywords)
+def well(upwind, *more, **keywords):
+    return run(binary(), case, *OPTIONS, "-stabilisation_saturation", upwind, *more, **keywords)
 
 
 def alternation(done, quantity):
@@ -26,12 +26,16 @@ def alternation(done, quantity):
     return max(np.max(np.abs(across)), np.max(np.abs(along)))
 
 
-dense = well()
-judge("fronts", "S_w: largest second difference between cells", alternation(dense, "S_w"), 0.01)
+upwind, central = well("yes"), well("no")
+judge("fronts", "S_w: largest second difference between cells", alternation(central, "S_w"), 0.01)
+p = [r.probe("middle")["p_Pa"][-1] for r in (upwind, central)]
+judge("fronts", "pressure at the probe, with and without, of the drop", abs(p[0] - p[1]) / 2e6, 0.01)
 for name in ("water_error", "methane_error"):
-    judge("fronts", f"{name}", np.max(np.abs(dense.balance[name])), 1e-12)
-two = well(ranks=2)
-judge("fronts", "1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], dense.probe("middle")["p_Pa"]), 1e-7)
+    judge("fronts", f"{name}", np.max(np.abs(upwind.balance[name])), 1e-12)
+two = well("yes", ranks=2)
+judge("fronts", "1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], upwind.probe("middle")["p_Pa"]), 1e-7)
+hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-stabilisation_saturation", "yes", "-case_check", out=scratch() / "out")
+check_true("hybrid refuses stabilisation_saturation", hybrid.returncode == 2 and "stabilisation_saturation" in hybrid.stdout, hybrid.stdout)
 
 
 def heater(*more, **keywords):
