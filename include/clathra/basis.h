@@ -72,16 +72,19 @@ static inline void BasisAverage(double a, double b, double w0, double w1, double
   dS[2] = (third ? 1.0 - b2 : 0.0) / gradient_length;
 }
 
-/* Parts (0 to 1) of a domain [lo, hi] in the control volumes of three nodes, between which it passes the middles of two
-   cells; all in one unit: places, about an axis squares of radii. */
-static inline void BasisControlShares(double lo, double hi, const double middle[2], double share[3])
+/* Shares of three nodes along an axis that stand for the nearest of them (265), from their weights S. */
+static inline void BasisNearest(const double S[3], double share[3])
 {
-  const double below = (lo < middle[0] ? (hi < middle[0] ? hi : middle[0]) - lo : 0.0) / (hi - lo),
-               above = (hi > middle[1] ? hi - (lo > middle[1] ? lo : middle[1]) : 0.0) / (hi - lo);
+  double sum = 0.0;
 
-  share[0] = below;
-  share[1] = 1.0 - below - above;
-  share[2] = above;
+  for (int k = 0; k < 3; k++) {
+    const double S2 = S[k] * S[k], S4 = S2 * S2, S8 = S4 * S4;
+
+    share[k] = S8 * S8;
+    sum += share[k];
+  }
+  for (int k = 0; k < 3; k++)
+    share[k] /= sum;
 }
 
 /* Which of the two cells behind the first node of a stencil holds a particle: 0 or 1; s its place in cells, first the
@@ -95,7 +98,7 @@ static inline int BasisCell(double s, double first, double cells)
 typedef struct {
   PetscInt base;
   double   S[3], dS[3]; /* -, 1/m */
-  double   part[3];     /* of the domain in the control volume of each node, -; not of BasisHat */
+  double   nearest[3];  /* (265); of ParticleStencil */
 } Axis;
 
 typedef struct {

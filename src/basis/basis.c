@@ -59,31 +59,10 @@ BasisSpan BasisSpanOf(BasisType type, const GridLines *line, double x, double l)
   return d;
 }
 
-/* Parts in the control volumes of a domain from lo to hi, m; ring: about the axis, with the nodes known. */
-static void Parts(const GridLines *line, double lo, double hi, bool ring, Axis *a)
-{
-  double middle[2];
-
-  for (int k = 0; k < 2; k++) {
-    middle[k] = LinesAt(line, a->base + k) + 0.5 * LinesWidth(line, a->base + k);
-    middle[k] *= ring ? middle[k] : 1.0;
-  }
-  BasisControlShares(ring ? lo * lo : lo, ring ? hi * hi : hi, middle, a->part);
-}
-
-/* Linear functions see the domain as far as it lies in the cell of its middle. */
-static void LinearParts(double x, double l, const GridLines *line, bool ring, Axis *a)
-{
-  const double left = LinesAt(line, a->base), right = left + LinesWidth(line, a->base);
-
-  Parts(line, fmax(x - l, left), fmin(x + l, right), ring, a);
-}
-
 void BasisAxis(BasisType type, double x, double l, const GridLines *line, Axis *a)
 {
   if (type == BASIS_LINEAR) {
     BasisHat(x, line, a);
-    LinearParts(x, l, line, false, a);
     return;
   }
   if (line->x) {
@@ -92,7 +71,6 @@ void BasisAxis(BasisType type, double x, double l, const GridLines *line, Axis *
 
     a->base = (PetscInt)base;
     BasisAverage(d.lo - base, d.hi - base, d.width[0], d.width[1], d.length, d.gradient_length, a->S, a->dS);
-    Parts(line, LinesFrom(line, d.lo), LinesFrom(line, d.hi), false, a);
     return;
   }
   const BasisDomain d    = BasisDomainOf(type, x, l, line->lower, line->h, (double)line->cells);
@@ -100,7 +78,6 @@ void BasisAxis(BasisType type, double x, double l, const GridLines *line, Axis *
 
   a->base = (PetscInt)base;
   BasisAverage(lo, hi, 1.0, 1.0, hi - lo, d.length * line->h, a->S, a->dS);
-  BasisControlShares(lo, hi, (const double[2]){0.5, 1.5}, a->part);
 }
 
 /* Integral of s N(s) from -infinity, N the hat function of unit width. */
@@ -133,7 +110,6 @@ static void RadiusUnequal(BasisType type, const GridLines *line, double x, doubl
       edge[c + k] += q * Nq - p * Np; /* [r N] = int (r N' + N) dr */
     }
   }
-  Parts(line, lo, hi, true, a);
   *r = radius;
   for (int k = 0; k < 3; k++) {
     const double integral = a->S[k] * d.length;
@@ -151,7 +127,6 @@ void BasisRadius(BasisType type, double x, double l, const GridLines *line, Axis
     *r = x;
     for (int k = 0; k < 3; k++)
       hoop[k] = a->S[k] / x;
-    LinearParts(x, l, line, true, a);
     return;
   }
   if (line->x) {
@@ -163,7 +138,6 @@ void BasisRadius(BasisType type, double x, double l, const GridLines *line, Axis
   const double      axis = -line->lower / h, mid = 0.5 * (d.lo + d.hi), radius = mid - axis,
                length = d.hi - d.lo; /* in cells */
 
-  Parts(line, LinesFrom(line, d.lo), LinesFrom(line, d.hi), true, a);
   *r = radius * h;
   for (int k = 0; k < 3; k++) { /* (29); r = r_k + s about node k */
     const double node = (double)(a->base + k), rk = node - axis, lo = d.lo - node, hi = d.hi - node;

@@ -138,10 +138,10 @@ INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Wei
 /* Share of node a of row k of particle q's patch in its reaction (265). */
 INLINE double ReactionShare(const Weights *w, int q, int k, int a)
 {
-  double share = w->part[0][a][q];
+  double share = w->nearest[0][a][q];
 
   for (int d = 1; d < CL_DIM; k /= 3, d++)
-    share *= w->part[d][k % 3][q];
+    share *= w->nearest[d][k % 3][q];
   return share;
 }
 

@@ -10,10 +10,8 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
   const double     lower = line->lower, h = line->h, cells = (double)line->cells;
   const double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict l = e->m->P.f[P_L + d] + r.p;
 
-  const double middle[2] = {0.5, 1.5};
-
   for (int q = 0; q < r.n; q++) {
-    double S[3], D[3], part[3], first;
+    double S[3], D[3], nearest[3], first;
 
     if (linear) {
       const double s = BasisSnap((x[q] - lower) / h);
@@ -24,19 +22,18 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
       S[2] = D[2] = 0.0;
       D[0]        = -1.0 / h;
       D[1]        = 1.0 / h;
-      BasisControlShares(fmax(s - first - l[q] / h, 0.0), fmin(s - first + l[q] / h, 1.0), middle, part);
     } else {
       const BasisDomain b = BasisDomainOf(type, x[q], l[q], lower, h, cells);
 
       first           = floor(b.lo);
       const double lo = b.lo - first, hi = b.hi - first;
       BasisAverage(lo, hi, 1.0, 1.0, hi - lo, b.length * h, S, D);
-      BasisControlShares(lo, hi, middle, part);
     }
+    BasisNearest(S, nearest);
     for (int k = 0; k < 3; k++) {
-      w->S[d][k][q]    = S[k];
-      w->D[d][k][q]    = D[k];
-      w->part[d][k][q] = part[k];
+      w->S[d][k][q]       = S[k];
+      w->D[d][k][q]       = D[k];
+      w->nearest[d][k][q] = nearest[k];
     }
     base[q] = (int)first;
   }
@@ -48,13 +45,15 @@ static void AxesUnequal(const Explicit *e, Run r, int d, Weights *w, int *restri
   const GridLines *line = &e->m->grid.line[d];
 
   for (int q = 0; q < r.n; q++) {
-    Axis a;
+    Axis   a;
+    double nearest[3];
 
     BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][r.p + q], e->m->P.f[P_L + d][r.p + q], line, &a);
+    BasisNearest(a.S, nearest);
     for (int k = 0; k < 3; k++) {
-      w->S[d][k][q]    = a.S[k];
-      w->D[d][k][q]    = a.dS[k];
-      w->part[d][k][q] = a.part[k];
+      w->S[d][k][q]       = a.S[k];
+      w->D[d][k][q]       = a.dS[k];
+      w->nearest[d][k][q] = nearest[k];
     }
     base[q] = (int)a.base;
   }
@@ -127,7 +126,7 @@ void ReactionWeights(const Explicit *e, Run r, Weights *w)
       continue;
     for (int d = 0; d < CL_DIM; d++) {
       for (int k = 0; k < 3; k++)
-        w->part[d][k][q] = w->S[d][k][q];
+        w->nearest[d][k][q] = w->S[d][k][q];
     }
   }
 }

@@ -259,6 +259,6 @@ static inline void ReachReaction(const Model *m, PetscInt p, Reach *r)
 
     r->R[a] = 1.0;
     for (int d = 0; d < CL_DIM; d++)
-      r->R[a] *= s->axis[d].part[ij[d] - s->axis[d].base];
+      r->R[a] *= s->axis[d].nearest[ij[d] - s->axis[d].base];
   }
 }

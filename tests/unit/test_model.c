@@ -626,7 +626,7 @@ static void TestNewtonOrder(void **state)
   StageStart(s, 50.0);
   Call(ModelBeginStage(&s->m, &s->stage));
   MakeSolver(s);
-  s->m.solver->tol_residual = 1e-11;
+  s->m.solver->tol_residual = 1e-10; /* the last digit of the pressure that drives the reaction leaves 3e-11 of heat */
   Call(SNESSetConvergenceHistory(s->m.solver->snes, history, NULL, 50, PETSC_TRUE));
   Call(PetscMalloc1(s->m.map.n_local * F_COUNT, &x));
   Call(PetscArraycpy(x, s->m.x_n, s->m.map.n_local * F_COUNT));

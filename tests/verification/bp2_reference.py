@@ -67,7 +67,7 @@ def compare(case, row, factor, *options):
         judge(7, f"{fluid} balance, BP2 case {case}, {cells} cells, every step of {len(run.balance['step'])}",
               np.max(np.abs(run.balance[f"{fluid}_error"])), 1e-10)  # fmt: skip
     if case == 2:
-        front(run, cells, *((0.06, 0.004) if row == 1 else (0.02, 1e-4)))
+        front(run, cells, *((0.045, 1e-4) if row == 1 else (0.025, 1e-4)))
     print("\n".join(run.output.splitlines()[-5:-1]), flush=True)
     return lines
 
