@@ -443,7 +443,7 @@ Section 5.2 of the paper, by [slope_a](../cases/slope_a/README.md){others}, with
 `docs/slopes.json`, into which `scripts/slopes.py run` (or `add`, of a run that is there) puts what [scripts/slide.py](../scripts/slide.py) measures of a run; the options of every row stand in that script. A run without a word on cells has those
 of the paper, 4 m with 2 x 2 particles.
 
-Rows by `sdirk2` have the ties (351) and (417) of [equations.md](equations.md), which `hybrid` has not. All rows are by the present program. Against earlier states, without methane that goes with all of the water's flux (352)
+Rows by `sdirk2` have the ties (351) and (417) of [equations.md](equations.md), which `hybrid` has not; A, B and C go without (424), as the paper does. All rows are by the present program. Against earlier states, without methane that goes with all of the water's flux (352)
 and hydrate that grows in water (418), E_k, way, runout and hydrate lost are within 0.2 %, but for two rows that are as sensitive as that to anything: A on 2 m with a heated layer of 4 m (34.5 instead of 34.1 m moved) and C on 4 m
 (runout 733 instead of 727 m; a seventh band is 60 % of the height long now, with θ = 0 still six).
 

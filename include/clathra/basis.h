@@ -72,21 +72,6 @@ static inline void BasisAverage(double a, double b, double w0, double w1, double
   dS[2] = (third ? 1.0 - b2 : 0.0) / gradient_length;
 }
 
-/* Shares of three nodes along an axis that stand for the nearest of them (265), from their weights S. */
-static inline void BasisNearest(const double S[3], double share[3])
-{
-  double sum = 0.0;
-
-  for (int k = 0; k < 3; k++) {
-    const double S2 = S[k] * S[k], S4 = S2 * S2, S8 = S4 * S4;
-
-    share[k] = S8 * S8;
-    sum += share[k];
-  }
-  for (int k = 0; k < 3; k++)
-    share[k] /= sum;
-}
-
 /* Which of the two cells behind the first node of a stencil holds a particle: 0 or 1; s its place in cells, first the
    node, cells those of the grid along the axis. */
 static inline int BasisCell(double s, double first, double cells)
@@ -98,7 +83,6 @@ static inline int BasisCell(double s, double first, double cells)
 typedef struct {
   PetscInt base;
   double   S[3], dS[3]; /* -, 1/m */
-  double   nearest[3];  /* (265); of ParticleStencil */
 } Axis;
 
 typedef struct {

@@ -1,12 +1,11 @@
-/* jet: a value with its derivatives with respect to the scalars that fix a particle's state: J, p_w, p_g, T, and the
-   p_w, p_g, T that drive its reaction.  Arithmetic carries the chain rule, so that value and tangent are one expression
-   and cannot drift apart.
-   Units: of the value; its slopes in that per 1 (J), Pa (pressures), K (temperatures). */
+/* jet: a value with its derivatives with respect to the four scalars (J, p_w, p_g, T) that fix a particle's state.
+   Arithmetic carries the chain rule, so that value and tangent are one expression and cannot drift apart.
+   Units: of the value; its slopes in that per 1 (J), Pa (p_w, p_g), K (T). */
 #pragma once
 
 #include <math.h>
 
-enum { JET_J = 0, JET_PW, JET_PG, JET_T, JET_DRIVE, JET_COUNT = 8 /* of a vector */ }; /* JET_DRIVE: p_w, p_g, T */
+enum { JET_J = 0, JET_PW, JET_PG, JET_T, JET_COUNT };
 
 typedef double JetSlopes __attribute__((vector_size(JET_COUNT * sizeof(double))));
 

@@ -106,6 +106,14 @@ static inline double EquilibriumPressure(const Equilibrium *law, double T, doubl
 {
   return law->pressure(law, T, dpe_dT);
 }
+#define CL_CURVES 0.01 /* K, from one slope to the next */
+/* p_e''/p_e', 1/K, from p_e' at T (Pa/K) and at T + CL_CURVES. */
+static inline double EquilibriumCurvatureOf(double slope, double beyond)
+{
+  return (beyond / slope - 1.0) / CL_CURVES;
+}
+/* The same at T (degC). */
+double EquilibriumCurvature(const Equilibrium *law, double T);
 /* The temperature (degC, -50 to 60) at which hydrate is in equilibrium with p (Pa), to 1e-6 K. */
 double EquilibriumTemperature(const Equilibrium *law, double p);
 

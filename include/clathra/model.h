@@ -205,7 +205,7 @@ typedef struct {
   Wide      *wide;        /* [n] of the wide part (27) */
   double    *plate_K;     /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
 
-  Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (293) */
+  Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (265), (293) */
   Solver    *solver;  /* of the stages */
   Failure    failure; /* of the last evaluation */
 } Model;
@@ -289,6 +289,8 @@ void ModelClearFailure(Model *m);
 void ModelExplain(Model *m, const char *why);
 /* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
+/* (381) of a particle that reacts, as it is, dimensionless; 0 where its properties cannot be found. */
+double ModelHeld(const Model *m, PetscInt p);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
 /* What flows into the body and wells need of the particle of a face (109), (367); S: its weights at its n nodes,

@@ -14,15 +14,14 @@
 
 /* What the interpolation gives a particle; the tangent is taken with respect to these numbers in this order. */
 enum {
-  IN_GRADU = 0,                          /* [i][j], on the configuration at t_n */
-  IN_HOOP  = IN_GRADU + MOTION_HOOP,     /* u_r/r; zero in the plane */
-  IN_P     = IN_GRADU + MOTION_COUNT,    /* p_w, p_g, Pa */
-  IN_T     = IN_P + PHASE_COUNT,         /* degC */
-  IN_DRIVE = IN_T + 1,                   /* p_w, p_g (Pa), T (degC) that drive the reaction (265) */
-  IN_GP    = IN_DRIVE + PHASE_COUNT + 1, /* [pi][i] gradients of p_w, p_g, Pa/m */
-  IN_GT    = IN_GP + CL_FLUID_VECTORS,   /* [i] gradient of T, K/m */
-  IN_J     = IN_GT + CL_DIM,             /* [pi][i] Darcy fluxes of water, gas, m/s */
-  IN_U     = IN_J + CL_FLUID_VECTORS,    /* [i] displacement of the step, m */
+  IN_GRADU = 0,                        /* [i][j], on the configuration at t_n */
+  IN_HOOP  = IN_GRADU + MOTION_HOOP,   /* u_r/r; zero in the plane */
+  IN_P     = IN_GRADU + MOTION_COUNT,  /* p_w, p_g, Pa */
+  IN_T     = IN_P + PHASE_COUNT,       /* degC */
+  IN_GP    = IN_T + 1,                 /* [pi][i] gradients of p_w, p_g, Pa/m */
+  IN_GT    = IN_GP + CL_FLUID_VECTORS, /* [i] gradient of T, K/m */
+  IN_J     = IN_GT + CL_DIM,           /* [pi][i] Darcy fluxes of water, gas, m/s */
+  IN_U     = IN_J + CL_FLUID_VECTORS,  /* [i] displacement of the step, m */
   IN_COUNT = IN_U + CL_DIM
 };
 
@@ -40,14 +39,11 @@ enum {
   OUT_MI   = OUT_M + 1 + PHASE_COUNT,  /* [pi] V rho_pi, kg */
   OUT_D    = OUT_MI + PHASE_COUNT,     /* [pi] V mu/k_a, Pa s m: drag per Darcy flux where k_r = 1 */
   OUT_ROOT = OUT_D + PHASE_COUNT,      /* [pi] sqrt(k_r) (108) */
-  OUT_DM   = OUT_ROOT + PHASE_COUNT,   /* [pi] mass gained, kg */
+  OUT_DM   = OUT_ROOT + PHASE_COUNT,   /* [pi] mass gained minus released by hydrate, kg */
   OUT_C    = OUT_DM + PHASE_COUNT,     /* heat capacity, J/K */
-  OUT_Q,                               /* advected heat, less what compression and throttling of the fluids give, W */
-  OUT_A,                               /* [i] V grad p_a, N; where there is an ambient pressure */
-  /* tested with the shares of the reaction (265) */
-  OUT_GAIN = OUT_A + CL_DIM, /* hydrate that the reaction makes, kg */
-  OUT_LATENT,                /* minus the heat that it gives off, W */
-  OUT_COUNT
+  OUT_Q, /* advected minus released heat, less what compression and throttling of the fluids give, W */
+  OUT_A, /* [i] V grad p_a, N; where there is an ambient pressure */
+  OUT_COUNT = OUT_A + CL_DIM
 };
 
 /* History of the particle at the start of the stage (t_n; starred masses of equations.md (24)). */
@@ -56,18 +52,24 @@ typedef struct {
   double          m_star[3]; /* m_h*, m_w*, m_g*, kg */
   double          T_n, Sh_n; /* at t_n */
   SkeletonHistory skeleton;
-  double          spread[PHASE_COUNT];     /* (200) at t_n, m^2/(Pa s) */
-  double          upwind[CL_SYMMETRIC];    /* (293), W/(m K) */
-  double      proj[PHASE_COUNT][CL_DIM];   /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
-  double      mobility;                    /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
-  bool        compression;                 /* heat of compression and throttling (290); then also ... */
-  double      p_star[PHASE_COUNT];         /* ... starred p_w, p_g, Pa */
-  double      gravity[CL_DIM];             /* ... m/s^2 */
-  double      dt;                          /* dt' of the stage */
-  const Beds *beds;                        /* at t_n; NULL: none; then also ... */
-  double      weight[PHASE_COUNT][CL_DIM]; /* ... rho b of the fluids at t_n, N/m^3 */
-  const Ambient *ambient;                  /* at the end of the stage; NULL: no pressure around the body */
-  double         x[CL_DIM];                /* where the particle's values belong at t_n, m; for the ambient pressure */
+  double          spread[PHASE_COUNT];  /* (200) at t_n, m^2/(Pa s) */
+  double          upwind[CL_SYMMETRIC]; /* (293), W/(m K) */
+  double proj[PHASE_COUNT][CL_DIM];     /* projected pressure gradients (Pi g)_p, Pa/m: frozen part of the tangent */
+  double shift[3]; /* nodal less own value of p_w, p_g (Pa), T (K) at t_n: the reaction sees the nodal fields (11) */
+  double
+      withheld; /* (1 - a)/a (416): both pressures lack so much of what p_g has changed by since p_g,n; then also ... */
+  double         pg_n;                /* ... the particle's p_g at t_n, Pa */
+  double         held;                /* (381), at t_n; 0: the reaction is as fast as its law */
+  double         chord;               /* (424), at t_n, Pa */
+  double         mobility;            /* k_r of gas in the bracket of (19), at t_n (334); 0: the particle's own */
+  bool           compression;         /* heat of compression and throttling (290); then also ... */
+  double         p_star[PHASE_COUNT]; /* ... starred p_w, p_g, Pa */
+  double         gravity[CL_DIM];     /* ... m/s^2 */
+  double         dt;                  /* dt' of the stage */
+  const Beds    *beds;                /* at t_n; NULL: none; then also ... */
+  double         weight[PHASE_COUNT][CL_DIM]; /* ... rho b of the fluids at t_n, N/m^3 */
+  const Ambient *ambient;                     /* at the end of the stage; NULL: no pressure around the body */
+  double         x[CL_DIM]; /* where the particle's values belong at t_n, m; for the ambient pressure */
 } PointHistory;
 
 /* State at the end of the stage. */
@@ -92,8 +94,7 @@ typedef struct {
 } PointOutput;
 
 /* Evaluates (8)-(21) at a particle for the fields of the set, in SI units with T in degC; inputs of other fields are
-   not read (but p_g = p_w and T as given where gas and heat have no field, in IN_DRIVE, too), outputs and columns of
-   other fields are not
+   not read (but p_g = p_w and T as given where gas and heat have no field), outputs and columns of other fields are not
    written.  tangent = false leaves D, dJ and wide untouched.  Returns CL_OK, or CL_DOMAIN / CL_NONFINITE with *why
    pointing to a sentence. */
 ClStatus PointEvaluate(const FieldSet *fs, const Material *mat, const PointHistory *h, const double in[IN_COUNT],

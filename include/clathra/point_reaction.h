@@ -25,11 +25,39 @@ typedef struct {
   double v, p, T;
 } Growth;
 
+/* (381): what a cell's conduction holds of a reaction whose heat is q (W/(m^3 Pa)), over what it lets through;
+   dpe_dT (Pa/K), kappa (W/(m K)), h2: square of the cell's width (m^2). */
+INLINE double ReactionHeld(double q, double dpe_dT, double kappa, double h2)
+{
+  return q * dpe_dT * h2 / (6.0 * kappa);
+}
+
+/* (382): h2 of cells h wide, in the direction in which T has the gradient g (K/m). */
+INLINE double ReactionWidth(const double h[CL_DIM], const double g[CL_DIM])
+{
+  double sum = 0.0, weights = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    const double least = 1e-3 / h[d], w = g[d] * g[d] + least * least; /* 1 mK over the cell */
+
+    sum += w * h[d] * h[d];
+    weights += w;
+  }
+  return sum / weights;
+}
+
 /* Pressure that drives the reaction; forms: it is above p_e; wet: it is that of methane in water, without gas. */
 typedef struct {
   PorePressure p;
   bool         forms, wet;
 } Driving;
+
+/* (424): what the chords of p_e (Pa) lie above it, between nodes whose T and p have these covariances (K Pa) at the
+   particle, p of (10) or (371) with its slopes; curvature p_e''/p_e' in 1/K. */
+INLINE double ReactionChord(double curvature, const PorePressure *p, const double covariance[PHASE_COUNT])
+{
+  return 0.5 * curvature * (p->pw * covariance[PHASE_W] + p->pg * covariance[PHASE_G]);
+}
 
 /* Is there no gas phase (371)?  trace is H of (101), pressures in Pa. */
 INLINE bool ReactionWithoutGas(double trace, double pw, double pg)
@@ -51,11 +79,11 @@ INLINE Driving ReactionDriving(double trace, double sg, double pw, double pg, do
   return (Driving){p, p.v > pe, ReactionWithoutGas(trace, pw, pg)};
 }
 
-/* (11) per surface: -dt' M_h K_d (p_e - p); K_d and p_e (Pa) with their slopes in T. */
-INLINE Growth ReactionGrowth(const Kinetics *k, double dt, const Driving *d, double Kd, double dKd_dT, double pe,
-                             double dpe_dT)
+/* (11) per surface: -dt' M_h K_d (p_e - p)/(1 + held); K_d and p_e (Pa) with their slopes in T. */
+INLINE Growth ReactionGrowth(const Kinetics *k, double dt, double held, const Driving *d, double Kd, double dKd_dT,
+                             double pe, double dpe_dT)
 {
-  const double c = dt * k->M_h, drive = pe - d->p.v;
+  const double c = dt * k->M_h / (1.0 + held), drive = pe - d->p.v;
 
   return (Growth){-c * Kd * drive, c * Kd, -c * (dKd_dT * drive + Kd * dpe_dT)};
 }

@@ -64,6 +64,9 @@ typedef struct {
   bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind; /* (200); default false */
   int    heat;              /* HEAT_...; default auto */
+  bool   lumped_reaction;   /* (265); default false */
+  bool   held_reaction;     /* (381); default false */
+  bool   chords;            /* (424); default true */
 } Stabilisation;
 
 typedef struct Scene {
@@ -277,6 +280,12 @@ static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
   return NULL;
 }
 
+/* Does (381) act? */
+static inline bool SceneHoldsReaction(const Scene *c)
+{
+  return c->stabilisation.held_reaction && c->fields.heat && c->fields.phase[PHASE_G];
+}
+
 /* Is there more conductivity along a flow (293), at least somewhere? */
 static inline bool SceneCarriesHeat(const Scene *c)
 {
@@ -289,6 +298,12 @@ static inline bool SceneThinCells(const Scene *c)
   return CL_DIM == 2 && c->fields.heat;
 }
 
+/* Does (424) act? */
+static inline bool SceneTakesChords(const Scene *c)
+{
+  return c->stabilisation.chords && c->fields.heat && c->fields.phase[PHASE_G];
+}
+
 /* The k-th of the stabilisations that are on and that steps without a matrix go without, as the case says it; NULL:
    there are no more. */
 static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
@@ -298,7 +313,8 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
     const char *word;
   } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
                {c->stabilisation.donor, "stabilisation_donor"},
-               {c->stabilisation.saturation_upwind, "stabilisation_saturation"}};
+               {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
+               {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
     if (known[i].on && k-- == 0)

@@ -167,7 +167,6 @@ void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt
       BasisRadius(c->basis, x, l, line, &s->axis[d], s->hoop, &s->r);
     else
       BasisAxis(c->basis, x, l, line, &s->axis[d]);
-    BasisNearest(s->axis[d].S, s->axis[d].nearest);
     s->cell[d] = BasisCellAt(line, x, &s->axis[d]);
   }
 }

@@ -162,6 +162,16 @@ const Key case_key[] = {
            "carries heat with the flow, so that temperatures stay within their bounds where a cell's heat is carried "
            "rather than conducted; auto: sdirk2 and euler where T alternates from node to node, hybrid nowhere; yes: "
            "everywhere, which smears T where it is smooth"),
+    BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
+            "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
+            "front of heat"),
+    BOOLEAN(
+        Case, "stabilisation_reaction_heat", scene.stabilisation.held_reaction, "no",
+        "the reaction is no faster than a cell conducts its heat away: no alternating hydrate at fronts of heat; where "
+        "pressure falls hydrate melts late"),
+    BOOLEAN(Case, "stabilisation_equilibrium", scene.stabilisation.chords, "yes",
+            "between nodes at equilibrium particles are at equilibrium, too: no hydrate that alternates within cells "
+            "where p and T vary together; no: p_e of the T between nodes"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

@@ -5,17 +5,6 @@
 #include "clathra/point_reaction.h"
 #include "gathered.h"
 
-/* Increments of p_w, p_g, T that drive the reaction (265). */
-INLINE void ReactionIncrements(const Explicit *e, const Set s, Run r, const Weights *w, double drive[BLOCK][3])
-{
-  GatherReaction(e, e->C, C_Width(s), 0, r, w, drive);
-  for (int q = 0; q < r.n && Relative(e, s); q++) {
-    const double y[2] = {drive[q][0], drive[q][1]};
-
-    PressuresOf(e->m->P.f[P_PG][r.p + q], y, drive[q]);
-  }
-}
-
 /* What a kg of hydrate gained takes off every row: kg of the fluids, and with the sign of the heat that it gives, J. */
 INLINE void PerGain(const Explicit *e, const Set s, Run r, const double *restrict T, const double *restrict rho_h,
                     double c[3][BLOCK])

@@ -135,58 +135,23 @@ INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Wei
   return sum;
 }
 
-/* Share of node a of row k of particle q's patch in its reaction (265). */
-INLINE double ReactionShare(const Weights *w, int q, int k, int a)
+/* sum S (u - u_q) (v - v_q) of two numbers that nodes hold in their rows and particle q has got from them (g). */
+INLINE double Covariance(const Explicit *e, const double *nodes, int width, int u, int v, const Weights *w,
+                         const Gathered *g, int q)
 {
-  double share = w->nearest[0][a][q];
+  const int *slot = &e->slot[w->first[q]];
+  double     sum  = 0.0;
 
-  for (int d = 1; d < CL_DIM; k /= 3, d++)
-    share *= w->nearest[d][k % 3][q];
-  return share;
-}
+  for (int k = 0; k < PATCH_ROWS; k++) {
+    const PatchRow at = PatchRowOf(e, w, q, k);
 
-/* Means with these shares of three numbers, that nodes hold in their rows from number `at` on, `width` numbers long. */
-INLINE void GatherReaction(const Explicit *e, const double *nodes, int width, int at, Run r, const Weights *w,
-                           double v[BLOCK][3])
-{
-  for (int q = 0; q < r.n; q++) {
-    const int *slot = &e->slot[w->first[q]];
+    for (int a = 0; a < 3; a++) {
+      const double *row = &nodes[slot[at.at + a] * width];
 
-    v[q][0] = v[q][1] = v[q][2] = 0.0;
-    for (int k = 0; k < PATCH_ROWS; k++) {
-      const PatchRow row = PatchRowOf(e, w, q, k);
-
-      for (int a = 0; a < 3; a++) {
-        const double share = ReactionShare(w, q, k, a);
-
-        for (int i = 0; share != 0.0 && i < 3; i++)
-          v[q][i] += share * nodes[slot[row.at + a] * width + at + i];
-      }
+      sum += w->S[0][a][q] * at.S * (row[u] - g->value[q][u]) * (row[v] - g->value[q][v]);
     }
   }
-}
-
-/* Adds, with the same shares, `count` numbers of each particle to rows of nodes that begin with as many; those of
-   particles are `stride` numbers apart. */
-INLINE void ScatterReaction(const Explicit *e, double *nodes, int count, Run r, const Weights *w, const double *v,
-                            int stride)
-{
-  const int width = LANES * Rows(count);
-
-  for (int q = 0; q < r.n; q++) {
-    const int *slot = &e->slot[w->first[q]];
-
-    for (int k = 0; k < PATCH_ROWS; k++) {
-      const PatchRow row = PatchRowOf(e, w, q, k);
-
-      for (int a = 0; a < 3; a++) {
-        const double share = ReactionShare(w, q, k, a);
-
-        for (int i = 0; share != 0.0 && i < count; i++)
-          nodes[slot[row.at + a] * width + i] += share * v[q * stride + i];
-      }
-    }
-  }
+  return sum;
 }
 
 /* What is carried to the nodes besides the value itself: nothing, by gradients, by a mixed derivative, too. */

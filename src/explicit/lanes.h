@@ -200,9 +200,8 @@ INLINE void Driven(const Explicit *e, Set s, PetscInt p, double rho, double g[CL
 /* Weights of a block of particles. */
 typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
-  double nearest[CL_DIM][3][BLOCK]; /* (265) along each axis */
-  int    first[BLOCK];              /* padded number of the lowest left node */
-  int    cell[BLOCK];               /* ... of the particle's cell, from there on; only where TakesCellMean */
+  int    first[BLOCK]; /* padded number of the lowest left node */
+  int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
   double unit[CL_DIM][BLOCK], third[CL_DIM][BLOCK]; /* m, from the first node to the second; times that, to the third */
   double inverse[CL_DIM][BLOCK];                    /* of the width of the particle's cell, 1/m; likewise */
 } Weights;
@@ -215,9 +214,6 @@ typedef struct {
 } Run;
 
 void WeightsOf(const Explicit *e, Run r, Weights *w);
-/* What drives the reaction sees, and its rows pay, with Weights.nearest, as the implicit steps have it: with the
-   weights S where a particle has no gas, and in the bare form, whose balances stay at the particle. */
-void ReactionWeights(const Explicit *e, Run r, Weights *w);
 
 /* Three nodes of a particle's patch that follow each other along x: where the first stands from the patch's first on;
    its places along the axes; the product of the other axes' weights, and the same with the derivative along d. */

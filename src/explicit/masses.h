@@ -4,10 +4,10 @@
 
 #include "clathra/laws_batch.h"
 #include "clathra/point_reaction.h"
-#include "gains.h"
+#include "gathered.h"
 
 /* Gain of hydrate in a block's particles, what was wanted of it and what there is (40). */
-INLINE void GainOf(const Explicit *e, const Set s, Run r, const double drive[BLOCK][3], double *restrict wanted,
+INLINE void GainOf(const Explicit *e, const Set s, Run r, const Gathered *g, double *restrict wanted,
                    double *restrict gain)
 {
   const double *restrict gain_0 = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
@@ -16,8 +16,8 @@ INLINE void GainOf(const Explicit *e, const Set s, Run r, const double drive[BLO
 
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
-    wanted[q] =
-        gain_0[q] + gain_w[q] * drive[q][0] + gain_g[q] * drive[q][1] + (s.heat ? gain_T[q] * drive[q][2] : 0.0);
+    wanted[q] = gain_0[q] + gain_w[q] * g->value[q][0] + gain_g[q] * g->value[q][1] +
+                (s.heat ? gain_T[q] * g->value[q][2] : 0.0);
     gain[q] = Largest(wanted[q], -mh[q]);
   }
 }
@@ -42,8 +42,7 @@ INLINE void HeatOf(Explicit *e, const Set s, Run r, const double *restrict T, co
 }
 
 /* Mass of hydrate, what the fluids and heat give for it (40). */
-INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, const double drive[BLOCK][3],
-                      double *restrict kept, PetscInt *limited)
+INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double *restrict kept, PetscInt *limited)
 {
   double *const  *f               = e->m->P.f;
   const Kinetics *kin             = &r.mat->kinetics;
@@ -54,7 +53,7 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, const 
                                                                                     held[PHASE_COUNT][BLOCK];
   int fewer = 0;
 
-  GainOf(e, s, r, drive, wanted, gain);
+  GainOf(e, s, r, g, wanted, gain);
   for (int q = 0; q < r.n; q++) { /* at t_n */
     T[q]          = now[q] - (s.heat ? g->value[q][2] : 0.0);
     p[PHASE_W][q] = pw[q] - g->value[q][0];
@@ -81,8 +80,7 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, const 
 /* (40): masses of the fluids, what the laws' slopes make of the increments, so that the sum over particles is what the
    nodal balances say; the gain of hydrate likewise.  Where hydrate runs out, the missing part is taken back from the
    fluids and from the heat. */
-INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, const double drive[BLOCK][3],
-                     double *restrict kept, PetscInt *limited)
+INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, double *restrict kept, PetscInt *limited)
 {
   double *const *f = e->m->P.f;
 
@@ -101,7 +99,7 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, const d
     }
   }
   if (s.fluids == 2 && r.mat->reacts)
-    HydrateOf(e, s, r, g, drive, kept, limited);
+    HydrateOf(e, s, r, g, kept, limited);
 }
 
 /* (290): what the rise of the pressures gave. */

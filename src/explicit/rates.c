@@ -119,10 +119,63 @@ INLINE void Masses(Explicit *e, const Set s, Run r, int k, const Volumes *v)
   }
 }
 
-/* Gain of hydrate over the step at the p and T that drive it (265), and its slopes: dissociation implicit in S_h,
-   formation on the surface at t_n. */
-INLINE void Reaction(Explicit *e, const Set s, Run r, const Weights *w, double dt, const double *restrict T,
-                     const Volumes *v)
+/* (381) with the faster of both ways; zero where it is off. */
+INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, const double *restrict T,
+                 const double *restrict Kd, const double *restrict dpe, const double *restrict forms, const Volumes *v,
+                 double *restrict held)
+{
+  const Material *mat       = r.mat;
+  const double    kappas[4] = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g}, *sg = e->t[T_SG] + r.p;
+  double          kappa[BLOCK], sw[BLOCK], L[BLOCK];
+
+  for (int q = 0; q < r.n; q++) {
+    held[q] = 0.0;
+    sw[q]   = 1.0 - sg[q];
+  }
+  if (!SceneHoldsReaction(e->m->c))
+    return;
+  LatentHeatBatch(&mat->latent, r.n, T, L);
+  MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
+  for (int q = 0; q < r.n; q++) {
+    const double melts = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
+    double       h[CL_DIM], g_T[CL_DIM];
+
+    GradientOf(g, q, B_T(s), g_T);
+    for (int d = 0; d < CL_DIM; d++)
+      h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
+    held[q] =
+        ReactionHeld(mat->kinetics.M_h * Kd[q] * fmax(forms[q], melts) * L[q], dpe[q], kappa[q], ReactionWidth(h, g_T));
+  }
+}
+
+/* (424) of t_n; in the bare form particles see no nodes. */
+INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, const Weights *w, const double *restrict T,
+                   const double *restrict dpe, const double *restrict pw, const double *restrict pg,
+                   double *restrict pe)
+{
+  const Equilibrium *law    = &r.mat->kinetics.equilibrium;
+  const double *restrict sg = e->t[T_SG] + r.p;
+  double warmer[BLOCK], pe_warmer[BLOCK], beyond[BLOCK];
+
+  if (!SceneTakesChords(e->m->c) || e->o.particle_pressures)
+    return;
+  for (int q = 0; q < r.n; q++)
+    warmer[q] = T[q] + CL_CURVES;
+  EquilibriumPressureBatch(law, r.n, warmer, pe_warmer, beyond);
+  for (int q = 0; q < r.n; q++) {
+    const PorePressure seen = ReactionPressure(r.mat->gas.trace, sg[q], pw[q], pg[q]);
+    double             covariance[PHASE_COUNT];
+
+    for (int f = 0; f < PHASE_COUNT; f++)
+      covariance[f] = Covariance(e, e->B, LANES * Rows(B_Count(s)), B_T(s), B_P(s, f), w, g, q);
+    pe[q] += ReactionChord(EquilibriumCurvatureOf(dpe[q], beyond[q]), &seen, covariance);
+  }
+}
+
+/* Gain of hydrate over the step at the nodal p and T, and its slopes: dissociation implicit in S_h, formation
+   on the surface at t_n. */
+INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, const Weights *w, double dt,
+                     const double *restrict T, const Volumes *v)
 {
   const Kinetics k          = r.mat->kinetics;
   const double   H          = r.mat->gas.trace;
@@ -133,27 +186,28 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Weights *w, double d
   double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
                    *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p;
   double pw[BLOCK], pg[BLOCK], sw[BLOCK], wet[BLOCK], T_r[BLOCK], Kd[BLOCK], dK[BLOCK], pe[BLOCK], dpe[BLOCK],
-      area[BLOCK], drive[BLOCK][3]; /* T where it is a field, p_w, p_g */
+      area[BLOCK], held[BLOCK];
 
-  GatherReaction(e, e->B, LANES * Rows(B_Count(s)), B_T(s), r, w, drive);
   for (int q = 0; q < r.n; q++) {
     sw[q]  = 1.0 - sg[q];
-    pw[q]  = own ? own_w[q] : drive[q][s.heat];
-    pg[q]  = own ? own_g[q] : drive[q][s.heat + 1];
-    T_r[q] = s.heat ? drive[q][0] : T[q];
+    pw[q]  = own ? own_w[q] : g->value[q][B_P(s, 0)];
+    pg[q]  = own ? own_g[q] : g->value[q][B_P(s, 1)];
+    T_r[q] = s.heat ? g->value[q][B_T(s)] : T[q];
   }
   KineticsRateConstantBatch(&k, r.n, T_r, Kd, dK);
   EquilibriumPressureBatch(&k.equilibrium, r.n, T_r, pe, dpe);
+  Chords(e, s, r, g, w, T_r, dpe, pw, pg, pe);
   for (int q = 0; q < r.n; q++) {
     const double over = ReactionPressure(H, sg[q], pw[q], pg[q]).v - pe[q];
 
     wet[q] = ReactionWet(r.mat, v->phi[q], v->Sh[q], pg[q] - pw[q], fmax(over, 0.0)).v; /* falls with p: at t_n */
   }
   KineticsFormationAreaBatch(&k, r.n, sw, wet, v->Sh, area);
+  Held(e, s, r, g, T_r, Kd, dpe, area, v, held);
 #pragma GCC ivdep
   for (int q = 0; q < r.n; q++) {
     const Driving d      = ReactionDriving(H, sg[q], pw[q], pg[q], pe[q]);
-    const Growth  growth = ReactionGrowth(&k, dt, &d, Kd[q], dK[q], pe[q], dpe[q]);
+    const Growth  growth = ReactionGrowth(&k, dt, held[q], &d, Kd[q], dK[q], pe[q], dpe[q]);
     double        slope;
     const double  per_mass = k.A_geo / v->rho_h[q], to = V[q] * area[q],
                  gone = ReactionDissociated(mh[q], -per_mass * growth.v, &slope), by = d.forms ? to : -per_mass * slope;
@@ -339,10 +393,8 @@ INLINE void PlasticHeat(Explicit *e, const Set s, Run r, Given *o)
   }
 }
 
-/* What the reaction adds to all rows of a block's particles, `stride` numbers apart (266): gain = gain_0 + gain_w dp_w
-   + gain_g dp_g + gain_T dT. */
-INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, double *to,
-                         int stride)
+/* What the reaction adds to all rows: gain = gain_0 + gain_w dp_w + gain_g dp_g + gain_T dT. */
+INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v, Given *o)
 {
   const int n                 = Scalars(s);
   const double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
@@ -353,9 +405,9 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   for (int row = 0; row < n; row++) {
 #pragma GCC ivdep
     for (int q = 0; q < r.n; q++) {
-      double *a = &to[q * stride + R_Matrix(s) + row * n];
+      double *a = &o->value[q][R_Matrix(s) + row * n];
 
-      to[q * stride + row] -= c[row][q] * gain[q];
+      o->value[q][row] -= c[row][q] * gain[q];
       a[PHASE_W] += c[row][q] * gain_w[q];
       a[PHASE_G] += c[row][q] * gain_g[q];
       if (s.heat)
@@ -364,31 +416,19 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
   }
 }
 
-/* (151): the columns of dp_w, dp_g for those of -dp_c and of the relative change of p_g; rows `stride` apart. */
-INLINE void RelativeColumns(const Explicit *e, const Set s, Run r, double *rows, int stride)
+/* (151): the columns of dp_w, dp_g for those of -dp_c and of the relative change of p_g. */
+INLINE void RelativeColumns(const Explicit *e, const Set s, Run r, Given *o)
 {
   const int n              = Scalars(s);
   const double *restrict p = e->m->P.f[P_PG] + r.p;
 
   for (int q = 0; q < r.n; q++) {
     for (int row = 0; row < n; row++) {
-      double *a = &rows[q * stride + R_Matrix(s) + row * n];
+      double *a = &o->value[q][R_Matrix(s) + row * n];
 
       a[1] = (a[0] + a[1]) * (p[q] / PRESSURE_UNIT);
     }
   }
-}
-
-/* The reaction to the nodes that have it. */
-INLINE void ReactionToNodes(Explicit *e, const Set s, Run r, const double *restrict T, const Volumes *v,
-                            const Weights *w)
-{
-  double rows[BLOCK][2 * LANES] = {{0.0}};
-
-  ReactionRows(e, s, r, T, v, &rows[0][0], 2 * LANES);
-  if (Relative(e, s))
-    RelativeColumns(e, s, r, &rows[0][0], 2 * LANES);
-  ScatterReaction(e, e->R, R_Count(s), r, w, &rows[0][0], 2 * LANES);
 }
 
 /* Divergence of a fluid's Darcy flux at the particle, 1/s. */
@@ -465,17 +505,13 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   if (s.heat && s.solid && r.mat->plasticity.heat > 0.0)
     PlasticHeat(e, s, r, &o);
   if (s.fluids == 2 && r.mat->reacts) {
-    ReactionWeights(e, r, &w);
-    Reaction(e, s, r, &w, dt, T, &v);
-    if (e->o.particle_pressures)
-      ReactionRows(e, s, r, T, &v, &o.value[0][0], GIVEN);
-    else
-      ReactionToNodes(e, s, r, T, &v, &w);
+    Reaction(e, s, r, &g, &w, dt, T, &v);
+    ReactionRows(e, s, r, T, &v, &o);
   }
   if (s.fluids && e->o.particle_pressures)
     Keep(e, s, r, dt, &w, &o);
   if (Relative(e, s))
-    RelativeColumns(e, s, r, &o.value[0][0], GIVEN);
+    RelativeColumns(e, s, r, &o);
   Scatter(e, e->R, R_Count(s), CARRY_NOTHING, true, r, &w, &o);
 }
 

@@ -18,23 +18,21 @@ INLINE void StoredMasses(const Explicit *e, const Set s, Run r, const Gathered *
 }
 
 /* Of all rows, by what the increments make of the gain of hydrate. */
-INLINE void StoredGain(const Explicit *e, const Set s, Run r, const Weights *w)
+INLINE void StoredGain(const Explicit *e, const Set s, Run r, const Gathered *g, Given *o)
 {
   const double *T = s.heat ? e->m->P.f[P_T] + r.p : e->t[T_T] + r.p;
-  double        c[3][BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0}, rows[BLOCK][LANES], drive[BLOCK][3];
+  double        c[3][BLOCK], rho_h[BLOCK], zero[BLOCK] = {0.0};
 
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   PerGain(e, s, r, T, rho_h, c);
-  ReactionIncrements(e, s, r, w, drive);
   for (int q = 0; q < r.n; q++) {
     const PetscInt p    = r.p + q;
-    const double   gain = e->t[T_GAIN_W][p] * drive[q][0] + e->t[T_GAIN_G][p] * drive[q][1] +
-                        (s.heat ? e->t[T_GAIN_T][p] * drive[q][2] : 0.0);
+    const double   gain = e->t[T_GAIN_W][p] * g->value[q][0] + e->t[T_GAIN_G][p] * g->value[q][1] +
+                        (s.heat ? e->t[T_GAIN_T][p] * g->value[q][2] : 0.0);
 
     for (int row = 0; row < Scalars(s); row++)
-      rows[q][row] = c[row][q] * gain;
+      o->value[q][row] += c[row][q] * gain;
   }
-  ScatterReaction(e, e->given, Scalars(s), r, w, &rows[0][0], LANES);
 }
 
 INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
@@ -55,10 +53,8 @@ INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
     PressuresOf(e->m->P.f[P_PG][r.p + q], y, g.value[q]);
   }
   StoredMasses(e, s, r, &g, &o);
-  if (s.fluids == 2 && r.mat->reacts) {
-    ReactionWeights(e, r, &w);
-    StoredGain(e, s, r, &w);
-  }
+  if (s.fluids == 2 && r.mat->reacts)
+    StoredGain(e, s, r, &g, &o);
   Scatter(e, e->given, Scalars(s), CARRY_NOTHING, false, r, &w, &o);
 }
 

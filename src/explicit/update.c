@@ -33,17 +33,6 @@ INLINE void Pressures(const Explicit *e, Run r, Gathered *g)
   }
 }
 
-/* Increments that drive the reaction; in the bare form the particle's own. */
-INLINE void ReactionDrive(const Explicit *e, const Set s, Run r, const Gathered *g, Weights *w, double drive[BLOCK][3])
-{
-  ReactionWeights(e, r, w);
-  ReactionIncrements(e, s, r, w, drive);
-  for (int q = 0; q < r.n && e->o.particle_pressures; q++) {
-    for (int k = 0; k < Scalars(s); k++)
-      drive[q][k] = g->value[q][k];
-  }
-}
-
 #define FARTHEST 1e15 /* Pa, degC: beyond it a field has left its range */
 
 static double Least(const Material *mat, int field)
@@ -86,8 +75,10 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
     }
   }
   for (int q = 0; s.heat && q < r.n; q++) {
+    const bool bends = ParticleBends(e->m->c, &e->m->P, r.p + q);
+
     for (int c = 0; c < CL_PAIRS; c++)
-      e->m->P.f[P_BT + c][r.p + q] = Mixed(e, e->C + C_End(s) + s.fluids, C_Width(s), w, q, c);
+      e->m->P.f[P_BT + c][r.p + q] = bends ? Mixed(e, e->C + C_End(s) + s.fluids, C_Width(s), w, q, c) : 0.0;
   }
   return !out;
 }
@@ -99,7 +90,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   Strain                n;
   CellMean              mean;
   double *const        *f = e->m->P.f;
-  double                kept[BLOCK], drive[BLOCK][3];
+  double                kept[BLOCK];
   const double         *T;
 
   for (int q = 0; q < BLOCK; q++)
@@ -111,13 +102,11 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], C_Width(s), C_Vs(s), &g);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
-  if (s.fluids == 2 && r.mat->reacts)
-    ReactionDrive(e, s, r, &g, &w, drive);
   if (Relative(e, s))
     Pressures(e, r, &g);
   if (!Fields(e, s, r, &w, &g))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
-  MassesOf(e, s, r, &g, drive, kept, &e->m->limited);
+  MassesOf(e, s, r, &g, kept, &e->m->limited);
   if (s.heat && e->m->c->compression_heat)
     CountCompression(e, s, r, &g);
   if (s.fluids == 2 && r.mat->gas.trace > 0.0)

@@ -1,5 +1,4 @@
 /* Weights (3), (4) of a block of particles. */
-#include "clathra/point_reaction.h"
 #include "lanes.h"
 
 /* Where cells are equal. */
@@ -11,7 +10,7 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
   const double *restrict x = e->m->P.f[P_X + d] + r.p, *restrict l = e->m->P.f[P_L + d] + r.p;
 
   for (int q = 0; q < r.n; q++) {
-    double S[3], D[3], nearest[3], first;
+    double S[3], D[3], first;
 
     if (linear) {
       const double s = BasisSnap((x[q] - lower) / h);
@@ -29,11 +28,9 @@ INLINE void Axes(const Explicit *e, Run r, int d, bool linear, Weights *w, int *
       const double lo = b.lo - first, hi = b.hi - first;
       BasisAverage(lo, hi, 1.0, 1.0, hi - lo, b.length * h, S, D);
     }
-    BasisNearest(S, nearest);
     for (int k = 0; k < 3; k++) {
-      w->S[d][k][q]       = S[k];
-      w->D[d][k][q]       = D[k];
-      w->nearest[d][k][q] = nearest[k];
+      w->S[d][k][q] = S[k];
+      w->D[d][k][q] = D[k];
     }
     base[q] = (int)first;
   }
@@ -45,15 +42,12 @@ static void AxesUnequal(const Explicit *e, Run r, int d, Weights *w, int *restri
   const GridLines *line = &e->m->grid.line[d];
 
   for (int q = 0; q < r.n; q++) {
-    Axis   a;
-    double nearest[3];
+    Axis a;
 
     BasisAxis(e->m->c->basis, e->m->P.f[P_X + d][r.p + q], e->m->P.f[P_L + d][r.p + q], line, &a);
-    BasisNearest(a.S, nearest);
     for (int k = 0; k < 3; k++) {
-      w->S[d][k][q]       = a.S[k];
-      w->D[d][k][q]       = a.dS[k];
-      w->nearest[d][k][q] = nearest[k];
+      w->S[d][k][q] = a.S[k];
+      w->D[d][k][q] = a.dS[k];
     }
     base[q] = (int)a.base;
   }
@@ -113,20 +107,4 @@ void WeightsOf(const Explicit *e, Run r, Weights *w)
   }
   if (TakesCellMean(e))
     Cells(e, r, base, w);
-}
-
-void ReactionWeights(const Explicit *e, Run r, Weights *w)
-{
-  double *const *f = e->m->P.f;
-
-  for (int q = 0; q < r.n; q++) {
-    const PetscInt p = r.p + q;
-
-    if (!e->o.particle_pressures && !ReactionWithoutGas(r.mat->gas.trace, f[P_PW][p], f[P_PG][p]))
-      continue;
-    for (int d = 0; d < CL_DIM; d++) {
-      for (int k = 0; k < 3; k++)
-        w->nearest[d][k][q] = w->S[d][k][q];
-    }
-  }
 }

@@ -126,6 +126,15 @@ void EquilibriumPressureBatch(const Equilibrium *law, int n, const double *T, do
   law->pressure_loop(law, n, T, pe, dpe_dT);
 }
 
+double EquilibriumCurvature(const Equilibrium *law, double T)
+{
+  double slope, beyond;
+
+  EquilibriumPressure(law, T, &slope);
+  EquilibriumPressure(law, T + CL_CURVES, &beyond);
+  return EquilibriumCurvatureOf(slope, beyond);
+}
+
 /* By halving: p_e grows with T. */
 double EquilibriumTemperature(const Equilibrium *law, double p)
 {

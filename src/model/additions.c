@@ -1,6 +1,7 @@
 /* What the scheme adds to the balances of particles, at t_n: diffusion that carries saturations and heat with the flow,
-   what looks upstream. */
+   how fast the reaction is held, what looks upstream. */
 #include "clathra/point_heat.h"
+#include "clathra/point_reaction.h"
 #include "gather.h"
 
 #define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its k_r stays central */
@@ -19,6 +20,12 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (SceneThinCells(m->c))
     PetscCall(PetscCalloc1(m->stencil_cap, &to->thin));
+  if (m->c->stabilisation.lumped_reaction && fs->phase[PHASE_G])
+    PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));
+  if (SceneHoldsReaction(m->c))
+    PetscCall(PetscMalloc1(m->stencil_cap, &to->held));
+  if (SceneTakesChords(m->c))
+    PetscCall(PetscMalloc1(m->stencil_cap, &to->chord));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,6 +85,27 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   HeatUpwind(q->kappa, a, h, K);
 }
 
+/* (381) with the faster of both ways at t_n; the cell's widths by the particle's place, as hybrid keeps no stencils. */
+static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
+{
+  double g[CL_DIM], h[CL_DIM], slope;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    g[d] = m->P.f[P_GT + d][p];
+    h[d] = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
+  }
+  EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
+  return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));
+}
+
+double ModelHeld(const Model *m, PetscInt p)
+{
+  PointProperties q;
+  const char     *why;
+
+  return ModelParticleProperties(m, p, &q, &why) == CL_OK ? HeldOf(m, p, &q) : 0.0;
+}
+
 void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
 {
   Additions *to = m->added;
@@ -88,6 +116,8 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
   if (to->thin)
     to->thin[p] = ThinOf(m, p, q->kappa);
+  if (to->held)
+    to->held[p] = HeldOf(m, p, q);
   if (to->exchange)
     ExchangeSet(m, p, q);
 }

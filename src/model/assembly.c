@@ -35,13 +35,9 @@ void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
     if (m->fluid)
       Add(to, OUT_ROOT + f, 1);
   }
-  if (SceneReacts(m->c))
-    Add(to, OUT_GAIN, 1);
   if (fs->heat) {
     Add(to, OUT_HEAT, CL_DIM);
     Add(to, OUT_C, 2); /* and OUT_Q */
-    if (SceneReacts(m->c))
-      Add(to, OUT_LATENT, 1);
   }
 }
 

@@ -120,13 +120,12 @@ static void BoundaryRates(const Model *m, const double *x, StageRates *rates)
 /* (277): what a particle stores, and hands from cell to cell. */
 static void CountMoved(const Model *m, PetscInt p, const double out[OUT_COUNT], StageRates *rates)
 {
-  const Kinetics *k = &ParticleMaterial(m, p)->kinetics;
-  double          h[CL_DIM];
+  double h[CL_DIM];
 
   CellWidths(m, p, h);
   for (int ph = 0; ph < PHASE_COUNT; ph++) {
     if (m->c->fields.phase[ph])
-      rates->moved[ph] += fabs(out[OUT_DM + ph] + KineticsFluid(k, ph) * out[OUT_GAIN]) / m->stage.dt;
+      rates->moved[ph] += fabs(out[OUT_DM + ph]) / m->stage.dt;
     for (int d = 0; m->c->fields.phase[ph] && d < CL_DIM; d++)
       rates->moved[ph] += fabs(out[VectorAt(OUT_FLUX, ph, d)]) / h[d];
   }
@@ -170,7 +169,7 @@ static void HeatRates(const Model *m, PetscInt p, const Reach *r, const double *
 {
   const FieldSet *fs = &m->c->fields;
 
-  rates->heat_source -= out[OUT_Q] + out[OUT_LATENT];
+  rates->heat_source -= out[OUT_Q];
   rates->squeezed += s->squeezed;
   rates->beyond += LatentHeatBeyond(&ParticleMaterial(m, p)->latent, T) * s->gain / m->stage.dt;
   for (int a = 0; a < r->n; a++) {
@@ -330,7 +329,7 @@ static void WriteMixed(Model *m, PetscInt p, const double *x, const Reach *r)
   double B[CL_PAIRS], A[CL_DIM][CL_DIM];
 
   for (int k = 0; k < CL_PAIRS; k++)
-    B[k] = MixedDerivative(m, p, r, x, cl_pair[k]);
+    B[k] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, cl_pair[k]) : 0.0;
   if (m->P.total) {
     ParticleInverse(&m->P, p, A);
     MixedCarry(A, B);

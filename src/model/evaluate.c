@@ -113,29 +113,12 @@ static void WithholdSlopes(double less, PointOutput *o)
     o->D[k][IN_P + PHASE_G] -= less * (o->D[k][IN_P + PHASE_W] + o->D[k][IN_P + PHASE_G]);
 }
 
-/* What drives the reaction, or changes of it: sum_I chi_I (p_w, p_g, T)_I (265). */
-static void GatherDrive(const Model *m, PetscInt p, Reach *r, const double *x, double in[IN_COUNT])
-{
-  const FieldSet *fs = &m->c->fields;
-
-  ReachReaction(m, p, r);
-  for (int q = F_PW; q <= F_T; q++) {
-    double *to = &in[IN_DRIVE + q - F_PW];
-
-    *to = 0.0;
-    for (int a = 0; fs->at[q] >= 0 && a < r->n; a++)
-      *to += r->R[a] * x[r->node[a] * fs->n + fs->at[q]];
-  }
-}
-
 /* The particle's own. */
 static void AddOwn(const Model *m, PetscInt p, double in[IN_COUNT])
 {
   in[IN_T] += ParticleT(m->c, &m->P, p);
   for (int f = 0; f < PHASE_COUNT; f++)
     in[IN_P + f] += m->c->fields.phase[f] ? m->P.f[P_PW + f][p] : 0.0;
-  if (!m->c->fields.heat)
-    in[IN_DRIVE + PHASE_COUNT] = in[IN_T];
 }
 
 /* (Pi g)_p of a fluid. */
@@ -206,7 +189,11 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->T_n      = ParticleT(m->c, &m->P, p);
   h->Sh_n     = m->P.f[P_SH][p];
   h->dt       = m->stage.dt;
+  h->held     = m->added->held ? m->added->held[p] : 0.0;
+  h->chord    = ParticleChord(m, p);
   h->mobility = m->added->donor ? m->added->donor[p].kr : 0.0;
+  h->withheld = less / (1.0 - less);
+  h->pg_n     = less != 0.0 ? OwnValue(m, p, F_PG) : 0.0;
   for (int f = 0; f < PHASE_COUNT; f++)
     h->spread[f] = m->added->spread ? m->added->spread[PHASE_COUNT * p + f] : 0.0;
   for (int k = 0; k < CL_SYMMETRIC; k++)
@@ -222,8 +209,10 @@ static void GatherHistory(const Model *m, PetscInt p, const Reach *r, const Sums
   h->ambient = m->bc.ambient.on ? &m->bc.ambient : NULL;
   if (h->ambient)
     ParticleCentroid(&m->grid, &m->P, p, &m->stencil[p], h->x);
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 3; k++) {
     h->m_star[k] = m->stage.m_star[3 * p + k];
+    h->shift[k]  = fs->at[F_PW + k] >= 0 ? s->S[GIVE_START + k] - OwnValue(m, p, F_PW + k) : 0.0;
+  }
   if (fs->solid) {
     const SkeletonStore store = ParticlesSkeleton(&m->P, 0, m->stage.ahead);
 
@@ -248,7 +237,6 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   GatherInputs(m, p, r, x, &sums, in);
   if (less != 0.0)
     WithholdInputs(less, in);
-  GatherDrive(m, p, r, x, in);
   AddOwn(m, p, in);
   GatherHistory(m, p, r, &sums, less, &h);
   const ClStatus status = PointEvaluate(&m->c->fields, ParticleMaterial(m, p), &h, in, tangent, s, o, &why);
@@ -269,7 +257,6 @@ void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, doubl
   ReachExpand(m, p, r);
   Sum(m, r, &sums);
   GatherInputs(m, p, r, x, &sums, in);
-  GatherDrive(m, p, r, x, in);
   for (int f = 0; f < PHASE_COUNT; f++)
     GatherProjected(m, p, r, &sums, f, &proj[VectorAt(0, f, 0)]);
 }

@@ -29,8 +29,8 @@ enum { FLUID_MI = 0, FLUID_MI2, FLUID_G, FLUID_D = FLUID_G + CL_DIM, FLUID_COUNT
 /* Model.take, what particles have added at a node: with S, what stands from TAKE_GRAD on with G. */
 enum {
   TAKE_M     = 0,                        /* OUT_M */
-  TAKE_DM    = TAKE_M + 1 + PHASE_COUNT, /* OUT_DM, and what hydrate gives */
-  TAKE_C     = TAKE_DM + PHASE_COUNT,    /* OUT_C; OUT_Q and OUT_LATENT */
+  TAKE_DM    = TAKE_M + 1 + PHASE_COUNT, /* OUT_DM */
+  TAKE_C     = TAKE_DM + PHASE_COUNT,    /* OUT_C, OUT_Q */
   TAKE_ROOT  = TAKE_C + 2,               /* OUT_ROOT with V and the layer's weight (108) */
   TAKE_A     = TAKE_ROOT + PHASE_COUNT,  /* OUT_A */
   TAKE_FLUID = TAKE_A + CL_DIM,          /* of each fluid FLUID_... with the layer's weight (350), or (333) */
@@ -119,8 +119,8 @@ static inline int RowLength(int unknowns)
 /* One node as a particle or face sees it; NS (by fluid and component) and NU stand for S in the Darcy fluxes, where it
    is (350) or (333), and in the displacement. */
 typedef struct {
-  double        S, NS[PHASE_COUNT][CL_DIM], NU, K, R; /* R: (265) */
-  const double *G, *M, *w, *B;                        /* B: null without mean dilatation */
+  double        S, NS[PHASE_COUNT][CL_DIM], NU, K;
+  const double *G, *M, *w, *B; /* B: null without mean dilatation */
 } NodeWeights;
 
 /* d in/d(unknowns). */
@@ -169,8 +169,8 @@ void PatchAdd(const Model *m, const Assembly *to, const Patch *s);
 /* What nodes hold for their particles at the nodal values x; before ParticleEvaluate and FaceAt.  slope: what a change
    x of them makes; before ParticleChange and FaceChange. */
 void ModelGive(Model *m, const double *x, bool slope);
-/* Everything about particle p at the nodal values x: its reach with (265), inputs, state, outputs.  A failure is noted
- * in the model. */
+/* Everything about particle p at the nodal values x: its reach, inputs, state, outputs.  A failure is noted in the
+ * model. */
 ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, Reach *r, double in[IN_COUNT],
                           PointState *s, PointOutput *o);
 /* The same for a surface face. */
@@ -190,6 +190,12 @@ PetscErrorCode ModelNodesAt(Model *m, Vec X);
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
+/* (424) at t_n; before LumpBuild. */
+void ChordsBuild(Model *m);
+/* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
+void LumpBuild(Model *m);
+void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (444) at t_n over the volume: kappa (W/(m K)) by how much longer than wide the particle's cell is, W m/K; what it
    adds to the rows of heat of the particle's nodes, and to their blocks. */
 double ThinOf(const Model *m, PetscInt p, double kappa);

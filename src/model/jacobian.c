@@ -87,11 +87,10 @@ static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const 
   }
 }
 
-static void MassRows(const Model *m, const Assembly *to, PetscInt p, const Reach *r,
-                     const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+static void MassRows(const Model *m, const Assembly *to, const Reach *r, const double DB[OUT_COUNT][ROW_MOST],
+                     int length, Patch *patch)
 {
-  const FieldSet *fs  = &to->fs;
-  const Material *mat = ParticleMaterial(m, p);
+  const FieldSet *fs = &to->fs;
   const double   *S = r->S, dt = m->stage.dt;
   RowSum          sum = {.n = 0};
   double         *row[CL_NODES];
@@ -100,8 +99,6 @@ static void MassRows(const Model *m, const Assembly *to, PetscInt p, const Reach
     if (!fs->phase[f])
       continue;
     TERM(OUT_DM + f, S[a]);
-    if (mat->reacts)
-      TERM(OUT_GAIN, r->R[a] * KineticsFluid(&mat->kinetics, f));
     for (int j = 0; j < CL_DIM; j++)
       TERM(VectorAt(OUT_FLUX, f, j), -dt * r->G[a][j]);
     RowOfNodes(patch, PlaceP(fs, f), r->n, row);
@@ -128,8 +125,8 @@ static void MomentumRows(const Model *m, const Assembly *to, const Reach *r, int
   }
 }
 
-static void HeatRows(const Assembly *to, bool reacts, const Reach *r, const NodeFactors *k,
-                     const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
+static void HeatRows(const Assembly *to, const Reach *r, const NodeFactors *k, const double DB[OUT_COUNT][ROW_MOST],
+                     int length, Patch *patch)
 {
   const double *S   = r->S;
   RowSum        sum = {.n = 0};
@@ -137,28 +134,26 @@ static void HeatRows(const Assembly *to, bool reacts, const Reach *r, const Node
 
   TERM(OUT_C, S[a] * k[a].Tdot);
   TERM(OUT_Q, S[a]);
-  if (reacts)
-    TERM(OUT_LATENT, r->R[a]);
   for (int j = 0; j < CL_DIM; j++)
     TERM(OUT_HEAT + j, r->G[a][j]);
   RowOfNodes(patch, PlaceT(&to->fs), r->n, row);
   RowSumInto(&sum, r->n, length, patch->fresh, row);
 }
 
-static void NodeRows(const Model *m, const Assembly *to, PetscInt p, const Reach *r, const NodeFactors *k,
+static void NodeRows(const Model *m, const Assembly *to, const Reach *r, const NodeFactors *k,
                      const double DB[OUT_COUNT][ROW_MOST], int length, Patch *patch)
 {
   const FieldSet *fs = &to->fs;
 
   if (fs->solid)
     SolidRows(m, to, r, k, DB, length, patch);
-  MassRows(m, to, p, r, DB, length, patch);
+  MassRows(m, to, r, DB, length, patch);
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f] && PlaceV(fs, f) >= 0)
       MomentumRows(m, to, r, f, k, DB, length, patch);
   }
   if (fs->heat)
-    HeatRows(to, ParticleMaterial(m, p)->reacts, r, k, DB, length, patch);
+    HeatRows(to, r, k, DB, length, patch);
   patch->fresh = false;
 }
 
@@ -240,7 +235,6 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
     Factors(m, p, r->node[b], x, r->S[b], &factor[b]);
     NodeWeights at = WeightsAt(m, r, b, MotionWeight(m, p, r, b));
 
-    at.R = r->R[b];
     for (int f = 0; f < PHASE_COUNT; f++) {
       for (int d = 0; d < CL_DIM; d++)
         at.NS[f][d] = factor[b].flow[f];
@@ -252,7 +246,7 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
     row[k] = DB[to->out[k]];
   }
   SlopesApply(slopes, to->nout, D, row);
-  NodeRows(m, to, p, r, factor, DB, slopes->length, patch);
+  NodeRows(m, to, r, factor, DB, slopes->length, patch);
   for (int a = 0; a < r->n; a++) {
     Diagonal(fs, o->out, &factor[a], m->stage.dt, r->S[a], &m->w[PHASE_COUNT * r->node[a]], &patch->v[a][0][a * fs->n],
              ROW_MOST);
@@ -298,6 +292,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
         EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
       PatchAt(m, &target[k], &r, &patch[k]);
       ParticleBlock(m, &target[k], p, &r, x, &o, &slopes[k], &patch[k]);
+      LumpBlock(m, &target[k], p, &r);
       ThinBlock(m, &target[k], p, &r);
     }
   }

@@ -58,7 +58,10 @@ PetscErrorCode FreeParticleArrays(Model *m)
   PetscCall(PetscFree(m->added->exchange));
   PetscCall(PetscFree(m->added->spread));
   PetscCall(PetscFree(m->added->upwind));
+  PetscCall(PetscFree(m->added->lump));
   PetscCall(PetscFree(m->added->thin));
+  PetscCall(PetscFree(m->added->held));
+  PetscCall(PetscFree(m->added->chord));
   PetscCall(PetscFree(m->beds));
   m->stencil_cap = 0;
   PetscFunctionReturn(PETSC_SUCCESS);

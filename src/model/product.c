@@ -160,6 +160,7 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
       if (m->beds)
         BedsChange(m, first + c, &r[c], dx);
       if (!momentum) {
+        LumpResidual(m, p, &r[c], dx, f);
         ThinResidual(m, p, &r[c], dx, f);
       }
     }

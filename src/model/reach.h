@@ -9,7 +9,6 @@ typedef struct {
   int      n;
   PetscInt node[CL_NODES];
   double   S[CL_NODES], G[CL_NODES][CL_DIM], H[CL_NODES], B[CL_NODES][CL_DIM];
-  double   R[CL_NODES]; /* (265); of ReachReaction */
   const double (*M)[CL_DIM], *K;
   double mixed[CL_NODES][CL_DIM], mixed_hoop[CL_NODES];
 } Reach;

@@ -81,6 +81,7 @@ static void ParticleLoop(Model *m, const double *x, double *f)
       return;
     m->limited += state.limited;
     ParticleScatter(m, p, &r, x, o.out);
+    LumpResidual(m, p, &r, x, f);
     ThinResidual(m, p, &r, x, f);
   }
   NodeLoop(m, x, f);

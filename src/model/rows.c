@@ -95,8 +95,7 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
       continue;
     const int p = first + PlaceP(fs, f);
 
-    in[IN_P + f][p]     = b->S;
-    in[IN_DRIVE + f][p] = b->R;
+    in[IN_P + f][p] = b->S;
     for (int i = 0; i < CL_DIM; i++) {
       in[VectorAt(IN_GP, f, i)][p] = b->G[i];
       if (PlaceV(fs, f) < 0)
@@ -109,8 +108,7 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
   if (fs->heat) {
     const int T = first + PlaceT(fs);
 
-    in[IN_T][T]                   = b->S;
-    in[IN_DRIVE + PHASE_COUNT][T] = b->R;
+    in[IN_T][T] = b->S;
     for (int i = 0; i < CL_DIM; i++)
       in[IN_GT + i][T] = b->G[i];
   }

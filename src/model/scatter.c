@@ -103,20 +103,6 @@ static void ScatterBeds(Model *m, PetscInt p, const Reach *r, const double *x, i
   }
 }
 
-/* What the reaction gives the rows of mass and heat (266). */
-static void ScatterReaction(Model *m, PetscInt p, const Reach *r, const double out[OUT_COUNT])
-{
-  const Kinetics *k = &ParticleMaterial(m, p)->kinetics;
-
-  for (int a = 0; a < r->n; a++) {
-    double *node = &m->take[TAKE_COUNT * r->node[a]];
-
-    for (int f = 0; f < PHASE_COUNT; f++)
-      node[TAKE_DM + f] += r->R[a] * KineticsFluid(k, f) * out[OUT_GAIN];
-    node[TAKE_C + 1] += r->R[a] * out[OUT_LATENT];
-  }
-}
-
 /* Adds the sum over the axes of g times the k-th Lanes of G; a vector that is returned has no place everywhere. */
 static inline void LanesAlong(const double g[CL_DIM], const double G[CL_DIM][TAKE_COUNT - TAKE_GRAD], int k, Lanes *to)
 {
@@ -141,8 +127,6 @@ void ParticleScatter(Model *m, PetscInt p, const Reach *r, const double *x, cons
     if (fs->phase[f] && !LayerRoot(m, f))
       ScatterFluid(m, p, r, f, out, &s);
   }
-  if (ParticleMaterial(m, p)->reacts)
-    ScatterReaction(m, p, r, out);
   const Lanes *S = (const Lanes *)s.S;
   for (int a = 0; a < r->n; a++) {
     Lanes *node = (Lanes *)&m->take[TAKE_COUNT * r->node[a]];

@@ -38,7 +38,7 @@ static int PhaseOf(int out)
 
 static bool IsScalar(int out)
 {
-  return (out >= OUT_M && out <= OUT_C) || out >= OUT_GAIN;
+  return out >= OUT_M && out <= OUT_C;
 }
 
 /* Do the scene's rows read it? */
@@ -49,8 +49,6 @@ static bool Reads(const Model *m, int out)
 
   if (phase >= 0)
     return fs->phase[phase] && (out != OUT_ROOT + phase || m->fluid) && (out != OUT_M + 1 + phase || fs->solid);
-  if (out >= OUT_GAIN)
-    return SceneReacts(m->c) && (out == OUT_GAIN || fs->heat);
   if (out >= OUT_A)
     return m->bc.ambient.on && fs->solid;
   if (out == OUT_HOOP)
@@ -80,8 +78,6 @@ static bool Depends(const Model *m, int out, int in)
     return fs->phase[in - IN_P] && !force;
   if (in == IN_T)
     return fs->heat && !force;
-  if (in < IN_GP)
-    return SceneReacts(m->c) && !force && (in == IN_DRIVE + PHASE_COUNT ? fs->heat : fs->phase[in - IN_DRIVE]);
   if (in < IN_GT)
     return fs->phase[other] &&
            (out == OUT_Q || (force && other == phase) || (flux && (Follows(m->c, phase, other) || m->added->spread)));
@@ -96,7 +92,7 @@ static bool Depends(const Model *m, int out, int in)
    last the rows (16) of the fluids. */
 static int Kind(int out)
 {
-  if ((out >= OUT_DM && out < OUT_C) || out >= OUT_GAIN)
+  if (out >= OUT_DM && out < OUT_C)
     return 0;
   return (out >= OUT_G && out < OUT_M) || (out >= OUT_MI && out < OUT_DM) ? 2 : 1;
 }

@@ -1,7 +1,6 @@
 /* Private to model/: what a particle counts at its nodes, and nodal values that several files ask for. */
 #pragma once
 
-#include "clathra/point_reaction.h"
 #include "reach.h"
 
 static inline const Material *ParticleMaterial(const Model *m, PetscInt p)
@@ -223,6 +222,12 @@ static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, con
     acc[i] += across[i];
 }
 
+/* (424), Pa. */
+static inline double ParticleChord(const Model *m, PetscInt p)
+{
+  return m->added->chord ? m->added->chord[p] : 0.0;
+}
+
 /* Own value at t_n of unknown q = F_PW, F_PG, F_T. */
 static inline double OwnValue(const Model *m, PetscInt p, int q)
 {
@@ -241,24 +246,4 @@ static inline double Shift(const Model *m, PetscInt p, const Reach *r, int q)
   for (int a = 0; a < r->n; a++)
     shift += r->S[a] * m->x_n[r->node[a] * fs->n + fs->at[q]];
   return shift;
-}
-
-/* (265): shares of its nodes in the reaction of a particle, and in what drives it; zero where there is none. */
-static inline void ReachReaction(const Model *m, PetscInt p, Reach *r)
-{
-  const Material *mat = ParticleMaterial(m, p);
-  const Stencil  *s   = &m->stencil[p];
-  const bool      gas = m->c->fields.phase[PHASE_G];
-
-  for (int a = 0; a < r->n; a++)
-    r->R[a] = mat->reacts ? r->S[a] : 0.0;
-  if (!mat->reacts || (gas && ReactionWithoutGas(mat->gas.trace, OwnValue(m, p, F_PW), OwnValue(m, p, F_PG))))
-    return;
-  for (int a = 0; a < r->n; a++) {
-    const PetscInt *ij = m->map.ij[r->node[a]];
-
-    r->R[a] = 1.0;
-    for (int d = 0; d < CL_DIM; d++)
-      r->R[a] *= s->axis[d].nearest[ij[d] - s->axis[d].base];
-  }
 }

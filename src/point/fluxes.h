@@ -103,16 +103,20 @@ INLINE void CarriedFlux(const Material *mat, const Kinematics *k, const ScalarSt
   }
 }
 
-/* Scalars of one fluid tested with S_I: mass, inertia, drag. */
-INLINE void FluidScalars(const PointHistory *h, const Kinematics *k, const ScalarState *s, int f, bool tangent,
-                         PointOutput *o)
+/* Scalars of one fluid tested with S_I: mass, inertia, drag, what hydrate gives. */
+INLINE void FluidScalars(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s, int f,
+                         bool tangent, PointOutput *o)
 {
   const Jet    mass = s->m[f];
+  const double nu   = KineticsFluid(&mat->kinetics, f);
   const double root = sqrt(s->kr[f].v);
+  Jet          dm   = JetShift(mass, -h->m_star[1 + f]);
 
+  if (mat->reacts)
+    dm = JetAdd(dm, JetScale(nu, s->gain));
   PutScalar(OUT_M + 1 + f, mass, k, tangent, o);
   PutScalar(OUT_MI + f, JetMul(s->V, s->rho[f]), k, tangent, o);
   PutScalar(OUT_D + f, JetMul(s->V, s->resist[f]), k, tangent, o);
   PutScalar(OUT_ROOT + f, JetChain(root, 0.5 / root, s->kr[f]), k, tangent, o);
-  PutScalar(OUT_DM + f, JetShift(mass, -h->m_star[1 + f]), k, tangent, o);
+  PutScalar(OUT_DM + f, dm, k, tangent, o);
 }

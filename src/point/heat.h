@@ -25,12 +25,12 @@ INLINE void Conduction(const PointHistory *h, const Kinematics *k, const Metric 
   }
 }
 
-/* Heat stored and advected, c Phi . g_T; needs the fluxes. */
-INLINE void Heat(const FieldSet *fs, const Material *mat, const Kinematics *k, const ScalarState *s,
-                 const double in[IN_COUNT], bool tangent, PointOutput *o)
+/* Heat stored, released and advected, c Phi . g_T; needs the fluxes. */
+INLINE void Heat(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
+                 const ScalarState *s, const double in[IN_COUNT], bool tangent, PointOutput *o)
 {
   PutScalar(OUT_C, s->capacity, k, tangent, o);
-  PutScalar(OUT_Q, JetConstant(0.0), k, tangent, o);
+  PutScalar(OUT_Q, mat->reacts ? JetScale(-1.0 / h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent, o);
 #pragma GCC unroll 2
   for (int f = 0; f < PHASE_COUNT; f++) {
     const double c_f = SpecificHeat(mat, f);

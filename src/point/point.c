@@ -37,21 +37,11 @@ INLINE ClStatus CheckFinite(const FieldSet *fs, const PointOutput *o, const char
   for (int r = OUT_P; fs->solid && r < OUT_P + CL_DIM * CL_DIM; r++)
     sum += o->out[r];
   if (fs->heat)
-    sum += o->out[OUT_HEAT] + o->out[OUT_HEAT + 1] + o->out[OUT_C] + o->out[OUT_Q] + o->out[OUT_LATENT];
+    sum += o->out[OUT_HEAT] + o->out[OUT_HEAT + 1] + o->out[OUT_C] + o->out[OUT_Q];
   if (isfinite(sum))
     return CL_OK;
   *why = "a flux or force is not finite";
   return CL_NONFINITE;
-}
-
-/* What the reaction makes, and takes of heat; zero where there is none. */
-INLINE void ReactionOutputs(const FieldSet *fs, const Material *mat, const PointHistory *h, const Kinematics *k,
-                            const ScalarState *s, bool tangent, PointOutput *o)
-{
-  const bool warms = mat->reacts && fs->heat;
-
-  PutScalar(OUT_GAIN, mat->reacts ? s->gain : JetConstant(0.0), k, tangent, o);
-  PutScalar(OUT_LATENT, warms ? JetScale(-1.0 / h->dt, JetMul(s->latent, s->gain)) : JetConstant(0.0), k, tangent, o);
 }
 
 /* The motion of a particle that does not move. */
@@ -103,7 +93,6 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
     const AmbientState a = AmbientAt(h, k, &s, in, tangent, o);
     MixtureForces(h, k, &s, &st, &a, tangent, o);
   }
-  ReactionOutputs(fs, mat, h, k, &s, tangent, o);
   for (int d = 0; d < CL_DIM; d++)
     state->stretch[d] = fs->solid ? k->stretch[d] : 1.0;
   memcpy(state->F, k->F, sizeof(state->F));
@@ -116,13 +105,13 @@ INLINE ClStatus Evaluate(const FieldSet *fs, const Material *mat, const PointHis
     FluidForces(h, k, f, in, tangent, o);
     Flux(fs, h, k, &metric, &s, f, in, tangent, o, &state->tau[f]);
     Spread(h, k, &metric, &s, f, in, tangent, o);
-    FluidScalars(h, k, &s, f, tangent, o);
+    FluidScalars(mat, h, k, &s, f, tangent, o);
   }
   if (fs->phase[PHASE_W] && fs->phase[PHASE_G] && mat->gas.carried > 0.0)
     CarriedFlux(mat, k, &s, in, tangent, o);
   if (fs->heat) {
     Conduction(h, k, &metric, &s, in, tangent, o);
-    Heat(fs, mat, k, &s, in, tangent, o);
+    Heat(fs, mat, h, k, &s, in, tangent, o);
     if (mat->reacts)
       state->gain = s.gain.v;
 #pragma GCC unroll 2

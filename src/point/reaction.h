@@ -67,18 +67,16 @@ INLINE void Form(const Material *mat, double m0, Jet per_area, Jet rho_h, Jet pc
   s->gain.v = (growth.v * A.v - steep * grown) / (1.0 - steep);
 }
 
-/* Pressures (Pa) and temperature (degC) that drive the reaction (265): those of the nodes that have it, not the
-   particle's own, which differ by what nodes cannot see and so never correct. */
-typedef struct {
-  Jet p[PHASE_COUNT], T;
-} ReactionDrive;
-
-/* m_h and its gain, from what drives it and from shares and pores of s. */
-INLINE void HydrateMass(const Material *mat, const PointHistory *h, const ReactionDrive *at, Jet rho_h, ScalarState *s)
+/* m_h and its gain, from pressures, shares and pores of s.  The reaction sees p and T of the nodal fields, not the
+   particle's own: those differ by what nodes cannot see (and so never correct), which a fast reaction would turn into
+   hydrate. */
+INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T, Jet rho_h, ScalarState *s)
 {
-  const Kinetics *k  = &mat->kinetics;
-  const double    m0 = fmax(h->m_star[0], 0.0);
-  const Jet       pw = at->p[PHASE_W], pg = at->p[PHASE_G];
+  const Kinetics *k    = &mat->kinetics;
+  const double    m0   = fmax(h->m_star[0], 0.0);
+  const Jet       T_r  = JetShift(T, h->shift[2]);
+  const Jet       held = JetScale(h->withheld, JetShift(pg, -h->pg_n)); /* (416) */
+  const Jet       pw_r = JetAdd(JetShift(pw, h->shift[0]), held), pg_r = JetAdd(JetShift(pg, h->shift[1]), held);
   double          dK, dpe;
 
   s->limited = mat->reacts && h->m_star[0] < 0.0;
@@ -87,14 +85,15 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, const Reacti
     s->m_h  = JetConstant(h->m_star[0]);
     return;
   }
-  const double  Kd = KineticsRateConstant(k, at->T.v, &dK), pe = EquilibriumPressure(&k->equilibrium, at->T.v, &dpe);
-  const Driving d      = ReactionDriving(mat->gas.trace, s->sg.v, pw.v, pg.v, pe);
-  const Growth  g      = ReactionGrowth(k, h->dt, &d, Kd, dK, pe, dpe);
-  const Jet     p      = JetChain3(d.p.v, d.p.sg, s->sg, d.p.pw, pw, d.p.pg, pg);
-  const Jet     growth = JetChain2(g.v, g.p, p, g.T, at->T);
+  const double Kd      = KineticsRateConstant(k, T_r.v, &dK),
+               pe      = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe) + h->chord; /* (424) */
+  const Driving d      = ReactionDriving(mat->gas.trace, s->sg.v, pw_r.v, pg_r.v, pe);
+  const Growth  g      = ReactionGrowth(k, h->dt, h->held, &d, Kd, dK, pe, dpe);
+  const Jet     p_r    = JetChain3(d.p.v, d.p.sg, s->sg, d.p.pw, pw_r, d.p.pg, pg_r);
+  const Jet     growth = JetChain2(g.v, g.p, p_r, g.T, T_r);
 
   if (d.forms)
-    Form(mat, m0, growth, rho_h, JetSub(pg, pw), JetChain2(p.v - pe, 1.0, p, -dpe, at->T), s);
+    Form(mat, m0, growth, rho_h, JetSub(pg_r, pw_r), JetChain2(p_r.v - pe, 1.0, p_r, -dpe, T_r), s);
   else
     Dissociate(mat, m0, growth, rho_h, s);
   s->gain = JetShift(s->gain, m0 - h->m_star[0]);

@@ -1,4 +1,4 @@
-/* Private to point/: the scalar state of a particle with its slopes in J, p_w, p_g, T and what drives its reaction. */
+/* Private to point/: the scalar state of a particle with its slopes in (J, p_w, p_g, T). */
 #pragma once
 
 #include "clathra/jet.h"

@@ -63,10 +63,9 @@ ClStatus PointPropertiesEvaluate(const FieldSet *fs, const Material *mat, double
                                  double pg, double T, PointProperties *r, const char **why)
 {
   const PointHistory h = {.V = V, .m_s = m_s, .m_star = {m_h, 0.0, 0.0}, .dt = 0.0}; /* dt' = 0: no reaction */
-  const double       in[IN_COUNT] = {
-            [IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T, [IN_DRIVE] = pw, [IN_DRIVE + 1] = pg, [IN_DRIVE + 2] = T};
-  ScalarState    s;
-  const ClStatus status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
+  const double       in[IN_COUNT] = {[IN_P] = pw, [IN_P + 1] = pg, [IN_T] = T};
+  ScalarState        s;
+  const ClStatus     status = ScalarStateEvaluate(fs, mat, &h, 1.0, in, &s, why);
 
   if (status != CL_OK)
     return status;

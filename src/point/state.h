@@ -117,15 +117,15 @@ INLINE Jet GasShareJet(const Retention *law, Jet pc, Jet Sh)
 
 /* (321): what the reaction makes of S_h if the fluids share the pores as at this S_h, less S_h itself, with its slope;
    all else is fixed. */
-INLINE double HydrateBalance(const Material *mat, const PointHistory *h, double Sh, double pw, double pg,
-                             const ReactionDrive *at, double rho_h, const ScalarState *s, double *slope)
+INLINE double HydrateBalance(const Material *mat, const PointHistory *h, double Sh, double pw, double pg, double T,
+                             double rho_h, const ScalarState *s, double *slope)
 {
   ScalarState  trial = {.V = JetConstant(s->V.v), .Vp = JetConstant(s->Vp.v)};
   double       dpc, dSh;
   const double sg = RetentionGasShare(&mat->retention, pg - pw, Sh, &dpc, &dSh), full = rho_h * s->Vp.v;
 
   Share(JetVariable(sg, JET_J), JetConstant(pw), JetConstant(pg), &trial); /* the place of J is free for s_g */
-  HydrateMass(mat, h, at, JetConstant(rho_h), &trial);
+  HydrateMass(mat, h, JetConstant(pw), JetConstant(pg), JetConstant(T), JetConstant(rho_h), &trial);
   *slope = trial.m_h.d[JET_J] * dSh / full - 1.0;
   return trial.m_h.v / full - Sh;
 }
@@ -133,14 +133,13 @@ INLINE double HydrateBalance(const Material *mat, const PointHistory *h, double 
 #define ROUNDING 4e-16 /* of S_h */
 
 /* (321) by Newton inside a bracket: S_h, with what is left of the balance and its slope there. */
-INLINE double SolveHydrate(const Material *mat, const PointHistory *h, double pw, double pg, const ReactionDrive *at,
-                           double rho_h, const ScalarState *s, double *f, double *slope)
+INLINE double SolveHydrate(const Material *mat, const PointHistory *h, double pw, double pg, double T, double rho_h,
+                           const ScalarState *s, double *f, double *slope)
 {
-  const ReactionDrive fixed = {{JetConstant(at->p[PHASE_W].v), JetConstant(at->p[PHASE_G].v)}, JetConstant(at->T.v)};
-  double              lo = 0.0, hi = 1.0, Sh = fmin(fmax(h->m_star[0] / (rho_h * s->Vp.v), lo), hi);
+  double lo = 0.0, hi = 1.0, Sh = fmin(fmax(h->m_star[0] / (rho_h * s->Vp.v), lo), hi);
 
   for (int it = 0; it < 100; it++) {
-    *f                      = HydrateBalance(mat, h, Sh, pw, pg, &fixed, rho_h, s, slope);
+    *f                      = HydrateBalance(mat, h, Sh, pw, pg, T, rho_h, s, slope);
     *(*f > 0.0 ? &lo : &hi) = Sh;
     if (fabs(*f) <= ROUNDING || hi - lo <= ROUNDING)
       break;
@@ -153,15 +152,15 @@ INLINE double SolveHydrate(const Material *mat, const PointHistory *h, double pw
 
 /* The slopes follow from the implicit function theorem; of the mass of hydrate what the reaction says where it is slow,
    what S_h says where it is fast, which is one Newton step more in either. */
-INLINE void ShareWithHydrate(const Material *mat, const PointHistory *h, Jet pw, Jet pg, const ReactionDrive *at,
-                             Jet rho_h, ScalarState *s)
+INLINE void ShareWithHydrate(const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T, Jet rho_h,
+                             ScalarState *s)
 {
   const Jet    full = JetMul(rho_h, s->Vp), pc = JetSub(pg, pw);
   double       f, slope;
-  const double found = SolveHydrate(mat, h, pw.v, pg.v, at, rho_h.v, s, &f, &slope);
+  const double found = SolveHydrate(mat, h, pw.v, pg.v, T.v, rho_h.v, s, &f, &slope);
 
   Share(GasShareJet(&mat->retention, pc, JetConstant(found)), pw, pg, s);
-  HydrateMass(mat, h, at, rho_h, s);
+  HydrateMass(mat, h, pw, pg, T, rho_h, s);
   const Jet    Sh = JetChain(found - f / slope, -1.0 / slope, JetDiv(s->m_h, full)), m_h = JetMul(Sh, full);
   const double more = -(slope + 1.0) * f / slope * full.v;
 
@@ -171,27 +170,26 @@ INLINE void ShareWithHydrate(const Material *mat, const PointHistory *h, Jet pw,
 }
 
 /* Shares of the fluids in the open pores, their mean pressure, and hydrate. */
-INLINE void Saturations(const FieldSet *fs, const Material *mat, const PointHistory *h, Jet pw, Jet pg,
-                        const ReactionDrive *at, Jet rho_h, ScalarState *s)
+INLINE void Saturations(const FieldSet *fs, const Material *mat, const PointHistory *h, Jet pw, Jet pg, Jet T,
+                        Jet rho_h, ScalarState *s)
 {
   if (!fs->phase[PHASE_G]) {
     s->sw = JetConstant(fs->phase[PHASE_W] ? 1.0 : 0.0);
     s->sg = JetConstant(0.0);
     s->p  = fs->phase[PHASE_W] ? pw : JetConstant(0.0);
   } else if (mat->retention.hydrate > 0.0) {
-    ShareWithHydrate(mat, h, pw, pg, at, rho_h, s);
+    ShareWithHydrate(mat, h, pw, pg, T, rho_h, s);
     return;
   } else {
     Share(GasShareJet(&mat->retention, JetSub(pg, pw), JetConstant(0.0)), pw, pg, s);
   }
-  HydrateMass(mat, h, at, rho_h, s);
+  HydrateMass(mat, h, pw, pg, T, rho_h, s);
 }
 
 INLINE ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const double in[IN_COUNT], const char **why)
 {
   const bool finite = isfinite(in[IN_T]) && (!fs->phase[PHASE_W] || isfinite(in[IN_P])) &&
-                      (!fs->phase[PHASE_G] || isfinite(in[IN_P + 1])) &&
-                      (!mat->reacts || isfinite(in[IN_DRIVE] + in[IN_DRIVE + 1] + in[IN_DRIVE + 2]));
+                      (!fs->phase[PHASE_G] || isfinite(in[IN_P + 1]));
 
   if (!finite) {
     *why = "pressure or temperature is not finite";
@@ -217,11 +215,9 @@ INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, con
                                     const double in[IN_COUNT], ScalarState *s, const char **why)
 {
   const Jet pw = JetVariable(in[IN_P], JET_PW), pg = JetVariable(in[IN_P + 1], JET_PG),
-            T              = JetVariable(in[IN_T], JET_T);
-  const Jet           zero = JetConstant(0.0), pressure[PHASE_COUNT] = {pw, pg};
-  const ReactionDrive at    = {{JetVariable(in[IN_DRIVE], JET_DRIVE), JetVariable(in[IN_DRIVE + 1], JET_DRIVE + 1)},
-                               JetVariable(in[IN_DRIVE + 2], JET_DRIVE + 2)};
-  const Jet           rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
+            T    = JetVariable(in[IN_T], JET_T);
+  const Jet zero = JetConstant(0.0), pressure[PHASE_COUNT] = {pw, pg};
+  const Jet rho_s = LiquidJet(&mat->solid, zero, T), rho_h = LiquidJet(&mat->hydrate, zero, T);
 
   const ClStatus status = CheckInputs(fs, mat, in, why);
   if (status != CL_OK)
@@ -233,7 +229,7 @@ INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, con
     *why = "porosity fell to zero";
     return CL_DOMAIN;
   }
-  Saturations(fs, mat, h, pw, pg, &at, rho_h, s);
+  Saturations(fs, mat, h, pw, pg, T, rho_h, s);
 
   const Jet Vf = VolumeLeftJet(s->Vp, s->m_h, rho_h);
   if (!(Vf.v > 0.0)) {

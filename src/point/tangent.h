@@ -12,8 +12,6 @@ INLINE void AddJet(double D[IN_COUNT], double c, const Jet *a, const Kinematics 
   D[IN_P] += c * a->d[JET_PW];
   D[IN_P + 1] += c * a->d[JET_PG];
   D[IN_T] += c * a->d[JET_T];
-  for (int q = 0; q < PHASE_COUNT + 1; q++)
-    D[IN_DRIVE + q] += c * a->d[JET_DRIVE + q];
 }
 
 INLINE void PutScalar(int r, Jet value, const Kinematics *k, bool tangent, PointOutput *o)

@@ -33,7 +33,7 @@ def main():
     check("... at a share of its time", float(share), (0.1, 30))
     check_true("... how many were refused", int(refused) < int(taken) and "h" in now, f"{refused}, {now}")
     check_true("... with what rules the step and where", re.match(r"(the error of \w+, largest near \([\d.]+, [\d.]+\) m|Newton's method)", rules) is not None, rules)
-    check_true("... and the key that mends it first", advice.startswith("stabilisation_donor: yes"), advice)
+    check_true("... and the key that mends it first", advice.startswith("stabilisation_reaction_heat: yes"), advice)
     plain = scratch() / "well_and_heater.yaml"  # the well alone ends in 16 more steps where 34 are said at 10 %, docs/forecast.md
     plain.write_text(heated(case_text()))
     goes = forecasts.Told(binary(), plain, (), scratch() / "goes")

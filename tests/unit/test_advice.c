@@ -55,19 +55,22 @@ static bool Starts(const char *words)
   return colon && strncmp(colon + 2, words, strlen(words)) == 0;
 }
 
-/* Gas beside clay; steps without a matrix do not know the key. */
-static void DonorFirst(void **state)
+/* (381) keeps most of a well's gas in its cells: it is for hydrate that is heated. */
+static void HeldReactionIsForHeaters(void **state)
 {
   if (PetscGlobalRank > 0) /* the words are rank 0's */
     return;
-  assert_non_null(strstr(Advised(13.0, 0.1, false), "stabilisation_donor"));
+  assert_non_null(strstr(Advised(60.0, 0.0, false), "stabilisation_reaction_heat"));
+  assert_true(Starts("stabilisation_reaction_heat: yes"));
+  assert_non_null(strstr(Advised(13.0, 500.0, false), "stabilisation_reaction_heat"));
+  assert_null(strstr(Advised(13.0, 0.1, false), "stabilisation_reaction_heat"));
   assert_true(Starts("stabilisation_donor: yes"));
   assert_null(strstr(Advised(13.0, 0.1, true), "stabilisation_donor"));
 }
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(DonorFirst)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(HeldReactionIsForHeaters)};
 
   return RunTests(argc, argv, tests, NULL, NULL);
 }

@@ -125,36 +125,6 @@ static void TestAgainstDefinition(void **state)
   }
 }
 
-/* Shares that stand for the nearest node (265): S^16 over the sum, which is one; of a domain on one side of the middle
-   all but one node's are nothing. */
-static void TestNearest(void **state)
-{
-  const GridLines line = LinesEqual(0.3, 5.1, 8);
-  Rng             r    = {204};
-  double          off = 0.0, sum = 0.0, least = 1.0;
-
-  (void)state;
-  for (int n = 0; n < 20000; n++) {
-    const double l = RngBetween(&r, 0.03, 0.3), x = RngBetween(&r, 1.1, 4.2),
-                 from = (x - 0.3) / 0.6 - floor((x - 0.3) / 0.6);
-    double share[3], all = 0.0;
-    Axis   a;
-
-    BasisAxis(BASIS_CPGIMP, x, l, &line, &a);
-    BasisNearest(a.S, share);
-    for (int k = 0; k < 3; k++)
-      all += pow(a.S[k], 16.0);
-    for (int k = 0; k < 3; k++)
-      off = fmax(off, fabs(share[k] - pow(a.S[k], 16.0) / all));
-    sum = fmax(sum, fabs(share[0] + share[1] + share[2] - 1.0));
-    if (fabs(from - 0.5) > 0.25)
-      least = fmin(least, fmax(fmax(share[0], share[1]), share[2]));
-  }
-  Say("shares of the nearest node: off by %.1e, their sum %.1e; of the nearest at least %.8f beyond a quarter\n", off,
-      sum, least);
-  Check(off < 1e-14 && sum < 5e-16 && least > 0.99999);
-}
-
 /* Domains over the edge of the grid keep to it: sums still hold, no node outside. */
 static void TestClipping(void **state)
 {
@@ -653,11 +623,12 @@ static void TestLonelyColumn(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestAxis),          cmocka_unit_test(TestAgainstDefinition), cmocka_unit_test(TestNearest),
-      cmocka_unit_test(TestClipping),      cmocka_unit_test(TestNodeMap),           cmocka_unit_test(TestNodeSums),
-      cmocka_unit_test(TestStencilExpand), cmocka_unit_test(TestCellGradient),      cmocka_unit_test(TestSeed),
-      cmocka_unit_test(TestMigrate),       cmocka_unit_test(TestLeaving),           cmocka_unit_test(TestEvenBorders),
-      cmocka_unit_test(TestLonelyColumn),
+      cmocka_unit_test(TestAxis),         cmocka_unit_test(TestAgainstDefinition),
+      cmocka_unit_test(TestClipping),     cmocka_unit_test(TestNodeMap),
+      cmocka_unit_test(TestNodeSums),     cmocka_unit_test(TestStencilExpand),
+      cmocka_unit_test(TestCellGradient), cmocka_unit_test(TestSeed),
+      cmocka_unit_test(TestMigrate),      cmocka_unit_test(TestLeaving),
+      cmocka_unit_test(TestEvenBorders),  cmocka_unit_test(TestLonelyColumn),
   };
 
   return RunTests(argc, argv, tests, NULL, NULL);

@@ -70,7 +70,7 @@ static bool IsInput(const FieldSet *fs, bool axisymmetric, int q)
 {
   const int fluid = q < IN_P    ? -1
                     : q < IN_T  ? q - IN_P
-                    : q < IN_GP ? q - IN_DRIVE
+                    : q < IN_GP ? -1
                     : q < IN_GT ? (q - IN_GP) / CL_DIM
                                 : (q - IN_J) / CL_DIM;
 
@@ -78,18 +78,16 @@ static bool IsInput(const FieldSet *fs, bool axisymmetric, int q)
     return fs->solid && (q < IN_HOOP || axisymmetric);
   if (q >= IN_U)
     return fs->solid;
-  if (q == IN_T || q == IN_GP - 1 || (q >= IN_GT && q < IN_J))
+  if (q == IN_T || (q >= IN_GT && q < IN_J))
     return fs->heat;
   return fs->phase[fluid];
 }
 
 static bool IsOutput(const FieldSet *fs, int r)
 {
-  if (r == OUT_LATENT)
-    return fs->heat;
-  if (r < OUT_FLUX || r == OUT_HOOP || (r >= OUT_A && r < OUT_GAIN))
+  if (r < OUT_FLUX || r == OUT_HOOP || r >= OUT_A)
     return fs->solid;
-  if (r == OUT_M || r == OUT_GAIN)
+  if (r == OUT_M)
     return true;
   if ((r >= OUT_HEAT && r < OUT_HOOP) || r == OUT_C || r == OUT_Q)
     return fs->heat;
@@ -138,6 +136,9 @@ static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
   }
   for (int k = 0; k < CL_FLUID_VECTORS; k++)
     q->h.proj[k / CL_DIM][k % CL_DIM] = RngBetween(r, -2e5, 2e5);
+  q->h.shift[0] = RngBetween(r, -1e4, 1e4) * fs->phase[PHASE_W];
+  q->h.shift[1] = RngBetween(r, -1e4, 1e4) * fs->phase[PHASE_G];
+  q->h.shift[2] = RngBetween(r, -0.1, 0.1) * fs->heat;
   for (int k = 0; k < IN_COUNT; k++) {
     if (IsInput(fs, axisymmetric, k) && k < IN_U)
       q->in[k] = RngBetween(r, -1.0, 1.0) * (k < IN_P ? 0.1 : k < IN_GT ? 2e5 : k < IN_J ? 20.0 : 1e-6);
@@ -147,9 +148,6 @@ static void RandomPoint(Rng *r, const FieldSet *fs, bool axisymmetric, Point *q)
   q->in[IN_P]     = fs->phase[PHASE_W] ? pw : 0.0;
   q->in[IN_P + 1] = fs->phase[PHASE_G] ? pg : 0.0;
   q->in[IN_T]     = T;
-  for (int k = 0; k < PHASE_COUNT + 1; k++) /* of the reaction's nodes */
-    q->in[IN_DRIVE + k] = q->in[IN_P + k] + (k < PHASE_COUNT ? RngBetween(r, -1e4, 1e4) * fs->phase[k]
-                                                             : RngBetween(r, -0.1, 0.1) * fs->heat);
 }
 
 /* Largest error of the tangent, each row relative to what typical inputs make of it. */
@@ -163,13 +161,13 @@ static double TangentError(Point *q, bool axisymmetric)
   if (PointEvaluate(q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) != CL_OK)
     return 0.0;
   for (int c = 0; c < IN_COUNT; c++) {
-    const double unit = c < IN_P                      ? 0.1
-                        : c < IN_T                    ? 1e5
-                        : c == IN_T || c == IN_GP - 1 ? 1.0
-                        : c < IN_GT                   ? 2e5
-                        : c < IN_J                    ? 20.0
-                        : c < IN_U                    ? 1e-6
-                                                      : 1e-3;
+    const double unit = c < IN_P    ? 0.1
+                        : c < IN_T  ? 1e5
+                        : c == IN_T ? 1.0
+                        : c < IN_GT ? 2e5
+                        : c < IN_J  ? 20.0
+                        : c < IN_U  ? 1e-6
+                                    : 1e-3;
     double       dy[RIDDERS_ROWS], err[RIDDERS_ROWS];
 
     q->column = c;

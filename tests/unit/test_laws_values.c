@@ -125,6 +125,27 @@ static void EquilibriumValues(void **state)
   }
 }
 
+/* p_e''/p_e': Sloan's by hand, others by differences of p_e. */
+static void EquilibriumCurvatures(void **state)
+{
+  const char *const *type;
+  Equilibrium        law = {.A1 = 1.15, .A2 = 49.3185, .A3 = 9459};
+  double             d;
+
+  (void)state;
+  EquilibriumSetType(&law, "sloan");
+  Near(EquilibriumCurvature(&law, 4), 9459 / (277.15 * 277.15) - 2 / 277.15, 1e-3);
+  for (type = EquilibriumTypes(); *type; type++) {
+    EquilibriumSetType(&law, *type);
+    for (double T = 2; T < 20; T += 1.7) {
+      const double h = 0.05, up = EquilibriumPressure(&law, T + h, &d), down = EquilibriumPressure(&law, T - h, &d),
+                   p = EquilibriumPressure(&law, T, &d);
+
+      Near(EquilibriumCurvature(&law, T), (up - 2 * p + down) / (h * h * d), 3e-3);
+    }
+  }
+}
+
 static void OtherCurves(void **state)
 {
   Equilibrium law = {.shift = 0};
@@ -294,11 +315,18 @@ static void ElasticityValues(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(RetentionValues),   cmocka_unit_test(RelPermValues),   cmocka_unit_test(PermeabilityValues),
-      cmocka_unit_test(EquilibriumValues), cmocka_unit_test(OtherCurves),     cmocka_unit_test(BrineValues),
-      cmocka_unit_test(ViscosityValues),   cmocka_unit_test(KineticsValues),  cmocka_unit_test(StateAndHeatValues),
-      cmocka_unit_test(GasValues),         cmocka_unit_test(ElasticityValues)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(RetentionValues),
+                                     cmocka_unit_test(RelPermValues),
+                                     cmocka_unit_test(PermeabilityValues),
+                                     cmocka_unit_test(EquilibriumValues),
+                                     cmocka_unit_test(EquilibriumCurvatures),
+                                     cmocka_unit_test(OtherCurves),
+                                     cmocka_unit_test(BrineValues),
+                                     cmocka_unit_test(ViscosityValues),
+                                     cmocka_unit_test(KineticsValues),
+                                     cmocka_unit_test(StateAndHeatValues),
+                                     cmocka_unit_test(GasValues),
+                                     cmocka_unit_test(ElasticityValues)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,6 +29,7 @@ from clathra import probe_names, read_csv, read_snapshots  # noqa: E402
 from clathra.units import pascals, seconds  # noqa: E402
 
 CASES = ROOT / "cases"
+WARNS_OF_HELD = "for no other reason than stabilisation_reaction_heat"  # in the end's warning of hydrate that (381) keeps, (423)
 ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """(395): at the corners of a heater, where the nodes' T is bilinear, its particles stay between what they start from and what
 the heater has; implicit and hybrid, in equal cells and others; heat is conserved, ranks agree.
-A heater in hydrate, whose reaction undershoots nothing.
+A heater in hydrate whose reaction undershoots: the warning at the end, and what it advises.
 """
 from pathlib import Path
 
@@ -39,9 +39,16 @@ for cells in short:
     judge("corners", f"hybrid against sdirk2 at a fiftieth of its stable step{cells}, K", apart, 0.02)
 two = field("heater_corners.yaml", ranks=2)[1]
 judge("corners", "2 ranks against 1, K", np.max(np.abs(two - found["sdirk2"][1])), 1e-6)
-# Beside hydrate on cells of 1 m, heated within a day, the reaction takes no node below all there is.
-run, T = field("heater_rod.yaml", "-quiet")
-judge("corners", "a heater in hydrate, coarse: colder than the start, K", max(14.4 - T.min(), 0.0), 0.5)
-judge("corners", "... warmer than the heater, K", max(T.max() - HEATER, 0.0), 1.0)
-check_true("... the range is in the summary", "  T of particles from " in (run.out / "summary.txt").read_text())
+# Beside hydrate on cells of 1 m, heated within a day, the reaction drives the next node below all there is (265): the run says so, and the key that it names mends it.
+ROD = ("heater_rod.yaml", "-quiet")
+(bare, cold), (held, mended) = field(*ROD), field(*ROD, "-stabilisation_reaction_heat", "yes")
+judge("corners", "a heater in hydrate, coarse, without stabilisation_reaction_heat: colder than the start, K", 14.4 - cold.min(), (2, 10))
+check_true("... said at the end, with the key that mends it first", "colder than start, conditions and hydrate" in bare.output and "in this order: stabilisation_reaction_heat: yes" in bare.output, bare.output[-600:])
+check_true("... and in the summary", "  T of particles from " in (bare.out / "summary.txt").read_text())
+judge("corners", "a heater in hydrate with stabilisation_reaction_heat: colder than the start, K", max(14.4 - mended.min(), 0.0), 0.5)
+judge("corners", "... warmer than the heater, K: (395) rests where hydrate still is", max(mended.max() - HEATER, 0.0), 5.0)
+check_true("... which the end says, and nothing of the cold", "warmer than start, conditions" in held.output and "colder than start" not in held.output, held.output[-300:])
+_, gone = field(*ROD, "-stabilisation_reaction", "yes")  # no hydrate is left in the heater's cells: (395) is back
+judge("corners", "a heater in hydrate with stabilisation_reaction: warmer than the heater, K", max(gone.max() - HEATER, 0.0), 1.0)
+judge("corners", "... colder than the start, K", max(14.4 - gone.min(), 0.0), 1.0)
 finish()
