@@ -11,7 +11,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "integration"))
 import _files  # noqa: E402
 from _auto import CASE, EXACT, PHASES, Q, TIMES, WATCHED, column  # noqa: E402
-from common import changes, check_true, finish, judge, scratch, table  # noqa: E402
+from common import CASES, binary, changes, check_true, finish, judge, launch, scratch, table  # noqa: E402
 
 def errors(run):
     """{curve: largest error over its range in each phase}."""
@@ -43,6 +43,13 @@ lines = re.findall(r"^  (sdirk2|hybrid) from \S+ s to \S+ s \([\d.]+ \w+\), \d+ 
 check_true("a line for each in summary.txt", lines == ["sdirk2", "hybrid", "sdirk2"], str(lines))
 fixed = column("auto", "-stepper_adapt", "no", "-stepper_dt", "0.5 s")
 check_true("with a fixed step it stays with what it chose", not changes(fixed) and "integrator chosen: sdirk2\n" in fixed.output)
+
+# ---------------------------------------------------------------------- stabilisations that only implicit steps know
+STABILISED = ("-stabilisation_upstream", "no", "-stabilisation_saturation", "yes", "-inertia", "yes", "-stepper_adapt", "yes", "-case_check")
+chosen, refused = (launch(binary(), CASES / "buckley_leverett", *STABILISED, "-stepper_type", kind, out=scratch() / "out") for kind in ("auto", "hybrid"))
+check_true("auto's implicit steps have them, hybrid goes without, and the start says so",
+           chosen.returncode == 0 and "hybrid goes without stabilisation_saturation" in chosen.stdout and "hybrid goes without" not in run.output, chosen.stdout[-300:])  # fmt: skip
+check_true("... and hybrid alone refuses them", refused.returncode == 2 and "hybrid does not know stabilisation_saturation" in refused.stdout, refused.stdout[-300:])
 
 # ------------------------------------------------------------------------------- a change leaves everything as it was
 rows = run.balance["time_s"]
