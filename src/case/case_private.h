@@ -220,7 +220,7 @@ void ListCreate(const char *text, List *list);
 void ListDestroy(List *list);
 /* forms.c: "{ramp: [...]}" in one word, as the command line gives it: its place in case_schedule_form, and its values
    in `inner`, as long as the text; -1: it is none. */
-int  FormInBraces(const char *text, char *inner);
+int FormInBraces(const char *text, char *inner);
 /* derive.c: what follows from the keys of each group; then what follows from where regions and wells are.  Both before
    stages copy the scene. */
 PetscErrorCode CaseDerive(Reader *r, Case *c);
@@ -240,7 +240,7 @@ bool WellFits(const Bc *b, const Well *w);
 bool WellRuns(const Scene *c, const Bc *b); /* along one axis in space; in the plane, not about an axis */
 void CheckInitial(Reader *r, const Scene *c, const Region *g); /* initial.c: states in balance with gravity */
 /* regions.c: shapes, faces named by a side or a line, probes */
-void RegionsFinish(Scene *c); /* once all keys are read */
+void RegionsFinish(Scene *c);              /* once all keys are read */
 bool ShapesGood(Reader *r, const Case *c); /* else an error is said */
 /* Of good shapes: where two lie over each other the earlier one is cut; none is to be without particles. */
 PetscErrorCode RegionsCut(Reader *r, Case *c);

@@ -50,11 +50,11 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(hydrate0),     REAL(acts),
                                      {NULL, 0, 0, false}};
 /* Fifteen integers, filled up to doubles, 32 reals and a place, meters, works, energies, what left, extremes. */
-_Static_assert(sizeof(StepperState) ==
-                   (15 * sizeof(PetscInt) + sizeof(double) - 1) / sizeof(double) * sizeof(double) +
-                       (32 + CL_DIM + CL_METERS * METER_COUNT + ACTS_COUNT + WORK_COUNT + ENERGY_COUNT + REMOVED_COUNT + EXTREMES) *
-                           sizeof(double) +
-                       EXTREMES * sizeof(Extreme),
+_Static_assert(sizeof(StepperState) == (15 * sizeof(PetscInt) + sizeof(double) - 1) / sizeof(double) * sizeof(double) +
+                                           (32 + CL_DIM + CL_METERS * METER_COUNT + ACTS_COUNT + WORK_COUNT +
+                                            ENERGY_COUNT + REMOVED_COUNT + EXTREMES) *
+                                               sizeof(double) +
+                                           EXTREMES * sizeof(Extreme),
                "a new field of StepperState must join io_state_field");
 
 static PetscErrorCode WriteState(hid_t file, const StepperState *s)
