@@ -1,5 +1,6 @@
 /* clathra CASE [PETSc options] */
 #include "clathra/run.h"
+#include <ctype.h>
 
 static const char help[] =
     "Clathra: coupled thermo-hydro-mechanical-chemical material point simulator for methane-hydrate-bearing sediment.\n"
@@ -32,6 +33,21 @@ static const char help[] =
     "Exit codes: 0 done, 1 bug, 2 wrong case or option, 3 gave up or could not write (last good state in\n"
     "checkpoint.h5), 4 ended by a signal (state in checkpoint.h5).\n\n";
 
+static bool IsOption(const char *word)
+{
+  return word[0] == '-' && (isalpha((unsigned char)word[1]) || word[1] == '-');
+}
+
+/* The first word behind the case that is neither an option nor the value of one; NULL: there is none. */
+static const char *Surplus(int argc, char **argv)
+{
+  for (int k = 2; k < argc; k++) {
+    if (!IsOption(argv[k]) && !IsOption(argv[k - 1]))
+      return argv[k];
+  }
+  return NULL;
+}
+
 static PetscErrorCode Main(int argc, char **argv, int *exit_code)
 {
   Case        c;
@@ -52,6 +68,14 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   if (argc < 2 || argv[1][0] == '-') {
     if (rank == 0)
       fprintf(stderr, "clathra: name a case: clathra CASE [options]; -help explains\n");
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (Surplus(argc, argv)) {
+    if (rank == 0)
+      fprintf(stderr,
+              "clathra: '%s' is neither an option nor the value of one; options begin with -, as -grid_cells 50,1\n",
+              Surplus(argc, argv));
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -26,9 +26,9 @@ typedef struct {
 PetscErrorCode FolderTake(MPI_Comm comm, const char *dir, const Origin *from, Folder *folder, int *exit_code);
 /* Gives the folder back: others may write into it. */
 PetscErrorCode FolderRelease(Folder *folder);
-/* Does the folder hold nothing, or results of the case whose resolved form this is?  Otherwise a sentence.  Collective.
- */
-PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool *ok);
+/* May a run of the case whose resolved form this is write into the folder?  Not where it holds a case of the user's
+   own, nor, if it keeps those, results of another case: a sentence says so.  Collective. */
+PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool keeps, bool *ok);
 /* Adds to the end of a text file of the folder, on rank 0; fresh: a new file in its place, whole, or as it was.
    Collective. */
 PetscErrorCode FolderAppendText(MPI_Comm comm, const char *dir, const char *name, bool fresh, const char *text,

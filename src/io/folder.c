@@ -176,6 +176,23 @@ static bool SameFile(const char *a, const char *b)
   return same;
 }
 
+/* Would a run write over a case that no run has written?  That is the user's own. */
+static bool HoldsOwn(const char *dir, char *resolved, size_t bytes)
+{
+  char path[IO_PATH], held[3][HEAD], ours[3][HEAD];
+
+  snprintf(path, sizeof(path), "%s/case.yaml", dir);
+  Head(fopen(path, "r"), held);
+  Head(fmemopen(resolved, bytes, "r"), ours);
+  if (access(path, F_OK) || !strcmp(held[0], ours[0]))
+    return false;
+  fprintf(stderr,
+          "clathra: %s is a case of your own, over which the run would write its own form of the case; give another "
+          "-output_dir\n",
+          path);
+  return true;
+}
+
 /* A case may have moved to another place with its folder, or have been copied: then its title tells, unless its old
    file is still there and says something else. */
 static bool HoldsOther(const char *dir, char *resolved, size_t bytes)
@@ -196,7 +213,7 @@ static bool HoldsOther(const char *dir, char *resolved, size_t bytes)
   return true;
 }
 
-PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool *ok)
+PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool keeps, bool *ok)
 {
   PetscMPIInt rank;
   int         other = 0;
@@ -204,7 +221,7 @@ PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, s
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (rank == 0)
-    other = HoldsOther(dir, resolved, bytes);
+    other = HoldsOwn(dir, resolved, bytes) || (keeps && HoldsOther(dir, resolved, bytes));
   PetscCallMPI(MPI_Bcast(&other, 1, MPI_INT, 0, comm));
   *ok = !other;
   PetscFunctionReturn(PETSC_SUCCESS);

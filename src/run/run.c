@@ -223,20 +223,18 @@ static PetscErrorCode WriteCase(MPI_Comm comm, const Case *c, Run *run)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A new run does not write over another case's results unless it is told to. */
-static PetscErrorCode CheckFolder(MPI_Comm comm, const Case *c, bool *ok)
+/* A run does not write over a case of the user's own, nor a new one over another case's results unless it is told to.
+ */
+static PetscErrorCode CheckFolder(MPI_Comm comm, const Case *c, bool restart, bool *ok)
 {
   PetscBool overwrite = PETSC_FALSE;
   char     *text;
   size_t    size;
 
   PetscFunctionBeginUser;
-  *ok = true;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-overwrite", &overwrite, NULL));
-  if (overwrite)
-    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CaseText(c, CaseWriteResolved, &text, &size));
-  PetscCall(FolderCheckCase(comm, c->output_dir, text, size, ok));
+  PetscCall(FolderCheckCase(comm, c->output_dir, text, size, !restart && !overwrite, ok));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -390,6 +388,10 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
 
   PetscFunctionBeginUser;
   *exit_code = CL_EXIT_INPUT;
+  if (!run->check)
+    PetscCall(CheckFolder(s->model->grid.comm, c, restart[0], &ok));
+  if (!ok)
+    PetscFunctionReturn(PETSC_SUCCESS);
   if (restart[0]) {
     PetscCall(CheckpointRead(s->model, &s->state, restart, &origin, &ok));
     if (!ok)
@@ -400,9 +402,7 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
     run->restarted = true;
   } else {
     run->t_saved = NAN;
-    if (!run->check)
-      PetscCall(CheckFolder(s->model->grid.comm, c, &ok));
-    if (ok && run->initial[0])
+    if (run->initial[0])
       PetscCall(StartFromState(s, run->initial, &ok));
     if (!ok)
       PetscFunctionReturn(PETSC_SUCCESS);
@@ -467,6 +467,22 @@ static Place CellsWords(const Scene *c, const char *between)
   return words;
 }
 
+/* The path that an option gives, PETSC_MAX_PATH_LEN long; empty without it.  With it but without a path: a sentence. */
+static PetscErrorCode CheckpointOption(MPI_Comm comm, const char *option, char *path, bool *ok)
+{
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetString(NULL, NULL, option, path, PETSC_MAX_PATH_LEN, &given));
+  if (given && !path[0]) {
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "clathra: %s needs the path of a checkpoint, e.g. %s results/bp2/checkpoint.h5\n", option,
+                           option));
+    *ok = false;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
 {
   Run         run = {0};
@@ -475,13 +491,18 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
   PetscBool   quiet = PETSC_FALSE;
   PetscInt    unknown;
   PetscMPIInt size;
+  bool        ok = true;
 
   PetscFunctionBeginUser;
   run.check = check;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", run.restart, sizeof(run.restart), NULL));
-  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart_as_initial", run.initial, sizeof(run.initial), NULL));
   run.quiet = quiet;
+  PetscCall(CheckpointOption(comm, "-restart", run.restart, &ok));
+  PetscCall(CheckpointOption(comm, "-restart_as_initial", run.initial, &ok));
+  if (!ok) {
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (run.restart[0] && run.initial[0]) {
     PetscCall(PetscFPrintf(comm, stderr,
                            "clathra: -restart goes on with a run, -restart_as_initial begins another one: give one of "

@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from _files import hashes  # noqa: E402
 from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
@@ -24,6 +25,30 @@ def check_share():
     said = run(binary(), *BP2, "-progress", "0", "-time_end", "1 s", "-restart", out / "checkpoint.h5", out=out).output
     shares = re.findall(r"^step +(\d+): t = .*? \(([\d.]+) %\)", said, re.M)
     check_true("a restart in the middle goes on with 55 % of the run", shares and shares[0] == ("11", "55.0") and shares[-1] == ("20", "100.0"), shares[:2])
+
+
+def check_refused():
+    """Words that would be ignored, a restart from nowhere, a folder with a case of the user's own: nothing is run or written."""
+    done = scratch() / "done"
+    run(binary(), *BP2, "-quiet", "-stepper_max_steps", "1", out=done)
+    before = hashes(done)
+    for option in ("-restart", "-restart_as_initial"):
+        for value in (("",), ()):
+            said = launch(binary(), *BP2, "-quiet", "-output_dir", done, option, *value)
+            check_true(f"{option} {value or 'without a value'} is refused", said.returncode == 2 and f"{option} needs the path of a checkpoint" in said.stdout and hashes(done) == before, said.stdout[-300:])
+    said = launch(binary(), BP2[0], "grid_cells", "13,1", out=scratch() / "none")
+    check_true("a word that is no option is refused", said.returncode == 2 and "'grid_cells' is neither an option nor the value of one" in said.stdout, said.stdout[-300:])
+    said = launch(binary(), *BP2, "-case_check", "yes", "50,1", out=scratch() / "none")
+    check_true("... and a second value", said.returncode == 2 and "'50,1' is neither" in said.stdout, said.stdout[-300:])
+    own = scratch() / "own"
+    own.mkdir()
+    (own / "case.yaml").write_text((CASES / "bp2" / "case.yaml").read_text())
+    before = hashes(own)
+    for how in ((), ("-overwrite",), ("-restart", done / "checkpoint.h5")):
+        said = launch(binary(), own, *BP2[1:], "-quiet", *how, out=own)
+        check_true(f"the case's own folder as -output_dir is refused {how[:1]}", said.returncode == 2 and "is a case of your own" in said.stdout and hashes(own) == before, said.stdout[-300:])
+    again = launch(binary(), done / "case.yaml", "-quiet", "-stepper_max_steps", "1", "-restart", done / "checkpoint.h5", out=done)
+    check_true("... a case that a run has written goes on in its folder", again.returncode == 0, again.stdout[-300:])
 
 
 def check_limit():
@@ -307,6 +332,7 @@ def main():
     check_words()
     check_share()
     check_tide()
+    check_refused()
     check_limit()
     check_slivers()
     check_retries()
