@@ -60,6 +60,7 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 /* Numerics of the model, which a restart may change. */
 typedef struct {
   double ghost_penalty;     /* g, 0 = off; default 0.1 */
+  double ghost_storage;     /* g_s, 0 = off (default) */
   bool   upstream;          /* drag of the fluids from upstream; default false */
   bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind; /* (200); default false */

@@ -151,6 +151,9 @@ const Key case_key[] = {
         "paper's form, which rings)"),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
          "at free surfaces; 0 = off"),
+    REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",
+         "on changes of pressure in slivers of cells and where particles do not see them, for undrained bodies; 0 = "
+         "off"),
     BOOLEAN(Case, "stabilisation_upstream", scene.stabilisation.upstream, "no",
             "relative permeabilities from upstream, for sharp fronts of saturation"),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",

@@ -3,8 +3,6 @@
 
 #include "clathra/model.h"
 
-#define TIED 0.1 /* g_s of (351) and (417): a sliver's particle takes at most 5 % of a jump inside the body */
-
 /* Second difference of the ghost penalties (22), (351): a node with its neighbours along one axis; or the difference
    (417) of two. */
 typedef struct {

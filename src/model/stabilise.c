@@ -179,7 +179,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
       if (lo < 0 || hi < 0)
         continue;
       const PetscInt node[3] = {lo, I, hi};
-      const double   tied    = m->c->fields.fluid ? TieVolume(m, node) : 0.0;
+      const double   tied    = m->c->stabilisation.ghost_storage > 0.0 ? TieVolume(m, node) : 0.0;
       if (area == 0.0 && tied == 0.0)
         continue;
       for (int e = 0; e < CL_DIM; e++)
@@ -197,7 +197,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
                            .lambda  = {c[NC_LAMBDA], c[NC_LAMBDA + 1]},
                            .carried = CarriedAt(m, I)};
       for (int f = 0; f < PHASE_COUNT; f++)
-        ghost->store[f] = TIED * tied * StoredAt(m, I, f);
+        ghost->store[f] = m->c->stabilisation.ghost_storage * tied * StoredAt(m, I, f);
     }
   }
   m->added->nghost = n;
@@ -221,7 +221,7 @@ static PetscErrorCode BuildGhost(Model *m)
           near[I] || IsCut(fill, CellBeside(m, m->map.ij[I], d, -1)) || IsCut(fill, CellBeside(m, m->map.ij[I], d, 1));
   }
   PetscCall(BuildGhostLines(m, fill, near));
-  if (m->c->fields.fluid)
+  if (m->c->stabilisation.ghost_storage > 0.0 && m->c->fields.fluid)
     PetscCall(UnseenBuild(m));
   PetscCall(PetscFree2(fill, near));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -331,7 +331,7 @@ PetscErrorCode StabilisationBuild(Model *m)
 {
   PetscFunctionBeginUser;
   m->added->nghost = m->added->ncell = 0;
-  if (m->c->stabilisation.ghost_penalty > 0.0 || m->c->fields.fluid)
+  if (m->c->stabilisation.ghost_penalty > 0.0 || m->c->stabilisation.ghost_storage > 0.0)
     PetscCall(BuildGhost(m));
   if (m->c->fields.solid && m->c->fields.fluid)
     PetscCall(BuildProjection(m));

@@ -53,7 +53,7 @@ static double TieVolume(const double *gram, PetscInt a, PetscInt b, int d)
 /* The difference of two nodes is a line whose third node does not count. */
 static GhostLine Line(const Model *m, PetscInt a, PetscInt b, double volume)
 {
-  const double share = 0.5 * TIED * volume;
+  const double share = 0.5 * m->c->stabilisation.ghost_storage * volume;
   GhostLine    line  = {.node = {a, b, b}, .second = {1.0, -1.0, 0.0}, .carried = CarriedAt(m, a)};
 
   for (int f = 0; f < PHASE_COUNT; f++)

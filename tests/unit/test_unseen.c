@@ -8,6 +8,7 @@
 #include <math.h>
 #include <cmocka.h>
 #include "tied_scene.h"
+#include "model/additions.h"
 #include "model/gather.h"
 
 #define SIZE (N + 1)
@@ -18,10 +19,10 @@ typedef double Ties[CL_DIM][SIZE][SIZE];
 /* Of every pair of neighbours, W[axis][y][x] of the lower one: the tie over g_s h^2 rho s. */
 static void TiesOf(int ppc, const double lower[2], const double upper[2], Ties W)
 {
-  SmallScene  *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, ppc, lower, upper);
+  SmallScene  *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, ppc, lower, upper, G_S);
   const Model *m = &s->m;
 
-  TiedStage(s, true);
+  StageStart(s, 1.0);
   memset(W, 0, sizeof(Ties));
   for (PetscInt k = 0; k < m->added->nghost; k++) {
     const GhostLine *g  = &m->added->ghost[k];
@@ -97,7 +98,7 @@ static void TestFilled(void **state)
 static double TieOfTwo(double apart)
 {
   const double     lower[2] = {0.0, 2.05 * H}, upper[2] = {N * H, 3.05 * H};
-  SmallScene      *s   = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, lower, upper);
+  SmallScene      *s   = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, lower, upper, G_S);
   const Particles *P   = &s->m.P;
   double           tie = 0.0;
 
@@ -105,7 +106,7 @@ static double TieOfTwo(double apart)
     if (P->f[P_X + 1][p] > 2.55 * H)
       P->f[P_X + 1][p] += (apart - 0.5) * H;
   }
-  TiedStage(s, true);
+  StageStart(s, 1.0);
   for (PetscInt k = 0; k < s->m.added->nghost; k++) {
     const GhostLine *g  = &s->m.added->ghost[k];
     const PetscInt  *ij = s->m.map.ij[g->node[0]];
@@ -140,7 +141,7 @@ static const double row[2][2] = {{0.117, 0.234}, {0.408, 0.284}};
 
 static void TestRows(void **state)
 {
-  SmallScene *s = TiedScene(HAS_ALL, false, BASIS_CPGIMP, 2, row[0], row[1]);
+  SmallScene *s = TiedScene(HAS_ALL, false, BASIS_CPGIMP, 2, row[0], row[1], G_S);
   double      constant, sum;
 
   (void)state;
@@ -157,9 +158,9 @@ static void TestRows(void **state)
 /* A sealed row of particles at unlike heights: what is stored in them grows by what makes 0.1 MPa, and Newton's method
    starts from nodes that are up to 1 MPa off. Largest change of a node's pressure over 0.1 MPa; apart: of a particle's,
    from 1. */
-static double Sealed(bool ties, double *apart)
+static double Sealed(double g_s, double *apart)
 {
-  SmallScene  *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, row[0], row[1]);
+  SmallScene  *s = TiedScene(HAS_WATER, false, BASIS_CPGIMP, 2, row[0], row[1], g_s);
   Model       *m = &s->m;
   const int    n = m->c->fields.n, at = PlaceP(&m->c->fields, PHASE_W);
   const double made = 1e5;
@@ -169,7 +170,7 @@ static double Sealed(bool ties, double *apart)
 
   for (PetscInt p = 0; p < m->P.n; p++)
     m->P.f[P_X + 1][p] += 0.03 * H * Noise(4, m->P.i[PI_ID][p], 0);
-  TiedStage(s, ties);
+  StageStart(s, 1.0);
   for (PetscInt p = 0; p < m->P.n; p++)
     s->stage.m_star[3 * p + 1] *= 1.0 + made / s->mat.water.K;
   Call(ModelBeginStage(m, &s->stage));
@@ -206,7 +207,7 @@ static void TestSealed(void **state)
     double bare_apart, apart;
 
     Call(PetscOptionsSetValue(NULL, "-newton_preconditioner", matrix[k]));
-    const double bare = Sealed(false, &bare_apart), tied = Sealed(true, &apart);
+    const double bare = Sealed(0.0, &bare_apart), tied = Sealed(G_S, &apart);
 
     Say("a sealed row, LU of the %s matrix: nodes change by %.3g without and %.3f with the tie of what particles do, "
         "particles off by %.1e and %.1e\n",

@@ -1,16 +1,15 @@
-/* A body on a grid of 6 x 6 cells of 0.1 m, undrained, for the ties of changes of pressure (351), (417): nothing else
-   is added to the balances. */
+/* A body on a grid of 6 x 6 cells of 0.1 m, undrained, for the ties of changes of pressure (351), (417): no other
+   stabilisation acts. */
 #pragma once
 
 #include "small_scene.h"
-#include "model/additions.h"
 
-#define H 0.1 /* m, cells */
-#define G_S TIED
-#define N 6 /* cells along an axis */
+#define H 0.1   /* m, cells */
+#define G_S 0.3 /* g_s */
+#define N 6     /* cells along an axis */
 
 static inline SmallScene *TiedScene(unsigned has, bool axisymmetric, BasisType basis, int ppc, const double lower[2],
-                                    const double upper[2])
+                                    const double upper[2], double g_s)
 {
   SmallScene *s = malloc(sizeof(*s));
 
@@ -18,20 +17,12 @@ static inline SmallScene *TiedScene(unsigned has, bool axisymmetric, BasisType b
   s->c.scene.upper[1]                    = N * H;
   s->c.scene.cells[1]                    = N;
   s->c.scene.stabilisation.ghost_penalty = 0.0;
+  s->c.scene.stabilisation.ghost_storage = g_s;
   s->region.ppc[0] = s->region.ppc[1] = ppc;
   s->mat.reacts                       = false;
   s->mat.permeability.k0              = 1e-30; /* m^2: undrained */
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   return s;
-}
-
-/* Begins a stage, without (23); tied: with (351) and (417). */
-static inline void TiedStage(SmallScene *s, bool tied)
-{
-  StageStart(s, 1.0);
-  s->m.added->ncell = 0;
-  if (!tied)
-    s->m.added->nghost = 0;
 }
 
 static inline void TiedFree(SmallScene *s)

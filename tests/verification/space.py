@@ -59,6 +59,7 @@ def block():
             "sun": {"type": "convection", "side": "top", "ambient": "12 degC", "alpha": "400 W/(m^2 K)"},
         },
         "time": {"end": "200 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "20 s"},
+        "stabilisation": {"ghost_storage": 0.1},
         "output": {"times": ["200 s"]},
     }  # fmt: skip
 
