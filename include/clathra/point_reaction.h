@@ -103,7 +103,7 @@ typedef struct {
   double v, Sh, pc, over;
 } Wetted;
 
-#define WET_OVER 1e3  /* Pa above p_e over which W goes from the surface that melts to that of its own */
+#define WET_OVER 1e2  /* Pa above p_e over which W goes from the surface that melts to that of its own */
 #define WET_OPEN 1e-2 /* least 1 - S_h that counts there */
 
 /* A number with its slope in x. */

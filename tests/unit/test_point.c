@@ -705,7 +705,7 @@ static double Lacks(const Particle *q, const PointState *s, double S, double rho
   const bool   holds = q->mat.gas.trace > 0.0;
   const double p = holds && pg < pw ? pg : (1.0 - sg) * pw + sg * pg, S0 = q->h.m_star[0] / pore;
   const double gas = fmax(pg - pw, 0.0) / RetentionTrapScale(&q->mat.retention);
-  const double x = fmax(p - pe, 1e-12) / 1e3, whole = pow(fmax(1.0 - S0, 0.01), -3.0);
+  const double x = fmax(p - pe, 1e-12) / WET_OVER, whole = pow(fmax(1.0 - S0, 0.01), -3.0);
   const double more = 1.0 + (whole - 1.0) * -expm1(-x) / x;
   const double wet  = holds ? s->phi * S0 * more * pow(1.0 - S, 3.0) * exp(-gas) : 0.0;
   const double area = p <= pe ? s->phi * S : (1.0 - sg) * (sg * pow(1.0 - S, 3.0) + wet);

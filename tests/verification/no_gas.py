@@ -115,7 +115,7 @@ def grows():
 
         def slope(m):
             over, whole = pg_of(m) - pe, (1 - m / 900 / PHI) ** -3
-            return 0.124 * Kd * 7.5e5 * m / 900 / whole * (over + (whole - 1) * -math.expm1(-over / 1e3) * 1e3)
+            return 0.124 * Kd * 7.5e5 * m / 900 / whole * (over + (whole - 1) * -math.expm1(-over / 100) * 100)
 
         m, dt, found = m0, ends[-1] / n, []
         for i in range(1, n + 1):
