@@ -467,19 +467,15 @@ static Place CellsWords(const Scene *c, const char *between)
   return words;
 }
 
-/* The path that an option gives, PETSC_MAX_PATH_LEN long; empty without it.  With it but without a path: a sentence. */
-static PetscErrorCode CheckpointOption(MPI_Comm comm, const char *option, char *path, bool *ok)
+/* An option that is given without its path: a sentence. */
+static PetscErrorCode CheckPath(MPI_Comm comm, const char *option, bool given, const char *path, bool *ok)
 {
-  PetscBool given;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsGetString(NULL, NULL, option, path, PETSC_MAX_PATH_LEN, &given));
-  if (given && !path[0]) {
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: %s needs the path of a checkpoint, e.g. %s results/bp2/checkpoint.h5\n", option,
-                           option));
-    *ok = false;
-  }
+  if (!given || path[0])
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFPrintf(
+      comm, stderr, "clathra: %s needs the path of a checkpoint, e.g. %s results/bp2/checkpoint.h5\n", option, option));
+  *ok = false;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -488,7 +484,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
   Run         run = {0};
   Model       model;
   Stepper     stepper;
-  PetscBool   quiet = PETSC_FALSE;
+  PetscBool   quiet = PETSC_FALSE, given;
   PetscInt    unknown;
   PetscMPIInt size;
   bool        ok = true;
@@ -497,8 +493,10 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
   run.check = check;
   PetscCall(PetscOptionsGetBool(NULL, NULL, "-quiet", &quiet, NULL));
   run.quiet = quiet;
-  PetscCall(CheckpointOption(comm, "-restart", run.restart, &ok));
-  PetscCall(CheckpointOption(comm, "-restart_as_initial", run.initial, &ok));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart", run.restart, sizeof(run.restart), &given));
+  PetscCall(CheckPath(comm, "-restart", given, run.restart, &ok));
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-restart_as_initial", run.initial, sizeof(run.initial), &given));
+  PetscCall(CheckPath(comm, "-restart_as_initial", given, run.initial, &ok));
   if (!ok) {
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
