@@ -10,6 +10,7 @@
 
 static const int             asks[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 static bool                  deaf[sizeof(asks) / sizeof(*asks)]; /* ignored when the program was started: nohup, & */
+static bool                  quiet; /* a reader that goes away ends the program without a word */
 static volatile sig_atomic_t caught;
 
 static void Hear(int number)
@@ -46,6 +47,7 @@ void ProcessPrepare(char **argv)
 
 PetscErrorCode ProcessQuietPipe(void)
 {
+  quiet = true;
   signal(SIGPIPE, SIG_DFL);                                      /* ends without a word, as others do */
   return PetscOptionsSetValue(NULL, "-no_signal_handler", NULL); /* before PetscInitialize, which would take it */
 }
@@ -61,7 +63,7 @@ void ProcessListen(void)
     else
       sigaction(asks[k], &act, NULL);
   }
-  signal(SIGPIPE, SIG_IGN);
+  signal(SIGPIPE, quiet ? SIG_DFL : SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
 }
 
