@@ -177,13 +177,8 @@ static bool SameFile(const char *a, const char *b)
 }
 
 /* Would a run write over a case that no run has written?  That is the user's own. */
-static bool HoldsOwn(const char *dir, char *resolved, size_t bytes)
+static bool HoldsOwn(const char *path, char held[3][HEAD], char ours[3][HEAD])
 {
-  char path[IO_PATH], held[3][HEAD], ours[3][HEAD];
-
-  snprintf(path, sizeof(path), "%s/case.yaml", dir);
-  Head(fopen(path, "r"), held);
-  Head(fmemopen(resolved, bytes, "r"), ours);
   if (access(path, F_OK) || !strcmp(held[0], ours[0]))
     return false;
   fprintf(stderr,
@@ -195,13 +190,8 @@ static bool HoldsOwn(const char *dir, char *resolved, size_t bytes)
 
 /* A case may have moved to another place with its folder, or have been copied: then its title tells, unless its old
    file is still there and says something else. */
-static bool HoldsOther(const char *dir, char *resolved, size_t bytes)
+static bool HoldsOther(const char *dir, char held[3][HEAD], char ours[3][HEAD])
 {
-  char path[IO_PATH], held[3][HEAD], ours[3][HEAD];
-
-  snprintf(path, sizeof(path), "%s/case.yaml", dir);
-  Head(fopen(path, "r"), held);
-  Head(fmemopen(resolved, bytes, "r"), ours);
   const bool there = access(held[1] + strlen(MARK), R_OK) == 0, titled = strcmp(ours[2], "title: ''") != 0;
 
   if (strcmp(held[0], ours[0]) || !strcmp(held[1], ours[1]) ||
@@ -215,13 +205,18 @@ static bool HoldsOther(const char *dir, char *resolved, size_t bytes)
 
 PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, size_t bytes, bool keeps, bool *ok)
 {
+  char        path[IO_PATH], held[3][HEAD], ours[3][HEAD];
   PetscMPIInt rank;
   int         other = 0;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (rank == 0)
-    other = HoldsOwn(dir, resolved, bytes) || (keeps && HoldsOther(dir, resolved, bytes));
+  if (rank == 0) {
+    snprintf(path, sizeof(path), "%s/case.yaml", dir);
+    Head(fopen(path, "r"), held);
+    Head(fmemopen(resolved, bytes, "r"), ours);
+    other = HoldsOwn(path, held, ours) || (keeps && HoldsOther(dir, held, ours));
+  }
   PetscCallMPI(MPI_Bcast(&other, 1, MPI_INT, 0, comm));
   *ok = !other;
   PetscFunctionReturn(PETSC_SUCCESS);
