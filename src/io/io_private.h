@@ -9,6 +9,10 @@
 #include <hdf5.h>
 #include <stdio.h>
 
+#ifndef H5_HAVE_PARALLEL
+  #error "Clathra needs an HDF5 that was built with MPI"
+#endif
+
 #define IO_PATH (PETSC_MAX_PATH_LEN + 64)
 #define IO_FORMAT_VERSION 1 /* of fields.h5 */
 
