@@ -21,6 +21,9 @@
 #ifndef PETSC_SUCCESS /* appeared in PETSc 3.19 */
   #define PETSC_SUCCESS 0
 #endif
+#if !PETSC_VERSION_GE(3, 25, 0) /* its name from PETSc 3.25 on */
+  #define SNES_DIVERGED_FUNCTION_NANORINF SNES_DIVERGED_FNORM_NAN
+#endif
 
 #define CL_ZERO_CELSIUS 273.15 /* K */
 

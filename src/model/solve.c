@@ -114,7 +114,7 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) {
-    *reason = SNES_DIVERGED_FNORM_NAN;
+    *reason = SNES_DIVERGED_FUNCTION_NANORINF;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SNESGetFunction(snes, &R, NULL, NULL));
@@ -191,7 +191,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESSetTolerances(m->solver->snes, 0.0, 0.0, 0.0, 30, 10000));
   PetscCall(SNESSetConvergenceTest(m->solver->snes, Converged, m, NULL));
   PetscCall(SNESGetLineSearch(m->solver->snes, &ls));
-  PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHBASIC));
+  PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHNONE));
   PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
   PetscCall(SNESLineSearchSetPostCheck(ls, ModelSlaveUpdated, m));
   PetscCall(SNESGetKSP(m->solver->snes, &ksp));
@@ -338,7 +338,7 @@ static PetscErrorCode Attempt(Model *m, int attempt, const double *x, PetscInt *
   PetscCall(SNESGetConvergedReason(s->snes, reason));
   PetscCall(SNESGetIterationNumber(s->snes, &its));
   *newton += its - s->kept;
-  if (*reason == SNES_DIVERGED_FNORM_NAN)
+  if (*reason == SNES_DIVERGED_FUNCTION_NANORINF)
     PetscCall(ModelReduceStatus(m, &m->failure.status));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -352,7 +352,7 @@ PetscErrorCode ModelSolve(Model *m, double *x, PetscInt *newton, ClStatus *statu
   *newton             = 0;
   m->solver->searches = false;
   for (int attempt = 0; attempt < ATTEMPTS && reason <= 0; attempt++) {
-    if (reason == SNES_DIVERGED_FNORM_NAN && m->failure.status != CL_OK)
+    if (reason == SNES_DIVERGED_FUNCTION_NANORINF && m->failure.status != CL_OK)
       break; /* a particle said why */
     if (IsDue(m, attempt, reason))
       PetscCall(Attempt(m, attempt, x, newton, &reason));
