@@ -12,8 +12,8 @@
 #if defined(PETSC_USE_COMPLEX)
   #error "Clathra needs a PETSc build with real scalars"
 #endif
-#if defined(PETSC_USE_64BIT_INDICES) || !defined(PETSC_USE_REAL_DOUBLE)
-  #error "Clathra needs a PETSc build with 32-bit indices and double precision"
+#if !defined(PETSC_USE_REAL_DOUBLE)
+  #error "Clathra needs a PETSc build with double precision"
 #endif
 #ifdef I /* complex.h, pulled in by petsc.h, takes this name */
   #undef I

@@ -25,6 +25,17 @@ static uint64_t HashReals(uint64_t h, const double *v, size_t n)
   return h;
 }
 
+/* As C's own whole numbers, so that PETSc's may be wider where the case goes on. */
+static uint64_t HashInts(uint64_t h, const PetscInt *v, size_t n)
+{
+  for (size_t i = 0; i < n; i++) {
+    const int x = (int)v[i];
+
+    h = HashBytes(h, &x, sizeof x);
+  }
+  return h;
+}
+
 static uint64_t HashText(uint64_t h, const char *text)
 {
   return text ? HashBytes(h, text, strlen(text) + 1) : HashBytes(h, "", 1);
@@ -32,21 +43,21 @@ static uint64_t HashText(uint64_t h, const char *text)
 
 static uint64_t HashSchedule(uint64_t h, const Schedule *s)
 {
-  const int n = (int)s->n, steps = s->steps;
+  const int steps = s->steps;
 
-  h = HashBytes(HashBytes(h, &n, sizeof n), &steps, sizeof steps);
+  h = HashBytes(HashInts(h, &s->n, 1), &steps, sizeof steps);
   h = HashReals(HashReals(h, s->t, (size_t)s->n), s->y, (size_t)s->n);
   return HashReals(h, (const double *)s->wave, (size_t)s->nwave * sizeof(Wave) / sizeof(double));
 }
 
 static uint64_t HashPoints(uint64_t h, const Points *p)
 {
-  return HashReals(HashBytes(h, &p->n, sizeof p->n), p->x, (size_t)(2 * p->n));
+  return HashReals(HashInts(h, &p->n, 1), p->x, (size_t)(2 * p->n));
 }
 
 static uint64_t HashNames(uint64_t h, const Names *l)
 {
-  return HashBytes(HashBytes(h, &l->n, sizeof l->n), l->i, (size_t)l->n * sizeof *l->i);
+  return HashInts(HashInts(h, &l->n, 1), l->i, (size_t)l->n);
 }
 
 uint64_t KeyHash(uint64_t h, const Key *k, const char *instance)
@@ -59,7 +70,7 @@ uint64_t KeyHash(uint64_t h, const Key *k, const char *instance)
     return HashReals(h, (const double *)place, (size_t)k->count);
   case KEY_INT:
   case KEY_NAME:
-    return HashBytes(h, place, (size_t)k->count * sizeof(PetscInt));
+    return HashInts(h, (const PetscInt *)place, (size_t)k->count);
   case KEY_CHOICE:
     return HashBytes(h, place, sizeof(int));
   case KEY_BOOL:
@@ -116,7 +127,7 @@ static void HashOne(void *ctx, const Case *c, Group g, const Key *k, const char 
   uint64_t      *h = ctx;
   const PetscInt n = g == GROUP_CASE ? 1 : *GroupCount(c, g);
 
-  *h = k ? KeyHash(*h, k, instance) : HashBytes(*h, &n, sizeof n);
+  *h = k ? KeyHash(*h, k, instance) : HashInts(*h, &n, 1);
 }
 
 static uint64_t HashScene(uint64_t h, const Case *c)

@@ -64,7 +64,7 @@ static PetscErrorCode WriteState(hid_t file, const StepperState *s)
   PetscFunctionBeginUser;
   PetscCall(H5Group(file, "/state", &group));
   for (const StateField *f = io_state_field; f->name; f++) {
-    PetscCall(H5Write(group, f->name, f->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, (hsize_t)f->n,
+    PetscCall(H5Write(group, f->name, f->integer ? H5_INT : H5T_NATIVE_DOUBLE, (hsize_t)f->n,
                       (const char *)s + f->offset, NULL));
   }
   H5Check(H5Gclose(group));
@@ -97,7 +97,7 @@ static PetscErrorCode WriteBorders(hid_t file, const Grid *g)
     for (PetscInt r = 0; r <= g->nproc[d]; r++)
       border[n++] = g->start[d][r];
   }
-  PetscCall(H5Write(file, "borders", H5T_NATIVE_INT, n, border, NULL));
+  PetscCall(H5Write(file, "borders", H5_INT, n, border, NULL));
   PetscCall(PetscFree(border));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

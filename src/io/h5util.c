@@ -249,7 +249,7 @@ PetscErrorCode H5WriteReal(hid_t where, const char *attribute, double value)
 PetscErrorCode H5WriteInt(hid_t where, const char *attribute, PetscInt value)
 {
   PetscFunctionBeginUser;
-  PetscCall(WriteAttribute(where, attribute, H5T_NATIVE_INT, &value));
+  PetscCall(WriteAttribute(where, attribute, H5_INT, &value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -291,7 +291,7 @@ bool H5ReadReal(hid_t where, const char *attribute, double *value)
 
 bool H5ReadInt(hid_t where, const char *attribute, PetscInt *value)
 {
-  return ReadAttribute(where, attribute, H5T_NATIVE_INT, value);
+  return ReadAttribute(where, attribute, H5_INT, value);
 }
 
 /* Dimensions of an open dataset; 0 if it has more than two. */

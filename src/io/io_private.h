@@ -12,6 +12,11 @@
 #ifndef H5_HAVE_PARALLEL
   #error "Clathra needs an HDF5 that was built with MPI"
 #endif
+#if defined(PETSC_USE_64BIT_INDICES) /* PetscInt, in files as in memory; either is read as the other */
+  #define H5_INT H5T_NATIVE_INT64
+#else
+  #define H5_INT H5T_NATIVE_INT
+#endif
 
 #define IO_PATH (PETSC_MAX_PATH_LEN + 64)
 #define IO_FORMAT_VERSION 1 /* of fields.h5 */

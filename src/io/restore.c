@@ -40,7 +40,7 @@ static PetscErrorCode LoadState(hid_t file, Loaded *L)
     char  name[64];
 
     snprintf(name, sizeof(name), "/state/%s", f->name);
-    if (!H5Read(file, name, f->integer ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE, (hsize_t)f->n, to))
+    if (!H5Read(file, name, f->integer ? H5_INT : H5T_NATIVE_DOUBLE, (hsize_t)f->n, to))
       Refuse(L, "%s is missing or of wrong size", name);
     if (!f->integer && !Finite(to, f->n))
       Refuse(L, "%s is not finite", name);
@@ -82,7 +82,7 @@ static PetscErrorCode LoadInts(hid_t group, Loaded *L)
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 5; k++) {
-    if (!H5ReadPart(group, name[k], H5T_NATIVE_INT, &L->part, 1, to[k]))
+    if (!H5ReadPart(group, name[k], H5_INT, &L->part, 1, to[k]))
       Refuse(L, "/particles/%s is missing or of wrong size", name[k]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -145,7 +145,7 @@ static PetscErrorCode LoadBorders(const Grid *g, hid_t file, Loaded *L)
     Refuse(L, "/borders is missing or of wrong size");
   L->nborder = (PetscInt)n;
   PetscCall(PetscMalloc1(L->nborder, &L->border));
-  if (!H5Read(file, "borders", H5T_NATIVE_INT, n, L->border) || !Borders((PetscInt)n, L->border, start) ||
+  if (!H5Read(file, "borders", H5_INT, n, L->border) || !Borders((PetscInt)n, L->border, start) ||
       !GridSound(g, L->border, start))
     Refuse(L, "/borders are impossible");
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,7 +160,7 @@ static PetscErrorCode TakeShare(const Grid *g, hid_t file, hsize_t n, Loaded *L,
   PetscFunctionBeginUser;
   L->part = (H5Part){.nd = 1, .all = {n}, .start = {first}, .count = {PetscMin(share, n - first)}};
   *before = -1;
-  if (first > 0 && !H5ReadPart(file, "/particles/id", H5T_NATIVE_INT, &one, 1, before))
+  if (first > 0 && !H5ReadPart(file, "/particles/id", H5_INT, &one, 1, before))
     Refuse(L, "/particles/id is missing or of wrong size");
   PetscCall(ParticlesResize(&L->P, (PetscInt)L->part.count[0]));
   PetscCall(PetscMalloc2(L->P.n, &L->rank, L->P.n, &L->place));

@@ -161,7 +161,7 @@ PetscErrorCode SlabWrite(const Slab *s, hid_t group, const char *name, int nc, c
 PetscErrorCode SlabWriteInts(const Slab *s, hid_t group, const char *name, const char *unit, bool compress)
 {
   PetscFunctionBeginUser;
-  PetscCall(H5WritePart(group, name, H5T_NATIVE_INT, &s->part, 1, s->data, unit, compress));
+  PetscCall(H5WritePart(group, name, H5_INT, &s->part, 1, s->data, unit, compress));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

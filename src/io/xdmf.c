@@ -11,7 +11,7 @@ static void Item(FILE *f, const char *dims, bool integer, const char *kind, Pets
   fprintf(f,
           "<DataItem Dimensions=\"%s\" NumberType=\"%s\" Precision=\"%d\" Format=\"HDF\">" SNAPSHOT_NAME
           ":/%s/%s</DataItem>",
-          dims, integer ? "Int" : "Float", integer ? 4 : 8, (int)number, kind, name);
+          dims, integer ? "Int" : "Float", (int)(integer ? sizeof(PetscInt) : sizeof(double)), (int)number, kind, name);
 }
 
 /* The XDMF types of vectors and tensors are three-dimensional; two and six components go as a matrix. */

@@ -697,6 +697,50 @@ static void WrongInsidesAreRefused(void **state)
   SceneDestroy(&s);
 }
 
+/* Numbers in a checkpoint as a PETSc with indices of the other width would write them. */
+static void ChangeWidth(const char *path, uint64_t fingerprint)
+{
+  const bool  wide   = sizeof(PetscInt) == 8;
+  const char *name[] = {"/state/step", "/particles/id", "/borders"};
+  hid_t       f      = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+
+  Check(f >= 0);
+  for (size_t k = 0; k < sizeof(name) / sizeof(*name); k++) {
+    hsize_t  n = 0;
+    int64_t *value;
+
+    Check(H5Rows(f, name[k], &n));
+    value = calloc((size_t)n, sizeof(*value));
+    Check(H5Read(f, name[k], wide ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, n, value));
+    Check(H5Ldelete(f, name[k], H5P_DEFAULT) >= 0);
+    Call(H5Write(f, name[k], wide ? H5T_NATIVE_INT32 : H5T_NATIVE_INT64, n, value, NULL));
+    free(value);
+  }
+  Check(H5Fclose(f) >= 0);
+  Reseal(path, fingerprint);
+}
+
+static void NumbersOfTheOtherWidthAreRead(void **state)
+{
+  const StepperState z = SomeState();
+  StepperState       back;
+  IoScene            s;
+  char               path[512];
+  bool               ok;
+
+  SceneCreate(&s, PETSC_COMM_WORLD, 4);
+  PathOf(path, "width.h5");
+  WriteCheckpoint(&s.m, &z, path);
+  if (world_rank == 0)
+    ChangeWidth(path, CaseFingerprint(&s.c));
+  const PetscInt n = s.m.P.n, last = n > 0 ? s.m.P.i[PI_ID][n - 1] : -1;
+
+  Call(CheckpointRead(&s.m, &back, path, &origin, &ok));
+  Check(ok && back.step == z.step && s.m.P.n == n);
+  Check(n == 0 || s.m.P.i[PI_ID][n - 1] == last);
+  SceneDestroy(&s);
+}
+
 /* ---------------------------------------------------------------- snapshots, balance, restart */
 static const char script[] =
     "import sys, h5py, numpy as np, xml.etree.ElementTree as ET\n"
@@ -963,9 +1007,9 @@ int main(int argc, char **argv)
       cmocka_unit_test(ProbesReproduceLinearFields),  cmocka_unit_test(ProbesDropADirectionWithoutExtent),
       cmocka_unit_test(CheckpointComesBackBitForBit), cmocka_unit_test(CheckpointGoesToOtherRanks),
       cmocka_unit_test(DamagedFilesAreRefused),       cmocka_unit_test(ForeignFilesAreRefused),
-      cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(NodesComeToTheirStrips),
-      cmocka_unit_test(ParticlesComeInOrder),         cmocka_unit_test(FilesAreCutBackAtARestart),
-      cmocka_unit_test(FilesThatDoNotFitAreKeptAside)};
+      cmocka_unit_test(WrongInsidesAreRefused),       cmocka_unit_test(NumbersOfTheOtherWidthAreRead),
+      cmocka_unit_test(NodesComeToTheirStrips),       cmocka_unit_test(ParticlesComeInOrder),
+      cmocka_unit_test(FilesAreCutBackAtARestart),    cmocka_unit_test(FilesThatDoNotFitAreKeptAside)};
 
   return RunTests(argc, argv, tests, MakeFolder, RemoveFolder);
 }
