@@ -50,7 +50,7 @@ static inline BasisDomain BasisDomainOf(BasisType type, double x, double l, doub
   const double s = (x - lower) / h, room = s < cells - s ? s : cells - s;
   const double r = BasisHalfLength(type, l, h, room * h) / h, from = BasisSnap(s - r), to = BasisSnap(s + r);
   const bool   clipped = (s >= 0.0) & (s <= cells) & ((from < 0.0) | (to > cells));
-  const double lo = clipped & (from < 0.0) ? 0.0 : from, hi = clipped & (to > cells) ? cells : to;
+  const double lo = (clipped & (from < 0.0)) ? 0.0 : from, hi = (clipped & (to > cells)) ? cells : to;
 
   return (BasisDomain){lo, hi, clipped ? hi - lo : 2.0 * r};
 }

@@ -404,7 +404,7 @@ INLINE double Sum(int n, const double *restrict x)
 INLINE void Blend(double flip, int n, double *restrict v, const double *restrict dv, const double *restrict nodal,
                   int width)
 {
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < n; q++)
     v[q] = flip * (v[q] + dv[q * width]) + (1.0 - flip) * nodal[q * width];
 }

@@ -14,7 +14,7 @@ INLINE void GainOf(const Explicit *e, const Set s, Run r, const Gathered *g, dou
                          *restrict gain_g = e->t[T_GAIN_G] + r.p, *restrict gain_T = e->t[T_GAIN_T] + r.p,
                          *restrict mh = e->m->P.f[P_MH] + r.p;
 
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     wanted[q] = gain_0[q] + gain_w[q] * g->value[q][0] + gain_g[q] * g->value[q][1] +
                 (s.heat ? gain_T[q] * g->value[q][2] : 0.0);
@@ -31,7 +31,7 @@ INLINE void HeatOf(Explicit *e, const Set s, Run r, const double *restrict T, co
 
   LatentHeatBatch(&r.mat->latent, r.n, T, L);
   Capacities(e, s, r, C);
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     now[q] += L[q] * (gain[q] - wanted[q]) / C[q];
     heat[q]   = L[q] * wanted[q];
@@ -61,14 +61,14 @@ INLINE void HydrateOf(Explicit *e, const Set s, Run r, const Gathered *g, double
   }
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
   PerHydrateVolume(e, r, p[PHASE_W], p[PHASE_G], held);
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     mw[q] += Displaced(held[PHASE_W][q], rho_h[q]) * wanted[q] + nu[PHASE_W] * (wanted[q] - gain[q]);
     mg[q] += Displaced(held[PHASE_G][q], rho_h[q]) * wanted[q] + nu[PHASE_G] * (wanted[q] - gain[q]);
   }
   if (s.heat)
     HeatOf(e, s, r, T, wanted, gain);
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     fewer += gain[q] != wanted[q];
     kept[q] = KeptHydrate(mh[q], mh[q] + gain[q]).v;
@@ -93,7 +93,7 @@ INLINE void MassesOf(Explicit *e, const Set s, Run r, const Gathered *g, double 
     for (int i = 0; i < Scalars(s); i++) {
       const double *restrict slope = e->t[T_SLOPE + 3 * k + (i < s.fluids ? i : 2)] + r.p;
 
-#pragma GCC ivdep
+      INDEPENDENT
       for (int q = 0; q < r.n; q++)
         m[q] += slope[q] * g->value[q][i];
     }

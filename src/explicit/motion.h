@@ -60,7 +60,7 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
   const int at    = C_Vs(s);
   Wrong     large = 0;
 
-  #pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < n; q++) {
     double H[3][3], F[3][3], cof[3][3], e[6], R[3][3], most = 0.0;
 

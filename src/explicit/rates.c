@@ -106,7 +106,7 @@ INLINE void Masses(Explicit *e, const Set s, Run r, int k, const Volumes *v)
   double *const *slope = &e->t[T_SLOPE + 3 * k];
   double *mass = e->t[T_EOS + k] + r.p, *own = slope[k] + r.p, *other = slope[1 - k] + r.p, *in_T = slope[2] + r.p;
 
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     const Content   c = k ? MethaneContent(H, sg[q], rho[q], pg[q]) : WaterContent(sg[q], rho[q]);
     const FluidMass m = MassOf(c, v->open[q], v->open_T[q], k ? ds[q] : -ds[q], v->sg_T[q],
@@ -204,7 +204,7 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, const W
   }
   KineticsFormationAreaBatch(&k, r.n, sw, wet, v->Sh, area);
   Held(e, s, r, g, T_r, Kd, dpe, area, v, held);
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     const Driving d      = ReactionDriving(H, sg[q], pw[q], pg[q], pe[q]);
     const Growth  growth = ReactionGrowth(&k, dt, held[q], &d, Kd[q], dK[q], pe[q], dpe[q]);
@@ -242,7 +242,7 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
                          *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
 
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau,
                  conduct = Conductance(e, s, r.p + q);
@@ -329,7 +329,7 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
   for (int q = 0; q < r.n; q++)
     sw[q] = s.fluids == 2 ? 1.0 - sg[q] : s.fluids ? 1.0 : 0.0;
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     double gT[CL_DIM], flux[CL_DIM];
 
@@ -403,7 +403,7 @@ INLINE void ReactionRows(const Explicit *e, const Set s, Run r, const double *re
 
   PerGain(e, s, r, T, v->rho_h, c);
   for (int row = 0; row < n; row++) {
-#pragma GCC ivdep
+    INDEPENDENT
     for (int q = 0; q < r.n; q++) {
       double *a = &o->value[q][R_Matrix(s) + row * n];
 

@@ -17,7 +17,7 @@ INLINE bool PoresAfter(Explicit *e, const Set s, Run r, const Strain *n, const d
 
   LiquidDensityBatch(&r.mat->solid, r.n, zero, T, rho_s);
   LiquidDensityBatch(&r.mat->hydrate, r.n, zero, T, rho_h);
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     const double volume = known ? at[q] : V[q] * n->J[q];
     const Pores  v      = PoresOf(volume, ms[q], rho_s[q], mh[q], rho_h[q]);

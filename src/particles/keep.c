@@ -26,7 +26,7 @@ static void Deform(const Particles *P, PetscInt p, PetscInt n, const ParticleMot
   const double *restrict more = m->log_J;
 
   for (int j = 0; j < CL_DIM; j++) {
-#pragma GCC ivdep
+    INDEPENDENT
     for (PetscInt q = 0; q < n; q++) {
       double x[CL_DIM];
 
@@ -88,7 +88,7 @@ static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const Par
   for (int k = 0; k < 3; k++) {
     const PetscInt held = P->f[grad[k]] ? n : 0;
 
-#pragma GCC ivdep
+    INDEPENDENT
     for (PetscInt q = 0; q < held; q++) {
       double A[CL_DIM][CL_DIM], g[CL_DIM];
 

@@ -18,7 +18,7 @@ static void Block_Bonds(const Material *mat, const SkeletonBlock *b)
   const Elasticity    el = mat->elasticity;
   const SkeletonBlock B  = *b;
 
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < B.n; q++) {
     SkeletonStep    d = StepOf(&B, q);
     SkeletonHistory h;
@@ -52,7 +52,7 @@ bool Block_Elastic(const Material *mat, const SkeletonBlock *b, const char **why
     Block_Bonds(mat, b);
     return true;
   }
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < B.n; q++) {
     const SkeletonStep d = StepOf(&B, q);
     SkeletonHistory    h;

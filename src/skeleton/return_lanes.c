@@ -88,7 +88,7 @@ static __attribute__((noinline)) void Pass(const Plasticity *law, const Fixed *c
   const Fixed      fixed = *c;
   const double    *eps   = c->own > 0.0 ? l->eps : l->nonlocal;
 
-#pragma GCC ivdep
+  INDEPENDENT
   for (int q = 0; q < SMOOTH_LANES; q++) {
     const Trial3 t = {.G2 = fixed.G2, .lame = fixed.lame, .E = l->E[q], .y = {l->y[0][q], l->y[1][q], l->y[2][q]}};
     double       x[SMOOTH_UNKNOWNS], dx[SMOOTH_UNKNOWNS];
@@ -108,13 +108,13 @@ static __attribute__((noinline)) void Pass(const Plasticity *law, const Fixed *c
               go = (n->open[q] > 0.0) & (falls | close);
 
     StepOf(&s, dx);
-    elastic[q] = first & (n->open[q] > 0.0) & !(s.r[X_L] > room) ? 1.0 : elastic[q];
+    elastic[q] = (first & (n->open[q] > 0.0) & !(s.r[X_L] > room)) ? 1.0 : elastic[q];
 #pragma GCC unroll 5
     for (int i = 0; i < SMOOTH_UNKNOWNS; i++)
       n->x[i][q] = go ? x[i] + dx[i] : x[i];
     n->size[q] = size;
-    n->good[q] = go & close ? 1.0 : n->good[q];
-    n->open[q] = go & !close ? 1.0 : 0.0;
+    n->good[q] = (go & close) ? 1.0 : n->good[q];
+    n->open[q] = (go & !close) ? 1.0 : 0.0;
   }
 }
 
@@ -139,7 +139,7 @@ void ReturnSmoothLanes(const Plasticity *law, double G2, double lame, SmoothLane
       n.x[i][q] = l->y[i][q];
     n.scale[q] = most;
     n.open[q] =
-        (mean < -COMPRESSED * most) & (fabs(exponent) < SMALL_EXPONENT) & (softens < SMALL_EXPONENT) ? 1.0 : 0.0;
+        ((mean < -COMPRESSED * most) & (fabs(exponent) < SMALL_EXPONENT) & (softens < SMALL_EXPONENT)) ? 1.0 : 0.0;
   }
   for (int it = 0; it < PASSES && open > 0.0; it++) {
     Pass(law, &c, &peak, l, it == 0, elastic, &n);

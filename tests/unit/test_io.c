@@ -158,7 +158,7 @@ static void SceneCreate(IoScene *s, MPI_Comm comm, PetscInt across)
         PermeabilitySetPorosityType(&s->material.permeability, "none"));
   s->t[1]              = 1.0;
   s->y[1]              = 5e6;
-  s->bc[0]             = (Bc){.type = BC_TRACTION, .value = {2, s->t, s->y, false}};
+  s->bc[0]             = (Bc){.type = BC_TRACTION, .value = {.n = 2, .t = s->t, .y = s->y}};
   s->c.scene.nmaterial = s->c.scene.nregion = s->c.scene.nbc = 1;
   s->c.nprobe                                                = PROBES;
   s->c.scene.material                                        = &s->material;
