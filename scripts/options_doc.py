@@ -66,7 +66,7 @@ PETSC = [  # the ones worth knowing, with this program's defaults
     ("-reduced_fieldsplit_flow_pc_type", "gamg", "of p_w, p_g, T: aggregation, smoothed by ILU (-reduced_fieldsplit_flow_mg_levels_...)"),
     ("-reduced_fieldsplit_motion_pc_type", "hypre", "of v_s: BoomerAMG with one sweep of SOR down (forward) and up (backward), strong threshold 0.5 (0.7 in space); gamg without hypre"),
     ("-exchange_ksp_max_it", "2000", "conjugate gradients of (354) in a step before it evens no pressures out within cells, which the summary counts"),
-    ("-pc_factor_mat_solver_type", "umfpack up to 2500 unknowns on one rank, else mumps", "who factorises the whole (-reduced_pc_factor_mat_solver_type: the reduced matrix)"),
+    ("-pc_factor_mat_solver_type", "umfpack up to 2500 unknowns on one rank, else mumps", "who factorises the whole (-reduced_pc_factor_mat_solver_type: the reduced matrix); a PETSc without them has the next of docs/building.md"),
     ("-options_file", "", "reads options from a file, for example a preset of options/"),
     ("-snes_monitor, -ksp_converged_reason", "", "watch Newton's method and the linear solver"),
     ("-options_left", "", "at the end, lists options that nobody read: finds misspelt ones"),

@@ -272,8 +272,7 @@ PetscErrorCode PreconditionerCreate(Model *m, KSP ksp)
     PetscCall(KSPConvergedDefaultSetUIRNorm(ksp));
     PetscCall(KSPSetResidualHistory(ksp, NULL, 1, PETSC_TRUE));
   } else {
-    PetscCall(PCSetType(pc, PCLU));
-    PetscCall(PCFactorSetMatSolverType(pc, FactorsPackage(m, m->c->fields.n)));
+    PetscCall(FactorsUse(m, m->solver->Pmat, m->c->fields.n, pc));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -314,15 +313,17 @@ PetscErrorCode PreconditionerFallBack(Model *m)
                         TimeAt(m->stage.t).s, why));
   PetscCall(KSPGetPC(ksp, &m->solver->set_aside));
   PetscCall(PetscObjectReference((PetscObject)m->solver->set_aside));
+  const bool whole = m->solver->J2 != NULL;
+
+  if (!whole)
+    PetscCall(MatrixCreate(m));
   PetscCall(PCCreate(m->grid.comm, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(FactorsUse(m, m->solver->J2, m->c->fields.n, pc));
   PetscCall(KSPSetPC(ksp, pc));
   PetscCall(PCDestroy(&pc));
   m->solver->reduces = false;
-  if (m->solver->J2)
+  if (whole)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatrixCreate(m));
   PetscCall(SNESSetJacobian(m->solver->snes, m->solver->A, m->solver->J2, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -91,20 +91,19 @@ static PetscErrorCode CreateSplit(const Reduced *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateFactors(const Model *m, const Reduced *r)
+static PetscErrorCode CreateFactors(Model *m, const Reduced *r)
 {
   PC pc;
 
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(r->ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, FactorsPackage(m, r->fs.n)));
+  PetscCall(FactorsUse(m, r->A, r->fs.n, pc));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A new one at every renewal: what multigrid keeps from set-up to set-up would make a run depend on where it was last
    restarted. */
-static PetscErrorCode CreateSolver(const Model *m, Reduced *r)
+static PetscErrorCode CreateSolver(Model *m, Reduced *r)
 {
   PetscFunctionBeginUser;
   PetscCall(KSPCreate(m->grid.comm, &r->ksp));

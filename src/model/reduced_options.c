@@ -53,7 +53,8 @@ static PetscErrorCode PreferMotion(void)
   PetscCall(PreferFor("motion", "pc_hypre_boomeramg_relax_type_down", "SOR/Jacobi"));
   PetscCall(PreferFor("motion", "pc_hypre_boomeramg_relax_type_up", "backward-SOR/Jacobi"));
 #else
-  PetscCall(PreferFor("motion", "pc_type", "gamg"));
+  PetscCall(PreferFor("motion", "pc_type", "gamg")); /* given from now on, so this is said once */
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  multigrid of the motion by gamg: this PETSc has no hypre\n"));
 #endif
   PetscFunctionReturn(PETSC_SUCCESS);
 }

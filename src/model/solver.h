@@ -13,10 +13,10 @@ enum { OPERATOR_AUTO = 0, OPERATOR_ASSEMBLED, OPERATOR_PARTICLES };
 
 /* What preconditions, and why: (330), of the particles as seeded, or by an option of the user. */
 typedef struct {
-  double across;  /* mean number of cells across the body */
-  bool   reduced; /* the reduced matrix, else J2 */
-  bool   factors; /* LU of all of the reduced matrix, or what -reduced_pc_type says; else multigrid of its groups */
-  bool   said;
+  double across;     /* mean number of cells across the body */
+  bool   reduced;    /* the reduced matrix, else J2 */
+  bool   factors;    /* LU of all of the reduced matrix, or what -reduced_pc_type says; else multigrid of its groups */
+  bool   said, told; /* ModelPrintSolver; that a package is missing */
   const char *asked; /* the option that chose; null: by size */
 } SolverPlan;
 
@@ -85,9 +85,11 @@ PetscErrorCode  ReducedRest(Reduced *r);              /* until the next set-up, 
 PetscErrorCode  ReducedFollow(Model *m);              /* the Jacobian is a new one */
 PetscErrorCode  ReducedGuess(Model *m, Vec R, Vec Y); /* (441) on scaled, owned vectors */
 PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) */
-/* LU of n unknowns a node (factors.c): is it small, on one rank; by which package. */
-bool          FactorsSmall(const Model *m, int n);
-MatSolverType FactorsPackage(const Model *m, int n);
+/* LU of n unknowns a node (factors.c): is it small, on one rank; the first package of those that there are, null: none;
+   pc made LU of A by it, with a line where that is not the usual one. */
+bool           FactorsSmall(const Model *m, int n);
+MatSolverType  FactorsPackage(bool small, bool (*has)(MatSolverType package, void *ctx), void *ctx);
+PetscErrorCode FactorsUse(Model *m, Mat A, int n, PC pc);
 /* The preconditioner (precondition.c): its kind for a new solver; whether the coming Jacobian renews it. */
 PetscErrorCode PreconditionerPlan(Model *m); /* (330), of the particles that were just seeded */
 PetscErrorCode PreconditionerCreate(Model *m, KSP ksp);

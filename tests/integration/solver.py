@@ -40,6 +40,7 @@ for name in (None, *PRESETS):
         rows.append([name or "default", ranks, f"{error:.1e}"])
         check(f"{f'options/{name}.opts' if name else 'the default'} on {ranks} rank(s) against LU of the whole: histories", error, 1e-8)
 table(["preset", "ranks", "apart"], rows)
+check_true("with all packages none is said to be missing", "this PETSc has no" not in reference.output)
 
 # Beds that dip, a thousandth as permeable across: flow couples the directions, and the reduced preconditioner knows it.
 def krylov(r):

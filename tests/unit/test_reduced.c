@@ -1,12 +1,13 @@
 /* The reduced preconditioner, by LU and by multigrid: for every field set, with and without inertia, in the plane and
    about an axis, GMRES with it solves the exact Jacobian and agrees with LU of the whole; the fluid
    velocities are recovered exactly; what it leaves out costs few iterations, and where it leaves out nothing none;
-   large rows of the fluid velocities do not stand in for the others. */
+   large rows of the fluid velocities do not stand in for the others; packages that factorise are taken in order. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <string.h>
 #include <cmocka.h>
 #include "small_scene.h"
 
@@ -160,6 +161,37 @@ static void TestSets(void **state)
   }
 }
 
+/* What a PETSc has of the packages that factorise: their names, separated by commas. */
+static bool Has(MatSolverType package, void *names)
+{
+  const char *at = strstr(names, package);
+
+  return at && (at[strlen(package)] == ',' || at[strlen(package)] == '\0');
+}
+
+/* The order in which packages are asked for, small on one rank or not. */
+static void PackagesAreTakenInOrder(void **state)
+{
+  static const struct {
+    const char *has, *large, *small;
+  } row[] = {{"petsc,umfpack,superlu_dist,mumps", "mumps", "umfpack"},
+             {"petsc,superlu_dist,mumps", "mumps", "mumps"},
+             {"petsc,umfpack,superlu_dist", "superlu_dist", "umfpack"},
+             {"petsc,umfpack", "umfpack", "umfpack"},
+             {"petsc,superlu_dist", "superlu_dist", "superlu_dist"},
+             {"petsc", "petsc", "petsc"},
+             {"superlu", NULL, NULL}}; /* several ranks, none of them parallel */
+
+  for (size_t k = 0; k < sizeof(row) / sizeof(*row); k++) {
+    for (int small = 0; small < 2; small++) {
+      const char *expected = small ? row[k].small : row[k].large;
+      const char *found    = FactorsPackage(small, Has, (void *)row[k].has);
+
+      Check(expected ? found && !strcmp(found, expected) : !found);
+    }
+  }
+}
+
 /* Without fluids nothing is left out (170): with factors of the matrix GMRES is done at once. */
 static void TestNothingLeftOut(void **state)
 {
@@ -264,8 +296,9 @@ static void TestLargeRows(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestSets), cmocka_unit_test(TestNothingLeftOut),
-                                     cmocka_unit_test(TestSmallEntries), cmocka_unit_test(TestLargeRows)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(PackagesAreTakenInOrder), cmocka_unit_test(TestSets),
+                                     cmocka_unit_test(TestNothingLeftOut), cmocka_unit_test(TestSmallEntries),
+                                     cmocka_unit_test(TestLargeRows)};
 
   return RunTests(argc, argv, tests, SolveWell, NULL);
 }
