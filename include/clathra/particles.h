@@ -7,6 +7,11 @@
 #include "clathra/scene.h"
 #include "clathra/skeleton.h"
 
+#if CL_DIM == 2
+  #define CL_MIXED_TABLE(X)
+#else
+  #define CL_MIXED_TABLE(X) X(P_BXYZ, HAS_HEAT, "mixed_T_xyz", 1, "K/m^3", "d3T/dx dy dz, likewise (446)")
+#endif
 /* X(enum, fields any of which it goes with, HDF5 name, components, unit, meaning) */
 #define CL_PARTICLE_TABLE(X)                                                                                           \
   X(P_X, HAS_ALL, "position", CL_DIM, "m", "centre")                                                                   \
@@ -26,6 +31,7 @@
   X(P_GG, HAS_GAS, "grad_p_g", CL_DIM, "Pa/m", "")                                                                     \
   X(P_GT, HAS_HEAT, "grad_T", CL_DIM, "K/m", "")                                                                       \
   X(P_BT, HAS_HEAT, "mixed_T", CL_PAIRS, "K/m^2", "d2T/dx dy, at the end of the last step (395)")                      \
+  CL_MIXED_TABLE(X)                                                                                                    \
   X(P_VS, HAS_SOLID, "v_s", CL_DIM, "m/s", "skeleton velocity")                                                        \
   X(P_VW, HAS_WATER, "v_w", CL_DIM, "m/s", "water velocity")                                                           \
   X(P_VG, HAS_GAS, "v_g", CL_DIM, "m/s", "gas velocity")                                                               \
@@ -63,6 +69,7 @@ CL_SKELETON_HISTORY(CL_OWN_CHECK)
 _Static_assert(P_PG0 == P_PW0 + 1, "initial p_w, p_g");
 _Static_assert(P_RATE_PG == P_RATE + 1 && P_RATE_T == P_RATE + 2 && P_RATE_SH == P_RATE + 3, "rates: p_w, p_g, T, S_h");
 _Static_assert(P_VW == P_VS + CL_DIM && P_VG == P_VW + CL_DIM, "velocities: skeleton, water, gas");
+_Static_assert(P_VS == P_BT + CL_MIXED, "mixed derivatives of T");
 _Static_assert(P_GG == P_GW + CL_DIM && P_GT == P_GG + CL_DIM, "gradients of p_w, p_g, T");
 
 typedef struct {
@@ -225,8 +232,8 @@ typedef struct {
  */
 void ParticlesKeep(const Particles *P, PetscInt first, PetscInt n, const ParticleMotion *motion);
 
-/* Mixed derivatives B (395) after a motion with A = F^-T: xy (yz, xz) of A B A^T. */
-void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_PAIRS]);
+/* Mixed derivatives B (395) after a motion with A = F^-T: xy (yz, xz) of A B A^T; and (446). */
+void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_MIXED]);
 
 /* Particles of another run as those a run starts with (340). */
 void           ParticlesBecomeInitial(Particles *P);

@@ -135,6 +135,27 @@ INLINE void CarriedCross(Run r, int lane, const double *restrict weight, const d
   }
 }
 
+/* Likewise with all axes of space (446). */
+INLINE void CarriedAll(Run r, int lane, const double *restrict weight, const double *restrict b, const Weights *w,
+                       Given *v)
+{
+  for (int q = 0; q < r.n; q++) {
+    const double more = weight[q] * b[q];
+    double       from[CL_DIM], unit[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++) {
+      from[d] = -FromFirst(w, d, q);
+      unit[d] = w->unit[d][q];
+    }
+    v->value[q][lane] += MixedProduct(CL_PAIRS, more, from);
+    for (int d = 0; d < CL_DIM; d++)
+      v->carry[d][q][lane] += more * unit[d] * from[(d + 1) % CL_DIM] * from[(d + 2) % CL_DIM];
+    for (int c = 0; c < CL_PAIRS; c++)
+      v->cross[c][q][lane] += MixedProduct(c, more, unit) * from[CL_DIM - cl_pair[c][0] - cl_pair[c][1]];
+    v->cross[CL_PAIRS][q][lane] = MixedProduct(CL_PAIRS, more, unit);
+  }
+}
+
 /* (42): ambient pressure and V times its gradient at the particles of a block. */
 typedef struct {
   double p[BLOCK], weight[CL_DIM][BLOCK];
@@ -315,6 +336,8 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     Carried(r, s.fluids, C, T, g, &w, &v);
     for (int c = 0; c < CL_PAIRS; c++)
       CarriedCross(r, s.fluids, C, f[P_BT + c] + r.p, c, &w, &v);
+    for (int c = CL_PAIRS; c < CL_MIXED; c++)
+      CarriedAll(r, s.fluids, C, f[P_BT + c] + r.p, &w, &v);
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);

@@ -20,9 +20,9 @@ typedef struct {
 } Gathered;
 
 /* A block's values, one row of numbers for each particle: what is multiplied with the node's place in the patch
-   (carried values), with pairs of its places (cross) and with the gradients (forces). */
+   (carried values), with products of its places (cross) and with the gradients (forces). */
 typedef struct {
-  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], cross[CL_PAIRS][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
+  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], cross[CL_MIXED][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
 } Given;
 
 /* Gradient of number k at particle q. */
@@ -108,7 +108,7 @@ INLINE void GiveNothing(Run r, int count, Given *v)
     for (int k = 0; k < LANES; k++) {
       for (int d = 0; d < CL_DIM; d++)
         v->carry[d][q][k] = v->force[d][q][k] = 0.0;
-      for (int c = 0; c < CL_PAIRS; c++)
+      for (int c = 0; c < CL_MIXED; c++)
         v->cross[c][q][k] = 0.0;
     }
     for (int k = count; k < LANES * Rows(count); k++)
@@ -116,8 +116,8 @@ INLINE void GiveNothing(Run r, int count, Given *v)
   }
 }
 
-/* Mixed second derivative along the pair c of axes at particle q of a number that nodes hold in their rows, `width`
-   numbers long (395). */
+/* Mixed derivative c at particle q of a number that nodes hold in their rows, `width` numbers
+   long (395), (446). */
 INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Weights *w, int q, int c)
 {
   const int *slot = &e->slot[w->first[q]];
@@ -128,9 +128,9 @@ INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Wei
     double         of = 1.0; /* of the axes beyond x */
 
     for (int d = 1; d < CL_DIM; d++)
-      of *= d == cl_pair[c][0] || d == cl_pair[c][1] ? w->D[d][at.place[d]][q] : w->S[d][at.place[d]][q];
+      of *= cl_mixed[c][d] ? w->D[d][at.place[d]][q] : w->S[d][at.place[d]][q];
     for (int a = 0; a < 3; a++)
-      sum += (cl_pair[c][0] == 0 ? w->D[0][a][q] : w->S[0][a][q]) * of * nodes[slot[at.at + a] * width];
+      sum += (cl_mixed[c][0] ? w->D[0][a][q] : w->S[0][a][q]) * of * nodes[slot[at.at + a] * width];
   }
   return sum;
 }
@@ -154,7 +154,7 @@ INLINE double Covariance(const Explicit *e, const double *nodes, int width, int 
   return sum;
 }
 
-/* What is carried to the nodes besides the value itself: nothing, by gradients, by a mixed derivative, too. */
+/* What is carried to the nodes besides the value itself: nothing, by gradients, by mixed derivatives, too. */
 enum { CARRY_NOTHING = 0, CARRY_LINEAR, CARRY_BILINEAR };
 /* To nodes that hold `count` numbers each; forces: are there any? */
 INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bool forces, Run r, const Weights *w,
@@ -189,8 +189,8 @@ INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bo
 
           for (int d = 0; d < CL_DIM && carries; d++)
             first += ((const Register *)v->carry[d][q])[z] * place[d];
-          for (int c = 0; c < CL_PAIRS && carries == CARRY_BILINEAR; c++)
-            first += ((const Register *)v->cross[c][q])[z] * (place[cl_pair[c][0]] * place[cl_pair[c][1]]);
+          for (int c = 0; c < CL_MIXED && carries == CARRY_BILINEAR; c++)
+            first += ((const Register *)v->cross[c][q])[z] * MixedProduct(c, 1.0, place);
           first *= S;
           for (int d = 0; d < CL_DIM && forces; d++)
             first += ((const Register *)v->force[d][q])[z] * G[d];

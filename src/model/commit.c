@@ -301,8 +301,8 @@ static double Released(const Model *m, PetscInt p, const PointState *s)
                                  s->m_h < old ? s->m_h / old : 1.0, &h);
 }
 
-/* (395) of T along a pair of axes of the grid's configuration. */
-static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const double *x, const int pair[2])
+/* Mixed derivative q of T (395), (446) along the axes of the grid's configuration. */
+static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const double *x, int q)
 {
   const FieldSet *fs   = &m->c->fields;
   const Axis     *axis = m->stencil[p].axis;
@@ -316,25 +316,25 @@ static double MixedDerivative(const Model *m, PetscInt p, const Reach *r, const 
     for (int d = 0; d < CL_DIM; d++) {
       const PetscInt k = ij[d] - axis[d].base;
 
-      w *= d == pair[0] || d == pair[1] ? axis[d].dS[k] : axis[d].S[k];
+      w *= cl_mixed[q][d] ? axis[d].dS[k] : axis[d].S[k];
     }
     b += w;
   }
   return b;
 }
 
-/* (395) on the configuration at t_n. */
+/* (395), (446) on the configuration at t_n. */
 static void WriteMixed(Model *m, PetscInt p, const double *x, const Reach *r)
 {
-  double B[CL_PAIRS], A[CL_DIM][CL_DIM];
+  double B[CL_MIXED], A[CL_DIM][CL_DIM];
 
-  for (int k = 0; k < CL_PAIRS; k++)
-    B[k] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, cl_pair[k]) : 0.0;
+  for (int k = 0; k < CL_MIXED; k++)
+    B[k] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, k) : 0.0;
   if (m->P.total) {
     ParticleInverse(&m->P, p, A);
     MixedCarry(A, B);
   }
-  for (int k = 0; k < CL_PAIRS; k++)
+  for (int k = 0; k < CL_MIXED; k++)
     m->P.f[P_BT + k][p] = B[k];
 }
 

@@ -97,8 +97,8 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   }
   if (fs->heat)
     s[SUM_X + PlaceT(fs)] += S * q->capacity * Carried(m, p, P_T, P_GT, d);
-  for (int k = 0; fs->heat && k < CL_PAIRS; k++) /* (395) */
-    s[SUM_X + PlaceT(fs)] += S * q->capacity * f[P_BT + k][p] * d[cl_pair[k][0]] * d[cl_pair[k][1]];
+  for (int k = 0; fs->heat && k < CL_MIXED; k++) /* (395), (446) */
+    s[SUM_X + PlaceT(fs)] += MixedProduct(k, S * q->capacity * f[P_BT + k][p], d);
 }
 
 /* Did the particle's domain begin at the axis? */

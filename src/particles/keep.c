@@ -62,9 +62,9 @@ INLINE void InverseTransposed(const ParticleMotion *m, PetscInt q, double A[CL_D
   }
 }
 
-void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_PAIRS])
+void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_MIXED])
 {
-  double from[CL_PAIRS];
+  double from[CL_MIXED];
 
   memcpy(from, B, sizeof(from));
   for (int k = 0; k < CL_PAIRS; k++) {
@@ -77,10 +77,18 @@ void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_PAIRS])
       B[k] += from[o] * (a[i] * b[j] + a[j] * b[i]);
     }
   }
+  for (int k = CL_PAIRS; k < CL_MIXED; k++) { /* (446) */
+    B[k] = 0.0;
+    for (int i = 0; i < CL_DIM; i++) {
+      const int j = (i + 1) % CL_DIM, l = (i + 2) % CL_DIM;
+
+      B[k] += from[k] * A[0][i] * (A[1][j] * A[CL_DIM - 1][l] + A[1][l] * A[CL_DIM - 1][j]);
+    }
+  }
 }
 
 /* Gradients on the configuration at the begin of the step, brought to that at its end: F^-T g; and the mixed
-   derivatives of T, xy (yz, xz) of F^-T B F^-1 (395). */
+   derivatives of T, xy (yz, xz) of F^-T B F^-1 (395), (446). */
 static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const ParticleMotion *m)
 {
   static const int grad[3] = {P_GW, P_GG, P_GT};
@@ -100,13 +108,13 @@ static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const Par
     }
   }
   for (PetscInt q = 0; P->f[P_BT] && q < n; q++) {
-    double A[CL_DIM][CL_DIM], B[CL_PAIRS];
+    double A[CL_DIM][CL_DIM], B[CL_MIXED];
 
     InverseTransposed(m, q, A);
-    for (int k = 0; k < CL_PAIRS; k++)
+    for (int k = 0; k < CL_MIXED; k++)
       B[k] = P->f[P_BT + k][p + q];
     MixedCarry(A, B);
-    for (int k = 0; k < CL_PAIRS; k++)
+    for (int k = 0; k < CL_MIXED; k++)
       P->f[P_BT + k][p + q] = B[k];
   }
 }

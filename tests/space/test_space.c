@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <cmocka.h>
 #include "clathra/kinematics.h"
+#include "clathra/particles.h"
 #include "clathra/point_strain.h"
 #include "clathra/skeleton.h"
 #include "random.h"
@@ -503,12 +504,46 @@ static void TestBlocks(void **state)
   }
 }
 
+/* (446): c x y z of the start, after a motion F: its derivative by all axes as a function of x' = F x. */
+static void TestMixedCarry(void **state)
+{
+  Rng r = {77};
+
+  (void)state;
+  for (int n = 0; n < 20; n++) {
+    double F[3][3], A[3][3], B[CL_MIXED] = {0.0}, there = 0.0;
+
+    for (int k = 0; k < 9; k++)
+      F[k / 3][k % 3] = (k / 3 == k % 3) + RngBetween(&r, -0.4, 0.4);
+    const double J = CofactorOf(F, A), c = RngBetween(&r, -5.0, 5.0);
+
+    for (int k = 0; k < 9; k++)
+      A[k / 3][k % 3] /= J;
+    B[CL_PAIRS] = c;
+    MixedCarry(A, B);
+    for (int corner = 0; corner < 8; corner++) { /* of a cube in x': what is odd in each of the three is left */
+      double at[3], sign = 0.125, xyz = c;
+
+      for (int d = 0; d < 3; d++) {
+        at[d] = corner >> d & 1 ? 1.0 : -1.0;
+        sign *= at[d];
+      }
+      for (int d = 0; d < 3; d++)
+        xyz *= A[0][d] * at[0] + A[1][d] * at[1] + A[2][d] * at[2];
+      there += sign * xyz;
+    }
+    assert_true(fabs(B[CL_PAIRS] - there) < 1e-12 * fabs(there));
+    for (int k = 0; k < CL_PAIRS; k++)
+      assert_true(B[k] == 0.0);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestValues),   cmocka_unit_test(TestPlane),  cmocka_unit_test(TestSlopes),
-      cmocka_unit_test(TestTangents), cmocka_unit_test(TestTurned), cmocka_unit_test(TestSmall),
-      cmocka_unit_test(TestBlocks),
+      cmocka_unit_test(TestValues),   cmocka_unit_test(TestPlane),      cmocka_unit_test(TestSlopes),
+      cmocka_unit_test(TestTangents), cmocka_unit_test(TestTurned),     cmocka_unit_test(TestSmall),
+      cmocka_unit_test(TestBlocks),   cmocka_unit_test(TestMixedCarry),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

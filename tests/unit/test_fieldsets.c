@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdio.h>
 #include <cmocka.h>
+#include "clathra/explicit.h"
 #include "small_scene.h"
 
 static const char *const set_names[] = {"thmc", "thc", "hmc", "hc", "thm", "hm", "th", "h", "tm", "m", "t"};
@@ -264,6 +265,91 @@ static void TestJacobianAxis(void **state)
 }
 #endif
 
+/* A field that is linear along each axis, at x; the derivative by the axes of `by`.  Bit d of a coefficient's number:
+   it goes with the coordinate d. */
+static double Multilinear(const double x[CL_DIM], const int by[CL_DIM])
+{
+  static const double c[8] = {14.0, 3.0, -5.0, 40.0, 7.0, -60.0, 30.0, 900.0};
+  double              sum  = 0.0;
+
+  for (int k = 0; k < CL_CORNERS; k++) {
+    double term = c[k];
+
+    for (int d = 0; d < CL_DIM; d++)
+      term *= !by[d] ? (k >> d & 1 ? x[d] : 1.0) : k >> d & 1 ? 1.0 : 0.0;
+    sum += term;
+  }
+  return sum;
+}
+
+/* (395), (446): particles within cells and across their borders that hold such a T give it to their nodes in either
+   integrator, and read their derivatives from them again. */
+static void TestMultilinear(void **state)
+{
+  static const int      none[CL_DIM] = {0};
+  const double          lower[2] = {0.0, 0.0}, upper[2] = {0.43, 0.25};
+  int                   by[CL_DIM] = {0};
+  double                worst[2]   = {0.0};
+  SmallScene           *s          = malloc(sizeof(*s));
+  const ExplicitOptions hybrid     = {.drag_implicit = true, .tied = true, .flip = 1.0, .mass_scaling = 1.0};
+  Explicit             *e;
+  StageRates            sum = {0};
+  ClStatus              status;
+
+  (void)state;
+  SceneInit(s, HAS_HEAT, true, false, BASIS_CPGIMP, 0.0, lower, upper);
+  Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
+  Model         *m    = &s->m;
+  double *const *f    = m->P.f;
+  double(*at)[CL_DIM] = malloc((size_t)m->P.n * sizeof(*at));
+
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    Stencil stencil;
+
+    for (int d = 0; d < CL_DIM; d++)
+      f[P_X + d][p] += 0.4 * f[P_L + d][p] * Noise(1, m->P.i[PI_ID][p], d) + 0.5 * f[P_L + d][p];
+    ParticleStencil(m->c, &m->grid, &m->P, p, &stencil);
+    ParticleCentroid(&m->grid, &m->P, p, &stencil, at[p]);
+    f[P_T][p] = Multilinear(at[p], none);
+    for (int d = 0; d < CL_DIM; d++) {
+      by[d]          = 1;
+      f[P_GT + d][p] = Multilinear(at[p], by);
+      by[d]          = 0;
+    }
+    for (int k = 0; k < CL_MIXED; k++)
+      f[P_BT + k][p] = Multilinear(at[p], cl_mixed[k]);
+  }
+  StageStart(s, 1.0);
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    double x[CL_DIM];
+
+    for (int d = 0; d < CL_DIM; d++)
+      x[d] = GridNode(&m->grid, d, m->map.ij[I][d]);
+    worst[0] = fmax(worst[0], fabs(m->x_n[I] - Multilinear(x, none)));
+  }
+  Call(ExplicitCreate(m, &hybrid, &e));
+  Call(ExplicitBegin(e, &status));
+  Call(ExplicitStep(e, 0.0, 1e-9, &sum, &status));
+  Check(status == CL_OK);
+  Call(ExplicitEnd(e));
+  Call(ExplicitDestroy(&e));
+  for (PetscInt p = 0; p < m->P.n; p++) { /* particles stay, in the order that the integrator sorts them in */
+    Stencil stencil;
+    double  x[CL_DIM];
+
+    ParticleStencil(m->c, &m->grid, &m->P, p, &stencil);
+    ParticleCentroid(&m->grid, &m->P, p, &stencil, x);
+    for (int k = 0; k < CL_MIXED; k++)
+      worst[1] = fmax(worst[1], fabs(f[P_BT + k][p] - Multilinear(x, cl_mixed[k])));
+  }
+  Say("T linear along each axis: nodes off by %.1e K, derivatives of particles after a step of hybrid by %.1e K/m^%d\n",
+      Largest(worst[0]), Largest(worst[1]), CL_DIM);
+  Check(Largest(worst[0]) < 1e-12 && Largest(worst[1]) < 1e-6);
+  free(at);
+  SceneDestroy(s);
+  free(s);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -271,6 +357,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(TestStorage),
     cmocka_unit_test(TestTangent),
     cmocka_unit_test(TestJacobian),
+    cmocka_unit_test(TestMultilinear),
 #if CL_DIM == 2
     cmocka_unit_test(TestJacobianAxis),
 #endif
