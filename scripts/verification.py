@@ -71,7 +71,7 @@ SECTION = {  # beside that table
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",
     "strength": "Mohr-Coulomb: softening along a plastic path, orders of the integrators, Salencon's hole",
     "slopes": "Slopes: failure against limit equilibrium, blocks that meet, a column under water, a change of integrator (docs/slopes.md)",
-    "corners": "Heaters: temperatures at their corners, and beside hydrate (docs/equations.md, (395))",
+    "corners": "Heaters: temperatures at their corners, and beside hydrate (docs/equations.md, (395), (446))",
     "beds": "Beds that dip: flow through layered sediment against the exact one (docs/equations.md, (306)-(309))",
     "stability": "Stability at the extremes: a representative part of docs/stability.md",
     "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",

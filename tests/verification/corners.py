@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, check_true, finish, judge, table
+from common import Run, check_true, finish, judge, scratch, table
 
 CASES = Path(__file__).parent / "cases"
 START, HEATER = 11.0, 60.0
@@ -48,6 +48,13 @@ for way, options in (("sdirk2", ()), ("euler", WAYS["euler"]), ("hybrid", (*WAYS
     judge("corners", f"... {way}: balance of heat, of 1 K of the body", np.max(np.abs(run.balance["heat_error"])), 1e-8)
     if way != "euler":
         judge("corners", f"... {way}: 2 ranks against 1, K", np.max(np.abs(field("heater_corners_3d.yaml", *options, ranks=2)[1] - T)), 1e-6)
+cut, folder = ("heater_corners_3d.yaml", "-quiet"), scratch()
+straight = field(*cut)[1]
+field(*cut, "-stepper_max_steps", "20", out=folder)
+check_true("... sdirk2: a restart after 20 steps goes on bit for bit", np.array_equal(field(*cut, "-restart", folder / "checkpoint.h5", out=folder)[1][-1], straight[-1]))
+LONGER = ("-boundaries", "heater", "-grid_upper", "3 m,4.2 m,3 m", "-region_rock_upper", "3 m,4.2 m,3 m", "-region_core_lower", "0 m,0 m,0 m", "-region_core_upper", "0.5 m,2.1 m,1.5 m")
+for way in ("sdirk2", "hybrid"):
+    judge("corners", f"a heater that ends within a side, cells 1.4 times as long as wide, {way}: colder than the start, of the jump", max(20 - field("heater_corners_3d.yaml", *LONGER, *WAYS[way])[1].min(), 0.0) / 40, 0.001)
 # Beside hydrate on cells of 1 m, heated within a day, the reaction drives the next node below all there is (265): the run says so, and the key that it names mends it.
 ROD = ("heater_rod.yaml", "-quiet")
 (bare, cold), (held, mended) = field(*ROD), field(*ROD, "-stabilisation_reaction_heat", "yes")
