@@ -26,7 +26,7 @@ UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bond
 FIRST = {"laws": "laws_values", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
         "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "total", "century_tolerance", "thin_cells", "heat_source", "bp2_reference")  # fmt: skip
-SPACE = ("corners", "total")  # of these with scenes in space
+SPACE = ("total",)  # of these with scenes in space
 
 # (name, file, [(what stands there, what is planted), ...])
 LAWS, POINT, MODEL, BOUNDARY, EXPLICIT, HEADER = "src/laws/", "src/point/", "src/model/", "src/boundary/", "src/explicit/", "include/clathra/"
