@@ -135,9 +135,9 @@ INLINE void CarriedCross(Run r, int lane, const double *restrict weight, const d
   }
 }
 
-/* Likewise with all axes of space (446). */
-INLINE void CarriedAll(Run r, int lane, const double *restrict weight, const double *restrict b, const Weights *w,
-                       Given *v)
+/* Likewise with mixed derivative c, of all axes of space (446). */
+INLINE void CarriedAll(Run r, int lane, const double *restrict weight, const double *restrict b, int c,
+                       const Weights *w, Given *v)
 {
   for (int q = 0; q < r.n; q++) {
     const double more = weight[q] * b[q];
@@ -147,12 +147,12 @@ INLINE void CarriedAll(Run r, int lane, const double *restrict weight, const dou
       from[d] = -FromFirst(w, d, q);
       unit[d] = w->unit[d][q];
     }
-    v->value[q][lane] += MixedProduct(CL_PAIRS, more, from);
+    v->value[q][lane] += MixedProduct(c, more, from);
     for (int d = 0; d < CL_DIM; d++)
       v->carry[d][q][lane] += more * unit[d] * from[(d + 1) % CL_DIM] * from[(d + 2) % CL_DIM];
-    for (int c = 0; c < CL_PAIRS; c++)
-      v->cross[c][q][lane] += MixedProduct(c, more, unit) * from[CL_DIM - cl_pair[c][0] - cl_pair[c][1]];
-    v->cross[CL_PAIRS][q][lane] = MixedProduct(CL_PAIRS, more, unit);
+    for (int k = 0; k < CL_PAIRS; k++)
+      v->cross[k][q][lane] += MixedProduct(k, more, unit) * from[CL_DIM - cl_pair[k][0] - cl_pair[k][1]];
+    v->cross[c][q][lane] = MixedProduct(c, more, unit);
   }
 }
 
@@ -337,7 +337,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     for (int c = 0; c < CL_PAIRS; c++)
       CarriedCross(r, s.fluids, C, f[P_BT + c] + r.p, c, &w, &v);
     for (int c = CL_PAIRS; c < CL_MIXED; c++)
-      CarriedAll(r, s.fluids, C, f[P_BT + c] + r.p, &w, &v);
+      CarriedAll(r, s.fluids, C, f[P_BT + c] + r.p, c, &w, &v);
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
