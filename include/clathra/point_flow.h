@@ -48,6 +48,42 @@ INLINE void BedsDrive(const Beds *beds, double v[CL_DIM])
     v[i] = x[i];
 }
 
+/* n . A n, with n (x) n or a mean of such, of trace 1, in N; dimensionless. */
+INLINE double BedsAcross(const Beds *beds, const double N[CL_SYMMETRIC])
+{
+  double sum = 0.0;
+
+  for (int k = 0; k < CL_SYMMETRIC; k++)
+    sum += (k < CL_DIM ? 1.0 : 2.0) * beds->A[k] * N[k];
+  return sum;
+}
+
+/* A := A - (1 - ratio) A N A/(N : A): what it lets across is less by that ratio. */
+INLINE void BedsLessen(Beds *beds, const double N[CL_SYMMETRIC], double ratio)
+{
+  const double c = (1.0 - ratio) / BedsAcross(beds, N);
+  double       AN[CL_DIM][CL_DIM], less[CL_DIM][CL_DIM];
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++) {
+      AN[i][j] = 0.0;
+      for (int k = 0; k < CL_DIM; k++)
+        AN[i][j] += beds->A[cl_symmetric[i][k]] * N[cl_symmetric[k][j]];
+    }
+  }
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = i; j < CL_DIM; j++) {
+      less[i][j] = 0.0;
+      for (int k = 0; k < CL_DIM; k++)
+        less[i][j] += c * AN[i][k] * beds->A[cl_symmetric[k][j]];
+    }
+  }
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = i; j < CL_DIM; j++)
+      beds->A[cl_symmetric[i][j]] -= less[i][j];
+  }
+}
+
 /* (309): what drives a fluid whose weight is w (rho b, Pa/m) like the gradient g of its pressure (Pa/m): g itself where
    it is at rest. */
 INLINE void BedsDriveMoving(const Beds *A, const double w[CL_DIM], double g[CL_DIM])
@@ -59,17 +95,19 @@ INLINE void BedsDriveMoving(const Beds *A, const double w[CL_DIM], double g[CL_D
     g[d] += w[d];
 }
 
-/* J . (A^-1 - 1) J: what drag takes more than along the beds; (J J - J A J)/r with the ratio r = tr A - tr 1 + 1. */
+/* J . (A^-1 - 1) J: what drag takes more than along the beds. */
 INLINE double BedsDrag(const Beds *beds, const double J[CL_DIM])
 {
-  double AJ[CL_DIM], r = 1.0;
+  double A[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM], sum = 0.0;
 
-  for (int d = 0; d < CL_DIM; d++) {
-    AJ[d] = J[d];
-    r += beds->A[d] - 1.0;
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++)
+      A[i][j] = beds->A[cl_symmetric[i][j]];
   }
-  BedsDrive(beds, AJ);
-  return (VectorDot(J, J) - VectorDot(J, AJ)) / r;
+  const double det = CofactorOf(A, cof);
+  for (int i = 0; i < CL_DIM; i++)
+    sum += J[i] * VectorDot(cof[i], J);
+  return sum / det - VectorDot(J, J);
 }
 
 /* What k_r is a function of, with slopes in the fluid's share of the open pores and in S_h. */

@@ -233,18 +233,15 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
   }
 }
 
-/* (306) as the beds lie now. */
-INLINE void BedsValues(Explicit *e, const Set s, Run r, Given *v)
+/* (306) */
+INLINE void BedsValues(const Explicit *e, const Set s, Run r, Given *v)
 {
-  for (int q = 0; s.beds && q < r.n; q++) {
+  for (int q = 0; s.layers && q < r.n; q++) {
     const PetscInt p  = r.p + q;
-    const Beds     A  = ParticleBeds(e->m->c, &e->m->P, p);
     const double   Vk = e->m->P.f[P_V][p] * Conductance(e, s, p);
 
-    for (int k = 0; k < CL_SYMMETRIC; k++) {
-      e->t[T_BEDS + k][p]        = A.A[k];
-      v->value[q][A_Beds(s) + k] = Vk * (A.A[k] - (k < CL_DIM ? 1.0 : 0.0));
-    }
+    for (int k = 0; k < CL_SYMMETRIC; k++)
+      v->value[q][A_Beds(s) + k] = Vk * (e->beds[p].A[k] - (k < CL_DIM ? 1.0 : 0.0));
   }
 }
 

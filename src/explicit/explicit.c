@@ -20,7 +20,7 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   PetscCall(PetscNew(&e));
   e->m   = m;
   e->o   = *o;
-  e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat, Layers(e), SceneHasBeds(m->c)};
+  e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat, Layers(e)};
   *out   = e;
 
   e->straight = INFINITY;
@@ -40,6 +40,7 @@ static PetscErrorCode FreeParticles(Explicit *e)
   for (int d = 0; d < CL_DIM; d++)
     PetscCall(PetscFree(e->base[d]));
   PetscCall(PetscFree2(e->order, e->key));
+  PetscCall(PetscFree(e->beds));
   e->cap = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -73,8 +74,6 @@ static bool Needs(const Explicit *e, int k)
     return !s.heat;
   if (k == T_CONDUCT)
     return s.layers;
-  if (k >= T_BEDS && k < T_V)
-    return s.beds;
   if (k == T_WARM || k == T_WARM + 1)
     return e->m->c->compression_heat;
   if (k == T_V)
@@ -101,6 +100,8 @@ static PetscErrorCode SizeParticles(Explicit *e)
   for (int d = 0; d < CL_DIM; d++)
     PetscCall(PetscMalloc1(n, &e->base[d]));
   PetscCall(PetscMalloc2(n, &e->order, n, &e->key));
+  if (e->set.layers)
+    PetscCall(PetscMalloc1(n, &e->beds));
   e->cap = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -206,10 +207,9 @@ static PetscErrorCode Sort(Explicit *e)
 static PetscErrorCode Ready(Explicit *e)
 {
   PetscFunctionBeginUser;
-  if (Layers(e) != e->set.layers || SceneHasBeds(e->m->c) != e->set.beds) { /* a stage may bring other materials */
+  if (Layers(e) != e->set.layers) { /* a stage may bring other materials */
     e->resize     = true;
     e->set.layers = Layers(e);
-    e->set.beds   = SceneHasBeds(e->m->c);
     PetscCall(FreeParticles(e));
   }
   PetscCall(SizeParticles(e));
@@ -289,6 +289,8 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(e->event[STEP_DEPOSIT], 0, 0, 0, 0));
   PetscCall(PetscArrayzero(e->A, e->rows * width));
+  if (e->set.layers)
+    PetscCall(ParticlesDrive(e->m->c, &e->m->grid, &e->map, &e->m->P, e->beds));
   Deposit(e);
   PetscCall(PetscLogEventEnd(e->event[STEP_DEPOSIT], 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
@@ -388,5 +390,6 @@ double ExplicitBytesPerParticle(const Explicit *e)
     bytes += e->m->P.f[k] ? sizeof(double) : 0;
   for (int k = 0; k < T_COUNT; k++)
     bytes += e->t[k] ? sizeof(double) : 0;
+  bytes += e->beds ? sizeof(*e->beds) : 0;
   return bytes;
 }

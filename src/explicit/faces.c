@@ -107,11 +107,8 @@ void FacesForces(Explicit *e, double dt)
       for (int d = 0; d < CL_DIM; d++)
         force[ph][d] = -o.out[VectorAt(F_VW, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
     }
-    for (int ph = 0; s.beds && ph < s.fluids; ph++) {
-      const Beds A = BedsAt(e, f->particle);
-
-      BedsDrive(&A, force[ph]);
-    }
+    for (int ph = 0; s.layers && ph < s.fluids; ph++)
+      BedsDrive(&e->beds[f->particle], force[ph]);
     for (int a = 0; a < n; a++) {
       double *row = &e->A[node[a] * width];
 

@@ -23,8 +23,7 @@ typedef double Lanes[LANES];
 /* A set of fields as the loops know it; a constant in each of them. */
 typedef struct {
   int solid, fluids, heat; /* 0/1; water, water and gas; 0/1 */
-  int layers;              /* 0/1: particles differ in k_p, and (350) shares a node's flow among them */
-  int beds;                /* 0/1: (306), with layers */
+  int layers;              /* 0/1: particles differ in k_p or have beds: (350) shares a node's flow, (306) drives it */
 } Set;
 
 #define PLACE(name, number)                                                                                            \
@@ -39,7 +38,7 @@ INLINE int Rows(int n)
 }
 
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
- * and each fluid, and with layers V k_p, with beds that times A - 1. */
+ * and each fluid, and with layers V k_p and that times A - 1. */
 enum { MIX_F = 0, MIX_M = MIX_F + CL_DIM, MIX_V, MIX_COUNT = MIX_V + CL_DIM };
 enum { FL_M = 0, FL_V, FL_G = FL_V + CL_DIM, FL_MI = FL_G + CL_DIM, FL_DRAG, FL_W, FL_ROOT };
 PLACE(A_V, Scalars(s))
@@ -54,7 +53,7 @@ INLINE int A_Fluid(Set s, int f)
 }
 PLACE(A_K, A_Fluid(s, s.fluids))
 PLACE(A_Beds, A_K(s) + s.layers) /* by cl_symmetric */
-PLACE(A_Count, A_Beds(s) + CL_SYMMETRIC * s.beds)
+PLACE(A_Count, A_Beds(s) + CL_SYMMETRIC * s.layers)
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
    and velocity; increment of v_s. */
@@ -94,8 +93,7 @@ enum {
   T_HELD    = T_GAS + 2,            /* density of the gas in the pores (323) */
   T_DRAG    = T_HELD + 1,           /* [2] mu/(k_a k_r) */
   T_CONDUCT = T_DRAG + PHASE_COUNT, /* weight of its flow at t_n (350); with layers */
-  T_BEDS,                           /* [CL_SYMMETRIC] A at t_n (306); with beds */
-  T_V = T_BEDS + CL_SYMMETRIC,      /* volume at the end of the step */
+  T_V,                              /* volume at the end of the step */
   T_EOS,                            /* [2] masses at that volume and the old pressures */
   T_SLOPE = T_EOS + PHASE_COUNT,    /* [2][3] their slopes in p_w, p_g, T */
   T_WARM =
@@ -128,6 +126,7 @@ struct Explicit {
   Set             set;
   PetscInt        cap; /* of the arrays over particles */
   double         *t[T_COUNT];
+  Beds           *beds;         /* [cap] A at t_n (306); with layers */
   int            *base[CL_DIM]; /* first node along each axis, as at the last look */
   PetscInt       *order, *key;  /* work space of the sort */
   NodeMap         map;
@@ -173,28 +172,17 @@ INLINE double Conductance(const Explicit *e, Set s, PetscInt p)
   return s.layers ? e->t[T_CONDUCT][p] : 1.0;
 }
 
-/* A of a particle (306). */
-INLINE Beds BedsAt(const Explicit *e, PetscInt p)
-{
-  Beds beds;
-
-  for (int k = 0; k < CL_SYMMETRIC; k++)
-    beds.A[k] = e->t[T_BEDS + k][p];
-  return beds;
-}
-
-/* (309): what drives a fluid of density rho like the gradient g of its pressure, with beds. */
+/* (309): what drives a fluid of density rho like the gradient g of its pressure, with layers. */
 INLINE void Driven(const Explicit *e, Set s, PetscInt p, double rho, double g[CL_DIM])
 {
   double w[CL_DIM];
 
-  if (!s.beds)
+  if (!s.layers)
     return;
-  const Beds A = BedsAt(e, p);
   for (int d = 0; d < CL_DIM; d++)
     w[d] = rho * e->m->bc.gravity[d];
 
-  BedsDriveMoving(&A, w, g);
+  BedsDriveMoving(&e->beds[p], w, g);
 }
 
 /* Weights of a block of particles. */
@@ -301,12 +289,10 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
 #define MAKE_LOOP(f, solid, fluids, heat)                                                                              \
   static void f##_##solid##fluids##heat(Explicit *e, Run r, double dt)                                                 \
   {                                                                                                                    \
-    if (fluids && e->set.beds)                                                                                         \
-      f(e, (Set){solid, fluids, heat, 1, 1}, r, dt);                                                                   \
-    else if (fluids && e->set.layers)                                                                                  \
-      f(e, (Set){solid, fluids, heat, 1, 0}, r, dt);                                                                   \
+    if (fluids && e->set.layers)                                                                                       \
+      f(e, (Set){solid, fluids, heat, 1}, r, dt);                                                                      \
     else                                                                                                               \
-      f(e, (Set){solid, fluids, heat, 0, 0}, r, dt);                                                                   \
+      f(e, (Set){solid, fluids, heat, 0}, r, dt);                                                                      \
   }
 /* A loop f for each set, and their table f_loops. */
 #define MAKE_LOOPS(f)                                                                                                  \

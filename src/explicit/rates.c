@@ -268,16 +268,15 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 /* (92): what drag takes beyond that of flow along the beds, and pressure gives. */
 INLINE void BedsWork(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
 {
-  for (int k = 0; s.beds && s.solid && k < s.fluids; k++) {
+  for (int k = 0; s.layers && s.solid && k < s.fluids; k++) {
     for (int q = 0; q < r.n; q++) {
       const PetscInt p       = r.p + q;
       const double   conduct = Conductance(e, s, p), *v = &g->value[q][B_Fluid(s, k) + B_J];
-      const Beds     A = BedsAt(e, p);
       double         J[CL_DIM];
 
       for (int d = 0; d < CL_DIM; d++)
         J[d] = conduct * v[d];
-      const double work = dt * e->m->P.f[P_V][p] * e->t[T_DRAG + k][p] * BedsDrag(&A, J);
+      const double work = dt * e->m->P.f[P_V][p] * e->t[T_DRAG + k][p] * BedsDrag(&e->beds[p], J);
 
       e->work[WORK_PRESSURE] += work;
       e->work[WORK_DRAG] += work;

@@ -214,10 +214,10 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
   for (int d = 0; d < CL_DIM; d++) {
     ReadForces(e, s, a, d, &b[d]);
     held[d] = s.solid && Held(e, I, F_VS + d, &value[d]);
-    if (!(s.beds && s.solid))
+    if (!(s.layers && s.solid))
       Solve(e, s, &b[d], dt, held[d], value[d], v[d]);
   }
-  if (s.beds && s.solid)
+  if (s.layers && s.solid)
     SolveBeds(e, s, a, b, dt, held, value, v);
   for (int d = 0; d < CL_DIM; d++)
     KeepVelocities(e, s, I, d, &b[d], held[d], v[d], dt);

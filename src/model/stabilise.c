@@ -2,8 +2,7 @@
    over the nodes. */
 #include "gather.h"
 
-#define SLIVER 1e-6 /* of a cell */
-#define FULL 0.75   /* cells filled less, or with a surface inside, are cut */
+#define FULL 0.75 /* cells filled less, or with a surface inside, are cut */
 
 /* A cell is named after its lowest node; -1: this rank does not know it. */
 static PetscInt CellIndex(const Model *m, const PetscInt cell[CL_DIM])
@@ -30,18 +29,6 @@ static void Corner(const PetscInt lowest[CL_DIM], int k, PetscInt ij[CL_DIM])
     ij[d] = lowest[d] + (k >> d) % 2;
 }
 
-/* Share of [x-l, x+l] in its first cell; slivers to either side of a grid line do not count. */
-static double FirstShare(const GridLines *line, double x, double l, PetscInt *first)
-{
-  const double from = LinesPlace(line, x - l);
-  double       share;
-
-  *first              = (PetscInt)floor(from + SLIVER);
-  const double length = 2.0 * l / LinesWidth(line, *first); /* in its first cells */
-  share               = ((double)*first + 1.0 - from) / length;
-  return share > 1.0 - SLIVER ? 1.0 : share;
-}
-
 static double CellVolume(const Model *m, const PetscInt cell[CL_DIM])
 {
   double V = LinesWidth(&m->grid.line[0], cell[0]);
@@ -66,25 +53,13 @@ static void FillCells(const Model *m, double *fill)
 {
   for (PetscInt p = 0; p < m->P.n; p++) {
     const double ring = m->c->axisymmetric ? 2.0 * M_PI * m->P.f[P_X][p] : 1.0, J = Swollen(m, p);
-    PetscInt     first[CL_DIM];
-    double       share[CL_DIM];
+    PetscInt     cell[CL_CORNERS];
+    double       share[CL_CORNERS];
 
-    for (int d = 0; d < CL_DIM; d++) {
-      const GridLines *line = &m->grid.line[d];
-      const double     x    = ParticleGridX(&m->P, p, d);
-
-      share[d] = FirstShare(line, x, BasisReach(m->c->basis, line, x, m->P.f[P_L + d][p]), &first[d]);
-    }
+    ParticleCells(m->c, &m->grid, &m->map, &m->P, p, cell, share);
     for (int k = 0; k < CL_CORNERS; k++) {
-      PetscInt cell[CL_DIM];
-      double   w = 1.0;
-
-      Corner(first, k, cell);
-      for (int d = 0; d < CL_DIM; d++)
-        w *= (k >> d) % 2 ? 1.0 - share[d] : share[d];
-      const PetscInt I = w > 0.0 ? CellIndex(m, cell) : -1;
-      if (I >= 0)
-        fill[2 * I] += w * m->P.f[P_V][p] / (J * ring * CellVolume(m, cell));
+      if (cell[k] >= 0)
+        fill[2 * cell[k]] += share[k] * m->P.f[P_V][p] / (J * ring * CellVolume(m, m->map.ij[cell[k]]));
     }
   }
 }

@@ -31,7 +31,7 @@ static PetscErrorCode BuildStencils(Model *m, unsigned char *flag)
     PetscCall(PetscMalloc1(m->stencil_cap, &m->order));
     PetscCall(AdditionsReserve(m));
   }
-  if (!SceneHasBeds(m->c)) /* a stage may bring other materials */
+  if (!SceneSharesFlow(m->c)) /* a stage may bring other materials */
     PetscCall(PetscFree(m->beds));
   else if (!m->beds)
     PetscCall(PetscMalloc1(m->stencil_cap, &m->beds));
@@ -187,6 +187,21 @@ static void Average(Model *m, const double *sum)
   }
 }
 
+static PetscErrorCode Layers(Model *m)
+{
+  Beds *A;
+
+  PetscFunctionBeginUser;
+  if (!SceneSharesFlow(m->c))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(m->P.n, &A));
+  PetscCall(ParticlesDrive(m->c, &m->grid, &m->map, &m->P, A));
+  for (PetscInt p = 0; p < m->P.n; p++)
+    m->beds[p].A = A[p];
+  PetscCall(PetscFree(A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Project(Model *m)
 {
   const int   width  = SUM_X + m->c->fields.n;
@@ -209,8 +224,8 @@ static PetscErrorCode Project(Model *m)
       ModelNoteFailure(m, status, why, p);
       continue;
     }
-    if (m->beds)
-      m->beds[p] = (Bedding){ParticleBeds(m->c, &m->P, p), {q.rho[PHASE_W], q.rho[PHASE_G]}};
+    for (int k = 0; m->beds && k < PHASE_COUNT; k++)
+      m->beds[p].rho[k] = q.rho[k];
     AdditionsSet(m, p, &q);
     m->conduct[p] = shared ? SceneConductance(m->c, ParticleMaterial(m, p), m->P.f[P_SH][p]) : 1.0;
     ReachExpand(m, p, &r);
@@ -274,6 +289,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(NodeMapUpdate(&m->grid, flag, &m->map, &changed));
     if (changed)
       PetscCall(ModelResizeNodal(m));
+    PetscCall(Layers(m));
     PetscCall(Project(m));
     PetscCall(ModelReduceStatus(m, status));
   }
