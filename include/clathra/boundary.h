@@ -57,12 +57,12 @@ void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt
 /* Where a linear function takes the value of these weights at t_n, m. */
 void ParticleCentroid(const Grid *g, const Particles *P, PetscInt p, const Stencil *s, double at[CL_DIM]);
 
-/* Cells that particle p lies in, each by its lowest node (-1: none that is active here), and its shares in them;
-   slivers to either side of a grid line do not count. */
+/* Cells that particle p lies in, each by its lowest node (-1: none that is active here), and its shares in them,
+   dimensionless; slivers to either side of a grid line do not count. */
 void ParticleCells(const Scene *c, const Grid *g, const NodeMap *map, const Particles *P, PetscInt p,
                    PetscInt cell[CL_CORNERS], double share[CL_CORNERS]);
-/* What drives each particle's fluids through its layers as they lie now, A: [n] (306), less across borders that cut
- * cells.  Collective. */
+/* What drives each particle's fluids through its layers as they lie now, A: [n] (306), of one fluid less across borders
+   that cut cells (447).  Collective. */
 PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const Particles *P, Beds *A);
 
 /* Where the face is and how it distributes, for its particle's present position and weights. */

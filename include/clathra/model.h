@@ -179,6 +179,7 @@ typedef struct {
   double   *w;     /* [n_local][2] (phi S_pi)_I */
   double   *V;     /* [n_local] sum of V_n S, m^3 */
   Bedding  *beds;  /* [n] NULL without */
+  Beds     *share; /* [n_local] B of (448); NULL without */
   double *conduct; /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
   double *Vk;      /* [n_local] sum of V S times it, m^3 */
   double *flow;    /* [n_local] V/Vk (350) */
@@ -218,6 +219,7 @@ enum {
   NC_STORAGE = NC_RHO + PHASE_COUNT,
   NC_KAPPA   = NC_STORAGE + PHASE_COUNT,
   NC_CAPACITY,
+  NC_COMPLIANCE,
   NC_REACTION,
   NC_REACTION_HEAT,
   NC_DRAG,

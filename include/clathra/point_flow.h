@@ -84,30 +84,32 @@ INLINE void BedsLessen(Beds *beds, const double N[CL_SYMMETRIC], double ratio)
   }
 }
 
-/* (309): what drives a fluid whose weight is w (rho b, Pa/m) like the gradient g of its pressure (Pa/m): g itself where
-   it is at rest. */
-INLINE void BedsDriveMoving(const Beds *A, const double w[CL_DIM], double g[CL_DIM])
+/* A^-1 */
+INLINE Beds BedsInverse(const Beds *beds)
 {
-  for (int d = 0; d < CL_DIM; d++)
-    g[d] -= w[d];
-  BedsDrive(A, g);
-  for (int d = 0; d < CL_DIM; d++)
-    g[d] += w[d];
-}
-
-/* J . (A^-1 - 1) J: what drag takes more than along the beds. */
-INLINE double BedsDrag(const Beds *beds, const double J[CL_DIM])
-{
-  double A[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM], sum = 0.0;
+  double A[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM];
+  Beds   inverse;
 
   for (int i = 0; i < CL_DIM; i++) {
     for (int j = 0; j < CL_DIM; j++)
       A[i][j] = beds->A[cl_symmetric[i][j]];
   }
   const double det = CofactorOf(A, cof);
-  for (int i = 0; i < CL_DIM; i++)
-    sum += J[i] * VectorDot(cof[i], J);
-  return sum / det - VectorDot(J, J);
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = i; j < CL_DIM; j++)
+      inverse.A[cl_symmetric[i][j]] = cof[i][j] / det;
+  }
+  return inverse;
+}
+
+/* (448): B of a node, from the sum of V S k_p A over its particles and that of V S k_p. */
+INLINE Beds BedsShare(const Beds *sum, double Vk)
+{
+  Beds mean;
+
+  for (int k = 0; k < CL_SYMMETRIC; k++)
+    mean.A[k] = sum->A[k] / Vk;
+  return BedsInverse(&mean);
 }
 
 /* What k_r is a function of, with slopes in the fluid's share of the open pores and in S_h. */

@@ -53,6 +53,8 @@ INLINE PorePressure PorePressureOf(double sg, double pw, double pg)
   return (PorePressure){pw + sg * (pg - pw), pg - pw, 1.0 - sg, sg};
 }
 
+#define CL_LEAST_COMPLIANCE 1e-20 /* 1/Pa: incompressible water counts by its volume (449) */
+
 #define CL_GAS_FLOWS 0.1 /* of p_w: with less p_g a pore has no gas that could flow (323) */
 
 /* (323): is it this part of p_w that sets the density with which gas flows?  H as in Gas.trace, kg/(m^3 Pa); Pa. */

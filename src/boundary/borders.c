@@ -1,11 +1,12 @@
-/* What drives fluids where a border of layers cuts cells: (306) and what it becomes there. */
+/* What drives fluids where a border of layers cuts cells: (306), and of one fluid what it becomes there (447). */
 #include "clathra/boundary.h"
 
 /* Sums over particles at a node, then at a cell by its lowest node. */
 enum { NODE_V, NODE_LN, NODE_SUMS };
 enum { CELL_V, CELL_OVER_K, CELL_SUMS };
 
-#define ALIKE 1e-12 /* of ln k_p over the width of a domain: layers of a node that differ by less are one */
+#define LEAST_RATIO 1e-10 /* of less the round-off of A has no inverse (448) */
+#define ALIKE 1e-12       /* of ln k_p over the width of a domain: layers of a node that differ by less are one */
 
 typedef struct {
   const Scene     *c;
@@ -159,6 +160,8 @@ static bool Across(const Borders *b, PetscInt p, double N[CL_SYMMETRIC])
   return trace > 0.0;
 }
 
+/* Gas may be let free in what hangs into the cell beyond a border, and would have no way out: two fluids flow as the
+   particles' beds alone say. */
 PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const Particles *P, Beds *A)
 {
   Borders b = {.c = c, .g = g, .map = map, .P = P};
@@ -166,6 +169,10 @@ PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const
   bool *beside;
 
   PetscFunctionBeginUser;
+  for (PetscInt p = 0; p < P->n; p++)
+    A[p] = ParticleBeds(c, P, p);
+  if (c->fields.phase[PHASE_G])
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc4(P->n, &b.k, NODE_SUMS * map->n_local, &b.node, CL_SYMMETRIC * map->n_local, &b.T,
                          CELL_SUMS * map->n_local, &b.cell));
   PetscCall(PetscMalloc2(P->n, &N, P->n, &beside));
@@ -175,7 +182,6 @@ PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const
     PetscInt cell[CL_CORNERS];
     double   share[CL_CORNERS];
 
-    A[p]              = ParticleBeds(c, P, p);
     beside[p]         = Across(&b, p, N[p]);
     const double over = 1.0 / (b.k[p] * (beside[p] ? BedsAcross(&A[p], N[p]) : 1.0));
     ParticleCells(c, g, map, P, p, cell, share);
@@ -201,7 +207,7 @@ PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const
     }
     const double ratio = 1.0 / (over * b.k[p] * BedsAcross(&A[p], N[p]));
     if (ratio < 1.0)
-      BedsLessen(&A[p], N[p], ratio);
+      BedsLessen(&A[p], N[p], fmax(ratio, LEAST_RATIO));
   }
   PetscCall(PetscFree2(N, beside));
   PetscCall(PetscFree4(b.k, b.node, b.T, b.cell));

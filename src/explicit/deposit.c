@@ -97,6 +97,16 @@ INLINE void State(Explicit *e, const Set s, Run r, const double *restrict T, Flu
   }
 }
 
+/* What a particle counts in the pressures of its nodes (449). */
+INLINE void Stores(const Explicit *e, const Set s, Run r, const Fluids *w, double stores[BLOCK])
+{
+  const double *restrict V = e->m->P.f[P_V] + r.p;
+  const double compliance  = Largest(1.0 / r.mat->water.K, CL_LEAST_COMPLIANCE);
+
+  for (int q = 0; q < r.n; q++)
+    stores[q] = s.fluids == 2 ? V[q] : V[q] * w->open[q] * compliance;
+}
+
 /* Of particle q from the first node of its patch along d, m: S_1 + third S_2 units on (weights reproduce the middle).
  */
 INLINE double FromFirst(const Weights *w, int d, int q)
@@ -220,7 +230,8 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
       v->value[q][at + FL_V + d] = mass * f[vel + d][r.p + q];
       g[d]                       = f[grad + d][r.p + q];
     }
-    Driven(e, s, r.p + q, w->rho[k][q], g);
+    Unweighed(e, s, w->rho[k][q], g);
+    Drive(e, s, r.p + q, g);
     for (int d = 0; d < CL_DIM; d++)
       v->value[q][at + FL_G + d] = -Vk * g[d];
     v->value[q][at + FL_MI]   = Vk * w->rho[k][q];
@@ -303,7 +314,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   CellMean           mean;
   double *const     *f = e->m->P.f;
   const double      *T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p, *restrict V = f[P_V] + r.p;
-  double             C[BLOCK];
+  double             C[BLOCK], stores[BLOCK];
 
   (void)dt;
   WeightsOf(e, r, &w);
@@ -311,6 +322,10 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   for (int q = 0; q < r.n; q++)
     v.value[q][A_V(s)] = V[q];
   State(e, s, r, T, &state);
+  if (s.fluids)
+    Stores(e, s, r, &state, stores);
+  for (int q = 0; s.fluids && q < r.n; q++)
+    v.value[q][A_Stores(s)] = stores[q];
   for (int q = 0; s.layers && q < r.n; q++)
     v.value[q][A_K(s)] = V[q] * Conductance(e, s, r.p + q);
   BedsValues(e, s, r, &v);
@@ -319,7 +334,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
 
     for (int d = 0; d < CL_DIM; d++)
       g[d] = f[VectorAt(P_GW, k, d)] + r.p;
-    Carried(r, k, V, f[P_PW + k] + r.p, g, &w, &v);
+    Carried(r, k, stores, f[P_PW + k] + r.p, g, &w, &v);
     FluidValues(e, s, r, k, &state, &v);
   }
   if (s.heat) {

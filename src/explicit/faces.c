@@ -107,8 +107,8 @@ void FacesForces(Explicit *e, double dt)
       for (int d = 0; d < CL_DIM; d++)
         force[ph][d] = -o.out[VectorAt(F_VW, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
     }
-    for (int ph = 0; s.layers && ph < s.fluids; ph++)
-      BedsDrive(&e->beds[f->particle], force[ph]);
+    for (int ph = 0; ph < s.fluids; ph++)
+      Drive(e, s, f->particle, force[ph]);
     for (int a = 0; a < n; a++) {
       double *row = &e->A[node[a] * width];
 
@@ -165,6 +165,8 @@ static void NodalInputs(const Explicit *e, const Face *f, int n, const PetscInt 
         in[VectorAt(IN_J, k, d)] += conduct * f->N[a] * b[B_Fluid(s, k) + B_J + d];
     }
   }
+  for (int k = 0; k < s.fluids; k++)
+    Drive(e, s, f->particle, &in[VectorAt(IN_J, k, 0)]);
 }
 
 void FacesRates(Explicit *e, double dt, StageRates *rates)

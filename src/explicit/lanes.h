@@ -53,7 +53,14 @@ INLINE int A_Fluid(Set s, int f)
 }
 PLACE(A_K, A_Fluid(s, s.fluids))
 PLACE(A_Beds, A_K(s) + s.layers) /* by cl_symmetric */
-PLACE(A_Count, A_Beds(s) + CL_SYMMETRIC * s.layers)
+PLACE(A_Stores, A_Beds(s) + CL_SYMMETRIC * s.layers)
+PLACE(A_Count, A_Stores(s) + (s.fluids > 0))
+
+/* Pressure of a fluid at a node at t_n (2). */
+INLINE double NodalPressure(Set s, const double *a, int k)
+{
+  return a[k] / a[A_Stores(s)];
+}
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
    and velocity; increment of v_s. */
@@ -172,17 +179,18 @@ INLINE double Conductance(const Explicit *e, Set s, PetscInt p)
   return s.layers ? e->t[T_CONDUCT][p] : 1.0;
 }
 
-/* (309): what drives a fluid of density rho like the gradient g of its pressure, with layers. */
-INLINE void Driven(const Explicit *e, Set s, PetscInt p, double rho, double g[CL_DIM])
+/* v := A v, with layers. */
+INLINE void Drive(const Explicit *e, Set s, PetscInt p, double v[CL_DIM])
 {
-  double w[CL_DIM];
+  if (s.layers)
+    BedsDrive(&e->beds[p], v);
+}
 
-  if (!s.layers)
-    return;
-  for (int d = 0; d < CL_DIM; d++)
-    w[d] = rho * e->m->bc.gravity[d];
-
-  BedsDriveMoving(&e->beds[p], w, g);
+/* Gradient g of a pressure less the weight of a fluid of density rho, with layers. */
+INLINE void Unweighed(const Explicit *e, Set s, double rho, double g[CL_DIM])
+{
+  for (int d = 0; s.layers && d < CL_DIM; d++)
+    g[d] -= rho * e->m->bc.gravity[d];
 }
 
 /* Weights of a block of particles. */

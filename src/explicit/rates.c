@@ -11,9 +11,13 @@ INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
     double      *v       = g->value[q];
 
     for (int k = 0; k < s.fluids; k++) {
+      double *dv = &v[B_Fluid(s, k) + B_DV], *vel = &v[B_Fluid(s, k) + B_VEL];
+
+      Drive(e, s, r.p + q, dv);
+      Drive(e, s, r.p + q, vel);
       for (int d = 0; d < CL_DIM; d++) {
-        v[B_Fluid(s, k) + B_DV + d]  = conduct * v[B_Fluid(s, k) + B_DV + d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
-        v[B_Fluid(s, k) + B_VEL + d] = conduct * v[B_Fluid(s, k) + B_VEL + d] + (s.solid ? v[d] : 0.0);
+        dv[d]  = conduct * dv[d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
+        vel[d] = conduct * vel[d] + (s.solid ? v[d] : 0.0);
       }
     }
   }
@@ -246,14 +250,20 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
   for (int q = 0; q < r.n; q++) {
     const double *v = g->value[q], tau = bracket * TauOf(1.0, drag[q], rho[q], scale).v, rt = rho[q] * tau,
                  conduct = Conductance(e, s, r.p + q);
-    double own[CL_DIM];
+    double own[CL_DIM], J[CL_DIM], b[CL_DIM];
 
     for (int d = 0; d < CL_DIM; d++)
       own[d] = f[grad + d][r.p + q];
-    Driven(e, s, r.p + q, rho[q], own);
+    Unweighed(e, s, rho[q], own);
+    for (int d = 0; d < CL_DIM; d++) {
+      J[d] = conduct * v[at + B_J + d];
+      b[d] = v[at + B_PROJ + d] - own[d];
+    }
+    Drive(e, s, r.p + q, J);
+    Drive(e, s, r.p + q, b);
     o->value[q][k] = m[q] - eos[q];
     for (int d = 0; d < CL_DIM; d++)
-      o->force[d][q][k] = MassFlux(dt * V[q], rho[q], rt, conduct * v[at + B_J + d], v[at + B_PROJ + d] - own[d]);
+      o->force[d][q][k] = MassFlux(dt * V[q], rho[q], rt, J[d], b[d]);
   }
   if (k == PHASE_G && r.mat->gas.carried > 0.0)
     CarriedFlux(e, r, o);
@@ -262,25 +272,6 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 
     for (int q = 0; q < r.n; q++)
       o->value[q][R_Matrix(s) + k * n + i] = slope[q];
-  }
-}
-
-/* (92): what drag takes beyond that of flow along the beds, and pressure gives. */
-INLINE void BedsWork(Explicit *e, const Set s, Run r, const Gathered *g, double dt)
-{
-  for (int k = 0; s.layers && s.solid && k < s.fluids; k++) {
-    for (int q = 0; q < r.n; q++) {
-      const PetscInt p       = r.p + q;
-      const double   conduct = Conductance(e, s, p), *v = &g->value[q][B_Fluid(s, k) + B_J];
-      double         J[CL_DIM];
-
-      for (int d = 0; d < CL_DIM; d++)
-        J[d] = conduct * v[d];
-      const double work = dt * e->m->P.f[P_V][p] * e->t[T_DRAG + k][p] * BedsDrag(&e->beds[p], J);
-
-      e->work[WORK_PRESSURE] += work;
-      e->work[WORK_DRAG] += work;
-    }
   }
 }
 
@@ -496,7 +487,6 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     Masses(e, s, r, PHASE_G, &v);
   for (int k = 0; k < s.fluids; k++)
     FluidRow(e, s, r, k, &g, dt, &o);
-  BedsWork(e, s, r, &g, dt);
   if (s.heat)
     HeatRow(e, s, r, &g, dt, &v, &o);
   if (s.heat && e->m->c->compression_heat)

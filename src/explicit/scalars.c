@@ -79,20 +79,20 @@ INLINE void WriteScalars(Explicit *e, const Set s, PetscInt I)
 INLINE void WriteEnds(Explicit *e, const Set s, PetscInt I)
 {
   const int     n = Scalars(s);
-  const double *a = &e->A[I * LANES * Rows(A_Count(s))], V = a[A_V(s)];
+  const double *a = &e->A[I * LANES * Rows(A_Count(s))];
   double       *c = &e->C[I * C_Width(s)];
 
   for (int k = 0; k < n; k++)
-    c[C_End(s) + k] = a[k] / (k < s.fluids ? V : a[A_C(s)]) + c[k];
+    c[C_End(s) + k] = (k < s.fluids ? NodalPressure(s, a, k) : a[k] / a[A_C(s)]) + c[k];
   if (Relative(e, s)) {
     double d[2];
 
-    PressuresOf(a[1] / V, c, d);
+    PressuresOf(NodalPressure(s, a, PHASE_G), c, d);
     for (int k = 0; k < 2; k++)
-      c[C_End(s) + k] = a[k] / V + d[k];
+      c[C_End(s) + k] = NodalPressure(s, a, k) + d[k];
   }
   if (s.fluids == 2 && fabs(c[1] - c[0]) > e->straight) /* (105): not to be believed; particles will say */
-    c[C_End(s) + 1] = a[1] / V;
+    c[C_End(s) + 1] = NodalPressure(s, a, PHASE_G);
   if (s.heat)
     e->warmed += a[A_C(s)] * c[s.fluids];
   for (int d = 0; s.solid && d < CL_DIM; d++)

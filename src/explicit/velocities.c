@@ -25,6 +25,33 @@ INLINE double Flow(const Set s, const double *a)
   return s.layers ? a[A_V(s)] / a[A_K(s)] : 1.0;
 }
 
+/* Mean of A at a node, weighted with k_p. */
+INLINE double MeanDrive(const Set s, const double *a, int i, int j)
+{
+  return (i == j ? 1.0 : 0.0) + a[A_Beds(s) + cl_symmetric[i][j]] / a[A_K(s)];
+}
+
+/* B of a node (448). */
+INLINE Beds SharesAt(const Set s, const double *a)
+{
+  Beds mean;
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = i; j < CL_DIM; j++)
+      mean.A[cl_symmetric[i][j]] = MeanDrive(s, a, i, j);
+  }
+  return BedsInverse(&mean);
+}
+
+/* v := B v, with layers. */
+INLINE void Shared(const Set s, const double *a, double v[CL_DIM])
+{
+  if (!s.layers)
+    return;
+  const Beds B = SharesAt(s, a);
+  BedsDrive(&B, v);
+}
+
 INLINE double Inverse(double mass)
 {
   return mass > 0.0 ? 1.0 / mass : 0.0;
@@ -76,7 +103,7 @@ INLINE void ReadForces(const Explicit *e, const Set s, const double *a, int d, B
     const double *f = &a[A_Fluid(s, k)];
 
     b->vf[k] = b->m[k] > 0.0 ? f[FL_V + d] * b->per_m[k] : b->v;
-    b->r[k]  = b->kr[k] * b->flow * (f[FL_G + d] + f[FL_MI] * gravity);
+    b->r[k]  = b->kr[k] * b->flow * (f[FL_G + d] + (s.layers ? 0.0 : f[FL_MI] * gravity));
     mass += b->m[k];
   }
   b->f = s.solid ? mix[MIX_F + d] + mass * gravity : 0.0;
@@ -120,24 +147,31 @@ INLINE void Solve(const Explicit *e, const Set s, const Balance *b, double dt, b
     v[1 + k] = (b->A[k] * b->vf[k] + b->r[k] - DragAtStart(e, b, k) + DragAtEnd(e, b, k) * v[0]) * b->per_AB[k];
 }
 
-/* The same with beds: fluids feel the skeleton's acceleration along every axis (308), so the balances b are one system
-   (314).  v: [axis][3]. */
-INLINE void SolveBeds(const Explicit *e, const Set s, const double *a, const Balance b[CL_DIM], double dt,
-                      const bool held[CL_DIM], const double value[CL_DIM], double v[CL_DIM][3])
+/* The same with layers: fluids feel the skeleton's acceleration along every axis (308), so the balances b are one
+   system (314).  v: [axis][3]. */
+INLINE void SolveLayers(const Explicit *e, const Set s, const double *a, const Balance b[CL_DIM], double dt,
+                        const bool held[CL_DIM], const double value[CL_DIM], double v[CL_DIM][3])
 {
-  const double scale = e->o.mass_scaling / dt, per_k = 1.0 / a[A_K(s)], *X = &a[A_Beds(s)];
-  double       less[CL_DIM][CL_DIM], L[CL_DIM][CL_DIM], rhs[CL_DIM], v_s[CL_DIM], mass[PHASE_COUNT] = {0.0}, sum = 0.0;
+  const double scale = e->o.mass_scaling / dt;
+  double       feels[PHASE_COUNT][CL_DIM][CL_DIM], L[CL_DIM][CL_DIM], rhs[CL_DIM], v_s[CL_DIM];
 
   for (int k = 0; k < s.fluids; k++) {
-    mass[k] = scale * b[0].kr[k] * b[0].flow * a[A_Fluid(s, k) + FL_MI];
-    sum += scale * b[0].m[k] * b[0].per_AB[k] * mass[k];
+    const double mass = scale * b[0].kr[k] * b[0].flow * a[A_Fluid(s, k) + FL_MI];
+
+    for (int i = 0; i < CL_DIM; i++) {
+      for (int j = 0; j < CL_DIM; j++)
+        feels[k][i][j] = mass * MeanDrive(s, a, i, j) - (i == j ? b[0].A[k] : 0.0);
+    }
   }
   for (int i = 0; i < CL_DIM; i++) {
     rhs[i] = MixtureForce(e, s, &b[i], dt, e->o.damping);
     for (int j = 0; j < CL_DIM; j++) {
-      less[i][j] = X[cl_symmetric[i][j]] * per_k;
-      L[i][j]    = (i == j ? b[i].lhs : 0.0) - sum * less[i][j];
-      rhs[i] -= sum * less[i][j] * b[j].v;
+      double sum = 0.0;
+
+      for (int k = 0; k < s.fluids; k++)
+        sum += scale * b[0].m[k] * b[0].per_AB[k] * feels[k][i][j];
+      L[i][j] = (i == j ? b[i].lhs : 0.0) - sum;
+      rhs[i] -= sum * b[j].v;
     }
   }
   for (int i = 0; i < CL_DIM; i++) {
@@ -147,15 +181,16 @@ INLINE void SolveBeds(const Explicit *e, const Set s, const double *a, const Bal
   }
   SolveSmall(CL_DIM, L[0], rhs, v_s);
   for (int i = 0; i < CL_DIM; i++) {
-    double along = 0.0;
-
     v[i][0] = v_s[i];
-    for (int j = 0; j < CL_DIM; j++)
-      along += less[i][j] * (v_s[j] - b[j].v);
-    for (int k = 0; k < s.fluids; k++)
-      v[i][1 + k] = (b[i].A[k] * b[i].vf[k] + b[i].r[k] - DragAtStart(e, &b[i], k) + DragAtEnd(e, &b[i], k) * v[i][0] -
-                     mass[k] * along) *
-                    b[i].per_AB[k];
+    for (int k = 0; k < s.fluids; k++) {
+      double along = 0.0;
+
+      for (int j = 0; j < CL_DIM; j++)
+        along += feels[k][i][j] * (v_s[j] - b[j].v);
+      v[i][1 + k] =
+          (b[i].A[k] * b[i].vf[k] + b[i].r[k] - DragAtStart(e, &b[i], k) + DragAtEnd(e, &b[i], k) * v[i][0] - along) *
+          b[i].per_AB[k];
+    }
   }
 }
 
@@ -168,19 +203,26 @@ INLINE double Mean(const Explicit *e, PetscInt I, int unknown, double before, do
   return Held(e, I, unknown, &value) ? value : 0.5 * (end + before);
 }
 
-/* (92): work of the drag along d in a balance (of a node, or of one and those that follow it) with its answer v; a
+/* (92): work of the drag in the balances a, b (of a node, or of one and those that follow it) with their answer v; a
    fluid that is held moves as it must. */
-INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, int d, const Balance *b, const double v[3])
+INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, const double *a, const Balance b[CL_DIM],
+                       const double v[CL_DIM][3])
 {
-  const double mean = Mean(e, I, F_VS + d, b->v, v[0]);
-  double       sum  = 0.0, held;
+  double sum = 0.0, held;
 
   for (int k = 0; k < s.fluids; k++) {
-    const int    at   = VectorAt(F_VW, k, d);
-    const double end  = Held(e, I, at, &held) ? held : v[1 + k];
-    const double slip = e->o.drag_implicit ? end - v[0] : b->vf[k] - b->v;
+    double drag[CL_DIM], flow[CL_DIM];
 
-    sum += b->B[k] / b->kr[k] * slip * b->w[k] * (Mean(e, I, at, b->vf[k], end) - mean);
+    for (int d = 0; d < CL_DIM; d++) {
+      const int    at   = VectorAt(F_VW, k, d);
+      const double end  = Held(e, I, at, &held) ? held : v[d][1 + k];
+      const double slip = e->o.drag_implicit ? end - v[d][0] : b[d].vf[k] - b[d].v;
+
+      drag[d] = b[d].B[k] / b[d].kr[k] * slip;
+      flow[d] = b[d].w[k] * (Mean(e, I, at, b[d].vf[k], end) - Mean(e, I, F_VS + d, b[d].v, v[d][0]));
+    }
+    Shared(s, a, flow);
+    sum += VectorDot(drag, flow);
   }
   return sum;
 }
@@ -189,8 +231,6 @@ INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, int d, const 
 INLINE void KeepVelocities(Explicit *e, const Set s, PetscInt I, int d, const Balance *b, bool held, const double v[3],
                            double dt)
 {
-  if (s.solid && s.fluids)
-    e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, d, b, v);
   if (!held)
     e->work[WORK_DAMPING] += e->node[I].own_v * dt * Damping(b, e->o.damping) * 0.5 * (v[0] + b->v);
   e->inc[INC * I + d] = v[0] - b->v;
@@ -218,49 +258,81 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       Solve(e, s, &b[d], dt, held[d], value[d], v[d]);
   }
   if (s.layers && s.solid)
-    SolveBeds(e, s, a, b, dt, held, value, v);
+    SolveLayers(e, s, a, b, dt, held, value, v);
   for (int d = 0; d < CL_DIM; d++)
     KeepVelocities(e, s, I, d, &b[d], held[d], v[d], dt);
+  for (int k = 0; k < s.fluids; k++)
+    Shared(s, a, &e->inc[INC * I + VectorAt(0, 1 + k, 0)]);
+  if (s.solid && s.fluids)
+    e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, a, b, v);
 }
 
-/* (92): works at a node along d with the means of its velocities (skeleton, water, gas; v at the end) over the step. */
-INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance *w, const double v[3], double dt)
+/* (92): works at a node along d with the means of its velocities (skeleton, water, gas; v at the end) over the step,
+   and the Darcy fluxes of these. */
+INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance *w, const double v[3], double dt,
+                     double flow[PHASE_COUNT][CL_DIM])
 {
-  const double *a = &e->A[I * LANES * Rows(A_Count(s))], *push = e->m->plates ? e->push[I] : NULL;
+  const double *push  = e->m->plates ? e->push[I] : NULL;
   const double  scale = e->o.mass_scaling, mean = Mean(e, I, F_VS + d, w->v, v[0]), gravity = e->m->bc.gravity[d];
-  double gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, pressure = 0.0, value = 0.0;
+  double        gained = w->M * (v[0] - w->v), inertia = gained * mean, weight = w->M * mean, value = 0.0;
 
   for (int k = 0; k < s.fluids; k++) {
-    const double own = Mean(e, I, VectorAt(F_VW, k, d), w->vf[k], v[1 + k]), flow = w->w[k] * (own - mean);
+    const double own = Mean(e, I, VectorAt(F_VW, k, d), w->vf[k], v[1 + k]);
 
+    flow[k][d] = w->w[k] * (own - mean);
     inertia += w->m[k] * (v[1 + k] - w->vf[k]) * own;
     gained += w->m[k] * (v[1 + k] - w->vf[k]);
     weight += w->m[k] * own;
-    pressure += w->flow * a[A_Fluid(s, k) + FL_G + d] * flow;
   }
   e->work[WORK_INERTIA] += scale * inertia;
   e->work[WORK_GRAVITY] += dt * gravity * weight;
-  e->work[WORK_PRESSURE] += dt * pressure;
   if (push)
     e->work[WORK_PLATES] += dt * push[d] * v[0];
   if (Held(e, I, F_VS + d, &value))
     e->work[WORK_PLATES] += (scale * gained - dt * w->f) * value;
 }
 
+/* (92): of the fluids' pressures, with those Darcy fluxes J; what weighs A b of a fluid is that of the node. */
+INLINE double PressureWork(const Explicit *e, const Set s, const double *a, double per_k,
+                           const double J[PHASE_COUNT][CL_DIM])
+{
+  double sum = 0.0;
+
+  for (int k = 0; k < s.fluids; k++) {
+    const double *f = &a[A_Fluid(s, k)];
+    double        g[CL_DIM], shared[CL_DIM];
+
+    for (int i = 0; i < CL_DIM; i++) {
+      g[i]      = f[FL_G + i];
+      shared[i] = J[k][i];
+      for (int j = 0; s.layers && j < CL_DIM; j++)
+        g[i] -= f[FL_MI] * MeanDrive(s, a, i, j) * e->m->bc.gravity[j];
+    }
+    Shared(s, a, shared);
+    sum += per_k * VectorDot(g, shared);
+  }
+  return sum;
+}
+
 /* Velocity of a fluid: the increments of (41), or with layers the skeleton's and what follows from the node's flow per
    permeability (311). */
-INLINE double FluidVelocity(const Explicit *e, const Set s, PetscInt I, const Balance *w, int k, int d, double v_s)
+INLINE double FluidVelocity(const Explicit *e, const Set s, PetscInt I, const double *a, const Balance *w, int k, int d,
+                            double v_s)
 {
-  const double shared = Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, d));
+  double flow = 0.0;
 
-  return s.layers ? v_s + shared / w->flow : w->vf[k] + shared;
+  if (!s.layers)
+    return w->vf[k] + Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, d));
+  for (int j = 0; j < CL_DIM; j++)
+    flow += MeanDrive(s, a, d, j) * Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, j));
+  return v_s + flow / w->flow;
 }
 
 /* Row that the particles read: own start velocity, the increment, then what is prescribed. */
 INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 {
   const double *a = &e->A[I * LANES * Rows(A_Count(s))], per_V = 1.0 / a[A_V(s)];
-  double       *b = &e->B[I * LANES * Rows(B_Count(s))];
+  double       *b = &e->B[I * LANES * Rows(B_Count(s))], J[PHASE_COUNT][CL_DIM] = {{0.0}};
   Balance       w;
 
   ReadMasses(e, s, a, dt, &w);
@@ -279,7 +351,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
-      v[1 + k] = FluidVelocity(e, s, I, &w, k, d, v[0]);
+      v[1 + k] = FluidVelocity(e, s, I, a, &w, k, d, v[0]);
       if (Held(e, I, VectorAt(F_VW, k, d), &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
@@ -288,10 +360,16 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       bf[B_VEL + d]  = s.layers ? w.flow * (v[1 + k] - v[0]) : v[1 + k];
     }
     if (s.solid)
-      NodeWork(e, s, I, d, &w, v, dt);
+      NodeWork(e, s, I, d, &w, v, dt, J);
+  }
+  if (s.solid)
+    e->work[WORK_PRESSURE] += dt * PressureWork(e, s, a, w.flow, J);
+  for (int k = 0; s.layers && k < s.fluids; k++) {
+    for (int of = B_J; of < B_PER_FLUID; of += CL_DIM)
+      Shared(s, a, &b[B_Fluid(s, k) + of]);
   }
   for (int k = 0; k < s.fluids; k++)
-    b[B_P(s, k)] = a[k] * per_V;
+    b[B_P(s, k)] = NodalPressure(s, a, k);
   if (s.heat)
     b[B_T(s)] = a[s.fluids] / a[A_C(s)];
 }

@@ -263,6 +263,14 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   SkeletonKeep(&store, p, &s->skeleton);
 }
 
+/* Of a node's velocity at place k of its block: what it has more than `from` of what it had. */
+static double Change(const Model *m, const double *x, double from, PetscInt I, int k)
+{
+  const PetscInt q = I * m->c->fields.n + k;
+
+  return x[q] - from * m->x_n[q];
+}
+
 /* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). Without inertia
    velocities have no memory: those of the nodes (355); between the two (357). */
 static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r, double keeps)
@@ -270,20 +278,35 @@ static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *
   const FieldSet *fs   = &m->c->fields;
   const double    from = fs->inertia ? keeps : 0.0;
 
-  for (int q = F_VS; q < F_PW; q++) {
-    if (fs->at[q] < 0)
+  double dv_s[CL_DIM] = {0.0};
+
+  for (int a = 0; fs->solid && a < r->n; a++) {
+    for (int d = 0; d < CL_DIM; d++)
+      dv_s[d] += r->S[a] * Change(m, x, from, r->node[a], PlaceVs(fs) + d);
+  }
+  for (int d = 0; fs->solid && d < CL_DIM; d++)
+    m->P.f[P_VS + d][p] = from * m->P.f[P_VS + d][p] + dv_s[d];
+  for (int f = 0; f < PHASE_COUNT; f++) {
+    double slip[CL_DIM] = {0.0};
+
+    if (!fs->phase[f])
       continue;
-    double v = from * m->P.f[P_VS + q][p];
-
     for (int a = 0; a < r->n; a++) {
-      const PetscInt I = r->node[a], k = I * fs->n + fs->at[q],
-                     vs = fs->solid ? I * fs->n + PlaceVs(fs) + q % CL_DIM : 0;
-      const double dv   = x[k] - from * m->x_n[k];
-      const double slip = q < F_VW ? 0.0 : fs->solid ? dv - (x[vs] - from * m->x_n[vs]) : dv;
+      const PetscInt I = r->node[a];
+      double         at[CL_DIM];
 
-      v += r->S[a] * (dv + ((q < F_VW ? 1.0 : FlowWeight(m, p, I, (q - F_VW) / CL_DIM)) - 1.0) * slip);
+      for (int d = 0; d < CL_DIM; d++)
+        at[d] = Change(m, x, from, I, PlaceV(fs, f) + d) - (fs->solid ? Change(m, x, from, I, PlaceVs(fs) + d) : 0.0);
+      ShareOut(m, I, at);
+      for (int d = 0; d < CL_DIM; d++)
+        slip[d] += r->S[a] * FlowWeight(m, p, I, f) * at[d];
     }
-    m->P.f[P_VS + q][p] = v;
+    Drive(m, p, slip);
+    for (int d = 0; d < CL_DIM; d++) {
+      double *v = &m->P.f[VectorAt(P_VW, f, d)][p];
+
+      *v = from * *v + dv_s[d] + slip[d];
+    }
   }
 }
 

@@ -23,8 +23,7 @@ static bool Direction(const Model *m, PetscInt p, const Reach *r, double e[CL_DI
   }
   for (int d = 0; d < CL_DIM; d++)
     e[d] += rho * m->bc.gravity[d];
-  if (m->beds)
-    BedsDrive(&m->beds[p].A, e);
+  Drive(m, p, e);
   const double size = VectorLength(e);
   if (size <= ROUND_OFF * terms)
     return false;

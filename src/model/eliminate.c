@@ -2,17 +2,23 @@
    (171)-(174) of docs/equations.md.  What is left couples nodes only as far as a particle reaches. */
 #include "gather.h"
 
-/* (171): what a particle's flux of a fluid along each axis gains for a force on each of its nodes as on itself: w/R,
-   and with k_r of the nodes. */
+/* (171): what a particle's flux of a fluid gains for a force on each of its nodes as on itself: w/R B, and with k_r of
+   the nodes; [of the flux][of the force]. */
 typedef struct {
-  double plain[CL_DIM], with_kr[CL_DIM];
+  double plain[CL_DIM][CL_DIM], with_kr[CL_DIM][CL_DIM];
 } Mobility;
+
+/* Element of B at a node (448). */
+static double ShareAt(const Model *m, PetscInt I, int i, int j)
+{
+  return m->share ? m->share[I].A[cl_symmetric[i][j]] : i == j;
+}
 
 static void MobilityOf(const Model *m, PetscInt p, const Reach *r, int f, Mobility *of)
 {
   const double inertia = m->c->fields.inertia ? 1.0 / m->stage.dt : 0.0;
 
-  *of = (Mobility){{0.0}, {0.0}};
+  *of = (Mobility){{{0.0}}, {{0.0}}};
   for (int a = 0; a < r->n; a++) {
     const PetscInt   I    = r->node[a];
     const FluidNode *node = m->fluid ? &m->fluid[PHASE_COUNT * I + f] : NULL;
@@ -23,8 +29,10 @@ static void MobilityOf(const Model *m, PetscInt p, const Reach *r, int f, Mobili
       const double drag   = node ? node->D[i] : c[NC_DRAG + f] * V + WallDrag(m, I, f, i);
       const double resist = drag * w + inertia * kr * c[NC_RHO + f] * V;
 
-      of->plain[i] += resist > 0.0 ? share * w / resist : 0.0;
-      of->with_kr[i] += resist > 0.0 ? share * w / resist * kr : 0.0;
+      for (int j = 0; resist > 0.0 && j < CL_DIM; j++) {
+        of->plain[j][i] += ShareAt(m, I, j, i) * share * w / resist;
+        of->with_kr[j][i] += ShareAt(m, I, j, i) * share * w / resist * kr;
+      }
     }
   }
 }
@@ -34,7 +42,7 @@ static void FluxResponse(const Model *m, PetscInt p, const Reach *r, const doubl
                          const PointOutput *o, int f, double dJ[CL_DIM][IN_COUNT])
 {
   const FieldSet *fs          = &m->c->fields;
-  double          acc[CL_DIM] = {0.0}, kr = 0.0;
+  double          acc[CL_DIM] = {0.0}, J[CL_DIM], kr = 0.0;
   Mobility        mobile;
 
   MobilityOf(m, p, r, f, &mobile);
@@ -46,16 +54,21 @@ static void FluxResponse(const Model *m, PetscInt p, const Reach *r, const doubl
     for (int i = 0; i < CL_DIM; i++)
       acc[i] += r->S[a] * at[i];
   }
+  memcpy(J, &in[VectorAt(IN_J, f, 0)], sizeof(J));
+  Drive(m, p, J);
+  memset(dJ, 0, CL_DIM * sizeof(*dJ));
   for (int i = 0; i < CL_DIM; i++) {
     const double *dG = o->D[VectorAt(OUT_G, f, i)], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f],
                  *dR = o->D[OUT_ROOT + f];
     const double F = o->out[VectorAt(OUT_G, f, i)] + acc[i] * o->out[OUT_MI + f], rise = 2.0 * sqrt(kr) * F;
 
-    for (int q = 0; q < IN_COUNT; q++)
-      dJ[i][q] = -mobile.with_kr[i] * (dG[q] + acc[i] * dM[q]) -
-                 mobile.plain[i] * (rise * dR[q] + in[VectorAt(IN_J, f, i)] * dD[q]);
-    if (fs->solid && fs->inertia)
-      dJ[i][IN_U + i] -= mobile.with_kr[i] * o->out[OUT_MI + f] / PetscSqr(m->stage.dt);
+    for (int j = 0; j < CL_DIM; j++) {
+      for (int q = 0; q < IN_COUNT; q++)
+        dJ[j][q] -=
+            mobile.with_kr[j][i] * (dG[q] + acc[i] * dM[q]) + mobile.plain[j][i] * (rise * dR[q] + J[i] * dD[q]);
+      if (fs->solid && fs->inertia)
+        dJ[j][IN_U + i] -= mobile.with_kr[j][i] * o->out[OUT_MI + f] / PetscSqr(m->stage.dt);
+    }
   }
 }
 
@@ -71,37 +84,30 @@ static void Follow(double *D, int f, const double dJ[CL_DIM][IN_COUNT])
 }
 
 /* Share of the bracket's slope that the flux takes over. */
-static double BracketShare(const Beds *A, const PointOutput *o, int f, const double dJ[CL_DIM][IN_COUNT])
+static double BracketShare(const PointOutput *o, int f, const double dJ[CL_DIM][IN_COUNT])
 {
   double flux = 0.0, bracket = 0.0;
 
   for (int i = 0; i < CL_DIM; i++) {
     const int row = VectorAt(OUT_FLUX, f, i);
-    double    slope[CL_DIM];
 
     for (int j = 0; j < CL_DIM; j++)
       flux -= o->D[row][VectorAt(IN_J, f, j)] * dJ[j][VectorAt(IN_GP, f, i)];
-    memcpy(slope, o->wide[f][f][i], sizeof(slope));
-    if (A)
-      BedsDrive(A, slope);
-    bracket += slope[i];
+    bracket += o->wide[f][f][i][i];
   }
   return bracket > flux ? flux / bracket : 1.0;
 }
 
 /* (172): with Pi g = g the bracket of (19) has no slope with respect to g. */
-static void DropBracket(const FieldSet *fs, const Beds *A, PointOutput *o, int f, double share)
+static void DropBracket(const FieldSet *fs, PointOutput *o, int f, double share)
 {
   for (int i = 0; i < PHASE_COUNT * CL_DIM + fs->heat; i++) {
     const bool    heat = i == PHASE_COUNT * CL_DIM;
     const double *wide = heat ? o->wide_q[f] : o->wide[i / CL_DIM][f][i % CL_DIM];
-    double       *D    = o->D[heat ? OUT_Q : OUT_FLUX + i], slope[CL_DIM];
+    double       *D    = o->D[heat ? OUT_Q : OUT_FLUX + i];
 
-    memcpy(slope, wide, sizeof(slope));
-    if (A)
-      BedsDrive(A, slope);
     for (int j = 0; j < CL_DIM; j++)
-      D[VectorAt(IN_GP, f, j)] += share * slope[j];
+      D[VectorAt(IN_GP, f, j)] += share * wide[j];
   }
 }
 
@@ -132,7 +138,6 @@ static void FixedStress(const FieldSet *fs, PointOutput *o)
 void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
                        bool fixed_stress, PointOutput *o)
 {
-  const Beds     *A  = m->beds ? &m->beds[p].A : NULL;
   const FieldSet *fs = &m->c->fields;
 
   for (int f = 0; f < PHASE_COUNT; f++) {
@@ -141,7 +146,7 @@ void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double 
     if (!fs->phase[f])
       continue;
     FluxResponse(m, p, r, x, in, o, f, dJ);
-    DropBracket(fs, A, o, f, BracketShare(A, o, f, dJ));
+    DropBracket(fs, o, f, BracketShare(o, f, dJ));
     for (int row = OUT_FLUX; row < OUT_FLUX + PHASE_COUNT * CL_DIM; row++) /* gas goes with the water, too (352) */
       Follow(o->D[row], f, dJ);
     if (fs->heat)
@@ -161,7 +166,7 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
   const double    inertia = fs->inertia ? 1.0 / m->stage.dt : 0.0;
 
   for (int f = 0; f < PHASE_COUNT; f++) {
-    double *D = o->D[F_PW + f], given = 0.0, own = 0.0;
+    double *D = o->D[F_PW + f], given[CL_DIM][CL_DIM] = {{0.0}}, own[CL_DIM][CL_DIM] = {{0.0}}, J[CL_DIM];
 
     if (!fs->phase[f])
       continue;
@@ -171,16 +176,20 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
                                                inertia * kr * c[NC_RHO + f];
       const double mobile = resist > 0.0 ? w * kr / resist : 0.0;
 
-      own += face->N[a] * mobile;
-      given += face->N[a] * face->N[a] * mobile / m->V[r->node[a]];
+      for (int i = 0; i < CL_DIM; i++) {
+        for (int j = 0; j < CL_DIM; j++) {
+          own[i][j] += ShareAt(m, r->node[a], i, j) * face->N[a] * mobile;
+          given[i][j] += ShareAt(m, r->node[a], i, j) * face->N[a] * face->N[a] * mobile / m->V[r->node[a]];
+        }
+      }
     }
+    memcpy(J, &D[VectorAt(IN_J, f, 0)], sizeof(J));
     for (int i = 0; i < CL_DIM; i++) {
-      const double  J     = D[VectorAt(IN_J, f, i)];
-      const double *force = o->D[VectorAt(F_VW, f, i)];
+      const double *force = o->D[VectorAt(F_VW, f, i)], to = VectorDot(J, own[i]), for_it = VectorDot(J, given[i]);
 
-      D[VectorAt(IN_GP, f, i)] -= J * own;
+      D[VectorAt(IN_GP, f, i)] -= to;
       for (int q = 0; q < IN_COUNT; q++)
-        D[q] -= J * given * force[q];
+        D[q] -= for_it * force[q];
     }
   }
 }

@@ -80,19 +80,6 @@ static double InertiaPower(const Model *m, const Reach *r, const double *x, cons
   return sum;
 }
 
-/* What drag takes beyond that of flow along the beds, and pressure gives: (16) was multiplied with A (308). */
-static double BedsPower(const Model *m, PetscInt p, const double in[IN_COUNT], const double out[OUT_COUNT])
-{
-  double sum = 0.0;
-
-  for (int f = 0; m->beds && f < PHASE_COUNT; f++) {
-    const double kr = m->fluid ? PetscSqr(out[OUT_ROOT + f]) : 1.0;
-
-    sum += m->c->fields.phase[f] ? out[OUT_D + f] / kr * BedsDrag(&m->beds[p].A, &in[VectorAt(IN_J, f, 0)]) : 0.0;
-  }
-  return sum;
-}
-
 void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
                    const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES])
 {
@@ -107,19 +94,17 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
         m->bc.gravity[i] * (out[OUT_M] * k.v[0][i] + (fs->phase[PHASE_W] ? out[OUT_M + 1] * k.v[1][i] : 0.0) +
                             (fs->phase[PHASE_G] ? out[OUT_M + 2] * k.v[2][i] : 0.0));
   power[WORK_PRESSURE] += fs->fluid ? s->p * k.expansion : 0.0;
-  const double beds = BedsPower(m, p, in, out);
-  power[WORK_PRESSURE] += beds;
-  power[WORK_DRAG] += beds;
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (!fs->phase[f])
       continue;
     for (int i = 0; i < CL_DIM; i++)
       power[WORK_PRESSURE] -= out[VectorAt(OUT_G, f, i)] * in[VectorAt(IN_J, f, i)];
     for (int a = 0; !m->fluid && a < r->n; a++) {
-      double J[CL_DIM];
+      double J[CL_DIM], BJ[CL_DIM];
 
       DarcyFlux(m, r->node[a], f, &x[r->node[a] * fs->n], J);
-      power[WORK_DRAG] += r->S[a] * FlowWeight(m, p, r->node[a], f) * out[OUT_D + f] * VectorDot(J, J);
+      SharedFlux(m, r->node[a], f, &x[r->node[a] * fs->n], BJ);
+      power[WORK_DRAG] += r->S[a] * FlowWeight(m, p, r->node[a], f) * out[OUT_D + f] * VectorDot(J, BJ);
     }
   }
   if (!m->bc.ambient.on)
@@ -156,7 +141,7 @@ void FacePower(const Model *m, const Face *f, const Reach *r, const double *x, c
 
       if (!fs->phase[ph])
         continue;
-      DarcyFlux(m, r->node[a], ph, xI, J);
+      SharedFlux(m, r->node[a], ph, xI, J);
       for (int d = 0; d < CL_DIM; d++)
         power[WORK_PRESSURE] -= FaceWeight(f, a, VectorAt(F_VW, ph, d)) * FaceShare(m, f->particle, r->node[a], ph) *
                                 o->out[VectorAt(F_VW, ph, d)] * J[d];
@@ -172,12 +157,13 @@ static double WallPower(const Model *m, const double *x)
   double sum = 0.0;
 
   for (PetscInt k = 0; m->wall && k < m->map.n_local * PHASE_COUNT; k++) {
-    double J[CL_DIM];
+    double J[CL_DIM], BJ[CL_DIM];
 
     if (m->wall[k] == 0.0 || !m->c->fields.phase[k % PHASE_COUNT])
       continue;
     DarcyFlux(m, k / PHASE_COUNT, k % PHASE_COUNT, &x[k / PHASE_COUNT * m->c->fields.n], J);
-    sum += m->wall[k] * PetscSqr(J[0]);
+    SharedFlux(m, k / PHASE_COUNT, k % PHASE_COUNT, &x[k / PHASE_COUNT * m->c->fields.n], BJ);
+    sum += m->wall[k] * J[0] * BJ[0];
   }
   return sum;
 }
@@ -190,11 +176,12 @@ double DragPower(const Model *m, const double *x)
   for (PetscInt I = 0; m->fluid && I < m->map.n_owned; I++) {
     for (int f = 0; f < PHASE_COUNT; f++) {
       const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
-      double           J[CL_DIM];
+      double           J[CL_DIM], BJ[CL_DIM];
 
       DarcyFlux(m, I, f, &x[I * m->c->fields.n], J);
+      SharedFlux(m, I, f, &x[I * m->c->fields.n], BJ);
       for (int d = 0; d < CL_DIM; d++)
-        sum += at->D[d] * PetscSqr(J[d] / at->root);
+        sum += at->D[d] * J[d] * BJ[d] / PetscSqr(at->root);
     }
   }
   return sum;

@@ -50,7 +50,7 @@ static void GatherDonated(const Model *m, PetscInt p, const Reach *r, const doub
     const double w = r->S[a] * FlowWeight(m, p, r->node[a], PHASE_G);
     double       at[CL_DIM];
 
-    DarcyFlux(m, r->node[a], PHASE_G, &x[r->node[a] * m->c->fields.n], at);
+    SharedFlux(m, r->node[a], PHASE_G, &x[r->node[a] * m->c->fields.n], at);
     for (int d = 0; d < CL_DIM; d++)
       J[d] += w * at[d];
   }
@@ -148,7 +148,7 @@ static void GatherFace(const Model *m, PetscInt p, const Reach *r, const double 
 
       if (!fs->phase[f])
         continue;
-      DarcyFlux(m, I, f, &x[I * fs->n], J);
+      SharedFlux(m, I, f, &x[I * fs->n], J);
       for (int d = 0; d < CL_DIM; d++) {
         const int at = VectorAt(IN_J, f, d);
 
@@ -296,7 +296,7 @@ void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]
     p0[f] = m->c->fields.phase[f] ? m->P.f[P_PW0 + f][p] + weight : 0.0;
 }
 
-/* Pressures at a face drive a fluid like those in its particle (308). */
+/* Pressures at a face drive a fluid like those in its particle (308); the slopes of what flows in those of (448). */
 static void FaceBeds(const Beds *A, const FieldSet *fs, FaceOutput *o)
 {
   for (int f = 0; f < PHASE_COUNT; f++) {
@@ -314,6 +314,8 @@ static void FaceBeds(const Beds *A, const FieldSet *fs, FaceOutput *o)
       for (int d = 0; d < CL_DIM; d++)
         o->D[at + d][q] = slope[d];
     }
+    for (int q = 0; q < F_COUNT; q++)
+      BedsDrive(A, &o->D[q][VectorAt(IN_J, f, 0)]);
   }
 }
 
@@ -326,6 +328,8 @@ void FaceAt(const Model *m, const Face *face, const double *x, Reach *r, FaceOut
   AddOwn(m, p, in);
   for (int q = F_PW; q <= F_T; q++)
     in[q == F_T ? IN_T : IN_P + q - F_PW] += Shift(m, p, r, q);
+  for (int f = 0; f < PHASE_COUNT; f++)
+    Drive(m, p, &in[VectorAt(IN_J, f, 0)]);
   ModelInitialAtFace(m, face, p0);
   for (int a = 0; a < r->n; a++) {
     kappa += face->N[a] * m->coef[r->node[a] * NC_COUNT + NC_KAPPA];

@@ -54,10 +54,11 @@ static void FaceDirections(const Model *m, const Reach *r, Face *f)
     if (!m->c->fields.phase[k])
       continue;
     for (int a = 0; a < r->n; a++) {
-      DarcyFlux(m, r->node[a], k, &m->x_n[r->node[a] * m->c->fields.n], J);
+      SharedFlux(m, r->node[a], k, &m->x_n[r->node[a] * m->c->fields.n], J);
       for (int d = 0; d < CL_DIM; d++)
         sum[d] += FaceWeight(f, a, VectorAt(F_VW, k, d)) * FaceShare(m, f->particle, r->node[a], k) * J[d];
     }
+    Drive(m, f->particle, sum);
     FaceDirection(f, k, sum);
   }
 }

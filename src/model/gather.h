@@ -121,6 +121,7 @@ static inline int RowLength(int unknowns)
 typedef struct {
   double        S, NS[PHASE_COUNT][CL_DIM], NU, K;
   const double *G, *M, *w, *B; /* B: null without mean dilatation */
+  const Beds   *share;         /* (448); null without */
 } NodeWeights;
 
 /* d in/d(unknowns). */

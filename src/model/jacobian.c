@@ -193,7 +193,7 @@ static void Diagonal(const FieldSet *fs, const double out[OUT_COUNT], const Node
     block[PlaceT(fs) * ld + PlaceT(fs)] += S * out[OUT_C] / dt;
 }
 
-/* Beds: fluids feel the skeleton's acceleration (308). */
+/* The skeleton's acceleration in (308). */
 static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT_COUNT], const NodeFactors *k,
                          double dt, double *block, int ld)
 {
@@ -203,7 +203,7 @@ static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++)
         block[(PlaceV(fs, f) + i) * ld + PlaceVs(fs) + j] +=
-            k->flow[f] * k->kr[f] * out[OUT_MI + f] * (A->A[cl_symmetric[i][j]] - (i == j ? 1.0 : 0.0)) / dt;
+            k->flow[f] * k->kr[f] * out[OUT_MI + f] * (A->A[cl_symmetric[i][j]] - (i == j ? k->share[f] : 0.0)) / dt;
     }
   }
 }
@@ -211,13 +211,14 @@ static void DiagonalBeds(const FieldSet *fs, const Beds *A, const double out[OUT
 /* Of the node's place b, where displacement counts with NU; the fluxes' weights NS are the caller's. */
 static inline NodeWeights WeightsAt(const Model *m, const Reach *r, int b, double NU)
 {
-  return (NodeWeights){.S  = r->S[b],
-                       .NU = NU,
-                       .K  = m->c->axisymmetric ? r->K[b] : 0.0,
-                       .G  = r->G[b],
-                       .M  = r->M[b],
-                       .B  = m->c->mean_dilatation ? r->B[b] : NULL,
-                       .w  = &m->w[PHASE_COUNT * r->node[b]]};
+  return (NodeWeights){.S     = r->S[b],
+                       .NU    = NU,
+                       .K     = m->c->axisymmetric ? r->K[b] : 0.0,
+                       .G     = r->G[b],
+                       .M     = r->M[b],
+                       .B     = m->c->mean_dilatation ? r->B[b] : NULL,
+                       .w     = &m->w[PHASE_COUNT * r->node[b]],
+                       .share = m->share ? &m->share[r->node[b]] : NULL};
 }
 
 /* What a particle adds to the blocks between its nodes. */

@@ -63,6 +63,7 @@ PetscErrorCode FreeParticleArrays(Model *m)
   PetscCall(PetscFree(m->added->held));
   PetscCall(PetscFree(m->added->chord));
   PetscCall(PetscFree(m->beds));
+  PetscCall(PetscFree(m->share));
   m->stencil_cap = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -44,7 +44,9 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
 
       if (!slope)
         BedsWeight(m, p, f, w);
-      BedsDriveMoving(&m->beds[p].A, w, &g[VectorAt(0, f, 0)]);
+      for (int d = 0; d < CL_DIM; d++)
+        g[VectorAt(0, f, d)] -= w[d];
+      BedsDrive(&m->beds[p].A, &g[VectorAt(0, f, 0)]);
     }
     for (int a = 0; a < r.n; a++) {
       const double VS    = Vk * r.S[a];
@@ -58,6 +60,8 @@ PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, doub
   for (PetscInt I = 0; I < m->map.n_local; I++) {
     for (int k = 0; k < CL_FLUID_VECTORS; k++)
       proj[CL_FLUID_VECTORS * I + k] /= Donated(m, k / CL_DIM) ? m->added->source[2 * I + 1] : m->Vk[I];
+    for (int f = 0; f < PHASE_COUNT; f++)
+      ShareOut(m, I, &proj[VectorAt(CL_FLUID_VECTORS * I, f, 0)]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,7 +92,7 @@ void ModelGive(Model *m, const double *x, bool slope)
 
       if (!fs->phase[f])
         continue;
-      DarcyFlux(m, I, f, now, J);
+      SharedFlux(m, I, f, now, J);
       for (int d = 0; d < CL_DIM; d++) {
         J[d] *= m->flow[I];
         to[VectorAt(GIVE_PROJ, f, d)] = m->proj[VectorAt(0, PHASE_COUNT * I + f, d)];

@@ -111,7 +111,7 @@ void ProductKeepFace(Model *m, PetscInt k, const FaceOutput *o)
   memcpy(m->solver->product->face[k], o->D, sizeof(o->D));
 }
 
-/* Fluids feel the skeleton's acceleration across beds (308). */
+/* The skeleton's acceleration in (308). */
 static void BedsChange(Model *m, PetscInt q, const Reach *r, const double *dx)
 {
   const FieldSet *fs = &m->c->fields;
@@ -125,11 +125,12 @@ static void BedsChange(Model *m, PetscInt q, const Reach *r, const double *dx)
     memcpy(across, &dx[I * fs->n + PlaceVs(fs)], sizeof(across));
     BedsDrive(&m->beds[p].A, across);
     for (int f = 0; f < PHASE_COUNT; f++) {
-      const double weight = fs->phase[f] ? r->S[a] * FlowWeight(m, p, I, f) / NodeShare(m, I, f) * MI[f] : 0.0;
+      const double share  = fs->phase[f] ? FlowWeight(m, p, I, f) : 0.0;
+      const double weight = fs->phase[f] ? r->S[a] * share / NodeShare(m, I, f) * MI[f] : 0.0;
 
       for (int d = 0; d < CL_DIM; d++)
         m->take[TAKE_COUNT * I + TAKE_FLUID + FLUID_COUNT * f + FLUID_G + d] +=
-            weight * (across[d] - dx[I * fs->n + PlaceVs(fs) + d]) / m->stage.dt;
+            weight * (across[d] - share * dx[I * fs->n + PlaceVs(fs) + d]) / m->stage.dt;
     }
   }
 }

@@ -100,9 +100,13 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
       in[VectorAt(IN_GP, f, i)][p] = b->G[i];
       if (PlaceV(fs, f) < 0)
         continue;
-      in[VectorAt(IN_J, f, i)][first + PlaceV(fs, f) + i] = b->NS[f][i] * b->w[f];
-      if (fs->solid)
-        in[VectorAt(IN_J, f, i)][vs + i] = -b->NS[f][i] * b->w[f];
+      for (int j = 0; j < CL_DIM; j++) {
+        const double share = b->NS[f][i] * b->w[f] * (b->share ? b->share->A[cl_symmetric[i][j]] : i == j);
+
+        in[VectorAt(IN_J, f, i)][first + PlaceV(fs, f) + j] = share;
+        if (fs->solid)
+          in[VectorAt(IN_J, f, i)][vs + j] = -share;
+      }
     }
   }
   if (fs->heat) {

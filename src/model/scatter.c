@@ -89,7 +89,7 @@ static void ScatterFluid(Model *m, PetscInt p, const Reach *r, int f, const doub
     of[k] = 0.0;
 }
 
-/* Beds hold what of the skeleton's acceleration less gravity is across them (308). */
+/* What the skeleton's acceleration and gravity have in (308). */
 static void ScatterBeds(Model *m, PetscInt p, const Reach *r, const double *x, int f, const double out[OUT_COUNT])
 {
   for (int a = 0; a < r->n; a++) {
@@ -97,7 +97,7 @@ static void ScatterBeds(Model *m, PetscInt p, const Reach *r, const double *x, i
     const double   weight = r->S[a] * FlowWeight(m, p, I, f) / NodeShare(m, I, f) * out[OUT_MI + f];
     double         across[CL_DIM];
 
-    BedsHold(m, p, I, x, across);
+    BedsHold(m, p, I, x, f, across);
     for (int d = 0; d < CL_DIM; d++)
       m->take[TAKE_COUNT * I + TAKE_FLUID + FLUID_COUNT * f + FLUID_G + d] += weight * across[d];
   }

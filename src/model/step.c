@@ -71,6 +71,12 @@ static inline double Carried(const Model *m, PetscInt p, int value, int gradient
   return v;
 }
 
+/* Weight per volume of a particle's pressures at its nodes (449). */
+static double Compliance(const FieldSet *fs, const PointProperties *q)
+{
+  return fs->phase[PHASE_G] ? 1.0 : fmax(q->compressibility, CL_LEAST_COMPLIANCE);
+}
+
 static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_DIM], const PointProperties *q,
                         double *s)
 {
@@ -92,7 +98,7 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])
       continue;
-    s[SUM_X + PlaceP(fs, k)] += VS * Carried(m, p, P_PW + k, VectorAt(P_GW, k, 0), d);
+    s[SUM_X + PlaceP(fs, k)] += VS * Compliance(fs, q) * Carried(m, p, P_PW + k, VectorAt(P_GW, k, 0), d);
     s[SUM_W + k] += VS * q->phi * (1.0 - q->Sh) * q->s[k];
   }
   if (fs->heat)
@@ -134,9 +140,12 @@ static void Deposit(const Model *m, PetscInt p, const Reach *r, const PointPrope
     DepositNode(m, p, S, d, q, &sum[I * width]);
     m->V[I] += VS;
     m->Vk[I] += VSk;
+    for (int k = 0; m->beds && k < CL_SYMMETRIC; k++)
+      m->share[I].A[k] += VSk * m->beds[p].A.A[k];
     c[NC_M] += VS * q->M;
     c[NC_KAPPA] += VS * q->kappa;
     c[NC_CAPACITY] += S * q->capacity;
+    c[NC_COMPLIANCE] += VS * Compliance(&m->c->fields, q);
     c[NC_REACTION] += VS * q->reaction;
     c[NC_REACTION_HEAT] += VS * q->reaction_heat;
     if (VS > m->most[I]) {
@@ -170,9 +179,11 @@ static void Average(Model *m, const double *sum)
     double       *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * fs->n];
 
     m->flow[I] = V / m->Vk[I];
+    if (m->share)
+      m->share[I] = BedsShare(&m->share[I], m->Vk[I]);
     for (int k = 0; k < fs->n; k++) {
       const int    q      = fs->field[k];
-      const double weight = q < F_PW ? s[SUM_M + q / CL_DIM] : q < F_T ? V : c[NC_CAPACITY];
+      const double weight = q < F_PW ? s[SUM_M + q / CL_DIM] : q < F_T ? c[NC_COMPLIANCE] : c[NC_CAPACITY];
 
       x[k] = weight > 0.0 ? s[SUM_X + k] / weight : 0.0;
     }
@@ -187,13 +198,16 @@ static void Average(Model *m, const double *sum)
   }
 }
 
+/* What drives the fluids of particles through their layers. */
 static PetscErrorCode Layers(Model *m)
 {
   Beds *A;
 
   PetscFunctionBeginUser;
-  if (!SceneSharesFlow(m->c))
+  PetscCall(PetscFree(m->share));
+  if (!m->beds)
     PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(m->map.n_local, &m->share));
   PetscCall(PetscMalloc1(m->P.n, &A));
   PetscCall(ParticlesDrive(m->c, &m->grid, &m->map, &m->P, A));
   for (PetscInt p = 0; p < m->P.n; p++)
@@ -234,6 +248,8 @@ static PetscErrorCode Project(Model *m)
   PetscCall(NodeMapSum(&m->map, sum, width));
   PetscCall(NodeMapSum(&m->map, m->V, 1));
   PetscCall(NodeMapSum(&m->map, m->Vk, 1));
+  if (m->share)
+    PetscCall(NodeMapSum(&m->map, m->share->A, CL_SYMMETRIC));
   PetscCall(NodeMapSum(&m->map, m->coef, NC_COUNT));
   Average(m, sum);
   PetscCall(PetscFree(sum));

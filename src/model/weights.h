@@ -88,6 +88,13 @@ static inline void Drive(const Model *m, PetscInt p, double v[CL_DIM])
     BedsDrive(&m->beds[p].A, v);
 }
 
+/* v := B v at a node (448). */
+static inline void ShareOut(const Model *m, PetscInt I, double v[CL_DIM])
+{
+  if (m->share)
+    BedsDrive(&m->share[I], v);
+}
+
 /* rho b of a fluid of particle p with beds at t_n, N/m^3. */
 static inline void BedsWeight(const Model *m, PetscInt p, int f, double w[CL_DIM])
 {
@@ -154,6 +161,13 @@ static inline void DarcyFlux(const Model *m, PetscInt I, int f, const double *xI
     J[i] = w * (fs->solid ? v[i] - xI[PlaceVs(fs) + i] : v[i]);
 }
 
+/* ... as it is shared out (448): B J. */
+static inline void SharedFlux(const Model *m, PetscInt I, int f, const double *xI, double J[CL_DIM])
+{
+  DarcyFlux(m, I, f, xI, J);
+  ShareOut(m, I, J);
+}
+
 static inline double *UpstreamAt(const Model *m, PetscInt I, int f)
 {
   return &m->added->up[UP_COUNT * (PHASE_COUNT * I + f)];
@@ -192,21 +206,19 @@ static inline void Acceleration(const Model *m, PetscInt I, const double *x, int
     acc[i] = weight * acc[i] - m->bc.gravity[i];
 }
 
-/* What of the skeleton's acceleration less gravity beds take off a fluid (308): (A - 1) of it. */
-static inline void BedsHold(const Model *m, PetscInt p, PetscInt I, const double *x, double across[CL_DIM])
+/* (308): what the skeleton's acceleration and gravity have of that of fluid f beside weight a_f - b. */
+static inline void BedsHold(const Model *m, PetscInt p, PetscInt I, const double *x, int f, double across[CL_DIM])
 {
-  const FieldSet *fs = &m->c->fields;
-  double          s[CL_DIM];
+  const FieldSet *fs          = &m->c->fields;
+  double          own[CL_DIM] = {0.0};
 
-  for (int i = 0; i < CL_DIM; i++)
-    s[i] = -m->bc.gravity[i];
   if (fs->solid)
-    Acceleration(m, I, x, PlaceVs(fs), 1.0, s);
+    Rate(m, I, x, PlaceVs(fs), own);
   for (int i = 0; i < CL_DIM; i++)
-    across[i] = s[i];
+    across[i] = own[i] - m->bc.gravity[i];
   BedsDrive(&m->beds[p].A, across);
   for (int i = 0; i < CL_DIM; i++)
-    across[i] -= s[i];
+    across[i] -= FlowWeight(m, p, I, f) * own[i] - m->bc.gravity[i];
 }
 
 /* ... of a fluid of particle p with (310). */
@@ -217,7 +229,7 @@ static inline void FluidAcceleration(const Model *m, PetscInt p, PetscInt I, con
   Acceleration(m, I, x, PlaceV(&m->c->fields, f), FlowWeight(m, p, I, f), acc);
   if (!m->beds)
     return;
-  BedsHold(m, p, I, x, across);
+  BedsHold(m, p, I, x, f, across);
   for (int i = 0; i < CL_DIM; i++)
     acc[i] += across[i];
 }

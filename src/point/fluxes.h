@@ -32,25 +32,24 @@ INLINE void Spread(const PointHistory *h, const Kinematics *k, const Metric *met
   }
 }
 
-/* Phi = V_n rho [ cof^T J + tau K (Pi g - g) ] (19), (309). */
+/* Phi = V_n rho [ cof^T A J + tau K A (Pi g - g) ] (19), (448), g less what gravity has of it. */
 INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k, const Metric *metric,
                  const ScalarState *s, int f, const double in[IN_COUNT], bool tangent, PointOutput *o, double *tau_out)
 {
   const double(*K)[CL_DIM] = metric->K;
-  const Jet     rho        = s->rho[f];
-  const Jet     kr         = f == PHASE_G && h->mobility > 0.0 ? JetConstant(h->mobility) : s->kr[f];
-  const Tau     t          = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
-  const Jet     tau        = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
-  const Jet     rt         = JetMul(rho, tau);
-  const double *J          = &in[VectorAt(IN_J, f, 0)];
-  double        g[CL_DIM], b[CL_DIM];
+  const Jet rho            = s->rho[f];
+  const Jet kr             = f == PHASE_G && h->mobility > 0.0 ? JetConstant(h->mobility) : s->kr[f];
+  const Tau t              = TauOf(kr.v, s->resist[f].v, rho.v, fs->inertia ? 1.0 / h->dt : 0.0);
+  const Jet tau            = JetChain3(t.v, t.kr, kr, t.resist, s->resist[f], t.rho, rho);
+  const Jet rt             = JetMul(rho, tau);
+  double    J[CL_DIM], b[CL_DIM];
 
-  for (int i = 0; i < CL_DIM; i++)
-    g[i] = in[VectorAt(IN_GP, f, i)];
-  if (h->beds)
-    BedsDriveMoving(h->beds, h->weight[f], g);
-  for (int i = 0; i < CL_DIM; i++)
-    b[i] = h->proj[f][i] - g[i];
+  for (int i = 0; i < CL_DIM; i++) {
+    J[i] = in[VectorAt(IN_J, f, i)];
+    b[i] = h->proj[f][i] - (in[VectorAt(IN_GP, f, i)] - (h->beds ? h->weight[f][i] : 0.0));
+  }
+  Drive(h, J);
+  Drive(h, b);
 
   *tau_out = tau.v;
   for (int i = 0; i < CL_DIM; i++) {
@@ -67,15 +66,17 @@ INLINE void Flux(const FieldSet *fs, const PointHistory *h, const Kinematics *k,
       D[q] += h->V * rho.v * AlongCofactorSlope(k, i, q, J);
       D[q] += h->V * rt.v * MetricSlope(metric, i, q, b);
     }
-    double slope[CL_DIM];
+    double *wide = o->wide[f][f][i], carried[CL_DIM];
     for (int j = 0; j < CL_DIM; j++) {
-      slope[j] = h->V * rt.v * K[i][j];
-      D[VectorAt(IN_J, f, j)] += h->V * rho.v * k->cof[j][i];
-      o->wide[f][f][i][j] = slope[j];
+      wide[j]    = h->V * rt.v * K[i][j];
+      carried[j] = h->V * rho.v * k->cof[j][i];
     }
-    Drive(h, slope); /* A is symmetric */
-    for (int j = 0; j < CL_DIM; j++)
-      D[VectorAt(IN_GP, f, j)] -= slope[j];
+    Drive(h, wide); /* A is symmetric */
+    Drive(h, carried);
+    for (int j = 0; j < CL_DIM; j++) {
+      D[VectorAt(IN_J, f, j)] += carried[j];
+      D[VectorAt(IN_GP, f, j)] -= wide[j];
+    }
   }
 }
 

@@ -1,5 +1,5 @@
-/* What a run says of borders of layers that have settled off the grid's lines (docs/limits.md): the cell of the tight
-   layer beside such a border drains as the other layer does, and no tolerance shows it. */
+/* What a run with gas says of borders of layers that have settled off the grid's lines (docs/limits.md): the cell of
+   the tight layer beside such a border drains as the other layer does, and no tolerance shows it. */
 #include "run_private.h"
 #include "clathra/shape.h"
 #include "clathra/words.h"
@@ -84,7 +84,7 @@ PetscErrorCode NoteBorders(const Stepper *s)
   Border       b;
 
   PetscFunctionBeginUser;
-  if (!c->fields.solid || !c->fields.fluid || c->basis == BASIS_TOTAL)
+  if (!c->fields.solid || !c->fields.phase[PHASE_G] || c->basis == BASIS_TOTAL)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Farthest(m, &b));
   if (!(b.off > OFF_LINE))
