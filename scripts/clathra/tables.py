@@ -38,7 +38,7 @@ def read_csv(path):
     values = np.empty((len(rows) - 1, len(names)))
     for k, row in enumerate(rows[1:]):
         try:
-            values[k] = [float(value) for value in row]
+            values[k] = np.array([float(value) for value in row]).reshape(len(names))
         except ValueError:
             raise Damaged(f"{path}, line {k + 2}: no row of {len(names)} numbers") from None
     if "time_s" in names and not np.isfinite(values[:, names.index("time_s")]).all():
