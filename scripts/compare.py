@@ -155,7 +155,7 @@ def differences(runs, names, damaged):
             alone.append(f"{name}: no column in common with {names[0]}")
         lines += ["", *(table(rows) if found else []), *alone]
         if not found and not alone:
-            lines.append(f"{name}: the same, as far as " + ("it can be read" if damaged else "it goes (but for round-off)"))
+            lines.append(f"{name}: no difference in what can be read" if damaged else f"{name}: the same, as far as it goes (but for round-off)")
     return lines
 
 

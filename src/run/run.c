@@ -279,7 +279,11 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
 
   PetscFunctionBeginUser;
   PetscCall(WriteCase(m->grid.comm, c, run));
-  PetscCall(OutputCreate(m, &s->state, restart, &run->out));
+  PetscCall(OutputCreate(m, &s->state,
+                         !restart           ? OUTPUT_ANEW
+                         : run->folder.here ? OUTPUT_HERE
+                                            : OUTPUT_ELSEWHERE,
+                         &run->out));
   if (!restart) {
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));

@@ -174,6 +174,33 @@ def check_identity():
                lost.returncode == 2 and "does not belong to the files" in lost.stdout, lost.stdout[-200:])  # fmt: skip
 
 
+def check_lost():
+    """What is gone of the files of a run that is gone on with, or damaged, is said; elsewhere there is nothing to miss."""
+    options, begun = (*OPTIONS, "-output_probe_every", "10 s"), scratch() / "out"
+    launch(binary(), BP2, *options, "-stepper_max_steps", "12", out=begun)
+    lines = lambda p, n: p.write_text("".join(p.read_text().splitlines(keepends=True)[:n]))
+    for what, name, hurt, said in (
+        ("nothing", "probes.csv", lambda p: None, ""),
+        ("gone", "probes.csv", Path.unlink, "is missing; it begins anew at t = "),
+        ("empty", "meters.csv", lambda p: p.write_text(""), "has not the columns of this run; it is kept as"),
+        ("half", "balance.csv", lambda p: lines(p, 6), "lacks the rows from t = "),
+        ("half", "probes.csv", lambda p: lines(p, 2), "lacks the rows from t = 0 s to t = "),
+        ("the header alone", "meters.csv", lambda p: lines(p, 1), "lacks the rows from t = 0 s to t = "),
+        ("a row without its end", "probes.csv", lambda p: p.write_text(p.read_text() + "1.0,2"), ""),
+        ("a row of words", "probes.csv", lambda p: p.write_text(p.read_text().replace("e+", "x", 1)), "is damaged; 1 of its rows are left out"),
+        ("gone", "fields/000000.h5", Path.unlink, "is missing; it is left out of fields.h5"),
+        ("cut off", "fields/000000.h5", lambda p: p.write_bytes(p.read_bytes()[:9000]), "is damaged; it is set aside as"),
+    ):
+        out = scratch() / "out"
+        shutil.copytree(begun, out)
+        hurt(out / name)
+        done = launch(binary(), BP2, *options, "-restart", out / "checkpoint.h5", out=out, ranks=1 + (what == "half"))
+        check_true(f"{name}, {what}, at a restart: {'said' if said else 'nothing is'}", done.returncode == 0 and (
+            f"warning: {out / name} {said}" in done.stdout if said else str(out / name) not in done.stdout), f"exit code {done.returncode}: {done.stdout[-200:]}")  # fmt: skip
+    done = launch(binary(), BP2, *options, "-restart", begun / "checkpoint.h5", out=scratch() / "elsewhere")
+    check_true("a restart into another folder misses nothing", done.returncode == 0 and "is missing" not in done.stdout and "lacks" not in done.stdout, done.stdout[-300:])
+
+
 def check_lock():
     out = scratch() / "out"
     first = start(out, *FINE)
@@ -248,4 +275,5 @@ check_lock()
 check_signals()
 check_streams()
 check_identity()
+check_lost()
 finish()

@@ -82,6 +82,15 @@ def other_value(path):
         file["particles/displacement"][0, 0] += 1e-3
 
 
+def flipped(path):
+    """One bit of the displacements."""
+    with h5py.File(path, "r") as file:
+        at = file["particles/displacement"].id.get_chunk_info(0).byte_offset
+    data = bytearray(path.read_bytes())
+    data[at + 10] ^= 1
+    path.write_bytes(data)
+
+
 def check_same(folder, out):
     """Nothing that differs, is missing or is damaged passes for the same; what is the same does."""
     last = sorted((folder / "fields").iterdir())[-1].name
@@ -96,6 +105,7 @@ def check_same(folder, out):
         ("a word for a number", "probes.csv", lambda p: edited(p, lambda rows: rows[2].__setitem__(2, "x")), ["line 3: no row of"]),
         ("no byte", "probes.csv", lambda p: p.write_bytes(b""), ["is empty"]),
         ("another value in a snapshot", f"fields/{last}", other_value, ["particles.displacement", "0.001", "600"]),
+        ("a bit of a snapshot", f"fields/{last}", flipped, [f"fields/{last} is missing or damaged"]),
         ("half of a snapshot", f"fields/{last}", lambda p: p.write_bytes(p.read_bytes()[:9000]), [f"fields/{last} is missing or damaged", "at t = 600 s there is a snapshot"]),
         ("no snapshot", f"fields/{last}", Path.unlink, [f"fields/{last} is missing or damaged", "at t = 600 s there is a snapshot"]),
         ("no list of snapshots", "fields.h5", lambda p: p.write_bytes(b"no list"), ["fields.h5 is missing or damaged", "at t = 600 s there is a snapshot"]),
