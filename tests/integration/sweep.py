@@ -43,9 +43,35 @@ def check_sweep(out):
     before = [(f / "balance.csv").stat().st_mtime_ns for f in folders]
     code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED)
     check_true("what has finished is not run again", said.count("finished before") == 4 and before == [(f / "balance.csv").stat().st_mtime_ns for f in folders])
+    check_changed(out / "changed")
     code, said = call("sweep.py", "terzaghi", "mat_clay_porosity=0.4,1.4", "--out", out / "bad", "--program", binary(), "--", *FIXED)
     check_true("a wrong value costs its own run only", code == 2 and "exit code 0" in said and "mat_clay_porosity = '1.4'" in said, said[-300:])
     return folders
+
+
+def check_changed(out):
+    """What has finished, or begun, under another case or other options is run anew, whatever has changed."""
+    out.mkdir()
+    case, name = out / "case.yaml", "mat_clay_permeability_k0=1e-15 m^2"
+    text = (ROOT / "cases" / "terzaghi" / "case.yaml").read_text()
+    again = lambda *options: call("sweep.py", case, name, "--out", out, "--program", binary(), "--", *FIXED, *options)
+    last = lambda: float(clathra.Run(out / sweep.SAFE.sub("_", name)).probes["base.p_Pa"][-1])
+    case.write_text(text)
+    code, said = again()
+    first = last()
+    for what, edit, options, other in (("a property", ("porosity: 0.4", "porosity: 0.3"), (), True), ("numerics alone", ("type: sdirk2", "type: euler"), (), True), ("an option of the solver", ("", ""), ("-newton_tol_residual", "1e-10"), False)):
+        changed = text.replace(*edit, 1)
+        check_true(f"{what}: there is something to change", changed != text or options, edit)
+        case.write_text(changed)
+        code, said = again(*options)
+        check_true(f"{what} has changed: anew", code == 0 and said.count("have changed: anew") == 1 and (last() != first) == other, f"{said[-200:]} {first} {last()}")
+    code, said = again(*options)
+    check_true("... and not again", code == 0 and said.count("finished before") == 1, said[-200:])
+    case.write_text(text.replace("porosity: 0.4", "porosity: 0.2"))
+    again("-stepper_max_steps", "2")
+    case.write_text(text)
+    code, said = again()
+    check_true("nor is what another state of the case has begun gone on with", code == 0 and "have changed: anew" in said and last() == first, said[-200:])
 
 
 def check_floor(folder, noisy):
