@@ -100,20 +100,47 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What PETSc cannot begin with is said by the user's mistake, an option or its file, without a trace. */
+static PetscErrorCode SayStart(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
+                               PetscErrorType type, const char *message, void *ctx)
+{
+  (void)comm, (void)line, (void)function, (void)file, (void)ctx;
+  if (type == PETSC_ERROR_INITIAL)
+    fprintf(stderr, "clathra: %s\n", message);
+  return n;
+}
+
+/* Exit code; of several ranks the others may wait for this one. */
+static int StartFailed(void)
+{
+  PetscMPIInt size = 1;
+  int         begun;
+
+  MPI_Initialized(&begun);
+  if (begun)
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+  if (size > 1)
+    MPI_Abort(MPI_COMM_WORLD, CL_EXIT_INPUT);
+  if (begun)
+    MPI_Finalize();
+  return CL_EXIT_INPUT;
+}
+
 int main(int argc, char **argv)
 {
   int         exit_code = CL_EXIT_BUG;
   PetscMPIInt size;
 
-  ProcessPrepare(argv);
+  if (!ProcessPrepare(argv))
+    return CL_EXIT_INPUT;
   for (int k = 1; k < argc; k++) {
     if (strcmp(argv[k], "--help") == 0)
       argv[k]++;                                             /* PETSc knows -help */
     if (strcmp(argv[k], "-help") == 0 && ProcessQuietPipe()) /* a pager that ends is no crash */
       return CL_EXIT_BUG;
   }
-  if (PetscInitialize(&argc, &argv, NULL, help))
-    return CL_EXIT_BUG;
+  if (PetscPushErrorHandler(SayStart, NULL) || PetscInitialize(&argc, &argv, NULL, help) || PetscPopErrorHandler())
+    return StartFailed();
   ProcessListen();
   if (Main(argc, argv, &exit_code)) {
     MPI_Comm_size(PETSC_COMM_WORLD, &size);

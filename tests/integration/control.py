@@ -4,6 +4,7 @@
 The scene is BP2 on 13 cells.
 """
 import math
+import os
 import re
 import shlex
 import subprocess
@@ -13,7 +14,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from _files import hashes  # noqa: E402
-from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
+from common import CASES, ROOT, binary, check, check_true, environment, finish, launch, run, scratch  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
 
@@ -36,6 +37,18 @@ def check_refused():
         for value in (("",), ()):
             said = launch(binary(), *BP2, "-quiet", "-output_dir", done, option, *value)
             check_true(f"{option} {value or 'without a value'} is refused", said.returncode == 2 and f"{option} needs the path of a checkpoint" in said.stdout and hashes(done) == before, said.stdout[-300:])
+    odd = scratch()
+    (odd / "words.opts").write_text("rubbish line\n")
+    os.mkfifo(odd / "pipe")
+    for ranks in (1, 2):
+        for value, words in ((odd / "nowhere", f"Unable to open options file {odd}/nowhere"), (odd, f"options file {odd} is a directory"), (odd / "words.opts", "words.opts line 1: rubbish"), ("", "Unable to open options file"), (None, "Missing filename for -options_file")):
+            said = launch(binary(), *BP2, "-case_check", "-options_file", *(() if value is None else (value,)), ranks=ranks, timeout=60)
+            check_true(f"-options_file {value}, {ranks} rank(s): a sentence", said.returncode == 2 and "clathra: " in said.stdout and words in said.stdout and "PETSC ERROR" not in said.stdout, said.stdout[-300:])
+        for option in ("-restart", "-restart_as_initial"):
+            said = launch(binary(), *BP2, "-case_check", option, odd / "pipe", ranks=ranks, timeout=60)
+            check_true(f"{option} of a pipe, {ranks} rank(s), is refused", said.returncode == 2 and "it is not a file" in said.stdout, said.stdout[-300:])
+    said = subprocess.run(["bash", "-c", 'cd "$1" && rmdir "$1" && shift && exec "$@"', "-", scratch(), Path(binary()).resolve(), *map(str, BP2), "-time_end", "1 s"], env=environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+    check_true("a working folder that is gone: a sentence", said.returncode == 2 and "the folder in which it was started cannot be found" in said.stderr and "PETSC ERROR" not in said.stderr, said.stderr[-300:])
     said = launch(binary(), BP2[0], "grid_cells", "13,1", out=scratch() / "none")
     check_true("a word that is no option is refused", said.returncode == 2 and "'grid_cells' is neither an option nor the value of one" in said.stdout, said.stdout[-300:])
     said = launch(binary(), *BP2, "-case_check", "yes", "50,1", out=scratch() / "none")
