@@ -55,7 +55,10 @@ def finished(folder):
 
 
 def call(command):
-    return subprocess.run(list(map(str, command)), env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    """Runs it with a folder of its own for MPI's session: of two runs that share one, the first to end may remove what the other has just made."""
+    with tempfile.TemporaryDirectory(prefix="clathra-mpi-") as session:
+        environment = {**os.environ, **ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": session}
+        return subprocess.run(list(map(str, command)), env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True)
 
 
 def scene(folder):

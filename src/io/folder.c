@@ -69,11 +69,14 @@ static int Lock(const char *dir, int *lock)
   snprintf(path, sizeof(path), "%s/run.lock", dir);
   if (!IoMakeFolder(dir))
     return NoFolder();
-  *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (*lock < 0) {
     const int code = NoFolder();
 
-    IoFailed(path, 0);
+    if (errno == ELOOP)
+      fprintf(stderr, "clathra: %s is a symbolic link, and what it points to would be written over; remove it\n", path);
+    else
+      IoFailed(path, 0);
     return code;
   }
   if (flock(*lock, LOCK_EX | LOCK_NB) != 0) {

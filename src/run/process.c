@@ -1,6 +1,6 @@
-/* What the process hears from outside.  SIGINT, SIGTERM, SIGHUP and SIGUSR1 (which mpiexec hands on) ask for the end of
-   the run after its step; a second one ends it at once.  A reader of the output that goes away, or a limit on the size
-   of files, is for the write that fails to say. */
+/* What the process hears from outside.  SIGINT, SIGTERM, SIGQUIT, SIGHUP and SIGUSR1 (which mpiexec hands on) ask for
+   the end of the run after its step; a second one ends it at once.  A reader of the output that goes away, or a limit
+   on the size of files, is for the write that fails to say. */
 #include "clathra/run.h"
 
 #include <errno.h>
@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const int             asks[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+static const int             asks[] = {SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1};
 static bool                  deaf[sizeof(asks) / sizeof(*asks)]; /* ignored when the program was started: nohup, & */
 static bool                  quiet; /* a reader that goes away ends the program without a word */
 static volatile sig_atomic_t caught;
