@@ -272,8 +272,8 @@ def page(run, damaged):
     data = {"title": run.title + (shown.where(run) if pictures else ""), "folder": str(run.folder.resolve()), "finished": run.finished, "summary": run.summary, **facts(run),
             "film": pictures if drawn else None, "scene": drawn, "case": (run.folder / "case.yaml").read_text(encoding="utf-8", errors="replace"), "log": run.log[-200_000:], "charts": charts}  # fmt: skip
     data["warnings"] = [*dict.fromkeys(damaged), *data["warnings"]]
-    text = json.dumps(data, allow_nan=False, ensure_ascii=False).replace("</", "<\\/")
-    return TEMPLATE.read_text(encoding="utf-8").replace("{{title}}", html.escape(run.title)).replace("{{data}}", text)
+    said = {"title": html.escape(run.title), "data": json.dumps(data, allow_nan=False, ensure_ascii=False).replace("<", "\\u003c")}  # no tag within a script
+    return re.sub(r"{{(title|data)}}", lambda place: said[place[1]], TEMPLATE.read_text(encoding="utf-8"))
 
 
 def main(folders):

@@ -11,7 +11,7 @@ def read_case(path, texts=False):
     """{key as on the command line: value}: mat_sand_porosity: 0.4; numbers without their (SI) units, words, lists of these; with `texts`
     what the file says, with units."""
     found, parents = Entries(path), []
-    for line in Path(path).read_text(encoding="utf-8", errors="replace").splitlines():
+    for line in Path(path).read_text(encoding="utf-8", errors="replace").split("\n"):
         entry = ENTRY.match(line)
         if not entry:
             continue

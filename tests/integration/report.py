@@ -27,6 +27,7 @@ from clathra import shown  # noqa: E402
 _spec = importlib.util.spec_from_file_location("page", ROOT / "scripts" / "report.py")  # the test has its name
 page = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(page)
+DATA = re.compile(r'(?<=<script type="application/json" id="data">)(.*?)(?=</script>)', re.S)
 BLOCK = ("-grid_cells", "8,5", "-output_times", "0 s,2 s,4 s,6 s,8 s,10 s", "-meters", "top", "-meter_top_side", "top")
 COLUMN = ("-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s")
 VIRIDIS = np.array([[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]])
@@ -36,7 +37,7 @@ def report(out):
     done = subprocess.run([sys.executable, ROOT / "scripts" / "report.py", out], capture_output=True, text=True)
     check_true(f"report.py {out.name} ends well", done.returncode == 0, done.stderr[-300:])
     text = (out / "report.html").read_text()
-    return text, json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)[1].replace("<\\/", "</"))
+    return text, json.loads(DATA.search(text)[1])
 
 
 def unpack(text, kind, *shape):
@@ -123,6 +124,20 @@ def check_damaged(out):
         check_true(f"{script} says what is damaged, and ends with exit code 2", done.returncode == 2 and f"{broken}/meters.csv is empty" in done.stderr and "Traceback" not in done.stderr, done.stderr[-300:])
 
 
+def check_titles(out):
+    """Whatever a title says, the page is the same."""
+    named, plain = scratch() / "named", page.page(clathra.Run(out), [])
+    shutil.copytree(out, named)
+    lines = (named / "case.yaml").read_text().splitlines(keepends=True)
+    at = next(k for k, line in enumerate(lines) if line.startswith("title:"))
+    for title in ("{{data}}", "{{title}}", "<!--<script>", "</script><b>", "a & b \\1 \\g<0>", "\u2028 é"):
+        (named / "case.yaml").write_text("".join([*lines[:at], f"title: '{title}'\n", *lines[at + 1 :]]), encoding="utf-8")
+        text = page.page(clathra.Run(named), [])
+        data = DATA.search(text)[1]
+        check_true(f"title {title!r}", json.loads(data)["title"] == title and "<" not in data and f"<title>{html.escape(title)}</title>" in text
+                   and DATA.sub("", text).split("\n")[6:] == DATA.sub("", plain).split("\n")[6:], f"{json.loads(data)['title']} {text[200:400]}")  # fmt: skip
+
+
 def colour(share):
     at = np.clip(share, 0, 1) * (len(VIRIDIS) - 1)
     k = np.minimum(at.astype(int), len(VIRIDIS) - 2)
@@ -196,6 +211,7 @@ def main():
     check_charts(data, block)
     check_words(data, text, block)
     check_damaged(block)
+    check_titles(block)
     _, failed = report(column)
     check_true("a run that gave up is told", not failed["finished"] and any("Given up" in w for w in failed["warnings"]), failed["warnings"][-1:])
     check("size of the page, MB", len(text) / 1e6, 1.0)
