@@ -110,6 +110,25 @@ static PetscErrorCode SayStart(MPI_Comm comm, int line, const char *function, co
   return n;
 }
 
+static bool no_memory; /* something could not be allocated */
+
+/* Memory that is not there is no bug: a sentence instead of a trace.  All else is PETSc's to say.  Of PETSc 3.18 what
+   allocates has a number of its own instead of the error's. */
+static PetscErrorCode SayMemory(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
+                                PetscErrorType type, const char *message, void *ctx)
+{
+  const bool allocates = type == PETSC_ERROR_INITIAL && (strstr(function, "Malloc") || strstr(function, "Realloc"));
+
+  if (n != PETSC_ERR_MEM && !allocates && !no_memory)
+    return PetscTraceBackErrorHandler(comm, line, function, file, n, type, message, ctx);
+  if (!no_memory)
+    fprintf(stderr,
+            "clathra: out of memory: fewer cells or particles, or more machines; files are whole, and a run goes "
+            "on from its last checkpoint\n");
+  no_memory = true;
+  return n;
+}
+
 /* Exit code; of several ranks the others may wait for this one. */
 static int StartFailed(void)
 {
@@ -142,11 +161,11 @@ int main(int argc, char **argv)
   if (PetscPushErrorHandler(SayStart, NULL) || PetscInitialize(&argc, &argv, NULL, help) || PetscPopErrorHandler())
     return StartFailed();
   ProcessListen();
-  if (Main(argc, argv, &exit_code)) {
+  if (PetscPushErrorHandler(SayMemory, NULL) || Main(argc, argv, &exit_code)) {
+    exit_code = no_memory ? CL_EXIT_FAILED : CL_EXIT_BUG;
     MPI_Comm_size(PETSC_COMM_WORLD, &size);
     if (size > 1) /* others may wait for this rank for ever */
-      MPI_Abort(PETSC_COMM_WORLD, CL_EXIT_BUG);
-    exit_code = CL_EXIT_BUG;
+      MPI_Abort(PETSC_COMM_WORLD, exit_code);
   }
   if (PetscFinalize())
     return CL_EXIT_BUG;

@@ -522,6 +522,11 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(MemoryLook(comm, c, &ok));
+  if (!ok) {
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ModelCreate(comm, &c->scene, &CaseInStage(c, 0)->scene, &model));
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;

@@ -6,6 +6,7 @@ The scene is BP2 on 13 cells.
 import math
 import os
 import re
+import resource
 import shlex
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from _files import hashes  # noqa: E402
-from common import CASES, ROOT, binary, check, check_true, environment, finish, launch, run, scratch  # noqa: E402
+from common import CASES, ROOT, binary, check, check_true, environment, finish, launch, mpiexec, run, scratch  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
 
@@ -26,6 +27,25 @@ def check_share():
     said = run(binary(), *BP2, "-progress", "0", "-time_end", "1 s", "-restart", out / "checkpoint.h5", out=out).output
     shares = re.findall(r"^step +(\d+): t = .*? \(([\d.]+) %\)", said, re.M)
     check_true("a restart in the middle goes on with 55 % of the run", shares and shares[0] == ("11", "55.0") and shares[-1] == ("20", "100.0"), shares[:2])
+
+
+def limited(gigabytes, *options, ranks=1, timeout=120):
+    """A run that may have so much memory a process."""
+    command = [*(mpiexec(ranks) if ranks > 1 else ()), str(binary()), str(BP2[0]), *options, "-output_dir", str(scratch() / "out")]
+    return subprocess.run(command, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (int(gigabytes * 1e9),) * 2), env=environment(),
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)  # fmt: skip
+
+
+def check_memory():
+    """More than the machine has is refused before anything is built; what is found out on the way is a sentence, too."""
+    for ranks in (1, 2):
+        done = limited(12, "-grid_cells", "10000,6000", "-case_check", ranks=ranks)
+        check_true(f"240 million particles in 12 GB, {ranks} rank(s): refused", done.returncode == 2 and re.search(r"2\.31e\+08 particles and the grid need at least \d+ GB of memory, and there are ", done.stdout)
+                   and "grid_cells" in done.stdout and "PETSC ERROR" not in done.stdout, done.stdout[-300:])  # fmt: skip
+    done = limited(0.7, "-grid_cells", "500,100", "-quiet", "-stepper_max_steps", "1", "-output_times", "0 s")
+    check_true("an allocation that fails: a sentence, exit code 3", done.returncode == 3 and "clathra: out of memory" in done.stdout and "PETSC ERROR" not in done.stdout, done.stdout[-300:])
+    done = limited(4, *BP2[1:], "-quiet", "-stepper_max_steps", "1")
+    check_true("what fits is run, without a word about memory", done.returncode == 0 and "memory" not in done.stdout, done.stdout[-300:])
 
 
 def check_refused():
@@ -346,6 +366,7 @@ def main():
     check_share()
     check_tide()
     check_refused()
+    check_memory()
     check_limit()
     check_slivers()
     check_retries()
