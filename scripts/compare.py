@@ -2,7 +2,7 @@
 """Runs beside each other: compare.py RUN RUN ... [-o FOLDER]
 
 Prints what the runs took and where they ended, the keys of the case in which they differ, and the largest difference of every
-probe's and meter's column from the first run's, at its times; writes FOLDER/compare.png (default: among the first run's figures)
+probe's and meter's column and of every variable of the snapshots from the first run's, at its times; writes FOLDER/compare.png (default: among the first run's figures)
 with the histories of all runs.  Differences below 1e-9 of the largest value of a field, any component at any probe, are round-off.
 """
 import argparse
@@ -43,7 +43,8 @@ def work(runs, names):
     rows = [["run", "ended at (s)", "integrator", "steps", "refused", "Newton", "seconds", "water", "methane", "heat"]]
     for run, name in zip(runs, names):
         took, missing = WORK.search(run.summary), ERRORS.search(run.summary)
-        t = f"{run.balance['time_s'][-1]:.6g}" if len(run.balance["time_s"]) else "0"
+        ended = run.balance.get("time_s", ())
+        t = f"{ended[-1]:.6g}" if len(ended) else "0"
         rows.append([name, t if run.finished else f"{t}, not its end", *(took.groups() if took else ["–"] * 5), *(missing.groups() if missing else ["–"] * 3)])
     return table(rows)
 
@@ -71,31 +72,90 @@ def scales(columns):
     return {c: most[field[c]] for c in columns}
 
 
+def at(t, times, values):
+    """Values at the times t, linear between those that there are; where there is a row at t, that of the row, a number or not."""
+    row = np.searchsorted(times, t, side="right") - 1
+    return np.where(times[row] == t, values[row], np.interp(t, times, values))
+
+
+def apart(x, y):
+    """|x - y|; 0 where both are the same, numbers or not, and infinite where one of them alone is a number."""
+    with np.errstate(invalid="ignore"):
+        d = np.abs(y - x)
+    same = (x == y) | (np.isnan(x) & np.isnan(y))
+    return np.where(same, 0.0, np.where(np.isnan(d), np.inf, d))
+
+
+def common_end(first, other):
+    """The time (s) up to which both ran."""
+    return min((r.balance["time_s"][-1] for r in (first, other) if len(r.balance.get("time_s", ()))), default=0.0)
+
+
+def cut_off(t, s, end):
+    """Do the times t go on to the end, while the rows s end more than one of their steps earlier?"""
+    t = t[t <= end * (1 + SAME)]
+    return len(t) > 0 and t[-1] - s[-1] > np.diff(s).max(initial=0.0) * (1 + SAME)
+
+
 def largest(first, other):
-    """[(column, largest difference, of the first's range, time)] over the time that both have."""
+    """[(column, largest difference, of the first's range, time)] over the time that both have; infinite where one of them alone holds a
+    number, or a column."""
     a, b, found = columns_of(first), columns_of(other), []
-    size = scales(a)
-    for name in a:
-        if name not in b:
+    size, end = scales(a), common_end(first, other)
+    for name in dict.fromkeys((*a, *b)):
+        if name not in a or name not in b:
+            found.append((name, np.inf, np.nan, np.nan))
             continue
         (t, x), (s, y) = a[name], b[name]
-        held = (t >= s[0]) & (t <= s[-1]) & np.isfinite(x)
-        if not held.any():
+        held = (t >= s[0]) & (t <= s[-1]) if len(s) else np.zeros(len(t), bool)
+        if not held.any() or cut_off(t, s, end) or cut_off(s, t, end):
+            found += [(name, np.inf, np.nan, min(times[-1] if len(times) else 0.0 for times in (t, s)))] if len(t) or len(s) else []
             continue
-        d = np.abs(np.interp(t[held], s, y) - x[held])
-        k, extent = int(np.nanargmax(d)), np.ptp(x[held])
+        d = apart(x[held], at(t[held], s, y))
+        k, extent = int(np.argmax(d)), np.ptp(np.nan_to_num(x[held]))
         if d[k] > SAME * size[name]:
             found.append((name, d[k], d[k] / extent if extent > 0 else np.nan, t[held][k]))
     return found
 
 
-def differences(runs, names):
+def common_times(first, other):
+    """(times (s) of the snapshots that both have, [sentences on those that one has alone, while both ran])."""
+    end = common_end(first, other)
+    near = lambda t, times: np.any(np.abs(times - t) <= SAME * max(abs(t), end))
+    alone = [(t, a, b) for a, b in ((first, other), (other, first)) for t in a.times if not near(t, b.times) and t <= end * (1 + SAME)]
+    return [t for t in first.times if near(t, other.times)], [f"at t = {t:.6g} s there is a snapshot in {a.folder} and none in {b.folder}" for t, a, b in alone]
+
+
+def largest_of_snapshots(first, other, damaged):
+    """As `largest`, of the particles' variables at the times of common_times; what cannot be read is added to `damaged`."""
+    found = {}
+    for t in common_times(first, other)[0]:
+        try:
+            a, b = first.particles(t), other.particles(t)
+        except clathra.Damaged as error:
+            damaged.append(str(error))
+            continue
+        for name in dict.fromkeys((*a, *b)):
+            label, x, y = f"particles.{name}", a.get(name), b.get(name)
+            d = apart(x, y).max(initial=0.0) if np.shape(x) == np.shape(y) else np.inf
+            numbers = x[np.isfinite(x)] if np.isfinite(d) else np.zeros(1)
+            if d > SAME * np.abs(numbers).max(initial=0.0) and d > found.get(label, (label, 0.0))[1]:
+                extent = np.ptp(numbers)
+                found[label] = (label, d, d / extent if extent > 0 else np.nan, t)
+    return list(found.values())
+
+
+def differences(runs, names, damaged):
     lines = []
     for run, name in zip(runs[1:], names[1:]):
-        found = largest(runs[0], run)
+        alone, found = common_times(runs[0], run)[1], largest(runs[0], run) + largest_of_snapshots(runs[0], run, damaged)
         rows = [[f"{name} against {names[0]}", "largest difference", "of the range", "at (s)"]]
-        rows += [[c, f"{d:.4g}", f"{share:.2%}" if np.isfinite(share) else "–", f"{t:.6g}"] for c, d, share, t in found]
-        lines += ["", *(table(rows) if found else [f"{name}: the same, as far as it goes (but for round-off)" if set(columns_of(run)) & set(columns_of(runs[0])) else f"{name}: no column in common with {names[0]}"])]
+        rows += [[c, f"{d:.4g}" if np.isfinite(d) else "in one alone", f"{share:.2%}" if np.isfinite(share) else "–", f"{t:.6g}" if np.isfinite(t) else "–"] for c, d, share, t in found]
+        if not set(columns_of(run)) & set(columns_of(runs[0])):
+            alone.append(f"{name}: no column in common with {names[0]}")
+        lines += ["", *(table(rows) if found else []), *alone]
+        if not found and not alone:
+            lines.append(f"{name}: no difference in what can be read" if damaged else f"{name}: the same, as far as it goes (but for round-off)")
     return lines
 
 
@@ -107,7 +167,7 @@ def panels(runs):
     meters = clathra.probe_names(first.meters)
     for column in dict.fromkeys(c.rsplit(".", 1)[1] for c in first.meters if "." in c):
         found.append((column, [(n, f"{n}.{column}", 1.0) for n in meters if f"{n}.{column}" in first.meters]))
-    changes = lambda run, column, factor: column in run and np.ptp(np.nan_to_num(run[column][1])) * factor > ROUND_OFF
+    changes = lambda run, column, factor: column in run and len(run[column][1]) and np.ptp(np.nan_to_num(run[column][1])) * factor > ROUND_OFF
     held = [columns_of(r) for r in runs]
     return [p for p in found if any(changes(h, c, factor) for h in held for _, c, factor in p[1])]
 
@@ -148,13 +208,16 @@ def main():
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("-o", "--out", type=Path, metavar="FOLDER", help="of compare.png")
     options = parser.parse_args()
+    damaged = []
     try:
-        runs = [clathra.Run(folder) for folder in options.runs]
+        runs = [clathra.Run(folder, damaged.append) for folder in options.runs]
     except clathra.NoRun as error:
         parser.exit(2, f"compare.py: {error}\n")
     names = labels(runs)
-    print("\n".join([*work(runs, names), "", *differing(runs, names), *differences(runs, names)]))
+    print("\n".join([*work(runs, names), "", *differing(runs, names), *differences(runs, names, damaged)]))
     draw(runs, names, options.out or runs[0].folder / "figures")
+    if damaged:
+        parser.exit(2, "".join(f"compare.py: {sentence}\n" for sentence in dict.fromkeys(damaged)))
 
 
 if __name__ == "__main__":

@@ -106,7 +106,7 @@ def plot_meters(run):
 
 def plot_balance(run):
     balance = run.balance
-    if not len(balance["time_s"]):
+    if not len(balance.get("time_s", ())):
         return False
     unit, seconds = clathra.time_unit(balance["time_s"][-1])
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 3.8))
@@ -120,8 +120,8 @@ def plot_balance(run):
     else:
         left.remove()
     right.step(balance["time_s"] / seconds, balance["dt_s"], where="pre", color=COLOURS[0], marker="." if len(balance["dt_s"]) < 3 else "")
-    right.set(xlabel=f"time ({unit})", ylabel="step (s)", yscale="log", title=f"{int(balance['step'][-1])} steps, "
-              f"{int(balance['newton'].sum())} Newton iterations")  # fmt: skip
+    right.set(xlabel=f"time ({unit})", ylabel="step (s)", yscale="log", title=f"{balance['step'][-1]:.0f} steps, "
+              f"{balance['newton'].sum():.0f} Newton iterations")  # fmt: skip
     figure.suptitle(head(run, "balances and steps"), x=0.01, ha="left")
     save(figure, run.folder / "figures", "balance")
     return True
@@ -242,20 +242,31 @@ def plot_body(run):
     return bool(rows)
 
 
+def draw(run, damaged):
+    """All pictures of a run; the functions that drew one.  What is damaged is not drawn, with a sentence in `damaged`."""
+    return [plot.__name__ for plot in (plot_probes, plot_meters, plot_balance, plot_body) if shown.unless_damaged(damaged, False, plot, run)]
+
+
 def main(folders):
     if not folders:
         sys.exit(__doc__)
     set_style()
+    ends_well = True
     for folder in folders:
+        damaged = []
         try:
-            run = clathra.Run(folder)
+            run = clathra.Run(folder, damaged.append)
         except clathra.NoRun as error:
             sys.exit(f"plot.py: {error}")
         for name in PICTURES:
             (run.folder / "figures" / f"{name}.png").unlink(missing_ok=True)
-        if not any([plot_probes(run), plot_meters(run), plot_balance(run), plot_body(run)]):
+        if not draw(run, damaged):
             print(f"  {folder}: nothing to draw yet")
+        for sentence in dict.fromkeys(damaged):
+            print(f"plot.py: {sentence}; what needs it is not drawn", file=sys.stderr)
+        ends_well = ends_well and not damaged
+    return 0 if ends_well else 2
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))

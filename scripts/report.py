@@ -32,6 +32,8 @@ def packed(array, kind):
 
 
 def number(x):
+    if isinstance(x, str):
+        raise clathra.Damaged(f"the case has '{x}' where a number should stand")
     return None if not np.isfinite(x) else float(f"{x:.5g}")
 
 
@@ -48,7 +50,7 @@ def thinned(x, y):
 
 def time_axis(run):
     """What every chart over time shares: the map of times, label, and the ends of stages with their lengths."""
-    stages = shown.stage_axis(run.balance) if len(run.balance["time_s"]) else None
+    stages = shown.stage_axis(run.balance)
     if stages:
         lengths = np.diff([0.0, *stages[1]])
         return stages[0], {"label": "time in each stage, of this length", "stages": [duration(n) for n in lengths]}
@@ -180,6 +182,12 @@ def scene(run, first, last):
                        if isinstance(run.case.get(f"probe_{n}_at", [None])[0], float)]}  # fmt: skip
 
 
+def film_scene(run, pictures):
+    """The scene beside the film."""
+    first = shown.plane(run, run.times[0])
+    return {**scene(run, first, shown.plane(run, None)), "region": packed(first["region"][:: pictures["stride"]], "u1")}
+
+
 def chosen(run, n, each):
     """Indices of the snapshots to show, and every how many-th particle, within BYTES."""
     stride = 1
@@ -255,32 +263,37 @@ def facts(run):
     }  # fmt: skip
 
 
-def page(run):
-    """The page of a run, HTML."""
-    axis, pictures = time_axis(run), film(run)
+def page(run, damaged):
+    """The page of a run, HTML; what a damaged file would have shown is left out, with a sentence in `damaged`."""
+    axis, either = time_axis(run), lambda else_, part, *arguments: shown.unless_damaged(damaged, else_, part, *arguments)
+    charts = {name: either([], part, run, axis) for name, part in (("production", meter_charts), ("probes", probe_charts), ("steps", step_charts), ("balance", balance_charts))}
+    pictures = either(None, film, run)
+    drawn = either(None, film_scene, run, pictures) if pictures else None
     data = {"title": run.title + (shown.where(run) if pictures else ""), "folder": str(run.folder.resolve()), "finished": run.finished, "summary": run.summary, **facts(run),
-            "film": pictures, "scene": None, "case": (run.folder / "case.yaml").read_text(), "log": run.log[-200_000:],
-            "charts": {"production": meter_charts(run, axis), "probes": probe_charts(run, axis), "steps": step_charts(run, axis),
-                       "balance": balance_charts(run, axis)}}  # fmt: skip
-    if pictures:
-        data["scene"] = scene(run, shown.plane(run, run.times[0]), shown.plane(run, None))
-        data["scene"]["region"] = packed(shown.plane(run, run.times[0])["region"][:: pictures["stride"]], "u1")
-    text = json.dumps(data, allow_nan=False, ensure_ascii=False).replace("</", "<\\/")
-    return TEMPLATE.read_text(encoding="utf-8").replace("{{title}}", html.escape(run.title)).replace("{{data}}", text)
+            "film": pictures if drawn else None, "scene": drawn, "case": (run.folder / "case.yaml").read_text(encoding="utf-8", errors="replace"), "log": run.log[-200_000:], "charts": charts}  # fmt: skip
+    data["warnings"] = [*dict.fromkeys(damaged), *data["warnings"]]
+    said = {"title": html.escape(run.title), "data": json.dumps(data, allow_nan=False, ensure_ascii=False).replace("<", "\\u003c")}  # no tag within a script
+    return re.sub(r"{{(title|data)}}", lambda place: said[place[1]], TEMPLATE.read_text(encoding="utf-8"))
 
 
 def main(folders):
     if not folders:
         sys.exit(__doc__)
+    ends_well = True
     for folder in folders:
+        damaged = []
         try:
-            text = page(clathra.Run(folder))
+            text = page(clathra.Run(folder, damaged.append), damaged)
         except clathra.NoRun as error:
             sys.exit(f"report.py: {error}")
         out = Path(folder) / "report.html"
         out.write_text(text, encoding="utf-8")
         print(f"  {out} ({len(text.encode()) / 1e6:.2g} MB)")
+        for sentence in dict.fromkeys(damaged):
+            print(f"report.py: {sentence}; what needs it is not shown", file=sys.stderr)
+        ends_well = ends_well and not damaged
+    return 0 if ends_well else 2
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))

@@ -2,8 +2,8 @@
 """A case for several values of its keys: sweep.py CASE KEY=A,B,C [KEY=... ...] [--out FOLDER] [--jobs N] [-- OPTIONS]
 
 Runs every combination side by side, each on one core, in FOLDER/KEY=A,... (default results/sweep_CASE); values are separated by
-commas, or by | where a value holds commas itself: grid_cells=10,1|20,1.  What has finished is not run again: a sweep that was
-ended goes on where it was, with the last checkpoints.  Writes FOLDER/sweep.csv, one row a run: the values, how it ended, its
+commas, or by | where a value holds commas itself: grid_cells=10,1|20,1.  What has finished is not run again, and a sweep that was
+ended goes on where it was, with the last checkpoints; but where the case or its options have changed since, a run begins anew.  Writes FOLDER/sweep.csv, one row a run: the values, how it ended, its
 work, the last value of every probe and meter; and FOLDER/sweep.png, all histories.  OPTIONS go to every run.
 """
 import argparse
@@ -11,8 +11,10 @@ import csv
 import itertools
 import os
 import re
+import shlex
 import subprocess
 import sys
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -21,6 +23,7 @@ import compare
 
 ROOT = Path(__file__).resolve().parents[1]
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}
+ENDS = ("-output_dir", "-restart", "-stepper_max_steps", "-time_limit", "-checkpoint_wall", "-progress")  # with a value each
 SAFE = re.compile(r"[^\w.,=+-]+")
 
 
@@ -51,15 +54,47 @@ def finished(folder):
         return False
 
 
+def call(command):
+    """Runs it with a folder of its own for MPI's session: of two runs that share one, the first to end may remove what the other has just made."""
+    with tempfile.TemporaryDirectory(prefix="clathra-mpi-") as session:
+        environment = {**os.environ, **ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": session}
+        return subprocess.run(list(map(str, command)), env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+
+
+def scene(folder):
+    """Every key of the case as it ran in a folder, with its value."""
+    found = dict(clathra.read_case(folder / "case.yaml", texts=True))
+    found.pop("output_dir", None)
+    return found
+
+
+def worded(words):
+    """The options of a command but those that decide where it writes and when it ends."""
+    return [w for k, w in enumerate(words) if w not in ENDS and (k == 0 or words[k - 1] not in ENDS)]
+
+
+def changed(command, folder):
+    """Is what the folder holds of another state of the case, or of other options?  What the case is now, the program says: by a run of no steps."""
+    said = [line[2:] for line in clathra.Run(folder).log.splitlines() if line.startswith("$ ")]
+    if not said or worded(shlex.split(said[-1])[2:]) != worded(list(map(str, command[2:]))):
+        return True
+    with tempfile.TemporaryDirectory() as now:
+        done = call([*command, "-output_dir", Path(now) / "now", "-stepper_max_steps", "0"])
+        return done.returncode == 0 and scene(Path(now) / "now") != scene(folder)
+
+
 def launch(program, case, values, folder, options):
     """Runs one combination, unless it has finished; its exit code."""
-    if finished(folder):
+    command = [program, case, "-quiet", "-output_dir", folder, *options, *(w for k, v in values.items() for w in (f"-{k}", v))]
+    begun = (folder / "balance.csv").is_file() and (folder / "case.yaml").is_file()
+    if begun and changed(command, folder):
+        print(f"  {folder.name}: the case or its options have changed: anew", flush=True)
+    elif finished(folder):
         print(f"  {folder.name}: finished before", flush=True)
         return 0
-    command = [program, case, "-quiet", "-output_dir", folder, *options, *(w for k, v in values.items() for w in (f"-{k}", v))]
-    if (folder / "checkpoint.h5").is_file():
+    elif (folder / "checkpoint.h5").is_file():
         command += ["-restart", folder / "checkpoint.h5"]
-    done = subprocess.run(list(map(str, command)), env={**os.environ, **ENVIRONMENT}, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    done = call(command)
     said = done.stderr.strip().splitlines() or done.stdout.strip().splitlines()
     print(f"  {folder.name}: exit code {done.returncode}" + (f": {said[0]}" if done.returncode and said else ""), flush=True)
     return done.returncode

@@ -100,26 +100,72 @@ static PetscErrorCode Main(int argc, char **argv, int *exit_code)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What PETSc cannot begin with is said by the user's mistake, an option or its file, without a trace. */
+static PetscErrorCode SayStart(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
+                               PetscErrorType type, const char *message, void *ctx)
+{
+  (void)comm, (void)line, (void)function, (void)file, (void)ctx;
+  if (type == PETSC_ERROR_INITIAL)
+    fprintf(stderr, "clathra: %s\n", message);
+  return n;
+}
+
+static bool no_memory; /* something could not be allocated */
+
+/* Memory that is not there is no bug: a sentence instead of a trace.  All else is PETSc's to say.  Of PETSc 3.18 what
+   allocates has a number of its own instead of the error's. */
+static PetscErrorCode SayMemory(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
+                                PetscErrorType type, const char *message, void *ctx)
+{
+  const bool allocates = type == PETSC_ERROR_INITIAL && (strstr(function, "Malloc") || strstr(function, "Realloc"));
+
+  if (n != PETSC_ERR_MEM && !allocates && !no_memory)
+    return PetscTraceBackErrorHandler(comm, line, function, file, n, type, message, ctx);
+  if (!no_memory)
+    fprintf(stderr,
+            "clathra: out of memory: fewer cells or particles, or more machines; files are whole, and a run goes "
+            "on from its last checkpoint\n");
+  no_memory = true;
+  return n;
+}
+
+/* Exit code; of several ranks the others may wait for this one. */
+static int StartFailed(void)
+{
+  PetscMPIInt size = 1;
+  int         begun;
+
+  MPI_Initialized(&begun);
+  if (begun)
+    MPI_Comm_size(MPI_COMM_WORLD, &size);
+  if (size > 1)
+    MPI_Abort(MPI_COMM_WORLD, CL_EXIT_INPUT);
+  if (begun)
+    MPI_Finalize();
+  return CL_EXIT_INPUT;
+}
+
 int main(int argc, char **argv)
 {
   int         exit_code = CL_EXIT_BUG;
   PetscMPIInt size;
 
-  ProcessPrepare(argv);
+  if (!ProcessPrepare(argv))
+    return CL_EXIT_INPUT;
   for (int k = 1; k < argc; k++) {
     if (strcmp(argv[k], "--help") == 0)
       argv[k]++;                                             /* PETSc knows -help */
     if (strcmp(argv[k], "-help") == 0 && ProcessQuietPipe()) /* a pager that ends is no crash */
       return CL_EXIT_BUG;
   }
-  if (PetscInitialize(&argc, &argv, NULL, help))
-    return CL_EXIT_BUG;
+  if (PetscPushErrorHandler(SayStart, NULL) || PetscInitialize(&argc, &argv, NULL, help) || PetscPopErrorHandler())
+    return StartFailed();
   ProcessListen();
-  if (Main(argc, argv, &exit_code)) {
+  if (PetscPushErrorHandler(SayMemory, NULL) || Main(argc, argv, &exit_code)) {
+    exit_code = no_memory ? CL_EXIT_FAILED : CL_EXIT_BUG;
     MPI_Comm_size(PETSC_COMM_WORLD, &size);
     if (size > 1) /* others may wait for this rank for ever */
-      MPI_Abort(PETSC_COMM_WORLD, CL_EXIT_BUG);
-    exit_code = CL_EXIT_BUG;
+      MPI_Abort(PETSC_COMM_WORLD, exit_code);
   }
   if (PetscFinalize())
     return CL_EXIT_BUG;

@@ -7,6 +7,10 @@
 
 typedef struct Output Output;
 
+/* Files of a run: new ones, or those of a run that a restart goes on with; in a folder without any (a checkpoint of
+   another folder), or where they should be: what is missing of them is said. */
+typedef enum { OUTPUT_ANEW = 0, OUTPUT_ELSEWHERE, OUTPUT_HERE } OutputFrom;
+
 /* Which run and from when on: the origin of a checkpoint. */
 typedef struct {
   uint64_t run; /* its identity */
@@ -17,6 +21,7 @@ typedef struct {
 typedef struct {
   int      lock; /* rank 0 */
   uint64_t run;  /* a new identity */
+  bool     here; /* rank 0: it holds the files of the run that is gone on with */
 } Folder;
 
 /* Makes the folder, takes it, and notes the new run in its run.id.  Otherwise a sentence is printed and nothing
@@ -34,9 +39,9 @@ PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, s
 PetscErrorCode FolderAppendText(MPI_Comm comm, const char *dir, const char *name, bool fresh, const char *text,
                                 size_t bytes, bool *ok);
 
-/* Creates the output folder's files (through rank 0).  append: continue the files of a run that was restarted at
-   state->t: rows and snapshots later than t are dropped. */
-PetscErrorCode OutputCreate(const Model *m, const StepperState *s, bool append, Output **out);
+/* Creates the output folder's files (through rank 0), or goes on with those of a run that was restarted at state->t:
+   rows and snapshots later than t are dropped. */
+PetscErrorCode OutputCreate(const Model *m, const StepperState *s, OutputFrom from, Output **out);
 /* Has all been written so far?  Collective. */
 PetscErrorCode OutputGood(const Output *out, MPI_Comm comm, bool *ok);
 /* The rows so far are brought onto the disk: before a checkpoint that takes them for granted.  Collective. */

@@ -12,7 +12,7 @@ Quantities and units are those of the files (docs/running.md, What a run writes)
 """
 from .case import read_case
 from .run import NoRun, Run
-from .tables import probe_names, read_csv, read_snapshots
+from .tables import Damaged, probe_names, read_csv, read_snapshots
 from .units import time_unit
 
-__all__ = ["NoRun", "Run", "probe_names", "read_case", "read_csv", "read_snapshots", "time_unit"]
+__all__ = ["Damaged", "NoRun", "Run", "probe_names", "read_case", "read_csv", "read_snapshots", "time_unit"]

@@ -1,5 +1,8 @@
 """The case of a run as the program wrote it: case.yaml of the results, one key a line, every default, SI units."""
 import re
+from pathlib import Path
+
+from .tables import Entries
 
 ENTRY = re.compile(r"^( *)([\w-]+):(?: (.*))?$")
 
@@ -7,9 +10,9 @@ ENTRY = re.compile(r"^( *)([\w-]+):(?: (.*))?$")
 def read_case(path, texts=False):
     """{key as on the command line: value}: mat_sand_porosity: 0.4; numbers without their (SI) units, words, lists of these; with `texts`
     what the file says, with units."""
-    found, parents = {}, []
-    for line in open(path, encoding="utf-8"):
-        entry = ENTRY.match(line.rstrip("\n"))
+    found, parents = Entries(path), []
+    for line in Path(path).read_text(encoding="utf-8", errors="replace").split("\n"):
+        entry = ENTRY.match(line)
         if not entry:
             continue
         depth = len(entry[1]) // 2

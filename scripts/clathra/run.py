@@ -1,11 +1,12 @@
 """A run by its folder."""
+import warnings
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from .case import read_case
-from .tables import probe_names, read_csv, read_lines, read_snapshot, snapshot_times
+from .tables import Damaged, Entries, probe_names, read_csv, read_lines, read_snapshot, snapshot_times
 
 
 class NoRun(Exception):
@@ -19,10 +20,13 @@ class Run:
     case     {key: value} as it ran, in SI units
     probes, balance, meters  {column: (rows,) array} of the CSV files; {} if the run wrote none
     summary, log             what the program said at its end, and in all ("" while it runs)
+
+    A damaged table raises Damaged, a damaged snapshot is warned of and left out of `times`.  With tell=F, F(sentence) is called for either,
+    and the table has no columns.
     """
 
-    def __init__(self, folder):
-        self.folder = Path(folder)
+    def __init__(self, folder, tell=None):
+        self.folder, self._tell = Path(folder), tell
         if not (self.folder / "case.yaml").is_file() or not (self.folder / "balance.csv").is_file():
             raise NoRun(f"{folder} holds no run (no case.yaml and balance.csv)")
 
@@ -31,7 +35,13 @@ class Run:
 
     def _table(self, name):
         path = self.folder / name
-        return read_csv(path) if path.is_file() else {}
+        try:
+            return read_csv(path) if path.is_file() else Entries(path)
+        except Damaged as error:
+            if self._tell is None:
+                raise
+            self._tell(str(error))
+            return Entries(path)
 
     def _text(self, name):
         path = self.folder / name
@@ -82,7 +92,14 @@ class Run:
 
     @cached_property
     def _keys(self):
-        return {kind: snapshot_times(self.folder, kind) for kind in ("particles", "grid")}
+        return {kind: self._listed(kind) for kind in ("particles", "grid")}
+
+    def _listed(self, kind):
+        try:
+            return snapshot_times(self.folder, kind, self._tell or warnings.warn)
+        except Damaged as error:
+            (self._tell or warnings.warn)(str(error))
+            return {}
 
     @property
     def times(self):
@@ -99,7 +116,9 @@ class Run:
 
     def particles(self, time=None):
         """{variable: (n,) array, of vectors and tensors (n, components)} at a time of `times` (s); None: the last."""
-        return {k: v[:, 0] if v.ndim == 2 and v.shape[1] == 1 else v for k, v in self._snapshot("particles", time).items()}
+        found = self._snapshot("particles", time)
+        found.update((k, v[:, 0]) for k, v in found.items() if v.ndim == 2 and v.shape[1] == 1)
+        return found
 
     def grid(self, time=None):
         """{field: (rows, columns) array, of velocities (rows, columns, 2)} of the nodes, NaN where there is no sediment, with their

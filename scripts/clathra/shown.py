@@ -5,6 +5,8 @@ from typing import Callable, NamedTuple
 
 import numpy as np
 
+from .tables import Damaged
+
 MPA, MM = 1e-6, 1e3  # from Pa, from m
 
 
@@ -206,15 +208,15 @@ def curve(probes, name, column):
 
 def _small(probes, names):
     """Does pore pressure change, but by little of itself?"""
-    most = max(np.nanmax(np.abs(curve(probes, n, "p_rise_Pa"))) for n in names)
-    return 0 < most < SMALL * max(np.nanmax(np.abs(probes[f"{n}.p_Pa"])) for n in names)
+    most = lambda column: max(np.nan_to_num(np.abs(curve(probes, n, column))).max() for n in names)
+    return 0 < most("p_rise_Pa") < SMALL * most("p_Pa")
 
 
 def histories(probes, names):
     """The panels of HISTORIES that the probes `names` have (curve), without saturations that never change, hydrate that is not there, and
     changes of pressure that the pressures themselves show."""
     found = []
-    for label, unit, columns, least in HISTORIES:
+    for label, unit, columns, least in HISTORIES if len(probes.get("time_s", ())) else ():
         held = [c for c in columns if names and has(probes, names[0], c[0])]
         if held and held[0][0] == "p_rise_Pa" and not _small(probes, names):
             continue
@@ -304,8 +306,19 @@ def strip_axis(position):
     return axis if extent[1 - axis] < extent[axis] / 8 and len(rows) <= 4 else None
 
 
+def unless_damaged(damaged, else_, part, *arguments):
+    """What a part of a picture or page returns; else_, and a sentence more in `damaged`, where a file that it needs is damaged."""
+    try:
+        return part(*arguments)
+    except Damaged as error:
+        damaged.append(str(error))
+        return else_
+
+
 def stage_axis(balance):
     """(map of times (s) to an axis on which each stage is one wide, ends of the stages (s)); None without stages."""
+    if not len(balance.get("time_s", ())):
+        return None
     stage = balance.get("stage", np.zeros(len(balance["time_s"])))
     ends = [balance["time_s"][stage == k][-1] for k in np.unique(stage)]
     if len(ends) < 2 or np.any(np.diff(ends) <= 0):

@@ -143,7 +143,7 @@ bool IoReplace(const char *path, bool keep_old, int n, const IoPiece piece[])
   bool   good;
 
   IoAside(path, aside);
-  fd   = open(aside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  fd   = open(aside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
   good = fd >= 0;
   for (int k = 0; k < n; k++) {
     bytes += piece[k].bytes;

@@ -69,11 +69,14 @@ static int Lock(const char *dir, int *lock)
   snprintf(path, sizeof(path), "%s/run.lock", dir);
   if (!IoMakeFolder(dir))
     return NoFolder();
-  *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  *lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (*lock < 0) {
     const int code = NoFolder();
 
-    IoFailed(path, 0);
+    if (errno == ELOOP)
+      fprintf(stderr, "clathra: %s is a symbolic link, and what it points to would be written over; remove it\n", path);
+    else
+      IoFailed(path, 0);
     return code;
   }
   if (flock(*lock, LOCK_EX | LOCK_NB) != 0) {
@@ -222,21 +225,21 @@ PetscErrorCode FolderCheckCase(MPI_Comm comm, const char *dir, char *resolved, s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static int Enter(const char *dir, const Origin *from, uint64_t run)
+static int Enter(const char *dir, const Origin *from, Folder *folder)
 {
   char    path[PETSC_MAX_PATH_LEN + 16], rows[PETSC_MAX_PATH_LEN + 16];
   History h;
 
   snprintf(path, sizeof(path), "%s/run.id", dir);
   snprintf(rows, sizeof(rows), "%s/balance.csv", dir);
-  if (from && (ReadHistory(path, &h) || access(rows, F_OK) == 0)) {
-    if (!Join(dir, from, &h))
-      return CL_EXIT_INPUT;
-  } else
+  folder->here = from && (ReadHistory(path, &h) || access(rows, F_OK) == 0);
+  if (folder->here && !Join(dir, from, &h))
+    return CL_EXIT_INPUT;
+  if (!folder->here)
     h.n = 0;
   if (h.n == 64)
     memmove(h.run, h.run + 1, sizeof(*h.run) * (size_t)--h.n);
-  h.run[h.n++] = (Origin){.run = run, .t = from ? from->t : 0.0};
+  h.run[h.n++] = (Origin){.run = folder->run, .t = from ? from->t : 0.0};
   return WriteHistory(path, &h) ? CL_EXIT_OK : CL_EXIT_FAILED;
 }
 
@@ -251,7 +254,7 @@ PetscErrorCode FolderTake(MPI_Comm comm, const char *dir, const Origin *from, Fo
     folder->run = NewIdentity();
     *exit_code  = Lock(dir, &folder->lock);
     if (*exit_code == CL_EXIT_OK)
-      *exit_code = Enter(dir, from, folder->run);
+      *exit_code = Enter(dir, from, folder);
     if (*exit_code != CL_EXIT_OK)
       PetscCall(FolderRelease(folder));
   }

@@ -2,9 +2,11 @@
    outlive one. */
 #include "io_private.h"
 
-#define COMPRESS_FROM 65536 /* bytes; smaller datasets are written plain */
+#define COMPRESS_FROM 65536 /* bytes; smaller datasets are not compressed */
 #define CHUNK_ROWS 16384
 #define CHUNK_NODES 128 /* along each axis */
+
+#define CHUNK_LISTS 4 /* half of how many chunks a list of them has room for, which small datasets have for nothing */
 
 #define GROW ((size_t)1 << 22) /* bytes by which an image grows */
 
@@ -24,6 +26,7 @@ static PetscErrorCode Create(const char *name, hsize_t user_block, hid_t access,
 
   PetscFunctionBeginUser;
   H5Check(create = H5Pcreate(H5P_FILE_CREATE));
+  H5Check(H5Pset_istore_k(create, CHUNK_LISTS));
   if (user_block > 0)
     H5Check(H5Pset_userblock(create, user_block));
   H5Check(*file = H5Fcreate(name, H5F_ACC_TRUNC, create, access));
@@ -110,7 +113,8 @@ PetscErrorCode H5Group(hid_t file, const char *path, hid_t *group)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Layout(hid_t type, const H5Part *part, int nc, bool compress, hid_t *create)
+/* What is kept for readers has a checksum in every chunk, which HDF5 checks for whoever reads it. */
+static PetscErrorCode Layout(hid_t type, const H5Part *part, int nc, bool keep, hid_t *create)
 {
   hsize_t       chunk[CL_DIM + 1] = {0}, bytes = H5Tget_size(type) * (hsize_t)nc;
   const hsize_t most = part->nd > 1 ? CHUNK_NODES : CHUNK_ROWS;
@@ -122,10 +126,13 @@ static PetscErrorCode Layout(hid_t type, const H5Part *part, int nc, bool compre
     chunk[d] = part->all[d] > most ? most : part->all[d];
   }
   chunk[part->nd] = (hsize_t)nc;
-  if (compress && bytes >= COMPRESS_FROM && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
+  if (keep && bytes > 0) {
     H5Check(H5Pset_chunk(*create, part->nd + (nc > 1), chunk));
-    H5Check(H5Pset_shuffle(*create));
-    H5Check(H5Pset_deflate(*create, 4));
+    if (bytes >= COMPRESS_FROM && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
+      H5Check(H5Pset_shuffle(*create));
+      H5Check(H5Pset_deflate(*create, 4));
+    }
+    H5Check(H5Pset_fletcher32(*create));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,12 +198,12 @@ static PetscErrorCode Transfer(hid_t where, hid_t *transfer)
 }
 
 PetscErrorCode H5WritePart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, const void *data,
-                           const char *unit, bool compress)
+                           const char *unit, bool keep)
 {
   hid_t memory, space, create, transfer = H5P_DEFAULT, set;
 
   PetscFunctionBeginUser;
-  PetscCall(Layout(type, part, nc, compress, &create));
+  PetscCall(Layout(type, part, nc, keep, &create));
   PetscCall(Spaces(part, nc, &memory, &space));
   PetscCall(Transfer(where, &transfer));
   H5Check(set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, create, H5P_DEFAULT));

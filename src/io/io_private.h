@@ -102,7 +102,7 @@ PetscErrorCode           RowKeep(Output *out); /* as out->text, of out->size, to
 PetscErrorCode           RowEnd(Output *out, TableId id);
 
 /* ---------------------------------------------------------------- tables.c: rank 0 */
-PetscErrorCode TablesOpen(Output *out, const Model *m, bool append, double t);
+PetscErrorCode TablesOpen(Output *out, const Model *m, OutputFrom from, double t);
 void           TablesSync(Output *out);
 void           TablesClose(Output *out);
 
@@ -145,7 +145,7 @@ static inline void IoTime(const Case *c, FILE *f, double t)
 
 /* ---------------------------------------------------------------- snapshot.c, series.c, xdmf.c: rank 0 */
 #define SNAPSHOT_NAME "fields/%06d.h5"
-PetscErrorCode SeriesStart(Output *out, bool append, PetscInt next);
+PetscErrorCode SeriesStart(Output *out, OutputFrom from, PetscInt next);
 PetscErrorCode SeriesAdd(Output *out, const SnapshotEntry *entry);
 PetscErrorCode SeriesWrite(Output *out, const Grid *g); /* fields.h5, particles.xdmf and grid.xdmf */
 typedef enum { XDMF_PARTICLES = 0, XDMF_GRID, XDMF_COUNT } XdmfKind;
@@ -167,10 +167,11 @@ typedef struct {
   int     nd;
   hsize_t all[CL_DIM], start[CL_DIM], count[CL_DIM];
 } H5Part;
-/* nc components an entry, those of one as the last axis; unit NULL: none; compressed when large and `compress`.
+/* nc components an entry, those of one as the last axis; unit NULL: none; keep: in a file that
+   readers see, with checksums, compressed when large.
    Collective if the file is. */
 PetscErrorCode H5WritePart(hid_t where, const char *name, hid_t type, const H5Part *part, int nc, const void *data,
-                           const char *unit, bool compress);
+                           const char *unit, bool keep);
 /* Most bytes of n such datasets of `components` reals an entry in all, whole chunks and what describes them included.
  */
 size_t H5Room(const H5Part *part, int n, int components);
@@ -225,10 +226,10 @@ PetscErrorCode SlabDestroy(Slab *s);
 PetscErrorCode SlabReals(Slab *s, const double *local, PetscInt stride, int c, int nc);
 PetscErrorCode SlabInts(Slab *s, const PetscInt *local);
 /* The rows as a dataset; of integers after SlabInts. */
-PetscErrorCode SlabWrite(const Slab *s, hid_t group, const char *name, int nc, const char *unit, bool compress);
-PetscErrorCode SlabWriteInts(const Slab *s, hid_t group, const char *name, const char *unit, bool compress);
+PetscErrorCode SlabWrite(const Slab *s, hid_t group, const char *name, int nc, const char *unit, bool keep);
+PetscErrorCode SlabWriteInts(const Slab *s, hid_t group, const char *name, const char *unit, bool keep);
 /* All variables of the particles into a group. */
-PetscErrorCode SlabWriteVariables(Slab *s, const Particles *P, bool compress, hid_t group);
+PetscErrorCode SlabWriteVariables(Slab *s, const Particles *P, bool keep, hid_t group);
 size_t         SlabRoomVariables(const Slab *s, const Particles *P); /* as H5Room */
 
 /* ---------------------------------------------------------------- seal.c */

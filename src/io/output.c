@@ -16,19 +16,19 @@ static void RemoveStale(const Output *out, const Model *m)
   }
 }
 
-static PetscErrorCode OpenFiles(Output *out, const Model *m, const StepperState *s, bool append)
+static PetscErrorCode OpenFiles(Output *out, const Model *m, const StepperState *s, OutputFrom from)
 {
   PetscFunctionBeginUser;
   out->failed = !IoMakeFolder(out->dir);
-  if (!append)
+  if (from == OUTPUT_ANEW)
     RemoveStale(out, m);
-  PetscCall(TablesOpen(out, m, append, s->t));
-  PetscCall(SeriesStart(out, append, s->next_snapshot));
+  PetscCall(TablesOpen(out, m, from, s->t));
+  PetscCall(SeriesStart(out, from, s->next_snapshot));
   PetscCall(SeriesWrite(out, &m->grid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode OutputCreate(const Model *m, const StepperState *s, bool append, Output **result)
+PetscErrorCode OutputCreate(const Model *m, const StepperState *s, OutputFrom from, Output **result)
 {
   const Case    *c    = CaseOf(m->c);
   PetscErrorCode ierr = PETSC_SUCCESS;
@@ -44,7 +44,7 @@ PetscErrorCode OutputCreate(const Model *m, const StepperState *s, bool append, 
   for (PetscInt k = 0; k < c->nprobe; k++)
     out->reach[k] = 1.0;
   if (m->grid.rank == 0)
-    ierr = OpenFiles(out, m, s, append);
+    ierr = OpenFiles(out, m, s, from);
   PetscCall(IoAgree(m->grid.comm, ierr));
   *result = out;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -32,6 +32,35 @@ static bool Finite(const double *v, PetscInt n)
   return true;
 }
 
+/* What no running program can have written of a variable of the particles, in its unit: wide, for a scheme may leave a
+   share a little outside of 0 to 1. */
+static const struct {
+  const char *name;
+  double      low, high;
+} range[] = {{"S_h", -0.1, 1.1},           {"S_w", -0.1, 1.1},
+             {"porosity", 0.0, 1.0},       {"T", -CL_ZERO_CELSIUS, 1e5},
+             {"p_w", -1e13, 1e13},         {"p_g", -1e13, 1e13},
+             {"p_w_initial", -1e13, 1e13}, {"p_g_initial", -1e13, 1e13},
+             {"stress", -1e15, 1e15},      {"stress_initial", -1e15, 1e15},
+             {"log_J", -50.0, 50.0},       {"deformation_gradient", -1e9, 1e9},
+             {"v_s", -3e8, 3e8},           {"v_w", -3e8, 3e8},
+             {"v_g", -3e8, 3e8},           {"mass_solid", 0.0, INFINITY}};
+
+static PetscErrorCode CheckRange(const ParticleVariable *v, const double *data, Loaded *L)
+{
+  size_t k = 0;
+
+  PetscFunctionBeginUser;
+  while (k < sizeof(range) / sizeof(*range) && strcmp(range[k].name, v->name))
+    k++;
+  for (PetscInt i = 0; k < sizeof(range) / sizeof(*range) && i < L->P.n * v->nc; i++) {
+    if (data[i] < range[k].low || data[i] > range[k].high)
+      Refuse(L, "particle %d has an impossible %s: %g %s is not from %g to %g", (int)L->P.i[PI_ID][i / v->nc], v->name,
+             data[i], v->unit, range[k].low, range[k].high);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode LoadState(hid_t file, Loaded *L)
 {
   PetscFunctionBeginUser;
@@ -44,9 +73,11 @@ static PetscErrorCode LoadState(hid_t file, Loaded *L)
       Refuse(L, "%s is missing or of wrong size", name);
     if (!f->integer && !Finite(to, f->n))
       Refuse(L, "%s is not finite", name);
-    if (f->integer && *(PetscInt *)to < 0)
+    if (f->integer && *(PetscInt *)to < (strcmp(f->name, "hold") ? 0 : -1)) /* a fixed step that grows back */
       Refuse(L, "%s is negative", name);
   }
+  if (L->s.next_snapshot > L->s.step + 1)
+    Refuse(L, "/state/next_snapshot is impossible: %d after %d steps", (int)L->s.next_snapshot, (int)L->s.step);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,6 +96,7 @@ static PetscErrorCode LoadReals(hid_t group, Loaded *L)
     } else if (!Finite(data, n * v->nc)) {
       snprintf(L->why, sizeof(L->why), "/particles/%s is not finite", v->name);
     } else {
+      PetscCall(CheckRange(v, data, L));
       for (PetscInt p = 0; p < n; p++) {
         for (int c = 0; c < v->nc; c++)
           L->P.f[v->first + c][p] = data[p * v->nc + c];

@@ -142,12 +142,12 @@ static void CheckBlock(FILE *f, uint64_t bytes, Seal *seal, char *why, size_t si
 static void CheckFile(const char *path, Seal *seal, char *why, size_t size)
 {
   struct stat st;
-  FILE       *f = fopen(path, "rb");
+  FILE       *f = NULL;
 
-  if (!f || fstat(fileno(f), &st) != 0)
-    snprintf(why, size, "%s", strerror(errno));
-  else if (!S_ISREG(st.st_mode))
+  if (stat(path, &st) == 0 && !S_ISREG(st.st_mode)) /* to open a pipe is to wait for who writes into it */
     snprintf(why, size, "it is not a file");
+  else if (!(f = fopen(path, "rb")) || fstat(fileno(f), &st) != 0)
+    snprintf(why, size, "%s", strerror(errno));
   else
     CheckBlock(f, (uint64_t)st.st_size, seal, why, size);
   if (f)

@@ -63,7 +63,7 @@ static bool RemoveFrom(const char *dir, PetscInt next)
 }
 
 /* Lists a snapshot if its file is whole; a damaged one is set aside with a sentence. */
-static PetscErrorCode Look(Output *out, PetscInt number)
+static PetscErrorCode Look(Output *out, OutputFrom from, PetscInt number)
 {
   char          path[IO_PATH], name[64], kept[IO_PATH + 16];
   SnapshotEntry entry = {.number = number};
@@ -74,8 +74,12 @@ static PetscErrorCode Look(Output *out, PetscInt number)
   PetscFunctionBeginUser;
   snprintf(name, sizeof(name), SNAPSHOT_NAME, (int)number);
   PetscCall(IoPath(out->dir, name, path));
-  if (access(path, F_OK) != 0)
+  snprintf(kept, sizeof(kept), "%s.damaged", path);
+  if (access(path, F_OK) != 0) {
+    if (from == OUTPUT_HERE && access(kept, F_OK) != 0)
+      fprintf(stderr, "clathra: warning: %s is missing; it is left out of fields.h5\n", path);
     PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(H5FileOpen(path, &file));
   whole = file >= 0 && H5ReadReal(file, "time", &entry.t) && H5Rows(file, "particles/vertex", &rows);
   if (file >= 0)
@@ -86,22 +90,21 @@ static PetscErrorCode Look(Output *out, PetscInt number)
     PetscCall(Remember(out, &entry));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  snprintf(kept, sizeof(kept), "%s.damaged", path);
-  fprintf(stderr, "clathra: %s is damaged; it is set aside as %s and left out of fields.h5\n", path, kept);
+  fprintf(stderr, "clathra: warning: %s is damaged; it is set aside as %s and left out of fields.h5\n", path, kept);
   out->failed = !IoRename(path, kept);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SeriesStart(Output *out, bool append, PetscInt next)
+PetscErrorCode SeriesStart(Output *out, OutputFrom from, PetscInt next)
 {
   char dir[IO_PATH];
 
   PetscFunctionBeginUser;
   PetscCall(IoPath(out->dir, "fields", dir));
   if (!out->failed)
-    out->failed = !IoMakeFolder(dir) || !RemoveFrom(dir, append ? next : 0);
-  for (PetscInt k = 0; append && k < next && !out->failed; k++)
-    PetscCall(Look(out, k));
+    out->failed = !IoMakeFolder(dir) || !RemoveFrom(dir, from == OUTPUT_ANEW ? 0 : next);
+  for (PetscInt k = 0; from != OUTPUT_ANEW && k < next && !out->failed; k++)
+    PetscCall(Look(out, from, k));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,7 +23,7 @@ static bool TakeRoom(const char *path, size_t room)
   int  fd, why;
 
   IoAside(path, aside);
-  fd = open(aside, O_WRONLY | O_CLOEXEC | (room ? 0 : O_CREAT | O_TRUNC), 0666);
+  fd = open(aside, O_WRONLY | O_CLOEXEC | O_NOFOLLOW | (room ? 0 : O_CREAT | O_TRUNC), 0666);
   if (fd < 0)
     return IoFailed(path, 0);
   why = room ? posix_fallocate(fd, 0, (off_t)room) : 0;

@@ -151,21 +151,21 @@ PetscErrorCode SlabInts(Slab *s, const PetscInt *local)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SlabWrite(const Slab *s, hid_t group, const char *name, int nc, const char *unit, bool compress)
+PetscErrorCode SlabWrite(const Slab *s, hid_t group, const char *name, int nc, const char *unit, bool keep)
 {
   PetscFunctionBeginUser;
-  PetscCall(H5WritePart(group, name, H5T_NATIVE_DOUBLE, &s->part, nc, s->data, unit, compress));
+  PetscCall(H5WritePart(group, name, H5T_NATIVE_DOUBLE, &s->part, nc, s->data, unit, keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SlabWriteInts(const Slab *s, hid_t group, const char *name, const char *unit, bool compress)
+PetscErrorCode SlabWriteInts(const Slab *s, hid_t group, const char *name, const char *unit, bool keep)
 {
   PetscFunctionBeginUser;
-  PetscCall(H5WritePart(group, name, H5_INT, &s->part, 1, s->data, unit, compress));
+  PetscCall(H5WritePart(group, name, H5_INT, &s->part, 1, s->data, unit, keep));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SlabWriteVariables(Slab *s, const Particles *P, bool compress, hid_t group)
+PetscErrorCode SlabWriteVariables(Slab *s, const Particles *P, bool keep, hid_t group)
 {
   PetscFunctionBeginUser;
   for (const ParticleVariable *v = cl_particle_variable; v->name; v++) {
@@ -173,7 +173,7 @@ PetscErrorCode SlabWriteVariables(Slab *s, const Particles *P, bool compress, hi
       continue;
     for (int c = 0; c < v->nc; c++)
       PetscCall(SlabReals(s, P->f[v->first + c], 1, c, v->nc));
-    PetscCall(SlabWrite(s, group, v->name, v->nc, v->unit, compress));
+    PetscCall(SlabWrite(s, group, v->name, v->nc, v->unit, keep));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

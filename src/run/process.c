@@ -1,14 +1,17 @@
-/* What the process hears from outside.  SIGINT, SIGTERM, SIGHUP and SIGUSR1 (which mpiexec hands on) ask for the end of
-   the run after its step; a second one ends it at once.  A reader of the output that goes away, or a limit on the size
-   of files, is for the write that fails to say. */
+/* What the process hears from outside.  SIGINT, SIGTERM, SIGQUIT, SIGHUP and SIGUSR1 (which mpiexec hands on) ask for
+   the end of the run after its step; a second one ends it at once.  A reader of the output that goes away, or a limit
+   on the size of files, is for the write that fails to say. */
 #include "clathra/run.h"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
-static const int             asks[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+static const int             asks[] = {SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1};
 static bool                  deaf[sizeof(asks) / sizeof(*asks)]; /* ignored when the program was started: nohup, & */
 static bool                  quiet; /* a reader that goes away ends the program without a word */
 static volatile sig_atomic_t caught;
@@ -32,7 +35,19 @@ static void OneThread(char **argv)
     (void)execv("/proc/self/exe", argv);
 }
 
-void ProcessPrepare(char **argv)
+/* A folder that was deleted under the shell has no path, and neither MPI nor PETSc begins in it. */
+static bool HasFolder(void)
+{
+  char path[PATH_MAX];
+
+  if (getcwd(path, sizeof(path)))
+    return true;
+  fprintf(stderr, "clathra: the folder in which it was started cannot be found (%s); change to another one\n",
+          strerror(errno));
+  return false;
+}
+
+bool ProcessPrepare(char **argv)
 {
   struct sigaction before;
 
@@ -43,6 +58,7 @@ void ProcessPrepare(char **argv)
   }
   for (size_t k = 0; k < sizeof(asks) / sizeof(*asks); k++)
     deaf[k] = sigaction(asks[k], NULL, &before) == 0 && before.sa_handler == SIG_IGN;
+  return HasFolder();
 }
 
 PetscErrorCode ProcessQuietPipe(void)

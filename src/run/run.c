@@ -279,7 +279,11 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
 
   PetscFunctionBeginUser;
   PetscCall(WriteCase(m->grid.comm, c, run));
-  PetscCall(OutputCreate(m, &s->state, restart, &run->out));
+  PetscCall(OutputCreate(m, &s->state,
+                         !restart           ? OUTPUT_ANEW
+                         : run->folder.here ? OUTPUT_HERE
+                                            : OUTPUT_ELSEWHERE,
+                         &run->out));
   if (!restart) {
     PetscCall(OutputProbes(run->out, m, &s->state));
     PetscCall(OutputMeters(run->out, m, &s->state));
@@ -515,6 +519,11 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
                            "clathra: %s: grid_cells = %s: too few for %d ranks (each needs a part of at least 3 nodes "
                            "along every axis that is shared); use fewer ranks\n",
                            c->file, CellsWords(&c->scene, ", ").s, (int)size));
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MemoryLook(comm, c, &ok));
+  if (!ok) {
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }

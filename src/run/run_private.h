@@ -30,6 +30,11 @@ bool           WatchLine(Watch *w, bool last); /* is it time for a line?  The la
    sentence was printed.  Collective. */
 PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok);
 
+/* ---------------------------------------------------------------- memory.c */
+/* *ok = false: particles and grid need more than the machine has, or than the process may take, and a sentence was
+   printed.  Collective. */
+PetscErrorCode MemoryLook(MPI_Comm comm, const Case *c, bool *ok);
+
 /* ---------------------------------------------------------------- times.c */
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
 double NextMultiple(const Case *c, double every, double t);

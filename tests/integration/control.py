@@ -4,7 +4,9 @@
 The scene is BP2 on 13 cells.
 """
 import math
+import os
 import re
+import resource
 import shlex
 import subprocess
 import sys
@@ -13,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from _files import hashes  # noqa: E402
-from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
+from common import CASES, ROOT, binary, check, check_true, environment, finish, launch, mpiexec, run, scratch  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
 
@@ -27,6 +29,25 @@ def check_share():
     check_true("a restart in the middle goes on with 55 % of the run", shares and shares[0] == ("11", "55.0") and shares[-1] == ("20", "100.0"), shares[:2])
 
 
+def limited(gigabytes, *options, ranks=1, timeout=120):
+    """A run that may have so much memory a process."""
+    command = [*(mpiexec(ranks) if ranks > 1 else ()), str(binary()), str(BP2[0]), *options, "-output_dir", str(scratch() / "out")]
+    return subprocess.run(command, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (int(gigabytes * 1e9),) * 2), env=environment(),
+                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)  # fmt: skip
+
+
+def check_memory():
+    """More than the machine has is refused before anything is built; what is found out on the way is a sentence, too."""
+    for ranks in (1, 2):
+        done = limited(12, "-grid_cells", "10000,6000", "-case_check", ranks=ranks)
+        check_true(f"240 million particles in 12 GB, {ranks} rank(s): refused", done.returncode == 2 and re.search(r"2\.31e\+08 particles and the grid need at least \d+ GB of memory, and there are ", done.stdout)
+                   and "grid_cells" in done.stdout and "PETSC ERROR" not in done.stdout, done.stdout[-300:])  # fmt: skip
+    done = limited(0.7, "-grid_cells", "500,100", "-quiet", "-stepper_max_steps", "1", "-output_times", "0 s")
+    check_true("an allocation that fails: a sentence, exit code 3", done.returncode == 3 and "clathra: out of memory" in done.stdout and "PETSC ERROR" not in done.stdout, done.stdout[-300:])
+    done = limited(4, *BP2[1:], "-quiet", "-stepper_max_steps", "1")
+    check_true("what fits is run, without a word about memory", done.returncode == 0 and "memory" not in done.stdout, done.stdout[-300:])
+
+
 def check_refused():
     """Words that would be ignored, a restart from nowhere, a folder with a case of the user's own: nothing is run or written."""
     done = scratch() / "done"
@@ -36,6 +57,18 @@ def check_refused():
         for value in (("",), ()):
             said = launch(binary(), *BP2, "-quiet", "-output_dir", done, option, *value)
             check_true(f"{option} {value or 'without a value'} is refused", said.returncode == 2 and f"{option} needs the path of a checkpoint" in said.stdout and hashes(done) == before, said.stdout[-300:])
+    odd = scratch()
+    (odd / "words.opts").write_text("rubbish line\n")
+    os.mkfifo(odd / "pipe")
+    for ranks in (1, 2):
+        for value, words in ((odd / "nowhere", f"Unable to open options file {odd}/nowhere"), (odd, f"options file {odd} is a directory"), (odd / "words.opts", "words.opts line 1: rubbish"), ("", "Unable to open options file"), (None, "Missing filename for -options_file")):
+            said = launch(binary(), *BP2, "-case_check", "-options_file", *(() if value is None else (value,)), ranks=ranks, timeout=60)
+            check_true(f"-options_file {value}, {ranks} rank(s): a sentence", said.returncode == 2 and "clathra: " in said.stdout and words in said.stdout and "PETSC ERROR" not in said.stdout, said.stdout[-300:])
+        for option in ("-restart", "-restart_as_initial"):
+            said = launch(binary(), *BP2, "-case_check", option, odd / "pipe", ranks=ranks, timeout=60)
+            check_true(f"{option} of a pipe, {ranks} rank(s), is refused", said.returncode == 2 and "it is not a file" in said.stdout, said.stdout[-300:])
+    said = subprocess.run(["bash", "-c", 'cd "$1" && rmdir "$1" && shift && exec "$@"', "-", scratch(), Path(binary()).resolve(), *map(str, BP2), "-time_end", "1 s"], env=environment(), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+    check_true("a working folder that is gone: a sentence", said.returncode == 2 and "the folder in which it was started cannot be found" in said.stderr and "PETSC ERROR" not in said.stderr, said.stderr[-300:])
     said = launch(binary(), BP2[0], "grid_cells", "13,1", out=scratch() / "none")
     check_true("a word that is no option is refused", said.returncode == 2 and "'grid_cells' is neither an option nor the value of one" in said.stdout, said.stdout[-300:])
     said = launch(binary(), *BP2, "-case_check", "yes", "50,1", out=scratch() / "none")
@@ -333,6 +366,7 @@ def main():
     check_share()
     check_tide()
     check_refused()
+    check_memory()
     check_limit()
     check_slivers()
     check_retries()

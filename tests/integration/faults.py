@@ -174,6 +174,33 @@ def check_identity():
                lost.returncode == 2 and "does not belong to the files" in lost.stdout, lost.stdout[-200:])  # fmt: skip
 
 
+def check_lost():
+    """What is gone of the files of a run that is gone on with, or damaged, is said; elsewhere there is nothing to miss."""
+    options, begun = (*OPTIONS, "-output_probe_every", "10 s"), scratch() / "out"
+    launch(binary(), BP2, *options, "-stepper_max_steps", "12", out=begun)
+    lines = lambda p, n: p.write_text("".join(p.read_text().splitlines(keepends=True)[:n]))
+    for what, name, hurt, said in (
+        ("nothing", "probes.csv", lambda p: None, ""),
+        ("gone", "probes.csv", Path.unlink, "is missing; it begins anew at t = "),
+        ("empty", "meters.csv", lambda p: p.write_text(""), "has not the columns of this run; it is kept as"),
+        ("half", "balance.csv", lambda p: lines(p, 6), "lacks the rows from t = "),
+        ("half", "probes.csv", lambda p: lines(p, 2), "lacks the rows from t = 0 s to t = "),
+        ("the header alone", "meters.csv", lambda p: lines(p, 1), "lacks the rows from t = 0 s to t = "),
+        ("a row without its end", "probes.csv", lambda p: p.write_text(p.read_text() + "1.0,2"), ""),
+        ("a row of words", "probes.csv", lambda p: p.write_text(p.read_text().replace("e+", "x", 1)), "is damaged; 1 of its rows are left out"),
+        ("gone", "fields/000000.h5", Path.unlink, "is missing; it is left out of fields.h5"),
+        ("cut off", "fields/000000.h5", lambda p: p.write_bytes(p.read_bytes()[:9000]), "is damaged; it is set aside as"),
+    ):
+        out = scratch() / "out"
+        shutil.copytree(begun, out)
+        hurt(out / name)
+        done = launch(binary(), BP2, *options, "-restart", out / "checkpoint.h5", out=out, ranks=1 + (what == "half"))
+        check_true(f"{name}, {what}, at a restart: {'said' if said else 'nothing is'}", done.returncode == 0 and (
+            f"warning: {out / name} {said}" in done.stdout if said else str(out / name) not in done.stdout), f"exit code {done.returncode}: {done.stdout[-200:]}")  # fmt: skip
+    done = launch(binary(), BP2, *options, "-restart", begun / "checkpoint.h5", out=scratch() / "elsewhere")
+    check_true("a restart into another folder misses nothing", done.returncode == 0 and "is missing" not in done.stdout and "lacks" not in done.stdout, done.stdout[-300:])
+
+
 def check_lock():
     out = scratch() / "out"
     first = start(out, *FINE)
@@ -187,10 +214,22 @@ def check_lock():
     check_true("... a dead one leaves no lock", third.returncode == 0, third.stdout[-200:])
 
 
+def check_links():
+    """Nothing outside of the folder is written over through a link in it."""
+    for link, words in (("run.lock", "run.lock is a symbolic link"), ("case.yaml.tmp", "cannot write"), ("fields.h5.tmp", "cannot write")):
+        out, outside = scratch() / "out", scratch() / "precious"
+        outside.write_text("precious\n")
+        out.mkdir()
+        (out / link).symlink_to(outside)
+        done = launch(binary(), BP2, *OPTIONS, "-stepper_max_steps", "1", out=out, ranks=1 + (link == "run.lock"))
+        check_true(f"{link} is a symbolic link: refused, what it points to is as it was", done.returncode in (2, 3) and words in done.stdout and outside.read_text() == "precious\n",
+                   f"exit code {done.returncode}: {done.stdout[-200:]}")  # fmt: skip
+
+
 def check_signals():
     fine = (*FINE, "-checkpoint_every", "0 s")
     whole = launch(binary(), BP2, *OPTIONS, *fine, out=scratch() / "out")
-    for name, number in (("SIGTERM", signal.SIGTERM), ("SIGINT", signal.SIGINT)):
+    for name, number in (("SIGTERM", signal.SIGTERM), ("SIGINT", signal.SIGINT), ("SIGQUIT", signal.SIGQUIT)):
         out = scratch() / "out"
         job = start(out, *fine)
         while job.poll() is None and not ((out / "balance.csv").exists() and (out / "balance.csv").stat().st_size > 2000):
@@ -201,7 +240,7 @@ def check_signals():
         reference = Path(whole.args[-1])
         same = rest.returncode == 0 and not different(reference, out)
         check_true(f"{name}: exit code 4, a checkpoint, gone on with to the same bits", job.returncode == 4 and same and
-                   "go on with -restart" in text, f"exit code {job.returncode}: {text[-200:]}")  # fmt: skip
+                   "go on with -restart" in text and "PETSC ERROR" not in text, f"exit code {job.returncode}: {text[-200:]}")  # fmt: skip
     for name, number in (("SIGTERM", signal.SIGTERM), ("ctrl-C", signal.SIGINT)):
         out = scratch() / "out"
         job = start(out, *fine, extra={"LD_PRELOAD": str(LIBRARY), "FAULT_DIR": str(out), "FAULT_HOW": "wait", "FAULT_AT": "60"})
@@ -245,7 +284,9 @@ check_limit()
 check_two_ranks()
 check_threads()
 check_lock()
+check_links()
 check_signals()
 check_streams()
 check_identity()
+check_lost()
 finish()

@@ -92,6 +92,9 @@ def main():
     check_case(run)
     other = clathra.Run(str(two.out)).particles(60)
     check("the same particles from 2 ranks: largest difference in p, Pa", np.max(np.abs(other["p"] - run.particles(60)["p"])), 1e-2)
+    refuses("a key that the case does not have", lambda: run.case["mat_nothing"], f"{run.folder}/case.yaml has no mat_nothing")
+    (run.folder / "probes.csv").write_text("time_s,p.p_Pa\n0,1\n1\n")
+    refuses("a damaged table", lambda: clathra.Run(one.out).probes, "probes.csv, line 3: no row of 2 numbers")
     refuses("a folder without a run", lambda: clathra.Run(scratch()), "holds no run")
     finish()
 

@@ -4,9 +4,12 @@
 Without a browser (chromium-headless-shell) the second half is skipped, and says so.
 """
 import base64
+import html
+import importlib.util
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,8 +21,13 @@ import _browser  # noqa: E402
 from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
 
 import clathra  # noqa: E402
+import plot  # noqa: E402
 from clathra import shown  # noqa: E402
 
+_spec = importlib.util.spec_from_file_location("page", ROOT / "scripts" / "report.py")  # the test has its name
+page = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(page)
+DATA = re.compile(r'(?<=<script type="application/json" id="data">)(.*?)(?=</script>)', re.S)
 BLOCK = ("-grid_cells", "8,5", "-output_times", "0 s,2 s,4 s,6 s,8 s,10 s", "-meters", "top", "-meter_top_side", "top")
 COLUMN = ("-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s")
 VIRIDIS = np.array([[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]])
@@ -29,7 +37,7 @@ def report(out):
     done = subprocess.run([sys.executable, ROOT / "scripts" / "report.py", out], capture_output=True, text=True)
     check_true(f"report.py {out.name} ends well", done.returncode == 0, done.stderr[-300:])
     text = (out / "report.html").read_text()
-    return text, json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)[1].replace("<\\/", "</"))
+    return text, json.loads(DATA.search(text)[1])
 
 
 def unpack(text, kind, *shape):
@@ -79,6 +87,55 @@ def check_words(data, text, out):
     lines = {c["name"]: c["lines"] for c in data["scene"]["conditions"]}
     check_true("conditions on the scene", lines["base"] == [[0.0, 0, 2.0, 0]] and len(lines["top"]) == 8 and lines["top"][0] == [0.5, 1, 0.625, 1]
                and len(lines["left"]) == 8, lines["top"][:1])  # fmt: skip
+
+
+def check_damaged(out):
+    """Whatever a run that was killed or a disk leaves: what there is is shown, what there is not is said, and nothing ends in a trace."""
+    broken = scratch() / "broken"
+    header = lambda p: p.write_bytes(p.read_bytes().split(b"\n")[0] + b"\n")
+    half = lambda p: p.write_bytes(p.read_bytes()[: p.stat().st_size // 2])
+    empty, cells = lambda p: p.write_bytes(b""), lambda p: p.write_bytes(p.read_bytes().replace(b"e+00,", b"e+x,"))
+    none = lambda p: p.write_bytes(b"\n".join(line if k == 0 else line.split(b",")[0] + b",nan" * line.count(b",") for k, line in enumerate(p.read_bytes().split(b"\n"))))
+    for name, hurt, words in (
+        ("balance.csv", header, ""), ("balance.csv", empty, "balance.csv is empty"), ("balance.csv", none, "a row whose time is no number"), ("balance.csv", half, ""),
+        ("probes.csv", header, ""), ("probes.csv", none, ""), ("probes.csv", cells, "probes.csv, line 2: no row of"), ("meters.csv", header, ""), ("meters.csv", empty, "meters.csv is empty"),
+        ("fields/000003.h5", half, "fields/000003.h5 is missing or damaged"), ("fields/000000.h5", Path.unlink, "fields/000000.h5 is missing or damaged"), ("fields.h5", half, "fields.h5 is missing or damaged"),
+        ("case.yaml", empty, "case.yaml has no grid_lower"), ("case.yaml", half, ""), ("log.txt", empty, ""), ("summary.txt", half, ""),
+    ):  # fmt: skip
+        shutil.rmtree(broken, ignore_errors=True)
+        shutil.copytree(out, broken)
+        hurt(broken / name)
+        damaged, before = [], plot.save
+        try:
+            plot.save = lambda figure, *_: plot.plt.close(figure)
+            text = page.page(clathra.Run(broken, damaged.append), damaged)
+            pictures = plot.draw(clathra.Run(broken, damaged.append), damaged)
+            said = "; ".join(dict.fromkeys(damaged))
+        except Exception as error:  # whatever it is, it is no sentence
+            text, said, pictures = "", f"a trace: {type(error).__name__}: {error}", []
+        plot.save = before
+        check_true(f"{name}, damaged: a page and pictures of the rest{', and a sentence' if words else ''}", "</html>" in text and len(pictures) >= 2
+                   and (words in said if words else not said) and html.escape(words) in text, f"{said[:200]} {pictures}")  # fmt: skip
+    done = subprocess.run([sys.executable, ROOT / "scripts" / "report.py", broken], capture_output=True, text=True)
+    check_true("a folder whose last line is cut is no error", done.returncode == 0, done.stderr[-300:])
+    empty(broken / "meters.csv")
+    for script in ("report.py", "plot.py"):
+        done = subprocess.run([sys.executable, ROOT / "scripts" / script, broken], capture_output=True, text=True)
+        check_true(f"{script} says what is damaged, and ends with exit code 2", done.returncode == 2 and f"{broken}/meters.csv is empty" in done.stderr and "Traceback" not in done.stderr, done.stderr[-300:])
+
+
+def check_titles(out):
+    """Whatever a title says, the page is the same."""
+    named, plain = scratch() / "named", page.page(clathra.Run(out), [])
+    shutil.copytree(out, named)
+    lines = (named / "case.yaml").read_text().splitlines(keepends=True)
+    at = next(k for k, line in enumerate(lines) if line.startswith("title:"))
+    for title in ("{{data}}", "{{title}}", "<!--<script>", "</script><b>", "a & b \\1 \\g<0>", "\u2028 é"):
+        (named / "case.yaml").write_text("".join([*lines[:at], f"title: '{title}'\n", *lines[at + 1 :]]), encoding="utf-8")
+        text = page.page(clathra.Run(named), [])
+        data = DATA.search(text)[1]
+        check_true(f"title {title!r}", json.loads(data)["title"] == title and "<" not in data and f"<title>{html.escape(title)}</title>" in text
+                   and DATA.sub("", text).split("\n")[6:] == DATA.sub("", plain).split("\n")[6:], f"{json.loads(data)['title']} {text[200:400]}")  # fmt: skip
 
 
 def colour(share):
@@ -153,6 +210,8 @@ def main():
     check_film(data["film"], block)
     check_charts(data, block)
     check_words(data, text, block)
+    check_damaged(block)
+    check_titles(block)
     _, failed = report(column)
     check_true("a run that gave up is told", not failed["finished"] and any("Given up" in w for w in failed["warnings"]), failed["warnings"][-1:])
     check("size of the page, MB", len(text) / 1e6, 1.0)

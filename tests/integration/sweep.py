@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
@@ -42,9 +43,35 @@ def check_sweep(out):
     before = [(f / "balance.csv").stat().st_mtime_ns for f in folders]
     code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED)
     check_true("what has finished is not run again", said.count("finished before") == 4 and before == [(f / "balance.csv").stat().st_mtime_ns for f in folders])
+    check_changed(out / "changed")
     code, said = call("sweep.py", "terzaghi", "mat_clay_porosity=0.4,1.4", "--out", out / "bad", "--program", binary(), "--", *FIXED)
     check_true("a wrong value costs its own run only", code == 2 and "exit code 0" in said and "mat_clay_porosity = '1.4'" in said, said[-300:])
     return folders
+
+
+def check_changed(out):
+    """What has finished, or begun, under another case or other options is run anew, whatever has changed."""
+    out.mkdir()
+    case, name = out / "case.yaml", "mat_clay_permeability_k0=1e-15 m^2"
+    text = (ROOT / "cases" / "terzaghi" / "case.yaml").read_text()
+    again = lambda *options: call("sweep.py", case, name, "--out", out, "--program", binary(), "--", *FIXED, *options)
+    last = lambda: float(clathra.Run(out / sweep.SAFE.sub("_", name)).probes["base.p_Pa"][-1])
+    case.write_text(text)
+    code, said = again()
+    first = last()
+    for what, edit, options, other in (("a property", ("porosity: 0.4", "porosity: 0.3"), (), True), ("numerics alone", ("type: sdirk2", "type: euler"), (), True), ("an option of the solver", ("", ""), ("-newton_tol_residual", "1e-10"), False)):
+        changed = text.replace(*edit, 1)
+        check_true(f"{what}: there is something to change", changed != text or options, edit)
+        case.write_text(changed)
+        code, said = again(*options)
+        check_true(f"{what} has changed: anew", code == 0 and said.count("have changed: anew") == 1 and (last() != first) == other, f"{said[-200:]} {first} {last()}")
+    code, said = again(*options)
+    check_true("... and not again", code == 0 and said.count("finished before") == 1, said[-200:])
+    case.write_text(text.replace("porosity: 0.4", "porosity: 0.2"))
+    again("-stepper_max_steps", "2")
+    case.write_text(text)
+    code, said = again()
+    check_true("nor is what another state of the case has begun gone on with", code == 0 and "have changed: anew" in said and last() == first, said[-200:])
 
 
 def check_floor(folder, noisy):
@@ -62,6 +89,64 @@ def check_floor(folder, noisy):
         check_true(f"a shear stress off by {share:g} of the largest stress, itself at most {sxy:.1e} Pa", found == wanted, found)
 
 
+def compared(folder, other):
+    """What compare.py says of the differences of two runs, and of damage."""
+    damaged = []
+    return compare.differences([clathra.Run(f, damaged.append) for f in (folder, other)], ["a", "b"], damaged)[1:], damaged
+
+
+def edited(path, edit):
+    """Rewrites the cells of a table: edit(rows)."""
+    rows = list(csv.reader(path.open()))
+    edit(rows)
+    with open(path, "w", newline="") as stream:
+        csv.writer(stream, lineterminator="\n").writerows(rows)
+
+
+def other_value(path):
+    with h5py.File(path, "r+") as file:
+        file["particles/displacement"][0, 0] += 1e-3
+
+
+def flipped(path):
+    """One bit of the displacements."""
+    with h5py.File(path, "r") as file:
+        at = file["particles/displacement"].id.get_chunk_info(0).byte_offset
+    data = bytearray(path.read_bytes())
+    data[at + 10] ^= 1
+    path.write_bytes(data)
+
+
+def check_same(folder, out):
+    """Nothing that differs, is missing or is damaged passes for the same; what is the same does."""
+    last = sorted((folder / "fields").iterdir())[-1].name
+    nan = lambda rows: rows[3].__setitem__(1, "nan")
+    for what, file, damage, words in (
+        ("nothing", "probes.csv", lambda p: None, ["b: the same, as far as it goes (but for round-off)"]),
+        ("a NaN", "probes.csv", lambda p: edited(p, nan), ["base.p_Pa", "in one alone", "200"]),
+        ("the header alone", "probes.csv", lambda p: edited(p, lambda rows: rows.__delitem__(slice(1, None))), ["base.p_Pa", "in one alone"]),
+        ("half of the rows", "probes.csv", lambda p: edited(p, lambda rows: rows.__delitem__(slice(3, None))), ["base.p_Pa", "in one alone"]),
+        ("a column less", "probes.csv", lambda p: edited(p, lambda rows: [r.pop() for r in rows]), ["in one alone"]),
+        ("two columns of one name", "probes.csv", lambda p: edited(p, lambda rows: rows[0].__setitem__(2, rows[0][1])), ["has two columns base.p_Pa"]),
+        ("a word for a number", "probes.csv", lambda p: edited(p, lambda rows: rows[2].__setitem__(2, "x")), ["line 3: no row of"]),
+        ("no byte", "probes.csv", lambda p: p.write_bytes(b""), ["is empty"]),
+        ("another value in a snapshot", f"fields/{last}", other_value, ["particles.displacement", "0.001", "600"]),
+        ("a bit of a snapshot", f"fields/{last}", flipped, [f"fields/{last} is missing or damaged"]),
+        ("half of a snapshot", f"fields/{last}", lambda p: p.write_bytes(p.read_bytes()[:9000]), [f"fields/{last} is missing or damaged", "at t = 600 s there is a snapshot"]),
+        ("no snapshot", f"fields/{last}", Path.unlink, [f"fields/{last} is missing or damaged", "at t = 600 s there is a snapshot"]),
+        ("no list of snapshots", "fields.h5", lambda p: p.write_bytes(b"no list"), ["fields.h5 is missing or damaged", "at t = 600 s there is a snapshot"]),
+    ):  # fmt: skip
+        other = out / what.replace(" ", "_")
+        shutil.copytree(folder, other)
+        damage(other / file)
+        lines, damaged = compared(folder, other)
+        said = "\n".join([*lines, *damaged])
+        check_true(f"compare.py, {what} in {file}", all(w in said for w in words) and ("b: the same" in said) == (what == "nothing"), said[-200:])
+    check_true("the same NaN in both is the same", "b: the same" in "".join(compared(out / "a_NaN", out / "a_NaN")[0]))
+    code, said = call("compare.py", folder, out / "no_byte", "--out", out)
+    check_true("what is damaged is an error", code == 2 and "compare.py: " in said and "probes.csv is empty" in said and "Traceback" not in said, said[-200:])
+
+
 def check_compare(folders, out):
     code, said = call("compare.py", folders[0], folders[2], "--out", out)
     check_true("compare.py", code == 0 and (out / "compare.png").is_file(), said[-300:])
@@ -77,6 +162,7 @@ def check_compare(folders, out):
     code, said = call("compare.py", folders[0], folders[2])
     check_true("by itself it draws among the first run's figures", code == 0 and (folders[0] / "figures" / "compare.png").is_file() and not Path("compare.png").exists())
     check_floor(folders[0], out / "noise")
+    check_same(folders[0], out / "damaged")
     code, said = call("compare.py", folders[0], out / "nothing")
     check_true("what is no run is named", code == 2 and "nothing holds no run" in said, said[-200:])
 

@@ -101,6 +101,7 @@ static void FillParticle(Particles *P, PetscInt p, PetscInt id, const double X[2
   P->f[P_T][p]       = Linear(1, X);
   P->f[P_SH][p]      = 0.1 * Linear(2, X);
   P->f[P_SW][p]      = 0.2 * Linear(3, X);
+  P->f[P_PHI][p]     = 0.3 * Linear(4, X);
   P->i[PI_ID][p]     = id;
   P->i[PI_REGION][p] = 0;
   P->i[PI_FACES][p]  = (PetscInt)(id % 16);
@@ -203,7 +204,7 @@ static void SceneDestroy(IoScene *s)
 
 static StepperState SomeState(void)
 {
-  StepperState s = {.step = 17, .t = 123.4567890123456789, .dt = 0.1, .err_old = 0.7, .hold = 2, .fresh = 1};
+  StepperState s = {.step = 17, .t = 123.4567890123456789, .dt = 0.1, .err_old = 0.7, .hold = -1, .fresh = 1};
 
   s.newton_total  = 40;
   s.out[1]        = 1.0 / 3.0;
@@ -607,15 +608,48 @@ static void Reseal(const char *path, uint64_t fingerprint)
   free(data);
 }
 
+/* Values that no run has. */
+static const struct {
+  const char *name;
+  double      value;
+  const char *reason;
+} impossible[] = {{"/particles/S_w", 1e10, "an impossible S_w: 1e+10 - is not from -0.1 to 1.1"},
+                  {"/particles/S_h", -0.5, "particle 0 has an impossible S_h: -0.5"},
+                  {"/particles/porosity", 1.5, "an impossible porosity"},
+                  {"/particles/T", -300.0, "an impossible T: -300 degC"},
+                  {"/particles/p_w", 1e20, "an impossible p_w"},
+                  {"/particles/p_g", -1e20, "an impossible p_g"},
+                  {"/particles/stress", 1e20, "an impossible stress"},
+                  {"/particles/log_J", 100.0, "an impossible log_J"},
+                  {"/particles/v_g", 1e10, "an impossible v_g"},
+                  {"/particles/mass_solid", -1.0, "an impossible mass_solid"},
+                  {"/particles/volume", -1.0, "has no volume"},
+                  {"/particles/position", 1e10, "lies outside the grid"},
+                  {"/state/next_snapshot", 1e9, "/state/next_snapshot is impossible: 1000000000 after 17 steps"}};
+#define IMPOSSIBLE (sizeof(impossible) / sizeof(*impossible))
+
+/* Changes the first value of a dataset. */
+static void OneValue(hid_t f, const char *name, double value)
+{
+  const hsize_t none[2] = {0, 0}, one[2] = {1, 1};
+  hid_t         set = H5Dopen2(f, name, H5P_DEFAULT), space, memory;
+
+  Check(set >= 0);
+  space  = H5Dget_space(set);
+  memory = H5Screate_simple(1, one, NULL);
+  Check(H5Sselect_hyperslab(space, H5S_SELECT_SET, none, NULL, one, NULL) >= 0);
+  Check(H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, &value) >= 0);
+  H5Sclose(memory);
+  H5Sclose(space);
+  H5Dclose(set);
+}
+
 /* Files with a valid seal whose insides are wrong. */
 static void Spoil(const char *path, uint64_t fingerprint, int kind)
 {
-  const double  nan_  = NAN;
-  const hsize_t three = 3, zero = 0;
-  const int     huge = 1000;
-  double        x[3] = {0, 0, 0};
-  hid_t         f, set, space, memory;
-  hsize_t       one = 1;
+  const hsize_t three = 3;
+  double        x[3]  = {0, 0, 0};
+  hid_t         f;
 
   f = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
   Check(f >= 0);
@@ -627,17 +661,8 @@ static void Spoil(const char *path, uint64_t fingerprint, int kind)
     Check(H5Ldelete(f, kind == 2 ? "/particles/T" : "/state/t", H5P_DEFAULT) >= 0);
     Call(H5Write(f, kind == 2 ? "/particles/T" : "/state/t", H5T_NATIVE_DOUBLE, three, x, NULL));
   }
-  if (kind == 4 || kind == 5) { /* one value */
-    set    = H5Dopen2(f, kind == 4 ? "/particles/T" : "/particles/region", H5P_DEFAULT);
-    space  = H5Dget_space(set);
-    memory = H5Screate_simple(1, &one, NULL);
-    Check(H5Sselect_hyperslab(space, H5S_SELECT_SET, &zero, NULL, &one, NULL) >= 0);
-    Check(H5Dwrite(set, kind == 4 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT, memory, space, H5P_DEFAULT,
-                   kind == 4 ? (const void *)&nan_ : (const void *)&huge) >= 0);
-    H5Sclose(memory);
-    H5Sclose(space);
-    H5Dclose(set);
-  }
+  if (kind == 4 || kind == 5)
+    OneValue(f, kind == 4 ? "/particles/T" : "/particles/region", kind == 4 ? NAN : 1000.0);
   if (kind == 6)
     Check(H5Adelete(f, "ranks") >= 0);
   if (kind == 7 || kind == 8) {
@@ -649,6 +674,10 @@ static void Spoil(const char *path, uint64_t fingerprint, int kind)
   }
   if (kind == 9)
     Check(H5Ldelete(f, "/case", H5P_DEFAULT) >= 0);
+  for (size_t j = 0; j < IMPOSSIBLE; j++) {
+    if (kind == 10 + (int)j)
+      OneValue(f, impossible[j].name, impossible[j].value);
+  }
   Check(H5Fclose(f) >= 0);
   Reseal(path, fingerprint);
 }
@@ -677,6 +706,12 @@ static void WrongInsidesAreRefused(void **state)
     if (world_rank == 0)
       Spoil(path, CaseFingerprint(&s.c), k);
     ExpectRefused(&s, path, reason[k]);
+  }
+  for (size_t k = 0; k < IMPOSSIBLE; k++) {
+    WriteCheckpoint(&s.m, &z, path);
+    if (world_rank == 0)
+      Spoil(path, CaseFingerprint(&s.c), 10 + (int)k);
+    ExpectRefused(&s, path, impossible[k].reason);
   }
   WriteCheckpoint(&s.m, &z, path);
   if (world_rank == 0) /* of another case, and does not hold it in words, as one of before */
