@@ -80,7 +80,7 @@ FAULTS = [
     ("the tie (351) is that of whole pressures, not of what they change by", MODEL + "stabilise.c", [("pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);", "pull -= 0.0 * g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);")]),
     ("a row of particles is tied by what both nodes share (417)", MODEL + "unseen.c", [("A * B / (A + B) : 0.0", "both : 0.0")]),
     ("a thin gas takes its share, its water all (416)", MODEL + "evaluate.c", [("    in[IN_P + f] -= withheld;", "    in[IN_P + f] -= f == PHASE_G ? withheld : 0.0;"), ("less * (o->D[k][IN_P + PHASE_W] + o->D[k][IN_P + PHASE_G])", "less * o->D[k][IN_P + PHASE_G]")]),
-    ("hybrid's particle of a layer takes the flow of its nodes (350)", EXPLICIT + "rates.c", [("rt, conduct * v[at + B_J + d], v", "rt, (1.0 + 0.0 * conduct) * v[at + B_J + d], v")]),
+    ("hybrid's particle of a layer takes the flow of its nodes (350)", EXPLICIT + "rates.c", [("J[d] = conduct * v[at + B_J + d];", "J[d] = v[at + B_J + d];")]),
     ("inertia of hybrid's fluids in layers without its weight (310)", EXPLICIT + "velocities.c", [("PetscSqr(b->flow) * f[FL_Inertia(s)]", "b->flow * f[FL_MI]")]),
     ("a node's flow is shared as if there were no hydrate (350)", MODEL + "step.c", [("ParticleMaterial(m, p), m->P.f[P_SH][p])", "ParticleMaterial(m, p), 0.0)")]),
     ("... by hybrid", EXPLICIT + "deposit.c", [("mat, w->Sh[q])", "mat, 0.0)")]),

@@ -393,6 +393,22 @@ def turned(hybrid=False):
         judge("space", f"a body that no plane cuts out{by}, its axes exchanged {n} times: farthest, of the spread ({k})", worst, 1e-9 if hybrid else 1e-8)
 
 
+def borders():
+    """Sand beside clay whose border cuts cells (447): sheared and turned, against the plane; implicit steps and hybrid's."""
+    case = block()
+    soil = lambda k0: {k: v for k, v in MATERIAL.items() if k in ("porosity", "solid", "water")} | {"permeability": {"k0": k0, "hydrate_law": "none"}, "elasticity": {"E0": "20 MPa", "nu": 0.3}}
+    case |= {"fields": ["solid", "water"], "materials": ["sand", "clay"], "mat": {"sand": soil("1e-14 m^2"), "clay": soil("1e-18 m^2")}, "title": "Border"}
+    for r in case["region"].values():
+        r |= {"material": "sand", "Sw": 0.8, "Sg": 0.0}
+    case["region"]["free"] |= {"material": "clay", "lower": ["0.34 m", "0 m"]}
+    case["region"]["loaded"]["upper"] = ["0.34 m", "0.5 m"]
+    del case["bc"]["sun"]
+    case["boundaries"].remove("sun")
+    # the rate of (353) has a third axis in space
+    compare("a border that cuts cells", case, "-exchange_ksp_max_it", 1, rings=(0, 1, 2), bar=1e-9)
+    compare("a border that cuts cells, hybrid", hurried(case), rings=(0, 1, 2))
+
+
 def cube(vertical):
     """Wet ground of 1 m, a third axis of gravity at will, on the sea's floor: held at its base and sides, its top open to the sea."""
     up = "xyz".index(vertical)
@@ -528,6 +544,7 @@ def main():
     drawn_out_scenes()
     without_matrix()
     wells()
+    borders()
     turned()
     turned(hybrid=True)
     at_rest()
