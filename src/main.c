@@ -129,6 +129,16 @@ static PetscErrorCode SayMemory(MPI_Comm comm, int line, const char *function, c
   return n;
 }
 
+static bool started; /* PETSc has begun */
+
+/* One handler for both: PETSc may free its place only as it was allocated, and -malloc_debug changes that in between.
+ */
+static PetscErrorCode Say(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode n,
+                          PetscErrorType type, const char *message, void *ctx)
+{
+  return (started ? SayMemory : SayStart)(comm, line, function, file, n, type, message, ctx);
+}
+
 /* Exit code; of several ranks the others may wait for this one. */
 static int StartFailed(void)
 {
@@ -158,10 +168,11 @@ int main(int argc, char **argv)
     if (strcmp(argv[k], "-help") == 0 && ProcessQuietPipe()) /* a pager that ends is no crash */
       return CL_EXIT_BUG;
   }
-  if (PetscPushErrorHandler(SayStart, NULL) || PetscInitialize(&argc, &argv, NULL, help) || PetscPopErrorHandler())
+  if (PetscPushErrorHandler(Say, NULL) || PetscInitialize(&argc, &argv, NULL, help))
     return StartFailed();
+  started = true;
   ProcessListen();
-  if (PetscPushErrorHandler(SayMemory, NULL) || Main(argc, argv, &exit_code)) {
+  if (Main(argc, argv, &exit_code)) {
     exit_code = no_memory ? CL_EXIT_FAILED : CL_EXIT_BUG;
     MPI_Comm_size(PETSC_COMM_WORLD, &size);
     if (size > 1) /* others may wait for this rank for ever */
