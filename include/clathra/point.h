@@ -20,7 +20,7 @@ enum {
   IN_T     = IN_P + PHASE_COUNT,       /* degC */
   IN_GP    = IN_T + 1,                 /* [pi][i] gradients of p_w, p_g, Pa/m */
   IN_GT    = IN_GP + CL_FLUID_VECTORS, /* [i] gradient of T, K/m */
-  IN_J     = IN_GT + CL_DIM,           /* [pi][i] Darcy fluxes of water, gas, m/s */
+  IN_J     = IN_GT + CL_DIM,           /* [pi][i] Darcy fluxes of water, gas, m/s; with beds A^-1 of them (448) */
   IN_U     = IN_J + CL_FLUID_VECTORS,  /* [i] displacement of the step, m */
   IN_COUNT = IN_U + CL_DIM
 };

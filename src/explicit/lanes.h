@@ -133,7 +133,7 @@ struct Explicit {
   Set             set;
   PetscInt        cap; /* of the arrays over particles */
   double         *t[T_COUNT];
-  Beds           *beds;         /* [cap] A at t_n (306); with layers */
+  Beds           *beds;         /* [cap] A at t_n (306), (447); with layers */
   int            *base[CL_DIM]; /* first node along each axis, as at the last look */
   PetscInt       *order, *key;  /* work space of the sort */
   NodeMap         map;

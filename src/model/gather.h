@@ -16,7 +16,7 @@ enum {
   GIVE_SCALAR  = 0,                          /* p_w, p_g (Pa), T (K) less those at t_n */
   GIVE_START   = GIVE_SCALAR + GIVE_SCALARS, /* those at t_n */
   GIVE_U       = GIVE_START + GIVE_SCALARS,  /* displacement of the step, m */
-  GIVE_J       = GIVE_U + CL_DIM,            /* Darcy fluxes times V/Vk (350), m/s */
+  GIVE_J       = GIVE_U + CL_DIM,            /* B times Darcy fluxes times V/Vk (350), (448), m/s */
   GIVE_PROJ    = GIVE_J + CL_FLUID_VECTORS,  /* projected pressure gradients, Pa/m */
   GIVE_GRAD    = WHOLE_LANES(GIVE_PROJ + CL_FLUID_VECTORS),
   GIVE_MOTION  = GIVE_GRAD + GIVE_SCALARS, /* after p_w, p_g, T: displacement */

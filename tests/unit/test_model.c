@@ -249,6 +249,61 @@ static void TestBedsTurn(void **state)
   Check(right < 1e-12 && part < 1e-12 && along < 1e-12 && across < 1e-12 && unlike > 1e-3);
 }
 
+/* A of a border (447) with the normal at `angle` in beds that dip, and its inverse (448): [across, along, turned, one].
+ */
+static void BorderAt(double angle, double turn, double off[4])
+{
+  const double n[2] = {cos(angle), sin(angle)}, t[2] = {-n[1], n[0]}, one[2][2] = {{1.0, 0.0}, {0.0, 1.0}},
+               ratio           = 1e-4;
+  const double N[CL_SYMMETRIC] = {n[0] * n[0], n[1] * n[1], n[0] * n[1]}, c = cos(turn), si = sin(turn);
+  const double m[2]            = {c * n[0] - si * n[1], si * n[0] + c * n[1]};
+  const double M[CL_SYMMETRIC] = {m[0] * m[0], m[1] * m[1], m[0] * m[1]};
+  const Beds   before          = BedsOf(0.3, 0.4, one);
+  Beds         A = before, B = BedsOf(0.3, 0.4 + turn, one);
+  double       drive[2], was[2], mine[2];
+
+  BedsLessen(&A, N, ratio);
+  BedsLessen(&B, M, ratio);
+  off[0] = fabs(BedsAcross(&A, N) / (ratio * BedsAcross(&before, N)) - 1.0);
+  /* what no flow across drives: along the border as before */
+  memcpy(drive, n, sizeof(drive));
+  BedsDrive(&before, drive);
+  const double rest[2] = {-drive[1], drive[0]}; /* n . A rest = 0 */
+  memcpy(was, rest, sizeof(was));
+  memcpy(mine, rest, sizeof(mine));
+  BedsDrive(&before, was);
+  BedsDrive(&A, mine);
+  off[1] = hypot(mine[0] - was[0], mine[1] - was[1]);
+  /* the whole turned */
+  memcpy(was, t, sizeof(was));
+  BedsDrive(&A, was);
+  mine[0] = c * t[0] - si * t[1];
+  mine[1] = si * t[0] + c * t[1];
+  BedsDrive(&B, mine);
+  off[2]             = hypot(mine[0] - (c * was[0] - si * was[1]), mine[1] - (si * was[0] + c * was[1]));
+  const Beds inverse = BedsShare(&A, 1.0);
+  memcpy(was, n, sizeof(was));
+  BedsDrive(&A, was);
+  BedsDrive(&inverse, was);
+  off[3] = hypot(was[0] - n[0], was[1] - n[1]);
+}
+
+static void TestBorders(void **state)
+{
+  double worst[4] = {0.0};
+
+  (void)state;
+  for (int k = 0; k < 12; k++) {
+    double off[4];
+
+    BorderAt(0.5 * k, 0.3 + 0.7 * k, off);
+    for (int i = 0; i < 4; i++)
+      worst[i] = fmax(worst[i], off[i]);
+  }
+  Say("borders: across %.1e, along %.1e, turned %.1e, inverse %.1e\n", worst[0], worst[1], worst[2], worst[3]);
+  Check(worst[0] < 1e-10 && worst[1] < 1e-14 && worst[2] < 1e-14 && worst[3] < 1e-10);
+}
+
 /* Plates: one that moves, rough; one with a prescribed force, whose springs couple all nodes under it (74), held to the
    body or free to separate, in which case a part of it touches. */
 static void PlateScene(SmallScene *s, bool axisymmetric, int kind)
@@ -751,12 +806,12 @@ static void TestWallOfDonors(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestJacobian),      cmocka_unit_test(TestLayersJacobian), cmocka_unit_test(TestTotalJacobian),
-      cmocka_unit_test(TestBedsJacobian),  cmocka_unit_test(TestBedsTurn),       cmocka_unit_test(TestPlates),
-      cmocka_unit_test(TestMassRows),      cmocka_unit_test(TestTwoLayers),      cmocka_unit_test(TestHydrostatic),
-      cmocka_unit_test(TestUniformStress), cmocka_unit_test(TestDarcy),          cmocka_unit_test(TestHeatFlux),
-      cmocka_unit_test(TestNewtonOrder),   cmocka_unit_test(TestSlaved),         cmocka_unit_test(TestCopyByRows),
-      cmocka_unit_test(TestWallOfDonors),
+      cmocka_unit_test(TestJacobian),     cmocka_unit_test(TestLayersJacobian), cmocka_unit_test(TestTotalJacobian),
+      cmocka_unit_test(TestBedsJacobian), cmocka_unit_test(TestBedsTurn),       cmocka_unit_test(TestBorders),
+      cmocka_unit_test(TestPlates),       cmocka_unit_test(TestMassRows),       cmocka_unit_test(TestTwoLayers),
+      cmocka_unit_test(TestHydrostatic),  cmocka_unit_test(TestUniformStress),  cmocka_unit_test(TestDarcy),
+      cmocka_unit_test(TestHeatFlux),     cmocka_unit_test(TestNewtonOrder),    cmocka_unit_test(TestSlaved),
+      cmocka_unit_test(TestCopyByRows),   cmocka_unit_test(TestWallOfDonors),
   };
 
   return RunTests(argc, argv, tests, SolveWell, NULL);
