@@ -88,7 +88,7 @@ INLINE void BedsLessen(Beds *beds, const double N[CL_SYMMETRIC], double ratio)
 INLINE Beds BedsInverse(const Beds *beds)
 {
   double A[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM];
-  Beds   inverse;
+  Beds   inverse = {{0.0}};
 
   for (int i = 0; i < CL_DIM; i++) {
     for (int j = 0; j < CL_DIM; j++)
@@ -105,7 +105,7 @@ INLINE Beds BedsInverse(const Beds *beds)
 /* (448): B of a node, from the sum of V S k_p A over its particles and that of V S k_p. */
 INLINE Beds BedsShare(const Beds *sum, double Vk)
 {
-  Beds mean;
+  Beds mean = {{0.0}};
 
   for (int k = 0; k < CL_SYMMETRIC; k++)
     mean.A[k] = sum->A[k] / Vk;

@@ -26,21 +26,22 @@ INLINE double Flow(const Set s, const double *a)
 }
 
 /* Mean of A at a node, weighted with k_p. */
-INLINE double MeanDrive(const Set s, const double *a, int i, int j)
+INLINE Beds MeanDrive(const Set s, const double *a)
 {
-  return (i == j ? 1.0 : 0.0) + a[A_Beds(s) + cl_symmetric[i][j]] / a[A_K(s)];
+  Beds mean = {{0.0}};
+
+  for (int k = 0; k < CL_SYMMETRIC; k++)
+    mean.A[k] = (k < CL_DIM ? 1.0 : 0.0) + a[A_Beds(s) + k] / a[A_K(s)];
+  return mean;
 }
 
-/* B of a node (448). */
-INLINE Beds SharesAt(const Set s, const double *a)
+/* v := B^-1 v, with layers (448). */
+INLINE void Driven(const Set s, const double *a, double v[CL_DIM])
 {
-  Beds mean;
-
-  for (int i = 0; i < CL_DIM; i++) {
-    for (int j = i; j < CL_DIM; j++)
-      mean.A[cl_symmetric[i][j]] = MeanDrive(s, a, i, j);
-  }
-  return BedsInverse(&mean);
+  if (!s.layers)
+    return;
+  const Beds mean = MeanDrive(s, a);
+  BedsDrive(&mean, v);
 }
 
 /* v := B v, with layers. */
@@ -48,7 +49,7 @@ INLINE void Shared(const Set s, const double *a, double v[CL_DIM])
 {
   if (!s.layers)
     return;
-  const Beds B = SharesAt(s, a);
+  const Beds mean = MeanDrive(s, a), B = BedsInverse(&mean);
   BedsDrive(&B, v);
 }
 
@@ -153,6 +154,7 @@ INLINE void SolveLayers(const Explicit *e, const Set s, const double *a, const B
                         const bool held[CL_DIM], const double value[CL_DIM], double v[CL_DIM][3])
 {
   const double scale = e->o.mass_scaling / dt;
+  const Beds   mean  = MeanDrive(s, a);
   double       feels[PHASE_COUNT][CL_DIM][CL_DIM], L[CL_DIM][CL_DIM], rhs[CL_DIM], v_s[CL_DIM];
 
   for (int k = 0; k < s.fluids; k++) {
@@ -160,7 +162,7 @@ INLINE void SolveLayers(const Explicit *e, const Set s, const double *a, const B
 
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++)
-        feels[k][i][j] = mass * MeanDrive(s, a, i, j) - (i == j ? b[0].A[k] : 0.0);
+        feels[k][i][j] = mass * mean.A[cl_symmetric[i][j]] - (i == j ? b[0].A[k] : 0.0);
     }
   }
   for (int i = 0; i < CL_DIM; i++) {
@@ -300,16 +302,17 @@ INLINE double PressureWork(const Explicit *e, const Set s, const double *a, doub
 
   for (int k = 0; k < s.fluids; k++) {
     const double *f = &a[A_Fluid(s, k)];
-    double        g[CL_DIM], shared[CL_DIM];
+    double        weight[CL_DIM], g[CL_DIM], flow[CL_DIM];
 
-    for (int i = 0; i < CL_DIM; i++) {
-      g[i]      = f[FL_G + i];
-      shared[i] = J[k][i];
-      for (int j = 0; s.layers && j < CL_DIM; j++)
-        g[i] -= f[FL_MI] * MeanDrive(s, a, i, j) * e->m->bc.gravity[j];
+    for (int d = 0; d < CL_DIM; d++) {
+      weight[d] = s.layers ? f[FL_MI] * e->m->bc.gravity[d] : 0.0;
+      flow[d]   = J[k][d];
     }
-    Shared(s, a, shared);
-    sum += per_k * VectorDot(g, shared);
+    Driven(s, a, weight);
+    Shared(s, a, flow);
+    for (int d = 0; d < CL_DIM; d++)
+      g[d] = f[FL_G + d] - weight[d];
+    sum += per_k * VectorDot(g, flow);
   }
   return sum;
 }
@@ -319,13 +322,14 @@ INLINE double PressureWork(const Explicit *e, const Set s, const double *a, doub
 INLINE double FluidVelocity(const Explicit *e, const Set s, PetscInt I, const double *a, const Balance *w, int k, int d,
                             double v_s)
 {
-  double flow = 0.0;
+  double flow[CL_DIM];
 
   if (!s.layers)
     return w->vf[k] + Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, d));
-  for (int j = 0; j < CL_DIM; j++)
-    flow += MeanDrive(s, a, d, j) * Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, j));
-  return v_s + flow / w->flow;
+  for (int i = 0; i < CL_DIM; i++)
+    flow[i] = Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, i));
+  Driven(s, a, flow);
+  return v_s + flow[d] / w->flow;
 }
 
 /* Row that the particles read: own start velocity, the increment, then what is prescribed. */
