@@ -2,23 +2,17 @@
    (171)-(174) of docs/equations.md.  What is left couples nodes only as far as a particle reaches. */
 #include "gather.h"
 
-/* (171): what a particle's flux of a fluid gains for a force on each of its nodes as on itself: w/R B, and with k_r of
-   the nodes; [of the flux][of the force]. */
+/* (171): what a particle's flux of a fluid along each axis gains for a force on each of its nodes as on itself: w/R,
+   and with k_r of the nodes. */
 typedef struct {
-  double plain[CL_DIM][CL_DIM], with_kr[CL_DIM][CL_DIM];
+  double plain[CL_DIM], with_kr[CL_DIM];
 } Mobility;
-
-/* Element of B at a node (448). */
-static double ShareAt(const Model *m, PetscInt I, int i, int j)
-{
-  return m->share ? m->share[I].A[cl_symmetric[i][j]] : i == j;
-}
 
 static void MobilityOf(const Model *m, PetscInt p, const Reach *r, int f, Mobility *of)
 {
   const double inertia = m->c->fields.inertia ? 1.0 / m->stage.dt : 0.0;
 
-  *of = (Mobility){{{0.0}}, {{0.0}}};
+  *of = (Mobility){{0.0}, {0.0}};
   for (int a = 0; a < r->n; a++) {
     const PetscInt   I    = r->node[a];
     const FluidNode *node = m->fluid ? &m->fluid[PHASE_COUNT * I + f] : NULL;
@@ -29,20 +23,29 @@ static void MobilityOf(const Model *m, PetscInt p, const Reach *r, int f, Mobili
       const double drag   = node ? node->D[i] : c[NC_DRAG + f] * V + WallDrag(m, I, f, i);
       const double resist = drag * w + inertia * kr * c[NC_RHO + f] * V;
 
-      for (int j = 0; resist > 0.0 && j < CL_DIM; j++) {
-        of->plain[j][i] += ShareAt(m, I, j, i) * share * w / resist;
-        of->with_kr[j][i] += ShareAt(m, I, j, i) * share * w / resist * kr;
-      }
+      of->plain[i] += resist > 0.0 ? share * w / resist : 0.0;
+      of->with_kr[i] += resist > 0.0 ? share * w / resist * kr : 0.0;
     }
   }
 }
 
-/* (171): d J/d(inputs) of a particle's Darcy flux. */
+/* v := A^-1 v of a particle with beds. */
+static void Undriven(const Model *m, PetscInt p, double v[CL_DIM])
+{
+  if (!m->beds)
+    return;
+  const Beds inverse = BedsInverse(&m->beds[p].A);
+  BedsDrive(&inverse, v);
+}
+
+/* (171): d J/d(inputs) of a particle's Darcy flux, with beds of A^-1 J, as if all particles of its nodes had its
+   gradients. */
 static void FluxResponse(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
                          const PointOutput *o, int f, double dJ[CL_DIM][IN_COUNT])
 {
-  const FieldSet *fs          = &m->c->fields;
-  double          acc[CL_DIM] = {0.0}, J[CL_DIM], kr = 0.0;
+  const FieldSet *fs = &m->c->fields;
+  const double   *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f], *dR = o->D[OUT_ROOT + f];
+  double          acc[CL_DIM] = {0.0}, G[CL_DIM], kr = 0.0;
   Mobility        mobile;
 
   MobilityOf(m, p, r, f, &mobile);
@@ -54,22 +57,23 @@ static void FluxResponse(const Model *m, PetscInt p, const Reach *r, const doubl
     for (int i = 0; i < CL_DIM; i++)
       acc[i] += r->S[a] * at[i];
   }
-  memcpy(J, &in[VectorAt(IN_J, f, 0)], sizeof(J));
-  Drive(m, p, J);
-  memset(dJ, 0, CL_DIM * sizeof(*dJ));
-  for (int i = 0; i < CL_DIM; i++) {
-    const double *dG = o->D[VectorAt(OUT_G, f, i)], *dM = o->D[OUT_MI + f], *dD = o->D[OUT_D + f],
-                 *dR = o->D[OUT_ROOT + f];
-    const double F = o->out[VectorAt(OUT_G, f, i)] + acc[i] * o->out[OUT_MI + f], rise = 2.0 * sqrt(kr) * F;
+  memcpy(G, &o->out[VectorAt(OUT_G, f, 0)], sizeof(G));
+  Undriven(m, p, G);
+  for (int q = 0; q < IN_COUNT; q++) {
+    double dG[CL_DIM];
 
-    for (int j = 0; j < CL_DIM; j++) {
-      for (int q = 0; q < IN_COUNT; q++)
-        dJ[j][q] -=
-            mobile.with_kr[j][i] * (dG[q] + acc[i] * dM[q]) + mobile.plain[j][i] * (rise * dR[q] + J[i] * dD[q]);
-      if (fs->solid && fs->inertia)
-        dJ[j][IN_U + i] -= mobile.with_kr[j][i] * o->out[OUT_MI + f] / PetscSqr(m->stage.dt);
+    for (int i = 0; i < CL_DIM; i++)
+      dG[i] = o->D[VectorAt(OUT_G, f, i)][q];
+    Undriven(m, p, dG);
+    for (int i = 0; i < CL_DIM; i++) {
+      const double rise = 2.0 * sqrt(kr) * (G[i] + acc[i] * o->out[OUT_MI + f]);
+
+      dJ[i][q] = -mobile.with_kr[i] * (dG[i] + acc[i] * dM[q]) -
+                 mobile.plain[i] * (rise * dR[q] + in[VectorAt(IN_J, f, i)] * dD[q]);
     }
   }
+  for (int i = 0; fs->solid && fs->inertia && i < CL_DIM; i++)
+    dJ[i][IN_U + i] -= mobile.with_kr[i] * o->out[OUT_MI + f] / PetscSqr(m->stage.dt);
 }
 
 /* Row `k` of the tangent: the flux follows the other inputs. */
@@ -151,9 +155,14 @@ void EliminateParticle(const Model *m, PetscInt p, const Reach *r, const double 
       Follow(o->D[row], f, dJ);
     if (fs->heat)
       Follow(o->D[OUT_Q], f, dJ);
-    for (int i = 0; fs->solid && fs->inertia && i < CL_DIM; i++) { /* (173); its share of v_s is lumped */
-      for (int q = 0; q < IN_U; q++)
-        o->D[OUT_A + i][q] += o->out[OUT_MI + f] / m->stage.dt * dJ[i][q];
+    for (int q = 0; fs->solid && fs->inertia && q < IN_U; q++) { /* (173); its share of v_s is lumped */
+      double flow[CL_DIM];
+
+      for (int i = 0; i < CL_DIM; i++)
+        flow[i] = dJ[i][q];
+      Drive(m, p, flow);
+      for (int i = 0; i < CL_DIM; i++)
+        o->D[OUT_A + i][q] += o->out[OUT_MI + f] / m->stage.dt * flow[i];
     }
   }
   if (fixed_stress && fs->solid)
@@ -166,7 +175,7 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
   const double    inertia = fs->inertia ? 1.0 / m->stage.dt : 0.0;
 
   for (int f = 0; f < PHASE_COUNT; f++) {
-    double *D = o->D[F_PW + f], given[CL_DIM][CL_DIM] = {{0.0}}, own[CL_DIM][CL_DIM] = {{0.0}}, J[CL_DIM];
+    double *D = o->D[F_PW + f], J[CL_DIM], given = 0.0, own = 0.0;
 
     if (!fs->phase[f])
       continue;
@@ -176,20 +185,19 @@ void EliminateFace(const Model *m, const Face *face, const Reach *r, FaceOutput 
                                                inertia * kr * c[NC_RHO + f];
       const double mobile = resist > 0.0 ? w * kr / resist : 0.0;
 
-      for (int i = 0; i < CL_DIM; i++) {
-        for (int j = 0; j < CL_DIM; j++) {
-          own[i][j] += ShareAt(m, r->node[a], i, j) * face->N[a] * mobile;
-          given[i][j] += ShareAt(m, r->node[a], i, j) * face->N[a] * face->N[a] * mobile / m->V[r->node[a]];
-        }
-      }
+      own += face->N[a] * mobile;
+      given += face->N[a] * face->N[a] * mobile / m->V[r->node[a]];
     }
     memcpy(J, &D[VectorAt(IN_J, f, 0)], sizeof(J));
-    for (int i = 0; i < CL_DIM; i++) {
-      const double *force = o->D[VectorAt(F_VW, f, i)], to = VectorDot(J, own[i]), for_it = VectorDot(J, given[i]);
+    for (int q = 0; q < IN_COUNT; q++) {
+      double force[CL_DIM];
 
-      D[VectorAt(IN_GP, f, i)] -= to;
-      for (int q = 0; q < IN_COUNT; q++)
-        D[q] -= for_it * force[q];
+      for (int i = 0; i < CL_DIM; i++)
+        force[i] = o->D[VectorAt(F_VW, f, i)][q];
+      Undriven(m, face->particle, force);
+      D[q] -= given * VectorDot(J, force);
     }
+    for (int i = 0; i < CL_DIM; i++)
+      D[VectorAt(IN_GP, f, i)] -= own * J[i];
   }
 }
