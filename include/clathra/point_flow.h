@@ -102,14 +102,15 @@ INLINE Beds BedsInverse(const Beds *beds)
   return inverse;
 }
 
-/* (448): B of a node, from the sum of V S k_p A over its particles and that of V S k_p. */
-INLINE Beds BedsShare(const Beds *sum, double Vk)
+/* Mean of A at a node, of the sums of V S k_p A (by cl_symmetric) and of V S k_p over its particles; B of (448) is its
+   inverse. */
+INLINE Beds BedsMean(const double sum[CL_SYMMETRIC], double Vk)
 {
   Beds mean = {{0.0}};
 
   for (int k = 0; k < CL_SYMMETRIC; k++)
-    mean.A[k] = sum->A[k] / Vk;
-  return BedsInverse(&mean);
+    mean.A[k] = sum[k] / Vk;
+  return mean;
 }
 
 /* What k_r is a function of, with slopes in the fluid's share of the open pores and in S_h. */

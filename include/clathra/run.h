@@ -13,8 +13,8 @@ PetscErrorCode LogStart(MPI_Comm comm);
 PetscErrorCode LogEnd(void);
 
 /* Before PETSc is initialised, and after: see src/run/process.c. */
-bool ProcessPrepare(
-    char **argv); /* may start the program again, with one thread for BLAS; false: it was said why not */
+/* May start the program again, with one thread for BLAS; false where it cannot run, which was said. */
+bool ProcessPrepare(char **argv);
 /* Before PetscInitialize: a reader of the output that goes away is no crash. */
 PetscErrorCode ProcessQuietPipe(void);
 /* Signals that ask for the end are noted from here on. */

@@ -82,11 +82,12 @@ static PetscErrorCode Means(Borders *b)
     const double    V   = b->P->f[P_V][p];
     Nodes           to;
 
-    b->k[p] = SceneConductance(b->c, mat, b->P->f[P_SH][p]);
+    b->k[p]         = SceneConductance(b->c, mat, b->P->f[P_SH][p]);
+    const double ln = log(b->k[p]);
     NodesOf(b, p, &to);
     for (int a = 0; a < to.n; a++) {
       b->node[NODE_SUMS * to.at[a] + NODE_V] += to.S[a] * V;
-      b->node[NODE_SUMS * to.at[a] + NODE_LN] += to.S[a] * V * log(b->k[p]);
+      b->node[NODE_SUMS * to.at[a] + NODE_LN] += to.S[a] * V * ln;
     }
   }
   PetscCall(NodeMapSum(b->map, b->node, NODE_SUMS));
@@ -98,10 +99,11 @@ static PetscErrorCode Means(Borders *b)
 /* Gradient of ln k_p at particle p at t_n, 1/m; false where all is one layer. */
 static bool Normal(const Borders *b, PetscInt p, const Nodes *to, double n[CL_DIM])
 {
-  double g[CL_DIM] = {0.0}, A[CL_DIM][CL_DIM], terms = 0.0;
+  const double own       = log(b->k[p]);
+  double       g[CL_DIM] = {0.0}, A[CL_DIM][CL_DIM], terms = 0.0;
 
   for (int a = 0; a < to->n; a++) {
-    const double more = b->node[NODE_SUMS * to->at[a] + NODE_LN] - log(b->k[p]);
+    const double more = b->node[NODE_SUMS * to->at[a] + NODE_LN] - own;
 
     for (int d = 0; d < CL_DIM; d++)
       g[d] += to->G[a][d] * more;

@@ -252,7 +252,7 @@ INLINE void BedsValues(const Explicit *e, const Set s, Run r, Given *v)
     const double   Vk = e->m->P.f[P_V][p] * Conductance(e, s, p);
 
     for (int k = 0; k < CL_SYMMETRIC; k++)
-      v->value[q][A_Beds(s) + k] = Vk * (e->beds[p].A[k] - (k < CL_DIM ? 1.0 : 0.0));
+      v->value[q][A_Beds(s) + k] = Vk * e->beds[p].A[k];
   }
 }
 

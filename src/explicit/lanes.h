@@ -38,7 +38,7 @@ INLINE int Rows(int n)
 }
 
 /* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
- * and each fluid, and with layers V k_p and that times A - 1. */
+ * and each fluid, with layers V k_p and that times A, with fluids what weighs their pressures (449). */
 enum { MIX_F = 0, MIX_M = MIX_F + CL_DIM, MIX_V, MIX_COUNT = MIX_V + CL_DIM };
 enum { FL_M = 0, FL_V, FL_G = FL_V + CL_DIM, FL_MI = FL_G + CL_DIM, FL_DRAG, FL_W, FL_ROOT };
 PLACE(A_V, Scalars(s))

@@ -25,32 +25,34 @@ INLINE double Flow(const Set s, const double *a)
   return s.layers ? a[A_V(s)] / a[A_K(s)] : 1.0;
 }
 
-/* Mean of A at a node, weighted with k_p. */
-INLINE Beds MeanDrive(const Set s, const double *a)
-{
-  Beds mean = {{0.0}};
+/* Of a node with layers: the mean of A, weighted with k_p, and its inverse B (448). */
+typedef struct {
+  bool on;
+  Beds drive, share;
+} NodeBeds;
 
-  for (int k = 0; k < CL_SYMMETRIC; k++)
-    mean.A[k] = (k < CL_DIM ? 1.0 : 0.0) + a[A_Beds(s) + k] / a[A_K(s)];
-  return mean;
+INLINE NodeBeds NodeBedsOf(const Set s, const double *a)
+{
+  NodeBeds n = {.on = s.layers};
+
+  if (s.layers) {
+    n.drive = BedsMean(&a[A_Beds(s)], a[A_K(s)]);
+    n.share = BedsInverse(&n.drive);
+  }
+  return n;
 }
 
-/* v := B^-1 v, with layers (448). */
-INLINE void Driven(const Set s, const double *a, double v[CL_DIM])
+/* v := B^-1 v, v := B v, with layers. */
+INLINE void Driven(const NodeBeds *n, double v[CL_DIM])
 {
-  if (!s.layers)
-    return;
-  const Beds mean = MeanDrive(s, a);
-  BedsDrive(&mean, v);
+  if (n->on)
+    BedsDrive(&n->drive, v);
 }
 
-/* v := B v, with layers. */
-INLINE void Shared(const Set s, const double *a, double v[CL_DIM])
+INLINE void Shared(const NodeBeds *n, double v[CL_DIM])
 {
-  if (!s.layers)
-    return;
-  const Beds mean = MeanDrive(s, a), B = BedsInverse(&mean);
-  BedsDrive(&B, v);
+  if (n->on)
+    BedsDrive(&n->share, v);
 }
 
 INLINE double Inverse(double mass)
@@ -150,11 +152,10 @@ INLINE void Solve(const Explicit *e, const Set s, const Balance *b, double dt, b
 
 /* The same with layers: fluids feel the skeleton's acceleration along every axis (308), so the balances b are one
    system (314).  v: [axis][3]. */
-INLINE void SolveLayers(const Explicit *e, const Set s, const double *a, const Balance b[CL_DIM], double dt,
-                        const bool held[CL_DIM], const double value[CL_DIM], double v[CL_DIM][3])
+INLINE void SolveLayers(const Explicit *e, const Set s, const double *a, const NodeBeds *n, const Balance b[CL_DIM],
+                        double dt, const bool held[CL_DIM], const double value[CL_DIM], double v[CL_DIM][3])
 {
   const double scale = e->o.mass_scaling / dt;
-  const Beds   mean  = MeanDrive(s, a);
   double       feels[PHASE_COUNT][CL_DIM][CL_DIM], L[CL_DIM][CL_DIM], rhs[CL_DIM], v_s[CL_DIM];
 
   for (int k = 0; k < s.fluids; k++) {
@@ -162,7 +163,7 @@ INLINE void SolveLayers(const Explicit *e, const Set s, const double *a, const B
 
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++)
-        feels[k][i][j] = mass * mean.A[cl_symmetric[i][j]] - (i == j ? b[0].A[k] : 0.0);
+        feels[k][i][j] = mass * n->drive.A[cl_symmetric[i][j]] - (i == j ? b[0].A[k] : 0.0);
     }
   }
   for (int i = 0; i < CL_DIM; i++) {
@@ -205,9 +206,9 @@ INLINE double Mean(const Explicit *e, PetscInt I, int unknown, double before, do
   return Held(e, I, unknown, &value) ? value : 0.5 * (end + before);
 }
 
-/* (92): work of the drag in the balances a, b (of a node, or of one and those that follow it) with their answer v; a
+/* (92): work of the drag in the balances n, b (of a node, or of one and those that follow it) with their answer v; a
    fluid that is held moves as it must. */
-INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, const double *a, const Balance b[CL_DIM],
+INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, const NodeBeds *n, const Balance b[CL_DIM],
                        const double v[CL_DIM][3])
 {
   double sum = 0.0, held;
@@ -223,7 +224,7 @@ INLINE double DragWork(const Explicit *e, const Set s, PetscInt I, const double 
       drag[d] = b[d].B[k] / b[d].kr[k] * slip;
       flow[d] = b[d].w[k] * (Mean(e, I, at, b[d].vf[k], end) - Mean(e, I, F_VS + d, b[d].v, v[d][0]));
     }
-    Shared(s, a, flow);
+    Shared(n, flow);
     sum += VectorDot(drag, flow);
   }
   return sum;
@@ -250,6 +251,7 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
   double        v[CL_DIM][3], value[CL_DIM] = {0.0};
   bool          held[CL_DIM];
 
+  const NodeBeds n = NodeBedsOf(s, a);
   ReadMasses(e, s, a, dt, &b[0]);
   for (int d = 1; d < CL_DIM; d++)
     b[d] = b[0];
@@ -260,13 +262,13 @@ INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       Solve(e, s, &b[d], dt, held[d], value[d], v[d]);
   }
   if (s.layers && s.solid)
-    SolveLayers(e, s, a, b, dt, held, value, v);
+    SolveLayers(e, s, a, &n, b, dt, held, value, v);
   for (int d = 0; d < CL_DIM; d++)
     KeepVelocities(e, s, I, d, &b[d], held[d], v[d], dt);
   for (int k = 0; k < s.fluids; k++)
-    Shared(s, a, &e->inc[INC * I + VectorAt(0, 1 + k, 0)]);
+    Shared(&n, &e->inc[INC * I + VectorAt(0, 1 + k, 0)]);
   if (s.solid && s.fluids)
-    e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, a, b, v);
+    e->work[WORK_DRAG] += e->node[I].own_v * dt * DragWork(e, s, I, &n, b, v);
 }
 
 /* (92): works at a node along d with the means of its velocities (skeleton, water, gas; v at the end) over the step,
@@ -295,7 +297,7 @@ INLINE void NodeWork(Explicit *e, const Set s, PetscInt I, int d, const Balance 
 }
 
 /* (92): of the fluids' pressures, with those Darcy fluxes J; what weighs A b of a fluid is that of the node. */
-INLINE double PressureWork(const Explicit *e, const Set s, const double *a, double per_k,
+INLINE double PressureWork(const Explicit *e, const Set s, const double *a, const NodeBeds *n, double per_k,
                            const double J[PHASE_COUNT][CL_DIM])
 {
   double sum = 0.0;
@@ -308,8 +310,8 @@ INLINE double PressureWork(const Explicit *e, const Set s, const double *a, doub
       weight[d] = s.layers ? f[FL_MI] * e->m->bc.gravity[d] : 0.0;
       flow[d]   = J[k][d];
     }
-    Driven(s, a, weight);
-    Shared(s, a, flow);
+    Driven(n, weight);
+    Shared(n, flow);
     for (int d = 0; d < CL_DIM; d++)
       g[d] = f[FL_G + d] - weight[d];
     sum += per_k * VectorDot(g, flow);
@@ -319,16 +321,16 @@ INLINE double PressureWork(const Explicit *e, const Set s, const double *a, doub
 
 /* Velocity of a fluid: the increments of (41), or with layers the skeleton's and what follows from the node's flow per
    permeability (311). */
-INLINE double FluidVelocity(const Explicit *e, const Set s, PetscInt I, const double *a, const Balance *w, int k, int d,
+INLINE double FluidVelocity(const Explicit *e, PetscInt I, const NodeBeds *n, const Balance *w, int k, int d,
                             double v_s)
 {
   double flow[CL_DIM];
 
-  if (!s.layers)
+  if (!n->on)
     return w->vf[k] + Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, d));
   for (int i = 0; i < CL_DIM; i++)
     flow[i] = Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, i));
-  Driven(s, a, flow);
+  Driven(n, flow);
   return v_s + flow[d] / w->flow;
 }
 
@@ -339,6 +341,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
   double       *b = &e->B[I * LANES * Rows(B_Count(s))], J[PHASE_COUNT][CL_DIM] = {{0.0}};
   Balance       w;
 
+  const NodeBeds n = NodeBedsOf(s, a);
   ReadMasses(e, s, a, dt, &w);
   for (int d = 0; d < CL_DIM; d++) {
     double v[3] = {0.0}, value;
@@ -355,7 +358,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       const double *f  = &a[A_Fluid(s, k)];
       double       *bf = &b[B_Fluid(s, k)];
 
-      v[1 + k] = FluidVelocity(e, s, I, a, &w, k, d, v[0]);
+      v[1 + k] = FluidVelocity(e, I, &n, &w, k, d, v[0]);
       if (Held(e, I, VectorAt(F_VW, k, d), &value))
         v[1 + k] = value;
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
@@ -367,10 +370,10 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       NodeWork(e, s, I, d, &w, v, dt, J);
   }
   if (s.solid)
-    e->work[WORK_PRESSURE] += dt * PressureWork(e, s, a, w.flow, J);
+    e->work[WORK_PRESSURE] += dt * PressureWork(e, s, a, &n, w.flow, J);
   for (int k = 0; s.layers && k < s.fluids; k++) {
     for (int of = B_J; of < B_PER_FLUID; of += CL_DIM)
-      Shared(s, a, &b[B_Fluid(s, k) + of]);
+      Shared(&n, &b[B_Fluid(s, k) + of]);
   }
   for (int k = 0; k < s.fluids; k++)
     b[B_P(s, k)] = NodalPressure(s, a, k);

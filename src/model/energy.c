@@ -80,6 +80,14 @@ static double InertiaPower(const Model *m, const Reach *r, const double *x, cons
   return sum;
 }
 
+/* Of a fluid at a node: J, and B J, with which its drag takes power. */
+static void Fluxes(const Model *m, PetscInt I, int f, const double *x, double J[CL_DIM], double BJ[CL_DIM])
+{
+  DarcyFlux(m, I, f, &x[I * m->c->fields.n], J);
+  memcpy(BJ, J, CL_DIM * sizeof(double));
+  ShareOut(m, I, BJ);
+}
+
 void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, const double in[IN_COUNT],
                    const PointState *s, const double out[OUT_COUNT], double power[WORK_RATES])
 {
@@ -102,8 +110,7 @@ void ParticlePower(const Model *m, PetscInt p, const Reach *r, const double *x, 
     for (int a = 0; !m->fluid && a < r->n; a++) {
       double J[CL_DIM], BJ[CL_DIM];
 
-      DarcyFlux(m, r->node[a], f, &x[r->node[a] * fs->n], J);
-      SharedFlux(m, r->node[a], f, &x[r->node[a] * fs->n], BJ);
+      Fluxes(m, r->node[a], f, x, J, BJ);
       power[WORK_DRAG] += r->S[a] * FlowWeight(m, p, r->node[a], f) * out[OUT_D + f] * VectorDot(J, BJ);
     }
   }
@@ -161,8 +168,7 @@ static double WallPower(const Model *m, const double *x)
 
     if (m->wall[k] == 0.0 || !m->c->fields.phase[k % PHASE_COUNT])
       continue;
-    DarcyFlux(m, k / PHASE_COUNT, k % PHASE_COUNT, &x[k / PHASE_COUNT * m->c->fields.n], J);
-    SharedFlux(m, k / PHASE_COUNT, k % PHASE_COUNT, &x[k / PHASE_COUNT * m->c->fields.n], BJ);
+    Fluxes(m, k / PHASE_COUNT, k % PHASE_COUNT, x, J, BJ);
     sum += m->wall[k] * J[0] * BJ[0];
   }
   return sum;
@@ -178,8 +184,7 @@ double DragPower(const Model *m, const double *x)
       const FluidNode *at = &m->fluid[PHASE_COUNT * I + f];
       double           J[CL_DIM], BJ[CL_DIM];
 
-      DarcyFlux(m, I, f, &x[I * m->c->fields.n], J);
-      SharedFlux(m, I, f, &x[I * m->c->fields.n], BJ);
+      Fluxes(m, I, f, x, J, BJ);
       for (int d = 0; d < CL_DIM; d++)
         sum += at->D[d] * J[d] * BJ[d] / PetscSqr(at->root);
     }

@@ -179,8 +179,11 @@ static void Average(Model *m, const double *sum)
     double       *c = &m->coef[I * NC_COUNT], *x = &m->x_n[I * fs->n];
 
     m->flow[I] = V / m->Vk[I];
-    if (m->share)
-      m->share[I] = BedsShare(&m->share[I], m->Vk[I]);
+    if (m->share) {
+      const Beds mean = BedsMean(m->share[I].A, m->Vk[I]);
+
+      m->share[I] = BedsInverse(&mean);
+    }
     for (int k = 0; k < fs->n; k++) {
       const int    q      = fs->field[k];
       const double weight = q < F_PW ? s[SUM_M + q / CL_DIM] : q < F_T ? c[NC_COMPLIANCE] : c[NC_CAPACITY];

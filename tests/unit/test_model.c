@@ -281,7 +281,7 @@ static void BorderAt(double angle, double turn, double off[4])
   mine[1] = si * t[0] + c * t[1];
   BedsDrive(&B, mine);
   off[2]             = hypot(mine[0] - (c * was[0] - si * was[1]), mine[1] - (si * was[0] + c * was[1]));
-  const Beds inverse = BedsShare(&A, 1.0);
+  const Beds inverse = BedsInverse(&A);
   memcpy(was, n, sizeof(was));
   BedsDrive(&A, was);
   BedsDrive(&inverse, was);
