@@ -114,10 +114,54 @@ static inline int BasisCellAt(const GridLines *line, double x, const Axis *a)
 /* Where a linear function takes the weights' value, m: the particle's centre, about an axis the ring's centroid. */
 double AxisCentroid(const Axis *a, const GridLines *line);
 
-/* (160): a node's weights Q in the mean gradient over a cell of widths h (m), 1/m, and the hoop's, which is returned (0
-   in the plane); i: place of the node from the cell's lower left one on (others: zero); r: radius of that one, m (used
-   about an axis only). */
-double CellGradient(const double h[CL_DIM], bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM]);
+/* The part of a domain in each of the two cells behind its first node, along one axis: its share of the domain; that
+   times the mean over it of the hat function of the cell's second node. */
+typedef struct {
+  double share[2], at[2];
+} AxisParts;
+
+/* S, dS: weights of a domain along the axis (dS in 1/m); h0, h1: widths of the two cells, m. */
+static inline AxisParts AxisPartsOf(const double S[3], const double dS[3], double h0, double h1)
+{
+  AxisParts a = {.share = {-dS[0] * h0, dS[2] * h1}};
+
+  a.at[0] = a.share[0] - S[0];
+  a.at[1] = S[2];
+  return a;
+}
+
+enum {
+  CELL_MEAN    = 1 << CL_DIM,                            /* means over a cell of products of hats, one factor an axis */
+  CELL_MOMENTS = CL_DIM == 2 ? 2 * CELL_MEAN : CELL_MEAN /* about an axis those over r beside them */
+};
+
+/* What a domain's part in cell c has of mean k: bit d of c says in which of the two cells along axis d it lies, bit d
+   of k whether the hat function of the cell's second node along d is a factor. */
+static inline double PartMoment(const AxisParts a[CL_DIM], int c, int k)
+{
+  double part = 1.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    part *= k >> d & 1 ? a[d].at[c >> d & 1] : a[d].share[c >> d & 1];
+  return part;
+}
+
+/* Mean over the material in a cell of the gradients of its nodes' functions (88), 1/m; bit d of a node's number says
+   whether it is the second along axis d; hoop: of N/r, about an axis only. */
+typedef struct {
+  double Q[CL_CORNERS][CL_DIM], hoop[CL_CORNERS];
+} CellMean;
+
+/* moment: sums over the parts in the cell of V PartMoment, m^3, moment[0] > 0 (about an axis behind them those over
+   the radius, m^2); h: widths of the cell, m. */
+void CellMeanOf(const double moment[CELL_MOMENTS], const double h[CL_DIM], bool axisymmetric, CellMean *c);
+
+/* Cells that a stencil's domain lies in, by the local active numbers of their first nodes, and its parts in them; -1
+   and 0 where it has none, or the cell is beyond the grid's padding. */
+void StencilCells(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt cell[CL_CORNERS],
+                  double share[CL_CORNERS]);
+/* Parts of a stencil's domain along the axes; about an axis *ring: those along r of the domain over r, 1/m. */
+void StencilParts(const Stencil *s, const Grid *g, AxisParts part[CL_DIM], AxisParts *ring);
 
 /* Those nodes of a stencil that carry a weight or a gradient, x running fastest: how far each is from the first one
    along each axis, 0 to 2; returns how many. */

@@ -57,10 +57,6 @@ void ParticleStencil(const Scene *c, const Grid *g, const Particles *P, PetscInt
 /* Where a linear function takes the value of these weights at t_n, m. */
 void ParticleCentroid(const Grid *g, const Particles *P, PetscInt p, const Stencil *s, double at[CL_DIM]);
 
-/* Cells that particle p lies in, each by its lowest node (-1: none that is active here), and its shares in them,
-   dimensionless; slivers to either side of a grid line do not count. */
-void ParticleCells(const Scene *c, const Grid *g, const NodeMap *map, const Particles *P, PetscInt p,
-                   PetscInt cell[CL_CORNERS], double share[CL_CORNERS]);
 /* What drives each particle's fluids through its layers as they lie now, A: [n] (306), of one fluid less across borders
    that cut cells (447).  Collective. */
 PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const Particles *P, Beds *A);
@@ -108,11 +104,6 @@ double FaceRing(const Scene *c, const Grid *g, double r, double l, double penalt
    at x (m); 0 where none is. */
 double FaceLoad(const Scene *c, Side side, PetscInt region, const double x[CL_DIM], double t);
 
-/* First traction that is not zero, NULL: none. */
-const Bc *SceneTraction(const Scene *c);
-/* Warnings, on rank 0, where the surface cuts cells whose mean motion strains the particles (88), (160), and where
-   hybrid has a traction (NULL: none) on such a surface.  Collective. */
-PetscErrorCode CellMeansWarning(const Grid *g, const Scene *c, const Particles *P, const Bc *traction);
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */
 PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P);

@@ -180,6 +180,7 @@ typedef struct {
   double   *V;     /* [n_local] sum of V_n S, m^3 */
   Bedding  *beds;  /* [n] NULL without */
   Beds     *share; /* [n_local] B of (448); NULL without */
+  CellMean *cell;  /* [n_local] of the cell behind a node (88); NULL without */
   double *conduct; /* [n] k_p at t_n over the first k0 (350): a particle's share in a flow; 1 where it is not shared */
   double *Vk;      /* [n_local] sum of V S times it, m^3 */
   double *flow;    /* [n_local] V/Vk (350) */

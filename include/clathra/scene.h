@@ -84,7 +84,6 @@ typedef struct Scene {
   double        gravity[CL_DIM];                 /* m/s^2 */
   double        gravity_ramp;                    /* s: it grows from gravity_before over this time; 0 = at once */
   double        t_begin, gravity_before[CL_DIM]; /* where a stage starts from, s, m/s^2; of a whole case zeros */
-  bool          mean_dilatation;                 /* volume change of the cell, not of the particle's own place (88) */
   double        mean_strain;                     /* share of the cell's mean in a particle's strain (160) */
   double        strength_factor;                 /* all strength is divided by it (87) */
   int           without_gas;                     /* WITHOUT_GAS_... */
@@ -269,6 +268,18 @@ static inline bool SceneSharesFlow(const Scene *c)
 static inline bool SceneExchanges(const Scene *c)
 {
   return SceneContrast(c) > 1.0;
+}
+
+/* Do particles take the volume change of their cells (88)?  Not on cells that deform with the body (445). */
+static inline bool SceneTakesCellMeans(const Scene *c)
+{
+  return c->fields.solid && c->basis != BASIS_TOTAL;
+}
+
+/* Are particles of the plane strained across it, too: along the ring about an axis, by (88)? */
+static inline bool SceneStrainsAcross(const Scene *c)
+{
+  return CL_DIM == 2 && (c->axisymmetric || SceneTakesCellMeans(c));
 }
 
 /* First condition that the integrators without a matrix do not know, or NULL. */

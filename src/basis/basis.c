@@ -240,23 +240,3 @@ int StencilExpand(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt 
   }
   return n;
 }
-
-double CellGradient(const double h[CL_DIM], bool axisymmetric, const PetscInt i[CL_DIM], double r, double Q[CL_DIM])
-{
-  bool beside = false;
-
-  for (int d = 0; d < CL_DIM; d++) {
-    Q[d]   = 0.0;
-    beside = beside || i[d] < 0 || i[d] > 1;
-  }
-  if (beside)
-    return 0.0;
-  for (int d = 0; d < CL_DIM; d++)
-    Q[d] = (i[d] ? 2.0 : -2.0) / (CL_CORNERS * h[d]);
-  if (!axisymmetric)
-    return 0.0;
-  const double ring = r * h[0] + 0.5 * h[0] * h[0], outer = 0.5 * r * h[0] + h[0] * h[0] / 3.0; /* int r, int r N dr */
-
-  Q[1] = (i[0] ? outer : ring - outer) / (ring * (i[1] ? h[1] : -h[1]));
-  return 0.25 * h[0] / ring;
-}

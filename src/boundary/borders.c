@@ -19,44 +19,6 @@ typedef struct {
   double          *cell; /* [n_local][CELL_SUMS] */
 } Borders;
 
-#define SLIVER 1e-6 /* of a cell */
-
-/* Share of [x-l, x+l] in its first cell; slivers to either side of a grid line do not count. */
-static double FirstShare(const GridLines *line, double x, double l, PetscInt *first)
-{
-  const double from = LinesPlace(line, x - l);
-  double       share;
-
-  *first              = (PetscInt)floor(from + SLIVER);
-  const double length = 2.0 * l / LinesWidth(line, *first); /* in its first cells */
-  share               = ((double)*first + 1.0 - from) / length;
-  return share > 1.0 - SLIVER ? 1.0 : share;
-}
-
-void ParticleCells(const Scene *c, const Grid *g, const NodeMap *map, const Particles *P, PetscInt p,
-                   PetscInt cell[CL_CORNERS], double share[CL_CORNERS])
-{
-  PetscInt first[CL_DIM];
-  double   part[CL_DIM];
-
-  for (int d = 0; d < CL_DIM; d++) {
-    const GridLines *line = &g->line[d];
-    const double     x    = ParticleGridX(P, p, d);
-
-    part[d] = FirstShare(line, x, BasisReach(c->basis, line, x, P->f[P_L + d][p]), &first[d]);
-  }
-  for (int k = 0; k < CL_CORNERS; k++) {
-    PetscInt at[CL_DIM];
-
-    share[k] = 1.0;
-    for (int d = 0; d < CL_DIM; d++) {
-      at[d] = first[d] + (k >> d) % 2;
-      share[k] *= (k >> d) % 2 ? 1.0 - part[d] : part[d];
-    }
-    cell[k] = share[k] > 0.0 && BoxHolds(g->gs, g->gm, at) ? map->index[GridPadded(g, at)] : -1;
-  }
-}
-
 /* A particle's nodes. */
 typedef struct {
   int      n;
@@ -181,12 +143,14 @@ PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const
   PetscCall(Means(&b));
   PetscCall(Normals(&b));
   for (PetscInt p = 0; p < P->n; p++) {
+    Stencil  s;
     PetscInt cell[CL_CORNERS];
     double   share[CL_CORNERS];
 
     beside[p]         = Across(&b, p, N[p]);
     const double over = 1.0 / (b.k[p] * (beside[p] ? BedsAcross(&A[p], N[p]) : 1.0));
-    ParticleCells(c, g, map, P, p, cell, share);
+    ParticleStencil(c, g, P, p, &s);
+    StencilCells(&s, g, map, cell, share);
     for (int k = 0; k < CL_CORNERS; k++) {
       if (cell[k] < 0)
         continue;
@@ -196,12 +160,14 @@ PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const
   }
   PetscCall(NodeMapSum(map, b.cell, CELL_SUMS));
   for (PetscInt p = 0; p < P->n; p++) {
+    Stencil  s;
     PetscInt cell[CL_CORNERS];
     double   share[CL_CORNERS], over = 0.0;
 
     if (!beside[p])
       continue;
-    ParticleCells(c, g, map, P, p, cell, share);
+    ParticleStencil(c, g, P, p, &s);
+    StencilCells(&s, g, map, cell, share);
     for (int k = 0; k < CL_CORNERS; k++) {
       const double *sum = &b.cell[CELL_SUMS * cell[k]];
 

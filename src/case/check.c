@@ -23,9 +23,8 @@ static void CheckCase(Reader *r, const Case *c)
               c->scene.lower[d]);
   if (c->scene.axisymmetric)
     CheckRadius(r, &c->scene);
-  if (c->scene.basis == BASIS_TOTAL && (c->scene.mean_dilatation || c->scene.mean_strain > 0.0))
-    FAIL_AT(GROUP_CASE, "", "basis", "total is not known with %s",
-            c->scene.mean_dilatation ? "mean_dilatation: yes" : "a mean_strain");
+  if (c->scene.basis == BASIS_TOTAL && c->scene.mean_strain > 0.0)
+    FAIL_AT(GROUP_CASE, "", "basis", "total is not known with a mean_strain");
   if (c->scene.compression_heat && !(c->scene.fields.heat && c->scene.fields.fluid))
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes needs heat and a fluid among the fields of the scene (%s)",
             c->fields_wanted);

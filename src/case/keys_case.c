@@ -74,10 +74,6 @@ const Key case_key[] = {
            "basis functions: averages over domains that follow the particles' stretch (cpgimp) or keep their size "
            "(ugimp), at the particles (linear); total: of the initial configuration, whose cells deform with the body "
            "(total Lagrangian), for bodies that settle or bend but do not flow: sdirk2 and euler"),
-    BOOLEAN(
-        Case, "mean_dilatation", scene.mean_dilatation, "no",
-        "particles take the mean volume change of their cell, so that a skeleton that flows without one, or dilates, "
-        "does not lock"),
     REAL(Case, "mean_strain", scene.mean_strain, "", "[0,1]", "0",
          "share of the mean motion of its cell in the strain of a particle: a skeleton that yields flows more freely; "
          "1 leaves modes without stiffness, 0.95 does for collapse loads"),

@@ -204,6 +204,7 @@ INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w
     const double m = ms[q] + mh[q], p = w->p[q] - a.p[q];
 
     v->value[q][at + MIX_M] = m;
+    v->across[q]            = CL_DIM == 2 ? -V[q] * (sig[ZZ][r.p + q] - p) : 0.0;
     for (int i = 0; i < CL_DIM; i++) {
       v->value[q][at + MIX_F + i] = -a.weight[i][q];
       v->value[q][at + MIX_V + i] = m * f[P_VS + i][r.p + q];
@@ -256,28 +257,40 @@ INLINE void BedsValues(const Explicit *e, const Set s, Run r, Given *v)
   }
 }
 
-/* (160), (88): part of the stress acts through the mean motion of the particle's cell. */
-INLINE void CellForces(Explicit *e, const Set s, Run r, const CellMean *c, const Weights *w, Given *v)
+/* (88), (160): part of the stress acts through the mean motion of the particle's cells. */
+INLINE void CellForces(Explicit *e, const Set s, Run r, const Weights *w, Given *v)
 {
-  const int width = LANES * Rows(A_Count(s)), at = A_Mix(s) + MIX_F;
+  const CellShare take = CellShareOf(e);
+  const int       at   = A_Mix(s) + MIX_F;
 
   for (int q = 0; q < r.n; q++) {
-    double share[CL_DIM][CL_DIM], more = 0.0;
+    const double V    = e->m->P.f[P_V][r.p + q];
+    double       more = v->across[q], share[CL_DIM][CL_DIM];
+    AxisParts    part[CL_DIM];
 
     for (int i = 0; i < CL_DIM; i++)
-      more += c->volume * v->force[i][q][at + i];
+      more += v->force[i][q][at + i];
+    more *= take.volume;
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++) {
-        share[i][j] = c->strain * v->force[j][q][at + i] + (i == j ? more : 0.0);
-        v->force[j][q][at + i] -= share[i][j];
+        share[i][j] = take.strain * v->force[j][q][at + i];
+        v->force[j][q][at + i] -= share[i][j] + (i == j ? more : 0.0);
       }
     }
-    for (int a = 0; a < CL_CORNERS; a++) {
-      double *row = &e->A[CellNode(e, w, q, a) * width + at];
+    PartsOf(w, q, part);
+    for (int c = 0; c < CL_CORNERS; c++) {
+      const double weight = PartMoment(part, c, 0);
 
-      for (int i = 0; i < CL_DIM; i++) {
+      if (!(weight > 0.0))
+        continue;
+      const int row = e->slot[w->first[q] + CornerAt(e, c)];
+      double   *sum = &e->cell[row * CELL_MEAN];
+      for (int k = 0; k < CELL_PRESSURE; k++)
+        sum[k] += V * PartMoment(part, c, k);
+      sum[CELL_PRESSURE] += weight * more;
+      for (int i = 0; take.strain > 0.0 && i < CL_DIM; i++) {
         for (int j = 0; j < CL_DIM; j++)
-          row[i] += c->Q[a][j] * w->inverse[j][q] * share[i][j];
+          e->part[row][i][j] += weight * share[i][j];
       }
     }
   }
@@ -311,7 +324,6 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Given v;
   Weights            w;
   Fluids             state;
-  CellMean           mean;
   double *const     *f = e->m->P.f;
   const double      *T = s.heat ? f[P_T] + r.p : e->t[T_T] + r.p, *restrict V = f[P_V] + r.p;
   double             C[BLOCK], stores[BLOCK];
@@ -353,8 +365,8 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
   }
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
-  if (CellMeanOf(e, &mean))
-    CellForces(e, s, r, &mean, &w, &v);
+  if (s.solid && TakesCellMean(e))
+    CellForces(e, s, r, &w, &v);
   if (s.fluids && e->o.particle_pressures) {
     for (int q = 0; q < r.n; q++) {
       for (int k = 0; k < s.fluids; k++) {

@@ -60,6 +60,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(PetscFree(e->face));
   PetscCall(PetscFree(e->pull));
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
+  PetscCall(PetscFree4(e->cell, e->mean, e->swell, e->part));
   PetscCall(PetscFree(e));
   *out = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -289,9 +290,14 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(e->event[STEP_DEPOSIT], 0, 0, 0, 0));
   PetscCall(PetscArrayzero(e->A, e->rows * width));
+  if (TakesCellMean(e)) {
+    PetscCall(PetscArrayzero(e->cell, e->rows * CELL_MEAN));
+    PetscCall(PetscArrayzero(e->part, e->rows));
+  }
   if (e->set.layers)
     PetscCall(ParticlesDrive(e->m->c, &e->m->grid, &e->map, &e->m->P, e->beds));
   Deposit(e);
+  PetscCall(CellsForces(e));
   PetscCall(PetscLogEventEnd(e->event[STEP_DEPOSIT], 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
   PetscCall(PlatesStart(e));
@@ -301,6 +307,7 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   if (e->m->plates)
     PetscCall(PlatesForces(e, t, dt));
   PetscCall(NodesVelocities(e, dt));
+  CellsMotion(e);
   FacesWork(e, dt);
   PetscCall(PetscLogEventEnd(e->event[STEP_VELOCITIES], 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

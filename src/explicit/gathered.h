@@ -17,12 +17,15 @@ typedef int64_t Wrong;
 
 typedef struct {
   double value[BLOCK][GATHERED], grad[CL_DIM][BLOCK][GRADED]; /* at the particle */
+  double swell[BLOCK], beyond[CL_DIM][CL_DIM][BLOCK]; /* what MeanMotion has added to the gradient of the velocity, 1/s:
+                                                         b of (88) on each axis, across the plane too, and (160) */
 } Gathered;
 
 /* A block's values, one row of numbers for each particle: what is multiplied with the node's place in the patch
    (carried values), with products of its places (cross) and with the gradients (forces). */
 typedef struct {
   double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], cross[CL_MIXED][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
+  double across[BLOCK]; /* of the force of the stress: across the plane, J; 0 in space */
 } Given;
 
 /* Gradient of number k at particle q. */
@@ -74,30 +77,38 @@ INLINE void Gather(const Explicit *e, const double *nodes, int eights, int grade
   }
 }
 
-/* (160), (88): the gradient of a particle's velocity, which stands in g from number `at` on, as its cell's mean has it;
-   rows of nodal velocities, `width` numbers each, the velocity first. */
-INLINE void MeanMotion(const Explicit *e, const CellMean *c, const Weights *w, int q, const double *rows, int width,
-                       int at, Gathered *g)
+/* (160), (88): the gradients of the particles' velocity, which stand in g from number `at` on, as their cells' means
+   have them. */
+INLINE void MeanMotion(const Explicit *e, Set s, Run r, const Weights *w, int at, Gathered *g)
 {
-  double beyond[CL_DIM][CL_DIM], more = 0.0;
+  const CellShare take = CellShareOf(e);
 
-  for (int i = 0; i < CL_DIM; i++) {
-    for (int j = 0; j < CL_DIM; j++)
-      beyond[i][j] = -g->grad[j][q][at + i];
-  }
-  for (int a = 0; a < CL_CORNERS; a++) {
-    const double *v = &rows[CellNode(e, w, q, a) * width];
+  memset(g->swell, 0, sizeof(g->swell));
+  memset(g->beyond, 0, sizeof(g->beyond));
+  for (int q = 0; s.solid && TakesCellMean(e) && q < r.n; q++) {
+    AxisParts part[CL_DIM];
+    double    more = 0.0;
 
+    for (int i = 0; i < CL_DIM; i++)
+      more -= g->grad[i][q][at + i];
+    PartsOf(w, q, part);
+    for (int c = 0; c < CL_CORNERS; c++) {
+      const double share = PartMoment(part, c, 0);
+      const int    row   = e->slot[w->first[q] + CornerAt(e, c)];
+
+      if (!(share > 0.0))
+        continue;
+      more += share * e->swell[row];
+      for (int i = 0; take.strain > 0.0 && i < CL_DIM; i++) {
+        for (int j = 0; j < CL_DIM; j++)
+          g->beyond[i][j][q] += take.strain * share * (e->part[row][i][j] - g->grad[j][q][at + i]);
+      }
+    }
+    g->swell[q] = take.volume * more;
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++)
-        beyond[i][j] += c->Q[a][j] * w->inverse[j][q] * v[i];
+        g->grad[j][q][at + i] += g->beyond[i][j][q] + (i == j ? g->swell[q] : 0.0);
     }
-  }
-  for (int i = 0; i < CL_DIM; i++)
-    more += c->volume * beyond[i][i];
-  for (int i = 0; i < CL_DIM; i++) {
-    for (int j = 0; j < CL_DIM; j++)
-      g->grad[j][q][at + i] += c->strain * beyond[i][j] + (i == j ? more : 0.0);
   }
 }
 

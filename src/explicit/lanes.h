@@ -147,7 +147,12 @@ struct Explicit {
   double *gain; /* [rows][3] the same of the scalars */
   double *left, *given, *total; /* (413): what the balances of mass and heat still lack and what particles store of it,
                                    [rows][LANES]; the increments so far, in rows like those of C */
-  int     pass;                 /* of (413), from 0 */
+  int       pass;               /* of (413), from 0 */
+  double   *cell;  /* [rows][CELL_MEAN] of the cell behind a node: sums of PartMoment, m^3, last CELL_PRESSURE */
+  CellMean *mean;  /* [rows] */
+  double   *swell; /* [rows] mean divergence of the velocity in a cell, 1/s */
+  double (*part)[CL_DIM][CL_DIM]; /* [rows] (160): stress through the cell's mean motion, J; from CellsMotion on its
+                                     mean velocity gradient, 1/s */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                      ranks */
   NodeInfo *node; /* [rows] */
@@ -196,10 +201,8 @@ INLINE void Unweighed(const Explicit *e, Set s, double rho, double g[CL_DIM])
 /* Weights of a block of particles. */
 typedef struct {
   double S[CL_DIM][3][BLOCK], D[CL_DIM][3][BLOCK];
-  int    first[BLOCK]; /* padded number of the lowest left node */
-  int    cell[BLOCK];  /* ... of the particle's cell, from there on; only where TakesCellMean */
+  int    first[BLOCK];                              /* padded number of the lowest left node */
   double unit[CL_DIM][BLOCK], third[CL_DIM][BLOCK]; /* m, from the first node to the second; times that, to the third */
-  double inverse[CL_DIM][BLOCK];                    /* of the width of the particle's cell, 1/m; likewise */
 } Weights;
 
 /* A run of particles of one material, or of nodes. */
@@ -245,44 +248,48 @@ INLINE void PatchGradient(const Weights *w, int q, const PatchRow *row, int a, d
     G[d] = w->S[0][a][q] * row->D[d];
 }
 
-/* (160), (88): what particles take of the mean over their cell: of its gradient, and of its divergence beyond that in
-   each direction; the nodes of a cell, row by row, and their weights in its gradient. */
-typedef struct {
-  double strain, volume, Q[CL_CORNERS][CL_DIM]; /* Q: of a cell of width 1 */
-} CellMean;
-
+/* Do particles take the volume change of their cells (88)?  Not in the bare form, which is the paper's. */
 INLINE bool TakesCellMean(const Explicit *e)
 {
-  return e->set.solid && (e->m->c->mean_strain > 0.0 || e->m->c->mean_dilatation);
+  return SceneTakesCellMeans(e->m->c) && !e->o.particle_pressures;
 }
 
-INLINE bool CellMeanOf(const Explicit *e, CellMean *c)
+/* Place of the mean stress through a cell's volume change, J, of this rank: no moment is asked for there. */
+enum { CELL_PRESSURE = CELL_MEAN - 1 };
+
+/* (160), (88): what particles take of their cells' gradient, and of its divergence beyond that in each direction of
+   space. */
+typedef struct {
+  double strain, volume;
+} CellShare;
+
+INLINE CellShare CellShareOf(const Explicit *e)
 {
-  if (!TakesCellMean(e))
-    return false;
-  c->strain = e->m->c->mean_strain;
-  c->volume = e->m->c->mean_dilatation ? (1.0 - c->strain) / CL_DIM : 0.0;
-  for (int a = 0; a < CL_CORNERS; a++) {
-    double   h[CL_DIM];
-    PetscInt i[CL_DIM];
+  const double strain = e->m->c->mean_strain;
 
-    for (int d = 0; d < CL_DIM; d++) {
-      h[d] = 1.0;
-      i[d] = a >> d & 1;
-    }
-    CellGradient(h, false, i, 0.0, c->Q[a]);
-  }
-  return true;
+  return (CellShare){strain, (1.0 - strain) / 3.0};
 }
 
-INLINE int CellNode(const Explicit *e, const Weights *w, int q, int a)
+/* Where corner i of the cell at padded number `first` stands, from there on. */
+INLINE int CornerAt(const Explicit *e, int i)
 {
   const PetscInt *gm = e->m->grid.gm;
   int             at = 0;
 
   for (int d = CL_DIM - 1; d >= 0; d--)
-    at = at * (int)gm[d] + (a >> d & 1);
-  return e->slot[w->first[q] + w->cell[q] + at];
+    at = at * (int)gm[d] + (i >> d & 1);
+  return at;
+}
+
+/* The parts along the axes of particle q's domain. */
+INLINE void PartsOf(const Weights *w, int q, AxisParts part[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++) {
+    const double S[3] = {w->S[d][0][q], w->S[d][1][q], w->S[d][2][q]};
+    const double D[3] = {w->D[d][0][q], w->D[d][1][q], w->D[d][2][q]}, h = w->unit[d][q];
+
+    part[d] = AxisPartsOf(S, D, h, (w->third[d][q] - 1.0) * h);
+  }
 }
 
 void Deposit(Explicit *e);
@@ -317,6 +324,10 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
   MAKE_LOOP(f, 1, 2, 1)                                                                                                \
   static const LoopTable f##_##loops = {{{NULL, f##_001}, {f##_010, f##_011}, {f##_020, f##_021}},                     \
                                         {{f##_100, f##_101}, {f##_110, f##_111}, {f##_120, f##_121}}};
+
+/* Cells (88). */
+PetscErrorCode CellsForces(Explicit *e); /* what particles give to their cells, to the nodes, A */
+void           CellsMotion(Explicit *e); /* velocity gradients */
 
 /* Node side. */
 PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */

@@ -9,10 +9,18 @@
 
 typedef struct {
   double turn[CL_TURN][BLOCK], e[CL_TENSOR][BLOCK], stretch[CL_DIM][BLOCK], J[BLOCK], log_J[BLOCK],
-      H[CL_DIM][CL_DIM][BLOCK];
+      H[CL_DIM][CL_DIM][BLOCK]; /* of the particle's own place, without its cells' means; likewise stretch */
 } Strain;
 
 #if CL_DIM == 2
+
+/* ln J by its series for J near 1. */
+INLINE double LogOf(double J)
+{
+  const double z = (J - 1.0) / (J + 1.0), z2 = z * z;
+
+  return 2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 / 11.0)))));
+}
 
 /* (7) without branches: rotation c, s and logarithmic strain 1/2 ln F F^T by series in small increments; false if one
  * is not small. */
@@ -26,10 +34,8 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
                  Hyy = dt * g->grad[1][q][at + 1], Fxx = 1.0 + Hxx, Fyy = 1.0 + Hyy;
     const Stretch of = StretchOf(Fxx, Fxy, Fyx, Fyy);
     const double  a = of.along, b = of.turn, per = 1.0 / sqrt(a * a + b * b), c = a * per, si = b * per, y = of.y;
-    const double  J = Fxx * Fyy - Fxy * Fyx, z = (J - 1.0) / (J + 1.0), z2 = z * z;
-    const double  lnJ =
-        2.0 * z * (1.0 + z2 * (1.0 / 3.0 + z2 * (1.0 / 5.0 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 / 11.0)))));
-    const double ratio =
+    const double  J = Fxx * Fyy - Fxy * Fyx, lnJ = LogOf(J), across = 1.0 + dt * g->swell[q];
+    const double  ratio =
         1.0 + y * (1.0 / 3.0 + y * (1.0 / 5.0 + y * (1.0 / 7.0 + y * (1.0 / 9.0 + y * (1.0 / 11.0 + y / 13.0)))));
     double e[CL_TENSOR], U[CL_DIM];
 
@@ -39,17 +45,17 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
     LogStrainOf(0.5 * lnJ, 0.5 * ratio * of.d / of.m, 0.5 * ratio * of.off / of.m, e);
     o->e[XX][q]   = e[XX];
     o->e[YY][q]   = e[YY];
-    o->e[ZZ][q]   = 0.0;
+    o->e[ZZ][q]   = LogOf(across);
     o->e[XY][q]   = e[XY];
-    o->H[0][0][q] = Hxx;
-    o->H[0][1][q] = Fxy;
-    o->H[1][0][q] = Fyx;
-    o->H[1][1][q] = Hyy;
-    o->J[q]       = J;
-    o->log_J[q]   = lnJ;
+    o->H[0][0][q] = Hxx - dt * (g->beyond[0][0][q] + g->swell[q]);
+    o->H[0][1][q] = Fxy - dt * g->beyond[0][1][q];
+    o->H[1][0][q] = Fyx - dt * g->beyond[1][0][q];
+    o->H[1][1][q] = Hyy - dt * (g->beyond[1][1][q] + g->swell[q]);
+    o->J[q]       = J * across;
+    o->log_J[q]   = lnJ + o->e[ZZ][q];
     StretchDiagonal(c, si, Fxx, Fxy, Fyx, Fyy, U);
-    o->stretch[0][q] = U[0];
-    o->stretch[1][q] = U[1];
+    o->stretch[0][q] = U[0] - dt * (g->beyond[0][0][q] + g->swell[q]);
+    o->stretch[1][q] = U[1] - dt * (g->beyond[1][1][q] + g->swell[q]);
   }
   return !large; /* NaN is wrong as well */
 }
@@ -66,8 +72,9 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
 
   #pragma GCC unroll 9
     for (int k = 0; k < 9; k++) {
-      H[k / 3][k % 3] = o->H[k / 3][k % 3][q] = dt * g->grad[k % 3][q][at + k / 3];
-      F[k / 3][k % 3]                         = H[k / 3][k % 3] + (k % 4 == 0 ? 1.0 : 0.0);
+      H[k / 3][k % 3]       = dt * g->grad[k % 3][q][at + k / 3];
+      o->H[k / 3][k % 3][q] = H[k / 3][k % 3] - dt * (g->beyond[k / 3][k % 3][q] + (k % 4 == 0 ? g->swell[q] : 0.0));
+      F[k / 3][k % 3]       = H[k / 3][k % 3] + (k % 4 == 0 ? 1.0 : 0.0);
     }
     SmallStretch(H, e, R);
     o->J[q]     = CofactorOf(F, cof);
@@ -82,7 +89,8 @@ INLINE bool StrainOf(const Set s, int n, const Gathered *g, double dt, Strain *o
       o->turn[k][q] = R[k / 3][k % 3];
   #pragma GCC unroll 3
     for (int d = 0; d < 3; d++) /* diag U = diag R^T F */
-      o->stretch[d][q] = R[0][d] * F[0][d] + R[1][d] * F[1][d] + R[2][d] * F[2][d];
+      o->stretch[d][q] =
+          R[0][d] * F[0][d] + R[1][d] * F[1][d] + R[2][d] * F[2][d] - dt * (g->beyond[d][d][q] + g->swell[q]);
     large |= WRONG_UNLESS((fabs(o->J[q] - 1.0) < LARGEST_STRAIN) & (most < LARGEST_STRAIN));
   }
   return !large;

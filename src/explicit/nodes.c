@@ -21,6 +21,9 @@ static PetscErrorCode Allocate(Explicit *e)
   PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
   e->rows = n;
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
+  PetscCall(PetscFree4(e->cell, e->mean, e->swell, e->part));
+  if (TakesCellMean(e))
+    PetscCall(PetscCalloc4(n * CELL_MEAN, &e->cell, n, &e->mean, n, &e->swell, n, &e->part));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
   PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (e->o.passes > 0 ? 2 * LANES + C : 0)) + LANES, &e->raw));

@@ -83,7 +83,7 @@ INLINE void VolumesOf(Explicit *e, const Set s, Run r, const double *restrict T,
         for (int j = 0; j < CL_DIM; j++)
           F[i][j] = (i == j ? 1.0 : 0.0) + dt * g->grad[j][q][i];
       }
-      J = CofactorOf(F, cof);
+      J = CofactorOf(F, cof) * (CL_DIM == 2 ? 1.0 + dt * g->swell[q] : 1.0);
     }
     V_new[q]      = V[q] * J;
     const Pores v = PoresOf(V_new[q], ms[q], rho_s[q], mh[q], o->rho_h[q]);
@@ -469,15 +469,12 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Gathered g;
   _Alignas(64) Given    o;
   Weights               w;
-  CellMean              mean;
   Volumes               v;
   const double         *T = s.heat ? e->m->P.f[P_T] + r.p : e->t[T_T] + r.p;
 
-  const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
   Gather(e, e->B, Rows(B_Count(s)), 1, r, &w, &g);
-  for (int q = 0; q < r.n && shared; q++)
-    MeanMotion(e, &mean, &w, q, e->B, LANES * Rows(B_Count(s)), 0, &g);
+  MeanMotion(e, s, r, &w, 0, &g);
   Velocities(e, s, r, &g);
   GiveNothing(r, R_Count(s), &o);
   VolumesOf(e, s, r, T, &g, dt, &v);

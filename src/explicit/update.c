@@ -88,18 +88,15 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   _Alignas(64) Gathered g;
   Weights               w;
   Strain                n;
-  CellMean              mean;
   double *const        *f = e->m->P.f;
   double                kept[BLOCK];
   const double         *T;
 
   for (int q = 0; q < BLOCK; q++)
     kept[q] = 1.0;
-  const bool shared = CellMeanOf(e, &mean);
   WeightsOf(e, r, &w);
   Gather(e, e->C, Rows(C_Count(s)), Rows(C_Count(s)), r, &w, &g);
-  for (int q = 0; q < r.n && shared; q++)
-    MeanMotion(e, &mean, &w, q, &e->C[C_Vs(s)], C_Width(s), C_Vs(s), &g);
+  MeanMotion(e, s, r, &w, C_Vs(s), &g);
   if (s.fluids && e->o.particle_pressures)
     OwnPressures(e, s, r, &g);
   if (Relative(e, s))

@@ -64,26 +64,6 @@ INLINE void Nodes(const Explicit *e, Run r, int d, const int *restrict base, Wei
   }
 }
 
-/* Places of the particles' cells from their first nodes on. */
-static void Cells(const Explicit *e, Run r, int base[CL_DIM][BLOCK], Weights *w)
-{
-  const Grid *g      = &e->m->grid;
-  int         stride = 1;
-
-  for (int d = 0; d < CL_DIM; d++) {
-    const GridLines *line    = &g->line[d];
-    const double *restrict x = e->m->P.f[P_X + d] + r.p;
-
-    for (int q = 0; q < r.n; q++) {
-      const int second = BasisCell(LinesPlace(line, x[q]), (double)base[d][q], (double)line->cells);
-
-      w->cell[q]       = (d ? w->cell[q] : 0) + stride * second;
-      w->inverse[d][q] = 1.0 / LinesWidth(line, base[d][q] + second);
-    }
-    stride *= (int)g->gm[d];
-  }
-}
-
 void WeightsOf(const Explicit *e, Run r, Weights *w)
 {
   const Grid *g = &e->m->grid;
@@ -105,6 +85,4 @@ void WeightsOf(const Explicit *e, Run r, Weights *w)
       first[d] = base[d][q];
     w->first[q] = (int)GridPadded(g, first);
   }
-  if (TakesCellMean(e))
-    Cells(e, r, base, w);
 }

@@ -15,7 +15,7 @@ void AssemblyOf(const Model *m, const FieldSet *fs, Assembly *to)
   if (fs->solid) {
     Add(to, OUT_P, CL_DIM * CL_DIM);
     Add(to, OUT_M, 1);
-    if (m->c->axisymmetric)
+    if (SceneStrainsAcross(m->c))
       Add(to, OUT_HOOP, 1);
     if (to->force)
       Add(to, OUT_A, CL_DIM);

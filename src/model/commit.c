@@ -236,6 +236,25 @@ PetscErrorCode ModelEndStage(Model *m, const double *x, Trial *trial, StageRates
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gradient at the particle's own place of what its nodes have moved in the stage, where they stand for it in (88) and
+   (160), too. */
+static void OwnGradient(const Model *m, const Reach *r, const double *x, double H[CL_DIM][CL_DIM])
+{
+  const FieldSet *fs = &m->c->fields;
+
+  memset(H, 0, sizeof(double[CL_DIM][CL_DIM]));
+  for (int a = 0; fs->solid && a < r->n; a++) {
+    const PetscInt I = r->node[a];
+
+    for (int i = 0; i < CL_DIM; i++) {
+      const double u = m->stage.u_star[I * CL_DIM + i] + m->stage.dt * x[I * fs->n + PlaceVs(fs) + i];
+
+      for (int j = 0; j < CL_DIM; j++)
+        H[i][j] += u * r->G[a][j];
+    }
+  }
+}
+
 /* Position, size, stress. */
 static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, const PointState *s)
 {
@@ -246,15 +265,15 @@ static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, c
   const double   log_J  = log(s->V / f[P_V][p]);
   const bool     grows  = m->c->basis == BASIS_CPGIMP;
   ParticleMotion motion = {.log_J = &log_J};
-  double         H[CL_DIM][CL_DIM];
+  double         H[CL_DIM][CL_DIM], stretch[CL_DIM];
 
+  OwnGradient(m, r, x, H);
   for (int i = 0; i < CL_DIM; i++) {
+    stretch[i]        = s->stretch[i] - (s->F[i][i] - 1.0 - H[i][i]);
     motion.u[i]       = &u[i];
-    motion.stretch[i] = grows ? &s->stretch[i] : NULL;
-    for (int j = 0; j < CL_DIM; j++) {
-      H[i][j]        = s->F[i][j] - (i == j);
+    motion.stretch[i] = grows ? &stretch[i] : NULL;
+    for (int j = 0; j < CL_DIM; j++)
       motion.H[i][j] = &H[i][j];
-    }
   }
   ParticlesKeep(&m->P, p, 1, &motion);
   f[P_V][p] = s->V;

@@ -231,7 +231,7 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   Sums         sums;
   const char  *why = NULL;
 
-  ReachExpand(m, p, r);
+  ReachMotion(m, p, r);
   Sum(m, r, &sums);
   const double less = m->relative_gas ? Withheld(m, p, &sums) : 0.0;
   GatherInputs(m, p, r, x, &sums, in);
@@ -254,7 +254,7 @@ void ParticleChange(const Model *m, PetscInt p, const double *x, Reach *r, doubl
 {
   Sums sums;
 
-  ReachExpand(m, p, r);
+  ReachMotion(m, p, r);
   Sum(m, r, &sums);
   GatherInputs(m, p, r, x, &sums, in);
   for (int f = 0; f < PHASE_COUNT; f++)
@@ -265,7 +265,7 @@ void FaceChange(const Model *m, const Face *face, const double *x, Reach *r, dou
 {
   Sums sums;
 
-  ReachExpand(m, face->particle, r);
+  ReachMotion(m, face->particle, r);
   Sum(m, r, &sums);
   GatherInputs(m, face->particle, r, x, &sums, in);
   GatherFace(m, face->particle, r, x, face, in);

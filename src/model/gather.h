@@ -120,7 +120,7 @@ static inline int RowLength(int unknowns)
    is (350) or (333), and in the displacement. */
 typedef struct {
   double        S, NS[PHASE_COUNT][CL_DIM], NU, K;
-  const double *G, *M, *w, *B; /* B: null without mean dilatation */
+  const double *G, *M, *w, *B; /* B: null without (88) */
   const Beds   *share;         /* (448); null without */
 } NodeWeights;
 
@@ -130,7 +130,7 @@ typedef struct {
   double in[IN_COUNT][ROW_MOST] __attribute__((aligned(64)));
 } Slopes;
 
-/* anew: with mean dilatation; else what SlopesAdd wrote for other nodes has the places that it writes again. */
+/* anew: with (88); else what SlopesAdd wrote for other nodes has the places that it writes again. */
 void SlopesBegin(int unknowns, bool anew, Slopes *s);
 /* Those of the node whose unknowns are `first` ... first + fs->n - 1. */
 void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeights *b, int first, Slopes *s);

@@ -76,10 +76,10 @@ static void SolidRows(const Model *m, const Assembly *to, const Reach *r, const 
       TERM(OUT_A + i, S[a]);
     if (m->c->axisymmetric && i == 0)
       TERM(OUT_HOOP, r->K[a]);
-    if (m->c->mean_dilatation) {
+    if (m->cell) {
       for (int d = 0; d < CL_DIM; d++)
         TERM(VectorAt(OUT_P, d, d), r->B[a][i]);
-      if (m->c->axisymmetric)
+      if (SceneStrainsAcross(m->c))
         TERM(OUT_HOOP, r->B[a][i]);
     }
     RowOfNodes(patch, PlaceVs(&to->fs) + i, r->n, row);
@@ -216,7 +216,7 @@ static inline NodeWeights WeightsAt(const Model *m, const Reach *r, int b, doubl
                        .K     = m->c->axisymmetric ? r->K[b] : 0.0,
                        .G     = r->G[b],
                        .M     = r->M[b],
-                       .B     = m->c->mean_dilatation ? r->B[b] : NULL,
+                       .B     = m->cell ? r->B[b] : NULL,
                        .w     = &m->w[PHASE_COUNT * r->node[b]],
                        .share = m->share ? &m->share[r->node[b]] : NULL};
 }
@@ -231,7 +231,7 @@ static void ParticleBlock(const Model *m, const Assembly *to, PetscInt p, const 
   double         *row[OUT_COUNT];
   double          DB[OUT_COUNT][ROW_MOST] __attribute__((aligned(64)));
 
-  SlopesBegin(fs->n * r->n, m->c->mean_dilatation, slopes);
+  SlopesBegin(fs->n * r->n, m->cell != NULL, slopes);
   for (int b = 0; b < r->n; b++) {
     Factors(m, p, r->node[b], x, r->S[b], &factor[b]);
     NodeWeights at = WeightsAt(m, r, b, MotionWeight(m, p, r, b));

@@ -64,6 +64,7 @@ PetscErrorCode FreeParticleArrays(Model *m)
   PetscCall(PetscFree(m->added->chord));
   PetscCall(PetscFree(m->beds));
   PetscCall(PetscFree(m->share));
+  PetscCall(PetscFree(m->cell));
   m->stencil_cap = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

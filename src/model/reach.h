@@ -3,8 +3,8 @@
 
 #include "additions.h"
 
-/* A particle's nodes with their values; H only about an axis; M, K are G, H as the motion sees them (160); B (88) only
-   with mean dilatation. */
+/* A particle's nodes with their values; H only about an axis; M, K are G, H as the motion sees them (160); B (88)
+   unless Model.cell is null. */
 typedef struct {
   int      n;
   PetscInt node[CL_NODES];
@@ -32,32 +32,44 @@ static inline void CarryGradients(const Model *m, PetscInt p, Reach *r)
   }
 }
 
-/* (160), then (88) */
+/* What strains a particle and carries its forces: (160), then (88). */
 static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
 {
-  const Stencil *s    = &m->stencil[p];
-  const bool     ring = m->c->axisymmetric;
-  PetscInt       cell[CL_DIM];
-  double         h[CL_DIM];
+  const Stencil *s     = &m->stencil[p];
+  const bool     ring  = m->c->axisymmetric;
+  const double   share = m->c->mean_strain, mean = (1.0 - share) / 3.0;
+  double         Q[CL_NODES][CL_DIM] = {{0.0}}, hoop[CL_NODES] = {0.0};
+  PetscInt       cell[CL_CORNERS];
+  double         part[CL_CORNERS];
 
-  for (int d = 0; d < CL_DIM; d++) {
-    cell[d] = s->axis[d].base + s->cell[d];
-    h[d]    = LinesWidth(&m->grid.line[d], cell[d]);
+  StencilCells(s, &m->grid, &m->map, cell, part);
+  for (int c = 0; c < CL_CORNERS; c++) {
+    if (cell[c] < 0)
+      continue;
+    const CellMean *of    = &m->cell[cell[c]];
+    const PetscInt *first = m->map.ij[cell[c]];
+    for (int a = 0; a < r->n; a++) {
+      const PetscInt *at = m->map.ij[r->node[a]];
+      int             i  = 0;
+      bool            in = true;
+
+      for (int d = 0; d < CL_DIM; d++) {
+        const PetscInt k = at[d] - first[d];
+
+        in = in && k >= 0 && k <= 1;
+        i |= (int)k << d;
+      }
+      for (int d = 0; in && d < CL_DIM; d++)
+        Q[a][d] += part[c] * of->Q[i][d];
+      hoop[a] += in ? part[c] * of->hoop[i] : 0.0;
+    }
   }
-  const double radius = GridNode(&m->grid, 0, cell[0]), share = m->c->mean_strain;
-  const double mean = m->c->mean_dilatation ? (1.0 - share) / (ring ? CL_DIM + 1 : CL_DIM) : 0.0;
-
   for (int a = 0; a < r->n; a++) {
-    PetscInt i[CL_DIM];
-    double   Q[CL_DIM];
-
-    for (int d = 0; d < CL_DIM; d++)
-      i[d] = m->map.ij[r->node[a]][d] - cell[d];
-    const double hoop = CellGradient(h, ring, i, radius, Q), beyond = ring ? hoop - r->H[a] : 0.0;
+    const double beyond = ring ? hoop[a] - r->H[a] : 0.0;
 
     for (int d = 0; d < CL_DIM; d++) {
-      r->mixed[a][d] = r->G[a][d] + share * (Q[d] - r->G[a][d]);
-      r->B[a][d]     = mean * (Q[d] - r->G[a][d]);
+      r->mixed[a][d] = r->G[a][d] + share * (Q[a][d] - r->G[a][d]);
+      r->B[a][d]     = mean * (Q[a][d] - r->G[a][d]);
     }
     r->mixed_hoop[a] = ring ? r->H[a] + share * beyond : 0.0;
     r->B[a][0] += mean * beyond;
@@ -73,7 +85,13 @@ static inline void ReachExpand(const Model *m, PetscInt p, Reach *r)
     CarryGradients(m, p, r);
   r->M = r->G;
   r->K = r->H;
-  if (m->c->mean_dilatation || m->c->mean_strain > 0.0)
+}
+
+/* With M, K and B. */
+static inline void ReachMotion(const Model *m, PetscInt p, Reach *r)
+{
+  ReachExpand(m, p, r);
+  if (m->cell)
     CellMotion(m, p, r);
 }
 
@@ -91,12 +109,12 @@ static inline void MotionGradient(const Model *m, const Reach *r, double (*u)[CL
     }
     if (m->c->axisymmetric)
       g[MOTION_HOOP] += u[a][0] * r->K[a];
-    if (m->c->mean_dilatation)
+    if (m->cell)
       more += VectorDot(u[a], r->B[a]);
   }
   for (int d = 0; d < CL_DIM; d++)
     g[VectorAt(0, d, d)] += more;
-  if (m->c->axisymmetric)
+  if (CL_DIM == 2)
     g[MOTION_HOOP] += more;
 }
 

@@ -87,7 +87,7 @@ void SlopesAdd(const FieldSet *fs, bool axisymmetric, double dt, const NodeWeigh
       continue;
     for (int d = 0; d < CL_DIM; d++)
       in[VectorAt(IN_GRADU, d, d)][vs + i] += dt * b->B[i];
-    if (axisymmetric)
+    if (CL_DIM == 2)
       in[IN_HOOP][vs + i] += dt * b->B[i];
   }
   for (int f = 0; f < PHASE_COUNT; f++) {

@@ -48,7 +48,7 @@ static void ScatterMotion(Model *m, const Reach *r, const double out[OUT_COUNT],
 
   for (int d = 1; d < CL_DIM; d++)
     mean += out[VectorAt(OUT_P, d, d)];
-  if (m->c->axisymmetric)
+  if (SceneStrainsAcross(m->c))
     mean += out[OUT_HOOP];
 
   for (int i = 0; i < CL_DIM; i++) {
@@ -60,7 +60,7 @@ static void ScatterMotion(Model *m, const Reach *r, const double out[OUT_COUNT],
       *row += sum;
       if (m->c->axisymmetric && i == 0)
         *row += r->K[a] * out[OUT_HOOP];
-      if (m->c->mean_dilatation)
+      if (m->cell)
         *row += r->B[a][i] * mean;
     }
     for (int d = 0; d < CL_DIM; d++)

@@ -35,10 +35,12 @@ static double CellVolume(const Model *m, const PetscInt cell[CL_DIM])
 
   for (int d = 1; d < CL_DIM; d++)
     V *= LinesWidth(&m->grid.line[d], cell[d]);
+  if (m->c->axisymmetric)
+    V *= M_PI * (GridNode(&m->grid, 0, cell[0]) + GridNode(&m->grid, 0, cell[0] + 1));
   return V;
 }
 
-/* Area of the particle in the plane over that in the grid's configuration. */
+/* Volume of the particle over that in the grid's configuration. */
 static double Swollen(const Model *m, PetscInt p)
 {
   double F[CL_DIM][CL_DIM], cof[CL_DIM][CL_DIM];
@@ -46,20 +48,20 @@ static double Swollen(const Model *m, PetscInt p)
   if (!m->P.total)
     return 1.0;
   ParticleDeformation(&m->P, p, F);
-  return CofactorOf(F, cof);
+  return CofactorOf(F, cof) * (m->c->axisymmetric ? m->P.f[P_X][p] / ParticleGridX(&m->P, p, 0) : 1.0);
 }
 
 static void FillCells(const Model *m, double *fill)
 {
   for (PetscInt p = 0; p < m->P.n; p++) {
-    const double ring = m->c->axisymmetric ? 2.0 * M_PI * m->P.f[P_X][p] : 1.0, J = Swollen(m, p);
+    const double V = m->P.f[P_V][p] / Swollen(m, p);
     PetscInt     cell[CL_CORNERS];
     double       share[CL_CORNERS];
 
-    ParticleCells(m->c, &m->grid, &m->map, &m->P, p, cell, share);
+    StencilCells(&m->stencil[p], &m->grid, &m->map, cell, share);
     for (int k = 0; k < CL_CORNERS; k++) {
       if (cell[k] >= 0)
-        fill[2 * cell[k]] += share[k] * m->P.f[P_V][p] / (J * ring * CellVolume(m, m->map.ij[cell[k]]));
+        fill[2 * cell[k]] += share[k] * V / CellVolume(m, m->map.ij[cell[k]]);
     }
   }
 }

@@ -219,6 +219,53 @@ static PetscErrorCode Layers(Model *m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* (88); the particles of several ranks may have parts in a cell. */
+static PetscErrorCode Cells(Model *m)
+{
+  const bool ring = m->c->axisymmetric;
+  double    *moment;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->cell));
+  if (!SceneTakesCellMeans(m->c))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(m->map.n_local, &m->cell));
+  PetscCall(PetscCalloc1(m->map.n_local * CELL_MOMENTS, &moment));
+  for (PetscInt p = 0; p < m->P.n; p++) {
+    const double V = m->P.f[P_V][p];
+    AxisParts    part[CL_DIM], over[CL_DIM];
+    PetscInt     cell[CL_CORNERS];
+    double       share[CL_CORNERS];
+
+    StencilCells(&m->stencil[p], &m->grid, &m->map, cell, share);
+    StencilParts(&m->stencil[p], &m->grid, part, over);
+    for (int d = 1; d < CL_DIM; d++)
+      over[d] = part[d];
+    for (int c = 0; c < CL_CORNERS; c++) {
+      if (cell[c] < 0)
+        continue;
+      double *sum = &moment[cell[c] * CELL_MOMENTS];
+      for (int k = 0; k < CELL_MEAN; k++) {
+        sum[k] += V * PartMoment(part, c, k);
+        if (ring)
+          sum[CELL_MOMENTS - CELL_MEAN + k] += V * PartMoment(over, c, k);
+      }
+    }
+  }
+  PetscCall(NodeMapSum(&m->map, moment, CELL_MOMENTS));
+  for (PetscInt I = 0; I < m->map.n_local; I++) {
+    double h[CL_DIM];
+
+    if (!(moment[I * CELL_MOMENTS] > 0.0))
+      continue; /* behind it no particle has a part */
+    for (int d = 0; d < CL_DIM; d++)
+      h[d] = LinesWidth(&m->grid.line[d], m->map.ij[I][d]);
+    CellMeanOf(&moment[I * CELL_MOMENTS], h, ring, &m->cell[I]);
+  }
+  PetscCall(PetscFree(moment));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Project(Model *m)
 {
   const int   width  = SUM_X + m->c->fields.n;
@@ -308,6 +355,7 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(NodeMapUpdate(&m->grid, flag, &m->map, &changed));
     if (changed)
       PetscCall(ModelResizeNodal(m));
+    PetscCall(Cells(m));
     PetscCall(Layers(m));
     PetscCall(Project(m));
     PetscCall(ModelReduceStatus(m, status));

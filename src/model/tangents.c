@@ -52,7 +52,7 @@ static bool Reads(const Model *m, int out)
   if (out >= OUT_A)
     return m->bc.ambient.on && fs->solid;
   if (out == OUT_HOOP)
-    return m->c->axisymmetric && fs->solid;
+    return SceneStrainsAcross(m->c) && fs->solid;
   if (out == OUT_C || out == OUT_Q || (out >= OUT_HEAT && out < OUT_HEAT + CL_DIM))
     return fs->heat;
   return fs->solid; /* OUT_P, OUT_M */
@@ -66,7 +66,7 @@ static bool Depends(const Model *m, int out, int in)
   const bool      flux = out >= OUT_FLUX && out < OUT_HEAT, force = out >= OUT_G && out < OUT_M;
 
   if (in < IN_P)
-    return fs->solid && !IsScalar(out) && (in < IN_HOOP || m->c->axisymmetric);
+    return fs->solid && !IsScalar(out) && (in < IN_HOOP || SceneStrainsAcross(m->c));
   if (in == IN_VOLUME)
     return fs->solid && IsScalar(out);
   if (in >= IN_PROJ) {

@@ -239,21 +239,6 @@ static PetscErrorCode CheckFolder(MPI_Comm comm, const Case *c, bool restart, bo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first traction that is not zero of a stage that hybrid may run; NULL: none. */
-static const Bc *HybridTraction(const Case *c)
-{
-  const Bc *found = NULL;
-
-  for (PetscInt k = 0; k < PetscMax(c->nstage, 1) && !found; k++) {
-    const Case *stage = CaseInStage(c, k);
-
-    if (!strcmp(stage->stepper, "hybrid") || !strcmp(stage->stepper, "explicit") ||
-        !strcmp(stage->stepper, STEPPER_AUTO))
-      found = SceneTraction(&stage->scene);
-  }
-  return found;
-}
-
 /* What a user should know of a start that is none of a checkpoint's; -case_check says it, too. */
 static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *run)
 {
@@ -268,7 +253,6 @@ static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *ru
     PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
   }
   PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P, c->t_end - c->scene.t_begin));
-  PetscCall(CellMeansWarning(&m->grid, m->c, &m->P, HybridTraction(c)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,7 +9,7 @@ INLINE SkeletonStep StepOf(const SkeletonBlock *B, int q)
 
 #pragma GCC unroll 6
   for (int k = 0; k < CL_TENSOR; k++)
-    d.e[k] = CL_DIM == 2 && k == ZZ ? 0.0 : B->e[k][q];
+    d.e[k] = B->e[k][q];
   return d;
 }
 

@@ -256,7 +256,7 @@ static void TestBlock(void **state)
   for (int run = 0; run < 100; run++) {
     Material mat = Bonded(STIFFNESS_BONDS);
     Walk     w[N];
-    double   in[10][N], held[15 + OWN_COUNT][N] = {{0.0}}, work[N];
+    double   in[11][N], held[15 + OWN_COUNT][N] = {{0.0}}, work[N];
 
     if (run % 2)
       mat.plasticity = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
@@ -280,7 +280,7 @@ static void TestBlock(void **state)
     }
     SkeletonBlock b = {.n           = N,
                        .turn        = {in[0], in[1]},
-                       .e           = {[XX] = in[2], [YY] = in[3], [XY] = in[4]},
+                       .e           = {[XX] = in[2], [YY] = in[3], [ZZ] = in[10], [XY] = in[4]},
                        .thermal     = in[5],
                        .E_n         = in[6],
                        .E           = in[7],
@@ -301,18 +301,18 @@ static void TestBlock(void **state)
       const char        *why;
       double             dE;
       const double       Sh = RngBetween(&r, 0.1, 0.4), a = RngBetween(&r, -0.2, 0.2);
-      const SkeletonStep d = {
-          .turn    = {cos(a), sin(a)},
-          .thermal = RngBetween(&r, -1e-4, 1e-4),
-          .E_n     = 1e8,
-          .e       = {RngBetween(&r, -1e-3, 1e-3), RngBetween(&r, -1e-3, 1e-3), 0.0, RngBetween(&r, -1e-3, 1e-3)},
-          .E       = ElasticityYoung(&mat.elasticity, Sh, &dE),
-          .Sh      = Sh,
-          .kept    = RngBetween(&r, 0.0, 1.0)};
-      const double row[10] = {d.turn.c, d.turn.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh, d.kept};
+      const SkeletonStep d = {.turn    = {cos(a), sin(a)},
+                              .thermal = RngBetween(&r, -1e-4, 1e-4),
+                              .E_n     = 1e8,
+                              .e       = {RngBetween(&r, -1e-3, 1e-3), RngBetween(&r, -1e-3, 1e-3),
+                                          RngBetween(&r, -1e-3, 1e-3), RngBetween(&r, -1e-3, 1e-3)},
+                              .E       = ElasticityYoung(&mat.elasticity, Sh, &dE),
+                              .Sh      = Sh,
+                              .kept    = RngBetween(&r, 0.0, 1.0)};
+      const double row[11] = {d.turn.c, d.turn.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh, d.kept, d.e[2]};
 
       w[q].h = (SkeletonHistory){0};
-      for (int i = 0; i < 10; i++)
+      for (int i = 0; i < 11; i++)
         in[i][q] = row[i];
       for (int i = 0; i < 6; i++)
         held[i][q] = w[q].h.sig[i] = i < 4 ? RngBetween(&r, -1e6, 3e5) : 0.0;

@@ -194,20 +194,18 @@ static double Yielding(SmallScene *s)
 static void TestJacobian(void **state)
 {
   (void)state;
-  for (int k = 0; k < 6 * SETS; k++) {
-    const bool  axis = k / SETS % 2, mean = k / SETS / 2 == 1, strain = k / SETS / 2 == 2;
+  for (int k = 0; k < 4 * SETS; k++) {
+    const bool  axis = k / SETS % 2, strain = k / SETS / 2 == 1;
     SmallScene *s     = malloc(sizeof(*s));
     double      yield = 0.0, all;
 
     const bool bonds = k % SETS == SETS - 1; /* hydrate that goes, with a stress of its own */
 
-    JacobianCase(s, sets[k % SETS].has, true, axis, k % 2 && (mean || strain) ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, 0.0,
-                 bonds, 1);
-    s->c.scene.mean_dilatation = mean || (strain && k % 2);
-    s->c.scene.mean_strain     = strain ? 0.7 : 0.0;
-    s->mat.elasticity.change   = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
-    s->mat.plasticity          = WeakPlasticity(k % 2, 0.7);
-    s->mat.plasticity.tears    = k % 4 == 1 ? TEARS_CLOSE : TEARS_STAY;
+    JacobianCase(s, sets[k % SETS].has, true, axis, k % 2 && strain ? BASIS_UGIMP : BASIS_CPGIMP, 0.0, 0.0, bonds, 1);
+    s->c.scene.mean_strain   = strain ? 0.7 : 0.0;
+    s->mat.elasticity.change = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
+    s->mat.plasticity        = WeakPlasticity(k % 2, 0.7);
+    s->mat.plasticity.tears  = k % 4 == 1 ? TEARS_CLOSE : TEARS_STAY;
     s->c.scene.fields.has |= SkeletonHas(&s->mat);
     JacobianState(s);
     for (PetscInt p = 0; s->mat.plasticity.tears == TEARS_CLOSE && p < s->m.P.n; p++)
@@ -222,11 +220,7 @@ static void TestJacobian(void **state)
     yield = Sum(Yielding(s));
     all   = Sum((double)s->m.P.n);
     Say("Jacobian, %-4s %s%s: directions %.1e, entries %.1e; %g of %g particles yield\n", sets[k % SETS].name,
-        axis ? "axis " : "plane",
-        mean     ? ", mean dilatation"
-        : strain ? ", mean strain"
-                 : "",
-        worst, entry, yield, all);
+        axis ? "axis " : "plane", strain ? ", mean strain" : "", worst, entry, yield, all);
     Check(worst < 1e-6 && entry < 1e-6 && yield > 0.7 * all);
     SceneDestroy(s);
     free(s);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Collapse loads of rigid strips (cases/strip.yaml): Prandtl's, and Nc and Nq of associated weightless ground at 20 deg, with
-hybrid and implicit, rough and smooth; Cox's circle on a coarse grid; what volumetric locking does without mean dilatation, and
-what the other locking, of ground that dilates, does without mean strain.
+hybrid and implicit, rough and smooth; Cox's circle on a coarse grid; what the locking of ground that
+dilates does without mean strain.
 
 The plate pushes the node at its edge, and the ground follows over the next cell: a load too large by h/2 of the half-width, of
 first order.  Nc and Nq are within 3 % at h = a/8, Prandtl's strip is at a/16, and here within twice that at a/8; the circle is within
@@ -49,9 +49,9 @@ family("Prandtl", False, True, (8,), (0.0, 0.06), None)
 for name in ("Nc, 20 deg", "Nq, 20 deg"):
     free = family(name, False, False, (4, 8), (0.0, 0.03), 0.015)
     check(f"{name}: implicit against hybrid, a/4", measured(name, 4, False, implicit=True)[0] / free[0] - 1, (-0.04, 0.04))
-load, growth = measured("Prandtl", 8, True, "-mean_dilatation", "no", "-mean_strain", "0", "-bc_plate_velocity", "-0.03 m/s", implicit=True, what="locks")
-check("Prandtl without mean dilatation: over the exact load at a/8, and still growing", load / exact("Prandtl") - 1, (0.2, 1.0))
-check("... growth over the last fifth", growth, (0.02, 1.0))
+load, growth = measured("Prandtl", 8, True, "-mean_strain", "0", implicit=True, what="no mean strain")
+check("Prandtl without mean strain: over the exact load at a/8", load / exact("Prandtl") - 1, (0.0, 0.1))
+check("... growth over the last fifth", growth, 0.02)
 load, growth = measured("Nq, 30 deg", 4, False)
 judge("strength", "Nq, 30 deg, smooth, hybrid: collapse load at h = a/4", load / exact("Nq, 30 deg") - 1, (0.0, 0.03), 0.01, "%")
 load, growth = measured("Nq, 30 deg", 4, False, "-mean_strain", "0", what="locks")
@@ -65,13 +65,5 @@ judge("strength", "Cox's circle on heavy ground, 30 deg, h = R/6", fine[0] - 1, 
 check("... order in h", order([1 / 4, 1 / 6], [coarse[0], fine[0]], 1)[0], (0.8, 1.5))
 check("... growth over the last fifth", max(coarse[1], fine[1]), 0.01)
 check("... without mean strain: over the exact load", found[4, 0][0] - 1, (0.4, 1.0))
-for top, warns in ((1.5, False), (1.45, True)):
-    said = strip_run("Prandtl", 4, True, "-region_ground_upper", f"3.5 m, {top} m", "-stepper_max_steps", "1").output
-    check_true(f"ground to {top} m: {'warns' if warns else 'no word'} of cells that the surface cuts", ("the surface cuts" in said) == warns)
-BEARS = ("-boundaries", "base,left,right,plate,beside", "-bc_beside_type", "traction", "-bc_beside_side", "top", "-bc_beside_from", "1 m", "-bc_beside_normal")
-for means, load, implicit, warns in (("0.95", "1 MPa", False, True), ("0.95", "0 Pa", False, False), ("0.95", "1 MPa", True, False), ("0", "1 MPa", False, False)):
-    only = () if means != "0" else ("-mean_dilatation", "no")
-    said = strip_run("Prandtl", 4, True, *BEARS, load, "-mean_strain", means, *only, "-stepper_max_steps", "1", implicit=implicit).output
-    check_true(f"traction of {load}, mean_strain {means}, {'implicit' if implicit else 'hybrid'}: {'a warning names it' if warns else 'no word'}", ("the traction beside (bc_beside_type)" in said) == warns)
 table(["case", "plate", "integrator", "h", "load (MPa)", "error (%)", "growth (%)", ""], rows)
 finish()

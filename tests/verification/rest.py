@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Row 8: states that must stay at rest through committed steps.
 
+Bars under uniform stress whose surface lies anywhere in a cell: what particles take from their cells (88), (160) leaves no force.
+
 Two layers of different saturation under one pressure (the paper's fluid force would push p grad(phi S) there), and a
 hydrostatic column under gravity, both with a free surface inside a cell.  Velocities are held against k/mu times the
 pressure gradient that 1 MPa over a cell would make in the more permeable layer.
@@ -13,6 +15,7 @@ from common import Run, finish, judge, table
 
 CASES = Path(__file__).parent / "cases"
 SCALE = 1e-13 / 1e-3 * 1e6 / 0.1  # m/s
+HOOP = ("-region_bar_stress", "-1 MPa,0 Pa,-1 MPa,0 Pa,0 Pa,0 Pa")
 rows = []
 for name, what in (("rest_layers", "two layers of different saturation"), ("rest_hydrostatic", "hydrostatic column")):
     run = Run.of_case(CASES / f"{name}.yaml", "-newton_tol_residual", 1e-12, "-newton_tol_update", 1e-10, "-snes_max_it", 30)
@@ -21,5 +24,13 @@ for name, what in (("rest_layers", "two layers of different saturation"), ("rest
     for v, value in speed.items():
         rows.append((what, v, value, value / SCALE))
         judge(8, f"{what}: largest {v} over {SCALE:g} m/s after 1000 s", value / SCALE, 1e-12)
+for fill in (0.05, 0.3, 0.77):
+    upper = f"2 m, {1 + 0.25 * fill} m"
+    for name, more in (("hybrid", ()), ("sdirk2", ("-stepper_type", "sdirk2")), ("hybrid, half the mean strain", ("-mean_strain", 0.5)),
+                       ("sdirk2, about an axis", ("-stepper_type", "sdirk2", "-geometry", "axisymmetric", "-boundaries", "base,right", *HOOP))):  # fmt: skip
+        last = Run.of_case(CASES / "bar.yaml", "-quiet", "-region_bar_upper", upper, *more).snapshots()[-1][1]
+        value = np.abs(last["v_s"]).max()
+        rows.append((f"bar, {name}", "v_s", value, value / 1.0))
+        judge(8, f"bar under 1 MPa, surface at {fill} of a cell, {name}: largest v_s after 0.05 s", value, 1e-12, unit="m/s")
 table(("state", "velocity", "largest (m/s)", "over the scale"), rows)
 finish()

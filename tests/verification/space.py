@@ -409,6 +409,22 @@ def borders():
     compare("a border that cuts cells, hybrid", hurried(case), rings=(0, 1, 2))
 
 
+def bar():
+    """Under stress along itself, in a corner of rollers, with free surfaces that cut cells (88), (160): no force."""
+    case = block()
+    rock = {k: v for k, v in MATERIAL.items() if k in ("porosity", "solid", "elasticity")}
+    case |= {"title": "Bar under stress", "fields": ["solid"], "gravity": ["0 m/s^2"] * 3, "mat": {"sediment": rock}, "regions": ["bar"],
+             "grid": {"lower": ["0 m"] * 3, "upper": ["0.8 m", "0.6 m", "0.6 m"], "cells": [4, 3, 3]}, "boundaries": list("abcd"),
+             "region": {"bar": {"lower": ["0 m"] * 3, "upper": ["0.8 m", "0.46 m", "0.55 m"], "material": "sediment", "particles_per_cell": [2, 2, 2],
+                                "stress": ["-1 MPa", "0 Pa", "0 Pa", "0 Pa", "0 Pa", "0 Pa"]}},
+             "bc": {n: {"type": "roller", "axis": axis, "position": at} for n, axis, at in (("a", "x", "0 m"), ("b", "x", "0.8 m"), ("c", "y", "0 m"), ("d", "z", "0 m"))},
+             "time": {"end": "0.02 s"}, "output": {"times": ["0.02 s"]}, "stepper": {"type": "hybrid"}}  # fmt: skip
+    del case["stabilisation"]
+    for what, options in (("hybrid", ()), ("sdirk2", ("-stepper_type", "sdirk2")), ("hybrid, half the mean strain", ("-mean_strain", 0.5))):
+        v = run(SPACE, written(case, "bar"), "-quiet", *options).snapshots()[-1][1]["v_s"]
+        judge("space", f"bar under 1 MPa whose surfaces cut cells, {what}: largest v_s after 0.02 s", np.abs(v).max(), 1e-12, unit="m/s")
+
+
 def cube(vertical):
     """Wet ground of 1 m, a third axis of gravity at will, on the sea's floor: held at its base and sides, its top open to the sea."""
     up = "xyz".index(vertical)
@@ -545,6 +561,7 @@ def main():
     without_matrix()
     wells()
     borders()
+    bar()
     turned()
     turned(hybrid=True)
     at_rest()

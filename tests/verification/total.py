@@ -93,7 +93,7 @@ _, v = last(BLOCK, *TOTAL, "-restart_as_initial", str(half.out / "checkpoint.h5"
 judge(ROW, "total, block that cpgimp squeezed half of the way: displacement under the same load", np.max(np.abs(v["displacement"])), 1e-7, unit="m")
 
 # ---------------------------------------------------------------- what it does not know
-for options, words in ((("-inertia", "yes", "-stepper_type", "hybrid"), "hybrid does not know basis: total"), (("-mean_dilatation", "yes"), "total is not known with mean_dilatation: yes"),
+for options, words in ((("-inertia", "yes", "-stepper_type", "hybrid"), "hybrid does not know basis: total"),
                        (("-mean_strain", "0.5"), "total is not known with a mean_strain")):  # fmt: skip
     run = Run.of_case(BLOCK, "-quiet", *TOTAL, *options, exit_code=2)
     check_true(f"refused: {words}", words in run.output, run.output[:300])
