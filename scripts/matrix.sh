@@ -48,8 +48,10 @@ here() {
   if (CC=$1 setup_build "$folder" all -DCMAKE_BUILD_TYPE=Release); then
     built=yes warnings=$(grep -c 'warning:' "$log/build.log" || true)
     ctest --test-dir "$log" -L '^short$' --output-on-failure >"$log/tests.log" 2>&1 </dev/null || true
-    failed=$(grep -cE '^ *[0-9]+/[0-9]+ Test .*\*\*\*' "$log/tests.log" || true)
-    tests="$(grep -cE '^ *[0-9]+/[0-9]+ Test .* Passed ' "$log/tests.log" || true) / $failed"
+    failed=$(sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: (\S+) .*\*\*\*.*/\1/p' "$log/tests.log" | tr '\n' ' ')
+    tests="$(grep -cE '^ *[0-9]+/[0-9]+ Test .* Passed ' "$log/tests.log" || true) / $(wc -w <<<"$failed")${failed:+: $failed}"
+  else
+    tests=$(cat "$log"/{configure,build}.log 2>/dev/null | grep -m1 -oE '(error|Error).*' | tr '|' ' ')
   fi
   echo "| $name | $petsc | $1 $version | $built | $warnings | $tests |"
 }
