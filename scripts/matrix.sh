@@ -78,7 +78,8 @@ make_chroot() { # SYSTEM FOLDER: with this tree in /clathra, and apt's proxies a
 }
 
 # shellcheck disable=SC2016 # expanded by the inner shell
-enter='mount -t proc proc "$0/proc"; mount -t devpts devpts "$0/dev/pts"; mount -t tmpfs -o mode=1777 tmpfs "$0/dev/shm"; exec chroot "$0" "$@"'
+enter='mount -t proc proc "$0/proc"; mount -t sysfs -o ro sysfs "$0/sys"
+  mount -t devpts devpts "$0/dev/pts"; mount -t tmpfs -o mode=1777 tmpfs "$0/dev/shm"; exec chroot "$0" "$@"'
 in_chroot() { # FOLDER COMPILER
   apart sh -ec "$enter" "$1" /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
     LC_ALL=C.UTF-8 JOBS="$jobs" ${http_proxy:+"http_proxy=$http_proxy"} /clathra/scripts/matrix.sh here "$2"
