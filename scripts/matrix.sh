@@ -12,7 +12,7 @@ scripts/matrix.sh [--mirror URL] [SYSTEM...] [COMPILER...]
   COMPILER  gcc, clang; default both
   --mirror  Debian's mirror; default CLATHRA_MIRROR of the environment, else the one that apt uses here
   JOBS=N    in the environment: so many jobs at once; default one a core
-Chroots need root, debootstrap and 3 GB in TMPDIR, which is cleared at the end. Logs and table stay in results/matrix.
+Chroots need root, debootstrap and 4 GB in TMPDIR, which is cleared at the end. Logs and table stay in results/matrix.
 The exit code is 0 if all was built and passed, 1 if not, 2 if a word is wrong.
 EOT
 }
@@ -103,7 +103,7 @@ rows_of() {
       in_chroot "$chroot" "$compiler" >"$work/row" 2>"$log/matrix.log" || true
       cp "$chroot/clathra/results/matrix/here-$compiler/"*.log "$log" 2>/dev/null || true
     fi
-    grep '^| .* |$' "$work/row" || echo "| $system, $compiler | not built: $log/matrix.log |"
+    grep -E '^\| .* \| (yes|no) \| .* \|$' "$work/row" || echo "| $system, $compiler | not built: $log/matrix.log |"
   done
   rm -rf --one-file-system "$chroot"
 }
