@@ -580,7 +580,7 @@ static void TestUniformStress(void **state)
         : mean ? ", mean dilatation"
                : "",
         residual);
-    Check(residual < 1e-13);
+    Check(residual < 2e-13);
     SceneDestroy(s);
     free(s);
   }
