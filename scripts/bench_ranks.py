@@ -11,7 +11,7 @@ from pathlib import Path
 import bench
 import bench_explicit
 
-ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
                "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # fmt: skip
 PARTS = {"ClBeginStep": "start of the step", "ClResidual": "residual", "ClJacobian": "Jacobian", "Krylov": "Krylov iteration"}
 STEP = ["-stepper_type", "euler", "-stepper_adapt", "no", "-stepper_dt", "10 s", "-stepper_max_steps", "1", "-reduced_pc_type", "fieldsplit"]

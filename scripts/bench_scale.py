@@ -23,7 +23,8 @@ STORE, PAGE = ROOT / "docs" / "scale.json", ROOT / "docs" / "scale.md"
 STABILITY = ROOT / "tests" / "verification" / "cases" / "stability.yaml"
 FOOTING = ROOT / "tests" / "verification" / "cases" / "strip.yaml"
 FIELD_SETS = ROOT / "tests" / "verification" / "cases" / "field_sets.yaml"
-ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+               "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}  # fmt: skip
 WHOLE, LU, MULTIGRID = ("-newton_preconditioner", "whole"), ("-reduced_pc_type", "lu"), ("-reduced_pc_type", "fieldsplit")
 KINDS = (("whole", WHOLE), ("LU", LU), ("multigrid", MULTIGRID))
 KEPT, FRESH = (), ("-newton_refactor", "0")

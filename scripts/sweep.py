@@ -22,7 +22,8 @@ import clathra
 import compare
 
 ROOT = Path(__file__).resolve().parents[1]
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_hwloc_base_binding_policy": "none"}
+ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+               "PRTE_MCA_hwloc_default_binding_policy": "none"}  # fmt: skip
 ENDS = ("-output_dir", "-restart", "-stepper_max_steps", "-time_limit", "-checkpoint_wall", "-progress")  # with a value each
 SAFE = re.compile(r"[^\w.,=+-]+")
 

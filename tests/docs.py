@@ -7,6 +7,7 @@
 - commands in README and docs, and presets, use options that exist; presets hold no physics and nothing unread
 - links to headings find them
 - the cases in README and docs/cases_reference.md are valid
+- CHANGELOG.md, CITATION.cff and CMakeLists.txt say the same version
 - every verification test that measures stands in docs/verification.md, and its lines are as many as that page says
 """
 import importlib.util
@@ -18,7 +19,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
+PAGES = [*(ROOT / page for page in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")), *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
 EXAMPLES = (ROOT / "README.md", ROOT / "docs" / "cases_reference.md")  # whose YAML blocks are whole cases
 PRESETS = sorted((ROOT / "options").glob("*.opts"))
 FOLDERS = ("cases", "docs", "include", "options", "scripts", "src", "tests")
@@ -72,6 +73,13 @@ def check_laws(binary):
         columns, rows = laws_doc.curves(binary, law[1], law[2][-1][1])
         if len(rows) < 100 or any(len(r) != len(columns) or any(v != v for v in r) for r in rows):
             yield f"-case_curves: the rows of {law[1]} are not whole"
+
+
+def check_version():
+    says = {"CMakeLists.txt": r"^project\(clathra VERSION (\S+)", "CHANGELOG.md": r"^## (\S+)", "CITATION.cff": r"^version: (\S+)"}
+    versions = {page: found[1] if (found := re.search(pattern, (ROOT / page).read_text(), re.M)) else None for page, pattern in says.items()}
+    if len(set(versions.values())) > 1:
+        yield f"the versions differ: {versions}"
 
 
 def named_files(page):
@@ -191,7 +199,7 @@ def main(binary):
     known = lambda word: word in program or PETSC.fullmatch(word) or case.fullmatch(word)
     planted = ["-stepper_typ", "-mat_sand_porosty", "-newton_tol", "-grid", "-ksptype"]
     found = [f"self-test: {word} was taken for an option" for word in planted if known(word)]
-    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_verification(), *(f for page in EXAMPLES for f in check_example(binary, page))]
+    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_version(), *check_verification(), *(f for page in EXAMPLES for f in check_example(binary, page))]
     for page in PAGES:
         found += [*check_files(page), *check_anchors(page), *check_commands(page, known)]
     for preset in PRESETS:

@@ -14,7 +14,6 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
 {
   const FieldSet *fs = &m->c->fields;
   Explicit       *e;
-  PetscClassId    id;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&e));
@@ -26,9 +25,8 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   e->straight = INFINITY;
   for (PetscInt k = 0; k < m->c->nmaterial && m->c->material[k].gas.trace > 0.0; k++)
     e->straight = PetscMin(e->straight, STRAIGHT * m->c->material[k].retention.p0);
-  PetscCall(PetscClassIdRegister("Clathra explicit", &id));
   for (int k = 0; k < STEP_PARTS; k++)
-    PetscCall(PetscLogEventRegister(part[k], id, &e->event[k]));
+    PetscCall(PetscLogEventRegister(part[k], PETSC_OBJECT_CLASSID, &e->event[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

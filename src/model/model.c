@@ -8,7 +8,6 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
 
   static const char *const name[EVENT_COUNT] = {"ClBeginStep",     "ClResidual",     "ClJacobian", "ClWidePart",
                                                 "ClReducedMatrix", "ClReducedApply", "ClProduct"};
-  PetscClassId             id;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(m, sizeof(*m)));
@@ -26,9 +25,8 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Scene *c, const Scene *first, Mo
   PetscCall(PetscNew(&m->added));
   PetscCall(SolverCreate(&m->solver));
   PetscCall(PreconditionerPlan(m));
-  PetscCall(PetscClassIdRegister("Clathra", &id));
   for (int e = 0; e < EVENT_COUNT; e++)
-    PetscCall(PetscLogEventRegister(name[e], id, &m->event[e]));
+    PetscCall(PetscLogEventRegister(name[e], PETSC_OBJECT_CLASSID, &m->event[e]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

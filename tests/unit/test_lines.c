@@ -126,9 +126,11 @@ static void TestWeights(void **state)
     for (int n = 0; n < 400; n++) {
       GridLines line = RandomLines(&r, RngBetween(&r, -3.0, 3.0));
 
-      for (int k = 0; k < 50; k++) /* also domains longer than their cell, and over the grid's edge */
-        Look(&line, (BasisType)basis, line.lower + (line.upper - line.lower) * RngBetween(&r, 1e-3, 0.999),
-             RngBetween(&r, 0.01, 0.3), &w);
+      for (int k = 0; k < 50; k++) { /* also domains longer than their cell, and over the grid's edge */
+        const double l = RngBetween(&r, 0.01, 0.3), s = RngBetween(&r, 1e-3, 0.999);
+
+        Look(&line, (BasisType)basis, line.lower + (line.upper - line.lower) * s, l, &w);
+      }
       Call(LinesDestroy(&line));
     }
     Say("%-6s: sum of weights - 1, x l/h: %.0e, of gradients x l: %.0e, linear field: %.0e h, its gradient x l/h: "

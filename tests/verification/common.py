@@ -30,6 +30,7 @@ from clathra.units import pascals, seconds  # noqa: E402
 
 CASES = ROOT / "cases"
 WARNS_OF_HELD = "for no other reason than stabilisation_reaction_heat"  # in the end's warning of hydrate that (381) keeps, (423)
+np.set_printoptions(legacy="1.21")  # repr of a number is the number alone, which cases can read; NumPy 2 writes its type, too
 ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
@@ -37,6 +38,8 @@ ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "OMPI_MCA_hwloc_base_binding_policy": "none",
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # the same of OpenMPI 5
+    "PRTE_MCA_hwloc_default_binding_policy": "none",
     "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
     "OMPI_MCA_mpi_yield_when_idle": "1",  # more ranks than cores: a waiting rank lets the others run
     # Starting takes 0.11 s instead of 0.41 s: no daemon for a single rank, no look for networks (a library of one times a clock).
