@@ -56,8 +56,8 @@ static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
       for (int d = 0; d < CL_DIM; d++) {
         const PetscInt k = at[d] - first[d];
 
-        in = in && k >= 0 && k <= 1;
-        i |= (int)k << d;
+        in = in && (k == 0 || k == 1);
+        i |= (k == 1) << d;
       }
       for (int d = 0; in && d < CL_DIM; d++)
         Q[a][d] += part[c] * of->Q[i][d];
