@@ -5,7 +5,7 @@
 #include "clathra/laws_batch.h"
 #include "motion.h"
 
-/* Volume and saturation of hydrate at the end of the step; false if no open pores are left. */
+/* Volume and saturation of hydrate at the end of the step; false if fluids or hydrate have no open pores left. */
 INLINE bool PoresAfter(Explicit *e, const Set s, Run r, const Strain *n, const double *restrict T, double *restrict phi)
 {
   double *const *f     = e->m->P.f;
@@ -22,9 +22,9 @@ INLINE bool PoresAfter(Explicit *e, const Set s, Run r, const Strain *n, const d
     const double volume = known ? at[q] : V[q] * n->J[q];
     const Pores  v      = PoresOf(volume, ms[q], rho_s[q], mh[q], rho_h[q]);
 
-    full |= WRONG_UNLESS(v.open > 0.0);
+    full |= WRONG_UNLESS((v.open > 0.0) | (!s.fluids & (mh[q] == 0.0)));
     phi[q] = v.phi;
-    Sh[q]  = v.Sh;
+    Sh[q]  = mh[q] == 0.0 ? 0.0 : v.Sh;
     V[q]   = volume;
   }
   return !full;

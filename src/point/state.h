@@ -222,21 +222,22 @@ INLINE ClStatus ScalarStateEvaluate(const FieldSet *fs, const Material *mat, con
   const ClStatus status = CheckInputs(fs, mat, in, why);
   if (status != CL_OK)
     return status;
-  *s     = (ScalarState){.V = JetScale(h->V, JetVariable(J, JET_J))};
-  s->Vp  = VolumeLeftJet(s->V, JetConstant(h->m_s), rho_s);
-  s->phi = JetDiv(s->Vp, s->V);
-  if (!(s->phi.v > 0.0)) {
+  *s                = (ScalarState){.V = JetScale(h->V, JetVariable(J, JET_J))};
+  s->Vp             = VolumeLeftJet(s->V, JetConstant(h->m_s), rho_s);
+  s->phi            = JetDiv(s->Vp, s->V);
+  const bool filled = fs->fluid || h->m_star[0] > 0.0; /* nothing else needs pores */
+  if (filled && !(s->phi.v > 0.0)) {
     *why = "porosity fell to zero";
     return CL_DOMAIN;
   }
   Saturations(fs, mat, h, pw, pg, T, rho_h, s);
 
   const Jet Vf = VolumeLeftJet(s->Vp, s->m_h, rho_h);
-  if (!(Vf.v > 0.0)) {
+  if (filled && !(Vf.v > 0.0)) {
     *why = "hydrate fills the pore space";
     return CL_DOMAIN;
   }
-  s->Sh         = PoreShareJet(s->m_h, rho_h, s->Vp);
+  s->Sh         = filled ? PoreShareJet(s->m_h, rho_h, s->Vp) : zero;
   s->m[PHASE_W] = s->m[PHASE_G] = zero;
   if (fs->phase[PHASE_W]) {
     s->rho[PHASE_W] = FluidJet(mat, PHASE_W, pw, T);

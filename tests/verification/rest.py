@@ -2,6 +2,7 @@
 """Row 8: states that must stay at rest through committed steps.
 
 Bars under uniform stress whose surface lies anywhere in a cell: what particles take from their cells (88), (160) leaves no force.
+Ground without fluids may be pressed until no pores are left.
 
 Two layers of different saturation under one pressure (the paper's fluid force would push p grad(phi S) there), and a
 hydrostatic column under gravity, both with a free surface inside a cell.  Velocities are held against k/mu times the
@@ -32,5 +33,17 @@ for fill in (0.05, 0.3, 0.77):
         value = np.abs(last["v_s"]).max()
         rows.append((f"bar, {name}", "v_s", value, value / 1.0))
         judge(8, f"bar under 1 MPa, surface at {fill} of a cell, {name}: largest v_s after 0.05 s", value, 1e-12, unit="m/s")
+# ground without fluids whose pores are gone: as compressible as with pores, of the same weight
+def pressed(phi, *more):
+    end = ("-boundaries", "left,base,load", "-bc_load_type", "traction", "-bc_load_side", "right", "-bc_load_normal", "{ramp: [1 MPa, 20 MPa, 0 s, 0.05 s]}")
+    run = Run.of_case(CASES / "bar.yaml", "-quiet", *end, "-mat_rock_porosity", phi, "-mat_rock_solid_density", f"{2000 / (1 - phi)!r} kg/m^3", *more)
+    return run.snapshots()[-1][1]
+
+
+for name, more in (("hybrid", ()), ("sdirk2", ("-stepper_type", "sdirk2", "-inertia", "no", "-newton_tol_update", 1e-10))):
+    dense, loose = (pressed(phi, *more) for phi in (0.02, 0.4))
+    judge(8, f"pressed until no pores are left, {name}: porosity at the end", dense["porosity"].min(), (-0.5, -0.02))
+    off = np.abs(dense["displacement"] - loose["displacement"]).max() / np.abs(loose["displacement"]).max()
+    judge(8, f"... displacement against ground with pores, {name}", off, 1e-8)
 table(("state", "velocity", "largest (m/s)", "over the scale"), rows)
 finish()
