@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Slopes at their limit: a vertical cut by raising gravity (gamma H/c = 6.69 for phi = psi = 30 deg), and the factor of safety of a
 slope of 2 to 1 by strength reduction (Griffiths and Lane 1999: 1.4, Bishop 1.38), with scripts/strength_reduction.py; hybrid
-against implicit, grids, a stage that reduces, and what locking does.
+against implicit, grids, a stage that reduces; slopes of clay.
 
 The cut of the implicit runs fails where its crest moves outwards ten times as fast with gravity as at first.  A slip surface
 across the grid is one to two cells wide, so limits are too large, of first order.  With psi = 0 the factor depends on the grid.
@@ -91,6 +91,23 @@ def stage():
         check(f"slope 2:1, a stage that reduces by {factor}: growth of the displacement", growth, (low, high))
 
 
-for part in (cut, slope, stage):
+def undrained():
+    """The same slope of clay, c/(gamma H) = 0.25, on a base at its toe (D = 1) and at the depth H below it (D = 2): limits 2.02 and 1.47 by circles."""
+    clay = SLOPE.read_text().replace("cohesion_max: 10 kPa, friction_peak: 20 deg", "cohesion_max: 50 kPa, friction_peak: 0 deg")
+    deep = (("upper: [36 m, 12 m]", "upper: [72 m, 22 m]"), ("[[0 m, 0 m], [32 m, 0 m], [12 m, 10 m], [0 m, 10 m]]", "[[0 m, 0 m], [72 m, 0 m], [72 m, 10 m], [44 m, 10 m], [24 m, 20 m], [0 m, 20 m]]"),
+            ("[base, left]", "[base, left, right]"), ("bc:\n", "bc:\n  right: {type: roller, axis: x, position: 72 m}\n"))  # fmt: skip
+    for D, swaps, cells, low, high, exact in ((1, (), "36,12", 2.1, 2.2, 2.02), (2, deep, "72,22", 1.5, 1.6, 1.47)):
+        text = clay
+        for old, new in swaps:
+            assert old in text
+            text = text.replace(old, new)
+        path = scratch() / f"clay{D}.yaml"
+        path.write_text(text)
+        growth = [grows(path, "-grid_cells", cells, "-strength_factor", f, "-time_end", "6 s", "-output_times", "4.8 s, 6 s") for f in (low, high)]
+        check_true(f"undrained slope, D = {D}, H/10, hybrid: stands at {low}, slides at {high}", growth[0] < 0.05 < growth[1], growth)
+        judge("strength", f"undrained slope, D = {D}, H/10: limit over that of circles", 0.5 * (low + high) / exact - 1, (-0.08, 0.08), 0.01, "%")
+
+
+for part in (cut, slope, stage, undrained):
     part()
 finish()
