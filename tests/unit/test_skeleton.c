@@ -77,12 +77,12 @@ static void TestBlock(void **state)
   (void)state;
   for (int run = 0; run < 200; run++) {
     Sample        q[N];
-    double        a[9][N], sig[12][N], work[N], eps[N], opening[N], yield[N];
+    double        a[10][N], sig[12][N], work[N], eps[N], opening[N], yield[N];
     const bool    plastic = run % 2;
     const char   *why     = NULL;
     SkeletonBlock b       = {.n       = 1 + RngPick(&r, N),
                              .turn    = {a[0], a[1]},
-                             .e       = {[XX] = a[2], [YY] = a[3], [XY] = a[4]},
+                             .e       = {[XX] = a[2], [YY] = a[3], [ZZ] = a[9], [XY] = a[4]},
                              .thermal = a[5],
                              .E_n     = a[6],
                              .E       = a[7],
@@ -99,11 +99,10 @@ static void TestBlock(void **state)
       q[k].h.from.own[OWN_P_OPENING] = run % 4 == 3 && k % 2 ? RngBetween(&r, 0.0, 5e-3) : 0.0;
       opening[k]                     = q[k].h.from.own[OWN_P_OPENING];
       eps[k]                         = q[k].h.from.own[OWN_P_EPS];
-      q[k].in[SKELETON_STRAIN + 2]   = 0.0;
       const SkeletonStep d           = StepOf(q[k].in, q[k].E_n);
-      const double       row[9]      = {d.turn.c, d.turn.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh};
+      const double       row[10] = {d.turn.c, d.turn.s, d.e[0], d.e[1], d.e[3], d.thermal, d.E_n, d.E, d.Sh, d.e[2]};
 
-      for (int i = 0; i < 9; i++)
+      for (int i = 0; i < 10; i++)
         a[i][k] = row[i];
       for (int i = 0; i < 6; i++) {
         sig[i][k]     = q[k].h.sig[i];
