@@ -49,6 +49,10 @@ family("Prandtl", False, True, (8,), (0.0, 0.06), None)
 for name in ("Nc, 20 deg", "Nq, 20 deg"):
     free = family(name, False, False, (4, 8), (0.0, 0.03), 0.015)
     check(f"{name}: implicit against hybrid, a/4", measured(name, 4, False, implicit=True)[0] / free[0] - 1, (-0.04, 0.04))
+BESIDE = ("-ambient_pressure", "0 Pa", "-boundaries", "base,left,right,plate,beside", "-bc_beside_type", "traction", "-bc_beside_side", "top", "-bc_beside_from", "1 m", "-bc_beside_normal", "1 MPa")
+m = strip_run("Nq, 20 deg", 4, False, *BESIDE).csv("meters.csv")
+by_traction = collapse(-m["plate.position_m"], m["plate.force_N"] / 1e6)[0]
+check("Nq, 20 deg, hybrid: surcharge by a traction on a surface that rises from the grid's line, against ambient pressure", by_traction / measured("Nq, 20 deg", 4, False)[0] - 1, (-1e-3, 1e-3))
 load, growth = measured("Prandtl", 8, True, "-mean_strain", "0", implicit=True, what="no mean strain")
 check("Prandtl without mean strain: over the exact load at a/8", load / exact("Prandtl") - 1, (0.0, 0.1))
 check("... growth over the last fifth", growth, 0.02)
