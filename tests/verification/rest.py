@@ -29,14 +29,14 @@ for fill in (0.05, 0.3, 0.77):
     upper = f"2 m, {1 + 0.25 * fill} m"
     for name, more in (("hybrid", ()), ("sdirk2", ("-stepper_type", "sdirk2")), ("hybrid, half the mean strain", ("-mean_strain", 0.5)),
                        ("sdirk2, about an axis", ("-stepper_type", "sdirk2", "-geometry", "axisymmetric", "-boundaries", "base,right", *HOOP))):  # fmt: skip
-        last = Run.of_case(CASES / "bar.yaml", "-quiet", "-region_bar_upper", upper, *more).snapshots()[-1][1]
+        last = Run.of_case(CASES / "pressed_bar.yaml", "-quiet", "-region_bar_upper", upper, *more).snapshots()[-1][1]
         value = np.abs(last["v_s"]).max()
         rows.append((f"bar, {name}", "v_s", value, value / 1.0))
         judge(8, f"bar under 1 MPa, surface at {fill} of a cell, {name}: largest v_s after 0.05 s", value, 1e-12, unit="m/s")
 # ground without fluids whose pores are gone: as compressible as with pores, of the same weight
 def pressed(phi, *more):
     end = ("-boundaries", "left,base,load", "-bc_load_type", "traction", "-bc_load_side", "right", "-bc_load_normal", "{ramp: [1 MPa, 20 MPa, 0 s, 0.05 s]}")
-    run = Run.of_case(CASES / "bar.yaml", "-quiet", *end, "-mat_rock_porosity", phi, "-mat_rock_solid_density", f"{2000 / (1 - phi)!r} kg/m^3", *more)
+    run = Run.of_case(CASES / "pressed_bar.yaml", "-quiet", *end, "-mat_rock_porosity", phi, "-mat_rock_solid_density", f"{2000 / (1 - phi)!r} kg/m^3", *more)
     return run.snapshots()[-1][1]
 
 

@@ -49,8 +49,8 @@ def measured(folder):
     run = clathra.Run(folder)
     p = run.particles(run.times[-1])
     fields = {k: np.asarray(p[k]).reshape(len(p["id"]), -1) for k in ("p", "p_w", "T", "S_h", "S_w", "eps_d_p") if k in p}
-    if "stress" in p:
-        fields |= {"mean stress": p["stress"][:, :3].mean(axis=1, keepdims=True), "displacement": p["displacement"]}
+    if "stress" in p:  # of the nodal means that pictures show: a cell's particles share its volume change (88), so their own alternate from cell to cell
+        fields |= {"mean stress": shown.drawn(run, run.times[-1])["stress"][:, :3].mean(axis=1, keepdims=True), "displacement": p["displacement"]}
     found = {}
     for name, values in fields.items():
         parts = [cell_means(run, p, v) for v in values.T]
