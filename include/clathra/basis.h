@@ -115,18 +115,21 @@ static inline int BasisCellAt(const GridLines *line, double x, const Axis *a)
 double AxisCentroid(const Axis *a, const GridLines *line);
 
 /* The part of a domain in each of the two cells behind its first node, along one axis: its share of the domain; that
-   times the mean over it of the hat function of the cell's second node. */
+   times the mean over it of the hat function of the cell's second node; and the length that weights have over that of
+   gradients, which differ where an edge lies on a line that it is BASIS_SNAP from. */
 typedef struct {
-  double share[2], at[2];
+  double share[2], at[2], whole;
 } AxisParts;
 
 /* S, dS: weights of a domain along the axis (dS in 1/m); h0, h1: widths of the two cells, m. */
 static inline AxisParts AxisPartsOf(const double S[3], const double dS[3], double h0, double h1)
 {
-  AxisParts a = {.share = {-dS[0] * h0, dS[2] * h1}};
+  AxisParts a = {.whole = dS[2] * h1 - dS[0] * h0};
 
-  a.at[0] = a.share[0] - S[0];
-  a.at[1] = S[2];
+  a.share[0] = -dS[0] * h0 / a.whole;
+  a.share[1] = dS[2] * h1 / a.whole;
+  a.at[0]    = a.share[0] - S[0];
+  a.at[1]    = S[2];
   return a;
 }
 

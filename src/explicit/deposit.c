@@ -271,13 +271,13 @@ INLINE void CellForces(Explicit *e, const Set s, Run r, const Weights *w, Given 
     for (int i = 0; i < CL_DIM; i++)
       more += v->force[i][q][at + i];
     more *= take.volume;
+    PartsOf(w, q, part);
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++) {
         share[i][j] = take.strain * v->force[j][q][at + i];
-        v->force[j][q][at + i] -= share[i][j] + (i == j ? more : 0.0);
+        v->force[j][q][at + i] -= (share[i][j] + (i == j ? more : 0.0)) / part[j].whole;
       }
     }
-    PartsOf(w, q, part);
     for (int c = 0; c < CL_CORNERS; c++) {
       const double weight = PartMoment(part, c, 0);
 

@@ -89,9 +89,9 @@ INLINE void MeanMotion(const Explicit *e, Set s, Run r, const Weights *w, int at
     AxisParts part[CL_DIM];
     double    more = 0.0;
 
-    for (int i = 0; i < CL_DIM; i++)
-      more -= g->grad[i][q][at + i];
     PartsOf(w, q, part);
+    for (int i = 0; i < CL_DIM; i++)
+      more -= g->grad[i][q][at + i] / part[i].whole;
     for (int c = 0; c < CL_CORNERS; c++) {
       const double share = PartMoment(part, c, 0);
       const int    row   = e->slot[w->first[q] + CornerAt(e, c)];
@@ -101,7 +101,7 @@ INLINE void MeanMotion(const Explicit *e, Set s, Run r, const Weights *w, int at
       more += share * e->swell[row];
       for (int i = 0; take.strain > 0.0 && i < CL_DIM; i++) {
         for (int j = 0; j < CL_DIM; j++)
-          g->beyond[i][j][q] += take.strain * share * (e->part[row][i][j] - g->grad[j][q][at + i]);
+          g->beyond[i][j][q] += take.strain * share * (e->part[row][i][j] - g->grad[j][q][at + i] / part[j].whole);
       }
     }
     g->swell[q] = take.volume * more;

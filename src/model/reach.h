@@ -41,8 +41,10 @@ static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
   double         Q[CL_NODES][CL_DIM] = {{0.0}}, hoop[CL_NODES] = {0.0};
   PetscInt       cell[CL_CORNERS];
   double         part[CL_CORNERS];
+  AxisParts      axis[CL_DIM], over;
 
   StencilCells(s, &m->grid, &m->map, cell, part);
+  StencilParts(s, &m->grid, axis, &over);
   for (int c = 0; c < CL_CORNERS; c++) {
     if (cell[c] < 0)
       continue;
@@ -68,8 +70,10 @@ static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
     const double beyond = ring ? hoop[a] - r->H[a] : 0.0;
 
     for (int d = 0; d < CL_DIM; d++) {
-      r->mixed[a][d] = r->G[a][d] + share * (Q[a][d] - r->G[a][d]);
-      r->B[a][d]     = mean * (Q[a][d] - r->G[a][d]);
+      const double more = Q[a][d] - r->G[a][d] / axis[d].whole;
+
+      r->mixed[a][d] = r->G[a][d] + share * more;
+      r->B[a][d]     = mean * more;
     }
     r->mixed_hoop[a] = ring ? r->H[a] + share * beyond : 0.0;
     r->B[a][0] += mean * beyond;

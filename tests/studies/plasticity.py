@@ -54,10 +54,9 @@ def wanted():
     yield from (("circle", (n, *how)) for n in (4, 8) for how in CIRCLES[1:])
     yield from (("slope", (n, f)) for n in (10, 20) for f in (1.35, 1.4, 1.45))
     yield from (("hole", (n, i)) for n in (5, 10) for i in ("implicit", "hybrid"))
-    yield ("footing", ("Prandtl", 16, "implicit", 1, 1))
     yield from (("slope", (40, f)) for f in (1.3, 1.35, 1.4))
     yield from (("hole", (20, i)) for i in ("implicit", "hybrid"))
-    yield from (("footing", (name, 16, "hybrid", int(name == "Prandtl"), 1)) for name in STRIPS)
+    yield from (("footing", ("Prandtl", 16, i, 1, 1)) for i in ("hybrid", "implicit"))
     yield from (("circle", (n, *CIRCLES[1])) for n in (16, 24))
     yield from (("circle", (n, *CIRCLES[0])) for n in (8, 16))
 
@@ -117,7 +116,8 @@ def slope_rows(rows):
         for f in (1.3, 1.35, 1.4, 1.45):
             k = key("slope", (n, f))
             cells.append("" if k not in rows else f"{1e3 * rows[k][0]:.0f} mm, {'fails' if rows[k][1] > 0.05 else 'stands'}")
-        yield f"| H/{n} | {' | '.join(cells)} |"
+        if any(cells):
+            yield f"| H/{n} | {' | '.join(cells)} |"
 
 
 def circle_rows(rows):
@@ -172,7 +172,7 @@ def page(rows):
         "is left is the cell beside the plate, over which the ground's motion has to pass: the plate acts as if it were wider by a part of a cell.", "",
         "| case | plate | integrator | mean strain | exact (c or q) | a/4 | a/8 | a/16 | h to 0 |", "|---|---|---|---|---|---|---|---|---|",
         *footing_rows(rows), "",
-        "The bar of 3 % on a grid, not extrapolated, is met by Nc and Nq at a/8, at 20 and at 30 deg, by Prandtl's strip at a/16; Cox's circle, below, at R/16. Nc at",
+        "The bar of 3 % on a grid, not extrapolated, is met by Nc and Nq at a/8, at 20 and at 30 deg; Cox's circle, below, at R/16. Nc at",
         "30 deg still grows by 3 to 4 % over the last fifth of its settlement. An empty field was not run.", "",
         "## Smooth circle on heavy ground (Cox), phi = psi = 30 deg, gamma R/c = 10: 141 c", "",
         "Implicit (about an axis hybrid is not there), at a settlement of 6e-5 R where E/c = 1e7 (ghost penalty 1e-6), of 6e-6 R where it is 1e8 (1e-7), of 6e-4 R where it is 1e6 (1e-5).", "",
