@@ -270,16 +270,26 @@ static inline bool SceneExchanges(const Scene *c)
   return SceneContrast(c) > 1.0;
 }
 
-/* Do particles take the volume change of their cells (88)?  Not on cells that deform with the body (445). */
-static inline bool SceneTakesCellMeans(const Scene *c)
+/* May particles take the volume change of their cells (88)?  Not on cells that deform with the body (445). */
+static inline bool SceneHasCellMeans(const Scene *c)
 {
   return c->fields.solid && c->basis != BASIS_TOTAL;
+}
+
+/* Do they in this stage?  Where a skeleton may yield, and with (160). */
+static inline bool SceneTakesCellMeans(const Scene *c)
+{
+  bool yields = c->mean_strain > 0.0;
+
+  for (PetscInt k = 0; k < c->nmaterial; k++)
+    yields = yields || c->material[k].plasticity.type != PLASTICITY_NONE;
+  return yields && SceneHasCellMeans(c);
 }
 
 /* Are particles of the plane strained across it, too: along the ring about an axis, by (88)? */
 static inline bool SceneStrainsAcross(const Scene *c)
 {
-  return CL_DIM == 2 && (c->axisymmetric || SceneTakesCellMeans(c));
+  return CL_DIM == 2 && (c->axisymmetric || SceneHasCellMeans(c));
 }
 
 /* First condition that the integrators without a matrix do not know, or NULL. */

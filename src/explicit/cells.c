@@ -53,10 +53,10 @@ PetscErrorCode CellsForces(Explicit *e)
 
 void CellsMotion(Explicit *e)
 {
-  const int  width  = LANES * Rows(B_Count(e->set));
-  const bool strain = e->m->c->mean_strain > 0.0;
+  const int  width = LANES * Rows(B_Count(e->set));
+  const bool takes = TakesCellMean(e), strain = e->m->c->mean_strain > 0.0;
 
-  for (PetscInt I = 0; TakesCellMean(e) && I < e->map.n_local; I++) {
+  for (PetscInt I = 0; takes && I < e->map.n_local; I++) {
     if (!Filled(e, I))
       continue;
     e->swell[I] = 0.0;

@@ -81,11 +81,12 @@ INLINE void Gather(const Explicit *e, const double *nodes, int eights, int grade
    have them. */
 INLINE void MeanMotion(const Explicit *e, Set s, Run r, const Weights *w, int at, Gathered *g)
 {
-  const CellShare take = CellShareOf(e);
+  const CellShare take   = CellShareOf(e);
+  const bool      shares = s.solid && TakesCellMean(e);
 
   memset(g->swell, 0, sizeof(g->swell));
   memset(g->beyond, 0, sizeof(g->beyond));
-  for (int q = 0; s.solid && TakesCellMean(e) && q < r.n; q++) {
+  for (int q = 0; shares && q < r.n; q++) {
     AxisParts part[CL_DIM];
     double    more = 0.0;
 

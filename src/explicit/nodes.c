@@ -22,7 +22,7 @@ static PetscErrorCode Allocate(Explicit *e)
   e->rows = n;
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
   PetscCall(PetscFree4(e->cell, e->mean, e->swell, e->part));
-  if (TakesCellMean(e))
+  if (SceneHasCellMeans(e->m->c))
     PetscCall(PetscCalloc4(n * CELL_MEAN, &e->cell, n, &e->mean, n, &e->swell, n, &e->part));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
