@@ -75,8 +75,8 @@ def leaning():
         run = lambda p, *more: last(Run.of_case(
             CASES / "sea_body.yaml", "-quiet", *where, "-boundaries", "base", *BASE, *TIGHT, "-fields", "solid", "-region_body_hydrostatic", "no",
             "-ambient_density", "0 kg/m^3", "-ambient_pressure", f"{p} MPa", "-region_body_stress", ",".join([f"{-p} MPa"] * 3 + ["0 Pa"] * 3),
-            "-grid_upper", "12 m,5 m", "-grid_cells", "24,10", "-gravity", "600 m/s^2,0 m/s^2", "-gravity_ramp", "100 s", "-mat_mud_elasticity_E0", "5 MPa", *more))  # fmt: skip
-        for name, options in (("sdirk2", ()), ("hybrid", ("-inertia", "yes", "-stepper_type", "hybrid", "-stepper_dt", "1e-3 s", "-gravity_ramp", "0.6 s",
+            "-gravity", "600 m/s^2,0 m/s^2", "-gravity_ramp", "100 s", "-mat_mud_elasticity_E0", "5 MPa", *more))  # fmt: skip
+        for name, options in (("sdirk2", ()), ("hybrid", ("-inertia", "yes", "-stepper_type", "hybrid", "-grid_upper", "12 m,5 m", "-grid_cells", "24,10", "-stepper_dt", "1e-3 s", "-gravity_ramp", "0.6 s",
                                                           "-time_end", "0.6 s", "-output_times", "0 s,0.6 s"))):  # fmt: skip
             free, pressed = run(0.0, *options), run(10.0, *options)
             u = free["displacement"]

@@ -413,6 +413,7 @@ def bar():
     """Under stress along itself, in a corner of rollers, with free surfaces that cut cells (88), (160): no force."""
     case = block()
     rock = {k: v for k, v in MATERIAL.items() if k in ("porosity", "solid", "elasticity")}
+    rock["plasticity"] = {"law": "mohr_coulomb", "flow": "mohr_coulomb", "cohesion_max": "1 GPa", "friction_peak": "30 deg"}  # what may yield takes (88)
     case |= {"title": "Bar under stress", "fields": ["solid"], "gravity": ["0 m/s^2"] * 3, "mat": {"sediment": rock}, "regions": ["bar"],
              "grid": {"lower": ["0 m"] * 3, "upper": ["0.8 m", "0.6 m", "0.6 m"], "cells": [4, 3, 3]}, "boundaries": list("abcd"),
              "region": {"bar": {"lower": ["0 m"] * 3, "upper": ["0.8 m", "0.46 m", "0.55 m"], "material": "sediment", "particles_per_cell": [2, 2, 2],
