@@ -159,12 +159,12 @@ typedef struct {
    the radius, m^2); h: widths of the cell, m. */
 void CellMeanOf(const double moment[CELL_MOMENTS], const double h[CL_DIM], bool axisymmetric, CellMean *c);
 
-/* Cells that a stencil's domain lies in, by the local active numbers of their first nodes, and its parts in them; -1
-   and 0 where it has none, or the cell is beyond the grid's padding. */
-void StencilCells(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt cell[CL_CORNERS],
-                  double share[CL_CORNERS]);
-/* Parts of a stencil's domain along the axes; about an axis *ring: those along r of the domain over r, 1/m. */
-void StencilParts(const Stencil *s, const Grid *g, AxisParts part[CL_DIM], AxisParts *ring);
+/* Parts of a stencil's domain along the axes, and the cells that it lies in, by the local active numbers of their first
+   nodes, with its shares in them; -1 where it has none, or the cell is beyond the grid's padding. */
+void StencilCells(const Stencil *s, const Grid *g, const NodeMap *map, AxisParts part[CL_DIM],
+                  PetscInt cell[CL_CORNERS], double share[CL_CORNERS]);
+/* About an axis: the parts along r of the domain over r, 1/m, from those of the domain (`whole` is not set). */
+AxisParts StencilRing(const Stencil *s, const Grid *g, const AxisParts *radial);
 
 /* Those nodes of a stencil that carry a weight or a gradient, x running fastest: how far each is from the first one
    along each axis, 0 to 2; returns how many. */

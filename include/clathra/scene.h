@@ -279,11 +279,11 @@ static inline bool SceneHasCellMeans(const Scene *c)
 /* Do they in this stage?  Where a skeleton may yield, and with (160). */
 static inline bool SceneTakesCellMeans(const Scene *c)
 {
-  bool yields = c->mean_strain > 0.0;
+  bool takes = c->mean_strain > 0.0;
 
   for (PetscInt k = 0; k < c->nmaterial; k++)
-    yields = yields || c->material[k].plasticity.type != PLASTICITY_NONE;
-  return yields && SceneHasCellMeans(c);
+    takes = takes || c->material[k].plasticity.type != PLASTICITY_NONE;
+  return takes && SceneHasCellMeans(c);
 }
 
 /* Are particles of the plane strained across it, too: along the ring about an axis, by (88)? */

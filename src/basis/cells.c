@@ -39,21 +39,14 @@ void CellMeanOf(const double moment[CELL_MOMENTS], const double h[CL_DIM], bool 
   }
 }
 
-static void Parts(const Stencil *s, const Grid *g, AxisParts part[CL_DIM])
+void StencilCells(const Stencil *s, const Grid *g, const NodeMap *map, AxisParts part[CL_DIM],
+                  PetscInt cell[CL_CORNERS], double share[CL_CORNERS])
 {
   for (int d = 0; d < CL_DIM; d++) {
     const Axis *a = &s->axis[d];
 
     part[d] = AxisPartsOf(a->S, a->dS, LinesWidth(&g->line[d], a->base), LinesWidth(&g->line[d], a->base + 1));
   }
-}
-
-void StencilCells(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt cell[CL_CORNERS],
-                  double share[CL_CORNERS])
-{
-  AxisParts part[CL_DIM];
-
-  Parts(s, g, part);
   for (int c = 0; c < CL_CORNERS; c++) {
     PetscInt first[CL_DIM];
 
@@ -64,18 +57,16 @@ void StencilCells(const Stencil *s, const Grid *g, const NodeMap *map, PetscInt 
   }
 }
 
-void StencilParts(const Stencil *s, const Grid *g, AxisParts part[CL_DIM], AxisParts *ring)
+AxisParts StencilRing(const Stencil *s, const Grid *g, const AxisParts *radial)
 {
-  Parts(s, g, part);
-  if (s->r == 0.0)
-    return;
   /* (29): r = r_1 - h_0 (1 - xi) before the line between the cells and r_1 + h_1 xi behind it */
   const GridLines *line = &g->line[0];
   const PetscInt   base = s->axis[0].base;
   const double     h0 = LinesWidth(line, base), h1 = LinesWidth(line, base + 1), r1 = GridNode(g, 0, base + 1);
+  AxisParts        over = {.at = {0.0, s->hoop[2]}};
 
-  ring->share[0] = (part[0].share[0] + h0 * s->hoop[0]) / r1;
-  ring->share[1] = (part[0].share[1] - h1 * s->hoop[2]) / r1;
-  ring->at[0]    = ring->share[0] - s->hoop[0];
-  ring->at[1]    = s->hoop[2];
+  over.share[0] = (radial->share[0] + h0 * s->hoop[0]) / r1;
+  over.share[1] = (radial->share[1] - h1 * s->hoop[2]) / r1;
+  over.at[0]    = over.share[0] - s->hoop[0];
+  return over;
 }

@@ -143,14 +143,15 @@ PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const
   PetscCall(Means(&b));
   PetscCall(Normals(&b));
   for (PetscInt p = 0; p < P->n; p++) {
-    Stencil  s;
-    PetscInt cell[CL_CORNERS];
-    double   share[CL_CORNERS];
+    Stencil   s;
+    AxisParts part[CL_DIM];
+    PetscInt  cell[CL_CORNERS];
+    double    share[CL_CORNERS];
 
     beside[p]         = Across(&b, p, N[p]);
     const double over = 1.0 / (b.k[p] * (beside[p] ? BedsAcross(&A[p], N[p]) : 1.0));
     ParticleStencil(c, g, P, p, &s);
-    StencilCells(&s, g, map, cell, share);
+    StencilCells(&s, g, map, part, cell, share);
     for (int k = 0; k < CL_CORNERS; k++) {
       if (cell[k] < 0)
         continue;
@@ -160,14 +161,15 @@ PetscErrorCode ParticlesDrive(const Scene *c, const Grid *g, NodeMap *map, const
   }
   PetscCall(NodeMapSum(map, b.cell, CELL_SUMS));
   for (PetscInt p = 0; p < P->n; p++) {
-    Stencil  s;
-    PetscInt cell[CL_CORNERS];
-    double   share[CL_CORNERS], over = 0.0;
+    Stencil   s;
+    AxisParts part[CL_DIM];
+    PetscInt  cell[CL_CORNERS];
+    double    share[CL_CORNERS], over = 0.0;
 
     if (!beside[p])
       continue;
     ParticleStencil(c, g, P, p, &s);
-    StencilCells(&s, g, map, cell, share);
+    StencilCells(&s, g, map, part, cell, share);
     for (int k = 0; k < CL_CORNERS; k++) {
       const double *sum = &b.cell[CELL_SUMS * cell[k]];
 

@@ -60,7 +60,8 @@ void CellsMotion(Explicit *e)
     if (!Filled(e, I))
       continue;
     e->swell[I] = 0.0;
-    memset(e->part[I], 0, sizeof(e->part[I]));
+    if (strain)
+      memset(e->part[I], 0, sizeof(e->part[I]));
     for (int a = 0; a < CL_CORNERS; a++) {
       const double *v = &e->B[Corner(e, I, a) * width];
 

@@ -290,7 +290,8 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   PetscCall(PetscArrayzero(e->A, e->rows * width));
   if (TakesCellMean(e)) {
     PetscCall(PetscArrayzero(e->cell, e->rows * CELL_MEAN));
-    PetscCall(PetscArrayzero(e->part, e->rows));
+    if (e->m->c->mean_strain > 0.0)
+      PetscCall(PetscArrayzero(e->part, e->rows));
   }
   if (e->set.layers)
     PetscCall(ParticlesDrive(e->m->c, &e->m->grid, &e->map, &e->m->P, e->beds));

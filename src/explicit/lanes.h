@@ -150,7 +150,8 @@ struct Explicit {
   int       pass;               /* of (413), from 0 */
   double   *cell;  /* [rows][CELL_MEAN] of the cell behind a node: sums of PartMoment, m^3, last CELL_PRESSURE */
   CellMean *mean;  /* [rows] */
-  double   *swell; /* [rows] mean divergence of the velocity in a cell, 1/s */
+  double   *swell; /* [rows] mean stress through a cell's volume change, J, of this rank; from CellsMotion on
+                                     the mean divergence of its velocity, 1/s */
   double (*part)[CL_DIM][CL_DIM]; /* [rows] (160): stress through the cell's mean motion, J; from CellsMotion on its
                                      mean velocity gradient, 1/s */
   double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between

@@ -41,10 +41,9 @@ static inline void CellMotion(const Model *m, PetscInt p, Reach *r)
   double         Q[CL_NODES][CL_DIM] = {{0.0}}, hoop[CL_NODES] = {0.0};
   PetscInt       cell[CL_CORNERS];
   double         part[CL_CORNERS];
-  AxisParts      axis[CL_DIM], over;
+  AxisParts      axis[CL_DIM];
 
-  StencilCells(s, &m->grid, &m->map, cell, part);
-  StencilParts(s, &m->grid, axis, &over);
+  StencilCells(s, &m->grid, &m->map, axis, cell, part);
   for (int c = 0; c < CL_CORNERS; c++) {
     if (cell[c] < 0)
       continue;

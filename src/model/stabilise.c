@@ -55,10 +55,11 @@ static void FillCells(const Model *m, double *fill)
 {
   for (PetscInt p = 0; p < m->P.n; p++) {
     const double V = m->P.f[P_V][p] / Swollen(m, p);
+    AxisParts    part[CL_DIM];
     PetscInt     cell[CL_CORNERS];
     double       share[CL_CORNERS];
 
-    StencilCells(&m->stencil[p], &m->grid, &m->map, cell, share);
+    StencilCells(&m->stencil[p], &m->grid, &m->map, part, cell, share);
     for (int k = 0; k < CL_CORNERS; k++) {
       if (cell[k] >= 0)
         fill[2 * cell[k]] += share[k] * V / CellVolume(m, m->map.ij[cell[k]]);

@@ -237,10 +237,10 @@ static PetscErrorCode Cells(Model *m)
     PetscInt     cell[CL_CORNERS];
     double       share[CL_CORNERS];
 
-    StencilCells(&m->stencil[p], &m->grid, &m->map, cell, share);
-    StencilParts(&m->stencil[p], &m->grid, part, over);
-    for (int d = 1; d < CL_DIM; d++)
-      over[d] = part[d];
+    StencilCells(&m->stencil[p], &m->grid, &m->map, part, cell, share);
+    memcpy(over, part, sizeof(part));
+    if (ring)
+      over[0] = StencilRing(&m->stencil[p], &m->grid, &part[0]);
     for (int c = 0; c < CL_CORNERS; c++) {
       if (cell[c] < 0)
         continue;
