@@ -93,7 +93,7 @@ GROUND = """
 
 With 1e-15 m² and more gas rises out of the foot, hydrate that forms there takes the rest, until p_g = p_e, (371) of [equations.md](equations.md), and the next row with it; the density of gas there is that of a tenth of p_w, (323).
 
-**Ground that fails** (cohesion 300 to 10, residual 5 kPa, friction to 10°, the dip of the slope, no dilation, η_s = 20, `tears: close` (427): `-stage_warm_materials slope,weak`). `auto` sees that equilibrium is lost, (356) of [equations.md](equations.md), goes over
+**Ground that fails** (cohesion 300 to 10, residual 5 kPa, friction to 10°, the dip of the slope, no dilation, η_s = 20: `-stage_warm_materials slope,weak`). `auto` sees that equilibrium is lost, (356) of [equations.md](equations.md), goes over
 to `hybrid` at the state before the slide, and after it particles lose what `hybrid` left against their nodes (357), so that implicit steps grow again. Every phase that `hybrid` carried; speed is that of the failed mass with all of E_k:
 """
 AFTER = """
@@ -102,7 +102,7 @@ open tears have no bulk stiffness). With 15° it holds.
 
 *Ground that has no rest.* Up to the state before (427) friction fell to 4° here, less than the slope dips: on this base what is thicker than 5 m slides until it is thinner, over kilometres. The face went by 40 m in 25 s after 110 years (40 MJ/m; the time known to 0.3 years), and slides of a few metres came back up the slope every half to
 two years. Newton's method goes round in two states there, which (426) ended. At 133 years, after 22 minutes, neither integrator got on: 696 of 1406 particles were up to 98 m long and 0.4 m thick in cells of 8 m, where each acts as a piece of a cell. Of what lies in a cell together one particle is then torn while another is pressed, by -21 to 0.9 MPa of
-mean stress, and the water they share goes to -16 MPa; p_g falls below zero with it. Tears that last made the body swell, by 8 % of its volume at 133 years. With `tears: close` it is 2 % at 116 years, but at 116.8 single particles are pressed by 14 MPa, too: it is their shape that ends it. So
+mean stress, and the water they share goes to -16 MPa; p_g falls below zero with it. The body has then swelled by 2 % of its volume: it is the shape of its particles that ends it. So
 a slide may be carried to rest and on from there where there is a rest; ground that flows for hundreds of metres needs particles that part as they stretch, which are not there.
 
 *Slides that were the grid's doing.* Up to the state before (425) this page had cells of 16 m and a sea in eight pieces of constant temperature: T of particles beside the floor was off by 0.5 K before any hydrate melted, S_h of neighbours by 0.8, the ground crept by 80 m in 130 years, and

@@ -20,9 +20,9 @@ extern const FieldInfo cl_field[F_COUNT];
 enum { HAS_SOLID = 1, HAS_WATER = 2, HAS_GAS = 4, HAS_HEAT = 8, HAS_ALL = 15 };
 extern const char *const cl_field_word[]; /* solid, water, gas, heat; NULL ends it */
 /* What a particle variable may need besides: a skeleton that yields, one whose hydrate bears a stress of its own, one
-   whose strength follows the plastic strain of its neighbours, one whose tears close before they bear (last). */
+   whose strength follows the plastic strain of its neighbours. */
 /* ... and what only a key may need: hydrate, at the start or by reaction. */
-enum { HAS_PLASTIC = 16, HAS_BONDS = 32, HAS_NONLOCAL = 64, HAS_HYDRATE = 128, HAS_TEARS = 256 };
+enum { HAS_PLASTIC = 16, HAS_BONDS = 32, HAS_NONLOCAL = 64, HAS_HYDRATE = 128 };
 #define HAS_HISTORY (HAS_PLASTIC | HAS_BONDS) /* a skeleton that holds history besides its stress */
 
 /* A field set.  A field that is not in it has no unknown, no row, no storage; its place is -1. */

@@ -275,7 +275,6 @@ static inline double ElasticityConstrainedFactor(const Elasticity *law)
    gives. */
 enum { PLASTICITY_NONE = 0, PLASTICITY_MOHR_COULOMB };
 enum { FLOW_MENETREY_WILLAM = 0, FLOW_MOHR_COULOMB };
-enum { TEARS_STAY = 0, TEARS_CLOSE };
 typedef struct {
   int    type, flow;          /* PLASTICITY_..., FLOW_... */
   double c_max, c_min, c_res; /* cohesion: peak at Sh_max, its lower limit without hydrate, residual; Pa */
@@ -287,7 +286,6 @@ typedef struct {
   double nonlocal;            /* nonlocal_length, m (0: none): neighbours whose plastic strain softens a particle */
   double eccentricity;        /* of the smooth potential in the meridian plane, of c_max */
   double cutoff;              /* largest tension, Pa; INFINITY: none */
-  int    tears;               /* TEARS_...: what opened in tension must close before it bears (427) */
   double heat;                /* share of the plastic work that becomes heat, [0,1] */
   double factor;              /* of the strength reduction (87), > 0; 0 stands for 1 */
 } Plasticity;

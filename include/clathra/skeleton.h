@@ -33,7 +33,7 @@ typedef struct {
    tensor xx yy zz xy (yz xz), which turns with the body. */
 #define CL_SKELETON_HISTORY(X)                                                                                         \
   X(P_EPS, HAS_PLASTIC, "eps_d_p", 1, "-", "deviatoric plastic strain so far")                                         \
-  X(P_OPENING, HAS_TEARS, "opening", 1, "-", "ln J by which tears stand open (427)")                                   \
+  X(P_OPENING, HAS_PLASTIC, "opening", 1, "-", "ln J by which tears stand open (427)")                                 \
   X(P_BOND, HAS_BONDS, "stress_hydrate", CL_TENSOR, "Pa", "what hydrate bears of the effective stress: xx yy zz xy")
 
 /* All that a skeleton keeps: its history, and what is known of the last step. */
@@ -131,11 +131,10 @@ const SkeletonLaw *SkeletonLawOf(const Material *mat);
 /* Rows of the tables that a material needs. */
 static inline unsigned SkeletonHas(const Material *mat)
 {
-  const bool yields = mat->plasticity.type != PLASTICITY_NONE, nonlocal = yields && mat->plasticity.nonlocal > 0.0,
-             tears = yields && mat->plasticity.tears == TEARS_CLOSE;
+  const bool yields = mat->plasticity.type != PLASTICITY_NONE, nonlocal = yields && mat->plasticity.nonlocal > 0.0;
 
   return SkeletonLawOf(mat)->has | (ElasticityHasBonds(&mat->elasticity) ? HAS_BONDS : 0u) |
-         (nonlocal ? HAS_NONLOCAL : 0u) | (tears ? HAS_TEARS : 0u);
+         (nonlocal ? HAS_NONLOCAL : 0u);
 }
 
 /* t may be null. */

@@ -86,7 +86,6 @@ static const char *const gas_viscosity_word[]   = {"constant", "lee", NULL};    
 static const char *const latent_word[]          = {"linear", "kirchhoff", NULL};
 static const char *const plasticity_word[]      = {"none", "mohr_coulomb", NULL};            /* PLASTICITY_... */
 static const char *const flow_word[]            = {"menetrey_willam", "mohr_coulomb", NULL}; /* FLOW_... */
-static const char *const tears_word[]           = {"stay", "close", NULL};                   /* TEARS_... */
 
 const Key material_key[] = {
     LIKE(Material, GROUP_MATERIAL, "another of materials, whose keys hold where this one's are not given"),
@@ -280,9 +279,6 @@ const Key material_key[] = {
          ACTS(FlowIsSmooth, "law is mohr_coulomb and flow menetrey_willam")),
     REAL(Material, "plasticity_tension_cutoff", plasticity.cutoff, "Pa", "[0,1e12]", "none",
          "largest tension, flow mohr_coulomb only; or the word none", .word = "none", .has = HAS_SOLID),
-    CHOICE(Material, "plasticity_tears", plasticity.tears, "stay", tears_word,
-           "volume by which ground opened in tension: lasting, as plastic strain, or closed again before it bears",
-           .has = HAS_SOLID, .history = true, ACTS(NeedsStrength, "law is mohr_coulomb")),
     REAL(Material, "plasticity_heat", plasticity.heat, "", "[0,1]", "0", "share of the plastic work that becomes heat",
          .has = HAS_SOLID, ACTS(NeedsStrength, "law is mohr_coulomb")),
     {.name = NULL},

@@ -311,11 +311,10 @@ static PetscErrorCode WarnOfTension(const Stepper *s)
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
       "clathra: warning: the pressure of a particle was %s, a tension, %s: water in pores boils or lets its gas out "
-      "before, which is not modelled, and stresses there are not those of ground.  What to try, in this order: %sfiner "
+      "before, which is not modelled, and stresses there are not those of ground.  What to try, in this order: finer "
       "cells, shorter steps there (-stepper_tol); a higher pressure at the start, if it was given over that of the air "
       "(docs/giving_up.md)\n",
-      PressureWords(e->value, 4).s, place,
-      c->fields.has & HAS_PLASTIC ? "plasticity: {tears: close} where ground works in its tears; " : ""));
+      PressureWords(e->value, 4).s, place));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

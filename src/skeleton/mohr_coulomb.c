@@ -14,18 +14,15 @@ double Margin_MohrCoulomb(const Material *mat, double Sh, const SkeletonHistory 
   return fmin(-MohrCoulombYield(k.phi, k.c, p.y, dy, &dphi), StrengthCutoff(law) - p.y[0]);
 }
 
-bool ReturnTrial(const Returning *r, Landed *l, const char **why)
-{
-  return r->mat->plasticity.tears == TEARS_CLOSE ? ReturnWithTears(r, l, why) : ReturnRaised(r, 0.0, l, why);
-}
-
 bool Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,
                         SkeletonTangent *t, const char **why)
 {
-  const Returning r = {.mat = mat, .d = d, .nonlocal = h->nonlocal, .trial = s, .slopes = t};
+  Principal       axes;
+  const Returning r = {.mat = mat, .d = d, .nonlocal = h->nonlocal, .trial = s, .axes = &axes, .slopes = t};
   Landed          l;
 
   TrialState(&mat->elasticity, h, d, s, t);
+  PrincipalOf(s->sig, &axes);
   const bool found = ReturnTrial(&r, &l, why);
 
   *s = l.s;

@@ -34,7 +34,7 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
                res = atan(part * tan(law->phi_res * M_PI / 180.0)), sp = sin(peak), sr = sin(res),
                cp = part * law->c_min * cos(peak), cr = part * law->c_res * cos(res), cutoff = StrengthCutoff(law);
   const int     own = law->nonlocal == 0.0; /* strength follows the particle's own strain */
-  const double *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] ? f->own[OWN_P_OPENING] + q : NULL;
+  const double *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] + q;
 
   for (int k = 0; k < n; k++) {
     const Bounds of = BoundsOf(f, q + k);
@@ -43,7 +43,7 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
 
     may[k] = (unsigned char)!((hi <= cutoff) & (fresh | worn));
   }
-  for (int k = 0; open && k < n; k++)
+  for (int k = 0; k < n; k++)
     may[k] |= open[k] > 0.0;
 }
 
@@ -61,11 +61,9 @@ static void TakeYielding(const SkeletonBlock *b, int q, Yielding *y)
 
   y->q = q;
   y->d = (SkeletonStep){.E = b->E[q], .Sh = b->Sh[q], .kept = b->kept ? b->kept[q] : 1.0};
-  y->s = (SkeletonState){.own[OWN_P_EPS] = f->own[OWN_P_EPS][q]};
+  y->s = (SkeletonState){.own = {[OWN_P_EPS] = f->own[OWN_P_EPS][q], [OWN_P_OPENING] = f->own[OWN_P_OPENING][q]}};
   for (int k = 0; k < CL_TENSOR; k++)
     y->s.sig[k] = f->sig[k][q];
-  if (f->own[OWN_P_OPENING])
-    y->s.own[OWN_P_OPENING] = f->own[OWN_P_OPENING][q];
   PrincipalOf(y->s.sig, &y->p);
 }
 
@@ -79,9 +77,8 @@ static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yiel
   f->yield[y->q] = (double)y->s.region;
   if (y->s.region == RETURN_ELASTIC)
     return;
-  f->own[OWN_P_EPS][y->q] = y->s.own[OWN_P_EPS];
-  if (f->own[OWN_P_OPENING])
-    f->own[OWN_P_OPENING][y->q] = y->s.own[OWN_P_OPENING];
+  f->own[OWN_P_EPS][y->q]     = y->s.own[OWN_P_EPS];
+  f->own[OWN_P_OPENING][y->q] = y->s.own[OWN_P_OPENING];
   for (int k = 0; k < CL_TENSOR; k++) {
     f->sig[k][y->q] = y->s.sig[k];
     if (share != 0.0)
@@ -91,9 +88,10 @@ static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yiel
 
 static bool ReturnOne(const Material *mat, const SkeletonBlock *b, Yielding *y, const char **why)
 {
-  const Returning r = {.mat = mat, .d = &y->d, .nonlocal = SkeletonNonlocal(&b->store, y->q), .trial = &y->s};
-  Landed          l;
-  const bool      found = ReturnTrial(&r, &l, why);
+  const Returning r = {
+      .mat = mat, .d = &y->d, .nonlocal = SkeletonNonlocal(&b->store, y->q), .trial = &y->s, .axes = &y->p};
+  Landed     l;
+  const bool found = ReturnTrial(&r, &l, why);
 
   y->s = l.s;
   KeepYielding(mat, b, y, l.over);

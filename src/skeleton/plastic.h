@@ -75,11 +75,12 @@ typedef struct {
   const SkeletonStep    *d;
   double                 nonlocal;
   const SkeletonState   *trial;
+  const Principal       *axes;   /* of the trial stress */
   const SkeletonTangent *slopes; /* of the trial state; null: none are wanted */
 } Returning;
 
 /* Where it lands: what that takes off the trial stress, the plastic strain of it; where they are wanted, slopes in the
-   numbers of the step and, of a law whose tears close, in a mean stress by which the trial state is raised. */
+   numbers of the step and, where it is raised, in the mean stress by which it is. */
 typedef struct {
   SkeletonState   s;
   double          over[CL_TENSOR], e[CL_TENSOR];
@@ -89,10 +90,7 @@ typedef struct {
 
 /* Returns the trial state with `raise`, Pa, more of mean stress. */
 bool ReturnRaised(const Returning *r, double raise, Landed *l, const char **why);
-/* The same with as much of it as tears that close take up (427). */
-bool ReturnWithTears(const Returning *r, Landed *l, const char **why);
-
-/* The whole way of a trial state. */
+/* The same with as much of it as tears take up (427): the whole way of a trial state. */
 bool ReturnTrial(const Returning *r, Landed *l, const char **why);
 
 bool   Update_MohrCoulomb(const Material *mat, const SkeletonHistory *h, const SkeletonStep *d, SkeletonState *s,

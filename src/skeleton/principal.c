@@ -94,18 +94,19 @@ bool ReturnRaised(const Returning *r, double raise, Landed *l, const char **why)
 {
   const Material *mat = r->mat;
   Returned        found;
-  Principal       p;
+  Principal       p = *r->axes;
 
   l->s = *r->trial;
-  for (int k = XX; k <= ZZ; k++)
+  for (int k = XX; k <= ZZ; k++) {
     l->s.sig[k] += raise;
+    p.y[k] += raise;
+  }
   for (int k = 0; k < CL_TENSOR; k++)
     l->over[k] = l->e[k] = 0.0;
   if (r->slopes) {
     l->t = *r->slopes;
     UnitPer(l->per);
   }
-  PrincipalOf(l->s.sig, &p);
   if (!Yields(&mat->plasticity, r->d->Sh, l->s.own[OWN_P_EPS], r->nonlocal, p.y))
     return true;
   const Trial3 at = TrialOf(mat, r->d, l->s.own[OWN_P_EPS], r->nonlocal, &p);
@@ -117,7 +118,7 @@ bool ReturnRaised(const Returning *r, double raise, Landed *l, const char **why)
   if (!r->slopes)
     return true;
   PlasticTangent(&mat->elasticity, r->d, &p, &found, l->s.sig, l->e, &l->t);
-  if (mat->plasticity.tears != TEARS_CLOSE)
+  if (raise == 0.0)
     return true;
   SkeletonTangent raised = {0}; /* its first column: a trial state that is raised by 1 Pa */
   for (int k = XX; k <= ZZ; k++)

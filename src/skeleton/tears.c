@@ -12,7 +12,7 @@ typedef struct {
   double K;     /* bulk modulus, Pa */
   double open;  /* ln J at the start */
   double trial; /* mean stress, Pa */
-  double all;   /* K times what is open, and what the trial state opens, Pa */
+  double most;  /* K times what is open, Pa: the largest c */
   double c;     /* Pa */
   int    by;    /* of the above */
 } Closing;
@@ -40,47 +40,67 @@ static Closing Begin(const Returning *r)
                .open  = fmax(r->trial->own[OWN_P_OPENING], 0.0), /* a starred one may be negative */
                .trial = Mean(r->trial->sig)};
 
-  c.all = c.K * c.open + fmax(c.trial, 0.0);
-  c.c   = fmin(fmax(-c.trial, 0.0), c.all);
-  c.by  = c.c == 0.0 ? NOTHING_CLOSES : c.c < c.all ? ALL_COMPRESSION : ALL_THAT_IS_OPEN;
+  c.most = c.K * c.open;
+  c.c    = fmin(fmax(-c.trial, 0.0), c.most);
+  c.by   = c.c == 0.0 ? NOTHING_CLOSES : c.c < c.most ? ALL_COMPRESSION : ALL_THAT_IS_OPEN;
   return c;
+}
+
+/* Bracket of the least raise with which a return that dilates ends at no mean stress. */
+typedef struct {
+  double lo, hi;       /* raises: with the first there is compression, with the second none */
+  double below, above; /* mean stresses with them */
+  double slope;        /* of the mean stress, from the last two raises that were too small; 1: of an elastic state */
+} Bracket;
+
+/* Where the mean stress vanishes by what is known.  At an apex it is none for every raise that is large enough, so that
+   only those which are too small say where that begins. */
+static double Aim(const Bracket *b, double none)
+{
+  return b->lo - b->below / (b->above <= none ? b->slope : (b->above - b->below) / (b->hi - b->lo));
+}
+
+/* Takes what a raise ends at; true: no compression. */
+static bool Narrow(double at, double mean, double none, Bracket *b)
+{
+  if (mean >= -none) {
+    b->hi    = at;
+    b->above = mean;
+    return true;
+  }
+  b->slope = (mean - b->below) / (at - b->lo);
+  b->lo    = at;
+  b->below = mean;
+  return false;
 }
 
 /* The least raise between c and all of it with which a return that dilates ends at no mean stress; `below`: what it
    ends at with c. */
 static bool Search(const Returning *r, double none, double below, Closing *c, Landed *l, const char **why)
 {
-  const double near = NEAR * none;
-  double       lo = c->c, hi = c->all, above;
-  bool         probed = false;
+  const double near  = NEAR * none;
+  Bracket      b     = {.lo = c->c, .hi = c->most, .below = below, .slope = 1.0};
+  bool         found = false;
+  double       at    = b.hi;
 
-  if (!ReturnRaised(r, hi, l, why))
+  if (!ReturnRaised(r, at, l, why))
     return false;
-  above = Mean(l->s.sig);
-  c->c  = hi;
-  c->by = above < -none ? ALL_THAT_IS_OPEN : NO_MEAN_STRESS;
-  if (c->by == ALL_THAT_IS_OPEN)
+  c->c  = at;
+  c->by = ALL_THAT_IS_OPEN;
+  if (!Narrow(at, Mean(l->s.sig), none, &b))
     return true;
-  for (int k = 0; k < SEARCHES && hi - lo > 2.0 * near; k++) {
-    const bool   found = above <= none, probes = found && !probed; /* is there none right below, too: at an apex? */
-    const double at = probes                ? hi - near
-                      : found || k % 3 == 2 ? 0.5 * (lo + hi)
-                                            : lo - below / (above - below) * (hi - lo);
+  c->by = NO_MEAN_STRESS;
+  for (int k = 0; k < SEARCHES && b.hi - b.lo > 2.0 * near; k++) {
+    const double aim  = Aim(&b, none);
+    const bool   aims = !found && k % 4 != 3 && aim > b.lo && aim < b.hi;
 
+    at = found ? b.hi - near : aims ? aim : 0.5 * (b.lo + b.hi); /* one right below that ends there, too? */
     if (!ReturnRaised(r, at, l, why))
       return false;
-    const double mean = Mean(l->s.sig);
-
-    probed |= probes;
-    if (mean < -none) {
-      lo    = at;
-      below = mean;
-    } else {
-      hi = c->c = at;
-      above     = mean;
-    }
+    found = Narrow(at, Mean(l->s.sig), none, &b) && aims && b.above <= none;
   }
-  return ReturnRaised(r, c->c, l, why);
+  c->c = b.hi;
+  return at == b.hi || ReturnRaised(r, c->c, l, why);
 }
 
 /* Slopes of c in the numbers of the step, and what they make of those of the landed state, whose c was held. */
@@ -95,7 +115,7 @@ static void Slopes(const Returning *r, const Closing *c, Landed *l)
     const double dc = c->by == NOTHING_CLOSES    ? 0.0
                       : c->by == ALL_COMPRESSION ? -dtrial
                       : c->by == NO_MEAN_STRESS  ? (per > 0.0 ? -MeanSlope(t, q) / per : 0.0)
-                                                 : c->open * dK + (c->trial > 0.0 ? dtrial : 0.0);
+                                                 : c->open * dK;
 
     for (int k = 0; k < SKELETON_OUT; k++)
       t->d[k][q] += l->per[k] * dc;
@@ -103,8 +123,9 @@ static void Slopes(const Returning *r, const Closing *c, Landed *l)
   }
 }
 
-/* Over, strain and work with what closed, and what stands open now. */
-static void End(const Closing *c, Landed *l)
+/* Over, strain and work with what closed, and what stands open now: nothing where there is compression, `none` being a
+   mean stress that is none. */
+static void End(const Closing *c, double none, Landed *l)
 {
   const double mean = Mean(l->s.sig);
 
@@ -113,12 +134,13 @@ static void End(const Closing *c, Landed *l)
     l->e[k] -= c->c / (3.0 * c->K);
   }
   l->s.work -= fmin(mean, 0.0) * c->c / c->K; /* above nothing by round-off alone */
-  l->s.own[OWN_P_OPENING] = fmax((c->all - c->c - fmax(mean, 0.0)) / c->K, 0.0);
+  l->s.own[OWN_P_OPENING] =
+      mean < -none ? 0.0 : fmax((c->most - c->c + fmax(c->trial, 0.0) - fmax(mean, 0.0)) / c->K, 0.0);
   if (l->s.region == RETURN_ELASTIC && c->c > 0.0)
     l->s.region = RETURN_CLOSING;
 }
 
-bool ReturnWithTears(const Returning *r, Landed *l, const char **why)
+bool ReturnTrial(const Returning *r, Landed *l, const char **why)
 {
   Closing c    = Begin(r);
   double  size = 0.0;
@@ -129,10 +151,10 @@ bool ReturnWithTears(const Returning *r, Landed *l, const char **why)
     return false;
   const double none = ROUND_OFF * (size + c.c), mean = Mean(l->s.sig);
 
-  if (mean < -none && c.c < c.all && !Search(r, none, mean, &c, l, why))
+  if (mean < -none && c.c < c.most && !Search(r, none, mean, &c, l, why))
     return false;
   if (r->slopes)
     Slopes(r, &c, l);
-  End(&c, l);
+  End(&c, none, l);
   return true;
 }

@@ -245,7 +245,6 @@ static Sample RandomSample(Rng *r, int law)
   if (law >= SMOOTH)
     q.mat.plasticity = (Plasticity){.type     = PLASTICITY_MOHR_COULOMB,
                                     .flow     = law == SMOOTH ? FLOW_MENETREY_WILLAM : FLOW_MOHR_COULOMB,
-                                    .tears    = law == TORN ? TEARS_CLOSE : TEARS_STAY,
                                     .c_max    = 2e6,
                                     .c_min    = 1.2e6,
                                     .c_res    = 1e6,

@@ -67,7 +67,6 @@ static void RandomPoint(Rng *r, Point *q)
 /* The same with a tear that stands open and closes before it bears. */
 static void MakeTorn(Rng *r, Point *q)
 {
-  q->mat.plasticity.tears               = TEARS_CLOSE;
   q->h.skeleton.from.own[OWN_P_OPENING] = RngLog(r, 1e-4, 1e-1);
 }
 
@@ -96,7 +95,7 @@ static bool NoTearTurns(const Point *q, double step)
   const double x    = q->in[q->column];
   bool         same = true;
 
-  for (int k = -4; k <= 4 && q->mat.plasticity.tears == TEARS_CLOSE; k++)
+  for (int k = -4; k <= 4 && q->h.skeleton.from.own[OWN_P_OPENING] > 0.0; k++)
     same = same && Branch(q, x + 0.25 * k * step) == Branch(q, x);
   return same;
 }
@@ -105,11 +104,12 @@ static bool NoTearTurns(const Point *q, double step)
 static double TangentError(Point *q, ReturnRegion *region)
 {
   static const int rows[] = {OUT_P, OUT_P + 1, OUT_P + 2, OUT_P + 3, OUT_HOOP, OUT_Q};
-  const double strain = q->mat.plasticity.tears == TEARS_CLOSE ? 4e-4 : 1e-4; /* against the round-off of the raise */
-  PointState   state;
-  PointOutput  o;
-  const char  *why;
-  double       worst = 0.0;
+  const double     strain =
+      q->h.skeleton.from.own[OWN_P_OPENING] > 0.0 ? 4e-4 : 1e-4; /* against the round-off of the raise */
+  PointState  state;
+  PointOutput o;
+  const char *why;
+  double      worst = 0.0;
 
   Check(PointEvaluate(&q->fs, &q->mat, &q->h, q->in, true, &state, &o, &why) == CL_OK);
   *region = state.skeleton.region;
@@ -205,10 +205,9 @@ static void TestJacobian(void **state)
     s->c.scene.mean_strain   = strain ? 0.7 : 0.0;
     s->mat.elasticity.change = bonds ? STIFFNESS_BONDS : STIFFNESS_BOTH;
     s->mat.plasticity        = WeakPlasticity(k % 2, 0.7);
-    s->mat.plasticity.tears  = k % 4 == 1 ? TEARS_CLOSE : TEARS_STAY;
     s->c.scene.fields.has |= SkeletonHas(&s->mat);
     JacobianState(s);
-    for (PetscInt p = 0; s->mat.plasticity.tears == TEARS_CLOSE && p < s->m.P.n; p++)
+    for (PetscInt p = 0; k % 4 == 1 && p < s->m.P.n; p++)
       s->m.P.f[P_OPENING][p] = 0.01 * (1.0 + Noise(72, s->m.P.i[PI_ID][p], 0));
     for (PetscInt p = 0; p < s->m.P.n; p++)
       s->m.P.f[P_EPS][p] = 0.1 * (1.0 + Noise(70, s->m.P.i[PI_ID][p], 0));

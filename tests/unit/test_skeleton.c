@@ -95,7 +95,6 @@ static void TestBlock(void **state)
       q[k].mat = q[0].mat;
       if (plastic)
         MakePlastic(&r, &q[k]);
-      q[k].mat.plasticity.tears      = run % 4 == 3 ? TEARS_CLOSE : TEARS_STAY;
       q[k].h.from.own[OWN_P_OPENING] = run % 4 == 3 && k % 2 ? RngBetween(&r, 0.0, 5e-3) : 0.0;
       opening[k]                     = q[k].h.from.own[OWN_P_OPENING];
       eps[k]                         = q[k].h.from.own[OWN_P_EPS];
