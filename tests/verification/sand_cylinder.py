@@ -64,8 +64,8 @@ def main():
     here, there = within(v), within(plane)
     table(["share of the mass", "within (m), in space by hybrid", "about the axis by sdirk2"], list(zip(SHARES, here, there)))
     judge("strength", "cylinder of sand in space by hybrid: radii of shares of its mass against sdirk2 about the axis", np.max(np.abs(here / there - 1)), 0.03)
-    top = lambda v, up: v["position"][radii(v) < 0.15, up].max()
-    check("... height at the axis", abs(top(v, 2) / top(plane, 1) - 1), 0.01)
+    top = lambda v, up: v["position"][radii(v) < 0.15, up].max()  # a particle is 1/32 m high
+    check("... height at the axis", abs(top(v, 2) / top(plane, 1) - 1), 0.03)
 
     slippery = run(SPACE, CASE, "-mat_sand_plasticity_friction_peak", "15 deg", "-grid_upper", "4 m,4 m,1.25 m", "-grid_cells", "32,32,10").snapshots()[-1][1]
     check("with a wrong friction of 15 deg the runout is not that of experiments", (np.sort(radii(slippery))[-5] - 1.0) / experiments(1.0), (1.3, 3.0))
