@@ -86,6 +86,7 @@ FAULTS = [
     ("inertia of hybrid's fluids in layers without its weight (310)", EXPLICIT + "velocities.c", [("PetscSqr(b->flow) * f[FL_Inertia(s)]", "b->flow * f[FL_MI]")]),
     ("a node's flow is shared as if there were no hydrate (350)", MODEL + "step.c", [("ParticleMaterial(m, p), m->P.f[P_SH][p])", "ParticleMaterial(m, p), 0.0)")]),
     ("... by hybrid", EXPLICIT + "deposit.c", [("mat, w->Sh[q])", "mat, 0.0)")]),
+    ("a trial state in tension opens ground that is compressed (427)", "src/skeleton/tears.c", [("c.most = c.K * c.open;", "c.most = c.K * c.open + fmax(c.trial, 0.0);")]),
 ]  # fmt: skip
 
 
