@@ -41,10 +41,8 @@ static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n
     const double hi = of.hi, shear = of.shear, mean = of.mean;
     const int fresh = own & (eps[k] == 0.0) & (shear + mean * sp <= cp), worn = (hi <= 0.0) & (shear + mean * sr <= cr);
 
-    may[k] = (unsigned char)!((hi <= cutoff) & (fresh | worn));
+    may[k] = (unsigned char)!((open[k] <= 0.0) & (hi <= cutoff) & (fresh | worn));
   }
-  for (int k = 0; k < n; k++)
-    may[k] |= open[k] > 0.0;
 }
 
 /* A particle of a block at its trial stress. */
