@@ -18,7 +18,7 @@ from plotting import plt  # noqa: E402
 RUNS = {  # folder of the results: case, options that make it short
     "bp2/case2": ("bp2", "-time_end", "30 s", "-output_times", "0 s,30 s"),
     "masuda": ("masuda", "-time_end", "5 min", "-output_times", "0 s,5 min"),
-    "slope_c/theta_0.5": ("slope_c", "-grid_cells", "50,4", "-gravity_ramp", "0.2 s", "-stage_load_end", "0.2 s", "-stage_slide_end", "0.4 s", "-output_every", "0.2 s"),
+    "slope_c/theta_0.5": ("slope_c", "-grid_cells", "90,4", "-gravity_ramp", "0.2 s", "-stage_load_end", "0.2 s", "-stage_slide_end", "0.4 s", "-output_every", "0.2 s"),
 }  # fmt: skip
 
 

@@ -58,7 +58,7 @@ def cells(particles, h):
 def torn():
     """Slope C on cells of 20 m, as far as its blocks have torn loose: velocities that are free at the surface leave the balance of energy closed; the tie (41) leaves 6 %.  It has single
     particles in cells, cells that emptied and points at the apex by then, and no step is refused."""
-    slide = lambda *more: Run.of_case("slope_c", "-quiet", "-grid_cells", "100,8", "-gravity_ramp", "5 s", "-stage_load_end", "5 s", "-stage_slide_end", "40 s", "-output_every", "0 s", *more)
+    slide = lambda *more: Run.of_case("slope_c", "-quiet", "-grid_cells", "180,8", "-gravity_ramp", "5 s", "-stage_load_end", "5 s", "-stage_slide_end", "40 s", "-output_every", "0 s", *more)
     leaves = lambda run: abs(run.balance["energy_remainder_J"][-1] / run.balance["gravity_work_J"][-1])
     run, half = slide(), slide("-stepper_cfl", "0.4")  # 0.2 leaves 0.9 %
     check("slope C: work of gravity, J", run.balance["gravity_work_J"][-1], (1e10, 3e10))
