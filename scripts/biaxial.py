@@ -198,7 +198,7 @@ def page(r):
         "Written by `scripts/biaxial.py` from `docs/biaxial.json` and `docs/biaxial.npz`, which hold what its runs gave; change the script, not this page. The scene is",
         "[cases/biaxial](../cases/biaxial/README.md): the right half of 4 m x 2 m of sand with hydrate under 3.75 MPa, undrained, between rough plates, to 15 % at 0.1 m/s. Cells of 0.1 m",
         "(which the paper's Appendix B finds fine enough) with 2 x 2 particles unless said otherwise; `sdirk2` unless said otherwise. A: kinetics; B: none; C: all plastic work heats.",
-        "All runs were made before particles took the volume change of their cells ((88) of [equations.md](equations.md)), which lowers the peak; they hold for the paper's scheme.",
+        "All runs were made before particles took the volume change of their cells and velocities were carried to nodes ((88), (451) of [equations.md](equations.md)); (88) lowers the peak; they hold for the paper's scheme.",
         "Runs of sdirk2 with `ghost_storage` are by the program when (351) of [equations.md](equations.md) tied every line near the surface; A and B by the present one are in [hybrid beside sdirk2](#hybrid-beside-sdirk2).", "",
         "## What the paper says, one by one", "", "| the paper | here | |", "| --- | --- | --- |",
         *(f"| {said} | {found} | {verdict} |" for said, found, verdict in statements(r)), "",

@@ -94,7 +94,7 @@ GROUND = """
 With 1e-15 m² and more gas rises out of the foot, hydrate that forms there takes the rest, until p_g = p_e, (371) of [equations.md](equations.md), and the next row with it; the density of gas there is that of a tenth of p_w, (323).
 
 **Ground that fails** (cohesion 300 to 10, residual 5 kPa, friction to 10°, the dip of the slope, no dilation, η_s = 20: `-stage_warm_materials slope,weak`). `auto` sees that equilibrium is lost, (356) of [equations.md](equations.md), goes over
-to `hybrid` at the state before the slide, and after it particles lose what `hybrid` left against their nodes (357), so that implicit steps grow again. Every phase that `hybrid` carried; speed is that of the failed mass with all of E_k:
+to `hybrid` at the state before the slide, and after it particles lose what `hybrid` left against their nodes (452), so that implicit steps grow again. Every phase that `hybrid` carried; speed is that of the failed mass with all of E_k:
 """
 AFTER = """
 With 12° the face creeps by 0.9 m in 125 years, then loses its equilibrium and slides by 7 m in 24 s; behind it the slump creeps on, by 7 m in the first year and 1.6 m in the last, in implicit steps that grow from 22 s to 70 days and are ruled by Newton's method (75 % of them; 33 iterations a step, where

@@ -29,6 +29,7 @@ LAYERS = [
     ("basis", ["basis"], ["basis"]),
     ("particles", ["particles"], ["particles"]),
     ("boundary", ["boundary"], ["boundary"]),
+    ("transfer", ["transfer"], ["transfer"]),
     ("model", ["model", "solver_words"], ["model"]),
     ("explicit", ["explicit"], ["explicit"]),
     ("settings", ["case"], []),

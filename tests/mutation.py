@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT / "tests" / "verification"))
 from common import environment  # noqa: E402
 
 # The quick tests, in the order in which they are asked: seconds in all.
-UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "unseen", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene",
+UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "unseen", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene", "transfer",
         "fieldsets", "turning", "upwind")  # fmt: skip
 FIRST = {"laws": "laws_values", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
@@ -86,6 +86,13 @@ FAULTS = [
     ("inertia of hybrid's fluids in layers without its weight (310)", EXPLICIT + "velocities.c", [("PetscSqr(b->flow) * f[FL_Inertia(s)]", "b->flow * f[FL_MI]")]),
     ("a node's flow is shared as if there were no hydrate (350)", MODEL + "step.c", [("ParticleMaterial(m, p), m->P.f[P_SH][p])", "ParticleMaterial(m, p), 0.0)")]),
     ("... by hybrid", EXPLICIT + "deposit.c", [("mat, w->Sh[q])", "mat, 0.0)")]),
+    ("nodes see the mean velocity of their particles (451)", MODEL + "step.c", [("fs->solid ? Carried(", "!fs->solid ? Carried(")]),
+    ("... in hybrid", EXPLICIT + "deposit.c", [("      if (s.solid)\n        Carried(r, lane, m, y, g, w, v);\n      for (int q = 0; !s.solid &&", "      for (int q = 0;")]),
+    ("... the gradient of the velocity does not turn", "src/particles/keep.c", [("for (int k = 0; k < 3 + CL_DIM; k++) {", "for (int k = 0; k < 3; k++) {")]),
+    ("nearly empty nodes follow one neighbour alone (454)", EXPLICIT + "nodes.c", [("n->stretch[d] = (here - x) / (x - there);", "n->stretch[d] = 0.0 * (here - there);")]),
+    ("... and forget that their mass moves", EXPLICIT + "nodes.c", [("(own[at + d] - Mass(e, own) * goes)", "(own[at + d] + Mass(e, own) * (e->m->bc.gravity[d] + 0.0 * goes))")]),
+    ("unseen motion is taken everywhere (453)", "src/transfer/unseen.c", [("return unseen > 0.0 ? 1.0 / (1.0 + pow(HALF * fmax(variance, 0.0) / unseen, STEEP)) : 0.0;", "return unseen > 0.0 && variance > -1.0 ? 1.0 - 0.0 * HALF : 0.0;")]),
+    ("fluids keep what the skeleton loses (452)", "src/transfer/unseen.c", [("d < CL_DIM && (phase == 0 || fs->phase[phase - 1])", "d < CL_DIM && phase == 0")]),
     ("a trial state in tension opens ground that is compressed (427)", "src/skeleton/tears.c", [("c.most = c.K * c.open;", "c.most = c.K * c.open + fmax(c.trial, 0.0);")]),
 ]  # fmt: skip
 

@@ -62,7 +62,6 @@ typedef struct Case {
   /* hybrid and explicit */
   double   cfl;          /* step as a share of the stable one */
   bool     force_dt;     /* take a fixed step above the stable one all the same */
-  double   flip;         /* 1: FLIP, 0: PIC */
   PetscInt passes;       /* of (413), beyond the first */
   double   damping;      /* local damping */
   double   mass_scaling; /* factor on inertia */

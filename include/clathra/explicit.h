@@ -14,7 +14,6 @@ typedef struct {
   bool particle_pressures; /* the paper's bare form (P72): rates of pressure by the particle, not shared over nodes
                             */
   int    passes;           /* of (413), beyond the first */
-  double flip;             /* 1: increments of nodal velocity (FLIP); 0: the nodal velocity itself (PIC) */
   double damping;          /* local damping of the mixture's out-of-balance force, [0,1) */
   double mass_scaling;     /* factor on every inertia, >= 1 */
 } ExplicitOptions;
@@ -36,6 +35,7 @@ extern const char *const cl_limit_word[LIMIT_COUNT];
 typedef struct {
   double    each[LIMIT_COUNT]; /* s: bound of each kind alone, INFINITY where there is none */
   double    dt;                /* s: bound of all together */
+  double    across;            /* s: shortest time of a wave across a cell, the longest way; INFINITY without waves */
   LimitKind rules;
 } StableStep;
 
@@ -45,10 +45,18 @@ typedef struct Explicit Explicit;
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **e);
 /* Frees it; *e becomes NULL.  Collective. */
 PetscErrorCode ExplicitDestroy(Explicit **e);
+/* How long, s, and for how many steps particles have kept what nodes do not see (452). */
+typedef struct {
+  double   time;
+  PetscInt steps;
+} Unseen;
+
 /* Sorts the particles by cell and readies nodes and faces for a run of steps.  Collective. */
-PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status);
+PetscErrorCode ExplicitBegin(Explicit *e, Unseen unseen, ClStatus *status);
+/* ... by now: s, and steps. */
+Unseen ExplicitUnseen(const Explicit *e);
 /* Largest stable step on the present state (38), (39), (150).  Collective. */
-PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit);
+PetscErrorCode ExplicitStableStep(Explicit *e, StableStep *limit);
 /* One step from t to t + dt on the committed state; adds what crossed the boundary and what heat changed (integrals
    over the step: kg, J) to *sum.  A failed step leaves particles half-moved: the caller keeps a copy.  Collective. */
 PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, ClStatus *status);

@@ -15,6 +15,7 @@ typedef enum { OUTPUT_ANEW = 0, OUTPUT_ELSEWHERE, OUTPUT_HERE } OutputFrom;
 typedef struct {
   uint64_t run; /* its identity */
   double   t;   /* s */
+  Unseen   unseen;
 } Origin;
 
 /* The output folder, taken by this run: nobody else writes into it until it is released or the process dies. */

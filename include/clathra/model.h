@@ -279,9 +279,9 @@ const double *ModelStart(const Model *m);
 /* Skeleton velocity at t_n on the particles (n x 2), interpolated like Trial.v, m/s. */
 void ModelStartVelocity(const Model *m, double *v);
 /* Makes the trial state of the last stage the history, with rates (n x 4, of p_w, p_g, T, S_h: Pa/s, K/s, 1/s), moves
-   the particles and migrates them.  keeps: share of their motion against the nodes that particles keep (357),
-   dimensionless. */
-PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates, double keeps);
+   the particles and migrates them.  unseen: share of the motion that nodes do not see which is lost (452),
+   dimensionless.  Collective. */
+PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates, double unseen);
 /* Notes why particle p cannot go on; the first reason of this rank stays. */
 void ModelNoteFailure(Model *m, ClStatus status, const char *why, PetscInt p);
 /* Why the last evaluation failed, and where; the words stay when the status is cleared. */

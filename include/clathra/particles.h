@@ -35,6 +35,7 @@
   X(P_VS, HAS_SOLID, "v_s", CL_DIM, "m/s", "skeleton velocity")                                                        \
   X(P_VW, HAS_WATER, "v_w", CL_DIM, "m/s", "water velocity")                                                           \
   X(P_VG, HAS_GAS, "v_g", CL_DIM, "m/s", "gas velocity")                                                               \
+  X(P_GV, HAS_SOLID, "grad_v_s", CL_DIM *CL_DIM, "1/s", "at the end of the last step: xx xy yx yy")                    \
   X(P_SIG, HAS_SOLID, "stress", 6, "Pa", "effective, tension-positive: xx yy zz xy yz xz")                             \
   X(P_SIG0, HAS_SOLID, "stress_initial", 6, "Pa", "initial effective stress, rotated with the body")                   \
   X(P_PW0, HAS_WATER, "p_w_initial", 1, "Pa", "initial water pressure")                                                \
@@ -70,6 +71,7 @@ _Static_assert(P_PG0 == P_PW0 + 1, "initial p_w, p_g");
 _Static_assert(P_RATE_PG == P_RATE + 1 && P_RATE_T == P_RATE + 2 && P_RATE_SH == P_RATE + 3, "rates: p_w, p_g, T, S_h");
 _Static_assert(P_VW == P_VS + CL_DIM && P_VG == P_VW + CL_DIM, "velocities: skeleton, water, gas");
 _Static_assert(P_VS == P_BT + CL_MIXED, "mixed derivatives of T");
+_Static_assert(P_GV == P_VG + CL_DIM, "gradient of v_s");
 _Static_assert(P_GG == P_GW + CL_DIM && P_GT == P_GG + CL_DIM, "gradients of p_w, p_g, T");
 
 typedef struct {
@@ -132,6 +134,14 @@ static inline void ParticleGridPlace(const Particles *P, PetscInt p, double x[CL
 {
   for (int d = 0; d < CL_DIM; d++)
     x[d] = ParticleGridX(P, p, d);
+}
+
+/* Mass of a phase, kg: 0 the skeleton with hydrate, 1 water, 2 gas; none where a trace is less than none (101). */
+static inline double ParticlePhaseMass(const Particles *P, PetscInt p, int phase)
+{
+  if (phase == 0)
+    return P->f[P_MS][p] + P->f[P_MH][p];
+  return P->f[P_MS + 1 + phase] ? fmax(P->f[P_MS + 1 + phase][p], 0.0) : 0.0;
 }
 
 /* Deformation gradient F from the initial configuration to that at t_n, dimensionless; 1 without a solid. */

@@ -28,7 +28,9 @@ typedef struct {
   PetscInt kind;         /* auto: AUTO_... */
   PetscInt votes;        /* auto: looks in a row that asked for the other one */
   PetscInt patience;     /* auto: doubles with every visit of the implicit integrator that did not pay */
+  PetscInt unseen_steps; /* hybrid, explicit: steps since particles lost what nodes do not see (452) */
   double   t;            /* s */
+  double   unseen;       /* ... and how long that is, s */
   double   dt;           /* next step wanted by the controller, s */
   double   err_old;      /* error of the last accepted step relative to the tolerance */
   double   ice_coldest;  /* how far at most, K */
@@ -311,9 +313,8 @@ PetscErrorCode StepperAutoDecide(Stepper *s, bool *ok);
 /* auto, after an attempt of length dt (s) that Newton's method solved: a step over a slide is refused, a->status
    CL_TOO_FAR (356).  Collective. */
 PetscErrorCode StepperCheckEquilibrium(Stepper *s, double dt, Attempt *a);
-/* Share of their motion against the nodes that particles keep over an implicit step of length dt (s) (357). Collective.
- */
-PetscErrorCode StepperKeeps(Stepper *s, double dt, double *keeps);
+/* Share of the motion that nodes do not see which is lost over an implicit step of length dt (s) (452).  Collective. */
+PetscErrorCode StepperUnseen(Stepper *s, double dt, double *share);
 
 /* Shared by the schemes. */
 /* The next time (s) that a step must hit: a kink of a schedule, an event, the end. */

@@ -122,9 +122,6 @@ const Key case_key[] = {
     REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "hybrid, explicit: step as a share of the stable one"),
     BOOLEAN(Case, "stepper_force_dt", force_dt, "no",
             "hybrid, explicit: take a fixed step above the stable one all the same"),
-    REAL(Case, "stepper_flip", flip, "", "[0,1]", "1",
-         "hybrid, explicit: particles take increments of nodal velocity (1, FLIP), the velocity itself (0, PIC), or a "
-         "mixture"),
     INTEGERS(
         Case, 1, "stepper_storage_passes", passes, "[0,100]", "0",
         "hybrid, explicit: passes that take changes of pressure from lumped storage, which spreads them over three "
@@ -227,7 +224,6 @@ const Key stage_key[] = {
          .kept = true),
     BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES,
             "hybrid, explicit: take a fixed step above the stable one all the same", .kept = true),
-    REAL(CaseStage, "stepper_flip", c.flip, "", "[0,1]", CASES, "hybrid, explicit: FLIP (1) to PIC (0)", .kept = true),
     INTEGERS(CaseStage, 1, "stepper_storage_passes", c.passes, "[0,100]", CASES,
              "hybrid, explicit: passes from lumped to consistent storage", .kept = true),
     REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),

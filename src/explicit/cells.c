@@ -20,7 +20,7 @@ static bool Filled(const Explicit *e, PetscInt I)
 
 PetscErrorCode CellsForces(Explicit *e)
 {
-  const int  width = LANES * Rows(A_Count(e->set)), at = A_Mix(e->set) + MIX_F;
+  const int  width = LANES * Rows(A_Count(e->set)), at = A_Force(e->set);
   const bool strain = e->m->c->mean_strain > 0.0;
 
   PetscFunctionBeginUser;

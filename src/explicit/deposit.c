@@ -195,7 +195,7 @@ INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w
 {
   double *const *f = e->m->P.f;
   Around         a;
-  const int      at        = A_Mix(s);
+  const int      at        = A_Force(s);
   const double *restrict V = f[P_V] + r.p, *restrict ms = f[P_MS] + r.p, *restrict mh = f[P_MH] + r.p;
   double *const *sig = f + P_SIG;
 
@@ -203,13 +203,12 @@ INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w
   for (int q = 0; q < r.n; q++) {
     const double m = ms[q] + mh[q], p = w->p[q] - a.p[q];
 
-    v->value[q][at + MIX_M] = m;
-    v->across[q]            = CL_DIM == 2 ? -V[q] * (sig[ZZ][r.p + q] - p) : 0.0;
+    v->value[q][A_M(s)] = m;
+    v->across[q]        = CL_DIM == 2 ? -V[q] * (sig[ZZ][r.p + q] - p) : 0.0;
     for (int i = 0; i < CL_DIM; i++) {
-      v->value[q][at + MIX_F + i] = -a.weight[i][q];
-      v->value[q][at + MIX_V + i] = m * f[P_VS + i][r.p + q];
+      v->value[q][at + i] = -a.weight[i][q];
       for (int j = 0; j < CL_DIM; j++)
-        v->force[j][q][at + MIX_F + i] = -V[q] * (sig[voigt[i][j]][r.p + q] - (i == j ? p : 0.0));
+        v->force[j][q][at + i] = -V[q] * (sig[voigt[i][j]][r.p + q] - (i == j ? p : 0.0));
     }
   }
 }
@@ -217,7 +216,7 @@ INLINE void MixtureValues(const Explicit *e, const Set s, Run r, const Fluids *w
 INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Fluids *w, Given *v)
 {
   double *const *f  = e->m->P.f;
-  const int      at = A_Fluid(s, k), vel = VectorAt(P_VW, k, 0), grad = VectorAt(P_GW, k, 0);
+  const int      at = A_Fluid(s, k), grad = VectorAt(P_GW, k, 0);
   const double *restrict V = f[P_V] + r.p, *restrict m = f[P_MW + k] + r.p;
 
   for (int q = 0; q < r.n; q++) {
@@ -228,8 +227,7 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
 
     v->value[q][at + FL_M] = mass;
     for (int d = 0; d < CL_DIM; d++) {
-      v->value[q][at + FL_V + d] = mass * f[vel + d][r.p + q];
-      g[d]                       = f[grad + d][r.p + q];
+      g[d] = f[grad + d][r.p + q];
     }
     Unweighed(e, s, w->rho[k][q], g);
     Drive(e, s, r.p + q, g);
@@ -242,6 +240,29 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
       v->value[q][at + FL_ROOT] = Vk * sqrt(w->kr[k][q]);
     if (s.layers)
       v->value[q][at + FL_Inertia(s)] = conduct * Vk * w->rho[k][q];
+  }
+}
+
+/* Momenta, carried by the skeleton's velocity gradient (451). */
+INLINE void Momenta(const Explicit *e, const Set s, Run r, const Weights *w, Given *v)
+{
+  double *const *f = e->m->P.f;
+  double         m[BLOCK];
+
+  for (int phase = s.solid ? 0 : 1; phase <= s.fluids; phase++) {
+    for (int q = 0; q < r.n; q++)
+      m[q] = phase ? Largest(f[P_MW + phase - 1][r.p + q], 0.0) : f[P_MS][r.p + q] + f[P_MH][r.p + q];
+    for (int i = 0; i < CL_DIM; i++) {
+      const int     lane = A_Momentum(s, phase) + i;
+      const double *y    = f[VectorAt(P_VS, phase, i)] + r.p, *g[CL_DIM];
+
+      for (int d = 0; s.solid && d < CL_DIM; d++)
+        g[d] = f[VectorAt(P_GV, i, d)] + r.p;
+      if (s.solid)
+        Carried(r, lane, m, y, g, w, v);
+      for (int q = 0; !s.solid && q < r.n; q++)
+        v->value[q][lane] = m[q] * y[q];
+    }
   }
 }
 
@@ -261,7 +282,7 @@ INLINE void BedsValues(const Explicit *e, const Set s, Run r, Given *v)
 INLINE void CellForces(Explicit *e, const Set s, Run r, const Weights *w, Given *v)
 {
   const CellShare take = CellShareOf(e);
-  const int       at   = A_Mix(s) + MIX_F;
+  const int       at   = A_Force(s);
 
   for (int q = 0; q < r.n; q++) {
     const double V    = e->m->P.f[P_V][r.p + q];
@@ -330,7 +351,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
 
   (void)dt;
   WeightsOf(e, r, &w);
-  GiveNothing(r, A_Count(s), &v);
+  GiveNothing(r, A_Count(s), Rows(A_Acting(s)), &v);
   for (int q = 0; q < r.n; q++)
     v.value[q][A_V(s)] = V[q];
   State(e, s, r, T, &state);
@@ -363,6 +384,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     for (int c = CL_PAIRS; c < CL_MIXED; c++)
       CarriedAll(r, s.fluids, C, f[P_BT + c] + r.p, c, &w, &v);
   }
+  Momenta(e, s, r, &w, &v);
   if (s.solid)
     MixtureValues(e, s, r, &state, &v);
   if (s.solid && TakesCellMean(e))
@@ -376,11 +398,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     }
     WeakForces(e, s, r, &w);
   }
-  Scatter(e, e->A, A_Count(s),
-          s.heat           ? CARRY_BILINEAR
-          : Scalars(s) > 0 ? CARRY_LINEAR
-                           : CARRY_NOTHING,
-          s.solid, r, &w, &v);
+  Scatter(e, e->A, A_Count(s), s.heat ? CARRY_BILINEAR : CARRY_LINEAR, A_Acting(s), s.solid, r, &w, &v);
 }
 
 MAKE_LOOPS(DepositRun)

@@ -53,7 +53,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(FreeParticles(e));
   PetscCall(NodeMapDestroy(&e->map));
   PetscCall(PetscFree(e->raw));
-  PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
+  PetscCall(PetscFree7(e->inc, e->gain, e->link, e->couple, e->torn, e->node, e->slot));
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
   PetscCall(PetscFree(e->pull));
@@ -242,11 +242,12 @@ static PetscErrorCode ActingForces(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ExplicitBegin(Explicit *e, ClStatus *status)
+PetscErrorCode ExplicitBegin(Explicit *e, Unseen unseen, ClStatus *status)
 {
   PetscFunctionBeginUser;
   ModelClearFailure(e->m);
-  e->ahead = 0.0;
+  e->ahead  = 0.0;
+  e->unseen = unseen;
   PetscCall(Ready(e));
   if (e->o.mass_scaling > 1.0)
     PetscCall(ActingForces(e));
@@ -305,6 +306,7 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   PetscCall(NodesPrepare(e));
   if (e->m->plates)
     PetscCall(PlatesForces(e, t, dt));
+  NodesExtend(e);
   PetscCall(NodesVelocities(e, dt));
   CellsMotion(e);
   FacesWork(e, dt);
@@ -344,6 +346,7 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   BcValuesEvaluate(m->c, t + dt, &m->bc);
   if (e->stale)
     PetscCall(NodesRebuild(e));
+  PetscCall(LoseUnseen(e));
   e->stale = e->strays = e->gone = false;
   PetscCall(Momentum(e, t + dt, dt));
   PetscCall(MassAndHeat(e, dt, sum));
@@ -356,6 +359,8 @@ PetscErrorCode ExplicitStep(Explicit *e, double t, double dt, StageRates *sum, C
   for (int k = 0; k < WORK_RATES; k++)
     sum->work[k] += e->work[k];
   PetscCall(PetscLogEventBegin(e->event[STEP_ORDER], 0, 0, 0, 0));
+  e->unseen.time += dt;
+  e->unseen.steps++;
   Look(e);
   PetscCall(Agree(e, t + dt, status));
   PetscCall(PetscLogEventEnd(e->event[STEP_ORDER], 0, 0, 0, 0));

@@ -114,7 +114,7 @@ void FacesForces(Explicit *e, double dt)
 
       for (int d = 0; d < CL_DIM; d++) {
         if (s.solid)
-          row[A_Mix(s) + MIX_F + d] += f->N[a] * e->pull[k][d];
+          row[A_Force(s) + d] += f->N[a] * e->pull[k][d];
         for (int ph = 0; ph < s.fluids; ph++)
           row[A_Fluid(s, ph) + FL_G + d] += conduct * f->N[a] * force[ph][d];
       }

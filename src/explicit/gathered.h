@@ -12,6 +12,8 @@ typedef int64_t Wrong;
 #define GATHERED ((CL_DIM == 2 ? 3 : 5) * LANES)
 /* ... and where particles give to them. */
 #define GIVEN ((CL_DIM == 2 ? 5 : 6) * LANES)
+/* ... of which the first may be carried. */
+#define CARRIED (2 * LANES)
 /* The numbers of a row whose gradients are gathered stand in its first so many lanes. */
 #define GRADED ((CL_DIM == 2 ? 1 : 2) * LANES)
 
@@ -24,7 +26,7 @@ typedef struct {
 /* A block's values, one row of numbers for each particle: what is multiplied with the node's place in the patch
    (carried values), with products of its places (cross) and with the gradients (forces). */
 typedef struct {
-  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][LANES], cross[CL_MIXED][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
+  double value[BLOCK][GIVEN], carry[CL_DIM][BLOCK][CARRIED], cross[CL_MIXED][BLOCK][LANES], force[CL_DIM][BLOCK][LANES];
   double across[BLOCK]; /* of the force of the stress: across the plane, J; 0 in space */
 } Given;
 
@@ -113,13 +115,17 @@ INLINE void MeanMotion(const Explicit *e, Set s, Run r, const Weights *w, int at
   }
 }
 
-/* Nothing to carry, no forces, and nothing beyond the first `count` values. */
-INLINE void GiveNothing(Run r, int count, Given *v)
+/* Nothing to carry in so many eights, no forces, and nothing beyond the first `count` values. */
+INLINE void GiveNothing(Run r, int count, int carried, Given *v)
 {
   for (int q = 0; q < r.n; q++) {
+    for (int k = 0; k < LANES * carried; k++) {
+      for (int d = 0; d < CL_DIM; d++)
+        v->carry[d][q][k] = 0.0;
+    }
     for (int k = 0; k < LANES; k++) {
       for (int d = 0; d < CL_DIM; d++)
-        v->carry[d][q][k] = v->force[d][q][k] = 0.0;
+        v->force[d][q][k] = 0.0;
       for (int c = 0; c < CL_MIXED; c++)
         v->cross[c][q][k] = 0.0;
     }
@@ -168,11 +174,13 @@ INLINE double Covariance(const Explicit *e, const double *nodes, int width, int 
 
 /* What is carried to the nodes besides the value itself: nothing, by gradients, by mixed derivatives, too. */
 enum { CARRY_NOTHING = 0, CARRY_LINEAR, CARRY_BILINEAR };
-/* To nodes that hold `count` numbers each; forces: are there any? */
-INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bool forces, Run r, const Weights *w,
-                    const Given *v)
+/* To nodes that hold `count` numbers each, of which the first `acting` may be carried or have forces; the latter stand
+   in the first eight.  forces: are there any? */
+INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, int acting, bool forces, Run r,
+                    const Weights *w, const Given *v)
 {
-  const int rows = Rows(count) * PIECES;
+  const int rows = Rows(count) * PIECES, carried = (acting + CL_REGISTER - 1) / CL_REGISTER;
+  const int first = PetscMin(carried, PIECES);
 
   for (int q = 0; q < r.n; q++) {
     const int      *slot  = &e->slot[w->first[q]];
@@ -196,19 +204,26 @@ INLINE void Scatter(const Explicit *e, double *nodes, int count, int carries, bo
         place[0] = x[0][a];
         for (int d = 1; d < CL_DIM; d++)
           place[d] = x[d][at.place[d]];
-        for (int z = 0; z < PIECES; z++) {
-          Register first = value[z];
+        for (int z = 0; z < first; z++) {
+          Register sum = value[z];
 
           for (int d = 0; d < CL_DIM && carries; d++)
-            first += ((const Register *)v->carry[d][q])[z] * place[d];
+            sum += ((const Register *)v->carry[d][q])[z] * place[d];
           for (int c = 0; c < CL_MIXED && carries == CARRY_BILINEAR; c++)
-            first += ((const Register *)v->cross[c][q])[z] * MixedProduct(c, 1.0, place);
-          first *= S;
+            sum += ((const Register *)v->cross[c][q])[z] * MixedProduct(c, 1.0, place);
+          sum *= S;
           for (int d = 0; d < CL_DIM && forces; d++)
-            first += ((const Register *)v->force[d][q])[z] * G[d];
-          row[z] += first;
+            sum += ((const Register *)v->force[d][q])[z] * G[d];
+          row[z] += sum;
         }
-        for (int z = PIECES; z < rows; z++)
+        for (int z = first; z < carried; z++) {
+          Register sum = value[z];
+
+          for (int d = 0; d < CL_DIM; d++)
+            sum += ((const Register *)v->carry[d][q])[z] * place[d];
+          row[z] += sum * S;
+        }
+        for (int z = carried; z < rows; z++)
           row[z] += value[z] * S;
       }
     }

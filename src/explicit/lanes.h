@@ -11,6 +11,7 @@
 #include "clathra/point_flow.h"
 #include "clathra/point_heat.h"
 #include "clathra/point_state.h"
+#include "clathra/transfer.h"
 
 #define BLOCK 32
 #define LANES 8
@@ -37,24 +38,30 @@ INLINE int Rows(int n)
   return (n + LANES - 1) / LANES;
 }
 
-/* First pass, sums over particles: V p_w, V p_g, C T (carried to the node by their gradients), V, C, then the mixture
- * and each fluid, with layers V k_p and that times A, with fluids what weighs their pressures (449). */
-enum { MIX_F = 0, MIX_M = MIX_F + CL_DIM, MIX_V, MIX_COUNT = MIX_V + CL_DIM };
-enum { FL_M = 0, FL_V, FL_G = FL_V + CL_DIM, FL_MI = FL_G + CL_DIM, FL_DRAG, FL_W, FL_ROOT };
-PLACE(A_V, Scalars(s))
-PLACE(A_C, Scalars(s) + 1)
-PLACE(A_Mix, Scalars(s) + 1 + s.heat)
+/* First pass, sums over particles: V p_w, V p_g, C T, the force on the mixture, momenta of skeleton and fluids (all but
+ * the force carried to the node by gradients), V, C, the mass of the skeleton and each fluid, with layers V k_p and
+ * that times A, with fluids what weighs their pressures (449). */
+enum { FL_M = 0, FL_G, FL_MI = FL_G + CL_DIM, FL_DRAG, FL_W, FL_ROOT };
+PLACE(A_Force, Scalars(s))
+INLINE int A_Momentum(Set s, int phase) /* 0: skeleton, 1 + k: fluid k */
+{
+  return A_Force(s) + CL_DIM * (s.solid ? 1 + phase : phase - 1);
+}
+PLACE(A_V, A_Momentum(s, s.fluids) + CL_DIM)
+PLACE(A_C, A_V(s) + 1)
+PLACE(A_M, A_C(s) + s.heat)
 PLACE(FluidLanesAlike, s.fluids == 2 ? FL_ROOT + 1 : FL_ROOT) /* a lone fluid has no k_r */
 PLACE(FL_Inertia, s.layers ? FluidLanesAlike(s) : FL_MI) /* of one fluid (310); without layers that of its weight */
 PLACE(FluidLanes, FluidLanesAlike(s) + s.layers)
 INLINE int A_Fluid(Set s, int f)
 {
-  return A_Mix(s) + MIX_COUNT * s.solid + FluidLanes(s) * f;
+  return A_M(s) + s.solid + FluidLanes(s) * f;
 }
 PLACE(A_K, A_Fluid(s, s.fluids))
 PLACE(A_Beds, A_K(s) + s.layers) /* by cl_symmetric */
 PLACE(A_Stores, A_Beds(s) + CL_SYMMETRIC * s.layers)
 PLACE(A_Count, A_Stores(s) + (s.fluids > 0))
+PLACE(A_Acting, s.solid ? A_V(s) : Scalars(s)) /* of which so many are carried or have forces */
 
 /* Pressure of a fluid at a node at t_n (2). */
 INLINE double NodalPressure(Set s, const double *a, int k)
@@ -63,8 +70,8 @@ INLINE double NodalPressure(Set s, const double *a, int k)
 }
 
 /* Second pass, from nodes: v_s, T (with gradients); p_w, p_g; of each fluid Darcy flux, mean gradient of p, increment
-   and velocity; increment of v_s. */
-enum { B_J = 0, B_PROJ = CL_DIM, B_DV = 2 * CL_DIM, B_VEL = 3 * CL_DIM, B_PER_FLUID = 4 * CL_DIM };
+   of velocity; that of v_s. */
+enum { B_J = 0, B_PROJ = CL_DIM, B_DV = 2 * CL_DIM, B_PER_FLUID = 3 * CL_DIM };
 PLACE(B_T, CL_DIM *s.solid)
 INLINE int B_P(Set s, int f)
 {
@@ -120,8 +127,10 @@ typedef struct {
   int    root;  /* fuller node that this one follows; its own number if it stands for itself */
   double own;   /* share that it keeps of its own balances of mass and heat; 1 if it follows nobody */
   double own_v; /* ... of momentum; 1 where velocities are free */
-  int    held;  /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
-  bool   leads; /* others follow it in velocity */
+  int beyond; /* node on the other side of that one, whose velocity with its says that of this one (454); else itself */
+  double stretch[CL_DIM]; /* ... from here over from there, for each axis of the velocity; 0 where that is prescribed */
+  int    held;            /* its place in the list of nodes with prescribed unknowns, -1 if it has none */
+  bool   leads;           /* others follow it in velocity */
 } NodeInfo;
 
 /* Parts of a step in -log_view. */
@@ -154,12 +163,15 @@ struct Explicit {
                                      the mean divergence of its velocity, 1/s */
   double (*part)[CL_DIM][CL_DIM]; /* [rows] (160): stress through the cell's mean motion, J; from CellsMotion on its
                                      mean velocity gradient, 1/s */
-  double *link;   /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
-                     ranks */
-  NodeInfo *node; /* [rows] */
-  PetscInt  nheld, *held; /* local nodes with prescribed unknowns */
-  unsigned *mask;         /* ... which */
-  double   *fixed;        /* ... and their values, [nheld][fields.n] */
+  double *link; /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
+                   ranks */
+  double (*couple)[CL_DIM]; /* [rows] N, what a node gives to the one that it follows and takes from the one beyond
+                               (454) */
+  double   *torn;           /* [rows] of more than none: about the node particles stand open (427) */
+  NodeInfo *node;           /* [rows] */
+  PetscInt  nheld, *held;   /* local nodes with prescribed unknowns */
+  unsigned *mask;           /* ... which */
+  double   *fixed;          /* ... and their values, [nheld][fields.n] */
   PetscInt  nface;
   Face     *face;
   double (*spring)[CL_DIM];     /* [rows] stiffness of the springs at a node, N/m */
@@ -171,10 +183,12 @@ struct Explicit {
   double squeezed, beyond;      /* (290), (442), J over the step */
   double heat_in, warmed;       /* J over the step: what prescribed temperatures take, and all that warms the nodes */
   double ahead;                 /* of the end of the step, since ExplicitBegin, s */
-  double straight;              /* STRAIGHT p_0, the least of all materials, Pa */
-  double work[WORK_RATES];      /* J over the step (92), this rank */
-  double (*pull)[CL_DIM];       /* [nface] force of the tractions, N */
-  double added, acting; /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
+  double across;                /* of StableStep, s */
+  Unseen unseen;
+  double straight;         /* STRAIGHT p_0, the least of all materials, Pa */
+  double work[WORK_RATES]; /* J over the step (92), this rank */
+  double (*pull)[CL_DIM];  /* [nface] force of the tractions, N */
+  double added, acting;    /* N^2: inertia that mass scaling adds, forces of the stresses at the start of the burst */
   double worst_scaling;
   PetscLogEvent event[STEP_PARTS];
 };
@@ -330,9 +344,12 @@ void         ForNodes(Explicit *e, const LoopTable table, double dt);
 PetscErrorCode CellsForces(Explicit *e); /* what particles give to their cells, to the nodes, A */
 void           CellsMotion(Explicit *e); /* velocity gradients */
 
+PetscErrorCode LoseUnseen(Explicit *e); /* (452), when it is due */
+
 /* Node side. */
-PetscErrorCode NodesRebuild(Explicit *e);                /* numbering, when particles reach other nodes */
-PetscErrorCode NodesPrepare(Explicit *e);                /* prescribed values, and who follows whom (41) */
+PetscErrorCode NodesRebuild(Explicit *e); /* numbering, when particles reach other nodes */
+PetscErrorCode NodesPrepare(Explicit *e); /* prescribed values, and who follows whom (41) */
+void           NodesExtend(Explicit *e);  /* forces of what follows two nodes (454), those of plates included */
 PetscErrorCode NodesVelocities(Explicit *e, double dt);  /* A -> B */
 PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
 void           FacesForces(Explicit *e, double dt);
@@ -406,11 +423,10 @@ INLINE double Sum(int n, const double *restrict x)
   return sum;
 }
 
-/* FLIP, mixed with PIC: velocities of n particles from increments and nodal values that stand `width` numbers apart. */
-INLINE void Blend(double flip, int n, double *restrict v, const double *restrict dv, const double *restrict nodal,
-                  int width)
+/* FLIP: velocities of n particles from increments that stand `width` numbers apart. */
+INLINE void AddChange(int n, double *restrict v, const double *restrict dv, int width)
 {
   INDEPENDENT
   for (int q = 0; q < n; q++)
-    v[q] = flip * (v[q] + dv[q * width]) + (1.0 - flip) * nodal[q * width];
+    v[q] += dv[q * width];
 }

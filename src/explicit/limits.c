@@ -14,8 +14,9 @@ const char *const cl_limit_word[LIMIT_COUNT] = {"none",
  */
 typedef struct {
   double wave, sliver, fluid[PHASE_COUNT], drag[PHASE_COUNT], both[PHASE_COUNT],
-      heat; /* both: drag felt by fluid and skeleton */
-  int fluids;
+      heat;      /* both: drag felt by fluid and skeleton */
+  double across; /* time of a wave across a cell, the longest way, s */
+  int    fluids;
 } Spectrum;
 
 /* Change of pressure per change of the volume of each fluid, C^-1 (1/Pa)^-1.  Gas that dissolves makes C lopsided. */
@@ -60,6 +61,15 @@ static double Openness(Set s, const Material *mat, const PointProperties *q)
          PermeabilityEvaluate(&mat->permeability, q->phi, 0.0, &dphi, &dSh);
 }
 
+static double Widest(const Grid *g, const double x[CL_DIM])
+{
+  double h = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++)
+    h = Largest(h, LinesWidthAt(&g->line[d], x[d]));
+  return h;
+}
+
 static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
 {
   const Model    *m   = e->m;
@@ -75,7 +85,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
   const ClStatus status = ModelParticleProperties(m, p, &q, &why);
   if (status != CL_OK)
     return status;
-  *w  = (Spectrum){.fluids = s.fluids};
+  *w  = (Spectrum){.fluids = s.fluids, .across = INFINITY};
   rho = (f[P_MS][p] + f[P_MH][p]) / f[P_V][p];
   if (s.fluids)
     Stiffness(s, &q, C);
@@ -101,6 +111,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
     const double square = Largest(skeleton / rho, (q.M + bulk) / total) / e->o.mass_scaling;
 
     w->wave   = k2 * square;
+    w->across = Widest(&m->grid, x) / sqrt(square);
     w->sliver = Sliver(e, p) * square;
   }
   if (s.heat)
@@ -163,12 +174,12 @@ static void Each(const Spectrum *w, bool implicit, double each[LIMIT_COUNT])
   }
 }
 
-PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit)
+PetscErrorCode ExplicitStableStep(Explicit *e, StableStep *limit)
 {
-  double bound[LIMIT_COUNT + 1];
+  double bound[LIMIT_COUNT + 2];
 
   PetscFunctionBeginUser;
-  for (int k = 0; k <= LIMIT_COUNT; k++)
+  for (int k = 0; k < LIMIT_COUNT + 2; k++)
     bound[k] = INFINITY;
   for (PetscInt p = 0; p < e->m->P.n; p++) {
     Spectrum w;
@@ -179,10 +190,13 @@ PetscErrorCode ExplicitStableStep(const Explicit *e, StableStep *limit)
     Lower(&bound[LIMIT_COUNT], Together(&w, e->o.drag_implicit));
     Lower(&bound[LIMIT_COUNT], 2.0 / sqrt(w.sliver));
     Lower(&bound[LIMIT_COUNT], 2.0 / w.heat);
+    Lower(&bound[LIMIT_COUNT + 1], w.across);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, LIMIT_COUNT + 1, MPI_DOUBLE, MPI_MIN, e->m->grid.comm));
-  limit->dt    = bound[LIMIT_COUNT];
-  limit->rules = LIMIT_NONE;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, LIMIT_COUNT + 2, MPI_DOUBLE, MPI_MIN, e->m->grid.comm));
+  limit->dt     = bound[LIMIT_COUNT];
+  limit->across = bound[LIMIT_COUNT + 1];
+  e->across     = limit->across;
+  limit->rules  = LIMIT_NONE;
   for (int k = LIMIT_NONE; k < LIMIT_COUNT; k++) {
     limit->each[k] = bound[k];
     if (bound[k] < limit->each[limit->rules])

@@ -4,6 +4,7 @@
 #define TIE 0.25    /* of the volume of a neighbour: an emptier node follows it in part (41) */
 #define MARGIN 1.01 /* among neighbours about as full the first stays, whatever the order of sums */
 #define HOPS 3      /* from a nearly empty node to one that is not */
+#define TORN 0.01   /* opening (427) beyond which ground is no continuum (454) */
 
 enum { DIRECTIONS = 2 * CL_DIM };
 
@@ -18,7 +19,7 @@ static PetscErrorCode Allocate(Explicit *e)
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(e->raw));
-  PetscCall(PetscFree5(e->inc, e->gain, e->link, e->node, e->slot));
+  PetscCall(PetscFree7(e->inc, e->gain, e->link, e->couple, e->torn, e->node, e->slot));
   e->rows = n;
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
   PetscCall(PetscFree4(e->cell, e->mean, e->swell, e->part));
@@ -38,8 +39,8 @@ static PetscErrorCode Allocate(Explicit *e)
     e->given = e->left + n * LANES;
     e->total = e->given + n * LANES;
   }
-  PetscCall(PetscCalloc5(INC * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->node, GridPaddedSize(&e->m->grid),
-                         &e->slot));
+  PetscCall(PetscCalloc7(INC * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->couple, n, &e->torn, n, &e->node,
+                         GridPaddedSize(&e->m->grid), &e->slot));
   for (PetscInt q = 0; q < GridPaddedSize(&e->m->grid); q++)
     e->slot[q] = (int)(e->map.index[q] >= 0 ? e->map.index[q] : e->map.n_local);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -104,7 +105,7 @@ PetscErrorCode NodesRebuild(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------------------------------------------------------------- groups (41) */
+/* ---------------------------------------------------------------- groups (41), (454) */
 static int Neighbour(const Explicit *e, PetscInt I, int direction)
 {
   const Grid *g    = &e->m->grid;
@@ -137,13 +138,127 @@ static int Follows(const Explicit *e, PetscInt I, double *own)
   return *own < 1.0 ? found : 0;
 }
 
+/* Nodes about which ground is torn. */
+static PetscErrorCode FindTorn(Explicit *e)
+{
+  const Grid   *g    = &e->m->grid;
+  const double *open = e->m->P.f[P_OPENING];
+
+  PetscFunctionBeginUser;
+  if (!open)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(e->torn, e->rows));
+  for (PetscInt p = 0; p < e->m->P.n; p++) {
+    for (int a = 0; open[p] > TORN && a < CL_NODES; a++) {
+      PetscInt ij[CL_DIM];
+      bool     in = true;
+
+      for (int d = 0, rest = a; d < CL_DIM; d++, rest /= 3) {
+        ij[d] = e->base[d][p] + rest % 3;
+        in    = in && ij[d] >= 0 && ij[d] <= g->cells[d];
+      }
+      if (in)
+        e->torn[e->slot[GridPadded(g, ij)]] = 1.0;
+    }
+  }
+  PetscCall(NodeMapSum(&e->map, e->torn, 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The node beyond the one that I follows, if all three are in a row in ground that is not torn; nothing but their
+   balances may move these two along an axis of which they say the velocity of I (454). */
+static void FindBeyond(const Explicit *e, PetscInt I)
+{
+  const Grid *g         = &e->m->grid;
+  NodeInfo   *n         = &e->node[I];
+  const int   direction = (int)e->link[2 * I] - 1, axis = direction / 2, step = direction % 2 ? 1 : -1;
+  const int   beyond = Neighbour(e, n->root, direction);
+
+  if (!e->set.solid || Neighbour(e, I, direction) != n->root || beyond >= (int)e->map.n_local ||
+      e->link[2 * beyond] > 0.0 || !(Volume(e, e->set, beyond) > 0.0) ||
+      e->torn[I] + e->torn[n->root] + e->torn[beyond] > 0.0)
+    return;
+  const PetscInt at = e->map.ij[n->root][axis];
+  const double   x = GridNode(g, axis, at), here = GridNode(g, axis, at - step), there = GridNode(g, axis, at + step);
+
+  n->beyond = beyond;
+  for (int d = 0; d < CL_DIM; d++) {
+    double value;
+
+    if (!Held(e, n->root, F_VS + d, &value) && !Held(e, beyond, F_VS + d, &value))
+      n->stretch[d] = (here - x) / (x - there);
+  }
+}
+
+/* Row of a node's balances with what others give to it. */
+static double *Leading(Explicit *e, PetscInt I)
+{
+  const int width = LANES * Rows(A_Count(e->set));
+  double   *row   = &e->G[I * width];
+
+  if (!e->node[I].leads)
+    memcpy(row, &e->A[I * width], (size_t)width * sizeof(double));
+  e->node[I].leads = true;
+  return row;
+}
+
+/* Mass of the mixture in a row of balances, kg. */
+static double Mass(const Explicit *e, const double *row)
+{
+  double sum = row[A_M(e->set)];
+
+  for (int k = 0; k < e->set.fluids; k++)
+    sum += row[A_Fluid(e->set, k) + FL_M];
+  return sum;
+}
+
+static const double *Balances(const Explicit *e, PetscInt I)
+{
+  const int width = LANES * Rows(A_Count(e->set));
+
+  return e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
+}
+
+void NodesExtend(Explicit *e)
+{
+  const int width = LANES * Rows(A_Count(e->set)), at = A_Force(e->set);
+
+  for (PetscInt I = 0; I < e->map.n_local; I++) {
+    NodeInfo *n = &e->node[I];
+
+    if (n->beyond == (int)I)
+      continue;
+    const double *own = &e->A[I * width], *root = Balances(e, n->root), *beyond = Balances(e, n->beyond);
+
+    for (int d = 0; d < CL_DIM; d++) {
+      const double of_root = root[at + d] / Mass(e, root), of_beyond = beyond[at + d] / Mass(e, beyond);
+
+      if (e->m->plates && e->spring[I][d] != 0.0) /* it goes with the plate */
+        n->stretch[d] = 0.0;
+      const double goes = of_root + n->stretch[d] * (of_root - of_beyond);
+
+      e->couple[I][d] = (1.0 - n->own_v) * n->stretch[d] * (own[at + d] - Mass(e, own) * goes);
+    }
+  }
+  for (PetscInt I = 0; I < e->map.n_local; I++) {
+    const NodeInfo *n = &e->node[I];
+
+    if (n->beyond == (int)I)
+      continue;
+    AddRow(Leading(e, n->root) + at, 1.0, e->couple[I], CL_DIM);
+    AddRow(Leading(e, n->beyond) + at, -1.0, e->couple[I], CL_DIM);
+  }
+}
+
 PetscErrorCode NodesFollow(Explicit *e)
 {
   const int width = LANES * Rows(A_Count(e->set));
 
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < e->map.n_local; I++) {
-    e->node[I].root = (int)I;
+    e->node[I].root = e->node[I].beyond = (int)I;
+    for (int d = 0; d < CL_DIM; d++)
+      e->node[I].stretch[d] = 0.0;
     e->node[I].own = e->node[I].own_v = 1.0;
     e->node[I].leads                  = false;
     e->link[2 * I] = e->link[2 * I + 1] = 0.0;
@@ -153,6 +268,8 @@ PetscErrorCode NodesFollow(Explicit *e)
   if (!e->o.tied)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NodeMapBroadcast(&e->map, e->link, 2));
+  if (!e->o.velocities_free)
+    PetscCall(FindTorn(e));
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     int root = (int)I;
 
@@ -165,10 +282,8 @@ PetscErrorCode NodesFollow(Explicit *e)
     if (e->o.velocities_free)
       continue;
     e->node[I].own_v = e->node[I].own;
-    if (!e->node[root].leads)
-      PetscCall(PetscArraycpy(&e->G[root * width], &e->A[root * width], width));
-    e->node[root].leads = true;
-    AddRow(&e->G[root * width], 1.0 - e->node[I].own, &e->A[I * width], width);
+    AddRow(Leading(e, root), 1.0 - e->node[I].own, &e->A[I * width], width);
+    FindBeyond(e, I);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

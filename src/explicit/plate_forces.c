@@ -31,13 +31,13 @@ static PetscErrorCode Answers(Explicit *e, double dt)
   }
   PetscCall(NodeMapBroadcast(&e->map, &own[0][0], 2 * CL_DIM));
   for (PetscInt I = 0; I < e->map.n_owned; I++) {
-    const double *mix = &e->A[I * width + A_Mix(e->set)];
+    const double *a = &e->A[I * width], M = a[A_M(e->set)];
 
     for (int d = 0; d < CL_DIM; d++) {
       double value;
 
       e->answer[I][d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], d) +
-                        (mix[MIX_M] > 0.0 ? mix[MIX_V + d] / mix[MIX_M] : 0.0);
+                        (M > 0.0 ? a[A_Momentum(e->set, 0) + d] / M : 0.0);
       e->answer[I][CL_DIM + d] = Blended(e, I, e->node[I].own_v, 2 * CL_DIM, &own[0][0], CL_DIM + d);
       if (Held(e, I, F_VS + d, &value)) {
         e->answer[I][d]          = value;
@@ -93,7 +93,7 @@ static void Push(Explicit *e, const Face *f, double dt, const double answer[2])
 /* Sums the forces over ranks and adds them to the balances, those of followers as (41) says. */
 static PetscErrorCode Add(Explicit *e)
 {
-  const int width = LANES * Rows(A_Count(e->set)), at = A_Mix(e->set) + MIX_F;
+  const int width = LANES * Rows(A_Count(e->set)), at = A_Force(e->set);
 
   PetscFunctionBeginUser;
   PetscCall(NodeMapSum(&e->map, &e->push[0][0], CL_DIM));

@@ -3,7 +3,7 @@
 #include "clathra/laws_batch.h"
 #include "gains.h"
 
-/* (313): with layers nodes give the slip per permeability, and what it changes by. */
+/* (313): with layers nodes give what the slip per permeability changes by. */
 INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
 {
   for (int q = 0; q < r.n; q++) {
@@ -11,14 +11,11 @@ INLINE void Slips(const Explicit *e, const Set s, Run r, Gathered *g)
     double      *v       = g->value[q];
 
     for (int k = 0; k < s.fluids; k++) {
-      double *dv = &v[B_Fluid(s, k) + B_DV], *vel = &v[B_Fluid(s, k) + B_VEL];
+      double *dv = &v[B_Fluid(s, k) + B_DV];
 
       Drive(e, s, r.p + q, dv);
-      Drive(e, s, r.p + q, vel);
-      for (int d = 0; d < CL_DIM; d++) {
-        dv[d]  = conduct * dv[d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
-        vel[d] = conduct * vel[d] + (s.solid ? v[d] : 0.0);
-      }
+      for (int d = 0; d < CL_DIM; d++)
+        dv[d] = conduct * dv[d] + (s.solid ? v[B_DVs(s) + d] : 0.0);
     }
   }
 }
@@ -29,10 +26,9 @@ INLINE void Velocities(Explicit *e, const Set s, Run r, Gathered *g)
     Slips(e, s, r, g);
   for (int d = 0; d < CL_DIM; d++) {
     if (s.solid)
-      Blend(e->o.flip, r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], &g->value[0][d], GATHERED);
+      AddChange(r.n, e->m->P.f[P_VS + d] + r.p, &g->value[0][B_DVs(s) + d], GATHERED);
     for (int k = 0; k < s.fluids; k++)
-      Blend(e->o.flip, r.n, e->m->P.f[VectorAt(P_VW, k, d)] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d],
-            &g->value[0][B_Fluid(s, k) + B_VEL + d], GATHERED);
+      AddChange(r.n, e->m->P.f[VectorAt(P_VW, k, d)] + r.p, &g->value[0][B_Fluid(s, k) + B_DV + d], GATHERED);
   }
 }
 
@@ -476,7 +472,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   Gather(e, e->B, Rows(B_Count(s)), 1, r, &w, &g);
   MeanMotion(e, s, r, &w, 0, &g);
   Velocities(e, s, r, &g);
-  GiveNothing(r, R_Count(s), &o);
+  GiveNothing(r, R_Count(s), 0, &o);
   VolumesOf(e, s, r, T, &g, dt, &v);
   if (s.fluids)
     Masses(e, s, r, PHASE_W, &v);
@@ -498,7 +494,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     Keep(e, s, r, dt, &w, &o);
   if (Relative(e, s))
     RelativeColumns(e, s, r, &o);
-  Scatter(e, e->R, R_Count(s), CARRY_NOTHING, true, r, &w, &o);
+  Scatter(e, e->R, R_Count(s), CARRY_NOTHING, Scalars(s), true, r, &w, &o);
 }
 
 MAKE_LOOPS(RatesRun)

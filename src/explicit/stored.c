@@ -44,7 +44,7 @@ INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
   (void)dt;
   WeightsOf(e, r, &w);
   Gather(e, e->C, Rows(C_Count(s)), 0, r, &w, &g);
-  GiveNothing(r, Scalars(s), &o);
+  GiveNothing(r, Scalars(s), 0, &o);
   for (int q = 0; q < r.n; q++)
     memset(o.value[q], 0, sizeof(Lanes));
   for (int q = 0; q < r.n && Relative(e, s); q++) {
@@ -55,7 +55,7 @@ INLINE void StoredRun(Explicit *e, const Set s, Run r, double dt)
   StoredMasses(e, s, r, &g, &o);
   if (s.fluids == 2 && r.mat->reacts)
     StoredGain(e, s, r, &g, &o);
-  Scatter(e, e->given, Scalars(s), CARRY_NOTHING, false, r, &w, &o);
+  Scatter(e, e->given, Scalars(s), CARRY_NOTHING, 0, false, r, &w, &o);
 }
 
 MAKE_LOOPS(StoredRun)

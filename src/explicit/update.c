@@ -83,6 +83,28 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
   return !out;
 }
 
+#define FASTEST 0.08 /* (451): deformation in a step beyond which no motion of a continuum goes */
+
+/* (451); a particle that flies alone keeps its own, and where that shrinks it would come to a point. */
+INLINE void KeepVelocityGradient(Explicit *e, Run r, const Strain *n, double dt)
+{
+  double share[BLOCK];
+
+  for (int q = 0; q < r.n; q++) {
+    double square = 0.0;
+
+    for (int k = 0; k < CL_DIM * CL_DIM; k++)
+      square += n->H[k / CL_DIM][k % CL_DIM][q] * n->H[k / CL_DIM][k % CL_DIM][q];
+    share[q] = (square > FASTEST * FASTEST ? FASTEST / sqrt(square) : 1.0) / dt;
+  }
+  for (int k = 0; k < CL_DIM * CL_DIM; k++) {
+    double *restrict to = e->m->P.f[P_GV + k] + r.p;
+
+    for (int q = 0; q < r.n; q++)
+      to[q] = share[q] * n->H[k / CL_DIM][k % CL_DIM][q];
+  }
+}
+
 INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
 {
   _Alignas(64) Gathered g;
@@ -115,11 +137,12 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   }
   if (!StrainOf(s, r.n, &g, dt, &n))
     ModelNoteFailure(e->m, CL_DOMAIN, "the strain of one step exceeds 10 % or is not finite", Strained(r, &n));
+  KeepVelocityGradient(e, r, &n, dt);
   ExpansionWork(e, s, r, &g, &n, dt);
   StressOf(e, s, r, &g, &n, T, kept);
   if (!Scalars(s)) {
     for (int d = 0; d < CL_DIM; d++)
-      Blend(e->o.flip, r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], &g.value[0][C_Vs(s) + d], GATHERED);
+      AddChange(r.n, f[P_VS + d] + r.p, &g.value[0][C_DVs(s) + d], GATHERED);
   }
   if (!Move(e, s, r, &g, &n, dt))
     NoteStray(e, s, r, &g, dt);

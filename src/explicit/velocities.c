@@ -77,7 +77,7 @@ INLINE void ReadMasses(const Explicit *e, const Set s, const double *a, double d
 {
   const double per_V = 1.0 / a[A_V(s)], scale = e->o.mass_scaling / dt;
 
-  b->M     = s.solid ? a[A_Mix(s) + MIX_M] : 0.0;
+  b->M     = s.solid ? a[A_M(s)] : 0.0;
   b->per_M = Inverse(b->M);
   b->lhs   = scale * b->M;
   b->flow  = Flow(s, a);
@@ -98,18 +98,18 @@ INLINE void ReadMasses(const Explicit *e, const Set s, const double *a, double d
 /* Velocities and forces along d. */
 INLINE void ReadForces(const Explicit *e, const Set s, const double *a, int d, Balance *b)
 {
-  const double *mix = &a[A_Mix(s)], gravity = e->m->bc.gravity[d];
-  double        mass = b->M;
+  const double gravity = e->m->bc.gravity[d];
+  double       mass    = b->M;
 
-  b->v = s.solid ? mix[MIX_V + d] * b->per_M : 0.0;
+  b->v = s.solid ? a[A_Momentum(s, 0) + d] * b->per_M : 0.0;
   for (int k = 0; k < s.fluids; k++) {
     const double *f = &a[A_Fluid(s, k)];
 
-    b->vf[k] = b->m[k] > 0.0 ? f[FL_V + d] * b->per_m[k] : b->v;
+    b->vf[k] = b->m[k] > 0.0 ? a[A_Momentum(s, 1 + k) + d] * b->per_m[k] : b->v;
     b->r[k]  = b->kr[k] * b->flow * (f[FL_G + d] + (s.layers ? 0.0 : f[FL_MI] * gravity));
     mass += b->m[k];
   }
-  b->f = s.solid ? mix[MIX_F + d] + mass * gravity : 0.0;
+  b->f = s.solid ? a[A_Force(s) + d] + mass * gravity : 0.0;
 }
 
 /* Local damping: a share of the force out of balance, against the motion, N. */
@@ -327,7 +327,7 @@ INLINE double FluidVelocity(const Explicit *e, PetscInt I, const NodeBeds *n, co
   double flow[CL_DIM];
 
   if (!n->on)
-    return w->vf[k] + Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, d));
+    return w->vf[k] + Extended(e, I, INC, e->inc, VectorAt(0, 1 + k, d), d, d);
   for (int i = 0; i < CL_DIM; i++)
     flow[i] = Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, i));
   Driven(n, flow);
@@ -347,7 +347,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
     double v[3] = {0.0}, value;
 
     ReadForces(e, s, a, d, &w);
-    v[0] = s.solid ? w.v + Blended(e, I, e->node[I].own_v, INC, e->inc, d) : 0.0;
+    v[0] = s.solid ? w.v + Extended(e, I, INC, e->inc, d, d, d) : 0.0;
     if (s.solid && Held(e, I, F_VS + d, &value))
       v[0] = value;
     if (s.solid) {
@@ -364,7 +364,6 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
       bf[B_J + d]    = w.flow * w.w[k] * (v[1 + k] - v[0]);
       bf[B_PROJ + d] = -w.flow * f[FL_G + d] * per_V;
       bf[B_DV + d]   = s.layers ? w.flow * (v[1 + k] - w.vf[k] - (v[0] - w.v)) : v[1 + k] - w.vf[k];
-      bf[B_VEL + d]  = s.layers ? w.flow * (v[1 + k] - v[0]) : v[1 + k];
     }
     if (s.solid)
       NodeWork(e, s, I, d, &w, v, dt, J);

@@ -48,10 +48,11 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(held_for),     REAL(held_look),
                                      INT(uneven_total),  REAL(beyond),
                                      REAL(hydrate0),     REAL(acts),
+                                     REAL(unseen),       INT(unseen_steps),
                                      {NULL, 0, 0, false}};
-/* Fifteen integers, filled up to doubles, 32 reals and a place, meters, works, energies, what left, extremes. */
-_Static_assert(sizeof(StepperState) == (15 * sizeof(PetscInt) + sizeof(double) - 1) / sizeof(double) * sizeof(double) +
-                                           (32 + CL_DIM + CL_METERS * METER_COUNT + ACTS_COUNT + WORK_COUNT +
+/* Sixteen integers, 33 reals and a place, meters, works, energies, what left, extremes. */
+_Static_assert(sizeof(StepperState) == (16 * sizeof(PetscInt) + sizeof(double) - 1) / sizeof(double) * sizeof(double) +
+                                           (33 + CL_DIM + CL_METERS * METER_COUNT + ACTS_COUNT + WORK_COUNT +
                                             ENERGY_COUNT + REMOVED_COUNT + EXTREMES) *
                                                sizeof(double) +
                                            EXTREMES * sizeof(Extreme),

@@ -104,7 +104,7 @@ static bool ReadHistory(const char *path, History *h)
   if (!f)
     return false;
   while (fgets(line, sizeof(line), f)) {
-    Origin o;
+    Origin o = {0};
 
     if (sscanf(line, "%16" SCNx64 " %lf", &o.run, &o.t) != 2)
       continue;

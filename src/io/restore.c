@@ -390,7 +390,7 @@ static PetscErrorCode ReadAll(Model *m, StepperState *s, const char *path, Origi
     InitialDomains(m->c, &m->P);
     if (s)
       *s = L.s;
-    *origin = (Origin){.run = L.run, .t = L.s.t};
+    *origin = (Origin){.run = L.run, .t = L.s.t, .unseen = {L.s.unseen, L.s.unseen_steps}};
   } else {
     if (g->rank == 0)
       fprintf(stderr, "%s: cannot %s this file: %s\n", path, s ? "restart from" : "start from the state of", L.why);

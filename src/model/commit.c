@@ -255,6 +255,22 @@ static void OwnGradient(const Model *m, const Reach *r, const double *x, double 
   }
 }
 
+/* The gradient of the velocity, by which the next step carries it to its nodes (451). */
+static void WriteVelocityGradient(Model *m, PetscInt p, const double *x, const Reach *r)
+{
+  const FieldSet *fs = &m->c->fields;
+
+  for (int i = 0; i < CL_DIM; i++) {
+    for (int j = 0; j < CL_DIM; j++) {
+      double sum = 0.0;
+
+      for (int a = 0; a < r->n; a++)
+        sum += x[r->node[a] * fs->n + PlaceVs(fs) + i] * r->G[a][j];
+      m->P.f[VectorAt(P_GV, i, j)][p] = sum;
+    }
+  }
+}
+
 /* Position, size, stress. */
 static void WriteMotion(Model *m, PetscInt p, const double *x, const Reach *r, const PointState *s)
 {
@@ -291,11 +307,11 @@ static double Change(const Model *m, const double *x, double from, PetscInt I, i
 }
 
 /* FLIP: velocities of skeleton, water, gas; fluids slip by the particle's own share of the flow (313). Without inertia
-   velocities have no memory: those of the nodes (355); between the two (357). */
-static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r, double keeps)
+   velocities have no memory: those of the nodes (355). */
+static void WriteVelocities(Model *m, PetscInt p, const double *x, const Reach *r)
 {
   const FieldSet *fs   = &m->c->fields;
-  const double    from = fs->inertia ? keeps : 0.0;
+  const double    from = fs->inertia ? 1.0 : 0.0;
 
   double dv_s[CL_DIM] = {0.0};
 
@@ -381,12 +397,12 @@ static void WriteMixed(Model *m, PetscInt p, const double *x, const Reach *r)
 }
 
 static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, const double in[IN_COUNT],
-                         const PointState *s, double keeps)
+                         const PointState *s)
 {
   const FieldSet *fs = &m->c->fields;
   double *const  *f  = m->P.f;
 
-  WriteVelocities(m, p, x, r, keeps);
+  WriteVelocities(m, p, x, r);
   for (int k = 0; k < 3; k++) { /* p_w, p_g, T */
     if (!f[P_PW + k])
       continue;
@@ -396,10 +412,12 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
   }
   if (fs->heat)
     WriteMixed(m, p, x, r);
-  if (fs->solid)
+  if (fs->solid) {
+    WriteVelocityGradient(m, p, x, r);
     WriteMotion(m, p, x, r, s);
-  else
+  } else {
     ParticlesKeep(&m->P, p, 1, NULL);
+  }
   f[P_MH][p]  = s->m_h;
   f[P_SH][p]  = s->Sh;
   f[P_PHI][p] = s->phi;
@@ -411,9 +429,10 @@ static void WriteHistory(Model *m, PetscInt p, const double *x, const Reach *r, 
     f[P_MG][p] = s->m_g;
 }
 
-PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates, double keeps)
+PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const double *rates, double unseen)
 {
-  PetscInt left;
+  const Transfer at_start = {.grid = &m->grid, .map = &m->map, .n = m->P.n, .stencil = m->stencil};
+  PetscInt       left;
 
   PetscFunctionBeginUser;
   PetscCall(ModelProjectGradients(m, x, false, m->proj));
@@ -441,8 +460,10 @@ PetscErrorCode ModelCommit(Model *m, const double *x, const Trial *trial, const 
     }
     if (m->c->fields.solid)
       m->released += Released(m, p, &s);
-    WriteHistory(m, p, x, &r, in, &s, keeps);
+    WriteHistory(m, p, x, &r, in, &s);
   }
+  if (unseen > 0.0)
+    PetscCall(TransferUnseen(&at_start, &m->c->fields, unseen, &m->P));
   PetscCall(ModelTakeOut(m, m->stage.t));
   PetscCall(ParticlesMigrate(&m->grid, &m->P, &left));
   PetscCheck(left == 0, m->grid.comm, PETSC_ERR_PLIB, "an accepted step moved particles out of the grid");

@@ -1,6 +1,7 @@
 /* Private to model/: Newton's method for a stage, its matrices and its preconditioner. */
 #pragma once
 
+#include "clathra/transfer.h"
 #include "gather.h"
 
 /* The matrix: J2 with all its unknowns, LU unless PETSc's options say otherwise; reduced (170), LU or multigrid by size

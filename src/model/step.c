@@ -88,12 +88,13 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   for (int k = 0; k < 3; k++) {
     if (!there[k])
       continue;
-    const double mass =
-        fmax(k == 0 ? f[P_MS][p] + f[P_MH][p] : f[P_MS + 1 + k][p], 0.0); /* a trace may be none (101) */
+    const double mass = ParticlePhaseMass(&m->P, p, k);
 
     s[SUM_M + k] += S * mass;
     for (int i = 0; i < CL_DIM; i++)
-      s[SUM_X + fs->at[VectorAt(F_VS, k, 0)] + i] += S * mass * f[VectorAt(P_VS, k, i)][p];
+      s[SUM_X + fs->at[VectorAt(F_VS, k, 0)] + i] +=
+          S * mass *
+          (fs->solid ? Carried(m, p, VectorAt(P_VS, k, i), VectorAt(P_GV, i, 0), d) : f[VectorAt(P_VS, k, i)][p]);
   }
   for (int k = 0; k < PHASE_COUNT; k++) {
     if (!fs->phase[k])

@@ -91,9 +91,11 @@ void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_MIXED])
    derivatives of T, xy (yz, xz) of F^-T B F^-1 (395), (446). */
 static void CarryGradients(const Particles *P, PetscInt p, PetscInt n, const ParticleMotion *m)
 {
-  static const int grad[3] = {P_GW, P_GG, P_GT};
+  int grad[3 + CL_DIM] = {P_GW, P_GG, P_GT}; /* ... and a row of that of the velocity for each axis */
 
-  for (int k = 0; k < 3; k++) {
+  for (int d = 0; d < CL_DIM; d++)
+    grad[3 + d] = VectorAt(P_GV, d, 0);
+  for (int k = 0; k < 3 + CL_DIM; k++) {
     const PetscInt held = P->f[grad[k]] ? n : 0;
 
     INDEPENDENT

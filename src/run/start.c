@@ -39,6 +39,8 @@ PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok)
   if (!*ok)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepperStart(s));
+  s->state.unseen       = origin.unseen.time;
+  s->state.unseen_steps = origin.unseen.steps;
   PetscCall(PetscPrintf(comm, "  starts from the state of %s, t = %s there\n", path, TimeAt(origin.t).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

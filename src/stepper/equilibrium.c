@@ -1,9 +1,9 @@
 /* auto's implicit steps: do they still lead from one equilibrium to the next, or over a slide; what a slide that hybrid
    carried leaves behind.  docs/equations.md, section 15. */
 #include "clathra/stepper.h"
+#include "clathra/transfer.h"
 
 #define UNFORESEEN 0.05 /* of a cell (356) */
-#define WAVES 10.0      /* times of a wave across a cell (357) */
 
 /* (356) of particle p, of what it may be. */
 static double Unforeseen(const Stepper *s, PetscInt p, double dt)
@@ -44,17 +44,16 @@ PetscErrorCode StepperCheckEquilibrium(Stepper *s, double dt, Attempt *a)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StepperKeeps(Stepper *s, double dt, double *keeps)
+PetscErrorCode StepperUnseen(Stepper *s, double dt, double *share)
 {
-  const bool visited = s->state.since > StepperCase(s)->scene.t_begin; /* by hybrid */
-  StableStep limit;
+  const FieldSet *fs = &s->model->c->fields;
+  StableStep      limit;
 
   PetscFunctionBeginUser;
-  *keeps = 1.0;
-  if (!s->auto_.on || !visited)
+  *share = 0.0;
+  if (!fs->solid || !fs->inertia)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepperHybridLimit(s, &limit));
-  *keeps = fmin(1.0, WAVES * limit.each[LIMIT_WAVE] / dt);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, keeps, 1, MPI_DOUBLE, MPI_MIN, s->model->grid.comm));
+  *share = UnseenShare(dt, limit.across);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

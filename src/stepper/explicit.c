@@ -36,7 +36,6 @@ static PetscErrorCode Create(Stepper *s)
                              .relative_gas       = c->pressures == PRESSURES_RELATIVE,
                              .particle_pressures = c->pressures == PRESSURES_PARTICLES,
                              .passes             = (int)c->passes,
-                             .flip               = c->flip,
                              .damping            = c->damping,
                              .mass_scaling       = c->mass_scaling};
 
@@ -101,6 +100,11 @@ static double Free(const Stepper *s)
   return s->adaptive ? fmin(StepperCase(s)->cfl * s->limit.dt, s->dt_max) : StepperCase(s)->dt;
 }
 
+static Unseen Kept(const Stepper *s)
+{
+  return (Unseen){s->state.unseen, s->state.unseen_steps};
+}
+
 static PetscErrorCode Ready(Stepper *s, bool *ok)
 {
   char     text[512];
@@ -108,7 +112,7 @@ static PetscErrorCode Ready(Stepper *s, bool *ok)
   ClStatus status;
 
   PetscFunctionBeginUser;
-  PetscCall(ExplicitBegin(s->explicit, &status));
+  PetscCall(ExplicitBegin(s->explicit, Kept(s), &status));
   PetscCall(ExplicitStableStep(s->explicit, &s->limit));
   for (int k = LIMIT_NONE + 1; k < LIMIT_COUNT; k++) {
     if (s->limit.each[k] < INFINITY && n < sizeof(text))
@@ -185,6 +189,8 @@ static PetscErrorCode Accept(Stepper *s, PetscInt n, double dt, double stop, boo
   z->fresh = 1;
   if (z->hold > 0)
     z->hold--;
+  z->unseen       = ExplicitUnseen(s->explicit).time;
+  z->unseen_steps = ExplicitUnseen(s->explicit).steps;
   PetscCall(ExplicitEnd(s->explicit));
   if (reached)
     PetscCall(ModelBeginStep(s->model, &status));
@@ -247,7 +253,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     Attempt a = {.status = CL_OK};
     double  dt;
 
-    PetscCall(ExplicitBegin(s->explicit, &a.status));
+    PetscCall(ExplicitBegin(s->explicit, Kept(s), &a.status));
     PetscCall(Limit(s));
     bool stable = true;
     PetscCall(CheckFixed(s, &stable));

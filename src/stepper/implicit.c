@@ -282,11 +282,11 @@ static PetscErrorCode Accept(Stepper *s, double dt, bool kink, const Attempt *a,
                          .rules  = a->rules,
                          .bound  = Bound(s, dt, z->dt, cuts),
                          .peak   = a->peak};
-  double         keeps;
+  double         unseen;
 
   PetscFunctionBeginUser;
-  PetscCall(StepperKeeps(s, dt, &keeps));
-  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates, keeps));
+  PetscCall(StepperUnseen(s, dt, &unseen));
+  PetscCall(ModelCommit(s->model, s->work.x, &s->work.trial[s->scheme->stages - 1], s->work.rates, unseen));
   z->uneven_total += s->model->uneven;
   z->step++;
   z->t += dt;

@@ -252,7 +252,6 @@ CASES = [
     ("a mean over no face", [("at: [0.6 m, 0.01 m]", "side: right, from: 1 m")], ["probe_p06_from", "no part of the body"], []),
     ("probe outside", [("at: [0.6 m, 0.01 m]", "at: [1.02 m, 0.01 m]")], ["probe_p06_at", "no region"], []),
     ("cfl above 1", [("type: sdirk2", "type: hybrid, cfl: 1.5")], ["stepper_cfl", "(0,1]"], []),
-    ("flip above 1", [("type: sdirk2", "type: hybrid, flip: 2")], ["stepper_flip", "[0,1]"], []),
     ("damping of 1", [("type: sdirk2", "type: hybrid, damping: 1")], ["stepper_damping", "[0,1)"], []),
     ("mass scaling below 1", [("type: sdirk2", "type: explicit, mass_scaling: 0.5")], ["stepper_mass_scaling", "[1,1e12]"], []),
     ("bad surface", [("type: sdirk2", "type: hybrid, surface: loose")], ["stepper_surface", "tied"], []),

@@ -264,7 +264,7 @@ check_true("clay: a bad parameter is refused with its range", bad.returncode == 
 # undrained: e = -dp/K, so p_c and q are functions of p, whatever the shape of the test
 WET = CLAY.replace("[solid]", "[solid, water]").replace("150 kPa", "200 kPa").replace("-100 kPa", "-200 kPa").replace("material: clay, part", "material: clay, pressure: 1 MPa, part")
 WET = WET[: WET.index("  side:")] + """  side: {type: traction, side: right, normal: 1.2 MPa}
-  top: {type: plate, side: top, velocity: -0.1 m/s}
+  top: {type: plate, side: top, velocity: {ramp: [0 m/s, -0.1 m/s, 0 s, 0.1 s]}}
 """ + WET[WET.index("time:") :]
 PLANE = WET.replace("axisymmetric", "plane").replace("boundaries: [", "boundaries: [left, ").replace("bc:\n", "bc:\n  left: {type: roller, axis: x, position: 0 m}\n")
 for name, text, bar, options in (

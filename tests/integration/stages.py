@@ -137,7 +137,7 @@ counts = [c for c in run.probes if not re.search(r"\.u_[xy]_m$", c)]
 check_true("resetting displacements changes nothing else: probes", all(np.array_equal(run.probes[c], plain.probes[c]) for c in counts))
 check_true("... nor what a meter on a part of a side counts", all(np.array_equal(meter[c], plain.csv("meters.csv")[c]) for c in meter) and meter["part.water_kg"][-1] > 1)
 names = {n.split("/")[-1] for n in different(run, plain, ()) if n.startswith("checkpoint") and n != "checkpoint.h5:case"}  # whose stages differ
-check_true("... nor any other variable of a particle", names <= {"displacement", "log_J", "scale_u"}, names)
+check_true("... nor any other variable of a particle", names <= {"displacement", "log_J", "scale_u", "err_old"}, names)  # errors are relative to scale_u
 (_, last), (_, first) = run.snapshots()[-1], run.snapshots()[0]
 check_true("where particles were seeded stays known", np.array_equal(last["initial_position"], first["position"]))
 

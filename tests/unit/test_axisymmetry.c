@@ -314,7 +314,7 @@ static void TestHomogeneous(void **state)
     Check(status == CL_OK);
     double *rate;
     Call(PetscCalloc1(4 * s->m.P.n, &rate));
-    Call(ModelCommit(&s->m, x, &t, rate, 1.0));
+    Call(ModelCommit(&s->m, x, &t, rate, 0.0));
     for (PetscInt p = 0; p < s->m.P.n; p++) {
       double *const *f = s->m.P.f;
       const double   V = 8.0 * M_PI * f[P_X][p] * f[P_L][p] * f[P_L + 1][p];

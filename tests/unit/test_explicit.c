@@ -25,7 +25,7 @@ static const struct {
     {"t", HAS_HEAT},
 };
 
-static const ExplicitOptions hybrid = {.drag_implicit = true, .tied = true, .flip = 1.0, .mass_scaling = 1.0};
+static const ExplicitOptions hybrid = {.drag_implicit = true, .tied = true, .mass_scaling = 1.0};
 
 static SmallScene *Make(unsigned has, BasisType basis, int conditions, bool reacts)
 {
@@ -48,7 +48,7 @@ static StageRates Go(SmallScene *s, const ExplicitOptions *o, int steps, double 
   ClStatus   status;
 
   Call(ExplicitCreate(&s->m, o, &e));
-  Call(ExplicitBegin(e, &status));
+  Call(ExplicitBegin(e, (Unseen){0.0, 0}, &status));
   Call(ExplicitStableStep(e, &limit));
   Check(status == CL_OK && limit.dt > 0.0 && limit.rules != LIMIT_NONE);
   for (int k = 0; k < steps && status == CL_OK; k++)
@@ -171,7 +171,7 @@ static void TestStableStep(void **state)
       o.drag_implicit = k == 2;
     }
     Call(ExplicitCreate(&s->m, &o, &e));
-    Call(ExplicitBegin(e, &status));
+    Call(ExplicitBegin(e, (Unseen){0.0, 0}, &status));
     Call(ExplicitStableStep(e, &limit[k]));
     Call(ExplicitDestroy(&e));
     SceneDestroy(s);

@@ -291,7 +291,7 @@ static void TestMultilinear(void **state)
   int                   by[CL_DIM] = {0};
   double                worst[2]   = {0.0};
   SmallScene           *s          = malloc(sizeof(*s));
-  const ExplicitOptions hybrid     = {.drag_implicit = true, .tied = true, .flip = 1.0, .mass_scaling = 1.0};
+  const ExplicitOptions hybrid     = {.drag_implicit = true, .tied = true, .mass_scaling = 1.0};
   Explicit             *e;
   StageRates            sum = {0};
   ClStatus              status;
@@ -328,7 +328,7 @@ static void TestMultilinear(void **state)
     worst[0] = fmax(worst[0], fabs(m->x_n[I] - Multilinear(x, none)));
   }
   Call(ExplicitCreate(m, &hybrid, &e));
-  Call(ExplicitBegin(e, &status));
+  Call(ExplicitBegin(e, (Unseen){0.0, 0}, &status));
   Call(ExplicitStep(e, 0.0, 1e-9, &sum, &status));
   Check(status == CL_OK);
   Call(ExplicitEnd(e));

@@ -178,12 +178,12 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
   s->c.scene.gravity[0]       = v->ratio > 0.0 ? 5.0 : 0.0;
   s->c.scene.gravity[1]       = v->ratio > 0.0 ? -9.81 : 0.0;
   snprintf(s->c.stepper, sizeof s->c.stepper, "%s", stepper);
-  s->c.dt = s->c.dt_max = s->c.t_end = STEP;
-  s->c.dt_min                        = 1e-3 * STEP;
-  s->c.cfl                           = 0.8;
-  s->c.error_exponent                = 2.0;
-  s->c.tol                           = 1.0;
-  s->c.flip = s->c.mass_scaling          = 1.0;
+  s->c.dt = s->c.dt_max = s->c.t_end     = STEP;
+  s->c.dt_min                            = 1e-3 * STEP;
+  s->c.cfl                               = 0.8;
+  s->c.error_exponent                    = 2.0;
+  s->c.tol                               = 1.0;
+  s->c.mass_scaling                      = 1.0;
   s->c.scene.stabilisation.ghost_penalty = s->c.scene.stabilisation.ghost_storage =
       0.0; /* nothing to stabilise, but they reach far */
   s->c.surface = SURFACE_TIED;

@@ -48,8 +48,8 @@ static SmallScene *Make(unsigned has, BasisType basis, const char *stepper, int 
   s->c.tol                 = 1e-3;
   s->c.max_failures        = 5;
   s->c.cfl                 = 0.8;
-  s->c.flip = s->c.mass_scaling = 1.0;
-  s->c.surface                  = surface;
+  s->c.mass_scaling        = 1.0;
+  s->c.surface             = surface;
   if (contrast != 1.0) {
     SceneLayers(s, 1, middle[1], contrast);
     s->half[1].pressure += EXCESS;
@@ -60,8 +60,10 @@ static SmallScene *Make(unsigned has, BasisType basis, const char *stepper, int 
     for (int v = P_VS; v < P_VS + 6; v += 2) {
       if (!s->m.P.f[v])
         continue;
-      s->m.P.f[v][i]     = -OMEGA * (s->m.P.f[P_X + 1][i] - middle[1]);
-      s->m.P.f[v + 1][i] = OMEGA * (s->m.P.f[P_X][i] - middle[0]);
+      s->m.P.f[P_GV + 1][i] = -OMEGA;
+      s->m.P.f[P_GV + 2][i] = OMEGA;
+      s->m.P.f[v][i]        = -OMEGA * (s->m.P.f[P_X + 1][i] - middle[1]);
+      s->m.P.f[v + 1][i]    = OMEGA * (s->m.P.f[P_X][i] - middle[0]);
     }
   }
   return s;
@@ -135,43 +137,34 @@ static void TestTurn(void **state)
     unsigned    has;
     BasisType   basis;
     int         surface;
-    double degrees[3], least; /* share of an angle that is reached: nodes see the smoothed velocity of the particles,
-                                 so a body of six cells turns slower, the more so the more steps it takes */
-    double contrast;
-  } body[] = {{"dry, sdirk2", "sdirk2", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 0.95, 1.0},
-              {"dry, ugimp, euler", "euler", HAS_SOLID, BASIS_UGIMP, SURFACE_TIED, {30, 45, 90}, 0.95, 1.0},
-              {"dry, total, sdirk2", "sdirk2", HAS_SOLID, BASIS_TOTAL, SURFACE_TIED, {30, 45, 90}, 0.95, 1.0},
-              {"saturated, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, SURFACE_TIED, {90}, 0.95, 1.0},
-              {"layers, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, SURFACE_TIED, {45}, 0.95, 1e3},
-              {"dry, hybrid", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 0.3, 1.0},
-              {"saturated, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {90}, 0.95, 1.0},
-              {"saturated, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 0.3, 1.0},
-              {"dry, hybrid, velocities free",
-               "hybrid",
-               HAS_SOLID,
-               BASIS_CPGIMP,
-               SURFACE_VELOCITIES_FREE,
-               {30, 45, 90},
-               0.3,
-               1.0},
-              {"saturated, hybrid, velocities free",
-               "hybrid",
-               HAS_SOLID | HAS_WATER,
-               BASIS_CPGIMP,
-               SURFACE_VELOCITIES_FREE,
-               {30},
-               0.3,
-               1.0},
-              {"layers, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {45}, 0.95, 1e3},
-              {"layers, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 0.3, 1e3},
-              {"layers, hybrid, velocities free",
-               "hybrid",
-               HAS_SOLID | HAS_WATER,
-               BASIS_CPGIMP,
-               SURFACE_VELOCITIES_FREE,
-               {30},
-               0.3,
-               1e3}};
+    double      degrees[3];
+    double      contrast;
+  } body[] = {
+      {"dry, sdirk2", "sdirk2", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 1.0},
+      {"dry, ugimp, euler", "euler", HAS_SOLID, BASIS_UGIMP, SURFACE_TIED, {30, 45, 90}, 1.0},
+      {"dry, total, sdirk2", "sdirk2", HAS_SOLID, BASIS_TOTAL, SURFACE_TIED, {30, 45, 90}, 1.0},
+      {"saturated, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, SURFACE_TIED, {90}, 1.0},
+      {"layers, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, SURFACE_TIED, {45}, 1e3},
+      {"dry, hybrid", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 1.0},
+      {"saturated, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {90}, 1.0},
+      {"saturated, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 1.0},
+      {"dry, hybrid, velocities free", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_VELOCITIES_FREE, {30, 45, 90}, 1.0},
+      {"saturated, hybrid, velocities free",
+       "hybrid",
+       HAS_SOLID | HAS_WATER,
+       BASIS_CPGIMP,
+       SURFACE_VELOCITIES_FREE,
+       {30},
+       1.0},
+      {"layers, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {45}, 1e3},
+      {"layers, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 1e3},
+      {"layers, hybrid, velocities free",
+       "hybrid",
+       HAS_SOLID | HAS_WATER,
+       BASIS_CPGIMP,
+       SURFACE_VELOCITIES_FREE,
+       {30},
+       1e3}};
   static End low, high;
 
   (void)state;
@@ -191,7 +184,8 @@ static void TestTurn(void **state)
       const double shape = Shape(&high, &angle);
       Say("%-34s turned by %5.2f deg: off the turned shape by %.1e; 10 MPa against 0.1 MPa: place %.1e, stress %.1e\n",
           body[k].name, angle * 180.0 / M_PI, shape, x, stress);
-      Check(angle * 180.0 / M_PI > body[k].least * degrees && shape < 5e-3);
+      const double most = strcmp(body[k].stepper, "euler") ? 0.01 : 0.03; /* its steps damp what turns */
+      Check(fabs(angle / (OMEGA * t) - 1.0) < most && shape < 1e-4);
       Check(x < 1e-6 && stress < 1e-6);
     }
   }
@@ -201,11 +195,10 @@ static void TestTurn(void **state)
    along with the motion, F^-T g, so that (2) finds the same linear field again. */
 static void TestGradient(void **state)
 {
-  static const double A[2][2] = {{180.0, 600.0}, {-300.0, -120.0}}, g[2] = {7.0, -4.0}, near = 0.04,
-                      dt = 1e-4; /* 1/s, K/m, m, s */
-  const double F[2][2]   = {{1.0 + dt * A[0][0], dt * A[0][1]}, {dt * A[1][0], 1.0 + dt * A[1][1]}};
-  const double J         = F[0][0] * F[1][1] - F[0][1] * F[1][0];
-  const double want[2]   = {(F[1][1] * g[0] - F[1][0] * g[1]) / J, (F[0][0] * g[1] - F[0][1] * g[0]) / J};
+  static const double A[2][2] = {{180.0, 600.0}, {-300.0, -120.0}}, g[2] = {7.0, -4.0}, dt = 1e-4; /* 1/s, K/m, s */
+  const double        F[2][2] = {{1.0 + dt * A[0][0], dt * A[0][1]}, {dt * A[1][0], 1.0 + dt * A[1][1]}};
+  const double        J       = F[0][0] * F[1][1] - F[0][1] * F[1][0];
+  const double        want[2] = {(F[1][1] * g[0] - F[1][0] * g[1]) / J, (F[0][0] * g[1] - F[0][1] * g[0]) / J};
 
   (void)state;
   static const struct {
@@ -219,7 +212,7 @@ static void TestGradient(void **state)
   for (size_t k = 0; k < sizeof(kind) / sizeof(*kind); k++) {
     SmallScene *s = Make(HAS_SOLID | HAS_HEAT, kind[k].basis, kind[k].stepper, SURFACE_TIED, 0.0, 0.2, 1.0, dt);
     Stepper     stepping;
-    double      worst = 0.0, checked = 0.0;
+    double      worst = 0.0;
     bool        ok;
 
     s->c.dt                 = kind[k].step * dt; /* the second step of two begins on a strained body */
@@ -232,6 +225,8 @@ static void TestGradient(void **state)
 
       for (int d = 0; d < 2; d++) {
         f[P_VS + d][i] = A[d][0] * x[0] + A[d][1] * x[1];
+        for (int j = 0; j < 2; j++)
+          f[VectorAt(P_GV, d, j)][i] = A[d][j];
         f[P_GT + d][i] = g[d];
       }
       f[P_T][i] = 5.0 + g[0] * x[0] + g[1] * x[1];
@@ -241,10 +236,6 @@ static void TestGradient(void **state)
     Call(StepperRun(&stepping, &ok));
     Check(ok);
     for (PetscInt i = 0; i < s->m.P.n; i++) {
-      if (fabs(ParticleInitialX(&s->m.P, i, 0) - middle[0]) > near ||
-          fabs(ParticleInitialX(&s->m.P, i, 1) - middle[1]) > near)
-        continue; /* nodes near the surface see another velocity */
-      checked += 1.0;
       for (int d = 0; d < 2; d++)
         worst = fmax(worst, fabs(s->m.P.f[P_GT + d][i] - want[d]));
       for (int c = 0; c < 4; c++)
@@ -253,7 +244,7 @@ static void TestGradient(void **state)
     worst = Largest(worst);
     Say("%-6s gradient of T and deformation gradient after a step of 3 %% stretch, 6 %% shear: off by %.1e\n",
         kind[k].name, worst);
-    Check(Sum(checked) >= 4.0 && worst < 1e-7);
+    Check(worst < 1e-7);
     Call(StepperDestroy(&stepping));
     SceneDestroy(s);
     free(s);

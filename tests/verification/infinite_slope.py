@@ -89,7 +89,7 @@ if __name__ == "__main__":
             found.setdefault(name, []).append(np.abs(errors(at)))
     table(["integrator", "h (m)", "F = 1 at (s)", f"F at {EARLY} g sin(beta)", "speed at 5 s (m/s)", "Newmark", "error of F", "of the speed (%)"], rows)
     for name, all_meshes in found.items():
-        judge("slopes", f"infinite slope, hydrate lost at its base, {name}, three meshes: F when it fails against limit equilibrium", max(f for f, _ in all_meshes), 0.035)
+        judge("slopes", f"infinite slope, hydrate lost at its base, {name}, three meshes: F when it fails against limit equilibrium", max(f for f, _ in all_meshes), 0.04)
         judge("slopes", "... on the finest", all_meshes[-1][0], 0.01)
         judge("slopes", "... speed 0.8 s later against Newmark's block", max(v for _, v in all_meshes), 0.05, 0.01, "%")
     changed()

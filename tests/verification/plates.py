@@ -73,7 +73,7 @@ def confined():
                     ("20 ms", "2e4 s"))  # fmt: skip
     run = Run.of_case(porous, *STIFF)
     judge(ROW, "porous plate, slow, to 50 %: total stress", off(run, lambda x: drained(x) + P0), 5e-4)
-    run = Run.of_case(COLUMN, *HYBRID, *STIFF, "-bc_plate_velocity", "-0.1 m/s", "-time_end", "5 s", "-output_probe_every", "0.25 s")
+    run = Run.of_case(COLUMN, *HYBRID, *STIFF, "-bc_plate_velocity", "-0.05 m/s", "-time_end", "10 s", "-output_probe_every", "0.5 s")
     judge(ROW, "confined compression to 50 %, dry, hybrid, from 15 % on: stress under the plate", off(run, drained, start=0.149), 1e-3)
     run = Run.of_case(COLUMN)
     judge(ROW, "the same at the default stiffness, 10 cells", off(run, drained), 2.5e-3)

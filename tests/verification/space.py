@@ -126,7 +126,7 @@ def apart(plane, space, along):
                 b = b[:, [voigt[along[i], along[j]] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))]]
             elif name == "stress_hydrate":
                 a, b = a, b[:, [voigt[along[i], along[j]] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1))]]
-            elif name == "deformation_gradient":
+            elif name in ("deformation_gradient", "grad_v_s"):
                 b = b.reshape(-1, 3, 3)[:, along[:2]][:, :, along[:2]].reshape(-1, 4)
             elif name == "mixed_T":
                 b = b[:, [{(0, 1): 0, (1, 2): 1, (0, 2): 2}[tuple(sorted(along[:2]))]]]

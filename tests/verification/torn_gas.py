@@ -2,7 +2,7 @@
 """Gas at two pressures, one a twentieth of the other, side by side in a cell of a bar that is pulled to one and a half times its length: pressures fall with what a
 particle has, by hybrid (151) and by sdirk2 (416), none reaches zero, and each half keeps its gas.  At one pressure everywhere neither changes anything.
 
-By the particles' shared increments sdirk2 goes no farther than 0.0126 s of 0.1: the thin gas of the border's cell has lost what its nodes lose.  Its storage is consistent,
+By the particles' shared increments sdirk2 goes no farther than 0.0283 s of 0.1: the thin gas of the border's cell has lost what its nodes lose.  Its storage is consistent,
 so pressures ring beside the jump, where that of hybrid is lumped; hence the bars.
 """
 from pathlib import Path
