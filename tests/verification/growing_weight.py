@@ -11,6 +11,7 @@ import _files  # noqa: E402
 from common import Run, changes, check_true, finish, judge, scratch  # noqa: E402
 
 CASE = Path(__file__).parent / "cases" / "growing_weight.yaml"
+TO_AND_FRO = [("sdirk2", "hybrid"), ("hybrid", "sdirk2")]
 DAY, FIRM = 86400.0, ("-mat_soil_plasticity_cohesion_max", "3 kPa")
 
 
@@ -21,7 +22,8 @@ def cut(kind, *options, **keywords):
 run, over = cut("auto"), cut("sdirk2")
 found, t, dt = changes(run), run.balance["time_s"], run.balance["dt_s"]
 E_k = run.balance["kinetic_energy_J"]
-check_true("implicit, hybrid for the slide, implicit again", [c[1:] for c in found] == [("sdirk2", "hybrid"), ("hybrid", "sdirk2")], str(found))
+check_true("implicit, hybrid for the slide and once more at most for what rings after it, implicit again",
+           [c[1:] for c in found] in (TO_AND_FRO, 2 * TO_AND_FRO) and found[-1][0] - found[0][0] < 100, str(found))  # fmt: skip
 bursts = np.flatnonzero(np.diff(run.balance["step"]) > 1) + 1  # rows of hybrid
 first, second = int(bursts[0]), int(bursts[-1]) + 1  # advances until each change, a row each
 judge("slopes", "a cut whose weight grows over months: steps of auto before the slide", float(first), 100.0)
