@@ -226,9 +226,8 @@ INLINE void FluidValues(const Explicit *e, const Set s, Run r, int k, const Flui
     double g[CL_DIM];
 
     v->value[q][at + FL_M] = mass;
-    for (int d = 0; d < CL_DIM; d++) {
+    for (int d = 0; d < CL_DIM; d++)
       g[d] = f[grad + d][r.p + q];
-    }
     Unweighed(e, s, w->rho[k][q], g);
     Drive(e, s, r.p + q, g);
     for (int d = 0; d < CL_DIM; d++)

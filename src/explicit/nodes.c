@@ -70,6 +70,20 @@ static PetscErrorCode FindHeld(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Padded place of node a of the patch of particle p; -1 beyond the grid. */
+static PetscInt PatchNode(const Explicit *e, PetscInt p, int a)
+{
+  const Grid *g = &e->m->grid;
+  PetscInt    ij[CL_DIM];
+  bool        in = true;
+
+  for (int d = 0, rest = a; d < CL_DIM; d++, rest /= 3) {
+    ij[d] = e->base[d][p] + rest % 3;
+    in    = in && ij[d] >= 0 && ij[d] <= g->cells[d];
+  }
+  return in ? GridPadded(g, ij) : -1;
+}
+
 PetscErrorCode NodesRebuild(Explicit *e)
 {
   const Grid    *g = &e->m->grid;
@@ -84,15 +98,10 @@ PetscErrorCode NodesRebuild(Explicit *e)
   PetscCall(PetscCalloc1(GridPaddedSize(g), &flag));
   for (PetscInt p = 0; p < e->m->P.n; p++) {
     for (int a = 0; a < CL_NODES; a++) {
-      PetscInt ij[CL_DIM];
-      bool     in = true;
+      const PetscInt at = PatchNode(e, p, a);
 
-      for (int d = 0, rest = a; d < CL_DIM; d++, rest /= 3) {
-        ij[d] = e->base[d][p] + rest % 3;
-        in    = in && ij[d] >= 0 && ij[d] <= g->cells[d];
-      }
-      if (in)
-        flag[GridPadded(g, ij)] = 1;
+      if (at >= 0)
+        flag[at] = 1;
     }
   }
   PetscCall(NodeMapUpdate(g, flag, &e->map, &changed));
@@ -141,7 +150,6 @@ static int Follows(const Explicit *e, PetscInt I, double *own)
 /* Nodes about which ground is torn. */
 static PetscErrorCode FindTorn(Explicit *e)
 {
-  const Grid   *g    = &e->m->grid;
   const double *open = e->m->P.f[P_OPENING];
 
   PetscFunctionBeginUser;
@@ -150,15 +158,10 @@ static PetscErrorCode FindTorn(Explicit *e)
   PetscCall(PetscArrayzero(e->torn, e->rows));
   for (PetscInt p = 0; p < e->m->P.n; p++) {
     for (int a = 0; open[p] > TORN && a < CL_NODES; a++) {
-      PetscInt ij[CL_DIM];
-      bool     in = true;
+      const PetscInt at = PatchNode(e, p, a);
 
-      for (int d = 0, rest = a; d < CL_DIM; d++, rest /= 3) {
-        ij[d] = e->base[d][p] + rest % 3;
-        in    = in && ij[d] >= 0 && ij[d] <= g->cells[d];
-      }
-      if (in)
-        e->torn[e->slot[GridPadded(g, ij)]] = 1.0;
+      if (at >= 0)
+        e->torn[e->slot[at]] = 1.0;
     }
   }
   PetscCall(NodeMapSum(&e->map, e->torn, 1));
@@ -212,13 +215,6 @@ static double Mass(const Explicit *e, const double *row)
   return sum;
 }
 
-static const double *Balances(const Explicit *e, PetscInt I)
-{
-  const int width = LANES * Rows(A_Count(e->set));
-
-  return e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
-}
-
 void NodesExtend(Explicit *e)
 {
   const int width = LANES * Rows(A_Count(e->set)), at = A_Force(e->set);
@@ -228,7 +224,8 @@ void NodesExtend(Explicit *e)
 
     if (n->beyond == (int)I)
       continue;
-    const double *own = &e->A[I * width], *root = Balances(e, n->root), *beyond = Balances(e, n->beyond);
+    const double *own = &e->A[I * width], *root = Balances(e, e->set, n->root),
+                 *beyond = Balances(e, e->set, n->beyond);
 
     for (int d = 0; d < CL_DIM; d++) {
       const double of_root = root[at + d] / Mass(e, root), of_beyond = beyond[at + d] / Mass(e, beyond);

@@ -9,6 +9,14 @@ INLINE double Volume(const Explicit *e, const Set s, PetscInt I)
   return e->A[I * LANES * Rows(A_Count(s)) + A_V(s)];
 }
 
+/* Sums of a node, with what those that follow it in velocity give to it. */
+INLINE const double *Balances(const Explicit *e, const Set s, PetscInt I)
+{
+  const int width = LANES * Rows(A_Count(s));
+
+  return e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
+}
+
 /* x of the n x n system A x = b by elimination with the diagonal as pivots: storage and capacity outweigh what couples
  * them. */
 INLINE void SolveSmall(int n, double *A, double *b, double *x)

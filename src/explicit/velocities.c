@@ -131,11 +131,10 @@ INLINE double MixtureForce(const Explicit *e, const Set s, const Balance *b, dou
 
 double NodeFree(const Explicit *e, PetscInt I, int d, double dt, double *lhs)
 {
-  const Set s     = e->set;
-  const int width = LANES * Rows(A_Count(s));
-  Balance   b;
+  const Set     s = e->set;
+  const double *a = Balances(e, s, I);
+  Balance       b;
 
-  const double *a = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
   ReadMasses(e, s, a, dt, &b);
   ReadForces(e, s, a, d, &b);
   *lhs = b.lhs;
@@ -245,8 +244,7 @@ INLINE void KeepVelocities(Explicit *e, const Set s, PetscInt I, int d, const Ba
 
 INLINE void NodeVelocities(Explicit *e, const Set s, PetscInt I, double dt)
 {
-  const int     width = LANES * Rows(A_Count(s));
-  const double *a     = e->node[I].leads ? &e->G[I * width] : &e->A[I * width];
+  const double *a = Balances(e, s, I);
   Balance       b[CL_DIM];
   double        v[CL_DIM][3], value[CL_DIM] = {0.0};
   bool          held[CL_DIM];

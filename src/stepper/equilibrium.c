@@ -1,5 +1,5 @@
-/* auto's implicit steps: do they still lead from one equilibrium to the next, or over a slide; what a slide that hybrid
-   carried leaves behind.  docs/equations.md, section 15. */
+/* Implicit steps of auto: do they still lead from one equilibrium to the next, or over a slide; what any of them takes
+   of the motion that nodes do not see.  docs/equations.md, section 15. */
 #include "clathra/stepper.h"
 #include "clathra/transfer.h"
 
