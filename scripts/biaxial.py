@@ -32,7 +32,6 @@ RUNS = {  # name: options of cases/biaxial
     "A": (), "B": B, "C": C, "hybrid": HYBRID, "B_hybrid": (*HYBRID, *B), "B_stiff": (*B, *HELD, *UNTIED, *SHORT), "B_held": (*B, *HELD, *SHORT), "B_ghost": (*B, *UNTIED, *SHORT), "C_hybrid": (*HYBRID, *C),
     "B_steps": (*B, *SHORT, "-stepper_dt_max", "0.0125 s"),
     "B_hybrid_damped": (*HYBRID, *B, *SHORT, "-stepper_damping", "0.1"), "B_hybrid_stiffer": (*HYBRID, *B, *SHORT, "-mat_sand_elasticity_E0", "600.06 MPa"),
-    "B_hybrid_free": (*HYBRID, *B, *SHORT, "-stepper_surface", "velocities_free"),
     "psi": ("-mat_sand_plasticity_dilation_max", "45 deg", "-mat_sand_plasticity_dilation_min", "30 deg"),
     "slow_A": SLOW, "slow_C": (*SLOW, *C),
     **MESH, "h05": (*MESH["h05"], *HELD, *UNTIED), "h067_9": (*MESH["h067"], "-region_sample_particles_per_cell", "3,3"),
@@ -249,7 +248,7 @@ def parting(r):
     words = {"B_now": "sdirk2 as it is: `ghost_penalty: 1e-2`, `ghost_storage: 0.1`", "B": "all lines near the surface tied by 0.1, as (351) was", "B_stiff": "sdirk2, `ghost_penalty: 0.1`, `ghost_storage: 0` (the defaults)",
              "B_held": "`ghost_penalty: 0.1`, all tied", "B_ghost": "sdirk2, `ghost_storage: 0`", "B_steps": "steps up to 0.0125 s, all tied", "B_bare": "no pressure projection (23), all tied, to 4 %",
              "B_hybrid": "hybrid as it is: velocities tied at the surface", "B_hybrid_damped": "hybrid, `stepper_damping: 0.1`", "B_hybrid_stiffer": "hybrid, E_0 a 1e-4 part more",
-             "B_hybrid_free": "hybrid, `stepper_surface: velocities_free`", "B_hybrid_passes": "hybrid, `stepper_storage_passes: 12`"}  # fmt: skip
+             "B_hybrid_passes": "hybrid, `stepper_storage_passes: 12`"}  # fmt: skip
     if any(name not in r for name in words):
         return []
     run = {name: r[name][0] for name in words}
@@ -268,7 +267,7 @@ def parting(r):
         f"{percent(differ('B_hybrid_passes', 'B_now'))} from (351) as it is, which moves sdirk2 by {percent(differ('B_ghost', 'B_now'))} and ties slivers alone; to 15 % its least steps are {min(r[k][0]['dt_least'] for k in ('A_now', 'B_now')):.2g} s in A and B, and A and B differ from those on this page by "
         f"{percent(apart(r['A'][0], r['A_now'][0], 0.3, 15))} and {percent(apart(r['B'][0], r['B_now'][0], 0.3, 15))} of the peak at most.",
         f"Steps of a quarter change sdirk2 by {percent(differ('B', 'B_steps'))}, and bring it nearer to hybrid. Waves and round-off are not the cause of what is left: damping, or E_0 a 1e-4 part larger, moves hybrid by {percent(max(differ('B_hybrid', k) for k in ('B_hybrid_damped', 'B_hybrid_stiffer')))} at most; nor is (23),",
-        f"which moves sdirk2 by {percent(differ('B', 'B_bare'))}. Hybrid's own surface (41) is worth {percent(differ('B_hybrid', 'B_hybrid_free'))}.",
+        f"which moves sdirk2 by {percent(differ('B', 'B_bare'))}.",
         "",
     ]  # fmt: skip
     return lines

@@ -159,8 +159,7 @@ def energy(kept):
             m = kept[name]
             b = {"damping_work_J": 0.0} | m["balance"]
             rows.append((f"{case.upper()}: {label}, {m['end_s']:.0f} s", *(f"{b[k] / 1e6:.4g}" for k, _ in ENERGY), f"{100 * abs(b['energy_remainder_J'] / b['gravity_work_J']):.2g} %"))
-    return ["## Balance of energy", "", "MJ per metre: works of the first three, and where they went. All close to less than 1 % of the work of gravity, B and C by `hybrid` on cells of 16 m to 1.4 %. With velocities of nearly empty nodes tied to their",
-            "neighbours, a tie that gives power where a surface tears, and works of held nodes that missed half the slip over the base, a fifth was left over in B and C ((41), (92), (150) of [equations.md](equations.md)).", "",
+    return ["## Balance of energy", "", "MJ per metre: works of the first three, and where they went. All close to less than 1 % of the work of gravity, B and C by `hybrid` on cells of 16 m to 1.4 %.", "",
             *table(rows)]  # fmt: skip
 
 

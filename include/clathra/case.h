@@ -41,7 +41,6 @@ typedef struct {
 
 enum { ICE_WARN = 0, ICE_STOP };
 enum { LEAVING_STOP = 0, LEAVING_REMOVE };
-enum { SURFACE_FREE = 0, SURFACE_TIED, SURFACE_VELOCITIES_FREE }; /* (41): nothing, all, p and T alone */
 enum { PRESSURES_NODES = 0, PRESSURES_PARTICLES, PRESSURES_RELATIVE };
 
 typedef struct Case {
@@ -65,7 +64,6 @@ typedef struct Case {
   PetscInt passes;       /* of (413), beyond the first */
   double   damping;      /* local damping */
   double   mass_scaling; /* factor on inertia */
-  int      surface;      /* SURFACE_...: what of nearly empty nodes follows their fullest neighbour in part */
   int      pressures;    /* PRESSURES_...: rates of pressure shared over nodes, by the particle (the paper's form), or
                             shared, p_g's in proportion */
   /* output */

@@ -8,8 +8,6 @@
 
 typedef struct {
   bool drag_implicit;      /* hybrid; explicit otherwise */
-  bool tied;               /* nearly empty nodes follow their fullest neighbour in part (41) */
-  bool velocities_free;    /* ... in p and T alone */
   bool relative_gas;       /* changes of p_g in proportion to it (151) */
   bool particle_pressures; /* the paper's bare form (P72): rates of pressure by the particle, not shared over nodes
                             */

@@ -29,7 +29,6 @@ static bool NeedsEnd(const void *p)
 static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", "total", NULL}; /* BasisType */
 static const char *const geometry_word[]    = {PLANE_WORD, "axisymmetric", NULL};
 static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
-static const char *const surface_word[]     = {"free", "tied", "velocities_free", NULL}; /* SURFACE_... */
 static const char *const share_word[]       = {"nodes", "particles", "relative", NULL};  /* PRESSURES_... */
 static const char *const ice_word[]         = {"warn", "stop", NULL};                    /* ICE_... */
 static const char *const leaving_word[]     = {"stop", "remove", NULL};                  /* LEAVING_... */
@@ -133,10 +132,6 @@ const Key case_key[] = {
         "ends"),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
-    CHOICE(
-        Case, "stepper_surface", surface, "tied", surface_word,
-        "hybrid, explicit: nearly empty nodes follow their fullest neighbour in part; velocities_free, for slides: in "
-        "pressures and temperature alone, which leaves the balance of energy as it is"),
     CHOICE(
         Case, "stepper_pressures", pressures, "nodes", share_word,
         "changes of pressure shared over nodes; likewise, but those of p_g in proportion to the p_g that each particle "

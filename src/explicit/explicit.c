@@ -53,7 +53,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(FreeParticles(e));
   PetscCall(NodeMapDestroy(&e->map));
   PetscCall(PetscFree(e->raw));
-  PetscCall(PetscFree7(e->inc, e->gain, e->link, e->couple, e->torn, e->node, e->slot));
+  PetscCall(PetscFree7(e->inc, e->gain, e->link, e->lean, e->torn, e->node, e->slot));
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
   PetscCall(PetscFree(e->pull));
@@ -306,7 +306,7 @@ static PetscErrorCode Momentum(Explicit *e, double t, double dt)
   PetscCall(NodesPrepare(e));
   if (e->m->plates)
     PetscCall(PlatesForces(e, t, dt));
-  NodesExtend(e);
+  NodesExtend(e, dt);
   PetscCall(NodesVelocities(e, dt));
   CellsMotion(e);
   FacesWork(e, dt);

@@ -165,13 +165,12 @@ struct Explicit {
                                      mean velocity gradient, 1/s */
   double *link; /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                    ranks */
-  double (*couple)[CL_DIM]; /* [rows] N, what a node gives to the one that it follows and takes from the one beyond
-                               (454) */
-  double   *torn;           /* [rows] of more than none: about the node particles stand open (427) */
-  NodeInfo *node;           /* [rows] */
-  PetscInt  nheld, *held;   /* local nodes with prescribed unknowns */
-  unsigned *mask;           /* ... which */
-  double   *fixed;          /* ... and their values, [nheld][fields.n] */
+  double (*lean)[CL_DIM]; /* [rows] m/s, increment on the line through two nodes beyond that of the nearer (454) */
+  double   *torn;         /* [rows] of more than none: about the node particles stand open (427) */
+  NodeInfo *node;         /* [rows] */
+  PetscInt  nheld, *held; /* local nodes with prescribed unknowns */
+  unsigned *mask;         /* ... which */
+  double   *fixed;        /* ... and their values, [nheld][fields.n] */
   PetscInt  nface;
   Face     *face;
   double (*spring)[CL_DIM];     /* [rows] stiffness of the springs at a node, N/m */
@@ -349,7 +348,7 @@ PetscErrorCode LoseUnseen(Explicit *e); /* (452), when it is due */
 /* Node side. */
 PetscErrorCode NodesRebuild(Explicit *e); /* numbering, when particles reach other nodes */
 PetscErrorCode NodesPrepare(Explicit *e); /* prescribed values, and who follows whom (41) */
-void           NodesExtend(Explicit *e);  /* forces of what follows two nodes (454), those of plates included */
+void NodesExtend(Explicit *e, double dt); /* forces of what follows two nodes (454), those of plates included */
 PetscErrorCode NodesVelocities(Explicit *e, double dt);  /* A -> B */
 PetscErrorCode NodesScalars(Explicit *e, StageRates *r); /* R -> C */
 void           FacesForces(Explicit *e, double dt);

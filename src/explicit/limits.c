@@ -34,14 +34,14 @@ static void Stiffness(const Set s, const PointProperties *q, double C[2][2])
   C[1][0] = -q->cross[PHASE_G] / det;
 }
 
-/* (150) in the form of (38), where velocities are free: k^2 of the thinnest sliver of a particle's domain; linear
-   functions have none. */
+/* (150) in the form of (38), where ground may tear: k^2 of the thinnest sliver of a particle's domain; linear functions
+   have none. */
 static double Sliver(const Explicit *e, PetscInt p)
 {
   const BasisType type = e->m->c->basis;
   double          k2   = 0.0;
 
-  for (int d = 0; e->o.velocities_free && d < CL_DIM && type != BASIS_LINEAR; d++) {
+  for (int d = 0; e->m->P.f[P_OPENING] && d < CL_DIM && type != BASIS_LINEAR; d++) {
     const GridLines *line = &e->m->grid.line[d];
     const double     x    = e->m->P.f[P_X + d][p];
 

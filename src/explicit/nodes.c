@@ -19,7 +19,7 @@ static PetscErrorCode Allocate(Explicit *e)
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(e->raw));
-  PetscCall(PetscFree7(e->inc, e->gain, e->link, e->couple, e->torn, e->node, e->slot));
+  PetscCall(PetscFree7(e->inc, e->gain, e->link, e->lean, e->torn, e->node, e->slot));
   e->rows = n;
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
   PetscCall(PetscFree4(e->cell, e->mean, e->swell, e->part));
@@ -39,7 +39,7 @@ static PetscErrorCode Allocate(Explicit *e)
     e->given = e->left + n * LANES;
     e->total = e->given + n * LANES;
   }
-  PetscCall(PetscCalloc7(INC * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->couple, n, &e->torn, n, &e->node,
+  PetscCall(PetscCalloc7(INC * n, &e->inc, 3 * n, &e->gain, 2 * n, &e->link, n, &e->lean, n, &e->torn, n, &e->node,
                          GridPaddedSize(&e->m->grid), &e->slot));
   for (PetscInt q = 0; q < GridPaddedSize(&e->m->grid); q++)
     e->slot[q] = (int)(e->map.index[q] >= 0 ? e->map.index[q] : e->map.n_local);
@@ -168,6 +168,17 @@ static PetscErrorCode FindTorn(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is the velocity of I that of its own balances: in torn ground, and where it is held along the way to the node that it
+   follows?  Its step has no bound with linear functions (150). */
+static bool MovesAlone(const Explicit *e, PetscInt I)
+{
+  const int axis = ((int)e->link[2 * I] - 1) / 2;
+  double    value;
+
+  return e->set.solid && e->m->c->basis != BASIS_LINEAR &&
+         (e->torn[I] + e->torn[e->node[I].root] > 0.0 || Held(e, I, F_VS + axis, &value));
+}
+
 /* The node beyond the one that I follows, if all three are in a row in ground that is not torn; nothing but their
    balances may move these two along an axis of which they say the velocity of I (454). */
 static void FindBeyond(const Explicit *e, PetscInt I)
@@ -178,8 +189,7 @@ static void FindBeyond(const Explicit *e, PetscInt I)
   const int   beyond = Neighbour(e, n->root, direction);
 
   if (!e->set.solid || Neighbour(e, I, direction) != n->root || beyond >= (int)e->map.n_local ||
-      e->link[2 * beyond] > 0.0 || !(Volume(e, e->set, beyond) > 0.0) ||
-      e->torn[I] + e->torn[n->root] + e->torn[beyond] > 0.0)
+      e->link[2 * beyond] > 0.0 || !(Volume(e, e->set, beyond) > 0.0) || e->torn[beyond] > 0.0)
     return;
   const PetscInt at = e->map.ij[n->root][axis];
   const double   x = GridNode(g, axis, at), here = GridNode(g, axis, at - step), there = GridNode(g, axis, at + step);
@@ -215,35 +225,26 @@ static double Mass(const Explicit *e, const double *row)
   return sum;
 }
 
-void NodesExtend(Explicit *e)
+void NodesExtend(Explicit *e, double dt)
 {
   const int width = LANES * Rows(A_Count(e->set)), at = A_Force(e->set);
 
   for (PetscInt I = 0; I < e->map.n_local; I++) {
-    NodeInfo *n = &e->node[I];
+    const NodeInfo *n   = &e->node[I];
+    const double   *own = &e->A[I * width], *root = &e->A[n->root * width], *beyond = &e->A[n->beyond * width];
 
-    if (n->beyond == (int)I)
-      continue;
-    const double *own = &e->A[I * width], *root = Balances(e, e->set, n->root),
-                 *beyond = Balances(e, e->set, n->beyond);
+    for (int d = 0; d < CL_DIM; d++)
+      e->lean[I][d] = 0.0;
+    for (int d = 0; n->beyond != (int)I && d < CL_DIM; d++) {
+      const bool   plate = e->m->plates && e->spring[I][d] != 0.0; /* it goes with that */
+      const double r = plate ? 0.0 : n->stretch[d], a_root = root[at + d] / Mass(e, root),
+                   more = r * (a_root - beyond[at + d] / Mass(e, beyond)), gives = 1.0 - n->own_v,
+                   excess = own[at + d] - Mass(e, own) * (a_root + more);
 
-    for (int d = 0; d < CL_DIM; d++) {
-      const double of_root = root[at + d] / Mass(e, root), of_beyond = beyond[at + d] / Mass(e, beyond);
-
-      if (e->m->plates && e->spring[I][d] != 0.0) /* it goes with the plate */
-        n->stretch[d] = 0.0;
-      const double goes = of_root + n->stretch[d] * (of_root - of_beyond);
-
-      e->couple[I][d] = (1.0 - n->own_v) * n->stretch[d] * (own[at + d] - Mass(e, own) * goes);
+      e->lean[I][d] = dt / e->o.mass_scaling * more;
+      Leading(e, n->root)[at + d] += gives * (r * excess - Mass(e, own) * more);
+      Leading(e, n->beyond)[at + d] -= gives * r * excess;
     }
-  }
-  for (PetscInt I = 0; I < e->map.n_local; I++) {
-    const NodeInfo *n = &e->node[I];
-
-    if (n->beyond == (int)I)
-      continue;
-    AddRow(Leading(e, n->root) + at, 1.0, e->couple[I], CL_DIM);
-    AddRow(Leading(e, n->beyond) + at, -1.0, e->couple[I], CL_DIM);
   }
 }
 
@@ -259,14 +260,13 @@ PetscErrorCode NodesFollow(Explicit *e)
     e->node[I].own = e->node[I].own_v = 1.0;
     e->node[I].leads                  = false;
     e->link[2 * I] = e->link[2 * I + 1] = 0.0;
-    if (e->o.tied && I < e->map.n_owned && Volume(e, e->set, I) > 0.0)
+    if (!e->o.particle_pressures && I < e->map.n_owned && Volume(e, e->set, I) > 0.0)
       e->link[2 * I] = Follows(e, I, &e->link[2 * I + 1]);
   }
-  if (!e->o.tied)
+  if (e->o.particle_pressures)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NodeMapBroadcast(&e->map, e->link, 2));
-  if (!e->o.velocities_free)
-    PetscCall(FindTorn(e));
+  PetscCall(FindTorn(e));
   for (PetscInt I = 0; I < e->map.n_local; I++) {
     int root = (int)I;
 
@@ -276,7 +276,7 @@ PetscErrorCode NodesFollow(Explicit *e)
       continue;
     e->node[I].root = root;
     e->node[I].own  = e->link[2 * I + 1];
-    if (e->o.velocities_free)
+    if (MovesAlone(e, I))
       continue;
     e->node[I].own_v = e->node[I].own;
     AddRow(Leading(e, root), 1.0 - e->node[I].own, &e->A[I * width], width);

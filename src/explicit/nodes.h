@@ -63,13 +63,12 @@ static inline double Blended(const Explicit *e, PetscInt I, double own, int widt
   return own * inc[width * I + k] + (1.0 - own) * inc[width * e->node[I].root + k];
 }
 
-/* (454): increment k of a velocity along axis d, of which the skeleton's is increment `skeleton`. */
-static inline double Extended(const Explicit *e, PetscInt I, int width, const double *inc, int k, int skeleton, int d)
+/* (454): increment k of a velocity, along axis d. */
+static inline double Extended(const Explicit *e, PetscInt I, int k, int d)
 {
-  const NodeInfo *n = &e->node[I];
+  const double own = e->node[I].own_v;
 
-  return Blended(e, I, n->own_v, width, inc, k) +
-         (1.0 - n->own_v) * n->stretch[d] * (inc[width * n->root + skeleton] - inc[width * n->beyond + skeleton]);
+  return Blended(e, I, own, INC, e->inc, k) + (1.0 - own) * e->lean[I][d];
 }
 
 /* Increment of the velocity of node I along d from its balance as it stands, undamped, m/s, and its factor there, N

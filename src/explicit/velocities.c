@@ -325,7 +325,7 @@ INLINE double FluidVelocity(const Explicit *e, PetscInt I, const NodeBeds *n, co
   double flow[CL_DIM];
 
   if (!n->on)
-    return w->vf[k] + Extended(e, I, INC, e->inc, VectorAt(0, 1 + k, d), d, d);
+    return w->vf[k] + Extended(e, I, VectorAt(0, 1 + k, d), d);
   for (int i = 0; i < CL_DIM; i++)
     flow[i] = Blended(e, I, e->node[I].own_v, INC, e->inc, VectorAt(0, 1 + k, i));
   Driven(n, flow);
@@ -345,7 +345,7 @@ INLINE void WriteVelocities(Explicit *e, const Set s, PetscInt I, double dt)
     double v[3] = {0.0}, value;
 
     ReadForces(e, s, a, d, &w);
-    v[0] = s.solid ? w.v + Extended(e, I, INC, e->inc, d, d, d) : 0.0;
+    v[0] = s.solid ? w.v + Extended(e, I, d, d) : 0.0;
     if (s.solid && Held(e, I, F_VS + d, &value))
       v[0] = value;
     if (s.solid) {

@@ -31,8 +31,6 @@ static PetscErrorCode Create(Stepper *s)
 {
   const Case           *c = StepperCase(s);
   const ExplicitOptions o = {.drag_implicit      = s->scheme == &StepperScheme_Hybrid,
-                             .tied               = c->surface != SURFACE_FREE,
-                             .velocities_free    = c->surface != SURFACE_TIED,
                              .relative_gas       = c->pressures == PRESSURES_RELATIVE,
                              .particle_pressures = c->pressures == PRESSURES_PARTICLES,
                              .passes             = (int)c->passes,

@@ -25,7 +25,7 @@ static const struct {
     {"t", HAS_HEAT},
 };
 
-static const ExplicitOptions hybrid = {.drag_implicit = true, .tied = true, .mass_scaling = 1.0};
+static const ExplicitOptions hybrid = {.drag_implicit = true, .mass_scaling = 1.0};
 
 static SmallScene *Make(unsigned has, BasisType basis, int conditions, bool reacts)
 {

@@ -291,7 +291,7 @@ static void TestMultilinear(void **state)
   int                   by[CL_DIM] = {0};
   double                worst[2]   = {0.0};
   SmallScene           *s          = malloc(sizeof(*s));
-  const ExplicitOptions hybrid     = {.drag_implicit = true, .tied = true, .mass_scaling = 1.0};
+  const ExplicitOptions hybrid     = {.drag_implicit = true, .mass_scaling = 1.0};
   Explicit             *e;
   StageRates            sum = {0};
   ClStatus              status;

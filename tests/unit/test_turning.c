@@ -21,8 +21,8 @@ static const double middle[CL_DIM] = {0.4, 0.4};
 
 /* A body of 0.3 m x `height` in the middle of 16 x 16 cells of 0.05 m, at pressure p inside and out; its upper half is
    `contrast` times as permeable, unless that is 1, and then at a pressure of its own, so that water flows. */
-static SmallScene *Make(unsigned has, BasisType basis, const char *stepper, int surface, double p, double height,
-                        double contrast, double t_end)
+static SmallScene *Make(unsigned has, BasisType basis, const char *stepper, double p, double height, double contrast,
+                        double t_end)
 {
   const double lower[2] = {0.25, middle[1] - 0.5 * height}, upper[2] = {0.55, middle[1] + 0.5 * height};
   SmallScene  *s = malloc(sizeof(*s));
@@ -49,7 +49,6 @@ static SmallScene *Make(unsigned has, BasisType basis, const char *stepper, int 
   s->c.max_failures        = 5;
   s->c.cfl                 = 0.8;
   s->c.mass_scaling        = 1.0;
-  s->c.surface             = surface;
   if (contrast != 1.0) {
     SceneLayers(s, 1, middle[1], contrast);
     s->half[1].pressure += EXCESS;
@@ -75,10 +74,9 @@ typedef struct {
   double   x[256][2], X[256][2], stress[256][3];
 } End;
 
-static void Turn(unsigned has, BasisType basis, const char *stepper, int surface, double p, double contrast,
-                 double t_end, End *e)
+static void Turn(unsigned has, BasisType basis, const char *stepper, double p, double contrast, double t_end, End *e)
 {
-  SmallScene *s = Make(has, basis, stepper, surface, p, 0.16, contrast, t_end); /* across the lines of the grid */
+  SmallScene *s = Make(has, basis, stepper, p, 0.16, contrast, t_end); /* across the lines of the grid */
   Stepper     stepping;
   bool        ok;
 
@@ -136,35 +134,20 @@ static void TestTurn(void **state)
     const char *name, *stepper;
     unsigned    has;
     BasisType   basis;
-    int         surface;
     double      degrees[3];
     double      contrast;
   } body[] = {
-      {"dry, sdirk2", "sdirk2", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 1.0},
-      {"dry, ugimp, euler", "euler", HAS_SOLID, BASIS_UGIMP, SURFACE_TIED, {30, 45, 90}, 1.0},
-      {"dry, total, sdirk2", "sdirk2", HAS_SOLID, BASIS_TOTAL, SURFACE_TIED, {30, 45, 90}, 1.0},
-      {"saturated, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, SURFACE_TIED, {90}, 1.0},
-      {"layers, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, SURFACE_TIED, {45}, 1e3},
-      {"dry, hybrid", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_TIED, {30, 45, 90}, 1.0},
-      {"saturated, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {90}, 1.0},
-      {"saturated, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 1.0},
-      {"dry, hybrid, velocities free", "hybrid", HAS_SOLID, BASIS_CPGIMP, SURFACE_VELOCITIES_FREE, {30, 45, 90}, 1.0},
-      {"saturated, hybrid, velocities free",
-       "hybrid",
-       HAS_SOLID | HAS_WATER,
-       BASIS_CPGIMP,
-       SURFACE_VELOCITIES_FREE,
-       {30},
-       1.0},
-      {"layers, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {45}, 1e3},
-      {"layers, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, SURFACE_TIED, {30}, 1e3},
-      {"layers, hybrid, velocities free",
-       "hybrid",
-       HAS_SOLID | HAS_WATER,
-       BASIS_CPGIMP,
-       SURFACE_VELOCITIES_FREE,
-       {30},
-       1e3}};
+      {"dry, sdirk2", "sdirk2", HAS_SOLID, BASIS_CPGIMP, {30, 45, 90}, 1.0},
+      {"dry, ugimp, euler", "euler", HAS_SOLID, BASIS_UGIMP, {30, 45, 90}, 1.0},
+      {"dry, total, sdirk2", "sdirk2", HAS_SOLID, BASIS_TOTAL, {30, 45, 90}, 1.0},
+      {"saturated, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, {90}, 1.0},
+      {"layers, total, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_TOTAL, {45}, 1e3},
+      {"dry, hybrid", "hybrid", HAS_SOLID, BASIS_CPGIMP, {30, 45, 90}, 1.0},
+      {"saturated, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, {90}, 1.0},
+      {"saturated, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, {30}, 1.0},
+      {"layers, sdirk2", "sdirk2", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, {45}, 1e3},
+      {"layers, hybrid", "hybrid", HAS_SOLID | HAS_WATER, BASIS_CPGIMP, {30}, 1e3},
+  };
   static End low, high;
 
   (void)state;
@@ -174,8 +157,8 @@ static void TestTurn(void **state)
       const double t       = 1.17 * degrees * M_PI / 180.0 / OMEGA;
       double       x = 0.0, stress = 0.0, angle;
 
-      Turn(body[k].has, body[k].basis, body[k].stepper, body[k].surface, 1e5, body[k].contrast, t, &low);
-      Turn(body[k].has, body[k].basis, body[k].stepper, body[k].surface, 1e7, body[k].contrast, t, &high);
+      Turn(body[k].has, body[k].basis, body[k].stepper, 1e5, body[k].contrast, t, &low);
+      Turn(body[k].has, body[k].basis, body[k].stepper, 1e7, body[k].contrast, t, &high);
       for (PetscInt i = 0; i < low.n; i++) {
         x = fmax(x, hypot(high.x[i][0] - low.x[i][0], high.x[i][1] - low.x[i][1]) / SIZE);
         for (int c = 0; c < 3; c++)
@@ -210,7 +193,7 @@ static void TestGradient(void **state)
               {"total", "euler", BASIS_TOTAL, 0.5}};
 
   for (size_t k = 0; k < sizeof(kind) / sizeof(*kind); k++) {
-    SmallScene *s = Make(HAS_SOLID | HAS_HEAT, kind[k].basis, kind[k].stepper, SURFACE_TIED, 0.0, 0.2, 1.0, dt);
+    SmallScene *s = Make(HAS_SOLID | HAS_HEAT, kind[k].basis, kind[k].stepper, 0.0, 0.2, 1.0, dt);
     Stepper     stepping;
     double      worst = 0.0;
     bool        ok;

@@ -10,7 +10,7 @@ from common import Run, binary, check, finish, judge, run, scratch, table
 
 EXPERIMENTS = {1: 1.2, 3: 3.95}  # (final - initial width) over initial width
 IMPLICIT = {"stepper": {"type": "sdirk2", "dt": "0.002 s", "tol": 1e-2}, "stabilisation": {"ghost_penalty": 1e-3}}
-HYBRID = {"stepper": {"type": "hybrid", "surface": "velocities_free"}}
+HYBRID = {"stepper": {"type": "hybrid"}}
 MOVES = 0.1  # m/s
 
 
