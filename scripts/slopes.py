@@ -67,7 +67,7 @@ ROWS = {
     "A_sdirk2": ("a", "sdirk2", f"{IMPLICIT_STEPS} {SHORT}"),
     "A8_passes": ("a", "cells of 8 m, storage_passes 12", f"{CELLS_8} {PASSES} {SHORT}"),
     "A_passes": ("a", "storage_passes 12", f"{PASSES} {SHORT}"),
-    "A_particles": ("a", "pressures by particles", f"-stepper_pressures particles {SHORT}"),
+    "A_particles": ("a", "the paper's bare form", f"-stepper_type hybrid_paper {SHORT}"),
     "B": ("b", "θ = 0.5", ""),
     "B_theta_0": ("b", "θ = 0", COLD),
     "B8": ("b", "cells of 8 m, θ = 0.5", LONG_8),
@@ -355,7 +355,7 @@ NOTES_IMPLICIT = """- *All three go through* (`-stepper_type sdirk2 -stepper_tol
 - *What stopped it before* (the prototype at 13.5 s; this program, with the cases as they were, at steps of 5 ms from 10.4 s on) is the undrained body's surface, not plasticity. In a node of which the surface leaves a sliver, changes of pressure are what that share of a
   particle makes up, and temperature is carried there by the heated row's gradient: 0.66 MPa beside 4.5, -6 °C beside 2 at (296, 16) m. Newton's first six updates were cut in every stage, 8 to 10 iterations each, and with
   more than six steps do not grow. `stabilisation: {ghost_storage: 0.1}`, (351), ties the changes to those of the nodes beside: from the same state 5 ms became 0.1 s within 17 steps, and as (351) is now A goes from 10 to 12 s in 45 steps, while without it 128 steps come to 10.18 s. [A test](../tests/verification/slivers.py) does so on cells of 15 m. `hybrid` has its own tie (41) and knows neither.""".split("\n")
-NOTES_B = """- To 100 s without a step refused: gas that expands in what tears loses shares of its pressure, not pascals ((151) of [equations.md](equations.md), `stepper_pressures: relative`). With increments of p_g
+NOTES_B = """- To 100 s without a step refused: gas that expands in what tears loses shares of its pressure, not pascals ((151) of [equations.md](equations.md)). With increments of p_g
   shared among particles a single one reached zero pressure at 27 s and the run gave up.
 - *The step* falls from 6.2 to 2 ms as particles in the tears become thin; bounds by waves in thin domains set it 99.4 % of the time. With (374), by which domains act with at least a twentieth of a cell, 4 m take 48,289 steps to 100 s (70,241 to 49 s before).
 - *What is left of E_k* after the slide, 1 to 3 % of its peak, is in particles of what tore that swing against each other: a motion that the grid does not see (FLIP). At 100 s on 8 m it is 1.4e9 J/m, of which the nodes

@@ -41,7 +41,6 @@ typedef struct {
 
 enum { ICE_WARN = 0, ICE_STOP };
 enum { LEAVING_STOP = 0, LEAVING_REMOVE };
-enum { PRESSURES_NODES = 0, PRESSURES_PARTICLES, PRESSURES_RELATIVE };
 
 typedef struct Case {
   Scene scene;                    /* first: CaseOf */
@@ -52,7 +51,7 @@ typedef struct Case {
   int   leaving;           /* LEAVING_...: what becomes of particles that leave the grid (373) */
   /* time: the command line's -stepper_* options win over these */
   double   t_end;
-  char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | auto */
+  char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | hybrid_paper | auto */
   bool     adaptive;
   double   dt, dt_min, dt_max; /* s; dt = first (adaptive) or fixed step */
   double   tol;                /* relative tolerance of the error estimate */
@@ -64,8 +63,6 @@ typedef struct Case {
   PetscInt passes;       /* of (413), beyond the first */
   double   damping;      /* local damping */
   double   mass_scaling; /* factor on inertia */
-  int      pressures;    /* PRESSURES_...: rates of pressure shared over nodes, by the particle (the paper's form), or
-                            shared, p_g's in proportion */
   /* output */
   char     output_dir[PETSC_MAX_PATH_LEN]; /* default results/<case name> */
   PetscInt ntimes;                         /* field snapshots at these times (hit exactly) ... */
@@ -101,7 +98,15 @@ typedef struct CaseStage {
   Case   c; /* the case as it holds in this stage: conditions and materials of its own, the rest shared */
 } CaseStage;
 
-#define STEPPER_AUTO "auto" /* word of stepper_type: the cheaper one, at any time */
+/* Words of stepper_type: the cheaper one, at any time; the paper's bare form of hybrid. */
+#define STEPPER_AUTO "auto"
+#define STEPPER_PAPER "hybrid_paper"
+
+/* Is its integrator the latter? */
+static inline bool CaseIsPaper(const Case *c)
+{
+  return !strcmp(c->stepper, STEPPER_PAPER);
+}
 
 /* What keeps the case from steps without a matrix, as it says it (a boundary by its name); NULL if nothing does.
    Stabilisations that such steps go without are those of the implicit steps of `auto`; alone, they refuse them. */

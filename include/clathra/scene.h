@@ -264,6 +264,13 @@ static inline bool SceneSharesFlow(const Scene *c)
   return SceneHasBeds(c) || SceneContrast(c) > 1.0;
 }
 
+/* Does all of the sediment hold gas, so that its pressure may change in proportion to itself (151), (416)?  Not where
+   it may vanish (101). */
+static inline bool SceneKeepsGas(const Scene *c)
+{
+  return (c->fields.has & HAS_GAS) && c->nmaterial > 0 && c->material[0].gas.trace == 0.0;
+}
+
 /* Do pressures even out within cells (353)?  Where layers differ in permeability. */
 static inline bool SceneExchanges(const Scene *c)
 {

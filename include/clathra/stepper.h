@@ -152,7 +152,8 @@ typedef struct {
   double   good_t;   /* time of Stepper.good, s */
 } Auto;
 
-extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit;
+extern const StepperScheme StepperScheme_Euler, StepperScheme_Sdirk2, StepperScheme_Hybrid, StepperScheme_Explicit,
+    StepperScheme_Paper;
 
 /* What the rest of the run would cost, roughly: steps, and seconds of the slowest rank. */
 typedef struct {

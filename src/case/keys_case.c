@@ -26,14 +26,13 @@ static bool NeedsEnd(const void *p)
   return ((const Case *)p)->nstage == 0;
 }
 
-static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", "total", NULL}; /* BasisType */
-static const char *const geometry_word[]    = {PLANE_WORD, "axisymmetric", NULL};
-static const char *const stepper_word[]     = {"sdirk2", "euler", "hybrid", "explicit", "auto", NULL};
-static const char *const share_word[]       = {"nodes", "particles", "relative", NULL};  /* PRESSURES_... */
-static const char *const ice_word[]         = {"warn", "stop", NULL};                    /* ICE_... */
-static const char *const leaving_word[]     = {"stop", "remove", NULL};                  /* LEAVING_... */
-static const char *const heat_word[]        = {"auto", "yes", "no", NULL};               /* HEAT_... */
-static const char *const without_gas_word[] = {"auto", "yes", "no", NULL};               /* WITHOUT_GAS_... */
+static const char *const basis_word[]    = {"cpgimp", "ugimp", "linear", "total", NULL}; /* BasisType */
+static const char *const geometry_word[] = {PLANE_WORD, "axisymmetric", NULL};
+static const char *const stepper_word[]  = {"sdirk2", "euler", "hybrid", "explicit", STEPPER_PAPER, STEPPER_AUTO, NULL};
+static const char *const ice_word[]      = {"warn", "stop", NULL};         /* ICE_... */
+static const char *const leaving_word[]  = {"stop", "remove", NULL};       /* LEAVING_... */
+static const char *const heat_word[]     = {"auto", "yes", "no", NULL};    /* HEAT_... */
+static const char *const without_gas_word[] = {"auto", "yes", "no", NULL}; /* WITHOUT_GAS_... */
 
 const Key case_key[] = {
     TEXT(Case, "title", title, "", "one line"),
@@ -104,7 +103,9 @@ const Key case_key[] = {
     REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
          WHEN(NeedsEnd, "there are no stages"), .kept = true),
     TEXT(Case, "stepper_type", stepper, "sdirk2",
-         "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time", .choices = stepper_word),
+         "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time; hybrid_paper: the paper's bare form of "
+         "hybrid, for comparisons",
+         .choices = stepper_word),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
     REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
          .plain = true),
@@ -132,11 +133,6 @@ const Key case_key[] = {
         "ends"),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
-    CHOICE(
-        Case, "stepper_pressures", pressures, "nodes", share_word,
-        "changes of pressure shared over nodes; likewise, but those of p_g in proportion to the p_g that each particle "
-        "has (relative), for gas in what tears; or, hybrid and explicit, by each particle alone (particles: the "
-        "paper's form, which rings)"),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
          "at free surfaces; 0 = off"),
     REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",

@@ -12,7 +12,7 @@
 /* An integrator without matrices? */
 static bool Local(const Case *c)
 {
-  return !strcmp(c->stepper, "hybrid") || !strcmp(c->stepper, "explicit");
+  return !strcmp(c->stepper, "hybrid") || !strcmp(c->stepper, "explicit") || CaseIsPaper(c);
 }
 
 /* Is there such a key in the file or on the command line? */
@@ -73,13 +73,8 @@ void CheckTimes(Reader *r, const Case *c, const char *stage)
 
   if (Local(c))
     CheckLocal(r, c, stage);
-  if (c->pressures == PRESSURES_RELATIVE && c->scene.nmaterial > 0 &&
-      !((c->scene.fields.has & HAS_GAS) && c->scene.material[0].gas.trace == 0.0))
-    Fail(r, stage, "stepper_pressures",
-         "relative is for scenes with a pressure of the gas that all of the sediment holds");
-  if (c->pressures == PRESSURES_PARTICLES && c->passes > 0)
-    Fail(r, stage, "stepper_storage_passes",
-         "is not known with stepper_pressures: particles, where nodes share no pressure");
+  if (CaseIsPaper(c) && c->passes > 0)
+    Fail(r, stage, "stepper_storage_passes", "is not known to hybrid_paper, where nodes share no pressure");
   if (Local(c) && c->dt > c->dt_max) {
     snprintf(what, sizeof what, "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
     Fail(r, stage, "stepper_dt", what);

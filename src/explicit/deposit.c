@@ -388,7 +388,7 @@ INLINE void DepositRun(Explicit *e, const Set s, Run r, double dt)
     MixtureValues(e, s, r, &state, &v);
   if (s.solid && TakesCellMean(e))
     CellForces(e, s, r, &w, &v);
-  if (s.fluids && e->o.particle_pressures) {
+  if (s.fluids && e->o.paper) {
     for (int q = 0; q < r.n; q++) {
       for (int k = 0; k < s.fluids; k++) {
         for (int d = 0; d < CL_DIM; d++)

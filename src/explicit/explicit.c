@@ -7,7 +7,7 @@ static const char *const part[STEP_PARTS] = {"ClExDeposit", "ClExVelocities", "C
 /* Do layers share a node's flow (350)?  Not in the bare form, which is the paper's. */
 static int Layers(const Explicit *e)
 {
-  return SceneSharesFlow(e->m->c) && !e->o.particle_pressures;
+  return SceneSharesFlow(e->m->c) && !e->o.paper;
 }
 
 PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out)
@@ -78,7 +78,7 @@ static bool Needs(const Explicit *e, int k)
   if (k == T_V)
     return Scalars(s) > 0;
   if (k >= T_MISS)
-    return e->o.particle_pressures && s.fluids > 0;
+    return e->o.paper && s.fluids > 0;
   if (k == T_SG || k == T_DS || k == T_GAS || k == T_GAS + 1 || k == T_HELD || k >= T_GAIN)
     return s.fluids == 2;
   return s.fluids > 0; /* those of the gas, too: few, and the pointers stay simple */

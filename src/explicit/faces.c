@@ -27,7 +27,7 @@ PetscErrorCode FacesBegin(Explicit *e)
   PetscFunctionBeginUser;
   PetscCall(FacesBuild(e->m->c, &e->m->grid, &e->m->P, &e->nface, &e->face));
   for (PetscInt k = 0; k < e->nface; k++) {
-    if (e->o.particle_pressures || FaceActs(e->m->c, &e->face[k]))
+    if (e->o.paper || FaceActs(e->m->c, &e->face[k]))
       e->face[n++] = e->face[k];
   }
   e->nface = n;
@@ -105,7 +105,7 @@ void FacesForces(Explicit *e, double dt)
       const double p = FacePressure(f, ph, in);
 
       for (int d = 0; d < CL_DIM; d++)
-        force[ph][d] = -o.out[VectorAt(F_VW, ph, d)] - (e->o.particle_pressures ? p * f->n[d] : 0.0);
+        force[ph][d] = -o.out[VectorAt(F_VW, ph, d)] - (e->o.paper ? p * f->n[d] : 0.0);
     }
     for (int ph = 0; ph < s.fluids; ph++)
       Drive(e, s, f->particle, force[ph]);

@@ -265,7 +265,7 @@ INLINE void PatchGradient(const Weights *w, int q, const PatchRow *row, int a, d
 /* Do particles take the volume change of their cells (88)?  Not in the bare form, which is the paper's. */
 INLINE bool TakesCellMean(const Explicit *e)
 {
-  return SceneTakesCellMeans(e->m->c) && !e->o.particle_pressures;
+  return SceneTakesCellMeans(e->m->c) && !e->o.paper;
 }
 
 /* Place of the mean stress through a cell's volume change, J, of this rank: no moment is asked for there. */

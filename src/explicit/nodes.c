@@ -260,10 +260,10 @@ PetscErrorCode NodesFollow(Explicit *e)
     e->node[I].own = e->node[I].own_v = 1.0;
     e->node[I].leads                  = false;
     e->link[2 * I] = e->link[2 * I + 1] = 0.0;
-    if (!e->o.particle_pressures && I < e->map.n_owned && Volume(e, e->set, I) > 0.0)
+    if (!e->o.paper && I < e->map.n_owned && Volume(e, e->set, I) > 0.0)
       e->link[2 * I] = Follows(e, I, &e->link[2 * I + 1]);
   }
-  if (e->o.particle_pressures)
+  if (e->o.paper)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NodeMapBroadcast(&e->map, e->link, 2));
   PetscCall(FindTorn(e));

@@ -157,7 +157,7 @@ INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, con
   const double *restrict sg = e->t[T_SG] + r.p;
   double warmer[BLOCK], pe_warmer[BLOCK], beyond[BLOCK];
 
-  if (!SceneTakesChords(e->m->c) || e->o.particle_pressures)
+  if (!SceneTakesChords(e->m->c) || e->o.paper)
     return;
   for (int q = 0; q < r.n; q++)
     warmer[q] = T[q] + CL_CURVES;
@@ -180,7 +180,7 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, const W
   const Kinetics k          = r.mat->kinetics;
   const double   H          = r.mat->gas.trace;
   double *const *f          = e->m->P.f;
-  const bool     own        = e->o.particle_pressures;
+  const bool     own        = e->o.paper;
   const double *restrict sg = e->t[T_SG] + r.p, *restrict V = e->t[T_V] + r.p, *restrict mh = f[P_MH] + r.p;
   const double *restrict own_w = f[P_PW] + r.p, *restrict own_g = f[P_PG] + r.p;
   double *restrict gain = e->t[T_GAIN] + r.p, *restrict gain_w = e->t[T_GAIN_W] + r.p,
@@ -237,7 +237,7 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
 {
   double *const *f  = e->m->P.f;
   const int      at = B_Fluid(s, k), n = Scalars(s), grad = VectorAt(P_GW, k, 0);
-  const double   bracket = e->o.particle_pressures ? 0.0 : 1.0, scale = e->o.mass_scaling / dt;
+  const double   bracket = e->o.paper ? 0.0 : 1.0, scale = e->o.mass_scaling / dt;
   const double *restrict V = f[P_V] + r.p, *restrict rho = e->t[T_RHO + k] + r.p,
                          *restrict drag = e->t[T_DRAG + k] + r.p;
   const double *restrict m = f[P_MW + k] + r.p, *restrict eos = e->t[T_EOS + k] + r.p;
@@ -490,7 +490,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
     Reaction(e, s, r, &g, &w, dt, T, &v);
     ReactionRows(e, s, r, T, &v, &o);
   }
-  if (s.fluids && e->o.particle_pressures)
+  if (s.fluids && e->o.paper)
     Keep(e, s, r, dt, &w, &o);
   if (Relative(e, s))
     RelativeColumns(e, s, r, &o);

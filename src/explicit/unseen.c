@@ -9,7 +9,7 @@ PetscErrorCode LoseUnseen(Explicit *e)
   Stencil *stencil;
 
   PetscFunctionBeginUser;
-  if (!e->set.solid || e->unseen.steps < UNSEEN_STEPS)
+  if (e->o.paper || !e->set.solid || e->unseen.steps < UNSEEN_STEPS)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(m->P.n, &stencil));
   for (PetscInt p = 0; p < m->P.n; p++)

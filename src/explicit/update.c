@@ -95,7 +95,7 @@ INLINE void KeepVelocityGradient(Explicit *e, Run r, const Strain *n, double dt)
 
     for (int k = 0; k < CL_DIM * CL_DIM; k++)
       square += n->H[k / CL_DIM][k % CL_DIM][q] * n->H[k / CL_DIM][k % CL_DIM][q];
-    share[q] = (square > FASTEST * FASTEST ? FASTEST / sqrt(square) : 1.0) / dt;
+    share[q] = e->o.paper ? 0.0 : (square > FASTEST * FASTEST ? FASTEST / sqrt(square) : 1.0) / dt;
   }
   for (int k = 0; k < CL_DIM * CL_DIM; k++) {
     double *restrict to = e->m->P.f[P_GV + k] + r.p;
@@ -119,7 +119,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
   WeightsOf(e, r, &w);
   Gather(e, e->C, Rows(C_Count(s)), Rows(C_Count(s)), r, &w, &g);
   MeanMotion(e, s, r, &w, C_Vs(s), &g);
-  if (s.fluids && e->o.particle_pressures)
+  if (s.fluids && e->o.paper)
     OwnPressures(e, s, r, &g);
   if (Relative(e, s))
     Pressures(e, r, &g);

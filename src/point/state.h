@@ -204,7 +204,7 @@ INLINE ClStatus CheckInputs(const FieldSet *fs, const Material *mat, const doubl
     return CL_DOMAIN;
   }
   if (fs->phase[PHASE_G] && mat->gas.trace == 0.0 && in[IN_P + 1] <= 0.0) {
-    *why = "gas pressure fell to zero; without_gas: yes lets gas vanish, pressures: relative keeps it in what tears";
+    *why = "gas pressure fell to zero; without_gas: yes lets gas vanish";
     return CL_DOMAIN;
   }
   return CL_OK;

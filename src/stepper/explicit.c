@@ -13,13 +13,13 @@
 /* (350) is not in the paper's bare form. */
 static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 {
-  const double contrast = c->pressures == PRESSURES_PARTICLES ? SceneContrast(&c->scene) : 1.0;
+  const double contrast = CaseIsPaper(c) ? SceneContrast(&c->scene) : 1.0;
 
   PetscFunctionBeginUser;
   if (contrast > LAYERED)
     PetscCall(PetscFPrintf(
         comm, stderr,
-        "clathra: warning: permeability of the regions differs by a factor of %.3g: with pressures: particles the "
+        "clathra: warning: permeability of the regions differs by a factor of %.3g: in the paper's form the "
         "least permeable material at a node holds all of its fluid, so that what flows along a "
         "layer is too little by what flows through about a cell of it; implicit steps have no such "
         "error\n",
@@ -30,12 +30,12 @@ static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 static PetscErrorCode Create(Stepper *s)
 {
   const Case           *c = StepperCase(s);
-  const ExplicitOptions o = {.drag_implicit      = s->scheme == &StepperScheme_Hybrid,
-                             .relative_gas       = c->pressures == PRESSURES_RELATIVE,
-                             .particle_pressures = c->pressures == PRESSURES_PARTICLES,
-                             .passes             = (int)c->passes,
-                             .damping            = c->damping,
-                             .mass_scaling       = c->mass_scaling};
+  const ExplicitOptions o = {.drag_implicit = s->scheme != &StepperScheme_Explicit,
+                             .relative_gas  = SceneKeepsGas(&c->scene) && !CaseIsPaper(c),
+                             .paper         = CaseIsPaper(c),
+                             .passes        = (int)c->passes,
+                             .damping       = c->damping,
+                             .mass_scaling  = c->mass_scaling};
 
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &s->explicit));
@@ -289,6 +289,13 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
 }
 
 const StepperScheme StepperScheme_Hybrid   = {.name    = "hybrid",
+                                              .stages  = 1,
+                                              .advance = Advance,
+                                              .create  = Create,
+                                              .destroy = Destroy,
+                                              .ready   = Ready,
+                                              .check   = Check};
+const StepperScheme StepperScheme_Paper    = {.name    = STEPPER_PAPER,
                                               .stages  = 1,
                                               .advance = Advance,
                                               .create  = Create,

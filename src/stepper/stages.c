@@ -1,8 +1,8 @@
 /* The stages of a run: which case, integrator and step control hold, and what one stage hands to the next. */
 #include "clathra/stepper.h"
 
-static const StepperScheme *const schemes[] = {&StepperScheme_Euler, &StepperScheme_Sdirk2, &StepperScheme_Hybrid,
-                                               &StepperScheme_Explicit, NULL};
+static const StepperScheme *const schemes[] = {&StepperScheme_Euler,    &StepperScheme_Sdirk2, &StepperScheme_Hybrid,
+                                               &StepperScheme_Explicit, &StepperScheme_Paper,  NULL};
 
 double StepperFloorU(const Stepper *s)
 {
@@ -60,7 +60,7 @@ PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
   s->bound        = s->adaptive ? BOUND_BEGIN : BOUND_FIXED; /* of the first step, also behind a restart */
 
   s->model->leaving.removes = c->leaving == LEAVING_REMOVE;
-  s->model->relative_gas    = c->pressures == PRESSURES_RELATIVE;
+  s->model->relative_gas    = SceneKeepsGas(&c->scene);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -64,6 +64,8 @@ blocks = [(cfl, *dropped("-stepper_cfl", cfl)) for cfl in ("0.8", "0.2")]
 judge("strength", "elastic block dropped 2 m: rebound with a quarter of the step", abs(high / fine - 1), 0.05)
 judge("strength", "elastic block dropped 2 m: energy gone by the rebound, with a quarter of the step", less, 0.2)
 check("... beyond that with the whole step", abs(gone - less), 0.05)
+paper = dropped("-stepper_cfl", "0.2", "-stepper_type", "hybrid_paper")[1]
+judge("strength", "elastic block dropped 2 m, hybrid_paper, whose nodes do not know the gradient of motion: energy gone over that by hybrid", paper / less, (1.5, 4))
 table(["height / width", "cells / width", "integrator", "run-out / width", "experiments", "volume", "above 0.1 m/s"], rows)
 table(["stepper_cfl", "rebound (m)", "energy gone"], blocks)
 finish()

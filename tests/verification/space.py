@@ -291,8 +291,8 @@ def without_matrix():
     for r in within["region"].values():
         r["upper"][1], r["particles_per_cell"] = "0.45 m", [4, 2]
     within["region"]["free"]["upper"][0] = "0.675 m"  # nor a node with two neighbours as full as each other (41)
-    compare("block, hybrid, relative pressures", within, "-stepper_pressures", "relative", rings=every)
-    compare("block, hybrid, the paper's bare form", within, "-stepper_pressures", "particles", rings=every)
+    compare("block, hybrid, off the lines of the grid", within, rings=every)
+    compare("block, hybrid, the paper's bare form", within, "-stepper_type", "hybrid_paper", rings=every)
     compare("block, explicit", hurried(block(), end="0.002 s"), "-stepper_type", "explicit", "-mat_sediment_permeability_k0", "1e-10 m^2")
     for fields in SETS:
         compare(f"{fields}, hybrid", hurried(of_fields(block(), fields), end="0.004 s"))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Gas at two pressures, one a twentieth of the other, side by side in a cell of a bar that is pulled to one and a half times its length: pressures fall with what a
-particle has, by hybrid (151) and by sdirk2 (416), none reaches zero, and each half keeps its gas.  At one pressure everywhere neither changes anything.
+particle has, by hybrid (151) and by sdirk2 (416), none reaches zero, and each half keeps its gas.
 
 By the particles' shared increments sdirk2 goes no farther than 0.0283 s of 0.1: the thin gas of the border's cell has lost what its nodes lose.  Its storage is consistent,
 so pressures ring beside the jump, where that of hybrid is lumped; hence the bars.
@@ -14,7 +14,7 @@ from common import Run, check_true, finish, judge, table
 CASE = Path(__file__).parent / "cases" / "stretched_gas.yaml"
 BORDER, CELL = 0.35, 0.1
 rows = []
-for scheme, boyle, gone, same in (("hybrid", 5e-3, 1e-3, 1e-4), ("sdirk2", 0.25, 3e-2, 5e-4)):
+for scheme, boyle, gone in (("hybrid", 5e-3, 1e-3), ("sdirk2", 0.25, 3e-2)):
     ends = []
     for ranks in (1, 2):
         run, who = Run.of_case(CASE, "-quiet", "-stepper_type", scheme, ranks=ranks), f"{scheme}, {ranks} ranks"
@@ -33,8 +33,5 @@ for scheme, boyle, gone, same in (("hybrid", 5e-3, 1e-3, 1e-4), ("sdirk2", 0.25,
             judge("gas", f"{who}, {half} half: gas kept", kept, gone)
         ends.append(np.ravel(last["p_g"])[np.argsort(np.ravel(last["id"]))])
     judge("gas", f"{scheme}: p_g of two ranks against one", np.max(np.abs(ends[1] / ends[0] - 1)), 1e-9)
-    even = [Run.of_case(CASE, "-quiet", "-stepper_type", scheme, "-region_thin_pressure", "2 MPa", "-time_end", "0.05 s", "-output_times", "0.05 s", "-stepper_pressures", how).snapshots()[-1][1]
-            for how in ("nodes", "relative")]  # fmt: skip
-    judge("gas", f"{scheme}: one pressure everywhere, relative against shared increments, p_g", np.max(np.abs(even[1]["p_g"] / even[0]["p_g"] - 1)), same)
 table(["integrator", "ranks", "half", "volume of gas over that at the start", "p V off", "gas lost"], rows)
 finish()
