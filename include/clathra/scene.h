@@ -135,16 +135,14 @@ static inline void SceneUp(const Scene *c, double sign, double up[CL_DIM])
     up[d] = -sign * c->gravity[d] / g;
 }
 
-/* Axis that gravity points along, -1 if it is oblique or zero. */
+/* Axis that layers lie across: the one nearest to gravity's direction, the later of two; -1 without gravity. */
 static inline int SceneVertical(const Scene *c)
 {
-  int axis = -1, count = 0;
+  int axis = -1;
 
-  for (int d = 0; d < CL_DIM; d++) {
-    axis = c->gravity[d] != 0.0 ? d : axis;
-    count += c->gravity[d] != 0.0;
-  }
-  return count == 1 ? axis : -1;
+  for (int d = 0; d < CL_DIM; d++)
+    axis = c->gravity[d] != 0.0 && (axis < 0 || fabs(c->gravity[d]) >= fabs(c->gravity[axis])) ? d : axis;
+  return axis;
 }
 
 /* Middle of a region's bounds, m. */

@@ -1,4 +1,4 @@
-/* Vertical stress from the weight above, in balance with gravity to round-off where layers are horizontal;
+/* Stress from the weight above, in balance with gravity to round-off where layers lie across an axis;
    docs/equations.md, section 13. */
 #include "clathra/boundary.h"
 #include "clathra/tensor.h"
@@ -13,12 +13,13 @@ typedef struct {
   Site     site;
   double   at[ACROSS], half[ACROSS]; /* its place and half-lengths across, m */
   double   height;                   /* m */
-  double   weight, load;             /* of itself; of what acts on its top face, Pa */
+  double   weight[CL_DIM];           /* of itself along each axis, Pa; positive: compresses, shears as (83) */
+  double   load;                     /* of what acts on its top face, Pa */
   double   p, ambient;               /* mean pore pressure, ambient pressure, Pa */
   double   S[3], force[3];           /* nodes base ... base + 2: shares of the weight, forces of a unit of stress */
   double   N[3];                     /* ... of the load */
   PetscInt base, hat;
-  double   total; /* vertical stress of the mixture beyond the ambient, Pa */
+  double   total[CL_DIM]; /* stress of the mixture beyond the ambient, across the vertical axis, Pa */
 } Cell;
 
 typedef struct {
@@ -56,9 +57,10 @@ static PetscErrorCode FillCell(const Scene *c, const Grid *g, const Site *site, 
   PetscCall(InitialScalarsAt(c, r, site->x, &q));
   BasisAxis(c->basis, site->x[v], l, &g->line[v], &axis);
   BasisHat(site->x[v] + s->up * l, &g->line[v], &hat);
-  *a         = (Cell){.site = *site, .height = SceneHeight(c, site->x), .p = q.p, .base = axis.base, .hat = hat.base};
+  *a         = (Cell){.site = *site, .height = s->up * site->x[v], .p = q.p, .base = axis.base, .hat = hat.base};
   a->ambient = AmbientPressure(&around, site->x, gradient);
-  a->weight  = 2.0 * l * (q.density * SceneGravity(c) + s->up * gradient[v]);
+  for (int d = 0; d < CL_DIM; d++)
+    a->weight[d] = -s->up * 2.0 * l * (q.density * c->gravity[d] - (d == v ? gradient[d] : q.grad_p[d]));
   if ((site->faces >> side) & 1)
     a->load = FaceLoad(c, (Side)side, site->region, site->x, 0.0);
   for (int k = 0; k < ACROSS; k++) {
@@ -167,26 +169,28 @@ static void Shares(const Cell *a, int up, double b[2])
   b[1] = up > 0 ? a->force[2] : a->force[0] + a->force[1];
 }
 
-/* (83): by particles, each with the weight above its centre; then the rows of (84) for what the grid misses of it. */
-static void FirstGuess(const Sites *s, Column *col)
+/* (83) of the stress along axis d: by particles, each with the weight above its centre; then the rows of (84) for what
+   the grid misses of it. */
+static void FirstGuess(const Sites *s, int d, Column *col)
 {
   double above = 0.0;
 
   for (PetscInt J = 0; J < col->nodes; J++)
     col->row[J] = col->diag[J] = col->off[J] = col->load[J] = 0.0;
   for (PetscInt k = 0; k < col->n; k++) {
-    Cell  *a = col->cell[k];
-    double b[2];
+    Cell        *a    = col->cell[k];
+    const double load = d == s->vertical ? a->load : 0.0;
+    double       b[2];
 
-    a->total = -(above + a->load + 0.5 * a->weight);
-    above += a->load + a->weight;
+    a->total[d] = -(above + load + 0.5 * a->weight[d]);
+    above += load + a->weight[d];
     Shares(a, s->up, b);
     for (int i = 0; i < 3; i++) {
-      col->load[a->base + i] -= s->up * a->weight * a->S[i];
-      col->load[a->hat + i] -= s->up * a->load * a->N[i];
+      col->load[a->base + i] -= s->up * a->weight[d] * a->S[i];
+      col->load[a->hat + i] -= s->up * load * a->N[i];
     }
     for (int i = 0; i < 2; i++) {
-      col->row[a->base + i] -= b[i] * a->total;
+      col->row[a->base + i] -= b[i] * a->total[d];
       col->diag[a->base + i] += b[i] * b[i];
     }
     col->off[a->base] += b[0] * b[1];
@@ -207,7 +211,7 @@ static void AddLoads(const Sites *s, Column *col)
 }
 
 /* Smallest change of the particles' stresses that puts every cell in balance (84): tridiagonal normal equations. */
-static void Balance(const Sites *s, Column *col)
+static void Balance(const Sites *s, int d, Column *col)
 {
   const PetscInt n = col->nodes;
 
@@ -231,11 +235,12 @@ static void Balance(const Sites *s, Column *col)
     double b[2];
 
     Shares(a, s->up, b);
-    a->total += b[0] * col->row[a->base] + b[1] * col->row[a->base + 1];
+    a->total[d] += b[0] * col->row[a->base] + b[1] * col->row[a->base + 1];
   }
 }
 
-static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, Sites *s)
+/* The stress along axis d of all. */
+static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, int d, Sites *s)
 {
   Column  col = {.nodes = g->cells[s->vertical] + 3};
   double *total;
@@ -247,16 +252,16 @@ static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, Sites *s)
   for (PetscInt first = 0, end; first < s->n; first = end) {
     end = StripeEnd(s, first);
     Gather(c, s, s->order[first], &col);
-    FirstGuess(s, &col);
+    FirstGuess(s, d, &col);
     if (c->basis != BASIS_LINEAR) { /* particles beside a cell's edge are not shared: what they miss is no stress */
       AddLoads(s, &col);
-      Balance(s, &col);
+      Balance(s, d, &col);
     }
     for (PetscInt k = first; k < end; k++) /* the column's other stripes have columns of their own */
-      total[k] = s->order[k]->total;
+      total[k] = s->order[k]->total[d];
   }
   for (PetscInt k = 0; k < s->n; k++)
-    s->order[k]->total = total[k];
+    s->order[k]->total[d] = total[k];
   PetscCall(PetscFree(total));
   PetscCall(PetscFree6(col.cell, col.row, col.diag, col.off, col.load, col.seen));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -277,10 +282,17 @@ static PetscErrorCode Assign(const Scene *c, const Sites *s, Particles *P)
                "particle %" PetscInt_FMT " has no column", P->i[PI_ID][p]);
     if (!RegionGeostatic(r))
       continue;
-    const double vertical = s->cell[k].total - s->cell[k].ambient + s->cell[k].p, across = RegionK0(c, r) * vertical;
+    const Cell  *a        = &s->cell[k];
+    const double vertical = a->total[s->vertical] - a->ambient + a->p, across = RegionK0(c, r) * vertical;
 
     for (int i = XX; i <= ZZ; i++)
       P->f[P_SIG + i][p] = P->f[P_SIG0 + i][p] = i == s->vertical ? vertical : across;
+    for (int d = 0; d < CL_DIM; d++) {
+      const int i = voigt[s->vertical][d];
+
+      if (d != s->vertical)
+        P->f[P_SIG + i][p] = P->f[P_SIG0 + i][p] = a->total[d];
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -309,7 +321,10 @@ PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P)
   for (PetscInt k = 0; k < s.n; k++)
     s.order[k] = &s.cell[k];
   qsort(s.order, (size_t)s.n, sizeof(*s.order), ByStripe);
-  PetscCall(SolveColumns(c, g, &s));
+  for (int d = 0; d < CL_DIM; d++) {
+    if (c->gravity[d] != 0.0)
+      PetscCall(SolveColumns(c, g, d, &s));
+  }
   PetscCall(Assign(c, &s, P));
   PetscCall(PetscFree(s.order));
   PetscCall(PetscFree(s.cell));

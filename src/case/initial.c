@@ -57,8 +57,6 @@ static void CheckGeostatic(Reader *r, const Scene *c, const Region *g)
     FAIL(g->name, key, "needs solid, which is not among the fields of the scene (%s)", CaseOf(c)->fields_wanted);
   if (SceneGravity(c) == 0.0)
     FAIL(g->name, key, "is given but gravity is zero");
-  else if (SceneVertical(c) < 0)
-    FAIL(g->name, key, "needs gravity along x or y, not oblique (%g, %g m/s^2)", c->gravity[0], c->gravity[1]);
   if (c->gravity_ramp > 0.0)
     FAIL(g->name, key, "is in balance with gravity, but gravity_ramp makes it start from zero; choose one");
   if (g->consolidated && isnan(RegionK0(c, g)))

@@ -220,8 +220,6 @@ CASES = [
     ("geostatic and normally consolidated", [GRAVITY, STRESS("{geostatic: 0.5, normally_consolidated: yes}")],
      ["region_column_stress_normally_consolidated", "choose one"], []),
     ("geostatic without gravity", [STRESS("{geostatic: 0.5}")], ["region_column_stress_geostatic", "gravity is zero"], []),
-    ("geostatic under oblique gravity", [("basis: cpgimp", "gravity: [1 m/s^2, -9.81 m/s^2]"), STRESS("{geostatic: 0.5}")],
-     ["region_column_stress_geostatic", "oblique"], []),
     ("geostatic with a ramp of gravity", [("basis: cpgimp", "gravity: [0 m/s^2, -9.81 m/s^2]\ngravity_ramp: 1 s"), STRESS("{geostatic: 0.5}")],
      ["region_column_stress_geostatic", "gravity_ramp"], []),
     ("geostatic stress of a rigid body", [GRAVITY, ("E0: 90 MPa", "E0: rigid"), STRESS("{geostatic: 0.5}")],

@@ -6,6 +6,7 @@ compresses nor expands: at rest to round-off with every basis, along y and along
 pressure, wherever layers and surface cut the grid's cells.  Compressible water leaves velocities that fall with h.
 The profiles are held against sums and integrals made here.
 """
+import json
 import re
 from pathlib import Path
 
@@ -98,7 +99,42 @@ flooded = variant("flooded", *NO_HEAT, ("fields: thm", "fields: hm"), *OFF, *SEA
 at_rest("ambient sea, layers and surface inside cells", flooded)
 at_rest("3 x 3 under 2 x 2 a cell", off, "-region_deep_particles_per_cell", "3,3")
 at_rest("layers and surface inside cells, hybrid", off, *SLOW)
+
+
+def leaning(name, gravity, up):
+    """Two layers across axis `up`, inside cells, under gravity that is oblique to them, between sides that hold what an endless slope hands on."""
+    n = len(gravity)
+    place = lambda at, other: [f"{at if d == up else other} m" for d in range(n)]
+    sides = {f"side_{d}_{x}": {"type": "fixed", "axis": "xyz"[d], "position": f"{x} m"} for d in range(n) for x in (0, 4) if d != up}
+    soil = lambda porosity, density, E: {"porosity": porosity, "solid": {"density": f"{density} kg/m^3"}, "elasticity": {"E0": E, "nu": 0.3}}
+    path = FOLDER / f"{name}.yaml"
+    path.write_text(json.dumps({
+        "title": "layers that lean", "fields": ["solid"], "gravity": [f"{g} m/s^2" for g in gravity],
+        "grid": {"lower": place(0, 0), "upper": place(24, 4), "cells": [12 if d == up else 4 for d in range(n)]},
+        "materials": ["sand", "clay"], "mat": {"sand": soil(0.4, 2650, "50 MPa"), "clay": soil(0.5, 2700, "20 MPa")}, "regions": ["deep", "shallow"],
+        "region": {"deep": {"lower": place(0, 0), "upper": place(7.3, 4), "material": "sand", "stress": {"geostatic": 0.5}},
+                   "shallow": {"lower": place(7.3, 0), "upper": place(19.1, 4), "material": "clay", "stress": {"geostatic": 0.8}}},
+        "boundaries": ["base", *sides], "bc": {"base": {"type": "fixed", "axis": "xyz"[up], "position": "0 m"}, **sides},
+        "time": {"end": "1000 s"}, "stepper": {"adapt": "no", "dt": "100 s"}, "output": {"times": ["0 s", "1000 s"]}}))  # fmt: skip
+    return path
+
+
+plane = leaning("lean", (3, -9), 1)
+lean = at_rest("oblique gravity, layers and surface inside cells", plane)
+at_rest("oblique gravity, hybrid", plane, *SLOW)
+at_rest("oblique gravity, ambient sea", variant("lean_sea", *NO_HEAT, ("fields: thm", "fields: hm"), *OFF, *SEA_AROUND, ("[0 m/s^2, -9.81 m/s^2]", "[3 m/s^2, -9 m/s^2]"),
+                                                ("left: {type: roller", "left: {type: fixed"), ("right: {type: roller", "right: {type: fixed")))  # fmt: skip
+swapped = at_rest("oblique gravity, axes swapped", leaning("swapped", (-9, 3), 0))
+space = at_rest("oblique gravity along three axes, in space", leaning("lean_3d", (3, 2, -9), 2))
 table(("state", "velocity (m/s)", "stress", "T (K)"), rows)
+yy, xy = lean["stress"][:, 1], lean["stress"][:, 3]
+judge("geostatic", "oblique gravity: shear stress against gravity's slope times the vertical one, of the largest", np.abs(xy + 3 / 9 * yy).max() / np.abs(xy).max(), 1e-12)
+judge("geostatic", "oblique gravity: largest shear stress against the weight of all, less half a particle's", np.abs(xy).max() / (3 * (0.5 * 2700 * 11.8 + 0.6 * 2650 * 7.3)), (0.9, 1))
+judge("geostatic", "oblique gravity: axes swapped, shear stress, of the largest", np.abs(np.sort(swapped["stress"][:, 3]) / np.sort(lean["stress"][:, 3]) - 1).max(), 1e-9)
+xy, yz, xz = space["stress"][:, 3:].T
+judge("geostatic", "oblique gravity in space: shear stresses in proportion to gravity along their axes", max(np.abs(xy).max(), np.abs(2 * xz - 3 * yz).max()) / np.abs(xz).max(), 1e-12)
+two = ends(plane, ranks=2)[1]
+judge("geostatic", "oblique gravity: 2 ranks against 1, stress, of the largest", np.abs(two["stress"] - lean["stress"]).max() / np.abs(lean["stress"]).max(), 1e-12)
 
 # ---------------------------------------------------------------- the profiles
 x, y = first["position"].T
