@@ -7,13 +7,11 @@
 #include "clathra/model.h"
 
 typedef struct {
-  bool drag_implicit;  /* hybrid; explicit otherwise */
-  bool relative_gas;   /* changes of p_g in proportion to it (151) */
-  bool paper;          /* the paper's bare form (P72): rates of pressure by the particle, not shared over nodes
-                        */
-  int    passes;       /* of (413), beyond the first */
-  double damping;      /* local damping of the mixture's out-of-balance force, [0,1) */
-  double mass_scaling; /* factor on every inertia, >= 1 */
+  bool   drag_implicit; /* hybrid; explicit otherwise */
+  bool   paper;         /* the bare form (P72): rates of pressure by the particle, not shared over nodes */
+  int    passes;        /* of (413), beyond the first */
+  double damping;       /* local damping of the mixture's out-of-balance force, [0,1) */
+  double mass_scaling;  /* factor on every inertia, >= 1 */
 } ExplicitOptions;
 
 /* What bounds a step. */

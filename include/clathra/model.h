@@ -166,7 +166,7 @@ typedef struct {
   PetscInt limited;             /* particles on which the hydrate positivity limiter acted in the last stage */
   bool     uneven;              /* the last implicit step evened nothing out within cells: (354) was not found */
   Leaving  leaving;             /* particles that crossed the edge of the grid (373) */
-  bool     relative_gas;        /* changes of p_g in proportion to it, by implicit steps (416) */
+  bool     relative_gas;        /* changes of p_g in proportion to it (151), (416) */
 
   /* The implicit system's: what stands from here on is seen by src/model alone (tests/layers.py). */
   PetscLogEvent event[EVENT_COUNT];

@@ -239,11 +239,11 @@ static void Balance(const Sites *s, int d, Column *col)
   }
 }
 
-/* The stress along axis d of all. */
-static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, int d, Sites *s)
+/* Stresses of all along the axes that gravity acts along. */
+static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, Sites *s)
 {
-  Column  col = {.nodes = g->cells[s->vertical] + 3};
-  double *total;
+  Column col = {.nodes = g->cells[s->vertical] + 3};
+  double(*total)[CL_DIM];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc6(s->n, &col.cell, col.nodes, &col.row, col.nodes, &col.diag, col.nodes, &col.off, col.nodes,
@@ -252,16 +252,20 @@ static PetscErrorCode SolveColumns(const Scene *c, const Grid *g, int d, Sites *
   for (PetscInt first = 0, end; first < s->n; first = end) {
     end = StripeEnd(s, first);
     Gather(c, s, s->order[first], &col);
-    FirstGuess(s, d, &col);
-    if (c->basis != BASIS_LINEAR) { /* particles beside a cell's edge are not shared: what they miss is no stress */
-      AddLoads(s, &col);
-      Balance(s, d, &col);
+    for (int d = 0; d < CL_DIM; d++) {
+      if (c->gravity[d] == 0.0)
+        continue;
+      FirstGuess(s, d, &col);
+      if (c->basis != BASIS_LINEAR) { /* particles beside a cell's edge are not shared: what they miss is no stress */
+        AddLoads(s, &col);
+        Balance(s, d, &col);
+      }
     }
     for (PetscInt k = first; k < end; k++) /* the column's other stripes have columns of their own */
-      total[k] = s->order[k]->total[d];
+      memcpy(total[k], s->order[k]->total, sizeof(*total));
   }
   for (PetscInt k = 0; k < s->n; k++)
-    s->order[k]->total[d] = total[k];
+    memcpy(s->order[k]->total, total[k], sizeof(*total));
   PetscCall(PetscFree(total));
   PetscCall(PetscFree6(col.cell, col.row, col.diag, col.off, col.load, col.seen));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -321,10 +325,7 @@ PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P)
   for (PetscInt k = 0; k < s.n; k++)
     s.order[k] = &s.cell[k];
   qsort(s.order, (size_t)s.n, sizeof(*s.order), ByStripe);
-  for (int d = 0; d < CL_DIM; d++) {
-    if (c->gravity[d] != 0.0)
-      PetscCall(SolveColumns(c, g, d, &s));
-  }
+  PetscCall(SolveColumns(c, g, &s));
   PetscCall(Assign(c, &s, P));
   PetscCall(PetscFree(s.order));
   PetscCall(PetscFree(s.cell));

@@ -367,7 +367,7 @@ PetscErrorCode PlatesEnd(Explicit *e); /* what they bear to the model, all ranks
 /* Do relative changes of p_g go through the nodes (151)? */
 INLINE bool Relative(const Explicit *e, Set s)
 {
-  return s.fluids == 2 && e->o.relative_gas;
+  return s.fluids == 2 && e->m->relative_gas && !e->o.paper;
 }
 
 /* (151): increments of p_w and p_g, where the latter is p_g, from what the nodes have solved for. */

@@ -31,7 +31,6 @@ static PetscErrorCode Create(Stepper *s)
 {
   const Case           *c = StepperCase(s);
   const ExplicitOptions o = {.drag_implicit = s->scheme != &StepperScheme_Explicit,
-                             .relative_gas  = SceneKeepsGas(&c->scene) && !CaseIsPaper(c),
                              .paper         = CaseIsPaper(c),
                              .passes        = (int)c->passes,
                              .damping       = c->damping,
@@ -288,24 +287,12 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
   }
 }
 
-const StepperScheme StepperScheme_Hybrid   = {.name    = "hybrid",
-                                              .stages  = 1,
-                                              .advance = Advance,
-                                              .create  = Create,
-                                              .destroy = Destroy,
-                                              .ready   = Ready,
-                                              .check   = Check};
-const StepperScheme StepperScheme_Paper    = {.name    = STEPPER_PAPER,
-                                              .stages  = 1,
-                                              .advance = Advance,
-                                              .create  = Create,
-                                              .destroy = Destroy,
-                                              .ready   = Ready,
-                                              .check   = Check};
-const StepperScheme StepperScheme_Explicit = {.name    = "explicit",
-                                              .stages  = 1,
-                                              .advance = Advance,
-                                              .create  = Create,
-                                              .destroy = Destroy,
-                                              .ready   = Ready,
-                                              .check   = Check};
+#define WITHOUT_MATRIX(word)                                                                                           \
+  {                                                                                                                    \
+    .name = (word), .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready,             \
+    .check = Check                                                                                                     \
+  }
+
+const StepperScheme StepperScheme_Hybrid   = WITHOUT_MATRIX("hybrid");
+const StepperScheme StepperScheme_Paper    = WITHOUT_MATRIX(STEPPER_PAPER);
+const StepperScheme StepperScheme_Explicit = WITHOUT_MATRIX("explicit");

@@ -83,7 +83,7 @@ check_true("forced: ends with exit code 3 and says why", r.returncode == 3 and "
 # particles are worked on in blocks; the one that fails is named, under the load, and not the first of its block
 punched = launch(binary(), CASE, *LOAD, "-quiet", "-stepper_type", "hybrid", "-stepper_adapt", "no", "-stepper_dt", "1e-5 s", "-stepper_max_failures", "1", "-bc_load_normal_ramp", "4 GPa,4 GPa,0 s,1 s",
                  "-bc_load_from", "0.4 m", "-bc_load_to", "0.5 m", out=scratch() / "punched")  # fmt: skip
-place = re.search(r"Given up at .*near \((\S+), (\S+)\) m", punched.stdout)
+place = re.search(r"Given up at .*(?:no open pores are left|a pressure or temperature left its range) .*near \((\S+), (\S+)\) m", punched.stdout)
 check_true("punched: says where, under the load or beside it", punched.returncode == 3 and place and 0.4 <= float(place[1]) <= 0.55 and float(place[2]) > 0.65, punched.stdout[-400:])
 
 # what ends with ever shorter steps is ended: at the edge of the grid at once, elsewhere by (372)

@@ -39,7 +39,7 @@ probes: [m]
 probe: {m: {at: [0.03 m, 0.03 m]}}
 """
 LAME, G, A = E * NU / ((1 + NU) * (1 - 2 * NU)), 0.5 * E / (1 + NU), BETA * RISE / 3
-HYBRID = ["-stepper_type", "hybrid", "-stepper_damping", "0.5"]  # nodes that follow others (41) leave 6e-4 of a body that grows into new cells
+HYBRID = ["-stepper_type", "hybrid", "-stepper_damping", "0.5"]
 
 
 def warmed(fields, bounds, *options, water=False):
