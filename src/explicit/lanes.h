@@ -154,8 +154,8 @@ struct Explicit {
   double *inc;  /* [rows][INC] increments of velocity from a node's own balances, with what its followers gave it; of
                    fluids with layers the flow per permeability (311) */
   double *gain; /* [rows][3] the same of the scalars */
-  double *left, *given, *total; /* (413): what the balances of mass and heat still lack and what particles store of it,
-                                   [rows][LANES]; the increments so far, in rows like those of C */
+  double *left, *given, *total; /* (413): what the balances of mass and heat still lack and what particles store of it;
+                                   the increments so far, [rows][LANES] */
   int       pass;               /* of (413), from 0 */
   double   *cell;  /* [rows][CELL_MEAN] of the cell behind a node: sums of PartMoment, m^3, last CELL_PRESSURE */
   CellMean *mean;  /* [rows] */

@@ -27,7 +27,7 @@ static PetscErrorCode Allocate(Explicit *e)
     PetscCall(PetscCalloc4(n * CELL_MEAN, &e->cell, n, &e->mean, n, &e->swell, n, &e->part));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
-  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (e->o.passes > 0 ? 2 * LANES + C : 0)) + LANES, &e->raw));
+  PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (e->o.passes > 0 ? 3 * LANES : 0)) + LANES, &e->raw));
   at   = (double *)(((uintptr_t)e->raw + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
   e->A = at;
   e->G = e->A + n * A;

@@ -183,19 +183,25 @@ static PetscErrorCode StillLacking(Explicit *e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The increments of this pass to those so far. */
+static void AddIncrements(Explicit *e)
+{
+  for (PetscInt I = 0; I < e->rows; I++)
+    AddRow(&e->total[I * LANES], 1.0, &e->C[I * C_Width(e->set)], Scalars(e->set));
+}
+
 static PetscErrorCode FurtherPasses(Explicit *e)
 {
-  const PetscInt all = e->rows * C_Width(e->set);
-
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(e->total, e->C, all));
+  PetscCall(PetscArrayzero(e->total, e->rows * LANES));
+  AddIncrements(e);
   for (e->pass = 1; e->pass <= e->o.passes; e->pass++) {
     PetscCall(StillLacking(e));
     PetscCall(Pass(e));
-    for (PetscInt k = 0; k < all; k++)
-      e->total[k] += e->C[k];
+    AddIncrements(e);
   }
-  PetscCall(PetscArraycpy(e->C, e->total, all));
+  for (PetscInt I = 0; I < e->rows; I++)
+    PetscCall(PetscArraycpy(&e->C[I * C_Width(e->set)], &e->total[I * LANES], Scalars(e->set)));
   e->pass = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -372,7 +372,7 @@ def turned(hybrid=False):
     case |= {"time": {"end": "100 s"}, "output": {"times": ["100 s"]}}
     runs, options = [], []
     if hybrid:
-        case, options = hurried(case), ["-mean_strain", 0.5, "-compression_heat", "yes"]
+        case, options = hurried(case), ["-mean_strain", 0.5, "-compression_heat", "yes", "-stepper_storage_passes", 3]
         options += [o for m in ("sediment", "clay") for o in (f"-mat_{m}_kinetics_active", "no")]  # T bends within a particle then (395)
     for ring in (0, 1, 2):
         c, along = drawn_out(case, ring)
