@@ -109,8 +109,8 @@ def terzaghi(run, left, right):
 
 def buckley_leverett(run, left, right):
     B = ladder.BuckleyLeverett
-    for axes, option, title in ((left, "yes", "drag from upstream"), (right, "no", "central drag")):
-        profiles(axes, run("-stabilisation_upstream", option), 0, lambda v: v["S_w"][:, 0], B.exact.saturation)
+    for axes, option, title in ((left, "yes", "saturations carried with the flow"), (right, "no", "central drag")):
+        profiles(axes, run("-stabilisation_saturation", option), 0, lambda v: v["S_w"][:, 0], B.exact.saturation)
         axes.set(xlabel="x (m)", ylabel="water saturation (–)", title=title)
 
 

@@ -207,7 +207,7 @@ typedef struct {
   Wide      *wide;        /* [n] of the wide part (27) */
   double    *plate_K;     /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
 
-  Additions *added;   /* what the scheme adds to the balances (22), (23), (35), (200), (265), (293) */
+  Additions *added;   /* what the scheme adds to the balances (22), (23), (200), (265), (293) */
   Solver    *solver;  /* of the stages */
   Failure    failure; /* of the last evaluation */
 } Model;

@@ -61,7 +61,6 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 typedef struct {
   double ghost_penalty;     /* g, 0 = off; default 0.1 */
   double ghost_storage;     /* g_s, 0 = off (default) */
-  bool   upstream;          /* drag of the fluids from upstream; default false */
   bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind; /* (200); default false */
   int    heat;              /* HEAT_...; default auto */
@@ -338,8 +337,7 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
   const struct {
     bool        on;
     const char *word;
-  } known[] = {{c->stabilisation.upstream, "stabilisation_upstream"},
-               {c->stabilisation.donor, "stabilisation_donor"},
+  } known[] = {{c->stabilisation.donor, "stabilisation_donor"},
                {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
                {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
 

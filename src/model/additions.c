@@ -1,10 +1,8 @@
 /* What the scheme adds to the balances of particles, at t_n: diffusion that carries saturations and heat with the flow,
-   how fast the reaction is held, what looks upstream. */
+   how fast the reaction is held. */
 #include "clathra/point_heat.h"
 #include "clathra/point_reaction.h"
 #include "gather.h"
-
-#define UPSTREAM_LEAST 1e-3 /* of V h: with less than this upstream of a node, its k_r stays central */
 
 PetscErrorCode AdditionsReserve(Model *m)
 {
@@ -120,47 +118,4 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
     to->held[p] = HeldOf(m, p, q);
   if (to->exchange)
     ExchangeSet(m, p, q);
-}
-
-/* (35): directions of flow at t_n, and the factors that keep the sum of the weights. */
-PetscErrorCode UpstreamBuild(Model *m)
-{
-  const FieldSet *fs = &m->c->fields;
-  double         *sum;
-
-  PetscFunctionBeginUser;
-  if (!m->c->stabilisation.upstream)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(m->added->up, PHASE_COUNT * UP_COUNT * m->map.n_local));
-  for (PetscInt I = 0; I < m->map.n_local; I++) {
-    for (int f = 0; f < PHASE_COUNT; f++) {
-      double J[CL_DIM] = {0.0};
-
-      if (fs->phase[f])
-        DarcyFlux(m, I, f, &m->x_n[I * fs->n], J);
-      const double size = VectorLength(J);
-      for (int d = 0; d < CL_DIM && size > 0.0; d++)
-        UpstreamAt(m, I, f)[d] = J[d] / size;
-    }
-  }
-  PetscCall(PetscCalloc1(PHASE_COUNT * m->map.n_local, &sum));
-  for (PetscInt p = 0; p < m->P.n; p++) {
-    Reach r;
-
-    ReachExpand(m, p, &r);
-    for (int a = 0; a < r.n; a++) {
-      for (int f = 0; f < PHASE_COUNT; f++)
-        sum[PHASE_COUNT * r.node[a] + f] +=
-            m->P.f[P_V][p] * r.S[a] * fmax(Upstream(m, p, r.node[a], UpstreamAt(m, r.node[a], f)), 0.0);
-    }
-  }
-  PetscCall(NodeMapSum(&m->map, sum, PHASE_COUNT));
-  for (PetscInt k = 0; k < PHASE_COUNT * m->map.n_local; k++) {
-    const PetscInt I = k / PHASE_COUNT;
-
-    if (sum[k] > UPSTREAM_LEAST * NodeWidth(m, I) * m->V[I])
-      m->added->up[UP_COUNT * k + UP_FACTOR] = m->V[I] / sum[k];
-  }
-  PetscCall(PetscFree(sum));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,14 +45,10 @@ typedef struct {
   double change;             /* of the particle's pressures at the end of the step, Pa */
 } Exchange;
 
-/* Of a fluid at a node (35): direction of its flow, and a factor (0: none). */
-enum { UP_FACTOR = CL_DIM, UP_COUNT };
-
 struct Additions {
   PetscInt        nghost, ncell;
   GhostLine      *ghost;    /* [nghost] */
   ProjectionCell *cell;     /* [ncell] (23) */
-  double         *up;       /* [n_local][PHASE_COUNT][UP_COUNT] upstream weights of drag (35); NULL when off */
   Donor          *donor;    /* [n] (332); NULL when off */
   Exchange       *exchange; /* [n] (353); NULL when off */
   double         *source;   /* [n_local][2] V/Vk and Vk of gas (333), as particles take it; NULL when off */

@@ -246,12 +246,11 @@ PetscErrorCode ModelSlaveUpdated(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBo
                                  void *model);
 PetscErrorCode ModelResizeNodal(Model *m);
 /* Room for what the scheme adds to particles (additions.c), and where a stage of the run may change it; of particle p,
-   whose properties at t_n are q; (35) of the nodes, after the projection. */
+   whose properties at t_n are q. */
 PetscErrorCode AdditionsReserve(Model *m);
 PetscErrorCode AdditionsOfStage(Model *m);
 void           AdditionsSet(Model *m, PetscInt p, const PointProperties *q);
 PetscErrorCode UpwindLimit(Model *m);
-PetscErrorCode UpstreamBuild(Model *m);
 /* Model.face and Model.wall on the configuration at t_n (faces.c); Model.row_scale and col_scale of the stage. */
 PetscErrorCode FacesStart(Model *m);
 void           ScalesBuild(Model *m);

@@ -36,7 +36,6 @@ static PetscErrorCode DestroyNodal(Model *m)
   PetscCall(PetscFree6(m->x_n, m->w, m->V, m->Vk, m->flow, m->coef));
   PetscCall(PetscFree(m->wall));
   PetscCall(PetscFree3(m->material, m->most, m->hydrate));
-  PetscCall(PetscFree(m->added->up));
   PetscCall(PetscFree(m->added->source));
   PetscCall(PetscFree4(m->mask, m->fixed, m->row_scale, m->col_scale));
   PetscCall(PetscFree5(m->x, m->f, m->proj, m->give, m->take));
@@ -127,8 +126,6 @@ PetscErrorCode ModelResizeNodal(Model *m)
   PetscCall(PetscCalloc3(n, &m->material, n, &m->most, n, &m->hydrate));
   if (m->c->axisymmetric && m->c->fields.fluid)
     PetscCall(PetscCalloc1(n * PHASE_COUNT, &m->wall));
-  if (m->c->stabilisation.upstream)
-    PetscCall(PetscCalloc1(n * PHASE_COUNT * UP_COUNT, &m->added->up));
   if (SceneDonor(m->c))
     PetscCall(PetscCalloc1(n * 2, &m->added->source));
   PetscCall(PetscCalloc4(n, &m->mask, n * nf, &m->fixed, n * nf, &m->row_scale, n * nf, &m->col_scale));

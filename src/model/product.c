@@ -243,7 +243,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   if (fluid) {
     for (int i = 0; i < CL_DIM; i++)
       fluid->D[i] += share * of[FLUID_D];
-    fluid->root += (LayerRoot(m, ph) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
+    fluid->root += RootFactor(m, I, ph) * take[TAKE_ROOT + ph] / m->V[I];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);

@@ -34,7 +34,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   if (at) {
     for (int i = 0; i < CL_DIM; i++)
       at->D[i] += share * of[FLUID_D] + WallDrag(m, I, ph, i);
-    at->root += (LayerRoot(m, ph) ? m->flow[I] : 1.0) * take[TAKE_ROOT + ph] / m->V[I];
+    at->root += RootFactor(m, I, ph) * take[TAKE_ROOT + ph] / m->V[I];
     return;
   }
   DarcyFlux(m, I, ph, &x[I * fs->n], J);

@@ -24,7 +24,7 @@ static void SharesOf(const Model *m, PetscInt p, const double out[OUT_COUNT], Sh
       continue;
     s->S[TAKE_M + 1 + f] = out[OUT_M + 1 + f];
     s->S[TAKE_DM + f]    = out[OUT_DM + f];
-    s->S[TAKE_ROOT + f]  = m->fluid && LayerRoot(m, f) ? c * m->P.f[P_V][p] * out[OUT_ROOT + f] : 0.0;
+    s->S[TAKE_ROOT + f]  = m->fluid ? (Donated(m, f) ? 1.0 : c) * m->P.f[P_V][p] * out[OUT_ROOT + f] : 0.0;
     of[FLUID_MI]         = c * out[OUT_MI + f];
     of[FLUID_MI2]        = c * of[FLUID_MI];
     of[FLUID_D]          = c * out[OUT_D + f];
@@ -68,24 +68,20 @@ static void ScatterMotion(Model *m, const Reach *r, const double out[OUT_COUNT],
   }
 }
 
-/* What of a fluid has weights that differ from node to node: of gas (333), of its mobility (35). */
-static void ScatterFluid(Model *m, PetscInt p, const Reach *r, int f, const double out[OUT_COUNT], Shares *s)
+/* Gas of a particle has weights that differ from node to node (333). */
+static void ScatterDonated(Model *m, PetscInt p, const Reach *r, int f, Shares *s)
 {
   double *of = &s->S[TAKE_FLUID + FLUID_COUNT * f];
 
   for (int a = 0; a < r->n; a++) {
-    const PetscInt I    = r->node[a];
-    double        *node = &m->take[TAKE_COUNT * I];
+    const PetscInt I     = r->node[a];
+    const double   share = DonorShare(m, p, I);
+    double        *node  = &m->take[TAKE_COUNT * I];
 
-    if (m->fluid && !LayerRoot(m, f))
-      node[TAKE_ROOT + f] += MobilityWeight(m, p, I, f, r->S[a]) * m->P.f[P_V][p] * out[OUT_ROOT + f];
-    if (!Donated(m, f))
-      continue;
-    const double share = DonorShare(m, p, I);
     for (int k = 0; k < FLUID_COUNT; k++)
       node[TAKE_FLUID + FLUID_COUNT * f + k] += r->S[a] * share * (k == FLUID_MI2 ? share : 1.0) * of[k];
   }
-  for (int k = 0; Donated(m, f) && k < FLUID_COUNT; k++)
+  for (int k = 0; k < FLUID_COUNT; k++)
     of[k] = 0.0;
 }
 
@@ -124,8 +120,8 @@ void ParticleScatter(Model *m, PetscInt p, const Reach *r, const double *x, cons
   for (int f = 0; f < PHASE_COUNT; f++) {
     if (fs->phase[f] && m->beds)
       ScatterBeds(m, p, r, x, f, out);
-    if (fs->phase[f] && !LayerRoot(m, f))
-      ScatterFluid(m, p, r, f, out, &s);
+    if (fs->phase[f] && Donated(m, f))
+      ScatterDonated(m, p, r, f, &s);
   }
   const Lanes *S = (const Lanes *)s.S;
   for (int a = 0; a < r->n; a++) {

@@ -197,7 +197,7 @@ static void Average(Model *m, const double *sum)
       c[k] /= V;
     for (int k = 0; k < PHASE_COUNT; k++) { /* (350), (108) */
       c[NC_DRAG + k] *= m->flow[I];
-      c[NC_KR + k] = PetscSqr(c[NC_KR + k] * (Donated(m, k) ? 1.0 : m->flow[I]));
+      c[NC_KR + k] = PetscSqr(c[NC_KR + k] * RootFactor(m, I, k));
     }
   }
 }
@@ -367,7 +367,6 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(FacesStart(m));
     PetscCall(StabilisationBuild(m));
     PetscCall(UpwindLimit(m));
-    PetscCall(UpstreamBuild(m));
     ChordsBuild(m);
     LumpBuild(m);
   }

@@ -44,12 +44,6 @@ static inline bool Donated(const Model *m, int f)
   return m->added->donor && f == PHASE_G;
 }
 
-/* Is a particle's share in the root of k_r at its nodes (108) that of the layer's weight, not (35) or (359)? */
-static inline bool LayerRoot(const Model *m, int f)
-{
-  return !m->c->stabilisation.upstream && !Donated(m, f);
-}
-
 /* The node's factor in both. */
 static inline double NodeShare(const Model *m, PetscInt I, int f)
 {
@@ -168,25 +162,16 @@ static inline void SharedFlux(const Model *m, PetscInt I, int f, const double *x
   ShareOut(m, I, J);
 }
 
-static inline double *UpstreamAt(const Model *m, PetscInt I, int f)
+/* Factor of the sum over particles in the root of k_r of a node: the layer's (108), or none (359). */
+static inline double RootFactor(const Model *m, PetscInt I, int f)
 {
-  return &m->added->up[UP_COUNT * (PHASE_COUNT * I + f)];
+  return Donated(m, f) ? 1.0 : m->flow[I];
 }
 
-/* Weight of a particle in k_r of a node (108): (350), or what looks upstream (35). */
-static inline double MobilityWeight(const Model *m, PetscInt p, PetscInt I, int f, double S)
-{
-  if (!m->c->stabilisation.upstream)
-    return Donated(m, f) ? S : S * LayerWeight(m, p, I);
-  const double *u = UpstreamAt(m, I, f);
-
-  return u[UP_FACTOR] > 0.0 ? S * u[UP_FACTOR] * fmax(Upstream(m, p, I, u), 0.0) : S;
-}
-
-/* ... of all in the node's k_r (108). */
+/* Share of a particle in it (108), (359). */
 static inline double MobilityShare(const Model *m, PetscInt p, PetscInt I, int f, double S)
 {
-  return MobilityWeight(m, p, I, f, S) * m->P.f[P_V][p] / m->V[I];
+  return S * (Donated(m, f) ? 1.0 : LayerWeight(m, p, I)) * m->P.f[P_V][p] / m->V[I];
 }
 
 /* Acceleration of the velocity at place k of a node's block; quasi-static: none. */
