@@ -11,8 +11,8 @@
 #include "small_scene.h"
 
 /* ---------------------------------------------------------------- (a) Jacobian */
-/* A random state, with the reaction by nodes where hydrate reacts, and gas with the mobility of where it comes from in
- * the second set of conditions. */
+/* A random state, with the reaction by nodes where hydrate reacts; in the second set of conditions gas has the mobility
+   of where it comes from. */
 static void RandomScene(SmallScene *s, BasisType basis, bool reacts, int set)
 {
   double lumped = 0.0, held = 0.0, donor = 0.0;
