@@ -1,4 +1,4 @@
-/* clathra CASE [PETSc options] */
+/* clathra CASE [PETSc options] and clathra strength CASE [options] */
 #include "clathra/run.h"
 #include <ctype.h>
 
@@ -6,6 +6,7 @@ static const char help[] =
     "Clathra: coupled thermo-hydro-mechanical-chemical material point simulator for methane-hydrate-bearing sediment.\n"
     "\n"
     "  clathra CASE [options]      CASE is a folder with a case.yaml, or such a file\n"
+    "  clathra strength CASE       its factor of safety by strength reduction; clathra strength --help\n"
     "\n"
     "Ten options that matter:\n"
     "  -case_check                 read and check the case and its start, forecast and warnings included; write "
@@ -161,6 +162,8 @@ int main(int argc, char **argv)
   PetscMPIInt size;
 
   if (!ProcessPrepare(argv))
+    return CL_EXIT_INPUT;
+  if (HandOverStrength(argc, argv))
     return CL_EXIT_INPUT;
   for (int k = 1; k < argc; k++) {
     if (strcmp(argv[k], "--help") == 0)

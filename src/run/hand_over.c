@@ -1,0 +1,59 @@
+/* What `clathra` hands over to another program before MPI begins: `clathra strength` to scripts/strength.py. */
+#include "clathra/run.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Path of this program. */
+static bool OwnPath(char path[PATH_MAX])
+{
+  const ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - 1);
+
+  path[n > 0 ? n : 0] = '\0';
+  return n > 0;
+}
+
+/* The script beside the folder of the build, as in a tree that was moved; else where it was when this was compiled. */
+static bool DriverPath(const char *own, char path[PATH_MAX])
+{
+  char *build;
+
+  snprintf(path, PATH_MAX, "%s", own);
+  build = strrchr(path, '/');
+  snprintf(build, (size_t)(path + PATH_MAX - build), "/../scripts/strength.py");
+  if (access(path, R_OK) == 0)
+    return true;
+  snprintf(path, PATH_MAX, "%s/strength.py", CLATHRA_SCRIPTS);
+  return access(path, R_OK) == 0;
+}
+
+bool HandOverStrength(int argc, char **argv)
+{
+  char   own[PATH_MAX], driver[PATH_MAX];
+  char **command;
+  int    n = 0;
+
+  if (argc < 2 || strcmp(argv[1], "strength") != 0)
+    return false;
+  if (!OwnPath(own) || !DriverPath(own, driver)) {
+    fprintf(stderr, "clathra: strength is done by scripts/strength.py of the source tree, which is not there (%s)\n",
+            CLATHRA_SCRIPTS);
+    return true;
+  }
+  command = calloc((size_t)argc + 3, sizeof(*command));
+  if (!command)
+    return true;
+  command[n++] = (char[]){"python3"};
+  command[n++] = driver;
+  command[n++] = own;
+  for (int k = 2; k < argc; k++)
+    command[n++] = argv[k];
+  execvp(command[0], command);
+  fprintf(stderr, "clathra: strength needs python3 with numpy and h5py: python3 cannot be started (%s)\n",
+          strerror(errno));
+  free(command);
+  return true;
+}
