@@ -165,6 +165,7 @@ int main(int argc, char **argv)
     return CL_EXIT_INPUT;
   if (HandOverStrength(argc, argv))
     return CL_EXIT_INPUT;
+  HandOverSpace(argc, argv);
   for (int k = 1; k < argc; k++) {
     if (strcmp(argv[k], "--help") == 0)
       argv[k]++;                                             /* PETSc knows -help */

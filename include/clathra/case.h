@@ -148,6 +148,8 @@ PetscErrorCode CaseDestroy(Case *c);
 /* Prints every case key (name, kind, unit, range, default, meaning) as Markdown: the source of docs/options.md and
  * -help. */
 PetscErrorCode CasePrintKeys(FILE *out);
+/* How many numbers the grid of a case (a folder or a file) has; 0: the file does not say.  Before MPI begins. */
+int CaseAxes(const char *given);
 /* Is -case_keys given, and does it not say no?  A word that says neither yes nor no asks for nothing here: CaseRead
    refuses it. */
 PetscErrorCode CaseKeysAsked(PetscBool *asked);

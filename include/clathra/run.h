@@ -12,9 +12,11 @@ PetscErrorCode LogStart(MPI_Comm comm);
 /* It is kept no longer; what was not written is lost. */
 PetscErrorCode LogEnd(void);
 
-/* Before MPI begins: `clathra strength ...` becomes another program.  True: it was asked for and could not be begun,
-   which was said. */
+/* Before MPI begins this program may become another one, see src/run/hand_over.c. */
+/* `clathra strength ...`; true: it was asked for and could not be begun, which was said. */
 bool HandOverStrength(int argc, char **argv);
+/* A case of three axes is clathra3d's: does not return where that stands beside this program. */
+void HandOverSpace(int argc, char **argv);
 
 /* Before PETSc is initialised, and after: see src/run/process.c. */
 /* May start the program again, with one thread for BLAS; false where it cannot run, which was said. */

@@ -1,4 +1,5 @@
-/* What `clathra` hands over to another program before MPI begins: `clathra strength` to scripts/strength.py. */
+/* What `clathra` hands over to another program before MPI begins: `clathra strength` to scripts/strength.py, a case
+   of three axes to clathra3d. */
 #include "clathra/run.h"
 
 #include <errno.h>
@@ -56,4 +57,16 @@ bool HandOverStrength(int argc, char **argv)
           strerror(errno));
   free(command);
   return true;
+}
+
+void HandOverSpace(int argc, char **argv)
+{
+  char path[PATH_MAX];
+
+  if (CL_DIM != 2 || argc < 2 || argv[1][0] == '-' || CaseAxes(argv[1]) != 3 || !OwnPath(path))
+    return;
+  char *name = strrchr(path, '/') + 1;
+
+  snprintf(name, (size_t)(path + PATH_MAX - name), "clathra3d");
+  (void)execv(path, argv); /* where it cannot, the reader of the case says what is missing */
 }

@@ -6,6 +6,7 @@ what differs is round-off, amplified by Newton's tolerances.  The axes are excha
 once the one along which nothing happens.
 """
 import json
+import shutil
 import sys
 from pathlib import Path
 
@@ -538,7 +539,7 @@ def halved(what, case, middle, bar):
 
 
 def refused():
-    """What is of the plane alone is refused by name, and a case of the plane by the program of space; the other way round, too."""
+    """What is of the plane alone is refused by name, and a case of the plane by the program of space; a case of space goes to it."""
     plane, (space, _) = block(), drawn_out(block(), 0)
     sheared, askew, beside = (json.loads(json.dumps(c)) for c in (space, drawn_out(drilled(block()), 0)[0], drawn_out(drilled(block()), 0)[0]))
     sheared["bc"]["load"]["shear"] = "1 kPa"
@@ -551,10 +552,16 @@ def refused():
         ("a well that is open beyond the body", SPACE, beside, [], "bc_well_at"),
         ("part of a side", SPACE, space, ["-bc_load_to", "0.2 m"], "bc_load_to"),
         ("a case of the plane", SPACE, plane, [], "clathra3d"),
-        ("a case of space in the plane", binary(), space, [], "clathra3d"),
     ):
         done = launch(program, written(case, "refused"), *options, out=scratch() / "out")
         check(f"refused: {what}: exit code 2 and said by name", float(done.returncode == 2 and words in done.stdout), (1.0, 1.0))
+    case = written(space, "handed-over")
+    said = [launch(program, case, "-case_check") for program in (binary(), SPACE)]
+    check("clathra hands a case of space over to clathra3d", float(said[0].returncode == said[1].returncode == 0 and said[0].stdout.splitlines()[:3] == said[1].stdout.splitlines()[:3]), (1.0, 1.0))
+    alone = scratch() / "clathra"
+    shutil.copy(binary(), alone)
+    done = launch(alone, case, "-case_check")
+    check("... and without it says whose it is", float(done.returncode == 2 and "three axes are clathra3d's" in done.stdout), (1.0, 1.0))
 
 
 def main():
