@@ -42,7 +42,7 @@ except ImportError as error:
     sys.exit(2)
 
 LEAST, MOST = 0.01, 100.0  # factors that are tried
-ROWS = 500  # of the balance
+ROWS = 200  # of the balance
 SNAPSHOTS = 8  # of the last fifth
 FLOWS, CREEPS, STEADY, LEAVES, KINETIC, VIBRATES = 1e-2, 1e-3, 0.125, 1e-2, 0.5, 1e-4  # shares that the docstring names
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}

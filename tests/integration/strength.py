@@ -2,6 +2,8 @@
 """clathra strength: what it takes for standing and for failing, on made-up energies; a block that vibrates, in the plane and in space, with
 brackets that begin too high and too low; bad input.
 """
+import contextlib
+import io
 import os
 import re
 import shutil
@@ -55,7 +57,7 @@ def verdicts():
 
 # ---------------------------------------------------------------- runs
 def launch(*words, program=None, path=None, cwd=None):
-    more = {} if path is None else {"PATH": str(path)}
+    more = {"TMPDIR": str(scratch())} | ({} if path is None else {"PATH": str(path)})
     return subprocess.run([program or binary(), "strength", *map(str, words)], env=environment(**more), cwd=cwd, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True, timeout=300)  # fmt: skip
 
@@ -95,18 +97,28 @@ def refused():
     (bare / "python3").chmod(0o755)
     elastic = scratch() / "elastic.yaml"
     elastic.write_text(re.sub(r" +plasticity:.*\n", "", BLOCK.read_text()))
+    for what, words, said in (
+        ("a bracket the wrong way round", ("case", "--low", 3, "--high", 2), ("--low 3", "--high 2")),
+        ("no number", ("case", "--low", "many"), ("--low", "many")),
+        ("a tolerance of zero", ("case", "--tol", 0), ("--tol", "'0'")),
+        ("a factor beyond all sense", ("case", "--high", 1e4), ("--high", "10000")),
+        ("an unknown option", ("case", "--growth", 0.1), ("--growth",)),
+        ("no rank", ("case", "--ranks", 0), ("--ranks 0",)),
+        ("no case", ("--low", 1), ("CASE",)),
+    ):
+        text, code = io.StringIO(), 0
+        try:
+            with contextlib.redirect_stderr(text):
+                strength.arguments(list(map(str, words)))
+        except SystemExit as stopped:
+            code = stopped.code
+        check_true(f"refused: {what}: exit code 2, and said", code == 2 and all(w in text.getvalue() for w in said), text.getvalue())
     for what, words, said, how in (
-        ("a bracket the wrong way round", (BLOCK, "--low", 3, "--high", 2), ("--low 3", "--high 2"), {}),
-        ("no number", (BLOCK, "--low", "many"), ("--low", "many"), {}),
-        ("a tolerance of zero", (BLOCK, "--tol", 0), ("--tol", "'0'"), {}),
-        ("a factor beyond all sense", (BLOCK, "--high", 1e4), ("--high", "10000"), {}),
-        ("an unknown option", (BLOCK, "--growth", 0.1), ("--growth",), {}),
-        ("no case", (), ("CASE",), {}),
         ("a case that is not there", ("nowhere",), ("nowhere",), {}),
         ("a stage that is not there", (BLOCK, "--stage", "dig"), ("--stage dig", "no stages"), {}),
         ("a case without a strength", (elastic,), ("strength_factor", "plasticity_law"), {}),
-        ("an unknown option of clathra", (BLOCK, "--", "-grid_cels", "8,5"), ("grid_cels",), {}),
         ("a folder that holds something", (BLOCK, "--out", full), ("--out", str(full)), {}),
+        ("an unknown option of clathra", (BLOCK, "--", "-grid_cels", "8,5"), ("grid_cels",), {}),
         ("no python3", (BLOCK,), ("python3", "numpy"), {"path": scratch()}),
         ("a python3 without numpy", (BLOCK,), ("numpy", "h5py"), {"path": bare}),
     ):

@@ -57,7 +57,7 @@ def cut():
 def reduce(case, low, high, *options, tol=0.05, stage=None):
     """What `clathra strength` prints, and whether its bracket is the one to begin with."""
     words = ["--low", low, "--high", high, "--tol", tol, *(["--stage", stage] if stage else []), "--", *options]
-    done = subprocess.run([binary(), "strength", case, *map(str, words)], env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+    done = subprocess.run([binary(), "strength", case, *map(str, words)], env=environment(TMPDIR=str(scratch())), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
     print(done.stdout, end="")
     last = re.search(r"factor of safety \S+: stands at (\S+), fails at (\S+)", done.stdout)
     return done.stdout, last and (float(last[1]), float(last[2])) == (low, high)
