@@ -40,7 +40,7 @@ LAWS = [
     ("Melting of ice", "melting", [("fresh", "water_salinity 0"), ("salinity 0.035", "water_salinity 0.035")], (127,), r"water_salinity", "Fofonoff and Millard (1983)"),
     ("Conductivity and heat capacity", "conductivity", [("", "")], (236,), r"\w+_(heat_capacity|conductivity)", "the paper"),
     ("Stiffness", "stiffness", [("bh = 1", "elasticity_bh 1"), ("bh = 2", "elasticity_bh 2")], (14, 93, 237), r"elasticity_\w+", "the paper"),
-    ("Strength and hydrate", "strength", [("eta_h = 5", "plasticity_eta_h 5"), ("eta_h = 1", "plasticity_eta_h 1")], (61, 63), r"plasticity_(law|cohesion_m\w+|dilation_\w+|eta_h|Sh_max|tension_cutoff|flow|eccentricity)", "the paper"),
+    ("Strength and hydrate", "strength", [("eta_h = 5", "plasticity_eta_h 5"), ("eta_h = 1", "plasticity_eta_h 1")], (61, 63, 455), r"plasticity_(law|cohesion_(m\w+|gradient|level)|dilation_\w+|eta_h|Sh_max|tension_cutoff|flow|eccentricity)", "the paper"),
     ("Softening", "softening", [("eta_s = 5", "plasticity_eta_s 5"), ("eta_s = 20", "plasticity_eta_s 20")], (62, 85, 87), r"plasticity_(cohesion_residual|friction_\w+|eta_s|softening_length|nonlocal_length|heat)|strength_factor", "the paper; Galavi and Schweiger (2010)"),
 ]  # fmt: skip
 

@@ -278,6 +278,8 @@ enum { FLOW_MENETREY_WILLAM = 0, FLOW_MOHR_COULOMB };
 typedef struct {
   int    type, flow;          /* PLASTICITY_..., FLOW_... */
   double c_max, c_min, c_res; /* cohesion: peak at Sh_max, its lower limit without hydrate, residual; Pa */
+  double gradient, level;     /* c_max grows by this below a level, Pa/m and m along `axis`; the others in proportion */
+  int    axis, up;            /* ... whose coordinate grows (1) or falls (-1) upwards */
   double phi_peak, phi_res;   /* friction, deg, [0, 90) */
   double psi_max, psi_min;    /* dilation at Sh_max and its lower limit, deg; softens to zero */
   double eta_h, Sh_max;       /* how strength falls with hydrate */
@@ -313,6 +315,29 @@ static inline double StrengthCutoff(const Plasticity *law)
 static inline double FlowRoundness(const Plasticity *law)
 {
   return law->eccentricity * StrengthReduced(law, law->c_max);
+}
+/* (455): how far below the level a particle was at the start, m. */
+static inline double StrengthDepth(const Plasticity *law, const double place[CL_DIM])
+{
+  const double depth = law->gradient > 0.0 ? law->up * (law->level - place[law->axis]) : 0.0;
+
+  return depth > 0.0 ? depth : 0.0;
+}
+/* (455): what a cohesion c of the law, Pa, is at this depth. */
+static inline double StrengthBelow(const Plasticity *law, double c, double depth)
+{
+  return c + (law->c_max > 0.0 ? c / law->c_max : 1.0) * law->gradient * depth;
+}
+/* The law at a depth (m); of its kind it has the same strength at every depth. */
+static inline Plasticity StrengthAtDepth(const Plasticity *law, double depth)
+{
+  Plasticity at = *law;
+
+  at.c_max    = StrengthBelow(law, law->c_max, depth);
+  at.c_min    = StrengthBelow(law, law->c_min, depth);
+  at.c_res    = StrengthBelow(law, law->c_res, depth);
+  at.gradient = 0.0;
+  return at;
 }
 /* Cohesion (Pa), friction and dilation angle (rad) at S_h and the deviatoric plastic strain eps, with slopes in both.
  */

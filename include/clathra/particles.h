@@ -220,6 +220,8 @@ static inline SkeletonStore ParticlesSkeleton(const Particles *P, PetscInt first
                      .rate     = P->f[P_NONLOCAL] ? P->f[P_NONLOCAL_RATE] + first : NULL,
                      .ahead    = ahead};
 
+  for (int d = 0; d < CL_DIM; d++)
+    s.place[d] = P->f[P_X0 + d] + first;
   for (int k = 0; k < OWN_COUNT; k++)
     s.own[k] = P->f[P_HISTORY + k] ? P->f[P_HISTORY + k] + first : NULL;
   for (int k = 0; k < 6; k++) {

@@ -71,6 +71,7 @@ typedef struct {
   double        sig[6], sig0[6]; /* effective stress at t_n and the initial one that turns with the body, Pa */
   SkeletonStage from;
   double        nonlocal; /* plastic strain that sets the strength, end of the stage (86); only with nonlocal_length */
+  double        place[CL_DIM]; /* at the start of the run, m: strength may grow with depth there (455) */
 } SkeletonHistory;
 
 /* Where on the yield surface a state was returned to. */
@@ -100,7 +101,8 @@ typedef struct {
 /* Where the history of particles stands: arrays over particles, null where a scene does not hold it. */
 typedef struct {
   double *sig[6], *sig0[6], *own[OWN_COUNT], *yield, *nonlocal, *rate;
-  double  ahead; /* of the end of the stage, since the last average of neighbours, s */
+  double *place[CL_DIM]; /* at the start, m */
+  double  ahead;         /* of the end of the stage, since the last average of neighbours, s */
 } SkeletonStore;
 
 /* n particles of one material; the history is replaced.  Numbers of the rotation, strain and the rest as in
@@ -186,6 +188,12 @@ static inline double SkeletonNonlocal(const SkeletonStore *f, ptrdiff_t q)
 {
   return f->nonlocal ? f->nonlocal[q] + f->ahead * f->rate[q] : 0.0;
 }
+/* Place at the start, m. */
+static inline void SkeletonPlace(const SkeletonStore *f, ptrdiff_t q, double place[CL_DIM])
+{
+  for (int d = 0; d < CL_DIM; d++)
+    place[d] = f->place[d] ? f->place[d][q] : 0.0;
+}
 /* Stress and history of particle q. */
 static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHistory *h)
 {
@@ -196,6 +204,7 @@ static inline void SkeletonTake(const SkeletonStore *f, ptrdiff_t q, SkeletonHis
   for (int k = 0; k < OWN_COUNT; k++)
     h->from.own[k] = f->own[k] ? f->own[k][q] : 0.0;
   h->nonlocal = SkeletonNonlocal(f, q);
+  SkeletonPlace(f, q, h->place);
 }
 /* Writes them. */
 static inline void SkeletonKeep(const SkeletonStore *f, ptrdiff_t q, const SkeletonState *s)

@@ -80,6 +80,8 @@ PetscErrorCode CaseDerive(Reader *r, Case *c)
     DeriveFluids(m);
     m->plasticity.factor = c->scene.strength_factor;
     m->plasticity.cell   = CellSize(&c->scene);
+    m->plasticity.axis   = SceneVertical(&c->scene) < 0 ? 0 : SceneVertical(&c->scene);
+    m->plasticity.up     = c->scene.gravity[m->plasticity.axis] > 0.0 ? -1 : 1;
     for (int j = 0; j < 2; j++) {
       l[j]->K     = INFINITY;
       l[j]->p_ref = m->water.p_ref;

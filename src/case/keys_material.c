@@ -29,6 +29,10 @@ static bool NeedsStrength(const void *p)
 {
   return ((const Material *)p)->plasticity.type == PLASTICITY_MOHR_COULOMB;
 }
+static bool StrengthGrows(const void *p)
+{
+  return NeedsStrength(p) && ((const Material *)p)->plasticity.gradient > 0.0;
+}
 static bool IsSmooth(const void *p)
 {
   return !strcmp(((const Material *)p)->retention.type, "van_genuchten");
@@ -246,6 +250,14 @@ const Key material_key[] = {
     REAL(Material, "plasticity_cohesion_residual", plasticity.c_res, "Pa", "[0,1e12]", "1 @plasticity_cohesion_min",
          "what plastic strain leaves of it: c_res + (c_peak - c_res) exp(-eta_s eps_d_p)", .has = HAS_SOLID,
          ACTS(NeedsStrength, "law is mohr_coulomb")),
+    REAL(Material, "plasticity_cohesion_gradient", plasticity.gradient, "Pa/m", "[0,1e9]", "0 Pa/m",
+         "cohesion_max grows by this with every metre below cohesion_level, cohesion_min and cohesion_residual in "
+         "proportion: c_u of clay with depth; the depth of a particle is that at the start, along the axis that is "
+         "nearest to gravity",
+         .has = HAS_SOLID, ACTS(NeedsStrength, "law is mohr_coulomb")),
+    REAL(Material, "plasticity_cohesion_level", plasticity.level, "m", "", "0 m",
+         "coordinate along that axis at and above which cohesion is as given",
+         OFLAW(StrengthGrows, "law is mohr_coulomb and cohesion_gradient is above 0 Pa/m"), .has = HAS_SOLID),
     REAL(Material, "plasticity_friction_peak", plasticity.phi_peak, "deg", "[0,90)", "0 deg", "friction angle",
          OFLAW(NeedsStrength, "law is mohr_coulomb"), .has = HAS_SOLID),
     REAL(Material, "plasticity_friction_residual", plasticity.phi_res, "deg", "[0,90)", "1 @plasticity_friction_peak",

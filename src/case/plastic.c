@@ -4,10 +4,17 @@
 
 #define FAIL(key, ...) FAIL_AT(GROUP_MATERIAL, m->name, key, __VA_ARGS__)
 
-/* The stress of a point must be able to follow its strength down, at every hydrate saturation. */
-static void CheckSnapBack(Reader *r, const Material *m)
+/* Depth (m) of the grid's foot below the level from which on the strength grows. */
+static double DeepestOf(const Scene *c, const Plasticity *p)
 {
-  const Plasticity *p = &m->plasticity;
+  return fmax(StrengthDepth(p, c->lower), StrengthDepth(p, c->upper));
+}
+
+/* The stress of a point must be able to follow its strength down, at every hydrate saturation. */
+static void CheckSnapBack(Reader *r, const Scene *c, const Material *m)
+{
+  const Plasticity  deep = StrengthAtDepth(&m->plasticity, DeepestOf(c, &m->plasticity)); /* where most of it goes */
+  const Plasticity *p    = &deep;
 
   const double eta = p->nonlocal > 0.0 ? 0.0 : SofteningRate(p); /* a strength given for the step cannot fall in it */
 
@@ -62,7 +69,9 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
 
   if (p->type != PLASTICITY_MOHR_COULOMB || !c->scene.fields.solid)
     return;
-  if (p->c_max == 0.0 && p->phi_peak == 0.0)
+  if (p->gradient > 0.0 && SceneVertical(&c->scene) < 0)
+    FAIL("plasticity_cohesion_gradient", "needs gravity, which says along which axis the depth is");
+  if (p->c_max == 0.0 && p->phi_peak == 0.0 && p->gradient == 0.0)
     FAIL("plasticity_cohesion_max", "is 0 Pa and plasticity_friction_peak 0 deg: the material has no strength at all");
   if (p->c_min > p->c_max)
     FAIL("plasticity_cohesion_min", "must not be above plasticity_cohesion_max (%g Pa > %g Pa)", p->c_min, p->c_max);
@@ -86,7 +95,7 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
          "needs equal cells: it adapts softening to one size of them; take plasticity_nonlocal_length on a grid with a "
          "spacing");
   if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
-    CheckSnapBack(r, m);
+    CheckSnapBack(r, &c->scene, m);
   if (p->psi_max > p->phi_peak)
     WARN_AT(GROUP_MATERIAL, m->name, "plasticity_dilation_max",
             "material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)", m->name, p->psi_max,
@@ -101,7 +110,7 @@ static void CheckStages(Reader *r, const Case *c)
 
     for (PetscInt k = 0; k < s->scene.nmaterial && s->scene.strength_factor != c->scene.strength_factor; k++) {
       if (s->scene.material[k].plasticity.type != PLASTICITY_NONE && isfinite(s->scene.material[k].elasticity.E0))
-        CheckSnapBack(r, &s->scene.material[k]);
+        CheckSnapBack(r, &s->scene, &s->scene.material[k]);
     }
   }
 }

@@ -89,6 +89,7 @@ static const struct {
     {"W/m^3", "a heat source"},
     {"W/(m^2 K)", "a heat transfer coefficient"},
     {"Pa/s", "a pressure per time"},
+    {"Pa/m", "a pressure per length"},
     {"K/s", "a temperature per time"},
     {"deg", "an angle"},
     {"1/K", "a thermal expansion"},

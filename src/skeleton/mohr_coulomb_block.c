@@ -26,20 +26,25 @@ INLINE Bounds BoundsOf(const SkeletonStore *f, ptrdiff_t q)
 }
 
 /* Which of n trial states from q on may yield, without exponentials or angles of their own: where nothing has flowed
-   yet (nor around it), friction is that of the peak and the cohesion c_min or more; where all normal stresses are
-   compressive, no strength is below the residual one.  All of them reduced (87).  Vector code. */
+   yet (nor around it), friction is that of the peak and the cohesion c_min or more, both by (455); where all normal
+   stresses are compressive, no strength is below the residual one.  All of them reduced (87).  Vector code. */
 static void MayYield(const Plasticity *law, const SkeletonStore *f, int q, int n, unsigned char may[CHUNK])
 {
   const double part = StrengthReduced(law, 1.0), peak = atan(part * tan(law->phi_peak * M_PI / 180.0)),
                res = atan(part * tan(law->phi_res * M_PI / 180.0)), sp = sin(peak), sr = sin(res),
-               cp = part * law->c_min * cos(peak), cr = part * law->c_res * cos(res), cutoff = StrengthCutoff(law);
+               cp = part * law->c_min * cos(peak), cr = part * law->c_res * cos(res), cutoff = StrengthCutoff(law),
+               deep_p = part * (StrengthBelow(law, law->c_min, 1.0) - law->c_min) * cos(peak),
+               deep_r = part * (StrengthBelow(law, law->c_res, 1.0) - law->c_res) * cos(res), up = (double)law->up;
   const int     own = law->nonlocal == 0.0; /* strength follows the particle's own strain */
-  const double *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] + q;
+  const double *eps = f->own[OWN_P_EPS] + q, *open = f->own[OWN_P_OPENING] + q,
+               *at = law->gradient > 0.0 ? f->place[law->axis] + q : eps;
 
   for (int k = 0; k < n; k++) {
     const Bounds of = BoundsOf(f, q + k);
-    const double hi = of.hi, shear = of.shear, mean = of.mean;
-    const int fresh = own & (eps[k] == 0.0) & (shear + mean * sp <= cp), worn = (hi <= 0.0) & (shear + mean * sr <= cr);
+    const double hi = of.hi, shear = of.shear, mean = of.mean, below = up * (law->level - at[k]),
+                 depth = below > 0.0 ? below : 0.0;
+    const int fresh    = own & (eps[k] == 0.0) & (shear + mean * sp <= cp + deep_p * depth),
+              worn     = (hi <= 0.0) & (shear + mean * sr <= cr + deep_r * depth);
 
     may[k] = (unsigned char)!((open[k] <= 0.0) & (hi <= cutoff) & (fresh | worn));
   }
@@ -86,10 +91,18 @@ static void KeepYielding(const Material *mat, const SkeletonBlock *b, const Yiel
 
 static bool ReturnOne(const Material *mat, const SkeletonBlock *b, Yielding *y, const char **why)
 {
-  const Returning r = {
-      .mat = mat, .d = &y->d, .nonlocal = SkeletonNonlocal(&b->store, y->q), .trial = &y->s, .axes = &y->p};
-  Landed     l;
-  const bool found = ReturnTrial(&r, &l, why);
+  double place[CL_DIM];
+
+  SkeletonPlace(&b->store, y->q, place);
+  const Plasticity law = StrengthAtDepth(&mat->plasticity, StrengthDepth(&mat->plasticity, place));
+  const Returning  r   = {.mat      = mat,
+                          .law      = &law,
+                          .d        = &y->d,
+                          .nonlocal = SkeletonNonlocal(&b->store, y->q),
+                          .trial    = &y->s,
+                          .axes     = &y->p};
+  Landed           l;
+  const bool       found = ReturnTrial(&r, &l, why);
 
   y->s = l.s;
   KeepYielding(mat, b, y, l.over);
@@ -140,10 +153,11 @@ static bool ReturnLanes(const Material *mat, const SkeletonBlock *b, const int *
 /* Trial stresses of all first, then the returns of those that yield, both in vector code. */
 bool Block_MohrCoulomb(const Material *mat, const SkeletonBlock *b, const char **why)
 {
-  const Plasticity *law   = &mat->plasticity;
-  const bool        lanes = law->flow == FLOW_MENETREY_WILLAM && (law->factor == 0.0 || law->factor == 1.0);
-  bool              found = Block_Elastic(mat, b, why);
-  unsigned char     may[CHUNK];
+  const Plasticity *law = &mat->plasticity;
+  const bool        lanes =
+      law->flow == FLOW_MENETREY_WILLAM && law->gradient == 0.0 && (law->factor == 0.0 || law->factor == 1.0);
+  bool          found = Block_Elastic(mat, b, why);
+  unsigned char may[CHUNK];
 
   for (int q = 0; q < b->n; q++)
     b->store.yield[q] = (double)RETURN_ELASTIC; /* their work is zero already */

@@ -72,6 +72,7 @@ void StressSlopes(const Principal *p, const Returned *r, double C[CL_TENSOR][CL_
 /* A trial state on its way to the yield surface. */
 typedef struct {
   const Material        *mat;
+  const Plasticity      *law; /* of mat, at the particle's depth (455) */
   const SkeletonStep    *d;
   double                 nonlocal;
   const SkeletonState   *trial;

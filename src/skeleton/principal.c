@@ -1,17 +1,17 @@
 /* The return of a trial state in principal stresses, and its tangent; docs/equations.md, section 14. */
 #include "smooth.h"
 
-static Trial3 TrialOf(const Material *mat, const SkeletonStep *d, double eps, double nonlocal, const Principal *p)
+static Trial3 TrialOf(const Returning *r, double eps, const Principal *p)
 {
-  const Elasticity *el = &mat->elasticity;
+  const Elasticity *el = &r->mat->elasticity;
 
-  return (Trial3){.law      = &mat->plasticity,
+  return (Trial3){.law      = r->law,
                   .G2       = 2.0 * ElasticityShearFactor(el),
                   .lame     = ElasticityLameFactor(el),
-                  .E        = StageModulus(el, d),
-                  .Sh       = d->Sh,
+                  .E        = StageModulus(el, r->d),
+                  .Sh       = r->d->Sh,
                   .eps      = eps,
-                  .nonlocal = nonlocal,
+                  .nonlocal = r->nonlocal,
                   .y        = {p->y[0], p->y[1], p->y[2]}};
 }
 
@@ -107,9 +107,9 @@ bool ReturnRaised(const Returning *r, double raise, Landed *l, const char **why)
     l->t = *r->slopes;
     UnitPer(l->per);
   }
-  if (!Yields(&mat->plasticity, r->d->Sh, l->s.own[OWN_P_EPS], r->nonlocal, p.y))
+  if (!Yields(r->law, r->d->Sh, l->s.own[OWN_P_EPS], r->nonlocal, p.y))
     return true;
-  const Trial3 at = TrialOf(mat, r->d, l->s.own[OWN_P_EPS], r->nonlocal, &p);
+  const Trial3 at = TrialOf(r, l->s.own[OWN_P_EPS], &p);
   if (!ReturnToYield(&at, r->slopes != NULL, &found)) {
     *why = "no stress on the yield surface was found for the strain of this step";
     return false;

@@ -165,6 +165,7 @@ def page(rows):
         "- where the ground dilates, `mean_strain: 0.95` ((160) of [equations.md](equations.md)): one volume change a cell (88) locks as soon as its particles shear, and so dilate, differently.",
         "- implicit: a `stabilisation_ghost_penalty` that is small beside the strength. (22) is elastic and resists every step's flow at the surface; hybrid has none. It grows with E: 1e-3 for the strips, 1e-6 for the",
         "  circle.",
+        "- clay whose c_u grows with depth: friction 0 and `cohesion_gradient` below `cohesion_level` (455); the limit of a strip of it is met within 2 % (`tests/verification/clay_strength.py`).",
         "- stiff ground (E/c = 1e5, for the circle 1e7), so that the load comes at a settlement that does not change the geometry: with psi = 30 deg the ground beside the plate rises seven times as far as the plate sinks.",
         "- hybrid: a plate that slows down before the load is read, so that inertia (rho c v) is small, and some `stepper_damping`.", "",
         "## Strips on weightless ground, phi = psi", "",

@@ -256,7 +256,7 @@ static void TestBlock(void **state)
   for (int run = 0; run < 100; run++) {
     Material mat = Bonded(STIFFNESS_BONDS);
     Walk     w[N];
-    double   in[11][N], held[15 + OWN_COUNT][N] = {{0.0}}, work[N];
+    double   in[11][N], held[17 + OWN_COUNT][N] = {{0.0}}, work[N];
 
     if (run % 2)
       mat.plasticity = (Plasticity){.type         = PLASTICITY_MOHR_COULOMB,
@@ -278,6 +278,12 @@ static void TestBlock(void **state)
       mat.plasticity.eta_s    = 5.0;
       mat.plasticity.nonlocal = run % 8 == 3 ? 0.5 : 0.0;
     }
+    if (run % 6 == 5) { /* strength that grows with depth */
+      mat.plasticity.gradient = 3e5;
+      mat.plasticity.level    = 3.0;
+      mat.plasticity.axis     = run % 4 == 1;
+      mat.plasticity.up       = run % 12 == 5 ? 1 : -1;
+    }
     SkeletonBlock b = {.n           = N,
                        .turn        = {in[0], in[1]},
                        .e           = {[XX] = in[2], [YY] = in[3], [ZZ] = in[10], [XY] = in[4]},
@@ -295,6 +301,8 @@ static void TestBlock(void **state)
     for (int i = 0; i < OWN_COUNT; i++)
       b.store.own[i] = held[13 + i];
     b.store.nonlocal = held[13 + OWN_COUNT];
+    b.store.place[0] = held[15 + OWN_COUNT];
+    b.store.place[1] = held[16 + OWN_COUNT];
     b.store.rate     = held[14 + OWN_COUNT];
     SkeletonState s[N];
     for (int q = 0; q < N; q++) {
@@ -322,6 +330,8 @@ static void TestBlock(void **state)
       }
       held[13 + OWN_P_EPS][q] = w[q].h.from.own[OWN_P_EPS] = run % 4 == 3 && q % 2 ? RngBetween(&r, 0.0, 0.5) : 0.0;
       held[13 + OWN_COUNT][q] = w[q].h.nonlocal = RngBetween(&r, 0.0, 0.5);
+      for (int i = 0; i < 2; i++)
+        held[15 + OWN_COUNT + i][q] = w[q].h.place[i] = RngBetween(&r, 0.0, 6.0);
       assert_true(SkeletonUpdate(&mat, &w[q].h, &d, &s[q], NULL, &why));
       yield += s[q].region != RETURN_ELASTIC;
     }

@@ -287,6 +287,45 @@ static void TestStrengthFactor(void **state)
   assert_true(worst < 1e-10 && plastic[0] > 500 && plastic[1] > 500 && plastic[2] > 500);
 }
 
+/* A strength that grows with depth (455) is that of a law whose cohesions are those of the depth, slopes included;
+   above the level it does not grow. */
+static void TestDepth(void **state)
+{
+  Rng    r        = {455};
+  double worst[2] = {0.0};
+  int    plastic  = 0;
+
+  (void)state;
+  for (int n = 0; n < 4000; n++) {
+    Sample       q = RandomSample(&r, n % 2 ? FLOW_MOHR_COULOMB : FLOW_MENETREY_WILLAM, n % 4 == 3), by_hand = q;
+    Plasticity  *k = &q.mat.plasticity, *l = &by_hand.mat.plasticity;
+    const double depth = RngBetween(&r, -1.0, 4.0), below = depth > 0.0 ? depth : 0.0, c = k->c_max;
+
+    k->axis               = n % 2;
+    k->up                 = n % 3 ? 1 : -1;
+    k->level              = RngBetween(&r, -5.0, 5.0);
+    k->gradient           = (c > 0.0 ? c : 1e5) * RngBetween(&r, 0.1, 1.0);
+    q.h.place[k->axis]    = k->level - k->up * depth;
+    double *const grown[] = {&l->c_min, &l->c_res, &l->c_max};
+    for (int i = 0; i < 3; i++)
+      *grown[i] = c > 0.0 ? *grown[i] * (1.0 + k->gradient * below / c) : k->gradient * below;
+    SkeletonState   s, t;
+    SkeletonTangent ds, dt;
+    const bool      found = Go(&q, q.in, &s, &ds), same = Go(&by_hand, by_hand.in, &t, &dt);
+
+    assert_true(found == same);
+    plastic += found && s.region != RETURN_ELASTIC;
+    for (int i = 0; i < 4 && found; i++) {
+      worst[0] = fmax(worst[0], fabs(s.sig[i] - t.sig[i]) / (fabs(t.sig[XX]) + fabs(t.sig[YY]) + fabs(t.sig[ZZ])));
+      for (int j = 0; j < 4; j++)
+        worst[1] = fmax(worst[1], fabs(ds.d[i][SKELETON_STRAIN + j] - dt.d[i][SKELETON_STRAIN + j]) / q.in[SKELETON_E]);
+    }
+  }
+  printf("strength with depth: stress off by %.1e, tangent by %.1e of E from cohesions by hand (%d plastic points)\n",
+         worst[0], worst[1], plastic);
+  assert_true(worst[0] < 1e-11 && worst[1] < 1e-7 && plastic > 1000);
+}
+
 /* Some states with tears that stand open by up to what the step moves. */
 static void GiveTears(Sample *q, int n)
 {
@@ -863,10 +902,10 @@ static void TestSofteningLength(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(TestPotential), cmocka_unit_test(TestKnownPoints),   cmocka_unit_test(TestYieldSurface),
-      cmocka_unit_test(TestTangent),   cmocka_unit_test(TestTears),         cmocka_unit_test(TestDilating),
-      cmocka_unit_test(TestTurned),    cmocka_unit_test(TestBiaxialPath),   cmocka_unit_test(TestSofteningLength),
-      cmocka_unit_test(TestNearApex),  cmocka_unit_test(TestStrengthFactor)};
+      cmocka_unit_test(TestPotential), cmocka_unit_test(TestKnownPoints),    cmocka_unit_test(TestYieldSurface),
+      cmocka_unit_test(TestTangent),   cmocka_unit_test(TestTears),          cmocka_unit_test(TestDilating),
+      cmocka_unit_test(TestTurned),    cmocka_unit_test(TestBiaxialPath),    cmocka_unit_test(TestSofteningLength),
+      cmocka_unit_test(TestNearApex),  cmocka_unit_test(TestStrengthFactor), cmocka_unit_test(TestDepth)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
