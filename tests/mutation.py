@@ -74,7 +74,7 @@ FAULTS = [
     ("gradients of the initial configuration are taken for those of t_n (445)", MODEL + "reach.h", [("G[i] = VectorDot(A[i], r->G[a]);", "G[i] = r->G[a][i] + 0.0 * A[i][0];")]),
     ("the hoop's too", MODEL + "reach.h", [("r->H[a] *= hoop;", "r->H[a] *= 1.0 + 0.0 * hoop;")]),
     ("ways to the nodes are those of the start (445)", HEADER + "particles.h", [("    v[i] = at[i];\n}\n\n/* What drives", "    v[i] += 0.0 * at[i];\n}\n\n/* What drives")]),
-    ("a corner beside nodes that alternate carries heat as if it were alone (440)", MODEL + "upwind.c", [("fmin(own, beside)", "0.0 * fmin(own, beside)")]),
+    ("a corner beside nodes that alternate carries heat as if it were alone (440)", "src/grid/alternation.c", [("fmin(own, fmax(", "0.0 * fmin(own, fmax(")]),
     ("the twist of T in long cells counts two thirds (444)", MODEL + "thin.c", [("0.0) / 6.0;", "0.0) / 9.0;")]),
     ("a heat source forgets its particle's volume at the start (443)", BOUNDARY + "faces.c", [("  return ParticleInitialVolume(c, x0, l);", "  return 0.0 * ParticleInitialVolume(c, x0, l) + P->f[P_V][p];")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("= m->c->stabilisation.ghost_penalty * ratio", "= 10.0 * m->c->stabilisation.ghost_penalty * ratio")]),

@@ -112,3 +112,19 @@ PetscErrorCode NodeMapSum(NodeMap *map, double *a, PetscInt nc);
 PetscErrorCode NodeMapReduce(NodeMap *map, double *a, PetscInt nc);
 /* Gives ghosts their owners' values; a: n_local x nc, in any unit. */
 PetscErrorCode NodeMapBroadcast(NodeMap *map, double *a, PetscInt nc);
+
+/* A field at the nodes of a map. */
+typedef struct {
+  const double *value; /* [n_local], of any unit; a node where it is not finite has none */
+  const double *flow;  /* [n_local][CL_DIM]: the way it is carried, of which only signs count */
+  double        least; /* what differences to both sides together have to exceed to be seen */
+} NodalField;
+
+/* Of a node along an axis: how much the field alternates there, 0 to 1 (440); 1 where it has neighbours on both sides.
+ */
+enum { ALTERNATION_SHARE = 0, ALTERNATION_KNOWN, ALTERNATION_COUNT };
+/* share: [n_local][CL_DIM][ALTERNATION_COUNT], dimensionless.  Collective. */
+PetscErrorCode NodeMapAlternation(const Grid *g, NodeMap *map, const NodalField *f, double *share);
+/* The share of a particle, from the means over its nodes of theirs along each axis; K: its (293). */
+double AlternationOf(const double mean[CL_DIM][ALTERNATION_COUNT], const double h[CL_DIM],
+                     const double K[CL_SYMMETRIC]);

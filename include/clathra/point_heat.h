@@ -6,6 +6,8 @@
 #include "clathra/inline.h"
 #include "clathra/material.h"
 
+#define HEAT_LEAST_T 1e-3 /* K from node to node: below it is what Newton's method and round-off leave (440) */
+
 /* Of a fluid, J/(kg K). */
 INLINE double SpecificHeat(const Material *mat, int phase)
 {

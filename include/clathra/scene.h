@@ -49,8 +49,6 @@ typedef struct {
   PetscInt well;     /* or the particles of this well, its place in the list of the case; -1: none */
 } Meter;
 
-/* How heat is carried: (293) where T alternates (440), everywhere, nowhere. */
-enum { HEAT_AUTO = 0, HEAT_UPWIND, HEAT_CENTRAL };
 enum { WITHOUT_GAS_AUTO = 0, WITHOUT_GAS_YES, WITHOUT_GAS_NO };
 /* BASIS_TOTAL: uGIMP on the initial configuration, whose cells deform with the body (445). */
 typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
@@ -63,7 +61,6 @@ typedef struct {
   double ghost_storage;     /* g_s, 0 = off (default) */
   bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind; /* (200); default false */
-  int    heat;              /* HEAT_...; default auto */
   bool   lumped_reaction;   /* (265); default false */
   bool   held_reaction;     /* (381); default false */
   bool   chords;            /* (424); default true */
@@ -315,7 +312,7 @@ static inline bool SceneHoldsReaction(const Scene *c)
 /* Is there more conductivity along a flow (293), at least somewhere? */
 static inline bool SceneCarriesHeat(const Scene *c)
 {
-  return c->stabilisation.heat != HEAT_CENTRAL && c->fields.heat && c->fields.fluid;
+  return c->fields.heat && c->fields.fluid;
 }
 
 /* Does (444) act? */

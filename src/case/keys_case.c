@@ -31,7 +31,6 @@ static const char *const geometry_word[] = {PLANE_WORD, "axisymmetric", NULL};
 static const char *const stepper_word[]  = {"sdirk2", "euler", "hybrid", "explicit", STEPPER_PAPER, STEPPER_AUTO, NULL};
 static const char *const ice_word[]      = {"warn", "stop", NULL};         /* ICE_... */
 static const char *const leaving_word[]  = {"stop", "remove", NULL};       /* LEAVING_... */
-static const char *const heat_word[]     = {"auto", "yes", "no", NULL};    /* HEAT_... */
 static const char *const without_gas_word[] = {"auto", "yes", "no", NULL}; /* WITHOUT_GAS_... */
 
 const Key case_key[] = {
@@ -143,10 +142,6 @@ const Key case_key[] = {
             "with gas beside clay"),
     BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
-    CHOICE(Case, "stabilisation_heat", scene.stabilisation.heat, "auto", heat_word,
-           "carries heat with the flow, so that temperatures stay within their bounds where a cell's heat is carried "
-           "rather than conducted; auto: sdirk2 and euler where T alternates from node to node, hybrid nowhere; yes: "
-           "everywhere, which smears T where it is smooth"),
     BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
             "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
             "front of heat"),

@@ -53,6 +53,7 @@ PetscErrorCode ExplicitDestroy(Explicit **out)
   PetscCall(FreeParticles(e));
   PetscCall(NodeMapDestroy(&e->map));
   PetscCall(PetscFree(e->raw));
+  PetscCall(PetscFree(e->alternates));
   PetscCall(PetscFree7(e->inc, e->gain, e->link, e->lean, e->torn, e->node, e->slot));
   PetscCall(PetscFree3(e->held, e->mask, e->fixed));
   PetscCall(PetscFree(e->face));
@@ -324,6 +325,7 @@ static PetscErrorCode MassAndHeat(Explicit *e, double dt, StageRates *sum)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(e->event[STEP_RATES], 0, 0, 0, 0));
   PetscCall(PetscArrayzero(e->R, e->rows * width));
+  PetscCall(HeatAlternation(e));
   Rates(e, dt);
   PetscCall(PetscLogEventEnd(e->event[STEP_RATES], 0, 0, 0, 0));
   PetscCall(PetscLogEventBegin(e->event[STEP_SCALARS], 0, 0, 0, 0));

@@ -166,6 +166,7 @@ struct Explicit {
   double *link; /* [rows] which neighbour a nearly empty node follows, and the share it keeps, as they travel between
                    ranks */
   double (*lean)[CL_DIM]; /* [rows] m/s, increment on the line through two nodes beyond that of the nearer (454) */
+  double   *alternates;   /* [rows][CL_DIM][ALTERNATION_COUNT] (440) of T; NULL where nothing carries heat */
   double   *torn;         /* [rows] of more than none: about the node particles stand open (427) */
   NodeInfo *node;         /* [rows] */
   PetscInt  nheld, *held; /* local nodes with prescribed unknowns */
@@ -308,8 +309,10 @@ INLINE void PartsOf(const Weights *w, int q, AxisParts part[CL_DIM])
 
 void Deposit(Explicit *e);
 void Rates(Explicit *e, double dt);
-void Stored(Explicit *e); /* what the increments of a pass store, to Explicit.given */
-void Update(Explicit *e, double dt);
+/* (440) at t_n; before Rates. */
+PetscErrorCode HeatAlternation(Explicit *e);
+void           Stored(Explicit *e); /* what the increments of a pass store, to Explicit.given */
+void           Update(Explicit *e, double dt);
 /* Calls the loop made for the set of the scene on every run of particles, or on the nodes of this rank. */
 typedef void (*Loop)(Explicit *e, Run r, double dt);
 typedef Loop LoopTable[2][3][2]; /* [solid][fluids][heat] */

@@ -1,4 +1,5 @@
 /* The largest stable step (38), (39), (150). */
+#include "clathra/point_heat.h"
 #include "lanes.h"
 
 const char *const cl_limit_word[LIMIT_COUNT] = {"none",
@@ -70,6 +71,23 @@ static double Widest(const Grid *g, const double x[CL_DIM])
   return h;
 }
 
+/* Conductivity with all of (293), W/(m K). */
+static double Conductivity(const Explicit *e, PetscInt p, const Material *mat, const PointProperties *q)
+{
+  const Model *m    = e->m;
+  double       half = 0.0;
+
+  for (int d = 0; d < CL_DIM; d++) {
+    double a = 0.0;
+
+    for (int k = 0; k < e->set.fluids; k++)
+      a += SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
+           (m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
+    half += 0.5 * LinesWidthAt(&m->grid.line[d], m->P.f[P_X + d][p]) * fabs(a);
+  }
+  return fmax(q->kappa, half);
+}
+
 static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
 {
   const Model    *m   = e->m;
@@ -115,7 +133,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
     w->sliver = Sliver(e, p) * square;
   }
   if (s.heat)
-    w->heat = k2 * q.kappa * f[P_V][p] / q.capacity;
+    w->heat = k2 * Conductivity(e, p, mat, &q) * f[P_V][p] / q.capacity;
   return CL_OK;
 }
 

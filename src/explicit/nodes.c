@@ -19,12 +19,15 @@ static PetscErrorCode Allocate(Explicit *e)
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(e->raw));
+  PetscCall(PetscFree(e->alternates));
   PetscCall(PetscFree7(e->inc, e->gain, e->link, e->lean, e->torn, e->node, e->slot));
   e->rows = n;
   PetscCall(PetscFree3(e->spring, e->answer, e->push));
   PetscCall(PetscFree4(e->cell, e->mean, e->swell, e->part));
   if (SceneHasCellMeans(e->m->c))
     PetscCall(PetscCalloc4(n * CELL_MEAN, &e->cell, n, &e->mean, n, &e->swell, n, &e->part));
+  if (SceneCarriesHeat(e->m->c) && !e->o.paper)
+    PetscCall(PetscCalloc1(n * CL_DIM * ALTERNATION_COUNT, &e->alternates));
   if (e->m->plates)
     PetscCall(PetscCalloc3(n, &e->spring, n, &e->answer, n, &e->push));
   PetscCall(PetscCalloc1(n * (2 * A + B + R + C + (e->o.passes > 0 ? 3 * LANES : 0)) + LANES, &e->raw));

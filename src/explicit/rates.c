@@ -271,15 +271,35 @@ INLINE void FluidRow(const Explicit *e, const Set s, Run r, int k, const Gathere
   }
 }
 
-/* (293) */
-INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g, double dt,
+/* (440) of a particle. */
+INLINE double AlternatesAt(const Explicit *e, const Weights *w, int q, const double h[CL_DIM],
+                           const double K[CL_SYMMETRIC])
+{
+  const int *slot                            = &e->slot[w->first[q]];
+  double     mean[CL_DIM][ALTERNATION_COUNT] = {{0.0}};
+
+  for (int n = 0; n < CL_NODES; n++) {
+    const PatchRow row   = PatchRowOf(e, w, q, n / 3);
+    const double   S     = w->S[0][n % 3][q] * row.S;
+    const double  *share = &e->alternates[slot[row.at + n % 3] * CL_DIM * ALTERNATION_COUNT];
+
+    for (int d = 0; d < CL_DIM; d++) {
+      for (int k = 0; k < ALTERNATION_COUNT; k++)
+        mean[d][k] += S * share[d * ALTERNATION_COUNT + k];
+    }
+  }
+  return AlternationOf(mean, h, K);
+}
+
+/* (293) where T alternates (440). */
+INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g, const Weights *w, double dt,
                        const double *restrict kappa, Given *o)
 {
   const int row = s.fluids, at = B_T(s);
 
   for (int q = 0; q < r.n; q++) {
     const double V         = e->m->P.f[P_V][r.p + q];
-    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[CL_SYMMETRIC];
+    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[CL_SYMMETRIC], trace = 0.0;
 
     for (int d = 0; d < CL_DIM; d++)
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
@@ -288,9 +308,15 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
         a[d] += SpecificHeat(r.mat, k) * o->force[d][q][k] / (dt * V);
     }
     HeatUpwind(kappa[q], a, h, K);
+    for (int d = 0; d < CL_DIM; d++)
+      trace += K[cl_symmetric[d][d]];
+    if (!(trace > 0.0))
+      continue;
+    const double theta = AlternatesAt(e, w, q, h, K);
+
     for (int i = 0; i < CL_DIM; i++) {
       for (int j = 0; j < CL_DIM; j++)
-        o->force[i][q][row] -= dt * V * K[cl_symmetric[i][j]] * g->grad[j][q][at];
+        o->force[i][q][row] -= dt * V * theta * K[cl_symmetric[i][j]] * g->grad[j][q][at];
     }
   }
 }
@@ -303,7 +329,8 @@ INLINE void GivenFlux(const Given *o, int q, int k, double flux[CL_DIM])
 }
 
 /* Row of heat (21): conduction, advection with the fluxes above, capacity. */
-INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double dt, const Volumes *v, Given *o)
+INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, const Weights *w, double dt, const Volumes *v,
+                    Given *o)
 {
   const Material mat = *r.mat;
   const int      n = Scalars(s), row = s.fluids, at = B_T(s);
@@ -336,8 +363,8 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, double d
       o->value[q][R_Matrix(s) + row * n + i] = 0.0;
   }
   e->advected += Sum(r.n, advected);
-  if (e->m->c->stabilisation.heat == HEAT_UPWIND)
-    UpwindHeat(e, s, r, g, dt, kappa, o);
+  if (e->alternates)
+    UpwindHeat(e, s, r, g, w, dt, kappa, o);
 }
 
 /* (290): throttling with the fluxes above, and in the matrix what a rise of pressure gives. */
@@ -481,7 +508,7 @@ INLINE void RatesRun(Explicit *e, const Set s, Run r, double dt)
   for (int k = 0; k < s.fluids; k++)
     FluidRow(e, s, r, k, &g, dt, &o);
   if (s.heat)
-    HeatRow(e, s, r, &g, dt, &v, &o);
+    HeatRow(e, s, r, &g, &w, dt, &v, &o);
   if (s.heat && e->m->c->compression_heat)
     CompressionRow(e, s, r, &g, T, &o);
   if (s.heat && s.solid && r.mat->plasticity.heat > 0.0)

@@ -127,25 +127,13 @@ static Beyond BeyondOf(const Stepper *s, Span acted, int k)
                   .acted = k == HIGHEST_T ? acted.high : acted.low};
 }
 
-/* The key with which flow carries heat better, (440) or (293). */
-static const char *CarriesBetter(const Stepper *s)
-{
-  const Scene *c = s->model->c;
-
-  if (!c->fields.fluid || c->stabilisation.heat == HEAT_UPWIND)
-    return "";
-  return s->explicit || c->stabilisation.heat == HEAT_AUTO ? "stabilisation_heat: yes, where flow carries the heat; "
-                                                           : "stabilisation_heat: auto, where flow carries the heat; ";
-}
-
 /* `now`: while it happens, else at the end. */
 static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, bool now)
 {
   const StepperState *z    = &s->state;
   const Scene        *c    = s->model->c;
   const Extreme      *e    = &z->extreme[k];
-  const bool          warm = k == HIGHEST_T, central = !s->explicit && c->stabilisation.heat == HEAT_CENTRAL;
-  const char         *better = CarriesBetter(s);
+  const bool          warm = k == HIGHEST_T;
   char                place[128], hydrate[96] = "none reacts";
 
   PetscFunctionBeginUser;
@@ -157,14 +145,13 @@ static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, 
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
       "clathra: warning: a particle %s %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it (start "
-      "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing%s.  What to try, in this order: %s%sfiner "
-      "cells there, about as high as wide at the end of a heater; %sa ramp instead of a jump (docs/giving_up.md)\n",
+      "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing%s.  What to try, in this order: %sfiner "
+      "cells there, about as high as wide at the end of a heater; a ramp instead of a jump (docs/giving_up.md)\n",
       now ? "has" : "had", e->value, place, beyond.by, warm ? "warmer" : "colder", beyond.acted, hydrate,
       now ? " and may grow (said once on the way)" : "",
       StepperHeatsHydrate(s) && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
           ? "stabilisation_reaction_heat: yes, beside hydrate; "
-          : "",
-      central ? better : "", central ? "" : better));
+          : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

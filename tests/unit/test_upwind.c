@@ -92,7 +92,6 @@ static SmallScene *Make(bool turned)
             turned ? part[1] : whole[1]);
   s->c.scene.cells[0] *= 2;
   s->c.scene.cells[1] *= 2;
-  s->c.scene.stabilisation.heat = HEAT_AUTO;
   Call(ModelCreate(PETSC_COMM_WORLD, &s->c.scene, &s->c.scene, &s->m));
   if (turned)
     Turn(s);

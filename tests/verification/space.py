@@ -238,7 +238,7 @@ def drawn_out_scenes():
     del wet["bc"]["sun"]
     compare("block, hm, quasi-static", wet, "-fields", "solid,water", "-inertia", "no", *WITHOUT_GAS)
     compare("block, half the cell's mean strain, saturations and heat carried, beds, heat of compression", block(), "-mean_strain", 0.5,
-            "-stabilisation_heat", "yes", "-stabilisation_saturation", "yes", "-mat_sediment_permeability_ratio", 0.1,
+            "-stabilisation_saturation", "yes", "-mat_sediment_permeability_ratio", 0.1,
             "-mat_sediment_permeability_dip", "20 deg", "-compression_heat", "yes", rings=(0,))  # fmt: skip
     compare("block, multigrid", block(), "-reduced_pc_type", "fieldsplit", rings=(0,))
     for flow in ("menetrey_willam", "mohr_coulomb"):
@@ -286,7 +286,7 @@ def without_matrix():
     for ranks in (2, 4):
         compare("block, hybrid", hurried(block(), end="0.004 s"), ranks=ranks)
     compare("block, hybrid, half the cell's mean strain, heat carried, beds, heat of compression, consistent storage", quick, "-mean_strain", 0.5,
-            "-stabilisation_heat", "yes", "-mat_sediment_permeability_ratio", 0.1, "-mat_sediment_permeability_dip", "20 deg",
+            "-mat_sediment_permeability_ratio", 0.1, "-mat_sediment_permeability_dip", "20 deg",
             "-compression_heat", "yes", "-stepper_storage_passes", 3)  # fmt: skip
     within = json.loads(json.dumps(quick))  # no surface on a line of the grid, where round-off would decide whether a node has a sliver
     for r in within["region"].values():
