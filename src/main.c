@@ -23,7 +23,7 @@ static const char help[] =
     "it\n"
     "  -time_limit 3500            end before so many seconds, with a checkpoint\n"
     "\n"
-    "Others: -quiet, -progress S, -checkpoint_wall S, -stepper_max_steps N, -newton_tol_residual 1e-9, "
+    "Others: --version, -quiet, -progress S, -checkpoint_wall S, -stepper_max_steps N, -newton_tol_residual 1e-9, "
     "-newton_tol_update 1e-6,\n"
     "-newton_keep_jacobian 0.01, -newton_drop 1e-6, -newton_preconditioner auto|whole|reduced, -newton_refactor N,\n"
     "-model_pmat_type aij|baij.\n"
@@ -156,6 +156,17 @@ static int StartFailed(void)
   return CL_EXIT_INPUT;
 }
 
+/* The version of this program and of the PETSc that it runs with. */
+static int SayVersion(void)
+{
+  PetscInt major, minor, patch;
+
+  if (PetscGetVersionNumber(&major, &minor, &patch, NULL))
+    return CL_EXIT_BUG;
+  printf("clathra %s, PETSc %d.%d.%d\n", CLATHRA_VERSION, (int)major, (int)minor, (int)patch);
+  return CL_EXIT_OK;
+}
+
 int main(int argc, char **argv)
 {
   int         exit_code = CL_EXIT_BUG;
@@ -163,6 +174,8 @@ int main(int argc, char **argv)
 
   if (!ProcessPrepare(argv))
     return CL_EXIT_INPUT;
+  if (argc > 1 && strcmp(argv[1], "--version") == 0)
+    return SayVersion();
   if (HandOverStrength(argc, argv))
     return CL_EXIT_INPUT;
   HandOverSpace(argc, argv);

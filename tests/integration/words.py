@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the program says to a newcomer: -help and --help begin with the ten options that matter and name the paper; times in words; heat in the
+"""What the program says to a newcomer: -help and --help begin with the ten options that matter and name the paper; --version; times in words; heat in the
 balance; every array of fields.h5 has one unit; a copied clone builds.
 """
 import re
@@ -36,6 +36,13 @@ def check_help():
         check_true(f"{word} into a pager that ends early is no crash", piped.stdout == texts[0].splitlines(True)[0] and piped.stderr == "", piped.stderr[:200])
     script = subprocess.run([ROOT / "run", "--help"], capture_output=True, text=True, stdin=subprocess.DEVNULL).stdout
     check_true("./run --help has ten that matter", "the ten that matter" in script and all(f"-{name}" in script for name in ten), script[:200])
+
+
+def check_version():
+    own = re.search(r"^project\(clathra VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(), re.M)[1]
+    for program in (Path(binary()), Path(binary()).with_name("clathra3d")):
+        done = subprocess.run([program, "--version"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+        check_true(f"{program.name} --version says its version and PETSc's", done.returncode == 0 and re.fullmatch(rf"clathra {re.escape(own)}, PETSc \d+\.\d+\.\d+\n", done.stdout), done.stdout + done.stderr)
 
 
 def check_times():
@@ -81,6 +88,7 @@ def check_clone():
 
 
 check_help()
+check_version()
 check_times()
 check_results()
 check_clone()
