@@ -1,4 +1,4 @@
-"""What the plot scripts share: style, colours, saving; what is plotted stands in clathra/shown.py."""
+"""What the plot scripts share: style, colours, saving; what is plotted stands in python/clathra/shown.py."""
 import re
 import textwrap
 from pathlib import Path

@@ -103,8 +103,8 @@ def copy(folder):
     files = subprocess.run(["git", "-C", str(ROOT), "ls-files", "-z"], capture_output=True, check=True).stdout.split(b"\0")
     for name in filter(None, map(bytes.decode, files)):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        if (ROOT / name).is_file():
-            shutil.copy(ROOT / name, folder / name)
+        if (ROOT / name).is_file() or (ROOT / name).is_symlink():
+            shutil.copy(ROOT / name, folder / name, follow_symlinks=False)
 
 
 def build(folder, targets):

@@ -1,5 +1,6 @@
-/* What `clathra` hands over to another program before MPI begins: `clathra strength` to scripts/strength.py, a case
-   of three axes to clathra3d. */
+/* What `clathra` hands over to another program before MPI begins: `clathra strength` to the driver in the Python
+   package, a case of three axes to clathra3d.  Both are found from where this program stands, so that what was
+   installed or built may be moved as a whole. */
 #include "clathra/run.h"
 
 #include <errno.h>
@@ -17,18 +18,19 @@ static bool OwnPath(char path[PATH_MAX])
   return n > 0;
 }
 
-/* The script beside the folder of the build, as in a tree that was moved; else where it was when this was compiled. */
+/* Where the Python package may be, from the folder of this program: as installed, and as built. */
+static const char *const package_folders[] = {CLATHRA_PACKAGE_FOLDER, "python"};
+
 static bool DriverPath(const char *own, char path[PATH_MAX])
 {
-  char *build;
+  const int folder = (int)(strrchr(own, '/') - own);
 
-  snprintf(path, PATH_MAX, "%s", own);
-  build = strrchr(path, '/');
-  snprintf(build, (size_t)(path + PATH_MAX - build), "/../scripts/strength.py");
-  if (access(path, R_OK) == 0)
-    return true;
-  snprintf(path, PATH_MAX, "%s/strength.py", CLATHRA_SCRIPTS);
-  return access(path, R_OK) == 0;
+  for (size_t k = 0; k < sizeof(package_folders) / sizeof(*package_folders); k++) {
+    if (snprintf(path, PATH_MAX, "%.*s/%s/clathra/strength.py", folder, own, package_folders[k]) < PATH_MAX &&
+        access(path, R_OK) == 0)
+      return true;
+  }
+  return false;
 }
 
 bool HandOverStrength(int argc, char **argv)
@@ -40,8 +42,11 @@ bool HandOverStrength(int argc, char **argv)
   if (argc < 2 || strcmp(argv[1], "strength") != 0)
     return false;
   if (!OwnPath(own) || !DriverPath(own, driver)) {
-    fprintf(stderr, "clathra: strength is done by scripts/strength.py of the source tree, which is not there (%s)\n",
-            CLATHRA_SCRIPTS);
+    fprintf(
+        stderr,
+        "clathra: strength needs clathra/strength.py of the Python package, which from the folder of the program is "
+        "neither in %s nor in %s\n",
+        package_folders[0], package_folders[1]);
     return true;
   }
   command = calloc((size_t)argc + 3, sizeof(*command));

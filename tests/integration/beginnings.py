@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "verification"))
 from common import CASES, binary, check, check_true, finish, launch, pascals, program_of, scratch  # noqa: E402
 
-import clathra  # noqa: E402  scripts/, which common puts on the path
+import clathra  # noqa: E402  python/, which common puts on the path
 import tutorial  # noqa: E402
 
 COLUMN = HERE.parent / "verification" / "cases" / "geostatic.yaml"  # in balance, two layers, 20 m

@@ -230,7 +230,7 @@ def check_advice():
 
 
 def snapshots(out):
-    import clathra  # noqa: PLC0415, from scripts, which common puts on the path
+    import clathra  # noqa: PLC0415, from python, which common puts on the path
 
     return clathra.Run(out)
 

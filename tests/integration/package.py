@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import Run as Tested  # noqa: E402
 from common import ROOT, check, check_true, finish, scratch  # noqa: E402
 
-import clathra  # noqa: E402  scripts/, which common puts on the path
+import clathra  # noqa: E402  python/, which common puts on the path
 
 TIMES = (0.0, 30.0, 60.0)
 OPTIONS = ("-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s", "-output_probe_every", "10 s", "-meters", "end",

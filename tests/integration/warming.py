@@ -9,7 +9,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import CASES, Run, binary, check, check_true, finish, judge, launch, scratch  # noqa: E402
 
-from clathra.units import YEAR  # noqa: E402  scripts/, which common puts on the path
+from clathra.units import YEAR  # noqa: E402  python/, which common puts on the path
 
 COARSE = ("-quiet", "-grid_upper", "500 m, 125 m", "-grid_cells", "20,5", "-stage_settle_end", "10 a", "-stage_warm_end", "45 a",
           "-output_times", "10 a, 30 a", "-output_every", "0 s")  # fmt: skip

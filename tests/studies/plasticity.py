@@ -16,7 +16,7 @@ import _footings
 from _footings import STRIPS, collapse, exact, strip
 from _hole import quarter
 from common import ROOT, Run
-from strength import FLOWS, Energies  # scripts/, which common puts on the path
+from clathra.strength import FLOWS, Energies  # python/, which common puts on the path
 
 CASES = ROOT / "tests" / "verification" / "cases"
 RAW, PAGE = ROOT / "docs" / "plasticity.csv", ROOT / "docs" / "plasticity.md"

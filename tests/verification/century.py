@@ -5,7 +5,7 @@ import numpy as np
 from _ladder import CASES, Century as C
 from common import Run, binary, check, check_true, finish, judge, launch, order, scratch, table
 
-from clathra.units import YEAR  # scripts/, which common puts on the path
+from clathra.units import YEAR  # python/, which common puts on the path
 
 ROW = "century"
 

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
 from clathra import probe_names, read_csv, read_snapshots  # noqa: E402
 from clathra.units import pascals, seconds  # noqa: E402
 

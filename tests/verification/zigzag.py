@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from common import CASES, ROOT, binary, check_true, finish, judge, run, scratch, table  # noqa: I001
-import clathra  # noqa: E402, from scripts, which common puts on the path
+import clathra  # noqa: E402, from python, which common puts on the path
 import tutorial  # noqa: E402
 from clathra import shown  # noqa: E402
 

@@ -1,9 +1,19 @@
 """The files of a run's folder: CSV tables and snapshots."""
 import csv
 import io
+import sys
 from pathlib import Path
 
-import numpy as np
+
+def missing(error):
+    """The ImportError that says in a sentence which python3 lacks which module."""
+    return ImportError(f"{sys.executable} has no module {error.name}: clathra needs numpy and h5py (Debian: python3-numpy, python3-h5py)", name=error.name)
+
+
+try:
+    import numpy as np
+except ImportError as error:
+    raise missing(error) from None
 
 
 class Damaged(KeyError):
@@ -53,8 +63,10 @@ def probe_names(probes):
 
 def _read(path, read, file=None):
     """What `read` makes of an HDF5 file; Damaged if it cannot, or what it links to as `file`."""
-    import h5py
-
+    try:
+        import h5py
+    except ImportError as error:
+        raise missing(error) from None
     try:
         with h5py.File(path, "r") as h5:
             return read(h5)

@@ -30,6 +30,8 @@ import tempfile
 from pathlib import Path
 
 DEBIANS = "/usr/bin/python3"
+if not __package__:  # the program starts it as a file: imports are from the folder of the package, not from within it
+    sys.path[0] = str(Path(__file__).resolve().parents[1])
 try:
     import h5py  # noqa: F401  which snapshots need
     import numpy as np
