@@ -7,7 +7,7 @@
 - commands in README and docs, and presets, use options that exist; presets hold no physics and nothing unread
 - links to headings find them
 - the cases in README and docs/cases_reference.md are valid
-- CHANGELOG.md, CITATION.cff and CMakeLists.txt say the same version
+- CHANGELOG.md, CITATION.cff, CMakeLists.txt and python/pyproject.toml say the same version
 - every verification test that measures stands in docs/verification.md, and its lines are as many as that page says
 """
 import importlib.util
@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGES = [*(ROOT / page for page in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")), *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
 EXAMPLES = (ROOT / "README.md", ROOT / "docs" / "cases_reference.md")  # whose YAML blocks are whole cases
 PRESETS = sorted((ROOT / "options").glob("*.opts"))
-FOLDERS = ("cases", "docs", "include", "options", "scripts", "src", "tests")
+FOLDERS = ("cases", "docs", "include", "options", "python", "scripts", "src", "tests")
 
 # PETSc's, without an object of ours in front.
 PETSC = re.compile(r"-(snes|ksp|pc|sub_pc|sub_ksp|sub|mat_mumps|mat_umfpack|log|vec|reduced_pc_factor)_\w+|"
@@ -76,7 +76,7 @@ def check_laws(binary):
 
 
 def check_version():
-    says = {"CMakeLists.txt": r"^project\(clathra VERSION (\S+)", "CHANGELOG.md": r"^## (\S+)", "CITATION.cff": r"^version: (\S+)"}
+    says = {"CMakeLists.txt": r"^project\(clathra VERSION (\S+)", "CHANGELOG.md": r"^## (\S+)", "CITATION.cff": r"^version: (\S+)", "python/pyproject.toml": r'^version = "(\S+)"'}
     versions = {page: found[1] if (found := re.search(pattern, (ROOT / page).read_text(), re.M)) else None for page, pattern in says.items()}
     if len(set(versions.values())) > 1:
         yield f"the versions differ: {versions}"
