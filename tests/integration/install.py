@@ -4,6 +4,7 @@ where it is moved to, and needs nothing of the source tree; what a python3 witho
 """
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -70,6 +71,9 @@ def manual(prefix):
     codes = re.findall(r"^\.TP\n\.B (\d)$", page, re.M)
     said = re.search(r"Exit codes: (.*?)\n\n", call(prefix / "bin/clathra", "-help").stdout, re.S)[1]
     check_true("... and the exit codes of -help", codes == re.findall(r"\b(\d) [a-z]", said), f"{codes} {said}")
+    example = re.search(r"^\.EX\nclathra (.*)$", page, re.M)[1].replace("/usr/local", shlex.quote(str(prefix))).replace(r"\(dq", '"')
+    done = call(prefix / "bin/clathra", *shlex.split(example), "-case_check")
+    check_true("... and an example that is valid", done.returncode == 0, done.stdout[-300:])
 
 
 def lacking(package):
