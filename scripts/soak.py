@@ -416,6 +416,8 @@ def numbers(out):
                 return f"{name}: {column}"
     for t, variables in (*read_snapshots(out), ("the end", last_state(out))):
         for name, values in variables.items():
+            if name == "yield_distance":  # NaN where nothing can yield
+                values = values[~np.isnan(values)]
             if np.ndim(values) and not np.all(np.isfinite(values)):
                 return f"{name} at {t} s"
     return ""
