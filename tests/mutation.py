@@ -23,7 +23,7 @@ from common import environment  # noqa: E402
 # The quick tests, in the order in which they are asked: seconds in all.
 UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "unseen", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene", "transfer",
         "fieldsets", "turning", "upwind")  # fmt: skip
-FIRST = {"laws": "laws_values", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
+FIRST = {"laws": "laws_values", "grid": "upwind", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
         "strip_load", "orientation", "ladder_heat_advection", "ladder_gravity_column", "ladder_mcwhorter_sunada", "wells", "energy", "rest", "total", "century_tolerance", "thin_cells", "heat_source", "bp2_reference")  # fmt: skip
 SPACE = ("total",)  # of these with scenes in space
