@@ -36,6 +36,9 @@ judge("fronts", "hybrid: beyond 10 and 20 degC, K", beyond, 0.02)
 judge("fronts", "hybrid: balance of heat, of 1 K of the body", np.max(np.abs(quick.balance["heat_error"])), 1e-8)
 judge("fronts", "hybrid against sdirk2 at 12 h, K", np.max(np.abs(half - hybrid)), 0.1)
 judge("fronts", "hybrid, 2 ranks against 1, K", np.max(np.abs(fronts(*HYBRID, ranks=2)[1] - hybrid)), 1e-6)
+ALONG_Y = ("-grid_upper", "0.05 m,4 m", "-grid_cells", "1,20", "-region_body_upper", "0.05 m,4 m", "-bc_bottom_axis", "x", "-bc_top_axis", "x", "-bc_inlet_side", "bottom", "-bc_outlet_side", "top",
+           "-bc_cold_axis", "y", "-probes", "half", "-probe_half_at", "0.025 m,0.5 m")  # fmt: skip
+judge("fronts", "hybrid along y against along x, K", np.max(np.abs(np.sort(fronts(*HYBRID, *ALONG_Y)[1]) - np.sort(hybrid))), 1e-6)
 table(("integrator", "lowest T", "highest T"), rows)
 
 
