@@ -113,6 +113,12 @@ PetscErrorCode NodeMapReduce(NodeMap *map, double *a, PetscInt nc);
 /* Gives ghosts their owners' values; a: n_local x nc, in any unit. */
 PetscErrorCode NodeMapBroadcast(NodeMap *map, double *a, PetscInt nc);
 
+/* Local active number of node ij; -1: inactive, or not known to this rank. */
+static inline PetscInt NodeMapAt(const Grid *g, const NodeMap *map, const PetscInt ij[CL_DIM])
+{
+  return BoxHolds(g->gs, g->gm, ij) ? map->index[GridPadded(g, ij)] : -1;
+}
+
 /* A field at the nodes of a map. */
 typedef struct {
   const double *value; /* [n_local], of any unit; a node where it is not finite has none */

@@ -231,8 +231,8 @@ static inline double LatentHeatBeyond(const LatentHeat *law, double T)
   return law->kirchhoff ? 0.0 : -(law->C1 + law->dc) * T;
 }
 /* (293): conductivity K (as cl_symmetric; W/(m K)) beside kappa that carries heat with the flow: a is the heat capacity
-   that flows (W/(m^2 K)), h the size of a cell (m). */
-void HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC]);
+   that flows (W/(m^2 K)), h the size of a cell (m); false: a cell conducts more than it carries, and K is zero. */
+bool HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC]);
 /* Mixture property X = (1-phi) Xs + phi (Sh Xh + Sw Xw + Sg Xg), with S_w = (1-S_h) s_w; used for the conductivity
    (X = kappa, W/(m K)) and, with X = rho c, for the heat capacity (J/(m^3 K)); derivatives with respect to phi, S_h and
    s_w. */

@@ -292,6 +292,8 @@ void ModelClearFailure(Model *m);
 void ModelExplain(Model *m, const char *why);
 /* Properties of a particle at t_n; a failure leaves *why pointing to a sentence. */
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
+/* Heat capacity that flows through a particle by Darcy's law with the gradients of t_n, W/(m^2 K); beds aside. */
+void ModelHeatFlow(const Model *m, PetscInt p, const PointProperties *q, double a[CL_DIM]);
 /* (381) of a particle that reacts, as it is, dimensionless; 0 where its properties cannot be found. */
 double ModelHeld(const Model *m, PetscInt p);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */

@@ -309,7 +309,7 @@ static inline bool SceneHoldsReaction(const Scene *c)
   return c->stabilisation.held_reaction && c->fields.heat && c->fields.phase[PHASE_G];
 }
 
-/* Is there more conductivity along a flow (293), at least somewhere? */
+/* Is heat carried with the flow (293) where T alternates (440)? */
 static inline bool SceneCarriesHeat(const Scene *c)
 {
   return c->fields.heat && c->fields.fluid;

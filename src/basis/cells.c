@@ -53,7 +53,7 @@ void StencilCells(const Stencil *s, const Grid *g, const NodeMap *map, AxisParts
     for (int d = 0; d < CL_DIM; d++)
       first[d] = s->axis[d].base + (c >> d & 1);
     share[c] = PartMoment(part, c, 0);
-    cell[c]  = share[c] > 0.0 && BoxHolds(g->gs, g->gm, first) ? map->index[GridPadded(g, first)] : -1;
+    cell[c]  = share[c] > 0.0 ? NodeMapAt(g, map, first) : -1;
   }
 }
 

@@ -1,6 +1,6 @@
 /* axes: how many numbers a case gives for its grid, looked up in its file before MPI begins; what is wrong with the
    file is said later, by its reader. */
-#include "clathra/case.h"
+#include "case_private.h"
 #include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -14,9 +14,7 @@ static FILE *Open(const char *given)
   struct stat what;
   char        path[PATH_MAX];
 
-  snprintf(path, sizeof path, "%s", given);
-  if (stat(path, &what) == 0 && S_ISDIR(what.st_mode))
-    snprintf(path, sizeof path, "%s/case.yaml", given);
+  CaseFile(given, path, sizeof path);
   return stat(path, &what) == 0 && S_ISREG(what.st_mode) ? fopen(path, "r") : NULL; /* a pipe can be read but once */
 }
 
@@ -42,7 +40,7 @@ static yaml_event_type_t Next(Walk *w)
 static int Value(Walk *w, const char *path);
 
 /* Values up to the end of a list. */
-static int List(Walk *w)
+static int Items(Walk *w)
 {
   int n = 0;
 
@@ -81,7 +79,7 @@ static int Value(Walk *w, const char *path)
 
   w->depth++;
   if (w->event.type == YAML_SEQUENCE_START_EVENT && !w->ended)
-    n = List(w);
+    n = Items(w);
   if (w->event.type == YAML_MAPPING_START_EVENT && !w->ended)
     Map(w, path);
   w->depth--;

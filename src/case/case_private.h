@@ -68,6 +68,8 @@ PetscErrorCode ReaderDestroy(Reader *r);
 PetscErrorCode ReaderFind(Reader *r, const char *name, const char **value, bool *found, bool *from_file);
 /* A whole file, read on rank 0, on all ranks; free it.  NULL and a reason if it cannot be read as text. */
 PetscErrorCode ReaderText(Reader *r, const char *path, char **text, char why[CASE_WHY]);
+/* The file of a case that may be given as a folder. */
+void CaseFile(const char *given, char *file, size_t size);
 /* The text as YAML into entries; false: one error was added. */
 bool ReaderParse(Reader *r, const char *text);
 

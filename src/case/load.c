@@ -5,22 +5,18 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* A case may be given as a folder. */
-static PetscErrorCode FilePath(Reader *r, const char *path)
+void CaseFile(const char *given, char *file, size_t size)
 {
   struct stat info;
-  size_t      len;
 
-  PetscFunctionBeginUser;
-  snprintf(r->file, sizeof r->file, "%.*s", (int)sizeof r->file - 16, path);
-  if (r->rank == 0 && !stat(r->file, &info) && S_ISDIR(info.st_mode)) {
-    len = strlen(r->file);
-    while (len > 1 && r->file[len - 1] == '/')
-      r->file[--len] = 0;
-    snprintf(r->file + len, sizeof r->file - len, "/case.yaml");
+  snprintf(file, size, "%.*s", (int)size - 16, given);
+  if (!stat(file, &info) && S_ISDIR(info.st_mode)) {
+    size_t len = strlen(file);
+
+    while (len > 1 && file[len - 1] == '/')
+      file[--len] = 0;
+    snprintf(file + len, size - len, "/case.yaml");
   }
-  PetscCallMPI(MPI_Bcast(r->file, sizeof r->file, MPI_CHAR, 0, r->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ReaderLoad(Reader *r, const char *path)
@@ -29,7 +25,9 @@ PetscErrorCode ReaderLoad(Reader *r, const char *path)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(r->comm, &r->rank));
-  PetscCall(FilePath(r, path));
+  if (r->rank == 0)
+    CaseFile(path, r->file, sizeof r->file);
+  PetscCallMPI(MPI_Bcast(r->file, sizeof r->file, MPI_CHAR, 0, r->comm));
   PetscCall(ReaderText(r, r->file, &text, why));
   if (!text) {
     ReaderError(r, NULL, NULL, "%s", why);

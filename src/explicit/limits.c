@@ -1,5 +1,4 @@
 /* The largest stable step (38), (39), (150). */
-#include "clathra/point_heat.h"
 #include "lanes.h"
 
 const char *const cl_limit_word[LIMIT_COUNT] = {"none",
@@ -72,19 +71,13 @@ static double Widest(const Grid *g, const double x[CL_DIM])
 }
 
 /* Conductivity with all of (293), W/(m K). */
-static double Conductivity(const Explicit *e, PetscInt p, const Material *mat, const PointProperties *q)
+static double Conductivity(const Model *m, PetscInt p, const PointProperties *q)
 {
-  const Model *m    = e->m;
-  double       half = 0.0;
+  double a[CL_DIM], half = 0.0;
 
-  for (int d = 0; d < CL_DIM; d++) {
-    double a = 0.0;
-
-    for (int k = 0; k < e->set.fluids; k++)
-      a += SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
-           (m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
-    half += 0.5 * LinesWidthAt(&m->grid.line[d], m->P.f[P_X + d][p]) * fabs(a);
-  }
+  ModelHeatFlow(m, p, q, a);
+  for (int d = 0; d < CL_DIM; d++)
+    half += 0.5 * LinesWidthAt(&m->grid.line[d], m->P.f[P_X + d][p]) * fabs(a[d]);
   return fmax(q->kappa, half);
 }
 
@@ -133,7 +126,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
     w->sliver = Sliver(e, p) * square;
   }
   if (s.heat)
-    w->heat = k2 * Conductivity(e, p, mat, &q) * f[P_V][p] / q.capacity;
+    w->heat = k2 * Conductivity(m, p, &q) * f[P_V][p] / q.capacity;
   return CL_OK;
 }
 

@@ -299,7 +299,7 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
 
   for (int q = 0; q < r.n; q++) {
     const double V         = e->m->P.f[P_V][r.p + q];
-    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[CL_SYMMETRIC], trace = 0.0;
+    double       a[CL_DIM] = {0.0}, h[CL_DIM], K[CL_SYMMETRIC];
 
     for (int d = 0; d < CL_DIM; d++)
       h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
@@ -307,10 +307,7 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
       for (int d = 0; d < CL_DIM; d++)
         a[d] += SpecificHeat(r.mat, k) * o->force[d][q][k] / (dt * V);
     }
-    HeatUpwind(kappa[q], a, h, K);
-    for (int d = 0; d < CL_DIM; d++)
-      trace += K[cl_symmetric[d][d]];
-    if (!(trace > 0.0))
+    if (!HeatUpwind(kappa[q], a, h, K))
       continue;
     const double theta = AlternatesAt(e, w, q, h, K);
 

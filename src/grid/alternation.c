@@ -21,7 +21,7 @@ static void Beside(const Grid *g, const NodeMap *map, const NodalField *f, Petsc
 
     for (int i = 0; i < CL_DIM; i++)
       ij[i] = map->ij[I][i] + (i == d ? 2 * side - 1 : 0);
-    K[side] = BoxHolds(g->gs, g->gm, ij) ? map->index[GridPadded(g, ij)] : -1;
+    K[side] = NodeMapAt(g, map, ij);
     if (K[side] >= 0 && !isfinite(f->value[K[side]]))
       K[side] = -1;
   }

@@ -42,7 +42,7 @@ void MixtureAverageBatch(int n, const double *restrict phi, const double *restri
 }
 
 /* (293) */
-void HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC])
+bool HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC])
 {
   double half = 0.5 * h[0] * fabs(a[0]);
 
@@ -54,4 +54,5 @@ void HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], do
     for (int j = i; j < CL_DIM; j++)
       K[cl_symmetric[i][j]] = c * a[i] * a[j];
   }
+  return c > 0.0;
 }

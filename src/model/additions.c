@@ -67,20 +67,28 @@ static void SpreadOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   }
 }
 
-/* Conductivity that carries heat with the flow of t_n (293). */
-static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[CL_SYMMETRIC])
+void ModelHeatFlow(const Model *m, PetscInt p, const PointProperties *q, double a[CL_DIM])
 {
-  const Material *mat       = ParticleMaterial(m, p);
-  double          a[CL_DIM] = {0.0}, h[CL_DIM];
+  const Material *mat = ParticleMaterial(m, p);
 
+  for (int d = 0; d < CL_DIM; d++)
+    a[d] = 0.0;
   for (int k = 0; k < PHASE_COUNT; k++) {
     for (int d = 0; m->c->fields.phase[k] && d < CL_DIM; d++)
       a[d] -= SpecificHeat(mat, k) * q->rho[k] * q->kr[k] / q->resist[k] *
               (m->P.f[VectorAt(P_GW, k, d)][p] - q->rho[k] * m->c->gravity[d]);
   }
+}
+
+/* Conductivity that carries heat with the flow of t_n (293). */
+static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, double K[CL_SYMMETRIC])
+{
+  double a[CL_DIM], h[CL_DIM];
+
+  ModelHeatFlow(m, p, q, a);
   Drive(m, p, a);
   CellWidths(m, p, h);
-  HeatUpwind(q->kappa, a, h, K);
+  (void)HeatUpwind(q->kappa, a, h, K);
 }
 
 /* (381) with the faster of both ways at t_n; the cell's widths by the particle's place, as hybrid keeps no stencils. */

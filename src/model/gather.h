@@ -58,7 +58,7 @@ static inline PetscInt ModelNeighbour(const Model *m, PetscInt I, int k)
 
   for (int d = 0; d < CL_DIM; k /= WIDTH, d++)
     ij[d] = m->map.ij[I][d] + k % WIDTH - RADIUS;
-  return BoxHolds(m->grid.gs, m->grid.gm, ij) ? m->map.index[GridPadded(&m->grid, ij)] : -1;
+  return NodeMapAt(&m->grid, &m->map, ij);
 }
 
 /* Which neighbour of I is K? */

@@ -4,22 +4,14 @@
 
 #define FULL 0.75 /* cells filled less, or with a surface inside, are cut */
 
-/* A cell is named after its lowest node; -1: this rank does not know it. */
-static PetscInt CellIndex(const Model *m, const PetscInt cell[CL_DIM])
-{
-  const Grid *g = &m->grid;
-
-  return BoxHolds(g->gs, g->gm, cell) ? m->map.index[GridPadded(g, cell)] : -1;
-}
-
-/* The one so many cells on along an axis. */
+/* A cell is named after its lowest node: the one so many cells on along an axis. */
 static PetscInt CellBeside(const Model *m, const PetscInt cell[CL_DIM], int d, PetscInt by)
 {
   PetscInt beside[CL_DIM];
 
   memcpy(beside, cell, sizeof(beside));
   beside[d] += by;
-  return CellIndex(m, beside);
+  return NodeMapAt(&m->grid, &m->map, beside);
 }
 
 /* Corner k of a cell, or cell k of those about a node. */
@@ -84,7 +76,7 @@ static void MarkSurface(const Model *m, double *fill)
       continue; /* on a grid line, or the axis: nothing is cut */
     for (int d = 0; d < CL_DIM; d++)
       cell[d] = (PetscInt)floor(s[d]);
-    const PetscInt I = CellIndex(m, cell);
+    const PetscInt I = NodeMapAt(&m->grid, &m->map, cell);
     if (I >= 0)
       fill[2 * I + 1] = 1.0;
   }
@@ -94,7 +86,7 @@ static void MarkSurface(const Model *m, double *fill)
 static bool FaceNeedsPenalty(const Model *m, const double *fill, const unsigned char *near, const PetscInt cell[CL_DIM],
                              int d)
 {
-  const PetscInt I = CellIndex(m, cell), K = CellBeside(m, cell, d, -1);
+  const PetscInt I = NodeMapAt(&m->grid, &m->map, cell), K = CellBeside(m, cell, d, -1);
 
   return I >= 0 && K >= 0 && fill[2 * I] > 0.0 && fill[2 * K] > 0.0 && (near[I] || near[K]);
 }
@@ -258,7 +250,7 @@ static bool FinishCell(const Model *m, const PetscInt cell[], const CellSums *c,
     k2 += 1.0 / PetscSqr(LinesWidth(&m->grid.line[d], cell[d]));
   for (int a = 0; a < CL_CORNERS; a++) {
     Corner(cell, a, corner);
-    k->node[a] = CellIndex(m, corner);
+    k->node[a] = NodeMapAt(&m->grid, &m->map, corner);
     if (k->node[a] < 0)
       return false;
     for (int b = 0; b < CL_CORNERS; b++)
