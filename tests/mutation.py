@@ -21,7 +21,7 @@ sys.path.insert(0, str(ROOT / "tests" / "verification"))
 from common import environment  # noqa: E402
 
 # The quick tests, in the order in which they are asked: seconds in all.
-UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "unseen", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene", "transfer",
+UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "pressure_modes", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene", "transfer",
         "fieldsets", "turning", "upwind")  # fmt: skip
 FIRST = {"laws": "laws_values", "grid": "upwind", "clathra": "laws_values", "point": "point", "boundary": "faces", "model": "model", "explicit": "one_physics"}  # the folder's own
 RUNS = ("closed_cell", "layers", "undrained", "thermal", "phases", "boundaries", "geostatic", "terzaghi", "surfaces", "sea", "plates", "sudden_gravity",
@@ -80,7 +80,7 @@ FAULTS = [
     ("ghost penalty ten times", MODEL + "stabilise.c", [("= m->c->stabilisation.ghost_penalty * ratio", "= 10.0 * m->c->stabilisation.ghost_penalty * ratio")]),
     ("slivers are tied until they hold half of what is beside them (351)", MODEL + "stabilise.c", [("fmax(1.0 - 4.0 * least / most, 0.0) * least", "fmax(1.0 - 2.0 * least / most, 0.0) * least")]),
     ("the tie (351) is that of whole pressures, not of what they change by", MODEL + "stabilise.c", [("pull -= g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);", "pull -= 0.0 * g->store[k - F_PW] * Jump(m, g, m->stage.x_star, k);")]),
-    ("a row of particles is tied by what both nodes share (417)", MODEL + "unseen.c", [("A * B / (A + B) : 0.0", "both : 0.0")]),
+    ("a row of particles is tied by what both nodes share (417)", MODEL + "pressure_modes.c", [("A * B / (A + B) : 0.0", "both : 0.0")]),
     ("a thin gas takes its share, its water all (416)", MODEL + "evaluate.c", [("    in[IN_P + f] -= withheld;", "    in[IN_P + f] -= f == PHASE_G ? withheld : 0.0;"), ("less * (o->D[k][IN_P + PHASE_W] + o->D[k][IN_P + PHASE_G])", "less * o->D[k][IN_P + PHASE_G]")]),
     ("hybrid's particle of a layer takes the flow of its nodes (350)", EXPLICIT + "rates.c", [("J[d] = conduct * v[at + B_J + d];", "J[d] = v[at + B_J + d];")]),
     ("inertia of hybrid's fluids in layers without its weight (310)", EXPLICIT + "velocities.c", [("PetscSqr(b->flow) * f[FL_Inertia(s)]", "b->flow * f[FL_MI]")]),

@@ -58,7 +58,6 @@ typedef enum { BASIS_CPGIMP, BASIS_UGIMP, BASIS_LINEAR, BASIS_TOTAL } BasisType;
 /* Numerics of the model, which a restart may change. */
 typedef struct {
   double ghost_penalty;     /* g, 0 = off; default 0.1 */
-  double ghost_storage;     /* g_s, 0 = off (default) */
   bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind; /* (200); default false */
   bool   lumped_reaction;   /* (265); default false */

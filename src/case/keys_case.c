@@ -134,9 +134,6 @@ const Key case_key[] = {
          "hybrid, explicit: factor on all inertia; the error it makes is reported"),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
          "at free surfaces; 0 = off"),
-    REAL(Case, "stabilisation_ghost_storage", scene.stabilisation.ghost_storage, "", "[0,100]", "0",
-         "on changes of pressure in slivers of cells and where particles do not see them, for undrained bodies; 0 = "
-         "off"),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
             "gas has the mobility of the nodes it comes from, so that sediment without mobile gas gives none: for sand "
             "with gas beside clay"),

@@ -11,7 +11,7 @@ typedef struct {
   double   a;                   /* g A/h */
   double   M, kappa;            /* Pa, W/(m K) */
   double   lambda[PHASE_COUNT]; /* rho k k_r/mu, s */
-  double   store[PHASE_COUNT];  /* g_s w V rho s, kg/Pa */
+  double   store[PHASE_COUNT];  /* STORAGE_SHARE w V rho s, kg/Pa */
   double   carried;             /* methane in a kg of water (352) */
 } GhostLine;
 

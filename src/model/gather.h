@@ -207,9 +207,12 @@ PetscErrorCode DonorBuild(Model *m);
 /* (353), (354): what they need of a particle at t_n; the change at the end of the step. */
 void           ExchangeSet(const Model *m, PetscInt p, const PointProperties *q);
 PetscErrorCode ExchangeBuild(Model *m);
-/* (22) and (23): lists on the configuration at t_n, residual, Jacobian; the ties (417) join the lines of (22). */
+/* g_s of (351), (417): changes of pressure that they hold store this share of what the sediment of their volume does.
+ */
+#define STORAGE_SHARE 0.1
+/* (22), (351), (417) and (23): lists on the configuration at t_n, residual, Jacobian. */
 PetscErrorCode StabilisationBuild(Model *m);
-PetscErrorCode UnseenBuild(Model *m);
+PetscErrorCode PressureModesBuild(Model *m);
 void           StabilisationResidual(const Model *m, const double *x, bool slope, double *f); /* slope: of a change x */
 void           StabilisationJacobian(Model *m, const Assembly *to);
 /* Makes ready to assemble for the unknowns `fs`: those of the scene, or what is left without fluid velocities. */

@@ -118,7 +118,7 @@ static bool IsCut(const double *fill, PetscInt I)
 
 /* w V_i (351), m^3: what the least filled of three nodes has, less as it comes to a quarter of what the fullest has:
    half of it is the edge of filled cells. */
-static double TieVolume(const Model *m, const PetscInt node[3])
+static double SliverVolume(const Model *m, const PetscInt node[3])
 {
   double least = INFINITY, most = 0.0;
 
@@ -149,8 +149,8 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
       if (lo < 0 || hi < 0)
         continue;
       const PetscInt node[3] = {lo, I, hi};
-      const double   tied    = m->c->stabilisation.ghost_storage > 0.0 ? TieVolume(m, node) : 0.0;
-      if (area == 0.0 && tied == 0.0)
+      const double   sliver  = m->c->fields.fluid ? SliverVolume(m, node) : 0.0;
+      if (area == 0.0 && sliver == 0.0)
         continue;
       for (int e = 0; e < CL_DIM; e++)
         A *= e == d ? 1.0 : LinesAround(&m->grid.line[e], m->map.ij[I][e]);
@@ -167,7 +167,7 @@ static PetscErrorCode BuildGhostLines(Model *m, const double *fill, const unsign
                            .lambda  = {c[NC_LAMBDA], c[NC_LAMBDA + 1]},
                            .carried = CarriedAt(m, I)};
       for (int f = 0; f < PHASE_COUNT; f++)
-        ghost->store[f] = m->c->stabilisation.ghost_storage * tied * StoredAt(m, I, f);
+        ghost->store[f] = STORAGE_SHARE * sliver * StoredAt(m, I, f);
     }
   }
   m->added->nghost = n;
@@ -191,8 +191,8 @@ static PetscErrorCode BuildGhost(Model *m)
           near[I] || IsCut(fill, CellBeside(m, m->map.ij[I], d, -1)) || IsCut(fill, CellBeside(m, m->map.ij[I], d, 1));
   }
   PetscCall(BuildGhostLines(m, fill, near));
-  if (m->c->stabilisation.ghost_storage > 0.0 && m->c->fields.fluid)
-    PetscCall(UnseenBuild(m));
+  if (m->c->fields.fluid)
+    PetscCall(PressureModesBuild(m));
   PetscCall(PetscFree2(fill, near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -301,7 +301,7 @@ PetscErrorCode StabilisationBuild(Model *m)
 {
   PetscFunctionBeginUser;
   m->added->nghost = m->added->ncell = 0;
-  if (m->c->stabilisation.ghost_penalty > 0.0 || m->c->stabilisation.ghost_storage > 0.0)
+  if (m->c->stabilisation.ghost_penalty > 0.0 || m->c->fields.fluid)
     PetscCall(BuildGhost(m));
   if (m->c->fields.solid && m->c->fields.fluid)
     PetscCall(BuildProjection(m));

@@ -73,8 +73,7 @@ static inline void SceneInit(SmallScene *s, unsigned has, bool inertia, bool axi
                 .scene.material                    = &s->mat,
                 .scene.region                      = &s->region,
                 .scene.bc                          = s->bc,
-                .scene.stabilisation.ghost_penalty = 0.1,
-                .scene.stabilisation.ghost_storage = 0.2};
+                .scene.stabilisation.ghost_penalty = 0.1};
   Check(FieldSetMake(has, inertia, &s->c.scene.fields));
   for (int d = 2; d < CL_DIM; d++) {
     s->c.scene.upper[d] = 0.06 * DEPTH;

@@ -184,8 +184,7 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
   s->c.error_exponent                    = 2.0;
   s->c.tol                               = 1.0;
   s->c.mass_scaling                      = 1.0;
-  s->c.scene.stabilisation.ghost_penalty = s->c.scene.stabilisation.ghost_storage =
-      0.0; /* nothing to stabilise, but they reach far */
+  s->c.scene.stabilisation.ghost_penalty = 0.0; /* nothing to stabilise, but it reaches far */
   for (int side = 0; side < SIDE_COUNT && (v->has & HAS_SOLID); side++)
     AddFace(s, BC_TRACTION, (Side)side, v->pressure - stress[side == SIDE_YMIN || side == SIDE_YMAX], 0.0);
   if (v->contrast > 0.0)

@@ -1,15 +1,14 @@
-/* A body on a grid of 6 x 6 cells of 0.1 m, undrained, for the ties of changes of pressure (351), (417): no other
-   stabilisation acts. */
+/* A body on a grid of 6 x 6 cells of 0.1 m, undrained, for the storage that changes of pressure are given where cells
+   are slivers (351) and where particles do not see them (417): no ghost penalty acts. */
 #pragma once
 
 #include "small_scene.h"
 
-#define H 0.1   /* m, cells */
-#define G_S 0.3 /* g_s */
-#define N 6     /* cells along an axis */
+#define H 0.1 /* m, cells */
+#define N 6   /* cells along an axis */
 
 static inline SmallScene *TiedScene(unsigned has, bool axisymmetric, BasisType basis, int ppc, const double lower[2],
-                                    const double upper[2], double g_s)
+                                    const double upper[2])
 {
   SmallScene *s = malloc(sizeof(*s));
 
@@ -17,7 +16,6 @@ static inline SmallScene *TiedScene(unsigned has, bool axisymmetric, BasisType b
   s->c.scene.upper[1]                    = N * H;
   s->c.scene.cells[1]                    = N;
   s->c.scene.stabilisation.ghost_penalty = 0.0;
-  s->c.scene.stabilisation.ghost_storage = g_s;
   s->region.ppc[0] = s->region.ppc[1] = ppc;
   s->mat.reacts                       = false;
   s->mat.permeability.k0              = 1e-30; /* m^2: undrained */

@@ -125,7 +125,7 @@ def explicit_in_time(scene, kind, dt):
 
 
 def explicit_in_space(scene, kind, cells, bar, *options):
-    """At its own step: difference from sdirk2 with tight tolerance, on finer and finer grids."""
+    """At its own step: difference from sdirk2 with tight tolerance, on finer and finer grids; falls, where it is above 1 % of the range."""
     rows, off = [], []
     for n in cells:
         other = scene.curves(scene.run(*adaptive(SDIRK2, 3e-4), cells=(n, 1)))
@@ -136,7 +136,7 @@ def explicit_in_space(scene, kind, cells, bar, *options):
     head(f"{scene.name}, {kind} against sdirk2 on the same grid: largest difference over the range of the curve")
     table(("cells", "steps", "processor time (s)", *scene.watched), rows)
     judge(ROW, f"{scene.name}, {kind} against sdirk2, {cells[-1]} cells: worst curve", off[-1][0], bar, 0.01, "%")
-    judge(ROW, f"{scene.name}, {kind} against sdirk2, mean of the curves: {cells[-1]} over {cells[0]} cells", off[-1][1] / off[0][1], 0.8)
+    judge(ROW, f"{scene.name}, {kind} against sdirk2, mean of the curves: {cells[-1]} over {cells[0]} cells, or over 1 % of the range", off[-1][1] / max(off[0][1], 0.01), 0.8)
 
 
 def explicit_kind():

@@ -60,7 +60,6 @@ def block():
             "sun": {"type": "convection", "side": "top", "ambient": "12 degC", "alpha": "400 W/(m^2 K)"},
         },
         "time": {"end": "200 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "20 s"},
-        "stabilisation": {"ghost_storage": 0.1},
         "output": {"times": ["200 s"]},
     }  # fmt: skip
 
@@ -248,7 +247,6 @@ def drawn_out_scenes():
 def hurried(case, dt="2e-5 s", end="0.02 s"):
     """The case in so short a time that steps without a matrix come through it; its loads are as much faster."""
     case = json.loads(json.dumps(case))
-    case.pop("stabilisation", None)
     for b in case["bc"].values():
         if "ramp" in b.get("normal", ""):
             b["normal"]["ramp"][2:] = ["0 s", end]
@@ -421,7 +419,6 @@ def bar():
                                 "stress": ["-1 MPa", "0 Pa", "0 Pa", "0 Pa", "0 Pa", "0 Pa"]}},
              "bc": {n: {"type": "roller", "axis": axis, "position": at} for n, axis, at in (("a", "x", "0 m"), ("b", "x", "0.8 m"), ("c", "y", "0 m"), ("d", "z", "0 m"))},
              "time": {"end": "0.02 s"}, "output": {"times": ["0.02 s"]}, "stepper": {"type": "hybrid"}}  # fmt: skip
-    del case["stabilisation"]
     for what, options in (("hybrid", ()), ("sdirk2", ("-stepper_type", "sdirk2")), ("hybrid, half the mean strain", ("-mean_strain", 0.5))):
         v = run(SPACE, written(case, "bar"), "-quiet", *options).snapshots()[-1][1]["v_s"]
         judge("space", f"bar under 1 MPa whose surfaces cut cells, {what}: largest v_s after 0.02 s", np.abs(v).max(), 1e-12, unit="m/s")

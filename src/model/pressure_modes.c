@@ -1,10 +1,12 @@
-/* Differences of pressure between nodes that their particles do not see (417). */
+/* Modes of the pressures in the null space of the map from nodes to particles (417).
+   Two neighbouring nodes whose weights are nearly parallel over all particles have one pressure as far as particles can
+   tell: no storage sees the difference between them.  It is given a share of that of the volume both have in common. */
 #include "gather.h"
 
-#define TOLD 0.95 /* of |a| |b|: two nodes whose weights have less in common are told apart by their particles */
+#define PARALLEL                                                                                                       \
+  0.95 /* square of the normalised inner product of two nodes' weights above which they count as parallel */
 
-/* Of a node: how the weights of its particles go with themselves, and along each axis with those of the next node, m^3.
- */
+/* Gram matrix of the weights: of a node with itself, and along each axis with the next node, m^3. */
 enum { GRAM_OWN = 0, GRAM_NEXT, GRAM_COUNT = GRAM_NEXT + CL_DIM };
 
 /* The axis along which node b comes after node a; -1 where it does not. */
@@ -41,27 +43,26 @@ static void AddParticle(const Model *m, PetscInt p, double *gram)
   }
 }
 
-/* w V_ab, m^3, of node a and the next one along an axis, b. */
-static double TieVolume(const double *gram, PetscInt a, PetscInt b, int d)
+/* w V_ab (417), m^3, of node a and the next one along an axis, b. */
+static double CouplingVolume(const double *gram, PetscInt a, PetscInt b, int axis)
 {
   const double A = gram[GRAM_COUNT * a + GRAM_OWN], B = gram[GRAM_COUNT * b + GRAM_OWN],
-               both = gram[GRAM_COUNT * a + GRAM_NEXT + d], alike = A * B > 0.0 ? both * both / (A * B) : 0.0;
+               both = gram[GRAM_COUNT * a + GRAM_NEXT + axis], alike = A * B > 0.0 ? both * both / (A * B) : 0.0;
 
-  return alike > TOLD ? (alike - TOLD) / (1.0 - TOLD) * A * B / (A + B) : 0.0;
+  return alike > PARALLEL ? (alike - PARALLEL) / (1.0 - PARALLEL) * A * B / (A + B) : 0.0;
 }
 
 /* The difference of two nodes is a line whose third node does not count. */
-static GhostLine Line(const Model *m, PetscInt a, PetscInt b, double volume)
+static GhostLine Difference(const Model *m, PetscInt a, PetscInt b, double volume)
 {
-  const double share = 0.5 * m->c->stabilisation.ghost_storage * volume;
-  GhostLine    line  = {.node = {a, b, b}, .second = {1.0, -1.0, 0.0}, .carried = CarriedAt(m, a)};
+  GhostLine line = {.node = {a, b, b}, .second = {1.0, -1.0, 0.0}, .carried = CarriedAt(m, a)};
 
   for (int f = 0; f < PHASE_COUNT; f++)
-    line.store[f] = share * (StoredAt(m, a, f) + StoredAt(m, b, f));
+    line.store[f] = 0.5 * STORAGE_SHARE * volume * (StoredAt(m, a, f) + StoredAt(m, b, f));
   return line;
 }
 
-PetscErrorCode UnseenBuild(Model *m)
+PetscErrorCode PressureModesBuild(Model *m)
 {
   double  *gram; /* [n_local][GRAM_COUNT] */
   PetscInt n = m->added->nghost;
@@ -74,10 +75,10 @@ PetscErrorCode UnseenBuild(Model *m)
   for (PetscInt I = 0; I < m->map.n_owned; I++) {
     for (int d = 0, step = 1; d < CL_DIM; d++, step *= WIDTH) {
       const PetscInt K      = ModelNeighbour(m, I, NEIGHBOURS / 2 + step);
-      const double   volume = K >= 0 ? TieVolume(gram, I, K, d) : 0.0;
+      const double   volume = K >= 0 ? CouplingVolume(gram, I, K, d) : 0.0;
 
       if (volume > 0.0)
-        m->added->ghost[n++] = Line(m, I, K, volume);
+        m->added->ghost[n++] = Difference(m, I, K, volume);
     }
   }
   m->added->nghost = n;
