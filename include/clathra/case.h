@@ -42,6 +42,23 @@ typedef struct {
 enum { ICE_WARN = 0, ICE_STOP };
 enum { LEAVING_STOP = 0, LEAVING_REMOVE };
 
+/* Time integrators, words of stepper_type. */
+typedef enum {
+  INTEGRATOR_SDIRK2 = 0,
+  INTEGRATOR_EULER,
+  INTEGRATOR_HYBRID,
+  INTEGRATOR_EXPLICIT,
+  INTEGRATOR_PAPER,
+  INTEGRATOR_AUTO,
+  INTEGRATOR_COUNT
+} Integrator;
+extern const char *const case_integrator[INTEGRATOR_COUNT + 1]; /* the words; ended by NULL */
+/* Sets of them: those that solve for all unknowns with a matrix, and those that do without. */
+#define INTEGRATOR_BIT(name) (1u << INTEGRATOR_##name)
+#define INTEGRATORS_IMPLICIT (INTEGRATOR_BIT(SDIRK2) | INTEGRATOR_BIT(EULER) | INTEGRATOR_BIT(AUTO))
+#define INTEGRATORS_EXPLICIT                                                                                           \
+  (INTEGRATOR_BIT(HYBRID) | INTEGRATOR_BIT(EXPLICIT) | INTEGRATOR_BIT(PAPER) | INTEGRATOR_BIT(AUTO))
+
 typedef struct Case {
   Scene scene;                    /* first: CaseOf */
   char  file[PETSC_MAX_PATH_LEN]; /* the case file */
@@ -50,13 +67,13 @@ typedef struct Case {
   int   ice;               /* ICE_... */
   int   leaving;           /* LEAVING_...: what becomes of particles that leave the grid (373) */
   /* time: the command line's -stepper_* options win over these */
-  double   t_end;
-  char     stepper[16]; /* sdirk2 | euler | hybrid | explicit | hybrid_paper | auto */
-  bool     adaptive;
-  double   dt, dt_min, dt_max; /* s; dt = first (adaptive) or fixed step */
-  double   tol;                /* relative tolerance of the error estimate */
-  double   error_exponent;     /* of its mean over the particles (292) */
-  PetscInt max_failures;       /* cuts in a row before the run is given up */
+  double     t_end;
+  Integrator integrator;
+  bool       adaptive;
+  double     dt, dt_min, dt_max; /* s; dt = first (adaptive) or fixed step */
+  double     tol;                /* relative tolerance of the error estimate */
+  double     error_exponent;     /* of its mean over the particles (292) */
+  PetscInt   max_failures;       /* cuts in a row before the run is given up */
   /* hybrid and explicit */
   double   cfl;          /* step as a share of the stable one */
   bool     force_dt;     /* take a fixed step above the stable one all the same */
@@ -98,23 +115,13 @@ typedef struct CaseStage {
   Case   c; /* the case as it holds in this stage: conditions and materials of its own, the rest shared */
 } CaseStage;
 
-/* Words of stepper_type: the cheaper one, at any time; the paper's bare form of hybrid. */
-#define STEPPER_AUTO "auto"
-#define STEPPER_PAPER "hybrid_paper"
-
-/* Is its integrator the latter? */
-static inline bool CaseIsPaper(const Case *c)
-{
-  return !strcmp(c->stepper, STEPPER_PAPER);
-}
-
 /* What keeps the case from steps without a matrix, as it says it (a boundary by its name); NULL if nothing does.
    Stabilisations that such steps go without are those of the implicit steps of `auto`; alone, they refuse them. */
 static inline const char *CaseNeedsImplicit(const Case *c)
 {
   const char *scene = SceneNeedsImplicit(&c->scene);
 
-  return scene || !strcmp(c->stepper, STEPPER_AUTO) ? scene : SceneStabilisesImplicit(&c->scene, 0);
+  return scene || c->integrator == INTEGRATOR_AUTO ? scene : SceneStabilisesImplicit(&c->scene, 0);
 }
 
 /* The case as it holds in stage k; the case itself if it has no stages. */

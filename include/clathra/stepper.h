@@ -129,9 +129,9 @@ typedef struct Stepper Stepper;
    configuration that ModelBeginStep prepared, which leaves the solution in work.x and the rates in work.rates and
    commits nothing. */
 typedef struct {
-  const char *name;
-  int         error_order; /* q: the error estimate behaves like dt^q */
-  int         stages;
+  Integrator kind;
+  int        error_order; /* q: the error estimate behaves like dt^q */
+  int        stages;
   PetscErrorCode (*advance)(Stepper *s, bool *ok);
   PetscErrorCode (*step)(Stepper *s, double dt, Attempt *a);
   /* what else a scheme needs (may be NULL): its own storage; a check before anything is written, *ok = false refuses */
@@ -354,6 +354,7 @@ PetscErrorCode StepperEnergyChange(Stepper *s);
 PetscErrorCode StepperFreeWork(StepperWork *w);
 /* In words, for messages. */
 const char    *StepperStatusName(ClStatus st);
+const char    *StepperName(const Stepper *s);       /* of the integrator that works now */
 PetscErrorCode StepperStartFromHistory(Stepper *s); /* starred values = values at t_n */
 /* p_w, p_g, T, S_h of particle p at t_n (Pa, degC, 1) and their rates in the last step (per s); zero where there is no
  * such field. */

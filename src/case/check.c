@@ -28,7 +28,7 @@ static void CheckCase(Reader *r, const Case *c)
   if (c->scene.compression_heat && !(c->scene.fields.heat && c->scene.fields.fluid))
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes needs heat and a fluid among the fields of the scene (%s)",
             c->fields_wanted);
-  else if (c->scene.compression_heat && CaseIsPaper(c))
+  else if (c->scene.compression_heat && c->integrator == INTEGRATOR_PAPER)
     FAIL_AT(GROUP_CASE, "", "compression_heat", "yes is not known to hybrid_paper");
   if (c->scene.ambient_density > 0.0 && SceneGravity(&c->scene) == 0.0)
     FAIL_AT(GROUP_CASE, "", "ambient_density", "makes no pressure without gravity (%g kg/m^3)",
@@ -130,7 +130,7 @@ static void CheckBeds(Reader *r, const Case *c, const Material *m)
   if (c->scene.axisymmetric && law->dip != 0.0)
     FAIL_AT(GROUP_MATERIAL, m->name, "permeability_dip",
             "must be 0 deg when geometry is axisymmetric (%g deg): beds about an axis are level", law->dip);
-  if (CaseIsPaper(c))
+  if (c->integrator == INTEGRATOR_PAPER)
     FAIL_AT(GROUP_MATERIAL, m->name, "permeability_ratio", "below 1 (%g) is not known to hybrid_paper", law->ratio);
 }
 

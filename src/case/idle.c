@@ -1,19 +1,44 @@
-/* idle: keys of the file or the command line that do nothing in this scene. */
+/* idle: keys of the file or the command line that do nothing in this scene, or by its integrator. */
 #include "case_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 
 #define SHOWN 12
 
+void IntegratorsWords(unsigned by, char text[64])
+{
+  char *end = text;
+
+  *text = '\0';
+  for (int i = 0; i < INTEGRATOR_COUNT; i++) {
+    if (by >> i & 1u)
+      end += snprintf(end, 64 - (size_t)(end - text), "%s%s", end > text ? ", " : "", case_integrator[i]);
+  }
+}
+
+bool KeyKnown(const Key *k, Group g, const Case *c, const void *instance)
+{
+  bool known = !k->by;
+
+  if (g == GROUP_STAGE)
+    return known || (k->by >> ((const CaseStage *)instance)->c.integrator & 1u);
+  for (PetscInt i = 0; i < PetscMax(c->nstage, 1); i++)
+    known = known || (k->by >> CaseInStage(c, i)->integrator & 1u);
+  return known;
+}
+
 /* Why a key does nothing. */
-static void Why(const Key *k, const Scene *c, char why[CASE_WHY])
+static void Why(const Key *k, const Scene *c, bool known, char why[CASE_WHY])
 {
   const unsigned lacks = k->has && !(c->fields.has & k->has)     ? k->has
                          : k->also && !(c->fields.has & k->also) ? k->also
                                                                  : 0;
   char           words[64];
 
-  if (lacks) {
+  if (!known) {
+    IntegratorsWords(k->by, words);
+    snprintf(why, CASE_WHY, "it acts with %s", words);
+  } else if (lacks) {
     FieldsWords(lacks, words);
     snprintf(why, CASE_WHY, "no %s", words);
   } else
@@ -29,18 +54,19 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c)
 
   PetscFunctionBeginUser;
   PetscCheck(f, PETSC_COMM_SELF, PETSC_ERR_MEM, "out of memory");
-  for (Group g = GROUP_CASE; g < GROUP_STAGE; g++) {
+  for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     for (PetscInt i = 0; i < (g == GROUP_CASE ? 1 : *GroupCount(c, g)); i++) {
       for (const Key *k = case_group[g].key; k->name; k++) {
         const char *instance = GroupInstance(c, g, i);
+        const bool  known    = KeyKnown(k, g, c, instance);
         Found       at;
 
-        if (k->kind == KEY_SCHEDULE || k->like || !KeyApplies(k, g, instance) || KeyActs(k, c, instance))
+        if (k->kind == KEY_SCHEDULE || k->like || !KeyApplies(k, g, instance) || (known && KeyActs(k, c, instance)))
           continue;
         PetscCall(KeyFind(r, c, g, i, k, &at));
         if (!at.found || !at.own)
           continue;
-        Why(k, &c->scene, why);
+        Why(k, &c->scene, known, why);
         if (n++ < SHOWN)
           fprintf(f, "%s%s (%s)", n > 1 ? ", " : "", at.shown, why);
       }

@@ -26,12 +26,22 @@ static bool NeedsEnd(const void *p)
   return ((const Case *)p)->nstage == 0;
 }
 
-static const char *const basis_word[]    = {"cpgimp", "ugimp", "linear", "total", NULL}; /* BasisType */
-static const char *const geometry_word[] = {PLANE_WORD, "axisymmetric", NULL};
-static const char *const stepper_word[]  = {"sdirk2", "euler", "hybrid", "explicit", STEPPER_PAPER, STEPPER_AUTO, NULL};
-static const char *const ice_word[]      = {"warn", "stop", NULL};         /* ICE_... */
-static const char *const leaving_word[]  = {"stop", "remove", NULL};       /* LEAVING_... */
+static const char *const basis_word[]       = {"cpgimp", "ugimp", "linear", "total", NULL}; /* BasisType */
+static const char *const geometry_word[]    = {PLANE_WORD, "axisymmetric", NULL};
+static const char *const ice_word[]         = {"warn", "stop", NULL};      /* ICE_... */
+static const char *const leaving_word[]     = {"stop", "remove", NULL};    /* LEAVING_... */
 static const char *const without_gas_word[] = {"auto", "yes", "no", NULL}; /* WITHOUT_GAS_... */
+
+const char *const case_integrator[INTEGRATOR_COUNT + 1] = {
+    [INTEGRATOR_SDIRK2]   = "sdirk2",       /* two stages, second order */
+    [INTEGRATOR_EULER]    = "euler",        /* backward, first order */
+    [INTEGRATOR_HYBRID]   = "hybrid",       /* explicit motion, implicit drag and reaction */
+    [INTEGRATOR_EXPLICIT] = "explicit",     /* ... and explicit drag */
+    [INTEGRATOR_PAPER]    = "hybrid_paper", /* the paper's bare form of hybrid */
+    [INTEGRATOR_AUTO]     = "auto",         /* the cheaper of sdirk2 and hybrid */
+};
+
+#define WITHOUT_PAPER (INTEGRATORS_EXPLICIT & ~INTEGRATOR_BIT(PAPER))
 
 const Key case_key[] = {
     TEXT(Case, "title", title, "", "one line"),
@@ -101,39 +111,40 @@ const Key case_key[] = {
            .has = HAS_SOLID),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
          WHEN(NeedsEnd, "there are no stages"), .kept = true),
-    TEXT(Case, "stepper_type", stepper, "sdirk2",
-         "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time; hybrid_paper: the paper's bare form of "
-         "hybrid, for comparisons",
-         .choices = stepper_word),
+    CHOICE(Case, "stepper_type", integrator, "sdirk2", case_integrator,
+           "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time; hybrid_paper: the paper's bare form "
+           "of hybrid, for comparisons"),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
     REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
          .plain = true),
-    REAL(Case, "stepper_dt_min", dt_min, "s", "(0,inf)", "1e-9 @time_end", "a smaller step ends the run",
-         .plain = true),
+    REAL(Case, "stepper_dt_min", dt_min, "s", "(0,inf)", "1e-9 @time_end", "a smaller step ends the run", .plain = true,
+         BY(INTEGRATORS_IMPLICIT)),
     REAL(Case, "stepper_dt_max", dt_max, "s", "(0,inf)", "1 @time_end", "longest step", .plain = true),
-    REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate"),
+    REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate",
+         BY(INTEGRATORS_IMPLICIT)),
     REAL(Case, "stepper_error_exponent", error_exponent, "", "[1,16]", "2",
          "of the mean of the error over the particles: 2 is the root mean square, in which a front in a small part of "
          "the "
-         "body drowns; 8 sees it"),
+         "body drowns; 8 sees it",
+         BY(INTEGRATORS_IMPLICIT)),
     INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
              "cuts in a row before the run is given up"),
-    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "hybrid, explicit: step as a share of the stable one"),
-    BOOLEAN(Case, "stepper_force_dt", force_dt, "no",
-            "hybrid, explicit: take a fixed step above the stable one all the same"),
-    INTEGERS(
-        Case, 1, "stepper_storage_passes", passes, "[0,100]", "0",
-        "hybrid, explicit: passes that take changes of pressure from lumped storage, which spreads them over three "
-        "cells, to the consistent storage of implicit steps; 3 do most of it, for undrained bodies with layers or "
-        "bands of a cell's width"),
-    REAL(
-        Case, "stepper_damping", damping, "", "[0,1)", "0",
-        "hybrid, explicit: share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
-        "ends"),
+    REAL(Case, "stepper_cfl", cfl, "", "(0,1]", "0.8", "step as a share of the stable one", BY(INTEGRATORS_EXPLICIT)),
+    BOOLEAN(Case, "stepper_force_dt", force_dt, "no", "take a fixed step above the stable one all the same",
+            BY(INTEGRATORS_EXPLICIT)),
+    INTEGERS(Case, 1, "stepper_storage_passes", passes, "[0,100]", "0",
+             "passes that take changes of pressure from lumped storage, which spreads them over three "
+             "cells, to the consistent storage of implicit steps; 3 do most of it, for undrained bodies with layers or "
+             "bands of a cell's width",
+             BY(WITHOUT_PAPER)),
+    REAL(Case, "stepper_damping", damping, "", "[0,1)", "0",
+         "share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
+         "ends",
+         BY(INTEGRATORS_EXPLICIT)),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
-         "hybrid, explicit: factor on all inertia; the error it makes is reported"),
+         "factor on all inertia; the error it makes is reported", BY(INTEGRATORS_EXPLICIT)),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
-         "at free surfaces; 0 = off"),
+         "at free surfaces; 0 = off", BY(INTEGRATORS_IMPLICIT)),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
             "gas has the mobility of the nodes it comes from, so that sediment without mobile gas gives none: for sand "
             "with gas beside clay"),
@@ -192,24 +203,26 @@ const Key stage_key[] = {
     REAL(CaseStage, "strength_factor", c.scene.strength_factor, "", "(0,1e3]", CASES,
          "strength is divided by it, from the begin of the stage on", .kept = true),
     BOOLEAN(CaseStage, "inertia", c.scene.inertia, CASES, "accelerations; no is quasi-static", .kept = true),
-    TEXT(CaseStage, "stepper_type", c.stepper, CASES, "time integrator", .choices = stepper_word, .kept = true),
+    CHOICE(CaseStage, "stepper_type", c.integrator, CASES, case_integrator, "time integrator", .kept = true),
     BOOLEAN(CaseStage, "stepper_adapt", c.adaptive, CASES, "choose the step by the error estimate", .kept = true),
     REAL(CaseStage, "stepper_dt", c.dt, "s", "(0,inf)", CASES_LENGTH, "first step (adaptive) or fixed step",
          .plain = true, .kept = true),
     REAL(CaseStage, "stepper_dt_min", c.dt_min, "s", "(0,inf)", CASES_LENGTH, "a smaller step ends the run",
-         .plain = true, .kept = true),
+         .plain = true, .kept = true, BY(INTEGRATORS_IMPLICIT)),
     REAL(CaseStage, "stepper_dt_max", c.dt_max, "s", "(0,inf)", CASES_LENGTH, "longest step", .plain = true,
          .kept = true),
-    REAL(CaseStage, "stepper_tol", c.tol, "", "(0,1)", CASES, "relative tolerance of the error estimate", .kept = true),
-    REAL(CaseStage, "stepper_cfl", c.cfl, "", "(0,1]", CASES, "hybrid, explicit: step as a share of the stable one",
-         .kept = true),
-    BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES,
-            "hybrid, explicit: take a fixed step above the stable one all the same", .kept = true),
+    REAL(CaseStage, "stepper_tol", c.tol, "", "(0,1)", CASES, "relative tolerance of the error estimate", .kept = true,
+         BY(INTEGRATORS_IMPLICIT)),
+    REAL(CaseStage, "stepper_cfl", c.cfl, "", "(0,1]", CASES, "step as a share of the stable one", .kept = true,
+         BY(INTEGRATORS_EXPLICIT)),
+    BOOLEAN(CaseStage, "stepper_force_dt", c.force_dt, CASES, "take a fixed step above the stable one all the same",
+            .kept = true, BY(INTEGRATORS_EXPLICIT)),
     INTEGERS(CaseStage, 1, "stepper_storage_passes", c.passes, "[0,100]", CASES,
-             "hybrid, explicit: passes from lumped to consistent storage", .kept = true),
-    REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "hybrid, explicit: local damping", .kept = true),
-    REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES,
-         "hybrid, explicit: factor on all inertia", .kept = true),
+             "passes from lumped to consistent storage", .kept = true, BY(WITHOUT_PAPER)),
+    REAL(CaseStage, "stepper_damping", c.damping, "", "[0,1)", CASES, "local damping", .kept = true,
+         BY(INTEGRATORS_EXPLICIT)),
+    REAL(CaseStage, "stepper_mass_scaling", c.mass_scaling, "", "[1,1e12]", CASES, "factor on all inertia",
+         .kept = true, BY(INTEGRATORS_EXPLICIT)),
     REAL(CaseStage, "output_every", c.every, "s", "[0,inf)", CASES, "snapshots, counted from the begin of the stage",
          .kept = true),
     REAL(CaseStage, "output_probe_every", c.probe_every, "s", "[0,inf)", CASES,

@@ -184,7 +184,7 @@ void KeyWrite(FILE *f, const Case *c, const Key *k, const char *instance)
 static void WriteInstance(FILE *f, const Case *c, Group g, const char *instance, const char *indent)
 {
   for (const Key *k = case_group[g].key; k->name; k++) {
-    if (k->like || !KeyApplies(k, g, instance) || !KeyActs(k, c, instance))
+    if (k->like || !KeyApplies(k, g, instance) || !KeyActs(k, c, instance) || !KeyKnown(k, g, c, instance))
       continue;
     if (KeyEmpty(k, instance))
       continue;
@@ -290,6 +290,12 @@ static void PrintKey(FILE *out, Group g, const Key *k)
     fprintf(out, "%s`%s` = %sinfinite", *k->doc ? "; " : "", k->word + (*k->word == '-'),
             *k->word == '-' ? "minus " : "");
   PrintTypes(out, k);
+  if (k->by) {
+    char words[64];
+
+    IntegratorsWords(k->by, words);
+    fprintf(out, " (%s)", words);
+  }
   fputs(" |\n", out);
 }
 

@@ -9,12 +9,6 @@
 
 #define FAIL(stage, key, ...) FAIL_AT(GROUP_STAGE, (stage)->name, key, __VA_ARGS__)
 
-/* An integrator without matrices? */
-static bool Local(const Case *c)
-{
-  return !strcmp(c->stepper, "hybrid") || !strcmp(c->stepper, "explicit") || CaseIsPaper(c);
-}
-
 /* Is there such a key in the file or on the command line? */
 static PetscErrorCode Given(Reader *r, Group g, const char *instance, const char *key, bool *given)
 {
@@ -57,29 +51,28 @@ static void CheckLocal(Reader *r, const Case *c, const char *stage)
 
     KeyOption(option, sizeof option, GROUP_BC, b->name, "type");
     ReaderError(r, option, NULL, "%s%s%s%s does not know the condition %s; use sdirk2 or euler",
-                stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", c->stepper,
+                stage ? "in stage " : "", stage ? stage : "", stage ? ": " : "", case_integrator[c->integrator],
                 cl_condition[b->type].word);
     return;
   }
   if (unknown) {
-    snprintf(what, sizeof what, "%s does not know %s; use sdirk2 or euler", c->stepper, unknown);
+    snprintf(what, sizeof what, "%s does not know %s; use sdirk2 or euler", case_integrator[c->integrator], unknown);
     Fail(r, stage, "stepper_type", what);
   }
 }
 
 void CheckTimes(Reader *r, const Case *c, const char *stage)
 {
-  char what[CASE_WHY];
+  const bool local = !(INTEGRATORS_IMPLICIT >> c->integrator & 1u);
+  char       what[CASE_WHY];
 
-  if (Local(c))
+  if (local)
     CheckLocal(r, c, stage);
-  if (CaseIsPaper(c) && c->passes > 0)
-    Fail(r, stage, "stepper_storage_passes", "is not known to hybrid_paper, where nodes share no pressure");
-  if (Local(c) && c->dt > c->dt_max) {
+  if (local && c->dt > c->dt_max) {
     snprintf(what, sizeof what, "must not be above stepper_dt_max (%g s > %g s)", c->dt, c->dt_max);
     Fail(r, stage, "stepper_dt", what);
   }
-  if (!Local(c) && (c->dt_min > c->dt || c->dt > c->dt_max)) {
+  if (!local && (c->dt_min > c->dt || c->dt > c->dt_max)) {
     snprintf(what, sizeof what, "must lie between stepper_dt_min and stepper_dt_max (%g s <= %g s <= %g s fails)",
              c->dt_min, c->dt, c->dt_max);
     Fail(r, stage, "stepper_dt", what);

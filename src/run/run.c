@@ -192,8 +192,8 @@ static PetscErrorCode Summary(const Stepper *s, Run *run)
            "%s%s%s%s%s%s%s%s%s%s  results in %s\n",
            StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", TimeAt(z->t).s,
            StepperCase(s)->nstage ? "by stage"
-           : s->auto_.on          ? STEPPER_AUTO
-                                  : s->scheme->name,
+           : s->auto_.on          ? case_integrator[INTEGRATOR_AUTO]
+                                  : StepperName(s),
            z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, since, above, local, error[0],
            error[1], error[2], hydrate, left, ranges, yields, gone, loose, uneven, gaps, ice, ranks,
            StepperCase(s)->output_dir);
@@ -526,7 +526,8 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     FieldSetPrint(&c->scene.fields, fields, sizeof(fields));
     PetscCall(PetscPrintf(comm, "%s\n  %s cells%s, %s, to t = %s\n  fields: %s; %d unknowns a node\n", c->title,
                           CellsWords(&c->scene, " x ").s, c->scene.axisymmetric ? " about an axis" : "",
-                          c->nstage ? "in stages" : c->stepper, TimeAt(c->t_end).s, fields, c->scene.fields.n));
+                          c->nstage ? "in stages" : case_integrator[c->integrator], TimeAt(c->t_end).s, fields,
+                          c->scene.fields.n));
     PetscCall(PrintStrength(&c->scene, comm));
     PetscCall(PrintEquilibrium(&c->scene, comm));
     PetscCall(PrintSolubility(&c->scene, comm));

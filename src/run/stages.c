@@ -50,7 +50,7 @@ static PetscErrorCode Append(StageLog *log, const Stepper *s, double from)
         (Learnt){.trace = {.origin = from, .before = log->taken}, .all = log->taken, .spent = Wall() - log->clock};
   }
   log->entry[log->n++] =
-      (Entry){.integrator = s->scheme->name, .stage = s->state.stage, .from = from, .to = from, .clock = Wall()};
+      (Entry){.integrator = StepperName(s), .stage = s->state.stage, .from = from, .to = from, .clock = Wall()};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,7 +97,7 @@ PetscErrorCode StageLogStep(StageLog *log, const Stepper *s, const StepInfo *inf
   Entry *e = &log->entry[log->n - 1];
 
   PetscFunctionBeginUser;
-  if (s->state.stage != e->stage || s->scheme->name != e->integrator)
+  if (s->state.stage != e->stage || StepperName(s) != e->integrator)
     PetscCall(Append(log, s, s->state.stage != e->stage ? s->model->c->t_begin : e->to));
   e = &log->entry[log->n - 1];
   if (s->explicit)

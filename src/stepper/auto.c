@@ -208,7 +208,7 @@ static PetscErrorCode FromImplicit(Stepper *s, bool *ok)
   PetscCall(PetscPrintf(s->model->grid.comm,
                         "t = %s: %s -> hybrid: a second takes %.2g s by implicit steps of %s (%s), %.2g s by "
                         "hybrid's\n",
-                        TimeAt(z->t).s, s->scheme->name, implicit, TimeWords(dt, 2).s,
+                        TimeAt(z->t).s, StepperName(s), implicit, TimeWords(dt, 2).s,
                         s->auto_.give_way ? "which fail" : "that do not grow", hybrid));
   s->auto_.give_way = false;
   LearnFromVisit(z, hybrid);
@@ -239,12 +239,11 @@ static PetscErrorCode FromHybrid(Stepper *s, bool *ok)
 
 PetscErrorCode StepperAutoBegin(Stepper *s)
 {
-  StepperState *z = &s->state;
-  const Case   *c = StepperCase(s);
-  PetscBool     chosen;
+  StepperState *z      = &s->state;
+  const Case   *c      = StepperCase(s);
+  const bool    chosen = c->integrator == INTEGRATOR_AUTO;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscStrcmp(STEPPER_AUTO, c->stepper, &chosen));
   s->auto_.on = chosen && s->adaptive && !CaseNeedsImplicit(c);
   if (!chosen)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -258,7 +257,7 @@ PetscErrorCode StepperAutoBegin(Stepper *s)
   if (z->kind == AUTO_HYBRID)
     s->scheme = &StepperScheme_Hybrid;
   PetscCall(
-      PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s", s->scheme->name, s->auto_.on ? ", for now" : ""));
+      PetscPrintf(s->model->grid.comm, "  integrator chosen: %s%s", StepperName(s), s->auto_.on ? ", for now" : ""));
   const char *word; /* stabilisations that implicit steps have alone */
   for (int k = 0; s->auto_.on && (word = SceneStabilisesImplicit(&c->scene, k)); k++)
     PetscCall(PetscPrintf(s->model->grid.comm, "%s%s", k ? ", " : "; hybrid goes without ", word));

@@ -34,4 +34,4 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
 }
 
 const StepperScheme StepperScheme_Euler = {
-    .name = "euler", .error_order = 2, .stages = 1, .advance = StepperImplicitStep, .step = Step};
+    .kind = INTEGRATOR_EULER, .error_order = 2, .stages = 1, .advance = StepperImplicitStep, .step = Step};

@@ -13,7 +13,7 @@
 /* (350) is not in the paper's bare form. */
 static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 {
-  const double contrast = CaseIsPaper(c) ? SceneContrast(&c->scene) : 1.0;
+  const double contrast = c->integrator == INTEGRATOR_PAPER ? SceneContrast(&c->scene) : 1.0;
 
   PetscFunctionBeginUser;
   if (contrast > LAYERED)
@@ -30,8 +30,8 @@ static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
 static PetscErrorCode Create(Stepper *s)
 {
   const Case           *c = StepperCase(s);
-  const ExplicitOptions o = {.drag_implicit = s->scheme != &StepperScheme_Explicit,
-                             .paper         = CaseIsPaper(c),
+  const ExplicitOptions o = {.drag_implicit = c->integrator != INTEGRATOR_EXPLICIT,
+                             .paper         = c->integrator == INTEGRATOR_PAPER,
                              .passes        = (int)c->passes,
                              .damping       = c->damping,
                              .mass_scaling  = c->mass_scaling};
@@ -84,7 +84,7 @@ static PetscErrorCode Check(const Stepper *s, bool *ok)
         s->model->grid.comm, stderr,
         "clathra: %s: %sstepper_type: %s has no stable step here (water without compressibility carries waves at any "
         "speed); use sdirk2 or euler\n",
-        StepperCase(s)->file, stage, s->scheme->name));
+        StepperCase(s)->file, stage, StepperName(s)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(CheckFixed(s, ok));
@@ -217,7 +217,7 @@ static PetscErrorCode CheckGone(const Stepper *s, bool *ok)
   *ok = false;
   PetscCall(PetscPrintf(s->model->grid.comm,
                         "Given up at t = %s: the step of %s has come down from %.2g s to %.2g s (%s rules%s)\n",
-                        TimeAt(s->state.t).s, s->scheme->name, s->dt_begin, Wanted(s), cl_limit_word[s->limit.rules],
+                        TimeAt(s->state.t).s, StepperName(s), s->dt_begin, Wanted(s), cl_limit_word[s->limit.rules],
                         s->state.hold > 0 ? ", and steps were refused" : ""));
   PetscCall(StepperAdvise(s, CL_TOO_FAR));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -287,12 +287,12 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
   }
 }
 
-#define WITHOUT_MATRIX(word)                                                                                           \
+#define WITHOUT_MATRIX(integrator)                                                                                     \
   {                                                                                                                    \
-    .name = (word), .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready,             \
+    .kind = (integrator), .stages = 1, .advance = Advance, .create = Create, .destroy = Destroy, .ready = Ready,       \
     .check = Check                                                                                                     \
   }
 
-const StepperScheme StepperScheme_Hybrid   = WITHOUT_MATRIX("hybrid");
-const StepperScheme StepperScheme_Paper    = WITHOUT_MATRIX(STEPPER_PAPER);
-const StepperScheme StepperScheme_Explicit = WITHOUT_MATRIX("explicit");
+const StepperScheme StepperScheme_Hybrid   = WITHOUT_MATRIX(INTEGRATOR_HYBRID);
+const StepperScheme StepperScheme_Paper    = WITHOUT_MATRIX(INTEGRATOR_PAPER);
+const StepperScheme StepperScheme_Explicit = WITHOUT_MATRIX(INTEGRATOR_EXPLICIT);

@@ -90,4 +90,4 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
 }
 
 const StepperScheme StepperScheme_Sdirk2 = {
-    .name = "sdirk2", .error_order = 3, .stages = 2, .advance = StepperImplicitStep, .step = Step};
+    .kind = INTEGRATOR_SDIRK2, .error_order = 3, .stages = 2, .advance = StepperImplicitStep, .step = Step};

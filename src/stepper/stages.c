@@ -1,8 +1,18 @@
 /* The stages of a run: which case, integrator and step control hold, and what one stage hands to the next. */
 #include "clathra/stepper.h"
 
-static const StepperScheme *const schemes[] = {&StepperScheme_Euler,    &StepperScheme_Sdirk2, &StepperScheme_Hybrid,
-                                               &StepperScheme_Explicit, &StepperScheme_Paper,  NULL};
+static const StepperScheme *const schemes[INTEGRATOR_COUNT] = {
+    [INTEGRATOR_SDIRK2]   = &StepperScheme_Sdirk2,
+    [INTEGRATOR_EULER]    = &StepperScheme_Euler,
+    [INTEGRATOR_HYBRID]   = &StepperScheme_Hybrid,
+    [INTEGRATOR_EXPLICIT] = &StepperScheme_Explicit,
+    [INTEGRATOR_PAPER]    = &StepperScheme_Paper,
+    [INTEGRATOR_AUTO]     = &StepperScheme_Sdirk2}; /* until the forecast is known */
+
+const char *StepperName(const Stepper *s)
+{
+  return case_integrator[s->scheme->kind];
+}
 
 double StepperFloorU(const Stepper *s)
 {
@@ -37,20 +47,10 @@ bool StepperDone(const Stepper *s)
 PetscErrorCode StepperTakeStage(Stepper *s, PetscInt k)
 {
   const Case *c = CaseInStage(StepperCase(s), k);
-  PetscBool   same;
 
   PetscFunctionBeginUser;
-  s->model->c = &c->scene;
-  s->scheme   = NULL;
-  for (int i = 0; schemes[i]; i++) {
-    PetscCall(PetscStrcmp(schemes[i]->name, c->stepper, &same));
-    if (same)
-      s->scheme = schemes[i];
-  }
-  PetscCall(PetscStrcmp(STEPPER_AUTO, c->stepper, &same));
-  if (same)
-    s->scheme = &StepperScheme_Sdirk2; /* until the forecast is known */
-  PetscCheck(s->scheme, s->model->grid.comm, PETSC_ERR_ARG_UNKNOWN_TYPE, "no time integrator %s", c->stepper);
+  s->model->c     = &c->scene;
+  s->scheme       = schemes[c->integrator];
   s->adaptive     = c->adaptive;
   s->dt_min       = c->dt_min;
   s->dt_max       = c->dt_max;

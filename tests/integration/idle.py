@@ -89,6 +89,21 @@ out = launch(binary(), FOLDER / "hmc.yaml", "-quiet", "-stepper_max_steps", 0, o
 reacts = launch(binary(), CASES / "bp2", "-fields", "hmc", "-stepper_max_steps", 0, out=FOLDER / "bp2").stdout
 check_true("a scene without hydrate is no hmc", "fields: solid, water, gas;" in out and "fields: solid, water, gas (hmc);" in reacts, out.splitlines()[:3])
 
+# ---------------------------------------------------------------- keys of another integrator
+EXPLICIT = [w for k, v in (("cfl", 0.5), ("force_dt", "yes"), ("damping", 0.1), ("mass_scaling", 2)) for w in (f"-stepper_{k}", v)]
+IMPLICIT = ["-stepper_tol", "1e-2", "-stepper_dt_min", "1 ns", "-stepper_error_exponent", 4, "-stabilisation_ghost_penalty", 0.01]
+PASSES = ["-stepper_storage_passes", 3]
+for stepper, others in (("sdirk2", [*EXPLICIT, *PASSES]), ("euler", EXPLICIT), ("hybrid", IMPLICIT), ("hybrid_paper", [*IMPLICIT, *PASSES]), ("auto", [])):
+    every = {w: "sdirk2, euler, auto" if w in IMPLICIT else "hybrid, explicit" for w in others[::2]}
+    given = others or [*EXPLICIT, *IMPLICIT, *PASSES]
+    says(f"terzaghi by {stepper} with keys of {'others' if others else 'both'}", every, CASES / "terzaghi", "-stepper_type", stepper, "-inertia", "yes", *map(str, given))
+STAGED = ("-stages", "one,two", "-time_end", "2 s", "-output_times", "2 s", "-output_probe_every", "1 s", "-stage_one_end", "1 s", "-stage_two_end", "2 s", "-stage_two_stepper_type", "hybrid", "-stage_two_stepper_dt_max", "1 s", "-inertia", "yes")
+says("a key that one of two stages knows", {}, CASES / "terzaghi", *STAGED, "-stepper_damping", "0.1")
+says("... given to the other one", {"-stage_one_stepper_damping": "hybrid"}, CASES / "terzaghi", *STAGED, "-stage_one_stepper_damping", "0.1")
+done = launch(binary(), CASES / "terzaghi", "-quiet", "-stepper_max_steps", 0, "-stepper_damping", "0.1", out=FOLDER / "other")
+check_true("a run by sdirk2 says that damping is not its own", "-stepper_damping (it acts with hybrid" in done.stdout, done.stdout[-300:])
+says("... and the case as it ran has none", {}, FOLDER / "other" / "case.yaml")
+
 # ---------------------------------------------------------------- lists of names on the command line
 says("a probe of the command line beside those of the file", {}, CASES / "terzaghi", "-probes", "base,end,more", "-probe_more_at", "0.5 m,0.01 m")
 says("... in their place: the file's are left out", {}, CASES / "terzaghi", "-probes", "more", "-probe_more_at", "0.5 m,0.01 m")
@@ -98,8 +113,9 @@ wrong = launch(binary(), CASES / "terzaghi", "-case_check", "-probe_more_at", "0
 check_true("one that is in no list is refused", wrong.returncode == 2 and "'more' is not listed in probes" in wrong.stdout, wrong.stdout[-200:])
 
 # ---------------------------------------------------------------- shipped cases, and as they run
-for path in sorted(CASES.glob("*/case.yaml")):
-    says(f"cases/{path.parent.name}", {}, path.parent)
+for path in sorted(CASES.glob("*/case.yaml")):  # slides by hybrid carry what they need by sdirk2
+    slide = re.match("slope_(a|b|c|3d)$", path.parent.name)
+    says(f"cases/{path.parent.name}", {"stabilisation_ghost_penalty": "sdirk2"} if slide else {}, path.parent)
 done = launch(binary(), FOLDER / "hm.yaml", "-quiet", "-stepper_max_steps", 0, "-mat_a_gas_viscosity", "1e-5 Pa s", "-mat_a_permeability_mh", 3, out=FOLDER / "out")
 check_true("a run says it too", "mat_a_gas_viscosity (no gas)" in done.stdout, done.stdout[-300:])
 log = (FOLDER / "out" / "log.txt").read_text()

@@ -245,7 +245,7 @@ static void command_line_wins(void **state)
   assert_true(c.scene.cells[0] == 104 && c.scene.cells[1] == 2 && c.scene.region[0].pressure == 3e6 && c.dt == 0.5);
   assert_true(c.scene.bc[3].value.n == 1 && c.scene.bc[3].value.y[0] == 5e6);
   assert_string_equal(c.output_dir, "elsewhere");
-  assert_string_equal(c.stepper, "euler");
+  assert_int_equal(c.integrator, INTEGRATOR_EULER);
   GOOD(CaseDestroy(&c));
 }
 
@@ -366,8 +366,8 @@ static void stages(void **state)
               c.t_end == 2000);
   assert_true(!a->scene.inertia && !a->scene.fields.inertia && b->scene.inertia && b->scene.fields.inertia &&
               b->scene.fields.n == a->scene.fields.n);
-  assert_string_equal(a->stepper, "sdirk2");
-  assert_string_equal(b->stepper, "hybrid");
+  assert_int_equal(a->integrator, INTEGRATOR_SDIRK2);
+  assert_int_equal(b->integrator, INTEGRATOR_HYBRID);
   assert_true(a->tol == 0.1 && b->tol == 0.02 && a->dt == 1 && b->dt == 1 && b->dt_max == 50);
   assert_true(a->dt_min == 1e-9 * 500 && b->dt_min == 1e-9 * 1500);
   assert_true(a->scene.nbc == 5 && b->scene.nbc == 4 && b->scene.bc[3].type == BC_PRESSURE && c.scene.nbc == 5);

@@ -161,7 +161,7 @@ typedef struct {
 } Held;
 
 /* SmallScene of a variant with one step of dt to go. */
-static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slips)
+static void Make(SmallScene *s, const Variant *v, Integrator integrator, bool slips)
 {
   SceneInit(s, v->has, true, false, BASIS_CPGIMP, 0.0, box[0], box[1]);
   for (int d = 0; d < CL_DIM; d++) {
@@ -177,7 +177,7 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
   s->c.scene.compression_heat = v->compression;
   s->c.scene.gravity[0]       = v->ratio > 0.0 ? 5.0 : 0.0;
   s->c.scene.gravity[1]       = v->ratio > 0.0 ? -9.81 : 0.0;
-  snprintf(s->c.stepper, sizeof s->c.stepper, "%s", stepper);
+  s->c.integrator             = integrator;
   s->c.dt = s->c.dt_max = s->c.t_end     = STEP;
   s->c.dt_min                            = 1e-3 * STEP;
   s->c.cfl                               = 0.8;
@@ -199,14 +199,14 @@ static void Make(SmallScene *s, const Variant *v, const char *stepper, bool slip
 
 /* What one step changes on the particles inside; returns their number on this rank.  They are of one cell, so that
    no integrator puts them in another order. */
-static int Changes(const Variant *v, const char *stepper, bool slips, Held held[4])
+static int Changes(const Variant *v, Integrator integrator, bool slips, Held held[4])
 {
   SmallScene *s = malloc(sizeof(*s));
   Stepper     stepping;
   int         n  = 0;
   bool        ok = true;
 
-  Make(s, v, stepper, slips);
+  Make(s, v, integrator, slips);
   for (int after = 0; after < 2; after++) {
     n = 0;
     for (PetscInt p = 0; p < s->m.P.n; p++) {
@@ -255,7 +255,7 @@ static double Apart(const Variant *v, bool slips, const char **whose)
   Held   a[4], b[4];
   double worst = 0.0;
 
-  const int n = Changes(v, "euler", slips, a), m = Changes(v, "hybrid", slips, b);
+  const int n = Changes(v, INTEGRATOR_EULER, slips, a), m = Changes(v, INTEGRATOR_HYBRID, slips, b);
 
   Check(n == m);
   for (int i = 0; i < n; i++) /* the tests are of plastic particles where they should be */
@@ -322,7 +322,7 @@ static double ChordByHand(const Held *held, const SmallScene *s)
 }
 
 /* Largest difference between what (424) adds to p_e, by what melts, and that by hand, relative; *most: (424), Pa. */
-static double ChordsOff(const char *stepper, double *most)
+static double ChordsOff(Integrator integrator, double *most)
 {
   const Variant    *v = &variants[0];
   SmallScene *const s = malloc(sizeof(*s));
@@ -331,10 +331,10 @@ static double ChordsOff(const char *stepper, double *most)
 
   *most       = 0.0;
   chords      = false;
-  const int n = Changes(v, stepper, false, a);
+  const int n = Changes(v, integrator, false, a);
   chords      = true;
-  Check(Changes(v, stepper, false, b) == n);
-  Make(s, v, stepper, false);
+  Check(Changes(v, integrator, false, b) == n);
+  Make(s, v, integrator, false);
   for (int i = 0; i < n; i++) {
     const double own  = a[i].before[P_PW] + GasShareOf(&s->mat, CAPILLARY, 0.2) * CAPILLARY,
                  lack = EquilibriumPressure(&s->mat.kinetics.equilibrium, a[i].before[P_T], &d) - own,
@@ -351,15 +351,15 @@ static double ChordsOff(const char *stepper, double *most)
 
 /* Where p and T are the same everywhere (424) changes nothing, in a body that strains, shears and turns with fluids
    that flow: largest change of any variable, of what the step changes. */
-static double ChordsOfEven(const char *stepper)
+static double ChordsOfEven(Integrator integrator)
 {
   Held   a[4], b[4];
   double worst = 0.0;
 
   chords      = false;
-  const int n = Changes(&variants[0], stepper, true, a);
+  const int n = Changes(&variants[0], integrator, true, a);
   chords      = true;
-  Check(Changes(&variants[0], stepper, true, b) == n);
+  Check(Changes(&variants[0], integrator, true, b) == n);
   for (int i = 0; i < n; i++) {
     for (int k = P_MH; k < P_MH + 3; k++)
       worst = fmax(worst, fabs(b[i].change[k] - a[i].change[k]) / fmax(fabs(a[i].change[P_MH]), 1e-300));
@@ -375,19 +375,19 @@ static void TestChords(void **state)
 
   (void)state;
   for (int k = 0; k < 2; k++) {
-    const char  *stepper = k ? "hybrid" : "euler";
-    const double even    = ChordsOfEven(stepper);
+    const Integrator integrator = k ? INTEGRATOR_HYBRID : INTEGRATOR_EULER;
+    const double     even       = ChordsOfEven(integrator);
 
-    Say("%-6s: (424) of what is even changes what melts by %.1e of it\n", stepper, even);
+    Say("%-6s: (424) of what is even changes what melts by %.1e of it\n", case_integrator[integrator], even);
     Check(even < 1e-9);
     tilts = true;
     for (size_t i = 0; i < sizeof(shifts) / sizeof(*shifts); i++) {
       double most;
 
       shift            = shifts[i];
-      const double off = ChordsOff(stepper, &most);
+      const double off = ChordsOff(integrator, &most);
       Say("%-6s: (424), up to %.0f Pa, by what melts against by hand, particles %.1f of a cell on: off by %.1e\n",
-          stepper, most, shift, off);
+          case_integrator[integrator], most, shift, off);
       Check(most > 200.0 && off < 2e-3);
     }
     tilts = false;
