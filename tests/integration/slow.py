@@ -19,7 +19,7 @@ def main():
     case = scratch() / "heater.yaml"
     case.write_text(heated(without_gas(case_text())))
     trace = [o for m in ("sand", "clay") for o in (f"-mat_{m}_gas_solubility", "0 mol/(m^3 Pa)")]
-    options = ("-bc_well_pressure", "10.4 MPa", "-time_end", "10 d", "-output_every", "2 d", "-progress", "0", *trace)
+    options = ("-bc_well_pressure", "10.3 MPa", "-time_end", "10 d", "-output_every", "2 d", "-progress", "0", *trace)
     done = launch(binary(), case, *options, "-stepper_max_steps", "220", out=scratch() / "stands")
     said = LINE.findall(done.stdout)
     steps = [int(line[0]) for line in said]
