@@ -136,7 +136,7 @@ def page(binary):
 
 
 def draw(binary):
-    from plotting import plt, set_style
+    from clathra.plotting import plt, set_style
 
     set_style()
     for title, curve, variations, *_ in LAWS:

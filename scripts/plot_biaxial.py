@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 from biaxial_data import angles, at_strain, peak, reduce_run
-from plotting import COLOURS, STYLES, plt, save, set_style
+from clathra.plotting import COLOURS, STYLES, plt, save, set_style
 
 LABELS = {
     "A": "A: kinetics", "B": "B: no kinetics", "C": "C: and plastic heat", "hybrid": "A, hybrid", "B_hybrid": "B, hybrid", "C_hybrid": "C, hybrid",

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import slide
-from plotting import COLOURS, MM, PA, boxes, plt, save, set_style
+from clathra.plotting import COLOURS, MM, PA, boxes, plt, save, set_style
 from clathra import read_csv, read_snapshots
 from clathra.units import YEAR
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from masuda_run import BARS, JUDGED, REFERENCE, curves, differences
-from plotting import COLOURS, PA, plt, save, set_style, steady_limits
+from clathra.plotting import COLOURS, PA, plt, save, set_style, steady_limits
 from clathra import read_csv, read_snapshots
 
 TIMES = ((600, "10 min"), (3600, "1 h"), (7200, "2 h"), (10800, "3 h"), (14400, "4 h"))

@@ -13,7 +13,7 @@ from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.collections import PolyCollection
 
 import slide
-from plotting import COLOURS, PA, STYLES, plt, save, set_style
+from clathra.plotting import COLOURS, PA, STYLES, plt, save, set_style
 
 TIMES = {"slope_a": (25, 100, 200), "slope_b": (15, 18, 30, 42, 72, 250), "slope_c": (17, 30, 41, 56, 77, 100, 250)}  # s, of the paper's maps
 MAPS = (  # title, value of a particle, limits

@@ -8,7 +8,7 @@ export python=/usr/bin/python3 # Debian's, the one that has the packages
 
 run_packages=(petsc-dev libpetsc-real-dev libhdf5-openmpi-dev libopenmpi-dev openmpi-bin libyaml-dev libopenblas0-pthread
   libcmocka-dev python3-numpy python3-h5py python3-matplotlib cmake ninja-build pkg-config gcc)
-check_packages=("${run_packages[@]}" clang-format cppcheck python3-pip python3-setuptools python3-wheel mkdocs)
+check_packages=("${run_packages[@]}" clang-format cppcheck python3-pip python3-scipy python3-setuptools python3-wheel mkdocs)
 
 # One thread a rank; OpenMPI may run as root, may share cores, and does not pin several runs to the same core.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1

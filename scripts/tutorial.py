@@ -6,9 +6,11 @@ a checkpoint; default: results/tutorial) and takes the pictures of docs/figures/
 """
 import base64
 import re
-import subprocess
 import sys
 from pathlib import Path
+
+import clathra
+from clathra import report
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tutorial.md"
@@ -81,9 +83,8 @@ def pictured(program, folder, text, figures, quantity, options=()):
     case = folder / "tutorial.yaml"
     folder.mkdir(parents=True, exist_ok=True)
     case.write_text(text)
-    go_on = ["-restart", folder / "checkpoint.h5"] if (folder / "checkpoint.h5").is_file() else []
-    subprocess.run([program, case, "-output_dir", folder, *options, *go_on], check=True)
-    subprocess.run([sys.executable, ROOT / "scripts" / "report.py", folder], check=True)
+    clathra.Case(case, program).run(folder, options=options, restart=(folder / "checkpoint.h5").is_file())
+    report.main([str(folder)])
     photograph(folder / "report.html", figures, quantity)
 
 

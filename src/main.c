@@ -6,7 +6,8 @@ static const char help[] =
     "Clathra: coupled thermo-hydro-mechanical-chemical material point simulator for methane-hydrate-bearing sediment.\n"
     "\n"
     "  clathra CASE [options]      CASE is a folder with a case.yaml, or such a file\n"
-    "  clathra strength CASE       its factor of safety by strength reduction; clathra strength --help\n"
+    "  clathra strength CASE       its factor of safety; so, too, sweep, calibrate, compare, plot, report: each has "
+    "--help\n"
     "\n"
     "Ten options that matter:\n"
     "  -case_check                 read and check the case and its start, forecast and warnings included; write "
@@ -176,7 +177,7 @@ int main(int argc, char **argv)
     return CL_EXIT_INPUT;
   if (argc > 1 && strcmp(argv[1], "--version") == 0)
     return SayVersion();
-  if (HandOverStrength(argc, argv))
+  if (HandOverPython(argc, argv))
     return CL_EXIT_INPUT;
   HandOverSpace(argc, argv);
   for (int k = 1; k < argc; k++) {

@@ -13,8 +13,9 @@ PetscErrorCode LogStart(MPI_Comm comm);
 PetscErrorCode LogEnd(void);
 
 /* Before MPI begins this program may become another one, see src/run/hand_over.c. */
-/* `clathra strength ...`; true: it was asked for and could not be begun, which was said. */
-bool HandOverStrength(int argc, char **argv);
+/* `clathra strength ...`, sweep and what else Python does; true: it was asked for and could not be begun, which was
+ * said. */
+bool HandOverPython(int argc, char **argv);
 /* A case of three axes is clathra3d's: does not return where that stands beside this program. */
 void HandOverSpace(int argc, char **argv);
 

@@ -1,23 +1,37 @@
 """A run by its folder."""
+import re
 import warnings
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from .case import read_case
-from .tables import Damaged, Entries, probe_names, read_csv, read_lines, read_snapshot, snapshot_times
+from .resolved import read_case
+from .tables import Damaged, Entries, last_row, probe_names, read_csv, read_lines, read_snapshot, snapshot_times, text_of
+
+
+WORK = re.compile(r"integrator (\S+(?: stage)?), (\d+) steps, (\d+) refused, (\d+) Newton iterations, ([\d.]+) s")
 
 
 class NoRun(Exception):
     """The folder holds no run."""
 
 
+class Progress(NamedTuple):
+    """How far a run is."""
+
+    step: int
+    time: float  # s
+    end: float  # of the case, s; NaN before it is read
+    share: float  # of the time to the end
+
+
 class Run:
     """What a run left in `folder`; files are read when first asked for.
 
     times    (snapshots,) s, of particles()
-    case     {key: value} as it ran, in SI units
+    case     {key: value} as it ran, in SI units; texts: as its file says it, with units
     probes, balance, meters  {column: (rows,) array} of the CSV files; {} if the run wrote none
     summary, log             what the program said at its end, and in all ("" while it runs)
 
@@ -45,9 +59,10 @@ class Run:
 
     def _text(self, name):
         path = self.folder / name
-        return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else ""
+        return text_of(path) if path.is_file() else ""
 
     case = cached_property(lambda self: read_case(self.folder / "case.yaml"))
+    texts = cached_property(lambda self: read_case(self.folder / "case.yaml", texts=True))
     probes = cached_property(lambda self: self._table("probes.csv"))
     balance = cached_property(lambda self: self._table("balance.csv"))
     meters = cached_property(lambda self: self._table("meters.csv"))
@@ -64,6 +79,14 @@ class Run:
         return ": finished at t = " in self.summary
 
     @property
+    def progress(self):
+        """How far it is, or came: Progress(step, time, end, share)."""
+        row = last_row(self.folder / "balance.csv")
+        ends = [self.case.get(f"stage_{name}_end") for name in self.names("stages")] or [self.case.get("time_end")]
+        step, time, end = int(row.get("step", 0)), row.get("time_s", 0.0), float(ends[-1] or "nan")
+        return Progress(step, time, end, time / end)
+
+    @property
     def axisymmetric(self):
         return self.case.get("geometry") == "axisymmetric"
 
@@ -74,6 +97,17 @@ class Run:
     @property
     def probe_names(self):
         return probe_names(self.probes)
+
+    @property
+    def columns(self):
+        """{column: (times (s), values)} of probes and meters, each (rows,)."""
+        return {k: (t["time_s"], v) for t in (self.probes, self.meters) for k, v in t.items() if k != "time_s"}
+
+    @property
+    def work(self):
+        """What it took, in the words of its summary: {integrator, steps, refused, newton, seconds}; {} before its end."""
+        said = WORK.search(self.summary)
+        return dict(zip(("integrator", "steps", "refused", "newton", "seconds"), said.groups())) if said else {}
 
     def probe(self, name):
         """{quantity: (rows,) array} of one probe: p_Pa, T_degC, S_h, u_x_m, ..., and time_s."""

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Factor of safety of a case by strength reduction.
 
 Runs the case with strength divided by a factor (`strength_factor`, docs/equations.md (87)) and bisects to the largest one it bears.
@@ -24,30 +23,25 @@ import math
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-DEBIANS = "/usr/bin/python3"
-if not __package__:  # the program starts it as a file: imports are from the folder of the package, not from within it
-    sys.path[0] = str(Path(__file__).resolve().parents[1])
-try:
-    import h5py  # noqa: F401  which snapshots need
-    import numpy as np
+import numpy as np
 
-    from clathra import Run
+from .program import Job, find_program
+from .run import Run
+from .tables import missing
+
+try:
+    import h5py  # noqa: F401  of which snapshots are read
 except ImportError as error:
-    if os.path.realpath(sys.executable) != os.path.realpath(DEBIANS) and os.access(DEBIANS, os.X_OK):
-        os.execv(DEBIANS, [DEBIANS, *sys.argv])
-    print(f"clathra strength: {sys.executable} has no module {error.name}: it needs numpy and h5py (Debian: python3-numpy, python3-h5py)", file=sys.stderr)
-    sys.exit(2)
+    raise missing(error, "clathra strength") from None
 
 LEAST, MOST = 0.01, 100.0  # factors that are tried
 ROWS = 200  # of the balance
 SNAPSHOTS = 8  # of the last fifth
 FLOWS, CREEPS, STEADY, LEAVES, KINETIC, VIBRATES = 1e-2, 1e-3, 0.125, 1e-2, 0.5, 1e-4  # shares that the docstring names
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def stop(text, code=2):
@@ -159,23 +153,19 @@ class Reduction:
 
     def launch(self, name, *more):
         out = self.folder / name
-        ranks = ["mpiexec", "-n", str(self.a.ranks)] if self.a.ranks > 1 else []
-        try:
-            done = subprocess.run([*ranks, self.program, self.a.case, "-quiet", *self.options, *more, "-output_dir", str(out)], env={**os.environ, **ENVIRONMENT},
-                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")  # fmt: skip
-        except OSError as error:
-            stop(f"{ranks[0] if ranks else self.program} cannot be started: {error.strerror}")
-        if done.returncode not in (0, 3):
-            stop(done.stdout or f"exit code {done.returncode} of {self.program}", done.returncode if done.returncode in (2, 4) else 1)
-        given_up = re.search(r"^Given up at [^:]*: (.*)$", done.stdout, re.M)
-        if done.returncode == 3 and not given_up:  # it could not write, say
-            stop(done.stdout, 3)
+        job = Job([self.program, self.a.case, "-quiet", *self.options, *more, "-output_dir", out], out, self.a.ranks)
+        code = job.end()
+        if code not in (0, 3):
+            stop(job.said or f"exit code {code} of {self.program}", code if code in (2, 4) else 1)
+        given_up = re.search(r"^Given up at [^:]*: (.*)$", job.said, re.M)
+        if code == 3 and not given_up:  # it could not write, say
+            stop(job.said, 3)
         self.reason = given_up and given_up[1]
-        for line in done.stdout.splitlines():
+        for line in job.said.splitlines():
             if "depends on the grid" in line and not self.warned:
                 print(line)
                 self.warned = True
-        return done.returncode, out
+        return code, out
 
     def first(self):
         """The resolved case of a first step."""
@@ -228,21 +218,12 @@ def reduce(program, a, options, folder):
     print(f"factor of safety {0.5 * (low + high):.4g}: stands at {low:.6g}, fails at {high:.6g}")
 
 
-def main():
-    a, options = arguments(sys.argv[2:])
-    try:
-        if a.out:
-            folder = Path(a.out)
-            folder.mkdir(parents=True, exist_ok=True)
-            reduce(sys.argv[1], a, options, folder)
-        else:
-            with tempfile.TemporaryDirectory(prefix="strength-") as name:
-                reduce(sys.argv[1], a, options, Path(name))
-    except KeyboardInterrupt:
-        sys.exit(4)
-    except OSError as error:
-        stop(f"{error.filename}: {error.strerror}")
-
-
-if __name__ == "__main__":
-    main()
+def main(words):
+    a, options = arguments(words)
+    if a.out:
+        Path(a.out).mkdir(parents=True, exist_ok=True)
+        reduce(find_program(), a, options, Path(a.out))
+    else:
+        with tempfile.TemporaryDirectory(prefix="strength-") as name:
+            reduce(find_program(), a, options, Path(name))
+    return 0

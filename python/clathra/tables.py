@@ -5,15 +5,16 @@ import sys
 from pathlib import Path
 
 
-def missing(error):
-    """The ImportError that says in a sentence which python3 lacks which module."""
-    return ImportError(f"{sys.executable} has no module {error.name}: clathra needs numpy and h5py (Debian: python3-numpy, python3-h5py)", name=error.name)
+def missing(error, what):
+    """The ImportError that says in a sentence which python3 lacks which module, and what needs it."""
+    module = error.name.split(".")[0]
+    return ImportError(f"{sys.executable} has no module {module}, which {what} needs (Debian: python3-{module})", name=module)
 
 
 try:
     import numpy as np
 except ImportError as error:
-    raise missing(error) from None
+    raise missing(error, "clathra") from None
 
 
 class Damaged(KeyError):
@@ -34,10 +35,15 @@ class Entries(dict):
         raise Damaged(f"{self.path} has no {name}")
 
 
+def text_of(path):
+    """Text of a file, whatever its bytes."""
+    return Path(path).read_text(encoding="utf-8", errors="replace")
+
+
 def read_csv(path):
     """Columns of a CSV file with one header line: {name: (rows,) array}.  A row without its end, which is being written or was cut off,
     is left out; what is no such table is Damaged."""
-    text = Path(path).read_text(encoding="utf-8", errors="replace")
+    text = text_of(path)
     rows = list(csv.reader(io.StringIO(text[: text.rfind("\n") + 1])))
     if not rows:
         raise Damaged(f"{path} is empty")
@@ -56,6 +62,19 @@ def read_csv(path):
     return Entries(path, zip(names, values.T))
 
 
+def last_row(path):
+    """{column: value} of the last whole row of such a file, {} if it has none; of a long one no more is read than that."""
+    with open(path, "rb") as file:
+        names = file.readline().decode(errors="replace").strip().split(",")
+        begin = file.tell()
+        file.seek(max(begin, file.seek(0, 2) - 4000 - 40 * len(names)))
+        rows = file.read().decode(errors="replace").rpartition("\n")[0].splitlines()
+    try:
+        return dict(zip(names, map(float, rows[-1].split(",")))) if rows else {}
+    except ValueError:
+        raise Damaged(f"{path}: its last row is no row of numbers") from None
+
+
 def probe_names(probes):
     """Names of the probes in the columns of probes.csv, in their order."""
     return list(dict.fromkeys(c.rsplit(".", 1)[0] for c in probes if "." in c))
@@ -66,7 +85,7 @@ def _read(path, read, file=None):
     try:
         import h5py
     except ImportError as error:
-        raise missing(error) from None
+        raise missing(error, "reading snapshots") from None
     try:
         with h5py.File(path, "r") as h5:
             return read(h5)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from _files import hashes  # noqa: E402
-from common import CASES, ROOT, binary, check, check_true, environment, finish, launch, mpiexec, run, scratch  # noqa: E402
+from common import CASES, binary, check, check_true, command, environment, finish, launch, mpiexec, run, scratch  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
 
@@ -291,7 +291,7 @@ def check_pressures():
     check_true("heated in a closed box: the pressure above all is noted", len(found) == 1 and found[0][2:] == ("above", "5") and float(found[0][0]) > 5.5, done.stdout[-600:])
     check("... by how much", abs(float(found[0][0]) - 5 - float(found[0][1])), 0.01)
     check_true("... in the summary's lowest and highest, too", f"to {float(found[0][0]):.5g}"[:7] in (out / "summary.txt").read_text(), found)
-    page = subprocess.run([sys.executable, ROOT / "scripts" / "report.py", out], capture_output=True, text=True)
+    page = command("report", out)
     check_true("... and among the report's warnings", "note: the pressure of a particle" in (out / "report.html").read_text().split('"warnings": [')[1][:3000], page.stderr)
     cooled = launch(binary(), case, "-quiet", "-bc_warm_temperature", "{ramp: [10 degC, 5 degC, 0 h, 1 h]}", out=scratch() / "cooled")
     check_true("cooled: the pressure below all", [f[2:] for f in note.findall(cooled.stdout)] == [("below", "5")], cooled.stdout[-600:])

@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import CASES, check, check_true, finish, program_of, run, scratch  # noqa: E402
 
 import clathra  # noqa: E402
-from plotting import plt  # noqa: E402
+from clathra.plotting import plt  # noqa: E402
 
 INSIDE = Path(__file__).with_name("_in_paraview.py")
 READERS = ("XDMFReader", "Xdmf3ReaderS", "Xdmf3ReaderT")  # the last two are the new one, for files in space and in time

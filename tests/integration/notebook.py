@@ -13,7 +13,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import CASES, ROOT, binary, check, check_true, finish, launch, scratch  # noqa: E402
 
 import clathra  # noqa: E402
-from plotting import plt  # noqa: E402
+from clathra.plotting import plt  # noqa: E402
 
 RUNS = {  # folder of the results: case, options that make it short
     "bp2/case2": ("bp2", "-time_end", "30 s", "-output_times", "0 s,30 s"),

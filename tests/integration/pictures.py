@@ -1,7 +1,6 @@
 #!/usr/bin/python3
-"""Pictures of scripts/plot.py: a sheared body is drawn whole, in cells that are no squares; which pictures there are of what run; no words
+"""Pictures of clathra plot: a sheared body is drawn whole, in cells that are no squares; which pictures there are of what run; no words
 over others; numbers at ticks."""
-import subprocess
 import sys
 from pathlib import Path
 
@@ -9,19 +8,18 @@ import numpy as np
 from matplotlib.path import Path as Outline
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
+from common import CASES, ROOT, binary, check, check_true, command, finish, launch, run, scratch  # noqa: E402
 
 import clathra  # noqa: E402
-import plot  # noqa: E402
-from clathra import shown  # noqa: E402
+from clathra import plot, shown  # noqa: E402
 from clathra.units import durations  # noqa: E402
-from plotting import Plain, boxes, colours, plt, set_style, wrapped  # noqa: E402
+from clathra.plotting import Plain, boxes, colours, plt, set_style, wrapped  # noqa: E402
 
 
 def draw(out):
-    """Names of the pictures that plot.py makes, and what it says."""
-    done = subprocess.run([sys.executable, ROOT / "scripts" / "plot.py", out], capture_output=True, text=True)
-    check_true(f"plot.py {out.name} ends well", done.returncode == 0, done.stderr[-300:])
+    """Names of the pictures that clathra plot makes, and what it says."""
+    done = command("plot", out)
+    check_true(f"clathra plot {out.name} ends well", done.returncode == 0, done.stderr[-300:])
     return sorted(p.stem for p in (out / "figures").glob("*.png")), done.stdout
 
 
@@ -54,7 +52,7 @@ def drawn(axis):
 
 
 def picture(draw, *arguments):
-    """A picture of plot.py and what measures its words."""
+    """A picture of clathra plot and what measures its words."""
     kept = []
     plot.save = lambda figure, folder, name: kept.append(figure)
     draw(*arguments)

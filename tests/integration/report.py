@@ -5,12 +5,10 @@ Without a browser (chromium-headless-shell) the second half is skipped, and says
 """
 import base64
 import html
-import importlib.util
 import json
 import os
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -18,15 +16,12 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 import _browser  # noqa: E402
-from common import CASES, ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
+from common import CASES, binary, check, check_true, command, finish, launch, run, scratch  # noqa: E402
 
 import clathra  # noqa: E402
-import plot  # noqa: E402
-from clathra import shown  # noqa: E402
+from clathra import plot, shown  # noqa: E402
+from clathra import report as page  # noqa: E402  the test has its name
 
-_spec = importlib.util.spec_from_file_location("page", ROOT / "scripts" / "report.py")  # the test has its name
-page = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(page)
 DATA = re.compile(r'(?<=<script type="application/json" id="data">)(.*?)(?=</script>)', re.S)
 BLOCK = ("-grid_cells", "8,5", "-output_times", "0 s,2 s,4 s,6 s,8 s,10 s", "-meters", "top", "-meter_top_side", "top")
 COLUMN = ("-grid_cells", "13,1", "-time_end", "60 s", "-output_times", "0 s,30 s,60 s")
@@ -34,8 +29,8 @@ VIRIDIS = np.array([[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [
 
 
 def report(out):
-    done = subprocess.run([sys.executable, ROOT / "scripts" / "report.py", out], capture_output=True, text=True)
-    check_true(f"report.py {out.name} ends well", done.returncode == 0, done.stderr[-300:])
+    done = command("report", out)
+    check_true(f"clathra report {out.name} ends well", done.returncode == 0, done.stderr[-300:])
     text = (out / "report.html").read_text()
     return text, json.loads(DATA.search(text)[1])
 
@@ -116,12 +111,12 @@ def check_damaged(out):
         plot.save = before
         check_true(f"{name}, damaged: a page and pictures of the rest{', and a sentence' if words else ''}", "</html>" in text and len(pictures) >= 2
                    and (words in said if words else not said) and html.escape(words) in text, f"{said[:200]} {pictures}")  # fmt: skip
-    done = subprocess.run([sys.executable, ROOT / "scripts" / "report.py", broken], capture_output=True, text=True)
+    done = command("report", broken)
     check_true("a folder whose last line is cut is no error", done.returncode == 0, done.stderr[-300:])
     empty(broken / "meters.csv")
-    for script in ("report.py", "plot.py"):
-        done = subprocess.run([sys.executable, ROOT / "scripts" / script, broken], capture_output=True, text=True)
-        check_true(f"{script} says what is damaged, and ends with exit code 2", done.returncode == 2 and f"{broken}/meters.csv is empty" in done.stderr and "Traceback" not in done.stderr, done.stderr[-300:])
+    for name in ("report", "plot"):
+        done = command(name, broken)
+        check_true(f"clathra {name} says what is damaged, and ends with exit code 2", done.returncode == 2 and f"{broken}/meters.csv is empty" in done.stderr and "Traceback" not in done.stderr, done.stderr[-300:])
 
 
 def check_titles(out):

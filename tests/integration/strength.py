@@ -120,7 +120,7 @@ def refused():
         ("a folder that holds something", (BLOCK, "--out", full), ("--out", str(full)), {}),
         ("an unknown option of clathra", (BLOCK, "--", "-grid_cels", "8,5"), ("grid_cels",), {}),
         ("no python3", (BLOCK,), ("python3", "numpy"), {"path": scratch()}),
-        ("a python3 without numpy", (BLOCK,), ("numpy", "h5py"), {"path": bare}),
+        ("a python3 without numpy", (BLOCK,), ("numpy", "python3-numpy"), {"path": bare}),
     ):
         done = launch(*words, **how)
         check_true(f"refused: {what}: exit code 2, and said", done.returncode == 2 and all(w in done.stdout for w in said) and "Traceback" not in done.stdout, done.stdout)
@@ -130,7 +130,7 @@ def refused():
     copy = scratch() / "clathra"
     shutil.copy(binary(), copy)
     done = launch("--help", program=copy)
-    check_true("a copy of the program without its Python package says what it needs", done.returncode == 2 and "clathra/strength.py" in done.stdout, done.stdout)
+    check_true("a copy of the program without its Python package says what it needs", done.returncode == 2 and "clathra/__main__.py" in done.stdout, done.stdout)
 
 
 for part in (verdicts, block, refused):

@@ -1,8 +1,7 @@
 #!/usr/bin/python3
-"""scripts/sweep.py and scripts/compare.py: every combination once, resumed where it was ended, in one table; differences as they are."""
+"""clathra sweep and clathra compare: every combination once, resumed where it was ended, in one table; differences as they are."""
 import csv
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -10,25 +9,25 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
-from common import ROOT, binary, check, check_true, finish, scratch  # noqa: E402
+from common import ROOT, check, check_true, command, finish, scratch  # noqa: E402
 
 import clathra  # noqa: E402
-import compare  # noqa: E402
-import sweep  # noqa: E402
+from clathra import compare  # noqa: E402
+from clathra.sweep import finished, named  # noqa: E402
 
 FIXED = ("-stepper_adapt", "no", "-stepper_dt", "100 s", "-time_end", "600 s", "-output_times", "600 s", "-output_probe_every", "100 s")
 KEYS = ("mat_clay_permeability_k0=1e-15 m^2,1e-14 m^2", "grid_cells=8,1|16,1")
 
 
-def call(script, *arguments):
-    done = subprocess.run([sys.executable, ROOT / "scripts" / script, *map(str, arguments)], capture_output=True, text=True)
+def call(*words):
+    done = command(*words)
     return done.returncode, done.stdout + done.stderr
 
 
 def check_sweep(out):
-    code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED, "-stepper_max_steps", "2")
-    check_true("a sweep that is ended after two steps", code == 0 and not any(sweep.finished(f) for f in out.iterdir() if f.is_dir()), said[-200:])
-    code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED)
+    code, said = call("sweep", "terzaghi", *KEYS, "--out", out, "--", *FIXED, "-stepper_max_steps", "2")
+    check_true("a sweep that is ended after two steps", code == 0 and not any(finished(f) for f in out.iterdir() if f.is_dir()), said[-200:])
+    code, said = call("sweep", "terzaghi", *KEYS, "--out", out, "--", *FIXED)
     with open(out / "sweep.csv", newline="") as stream:
         rows = list(csv.DictReader(stream))
     check_true("one row a combination", code == 0 and [(r["mat_clay_permeability_k0"], r["grid_cells"]) for r in rows] == [
@@ -36,15 +35,15 @@ def check_sweep(out):
     folders = sorted(f for f in out.iterdir() if f.is_dir())
     check_true("all went on from their checkpoints to their end", len(folders) == 4 and all(
         clathra.Run(f).finished and "-restart" in clathra.Run(f).log and len(clathra.Run(f).balance["step"]) == 6 for f in folders))  # fmt: skip
-    last = [clathra.Run(out / sweep.SAFE.sub("_", f"mat_clay_permeability_k0={r['mat_clay_permeability_k0']},grid_cells={r['grid_cells']}")).probes["base.p_Pa"][-1]
+    last = [clathra.Run(out / named({k: r[k] for k in ("mat_clay_permeability_k0", "grid_cells")})).probes["base.p_Pa"][-1]
             for r in rows]  # fmt: skip
     check("the table's values are the runs' last ones", np.max(np.abs(np.array([float(r["base.p_Pa"]) for r in rows]) - last)), 0.0)
     check_true("which differ between the rows", len(set(last)) == 4 and (out / "sweep.png").is_file())
     before = [(f / "balance.csv").stat().st_mtime_ns for f in folders]
-    code, said = call("sweep.py", "terzaghi", *KEYS, "--out", out, "--program", binary(), "--", *FIXED)
+    code, said = call("sweep", "terzaghi", *KEYS, "--out", out, "--", *FIXED)
     check_true("what has finished is not run again", said.count("finished before") == 4 and before == [(f / "balance.csv").stat().st_mtime_ns for f in folders])
     check_changed(out / "changed")
-    code, said = call("sweep.py", "terzaghi", "mat_clay_porosity=0.4,1.4", "--out", out / "bad", "--program", binary(), "--", *FIXED)
+    code, said = call("sweep", "terzaghi", "mat_clay_porosity=0.4,1.4", "--out", out / "bad", "--", *FIXED)
     check_true("a wrong value costs its own run only", code == 2 and "exit code 0" in said and "mat_clay_porosity = '1.4'" in said, said[-300:])
     return folders
 
@@ -54,8 +53,8 @@ def check_changed(out):
     out.mkdir()
     case, name = out / "case.yaml", "mat_clay_permeability_k0=1e-15 m^2"
     text = (ROOT / "cases" / "terzaghi" / "case.yaml").read_text()
-    again = lambda *options: call("sweep.py", case, name, "--out", out, "--program", binary(), "--", *FIXED, *options)
-    last = lambda: float(clathra.Run(out / sweep.SAFE.sub("_", name)).probes["base.p_Pa"][-1])
+    again = lambda *options: call("sweep", case, name, "--out", out, "--", *FIXED, *options)
+    last = lambda: float(clathra.Run(out / named(dict([name.split("=")]))).probes["base.p_Pa"][-1])
     case.write_text(text)
     code, said = again()
     first = last()
@@ -90,7 +89,7 @@ def check_floor(folder, noisy):
 
 
 def compared(folder, other):
-    """What compare.py says of the differences of two runs, and of damage."""
+    """What clathra compare says of the differences of two runs, and of damage."""
     damaged = []
     return compare.differences([clathra.Run(f, damaged.append) for f in (folder, other)], ["a", "b"], damaged)[1:], damaged
 
@@ -141,15 +140,15 @@ def check_same(folder, out):
         damage(other / file)
         lines, damaged = compared(folder, other)
         said = "\n".join([*lines, *damaged])
-        check_true(f"compare.py, {what} in {file}", all(w in said for w in words) and ("b: the same" in said) == (what == "nothing"), said[-200:])
+        check_true(f"clathra compare, {what} in {file}", all(w in said for w in words) and ("b: the same" in said) == (what == "nothing"), said[-200:])
     check_true("the same NaN in both is the same", "b: the same" in "".join(compared(out / "a_NaN", out / "a_NaN")[0]))
-    code, said = call("compare.py", folder, out / "no_byte", "--out", out)
-    check_true("what is damaged is an error", code == 2 and "compare.py: " in said and "probes.csv is empty" in said and "Traceback" not in said, said[-200:])
+    code, said = call("compare", folder, out / "no_byte", "--out", out)
+    check_true("what is damaged is an error", code == 2 and "clathra compare: " in said and "probes.csv is empty" in said and "Traceback" not in said, said[-200:])
 
 
 def check_compare(folders, out):
-    code, said = call("compare.py", folders[0], folders[2], "--out", out)
-    check_true("compare.py", code == 0 and (out / "compare.png").is_file(), said[-300:])
+    code, said = call("compare", folders[0], folders[2], "--out", out)
+    check_true("clathra compare", code == 0 and (out / "compare.png").is_file(), said[-300:])
     lines = [line.split() for line in said.splitlines()]
     a, b = (clathra.Run(f).probes["base.p_Pa"] for f in (folders[0], folders[2]))
     row = next(w for w in lines if w and w[0] == "base.p_Pa")
@@ -159,11 +158,11 @@ def check_compare(folders, out):
     key = [w for w in lines if w and w[0].startswith(("mat_", "grid_", "bc_")) and "=" not in w[0]]
     check_true("the one key in which they differ", [w[0] for w in key] == ["mat_clay_permeability_k0"], key)
     check_true("a run against itself", not compare.largest(clathra.Run(folders[0]), clathra.Run(folders[0])))
-    code, said = call("compare.py", folders[0], folders[2])
+    code, said = call("compare", folders[0], folders[2])
     check_true("by itself it draws among the first run's figures", code == 0 and (folders[0] / "figures" / "compare.png").is_file() and not Path("compare.png").exists())
     check_floor(folders[0], out / "noise")
     check_same(folders[0], out / "damaged")
-    code, said = call("compare.py", folders[0], out / "nothing")
+    code, said = call("compare", folders[0], out / "nothing")
     check_true("what is no run is named", code == 2 and "nothing holds no run" in said, said[-200:])
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 from clathra.units import YEAR
-from plotting import COLOURS, plt, save, set_style
+from clathra.plotting import COLOURS, plt, save, set_style
 from slope_warming import STEP_OF_HYBRID
 
 KINDS = ("euler", "sdirk2", "explicit", "hybrid")

@@ -25,27 +25,14 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "python"), str(ROOT / "scripts")]
-from clathra import probe_names, read_csv, read_snapshots  # noqa: E402
+from clathra import probe_names, program, read_csv, read_snapshots  # noqa: E402
 from clathra.units import pascals, seconds  # noqa: E402
 
 CASES = ROOT / "cases"
 WARNS_OF_HELD = "for no other reason than stabilisation_reaction_heat"  # in the end's warning of hydrate that (381) keeps, (423)
 np.set_printoptions(legacy="1.21")  # repr of a number is the number alone, which cases can read; NumPy 2 writes its type, too
-ENVIRONMENT = {
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_hwloc_base_binding_policy": "none",
-    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # the same of OpenMPI 5
-    "PRTE_MCA_hwloc_default_binding_policy": "none",
-    "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-    "OMPI_MCA_mpi_yield_when_idle": "1",  # more ranks than cores: a waiting rank lets the others run
-    # Starting takes 0.11 s instead of 0.41 s: no daemon for a single rank, no look for networks (a library of one times a clock).
-    "OMPI_MCA_ess_singleton_isolated": "1",
-    "OMPI_MCA_pml": "ob1",
-}
+# pml: starting takes 0.11 s instead of 0.41 s, for no networks are looked for (a library of one times a clock).
+ENVIRONMENT = {**program.ENVIRONMENT, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_MCA_pml": "ob1"}
 
 
 def binary():
@@ -105,6 +92,11 @@ def launch(program, case, *options, ranks=1, out=None, timeout=800):
         command, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, timeout=timeout, text=True, errors="replace",
     )  # fmt: skip
+
+
+def command(*words, **more):
+    """clathra COMMAND ..., which is Python's: subprocess.CompletedProcess; `more`: of its environment."""
+    return subprocess.run([binary(), *map(str, words)], env=environment(**more), stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300)
 
 
 class Run:

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Runs beside each other: compare.py RUN RUN ... [-o FOLDER]
+"""Runs beside each other: clathra compare RUN RUN ... [-o FOLDER]
 
 Prints what the runs took and where they ended, the keys of the case in which they differ, and the largest difference of every
 probe's and meter's column and of every variable of the snapshots from the first run's, at its times; writes FOLDER/compare.png (default: among the first run's figures)
@@ -7,15 +6,17 @@ with the histories of all runs.  Differences below 1e-9 of the largest value of 
 """
 import argparse
 import re
+import sys
 from pathlib import Path
 
 import numpy as np
 
-import clathra
-from clathra import shown
-from plotting import COLOURS, STYLES, plt, save, set_style, steady_limits
+from . import shown
+from .plotting import COLOURS, STYLES, plt, save, set_style, steady_limits
+from .run import Run
+from .tables import Damaged, probe_names
+from .units import time_unit
 
-WORK = re.compile(r"integrator (\S+(?: stage)?), (\d+) steps, (\d+) refused, (\d+) Newton iterations, ([\d.]+) s")
 ERRORS = re.compile(r"water (\S+), methane (\S+) of the initial mass, heat (\S+)")
 SHOWN = 40  # differing keys
 ROUND_OFF = 1e-12  # of what is drawn, in its unit
@@ -42,26 +43,21 @@ def work(runs, names):
     """What each run took, and its balance errors."""
     rows = [["run", "ended at (s)", "integrator", "steps", "refused", "Newton", "seconds", "water", "methane", "heat"]]
     for run, name in zip(runs, names):
-        took, missing = WORK.search(run.summary), ERRORS.search(run.summary)
+        took, missing = run.work, ERRORS.search(run.summary)
         ended = run.balance.get("time_s", ())
         t = f"{ended[-1]:.6g}" if len(ended) else "0"
-        rows.append([name, t if run.finished else f"{t}, not its end", *(took.groups() if took else ["–"] * 5), *(missing.groups() if missing else ["–"] * 3)])
+        rows.append([name, t if run.finished else f"{t}, not its end", *(took.values() if took else ["–"] * 5), *(missing.groups() if missing else ["–"] * 3)])
     return table(rows)
 
 
 def differing(runs, names):
     """Keys of the case whose values differ."""
-    texts = [clathra.read_case(run.folder / "case.yaml", texts=True) for run in runs]
+    texts = [run.texts for run in runs]
     keys = [k for k in dict.fromkeys(k for t in texts for k in t) if k not in IDLE and len({t.get(k) for t in texts}) > 1]
     if not keys:
         return ["the cases are the same"]
     lines = table([["key", *names], *([k, *(t.get(k, "–") for t in texts)] for k in keys[:SHOWN])])
     return lines + ([f"... and {len(keys) - SHOWN} more keys"] if len(keys) > SHOWN else [])
-
-
-def columns_of(run):
-    """{column: (times, values)} of probes and meters."""
-    return {k: (t["time_s"], v) for t in (run.probes, run.meters) for k, v in t.items() if k != "time_s"}
 
 
 def scales(columns):
@@ -100,7 +96,7 @@ def cut_off(t, s, end):
 def largest(first, other):
     """[(column, largest difference, of the first's range, time)] over the time that both have; infinite where one of them alone holds a
     number, or a column."""
-    a, b, found = columns_of(first), columns_of(other), []
+    a, b, found = first.columns, other.columns, []
     size, end = scales(a), common_end(first, other)
     for name in dict.fromkeys((*a, *b)):
         if name not in a or name not in b:
@@ -132,7 +128,7 @@ def largest_of_snapshots(first, other, damaged):
     for t in common_times(first, other)[0]:
         try:
             a, b = first.particles(t), other.particles(t)
-        except clathra.Damaged as error:
+        except Damaged as error:
             damaged.append(str(error))
             continue
         for name in dict.fromkeys((*a, *b)):
@@ -151,7 +147,7 @@ def differences(runs, names, damaged):
         alone, found = common_times(runs[0], run)[1], largest(runs[0], run) + largest_of_snapshots(runs[0], run, damaged)
         rows = [[f"{name} against {names[0]}", "largest difference", "of the range", "at (s)"]]
         rows += [[c, f"{d:.4g}" if np.isfinite(d) else "in one alone", f"{share:.2%}" if np.isfinite(share) else "–", f"{t:.6g}" if np.isfinite(t) else "–"] for c, d, share, t in found]
-        if not set(columns_of(run)) & set(columns_of(runs[0])):
+        if not set(run.columns) & set(runs[0].columns):
             alone.append(f"{name}: no column in common with {names[0]}")
         lines += ["", *(table(rows) if found else []), *alone]
         if not found and not alone:
@@ -164,11 +160,11 @@ def panels(runs):
     first, found = runs[0], []
     for label, unit, columns, _ in shown.histories(first.probes, first.probe_names):
         found += [(shown.tex(f"{label} {c[2]} ({unit})".replace("  ", " ")), [(n, f"{n}.{c[0]}", c[1]) for n in first.probe_names]) for c in columns]
-    meters = clathra.probe_names(first.meters)
+    meters = probe_names(first.meters)
     for column in dict.fromkeys(c.rsplit(".", 1)[1] for c in first.meters if "." in c):
         found.append((column, [(n, f"{n}.{column}", 1.0) for n in meters if f"{n}.{column}" in first.meters]))
     changes = lambda run, column, factor: column in run and len(run[column][1]) and np.ptp(np.nan_to_num(run[column][1])) * factor > ROUND_OFF
-    held = [columns_of(r) for r in runs]
+    held = [r.columns for r in runs]
     return [p for p in found if any(changes(h, c, factor) for h in held for _, c, factor in p[1])]
 
 
@@ -180,13 +176,13 @@ def draw(runs, names, folder, picture="compare"):
     set_style()
     wide = min(3, len(drawn))
     figure, grid = plt.subplots(-(-len(drawn) // wide), wide, figsize=(4.6 * wide, 3.2 * -(-len(drawn) // wide)), squeeze=False)
-    unit, seconds = clathra.time_unit(max(t[-1] for r in runs for t, _ in columns_of(r).values() if len(t)))
+    unit, seconds = time_unit(max(t[-1] for r in runs for t, _ in r.columns.values() if len(t)))
     for axes in grid.flat[len(drawn) :]:
         axes.remove()
     for axes, (label, curves) in zip(grid.flat, drawn):
         values = []
         for run, colour in zip(runs, COLOURS * len(runs)):
-            held = columns_of(run)
+            held = run.columns
             for (_, column, factor), dash in zip(curves, STYLES * len(curves)):
                 if column in held:
                     values.append(held[column][1] * factor)
@@ -203,22 +199,16 @@ def draw(runs, names, folder, picture="compare"):
     return True
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def main(words):
+    parser = argparse.ArgumentParser("clathra compare", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", metavar="RUN")
     parser.add_argument("-o", "--out", type=Path, metavar="FOLDER", help="of compare.png")
-    options = parser.parse_args()
+    options = parser.parse_args(words)
     damaged = []
-    try:
-        runs = [clathra.Run(folder, damaged.append) for folder in options.runs]
-    except clathra.NoRun as error:
-        parser.exit(2, f"compare.py: {error}\n")
+    runs = [Run(folder, damaged.append) for folder in options.runs]
     names = labels(runs)
     print("\n".join([*work(runs, names), "", *differing(runs, names), *differences(runs, names, damaged)]))
     draw(runs, names, options.out or runs[0].folder / "figures")
-    if damaged:
-        parser.exit(2, "".join(f"compare.py: {sentence}\n" for sentence in dict.fromkeys(damaged)))
-
-
-if __name__ == "__main__":
-    main()
+    for sentence in dict.fromkeys(damaged):
+        print(f"clathra compare: {sentence}", file=sys.stderr)
+    return 2 if damaged else 0

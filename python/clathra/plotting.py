@@ -1,17 +1,22 @@
-"""What the plot scripts share: style, colours, saving; what is plotted stands in python/clathra/shown.py."""
+"""What pictures share: style, colours, saving; what they show stands in shown.py.  Needs matplotlib."""
 import re
 import textwrap
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.collections import PolyCollection
-from matplotlib.ticker import Formatter
 
-from clathra.shown import MM, MPA, corners, tex
+from .shown import MM, MPA, corners, tex  # noqa: F401  MM: scripts take it from here
+from .tables import missing
+
+try:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.collections import PolyCollection
+    from matplotlib.ticker import Formatter
+except ImportError as error:
+    raise missing(error, "drawing pictures") from None
 
 # Okabe and Ito's colours, told apart by colour-blind readers too; line styles differ as well.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Pictures of any run: plot.py FOLDER [FOLDER ...] writes FOLDER/figures/*.png
+"""Pictures of any run: clathra plot FOLDER [FOLDER ...] writes FOLDER/figures/*.png
 
 probes.png     histories at the probes
 meters.png     what meters and plates count, methane that is not in hydrate
@@ -8,17 +7,18 @@ profiles.png   a strip one cell wide: profiles along it at up to six snapshots; 
 particles.png  any other body, deformed: p, T, S_h, S_w (or what else changes) at up to four snapshots
 maps.png       the same body at the last snapshot: everything that changes, those and stress, strain, porosity, flow
 
-scripts/report.py makes one page of it all.
+clathra report makes one page of it all.
 """
 import sys
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-import clathra
-from clathra import shown
-from clathra.units import duration, durations
-from plotting import COLOURS, STYLES, Plain, boxes, colours, plt, save, set_style, steady_limits, wrapped
+from . import shown
+from .plotting import COLOURS, STYLES, Plain, boxes, colours, plt, save, set_style, steady_limits, wrapped
+from .run import Run
+from .tables import probe_names
+from .units import duration, durations, time_unit
 
 FIRST = ("p", "T", "S_h", "S_w", "u_x", "u_y")  # of particles.png, the first four of them that change
 ONE_PHASE = 0.1  # of a period: times whose phases are no farther apart show one phase of a periodic load
@@ -41,7 +41,7 @@ def stage_ticks(axes, ends):
 
 def history_panel(axes, run, stages, label, unit, columns, least):
     probes, values = run.probes, []
-    name, seconds = clathra.time_unit(probes["time_s"][-1])
+    name, seconds = time_unit(probes["time_s"][-1])
     x = stages[0](probes["time_s"]) if stages else probes["time_s"] / seconds
     for colour, probe in zip(colours(len(run.probe_names)), run.probe_names):
         for style, (column, factor, _) in zip(STYLES, columns):
@@ -79,12 +79,12 @@ def plot_probes(run):
 def plot_meters(run):
     if len(run.meters.get("time_s", ())) < 2:
         return False
-    names = clathra.probe_names(run.meters)
+    names = probe_names(run.meters)
     panels = shown.production(run.meters, names)
     if not panels:
         return False
     stages, time, wide = shown.stage_axis(run.balance), run.meters["time_s"], min(len(panels), 3 if len(panels) > 4 else 2)
-    unit, seconds = clathra.time_unit(time[-1])
+    unit, seconds = time_unit(time[-1])
     rows = -(-len(panels) // wide)
     figure, grid = plt.subplots(rows, wide, figsize=(4.9 * wide, 3.5 * rows), squeeze=False)
     for axes in grid.flat[len(panels) :]:
@@ -108,7 +108,7 @@ def plot_balance(run):
     balance = run.balance
     if not len(balance.get("time_s", ())):
         return False
-    unit, seconds = clathra.time_unit(balance["time_s"][-1])
+    unit, seconds = time_unit(balance["time_s"][-1])
     figure, (left, right) = plt.subplots(1, 2, figsize=(11.5, 3.8))
     for (name, label), style in zip((("water", "water"), ("methane", "methane"), ("heat", "energy (of 1 K)")), STYLES):
         error = np.abs(balance[f"{name}_error"])
@@ -248,25 +248,19 @@ def draw(run, damaged):
 
 
 def main(folders):
-    if not folders:
-        sys.exit(__doc__)
+    if not folders or folders[0].startswith("-"):
+        print(__doc__, file=sys.stdout if folders else sys.stderr)
+        return 0 if folders else 2
     set_style()
     ends_well = True
     for folder in folders:
         damaged = []
-        try:
-            run = clathra.Run(folder, damaged.append)
-        except clathra.NoRun as error:
-            sys.exit(f"plot.py: {error}")
+        run = Run(folder, damaged.append)
         for name in PICTURES:
             (run.folder / "figures" / f"{name}.png").unlink(missing_ok=True)
         if not draw(run, damaged):
             print(f"  {folder}: nothing to draw yet")
         for sentence in dict.fromkeys(damaged):
-            print(f"plot.py: {sentence}; what needs it is not drawn", file=sys.stderr)
+            print(f"clathra plot: {sentence}; what needs it is not drawn", file=sys.stderr)
         ends_well = ends_well and not damaged
     return 0 if ends_well else 2
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""One page on a run that opens anywhere, offline: report.py FOLDER [FOLDER ...] writes FOLDER/report.html
+"""One page on a run that opens anywhere, offline: clathra report FOLDER [FOLDER ...] writes FOLDER/report.html
 
 It holds what the run said, its steps, histories, meters, balances, the scene with its mesh and conditions, and the body at the
 output times as a film.  Numbers of the film are rounded to 1/254 of their range; BYTES bounds what they may take.
@@ -13,9 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-import clathra
-from clathra import shown
-from clathra.units import duration, durations
+from . import shown
+from .run import Run
+from .tables import Damaged, probe_names
+from .units import duration, durations, time_unit
 
 TEMPLATE = Path(__file__).with_name("report.html")
 BYTES = 3_000_000  # of the film, before base64
@@ -33,7 +33,7 @@ def packed(array, kind):
 
 def number(x):
     if isinstance(x, str):
-        raise clathra.Damaged(f"the case has '{x}' where a number should stand")
+        raise Damaged(f"the case has '{x}' where a number should stand")
     return None if not np.isfinite(x) else float(f"{x:.5g}")
 
 
@@ -54,7 +54,7 @@ def time_axis(run):
     if stages:
         lengths = np.diff([0.0, *stages[1]])
         return stages[0], {"label": "time in each stage, of this length", "stages": [duration(n) for n in lengths]}
-    unit, seconds = clathra.time_unit(max((t["time_s"][-1] for t in (run.balance, run.probes) if len(t.get("time_s", ()))), default=1.0))
+    unit, seconds = time_unit(max((t["time_s"][-1] for t in (run.balance, run.probes) if len(t.get("time_s", ()))), default=1.0))
     return (lambda t: t / seconds), {"label": f"time ({unit})"}
 
 
@@ -76,7 +76,7 @@ def probe_charts(run, axis):
 def meter_charts(run, axis):
     if not len(run.meters.get("time_s", ())):
         return []
-    panels = shown.production(run.meters, clathra.probe_names(run.meters))
+    panels = shown.production(run.meters, probe_names(run.meters))
     return [c for label, curves in panels for c in chart(axis, label, [(n, run.meters["time_s"], v) for n, v in curves])]
 
 
@@ -112,7 +112,7 @@ def balance_charts(run, axis):
 # ---------------------------------------------------------------- the scene and the film
 def conditions(run, first):
     """[{name, type, says, lines: [[x0, y0, x1, y1], ...]}] of each boundary, on the body as it was seeded."""
-    texts, found = clathra.read_case(run.folder / "case.yaml", texts=True), []
+    texts, found = run.texts, []
     x, l = first["position"], first["half_length"]
     for name in run.names("boundaries"):
         prefix = f"bc_{name}_"
@@ -277,23 +277,17 @@ def page(run, damaged):
 
 
 def main(folders):
-    if not folders:
-        sys.exit(__doc__)
+    if not folders or folders[0].startswith("-"):
+        print(__doc__, file=sys.stdout if folders else sys.stderr)
+        return 0 if folders else 2
     ends_well = True
     for folder in folders:
         damaged = []
-        try:
-            text = page(clathra.Run(folder, damaged.append), damaged)
-        except clathra.NoRun as error:
-            sys.exit(f"report.py: {error}")
+        text = page(Run(folder, damaged.append), damaged)
         out = Path(folder) / "report.html"
         out.write_text(text, encoding="utf-8")
         print(f"  {out} ({len(text.encode()) / 1e6:.2g} MB)")
         for sentence in dict.fromkeys(damaged):
-            print(f"report.py: {sentence}; what needs it is not shown", file=sys.stderr)
+            print(f"clathra report: {sentence}; what needs it is not shown", file=sys.stderr)
         ends_well = ends_well and not damaged
     return 0 if ends_well else 2
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
