@@ -13,7 +13,7 @@ import numpy as np
 from .case import Case
 from .program import GaveUp, Refused
 from .run import Run
-from .sweep import Part, arguments, complete, named, side_by_side
+from .sweep import Part, arguments, at_a_time, complete, named, side_by_side
 from .tables import Damaged, missing, read_csv
 
 STEP = 2e-3  # of a key's range, for slopes
@@ -202,6 +202,7 @@ def calibrate(case, keys, target, folder, jobs=None, options=(), tol=1e-3, most=
     ranges, target = [Range.of(key, bounds) for key, bounds in keys.items()], Target(target)
     if not ranges:
         raise Refused("no key was named to calibrate")
+    at_a_time(jobs)
     search = Search(case, ranges, target, folder, jobs, options, tell)
     own = case.resolved(texts=True, options=options)
     start = np.array([r.start(own) for r in ranges])

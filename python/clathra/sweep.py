@@ -81,13 +81,17 @@ def complete(case, folder, options=(), living=None):
     return code, f"{said}exit code {code}" + (f": {job.sentence().splitlines()[0]}" if code else "")
 
 
-def side_by_side(function, items, jobs=None):
-    """[function(*item, living)] of many items, `jobs` at a time (default: the cores there are); `living` takes the Jobs that it starts, which
-    Ctrl-C stops."""
+def at_a_time(jobs):
+    """How many runs; None: as many as there are cores."""
     if jobs is not None and jobs < 1:
         raise Refused(f"jobs = {jobs} is below 1")
+    return jobs or len(os.sched_getaffinity(0))
+
+
+def side_by_side(function, items, jobs=None):
+    """[function(*item, living)] of many items, `jobs` at a time; `living` takes the Jobs that it starts, which Ctrl-C stops."""
     living = []
-    with ThreadPoolExecutor(jobs or len(os.sched_getaffinity(0))) as pool:
+    with ThreadPoolExecutor(at_a_time(jobs)) as pool:
         futures = [pool.submit(function, *item, living) for item in items]
         try:
             return [future.result() for future in futures]
@@ -113,6 +117,7 @@ def sweep(case, keys, folder, jobs=None, options=(), tell=None):
     was begun goes on, unless the case or its options have changed.  A run that fails is a Part with its exit code and what was said.
     `options`: words for every run.  `tell(sentence)` is called as each ends.  Writes folder/sweep.csv, a row a run.
     """
+    at_a_time(jobs)
     wanted = [dict(zip(keys, values)) for values in itertools.product(*keys.values())]
     folders = [Path(folder) / named(values) for values in wanted]
     if len(set(folders)) < len(folders):
@@ -179,6 +184,7 @@ def main(words):
     found, options = arguments(words, __doc__, "clathra sweep", keys={"nargs": "+", "metavar": "KEY=A,B,C"})
     case, keys = Case(found.case, found.program), dict(map(values_of, found.keys))
     out = found.out or Path("results") / f"sweep_{case.name}"
+    at_a_time(found.jobs)
     print(f"runs of {case.path} into {out}", flush=True)
     parts = sweep(case, keys, out, found.jobs, options, lambda sentence: print(f"  {sentence}", flush=True))
     columns, table = rows(parts)
