@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import tempfile
+import time
 from pathlib import Path
 
 from .run import NoRun, Progress, Run
@@ -91,7 +92,8 @@ class Job:
             print(f"{now.share:.0%}")
         run = job.wait()
 
-    Ctrl-C while Python waits for it, the end of a `with` block and the end of Python stop it.
+    Ctrl-C while Python waits for it, the end of a `with` block and the end of Python stop it.  Once it has ended, code is its exit code, said all that
+    it said, usage what it took of the processor and of memory (resource.getrusage).
     """
 
     def __init__(self, command, folder=None, ranks=1, restarts=False, given=None):
@@ -100,7 +102,7 @@ class Job:
         if ranks < 1:
             raise Refused(f"ranks = {ranks} is below 1", folder=folder)
         self.command = [*(("mpiexec", "-n", str(ranks)) if ranks > 1 else ()), *map(str, command)]
-        self.folder, self.code, self.stopped, self._given = folder, None, False, given
+        self.folder, self.code, self.usage, self.stopped, self._given = folder, None, None, False, given
         self._before = None if restarts else self._rows()
         self._session = tempfile.mkdtemp(prefix="clathra-mpi-")
         self._texts = [tempfile.TemporaryFile() for _ in range(2)]
@@ -149,16 +151,28 @@ class Job:
 
     def end(self, timeout=None):
         """Waits until it ends, at most `timeout` s; its exit code, None while it runs."""
-        if self.code is None:
-            try:
-                self.code = self._process.wait(timeout)
-            except subprocess.TimeoutExpired:
-                return None
-            except BaseException:
+        try:
+            if self.code is None and self._reap(timeout):
+                self._close()
+        except BaseException:
+            if not self.stopped:
                 self.stop()
-                raise
-            self._close()
+            raise
         return self.code
+
+    def _reap(self, timeout):
+        """Has it ended within so many seconds?  With its exit code, and what it took."""
+        last, pause = time.monotonic() + (timeout or 0.0), 1e-3
+        while True:
+            pid, status, usage = os.wait4(self._process.pid, os.WNOHANG if timeout is not None else 0)
+            if pid:
+                self.code = self._process.returncode = os.waitstatus_to_exitcode(status)
+                self.usage = usage
+                return True
+            if (left := last - time.monotonic()) <= 0:
+                return False
+            time.sleep(min(pause, left))
+            pause = min(2 * pause, 0.05)
 
     def _close(self):
         texts = []
@@ -187,7 +201,7 @@ class Job:
         """Asks it, once, to end after its step with a checkpoint.  (SIGUSR1 is what mpiexec hands on.)"""
         if not self.stopped and self.code is None:
             self.stopped = True
-            self._process.send_signal(signal.SIGUSR1)
+            os.kill(self._process.pid, signal.SIGUSR1)
 
     def stop(self, patience=PATIENCE):
         """Ends it, if it still runs, after its step and with a checkpoint; kills it if that takes more than `patience` s.  Returns its exit
