@@ -9,15 +9,13 @@ A run takes from half a minute to an hour of processor time, so what was measure
 .npz.  Every number of the page is taken from there.
 """
 import json
-import resource
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 
-from biaxial_data import angles, at_strain, peak, reduce_run, stress_at
-from plot_biaxial import MAPS, TABLE, figures, nearest, row
+import clathra
+from plot_biaxial import MAPS, TABLE, angles, at_strain, figures, nearest, peak, reduce_run, row, stress_at
 
 ROOT = Path(__file__).resolve().parents[1]
 DATA, KEPT, PAGE = ROOT / "docs" / "biaxial.json", ROOT / "docs" / "biaxial.npz", ROOT / "docs" / "biaxial.md"
@@ -67,11 +65,10 @@ def load():
 
 def run(name):
     """Runs one variant; its processor time goes into cost.json."""
-    out, before = ROOT / "results" / "biaxial" / name, resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([ROOT / "build" / "clathra", ROOT / "cases" / "biaxial", *RUNS[name], "-quiet", "-output_dir", out], check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    (out / "cost.json").write_text(json.dumps({"cpu": round(cpu, 1)}))
+    out = ROOT / "results" / "biaxial" / name
+    job = clathra.Case(ROOT / "cases" / "biaxial").start(out, options=("-quiet", *RUNS[name]))
+    job.wait()
+    (out / "cost.json").write_text(json.dumps({"cpu": round(job.usage.ru_utime + job.usage.ru_stime, 1)}))
     return reduce_run(out)
 
 
@@ -215,7 +212,7 @@ def page(r):
         f"Processor time of A: sdirk2 {A['cost'].get('cpu', 0):.0f} s for {A['steps']} steps, hybrid {H['cost'].get('cpu', 0):.0f} s for {H['steps']}.", "",
         "## Angles", "",
         "![Figures C.36 and C.37: bands and fitted lines](figures/biaxial_angles.png)", "",
-        "How an angle is found (`scripts/biaxial_data.py:line_of_band`): in columns 0.1 m wide, 0.05 m apart, between x = 0.4 m and 0.9 m (away from the axis, where bands cross, and from the free side), of the particles",
+        "How an angle is found (`scripts/plot_biaxial.py:line_of_band`): in columns 0.1 m wide, 0.05 m apart, between x = 0.4 m and 0.9 m (away from the axis, where bands cross, and from the free side), of the particles",
         "of the upper (lower) half those count that have more than half of the column's largest eps_d^p; their centre, weighted with it, is a point. A least-squares line through the points has the angle. The width",
         "of a band is the full width at half of the largest mean eps_d^p across that line, in slices of 0.025 m.", "",
         "## Cells, particles, and what regularises", "",

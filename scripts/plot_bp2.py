@@ -12,8 +12,8 @@ import numpy as np
 
 import clathra
 from clathra import probe_names, read_csv
-from clathra.shown import QUANTITIES
 from clathra.plotting import COLOURS, MM, PA, plt, save, set_style, steady_limits
+from clathra.shown import QUANTITIES
 
 REFERENCE = Path(__file__).resolve().parents[1] / "cases" / "bp2" / "reference"
 INNER, LOADED = 0.6, 1.0  # m from the fixed end

@@ -5,16 +5,14 @@
 the page needs as docs/slopes.json[NAME]; `page` writes docs/slopes.md from that file alone.  NAME is one of ROWS.
 """
 import json
-import os
 import re
-import resource
 import shlex
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 
+import clathra
 import slide
 import slope_warming
 from slope_warming import table
@@ -94,14 +92,11 @@ def run(program, folder, *names):
     """Makes and adds the runs that are named; one that stops is added as far as it came."""
     for name in names or ROWS:
         case, _, options = ROWS[name]
-        ranks = ["mpiexec", "-n", "2"] if name == "A_ranks" else []
         out = Path(folder) / name
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        code = subprocess.run([*ranks, program, DOCS.parent / "cases" / f"slope_{case}", *shlex.split(options), "-output_dir", out, "-overwrite"], stdin=subprocess.DEVNULL, check=False,
-                              env=os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}).returncode  # fmt: skip
-        if code not in (0, 3, 4):
-            sys.exit(f"{name}: the program ended with code {code}")
-        add(name, out, processor_s=resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+        job = clathra.Case(DOCS.parent / "cases" / f"slope_{case}", program).start(out, 2 if name == "A_ranks" else 1, (*shlex.split(options), "-overwrite"))
+        if job.end() not in (0, 3, 4):
+            sys.exit(f"{name}: {job.sentence()}")
+        add(name, out, processor_s=job.usage.ru_utime)
 
 
 def add(name, folder, until=None, processor_s=None):

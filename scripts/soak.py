@@ -39,12 +39,9 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from clathra import read_csv, read_snapshots  # noqa: E402
+from clathra.program import call, environment  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[1]
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-               "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe", "PRTE_MCA_hwloc_default_binding_policy": "none",
-               "OMPI_MCA_mpi_yield_when_idle": "1"}  # fmt: skip
 MEMORY = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
 GOOD = ("finished", "refused", "given up", "slow")
 BALANCE = 1e-10
@@ -195,11 +192,6 @@ def scene(seed):
 
 
 # ---------------------------------------------------------------------------------------- running and judging
-def environment(sessions):
-    """With a folder of MPI's own sessions: of two runs that share one, the first to end may remove what the other has just made."""
-    return {**os.environ, **ENVIRONMENT, "OMPI_MCA_orte_tmpdir_base": str(sessions)}
-
-
 class Server:
     """tests/soak/many.c on some ranks: cases one after another in one process, as long as it lives."""
 
@@ -514,7 +506,7 @@ def check_mutated(soak, seed, text, share):
 
 
 def soak_cases(soak, args):
-    listing = subprocess.run([soak.program, "-case_keys"], capture_output=True, text=True, env={**os.environ, **ENVIRONMENT}).stdout
+    listing = call("-case_keys", program=str(soak.program))
     keys = re.findall(r"^\| `([^`]+)`", listing, re.M)
     bases = [p.read_text() for p in sorted([*ROOT.glob("cases/*/case.yaml"), *ROOT.glob("tests/*/cases/*.yaml")])]
     count = collections.Counter()

@@ -21,6 +21,10 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import clathra
+import plot_bp2
+import plot_masuda
+
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "results" / "verification"
 PAGE, FIGURES = ROOT / "docs" / "verification.md", ROOT / "docs" / "figures"
@@ -102,16 +106,11 @@ def run_test(path, program):
 
 def figures(program):
     """Both cases of BP2 and Masuda's core as they stand, then the figures."""
-    from common import environment
-
-    runs = {"bp2_case2": ("bp2",), "bp2_case1": ("bp2", "-mat_sediment_kinetics_active", "no"), "masuda": ("masuda",)}
-    for name, (case, *options) in runs.items():
-        command = [str(program), str(ROOT / "cases" / case), "-quiet", *options, "-output_dir", str(RESULTS / name)]
-        subprocess.run(command, env=environment(), check=True, stdin=subprocess.DEVNULL,
-                       stdout=subprocess.DEVNULL)  # fmt: skip
-    subprocess.run([sys.executable, str(ROOT / "scripts" / "plot_bp2.py"), str(RESULTS / "bp2_case1"),
-                    str(RESULTS / "bp2_case2"), str(FIGURES)], check=True)  # fmt: skip
-    subprocess.run([sys.executable, str(ROOT / "scripts" / "plot_masuda.py"), str(RESULTS / "masuda"), str(FIGURES)], check=True)
+    bp2, masuda = (clathra.Case(ROOT / "cases" / name, program) for name in ("bp2", "masuda"))
+    for name, case in (("bp2_case2", bp2), ("bp2_case1", bp2.with_(mat_sediment_kinetics_active=False)), ("masuda", masuda)):
+        case.run(RESULTS / name, options=("-quiet",))
+    plot_bp2.main([RESULTS / "bp2_case1", RESULTS / "bp2_case2", FIGURES])
+    plot_masuda.main([RESULTS / "masuda", FIGURES])
     subprocess.run([sys.executable, str(ROOT / "tests" / "verification" / "strip_load.py"), str(program),
                     str(FIGURES / "strip_load.png")], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
 
