@@ -7,9 +7,10 @@ the curves from `CLATHRA CASE -case_curves`: nothing is computed here but K_d of
 import functools
 import math
 import re
-import subprocess
 import sys
 from pathlib import Path
+
+from clathra.program import call
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE, EQUATIONS, FIGURES = ROOT / "docs" / "laws.md", ROOT / "docs" / "equations.md", ROOT / "docs" / "figures"
@@ -54,17 +55,10 @@ SYMBOLS = [  # as formulas write it; what it is; SI unit
 ]  # fmt: skip
 
 
-def run(binary, *options):
-    done = subprocess.run([binary, *options], capture_output=True, text=True, timeout=60)
-    if done.returncode:
-        raise SystemExit(f"{' '.join(map(str, options))}: {done.stdout}{done.stderr}")
-    return done.stdout
-
-
 @functools.cache
 def keys(binary):
     """[(key without mat_<name>_, kind, unit, range, default, meaning)] of materials, and strength_factor."""
-    rows = [[w.strip() for w in line.strip("|\n").split(" | ")] for line in run(binary, "-case_keys").splitlines() if line.startswith("| `")]
+    rows = [[w.strip() for w in line.strip("|\n").split(" | ")] for line in call("-case_keys", program=binary).splitlines() if line.startswith("| `")]
     return [(re.sub(r"`(mat_<name>_)?", "", r[0].strip("| ")), *r[1:6]) for r in rows if "mat_<name>" in r[0] or r[0].strip("| ") == "`strength_factor`"]
 
 
@@ -93,7 +87,7 @@ def curves(binary, name, variation):
     for key, value in zip(words[::2], words[1::2]):
         unit = units.get(key, "")
         options += [f"-mat_{MATERIAL}_{key}", f"{value} {unit}" if re.fullmatch(r"[-+.\de]+", value) and unit else value]
-    text = run(binary, CASE, "-case_curves", *options)
+    text = call(CASE, "-case_curves", *options, program=binary)
     block = re.search(rf"^# {name} of {MATERIAL}: (.*)\n((?:[^#].*\n)+)", text, re.M)
     return block[1].split(", "), [[float(v) for v in line.split(",")] for line in block[2].splitlines()]
 

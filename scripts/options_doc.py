@@ -6,9 +6,10 @@ tests/docs.py holds them against what src/ reads.  --check writes nothing and fa
 """
 import difflib
 import re
-import subprocess
 import sys
 from pathlib import Path
+
+from clathra.program import call
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "options.md"
@@ -111,7 +112,7 @@ are then in seconds: {plain}, and the same of a stage.
 
 def case_keys(binary):
     """What the program says about the keys of a case, as Markdown."""
-    return subprocess.run([binary, "-case_keys"], check=True, capture_output=True, text=True).stdout
+    return call("-case_keys", program=binary)
 
 
 def plain_keys():

@@ -19,6 +19,7 @@ ENVIRONMENT = {
     "PRTE_MCA_hwloc_default_binding_policy": "none",
 }  # fmt: skip
 PATIENCE = 60.0  # s in which a run that is to stop ends its step and saves itself; then it is killed
+BEGINS = 5.0  # s after which it has begun, though it has no row: a signal while MPI begins is lost, or kills it
 ENDED = re.compile(r"^(Given up at .*|Ended by .*|Ended before .*)$", re.M)
 LOG = re.compile(r"^(clathra: warning: .*|-{20,}\n(?:.*\n)*?-{20,}|mpiexec: Forwarding .*)\n?", re.M)  # what is no error: warnings, and mpiexec's words on the end of a rank
 
@@ -81,6 +82,7 @@ def stop_all(jobs=None):
     jobs = list(_living if jobs is None else jobs)
     for job in jobs:
         job.signal()
+        job.end(0.0)  # which sends it
     for job in jobs:
         job.stop()
 
@@ -103,7 +105,7 @@ class Job:
             raise Refused(f"ranks = {ranks} is below 1", folder=folder)
         self.command = [*(("mpiexec", "-n", str(ranks)) if ranks > 1 else ()), *map(str, command)]
         self.folder, self.code, self.usage, self.stopped, self._given = folder, None, None, False, given
-        self._before = None if restarts else self._rows()
+        self._before, self._restarts, self._asked, self._begun = self._rows(), restarts, False, time.monotonic()
         self._session = tempfile.mkdtemp(prefix="clathra-mpi-")
         self._texts = [tempfile.TemporaryFile() for _ in range(2)]
         self._process = None
@@ -135,14 +137,14 @@ class Job:
     def _rows(self):
         """What tells that a run has written its first row."""
         try:
-            found = os.stat(Path(self.folder or "") / "balance.csv")
-        except OSError:
+            found = os.stat(Path(self.folder) / "balance.csv")
+        except (OSError, TypeError):  # there is none, or no folder
             return None
         return found.st_mtime_ns, found.st_ino, found.st_size
 
     def progress(self):
         """How far it is: Progress(step, time, end, share)."""
-        if self.folder is not None and self._rows() != self._before:
+        if self.folder is not None and (self._restarts or self._rows() != self._before):
             try:
                 return Run(self.folder).progress
             except NoRun:
@@ -162,9 +164,12 @@ class Job:
 
     def _reap(self, timeout):
         """Has it ended within so many seconds?  With its exit code, and what it took."""
-        last, pause = time.monotonic() + (timeout or 0.0), 1e-3
+        last, pause = float("inf") if timeout is None else time.monotonic() + timeout, 1e-3
         while True:
-            pid, status, usage = os.wait4(self._process.pid, os.WNOHANG if timeout is not None else 0)
+            if self._asked and (self._rows() != self._before or time.monotonic() - self._begun > BEGINS):
+                self._asked = False
+                os.kill(self._process.pid, signal.SIGUSR1)
+            pid, status, usage = os.wait4(self._process.pid, os.WNOHANG)
             if pid:
                 self.code = self._process.returncode = os.waitstatus_to_exitcode(status)
                 self.usage = usage
@@ -198,10 +203,9 @@ class Job:
         return Run(self.folder)
 
     def signal(self):
-        """Asks it, once, to end after its step with a checkpoint.  (SIGUSR1 is what mpiexec hands on.)"""
+        """Asks it, once, to end after its step with a checkpoint: whoever waits for it then sends SIGUSR1, which mpiexec hands on."""
         if not self.stopped and self.code is None:
-            self.stopped = True
-            os.kill(self._process.pid, signal.SIGUSR1)
+            self.stopped = self._asked = True
 
     def stop(self, patience=PATIENCE):
         """Ends it, if it still runs, after its step and with a checkpoint; kills it if that takes more than `patience` s.  Returns its exit
@@ -216,24 +220,26 @@ class Job:
         return self._kill()
 
     def _kill(self):
-        if self.code is None:
-            try:
-                os.killpg(self._process.pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
+        """At once: by SIGTERM, with which mpiexec ends its ranks, or else by SIGKILL."""
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            if self.end(0.0) is None:
+                os.killpg(self._process.pid, number)
+                self.end(5.0)
         return self.end()
 
     def sentence(self):
         """Why it did not come to its end, in the program's words."""
         ended, errors = ENDED.findall(self.said), LOG.sub("", self.errors).strip().splitlines()
-        if self.code < 0:
-            return f"{self.command[0]} was killed by {signal.Signals(-self.code).name}"
+        number = -self.code if self.code < 0 else self.code - 128  # mpiexec adds 128
+        if number in signal.valid_signals():
+            early = self.stopped and number == signal.SIGUSR1
+            return f"{self.command[0]} was {'stopped before its first step' if early else f'killed by signal {number}'}"
         words = ended[-1:] if ended else errors or self.output.strip().splitlines()[-1:] or ["it said nothing"]
         return "\n".join(words)
 
     def fail(self):
         """Raises what its exit code stands for."""
-        kind = {2: Refused, 3: GaveUp, 4: Ended}.get(self.code, Failed)
+        kind = {2: Refused, 3: GaveUp, 4: Ended}.get(self.code, Ended if self.stopped else Failed)
         raise kind(f"{self.sentence()} (exit code {self.code})", self.code, self.said, self.folder)
 
 

@@ -109,9 +109,20 @@ def under_way():
     while not job.progress().step:
         time.sleep(0.02)
     os.kill(int(running(OUT / "parts")[0]), signal.SIGKILL)
-    refuses("a killed run", clathra.Failed, job.wait, "SIGKILL", code=-signal.SIGKILL)
+    refuses("a killed run", clathra.Failed, job.wait, "signal 9", code=-signal.SIGKILL)
+    job = case.start(OUT / "early", ranks=2)
+    check_true("on two ranks, stopped as it starts: with a checkpoint", job.stop() == 4 and (OUT / "early" / "checkpoint.h5").is_file(), job.code)
     run = CASE.with_(time_end=10).run(OUT / "ranks", ranks=2)
     check_true("on two ranks", run.finished and "2 ranks:" in run.summary, run.summary[-200:])
+
+
+def deaf():
+    """A program that does not end is killed; so is what it started."""
+    script = OUT / "deaf"
+    script.write_text("#!/bin/sh\ntrap '' USR1\nsleep 60\n")
+    script.chmod(0o755)
+    job = clathra.Job([script])
+    check_true("a program that does not stop is killed", job.stop(0.1) == -signal.SIGTERM and "killed by signal 15" in job.sentence() and not running(script), job.sentence())
 
 
 def iter_until(job, there):
@@ -157,7 +168,7 @@ clathra.calibrate(case, {{"mat_clay_porosity": (0.2, 0.5)}}, {{"base.p_Pa": (1, 
         check_true(f"... and {'the rest works' if works else 'nothing else'}", done.stdout.startswith("[0, 0] ") == works, done.stdout)
 
 
-for part in (cases, wrong, under_way, left_alone, lacking):
+for part in (cases, wrong, under_way, deaf, left_alone, lacking):
     begun = time.monotonic()
     part()
     print(f"{part.__name__}: {time.monotonic() - begun:.1f} s")
