@@ -1,4 +1,5 @@
 """A case that is to run: from a dict or from one that is there, with changes."""
+import copy
 import functools
 import re
 import tempfile
@@ -68,6 +69,12 @@ def _plain(value):
     return [_plain(v) for v in value] if isinstance(value, (list, tuple)) else value
 
 
+def _form(key):
+    """(key, form) of a function of time whose form stands in its key: bc_load_normal_ramp; (key, None) of another."""
+    base, _, form = key.rpartition("_")
+    return (base, form) if form in FORMS and base else (key, None)
+
+
 def find_case(name, program=None):
     """A case's folder or file, or a shipped one by its name."""
     is_case = lambda path: path.is_file() or (path / "case.yaml").is_file()
@@ -109,42 +116,38 @@ class Case:
 
     def with_(self, changes=None, **keys):
         """The case with other keys (a dict, nested or flat, or names); None takes a change back, or the key of a dict away."""
-        found = Case.__new__(Case)
-        found.__dict__.update(self.__dict__, changes={**self.changes, **flat(_plain({**(changes or {}), **keys}))})
-        found.changes = {k: v for k, v in found.changes.items() if v is not None}
+        found, new = copy.copy(self), flat(_plain({**(changes or {}), **keys}))
+        replaced = {_form(key)[0] for key in new}  # in whatever form of a function of time
+        found.changes = {k: v for k, v in {**{k: v for k, v in self.changes.items() if _form(k)[0] not in replaced}, **new}.items() if v is not None}
         return found
 
     def _value(self, key, value):
         """With the units that bare numbers lack, and files of a dict by their whole path."""
+        base, form = _form(key)
+        values = value
         if isinstance(value, dict):
             form, values = next(iter(value.items()))
-            if form == "csv" and self.path is None:
-                file, *column = values if isinstance(values, list) else [values]
-                return {form: [str(Path(file).resolve()), *column]}
-        else:
-            form, values = None, value
-        base = key
-        if form is None and key.rpartition("_")[2] in FORMS:
-            base, _, form = key.rpartition("_")
-        if not _bare(values):
-            return value
-        unit = next((unit for pattern, unit in _units(self.program) if pattern.fullmatch(base) or pattern.fullmatch(key)), "")
-        if not unit:
-            return value
-        change = "K" if unit == "degC" else unit
-        units = {"ramp": (unit, unit, "s", "s"), "rate": (unit, f"{change}/s", "s", "s"), "table": ("s", unit), "piecewise": ("s", unit),
-                 "sine": (unit, *(change, "s", "s") * 99)}.get(form, (unit,))  # fmt: skip
-        worded = _in_units(values, units)
-        return {form: worded} if isinstance(value, dict) else worded
+        if form == "csv" and self.path is None:
+            file, *column = values if isinstance(values, list) else values.split(",")
+            values = [str(Path(file).resolve()), *column]
+        unit = next((unit for pattern, unit in _units(self.program) if pattern.fullmatch(base)), "") if _bare(values) else ""
+        if unit:
+            change = "K" if unit == "degC" else unit
+            units = {"ramp": (unit, unit, "s", "s"), "rate": (unit, f"{change}/s", "s", "s"), "table": ("s", unit), "piecewise": ("s", unit),
+                     "sine": (unit, *(change, "s", "s") * 99)}  # fmt: skip
+            values = _in_units(values, units.get(form, (unit,)))
+        return {form: values} if isinstance(value, dict) else values
 
     def _options(self):
         """Changes of a file, as options."""
-        words = []
+        words, heads = [], {pattern.pattern.split("_")[0] for pattern, _ in _units(self.program)}
         for key, value in self.changes.items():
-            heads = {pattern.pattern.split("_")[0] for pattern, _ in _units(self.program)}
             if key.split("_")[0] not in (*heads, *SOLVER):
                 raise Refused(f"{key} = {words_of(value)}: unknown key (clathra -case_keys lists all)")
-            words += [f"-{key}", words_of(self._value(key, value))]
+            value = self._value(key, value)
+            if _form(key)[1] and isinstance(value, list) and all(isinstance(pair, list) for pair in value):
+                value = sum(value, [])  # an option takes the numbers of pairs one after the other
+            words += [f"-{key}", words_of(value)]
         return words
 
     def text(self):

@@ -29,6 +29,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .case import find_case
 from .program import Job, find_program
 from .run import Run
 from .tables import missing
@@ -59,7 +60,7 @@ def positive(text):
 def arguments(words):
     p = argparse.ArgumentParser(prog="clathra strength", usage="%(prog)s CASE [options] [-- OPTIONS OF CLATHRA]", description=__doc__,
                                 formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
-    p.add_argument("case", metavar="CASE", help="folder with a case.yaml, or such a file")
+    p.add_argument("case", metavar="CASE", help="folder with a case.yaml, such a file, or the name of a shipped case")
     p.add_argument("--low", type=positive, default=1.0, metavar="F", help="lower end of the bracket to begin with (1); it is widened where the body fails there")
     p.add_argument("--high", type=positive, default=2.0, metavar="F", help="upper end (2); widened where the body stands")
     p.add_argument("--tol", type=positive, default=0.05, metavar="D", help="width of the bracket to end with (0.05)")
@@ -220,6 +221,7 @@ def reduce(program, a, options, folder):
 
 def main(words):
     a, options = arguments(words)
+    a.case = find_case(a.case)
     if a.out:
         Path(a.out).mkdir(parents=True, exist_ok=True)
         reduce(find_program(), a, options, Path(a.out))

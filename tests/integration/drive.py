@@ -68,6 +68,8 @@ def cases():
     check_true("a shipped case with changes, nested and flat", (found["mat_clay_porosity"], found["grid_cells"], found["time_end"], found["output_times"]) == (0.3, [8, 1], 3600, [60, 3600])
                and found["bc_load_normal"] == {"table": [0, 1e5, 60, 2e5]} and was["mat_clay_porosity"] == 0.4, found["bc_load_normal"])  # fmt: skip
     check_true("... one of which is taken back", changed.with_(mat_clay_porosity=None).resolved()["mat_clay_porosity"] == 0.4)
+    forms = [c.with_(bc_load_normal_table=[[0, 1e5], [60, 2e5]]).resolved()["bc_load_normal"] for c in (changed, CASE)]
+    check_true("... of which another form takes the place", forms == [{"table": [0, 1e5, 60, 2e5]}] * 2, forms)
     changed.write(OUT / "changed.yaml")
     kept = clathra.Case(OUT / "changed.yaml", binary()).resolved()
     check_true("... is written with all its keys", kept == found)
