@@ -1,4 +1,4 @@
-"""clathra COMMAND ..., or python3 -m clathra COMMAND ...: what the program leaves to Python.
+"""clathra COMMAND ...: what the program leaves to Python.
 
   strength CASE                          factor of safety by strength reduction
   sweep CASE KEY=A,B,C ...               a case for several values of its keys
