@@ -3,7 +3,9 @@
 
 Usage: extending.py CLATHRA   (the program as it is, to compare with)
 """
+import json
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -139,12 +141,22 @@ def build(tree):
     """The program of a tree; headers of PETSc read once and no symbols for a debugger take two thirds of the time."""
     folder, once = tree / "build", tree / "once.cmake"
     once.write_text("cmake_language(DEFER CALL target_precompile_headers clathra_core PRIVATE <petscsnes.h> <petscdmda.h> <petscsf.h>)\n")
-    for command in (["cmake", "-S", tree, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS_DEBUG=-O0", "-DCLATHRA_TESTS=OFF", f"-DCMAKE_PROJECT_INCLUDE={once}"],
+    for command in (["cmake", "-S", tree, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_C_FLAGS_DEBUG=-O0", "-DCLATHRA_TESTS=OFF", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+                     f"-DCMAKE_PROJECT_INCLUDE={once}"],
                     ["cmake", "--build", folder, "--target", "clathra"]):  # fmt: skip
         done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode:
             sys.exit("\n".join(done.stdout.splitlines()[-30:]))
     return folder / "clathra"
+
+
+def in_space(tree):
+    """What the compiler says of the files that the page changes, as those of the program of three axes."""
+    units = [u for u in json.loads((tree / "build" / "compile_commands.json").read_text()) if "-DCL_DIM=3" in u["command"]]
+    changed = {str(tree / name) for name, _ in blocks() if name.endswith(".c")}
+    said = [subprocess.run(shlex.split(u["command"].split(" -o ")[0]) + ["-o", "/dev/null", "-c", u["file"]], cwd=u["directory"], capture_output=True, text=True).stderr
+            for u in units if u["file"] in changed]  # fmt: skip
+    return len(said), "".join(said)
 
 
 def costs():
@@ -172,6 +184,8 @@ for name, row, more in ( # a variable of more components than any other
     text = (tree / name).read_text()
     (tree / name).write_text(text.replace(row, row + more, 1))
 extended = build(tree)
+compiled, complaints = in_space(tree)
+check_true("the files of the program of three axes compile without a warning", compiled > 10 and not complaints, f"{compiled}\n{complaints[:2000]}")
 
 BP2 = [ROOT / "cases" / "bp2", "-mat_sediment_kinetics_active", "no", "-time_end", "100 s", "-output_times", "100 s", "-stepper_adapt", "no"]
 STEPS = {"euler2": "10 s", "euler": "5 s"}
