@@ -143,13 +143,13 @@ enum {
 /* One of them: when and where it left, and the mass of all that it held. */
 typedef struct {
   double id, region, t, x[CL_DIM], mass; /* whole numbers; s, m, kg */
-} Leaver;
+} LeavingParticle;
 /* Particles of this rank that left in the last step or burst. */
 typedef struct {
-  bool     removes; /* they are taken out; else the step is refused */
-  PetscInt n, cap;
-  Leaver  *one; /* [n] */
-  double   sum[REMOVED_COUNT];
+  bool             removes; /* they are taken out; else the step is refused */
+  PetscInt         n, cap;
+  LeavingParticle *one; /* [n] */
+  double           sum[REMOVED_COUNT];
 } Leaving;
 
 typedef struct {
@@ -321,7 +321,7 @@ void ModelAddEnergies(const Model *m, PetscInt p, double energy[ENERGY_COUNT]);
    wished. */
 PetscErrorCode ModelTakeOut(Model *m, double t);
 /* Nothing has left in this step or burst. */
-void ModelForgetLeavers(Model *m);
+void ModelForgetLeaving(Model *m);
 
 /* SNES callbacks, exposed for tests. */
 PetscErrorCode ModelResidual(SNES snes, Vec X, Vec R, void *model);

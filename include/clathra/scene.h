@@ -315,7 +315,7 @@ static inline bool SceneCarriesHeat(const Scene *c)
 }
 
 /* Does (444) act? */
-static inline bool SceneThinCells(const Scene *c)
+static inline bool SceneHasLongCells(const Scene *c)
 {
   return CL_DIM == 2 && c->fields.heat;
 }

@@ -332,9 +332,9 @@ bool StepperHeatsHydrate(const Stepper *s);
 double StepperHeldLevel(const Stepper *s);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
 void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
-/* leave.c: what left the grid in the accepted step or burst goes into the state, and a line says so for each particle;
-   a run that has none left is broken.  Collective. */
-PetscErrorCode StepperBookLeavers(Stepper *s);
+/* leaving.c: what left the grid in the accepted step or burst goes into the state, and a line says so for each
+   particle; a run that has none left is broken.  Collective. */
+PetscErrorCode StepperCountLeaving(Stepper *s);
 /* What is missing, of the initial mass of water and methane (of nothing: kg) and of the heat that warms the body by 1
  * K.
  */

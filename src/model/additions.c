@@ -16,8 +16,8 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscCalloc1(PHASE_COUNT * m->stencil_cap, &to->spread));
   if (SceneCarriesHeat(m->c))
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
-  if (SceneThinCells(m->c))
-    PetscCall(PetscCalloc1(m->stencil_cap, &to->thin));
+  if (SceneHasLongCells(m->c))
+    PetscCall(PetscCalloc1(m->stencil_cap, &to->long_cell));
   if (m->c->stabilisation.lumped_reaction && fs->phase[PHASE_G])
     PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));
   if (SceneHoldsReaction(m->c))
@@ -120,8 +120,8 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
     SpreadOf(m, p, q, &to->spread[PHASE_COUNT * p]);
   if (to->upwind)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
-  if (to->thin)
-    to->thin[p] = ThinOf(m, p, q->kappa);
+  if (to->long_cell)
+    to->long_cell[p] = LongCellConductivity(m, p, q->kappa);
   if (to->held)
     to->held[p] = HeldOf(m, p, q);
   if (to->exchange)

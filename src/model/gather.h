@@ -199,9 +199,9 @@ void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, d
 void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (444) at t_n over the volume: kappa (W/(m K)) by how much longer than wide the particle's cell is, W m/K; what it
    adds to the rows of heat of the particle's nodes, and to their blocks. */
-double ThinOf(const Model *m, PetscInt p, double kappa);
-void   ThinResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
-void   ThinBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
+double LongCellConductivity(const Model *m, PetscInt p, double kappa);
+void   LongCellResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void   LongCellBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (332)-(334): where each particle's gas comes from at t_n, all ranks. */
 PetscErrorCode DonorBuild(Model *m);
 /* (353), (354): what they need of a particle at t_n; the change at the end of the step. */
@@ -241,12 +241,12 @@ double GhostPower(const Model *m, const double *x); /* that the penalty on v_s t
 /* What Newton's update may change at once, and how far it goes (415): before every line search. */
 #define CL_LIMIT_J 0.5 /* volumetric strain of a step */
 PetscErrorCode ModelLimitUpdate(SNESLineSearch ls, Vec X, Vec Y, PetscBool *changed, void *model);
-/* Where gas may vanish (slave.c): do fluid velocities follow (16)?  X with those that do; what an update led to, with
-   them. */
-bool           ModelSlaves(const Model *m);
-PetscErrorCode ModelSlave(Model *m, Vec X);
-PetscErrorCode ModelSlaveUpdated(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y, PetscBool *changed_W,
-                                 void *model);
+/* Where gas may vanish (fluid_velocities.c): do fluid velocities follow (16)?  X with those that do; what an update led
+   to, with them. */
+bool           ModelVelocitiesFollow(const Model *m);
+PetscErrorCode ModelVelocitiesOfPressures(Model *m, Vec X);
+PetscErrorCode ModelVelocitiesAfterUpdate(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y,
+                                          PetscBool *changed_W, void *model);
 PetscErrorCode ModelResizeNodal(Model *m);
 /* Room for what the scheme adds to particles (additions.c), and where a stage of the run may change it; of particle p,
    whose properties at t_n are q. */

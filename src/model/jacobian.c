@@ -294,7 +294,7 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
       PatchAt(m, &target[k], &r, &patch[k]);
       ParticleBlock(m, &target[k], p, &r, x, &o, &slopes[k], &patch[k]);
       LumpBlock(m, &target[k], p, &r);
-      ThinBlock(m, &target[k], p, &r);
+      LongCellBlock(m, &target[k], p, &r);
     }
   }
   for (int k = 0; k < ntarget; k++)

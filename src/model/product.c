@@ -162,7 +162,7 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
         BedsChange(m, first + c, &r[c], dx);
       if (!momentum) {
         LumpResidual(m, p, &r[c], dx, f);
-        ThinResidual(m, p, &r[c], dx, f);
+        LongCellResidual(m, p, &r[c], dx, f);
       }
     }
   }

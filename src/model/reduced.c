@@ -142,7 +142,7 @@ PetscErrorCode ReducedCreate(Model *m)
     PetscCall(RigidMotions(m, &r->rigid));
   PetscCall(VecCreateMPI(m->grid.comm, r->fs.n * m->map.n_owned, PETSC_DETERMINE, &r->b));
   PetscCall(VecDuplicate(r->b, &r->y));
-  PetscCall(VecDuplicate(m->solver->X, &r->slaved));
+  PetscCall(VecDuplicate(m->solver->X, &r->velocity_rows));
   PetscCall(VecDuplicate(m->solver->X, &r->diagonal));
   if (r->split)
     PetscCall(ReducedPreferences(r->groups > 1 || !r->fs.solid, r->fs.solid));
@@ -170,7 +170,7 @@ PetscErrorCode ReducedDestroy(Reduced **reduced)
   PetscCall(MatNullSpaceDestroy(&r->rigid));
   PetscCall(VecDestroy(&r->b));
   PetscCall(VecDestroy(&r->y));
-  PetscCall(VecDestroy(&r->slaved));
+  PetscCall(VecDestroy(&r->velocity_rows));
   PetscCall(VecDestroy(&r->diagonal));
   PetscCall(PetscFree(r->value));
   PetscCall(PetscFree(*reduced));
@@ -275,8 +275,9 @@ static PetscErrorCode Prolong(const Model *m, const Reduced *r, Vec R, Vec Y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fluid velocities of Y from their rows (16), which couple them with nothing but themselves and what `slaved` holds. */
-static PetscErrorCode SolveSlaved(const Model *m, const Reduced *r, Vec R, Vec Y)
+/* Fluid velocities of Y from their rows (16), which couple them with nothing but themselves and what `velocity_rows`
+ * holds. */
+static PetscErrorCode SolveVelocities(const Model *m, const Reduced *r, Vec R, Vec Y)
 {
   const FieldSet *fs = &m->c->fields;
   const double   *a, *s, *d;
@@ -284,7 +285,7 @@ static PetscErrorCode SolveSlaved(const Model *m, const Reduced *r, Vec R, Vec Y
 
   PetscFunctionBeginUser;
   PetscCall(VecGetArrayRead(R, &a));
-  PetscCall(VecGetArrayRead(r->slaved, &s));
+  PetscCall(VecGetArrayRead(r->velocity_rows, &s));
   PetscCall(VecGetArrayRead(r->diagonal, &d));
   PetscCall(VecGetArray(Y, &x));
   for (PetscInt k = 0; k < m->map.n_owned * fs->n; k++) {
@@ -295,7 +296,7 @@ static PetscErrorCode SolveSlaved(const Model *m, const Reduced *r, Vec R, Vec Y
   }
   PetscCall(VecRestoreArray(Y, &x));
   PetscCall(VecRestoreArrayRead(r->diagonal, &d));
-  PetscCall(VecRestoreArrayRead(r->slaved, &s));
+  PetscCall(VecRestoreArrayRead(r->velocity_rows, &s));
   PetscCall(VecRestoreArrayRead(R, &a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -307,10 +308,10 @@ static PetscErrorCode RecoverVelocities(Model *m, Reduced *r, Vec R, Vec Y)
   if (r->fs.n == m->c->fields.n)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (m->solver->product)
-    PetscCall(ProductMult(m, true, Y, r->slaved));
+    PetscCall(ProductMult(m, true, Y, r->velocity_rows));
   else
-    PetscCall(MatMult(m->solver->J2, Y, r->slaved));
-  PetscCall(SolveSlaved(m, r, R, Y));
+    PetscCall(MatMult(m->solver->J2, Y, r->velocity_rows));
+  PetscCall(SolveVelocities(m, r, R, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -322,8 +323,8 @@ PetscErrorCode ReducedGuess(Model *m, Vec R, Vec Y)
   PetscCall(VecSet(Y, 0.0));
   if (r->fs.n == m->c->fields.n)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecSet(r->slaved, 0.0));
-  PetscCall(SolveSlaved(m, r, R, Y));
+  PetscCall(VecSet(r->velocity_rows, 0.0));
+  PetscCall(SolveVelocities(m, r, R, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

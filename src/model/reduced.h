@@ -20,7 +20,7 @@ struct Reduced {
   KSP          ksp;                          /* null between steps */
   MatNullSpace rigid;                        /* null without motion */
   Vec          b, y;                         /* owned nodes: all of a group, then all of the next */
-  Vec          slaved, diagonal; /* of the scene's set, rows (16) of the Jacobian: times y, their diagonal */
+  Vec          velocity_rows, diagonal; /* of the scene's set, rows (16) of the Jacobian: times y, their diagonal */
 };
 
 /* Is unknown k of node I a prescribed one? */

@@ -82,7 +82,7 @@ static void ParticleLoop(Model *m, const double *x, double *f)
     m->limited += state.limited;
     ParticleScatter(m, p, &r, x, o.out);
     LumpResidual(m, p, &r, x, f);
-    ThinResidual(m, p, &r, x, f);
+    LongCellResidual(m, p, &r, x, f);
   }
   NodeLoop(m, x, f);
 }

@@ -96,8 +96,8 @@ static PetscErrorCode JacobianChoose(SNES snes, PetscInt it, double residual, Mo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define NEARLY 0.5 /* of the last residual: what an iteration of the second half may leave at most */
-#define SLAVED 0.1 /* fluid momentum: where a phase hardly moves, round-off of its drag stands at 1e-9 */
+#define NEARLY 0.5             /* of the last residual: what an iteration of the second half may leave at most */
+#define MOMENTUM_TOLERANCE 0.1 /* fluid momentum: where a phase hardly moves, round-off of its drag stands at 1e-9 */
 
 /* Converged when every field's residual and update are small in units of 1 MPa and 1 K. */
 static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
@@ -126,7 +126,8 @@ static PetscErrorCode Converged(SNES snes, PetscInt it, PetscReal xnorm, PetscRe
   for (int q = F_PW; q <= F_T; q++)
     residual[q] *= CONSERVATION;
   for (int q = F_VW; q < F_PW; q++)
-    residual[q] *= SLAVED, update[q] = 0.0; /* slaved to the pressures by (16): their residual says it all */
+    residual[q] *= MOMENTUM_TOLERANCE,
+        update[q] = 0.0; /* they follow the pressures by (16): their residual says it all */
   const double r = Largest(residual, &fr), u = Largest(update, &fu);
   PetscCall(PetscInfo(snes, "Newton %" PetscInt_FMT ": largest residual %.3e (%s), largest update %.3e (%s)\n", it, r,
                       cl_field[fr].equation, u, cl_field[fu].name));
@@ -193,7 +194,7 @@ static PetscErrorCode CreateSolver(Model *m)
   PetscCall(SNESGetLineSearch(m->solver->snes, &ls));
   PetscCall(SNESLineSearchSetType(ls, SNESLINESEARCHNONE));
   PetscCall(SNESLineSearchSetPreCheck(ls, ModelLimitUpdate, m));
-  PetscCall(SNESLineSearchSetPostCheck(ls, ModelSlaveUpdated, m));
+  PetscCall(SNESLineSearchSetPostCheck(ls, ModelVelocitiesAfterUpdate, m));
   PetscCall(SNESGetKSP(m->solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPFGMRES)); /* keeps what the preconditioner gave, where GMRES applies it once more */
   PetscCall(KSPSetTolerances(ksp, 1e-6, 0.02 * m->solver->tol_residual, PETSC_DEFAULT, 60));
@@ -310,7 +311,7 @@ static bool IsDue(const Model *m, int attempt, SNESConvergedReason reason)
   case WITH_LU:
     return linear && s->reduces;
   case SEARCHED:
-    return reason == SNES_DIVERGED_MAX_IT && (m->c->fields.has & HAS_PLASTIC) && !ModelSlaves(m);
+    return reason == SNES_DIVERGED_MAX_IT && (m->c->fields.has & HAS_PLASTIC) && !ModelVelocitiesFollow(m);
   default:
     return s->searches && linear && s->reduces;
   }
@@ -333,7 +334,7 @@ static PetscErrorCode Attempt(Model *m, int attempt, const double *x, PetscInt *
     PetscCall(PreconditionerFallBack(m));
   PetscCall(SNESSetMaxLinearSolveFailures(s->snes, last ? 4 : 1));
   PetscCall(FirstGuess(m, x));
-  PetscCall(ModelSlave(m, s->X));
+  PetscCall(ModelVelocitiesOfPressures(m, s->X));
   PetscCall(SNESSolve(s->snes, NULL, s->X));
   PetscCall(SNESGetConvergedReason(s->snes, reason));
   PetscCall(SNESGetIterationNumber(s->snes, &its));

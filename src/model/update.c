@@ -146,7 +146,7 @@ static PetscErrorCode Shorten(const Model *m, Vec X, Vec Y, bool *shorter)
 /* Are updates shortened until the residual falls? */
 static bool Searches(const Model *m)
 {
-  return ModelSlaves(m) || m->solver->searches; /* (426) */
+  return ModelVelocitiesFollow(m) || m->solver->searches; /* (426) */
 }
 
 /* Norm of the scaled residual that a share of Y leaves, fluid velocities with the pressures. */
@@ -154,7 +154,7 @@ static PetscErrorCode Leaves(SNES snes, Model *m, Vec X, double share, Vec Y, Ve
 {
   PetscFunctionBeginUser;
   PetscCall(VecWAXPY(at, -share, Y, X));
-  PetscCall(ModelSlave(m, at));
+  PetscCall(ModelVelocitiesOfPressures(m, at));
   PetscCall(SNESComputeFunction(snes, at, R));
   PetscCall(VecNorm(R, NORM_2, norm));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -97,7 +97,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
 
   PetscFunctionBeginUser;
   s->broken = false;
-  PetscCall(StepperBookLeavers(s));
+  PetscCall(StepperCountLeaving(s));
   if (s->broken)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(UpdateScales(s));
@@ -133,7 +133,7 @@ PetscErrorCode StepperAccept(Stepper *s, const Attempt *a, const StepInfo *info)
   for (int k = 0; k < ACTS_COUNT; k++)
     z->acts[k] += a->acts[k];
   PetscCall(StepperEnergyStep(s, a->work));
-  ModelForgetLeavers(s->model);
+  ModelForgetLeaving(s->model);
   if (s->monitor)
     PetscCall(s->monitor(s, info, s->monitor_ctx));
   PetscFunctionReturn(PETSC_SUCCESS);

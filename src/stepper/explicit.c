@@ -160,7 +160,7 @@ static PetscErrorCode Burst(Stepper *s, PetscInt n, double dt, Attempt *a)
   PetscFunctionBeginUser;
   m->limited  = 0;
   m->released = 0.0;
-  ModelForgetLeavers(m);
+  ModelForgetLeaving(m);
   for (PetscInt k = 0; k < n && a->status == CL_OK; k++)
     PetscCall(ExplicitStep(s->explicit, s->state.t + (double)k * dt, dt, &sum, &a->status));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof(sum) / sizeof(double), MPI_DOUBLE, MPI_SUM, m->grid.comm));

@@ -733,7 +733,7 @@ static void TestSlaved(void **state)
     const double rest = ResidualAt(s, x, F_VW, F_PW);
     Call(VecDuplicate(m->solver->X, &before));
     Call(VecCopy(m->solver->X, before));
-    Call(ModelSlave(m, m->solver->X));
+    Call(ModelVelocitiesOfPressures(m, m->solver->X));
     Call(VecAXPY(before, -1.0, m->solver->X));
     const double *d, *a;
     Call(VecGetArrayRead(before, &d));
@@ -752,7 +752,7 @@ static void TestSlaved(void **state)
     Call(VecRestoreArrayRead(m->solver->R, &a));
     Say("fluid velocities that follow (16), %s%s: residual %.1e, before %.1e; wall's drag up to %.1e Pa s m\n",
         ring ? "about an axis" : "plane", inertia ? ", inertia" : "", Largest(left), rest, Largest(wall));
-    Check(ModelSlaves(m) == !inertia && Largest(kept) == 0.0 && (Largest(wall) > 0.0) == ring);
+    Check(ModelVelocitiesFollow(m) == !inertia && Largest(kept) == 0.0 && (Largest(wall) > 0.0) == ring);
     Check(inertia ? Largest(changed) == 0.0 : rest > 1e-3 && Largest(left) < 1e-12 * rest);
     Call(VecDestroy(&before));
     Call(PetscFree(x));

@@ -1,7 +1,7 @@
 /* Conduction in cells longer than wide (444): what keeps a node from being warmed by a colder one. */
 #include "gather.h"
 
-double ThinOf(const Model *m, PetscInt p, double kappa)
+double LongCellConductivity(const Model *m, PetscInt p, double kappa)
 {
   double h[CL_DIM];
 
@@ -14,16 +14,16 @@ static bool Twist(const Model *m, PetscInt p, const Reach *r, double *stiff, dou
 {
   int at[CL_NODES][CL_DIM];
 
-  if (!m->added->thin || m->added->thin[p] == 0.0)
+  if (!m->added->long_cell || m->added->long_cell[p] == 0.0)
     return false;
   StencilNodes(&m->stencil[p], at);
   for (int a = 0; a < r->n; a++)
     twist[a] = m->stencil[p].axis[0].dS[at[a][0]] * m->stencil[p].axis[1].dS[at[a][1]];
-  *stiff = m->P.f[P_V][p] * m->added->thin[p];
+  *stiff = m->P.f[P_V][p] * m->added->long_cell[p];
   return true;
 }
 
-void ThinResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f)
+void LongCellResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f)
 {
   const FieldSet *fs = &m->c->fields;
   double          stiff, twist[CL_NODES], sum = 0.0;
@@ -36,7 +36,7 @@ void ThinResidual(const Model *m, PetscInt p, const Reach *r, const double *x, d
     *RowOf(m, f, r->node[a], F_T) += stiff * twist[a] * sum;
 }
 
-void ThinBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r)
+void LongCellBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r)
 {
   const int at = to->fs.at[F_T];
   double    stiff, twist[CL_NODES];

@@ -3,16 +3,16 @@
 #include "clathra/words.h"
 
 #define SHOWN 100 /* lines of one step or burst */
-#define WIDE (sizeof(Leaver) / sizeof(double))
+#define WIDE (sizeof(LeavingParticle) / sizeof(double))
 
 static int ByTime(const void *a, const void *b)
 {
-  const Leaver *x = a, *y = b;
+  const LeavingParticle *x = a, *y = b;
 
   return x->t != y->t ? (x->t > y->t ? 1 : -1) : x->id > y->id ? 1 : -1;
 }
 
-static PetscErrorCode Say(const Model *m, const Leaver *one, PetscInt n)
+static PetscErrorCode PrintParticles(const Model *m, const LeavingParticle *one, PetscInt n)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n && k < SHOWN; k++)
@@ -25,12 +25,12 @@ static PetscErrorCode Say(const Model *m, const Leaver *one, PetscInt n)
 }
 
 /* All of them, on the first rank. */
-static PetscErrorCode Tell(const Model *m)
+static PetscErrorCode PrintLeaving(const Model *m)
 {
-  const Leaving *l    = &m->leaving;
-  const MPI_Comm comm = m->grid.comm;
-  PetscMPIInt    mine = (PetscMPIInt)(l->n * (PetscInt)WIDE), *count, *at, total = 0;
-  Leaver        *all;
+  const Leaving   *l    = &m->leaving;
+  const MPI_Comm   comm = m->grid.comm;
+  PetscMPIInt      mine = (PetscMPIInt)(l->n * (PetscInt)WIDE), *count, *at, total = 0;
+  LeavingParticle *all;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m->grid.size, &count, m->grid.size, &at));
@@ -43,14 +43,14 @@ static PetscErrorCode Tell(const Model *m)
   PetscCallMPI(MPI_Gatherv(l->one, mine, MPI_DOUBLE, all, count, at, MPI_DOUBLE, 0, comm));
   if (m->grid.rank == 0) {
     qsort(all, (size_t)total / WIDE, sizeof(*all), ByTime);
-    PetscCall(Say(m, all, total / (PetscInt)WIDE));
+    PetscCall(PrintParticles(m, all, total / (PetscInt)WIDE));
   }
   PetscCall(PetscFree(all));
   PetscCall(PetscFree2(count, at));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StepperBookLeavers(Stepper *s)
+PetscErrorCode StepperCountLeaving(Stepper *s)
 {
   Model   *m    = s->model;
   Leaving *l    = &m->leaving;
@@ -64,7 +64,7 @@ PetscErrorCode StepperBookLeavers(Stepper *s)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < REMOVED_COUNT; k++)
     s->state.removed[k] += l->sum[k];
-  PetscCall(Tell(m));
+  PetscCall(PrintLeaving(m));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &rest, 1, MPIU_INT, MPI_SUM, m->grid.comm));
   s->broken = rest == 0;
   s->empty  = rest == 0;

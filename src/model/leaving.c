@@ -37,15 +37,15 @@ static PetscErrorCode Book(Model *m, PetscInt p, double t)
     l->cap = 2 * l->cap + 16;
     PetscCall(PetscRealloc(sizeof(*l->one) * (size_t)l->cap, &l->one));
   }
-  l->one[l->n++] = (Leaver){.id     = (double)m->P.i[PI_ID][p],
-                            .region = (double)m->P.i[PI_REGION][p],
-                            .t      = t,
-                            .mass   = phase[0] + phase[1] + phase[2]};
+  l->one[l->n++] = (LeavingParticle){.id     = (double)m->P.i[PI_ID][p],
+                                     .region = (double)m->P.i[PI_REGION][p],
+                                     .t      = t,
+                                     .mass   = phase[0] + phase[1] + phase[2]};
   ParticlePlace(&m->P, p, l->one[l->n - 1].x);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void ModelForgetLeavers(Model *m)
+void ModelForgetLeaving(Model *m)
 {
   m->leaving.n = 0;
   memset(m->leaving.sum, 0, sizeof(m->leaving.sum));

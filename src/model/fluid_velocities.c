@@ -1,7 +1,7 @@
 /* Fluid velocities that follow the pressures where gas may vanish: (414) of docs/equations.md. */
 #include "gather.h"
 
-bool ModelSlaves(const Model *m)
+bool ModelVelocitiesFollow(const Model *m)
 {
   return m->fluid && !m->c->fields.inertia && m->c->material[0].gas.trace > 0.0;
 }
@@ -25,12 +25,12 @@ static void FollowPressures(const Model *m, PetscInt I, double *a)
   }
 }
 
-PetscErrorCode ModelSlave(Model *m, Vec X)
+PetscErrorCode ModelVelocitiesOfPressures(Model *m, Vec X)
 {
   double *a;
 
   PetscFunctionBeginUser;
-  if (!ModelSlaves(m))
+  if (!ModelVelocitiesFollow(m))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelNodesAt(m, X));
   if (m->failure.status != CL_OK)
@@ -42,8 +42,8 @@ PetscErrorCode ModelSlave(Model *m, Vec X)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ModelSlaveUpdated(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y, PetscBool *changed_W,
-                                 void *model)
+PetscErrorCode ModelVelocitiesAfterUpdate(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBool *changed_Y,
+                                          PetscBool *changed_W, void *model)
 {
   Model *m = (Model *)model;
 
@@ -52,7 +52,7 @@ PetscErrorCode ModelSlaveUpdated(SNESLineSearch ls, Vec X, Vec Y, Vec W, PetscBo
   (void)X;
   (void)Y;
   *changed_Y = PETSC_FALSE;
-  *changed_W = ModelSlaves(m) ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(ModelSlave(m, W));
+  *changed_W = ModelVelocitiesFollow(m) ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ModelVelocitiesOfPressures(m, W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
