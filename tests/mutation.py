@@ -75,7 +75,7 @@ FAULTS = [
     ("the hoop's too", MODEL + "reach.h", [("r->H[a] *= hoop;", "r->H[a] *= 1.0 + 0.0 * hoop;")]),
     ("ways to the nodes are those of the start (445)", HEADER + "particles.h", [("    v[i] = at[i];\n}\n\n/* What drives", "    v[i] += 0.0 * at[i];\n}\n\n/* What drives")]),
     ("a corner beside nodes that alternate carries heat as if it were alone (440)", "src/grid/alternation.c", [("fmin(own, fmax(", "0.0 * fmin(own, fmax(")]),
-    ("the twist of T in long cells counts two thirds (444)", MODEL + "long_cells.c", [("0.0) / 6.0;", "0.0) / 9.0;")]),
+    ("the twist of T in long cells counts two thirds (444)", "include/clathra/point_heat.h", [("0.0) / 6.0;", "0.0) / 9.0;")]),
     ("a heat source forgets its particle's volume at the start (443)", BOUNDARY + "faces.c", [("  return ParticleInitialVolume(c, x0, l);", "  return 0.0 * ParticleInitialVolume(c, x0, l) + P->f[P_V][p];")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("= m->c->stabilisation.ghost_penalty * ratio", "= 10.0 * m->c->stabilisation.ghost_penalty * ratio")]),
     ("slivers are tied until they hold half of what is beside them (351)", MODEL + "stabilise.c", [("fmax(1.0 - 4.0 * least / most, 0.0) * least", "fmax(1.0 - 2.0 * least / most, 0.0) * least")]),

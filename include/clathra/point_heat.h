@@ -14,6 +14,13 @@ INLINE double SpecificHeat(const Material *mat, int phase)
   return phase == PHASE_W ? mat->c_w : mat->c_g;
 }
 
+/* (444) over the volume, W m/K: kappa (W/(m K)) by how much longer than wide the particle's cell of widths h (m) is;
+   in the plane and about an axis. */
+INLINE double LongCellConductivity(double kappa, const double h[CL_DIM])
+{
+  return kappa * fmax(fmax(h[1] * h[1] - 2.0 * h[0] * h[0], h[0] * h[0] - 2.0 * h[1] * h[1]), 0.0) / 6.0;
+}
+
 /* V C_m, J/K; the slopes in the masses (kg) are the specific heats. */
 INLINE double HeatCapacity(const Material *mat, double m_s, double m_h, double m_w, double m_g)
 {

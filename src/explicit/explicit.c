@@ -22,6 +22,11 @@ PetscErrorCode ExplicitCreate(Model *m, const ExplicitOptions *o, Explicit **out
   e->set = (Set){fs->solid, fs->phase[PHASE_W] + fs->phase[PHASE_G], fs->heat, Layers(e)};
   *out   = e;
 
+  for (int d = 0; d < CL_DIM && SceneHasLongCells(m->c) && !o->paper; d++) {
+    const GridLines *along = &m->grid.line[d], *across = &m->grid.line[(d + 1) % CL_DIM];
+
+    e->long_cells = e->long_cells || PetscSqr(LinesWidest(along)) > 2.0 * PetscSqr(across->h);
+  }
   e->straight = INFINITY;
   for (PetscInt k = 0; k < m->c->nmaterial && m->c->material[k].gas.trace > 0.0; k++)
     e->straight = PetscMin(e->straight, STRAIGHT * m->c->material[k].retention.p0);

@@ -167,6 +167,7 @@ struct Explicit {
                    ranks */
   double (*lean)[CL_DIM]; /* [rows] m/s, increment on the line through two nodes beyond that of the nearer (454) */
   double   *alternates;   /* [rows][CL_DIM][ALTERNATION_COUNT] (440) of T; NULL where nothing carries heat */
+  bool      long_cells;   /* are there cells in which (444) acts? */
   double   *torn;         /* [rows] of more than none: about the node particles stand open (427) */
   NodeInfo *node;         /* [rows] */
   PetscInt  nheld, *held; /* local nodes with prescribed unknowns */

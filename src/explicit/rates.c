@@ -318,6 +318,31 @@ INLINE void UpwindHeat(const Explicit *e, const Set s, Run r, const Gathered *g,
   }
 }
 
+/* (444): straight to the rows of heat, since neither S nor G is its weight. */
+INLINE void LongCells(Explicit *e, const Set s, Run r, const Weights *w, double dt, const double *restrict kappa)
+{
+  const int rows = LANES * Rows(R_Count(s)), nodes = LANES * Rows(B_Count(s));
+
+  for (int q = 0; q < r.n; q++) {
+    const int *slot = &e->slot[w->first[q]];
+    double     h[CL_DIM], twist[CL_NODES], T_xy = 0.0;
+
+    for (int d = 0; d < CL_DIM; d++)
+      h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
+    const double stiff = dt * e->m->P.f[P_V][r.p + q] * LongCellConductivity(kappa[q], h);
+    if (stiff == 0.0)
+      continue;
+    for (int n = 0; n < CL_NODES; n++) {
+      const PatchRow row = PatchRowOf(e, w, q, n / 3);
+
+      twist[n] = w->D[0][n % 3][q] * row.D[1];
+      T_xy += twist[n] * e->B[slot[row.at + n % 3] * nodes + B_T(s)];
+    }
+    for (int n = 0; n < CL_NODES; n++)
+      e->R[slot[PatchRowOf(e, w, q, n / 3).at + n % 3] * rows + s.fluids] -= stiff * twist[n] * T_xy;
+  }
+}
+
 /* Flux of mass of a fluid through the particle over the step, kg m, that its row has. */
 INLINE void GivenFlux(const Given *o, int q, int k, double flux[CL_DIM])
 {
@@ -362,6 +387,8 @@ INLINE void HeatRow(Explicit *e, const Set s, Run r, const Gathered *g, const We
   e->advected += Sum(r.n, advected);
   if (e->alternates)
     UpwindHeat(e, s, r, g, w, dt, kappa, o);
+  if (e->long_cells)
+    LongCells(e, s, r, w, dt, kappa);
 }
 
 /* (290): throttling with the fluxes above, and in the matrix what a rise of pressure gives. */

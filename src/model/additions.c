@@ -120,8 +120,12 @@ void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)
     SpreadOf(m, p, q, &to->spread[PHASE_COUNT * p]);
   if (to->upwind)
     UpwindOf(m, p, q, &to->upwind[CL_SYMMETRIC * p]);
-  if (to->long_cell)
-    to->long_cell[p] = LongCellConductivity(m, p, q->kappa);
+  if (to->long_cell) {
+    double h[CL_DIM];
+
+    CellWidths(m, p, h);
+    to->long_cell[p] = LongCellConductivity(q->kappa, h);
+  }
   if (to->held)
     to->held[p] = HeldOf(m, p, q);
   if (to->exchange)

@@ -197,11 +197,9 @@ void ChordsBuild(Model *m);
 void LumpBuild(Model *m);
 void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
 void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
-/* (444) at t_n over the volume: kappa (W/(m K)) by how much longer than wide the particle's cell is, W m/K; what it
-   adds to the rows of heat of the particle's nodes, and to their blocks. */
-double LongCellConductivity(const Model *m, PetscInt p, double kappa);
-void   LongCellResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
-void   LongCellBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
+/* (444): what it adds to the rows of heat of the particle's nodes, and to their blocks. */
+void LongCellResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
+void LongCellBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (332)-(334): where each particle's gas comes from at t_n, all ranks. */
 PetscErrorCode DonorBuild(Model *m);
 /* (353), (354): what they need of a particle at t_n; the change at the end of the step. */

@@ -1,14 +1,6 @@
 /* Conduction in cells longer than wide (444): what keeps a node from being warmed by a colder one. */
 #include "gather.h"
 
-double LongCellConductivity(const Model *m, PetscInt p, double kappa)
-{
-  double h[CL_DIM];
-
-  CellWidths(m, p, h);
-  return kappa * fmax(fmax(h[1] * h[1] - 2.0 * h[0] * h[0], h[0] * h[0] - 2.0 * h[1] * h[1]), 0.0) / 6.0;
-}
-
 /* V (m^3, at t_n) times (444) of a particle, and d2 S_I/dx dy (1/m^2) of its nodes; false: it has none. */
 static bool Twist(const Model *m, PetscInt p, const Reach *r, double *stiff, double twist[CL_NODES])
 {

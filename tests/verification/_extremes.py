@@ -76,7 +76,7 @@ def reason(code, text):
     if code == 0:
         return "finished", ""
     if code == 2:
-        lines = [s.strip() for s in text.splitlines() if re.search(r"clathra: |yaml:\d*:?|command line:", s)]
+        lines = [s.strip() for s in text.splitlines() if re.search(r"clathra: |yaml:\d*:?|command line:", s) and ": note: " not in s]
         return ("refused", lines[0]) if lines else ("silent", "exit code 2 without a word")
     if code == 3:
         return ("stopped", given_up[-1].strip()) if given_up else ("silent", "exit code 3 without a reason")

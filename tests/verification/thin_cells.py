@@ -12,6 +12,7 @@ CASE = Path(__file__).parent / "cases" / "thin_cells.yaml"
 ROW = "4.3"
 TURNED = ("-grid_upper", "4 m,2 m", "-grid_cells", "8,20", "-region_wall_upper", "4 m,2 m", "-bc_heater_side", "bottom")
 AXIS = ("-geometry", "axisymmetric", "-grid_lower", "0.1 m,0 m", "-grid_upper", "2.1 m,4 m", "-region_wall_lower", "0.1 m,0 m", "-region_wall_upper", "2.1 m,4 m")
+HYBRID = ("-stepper_type", "hybrid")
 CUT = ("-grid_lower", "-0.15 m,-0.65 m", "-grid_upper", "2.35 m,4.85 m", "-grid_cells", "25,11")
 
 
@@ -26,7 +27,8 @@ def coldest(run):
 
 
 rows = []
-for name, options, bar in (("plane", (), 0.001), ("the long axis the other one", TURNED, 0.001), ("about an axis", AXIS, 0.001), ("body that cuts cells", CUT, 0.02), ("euler", ("-stepper_type", "euler"), 0.001)):
+for name, options, bar in (("plane", (), 0.001), ("the long axis the other one", TURNED, 0.001), ("about an axis", AXIS, 0.001), ("body that cuts cells", CUT, 0.02), ("euler", ("-stepper_type", "euler"), 0.001),
+                           ("hybrid", HYBRID, 0.001), ("hybrid, the long axis the other one", (*HYBRID, *TURNED), 0.001), ("hybrid, body that cuts cells", (*HYBRID, *CUT), 0.02)):
     below = coldest(case(*options)[0])
     rows.append((name, below))
     judge(ROW, f"heater in thin cells, {name}: T below the start, of the heater's", below, bar)
@@ -47,10 +49,10 @@ LINEAR = ("-boundaries", "cold,warm", "-bc_cold_type", "temperature", "-bc_cold_
           "-bc_warm_axis", "y", "-bc_warm_position", "4 m", "-bc_warm_temperature", "18 degC", "-time_end", "4000 d", "-output_times", "4000 d")  # fmt: skip
 _, v = case(*LINEAR, "-region_wall_temperature", "14 degC")
 judge(ROW, "thin cells: steady linear T", np.max(np.abs(v["T"][:, 0] - 10 - 2 * v["position"][:, 1])), 1e-6, unit="K")
-one, two = (case(ranks=ranks)[1]["T"] for ranks in (1, 2))
-judge(ROW, "heater in thin cells: two ranks apart from one", np.max(np.abs(one - two)), 1e-9, unit="K")
-run, _ = case()
-judge(ROW, "heater in thin cells: balance of heat", np.max(np.abs(run.balance["heat_error"])), 1e-9)
+for name, options in (("sdirk2", ()), ("hybrid", HYBRID)):
+    (run, one), (_, two) = (case(*options, ranks=ranks) for ranks in (1, 2))
+    judge(ROW, f"heater in thin cells, {name}: two ranks apart from one", np.max(np.abs(one["T"] - two["T"])), 1e-9, unit="K")
+    judge(ROW, f"heater in thin cells, {name}: balance of heat", np.max(np.abs(run.balance["heat_error"])), 1e-9)
 products = [case("-newton_preconditioner", "reduced", "-newton_operator", o)[1]["T"] for o in ("assembled", "particles")]
 judge(ROW, "heater in thin cells: assembled against particle by particle", np.max(np.abs(products[0] - products[1])), 1e-7, unit="K")
 finish()
