@@ -76,6 +76,30 @@ static void Evaluate(const Explicit *e, const Face *f, const double in[IN_COUNT]
   FaceEvaluate(e->m->c, f, &e->m->bc, mat, p0, q.Sh, in, velocity, q.kappa, dt, o);
 }
 
+PetscErrorCode FacesConductance(const Explicit *e, double *conductance)
+{
+  const Model *m    = e->m;
+  Face        *face = NULL;
+  PetscInt     n;
+
+  PetscFunctionBeginUser;
+  PetscCall(FacesBuild(m->c, &m->grid, &m->P, &n, &face));
+  for (PetscInt k = 0; k < n; k++) {
+    Face      *f = &face[k];
+    FaceOutput o;
+    double     in[IN_COUNT];
+
+    if (f->bc[BC_FACE_TEMPERATURE] < 0 && f->bc[BC_CONVECTION] < 0)
+      continue;
+    FacePlace(m->c, &m->grid, &m->P, f);
+    Inputs(e, f, in);
+    Evaluate(e, f, in, 1.0, &o);
+    conductance[f->particle] += o.D[F_T][IN_T];
+  }
+  PetscCall(PetscFree(face));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tractions, and for the fluids what a prescribed pressure differs from the body's own at the face. */
 void FacesForces(Explicit *e, double dt)
 {

@@ -359,6 +359,8 @@ void           FacesForces(Explicit *e, double dt);
 void           FacesRates(Explicit *e, double dt, StageRates *r);
 void           FacesWork(Explicit *e, double dt); /* of the tractions, with the new velocities */
 PetscErrorCode FacesBegin(Explicit *e);
+/* Adds what conditions of heat give each particle less per kelvin that it is warmer, W/K, [n]. */
+PetscErrorCode FacesConductance(const Explicit *e, double *conductance);
 int            FaceNodes(const Explicit *e, const Face *f, PetscInt node[CL_NODES]); /* in the order of Face.N */
 
 /* Plates (plates.c, plate_forces.c). */

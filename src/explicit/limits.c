@@ -81,7 +81,8 @@ static double Conductivity(const Model *m, PetscInt p, const PointProperties *q)
   return fmax(q->kappa, half);
 }
 
-static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
+/* conductance: of the conditions at its faces, W/K. */
+static ClStatus SpectrumOf(const Explicit *e, PetscInt p, double conductance, Spectrum *w)
 {
   const Model    *m   = e->m;
   const Set       s   = e->set;
@@ -126,7 +127,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, Spectrum *w)
     w->sliver = Sliver(e, p) * square;
   }
   if (s.heat)
-    w->heat = k2 * Conductivity(m, p, &q) * f[P_V][p] / q.capacity;
+    w->heat = (k2 * Conductivity(m, p, &q) * f[P_V][p] + conductance) / q.capacity;
   return CL_OK;
 }
 
@@ -187,15 +188,18 @@ static void Each(const Spectrum *w, bool implicit, double each[LIMIT_COUNT])
 
 PetscErrorCode ExplicitStableStep(Explicit *e, StableStep *limit)
 {
-  double bound[LIMIT_COUNT + 2];
+  double bound[LIMIT_COUNT + 2], *conductance;
 
   PetscFunctionBeginUser;
   for (int k = 0; k < LIMIT_COUNT + 2; k++)
     bound[k] = INFINITY;
+  PetscCall(PetscCalloc1(e->m->P.n, &conductance));
+  if (e->set.heat)
+    PetscCall(FacesConductance(e, conductance));
   for (PetscInt p = 0; p < e->m->P.n; p++) {
     Spectrum w;
 
-    if (SpectrumOf(e, p, &w) != CL_OK)
+    if (SpectrumOf(e, p, conductance[p], &w) != CL_OK)
       continue; /* the step itself will say why */
     Each(&w, e->o.drag_implicit, bound);
     Lower(&bound[LIMIT_COUNT], Together(&w, e->o.drag_implicit));
@@ -203,6 +207,7 @@ PetscErrorCode ExplicitStableStep(Explicit *e, StableStep *limit)
     Lower(&bound[LIMIT_COUNT], 2.0 / w.heat);
     Lower(&bound[LIMIT_COUNT + 1], w.across);
   }
+  PetscCall(PetscFree(conductance));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bound, LIMIT_COUNT + 2, MPI_DOUBLE, MPI_MIN, e->m->grid.comm));
   limit->dt     = bound[LIMIT_COUNT];
   limit->across = bound[LIMIT_COUNT + 1];

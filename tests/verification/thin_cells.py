@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, finish, judge, table
+from common import Run, check_true, finish, judge, table
 
 CASE = Path(__file__).parent / "cases" / "thin_cells.yaml"
 ROW = "4.3"
@@ -32,6 +32,8 @@ for name, options, bar in (("plane", (), 0.001), ("the long axis the other one",
     below = coldest(case(*options)[0])
     rows.append((name, below))
     judge(ROW, f"heater in thin cells, {name}: T below the start, of the heater's", below, bar)
+coarse, _ = case(*HYBRID, "-grid_cells", "8,8")
+check_true("hybrid, on cells of 0.25 m: no step is refused, and nothing is warmer than the heater", " 0 refused" in coarse.output and max(v["T"].max() for _, v in coarse.snapshots()) < 50.0, coarse.output[-600:])
 table(("T below the start, of the heater's", ""), rows)
 
 # the answer of cells of 5 cm, means over the blocks of 0.1 m by 0.5 m that are the cells here
