@@ -194,7 +194,7 @@ def mandel():
         "bc": {
             "axis": {"type": "roller", "axis": "x", "position": "0 m"},
             "base": {"type": "roller", "axis": "y", "position": "0 m"},
-            "plate": {"type": "plate", "side": "top", "displacement": {"table": ["0 s", "0 m", "100 s", "-1e-5 m", "2000 s", "-3e-5 m"]}},
+            "plate": {"type": "plate", "side": "top", "displacement": {"table": ["0 s", "0 m", "100 s", "-1e-4 m", "2000 s", "-3e-4 m"]}},
             "side": {"type": "traction", "side": "right", "normal": "1 MPa"},
             "drain": {"type": "pressure", "side": "right", "initial": "yes"},
         },
@@ -217,7 +217,7 @@ def sample(flow):
             "base": {"type": "fixed", "axis": "y", "position": "0 m"},
             "plate": {"type": "plate", "side": "top", "rough": "yes", "velocity": {"ramp": ["0 m/s", "-0.02 m/s", "0 s", "0.2 s"]}},
         },
-        "time": {"end": "1 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "0.05 s"}, "output": {"times": ["1 s"]},
+        "time": {"end": "0.5 s"}, "stepper": {"type": "sdirk2", "adapt": "no", "dt": "0.05 s"}, "output": {"times": ["0.5 s"]},
     }  # fmt: skip
     return case
 
