@@ -16,7 +16,7 @@ from tutorial import case_text, heated, tidal, without_gas
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "forecast.md"
 MARKS = (5, 10, 25, 50)
-HEATED = ("-bc_well_pressure", "11 MPa", "-stabilisation_reaction", "yes")
+HEATED = ("-bc_well_pressure", "11 MPa")
 CASES = ("terzaghi", "mcwhorter_sunada", "buckley_leverett", "stefan_front", "bp2", "masuda", "century", "century_hydrate", "slope_warming")
 
 

@@ -113,11 +113,8 @@ PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE]);
 /* Where p_g - p_w of two regions that touch jumps at the start (342), the first that do: what to do about it; else
    empty.  The same on all ranks.  Collective. */
 PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P, char text[CL_ADVICE]);
-/* The condition that prescribes the highest temperature, T in degC at any time of its schedule; NULL, and -INFINITY,
- * where none prescribes one. */
-const Bc *BcHottest(const Scene *c, double *T);
 /* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
-   between regions (342), whose gas is less than its residual share, whose hydrate is heated (344), or whose rate of
+   between regions (342), whose gas is less than its residual share, or whose rate of
    reaction nobody has measured, on rank 0.  Collective. */
 PetscErrorCode           InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
 extern const char *const cl_side[]; /* words of Side, and none */

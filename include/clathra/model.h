@@ -168,6 +168,8 @@ typedef struct {
   Leaving  leaving;             /* particles that crossed the edge of the grid (373) */
   bool     relative_gas;        /* changes of p_g in proportion to it (151), (416) */
 
+  double t_n; /* s; whoever steps sets it before ModelBeginStep and ExplicitBegin */
+
   /* The implicit system's: what stands from here on is seen by src/model alone (tests/layers.py). */
   PetscLogEvent event[EVENT_COUNT];
 
@@ -207,7 +209,7 @@ typedef struct {
   Wide      *wide;        /* [n] of the wide part (27) */
   double    *plate_K;     /* [Scene.nbc] stiffness of the springs that touch, N/m; where a force is prescribed */
 
-  Additions *added;   /* what the scheme adds to the balances (22), (23), (200), (265), (293) */
+  Additions *added;   /* what the scheme adds to the balances (22), (23), (200), (293) */
   Solver    *solver;  /* of the stages */
   Failure    failure; /* of the last evaluation */
 } Model;
@@ -294,8 +296,6 @@ void ModelExplain(Model *m, const char *why);
 ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q, const char **why);
 /* Heat capacity that flows through a particle by Darcy's law with the gradients of t_n, W/(m^2 K); beds aside. */
 void ModelHeatFlow(const Model *m, PetscInt p, const PointProperties *q, double a[CL_DIM]);
-/* (381) of a particle that reacts, as it is, dimensionless; 0 where its properties cannot be found. */
-double ModelHeld(const Model *m, PetscInt p);
 /* Initial p_w and p_g at a face: the particle's own, and the weight of the water between it and the face. */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT]);
 /* What flows into the body and wells need of the particle of a face (109), (367); S: its weights at its n nodes,

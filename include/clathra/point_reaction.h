@@ -4,6 +4,7 @@
 
 #include "clathra/inline.h"
 #include "clathra/laws.h"
+#include "clathra/point_heat.h"
 #include "clathra/point_state.h"
 
 /* kg: (12) halves hydrate for ever; what is less than this is none, long before 1/m overflows. */
@@ -25,25 +26,42 @@ typedef struct {
   double v, p, T;
 } Growth;
 
-/* (381): what a cell's conduction holds of a reaction whose heat is q (W/(m^3 Pa)), over what it lets through;
-   dpe_dT (Pa/K), kappa (W/(m K)), h2: square of the cell's width (m^2). */
-INLINE double ReactionHeld(double q, double dpe_dT, double kappa, double h2)
-{
-  return q * dpe_dT * h2 / (6.0 * kappa);
-}
+/* A front of heat in a particle's cell (382): square of the cell's width across it (m^2), and how much of one it is. */
+typedef struct {
+  double h2, share;
+} HeatFront;
 
-/* (382): h2 of cells h wide, in the direction in which T has the gradient g (K/m). */
-INLINE double ReactionWidth(const double h[CL_DIM], const double g[CL_DIM])
+#define HEAT_CROSSED 3e-3 /* of the square of a cell's width: how far heat gets before conduction counts */
+
+/* (382) in cells h wide (m): gradients g_T (K/m), g_p (Pa/m), slope of p_e (Pa/K), T above equilibrium (K), square of
+   the way that heat has been conducted since the stage began (m^2). */
+INLINE HeatFront HeatFrontOf(const double h[CL_DIM], const double g_T[CL_DIM], const double g_p[CL_DIM], double dpe_dT,
+                             double above, double conducted)
 {
-  double sum = 0.0, weights = 0.0;
+  double slope = 0.0, across = 0.0, alone = 0.0;
 
   for (int d = 0; d < CL_DIM; d++) {
-    const double least = 1e-3 / h[d], w = g[d] * g[d] + least * least; /* 1 mK over the cell */
+    const double with_p = g_p[d] / dpe_dT, T2 = g_T[d] * g_T[d], h2 = h[d] * h[d];
 
-    sum += w * h[d] * h[d];
-    weights += w;
+    slope += T2;
+    across += T2 * h2;
+    alone += fmax(T2 - 2.0 * with_p * with_p, 0.0) * h2;
   }
-  return sum / weights;
+  if (!(alone > 0.0))
+    return (HeatFront){0.0, 0.0};
+  const double h2 = across / slope, far = conducted / (HEAT_CROSSED * h2), crossed = far * far * far * far,
+               beyond = fmax(fabs(above) - sqrt(across), 0.0);
+
+  return (HeatFront){h2, crossed / (1.0 + crossed) * alone / (across + beyond * beyond + HEAT_LEAST_T * HEAT_LEAST_T)};
+}
+
+/* (381): what a cell's conduction holds of a reaction whose heat is q (W/(m^3 Pa)), over what it lets through; kappa
+   (W/(m K)), power: heat made in the particle itself (W/m^3); the rest as above. */
+INLINE double ReactionHeld(double q, double dpe_dT, double kappa, HeatFront f, double power, double above)
+{
+  const double all = q * dpe_dT * f.h2 * fabs(above);
+
+  return all > 0.0 ? pow(1.0 + all / (6.0 * kappa * fabs(above) + power * f.h2), f.share) - 1.0 : 0.0;
 }
 
 /* Pressure that drives the reaction; forms: it is above p_e; wet: it is that of methane in water, without gas. */

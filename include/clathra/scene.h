@@ -60,8 +60,6 @@ typedef struct {
   double ghost_penalty;     /* g, 0 = off; default 0.1 */
   bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind; /* (200); default false */
-  bool   lumped_reaction;   /* (265); default false */
-  bool   held_reaction;     /* (381); default false */
   bool   chords;            /* (424); default true */
 } Stabilisation;
 
@@ -305,7 +303,7 @@ static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
 /* Does (381) act? */
 static inline bool SceneHoldsReaction(const Scene *c)
 {
-  return c->stabilisation.held_reaction && c->fields.heat && c->fields.phase[PHASE_G];
+  return c->fields.heat && c->fields.phase[PHASE_G] && SceneReacts(c);
 }
 
 /* Is heat carried with the flow (293) where T alternates (440)? */
@@ -334,8 +332,7 @@ static inline const char *SceneStabilisesImplicit(const Scene *c, int k)
     bool        on;
     const char *word;
   } known[] = {{c->stabilisation.donor, "stabilisation_donor"},
-               {c->stabilisation.saturation_upwind, "stabilisation_saturation"},
-               {c->stabilisation.lumped_reaction, "stabilisation_reaction"}};
+               {c->stabilisation.saturation_upwind, "stabilisation_saturation"}};
 
   for (size_t i = 0; i < sizeof(known) / sizeof(*known); i++) {
     if (known[i].on && k-- == 0)

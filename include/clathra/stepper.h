@@ -5,9 +5,8 @@
 #include "clathra/case.h"
 #include "clathra/explicit.h"
 
-/* Extremes of particles: mean pore pressure, Pa, and temperature, degC; K above equilibrium to which a held reaction
-   keeps hydrate (423). */
-enum { LOWEST_P = 0, HIGHEST_P, LOWEST_T, HIGHEST_T, MOST_HELD, EXTREMES };
+/* Extremes of particles: mean pore pressure, Pa, and temperature, degC. */
+enum { LOWEST_P = 0, HIGHEST_P, LOWEST_T, HIGHEST_T, EXTREMES };
 typedef struct {
   double value, t, at[CL_DIM]; /* when, s, and where, m; all zero without the field */
 } Extreme;
@@ -42,15 +41,14 @@ typedef struct {
   double   hydrate0;     /* at the start, kg */
   double   beyond;       /* of the heat source: of reaction, beyond what the state stores (442), J since t = 0 */
   double   enthalpy_out; /* with the fluids (364), J since t = 0 */
-  double   left[PHASE_COUNT], moved[PHASE_COUNT]; /* (277), kg since t = 0 */
-  double   meter[CL_METERS][METER_COUNT];         /* (33): kg of water and gas, J, outwards since t = 0 */
-  double   acts[ACTS_COUNT];                      /* zero: it has given nothing since the stage began */
-  double   work[WORK_COUNT];                      /* (90), J since t = 0 */
-  double   removed[REMOVED_COUNT];                /* particles that left the grid (373), since t = 0 */
-  double   begin[EXTREMES];                       /* extremes at the start */
-  Extreme  extreme[EXTREMES];                     /* ... and of the run so far */
-  double   held_for, held_look;  /* s: how long hydrate was StepperHeldLevel or more above; the last look */
-  double   energy[ENERGY_COUNT]; /* J, as the particles hold them now */
+  double   left[PHASE_COUNT], moved[PHASE_COUNT];  /* (277), kg since t = 0 */
+  double   meter[CL_METERS][METER_COUNT];          /* (33): kg of water and gas, J, outwards since t = 0 */
+  double   acts[ACTS_COUNT];                       /* zero: it has given nothing since the stage began */
+  double   work[WORK_COUNT];                       /* (90), J since t = 0 */
+  double   removed[REMOVED_COUNT];                 /* particles that left the grid (373), since t = 0 */
+  double   begin[EXTREMES];                        /* extremes at the start */
+  Extreme  extreme[EXTREMES];                      /* ... and of the run so far */
+  double   energy[ENERGY_COUNT];                   /* J, as the particles hold them now */
   double   water0, methane0, capacity0, enthalpy0; /* totals at t = 0, kg, J/K, J */
   double   since, spent; /* auto: s of the last change, and seconds of the forecast's machine spent since */
   double   scale_p, scale_T, scale_u; /* largest change of pressure or stress (Pa), temperature (K) and displacement (m)
@@ -326,10 +324,6 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start);
 /* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
    the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
 double StepperEquilibrium(const Scene *c, double from, double p, bool warm);
-/* Does a condition heat hydrate?  There (381) smooths its front; where pressure falls it takes the gas of it. */
-bool StepperHeatsHydrate(const Stepper *s);
-/* (419): K above equilibrium from which hydrate counts as held, a fifth of what the run has had to melt it with. */
-double StepperHeldLevel(const Stepper *s);
 /* Adds rates times a weight (s), or integrals with weight 1, to what an attempt found. */
 void StepperCount(const Scene *c, const StageRates *rates, double weight, Attempt *a);
 /* leaving.c: what left the grid in the accepted step or burst goes into the state, and a line says so for each

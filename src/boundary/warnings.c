@@ -8,7 +8,6 @@
 
 #define LEAST_JUMP 10e3 /* Pa, of (342) */
 #define JUMP 0.5        /* of the smaller p_0 */
-#define HEATS 0.3       /* of the pores: hydrate that the heat a condition brings can melt (344) */
 #define NEGLIGIBLE 1e-6 /* of the weight: what may be left to the skeleton without a word */
 
 /* Does the skeleton of a region have a weight to carry, and no stress that does?  Its weight from top to foot, Pa, and
@@ -201,57 +200,6 @@ PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-const Bc *BcHottest(const Scene *c, double *T)
-{
-  const Bc *hottest = NULL;
-
-  *T = -INFINITY;
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    double low, high;
-
-    if (!BcPrescribesT(&c->bc[k]))
-      continue;
-    BcTemperatureSpan(c, &c->bc[k], &low, &high);
-    if (high > *T) {
-      hottest = &c->bc[k];
-      *T      = high;
-    }
-  }
-  return hottest;
-}
-
-/* (344) */
-static PetscErrorCode HeatingWarning(MPI_Comm comm, const Scene *c, const Particles *P)
-{
-  double    most[2] = {0.0, 0.0}, T, slope; /* share of the pores; K */
-  const Bc *b       = BcHottest(c, &T);
-
-  PetscFunctionBeginUser;
-  if (!b || !c->fields.heat || !c->fields.phase[PHASE_G] || c->stabilisation.lumped_reaction ||
-      c->stabilisation.held_reaction)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < P->n; p++) {
-    const Material *m   = &c->material[c->region[P->i[PI_REGION][p]].material];
-    const double    own = ParticleT(c, P, p), full = P->f[P_PHI][p] * P->f[P_V][p] * m->hydrate.rho0;
-    const double    heat = HeatCapacity(m, P->f[P_MS][p], P->f[P_MH][p], P->f[P_MW][p], P->f[P_MG][p]) * (T - own);
-
-    if (!m->reacts || m->kinetics.K0 == 0.0 || P->f[P_SH][p] <= 0.0)
-      continue;
-    most[0] = fmax(most[0], heat / (full * LatentHeatEvaluate(&m->latent, own, &slope)));
-    most[1] = fmax(most[1], T - own);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPI_DOUBLE, MPI_MAX, comm));
-  if (most[0] > HEATS)
-    PetscCall(PetscFPrintf(
-        comm, stderr,
-        "clathra: warning: %s brings %.4g degC to hydrate that is up to %.3g K colder, heat to melt %.2g of the pores "
-        "full of it: ahead of such a front S_h of neighbouring particles alternates with implicit steps and coarse "
-        "cells (stabilisation_reaction_heat: yes keeps it smooth, stabilisation_reaction: yes too, but hydrate goes "
-        "early)\n",
-        b->name, T, most[1], most[0]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Gas that starts below its residual share has p_g below p_w: (223) takes it for trapped and compressed. */
 static PetscErrorCode TrappedWarnings(MPI_Comm comm, const Scene *c)
 {
@@ -294,7 +242,6 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P
   if (advice[0])
     PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
   PetscCall(TrappedWarnings(comm, c));
-  PetscCall(HeatingWarning(comm, c, P));
   if (!c->fields.solid || SceneGravity(c) == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {

@@ -150,13 +150,6 @@ const Key case_key[] = {
             "with gas beside clay"),
     BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
-    BOOLEAN(Case, "stabilisation_reaction", scene.stabilisation.lumped_reaction, "no",
-            "each node pays for the share of a particle's reaction that it drives: no alternating hydrate ahead of a "
-            "front of heat"),
-    BOOLEAN(
-        Case, "stabilisation_reaction_heat", scene.stabilisation.held_reaction, "no",
-        "the reaction is no faster than a cell conducts its heat away: no alternating hydrate at fronts of heat; where "
-        "pressure falls hydrate melts late"),
     BOOLEAN(Case, "stabilisation_equilibrium", scene.stabilisation.chords, "yes",
             "between nodes at equilibrium particles are at equilibrium, too: no hydrate that alternates within cells "
             "where p and T vary together; no: p_e of the T between nodes"),

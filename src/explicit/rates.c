@@ -120,31 +120,46 @@ INLINE void Masses(Explicit *e, const Set s, Run r, int k, const Volumes *v)
 }
 
 /* (381) with the faster of both ways; zero where it is off. */
-INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, const double *restrict T,
-                 const double *restrict Kd, const double *restrict dpe, const double *restrict forms, const Volumes *v,
+INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, double dt, const double *restrict T,
+                 const double *restrict pw, const double *restrict pg, const double *restrict Kd,
+                 const double *restrict pe, const double *restrict dpe, const double *restrict forms, const Volumes *v,
                  double *restrict held)
 {
   const Material *mat       = r.mat;
   const double    kappas[4] = {mat->kappa_s, mat->kappa_h, mat->kappa_w, mat->kappa_g}, *sg = e->t[T_SG] + r.p;
-  double          kappa[BLOCK], sw[BLOCK], L[BLOCK];
+  const double   *V = e->t[T_V] + r.p, *heat = e->m->P.f[P_HEAT] ? e->m->P.f[P_HEAT] + r.p : NULL;
+  double *const  *f = e->m->P.f;
+  double          kappa[BLOCK], sw[BLOCK], L[BLOCK], C[BLOCK];
 
   for (int q = 0; q < r.n; q++) {
     held[q] = 0.0;
     sw[q]   = 1.0 - sg[q];
   }
-  if (!SceneHoldsReaction(e->m->c))
+  if (!SceneHoldsReaction(e->m->c) || e->o.paper)
     return;
   LatentHeatBatch(&mat->latent, r.n, T, L);
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
+  Capacities(e, s, r, C);
+  const double since = e->m->t_n - e->m->c->t_begin;
+
   for (int q = 0; q < r.n; q++) {
-    const double melts = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
-    double       h[CL_DIM], g_T[CL_DIM];
+    const PetscInt     p     = r.p + q;
+    const double       melts = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
+    const PorePressure by    = ReactionPressure(mat->gas.trace, sg[q], pw[q], pg[q]);
+    const double       above = (pe[q] - by.v) / dpe[q],
+                 rate        = (by.pw * f[P_RATE][p] + by.pg * f[P_RATE_PG][p]) / dpe[q], /* of the equilibrium, K/s */
+        power                = ((heat ? heat[q] / dt : 0.0) + C[q] * fabs(rate)) / V[q];
+    double h[CL_DIM], g_T[CL_DIM], g_w[CL_DIM], g_g[CL_DIM];
 
     GradientOf(g, q, B_T(s), g_T);
-    for (int d = 0; d < CL_DIM; d++)
-      h[d] = LinesWidthAt(&e->m->grid.line[d], e->m->P.f[P_X + d][r.p + q]);
-    held[q] =
-        ReactionHeld(mat->kinetics.M_h * Kd[q] * fmax(forms[q], melts) * L[q], dpe[q], kappa[q], ReactionWidth(h, g_T));
+    GradientOf(g, q, B_P(s, PHASE_W), g_w);
+    GradientOf(g, q, B_P(s, PHASE_G), g_g);
+    for (int d = 0; d < CL_DIM; d++) {
+      h[d]   = LinesWidthAt(&e->m->grid.line[d], f[P_X + d][p]);
+      g_w[d] = by.pw * g_w[d] + by.pg * g_g[d];
+    }
+    held[q] = ReactionHeld(mat->kinetics.M_h * Kd[q] * fmax(forms[q], melts) * L[q], dpe[q], kappa[q],
+                           HeatFrontOf(h, g_T, g_w, dpe[q], above, kappa[q] * V[q] / C[q] * since), power, above);
   }
 }
 
@@ -203,7 +218,7 @@ INLINE void Reaction(Explicit *e, const Set s, Run r, const Gathered *g, const W
     wet[q] = ReactionWet(r.mat, v->phi[q], v->Sh[q], pg[q] - pw[q], fmax(over, 0.0)).v; /* falls with p: at t_n */
   }
   KineticsFormationAreaBatch(&k, r.n, sw, wet, v->Sh, area);
-  Held(e, s, r, g, T_r, Kd, dpe, area, v, held);
+  Held(e, s, r, g, dt, T_r, pw, pg, Kd, pe, dpe, area, v, held);
   INDEPENDENT
   for (int q = 0; q < r.n; q++) {
     const Driving d      = ReactionDriving(H, sg[q], pw[q], pg[q], pe[q]);

@@ -55,10 +55,11 @@ static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
   return r.p;
 }
 
-/* p_w, p_g, T and their gradients; false if one leaves its range. */
-INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gathered *g)
+/* p_w, p_g, T, their gradients, rates of pressure; false if one leaves its range. */
+INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gathered *g, double dt)
 {
-  Wrong out = 0;
+  const double per_dt = 1.0 / dt;
+  Wrong        out    = 0;
 
   for (int k = 0; k < Scalars(s); k++) {
     const int field    = k < s.fluids ? k : 2;
@@ -69,6 +70,8 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
       y[q] += g->value[q][k];
       out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
+    for (int q = 0; k < s.fluids && q < r.n; q++)
+      e->m->P.f[P_RATE + k][r.p + q] = per_dt * g->value[q][k];
     for (int d = 0; d < CL_DIM; d++) {
       for (int q = 0; q < r.n; q++)
         e->m->P.f[VectorAt(P_GW, field, d)][r.p + q] = g->grad[d][q][C_End(s) + k];
@@ -123,7 +126,7 @@ INLINE void UpdateRun(Explicit *e, const Set s, Run r, double dt)
     OwnPressures(e, s, r, &g);
   if (Relative(e, s))
     Pressures(e, r, &g);
-  if (!Fields(e, s, r, &w, &g))
+  if (!Fields(e, s, r, &w, &g, dt))
     ModelNoteFailure(e->m, CL_NONFINITE, "a pressure or temperature left its range", OutOfRange(e, s, r));
   MassesOf(e, s, r, &g, kept, &e->m->limited);
   if (s.heat && e->m->c->compression_heat)

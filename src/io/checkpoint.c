@@ -45,14 +45,13 @@ const StateField io_state_field[] = {INT(step),          REAL(t),
                                      REAL(peak),         REAL(peak_of),
                                      REAL(peak_t),       REAL(peak_at),
                                      REAL(begin),        REAL(extreme),
-                                     REAL(held_for),     REAL(held_look),
                                      INT(uneven_total),  REAL(beyond),
                                      REAL(hydrate0),     REAL(acts),
                                      REAL(unseen),       INT(unseen_steps),
                                      {NULL, 0, 0, false}};
-/* Sixteen integers, 33 reals and a place, meters, works, energies, what left, extremes. */
+/* Sixteen integers, 31 reals and a place, meters, works, energies, what left, extremes. */
 _Static_assert(sizeof(StepperState) == (16 * sizeof(PetscInt) + sizeof(double) - 1) / sizeof(double) * sizeof(double) +
-                                           (33 + CL_DIM + CL_METERS * METER_COUNT + ACTS_COUNT + WORK_COUNT +
+                                           (31 + CL_DIM + CL_METERS * METER_COUNT + ACTS_COUNT + WORK_COUNT +
                                             ENERGY_COUNT + REMOVED_COUNT + EXTREMES) *
                                                sizeof(double) +
                                            EXTREMES * sizeof(Extreme),

@@ -234,7 +234,7 @@ size_t         SlabRoomVariables(const Slab *s, const Particles *P); /* as H5Roo
 
 /* ---------------------------------------------------------------- seal.c */
 #define SEAL_BYTES 512 /* HDF5 user block in front of a checkpoint */
-#define CHECKPOINT_VERSION 20
+#define CHECKPOINT_VERSION 21
 /* Checksum of what follows the user block: of data[bytes], and of a file, each rank reading its share (collective;
  *good = false: it cannot be read). */
 uint64_t       SealSum(const void *data, size_t bytes);

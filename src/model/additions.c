@@ -18,8 +18,6 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (SceneHasLongCells(m->c))
     PetscCall(PetscCalloc1(m->stencil_cap, &to->long_cell));
-  if (m->c->stabilisation.lumped_reaction && fs->phase[PHASE_G])
-    PetscCall(PetscCalloc1(m->stencil_cap, &to->lump));
   if (SceneHoldsReaction(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->held));
   if (SceneTakesChords(m->c))
@@ -91,25 +89,39 @@ static void UpwindOf(const Model *m, PetscInt p, const PointProperties *q, doubl
   (void)HeatUpwind(q->kappa, a, h, K);
 }
 
+/* Heat of plastic flow at the end of the last step, as if all of it were shear, W/m^3. */
+static double PlasticPower(const Model *m, PetscInt p)
+{
+  double *const *f = m->P.f;
+  double         sig[6];
+
+  if (!f[P_KP])
+    return 0.0;
+  for (int k = 0; k < 6; k++)
+    sig[k] = f[P_SIG + k][p];
+  return ParticleMaterial(m, p)->plasticity.heat * Mises6(sig) * fmax(f[P_KP][p], 0.0);
+}
+
 /* (381) with the faster of both ways at t_n; the cell's widths by the particle's place, as hybrid keeps no stencils. */
 static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
 {
-  double g[CL_DIM], h[CL_DIM], slope;
+  double *const     *f   = m->P.f;
+  const Material    *mat = ParticleMaterial(m, p);
+  const PorePressure by  = ReactionPressure(mat->gas.trace, q->s[PHASE_G], f[P_PW][p], f[P_PG][p]);
+  double             g_T[CL_DIM], g_p[CL_DIM], h[CL_DIM], slope;
 
   for (int d = 0; d < CL_DIM; d++) {
-    g[d] = m->P.f[P_GT + d][p];
-    h[d] = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
+    g_T[d] = f[P_GT + d][p];
+    g_p[d] = by.pw * f[P_GW + d][p] + by.pg * f[P_GG + d][p];
+    h[d]   = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
   }
-  EquilibriumPressure(&ParticleMaterial(m, p)->kinetics.equilibrium, m->P.f[P_T][p], &slope);
-  return ReactionHeld(q->reaction_heat, slope, q->kappa, ReactionWidth(h, g));
-}
+  const double above = (EquilibriumPressure(&mat->kinetics.equilibrium, f[P_T][p], &slope) - by.v) / slope,
+               rate  = (by.pw * f[P_RATE][p] + by.pg * f[P_RATE_PG][p]) / slope, /* of the equilibrium, K/s */
+      C = q->capacity / f[P_V][p], power = PlasticPower(m, p) + C * fabs(rate),
+               conducted = q->kappa / C * (m->t_n - m->c->t_begin);
 
-double ModelHeld(const Model *m, PetscInt p)
-{
-  PointProperties q;
-  const char     *why;
-
-  return ModelParticleProperties(m, p, &q, &why) == CL_OK ? HeldOf(m, p, &q) : 0.0;
+  return ReactionHeld(q->reaction_heat, slope, q->kappa, HeatFrontOf(h, g_T, g_p, slope, above, conducted), power,
+                      above);
 }
 
 void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)

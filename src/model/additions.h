@@ -23,14 +23,6 @@ typedef struct {
   double   s[PHASE_COUNT], content[PHASE_COUNT]; /* shares; rho s, of gas with what water holds of it (352): at t_n */
 } ProjectionCell;
 
-/* What shares a particle's reaction out among its nodes (265), at t_n. */
-typedef struct {
-  double rate;           /* hydrate per time and driving pressure, kg/(s Pa) */
-  double decay;          /* M_h K_d A_geo <p_e - p>/rho_h, 1/s (266) */
-  double drive[F_COUNT]; /* d(p_e - p)/d p_w, d p_g, d T */
-  double gain[F_COUNT];  /* what a kg of hydrate adds to the rows (17), (21) of a node: kg, J */
-} Lump;
-
 /* Where the gas that moves through a particle comes from (332). */
 typedef struct {
   double up[CL_DIM]; /* beta_p over the mean distance of the nodes upstream, along the flow, 1/m */
@@ -55,7 +47,6 @@ struct Additions {
   double         *spread;    /* [n][2] (200); NULL when off */
   double         *upwind;    /* [n][3] (293); NULL when off */
   double         *long_cell; /* [n] (444), W m/K; NULL when off */
-  Lump           *lump;      /* [n] (265); NULL when off */
   double         *held;      /* [n] (381); NULL when off */
   double         *chord;     /* [n] (424), Pa; NULL when off */
 };

@@ -191,12 +191,8 @@ PetscErrorCode ModelNodesAt(Model *m, Vec X);
 PetscErrorCode ModelProjectGradients(Model *m, const double *x, bool slope, double *proj);
 /* Scaled, owned Vec -> unscaled nodal values on owned and ghost nodes. */
 PetscErrorCode ModelUnscale(Model *m, Vec X, double *x);
-/* (424) at t_n; before LumpBuild. */
+/* (424) at t_n. */
 void ChordsBuild(Model *m);
-/* (265): coefficients at t_n; what it adds to the rows of a particle's nodes, and to their blocks. */
-void LumpBuild(Model *m);
-void LumpResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
-void LumpBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);
 /* (444): what it adds to the rows of heat of the particle's nodes, and to their blocks. */
 void LongCellResidual(const Model *m, PetscInt p, const Reach *r, const double *x, double *f);
 void LongCellBlock(const Model *m, const Assembly *to, PetscInt p, const Reach *r);

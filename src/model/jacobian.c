@@ -293,7 +293,6 @@ static void ParticleLoop(Model *m, const double *x, int ntarget, const Assembly 
         EliminateParticle(m, p, &r, x, in, target[k].fixed_stress, &o);
       PatchAt(m, &target[k], &r, &patch[k]);
       ParticleBlock(m, &target[k], p, &r, x, &o, &slopes[k], &patch[k]);
-      LumpBlock(m, &target[k], p, &r);
       LongCellBlock(m, &target[k], p, &r);
     }
   }

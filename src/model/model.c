@@ -55,7 +55,6 @@ PetscErrorCode FreeParticleArrays(Model *m)
   PetscCall(PetscFree(m->added->exchange));
   PetscCall(PetscFree(m->added->spread));
   PetscCall(PetscFree(m->added->upwind));
-  PetscCall(PetscFree(m->added->lump));
   PetscCall(PetscFree(m->added->long_cell));
   PetscCall(PetscFree(m->added->held));
   PetscCall(PetscFree(m->added->chord));

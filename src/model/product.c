@@ -160,10 +160,8 @@ static void ParticleLoop(Model *m, bool momentum, const double *dx, double *f)
       ParticleScatter(m, p, &r[c], m->solver->product->x, of);
       if (m->beds)
         BedsChange(m, first + c, &r[c], dx);
-      if (!momentum) {
-        LumpResidual(m, p, &r[c], dx, f);
+      if (!momentum)
         LongCellResidual(m, p, &r[c], dx, f);
-      }
     }
   }
 }

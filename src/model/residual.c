@@ -81,7 +81,6 @@ static void ParticleLoop(Model *m, const double *x, double *f)
       return;
     m->limited += state.limited;
     ParticleScatter(m, p, &r, x, o.out);
-    LumpResidual(m, p, &r, x, f);
     LongCellResidual(m, p, &r, x, f);
   }
   NodeLoop(m, x, f);

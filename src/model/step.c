@@ -368,7 +368,6 @@ PetscErrorCode ModelBeginStep(Model *m, ClStatus *status)
     PetscCall(StabilisationBuild(m));
     PetscCall(UpwindLimit(m));
     ChordsBuild(m);
-    LumpBuild(m);
   }
   PetscCall(PetscFree(flag));
   PetscCall(PetscLogEventEnd(m->event[EVENT_BEGIN_STEP], 0, 0, 0, 0));

@@ -9,7 +9,6 @@
 #define LEAST_P 1e4   /* ... Pa, that is worth a word */
 #define ABOVE 0.1     /* of the highest pressure, likewise: what is heated in closed ground has more */
 #define HEAVY 2700.0  /* kg/m^3: no ground is heavier */
-#define LONG 0.1      /* share of the run from which held hydrate is worth a warning */
 #define DOUBTFUL 10.0 /* times the tolerance, from which errors that were put up with are warned of */
 
 typedef struct {
@@ -95,16 +94,6 @@ PetscErrorCode RangeSummary(const Stepper *s, char text[512])
              low[0].value / of[k].per, of[k].unit, from, low[1].value / of[k].per, to);
     told = strlen(text);
   }
-  if (s->state.extreme[MOST_HELD].value > 0.0) {
-    char at[128];
-
-    PlaceOf(&s->state.extreme[MOST_HELD], at);
-    snprintf(text + told, 512 - told,
-             "  stabilisation_reaction_heat held hydrate up to %.3g K above its "
-             "equilibrium, %s; by "
-             "%.3g K or more, a fifth of what may melt it, for %s\n",
-             s->state.extreme[MOST_HELD].value, at, StepperHeldLevel(s), TimeWords(s->state.held_for, 3).s);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -145,13 +134,10 @@ static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, 
   PetscCall(PetscFPrintf(
       s->model->grid.comm, stderr,
       "clathra: warning: a particle %s %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it (start "
-      "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing%s.  What to try, in this order: %sfiner "
+      "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing%s.  What to try, in this order: finer "
       "cells there, about as high as wide at the end of a heater; a ramp instead of a jump (docs/giving_up.md)\n",
       now ? "has" : "had", e->value, place, beyond.by, warm ? "warmer" : "colder", beyond.acted, hydrate,
-      now ? " and may grow (said once on the way)" : "",
-      StepperHeatsHydrate(s) && !c->stabilisation.held_reaction && !c->stabilisation.lumped_reaction
-          ? "stabilisation_reaction_heat: yes, beside hydrate; "
-          : ""));
+      now ? " and may grow (said once on the way)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -305,28 +291,6 @@ static PetscErrorCode WarnOfTension(const Stepper *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (423) */
-static PetscErrorCode WarnOfHeld(const Stepper *s)
-{
-  const Extreme *e   = &s->state.extreme[MOST_HELD];
-  const double   run = s->state.t - StepperCase(s)->scene.t_begin;
-  char           place[128];
-
-  PetscFunctionBeginUser;
-  if (!(s->state.held_for > LONG * run))
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PlaceOf(e, place);
-  PetscCall(PetscFPrintf(
-      s->model->grid.comm, stderr,
-      "clathra: warning: hydrate was %.3g K warmer than its equilibrium, %s, and %.3g K or more for %s of %s, for no "
-      "other reason than stabilisation_reaction_heat, which holds the reaction to what a cell conducts: there it melts "
-      "late, and its gas comes late, whatever its K0.  What to try, in this order: without it, where hydrate melts "
-      "because pressure falls; cells half as wide, which let it melt four times as fast; stabilisation_reaction: yes "
-      "in its place, with which it melts early (docs/giving_up.md)\n",
-      e->value, place, StepperHeldLevel(s), TimeWords(s->state.held_for, 3).s, TimeWords(run, 3).s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode EndWarnings(const Stepper *s)
 {
   const StepperState *z = &s->state;
@@ -335,7 +299,6 @@ PetscErrorCode EndWarnings(const Stepper *s)
   PetscCall(WarnOfTemperatures(s));
   PetscCall(NotePressures(s));
   PetscCall(WarnOfTension(s));
-  PetscCall(WarnOfHeld(s));
   if (z->loose_total && z->err_worst > DOUBTFUL)
     PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
                            "clathra: warning: %" PetscInt_FMT " of %" PetscInt_FMT

@@ -70,31 +70,6 @@ static bool LacksGas(const Scene *c)
   return c->material[0].gas.trace > 0.0;
 }
 
-#define HEATER 1.0 /* W/m^2, W/m^3: ten times and more what the earth gives */
-
-static bool HasHeater(const Scene *c)
-{
-  bool has = false;
-
-  for (PetscInt k = 0; k < c->nbc; k++) {
-    const Bc  *b     = &c->bc[k];
-    const bool heats = b->type == BC_HEAT_FLUX || b->type == BC_HEAT_SOURCE;
-
-    for (PetscInt i = 0; heats && i < b->value.n; i++)
-      has = has || b->value.y[i] + ScheduleSwing(&b->value) > HEATER;
-  }
-  return has;
-}
-
-bool StepperHeatsHydrate(const Stepper *s)
-{
-  const Scene *c = s->model->c;
-  double       T;
-
-  return SceneReacts(c) && c->fields.phase[PHASE_G] && c->fields.heat &&
-         (HasHeater(c) || (BcHottest(c, &T) && T > s->state.begin[HIGHEST_T]));
-}
-
 PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 {
   static const char *const saturation[2] = {"stabilisation_saturation: yes, where saturations alternate; ",
@@ -105,10 +80,7 @@ PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
 
   PetscFunctionBeginUser;
   snprintf(
-      words, sizeof(words), "%s%s%s%s%s",
-      StepperHeatsHydrate(s) && !c->stabilisation.held_reaction
-          ? "stabilisation_reaction_heat: yes, where hydrate is heated; "
-          : "",
+      words, sizeof(words), "%s%s%s%s",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
       c->fields.phase[PHASE_G] && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton

@@ -109,6 +109,7 @@ static PetscErrorCode Ready(Stepper *s, bool *ok)
   ClStatus status;
 
   PetscFunctionBeginUser;
+  s->model->t_n = s->state.t;
   PetscCall(ExplicitBegin(s->explicit, Kept(s), &status));
   PetscCall(ExplicitStableStep(s->explicit, &s->limit));
   for (int k = LIMIT_NONE + 1; k < LIMIT_COUNT; k++) {
@@ -250,6 +251,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     Attempt a = {.status = CL_OK};
     double  dt;
 
+    s->model->t_n = s->state.t;
     PetscCall(ExplicitBegin(s->explicit, Kept(s), &a.status));
     PetscCall(Limit(s));
     bool stable = true;

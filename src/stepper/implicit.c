@@ -366,7 +366,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   bool           kink;
 
   PetscFunctionBeginUser;
-  *ok = true;
+  *ok    = true;
+  m->t_n = s->state.t;
   PetscCall(ModelBeginStep(m, &status));
   if (status != CL_OK) {
     *ok = false;

@@ -21,9 +21,8 @@ COLUMN_OF_GAS = HERE.parent / "verification" / "cases" / "rest_hydrostatic.yaml"
 CLIFF = HERE.parent / "verification" / "cases" / "slope.yaml"  # hybrid
 BLOCK = HERE.parent / "verification" / "cases" / "reacting_column.yaml"  # hydrate, S_h 0.4
 CLAYS = HERE.parent / "verification" / "cases" / "no_gas_clay.yaml"  # a drained sand of hydrate between two
-HEATER = HERE.parent / "verification" / "cases" / "heater.yaml"  # 60 degC beside hydrate of 10
 WORDS = {"stress": "unstressed body", "pressure": "far from hydrostatic", "rises": "gas starts out of balance with gravity", "hydrate": "starts outside its stability zone", "gas": "free gas starts where hydrate is stable",
-         "capillary": "touch and start with p_g - p_w", "heat": "alternates with implicit steps", "closed": "nothing flows through them", "free": "nothing bears the pore pressure", "rate": "have been measured", "trapped": "gas starts below its residual share"}
+         "capillary": "touch and start with p_g - p_w", "closed": "nothing flows through them", "free": "nothing bears the pore pressure", "rate": "have been measured", "trapped": "gas starts below its residual share"}
 
 
 def warned(done, case):
@@ -174,19 +173,6 @@ check_true("... the same on 2 ranks", text in "\n".join(said(BLOCK, *both(pressu
 comes("gas that would warm the sediment by 0.4 K", [], said(BLOCK, *both(pressure=f"{p_e(2.7):.0f} Pa")))
 comes("... and by 0.6 K", ["gas"], said(BLOCK, *both(pressure=f"{p_e(2.9):.0f} Pa")))
 comes("gas that does not react", [], said(BLOCK, *both(pressure="5 MPa"), "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"))
-
-# ---------------------------------------------------------------- heat beside hydrate (344)
-COLD = ("-region_layer_pressure", "6.9 MPa")  # where hydrate is nearly in equilibrium: no other warning
-text = comes("a heater of 60 degC", ["heat"], said(HEATER, *COLD))
-T, colder, share = numbers(text, "heater brings")[:3]
-water = 0.4 * 0.5 * 1000 * 4200
-heat = 0.6 * 2650 * 800 + 0.4 * 0.4 * 900 * 2010 + water  # the gas has 0.5 % of it
-check_true("... its temperature, and how much colder the hydrate is", (T, colder) == (60, 50), (T, colder))
-check("... the hydrate it melts", abs(share / (heat * 50 / (0.4 * 900 * (473632 - 140.117 * 283.15))) - 1), 0.02)
-comes("... with the reaction by nodes", [], said(HEATER, *COLD, "-stabilisation_reaction", "yes"))
-comes("... of 25 degC", [], said(HEATER, *COLD, "-bc_heater_temperature", "25 degC"))
-comes("... without kinetics", [], said(HEATER, *COLD, "-mat_sand_kinetics_active", "no"))
-check_true("... the same on 2 ranks", text in "\n".join(said(HEATER, *COLD, ranks=2)))
 
 # ---------------------------------------------------------------- capillary pressure: (223) inverted, m = 0.5
 STILL = [*both(pressure="3.8 MPa", Sh="0"), "-mat_core_kinetics_K0", "0 mol/(m^2 Pa s)"]

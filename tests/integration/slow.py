@@ -15,11 +15,11 @@ LINE = re.compile(r"clathra: note: slow: (\d+) steps \((\d+) refused\), ([\d.e+]
 
 
 def main():
-    """The heater of verification/first_gas with a trace of methane in the water, not what it holds, (102), and without the key that its start names: it stands at its first gas."""
+    """The heater of verification/first_gas with a trace of methane in the water, not what it holds, (102): it stands at its first gas."""
     case = scratch() / "heater.yaml"
     case.write_text(heated(without_gas(case_text())))
     trace = [o for m in ("sand", "clay") for o in (f"-mat_{m}_gas_solubility", "0 mol/(m^3 Pa)")]
-    options = ("-bc_well_pressure", "10.3 MPa", "-time_end", "10 d", "-output_every", "2 d", "-progress", "0", *trace)
+    options = ("-bc_well_pressure", "10.3 MPa", "-mat_sand_retention_Sgr", "0.01", "-time_end", "10 d", "-output_every", "2 d", "-progress", "0", *trace)
     done = launch(binary(), case, *options, "-stepper_max_steps", "220", out=scratch() / "stands")
     said = LINE.findall(done.stdout)
     steps = [int(line[0]) for line in said]
@@ -33,7 +33,6 @@ def main():
     check("... at a share of its time", float(share), (0.1, 30))
     check_true("... how many were refused", int(refused) < int(taken) and "h" in now, f"{refused}, {now}")
     check_true("... with what rules the step and where", re.match(r"(the error of \w+, largest near \([\d.]+, [\d.]+\) m|Newton's method)", rules) is not None, rules)
-    check_true("... and the key that mends it first", advice.startswith("stabilisation_reaction_heat: yes"), advice)
     plain = scratch() / "well_and_heater.yaml"  # the well alone ends in 16 more steps where 34 are said at 10 %, docs/forecast.md
     plain.write_text(heated(case_text()))
     goes = forecasts.Told(binary(), plain, (), scratch() / "goes")

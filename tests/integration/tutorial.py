@@ -36,16 +36,16 @@ def main():
         run.meter("well")["gas_kg"], run.meter("well")["water_kg"])), run.meter("well")["gas_kg"][-1])  # fmt: skip
     check("water and methane are kept, of the store", max(abs(run.balance[k]).max() for k in ("water_error", "methane_error")), 1e-12)
     text = case.read_text()
-    run = ends("the case of the page", text, ["clathra: note: the border between clay and sand lay on a line of the grid and is 0.15 of a cell off it"])
-    check("gas of 30 days as the page says it, t", run.meter("well")["gas_kg"][-1] / 1e3, (9.6, 9.7))
+    run = ends("the case of the page", text, ["clathra: note: the border between clay and sand lay on a line of the grid and is 0.14 of a cell off it"])
+    check("gas of 30 days as the page says it, t", run.meter("well")["gas_kg"][-1] / 1e3, (9.0, 9.2))
     run = ends("the same with basis: total", f"{text}\nbasis: total\n")
-    check("gas of 30 days as the page says it of that, t", run.meter("well")["gas_kg"][-1] / 1e3, (9.15, 9.25))
-    run = ends("its heater by power", tutorial.powered(text))
+    check("gas of 30 days as the page says it of that, t", run.meter("well")["gas_kg"][-1] / 1e3, (8.55, 8.7))
+    run = ends("its heater by power", tutorial.powered(text), ["clathra: warning: a particle had 14.3"])
     kilowatt = 400 * 2 * np.pi * 0.1 * 4
     check("heat that came in, over its power times time, less one", abs(-run.meter("well")["heat_J"][-1] / (kilowatt * 29.5 * 86400) - 1), 1e-5)
     melts = -run.balance["heat_source_J"][-1] / run.balance["heat_in_J"][-1]
-    check("share of it that melts hydrate", melts, (0.75, 0.82))
-    check("hydrate that it melts, t", (run.balance["hydrate_kg"][0] - run.balance["hydrate_kg"][-1]) / 1e3, (4.4, 4.7))
+    check("share of it that melts hydrate", melts, (0.6, 0.67))
+    check("hydrate that it melts, t", (run.balance["hydrate_kg"][0] - run.balance["hydrate_kg"][-1]) / 1e3, (3.5, 3.65))
     for what, changed in (("heater", tutorial.heated(text)), ("tide", tutorial.tidal(text))):
         case.write_text(changed)
         done = launch(binary(), case, "-stepper_max_steps", "1", "-quiet", out=scratch() / what)

@@ -38,7 +38,7 @@ steps = np.diff(run.balance["time_s"][run.balance["time_s"] > 15 * YEAR]) / 8640
 check_true("implicit for as long as the slope holds", "-> hybrid" not in run.output)
 check("mean step from five years after the beginning on, days", steps.mean(), (20.0, 1000.0))
 cold = slope(sea=COLD)
-judge("slopes", "slope_warming on 25 m: hydrate that the warmth takes in 35 years, share of all", left(cold) - left(run), (0.04, 0.08))  # cells of 8 m: 0.28
+judge("slopes", "slope_warming on 25 m: hydrate that the warmth takes in 35 years, share of all", left(cold) - left(run), (0.09, 0.13))  # cells of 8 m: 0.28
 check("T of the crest, 8 m below the sea floor, above that under a cold sea (K)", *warmer(run, cold))
 for what in ("water", "methane"):
     judge("slopes", f"... {what}, largest error of any step", np.max(np.abs(run.balance[f"{what}_error"])), 1e-12)

@@ -223,6 +223,43 @@ static void KineticsValues(void **state)
   assert_true(ReactionWet(&wet, 0.4, 0.3, 0.0, 0.0).v == 0.0);
 }
 
+/* The front (382) that g_T (K/m), g_p over p_e' (K/m) and T above equilibrium (K) make of cells of 2 m and 0.5 m. */
+static HeatFront Front(double T_x, double T_y, double p_x, double p_y, double above)
+{
+  const double h[CL_DIM] = {2.0, 0.5}, slope = 7e5, g_T[CL_DIM] = {T_x, T_y}, g_p[CL_DIM] = {slope * p_x, slope * p_y};
+
+  return HeatFrontOf(h, g_T, g_p, slope, above, 1e9);
+}
+
+/* By hand where T varies by far more than 1 mK. */
+static void HeldReactionValues(void **state)
+{
+  (void)state;
+  Near(Front(5.0, 0.0, 0.0, 0.0, 0.0).h2, 4.0, 1e-15); /* heat comes along x, along y, and aslant */
+  Near(Front(0.0, 5.0, 0.0, 0.0, 0.0).h2, 0.25, 1e-15);
+  Near(Front(3.0, 4.0, 0.0, 0.0, 0.0).h2, (9.0 * 4.0 + 16.0 * 0.25) / 25.0, 1e-15);
+  Near(Front(3.0, 4.0, 0.0, 0.0, 6.0).share, 1.0, 1e-7); /* ... to what is no farther from equilibrium than that */
+  Near(Front(5.0, 0.0, -1.0, 0.0, 0.0).share, 23.0 / 25.0, 1e-7);
+  Near(Front(5.0, 0.0, 0.0, 0.0, -30.0).share, 100.0 / (100.0 + 400.0), 1e-7);
+  assert_true(Front(5.0, 5.0, 5.0, 5.0, 0.0).share == 0.0); /* T goes with the pressure; the pressure alone; nothing */
+  assert_true(Front(0.0, 0.0, 5.0, 0.0, 0.0).share == 0.0);
+  assert_true(Front(0.0, 0.0, 0.0, 0.0, 0.0).share == 0.0);
+  assert_true(Front(1e-5, 0.0, 0.0, 0.0, 1.0).share < 1e-8); /* a little, where all is far from equilibrium */
+
+  const double h[CL_DIM] = {2.0, 0.5}, g_T[CL_DIM] = {5.0, 0.0}, g_p[CL_DIM] = {0.0};
+  Near(HeatFrontOf(h, g_T, g_p, 7e5, 0.0, HEAT_CROSSED * 4.0).share, 0.5, 1e-7); /* heat begins to cross the cell */
+  assert_true(HeatFrontOf(h, g_T, g_p, 7e5, 0.0, 0.0).share == 0.0);
+
+  const double q = 3.0, slope = 7e5, kappa = 2.0, B = q * slope * 4.0 / (6.0 * kappa);
+  Near(ReactionHeld(q, slope, kappa, (HeatFront){4.0, 1.0}, 0.0, 1.0), B, 1e-15);
+  Near(ReactionHeld(q, slope, kappa, (HeatFront){4.0, 0.5}, 0.0, 1.0), sqrt(1.0 + B) - 1.0, 1e-15);
+  for (int sign = -1; sign < 2; sign += 2) /* heat made in the particle itself */
+    Near(ReactionHeld(q, slope, kappa, (HeatFront){4.0, 1.0}, 30.0, 5.0 * sign), q * slope / (6.0 * kappa / 4.0 + 6.0),
+         1e-14);
+  assert_true(ReactionHeld(q, slope, kappa, (HeatFront){4.0, 1.0}, 30.0, 0.0) == 0.0);
+  assert_true(ReactionHeld(q, slope, kappa, (HeatFront){0.0, 0.0}, 0.0, 1.0) == 0.0);
+}
+
 static void StateAndHeatValues(void **state)
 {
   const Liquid water = {1000, 2.2e9, 3e-4, 3.25e6, 4}, grain = {2600, INFINITY, 0, 0, 0}, soft = {1000, 1e3, 0, 0, 0};
@@ -315,17 +352,12 @@ static void ElasticityValues(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(RetentionValues),
-                                     cmocka_unit_test(RelPermValues),
-                                     cmocka_unit_test(PermeabilityValues),
-                                     cmocka_unit_test(EquilibriumValues),
-                                     cmocka_unit_test(EquilibriumCurvatures),
-                                     cmocka_unit_test(OtherCurves),
-                                     cmocka_unit_test(BrineValues),
-                                     cmocka_unit_test(ViscosityValues),
-                                     cmocka_unit_test(KineticsValues),
-                                     cmocka_unit_test(StateAndHeatValues),
-                                     cmocka_unit_test(GasValues),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(RetentionValues),       cmocka_unit_test(RelPermValues),
+                                     cmocka_unit_test(PermeabilityValues),    cmocka_unit_test(EquilibriumValues),
+                                     cmocka_unit_test(EquilibriumCurvatures), cmocka_unit_test(OtherCurves),
+                                     cmocka_unit_test(BrineValues),           cmocka_unit_test(ViscosityValues),
+                                     cmocka_unit_test(KineticsValues),        cmocka_unit_test(HeldReactionValues),
+                                     cmocka_unit_test(StateAndHeatValues),    cmocka_unit_test(GasValues),
                                      cmocka_unit_test(ElasticityValues)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 """The README's own case, on half its cells: no alternating saturations beside the end of the pressure face (365);
 what stabilisation_saturation (200) must not change; water and methane; two ranks; hybrid refuses it.  A heater of 60 degC in
-hydrate: none forms ahead of the front with stabilisation_reaction (265) or stabilisation_reaction_heat (381), nor does S_h
-alternate; the second melts no more than it should."""
+hydrate, and hot water that flows into it: none forms ahead of the front, nor does S_h alternate (381)."""
 import re
 from pathlib import Path
 
 import numpy as np
 
-from common import ROOT, WARNS_OF_HELD, binary, check_true, finish, judge, largest_difference, launch, run, scratch
+from common import ROOT, binary, check_true, finish, judge, largest_difference, launch, run, scratch, table
 
 CASES = Path(__file__).parent / "cases"
 case = scratch() / "case.yaml"
@@ -35,75 +34,56 @@ for name in ("water_error", "methane_error"):
     judge("fronts", f"{name}", np.max(np.abs(upwind.balance[name])), 1e-12)
 two = well("yes", ranks=2)
 judge("fronts", "1 and 2 ranks: pressure", largest_difference(two.probe("middle")["p_Pa"], upwind.probe("middle")["p_Pa"]), 1e-7)
-for name in ("saturation", "reaction"):
-    hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-stabilisation_saturation", "no", f"-stabilisation_{name}", "yes", "-case_check", out=scratch() / "out")
-    check_true(f"hybrid refuses stabilisation_{name}", hybrid.returncode == 2 and f"stabilisation_{name}" in hybrid.stdout, hybrid.stdout)
+hybrid = launch(binary(), case, "-stepper_type", "hybrid", "-case_check", out=scratch() / "out")
+check_true("hybrid refuses stabilisation_saturation", hybrid.returncode == 2 and "stabilisation_saturation" in hybrid.stdout, hybrid.stdout)
 
 
-def heater(lumped, *more, way="reaction", **keywords):
-    """The run, and S_h along x at the end."""
-    done = run(binary(), CASES / "heater.yaml", "-quiet", f"-stabilisation_{way}", lumped, *more, **keywords)
+def heater(*more, **keywords):
+    """The run, and S_h along x at its end."""
+    done = run(binary(), CASES / "heater.yaml", "-quiet", *more, **keywords)
     return done, done.snapshot(done.time[-1])["S_h"].ravel().reshape(2, -1)[0]
 
 
-(nodes, S), (particles, S_0) = heater("yes"), heater("no")
-print(f"S_h beside the heater with (265): {np.round(S, 2)}\n                      without it: {np.round(S_0, 2)}")
-judge("fronts", "(265): hydrate ahead of the front, beyond that far away", np.max(S) / S[-1] - 1, 0.01)
-judge("fronts", "(265): S_h that falls towards the far end", max(np.max(-np.diff(S)), 0.0), 1e-3)
-check_true("without it there is more than a tenth", np.max(S_0) / S_0[-1] > 1.1, f"{np.max(S_0) / S_0[-1] - 1:.3f}")
-judge("fronts", "(265): hydrate that is left, with and without", abs(np.sum(S) / np.sum(S_0) - 1), 0.15)
-for name in ("water_error", "methane_error"):
-    judge("fronts", f"(265): {name}", np.max(np.abs(nodes.balance[name])), 1e-12)
 PLACES = np.arange(11) / 10
 PROBES = ["-probes", ",".join(f"x{k}" for k in range(11)), *(w for k, x in enumerate(PLACES) for w in (f"-probe_x{k}_at", f"{x:g} m,0.05 m"))]
 FIELDS = lambda r, k, column: np.array([v[k].ravel() for _, v in r.snapshots()] if column is None else [r.probe(f"x{i}")[column] for i in range(11)])
-hourly = heater("yes", "-output_every", "1 h", *PROBES)[0]
-own, seen, S, S_seen = (FIELDS(hourly, k, c) for k, c in (("T", None), ("T", "T_degC"), ("S_h", None), ("S_h", "S_h")))
-judge("fronts", "(265): a particle warmer than the heater or colder than the start, any hour, K", max(own.max() - 60, 10 - own.min(), 0), 1e-6, 1, "K")
-judge("fronts", "... a probe", max(seen.max() - 60, 10 - seen.min(), 0), 1e-3, 1, "K")
-judge("fronts", "(265): S_h that falls towards the far end, any hour", max(np.max(-np.diff(S.reshape(len(S), 2, -1)[:, 0], axis=1)), 0.0), 1e-3)
-judge("fronts", "... S_h of probes outside the particles' range", max(-S_seen.min(), S_seen.max() - S.max(), 0), 1e-6)
-check_true("... which see all of the front", S_seen[0].min() == 0 and S_seen[-1].min() > 0.399)
-one, two = (heater("yes", "-time_end", "1 h", ranks=n)[1] for n in (1, 2))
-judge("fronts", "(265): 1 and 2 ranks, S_h", np.max(np.abs(two - one)), 1e-8)
-held, S = heater("yes", way="reaction_heat")
-judge("fronts", "(381): hydrate ahead of the front, beyond that far away", np.max(S) / S[-1] - 1, 0.01)
-judge("fronts", "(381): S_h that falls towards the far end", max(np.max(-np.diff(S)), 0.0), 1e-3)
-judge("fronts", "(381): hydrate that is left, with and without", abs(np.sum(S) / np.sum(S_0) - 1), 0.015)
+hourly, S = heater("-output_every", "1 h", *PROBES)
+own, seen, states, S_seen = (FIELDS(hourly, k, c) for k, c in (("T", None), ("T", "T_degC"), ("S_h", None), ("S_h", "S_h")))
+print(f"S_h beside the heater: {np.round(S, 2)}")
+judge("fronts", "heater: hydrate ahead of the front, beyond that far away", np.max(S) / S[-1] - 1, 0.01)
+judge("fronts", "... S_h that falls towards the far end", max(np.max(-np.diff(S)), 0.0), 1e-3)
+judge("fronts", "... a particle warmer than the heater or colder than the start, any hour, K", max(own.max() - 60, 10 - own.min(), 0), 0.01, 1, "K")
+judge("fronts", "... a probe", max(seen.max() - 60, 10 - seen.min(), 0), 0.01, 1, "K")
+judge("fronts", "... S_h of probes outside the particles' range", max(-S_seen.min(), S_seen.max() - states.max(), 0), 1e-6)
 for name in ("water_error", "methane_error"):
-    judge("fronts", f"(381): {name}", np.max(np.abs(held.balance[name])), 1e-12)
-# (423): what the limiter keeps above equilibrium, and for how long, against snapshots of every hour, which do not know its share B/(1 + B); a quarter as long in cells half as wide.
-LATE = re.compile(r"held hydrate up to ([\d.]+) K above its equilibrium, near \(.*\) m at t = .*; by ([\d.]+) K or more, a fifth of what may melt it, for ([\d.]+) (h|min)")
+    judge("fronts", f"... {name}", np.max(np.abs(hourly.balance[name])), 1e-12)
+fine, S_fine = heater("-grid_cells", "40,1", "-output_every", "1 h")
+judge("fronts", "heater: hydrate that is left, against cells of a quarter", abs(np.mean(S) / np.mean(S_fine) - 1), 0.01, 0.01, "%")
+judge("fronts", "... most S_h of any hour, beyond that of cells of a quarter", states.max() - max(v["S_h"].max() for _, v in fine.snapshots()), 0.005)
+one, two = (heater("-time_end", "1 h", ranks=n)[1] for n in (1, 2))
+judge("fronts", "... 1 and 2 ranks, S_h", np.max(np.abs(two - one)), 1e-8)
+
+# Hot water flows into hydrate at equilibrium: S_h = 0.4 ahead of the front.
+SWAPPED = ("-grid_upper", "0.1 m,2 m", "-region_layer_upper", "0.1 m,2 m", "-bc_base_axis", "x", "-bc_top_axis", "x", "-bc_warm_axis", "y", "-bc_inlet_side", "bottom", "-bc_outlet_side", "top")
+RING = ("-geometry", "axisymmetric", "-grid_lower", "0.1 m,0 m", "-grid_upper", "2.1 m,0.1 m", "-region_layer_lower", "0.1 m,0 m", "-region_layer_upper", "2.1 m,0.1 m", "-bc_warm_position", "0.1 m",
+        "-bc_inlet_water", "5e-5 m/s", "-time_end", "2 d")  # fmt: skip
 
 
-def late(done):
-    """K above equilibrium at most, from which it counts (419), and hours of that, as the summary says."""
-    found = LATE.search((done.out / "summary.txt").read_text())
-    return float(found[1]), float(found[2]), float(found[3]) / (60 if found[4] == "min" else 1)
+def hot(cells, *more):
+    """Most S_h of any hour, share of the hydrate that is gone, coldest and warmest (degC)."""
+    states = [v for _, v in run(binary(), CASES / "hot_water.yaml", "-quiet", "-grid_cells", cells, *more).snapshots()]
+    left = states[-1]["mass_hydrate"].sum() / states[0]["mass_hydrate"].sum()
+    return [max(v["S_h"].max() for v in states), 1 - left, min(v["T"].min() for v in states), max(v["T"].max() for v in states)]
 
 
-def equilibrium(p):
-    """degC at p (Pa): 11.38 at 8 MPa (Sloan)."""
-    return 1 / (1 / 284.53 - np.log(p / 8e6) / 8533.8) - 273.15
-
-
-def above(v):
-    """K by which particles with S_h >= 0.01 are above equilibrium, at most."""
-    share = 1 - v["S_w"] / (1 - v["S_h"])
-    p = v["p_w"] + share * (v["p_g"] - v["p_w"])
-    return np.max((v["T"] - equilibrium(p))[v["S_h"] >= 0.01], initial=0.0)
-
-
-hourly = heater("yes", "-output_every", "1 h", way="reaction_heat")[0]
-seen = np.array([above(v) for _, v in hourly.snapshots()])
-(most, least, hours), two = late(hourly), heater("yes", "-output_every", "1 h", way="reaction_heat", ranks=2)[0]
-judge("fronts", "(423): K above equilibrium at most, against every hour's", most - seen.max(), (-0.5, 2))
-lowest = min(np.min(v["p_w"]) for _, v in hourly.snapshots())
-judge("fronts", "(419): K from which it counts, against a fifth of the heater's above equilibrium at the lowest p_w", least - 0.2 * (60 - equilibrium(lowest)), 0.1)
-judge("fronts", "(423): hours of that or more, against every hour's", hours - np.sum(seen > least), (-3, 1))
-check_true("... on 2 ranks", np.allclose(late(two), (most, least, hours), rtol=0.01), f"{late(two)}, {most} K, {least} K, {hours} h")
-fine = [heater("yes", "-grid_cells", f"{n},1", way="reaction_heat")[0] for n in (20, 40)]
-judge("fronts", "(423): times as long in cells twice as wide", hours / late(fine[0])[2], (2.5, 6))
-check_true("a tenth of the run and more is warned of, less is not", WARNS_OF_HELD in hourly.output and WARNS_OF_HELD not in fine[1].output, hourly.output[-500:])
-check_true("nothing of it without the limiter", "held hydrate" not in particles.output and WARNS_OF_HELD not in particles.output)
+plane, ring = hot("20,1"), hot("20,1", *RING)
+rows = [("plane", *plane), ("axes swapped", *hot("1,20", *SWAPPED)), ("about an axis", *ring)]
+rows += [(f"{n} particles along a cell", *hot("20,1", "-region_layer_particles_per_cell", f"{n},2")) for n in (1, 3, 5)]
+table(("hot water into hydrate", "S_h, most", "hydrate gone", "T, least", "T, most"), rows)
+for name, most, _, coldest, warmest in rows:
+    judge("fronts", f"hot water into hydrate, {name}: most S_h of any hour, over the 0.4 of the start", most - 0.4, 0.005)
+    judge("fronts", f"... {name}: colder than the start or warmer than what flows in, K", max(10 - coldest, warmest - 60, 0), 0.2, 1, "K")
+judge("fronts", "hot water into hydrate: axes swapped, hydrate gone", abs(rows[1][2] - plane[1]), 1e-9)
+judge("fronts", "hot water into hydrate: hydrate gone, against cells of a quarter", abs(plane[1] / hot("80,1")[1] - 1), 0.015, 0.01, "%")
+judge("fronts", "... about an axis", abs(ring[1] / hot("80,1", *RING)[1] - 1), 0.015, 0.01, "%")
 finish()

@@ -29,7 +29,6 @@ from clathra import probe_names, program, read_csv, read_snapshots  # noqa: E402
 from clathra.units import pascals, seconds  # noqa: E402
 
 CASES = ROOT / "cases"
-WARNS_OF_HELD = "for no other reason than stabilisation_reaction_heat"  # in the end's warning of hydrate that (381) keeps, (423)
 np.set_printoptions(legacy="1.21")  # repr of a number is the number alone, which cases can read; NumPy 2 writes its type, too
 # pml: starting takes 0.11 s instead of 0.41 s, for no networks are looked for (a library of one times a clock).
 ENVIRONMENT = {**program.ENVIRONMENT, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_MCA_pml": "ob1"}

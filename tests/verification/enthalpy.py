@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from common import Run, check_true, finish, judge, table
+from common import Run, finish, judge, table
 
 CASE = Path(__file__).parent / "cases" / "enthalpy.yaml"
 CAPACITY = {"mass_solid": 800.0, "mass_hydrate": 2010.0, "mass_water": 4200.0, "mass_gas": 2100.0}  # J/(kg K)
@@ -36,10 +36,9 @@ rows = [(name, *lost(*options, ranks=ranks)) for name, ranks, options in (
     ("10 cells, law linear", 1, ("-mat_core_latent_heat_law", "linear")))]  # fmt: skip
 table(("", "enthalpy lost", "carried by the fluids"), rows)
 error = [abs(row[1]) for row in rows]
-for k, bar in enumerate((3e-4, 2e-4, 1.2e-4, 3e-4, 5e-5, 3e-5)):
+for k, bar in enumerate((1e-4, 1e-4, 1e-4, 1e-4, 5e-5, 3e-5)):
     judge("fluids", f"closed column, {rows[k][0]}: enthalpy of the state lost, of the heat of reaction", error[k], bar)
 judge("fluids", "closed column: enthalpy lost on two ranks, apart from one", abs(rows[3][1] - rows[0][1]), 1e-9)
-check_true("falls with h", error[0] > error[1] > error[2], str(error[:3]))
 judge("fluids", "closed column with (235), whose heat depends on the way: lost, of the heat of reaction", error[6], (0.02, 0.1))
 
 # (442): what (235) gives beyond what the state stores is known, and not missing

@@ -325,7 +325,7 @@ def clay():
 
 def metered():
     """meters.csv tells methane in water from free gas: a heater melts hydrate in sand that starts without gas."""
-    run = Run.of_case(CASES / "heater.yaml", "-quiet", "-region_layer_Sw", 0.6, "-region_layer_Sg", 0, "-stabilisation_reaction_heat", "yes", "-meters", "left", "-meter_left_side", "left",
+    run = Run.of_case(CASES / "heater.yaml", "-quiet", "-region_layer_Sw", 0.6, "-region_layer_Sg", 0, "-meters", "left", "-meter_left_side", "left",
                       "-time_end", "12 h", "-output_every", "12 h", "-mat_sand_gas_eos", "ideal")  # fmt: skip
     m = run.csv("meters.csv")
     for row, (t, v) in zip((0, -1), run.snapshots()):

@@ -109,14 +109,12 @@ check_true("README's case without (200): its checkerboard is seen", central["S_w
 rows += [("README's case", k, v) for k, v in found.items()]
 judge("fronts", "README's case: zigzag of any field over its range", max(found.values()), SEEN)
 
-# ---------------------------------------------------------------- the tutorial's film, on the grid of its picture and on one whose hydrate alternates
+# ---------------------------------------------------------------- the tutorial's film, on the grid of its picture
 case.write_text(tutorial.case_text())
 found = measured(run(binary(), case, "-quiet", *tutorial.FINE, "-output_every", "30 d").out)
 rows += [("tutorial's well", k, v) for k, v in found.items()]
 judge("fronts", "tutorial's picture: zigzag of S_h over its range", found["S_h"], 2 * SEEN)
 judge("fronts", "tutorial's picture: zigzag of any field over its range", max(found.values()), FRONT)
-coarse = measured(run(binary(), case, "-quiet", "-grid_cells", "10,22", "-output_every", "30 d").out)
-check_true("its hydrate in coarser cells is seen to alternate", coarse["S_h"] > 0.15, coarse)
 
 # ---------------------------------------------------------------- stresses that hydrate makes alternate within cells
 HEATER = text.replace("boundaries: [", "boundaries: [heater, ").replace("bc:\n", "bc:\n  heater: {type: face_temperature, side: left, from: 1 m, to: 3 m, temperature: {ramp: [10 degC, 60 degC, 0 h, 12 h]}}\n")
@@ -131,7 +129,7 @@ def rows_of_particles(values):
     return values[order].reshape(16, -1)
 
 
-for what, p, least, most in (("its particles", own, 0.2, 1.0), ("the nodal means that pictures show", seen, 0.0, 0.05)):
+for what, p, least, most in (("its particles", own, 0.1, 1.0), ("the nodal means that pictures show", seen, 0.0, 0.05)):
     syy = rows_of_particles(p["stress"][:, 1])
     found = zigzag(syy) / np.ptp(syy)
     rows.append(("heater", what, found))
