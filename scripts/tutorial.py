@@ -14,7 +14,7 @@ from clathra import report
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "tutorial.md"
-FINE = ("-basis", "total", "-grid_cells", "10,44")  # those of the answer: in coarse cells S_h alternates from row to row
+FINE = ("-basis", "total", "-grid_cells", "10,44")  # those of the answer
 POWER = "A heater by power"
 
 
