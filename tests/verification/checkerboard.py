@@ -86,4 +86,11 @@ for name, most, _, coldest, warmest in rows:
 judge("fronts", "hot water into hydrate: axes swapped, hydrate gone", abs(rows[1][2] - plane[1]), 1e-9)
 judge("fronts", "hot water into hydrate: hydrate gone, against cells of a quarter", abs(plane[1] / hot("80,1")[1] - 1), 0.015, 0.01, "%")
 judge("fronts", "... about an axis", abs(ring[1] / hot("80,1", *RING)[1] - 1), 0.015, 0.01, "%")
+# A heater at cells of 1 mm, for hybrid: gas leaves, and the reaction holds T at equilibrium.
+SMALL = ("-grid_upper", "0.02 m,0.001 m", "-region_layer_upper", "0.02 m,0.001 m", "-bc_top_position", "0.001 m", "-mat_sand_permeability_k0", "1e-14 m^2", "-mat_sand_kinetics_K0", "1e-5 mol/(m^2 Pa s)",
+         "-boundaries", "base,top,warm,outlet", "-bc_warm_temperature", "{ramp: [10 degC, 60 degC, 0 s, 0.4 s]}", "-time_end", "4 s", "-output_every", "0.5 s")  # fmt: skip
+small, hybrid = hot("20,1", *SMALL), hot("20,1", *SMALL, "-inertia", "yes", "-stepper_type", "hybrid")
+judge("fronts", "a heater at cells of 1 mm, hybrid: most S_h of any half second, over the 0.4 of the start", hybrid[0] - 0.4, 0.03)
+judge("fronts", "... hydrate gone, against sdirk2", abs(hybrid[1] / small[1] - 1), 0.01, 0.01, "%")
+judge("fronts", "... colder than the start, K", 10 - hybrid[2], 0.01, 1, "K")
 finish()
