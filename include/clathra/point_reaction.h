@@ -116,6 +116,34 @@ INLINE double ReactionDissociated(double from, double a, double *slope)
   return gone ? -from : -from * (a / (1.0 + a)); /* never more than there is */
 }
 
+/* What (381) asks of a particle at t_n. */
+typedef struct {
+  const double *h;                        /* [CL_DIM] widths of its cell, m */
+  PorePressure  by;                       /* what drives the reaction */
+  double        pe, dpe_dT;               /* Pa, Pa/K */
+  double        heat;                     /* of the reaction, W/(m^3 Pa) */
+  double        kappa, C;                 /* W/(m K), J/(m^3 K) */
+  double        plastic;                  /* heat of plastic flow, W/m^3 */
+  double        since;                    /* the stage's start, s */
+  double        g_T[CL_DIM];              /* K/m */
+  double        g_p[PHASE_COUNT][CL_DIM]; /* Pa/m */
+  double        rate[PHASE_COUNT];        /* of p_w and p_g in the last step, Pa/s */
+} HeldParticle;
+
+/* (381) of a particle, dimensionless: over what is let through. */
+INLINE double ReactionHeldAt(const HeldParticle *x)
+{
+  const double above = (x->pe - x->by.v) / x->dpe_dT,
+               rate = (x->by.pw * x->rate[PHASE_W] + x->by.pg * x->rate[PHASE_G]) / x->dpe_dT; /* of equilibrium, K/s */
+  double g_p[CL_DIM];
+
+  for (int d = 0; d < CL_DIM; d++)
+    g_p[d] = x->by.pw * x->g_p[PHASE_W][d] + x->by.pg * x->g_p[PHASE_G][d];
+  return ReactionHeld(x->heat, x->dpe_dT, x->kappa,
+                      HeatFrontOf(x->h, x->g_T, g_p, x->dpe_dT, above, x->kappa / x->C * x->since),
+                      x->plastic + x->C * fabs(rate), above);
+}
+
 /* W of (418) with its slopes in S_h (1), p_c and p - p_e (1/Pa). */
 typedef struct {
   double v, Sh, pc, over;

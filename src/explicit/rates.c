@@ -140,26 +140,27 @@ INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, doubl
   LatentHeatBatch(&mat->latent, r.n, T, L);
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
   Capacities(e, s, r, C);
-  const double since = e->m->t_n - e->m->c->t_begin;
-
   for (int q = 0; q < r.n; q++) {
-    const PetscInt     p     = r.p + q;
-    const double       melts = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
-    const PorePressure by    = ReactionPressure(mat->gas.trace, sg[q], pw[q], pg[q]);
-    const double       above = (pe[q] - by.v) / dpe[q],
-                 rate        = (by.pw * f[P_RATE][p] + by.pg * f[P_RATE_PG][p]) / dpe[q], /* of the equilibrium, K/s */
-        power                = ((heat ? heat[q] / dt : 0.0) + C[q] * fabs(rate)) / V[q];
-    double h[CL_DIM], g_T[CL_DIM], g_w[CL_DIM], g_g[CL_DIM];
+    const PetscInt p     = r.p + q;
+    const double   melts = KineticsMeltingArea(&mat->kinetics, v->phi[q], v->Sh[q]);
+    double         h[CL_DIM];
+    HeldParticle   x = {.h       = h,
+                        .by      = ReactionPressure(mat->gas.trace, sg[q], pw[q], pg[q]),
+                        .pe      = pe[q],
+                        .dpe_dT  = dpe[q],
+                        .heat    = mat->kinetics.M_h * Kd[q] * fmax(forms[q], melts) * L[q],
+                        .kappa   = kappa[q],
+                        .C       = C[q] / V[q],
+                        .plastic = heat ? heat[q] / (dt * V[q]) : 0.0,
+                        .since   = e->m->t_n - e->m->c->t_begin,
+                        .rate    = {f[P_RATE][p], f[P_RATE_PG][p]}};
 
-    GradientOf(g, q, B_T(s), g_T);
-    GradientOf(g, q, B_P(s, PHASE_W), g_w);
-    GradientOf(g, q, B_P(s, PHASE_G), g_g);
-    for (int d = 0; d < CL_DIM; d++) {
-      h[d]   = LinesWidthAt(&e->m->grid.line[d], f[P_X + d][p]);
-      g_w[d] = by.pw * g_w[d] + by.pg * g_g[d];
-    }
-    held[q] = ReactionHeld(mat->kinetics.M_h * Kd[q] * fmax(forms[q], melts) * L[q], dpe[q], kappa[q],
-                           HeatFrontOf(h, g_T, g_w, dpe[q], above, kappa[q] * V[q] / C[q] * since), power, above);
+    for (int d = 0; d < CL_DIM; d++)
+      h[d] = LinesWidthAt(&e->m->grid.line[d], f[P_X + d][p]);
+    GradientOf(g, q, B_T(s), x.g_T);
+    for (int k = 0; k < PHASE_COUNT; k++)
+      GradientOf(g, q, B_P(s, k), x.g_p[k]);
+    held[q] = ReactionHeldAt(&x);
   }
 }
 

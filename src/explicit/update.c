@@ -59,6 +59,7 @@ static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
 INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gathered *g, double dt)
 {
   const double per_dt = 1.0 / dt;
+  const bool   rates  = SceneHoldsReaction(e->m->c); /* which alone asks for them */
   Wrong        out    = 0;
 
   for (int k = 0; k < Scalars(s); k++) {
@@ -70,7 +71,7 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
       y[q] += g->value[q][k];
       out |= WRONG_UNLESS((y[q] > least) & (y[q] < FARTHEST));
     }
-    for (int q = 0; k < s.fluids && q < r.n; q++)
+    for (int q = 0; rates && k < s.fluids && q < r.n; q++)
       e->m->P.f[P_RATE + k][r.p + q] = per_dt * g->value[q][k];
     for (int d = 0; d < CL_DIM; d++) {
       for (int q = 0; q < r.n; q++)

@@ -105,23 +105,26 @@ static double PlasticPower(const Model *m, PetscInt p)
 /* (381) with the faster of both ways at t_n; the cell's widths by the particle's place, as hybrid keeps no stencils. */
 static double HeldOf(const Model *m, PetscInt p, const PointProperties *q)
 {
-  double *const     *f   = m->P.f;
-  const Material    *mat = ParticleMaterial(m, p);
-  const PorePressure by  = ReactionPressure(mat->gas.trace, q->s[PHASE_G], f[P_PW][p], f[P_PG][p]);
-  double             g_T[CL_DIM], g_p[CL_DIM], h[CL_DIM], slope;
+  double *const  *f   = m->P.f;
+  const Material *mat = ParticleMaterial(m, p);
+  double          h[CL_DIM];
+  HeldParticle    x = {.h       = h,
+                       .by      = ReactionPressure(mat->gas.trace, q->s[PHASE_G], f[P_PW][p], f[P_PG][p]),
+                       .heat    = q->reaction_heat,
+                       .kappa   = q->kappa,
+                       .C       = q->capacity / f[P_V][p],
+                       .plastic = PlasticPower(m, p),
+                       .since   = m->t_n - m->c->t_begin,
+                       .rate    = {f[P_RATE][p], f[P_RATE_PG][p]}};
 
+  x.pe = EquilibriumPressure(&mat->kinetics.equilibrium, f[P_T][p], &x.dpe_dT);
   for (int d = 0; d < CL_DIM; d++) {
-    g_T[d] = f[P_GT + d][p];
-    g_p[d] = by.pw * f[P_GW + d][p] + by.pg * f[P_GG + d][p];
-    h[d]   = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
+    h[d]     = LinesWidthAt(&m->grid.line[d], ParticleGridX(&m->P, p, d));
+    x.g_T[d] = f[P_GT + d][p];
+    for (int k = 0; k < PHASE_COUNT; k++)
+      x.g_p[k][d] = f[VectorAt(P_GW, k, d)][p];
   }
-  const double above = (EquilibriumPressure(&mat->kinetics.equilibrium, f[P_T][p], &slope) - by.v) / slope,
-               rate  = (by.pw * f[P_RATE][p] + by.pg * f[P_RATE_PG][p]) / slope, /* of the equilibrium, K/s */
-      C = q->capacity / f[P_V][p], power = PlasticPower(m, p) + C * fabs(rate),
-               conducted = q->kappa / C * (m->t_n - m->c->t_begin);
-
-  return ReactionHeld(q->reaction_heat, slope, q->kappa, HeatFrontOf(h, g_T, g_p, slope, above, conducted), power,
-                      above);
+  return ReactionHeldAt(&x);
 }
 
 void AdditionsSet(Model *m, PetscInt p, const PointProperties *q)

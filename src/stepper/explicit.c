@@ -190,6 +190,7 @@ static PetscErrorCode Accept(Stepper *s, PetscInt n, double dt, double stop, boo
   z->unseen       = ExplicitUnseen(s->explicit).time;
   z->unseen_steps = ExplicitUnseen(s->explicit).steps;
   PetscCall(ExplicitEnd(s->explicit));
+  s->model->t_n = z->t;
   if (reached)
     PetscCall(ModelBeginStep(s->model, &status));
   PetscCall(StepperAccept(s, a, &info));
