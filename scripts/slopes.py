@@ -427,7 +427,7 @@ Section 5.2 of the paper, by [slope_a](../cases/slope_a/README.md){others}, with
 of the paper, 4 m with 2 x 2 particles.
 
 The first picture of B and those of C are by today's program on cells of 8 m; all else was made before particles took the volume change of their cells, tears closed and velocities were carried to nodes ((88), (427), (451) of [equations.md](equations.md)): as in the paper's scheme, bilinear motion holds in part what has failed, and ground that is pushed together again is pressed by what it opened. With (88) scenario A begins at the same 11.1 s, but by 25 s what failed has moved 25.1 m in
-place of 8.2 m, with 164 in place of 12 MJ/m (cells of 8 m: 24.9 in place of 4.7 m, 127 in place of 10 MJ/m). Rows by `sdirk2` have the ties (351) and (417), which `hybrid` has not; A, B and C go without (424), as the paper does. Against still earlier states, without methane that goes with all of the water's flux (352)
+place of 8.2 m, with 164 in place of 12 MJ/m (cells of 8 m: 24.9 in place of 4.7 m, 127 in place of 10 MJ/m). Rows by `sdirk2` have the ties (351) and (417), which `hybrid` has not; rows of A, B and C were made without (424). Against still earlier states, without methane that goes with all of the water's flux (352)
 and hydrate that grows in water (418), E_k, way, runout and hydrate lost are within 0.2 %, but for two rows that are as sensitive as that to anything: A on 2 m with a heated layer of 4 m (34.5 instead of 34.1 m moved) and C on 4 m
 (runout 733 instead of 727 m; a seventh band is 60 % of the height long now, with θ = 0 still six).
 

@@ -70,11 +70,21 @@ typedef struct {
   bool         forms, wet;
 } Driving;
 
-/* (424): what the chords of p_e (Pa) lie above it, between nodes whose T and p have these covariances (K Pa) at the
-   particle, p of (10) or (371) with its slopes; curvature p_e''/p_e' in 1/K. */
-INLINE double ReactionChord(double curvature, const PorePressure *p, const double covariance[PHASE_COUNT])
+/* What the nodes of a particle have: p of (10) or (371) with its slopes; p_e (Pa) at their mean T with p_e' (Pa/K) and
+   p_e''/p_e' (1/K); the covariances of T with p_w and p_g (K Pa) and the variance of T (K^2), weighted by S. */
+typedef struct {
+  PorePressure p;
+  double       pe, dpe_dT, curvature, covariance[PHASE_COUNT], variance;
+} NodesSeen;
+
+#define CHORD_WITHIN 0.06 /* of the spread of p_e over the nodes: so near to equilibrium they are at it */
+/* (424), Pa: what the chords of p_e between nodes at equilibrium lie above it. */
+INLINE double ReactionChord(const NodesSeen *x)
 {
-  return 0.5 * curvature * (p->pw * covariance[PHASE_W] + p->pg * covariance[PHASE_G]);
+  const double spread = CHORD_WITHIN * CHORD_WITHIN * x->dpe_dT * x->dpe_dT * x->variance, off = x->pe - x->p.v,
+               chord = 0.5 * x->curvature * (x->p.pw * x->covariance[PHASE_W] + x->p.pg * x->covariance[PHASE_G]);
+
+  return spread > 0.0 ? chord * spread / (spread + off * off) : 0.0;
 }
 
 /* Is there no gas phase (371)?  trace is H of (101), pressures in Pa. */

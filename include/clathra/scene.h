@@ -60,7 +60,6 @@ typedef struct {
   double ghost_penalty;     /* g, 0 = off; default 0.1 */
   bool   donor;             /* (332): gas has the mobility of where it comes from; default false */
   bool   saturation_upwind; /* (200); default false */
-  bool   chords;            /* (424); default true */
 } Stabilisation;
 
 typedef struct Scene {
@@ -300,8 +299,8 @@ static inline const Bc *SceneBcNeedsMatrix(const Scene *c)
   return NULL;
 }
 
-/* Does (381) act? */
-static inline bool SceneHoldsReaction(const Scene *c)
+/* Do (381) and (424) act? */
+static inline bool SceneReactsWithHeat(const Scene *c)
 {
   return c->fields.heat && c->fields.phase[PHASE_G] && SceneReacts(c);
 }
@@ -316,12 +315,6 @@ static inline bool SceneCarriesHeat(const Scene *c)
 static inline bool SceneHasLongCells(const Scene *c)
 {
   return CL_DIM == 2 && c->fields.heat;
-}
-
-/* Does (424) act? */
-static inline bool SceneTakesChords(const Scene *c)
-{
-  return c->stabilisation.chords && c->fields.heat && c->fields.phase[PHASE_G];
 }
 
 /* The k-th of the stabilisations that are on and that steps without a matrix go without, as the case says it; NULL:

@@ -150,9 +150,6 @@ const Key case_key[] = {
             "with gas beside clay"),
     BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
             "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
-    BOOLEAN(Case, "stabilisation_equilibrium", scene.stabilisation.chords, "yes",
-            "between nodes at equilibrium particles are at equilibrium, too: no hydrate that alternates within cells "
-            "where p and T vary together; no: p_e of the T between nodes"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),

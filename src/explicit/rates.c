@@ -135,7 +135,7 @@ INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, doubl
     held[q] = 0.0;
     sw[q]   = 1.0 - sg[q];
   }
-  if (!SceneHoldsReaction(e->m->c) || e->o.paper)
+  if (!SceneReactsWithHeat(e->m->c) || e->o.paper)
     return;
   LatentHeatBatch(&mat->latent, r.n, T, L);
   MixtureAverageBatch(r.n, v->phi, v->Sh, sw, kappas, kappa);
@@ -171,20 +171,24 @@ INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, con
 {
   const Equilibrium *law    = &r.mat->kinetics.equilibrium;
   const double *restrict sg = e->t[T_SG] + r.p;
-  double warmer[BLOCK], pe_warmer[BLOCK], beyond[BLOCK];
+  const int width           = LANES * Rows(B_Count(s));
+  double    warmer[BLOCK], pe_warmer[BLOCK], beyond[BLOCK];
 
-  if (!SceneTakesChords(e->m->c) || e->o.paper)
+  if (!SceneReactsWithHeat(e->m->c) || e->o.paper)
     return;
   for (int q = 0; q < r.n; q++)
     warmer[q] = T[q] + CL_CURVES;
   EquilibriumPressureBatch(law, r.n, warmer, pe_warmer, beyond);
   for (int q = 0; q < r.n; q++) {
-    const PorePressure seen = ReactionPressure(r.mat->gas.trace, sg[q], pw[q], pg[q]);
-    double             covariance[PHASE_COUNT];
+    NodesSeen x = {.p         = ReactionPressure(r.mat->gas.trace, sg[q], pw[q], pg[q]),
+                   .pe        = pe[q],
+                   .dpe_dT    = dpe[q],
+                   .curvature = EquilibriumCurvatureOf(dpe[q], beyond[q]),
+                   .variance  = Covariance(e, e->B, width, B_T(s), B_T(s), w, g, q)};
 
     for (int f = 0; f < PHASE_COUNT; f++)
-      covariance[f] = Covariance(e, e->B, LANES * Rows(B_Count(s)), B_T(s), B_P(s, f), w, g, q);
-    pe[q] += ReactionChord(EquilibriumCurvatureOf(dpe[q], beyond[q]), &seen, covariance);
+      x.covariance[f] = Covariance(e, e->B, width, B_T(s), B_P(s, f), w, g, q);
+    pe[q] += ReactionChord(&x);
   }
 }
 

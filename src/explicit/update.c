@@ -59,7 +59,7 @@ static PetscInt OutOfRange(const Explicit *e, const Set s, Run r)
 INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gathered *g, double dt)
 {
   const double per_dt = 1.0 / dt;
-  const bool   rates  = SceneHoldsReaction(e->m->c); /* which alone asks for them */
+  const bool   rates  = SceneReactsWithHeat(e->m->c); /* which alone asks for them */
   Wrong        out    = 0;
 
   for (int k = 0; k < Scalars(s); k++) {

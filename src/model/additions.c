@@ -18,10 +18,10 @@ PetscErrorCode AdditionsReserve(Model *m)
     PetscCall(PetscCalloc1(CL_SYMMETRIC * m->stencil_cap, &to->upwind));
   if (SceneHasLongCells(m->c))
     PetscCall(PetscCalloc1(m->stencil_cap, &to->long_cell));
-  if (SceneHoldsReaction(m->c))
+  if (SceneReactsWithHeat(m->c)) {
     PetscCall(PetscMalloc1(m->stencil_cap, &to->held));
-  if (SceneTakesChords(m->c))
     PetscCall(PetscMalloc1(m->stencil_cap, &to->chord));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

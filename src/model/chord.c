@@ -7,11 +7,13 @@
 
 static double ChordOf(const Model *m, PetscInt p)
 {
-  const FieldSet *fs         = &m->c->fields;
-  const Material *mat        = ParticleMaterial(m, p);
-  const int       at[SEEN]   = {PlaceP(fs, PHASE_W), PlaceP(fs, PHASE_G), PlaceT(fs)};
-  double          mean[SEEN] = {0.0}, covariance[PHASE_COUNT] = {0.0};
-  Reach           r;
+  const FieldSet    *fs         = &m->c->fields;
+  const Material    *mat        = ParticleMaterial(m, p);
+  const int          at[SEEN]   = {PlaceP(fs, PHASE_W), PlaceP(fs, PHASE_G), PlaceT(fs)};
+  const Equilibrium *law        = &mat->kinetics.equilibrium;
+  double             mean[SEEN] = {0.0};
+  NodesSeen          seen       = {.variance = 0.0};
+  Reach              r;
 
   ReachExpand(m, p, &r);
   for (int a = 0; a < r.n; a++) {
@@ -22,10 +24,13 @@ static double ChordOf(const Model *m, PetscInt p)
     const double *x = &m->x_n[r.node[a] * fs->n], warmer = x[at[2]] - mean[2];
 
     for (int f = 0; f < PHASE_COUNT; f++)
-      covariance[f] += r.S[a] * warmer * (x[at[f]] - mean[f]);
+      seen.covariance[f] += r.S[a] * warmer * (x[at[f]] - mean[f]);
+    seen.variance += r.S[a] * warmer * warmer;
   }
-  const PorePressure seen = ReactionPressure(mat->gas.trace, 1.0 - ParticleSw(m, p), mean[0], mean[1]);
-  return ReactionChord(EquilibriumCurvature(&mat->kinetics.equilibrium, mean[2]), &seen, covariance);
+  seen.p         = ReactionPressure(mat->gas.trace, 1.0 - ParticleSw(m, p), mean[0], mean[1]);
+  seen.pe        = EquilibriumPressure(law, mean[2], &seen.dpe_dT);
+  seen.curvature = EquilibriumCurvature(law, mean[2]);
+  return ReactionChord(&seen);
 }
 
 void ChordsBuild(Model *m)

@@ -112,7 +112,6 @@ def row():
     judge("gas", "first gas, a fast reaction in a row: methane of cells of 0.4 to 4 m, against 0.1 to 0.25 m", abs(share(coarse) - 1), 0.04, 0.01, "%")
     judge("gas", "first gas, a fast reaction in a row: ... with donors", abs(share(in_row(0.4, 4, "-stabilisation_donor", "yes")) - 1), 0.04, 0.01, "%")
     judge("gas", "first gas, a fast reaction in a row: S_h falls outwards by", max(falls(coarse), 0.0), 0.005)
-    judge("gas", "first gas, a fast reaction in a row: ... planted: without (424)", falls(in_row(0.4, 4, "-stabilisation_equilibrium", "no")), (0.03, 0.1))
 
 
 def main():
