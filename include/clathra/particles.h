@@ -195,14 +195,6 @@ static inline double ParticleT(const Scene *c, const Particles *P, PetscInt p)
   return P->f[P_T] ? P->f[P_T][p] : c->region[P->i[PI_REGION][p]].temperature;
 }
 
-#define PARTICLE_FRONT 1e-3 /* S_h whose heat is 0.1 K */
-/* Does a particle's T have the mixed derivative (395)?  Not with hydrate that reacts: the b of its front is of a cell's
-   width. */
-static inline bool ParticleBends(const Scene *c, const Particles *P, PetscInt p)
-{
-  return !SceneReacts(c) || P->f[P_SH][p] < PARTICLE_FRONT;
-}
-
 /* Mean pore pressure of what the particle holds, Pa; scenes with water. */
 static inline double ParticlePressure(const Particles *P, PetscInt p)
 {

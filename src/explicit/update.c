@@ -79,10 +79,8 @@ INLINE bool Fields(Explicit *e, const Set s, Run r, const Weights *w, const Gath
     }
   }
   for (int q = 0; s.heat && q < r.n; q++) {
-    const bool bends = ParticleBends(e->m->c, &e->m->P, r.p + q);
-
     for (int c = 0; c < CL_MIXED; c++)
-      e->m->P.f[P_BT + c][r.p + q] = bends ? Mixed(e, e->C + C_End(s) + s.fluids, C_Width(s), w, q, c) : 0.0;
+      e->m->P.f[P_BT + c][r.p + q] = Mixed(e, e->C + C_End(s) + s.fluids, C_Width(s), w, q, c);
   }
   return !out;
 }

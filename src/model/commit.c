@@ -387,7 +387,7 @@ static void WriteMixed(Model *m, PetscInt p, const double *x, const Reach *r)
   double B[CL_MIXED], A[CL_DIM][CL_DIM];
 
   for (int k = 0; k < CL_MIXED; k++)
-    B[k] = ParticleBends(m->c, &m->P, p) ? MixedDerivative(m, p, r, x, k) : 0.0;
+    B[k] = MixedDerivative(m, p, r, x, k);
   if (m->P.total) {
     ParticleInverse(&m->P, p, A);
     MixedCarry(A, B);

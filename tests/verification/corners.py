@@ -2,7 +2,7 @@
 """(395), (446): at the corners of a heater, where the nodes' T is bilinear, its particles stay between what they start from and what
 the heater has; implicit and hybrid, in equal cells and others; heat is conserved, ranks agree.  In space at the corners of a hot box, and
 where three held sides of a body meet.
-A heater in hydrate whose reaction undershoots: the warning at the end, and what it advises.
+A heater in hydrate; heated too fast for its cells the end of the run says so.
 """
 from pathlib import Path
 
@@ -57,8 +57,9 @@ for way in ("sdirk2", "hybrid"):
     judge("corners", f"a heater that ends within a side, cells 1.4 times as long as wide, {way}: colder than the start, of the jump", max(20 - field("heater_corners_3d.yaml", *LONGER, *WAYS[way])[1].min(), 0.0) / 40, 0.001)
 # In hydrate on cells of 1 m, heated within a day.
 rod, T = field("heater_rod.yaml", "-quiet")
-judge("corners", "a heater in hydrate, coarse: colder than the start, K", max(14.4 - T.min(), 0.0), 1.0)
-judge("corners", "... warmer than the heater, K: (395) rests where hydrate still is", max(T.max() - HEATER, 0.0), 5.0)
-check_true("... which the end says", "warmer than start, conditions" in rod.output, rod.output[-300:])
+judge("corners", "a heater in hydrate, coarse: colder than the start, K", max(14.4 - T.min(), 0.0), 0.6)
+judge("corners", "... warmer than the heater, K", max(T.max() - HEATER, 0.0), 0.12)
+rod, T = field("heater_rod.yaml", "-quiet", "-bc_rod_temperature", "{ramp: [14.4 degC, 60 degC, 0 h, 4 h]}")
+check_true("... heated within four hours, which the end says", "colder than start, conditions" in rod.output, rod.output[-300:])
 check_true("... and the summary", "  T of particles from " in (rod.out / "summary.txt").read_text())
 finish()
