@@ -127,12 +127,15 @@ static double Need(const Case *c, const Body *body, PetscMPIInt size, int factor
   return PROCESS * size + COPIES * Held(&c->scene) * body->particles + node * body->nodes + GRID * GridNodes(&c->scene);
 }
 
-/* A limit of the container, bytes; INFINITY where the file has none. */
-static double LimitIn(const char *path)
+/* The limit that a file of control groups sets, bytes; INFINITY where it sets none. */
+static double LimitIn(const char *folder, const char *group, const char *name)
 {
+  char   path[2 * PATH_MAX];
   double limit = INFINITY;
-  FILE  *f     = fopen(path, "r");
+  FILE  *f;
 
+  snprintf(path, sizeof(path), "/sys/fs/cgroup%s%s/%s", folder, group, name);
+  f = fopen(path, "r");
   if (f && fscanf(f, "%lf", &limit) != 1)
     limit = INFINITY;
   if (f)
@@ -140,22 +143,38 @@ static double LimitIn(const char *path)
   return limit;
 }
 
-/* What this process and the others on its machine may have in all, bytes: memory, or the limit of a container. */
-static double Machine(void)
+/* ... of a group and all above it; what is left of `group` is "". */
+static double LimitUpwards(const char *folder, char *group, const char *name)
 {
-  char  own[PATH_MAX] = "", path[PATH_MAX + 64];
-  FILE *f             = fopen("/proc/self/cgroup", "r");
+  double limit = LimitIn(folder, group, name);
 
-  if (f && fscanf(f, "0::%4000s", own) != 1)
-    own[0] = '\0';
-  if (f)
-    fclose(f);
-  snprintf(path, sizeof(path), "/sys/fs/cgroup%s/memory.max", own);
-  return fmin(fmin((double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE), LimitIn(path)),
-              fmin(LimitIn("/sys/fs/cgroup/memory.max"), LimitIn("/sys/fs/cgroup/memory/memory.limit_in_bytes")));
+  for (char *end = strrchr(group, '/'); end; end = strrchr(group, '/')) {
+    *end  = '\0';
+    limit = fmin(limit, LimitIn(folder, group, name));
+  }
+  return limit;
 }
 
-/* The share of the need that falls on a machine, or on one process where that has a limit, and what there is. */
+/* The limit of this process's container or job, bytes, of either version of control groups. */
+static double Container(void)
+{
+  double limit = INFINITY;
+  FILE  *f     = fopen("/proc/self/cgroup", "r");
+  char   line[PATH_MAX], group[PATH_MAX];
+
+  while (f && fgets(line, sizeof(line), f)) {
+    if (sscanf(line, "0::%4095s", group) == 1)
+      limit = fmin(limit, LimitUpwards("", group, "memory.max"));
+    else if (sscanf(line, "%*d:memory:%4095s", group) == 1)
+      limit = fmin(limit, LimitUpwards("/memory", group, "memory.limit_in_bytes"));
+  }
+  if (f)
+    fclose(f);
+  return limit;
+}
+
+/* The share of the need that falls on a machine, or on one process where that has a limit, and what there is: memory,
+   or the limit of its container. */
 static PetscErrorCode Shares(MPI_Comm comm, double *share, double *there)
 {
   MPI_Comm      machine;
@@ -169,7 +188,7 @@ static PetscErrorCode Shares(MPI_Comm comm, double *share, double *there)
   PetscCallMPI(MPI_Comm_size(machine, &here));
   PetscCallMPI(MPI_Comm_free(&machine));
   *share = (double)here / size;
-  *there = Machine();
+  *there = fmin((double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE), Container());
   limit  = getrlimit(RLIMIT_AS, &own) == 0 && own.rlim_cur != RLIM_INFINITY ? (double)own.rlim_cur : INFINITY;
   *there = fmin(*there, fmax(limit - ADDRESSES, 0.0) * here);
   PetscFunctionReturn(PETSC_SUCCESS);

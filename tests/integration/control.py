@@ -59,6 +59,13 @@ def check_memory():
     for more, options in ((0.005, ()), (0.1, ()), (0.001, HYBRID), (0.06, HYBRID)):  # a snapshot in memory, the solver, a snapshot, the loops
         code, said, _ = limited(more, *large, *options, at="run.id")
         check_true(f"an allocation that fails, with {1e3 * more:.0f} MB more: a sentence, exit code 3", code == 3 and said.count("clathra: out of memory") == 1 and "HDF5" not in said and "PETSC ERROR" not in said, said[-300:])
+    groups = re.findall(r"^\d+:(|memory):/(.*)$", Path("/proc/self/cgroup").read_text(), re.M)  # of either version
+    files = [f"{of or '.'}/{group}/memory.{'limit_in_bytes' if of else 'max'}" for of, name in groups for group in (name, *map(str, Path(name).parents))]
+    for file in files:  # of the process's own group, and of those above it
+        apart = ("unshare", "--mount", "sh", "-ec", 'mount -t tmpfs tmpfs /sys/fs/cgroup; cd /sys/fs/cgroup; mkdir -p "$(dirname "$0")"; echo 300000000 >"$0"; exec "$@"', file)
+        if subprocess.run([*apart, "true"], capture_output=True).returncode == 0:  # as root
+            done = subprocess.run([*apart, *map(str, (binary(), BP2[0], "-grid_cells", "200,100", "-case_check"))], env=environment(), capture_output=True, text=True)
+            check_true(f"... and what is above the limit of a container, {file}", done.returncode == 2 and "and there are 0.3 GB" in done.stderr, done.stderr[-300:])
     code, said, _ = limited(4, *BP2, "-quiet", "-stepper_max_steps", "1")
     check_true("what fits is run, without a word about memory", code == 0 and "memory" not in said, said[-300:])
 
