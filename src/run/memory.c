@@ -8,7 +8,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-/* Fitted to the largest resident sizes of 56 runs, 55 MB to 1.1 GB; tests/integration/control.py measures eight. */
+/* Fitted to the largest resident sizes of 56 runs: 0.77 to 1.18 of what these and six others, up to 3 GB, took;
+   tests/integration/control.py measures eight. */
 #define PROCESS 54e6    /* bytes of a rank without a body */
 #define ADDRESSES 430e6 /* bytes of addresses, beyond what it uses, that a rank reserves: a limit counts them, too */
 #define COPIES 5.1      /* of what a particle holds */
