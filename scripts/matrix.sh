@@ -37,9 +37,24 @@ jobs=${JOBS:-$(env -u OMP_NUM_THREADS nproc)} # nproc would answer with one thre
 export CMAKE_BUILD_PARALLEL_LEVEL=$jobs CTEST_PARALLEL_LEVEL=$jobs
 results=$root/results/matrix
 
+# installed FOLDER: does what cmake --install puts elsewhere run a case, and does the Python package drive it to the same, from another folder and with an empty
+# environment?  As root with the tree out of sight.
+installed() {
+  local prefix hide=() code=0
+  prefix=$(mktemp -d)
+  [ "$(id -u)" -ne 0 ] || hide=(unshare --mount sh -c 'mount -t tmpfs tmpfs "$0" && exec "$@"' "$root")
+  cmake --install "$1" --prefix "$prefix" && (cd "$prefix" && "${hide[@]}" env -i PATH=/usr/bin:/bin HOME="$prefix" OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 PYTHONPATH=lib/python3/dist-packages \
+    sh -ec 'bin/clathra share/clathra/cases/terzaghi -time_end "100 s" -output_times "0 s,100 s" -output_dir out; exec "$@"' - "$python" -c "
+import clathra
+run = clathra.Case('terzaghi').with_(time_end=100, output_times=[0, 100]).run('driven')
+assert run.finished and (run.particles()['p_w'] == clathra.Run('out').particles()['p_w']).all()") || code=1
+  rm -rf "$prefix"
+  return $code
+}
+
 # here COMPILER: builds and tests on this system; the last line of the output is a row of the table.
 here() {
-  local folder=results/matrix/here-$1 log=$results/here-$1 built=no warnings='' tests='' failed name petsc version
+  local folder=results/matrix/here-$1 log=$results/here-$1 built=no warnings='' lives='' tests='' failed name petsc version
   setup_packages "${run_packages[@]}" "$1" >&2
   name=$(. /etc/os-release && echo "$PRETTY_NAME")
   petsc=$(pkg-config --modversion PETSc) || petsc=none
@@ -47,13 +62,15 @@ here() {
   say "$name, PETSc $petsc, $1 $version" >&2
   if (CC=$1 setup_build "$folder" all -DCMAKE_BUILD_TYPE=Release); then
     built=yes warnings=$(grep -c 'warning:' "$log/build.log" || true)
+    lives=no
+    if installed "$log" >"$log/installed.log" 2>&1; then lives=yes; fi
     ctest --test-dir "$log" -L '^short$' --output-on-failure >"$log/tests.log" 2>&1 </dev/null || true
     failed=$(sed -nE 's/^ *[0-9]+\/[0-9]+ Test +#[0-9]+: (\S+) .*\*\*\*.*/\1/p' "$log/tests.log" | tr '\n' ' ')
     tests="$(grep -cE '^ *[0-9]+/[0-9]+ Test .* Passed ' "$log/tests.log" || true) / $(wc -w <<<"$failed")${failed:+: $failed}"
   else
     tests=$(cat "$log"/{configure,build}.log 2>/dev/null | grep -m1 -oE '(error|Error).*' | tr '|' ' ')
   fi
-  echo "| $name | $petsc | $1 $version | $built | $warnings | $tests |"
+  echo "| $name | $petsc | $1 $version | $built | $warnings | $lives | $tests |"
 }
 
 # apart COMMAND...: in namespaces of its own, so that what it mounts and starts ends with it, however it ends.
@@ -78,7 +95,7 @@ make_chroot() { # SYSTEM FOLDER: with this tree in /clathra, and apt's proxies a
 }
 
 # shellcheck disable=SC2016 # expanded by the inner shell
-enter='mount -t proc proc "$0/proc"; mount -t sysfs -o ro sysfs "$0/sys"
+enter='mount --bind "$0" "$0"; mount -t proc proc "$0/proc"; mount -t sysfs -o ro sysfs "$0/sys"
   mount -t devpts devpts "$0/dev/pts"; mount -t tmpfs -o mode=1777 tmpfs "$0/dev/shm"; exec chroot "$0" "$@"'
 in_chroot() { # FOLDER COMPILER
   apart sh -ec "$enter" "$1" /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
@@ -127,10 +144,10 @@ trap 'exit 130' INT
 trap 'exit 143' TERM
 mkdir -p "$results"
 table=$results/table.md
-printf '| %s ' system PETSc compiler built warnings 'passed / failed' >"$table"
-printf '|\n|---|---|---|---|---|---|\n' >>"$table"
+printf '| %s ' system PETSc compiler built warnings installed 'passed / failed' >"$table"
+printf '|\n|---|---|---|---|---|---|---|\n' >>"$table"
 for system in "${systems[@]}"; do
   rows_of "$system" >>"$table"
 done
 cat "$table"
-! tail -n +3 "$table" | grep -v '| yes | .* [1-9][0-9]* / 0 |$' >/dev/null
+! tail -n +3 "$table" | grep -v '| yes | [0-9]* | yes | [1-9][0-9]* / 0 |$' >/dev/null

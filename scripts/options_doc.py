@@ -1,10 +1,13 @@
 #!/usr/bin/python3
-"""Makes docs/options.md, and docs/laws.md but for its pictures: options_doc.py CLATHRA [--check]
+"""Makes docs/options.md and docs/laws.md of this program: options_doc.py CLATHRA [--check | --pictures]
 
-The keys of a case come from `CLATHRA -case_keys`; the options of the program itself are kept by hand below, and
-tests/docs.py holds them against what src/ reads.  --check writes nothing and fails when the page is out of date.
+The keys of a case come from `CLATHRA -case_keys`; the options of the program itself are kept by hand below, and tests/docs.py holds them against what src/ reads.
+Formulas and numbers of the laws come from docs/equations.md, files from the comments that cite the numbers, and the curves from `CLATHRA CASE -case_curves`: nothing is
+computed here but K_d of published pairs.  --check writes nothing and fails when a page is out of date; --pictures draws the laws, too.
 """
 import difflib
+import functools
+import math
 import re
 import sys
 from pathlib import Path
@@ -12,8 +15,11 @@ from pathlib import Path
 from clathra.program import call
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "options.md"
+PAGE, LAWS_PAGE = ROOT / "docs" / "options.md", ROOT / "docs" / "laws.md"
+EQUATIONS, FIGURES = ROOT / "docs" / "equations.md", ROOT / "docs" / "figures"
+CASE, MATERIAL = ROOT / "docs" / "laws.yaml", "sand"  # whose parameters the pictures have, but for what they vary
 
+# ---------------------------------------------------------------- options and keys
 PROGRAM = [  # option, value, default, meaning
     ("-case_check", "", "", "read and check the case and its start: refusals, forecast and warnings of a run; write nothing"),
     ("-case_keys", "", "", "print every key of a case file and stop; needs no case"),
@@ -140,23 +146,157 @@ def page(binary):
     return HEAD.format(program="\n".join(program), petsc="\n".join(petsc), plain=plain, keys=keys) + "\n"
 
 
-def main(arguments):
-    check = "--check" in arguments
-    arguments = [a for a in arguments if a != "--check"]
-    if len(arguments) != 1:
-        sys.exit(__doc__)
-    new = page(arguments[0])
-    if not check:
-        import laws_doc  # whose page lists keys, too
+# ---------------------------------------------------------------- laws
+# title; its curve; what the picture varies (label, keys of the material); equations; keys (without mat_<name>_); source
+LAWS = [
+    ("Retention", "retention", [("van_genuchten", "retention_law van_genuchten"), ("van_genuchten, twice p0", "retention_p0 40000"), ("brooks_corey", "retention_law brooks_corey retention_lambda 1")],
+     (223, 224, 320), r"retention_\w+", "van Genuchten (1980), Brooks and Corey (1964); with hydrate Leverett (1941), and a power law as in S. Gupta's models"),
+    ("Relative permeability", "relative_permeability", [("n = 4, 2", "relperm_nw 4 relperm_ng 2"), ("n = 2, 2", "relperm_nw 2 relperm_ng 2")],
+     (225,), r"relperm_\w+", "Corey (1954)"),
+    ("Permeability and hydrate", "permeability_hydrate", [("power, mh = 3", "permeability_mh 3"), ("power, mh = 8", "permeability_mh 8"), ("masuda_ramp", "permeability_hydrate_law masuda_ramp permeability_kh 0.1 permeability_Shc 0.5")],
+     (226, 229, 230), r"permeability_(k0|hydrate_law|mh|kh|Shc)", "Masuda et al. (1999)"),
+    ("Permeability and porosity", "permeability_porosity", [("kozeny_carman", "permeability_porosity_law kozeny_carman"), ("square_jacobian", "permeability_porosity_law square_jacobian")],
+     (226, 227, 228), r"permeability_(k0|phi0|porosity_law)", "Kozeny (1927), Carman (1937); Xie and Leo (2004)"),
+    ("Equilibrium of hydrate", "equilibrium", [("sloan", "kinetics_equilibrium sloan"), ("moridis", "kinetics_equilibrium moridis"), ("kamath", "kinetics_equilibrium kamath"), ("masuda", "kinetics_equilibrium masuda"),
+      ("sloan, salinity 0.1", "kinetics_equilibrium sloan water_salinity 0.1")],
+     (231, 232, 122, 123, 125), r"kinetics_(equilibrium|A\d)|water_salinity", "Sloan; Moridis (2003); Kamath (1984); Masuda (1999); Dickens and Quinby-Hunt (1994)"),
+    ("Rate of the reaction", "rate_constant", [("dE = 0", "kinetics_K0 1e-11 kinetics_dE 0"), ("dE = 81 kJ/mol", "kinetics_K0 8.06e3 kinetics_dE 81084.2")],
+     (11, 12, 13, 371, 233), r"kinetics_(active|K0|dE)|hydrate_(number|molar_mass)|water_molar_mass", "Kim, Bishnoi, Heidemann and Rizvi (1987)"),
+    ("Surface on which hydrate forms", "formation_surface", [("", "")], (234, 418), r"porosity|kinetics_A_geo", "the paper; (418) ours, where water holds methane"),
+    ("Heat of dissociation", "latent_heat", [("linear", "latent_heat_law linear"), ("kirchhoff", "latent_heat_law kirchhoff")], (235, 130), r"latent_heat_\w+", "the paper; Kirchhoff (1858)"),
+    ("Density of gas", "gas_density", [("peng_robinson", "gas_eos peng_robinson"), ("ideal", "gas_eos ideal")], (222, 120), r"gas_(molar_mass|eos|critical_\w+|acentric_factor)", "Peng and Robinson (1976)"),
+    ("Density of water, grains and hydrate", "water_density", [("expansion 0", "water_expansion 0"), ("expansion 2e-4 1/K", "water_expansion 2e-4"), ("salinity 0.035", "water_expansion 0 water_salinity 0.035")],
+     (221, 126), r"(solid|hydrate|water)_(density|expansion|bulk_modulus|ref_\w+|salinity)", "the paper; Sharqawy, Lienhard and Zubair (2010)"),
+    ("Viscosities", "viscosity", [("constant", "water_viscosity_law constant gas_viscosity_law constant"), ("kestin, lee", "water_viscosity_law kestin gas_viscosity_law lee")],
+     (128, 129), r"(water|gas)_viscosity(_law)?", "Kestin, Sokolov and Wakeham (1978); Lee, Gonzalez and Eakin (1966)"),
+    ("Melting of ice", "melting", [("fresh", "water_salinity 0"), ("salinity 0.035", "water_salinity 0.035")], (127,), r"water_salinity", "Fofonoff and Millard (1983)"),
+    ("Conductivity and heat capacity", "conductivity", [("", "")], (236,), r"\w+_(heat_capacity|conductivity)", "the paper"),
+    ("Stiffness", "stiffness", [("bh = 1", "elasticity_bh 1"), ("bh = 2", "elasticity_bh 2")], (14, 93, 237), r"elasticity_\w+", "the paper"),
+    ("Strength and hydrate", "strength", [("eta_h = 5", "plasticity_eta_h 5"), ("eta_h = 1", "plasticity_eta_h 1")], (61, 63, 455), r"plasticity_(law|cohesion_(m\w+|gradient|level)|dilation_\w+|eta_h|Sh_max|tension_cutoff|flow|eccentricity)", "the paper"),
+    ("Softening", "softening", [("eta_s = 5", "plasticity_eta_s 5"), ("eta_s = 20", "plasticity_eta_s 20")], (62, 85, 87), r"plasticity_(cohesion_residual|friction_\w+|eta_s|softening_length|nonlocal_length|heat)|strength_factor", "the paper; Galavi and Schweiger (2010)"),
+]  # fmt: skip
 
-        PAGE.write_text(new)
-        laws_doc.PAGE.write_text(laws_doc.page(arguments[0]))
-        return 0
-    old = PAGE.read_text() if PAGE.is_file() else ""
-    difference = list(difflib.unified_diff(old.splitlines(), new.splitlines(), str(PAGE), "as it should be", lineterm=""))
-    print("\n".join(difference) if difference else f"{PAGE} is up to date")
-    return 1 if difference else 0
+SYMBOLS = [  # as formulas write it; what it is; SI unit
+    ("p_w, p_g, p", "pressure of water, of gas, their mean s_w p_w + s_g p_g", "Pa"), ("p_c", "capillary pressure p_g - p_w; in (120) the critical one", "Pa"),
+    ("T, T_K", "temperature in degC, in kelvin", "degC, K"), ("phi", "porosity; in strength the friction angle", "-, deg"), ("S_h, S_w, S_g", "share of the pores that hydrate, water, gas fill", "-"),
+    ("s_w, s_g", "share of the open pores, S_w/(1 - S_h), S_g/(1 - S_h)", "-"), ("rho", "density", "kg/m^3"), ("k_r", "relative permeability", "-"), ("k_a, k_0", "intrinsic permeability, that without hydrate at phi_0", "m^2"),
+    ("f_phi, f_Sh", "its factors of porosity and hydrate", "-"), ("p_e", "equilibrium pressure of hydrate", "Pa"), ("K_d", "rate constant", "mol/(m^2 Pa s)"), ("A_s", "surface per volume", "1/m"), ("L", "heat of dissociation", "J/kg"),
+    ("X", "conductivity, or density times specific heat", "W/(m K), J/(m^3 K)"), ("E", "Young's modulus", "Pa"), ("c, psi", "cohesion, dilation angle", "Pa, deg"), ("eps", "deviatoric plastic strain", "-"), ("sigma'", "effective stress, tension-positive", "Pa"),
+    ("m_h", "mass of hydrate", "kg"), ("R", "rate of the reaction; gas constant where beside T_K", "mol/(m^3 s), J/(mol K)"), ("mu", "viscosity", "Pa s"), ("M", "molar mass", "kg/mol"), ("*", "starred: what the stage starts from", ""),
+]  # fmt: skip
+
+
+@functools.cache
+def keys(binary):
+    """[(key without mat_<name>_, kind, unit, range, default, meaning)] of materials, and strength_factor."""
+    rows = [[w.strip() for w in line.strip("|\n").split(" | ")] for line in call("-case_keys", program=binary).splitlines() if line.startswith("| `")]
+    return [(re.sub(r"`(mat_<name>_)?", "", r[0].strip("| ")), *r[1:6]) for r in rows if "mat_<name>" in r[0] or r[0].strip("| ") == "`strength_factor`"]
+
+
+def formulas():
+    """{number: line of docs/equations.md}"""
+    return {int(n): line.strip() for line, n in re.findall(r"^ {4}(.*)\((\d+)\) *$", EQUATIONS.read_text(), re.M)}
+
+
+@functools.cache
+def citations():
+    """{path: numbers that its comments cite}"""
+    comments = lambda path: "\n".join(re.findall(r"/\*.*?\*/", path.read_text(), re.S))
+    return {str(p.relative_to(ROOT)): {int(n) for n in re.findall(r"(?<![\w)])\((\d{1,3})\)", comments(p))} for p in sorted([*(ROOT / "src").rglob("*.[ch]"), *(ROOT / "include").rglob("point_*.h")])}
+
+
+def files(number):
+    """Where a comment of the code cites it."""
+    return [path for path, numbers in citations().items() if number in numbers]
+
+
+def curves(binary, name, variation):
+    """Columns' names, and the rows of a curve with other keys."""
+    words = variation.split()
+    units = {k[0]: k[2] for k in keys(binary)}
+    options = []
+    for key, value in zip(words[::2], words[1::2]):
+        unit = units.get(key, "")
+        options += [f"-mat_{MATERIAL}_{key}", f"{value} {unit}" if re.fullmatch(r"[-+.\de]+", value) and unit else value]
+    text = call(CASE, "-case_curves", *options, program=binary)
+    block = re.search(rf"^# {name} of {MATERIAL}: (.*)\n((?:[^#].*\n)+)", text, re.M)
+    return block[1].split(", "), [[float(v) for v in line.split(",")] for line in block[2].splitlines()]
+
+
+# Published pairs of K_0 (mol/(m^2 Pa s)) and dE (J/mol).
+PAIRS = (("Kim, Bishnoi, Heidemann and Rizvi (1987)", 1.24e5, 78151.0), ("Clarke and Bishnoi (2001)", 3.6e4, 81e3))
+
+
+def published_pairs():
+    """The table of PAIRS, with K_d at two temperatures (degC)."""
+    at = lambda K0, dE, T: f"{K0 * math.exp(-dE / (8.314 * (T + 273.15))):.2g}"
+    return ["Published pairs of methane, with what they make of K_d, mol/(m^2 Pa s):", "", "| source | `K0`, mol/(m^2 Pa s) | `dE`, J/mol | K_d at 2 degC | K_d at 10 degC |", "|---|---|---|---|---|",
+            *(f"| {name} | {K0:.3g} | {dE:.5g} | {at(K0, dE, 2)} | {at(K0, dE, 10)} |" for name, K0, dE in PAIRS), "",
+            "78151 J/mol is 9400 K times R. K_0 counts by the square metre of hydrate's surface, so the rate of a volume is K_0 `A_geo`: a pair with another surface is another rate, and either author's K_0 goes with crystals in a stirred cell, whose surface was measured or inferred "
+            "there; that of hydrate in pores (1e5 to 1e6 1/m in the cases of this repository, 1 to 10 1/m where it lies in lumps and veins) is the less certain number of the two. Of these cases Masuda's and century_hydrate's take 3.6e4 with 78151, "
+            "3.4 times Clarke and Bishnoi's rate.", ""]  # fmt: skip
+
+
+def laws_page(binary):
+    table, text = keys(binary), formulas()
+    out = ["# Laws", "", "<!-- made by scripts/options_doc.py -->", "",
+           "Every constitutive relation: its formula with its number in [equations.md](equations.md), the curve as the program evaluates it (`clathra CASE -case_curves` prints them for any case), its keys below "
+           "`mat_<name>_`, source and code. The pictures have the parameters of [laws.yaml](laws.yaml) but for what they vary.", "",
+           "## Symbols", "", "| symbol | what it is | SI unit |", "|---|---|---|"]  # fmt: skip
+    out += [f"| {s} | {what} | {unit} |" for s, what, unit in SYMBOLS]
+    index = []
+    for title, curve, _, numbers, pattern, source in LAWS:
+        own = [k for k in table if re.fullmatch(pattern, k[0])]
+        where = sorted({f for n in numbers for f in files(n)})
+        out += ["", f"## {title}", "", *(f"    {text[n]} ({n})" for n in numbers), "", f"![{title}](figures/law_{curve}.png)", "", "| key | kind | SI unit | range | default | meaning |", "|---|---|---|---|---|---|"]
+        out += [f"| `{k[0]}` | {' | '.join(k[1:6])} |" for k in own]
+        out += ["", *(published_pairs() if curve == "rate_constant" else []), f"Source: {source}. Code: {', '.join(f'`{f}`' for f in where)}."]
+        index += [f"| ({n}) | [{title}](#{title.lower().replace(' ', '-').replace(',', '')}) | {', '.join(f'`{k[0]}`' for k in own)} | {', '.join(f'`{f}`' for f in files(n))} |" for n in numbers]
+    rest = [k for k in table if not any(re.fullmatch(law[4], k[0]) for law in LAWS)]
+    if rest:
+        out += ["", "## Other keys of a material", "", "| key | kind | SI unit | range | default | meaning |", "|---|---|---|---|---|---|"]
+        out += [f"| `{k[0]}` | {' | '.join(k[1:6])} |" for k in rest]
+    out += ["", "## Equation, keys, file", "", "| equation | law | keys | cited in |", "|---|---|---|---|", *index, ""]
+    return "\n".join(out)
+
+
+def draw(binary):
+    from clathra.plotting import plt, set_style
+
+    set_style()
+    for title, curve, variations, *_ in LAWS:
+        columns, _ = curves(binary, curve, variations[0][1])
+        fig, axes = plt.subplots(1, len(columns) - 1, figsize=(3.6 * max(len(columns) - 1, 1.4), 2.9), squeeze=False)
+        for label, variation in variations:
+            columns, rows = curves(binary, curve, variation)
+            for k, ax in enumerate(axes[0]):
+                ax.plot([r[0] for r in rows], [r[k + 1] for r in rows], label=label)
+        for k, ax in enumerate(axes[0]):
+            ax.set(xlabel=columns[0].removesuffix(" -"), title=columns[k + 1].removesuffix(" -"))
+            if curve == "equilibrium" or curve == "permeability_hydrate":
+                ax.set_yscale("log")
+        if variations[0][0]:
+            axes[0][0].legend()
+        fig.savefig(FIGURES / f"law_{curve}.png", dpi=80)
+        plt.close(fig)
+
+
+def main(binary, *options):
+    pages = {PAGE: page(binary), LAWS_PAGE: laws_page(binary)}
+    if "--check" not in options:
+        for path, text in pages.items():
+            path.write_text(text)
+        return draw(binary) if "--pictures" in options else 0
+    stale = 0
+    for path, text in pages.items():
+        old = path.read_text() if path.is_file() else ""
+        difference = list(difflib.unified_diff(old.splitlines(), text.splitlines(), str(path), "as it should be", lineterm=""))
+        print("\n".join(difference) if difference else f"{path} is up to date")
+        stale |= bool(difference)
+    return stale
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= {"--check", "--pictures"}:
+        sys.exit(__doc__)
+    sys.exit(main(*sys.argv[1:]))

@@ -9,7 +9,7 @@ CLATHRA     the program, default build/clathra
 --no-figures  leave docs/figures as it is
 
 Each test notes its numbers with common.record() in results/verification/<test>.json.  Figures 6, 7 and 9 to 11 of the paper, with
-the reference's curves, are drawn by plot_bp2.py and plot_masuda.py into docs/figures.  Ends with 1 if a test failed.
+the reference's curves, are drawn by reference.py into docs/figures.  Ends with 1 if a test failed.
 """
 import argparse
 import json
@@ -22,8 +22,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import clathra
-import plot_bp2
-import plot_masuda
+import reference
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "results" / "verification"
@@ -109,8 +108,8 @@ def figures(program):
     bp2, masuda = (clathra.Case(ROOT / "cases" / name, program) for name in ("bp2", "masuda"))
     for name, case in (("bp2_case2", bp2), ("bp2_case1", bp2.with_(mat_sediment_kinetics_active=False)), ("masuda", masuda)):
         case.run(RESULTS / name, options=("-quiet",))
-    plot_bp2.main([RESULTS / "bp2_case1", RESULTS / "bp2_case2", FIGURES])
-    plot_masuda.main([RESULTS / "masuda", FIGURES])
+    reference.bp2(RESULTS / "bp2_case1", RESULTS / "bp2_case2", FIGURES)
+    reference.masuda(RESULTS / "masuda", FIGURES)
     subprocess.run([sys.executable, str(ROOT / "tests" / "verification" / "strip_load.py"), str(program),
                     str(FIGURES / "strip_load.png")], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
 

@@ -10,7 +10,6 @@
 - CHANGELOG.md, CITATION.cff, CMakeLists.txt and python/pyproject.toml say the same version
 - every verification test that measures stands in docs/verification.md, and its lines are as many as that page says
 """
-import importlib.util
 import re
 import shlex
 import subprocess
@@ -30,13 +29,9 @@ PETSC = re.compile(r"-(snes|ksp|pc|sub_pc|sub_ksp|sub|mat_mumps|mat_umfpack|log|
 # Presets may choose solver and integrator.
 NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat|reduced)_\w+")
 
-spec = importlib.util.spec_from_file_location("options_doc", ROOT / "scripts" / "options_doc.py")
-options_doc = importlib.util.module_from_spec(spec)
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
-import laws_doc  # noqa: E402
-
-spec.loader.exec_module(options_doc)
+import options_doc  # noqa: E402
 
 
 def fences(page):
@@ -64,13 +59,13 @@ def check_page(binary):
 
 
 def check_laws(binary):
-    """docs/laws.md is what scripts/laws_doc.py makes of this program, the code cites its equations, and the curves are whole."""
-    text = laws_doc.PAGE.read_text()
-    if text != laws_doc.page(binary):
+    """docs/laws.md is what scripts/options_doc.py makes of this program, the code cites its equations, and the curves are whole."""
+    text = options_doc.LAWS_PAGE.read_text()
+    if text != options_doc.laws_page(binary):
         yield "docs/laws.md is out of date: run scripts/options_doc.py CLATHRA"
-    yield from (f"docs/laws.md: no code cites ({n})" for law in laws_doc.LAWS for n in law[3] if not laws_doc.files(n))
-    for law in laws_doc.LAWS:
-        columns, rows = laws_doc.curves(binary, law[1], law[2][-1][1])
+    yield from (f"docs/laws.md: no code cites ({n})" for law in options_doc.LAWS for n in law[3] if not options_doc.files(n))
+    for law in options_doc.LAWS:
+        columns, rows = options_doc.curves(binary, law[1], law[2][-1][1])
         if len(rows) < 100 or any(len(r) != len(columns) or any(v != v for v in r) for r in rows):
             yield f"-case_curves: the rows of {law[1]} are not whole"
 

@@ -10,10 +10,33 @@
 
 #define GROW ((size_t)1 << 22) /* bytes by which an image grows */
 
+static bool no_memory; /* HDF5 could not allocate something */
+
+static herr_t LookForMemory(unsigned n, const H5E_error2_t *error, void *ctx)
+{
+  (void)n, (void)ctx;
+  no_memory = no_memory || error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC;
+  return 0;
+}
+
+/* Says what HDF5 has noted, unless it is memory that is not there: a sentence, which is main's, says that. */
+static herr_t Note(hid_t stack, void *ctx)
+{
+  (void)ctx;
+  H5Ewalk2(stack, H5E_WALK_DOWNWARD, LookForMemory, NULL);
+  return no_memory ? 0 : H5Eprint2(stack, stderr);
+}
+
+PetscErrorCode H5Failure(void)
+{
+  return no_memory ? PETSC_ERR_MEM : PETSC_ERR_LIB;
+}
+
 /* A viewer that holds the file open must not stop the run: no locking.  Closing a file closes everything in it. */
 static PetscErrorCode Access(hid_t *access)
 {
   PetscFunctionBeginUser;
+  H5Check(H5Eset_auto2(H5E_DEFAULT, Note, NULL));
   H5Check(*access = H5Pcreate(H5P_FILE_ACCESS));
   H5Check(H5Pset_fclose_degree(*access, H5F_CLOSE_STRONG));
   H5Check(H5Pset_file_locking(*access, 0, 1));

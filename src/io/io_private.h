@@ -153,7 +153,9 @@ extern const char *const xdmf_name[];
 void                     XdmfPrint(FILE *f, const Output *out, const Grid *g, XdmfKind kind);
 
 /* ---------------------------------------------------------------- h5util.c */
-#define H5Check(expr) PetscCheck((expr) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 failed at %s", #expr)
+#define H5Check(expr) PetscCheck((expr) >= 0, PETSC_COMM_SELF, H5Failure(), "HDF5 failed at %s", #expr)
+
+PetscErrorCode H5Failure(void); /* of the last call: PETSC_ERR_MEM or PETSC_ERR_LIB */
 
 PetscErrorCode H5ImageCreate(hsize_t user_block, hid_t *file); /* a file in memory */
 /* A file that all ranks write; the calls that make groups, attributes and datasets of it are collective. */

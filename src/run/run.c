@@ -444,17 +444,6 @@ static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* "52 x 1": cells along each axis. */
-static Place CellsWords(const Scene *c, const char *between)
-{
-  Place words = {""};
-  int   n     = 0;
-
-  for (int d = 0; d < CL_DIM; d++)
-    n += snprintf(words.s + n, sizeof(words.s) - (size_t)n, "%s%" PetscInt_FMT, d ? between : "", c->cells[d]);
-  return words;
-}
-
 /* An option that is given without its path: a sentence. */
 static PetscErrorCode CheckPath(MPI_Comm comm, const char *option, bool given, const char *path, bool *ok)
 {
@@ -506,12 +495,18 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(MemoryLook(comm, c, &ok));
+  PetscCall(MemoryLook(comm, c, NULL, &ok));
   if (!ok) {
     *exit_code = CL_EXIT_INPUT;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ModelCreate(comm, &c->scene, &CaseInStage(c, 0)->scene, &model));
+  PetscCall(MemoryLook(comm, c, &model, &ok));
+  if (!ok) {
+    PetscCall(ModelDestroy(&model));
+    *exit_code = CL_EXIT_INPUT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(StepperCreate(&model, &stepper));
   stepper.monitor     = Monitor;
   stepper.monitor_ctx = &run;

@@ -3,6 +3,7 @@
 
 #include "clathra/io.h"
 #include "clathra/run.h"
+#include "clathra/words.h"
 
 /* ---------------------------------------------------------------- log.c: log.txt */
 /* What was said since the last time goes into the folder; append: after what a run before wrote.  Collective. */
@@ -31,9 +32,10 @@ bool           WatchLine(Watch *w, bool last); /* is it time for a line?  The la
 PetscErrorCode StartFromState(Stepper *s, const char *path, bool *ok);
 
 /* ---------------------------------------------------------------- memory.c */
-/* *ok = false: particles and grid need more than the machine has, or than the process may take, and a sentence was
-   printed.  Collective. */
-PetscErrorCode MemoryLook(MPI_Comm comm, const Case *c, bool *ok);
+Place CellsWords(const Scene *c, const char *between); /* "52 x 1": cells along each axis */
+/* *ok = false: the run would need more than the machine has, or than the process may take, and a sentence was printed.
+   m: NULL before there is one; then multigrid is what is counted, which takes less than LU.  Collective. */
+PetscErrorCode MemoryLook(MPI_Comm comm, const Case *c, const Model *m, bool *ok);
 
 /* ---------------------------------------------------------------- times.c */
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */

@@ -75,7 +75,8 @@ def fails():
             check_true(name, False, "nothing was refused")
         except clathra.Failed as error:
             check_true(name, all(w in str(error) for w in words), error)
-    for name, keys, said in (("no file", (f"{K0}=1e-15,1e-14", OUT / "none.csv"), "none.csv"), ("no range", (K0, OUT / "measured.csv"), "is no range")):
+    (OUT / "twice.csv").write_text("time_s,base.p_Pa,base.p_Pa\n60,1e5,1e5\n")
+    for name, keys, said in (("no file", (f"{K0}=1e-15,1e-14", OUT / "none.csv"), "none.csv"), ("two columns of one name", (f"{K0}=1e-15,1e-14", OUT / "twice.csv"), "twice.csv has two columns base.p_Pa"), ("no range", (K0, OUT / "measured.csv"), "is no range")):
         done = command("calibrate", OUT / "column.yaml", *keys, "--out", OUT / "e")
         check_true(f"clathra calibrate, {name}: a sentence", done.returncode in (2, 3) and said in done.stderr and "Traceback" not in done.stderr and done.stderr.count("\n") == 1, done.stderr)
 

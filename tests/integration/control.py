@@ -18,6 +18,7 @@ from _files import hashes  # noqa: E402
 from common import CASES, binary, check, check_true, command, environment, finish, launch, mpiexec, run, scratch  # noqa: E402
 
 BP2 = (CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-stepper_adapt", "no", "-stepper_dt", "0.05 s")
+HYBRID = ("-stepper_type", "hybrid", "-time_end", "1e-6 s", "-output_times", "0 s")
 
 
 def check_share():
@@ -29,23 +30,63 @@ def check_share():
     check_true("a restart in the middle goes on with 55 % of the run", shares and shares[0] == ("11", "55.0") and shares[-1] == ("20", "100.0"), shares[:2])
 
 
-def limited(gigabytes, *options, ranks=1, timeout=120):
-    """A run that may have so much memory a process."""
-    command = [*(mpiexec(ranks) if ranks > 1 else ()), str(binary()), str(BP2[0]), *options, "-output_dir", str(scratch() / "out")]
-    return subprocess.run(command, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (int(gigabytes * 1e9),) * 2), env=environment(),
-                          stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=timeout)  # fmt: skip
+def limited(gigabytes, case, *options, ranks=1, at=None):
+    """(exit code, what was said, largest resident size of a rank in bytes) of a run that may have so much memory a process; at: so much more than it
+    has when this file of its folder is there."""
+    out = scratch() / "out"
+    command = [*(mpiexec(ranks) if ranks > 1 else ()), str(binary()), str(case), *options, "-output_dir", str(out)]
+    limit = lambda pid, has=0: resource.prlimit(pid, resource.RLIMIT_AS, (int(gigabytes * 1e9) + has,) * 2)
+    job = subprocess.Popen(command, preexec_fn=None if at else lambda: limit(0), env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    while at and not (out / at).exists() and job.poll() is None:
+        time.sleep(0.01)
+    if at:
+        limit(job.pid, int(Path(f"/proc/{job.pid}/statm").read_text().split()[0]) * resource.getpagesize())
+    said = job.stdout.read()
+    _, status, usage = os.wait4(job.pid, 0)
+    job.returncode = os.waitstatus_to_exitcode(status)
+    return job.returncode, said, 1024 * usage.ru_maxrss
 
 
 def check_memory():
     """More than the machine has is refused before anything is built; what is found out on the way is a sentence, too."""
     for ranks in (1, 2):
-        done = limited(12, "-grid_cells", "10000,6000", "-case_check", ranks=ranks)
-        check_true(f"240 million particles in 12 GB, {ranks} rank(s): refused", done.returncode == 2 and re.search(r"2\.31e\+08 particles and the grid need at least \d+ GB of memory, and there are ", done.stdout)
-                   and "grid_cells" in done.stdout and "PETSC ERROR" not in done.stdout, done.stdout[-300:])  # fmt: skip
-    done = limited(0.7, "-grid_cells", "500,100", "-quiet", "-stepper_max_steps", "1", "-output_times", "0 s")
-    check_true("an allocation that fails: a sentence, exit code 3", done.returncode == 3 and "clathra: out of memory" in done.stdout and "PETSC ERROR" not in done.stdout, done.stdout[-300:])
-    done = limited(4, *BP2[1:], "-quiet", "-stepper_max_steps", "1")
-    check_true("what fits is run, without a word about memory", done.returncode == 0 and "memory" not in done.stdout, done.stdout[-300:])
+        code, said, _ = limited(12, BP2[0], "-grid_cells", "10000,6000", "-case_check", ranks=ranks)
+        check_true(f"240 million particles in 12 GB, {ranks} rank(s): refused", code == 2 and re.search(r"grid_cells = 10000, 6000: 2\.31e\+08 particles and their nodes need about \S+ GB of memory, and there are \S+ GB: ", said)
+                   and "PETSC ERROR" not in said, said[-300:])  # fmt: skip
+    code, said, _ = limited(3, BP2[0], "-grid_cells", "1000,50", "-newton_preconditioner", "whole", "-quiet")
+    check_true("factors in 3 GB that need more: refused", code == 2 and re.search(r"the factors of LU need about \S+ GB of memory, and there are 2\.57 GB", said) and "PETSC ERROR" not in said, said[-300:])
+    large = (BP2[0], "-grid_cells", "200,100", "-quiet", "-stepper_max_steps", "1", "-output_times", "0 s")
+    for more, options in ((0.005, ()), (0.1, ()), (0.001, HYBRID), (0.06, HYBRID)):  # a snapshot in memory, the solver, a snapshot, the loops
+        code, said, _ = limited(more, *large, *options, at="run.id")
+        check_true(f"an allocation that fails, with {1e3 * more:.0f} MB more: a sentence, exit code 3", code == 3 and said.count("clathra: out of memory") == 1 and "HDF5" not in said and "PETSC ERROR" not in said, said[-300:])
+    groups = re.findall(r"^\d+:(|memory):/(.*)$", Path("/proc/self/cgroup").read_text(), re.M)  # of either version
+    files = [f"{of or '.'}/{group}/memory.{'limit_in_bytes' if of else 'max'}" for of, name in groups for group in (name, *map(str, Path(name).parents))]
+    for file in files:  # of the process's own group, and of those above it
+        apart = ("unshare", "--mount", "sh", "-ec", 'mount -t tmpfs tmpfs /sys/fs/cgroup; cd /sys/fs/cgroup; mkdir -p "$(dirname "$0")"; echo 300000000 >"$0"; exec "$@"', file)
+        if subprocess.run([*apart, "true"], capture_output=True).returncode == 0:  # as root
+            done = subprocess.run([*apart, *map(str, (binary(), BP2[0], "-grid_cells", "200,100", "-case_check"))], env=environment(), capture_output=True, text=True)
+            check_true(f"... and what is above the limit of a container, {file}", done.returncode == 2 and "and there are 0.3 GB" in done.stderr, done.stderr[-300:])
+    code, said, _ = limited(4, *BP2, "-quiet", "-stepper_max_steps", "1")
+    check_true("what fits is run, without a word about memory", code == 0 and "memory" not in said, said[-300:])
+
+
+def check_forecast():
+    """What is said of memory is what a run then takes, within a factor of 1.5."""
+    for gigabytes, case, ranks, *options in (
+        (1.0, "bp2", 1, "-grid_cells", "100,40"),
+        (1.0, "masuda", 1, "-grid_cells", "40,240"),
+        (1.0, "sea_floor", 1, "-grid_cells", "150,168"),
+        (0.7, "footing", 1, "-grid_cells", "128,132"),
+        (1.0, "bp2", 1, "-grid_cells", "200,100", *HYBRID),
+        (1.0, "collapse_3d", 1, "-grid_cells", "72,72,30", *HYBRID),
+        (0.8, "footing_3d", 1),
+        (0.7, "footing_3d", 2),
+    ):
+        code, said, took = limited(gigabytes, CASES / case, "-stepper_max_steps", "1", *options, ranks=ranks)
+        about = re.search(r"memory: about (\S+) GB", said)
+        check_true(f"{case} {' '.join(options)}, {ranks} rank(s): memory is said", code == 0 and about, said[-300:])
+        if about:
+            check("... and is that forecast, share", float(about[1]) * 1e9 / (ranks * took), (1 / 1.5, 1.5))
 
 
 def check_refused():
@@ -367,6 +408,7 @@ def main():
     check_tide()
     check_refused()
     check_memory()
+    check_forecast()
     check_limit()
     check_slivers()
     check_retries()

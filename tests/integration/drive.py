@@ -119,6 +119,15 @@ def under_way():
     check_true("on two ranks", run.finished and "2 ranks:" in run.summary, run.summary[-200:])
 
 
+def apart():
+    """Runs side by side share no folder of MPI's session, on one rank and on two, and leave none."""
+    of = lambda job: dict(word.split("=", 1) for word in Path(f"/proc/{job._process.pid}/environ").read_text().split("\0") if "=" in word).get("OMPI_MCA_orte_tmpdir_base", "")
+    with CASE.with_(stepper_dt=1e-3).start(OUT / "one") as one, CASE.with_(stepper_dt=1e-3).start(OUT / "two", ranks=2) as two:
+        folders = [Path(of(job)) for job in (one, two)]
+        check_true("runs side by side have a session of MPI each", len(set(folders)) == 2 and all(f.is_dir() and f.name.startswith("clathra-mpi-") for f in folders), folders)
+    check_true("... and leave none", not any(f.exists() for f in folders), folders)
+
+
 def deaf():
     """A program that does not end is killed; so is what it started."""
     script = OUT / "deaf"
@@ -171,7 +180,7 @@ clathra.calibrate(case, {{"mat_clay_porosity": (0.2, 0.5)}}, {{"base.p_Pa": (1, 
         check_true(f"... and {'the rest works' if works else 'nothing else'}", done.stdout.startswith("[0, 0] ") == works, done.stdout)
 
 
-for part in (cases, wrong, under_way, deaf, left_alone, lacking):
+for part in (cases, wrong, under_way, apart, deaf, left_alone, lacking):
     begun = time.monotonic()
     part()
     print(f"{part.__name__}: {time.monotonic() - begun:.1f} s")

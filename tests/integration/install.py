@@ -28,16 +28,39 @@ def call(*words, **environment):
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=120)  # fmt: skip
 
 
+def shipped():
+    """Cases and presets of the tree: those that git knows, or all where there is no git."""
+    tracked = call("git", "-C", ROOT, "-c", "safe.directory=*", "ls-files", "cases", "options")
+    return tracked.stdout.split() if tracked.returncode == 0 else [p.relative_to(ROOT).as_posix() for kind in ("cases", "options") for p in (ROOT / kind).rglob("*") if p.is_file()]
+
+
+def strangers():
+    """A user's case, preset and results in the tree are not installed."""
+    tree, prefix = scratch() / "tree", scratch()
+    tree.mkdir()
+    for name in ("src", "include", "python", "docs", "LICENSE", "CMakeLists.txt"):
+        (tree / name).symlink_to(ROOT / name)
+    for name in ("cases", "options"):
+        shutil.copytree(ROOT / name, tree / name)
+    for name in ("cases/mine/case.yaml", "cases/bp2/out/case.yaml", "cases/bp2/probes.csv", "cases/bp2/reference/mine.csv", "options/mine.opts"):
+        (tree / name).parent.mkdir(exist_ok=True)
+        (tree / name).write_text("mine\n")
+    done = call("cmake", "-S", tree, "-B", tree / "build", "-DCLATHRA_TESTS=OFF")
+    check_true("a tree with a user's files is configured", done.returncode == 0, done.stdout[-300:])
+    call("cmake", "--install", tree / "build", "--component", "data", "--prefix", prefix)
+    names = {p.relative_to(prefix / "share/clathra").as_posix() for p in prefix.rglob("*") if p.is_file()}
+    check_true("... and what is shipped is installed alone", names == set(shipped()), sorted(names ^ set(shipped())))
+
+
 def installed(prefix):
     done = call("cmake", "--install", BUILD, "--prefix", prefix)
     check_true("cmake --install installs", done.returncode == 0, done.stdout[-300:])
     names = {p.relative_to(prefix).as_posix() for p in prefix.rglob("*") if p.is_file()}
     wanted = {"bin/clathra", "bin/clathra3d", "share/man/man1/clathra.1", "share/doc/clathra/LICENSE"}
     wanted |= {f"{PACKAGE}/{p.relative_to(ROOT / 'python').as_posix()}" for p in (ROOT / "python" / "clathra").glob("*.*")}
-    wanted |= {f"share/clathra/{p.relative_to(ROOT).as_posix()}" for kind in ("cases/*/case.yaml", "options/*.opts") for p in ROOT.glob(kind)}
+    wanted |= {f"share/clathra/{name}" for name in shipped()}
     check_true("... programs, presets, cases, man page, licence and the Python package", wanted <= names, sorted(wanted - names))
-    more = sorted(n for n in names - wanted if not n.startswith("share/clathra/cases/"))
-    check_true("... and no file besides, but what belongs to cases", not more, more)
+    check_true("... and no file besides", names <= wanted, sorted(names - wanted))
     texts = [n for n in names if not n.startswith("bin/") and str(ROOT).encode() in (prefix / n).read_bytes()]
     check_true("... no file of which names the source tree", not texts, texts)
 
@@ -99,6 +122,7 @@ def pip_installs():
 
 
 first, second = scratch() / "a prefix", scratch() / "moved" / "there"
+strangers()
 installed(first)
 for name in ("clathra", "clathra3d"):
     source_free(first / "bin" / name)

@@ -62,8 +62,9 @@ if subprocess.run(["unshare", "--mount", "--pid", "--fork", "true"], capture_out
     check_true("... nothing is left", not os.listdir(env["TMPDIR"]), os.listdir(env["TMPDIR"]))
 
     folders = " ".join(f'"$3/{f}"' for f in ("proc", "sys", "dev/pts", "dev/shm", "etc/apt/apt.conf.d", "etc/dpkg/dpkg.cfg.d"))
-    head, row = "| system | PETSc | compiler | built | warnings | passed / failed |", "| Debian 12 | 3.18.1 | gcc 12.2.0 | yes | 0 | %s |"
-    for name, code, said, counted in (("all passed", 0, row % "44 / 0", 1), ("one failed", 1, row % "43 / 1: docs ", 1), ("nothing ran", 1, row % "0 / 0", 1),
+    head, row = "| system | PETSc | compiler | built | warnings | installed | passed / failed |", "| Debian 12 | 3.18.1 | gcc 12.2.0 | yes | 0 | %s |"
+    for name, code, said, counted in (("all passed", 0, row % "yes | 44 / 0", 1), ("one failed", 1, row % "yes | 43 / 1: docs ", 1), ("nothing ran", 1, row % "yes | 0 / 0", 1),
+                                      ("what is installed does not run", 1, row % "no | 44 / 0", 1),
                                       ("no row", 1, "| 12, gcc | not built: ", 0)):  # fmt: skip
         env = environment(debootstrap=f"mkdir -p {folders}", chroot=f"echo '{head}'; " + (f"echo '{said}'" if counted else "exit 1"))
         done = says(f"{name}: a row says so", code, said, "12", "gcc", "--mirror", "http://mirror.example", env=env)

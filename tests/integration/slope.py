@@ -19,7 +19,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import CASES, Run, binary, check, check_true, finish, judge, launch, scratch  # noqa: E402
 from clathra import read_snapshots  # noqa: E402
 
-import plot_slope  # noqa: E402
 import slide  # noqa: E402  scripts/, which common puts on the path
 import slopes  # noqa: E402
 
@@ -116,8 +115,8 @@ def known_slides():
 def film(run):
     """The film of a run: a frame for each snapshot since the loading and the last one five times, each at its time."""
     out = scratch()
-    with mock.patch.object(plot_slope.shutil, "which", return_value=None):  # without ffmpeg a gif, which Pillow reads
-        plot_slope.film("slide", run, out)
+    with mock.patch.object(slide.shutil, "which", return_value=None):  # without ffmpeg a gif, which Pillow reads
+        slide.film("slide", run, out)
     with Image.open(out / "slide.gif") as gif:
         frames, lasts = [], 0
         for frame in ImageSequence.Iterator(gif):
@@ -125,7 +124,7 @@ def film(run):
             lasts += frame.info["duration"]
     n = len(run.snapshots)
     check("film: frames that differ, of its snapshots", sum(np.any(a != b) for a, b in zip(frames, frames[1:])) + 1, (n, n))
-    check("... lasts, ms, the end five times", lasts, (0.9 * 1000 * (n + 4) / plot_slope.FRAMES, 1.1 * 1000 * (n + 4) / plot_slope.FRAMES))
+    check("... lasts, ms, the end five times", lasts, (0.9 * 1000 * (n + 4) / slide.FRAMES, 1.1 * 1000 * (n + 4) / slide.FRAMES))
     check("... first and last frame: pixels that differ, %", 100 * np.mean(abs(frames[0] - frames[-1]) > 40), (0.2, 60))
 
 

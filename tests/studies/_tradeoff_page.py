@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from clathra.units import YEAR
 from clathra.plotting import COLOURS, plt, save, set_style
-from slope_warming import STEP_OF_HYBRID
+from slopes import STEP_OF_HYBRID
 
 KINDS = ("euler", "sdirk2", "explicit", "hybrid")
 COLOUR = dict(zip(KINDS, COLOURS))

@@ -25,7 +25,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
 from common import environment  # noqa: E402
-from plot_masuda import BARS, REFERENCE, at_times, curves, differences, dissociated, gas_at_start  # noqa: E402
+from reference import BARS, REFERENCE, at_times, curves, differences, dissociated, gas_at_start  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
 
 FOLDER, PAGE, README = ROOT / "results" / "masuda_study", ROOT / "docs" / "masuda.md", ROOT / "cases" / "masuda" / "README.md"

@@ -8,7 +8,7 @@ lumped  the reference's own model: a core a tenth as thick whose bath gives a te
 import numpy as np
 
 from common import CASES, Run, finish, judge, read_csv, record, table
-from plot_masuda import BARS, JUDGED, at_times, curves, differences, dissociated, gas_at_start, reference_at
+from reference import BARS, JUDGED, at_times, curves, differences, dissociated, gas_at_start, reference_at
 
 RUNS = {
     "core": ["-grid_cells", "4,30"],

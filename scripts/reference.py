@@ -1,9 +1,12 @@
 #!/usr/bin/python3
-"""Figures 6 and 7 of the paper from a run of cases/masuda, with the reference's curves: plot_masuda.py RUN_DIR OUT
+"""Figures of the paper whose curves stand beside a reference's, and the largest differences from it in words:
 
-Writes OUT/masuda_contours.png (gas pressure, temperature, hydrate and gas saturation in the core, mirrored at its axis, at
-five times) and OUT/masuda_curves.png (surface temperatures, far-end pressure, gas), and prints the largest differences
-from cases/masuda/reference/masuda.csv.  curves() and differences() are also the test's, the study's and the notebook's.
+reference.py bp2 CASE1_DIR CASE2_DIR OUT   Figures 9 to 11: OUT/fig09_case1.png, fig10_case2.png, fig11_profiles.png.  Case 1 is BP2 with hydrate kinetics off, case 2
+                                           with kinetics on; the reference is cases/bp2/reference
+reference.py masuda RUN_DIR OUT            Figures 6 and 7: OUT/masuda_contours.png (gas pressure, temperature, hydrate and gas saturation in the core, mirrored at its axis,
+                                           at five times) and masuda_curves.png (surface temperatures, far-end pressure, gas); the reference is cases/masuda/reference
+
+curves() and differences() of Masuda's core are also the test's, the study's and the notebook's.
 """
 import math
 import sys
@@ -11,10 +14,128 @@ from pathlib import Path
 
 import numpy as np
 
-from clathra import read_csv, read_snapshots
-from clathra.plotting import COLOURS, PA, plt, save, set_style, steady_limits
+import clathra
+from clathra import probe_names, read_csv, read_snapshots
+from clathra.plotting import COLOURS, MM, PA, plt, save, set_style, steady_limits
+from clathra.shown import QUANTITIES
 
-REFERENCE = Path(__file__).resolve().parents[1] / "cases" / "masuda" / "reference" / "masuda.csv"
+CASES = Path(__file__).resolve().parents[1] / "cases"
+
+# ---------------------------------------------------------------- BP2
+INNER, LOADED = 0.6, 1.0  # m from the fixed end
+
+# key: (column of the reference, probe at, column of the probe, factor, label, kind of the difference)
+CURVES = {
+    "p": ("p_MPa", INNER, "p_Pa", PA, "pore pressure p at x = 0.6 m (MPa)", "relative"),
+    "S_h": ("Sh", INNER, "S_h", 1, "hydrate saturation $S_h$ at x = 0.6 m (–)", "of peak"),
+    "T": ("T_C", INNER, "T_degC", 1, "temperature T at x = 0.6 m (°C)", "K"),
+    "u": ("u_mm", LOADED, "u_x_m", MM, "displacement of the loaded end (mm)", "of peak"),
+}
+
+
+def curve(probes, place, column, factor):
+    """Time and values of the probe that starts nearest to `place`."""
+    names = probe_names(probes)
+    nearest = min(names, key=lambda n: abs(probes[f"{n}.x_m"][0] - place))
+    return probes["time_s"], probes[f"{nearest}.{column}"] * factor
+
+
+def largest_difference(time, values, reference, column, kind):
+    """Largest difference at the reference's times the run has reached, in words."""
+    known = reference["t_s"] <= time[-1] * (1 + 1e-9)
+    want = reference[column][known]
+    error = np.abs(np.interp(reference["t_s"][known], time, values) - want)
+    if kind == "relative":
+        return f"{100 * np.max(error / np.abs(want)):.2f} %"
+    if kind == "K":
+        return f"{np.max(error):.3f} K"
+    peak = np.max(np.abs(want))
+    return f"{100 * np.max(error) / peak:.2f} % of the peak" if peak > 0 else f"{np.max(error):.2g}"
+
+
+def draw(axes, key, probes, reference, case):
+    column, place, probe_column, factor, label, kind = CURVES[key]
+    time, values = curve(probes, place, probe_column, factor)
+    shown = [values]
+    if reference is not None:
+        shown.append(reference[column])
+        axes.plot(reference["t_s"], reference[column], "o", ms=4.5, mfc="none", mew=0.9, markevery=2, color="0.25",
+                  label="reference (finite volumes)")  # fmt: skip
+        difference = largest_difference(time, values, reference, column, kind)
+        axes.set_title(f"largest difference {difference}", fontsize=9.5, color="0.3")
+        print(f"  case {case}, {key:3s}: largest difference from the reference {difference}")
+    axes.plot(time, values, color=COLOURS[0], lw=2, label="Clathra")
+    steady_limits(axes, *shown, least=0.01)
+    axes.set(xlabel="time (s)", ylabel=label, xlim=(0, max(time[-1], 1e-9)))
+
+
+def read_reference(case):
+    path = CASES / "bp2" / "reference" / f"bp2_case{case}.csv"
+    if path.is_file():
+        return read_csv(path)
+    print(f"  no reference curve {path}")
+    return None
+
+
+def plot_histories(folder, case, keys, size, name, title, out):
+    probes, reference = read_csv(folder / "probes.csv"), read_reference(case)
+    rows = len(keys) // 2
+    figure, grid = plt.subplots(rows, 2, figsize=size, squeeze=False)
+    for axes, key, letter in zip(grid.flat, keys, "abcd"):
+        draw(axes, key, probes, reference, case)
+        axes.text(-0.12, 1.02, f"({letter})", transform=axes.transAxes, fontweight="bold")
+    grid[0][0].legend(loc="best")
+    figure.suptitle(title, x=0.01, ha="left")
+    save(figure, out, name)
+
+
+def draw_front(axes, particles, values):
+    """The front of hydrate at 1000 s (reference in initial coordinates) where the particles have moved to."""
+    front, x0, x = read_csv(CASES / "bp2" / "reference" / "bp2_case2_front.csv"), particles["initial_position"][:, 0], particles["position"][:, 0]
+    order = np.argsort(x0, kind="stable")
+    places = np.interp(front["x0_m"], x0[order], x[order])
+    axes.plot(places, front["Sh"], "o", ms=4.5, mfc="none", mew=0.9, color="0.25", label="reference (finite volumes), 1000 s")
+    axes.legend(loc="lower left", fontsize=8)
+    error = np.max(np.abs(np.interp(front["x0_m"], x0[order], values[order]) - front["Sh"])) / np.max(values)
+    print(f"  case 2, S_h at the front at 1000 s: largest difference from the reference {100 * error:.1f} % of the peak")
+
+
+def plot_profiles(folder, out, times=(500.0, 1000.0)):
+    run = clathra.Run(folder)
+    found = [(t, run.particles(t)) for t in times if np.any(np.isclose(run.times, t))]
+    if not found:
+        print(f"  no particle snapshots at {times} s in {folder}")
+        return
+    wanted = {q.key: q for q in QUANTITIES}
+    quantities = [wanted[key] for key in ("p", "T", "S_h", "u_x")]
+    figure, grid = plt.subplots(1, 4, figsize=(14, 3.8))
+    for axes, quantity, letter in zip(grid, quantities, "abcd"):
+        shown = []
+        for (time, particles), colour, style in zip(found, COLOURS, ("-", "--")):
+            x = particles["position"][:, 0]
+            order = np.argsort(x, kind="stable")
+            shown.append(quantity.of(particles)[order])
+            axes.plot(x[order], shown[-1], style, color=colour, label=f"{time:g} s")
+            if quantity.key == "S_h" and time == 1000.0:
+                draw_front(axes, particles, quantity.of(particles))
+        steady_limits(axes, *shown, least=0.01)
+        axes.set(xlabel="x (m)", ylabel=quantity.axis, xlim=(0, 1))
+        axes.set_title(f"({letter})", fontweight="bold")
+    grid[0].legend(loc="best")
+    figure.suptitle("BP2 case 2 (hydrate kinetics on): profiles (Figure 11)", x=0.01, ha="left")
+    save(figure, out, "fig11_profiles")
+
+
+def bp2(case1, case2, out):
+    """Figures 9 to 11 of runs of cases/bp2 without and with kinetics."""
+    set_style()
+    plot_histories(case1, 1, ("p", "u"), (11, 4.2), "fig09_case1", "BP2 case 1 (hydrate kinetics off), Figure 9", out)
+    plot_histories(case2, 2, ("p", "u", "S_h", "T"), (11, 8), "fig10_case2", "BP2 case 2 (hydrate kinetics on), Figure 10", out)
+    plot_profiles(case2, out)
+
+
+# ---------------------------------------------------------------- Masuda's core
+REFERENCE = CASES / "masuda" / "reference" / "masuda.csv"
 RADIUS, LENGTH = 25.4e-3, 0.3  # m, of the core
 POROSITY, SH, SG = 0.182, 0.501, 0.148
 RHO_H, M_H, M_G = 900.0, 0.124, 0.016  # kg/m^3, kg/mol
@@ -91,7 +212,6 @@ def dissociated(run, left):
     return float(run["t_min"][k - 1] + part * (run["t_min"][k] - run["t_min"][k - 1]))
 
 
-# ---------------------------------------------------------------- figures
 TIMES = ((600, "10 min"), (3600, "1 h"), (7200, "2 h"), (10800, "3 h"), (14400, "4 h"))
 FIELDS = (  # variable, factor, label, colours
     ("p_g", PA, "$p_g$ (MPa)", "viridis"), ("T", 1, "T (°C)", "inferno"), ("S_h", 1, "$S_h$ (–)", "cividis"),
@@ -178,14 +298,15 @@ def plot_curves(run, reference, out):
     save(figure, out, "masuda_curves")
 
 
-def main(arguments):
-    if len(arguments) != 2:
-        sys.exit(__doc__)
+def masuda(folder, out):
+    """Figures 6 and 7 of a run of cases/masuda."""
     set_style()
-    folder, out = map(Path, arguments)
     plot_contours(read_snapshots(folder), out)
     plot_curves(curves(folder), read_csv(REFERENCE), out)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    wanted = {("bp2", 3): bp2, ("masuda", 2): masuda}.get((sys.argv[1] if sys.argv[1:] else "", len(sys.argv) - 2))
+    if wanted is None:
+        sys.exit(__doc__)
+    wanted(*map(Path, sys.argv[2:]))
