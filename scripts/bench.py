@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Benchmarks: bench.py CLATHRA [OUT.md], or bench.py CLATHRA scale [--only REGEX] [--cells N,N,...] [--again] [--page]
 
-The first says where the time of a step goes, implicit and hybrid, on one core and on several (docs/benchmark.md); all numbers of a row come from one run.
+The first says where the time of a step goes, implicit and hybrid, on one core and on several (docs/studies/benchmark.md); all numbers of a row come from one run.
 
-`scale` runs solvers of implicit steps against size and against properties.  Every run is kept in docs/scale.json as soon as it is there and not run
-again (--again: the chosen ones are); docs/scale.md is written anew from all of them (--page: only that).  --only chooses runs by name ("size",
+`scale` runs solvers of implicit steps against size and against properties.  Every run is kept in docs/studies/scale.json as soon as it is there and not run
+again (--again: the chosen ones are); docs/studies/scale.md is written anew from all of them (--page: only that).  --only chooses runs by name ("size",
 "size block 50:", "extremes", "operator", "across", "long"), --cells those of the sizes (25 and 50 unless said; 100, 200 and 350 want minutes and up to
 20 GB).  Time is user time of the process less that of one without a step, so a busy machine hardly matters; memory is the resident set likewise.
 """
@@ -365,7 +365,7 @@ Messages that a rank sends, kB that it sends, and sums over all ranks, each time
 
 
 # ---------------------------------------------------------------- scale: solvers against size and properties
-STORE, PAGE = ROOT / "docs" / "scale.json", ROOT / "docs" / "scale.md"
+STORE, PAGE = ROOT / "docs" / "studies" / "scale.json", ROOT / "docs" / "studies" / "scale.md"
 STABILITY, FOOTING, FIELD_SETS = (CASES / f"{name}.yaml" for name in ("stability", "strip", "field_sets"))
 WHOLE, LU, MULTIGRID = ("-newton_preconditioner", "whole"), ("-reduced_pc_type", "lu"), ("-reduced_pc_type", "fieldsplit")
 KINDS = (("whole", WHOLE), ("LU", LU), ("multigrid", MULTIGRID))
@@ -533,8 +533,8 @@ def page(store):
                  for name, _, _, particles, unknowns, _ in LONG if name in ran for full, whole, begin in [ran[name]]]  # fmt: skip
     return f"""# Solvers of implicit steps
 
-Written by `scripts/bench.py` from docs/scale.json, which holds every run; change it, not this page. User seconds of one process, less those of a run without a step, on machines that were not
-always quiet: differences below a fifth mean nothing. Equation numbers are those of [equations.md](equations.md).
+Written by `scripts/bench.py` from docs/studies/scale.json, which holds every run; change it, not this page. User seconds of one process, less those of a run without a step, on machines that were not
+always quiet: differences below a fifth mean nothing. Equation numbers are those of [equations.md](../equations.md).
 
 ## Size
 

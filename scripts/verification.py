@@ -73,10 +73,10 @@ SECTION = {  # beside that table
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",
     "strength": "Mohr-Coulomb: softening along a plastic path, orders of the integrators, Salencon's hole",
-    "slopes": "Slopes: failure against limit equilibrium, blocks that meet, a column under water, a change of integrator (docs/slopes.md)",
+    "slopes": "Slopes: failure against limit equilibrium, blocks that meet, a column under water, a change of integrator (docs/studies/slopes.md)",
     "corners": "Heaters: temperatures at their corners, and beside hydrate (docs/equations.md, (395), (446))",
     "beds": "Beds that dip: flow through layered sediment against the exact one (docs/equations.md, (306)-(309))",
-    "stability": "Stability at the extremes: a representative part of docs/stability.md",
+    "stability": "Stability at the extremes: a representative part of docs/studies/stability.md",
     "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
 }
 NOT_A_TEST = {"common", "exact"}

@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [*(ROOT / page for page in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")), *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
+PAGES = [*(ROOT / page for page in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")), *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
 EXAMPLES = (ROOT / "README.md", ROOT / "docs" / "cases_reference.md")  # whose YAML blocks are whole cases
 PRESETS = sorted((ROOT / "options").glob("*.opts"))
 FOLDERS = ("cases", "docs", "include", "options", "python", "scripts", "src", "tests")

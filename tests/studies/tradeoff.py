@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Study of what accuracy costs: writes docs/tradeoff.md, its figures and docs/tradeoff.json.
+"""Study of what accuracy costs: writes docs/studies/tradeoff.md, its figures and docs/studies/tradeoff.json.
 
 tradeoff.py [CLATHRA] [--only PART ...] [--page]
 
 CLATHRA  the program, default build/clathra
---only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice, change), take the others from docs/tradeoff.json
---page   write the page and the figures from docs/tradeoff.json
+--only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice, change), take the others from docs/studies/tradeoff.json
+--page   write the page and the figures from docs/studies/tradeoff.json
 
 Every number of the page is of one of its runs.  It is a study, no test: it takes about ten minutes of processor time.  Processor time is
 user and system time of the process less that of starting it.
@@ -29,7 +29,7 @@ from _integrators import EULER, EXPLICIT, SDIRK2, adaptive, apart, fixed, integr
 from common import CASES, changes, read_csv, seconds  # noqa: E402
 from field_sets import select  # noqa: E402
 
-PAGE, DATA, FIGURES = ROOT / "docs" / "tradeoff.md", ROOT / "docs" / "tradeoff.json", ROOT / "docs" / "figures"
+PAGE, DATA, FIGURES = ROOT / "docs" / "studies" / "tradeoff.md", ROOT / "docs" / "studies" / "tradeoff.json", ROOT / "docs" / "figures"
 SHORT = 1.0  # s: runs shorter than this are timed twice
 LEAST = 0.01  # s: what the time of starting the program varies by
 IMPLICIT = (EULER, SDIRK2)

@@ -5,7 +5,7 @@ dilates does without mean strain.
 
 The plate pushes the node at its edge, and the ground follows over the next cell: a load too large by h/2 of the half-width, of
 first order.  Nc and Nq are within 3 % at h = a/8, Prandtl's strip is at a/16, and here within twice that at a/8; the circle is within
-6 % at R/8, and here within 8/6 of that at R/6.  Those finer grids, of many minutes, are tests/studies/plasticity.py's (docs/plasticity.md).
+6 % at R/8, and here within 8/6 of that at R/6.  Those finer grids, of many minutes, are tests/studies/plasticity.py's (docs/studies/plasticity.md).
 """
 import numpy as np
 
