@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import clathra
+import dated
 import slide
 from clathra.units import YEAR
 
@@ -120,6 +121,7 @@ def add(name, folder, until=None, processor_s=None):
     kept = json.loads(KEPT.read_text()) if KEPT.is_file() else {}
     kept[name] = m
     KEPT.write_text(json.dumps(kept, separators=(",", ":"), sort_keys=True).replace('},"', '},\n"') + "\n")
+    dated.measured(KEPT)
 
 
 def curves(slid, name):
@@ -532,13 +534,13 @@ NOTES_A = """- *Later peaks.* The paper's further peaks of E_k, without new band
 ![points](../figures/slope_a_points.png)
 
 ![bands](../figures/slope_a_bands.png)""".split("\n")
-INTRO = """# Submarine slopes
-
-Section 5.2 of the paper, by [slope_a](../../cases/slope_a/README.md){others}, with `hybrid`. Made by `scripts/slopes.py page` from
+SINCE = ("Particles take the volume change of their cells, tears close and velocities are carried to nodes ((88), (427), (451) of [equations.md](../equations.md)). "
+         "The first picture of B and those of C have that already. What it changes is said below.")  # fmt: skip
+INTRO = """Section 5.2 of the paper, by [slope_a](../../cases/slope_a/README.md){others}, with `hybrid`. `scripts/slopes.py page` makes this page of
 `docs/studies/slopes.json`, into which `scripts/slopes.py run` (or `add`, of a run that is there) puts what [scripts/slide.py](../../scripts/slide.py) measures of a run; the options of every row stand in that script. A run without a word on cells has those
 of the paper, 4 m with 2 x 2 particles.
 
-The first picture of B and those of C are by today's program on cells of 8 m; all else was made before particles took the volume change of their cells, tears closed and velocities were carried to nodes ((88), (427), (451) of [equations.md](../equations.md)): as in the paper's scheme, bilinear motion holds in part what has failed, and ground that is pushed together again is pressed by what it opened. With (88) scenario A begins at the same 11.1 s, but by 25 s what failed has moved 25.1 m in
+The first picture of B and those of C are on cells of 8 m, by the program of 2026-11-30 (commit 1d15f6bb); all else was made before particles took the volume change of their cells, tears closed and velocities were carried to nodes ((88), (427), (451) of [equations.md](../equations.md)): as in the paper's scheme, bilinear motion holds in part what has failed, and ground that is pushed together again is pressed by what it opened. With (88) scenario A begins at the same 11.1 s, but by 25 s what failed has moved 25.1 m in
 place of 8.2 m, with 164 in place of 12 MJ/m (cells of 8 m: 24.9 in place of 4.7 m, 127 in place of 10 MJ/m). Rows by `sdirk2` have the ties (351) and (417), which `hybrid` has not; rows of A, B and C were made without (424). Against still earlier states, without methane that goes with all of the water's flux (352)
 and hydrate that grows in water (418), E_k, way, runout and hydrate lost are within 0.2 %, but for two rows that are as sensitive as that to anything: A on 2 m with a heated layer of 4 m (34.5 instead of 34.1 m moved) and C on 4 m
 (runout 733 instead of 727 m; a seventh band is 60 % of the height long now, with θ = 0 still six).
@@ -563,7 +565,7 @@ The same measures stand at the end of `summary.txt` after `./run slope_a` (`slop
 def page():
     kept = json.loads(KEPT.read_text())
     others = "".join(f", [{c}](../../cases/{c}/README.md)" for c in ("slope_b", "slope_c") if (ROOT / "cases" / c).is_dir())
-    lines = [INTRO.format(others=others), *section_a(kept), *section(kept, "B", scenario_b, NOTES_B), *section(kept, "C", scenario_c, NOTES_C), *implicit(kept), "", *energy(kept), *TRUST, *section_warming(kept), *NOT_RUN]
+    lines = [*dated.head("Submarine slopes", "scripts/slopes.py", KEPT, since=SINCE), INTRO.format(others=others), *section_a(kept), *section(kept, "B", scenario_b, NOTES_B), *section(kept, "C", scenario_c, NOTES_C), *implicit(kept), "", *energy(kept), *TRUST, *section_warming(kept), *NOT_RUN]
     PAGE.write_text("\n".join(lines).rstrip() + "\n")
     print(PAGE)
 

@@ -9,6 +9,7 @@
 - the cases in README and docs/cases_reference.md are valid
 - CHANGELOG.md, CITATION.cff, CMakeLists.txt and python/pyproject.toml say the same version
 - every verification test that measures stands in docs/verification.md, and its lines are as many as that page says
+- every page of docs/studies has a head with script, data, date and commit, and a line in docs/studies/README.md; every file of docs/studies/made.csv is there
 """
 import re
 import shlex
@@ -31,6 +32,7 @@ NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat|reduced)_\w+")
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
+import dated  # noqa: E402
 import options_doc  # noqa: E402
 
 
@@ -188,13 +190,25 @@ def check_verification():
             yield f"docs/verification.md has no number of {test.name}: run scripts/verification.py --only {test.stem}"
 
 
+def check_studies():
+    contents = (dated.STUDIES / "README.md").read_text()
+    for page in sorted(dated.STUDIES.glob("[!R]*.md")):
+        head = re.match(r"# .*\n\n- Script: \[(\S+)\]\(\.\./\.\./\1\)\. It writes this page\.\n(- Data: .*)\n- Since then: \S.*\n\n", page.read_text())
+        files = re.findall(r"\[([\w.]+)\]\(|this page", head[2]) if head else []
+        if not head or head[2] != dated.data(*(f or page.name for f in files)):
+            yield f"{page.relative_to(ROOT)} does not begin with its script, its data, their dates and commits as in made.csv, and what has changed since"
+        if f"]({page.name})" not in contents:
+            yield f"docs/studies/README.md does not name {page.name}"
+    yield from (f"docs/studies/made.csv names {f}, which is not there" for f in dated.read() if not (dated.STUDIES / f).is_file())
+
+
 def main(binary):
     binary = str(Path(binary).resolve())
     case, program = case_patterns(binary), {o for o, *_ in options_doc.PROGRAM}
     known = lambda word: word in program or PETSC.fullmatch(word) or case.fullmatch(word)
     planted = ["-stepper_typ", "-mat_sand_porosty", "-newton_tol", "-grid", "-ksptype"]
     found = [f"self-test: {word} was taken for an option" for word in planted if known(word)]
-    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_version(), *check_verification(), *(f for page in EXAMPLES for f in check_example(binary, page))]
+    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_version(), *check_verification(), *check_studies(), *(f for page in EXAMPLES for f in check_example(binary, page))]
     for page in PAGES:
         found += [*check_files(page), *check_anchors(page), *check_commands(page, known)]
     for preset in PRESETS:

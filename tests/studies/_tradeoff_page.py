@@ -2,6 +2,7 @@
 import json
 from pathlib import Path
 
+import dated
 import numpy as np
 from clathra.units import YEAR
 from clathra.plotting import COLOURS, plt, save, set_style
@@ -363,8 +364,8 @@ def about_years():
 
 def page(data):
     return [
-        "# What accuracy costs", "",
-        "Written by `tests/studies/tradeoff.py` from its runs; change it, not this page. `docs/studies/tradeoff.json` holds every run.", "",
+        *dated.head("What accuracy costs", "tests/studies/tradeoff.py", dated.STUDIES / "tradeoff.json"),
+        "The data hold every run.", "",
         "Error: the largest difference of any watched curve from the exact or reference one, over the range of that curve. Time: user and system "
         f"time of one process on one core, less {seconds(data['startup'])} of starting it, at least 10 ms. The machine was shared: differences below a fifth mean "
         "nothing. Cells are those of the grid, spare ones included (one in 26). Columns have 2 particles a cell along their axis (BP2 and the block 2 x 2).", "",

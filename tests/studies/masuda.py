@@ -24,6 +24,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
+import dated  # noqa: E402
 from common import environment  # noqa: E402
 from reference import BARS, REFERENCE, at_times, curves, differences, dissociated, gas_at_start  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
@@ -291,8 +292,8 @@ def page(done, program):
     refused = [d for n, d in done.items() if d.refused]
     failed = [(n, d.said.count("refused (")) for n, d in done.items() if "refused (" in d.said]
     return "\n".join([
-        "# Masuda's core", "",
-        "Written by `tests/studies/masuda.py` from its own runs of [cases/masuda](../../cases/masuda/README.md); change that, not this page.",
+        *dated.head("Masuda's core", "tests/studies/masuda.py", PAGE),
+        "Every number is of a run of [cases/masuda](../../cases/masuda/README.md).",
         "The bars are held by [masuda.py](../../tests/verification/masuda.py) and listed in [verification.md](../verification.md).", "",
         "## Against the reference curves", "",
         "Largest differences at every 15 min to 4 h. *Lumped* is the reference's own model of the radius: a core a tenth as thick and a "
@@ -356,6 +357,7 @@ def main():
     with ThreadPoolExecutor(given.jobs) as pool:
         rest = [n for n in sorted(todo, key=lambda n: "120x20" not in name(n)) if n not in done]
         done.update(zip(rest, pool.map(lambda n: run(program, name(n), todo[n], given.fresh), rest)))
+    dated.measured(PAGE)
     PAGE.write_text(page(done, program))
     put_table(sensitivity(done))
     print(f"{PAGE}, {README}")

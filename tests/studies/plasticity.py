@@ -16,6 +16,7 @@ import _footings
 from _footings import STRIPS, collapse, exact, strip
 from _hole import quarter
 from common import ROOT, Run
+import dated  # of scripts/, which common puts on the path
 from clathra.strength import FLOWS, Energies  # python/, which common puts on the path
 
 CASES = ROOT / "tests" / "verification" / "cases"
@@ -74,6 +75,7 @@ def write(rows):
         out.writerow(("kind", "case", "value", "growth", "seconds"))
         for (kind, case), (value, growth, seconds) in rows.items():
             out.writerow((kind, case, f"{value:.6g}", f"{growth:.4g}", f"{seconds:.0f}"))
+    dated.measured(RAW)
 
 
 def key(kind, arguments):
@@ -158,8 +160,8 @@ def circle_causes(rows):
 
 def page(rows):
     lines = [
-        "# Collapse loads and factors of safety", "",
-        "Made by `tests/studies/plasticity.py` from the rows of [plasticity.csv](plasticity.csv); do not edit by hand. The tests `tests/verification/footings.py`,",
+        *dated.head("Collapse loads and factors of safety", "tests/studies/plasticity.py", RAW),
+        "The tests `tests/verification/footings.py`,",
         "`slopes_strength.py`, `element_paths.py`, `plastic_hole.py` and `sand_column.py` run the short ones of these on every check.", "",
         "## What is needed for a collapse load", "",
         "- where the ground dilates, `mean_strain: 0.95` ((160) of [equations.md](../equations.md)): one volume change a cell (88) locks as soon as its particles shear, and so dilate, differently.",

@@ -22,6 +22,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
+import dated  # noqa: E402
 import exact  # noqa: E402
 from _extremes import CELL, P, SCENE, attempt, cells, difference, scene, stable_step  # noqa: E402
 from _ladder import ElasticWave, Terzaghi  # noqa: E402
@@ -30,6 +31,7 @@ from clathra import read_csv, read_snapshots  # noqa: E402
 from soak import read_record, table as soak_table  # noqa: E402
 
 FOLDER, PAGE, FIGURES = ROOT / "results" / "stability_study", ROOT / "docs" / "studies" / "stability.md", ROOT / "docs" / "figures"
+SOAKED = dated.STUDIES / "soak.jsonl"
 DIFFUSION = ROOT / "tests" / "verification" / "cases" / "diffusion.yaml"
 FALLING = ROOT / "tests" / "verification" / "cases" / "falling.yaml"
 LIMIT = 40.0  # s of the wall
@@ -384,9 +386,8 @@ def summary(study):
 
 def page(study, found):
     note, text = Notes(), []
-    text += ["# Stability at the extremes", "",
-             "Written by `tests/studies/stability.py` from its own runs; change that, not this page. A representative part is a test: "
-             "[stability.py](../../tests/verification/stability.py).", "",
+    text += [*dated.head("Stability at the extremes", "tests/studies/stability.py", PAGE, SOAKED),
+             "A representative part is a test: [stability.py](../../tests/verification/stability.py).", "",
              "A run *finishes*, is *refused* at the start (exit code 2), or *stops* (exit code 3, the last good state saved); numbers in brackets "
              "lead to what it said. Every file of every run is searched for NaN.", "", *summary(study)]  # fmt: skip
     text += ["![Largest error of every run](../figures/stability_map.png)", "",
@@ -558,7 +559,7 @@ PARTS = {"properties": properties, "fast": fast, "steps": steps, "events": event
 def soak_text():
     """soak.md with the table of all recorded runs of scripts/soak.py."""
     here = Path(__file__)
-    return here.with_name("soak.md").read_text().replace("@table@", soak_table(read_record(here.with_name("soak.jsonl"))))
+    return here.with_name("soak.md").read_text().replace("@table@", soak_table(read_record(SOAKED)))
 
 
 def main():
@@ -572,6 +573,7 @@ def main():
     sys.argv[1:] = [str(program)]
     if given.soak:
         before, rest = PAGE.read_text().split(SOAK + "\n", 1)
+        before = re.sub(r"^- Data: .*", dated.data(PAGE, SOAKED), before, count=1, flags=re.M)
         PAGE.write_text(f"{before}{SOAK}\n\n{soak_text()}\n{rest[rest.index('## '):]}")
         return
     FOLDER.mkdir(parents=True, exist_ok=True)
@@ -581,6 +583,7 @@ def main():
         return
     draw_map(found, FIGURES / "stability_map.png")
     draw_steps(found, FIGURES / "stability_steps.png")
+    dated.measured(PAGE)
     PAGE.write_text(page(study, found))
     print(PAGE)
 

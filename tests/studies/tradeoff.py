@@ -24,6 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
 import _auto as slow_fast  # noqa: E402
 import _integrators as scenes  # noqa: E402
+import dated  # noqa: E402
 import exact  # noqa: E402
 from _integrators import EULER, EXPLICIT, SDIRK2, adaptive, apart, fixed, integrators, steps_of, timed  # noqa: E402
 from common import CASES, changes, read_csv, seconds  # noqa: E402
@@ -363,6 +364,7 @@ def measure(names):
         data[name] = PARTS[name]()
         data["startup"] = Clock.startup()
         DATA.write_text(json.dumps(data, indent=0, default=float) + "\n")
+        dated.measured(DATA)
     return data
 
 
