@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Slope A on cells of 8 m as it begins to slide, by hybrid, and on 20 m by sdirk2: the same on 1, 2 and 4 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
+"""Slope A as it begins to slide: ranks agree, a restart is exact, bands are found.
+
+Slope A on cells of 8 m as it begins to slide, by hybrid, and on 20 m by sdirk2: the same on 1, 2 and 4 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
 step; pressures that tend to the nodes' lose what no node sees and no mass; and what scripts/slide.py finds: onset, failed part, the bands of strains and the slides of a balance that are
 known; rows of docs/studies/slopes.md are runs of today's cases.
 """

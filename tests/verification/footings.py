@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Collapse loads of rigid strips (cases/strip.yaml): Prandtl's, and Nc and Nq of associated weightless ground at 20 deg, with
+"""Collapse loads of rigid strips: Prandtl's, and Nc and Nq of associated ground.
+
+Collapse loads of rigid strips (cases/strip.yaml): Prandtl's, and Nc and Nq of associated weightless ground at 20 deg, with
 hybrid and implicit, rough and smooth; Cox's circle on a coarse grid; what the locking of ground that
 dilates does without mean strain.
 
