@@ -27,7 +27,7 @@ nav:
   - Theory: [docs/equations.md, docs/laws.md]
   - Code: [docs/architecture.md, docs/extending.md, CONTRIBUTING.md, CHANGELOG.md]
   - Evidence: [docs/verification.md, docs/forecast.md]
-  - Studies: [docs/studies/README.md, docs/studies/slopes.md, docs/studies/biaxial.md, docs/studies/masuda.md, docs/studies/plasticity.md, docs/studies/tradeoff.md, docs/studies/stability.md, docs/studies/benchmark.md, docs/studies/scale.md, docs/studies/mutation.md]
+  - Studies: [docs/studies/README.md, docs/studies/slopes.md, docs/studies/biaxial.md, docs/studies/masuda.md, docs/studies/plasticity.md, docs/studies/tradeoff.md, docs/studies/stability.md, docs/studies/benchmark.md, docs/studies/scale.md, docs/studies/mutation.md, docs/studies/verification.md]
 EOT
 quietly "$work/log" mkdocs build --strict -f "$work/mkdocs.yml" || die "a page is wrong"
 say "$site/index.html"

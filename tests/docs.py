@@ -8,7 +8,8 @@
 - links to headings find them
 - the cases in README and docs/cases_reference.md are valid
 - CHANGELOG.md, CITATION.cff, CMakeLists.txt and python/pyproject.toml say the same version
-- every verification test that measures stands in docs/verification.md, and its lines are as many as that page says
+- every verification test that measures stands in docs/studies/verification.md, whose lines are as many as it says; docs/verification.md is what
+  scripts/verification.py makes of it, in at most 4000 words, and says in at most 16 words what a test shows
 - every page of docs/studies has a head with script, data, date and commit, and a line in docs/studies/README.md; every file of docs/studies/made.csv is there
 """
 import re
@@ -34,6 +35,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
 import dated  # noqa: E402
 import options_doc  # noqa: E402
+import verification  # noqa: E402
 
 
 def fences(page):
@@ -179,15 +181,21 @@ def check_example(binary, page):
 
 
 def check_verification():
-    """Tests whose numbers are not on the page of the verification, and numbers that it counts but does not show."""
-    text = (ROOT / "docs" / "verification.md").read_text()
+    """Tests whose numbers are not on the page of all numbers, numbers that it counts but does not show, and a page of tests that is another one."""
+    text = verification.ALL.read_text()
     rows = len(re.findall(r"^\| (?!what \|).*\.py\)[^|]* \|$", text, re.M))
     said = re.search(r"^(\d+) numbers, ", text, re.M)
     if not said or int(said[1]) != rows:
-        yield f"docs/verification.md says {said and said[1]} numbers and shows {rows}"
+        yield f"docs/studies/verification.md says {said and said[1]} numbers and shows {rows}"
     for test in sorted((ROOT / "tests" / "verification").glob("[!_]*.py")):
         if test.stem not in ("common", "exact") and re.search(r"^[^#\n]*\b(judge|record)\(", test.read_text(), re.M) and f"verification/{test.name})" not in text:
-            yield f"docs/verification.md has no number of {test.name}: run scripts/verification.py --only {test.stem}"
+            yield f"docs/studies/verification.md has no number of {test.name}: run scripts/verification.py --only {test.stem}"
+    found = verification.records_of(text)
+    if verification.PAGE.read_text() != (short := verification.overview([r for t in sorted(found) for r in found[t]])):
+        yield "docs/verification.md is out of date: run scripts/verification.py --only --no-figures"
+    if len(short.split()) > 4000:
+        yield f"docs/verification.md has {len(short.split())} words"
+    yield from (f"the first sentence of {t}.py has more than 16 words: {verification.shows(t)}" for t in found if len(verification.shows(t).split()) > 16)
 
 
 def check_studies():

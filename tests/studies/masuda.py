@@ -294,7 +294,7 @@ def page(done, program):
     return "\n".join([
         *dated.head("Masuda's core", "tests/studies/masuda.py", PAGE),
         "Every number is of a run of [cases/masuda](../../cases/masuda/README.md).",
-        "The bars are held by [masuda.py](../../tests/verification/masuda.py) and listed in [verification.md](../verification.md).", "",
+        "The bars are held by [masuda.py](../../tests/verification/masuda.py) and listed in [verification.md](verification.md).", "",
         "## Against the reference curves", "",
         "Largest differences at every 15 min to 4 h. *Lumped* is the reference's own model of the radius: a core a tenth as thick and a "
         "bath that gives a tenth of the heat, so that a volume gets the same heat and the radius has no say. *No p_c* has p_0 = 10 Pa.", "",
