@@ -2,7 +2,7 @@
 """Forecast against fact: forecasts.py CLATHRA [FOLDER]
 
 Runs the shipped implicit cases that take about a minute or less, and the scenes of docs/tutorial.md with their neighbours without gas, into FOLDER (default:
-results/forecasts), compares what each says at its start and at 5, 10, 25 and 50 % of its time with what it then takes, and writes docs/forecast.md.
+results/forecasts), compares what each says at its start and at 5, 10, 25 and 50 % of its time with what it then takes, and writes docs/studies/forecast.md.
 """
 import re
 import subprocess
@@ -10,11 +10,12 @@ import sys
 import time
 from pathlib import Path
 
+import dated
 from clathra.units import SECONDS
 from tutorial import case_text, heated, tidal, without_gas
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "forecast.md"
+PAGE = dated.STUDIES / "forecast.md"
 MARKS = (5, 10, 25, 50)
 HEATED = ("-bc_well_pressure", "11 MPa")
 CASES = ("terzaghi", "mcwhorter_sunada", "buckley_leverett", "stefan_front", "bp2", "masuda", "century", "century_hydrate", "slope_warming")
@@ -27,15 +28,15 @@ def scenes(folder):
     for name, case in own.items():
         (folder / f"{name}.yaml").write_text(case)
     at = {name: folder / f"{name}.yaml" for name in own}
-    yield from ((f"[{name}](../cases/{name}/README.md)", ROOT / "cases" / name, ()) for name in CASES)
-    yield "[tutorial](tutorial.md): well", at["well"], ()
+    yield from ((f"[{name}](../../cases/{name}/README.md)", ROOT / "cases" / name, ()) for name in CASES)
+    yield "[tutorial](../tutorial.md): well", at["well"], ()
     yield "... tolerance 1e-3", at["well"], ("-stepper_tol", "1e-3")
     yield "... well and heater", at["heater"], ()
     yield "... heater", at["heater"], HEATED
     yield "... tide", at["tide"], ()
-    yield "[without gas](../tests/verification/first_gas.py): well", at["well_without_gas"], ()
+    yield "[without gas](../../tests/verification/first_gas.py): well", at["well_without_gas"], ()
     yield "... heater", at["heater_without_gas"], (*HEATED, "-time_end", "10 d", "-output_every", "2 d")
-    yield "[heater inside](../tests/verification/cases/heater_rod.yaml)", ROOT / "tests" / "verification" / "cases" / "heater_rod.yaml", ()
+    yield "[heater inside](../../tests/verification/cases/heater_rod.yaml)", ROOT / "tests" / "verification" / "cases" / "heater_rod.yaml", ()
 
 
 class Told:
@@ -92,14 +93,14 @@ def page(found):
     said = [(left, told.first + told.took[0] - step) for _, told in found for share, step, left, _, _ in told.lines[:-1] if left is not None]
     lines_within = sum(within(*s) for s in said)
     return "\n".join([
-        "# Forecast and time left against fact", "",
-        "Written by `scripts/forecasts.py`; change that, not this page. Each cell: said / came. A forecast stands at the start of a run, (317) of the [equations](equations.md), section 15; what is left, on every",
-        "line of progress from 5 % of the time on, (412): there the run's own pace and the forecast share the word, later the pace alone. Seconds are those of the machine that wrote this, with whatever else it did.", "",
+        *dated.head("Forecast and time left against fact", "scripts/forecasts.py", PAGE),
+        "Each cell: said / came. A forecast stands at the start of a run ([equations](../equations.md), section 15, (317)). Every line of progress from 5 % of the time on says what is left (412): first",
+        "from the forecast and the run's own pace, later from the pace alone. Seconds are those of the machine that wrote this, with whatever else it did.", "",
         *lines, "",
         f"Within a factor of two: the forecast of steps in {sum(starts)} of {len(starts)} scenes; steps left in {sum(steps)} of {len(steps)} of the cells, time left in {sum(seconds)}; steps left on "
         f"{100 * lines_within / len(said):.0f} % of all {len(said)} lines.", "",
-        "What it cannot know is a front that becomes dear later: beside a heater most steps fall where the first cell of hydrate melts, after a fifth of the time, and at 5 % nothing in the run says so.",
-        "A run that goes so much farther than its forecast says so itself, with what rules its steps ([giving_up.md](giving_up.md)).", "",
+        "The forecast does not see a front that becomes expensive later: beside a heater most steps fall where the first cell of hydrate melts, after a fifth of the time.",
+        "A run that exceeds its forecast tenfold says so itself, with what rules its steps ([giving_up.md](../giving_up.md)).", "",
     ])  # fmt: skip
 
 
@@ -110,6 +111,7 @@ def main(program, folder=ROOT / "results" / "forecasts"):
     for k, (name, case, options) in enumerate(scenes(folder)):
         found.append((name, Told(program, case, options, folder / f"run{k}")))
         print(*row(*found[-1]), sep="  ", flush=True)
+    dated.measured(PAGE)
     PAGE.write_text(page(found))
 
 

@@ -33,7 +33,7 @@ def main():
     check("... at a share of its time", float(share), (0.1, 30))
     check_true("... how many were refused", int(refused) < int(taken) and "h" in now, f"{refused}, {now}")
     check_true("... with what rules the step and where", re.match(r"(the error of \w+, largest near \([\d.]+, [\d.]+\) m|Newton's method)", rules) is not None, rules)
-    plain = scratch() / "well_and_heater.yaml"  # the well alone ends in 16 more steps where 34 are said at 10 %, docs/forecast.md
+    plain = scratch() / "well_and_heater.yaml"  # the well alone ends in 16 more steps where 34 are said at 10 %, docs/studies/forecast.md
     plain.write_text(heated(case_text()))
     goes = forecasts.Told(binary(), plain, (), scratch() / "goes")
     text = "".join(goes.log)
@@ -42,7 +42,7 @@ def main():
     left = {mark: goes.at(mark)[:2] for mark in forecasts.MARKS}
     check_true("... and the steps that it says are left, at 5, 10, 25 and 50 %", all(forecasts.within(*v) for v in left.values()), left)
     cells = forecasts.row("... well and heater", goes)
-    check_true("docs/forecast.md has this row", "| ".join(["", *(c.split(",")[0] for c in cells[1:2])]) in forecasts.PAGE.read_text(), cells)
+    check_true("docs/studies/forecast.md has this row", "| ".join(["", *(c.split(",")[0] for c in cells[1:2])]) in forecasts.PAGE.read_text(), cells)
     finish()
 
 
