@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Benchmarks: bench.py CLATHRA [OUT.md], or bench.py CLATHRA scale [--only REGEX] [--cells N,N,...] [--again] [--page]
 
-The first says where the time of a step goes, implicit and hybrid, on one core and on several (docs/benchmark.md); all numbers of a row come from one run.
+The first says where the time of a step goes, implicit and hybrid, on one core and on several (docs/studies/benchmark.md); all numbers of a row come from one run.
 
-`scale` runs solvers of implicit steps against size and against properties.  Every run is kept in docs/scale.json as soon as it is there and not run
-again (--again: the chosen ones are); docs/scale.md is written anew from all of them (--page: only that).  --only chooses runs by name ("size",
+`scale` runs solvers of implicit steps against size and against properties.  Every run is kept in docs/studies/scale.json as soon as it is there and not run
+again (--again: the chosen ones are); docs/studies/scale.md is written anew from all of them (--page: only that).  --only chooses runs by name ("size",
 "size block 50:", "extremes", "operator", "across", "long"), --cells those of the sizes (25 and 50 unless said; 100, 200 and 350 want minutes and up to
 20 GB).  Time is user time of the process less that of one without a step, so a busy machine hardly matters; memory is the resident set likewise.
 """
@@ -19,9 +19,11 @@ from pathlib import Path
 import numpy as np
 
 import clathra
+import dated
 
 ROOT = Path(__file__).resolve().parents[1]
 CASES = ROOT / "tests" / "verification" / "cases"
+BENCHMARK = dated.STUDIES / "benchmark.md"
 BP2 = ROOT / "cases" / "bp2" / "case.yaml"
 
 
@@ -162,9 +164,7 @@ def implicit_section(binary):
         rows.append(row(implicit(binary, scene), job.usage.ru_maxrss * 1024.0))
         print(dict(zip(HEAD, rows[-1])), flush=True)
     direct, dry_, krylov = (float(r[HEAD.index("s a step")]) for r in rows[-3:])
-    return f"""# Benchmark
-
-Made by `cmake --build build --target bench` on one core; compare ratios, not seconds, between machines.
+    return f"""Made by `cmake --build build --target bench` on one core; compare ratios, not seconds, between machines.
 BP2 case 2; the strip of 50 cells runs all 2000 s, the others a few steps. Solvers against size and properties: [scale.md](scale.md).
 
 {markdown(HEAD, rows)}
@@ -365,7 +365,7 @@ Messages that a rank sends, kB that it sends, and sums over all ranks, each time
 
 
 # ---------------------------------------------------------------- scale: solvers against size and properties
-STORE, PAGE = ROOT / "docs" / "scale.json", ROOT / "docs" / "scale.md"
+STORE, PAGE = dated.STUDIES / "scale.json", dated.STUDIES / "scale.md"
 STABILITY, FOOTING, FIELD_SETS = (CASES / f"{name}.yaml" for name in ("stability", "strip", "field_sets"))
 WHOLE, LU, MULTIGRID = ("-newton_preconditioner", "whole"), ("-reduced_pc_type", "lu"), ("-reduced_pc_type", "fieldsplit")
 KINDS = (("whole", WHOLE), ("LU", LU), ("multigrid", MULTIGRID))
@@ -531,10 +531,9 @@ def page(store):
     each = lambda run: (run["user"] - base["user"]) / run["solves"]  # s a linear solve
     long_rows = [[name, particles, unknowns, full["steps"], full["refused"], full["solves"], f"{full['mean']:.1f}", f"{full['user'] - base['user']:.0f}", f"{each(begin):.2f}", f"{each(whole):.2f}", f"{each(whole) / each(begin):.1f}", outcome(full)]
                  for name, _, _, particles, unknowns, _ in LONG if name in ran for full, whole, begin in [ran[name]]]  # fmt: skip
-    return f"""# Solvers of implicit steps
-
-Written by `scripts/bench.py` from docs/scale.json, which holds every run; change it, not this page. User seconds of one process, less those of a run without a step, on machines that were not
-always quiet: differences below a fifth mean nothing. Equation numbers are those of [equations.md](equations.md).
+    return "\n".join(dated.head("Solvers of implicit steps", "scripts/bench.py", STORE)) + f"""
+The data hold every run. User seconds of one process, less those of a run without a step, on machines that were not
+always quiet: differences below a fifth mean nothing. Equation numbers are those of [equations.md](../equations.md).
 
 ## Size
 
@@ -593,6 +592,7 @@ def scale(binary, words):
             store[name] = solved(binary, make(folder), options, ranks, 7200)
         print(name, store[name], flush=True)
         STORE.write_text(json.dumps(store, indent=0) + "\n")
+        dated.measured(STORE)
     PAGE.write_text(page(store))
 
 
@@ -604,7 +604,9 @@ def main(words):
         return scale(binary, more[1:])
     text = implicit_section(binary) + hybrid_section(binary) + ranks_section(binary)
     if more:
-        Path(more[0]).write_text(text)
+        dated.measured(more[0])
+        top = dated.head("Benchmark", "scripts/bench.py", BENCHMARK) if Path(more[0]).resolve() == BENCHMARK else ["# Benchmark", ""]
+        Path(more[0]).write_text("\n".join([*top, text]))
     print(text)
 
 

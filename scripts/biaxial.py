@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The paper's biaxial test: figures of runs of cases/biaxial, and docs/biaxial.md with its own from docs/biaxial.json and docs/biaxial.npz.
+"""The paper's biaxial test: figures of runs of cases/biaxial, and docs/studies/biaxial.md with its own from docs/studies/biaxial.json and docs/studies/biaxial.npz.
 
 biaxial.py draw OUT NAME=FOLDER... Figures 13 to 18, B.32, B.33, C.36 and C.37 of finished runs, OUT/biaxial_*.png, as many as these allow, and the table of the
                                   runs.  NAME is A, B, C (the paper's cases), hybrid (A by hybrid), psi (psi = phi) or another one of RUNS
@@ -24,11 +24,12 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 import clathra
+import dated
 from clathra import read_csv, read_snapshots
 from clathra.plotting import COLOURS, STYLES, plt, save, set_style
 
 ROOT = Path(__file__).resolve().parents[1]
-DATA, KEPT, PAGE = ROOT / "docs" / "biaxial.json", ROOT / "docs" / "biaxial.npz", ROOT / "docs" / "biaxial.md"
+DATA, KEPT, PAGE = ROOT / "docs" / "studies" / "biaxial.json", ROOT / "docs" / "studies" / "biaxial.npz", ROOT / "docs" / "studies" / "biaxial.md"
 HYBRID, B, C = ("-stepper_type", "hybrid"), ("-mat_sand_kinetics_active", "no"), ("-mat_sand_plasticity_heat", "1")
 SLOW = ("-mat_sand_kinetics_K0", "3.6e4 mol/(m^2 Pa s)")
 MESH = {"h2": ("-grid_cells", "8,21"), "h067": ("-grid_cells", "24,63"), "h05": ("-grid_cells", "32,84")}
@@ -365,6 +366,7 @@ def keep(found):
                 kept[f"{name}/{strain}/{key}"] = np.round(place[key], 4).astype(np.float32)
     DATA.write_text(json.dumps({k: data[k] for k in RUNS if k in data}, indent=0) + "\n")
     np.savez_compressed(KEPT, **kept)
+    dated.measured(DATA, KEPT)
 
 
 def load():
@@ -488,6 +490,10 @@ def energy(r):
     return lines
 
 
+SINCE = ("Particles take the volume change of their cells and velocities are carried to nodes ((88), (451) of [equations.md](../equations.md)). (88) lowers the peak; the numbers hold for the paper's scheme. "
+         "(351) no longer acts on every line near the surface, which changes A and B by sdirk2 by 1.2 % and 2.3 % of the peak at most.")  # fmt: skip
+
+
 def page(r):
     A, B, H, slow, slow_C = (r[k][0] for k in ("A", "B", "hybrid", "slow_A", "slow_C"))
     BH = r.get("B_hybrid", (None,))[0]
@@ -496,12 +502,10 @@ def page(r):
     band = lambda run: run["states"][-1]["band"]
     names = {"B_hybrid": "B, hybrid", "C_hybrid": "C, hybrid", "hybrid": "A, hybrid", "psi": "psi = phi", "slow_A": "A, K_0 = 3.6e4", "slow_C": "C, K_0 = 3.6e4"}
     lines = [
-        "# The biaxial test of the paper", "",
-        "Written by `scripts/biaxial.py` from `docs/biaxial.json` and `docs/biaxial.npz`, which hold what its runs gave; change the script, not this page. The scene is",
-        "[cases/biaxial](../cases/biaxial/README.md): the right half of 4 m x 2 m of sand with hydrate under 3.75 MPa, undrained, between rough plates, to 15 % at 0.1 m/s. Cells of 0.1 m",
+        *dated.head("The biaxial test of the paper", "scripts/biaxial.py", DATA, KEPT, since=SINCE),
+        "The scene is [cases/biaxial](../../cases/biaxial/README.md): the right half of 4 m x 2 m of sand with hydrate under 3.75 MPa, undrained, between rough plates, to 15 % at 0.1 m/s. Cells of 0.1 m",
         "(which the paper's Appendix B finds fine enough) with 2 x 2 particles unless said otherwise; `sdirk2` unless said otherwise. A: kinetics; B: none; C: all plastic work heats.",
-        "All runs were made before particles took the volume change of their cells and velocities were carried to nodes ((88), (451) of [equations.md](equations.md)); (88) lowers the peak; they hold for the paper's scheme.",
-        "Runs of sdirk2 are of when (351) acted on every line near the surface, which changes A and B by 1.2 % and 2.3 % of the peak at most.", "",
+        "",
         "## What the paper says, one by one", "", "| the paper | here | |", "| --- | --- | --- |",
         *(f"| {said} | {found} | {verdict} |" for said, found, verdict in statements(r)), "",
         f"(a) Peak and warmth go with the rate of dissociation. With K_0 = 3.6e4 mol/(m^2 Pa s), Masuda's, instead of the 3.6e5 that the paper prints, the peak of A is at {peak(slow)[1]:.1f} % ({peak(slow)[0]:.2f} MPa,",
@@ -512,28 +516,28 @@ def page(r):
         "recovery cannot be compared.", "",
         TABLE, *(row(names.get(k, k), r[k][0]) for k in ("A", "B", "C", "hybrid", "B_hybrid", "C_hybrid", "psi", "slow_A", "slow_C") if k in r), "",
         "Stress is beyond the confining pressure; p, T, S_h and hydrate lost are means over the bands (eps_d^p > 0.3) at 15 %.", "",
-        "![Stress and volume, Figure 13](figures/biaxial_curves.png)", "",
-        "![Figures 14 and 15: state at 15 %](figures/biaxial_fields.png)", "",
-        "![Figures 16 and 18: at M](figures/biaxial_point.png)", "",
+        "![Stress and volume, Figure 13](../figures/biaxial_curves.png)", "",
+        "![Figures 14 and 15: state at 15 %](../figures/biaxial_fields.png)", "",
+        "![Figures 16 and 18: at M](../figures/biaxial_point.png)", "",
         "*M starts at (0.5, 2.6) m, in the middle of the upper band. The grid smooths its q, S_h, p and T; its own volume and hydrate mass are those of the particle.*", "",
-        "![Figure 17: heat](figures/biaxial_heat.png)", "",
+        "![Figure 17: heat](../figures/biaxial_heat.png)", "",
         "## hybrid beside sdirk2", "",
         f"Up to the peak of A the stress differs by {percent(apart(A, H, 0.3, peak(A)[1]))} of the peak at most, after it by {percent(apart(A, H, peak(A)[1], 15))}"
         + (f"; in B by {percent(apart(B, BH, 0.3, peak(B)[1]))} up to the peak and {percent(apart(B, BH, peak(B)[1], 15))} after it" if BH else "") + ".",
         f"The bands lie within {100 * shift:.0f} cm of each other (height of the fitted lines at x = 0.6 m, 15 %), their angles within {max(abs(x - y) for x, y in zip(angles(A['states'][-1]), angles(H['states'][-1]))):.1f} deg.",
         f"Processor time of A: sdirk2 {A['cost'].get('cpu', 0):.0f} s for {A['steps']} steps, hybrid {H['cost'].get('cpu', 0):.0f} s for {H['steps']}.", "",
         "## Angles", "",
-        "![Figures C.36 and C.37: bands and fitted lines](figures/biaxial_angles.png)", "",
+        "![Figures C.36 and C.37: bands and fitted lines](../figures/biaxial_angles.png)", "",
         "How an angle is found (`scripts/biaxial.py:line_of_band`): in columns 0.1 m wide, 0.05 m apart, between x = 0.4 m and 0.9 m (away from the axis, where bands cross, and from the free side), of the particles",
         "of the upper (lower) half those count that have more than half of the column's largest eps_d^p; their centre, weighted with it, is a point. A least-squares line through the points has the angle. The width",
         "of a band is the full width at half of the largest mean eps_d^p across that line, in slices of 0.025 m.", "",
         "## Cells, particles, and what regularises", "",
         *mesh_words(r), "",
-        "![Figure B.32](figures/biaxial_meshes.png)", "",
-        "![Figure B.33](figures/biaxial_mesh_curves.png)", "",
+        "![Figure B.32](../figures/biaxial_meshes.png)", "",
+        "![Figure B.33](../figures/biaxial_mesh_curves.png)", "",
         "*By hybrid:*", "",
-        "![Figure B.32 by hybrid](figures/biaxial_meshes_hybrid.png)", "",
-        "![Figure B.33 by hybrid](figures/biaxial_mesh_curves_hybrid.png)", "",
+        "![Figure B.32 by hybrid](../figures/biaxial_meshes_hybrid.png)", "",
+        "![Figure B.33 by hybrid](../figures/biaxial_mesh_curves_hybrid.png)", "",
         *verdicts(r),
         "## Steps of sdirk2 on fine cells", "",
         *fine(r),

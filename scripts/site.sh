@@ -13,7 +13,7 @@ mkdir "$work/pages"
 for name in "$root"/*; do # as in the tree, so that links from page to page and to sources hold
   case ${name##*/} in build* | results) ;; *) cp -rs "$name" "$work/pages/" ;; esac
 done
-rm "$work/pages/tests/studies/soak.md" # a part of docs/stability.md, with its links
+rm "$work/pages/tests/studies/soak.md" # a part of docs/studies/stability.md, with its links
 cat >"$work/mkdocs.yml" <<EOT
 site_name: Clathra
 site_dir: $site
@@ -26,7 +26,8 @@ nav:
   - Guide: [docs/building.md, docs/tutorial.md, docs/running.md, docs/cases_reference.md, docs/options.md, docs/cases.md, docs/giving_up.md, docs/limits.md, docs/faults.md]
   - Theory: [docs/equations.md, docs/laws.md]
   - Code: [docs/architecture.md, docs/extending.md, CONTRIBUTING.md, CHANGELOG.md]
-  - Evidence: [docs/verification.md, docs/mutation.md, docs/plasticity.md, docs/slopes.md, docs/biaxial.md, docs/masuda.md, docs/tradeoff.md, docs/stability.md, docs/forecast.md, docs/benchmark.md, docs/scale.md]
+  - Evidence: [docs/verification.md, docs/forecast.md]
+  - Studies: [docs/studies/README.md, docs/studies/slopes.md, docs/studies/biaxial.md, docs/studies/masuda.md, docs/studies/plasticity.md, docs/studies/tradeoff.md, docs/studies/stability.md, docs/studies/benchmark.md, docs/studies/scale.md, docs/studies/mutation.md, docs/studies/verification.md]
 EOT
 quietly "$work/log" mkdocs build --strict -f "$work/mkdocs.yml" || die "a page is wrong"
 say "$site/index.html"

@@ -2,7 +2,7 @@
 """What a slide did, and its pictures: slide.py FOLDER, or slide.py NAME WITH WITHOUT OUT
 
 FOLDER is a run of cases/slope_a, slope_b, slope_c or slope_warming: what moves is counted from the end of its first stage.  Measures the slide and its shear bands
-from snapshots and balance.csv, writes FOLDER/slide.json and puts the measures at the end of FOLDER/summary.txt.  docs/slopes.md says how each of them is defined.
+from snapshots and balance.csv, writes FOLDER/slide.json and puts the measures at the end of FOLDER/summary.txt.  docs/studies/slopes.md says how each of them is defined.
 
 NAME is slope_a, slope_b or slope_c; WITH and WITHOUT (or -) are runs of it with and without heat from plastic work.  Measures both and draws Figures 20 to 31 of the paper:
 case_NAME.png, NAME_fields.png (slope_b, slope_c), NAME_points.png, NAME_energy.png, NAME_bands.png and the film NAME.mp4 (NAME.gif where there is no ffmpeg) into OUT.

@@ -38,6 +38,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+import dated  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
 from clathra.program import call, environment  # noqa: E402
 
@@ -604,6 +605,7 @@ def main():
         if args.record:
             with open(args.record, "a") as file:
                 file.write(json.dumps({"commit": commit(), "seed": args.seed, **entry}) + "\n")
+            dated.measured(args.record)
 
     if args.scenes:
         args.seed = next_seed(record, "scenes") if seed is None else seed

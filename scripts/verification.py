@@ -1,18 +1,21 @@
 #!/usr/bin/python3
-"""Runs the verification tests and writes docs/verification.md from what they measured.
+"""Runs the verification tests and writes what they measured: docs/studies/verification.md, every number, and docs/verification.md, a row a test.
 
 verification.py [CLATHRA] [--jobs N] [--only NAME ...] [--no-figures]
 
 CLATHRA     the program, default build/clathra
 --jobs N    tests at a time, default 2
---only      run only these tests (stems of files in tests/), and take the others' numbers from results/verification, or from the page as it is
+--only      run only these tests (stems of files in tests/), and take the others' numbers from results/verification, or from the page as it is;
+            without a name none is run, and both pages are written anew
 --no-figures  leave docs/figures as it is
 
-Each test notes its numbers with common.record() in results/verification/<test>.json.  Figures 6, 7 and 9 to 11 of the paper, with
+What a test shows is the first sentence of its docstring.  Each test notes its numbers with common.record() in results/verification/<test>.json.  Figures 6, 7 and 9 to 11 of the paper, with
 the reference's curves, are drawn by reference.py into docs/figures.  Ends with 1 if a test failed.
 """
 import argparse
+import ast
 import json
+import math
 import os
 import re
 import subprocess
@@ -22,11 +25,12 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import clathra
+import dated
 import reference
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "results" / "verification"
-PAGE, FIGURES = ROOT / "docs" / "verification.md", ROOT / "docs" / "figures"
+PAGE, ALL, FIGURES = ROOT / "docs" / "verification.md", dated.STUDIES / "verification.md", ROOT / "docs" / "figures"
 sys.path.insert(0, str(ROOT / "tests" / "verification"))
 
 ROWS = {  # of the table: what is shown
@@ -73,10 +77,10 @@ SECTION = {  # beside that table
     "integrators": "Integrators of both kinds on one scene: a wave and consolidation (exact), a reacting column, BP2 1000 times faster",
     "century": "Long runs: cases/century, 500 years of consolidation at large strain, and cases/century_hydrate, the same with hydrate",
     "strength": "Mohr-Coulomb: softening along a plastic path, orders of the integrators, Salencon's hole",
-    "slopes": "Slopes: failure against limit equilibrium, blocks that meet, a column under water, a change of integrator (docs/slopes.md)",
+    "slopes": "Slopes: failure against limit equilibrium, blocks that meet, a column under water, a change of integrator (docs/studies/slopes.md)",
     "corners": "Heaters: temperatures at their corners, and beside hydrate (docs/equations.md, (395), (446))",
     "beds": "Beds that dip: flow through layered sediment against the exact one (docs/equations.md, (306)-(309))",
-    "stability": "Stability at the extremes: a representative part of docs/stability.md",
+    "stability": "Stability at the extremes: a representative part of docs/studies/stability.md",
     "8.": "1, 2 and 4 ranks agree (rtol 1e-9)",
 }
 NOT_A_TEST = {"common", "exact"}
@@ -114,11 +118,13 @@ def figures(program):
                     str(FIGURES / "strip_load.png")], check=True, stdout=subprocess.DEVNULL)  # fmt: skip
 
 
-def link(test):
-    for folder in ("verification", "integration"):
-        if (ROOT / "tests" / folder / f"{test}.py").is_file():
-            return f"[{test}.py](../tests/{folder}/{test}.py)"
-    return test
+def script(test):
+    return next((p for folder in ("verification", "integration") if (p := ROOT / "tests" / folder / f"{test}.py").is_file()), None)
+
+
+def link(test, page):
+    path = script(test)
+    return f"[{path.name}]({os.path.relpath(path, page.parent)})" if path else test
 
 
 def escape(text):
@@ -130,12 +136,12 @@ def rows_of(records, row):
     lines = ["| what | bar | measured | test |", "|---|---|---|---|"]
     for r in mine:
         mark = "" if r["ok"] else " **missed**"
-        lines.append(f"| {escape(r['what'])} | {escape(r['bar'])} | {escape(r['measured'])}{mark} | {link(r['test'])} |")
+        lines.append(f"| {escape(r['what'])} | {escape(r['bar'])} | {escape(r['measured'])}{mark} | {link(r['test'], ALL)} |")
     return lines if mine else []
 
 
 def records_of(text):
-    """{test: its records} of a page: what rows_of() and page() made of them."""
+    """{test: its records} of a page: what rows_of() and every_number() made of them."""
     found, row, rows = {}, None, {f"{f'{k}. ' if isinstance(k, int) else ''}{title}": k for k, title in {**ROWS, **SECTION}.items()}
     for line in text.splitlines():
         if line.startswith("## "):
@@ -147,26 +153,76 @@ def records_of(text):
     return found
 
 
-def elsewhere(row):
-    return {
-        9: "Shown by [tests/unit/test_point.c](../tests/unit/test_point.c) (a particle's tangent) and "
-           "[tests/unit/test_model.c](../tests/unit/test_model.c) (the exact Jacobian, every entry); they print the largest differences.",
-        14: "Shown by [tests/unit/test_point.c](../tests/unit/test_point.c), which prints the table of errors and orders.",
-        16: "Shown by [tests/bad/run.py](../tests/bad/run.py), which also runs under the address sanitizer.",
-    }.get(row, "No numbers yet.")
+ELSEWHERE = {
+    9: "Shown by [tests/unit/test_point.c](../tests/unit/test_point.c) (a particle's tangent) and "
+       "[tests/unit/test_model.c](../tests/unit/test_model.c) (the exact Jacobian, every entry); they print the largest differences.",
+    14: "Shown by [tests/unit/test_point.c](../tests/unit/test_point.c), which prints the table of errors and orders.",
+    16: "Shown by [tests/bad/run.py](../tests/bad/run.py), which also runs under the address sanitizer.",
+}  # fmt: skip
 
 
-def page(records):
-    missed, rows = sum(not r["ok"] for r in records), {str(k) for k in {**ROWS, **SECTION}}
+def counted(records):
+    missed = sum(not r["ok"] for r in records)
+    return f"{len(records)} numbers, {missed} outside their bars. A bar is a limit of the test: `./check` fails outside it."
+
+
+def every_number(records):
+    """The page of all numbers, by what they show."""
+    rows = {str(k) for k in {**ROWS, **SECTION}}
     if homeless := sorted({f"{r['row']} of {r['test']}" for r in records if str(r["row"]) not in rows}):
         sys.exit(f"no section of the page for: {', '.join(homeless)}")
-    text = ["# Verification", "",
-            "Written by `scripts/verification.py`, which runs the tests named here; change them, not this page.", "",
-            f"{len(records)} numbers, {missed} outside their bars. A bar is a limit of the test: `./check` fails outside it.",
-            "Reference curves and exact solutions: cases/bp2/reference and tests/verification/exact*.py.", ""]  # fmt: skip
+    text = [*dated.head("Every number of the verification", "scripts/verification.py", ALL, since="Tests are run again as they change, so that each number is of the last run of its test."),
+            counted(records), "[A row a test](../verification.md) is a shorter page.", ""]  # fmt: skip
     for row, title in {**ROWS, **SECTION}.items():
         number = f"{row}. " if isinstance(row, int) else ""
-        text += [f"## {number}{title}", "", *(rows_of(records, row) or [elsewhere(row)]), ""]
+        text += [f"## {number}{title}", "", *(rows_of(records, row) or [ELSEWHERE.get(row, "No numbers yet.").replace("](../", "](../../")]), ""]
+    return "\n".join(text).rstrip() + "\n"
+
+
+def shows(test):
+    """What a test shows: the first sentence of its docstring, without numbers of rows and sections and what stands in brackets."""
+    text = " ".join(ast.get_docstring(ast.parse(script(test).read_text())).split("\n\n")[0].split())
+    text = re.sub(r"^(Row \d+|Section [\d.]+): | ?\([^()]*\)", "", text)
+    text = re.split(r"\.(?= [A-Z`]|$)", text)[0]
+    return text if text.startswith("cases/") else text[0].upper() + text[1:]
+
+
+def share(record):
+    """How far a number has gone on its way to its bar, 1 at the bar; of two bars, from the middle between them.  None without such a bar.
+    The middle is the geometric one where the bars are a hundredfold apart, and 0 where the lower one is 0."""
+    number = lambda text: float(text.split()[0])
+    if record["bar"][0] != "<" and " to " not in record["bar"]:
+        return None
+    low, high = map(number, record["bar"].replace("< ", "0 to ").split(" to "))
+    value = number(record["measured"])
+    if low == 0:
+        return value and (value / high if high else math.inf)
+    if high >= 100 * low > 0 and value > 0:
+        low, high, value = map(math.log, (low, high, value))
+    return abs(value - (low + high) / 2) / ((high - low) / 2)
+
+
+def row_of(test, records):
+    shares = [s for s in map(share, records) if s is not None]
+    worst = (f"{max(shares):.3g}" if shares else "-") + ("" if all(r["ok"] for r in records) else " **missed**")
+    return f"| {link(test, PAGE)} | {escape(shows(test))} | {sum(r['bar'] != '-' for r in records)} | {worst} |"
+
+
+def overview(records):
+    """The page with a row a test, in the order of what they show."""
+    order, found = [str(k) for k in {**ROWS, **SECTION}], {}
+    for r in sorted(records, key=lambda r: order.index(str(r["row"]))):
+        found.setdefault(r["test"], []).append(r)
+    text = ["# Verification", "",
+            "Written by `scripts/verification.py`, which runs the tests named here; change them, not this page.", "",
+            counted(records), "[All of them](studies/verification.md) stand on a page of their own, by what they show.", "",
+            "*Judged*: how many numbers the test holds against a bar.",
+            "*Worst*: the largest of them as a share of its bar; 1 is at the bar.",
+            "Between two bars it is the distance from their middle as a share of half of what lies between them (of logarithms where the bars are a hundredfold apart).",
+            "Exact solutions are in `tests/verification/exact*.py`, reference curves in `cases/bp2/reference` and `cases/masuda/reference`.", "",
+            *(f"- {ROWS[row]}: {words[0].lower()}{words[1:]}" for row, words in ELSEWHERE.items()), "",
+            "| test | what it shows | judged | worst |", "|---|---|---|---|",
+            *(row_of(test, mine) for test, mine in found.items()), ""]  # fmt: skip
     names = {"fig09_case1": "BP2 case 1 (kinetics off): Figure 9 of the paper",
              "fig10_case2": "BP2 case 2 (kinetics on): Figure 10",
              "fig11_profiles": "BP2 case 2, profiles at 500 s and 1000 s: Figure 11",
@@ -196,11 +252,14 @@ def main():
         figures(program)
     known = {t.stem for t in tests()}
     fresh = {p.stem: json.loads(p.read_text()) for p in RESULTS.glob("*.json") if p.stem in known}
-    kept = {t: r for t, r in records_of(PAGE.read_text()).items() if given.only is not None and t in known and t not in given.only}
+    kept = {t: r for t, r in records_of(ALL.read_text()).items() if given.only is not None and t in known and t not in given.only}
     found = kept | fresh
     records = [r for t in sorted(found) for r in found[t]]
-    PAGE.write_text(page(records))
-    print(f"{PAGE}: {len(records)} numbers from {len(found)} tests")
+    if wanted:
+        dated.measured(ALL)
+    ALL.write_text(every_number(records))
+    PAGE.write_text(overview(records))
+    print(f"{PAGE}, {ALL}: {len(records)} numbers from {len(found)} tests")
     return 0 if all(passed) else 1
 
 

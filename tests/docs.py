@@ -8,7 +8,9 @@
 - links to headings find them
 - the cases in README and docs/cases_reference.md are valid
 - CHANGELOG.md, CITATION.cff, CMakeLists.txt and python/pyproject.toml say the same version
-- every verification test that measures stands in docs/verification.md, and its lines are as many as that page says
+- every verification test that measures stands in docs/studies/verification.md, whose lines are as many as it says; docs/verification.md is what
+  scripts/verification.py makes of it, in at most 4000 words, and says in at most 16 words what a test shows
+- every page of docs/studies has a head with script, data, date and commit, and a line in docs/studies/README.md; every file of docs/studies/made.csv is there
 """
 import re
 import shlex
@@ -18,7 +20,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [*(ROOT / page for page in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")), *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
+PAGES = [*(ROOT / page for page in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")), *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "cases").glob("*/README.md"))]
 EXAMPLES = (ROOT / "README.md", ROOT / "docs" / "cases_reference.md")  # whose YAML blocks are whole cases
 PRESETS = sorted((ROOT / "options").glob("*.opts"))
 FOLDERS = ("cases", "docs", "include", "options", "python", "scripts", "src", "tests")
@@ -31,7 +33,9 @@ NO_PHYSICS = re.compile(r"-(stepper|newton|model_pmat|reduced)_\w+")
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
+import dated  # noqa: E402
 import options_doc  # noqa: E402
+import verification  # noqa: E402
 
 
 def fences(page):
@@ -177,15 +181,33 @@ def check_example(binary, page):
 
 
 def check_verification():
-    """Tests whose numbers are not on the page of the verification, and numbers that it counts but does not show."""
-    text = (ROOT / "docs" / "verification.md").read_text()
+    """Tests whose numbers are not on the page of all numbers, numbers that it counts but does not show, and a page of tests that is another one."""
+    text = verification.ALL.read_text()
     rows = len(re.findall(r"^\| (?!what \|).*\.py\)[^|]* \|$", text, re.M))
     said = re.search(r"^(\d+) numbers, ", text, re.M)
     if not said or int(said[1]) != rows:
-        yield f"docs/verification.md says {said and said[1]} numbers and shows {rows}"
+        yield f"docs/studies/verification.md says {said and said[1]} numbers and shows {rows}"
     for test in sorted((ROOT / "tests" / "verification").glob("[!_]*.py")):
         if test.stem not in ("common", "exact") and re.search(r"^[^#\n]*\b(judge|record)\(", test.read_text(), re.M) and f"verification/{test.name})" not in text:
-            yield f"docs/verification.md has no number of {test.name}: run scripts/verification.py --only {test.stem}"
+            yield f"docs/studies/verification.md has no number of {test.name}: run scripts/verification.py --only {test.stem}"
+    found = verification.records_of(text)
+    if verification.PAGE.read_text() != (short := verification.overview([r for t in sorted(found) for r in found[t]])):
+        yield "docs/verification.md is out of date: run scripts/verification.py --only --no-figures"
+    if len(short.split()) > 4000:
+        yield f"docs/verification.md has {len(short.split())} words"
+    yield from (f"the first sentence of {t}.py has more than 16 words: {verification.shows(t)}" for t in found if len(verification.shows(t).split()) > 16)
+
+
+def check_studies():
+    contents = (dated.STUDIES / "README.md").read_text()
+    for page in sorted(dated.STUDIES.glob("[!R]*.md")):
+        head = re.match(r"# .*\n\n- Script: \[(\S+)\]\(\.\./\.\./\1\)\. It writes this page\.\n(- Data: .*)\n- Since then: \S.*\n\n", page.read_text())
+        files = re.findall(r"\[([\w.]+)\]\(|this page", head[2]) if head else []
+        if not head or head[2] != dated.data(*(f or page.name for f in files)):
+            yield f"{page.relative_to(ROOT)} does not begin with its script, its data, their dates and commits as in made.csv, and what has changed since"
+        if f"]({page.name})" not in contents:
+            yield f"docs/studies/README.md does not name {page.name}"
+    yield from (f"docs/studies/made.csv names {f}, which is not there" for f in dated.read() if not (dated.STUDIES / f).is_file())
 
 
 def main(binary):
@@ -194,7 +216,7 @@ def main(binary):
     known = lambda word: word in program or PETSC.fullmatch(word) or case.fullmatch(word)
     planted = ["-stepper_typ", "-mat_sand_porosty", "-newton_tol", "-grid", "-ksptype"]
     found = [f"self-test: {word} was taken for an option" for word in planted if known(word)]
-    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_version(), *check_verification(), *(f for page in EXAMPLES for f in check_example(binary, page))]
+    found += [*check_table(), *check_page(binary), *check_laws(binary), *check_version(), *check_verification(), *check_studies(), *(f for page in EXAMPLES for f in check_example(binary, page))]
     for page in PAGES:
         found += [*check_files(page), *check_anchors(page), *check_commands(page, known)]
     for preset in PRESETS:

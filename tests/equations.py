@@ -41,7 +41,7 @@ def faults():
     yield from (f"{places[0]} cites ({n}), which is no equation" for n, places in cited.items() if n not in defined)
     prose = "\n".join(line for line in page.splitlines() if not line.startswith("    "))
     yield from (f"{PAGE.name} refers to ({n}), which is no equation" for n in sorted(set(NUMBER.findall(prose))) if n not in defined)
-    for path in [*CODE, *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "tests").rglob("*.py"))]:
+    for path in [*CODE, *sorted((ROOT / "docs").rglob("*.md")), *sorted((ROOT / "tests").rglob("*.py"))]:
         if path != Path(__file__).resolve():
             yield from (f"{path.relative_to(ROOT)}: '{m}' wants a P" for m in OF_THE_PAPER.findall(path.read_text()))
 

@@ -5,7 +5,7 @@ until one fails: mutation.py [--record FILE] [--page FILE] [--only NAME ...] [--
 Each fault is a line of the physics that says something else, with its derivative where
 it has one, so that a Newton method or a tangent test need not notice: what must notice is a test of the physics.  A
 fault that no test sees makes the exit code 1.  --record keeps what was found, a line each, and goes on from there; --page
-makes docs/mutation.md of it.  Some seconds each on a quiet core.
+makes docs/studies/mutation.md of it.  Some seconds each on a quiet core.
 """
 import argparse
 import json
@@ -19,6 +19,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "verification"))
 from common import environment  # noqa: E402
+import dated  # noqa: E402, of scripts/, which common puts on the path
+
+RECORD = dated.STUDIES / "mutation.jsonl"
 
 # The quick tests, in the order in which they are asked: seconds in all.
 UNIT = ("laws_values", "laws", "laws_batch", "point", "faces", "skeleton", "bonds", "model", "slivers", "pressure_modes", "thin_gas", "one_physics", "explicit", "axisymmetry", "plasticity", "plastic_scene", "transfer",
@@ -177,8 +180,8 @@ def stale():
 def page(found):
     rows = [(name, path, *found[name]) for name, path, _ in FAULTS if name in found]
     seen, left = sum(bool(r[2]) for r in rows), [name for name, *_ in FAULTS if name not in found]
-    lines = ["# Planted faults", "",
-             "Written by `tests/mutation.py --record tests/studies/mutation.jsonl --page docs/mutation.md`; change that, not this page. Each fault is planted alone in a copy of the tree, with its derivative where it has "
+    lines = [*dated.head("Planted faults", "tests/mutation.py", RECORD, since="Every row names the commit at which its fault was planted."),
+             "Written with `--record docs/studies/mutation.jsonl --page docs/studies/mutation.md`. Each fault is planted alone in a copy of the tree, with its derivative where it has "
              "one, so that what finds it is a test of the physics, not Newton's method. The quick tests (unit tests on one rank, then verification that takes seconds) run until one fails.", "",
              f"{seen} of {len(rows)} faults were found." + (f" Written down, but not planted yet: {', '.join(left)}." if left else ""), "",
              "| planted | in | found first by | what it says | commit |", "|---|---|---|---|---|"]  # fmt: skip
@@ -223,6 +226,7 @@ def main():
             if args.record:
                 with open(args.record, "a") as file:
                     file.write(json.dumps({"commit": commit, "fault": name, "file": path, "test": test, "says": says}) + "\n")
+                dated.measured(args.record)
     finally:
         if not args.work:
             shutil.rmtree(folder, ignore_errors=True)

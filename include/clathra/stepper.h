@@ -129,6 +129,7 @@ typedef struct Stepper Stepper;
 typedef struct {
   Integrator kind;
   int        error_order; /* q: the error estimate behaves like dt^q */
+  bool       looks_back;  /* the estimate compares with the step before: there is none at the start */
   int        stages;
   PetscErrorCode (*advance)(Stepper *s, bool *ok);
   PetscErrorCode (*step)(Stepper *s, double dt, Attempt *a);

@@ -281,10 +281,8 @@ const Key material_key[] = {
          .has = HAS_SOLID, ACTS(NeedsStrength, "law is mohr_coulomb")),
     REAL(Material, "plasticity_nonlocal_length", plasticity.nonlocal, "m", "[0,1e6]", "0 m",
          "strength follows the plastic strain of neighbours, averaged with weights (d/l) exp(-(d/l)^2) of their "
-         "distance "
-         "d, l this length: what a band carries then depends less on the grid (docs/biaxial.md); at least two cells; 0 "
-         "m = the "
-         "particle's own",
+         "distance d, l this length: what a band carries then depends less on the grid (docs/studies/biaxial.md); at "
+         "least two cells; 0 m = the particle's own",
          .has = HAS_SOLID, ACTS(NeedsStrength, "law is mohr_coulomb")),
     REAL(Material, "plasticity_eccentricity", plasticity.eccentricity, "", "(0,10]", "0.1",
          "of the smooth potential: how round its end is, of cohesion_max", .has = HAS_SOLID,

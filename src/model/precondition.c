@@ -2,8 +2,8 @@
 #include "solver.h"
 #include "clathra/words.h"
 
-/* What it costs to make one, in GMRES iterations, measured (docs/benchmark.md): multigrid whatever the size; LU, whose
-   work grows faster than that of an iteration, by the square root of the number of unknowns. */
+/* What it costs to make one, in GMRES iterations, measured (docs/studies/benchmark.md): multigrid whatever the size;
+   LU, whose work grows faster than that of an iteration, by the square root of the number of unknowns. */
 #define COST_MULTIGRID 3.0
 #define COST_LU_LEAST 10.0
 #define COST_LU 0.24

@@ -33,5 +33,9 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-const StepperScheme StepperScheme_Euler = {
-    .kind = INTEGRATOR_EULER, .error_order = 2, .stages = 1, .advance = StepperImplicitStep, .step = Step};
+const StepperScheme StepperScheme_Euler = {.kind        = INTEGRATOR_EULER,
+                                           .error_order = 2,
+                                           .looks_back  = true,
+                                           .stages      = 1,
+                                           .advance     = StepperImplicitStep,
+                                           .step        = Step};

@@ -215,7 +215,7 @@ void StepperBoundWords(int bound, char words[48])
 static double Controller(const Stepper *s, double dt, const Attempt *a, int *bound)
 {
   const double q = s->scheme->error_order, err = fmax(a->err, 1e-4), old = fmax(s->state.err_old, 1e-4);
-  const bool   blind     = s->state.fresh && s->scheme == &StepperScheme_Euler; /* no estimate yet */
+  const bool   blind     = s->state.fresh && s->scheme->looks_back; /* no estimate yet */
   const bool   hard      = a->newton > EASY_NEWTON * s->scheme->stages || s->state.hold > 0;
   const bool   cut_short = dt < 0.999 * s->state.dt; /* by an event: err_old says nothing about growth */
   const double gain      = cut_short ? pow(err, -1.0 / q) : pow(err, -0.7 / q) * pow(old, 0.4 / q);

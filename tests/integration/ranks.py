@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""1, 2 and 4 ranks agree to rtol 1e-9, in the histories and in every particle's state (section 8 of the issue).
+"""1, 2 and 4 ranks agree to rtol 1e-9, in histories and in every particle.
+
+1, 2 and 4 ranks agree to rtol 1e-9, in the histories and in every particle's state (section 8 of the issue).
 
 Two scenes: BP2 case 2 up to 240 s on 26 cells, across the start of hydrate formation; and a block of two materials that
 is squeezed by a tenth, in which particles pass from rank to rank.  Fixed steps, for an adaptive controller may turn a

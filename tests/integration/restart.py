@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""A run cut in two by a restart equals the straight run bit for bit (row 15), on 1 and on 2 ranks; on another number of
+"""A run cut in two by a restart equals the straight run bit for bit.
+
+A run cut in two by a restart equals the straight run bit for bit (row 15), on 1 and on 2 ranks; on another number of
 ranks it continues to rtol 1e-9.
 
 On 2 ranks the linear solver is that of options/krylov.opts.  MUMPS, the default there, adds contributions in the order

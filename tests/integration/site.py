@@ -19,11 +19,11 @@ def make(tree, folder):
 site = scratch() / "site"
 code, said = make(ROOT, site)
 check_true("the site is made, and its links to files hold", code == 0 and str(site / "index.html") in said, said[-500:])
-pages = {p.relative_to(ROOT).with_suffix(".html").as_posix() for pattern in ("docs/*.md", "cases/*/README.md") for p in ROOT.glob(pattern)}
+pages = {p.relative_to(ROOT).with_suffix(".html").as_posix() for pattern in ("docs/**/*.md", "cases/*/README.md") for p in ROOT.glob(pattern)}
 pages = {"index.html"} | {p.replace("README", "index") for p in pages}
 found = {entry["location"].split("#")[0] for entry in json.loads((site / "search" / "search_index.json").read_text())["docs"]}
 check_true("... its search knows every page", pages <= found, sorted(pages - found))
-listed = set(re.findall(r'href="\.\./\.\./(docs/\w+\.html)"', (site / "cases" / "heat_slab" / "index.html").read_text()))
+listed = set(re.findall(r'href="\.\./\.\./(docs/[\w/]+\.html)"', (site / "cases" / "heat_slab" / "index.html").read_text()))
 check_true("... and the contents beside any page list every page of docs", not (docs := {p for p in pages if p.startswith("docs/")} - listed), sorted(docs))
 foreign = [(p.name, a) for p in site.rglob("*.html") for a in re.findall(r'<(?:script|link|img)[^>]* (?:src|href)="((?:https?:)?//[^"]*)', p.read_text())]
 check_true("... which ask no other host for anything", not foreign, foreign[:3])

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Slope A on cells of 8 m as it begins to slide, by hybrid, and on 20 m by sdirk2: the same on 1, 2 and 4 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
+"""Slope A as it begins to slide: ranks agree, a restart is exact, bands are found.
+
+Slope A on cells of 8 m as it begins to slide, by hybrid, and on 20 m by sdirk2: the same on 1, 2 and 4 ranks, a restart in the slide bit for bit, nothing lost, which limit set the
 step; pressures that tend to the nodes' lose what no node sees and no mass; and what scripts/slide.py finds: onset, failed part, the bands of strains and the slides of a balance that are
-known; rows of docs/slopes.md are runs of today's cases.
+known; rows of docs/studies/slopes.md are runs of today's cases.
 """
 import json
 import re
@@ -60,7 +62,7 @@ def torn():
     slide = lambda *more: Run.of_case("slope_c", "-quiet", "-grid_cells", "180,8", "-gravity_ramp", "5 s", "-stage_load_end", "5 s", "-stage_slide_end", "40 s", "-output_every", "0 s", *more)
     leaves = lambda run: abs(run.balance["energy_remainder_J"][-1] / run.balance["gravity_work_J"][-1])
     run, half = slide(), slide("-stepper_cfl", "0.4")  # 0.2 leaves 0.9 %
-    check("slope C: work of gravity, J", run.balance["gravity_work_J"][-1], (1e10, 3e10))
+    check("slope C: work of gravity, J", run.balance["gravity_work_J"][-1], (1e10, 3.5e10))
     judge("slopes", "slope C on 20 m until its blocks have torn loose, in half the step: what the balance of energy leaves of the work of gravity", leaves(half), 0.015)
     check("... of what it leaves in the whole step", leaves(half) / leaves(run), 0.85)
     (_, first), *_, (_, last) = run.snapshots()
@@ -129,7 +131,7 @@ def film(run):
 
 
 def rows_of_the_page():
-    """Every row that docs/slopes.json keeps is one that scripts/slopes.py can run, and its options are such that the program takes them."""
+    """Every row that docs/studies/slopes.json keeps is one that scripts/slopes.py can run, and its options are such that the program takes them."""
     kept = json.loads(slopes.KEPT.read_text())
     check_true("rows of the page are rows of the script", set(kept) <= set(slopes.ROWS), set(kept) - set(slopes.ROWS))
     for name, (case, _, options) in slopes.ROWS.items():

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""cases/slope_warming on cells of 25 m, its first 35 years of warming: implicit steps of weeks and more by `auto`, which are those of sdirk2 with the same
+"""cases/slope_warming on a coarse grid, its first 35 years, by `auto`.
+
+cases/slope_warming on cells of 25 m, its first 35 years of warming: implicit steps of weeks and more by `auto`, which are those of sdirk2 with the same
 stabilisations; what the warmth takes of the hydrate; nothing is lost; two ranks; hybrid alone refuses the scene."""
 import sys
 from pathlib import Path

@@ -1,7 +1,8 @@
-"""docs/tradeoff.md and its figures from what tradeoff.py measured; every number is taken from the data."""
+"""docs/studies/tradeoff.md and its figures from what tradeoff.py measured; every number is taken from the data."""
 import json
 from pathlib import Path
 
+import dated
 import numpy as np
 from clathra.units import YEAR
 from clathra.plotting import COLOURS, plt, save, set_style
@@ -352,8 +353,8 @@ def advice(data):
 
 
 def about_years():
-    """Years and seconds in one run: a slide under a warming sea (docs/slopes.json), against hybrid alone."""
-    kept = json.loads((Path(__file__).resolve().parents[2] / "docs" / "slopes.json").read_text())["W_12"]
+    """Years and seconds in one run: a slide under a warming sea (docs/studies/slopes.json), against hybrid alone."""
+    kept = json.loads((Path(__file__).resolve().parents[2] / "docs" / "studies" / "slopes.json").read_text())["W_12"]
     w = kept["warming"]
     steps, alone = float(w["hybrid_alone"][0]), float(w["hybrid_alone"][0]) * STEP_OF_HYBRID
     return [f"Years and seconds in one run, `cases/slope_warming` with the weak ground ({kept['end_s'] / YEAR - 20:.0f} years of warming, a slide of seconds and creep behind it; 1406 particles): {w['processor_s']:.0f} s of processor time by "
@@ -363,8 +364,8 @@ def about_years():
 
 def page(data):
     return [
-        "# What accuracy costs", "",
-        "Written by `tests/studies/tradeoff.py` from its runs; change it, not this page. `docs/tradeoff.json` holds every run.", "",
+        *dated.head("What accuracy costs", "tests/studies/tradeoff.py", dated.STUDIES / "tradeoff.json"),
+        "The data hold every run.", "",
         "Error: the largest difference of any watched curve from the exact or reference one, over the range of that curve. Time: user and system "
         f"time of one process on one core, less {seconds(data['startup'])} of starting it, at least 10 ms. The machine was shared: differences below a fifth mean "
         "nothing. Cells are those of the grid, spare ones included (one in 26). Columns have 2 particles a cell along their axis (BP2 and the block 2 x 2).", "",
@@ -372,7 +373,7 @@ def page(data):
         "Rules that follow: take an explicit kind where the time of interest is a few passages of a wave; an implicit one for everything "
         "that flows, warms or reacts over longer than that. `sdirk2` for all but crude answers; where inertia hardly matters, `inertia: no` gives it its "
         "second order back (`tests/verification/integrators.py`).", "",
-        "## Work and precision", "", "![work and precision](figures/tradeoff_work.png)", "",
+        "## Work and precision", "", "![work and precision](../figures/tradeoff_work.png)", "",
         "Larger marks are finer grids; open marks are extrapolated in time.", "",
         "### A wave in a saturated column", "", "Against the exact wave (`tests/verification/exact_dynamic.py`).", "", *about_waves(data),
         "### Fast consolidation", "", "Against the same exact solution, four seconds of consolidation, 10 m, k = 1e-9 m².", "",
@@ -384,7 +385,7 @@ def page(data):
         "### A dissociating block", "",
         "10 x 10 cells, all fields. Error of the step: against the same kind with a tolerance of 1e-5, or a tenth of the stable step.", "",
         *about_block(data),
-        "## Permeability", "", "![permeability](figures/tradeoff_permeability.png)", "",
+        "## Permeability", "", "![permeability](../figures/tradeoff_permeability.png)", "",
         "Time to a time factor of 1/2 of the same column, settlement within 1 % of its end all the way: the longest fixed step that keeps it. Open marks "
         "are extrapolated.", "",
         *about_permeability(data["permeability"]),
@@ -396,10 +397,10 @@ def page(data):
         *about_years(), "",
         "## What each field and term costs and buys", "", "The dissociating block without one of them. Change: of the curve over its range.", "",
         *about_terms(data["terms"]),
-        "## Basis and particles per cell", "", "![basis](figures/tradeoff_basis.png)", "",
+        "## Basis and particles per cell", "", "![basis](../figures/tradeoff_basis.png)", "",
         "Consolidation under 1 MPa, 5 % of strain, so that particles cross cells. Error: against four times as many cells with cpgimp. Ringing: "
         "root mean square of the difference between a particle's pressure and the mean of its neighbours, at the end. With `linear` a closed face under "
-        "pressure is not in balance (1 MPa here), as [limits](limits.md) says.", "", *about_basis(data["basis"]),
+        "pressure is not in balance (1 MPa here), as [limits](../limits.md) says.", "", *about_basis(data["basis"]),
     ]  # fmt: skip
 
 

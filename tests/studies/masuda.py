@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Study of cases/masuda: writes docs/masuda.md and the table of sensitivity in cases/masuda/README.md.
+"""Study of cases/masuda: writes docs/studies/masuda.md and the table of sensitivity in cases/masuda/README.md.
 
 masuda.py [CLATHRA] [--fresh] [--jobs N]
 
@@ -24,11 +24,12 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
+import dated  # noqa: E402
 from common import environment  # noqa: E402
 from reference import BARS, REFERENCE, at_times, curves, differences, dissociated, gas_at_start  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
 
-FOLDER, PAGE, README = ROOT / "results" / "masuda_study", ROOT / "docs" / "masuda.md", ROOT / "cases" / "masuda" / "README.md"
+FOLDER, PAGE, README = ROOT / "results" / "masuda_study", ROOT / "docs" / "studies" / "masuda.md", ROOT / "cases" / "masuda" / "README.md"
 MAT = "-mat_berea_"
 
 
@@ -291,9 +292,9 @@ def page(done, program):
     refused = [d for n, d in done.items() if d.refused]
     failed = [(n, d.said.count("refused (")) for n, d in done.items() if "refused (" in d.said]
     return "\n".join([
-        "# Masuda's core", "",
-        "Written by `tests/studies/masuda.py` from its own runs of [cases/masuda](../cases/masuda/README.md); change that, not this page.",
-        "The bars are held by [masuda.py](../tests/verification/masuda.py) and listed in [verification.md](verification.md).", "",
+        *dated.head("Masuda's core", "tests/studies/masuda.py", PAGE),
+        "Every number is of a run of [cases/masuda](../../cases/masuda/README.md).",
+        "The bars are held by [masuda.py](../../tests/verification/masuda.py) and listed in [verification.md](verification.md).", "",
         "## Against the reference curves", "",
         "Largest differences at every 15 min to 4 h. *Lumped* is the reference's own model of the radius: a core a tenth as thick and a "
         "bath that gives a tenth of the heat, so that a volume gets the same heat and the radius has no say. *No p_c* has p_0 = 10 Pa.", "",
@@ -328,7 +329,7 @@ def page(done, program):
         + (" (" + "; ".join(f"{n if isinstance(n, str) else ' '.join(map(str, n))}: {k}" for n, k in failed) + ")" if failed else "")
         + "; the others were refused by the error estimate, in the first steps, where the outlet's pressure jumps. "
         "Newton's hard spot is the end of dissociation: k rises a hundredfold while S_h falls from 1e-4 to 0.", "",
-        "The table of sensitivity is in [cases/masuda](../cases/masuda/README.md).", "",
+        "The table of sensitivity is in [cases/masuda](../../cases/masuda/README.md).", "",
     ])  # fmt: skip
 
 
@@ -356,6 +357,7 @@ def main():
     with ThreadPoolExecutor(given.jobs) as pool:
         rest = [n for n in sorted(todo, key=lambda n: "120x20" not in name(n)) if n not in done]
         done.update(zip(rest, pool.map(lambda n: run(program, name(n), todo[n], given.fresh), rest)))
+    dated.measured(PAGE)
     PAGE.write_text(page(done, program))
     put_table(sensitivity(done))
     print(f"{PAGE}, {README}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Collapse loads and factors of safety on ever finer grids: makes docs/plasticity.md.  Usage: plasticity.py CLATHRA [--page]
+"""Collapse loads and factors of safety on ever finer grids: makes docs/studies/plasticity.md.  Usage: plasticity.py CLATHRA [--page]
 
-The measured numbers stay in docs/plasticity.csv; a run whose row is there is not repeated (delete the row to measure again).
+The measured numbers stay in docs/studies/plasticity.csv; a run whose row is there is not repeated (delete the row to measure again).
 --page makes the page from the rows alone.  All of it takes about an hour of one core.
 """
 import csv
@@ -16,10 +16,11 @@ import _footings
 from _footings import STRIPS, collapse, exact, strip
 from _hole import quarter
 from common import ROOT, Run
+import dated  # of scripts/, which common puts on the path
 from clathra.strength import FLOWS, Energies  # python/, which common puts on the path
 
 CASES = ROOT / "tests" / "verification" / "cases"
-RAW, PAGE = ROOT / "docs" / "plasticity.csv", ROOT / "docs" / "plasticity.md"
+RAW, PAGE = ROOT / "docs" / "studies" / "plasticity.csv", ROOT / "docs" / "studies" / "plasticity.md"
 SLOPE_END = 4.0  # s
 CIRCLES = ((0.99, 0.1), (0.99, 1), (0.95, 1), (0.95, 10), (0, 1))  # mean_strain, how many times softer than E/c = 1e7
 
@@ -74,6 +75,7 @@ def write(rows):
         out.writerow(("kind", "case", "value", "growth", "seconds"))
         for (kind, case), (value, growth, seconds) in rows.items():
             out.writerow((kind, case, f"{value:.6g}", f"{growth:.4g}", f"{seconds:.0f}"))
+    dated.measured(RAW)
 
 
 def key(kind, arguments):
@@ -158,11 +160,11 @@ def circle_causes(rows):
 
 def page(rows):
     lines = [
-        "# Collapse loads and factors of safety", "",
-        "Made by `tests/studies/plasticity.py` from the rows of [plasticity.csv](plasticity.csv); do not edit by hand. The tests `tests/verification/footings.py`,",
+        *dated.head("Collapse loads and factors of safety", "tests/studies/plasticity.py", RAW),
+        "The tests `tests/verification/footings.py`,",
         "`slopes_strength.py`, `element_paths.py`, `plastic_hole.py` and `sand_column.py` run the short ones of these on every check.", "",
         "## What is needed for a collapse load", "",
-        "- where the ground dilates, `mean_strain: 0.95` ((160) of [equations.md](equations.md)): one volume change a cell (88) locks as soon as its particles shear, and so dilate, differently.",
+        "- where the ground dilates, `mean_strain: 0.95` ((160) of [equations.md](../equations.md)): one volume change a cell (88) locks as soon as its particles shear, and so dilate, differently.",
         "- implicit: a `stabilisation_ghost_penalty` that is small beside the strength. (22) is elastic and resists every step's flow at the surface; hybrid has none. It grows with E: 1e-3 for the strips, 1e-6 for the",
         "  circle.",
         "- clay whose c_u grows with depth: friction 0 and `cohesion_gradient` below `cohesion_level` (455); the limit of a strip of it is met within 2 % (`tests/verification/clay_strength.py`).",

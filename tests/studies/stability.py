@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Study of stability at the extremes: writes docs/stability.md and its figures.
+"""Study of stability at the extremes: writes docs/studies/stability.md and its figures.
 
 stability.py [CLATHRA] [--fresh] [--only PART ...]
 
@@ -22,6 +22,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
+import dated  # noqa: E402
 import exact  # noqa: E402
 from _extremes import CELL, P, SCENE, attempt, cells, difference, scene, stable_step  # noqa: E402
 from _ladder import ElasticWave, Terzaghi  # noqa: E402
@@ -29,7 +30,8 @@ from common import CASES  # noqa: E402
 from clathra import read_csv, read_snapshots  # noqa: E402
 from soak import read_record, table as soak_table  # noqa: E402
 
-FOLDER, PAGE, FIGURES = ROOT / "results" / "stability_study", ROOT / "docs" / "stability.md", ROOT / "docs" / "figures"
+FOLDER, PAGE, FIGURES = ROOT / "results" / "stability_study", ROOT / "docs" / "studies" / "stability.md", ROOT / "docs" / "figures"
+SOAKED = dated.STUDIES / "soak.jsonl"
 DIFFUSION = ROOT / "tests" / "verification" / "cases" / "diffusion.yaml"
 FALLING = ROOT / "tests" / "verification" / "cases" / "falling.yaml"
 LIMIT = 40.0  # s of the wall
@@ -384,15 +386,14 @@ def summary(study):
 
 def page(study, found):
     note, text = Notes(), []
-    text += ["# Stability at the extremes", "",
-             "Written by `tests/studies/stability.py` from its own runs; change that, not this page. A representative part is a test: "
-             "[stability.py](../tests/verification/stability.py).", "",
+    text += [*dated.head("Stability at the extremes", "tests/studies/stability.py", PAGE, SOAKED),
+             "A representative part is a test: [stability.py](../../tests/verification/stability.py).", "",
              "A run *finishes*, is *refused* at the start (exit code 2), or *stops* (exit code 3, the last good state saved); numbers in brackets "
              "lead to what it said. Every file of every run is searched for NaN.", "", *summary(study)]  # fmt: skip
-    text += ["![Largest error of every run](figures/stability_map.png)", "",
+    text += ["![Largest error of every run](../figures/stability_map.png)", "",
              "*Largest error of every finished run of the map; crosses did not finish.*", ""]  # fmt: skip
     text += ["## Properties", "",
-             "The scene is [stability.yaml](../tests/verification/cases/stability.yaml): a column of 10 cells with hydrate, gas and water, suddenly loaded "
+             "The scene is [stability.yaml](../../tests/verification/cases/stability.yaml): a column of 10 cells with hydrate, gas and water, suddenly loaded "
              "by 0.5 MPa at its end, where the pressure falls by 1 MPa at once (less on soft sediment and at low pressure). One property at a time is driven "
              f"to its extreme. `sdirk2` and `euler` run {ADAPTIVE:g} s, with adaptive steps and with fixed steps of 1 s, against a quasi-static run with a tenth of the "
              f"tolerance; `hybrid` and `explicit` run {WINDOW} times their stable step, at half of it, against `sdirk2`. The error is the largest "
@@ -406,7 +407,7 @@ def page(study, found):
              f"{len(grown)} of {sum(len(r) - 1 for _, r in every)} runs (`explicit` left out: its steps are so short that the first wave is still being fed)" + (": " + "; ".join(f"{n} ({g:.2g})" for n, g in grown) if grown else "") + ".", ""]
     text += ["## Step", "",
              f"{STEPS} fixed steps of a multiple of the hybrid's stable step, against `sdirk2` with an eighth of the step; errors as above.", "",
-             "![Error against step](figures/stability_steps.png)", ""]  # fmt: skip
+             "![Error against step](../figures/stability_steps.png)", ""]  # fmt: skip
     for regime, (limit, rows) in found["steps"].items():
         names = [*INTEGRATORS, "hybrid, forced"]
         text += [f"{regime}: stable step of the hybrid {limit:.3g} s.", "",
@@ -424,7 +425,7 @@ def page(study, found):
              *table(["integrator", "fall off", "largest spurious stress or pressure / ρ g H"],
                     [[i, cell((d, e), note, lambda e: f"{100 * e:.2g} %"), f"{s:.2g}"] for i, d, e, s in found["falling"]])]  # fmt: skip
     text += ["## Consolidation from 1e-9 to 1e-22 m²", "",
-             "[cases/terzaghi](../cases/terzaghi/README.md) on 25 cells to 0.1 H²/c, rms error of the pressure against the closed form over the largest exact value. The "
+             "[cases/terzaghi](../../cases/terzaghi/README.md) on 25 cells to 0.1 H²/c, rms error of the pressure against the closed form over the largest exact value. The "
              "closed form is quasi-static; at 1e-9 m² the run lasts some periods of the column's own waves.", ""]  # fmt: skip
     names = list(found["consolidation"][0][1])
     text += table(["permeability (m²)", *names], [[f"{k:g}", *(cell(row[n], note) for n in names)] for k, row in found["consolidation"]])
@@ -558,7 +559,7 @@ PARTS = {"properties": properties, "fast": fast, "steps": steps, "events": event
 def soak_text():
     """soak.md with the table of all recorded runs of scripts/soak.py."""
     here = Path(__file__)
-    return here.with_name("soak.md").read_text().replace("@table@", soak_table(read_record(here.with_name("soak.jsonl"))))
+    return here.with_name("soak.md").read_text().replace("@table@", soak_table(read_record(SOAKED)))
 
 
 def main():
@@ -572,6 +573,7 @@ def main():
     sys.argv[1:] = [str(program)]
     if given.soak:
         before, rest = PAGE.read_text().split(SOAK + "\n", 1)
+        before = re.sub(r"^- Data: .*", dated.data(PAGE, SOAKED), before, count=1, flags=re.M)
         PAGE.write_text(f"{before}{SOAK}\n\n{soak_text()}\n{rest[rest.index('## '):]}")
         return
     FOLDER.mkdir(parents=True, exist_ok=True)
@@ -581,6 +583,7 @@ def main():
         return
     draw_map(found, FIGURES / "stability_map.png")
     draw_steps(found, FIGURES / "stability_steps.png")
+    dated.measured(PAGE)
     PAGE.write_text(page(study, found))
     print(PAGE)
 

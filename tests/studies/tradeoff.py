@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Study of what accuracy costs: writes docs/tradeoff.md, its figures and docs/tradeoff.json.
+"""Study of what accuracy costs: writes docs/studies/tradeoff.md, its figures and docs/studies/tradeoff.json.
 
 tradeoff.py [CLATHRA] [--only PART ...] [--page]
 
 CLATHRA  the program, default build/clathra
---only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice, change), take the others from docs/tradeoff.json
---page   write the page and the figures from docs/tradeoff.json
+--only   measure these parts again (wave, consolidation, bp2, block, permeability, terms, basis, choice, change), take the others from docs/studies/tradeoff.json
+--page   write the page and the figures from docs/studies/tradeoff.json
 
 Every number of the page is of one of its runs.  It is a study, no test: it takes about ten minutes of processor time.  Processor time is
 user and system time of the process less that of starting it.
@@ -24,12 +24,13 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tests" / "verification"), str(ROOT / "scripts")]
 import _auto as slow_fast  # noqa: E402
 import _integrators as scenes  # noqa: E402
+import dated  # noqa: E402
 import exact  # noqa: E402
 from _integrators import EULER, EXPLICIT, SDIRK2, adaptive, apart, fixed, integrators, steps_of, timed  # noqa: E402
 from common import CASES, changes, read_csv, seconds  # noqa: E402
 from field_sets import select  # noqa: E402
 
-PAGE, DATA, FIGURES = ROOT / "docs" / "tradeoff.md", ROOT / "docs" / "tradeoff.json", ROOT / "docs" / "figures"
+PAGE, DATA, FIGURES = ROOT / "docs" / "studies" / "tradeoff.md", ROOT / "docs" / "studies" / "tradeoff.json", ROOT / "docs" / "figures"
 SHORT = 1.0  # s: runs shorter than this are timed twice
 LEAST = 0.01  # s: what the time of starting the program varies by
 IMPLICIT = (EULER, SDIRK2)
@@ -363,6 +364,7 @@ def measure(names):
         data[name] = PARTS[name]()
         data["startup"] = Clock.startup()
         DATA.write_text(json.dumps(data, indent=0, default=float) + "\n")
+        dated.measured(DATA)
     return data
 
 

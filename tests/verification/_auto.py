@@ -1,5 +1,5 @@
 """A saturated column that is loaded slowly, then suddenly, then unloaded slowly, and its exact solution: the scene of
-verification/auto.py and of what `auto` saves in docs/tradeoff.md.  `slow` stretches all but the sudden load."""
+verification/auto.py and of what `auto` saves in docs/studies/tradeoff.md.  `slow` stretches all but the sudden load."""
 from pathlib import Path
 
 import numpy as np

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""stepper_type: auto.  A saturated column is loaded slowly, then suddenly, then unloaded slowly: consolidation, a wave, and
+"""`stepper_type: auto` on a column that is loaded slowly, then suddenly, then unloaded slowly.
+
+stepper_type: auto.  A saturated column is loaded slowly, then suddenly, then unloaded slowly: consolidation, a wave, and
 consolidation again, each with its exact solution.  Which integrator works when; its answer against the exact one and
 against either integrator alone; what a change leaves as it was; restarts around a change; ranks."""
 import re

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Flow through beds that dip (306)-(309), ten times as permeable along them as across: the linear pressure of a lighter fluid around a block of rigid
+"""Flow through dipping beds, ten times as permeable along them as across, against the exact one.
+
+Flow through beds that dip (306)-(309), ten times as permeable along them as across: the linear pressure of a lighter fluid around a block of rigid
 sand makes a flow that is even, with the tensor of its beds, exactly; layers with level beds lie on each other; a wet block falls without slip; a block
 that is sheared at once is the same in hybrid and in implicit steps, on two ranks, and cut in two by a restart."""
 import sys

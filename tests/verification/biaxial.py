@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""cases/biaxial on a coarse grid to 1 % of axial strain, by sdirk2 and by hybrid: undrained compression of a softening sample under a
+"""cases/biaxial on a coarse grid to 1 % of strain: sdirk2 and hybrid agree.
+
+cases/biaxial on a coarse grid to 1 % of axial strain, by sdirk2 and by hybrid: undrained compression of a softening sample under a
 rough plate.  The stress under the plate and the changes of volume and pressure agree; the sample yields, so that it bears less than
 elastic.  Without kinetics sdirk2 goes on through the bands to 9 %, where a dilating particle leaves slivers at nodes.
 """

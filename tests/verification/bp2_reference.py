@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""BP2, both cases, against the curves of an independent finite-volume code at every 20 s (rows 1 and 2), and the water
+"""BP2, both cases, against the curves of an independent finite-volume code.
+
+BP2, both cases, against the curves of an independent finite-volume code at every 20 s (rows 1 and 2), and the water
 and methane ledgers of these runs (row 7).
 
 The front of hydrate at 1000 s against the same code, in the coordinates of the start: five places 1 cm apart.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""cases/century: the measured error in time falls with the tolerance over four decades; and where it does not, on fine cells."""
+"""cases/century: the measured error in time falls with the tolerance over four decades.
+
+And where it does not, on fine cells."""
 import numpy as np
 
 from _ladder import Century as C

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""The README's own case, on half its cells: no alternating saturations beside the end of the pressure face (365);
+"""The README's own case and heaters in hydrate: saturations do not alternate.
+
+The README's own case, on half its cells: no alternating saturations beside the end of the pressure face (365);
 what stabilisation_saturation (200) must not change; water and methane; two ranks; hybrid refuses it.  A heater of 60 degC in
 hydrate, and hot water that flows into it: none forms ahead of the front, nor does S_h alternate (381)."""
 import re

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Undrained strength that grows with depth (455): a free strip of clay on a smooth base, of height H and half-width b.
+"""A free strip of clay whose strength grows with depth: its factor of safety.
+
+Undrained strength that grows with depth (455): a free strip of clay on a smooth base, of height H and half-width b.
 
     F = 2 (c_0/(gamma H) + k/gamma)              stresses that its slices bear by themselves
     F = 2 (c_0/(gamma (H - b/2)) + k/gamma)      a plane at 45 deg through its foot slides

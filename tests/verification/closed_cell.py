@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Row 13: a closed adiabatic cell goes to equilibrium; hydrate dissociates exponentially at constant p and T; S_h goes
+"""A closed adiabatic cell goes to equilibrium, and hydrate dissociates as it should.
+
+Row 13: a closed adiabatic cell goes to equilibrium; hydrate dissociates exponentially at constant p and T; S_h goes
 from 0.5 to 0 and never below, with any step.
 """
 from pathlib import Path

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Columns of dry sand in the plane, let go on a rough floor, and an elastic block dropped on a smooth one: a heap keeps its volume, comes
+"""Columns of dry sand that collapse in the plane, against experiments; a block that is dropped.
+
+Columns of dry sand in the plane, let go on a rough floor, and an elastic block dropped on a smooth one: a heap keeps its volume, comes
 to rest and runs as far as those of Lube, Huppert, Sparks and Freundt (2005), the high one a fifth farther; what the floor takes of the block's energy does not hang on the step.
 """
 import json

@@ -235,7 +235,7 @@ _records = []
 
 
 def record(row, what, bar, measured, ok):
-    """Notes one line of docs/verification.md: row of the table, what is measured, its bar, the value (text or numbers).
+    """Notes one line of docs/studies/verification.md: row of the table, what is measured, its bar, the value (text or numbers).
 
     Kept in $CLATHRA_RESULTS/<test>.json if that is set, and read by scripts/verification.py.  It prints nothing and is
     no check of its own, but a test that records a failure does not end well.

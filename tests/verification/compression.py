@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Heat of compression and throttling of the fluids (290): a closed cell that is warmed, a closed cell into which water is
+"""Heat of compression and throttling of the fluids, against the same laws integrated on their own.
+
+Heat of compression and throttling of the fluids (290): a closed cell that is warmed, a closed cell into which water is
 pressed, and gas throttled on its way through sediment, against the same laws integrated here on their own.
 """
 import math

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""(395), (446): at the corners of a heater, where the nodes' T is bilinear, its particles stay between what they start from and what
+"""At the corners of a heater temperatures stay between those of body and heater.
+
+(395), (446): at the corners of a heater, where the nodes' T is bilinear, its particles stay between what they start from and what
 the heater has; implicit and hybrid, in equal cells and others; heat is conserved, ranks agree.  In space at the corners of a hot box, and
 where three held sides of a body meet.
 A heater in hydrate; heated too fast for its cells the end of the run says so.

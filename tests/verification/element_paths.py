@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Drained and undrained compression of one element of a softening skeleton, in plane strain and, implicit alone, triaxial about an
+"""One element of a softening skeleton, drained and undrained, against the rate equations.
+
+Drained and undrained compression of one element of a softening skeleton, in plane strain and, implicit alone, triaxial about an
 axis, with both flows: against an integrator of the rate equations written here without any return (strength, flow and pore
 water from the equations, derivatives by differences), at the strain that the element has; and the ratio of the principal stresses
 against that of the current strength at every moment.

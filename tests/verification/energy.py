@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""The mechanical balance (90) in balance.csv, by implicit and explicit integrators: each term where it is known, and what is left."""
+"""The balance of mechanical energy: each term where it is known, and what is left.
+
+It is (90), the columns of balance.csv, by implicit and explicit integrators."""
 from pathlib import Path
 
 import numpy as np

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Enthalpy of a closed, insulated column, added up from masses and temperatures of its particles, while hydrate dissociates in one half and water
+"""The enthalpy of a closed column is conserved while hydrate dissociates and fluids flow.
+
+Enthalpy of a closed, insulated column, added up from masses and temperatures of its particles, while hydrate dissociates in one half and water
 and gas flow from it to the other: with Kirchhoff's law (130) H = sum m c (T - T_ref) - m_h L(T_ref) is a function of the state and stays.  The rows of
 heat in balance.csv, which sum what each step gave, are not asked.
 

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Section 4.1: a scene gives the same with and without a field that is superfluous in it; and what leaving it out saves.
+"""A scene gives the same with and without a field that is superfluous in it.
+
+Section 4.1, and what leaving it out saves.
 
 A field is superfluous where it is identically constant: the temperature of a body that is everywhere as warm, without
 reaction; the skeleton of a body that cannot move.  Fixed steps and tight tolerances leave only round-off.

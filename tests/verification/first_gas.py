@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""What one writes first: hydrate in water, no gas anywhere, and a well or a heater that makes the first of it ((101)-(104), (352), (371)).
+"""Hydrate in water without gas: a well or a heater makes the first of it.
+
+What one writes first: hydrate in water, no gas anywhere, and a well or a heater that makes the first of it ((101)-(104), (352), (371)).
 
 The tutorial's well in three layers with `Sg: 0` in all of them, on softer ground, 30 days; the same with a heater of 60 degC beside a well that keeps its pressure, 10 days.
 Either ends in few steps: with a diffusion (200) of its own for each fluid the heater takes 151, and the well 113 with the k_r of t_n in the drag (197) of its wall.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""A rigid circular footing on elastic ground (cases/footing): stiffness of a smooth disc on a half space, F = 2 E a w/(1 - nu^2)
+"""A rigid circular footing on elastic ground: its stiffness, smooth and rough.
+
+A rigid circular footing on elastic ground (cases/footing): stiffness of a smooth disc on a half space, F = 2 E a w/(1 - nu^2)
 (Boussinesq), and how much stiffer a rough one is, (1 - nu) ln(3 - 4 nu)/(1 - 2 nu) (Spence 1968).
 
 The grid makes the disc wider by a part of a cell (order 1), the ends of the ground make it stiffer by a part of a/H: both are

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Collapse loads of rigid strips (cases/strip.yaml): Prandtl's, and Nc and Nq of associated weightless ground at 20 deg, with
+"""Collapse loads of rigid strips: Prandtl's, and Nc and Nq of associated ground.
+
+Collapse loads of rigid strips (cases/strip.yaml): Prandtl's, and Nc and Nq of associated weightless ground at 20 deg, with
 hybrid and implicit, rough and smooth; Cox's circle on a coarse grid; what the locking of ground that
 dilates does without mean strain.
 
 The plate pushes the node at its edge, and the ground follows over the next cell: a load too large by h/2 of the half-width, of
 first order.  Nc and Nq are within 3 % at h = a/8, Prandtl's strip is at a/16, and here within twice that at a/8; the circle is within
-6 % at R/8, and here within 8/6 of that at R/6.  Those finer grids, of many minutes, are tests/studies/plasticity.py's (docs/plasticity.md).
+6 % at R/8, and here within 8/6 of that at R/6.  Those finer grids, of many minutes, are tests/studies/plasticity.py's (docs/studies/plasticity.md).
 """
 import numpy as np
 

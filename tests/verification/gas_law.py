@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Real gas (120): gas in place of an initial state and a closed, warmed cell, implicit and hybrid, against Peng and
+"""Real gas in place and in a closed, warmed cell, against Peng and Robinson's equation.
+
+Real gas (120): gas in place of an initial state and a closed, warmed cell, implicit and hybrid, against Peng and
 Robinson's equation solved here on its own; what the paper's ideal gas would make of it stands beside it.
 """
 import numpy as np

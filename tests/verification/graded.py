@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""A grid whose cells differ: what must be exact on any lines is, and what gains by fine cells does.
+"""Grids whose cells differ: patch tests, rest, fall, consolidation, a well and a footing.
+
+A grid whose cells differ: what must be exact on any lines is, and what gains by fine cells does.
 
 A uniform stress and a linear temperature, fine at either end of either axis; bodies at rest; a fall through cells of changing width; consolidation with the
 cells at the drain; Thiem's well of 0.1 m in a reservoir of 100 m; a footing on ground of 40 m.

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""stepper_type: auto on a cut whose weight grows over months (cases/growing_weight.yaml): implicit steps of days, hybrid for the seconds of the slide, implicit
+"""`stepper_type: auto` on a cut whose weight grows over months until it slides.
+
+stepper_type: auto on a cut whose weight grows over months (cases/growing_weight.yaml): implicit steps of days, hybrid for the seconds of the slide, implicit
 steps of days again to the end.  sdirk2 alone steps over the slide; ground that holds never leaves sdirk2; a change and restarts around it leave everything as it was."""
 import sys
 from pathlib import Path

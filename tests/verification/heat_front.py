@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""(293), (440): cold water flows into warm sand at a cell Peclet number of 26; temperatures stay within their bounds, heat is
+"""Cold water flows into warm sand: temperatures stay within their bounds and heat is conserved.
+
+(293), (440): cold water flows into warm sand at a cell Peclet number of 26; temperatures stay within their bounds, heat is
 conserved, and where a cell conducts more than it carries nothing changes.  Implicit and hybrid.
 Hydrate that a falling pressure cools, in water that flows: nothing is warmer than what flows in.
 """

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Heat sources (443): a wall heated all over between two cold sides has the parabola of its steady state, with the square of h; what a part of a closed
+"""Heat sources: a wall that is heated all over, and what parts of bodies are given.
+
+Heat sources (443): a wall heated all over between two cold sides has the parabola of its steady state, with the square of h; what a part of a closed
 body is given, in the plane, about an axis and in space, is q V t to round-off and found again in its particles; it stays with the particles of a body that
 is sheared and turned, in implicit steps and hybrid, on two ranks; a part without a particle is refused."""
 import re

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Failure of an infinite slope whose base loses its hydrate (cases/infinite_slope.yaml), by hybrid and by sdirk2 on three meshes.
+"""Failure of an infinite slope whose base loses its hydrate, against limit equilibrium.
+
+Failure of an infinite slope whose base loses its hydrate (cases/infinite_slope.yaml), by hybrid and by sdirk2 on three meshes.
 
 Limit equilibrium of the plane in the middle of the weak layer, z below the ground (Davis 1968: strength of ground without dilation on
 the plane it slides on), with the pore pressure p and the cohesion c(S_h) (61) of the layer at that time, and Newmark's (1965) block:

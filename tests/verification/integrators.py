@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""The two kinds of integrator check each other: one scene by each of them tends to one answer as dt -> 0 and h -> 0.
+"""Implicit and explicit integrators tend to one answer as dt and h go to 0.
+
+The two kinds of integrator check each other: one scene by each of them tends to one answer as dt -> 0 and h -> 0.
 
 (a) a wave in a saturated column, with water from gassy to incompressible; (b) fast consolidation: both exact
 (exact_dynamic.py); (c) a closed reacting column; (d) BP2 a thousand times faster, cases 1 and 2.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""cases/buckley_leverett: a front of saturation, with saturations carried with the flow (200) and without; error over h and capillary pressure."""
+"""cases/buckley_leverett: a front of saturation against the exact one.
+
+cases/buckley_leverett: a front of saturation, with saturations carried with the flow (200) and without; error over h and capillary pressure."""
 import numpy as np
 
 from _ladder import CASES, BuckleyLeverett as B

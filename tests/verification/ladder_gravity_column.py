@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""cases/gravity_column: a soft column under its own weight, against the closed form at large strain; orders in h."""
+"""cases/gravity_column: a soft column under its own weight, against the closed form at large strain.
+
+And orders in h."""
 import numpy as np
 
 from _ladder import CASES, GravityColumn as G

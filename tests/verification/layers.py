@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Flow along and across layers of sand and clay whose permeabilities differ 50,000-fold (350), and of one sand that hydrate has choked in two of
+"""Flow along and across layers whose permeabilities differ 50,000-fold, against the exact one.
+
+Flow along and across layers of sand and clay whose permeabilities differ 50,000-fold (350), and of one sand that hydrate has choked in two of
 them: exact along them wherever grid lines are, across them on grid lines and to the first order where borders cut cells, in implicit steps and in hybrid's; a well in a layer against Thiem; the
 paper's bare form says what it lacks."""
 from pathlib import Path

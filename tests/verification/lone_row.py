@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""A closed bar of gassy sand, one row of particles in cells twice as high, is pulled to one and a half times its length: gas keeps p V of its particle, and with the tie (417) of
+"""A closed bar of gassy sand that is stretched: gas keeps p V of its particle.
+
+A closed bar of gassy sand, one row of particles in cells twice as high, is pulled to one and a half times its length: gas keeps p V of its particle, and with the tie (417) of
 what particles do not see of pressures nothing builds up across the row, by sdirk2 as by hybrid, which needs none.
 
 Without it the light bar has no first step, and the one with gravity and Poisson's ratio takes twice as many Newton iterations and gets

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Row 11: Mandel's problem in plane strain, the plate moved as in the exact solution: p at the centre, with its overshoot.
+"""Mandel's problem in plane strain: the pressure at the centre, with its overshoot.
+
+Row 11: Mandel's problem in plane strain, the plate moved as in the exact solution: p at the centre, with its overshoot.
 
 The plate's velocity is a table whose points are the ends of the steps, since steps end on the kinks of a schedule; sdirk2
 integrates a velocity that is linear in a step exactly, so the table's values make the plate follow the exact motion: the

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""Section 4.4: Masuda's core against the reference curves at every 15 min to 4 h, what is left at 6 h, all of the methane.
+"""Masuda's core against the reference curves at every 15 min to 4 h.
+
+Section 4.4: Masuda's core against the reference curves at every 15 min to 4 h, what is left at 6 h, all of the methane.
 
 core    cases/masuda with 30 x 4 cells (axis x radius): the radius is resolved, the capillary pressure is that of the paper
 lumped  the reference's own model: a core a tenth as thick whose bath gives a tenth of the heat, so that the same heat comes

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Blocks that meet (cases/meeting.yaml): what has torn loose and comes down on what lies there touches through the grid, without a law of contact.
+"""Blocks that meet touch through the grid, without a law of contact, and part again.
+
+Blocks that meet (cases/meeting.yaml): what has torn loose and comes down on what lies there touches through the grid, without a law of contact.
 
 Two bars of one length, the lower one on a rigid floor: waves of impact run through both and are back after 2 L/c; after 4 L/c the upper bar
 leaves with the speed it came with, and the lower one is at rest without stress.  So all of gravity's work is kinetic energy again, they come

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Capillary pressure that grows with hydrate (320)-(322): sand with and without hydrate at rest at one p_c, drained to another, against the
+"""Capillary pressure that grows with hydrate, against the law and against exact equilibrium.
+
+Capillary pressure that grows with hydrate (320)-(322): sand with and without hydrate at rest at one p_c, drained to another, against the
 law, implicit and hybrid, on two ranks and across a restart; hydrate that dissociates in a closed cell and forms in one, against the exact
 equilibrium; without hydrate nothing changes.
 """

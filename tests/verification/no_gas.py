@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Sediment without gas (equations (101)-(109), (352)): gas appears as hydrate dissociates and is gone when hydrate has formed of it,
+"""Sediment without gas: gas appears, vanishes and is let in, against exact equilibrium.
+
+Sediment without gas (equations (101)-(109), (352)): gas appears as hydrate dissociates and is gone when hydrate has formed of it,
 against the exact equilibrium of a closed cell, implicit and hybrid, on two ranks and across a restart; gas that is let into
 sediment full of water, against finite volumes.
 """

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Water, salt, ice and the heat of reaction: curves of equilibrium, what salinity shifts, viscosities that follow T and rho,
+"""Water, salt, ice and the heat of reaction against the laws.
+
+Water, salt, ice and the heat of reaction: curves of equilibrium, what salinity shifts, viscosities that follow T and rho,
 ice that is said, and Kirchhoff's law against the enthalpy of a closed cell; implicit and hybrid.
 """
 import math

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""A well in the plane (366)-(370): its steady flow in a square whose sides hold their pressure, against Thiem's with the exact
+"""A well in the plane against Thiem and Theis, anywhere in its cell.
+
+A well in the plane (366)-(370): its steady flow in a square whose sides hold their pressure, against Thiem's with the exact
 radius of such a square, at any place of its cell and in cells of 2 to 100 of its radii; beds; a rate against Theis; water and
 gas; a body that falls through the grid, or is squeezed, also with basis: total; both kinds of integrator, two ranks, restart, balances."""
 from pathlib import Path

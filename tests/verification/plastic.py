@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Mohr-Coulomb with softening in a whole scene: uniaxial strain from a state on the yield surface, against the rate
+"""Mohr-Coulomb with softening in a whole scene, against the rate equations; orders of the integrators.
+
+Mohr-Coulomb with softening in a whole scene: uniaxial strain from a state on the yield surface, against the rate
 equations integrated here without any return ((PA.7), derivatives by differences), for every integrator; and the
 order of euler and sdirk2 on it.
 """

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Salencon's hole (1969) in Mohr-Coulomb ground, classical flow with and without dilation: stresses, radius of the
+"""Salencon's hole in Mohr-Coulomb ground, with and without dilation, on three grids.
+
+Salencon's hole (1969) in Mohr-Coulomb ground, classical flow with and without dilation: stresses, radius of the
 plastic zone, displacement of the wall on three grids; implicit, about an axis, where the hoop stress is a principal
 stress of its own.  The exact ground is infinite, this one ends at 41 radii.  Then a quarter of it in plane strain on a
 grid of squares, implicit and in hybrid, with dilation: without it bands form in the plane, and the solution is not the only one.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Rigid plates that move with the body's side: confined compression to half the height against its closed form, a prescribed
+"""Rigid plates that move with the body: confined compression against its closed form, forces, lift-off.
+
+Rigid plates that move with the body's side: confined compression to half the height against its closed form, a prescribed
 force, rough plates, lift-off, the fluid around the body, ranks, restarts, and how a plate ends.
 
 Stress follows the logarithmic strain, so in confined compression the stress is -M ln(1 - x) exactly, with the pressure of the

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Collapse of a column of dry sand of aspect ratio 2, with hybrid and implicit: the runout of experiments in the plane is 2.4 to
+"""Collapse of a column of dry sand, by hybrid and implicit: the runout of experiments.
+
+Collapse of a column of dry sand of aspect ratio 2, with hybrid and implicit: the runout of experiments in the plane is 2.4 to
 3.6 initial widths for sands of about 30 deg; with a wrong friction angle it is not.  No cohesion: the free surface is at the apex of the yield surface all the time.
 """
 import re

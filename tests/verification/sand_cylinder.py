@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Collapse of a cylinder of sand in space (cases/collapse_3d) by hybrid: the runout of experiments with cylinders of sand, salt, sugar and
+"""Collapse of a cylinder of sand in space: the runout of experiments.
+
+Collapse of a cylinder of sand in space (cases/collapse_3d) by hybrid: the runout of experiments with cylinders of sand, salt, sugar and
 rice, and the heap that sdirk2 makes of it in the plane, about its axis.
 """
 import json

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Bodies of any shape under the sea: at rest where they weigh nothing, indifferent to the depth of the sea and to an all-round pressure,
+"""Bodies of any shape under the sea, against closed forms of rest and load.
+
+Bodies of any shape under the sea: at rest where they weigh nothing, indifferent to the depth of the sea and to an all-round pressure,
 loaded by a falling sea level and by the slope of the sea floor as closed forms say."""
 from pathlib import Path
 

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Face temperatures that grow with depth (425), (199): a linear temperature behind a surface of stairs is met exactly, wherever
+"""Face temperatures that grow with depth are met exactly, wherever the body lies.
+
+Face temperatures that grow with depth (425), (199): a linear temperature behind a surface of stairs is met exactly, wherever
 the body lies in its cells and whichever way it is turned, from rest and from another start; in a block that shears and turns
 ten degrees more everywhere are ten degrees more at the end; a block that falls sees what one at rest sees under a sea that
 warms as fast.  sdirk2, euler and hybrid.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""What a layer of a sealed body keeps of its own pressure (413): a stiff layer in soft ground, loaded without drainage, against Skempton's share of the load in each; cells of a layer's width, a half and a quarter.
+"""A stiff layer in a sealed body keeps its own pressure, against Skempton's share.
+
+What a layer of a sealed body keeps of its own pressure (413): a stiff layer in soft ground, loaded without drainage, against Skempton's share of the load in each; cells of a layer's width, a half and a quarter.
 
 In the continuum no water moves and p = load K/(K + M) with K = K_w/phi in each layer.  Nodes share p, so a layer as wide as a cell cannot have all of it: with lumped storage (`hybrid`) half is lost to the cells beside it, with
 passes as much as with the consistent storage, which implicit steps have as well, but with (23), and lose more: both by a solution of their own.  Then a slope that is heated at its base, with gas, hydrate and heat: passes leave the balances closed and keep more methane where it was; two ranks.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Exchange within cells (353), (354): rows of particles at two pressures by turns even out at the rate of the flow between them; sand that is drained under clay,
+"""Exchange within cells: its rate, and sand drained under clay that settles into its cells.
+
+Exchange within cells (353), (354): rows of particles at two pressures by turns even out at the rate of the flow between them; sand that is drained under clay,
 whose border settles into the cells, has no pressure below that of its drain, with the axes swapped and under a higher pressure, on two ranks and cut in two by a restart."""
 import sys
 from pathlib import Path

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""cases/slope_3d one cell thick and heated everywhere is cases/slope_a: gravity grows, hydrate goes and the front begins to slide, by hybrid
+"""cases/slope_3d one cell thick and heated everywhere is cases/slope_a.
+
+cases/slope_3d one cell thick and heated everywhere is cases/slope_a: gravity grows, hydrate goes and the front begins to slide, by hybrid
 with the same steps.  In the middle of a slope that is heated there alone it is held by what is beside it."""
 import numpy as np
 

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Slopes at their limit: a vertical cut by raising gravity (gamma H/c = 6.69 for phi = psi = 30 deg), and the factor of safety of a
+"""Slopes at their limit: a vertical cut by gravity, a factor of safety by strength reduction.
+
+Slopes at their limit: a vertical cut by raising gravity (gamma H/c = 6.69 for phi = psi = 30 deg), and the factor of safety of a
 slope of 2 to 1 by strength reduction (Griffiths and Lane 1999: 1.4, Bishop 1.38), with `clathra strength`; hybrid against implicit,
 grids, a stage that reduces; slopes of clay.
 

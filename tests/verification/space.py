@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Space: scenes of the plane, drawn out along any axis, give the plane's answers with clathra3d.
+"""Scenes of the plane, drawn out along any axis, give the plane's answers with clathra3d.
 
 A scene of the plane is one layer of cells thick, held by rollers on both sides of it: exact in the grid's functions, so that
 what differs is round-off, amplified by Newton's tolerances.  The axes are exchanged in a ring, so that each of the three is

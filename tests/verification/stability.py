@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""A representative part of docs/stability.md: properties at their extremes, slivers, sudden loads, steps far above the explicit limit.
+"""Properties at their extremes, slivers, sudden loads, steps far above the explicit limit.
+
+A representative part of docs/studies/stability.md.
 
 Every run must end well or say why it did not; no file of a run may hold a NaN; kinetic energy must not grow when nothing
 drives it; errors are held against finer runs and exact solutions.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Row 12: no checkerboard in the pressure under a strip load on clay, with k = 1e-16 m^2 (undrained) and 1e-10 m^2,
+"""No checkerboard in the pressure under a strip load on clay.
+
+Row 12: no checkerboard in the pressure under a strip load on clay, with k = 1e-16 m^2 (undrained) and 1e-10 m^2,
 and a checkerboard that is there goes.
 
 The high-pass part of the particles' pressure is its deviation from the field smoothed with the weights (1 2 1)/4 along both

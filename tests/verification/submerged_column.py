@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Collapse of a column of ground without friction (cases/sand_column.yaml with cohesion alone) under water that is its pressure only,
+"""Collapse of a column under water against the same in air with its buoyant weight.
+
+Collapse of a column of ground without friction (cases/sand_column.yaml with cohesion alone) under water that is its pressure only,
 (42), against the same column in air with the buoyant weight, g (1 - rho_a/rho): both have the same forces and the same inertia, since the
 water has neither drag nor added mass, so they move alike but for the elastic compression by the water's pressure (less where the ground
 is stiffer).  With friction they would differ: this ground has no pore water, so its grains bear the sea's pressure.

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Gravity that starts at once in a closed saturated column: a wave, not a false strain of the pressure projection (275).
+"""Gravity that starts at once in a closed saturated column makes the exact wave.
+
+Gravity that starts at once in a closed saturated column: a wave, not a false strain of the pressure projection (275).
 
 The water cannot leave, so the column is a bar of the modulus M + K_w/n, fixed at its base.  Its end falls freely until
 the wave from the base arrives, u = -g t^2/2, and comes back from twice that.  The skeleton is soft: 1/(2G) alone in (23)

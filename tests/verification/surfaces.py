@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Loads and pressures on a surface that shears: an all-round pressure must not change how a body moves.
+"""An all-round pressure does not change how a body moves whose surface shears.
 
 A block of E = 10 MPa is held at its base and sheared at its top by 0.1 MPa.  With `ambient_pressure` the motion under 10 MPa is that
 without pressure, to Newton's tolerance; with tractions on its faces, whose places are known as well as the domains of particles fill the

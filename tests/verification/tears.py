@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""One element that is torn open and pushed together again: the mean stress (427) is that of the volume, on the way
+"""One element that is torn open and pushed together again.
+
+One element that is torn open and pushed together again: the mean stress (427) is that of the volume, on the way
 out K eps_v up to the apex, on the way back no stress until all that opened is closed.
 """
 from pathlib import Path

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Thermal strain and thermal pressurisation against closed forms: a body that is warmed free, between walls, and full of
+"""Thermal strain and thermal pressurisation against closed forms.
+
+A body that is warmed free, between walls, and full of
 water that cannot leave (that one free under its load: implicit alone).
 """
 import numpy as np

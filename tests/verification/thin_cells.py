@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Conduction in cells longer than wide (444): beside a heater that ends within a side T stays above that of the start, in the plane and about an axis, whichever
+"""Conduction in cells longer than wide: nothing cools beside a heater.
+
+Conduction in cells longer than wide (444): beside a heater that ends within a side T stays above that of the start, in the plane and about an axis, whichever
 axis is the long one, with a body that cuts cells, on two ranks; and how far that is from fine cells; a linear T is met exactly; the product of the tangents is
 the assembled matrix."""
 from pathlib import Path

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Gas at two pressures, one a twentieth of the other, side by side in a cell of a bar that is pulled to one and a half times its length: pressures fall with what a
+"""Gas at two pressures in one cell of a stretched bar: each half keeps its own.
+
+Gas at two pressures, one a twentieth of the other, side by side in a cell of a bar that is pulled to one and a half times its length: pressures fall with what a
 particle has, by hybrid (151) and by sdirk2 (416), none reaches zero, and each half keeps its gas.
 
 By the particles' shared increments sdirk2 goes no farther than 0.0283 s of 0.1: the thin gas of the border's cell has lost what its nodes lose.  Its storage is consistent,

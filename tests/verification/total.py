@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Total Lagrangian (445), `basis: total`: a block squeezed by 30 % stays uniform to round-off, in the plane, in a ring and in space; a soft column converges to its exact
+"""Total Lagrangian basis: uniform compression to round-off, a soft column, layers that settle.
+
+Total Lagrangian (445), `basis: total`: a block squeezed by 30 % stays uniform to round-off, in the plane, in a ring and in space; a soft column converges to its exact
 settlement with second order; layers that settle off the grid's lines drain as those that do not; balance of water, two and four ranks, restart; what it does not
 know it refuses.  (Turns under pressure, a linear T under shear, tangents: tests/unit/test_turning.c, test_model.c.)"""
 from pathlib import Path

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Values that change with time as waves (267) and as a column of a file: a periodic temperature runs into a wall and fades as
+"""Values that change with time as waves and as a column of a file.
+
+Values that change with time as waves (267) and as a column of a file: a periodic temperature runs into a wall and fades as
 exp(-x/d), d = sqrt(kappa T/(pi C)).  Two ranks, restart bit for bit, and the resolved case, which needs no file."""
 import math
 from pathlib import Path

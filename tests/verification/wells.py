@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""A pressure and a temperature on the wall of a well, in cells from half its radius to twenty times that: Thiem's steady flow
+"""A well about an axis, in cells up to twenty times its radius, against Thiem.
+
+A pressure and a temperature on the wall of a well, in cells from half its radius to twenty times that: Thiem's steady flow
 and its heat, with the grid beginning at the wall and at the axis, where the wall cuts a cell; two ranks; both schemes.
 A well between clays without gas, past the time at which the hydrate beside it is used up."""
 from pathlib import Path

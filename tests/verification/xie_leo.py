@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Row 5: large-strain consolidation against the exact solution of Xie and Leo (2004); 10 MPa on a column of M = 100 MPa."""
+"""Large-strain consolidation against the exact solution of Xie and Leo (2004).
+
+Row 5: 10 MPa on a column of M = 100 MPa."""
 from pathlib import Path
 
 import numpy as np

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Fields that alternate from cell to cell are judged by a number: zigzag, the smallest of three successive differences of
+"""The shipped cases' final fields do not alternate from cell to cell.
+
+Fields that alternate from cell to cell are judged by a number: zigzag, the smallest of three successive differences of
 alternating sign between the means of neighbouring cells in a row, the largest in the body, over the field's range.  It is 0 in
 smooth fields and at fronts, and the amplitude where cells alternate.  The shipped cases' final fields, of the pictures in docs,
 on shorter runs or larger cells where they are long, the README's own case and the tutorial's; stresses beside a heater, whose particles alternate and whose pictures do not.
