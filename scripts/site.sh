@@ -26,7 +26,7 @@ nav:
   - Guide: [docs/building.md, docs/tutorial.md, docs/running.md, docs/cases_reference.md, docs/options.md, docs/cases.md, docs/giving_up.md, docs/limits.md, docs/faults.md]
   - Theory: [docs/equations.md, docs/laws.md]
   - Code: [docs/architecture.md, docs/extending.md, CONTRIBUTING.md, CHANGELOG.md]
-  - Evidence: [docs/verification.md, docs/forecast.md]
+  - Evidence: [docs/verification.md]
   - Studies: [docs/studies/README.md, docs/studies/slopes.md, docs/studies/biaxial.md, docs/studies/masuda.md, docs/studies/plasticity.md, docs/studies/tradeoff.md, docs/studies/stability.md, docs/studies/benchmark.md, docs/studies/scale.md, docs/studies/forecast.md, docs/studies/mutation.md, docs/studies/verification.md]
 EOT
 quietly "$work/log" mkdocs build --strict -f "$work/mkdocs.yml" || die "a page is wrong"
