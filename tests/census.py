@@ -52,7 +52,7 @@ CEILINGS = {
     "... that choose numerics": 18,
     "lines of C in src and include": 44531,
     f"functions with {MANY} parameters or more": 44,
-    "comments that are a number alone": 48,
+    "comments that are a number alone": 0,
     "files that print warnings": 13,
     "words of docs and README": 53400,
     "words of the equations": 18310,

@@ -38,7 +38,7 @@ INLINE void SoftenedStrengthOf(const Plasticity *law, const PeakStrength *p, dou
   s->psi_S = p->psi_S * left;
 }
 
-/* (63) */
+/* Yield function of Mohr and Coulomb (63). */
 INLINE double YieldOf(double si, double co, double c, const double y[3], double dy[3], double *dphi)
 {
   const double half = 0.5 * (y[0] - y[2]), mean = 0.5 * (y[0] + y[2]);

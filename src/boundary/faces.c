@@ -316,7 +316,7 @@ static PetscErrorCode InsideFaces(const Scene *c, const Grid *g, const Particles
       continue;
     MakeInsideFace(c, g, P, p, k, share, &(*face)[at]);
     if (b->type == BC_WELL)
-      (*face)[at].draws = b->index * sqrt(WellRatio(&well, &mat->permeability)) * share * WellLength(&well); /* (367) */
+      (*face)[at].draws = b->index * sqrt(WellRatio(&well, &mat->permeability)) * share * WellLength(&well);
     at++;
   }
   *n = at;

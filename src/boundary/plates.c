@@ -28,7 +28,7 @@ double PlateStiffness(const Bc *b, const Face *f, const PointProperties *q, doub
   return b->stiffness * M / h * f->a0;
 }
 
-/* (72) */
+/* Contact of a face with a rigid plate (72). */
 void PlateEvaluate(const Bc *b, const Face *f, double position, const double in[IN_COUNT], FaceOutput *o)
 {
   const int    d = SideAxis(f->side);

@@ -87,7 +87,7 @@ double WellShare(const Well *w, const double x0[CL_DIM], const double l[CL_DIM])
     const int    axis = w->across[d];
     const double lo = LinesPlace(&w->line[d], x0[axis] - l[axis]), hi = LinesPlace(&w->line[d], x0[axis] + l[axis]);
 
-    share *= (hi - lo) * Tent(0.5 * (lo + hi) - w->place[d]) / w->sum[d]; /* (366) */
+    share *= (hi - lo) * Tent(0.5 * (lo + hi) - w->place[d]) / w->sum[d]; /* omega (366) */
   }
   return share;
 }
@@ -445,7 +445,7 @@ static Rate Mass(const FaceState *x, int phase, const Rate *head, const Rate *q)
   const bool   enters = head->v < 0.0;
   const double H      = enters || phase == PHASE_W ? 0.0 : x->mat->gas.trace;
   const int    sets   = GasFlowsByWater(H, x->in[IN_P], x->in[IN_P + PHASE_G]) ? PHASE_W : phase;
-  const double part   = sets == phase ? 1.0 : CL_GAS_FLOWS; /* (323) */
+  const double part   = sets == phase ? 1.0 : CL_GAS_FLOWS; /* of a thin gas (323) */
   double       dp, dT;
   const double rho =
       FluidDensity(x->mat, phase, part * x->in[IN_P + sets] - (enters ? head->v : 0.0), x->in[IN_T], &dp, &dT);

@@ -71,12 +71,12 @@ PetscErrorCode CaseDerive(Reader *r, Case *c)
     Material *m     = &c->scene.material[i];
     Liquid   *l[]   = {&m->solid, &m->hydrate};
     m->kinetics.M_g = m->gas.M;
-    if (isinf(m->retention.p_trap)) /* (103) */
+    if (isinf(m->retention.p_trap)) /* not given (103) */
       m->retention.p_trap = starts ? fmin(m->retention.p0, TRAPPED) : m->retention.p0;
     if (isinf(m->gas.henry)) /* compression_heat takes all methane for gas */
       m->gas.henry = without && !c->scene.compression_heat ? GAS_SOLUBILITY : 0.0;
     m->gas.carried = c->scene.fields.has & HAS_GAS ? m->gas.M * m->gas.henry : 0.0;
-    m->gas.trace   = m->gas.carried > 0.0 ? m->gas.carried : without ? GasTrace(&m->gas) : 0.0; /* (102) */
+    m->gas.trace   = m->gas.carried > 0.0 ? m->gas.carried : without ? GasTrace(&m->gas) : 0.0; /* H (102) */
     DeriveFluids(m);
     m->plasticity.factor = c->scene.strength_factor;
     m->plasticity.cell   = CellSize(&c->scene);

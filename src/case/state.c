@@ -25,7 +25,7 @@ static void WriteMaterial(FILE *f, const Case *c, const Region *g)
       WriteLine(f, c, prefix, k, (const char *)m);
   }
   if (c->scene.fields.has & HAS_GAS)
-    fprintf(f, "%swithout_gas: %s\n", prefix, m->gas.trace > 0.0 ? "yes" : "no"); /* (102) */
+    fprintf(f, "%swithout_gas: %s\n", prefix, m->gas.trace > 0.0 ? "yes" : "no"); /* trace (102) */
   if (c->scene.fields.solid)
     fprintf(f, "%selasticity_stiffness_change: %s\n", prefix,
             ElasticityHasBonds(&m->elasticity) ? "bonds" : "without bonds");

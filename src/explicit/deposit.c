@@ -265,7 +265,7 @@ INLINE void Momenta(const Explicit *e, const Set s, Run r, const Weights *w, Giv
   }
 }
 
-/* (306) */
+/* Permeability of bedding planes (306). */
 INLINE void BedsValues(const Explicit *e, const Set s, Run r, Given *v)
 {
   for (int q = 0; s.layers && q < r.n; q++) {

@@ -109,7 +109,7 @@ static ClStatus SpectrumOf(const Explicit *e, PetscInt p, double conductance, Sp
     const double drag = q.resist[i] / q.kr[i];
 
     total += share * q.rho[i];
-    w->fluid[i] = (1 + e->o.passes) * k2 * share * C[i][i] / (q.rho[i] * e->o.mass_scaling); /* (413) */
+    w->fluid[i] = (1 + e->o.passes) * k2 * share * C[i][i] / (q.rho[i] * e->o.mass_scaling); /* passes (413) */
     w->drag[i]  = Openness(s, mat, &q) * drag * share / (q.rho[i] * e->o.mass_scaling);
     w->both[i]  = drag * share * (1.0 / q.rho[i] + share / rho) / e->o.mass_scaling;
     for (int j = 0; j < s.fluids; j++) {

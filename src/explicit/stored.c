@@ -12,7 +12,7 @@ INLINE void StoredMasses(const Explicit *e, const Set s, Run r, const Gathered *
       for (int q = 0; q < r.n; q++)
         o->value[q][k] += slope[q] * g->value[q][i];
     }
-    for (int q = 0; q < r.n && s.heat && e->m->c->compression_heat; q++) /* (290) */
+    for (int q = 0; q < r.n && s.heat && e->m->c->compression_heat; q++) /* compression (290) */
       o->value[q][s.fluids] -= e->t[T_WARM + k][r.p + q] * g->value[q][k];
   }
 }

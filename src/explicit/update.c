@@ -21,7 +21,7 @@ INLINE void OwnPressures(const Explicit *e, const Set s, Run r, Gathered *g)
   }
 }
 
-/* (151) */
+/* Pressures of particles: p_g changes in proportion (151). */
 INLINE void Pressures(const Explicit *e, Run r, Gathered *g)
 {
   const double *restrict p = e->m->P.f[P_PG] + r.p;

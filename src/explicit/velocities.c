@@ -88,7 +88,7 @@ INLINE void ReadMasses(const Explicit *e, const Set s, const double *a, double d
     b->per_m[k]  = Inverse(f[FL_M]);
     b->kr[k]     = s.fluids == 2 ? PetscSqr(b->flow * f[FL_ROOT] * per_V) : 1.0;
     b->w[k]      = Share(s, a, per_V, k);
-    b->A[k]      = scale * b->kr[k] * (s.layers ? PetscSqr(b->flow) * f[FL_Inertia(s)] : f[FL_MI]); /* (310) */
+    b->A[k]      = scale * b->kr[k] * (s.layers ? PetscSqr(b->flow) * f[FL_Inertia(s)] : f[FL_MI]); /* inertia (310) */
     b->B[k]      = b->flow * f[FL_DRAG] * b->w[k];
     b->per_AB[k] = 1.0 / (b->A[k] + DragAtEnd(e, b, k));
     b->lhs += scale * b->m[k] * DragAtEnd(e, b, k) * b->per_AB[k];

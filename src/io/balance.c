@@ -54,7 +54,7 @@ static void WriteEnergies(const Model *m, const StepperState *s, FILE *f)
     fprintf(f, ",%.17g", from[column[k].source][column[k].place]);
 }
 
-/* (364) */
+/* Balance of enthalpy (364). */
 static void WriteEnthalpy(const StepperState *s, double now, FILE *f)
 {
   const double given = s->heat_in + s->squeezed + s->beyond + s->work[WORK_HEAT];

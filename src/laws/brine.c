@@ -24,7 +24,7 @@ static double Dilution(double salinity)
   return log(water / (salt + water));
 }
 
-/* (125) */
+/* Shift of equilibrium by salt (125). */
 double BrineEquilibriumShift(double salinity)
 {
   return MEASURED_SHIFT * Dilution(salinity) / Dilution(MEASURED_SALINITY);

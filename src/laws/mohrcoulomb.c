@@ -24,7 +24,7 @@ static void Reduce(double factor, Strength *s)
   s->psi_S *= psi;
 }
 
-/* (61), (62), (87) */
+/* Strength by hydrate (61) and plastic strain (62), over the strength factor (87). */
 void StrengthEvaluate(const Plasticity *law, double Sh, double eps, Strength *s)
 {
   double       dh, ds;

@@ -41,7 +41,7 @@ void MixtureAverageBatch(int n, const double *restrict phi, const double *restri
     mean[q] = Average(phi[q], Sh[q], sw[q], x, &d[0], &d[1], &d[2]);
 }
 
-/* (293) */
+/* Conductivity that carries heat with the flow (293). */
 bool HeatUpwind(double kappa, const double a[CL_DIM], const double h[CL_DIM], double K[CL_SYMMETRIC])
 {
   double half = 0.5 * h[0] * fabs(a[0]);

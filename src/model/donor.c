@@ -34,7 +34,7 @@ static bool Direction(const Model *m, PetscInt p, const Reach *r, double e[CL_DI
 
 #define NEAREST 1e-3 /* of a cell: mean distance of the nodes upstream below which there are none */
 
-/* (332) */
+/* Weights that favour nodes upstream (332). */
 static void DonorOf(const Model *m, PetscInt p, const Reach *r, Donor *donor)
 {
   double e[CL_DIM], least = INFINITY, most = 0.0, distance = 0.0;

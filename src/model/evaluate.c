@@ -243,7 +243,7 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   if (status != CL_OK)
     ModelNoteFailure(m, status, why, p);
   else if (m->P.f[P_HEAT] && m->c->fields.heat)
-    o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* (69) */
+    o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* heat of plastic flow, explicit (69) */
   if (tangent && less != 0.0)
     WithholdSlopes(less, o);
   return status;
@@ -281,7 +281,7 @@ ClStatus ModelParticleProperties(const Model *m, PetscInt p, PointProperties *q,
                                  ParticleT(m->c, &m->P, p), q, why);
 }
 
-/* (276) */
+/* Initial pressures with the weight of the water between particle and face (276). */
 void ModelInitialAtFace(const Model *m, const Face *face, double p0[PHASE_COUNT])
 {
   const PetscInt p      = face->particle;

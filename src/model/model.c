@@ -150,7 +150,7 @@ double ModelKineticEnergy(const Particles *P, PetscInt p)
   return sum;
 }
 
-/* (363) */
+/* Enthalpy of a particle beside water at 0 degC, J (363). */
 static double Enthalpy(const Material *mat, double capacity, double mh, double T)
 {
   double slope;

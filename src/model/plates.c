@@ -81,7 +81,7 @@ void PlatesMark(Model *m, const double *x)
   }
 }
 
-/* (74) */
+/* Adds the stiffness of free plates, of rank one each (74). */
 PetscErrorCode PlatesMult(const Model *m, const double *x, double *f)
 {
   const Scene *c = m->c;

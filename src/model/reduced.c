@@ -301,7 +301,7 @@ static PetscErrorCode SolveVelocities(const Model *m, const Reduced *r, Vec R, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (175) */
+/* Fluid velocities of the reduced solution (175). */
 static PetscErrorCode RecoverVelocities(Model *m, Reduced *r, Vec R, Vec Y)
 {
   PetscFunctionBeginUser;

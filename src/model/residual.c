@@ -28,7 +28,7 @@ static void FluidRows(const Model *m, int ph, PetscInt I, const double *x, const
   const double    share = NodeShare(m, I, ph);
 
   *RowOf(m, f, I, F_PW + ph) += take[TAKE_DM + ph] + take[TAKE_MASS + ph];
-  Rate(m, I, x, PlaceV(fs, ph), rate); /* (310) */
+  Rate(m, I, x, PlaceV(fs, ph), rate); /* inertia by the particles' share of the flow (310) */
   for (int i = 0; i < CL_DIM; i++)
     row[i] += share * (share * of[FLUID_MI2] * rate[i] - of[FLUID_MI] * m->bc.gravity[i] + of[FLUID_G + i]);
   if (at) {

@@ -83,7 +83,7 @@ static double Largest(const double norm[F_COUNT], int *field)
   return norm[*field];
 }
 
-/* (343) */
+/* Keeps the Jacobian while the residual falls fast enough (343). */
 static PetscErrorCode JacobianChoose(SNES snes, PetscInt it, double residual, Model *m)
 {
   const bool serves = it > 0 && residual < m->solver->keep_jacobian * m->solver->residual &&

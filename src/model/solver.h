@@ -85,7 +85,7 @@ PetscErrorCode  ReducedSetUp(Model *m);               /* from what was added */
 PetscErrorCode  ReducedRest(Reduced *r);              /* until the next set-up, which a step begins with */
 PetscErrorCode  ReducedFollow(Model *m);              /* the Jacobian is a new one */
 PetscErrorCode  ReducedGuess(Model *m, Vec R, Vec Y); /* (441) on scaled, owned vectors */
-PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* (175) */
+PetscErrorCode  ReducedApply(Model *m, Vec R, Vec Y); /* the preconditioner (175) */
 /* LU of n unknowns a node (factors.c): is it small, on one rank; the first package of those that there are, null: none;
    pc made LU of A by it, with a line where that is not the usual one. */
 bool           FactorsSmall(const Model *m, int n);

@@ -104,7 +104,7 @@ static void DepositNode(const Model *m, PetscInt p, double S, const double d[CL_
   }
   if (fs->heat)
     s[SUM_X + PlaceT(fs)] += S * q->capacity * Carried(m, p, P_T, P_GT, d);
-  for (int k = 0; fs->heat && k < CL_MIXED; k++) /* (395), (446) */
+  for (int k = 0; fs->heat && k < CL_MIXED; k++) /* mixed derivatives of T (395), (446) */
     s[SUM_X + PlaceT(fs)] += MixedProduct(k, S * q->capacity * f[P_BT + k][p], d);
 }
 
@@ -195,7 +195,7 @@ static void Average(Model *m, const double *sum)
       m->w[PHASE_COUNT * I + k] = fmax(s[SUM_W + k] / V, CL_SHARE_FLOOR);
     for (int k = 0; k < NC_COUNT; k++)
       c[k] /= V;
-    for (int k = 0; k < PHASE_COUNT; k++) { /* (350), (108) */
+    for (int k = 0; k < PHASE_COUNT; k++) { /* k_r of a node (108) with shares of layers (350) */
       c[NC_DRAG + k] *= m->flow[I];
       c[NC_KR + k] = PetscSqr(c[NC_KR + k] * RootFactor(m, I, k));
     }

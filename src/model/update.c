@@ -80,7 +80,7 @@ static double NodeLimit(const Model *m, PetscInt I, const double *x, const doubl
       cut = fmin(cut, LIMIT_T / dT);
   }
   if (fs->phase[PHASE_G] && HoldsGas(m, I, x, y)) {
-    const int    g   = PlaceP(fs, PHASE_G); /* (349) */
+    const int    g   = PlaceP(fs, PHASE_G); /* a step of p_g goes no farther than half of it (349) */
     const double dpg = fabs(y[g]), pg = fmax(fabs(x[g]), m->coef[I * NC_COUNT + NC_P + PHASE_G] / s[g]);
 
     if (dpg > LIMIT_P * pg)
@@ -146,7 +146,7 @@ static PetscErrorCode Shorten(const Model *m, Vec X, Vec Y, bool *shorter)
 /* Are updates shortened until the residual falls? */
 static bool Searches(const Model *m)
 {
-  return ModelVelocitiesFollow(m) || m->solver->searches; /* (426) */
+  return ModelVelocitiesFollow(m) || m->solver->searches; /* updates halved from one first guess (426) */
 }
 
 /* Norm of the scaled residual that a share of Y leaves, fluid velocities with the pressures. */

@@ -43,7 +43,7 @@ double InitialWaterPressure(const Scene *c, const Region *r, double pressure, co
 
   if (isinf(water->K))
     return pressure - weight;
-  return pressure - water->K * log1p(weight / water->K * exp((pressure - water->p_ref) / water->K)); /* (82) */
+  return pressure - water->K * log1p(weight / water->K * exp((pressure - water->p_ref) / water->K)); /* head (82) */
 }
 
 /* Whether a region starts with hydrate that reacts and with no gas. */

@@ -77,7 +77,7 @@ void MixedCarry(const double A[CL_DIM][CL_DIM], double B[CL_MIXED])
       B[k] += from[o] * (a[i] * b[j] + a[j] * b[i]);
     }
   }
-  for (int k = CL_PAIRS; k < CL_MIXED; k++) { /* (446) */
+  for (int k = CL_PAIRS; k < CL_MIXED; k++) { /* the derivative by all three axes (446) */
     B[k] = 0.0;
     for (int i = 0; i < CL_DIM; i++) {
       const int j = (i + 1) % CL_DIM, l = (i + 2) % CL_DIM;

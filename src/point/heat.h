@@ -95,7 +95,7 @@ INLINE void CompressionHeat(const PointHistory *h, const Kinematics *k, const Sc
   AddJet(D, VectorDot(flux, g), &share, k);
 }
 
-/* (69) */
+/* Heat of plastic flow (69). */
 INLINE void PlasticHeat(const Material *mat, const PointHistory *h, const Kinematics *k, const ScalarState *s,
                         const Stress *st, bool tangent, PointOutput *o)
 {

@@ -75,7 +75,7 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
   const Kinetics *k    = &mat->kinetics;
   const double    m0   = fmax(h->m_star[0], 0.0);
   const Jet       T_r  = JetShift(T, h->shift[2]);
-  const Jet       held = JetScale(h->withheld, JetShift(pg, -h->pg_n)); /* (416) */
+  const Jet       held = JetScale(h->withheld, JetShift(pg, -h->pg_n)); /* thin gas (416) */
   const Jet       pw_r = JetAdd(JetShift(pw, h->shift[0]), held), pg_r = JetAdd(JetShift(pg, h->shift[1]), held);
   double          dK, dpe;
 
@@ -86,7 +86,7 @@ INLINE void HydrateMass(const Material *mat, const PointHistory *h, Jet pw, Jet 
     return;
   }
   const double Kd      = KineticsRateConstant(k, T_r.v, &dK),
-               pe      = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe) + h->chord; /* (424) */
+               pe      = EquilibriumPressure(&k->equilibrium, T_r.v, &dpe) + h->chord; /* chord (424) */
   const Driving d      = ReactionDriving(mat->gas.trace, s->sg.v, pw_r.v, pg_r.v, pe);
   const Growth  g      = ReactionGrowth(k, h->dt, h->held, &d, Kd, dK, pe, dpe);
   const Jet     p_r    = JetChain3(d.p.v, d.p.sg, s->sg, d.p.pw, pw_r, d.p.pg, pg_r);

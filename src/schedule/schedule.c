@@ -27,7 +27,7 @@ static double Phase(const Wave *w, double t)
   return 2.0 * M_PI * fmod((t - w->begin) / w->period, 1.0);
 }
 
-/* (267) */
+/* Sum of sines (267). */
 static double Waves(const Schedule *s, double t)
 {
   double sum = 0.0;

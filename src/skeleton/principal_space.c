@@ -50,7 +50,7 @@ static double Spin(const Principal *p, const Returned *r, int i, int j)
                                    : 0.5 * (r->dy[i][i] - r->dy[i][j] - r->dy[j][i] + r->dy[j][j]);
 }
 
-/* (431) */
+/* Slopes of the stress by those of its principal values (431). */
 void StressSlopes(const Principal *p, const Returned *r, double C[CL_TENSOR][CL_TENSOR], double by_E[CL_TENSOR],
                   double by_S[CL_TENSOR])
 {

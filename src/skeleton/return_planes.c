@@ -141,7 +141,7 @@ static void PlaneSlopes(const Strength *k, const Active *s, const Levers *l, int
   }
 }
 
-/* (67) */
+/* The nearest state on active planes (67). */
 static bool ClosestState(const Trial3 *t, const Strength *k, const Active *s, Closest *o)
 {
   Levers l;
@@ -163,7 +163,7 @@ static bool ClosestState(const Trial3 *t, const Strength *k, const Active *s, Cl
   return true;
 }
 
-/* (66) */
+/* Return to the apex (66). */
 static void Apex(const Strength *k, Closest *o)
 {
   const double at = k->c / tan(k->phi), si = sin(k->phi);

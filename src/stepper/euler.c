@@ -17,7 +17,7 @@ static PetscErrorCode Step(Stepper *s, double dt, Attempt *a)
 
   StepperPlasticErrors(s, dt, 1.0, weight);
   PetscCall(PetscMalloc2(4 * m->P.n, &e, CL_DIM * m->P.n, &eu));
-  for (PetscInt p = 0; p < m->P.n; p++) { /* (25) */
+  for (PetscInt p = 0; p < m->P.n; p++) { /* error of backward Euler (25) */
     double y_n[4], k_n[4];
 
     StepperHistory(m, p, y_n, k_n);

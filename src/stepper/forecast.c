@@ -104,7 +104,7 @@ static double ImplicitSteps(const Stepper *s, double left)
   const double first  = s->scheme->stages == 1 ? pow(s->tol, EULER_POWER) : 1.0; /* order 1 wants more of them */
   const double smooth = SMOOTH_STEPS * (FrontsRule(s) ? REACTS : 1.0) * finer * sqrt(first);
   const double stops  = fmax(StepperStops(s, left, &kinks), PERIOD * finer * first * Periods(s, left));
-  const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* (317) */
+  const double steps  = fmax(smooth, stops + BEHIND_KINK * kinks); /* N of (317) */
 
   return transits < TRANSITS ? fmax(steps, PER_TRANSIT * transits) : steps;
 }

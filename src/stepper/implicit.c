@@ -147,7 +147,7 @@ static PetscErrorCode SharePeak(MPI_Comm comm, Peak *peak)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* (292) */
+/* Norm of the error over all particles (292). */
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a)
 {
   const Model *m                       = s->model;

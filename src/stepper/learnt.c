@@ -168,10 +168,10 @@ double LearntPace(const Learnt *l, const Ahead *a)
   const double t = Last(r), least = 1.0 / a->stretch, doubling = Doubling(l);
   double       begin = r->origin, until = (a->kinks ? a->kink[0] : a->end), left;
 
-  if (a->even) /* (319) */
+  if (a->even) /* the pace so far (319) */
     return r->n ? (a->end - r->origin - t) * LastDoubling(r, t) / (0.5 * t) : NAN;
   left = Stretch(l, r, until, least);
-  if (l->slump.n) /* (420) */
+  if (l->slump.n) /* ... or that of the slump (420) */
     left = fmax(left, Stretch(l, &l->slump, until, least));
   until -= begin;
   for (int k = 0; k < a->kinks; k++) {
@@ -220,11 +220,11 @@ double LearntSteps(const Learnt *l, const Ahead *a)
 
   if (a->even || !(a->forecast > 0.0)) /* no forecast knew of a slump */
     return pace;
-  const double median = LearntMedian(a->forecast, l->all); /* (411) */
+  const double median = LearntMedian(a->forecast, l->all); /* of the steps beyond those taken (411) */
   const double stands = fmin(Above(Beyond(a->forecast, l->all)) / Above(1.0), 1.0),
                weight = share / (share + TRUST * stands);
 
-  return isnan(pace) ? median : pow(pace, weight) * pow(median, 1.0 - weight); /* (412) */
+  return isnan(pace) ? median : pow(pace, weight) * pow(median, 1.0 - weight); /* weighted (412) */
 }
 
 double LearntLeft(const Learnt *l, const Ahead *a)
