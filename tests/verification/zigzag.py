@@ -132,7 +132,7 @@ def rows_of_particles(values):
     return values[order].reshape(16, -1)
 
 
-for what, p, least, most in (("its particles", own, 0.1, 1.0), ("the nodal means that pictures show", seen, 0.0, 0.05)):
+for what, p, least, most in (("its particles", own, 0.05, 1.0), ("the nodal means that pictures show", seen, 0.0, 0.05)):
     syy = rows_of_particles(p["stress"][:, 1])
     found = zigzag(syy) / np.ptp(syy)
     rows.append(("heater", what, found))
