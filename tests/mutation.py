@@ -81,6 +81,7 @@ FAULTS = [
     ("the twist of T in long cells counts two thirds (444)", "include/clathra/point_heat.h", [("0.0) / 6.0;", "0.0) / 9.0;")]),
     ("the reaction is held where the pressure drives it (382)", "include/clathra/point_reaction.h", [("fmax(T2 - 2.0 * with_p * with_p, 0.0)", "fmax(T2 - 0.0 * with_p * with_p, 0.0)")]),
     ("... and where all of a cell is far from equilibrium", "include/clathra/point_reaction.h", [("across + beyond * beyond +", "across + 0.0 * beyond * beyond +")]),
+    ("the chord of the equilibrium does not fade away from it (424)", "include/clathra/point_reaction.h", [("chord * spread / (spread + off * off)", "chord * (spread + 0.0 * off) / spread")]),
     ("hybrid holds no reaction (381)", EXPLICIT + "rates.c", [("  if (!SceneReactsWithHeat(e->m->c) || e->o.paper)\n    return;\n  LatentHeat", "  if (e->m->c || e->o.paper)\n    return;\n  LatentHeat")]),
     ("a heat source forgets its particle's volume at the start (443)", BOUNDARY + "faces.c", [("  return ParticleInitialVolume(c, x0, l);", "  return 0.0 * ParticleInitialVolume(c, x0, l) + P->f[P_V][p];")]),
     ("ghost penalty ten times", MODEL + "stabilise.c", [("= m->c->stabilisation.ghost_penalty * ratio", "= 10.0 * m->c->stabilisation.ghost_penalty * ratio")]),
