@@ -358,10 +358,10 @@ def slope_warming(run, *axes):
     m = slide.measure(slide.Run(weak.out))
     axes[4].set_title(f"weak ground after {weak.snapshots[-1][0] / YEAR - settled:.0f} years: failed {m['failed_volume_m2']:.0f} m³/m,\nrunout {m['runout_m']:.0f} m, retrogression {m['retrogression_m']:.0f} m", fontsize=8)
     b, p = weak.csv("balance"), weak.csv("probes")
-    late = b["time_s"] > 120 * YEAR
+    late = b["time_s"] > (m["slides"][0]["from_s"] if m["slides"] else 120 * YEAR) - YEAR
     row, moved = np.arange(late.sum()), np.interp(b["time_s"][late], p["time_s"], p["face.u_x_m"])
     axes[5].semilogy(row, b["dt_s"][late], color=COLOURS[0])
-    axes[5].set(xlabel="rows of balance.csv from 100 years on", ylabel="step (s)", ylim=(1e-3, None))
+    axes[5].set(xlabel="rows of balance.csv from a year before the slide on", ylabel="step (s)", ylim=(1e-3, None))
     slid = [f"{(s['from_s'] - 20 * YEAR) / YEAR:.1f} a: {s['lasts_s']:.0f} s, {s['kinetic_energy_J'] / 1e6:.1f} MJ/m" for s in m["slides"] if s["kinetic_energy_J"] > 0.1 * m["peak_kinetic_energy_J"]]
     axes[5].set_title("weak ground: steps, way of the face; slides after\n" + ",\n".join(", ".join(slid[k : k + 2]) for k in range(0, len(slid), 2)), fontsize=8)
     beside = axes[5].twinx()
