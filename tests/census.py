@@ -50,8 +50,8 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 242,
     "... that choose numerics": 18,
-    "lines of C in src and include": 44531,
-    f"functions with {MANY} parameters or more": 44,
+    "lines of C in src and include": 44528,
+    f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
     "files that print warnings": 13,
     "words of docs and README": 53400,

@@ -83,7 +83,7 @@ enum {
 
 /* A particle with beds at t_n. */
 typedef struct {
-  Beds   A;                /* mean permeability, of bedding planes and layers (306), (447) */
+  Beds   A;                /* permeability by direction, over the largest (306), (447) */
   double rho[PHASE_COUNT]; /* kg/m^3 */
 } Bedding;
 

@@ -153,25 +153,6 @@ INLINE double Mixed(const Explicit *e, const double *nodes, int width, const Wei
   return sum;
 }
 
-/* sum S (u - u_q) (v - v_q) of two numbers that nodes hold in their rows and particle q has got from them (g). */
-INLINE double Covariance(const Explicit *e, const double *nodes, int width, int u, int v, const Weights *w,
-                         const Gathered *g, int q)
-{
-  const int *slot = &e->slot[w->first[q]];
-  double     sum  = 0.0;
-
-  for (int k = 0; k < PATCH_ROWS; k++) {
-    const PatchRow at = PatchRowOf(e, w, q, k);
-
-    for (int a = 0; a < 3; a++) {
-      const double *row = &nodes[slot[at.at + a] * width];
-
-      sum += w->S[0][a][q] * at.S * (row[u] - g->value[q][u]) * (row[v] - g->value[q][v]);
-    }
-  }
-  return sum;
-}
-
 /* What is carried to the nodes besides the value itself: nothing, by gradients, by mixed derivatives, too. */
 enum { CARRY_NOTHING = 0, CARRY_LINEAR, CARRY_BILINEAR };
 /* To nodes that hold `count` numbers each, of which the first `acting` may be carried or have forces; the latter stand

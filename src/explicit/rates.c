@@ -164,6 +164,25 @@ INLINE void Held(const Explicit *e, const Set s, Run r, const Gathered *g, doubl
   }
 }
 
+/* Variance of T over the nodes of particle q, and its covariances with p_w and p_g. */
+INLINE void SpreadOverNodes(const Explicit *e, const Set s, const Gathered *g, const Weights *w, int q, NodesSeen *x)
+{
+  const int    *slot = &e->slot[w->first[q]], width = LANES * Rows(B_Count(s)), T = B_T(s);
+  const double *own = g->value[q];
+
+  for (int k = 0; k < PATCH_ROWS; k++) {
+    const PatchRow at = PatchRowOf(e, w, q, k);
+
+    for (int a = 0; a < 3; a++) {
+      const double *row = &e->B[slot[at.at + a] * width], warmer = row[T] - own[T], S = w->S[0][a][q] * at.S;
+
+      x->variance += S * warmer * warmer;
+      for (int f = 0; f < PHASE_COUNT; f++)
+        x->covariance[f] += S * warmer * (row[B_P(s, f)] - own[B_P(s, f)]);
+    }
+  }
+}
+
 /* (424) of t_n; in the bare form particles see no nodes. */
 INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, const Weights *w, const double *restrict T,
                    const double *restrict dpe, const double *restrict pw, const double *restrict pg,
@@ -171,8 +190,7 @@ INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, con
 {
   const Equilibrium *law    = &r.mat->kinetics.equilibrium;
   const double *restrict sg = e->t[T_SG] + r.p;
-  const int width           = LANES * Rows(B_Count(s));
-  double    warmer[BLOCK], pe_warmer[BLOCK], beyond[BLOCK];
+  double warmer[BLOCK], pe_warmer[BLOCK], beyond[BLOCK];
 
   if (!SceneReactsWithHeat(e->m->c) || e->o.paper)
     return;
@@ -183,11 +201,9 @@ INLINE void Chords(const Explicit *e, const Set s, Run r, const Gathered *g, con
     NodesSeen x = {.p         = ReactionPressure(r.mat->gas.trace, sg[q], pw[q], pg[q]),
                    .pe        = pe[q],
                    .dpe_dT    = dpe[q],
-                   .curvature = EquilibriumCurvatureOf(dpe[q], beyond[q]),
-                   .variance  = Covariance(e, e->B, width, B_T(s), B_T(s), w, g, q)};
+                   .curvature = EquilibriumCurvatureOf(dpe[q], beyond[q])};
 
-    for (int f = 0; f < PHASE_COUNT; f++)
-      x.covariance[f] = Covariance(e, e->B, width, B_T(s), B_P(s, f), w, g, q);
+    SpreadOverNodes(e, s, g, w, q, &x);
     pe[q] += ReactionChord(&x);
   }
 }

@@ -243,7 +243,7 @@ ClStatus ParticleEvaluate(Model *m, PetscInt p, const double *x, bool tangent, R
   if (status != CL_OK)
     ModelNoteFailure(m, status, why, p);
   else if (m->P.f[P_HEAT] && m->c->fields.heat)
-    o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* heat of plastic flow, explicit (69) */
+    o->out[OUT_Q] -= m->stage.drain * m->P.f[P_HEAT][p]; /* what hybrid left of (69) */
   if (tangent && less != 0.0)
     WithholdSlopes(less, o);
   return status;

@@ -106,7 +106,7 @@ INLINE void Share(Jet sg, Jet pw, Jet pg, ScalarState *s)
   s->p  = JetChain3(m.v, m.sg, sg, m.pw, pw, m.pg, pg);
 }
 
-/* S_g in pores narrowed by hydrate (320). */
+/* Share of gas in pores that hydrate narrows (320). */
 INLINE Jet GasShareJet(const Retention *law, Jet pc, Jet Sh)
 {
   double       dpc, dSh;
