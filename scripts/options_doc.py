@@ -232,32 +232,28 @@ def published_pairs():
     at = lambda K0, dE, T: f"{K0 * math.exp(-dE / (8.314 * (T + 273.15))):.2g}"
     return ["Published pairs of methane, with what they make of K_d, mol/(m^2 Pa s):", "", "| source | `K0`, mol/(m^2 Pa s) | `dE`, J/mol | K_d at 2 degC | K_d at 10 degC |", "|---|---|---|---|---|",
             *(f"| {name} | {K0:.3g} | {dE:.5g} | {at(K0, dE, 2)} | {at(K0, dE, 10)} |" for name, K0, dE in PAIRS), "",
-            "78151 J/mol is 9400 K times R. K_0 counts by the square metre of hydrate's surface, so the rate of a volume is K_0 `A_geo`: a pair with another surface is another rate, and either author's K_0 goes with crystals in a stirred cell, whose surface was measured or inferred "
-            "there; that of hydrate in pores (1e5 to 1e6 1/m in the cases of this repository, 1 to 10 1/m where it lies in lumps and veins) is the less certain number of the two. Of these cases Masuda's and century_hydrate's take 3.6e4 with 78151, "
-            "3.4 times Clarke and Bishnoi's rate.", ""]  # fmt: skip
+            "78151 J/mol is 9400 K times R. The rate of a volume is K_0 `A_geo`. K_0 was measured on crystals in a stirred cell; the surface of hydrate in pores (1e5 to 1e6 1/m in the cases here, 1 to 10 1/m "
+            "in lumps and veins) is the less certain number of the two.", ""]  # fmt: skip
 
 
 def laws_page(binary):
     table, text = keys(binary), formulas()
     out = ["# Laws", "", "<!-- made by scripts/options_doc.py -->", "",
-           "Every constitutive relation: its formula with its number in [equations.md](equations.md), the curve as the program evaluates it (`clathra CASE -case_curves` prints them for any case), its keys below "
-           "`mat_<name>_`, source and code. The pictures have the parameters of [laws.yaml](laws.yaml) but for what they vary.", "",
+           "Every constitutive relation: its formula with its number in [equations.md](equations.md), the curve as the program evaluates it (`clathra CASE -case_curves` prints them for any case), "
+           "its keys below `mat_<name>_` (meaning, range and default: [options.md](options.md#keys-of-a-case)), source and code. The pictures have the parameters of [laws.yaml](laws.yaml) but for what they vary.", "",
            "## Symbols", "", "| symbol | what it is | SI unit |", "|---|---|---|"]  # fmt: skip
     out += [f"| {s} | {what} | {unit} |" for s, what, unit in SYMBOLS]
-    index = []
     for title, curve, _, numbers, pattern, source in LAWS:
-        own = [k for k in table if re.fullmatch(pattern, k[0])]
+        own = ", ".join(f"`{k[0]}`" + (f" ({', '.join(words)})" if (words := key_note(k)) else "") for k in table if re.fullmatch(pattern, k[0]))
         where = sorted({f for n in numbers for f in files(n)})
-        out += ["", f"## {title}", "", *(f"    {text[n]} ({n})" for n in numbers), "", f"![{title}](figures/law_{curve}.png)", "", "| key | kind | SI unit | range | default | meaning |", "|---|---|---|---|---|---|"]
-        out += [f"| `{k[0]}` | {' | '.join(k[1:6])} |" for k in own]
-        out += ["", *(published_pairs() if curve == "rate_constant" else []), f"Source: {source}. Code: {', '.join(f'`{f}`' for f in where)}."]
-        index += [f"| ({n}) | [{title}](#{title.lower().replace(' ', '-').replace(',', '')}) | {', '.join(f'`{k[0]}`' for k in own)} | {', '.join(f'`{f}`' for f in files(n))} |" for n in numbers]
-    rest = [k for k in table if not any(re.fullmatch(law[4], k[0]) for law in LAWS)]
-    if rest:
-        out += ["", "## Other keys of a material", "", "| key | kind | SI unit | range | default | meaning |", "|---|---|---|---|---|---|"]
-        out += [f"| `{k[0]}` | {' | '.join(k[1:6])} |" for k in rest]
-    out += ["", "## Equation, keys, file", "", "| equation | law | keys | cited in |", "|---|---|---|---|", *index, ""]
-    return "\n".join(out)
+        out += ["", f"## {title}", "", *(f"    {text[n]} ({n})" for n in numbers), "", f"![{title}](figures/law_{curve}.png)", "", f"Keys: {own}.", "",
+                *(published_pairs() if curve == "rate_constant" else []), f"Source: {source}. Code: {', '.join(f'`{f}`' for f in where)}."]  # fmt: skip
+    return "\n".join([*out, ""])
+
+
+def key_note(key):
+    """The words of a choice, or the unit of a number."""
+    return [word for word in (key[2],) if word] if key[1] in ("number", "integer", "name") else [key[1]] if key[1] != "yes, no" else []
 
 
 def draw(binary):
