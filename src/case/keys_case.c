@@ -50,12 +50,11 @@ const Key case_key[] = {
     REALS(Case, CL_DIM, "grid_upper", scene.upper, "m", "", NULL,
           "upper right corner; the body must not leave the grid", BINDS(HAS_ALL)),
     TEXT(Case, "grid_spacing_x", scene.spacing[0], "",
-         "sizes of the cells along x: one size (0.5 m), or first size, largest size and growth from cell to cell, "
-         "from the lower end on ([0.05 m, 2 m, growth 1.15])",
+         "sizes of the cells along x: one, or first, largest and growth from the lower end on ([0.05 m, 2 m, growth "
+         "1.15])",
          ACTS(HasSpacingX, "it is given"), BINDS(HAS_ALL)),
     TEXT(Case, "grid_spacing_x_table", scene.table[0], "",
-         "the same by places, which are lines of the grid, and sizes there, from the lower end to the upper "
-         "({table: [0 m, 0.5 m, 4 m, 0.05 m, 10 m, 1 m]})",
+         "sizes at places, which are lines of the grid ({table: [0 m, 0.5 m, 4 m, 0.05 m, 10 m, 1 m]})",
          ACTS(HasTableX, "it is given"), BINDS(HAS_ALL)),
     TEXT(Case, "grid_spacing_y", scene.spacing[1], "", "likewise along y", ACTS(HasSpacingY, "it is given"),
          BINDS(HAS_ALL)),
@@ -71,30 +70,27 @@ const Key case_key[] = {
     BOOLEAN(Case, "geometry", scene.axisymmetric, PLANE_WORD, "axisymmetric: x is the radius, y runs along the axis",
             .choices = geometry_word, BINDS(HAS_ALL)),
     TEXT(Case, "fields", fields_wanted, "auto",
-         "what the scene needs: a list of solid, water, gas, heat, or a set's name (thmc, thc, hmc, thm, hm, m, ...); "
-         "auto drops what is identically zero",
+         "a list of solid, water, gas, heat, or a set's name (thmc, thc, hmc, thm, hm, m, ...); auto drops what is "
+         "identically zero",
          BINDS(HAS_ALL)),
     BOOLEAN(Case, "inertia", scene.inertia, "yes", "accelerations; no is quasi-static"),
     BOOLEAN(Case, "compression_heat", scene.compression_heat, "no",
             "fluids warm as they are compressed and cool or warm as they are throttled (Joule-Thomson)"),
     CHOICE(Case, "basis", scene.basis, "cpgimp", basis_word,
            "basis functions: averages over domains that follow the particles' stretch (cpgimp) or keep their size "
-           "(ugimp), at the particles (linear); total: of the initial configuration, whose cells deform with the body "
-           "(total Lagrangian), for bodies that settle or bend but do not flow: sdirk2 and euler"),
+           "(ugimp), at points (linear); total: total Lagrangian, for bodies that settle or bend but do not flow "
+           "(sdirk2, euler)"),
     REAL(Case, "mean_strain", scene.mean_strain, "", "[0,1]", "0",
-         "share of the mean motion of its cell in the strain of a particle: a skeleton that yields flows more freely; "
-         "1 leaves modes without stiffness, 0.95 does for collapse loads"),
+         "share of the cell's mean motion in a particle's strain (160), against locking; 1 leaves hourglass modes, "
+         "0.95 does for collapse loads"),
     REALS(Case, CL_DIM, "gravity", scene.gravity, "m/s^2", "[-1e4,1e4]", EACH("0 m/s^2"),
           "e.g. [0 m/s^2, -9.81 m/s^2]"),
     REAL(Case, "gravity_ramp", scene.gravity_ramp, "s", "[0,inf)", "0 s",
          "gravity grows from zero to its value over this time"),
-    REAL(
-        Case, "strength_factor", scene.strength_factor, "", "(0,1e3]", "1",
-        "cohesion, tension cut-off and the tangents of friction and dilation angle of all materials are divided by it: "
-        "the "
-        "largest one that a slope bears is its factor of safety"),
+    REAL(Case, "strength_factor", scene.strength_factor, "", "(0,1e3]", "1",
+         "divides cohesion, tension cut-off and the tangents of friction and dilation angle of all materials"),
     ROW(Case, "ambient_pressure", KEY_SCHEDULE, scene.ambient_pressure, 1, "Pa", "[0,1e10]", "0 Pa",
-        "of the fluid that the scene stands in: acts on the whole surface of the body; at and above ambient_level"),
+        "of the fluid around the body, at and above ambient_level; acts on the whole surface"),
     REAL(Case, "ambient_density", scene.ambient_density, "kg/m^3", "[0,1e5]", "0 kg/m^3",
          "of that fluid: below ambient_level its pressure grows with depth"),
     REAL(Case, "ambient_drag", scene.ambient_drag, "", "[0,100]", "0",
@@ -104,16 +100,15 @@ const Key case_key[] = {
            "sediment may be or become free of gas: water then holds 1e-7 of what gas would; auto: where a region has "
            "Sg: 0"),
     CHOICE(Case, "ice", ice, "warn", ice_word,
-           "in scenes with heat or hydrate that reacts, when pore water is colder than its melting point, of which no "
-           "equation knows: say so and go on, or end the run"),
+           "where pore water is colder than its melting point (no equation has ice), with heat or reacting hydrate: "
+           "warn, or end the run"),
     CHOICE(Case, "particles_leaving", leaving, "stop", leaving_word,
-           "when particles cross the edge of the grid: end the run, or take them out of it and count what they held",
-           .has = HAS_SOLID),
+           "particles that cross the edge of the grid end the run, or are removed and counted", .has = HAS_SOLID),
     REAL(Case, "time_end", t_end, "s", "(0,inf)", "end of the last stage", "the run starts at 0 and ends here",
          WHEN(NeedsEnd, "there are no stages"), .kept = true),
     CHOICE(Case, "stepper_type", integrator, "sdirk2", case_integrator,
-           "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time; hybrid_paper: the paper's bare form "
-           "of hybrid, for comparisons"),
+           "time integrator; auto: the cheaper of sdirk2 and hybrid, at any time; hybrid_paper: the paper's form of "
+           "hybrid"),
     BOOLEAN(Case, "stepper_adapt", adaptive, "yes", "choose the step by the error estimate"),
     REAL(Case, "stepper_dt", dt, "s", "(0,inf)", "1e-3 @time_end", "first step (adaptive) or fixed step",
          .plain = true),
@@ -123,9 +118,8 @@ const Key case_key[] = {
     REAL(Case, "stepper_tol", tol, "", "(0,1)", "1e-3", "relative tolerance of the error estimate",
          BY(INTEGRATORS_IMPLICIT)),
     REAL(Case, "stepper_error_exponent", error_exponent, "", "[1,16]", "2",
-         "of the mean of the error over the particles: 2 is the root mean square, in which a front in a small part of "
-         "the "
-         "body drowns; 8 sees it",
+         "n of the mean of the error over the particles: 2 is the root mean square; 8 sees a front in a small part of "
+         "the body",
          BY(INTEGRATORS_IMPLICIT)),
     INTEGERS(Case, 1, "stepper_max_failures", max_failures, "[1,1000]", "20",
              "cuts in a row before the run is given up"),
@@ -133,23 +127,19 @@ const Key case_key[] = {
     BOOLEAN(Case, "stepper_force_dt", force_dt, "no", "take a fixed step above the stable one all the same",
             BY(INTEGRATORS_EXPLICIT)),
     INTEGERS(Case, 1, "stepper_storage_passes", passes, "[0,100]", "0",
-             "passes that take changes of pressure from lumped storage, which spreads them over three "
-             "cells, to the consistent storage of implicit steps; 3 do most of it, for undrained bodies with layers or "
-             "bands of a cell's width",
+             "passes from lumped storage, which spreads pressure over three cells, to consistent storage (413); 3 do "
+             "most of it",
              BY(WITHOUT_PAPER)),
     REAL(Case, "stepper_damping", damping, "", "[0,1)", "0",
-         "share of the mixture's out-of-balance force taken away against its motion, for quasi-static "
-         "ends",
-         BY(INTEGRATORS_EXPLICIT)),
+         "share of the out-of-balance force that acts against motion, for quasi-static ends", BY(INTEGRATORS_EXPLICIT)),
     REAL(Case, "stepper_mass_scaling", mass_scaling, "", "[1,1e12]", "1",
          "factor on all inertia; the error it makes is reported", BY(INTEGRATORS_EXPLICIT)),
     REAL(Case, "stabilisation_ghost_penalty", scene.stabilisation.ghost_penalty, "", "[0,100]", "0.1",
          "at free surfaces; 0 = off", BY(INTEGRATORS_IMPLICIT)),
     BOOLEAN(Case, "stabilisation_donor", scene.stabilisation.donor, "no",
-            "gas has the mobility of the nodes it comes from, so that sediment without mobile gas gives none: for sand "
-            "with gas beside clay"),
+            "gas has the mobility of the nodes upstream: for sand with gas beside clay"),
     BOOLEAN(Case, "stabilisation_saturation", scene.stabilisation.saturation_upwind, "no",
-            "carries saturations with the flow: no alternating cells where capillary pressure is weak"),
+            "upwind diffusion of saturations, where capillary pressure is weak"),
     TEXT(Case, "output_dir", output_dir, "results/<case name>", "output folder"),
     ROW(Case, "output_times", KEY_REALS, times, 0, "s", "[0,inf)", "", "field snapshots at these times, hit exactly"),
     REAL(Case, "output_every", every, "s", "[0,inf)", "0 s", "... and every so long; 0 s = off"),
@@ -172,24 +162,20 @@ const Key case_key[] = {
 
 /* Keys that stages share with the case: not given, the case's value stays. */
 #define CASES "the case's"
-#define CASES_LENGTH "the case's if it is given, else the same share of the stage's length"
+#define CASES_LENGTH "the case's, or its share of the stage's length"
 const Key stage_key[] = {
     REAL(CaseStage, "end", end, "s", "(0,inf)", NULL, "it begins where the stage before ends", .made = true),
-    BOOLEAN(
-        CaseStage, "reset_displacement", reset, "no",
-        "displacement and log_J count from the begin of the stage; sides, from and to stay those of the initial body"),
-    BOOLEAN(CaseStage, "kinetics_active", reaction, "yes",
-            "no: hydrate neither forms nor dissociates, in materials whose kinetics are active"),
+    BOOLEAN(CaseStage, "reset_displacement", reset, "no", "displacement and log_J count from the begin of the stage"),
+    BOOLEAN(CaseStage, "kinetics_active", reaction, "yes", "no: hydrate neither forms nor dissociates"),
     TEXT(CaseStage, "boundaries", boundaries, "all", "list of the boundaries that act in this stage; all, or none",
          .made = true),
     TEXT(CaseStage, "boundaries_off", off, "", "list: all but these act", .made = true),
-    TEXT(CaseStage, "materials", materials, "",
-         "list of pairs region, material: what the region is made of in this stage; stress, masses and pressures stay",
+    TEXT(CaseStage, "materials", materials, "", "list of pairs region, material; stress, masses and pressures stay",
          .made = true),
     REALS(CaseStage, CL_DIM, "gravity", c.scene.gravity, "m/s^2", "[-1e4,1e4]", CASES, "along " AXES_WORDS,
           .kept = true),
     REAL(CaseStage, "gravity_ramp", c.scene.gravity_ramp, "s", "[0,inf)", CASES,
-         "gravity goes from that of the stage before to that of this one over this time", .kept = true),
+         "time over which gravity changes to that of this stage", .kept = true),
     REAL(CaseStage, "strength_factor", c.scene.strength_factor, "", "(0,1e3]", CASES,
          "strength is divided by it, from the begin of the stage on", .kept = true),
     BOOLEAN(CaseStage, "inertia", c.scene.inertia, CASES, "accelerations; no is quasi-static", .kept = true),

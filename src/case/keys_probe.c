@@ -14,21 +14,17 @@ static bool MeterNeedsSide(const void *p)
 
 const Key probe_key[] = {
     NAME(Probe, "over", over, "none", GROUP_REGION,
-         "the mean over a region, weighted with current volumes: its particles, or of a region without particles those "
-         "that were in its shape first",
+         "mean over a region's particles by volume; of a region without a material those that were in its shape first",
          .word = "none"),
     POINTS(Probe, "along", surface.along,
-           "[[x, y], ...]: the mean over the faces on this line, in the initial configuration, weighted with current "
-           "areas"),
+           "[[x, y], ...]: mean over the faces on this line in the initial configuration, by current area"),
     CHOICE(Probe, "side", surface.side, "none", cl_side, "the mean over this side of the body, by area"),
     NAME(Probe, "region", surface.region, "all", GROUP_REGION, "with side or along: one of regions, or all"),
     REAL(Probe, "from", surface.from, "m", "", "start", "with side: only the part from here ...", .word = "-start"),
     REAL(Probe, "to", surface.to, "m", "", "end", "... to here", .word = "end"),
     REALS(Probe, CL_DIM, "at", x, "m", "", EACH("none"), "a point: initial position, inside a region",
           WHEN(NeedsPlace, "over, side and along are not given"), .word = "none"),
-    BOOLEAN(Probe, "fixed", fixed, "no",
-            "a point stays there in space, otherwise it follows the body; a mean is over what is in the region's shape "
-            "now"),
+    BOOLEAN(Probe, "fixed", fixed, "no", "a point stays in space; a mean is over what is in the region's shape now"),
     {.name = NULL},
 };
 

@@ -17,11 +17,9 @@ static bool NeedsBox(const void *p)
 }
 
 const Key region_key[] = {
-    LIKE(Region, GROUP_REGION,
-         "another of regions, whose keys hold where this one's are not given, but for shape and minus"),
+    LIKE(Region, GROUP_REGION, "another region, whose keys are the defaults, but for shape and minus"),
     NAME(Region, "material", material, NULL, GROUP_MATERIAL,
-         "one of materials, or none: only to be cut out of others, to hold a region_temperature or a heat_source, or "
-         "for a probe's mean",
+         "a material, or none: to be cut out of others, for region_temperature, heat_source or a probe's mean",
          .word = "none", .shape = true),
     POINTS(Region, "polygon", polygon, "[[x, y], ...]: what this closed line goes round", .shape = true, .own = true),
     POINTS(Region, "below", below, "[[x, y], ...]: what lies under this line, down to lower", .shape = true,
@@ -46,8 +44,7 @@ const Key region_key[] = {
     REALS(Region, 6, "stress", stress, "Pa", "[-1e12,1e12]", "0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa, 0 Pa",
           "initial effective stress xx yy zz xy yz xz, tension-positive", .has = HAS_SOLID),
     REAL(Region, "stress_geostatic", K0, "", "(0,10]", "no",
-         "K0: vertical effective stress from the weight above less the pore pressure, horizontal K0 times it",
-         .word = "no"),
+         "K0: vertical effective stress from the weight above, horizontal K0 times it", .word = "no"),
     BOOLEAN(Region, "stress_normally_consolidated", consolidated, "no",
             "the same with K0 = 1 - sin(friction angle of the material)"),
     BOOLEAN(Region, "hydrostatic", hydrostatic, "no", "water in balance with gravity", .has = HAS_WATER),
@@ -56,7 +53,7 @@ const Key region_key[] = {
          ACTS(IsHydrostatic, "hydrostatic is yes")),
     REAL(Region, "geothermal", geothermal, "K/m", "[-1e4,1e4]", "0 K/m", "growth of temperature with depth"),
     REAL(Region, "geothermal_datum", geothermal_datum, "m", "", "top",
-         "coordinate against gravity below which it grows and above which it is `temperature`; top of the body",
-         .word = "top", ACTS(IsGeothermal, "geothermal is not 0")),
+         "coordinate against gravity above which it is `temperature`; top: of the body", .word = "top",
+         ACTS(IsGeothermal, "geothermal is not 0")),
     {.name = NULL},
 };

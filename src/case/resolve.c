@@ -286,9 +286,6 @@ static void PrintKey(FILE *out, Group g, const Key *k)
   if (k->when)
     fprintf(out, "%s**required** when %s", k->def && *k->def ? "; " : "", k->when);
   fprintf(out, " | %s", k->doc);
-  if (k->word && k->kind == KEY_REAL && !k->shape)
-    fprintf(out, "%s`%s` = %sinfinite", *k->doc ? "; " : "", k->word + (*k->word == '-'),
-            *k->word == '-' ? "minus " : "");
   PrintTypes(out, k);
   if (k->by) {
     char words[64];
@@ -305,18 +302,15 @@ PetscErrorCode CasePrintKeys(FILE *out)
   fputs(
       "Nested maps of a case file join to one name: `mat: {sand: {porosity: 0.3}}` is the key `mat_sand_porosity`, "
       "and\n"
-      "`-mat_sand_porosity 0.3` on the command line replaces it. A value of a quantity carries its unit, any that\n"
-      "measures the same as the SI unit below. A schedule is a value, or one of `{table: [t0, v0, t1, v1, ...]}` "
-      "(straight\n"
-      "lines), `{ramp: [v0, v1, t0, t1]}`, `{rate: [v0, rate, t0, t1]}` (from v0 at t0 until t1),\n"
+      "`-mat_sand_porosity 0.3` on the command line replaces it. A quantity carries a unit that measures the same as\n"
+      "the SI unit below. A schedule is a value, or one of `{table: [t0, v0, t1, v1, ...]}` (linear between times),\n"
+      "`{ramp: [v0, v1, t0, t1]}`, `{rate: [v0, rate, t0, t1]}` (from v0 at t0 until t1),\n"
       "`{piecewise: [t0, v0, t1, v1, ...]}` (each value holds until the next time), `{sine: [mean, amplitude, period,\n"
-      "begin, ...]}` (one or more waves; zero and rising at their begin) and `{csv: [FILE, COLUMN]}` (straight lines\n"
-      "through the rows of a file beside the case, whose first line names its columns with their units: `time [h],\n"
-      "sea [kPa]`; the first is the time, COLUMN by default the second). YAML's anchors and merge keys\n"
-      "repeat what is said elsewhere: `sand: &sand {...}`, `clay: {<<: *sand, porosity: 0.5}`. A list of names on the\n"
-      "command line (`-probes a,b`) replaces the file's; what it leaves out of the file is not read. Times are in s, "
-      "min, h,\n"
-      "d, weeks, months (a twelfth of a year) and a (365.25 d), or those words in full.\n\n",
+      "begin, ...]}` (one or more waves, zero and rising at their begin) and `{csv: [FILE, COLUMN]}` (a file beside\n"
+      "the case whose first line names its columns with units: `time [h], sea [kPa]`; the first is the time, COLUMN\n"
+      "by default the second). YAML's anchors and merge keys repeat keys: `sand: &sand {...}`, `clay: {<<: *sand,\n"
+      "porosity: 0.5}`. A list of names on the command line (`-probes a,b`) replaces the file's. Times are in s, min,\n"
+      "h, d, weeks, months (a twelfth of a year) and a (365.25 d), or those words in full.\n\n",
       out);
   for (Group g = GROUP_CASE; g < GROUP_COUNT; g++) {
     const GroupInfo *info = &case_group[g];
