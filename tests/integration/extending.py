@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from common import ROOT, binary, check, check_true, finish, launch, run, scratch  # noqa: E402
 
 PAGE = ROOT / "docs" / "extending.md"
+LINKED = r"\]\(\.\./(tests/integration/cases/\w+\.c)\), which goes to `([\w/]+)`"  # whole files of an example
 SCENE = """
 title: a plate that radiates
 fields: [heat]
@@ -117,6 +118,8 @@ def find(lines, old, where):
 def apply(tree):
     """Puts every block in its place; the lines of a hunk that only show where stay as they are in the tree."""
     count = 0
+    for file, folder in re.findall(LINKED, PAGE.read_text()):
+        shutil.copy(ROOT / file, tree / folder)
     for name, pairs in blocks():
         path = tree / name
         lines = path.read_text().splitlines() if path.exists() else []
@@ -153,7 +156,7 @@ def build(tree):
 def in_space(tree):
     """What the compiler says of the files that the page changes, as those of the program of three axes."""
     units = [u for u in json.loads((tree / "build" / "compile_commands.json").read_text()) if "-DCL_DIM=3" in u["command"]]
-    changed = {str(tree / name) for name, _ in blocks() if name.endswith(".c")}
+    changed = {str(tree / name) for name, _ in blocks() if name.endswith(".c")} | {str(tree / folder / Path(file).name) for file, folder in re.findall(LINKED, PAGE.read_text())}
     said = [subprocess.run(shlex.split(u["command"].split(" -o ")[0]) + ["-o", "/dev/null", "-c", u["file"]], cwd=u["directory"], capture_output=True, text=True).stderr
             for u in units if u["file"] in changed]  # fmt: skip
     return len(said), "".join(said)
@@ -166,7 +169,9 @@ def costs():
     counted = []
     for section in re.split(r"^## ", page, flags=re.M)[1:]:
         found = re.findall(r"^```diff\n(.*?)^```", section, re.M | re.S)
-        counted.append((len({b.split()[1] for b in found}), sum(len(re.findall(r"^\+[ \t]*\S", b, re.M)) for b in found)))
+        linked = [(ROOT / file).read_text() for file, _ in re.findall(LINKED, section)]
+        counted.append((len({b.split()[1] for b in found}) + len(linked),
+                        sum(len(re.findall(r"^\+[ \t]*\S", b, re.M)) for b in found) + sum(len(re.findall(r"^[ \t]*\S", b, re.M)) for b in linked)))  # fmt: skip
     return said, [c for c in counted if c[0]]
 
 
