@@ -54,8 +54,8 @@ CEILINGS = {
     f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
     "files that print warnings": 13,
-    "words of docs and README": 40236,
-    "words of the equations": 11854,
+    "words of docs and README": 40318,
+    "words of the equations": 11936,
     "files in scripts": 13,
 }
 
