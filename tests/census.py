@@ -54,7 +54,7 @@ CEILINGS = {
     f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
     "files that print warnings": 13,
-    "words of docs and README": 39885,
+    "words of docs and README": 39892,
     "words of the equations": 11936,
     "files in scripts": 13,
 }
