@@ -482,7 +482,7 @@ def energy(r):
                  elastic_energy_J="elastic energy stored", elastic_released_J="elastic energy that goes as hydrate or stiffness changes", kinetic_energy_J="kinetic energy",
                  pressure_work_J="work of the pore pressures on the skeleton", drag_work_J="drag", damping_work_J="damping", kinetic_lost_J="kinetic energy lost by the scheme")  # fmt: skip
     largest = max(abs(found[k]) for k in words if k in found)
-    lines = ["", "## Energy", "", "Mechanical energy of A by sdirk2 at 15 % (columns of `balance.csv`, docs/equations.md, section 15), MJ per metre of thickness of the half sample:", "",
+    lines = ["", "## Energy", "", "Mechanical energy of A by sdirk2 at 15 % (columns of `balance.csv`, docs/equations.md, section 16), MJ per metre of thickness of the half sample:", "",
              "| | MJ |", "| --- | --- |"]  # fmt: skip
     lines += [f"| {w} (`{k}`) | {found[k] / 1e6:.4f} |" for k, w in words.items() if k in found and abs(found[k]) > 1e-9 * largest]
     lines += [f"| left over (`energy_remainder_J`) | {found['energy_remainder_J'] / 1e6:.4f} |", "",

@@ -54,8 +54,8 @@ CEILINGS = {
     f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
     "files that print warnings": 13,
-    "words of docs and README": 39892,
-    "words of the equations": 11936,
+    "words of docs and README": 39869,
+    "words of the equations": 11913,
     "files in scripts": 13,
 }
 

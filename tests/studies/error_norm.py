@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which mean of the error over the particles buys most: the table after (292) in docs/equations.md.
+"""Which mean of the error over the particles buys most: n of (292) in docs/equations.md.
 
 error_norm.py [CLATHRA] [SCENE ...]
 
