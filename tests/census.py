@@ -50,7 +50,7 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 242,
     "... that choose numerics": 18,
-    "lines of C in src and include": 44528,
+    "lines of C in src and include": 44483,
     f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
     "files that print warnings": 13,
