@@ -12,7 +12,7 @@ COMMENT = re.compile(r"/\*.*?\*/", re.S)
 REFERENCE = re.compile(r"/\*\s*(?:\(\d+\)[,;.]?\s*)+\*/")
 # A function at the left edge, declared or defined: its arguments end before ; or {
 FUNCTION = re.compile(r"^(?!typedef\b|return\b|else\b|#)(?:[A-Za-z_]\w*[ \t*]+)+?\**(\w+)\(([^;{}]*)\)[ \t]*(?:\n?\{|;)", re.M)
-WARNING = re.compile(r'"clathra: (?:warning|note)')
+WARNING = re.compile(r'"[^"\n]*: (?:warning|note): ')
 NUMERICS = re.compile(r"(?:stabilisation_|stepper_|mean_|basis$|pressures$|tears$)")
 MANY = 8  # parameters
 
@@ -40,7 +40,7 @@ def counts(root):
         "lines of C in src and include": (sum(t.count("\n") for t in code.values()), 35000),
         f"functions with {MANY} parameters or more": (len(set().union(*map(wide, code.values()))), 0),
         "comments that are a number alone": (sum(len(REFERENCE.findall(t)) for t in code.values()), 0),
-        "files that print warnings": (sum(bool(WARNING.search(t)) for t in code.values()), 1),
+        "files that print warnings": (sum(bool(WARNING.search(COMMENT.sub(" ", t))) for t in code.values()), 1),
         "words of docs and README": (sum(len(t.split()) for t in pages.values()), 41000),
         "words of the equations": (len(pages[root / "docs" / "equations.md"].split()), 8000),
         "files in scripts": (len(list((root / "scripts").glob("*.py"))), 12),
@@ -50,11 +50,11 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 242,
     "... that choose numerics": 18,
-    "lines of C in src and include": 44483,
+    "lines of C in src and include": 44589,  # 106 more: the table of findings and what says them
     f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
-    "files that print warnings": 13,
-    "words of docs and README": 39869,
+    "files that print warnings": 1,
+    "words of docs and README": 39980,
     "words of the equations": 11913,
     "files in scripts": 13,
 }

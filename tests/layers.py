@@ -12,7 +12,7 @@ from pathlib import Path
 # From the top down.  Each row: layer, headers of include/clathra/ (without .h) that belong to it, folders of src/.
 LAYERS = [
     ("dimension", ["dimension"], []),
-    ("base", ["base", "words"], ["base"]),
+    ("base", ["base", "words", "finding"], ["base"]),
     ("tensor", ["inline", "tensor", "eigen", "jet", "fields"], ["tensor", "fields"]),
     ("laws", ["laws"], ["laws"]),
     ("material", ["material"], ["material"]),
@@ -36,6 +36,7 @@ LAYERS = [
     ("stepper", ["stepper"], ["stepper"]),
     ("io", ["io"], ["io"]),
     ("case", [], ["case"]),
+    ("findings", ["findings"], ["findings"]),
     ("run", ["run"], ["run"]),
     ("main", [], ["."]),
 ]

@@ -106,25 +106,8 @@ double FaceLoad(const Scene *c, Side side, PetscInt region, const double x[CL_DI
 
 /* Stresses of the particles in geostatic regions, just seeded; docs/equations.md (83), (84).  The same on any number
    of ranks; no communication. */
-PetscErrorCode GeostaticStress(const Scene *c, const Grid *g, Particles *P);
-#define CL_ADVICE 800
-/* Where pore pressure above the stiffness of the skeleton is held by tractions: what to do instead; else empty. */
-PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE]);
-/* Where p_g - p_w of two regions that touch jumps at the start (342), the first that do: what to do about it; else
-   empty.  The same on all ranks.  Collective. */
-PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P, char text[CL_ADVICE]);
-/* Warnings about a start out of balance with gravity, or in it by tractions alone, or whose capillary pressure jumps
-   between regions (342), whose gas is less than its residual share, or whose rate of
-   reaction nobody has measured, on rank 0.  Collective. */
-PetscErrorCode           InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P);
+PetscErrorCode           GeostaticStress(const Scene *c, const Grid *g, Particles *P);
 extern const char *const cl_side[]; /* words of Side, and none */
-/* Warns of sides that nothing bears though the pores behind them do, on rank 0. */
-PetscErrorCode FreeSidesWarning(MPI_Comm comm, const Scene *c);
-/* Warns of a pressure or an inflow on a line that a condition closes for the fluids, on rank 0. */
-PetscErrorCode ClosedWarning(MPI_Comm comm, const Scene *c);
-/* The same about particles whose pore pressure is far from hydrostatic (341), whose gas gravity moves within the `span`
-   of the run (s) (315), whose hydrate is not stable, or whose gas becomes hydrate. */
-PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span);
 
 /* Prescribed values of all conditions at one time, at height 0 where they vary with depth, and gravity then.  Of a
    plate `value` is the position since the start, which its owner fills in where the force is prescribed. */

@@ -4,6 +4,7 @@
 
 #include "clathra/case.h"
 #include "clathra/explicit.h"
+#include "clathra/finding.h"
 
 /* Extremes of particles: mean pore pressure, Pa, and temperature, degC. */
 enum { LOWEST_P = 0, HIGHEST_P, LOWEST_T, HIGHEST_T, EXTREMES };
@@ -237,14 +238,16 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 {
   return fmin(c->cfl * limit->dt, c->dt_max);
 }
-/* The line that follows every "Given up": try these words. */
-PetscErrorCode StepperTry(const Stepper *s, const char *words);
-/* The same, with the words for this cause. */
-PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status);
-/* The same of steps that are far shorter than the forecast hoped for; newton: steps that it refused shorten them. */
-PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton);
-/* The last word of a run after so many attempts at a step: why the last one failed, where, what may be tried. */
-PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status);
+#define STEPPER_ADVICE 768
+/* What to try where steps are far shorter than the forecast hoped for; newton: steps that it refused shorten them. */
+void StepperAdviceSlow(const Stepper *s, bool newton, char words[STEPPER_ADVICE]);
+/* Says that the run is given up now, why (behind the time), and what may be tried (NULL: what helps against this
+ * cause).
+ */
+PetscErrorCode StepperGiveUp(const Stepper *s, ClStatus cause, const char *what_to_try, const char *why, ...)
+    __attribute__((format(printf, 4, 5)));
+/* The same after so many attempts at a step: why the last one failed, and where. */
+PetscErrorCode StepperGiveUpStep(const Stepper *s, PetscInt attempts, ClStatus status);
 /* Steps that kinks of the loads, output times and dt_max ask for in the last `left` (s) of the stage, at least;
  *kinks (or NULL): how many of them end at a kink. */
 double StepperStops(const Stepper *s, double left, double *kinks);

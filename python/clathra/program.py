@@ -21,7 +21,7 @@ ENVIRONMENT = {
 PATIENCE = 60.0  # s in which a run that is to stop ends its step and saves itself; then it is killed
 BEGINS = 5.0  # s after which it has begun, though it has no row: a signal while MPI begins is lost, or kills it
 ENDED = re.compile(r"^(Given up at .*|Ended by .*|Ended before .*)$", re.M)
-LOG = re.compile(r"^(.*: (?:note|warning): .*|-{20,}\n(?:.*\n)*?-{20,}|mpiexec: Forwarding .*)\n?", re.M)  # what is no error: notes, warnings, and mpiexec's words on the end of a rank
+LOG = re.compile(r"^(.*: (?:note|warning): .*(?:\n  What to try, in this order: .*)?|-{20,}\n(?:.*\n)*?-{20,}|mpiexec: Forwarding .*)\n?", re.M)  # what is no error: notes, warnings, and mpiexec's words on the end of a rank
 
 
 class Failed(Exception):

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from . import shown
-from .run import Run
+from .run import FINDING, Run
 from .tables import Damaged, probe_names
 from .units import duration, durations, time_unit
 
@@ -255,7 +255,7 @@ def facts(run):
             ruled[word[1]] = ruled.get(word[1], 0) + 1
     commands = [line[2:] for line in lines if line.startswith("$ ")]
     return {
-        "warnings": [line for line in lines if "warning" in line.lower() or line.startswith(("Given up", "clathra: note:"))],
+        "warnings": run.findings,
         "forecast": [line.strip().replace("forecast: ", "") for line in lines if "forecast: " in line],
         "fact": took[1] if took else "the run has not ended",
         "refused": sorted(refused.items(), key=lambda r: -r[1]), "ruled": sorted(ruled.items(), key=lambda r: -r[1]),
@@ -269,7 +269,7 @@ def page(run, damaged):
     charts = {name: either([], part, run, axis) for name, part in (("production", meter_charts), ("probes", probe_charts), ("steps", step_charts), ("balance", balance_charts))}
     pictures = either(None, film, run)
     drawn = either(None, film_scene, run, pictures) if pictures else None
-    data = {"title": run.title + (shown.where(run) if pictures else ""), "folder": str(run.folder.resolve()), "finished": run.finished, "summary": run.summary, **facts(run),
+    data = {"title": run.title + (shown.where(run) if pictures else ""), "folder": str(run.folder.resolve()), "finished": run.finished, "summary": FINDING.sub("", run.summary).rstrip(), **facts(run),
             "film": pictures if drawn else None, "scene": drawn, "case": (run.folder / "case.yaml").read_text(encoding="utf-8", errors="replace"), "log": run.log[-200_000:], "charts": charts}  # fmt: skip
     data["warnings"] = [*dict.fromkeys(damaged), *data["warnings"]]
     said = {"title": html.escape(run.title), "data": json.dumps(data, allow_nan=False, ensure_ascii=False).replace("<", "\\u003c")}  # no tag within a script

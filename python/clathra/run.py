@@ -12,6 +12,7 @@ from .tables import Damaged, Entries, last_row, probe_names, read_csv, read_line
 
 
 WORK = re.compile(r"integrator (\S+(?: stage)?), (\d+) steps, (\d+) refused, (\d+) Newton iterations, ([\d.]+) s")
+FINDING = re.compile(r"^(?:.*: (?:note|warning): |Given up at |A likely cause: ).*(?:\n  What to try, in this order: .*)?", re.M)  # src/base/finding.c
 
 
 class NoRun(Exception):
@@ -68,6 +69,11 @@ class Run:
     meters = cached_property(lambda self: self._table("meters.csv"))
     summary = cached_property(lambda self: self._text("summary.txt"))
     log = cached_property(lambda self: self._text("log.txt"))
+
+    @property
+    def findings(self):
+        """What the program warned of, noted and advised, each once: [sentence, with what to try behind it]."""
+        return [*dict.fromkeys(FINDING.findall(self.log))]
 
     @property
     def title(self):

@@ -3,6 +3,12 @@
 #include "clathra/point_heat.h"
 #include "clathra/shape.h"
 
+#if CL_DIM == 2
+const char *const cl_side[] = {"left", "right", "bottom", "top", "none", NULL};
+#else
+const char *const cl_side[] = {"left", "right", "bottom", "top", "back", "front", "none", NULL};
+#endif
+
 /* ---------------------------------------------------------------- faces */
 /* An area vector goes with the motion: a = cof(F) n. */
 static void Carry(const Kinematics *k, const double n[CL_DIM], double a[CL_DIM], double da[CL_DIM][MOTION_COUNT])

@@ -4,6 +4,7 @@
 
 #include "clathra/boundary.h"
 #include "clathra/case.h"
+#include "clathra/finding.h"
 #include <string.h>
 
 /* ---------------------------------------------------------------- units.c */
@@ -59,8 +60,9 @@ typedef struct {
 /* Adds one error: "file:line: key = value: message"; `key` and `value` may be NULL. */
 void ReaderError(Reader *r, const char *key, const char *value, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
-/* Prints "file:line: warning: message", the place that of `key`. */
-void ReaderWarn(const Reader *r, const char *key, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Says a finding, the place that of `key`. */
+void ReaderWarn(const Reader *r, FindingId id, const char *key, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 /* Reads the file on rank 0, shares it, and fills the entries; errors go to the reader. */
 PetscErrorCode ReaderLoad(Reader *r, const char *path);
 PetscErrorCode ReaderDestroy(Reader *r);
@@ -172,12 +174,12 @@ int  EditDistance(const char *a, const char *b);
     ReaderError(r, option_, NULL, __VA_ARGS__);                                                                        \
   } while (0)
 
-/* Prints a warning that names where the key of an instance is given; needs the reader r. */
-#define WARN_AT(g, instance, key, ...)                                                                                 \
+/* Says a finding that names where the key of an instance is given; needs the reader r. */
+#define WARN_AT(id, g, instance, key, ...)                                                                             \
   do {                                                                                                                 \
     char option_[256];                                                                                                 \
     KeyOption(option_, sizeof option_, g, instance, key);                                                              \
-    ReaderWarn(r, option_, __VA_ARGS__);                                                                               \
+    ReaderWarn(r, id, option_, __VA_ARGS__);                                                                           \
   } while (0)
 
 /* ---------------------------------------------------------------- words.c, value.c, forms.c, check.c */

@@ -76,7 +76,7 @@ PetscErrorCode CaseIdle(Reader *r, const Case *c)
     fprintf(f, " and %d more", (int)(n - SHOWN));
   fclose(f);
   if (n)
-    PetscCall(PetscFPrintf(r->comm, stderr, "%s: note: %d key%s nothing in this scene (%s): %s\n", r->file, (int)n,
+    PetscCall(FindingSayOf(r->comm, FINDING_IDLE_KEYS, r->file, NULL, "%d key%s nothing in this scene (%s): %s", (int)n,
                            n > 1 ? "s do" : " does", c->fields_wanted, text));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -97,7 +97,7 @@ void CheckPlasticity(Reader *r, const Case *c, const Material *m)
   if (isfinite(m->elasticity.E0) && p->c_res <= p->c_min)
     CheckSnapBack(r, &c->scene, m);
   if (p->psi_max > p->phi_peak)
-    WARN_AT(GROUP_MATERIAL, m->name, "plasticity_dilation_max",
+    WARN_AT(FINDING_DILATION_ABOVE_FRICTION, GROUP_MATERIAL, m->name, "plasticity_dilation_max",
             "material %s dilates more than it rubs (dilation_max %g deg > friction_peak %g deg)", m->name, p->psi_max,
             p->phi_peak);
 }
@@ -132,7 +132,7 @@ void CheckReduction(Reader *r, const Case *c)
     const Plasticity *p = &c->scene.material[k].plasticity;
 
     if (p->type != PLASTICITY_NONE && p->psi_max == 0.0 && p->phi_peak > 0.0)
-      WARN_AT(GROUP_CASE, "", "strength_factor",
+      WARN_AT(FINDING_STRENGTH_BY_GRID, GROUP_CASE, "", "strength_factor",
               "strength_factor with a dilation of 0 deg (material %s): the factor at which a body fails then depends "
               "on the grid, even without softening; compare grids",
               c->scene.material[k].name);

@@ -212,6 +212,7 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *path, Case *c, bool *ok)
   PetscInt errors;
 
   PetscFunctionBeginUser;
+  FindingForget();
   memset(c, 0, sizeof *c);
   PetscCall(ReaderLoad(&r, path));
   strcpy(c->file, r.file);

@@ -65,7 +65,7 @@ static Where WhereGiven(const Reader *r, const char *key)
   return where;
 }
 
-void ReaderWarn(const Reader *r, const char *key, const char *format, ...)
+void ReaderWarn(const Reader *r, FindingId id, const char *key, const char *format, ...)
 {
   char    what[1024];
   va_list args;
@@ -73,7 +73,7 @@ void ReaderWarn(const Reader *r, const char *key, const char *format, ...)
   va_start(args, format);
   vsnprintf(what, sizeof what, format, args);
   va_end(args);
-  PetscCallAbort(PETSC_COMM_SELF, PetscFPrintf(r->comm, stderr, "%s: warning: %s\n", WhereGiven(r, key).s, what));
+  PetscCallAbort(PETSC_COMM_SELF, FindingSayOf(r->comm, id, WhereGiven(r, key).s, NULL, "%s", what));
 }
 
 void ReaderError(Reader *r, const char *key, const char *value, const char *format, ...)

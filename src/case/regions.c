@@ -213,10 +213,9 @@ static PetscErrorCode Cut(const Reader *r, Case *c, PetscInt i, PetscInt j)
   more[minus->n++] = j;
   PetscCall(PetscFree(minus->i));
   minus->i = more;
-  PetscCall(
-      PetscFPrintf(r->comm, stderr,
-                   "%s: note: region %s lies over region %s, which is cut out there: the later one in regions wins\n",
-                   r->file, c->scene.region[j].name, g->name));
+  PetscCall(FindingSayOf(r->comm, FINDING_REGIONS_OVERLAP, r->file, NULL,
+                         "region %s lies over region %s, which is cut out there: the later one in regions wins",
+                         c->scene.region[j].name, g->name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -84,8 +84,8 @@ static int Lock(const char *dir, int *lock)
       SayTaken(dir, *lock);
       return CL_EXIT_INPUT;
     }
-    fprintf(stderr, "clathra: warning: %s cannot be locked (%s): see to it that no other run writes there\n", path,
-            strerror(errno));
+    (void)FindingSay(PETSC_COMM_SELF, FINDING_FOLDER_NOT_LOCKED,
+                     "%s cannot be locked (%s): see to it that no other run writes there", path, strerror(errno));
   }
   gethostname(host, sizeof(host) - 1);
   snprintf(who, sizeof(who), "process %ld on %s\n", (long)getpid(), host);

@@ -4,6 +4,7 @@
    whatever else is small are written by rank 0. */
 #pragma once
 
+#include "clathra/finding.h"
 #include "clathra/io.h"
 
 #include <hdf5.h>

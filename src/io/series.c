@@ -77,7 +77,8 @@ static PetscErrorCode Look(Output *out, OutputFrom from, PetscInt number)
   snprintf(kept, sizeof(kept), "%s.damaged", path);
   if (access(path, F_OK) != 0) {
     if (from == OUTPUT_HERE && access(kept, F_OK) != 0)
-      fprintf(stderr, "clathra: warning: %s is missing; it is left out of fields.h5\n", path);
+      PetscCall(
+          FindingSay(PETSC_COMM_SELF, FINDING_SNAPSHOT_MISSING, "%s is missing; it is left out of fields.h5", path));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(H5FileOpen(path, &file));
@@ -90,7 +91,8 @@ static PetscErrorCode Look(Output *out, OutputFrom from, PetscInt number)
     PetscCall(Remember(out, &entry));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  fprintf(stderr, "clathra: warning: %s is damaged; it is set aside as %s and left out of fields.h5\n", path, kept);
+  PetscCall(FindingSay(PETSC_COMM_SELF, FINDING_SNAPSHOT_DAMAGED,
+                       "%s is damaged; it is set aside as %s and left out of fields.h5", path, kept));
   out->failed = !IoRename(path, kept);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

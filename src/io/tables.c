@@ -76,22 +76,26 @@ static bool CopyRows(const char *path, int column, const char *header, double t,
 }
 
 /* At a restart in their folder the rows up to its time should be there, of a balance those of its steps. */
-static void SayLost(const Case *c, TableId id, const char *path, const Kept *kept, double t)
+static PetscErrorCode SayLost(const Case *c, TableId id, const char *path, const Kept *kept, double t)
 {
   const double every = id == TABLE_BALANCE ? 0.0 : c->probe_every;
   const bool   ends  = kept->last > t - every - 1e-9 * t || (id == TABLE_BALANCE && t <= c->scene.t_begin);
 
+  PetscFunctionBeginUser;
   if (!kept->there)
-    fprintf(stderr, "clathra: warning: %s is missing; it begins anew at t = %s\n", path, TimeAt(t).s);
+    PetscCall(FindingSay(PETSC_COMM_SELF, FINDING_TABLE_MISSING, "%s is missing; it begins anew at t = %s", path,
+                         TimeAt(t).s));
   else if (!kept->same)
-    fprintf(stderr,
-            "clathra: warning: %s has not the columns of this run; it is kept as %s.old and begins anew at t = %s\n",
-            path, path, TimeAt(t).s);
+    PetscCall(FindingSay(PETSC_COMM_SELF, FINDING_TABLE_COLUMNS,
+                         "%s has not the columns of this run; it is kept as %s.old and begins anew at t = %s", path,
+                         path, TimeAt(t).s));
   if (kept->broken)
-    fprintf(stderr, "clathra: warning: %s is damaged; %d of its rows are left out\n", path, kept->broken);
+    PetscCall(FindingSay(PETSC_COMM_SELF, FINDING_TABLE_DAMAGED, "%s is damaged; %d of its rows are left out", path,
+                         kept->broken));
   if (kept->same && !ends)
-    fprintf(stderr, "clathra: warning: %s lacks the rows from t = %s to t = %s\n", path,
-            TimeAt(fmax(kept->last, c->scene.t_begin)).s, TimeAt(t).s);
+    PetscCall(FindingSay(PETSC_COMM_SELF, FINDING_TABLE_ROWS, "%s lacks the rows from t = %s to t = %s", path,
+                         TimeAt(fmax(kept->last, c->scene.t_begin)).s, TimeAt(t).s));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Header and kept rows take the place of the table, and it goes on at the end. */
@@ -115,7 +119,7 @@ static PetscErrorCode Open(Output *out, const Model *m, TableId id, OutputFrom f
     out->failed = !CopyRows(path, table[id].time, header, t, slack, f, &kept);
   PetscCall(RowKeep(out));
   if (from == OUTPUT_HERE && !out->failed)
-    SayLost(c, id, path, &kept, t);
+    PetscCall(SayLost(c, id, path, &kept, t));
   if (!out->failed)
     out->failed = !IoReplace(path, false, 1, &(IoPiece){out->text, out->size});
   if (!out->failed)

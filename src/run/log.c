@@ -138,5 +138,6 @@ PetscErrorCode LogEnd(void)
   free(heard.text);
   heard.text = NULL;
   heard.n = heard.cap = 0;
+  FindingForget();
   PetscFunctionReturn(PETSC_SUCCESS);
 }

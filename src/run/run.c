@@ -1,6 +1,5 @@
 /* Runs a case: builds the model, steps it, writes what the case asks for, and says how it went. */
 #include "run_private.h"
-#include "plastic.h"
 #include "clathra/words.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,8 +12,7 @@ typedef struct {
   Folder    folder;
   Watch     watch;
   StageLog *log;
-  Slow      slow;
-  Ranges    ranges;
+  Findings  findings;
   char     checkpoint[PETSC_MAX_PATH_LEN + 16], saved[PETSC_MAX_PATH_LEN]; /* to write; last that was written or read */
   char     restart[PETSC_MAX_PATH_LEN], initial[PETSC_MAX_PATH_LEN];       /* -restart, -restart_as_initial */
   double   t_saved;                                                        /* of that */
@@ -23,7 +21,6 @@ typedef struct {
   double   clock_start;                                                    /* s of the wall */
   bool     check;                                                          /* ends before anything is written */
   bool     quiet, restarted;
-  bool     frozen;        /* ended for ice */
   bool     written, lost; /* a checkpoint by this run; not all could be written */
 } Run;
 
@@ -72,7 +69,7 @@ static PetscErrorCode Progress(const Stepper *s, const StepInfo *info, Run *run)
     snprintf(begin, sizeof(begin), "%s + ", TimeWords(t_begin, 6).s);
   }
   PetscCall(LeftWords(&left, rest));
-  PetscCall(YieldText(s->model, yields));
+  PetscCall(FindingsYieldText(s->model, yields));
   if (info->cuts)
     snprintf(cuts, sizeof(cuts), ", after %" PetscInt_FMT " refused", info->cuts);
   if (s->explicit)
@@ -131,10 +128,9 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   PetscFunctionBeginUser;
   PetscCall(WatchStep(s->model->grid.comm, &run->watch, &save, &end));
   PetscCall(StageLogStep(run->log, s, info));
-  PetscCall(SlowLook(&run->slow, s, info, run->log));
-  PetscCall(RangesLook(&run->ranges, s));
-  PetscCall(IceLook(s, &run->frozen));
-  PetscCall(StillLook(s));
+  run->findings.info = info;
+  StageLogPace(run->log, s, &run->findings.pace);
+  PetscCall(FindingsAt(&run->findings, FINDING_AT_STEP));
   PetscCall(OutputBalance(run->out, s->model, &s->state, info));
   if (c->probe_every == 0.0 || AtMultiple(c, c->probe_every, t) || last) {
     PetscCall(OutputProbes(run->out, s->model, &s->state));
@@ -150,61 +146,49 @@ static PetscErrorCode Monitor(Stepper *s, const StepInfo *info, void *ctx)
   run->lost = run->lost || !ok;
   if (!run->lost && (save || AtMultiple(c, c->checkpoint_every, t)))
     PetscCall(Save(s, run));
-  s->stop = s->stop || run->lost || run->frozen || end;
+  s->stop = s->stop || run->lost || run->findings.ends || end;
   PetscCall(Progress(s, info, run));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the run took and found, on stdout and in summary.txt. */
 static PetscErrorCode Summary(const Stepper *s, Run *run)
 {
-  const MPI_Comm      comm = s->model->grid.comm;
-  const StepperState *z    = &s->state;
-  char                text[PETSC_MAX_PATH_LEN + 4352], ranges[512], gone[512], local[512], loose[512];
-  char above[64] = "", since[64] = "", left[128], ice[256], yields[256], gaps[256], uneven[256], ranks[128],
-       hydrate[160], *stages, *all;
-  ModelTotals t;
-  double      error[3];
-  bool        ok;
+  const MPI_Comm      comm      = s->model->grid.comm;
+  const StepperState *z         = &s->state;
+  char                above[64] = "", since[64] = "", *stages, *text;
+  ModelTotals         t;
+  double              error[3];
+  bool                ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelComputeTotals(s->model, &t));
   StepperErrors(z, &t, error);
-  LocalSummary(s, local);
-  PetscCall(YieldSummary(s->model, yields));
-  LooseSummary(s, loose);
   if (run->restarted)
     snprintf(since, sizeof(since), " for the %" PetscInt_FMT " steps since the restart", z->step - run->taken);
   if (z->loose_total)
     snprintf(above, sizeof(above), "; %" PetscInt_FMT " steps above the tolerance", z->loose_total);
-  HydrateSummary(z, t.hydrate, hydrate);
-  LeftSummary(s, left);
-  GoneSummary(z, gone);
-  UnevenSummary(z, uneven);
-  PetscCall(LongSummary(s->model, gaps));
-  IceSummary(s, ice);
-  PetscCall(RangeSummary(s, ranges));
-  PetscCall(RanksSummary(s->model, ranks));
-  snprintf(text, sizeof(text),
-           "%s: %s at t = %s\n"
-           "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-           " Newton iterations, %.2f s%s%s\n%s"
-           "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K\n"
-           "%s%s%s%s%s%s%s%s%s%s  results in %s\n",
-           StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", TimeAt(z->t).s,
-           StepperCase(s)->nstage ? "by stage"
-           : s->auto_.on          ? case_integrator[INTEGRATOR_AUTO]
-                                  : StepperName(s),
-           z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, since, above, local, error[0],
-           error[1], error[2], hydrate, left, ranges, yields, gone, loose, uneven, gaps, ice, ranks,
-           StepperCase(s)->output_dir);
+  PetscCall(FindingSay(
+      comm, FINDING_RUN,
+      "%s: %s at t = %s\n"
+      "  integrator %s, %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
+      " Newton iterations, %.2f s%s%s\n"
+      "  balance errors: water %.2e, methane %.2e of the initial mass, heat %.2e of what warms the body by 1 K",
+      StepperCase(s)->title, StepperDone(s) ? "finished" : "stopped", TimeAt(z->t).s,
+      StepperCase(s)->nstage ? "by stage"
+      : s->auto_.on          ? case_integrator[INTEGRATOR_AUTO]
+                             : StepperName(s),
+      z->step, z->failures_total, z->newton_total, Wall() - run->clock_start, since, above, error[0], error[1],
+      error[2]));
+  PetscCall(FindingsAt(&run->findings, FINDING_AT_SUMMARY));
   PetscCall(StageLogSummary(run->log, s, &stages));
-  PetscCall(PetscMalloc1(strlen(text) + strlen(stages) + 1, &all));
-  strcpy(stpcpy(all, text), stages);
-  PetscCall(PetscPrintf(comm, "%s%s", text, stages));
-  PetscCall(FolderAppendText(comm, StepperCase(s)->output_dir, "summary.txt", true, all, strlen(all), &ok));
+  PetscCall(FindingSay(comm, FINDING_RESULTS, "  results in %s%s", StepperCase(s)->output_dir, stages));
+  PetscCall(FindingsAt(&run->findings, FINDING_AT_END));
+  PetscCall(FindingSummary(&text));
+  PetscCall(FolderAppendText(comm, StepperCase(s)->output_dir, "summary.txt", true, text, strlen(text), &ok));
   run->lost = run->lost || !ok;
   PetscCall(PetscFree(stages));
-  PetscCall(PetscFree(all));
+  free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -239,20 +223,15 @@ static PetscErrorCode CheckFolder(MPI_Comm comm, const Case *c, bool restart, bo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a user should know of a start that is none of a checkpoint's; -case_check says it, too. */
-static PetscErrorCode StartWarnings(const Case *c, const Model *m, const Run *run)
+/* What a user should know of the start; -case_check says it, too. */
+static PetscErrorCode FindStart(Run *run)
 {
   PetscFunctionBeginUser;
-  PetscCall(EveryNotes(m->grid.comm, c));
-  for (PetscInt k = 0; k < PetscMax(c->nstage, 1); k++)
-    PetscCall(ClosedWarning(m->grid.comm, &CaseInStage(c, k)->scene));
-  if (run->restart[0])
-    PetscFunctionReturn(PETSC_SUCCESS);
-  if (!run->initial[0]) {
-    PetscCall(FreeSidesWarning(m->grid.comm, m->c));
-    PetscCall(InitialWarnings(m->grid.comm, m->c, &m->P));
-  }
-  PetscCall(UnsteadyWarnings(m->grid.comm, m->c, &m->P, c->t_end - c->scene.t_begin));
+  PetscCall(FindingsAt(&run->findings, FINDING_AT_START));
+  if (!run->restart[0] && !run->initial[0])
+    PetscCall(FindingsAt(&run->findings, FINDING_AT_SEEDING));
+  if (!run->restart[0])
+    PetscCall(FindingsAt(&run->findings, FINDING_AT_BEGIN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,20 +259,18 @@ static PetscErrorCode Begin(const Case *c, Stepper *s, Run *run, bool restart)
   PetscCall(WriteLog(c, m->grid.comm, run));
   run->clock_start = Wall();
   PetscCall(StageLogCreate(s, &run->log));
-  SlowBegin(&run->slow, s);
-  RangesBegin(&run->ranges, s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Why the run ends here, and what there is to go on from. */
 static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
 {
-  const MPI_Comm comm              = s->model->grid.comm;
-  const double   t                 = s->state.t;
-  const char    *why               = run->lost  ? "not all could be written; see to it"
-                                     : s->empty ? "no particle is left in the grid"
-                                                : "the state is not finite";
-  char           advice[CL_ADVICE] = "", *options;
+  const MPI_Comm comm = s->model->grid.comm;
+  const double   t    = s->state.t;
+  const char    *why  = run->lost  ? "not all could be written; see to it"
+                        : s->empty ? "no particle is left in the grid"
+                                   : "the state is not finite";
+  char          *options;
 
   PetscFunctionBeginUser;
   PetscCall(CommandOptions(&options));
@@ -309,16 +286,10 @@ static PetscErrorCode SayEnd(const Stepper *s, const Run *run, bool ok)
   } else if (s->signal && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended by signal %d (%s) at t = %s; go on with -restart %s%s\n", s->signal,
                           strsignal(s->signal), TimeAt(t).s, run->saved, options));
-  } else if (run->watch.over && !run->frozen && ok && !StepperDone(s)) {
+  } else if (run->watch.over && !run->findings.ends && ok && !StepperDone(s)) {
     PetscCall(PetscPrintf(comm, "Ended at t = %s, before -time_limit %g s is over; go on with -restart %s%s\n",
                           TimeAt(t).s, run->watch.limit, run->saved, options));
-  } else if (!ok || run->frozen) {
-    if (!run->frozen)
-      PetscCall(AmbientAdvice(s->model->c, advice));
-    if (!run->frozen && !advice[0])
-      PetscCall(CapillaryAdvice(comm, s->model->c, &s->model->P, advice));
-    if (advice[0])
-      PetscCall(PetscPrintf(comm, "A likely cause: %s\n", advice));
+  } else if (!ok || run->findings.ends) {
     PetscCall(PetscPrintf(comm, "The last good state (t = %s) is saved in %s\n", TimeAt(t).s, run->saved));
   }
   free(options);
@@ -347,6 +318,8 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   PetscFunctionBeginUser;
   if (!run->lost)
     PetscCall(StepperRun(s, &ok));
+  if (!ok)
+    PetscCall(FindingsAt(&run->findings, FINDING_AT_GIVING_UP));
   if (!run->lost &&
       !(run->written && run->t_saved == s->state.t)) /* after a loss it would promise rows that are not there */
     PetscCall(Save(s, run));
@@ -356,9 +329,8 @@ static PetscErrorCode Advance(Stepper *s, Run *run, int *exit_code)
   PetscCall(OutputDestroy(&run->out, s->model->grid.comm, &closed));
   run->lost = run->lost || !closed;
   PetscCall(SayEnd(s, run, ok));
-  PetscCall(EndWarnings(s));
   PetscCall(WriteLog(StepperCase(s), s->model->grid.comm, run));
-  if (run->lost || run->frozen || !ok)
+  if (run->lost || run->findings.ends || !ok)
     *exit_code = CL_EXIT_FAILED;
   else if ((s->signal || run->watch.over) && !StepperDone(s))
     *exit_code = CL_EXIT_SIGNAL;
@@ -398,7 +370,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
   PetscCall(StepperReady(s, &ok));
   if (!ok)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StartWarnings(c, s->model, run));
+  run->findings = (Findings){.c = c, .s = s, .comm = s->model->grid.comm};
+  PetscCall(FindStart(run));
   if (run->check) {
     PetscCall(PetscOptionsHasHelp(NULL, &help));
     if (help && (s->scheme->step || s->auto_.on))
@@ -416,9 +389,8 @@ static PetscErrorCode Go(const Case *c, Stepper *s, Run *run, int *exit_code)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Options of ours that nobody read are misspelt; the solver reads its own later, so those are only warned about at the
- * end. */
-static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
+/* Options of ours that nobody read are misspelt; the solver reads its own later. */
+static PetscErrorCode CheckOptions(MPI_Comm comm, PetscInt *unknown)
 {
   static const char *const prefix[] = {"stepper_", "newton_", "model_", "output_", "checkpoint_", "case_"};
   char                   **name, **value;
@@ -432,13 +404,10 @@ static PetscErrorCode CheckOptions(MPI_Comm comm, bool ours, PetscInt *unknown)
 
     for (size_t q = 0; !mine && q < sizeof(prefix) / sizeof(*prefix); q++)
       PetscCall(PetscStrbeginswith(name[k], prefix[q], &mine));
-    if (mine != (PetscBool)ours)
+    if (!mine)
       continue;
     (*unknown)++;
-    PetscCall(PetscFPrintf(comm, stderr,
-                           ours ? "clathra: there is no option -%s; see -help\n"
-                                : "clathra: warning: option -%s was not used\n",
-                           name[k]));
+    PetscCall(PetscFPrintf(comm, stderr, "clathra: there is no option -%s; see -help\n", name[k]));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &name, &value));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -512,7 +481,7 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
   stepper.monitor_ctx = &run;
   stepper.next_event  = NextEvent;
   stepper.interrupted = ProcessSignal;
-  PetscCall(CheckOptions(comm, true, &unknown));
+  PetscCall(CheckOptions(comm, &unknown));
   if (unknown) {
     *exit_code = CL_EXIT_INPUT;
   } else {
@@ -527,8 +496,6 @@ PetscErrorCode CaseRun(MPI_Comm comm, const Case *c, bool check, int *exit_code)
     PetscCall(PrintEquilibrium(&c->scene, comm));
     PetscCall(PrintSolubility(&c->scene, comm));
     PetscCall(Go(c, &stepper, &run, exit_code));
-    if (!check) /* the solver has read its own by now */
-      PetscCall(CheckOptions(comm, false, &unknown));
   }
   PetscCall(StepperDestroy(&stepper));
   PetscCall(ModelDestroy(&model));

@@ -1,6 +1,7 @@
 /* run_private: shared by the files of src/run. */
 #pragma once
 
+#include "clathra/findings.h"
 #include "clathra/io.h"
 #include "clathra/run.h"
 #include "clathra/words.h"
@@ -41,10 +42,8 @@ PetscErrorCode MemoryLook(MPI_Comm comm, const Case *c, const Model *m, bool *ok
 /* After t, s; INFINITY if there is none.  Multiples of `every` count from the begin of the stage. */
 double NextMultiple(const Case *c, double every, double t);
 double NextSnapshot(const Case *c, double t);
-/* Notes of times between outputs that are longer than the run or a stage. */
-PetscErrorCode EveryNotes(MPI_Comm comm, const Case *c);
-bool           AtMultiple(const Case *c, double every, double t);
-bool           AtSnapshot(const Case *c, double t);
+bool   AtMultiple(const Case *c, double every, double t);
+bool   AtSnapshot(const Case *c, double t);
 
 /* ---------------------------------------------------------------- stages.c */
 /* What each stage took in this process. */
@@ -58,75 +57,16 @@ typedef struct {
   double steps, time, flat;
 } Left;
 void StageLogProgress(const StageLog *log, const Stepper *s, Left *left);
-/* Steps taken in the stage by this process, and s of the wall. */
-PetscInt StageLogTaken(const StageLog *log);
-double   StageLogSpent(const StageLog *log);
-/* How a stage goes: share of it that is done, steps left as the run itself shows (NAN: not known), s of the wall for
-   one, so far, and to the end if time went on as in the last steps (NAN: not known). */
-typedef struct {
-  double done, left, step, spent, flat;
-} Pace;
 void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace);
-/* A line for every stage that was entered and every integrator that worked in it; empty where there was one only.
-   PetscFree it. */
+/* A line for every stage that was entered and every integrator that worked in it, each behind a line's end; PetscFree
+   it. */
 PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **text);
-
-/* ---------------------------------------------------------------- slow.c */
-typedef struct {
-  double   next, clock; /* steps of the stage, and s of the wall, before which nothing is said */
-  PetscInt stage, refused;
-  bool     said;
-} Slow;
-/* At the begin of a run. */
-void SlowBegin(Slow *slow, const Stepper *s);
-/* Is far more left than was forecast, in steps or s of the wall, after far more than was forecast? */
-bool SlowIs(const Slow *slow, const Forecast *f, PetscInt taken, const Pace *pace);
-/* After a step that the log knows: a line if the stage takes far more steps, or longer, than was forecast, again when
-   it has taken twice as many steps and twice as long. */
-PetscErrorCode SlowLook(Slow *slow, const Stepper *s, const StepInfo *info, const StageLog *log);
-
-/* ---------------------------------------------------------------- summary.c: lines of the summary, empty where there
-   is nothing to say */
-void           LocalSummary(const Stepper *s, char text[512]); /* of an integrator without matrices */
-void           LeftSummary(const Stepper *s, char text[128]);  /* what Newton's method left (277) */
-void           HydrateSummary(const StepperState *z, double now, char text[160]); /* now: kg in the body */
-void           GoneSummary(const StepperState *z, char text[512]);   /* particles that left the grid (373) */
-void           LooseSummary(const Stepper *s, char text[512]);       /* largest error, and those put up with */
-void           UnevenSummary(const StepperState *z, char text[256]); /* steps without exchange within cells (353) */
-PetscErrorCode LongSummary(const Model *m, char text[256]);          /* domains longer than a cell; collective */
-void           IceSummary(const Stepper *s, char text[256]);         /* water below its melting point */
-PetscErrorCode RanksSummary(const Model *m, char text[128]); /* how evenly ranks share the particles; collective */
-
-/* ---------------------------------------------------------------- borders.c */
-/* One of the last lines: borders of layers that have left the grid's lines; collective. */
-PetscErrorCode NoteBorders(const Stepper *s);
-
-/* ---------------------------------------------------------------- still.c */
-#define STILL_WORDS 2048
-/* After a step: at the end of a stage, or of a run without stages, a line with the conditions and meters of which
-   nothing came in all of it.  Collective. */
-PetscErrorCode StillLook(Stepper *s);
-
-/* ---------------------------------------------------------------- ranges.c */
-/* Lines of the summary: the extremes of p and T. */
-PetscErrorCode RangeSummary(const Stepper *s, char text[512]);
-/* The last lines of a run: what lies outside of what started and acted, errors far above the tolerance, borders. */
-PetscErrorCode EndWarnings(const Stepper *s);
-/* Temperatures that start and conditions lead to, degC, and whether one beyond them and hydrate's was told of. */
-typedef struct {
-  double low, high;
-  bool   said;
-} Ranges;
-/* At the begin of a run. */
-void RangesBegin(Ranges *r, const Stepper *s);
-/* After a step: a warning, once, if a particle's temperature is some kelvin beyond. */
-PetscErrorCode RangesLook(Ranges *r, const Stepper *s);
 
 /* ---------------------------------------------------------------- phases.c */
 /* Curve and pressure of equilibrium of each region that reacts, at its temperature. */
 PetscErrorCode PrintEquilibrium(const Scene *c, MPI_Comm comm);
 /* Methane in the water of the materials, mol/(m^3 Pa). */
 PetscErrorCode PrintSolubility(const Scene *c, MPI_Comm comm);
-/* Counts the particles below the melting point of their water, (127), after a step or a burst, and says so the first
-   time; *ends: the case wants the run to end there.  Collective. */
-PetscErrorCode IceLook(Stepper *s, bool *ends);
+
+/* ---------------------------------------------------------------- plastic.c */
+PetscErrorCode PrintStrength(const Scene *c, MPI_Comm comm); /* the strength each region starts with */

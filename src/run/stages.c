@@ -160,21 +160,12 @@ void StageLogPace(const StageLog *log, const Stepper *s, Pace *pace)
   Ahead ahead;
 
   Look(log, s, &ahead);
-  *pace = (Pace){.done  = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from),
+  *pace = (Pace){.taken = log->taken,
+                 .done  = (s->state.t - log->from) / (StepperCase(s)->t_end - log->from),
                  .left  = LearntPace(&log->learnt, &ahead),
                  .step  = log->learnt.step,
                  .spent = log->learnt.spent,
                  .flat  = LearntFlat(&log->learnt, &ahead)};
-}
-
-PetscInt StageLogTaken(const StageLog *log)
-{
-  return log->taken;
-}
-
-double StageLogSpent(const StageLog *log)
-{
-  return log->learnt.spent;
 }
 
 /* " (WHAT 12 %" or ", WHAT 12 %" behind what is there. */
@@ -227,7 +218,7 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
     PetscCall(LimitWords(e, limit));
     if (c->nstage == 0 && log->n == 1) { /* the rest is the run's */
       if (limit[0])
-        snprintf(at, line, "  %s\n", &limit[2]); /* without its comma */
+        snprintf(at, line, "\n  %s", &limit[2]); /* without its comma */
       continue;
     }
     if (CaseInStage(c, e->stage)->mass_scaling > 1.0 && e->scaling > 0.0)
@@ -235,8 +226,8 @@ PetscErrorCode StageLogSummary(const StageLog *log, const Stepper *s, char **tex
     if (c->nstage)
       snprintf(stage, sizeof(stage), "stage %s: ", c->stage[e->stage].name);
     snprintf(at, line,
-             "  %s%s from %g s to %g s (%s), %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
-             " Newton iterations, %.2f s%s%s\n",
+             "\n  %s%s from %g s to %g s (%s), %" PetscInt_FMT " steps, %" PetscInt_FMT " refused, %" PetscInt_FMT
+             " Newton iterations, %.2f s%s%s",
              stage, e->integrator, e->from, e->to, TimeWords(e->to - e->from, 3).s, e->steps, e->refused, e->newton,
              e->spent, limit, scaled);
   }

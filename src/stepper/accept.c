@@ -30,10 +30,8 @@ static PetscErrorCode UpdateScales(Stepper *s)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, top, 4, MPI_DOUBLE, MPI_MAX, m->grid.comm));
   s->broken = !isfinite(top[0] + top[1] + top[2]);
   if (s->broken) {
-    PetscCall(PetscPrintf(m->grid.comm,
-                          "Given up at t = %s: a pressure, stress, temperature or displacement is not a number\n",
-                          TimeAt(s->state.t).s));
-    PetscCall(StepperAdvise(s, CL_NONFINITE));
+    PetscCall(
+        StepperGiveUp(s, CL_NONFINITE, NULL, ": a pressure, stress, temperature or displacement is not a number"));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   s->state.scale_p = top[0];

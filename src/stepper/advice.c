@@ -26,14 +26,8 @@ static bool DonorMayHelp(const Stepper *s, ClStatus status)
          c->fields.phase[PHASE_G] && SceneContrast(c) > 1.0;
 }
 
-PetscErrorCode StepperTry(const Stepper *s, const char *words)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscPrintf(s->model->grid.comm, "  What to try, in this order: %s (docs/giving_up.md)\n", words));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
+/* Empty where nothing is known to help. */
+static void Advice(const Stepper *s, ClStatus status, char words[STEPPER_ADVICE])
 {
   static const char *const advice[] = {
       [CL_DOMAIN] =
@@ -52,16 +46,12 @@ PetscErrorCode StepperAdvise(const Stepper *s, ClStatus status)
           "finer cells there",
       [CL_INACCURATE] = "stepper_tol ten times larger; a ramp instead of a jump; finer cells where fields are steep"};
   const char *what = status >= 0 && status <= CL_INACCURATE ? advice[status] : NULL;
-  char        words[512];
 
-  PetscFunctionBeginUser;
-  if (what) {
-    snprintf(words, sizeof(words), "%s%s%s",
+  words[0] = '\0';
+  if (what)
+    snprintf(words, STEPPER_ADVICE, "%s%s%s",
              DonorMayHelp(s, status) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
              what, HybridMayHelp(s, status) ? "; stepper_type hybrid or auto for what is fast" : "");
-    PetscCall(StepperTry(s, words));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Is there sediment without gas, where methane in water has the pressure that gas would have (101)? */
@@ -70,36 +60,44 @@ static bool LacksGas(const Scene *c)
   return c->material[0].gas.trace > 0.0;
 }
 
-PetscErrorCode StepperAdviseSlow(const Stepper *s, bool newton)
+void StepperAdviceSlow(const Stepper *s, bool newton, char words[STEPPER_ADVICE])
 {
   static const char *const saturation[2] = {"stabilisation_saturation: yes, where saturations alternate; ",
                                             "stabilisation_saturation: no, where gas comes and goes; "};
   const Scene             *c             = s->model->c;
   const bool               upwind        = c->stabilisation.saturation_upwind;
-  char                     words[768];
 
-  PetscFunctionBeginUser;
   snprintf(
-      words, sizeof(words), "%s%s%s%s",
+      words, STEPPER_ADVICE, "%s%s%s%s",
       DonorMayHelp(s, CL_SOLVER) ? "stabilisation_donor: yes, for gas beside clay whose gas is trapped; " : "",
       c->fields.phase[PHASE_G] && upwind == LacksGas(c) ? saturation[upwind] : "",
       newton
           ? "Sgr of some percent and p0 of some kPa more, where gas or water is nearly immobile; stepper_type euler; "
           : "stepper_tol ten times larger; ",
       "a ramp instead of a jump; finer cells near that place");
-  PetscCall(StepperTry(s, words));
+}
+
+PetscErrorCode StepperGiveUp(const Stepper *s, ClStatus cause, const char *what_to_try, const char *why, ...)
+{
+  char    words[STEPPER_ADVICE], sentence[CL_WHY + 256];
+  va_list args;
+
+  PetscFunctionBeginUser;
+  va_start(args, why);
+  vsnprintf(sentence, sizeof(sentence), why, args);
+  va_end(args);
+  Advice(s, cause, words);
+  PetscCall(FindingSayOf(s->model->grid.comm, FINDING_GIVEN_UP, NULL, what_to_try ? what_to_try : words, "%s%s",
+                         TimeAt(s->state.t).s, sentence));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode StepperGiveUp(const Stepper *s, PetscInt attempts, ClStatus status)
+PetscErrorCode StepperGiveUpStep(const Stepper *s, PetscInt attempts, ClStatus status)
 {
-  const Model *m = s->model;
+  const Failure *last = ModelFailure(s->model);
 
   PetscFunctionBeginUser;
-  PetscCall(PetscPrintf(m->grid.comm,
-                        "Given up at t = %s after %" PetscInt_FMT " attempts at this step: %s (%s), near %s\n",
-                        TimeAt(s->state.t).s, attempts, ModelFailure(m)->why, StepperStatusName(status),
-                        PlaceWords(ModelFailure(m)->where).s));
-  PetscCall(StepperAdvise(s, status));
+  PetscCall(StepperGiveUp(s, status, NULL, " after %" PetscInt_FMT " attempts at this step: %s (%s), near %s", attempts,
+                          last->why, StepperStatusName(status), PlaceWords(last->where).s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

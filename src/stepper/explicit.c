@@ -8,25 +8,6 @@
 #define HOLD 8    /* bursts at the smaller step after that */
 #define GONE 1e-6 /* of the step that a visit began with (372) */
 
-#define LAYERED 2.0 /* ratio of permeabilities from which on layers count */
-
-/* (350) is not in the paper's bare form. */
-static PetscErrorCode SayLayers(const Case *c, MPI_Comm comm)
-{
-  const double contrast = c->integrator == INTEGRATOR_PAPER ? SceneContrast(&c->scene) : 1.0;
-
-  PetscFunctionBeginUser;
-  if (contrast > LAYERED)
-    PetscCall(PetscFPrintf(
-        comm, stderr,
-        "clathra: warning: permeability of the regions differs by a factor of %.3g: in the paper's form the "
-        "least permeable material at a node holds all of its fluid, so that what flows along a "
-        "layer is too little by what flows through about a cell of it; implicit steps have no such "
-        "error\n",
-        contrast));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Create(Stepper *s)
 {
   const Case           *c = StepperCase(s);
@@ -39,7 +20,6 @@ static PetscErrorCode Create(Stepper *s)
   PetscFunctionBeginUser;
   PetscCall(ExplicitCreate(s->model, &o, &s->explicit));
   PetscCall(ParticlesCreate(c->scene.fields.has, &s->good));
-  PetscCall(SayLayers(c, s->model->grid.comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -217,11 +197,9 @@ static PetscErrorCode CheckGone(const Stepper *s, bool *ok)
   if (Wanted(s) >= GONE * s->dt_begin)
     PetscFunctionReturn(PETSC_SUCCESS);
   *ok = false;
-  PetscCall(PetscPrintf(s->model->grid.comm,
-                        "Given up at t = %s: the step of %s has come down from %.2g s to %.2g s (%s rules%s)\n",
-                        TimeAt(s->state.t).s, StepperName(s), s->dt_begin, Wanted(s), cl_limit_word[s->limit.rules],
-                        s->state.hold > 0 ? ", and steps were refused" : ""));
-  PetscCall(StepperAdvise(s, CL_TOO_FAR));
+  PetscCall(StepperGiveUp(s, CL_TOO_FAR, NULL, ": the step of %s has come down from %.2g s to %.2g s (%s rules%s)",
+                          StepperName(s), s->dt_begin, Wanted(s), cl_limit_word[s->limit.rules],
+                          s->state.hold > 0 ? ", and steps were refused" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -259,9 +237,8 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
     PetscCall(CheckFixed(s, &stable));
     if (!stable) {
       *ok = false;
-      PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %s: the fixed step is above the stable one by now\n",
-                            TimeAt(s->state.t).s));
-      PetscCall(StepperTry(s, "stepper_adapt: yes, which follows the stable step; a shorter stepper_dt"));
+      PetscCall(StepperGiveUp(s, CL_OK, "stepper_adapt: yes, which follows the stable step; a shorter stepper_dt",
+                              ": the fixed step is above the stable one by now"));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
     PetscCall(CheckGone(s, ok));
@@ -284,7 +261,7 @@ static PetscErrorCode Advance(Stepper *s, bool *ok)
           TimeAt(s->state.t).s, n, dt, StepperStatusName(a.status), why->why, PlaceWords(why->where).s, s->state.dt));
     if (out || cuts >= s->max_failures) {
       *ok = false;
-      PetscCall(StepperGiveUp(s, cuts + 1, a.status));
+      PetscCall(StepperGiveUpStep(s, cuts + 1, a.status));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

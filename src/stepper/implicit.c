@@ -347,11 +347,9 @@ static PetscErrorCode CheckCrawl(Stepper *s, double dt, bool *ok)
   if (s->crawl < CRAWL_STEPS)
     PetscFunctionReturn(PETSC_SUCCESS);
   *ok = false;
-  PetscCall(
-      PetscPrintf(s->model->grid.comm,
-                  "Given up at t = %s: for %d steps dt has been about %s, at which the rest would take %.1g steps\n",
-                  TimeAt(s->state.t).s, CRAWL_STEPS, TimeWords(dt, 2).s, left / dt));
-  PetscCall(StepperAdvise(s, CL_INACCURATE));
+  PetscCall(StepperGiveUp(s, CL_INACCURATE, NULL,
+                          ": for %d steps dt has been about %s, at which the rest would take %.1g steps", CRAWL_STEPS,
+                          TimeWords(dt, 2).s, left / dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -371,9 +369,8 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
   PetscCall(ModelBeginStep(m, &status));
   if (status != CL_OK) {
     *ok = false;
-    PetscCall(PetscPrintf(m->grid.comm, "Given up at t = %s: %s near %s; no smaller step can help\n",
-                          TimeAt(s->state.t).s, why->why, PlaceWords(why->where).s));
-    PetscCall(StepperAdvise(s, status));
+    PetscCall(
+        StepperGiveUp(s, status, NULL, ": %s near %s; no smaller step can help", why->why, PlaceWords(why->where).s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SizeWork(s));
@@ -419,7 +416,7 @@ PetscErrorCode StepperImplicitStep(Stepper *s, bool *ok)
       PetscFunctionReturn(PETSC_SUCCESS);
     if (last) {
       *ok = false;
-      PetscCall(StepperGiveUp(s, cuts + 1, a.status));
+      PetscCall(StepperGiveUpStep(s, cuts + 1, a.status));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }

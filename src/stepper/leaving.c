@@ -71,9 +71,9 @@ PetscErrorCode StepperCountLeaving(Stepper *s)
   if (!s->empty)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(
-      PetscPrintf(m->grid.comm, "Given up at t = %s: the last particle has left the grid\n", TimeAt(s->state.t).s));
-  PetscCall(StepperTry(s,
-                       "a larger grid, for nothing of the body stayed in it; a roller or fixed line where it should be "
-                       "held; an earlier time_end; the units of velocities and loads"));
+      StepperGiveUp(s, CL_LEFT_GRID,
+                    "a larger grid, for nothing of the body stayed in it; a roller or fixed line where it should be "
+                    "held; an earlier time_end; the units of velocities and loads",
+                    ": the last particle has left the grid"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,7 +10,7 @@ from common import Run, check, check_true, finish, seconds  # noqa: E402
 # A rod in hydrate on cells of 1 m, heated to 60 degC before heat has crossed a twentieth of a cell.
 SCENE = (Path(__file__).resolve().parents[1] / "verification" / "cases" / "heater_rod.yaml", "-output_every", "30 h", "-progress", "0", "-bc_rod_temperature")
 FAST, MILD = ("{ramp: [14.4 degC, 60 degC, 0 h, %d h]}" % hours for hours in (2, 4))
-SAID = re.compile(r"clathra: warning: a particle (has|had) (\S+) degC, near \((\S+), (\S+)\) m at t = (\S+ \S+): (\S+) K (colder|warmer) than start, conditions and hydrate can make it .*?What to try, in this order: (.*?); ")
+SAID = re.compile(r"clathra: warning: a particle (has|had) (\S+) degC, near \((\S+), (\S+)\) m at t = (\S+ \S+): (\S+) K (colder|warmer) than start, conditions and hydrate can make it .*\n  What to try, in this order: (.*?); ")
 STEP = re.compile(r"^step +\d+: t = (\S+ \S+)", re.M)
 
 

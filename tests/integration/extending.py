@@ -255,6 +255,10 @@ for kind, options in (("sdirk2", ()), ("hybrid", ("-stepper_type", "hybrid", "-g
     t, T = plate.time, plate.probe("middle")["T_degC"] + 273.15
     exact = (773.15**-3 + 3 * rate * t) ** (-1 / 3)
     check(f"condition: T of a plate that radiates into space, {kind} (K)", np.max(np.abs(T - exact)), 0.5)
+    # a finding: said once where it is found, and kept for the summary
+    told = T.min() < 773.15 - 100
+    said = [text.count("clathra: note: particles cooled by") for text in (plate.output, (plate.out / "summary.txt").read_text(), (plate.out / "log.txt").read_text())]
+    check_true(f"finding: cooled by more than 100 K, {kind}: {told}", said == [told] * 3 and told == (kind == "sdirk2"), said)
 half = launch(extended, case, "-stepper_max_steps", "5", out=tree / "half")
 other = launch(extended, case, "-bc_sky_emissivity", "0.7", "-restart", tree / "half" / "checkpoint.h5", out=tree / "half")
 check_true("condition: a restart with another value of its key is refused", other.returncode == 2 and "another case" in other.stdout, other.stdout[-300:])

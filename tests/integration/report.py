@@ -197,6 +197,18 @@ def look_at_column(out, browser):
     page.close()
 
 
+def check_findings():
+    """A finding comes once, whatever the number of ranks: in the terminal, in the summary, and on the page, above the rest of the summary."""
+    words = "warning: 5 of 5 steps were accepted above the tolerance"
+    for ranks in (1, 2):
+        out = scratch() / "loose"
+        done = launch(binary(), CASES / "bp2", "-grid_cells", "13,1", "-output_times", "0 s", "-quiet", "-time_end", "5 s", "-stepper_dt", "1 s", "-stepper_dt_min", "1 s", "-stepper_tol", "1e-7", out=out, ranks=ranks)
+        _, data = report(out)
+        said = [done.stdout.count(words), (out / "summary.txt").read_text().count(words), "\n".join(data["warnings"]).count(words)]
+        check_true(f"a finding comes once, {ranks} rank(s)", said == [1, 1, 1] and words not in data["summary"] and "results in" in data["summary"], f"{said} {data['summary'][-300:]}")
+    check_true("... from Python, too, in the same words", sum(words in f for f in clathra.Run(out).findings) == 1 and data["warnings"] == clathra.Run(out).findings, data["warnings"])
+
+
 def main():
     block, column = scratch() / "block", scratch() / "column"
     run(binary(), CASES / "shear_box", *BLOCK, out=block)
@@ -209,6 +221,7 @@ def main():
     check_titles(block)
     _, failed = report(column)
     check_true("a run that gave up is told", not failed["finished"] and any("Given up" in w for w in failed["warnings"]), failed["warnings"][-1:])
+    check_findings()
     check("size of the page, MB", len(text) / 1e6, 1.0)
     browser = _browser.find()
     if browser:

@@ -10,7 +10,7 @@
 #include "clathra/stepper.h"
 #include "ranks.h"
 #include "recorded_runs.h"
-#include "../../src/run/run_private.h"
+#include "../../src/findings/findings_private.h"
 
 #define N 3
 #define GOOD(call) assert_int_equal((call), 0)
@@ -21,6 +21,7 @@ static Stepper s;
 
 static int Start(void **state)
 {
+  FindingForget();
   m                = (Model){.c = &c.scene};
   s                = (Stepper){.model = &m, .tol = 1e-3, .state = {.scale_p = 1e4, .scale_T = 1.0, .scale_u = 1e-3}};
   c.scene.fields   = (FieldSet){.has = HAS_SOLID | HAS_WATER};
@@ -287,6 +288,12 @@ static void ASlumpIsSeen(void **state)
   assert_true(flat < 3.0); /* it counts the last ten steps */
 }
 
+static bool IsSlow(const Slow *slow, const Forecast *f, PetscInt taken, Pace *pace)
+{
+  pace->taken = taken;
+  return FindingsIsSlow(slow, f, pace);
+}
+
 /* Slow is what has taken twice the forecast, of steps or on the clock, and has ten times as much left. */
 static void SlowBySteps(void **state)
 {
@@ -294,14 +301,14 @@ static void SlowBySteps(void **state)
   Slow           slow = {.next = 160.0, .clock = 44.0};
   Pace           p    = {.left = 801.0, .step = 0.1, .spent = 16.0};
 
-  assert_true(SlowIs(&slow, &f, 160, &p));
-  assert_false(SlowIs(&slow, &f, 159, &p));
+  assert_true(IsSlow(&slow, &f, 160, &p));
+  assert_false(IsSlow(&slow, &f, 159, &p));
   p.left = 799.0;
-  assert_false(SlowIs(&slow, &f, 160, &p));
+  assert_false(IsSlow(&slow, &f, 160, &p));
   p.left = NAN;
-  assert_false(SlowIs(&slow, &f, 160, &p));
+  assert_false(IsSlow(&slow, &f, 160, &p));
   p = (Pace){.left = 801.0, .step = 0.01, .spent = 1.6};
-  assert_false(SlowIs(&slow, &f, 160, &p)); /* it is over in seconds */
+  assert_false(IsSlow(&slow, &f, 160, &p)); /* it is over in seconds */
 }
 
 static void SlowByTheClock(void **state)
@@ -310,18 +317,18 @@ static void SlowByTheClock(void **state)
   Slow           slow = {.next = 160.0, .clock = 44.0};
   Pace           p    = {.left = 60.0, .step = 4.3, .spent = 45.0};
 
-  assert_true(SlowIs(&slow, &f, 10, &p));
+  assert_true(IsSlow(&slow, &f, 10, &p));
   p.step = 3.0;
-  assert_false(SlowIs(&slow, &f, 10, &p)); /* a slow machine is no slow run */
+  assert_false(IsSlow(&slow, &f, 10, &p)); /* a slow machine is no slow run */
   p = (Pace){.left = 60.0, .step = 4.3, .spent = 43.0};
-  assert_false(SlowIs(&slow, &f, 10, &p));
-  assert_false(SlowIs(&slow, &f, 160, &p)); /* twice the steps, but neither ten times as many nor twice the time */
+  assert_false(IsSlow(&slow, &f, 10, &p));
+  assert_false(IsSlow(&slow, &f, 160, &p)); /* twice the steps, but neither ten times as many nor twice the time */
   slow    = (Slow){.next = 20.0, .clock = 90.0, .said = true};
   p.spent = 91.0;
-  assert_false(SlowIs(&slow, &f, 19, &p));
-  assert_true(SlowIs(&slow, &f, 20, &p));
+  assert_false(IsSlow(&slow, &f, 19, &p));
+  assert_true(IsSlow(&slow, &f, 20, &p));
   p.spent = 89.0;
-  assert_false(SlowIs(&slow, &f, 20, &p));
+  assert_false(IsSlow(&slow, &f, 20, &p));
 }
 
 /* Recorded runs, wells and heaters in hydrate among them: of the lines after 5 % this share is within a factor of two,
@@ -405,7 +412,7 @@ static void Said(char *text, size_t size, PetscErrorCode (*call)(int), int n)
 
 static PetscErrorCode GiveUp(int status)
 {
-  return StepperGiveUp(&s, 3, (ClStatus)status);
+  return StepperGiveUpStep(&s, 3, (ClStatus)status);
 }
 
 static PetscErrorCode AcceptSpoilt(int unused)

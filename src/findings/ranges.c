@@ -1,6 +1,6 @@
 /* What a run says of the range of its pressures and temperatures, beside what it started from and what acted on it: at
    its end, and of temperatures far beyond when it happens; and of steps that were accepted above the tolerance. */
-#include "run_private.h"
+#include "findings_private.h"
 #include "clathra/words.h"
 
 #define BEYOND 0.02   /* of the range, and ... */
@@ -66,33 +66,29 @@ static Span Temperatures(const Stepper *s)
 
 static void PlaceOf(const Extreme *e, char text[128])
 {
-
   snprintf(text, 128, "near %s at t = %s", PlaceWords(e->at).s, TimeWords(e->t, 4).s);
 }
 
-PetscErrorCode RangeSummary(const Stepper *s, char text[512])
+PetscErrorCode FindingsFindRanges(Findings *f, FindingId id)
 {
   static const struct {
     const char *name, *unit;
     double      per;
     int         low;
     unsigned    has;
-  } of[]      = {{"p", "MPa", 1e6, LOWEST_P, HAS_WATER}, {"T", "degC", 1.0, LOWEST_T, HAS_HEAT}};
-  size_t told = 0;
+  } of[] = {{"p", "MPa", 1e6, LOWEST_P, HAS_WATER}, {"T", "degC", 1.0, LOWEST_T, HAS_HEAT}};
 
   PetscFunctionBeginUser;
-  text[0] = '\0';
   for (int k = 0; k < 2; k++) {
-    const Extreme *low = &s->state.extreme[of[k].low];
+    const Extreme *low = &f->s->state.extreme[of[k].low];
     char           from[128], to[128];
 
-    if (!(s->model->c->fields.has & of[k].has))
+    if (!(f->s->model->c->fields.has & of[k].has))
       continue;
     PlaceOf(&low[0], from);
     PlaceOf(&low[1], to);
-    snprintf(text + told, 512 - told, "  %s of particles from %.5g %s, %s, to %.5g, %s\n", of[k].name,
-             low[0].value / of[k].per, of[k].unit, from, low[1].value / of[k].per, to);
-    told = strlen(text);
+    SAY("  %s of particles from %.5g %s, %s, to %.5g, %s", of[k].name, low[0].value / of[k].per, of[k].unit, from,
+        low[1].value / of[k].per, to);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -116,14 +112,13 @@ static Beyond BeyondOf(const Stepper *s, Span acted, int k)
                   .acted = k == HIGHEST_T ? acted.high : acted.low};
 }
 
-/* `now`: while it happens, else at the end. */
-static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, bool now)
+static PetscErrorCode SayTemperature(const Findings *f, FindingId id, int k, Beyond beyond)
 {
-  const StepperState *z    = &s->state;
-  const Scene        *c    = s->model->c;
+  const StepperState *z    = &f->s->state;
+  const Scene        *c    = f->s->model->c;
   const Extreme      *e    = &z->extreme[k];
-  const bool          warm = k == HIGHEST_T;
-  char                place[128], hydrate[96] = "none reacts";
+  const bool          warm = k == HIGHEST_T, now = id == FINDING_TEMPERATURE_NOW;
+  char                place[128], hydrate[96]    = "none reacts";
 
   PetscFunctionBeginUser;
   PlaceOf(e, place);
@@ -131,46 +126,26 @@ static PetscErrorCode WarnOfTemperature(const Stepper *s, int k, Beyond beyond, 
     snprintf(hydrate, sizeof(hydrate), "%.4g degC, in equilibrium with %.4g MPa",
              StepperEquilibrium(c, warm ? -INFINITY : INFINITY, z->extreme[warm ? HIGHEST_P : LOWEST_P].value, warm),
              1e-6 * z->extreme[warm ? HIGHEST_P : LOWEST_P].value);
-  PetscCall(PetscFPrintf(
-      s->model->grid.comm, stderr,
-      "clathra: warning: a particle %s %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it (start "
-      "and conditions: %.4g degC; hydrate: %s), so it is the grid's doing%s.  What to try, in this order: finer "
-      "cells there, about as high as wide at the end of a heater; a ramp instead of a jump (docs/giving_up.md)\n",
+  SAY("a particle %s %.4g degC, %s: %.2g K %s than start, conditions and hydrate can make it (start and conditions: "
+      "%.4g degC; hydrate: %s), so it is the grid's doing%s",
       now ? "has" : "had", e->value, place, beyond.by, warm ? "warmer" : "colder", beyond.acted, hydrate,
-      now ? " and may grow (said once on the way)" : ""));
+      now ? " and may grow (said once on the way)" : "");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WarnOfTemperatures(const Stepper *s)
+/* While it happens, once, if it is some kelvin; and at the end. */
+PetscErrorCode FindingsFindTemperature(Findings *f, FindingId id)
 {
-  const Span acted = Temperatures(s);
+  const bool now   = id == FINDING_TEMPERATURE_NOW;
+  const bool done  = !f->s->model->c->fields.heat || (now && FindingTimes(id));
+  const Span acted = done ? (Span){0.0, 0.0} : Temperatures(f->s);
 
   PetscFunctionBeginUser;
-  for (int k = LOWEST_T; s->model->c->fields.heat && k <= HIGHEST_T; k++) {
-    const Beyond beyond = BeyondOf(s, acted, k);
+  for (int k = LOWEST_T; !done && k <= HIGHEST_T; k++) {
+    const Beyond beyond = BeyondOf(f->s, acted, k);
 
-    if (beyond.by > beyond.slack)
-      PetscCall(WarnOfTemperature(s, k, beyond, false));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-void RangesBegin(Ranges *r, const Stepper *s)
-{
-  const Span acted = Temperatures(s);
-
-  *r = (Ranges){.low = acted.low, .high = acted.high, .said = !s->model->c->fields.heat};
-}
-
-PetscErrorCode RangesLook(Ranges *r, const Stepper *s)
-{
-  PetscFunctionBeginUser;
-  for (int k = LOWEST_T; !r->said && k <= HIGHEST_T; k++) {
-    const Beyond beyond = BeyondOf(s, (Span){r->low, r->high}, k);
-
-    r->said = beyond.by > fmax(AT_ONCE, beyond.slack);
-    if (r->said)
-      PetscCall(WarnOfTemperature(s, k, beyond, true));
+    if (beyond.by > fmax(now ? AT_ONCE : 0.0, beyond.slack) && !(now && FindingTimes(id)))
+      PetscCall(SayTemperature(f, id, k, beyond));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -239,15 +214,14 @@ static Span Pressures(const Stepper *s)
 
 /* A pressure beyond all may be physics (what melts or cools takes less room, what is heated or loaded more), so this is
    no more than a note. */
-static PetscErrorCode NotePressures(const Stepper *s)
+PetscErrorCode FindingsFindPressure(Findings *f, FindingId id)
 {
-  const StepperState *z     = &s->state;
-  const Scene        *c     = s->model->c;
-  const Span          bound = Pressures(s);
+  const StepperState *z     = &f->s->state;
+  const Span          bound = Pressures(f->s);
   const double        range = z->extreme[HIGHEST_P].value - z->extreme[LOWEST_P].value;
 
   PetscFunctionBeginUser;
-  for (int k = LOWEST_P; c->fields.phase[PHASE_W] && k <= HIGHEST_P; k++) {
+  for (int k = LOWEST_P; f->s->model->c->fields.phase[PHASE_W] && k <= HIGHEST_P; k++) {
     const bool     high  = k == HIGHEST_P;
     const Extreme *e     = &z->extreme[k];
     const double   limit = high ? bound.high : bound.low, beyond = high ? e->value - limit : limit - e->value;
@@ -256,14 +230,11 @@ static PetscErrorCode NotePressures(const Stepper *s)
     if (!(beyond > fmax(LEAST_P, high ? ABOVE * fabs(limit) : BEYOND * range)))
       continue;
     PlaceOf(e, place);
-    PetscCall(PetscFPrintf(
-        s->model->grid.comm, stderr,
-        "clathra: note: the pressure of a particle was %.4g MPa, %s: %.3g MPa %s that of the start "
-        "and of all conditions and loads (%.4g MPa).  %s may do that; at a border of layers that has "
-        "left the grid's lines it is one row of particles, and pictures have the nodes' mean; "
-        "beside it neighbours that alternate are the grid's doing (docs/limits.md)\n",
+    SAY("the pressure of a particle was %.4g MPa, %s: %.3g MPa %s that of the start and of all conditions and loads "
+        "(%.4g MPa).  %s may do that; at a border of layers that has left the grid's lines it is one row of particles, "
+        "and pictures have the nodes' mean; beside it neighbours that alternate are the grid's doing (docs/limits.md)",
         1e-6 * e->value, place, 1e-6 * beyond, high ? "above" : "below", 1e-6 * limit,
-        high ? "Melting hydrate that is closed in, heating or squeezing" : "Melting hydrate, cooling or unloading"));
+        high ? "Melting hydrate that is closed in, heating or squeezing" : "Melting hydrate, cooling or unloading");
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -271,41 +242,48 @@ static PetscErrorCode NotePressures(const Stepper *s)
 #define VACUUM 101325.0 /* Pa below nothing: water in pores boils before, or lets its gas out */
 
 /* A mean pore pressure that no water bears. */
-static PetscErrorCode WarnOfTension(const Stepper *s)
+PetscErrorCode FindingsFindTension(Findings *f, FindingId id)
 {
-  const Scene   *c = s->model->c;
-  const Extreme *e = &s->state.extreme[LOWEST_P];
+  const Extreme *e = &f->s->state.extreme[LOWEST_P];
   char           place[128];
 
   PetscFunctionBeginUser;
-  if (!c->fields.phase[PHASE_W] || !(e->value < -VACUUM))
+  if (!f->s->model->c->fields.phase[PHASE_W] || !(e->value < -VACUUM))
     PetscFunctionReturn(PETSC_SUCCESS);
   PlaceOf(e, place);
-  PetscCall(PetscFPrintf(
-      s->model->grid.comm, stderr,
-      "clathra: warning: the pressure of a particle was %s, a tension, %s: water in pores boils or lets its gas out "
-      "before, which is not modelled, and stresses there are not those of ground.  What to try, in this order: finer "
-      "cells, shorter steps there (-stepper_tol); a higher pressure at the start, if it was given over that of the air "
-      "(docs/giving_up.md)\n",
-      PressureWords(e->value, 4).s, place));
+  SAY("the pressure of a particle was %s, a tension, %s: water in pores boils or lets its gas out before, which is not "
+      "modelled, and stresses there are not those of ground",
+      PressureWords(e->value, 4).s, place);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode EndWarnings(const Stepper *s)
+/* The largest estimated error of any particle, and errors that were put up with. */
+PetscErrorCode FindingsFindErrors(Findings *f, FindingId id)
 {
-  const StepperState *z = &s->state;
+  const StepperState *z = &f->s->state;
 
   PetscFunctionBeginUser;
-  PetscCall(WarnOfTemperatures(s));
-  PetscCall(NotePressures(s));
-  PetscCall(WarnOfTension(s));
+  if (z->peak > 0.0)
+    SAY("  largest error of a step at any particle: %.3g of the tolerance, of %s near %s at t = %s", z->peak,
+        stepper_error_word[(int)z->peak_of], PlaceWords(z->peak_at).s, TimeWords(z->peak_t, 4).s);
+  if (z->loose_total)
+    SAY("  %" PetscInt_FMT " step%s accepted above the tolerance, with an estimated error of up to %.3g of it (at "
+        "stepper_dt_min, or noise of the particles)",
+        z->loose_total, z->loose_total == 1 ? " was" : "s were", z->err_worst);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Errors far above the tolerance that were put up with. */
+PetscErrorCode FindingsFindDoubtfulSteps(Findings *f, FindingId id)
+{
+  const StepperState *z = &f->s->state;
+
+  PetscFunctionBeginUser;
   if (z->loose_total && z->err_worst > DOUBTFUL)
-    PetscCall(PetscFPrintf(s->model->grid.comm, stderr,
-                           "clathra: warning: %" PetscInt_FMT " of %" PetscInt_FMT
-                           " steps %s accepted above the tolerance, with an estimated error of up to %.3g of it: no "
-                           "shorter step lowered it (particles that change cells, a jump), or stepper_dt_min did not "
-                           "let it; finer cells or a ramp there, and a look at balance.csv's dt_s\n",
-                           z->loose_total, z->step, z->loose_total == 1 ? "was" : "were", z->err_worst));
-  PetscCall(NoteBorders(s));
+    SAY("%" PetscInt_FMT " of %" PetscInt_FMT
+        " steps %s accepted above the tolerance, with an estimated error of up to %.3g of it: no shorter step lowered "
+        "it (particles that change cells, a jump), or stepper_dt_min did not let it; finer cells or a ramp there, and "
+        "a look at balance.csv's dt_s",
+        z->loose_total, z->step, z->loose_total == 1 ? "was" : "were", z->err_worst);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

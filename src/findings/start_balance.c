@@ -1,7 +1,7 @@
 /* What a user should know of a start that is out of balance with gravity (docs/equations.md, section 13), or whose pore
    pressure is left to tractions (section 6), or where capillary pressure jumps or gas is trapped (section 13); and of
    heat that is let in beside hydrate (section 7). */
-#include "clathra/boundary.h"
+#include "findings_private.h"
 #include "clathra/point_heat.h"
 #include "clathra/shape.h"
 #include "clathra/words.h"
@@ -69,10 +69,11 @@ static bool Pushed(const Scene *c, double least)
   return false;
 }
 
-PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE])
+PetscErrorCode FindingsFindTornPores(Findings *f, FindingId id)
 {
+  const Scene *c = f->s->model->c;
+
   PetscFunctionBeginUser;
-  text[0] = '\0';
   for (PetscInt k = 0; c->fields.solid && c->fields.fluid && k < c->nregion; k++) {
     const Region  *r      = &c->region[k];
     const Ambient  around = AmbientOf(c, c->t_begin, c->gravity);
@@ -87,11 +88,10 @@ PetscErrorCode AmbientAdvice(const Scene *c, char text[CL_ADVICE])
     beyond = s.p - AmbientPressure(&around, middle, gradient);
     if (beyond < E || !Pushed(c, E))
       continue;
-    snprintf(text, CL_ADVICE,
-             "the pores of region %s bear %s, %.3g times its stiffness, against tractions on its "
-             "faces: what the two differ by, as faces move, may tear it apart; let ambient: {pressure: "
-             "...} bear what they have in common, and give tractions beyond it",
-             r->name, PressureWords(beyond, 3).s, beyond / E);
+    SAY("the pores of region %s bear %s, %.3g times its stiffness, against tractions on its faces: what the two differ "
+        "by, as faces move, may tear it apart; let ambient: {pressure: ...} bear what they have in common, and give "
+        "tractions beyond it",
+        r->name, PressureWords(beyond, 3).s, beyond / E);
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -148,21 +148,21 @@ static void Balanced(const Scene *c, const Region *r[2], const double pc[2], cha
 
   if (r[0]->Sg == 0.0 && r[1]->Sg == 0.0)
     snprintf(text, BALANCED,
-             "the same retention_p_trap in both: p_g starts 20 of it below p_w, or at the equilibrium of "
-             "hydrate; a small one for the finer, 1 kPa, says least");
+             "the same retention_p_trap in both: p_g starts 20 of it below p_w, or at the equilibrium of hydrate; a "
+             "small one for the finer, 1 kPa, says least");
   else if (r[0]->Sg == 0.0 || r[1]->Sg == 0.0)
     snprintf(text, BALANCED, "Sg: 0 in both or neither");
   else
     snprintf(text, BALANCED,
-             "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; or the same p0 and gas "
-             "share Sg/(1 - Sh) in both, though the finer may not have so much",
+             "Sg: %.6g in %s, which is what its p0 holds at the p_g - p_w of %s; or the same p0 and gas share Sg/(1 - "
+             "Sh) in both, though the finer may not have so much",
              ShareAt(c, r[finer], pc[!finer]), r[finer]->name, r[!finer]->name);
 }
 
-/* (342) between two regions, in words: the same on all ranks; empty where there is no jump. */
-static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, PetscInt a, PetscInt b,
-                           char text[CL_ADVICE])
+/* (342) between two regions; *found: it was said. */
+static PetscErrorCode FindJump(const Findings *f, FindingId id, PetscInt a, PetscInt b, bool *found)
 {
+  const Scene  *c     = f->s->model->c;
   const Region *r[2]  = {&c->region[a], &c->region[b]};
   const double  p0    = fmin(c->material[r[0]->material].retention.p0, c->material[r[1]->material].retention.p0);
   double        pc[2] = {0.0, 0.0};
@@ -173,36 +173,39 @@ static PetscErrorCode Jump(MPI_Comm comm, const Scene *c, const Particles *P, Pe
   PetscCall(StartCapillary(c, r, pc));
   if (fabs(pc[0] - pc[1]) <= fmax(LEAST_JUMP, JUMP * p0))
     PetscFunctionReturn(PETSC_SUCCESS);
-  touch = Touches(c, P, a, b);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &touch, 1, MPI_INT, MPI_LOR, comm));
+  touch = Touches(c, &f->s->model->P, a, b);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &touch, 1, MPI_INT, MPI_LOR, f->comm));
   if (!touch)
     PetscFunctionReturn(PETSC_SUCCESS);
   Balanced(c, r, pc, balanced);
-  snprintf(
-      text, CL_ADVICE,
-      "regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between them "
+  *found = true;
+  SAY("regions %s and %s touch and start with p_g - p_w of %.4g kPa%s and %.4g kPa%s: water and gas flow between them "
       "at once, the faster the larger their permeability (in balance: %s)",
       r[0]->name, r[1]->name, 1e-3 * pc[0], r[0]->Sg == 0.0 ? " (no gas)" : "", 1e-3 * pc[1],
       r[1]->Sg == 0.0 ? " (no gas)" : "", balanced);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CapillaryAdvice(MPI_Comm comm, const Scene *c, const Particles *P, char text[CL_ADVICE])
+/* The first jump. */
+PetscErrorCode FindingsFindCapillaryJump(Findings *f, FindingId id)
 {
+  const Scene *c     = f->s->model->c;
+  bool         found = false;
+
   PetscFunctionBeginUser;
-  text[0] = '\0';
-  for (PetscInt a = 0; (c->fields.has & HAS_GAS) && a < c->nregion; a++) {
-    for (PetscInt b = a + 1; !text[0] && b < c->nregion; b++) {
+  for (PetscInt a = 0; (c->fields.has & HAS_GAS) && !found && a < c->nregion; a++) {
+    for (PetscInt b = a + 1; !found && b < c->nregion; b++) {
       if (!RegionEmpty(&c->region[a]) && !RegionEmpty(&c->region[b]))
-        PetscCall(Jump(comm, c, P, a, b, text));
+        PetscCall(FindJump(f, id, a, b, &found));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Gas that starts below its residual share has p_g below p_w: (223) takes it for trapped and compressed. */
-static PetscErrorCode TrappedWarnings(MPI_Comm comm, const Scene *c)
+PetscErrorCode FindingsFindTrappedGas(Findings *f, FindingId id)
 {
+  const Scene   *c = f->s->model->c;
   InitialScalars s;
   double         middle[CL_DIM];
 
@@ -218,33 +221,23 @@ static PetscErrorCode TrappedWarnings(MPI_Comm comm, const Scene *c)
     PetscCall(InitialScalarsAt(c, r, middle, &s));
     if (s.pg >= s.pw)
       continue;
-    PetscCall(PetscFPrintf(
-        comm, stderr,
-        "clathra: warning: gas starts below its residual share: region_%s_Sg = %.4g and "
-        "region_%s_Sh = %.4g are Sg/(1 - Sh) = %.4g of the open pores, mat_%s_retention_Sgr is %.4g: "
-        "it counts as trapped and compressed, with p_g %s below p_w (more Sg or a smaller Sgr starts "
-        "with gas that water has not trapped, Sg: 0 without)\n",
-        r->name, r->Sg, r->name, r->Sh, share, m->name, m->retention.Sgr, PressureWords(s.pw - s.pg, 3).s));
+    SAY("gas starts below its residual share: region_%s_Sg = %.4g and region_%s_Sh = %.4g are Sg/(1 - Sh) = %.4g of "
+        "the open pores, mat_%s_retention_Sgr is %.4g: it counts as trapped and compressed, with p_g %s below p_w "
+        "(more Sg or a smaller Sgr starts with gas that water has not trapped, Sg: 0 without)",
+        r->name, r->Sg, r->name, r->Sh, share, m->name, m->retention.Sgr, PressureWords(s.pw - s.pg, 3).s);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P)
+/* The first region that starts without a stress under its weight. */
+PetscErrorCode FindingsFindUnstressed(Findings *f, FindingId id)
 {
-  double tension = 0.0, scale = 0.0;
-  char   advice[CL_ADVICE];
+  const Scene *c = f->s->model->c;
 
   PetscFunctionBeginUser;
-  PetscCall(AmbientAdvice(c, advice));
-  if (advice[0])
-    PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
-  PetscCall(CapillaryAdvice(comm, c, P, advice));
-  if (advice[0])
-    PetscCall(PetscFPrintf(comm, stderr, "clathra: warning: %s\n", advice));
-  PetscCall(TrappedWarnings(comm, c));
-  if (!c->fields.solid || SceneGravity(c) == 0.0)
+  if (!c->fields.solid || SceneGravity(c) == 0.0 || c->gravity_ramp > 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; c->gravity_ramp == 0.0 && k < c->nregion; k++) {
+  for (PetscInt k = 0; k < c->nregion; k++) {
     bool   unstressed;
     double weight = 0.0, sinks = 0.0;
 
@@ -253,20 +246,26 @@ PetscErrorCode InitialWarnings(MPI_Comm comm, const Scene *c, const Particles *P
     PetscCall(Unstressed(c, &c->region[k], &unstressed, &weight, &sinks));
     if (!unstressed)
       continue;
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: warning: gravity acts on an unstressed body: region %s starts without the stress "
-                           "that carries its weight, %s from top to foot, and will move, by some %.3g m held at "
-                           "its sides (stress: {geostatic: K0} gives it one, gravity_ramp lets the weight grow, "
-                           "-restart_as_initial begins with a body that has settled)\n",
-                           c->region[k].name, PressureWords(weight, 3).s, sinks));
+    SAY("gravity acts on an unstressed body: region %s starts without the stress that carries its weight, %s from top "
+        "to foot, and will move, by some %.3g m held at its sides (stress: {geostatic: K0} gives it one, gravity_ramp "
+        "lets the weight grow, -restart_as_initial begins with a body that has settled)",
+        c->region[k].name, PressureWords(weight, 3).s, sinks);
     break;
   }
-  if (SceneVertical(c) >= 0)
-    PetscCall(LargestTension(comm, c, P, &tension, &scale));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FindingsFindStartTension(Findings *f, FindingId id)
+{
+  const Model *m       = f->s->model;
+  double       tension = 0.0, scale = 0.0;
+
+  PetscFunctionBeginUser;
+  if (m->c->fields.solid && SceneGravity(m->c) != 0.0 && SceneVertical(m->c) >= 0)
+    PetscCall(LargestTension(f->comm, m->c, &m->P, &tension, &scale));
   if (tension > NEGLIGIBLE * scale)
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "clathra: warning: the geostatic stress is a tension of up to %s: the load on the "
-                           "body's top is less than the pore pressure there, or the top cuts a cell of the grid\n",
-                           PressureWords(tension, 4).s));
+    SAY("the geostatic stress is a tension of up to %s: the load on the body's top is less than the pore pressure "
+        "there, or the top cuts a cell of the grid",
+        PressureWords(tension, 4).s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,6 @@
 /* Starts that do not stay as they are: pore pressure far from hydrostatic, gas that rises, hydrate that is not stable,
    gas where hydrate is (docs/equations.md, section 13). */
-#include "clathra/boundary.h"
+#include "findings_private.h"
 #include "clathra/point_flow.h"
 #include "clathra/shape.h"
 #include "clathra/words.h"
@@ -19,31 +19,14 @@ typedef struct {
   int    region;
 } Most;
 
-static void MostTake(Most *m, const Scene *c, const Particles *P, PetscInt i, double value, double p)
+static void MostTake(Most *most, const Scene *c, const Particles *P, PetscInt i, double value, double p)
 {
   const int region = (int)P->i[PI_REGION][i];
 
-  if (value > m->value) {
-    *m = (Most){.value = value, .p = p, .T = ParticleT(c, P, i), .region = region};
-    ParticlePlace(P, i, m->x);
+  if (value > most->value) {
+    *most = (Most){.value = value, .p = p, .T = ParticleT(c, P, i), .region = region};
+    ParticlePlace(P, i, most->x);
   }
-}
-
-static PetscErrorCode MostOfAll(MPI_Comm comm, Most *m)
-{
-  PetscMPIInt rank;
-  struct {
-    double value;
-    int    rank;
-  } best;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  best.value = m->value;
-  best.rank  = rank;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
-  PetscCallMPI(MPI_Bcast(m, sizeof(*m), MPI_BYTE, best.rank, comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------------------------------------------------------------- hydrostatic */
@@ -53,11 +36,17 @@ typedef struct {
   double top;                 /* largest pressure of the water, Pa */
 } Column;
 
-static PetscErrorCode ColumnOf(MPI_Comm comm, const Scene *c, const Particles *P, Column *w)
+/* *there: gravity moves the water, so that it matters. */
+static PetscErrorCode ColumnOf(const Findings *f, bool *there, Column *w)
 {
-  double sum[2] = {0.0, 0.0}, most[3] = {-INFINITY, -INFINITY, 0.0}, dp, dT;
+  const Scene     *c      = f->s->model->c;
+  const Particles *P      = &f->s->model->P;
+  double           sum[2] = {0.0, 0.0}, most[3] = {-INFINITY, -INFINITY, 0.0}, dp, dT;
 
   PetscFunctionBeginUser;
+  *there = c->fields.phase[PHASE_W] && SceneGravity(c) != 0.0 && !(c->gravity_ramp > 0.0);
+  if (!*there)
+    PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < P->n; p++) {
     const Region *r = &c->region[P->i[PI_REGION][p]];
     const double  T = ParticleT(c, P, p);
@@ -74,8 +63,8 @@ static PetscErrorCode ColumnOf(MPI_Comm comm, const Scene *c, const Particles *P
     most[1] = fmax(most[1], reach - z);
     most[2] = fmax(most[2], fabs(P->f[P_PW][p]));
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPI_DOUBLE, MPI_SUM, f->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 3, MPI_DOUBLE, MPI_MAX, f->comm));
   w->rho    = sum[1] / sum[0];
   w->height = most[0] + most[1];
   w->weight = w->rho * SceneGravity(c) * w->height;
@@ -90,35 +79,39 @@ static bool FarApart(const Column *w, double apart)
 }
 
 /* (341): the pressure beyond that of water at rest is the same all over where water is at rest. */
-static PetscErrorCode PressureWarning(MPI_Comm comm, const Scene *c, const Particles *P, const Column *w)
+PetscErrorCode FindingsFindFarPressure(Findings *f, FindingId id)
 {
-  Most high = {.value = -INFINITY}, low = {.value = -INFINITY};
+  const Scene     *c    = f->s->model->c;
+  const Particles *P    = &f->s->model->P;
+  Most             high = {.value = -INFINITY}, low = {.value = -INFINITY};
+  Column           w;
+  bool             there;
 
   PetscFunctionBeginUser;
+  PetscCall(ColumnOf(f, &there, &w));
+  if (!there)
+    PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < P->n; p++) {
     const double pw = P->f[P_PW][p];
     double       x[CL_DIM];
 
     ParticlePlace(P, p, x);
-    const double beyond = pw + w->rho * SceneGravity(c) * SceneHeight(c, x);
+    const double beyond = pw + w.rho * SceneGravity(c) * SceneHeight(c, x);
 
     MostTake(&high, c, P, p, beyond, pw);
     MostTake(&low, c, P, p, -beyond, pw);
   }
-  PetscCall(MostOfAll(comm, &high));
-  PetscCall(MostOfAll(comm, &low));
+  PetscCall(FindingsShareLargest(f->comm, &high, sizeof(Most)));
+  PetscCall(FindingsShareLargest(f->comm, &low, sizeof(Most)));
   const double apart = high.value + low.value;
 
-  if (!FarApart(w, apart))
+  if (!FarApart(&w, apart))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFPrintf(
-      comm, stderr,
-      "clathra: warning: the pore pressure starts far from hydrostatic: region %s at %s has %s "
-      "more beyond water at rest than region %s at %s, and the water weighs %s from top to "
-      "foot: it will flow from the start (hydrostatic: yes with one datum, or -restart_as_initial of a run "
-      "that came to rest, starts in balance)\n",
+  SAY("the pore pressure starts far from hydrostatic: region %s at %s has %s more beyond water at rest than region %s "
+      "at %s, and the water weighs %s from top to foot: it will flow from the start (hydrostatic: yes with one datum, "
+      "or -restart_as_initial of a run that came to rest, starts in balance)",
       c->region[high.region].name, PlaceWords(high.x).s, PressureWords(apart, 3).s, c->region[low.region].name,
-      PlaceWords(low.x).s, PressureWords(w->weight, 3).s));
+      PlaceWords(low.x).s, PressureWords(w.weight, 3).s);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,8 +176,8 @@ static PetscErrorCode BuoyancyOf(MPI_Comm comm, const Scene *c, const Particles 
     MostTake(&b->high, c, P, p, e, pg);
     MostTake(&b->low, c, P, p, -e, pg);
   }
-  PetscCall(MostOfAll(comm, &b->high));
-  PetscCall(MostOfAll(comm, &b->low));
+  PetscCall(FindingsShareLargest(comm, &b->high, sizeof(Most)));
+  PetscCall(FindingsShareLargest(comm, &b->low, sizeof(Most)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->fastest, 1, MPI_DOUBLE, MPI_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -198,58 +191,52 @@ static double Apart(const double a[CL_DIM], const double b[CL_DIM])
   return VectorLength(between);
 }
 
-/* (315) of the first region where it holds; span: the time of the run, s. */
-static PetscErrorCode BuoyancyWarning(MPI_Comm comm, const Scene *c, const Particles *P, const Column *w, double span)
+/* (315) of the first region where it holds in the time of the run. */
+PetscErrorCode FindingsFindRisingGas(Findings *f, FindingId id)
 {
-  const double least = MOVES * w->height / (span * w->rho * SceneGravity(c));
+  const Scene     *c = f->s->model->c;
+  const Particles *P = &f->s->model->P;
+  Column           w;
+  bool             there;
 
   PetscFunctionBeginUser;
+  PetscCall(ColumnOf(f, &there, &w));
+  if (!there)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  const double least = MOVES * w.height / ((f->c->t_end - f->c->scene.t_begin) * w.rho * SceneGravity(c));
+
   for (PetscInt k = 0; c->fields.phase[PHASE_G] && k < c->nregion; k++) {
     double   mean = 0.0;
     Buoyancy b;
 
     if (RegionEmpty(&c->region[k]))
       continue;
-    PetscCall(MovingGas(comm, c, P, k, least, &mean));
+    PetscCall(MovingGas(f->comm, c, P, k, least, &mean));
     if (!(mean > 0.0))
       continue;
-    PetscCall(BuoyancyOf(comm, c, P, k, least, mean, &b));
+    PetscCall(BuoyancyOf(f->comm, c, P, k, least, mean, &b));
     const double apart = b.high.value + b.low.value, away = Apart(b.high.x, b.low.x);
 
-    if (!FarApart(w, apart))
+    if (!FarApart(&w, apart))
       continue;
-    PetscCall(PetscFPrintf(
-        comm, stderr,
-        "clathra: warning: gas starts out of balance with gravity: in region %s it has %s more at %s "
-        "than gas at rest would, seen from %s, and moves there from the start, by up to some %.2g m a day "
-        "(a gas share Sg/(1 - Sh) at which it has no relative permeability, layers with the more gas the higher they "
-        "lie, or -restart_as_initial of a run that came to rest, starts in balance)\n",
+    SAY("gas starts out of balance with gravity: in region %s it has %s more at %s than gas at rest would, seen from "
+        "%s, and moves there from the start, by up to some %.2g m a day (a gas share Sg/(1 - Sh) at which it has no "
+        "relative permeability, layers with the more gas the higher they lie, or -restart_as_initial of a run that "
+        "came to rest, starts in balance)",
         c->region[k].name, PressureWords(apart, 3).s, PlaceWords(b.high.x).s, PlaceWords(b.low.x).s,
-        b.fastest * apart / away * DAY));
+        b.fastest * apart / away * DAY);
     break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fluids that gravity moves. */
-static PetscErrorCode GravityWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span)
-{
-  Column w;
-
-  PetscFunctionBeginUser;
-  if (!c->fields.phase[PHASE_W] || SceneGravity(c) == 0.0 || c->gravity_ramp > 0.0)
-    PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ColumnOf(comm, c, P, &w));
-  PetscCall(PressureWarning(comm, c, P, &w));
-  PetscCall(BuoyancyWarning(comm, c, P, &w, span));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ---------------------------------------------------------------- hydrate */
-static PetscErrorCode HydrateWarning(MPI_Comm comm, const Scene *c, const Particles *P)
+PetscErrorCode FindingsFindUnstableHydrate(Findings *f, FindingId id)
 {
-  Most   worst   = {.value = 0.0};
-  double mass[2] = {0.0, 0.0}, d; /* of hydrate that reacts, outside and in all */
+  const Scene     *c       = f->s->model->c;
+  const Particles *P       = &f->s->model->P;
+  Most             worst   = {.value = 0.0};
+  double           mass[2] = {0.0, 0.0}, d; /* of hydrate that reacts, outside and in all */
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; c->fields.phase[PHASE_G] && p < P->n; p++) {
@@ -264,20 +251,18 @@ static PetscErrorCode HydrateWarning(MPI_Comm comm, const Scene *c, const Partic
     mass[1] += P->f[P_MH][p];
     MostTake(&worst, c, P, p, over, mean);
   }
-  PetscCall(MostOfAll(comm, &worst));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, comm));
+  PetscCall(FindingsShareLargest(f->comm, &worst, sizeof(Most)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, f->comm));
   if (worst.value <= OUTSIDE)
     PetscFunctionReturn(PETSC_SUCCESS);
   const Equilibrium *law = &c->material[c->region[worst.region].material].kinetics.equilibrium;
 
-  PetscCall(PetscFPrintf(
-      comm, stderr,
-      "clathra: warning: hydrate starts outside its stability zone, %.3g %% of it; most in region %s at %s: "
-      "at %.4g degC it needs %s and has %s, where it is stable up to %.4g degC: it dissociates from the "
-      "start (more pressure, a lower temperature, or a first stage with kinetics_active: no)\n",
+  SAY("hydrate starts outside its stability zone, %.3g %% of it; most in region %s at %s: at %.4g degC it needs %s and "
+      "has %s, where it is stable up to %.4g degC: it dissociates from the start (more pressure, a lower temperature, "
+      "or a first stage with kinetics_active: no)",
       100.0 * mass[0] / mass[1], c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
       PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s,
-      EquilibriumTemperature(law, worst.p)));
+      EquilibriumTemperature(law, worst.p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -316,43 +301,32 @@ static PetscErrorCode FindForming(MPI_Comm comm, const Scene *c, const Particles
       continue;
     MostTake(worst, c, P, p, EquilibriumTemperature(law, p_mean) - T, p_mean);
   }
-  PetscCall(MostOfAll(comm, worst));
+  PetscCall(FindingsShareLargest(comm, worst, sizeof(Most)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gas and water that become hydrate. */
-static PetscErrorCode FormationWarning(MPI_Comm comm, const Scene *c, const Particles *P, bool own)
+/* Gas and water that become hydrate, of their own material or of one beside theirs. */
+PetscErrorCode FindingsFindForming(Findings *f, FindingId id)
 {
-  Most   worst;
-  double d;
+  const bool   own = id == FINDING_FORMING;
+  const Scene *c   = f->s->model->c;
+  Most         worst;
+  double       d;
 
   PetscFunctionBeginUser;
-  PetscCall(FindForming(comm, c, P, own, &worst));
+  PetscCall(FindForming(f->comm, c, &f->s->model->P, own, &worst));
   if (!(worst.value > WARMS))
     PetscFunctionReturn(PETSC_SUCCESS);
   const Material    *m   = &c->material[c->region[worst.region].material];
   const Equilibrium *law = Forms(m) ? &m->kinetics.equilibrium : &AnyForms(c)->kinetics.equilibrium;
 
-  PetscCall(PetscFPrintf(
-      comm, stderr,
-      "clathra: %s: free gas starts where hydrate is stable, most in region %s at %s: at %.4g degC "
-      "hydrate forms above %s and there are %s, up to %.4g degC: %s\n",
-      own ? "warning" : "note", c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
+  SAY("free gas starts where hydrate is stable, most in region %s at %s: at %.4g degC hydrate forms above %s and there "
+      "are %s, up to %.4g degC: %s",
+      c->region[worst.region].name, PlaceWords(worst.x).s, worst.T,
       PressureWords(EquilibriumPressure(law, worst.T, &d), 4).s, PressureWords(worst.p, 4).s, worst.T + worst.value,
       own ? "gas and water turn into hydrate from the start (Sg: 0, less pressure or a higher temperature starts in "
             "balance, or a first stage with kinetics_active: no)"
           : "nothing forms in it, for its material has no reaction, but where it comes to sediment that has one it "
-            "does, "
-            "from the start if they touch (in balance: Sg: 0, or below the stability zone)"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode UnsteadyWarnings(MPI_Comm comm, const Scene *c, const Particles *P, double span)
-{
-  PetscFunctionBeginUser;
-  PetscCall(GravityWarnings(comm, c, P, span));
-  PetscCall(HydrateWarning(comm, c, P));
-  PetscCall(FormationWarning(comm, c, P, true));
-  PetscCall(FormationWarning(comm, c, P, false));
+            "does, from the start if they touch (in balance: Sg: 0, or below the stability zone)");
   PetscFunctionReturn(PETSC_SUCCESS);
 }

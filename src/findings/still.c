@@ -1,6 +1,8 @@
 /* What gave nothing in a whole stage: conditions and meters that the case lists, and that a user counts on. */
-#include "run_private.h"
+#include "findings_private.h"
 #include "clathra/words.h"
+
+#define STILL_WORDS 2048
 
 /* Is it asked for nothing at any time?  Of what is given as a rate. */
 static bool AsksNothing(const Bc *b)
@@ -63,8 +65,10 @@ static void Add(const char *kind, const char *name, char words[STILL_WORDS])
   snprintf(words + n, STILL_WORDS - n, "%s%s %s", n ? ", " : "", kind, name);
 }
 
-PetscErrorCode StillLook(Stepper *s)
+/* At the end of a stage, or of a run without stages: conditions and meters of which nothing came in all of it. */
+PetscErrorCode FindingsFindStill(Findings *f, FindingId id)
 {
+  Stepper     *s                  = f->s;
   const Model *m                  = s->model;
   const Scene *c                  = m->c;
   double      *acts               = s->state.acts;
@@ -84,7 +88,6 @@ PetscErrorCode StillLook(Stepper *s)
   }
   StepperStageWords(s, stage);
   if (words[0])
-    PetscCall(PetscFPrintf(m->grid.comm, stderr, "clathra: note: %sfrom %s to %s nothing at all came of: %s\n", stage,
-                           TimeWords(c->t_begin, 6).s, TimeAt(s->state.t).s, words));
+    SAY("%sfrom %s to %s nothing at all came of: %s", stage, TimeWords(c->t_begin, 6).s, TimeAt(s->state.t).s, words);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,16 +1,10 @@
 /* What is said of the sides of the body and cannot be meant: faces that are opened and closed at once, and sides that
    nothing bears though the pores behind them do. */
-#include "clathra/boundary.h"
+#include "findings_private.h"
 #include "clathra/shape.h"
 
 #define ON_LINE 1e-9 /* of the coordinate's size */
 #define SWELLS 5e-3  /* strain of the skeleton that is worth a word */
-
-#if CL_DIM == 2
-const char *const cl_side[] = {"left", "right", "bottom", "top", "none", NULL};
-#else
-const char *const cl_side[] = {"left", "right", "bottom", "top", "back", "front", "none", NULL};
-#endif
 
 /* How far the body reaches on a side, m; region: it alone, if not below zero. */
 static double SideLine(const Scene *c, PetscInt region, int side)
@@ -34,7 +28,7 @@ static bool HoldsLine(const Bc *b, int axis, double at)
          fabs(b->position - at) <= ON_LINE * fmax(fabs(at), 1.0);
 }
 
-PetscErrorCode ClosedWarning(MPI_Comm comm, const Scene *c)
+static PetscErrorCode FindClosed(const Findings *f, FindingId id, const Scene *c)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->nbc; k++) {
@@ -50,14 +44,19 @@ PetscErrorCode ClosedWarning(MPI_Comm comm, const Scene *c)
 
       if (line->drained || !HoldsLine(line, axis, at))
         continue;
-      PetscCall(
-          PetscFPrintf(comm, stderr,
-                       "clathra: warning: boundary %s holds water and gas, too, at %c = %g m, and closes the "
-                       "faces of boundary %s, which lie there: nothing flows through them.  bc_%s_holds: skeleton "
-                       "lets the fluids cross\n",
-                       line->name, 'x' + axis, line->position, face->name, line->name));
+      SAY("boundary %s holds water and gas, too, at %c = %g m, and closes the faces of boundary %s, which lie there: "
+          "nothing flows through them.  bc_%s_holds: skeleton lets the fluids cross",
+          line->name, 'x' + axis, line->position, face->name, line->name);
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FindingsFindClosedFaces(Findings *f, FindingId id)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < PetscMax(f->c->nstage, 1); k++)
+    PetscCall(FindClosed(f, id, &CaseInStage(f->c, k)->scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,9 +101,10 @@ static PetscErrorCode Swells(const Scene *c, int side, double at, double *strain
 
 /* A side of which nothing is said is free of total stress, so the skeleton takes the pores' pressure as a tension at
    once. */
-PetscErrorCode FreeSidesWarning(MPI_Comm comm, const Scene *c)
+PetscErrorCode FindingsFindFreeSides(Findings *f, FindingId id)
 {
-  const bool sea = AmbientOf(c, c->t_begin, c->gravity).on || c->ambient_pressure.n > 1;
+  const Scene *c   = f->s->model->c;
+  const bool   sea = AmbientOf(c, c->t_begin, c->gravity).on || c->ambient_pressure.n > 1;
 
   PetscFunctionBeginUser;
   for (int side = 0; side < SIDE_COUNT && c->fields.solid && c->fields.fluid && !sea; side++) {
@@ -116,12 +116,10 @@ PetscErrorCode FreeSidesWarning(MPI_Comm comm, const Scene *c)
     PetscCall(Swells(c, side, at, &strain, &pressure));
     if (!(strain > SWELLS))
       continue;
-    PetscCall(
-        PetscFPrintf(comm, stderr,
-                     "clathra: warning: nothing bears the pore pressure of %.3g MPa at the body's %s, which is "
-                     "free of total stress as long as no traction, plate, roller or ambient pressure acts there: "
-                     "its skeleton swells by some %.2g %% (type: traction, side: %s, normal: %.4g MPa keeps it)\n",
-                     1e-6 * pressure, cl_side[side], 100.0 * strain, cl_side[side], 1e-6 * pressure));
+    SAY("nothing bears the pore pressure of %.3g MPa at the body's %s, which is free of total stress as long as no "
+        "traction, plate, roller or ambient pressure acts there: its skeleton swells by some %.2g %% (type: traction, "
+        "side: %s, normal: %.4g MPa keeps it)",
+        1e-6 * pressure, cl_side[side], 100.0 * strain, cl_side[side], 1e-6 * pressure);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,6 @@
 /* What a run with gas says of borders of layers that have settled off the grid's lines (docs/limits.md): the cell of
    the tight layer beside such a border drains as the other layer does, and no tolerance shows it. */
-#include "run_private.h"
+#include "findings_private.h"
 #include "clathra/shape.h"
 #include "clathra/words.h"
 
@@ -53,11 +53,6 @@ static void Look(const Model *m, PetscInt p, const double x0[CL_DIM], const doub
 /* The border that is farthest off, of all ranks. */
 static PetscErrorCode Farthest(const Model *m, Border *most)
 {
-  struct {
-    double off;
-    int    rank;
-  } first;
-
   PetscFunctionBeginUser;
   *most = (Border){.off = OFF_LINE};
   for (PetscInt p = 0; p < m->P.n; p++) {
@@ -70,17 +65,15 @@ static PetscErrorCode Farthest(const Model *m, Border *most)
       Look(m, p, x0, l, d, 1.0, most);
     }
   }
-  first.off  = most->off;
-  first.rank = m->grid.rank;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->grid.comm));
-  PetscCallMPI(MPI_Bcast(most, sizeof(*most), MPI_BYTE, first.rank, m->grid.comm));
+  PetscCall(FindingsShareLargest(m->grid.comm, most, sizeof(*most)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode NoteBorders(const Stepper *s)
+PetscErrorCode FindingsFindBorder(Findings *f, FindingId id)
 {
-  const Model *m = s->model;
+  const Model *m = f->s->model;
   const Scene *c = m->c;
+  char         what[256];
   Border       b;
 
   PetscFunctionBeginUser;
@@ -89,13 +82,12 @@ PetscErrorCode NoteBorders(const Stepper *s)
   PetscCall(Farthest(m, &b));
   if (!(b.off > OFF_LINE))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFPrintf(
-      m->grid.comm, stderr,
-      "clathra: note: the border between %s and %s lay on a line of the grid and is %.2g of a cell off it, near %s: "
-      "the cell of %s beside it drains as %s does, and no tolerance shows it.  What to try, in this order: %sthinner "
-      "cells on the side of %s (docs/limits.md)\n",
-      c->material[b.tight].name, c->material[b.open].name, b.off, PlaceWords(b.at).s, c->material[b.tight].name,
-      c->material[b.open].name, s->explicit ? "" : "basis: total, where the ground does not flow; ",
-      c->material[b.tight].name));
+  snprintf(what, sizeof(what), "%sthinner cells on the side of %s",
+           f->s->explicit ? "" : "basis: total, where the ground does not flow; ", c->material[b.tight].name);
+  PetscCall(FindingSayOf(f->comm, id, NULL, what,
+                         "the border between %s and %s lay on a line of the grid and is %.2g of a cell off it, near "
+                         "%s: the cell of %s beside it drains as %s does, and no tolerance shows it (docs/limits.md)",
+                         c->material[b.tight].name, c->material[b.open].name, b.off, PlaceWords(b.at).s,
+                         c->material[b.tight].name, c->material[b.open].name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,17 @@
+/* findings_private: shared by the files of src/findings. */
+#pragma once
+
+#include "clathra/findings.h"
+
+/* Looks for what the row `id` of the table is about, and says it.  Collective. */
+typedef PetscErrorCode FindingsFind(Findings *f, FindingId id);
+#define DECLARE(id, when, kind, find, what_to_try) FindingsFind find;
+CL_FINDINGS(DECLARE)
+#undef DECLARE
+
+/* Says it, in a function that looks for it. */
+#define SAY(...) PetscCall(FindingSay(f->comm, id, __VA_ARGS__))
+/* Of all ranks the struct whose first member, a double, is largest.  Collective. */
+PetscErrorCode FindingsShareLargest(MPI_Comm comm, void *largest, size_t bytes);
+/* Is far more left than was forecast, in steps or s of the wall, after far more than was forecast? */
+bool FindingsIsSlow(const Slow *slow, const Forecast *f, const Pace *pace);
