@@ -50,7 +50,7 @@ def counts(root):
 CEILINGS = {
     "keys of a case": 242,
     "... that choose numerics": 18,
-    "lines of C in src and include": 44589,  # 106 more: the table of findings and what says them
+    "lines of C in src and include": 44576,  # 93 more: the table of findings and what says them
     f"functions with {MANY} parameters or more": 43,
     "comments that are a number alone": 0,
     "files that print warnings": 1,

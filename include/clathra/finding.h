@@ -15,7 +15,7 @@ typedef enum {
   FINDING_AT_SUMMARY,
   FINDING_AT_END
 } FindingWhen;
-/* How it is said: "clathra: note: ..." and "clathra: warning: ..." go to stderr, "Given up at t = ...", "A likely
+/* How it is said: "clathra: note: ..." and "clathra: warning: ..." go to stderr; "Given up at t = ...", "A likely
    cause:
    ..." and the lines of the summary to stdout. */
 typedef enum { FINDING_AS_NOTE, FINDING_AS_WARNING, FINDING_AS_END, FINDING_AS_CAUSE, FINDING_AS_LINE } FindingKind;

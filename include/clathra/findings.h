@@ -17,6 +17,12 @@ typedef struct {
   bool     begun, said;
 } Slow;
 
+/* Temperatures that start and conditions of the run lead to, degC. */
+typedef struct {
+  double low, high;
+  bool   known; /* by the first look, for none of this changes */
+} Acted;
+
 /* What is looked at, and what one look keeps for the next. */
 typedef struct {
   const Case     *c; /* of the run; that of the stage is StepperCase(s) */
@@ -26,6 +32,7 @@ typedef struct {
   Pace            pace; /* ... and how the stage goes after it */
   bool            ends; /* set by a look: the run is to end here */
   Slow            slow;
+  Acted           acted;
 } Findings;
 
 /* Looks for all findings of this moment and says them.  Collective. */

@@ -241,9 +241,7 @@ static inline double StepperHybridStep(const Case *c, const StableStep *limit)
 #define STEPPER_ADVICE 768
 /* What to try where steps are far shorter than the forecast hoped for; newton: steps that it refused shorten them. */
 void StepperAdviceSlow(const Stepper *s, bool newton, char words[STEPPER_ADVICE]);
-/* Says that the run is given up now, why (behind the time), and what may be tried (NULL: what helps against this
- * cause).
- */
+/* Says that the run is given up now, why (behind the time), what may be tried (NULL: what helps against this cause). */
 PetscErrorCode StepperGiveUp(const Stepper *s, ClStatus cause, const char *what_to_try, const char *why, ...)
     __attribute__((format(printf, 4, 5)));
 /* The same after so many attempts at a step: why the last one failed, and where. */
@@ -325,6 +323,8 @@ double StepperNextStop(const Stepper *s, bool *kink);
 /* extremes.c: those of the particles as they are go into the state; at the start, after every accepted step or burst.
    Collective. */
 PetscErrorCode StepperExtremes(Stepper *s, bool start);
+/* Of all ranks the struct whose first member, a double, is largest; bytes: its size.  Collective. */
+PetscErrorCode StepperShareLargest(MPI_Comm comm, void *largest, size_t bytes);
 /* The temperature, degC, at which hydrate of any material would be in equilibrium with p (Pa), the highest of them or
    the lowest, if `from` is less far out; forming hydrate warms up to it, melting cools down to it. */
 double StepperEquilibrium(const Scene *c, double from, double p, bool warm);

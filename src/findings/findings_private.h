@@ -11,7 +11,5 @@ CL_FINDINGS(DECLARE)
 
 /* Says it, in a function that looks for it. */
 #define SAY(...) PetscCall(FindingSay(f->comm, id, __VA_ARGS__))
-/* Of all ranks the struct whose first member, a double, is largest.  Collective. */
-PetscErrorCode FindingsShareLargest(MPI_Comm comm, void *largest, size_t bytes);
 /* Is far more left than was forecast, in steps or s of the wall, after far more than was forecast? */
 bool FindingsIsSlow(const Slow *slow, const Forecast *f, const Pace *pace);

@@ -136,15 +136,20 @@ static PetscErrorCode SayTemperature(const Findings *f, FindingId id, int k, Bey
 /* While it happens, once, if it is some kelvin; and at the end. */
 PetscErrorCode FindingsFindTemperature(Findings *f, FindingId id)
 {
-  const bool now   = id == FINDING_TEMPERATURE_NOW;
-  const bool done  = !f->s->model->c->fields.heat || (now && FindingTimes(id));
-  const Span acted = done ? (Span){0.0, 0.0} : Temperatures(f->s);
+  const bool now = id == FINDING_TEMPERATURE_NOW;
 
   PetscFunctionBeginUser;
-  for (int k = LOWEST_T; !done && k <= HIGHEST_T; k++) {
-    const Beyond beyond = BeyondOf(f->s, acted, k);
+  if (!f->s->model->c->fields.heat)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!f->acted.known) {
+    const Span acted = Temperatures(f->s);
 
-    if (beyond.by > fmax(now ? AT_ONCE : 0.0, beyond.slack) && !(now && FindingTimes(id)))
+    f->acted = (Acted){.low = acted.low, .high = acted.high, .known = true};
+  }
+  for (int k = LOWEST_T; k <= HIGHEST_T && !(now && FindingTimes(id)); k++) {
+    const Beyond beyond = BeyondOf(f->s, (Span){f->acted.low, f->acted.high}, k);
+
+    if (beyond.by > fmax(now ? AT_ONCE : 0.0, beyond.slack))
       PetscCall(SayTemperature(f, id, k, beyond));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -36,16 +36,16 @@ typedef struct {
   double top;                 /* largest pressure of the water, Pa */
 } Column;
 
-/* *there: gravity moves the water, so that it matters. */
-static PetscErrorCode ColumnOf(const Findings *f, bool *there, Column *w)
+/* All zero where gravity does not move the water. */
+static PetscErrorCode ColumnOf(const Findings *f, Column *w)
 {
   const Scene     *c      = f->s->model->c;
   const Particles *P      = &f->s->model->P;
   double           sum[2] = {0.0, 0.0}, most[3] = {-INFINITY, -INFINITY, 0.0}, dp, dT;
 
   PetscFunctionBeginUser;
-  *there = c->fields.phase[PHASE_W] && SceneGravity(c) != 0.0 && !(c->gravity_ramp > 0.0);
-  if (!*there)
+  *w = (Column){.weight = 0.0};
+  if (!c->fields.phase[PHASE_W] || SceneGravity(c) == 0.0 || c->gravity_ramp > 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < P->n; p++) {
     const Region *r = &c->region[P->i[PI_REGION][p]];
@@ -85,11 +85,10 @@ PetscErrorCode FindingsFindFarPressure(Findings *f, FindingId id)
   const Particles *P    = &f->s->model->P;
   Most             high = {.value = -INFINITY}, low = {.value = -INFINITY};
   Column           w;
-  bool             there;
 
   PetscFunctionBeginUser;
-  PetscCall(ColumnOf(f, &there, &w));
-  if (!there)
+  PetscCall(ColumnOf(f, &w));
+  if (w.weight == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < P->n; p++) {
     const double pw = P->f[P_PW][p];
@@ -101,8 +100,8 @@ PetscErrorCode FindingsFindFarPressure(Findings *f, FindingId id)
     MostTake(&high, c, P, p, beyond, pw);
     MostTake(&low, c, P, p, -beyond, pw);
   }
-  PetscCall(FindingsShareLargest(f->comm, &high, sizeof(Most)));
-  PetscCall(FindingsShareLargest(f->comm, &low, sizeof(Most)));
+  PetscCall(StepperShareLargest(f->comm, &high, sizeof(Most)));
+  PetscCall(StepperShareLargest(f->comm, &low, sizeof(Most)));
   const double apart = high.value + low.value;
 
   if (!FarApart(&w, apart))
@@ -176,8 +175,8 @@ static PetscErrorCode BuoyancyOf(MPI_Comm comm, const Scene *c, const Particles 
     MostTake(&b->high, c, P, p, e, pg);
     MostTake(&b->low, c, P, p, -e, pg);
   }
-  PetscCall(FindingsShareLargest(comm, &b->high, sizeof(Most)));
-  PetscCall(FindingsShareLargest(comm, &b->low, sizeof(Most)));
+  PetscCall(StepperShareLargest(comm, &b->high, sizeof(Most)));
+  PetscCall(StepperShareLargest(comm, &b->low, sizeof(Most)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &b->fastest, 1, MPI_DOUBLE, MPI_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -197,11 +196,10 @@ PetscErrorCode FindingsFindRisingGas(Findings *f, FindingId id)
   const Scene     *c = f->s->model->c;
   const Particles *P = &f->s->model->P;
   Column           w;
-  bool             there;
 
   PetscFunctionBeginUser;
-  PetscCall(ColumnOf(f, &there, &w));
-  if (!there)
+  PetscCall(ColumnOf(f, &w));
+  if (w.weight == 0.0)
     PetscFunctionReturn(PETSC_SUCCESS);
   const double least = MOVES * w.height / ((f->c->t_end - f->c->scene.t_begin) * w.rho * SceneGravity(c));
 
@@ -251,7 +249,7 @@ PetscErrorCode FindingsFindUnstableHydrate(Findings *f, FindingId id)
     mass[1] += P->f[P_MH][p];
     MostTake(&worst, c, P, p, over, mean);
   }
-  PetscCall(FindingsShareLargest(f->comm, &worst, sizeof(Most)));
+  PetscCall(StepperShareLargest(f->comm, &worst, sizeof(Most)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mass, 2, MPI_DOUBLE, MPI_SUM, f->comm));
   if (worst.value <= OUTSIDE)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -301,7 +299,7 @@ static PetscErrorCode FindForming(MPI_Comm comm, const Scene *c, const Particles
       continue;
     MostTake(worst, c, P, p, EquilibriumTemperature(law, p_mean) - T, p_mean);
   }
-  PetscCall(FindingsShareLargest(comm, worst, sizeof(Most)));
+  PetscCall(StepperShareLargest(comm, worst, sizeof(Most)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

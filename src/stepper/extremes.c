@@ -80,3 +80,18 @@ PetscErrorCode StepperExtremes(Stepper *s, bool start)
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+PetscErrorCode StepperShareLargest(MPI_Comm comm, void *largest, size_t bytes)
+{
+  struct {
+    double value;
+    int    rank;
+  } best;
+
+  PetscFunctionBeginUser;
+  memcpy(&best.value, largest, sizeof(best.value));
+  PetscCallMPI(MPI_Comm_rank(comm, &best.rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
+  PetscCallMPI(MPI_Bcast(largest, (PetscMPIInt)bytes, MPI_BYTE, best.rank, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

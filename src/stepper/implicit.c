@@ -1,7 +1,6 @@
 /* Implicit schemes: attempts at a step with ever smaller dt until one is accepted; error norm and step control. */
 #include "clathra/stepper.h"
 #include "clathra/words.h"
-#include <string.h>
 
 #define CUT_FAILED 0.25 /* after a step that could not be taken */
 #define HOLD 5          /* steps without growth after that */
@@ -128,25 +127,6 @@ PetscErrorCode StepperStage(Stepper *s, double t, double dt, Trial *trial, doubl
 const char *const stepper_error_word[STEPPER_ERRORS] = {"p_w",   "p_g", "T", "S_h", "displacement", "plastic strain",
                                                         "stress"};
 
-/* The largest of all ranks; collective. */
-static PetscErrorCode SharePeak(MPI_Comm comm, Peak *peak)
-{
-  struct {
-    double err;
-    int    rank;
-  } best                = {.err = peak->err};
-  double of[1 + CL_DIM] = {peak->of};
-
-  PetscFunctionBeginUser;
-  memcpy(&of[1], peak->at, sizeof(peak->at));
-  PetscCallMPI(MPI_Comm_rank(comm, &best.rank));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
-  PetscCallMPI(MPI_Bcast(of, 1 + CL_DIM, MPI_DOUBLE, best.rank, comm));
-  *peak = (Peak){.err = best.err, .of = (int)of[0]};
-  memcpy(peak->at, &of[1], sizeof(peak->at));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Norm of the error over all particles (292). */
 double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *a)
 {
@@ -177,7 +157,7 @@ double StepperErrorNorm(Stepper *s, const double *e, const double *eu, Attempt *
     }
   }
   sum[STEPPER_ERRORS] = (double)m->P.n;
-  if (SharePeak(m->grid.comm, &a->peak) ||
+  if (StepperShareLargest(m->grid.comm, &a->peak, sizeof(a->peak)) ||
       MPI_Allreduce(MPI_IN_PLACE, sum, STEPPER_ERRORS + 1, MPI_DOUBLE, MPI_SUM, m->grid.comm))
     return NAN;
   a->rules = 0;
