@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Runs the verification tests and writes what they measured: docs/studies/verification.md, every number, and docs/verification.md, a row a test.
+"""Runs the verification tests and writes what they measured: docs/studies/verification.md, every number, and docs/verification.md, a row a test;
+and tests/README.md, which test guards what.
 
 verification.py [CLATHRA] [--jobs N] [--only NAME ...] [--no-figures]
 
@@ -30,6 +31,7 @@ import reference
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "results" / "verification"
+GUARDS = ROOT / "tests" / "README.md"
 PAGE, ALL, FIGURES = ROOT / "docs" / "verification.md", dated.STUDIES / "verification.md", ROOT / "docs" / "figures"
 sys.path.insert(0, str(ROOT / "tests" / "verification"))
 
@@ -180,11 +182,20 @@ def every_number(records):
 
 
 def shows(test):
-    """What a test shows: the first sentence of its docstring, without numbers of rows and sections and what stands in brackets."""
-    text = " ".join(ast.get_docstring(ast.parse(script(test).read_text())).split("\n\n")[0].split())
-    text = re.sub(r"^(Row \d+|Section [\d.]+): | ?\([^()]*\)", "", text)
+    """What a test of docs/verification.md shows."""
+    return first_sentence(script(test))
+
+
+def first_sentence(path):
+    """The first sentence of a test's docstring, or of the comment it begins with, without numbers of rows and sections and what stands in brackets."""
+    source = path.read_text()
+    text = ast.get_docstring(ast.parse(source)) if path.suffix == ".py" else re.search(r"/\*(.*?)\*/", source, re.S)[1]
+    text = " ".join(text.split("\n\n")[0].split())
+    text = re.sub(r"^(Row \d+|Section [\d.]+): ", "", text)
+    while (bare := re.sub(r" ?\([^()]*\)", "", text)) != text:
+        text = bare
     text = re.split(r"\.(?= [A-Z`]|$)", text)[0]
-    return text if text.startswith("cases/") else text[0].upper() + text[1:]
+    return text if "/" in text.split()[0] else text[0].upper() + text[1:]
 
 
 def share(record):
@@ -236,6 +247,21 @@ def overview(records):
     return "\n".join(text).rstrip() + "\n"
 
 
+def guards():
+    """The page of tests/: each test, its ring, and what it guards."""
+    build = (GUARDS.parent / "CMakeLists.txt").read_text()
+    full = set(re.search(r"^list\(APPEND full ([^)]*)\)", build, re.M)[1].split())
+    text = ["# Tests", "", "Written by `scripts/verification.py` from the first sentence of each test; change that.", "",
+            "`./check` runs the tests without *full*; `./check --full` runs all of them, unit tests on two ranks and under sanitizers, too.", "",
+            "| test | ring | what it guards |", "|---|---|---|"]  # fmt: skip
+    for folder, pattern in (("unit", "test_*.c"), ("space", "test_*.c"), ("integration", "[a-z]*.py"), ("verification", "[a-z]*.py"), ("bad", "run.py")):
+        for path in sorted((GUARDS.parent / folder).glob(pattern)):
+            if path.stem not in NOT_A_TEST:
+                ring = "full" if f"{folder}.{path.stem}" in full else ""
+                text.append(f"| [{folder}/{path.name}]({folder}/{path.name}) | {ring} | {escape(first_sentence(path))} |")
+    return "\n".join(text) + "\n"
+
+
 def main():
     parser = argparse.ArgumentParser(usage=__doc__.split("\n\n", 1)[1])
     parser.add_argument("program", nargs="?", default=str(ROOT / "build" / "clathra"))
@@ -259,6 +285,7 @@ def main():
         dated.measured(ALL)
     ALL.write_text(every_number(records))
     PAGE.write_text(overview(records))
+    GUARDS.write_text(guards())
     print(f"{PAGE}, {ALL}: {len(records)} numbers from {len(found)} tests")
     return 0 if all(passed) else 1
 

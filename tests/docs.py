@@ -207,6 +207,8 @@ def check_studies():
             yield f"{page.relative_to(ROOT)} does not begin with its script, its data, their dates and commits as in made.csv, and what has changed since"
         if f"]({page.name})" not in contents:
             yield f"docs/studies/README.md does not name {page.name}"
+    if verification.GUARDS.read_text() != verification.guards():
+        yield "tests/README.md is not what the tests say of themselves: scripts/verification.py --only --no-figures"
     yield from (f"docs/studies/made.csv names {f}, which is not there" for f in dated.read() if not (dated.STUDIES / f).is_file())
 
 
